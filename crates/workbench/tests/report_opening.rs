@@ -80,6 +80,12 @@ fn runs(source: &Memory, loaded: &Loaded) -> Vec<ScenarioRun> {
         .unwrap_or_else(|error| panic!("{error}"))
 }
 
+/// Whether the proof of an audit holds in every part, in its JSON.
+fn is_all_proven(answer: &Value) -> bool {
+    let each = answer["specifications"].as_array().unwrap().iter().map(|own| &own["proven"]);
+    std::iter::once(&answer["proof"]["stable"]["proven"]).chain(each).all(|proven| proven == true)
+}
+
 /// One report of the hose against the commands that it repeats: verdicts of `verify` and `design`, numbers of `simulate`.
 #[test]
 fn both_controllers_stand_there_as_the_commands_tell_them() {
@@ -91,16 +97,14 @@ fn both_controllers_stand_there_as_the_commands_tell_them() {
     let verified = json(&source, &loaded, &Request::VerifyOnMachine);
     let designed = json(&source, &loaded, &Request::Design { seed: None, stages: false, repair: false });
     let both = [&verified, &designed["verification"]];
-    let all_proven = |answer: &Value| {
-        let proof = &answer["proof"]["stable"]["proven"];
-        let each = answer["specifications"].as_array().unwrap().iter().map(|own| &own["proven"]);
-        std::iter::once(proof).chain(each).all(|proven| proven == true)
-    };
     let verdict = designed["verification"]["verdict"].as_str().unwrap();
-    let proven = if all_proven(&designed["verification"]) { ", proven" } else { "" };
+    let proven = if is_all_proven(&designed["verification"]) { ", proven" } else { "" };
     let cells = [verified["verdict"].as_str().unwrap().to_string(), format!("{verdict}{proven}")];
     assert_eq!(rows(&page, "every specification")[0][1..], cells);
-    assert_eq!(told.decision.designed.as_ref().unwrap().proven, Some(all_proven(&designed["verification"])));
+    assert_eq!(
+        told.decision.designed.as_ref().unwrap().proven,
+        Some(is_all_proven(&designed["verification"]))
+    );
     assert_eq!(told.decision.given.as_ref().unwrap().proven, Some(false));
     let machines =
         [&verified["machine"], &designed["machine"]].map(|machine| machine["verdict"].as_str().unwrap());

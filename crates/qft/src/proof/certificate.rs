@@ -288,7 +288,7 @@ pub const LEAF: u8 = 255;
 
 impl Panel {
     /// Number of leaves: of n, n - 1 halvings of a byte each stand before them.
-    fn leaves(&self) -> usize {
+    pub fn leaves(&self) -> usize {
         (self.tree.len() + 1) / 6
     }
 }
