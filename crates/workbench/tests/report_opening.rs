@@ -101,11 +101,9 @@ fn both_controllers_stand_there_as_the_commands_tell_them() {
     let proven = if is_all_proven(&designed["verification"]) { ", proven" } else { "" };
     let cells = [verified["verdict"].as_str().unwrap().to_string(), format!("{verdict}{proven}")];
     assert_eq!(rows(&page, "every specification")[0][1..], cells);
-    assert_eq!(
-        told.decision.designed.as_ref().unwrap().proven,
-        Some(is_all_proven(&designed["verification"]))
-    );
-    assert_eq!(told.decision.given.as_ref().unwrap().proven, Some(false));
+    let decided = [&told.decision.given, &told.decision.designed];
+    let decided_proven = decided.map(|one| one.as_ref().and_then(|one| one.proven));
+    assert_eq!(decided_proven, [Some(false), Some(!proven.is_empty())]);
     let machines =
         [&verified["machine"], &designed["machine"]].map(|machine| machine["verdict"].as_str().unwrap());
     let tried = &rows(&page, "tried on the rig")[0];
@@ -113,10 +111,8 @@ fn both_controllers_stand_there_as_the_commands_tell_them() {
     for (index, name) in ["1 robust stability", "2 sensitivity", "3 tracking"].iter().enumerate() {
         let row = &rows(&page, name)[0];
         for (cell, answer) in row[1..].iter().zip(both) {
-            assert!(
-                cell.starts_with(answer["specifications"][index]["verdict"].as_str().unwrap()),
-                "{row:?}"
-            );
+            let verdict = answer["specifications"][index]["verdict"].as_str().unwrap();
+            assert!(cell.starts_with(verdict), "{row:?}");
         }
     }
     let decided = told.decision.given.as_ref().unwrap();
