@@ -157,6 +157,18 @@ def turned(angle):
     return real, imaginary, (error if angle else Fraction(0))
 
 
+def pi():
+    """Two numbers that enclose it: pi = 16 arctan(1/5) - 4 arctan(1/239), sums of alternating terms."""
+    def arctan(k):
+        total, i, unit = 0, 0, 1 << PRECISION + 24
+        while unit // k ** (2 * i + 1):
+            total, i = total + (-1) ** i * (unit // k ** (2 * i + 1) // (2 * i + 1)), i + 1
+        return total, 2 * i + 2
+    (a, more), (b, less) = arctan(5), arctan(239)
+    middle, error = 16 * a - 4 * b, 16 * more + 4 * less
+    return Fraction(middle - error, 1 << PRECISION + 24), Fraction(middle + error, 1 << PRECISION + 24)
+
+
 def logarithm(x):
     """Two numbers that enclose ln x: with x = 2^k m, ln m = 2 (z + z^3/3 + z^5/5 + ...), z = (m - 1)/(m + 1)."""
     def of_mantissa(m):

@@ -70,6 +70,35 @@ def read_quotient(value, name):
     return quotient
 
 
+def read_sections(value, name):
+    keys(value, ("gain", "numerator", "denominator"), (), name)
+    need(is_number(value["gain"]), f"the gain of {name} is no number")
+    for key in ("numerator", "denominator"):
+        need(is_list(value[key], lambda section: is_list(section, is_number, 1, 3) and section[0] != 0, 0, 40), f"a section of {name} is none")
+    degrees = [sum(len(section) - 1 for section in value[key]) for key in ("numerator", "denominator")]
+    need(name != "`feedback`" or degrees[0] <= degrees[1], f"{name} has more zeros than poles")
+    return value
+
+
+def read_sampling(value, file):
+    keys(value, ("sample_time", "images", "bounds"), (), "`sampling`")
+    need(is_number(value["sample_time"]) and value["sample_time"] > 0, "the sample time is not greater than zero")
+    value["sample_time"] = Fraction(value["sample_time"])
+    need(is_index(value["images"], 65) and value["images"] > 0, "`images` is no number from 1 to 64")
+    need(is_list(value["bounds"], lambda box: is_list(box, least=1, most=2), len(file["boxes"]), len(file["boxes"])),
+         "there is not a list of bounds for each box")
+    for bound in (bound for box in value["bounds"] for bound in box):
+        keys(bound, ("ratio", "panels"), (), "a bound")
+        need(is_number(bound["ratio"]) and bound["ratio"] > 0, "the ratio of a bound is not greater than zero")
+        bound["panels"] = read_panels(bound["panels"], "a bound")
+
+
+def read_count(value, name):
+    keys(value, ("characteristic", "denominator", "beyond"), (), f"{name}: `count`")
+    for key in value:
+        value[key] = read_panels(value[key], name)
+
+
 OPERATIONS = {"parameter": 1, "number": 1, "negate": 1, "add": 2, "subtract": 2, "multiply": 2, "divide": 2}
 
 
@@ -82,7 +111,6 @@ def read_certificate(file):
          ("delay", "model_degree", "sampling"), "the certificate")
     need(all(type(file[key]) is str for key in people[:3]) and is_list(file["settings"], lambda x: type(x) is str),
          "its title, version, hash or settings are no text")
-    need("sampling" not in file, "sampled loops are unknown to this checker")
     need("model_degree" not in file, "coefficients that are no polynomials are unknown to this checker")
     need(is_index(file["variables"], 13), "`variables` is no number from 0 to 12")
     need(is_list(file["parameters"], lambda x: type(x) is str), "`parameters` is no list of names")
@@ -107,8 +135,12 @@ def read_certificate(file):
     for key, value in plant.items():
         places = [value] if key == "dead_time" else value
         need(is_list(places, lambda x: is_index(x, len(file["operations"])), 1, 100), f"`{key}` of the plant names no operations")
+    if "sampling" in file:
+        read_sampling(file["sampling"], file)
     for law in LAWS:
-        file[law] = read_quotient(file[law], f"`{law}`")
+        sections = "sampling" in file and law != "sensor" and type(file[law]) is dict and "gain" in file[law]
+        need(sections or law != "feedback" or "sampling" not in file, "`feedback` of a sampled loop has no sections")
+        file[law] = read_sections(file[law], f"`{law}`") if sections else read_quotient(file[law], f"`{law}`")
     need(is_list(file["claims"]), "`claims` is no list")
     for i, claim in enumerate(file["claims"], 1):
         read_claim(claim, file, f"claim {i}")
@@ -127,7 +159,10 @@ CLOSED_LOOPS = ("robust_stability", "sensitivity", "plant_input_disturbance", "c
 def read_claim(claim, file, name):
     need(type(claim) is dict and type(claim.get("claim")) is str and claim["claim"] in CLAIMS, f"{name} claims nothing known")
     kind, boxes = claim["claim"], len(file["boxes"])
-    keys(claim, ("claim", *CLAIMS[kind]), (), name)
+    count = ("count",) if "sampling" in file else ()
+    keys(claim, ("claim", *CLAIMS[kind], *(count if kind == "unstable" else ())), (), name)
+    if "count" in claim:
+        read_count(claim["count"], name)
     late = "dead_time" in file["plant"] or file["delay"] != 0
     if "member" in claim:
         read_member(claim, file, name)
@@ -148,10 +183,12 @@ def read_claim(claim, file, name):
     if kind == "stable":
         need(is_list(claim["boxes"], least=boxes, most=boxes), f"{name} has not one entry for each box")
         for entry in claim["boxes"]:
-            keys(entry, ("member", "panels", *(("delays",) if late else ())), (), f"{name}, an entry of a box,")
+            keys(entry, ("member", "panels", *(count or (("delays",) if late else ()))), (), f"{name}, an entry of a box,")
             read_member(entry, file, name)
-            for key in entry.keys() - {"member"}:
+            for key in entry.keys() - {"member", "count"}:
                 entry[key] = read_panels(entry[key], name)
+            if count:
+                read_count(entry["count"], name)
     if kind == "limited":
         need(is_list(claim["boxes"], least=boxes, most=boxes), f"{name} has not one list of panels for each box")
         claim["boxes"] = [read_panels(panels, name) for panels in claim["boxes"]]

@@ -3,7 +3,7 @@
 from fractions import Fraction
 from math import comb, factorial, gcd, lcm
 
-from arithmetic import DIGIT, Polynomial, Rejected, axis, number, rounded_up, spend, turned
+from arithmetic import DIGIT, PRECISION, Polynomial, Rejected, axis, number, rounded_up, spend, turned
 
 GREATEST_DEPTH = 256
 GREATEST_POINTS = 4_000_000
@@ -14,9 +14,9 @@ def on_panel(polynomial, start, end, degree):
     1/w = x/w1, on a panel to infinity."""
     mask = (1 << DIGIT) - 1
     highest = max((key & mask for key in polynomial.terms), default=0)
-    common = lcm(start.denominator, end.denominator if end else 1)
-    low, width = int(start * common), int((end - start) * common) if end else 0
-    if end:       # w^i = sum over l of C(i, l) low^(i - l) width^l x^l/common^i
+    common = lcm(start.denominator, 1 if end is None else end.denominator)
+    low, width = int(start * common), int((end - start) * common) if end is not None else 0
+    if end is not None:       # w^i = sum over l of C(i, l) low^(i - l) width^l x^l/common^i
         powers = [[(l, comb(i, l) * low ** (i - l) * width**l * common ** (highest - i)) for l in range(i + 1)]
                   for i in range(highest + 1)]
         denominator = common**highest
@@ -45,8 +45,6 @@ def complex_product(a, b):
 def late_series(start, end, tau, angle, terms):
     """S and R: e^(-j w tau) = S + what is at most R, about an angle."""
     low, high = tau.range()
-    if low < 0:
-        raise Rejected("the dead time is not shown to be positive on the whole box")
     greatest = max(abs(end * high - angle), abs(start * low - angle))
     remainder = rounded_up(greatest**terms / factorial(terms))
     delta = (number(start) + axis(0).times(end - start)) * tau - number(angle)
@@ -136,14 +134,21 @@ def leaf_shows(points, a, b):
     return all(x * x >= square * (re * re + im * im) for x, re, im in zip(distances, v_real, v_imaginary))
 
 
-def examine(tree, points, degrees):
-    """Reads a tree: every leaf must show the claim on its part of the box. Gives the number of leaves."""
+def strides_of(degrees):
     strides = [1]
     for degree in reversed(degrees[1:]):
         strides.insert(0, strides[0] * (degree + 1))
-    place, leaves, waiting = 0, 0, [(points, 0)]
+    return strides
+
+
+def examine(tree, bundles, five):
+    """Reads a tree: every leaf must show the claim on its part of the box. A bundle is (degrees, lists of control points);
+    `five` makes of the bundles of a part, and its interval of x, the five lists that a leaf needs. Gives the leaves: x from, x
+    to, and the direction."""
+    strides = [strides_of(degrees) for degrees, _ in bundles]
+    place, leaves, waiting = 0, [], [([lists for _, lists in bundles], Fraction(0), Fraction(1), 0)]
     while waiting:
-        points, depth = waiting.pop()
+        lists, low, high, depth = waiting.pop()
         if place == len(tree):
             raise Rejected("the tree ends before every half is shown")
         code = tree[place]
@@ -151,81 +156,129 @@ def examine(tree, points, degrees):
             if place + 5 > len(tree):
                 raise Rejected("the tree ends within a leaf")
             a, b = (int.from_bytes(tree[place + i:place + i + 2], "big", signed=True) for i in (1, 3))
-            spend(2 * len(points[0]))
-            if not leaf_shows(points, a, b):
-                raise Rejected(f"leaf {leaves + 1} does not show the claim")
-            place, leaves = place + 5, leaves + 1
+            spend(2 * len(lists[0][0]))
+            if not leaf_shows(five(lists, low, high), a, b):
+                raise Rejected(f"leaf {len(leaves) + 1} does not show the claim")
+            leaves.append((low, high, a, b))
+            place += 5
             continue
-        if code >= len(degrees):
-            raise Rejected(f"the tree halves axis {code}, and there are {len(degrees)}")
+        if code >= len(strides[0]):
+            raise Rejected(f"the tree halves axis {code}, and there are {len(strides[0])}")
         if depth == GREATEST_DEPTH:
             raise Rejected(f"the tree is deeper than {GREATEST_DEPTH}")
-        both = [halves(values, degrees[code], strides[code]) for values in points]
-        waiting += [([upper for _, upper in both], depth + 1), ([lower for lower, _ in both], depth + 1)]
+        both = [[halves(values, degrees[code], steps[code]) for values in part]
+                for (degrees, _), steps, part in zip(bundles, strides, lists)]
+        middle = (low + high) / 2 if code == 0 else None
+        for i, ends in ((1, (middle, high)), (0, (low, middle))):
+            waiting.append(([[pair[i] for pair in part] for part in both], *(ends if code == 0 else (low, high)), depth + 1))
         place += 1
     if place != len(tree):
         raise Rejected("the tree goes on behind its last leaf")
     return leaves
 
 
-def show(panel, u, v, tau, axes, terms, functions):
-    """Shows |V| <= |U| and U not zero on a panel. u and v are sums: {(late, functions): polynomial of s and the variables}.
+class Loop:
+    """What U and V of a claim depend on besides themselves: dead time, the number of axes, terms of series, functions of w, and the
+    images of a sampled plant."""
 
-    U = Ua + Ub E and V = Va + Vb E with e^(-j w tau) as the panel says. What is left over counts in e_k: a pair (r, Q) adds
+    def __init__(self, tau, variables, terms, functions=None, images=None):
+        self.tau, self.axes, self.terms, self.functions, self.images = tau, 1 + variables, terms, functions, images
+
+
+def show(panel, u, v, loop):
+    """Shows |V| <= |U| and U not zero on a panel; gives the leaves. u and v are sums: {(late, image, functions of w): polynomial of
+    s and the variables}. A part with an image is multiplied by R or R'.
+
+    U = Ua + Ub E and V = Va + Vb E with E = e^(-j w tau) as the panel says. What is left over counts in e_k: a pair (r, Q) adds
     r (|Re Q_k| + |Im Q_k|)."""
-    start, end, late = panel["from"], panel["to"], panel["late"]
-    with_functions = functions(panel)
-    degree = degrees_of([polynomial for part in (u, v) for polynomial in part.values()], 1)[0]
-    rest, parts = [], []
-    for whole in (u, v):
-        sums = [(number(0), number(0)), (number(0), number(0))]
-        for (is_late, names), polynomial in whole.items():
+    start, end = panel["from"], panel["to"]
+    of_names = loop.functions.on(start, end) if loop.functions else None
+    degree = degrees_of([polynomial for whole in (u, v) for polynomial in whole.values()], 1)[0]
+    sums = {"": [[(number(0), number(0))] * 2, [(number(0), number(0))] * 2, []]}
+    for side, whole in enumerate((u, v)):
+        for (late, image, names), polynomial in whole.items():
+            parts = sums.setdefault(image, [[(number(0), number(0))] * 2, [(number(0), number(0))] * 2, []])
             term = on_panel(polynomial, start, end, degree)
             if names:
-                series, remainder = with_functions(names)
-                rest.append((remainder, term))
-                term = complex_product(term, series)
-            sums[is_late] = complex_sum(sums[is_late], term)
-        parts.append(sums)
-    (ua, ub), (va, vb) = parts
-    if tau.terms:
-        if tau.range()[0] < 0:
-            raise Rejected("the dead time is not shown to be positive on the whole box")
-        if late is None:
-            raise Rejected("it does not say how dead time is taken")
-        if late == "less" or end is None:
-            if late != "less":
-                raise Rejected("to infinity dead time is taken as less")
-            shown_u, shown_v, left_over, remainder = ua, va, (ub, vb), Fraction(1)
-        elif late == "more":
-            shown_u, shown_v, left_over, remainder = ub, vb, (ua, va), Fraction(1)
-        else:
-            series, remainder = late_series(start, end, tau, late, terms)
-            shown_u = complex_sum(ua, complex_product(ub, series))
-            shown_v = complex_sum(va, complex_product(vb, series))
-            left_over = ub, vb
-        rest += [(remainder, part) for part in left_over]
-    else:
+                series = of_names(names)
+                parts[2].append((Fraction(series.remainder, 1 << PRECISION), term))
+                term = complex_product(term, series.in_x())
+            parts[side][late] = complex_sum(parts[side][late], term)
+    turned_by = way_of(panel, loop)
+    shown, every = {}, []
+    for image, ((ua, ub), (va, vb), rest) in sums.items():
+        (shown_u, u_left), (shown_v, v_left), remainder = *(turned_by[0](a, b) for a, b in ((ua, ub), (va, vb))), turned_by[1]
+        rest = [(rounded_up(r), pair) for r, pair in (*rest, (remainder, u_left), (remainder, v_left)) if r and (pair[0].terms or pair[1].terms)]
+        shown[image] = shown_u, shown_v, rest
+        every += [p for pair in (ua, ub, va, vb, shown_u, shown_v) for p in pair]
+    degrees = degrees_of(every, loop.axes)
+    bundles = tensors(shown, degrees)
+    if len(bundles) == 1:
+        return examine(panel["tree"], [(degrees, bundles[""])], lambda lists, low, high: lists[0])
+    kinds = [image for image in shown if image]
+    images, enclosed = loop.images.on(panel, kinds, loop)
+
+    def five(lists, low, high):
+        return with_images(lists[0], [(products, *enclosed(kind, lists[1 + len(kinds):], start + high * (end - start)))
+                                      for kind, products in zip(kinds, lists[1:])])
+    return examine(panel["tree"], [(degrees, bundles[image]) for image in ("", *kinds)] + images, five)
+
+
+def way_of(panel, loop):
+    """How dead time is taken: a function that gives of Ua and Ub what is shown and what the remainder multiplies, and R."""
+    late, tau, nothing = panel["late"], loop.tau, (number(0), number(0))
+    if not tau.terms:
         if late is not None:
             raise Rejected("it says how dead time is taken, and there is none")
-        shown_u, shown_v = ua, va
-    degrees = degrees_of([p for pair in (ua, ub, va, vb, shown_u, shown_v) for p in pair], axes)
-    rest = [(rounded_up(r), pair) for r, pair in rest if r and (pair[0].terms or pair[1].terms)]
-    return examine(panel["tree"], tensors(shown_u, shown_v, rest, degrees), degrees)
+        return lambda a, b: (a, nothing), Fraction(0)
+    if late is None:
+        raise Rejected("it does not say how dead time is taken")
+    if late == "less":
+        return lambda a, b: (a, b), Fraction(1)
+    if panel["to"] is None:
+        raise Rejected("to infinity dead time is taken as less")
+    if late == "more":
+        return lambda a, b: (b, a), Fraction(1)
+    series, remainder = late_series(panel["from"], panel["to"], tau, late, loop.terms)
+    return lambda a, b: (complex_sum(a, complex_product(b, series)), b), remainder
 
 
-def tensors(u, v, rest, degrees):
-    """The five lists of control points, whole numbers with a common factor."""
-    factors = lcm(1, *(r.denominator for r, _ in rest))
-    scale = lcm(*(p.denominator for pair in (u, v, *(pair for _, pair in rest)) for p in pair))
-    points = [control_points(p, degrees, scale * factors) for p in u]
-    points += [control_points(p, degrees, scale * factors) for p in v] if v[0].terms or v[1].terms else [None, None]
-    bounds = None
-    for r, pair in rest:
-        factor = int(r * factors)
-        both = zip(*(control_points(p, degrees, scale) for p in pair))
-        added = [factor * (abs(re) + abs(im)) for re, im in both]
-        bounds = [a + b for a, b in zip(bounds, added)] if bounds else added
-    points.append(bounds)
-    common = gcd(*(value for values in points if values for value in values)) or 1
-    return [values and [value // common for value in values] for values in points]
+def tensors(shown, degrees):
+    """For each image (none, R, R') five lists of control points, whole numbers with a common factor."""
+    factors = lcm(1, *(r.denominator for _, _, rest in shown.values() for r, _ in rest))
+    scale = lcm(*(p.denominator for u, v, rest in shown.values() for pair in (u, v, *(pair for _, pair in rest)) for p in pair))
+    bundles = {}
+    for image, (u, v, rest) in shown.items():
+        points = [control_points(p, degrees, scale * factors) for p in u]
+        points += [control_points(p, degrees, scale * factors) for p in v] if v[0].terms or v[1].terms else [None, None]
+        bounds = None
+        for r, pair in rest:
+            factor = int(r * factors)
+            both = zip(*(control_points(p, degrees, scale) for p in pair))
+            added = [factor * (abs(re) + abs(im)) for re, im in both]
+            bounds = [a + b for a, b in zip(bounds, added)] if bounds else added
+        bundles[image] = [*points, bounds]
+    every = [values for points in bundles.values() for values in points if values]
+    if len(bundles) > 1:          # nothing here is exact any more: 256 bits suffice, what is cut off is in e_k
+        shift = max(0, max(max(max(values), -min(values)) for values in every).bit_length() - 256)
+        return {image: [*([value >> shift for value in values] if values else [0] * len(every[0]) for values in points[:4]),
+                        [(value >> shift) + 5 for value in points[4] or [0] * len(every[0])]] for image, points in bundles.items()}
+    common = gcd(*(value for values in every for value in values)) or 1
+    return {image: [values and [value // common for value in values] for values in points] for image, points in bundles.items()}
+
+
+def with_images(points, images):
+    """U_k + alpha M_k, V_k likewise, and e_k + rho (|Re M_k| + |Im M_k|) + (|alpha| + rho) (what remains of M_k): all times 2^q."""
+    every = [x for _, alpha, rho in images for x in (*alpha, rho) if x]
+    q = 96 + max([0, *(x.denominator.bit_length() - x.numerator.bit_length() for x in every)])
+    points = [[x << q for x in values] for values in points]
+    for products, alpha, rho in images:
+        a, b = (int(x * 2**q // 1) for x in alpha)
+        r = int(rho * 2**q) + 3                   # with the roundings of a and b
+        both = abs(a) + abs(b) + r
+        for i in (0, 2):
+            re, im = products[i:i + 2]
+            points[i] = [x + a * c - b * d for x, c, d in zip(points[i], re, im)]
+            points[i + 1] = [x + a * d + b * c for x, c, d in zip(points[i + 1], re, im)]
+        points[4] = [e + r * sum(map(abs, parts)) + both * more for e, more, *parts in zip(points[4], products[4], *products[:4])]
+    return points
