@@ -1,7 +1,7 @@
 """Polynomials with rational coefficients, and functions of rational numbers enclosed by rational numbers."""
 
 from fractions import Fraction
-from math import factorial, gcd, lcm
+from math import gcd, lcm
 
 DIGIT = 10                      # bits for the exponent of each axis in the key of a term
 GREATEST_DEGREE = 480           # in total; sums of two of them still fit into the bits
@@ -32,27 +32,31 @@ def spend(operations):
 class Polynomial:
     """Real terms over one denominator. A term's key holds its exponents, DIGIT bits for each axis: axis 0 is the frequency (s,
     then x), axis 1 + i the variable i. Terms that cancel stay, with the coefficient 0, because they count for the degree; only the
-    number zero has no term."""
+    number zero has no term. With rest, the coefficient of s^i is known within rest[i]."""
 
-    def __init__(self, terms, denominator=1, degree=None):
-        self.terms, self.denominator = terms, denominator
+    def __init__(self, terms, denominator=1, degree=None, rest=None):
+        self.terms, self.denominator, self.rest = terms, denominator, rest or {}
         self.degree = max(map(total_degree, terms), default=0) if degree is None else degree
         if self.degree > GREATEST_DEGREE:
             raise Malformed(f"a polynomial has a degree above {GREATEST_DEGREE}")
 
     def __add__(self, other):
-        if not self.terms or not other.terms:
-            return self if self.terms else other
+        if not self or not other:
+            return self if self else other
         common = lcm(self.denominator, other.denominator)
         mine, theirs = common // self.denominator, common // other.denominator
         terms = {key: value * mine for key, value in self.terms.items()}
         for key, value in other.terms.items():
             terms[key] = terms.get(key, 0) + value * theirs
         spend(len(terms))
-        return Polynomial(terms, common, max(self.degree, other.degree))
+        rest = {i: self.rest.get(i, 0) + other.rest.get(i, 0) for i in {**self.rest, **other.rest}}
+        return Polynomial(terms, common, max(self.degree, other.degree), rest)
+
+    def __bool__(self):
+        return bool(self.terms or self.rest)
 
     def __neg__(self):
-        return Polynomial({key: -value for key, value in self.terms.items()}, self.denominator, self.degree)
+        return Polynomial({key: -value for key, value in self.terms.items()}, self.denominator, self.degree, self.rest)
 
     def __sub__(self, other):
         return self + -other
@@ -64,6 +68,11 @@ class Polynomial:
             for theirs, factor in other.terms.items():
                 terms[mine + theirs] = terms.get(mine + theirs, 0) + value * factor
         product = Polynomial(terms, self.denominator * other.denominator, self.degree + other.degree)
+        if self.rest or other.rest:      # |p| rest of q + |q| rest of p + rest of p rest of q
+            for i, (p, more) in enumerate(self.sizes()):
+                for k, (q, rest) in enumerate(other.sizes()):
+                    product.rest[i + k] = product.rest.get(i + k, 0) + p * rest + q * more + more * rest
+            product.rest = {i: rounded_up(rest) for i, rest in product.rest.items() if rest}
         longest = max(map(abs, terms.values()), default=0)
         if max(longest, product.denominator).bit_length() > GREATEST_BITS:
             raise Malformed("its numbers have too many digits")
@@ -75,7 +84,7 @@ class Polynomial:
 
     def reduced(self):
         common = gcd(self.denominator, *self.terms.values())
-        return Polynomial({key: value // common for key, value in self.terms.items()}, self.denominator // common, self.degree)
+        return Polynomial({key: value // common for key, value in self.terms.items()}, self.denominator // common, self.degree, self.rest)
 
     def constant(self):
         return Fraction(self.terms.get(0, 0), self.denominator)
@@ -89,10 +98,24 @@ class Polynomial:
     def along_frequency(self):
         """A list: for each power of the frequency the polynomial that it is multiplied by."""
         mask = (1 << DIGIT) - 1
-        powers = [{} for _ in range(1 + max((key & mask for key in self.terms), default=-1))]
+        powers = [{} for _ in range(1 + max([-1, *(key & mask for key in self.terms), *self.rest]))]
         for key, value in self.terms.items():
             powers[key & mask][key & ~mask] = value
-        return [Polynomial(terms, self.denominator) for terms in powers]
+        return [Polynomial(terms, self.denominator, None, {0: self.rest[i]} if i in self.rest else {}) for i, terms in enumerate(powers)]
+
+    def sizes(self):
+        """For each power of the frequency a bound on the magnitude of its coefficient, and how well that is known."""
+        return [(max(map(abs, p.range())), p.rest.get(0, Fraction(0))) for p in self.along_frequency()]
+
+    def lowest(self):
+        """The lowest power of the frequency."""
+        mask = (1 << DIGIT) - 1
+        return min([*(key & mask for key in self.terms), *self.rest])
+
+    def over(self, power):
+        """Divided by a power of the frequency that divides it."""
+        return Polynomial({key - power: value for key, value in self.terms.items()}, self.denominator, None,
+                          {i - power: rest for i, rest in self.rest.items()})
 
 
 def total_degree(key):

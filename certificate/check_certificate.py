@@ -4,7 +4,13 @@
 
 Reads the format of book/src/guide/certificate.md, from which alone it was written, and needs nothing but Python 3.11. Exit
 status 0: every claim holds, and is printed; 1: a claim is rejected; 2: the file is no certificate of a known version.
-Cosines, sines, logarithms and powers are enclosed by rational numbers; all else is exact.
+Polynomial loops without dead time are checked in whole numbers throughout, and nothing is rounded. Cosines, sines, roots,
+exponentials and logarithms are enclosed by rational numbers; where one is used, control points keep 320 bits, and what that
+leaves out is in e_k.
+
+arithmetic.py: polynomials, enclosures. layout.py: the file. panels.py: control points and trees. functions.py: functions of the
+frequency. sampling.py: images, poles counted. remainders.py: coefficients that are no polynomials. closed_loops.py: the
+plant, U and V. This file: the claims.
 """
 
 import math
@@ -12,142 +18,14 @@ import sys
 from fractions import Fraction
 
 import arithmetic
-from arithmetic import DIGIT, Malformed, Polynomial, Rejected, axis, number, of_frequency, pi, rounded_up, turned
+from arithmetic import Malformed, Rejected, axis, number, of_frequency, pi, rounded_up, turned
+from closed_loops import ONE, closed_loop, laws, part, plant_over
 from functions import Functions, limit_at
-from layout import LAWS, need, read, read_certificate
+from layout import read, read_certificate
 from panels import Loop, show
 from sampling import Images, roots_outside
 
-ONE = number(1)
 GREATEST_FILE = 50_000_000      # bytes
-
-
-# The plant
-
-def results(operations, parameters):
-    """What the operations give, polynomials in the variables."""
-    done = []
-    for name, *operands in operations:
-        if name == "number":
-            result = number(operands[0])
-        elif name == "parameter":
-            result = parameters[operands[0]]
-        else:
-            a, b = done[operands[0]], done[operands[-1]]
-            if name == "divide":
-                need(b.terms.keys() == {0} and b.constant() != 0, "a divisor depends on a variable, or is zero")
-                result = a.times(1 / b.constant())
-            else:
-                result = {"negate": lambda: -a, "add": lambda: a + b, "subtract": lambda: a - b, "multiply": lambda: a * b}[name]()
-        done.append(result.reduced())
-    return done
-
-
-def plant_over(file, box, member=None):
-    """N, D, Nd, Dd and tau over a box, or of one of its members, whose parameters are numbers."""
-    parameters = []
-    for low, high, variable in file["boxes"][box]:
-        t = number(0) if variable is None else axis(1 + variable) if member is None else number(member[variable])
-        parameters.append(number(low) + number(Fraction(high) - low) * t)
-    done = results(file["operations"], parameters)
-    plant = {key: of_frequency([done[i] for i in places]) for key, places in file["plant"].items() if key != "dead_time"}
-    need(plant["denominator"].terms, "the denominator of the plant is zero")
-    plant["tau"] = number(file["delay"]) + (done[file["plant"]["dead_time"]] if "dead_time" in file["plant"] else number(0))
-    if plant["tau"].range()[0] < 0:
-        raise Rejected("the dead time is not shown to be positive on the whole box")
-    # in a sampled loop E is a function of w alone where no variable moves tau, else taken as panels say
-    plant["turn"] = "sampling" in file and plant["tau"].terms.keys() == {0}
-    plant["late"] = number(0) if plant["turn"] else plant["tau"]
-    return plant
-
-
-# From a claim to U and V: sums {(late, image, functions of w): polynomial of s and the variables}
-
-def part(polynomial, late=0, image="", names=()):
-    return {(late, image, names): polynomial} if polynomial.terms else {}
-
-
-def plus(a, b):
-    return {key: a.get(key, number(0)) + b.get(key, number(0)) for key in {**a, **b}}
-
-
-def times(*factors):
-    product = part(ONE)
-    for factor in factors:
-        sums = {}
-        for (late, image, names), a in product.items():
-            for (later, of, more), b in factor.items():
-                sums = plus(sums, {(late + later, image + of, tuple(sorted(names + more))): a * b})
-        product = sums
-    return product
-
-
-def of_sections(sections, sample_time):
-    """The product of sections; where zeta divides one, zeta = s T hold e^(j w T)."""
-    polynomial, names = ONE, []
-    for section in sections:
-        while section[-1] == 0:
-            section, polynomial = section[:-1], polynomial * axis(0).times(sample_time)
-            names += [("hold",), ("turn",)]
-        if len(section) == 1:
-            polynomial = polynomial.times(section[0])
-        else:
-            names.append(("section", *section))
-    return part(polynomial, names=tuple(sorted(names)))
-
-
-def law_of(law, sample_time):
-    if type(law) is dict:
-        numerator, denominator = (of_sections(law[key], sample_time) for key in ("numerator", "denominator"))
-        return times(part(number(law["gain"])), numerator), denominator
-    return map(part, law)
-
-
-def laws(file, plant):
-    """The factors of the closed loops by their names, f = n E + c among them, and c (1 + L)/f etc. as the page has them."""
-    loop = {name: part(plant[key]) for name, key in (("N", "numerator"), ("D", "denominator"), ("Nd", "disturbance_numerator"),
-                                                      ("Dd", "disturbance_denominator")) if key in plant}
-    sampling = file.get("sampling")
-    for name, law in zip("GFH", LAWS):
-        loop[name + "n"], loop[name + "d"] = law_of(file[law], sampling and sampling["sample_time"])
-    loop["E"] = part(ONE, 1 if plant["late"].terms else 0, names=(("late",),) if plant["turn"] else ())
-    loop["c"] = product(loop, "D Gd Hd")
-    if sampling:      # with R for the images of N/D, R' for those of N Hn/(D Hd)
-        loop["hold"] = part(ONE, names=(("hold",),))
-        loop["n"] = plus(product(loop, "hold N Gn Hn"), times(part(ONE, image="R'"), product(loop, "hold Gn D Hd")))
-        loop["P"] = times(product(loop, "hold E"), plus(product(loop, "N Hd"), times(part(ONE, image="R"), product(loop, "D Hd"))))
-    else:
-        loop["n"], loop["P"] = product(loop, "N Gn Hn"), product(loop, "N Hd")
-    loop["nE"] = product(loop, "n E")
-    loop["f"] = plus(loop["nE"], loop["c"])
-    return loop
-
-
-def product(loop, names):
-    return times(*(loop[name] for name in names.split()))
-
-
-def closed_loop(claim, file, plant):
-    """U and V of `limited` and `reached`, without the powers of s that divide all their parts."""
-    loop, name = laws(file, plant), claim["closed_loop"]
-    wn, wd = (part(ONE, names=(("limit",),)), part(ONE)) if type(claim["limit"]) is dict else map(part, claim["limit"])
-    u, v = times(part(number(claim["ratio"])), wn, loop["f"]), {
-        "robust_stability": "nE" if "sampling" in file else "n", "sensitivity": "c", "plant_input_disturbance": "P Gd",
-        "control_effort": "Gn D Hd", "tracking": "Fn P Gn", "load_motion": "Nd c"}[name]
-    if name == "tracking":
-        u = times(u, loop["Fd"])
-    elif name == "load_motion":
-        if file["plant"]["denominator"] == file["plant"]["disturbance_denominator"]:
-            v = "Nd Gd Hd"
-        else:
-            u = times(u, loop["Dd"])
-    v = times(wd, product(loop, v))
-    if claim["side"] == "lower":
-        u, v = times(part(number(claim["ratio"])), v), times(wn, loop["f"], loop["Fd"])
-    mask = (1 << DIGIT) - 1
-    lowest = min((key & mask for polynomial in (*u.values(), *v.values()) for key in polynomial.terms), default=0)
-    return [{key: Polynomial({place - lowest: value for place, value in polynomial.terms.items()}, polynomial.denominator)
-             for key, polynomial in whole.items()} for whole in (u, v)]
 
 
 # The claims
@@ -222,16 +100,28 @@ def responses(file, plant, box):
 
 
 def roots_on_the_left(polynomial):
-    """All entries of the first column of the Routh array have the sign of the leading coefficient, strictly."""
-    coefficients = [coefficient.constant() for coefficient in reversed(polynomial.along_frequency())]
-    if not coefficients or coefficients[0] == 0:
+    """All entries of the first column of the Routh array have the sign of the leading coefficient, strictly. Each number stands
+    between two others, which are equal where nothing remains."""
+    def quotient(a, b):       # b > 0
+        return min(a[0] / b[0], a[0] / b[1]), max(a[1] / b[0], a[1] / b[1])
+
+    def less(a, factor, b):
+        products = [x * y for x in factor for y in b]
+        return a[0] - max(products), a[1] - min(products)
+    coefficients = [(p.constant() - p.rest.get(0, 0), p.constant() + p.rest.get(0, 0)) for p in reversed(polynomial.along_frequency())]
+    if not coefficients or coefficients[0][0] <= 0 <= coefficients[0][1]:
         raise Rejected("a leading coefficient is zero")
-    above, row = ([x / coefficients[0] for x in coefficients[i::2]] for i in range(2))
+    if coefficients[0][0] < 0:
+        coefficients = [(-high, -low) for low, high in coefficients]
+    above, row = coefficients[::2], coefficients[1::2]
     for _ in coefficients[1:]:
-        if row[0] <= 0:
+        if row[0][1] <= 0:
             return False
-        row += [Fraction(0)] * (len(above) - len(row))
-        above, row = row, [a - above[0] / row[0] * b for a, b in zip(above[1:], row[1:])]
+        if row[0][0] <= 0:
+            raise Rejected("an entry of the Routh array cannot be told from zero")
+        row += [(Fraction(0),) * 2] * (len(above) - len(row))
+        factor = quotient(above[0], row[0])
+        above, row = row, [less(a, factor, b) for a, b in zip(above[1:], row[1:])]
     return True
 
 
@@ -253,8 +143,7 @@ def poles_outside(file, box, member, count):
     cover(count["characteristic"], 0, None, file)
     of_f = show_all(count["characteristic"], laws(file, plant)["f"], {}, loop)
     denominator = plant["denominator"] * file["sensor"][1]
-    lowest = min(key for key in denominator.terms)
-    rest, alone = Polynomial({key - lowest: x for key, x in denominator.terms.items()}, denominator.denominator), Loop(number(0), 0, file["terms"])
+    rest, alone = denominator.over(denominator.lowest()), Loop(number(0), 0, file["terms"])
     end = count["denominator"][-1]["to"]
     cover(count["denominator"], 0, end)
     cover(count["beyond"], end, None)
@@ -337,7 +226,7 @@ def ball_inverse(a):
 def ball_at(polynomial, s):
     value = (Fraction(0),) * 3
     for coefficient in reversed(polynomial.along_frequency()):
-        value = ball_sum(ball_product(value, s), (coefficient.constant(), Fraction(0), Fraction(0)))
+        value = ball_sum(ball_product(value, s), (coefficient.constant(), Fraction(0), coefficient.rest.get(0, Fraction(0))))
     return value
 
 
@@ -402,9 +291,16 @@ def reached_at_infinity(u, v):
     """|Va_d| - e >= |Ua_d| + e and |Va_d| > e with e = |Ub_d| + |Vb_d|."""
     powers = [{late: p.along_frequency() for (late, *_), p in whole.items()} for whole in (u, v)]
     degree = max(len(p) for whole in powers for p in whole.values()) - 1
-    (ua, ub), (va, vb) = ([abs(p[degree].constant()) if degree < len(p := whole.get(late, ())) else 0 for late in (0, 1)]
-                          for whole in powers)
-    return va - ub - vb >= ua + ub + vb and va > ub + vb
+    (ua, ub), (va, vb) = ([sizes(whole.get(late, ()), degree) for late in (0, 1)] for whole in powers)
+    return va[0] - ub[1] - vb[1] >= ua[1] + ub[1] + vb[1] and va[0] > ub[1] + vb[1]
+
+
+def sizes(powers, degree):
+    """The magnitude of a coefficient stands between two numbers."""
+    if degree >= len(powers):
+        return Fraction(0), Fraction(0)
+    value, rest = abs(powers[degree].constant()), powers[degree].rest.get(0, Fraction(0))
+    return max(Fraction(0), value - rest), value + rest
 
 
 def check_reached(claim, file):

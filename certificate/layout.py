@@ -100,6 +100,7 @@ def read_count(value, name):
 
 
 OPERATIONS = {"parameter": 1, "number": 1, "negate": 1, "add": 2, "subtract": 2, "multiply": 2, "divide": 2}
+MODELLED = {"sqrt": 1, "exp": 1, "ln": 1, "abs": 1, "select": 4}
 
 
 def read_certificate(file):
@@ -111,7 +112,8 @@ def read_certificate(file):
          ("delay", "model_degree", "sampling"), "the certificate")
     need(all(type(file[key]) is str for key in people[:3]) and is_list(file["settings"], lambda x: type(x) is str),
          "its title, version, hash or settings are no text")
-    need("model_degree" not in file, "coefficients that are no polynomials are unknown to this checker")
+    models = "model_degree" in file
+    need(not models or is_index(file["model_degree"], 9) and file["model_degree"] > 0, "`model_degree` is no number from 1 to 8")
     need(is_index(file["variables"], 13), "`variables` is no number from 0 to 12")
     need(is_list(file["parameters"], lambda x: type(x) is str), "`parameters` is no list of names")
     need(type(file["terms"]) is int and 1 <= file["terms"] <= 24, "`terms` is no number from 1 to 24")
@@ -119,13 +121,15 @@ def read_certificate(file):
     need(is_number(file["delay"]) and file["delay"] >= 0, "`delay` is no number, or negative")
 
     def is_range(triple):
-        return is_list(triple, least=3, most=3) and is_number(triple[0]) and is_number(triple[1]) \
-            and (triple[2] is None or is_index(triple[2], file["variables"]))
+        return is_list(triple, least=3, most=4 if models else 3) and is_number(triple[0]) and is_number(triple[1]) \
+            and (triple[2] is None or is_index(triple[2], file["variables"])) \
+            and (len(triple) == 3 or triple[3] == "by_factors" and triple[0] > 0 and triple[1] > 0)
     need(is_list(file["boxes"], lambda box: is_list(box, is_range) and len(box) == len(file["parameters"]), 1),
          "a box is no list with [low, high, variable] for each parameter")
     need(is_list(file["operations"]), "`operations` is no list")
+    known = {**OPERATIONS, **MODELLED} if models else OPERATIONS
     for i, operation in enumerate(file["operations"]):
-        need(is_list(operation, least=1) and type(operation[0]) is str and len(operation) - 1 == OPERATIONS.get(operation[0]),
+        need(is_list(operation, least=1) and type(operation[0]) is str and len(operation) - 1 == known.get(operation[0]),
              f"operation {i} is unknown")
         of = {"parameter": lambda x: is_index(x, len(file["parameters"])), "number": is_number}
         need(all(map(of.get(operation[0], lambda x: is_index(x, i)), operation[1:])), f"operation {i} names what is not there")

@@ -7,11 +7,12 @@ from arithmetic import DIGIT, PRECISION, Polynomial, Rejected, axis, number, rou
 
 GREATEST_DEPTH = 256
 GREATEST_POINTS = 4_000_000
+BITS = 320          # of a control point that is rounded
 
 
-def on_panel(polynomial, start, end, degree):
+def on_panel(polynomial, start, end, degree, turned_by=1):
     """Real and imaginary part of a polynomial at s = j w, in x in place of w: w = w1 + (w2 - w1) x, or divided by w^degree,
-    1/w = x/w1, on a panel to infinity."""
+    1/w = x/w1, on a panel to infinity. With turned_by = 0 at s = w."""
     mask = (1 << DIGIT) - 1
     highest = max((key & mask for key in polynomial.terms), default=0)
     common = lcm(start.denominator, 1 if end is None else end.denominator)
@@ -26,12 +27,17 @@ def on_panel(polynomial, start, end, degree):
     parts = {}, {}
     for key, value in polynomial.terms.items():
         i = key & mask
-        part, value = parts[i % 2], -value if i % 4 > 1 else value
+        turns = i * turned_by % 4
+        part, value = parts[turns % 2], -value if turns > 1 else value
         spend(len(powers[i]))
         for power, factor in powers[i]:
             place = key - i + power
             part[place] = part.get(place, 0) + value * factor
     return tuple(Polynomial(part, polynomial.denominator * denominator) for part in parts)
+
+
+def axis_power(i, factor):
+    return Polynomial({i: factor.numerator}, factor.denominator)
 
 
 def complex_sum(a, b):
@@ -54,7 +60,9 @@ def late_series(start, end, tau, angle, terms):
         series = complex_sum(series, (number(0), term) if k % 2 else (term, number(0)))
         power = power * delta
     real, imaginary, error = turned(angle)
-    return complex_product((number(real), number(imaginary)), series), remainder + error * (1 + remainder)
+    series, remainder = complex_product((number(real), number(imaginary)), series), remainder + error * (1 + remainder)
+    remainder += Fraction(sum(len(p.terms) for p in series), 1 << BITS)
+    return tuple(Polynomial({key: (value << BITS) // p.denominator for key, value in p.terms.items()}, 1 << BITS) for p in series), remainder
 
 
 def degrees_of(polynomials, axes):
@@ -66,22 +74,25 @@ def degrees_of(polynomials, axes):
     return degrees
 
 
-def control_points(polynomial, degrees, scale):
-    """Control points times scale and times a positive number that depends on the degrees alone. Axis 0 varies slowest.
+def strides_of(degrees):
+    strides = [1]
+    for degree in reversed(degrees[1:]):
+        strides.insert(0, strides[0] * (degree + 1))
+    return strides
 
-    Along an axis of degree N: b_k = sum over i <= k of C(k, i)/C(N, i) a_i, by N (N + 1)/2 additions."""
-    mask, strides, size = (1 << DIGIT) - 1, [], 1
-    for degree in reversed(degrees):
-        strides.insert(0, size)
-        size *= degree + 1
+
+def placed(polynomial, degrees, scale):
+    """Coefficients a_i, times scale, times L/C(N, i) along each axis of degree N, L being the least common multiple of all C(N, i).
+    Axis 0 varies slowest."""
+    mask, strides = (1 << DIGIT) - 1, strides_of(degrees)
+    size = strides[0] * (degrees[0] + 1)
     if size > GREATEST_POINTS:
-        raise Rejected("a panel has more control points than this checker takes")
-    factor = scale // polynomial.denominator
+        raise Rejected("it has more control points than this checker takes")
     factors = []
     for degree in degrees:
         common = lcm(*(comb(degree, i) for i in range(degree + 1)))
         factors.append([common // comb(degree, i) for i in range(degree + 1)])
-    values = [0] * size
+    values, factor = [0] * size, scale // polynomial.denominator
     for key, value in polynomial.terms.items():
         place = 0
         for i, stride in enumerate(strides):
@@ -89,17 +100,41 @@ def control_points(polynomial, degrees, scale):
             place += power * stride
             value *= factors[i][power]
         values[place] = value * factor
-    if polynomial.terms:
-        for degree, stride in zip(degrees, strides):
-            spend(size * (degree + 1) // 2)
-            block = stride * (degree + 1)
-            for begin in range(0, size, block):
-                rows = [values[begin + i * stride:begin + (i + 1) * stride] for i in range(degree + 1)]
-                for j in range(degree):
-                    for i in range(degree, j, -1):
-                        rows[i] = [a + b for a, b in zip(rows[i], rows[i - 1])]
-                values[begin:begin + block] = [value for row in rows for value in row]
     return values
+
+
+def summed(values, degrees):
+    """b_k = sum over i <= k of C(k, i)/C(N, i) a_i along one axis after the other, by N (N + 1)/2 additions."""
+    if not any(values):
+        return values
+    size = len(values)
+    for degree, stride in zip(degrees, strides_of(degrees)):
+        spend(size * (degree + 1) // 2)
+        block = stride * (degree + 1)
+        for begin in range(0, size, block):
+            rows = [values[begin + i * stride:begin + (i + 1) * stride] for i in range(degree + 1)]
+            for j in range(degree):
+                for i in range(degree, j, -1):
+                    rows[i] = [a + b for a, b in zip(rows[i], rows[i - 1])]
+            values[begin:begin + block] = [value for row in rows for value in row]
+    return values
+
+
+def longest(lists):
+    return max((max(max(values), -min(values)) for values in lists), default=0).bit_length()
+
+
+def control_points(polynomials, degrees, scale, bits=None):
+    """Control points times scale and times a positive number that depends on the degrees alone. Without bits they are exact.
+    Otherwise they are divided by a power of two, so that about so many bits are left, and are too small by less than 2: coefficients
+    are rounded down before they are summed, with weights whose sum is at most 2^(sum of the degrees)."""
+    lists = [placed(p, degrees, scale) for p in polynomials]
+    if bits is None:
+        return [summed(values, degrees) for values in lists]
+    guard = sum(degrees)
+    shift = longest(lists) - bits - guard
+    lists = [[value >> shift if shift > 0 else value << -shift for value in values] for values in lists]
+    return [[value >> guard for value in summed(values, degrees)] for values in lists]
 
 
 def halves(values, degree, stride):
@@ -132,13 +167,6 @@ def leaf_shows(points, a, b):
     if v_real is None:
         return True
     return all(x * x >= square * (re * re + im * im) for x, re, im in zip(distances, v_real, v_imaginary))
-
-
-def strides_of(degrees):
-    strides = [1]
-    for degree in reversed(degrees[1:]):
-        strides.insert(0, strides[0] * (degree + 1))
-    return strides
 
 
 def examine(tree, bundles, five):
@@ -193,14 +221,16 @@ def show(panel, u, v, loop):
     r (|Re Q_k| + |Im Q_k|)."""
     start, end = panel["from"], panel["to"]
     of_names = loop.functions.on(start, end) if loop.functions else None
-    degree = degrees_of([polynomial for whole in (u, v) for polynomial in whole.values()], 1)[0]
+    degree = max([len(polynomial.along_frequency()) for whole in (u, v) for polynomial in whole.values()], default=1) - 1
     sums = {"": [[(number(0), number(0))] * 2, [(number(0), number(0))] * 2, []]}
     for side, whole in enumerate((u, v)):
         for (late, image, names), polynomial in whole.items():
             parts = sums.setdefault(image, [[(number(0), number(0))] * 2, [(number(0), number(0))] * 2, []])
-            term = on_panel(polynomial, start, end, degree)
+            term, series = on_panel(polynomial, start, end, degree), of_names(names) if names else None
+            if polynomial.rest:
+                rest = sum((axis_power(i, rest) for i, rest in polynomial.rest.items()), number(0))
+                parts[2].append((series.greatest() if names else Fraction(1), on_panel(rest, start, end, degree, 0)))
             if names:
-                series = of_names(names)
                 parts[2].append((Fraction(series.remainder, 1 << PRECISION), term))
                 term = complex_product(term, series.in_x())
             parts[side][late] = complex_sum(parts[side][late], term)
@@ -210,7 +240,7 @@ def show(panel, u, v, loop):
         (shown_u, u_left), (shown_v, v_left), remainder = *(turned_by[0](a, b) for a, b in ((ua, ub), (va, vb))), turned_by[1]
         rest = [(rounded_up(r), pair) for r, pair in (*rest, (remainder, u_left), (remainder, v_left)) if r and (pair[0].terms or pair[1].terms)]
         shown[image] = shown_u, shown_v, rest
-        every += [p for pair in (ua, ub, va, vb, shown_u, shown_v) for p in pair]
+        every += [p for pair in (ua, ub, va, vb, shown_u, shown_v, *(pair for _, pair in rest)) for p in pair]
     degrees = degrees_of(every, loop.axes)
     bundles = tensors(shown, degrees)
     if len(bundles) == 1:
@@ -244,27 +274,25 @@ def way_of(panel, loop):
 
 
 def tensors(shown, degrees):
-    """For each image (none, R, R') five lists of control points, whole numbers with a common factor."""
-    factors = lcm(1, *(r.denominator for _, _, rest in shown.values() for r, _ in rest))
-    scale = lcm(*(p.denominator for u, v, rest in shown.values() for pair in (u, v, *(pair for _, pair in rest)) for p in pair))
-    bundles = {}
-    for image, (u, v, rest) in shown.items():
-        points = [control_points(p, degrees, scale * factors) for p in u]
-        points += [control_points(p, degrees, scale * factors) for p in v] if v[0].terms or v[1].terms else [None, None]
-        bounds = None
-        for r, pair in rest:
-            factor = int(r * factors)
-            both = zip(*(control_points(p, degrees, scale) for p in pair))
-            added = [factor * (abs(re) + abs(im)) for re, im in both]
-            bounds = [a + b for a, b in zip(bounds, added)] if bounds else added
-        bundles[image] = [*points, bounds]
-    every = [values for points in bundles.values() for values in points if values]
-    if len(bundles) > 1:          # nothing here is exact any more: 256 bits suffice, what is cut off is in e_k
-        shift = max(0, max(max(max(values), -min(values)) for values in every).bit_length() - 256)
-        return {image: [*([value >> shift for value in values] if values else [0] * len(every[0]) for values in points[:4]),
-                        [(value >> shift) + 5 for value in points[4] or [0] * len(every[0])]] for image, points in bundles.items()}
-    common = gcd(*(value for values in every for value in values)) or 1
-    return {image: [values and [value // common for value in values] for values in points] for image, points in bundles.items()}
+    """For each image (none, R, R') five lists of control points, whole numbers with a common factor. Where anything remains they
+    are rounded, and e_k holds that too."""
+    every = [p for u, v, rest in shown.values() for pair in (u, v, *(pair for _, pair in rest)) for p in pair]
+    scale, bundles = lcm(*(p.denominator for p in every)), {}
+    exact = len(shown) == 1 and len(every) == 4
+    points = iter(control_points(every, degrees, scale, None if exact else BITS))
+    for image, (_, v, rest) in shown.items():
+        lists = [next(points) for _ in range(4)]
+        if not (v[0].terms or v[1].terms) and len(shown) == 1:
+            lists[2:] = None, None
+        bounds = None if exact else [8] * len(lists[0])
+        for r, _ in rest:
+            a, b = r.numerator, r.denominator
+            bounds = [e - -a * (abs(re) + abs(im) + 4) // b for e, re, im in zip(bounds, next(points), next(points))]
+        bundles[image] = [*lists, bounds]
+    if exact:
+        common = gcd(*(value for values in lists if values for value in values)) or 1
+        return {image: [values and [value // common for value in values] for values in lists] + [None]}
+    return bundles
 
 
 def with_images(points, images):

@@ -66,12 +66,12 @@ class Images:
                 d = on_panel(s * denominator, low, high, 0)
                 # W is known within spread, so that w_k is within k times that
                 rest = abs(k) * spread * (end * steepest(numerator, top + 1) + steepest(s * denominator, top + 1))
+                rest += sum(r * end * top**i for i, r in numerator.rest.items()) + sum(r * top ** (i + 1) for i, r in denominator.rest.items())
                 degrees = degrees_of([*n, *d], loop.axes)
                 scale = math.lcm(*(p.denominator for p in (*n, *d)))
-                lists = [control_points(p, degrees, scale) for p in (*n, *d, number(1))]
-                shift = max(0, max(max(max(values), -min(values)) for values in lists[:4]).bit_length() - BITS)
-                lists = [*([value >> shift for value in values] for values in lists[:4]),
-                         [int(rest * value / 2**shift) + 5 for value in lists[4]]]
+                *lists, unit = control_points([*n, *d, number(1)], degrees, scale, BITS)
+                # number(1) tells how large 1 is among them, to less than 2
+                lists.append([int(rest * (value + 2)) + 9 for value in unit])
                 numbers[kind].append((len(bundles), k))
                 bundles.append((degrees, lists))
 
@@ -147,9 +147,8 @@ def roots_outside(sample_time, degree, denominator, of_f, of_denominator, beyond
     """turn of f - turn of D' - i pi/2 = pi (degree of Gd + roots of D' to the right - roots of chi outside), from 0 to pi/T.
 
     Leaves are (w from, w to, a, b) in the order of w. At 0, f and D' are real; at pi/T, f has the direction of j^i D', or the opposite."""
-    powers = [coefficient.constant() for coefficient in denominator.along_frequency()]
-    order = next(i for i, x in enumerate(powers) if x)
-    rest = powers[order:]
+    order = denominator.lowest()
+    rest = [coefficient.constant() for coefficient in denominator.over(order).along_frequency()]
     low, high = (x / sample_time for x in pi())
 
     def up_to_the_end(leaves):
@@ -158,8 +157,9 @@ def roots_outside(sample_time, degree, denominator, of_f, of_denominator, beyond
             raise Rejected("no leaf contains half of the sampling rate")
         return kept
     value = [sum((-1) ** (i // 2) * x * low**i for i, x in enumerate(rest) if i % 2 == part) for part in (0, 1)]
-    slope = sum(i * abs(x) * high ** (i - 1) for i, x in enumerate(rest) if i)
-    if max(map(abs, value)) < 10**6 * slope * (high - low):
+    unsure = sum(i * abs(x) * high ** (i - 1) * (high - low) for i, x in enumerate(rest) if i)
+    unsure += sum(r * high ** (i - order) for i, r in denominator.rest.items())
+    if max(map(abs, value)) < 10**6 * unsure:
         raise Rejected("the denominator cannot be told from zero at half of the sampling rate")
     re, im = value
     turned_value = ((re, im), (-im, re), (-re, -im), (im, -re))[order % 4]
