@@ -49,20 +49,6 @@ impl Cylinder {
         }
         problems.into_vec()
     }
-
-    /// The same numbers as constants of another scalar.
-    pub fn map<S: Scalar>(&self) -> Cylinder<S> {
-        Cylinder {
-            area_a: S::from(self.area_a),
-            area_b: S::from(self.area_b),
-            stroke: S::from(self.stroke),
-            moving_mass: S::from(self.moving_mass),
-            dead_volume_a: S::from(self.dead_volume_a),
-            dead_volume_b: S::from(self.dead_volume_b),
-            internal_leakage: self.internal_leakage.map(S::from),
-            end_stops: self.end_stops.map(|contact| contact.convert(&mut S::from)),
-        }
-    }
 }
 
 impl<S: Copy> Cylinder<S> {

@@ -73,8 +73,8 @@ impl Friction {
     pub fn steady_force<S: Scalar>(&self, velocity: S) -> S {
         match self {
             Friction::Viscous { viscous } => S::from(*viscous) * velocity,
-            Friction::Stribeck(curve) => curve.map().steady_force(velocity),
-            Friction::LuGre(lugre) => lugre.curve.map().steady_force(velocity),
+            Friction::Stribeck(curve) => curve.convert(&mut S::from).steady_force(velocity),
+            Friction::LuGre(lugre) => lugre.curve.convert(&mut S::from).steady_force(velocity),
         }
     }
 

@@ -101,18 +101,6 @@ impl Line {
         }
         problems.into_vec()
     }
-
-    /// The same numbers as constants of another scalar.
-    pub fn map<S: Scalar>(&self) -> Line<S> {
-        match *self {
-            Line::Hose { hose, length } => Line::Hose { hose: hose.map(), length: S::from(length) },
-            Line::Pipe { pipe, length } => Line::Pipe { pipe: pipe.map(), length: S::from(length) },
-            Line::Volume { volume, effective_bulk_modulus } => Line::Volume {
-                volume: S::from(volume),
-                effective_bulk_modulus: S::from(effective_bulk_modulus),
-            },
-        }
-    }
 }
 
 impl<S: Scalar> Line<S> {

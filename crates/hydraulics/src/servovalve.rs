@@ -49,14 +49,10 @@ impl<S: Copy> Edges<S> {
         [self.supply_to_a, self.a_to_tank, self.supply_to_b, self.b_to_tank]
     }
 
-    /// The same function of each.
-    pub fn map<T>(&self, function: impl Fn(S) -> T) -> Edges<T> {
-        Edges {
-            supply_to_a: function(self.supply_to_a),
-            a_to_tank: function(self.a_to_tank),
-            supply_to_b: function(self.supply_to_b),
-            b_to_tank: function(self.b_to_tank),
-        }
+    /// Every parameter replaced, in a fixed order.
+    #[inline(always)]
+    pub fn convert<T: Copy>(&self, of: &mut impl FnMut(S) -> T) -> Edges<T> {
+        Edges::from_array(self.to_array().map(of))
     }
 }
 
@@ -114,20 +110,6 @@ impl Servovalve {
         problems.positive("transition_pressure", self.transition_pressure);
         problems.into_vec()
     }
-
-    /// The same numbers as constants of another scalar.
-    pub fn map<S: Scalar>(&self) -> Servovalve<S> {
-        Servovalve {
-            flow_coefficients: self.flow_coefficients.map(S::from),
-            leakage_coefficients: self.leakage_coefficients.map(S::from),
-            leakage_shape: S::from(self.leakage_shape),
-            tare_flow: S::from(self.tare_flow),
-            nominal_voltage: S::from(self.nominal_voltage),
-            natural_frequency: S::from(self.natural_frequency),
-            damping_ratio: S::from(self.damping_ratio),
-            transition_pressure: S::from(self.transition_pressure),
-        }
-    }
 }
 
 impl<S: Copy> Servovalve<S> {
@@ -135,8 +117,8 @@ impl<S: Copy> Servovalve<S> {
     #[inline(always)]
     pub fn convert<T: Copy>(&self, of: &mut impl FnMut(S) -> T) -> Servovalve<T> {
         Servovalve {
-            flow_coefficients: Edges::from_array(self.flow_coefficients.to_array().map(&mut *of)),
-            leakage_coefficients: Edges::from_array(self.leakage_coefficients.to_array().map(&mut *of)),
+            flow_coefficients: self.flow_coefficients.convert(of),
+            leakage_coefficients: self.leakage_coefficients.convert(of),
             leakage_shape: of(self.leakage_shape),
             tare_flow: of(self.tare_flow),
             nominal_voltage: of(self.nominal_voltage),
@@ -164,11 +146,6 @@ impl Supply {
         problems.require("tank_pressure", tank_pressure, above_vacuum, "above vacuum (a gauge pressure)");
         problems.require("pressure", pressure, pressure > tank_pressure, "above the tank pressure");
         problems.into_vec()
-    }
-
-    /// The same numbers as constants of another scalar.
-    pub fn map<S: Scalar>(&self) -> Supply<S> {
-        Supply { pressure: S::from(self.pressure), tank_pressure: S::from(self.tank_pressure) }
     }
 }
 

@@ -134,21 +134,6 @@ pub fn hydraulic_stiffness<S: Scalar>(chambers: &ChamberCompliance<S>, x: S) -> 
     stiffness_a + stiffness_b
 }
 
-impl ChamberCompliance<f64> {
-    /// The same numbers as constants of another scalar.
-    pub fn map<S: Scalar>(&self) -> ChamberCompliance<S> {
-        ChamberCompliance {
-            area_a: S::from(self.area_a),
-            area_b: S::from(self.area_b),
-            stroke: S::from(self.stroke),
-            constant_a: S::from(self.constant_a),
-            slope_a: S::from(self.slope_a),
-            constant_b: S::from(self.constant_b),
-            slope_b: S::from(self.slope_b),
-        }
-    }
-}
-
 impl<S: Copy> ChamberCompliance<S> {
     /// Every parameter replaced, in a fixed order.
     #[inline(always)]

@@ -87,6 +87,20 @@ impl<S: Copy> TwoPressureState<S> {
     }
 }
 
+impl<S: Copy> TwoPressureModel<S> {
+    /// Every parameter replaced, in a fixed order.
+    pub fn convert<T: Copy>(&self, of: &mut impl FnMut(S) -> T) -> TwoPressureModel<T> {
+        TwoPressureModel {
+            valve: self.valve.convert(of),
+            supply: self.supply.convert(of),
+            chambers: self.chambers.convert(of),
+            moving_mass: of(self.moving_mass),
+            viscous_friction: of(self.viscous_friction),
+            sensor_stiffness: of(self.sensor_stiffness),
+        }
+    }
+}
+
 impl<S: Scalar> TwoPressureModel<S> {
     /// As [`TwoPressureModel::new`], of components over any scalar.
     pub fn of(
@@ -116,18 +130,6 @@ impl TwoPressureModel {
         viscous_friction: f64,
     ) -> TwoPressureModel {
         TwoPressureModel::of(actuator.components(), pressures, member, viscous_friction)
-    }
-
-    /// The same numbers as constants of another scalar.
-    pub fn map<S: Scalar>(&self) -> TwoPressureModel<S> {
-        TwoPressureModel {
-            valve: self.valve.map(),
-            supply: self.supply.map(),
-            chambers: self.chambers.map(),
-            moving_mass: S::from(self.moving_mass),
-            viscous_friction: S::from(self.viscous_friction),
-            sensor_stiffness: S::from(self.sensor_stiffness),
-        }
     }
 
     /// State and input in which the model rests (or moves steadily with its load) at an operating

@@ -163,7 +163,7 @@ fn friction_slopes_of_every_choice() {
 #[test]
 fn derivatives_of_friction_exist_at_standstill() {
     for exponent in [0.5, 1.0, 2.0] {
-        let curve = Stribeck { stribeck_exponent: exponent, ..curve() }.map::<Dual<2>>();
+        let curve = Stribeck { stribeck_exponent: exponent, ..curve() }.convert(&mut Dual::<2>::from);
         let lugre =
             LuGre { curve, bristle_stiffness: Dual::constant(1e7), bristle_damping: Dual::constant(2e3) };
         let force = lugre.force(Dual::variable(0.0, 0), Dual::variable(3e-6, 1));

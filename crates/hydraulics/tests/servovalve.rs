@@ -156,7 +156,8 @@ fn chamber_coefficients_are_the_derivatives_of_the_flows() {
                     chamber_coefficients(&valve, &SUPPLY, spool, pressure_a, pressure_b, Direction::Mean);
                 let [u, a, b] = [(spool, 0), (pressure_a, 1), (pressure_b, 2)]
                     .map(|(value, index)| Dual::<3>::variable(value, index));
-                let flows = chamber_flows(&valve.map(), &SUPPLY.map(), u, a, b);
+                let flows =
+                    chamber_flows(&valve.convert(&mut Into::into), &SUPPLY.convert(&mut Into::into), u, a, b);
                 let expected = [
                     (found.flow_gain_a, flows.into_a.gradient()[0]),
                     (found.flow_pressure_a, -flows.into_a.gradient()[1]),
@@ -184,8 +185,8 @@ fn direction_decides_at_null_and_the_mean_is_between() {
     }
     assert!((2.0 * mean.flow_gain_a / (extending.flow_gain_a + retracting.flow_gain_a) - 1.0).abs() < 1e-15);
     let dual = chamber_flows(
-        &valve().map(),
-        &SUPPLY.map(),
+        &valve().convert(&mut Into::into),
+        &SUPPLY.convert(&mut Into::into),
         Dual::<1>::variable(0.0, 0),
         Dual::constant(37e5),
         Dual::constant(24e5),

@@ -153,7 +153,7 @@ fn settle<S: phea_dynamics::scalar::Scalar>(p: &[S]) -> Vec<S> {
         valve: Servovalve {
             flow_coefficients: Edges::from_array([p[0], p[1], p[2], p[3]]),
             leakage_coefficients: Edges::from_array([p[4], p[5], p[6], p[7]]),
-            ..valve().map()
+            ..valve().convert(&mut Into::into)
         },
         supply: Supply { pressure: p[8], tank_pressure: p[9] },
         areas: [p[10], p[11]],

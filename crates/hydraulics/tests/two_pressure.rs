@@ -44,7 +44,7 @@ fn jacobian(
         load_velocity: variable(input.load_velocity),
         load_position: Dual::constant(input.load_position),
     };
-    let rates = rates(&model.map(), &state, &input).to_array();
+    let rates = rates(&model.convert(&mut Into::into), &state, &input).to_array();
     (rates.map(|rate| *rate.gradient()), rates.map(|rate| rate.value()))
 }
 
@@ -134,7 +134,7 @@ fn recorded_rates_are_the_rates() {
         let state = TwoPressureState::from_array([p[0], p[1], p[2], p[3], p[4], p[5]]);
         let input =
             TwoPressureInput { command: p[6], load_velocity: 0.004.into(), load_position: 0.31.into() };
-        rates(&model.map(), &state, &input).to_array().to_vec()
+        rates(&model.convert(&mut Into::into), &state, &input).to_array().to_vec()
     });
     for values in [
         [-0.37, 12.0, 21e5, 48e5, 1.3e-4, -0.02, 0.9],

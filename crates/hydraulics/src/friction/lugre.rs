@@ -110,15 +110,6 @@ impl LuGre {
             LuGrePassivity::NotPassive { required_viscous }
         }
     }
-
-    /// The same numbers as constants of another scalar.
-    pub fn map<S: Scalar>(&self) -> LuGre<S> {
-        LuGre {
-            curve: self.curve.map(),
-            bristle_stiffness: S::from(self.bristle_stiffness),
-            bristle_damping: S::from(self.bristle_damping),
-        }
-    }
 }
 
 impl<S: Copy> LuGre<S> {

@@ -116,19 +116,6 @@ impl Stribeck {
         problems.into_vec()
     }
 
-    /// The same numbers as constants of another scalar.
-    pub fn map<S: Scalar>(&self) -> Stribeck<S> {
-        Stribeck {
-            coulomb: S::from(self.coulomb),
-            static_friction: S::from(self.static_friction),
-            stribeck_velocity: S::from(self.stribeck_velocity),
-            stribeck_exponent: S::from(self.stribeck_exponent),
-            viscous: S::from(self.viscous),
-        }
-    }
-}
-
-impl Stribeck {
     /// How its exponent is best evaluated.
     #[inline(always)]
     pub fn shape(&self) -> StribeckShape {

@@ -41,14 +41,6 @@ impl Stiffening {
     pub fn certain(ratio: f64) -> Stiffening {
         Stiffening { nominal: ratio, minimum: ratio, maximum: ratio }
     }
-
-    fn map<S: Scalar>(&self) -> Stiffening<S> {
-        Stiffening {
-            nominal: S::from(self.nominal),
-            minimum: S::from(self.minimum),
-            maximum: S::from(self.maximum),
-        }
-    }
 }
 
 impl<S: Copy> Stiffening<S> {
@@ -82,17 +74,6 @@ impl Hose {
         problems.require("dynamic_stiffening.nominal", nominal, nominal >= minimum, "at least the minimum");
         problems.require("dynamic_stiffening.maximum", maximum, maximum >= nominal, "at least the nominal");
         problems.into_vec()
-    }
-
-    /// The same numbers as constants of another scalar.
-    pub fn map<S: Scalar>(&self) -> Hose<S> {
-        Hose {
-            bore: S::from(self.bore),
-            volumetric_expansion: S::from(self.volumetric_expansion),
-            operating_expansion: S::from(self.operating_expansion),
-            expansion_slope: S::from(self.expansion_slope),
-            dynamic_stiffening: self.dynamic_stiffening.map(),
-        }
     }
 }
 

@@ -56,23 +56,6 @@ impl Pipe {
         }
         problems.into_vec()
     }
-
-    /// The same numbers as constants of another scalar.
-    pub fn map<S: Scalar>(&self) -> Pipe<S> {
-        let wall = match self.wall {
-            PipeWall::Rigid => PipeWall::Rigid,
-            PipeWall::Elastic { thickness, youngs_modulus, poisson_ratio, anchoring, thick } => {
-                PipeWall::Elastic {
-                    thickness: S::from(thickness),
-                    youngs_modulus: S::from(youngs_modulus),
-                    poisson_ratio: S::from(poisson_ratio),
-                    anchoring,
-                    thick,
-                }
-            }
-        };
-        Pipe { bore: S::from(self.bore), wall }
-    }
 }
 
 impl<S: Scalar> Pipe<S> {

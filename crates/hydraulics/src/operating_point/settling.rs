@@ -72,7 +72,7 @@ impl<S: Scalar> Balance<S> {
     /// use phea_hydraulics::servovalve::Supply;
     /// let recorded = Expression::record(&["pressure", "force"], |p| {
     ///     let supply = Supply { pressure: p[0], tank_pressure: 0.0.into() };
-    ///     let balance = Balance { valve: valve().map(), supply, areas: [USEFUL_AREA.into(); 2], leakage: None };
+    ///     let balance = Balance { valve: valve().convert(&mut Into::into), supply, areas: [USEFUL_AREA.into(); 2], leakage: None };
     ///     let settled = balance.settle(Steady::Moving { velocity: 0.0.into(), load: Load::Force(p[1]) });
     ///     vec![settled.command, settled.pressures[0], settled.pressures[1]]
     /// });
