@@ -94,7 +94,7 @@ def law_of(law, sample_time):
 
 
 def laws(file, plant):
-    """The factors of the closed loops by their names, f = n E + c among them, and c (1 + L)/f etc. as the page has them."""
+    """The factors of the closed loops by their names: n, c, f = n E + c, and P, what N Hd is in a loop without samples."""
     loop = {name: part(plant[key]) for name, key in (("N", "numerator"), ("D", "denominator"), ("Nd", "disturbance_numerator"),
                                                       ("Dd", "disturbance_denominator")) if key in plant}
     sampling = file.get("sampling")
