@@ -113,6 +113,8 @@ pub enum NotProven {
     Unbounded,
     /// No plant of the box could be shown to be stable, nor unstable.
     NoStableMember,
+    /// The search has found a violation of what seems to be proven.
+    Contradicted,
     /// The checker, which rounds outwards, could not confirm what the prover found.
     Rounding,
 }

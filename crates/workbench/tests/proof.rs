@@ -4,6 +4,9 @@
 
 use crate::ask::{HOSE, answer, json};
 use phea_workbench::answer::Answer;
+use std::fs;
+use std::path::{Path, PathBuf};
+
 use phea_workbench::audit::{CERTIFICATE_FILE, CertificateError, check_certificate, read_certificate};
 use phea_workbench::command::Request;
 use serde_json::Value;
@@ -147,4 +150,46 @@ fn a_certificate_is_read_as_it_was_written_and_refused_where_it_is_none() {
     assert!(matches!(check_certificate(&other), Err(CertificateError::Version { version: 9, .. })));
     let torn = text.replacen("ff", "f", 1);
     assert!(matches!(check_certificate(&torn), Err(CertificateError::Meaning(_))));
+}
+
+/// What is false is rejected: certificates that were written to deceive a checker, the reason in the title of each.
+#[test]
+fn certificates_that_deceive_are_rejected() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/false_certificates");
+    let files: Vec<PathBuf> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    assert!(files.len() >= 10, "{files:?}");
+    for file in files {
+        let accepted =
+            check_certificate(&fs::read_to_string(&file).unwrap()).is_ok_and(|own| own.affirmative);
+        assert!(!accepted, "{}", file.display());
+    }
+}
+
+/// The dead time of a sensor is in the loop and not in the plant: what is proven of |P/(1 + L)| agrees with what the search finds.
+#[test]
+fn the_delay_of_a_sensor_is_not_that_of_the_plant() {
+    let project = |limit: f64, delay: f64, band: [f64; 2]| {
+        let [from, to] = band;
+        format!(
+            "schema = 1\ntitle = \"Sensor delay\"\n[plant]\nnumerator = \"k*1000000\"\n\
+             denominator = \"(s + 10)*(s + 10)*(s + 10)*(s + 10)*(s + 10)*(s + 10)\"\n\
+             [sensor]\nnumerator = \"1\"\ndenominator = \"1\"\ndelay = \"{delay} s\"\n\
+             [uncertainty]\nk = {{ nominal = 1, minimum = 0.95, maximum = 1, points = 2 }}\n\
+             [[specification]]\nkind = \"plant_input_disturbance\"\nlimit = {limit}\nfrequencies = [{from}]\n\
+             band = [{from}, {to}]\n[controller]\nnumerator = \"0.001\"\ndenominator = \"1\"\nsample_time = \"0.3 s\"\n"
+        )
+    };
+    for delay in [0.0, 0.15, 0.25] {
+        let text = project(0.17, delay, [8.3, 8.6]);
+        let (shown, certificate) = proven(&text, &[]);
+        let searched = json(&text, &[], &[], &Request::Verify);
+        let worst_db = searched["specifications"][0]["worst_margin_db"].as_f64().unwrap();
+        let enclosure = &shown["specifications"][0]["enclosure_db"];
+        let [least, most] = [0, 1].map(|index| enclosure[index].as_f64().unwrap());
+        assert!(
+            least - 1e-6 <= -worst_db && -worst_db <= most + 1e-6,
+            "{delay}: {worst_db}, {least} to {most}"
+        );
+        assert!(check_certificate(&certificate).unwrap().affirmative);
+    }
 }

@@ -42,12 +42,14 @@ pub fn try_to_prove(
 const TRIED_LEAVES: usize = 10_000;
 
 /// Rests the verdict on a proof; `unproven` is what an audit that is met becomes where nothing is proven.
-fn rest_on(view: &mut ProjectAudit, proof: Proof, unproven: Verdict) {
+fn rest_on(view: &mut ProjectAudit, mut proof: Proof, unproven: Verdict) {
     let audit = &mut view.audit;
+    for (finding, found) in audit.specifications.iter().zip(&mut proof.specifications) {
+        contradicted(&mut found.standing, finding.verdict);
+    }
+    contradicted(&mut proof.stability, audit.stability.verdict);
     let stability = &mut audit.stability;
     let judged = |standing: &Standing, searched: Verdict, evidence: Evidence| match standing {
-        // a violation that the search has shown by a plant and a frequency stands
-        Standing::Proven if searched == Verdict::Violated => (searched, evidence),
         Standing::Proven => (Verdict::Met, Evidence::Proof),
         Standing::Refuted => (Verdict::Violated, Evidence::Proof),
         Standing::NotProven(_) if searched == Verdict::Met => (unproven, evidence),
@@ -81,6 +83,13 @@ fn rest_on(view: &mut ProjectAudit, proof: Proof, unproven: Verdict) {
     };
     audit.evidence = evidence.unwrap_or(audit.evidence);
     view.proof = Some(proof);
+}
+
+/// A plant and a frequency at which the search found a violation stand against any proof.
+fn contradicted(standing: &mut Standing, searched: Verdict) {
+    if *standing == Standing::Proven && searched == Verdict::Violated {
+        *standing = Standing::NotProven(NotProven::Contradicted);
+    }
 }
 
 fn rank(verdict: Verdict) -> usize {
@@ -126,6 +135,10 @@ pub fn why_not_proven(view: &ProjectAudit, proof: &Proof, standing: &Standing) -
         NotProven::Unbounded => "the ratio grows without an end that was found".into(),
         NotProven::NoStableMember => "no plant could be shown to be stable, nor unstable".into(),
         NotProven::Rounding => "the checker, which rounds outwards, could not confirm it".into(),
+        NotProven::Contradicted => {
+            "the search found a plant and a frequency that violate it, which is a defect of search or proof"
+                .into()
+        }
         NotProven::Budget(region) => {
             let [from, to] = region.band_rad_per_s.map(rounded);
             format!(
@@ -142,8 +155,8 @@ fn part_of(view: &ProjectAudit, proof: &Proof, region: &phea_qft::proof::Region)
     let segments = certificate.plant.boxes.get(region.of_box).into_iter().flatten();
     let sides = segments.zip(view.names.headings()).filter_map(|(one, name)| {
         let [from, to] = *region.variables.get(one.variable?)?;
-        let value = |share: f64| one.low + (one.high - one.low) * share;
-        (from > 0.0 || to < 1.0).then(|| format!("{name} from {:.4e} to {:.4e}", value(from), value(to)))
+        let [least, most] = [one.value(from), one.value(to)];
+        (from > 0.0 || to < 1.0).then(|| format!("{name} from {least:.4e} to {most:.4e}"))
     });
     let sides: Vec<String> = sides.collect();
     if sides.is_empty() { String::new() } else { format!(", for {}", sides.join(", ")) }

@@ -4,7 +4,7 @@ use num_complex::Complex64;
 use phea_dynamics::portable;
 use phea_dynamics::watch::{Stopped, Watch};
 
-use super::certificate::{Bound, Certificate};
+use super::certificate::{Certificate, Panel};
 use super::claimed::{Claimed, Loop};
 use super::images::Images;
 use super::panels::walk_band;
@@ -25,21 +25,29 @@ pub(super) fn with_bounds(
     effort: Effort,
     watch: Watch<'_>,
 ) -> Result<Option<Certificate>, Stopped> {
-    let first = Loop::<f64>::over_box(&certificate, 0);
-    let relative_degree = first.as_ref().and_then(Loop::images).and_then(Images::relative_degree);
-    let Some(sampling) = &mut certificate.sampling else { return Ok(Some(certificate)) };
-    let Some(relative_degree) = relative_degree else { return Ok(None) };
-    sampling.images = IMAGES.get(relative_degree).copied().unwrap_or(FAR_IMAGES);
-    let mut sampling = sampling.clone();
+    let Some(mut sampling) = certificate.sampling.take() else { return Ok(Some(certificate)) };
+    let mut least = usize::MAX;
+    certificate.sampling = Some(sampling.clone());
+    for (of_box, bounds) in sampling.bounds.iter_mut().enumerate() {
+        let around = Loop::<f64>::over_box(&certificate, of_box);
+        let orders = around.as_ref().and_then(Loop::images).and_then(Images::relative_degrees);
+        let Some(orders) = orders else { return Ok(None) };
+        for (bound, order) in bounds.iter_mut().rev().zip(orders.into_iter().rev()) {
+            bound.order = order;
+            least = least.min(order);
+        }
+    }
+    sampling.images = IMAGES.get(least).copied().unwrap_or(FAR_IMAGES);
+    certificate.sampling = Some(sampling.clone());
     for (of_box, bounds) in sampling.bounds.iter_mut().enumerate() {
         let around = Loop::<f64>::over_box(&certificate, of_box);
         let Some(images) = around.as_ref().and_then(Loop::images) else { return Ok(None) };
-        let Some(claims) = images.bounded() else { return Ok(None) };
+        let claims = images.bounded();
         let begin = rounded(images.bound_begin());
         let variables = certificate.plant.variables;
         for (claimed, bound) in claims.iter().zip(bounds) {
             match bounded(claimed, variables, begin, effort, watch)? {
-                Some(found) => *bound = found,
+                Some(found) => (bound.ratio, bound.panels) = found,
                 None => return Ok(None),
             }
         }
@@ -48,21 +56,21 @@ pub(super) fn with_bounds(
     Ok(Some(certificate))
 }
 
-/// A claim with the bound one, raised until it holds.
+/// A claim with the bound one, raised until it holds: the bound, and what shows it.
 fn bounded(
     claimed: &Claimed<f64>,
     variables: usize,
     begin: f64,
     effort: Effort,
     watch: Watch<'_>,
-) -> Result<Option<Bound>, Stopped> {
+) -> Result<Option<(f64, Vec<Panel>)>, Stopped> {
     // where it begins, with all variables at one
     let [u, v] = [claimed.value_of_u(begin), claimed.value_of_v(begin)]
         .map(|value| value.map_or(f64::NAN, |[re, im]| portable::magnitude(Complex64::new(re, im))));
     let mut ratio = rounded_up(ABOVE * v / u);
     for _ in 0..RAISES_MAXIMUM {
         match walk_band(&claimed.raised(ratio), variables, [begin, f64::INFINITY], effort, watch)? {
-            Walk::Shown(panels) => return Ok(Some(Bound { ratio, panels })),
+            Walk::Shown(panels) => return Ok(Some((ratio, panels))),
             Walk::Wrong { ratio: by, .. } => ratio = rounded_up(ratio * by * ABOVE),
             Walk::Open(_) | Walk::TooLarge => return Ok(None),
         }

@@ -201,15 +201,19 @@ pub struct Count {
 pub struct Sampling {
     /// T, s.
     pub sample_time_s: f64,
+    /// What of the dead time stands behind the output, s: the sensor's, which is no part of P.
+    pub sensor_delay_s: f64,
     /// So many images to either side are taken one by one.
     pub images: usize,
     /// For each box a bound on the others: of the plant with its sensor and, where that is not one, of the plant alone.
     pub bounds: Vec<Vec<Bound>>,
 }
 
-/// |P(jw)| <= `ratio`/w^m from a frequency below those of all images that are not taken one by one, m being the relative degree.
+/// |P(jw)| <= `ratio`/w^m from a frequency below those of all images that are not taken one by one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bound {
+    /// m, at least 1: by how much the degree of the denominator is greater than that of the numerator.
+    pub order: usize,
     /// In the units of P and rad/s.
     pub ratio: f64,
     /// From there to infinity.

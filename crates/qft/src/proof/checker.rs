@@ -9,7 +9,8 @@
 use phea_dynamics::scalar::{Interval, Scalar};
 
 use super::certificate::{
-    Certificate, Claim, Count, LEAF, Late, LimitOf, Limited, Member, Panel, Quotient, Segment, StableBox,
+    Certificate, Claim, Count, LEAF, Late, LimitOf, Limited, Member, Panel, Quotient, Segment, Side,
+    StableBox,
 };
 use super::claimed::{Claimed, Loop, Piece};
 use super::count::poles_outside;
@@ -20,6 +21,7 @@ use super::patch::{Patch, at_point};
 use super::points::{Point, Range};
 use super::polynomial::VARIABLES_MAXIMUM;
 use super::sampling::{check_bounds, check_sampling, pi_over_t, poles_of_law, prefilter_is_stable};
+use crate::specification::ClosedLoop;
 
 /// Halvings on the way to a leaf at most: no proof needs as many.
 const DEPTH_MAXIMUM: usize = 256;
@@ -50,8 +52,8 @@ pub enum Rejection {
     /// Panels with a gap, or short of an end.
     #[error("the panels do not cover the band: there is a gap at {0} rad/s")]
     Gap(f64),
-    /// A panel beyond the frequencies at which a sampled loop is known.
-    #[error("a panel reaches to {0} rad/s, beyond half of the sampling frequency")]
+    /// A panel or a band beyond the frequencies at which a sampled loop is known.
+    #[error("{0} rad/s is beyond half of the sampling frequency")]
     Beyond(f64),
     /// Dead time taken where there is none, or not as it can be on such a panel.
     #[error("dead time is not taken as it is on the panel from {0} rad/s")]
@@ -108,7 +110,7 @@ pub(crate) fn check_claim(certificate: &Certificate, claim: &Claim) -> Result<()
         }
         Claim::Unstable { member, count } => check_unstable(certificate, member, count.as_ref()),
         Claim::Limited { limited, ratio, boxes } => {
-            check_ratio(limited, *ratio)?;
+            check_ratio(certificate, limited, *ratio)?;
             check_boxes(certificate, boxes.len())?;
             for (of_box, panels) in boxes.iter().enumerate() {
                 let around = sound(Loop::over_box(certificate, of_box))?;
@@ -119,7 +121,7 @@ pub(crate) fn check_claim(certificate: &Certificate, claim: &Claim) -> Result<()
             Ok(())
         }
         Claim::Reached { limited, ratio, frequency_rad_per_s, member } => {
-            check_ratio(limited, *ratio)?;
+            check_ratio(certificate, limited, *ratio)?;
             let [from, to] = limited.band_rad_per_s;
             if !(from <= *frequency_rad_per_s && *frequency_rad_per_s <= to) {
                 return Err(Rejection::Number("a frequency"));
@@ -241,8 +243,11 @@ fn check_boxes(certificate: &Certificate, shown: usize) -> Result<(), Rejection>
     if shown == certificate.plant.boxes.len() { Ok(()) } else { Err(Rejection::Boxes) }
 }
 
-fn check_ratio(limited: &Limited, ratio: f64) -> Result<(), Rejection> {
+fn check_ratio(certificate: &Certificate, limited: &Limited, ratio: f64) -> Result<(), Rejection> {
     let [from, to] = limited.band_rad_per_s;
+    if pi_over_t(certificate).is_some_and(|end| from >= end.low()) {
+        return Err(Rejection::Beyond(from));
+    }
     let has_limit = match &limited.limit {
         LimitOf::Quotient(Quotient { numerator, denominator }) => {
             [numerator, denominator].iter().all(|coefficients| coefficients.iter().any(|one| *one != 0.0))
@@ -252,7 +257,8 @@ fn check_ratio(limited: &Limited, ratio: f64) -> Result<(), Rejection> {
             points.iter().all(is_point) && points.windows(2).all(|pair| pair[0].0 < pair[1].0)
         }
     };
-    match ratio.is_finite() && ratio > 0.0 && from >= 0.0 && from < to && has_limit {
+    let has_side = limited.side == Side::Upper || limited.closed_loop == ClosedLoop::Tracking;
+    match ratio.is_finite() && ratio > 0.0 && from >= 0.0 && from < to && has_limit && has_side {
         true => Ok(()),
         false => Err(Rejection::Number("a ratio or the end of a band")),
     }
@@ -285,7 +291,7 @@ pub(super) fn check_panels(
     // the circle ends there, and the images are enclosed little beyond it
     let circle = claimed.images.as_ref().map(Images::band_ends);
     for panel in panels {
-        let is_panel = panel.from == reached && panel.to > panel.from;
+        let is_panel = panel.from == reached && panel.from >= 0.0 && panel.to > panel.from;
         if !is_panel || (panel.to.is_infinite() && panel.from == 0.0) {
             return Err(Rejection::Gap(reached));
         }

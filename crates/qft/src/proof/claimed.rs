@@ -24,7 +24,7 @@
 //! with R' for N Hn/(D Hd). To N belongs hold, and to N E what R' D or, of the plant alone, R D adds: `images`.
 
 use super::certificate::{Certificate, LimitOf, Limited, Member, Segment, Side};
-use super::dead_time::DeadTime;
+use super::dead_time::{DeadTime, ends};
 use super::images::{Images, Which};
 use super::model::{by_factors, modelled};
 use super::over_panel::{Complex, product, sum};
@@ -278,6 +278,9 @@ impl<S: Decimal> Loop<S> {
             if dead_time.rest().most() != 0.0 {
                 return None;
             }
+        }
+        if ends(&DeadTime { value: dead_time.clone(), terms: 1 })[0].least() < 0.0 {
+            return None;
         }
         // in a sampled loop, what is constant is a function of the frequency
         let late = dead_time.as_constant().filter(|_| sampling.is_some());

@@ -46,8 +46,10 @@ pub(crate) struct Images<S> {
     /// T
     pub(super) sample_time_s: S,
     count: usize,
-    /// The dead time, where no variable moves it.
+    /// The dead time up to the sensor's output, where no variable moves it.
     dead_time_s: Option<S>,
+    /// What of it is the sensor's.
+    sensor_delay_s: S,
     with_sensor: Imaged<S>,
     alone: Imaged<S>,
 }
@@ -59,6 +61,8 @@ struct Imaged<S> {
     under: InS<S>,
     /// C, as a decimal.
     ratio: f64,
+    /// m
+    order: usize,
 }
 
 impl<S: Decimal> Images<S> {
@@ -70,17 +74,20 @@ impl<S: Decimal> Images<S> {
         sensor: &Quotient,
     ) -> Option<Images<S>> {
         let bounds = sampling.bounds.get(of_box)?;
-        let alone = Imaged { over: n.clone(), under: d.clone(), ratio: bounds.last()?.ratio };
+        let last = bounds.last()?;
+        let alone = Imaged { over: n.clone(), under: d.clone(), ratio: last.ratio, order: last.order };
         let with_sensor = match (sensor.is_one(), bounds.as_slice()) {
             (true, [_]) => alone.clone(),
             (false, [bound, _]) => {
                 let [hn, hd] = quotient(sensor);
-                Imaged { over: n.times(&hn), under: d.times(&hd), ratio: bound.ratio }
+                Imaged { over: n.times(&hn), under: d.times(&hd), ratio: bound.ratio, order: bound.order }
             }
             _ => return None,
         };
         let sample_time_s = S::decimal(sampling.sample_time_s);
-        Some(Images { sample_time_s, count: sampling.images, dead_time_s, with_sensor, alone })
+        let sensor_delay_s = S::decimal(sampling.sensor_delay_s);
+        let count = sampling.images;
+        Some(Images { sample_time_s, count, dead_time_s, sensor_delay_s, with_sensor, alone })
     }
 
     fn imaged(&self, which: Which) -> &Imaged<S> {
@@ -88,6 +95,15 @@ impl<S: Decimal> Images<S> {
             Which::WithSensor => &self.with_sensor,
             Which::Alone => &self.alone,
         }
+    }
+
+    /// The dead time of this plant, where no variable moves it.
+    fn late(&self, which: Which) -> Option<S> {
+        let whole = self.dead_time_s?;
+        Some(match which {
+            Which::WithSensor => whole,
+            Which::Alone => whole - self.sensor_delay_s,
+        })
     }
 
     /// W
@@ -101,19 +117,18 @@ impl<S: Decimal> Images<S> {
         [half.most(), (self.turn() * S::from(BAND_END)).least()]
     }
 
-    /// What is claimed of the bounds, with the sensor and without: |s^m N| <= C |D|; `None` where the relative degree m is not one at least.
-    pub(super) fn bounded(&self) -> Option<Vec<Claimed<S>>> {
-        let one = |imaged: &Imaged<S>| {
-            let s_to_m = [vec![Polynomial::zero(); imaged.relative_degree()?], vec![Polynomial::number(1.0)]];
+    /// What is claimed of the bounds, with the sensor and without: |s^m N| <= C |D|.
+    pub(super) fn bounded(&self) -> [Claimed<S>; 2] {
+        [&self.with_sensor, &self.alone].map(|imaged| {
+            let s_to_m = [vec![Polynomial::zero(); imaged.order], vec![Polynomial::number(1.0)]];
             let v = InS(s_to_m.concat()).times(&imaged.over);
-            Some(Claimed::polynomials(imaged.under.scaled(S::decimal(imaged.ratio)), v))
-        };
-        [&self.with_sensor, &self.alone].into_iter().map(one).collect()
+            Claimed::polynomials(imaged.under.scaled(S::decimal(imaged.ratio)), v)
+        })
     }
 
-    /// That of the plant alone.
-    pub(super) fn relative_degree(&self) -> Option<usize> {
-        self.alone.relative_degree()
+    /// By how much the degree of the denominator is greater than that of the numerator, with the sensor and without; `None` where it is not.
+    pub(super) fn relative_degrees(&self) -> Option<[usize; 2]> {
+        Some([self.with_sensor.relative_degree()?, self.alone.relative_degree()?])
     }
 
     /// From which frequency on the bounds are needed.
@@ -141,7 +156,7 @@ impl<S: Decimal> Images<S> {
             let farthest = if k > 0.0 { begin + width } else { -begin };
             let rests = rests.iter().flatten().map(|rests| rests.along(farthest, S::from(0.0)));
             let points = Points::of_pair(pair, rests, variables, range)?;
-            let phase = self.dead_time_s.map(|dead_time_s| {
+            let phase = self.late(which).map(|dead_time_s| {
                 let [cosine, sine] = S::cosine_and_sine(turn * S::from(k) * dead_time_s);
                 [cosine, -sine]
             });
@@ -149,15 +164,15 @@ impl<S: Decimal> Images<S> {
         });
         Some(ImagePoints {
             each: each.collect::<Option<_>>()?,
-            rest: self.rest(imaged, S::decimal(range.to))?,
+            rest: self.rest(imaged, S::decimal(range.to)),
         })
     }
 
     /// What holds R at a frequency, of a plant with numbers as coefficients.
     pub(super) fn at(&self, which: Which, frequency: S) -> Option<Complex<S>> {
-        let dead_time_s = self.dead_time_s?;
+        let dead_time_s = self.late(which)?;
         let imaged = self.imaged(which);
-        let rest = S::uncertain(self.rest(imaged, frequency)?.most());
+        let rest = S::uncertain(self.rest(imaged, frequency).most());
         let sides = (1..=self.count).flat_map(|k| [k as f64, -(k as f64)]);
         let each = sides.map(|k| {
             let turn = self.turn() * S::from(k);
@@ -173,12 +188,12 @@ impl<S: Decimal> Images<S> {
     }
 
     /// What the images that are not taken one by one add at most, up to a frequency.
-    fn rest(&self, imaged: &Imaged<S>, frequency: S) -> Option<S> {
-        let degree = imaged.relative_degree()?;
+    fn rest(&self, imaged: &Imaged<S>, frequency: S) -> S {
+        let order = imaged.order;
         let own = S::from(self.count as f64 + INTEGRAL_BEGIN);
         let power = |of: S, exponent: usize| (0..exponent).fold(S::from(1.0), |product, _| product * of);
-        let under = power(self.turn(), degree + 1) * power(own, degree) * S::from(degree as f64);
-        Some(frequency * S::decimal(imaged.ratio).times(2.0) / under)
+        let under = power(self.turn(), order + 1) * power(own, order) * S::from(order as f64);
+        frequency * S::decimal(imaged.ratio).times(2.0) / under
     }
 }
 

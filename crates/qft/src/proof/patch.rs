@@ -107,6 +107,11 @@ pub(super) fn at_point<S: Decimal>(claimed: &Claimed<S>, frequency_rad_per_s: f6
         }
         false => Range { from: 1.0, to: f64::INFINITY, late: if is_late { Late::Less } else { Late::Not } },
     };
+    if range.to.is_infinite() {
+        // both divided by the same power of the frequency
+        let [ur, ui, vr, vi, rest] = Patch::over(claimed, 0, range)?.points().points().first()?.map(S::abs);
+        return Some([(ur * ur + ui * ui).sqrt() + rest, (vr * vr + vi * vi).sqrt() - rest]);
+    }
     let nothing = || std::array::from_fn(|_| vec![]);
     let own = [Claimed { v: nothing(), ..claimed.clone() }, Claimed { u: nothing(), ..claimed.clone() }];
     let [at_u, at_v] =

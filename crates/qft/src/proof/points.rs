@@ -170,12 +170,15 @@ impl<S: Decimal> Points<S> {
     pub(super) fn with_images(&self, images: &Points<S>, [of_u, of_v]: [Disc<S>; 2]) -> Points<S> {
         let greatest = |disc: &Disc<S>| size(disc.center) + disc.radius;
         let most = greatest(&of_u).maximum(greatest(&of_v));
+        // nothing is shown where a denominator of an image may vanish, not even of what is multiplied by zero
+        let is_known = [of_u, of_v].iter().all(|disc| disc.radius.most().is_finite());
+        let unknown = S::from(if is_known { 0.0 } else { f64::INFINITY });
         let mut out = self.clone();
         for (point, image) in out.values.iter_mut().zip(&images.values) {
             let [ur, ui, vr, vi, rest] = *image;
             let u = product([ur, ui], of_u.center);
             let v = product([vr, vi], of_v.center);
-            let beside = of_u.radius * size([ur, ui]) + of_v.radius * size([vr, vi]) + most * rest;
+            let beside = of_u.radius * size([ur, ui]) + of_v.radius * size([vr, vi]) + most * rest + unknown;
             let [known_ur, known_ui, known_vr, known_vi, known] = *point;
             *point = [known_ur + u[0], known_ui + u[1], known_vr + v[0], known_vi + v[1], known + beside];
         }

@@ -103,6 +103,9 @@ pub(crate) const VARIABLES_MAXIMUM: usize = 12;
 /// The greatest exponent of a variable in a coefficient of a plant: products of two such polynomials keep within a byte.
 const EXPONENT_MAXIMUM: u8 = 60;
 
+/// Products of terms at most: of what has more nothing is known.
+const PRODUCTS_MAXIMUM: usize = 1 << 20;
+
 /// Exponents of the variables.
 type Exponents = [u8; VARIABLES_MAXIMUM];
 
@@ -192,6 +195,9 @@ impl<S: Decimal> Polynomial<S> {
     }
 
     pub(crate) fn times(&self, other: &Polynomial<S>) -> Polynomial<S> {
+        if self.terms.len().saturating_mul(other.terms.len()) > PRODUCTS_MAXIMUM {
+            return Polynomial::constant(S::from(f64::NAN));
+        }
         let products = self.terms.iter().flat_map(|(one, a)| {
             other.terms.iter().map(|(another, b)| {
                 let mut exponents = *one;
@@ -291,7 +297,7 @@ pub(crate) fn expanded<S: Decimal>(
                 of(x).zip(of(y)).and_then(|(x, y)| x.times(y).up_to(EXPONENT_MAXIMUM))
             }
             Node::Binary(Binary::Divide, x, y) => of(x).zip(of(y)).and_then(|(x, y)| {
-                let divisor = y.as_constant()?;
+                let divisor = y.as_constant().filter(|own| own.least() > 0.0 || own.most() < 0.0)?;
                 Some(x.scaled(S::from(1.0) / divisor))
             }),
             Node::Unary(..) | Node::Select(..) => None,

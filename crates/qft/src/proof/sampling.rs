@@ -3,7 +3,7 @@
 
 use phea_dynamics::scalar::{Interval, Scalar};
 
-use super::certificate::{Certificate, Law, Panel, Sections};
+use super::certificate::{Bound, Certificate, Law, Panel, Sections};
 use super::checker::{Rejection, check_panels};
 use super::claimed::Loop;
 use super::hurwitz::{Roots, roots_of};
@@ -11,6 +11,8 @@ use super::polynomial::Decimal;
 
 /// Images to either side at most.
 const IMAGES_MAXIMUM: usize = 64;
+/// The order of a bound at most.
+const ORDER_MAXIMUM: usize = 64;
 /// The degree of a section at most.
 const SECTION_DEGREE_MAXIMUM: usize = 2;
 
@@ -29,8 +31,13 @@ pub(super) fn check_sampling(certificate: &Certificate) -> Result<(), Rejection>
     let numbers = sampling.sample_time_s.is_finite() && sampling.sample_time_s > 0.0;
     let images = (1..=IMAGES_MAXIMUM).contains(&sampling.images);
     let bounded = sampling.bounds.len() == plant.boxes.len()
-        && sampling.bounds.iter().flatten().all(|bound| bound.ratio.is_finite() && bound.ratio > 0.0);
+        && sampling.bounds.iter().flatten().all(is_bound)
+        && (0.0..=plant.delay_s).contains(&sampling.sensor_delay_s);
     if laws_fit && numbers && images && bounded { Ok(()) } else { Err(Rejection::Number("of the sampling")) }
+}
+
+fn is_bound(bound: &Bound) -> bool {
+    bound.ratio.is_finite() && bound.ratio > 0.0 && (1..=ORDER_MAXIMUM).contains(&bound.order)
 }
 
 /// Leading coefficients that are not zero, and no more zeros than poles.
@@ -93,7 +100,7 @@ pub(super) fn check_bounds(
     around: &Loop<Interval>,
 ) -> Result<(), Rejection> {
     let Some((sampling, images)) = certificate.sampling.as_ref().zip(around.images()) else { return Ok(()) };
-    let claims = images.bounded().ok_or(Rejection::NoSuchLoop)?;
+    let claims = images.bounded();
     let bounds = sampling.bounds.get(of_box).ok_or(Rejection::Boxes)?;
     for (claimed, bound) in claims.iter().zip(bounds) {
         let panels: &[Panel] = &bound.panels;

@@ -49,9 +49,10 @@ pub(super) fn stated(family: &Family, compensation: &Compensation) -> Result<Cer
     let [feedback, prefilter] = [parts[0], parts[1]].map(law);
     let sensor = quotient(parts[2]);
     let sampling = compensation.sample_time_s().map(|sample_time_s| {
-        let bound = Bound { ratio: 1.0, panels: vec![] };
+        let bound = Bound { order: 1, ratio: 1.0, panels: vec![] };
         let of_box = vec![bound; if sensor.is_one() { 1 } else { 2 }];
-        Sampling { sample_time_s, images: 1, bounds: vec![of_box; plant.boxes.len()] }
+        let bounds = vec![of_box; plant.boxes.len()];
+        Sampling { sample_time_s, sensor_delay_s: parts[2].dead_time_s(), images: 1, bounds }
     });
     let mut certificate = Certificate { plant, feedback, prefilter, sensor, sampling, claims: vec![] };
     with_model(&mut certificate)?;
@@ -205,7 +206,7 @@ impl Segment {
     }
 
     /// The value of a parameter where its variable is this.
-    pub(super) fn value(&self, share: f64) -> f64 {
+    pub fn value(&self, share: f64) -> f64 {
         match share {
             0.0 => self.low,
             1.0 => self.high,

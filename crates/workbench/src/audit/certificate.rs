@@ -6,7 +6,7 @@ use phea_qft::proof::{Certificate, Claim, Limited, Rejection, Side, check};
 use serde::Serialize;
 
 use super::{ProjectAudit, closed_loop_key};
-use crate::answer::{Answer, OutputFile};
+use crate::answer::{Answer, OutputFile, significant};
 use crate::project::Loaded;
 pub use layout::CertificateError;
 use layout::File;
@@ -68,7 +68,7 @@ fn answer(
     certificate: &Certificate,
     rejected: Option<&(usize, Rejection)>,
 ) -> Answer {
-    let claims: Vec<String> = certificate.claims.iter().map(sentence).collect();
+    let claims: Vec<String> = certificate.claims.iter().map(|claim| sentence(certificate, claim)).collect();
     let mut text = format!("{title}\n");
     for (index, claim) in claims.iter().enumerate() {
         let word = match rejected {
@@ -99,8 +99,19 @@ fn answer(
     Answer { text, json, files: vec![], affirmative: rejected.is_none() }
 }
 
+/// At which frequencies something is claimed.
+fn band(certificate: &Certificate, limited: &Limited) -> String {
+    let [from, to] = limited.band_rad_per_s;
+    let end =
+        certificate.sampling.as_ref().map_or(f64::INFINITY, |own| std::f64::consts::PI / own.sample_time_s);
+    match to.min(end) {
+        f64::INFINITY => format!("from {from} rad/s on"),
+        to => format!("from {from} to {} rad/s", significant(to, 6)),
+    }
+}
+
 /// A claim in a sentence without its end.
-fn sentence(claim: &Claim) -> String {
+fn sentence(certificate: &Certificate, claim: &Claim) -> String {
     let decibels = |ratio: f64| format!("{:+.4} dB", 20.0 * phea_dynamics::portable::log10(ratio));
     let of = |limited: &Limited| match limited.side {
         Side::Upper => format!("{} over its limit", closed_loop_key(limited.closed_loop)),
@@ -108,12 +119,15 @@ fn sentence(claim: &Claim) -> String {
     };
     match claim {
         Claim::Stable(_) => "every plant of the box is stable in the loop".to_string(),
-        Claim::Unstable { .. } => "a plant of the box is not stable in the loop".to_string(),
+        Claim::Unstable { .. } => {
+            "a plant of the box is not stable in the loop, or the prefilter is not".to_string()
+        }
         Claim::Limited { limited, ratio, .. } => {
             format!(
-                "{} is at most {} for every plant and every frequency of the band",
+                "{} is at most {} for every plant {}",
                 of(limited),
-                decibels(*ratio)
+                decibels(*ratio),
+                band(certificate, limited)
             )
         }
         Claim::Reached { limited, ratio, frequency_rad_per_s, .. } => format!(

@@ -156,6 +156,8 @@ struct StatedSections {
 #[serde(deny_unknown_fields)]
 struct StatedSampling {
     sample_time: f64,
+    #[serde(default, skip_serializing_if = "is_zero")]
+    sensor_delay: f64,
     images: usize,
     /// For each box.
     bounds: Vec<Vec<StatedBound>>,
@@ -164,6 +166,7 @@ struct StatedSampling {
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct StatedBound {
+    order: usize,
     ratio: f64,
     panels: Vec<Cover>,
 }
@@ -193,14 +196,32 @@ fn meaning(text: impl Into<String>) -> CertificateError {
 
 /// A number of the text that is not zero and would be read as zero.
 fn vanishing(text: &str) -> Option<&str> {
-    // between quotation marks stand words
-    let outside = text.split('"').step_by(2);
-    let mut tokens = outside.flat_map(|part| part.split(|sign: char| "[]{}:, \n\r\t".contains(sign)));
+    let outside = outside_of_strings(text);
+    let mut tokens =
+        outside.into_iter().flat_map(|part| part.split(|sign: char| "[]{}:, \n\r\t".contains(sign)));
     tokens.find(|token| {
         let digits = token.split(['e', 'E']).next().unwrap_or_default();
         let is_zero = token.parse::<f64>().is_ok_and(|value| value == 0.0);
         is_zero && digits.contains(|digit: char| ('1'..='9').contains(&digit))
     })
+}
+
+/// What stands outside of the strings of a JSON text.
+fn outside_of_strings(text: &str) -> Vec<&str> {
+    let mut out = vec![];
+    let mut rest = text;
+    while let Some((before, string)) = rest.split_once('"') {
+        out.push(before);
+        let mut is_escaped = false;
+        let end = string.find(|sign: char| {
+            let ends = sign == '"' && !is_escaped;
+            is_escaped = sign == '\\' && !is_escaped;
+            ends
+        });
+        rest = end.and_then(|end| string.get(end + 1..)).unwrap_or_default();
+    }
+    out.push(rest);
+    out
 }
 
 impl File {
@@ -366,9 +387,15 @@ impl From<StatedLaw> for Law {
 
 impl From<&Sampling> for StatedSampling {
     fn from(sampling: &Sampling) -> StatedSampling {
-        let bound = |one: &Bound| StatedBound { ratio: one.ratio, panels: covers(&one.panels) };
+        let bound =
+            |one: &Bound| StatedBound { order: one.order, ratio: one.ratio, panels: covers(&one.panels) };
         let bounds = sampling.bounds.iter().map(|of_box| of_box.iter().map(bound).collect()).collect();
-        StatedSampling { sample_time: sampling.sample_time_s, images: sampling.images, bounds }
+        StatedSampling {
+            sample_time: sampling.sample_time_s,
+            sensor_delay: sampling.sensor_delay_s,
+            images: sampling.images,
+            bounds,
+        }
     }
 }
 
@@ -376,10 +403,12 @@ impl TryFrom<StatedSampling> for Sampling {
     type Error = CertificateError;
 
     fn try_from(stated: StatedSampling) -> Result<Sampling, CertificateError> {
-        let bound = |one: StatedBound| Ok(Bound { ratio: one.ratio, panels: panels(one.panels)? });
+        let bound =
+            |one: StatedBound| Ok(Bound { order: one.order, ratio: one.ratio, panels: panels(one.panels)? });
         let of_box = |bounds: Vec<StatedBound>| bounds.into_iter().map(bound).collect();
         let bounds = stated.bounds.into_iter().map(of_box).collect::<Result<_, CertificateError>>()?;
-        Ok(Sampling { sample_time_s: stated.sample_time, images: stated.images, bounds })
+        let StatedSampling { sample_time, sensor_delay, images, .. } = stated;
+        Ok(Sampling { sample_time_s: sample_time, sensor_delay_s: sensor_delay, images, bounds })
     }
 }
 
