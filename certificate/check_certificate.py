@@ -68,7 +68,8 @@ def loop_of(file, plant, box, claim=None, member=False):
     variables = 0 if member else file["variables"]
     if not sampling:
         return Loop(plant["tau"], variables, terms, table and Functions(terms, table))
-    images = Images(sampling["sample_time"], sampling["images"], plant["tau"], responses(file, plant, box))
+    taus = {"R'": plant["tau"], "R": plant["tau"] - number(sampling["sensor_delay"])}
+    images = Images(sampling["sample_time"], sampling["images"], taus, responses(file, plant, box))
     return Loop(plant["late"], variables, terms, Functions(terms, table, sampling["sample_time"], plant["tau"].constant()), images)
 
 
@@ -81,21 +82,17 @@ def responses(file, plant, box):
         pairs.append((plant["numerator"], plant["denominator"]))
     if len(bounds) != len(pairs):
         raise Rejected("the bounds beyond the images are not those of the loop")
-    for (numerator, denominator), bound in zip(pairs, bounds):
-        if len(denominator.along_frequency()) <= len(numerator.along_frequency()):
-            raise Rejected("the plant has as many zeros as poles")
     if box not in file["shown"]:
         whole = plant_over(file, box)
         pairs_over = [(whole["numerator"] * file["sensor"][0], whole["denominator"] * file["sensor"][1]), (whole["numerator"], whole["denominator"])]
         for (numerator, denominator), bound in zip(pairs_over, bounds):
-            m = len(denominator.along_frequency()) - len(numerator.along_frequency())
             if bound["panels"][0]["from"] * file["sampling"]["sample_time"] > 2 * pi()[0] * (file["sampling"]["images"] + Fraction(49, 100)):
                 raise Rejected("a bound begins beyond the images")
             cover(bound["panels"], bound["panels"][0]["from"], None)
-            show_all(bound["panels"], part(denominator.times(bound["ratio"])), part(numerator * of_frequency([ONE] + [number(0)] * m)),
+            show_all(bound["panels"], part(denominator.times(bound["ratio"])), part(numerator * of_frequency([ONE] + [number(0)] * bound["order"])),
                      Loop(number(0), file["variables"], file["terms"]))
         file["shown"].add(box)
-    with_ratios = [(*pair, bound["ratio"]) for pair, bound in zip(pairs, bounds)]
+    with_ratios = [(*pair, bound["ratio"], bound["order"]) for pair, bound in zip(pairs, bounds)]
     return {"R'": with_ratios[0], "R": with_ratios[-1]}
 
 
@@ -269,13 +266,13 @@ def names_at(claim, file, w, tau):
 def image_at(images, w):
     """R or R' of one plant at one frequency."""
     def of(kind):
-        numerator, denominator, _ = images.responses[kind]
+        numerator, denominator, _, _ = images.responses[kind]
         total = Fraction(0), Fraction(0), images.beyond(kind, w)
         for k in images.orders:
             s = Fraction(0), w + k * images.low, abs(k) * (images.high - images.low)
             over = ball_product((Fraction(0), w, Fraction(0)), ball_at(numerator, s))
             response = ball_product(over, ball_inverse(ball_product(s, ball_at(denominator, s))))
-            total = ball_sum(total, ball_product(response, images.turn(k)))
+            total = ball_sum(total, ball_product(response, images.turn(kind, k)))
         return total
     return of
 

@@ -72,7 +72,7 @@ def read_quotient(value, name):
 
 def read_sections(value, name):
     keys(value, ("gain", "numerator", "denominator"), (), name)
-    need(is_number(value["gain"]), f"the gain of {name} is no number")
+    need(is_number(value["gain"]) and value["gain"] != 0, f"the gain of {name} is zero, or no number")
     for key in ("numerator", "denominator"):
         need(is_list(value[key], lambda section: is_list(section, is_number, 1, 3) and section[0] != 0, 0, 40), f"a section of {name} is none")
     degrees = [sum(len(section) - 1 for section in value[key]) for key in ("numerator", "denominator")]
@@ -81,14 +81,17 @@ def read_sections(value, name):
 
 
 def read_sampling(value, file):
-    keys(value, ("sample_time", "images", "bounds"), (), "`sampling`")
+    keys(value, ("sample_time", "images", "bounds"), ("sensor_delay",), "`sampling`")
+    value["sensor_delay"] = Fraction(value.get("sensor_delay", 0))
+    need(0 <= value["sensor_delay"] <= Fraction(file.get("delay", 0)), "the delay of the sensor is not a part of `delay`")
     need(is_number(value["sample_time"]) and value["sample_time"] > 0, "the sample time is not greater than zero")
     value["sample_time"] = Fraction(value["sample_time"])
     need(is_index(value["images"], 65) and value["images"] > 0, "`images` is no number from 1 to 64")
     need(is_list(value["bounds"], lambda box: is_list(box, least=1, most=2), len(file["boxes"]), len(file["boxes"])),
          "there is not a list of bounds for each box")
     for bound in (bound for box in value["bounds"] for bound in box):
-        keys(bound, ("ratio", "panels"), (), "a bound")
+        keys(bound, ("order", "ratio", "panels"), (), "a bound")
+        need(is_index(bound["order"], 65) and bound["order"] > 0, "the order of a bound is no number from 1 to 64")
         need(is_number(bound["ratio"]) and bound["ratio"] > 0, "the ratio of a bound is not greater than zero")
         bound["panels"] = read_panels(bound["panels"], "a bound")
 

@@ -32,22 +32,21 @@ def steepest(polynomial, w):
 
 
 class Images:
-    def __init__(self, sample_time, count, tau, responses):
-        """responses: of each kind numerator, denominator, and the ratio C of the bound beyond."""
-        self.count, self.tau, self.responses = count, tau, responses
+    def __init__(self, sample_time, count, taus, responses):
+        """Of each kind the dead time; and numerator, denominator, and of the bound beyond the ratio C and the order m."""
+        self.count, self.taus, self.responses = count, taus, responses
         low, high = (2 * x / sample_time for x in pi())
         self.low, self.high = low, high
         self.orders = [k for k in range(-count, count + 1) if k]
 
     def beyond(self, kind, w):
         """2 w C W^-(m+1) (K - 0.01)^-m/m"""
-        numerator, denominator, ratio = self.responses[kind]
-        m = len(denominator.along_frequency()) - len(numerator.along_frequency())
+        _, _, ratio, m = self.responses[kind]
         return 2 * w * ratio / self.low ** (m + 1) / (self.count - Fraction(1, 100)) ** m / m
 
-    def turn(self, k):
+    def turn(self, kind, k):
         """e^(-j k W tau), dead time being a number."""
-        tau = self.tau.constant()
+        tau = self.taus[kind].constant()
         re, im, error = turned(k * self.low * tau)
         return re, im, error + abs(k) * (self.high - self.low) * tau
 
@@ -56,7 +55,7 @@ class Images:
         start, end, bundles, numbers = panel["from"], panel["to"], [], {}
         s, spread = axis(0), self.high - self.low
         for kind in kinds:
-            numerator, denominator, _ = self.responses[kind]
+            numerator, denominator, _, _ = self.responses[kind]
             numbers[kind] = []
             for k in self.orders:
                 low, high = start + k * self.low, end + k * self.low
@@ -81,10 +80,10 @@ class Images:
             for place, k in numbers[kind]:
                 centre, radius = disc(*lists[place])
                 size = root_above(centre[0] ** 2 + centre[1] ** 2)
-                if any(self.tau.terms.keys() - {0}):
+                if any(self.taus[kind].terms.keys() - {0}):
                     rho += size + radius
                     continue
-                re, im, error = self.turn(k)
+                re, im, error = self.turn(kind, k)
                 alpha[0] += centre[0] * re - centre[1] * im
                 alpha[1] += centre[0] * im + centre[1] * re
                 rho += radius + size * error

@@ -7,7 +7,7 @@
 mutated. What no longer can be a proof (a gap between panels, a leaf that is missing or turned around, a ratio below one that is
 reached) both must reject. Of what might still be one (a wider box, another coefficient, a direction turned a little), the first
 must reject all that the second rejects: rounding outwards makes it the stricter one. Of some claims, the ratio is sought at
-which the leaves just show it, to the last digits.
+which the leaves just show it, to the last digits. Certificates that were written to deceive a checker both must reject.
 """
 
 import argparse
@@ -51,6 +51,7 @@ SLOWER = [          # with a thousand mutations
     ("examples/qft/load_frame.toml", {}),
 ]
 MANY = 1000
+DECEIVING = ROOT / "crates/workbench/tests/false_certificates"      # certificates of what is false
 SEED = 6021
 MUTATIONS = 80
 FORMAT = 2          # exit status of both checkers: no certificate
@@ -389,6 +390,17 @@ def just_shown(file):
     return fails, shows
 
 
+def deceived(rounding_outwards, counts):
+    """Certificates of what is false, and which checker accepts them."""
+    wrong = []
+    for path in sorted(DECEIVING.glob("*.json")):
+        verdicts = check(path.read_text()), rounding_outwards(path.read_text())
+        counts["written to deceive, rejected by both"] += all(status for status, _ in verdicts)
+        if not all(status for status, _ in verdicts):
+            wrong.append(f"a certificate that deceives is accepted: {path.name}: {[told[-1:] for _, told in verdicts]}")
+    return wrong
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--mutations", type=int, default=MUTATIONS)
@@ -411,6 +423,7 @@ def main():
             if any(status for status, _ in verdicts):
                 wrong.append(f"{loop}: the certificate is rejected: {[told[-1:] for _, told in verdicts]}")
             files.append((loop, json.loads(text)))
+        wrong += deceived(rounding_outwards, counts)
         while counts["mutations"] < given.mutations:
             loop, file = chance.choice(files)
             mutate = chance.choice(chance.choice([BROKEN, OPEN]))

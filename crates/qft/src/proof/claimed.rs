@@ -53,6 +53,13 @@ pub(crate) struct Loop<S> {
     images: Option<Images<S>>,
 }
 
+/// Known without a remainder, of a low power in each variable, and not negative.
+fn is_dead_time<S: Decimal>(value: &Polynomial<S>) -> bool {
+    let least = ends(&DeadTime { value: value.clone(), terms: 1 })[0].least();
+    let is_low = value.clone().up_to(DEAD_TIME_EXPONENT_MAXIMUM).is_some();
+    is_low && value.rest().most() == 0.0 && least >= 0.0
+}
+
 /// The values of the parameters at one plant.
 fn at_member<S: Decimal>(segments: &[Segment], variables: &[f64]) -> Vec<Polynomial<S>> {
     let value = |one: &Segment| {
@@ -274,12 +281,9 @@ impl<S: Decimal> Loop<S> {
         let sampling = certificate.sampling.as_ref();
         let mut dead_time = Polynomial::number(plant.delay_s);
         if plant.has_dead_time {
-            dead_time = dead_time.plus(&left.next()?).up_to(DEAD_TIME_EXPONENT_MAXIMUM)?;
-            if dead_time.rest().most() != 0.0 {
-                return None;
-            }
+            dead_time = dead_time.plus(&left.next()?);
         }
-        if ends(&DeadTime { value: dead_time.clone(), terms: 1 })[0].least() < 0.0 {
+        if !is_dead_time(&dead_time) {
             return None;
         }
         // in a sampled loop, what is constant is a function of the frequency

@@ -40,7 +40,7 @@ fn is_bound(bound: &Bound) -> bool {
     bound.ratio.is_finite() && bound.ratio > 0.0 && (1..=ORDER_MAXIMUM).contains(&bound.order)
 }
 
-/// Leading coefficients that are not zero, and no more zeros than poles.
+/// A gain and leading coefficients that are not zero, and no more zeros than poles.
 fn is_causal(Sections { gain, numerator, denominator }: &Sections) -> bool {
     let fits = |section: &Vec<f64>| {
         let leading = section.first().is_some_and(|leading| *leading != 0.0);
@@ -48,6 +48,7 @@ fn is_causal(Sections { gain, numerator, denominator }: &Sections) -> bool {
     };
     let degree = |sections: &[Vec<f64>]| -> usize { sections.iter().map(|section| section.len() - 1).sum() };
     gain.is_finite()
+        && *gain != 0.0
         && numerator.iter().chain(denominator).all(fits)
         && degree(numerator) <= degree(denominator)
 }
