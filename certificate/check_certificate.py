@@ -195,7 +195,11 @@ def check_limited(claim, file):
         cover(panels, start, end, file)
         plant = plant_over(file, box)
         show_all(panels, *closed_loop(claim, file, plant), loop_of(file, plant, box, claim))
-    return sentence(claim, ("most", "for every plant and every frequency of the band"))
+    if "sampling" in file:
+        half = pi()[1] / file["sampling"]["sample_time"]
+        end = half if end is None else min(end, half)
+    until = "on" if end is None else f"to {float(end):g} rad/s"
+    return sentence(claim, ("most", f"for every plant from {float(start):g} rad/s {until}"))
 
 
 # A ball is a real part, an imaginary part, and a bound on the distance from them.
