@@ -4,13 +4,16 @@
 mod alone;
 mod plant;
 mod proven;
+mod remark;
 mod words;
 pub(crate) use words::rounded;
 pub use words::{evidence_key, evidence_sentence, finding_sentence, place_words};
 
 pub use alone::outside;
+pub(crate) use alone::{caveat as caveat_of_rig, unexamined as unexamined_rig};
 pub use plant::{NamedPlant, PlantNames};
 pub use proven::{prove_audit, standing_word, try_to_prove, why_not_proven};
+pub use remark::remark_sentences;
 pub use words::{
     closed_loop_key, closed_loop_symbol, frequency_number, frequency_words, kind_key, kind_words,
     margin_words, meaning, stability_reason, stability_sentence, verdict_key, verdict_words, worst_at_design,
@@ -30,7 +33,7 @@ use crate::quantity::DisplayUnit;
 use crate::robust::{RobustProblem, robust_problem};
 use crate::setup::Setup;
 use crate::source::Source;
-use phea_dynamics::watch::Watch;
+use phea_dynamics::watch::{Watch, part};
 
 /// Why there is nothing to audit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -47,6 +50,9 @@ pub enum AuditError {
     #[error("the project states no [[specification]] to verify the controller by")]
     NoSpecification,
 }
+
+/// What the watch is told.
+const STAGE: &str = "auditing";
 
 /// Audits the given controller and prefilter over the whole family and band.
 ///
@@ -75,7 +81,11 @@ pub fn audit_project(
 /// # Errors
 /// [`ProcedureError::Stopped`] where the watcher stops it.
 pub fn audit_problem(problem: &RobustProblem, watch: Watch<'_>) -> Result<ProjectAudit, ProcedureError> {
-    Ok(ProjectAudit::new(problem, phea_qft::audit::audit(&asked(problem, &problem.family), watch)?))
+    let share = if problem.rig_outside.is_some() { 0.8 } else { 1.0 };
+    let asked = asked(problem, &problem.family);
+    let audit = phea_qft::audit::audit(&asked, &mut part(watch, STAGE, [0.0, share]))?;
+    let of_rig = caveat_of_rig(problem, &mut part(watch, STAGE, [share, 1.0]))?;
+    Ok(ProjectAudit::new(problem, audit, of_rig))
 }
 
 /// What is audited of a problem, over a family that may be another.
@@ -189,11 +199,11 @@ fn reached(problem: &RobustProblem, finding: &SpecificationFinding) -> Option<Re
 }
 
 impl ProjectAudit {
-    /// An audit of the loop of this problem.
-    pub fn new(problem: &RobustProblem, mut audit: Audit) -> ProjectAudit {
+    /// An audit of the loop of this problem, with what was found of the rig where the family does
+    /// not contain it.
+    pub(crate) fn new(problem: &RobustProblem, mut audit: Audit, of_rig: Option<Caveat>) -> ProjectAudit {
         let RobustProblem { family, compensation, .. } = problem;
-        let caveats: Vec<Caveat> =
-            alone::caveat(problem).into_iter().chain(problem.caveats.clone()).collect();
+        let caveats: Vec<Caveat> = of_rig.into_iter().chain(problem.caveats.clone()).collect();
         if audit.verdict == Verdict::Met && caveats.iter().any(|caveat| caveat.unproven) {
             audit.verdict = Verdict::NotProven;
         }

@@ -28,7 +28,7 @@ use phea_qft::closed_loop::Compensation;
 use phea_qft::design::{Design, DesignOptions, DesignOutcome, DesignProblem, PrefilterChoice};
 use phea_qft::verification::Verdict;
 
-use crate::audit::{ProjectAudit, audit_problem};
+use crate::audit::{ProjectAudit, audit_problem, caveat_of_rig, unexamined_rig};
 use crate::error::ProcedureError;
 use crate::project::{self, Project};
 use crate::quantity;
@@ -36,7 +36,7 @@ use crate::robust::{RobustProblem, robust_problem};
 use crate::setup::Setup;
 use crate::source::Source;
 use crate::trial::{Agreement, Trial, tried};
-use phea_dynamics::watch::{Watch, part};
+use phea_dynamics::watch::{Stopped, Watch, part};
 
 /// Name of the file with the project that a design makes.
 pub const DESIGNED_PROJECT: &str = "designed.toml";
@@ -111,6 +111,7 @@ impl ProjectDesign {
         asked: &DesignProblem,
         design: Design,
         options: DesignOptions,
+        watch: Watch<'_>,
     ) -> Result<ProjectDesign, ProcedureError> {
         let project = setup.project;
         let has_prefilter = options.prefilter != PrefilterChoice::None;
@@ -121,7 +122,8 @@ impl ProjectDesign {
             has_prefilter,
             ..given.clone()
         };
-        let view = ProjectAudit::new(&problem, design.audit.clone());
+        let of_rig = caveat_of_rig(&problem, watch).unwrap_or_else(|Stopped| unexamined_rig(&problem));
+        let view = ProjectAudit::new(&problem, design.audit.clone(), of_rig);
         let rounding = rounding::rounding(setup, &problem)?;
         let declared = project.controller.clone().unwrap_or_default();
         let declared_controller = project::Controller {
@@ -239,7 +241,7 @@ fn designed(
     let explanations = outcome.findings.iter().map(Explanation::of).collect::<Vec<_>>();
     match outcome.design.clone() {
         Some(design) => {
-            let mut told = ProjectDesign::new(setup, &given, &problem, design, options)?;
+            let mut told = ProjectDesign::new(setup, &given, &problem, design, options, watch)?;
             if let Some(view) = proven {
                 told.designed.view = view;
             }

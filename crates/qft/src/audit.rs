@@ -10,7 +10,8 @@ use phea_dynamics::watch::{Stopped, Watch, part};
 use crate::sampled::SampledPlants;
 use crate::stability::{FamilyStability, StabilityAudit};
 use crate::verification::{
-    Audit, AuditProblem, Evidence, PlantPoint, SpecificationFinding, StabilityFinding, Verdict, audit_among,
+    Audit, AuditProblem, Evidence, PlantPoint, Remark, SpecificationFinding, StabilityFinding, Verdict,
+    audit_among,
 };
 
 /// What the watch is told.
@@ -160,15 +161,14 @@ fn without_stability(finding: &mut SpecificationFinding, stability: &StabilityFi
                 violations: vec![],
                 at_design_frequencies: vec![],
                 envelope: vec![],
-                remarks: vec!["the loop is unstable, so that it has no margin".to_string()],
+                remarks: vec![Remark::Unstable],
             };
         }
         Verdict::NotProven => {
             if finding.verdict == Verdict::Met {
                 finding.verdict = Verdict::NotProven;
             }
-            let remark = "the loop is not known to be stable: its margins may be those of no response";
-            finding.remarks.push(remark.to_string());
+            finding.remarks.push(Remark::StabilityNotKnown);
         }
     }
 }

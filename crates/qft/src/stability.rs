@@ -36,12 +36,16 @@ pub(crate) use family::StabilityAudit;
 pub use family::{FamilyStability, family_stability};
 
 use crate::closed_loop::{Compensation, Member};
-use crate::verification::rounded;
 use characteristic::Characteristic;
 pub(crate) use characteristic::FeedbackPath;
 pub(crate) use measured::{is_stable as is_stable_by_points, points_with_sensor};
 use responding::Count;
 pub(crate) use responding::own_poles;
+
+/// To four significant digits, as a reader wants it.
+pub(crate) fn rounded(value: f64) -> f64 {
+    format!("{value:.3e}").parse().unwrap_or(value)
+}
 
 /// Stability of one loop.
 #[derive(Clone, Debug, PartialEq)]

@@ -17,7 +17,6 @@ pub(crate) use asymptote::{End, tracking_ratio};
 pub use audit::{AuditProblem, TOLERANCE_DB, TrackingJudgement, Work, audit_specifications};
 pub(crate) use audit::{audit_among, corners};
 pub(crate) use minimum::between;
-pub(crate) use remark::rounded;
 
 use crate::family::{Extent, Family};
 use crate::specification::Requirement;
@@ -177,8 +176,60 @@ pub struct SpecificationFinding {
     pub at_design_frequencies: Vec<WorstCase>,
     /// The worst margin over the family at each frequency of a grid, for drawing: (rad/s, dB).
     pub envelope: Vec<(f64, f64)>,
-    /// What was not looked at, in words; empty where all was.
-    pub remarks: Vec<String>,
+    /// What was not looked at; empty where all was.
+    pub remarks: Vec<Remark>,
+}
+
+/// What the verdict on a specification leaves out, or how it was found.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Remark {
+    /// The band reaches beyond pi/T, in rad/s, above which a sampled loop has no frequencies.
+    BandEndsAtNyquist {
+        /// pi/T
+        nyquist_rad_per_s: f64,
+    },
+    /// The table of a limit does not reach over the band: nothing is demanded beyond it.
+    TableEnds {
+        /// From and to.
+        table_rad_per_s: [f64; 2],
+    },
+    /// No limit demands anything within the band.
+    NothingDemanded,
+    /// A design frequency lies outside of the band.
+    DesignFrequencyOutside {
+        /// The design frequency.
+        frequency_rad_per_s: f64,
+    },
+    /// Judged by the spread of |T|, without a prefilter; the worst case has both its plants.
+    JudgedBySpread,
+    /// Between two frequencies of a measurement the response is interpolated.
+    Interpolated,
+    /// The band reaches beyond what was measured of every plant.
+    BeyondMeasurements {
+        /// From and to.
+        measured_rad_per_s: [f64; 2],
+    },
+    /// A plant that cannot be sampled has no response that could be judged.
+    NotSampled {
+        /// Where this was met.
+        frequency_rad_per_s: f64,
+    },
+    /// A plant has no response that could be judged.
+    NoResponse {
+        /// Where this was met.
+        frequency_rad_per_s: f64,
+        /// The plant, where it is known.
+        plant: Option<PlantPoint>,
+    },
+    /// A plant inside of the box, met in a search, cannot be judged.
+    UndefinedInBox {
+        /// Where this was met.
+        frequency_rad_per_s: f64,
+    },
+    /// The loop is unstable, so that it has no margin.
+    Unstable,
+    /// The loop is not known to be stable: its margins may be those of no response.
+    StabilityNotKnown,
 }
 
 /// A band of frequencies in which a specification is violated.

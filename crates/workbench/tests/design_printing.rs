@@ -103,7 +103,7 @@ fn view(text: &str, status: DesignStatus) -> (Memory, Loaded, ProjectDesign) {
     assert_eq!(options.controller, ControllerChoice::Grow { maximum_order: 4 });
     assert_eq!(options.prefilter, PrefilterChoice::Grow { maximum_order: 3 });
     let design = design(&problem, options.coefficients, status);
-    let view = ProjectDesign::new(&setup, &given, &problem, design, options).unwrap();
+    let view = ProjectDesign::new(&setup, &given, &problem, design, options, &mut |_| true).unwrap();
     (source, loaded, ProjectDesign { published: Some(published), ..view })
 }
 

@@ -1,7 +1,7 @@
 //! The rig itself, where the family does not contain it.
 
-use phea_dynamics::watch::unwatched;
-use phea_qft::verification::Verdict;
+use phea_dynamics::watch::{Stopped, Watch};
+use phea_qft::verification::{Audit, Verdict};
 
 use super::asked;
 use crate::caveat::Caveat;
@@ -43,9 +43,27 @@ pub fn outside(setup: &Setup<'_>) -> Option<(Project, String)> {
 }
 
 /// What the loop of a problem does to the rig itself, where the family does not contain it.
-pub(super) fn caveat(problem: &RobustProblem) -> Option<Caveat> {
-    let (alone, beyond) = problem.rig_outside.as_ref()?;
-    let audit = phea_qft::audit::audit(&asked(problem, alone), &mut unwatched).ok()?;
+pub(crate) fn caveat(problem: &RobustProblem, watch: Watch<'_>) -> Result<Option<Caveat>, Stopped> {
+    let Some((alone, beyond)) = &problem.rig_outside else { return Ok(None) };
+    let audit = phea_qft::audit::audit(&asked(problem, alone), watch)?;
+    Ok(Some(of_rig(beyond, does(problem, &audit), audit.verdict != Verdict::Met)))
+}
+
+/// The same where the watch stopped it: nothing is known then.
+pub(crate) fn unexamined(problem: &RobustProblem) -> Option<Caveat> {
+    let (_, beyond) = problem.rig_outside.as_ref()?;
+    Some(of_rig(beyond, NOTHING_PROVEN.to_string(), true))
+}
+
+const NOTHING_PROVEN: &str = "nothing is proven of the loop with it";
+
+fn of_rig(beyond: &str, does: String, unproven: bool) -> Caveat {
+    let sentence = format!("the family does not contain the rig as it is derived ({beyond}): {does}");
+    Caveat { sentence, unproven }
+}
+
+/// What the loop with the rig does.
+fn does(problem: &RobustProblem, audit: &Audit) -> String {
     let violated: Vec<String> = audit
         .specifications
         .iter()
@@ -53,14 +71,10 @@ pub(super) fn caveat(problem: &RobustProblem) -> Option<Caveat> {
         .filter(|(_, finding)| finding.verdict == Verdict::Violated)
         .map(|(index, _)| format!("{} {}", index + 1, problem.name_of(index)))
         .collect();
-    let does = match (audit.verdict, audit.stability.verdict) {
+    match (audit.verdict, audit.stability.verdict) {
         (Verdict::Met, _) => "the loop with it is stable and satisfies every specification".to_string(),
         (_, Verdict::Violated) => "the loop with it is unstable".to_string(),
         (Verdict::Violated, _) => format!("the loop with it violates {}", violated.join(", ")),
-        (Verdict::NotProven, _) => "nothing is proven of the loop with it".to_string(),
-    };
-    Some(Caveat {
-        sentence: format!("the family does not contain the rig as it is derived ({beyond}): {does}"),
-        unproven: audit.verdict != Verdict::Met,
-    })
+        (Verdict::NotProven, _) => NOTHING_PROVEN.to_string(),
+    }
 }

@@ -26,7 +26,8 @@ pub(super) fn proven(
     for round in 0..=REFUTATIONS_MAXIMUM {
         let Some(design) = run.outcome.design.clone().filter(|_| !run.outcome.stopped) else { break };
         let was_met = design.audit.verdict == Verdict::Met;
-        let mut designed = ProjectDesign::new(setup, given, &run.problem, design, options.clone())?.designed;
+        let mut designed =
+            ProjectDesign::new(setup, given, &run.problem, design, options.clone(), watch)?.designed;
         try_to_prove(&designed.problem, &mut designed.view, watch)?;
         let refuting = if was_met { refuting(&designed) } else { vec![] };
         if refuting.is_empty() || round == REFUTATIONS_MAXIMUM {

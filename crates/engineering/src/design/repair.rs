@@ -163,7 +163,7 @@ fn with_waves(
         return Ok(Repair { status: RepairStatus::NotStabilised, sentences, ..known });
     };
     let audits = found.design.beside.first().cloned();
-    let after = audits.map(|audit| ProjectAudit::new(&alone_in_loop(&plant, &found), audit));
+    let after = audits.map(|audit| ProjectAudit::new(&alone_in_loop(&plant, &found), audit, None));
     let whole = match status {
         RepairStatus::Met => family_with_waves((source, setup), &found, watch)?,
         _ => None,
@@ -229,7 +229,7 @@ fn designed_again(
         DesignStatus::NotConverged { .. } => RepairStatus::NotConverged,
         DesignStatus::NotStabilised => RepairStatus::NotStabilised,
     };
-    let found = ProjectDesign::new(setup, &told.designed.problem, &problem, design, options)?;
+    let found = ProjectDesign::new(setup, &told.designed.problem, &problem, design, options, watch)?;
     let trial = tried_design(source, setup.project, &found, watch)?;
     Ok(Some((status, ProjectDesign { trial, ..found })))
 }

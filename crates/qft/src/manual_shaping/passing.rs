@@ -6,7 +6,7 @@ use phea_dynamics::linear::Discretization;
 use phea_dynamics::portable;
 
 use super::reach::{Change, Pattern, Reach};
-use crate::verification::rounded;
+use crate::stability::rounded;
 
 /// A point of the Nichols chart, or one of its coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -7,7 +7,9 @@ use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients, Un
 use phea_qft::closed_loop::Compensation;
 use phea_qft::family::{Extent, Family, MeasuredFamily, MeasuredPlant, Spacing, UncertainFamily};
 use phea_qft::specification::{Limit, LimitTable, LoopResponse, Requirement, Specification};
-use phea_qft::verification::{Evidence, PlantPoint, SpecificationFinding, TrackingJudgement, Verdict};
+use phea_qft::verification::{
+    Evidence, PlantPoint, Remark, SpecificationFinding, TrackingJudgement, Verdict,
+};
 
 use super::plants::{along, audited, compensation, on_grid, parameter, rational, specification, stability};
 
@@ -57,12 +59,12 @@ fn a_measured_family_is_judged_where_it_was_measured_and_not_beyond() {
     assert_eq!(worst.plant, PlantPoint::Measured(2));
     // between two points the response is interpolated: good to a thousandth here
     assert!((worst.margin_db - 20.0 * (3.0 / servo_peak(4.0)).log10()).abs() < 0.02, "{worst:?}");
-    assert!(inside.remarks.iter().any(|remark| remark.contains("interpolated")));
+    assert_eq!(inside.remarks, [Remark::Interpolated]);
 
     let beyond = judged(&family, &unity(), &stability(3.0, &[1.0], [0.01, 200.0]));
     assert_eq!(beyond.verdict, Verdict::NotProven);
-    let reach = "the measurements reach from 0.01 to 100 rad/s: nothing is known beyond";
-    assert!(beyond.remarks.iter().any(|remark| remark == reach), "{:?}", beyond.remarks);
+    let reach = Remark::BeyondMeasurements { measured_rad_per_s: [0.01, 100.0] };
+    assert!(beyond.remarks.contains(&reach), "{:?}", beyond.remarks);
     let everywhere = judged(&family, &unity(), &stability(3.0, &[1.0], [0.0, f64::INFINITY]));
     assert_eq!(everywhere.verdict, Verdict::NotProven);
     // a violation is one, however little is known elsewhere
@@ -95,7 +97,7 @@ fn nothing_is_demanded_beyond_the_ends_of_a_table() {
     let low = judged(&servo(2), &unity(), &specification(low, &[0.5], everywhere));
     assert_eq!(low.verdict, Verdict::Met);
     assert!(low.worst.as_ref().unwrap().frequency_rad_per_s <= 1.0);
-    assert!(low.remarks.iter().any(|remark| remark.contains("0.1 to 1 rad/s")), "{:?}", low.remarks);
+    assert_eq!(low.remarks, [Remark::TableEnds { table_rad_per_s: [0.1, 1.0] }]);
     let through = Requirement::RobustStability(table(&[(0.1, 1.5), (10.0, 1.5)]));
     let through = judged(&servo(2), &unity(), &specification(through, &[], everywhere));
     let worst = through.worst.as_ref().unwrap();
@@ -161,7 +163,7 @@ fn a_sampled_loop_is_judged_up_to_half_its_sampling_frequency() {
             }
             let worst = finding.worst.as_ref().unwrap();
             assert!((worst.margin_db - truth).abs() < 1e-3, "{truth} at {at}, {worst:?}");
-            assert!(finding.remarks.iter().any(|remark| remark.contains("pi/T")));
+            assert!(finding.remarks.contains(&Remark::BandEndsAtNyquist { nyquist_rad_per_s: nyquist }));
         }
     }
 }
@@ -184,9 +186,6 @@ fn a_plant_that_cannot_be_sampled_is_not_proven() {
     let around = Compensation::new(&controller, TransferFunction::gain_only(1.0)).unwrap();
     let finding = judged(&Family::Uncertain(family), &around, &stability(2.0, &[1.0], [0.1, 1.0]));
     assert_eq!((finding.verdict, finding.worst), (Verdict::NotProven, None));
-    assert!(
-        finding.remarks.iter().any(|remark| remark.contains("cannot be sampled")),
-        "{:?}",
-        finding.remarks
-    );
+    let cannot = |remark: &Remark| matches!(remark, Remark::NotSampled { .. });
+    assert!(finding.remarks.iter().any(cannot), "{:?}", finding.remarks);
 }

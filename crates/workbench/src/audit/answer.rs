@@ -4,7 +4,9 @@ use serde::Serialize;
 
 use super::{NamedPlant, PlantNames};
 use super::{ProjectAudit, Reached};
-use super::{evidence_key, kind_key, kind_words, stability_reason, verdict_key, why_not_proven};
+use super::{
+    evidence_key, kind_key, kind_words, remark_sentences, stability_reason, verdict_key, why_not_proven,
+};
 use crate::answer::{self, Number, OutputFile};
 use crate::project::Loaded;
 use crate::trial::{self, Trial};
@@ -103,7 +105,7 @@ struct SpecificationRow<'a> {
     proof: Option<SpecificationProofRow>,
     violations: Vec<ViolationRow>,
     at_design_frequencies: Vec<CaseRow>,
-    remarks: Vec<&'a str>,
+    remarks: Vec<String>,
 }
 
 #[derive(Serialize)]
@@ -165,7 +167,7 @@ fn specification<'a>(
         proof,
         violations: finding.violations.iter().map(violation).collect(),
         at_design_frequencies: finding.at_design_frequencies.iter().map(|worst| case(names, worst)).collect(),
-        remarks: finding.remarks.iter().map(String::as_str).collect(),
+        remarks: remark_sentences(finding, names),
     }
 }
 

@@ -5,8 +5,8 @@ use phea_qft::verification::{SpecificationFinding, Verdict, WorstCase};
 
 use super::ProjectAudit;
 use super::{
-    closed_loop_symbol, evidence_sentence, finding_sentence, place_words, stability_sentence, standing_word,
-    verdict_words, why_not_proven, worst_at_design,
+    closed_loop_symbol, evidence_sentence, finding_sentence, place_words, remark_sentences,
+    stability_sentence, standing_word, verdict_words, why_not_proven, worst_at_design,
 };
 use crate::answer::significant;
 use crate::document::{Cell, Document, Mark, Table};
@@ -213,11 +213,11 @@ pub(crate) fn basis(view: &ProjectAudit) -> Vec<String> {
 
 /// Each remark once, with the specifications that it is made of.
 fn remarks(view: &ProjectAudit) -> Vec<String> {
-    let mut found: Vec<(&str, Vec<String>)> = Vec::new();
+    let mut found: Vec<(String, Vec<String>)> = Vec::new();
     for (index, finding) in view.audit.specifications.iter().enumerate() {
-        for remark in &finding.remarks {
+        for remark in remark_sentences(finding, &view.names) {
             let name = view.numbered(index);
-            match found.iter_mut().find(|(text, _)| text == remark) {
+            match found.iter_mut().find(|(text, _)| *text == remark) {
                 Some((_, names)) => names.push(name),
                 None => found.push((remark, vec![name])),
             }
