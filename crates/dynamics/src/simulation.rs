@@ -35,7 +35,7 @@ mod vector;
 pub use commanded_plant::{CommandedPlant, LoopSignals};
 pub use course::{
     Attention, Event, Input, InputSchedule, Observer, Outcome, Sampler, Settings, SimulationError, Status,
-    Work,
+    StepCounts,
 };
 pub use driver::drive;
 pub use equilibrium::{EquilibriumError, equilibrium};

@@ -25,7 +25,7 @@ mod step_metrics;
 pub use delayed_loop::delayed_loop_step;
 pub use of_frequency_response::step_of_frequency_response;
 pub use second_order::{SecondOrder, SettlingRule, damping_ratio_from_overshoot};
-pub use signal::{Interpolation, Signal, uniform_times};
+pub use signal::{Interpolation, SampledSignal, uniform_times};
 pub use simulation::{forced_response, forced_response_of_states, step_response};
 pub use step_metrics::{Settling, StepBaseline, StepMetrics, step_metrics};
 

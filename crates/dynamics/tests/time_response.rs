@@ -6,7 +6,7 @@ use num_complex::Complex64;
 use phea_dynamics::linear::{LinearError, StateSpace, TimeDomain, TransferFunction};
 use phea_dynamics::portable::{cos, exp, ln, pow, sin};
 use phea_dynamics::time_response::{
-    Interpolation, SecondOrder, Settling, SettlingRule, Signal, StepBaseline, TimeResponseError,
+    Interpolation, SampledSignal, SecondOrder, Settling, SettlingRule, StepBaseline, TimeResponseError,
     damping_ratio_from_overshoot, forced_response, forced_response_of_states, step_metrics, step_response,
     uniform_times,
 };
@@ -69,7 +69,7 @@ fn repeated_poles_and_zeros() {
 fn a_ramp_and_a_staircase_are_exact() {
     // ORIGIN: analytic. 1/(s + 1) to a ramp from 1 s: y = (t - 1) - 1 + exp(-(t - 1))
     let lag = factored(1.0, &[], &[c(-1.0, 0.0)]);
-    let ramp = Signal::new(vec![1.0, 4.0], vec![0.0, 3.0], Interpolation::Linear).unwrap();
+    let ramp = SampledSignal::new(vec![1.0, 4.0], vec![0.0, 3.0], Interpolation::Linear).unwrap();
     let times = [0.0, 0.5, 1.0, 1.7, 2.0, 4.0, 7.5];
     for (time, value) in times.iter().zip(forced_response(&lag, &ramp, &times).unwrap()) {
         let since = (time - 1.0).clamp(0.0, 3.0);
@@ -82,7 +82,7 @@ fn a_ramp_and_a_staircase_are_exact() {
     let heights = [1.0, -2.0, 0.5];
     let starts = [0.1, 0.35, 1.234_567];
     let levels = vec![1.0, -1.0, -0.5];
-    let stairs = Signal::new(starts.to_vec(), levels, Interpolation::Hold).unwrap();
+    let stairs = SampledSignal::new(starts.to_vec(), levels, Interpolation::Hold).unwrap();
     let times: Vec<f64> = (0..200).map(|k| 0.017 * f64::from(k)).collect();
     for (time, value) in times.iter().zip(forced_response(&lag, &stairs, &times).unwrap()) {
         let step = |start: f64| if *time > start { 1.0 - exp(-(time - start)) } else { 0.0 };
@@ -114,7 +114,7 @@ fn initial_states_and_several_inputs() {
         TimeDomain::Continuous,
     )
     .unwrap();
-    let inputs = [Signal::step(0.0), Signal::step(0.5)];
+    let inputs = [SampledSignal::step(0.0), SampledSignal::step(0.5)];
     let start = DVector::from_vec(vec![1.0, 0.0]);
     let times = [0.0, 0.3, 5.0, 100.0];
     let outputs = forced_response_of_states(&system, &start, &inputs, &times).unwrap();
@@ -224,9 +224,9 @@ fn refusals_are_typed() {
     for overshoot in [-1.0, 100.0, f64::NAN] {
         assert!(matches!(damping_ratio_from_overshoot(overshoot), Err(OutOfRange { .. })));
     }
-    let unsorted = Signal::new(vec![1.0, 1.0], vec![0.0, 0.0], Interpolation::Hold);
+    let unsorted = SampledSignal::new(vec![1.0, 1.0], vec![0.0, 0.0], Interpolation::Hold);
     assert!(matches!(unsorted, Err(TimeOrder { index: 1, .. })));
-    assert!(matches!(Signal::new(vec![1.0], vec![], Interpolation::Hold), Err(Count { .. })));
+    assert!(matches!(SampledSignal::new(vec![1.0], vec![], Interpolation::Hold), Err(Count { .. })));
 }
 
 #[test]

@@ -138,14 +138,14 @@ pub struct ProjectAudit {
     pub caveats: Vec<Caveat>,
     /// What the worst plant of each specification reaches, where that is a magnitude against a
     /// limit.
-    pub reached: Vec<Option<Reached>>,
+    pub reached: Vec<Option<ReachedLimit>>,
     /// What was proven of it, where that was asked for.
     pub proof: Option<Proof>,
 }
 
 /// A closed-loop magnitude and the limit that it comes nearest to, or leaves.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Reached {
+pub struct ReachedLimit {
     /// The magnitude.
     pub magnitude: f64,
     /// The limit.
@@ -170,7 +170,7 @@ const DECIBELS_PER_NEPER: f64 = 20.0 * std::f64::consts::LOG10_E;
 
 /// What the worst plant reaches; `None` for a spread, and at the ends of the frequency axis where
 /// there are two limits.
-fn reached(problem: &RobustProblem, finding: &SpecificationFinding) -> Option<Reached> {
+fn reached(problem: &RobustProblem, finding: &SpecificationFinding) -> Option<ReachedLimit> {
     let worst = finding.worst.as_ref().filter(|worst| worst.other.is_none())?;
     let frequency = worst.frequency_rad_per_s;
     let (lower, upper) = finding.requirement.limits();
@@ -180,7 +180,7 @@ fn reached(problem: &RobustProblem, finding: &SpecificationFinding) -> Option<Re
         // limit is one.
         let single = lower.is_none() && upper > 0.0 && upper.is_finite();
         let magnitude = upper * portable::exp(-worst.margin_db / DECIBELS_PER_NEPER);
-        return single.then_some(Reached { magnitude, limit: upper, side: LimitSide::Only });
+        return single.then_some(ReachedLimit { magnitude, limit: upper, side: LimitSide::Only });
     }
     let response = problem.response(&problem.member(&worst.plant)?, frequency)?;
     let magnitude = portable::magnitude(finding.requirement.closed_loop().response(&response));
@@ -195,7 +195,7 @@ fn reached(problem: &RobustProblem, finding: &SpecificationFinding) -> Option<Re
             }
         }
     };
-    Some(Reached { magnitude, limit, side })
+    Some(ReachedLimit { magnitude, limit, side })
 }
 
 impl ProjectAudit {

@@ -33,7 +33,7 @@ pub use workers::Effort;
 pub use ledger::campaign;
 pub use row::meaningful;
 
-use crate::project::{self, Report};
+use crate::project::{self, Refusal};
 use crate::quantity;
 use crate::simulate::{self, SimulateError};
 
@@ -146,5 +146,5 @@ pub enum CampaignError {
     Simulate(#[from] SimulateError),
     /// A run, written as settings, is no project any more.
     #[error("{0}")]
-    Settings(Box<Report>),
+    Settings(Box<Refusal>),
 }

@@ -1,6 +1,6 @@
 //! Why a procedure that is made of several has no result.
 
-use phea_project::Report as Refusal;
+use phea_project::Refusal;
 
 use crate::audit::AuditError;
 use crate::campaign::CampaignError;

@@ -13,7 +13,7 @@ use phea_dynamics::uncertain_plant::{UncertainParameter, UncertainPlant, Uncerta
 use phea_hydraulics::line::LineError;
 use phea_qft::family::{Family, MeasurementError};
 
-use crate::project::{FormulaError, Project, Report, SpecificationKind};
+use crate::project::{FormulaError, Project, Refusal, SpecificationKind};
 use crate::rig::RigError;
 use crate::setup::Setup;
 use crate::source::Source;
@@ -56,7 +56,7 @@ pub enum FamilyError {
     },
     /// Files of measured responses that cannot be taken as they are, with every place.
     #[error("[family] `measured` cannot be taken as it is\n{0}")]
-    Measurement(Box<Report>),
+    Measurement(Box<Refusal>),
     /// Measured responses that are no family.
     #[error("[family] `measured`: {0}")]
     Measured(#[from] MeasurementError),

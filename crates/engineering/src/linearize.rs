@@ -15,7 +15,7 @@ use phea_hydraulics::impedance::{
     Asymptote, closed_loop_impedance, closed_loop_load_motion, compliance_hidden_above,
     final_force_after_load_step, impedance_asymptotes, open_loop_impedance,
 };
-use phea_hydraulics::line::Member;
+use phea_hydraulics::line::StiffeningMember;
 use phea_hydraulics::linear::{
     LinearModel, MechanicalDamping, ModeShare, ResponseDifference, decomposed_model, dominance,
     first_order_model, linear_model, response_difference, transfer_functions,
@@ -26,7 +26,7 @@ use phea_hydraulics::stiffness::{
 };
 use phea_hydraulics::two_pressure::two_pressure_coefficients;
 
-pub use agreement::Agreement;
+pub use agreement::AgreementBand;
 pub use agreement::{WITHIN_DB, WITHIN_DEG};
 pub use sweep::{MOST_POINTS, POINTS, Sweep, SweepPoint, SweepRequest, Swept, sweep};
 
@@ -60,15 +60,15 @@ pub struct Linearization {
     /// Equation 6.13.
     pub first_order: TransferFunction,
     /// Where each reduction is the plant.
-    pub agreement: Vec<Agreement>,
+    pub agreement: Vec<AgreementBand>,
     /// What the fifth order leaves out of the two-pressure model, both with derived parameters.
-    pub reduction: Comparison,
+    pub reduction: ReductionDifference,
     /// Equation 6.12 as printed against 6.7.
-    pub printed_decomposition: Comparison,
+    pub printed_decomposition: ReductionDifference,
     /// Equation 6.12 corrected against 6.7.
-    pub corrected_decomposition: Comparison,
+    pub corrected_decomposition: ReductionDifference,
     /// Equation 6.13 against 6.7.
-    pub truncation: Comparison,
+    pub truncation: ReductionDifference,
     /// Share of each mode in the step response of 6.7.
     pub modes: Vec<ModeShare>,
     /// What the load feels with the command held still.
@@ -83,7 +83,7 @@ pub struct Linearization {
 
 /// Largest differences of two responses: below 1000 rad/s, and everywhere.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Comparison {
+pub struct ReductionDifference {
     /// Up to 1000 rad/s.
     pub low: ResponseDifference,
     /// Over the whole grid, resonance included.
@@ -144,7 +144,7 @@ pub fn linearize(
     Ok(Linearization {
         plant_is_fifth_order: is_fifth_order(rig),
         agreement,
-        stiffness: [Member::Nominal, Member::Minimum, Member::Maximum]
+        stiffness: [StiffeningMember::Nominal, StiffeningMember::Minimum, StiffeningMember::Maximum]
             .map(|member| stroke_stiffness(rig, member)),
         stiffness_models: stiffness_models(rig),
         reduction: compare(
@@ -223,12 +223,12 @@ fn closed_loop_view(rig: &Rig, controller: &TransferFunction) -> Result<PortView
 }
 
 /// Stiffness over the stroke by the project's model, for one member of the stiffening interval.
-pub fn stroke_stiffness(rig: &Rig, member: Member) -> StrokeStiffness {
+pub fn stroke_stiffness(rig: &Rig, member: StiffeningMember) -> StrokeStiffness {
     rig.actuator.chamber_compliance([rig.point.pressure_a, rig.point.pressure_b], member).over_stroke()
 }
 
 /// Stiffness at a position by either model.
-pub fn stiffness_at(rig: &Rig, model: StiffnessModel, member: Member, position: f64) -> f64 {
+pub fn stiffness_at(rig: &Rig, model: StiffnessModel, member: StiffeningMember, position: f64) -> f64 {
     let components = rig.actuator.components();
     let lines = [&components.line_a, &components.line_b];
     let chambers = chamber_compliance(model, fluid_moduli(rig), &components.cylinder, lines, member);
@@ -239,7 +239,7 @@ pub fn stiffness_at(rig: &Rig, model: StiffnessModel, member: Member, position: 
 pub fn stiffness_models(rig: &Rig) -> ModelDifference {
     let components = rig.actuator.components();
     let lines = [&components.line_a, &components.line_b];
-    model_difference(fluid_moduli(rig), &components.cylinder, lines, Member::Nominal)
+    model_difference(fluid_moduli(rig), &components.cylinder, lines, StiffeningMember::Nominal)
 }
 
 /// Bulk modulus of the fluid on either side at the operating point, Pa.
@@ -287,11 +287,11 @@ fn resonance_grid(pole: &Complex64) -> impl Iterator<Item = f64> + use<> {
     })
 }
 
-fn compare(grid: &[f64], reference: &TransferFunction, other: &TransferFunction) -> Comparison {
+fn compare(grid: &[f64], reference: &TransferFunction, other: &TransferFunction) -> ReductionDifference {
     let difference =
         |grid: &[f64]| response_difference(grid, |w| reference.at_frequency(w), |w| other.at_frequency(w));
     let low: Vec<f64> = grid.iter().copied().filter(|frequency| *frequency <= COMPARISON_END).collect();
-    Comparison { low: difference(&low), all: difference(grid) }
+    ReductionDifference { low: difference(&low), all: difference(grid) }
 }
 
 /// Share by which the two stiffness models may differ and still be said to agree.

@@ -13,13 +13,13 @@ mod supply;
 
 use num_complex::Complex64;
 use phea_hydraulics::actuator::{Actuator, ActuatorError, Components};
-use phea_hydraulics::line::{LineError, Member};
+use phea_hydraulics::line::{LineError, StiffeningMember};
 use phea_hydraulics::linear::LinearParameters;
 use phea_hydraulics::operating_point::{
     Balance, Condition, OperatingPoint, OperatingPointError, Settled, SettledSupply, operating_point,
 };
 use phea_hydraulics::plant::{LinearLoad, LinearPlant, PlantInMotion};
-use phea_hydraulics::servovalve::Direction;
+use phea_hydraulics::servovalve::SpoolDirection;
 use phea_hydraulics::two_pressure::{
     TwoPressureLinearParameters, TwoPressureModel, reduce, two_pressure_linear_parameters,
 };
@@ -27,7 +27,7 @@ use phea_hydraulics::two_pressure::{
 use crate::project::{self, Project};
 
 pub use assembly::{actuator, components};
-pub use in_loop::FedForward;
+pub use in_loop::FeedForwardPath;
 pub use in_loop::{as_response, feed_forward, limits_load_motion};
 pub use lines::{in_motion, lines};
 pub use numbers::Numbers;
@@ -73,7 +73,7 @@ pub struct Rig {
     pub in_motion: Option<PlantInMotion>,
     /// What the linear loop counts of the load's velocity that is fed forward; [`Rig::in_loop`] has
     /// it.
-    pub fed: Option<FedForward>,
+    pub fed: Option<FeedForwardPath>,
 }
 
 /// Why a project has no rig to compute with.
@@ -131,8 +131,8 @@ impl Rig {
         let supply = supply
             .map(|found| SettledSupply { settled: Settled { command: point.command, pressures }, ..found });
         let friction = components.friction.viscous();
-        let model = TwoPressureModel::new(&at_valve, pressures, Member::Nominal, friction);
-        let two_pressure = two_pressure_linear_parameters(&model, &point, Direction::Mean);
+        let model = TwoPressureModel::new(&at_valve, pressures, StiffeningMember::Nominal, friction);
+        let two_pressure = two_pressure_linear_parameters(&model, &point, SpoolDirection::Mean);
         let derived = reduce(&two_pressure);
         let parameters = parameters::resolve(project, &derived);
         let linear = linear(&two_pressure, stated(&parameters));
@@ -163,7 +163,7 @@ impl Rig {
             load,
             plant,
             in_motion,
-            fed: FedForward::of(project, &linear),
+            fed: FeedForwardPath::of(project, &linear),
         })
     }
 }

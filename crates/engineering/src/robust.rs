@@ -6,7 +6,7 @@ use phea_dynamics::controller::Controller;
 use phea_dynamics::frequency::logarithmic_grid;
 use phea_dynamics::linear::{LinearError, Polynomial, TransferFunction};
 use phea_dynamics::portable;
-use phea_qft::bound::{BoundError, CombinedBound, Fill, FrequencyBounds, PhaseGrid, Placement};
+use phea_qft::bound::{BoundError, CombinedBound, FrequencyBounds, PhaseGrid, Placement, TemplateFill};
 use phea_qft::closed_loop::{Compensation, Member};
 use phea_qft::family::{Family, UncertainFamily};
 use phea_qft::specification::{LoopResponse, Specification};
@@ -191,7 +191,7 @@ impl RobustProblem {
         let explain = |error| RobustError::Bound { frequency_rad_per_s, error };
         let bounds =
             |fill| FrequencyBounds::new(&template.template, &self.specifications, fill).map_err(explain);
-        let (points, filled) = (bounds(Fill::Points)?, bounds(Fill::Filled)?);
+        let (points, filled) = (bounds(TemplateFill::Points)?, bounds(TemplateFill::Filled)?);
         let nominal_loop =
             template.template.nominal * self.compensation.response(frequency_rad_per_s).feedback;
         Ok(DesignFrequency {

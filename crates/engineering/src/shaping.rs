@@ -18,7 +18,7 @@ use phea_qft::verification::{StabilityFinding, TrackingJudgement};
 
 use crate::audit::PlantNames;
 use crate::error::ProcedureError;
-use crate::project::{self, Element, Findings, Loaded, Report};
+use crate::project::{self, Element, Findings, Loaded, Refusal};
 use crate::robust::{RobustError, RobustProblem, robust_problem};
 use crate::setup::Setup;
 use crate::source::Source;
@@ -50,7 +50,7 @@ impl Shaped {
 pub enum ShapingError {
     /// Changes that cannot be made, each with its place.
     #[error("{0}")]
-    Refused(Report),
+    Refused(Refusal),
     /// A prefilter without a loop.
     #[error("the project gives no [controller]: shape it first, the prefilter stands in front of its loop")]
     NoController,
@@ -70,7 +70,7 @@ pub enum ShapingError {
 
 /// A project with its elements changed, and what every plant makes of them.
 #[derive(Clone, Debug)]
-pub struct Shaping {
+pub struct ProjectShaping {
     /// What was shaped.
     pub shaped: Shaped,
     /// How many changes were made.
@@ -104,7 +104,7 @@ pub fn shape(
     shaped: Shaped,
     changes: &[RequestedChange],
     watch: Watch<'_>,
-) -> Result<Shaping, ProcedureError> {
+) -> Result<ProjectShaping, ProcedureError> {
     let has_law = loaded.project.controller.as_ref().is_some_and(project::Controller::has_law);
     if shaped == Shaped::Prefilter && !has_law {
         return Err(ShapingError::NoController.into());
@@ -129,7 +129,7 @@ pub fn shape(
     let (chart, unreached_rad_per_s) = chart(&problem, watch)?;
     let tracking =
         if problem.has_prefilter { TrackingJudgement::Magnitude } else { TrackingJudgement::Spread };
-    Ok(Shaping {
+    Ok(ProjectShaping {
         shaped,
         changes: changes.len(),
         elements,

@@ -31,13 +31,13 @@ pub use metrics::NOT_SETTLED;
 pub use bench::Bench;
 pub use check::{Check, Difference, MetricDifferences, simulate_checked};
 pub use columns::LOOP_SIGNALS;
-pub use compare::{Comparison, compare_projects};
-pub use exceeded::{Exceeded, Limit, words as exceeded_words};
-pub use frequency::{FrequencyRequest, FrequencyResponse, Response, ResponsePoint, frequency_response};
+pub use compare::{ScenarioComparison, compare_projects};
+pub use exceeded::{Exceeded, RigLimit, words as exceeded_words};
+pub use frequency::{FrequencyRequest, MachineResponse, MachineResponses, ResponsePoint, frequency_response};
 pub use measured::Overlay;
 pub use metrics::{Cause, Measured, Metrics, Window};
 pub use record::{Look, Record};
-pub use run::{BeyondExpansion, COMMAND_LIMIT, Occurrence, ScenarioRun, Stopped, UnresolvedMode};
+pub use run::{BeyondExpansion, COMMAND_LIMIT, Occurrence, ScenarioRun, StoppedRun, UnresolvedMode};
 pub use saved::SavedState;
 
 pub use bench::options;
@@ -46,7 +46,7 @@ pub use file_names::table_names;
 pub use files::{Table, files};
 pub use follower::Follower;
 pub use run::occurrences;
-pub use wish::{Held, Wish};
+pub use wish::{HeldWish, Wish};
 
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::simulation::{EquilibriumError, ProfileError, SimulationError};
@@ -57,7 +57,7 @@ use phea_hydraulics::operating_point::OperatingPointError;
 use crate::control::ControlError;
 use crate::linear_loop::LoopError;
 use crate::number_table::TableFormat;
-use crate::project::Report;
+use crate::project::Refusal;
 use crate::quantity::{FORCE, VOLTAGE, display};
 use crate::rig::RigError;
 use crate::setup::Setup;
@@ -166,7 +166,7 @@ pub enum SimulateError {
     },
     /// A file with a motion, a signal, a state or a measurement was refused.
     #[error("{0}")]
-    Motion(Box<Report>),
+    Motion(Box<Refusal>),
     /// Start, course or settings do not fit the machine.
     #[error("scenario \"{name}\": {error}")]
     Simulation {
@@ -182,7 +182,7 @@ pub enum SimulateError {
 
 impl SimulateError {
     /// The findings, where a file that the project names was refused with a place for each.
-    pub fn refusal(&self) -> Option<&Report> {
+    pub fn refusal(&self) -> Option<&Refusal> {
         match self {
             SimulateError::Motion(report) => Some(report),
             _ => None,

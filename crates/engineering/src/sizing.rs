@@ -14,7 +14,7 @@ mod sensitivity;
 
 pub use bore::{BoreVerdict, CommercialBore};
 pub use branch::{Branch, GainStep, model_name};
-pub use candidate::{Candidate, Finding, Severity};
+pub use candidate::{Candidate, Consequence, SizingReason};
 pub use problem::{HoseOption, SizingProblem};
 pub use sensitivity::{Influence, sensitivity};
 
@@ -33,7 +33,7 @@ pub enum Question {
 
 /// One step of the procedure and what was decided there.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Decision {
+pub struct SizingStep {
     /// Letter of the step in the flowchart, section 6.3.2.
     pub step: &'static str,
     /// What was decided, with its numbers.
@@ -54,7 +54,7 @@ pub struct Sizing {
     /// Every candidate: accepted ones first, of those the project's model, of those shorter ones.
     pub candidates: Vec<Candidate>,
     /// The decisions in order.
-    pub decisions: Vec<Decision>,
+    pub decisions: Vec<SizingStep>,
     /// Influence of what is uncertain on the best candidate of the project's stiffness model.
     pub influences: Vec<Influence>,
 }

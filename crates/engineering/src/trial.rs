@@ -11,7 +11,7 @@ mod run;
 pub use run::percent_words;
 
 pub use rigs::{waves_alone, with_waves};
-pub use run::{Agreement, Response, Run, Step, agreement_word};
+pub use run::{Agreement, Run, Step, StepResponse, agreement_word};
 
 use crate::audit::ProjectAudit;
 use crate::error::ProcedureError;

@@ -14,7 +14,7 @@ use super::{Figure, FrequencyMark, Words};
 
 /// A straight line of the diagram: |Z| = coefficient * frequency^exponent.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Asymptote {
+pub struct AsymptoteLine {
     /// What dominates, such as `damper (A^2 + f_v K_c)/K_c`.
     pub label: String,
     /// |Z| at 1 rad/s, N.s/m.
@@ -33,7 +33,7 @@ pub struct ImpedanceInput {
     /// Impedances in N.s/m, such as open and closed loop.
     pub series: Vec<FrequencySeries>,
     /// Straight lines.
-    pub asymptotes: Vec<Asymptote>,
+    pub asymptotes: Vec<AsymptoteLine>,
     /// Frequencies where one regime hands over to the next.
     pub corners: Vec<FrequencyMark>,
     /// Bands in rad/s where Re Z < 0.
@@ -102,13 +102,13 @@ fn bands(input: &ImpedanceInput, label: &str) -> Vec<Mark> {
         .collect()
 }
 
-fn asymptote_line(line: &Asymptote, x: &Axis) -> Mark {
+fn asymptote_line(line: &AsymptoteLine, x: &Axis) -> Mark {
     let (from, to) = (line.from_rad_per_s.max(x.minimum), line.to_rad_per_s.min(x.maximum));
     let at = |w: f64| (w, line.coefficient * pow(w, f64::from(line.exponent)));
     Mark::Line { points: vec![at(from), at(to)], stroke: asymptote_stroke() }
 }
 
-fn asymptote_label(line: &Asymptote, x: &Axis) -> Mark {
+fn asymptote_label(line: &AsymptoteLine, x: &Axis) -> Mark {
     let (from, to) = (line.from_rad_per_s.max(x.minimum), line.to_rad_per_s.min(x.maximum));
     let middle = (from * to).sqrt();
     let at = (middle, line.coefficient * pow(middle, f64::from(line.exponent)));

@@ -53,7 +53,7 @@ pub use family_magnitude::{
     FamilyEnvelope, FamilyMagnitudeInput, MagnitudeCurve, MagnitudeMark, family_magnitude,
 };
 pub use family_step::{FamilyStepInput, family_step};
-pub use impedance::{Asymptote, ImpedanceInput, impedance};
+pub use impedance::{AsymptoteLine, ImpedanceInput, impedance};
 pub use measured_response::{MeasuredResponseInput, ResponseCurve, measured_response};
 pub use nichols::{BoundGroup, NicholsInput, OpenLoopViolation, USUAL_CONTOURS_DB, nichols};
 pub use nomograph::{NomographBore, NomographInput, nomograph};
@@ -73,7 +73,7 @@ pub use time_panels::{TimePanel, TimePanelsInput, time_panels};
 pub use tornado::{TornadoBar, TornadoInput, tornado};
 
 use scene::Scene;
-use svg::{Destination, Names};
+use svg::{Names, SvgDestination};
 
 /// Width of every figure's view box.
 pub const WIDTH: f64 = 560.0;
@@ -136,7 +136,7 @@ impl Words {
 
 /// What a procedure decided about a candidate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
+pub enum CandidateVerdict {
     /// Meets everything.
     Accepted,
     /// Usable, with a reservation.
@@ -145,17 +145,17 @@ pub enum Verdict {
     Rejected,
 }
 
-impl Verdict {
+impl CandidateVerdict {
     /// Its marker: shape and colour both identify it.
     pub const fn marker(self) -> plot::MarkerStyle {
         match self {
-            Verdict::Accepted => {
+            CandidateVerdict::Accepted => {
                 plot::MarkerStyle { marker: plot::Marker::Circle, role: colour::Role::Good, radius: 5.5 }
             }
-            Verdict::Warned => {
+            CandidateVerdict::Warned => {
                 plot::MarkerStyle { marker: plot::Marker::Triangle, role: colour::Role::Warning, radius: 5.5 }
             }
-            Verdict::Rejected => {
+            CandidateVerdict::Rejected => {
                 plot::MarkerStyle { marker: plot::Marker::Cross, role: colour::Role::Bad, radius: 4.5 }
             }
         }
@@ -169,14 +169,15 @@ impl Verdict {
     /// Its name for legends.
     pub const fn label(self) -> &'static str {
         match self {
-            Verdict::Accepted => "accepted",
-            Verdict::Warned => "accepted with a warning",
-            Verdict::Rejected => "rejected",
+            CandidateVerdict::Accepted => "accepted",
+            CandidateVerdict::Warned => "accepted with a warning",
+            CandidateVerdict::Rejected => "rejected",
         }
     }
 
     /// All of them, best first.
-    pub const ALL: [Verdict; 3] = [Verdict::Accepted, Verdict::Warned, Verdict::Rejected];
+    pub const ALL: [CandidateVerdict; 3] =
+        [CandidateVerdict::Accepted, CandidateVerdict::Warned, CandidateVerdict::Rejected];
 }
 
 /// A picture with its title and caption.
@@ -195,17 +196,17 @@ pub struct Figure {
 impl Figure {
     /// SVG for a page with the [`style_sheet`]: follows light, dark and print.
     pub fn to_svg_inline(&self) -> String {
-        self.write(Destination::Page)
+        self.write(SvgDestination::Page)
     }
 
     /// SVG for a file, in light colours.
     pub fn to_svg_standalone(&self) -> String {
-        self.write(Destination::File(Theme::Light))
+        self.write(SvgDestination::File(Theme::Light))
     }
 
     /// SVG for a file, in the colours of a theme.
     pub fn to_svg_themed(&self, theme: Theme) -> String {
-        self.write(Destination::File(theme))
+        self.write(SvgDestination::File(theme))
     }
 
     /// PNG bytes in light colours, `scale` pixels to a unit of the view box (2 gives 1120 pixels of
@@ -217,7 +218,7 @@ impl Figure {
         png::render(&self.to_svg_standalone(), self.scene.width, self.scene.height, scale)
     }
 
-    fn write(&self, destination: Destination) -> String {
+    fn write(&self, destination: SvgDestination) -> String {
         let names = Names { identifier: &self.name, title: &self.title, description: &self.caption };
         svg::write(&self.scene, names, destination)
     }

@@ -15,7 +15,7 @@ use super::legend::LegendEntry;
 use super::plot::{Direction, Mark, Panel, Plot, Side};
 use super::scene::{Dash, Fill, Stroke};
 use super::ticks::plain;
-use super::{Figure, Verdict, Words};
+use super::{CandidateVerdict, Figure, Words};
 use phea_quantity::DisplayUnit;
 
 /// A commercial bore.
@@ -26,7 +26,7 @@ pub struct NomographBore {
     /// Further name, such as the dash size; may be empty.
     pub label: String,
     /// What the procedure decided.
-    pub verdict: Verdict,
+    pub verdict: CandidateVerdict,
 }
 
 /// What the nomograph shows.
@@ -78,8 +78,8 @@ pub fn nomograph(words: Words, input: &NomographInput) -> Figure {
     limits(&mut marks, input, &x);
     bore_markers(&mut marks, input, flow);
     marks.extend(input.bores.iter().map(|bore| bore_label(bore, &x)));
-    let used = |verdict: &Verdict| input.bores.iter().any(|bore| bore.verdict == *verdict);
-    let mut legend: Vec<LegendEntry> = Verdict::ALL
+    let used = |verdict: &CandidateVerdict| input.bores.iter().any(|bore| bore.verdict == *verdict);
+    let mut legend: Vec<LegendEntry> = CandidateVerdict::ALL
         .into_iter()
         .filter(used)
         .map(|verdict| LegendEntry::marker(format!("bore {}", verdict.label()), verdict.marker()))
@@ -102,9 +102,9 @@ fn line_of(bore_m: f64, x: &Axis) -> Vec<(f64, f64)> {
 
 fn bore_line(bore: &NomographBore, x: &Axis) -> Mark {
     let stroke = match bore.verdict {
-        Verdict::Accepted => Stroke::solid(Role::Good, 2.2),
-        Verdict::Warned => Stroke::solid(Role::Axis, 1.6),
-        Verdict::Rejected => Stroke::solid(Role::Muted, 1.0),
+        CandidateVerdict::Accepted => Stroke::solid(Role::Good, 2.2),
+        CandidateVerdict::Warned => Stroke::solid(Role::Axis, 1.6),
+        CandidateVerdict::Rejected => Stroke::solid(Role::Muted, 1.0),
     };
     Mark::Line { points: line_of(bore.bore_m, x), stroke }
 }
@@ -127,7 +127,7 @@ fn limits(marks: &mut Vec<Mark>, input: &NomographInput, x: &Axis) {
 }
 
 fn bore_markers(marks: &mut Vec<Mark>, input: &NomographInput, flow: f64) {
-    for verdict in Verdict::ALL {
+    for verdict in CandidateVerdict::ALL {
         let points: Vec<(f64, f64, String)> = input
             .bores
             .iter()
@@ -150,9 +150,9 @@ fn bore_label(bore: &NomographBore, x: &Axis) -> Mark {
         label => format!("{diameter} mm ({label})"),
     };
     let role = match bore.verdict {
-        Verdict::Rejected => Role::Muted,
-        Verdict::Warned => Role::Text,
-        Verdict::Accepted => Role::Good,
+        CandidateVerdict::Rejected => Role::Muted,
+        CandidateVerdict::Warned => Role::Text,
+        CandidateVerdict::Accepted => Role::Good,
     };
     let flow_m3_per_s = x.maximum * DisplayUnit::LITRE_PER_MINUTE.in_si;
     Mark::EdgeLabel { at: velocity(flow_m3_per_s, bore.bore_m), text, role }

@@ -6,7 +6,7 @@ use super::colour::{Role, series_stroke};
 use super::legend::LegendEntry;
 use super::plot::{Direction, Mark, Panel, Plot, Side};
 use super::scene::{Dash, Fill, Stroke};
-use super::{Figure, Verdict, Words};
+use super::{CandidateVerdict, Figure, Words};
 use phea_quantity::DisplayUnit;
 
 /// Stiffness and gain over the length of one hose or pipe; the vectors have one value for each
@@ -35,7 +35,7 @@ pub struct SizingCandidate {
     /// Gain, V/N.
     pub gain_v_per_n: f64,
     /// What the procedure decided.
-    pub verdict: Verdict,
+    pub verdict: CandidateVerdict,
 }
 
 /// What the chart shows.
@@ -156,8 +156,8 @@ fn legend(input: &SizingChartInput) -> Vec<LegendEntry> {
         .enumerate()
         .map(|(index, curve)| LegendEntry::line(&curve.name, series_stroke(index)))
         .collect();
-    let used = |verdict: &Verdict| input.candidates.iter().any(|c| c.verdict == *verdict);
-    let verdicts = Verdict::ALL.into_iter().filter(used);
+    let used = |verdict: &CandidateVerdict| input.candidates.iter().any(|c| c.verdict == *verdict);
+    let verdicts = CandidateVerdict::ALL.into_iter().filter(used);
     legend.extend(verdicts.map(|verdict| LegendEntry::marker(verdict.label(), verdict.marker())));
     if input.length_range_m.is_some() {
         legend.push(LegendEntry::area("acceptable length", Fill::tint(Role::Good)));

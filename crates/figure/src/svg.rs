@@ -9,7 +9,7 @@ use super::typeset::{FONT_FAMILY, drop_to_letters, pieces};
 
 /// Where the text goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Destination {
+pub enum SvgDestination {
     /// Into a page that carries the style sheet.
     Page,
     /// Into a file of its own.
@@ -28,13 +28,13 @@ pub struct Names<'a> {
 }
 
 /// Writes a scene.
-pub fn write(scene: &Scene, names: Names<'_>, destination: Destination) -> String {
+pub fn write(scene: &Scene, names: Names<'_>, destination: SvgDestination) -> String {
     let mut out = String::with_capacity(64 * scene.items.len() + 512);
     let identifier = slug(names.identifier);
     let (width, height) = (number(scene.width), number(scene.height));
     let size = match destination {
-        Destination::Page => " class=\"phea-figure\"".to_string(),
-        Destination::File(_) => format!(" width=\"{width}\" height=\"{height}\""),
+        SvgDestination::Page => " class=\"phea-figure\"".to_string(),
+        SvgDestination::File(_) => format!(" width=\"{width}\" height=\"{height}\""),
     };
     out.push_str(&format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\"{size} viewBox=\"0 0 {width} {height}\" role=\"img\" \
@@ -44,7 +44,7 @@ pub fn write(scene: &Scene, names: Names<'_>, destination: Destination) -> Strin
         escaped(names.description)
     ));
     let writer = Writer { destination };
-    if let Destination::File(_) = destination {
+    if let SvgDestination::File(_) = destination {
         let fill = writer.paint("fill", Role::Background);
         out.push_str(&format!("<rect width=\"{width}\" height=\"{height}\"{fill}/>\n"));
     }
@@ -56,21 +56,21 @@ pub fn write(scene: &Scene, names: Names<'_>, destination: Destination) -> Strin
 }
 
 struct Writer {
-    destination: Destination,
+    destination: SvgDestination,
 }
 
 impl Writer {
     /// The attribute with the resolved colour.
     fn paint(&self, attribute: &str, role: Role) -> String {
         let theme = match self.destination {
-            Destination::Page => Theme::Light,
-            Destination::File(theme) => theme,
+            SvgDestination::Page => Theme::Light,
+            SvgDestination::File(theme) => theme,
         };
         format!(" {attribute}=\"{}\"", role.colour(theme))
     }
 
     fn classes(&self, stroke: Option<Role>, fill: Option<Role>) -> String {
-        if self.destination != Destination::Page {
+        if self.destination != SvgDestination::Page {
             return String::new();
         }
         let names: Vec<String> = stroke

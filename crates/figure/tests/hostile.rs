@@ -65,8 +65,8 @@ impl Random {
         (self.unit() < 0.5).then(|| of(self))
     }
 
-    fn verdict(&mut self) -> Verdict {
-        Verdict::ALL[self.below(3)]
+    fn verdict(&mut self) -> CandidateVerdict {
+        CandidateVerdict::ALL[self.below(3)]
     }
 
     fn words(&mut self) -> Words {
@@ -196,7 +196,7 @@ fn pole_maps() {
 #[test]
 fn impedances() {
     repeat(5, |r| {
-        let asymptote = |r: &mut Random| Asymptote {
+        let asymptote = |r: &mut Random| AsymptoteLine {
             label: r.name(),
             coefficient: r.number(),
             exponent: r.below(5) as i32 - 2,

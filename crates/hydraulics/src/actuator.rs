@@ -7,7 +7,7 @@ use crate::cylinder::Cylinder;
 use crate::fluid::Fluid;
 use crate::force_sensor::ForceSensor;
 use crate::friction::Friction;
-use crate::line::{Line, Member};
+use crate::line::{Line, StiffeningMember};
 use crate::parameter::{ParameterError, Problems};
 use crate::servovalve::{Servovalve, Supply};
 use crate::stiffness::{ChamberCompliance, StiffnessModel, chamber_compliance};
@@ -39,7 +39,7 @@ pub struct Components<S = f64> {
 impl<S: Scalar> Components<S> {
     /// Compliance of both chambers with their lines, at chamber pressures in Pa (they matter with
     /// entrained air alone).
-    pub fn chamber_compliance(&self, pressures: [S; 2], member: Member) -> ChamberCompliance<S> {
+    pub fn chamber_compliance(&self, pressures: [S; 2], member: StiffeningMember) -> ChamberCompliance<S> {
         let Components { fluid, line_a, line_b, cylinder, stiffness_model, .. } = self;
         let moduli = pressures.map(|pressure| fluid.modulus_at(pressure));
         chamber_compliance(*stiffness_model, moduli, cylinder, [line_a, line_b], member)
@@ -101,7 +101,7 @@ impl Actuator {
 
     /// Compliance of both chambers with their lines, at chamber pressures in Pa (they matter with
     /// entrained air alone).
-    pub fn chamber_compliance(&self, pressures: [f64; 2], member: Member) -> ChamberCompliance {
+    pub fn chamber_compliance(&self, pressures: [f64; 2], member: StiffeningMember) -> ChamberCompliance {
         self.0.chamber_compliance(pressures, member)
     }
 }

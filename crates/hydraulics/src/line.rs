@@ -71,7 +71,7 @@ pub enum Line<S = f64> {
 
 /// Which member of a hose's stiffening interval to calculate with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Member {
+pub enum StiffeningMember {
     /// The softest: smallest r_beta.
     Minimum,
     /// The nominal r_beta.
@@ -128,7 +128,7 @@ impl<S: Scalar> Line<S> {
     ///
     /// # Example
     /// ```
-    /// use phea_hydraulics::line::{Hose, Line, Member, Stiffening};
+    /// use phea_hydraulics::line::{Hose, Line, StiffeningMember, Stiffening};
     /// let hose = Hose {
     ///     bore: 12.7e-3,
     ///     volumetric_expansion: 1.56e-5,
@@ -137,9 +137,9 @@ impl<S: Scalar> Line<S> {
     ///     dynamic_stiffening: Stiffening { nominal: 5.0, minimum: 4.0, maximum: 5.0 },
     /// };
     /// let line = Line::Hose { hose, length: 1.5 };
-    /// assert!((line.effective_modulus(1.45e9, Member::Nominal) - 2.609e8).abs() < 0.5e5);
+    /// assert!((line.effective_modulus(1.45e9, StiffeningMember::Nominal) - 2.609e8).abs() < 0.5e5);
     /// ```
-    pub fn effective_modulus(&self, fluid_modulus: S, member: Member) -> S {
+    pub fn effective_modulus(&self, fluid_modulus: S, member: StiffeningMember) -> S {
         match *self {
             Line::Hose { hose, .. } => series_modulus(fluid_modulus, hose.wall_modulus(member)),
             Line::Pipe { pipe, .. } => {
@@ -155,7 +155,7 @@ impl<S: Scalar> Line<S> {
     /// ```text
     /// dV/dp = V/beta_e          hose: epsilon L/r_beta + (A_ho + E(p)) L/beta_0         p the operating pressure
     /// ```
-    pub fn compliance(&self, fluid_modulus: S, member: Member) -> S {
+    pub fn compliance(&self, fluid_modulus: S, member: StiffeningMember) -> S {
         match *self {
             Line::Hose { hose, length } => length * hose.compliance_per_length(fluid_modulus, member),
             Line::Pipe { .. } | Line::Volume { .. } => {
@@ -166,7 +166,7 @@ impl<S: Scalar> Line<S> {
 
     /// Compliance of the line in the thesis' model, V_ho/beta_e in m3/Pa: the unexpanded volume
     /// over the modulus of 6.20.
-    pub fn compliance_of_unexpanded(&self, fluid_modulus: S, member: Member) -> S {
+    pub fn compliance_of_unexpanded(&self, fluid_modulus: S, member: StiffeningMember) -> S {
         self.volume() / self.effective_modulus(fluid_modulus, member)
     }
 }

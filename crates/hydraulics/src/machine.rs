@@ -32,11 +32,11 @@ mod state;
 
 pub use chambers::{AeratedChambers, Chambers};
 pub use ledger::{Account, ENERGY_ACCOUNTS, Ledger, OIL_ACCOUNTS};
-pub use load::{LoadModel, LoadMotion};
+pub use load::{LoadModel, Motion};
 pub use options::{MachineError, MachineOptions, VAPOUR_PRESSURE_ABSOLUTE};
 pub use power_unit::{Accumulator, PowerUnit, PumpLimited};
 pub use signals::{INDICATORS, SIGNALS};
-pub use start::{Beginning, Start};
+pub use start::{Beginning, StartValues};
 pub use state::MachineState;
 
 use phea_dynamics::scalar::{Lanes, Scalar};
@@ -67,11 +67,11 @@ use state::Layout;
 /// use phea_dynamics::simulation::Plant;
 /// use phea_hydraulics::actuator::Actuator;
 /// use phea_hydraulics::machine::{Machine, MachineOptions};
-/// use phea_hydraulics::operating_point::{Condition, Load, operating_point};
+/// use phea_hydraulics::operating_point::{Condition, SteadyLoad, operating_point};
 /// use phea_hydraulics::stiffness::StiffnessModel;
 /// let actuator = Actuator::new(components(hose_line(), StiffnessModel::ByVolume))?;
 /// let machine = Machine::new(&actuator, &MachineOptions::default())?;
-/// let point = operating_point(&actuator, 0.2, Condition::Load(Load::Force(3e3)))?;
+/// let point = operating_point(&actuator, 0.2, Condition::Load(SteadyLoad::Force(3e3)))?;
 /// let rest = machine.rest(&point)?;
 /// let mut rates = vec![f64::NAN; machine.states()];
 /// machine.rates(&rest.state, rest.command, &rest.inputs, &mut rates);

@@ -33,11 +33,11 @@ pub enum Condition {
     /// Standstill at this spool command in V; zero for the null valve.
     Command(f64),
     /// Standstill under this load; the command that holds it is found.
-    Load(Load),
+    Load(SteadyLoad),
     /// Steady motion at this command in V under this load; the velocity is found.
-    Motion(f64, Load),
+    Motion(f64, SteadyLoad),
     /// Steady motion at this velocity in m/s under this load; the command that keeps it is found.
-    Moving(f64, Load),
+    Moving(f64, SteadyLoad),
     /// This command in V and load pressure in Pa with both edges of each path taking half the drop,
     /// as thesis (4.18) assumes: p_A, p_B = (p_S + p_T +- p_L)/2. Steady for equal edges and areas
     /// alone; see the net flows.
@@ -46,7 +46,7 @@ pub enum Condition {
 
 /// A load held by the pressures, friction left aside.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Load<S = f64> {
+pub enum SteadyLoad<S = f64> {
     /// A_A p_A - A_B p_B in N.
     Force(S),
     /// p_A - p_B in Pa.
@@ -162,7 +162,7 @@ impl OperatingPoint {
 /// # })?;
 /// let null = operating_point(&actuator, 0.25, Condition::Command(0.0))?;
 /// assert!((null.pressure_a - 37.3e5).abs() < 0.05e5 && (null.pressure_b - 24.0e5).abs() < 0.05e5);
-/// let idle = operating_point(&actuator, 0.25, Condition::Load(Load::Force(0.0)))?;
+/// let idle = operating_point(&actuator, 0.25, Condition::Load(SteadyLoad::Force(0.0)))?;
 /// assert!(idle.command < 0.0 && idle.hydraulic_force.abs() < 1e-6);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

@@ -7,7 +7,7 @@ mod spool;
 mod tare;
 
 pub use coefficients::{
-    ChamberCoefficients, ControlCoefficients, Direction, SupplyCoefficients, chamber_coefficients,
+    ChamberCoefficients, ControlCoefficients, SpoolDirection, SupplyCoefficients, chamber_coefficients,
     control_coefficients, supply_coefficients, velocity_gain,
 };
 pub use flow::{

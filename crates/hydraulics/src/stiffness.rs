@@ -24,7 +24,7 @@ pub use range::{ModelDifference, StiffeningRange, StrokeStiffness, model_differe
 use phea_dynamics::scalar::Scalar;
 
 use crate::cylinder::Cylinder;
-use crate::line::{Line, Member};
+use crate::line::{Line, StiffeningMember};
 
 /// Which modulus the fluid in the cylinder's chambers has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,7 +73,7 @@ pub struct ChamberCompliance<S = f64> {
 /// # let hose = Hose { bore: 12.7e-3, volumetric_expansion: 1.56e-5, operating_expansion: 7.774e-6,
 /// #     expansion_slope: 2.236e-12, dynamic_stiffening };
 /// # let line = Line::Hose { hose, length: 1.5 };
-/// let of = |model| chamber_compliance(model, [1.45e9; 2], &cylinder, [&line, &line], Member::Nominal);
+/// let of = |model| chamber_compliance(model, [1.45e9; 2], &cylinder, [&line, &line], StiffeningMember::Nominal);
 /// let uniform = hydraulic_stiffness(&of(StiffnessModel::Uniform), 0.25);
 /// let by_volume = hydraulic_stiffness(&of(StiffnessModel::ByVolume), 0.25);
 /// assert!((uniform - 2.233e6).abs() < 0.5e3 && (by_volume - 4.630e6).abs() < 0.5e3);
@@ -84,7 +84,7 @@ pub fn chamber_compliance<S: Scalar>(
     fluid_moduli: [S; 2],
     cylinder: &Cylinder<S>,
     lines: [&Line<S>; 2],
-    member: Member,
+    member: StiffeningMember,
 ) -> ChamberCompliance<S> {
     let one_side = |area: S, dead_volume: S, line: &Line<S>, fluid_modulus: S| {
         let (chamber_modulus, line_compliance) = match model {

@@ -25,7 +25,7 @@ use phea_dynamics::scalar::Scalar;
 
 use crate::actuator::{Actuator, Components};
 use crate::force_sensor;
-use crate::line::Member;
+use crate::line::StiffeningMember;
 use crate::operating_point::{OperatingPoint, hydraulic_force};
 use crate::servovalve::{ChamberFlows, Servovalve, Supply, chamber_flows};
 use crate::stiffness::{ChamberCompliance, compliance_at};
@@ -106,7 +106,7 @@ impl<S: Scalar> TwoPressureModel<S> {
     pub fn of(
         components: &Components<S>,
         pressures: [S; 2],
-        member: Member,
+        member: StiffeningMember,
         viscous_friction: S,
     ) -> TwoPressureModel<S> {
         TwoPressureModel {
@@ -126,7 +126,7 @@ impl TwoPressureModel {
     pub fn new(
         actuator: &Actuator,
         pressures: [f64; 2],
-        member: Member,
+        member: StiffeningMember,
         viscous_friction: f64,
     ) -> TwoPressureModel {
         TwoPressureModel::of(actuator.components(), pressures, member, viscous_friction)

@@ -8,7 +8,7 @@ use phea_hydraulics::actuator::Actuator;
 use phea_hydraulics::machine::{Accumulator, Machine, PowerUnit, PumpLimited};
 use phea_hydraulics::operating_point::{Balance, Settled, SettledSupply};
 use phea_hydraulics::plant::YieldingSupply;
-use phea_hydraulics::servovalve::{Direction, Supply};
+use phea_hydraulics::servovalve::{SpoolDirection, Supply};
 
 /// Two of five numbers have a supply that yields, with an accumulator for every other of these; some pumps give less than what leaks.
 pub(super) fn power_unit(number: u64) -> PowerUnit {
@@ -48,7 +48,7 @@ pub(super) fn yielding(
     let idle = components.supply.pressure;
     let drops = [idle, idle - components.supply.tank_pressure];
     let balance = Balance::of(components);
-    Some(YieldingSupply::new(unit, &balance, drops, &settled, Direction::Extending))
+    Some(YieldingSupply::new(unit, &balance, drops, &settled, SpoolDirection::Extending))
 }
 
 /// The second number is the gain from the load's velocity to the command, V s/m.

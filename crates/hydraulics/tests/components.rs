@@ -5,7 +5,7 @@ use phea_hydraulics::cylinder::areas_from_diameters;
 use phea_hydraulics::fluid::{ATMOSPHERIC_PRESSURE_ABSOLUTE, EntrainedAir, Fluid, bulk_modulus_with_air};
 use phea_hydraulics::friction::{Friction, LuGre, LuGrePassivity, Stribeck, ViscousSlope};
 use phea_hydraulics::line::{
-    Anchoring, Hose, Line, Member, Pipe, PipeWall, Stiffening, pipe_wall_compliance,
+    Anchoring, Hose, Line, Pipe, PipeWall, Stiffening, StiffeningMember, pipe_wall_compliance,
 };
 use phea_hydraulics::orifice::{flow, regular_root, regular_root_slope};
 use phea_hydraulics::reference_rig::{hose, hose_line};
@@ -74,12 +74,12 @@ fn elastic_pipe_is_a_little_softer_than_its_fluid() {
     };
     let line = |wall| Line::Pipe { pipe: Pipe { bore: 10.5e-3, wall }, length: 0.35 };
     let (rigid, elastic) = (line(PipeWall::Rigid), line(wall));
-    assert_eq!(rigid.effective_modulus(1.45e9, Member::Nominal), 1.45e9);
-    let modulus = elastic.effective_modulus(1.45e9, Member::Nominal);
+    assert_eq!(rigid.effective_modulus(1.45e9, StiffeningMember::Nominal), 1.45e9);
+    let modulus = elastic.effective_modulus(1.45e9, StiffeningMember::Nominal);
     assert!(modulus < 0.97 * 1.45e9 && modulus > 0.9 * 1.45e9);
     // ORIGIN: analytic, fluid and wall take up volume in parallel
-    let fluid = rigid.compliance(1.45e9, Member::Nominal);
-    let taken_by_wall = elastic.compliance(1.45e9, Member::Nominal) - fluid;
+    let fluid = rigid.compliance(1.45e9, StiffeningMember::Nominal);
+    let taken_by_wall = elastic.compliance(1.45e9, StiffeningMember::Nominal) - fluid;
     let Line::Pipe { pipe, .. } = elastic else { panic!() };
     assert!((taken_by_wall / (elastic.volume() * pipe.wall_compliance()) - 1.0).abs() < 1e-12);
 }
@@ -89,7 +89,7 @@ fn elastic_pipe_is_a_little_softer_than_its_fluid() {
 fn a_hose_takes_up_what_its_sheet_says() {
     let (hose, line) = (hose(), hose_line());
     let bore_area = std::f64::consts::FRAC_PI_4 * 12.7e-3 * 12.7e-3;
-    for (member, r_beta) in [(Member::Minimum, 4.0), (Member::Nominal, 5.0)] {
+    for (member, r_beta) in [(StiffeningMember::Minimum, 4.0), (StiffeningMember::Nominal, 5.0)] {
         // ORIGIN: analytic, dV/dp = epsilon L/r_beta + (A_ho + E(35 bar)) L/beta_0
         let (wall, oil) = (2.236e-12 * 1.5 / r_beta, (bore_area + 7.774e-6) * 1.5 / 1.45e9);
         assert!((line.compliance(1.45e9, member) / (wall + oil) - 1.0).abs() < 1e-12);

@@ -9,12 +9,12 @@ use phea_hydraulics::contact::Contact;
 use phea_hydraulics::cylinder::{Cylinder, areas_from_diameters};
 use phea_hydraulics::fluid::{ATMOSPHERIC_PRESSURE_ABSOLUTE, EntrainedAir, Fluid};
 use phea_hydraulics::friction::{Friction, MovingFriction};
-use phea_hydraulics::line::{Line, Member};
+use phea_hydraulics::line::{Line, StiffeningMember};
 use phea_hydraulics::machine::{
     Accumulator, Chambers, INDICATORS, LoadModel, Machine, MachineOptions, PowerUnit, PumpLimited, SIGNALS,
-    Start,
+    StartValues,
 };
-use phea_hydraulics::operating_point::{Condition, Load, operating_point};
+use phea_hydraulics::operating_point::{Condition, SteadyLoad, operating_point};
 use phea_hydraulics::reference_rig::{
     benchmark_components, components, cylinder, hose_line, measured_spool, pipe_line, stopped, valve,
 };
@@ -65,7 +65,7 @@ fn load_step(time: f64) -> [f64; 2] {
 #[test]
 fn the_benchmark_runs_as_the_reference_says() {
     let machine = machine_of(benchmark_components(), &MachineOptions::default());
-    let start = Start { position: 0.25, pressure_a: 35e5, pressure_b: 35e5, ..Start::default() };
+    let start = StartValues { position: 0.25, pressure_a: 35e5, pressure_b: 35e5, ..StartValues::default() };
     let mut state = machine.start(&start).unwrap().state;
     state.extend([0.0; 3]);
     let reference = |time: f64| if time < 2.0 { 0.0 } else { 4000.0 };
@@ -201,7 +201,7 @@ fn air_softens_each_chamber_by_its_own_pressure() {
     for stiffness_model in [StiffnessModel::Uniform, StiffnessModel::ByVolume] {
         for line_a in [hose_line(), pipe_line(), volume] {
             let actuator = Actuator::new(Components { line_a, stiffness_model, ..foamy() }).unwrap();
-            for member in [Member::Minimum, Member::Maximum] {
+            for member in [StiffeningMember::Minimum, StiffeningMember::Maximum] {
                 let chambers = Chambers::new(&actuator, member);
                 for pressures in [[1e5, 60e5], [35e5, 3e5]] {
                     for x in [0.0, 0.13, 0.5] {
@@ -289,7 +289,7 @@ fn a_pump_gives_what_it_has() {
     let options = MachineOptions { power_unit: PowerUnit::PumpLimited(unit), ..MachineOptions::default() };
     let rig = components(hose_line(), StiffnessModel::ByVolume);
     let (actuator, machine) = (Actuator::new(rig).unwrap(), machine_of(rig, &options));
-    let idle = operating_point(&actuator, 0.25, Condition::Load(Load::Force(0.0))).unwrap();
+    let idle = operating_point(&actuator, 0.25, Condition::Load(SteadyLoad::Force(0.0))).unwrap();
     let rest = machine.rest(&idle).unwrap();
     let outputs = machine.outputs(&rest.state, &rest.inputs);
     let [supply, taken] = [outputs[signal("supply_pressure_pa")], outputs[signal("supply_flow_m3_per_s")]];
@@ -301,7 +301,7 @@ fn a_pump_gives_what_it_has() {
         ..options
     };
     let machine = machine_of(rig, &load);
-    let start = Start { position: 0.1, pressure_a: 35e5, pressure_b: 35e5, ..Start::default() };
+    let start = StartValues { position: 0.1, pressure_a: 35e5, pressure_b: 35e5, ..StartValues::default() };
     let beginning = machine.start(&start).unwrap();
     let mut state = beginning.state;
     for index in 0..40_000 {

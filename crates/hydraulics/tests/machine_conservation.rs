@@ -10,10 +10,10 @@ use phea_hydraulics::contact::Contact;
 use phea_hydraulics::cylinder::{Cylinder, areas_from_diameters};
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::friction::{Friction, LuGre, LuGrePassivity};
-use phea_hydraulics::line::{DynamicLine, END_SHARE, LaminarFriction, LineModel, Member};
+use phea_hydraulics::line::{DynamicLine, END_SHARE, LaminarFriction, LineModel, StiffeningMember};
 use phea_hydraulics::machine::{
     Account, Accumulator, ENERGY_ACCOUNTS, LoadModel, Machine, MachineError, MachineOptions, OIL_ACCOUNTS,
-    PowerUnit, PumpLimited, Start,
+    PowerUnit, PumpLimited, StartValues,
 };
 use phea_hydraulics::reference_rig::{
     benchmark_components, components, cylinder, hose_line, leaking, pipe_line, stopped,
@@ -162,7 +162,8 @@ fn foamy(rig: Components, stiffness_model: StiffnessModel, polytropic_exponent: 
 /// Both lines of a rig with dynamics of their own.
 fn lines_of(rig: &Components, models: [LineModel; 2]) -> Option<[DynamicLine; 2]> {
     let [model_a, model_b] = models;
-    let of = |line, model| DynamicLine::new(line, &rig.fluid, 35e5, Member::Nominal, &model).unwrap();
+    let of =
+        |line, model| DynamicLine::new(line, &rig.fluid, 35e5, StiffeningMember::Nominal, &model).unwrap();
     Some([of(&rig.line_a, model_a), of(&rig.line_b, model_b)])
 }
 
@@ -206,7 +207,7 @@ fn rich_machines() -> Vec<(&'static str, Machine)> {
 }
 
 /// Every account closes, and nothing that should take energy gives any.
-fn check(machine: &Machine, motion: &Motion, start: &Start, duration: f64, width: f64) {
+fn check(machine: &Machine, motion: &Motion, start: &StartValues, duration: f64, width: f64) {
     let beginning = machine.start(start).unwrap();
     let motion = Motion { ground: beginning.inputs[0], ..*motion };
     for Closing { name, gap, throughput, lost, least_loss } in
@@ -222,7 +223,7 @@ fn check(machine: &Machine, motion: &Motion, start: &Start, duration: f64, width
 #[test]
 fn ledgers_close_against_a_prescribed_motion() {
     let motion = Motion { amplitude: 1.5, bias: 0.2, ground: 0.0, ground_amplitude: 2e-3 };
-    let start = Start { position: 0.25, pressure_a: 35e5, pressure_b: 30e5, ..Start::default() };
+    let start = StartValues { position: 0.25, pressure_a: 35e5, pressure_b: 30e5, ..StartValues::default() };
     let passive = Components { friction: passive_friction(), ..benchmark_components() };
     check(&machine_of(passive, &MachineOptions::default()), &motion, &start, 0.3, 2e-5);
     let pumped = MachineOptions { power_unit: pump(), ..Default::default() };
@@ -232,7 +233,7 @@ fn ledgers_close_against_a_prescribed_motion() {
 #[test]
 fn ledgers_close_with_loads_of_their_own() {
     let motion = Motion { amplitude: 1.5, bias: 0.4, ground: 0.0, ground_amplitude: 1e-3 };
-    let start = Start { position: 0.25, pressure_a: 35e5, pressure_b: 30e5, ..Start::default() };
+    let start = StartValues { position: 0.25, pressure_a: 35e5, pressure_b: 30e5, ..StartValues::default() };
     let contact = Contact { stiffness: 3e7, relative_damping: 0.4 };
     let sprung = LoadModel::SpringMassDamper { mass: 20.0, stiffness: 3e5, damping: 200.0 };
     let walled = LoadModel::Wall { mass: 8.0, damping: 50.0, gap: 4e-4, contact };
@@ -263,7 +264,7 @@ fn ledgers_close_in_the_end_stops() {
     let machine = machine_of(stopped(Components { valve, ..rig }, contact), &options);
     for (position, bias) in [(0.002, -4.0), (0.498, 4.0)] {
         let motion = Motion { amplitude: 2.0, bias, ground: 0.0, ground_amplitude: 0.0 };
-        let start = Start { position, pressure_a: 20e5, pressure_b: 20e5, ..Start::default() };
+        let start = StartValues { position, pressure_a: 20e5, pressure_b: 20e5, ..StartValues::default() };
         check(&machine, &motion, &start, 0.1, 5e-6);
         let beginning = machine.start(&start).unwrap();
         let inputs = beginning.inputs;
@@ -312,7 +313,7 @@ fn the_rig_is_the_sum_of_its_components() {
 #[test]
 fn ledgers_close_with_gas_air_and_lines() {
     let motion = Motion { amplitude: 1.5, bias: 0.2, ground: 0.0, ground_amplitude: 2e-3 };
-    let start = Start { position: 0.25, pressure_a: 35e5, pressure_b: 30e5, ..Start::default() };
+    let start = StartValues { position: 0.25, pressure_a: 35e5, pressure_b: 30e5, ..StartValues::default() };
     for (_, machine) in rich_machines() {
         check(&machine, &motion, &start, 0.1, 1e-5);
     }
@@ -356,7 +357,12 @@ fn what_is_stored_changes_by_what_enters_and_is_lost() {
     for ((name, machine), (pressure, share)) in
         machines.iter().flat_map(|named| [(named, (35e5, 4.0)), (named, (0.0, 0.13))])
     {
-        let start = Start { position: 0.25, pressure_a: pressure, pressure_b: pressure, ..Start::default() };
+        let start = StartValues {
+            position: 0.25,
+            pressure_a: pressure,
+            pressure_b: pressure,
+            ..StartValues::default()
+        };
         let beginning = machine.start(&start).unwrap();
         for _ in 0..20 {
             let around = beginning.state.iter().zip(machine.scales());
@@ -375,7 +381,7 @@ fn waves_have_no_ledger() {
     let waves = LineModel::TransmissionLine { end_share: END_SHARE };
     let options = MachineOptions { lines: lines_of(&rig, [PLAIN, waves]), ..MachineOptions::default() };
     let machine = machine_of(rig, &options);
-    let start = Start { position: 0.25, pressure_a: 35e5, pressure_b: 30e5, ..Start::default() };
+    let start = StartValues { position: 0.25, pressure_a: 35e5, pressure_b: 30e5, ..StartValues::default() };
     let beginning = machine.start(&start).unwrap();
     assert!(machine.ledger(&beginning.state, &beginning.all_inputs()).is_none());
 }
@@ -428,8 +434,13 @@ fn a_force_from_outside_acts_on_the_load_alone() {
     let load = LoadModel::SpringMassDamper { mass: 20.0, stiffness: 3e5, damping: 200.0 };
     let options = MachineOptions { load, external_force: true, ..MachineOptions::default() };
     let machine = machine_of(asymmetric(), &options);
-    let start =
-        Start { position: 0.25, pressure_a: 35e5, pressure_b: 30e5, force: 500.0, ..Start::default() };
+    let start = StartValues {
+        position: 0.25,
+        pressure_a: 35e5,
+        pressure_b: 30e5,
+        force: 500.0,
+        ..StartValues::default()
+    };
     let beginning = machine.start(&start).unwrap();
     assert_eq!((machine.inputs(), beginning.external_force), (3, Some(0.0)));
     let mut state = beginning.state.clone();

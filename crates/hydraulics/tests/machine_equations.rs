@@ -12,17 +12,17 @@ use phea_hydraulics::cylinder::{Cylinder, areas_from_diameters};
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::friction::{Friction, Stribeck};
 use phea_hydraulics::line::{
-    Conduit, DynamicLine, END_SHARE, LaminarFriction, Member, Segments, TransmissionLine,
+    Conduit, DynamicLine, END_SHARE, LaminarFriction, Segments, StiffeningMember, TransmissionLine,
 };
 use phea_hydraulics::machine::{
     Accumulator, INDICATORS, LoadModel, Machine, MachineError, MachineOptions, PowerUnit, PumpLimited,
     SIGNALS,
 };
-use phea_hydraulics::operating_point::{Condition, Load, operating_point};
+use phea_hydraulics::operating_point::{Condition, SteadyLoad, operating_point};
 use phea_hydraulics::reference_rig::{
     benchmark_components, components, cylinder, hose_line, leaking, measured_spool, pipe_line, stopped,
 };
-use phea_hydraulics::servovalve::{Direction, Servovalve, SpoolImperfection};
+use phea_hydraulics::servovalve::{Servovalve, SpoolDirection, SpoolImperfection};
 use phea_hydraulics::stiffness::StiffnessModel;
 use phea_hydraulics::two_pressure::{TwoPressureModel, linearize, two_pressure_linear_parameters};
 
@@ -108,7 +108,7 @@ fn machines() -> Vec<Machine> {
     };
     let rough = Components { friction: benchmark_components().friction, ..hose() };
     let uniform = Components { stiffness_model: StiffnessModel::Uniform, ..asymmetric() };
-    let conduit = Conduit::of_line(&hose_line(), &hose().fluid, 35e5, Member::Nominal).unwrap();
+    let conduit = Conduit::of_line(&hose_line(), &hose().fluid, 35e5, StiffeningMember::Nominal).unwrap();
     let waves = DynamicLine::TransmissionLine(TransmissionLine::of_conduit(&conduit, END_SHARE).unwrap());
     let segments = DynamicLine::Segments(Segments::new(&conduit, 2, LaminarFriction::Steady).unwrap());
     vec![
@@ -337,10 +337,12 @@ fn small_motions_are_those_of_the_two_pressure_model() {
     for rig in [hose, asymmetric] {
         let actuator = Actuator::new(rig).unwrap();
         let machine = Machine::new(&actuator, &MachineOptions::default()).unwrap();
-        for condition in [Condition::Load(Load::Force(2000.0)), Condition::Motion(1.5, Load::Force(1000.0))] {
+        for condition in
+            [Condition::Load(SteadyLoad::Force(2000.0)), Condition::Motion(1.5, SteadyLoad::Force(1000.0))]
+        {
             let point = operating_point(&actuator, 0.1, condition).unwrap();
-            let model = TwoPressureModel::new(&actuator, [0.0; 2], Member::Nominal, 100.0);
-            let parameters = two_pressure_linear_parameters(&model, &point, Direction::Mean);
+            let model = TwoPressureModel::new(&actuator, [0.0; 2], StiffeningMember::Nominal, 100.0);
+            let parameters = two_pressure_linear_parameters(&model, &point, SpoolDirection::Mean);
             let system = linearize(&parameters).unwrap();
             let beginning = machine.rest(&point).unwrap();
             compare(&machine, &system, &beginning.state, beginning.command, &beginning.inputs);
@@ -391,14 +393,14 @@ fn rests_do_not_move() {
     }
     for machine in machines() {
         let actuator = Actuator::new(components(hose_line(), StiffnessModel::ByVolume)).unwrap();
-        let point = operating_point(&actuator, 0.25, Condition::Load(Load::Force(0.0))).unwrap();
+        let point = operating_point(&actuator, 0.25, Condition::Load(SteadyLoad::Force(0.0))).unwrap();
         let idle = machine.rest_under_load(&point).unwrap();
         let force = machine.measurement(&idle.state, &idle.all_inputs());
         assert!(force.abs() < 1e-6 && idle.command.abs() < 0.5, "{force} {}", idle.command);
     }
     let sliding = machine_of(benchmark_components(), &MachineOptions::default());
     let actuator = Actuator::new(benchmark_components()).unwrap();
-    let point = operating_point(&actuator, 0.2, Condition::Motion(1.0, Load::Force(500.0))).unwrap();
+    let point = operating_point(&actuator, 0.2, Condition::Motion(1.0, SteadyLoad::Force(500.0))).unwrap();
     let steady = sliding.rest(&point).unwrap();
     let rates = rates_of(&sliding, &steady.state, steady.command, &steady.inputs);
     assert!(point.velocity > 0.01 && rates.iter().zip(sliding.scales()).all(|(r, s)| (r / s).abs() < 1e-5));
@@ -412,9 +414,9 @@ fn starts_that_cannot_be_are_refused() {
     // The balance that is found for this command is steady, though the point was not.
     let rest = machine.rest(&matched).unwrap();
     assert!(rest.state[2] != matched.pressure_a);
-    let outside = phea_hydraulics::machine::Start { position: 0.6, ..Default::default() };
+    let outside = phea_hydraulics::machine::StartValues { position: 0.6, ..Default::default() };
     assert!(matches!(machine.start(&outside), Err(MachineError::StartOutsideStroke { .. })));
-    let vacuum = phea_hydraulics::machine::Start { pressure_a: -2e5, ..Default::default() };
+    let vacuum = phea_hydraulics::machine::StartValues { pressure_a: -2e5, ..Default::default() };
     assert!(matches!(
         machine.start(&vacuum),
         Err(MachineError::ImpossibleStart { quantity: "pressure_a", .. })

@@ -7,10 +7,11 @@ use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{Input, InputSchedule, Plant, Profile, Settings, Status, System, simulate};
 use phea_hydraulics::actuator::Actuator;
 use phea_hydraulics::line::{
-    Conduit, DynamicLine, END_SHARE, LaminarFriction, Line, Member, Segments, TransmissionLine, TwoWaveHose,
+    Conduit, DynamicLine, END_SHARE, LaminarFriction, Line, Segments, StiffeningMember, TransmissionLine,
+    TwoWaveHose,
 };
 use phea_hydraulics::machine::{Machine, MachineOptions};
-use phea_hydraulics::operating_point::{Condition, Load, operating_point};
+use phea_hydraulics::operating_point::{Condition, SteadyLoad, operating_point};
 use phea_hydraulics::reference_rig::{components, hose, hose_line};
 use phea_hydraulics::stiffness::StiffnessModel;
 
@@ -56,7 +57,7 @@ fn actuator() -> Actuator {
 }
 
 fn conduit() -> Conduit {
-    Conduit::of_line(&hose_line(), &actuator().components().fluid, 35e5, Member::Nominal).unwrap()
+    Conduit::of_line(&hose_line(), &actuator().components().fluid, 35e5, StiffeningMember::Nominal).unwrap()
 }
 
 fn machine(line: Option<DynamicLine>) -> Machine {
@@ -74,14 +75,14 @@ fn waves() -> DynamicLine {
 
 fn two_waves() -> DynamicLine {
     let fluid = actuator().components().fluid;
-    let hose = TwoWaveHose::assumed(&hose(), 1.5, &fluid, 35e5, Member::Nominal);
+    let hose = TwoWaveHose::assumed(&hose(), 1.5, &fluid, 35e5, StiffeningMember::Nominal);
     DynamicLine::TwoWave(hose.in_time(END_SHARE).unwrap())
 }
 
 /// Force in N every millisecond while the load moves smoothly by 2 mm, begun 20 ms after a rest at 2 kN.
 fn forces(line: Option<DynamicLine>, motion_s: f64, duration_s: f64) -> Vec<f64> {
     let machine = machine(line);
-    let point = operating_point(&actuator(), 0.2, Condition::Load(Load::Force(2e3))).unwrap();
+    let point = operating_point(&actuator(), 0.2, Condition::Load(SteadyLoad::Force(2e3))).unwrap();
     let rest = machine.rest(&point).unwrap();
     let motion = Profile::smooth_step(0.02, motion_s, 2e-3).unwrap();
     let inputs = vec![Input::Value(motion.clone()), Input::Rate(motion)];
@@ -108,7 +109,7 @@ fn largest_difference(one: &[f64], other: &[f64]) -> f64 {
 /// A capacity without segments behind the valve is the lumped line, whatever the stiffness model of the chamber.
 #[test]
 fn one_capacity_is_the_lumped_line() {
-    let compliance = hose_line().compliance(1.45e9, Member::Nominal);
+    let compliance = hose_line().compliance(1.45e9, StiffeningMember::Nominal);
     let lumped = machine(None);
     let capacity = machine(Some(DynamicLine::Segments(Segments::lumped(compliance))));
     let state = [0.4, 3.0, 41e5, 22e5, 1e-4, 0.03];
@@ -148,7 +149,7 @@ fn segments_become_a_transmission_line() {
 #[test]
 fn nothing_is_felt_before_the_wave_arrives() {
     let machine = machine(Some(waves()));
-    let point = operating_point(&actuator(), 0.2, Condition::Load(Load::Force(0.0))).unwrap();
+    let point = operating_point(&actuator(), 0.2, Condition::Load(SteadyLoad::Force(0.0))).unwrap();
     let rest = machine.rest(&point).unwrap();
     let ground = Profile::constant(0.0);
     let inputs = vec![Input::Value(ground.clone()), Input::Rate(ground)];
@@ -182,13 +183,13 @@ fn steady_motions_stay() {
     let line = Line::Hose { hose: hose(), length: 3.0 };
     let rig = components(line, StiffnessModel::Uniform);
     let actuator = Actuator::new(rig).unwrap();
-    let conduit = Conduit::of_line(&line, &rig.fluid, 35e5, Member::Nominal).unwrap();
+    let conduit = Conduit::of_line(&line, &rig.fluid, 35e5, StiffeningMember::Nominal).unwrap();
     let waves = DynamicLine::TransmissionLine(TransmissionLine::of_conduit(&conduit, END_SHARE).unwrap());
     let creeping = DynamicLine::Segments(Segments::new(&conduit, 3, LaminarFriction::Steady).unwrap());
     for lines in [[waves, creeping], [creeping, waves]] {
         let options = MachineOptions { lines: Some(lines), ..MachineOptions::default() };
         let machine = Machine::new(&actuator, &options).unwrap();
-        let point = operating_point(&actuator, 0.2, Condition::Motion(2.0, Load::Force(1e3))).unwrap();
+        let point = operating_point(&actuator, 0.2, Condition::Motion(2.0, SteadyLoad::Force(1e3))).unwrap();
         let steady = machine.rest(&point).unwrap();
         let outputs = machine.outputs(&steady.state, &steady.all_inputs());
         let [chamber, port] = [outputs[2], outputs[15]];

@@ -11,7 +11,7 @@ use phea_hydraulics::contact::Contact;
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::friction::Friction;
 use phea_hydraulics::machine::{
-    INDICATORS, LoadModel, Machine, MachineOptions, PowerUnit, PumpLimited, SIGNALS, Start,
+    INDICATORS, LoadModel, Machine, MachineOptions, PowerUnit, PumpLimited, SIGNALS, StartValues,
 };
 use phea_hydraulics::reference_rig::{benchmark_components, components, hose_line, stopped};
 use phea_hydraulics::servovalve::{SpoolImperfection, Supply};
@@ -49,7 +49,7 @@ impl System<f64> for Commanded {
 /// The machine over a course; its ground is to start where the start says that it lies.
 fn drive(
     machine: Machine,
-    start: &Start,
+    start: &StartValues,
     duration_s: f64,
     command: &[(f64, f64)],
     ground: Profile,
@@ -81,8 +81,8 @@ fn happened(result: &Simulated, name: &str) -> bool {
 }
 
 /// Ground so that the load of a prescribed motion starts where the piston does.
-fn at(position: f64) -> Start {
-    Start { position, pressure_a: 30e5, pressure_b: 30e5, ..Start::default() }
+fn at(position: f64) -> StartValues {
+    StartValues { position, pressure_a: 30e5, pressure_b: 30e5, ..StartValues::default() }
 }
 
 /// With end stops.
@@ -146,7 +146,7 @@ fn violent_loads_are_survived() {
         assert!(result.outcome.work.steps < 20_000, "{:?}", result.outcome.work);
     }
     let machine = machine_of(benchmark_components(), &MachineOptions::default());
-    let start = Start { pressure_a: 2e5, pressure_b: 2e5, ..at(0.25) };
+    let start = StartValues { pressure_a: 2e5, pressure_b: 2e5, ..at(0.25) };
     let (result, _) = drive(machine, &start, 0.5, &[], ground);
     assert!(happened(&result, "cavitation_a") && happened(&result, "cavitation_b"));
 }
@@ -175,7 +175,7 @@ fn lost_supplies_and_reversed_pressures_are_no_error() {
     assert!(supply[0] > 60e5 && supply[supply.len() - 1] < 5e5);
     let reversed =
         Components { supply: Supply { pressure: 20e5, tank_pressure: 1e5 }, ..benchmark_components() };
-    let start = Start { pressure_a: 60e5, pressure_b: 55e5, ..at(0.25) };
+    let start = StartValues { pressure_a: 60e5, pressure_b: 55e5, ..at(0.25) };
     let machine = machine_of(reversed, &MachineOptions::default());
     let (result, outputs) = drive(machine, &start, 1.0, &[(0.0, 0.05)], Profile::constant(0.25));
     assert_eq!(result.outcome.status, Status::Completed);

@@ -4,9 +4,9 @@
 
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::cylinder::{Cylinder, areas_from_diameters};
-use phea_hydraulics::operating_point::{Condition, Load, OperatingPointError, operating_point};
+use phea_hydraulics::operating_point::{Condition, OperatingPointError, SteadyLoad, operating_point};
 use phea_hydraulics::reference_rig::{USEFUL_AREA, components, cylinder, hose_line, valve_with_equal_edges};
-use phea_hydraulics::servovalve::{Direction, Servovalve, chamber_flows, velocity_gain};
+use phea_hydraulics::servovalve::{Servovalve, SpoolDirection, chamber_flows, velocity_gain};
 use phea_hydraulics::stiffness::StiffnessModel;
 
 fn rig() -> Components {
@@ -34,7 +34,7 @@ fn null_valve_with_unequal_edges() {
 fn equal_edges_settle_at_half_the_supply() {
     let actuator = Actuator::new(Components { valve: valve_with_equal_edges(), ..rig() }).unwrap();
     for condition in
-        [Condition::Command(0.0), Condition::Load(Load::Force(0.0)), Condition::Matched(0.0, 0.0)]
+        [Condition::Command(0.0), Condition::Load(SteadyLoad::Force(0.0)), Condition::Matched(0.0, 0.0)]
     {
         let point = operating_point(&actuator, 0.1, condition).unwrap();
         assert_eq!((point.pressure_a, point.pressure_b, point.command), (35e5, 35e5, 0.0));
@@ -49,14 +49,14 @@ fn every_equilibrium_balances() {
         let conditions = [
             Condition::Command(0.02),
             Condition::Command(-3.0),
-            Condition::Load(Load::Force(4000.0)),
-            Condition::Load(Load::Force(-6500.0)),
-            Condition::Load(Load::Pressure(20e5)),
-            Condition::Motion(1.0, Load::Force(2000.0)),
-            Condition::Motion(-4.0, Load::Force(2000.0)),
-            Condition::Motion(2.0, Load::Pressure(-15e5)),
-            Condition::Moving(0.05, Load::Force(3000.0)),
-            Condition::Moving(-0.02, Load::Pressure(15e5)),
+            Condition::Load(SteadyLoad::Force(4000.0)),
+            Condition::Load(SteadyLoad::Force(-6500.0)),
+            Condition::Load(SteadyLoad::Pressure(20e5)),
+            Condition::Motion(1.0, SteadyLoad::Force(2000.0)),
+            Condition::Motion(-4.0, SteadyLoad::Force(2000.0)),
+            Condition::Motion(2.0, SteadyLoad::Pressure(-15e5)),
+            Condition::Moving(0.05, SteadyLoad::Force(3000.0)),
+            Condition::Moving(-0.02, SteadyLoad::Pressure(15e5)),
         ];
         for condition in conditions {
             let point = operating_point(&actuator, 0.2, condition).unwrap();
@@ -66,14 +66,14 @@ fn every_equilibrium_balances() {
             assert!((flows.into_a - cylinder.area_a * point.velocity).abs() < scale, "{condition:?}");
             assert!((flows.into_b + cylinder.area_b * point.velocity).abs() < scale, "{condition:?}");
             match condition {
-                Condition::Load(Load::Force(force))
-                | Condition::Motion(_, Load::Force(force))
-                | Condition::Moving(_, Load::Force(force)) => {
+                Condition::Load(SteadyLoad::Force(force))
+                | Condition::Motion(_, SteadyLoad::Force(force))
+                | Condition::Moving(_, SteadyLoad::Force(force)) => {
                     assert!((point.hydraulic_force - force).abs() < 1e-5)
                 }
-                Condition::Load(Load::Pressure(pressure))
-                | Condition::Motion(_, Load::Pressure(pressure))
-                | Condition::Moving(_, Load::Pressure(pressure)) => {
+                Condition::Load(SteadyLoad::Pressure(pressure))
+                | Condition::Motion(_, SteadyLoad::Pressure(pressure))
+                | Condition::Moving(_, SteadyLoad::Pressure(pressure)) => {
                     assert!((point.load_pressure() - pressure).abs() < 1e-2)
                 }
                 Condition::Command(_) | Condition::Matched(..) => assert_eq!(point.velocity, 0.0),
@@ -88,9 +88,10 @@ fn speed_at_full_opening_is_the_velocity_gain() {
     for actuator in [Actuator::new(rig()).unwrap(), asymmetric()] {
         let Components { valve, supply, cylinder, .. } = *actuator.components();
         let areas = [cylinder.area_a, cylinder.area_b];
-        for (command, direction) in [(10.0, Direction::Extending), (-10.0, Direction::Retracting)] {
+        for (command, direction) in [(10.0, SpoolDirection::Extending), (-10.0, SpoolDirection::Retracting)] {
             let point =
-                operating_point(&actuator, 0.25, Condition::Motion(command, Load::Force(1500.0))).unwrap();
+                operating_point(&actuator, 0.25, Condition::Motion(command, SteadyLoad::Force(1500.0)))
+                    .unwrap();
             let speed = command * velocity_gain(&valve, &supply, areas, 1500.0, direction).unwrap();
             assert!((point.velocity / speed - 1.0).abs() < 1e-6, "{} against {speed}", point.velocity);
         }
@@ -103,7 +104,8 @@ fn load_rises_with_the_command_that_holds_it() {
     let mut last = f64::NEG_INFINITY;
     for step in -6..=12 {
         let force = 1000.0 * f64::from(step);
-        let command = operating_point(&actuator, 0.25, Condition::Load(Load::Force(force))).unwrap().command;
+        let command =
+            operating_point(&actuator, 0.25, Condition::Load(SteadyLoad::Force(force))).unwrap().command;
         assert!(command > last);
         last = command;
     }
@@ -118,20 +120,22 @@ fn what_cannot_be_is_refused_with_numbers() {
         OperatingPointError::PositionOutsideStroke { position: 0.6, stroke: 0.5 }
     );
     assert_eq!(
-        refused(0.1, Condition::Motion(-11.0, Load::Force(0.0))),
+        refused(0.1, Condition::Motion(-11.0, SteadyLoad::Force(0.0))),
         OperatingPointError::CommandBeyondNominal { command: -11.0, nominal: 10.0 }
     );
     let OperatingPointError::LoadOutOfReach { load, minimum, maximum } =
-        refused(0.1, Condition::Load(Load::Force(12e3)))
+        refused(0.1, Condition::Load(SteadyLoad::Force(12e3)))
     else {
         panic!()
     };
     // ORIGIN: analytic, at full opening the supply pressure on one side alone
     assert!(load == 12e3 && (maximum / (USEFUL_AREA * 70e5) - 1.0).abs() < 1e-3 && minimum < -0.99 * maximum);
     // An overrunning load sucks chamber A empty.
-    let overrun = refused(0.1, Condition::Motion(1.0, Load::Force(-30e3)));
+    let overrun = refused(0.1, Condition::Motion(1.0, SteadyLoad::Force(-30e3)));
     assert!(matches!(overrun, OperatingPointError::BelowVacuum { pressure } if pressure < -101_325.0));
-    for condition in [Condition::Load(Load::Force(f64::NAN)), Condition::Motion(1.0, Load::Force(f64::NAN))] {
+    for condition in
+        [Condition::Load(SteadyLoad::Force(f64::NAN)), Condition::Motion(1.0, SteadyLoad::Force(f64::NAN))]
+    {
         assert!(operating_point(&actuator, 0.1, condition).is_err());
     }
 }

@@ -12,13 +12,13 @@ use phea_hydraulics::cylinder::{Cylinder, areas_from_diameters};
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::force_sensor::ForceSensor;
 use phea_hydraulics::friction::Friction;
-use phea_hydraulics::line::Member;
+use phea_hydraulics::line::StiffeningMember;
 use phea_hydraulics::linear::linear_model_coefficients;
 use phea_hydraulics::machine::{Beginning, LoadModel, Machine, MachineOptions, PowerUnit};
 use phea_hydraulics::operating_point::{Balance, Condition, OperatingPoint, Steady, operating_point};
 use phea_hydraulics::plant::{LinearLoad, LinearPlant};
 use phea_hydraulics::reference_rig::{components, cylinder, hose_line, leaking, nominal_plant, pipe_line};
-use phea_hydraulics::servovalve::{Direction, Supply};
+use phea_hydraulics::servovalve::{SpoolDirection, Supply};
 use phea_hydraulics::stiffness::StiffnessModel;
 use phea_hydraulics::two_pressure::{
     TwoPressureModel, two_pressure_coefficients, two_pressure_linear_parameters,
@@ -98,7 +98,7 @@ impl Drawn {
         let supplied = supply_pressure(&self.unit, stated.pressure, state);
         let model = TwoPressureModel {
             supply: Supply { pressure: supplied, ..stated },
-            ..TwoPressureModel::new(&self.actuator, pressures, Member::Nominal, self.friction)
+            ..TwoPressureModel::new(&self.actuator, pressures, StiffeningMember::Nominal, self.friction)
         };
         let moved = if self.load == LinearLoad::Prescribed { 0.0 } else { state[6] };
         let point = OperatingPoint {
@@ -111,7 +111,7 @@ impl Drawn {
             net_flow_a: 0.0,
             net_flow_b: 0.0,
         };
-        let parameters = two_pressure_linear_parameters(&model, &point, Direction::Extending);
+        let parameters = two_pressure_linear_parameters(&model, &point, SpoolDirection::Extending);
         let supply = yielding(&self.actuator, &self.unit, state[0], pressures, supplied);
         LinearPlant { supply, ..LinearPlant::of_two_pressures(&parameters, self.leakage, self.load) }
     }
@@ -183,9 +183,10 @@ fn without_load_and_leakage_it_is_the_known_models() {
     let of_load_pressure = LinearPlant::of_load_pressure(&nominal_plant(), 0.0, LinearLoad::Prescribed);
     let rig = drawn(0);
     let state = &rig.rest.state;
-    let model = TwoPressureModel::new(&rig.actuator, [state[2], state[3]], Member::Nominal, rig.friction);
+    let model =
+        TwoPressureModel::new(&rig.actuator, [state[2], state[3]], StiffeningMember::Nominal, rig.friction);
     let point = operating_point(&rig.actuator, 0.2, Condition::Command(0.3)).unwrap();
-    let parameters = two_pressure_linear_parameters(&model, &point, Direction::Extending);
+    let parameters = two_pressure_linear_parameters(&model, &point, SpoolDirection::Extending);
     let of_two_pressures = LinearPlant::of_two_pressures(&parameters, 0.0, LinearLoad::Prescribed);
     for (plant, known) in [
         (of_load_pressure.coefficients(), linear_model_coefficients(&nominal_plant())),
@@ -216,9 +217,13 @@ fn equal_chambers_need_one_pressure() {
     })
     .unwrap();
     let point = operating_point(&actuator, 0.25, Condition::Command(0.0)).unwrap();
-    let model =
-        TwoPressureModel::new(&actuator, [point.pressure_a, point.pressure_b], Member::Nominal, 100.0);
-    let parameters = two_pressure_linear_parameters(&model, &point, Direction::Mean);
+    let model = TwoPressureModel::new(
+        &actuator,
+        [point.pressure_a, point.pressure_b],
+        StiffeningMember::Nominal,
+        100.0,
+    );
+    let parameters = two_pressure_linear_parameters(&model, &point, SpoolDirection::Mean);
     let load = LinearLoad::Yielding { mass: 100.0, damping: 500.0, stiffness: 2e5 };
     let reduced = phea_hydraulics::two_pressure::reduce(&parameters);
     let one = LinearPlant::of_load_pressure(&reduced, 1e-11, load).coefficients().command;

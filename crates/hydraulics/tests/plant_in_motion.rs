@@ -15,12 +15,14 @@ use phea_hydraulics::cylinder::{Cylinder, areas_from_diameters};
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::force_sensor::ForceSensor;
 use phea_hydraulics::friction::Friction;
-use phea_hydraulics::line::{DynamicLine, END_SHARE, LaminarFriction, Line, LineModel, Member, Segments};
+use phea_hydraulics::line::{
+    DynamicLine, END_SHARE, LaminarFriction, Line, LineModel, Segments, StiffeningMember,
+};
 use phea_hydraulics::machine::{Chambers, LoadModel, Machine, MachineOptions};
 use phea_hydraulics::operating_point::{Condition, OperatingPoint, operating_point};
 use phea_hydraulics::plant::{BehindLines, LinearLoad, LinearPlant, PlantInMotion};
 use phea_hydraulics::reference_rig::{components, cylinder, hose, hose_line, leaking, pipe_line};
-use phea_hydraulics::servovalve::{Direction, Supply};
+use phea_hydraulics::servovalve::{SpoolDirection, Supply};
 use phea_hydraulics::stiffness::StiffnessModel;
 use phea_hydraulics::two_pressure::{
     TwoPressureLinearParameters, TwoPressureModel, two_pressure_linear_parameters,
@@ -86,9 +88,11 @@ fn parameters_at(
     (pressures, friction): ([f64; 2], f64),
 ) -> TwoPressureLinearParameters {
     let supply = Supply { pressure: supplied, ..actuator.components().supply };
-    let model =
-        TwoPressureModel { supply, ..TwoPressureModel::new(actuator, pressures, Member::Nominal, friction) };
-    two_pressure_linear_parameters(&model, point, Direction::Extending)
+    let model = TwoPressureModel {
+        supply,
+        ..TwoPressureModel::new(actuator, pressures, StiffeningMember::Nominal, friction)
+    };
+    two_pressure_linear_parameters(&model, point, SpoolDirection::Extending)
 }
 
 fn drawn(number: u64) -> Drawn {
@@ -117,7 +121,8 @@ fn drawn(number: u64) -> Drawn {
     let actuator = Actuator::new(leaking(parts, leakage)).unwrap();
     let parts = actuator.components();
     let line = |line: &Line, model: &LineModel| {
-        DynamicLine::new(line, &parts.fluid, actuator.mean_pressure(), Member::Nominal, model).unwrap()
+        DynamicLine::new(line, &parts.fluid, actuator.mean_pressure(), StiffeningMember::Nominal, model)
+            .unwrap()
     };
     let lines = [line(&parts.line_a, &models[0]), line(&parts.line_b, &models[1])];
     let (mass, stiffness, damping) = (spread(1.0, 500.0), spread(1e4, 1e8), spread(10.0, 1e4));
@@ -134,7 +139,8 @@ fn drawn(number: u64) -> Drawn {
     let named = &rest.state[..6 + 2 * usize::from(moves) + usize::from(unit.yields())];
     let supplied = supply_pressure(&unit, parts.supply.pressure, named);
     let parameters = parameters_at(supplied, &actuator, &point, (pressures, friction));
-    let own = Chambers::behind_lines(&actuator, Member::Nominal, [0.0; 2]).compliance(position, pressures);
+    let own = Chambers::behind_lines(&actuator, StiffeningMember::Nominal, [0.0; 2])
+        .compliance(position, pressures);
     let behind = BehindLines { lines, chambers: own, lumped: parameters.compliances };
     let supply = yielding(&actuator, &unit, point.command, [point.pressure_a, point.pressure_b], supplied);
     Drawn {

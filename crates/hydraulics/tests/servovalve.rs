@@ -6,7 +6,7 @@ use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::operating_point::{Condition, operating_point};
 use phea_hydraulics::reference_rig::{USEFUL_AREA, components, hose_line, valve, valve_with_equal_edges};
 use phea_hydraulics::servovalve::{
-    ChamberFlows, Direction, Edges, Openings, Servovalve, Supply, chamber_coefficients, chamber_flows,
+    ChamberFlows, Edges, Openings, Servovalve, SpoolDirection, Supply, chamber_coefficients, chamber_flows,
     control_coefficients, control_flow, edge_flows, flow_coefficient_from_rating,
     leakage_coefficient_from_rating, velocity_gain,
 };
@@ -57,7 +57,7 @@ fn control_coefficients_are_the_closed_forms_for_equal_edges() {
                 + s * leak * slope * ((near / 2.0).sqrt() - (far / 2.0).sqrt());
             let pressure = (flow * spool.abs() / nominal + leak * sech) / (8.0 * near).sqrt()
                 + leak * sech / (8.0 * far).sqrt();
-            let found = control_coefficients(&valve, &supply, spool, load_pressure, Direction::Mean);
+            let found = control_coefficients(&valve, &supply, spool, load_pressure, SpoolDirection::Mean);
             assert!((found.flow_gain / gain - 1.0).abs() < 1e-12);
             assert!((found.flow_pressure_coefficient / pressure - 1.0).abs() < 1e-12);
         }
@@ -67,7 +67,7 @@ fn control_coefficients_are_the_closed_forms_for_equal_edges() {
 #[test]
 fn ranges_of_table_6_3() {
     let valve = Servovalve { leakage_shape: 0.0, ..valve_with_equal_edges() };
-    let at = |spool, load| control_coefficients(&valve, &SUPPLY, spool, load, Direction::Extending);
+    let at = |spool, load| control_coefficients(&valve, &SUPPLY, spool, load, SpoolDirection::Extending);
     // ORIGIN: thesis Table 6.3 (one unit of the last digit)
     check("K_qU, no load", at(0.0, 0.0).flow_gain, 5.61e-5, 2.0 * 1e-7);
     // The printed lower end is 5.61e-5/sqrt(3); K_vp = 3.0e-7 itself gives 3.240e-5.
@@ -82,15 +82,15 @@ fn ranges_of_table_6_3() {
 fn velocity_gain_carries_the_same_flow_through_both_edges() {
     let gain = |direction| velocity_gain(&valve(), &SUPPLY, [USEFUL_AREA; 2], 0.0, direction).unwrap();
     // ORIGIN: recomputed by comparisons/recompute_rig.py, the edges of Table 5.1 in series at 70 bar
-    check("extending", USEFUL_AREA * gain(Direction::Extending), 6.51e-5, 1e-7);
-    check("retracting", USEFUL_AREA * gain(Direction::Retracting), 4.13e-5, 1e-7);
+    check("extending", USEFUL_AREA * gain(SpoolDirection::Extending), 6.51e-5, 1e-7);
+    check("retracting", USEFUL_AREA * gain(SpoolDirection::Retracting), 4.13e-5, 1e-7);
     // ORIGIN: recomputed by comparisons/recompute_rig.py, mean of both chambers at half the supply pressure
     let mean = |direction| control_coefficients(&valve(), &SUPPLY, 0.0, 0.0, direction).flow_gain;
-    check("mean of chambers, extending", mean(Direction::Extending), 6.59467e-5, 1e-10);
-    check("mean of chambers, retracting", mean(Direction::Retracting), 4.20936e-5, 1e-10);
+    check("mean of chambers, extending", mean(SpoolDirection::Extending), 6.59467e-5, 1e-10);
+    check("mean of chambers, retracting", mean(SpoolDirection::Retracting), 4.20936e-5, 1e-10);
     // ORIGIN: thesis Table 6.3, nominal K_qU 5.4e-5 (one unit of the last digit)
-    check("mean of both directions", mean(Direction::Mean), 5.4e-5, 2.0 * 1e-6);
-    assert_eq!(velocity_gain(&valve(), &SUPPLY, [1e-3, 1e-3], 1e5, Direction::Extending), None);
+    check("mean of both directions", mean(SpoolDirection::Mean), 5.4e-5, 2.0 * 1e-6);
+    assert_eq!(velocity_gain(&valve(), &SUPPLY, [1e-3, 1e-3], 1e5, SpoolDirection::Extending), None);
 }
 
 /// The leakage's share of the flow gain that thesis (4.21) leaves out.
@@ -99,9 +99,10 @@ fn leakage_adds_to_the_flow_gain_under_load() {
     let largest = (1..200)
         .map(|step| {
             let spool = 0.005 * f64::from(step);
-            let with = control_coefficients(&valve_with_equal_edges(), &SUPPLY, spool, 25e5, Direction::Mean);
+            let with =
+                control_coefficients(&valve_with_equal_edges(), &SUPPLY, spool, 25e5, SpoolDirection::Mean);
             let constant = Servovalve { leakage_shape: 0.0, ..valve_with_equal_edges() };
-            let without = control_coefficients(&constant, &SUPPLY, spool, 25e5, Direction::Mean);
+            let without = control_coefficients(&constant, &SUPPLY, spool, 25e5, SpoolDirection::Mean);
             with.flow_gain / without.flow_gain - 1.0
         })
         .fold(0.0, f64::max);
@@ -152,8 +153,14 @@ fn chamber_coefficients_are_the_derivatives_of_the_flows() {
     for valve in [valve(), valve_with_equal_edges()] {
         for spool in [-9.0, -0.3, -0.04, -1e-9, 1e-9, 0.02, 0.5, 10.0] {
             for (pressure_a, pressure_b) in [(35e5, 35e5), (69.9995e5, 300.0), (12e5, 71e5), (-0.5e5, 60e5)] {
-                let found =
-                    chamber_coefficients(&valve, &SUPPLY, spool, pressure_a, pressure_b, Direction::Mean);
+                let found = chamber_coefficients(
+                    &valve,
+                    &SUPPLY,
+                    spool,
+                    pressure_a,
+                    pressure_b,
+                    SpoolDirection::Mean,
+                );
                 let [u, a, b] = [(spool, 0), (pressure_a, 1), (pressure_b, 2)]
                     .map(|(value, index)| Dual::<3>::variable(value, index));
                 let flows =
@@ -176,9 +183,9 @@ fn chamber_coefficients_are_the_derivatives_of_the_flows() {
 #[test]
 fn direction_decides_at_null_and_the_mean_is_between() {
     let at = |direction| chamber_coefficients(&valve(), &SUPPLY, 0.0, 37e5, 24e5, direction);
-    let beside = |spool| chamber_coefficients(&valve(), &SUPPLY, spool, 37e5, 24e5, Direction::Mean);
+    let beside = |spool| chamber_coefficients(&valve(), &SUPPLY, spool, 37e5, 24e5, SpoolDirection::Mean);
     let (extending, retracting, mean) =
-        (at(Direction::Extending), at(Direction::Retracting), at(Direction::Mean));
+        (at(SpoolDirection::Extending), at(SpoolDirection::Retracting), at(SpoolDirection::Mean));
     for (one_sided, limit) in [(extending, beside(1e-12)), (retracting, beside(-1e-12))] {
         assert!((one_sided.flow_gain_a / limit.flow_gain_a - 1.0).abs() < 1e-9);
         assert!((one_sided.flow_gain_b / limit.flow_gain_b - 1.0).abs() < 1e-9);

@@ -8,7 +8,9 @@ use phea_dynamics::scalar::Dual;
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::cylinder::{Cylinder, annulus_area};
 use phea_hydraulics::machine::{Machine, MachineOptions};
-use phea_hydraulics::operating_point::{Balance, Load, OperatingPoint, Settled, Steady, operating_point};
+use phea_hydraulics::operating_point::{
+    Balance, OperatingPoint, Settled, Steady, SteadyLoad, operating_point,
+};
 use phea_hydraulics::reference_rig::{components, cylinder, hose_line, leaking, valve};
 use phea_hydraulics::servovalve::{Edges, Servovalve, Supply};
 use phea_hydraulics::stiffness::StiffnessModel;
@@ -53,8 +55,8 @@ impl Draw {
         let drop = supply.pressure - supply.tank_pressure;
         let pressure = self.even(-0.8, 0.8) * drop;
         let load = match share(&mut self.0) < 0.5 {
-            true => Load::Pressure(pressure),
-            false => Load::Force(pressure * cylinder.area_a.min(cylinder.area_b)),
+            true => SteadyLoad::Pressure(pressure),
+            false => SteadyLoad::Force(pressure * cylinder.area_a.min(cylinder.area_b)),
         };
         let reach = 1e-7 * (0.1 * drop).sqrt() / cylinder.area_a.max(cylinder.area_b);
         match share(&mut self.0) {
@@ -114,7 +116,7 @@ fn leaking_points_are_where_the_machine_rests() {
     for _ in 0..4000 {
         let actuator = draw.rig();
         let steady = draw.steady(&actuator);
-        if let Steady::Moving { load: Load::Pressure(_), .. } = steady {
+        if let Steady::Moving { load: SteadyLoad::Pressure(_), .. } = steady {
             continue; // the machine keeps a force
         }
         let leakage = draw.factor(1e-14, 1e-10);
@@ -159,7 +161,7 @@ fn settle<S: phea_dynamics::scalar::Scalar>(p: &[S]) -> Vec<S> {
         areas: [p[10], p[11]],
         leakage: Some(p[12]),
     };
-    let settled = balance.settle(Steady::Moving { velocity: p[13], load: Load::Force(p[14]) });
+    let settled = balance.settle(Steady::Moving { velocity: p[13], load: SteadyLoad::Force(p[14]) });
     vec![settled.command, settled.pressures[0], settled.pressures[1]]
 }
 
@@ -223,7 +225,7 @@ fn leakage_leaves_equal_pressures_alone() {
     };
     let settled = balance(Some(1e-11)).settle(Steady::Command(0.0));
     assert_eq!(settled.pressures, [35e5; 2]);
-    let moving = Steady::Moving { velocity: 0.0, load: Load::Force(0.0) };
+    let moving = Steady::Moving { velocity: 0.0, load: SteadyLoad::Force(0.0) };
     assert_eq!(balance(Some(1e-11)).settle(moving).command, 0.0);
     // ORIGIN: analytic, all of the load pressure gone through a piston that leaks without end
     let open = Balance { valve: valve(), ..balance(Some(1e-4)) }.settle(Steady::Command(0.0));

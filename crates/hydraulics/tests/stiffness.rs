@@ -5,7 +5,7 @@
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::cylinder::{Cylinder, areas_from_diameters};
 use phea_hydraulics::fluid::EntrainedAir;
-use phea_hydraulics::line::{Line, Member};
+use phea_hydraulics::line::{Line, StiffeningMember};
 use phea_hydraulics::reference_rig::{USEFUL_AREA, components, cylinder, hose, hose_line, pipe_line};
 use phea_hydraulics::stiffness::{
     LineLength, StiffnessModel, StrokeStiffness, chamber_compliance, hose_length_by_volume,
@@ -20,7 +20,7 @@ fn check(what: &str, value: f64, printed: f64, last_digit: f64) {
     assert!((value - printed).abs() <= 0.5 * last_digit, "{what}: {value} is not {printed}");
 }
 
-fn over_stroke(model: StiffnessModel, line: &Line, member: Member) -> StrokeStiffness {
+fn over_stroke(model: StiffnessModel, line: &Line, member: StiffeningMember) -> StrokeStiffness {
     chamber_compliance(model, [FLUID_MODULUS; 2], &cylinder(), [line, line], member).over_stroke()
 }
 
@@ -29,21 +29,21 @@ fn modulus_chain_of_the_thesis() {
     // ORIGIN: thesis 6.4.1 and Table A.1, recomputed by comparisons/recompute_rig.py
     check("A_u", USEFUL_AREA, 1.58336e-3, 1e-8);
     check("beta_hoSS", hose().static_modulus(), 6.363e7, 1e4);
-    check("beta_e", hose_line().effective_modulus(FLUID_MODULUS, Member::Nominal), 2.609e8, 1e5);
+    check("beta_e", hose_line().effective_modulus(FLUID_MODULUS, StiffeningMember::Nominal), 2.609e8, 1e5);
 }
 
 #[test]
 fn stiffness_of_hose_and_pipe_in_both_models() {
     // ORIGIN: recomputed by comparisons/recompute_rig.py; thesis 6.4.1 prints 2.24e6 and Table 6.3 4.11e6
-    let uniform = over_stroke(StiffnessModel::Uniform, &hose_line(), Member::Nominal);
+    let uniform = over_stroke(StiffnessModel::Uniform, &hose_line(), StiffeningMember::Nominal);
     check("uniform centre", uniform.minimum, 2.233e6, 1e3);
     check("uniform ends", uniform.maximum, 4.109e6, 1e3);
     check("uniform centre, thesis", uniform.minimum, 2.24e6, 2.0 * 1e4);
     check("uniform ends, thesis", uniform.maximum, 4.11e6, 2.0 * 1e4);
-    let by_volume = over_stroke(StiffnessModel::ByVolume, &hose_line(), Member::Nominal);
+    let by_volume = over_stroke(StiffnessModel::ByVolume, &hose_line(), StiffeningMember::Nominal);
     check("by volume centre", by_volume.minimum, 4_630_311.5, 0.1);
     check("by volume ends", by_volume.maximum, 4_944_558.5, 0.1);
-    let pipe = over_stroke(StiffnessModel::Uniform, &pipe_line(), Member::Nominal);
+    let pipe = over_stroke(StiffnessModel::Uniform, &pipe_line(), StiffeningMember::Nominal);
     check("pipe centre", pipe.minimum, 1.71e7, 1e5);
     check("pipe ends", pipe.maximum, 1.24e8, 1e6);
     assert!((uniform.minimum_position - 0.25).abs() < 1e-15);
@@ -65,9 +65,9 @@ fn stiffening_interval_brackets_the_nominal() {
 #[test]
 fn extremes_are_the_closed_forms_of_the_symmetric_cylinder() {
     let line = hose_line();
-    let (modulus, volume) = (line.effective_modulus(FLUID_MODULUS, Member::Nominal), line.volume());
+    let (modulus, volume) = (line.effective_modulus(FLUID_MODULUS, StiffeningMember::Nominal), line.volume());
     let (a, l) = (USEFUL_AREA, 0.5);
-    let range = over_stroke(StiffnessModel::Uniform, &line, Member::Nominal);
+    let range = over_stroke(StiffnessModel::Uniform, &line, StiffeningMember::Nominal);
     let minimum = 4.0 * modulus * a * a / (a * l + 2.0 * volume);
     let maximum = modulus * a * a * (a * l + 2.0 * volume) / (volume * (a * l + volume));
     assert!((range.minimum / minimum - 1.0).abs() < 1e-14);
@@ -76,12 +76,20 @@ fn extremes_are_the_closed_forms_of_the_symmetric_cylinder() {
 
 #[test]
 fn models_agree_when_the_line_is_as_stiff_as_the_fluid() {
-    let difference =
-        model_difference([FLUID_MODULUS; 2], &cylinder(), [&pipe_line(), &pipe_line()], Member::Nominal);
+    let difference = model_difference(
+        [FLUID_MODULUS; 2],
+        &cylinder(),
+        [&pipe_line(), &pipe_line()],
+        StiffeningMember::Nominal,
+    );
     assert!((difference.minimum_ratio - 1.0).abs() < 1e-14);
     assert!((difference.maximum_ratio - 1.0).abs() < 1e-14);
-    let hose =
-        model_difference([FLUID_MODULUS; 2], &cylinder(), [&hose_line(), &hose_line()], Member::Nominal);
+    let hose = model_difference(
+        [FLUID_MODULUS; 2],
+        &cylinder(),
+        [&hose_line(), &hose_line()],
+        StiffeningMember::Nominal,
+    );
     assert!(hose.minimum_ratio > 2.0 && hose.maximum_ratio > 1.2 && hose.line_compliance_share > 0.7);
 }
 
@@ -98,7 +106,7 @@ fn softest_position_of_an_asymmetric_cylinder_is_found_exactly() {
         [FLUID_MODULUS; 2],
         &asymmetric(),
         [&line, &line],
-        Member::Nominal,
+        StiffeningMember::Nominal,
     );
     let range = chambers.over_stroke();
     // ORIGIN: recomputed by comparisons/recompute_rig.py (bounded minimisation)
@@ -116,8 +124,14 @@ fn softest_position_leaves_the_stroke_when_one_line_is_long() {
     let long = Line::Volume { volume: 0.1, effective_bulk_modulus: 1.45e9 };
     let short = Line::Volume { volume: 1e-5, effective_bulk_modulus: 1.45e9 };
     let at = |lines| {
-        chamber_compliance(StiffnessModel::ByVolume, [FLUID_MODULUS; 2], &cylinder(), lines, Member::Nominal)
-            .over_stroke()
+        chamber_compliance(
+            StiffnessModel::ByVolume,
+            [FLUID_MODULUS; 2],
+            &cylinder(),
+            lines,
+            StiffeningMember::Nominal,
+        )
+        .over_stroke()
     };
     // Chamber B alone is a spring then, softest when it is largest: at the A end.
     assert_eq!((at([&long, &short]).minimum_position, at([&long, &short]).maximum_position), (0.0, 0.5));
@@ -126,13 +140,13 @@ fn softest_position_leaves_the_stroke_when_one_line_is_long() {
 
 #[test]
 fn lengths_undo_stiffnesses_in_both_models() {
-    let effective = hose_line().effective_modulus(FLUID_MODULUS, Member::Nominal);
-    let metre = hose().compliance_per_length(FLUID_MODULUS, Member::Nominal);
+    let effective = hose_line().effective_modulus(FLUID_MODULUS, StiffeningMember::Nominal);
+    let metre = hose().compliance_per_length(FLUID_MODULUS, StiffeningMember::Nominal);
     let (bore, stroke) = (12.7e-3, 0.5);
     for length in [0.3, 1.5, 12.0] {
         let line = Line::Hose { hose: hose(), length };
         for model in [StiffnessModel::Uniform, StiffnessModel::ByVolume] {
-            let stiffness = over_stroke(model, &line, Member::Nominal).minimum;
+            let stiffness = over_stroke(model, &line, StiffeningMember::Nominal).minimum;
             let closed = match model {
                 StiffnessModel::Uniform => {
                     hose_length_uniform(stiffness, USEFUL_AREA, stroke, bore, effective)
@@ -147,7 +161,7 @@ fn lengths_undo_stiffnesses_in_both_models() {
                 FLUID_MODULUS,
                 &cylinder(),
                 &hose_line(),
-                Member::Nominal,
+                StiffeningMember::Nominal,
                 stiffness,
             );
             let LineLength::Length(solved) = solved else { panic!("{solved:?}") };
@@ -173,7 +187,7 @@ fn printed_forms_of_the_sizing_equations() {
     let printed = 8.0 * a * a * r * FLUID_MODULUS * bracket
         / (pi * d * d * stiffness * (4.0 * eps * FLUID_MODULUS + r * bracket))
         - 2.0 * a * l / (pi * d * d);
-    let effective = hose_line().effective_modulus(FLUID_MODULUS, Member::Nominal);
+    let effective = hose_line().effective_modulus(FLUID_MODULUS, StiffeningMember::Nominal);
     assert!((hose_length_uniform(stiffness, a, l, d, effective) / printed - 1.0).abs() < 1e-13);
     let printed = 8.0 * r * FLUID_MODULUS * a * a * bracket
         / ((4.0 * eps * FLUID_MODULUS + r * bracket) * (2.0 * a * l + pi * d * d * 1.5));
@@ -185,7 +199,14 @@ fn no_hose_is_needed_when_the_chambers_are_soft_enough() {
     let solve = |stiffness| {
         let (cylinder, line) = (asymmetric(), hose_line());
         let model = StiffnessModel::ByVolume;
-        line_length_for_stiffness(model, FLUID_MODULUS, &cylinder, &line, Member::Nominal, stiffness)
+        line_length_for_stiffness(
+            model,
+            FLUID_MODULUS,
+            &cylinder,
+            &line,
+            StiffeningMember::Nominal,
+            stiffness,
+        )
     };
     // ORIGIN: analytic, the wanted stiffness far above 4 beta_0 A/L
     assert!(matches!(solve(1e9), LineLength::NotNeeded { .. }));
@@ -203,7 +224,7 @@ fn entrained_air_softens_the_chamber_at_lower_pressure() {
         Components { fluid: phea_hydraulics::fluid::Fluid { entrained_air: air, ..clean.fluid }, ..clean };
     let least = |components: Components, pressure: f64| {
         let actuator = Actuator::new(components).unwrap();
-        actuator.chamber_compliance([pressure; 2], Member::Nominal).over_stroke().minimum
+        actuator.chamber_compliance([pressure; 2], StiffeningMember::Nominal).over_stroke().minimum
     };
     assert_eq!(least(clean, 10e5), least(clean, 35e5));
     assert!(least(foamy, 10e5) < least(foamy, 35e5) && least(foamy, 35e5) < least(clean, 35e5));

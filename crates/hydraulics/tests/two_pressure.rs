@@ -10,13 +10,13 @@ use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::cylinder::{Cylinder, areas_from_diameters};
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::impedance::open_loop_impedance;
-use phea_hydraulics::line::Member;
+use phea_hydraulics::line::StiffeningMember;
 use phea_hydraulics::linear::{linear_model, response_difference, transfer_functions};
-use phea_hydraulics::operating_point::{Condition, Load, OperatingPoint, operating_point};
+use phea_hydraulics::operating_point::{Condition, OperatingPoint, SteadyLoad, operating_point};
 use phea_hydraulics::reference_rig::{
     USEFUL_AREA, components, cylinder, hose_line, nominal_plant, pipe_line, valve_with_equal_edges,
 };
-use phea_hydraulics::servovalve::{Direction, Edges, Servovalve};
+use phea_hydraulics::servovalve::{Edges, Servovalve, SpoolDirection};
 use phea_hydraulics::stiffness::StiffnessModel;
 use phea_hydraulics::two_pressure::{
     TwoPressureInput, TwoPressureLinearParameters, TwoPressureModel, TwoPressureState, linearize, rates,
@@ -24,7 +24,7 @@ use phea_hydraulics::two_pressure::{
 };
 
 fn model(actuator: &Actuator, point: &OperatingPoint, friction: f64) -> TwoPressureModel {
-    TwoPressureModel::new(actuator, [point.pressure_a, point.pressure_b], Member::Nominal, friction)
+    TwoPressureModel::new(actuator, [point.pressure_a, point.pressure_b], StiffeningMember::Nominal, friction)
 }
 
 /// Matrices of the nonlinear equations at a state, by dual numbers: states first, then command and load velocity.
@@ -84,10 +84,10 @@ fn linearisation_agrees_with_dual_numbers_everywhere() {
     let conditions = [
         Condition::Command(0.03),
         Condition::Command(-0.4),
-        Condition::Load(Load::Force(3000.0)),
-        Condition::Load(Load::Force(-2000.0)),
-        Condition::Motion(1.5, Load::Force(1000.0)),
-        Condition::Motion(-0.7, Load::Force(2500.0)),
+        Condition::Load(SteadyLoad::Force(3000.0)),
+        Condition::Load(SteadyLoad::Force(-2000.0)),
+        Condition::Motion(1.5, SteadyLoad::Force(1000.0)),
+        Condition::Motion(-0.7, SteadyLoad::Force(2500.0)),
     ];
     for components in rigs() {
         let actuator = Actuator::new(components).unwrap();
@@ -96,7 +96,7 @@ fn linearisation_agrees_with_dual_numbers_everywhere() {
                 let point = operating_point(&actuator, position, condition).unwrap();
                 let model = model(&actuator, &point, 299.0);
                 let (state, input) = model.at(&point);
-                let parameters = two_pressure_linear_parameters(&model, &point, Direction::Mean);
+                let parameters = two_pressure_linear_parameters(&model, &point, SpoolDirection::Mean);
                 let system = linearize(&parameters).unwrap();
                 let (jacobian, rest) = jacobian(&model, &state, &input);
                 check_against_jacobian(&system, &jacobian);
@@ -114,7 +114,7 @@ fn linearisation_agrees_with_dual_numbers_everywhere() {
 #[test]
 fn rates_of_the_nonlinear_model() {
     let actuator = Actuator::new(components(hose_line(), StiffnessModel::ByVolume)).unwrap();
-    let model = TwoPressureModel::new(&actuator, [0.0; 2], Member::Nominal, 100.0);
+    let model = TwoPressureModel::new(&actuator, [0.0; 2], StiffeningMember::Nominal, 100.0);
     let state = TwoPressureState::from_array([-0.37, 12.0, 21e5, 48e5, 1.3e-4, -0.02]);
     let input = TwoPressureInput { command: 0.9, load_velocity: 0.004, load_position: 0.31 };
     // ORIGIN: recomputed by comparisons/recompute_rig.py (eight digits)
@@ -128,7 +128,7 @@ fn rates_of_the_nonlinear_model() {
 #[test]
 fn recorded_rates_are_the_rates() {
     let actuator = Actuator::new(rigs()[2]).unwrap();
-    let model = TwoPressureModel::new(&actuator, [35e5; 2], Member::Nominal, 100.0);
+    let model = TwoPressureModel::new(&actuator, [35e5; 2], StiffeningMember::Nominal, 100.0);
     let names = ["spool", "spool_rate", "pressure_a", "pressure_b", "deflection", "velocity", "command"];
     let recorded = Expression::record(&names, |p| {
         let state = TwoPressureState::from_array([p[0], p[1], p[2], p[3], p[4], p[5]]);
@@ -154,13 +154,13 @@ fn open_loop_impedance_of_the_two_pressure_model_is_passive() {
     for components in rigs() {
         let actuator = Actuator::new(components).unwrap();
         for (position, condition) in
-            [(0.0, Condition::Command(0.0)), (0.4, Condition::Motion(2.0, Load::Force(2000.0)))]
+            [(0.0, Condition::Command(0.0)), (0.4, Condition::Motion(2.0, SteadyLoad::Force(2000.0)))]
         {
             let point = operating_point(&actuator, position, condition).unwrap();
             let parameters = two_pressure_linear_parameters(
                 &model(&actuator, &point, 100.0),
                 &point,
-                Direction::Extending,
+                SpoolDirection::Extending,
             );
             let model = transfer_functions(&two_pressure_coefficients(&parameters)).unwrap();
             let impedance = open_loop_impedance(&model).unwrap();
@@ -183,10 +183,10 @@ fn null_valve_takes_the_mean_slope_of_both_directions() {
         linearize(&two_pressure_linear_parameters(&model, &point, direction)).unwrap().a().clone()
     };
     check_against_jacobian(
-        &linearize(&two_pressure_linear_parameters(&model, &point, Direction::Mean)).unwrap(),
+        &linearize(&two_pressure_linear_parameters(&model, &point, SpoolDirection::Mean)).unwrap(),
         &duals,
     );
-    let (extending, retracting) = (of(Direction::Extending), of(Direction::Retracting));
+    let (extending, retracting) = (of(SpoolDirection::Extending), of(SpoolDirection::Retracting));
     assert!((extending[(2, 0)] + retracting[(2, 0)] - 2.0 * duals[2][0]).abs() < 1e-12 * extending[(2, 0)]);
     // ORIGIN: analytic, K_v3 sqrt(p_S - p_A) over K_v4 sqrt(p_A) where leakage balances
     let ratio = (3.2e-7 / 2.5e-7) * (2.2e-9 / 2.35e-9);
@@ -198,9 +198,9 @@ fn null_valve_takes_the_mean_slope_of_both_directions() {
 fn coefficients_and_state_space_respond_alike() {
     for components in rigs() {
         let actuator = Actuator::new(components).unwrap();
-        let point = operating_point(&actuator, 0.15, Condition::Load(Load::Force(1000.0))).unwrap();
+        let point = operating_point(&actuator, 0.15, Condition::Load(SteadyLoad::Force(1000.0))).unwrap();
         let model = model(&actuator, &point, 150.0);
-        let parameters = two_pressure_linear_parameters(&model, &point, Direction::Mean);
+        let parameters = two_pressure_linear_parameters(&model, &point, SpoolDirection::Mean);
         let system = linearize(&parameters).unwrap();
         let plant = two_pressure_coefficients(&parameters);
         let rational = transfer_functions(&plant).unwrap();
@@ -228,7 +228,7 @@ fn matched(position: f64) -> TwoPressureLinearParameters {
     let components = Components { valve, ..components(hose_line(), StiffnessModel::Uniform) };
     let actuator = Actuator::new(components).unwrap();
     let point = operating_point(&actuator, position, Condition::Command(0.0)).unwrap();
-    two_pressure_linear_parameters(&model(&actuator, &point, 100.0), &point, Direction::Extending)
+    two_pressure_linear_parameters(&model(&actuator, &point, 100.0), &point, SpoolDirection::Extending)
 }
 
 fn grid() -> Vec<f64> {
@@ -267,9 +267,9 @@ fn fifth_order_model_errs_off_mid_stroke() {
 #[test]
 fn reduction_of_an_asymmetric_actuator_keeps_both_ends() {
     let actuator = Actuator::new(rigs()[2]).unwrap();
-    let point = operating_point(&actuator, 0.2, Condition::Load(Load::Force(2000.0))).unwrap();
+    let point = operating_point(&actuator, 0.2, Condition::Load(SteadyLoad::Force(2000.0))).unwrap();
     let parameters =
-        two_pressure_linear_parameters(&model(&actuator, &point, 120.0), &point, Direction::Extending);
+        two_pressure_linear_parameters(&model(&actuator, &point, 120.0), &point, SpoolDirection::Extending);
     let full = transfer_functions(&two_pressure_coefficients(&parameters)).unwrap();
     let reduced = linear_model(&reduce(&parameters)).unwrap();
     let difference = |frequencies: &[f64], load: bool| {

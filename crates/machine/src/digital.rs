@@ -7,11 +7,11 @@ use phea_dynamics::random;
 use phea_dynamics::simulation::{Plant, Sampler};
 
 use super::control::Sampled;
-use super::samples::{Sample, Samples};
+use super::samples::{ControllerSamples, Sample};
 
 /// All that a sampled controller knows.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Memory {
+pub struct DigitalMemory {
     /// Its last command, V.
     pub command_v: f64,
     /// Of its sections.
@@ -28,7 +28,7 @@ pub enum Waking {
     /// Holding a command while reference and measurement stand still: these three.
     Holding([f64; 3]),
     /// Where another run ended.
-    Resumed(Memory),
+    Resumed(DigitalMemory),
 }
 
 /// A sampled controller at work.
@@ -43,14 +43,14 @@ pub struct Digital<'a> {
     random: u64,
     /// Before its first command takes effect, V.
     held: f64,
-    log: &'a RefCell<Samples>,
+    log: &'a RefCell<ControllerSamples>,
     /// Where it leaves what it knows.
-    memory: Option<&'a RefCell<Memory>>,
+    memory: Option<&'a RefCell<DigitalMemory>>,
 }
 
 impl<'a> Digital<'a> {
     /// A controller that begins so.
-    pub fn new(sampled: &'a Sampled, waking: &Waking, log: &'a RefCell<Samples>) -> Digital<'a> {
+    pub fn new(sampled: &'a Sampled, waking: &Waking, log: &'a RefCell<ControllerSamples>) -> Digital<'a> {
         let controller = &sampled.controller;
         let (state, held, random) = match waking {
             Waking::AtRest => (controller.at_rest(), 0.0, sampled.seed),
@@ -67,7 +67,7 @@ impl<'a> Digital<'a> {
     }
 
     /// Leaves what it knows after each sample.
-    pub fn remembered_in(self, memory: &'a RefCell<Memory>) -> Digital<'a> {
+    pub fn remembered_in(self, memory: &'a RefCell<DigitalMemory>) -> Digital<'a> {
         Digital { memory: Some(memory), ..self }
     }
 }
@@ -114,7 +114,7 @@ impl Sampler for Digital<'_> {
         });
         if let Some(memory) = self.memory {
             let memories = self.state.memories();
-            *memory.borrow_mut() = Memory { command_v, memories, random: self.random };
+            *memory.borrow_mut() = DigitalMemory { command_v, memories, random: self.random };
         }
         command_v
     }

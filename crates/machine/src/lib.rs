@@ -19,8 +19,8 @@ mod samples;
 mod shaken;
 
 pub use control::{Commanded, Control, Sampled, Watcher};
-pub use digital::{Digital, Memory, Waking};
+pub use digital::{Digital, DigitalMemory, Waking};
 pub use lanes::{Fleet, Lanewise, one_by_one};
-pub use rest::{Rest, Standing, at_rest};
-pub use samples::{Sample, Samples};
+pub use rest::{HeldInputs, Rest, at_rest};
+pub use samples::{ControllerSamples, Sample};
 pub use shaken::{Shaken, force, force_amplitude};

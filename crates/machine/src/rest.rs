@@ -8,7 +8,7 @@ use super::control::{Commanded, Control};
 
 /// What stands still while a loop rests.
 #[derive(Clone, Copy, Debug)]
-pub struct Standing {
+pub struct HeldInputs {
     /// N.
     pub reference_n: f64,
     /// Of an open loop, V.
@@ -39,7 +39,7 @@ pub fn at_rest(
     control: &Control,
     guess: &[f64],
     beginning: &Beginning,
-    standing: Standing,
+    standing: HeldInputs,
 ) -> Result<Rest, EquilibriumError> {
     let machine = control.sensed().plant();
     let [ground, _] = beginning.inputs;

@@ -21,14 +21,14 @@ pub struct Sample {
 
 /// What is kept of a sampled controller on the way.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Samples {
+pub struct ControllerSamples {
     /// The last one.
     pub last: Option<Sample>,
     /// When the command came to its limit (`true`) or left it, s.
     pub limits: Vec<(f64, bool)>,
 }
 
-impl Samples {
+impl ControllerSamples {
     pub(crate) fn take(&mut self, sample: Sample) {
         let before = self.last.is_some_and(|last| last.limited);
         if before != sample.limited {

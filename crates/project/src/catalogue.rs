@@ -11,7 +11,7 @@
 //! let hose = catalogue.find(Kind::Hose, "eaton_synflex_3130_08").expect("built in");
 //! assert_eq!(hose.hose.as_ref().map(|hose| hose.bore), Some(0.0127));
 //! assert_eq!(hose.source_of("bore"), "Ledezma (2019), section 6.4.1 and Table A.1");
-//! # Ok::<(), phea_project::Report>(())
+//! # Ok::<(), phea_project::Refusal>(())
 //! ```
 
 mod built_in;
@@ -48,12 +48,12 @@ impl Kind {
 /// Components by name.
 #[derive(Clone, Debug, Default)]
 pub struct Catalogue {
-    entries: Vec<Arc<Entry>>,
+    entries: Vec<Arc<CatalogueEntry>>,
 }
 
 /// One product.
 #[derive(Clone, Debug)]
-pub struct Entry {
+pub struct CatalogueEntry {
     /// What it is.
     pub kind: Kind,
     /// The name projects use.
@@ -74,7 +74,7 @@ pub struct Entry {
     pub(crate) values: Node,
 }
 
-impl Entry {
+impl CatalogueEntry {
     /// Author, title and table a number comes from.
     pub fn source_of(&self, key: &str) -> String {
         let own = self.sources.iter().find(|(name, _)| name == key).map(|(_, source)| source);
@@ -84,12 +84,12 @@ impl Entry {
 
 impl Catalogue {
     /// The entry of that kind and name.
-    pub fn find(&self, kind: Kind, name: &str) -> Option<&Entry> {
+    pub fn find(&self, kind: Kind, name: &str) -> Option<&CatalogueEntry> {
         self.entries(kind).find(|entry| entry.name == name)
     }
 
     /// The entries of that kind, built-in ones first, each group by name.
-    pub fn entries(&self, kind: Kind) -> impl Iterator<Item = &Entry> {
+    pub fn entries(&self, kind: Kind) -> impl Iterator<Item = &CatalogueEntry> {
         self.entries.iter().map(Arc::as_ref).filter(move |entry| entry.kind == kind)
     }
 

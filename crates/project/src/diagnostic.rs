@@ -36,7 +36,7 @@ pub enum Severity {
 
 /// Why a project was refused: every finding of one run, and the texts they point into.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Report {
+pub struct Refusal {
     /// Errors first, each in file order.
     pub diagnostics: Vec<Diagnostic>,
     /// How many more errors there are beyond those listed.
@@ -55,7 +55,7 @@ pub fn render(diagnostics: &[Diagnostic], texts: &[(String, String)], styled: bo
     diagnostics.iter().map(one).collect::<Vec<_>>().join("\n\n")
 }
 
-impl Report {
+impl Refusal {
     /// All findings for people; see [`render`].
     pub fn render(&self, styled: bool) -> String {
         let listed = render(&self.diagnostics, &self.texts, styled);
@@ -63,13 +63,13 @@ impl Report {
     }
 }
 
-impl std::fmt::Display for Report {
+impl std::fmt::Display for Refusal {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(&self.render(false))
     }
 }
 
-impl std::error::Error for Report {}
+impl std::error::Error for Refusal {}
 
 impl Diagnostic {
     fn groups<'a>(&'a self, texts: &'a [(String, String)]) -> Vec<Group<'a>> {

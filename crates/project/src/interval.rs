@@ -5,7 +5,7 @@ use super::visitor::{Form, Visitor};
 
 /// A number known within bounds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Interval {
+pub struct BoundedNumber {
     /// The value to design with.
     pub nominal: f64,
     /// The least it may be.
@@ -14,26 +14,26 @@ pub struct Interval {
     pub maximum: f64,
 }
 
-impl Interval {
+impl BoundedNumber {
     /// A number without spread.
     pub fn exactly(value: f64) -> Self {
-        Interval { nominal: value, minimum: value, maximum: value }
+        BoundedNumber { nominal: value, minimum: value, maximum: value }
     }
 
     fn is_exact(&self) -> bool {
         self.minimum == self.nominal && self.nominal == self.maximum
     }
 
-    pub(crate) fn visit<V: Visitor>(v: &mut V, key: Key, field: &mut Option<Interval>) {
+    pub(crate) fn visit<V: Visitor>(v: &mut V, key: Key, field: &mut Option<BoundedNumber>) {
         let spread = field.is_some_and(|interval| !interval.is_exact());
         if v.form(key, if spread { Form::Table } else { Form::Number }) != Form::Table {
             let mut number = field.map(|interval| interval.nominal);
             v.optional(key, &mut number);
-            *field = number.map(Interval::exactly);
+            *field = number.map(BoundedNumber::exactly);
             return;
         }
         let part = |name, doc| Key { name, doc, default: None, ..key };
-        v.table(key, field, |interval: &mut Interval, v: &mut V| {
+        v.table(key, field, |interval: &mut BoundedNumber, v: &mut V| {
             v.quantity(part("nominal", "The value to design with."), &mut interval.nominal);
             v.quantity(part("minimum", "The least it may be."), &mut interval.minimum);
             v.quantity(part("maximum", "The most it may be."), &mut interval.maximum);

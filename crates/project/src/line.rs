@@ -1,6 +1,6 @@
 //! `[line]`, `[line.a]` and `[line.b]`.
 
-use super::interval::Interval;
+use super::interval::BoundedNumber;
 use super::key::{key, plain};
 use super::line_motion::LineMotion;
 use super::visitor::{Kinds, Visitor};
@@ -34,7 +34,7 @@ pub struct Line {
     /// What it is made of.
     pub component: Component,
     /// r_β, dynamic over static modulus of the hose.
-    pub dynamic_stiffening: Option<Interval>,
+    pub dynamic_stiffening: Option<BoundedNumber>,
     /// How it moves.
     pub motion: LineMotion,
 }
@@ -186,7 +186,7 @@ impl Line {
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
         self.component.visit(v);
         let k = key("dynamic_stiffening", &RATIO, "r_β, the hose's dynamic over its static modulus.");
-        Interval::visit(v, k.at_least(1.0), &mut self.dynamic_stiffening);
+        BoundedNumber::visit(v, k.at_least(1.0), &mut self.dynamic_stiffening);
         v.variant(plain("model", "What of the line moves."), &mut self.motion, false);
     }
 }

@@ -104,7 +104,7 @@ impl Project {
     /// let project = read(&Memory::default().with("p.toml", text.as_str()), "p.toml", &[], &[])?.project;
     /// let force = project.uncertain_numbers().pop().filter(|last| last.name == "operating_point.load_force");
     /// assert_eq!(force.map(|one| (one.minimum, one.nominal, one.maximum)), Some((-2000.0, 0.0, 5000.0)));
-    /// # Ok::<(), phea_project::Report>(())
+    /// # Ok::<(), phea_project::Refusal>(())
     /// ```
     pub fn uncertain_numbers(&self) -> Vec<Uncertain> {
         let region = self.family.as_ref().and_then(|family| family.operating_region.as_ref());

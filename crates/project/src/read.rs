@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use sha2::{Digest, Sha256};
 
-use super::diagnostic::{Report, Severity};
+use super::diagnostic::{Refusal, Severity};
 use super::key::{Key, key};
 use super::linear::LINEAR_PARAMETERS;
 use super::listing::{KeyEntry, Listing};
@@ -22,7 +22,7 @@ use phea_quantity::{Dimension, RATIO, display};
 /// and folders are added.
 ///
 /// # Errors
-/// [`Report`] with everything that is wrong, each with file, line and column.
+/// [`Refusal`] with everything that is wrong, each with file, line and column.
 ///
 /// # Example
 /// ```
@@ -33,14 +33,14 @@ use phea_quantity::{Dimension, RATIO, display};
 /// assert_eq!(loaded.project.actuator.map(|actuator| actuator.supply.pressure), Some(80e5));
 /// let refused = project::read(&source, "rig.toml", &["supply.pressure=80 mm".to_string()], &[]).unwrap_err();
 /// assert_eq!(refused.diagnostics[0].message, "expected a pressure, found a length");
-/// # Ok::<(), phea_project::Report>(())
+/// # Ok::<(), phea_project::Refusal>(())
 /// ```
 pub fn read(
     source: &dyn Source,
     path: &str,
     settings: &[String],
     catalogues: &[String],
-) -> Result<Loaded, Report> {
+) -> Result<Loaded, Refusal> {
     let mut findings = Findings::default();
     let catalogue = Catalogue::gather(source, catalogues, &mut findings);
     let bytes = match source.read(path) {
@@ -253,7 +253,7 @@ impl Project {
     /// let other = project.with_numbers(&[("supply.pressure", 6e6), ("cylinder.moving_mass", 20.0)]);
     /// assert_eq!(other.and_then(|other| other.number("supply.pressure")), Some(6e6));
     /// assert_eq!(project.with_numbers(&[("supply.pressure", 6e6), ("supply.colour", 1.0)]), None);
-    /// # Ok::<(), phea_project::Report>(())
+    /// # Ok::<(), phea_project::Refusal>(())
     /// ```
     #[must_use]
     pub fn with_numbers(&self, numbers: &[(&str, f64)]) -> Option<Project> {

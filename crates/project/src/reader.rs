@@ -66,14 +66,14 @@ struct Layer<'a> {
     /// Keys of it that do not count.
     hidden: Vec<&'static str>,
     /// The catalogue's entry it comes from.
-    entry: Option<&'a crate::catalogue::Entry>,
+    entry: Option<&'a crate::catalogue::CatalogueEntry>,
 }
 
 /// A value that was found.
 #[derive(Clone, Copy)]
 struct Hit<'a> {
     node: &'a Node,
-    entry: Option<&'a crate::catalogue::Entry>,
+    entry: Option<&'a crate::catalogue::CatalogueEntry>,
 }
 
 impl<'a> Reader<'a> {

@@ -33,12 +33,12 @@ pub enum Speed {
     /// s, its time constant.
     TimeConstant(f64),
     /// Its settling time.
-    Settling(Settling),
+    Settling(SettlingTime),
 }
 
 /// A settling time and its band.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Settling {
+pub struct SettlingTime {
     /// s.
     pub time: f64,
     /// Percent of the step.
@@ -47,7 +47,7 @@ pub struct Settling {
 
 impl Default for Speed {
     fn default() -> Self {
-        Speed::Settling(Settling::default())
+        Speed::Settling(SettlingTime::default())
     }
 }
 
@@ -59,13 +59,13 @@ impl Speed {
         };
         let k = key("time_constant", &TIME, "Time constant of the closed loop; or `settling_time`.");
         v.optional(k.positive(), &mut constant);
-        v.way(&["settling_time"], &mut settling, Settling::visit);
+        v.way(&["settling_time"], &mut settling, SettlingTime::visit);
         v.one_of(&["time_constant", "settling_time"], true);
         *self = constant.map_or(Speed::Settling(settling.unwrap_or_default()), Speed::TimeConstant);
     }
 }
 
-impl Settling {
+impl SettlingTime {
     fn visit<V: Visitor>(&mut self, v: &mut V) {
         let k = key("settling_time", &TIME, "Settling time, with `settling_band_percent`.").positive();
         v.quantity(k, &mut self.time);

@@ -118,8 +118,8 @@ pub struct WriteError {
 /// # Example
 /// ```
 /// use std::io::Write;
-/// use phea_project::source::{Destination, Held};
-/// let held = Held::default();
+/// use phea_project::source::{Destination, HeldFiles};
+/// let held = HeldFiles::default();
 /// let mut table = held.begin("table.csv")?;
 /// table.write_all(b"time_s\n")?;
 /// table.finish()?;
@@ -131,16 +131,16 @@ pub struct WriteError {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Default)]
-pub struct Held(Mutex<Vec<OutputFile>>);
+pub struct HeldFiles(Mutex<Vec<OutputFile>>);
 
-impl Held {
+impl HeldFiles {
     /// All that were finished, in that order.
     pub fn into_files(self) -> Vec<OutputFile> {
         self.0.into_inner().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-impl Destination for Held {
+impl Destination for HeldFiles {
     fn begin<'a>(&'a self, name: &str) -> Result<Box<dyn Unfinished + 'a>, WriteError> {
         let file = OutputFile { name: name.to_string(), bytes: Vec::new() };
         Ok(Box::new(Growing { file, finished: &self.0 }))

@@ -1,6 +1,6 @@
 //! Texts, places in them, and findings: what everything that reads a file shares.
 
-use super::diagnostic::{Diagnostic, Report, Severity};
+use super::diagnostic::{Diagnostic, Refusal, Severity};
 
 /// Where something is written: which text, and its bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -151,7 +151,7 @@ impl Findings {
     }
 
     /// Everything found, in order of place, without what a syntax error of the same text explains.
-    pub fn report(self) -> Report {
+    pub fn report(self) -> Refusal {
         let Findings { texts, mut found, more, .. } = self;
         let line = |place: &Place| texts.get(place.text).map_or(0, |text| text.line(place.start));
         let broken: Vec<(usize, usize)> =
@@ -165,7 +165,11 @@ impl Findings {
         let more = more + found.len().saturating_sub(MAXIMUM_LISTED);
         found.truncate(MAXIMUM_LISTED);
         let diagnostics = found.iter().filter_map(|f| Some(texts.get(f.place.text)?.diagnostic(f))).collect();
-        Report { diagnostics, more, texts: texts.into_iter().map(|text| (text.name, text.content)).collect() }
+        Refusal {
+            diagnostics,
+            more,
+            texts: texts.into_iter().map(|text| (text.name, text.content)).collect(),
+        }
     }
 }
 

@@ -10,10 +10,10 @@
 use phea_project::catalogue::{self, Kind};
 use phea_project::source::Memory;
 use phea_project::{
-    self as project, Component, Cylinder, HoseExpansion, Line, Loaded, Origin, Project, Report, STARTER,
+    self as project, Component, Cylinder, HoseExpansion, Line, Loaded, Origin, Project, Refusal, STARTER,
 };
 
-fn read(text: &str) -> Result<Loaded, Report> {
+fn read(text: &str) -> Result<Loaded, Refusal> {
     project::read(&Memory::default().with("rig.toml", text), "rig.toml", &[], &[])
 }
 

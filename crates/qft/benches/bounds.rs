@@ -14,7 +14,7 @@ use std::time::Instant;
 use num_complex::Complex64;
 use phea_dynamics::linear::{Polynomial, TransferFunction};
 use phea_dynamics::portable;
-use phea_qft::bound::{BoundError, BoundFunction, Fill, GainIntervals};
+use phea_qft::bound::{BoundError, BoundFunction, GainIntervals, TemplateFill};
 use phea_qft::specification::{Limit, Requirement};
 use phea_qft::template::{Resolution, Template, TemplatePoint};
 
@@ -159,7 +159,7 @@ fn bound(task: &Task, frequency: f64) -> Result<Vec<GainIntervals>, BoundError> 
         outlines: Vec::new(),
         resolution: Resolution::Members,
     };
-    let function = BoundFunction::new(&template, &task.requirement, Fill::Points)?;
+    let function = BoundFunction::new(&template, &task.requirement, TemplateFill::Points)?;
     let phase = |index: u32| -TAU * f64::from(index) / f64::from(task.phases - 1);
     Ok((0..task.phases).map(|index| function.forbidden(phase(index))).collect())
 }

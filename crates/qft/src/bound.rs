@@ -33,7 +33,7 @@ pub struct Bound {
 
 /// What of a template counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Fill {
+pub enum TemplateFill {
     /// Its plants alone. Where they are sparse, the regions that neighbours forbid do not overlap, and islands seem allowed between them.
     Points,
     /// Its plants, every point of its outlines, and what these enclose. A side of an outline is taken as straight in P0/P (for the control effort

@@ -14,7 +14,7 @@ mod stabilising;
 
 pub use attempt::DesignError;
 pub use candidates::gain_range;
-pub use diagnosis::{Constraint, Finding, Party, Place, Severity, SharedLimit, diagnose};
+pub use diagnosis::{Constraint, ConstraintPlace, Finding, FindingSeverity, Party, SharedLimit, diagnose};
 pub use problem::{ControllerChoice, DesignOptions, DesignProblem, Objective, PrefilterChoice};
 pub use result::{BindingLimit, Conflict, Design, DesignRound, DesignStatus, Relaxation, Starts};
 pub use run::{DesignOutcome, design, design_again};

@@ -16,10 +16,10 @@ mod start;
 mod structure;
 mod subproblem;
 
-pub use descent::{Binding, DescentOptions, DescentResult, DescentStatus, Work, descend};
+pub use descent::{Binding, DescentOptions, DescentResult, DescentStatus, DescentWork, descend};
 pub use sample_stability::{SampleJudgement, SampleStability};
 pub use samples::{Samples, SamplesError, search_frequencies};
 pub use search::{Aim, Judgement, MarginRow, SearchProblem, Slopes};
 pub use shaping::{SampledMargin, Shaping};
-pub use start::{End, SearchOptions, SearchResult, SearchStatus, search};
+pub use start::{DescentEnd, SearchOptions, SearchResult, SearchStatus, search};
 pub use structure::{Part, Structure, StructureResponse};

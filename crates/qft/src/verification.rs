@@ -14,7 +14,7 @@ mod search;
 mod start;
 
 pub(crate) use asymptote::{End, tracking_ratio};
-pub use audit::{AuditProblem, TOLERANCE_DB, TrackingJudgement, Work, audit_specifications};
+pub use audit::{AuditProblem, AuditWork, TOLERANCE_DB, TrackingJudgement, audit_specifications};
 pub(crate) use audit::{audit_among, corners};
 pub(crate) use minimum::between;
 

@@ -19,7 +19,7 @@ use phea_dynamics::simulation::{
     CommandedPlant, Input, InputSchedule, Observer, Outcome, Profile, Queue, Sampler, Sensed, Settings,
     Status, System, Task, drive,
 };
-use phea_hydraulics::machine::{Machine, MachineOptions, Start};
+use phea_hydraulics::machine::{Machine, MachineOptions, StartValues};
 use phea_workbench::project::{self, MotionShape, Project, Signal};
 use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
@@ -137,11 +137,11 @@ impl Bench {
         let machine = Machine::new(&rig.actuator, &MachineOptions::default())?;
         let scenario = project.scenarios.first().ok_or("no scenario")?;
         let stated = scenario.start.as_ref().ok_or("no start")?;
-        let beginning = machine.start(&Start {
+        let beginning = machine.start(&StartValues {
             position: stated.position.unwrap_or(0.0),
             pressure_a: stated.pressure_a.unwrap_or(0.0),
             pressure_b: stated.pressure_b.unwrap_or(0.0),
-            ..Start::default()
+            ..StartValues::default()
         })?;
         let steps: Vec<(f64, f64)> = scenario.reference.iter().flat_map(Signal::steps).collect();
         let reference = Input::Value(Profile::steps(0.0, &steps)?);

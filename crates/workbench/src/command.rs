@@ -25,7 +25,7 @@ use crate::design::{self, design_and_repair, design_project};
 use crate::family::{family, visited_box};
 use crate::figure::FigureError;
 use crate::linearize::SweepRequest;
-use crate::project::{Loaded, Report as Refusal};
+use crate::project::{Loaded, Refusal};
 use crate::quantity::{self, LENGTH, VOLTAGE_PER_FORCE};
 use crate::report::{Decision, Report, report};
 use crate::rig::{RigError, sizing_problem};
@@ -34,7 +34,7 @@ use crate::setup::Setup;
 use crate::shaping::{self, RequestedChange, Shaped, shape};
 use crate::simulate::{SimulateError, compare_projects};
 use crate::sizing::{self, Question, size};
-use crate::source::{Destination, Held, Source};
+use crate::source::{Destination, HeldFiles, Source};
 use crate::specification::{self, specifications, wishes};
 use crate::trial::{Agreement, tried};
 use linearize::{linearize_answer, swept_answer};
@@ -185,7 +185,7 @@ pub fn answer_watched(
     request: &Request,
     watch: Watch<'_>,
 ) -> Result<Answer, CommandError> {
-    let held = Held::default();
+    let held = HeldFiles::default();
     let mut answer = answer_into(source, loaded, catalogues, request, Some(&held), watch)?;
     answer.files.splice(0..0, held.into_files());
     Ok(answer)

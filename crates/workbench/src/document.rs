@@ -7,7 +7,7 @@ mod table;
 mod terminal;
 mod typeset;
 
-pub(crate) use cell::{Cell, Mark};
+pub(crate) use cell::{Cell, StatusMark};
 pub(crate) use page::{badge, place};
 pub(crate) use table::Table;
 pub(crate) use typeset::coded;
@@ -31,11 +31,11 @@ enum Block {
     /// Above figures.
     HeadingOfFigures(String),
     /// Begins a section with what came of it; the sentences say why.
-    Verdict { mark: Mark, title: String, sentences: Vec<String> },
+    Verdict { mark: StatusMark, title: String, sentences: Vec<String> },
     /// What only a reader of the page has the time for.
     Explanation(String),
     /// A sentence each, those that decide with a mark.
-    Sentences(Vec<(Option<Mark>, String)>),
+    Sentences(Vec<(Option<StatusMark>, String)>),
     /// One in each line.
     Equations(Vec<String>),
     /// Rows of cells.
@@ -60,7 +60,7 @@ impl Document {
     }
 
     /// Begins a section with what came of it.
-    pub(crate) fn verdict(&mut self, mark: Mark, title: impl Into<String>, sentences: Vec<String>) {
+    pub(crate) fn verdict(&mut self, mark: StatusMark, title: impl Into<String>, sentences: Vec<String>) {
         self.blocks.push(Block::Verdict { mark, title: title.into(), sentences });
     }
 
@@ -80,7 +80,7 @@ impl Document {
     }
 
     /// The same, some of them with a mark.
-    pub(crate) fn marked(&mut self, sentences: impl IntoIterator<Item = (Option<Mark>, String)>) {
+    pub(crate) fn marked(&mut self, sentences: impl IntoIterator<Item = (Option<StatusMark>, String)>) {
         let sentences: Vec<_> = sentences.into_iter().collect();
         if !sentences.is_empty() {
             self.blocks.push(Block::Sentences(sentences));

@@ -20,4 +20,4 @@ pub(crate) use frequency::{
     files as frequency_files, pictures as frequency_pictures, text as frequency_text,
 };
 pub(crate) use metrics::{METRICS, OVERSHOOT, SETTLING, cells_of, metric_of};
-pub(crate) use together::{Named, at_a_glance, close_ups, measured_together, together};
+pub(crate) use together::{NamedRun, at_a_glance, close_ups, measured_together, together};

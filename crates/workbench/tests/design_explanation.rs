@@ -2,7 +2,7 @@
 #![cfg(test)]
 
 use num_complex::Complex64;
-use phea_qft::design::{Constraint, Finding, Place, SharedLimit};
+use phea_qft::design::{Constraint, ConstraintPlace, Finding, SharedLimit};
 use phea_qft::verification::PlantPoint;
 use phea_workbench::design::Explanation;
 
@@ -20,7 +20,7 @@ fn findings_read_as_sentences() {
     let text = Explanation::of(&sum).sentence;
     assert!(text.contains("specifications 1 and 2") && text.contains("1.938 dB"), "{text}");
     let constraint = Constraint {
-        place: Place::UnstablePole(Complex64::new(2.0, 0.0)),
+        place: ConstraintPlace::UnstablePole(Complex64::new(2.0, 0.0)),
         plant,
         dead_time_s: 0.0,
         sensitivity: 0.3,

@@ -10,7 +10,7 @@ use phea_workbench::command::{self, FrequencyOptions, Request, SimulateRequest};
 use phea_workbench::linearize::linearize;
 use phea_workbench::project::{self, Loaded};
 use phea_workbench::setup::Setup;
-use phea_workbench::simulate::{FrequencyRequest, FrequencyResponse, ResponsePoint, frequency_response};
+use phea_workbench::simulate::{FrequencyRequest, MachineResponses, ResponsePoint, frequency_response};
 use phea_workbench::source::Memory;
 use serde_json::Value;
 
@@ -33,7 +33,7 @@ fn smooth(more: &[&str]) -> Loaded {
     load(&[&SMOOTH[..], more].concat())
 }
 
-fn shaken(loaded: &Loaded, frequencies: &[f64], amplitudes: [f64; 2]) -> FrequencyResponse {
+fn shaken(loaded: &Loaded, frequencies: &[f64], amplitudes: [f64; 2]) -> MachineResponses {
     let request = FrequencyRequest {
         frequencies_rad_per_s: frequencies.to_vec(),
         command_amplitude_v: Some(amplitudes[0]),

@@ -4,7 +4,7 @@
 
 use phea_workbench::campaign::{Effort, Plan};
 use phea_workbench::command::{self, Request};
-use phea_workbench::project::{self, LineMotion, LineSegments, Loaded, Report};
+use phea_workbench::project::{self, LineMotion, LineSegments, Loaded, Refusal};
 use phea_workbench::setup::Setup;
 use phea_workbench::simulate::{ScenarioRun, simulate_project};
 use phea_workbench::source::Memory;
@@ -23,7 +23,7 @@ const SHORT: [&str; 7] = [
     "simulation.tolerance=1e-6",
 ];
 
-fn read(settings: &[&str]) -> Result<Loaded, Report> {
+fn read(settings: &[&str]) -> Result<Loaded, Refusal> {
     let settings: Vec<String> = SHORT.iter().chain(settings).map(|text| (*text).to_string()).collect();
     let first = HOSE.rfind("[[scenario]]").unwrap();
     let source = Memory::default().with("rig.toml", &HOSE[..first]);

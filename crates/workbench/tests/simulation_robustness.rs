@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
 use phea_dynamics::simulation::Status;
-use phea_workbench::project::{self, Loaded, Report};
+use phea_workbench::project::{self, Loaded, Refusal};
 use phea_workbench::setup::Setup;
 use phea_workbench::simulate::{Record, ScenarioRun, simulate_project};
 use phea_workbench::source::Memory;
@@ -14,7 +14,7 @@ const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");
 /// Steps that no case takes: several times what the worst of them does.
 const MOST_STEPS: u64 = 60_000;
 
-fn read(text: &str, settings: &[&str]) -> Result<Loaded, Report> {
+fn read(text: &str, settings: &[&str]) -> Result<Loaded, Refusal> {
     let settings: Vec<String> = settings.iter().map(|text| (*text).to_string()).collect();
     project::read(&Memory::default().with("rig.toml", text), "rig.toml", &settings, &[])
 }

@@ -40,12 +40,12 @@ pub enum Recorded<'tape> {
     /// A known number, not yet on any tape.
     Constant(f64),
     /// The outcome of a recorded operation.
-    Node(Entry<'tape>),
+    Node(TapeEntry<'tape>),
 }
 
 /// A place on a tape.
 #[derive(Clone, Copy, Debug)]
-pub struct Entry<'tape> {
+pub struct TapeEntry<'tape> {
     tape: &'tape Tape,
     index: NodeIndex,
 }
@@ -56,7 +56,7 @@ where
 {
     let tape = Tape::default();
     let parameters: Vec<Recorded<'_>> = (0..parameter_count)
-        .map(|index| Recorded::Node(Entry { tape: &tape, index: tape.index(Node::Parameter(index)) }))
+        .map(|index| Recorded::Node(TapeEntry { tape: &tape, index: tape.index(Node::Parameter(index)) }))
         .collect();
     let results = equations(&parameters).into_iter().map(|result| result.index_on(&tape)).collect();
     needed(&tape.nodes.take(), results)
@@ -101,8 +101,8 @@ impl<'tape> Recorded<'tape> {
     fn unary(self, operation: Unary) -> Self {
         match self {
             Recorded::Constant(value) => Recorded::Constant(operation.apply(value)),
-            Recorded::Node(Entry { tape, index }) => {
-                Recorded::Node(Entry { tape, index: tape.index(Node::Unary(operation, index)) })
+            Recorded::Node(TapeEntry { tape, index }) => {
+                Recorded::Node(TapeEntry { tape, index: tape.index(Node::Unary(operation, index)) })
             }
         }
     }
@@ -112,7 +112,7 @@ impl<'tape> Recorded<'tape> {
             (Recorded::Constant(x), Recorded::Constant(y), _) => Recorded::Constant(operation.apply(x, y)),
             (x, y, Some(tape)) => {
                 let node = Node::Binary(operation, x.index_on(tape), y.index_on(tape));
-                Recorded::Node(Entry { tape, index: tape.index(node) })
+                Recorded::Node(TapeEntry { tape, index: tape.index(node) })
             }
             // Two numbers without a tape are both constants, matched above.
             (x, _, None) => x,
@@ -199,7 +199,7 @@ impl<'tape> Scalar for Recorded<'tape> {
             (_, _, Some(tape)) => {
                 let [x, y, if_less, otherwise] = operands.map(|operand| operand.index_on(tape));
                 let node = Node::Select(x, y, if_less, otherwise);
-                Recorded::Node(Entry { tape, index: tape.index(node) })
+                Recorded::Node(TapeEntry { tape, index: tape.index(node) })
             }
             // A comparison of constants is decided above, and anything else has a tape.
             (_, _, None) => if_false,

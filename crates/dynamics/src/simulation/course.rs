@@ -220,7 +220,7 @@ pub struct Event {
 
 /// Steps and evaluations of a simulation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Work {
+pub struct StepCounts {
     /// Accepted steps.
     pub steps: u64,
     /// Steps tried again with a shorter one.
@@ -237,7 +237,7 @@ pub struct Outcome {
     /// Events, in order of time.
     pub events: Vec<Event>,
     /// Steps and evaluations of a simulation.
-    pub work: Work,
+    pub work: StepCounts,
     /// State at the end.
     pub end: Vec<f64>,
 }

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 
 use super::growth::Growing;
 use super::history::History;
-use super::{Attention, Event, Input, InputSchedule, Piece, Sampler, Status, Work};
+use super::{Attention, Event, Input, InputSchedule, Piece, Sampler, Status, StepCounts};
 use crate::portable;
 
 /// No step grows by more than this, nor shrinks below the other.
@@ -57,7 +57,7 @@ pub(super) struct Passage<'a> {
     pub(super) rejected: bool,
     /// Error of the last step.
     before: f64,
-    pub(super) work: Work,
+    pub(super) work: StepCounts,
     pub(super) events: Vec<Event>,
     pub(super) status: Option<Status>,
 }
@@ -97,7 +97,7 @@ impl<'a> Passage<'a> {
             attention: Attention::Rows,
             rejected: false,
             before: 1.0,
-            work: Work::default(),
+            work: StepCounts::default(),
             events: Vec::new(),
             status: None,
         }

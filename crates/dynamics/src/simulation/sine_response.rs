@@ -6,7 +6,7 @@ use num_complex::Complex64;
 
 use super::task::Task;
 use super::trajectory::drive_one;
-use super::{Input, InputSchedule, Observer, Sampler, Settings, SimulationError, Status, System, Work};
+use super::{Input, InputSchedule, Observer, Sampler, Settings, SimulationError, Status, StepCounts, System};
 use crate::portable;
 
 /// Rows of a period: harmonics up to the thirtieth do not meet one another.
@@ -46,7 +46,7 @@ pub struct SineResponse {
     /// Indicators that changed their sign on the way, each once, in their order.
     pub indicators: Vec<usize>,
     /// What it cost.
-    pub work: Work,
+    pub work: StepCounts,
     /// How the simulation ended, where neither it settled nor its windows were used up.
     pub ended: Option<Status>,
 }

@@ -15,21 +15,21 @@ pub enum Interpolation {
 ///
 /// # Example
 /// ```
-/// use phea_dynamics::time_response::{Interpolation, Signal};
+/// use phea_dynamics::time_response::{Interpolation, SampledSignal};
 /// # fn main() -> Result<(), phea_dynamics::time_response::TimeResponseError> {
-/// let ramp = Signal::new(vec![1.0, 3.0], vec![0.0, 4.0], Interpolation::Linear)?;
+/// let ramp = SampledSignal::new(vec![1.0, 3.0], vec![0.0, 4.0], Interpolation::Linear)?;
 /// assert_eq!([0.0, 2.0, 9.0].map(|time| ramp.value_at(time)), [0.0, 2.0, 4.0]);
 /// # Ok(())
 /// # }
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct Signal {
+pub struct SampledSignal {
     times_s: Vec<f64>,
     values: Vec<f64>,
     interpolation: Interpolation,
 }
 
-impl Signal {
+impl SampledSignal {
     /// A signal through these samples; times in s, strictly rising.
     ///
     /// # Errors
@@ -58,18 +58,18 @@ impl Signal {
                 expected: "finite",
             });
         }
-        Ok(Signal { times_s, values, interpolation })
+        Ok(SampledSignal { times_s, values, interpolation })
     }
 
     /// A step of this height at time zero.
     pub fn step(height: f64) -> Self {
-        Signal { times_s: vec![0.0], values: vec![height], interpolation: Interpolation::Hold }
+        SampledSignal { times_s: vec![0.0], values: vec![height], interpolation: Interpolation::Hold }
     }
 
     /// The same signal, later by a dead time in s.
     pub fn delayed(&self, dead_time_s: f64) -> Self {
         let times_s = self.times_s.iter().map(|time| time + dead_time_s).collect();
-        Signal { times_s, values: self.values.clone(), interpolation: self.interpolation }
+        SampledSignal { times_s, values: self.values.clone(), interpolation: self.interpolation }
     }
 
     /// Value at a time in s; at a jump, the value after it.

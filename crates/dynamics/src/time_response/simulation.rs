@@ -2,7 +2,7 @@
 
 use nalgebra::DVector;
 
-use super::{Signal, TimeResponseError};
+use super::{SampledSignal, TimeResponseError};
 use crate::linear::double_double::DoubleDouble;
 use crate::linear::matrix_exponential::ExactStep;
 use crate::linear::{StateSpace, TimeDomain, TransferFunction};
@@ -26,7 +26,7 @@ use crate::linear::{StateSpace, TimeDomain, TransferFunction};
 /// # }
 /// ```
 pub fn step_response(system: &TransferFunction, times_s: &[f64]) -> Result<Vec<f64>, TimeResponseError> {
-    forced_response(system, &Signal::step(1.0), times_s)
+    forced_response(system, &SampledSignal::step(1.0), times_s)
 }
 
 /// Response of a transfer function, from rest at time zero, to a signal; dead time is exact.
@@ -39,7 +39,7 @@ pub fn step_response(system: &TransferFunction, times_s: &[f64]) -> Result<Vec<f
 /// [`TimeResponseError::Linear`] for an improper system.
 pub fn forced_response(
     system: &TransferFunction,
-    input: &Signal,
+    input: &SampledSignal,
     times_s: &[f64],
 ) -> Result<Vec<f64>, TimeResponseError> {
     let rational = system.clone().with_dead_time(0.0)?;
@@ -59,7 +59,7 @@ pub fn forced_response(
 pub fn forced_response_of_states(
     system: &StateSpace,
     initial_state: &DVector<f64>,
-    inputs: &[Signal],
+    inputs: &[SampledSignal],
     times_s: &[f64],
 ) -> Result<Vec<DVector<f64>>, TimeResponseError> {
     let counts = [
@@ -91,7 +91,7 @@ pub fn forced_response_of_states(
 fn continuous(
     system: &StateSpace,
     initial_state: &DVector<f64>,
-    inputs: &[Signal],
+    inputs: &[SampledSignal],
     times_s: &[f64],
 ) -> Vec<DVector<f64>> {
     let end = times_s.last().copied().unwrap_or(0.0);
@@ -167,7 +167,7 @@ fn sampled(
     system: &StateSpace,
     sample_time_s: f64,
     initial_state: &DVector<f64>,
-    inputs: &[Signal],
+    inputs: &[SampledSignal],
     times_s: &[f64],
 ) -> Vec<DVector<f64>> {
     let mut state = initial_state.clone();

@@ -5,7 +5,7 @@ use phea_dynamics::controller::{AntiWindup, Compensator, Controller, Element};
 use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{CommandedPlant, Input, Plant, Profile, Settings, Simulated, Status};
-use phea_dynamics::time_response::{Interpolation, Signal, forced_response};
+use phea_dynamics::time_response::{Interpolation, SampledSignal, forced_response};
 
 use super::laws::{course, distance, run, simulate};
 
@@ -105,7 +105,7 @@ fn stepped(time_s: f64, height: f64) -> Input {
 }
 
 fn answer(function: &TransferFunction, height: f64, after_s: f64, times: &[f64]) -> Vec<f64> {
-    let step = Signal::new(vec![after_s], vec![height], Interpolation::Hold).unwrap();
+    let step = SampledSignal::new(vec![after_s], vec![height], Interpolation::Hold).unwrap();
     forced_response(function, &step, times).unwrap()
 }
 

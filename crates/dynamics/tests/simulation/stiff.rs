@@ -5,7 +5,7 @@ use phea_dynamics::linear::{StateSpace, TimeDomain};
 use phea_dynamics::portable;
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{Input, Profile, System};
-use phea_dynamics::time_response::{Signal, forced_response_of_states};
+use phea_dynamics::time_response::{SampledSignal, forced_response_of_states};
 
 use super::laws::{Following, Law, Lawful, course, distance, last, run};
 
@@ -162,7 +162,7 @@ fn a_linear_system_answers_as_its_matrix_exponential() {
     let inputs = vec![Input::Value(Profile::steps(0.5, &[(1.03, -2.0)]).unwrap())];
     let result = run(&Linear { a, b }, &start, &course(3.0, 0.05, inputs), 1e-10);
     let hold = phea_dynamics::time_response::Interpolation::Hold;
-    let signal = Signal::new(vec![0.0, 1.03], vec![0.5, -2.0], hold).unwrap();
+    let signal = SampledSignal::new(vec![0.0, 1.03], vec![0.5, -2.0], hold).unwrap();
     let times = &result.trajectory.times_s;
     let exact = forced_response_of_states(&states, &DVector::from_vec(start), &[signal], times).unwrap();
     for (row, exact) in result.trajectory.states.iter().zip(&exact) {

@@ -6,7 +6,7 @@ use phea_qft::verification::{
     Verdict, WorstCase,
 };
 
-use super::{LimitSide, PlantNames, Reached};
+use super::{LimitSide, PlantNames, ReachedLimit};
 use crate::quantity::significant;
 use crate::quantity::{RATIO, display};
 
@@ -124,7 +124,7 @@ pub fn worst_at_design(finding: &SpecificationFinding) -> Option<&WorstCase> {
 pub fn finding_sentence(
     name: &str,
     finding: &SpecificationFinding,
-    reached: Option<&Reached>,
+    reached: Option<&ReachedLimit>,
     stable: bool,
 ) -> String {
     let Some(worst) = &finding.worst else {
@@ -156,7 +156,7 @@ pub fn finding_sentence(
 }
 
 /// `: |L/(1+L)| reaches 11.89, limit 1.3`
-fn reached_words(symbol: &str, reached: &Reached) -> String {
+fn reached_words(symbol: &str, reached: &ReachedLimit) -> String {
     let (magnitude, limit) = (significant(reached.magnitude, 4), display(reached.limit, &RATIO, 4));
     match reached.side {
         LimitSide::Only => format!(": {symbol} reaches {magnitude}, limit {limit}"),

@@ -5,14 +5,14 @@ use std::rc::Rc;
 
 use phea_dynamics::simulation::{Attention, Input, InputSchedule, Observer, Outcome, Sampler, Stretch, Task};
 use phea_hydraulics::machine::{Machine, MachineOptions};
-use phea_machine::{Control, Digital, Samples, Waking, Watcher};
+use phea_machine::{Control, ControllerSamples, Digital, Waking, Watcher};
 
 use super::plan::{Draw, Plan};
 use super::row::{Ran, Row, RowOutcome, numbers};
 use crate::rig::{RigError, actuator};
 use crate::setup::Setup;
 use crate::simulate::{
-    Bench, COMMAND_LIMIT, Follower, Occurrence, SimulateError, Stopped, course_of, occurrences, options,
+    Bench, COMMAND_LIMIT, Follower, Occurrence, SimulateError, StoppedRun, course_of, occurrences, options,
 };
 
 /// A run ready to be driven.
@@ -25,7 +25,7 @@ pub(super) struct Prepared {
     start: Vec<f64>,
     waking: Waking,
     /// What a sampled controller did.
-    log: RefCell<Samples>,
+    log: RefCell<ControllerSamples>,
 }
 
 /// Makes the machine of a draw.
@@ -94,7 +94,7 @@ impl Prepared {
     pub(super) fn row(&self, outcome: &Outcome, seen: &Watched<'_>) -> Row {
         let seen = seen.seen.borrow();
         let metrics = seen.follower.metrics();
-        let stopped = Stopped::of(outcome.status);
+        let stopped = StoppedRun::of(outcome.status);
         let mut kinds: Vec<&'static str> = Vec::new();
         for occurrence in self.occurrences(outcome).iter().filter(|occurrence| occurrence.begins) {
             if !kinds.contains(&occurrence.kind) {

@@ -1,5 +1,5 @@
 use phea_hydraulics::friction::Friction;
-use phea_hydraulics::line::{Hose, Line, Member};
+use phea_hydraulics::line::{Hose, Line, StiffeningMember};
 use phea_hydraulics::linear::{MechanicalDamping, decompose};
 use phea_hydraulics::operating_point::Condition;
 
@@ -63,10 +63,10 @@ fn lines(rig: &Rig, list: &mut List) {
         if let Line::Hose { hose, .. } = line {
             hose_wall(hose, &name, list);
         }
-        let effective = line.effective_modulus(modulus, Member::Nominal);
+        let effective = line.effective_modulus(modulus, StiffeningMember::Nominal);
         list.add(name("effective_modulus"), "β_e", effective, "Pa", "1/β_e = 1/β_0 + 1/β_{ho}");
         if let Line::Hose { .. } = line {
-            let softest = line.effective_modulus(modulus, Member::Minimum);
+            let softest = line.effective_modulus(modulus, StiffeningMember::Minimum);
             list.add(
                 name("effective_modulus_minimum"),
                 "β_e",
@@ -74,7 +74,7 @@ fn lines(rig: &Rig, list: &mut List) {
                 "Pa",
                 "β_e at the least stiffening r_β",
             );
-            let stiffest = line.effective_modulus(modulus, Member::Maximum);
+            let stiffest = line.effective_modulus(modulus, StiffeningMember::Maximum);
             list.add(
                 name("effective_modulus_maximum"),
                 "β_e",
@@ -83,14 +83,14 @@ fn lines(rig: &Rig, list: &mut List) {
                 "β_e at the greatest stiffening r_β",
             );
         }
-        let compliance = line.compliance(modulus, Member::Nominal);
+        let compliance = line.compliance(modulus, StiffeningMember::Nominal);
         let equation = match line {
             Line::Hose { .. } => "C_{ho} = ε L_{ho}/r_β + (A_{ho} + E(p)) L_{ho}/β_0",
             Line::Pipe { .. } | Line::Volume { .. } => "C_{ho} = V_{ho}/β_e",
         };
         list.add(name("compliance"), "C_ho", compliance, "m3/Pa", equation);
         // a wave runs in the oil that the bore holds
-        let filled = line.filled().effective_modulus(modulus, Member::Nominal);
+        let filled = line.filled().effective_modulus(modulus, StiffeningMember::Nominal);
         let wave_speed = (filled / components.fluid.density).sqrt();
         list.add(name("wave_speed"), "c", wave_speed, "m/s", "c = sqrt(β_e(p)/ρ)");
         if let Line::Hose { length, .. } | Line::Pipe { length, .. } = line {
@@ -118,7 +118,7 @@ fn hose_wall(hose: Hose, name: &impl Fn(&str) -> String, list: &mut List) {
     list.add(
         name("dynamic_modulus"),
         "β_ho",
-        hose.wall_modulus(Member::Nominal),
+        hose.wall_modulus(StiffeningMember::Nominal),
         "Pa",
         "β_{ho} = r_β β_{hoSS}",
     );
@@ -126,7 +126,7 @@ fn hose_wall(hose: Hose, name: &impl Fn(&str) -> String, list: &mut List) {
 
 fn stiffness(rig: &Rig, list: &mut List) {
     let components = rig.actuator.components();
-    let declared = stroke_stiffness(rig, Member::Nominal);
+    let declared = stroke_stiffness(rig, StiffeningMember::Nominal);
     list.group("Stiffness");
     let least = "K_H = min over x of A_A^2/C_A + A_B^2/C_B";
     let greatest = "K_H = max over x of A_A^2/C_A + A_B^2/C_B";
@@ -141,7 +141,7 @@ fn stiffness(rig: &Rig, list: &mut List) {
     list.add("stiffness.by_volume.minimum", "K_H", models.by_volume.minimum, "N/m", by_volume);
     list.add("stiffness.by_volume.maximum", "K_H", models.by_volume.maximum, "N/m", by_volume);
     if let Line::Hose { .. } = components.line_a {
-        let soft = stroke_stiffness(rig, Member::Minimum).minimum;
+        let soft = stroke_stiffness(rig, StiffeningMember::Minimum).minimum;
         list.add(
             "stiffness.minimum_softest_wall",
             "K_H",
@@ -149,7 +149,7 @@ fn stiffness(rig: &Rig, list: &mut List) {
             "N/m",
             "least K_H at the least stiffening r_β",
         );
-        let stiff = stroke_stiffness(rig, Member::Maximum).maximum;
+        let stiff = stroke_stiffness(rig, StiffeningMember::Maximum).maximum;
         list.add(
             "stiffness.maximum_stiffest_wall",
             "K_H",

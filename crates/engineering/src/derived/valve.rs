@@ -2,7 +2,7 @@
 //! slopes.
 
 use phea_hydraulics::servovalve::{
-    Direction, flow_coefficient_from_rating, leakage_coefficient_from_rating, velocity_gain,
+    SpoolDirection, flow_coefficient_from_rating, leakage_coefficient_from_rating, velocity_gain,
 };
 use phea_hydraulics::two_pressure::{reduce, two_pressure_linear_parameters};
 
@@ -37,13 +37,13 @@ pub(super) fn valve(project: &Project, rig: &Rig, list: &mut List) {
     for (name, direction, area, equation) in [
         (
             "extending",
-            Direction::Extending,
+            SpoolDirection::Extending,
             cylinder.area_a,
             "K_{qU} = A_A v/U unloaded, edges 3 and 6 carrying one flow",
         ),
         (
             "retracting",
-            Direction::Retracting,
+            SpoolDirection::Retracting,
             cylinder.area_b,
             "K_{qU} = A_B v/U unloaded, edges 5 and 4 carrying one flow",
         ),
@@ -62,8 +62,8 @@ pub(super) fn valve(project: &Project, rig: &Rig, list: &mut List) {
         }
     }
     for (name, direction, equation) in [
-        ("extending", Direction::Extending, "A_u^2/K_c = A_A^2/K_{cA} + A_B^2/K_{cB}, U from above"),
-        ("retracting", Direction::Retracting, "A_u^2/K_c = A_A^2/K_{cA} + A_B^2/K_{cB}, U from below"),
+        ("extending", SpoolDirection::Extending, "A_u^2/K_c = A_A^2/K_{cA} + A_B^2/K_{cB}, U from above"),
+        ("retracting", SpoolDirection::Retracting, "A_u^2/K_c = A_A^2/K_{cA} + A_B^2/K_{cB}, U from below"),
     ] {
         let parameters = reduce(&two_pressure_linear_parameters(&rig.model, &rig.point, direction));
         let name = format!("valve.flow_pressure_coefficient_{name}");

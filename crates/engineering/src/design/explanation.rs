@@ -2,7 +2,7 @@
 
 mod words;
 
-use phea_qft::design::{Finding, Severity};
+use phea_qft::design::{Finding, FindingSeverity};
 use phea_qft::verification::PlantPoint;
 
 /// One sentence on what a controller cannot do, or only hardly.
@@ -27,7 +27,7 @@ impl Explanation {
     pub fn of(finding: &Finding) -> Explanation {
         Explanation {
             sentence: words::Words(finding).to_string(),
-            is_impossible: finding.severity() == Severity::Impossible,
+            is_impossible: finding.severity() == FindingSeverity::Impossible,
             frequency_rad_per_s: frequency(finding),
             plants: plants(finding),
             specifications: finding.specifications(),

@@ -8,13 +8,13 @@
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::uncertain_plant::{UncertainParameter, UncertainPlant};
 use phea_hydraulics::actuator::Components;
-use phea_hydraulics::line::{LineError, Member};
+use phea_hydraulics::line::{LineError, StiffeningMember};
 use phea_hydraulics::linear::LinearParameters;
 use phea_hydraulics::operating_point::{
     Balance, OperatingPoint, Settled, SettledSupply, Steady, hydraulic_force,
 };
 use phea_hydraulics::plant::{LinearLoad, LinearPlant, PlantInMotion, YieldingSupply};
-use phea_hydraulics::servovalve::{Direction, Supply};
+use phea_hydraulics::servovalve::{SpoolDirection, Supply};
 use phea_hydraulics::two_pressure::{
     TwoPressureLinearParameters, TwoPressureModel, two_pressure_linear_parameters,
 };
@@ -23,8 +23,8 @@ use super::FamilyError;
 use super::visited::Visited;
 use crate::project::{Actuator, LINEAR_PARAMETERS, Project};
 use crate::rig::{
-    self, FedForward, Numbers, Rig, components, linear, place, plant, settled_supply, stated, with_supply,
-    yielding_load, yielding_supply,
+    self, FeedForwardPath, Numbers, Rig, components, linear, place, plant, settled_supply, stated,
+    with_supply, yielding_load, yielding_supply,
 };
 use crate::setup::Setup;
 
@@ -138,7 +138,8 @@ impl Open<'_> {
             }
             _ => plant,
         };
-        let load_velocity_feed_forward = self.rig.fed.as_ref().and_then(FedForward::at_once).map(S::from);
+        let load_velocity_feed_forward =
+            self.rig.fed.as_ref().and_then(FeedForwardPath::at_once).map(S::from);
         (place, LinearPlant { load_velocity_feed_forward, ..plant })
     }
 
@@ -176,8 +177,8 @@ impl Open<'_> {
         };
         let friction = components.friction.viscous();
         let settled_components = Components { supply, ..components };
-        let model = TwoPressureModel::of(&settled_components, pressures, Member::Nominal, friction);
-        let chambers = two_pressure_linear_parameters(&model, &point, Direction::Mean);
+        let model = TwoPressureModel::of(&settled_components, pressures, StiffeningMember::Nominal, friction);
+        let chambers = two_pressure_linear_parameters(&model, &point, SpoolDirection::Mean);
         let known = stated(&self.rig.parameters).map(|(name, value)| (name, S::from(value)));
         let open = self.names.iter().map(String::as_str).zip(values.iter().copied());
         let linear = linear(&chambers, known.chain(open.filter(|(name, _)| is_linear(name))));

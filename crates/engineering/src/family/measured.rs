@@ -16,7 +16,7 @@ use phea_dynamics::portable;
 use phea_qft::family::{MeasuredFamily, MeasuredPlant};
 
 use self::column::{Columns, Form};
-use self::table::{Cell, Table};
+use self::table::{MeasuredCell, MeasuredTable};
 use super::FamilyError;
 use crate::project::{Family, Findings, Found, Project, Severity};
 use crate::source::Source;
@@ -73,8 +73,8 @@ fn plant(
 
 /// One row, if every value of it is sound.
 fn take(
-    row: &[Cell<'_>],
-    table: &Table<'_>,
+    row: &[MeasuredCell<'_>],
+    table: &MeasuredTable<'_>,
     columns: &Columns,
     plant: &mut MeasuredPlant,
     findings: &mut Findings,
@@ -109,7 +109,7 @@ fn take(
     plant.command.push(command);
 }
 
-fn response(form: &Form, row: &[Cell<'_>], findings: &mut Findings) -> Option<Complex64> {
+fn response(form: &Form, row: &[MeasuredCell<'_>], findings: &mut Findings) -> Option<Complex64> {
     let [first, second] = form.parts();
     let (one, other) = (first.value(row, findings)?, second.value(row, findings)?);
     match form {

@@ -13,7 +13,7 @@ pub const WITHIN_DEG: f64 = 5.0;
 
 /// Where a reduction is the plant to 1 dB and 5 degrees.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Agreement {
+pub struct AgreementBand {
     /// Name of the model.
     pub model: &'static str,
     /// Its equation.
@@ -38,8 +38,8 @@ pub(super) fn agreement(
     grid: &[f64],
     lumped: &TransferFunction,
     reductions: [&TransferFunction; REDUCTIONS.len()],
-) -> Vec<Agreement> {
-    let one = |[model, equation]: [&'static str; 2], function: &TransferFunction| Agreement {
+) -> Vec<AgreementBand> {
+    let one = |[model, equation]: [&'static str; 2], function: &TransferFunction| AgreementBand {
         model,
         equation,
         bands_rad_per_s: bands(grid, |frequency| rig.response(frequency), function),

@@ -13,7 +13,7 @@ use phea_hydraulics::stiffness::StiffnessModel;
 
 use super::numbers::Numbers;
 use crate::project::{
-    self, Compliance, Component, EdgeCoefficients, FrictionLaw, HoseExpansion, Interval, LineVolume,
+    self, BoundedNumber, Compliance, Component, EdgeCoefficients, FrictionLaw, HoseExpansion, LineVolume,
     NullLeakage, RatedFlow, StribeckCurve, ValveCoefficients,
 };
 
@@ -205,8 +205,11 @@ pub(super) fn hose<S: Scalar>(
 }
 
 /// A ratio without spread is open as a whole, one with spread by its parts.
-pub(super) fn stiffening<S: Scalar>(declared: Option<Interval>, numbers: &Numbers<'_, S>) -> Stiffening<S> {
-    let Interval { nominal, minimum, maximum } = declared.unwrap_or(Interval::exactly(1.0));
+pub(super) fn stiffening<S: Scalar>(
+    declared: Option<BoundedNumber>,
+    numbers: &Numbers<'_, S>,
+) -> Stiffening<S> {
+    let BoundedNumber { nominal, minimum, maximum } = declared.unwrap_or(BoundedNumber::exactly(1.0));
     let at = |part: &str, value: f64| {
         let whole = numbers.get("dynamic_stiffening");
         whole.unwrap_or_else(|| numbers.within("dynamic_stiffening").at(part, value))

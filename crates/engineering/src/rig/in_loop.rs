@@ -31,7 +31,7 @@ impl Rig {
     /// ```
     #[must_use]
     pub fn in_loop(&self) -> Rig {
-        let gain = self.fed.as_ref().and_then(FedForward::at_once);
+        let gain = self.fed.as_ref().and_then(FeedForwardPath::at_once);
         Rig {
             plant: LinearPlant { load_velocity_feed_forward: gain, ..self.plant },
             in_motion: as_response(self.fed, self.in_motion, &self.plant),
@@ -43,7 +43,7 @@ impl Rig {
 /// The load's velocity on the command, as the linear loop counts it: a gain in V s/m, and where it
 /// is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum FedForward {
+pub enum FeedForwardPath {
     /// In the plant: at once, or late by a delay in s where the load yields.
     InPlant {
         /// V s/m
@@ -59,33 +59,33 @@ pub enum FedForward {
     },
 }
 
-impl FedForward {
+impl FeedForwardPath {
     /// What the loop of a project counts; `None` where nothing is fed forward.
-    pub(super) fn of(project: &Project, linear: &LinearParameters) -> Option<FedForward> {
+    pub(super) fn of(project: &Project, linear: &LinearParameters) -> Option<FeedForwardPath> {
         let controller = project.controller.as_ref()?;
         let yields = project.actuator.as_ref()?.load != Load::Prescribed;
         let (gain, delay) = (feed_forward(project, linear), controller.delay);
         match (yields, controller.sample_time) {
             _ if gain == 0.0 => None,
-            (true, None) => Some(FedForward::InPlant { gain, delay }),
-            (false, None) if delay == 0.0 => Some(FedForward::InPlant { gain, delay }),
-            (true, Some(_)) | (false, _) => Some(FedForward::InLoop { gain }),
+            (true, None) => Some(FeedForwardPath::InPlant { gain, delay }),
+            (false, None) if delay == 0.0 => Some(FeedForwardPath::InPlant { gain, delay }),
+            (true, Some(_)) | (false, _) => Some(FeedForwardPath::InLoop { gain }),
         }
     }
 
     /// The gain where it is in the plant and acts at once.
     pub fn at_once(&self) -> Option<f64> {
         match *self {
-            FedForward::InPlant { gain, delay: 0.0 } => Some(gain),
-            FedForward::InPlant { .. } | FedForward::InLoop { .. } => None,
+            FeedForwardPath::InPlant { gain, delay: 0.0 } => Some(gain),
+            FeedForwardPath::InPlant { .. } | FeedForwardPath::InLoop { .. } => None,
         }
     }
 
     /// The gain where the loop around the plant has it.
     pub(crate) fn in_loop(&self) -> Option<f64> {
         match *self {
-            FedForward::InLoop { gain } => Some(gain),
-            FedForward::InPlant { .. } => None,
+            FeedForwardPath::InLoop { gain } => Some(gain),
+            FeedForwardPath::InPlant { .. } => None,
         }
     }
 }
@@ -93,11 +93,11 @@ impl FedForward {
 /// The plant without polynomials that the loop sees: with these lines in motion, or with its lumped
 /// ones where a load that yields is fed forward late; `None` where there are polynomials.
 pub fn as_response(
-    fed: Option<FedForward>,
+    fed: Option<FeedForwardPath>,
     moving: Option<PlantInMotion>,
     lumped: &LinearPlant,
 ) -> Option<PlantInMotion> {
-    let Some(FedForward::InPlant { gain, delay }) = fed else { return moving };
+    let Some(FeedForwardPath::InPlant { gain, delay }) = fed else { return moving };
     let plant = moving.or_else(|| (delay > 0.0).then(|| PlantInMotion::lumped(lumped)))?;
     Some(plant.fed_forward(Some(gain)).late(delay))
 }

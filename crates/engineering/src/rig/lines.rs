@@ -3,8 +3,8 @@
 use phea_hydraulics::actuator::Components;
 use phea_hydraulics::fluid::Fluid;
 use phea_hydraulics::line::{
-    BraidedWall, DynamicLine, END_SHARE, Hose, LaminarFriction, Line, LineError, LineModel, Member,
-    Stiffening,
+    BraidedWall, DynamicLine, END_SHARE, Hose, LaminarFriction, Line, LineError, LineModel, Stiffening,
+    StiffeningMember,
 };
 use phea_hydraulics::operating_point::OperatingPoint;
 use phea_hydraulics::plant::{BehindLines, LinearPlant, PlantInMotion};
@@ -30,7 +30,7 @@ pub fn in_motion(
     let moving = lines(declared, [&line_a, &line_b], &components.fluid, 0.5 * (pressure + tank_pressure))?;
     let [line_a, line_b] = [line_a, line_b].map(without_volume);
     let bare = Components { line_a, line_b, ..*components };
-    let bare = bare.chamber_compliance([point.pressure_a, point.pressure_b], Member::Nominal);
+    let bare = bare.chamber_compliance([point.pressure_a, point.pressure_b], StiffeningMember::Nominal);
     let chambers_alone = compliance_at(&bare, point.position);
     Ok(moving.map(|lines| {
         let behind = BehindLines { lines, chambers: chambers_alone, lumped: chambers.compliances };
@@ -76,7 +76,7 @@ pub fn lines(
         return Ok(None);
     }
     let of = |line: &Line, motion: &LineMotion| {
-        DynamicLine::new(line, fluid, pressure, Member::Nominal, &line_model(motion, line))
+        DynamicLine::new(line, fluid, pressure, StiffeningMember::Nominal, &line_model(motion, line))
     };
     let [line_a, line_b] = lines;
     Ok(Some([of(line_a, a)?, of(line_b, b)?]))
@@ -113,11 +113,11 @@ fn segmented(declared: &LineSegments) -> LineModel {
 /// What is not stated is assumed, but for what follows from the rest: a braid at its neutral angle,
 /// and the catalogue's expansion.
 fn braided_wall(declared: &LineWall, hose: &Hose) -> BraidedWall {
-    let assumed = BraidedWall::assumed(hose, Member::Nominal);
+    let assumed = BraidedWall::assumed(hose, StiffeningMember::Nominal);
     let axial_compliance = declared.axial_compliance.unwrap_or(assumed.axial_compliance);
     let coupling_compliance = declared.coupling_compliance.unwrap_or(-axial_compliance);
     let mass_per_length = declared.mass_per_length.unwrap_or(assumed.mass_per_length);
-    let member = Member::Nominal;
+    let member = StiffeningMember::Nominal;
     let wall = BraidedWall::of_hose(hose, member, axial_compliance, coupling_compliance, mass_per_length);
     BraidedWall {
         pressure_compliance: declared.pressure_compliance.unwrap_or(wall.pressure_compliance),

@@ -2,7 +2,7 @@
 //! scalar.
 
 use phea_dynamics::scalar::Scalar;
-use phea_hydraulics::operating_point::{Load, Steady};
+use phea_hydraulics::operating_point::{Steady, SteadyLoad};
 
 use super::numbers::Numbers;
 use crate::project::{self, Project};
@@ -19,14 +19,14 @@ pub fn place<S: Scalar>(project: &Project, stroke: S, numbers: &Numbers<'_, S>) 
     let pressure = at("load_pressure", load_pressure);
     let force = at("load_force", load_force);
     let none = S::from(0.0);
-    let load = pressure.map(Load::Pressure).or(force.map(Load::Force));
+    let load = pressure.map(SteadyLoad::Pressure).or(force.map(SteadyLoad::Force));
     let steady = match (command, pressure) {
         (Some(command), Some(pressure)) => Steady::Matched(S::from(command), pressure),
         (Some(command), None) if command != 0.0 => Steady::Matched(S::from(command), none),
         _ if load.is_none() && velocity.is_none() => Steady::Command(none),
         _ => Steady::Moving {
             velocity: at("velocity", velocity).unwrap_or(none),
-            load: load.unwrap_or(Load::Force(none)),
+            load: load.unwrap_or(SteadyLoad::Force(none)),
         },
     };
     (position, steady)

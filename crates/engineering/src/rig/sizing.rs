@@ -4,7 +4,7 @@ use phea_hydraulics::linear::LinearParameters;
 use super::assembly::{Expansion, ExpansionPressures, hose, stiffening};
 use super::numbers::Numbers;
 use crate::catalogue::{Catalogue, DASH_SIZES, Kind};
-use crate::project::{self, HoseProperties, Settling, Speed};
+use crate::project::{self, HoseProperties, SettlingTime, Speed};
 use crate::quantity::significant;
 use crate::setup::Setup;
 use crate::sizing::{HoseOption, SizingProblem};
@@ -95,7 +95,7 @@ pub fn sizing_problem(setup: &Setup<'_>, catalogue: &Catalogue) -> Result<Sizing
 fn time_constant(speed: Speed) -> (f64, String) {
     match speed {
         Speed::TimeConstant(time) => (time, "stated".to_string()),
-        Speed::Settling(Settling { time, band_percent }) => {
+        Speed::Settling(SettlingTime { time, band_percent }) => {
             let constants = ln(100.0 / band_percent);
             let origin = format!(
                 "{} s to {band_percent} % is {} time constants of a first-order response (the thesis takes four whatever the band: for its numbers state `time_constant`)",

@@ -4,7 +4,7 @@ use phea_dynamics::scalar::Scalar;
 use phea_hydraulics::machine::{Accumulator, PowerUnit, PumpLimited};
 use phea_hydraulics::operating_point::{Balance, SettledSupply, Steady};
 use phea_hydraulics::plant::YieldingSupply;
-use phea_hydraulics::servovalve::Direction;
+use phea_hydraulics::servovalve::SpoolDirection;
 
 use super::numbers::Numbers;
 use crate::project::{self, SupplyModel};
@@ -54,7 +54,7 @@ pub fn yielding_supply<S: Scalar>(
 ) -> Option<YieldingSupply<S>> {
     let PowerUnit::PumpLimited(unit) = power_unit(declared, numbers) else { return None };
     let drops = [balance.supply.pressure, tare_drop(declared, numbers, balance)];
-    Some(YieldingSupply::new(&unit, balance, drops, settled, Direction::Mean))
+    Some(YieldingSupply::new(&unit, balance, drops, settled, SpoolDirection::Mean))
 }
 
 /// Drop in Pa at which the tare flow is stated: that of the stated supply where nothing is said.

@@ -8,7 +8,7 @@ use super::present;
 use super::wish::{self, Wish};
 use super::workpiece::Workpiece;
 use crate::error::ProcedureError;
-use crate::project::{Element, ElementKind, Findings, Found, Report, value_or_finding};
+use crate::project::{Element, ElementKind, Findings, Found, Refusal, value_or_finding};
 use crate::robust::RobustProblem;
 
 /// What is changed.
@@ -107,7 +107,7 @@ pub(super) fn edit(
 }
 
 /// The findings of a change that the list of elements does not bear.
-pub(super) fn refused(requested: &RequestedChange, error: &EditError) -> Report {
+pub(super) fn refused(requested: &RequestedChange, error: &EditError) -> Refusal {
     let mut findings = Findings::default();
     let whole = taken_in(requested, &mut findings);
     findings.push(Found::error(whole.place(), error.to_string()));

@@ -6,7 +6,7 @@ use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::simulation::{CommandedPlant, Method, Sensed, Settings};
 use phea_hydraulics::actuator::Actuator;
 use phea_hydraulics::contact::Contact;
-use phea_hydraulics::line::Member;
+use phea_hydraulics::line::StiffeningMember;
 use phea_hydraulics::machine::{LoadModel, Machine, MachineOptions};
 use phea_hydraulics::servovalve::SpoolImperfection;
 use phea_machine::{Control, Sampled};
@@ -200,7 +200,7 @@ pub fn options(project: &Project, actuator: &Actuator) -> Result<MachineOptions,
         load: load(&declared.load)?,
         external_force: false,
         vapour_pressure_absolute: declared.fluid.vapour_pressure,
-        member: Member::Nominal,
+        member: StiffeningMember::Nominal,
         lines: lines(
             &declared.line,
             [&actuator.components().line_a, &actuator.components().line_b],

@@ -4,7 +4,9 @@
 use phea_hydraulics::machine::SIGNALS;
 
 use super::metrics::Measured;
-use super::{Metrics, Record, ScenarioRun, SimulateError, Stopped, Window, simulate_into, simulate_project};
+use super::{
+    Metrics, Record, ScenarioRun, SimulateError, StoppedRun, Window, simulate_into, simulate_project,
+};
 use crate::number_table::TableFormat;
 use crate::setup::Setup;
 use crate::source::{Destination, Source};
@@ -28,7 +30,7 @@ pub struct Check {
     /// Of the second run.
     pub tolerance: f64,
     /// How the second run ended, if before its time: what follows is compared until then.
-    pub stopped: Option<Stopped>,
+    pub stopped: Option<StoppedRun>,
     /// Time between two looks that are compared, s.
     pub look_s: f64,
     /// Of the force; `None` where the two runs have no look in common.

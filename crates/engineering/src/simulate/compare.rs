@@ -8,12 +8,12 @@ use phea_dynamics::watch::{Progress, Watch};
 
 /// Projects with the results of their scenarios.
 #[derive(Debug)]
-pub struct Comparison<'a> {
+pub struct ScenarioComparison<'a> {
     /// In the order they were named; one that was stopped is the last.
     pub projects: Vec<(&'a Loaded, Vec<ScenarioRun>)>,
 }
 
-impl<'a> Comparison<'a> {
+impl<'a> ScenarioComparison<'a> {
     /// Names of all scenarios, those of the first project first.
     pub fn scenarios(&self) -> Vec<&str> {
         let mut names: Vec<&str> = Vec::new();
@@ -47,9 +47,9 @@ pub fn compare_projects<'a>(
     source: &dyn Source,
     projects: &'a [Loaded],
     watch: Watch<'_>,
-) -> Result<Comparison<'a>, (usize, SimulateError)> {
+) -> Result<ScenarioComparison<'a>, (usize, SimulateError)> {
     let count = projects.len() as f64;
-    let mut comparison = Comparison { projects: Vec::new() };
+    let mut comparison = ScenarioComparison { projects: Vec::new() };
     for (index, loaded) in projects.iter().enumerate() {
         let mut told = |progress: Progress| {
             watch(Progress { share: (index as f64 + progress.share) / count, ..progress })

@@ -1,9 +1,9 @@
 //! Where a scenario begins, and what drives it.
 
 use phea_dynamics::simulation::{Input, Plant, Profile, ProfileError};
-use phea_hydraulics::machine::{Beginning, Start};
-use phea_hydraulics::operating_point::{Condition, Load, operating_point};
-use phea_machine::{Control, Rest, Standing, Waking};
+use phea_hydraulics::machine::{Beginning, StartValues};
+use phea_hydraulics::operating_point::{Condition, SteadyLoad, operating_point};
+use phea_machine::{Control, HeldInputs, Rest, Waking};
 
 use super::bench::Bench;
 use super::equilibrium::{Rested, rest};
@@ -118,8 +118,8 @@ pub fn course_of(
 
 impl Driven {
     /// What stands still while the loop rests before time zero.
-    fn at_start(&self) -> Standing {
-        Standing {
+    fn at_start(&self) -> HeldInputs {
+        HeldInputs {
             reference_n: self.reference.value(0.0),
             command_v: self.command.value(0.0),
             external_n: self.external_force.value(0.0),
@@ -145,7 +145,7 @@ fn motion(
     source: &dyn Source,
     project: &Project,
     LoadMotion { shape, start }: &LoadMotion,
-) -> Result<Result<Profile, ProfileError>, Box<project::Report>> {
+) -> Result<Result<Profile, ProfileError>, Box<project::Refusal>> {
     Ok(match shape {
         MotionShape::SmoothStep { duration, distance } => Profile::smooth_step(*start, *duration, *distance),
         MotionShape::FirstOrder { distance, time_constant } => {
@@ -164,14 +164,14 @@ fn motion(
 fn near_rest(bench: &Bench, scenario: &Scenario, reference_n: f64) -> Result<Beginning, SimulateError> {
     let position = bench.rig.point.position;
     let near = |force: f64| -> Result<Beginning, SimulateError> {
-        let point = operating_point(&bench.rig.actuator, position, Condition::Load(Load::Force(force)))
+        let point = operating_point(&bench.rig.actuator, position, Condition::Load(SteadyLoad::Force(force)))
             .map_err(|error| SimulateError::Equilibrium { name: scenario.name.clone(), error })?;
-        let start = Start {
+        let start = StartValues {
             position: point.position,
             pressure_a: point.pressure_a,
             pressure_b: point.pressure_b,
             spool: point.command,
-            ..Start::default()
+            ..StartValues::default()
         };
         let named = |error| SimulateError::Start { name: scenario.name.clone(), error };
         bench.machine.rest_under_load(&point).or_else(|_| bench.machine.start(&start)).map_err(named)
@@ -179,9 +179,9 @@ fn near_rest(bench: &Bench, scenario: &Scenario, reference_n: f64) -> Result<Beg
     near(reference_n).or_else(|_| near(0.0))
 }
 
-fn stated_start(stated: &project::Start) -> Start {
+fn stated_start(stated: &project::Start) -> StartValues {
     let number = |value: Option<f64>| value.unwrap_or(0.0);
-    Start {
+    StartValues {
         position: number(stated.position),
         velocity: number(stated.velocity),
         pressure_a: number(stated.pressure_a),

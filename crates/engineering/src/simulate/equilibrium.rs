@@ -2,7 +2,7 @@
 
 use phea_dynamics::simulation::EquilibriumError;
 use phea_hydraulics::machine::{Beginning, SIGNALS};
-use phea_machine::{Rest, Standing, at_rest};
+use phea_machine::{HeldInputs, Rest, at_rest};
 
 use super::SimulateError;
 use super::bench::Bench;
@@ -20,7 +20,7 @@ pub(super) fn rest(
     bench: &Bench,
     guess: &[f64],
     beginning: &Beginning,
-    standing: Standing,
+    standing: HeldInputs,
     name: &str,
 ) -> Result<Rested, SimulateError> {
     let reference_n = standing.reference_n;

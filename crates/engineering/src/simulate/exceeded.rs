@@ -8,7 +8,7 @@ use crate::quantity::{DisplayUnit, FORCE, VOLTAGE, display};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Exceeded {
     /// Which.
-    pub limit: Limit,
+    pub limit: RigLimit,
     /// N or V; the one that was exceeded first where there are two.
     pub limit_value: f64,
     /// The value furthest beyond, N or V, and when, s.
@@ -21,7 +21,7 @@ pub struct Exceeded {
 
 /// Limits of a rig: what it cannot reach, or what damages it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Limit {
+pub enum RigLimit {
     /// `force_sensor.capacity`, in both directions.
     SensorCapacity,
     /// The force at which the piston stalls, A_A p_S - A_B p_T one way and A_B p_S - A_A p_T the
@@ -31,13 +31,13 @@ pub enum Limit {
     NominalVoltage,
 }
 
-impl Limit {
+impl RigLimit {
     /// As an answer names it.
     pub fn word(self) -> &'static str {
         match self {
-            Limit::SensorCapacity => "force_sensor_capacity",
-            Limit::StallForce => "stall_force",
-            Limit::NominalVoltage => "nominal_voltage",
+            RigLimit::SensorCapacity => "force_sensor_capacity",
+            RigLimit::StallForce => "stall_force",
+            RigLimit::NominalVoltage => "nominal_voltage",
         }
     }
 }
@@ -54,15 +54,15 @@ pub(super) fn exceeded(bench: &Bench, record: &Record) -> Vec<Exceeded> {
     let retracting = -stalls_at(cylinder.area_b, cylinder.area_a);
     let voltage = components.valve.nominal_voltage;
     let forces = record.signal("force_n");
-    let sensor = bench
-        .force_capacity_n
-        .and_then(|capacity| beyond(Limit::SensorCapacity, [-capacity, capacity], &record.times_s, &forces));
-    let stall = beyond(Limit::StallForce, [retracting, extending], &record.times_s, &record.reference_n);
-    let command = beyond(Limit::NominalVoltage, [-voltage, voltage], &record.times_s, &record.control_v);
+    let sensor = bench.force_capacity_n.and_then(|capacity| {
+        beyond(RigLimit::SensorCapacity, [-capacity, capacity], &record.times_s, &forces)
+    });
+    let stall = beyond(RigLimit::StallForce, [retracting, extending], &record.times_s, &record.reference_n);
+    let command = beyond(RigLimit::NominalVoltage, [-voltage, voltage], &record.times_s, &record.control_v);
     [sensor, stall, command].into_iter().flatten().collect()
 }
 
-fn beyond(limit: Limit, [low, high]: [f64; 2], times_s: &[f64], values: &[f64]) -> Option<Exceeded> {
+fn beyond(limit: RigLimit, [low, high]: [f64; 2], times_s: &[f64], values: &[f64]) -> Option<Exceeded> {
     let excess = |value: f64| (value - high).max(low - value);
     let mut found: Option<Exceeded> = None;
     for (&time_s, &value) in times_s.iter().zip(values) {
@@ -81,18 +81,18 @@ fn beyond(limit: Limit, [low, high]: [f64; 2], times_s: &[f64], values: &[f64]) 
 
 /// In a sentence.
 pub fn words(exceeded: &Exceeded) -> String {
-    let unit = if exceeded.limit == Limit::NominalVoltage { &VOLTAGE } else { &FORCE };
+    let unit = if exceeded.limit == RigLimit::NominalVoltage { &VOLTAGE } else { &FORCE };
     let [peak, limit] = [exceeded.peak, exceeded.limit_value].map(|value| display(value, unit, 4));
     let [at, first] =
         [exceeded.peak_time_s, exceeded.first_time_s].map(|time| DisplayUnit::SECOND.number(time, 4));
     match exceeded.limit {
-        Limit::SensorCapacity => format!(
+        RigLimit::SensorCapacity => format!(
             "from {first} s on the force sensor is overloaded: its capacity is {limit}, the force comes to {peak} at {at} s"
         ),
-        Limit::StallForce => format!(
+        RigLimit::StallForce => format!(
             "from {first} s on the reference is beyond what the supply can push: the piston stalls at {limit}, asked for are {peak} at {at} s"
         ),
-        Limit::NominalVoltage => format!(
+        RigLimit::NominalVoltage => format!(
             "from {first} s on the command is beyond the valve's {limit}, and comes to {peak} at {at} s: the rig clips it, so state \
              controller.saturation"
         ),

@@ -4,7 +4,7 @@
 use std::cell::RefCell;
 
 use phea_dynamics::simulation::{Piece, Profile, Quartic, Stretch};
-use phea_machine::Samples;
+use phea_machine::ControllerSamples;
 
 use super::sum::Sum;
 use super::tally::{Command, Passed, Tally};
@@ -22,7 +22,7 @@ pub(super) enum Commanded<'a> {
     /// stated in an open loop.
     Continuously(Sum, f64),
     /// What a sampled controller gave out last.
-    Sampled(&'a RefCell<Samples>),
+    Sampled(&'a RefCell<ControllerSamples>),
 }
 
 /// Keeps what the windows of a run are measured by.

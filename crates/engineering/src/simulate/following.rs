@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 
 use phea_dynamics::simulation::Profile;
-use phea_machine::{Control, Samples};
+use phea_machine::{Control, ControllerSamples};
 
 use super::Window;
 use super::bench::Bench;
@@ -16,7 +16,7 @@ impl<'a> Follower<'a> {
     pub fn of(
         bench: &Bench,
         wanted: &[usize],
-        samples: &'a RefCell<Samples>,
+        samples: &'a RefCell<ControllerSamples>,
         reference: &'a Profile,
         (windows, band): (&[Window], f64),
     ) -> Follower<'a> {

@@ -41,7 +41,7 @@ pub struct FrequencyRequest {
 
 /// Responses of a machine at its operating point.
 #[derive(Clone, Debug, PartialEq)]
-pub struct FrequencyResponse {
+pub struct MachineResponses {
     /// Where the machine rests: position of the piston, m.
     pub position_m: f64,
     /// Force on the load, N.
@@ -49,16 +49,16 @@ pub struct FrequencyResponse {
     /// Command, V.
     pub command_v: f64,
     /// From command to force, N/V.
-    pub open_loop: Response,
+    pub open_loop: MachineResponse,
     /// From reference to force; or why it is absent.
-    pub closed_loop: Result<Response, String>,
+    pub closed_loop: Result<MachineResponse, String>,
     /// Whether the watch stopped it.
     pub stopped: bool,
 }
 
 /// A response at its frequencies, and its models on finer ones for a picture.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Response {
+pub struct MachineResponse {
     /// By rising frequency.
     pub points: Vec<ResponsePoint>,
     /// Frequencies of the models' curves, rad/s.
@@ -82,7 +82,7 @@ struct Rested {
     settings: Settings,
 }
 
-impl FrequencyResponse {
+impl MachineResponses {
     /// Whether every point settled.
     pub fn is_settled(&self) -> bool {
         let closed = self.closed_loop.iter().flat_map(|response| &response.points);
@@ -100,7 +100,7 @@ pub fn frequency_response(
     setup: &Setup<'_>,
     request: &FrequencyRequest,
     watch: Watch<'_>,
-) -> Result<FrequencyResponse, SimulateError> {
+) -> Result<MachineResponses, SimulateError> {
     let rested = rested(setup)?;
     let frequencies = frequencies(request, &rested);
     let count = 2.0 * frequencies.len() as f64;
@@ -121,7 +121,7 @@ pub fn frequency_response(
     };
     let position_m = rested.rig.point.position;
     let (force_n, command_v) = (rested.force_n, rested.rest.command);
-    Ok(FrequencyResponse { position_m, force_n, command_v, open_loop, closed_loop, stopped })
+    Ok(MachineResponses { position_m, force_n, command_v, open_loop, closed_loop, stopped })
 }
 
 fn rested(setup: &Setup<'_>) -> Result<Rested, SimulateError> {

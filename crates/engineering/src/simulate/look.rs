@@ -4,7 +4,7 @@
 use std::cell::{Cell, RefCell};
 
 use phea_dynamics::simulation::{Attention, Observer, Stretch};
-use phea_machine::{Control, Sample, Samples};
+use phea_machine::{Control, ControllerSamples, Sample};
 
 use super::bench::Bench;
 use super::course::PreparedScenario;
@@ -31,7 +31,7 @@ pub(super) struct Sighted {
 pub(super) struct Looking<'a> {
     bench: &'a Bench,
     /// What a sampled controller did last.
-    samples: &'a RefCell<Samples>,
+    samples: &'a RefCell<ControllerSamples>,
     /// All states.
     wanted: Vec<usize>,
     /// Looks so far.
@@ -52,7 +52,7 @@ pub(super) struct Looking<'a> {
 impl<'a> Looking<'a> {
     pub(super) fn new(
         bench: &'a Bench,
-        samples: &'a RefCell<Samples>,
+        samples: &'a RefCell<ControllerSamples>,
         (table, looks_per_row): (Option<Table<'a>>, usize),
         measurements: &'a [Measurement],
         full: &'a Cell<bool>,

@@ -10,8 +10,8 @@
 use super::Look;
 use super::columns::Source;
 use super::metrics::Measured;
-use crate::family::measured::table::{self, Cell, Table};
-use crate::project::{Findings, Found, MeasuredFile, Project, Report, Scenario};
+use crate::family::measured::table::{self, MeasuredCell, MeasuredTable};
+use crate::project::{Findings, Found, MeasuredFile, Project, Refusal, Scenario};
 use crate::quantity::{self, Dimension, DisplayUnit, TIME};
 use crate::source;
 use crate::spelling::nearest;
@@ -88,7 +88,7 @@ pub(super) fn measurements(
     source: &dyn source::Source,
     project: &Project,
     scenario: &Scenario,
-) -> Result<Vec<Measurement>, Box<Report>> {
+) -> Result<Vec<Measurement>, Box<Refusal>> {
     let mut findings = Findings::default();
     let mut found = Vec::new();
     for declared in &scenario.measured {
@@ -115,7 +115,7 @@ struct Column<'u> {
 fn of_table(
     declared: &MeasuredFile,
     duration_s: f64,
-    table: &Table<'_>,
+    table: &MeasuredTable<'_>,
     findings: &mut Findings,
 ) -> Vec<Measurement> {
     let time = time_column(declared, table, findings);
@@ -168,14 +168,15 @@ fn of_table(
 /// The column of times: the one that is named, or one that is known.
 fn time_column<'u>(
     declared: &'u MeasuredFile,
-    table: &Table<'_>,
+    table: &MeasuredTable<'_>,
     findings: &mut Findings,
 ) -> Option<Column<'u>> {
     let unit = declared.time_unit.as_deref().unwrap_or(TIME.si);
     if let Some(name) = &declared.time_column {
         return Some(Column { index: named(name, table, findings)?, unit, dimension: &TIME });
     }
-    let known = |cell: &Cell<'_>| TIMES.iter().find(|(name, _)| *name == cell.text).map(|(_, unit)| *unit);
+    let known =
+        |cell: &MeasuredCell<'_>| TIMES.iter().find(|(name, _)| *name == cell.text).map(|(_, unit)| *unit);
     let mut found = table.header.iter().enumerate().filter_map(|(index, cell)| Some((index, known(cell)?)));
     let (first, second) = (found.next(), found.next());
     let place = |index: usize| table.header.get(index).map(|cell| cell.place).unwrap_or_default();
@@ -193,7 +194,7 @@ fn time_column<'u>(
 }
 
 /// The place of the one column with this name.
-fn named(name: &str, table: &Table<'_>, findings: &mut Findings) -> Option<usize> {
+fn named(name: &str, table: &MeasuredTable<'_>, findings: &mut Findings) -> Option<usize> {
     let mut found = table.header.iter().enumerate().filter(|(_, cell)| cell.text == name);
     let (first, second) = (found.next(), found.next());
     if let Some((_, cell)) = second {
@@ -214,7 +215,7 @@ fn named(name: &str, table: &Table<'_>, findings: &mut Findings) -> Option<usize
 
 impl Column<'_> {
     /// SI; a gap is reported like any other text that is not a number.
-    fn value(&self, row: &[Cell<'_>], findings: &mut Findings) -> Option<f64> {
+    fn value(&self, row: &[MeasuredCell<'_>], findings: &mut Findings) -> Option<f64> {
         let cell = row.get(self.index)?;
         let bare = cell.text.parse::<f64>().is_ok_and(f64::is_finite);
         let text = format!("{} {}", cell.text, self.unit);

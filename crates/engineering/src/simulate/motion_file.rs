@@ -10,8 +10,8 @@
 
 use phea_dynamics::simulation::{Profile, ProfileError};
 
-use crate::family::measured::table::{self, Cell};
-use crate::project::{Findings, Found, Project, Report};
+use crate::family::measured::table::{self, MeasuredCell};
+use crate::project::{Findings, Found, Project, Refusal};
 use crate::quantity::{self, Dimension, FORCE, LENGTH, TIME, VOLTAGE};
 use crate::source::Source;
 use crate::spelling::nearest;
@@ -44,7 +44,7 @@ pub(super) fn motion(
     project: &Project,
     file: &str,
     start_s: f64,
-) -> Result<Result<Profile, ProfileError>, Box<Report>> {
+) -> Result<Result<Profile, ProfileError>, Box<Refusal>> {
     let rows = read(source, project, file, Column::POSITION)?;
     let (first_s, first_m) = rows.first().copied().unwrap_or_default();
     let times: Vec<f64> = rows.iter().map(|row| start_s + row.0 - first_s).collect();
@@ -59,7 +59,7 @@ pub(super) fn signal(
     file: &str,
     start_s: f64,
     column: Column,
-) -> Result<Result<Profile, ProfileError>, Box<Report>> {
+) -> Result<Result<Profile, ProfileError>, Box<Refusal>> {
     let rows = read(source, project, file, column)?;
     let (first_s, _) = rows.first().copied().unwrap_or_default();
     let times: Vec<f64> = rows.iter().map(|row| start_s + row.0 - first_s).collect();
@@ -72,7 +72,7 @@ fn read(
     project: &Project,
     file: &str,
     column: Column,
-) -> Result<Vec<(f64, f64)>, Box<Report>> {
+) -> Result<Vec<(f64, f64)>, Box<Refusal>> {
     let mut findings = Findings::default();
     let path = project.path_of(file);
     let rows = match source.read(&path) {
@@ -116,8 +116,13 @@ fn rows(path: &str, bytes: &[u8], values: Column, findings: &mut Findings) -> Ve
 }
 
 /// Where a column is, and its unit.
-fn column(header: &[Cell<'_>], names: Names, findings: &mut Findings) -> Option<(usize, &'static str)> {
-    let unit = |cell: &Cell<'_>| names.iter().find(|(name, _)| *name == cell.text).map(|(_, unit)| *unit);
+fn column(
+    header: &[MeasuredCell<'_>],
+    names: Names,
+    findings: &mut Findings,
+) -> Option<(usize, &'static str)> {
+    let unit =
+        |cell: &MeasuredCell<'_>| names.iter().find(|(name, _)| *name == cell.text).map(|(_, unit)| *unit);
     let mut found =
         header.iter().enumerate().filter_map(|(index, cell)| Some((index, unit(cell)?, cell.place)));
     let (first, second) = (found.next(), found.next());
@@ -132,7 +137,7 @@ fn column(header: &[Cell<'_>], names: Names, findings: &mut Findings) -> Option<
     first.map(|(index, unit, _)| (index, unit))
 }
 
-fn unknown(header: &[Cell<'_>], values: Names, findings: &mut Findings) {
+fn unknown(header: &[MeasuredCell<'_>], values: Names, findings: &mut Findings) {
     let names = || TIMES.iter().chain(&values).map(|(name, _)| *name);
     for cell in header.iter().filter(|cell| !names().any(|name| name == cell.text)) {
         let found = Found::error(cell.place, format!("unknown column `{}`", cell.text));
@@ -144,8 +149,8 @@ fn unknown(header: &[Cell<'_>], values: Names, findings: &mut Findings) {
 }
 
 /// SI.
-fn number(cell: Option<&Cell<'_>>, unit: &str, dimension: &'static Dimension) -> Result<f64, Found> {
-    let cell = cell.copied().unwrap_or(Cell { text: "", place: Default::default() });
+fn number(cell: Option<&MeasuredCell<'_>>, unit: &str, dimension: &'static Dimension) -> Result<f64, Found> {
+    let cell = cell.copied().unwrap_or(MeasuredCell { text: "", place: Default::default() });
     let bare = cell.text.parse::<f64>().is_ok_and(f64::is_finite);
     let value = bare.then(|| quantity::parse(&format!("{} {unit}", cell.text), dimension).ok()).flatten();
     value.filter(|value| value.is_finite()).ok_or_else(|| {

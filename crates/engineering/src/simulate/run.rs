@@ -2,9 +2,9 @@
 
 use std::cell::{Cell, RefCell};
 
-use phea_dynamics::simulation::{Event, Input, InputSchedule, Outcome, Sampler, Status, Task, Work};
+use phea_dynamics::simulation::{Event, Input, InputSchedule, Outcome, Sampler, Status, StepCounts, Task};
 use phea_hydraulics::machine::INDICATORS;
-use phea_machine::{Control, Digital, Memory, Samples, Watcher};
+use phea_machine::{Control, ControllerSamples, Digital, DigitalMemory, Watcher};
 
 use super::bench::Bench;
 use super::course::PreparedScenario;
@@ -33,7 +33,7 @@ pub struct ScenarioRun {
     /// How it ended.
     pub status: Status,
     /// What it cost.
-    pub work: Work,
+    pub work: StepCounts,
     /// What was seen, every [`ScenarioRun::look_s`], or at fewer looks of a long run.
     pub record: Record,
     /// Looks between two rows of the result.
@@ -86,7 +86,7 @@ pub struct Occurrence {
 
 /// How a run ended before its time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stopped {
+pub struct StoppedRun {
     /// s.
     pub time_s: f64,
     /// In one word, as in an answer.
@@ -116,14 +116,14 @@ impl ScenarioRun {
     }
 
     /// Why and when it ended before its time; `None` if it did not.
-    pub fn stopped(&self) -> Option<Stopped> {
-        Stopped::of(self.status)
+    pub fn stopped(&self) -> Option<StoppedRun> {
+        StoppedRun::of(self.status)
     }
 }
 
-impl Stopped {
+impl StoppedRun {
     /// What a status says; `None` of a run that came to its end.
-    pub fn of(status: Status) -> Option<Stopped> {
+    pub fn of(status: Status) -> Option<StoppedRun> {
         let mut mode = None;
         let (time_s, word) = match status {
             Status::Completed => return None,
@@ -136,7 +136,7 @@ impl Stopped {
                 (time_s, "unresolved_oscillation")
             }
         };
-        Some(Stopped { time_s, word, mode })
+        Some(StoppedRun { time_s, word, mode })
     }
 }
 
@@ -151,8 +151,8 @@ pub(super) fn run(
 ) -> Result<ScenarioRun, SimulateError> {
     let looks_per_row = looks_per_row(scenario);
     let look_s = scenario.output_step / looks_per_row as f64;
-    let (samples, full) = (RefCell::new(Samples::default()), Cell::new(false));
-    let memory = RefCell::new(Memory::default());
+    let (samples, full) = (RefCell::new(ControllerSamples::default()), Cell::new(false));
+    let memory = RefCell::new(DigitalMemory::default());
     let mut steps = 0;
     let mut watch = |time_s: f64| {
         steps += 1;
@@ -209,7 +209,12 @@ pub(super) fn run(
 }
 
 /// All that happened on the way.
-fn found(bench: &Bench, course: &PreparedScenario, outcome: &Outcome, samples: &Samples) -> Vec<Occurrence> {
+fn found(
+    bench: &Bench,
+    course: &PreparedScenario,
+    outcome: &Outcome,
+    samples: &ControllerSamples,
+) -> Vec<Occurrence> {
     let reference = course.reference.value(0.0);
     let leading = match &bench.control {
         Control::Continuous(_) => vec![reference],

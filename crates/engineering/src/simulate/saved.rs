@@ -18,12 +18,12 @@
 use std::fmt::Write as _;
 
 use phea_dynamics::simulation::Status;
-use phea_machine::{Control, Memory};
+use phea_machine::{Control, DigitalMemory};
 
 use super::bench::Bench;
 use super::course::PreparedScenario;
 use super::shortest_number::number;
-use crate::project::{Findings, Found, Node, Project, Report, TreeValue, read_tree};
+use crate::project::{Findings, Found, Node, Project, Refusal, TreeValue, read_tree};
 use crate::source::Source;
 
 /// Part of a sample time within which an end is at a sample.
@@ -39,7 +39,7 @@ pub struct SavedState {
     /// m, where the load's ground stands.
     pub ground_m: f64,
     /// What a sampled controller remembers.
-    pub(crate) memory: Option<Memory>,
+    pub(crate) memory: Option<DigitalMemory>,
 }
 
 /// Names of the continuous states, in the order of the vector.
@@ -73,7 +73,7 @@ pub(super) fn of_end(
     bench: &Bench,
     course: &PreparedScenario,
     (status, end, end_s): (Status, &[f64], f64),
-    memory: Option<&Memory>,
+    memory: Option<&DigitalMemory>,
 ) -> Result<SavedState, &'static str> {
     if status != Status::Completed {
         return Err("it did not come to its end");
@@ -137,7 +137,7 @@ pub(super) fn read(
     project: &Project,
     file: &str,
     bench: &Bench,
-) -> Result<SavedState, Box<Report>> {
+) -> Result<SavedState, Box<Refusal>> {
     let mut findings = Findings::default();
     let path = project.path_of(file);
     let root = match source.read(&path) {
@@ -197,7 +197,7 @@ fn taken(root: &Node, bench: &Bench, findings: &mut Findings) -> SavedState {
         time_s: 0.0,
         states: state_names(bench).into_iter().map(&mut number).collect(),
         ground_m: number(GROUND.to_string()).1,
-        memory: memories.map(|count| Memory {
+        memory: memories.map(|count| DigitalMemory {
             command_v: number(HELD.to_string()).1,
             memories: (1..=count).map(|index| number(remembered(index)).1).collect(),
             random: random.unwrap_or_default(),

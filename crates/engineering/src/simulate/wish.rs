@@ -22,7 +22,7 @@ pub struct Wish {
 
 /// A wish held against a step.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Held {
+pub struct HeldWish {
     /// What the step does.
     pub words: String,
     /// Whether it is as was wished; `None` where the two are not of the same band, or the run ended
@@ -59,15 +59,15 @@ impl Wish {
 
     /// The overshoot of a step and the required value; `None` where none is required or the window
     /// contains no step.
-    pub fn overshoot(&self, metrics: &Metrics) -> Option<Held> {
+    pub fn overshoot(&self, metrics: &Metrics) -> Option<HeldWish> {
         let most = self.overshoot_percent?;
         let reached = metrics.overshoot_percent.ok()?;
         let kept = reached <= most + ROUNDED * most.max(1.0);
-        Some(Held { words: format!("{} %", significant(reached, 3)), kept: Some(kept) })
+        Some(HeldWish { words: format!("{} %", significant(reached, 3)), kept: Some(kept) })
     }
 
     /// The settling time of a step and the required value, likewise.
-    pub fn settling(&self, metrics: &Metrics) -> Option<Held> {
+    pub fn settling(&self, metrics: &Metrics) -> Option<HeldWish> {
         let most = self.settling_time_s?;
         metrics.overshoot_percent.ok()?;
         let same_band = metrics.settling_band_percent == self.band_percent;
@@ -77,9 +77,9 @@ impl Wish {
                     true => format!("{} s", significant(reached, 3)),
                     false => format!("{} s to {} %", significant(reached, 3), metrics.settling_band_percent),
                 };
-                Some(Held { words, kept: same_band.then_some(reached <= most * (1.0 + ROUNDED)) })
+                Some(HeldWish { words, kept: same_band.then_some(reached <= most * (1.0 + ROUNDED)) })
             }
-            Err(NOT_SETTLED) => Some(Held { words: "not settled".to_string(), kept: Some(false) }),
+            Err(NOT_SETTLED) => Some(HeldWish { words: "not settled".to_string(), kept: Some(false) }),
             Err(_) => None,
         }
     }

@@ -1,6 +1,6 @@
 use std::f64::consts::PI;
 
-use super::{Decision, SizingProblem};
+use super::{SizingProblem, SizingStep};
 use crate::quantity::DisplayUnit;
 
 /// What the oil velocity says about a bore.
@@ -57,7 +57,7 @@ const LOW_PRESSURE_VELOCITY: [f64; 2] = [0.6, 1.2];
 
 /// Bores of the lines without pressure: a return line carries more than the valve takes where the
 /// areas differ.
-fn low_pressure_lines(problem: &SizingProblem) -> Decision {
+fn low_pressure_lines(problem: &SizingProblem) -> SizingStep {
     let [slowest, fastest] = LOW_PRESSURE_VELOCITY;
     let areas = [problem.cylinder.area_a, problem.cylinder.area_b];
     let ratio = (areas[0] / areas[1]).max(areas[1] / areas[0]);
@@ -66,7 +66,7 @@ fn low_pressure_lines(problem: &SizingProblem) -> Decision {
         let [small, large] = [small, large].map(|bore| DisplayUnit::MILLIMETRE.number(bore, 3));
         format!("{small} to {large} mm")
     };
-    Decision {
+    SizingStep {
         step: "c.2",
         text: format!(
             "Return and suction lines carry oil at {slowest} to {fastest} m/s: bores of {} for the return line of {} L/min, of {} for suction.",
@@ -78,7 +78,7 @@ fn low_pressure_lines(problem: &SizingProblem) -> Decision {
 }
 
 /// Every bore of market and catalogue, smallest first, and the record of steps c.2 to c.4.
-pub(super) fn assess(problem: &SizingProblem, decisions: &mut Vec<Decision>) -> Vec<CommercialBore> {
+pub(super) fn assess(problem: &SizingProblem, decisions: &mut Vec<SizingStep>) -> Vec<CommercialBore> {
     let offered = problem.hoses.iter().map(|option| (option.name.clone(), option.hose.bore));
     let mut bores: Vec<CommercialBore> = problem
         .market_bores
@@ -100,12 +100,12 @@ pub(super) fn assess(problem: &SizingProblem, decisions: &mut Vec<Decision>) -> 
         .map(|bore| bore.name.as_str())
         .collect();
     let [slowest, fastest] = problem.oil_velocity;
-    decisions.push(Decision {
+    decisions.push(SizingStep {
         step: "c.2",
         text: format!("Oil velocity {slowest} to {fastest} m/s: above rejects a bore, below only warns."),
     });
     decisions.push(low_pressure_lines(problem));
-    decisions.push(Decision {
+    decisions.push(SizingStep {
         step: "c.3",
         text: format!(
             "Largest flow {} L/min ({}): bores from {smallest} to {largest} mm, of those on the market {}.",

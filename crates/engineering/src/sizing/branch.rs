@@ -1,7 +1,7 @@
-use phea_hydraulics::line::{Line, Member};
+use phea_hydraulics::line::{Line, StiffeningMember};
 use phea_hydraulics::stiffness::{LineLength, StiffnessModel, StrokeStiffness, line_length_for_stiffness};
 
-use super::{Decision, HoseOption, Question, SizingProblem};
+use super::{HoseOption, Question, SizingProblem, SizingStep};
 use crate::quantity::significant;
 
 /// One trial of the iteration over the gain, steps f to j.
@@ -131,7 +131,7 @@ fn gain_step(problem: &SizingProblem, option: &HoseOption, model: StiffnessModel
         problem.fluid_modulus,
         &problem.cylinder,
         &line,
-        Member::Nominal,
+        StiffeningMember::Nominal,
         stiffness_n_per_m,
     );
     let length_m = match length {
@@ -152,11 +152,11 @@ pub fn model_name(model: StiffnessModel) -> &'static str {
 
 impl Branch {
     /// The decisions of steps f to l; the single trials stay in `steps`.
-    pub(super) fn record(&self, option: &HoseOption, decisions: &mut Vec<Decision>) {
+    pub(super) fn record(&self, option: &HoseOption, decisions: &mut Vec<SizingStep>) {
         let name = format!("{}, {}", option.name, model_name(self.model));
         let number = |value| significant(value, 4);
         let mut decide =
-            |step, text: String| decisions.push(Decision { step, text: format!("{name}: {text}") });
+            |step, text: String| decisions.push(SizingStep { step, text: format!("{name}: {text}") });
         if !self.by_gain {
             let (length, stiffness) = (number(self.length_m), number(self.stiffness.minimum));
             let gain = number(self.gain_v_per_n);

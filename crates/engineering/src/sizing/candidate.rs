@@ -1,4 +1,4 @@
-use phea_hydraulics::line::{Member, series_modulus};
+use phea_hydraulics::line::{StiffeningMember, series_modulus};
 use phea_hydraulics::linear::{LinearParameters, closed_loop_steady_state_gain, closed_loop_time_constant};
 
 use phea_hydraulics::stiffness::StiffnessModel;
@@ -9,7 +9,7 @@ use crate::quantity::{DisplayUnit, significant};
 
 /// The consequence of a finding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Severity {
+pub enum Consequence {
     /// The candidate is not accepted.
     Rejects,
     /// The candidate is accepted with a warning.
@@ -18,9 +18,9 @@ pub enum Severity {
 
 /// One reason for or against a candidate.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Finding {
+pub struct SizingReason {
     /// Its consequence.
-    pub severity: Severity,
+    pub severity: Consequence,
     /// The reason, with its numbers.
     pub text: String,
 }
@@ -42,13 +42,13 @@ pub struct Candidate {
     /// stated.
     pub steady_state_gain: [f64; 2],
     /// Reasons, those that reject first.
-    pub findings: Vec<Finding>,
+    pub findings: Vec<SizingReason>,
 }
 
 impl Candidate {
     /// Whether nothing rejects it.
     pub fn accepted(&self) -> bool {
-        self.findings.iter().all(|finding| finding.severity != Severity::Rejects)
+        self.findings.iter().all(|finding| finding.severity != Consequence::Rejects)
     }
 
     /// Length of each line, m.
@@ -89,27 +89,27 @@ pub(super) fn assess(problem: &SizingProblem, option: &HoseOption, branch: Branc
         stiffening(option, &mut findings);
         settling(problem, &candidate, &mut findings);
     }
-    findings.sort_by_key(|finding| finding.severity != Severity::Rejects);
+    findings.sort_by_key(|finding| finding.severity != Consequence::Rejects);
     candidate.findings = findings;
     candidate
 }
 
 /// Pressure surge of a flow stopped at once, Pa: rho c v = v sqrt(rho beta_e), Joukowsky (1898).
 fn surge_pressure(problem: &SizingProblem, option: &HoseOption, velocity: f64) -> f64 {
-    let wall = option.hose.filled().wall_modulus(Member::Maximum);
+    let wall = option.hose.filled().wall_modulus(StiffeningMember::Maximum);
     let modulus = series_modulus(problem.fluid_modulus, wall);
     velocity * (problem.density * modulus).sqrt()
 }
 
-fn rejects(findings: &mut Vec<Finding>, text: String) {
-    findings.push(Finding { severity: Severity::Rejects, text });
+fn rejects(findings: &mut Vec<SizingReason>, text: String) {
+    findings.push(SizingReason { severity: Consequence::Rejects, text });
 }
 
-fn warns(findings: &mut Vec<Finding>, text: String) {
-    findings.push(Finding { severity: Severity::Warns, text });
+fn warns(findings: &mut Vec<SizingReason>, text: String) {
+    findings.push(SizingReason { severity: Consequence::Warns, text });
 }
 
-fn velocity(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<Finding>) {
+fn velocity(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<SizingReason>) {
     let velocity = significant(candidate.oil_velocity_m_per_s, 3);
     let [slowest, fastest] = problem.oil_velocity;
     match bore::verdict(problem, candidate.option.hose.bore) {
@@ -126,7 +126,7 @@ fn velocity(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<F
     }
 }
 
-fn length(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<Finding>) {
+fn length(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<SizingReason>) {
     let [shortest, longest] = problem.hose_length;
     let length = candidate.length_m();
     if length == 0.0 && candidate.branch.gain_v_per_n <= problem.pole_gain() {
@@ -158,7 +158,7 @@ fn length(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<Fin
     }
 }
 
-fn practical_gain(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<Finding>) {
+fn practical_gain(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<SizingReason>) {
     let gain = candidate.branch.gain_v_per_n;
     if gain <= problem.pole_gain() {
         rejects(
@@ -181,7 +181,7 @@ fn practical_gain(problem: &SizingProblem, candidate: &Candidate, findings: &mut
     }
 }
 
-fn pressure(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<Finding>) {
+fn pressure(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<SizingReason>) {
     let bar = |pressure: f64| DisplayUnit::BAR.number(pressure, 3);
     let peak = problem.supply_pressure + candidate.surge_pressure_pa;
     match candidate.option.working_pressure {
@@ -213,7 +213,7 @@ fn pressure(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<F
     }
 }
 
-fn bending(candidate: &Candidate, findings: &mut Vec<Finding>) {
+fn bending(candidate: &Candidate, findings: &mut Vec<SizingReason>) {
     let Some(radius) = candidate.option.minimum_bend_radius else { return };
     let quarter_turn = std::f64::consts::FRAC_PI_2 * radius;
     if candidate.length_m() > 0.0 && candidate.length_m() < quarter_turn {
@@ -229,14 +229,14 @@ fn bending(candidate: &Candidate, findings: &mut Vec<Finding>) {
 }
 
 /// A wall with its static modulus is softer than the braided hoses that are measured in motion.
-fn stiffening(option: &HoseOption, findings: &mut Vec<Finding>) {
+fn stiffening(option: &HoseOption, findings: &mut Vec<SizingReason>) {
     if option.hose.dynamic_stiffening.maximum <= 1.0 {
         let text = "[line] declares no `dynamic_stiffening`: the wall has its static modulus, and a stiffer one takes more hose";
         warns(findings, text.to_string());
     }
 }
 
-fn settling(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<Finding>) {
+fn settling(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<SizingReason>) {
     let slowest = candidate.time_constant_s.into_iter().fold(0.0, f64::max);
     if slowest > problem.time_constant * (1.0 + 1e-6) {
         warns(

@@ -1,11 +1,11 @@
 use phea_hydraulics::cylinder::Cylinder;
-use phea_hydraulics::line::{Hose, Line, Member};
+use phea_hydraulics::line::{Hose, Line, StiffeningMember};
 use phea_hydraulics::linear::{
     LinearParameters, RequiredStiffness, proportional_gain, required_stiffness, rigid_limit_gain,
 };
 use phea_hydraulics::stiffness::{StiffnessModel, StrokeStiffness, chamber_compliance};
 
-use super::Decision;
+use super::SizingStep;
 use crate::quantity::{DisplayUnit, significant};
 
 /// What the procedure needs to know, every value resolved. SI units.
@@ -95,8 +95,14 @@ impl SizingProblem {
     /// Stiffness over the stroke with a hose of this length on each side.
     pub fn stroke_stiffness(&self, hose: Hose, length: f64, model: StiffnessModel) -> StrokeStiffness {
         let line = Line::Hose { hose, length };
-        chamber_compliance(model, [self.fluid_modulus; 2], &self.cylinder, [&line, &line], Member::Nominal)
-            .over_stroke()
+        chamber_compliance(
+            model,
+            [self.fluid_modulus; 2],
+            &self.cylinder,
+            [&line, &line],
+            StiffeningMember::Nominal,
+        )
+        .over_stroke()
     }
 
     /// Length of each line when the stock is shared, or the longest acceptable one, whichever is
@@ -106,10 +112,10 @@ impl SizingProblem {
         self.stock_length.map_or(longest, |stock| longest.min(stock / 2.0))
     }
 
-    pub(super) fn decisions(&self) -> Vec<Decision> {
+    pub(super) fn decisions(&self) -> Vec<SizingStep> {
         let number = |value| significant(value, 4);
         vec![
-            Decision {
+            SizingStep {
                 step: "a",
                 text: format!(
                     "System data: A_u = {} cm2, stroke {} mm, β_0 = {} GPa, K_S = {} MN/m, K_qU = {} m3/(s.V), K_c0 = {} m3/(s.Pa){}; both lines alike.",
@@ -125,7 +131,7 @@ impl SizingProblem {
                     }
                 ),
             },
-            Decision {
+            SizingStep {
                 step: "b",
                 text: format!(
                     "Time constant τ_d = {} ms: {}.",
@@ -137,7 +143,7 @@ impl SizingProblem {
     }
 
     /// Step f: where the search over the gain begins, and what bounds it.
-    pub(super) fn search_decision(&self) -> Decision {
+    pub(super) fn search_decision(&self) -> SizingStep {
         let text = format!(
             "K_p starts at {} V/N and is halved while the hose is longer than {} m, but not below {} V/N; at {} V/N even a rigid transmission would be too slow (K_H infinite).",
             significant(self.maximum_gain, 3),
@@ -145,6 +151,6 @@ impl SizingProblem {
             significant(self.minimum_gain, 3),
             significant(self.pole_gain(), 3)
         );
-        Decision { step: "f", text }
+        SizingStep { step: "f", text }
     }
 }

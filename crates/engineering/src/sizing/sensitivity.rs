@@ -1,4 +1,4 @@
-use phea_hydraulics::line::{Hose, Line, Member, Stiffening};
+use phea_hydraulics::line::{Hose, Line, Stiffening, StiffeningMember};
 use phea_hydraulics::stiffness::{LineLength, line_length_for_stiffness};
 
 use super::{Candidate, SizingProblem};
@@ -88,7 +88,7 @@ fn outcome(problem: &SizingProblem, hose: Hose, candidate: &Candidate) -> (f64, 
         problem.fluid_modulus,
         &problem.cylinder,
         &Line::Hose { hose, length: 1.0 },
-        Member::Nominal,
+        StiffeningMember::Nominal,
         candidate.branch.stiffness.minimum,
     );
     let length = match length {

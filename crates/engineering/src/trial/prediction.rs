@@ -10,7 +10,7 @@ use phea_qft::closed_loop::Compensation;
 use phea_qft::stability::{StabilityStatus, member_stability};
 
 use super::rigs::Tried;
-use super::run::{BAND_PERCENT, Response};
+use super::run::{BAND_PERCENT, StepResponse};
 use crate::error::ProcedureError;
 use crate::linear_loop::of_responses::real_parts;
 use crate::linear_loop::{LinearLoop, LoopStability, linear_loop_of};
@@ -24,7 +24,7 @@ const POINTS: usize = 4000;
 /// What the linear loop does after a unit step of its reference.
 pub(super) enum Prediction {
     /// It settles, or would.
-    Step(StepMetrics, Response),
+    Step(StepMetrics, StepResponse),
     /// It grows without bound.
     Grows,
     /// It has no response that is known.
@@ -44,9 +44,10 @@ pub(super) fn predicted(tried: &Tried, problem: &RobustProblem) -> Result<Predic
             let given = setup.deployed(given)?;
             let closed = linear_loop_of(plant, &given, &setup.sensor, BAND_PERCENT);
             Ok(match closed {
-                Ok(LinearLoop { step: Ok(step), .. }) => {
-                    Prediction::Step(step.metrics, Response { times_s: step.times_s, values: step.response })
-                }
+                Ok(LinearLoop { step: Ok(step), .. }) => Prediction::Step(
+                    step.metrics,
+                    StepResponse { times_s: step.times_s, values: step.response },
+                ),
                 Ok(LinearLoop { stability: LoopStability::Unstable, .. }) => Prediction::Grows,
                 Ok(_) | Err(_) => Prediction::Unknown,
             })
@@ -77,7 +78,7 @@ fn of_responses(
         let times_s: Vec<f64> = (0..count).map(|sample| sample as f64 * step_s).collect();
         let metrics = step_metrics(&times_s, &values, StepBaseline::to_value(final_value), BAND_PERCENT)?;
         let settles_early = metrics.settling.time_s().is_some_and(|time_s| time_s < 0.5 * duration);
-        found = Prediction::Step(metrics, Response { times_s, values });
+        found = Prediction::Step(metrics, StepResponse { times_s, values });
         if settles_early {
             break;
         }

@@ -5,7 +5,7 @@ use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
 use phea_dynamics::uncertain_plant::PlantMember;
-use phea_hydraulics::line::{Conduit, Member};
+use phea_hydraulics::line::{Conduit, StiffeningMember};
 use phea_qft::family::Family;
 use phea_qft::verification::PlantPoint;
 
@@ -120,8 +120,9 @@ pub fn waves_alone(setup: &Setup<'_>) -> Option<Project> {
 /// through it.
 fn quarter_wave(rig: &Rig) -> Option<f64> {
     let components = rig.actuator.components();
-    let delay =
-        |line| Conduit::of_line(line, &components.fluid, rig.actuator.mean_pressure(), Member::Nominal);
+    let delay = |line| {
+        Conduit::of_line(line, &components.fluid, rig.actuator.mean_pressure(), StiffeningMember::Nominal)
+    };
     let delays = [&components.line_a, &components.line_b].into_iter().filter_map(|line| delay(line).ok());
     let longest = delays.map(|conduit| conduit.delay()).fold(0.0, f64::max);
     (longest > 0.0).then(|| FRAC_PI_2 / longest)

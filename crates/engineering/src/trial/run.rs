@@ -41,7 +41,7 @@ pub struct Step {
 
 /// A step response from the step on: part of the step over time.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Response {
+pub struct StepResponse {
     /// s.
     pub times_s: Vec<f64>,
     /// 0 before, 1 at the new reference.
@@ -65,9 +65,9 @@ pub struct Run {
     /// What the machine does; `None` where it did not start.
     pub machine: Option<Step>,
     /// The linear loop's response; empty if it is absent.
-    pub linear_response: Response,
+    pub linear_response: StepResponse,
     /// The machine's; empty where it did not start.
-    pub machine_response: Response,
+    pub machine_response: StepResponse,
     /// The judgement.
     pub agreement: Agreement,
     /// Why, in a sentence.
@@ -112,7 +112,7 @@ pub(super) fn run(
             let settling_time_s = metrics.settling.time_s();
             (Some(Step { overshoot_percent: Some(metrics.overshoot_percent), settling_time_s }), response)
         }
-        Prediction::Grows | Prediction::Unknown => (None, Response::default()),
+        Prediction::Grows | Prediction::Unknown => (None, StepResponse::default()),
     };
     let [shortest, longest] = DURATION_S;
     let settles_s = linear.and_then(|step| step.settling_time_s).unwrap_or(shortest);
@@ -152,7 +152,9 @@ pub(super) fn run(
             let course = (Some(machine), response_of(driven, reference_n));
             Ok(run(status, met(driven), course, judged))
         }
-        Err(error) => Ok(run("not_started", vec![], (None, Response::default()), not_started(&error, view))),
+        Err(error) => {
+            Ok(run("not_started", vec![], (None, StepResponse::default()), not_started(&error, view)))
+        }
     }
 }
 
@@ -191,12 +193,12 @@ fn step_of(driven: &ScenarioRun) -> Step {
 }
 
 /// The force from the step on, as part of it.
-fn response_of(driven: &ScenarioRun, [from, to]: [f64; 2]) -> Response {
+fn response_of(driven: &ScenarioRun, [from, to]: [f64; 2]) -> StepResponse {
     let rows = driven.record.times_s.iter().zip(driven.record.signal("force_n"));
     let after = rows.filter(|(time_s, _)| **time_s >= BEFORE_S);
     let (times_s, values) =
         after.map(|(time_s, force)| (time_s - BEFORE_S, (force - from) / (to - from))).unzip();
-    Response { times_s, values }
+    StepResponse { times_s, values }
 }
 
 /// A machine that has no rest under its controller, or no equations.

@@ -158,14 +158,14 @@ pub(crate) fn commercial_bores() -> Figure {
         words("nomograph", "Commercial bores for the design flow"),
         &NomographInput {
             bores: vec![
-                bore("-3", 4.8, Verdict::Rejected),
-                bore("-4", 6.4, Verdict::Rejected),
-                bore("-5", 7.9, Verdict::Accepted),
-                bore("-6", 9.5, Verdict::Accepted),
-                bore("-8", 12.7, Verdict::Warned),
-                bore("-10", 15.9, Verdict::Warned),
-                bore("-12", 19.0, Verdict::Warned),
-                bore("-16", 25.4, Verdict::Warned),
+                bore("-3", 4.8, CandidateVerdict::Rejected),
+                bore("-4", 6.4, CandidateVerdict::Rejected),
+                bore("-5", 7.9, CandidateVerdict::Accepted),
+                bore("-6", 9.5, CandidateVerdict::Accepted),
+                bore("-8", 12.7, CandidateVerdict::Warned),
+                bore("-10", 15.9, CandidateVerdict::Warned),
+                bore("-12", 19.0, CandidateVerdict::Warned),
+                bore("-16", 25.4, CandidateVerdict::Warned),
             ],
             design_flow_m3_per_s: 9.8e-3 / 60.0,
             velocity_range_m_per_s: (2.1, 4.6),
@@ -223,7 +223,7 @@ pub(crate) fn driving_point_impedance() -> Figure {
         frequencies_rad_per_s: w.clone(),
         response,
     };
-    let line = |label: &str, coefficient: f64, exponent: i32, from: f64, to: f64| Asymptote {
+    let line = |label: &str, coefficient: f64, exponent: i32, from: f64, to: f64| AsymptoteLine {
         label: label.to_string(),
         coefficient,
         exponent,
@@ -330,10 +330,10 @@ pub(crate) fn lengths() -> Figure {
         &SizingChartInput {
             curves: vec![curve("3130-08, uniform", true), curve("3130-08, by volume", false)],
             candidates: vec![
-                candidate("K_p 0.25 mV/N", 1.07, Verdict::Accepted),
-                candidate("3130-08, 1.5 m", 1.5, Verdict::Accepted),
-                candidate("K_p 0.5 mV/N", 5.66, Verdict::Warned),
-                candidate("K_p 1 mV/N", 14.84, Verdict::Rejected),
+                candidate("K_p 0.25 mV/N", 1.07, CandidateVerdict::Accepted),
+                candidate("3130-08, 1.5 m", 1.5, CandidateVerdict::Accepted),
+                candidate("K_p 0.5 mV/N", 5.66, CandidateVerdict::Warned),
+                candidate("K_p 1 mV/N", 14.84, CandidateVerdict::Rejected),
             ],
             length_range_m: Some((0.3, 3.0)),
             minimum_gain_v_per_n: Some(1e-4),

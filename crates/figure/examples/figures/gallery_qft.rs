@@ -8,7 +8,7 @@ use phea_dynamics::linear::{Polynomial, TransferFunction};
 use phea_dynamics::portable::{cos, magnitude, pow, sin};
 use phea_dynamics::time_response::{step_response, uniform_times};
 use phea_figure::*;
-use phea_qft::bound::{Bound, BoundFunction, Fill};
+use phea_qft::bound::{Bound, BoundFunction, TemplateFill};
 use phea_qft::specification::{Limit, Requirement};
 use phea_qft::template::{Resolution, Template, TemplatePoint};
 
@@ -108,7 +108,7 @@ fn response(of: impl Fn(Complex64) -> Complex64, frequencies: &[f64]) -> Vec<Com
 /// Over phases two degrees apart, of the listed plants alone.
 fn bound(plants: &[Plant], requirement: &Requirement, frequency: f64) -> Bound {
     let function =
-        BoundFunction::new(&template(plants, frequency, false), requirement, Fill::Points).unwrap();
+        BoundFunction::new(&template(plants, frequency, false), requirement, TemplateFill::Points).unwrap();
     let phases_rad: Vec<f64> = evenly(-360.0, 0.0, 181).into_iter().map(f64::to_radians).collect();
     let forbidden = phases_rad.iter().map(|phase| function.forbidden(*phase)).collect();
     Bound { frequency_rad_per_s: frequency, phases_rad, forbidden }

@@ -1,4 +1,4 @@
-use super::{Hose, Member};
+use super::{Hose, StiffeningMember};
 use crate::parameter::{ParameterError, Problems};
 
 /// The wall of a hose that moves along its axis: what it weighs and how it yields.
@@ -49,15 +49,20 @@ impl BraidedWall {
     /// # Example
     /// Free ends do not move, and take up what the catalogue says.
     /// ```
-    /// use phea_hydraulics::line::{BraidedWall, Member};
+    /// use phea_hydraulics::line::{BraidedWall, StiffeningMember};
     /// let hose = phea_hydraulics::reference_rig::hose().filled();
-    /// let wall = BraidedWall::neutral(&hose, Member::Nominal, 5e4, 0.2);
+    /// let wall = BraidedWall::neutral(&hose, StiffeningMember::Nominal, 5e4, 0.2);
     /// let area = std::f64::consts::FRAC_PI_4 * hose.bore * hose.bore;
     /// assert_eq!(wall.coupling_compliance + wall.axial_compliance, 0.0);
     /// let taken = wall.pressure_compliance + area * wall.coupling_compliance;
-    /// assert!((taken * hose.wall_modulus(Member::Nominal) - 1.0).abs() < 1e-12);
+    /// assert!((taken * hose.wall_modulus(StiffeningMember::Nominal) - 1.0).abs() < 1e-12);
     /// ```
-    pub fn neutral(hose: &Hose, member: Member, axial_stiffness: f64, mass_per_length: f64) -> BraidedWall {
+    pub fn neutral(
+        hose: &Hose,
+        member: StiffeningMember,
+        axial_stiffness: f64,
+        mass_per_length: f64,
+    ) -> BraidedWall {
         let axial_compliance = 1.0 / axial_stiffness;
         BraidedWall::of_hose(hose, member, axial_compliance, -axial_compliance, mass_per_length)
     }
@@ -71,14 +76,14 @@ impl BraidedWall {
     ///
     /// # Example
     /// ```
-    /// use phea_hydraulics::line::{BraidedWall, Member};
+    /// use phea_hydraulics::line::{BraidedWall, StiffeningMember};
     /// let hose = phea_hydraulics::reference_rig::hose().filled();
-    /// let stiff_braid = BraidedWall::of_hose(&hose, Member::Nominal, 2e-5, -1e-5, 0.2);
-    /// assert_eq!(stiff_braid.pressure_compliance, 1.0 / hose.wall_modulus(Member::Nominal));
+    /// let stiff_braid = BraidedWall::of_hose(&hose, StiffeningMember::Nominal, 2e-5, -1e-5, 0.2);
+    /// assert_eq!(stiff_braid.pressure_compliance, 1.0 / hose.wall_modulus(StiffeningMember::Nominal));
     /// ```
     pub fn of_hose(
         hose: &Hose,
-        member: Member,
+        member: StiffeningMember,
         axial_compliance: f64,
         coupling_compliance: f64,
         mass_per_length: f64,
@@ -96,11 +101,11 @@ impl BraidedWall {
     ///
     /// # Example
     /// ```
-    /// use phea_hydraulics::line::{BraidedWall, Member};
-    /// let wall = BraidedWall::assumed(&phea_hydraulics::reference_rig::hose(), Member::Nominal);
+    /// use phea_hydraulics::line::{BraidedWall, StiffeningMember};
+    /// let wall = BraidedWall::assumed(&phea_hydraulics::reference_rig::hose(), StiffeningMember::Nominal);
     /// assert!((wall.mass_per_length - 0.2265).abs() < 5e-5); // ORIGIN: analytic
     /// ```
-    pub fn assumed(hose: &Hose, member: Member) -> BraidedWall {
+    pub fn assumed(hose: &Hose, member: StiffeningMember) -> BraidedWall {
         let bore = hose.bore;
         let area = std::f64::consts::FRAC_PI_4 * (OUTER_DIAMETER * OUTER_DIAMETER - bore * bore);
         let stiffness = hose.dynamic_stiffening.member(member) * TUBE_MODULUS * area;

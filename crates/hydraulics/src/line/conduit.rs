@@ -2,7 +2,7 @@ use std::f64::consts::FRAC_PI_4;
 
 use phea_dynamics::scalar::Scalar;
 
-use super::{Line, Member};
+use super::{Line, StiffeningMember};
 use crate::fluid::Fluid;
 use crate::parameter::{ParameterError, Problems};
 
@@ -79,17 +79,22 @@ impl Conduit {
     /// Pressure takes 2.80 ms along 1.5 m of the thesis' hose at 35 bar, and the compliance is that
     /// of the lumped line.
     /// ```
-    /// use phea_hydraulics::line::{Conduit, Member};
+    /// use phea_hydraulics::line::{Conduit, StiffeningMember};
     /// use phea_hydraulics::reference_rig::{components, hose_line};
     /// use phea_hydraulics::stiffness::StiffnessModel;
     /// let fluid = components(hose_line(), StiffnessModel::ByVolume).fluid;
-    /// let conduit = Conduit::of_line(&hose_line(), &fluid, 35e5, Member::Nominal)?;
+    /// let conduit = Conduit::of_line(&hose_line(), &fluid, 35e5, StiffeningMember::Nominal)?;
     /// assert!((conduit.speed() - 535.0_f64).abs() < 0.5 && (conduit.delay() - 2.80e-3).abs() < 5e-6);
-    /// let lumped = hose_line().compliance(1.45e9, Member::Nominal);
+    /// let lumped = hose_line().compliance(1.45e9, StiffeningMember::Nominal);
     /// assert!((conduit.compliance() / lumped - 1.0).abs() < 1e-14);
     /// # Ok::<(), phea_hydraulics::line::LineError>(())
     /// ```
-    pub fn of_line(line: &Line, fluid: &Fluid, pressure: f64, member: Member) -> Result<Conduit, LineError> {
+    pub fn of_line(
+        line: &Line,
+        fluid: &Fluid,
+        pressure: f64,
+        member: StiffeningMember,
+    ) -> Result<Conduit, LineError> {
         let mut problems = line.problems();
         problems.extend(fluid.problems().into_iter().map(|problem| problem.within("fluid")));
         if !problems.is_empty() {

@@ -2,7 +2,7 @@ use std::f64::consts::FRAC_PI_4;
 
 use phea_dynamics::scalar::Scalar;
 
-use super::Member;
+use super::StiffeningMember;
 use crate::parameter::{ParameterError, Problems};
 
 /// A hose described by its catalogue's volumetric expansion. Units: m, m3/m, m3/(m Pa).
@@ -45,11 +45,11 @@ impl Stiffening {
 
 impl<S: Copy> Stiffening<S> {
     /// The ratio of one member of the interval.
-    pub fn member(&self, member: Member) -> S {
+    pub fn member(&self, member: StiffeningMember) -> S {
         match member {
-            Member::Minimum => self.minimum,
-            Member::Nominal => self.nominal,
-            Member::Maximum => self.maximum,
+            StiffeningMember::Minimum => self.minimum,
+            StiffeningMember::Nominal => self.nominal,
+            StiffeningMember::Maximum => self.maximum,
         }
     }
 }
@@ -92,11 +92,11 @@ impl<S: Scalar> Hose<S> {
     /// # Example
     /// Eaton Synflex 3130-08 at 35 bar
     /// ```
-    /// # use phea_hydraulics::{line::Member, reference_rig::hose};
-    /// let compliance = hose().compliance_per_length(1.45e9, Member::Nominal);
+    /// # use phea_hydraulics::{line::StiffeningMember, reference_rig::hose};
+    /// let compliance = hose().compliance_per_length(1.45e9, StiffeningMember::Nominal);
     /// assert!((compliance - 5.3992e-13).abs() < 0.5e-17); // ORIGIN: recomputed by comparisons/recompute_rig.py
     /// ```
-    pub fn compliance_per_length(&self, fluid_modulus: S, member: Member) -> S {
+    pub fn compliance_per_length(&self, fluid_modulus: S, member: StiffeningMember) -> S {
         let area = S::from(FRAC_PI_4) * self.bore.squared() + self.operating_expansion;
         self.expansion_slope / self.dynamic_stiffening.member(member) + area / fluid_modulus
     }
@@ -106,10 +106,10 @@ impl<S: Scalar> Hose<S> {
     ///
     /// # Example
     /// ```
-    /// # use phea_hydraulics::{line::Member, reference_rig::hose};
+    /// # use phea_hydraulics::{line::StiffeningMember, reference_rig::hose};
     /// let filled = hose().filled();
     /// assert!((filled.bore - 13.084e-3).abs() < 0.5e-6); // ORIGIN: analytic, sqrt(D^2 + 4 E/pi)
-    /// let wall = filled.bore * filled.bore * std::f64::consts::FRAC_PI_4 / filled.wall_modulus(Member::Nominal);
+    /// let wall = filled.bore * filled.bore * std::f64::consts::FRAC_PI_4 / filled.wall_modulus(StiffeningMember::Nominal);
     /// assert!((wall * 5.0 / hose().expansion_slope - 1.0).abs() < 1e-12);
     /// ```
     pub fn filled(&self) -> Hose<S> {
@@ -130,7 +130,7 @@ impl<S: Scalar> Hose<S> {
     }
 
     /// Dynamic wall modulus beta_ho = r_beta beta_hoSS in Pa.
-    pub fn wall_modulus(&self, member: Member) -> S {
+    pub fn wall_modulus(&self, member: StiffeningMember) -> S {
         self.dynamic_stiffening.member(member) * self.static_modulus()
     }
 }

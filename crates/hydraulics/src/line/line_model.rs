@@ -1,6 +1,6 @@
 use super::{
-    BraidedWall, Conduit, DynamicLine, Hose, LaminarFriction, Line, LineError, Member, Segments,
-    StandardLinearSolid, TransmissionLine, TwoWaveHose,
+    BraidedWall, Conduit, DynamicLine, Hose, LaminarFriction, Line, LineError, Segments, StandardLinearSolid,
+    StiffeningMember, TransmissionLine, TwoWaveHose,
 };
 use crate::fluid::Fluid;
 
@@ -49,11 +49,11 @@ impl DynamicLine {
     /// ```
     /// # use phea_hydraulics::reference_rig::{components, hose_line, pipe_line};
     /// # use phea_hydraulics::stiffness::StiffnessModel;
-    /// use phea_hydraulics::line::{DynamicLine, END_SHARE, LineError, LineModel, Member};
+    /// use phea_hydraulics::line::{DynamicLine, END_SHARE, LineError, LineModel, StiffeningMember};
     /// let fluid = components(hose_line(), StiffnessModel::ByVolume).fluid;
-    /// let of = |line, model| DynamicLine::new(&line, &fluid, 35e5, Member::Nominal, &model);
+    /// let of = |line, model| DynamicLine::new(&line, &fluid, 35e5, StiffeningMember::Nominal, &model);
     /// let lumped = of(hose_line(), LineModel::Lumped)?;
-    /// assert_eq!(lumped.chamber_compliance(), hose_line().compliance(1.45e9, Member::Nominal));
+    /// assert_eq!(lumped.chamber_compliance(), hose_line().compliance(1.45e9, StiffeningMember::Nominal));
     /// let creeping = LineModel::Creeping { relaxation_time: 0.1 };
     /// assert_eq!(of(hose_line(), creeping)?.states(), 1);
     /// assert_eq!(of(pipe_line(), creeping), Err(LineError::NotAHose));
@@ -64,7 +64,7 @@ impl DynamicLine {
         line: &Line,
         fluid: &Fluid,
         pressure: f64,
-        member: Member,
+        member: StiffeningMember,
         model: &LineModel,
     ) -> Result<DynamicLine, LineError> {
         let conduit = || Conduit::of_line(line, fluid, pressure, member);

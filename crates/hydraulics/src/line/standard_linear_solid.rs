@@ -1,7 +1,7 @@
 use num_complex::Complex64;
 use phea_dynamics::scalar::Scalar;
 
-use super::{Hose, Member};
+use super::{Hose, StiffeningMember};
 use crate::parameter::{ParameterError, Problems};
 
 /// A wall that creeps: a spring in parallel with a spring and damper in series (Zener). Units: Pa,
@@ -31,14 +31,14 @@ impl StandardLinearSolid {
     /// # Example
     /// ```
     /// use num_complex::Complex64;
-    /// use phea_hydraulics::line::{Member, StandardLinearSolid};
+    /// use phea_hydraulics::line::{StiffeningMember, StandardLinearSolid};
     /// let hose = phea_hydraulics::reference_rig::hose().filled();
-    /// let wall = StandardLinearSolid::of_hose(&hose, Member::Nominal, 0.1);
+    /// let wall = StandardLinearSolid::of_hose(&hose, StiffeningMember::Nominal, 0.1);
     /// let compliance = |frequency| wall.compliance(Complex64::new(0.0, frequency));
     /// assert!((compliance(1e-6).re * hose.static_modulus() - 1.0).abs() < 1e-9);
-    /// assert!((compliance(1e6).re * hose.wall_modulus(Member::Nominal) - 1.0).abs() < 1e-9);
+    /// assert!((compliance(1e6).re * hose.wall_modulus(StiffeningMember::Nominal) - 1.0).abs() < 1e-9);
     /// ```
-    pub fn of_hose(hose: &Hose, member: Member, relaxation_time: f64) -> StandardLinearSolid {
+    pub fn of_hose(hose: &Hose, member: StiffeningMember, relaxation_time: f64) -> StandardLinearSolid {
         let hose = hose.filled();
         StandardLinearSolid {
             static_modulus: hose.static_modulus(),

@@ -5,7 +5,7 @@ use phea_dynamics::portable::sqrt_complex;
 
 use super::transmission_line::check_end_share;
 use super::travelling_waves::WaveData;
-use super::{BraidedWall, Conduit, Hose, LineError, LineResponse, Member, TravellingWaves};
+use super::{BraidedWall, Conduit, Hose, LineError, LineResponse, StiffeningMember, TravellingWaves};
 use crate::fluid::Fluid;
 use crate::parameter::{ParameterError, Problems};
 
@@ -70,7 +70,13 @@ impl TwoWaveHose {
     }
 
     /// The same with the assumed wall of a half-inch hose: [`BraidedWall::assumed`].
-    pub fn assumed(hose: &Hose, length: f64, fluid: &Fluid, pressure: f64, member: Member) -> TwoWaveHose {
+    pub fn assumed(
+        hose: &Hose,
+        length: f64,
+        fluid: &Fluid,
+        pressure: f64,
+        member: StiffeningMember,
+    ) -> TwoWaveHose {
         TwoWaveHose::new(hose, length, fluid, pressure, BraidedWall::assumed(hose, member))
     }
 
@@ -120,11 +126,11 @@ impl TwoWaveHose {
     /// # Example
     /// The modal ratios obey N_1 N_2 = -rho A/m.
     /// ```
-    /// use phea_hydraulics::line::{Member, TwoWaveHose};
+    /// use phea_hydraulics::line::{StiffeningMember, TwoWaveHose};
     /// use phea_hydraulics::reference_rig::{components, hose, hose_line};
     /// use phea_hydraulics::stiffness::StiffnessModel;
     /// let fluid = components(hose_line(), StiffnessModel::ByVolume).fluid;
-    /// let hose = TwoWaveHose::assumed(&hose(), 1.5, &fluid, 35e5, Member::Nominal);
+    /// let hose = TwoWaveHose::assumed(&hose(), 1.5, &fluid, 35e5, StiffeningMember::Nominal);
     /// let [slow, fast] = hose.waves();
     /// let masses = -870.0 * hose.fixed_end_conduit().area() / hose.wall.mass_per_length;
     /// assert!((slow.modal_ratio * fast.modal_ratio / masses - 1.0).abs() < 1e-12);

@@ -2,7 +2,7 @@ use phea_dynamics::scalar::{LocalFunction, Scalar};
 
 use crate::actuator::{Actuator, Components};
 use crate::fluid::{ATMOSPHERIC_PRESSURE_ABSOLUTE, bulk_modulus_with_air};
-use crate::line::{Line, Member};
+use crate::line::{Line, StiffeningMember};
 use crate::stiffness::{ChamberCompliance, StiffnessModel, chamber_compliance, compliance_at};
 
 /// Absolute pressure in Pa below which the modulus of fluid with air is that at this pressure. Far
@@ -48,13 +48,17 @@ pub(super) struct AeratedSide<S> {
 
 impl Chambers {
     /// The chambers of an actuator with lumped lines; `member` chooses the hose's stiffening.
-    pub fn new(actuator: &Actuator, member: Member) -> Chambers {
+    pub fn new(actuator: &Actuator, member: StiffeningMember) -> Chambers {
         Chambers::of(actuator.components(), member)
     }
 
     /// The chambers with the compliance in m3/Pa that lines with dynamics of their own add to each;
     /// in the model `uniform` they keep the modulus of their line.
-    pub fn behind_lines(actuator: &Actuator, member: Member, [added_a, added_b]: [f64; 2]) -> Chambers {
+    pub fn behind_lines(
+        actuator: &Actuator,
+        member: StiffeningMember,
+        [added_a, added_b]: [f64; 2],
+    ) -> Chambers {
         let components = *actuator.components();
         let [line_a, line_b] = [components.line_a, components.line_b].map(without_volume);
         let mut chambers = Chambers::of(&Components { line_a, line_b, ..components }, member);
@@ -71,7 +75,7 @@ impl Chambers {
         chambers
     }
 
-    fn of(components: &Components, member: Member) -> Chambers {
+    fn of(components: &Components, member: StiffeningMember) -> Chambers {
         let Components { fluid, cylinder, line_a, line_b, .. } = components;
         let model = components.stiffness_model;
         match fluid.entrained_air {
@@ -106,7 +110,7 @@ fn aerated_side(
     area: f64,
     dead_volume: f64,
     line: &Line,
-    member: Member,
+    member: StiffeningMember,
 ) -> AeratedSide<f64> {
     let filled = line.filled();
     let line = match model {

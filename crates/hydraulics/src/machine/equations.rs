@@ -1,7 +1,7 @@
 use phea_dynamics::scalar::{LocalFunction, Scalar};
 
 use super::signals::ground_of;
-use super::{LoadMotion, Machine, MachineState, PowerUnit};
+use super::{Machine, MachineState, Motion, PowerUnit};
 use crate::force_sensor;
 use crate::friction::FrictionForce;
 use crate::operating_point::hydraulic_force;
@@ -74,13 +74,9 @@ impl<S: Scalar> Machine<S> {
 
     /// Motion of the load: a state, or that of its ground.
     #[inline(always)]
-    pub(super) fn load_of<T: Scalar>(
-        &self,
-        state: &MachineState<T>,
-        ground: &LoadMotion<T>,
-    ) -> LoadMotion<T> {
+    pub(super) fn load_of<T: Scalar>(&self, state: &MachineState<T>, ground: &Motion<T>) -> Motion<T> {
         if self.load.moves() {
-            LoadMotion { position: ground.position + state.load.position, velocity: state.load.velocity }
+            Motion { position: ground.position + state.load.position, velocity: state.load.velocity }
         } else {
             *ground
         }
@@ -204,7 +200,7 @@ impl<S: Scalar> Machine<S> {
             deflection: velocity - load.velocity,
             velocity: pushing / constant(self.cylinder.moving_mass),
             bristle: forces.friction.bristle_rate,
-            load: LoadMotion {
+            load: Motion {
                 position: load.velocity - ground.velocity,
                 velocity: self.load.convert(&mut constant::<S, T>).acceleration(on_load, &load, &ground),
             },

@@ -46,7 +46,7 @@ pub enum LoadModel<S = f64> {
 
 /// Position and velocity of the load or of its ground. Units: m, m/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LoadMotion<S = f64> {
+pub struct Motion<S = f64> {
     /// Position in m.
     pub position: S,
     /// Velocity in m/s.
@@ -111,7 +111,7 @@ impl<S: Scalar> LoadModel<S> {
     /// The load's acceleration in m/s2 under the forces of sensor and outside together in N; zero
     /// for a prescribed motion, which yields to none.
     #[inline(always)]
-    pub fn acceleration(&self, pushing: S, load: &LoadMotion<S>, ground: &LoadMotion<S>) -> S {
+    pub fn acceleration(&self, pushing: S, load: &Motion<S>, ground: &Motion<S>) -> S {
         let relative = relative(load, ground);
         match self {
             LoadModel::Prescribed => S::from(0.0),
@@ -127,7 +127,7 @@ impl<S: Scalar> LoadModel<S> {
 
     /// Energy in J that the load holds, what its ground takes from it in W, and what it turns into
     /// heat in W.
-    pub(super) fn powers(&self, load: &LoadMotion<S>, ground: &LoadMotion<S>) -> [S; 3] {
+    pub(super) fn powers(&self, load: &Motion<S>, ground: &Motion<S>) -> [S; 3] {
         let (zero, half) = (S::from(0.0), S::from(0.5));
         let relative = relative(load, ground);
         match self {
@@ -151,7 +151,7 @@ impl<S: Scalar> LoadModel<S> {
     }
 
     /// What is left of the gap in m; negative in contact. One metre for loads without a wall.
-    pub fn clearance(&self, load: &LoadMotion<S>, ground: &LoadMotion<S>) -> S {
+    pub fn clearance(&self, load: &Motion<S>, ground: &Motion<S>) -> S {
         match self {
             LoadModel::Wall { gap, .. } => *gap - relative(load, ground).position,
             _ => S::from(1.0),
@@ -161,6 +161,6 @@ impl<S: Scalar> LoadModel<S> {
 
 /// Motion of the load seen from its ground.
 #[inline(always)]
-fn relative<S: Scalar>(load: &LoadMotion<S>, ground: &LoadMotion<S>) -> LoadMotion<S> {
-    LoadMotion { position: load.position - ground.position, velocity: load.velocity - ground.velocity }
+fn relative<S: Scalar>(load: &Motion<S>, ground: &Motion<S>) -> Motion<S> {
+    Motion { position: load.position - ground.position, velocity: load.velocity - ground.velocity }
 }

@@ -1,5 +1,5 @@
 use super::{LoadModel, PowerUnit};
-use crate::line::{DynamicLine, Member};
+use crate::line::{DynamicLine, StiffeningMember};
 use crate::parameter::{ParameterError, Problems};
 use crate::servovalve::SpoolImperfection;
 
@@ -31,7 +31,7 @@ pub struct MachineOptions {
     /// dissolved air comes out.
     pub vapour_pressure_absolute: f64,
     /// Which member of the hoses' stiffening interval.
-    pub member: Member,
+    pub member: StiffeningMember,
     /// Lines between valve and chambers with dynamics of their own, A first; absent, one pressure
     /// for a chamber with its line.
     pub lines: Option<[DynamicLine; 2]>,
@@ -47,7 +47,7 @@ impl Default for MachineOptions {
             load: LoadModel::Prescribed,
             external_force: false,
             vapour_pressure_absolute: VAPOUR_PRESSURE_ABSOLUTE,
-            member: Member::Nominal,
+            member: StiffeningMember::Nominal,
             lines: None,
         }
     }

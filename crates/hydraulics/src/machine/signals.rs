@@ -1,7 +1,7 @@
 use phea_dynamics::scalar::Scalar;
 
 use super::equations::constant;
-use super::{LoadMotion, Machine};
+use super::{Machine, Motion};
 
 /// Names of what a machine tells of itself, with units, in the order of [`Machine::outputs`].
 pub const SIGNALS: [&str; 19] = [
@@ -124,8 +124,8 @@ impl<S: Scalar> Machine<S> {
 
 /// The machine's inputs by name; what is missing is not a number.
 #[inline(always)]
-pub(super) fn ground_of<T: Scalar>(inputs: &[T]) -> LoadMotion<T> {
+pub(super) fn ground_of<T: Scalar>(inputs: &[T]) -> Motion<T> {
     let mut entries = inputs.iter().copied();
     let mut next = || entries.next().unwrap_or(T::from(f64::NAN));
-    LoadMotion { position: next(), velocity: next() }
+    Motion { position: next(), velocity: next() }
 }

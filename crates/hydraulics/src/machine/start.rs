@@ -1,7 +1,7 @@
 use phea_dynamics::simulation::Plant;
 
 use super::balance::Kept;
-use super::{LoadModel, LoadMotion, Machine, MachineError, MachineState};
+use super::{LoadModel, Machine, MachineError, MachineState, Motion};
 use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 use crate::friction::MovingFriction;
 use crate::operating_point::OperatingPoint;
@@ -9,7 +9,7 @@ use crate::operating_point::OperatingPoint;
 /// Values that a run starts from; what is not stated is zero, the supply's pressure as its power
 /// unit holds it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Start {
+pub struct StartValues {
     /// Piston position x in m.
     pub position: f64,
     /// Piston velocity in m/s.
@@ -65,16 +65,16 @@ impl Machine {
     /// ```
     /// # use phea_hydraulics::{actuator::Actuator, stiffness::StiffnessModel};
     /// # use phea_hydraulics::reference_rig::{components, hose_line};
-    /// # use phea_hydraulics::machine::{Machine, MachineOptions, Start};
+    /// # use phea_hydraulics::machine::{Machine, MachineOptions, StartValues};
     /// let actuator = Actuator::new(components(hose_line(), StiffnessModel::Uniform))?;
     /// let machine = Machine::new(&actuator, &MachineOptions::default())?;
-    /// let start = Start { position: 0.25, pressure_a: 35e5, pressure_b: 35e5, ..Start::default() };
+    /// let start = StartValues { position: 0.25, pressure_a: 35e5, pressure_b: 35e5, ..StartValues::default() };
     /// let beginning = machine.start(&start)?;
     /// assert_eq!(beginning.state, [0.0, 0.0, 35e5, 35e5, 0.0, 0.0]);
     /// assert_eq!(beginning.inputs, [0.25, 0.0]);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn start(&self, start: &Start) -> Result<Beginning, MachineError> {
+    pub fn start(&self, start: &StartValues) -> Result<Beginning, MachineError> {
         check(start, self.cylinder.stroke)?;
         let mut state = MachineState::zero();
         state.spool.spool = start.spool;
@@ -126,7 +126,7 @@ impl Machine {
     }
 
     fn settled(&self, point: &OperatingPoint, kept: Kept) -> Result<Beginning, MachineError> {
-        let start = Start {
+        let start = StartValues {
             position: point.position,
             velocity: point.velocity,
             pressure_a: point.pressure_a,
@@ -161,7 +161,7 @@ impl Machine {
         let deflection = force / self.sensor_stiffness;
         let held = self.load.held_at(force);
         let relative = held.ok_or(MachineError::ImpossibleStart { quantity: "force", value: force })?;
-        let load = LoadMotion { position: relative, velocity: state.velocity };
+        let load = Motion { position: relative, velocity: state.velocity };
         Ok((MachineState { deflection, load, ..*state }, position - deflection - relative))
     }
 
@@ -221,8 +221,8 @@ impl LoadModel {
     }
 }
 
-fn check(start: &Start, stroke: f64) -> Result<(), MachineError> {
-    let Start { position, velocity, pressure_a, pressure_b, force, spool } = *start;
+fn check(start: &StartValues, stroke: f64) -> Result<(), MachineError> {
+    let StartValues { position, velocity, pressure_a, pressure_b, force, spool } = *start;
     if !(0.0..=stroke).contains(&position) {
         return Err(MachineError::StartOutsideStroke { position, stroke });
     }

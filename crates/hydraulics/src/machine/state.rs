@@ -1,7 +1,7 @@
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::Sliding;
 
-use super::{LoadMotion, Machine};
+use super::{Machine, Motion};
 use crate::servovalve::SpoolState;
 
 /// States of a machine, or their rates, by name. What a machine does not have is zero and takes no
@@ -27,7 +27,7 @@ pub struct MachineState<T = f64> {
     /// A load that moves by itself: its position from its ground, x_L - x_0, in m, and its velocity
     /// v_L in m/s. Errors are measured by what moves its spring or its wall, not by how far it
     /// stands from the cylinder's end.
-    pub load: LoadMotion<T>,
+    pub load: Motion<T>,
     /// Supply pressure p_S in Pa, where a pump is limited.
     pub supply_pressure: T,
 }
@@ -65,7 +65,7 @@ impl<T: Scalar> MachineState<T> {
             deflection: zero,
             velocity: zero,
             bristle: zero,
-            load: LoadMotion { position: zero, velocity: zero },
+            load: Motion { position: zero, velocity: zero },
             supply_pressure: zero,
         }
     }
@@ -267,7 +267,7 @@ const NAMES: MachineState<&str> = MachineState {
     deflection: "deflection_m",
     velocity: "velocity_m_per_s",
     bristle: "bristle_m",
-    load: LoadMotion { position: "load_displacement_m", velocity: "load_velocity_m_per_s" },
+    load: Motion { position: "load_displacement_m", velocity: "load_velocity_m_per_s" },
     supply_pressure: "supply_pressure_pa",
 };
 
@@ -308,7 +308,7 @@ impl<S: Scalar> Machine<S> {
             deflection,
             velocity,
             bristle: self.friction.bristle_stiffness().map_or(deflection, |stiffness| force / stiffness),
-            load: LoadMotion { position: deflection, velocity: self.load.mass().map_or(velocity, swing) },
+            load: Motion { position: deflection, velocity: self.load.mass().map_or(velocity, swing) },
             supply_pressure: pressure,
         }
     }

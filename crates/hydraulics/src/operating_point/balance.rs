@@ -2,7 +2,7 @@ use phea_dynamics::scalar::Scalar;
 
 use super::bisection::{falling_root, falling_root_within};
 use super::settling::AT_NULL;
-use super::{Load, OperatingPoint, OperatingPointError, hydraulic_force};
+use super::{OperatingPoint, OperatingPointError, SteadyLoad, hydraulic_force};
 use crate::actuator::Components;
 use crate::servovalve::{ChamberFlows, Servovalve, Supply, chamber_flows};
 
@@ -68,15 +68,19 @@ impl Balance {
     }
 
     /// What these pressures hold, in the load's own unit.
-    fn held(&self, load: Load, [pressure_a, pressure_b]: [f64; 2]) -> f64 {
+    fn held(&self, load: SteadyLoad, [pressure_a, pressure_b]: [f64; 2]) -> f64 {
         match load {
-            Load::Force(_) => hydraulic_force(self.areas, [pressure_a, pressure_b]),
-            Load::Pressure(_) => pressure_a - pressure_b,
+            SteadyLoad::Force(_) => hydraulic_force(self.areas, [pressure_a, pressure_b]),
+            SteadyLoad::Pressure(_) => pressure_a - pressure_b,
         }
     }
 
     /// The command that holds a load at this velocity.
-    pub(super) fn holding_command(&self, load: Load, velocity: f64) -> Result<f64, OperatingPointError> {
+    pub(super) fn holding_command(
+        &self,
+        load: SteadyLoad,
+        velocity: f64,
+    ) -> Result<f64, OperatingPointError> {
         let wanted = wanted(load);
         let nominal = self.valve.nominal_voltage;
         let held = |command: f64| self.pressures(command, velocity).map(|p| self.held(load, p));
@@ -91,7 +95,7 @@ impl Balance {
     }
 
     /// The steady velocity at a command under a load.
-    pub(super) fn velocity(&self, command: f64, load: Load) -> Result<f64, OperatingPointError> {
+    pub(super) fn velocity(&self, command: f64, load: SteadyLoad) -> Result<f64, OperatingPointError> {
         let wanted = wanted(load);
         let excess = |velocity: f64| {
             self.pressures(command, velocity).map_or(f64::NAN, |p| self.held(load, p) - wanted)
@@ -126,8 +130,8 @@ impl Balance {
     }
 }
 
-fn wanted(load: Load) -> f64 {
+fn wanted(load: SteadyLoad) -> f64 {
     match load {
-        Load::Force(wanted) | Load::Pressure(wanted) => wanted,
+        SteadyLoad::Force(wanted) | SteadyLoad::Pressure(wanted) => wanted,
     }
 }

@@ -8,9 +8,9 @@
 
 use phea_dynamics::scalar::Scalar;
 
-use super::{Balance, Load};
+use super::{Balance, SteadyLoad};
 use crate::servovalve::{
-    ChamberCoefficients, ChamberFlows, Direction, Openings, chamber_coefficients, chamber_flows,
+    ChamberCoefficients, ChamberFlows, Openings, SpoolDirection, chamber_coefficients, chamber_flows,
 };
 
 /// What is known of an operating point, over any scalar.
@@ -24,7 +24,7 @@ pub enum Steady<S = f64> {
         /// Velocity v in m/s.
         velocity: S,
         /// What the pressures hold.
-        load: Load<S>,
+        load: SteadyLoad<S>,
     },
     /// As [`super::Condition::Matched`].
     Matched(S, S),
@@ -67,13 +67,13 @@ impl<S: Scalar> Balance<S> {
     /// The pressures of a recorded supply are those that are found for a number:
     /// ```
     /// use phea_dynamics::expression::Expression;
-    /// use phea_hydraulics::operating_point::{Balance, Load, Steady};
+    /// use phea_hydraulics::operating_point::{Balance, SteadyLoad, Steady};
     /// use phea_hydraulics::reference_rig::{USEFUL_AREA, valve};
     /// use phea_hydraulics::servovalve::Supply;
     /// let recorded = Expression::record(&["pressure", "force"], |p| {
     ///     let supply = Supply { pressure: p[0], tank_pressure: 0.0.into() };
     ///     let balance = Balance { valve: valve().convert(&mut Into::into), supply, areas: [USEFUL_AREA.into(); 2], leakage: None };
-    ///     let settled = balance.settle(Steady::Moving { velocity: 0.0.into(), load: Load::Force(p[1]) });
+    ///     let settled = balance.settle(Steady::Moving { velocity: 0.0.into(), load: SteadyLoad::Force(p[1]) });
     ///     vec![settled.command, settled.pressures[0], settled.pressures[1]]
     /// });
     /// let [command, pressure_a, pressure_b] = recorded.evaluate(&[80e5, 3e3])[..] else { panic!("three results") };
@@ -118,14 +118,14 @@ impl<S: Scalar> Balance<S> {
         pressures
     }
 
-    fn settle_moving(&self, velocity: S, load: Load<S>) -> Settled<S> {
+    fn settle_moving(&self, velocity: S, load: SteadyLoad<S>) -> Settled<S> {
         let hold = self.hold(velocity, load);
         let one = S::from(1.0);
         let [area_a, area_b] = self.areas;
         let (mut load_pressure, rounds) = match (load, self.leakage) {
-            (Load::Force(force), Some(_)) => (force * S::from(2.0) / (area_a + area_b), ROUNDS),
-            (Load::Force(_), None) => (S::from(0.0), 1),
-            (Load::Pressure(pressure), _) => (pressure, 1),
+            (SteadyLoad::Force(force), Some(_)) => (force * S::from(2.0) / (area_a + area_b), ROUNDS),
+            (SteadyLoad::Force(_), None) => (S::from(0.0), 1),
+            (SteadyLoad::Pressure(pressure), _) => (pressure, 1),
         };
         let full = self.valve.nominal_voltage;
         let [weight_a, weight_b] = hold.weights;
@@ -151,10 +151,10 @@ impl<S: Scalar> Balance<S> {
         }
     }
 
-    fn hold(&self, velocity: S, load: Load<S>) -> Hold<S> {
+    fn hold(&self, velocity: S, load: SteadyLoad<S>) -> Hold<S> {
         match load {
-            Load::Force(wanted) => Hold { velocity, weights: self.areas, wanted },
-            Load::Pressure(wanted) => Hold { velocity, weights: [S::from(1.0); 2], wanted },
+            SteadyLoad::Force(wanted) => Hold { velocity, weights: self.areas, wanted },
+            SteadyLoad::Pressure(wanted) => Hold { velocity, weights: [S::from(1.0); 2], wanted },
         }
     }
 
@@ -222,7 +222,7 @@ impl<S: Scalar> Balance<S> {
     }
 
     fn slopes(&self, command: S, [pressure_a, pressure_b]: [S; 2]) -> ChamberCoefficients<S> {
-        chamber_coefficients(&self.valve, &self.supply, command, pressure_a, pressure_b, Direction::Mean)
+        chamber_coefficients(&self.valve, &self.supply, command, pressure_a, pressure_b, SpoolDirection::Mean)
     }
 
     /// The Newton step of both pressures at a fixed spool.
@@ -283,7 +283,7 @@ impl Balance {
     /// dF/dU ~ A_A K_qA K_cB + A_B K_qB K_cA + G (A_A - A_B) (K_qA - K_qB)              may change its sign with much leakage
     /// ```
     pub fn is_unique(&self, steady: Steady) -> bool {
-        let by_force = matches!(steady, Steady::Moving { load: Load::Force(_), .. });
+        let by_force = matches!(steady, Steady::Moving { load: SteadyLoad::Force(_), .. });
         !by_force || self.leakage.is_none() || self.areas[0] == self.areas[1]
     }
 }

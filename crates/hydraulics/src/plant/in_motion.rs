@@ -26,11 +26,11 @@ use crate::line::{DynamicLine, Segments, TransferMatrix};
 /// # use phea_hydraulics::reference_rig::{components, hose_line, nominal_plant};
 /// # use phea_hydraulics::stiffness::StiffnessModel;
 /// use num_complex::Complex64;
-/// use phea_hydraulics::line::{DynamicLine, END_SHARE, LineModel, Member};
+/// use phea_hydraulics::line::{DynamicLine, END_SHARE, LineModel, StiffeningMember};
 /// use phea_hydraulics::plant::{BehindLines, LinearLoad, LinearPlant, PlantInMotion};
 /// let fluid = components(hose_line(), StiffnessModel::ByVolume).fluid;
 /// let model = LineModel::TransmissionLine { end_share: END_SHARE };
-/// let line = DynamicLine::new(&hose_line(), &fluid, 35e5, Member::Nominal, &model)?;
+/// let line = DynamicLine::new(&hose_line(), &fluid, 35e5, StiffeningMember::Nominal, &model)?;
 /// let plant = LinearPlant::of_load_pressure(&nominal_plant(), 0.0, LinearLoad::Prescribed);
 /// let chamber = 0.25 * 1.58e-3 / 1.45e9; // what the oil of half a stroke yields, in m3/Pa
 /// let behind = BehindLines { lines: [line; 2], chambers: [chamber; 2], lumped: [chamber + line.elastic_compliance(); 2] };

@@ -6,7 +6,7 @@ use crate::linear::polynomial::{product, scaled, sum};
 use crate::machine::PumpLimited;
 use crate::operating_point::{Balance, SettledSupply};
 use crate::orifice::{regular_root, regular_root_slope};
-use crate::servovalve::{Direction, supply_coefficients};
+use crate::servovalve::{SpoolDirection, supply_coefficients};
 
 /// A supply whose pressure is a state, for small motions. Units: m3/Pa, m3/(s Pa), m3/(s V).
 ///
@@ -39,7 +39,7 @@ impl<S: Scalar> YieldingSupply<S> {
         balance: &Balance<S>,
         [stated, tare_drop]: [S; 2],
         settled: &SettledSupply<S>,
-        direction: Direction,
+        direction: SpoolDirection,
     ) -> YieldingSupply<S> {
         let (valve, pressure) = (&balance.valve, settled.supply.pressure);
         let opens = stated - unit.relief_override;

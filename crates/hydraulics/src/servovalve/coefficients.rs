@@ -6,7 +6,7 @@ use crate::orifice::{regular_root, regular_root_slope};
 /// Which side of null is meant where the spool stands exactly at null, as other edges open on each
 /// side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Direction {
+pub enum SpoolDirection {
     /// U > 0: supply to A, B to tank.
     Extending,
     /// U < 0: supply to B, A to tank.
@@ -51,7 +51,7 @@ pub fn chamber_coefficients<S: Scalar>(
     spool: S,
     pressure_a: S,
     pressure_b: S,
-    direction: Direction,
+    direction: SpoolDirection,
 ) -> ChamberCoefficients<S> {
     let (flow, leak) = (&valve.flow_coefficients, &valve.leakage_coefficients);
     let Openings { forward, backward, leakage } = Openings::at(valve, spool);
@@ -97,7 +97,7 @@ pub fn supply_coefficients<S: Scalar>(
     supply: &Supply<S>,
     spool: S,
     pressures: [S; 2],
-    direction: Direction,
+    direction: SpoolDirection,
 ) -> SupplyCoefficients<S> {
     let (flow, leak) = (&valve.flow_coefficients, &valve.leakage_coefficients);
     let Openings { forward, backward, leakage } = Openings::at(valve, spool);
@@ -114,12 +114,17 @@ pub fn supply_coefficients<S: Scalar>(
 }
 
 /// d/dU of the openings u+ and u- and of sech(lambda u).
-fn opening_slopes<S: Scalar>(valve: &Servovalve<S>, spool: S, leakage: S, direction: Direction) -> (S, S, S) {
+fn opening_slopes<S: Scalar>(
+    valve: &Servovalve<S>,
+    spool: S,
+    leakage: S,
+    direction: SpoolDirection,
+) -> (S, S, S) {
     let (one, half) = (S::from(1.0), S::from(0.5));
     let at_null = S::from(match direction {
-        Direction::Extending => 1.0,
-        Direction::Retracting => -1.0,
-        Direction::Mean => 0.0,
+        SpoolDirection::Extending => 1.0,
+        SpoolDirection::Retracting => -1.0,
+        SpoolDirection::Mean => 0.0,
     });
     let zero = S::from(0.0);
     let backward_or_null = S::select(spool.less_than(zero), -one, at_null);
@@ -168,7 +173,7 @@ pub struct ControlCoefficients<S = f64> {
 /// #     natural_frequency: 1099.0, damping_ratio: 0.9, transition_pressure: 1e3,
 /// # };
 /// let supply = Supply { pressure: 70e5, tank_pressure: 0.0 };
-/// let null = control_coefficients(&valve, &supply, 0.0, 0.0, Direction::Mean);
+/// let null = control_coefficients(&valve, &supply, 0.0, 0.0, SpoolDirection::Mean);
 /// assert!((null.flow_pressure_coefficient - 6.42e-13).abs() < 1e-15);
 /// ```
 pub fn control_coefficients<S: Scalar>(
@@ -176,7 +181,7 @@ pub fn control_coefficients<S: Scalar>(
     supply: &Supply<S>,
     spool: S,
     load_pressure: S,
-    direction: Direction,
+    direction: SpoolDirection,
 ) -> ControlCoefficients<S> {
     let mean = supply.pressure + supply.tank_pressure;
     let half = S::from(0.5);
@@ -200,7 +205,7 @@ pub fn control_coefficients<S: Scalar>(
 /// Both metering edges carry the piston's flow in series. For a symmetric cylinder A v/U is the
 /// flow gain that a no-load flow test finds; it differs from the mean of both chambers' slopes
 /// (4.17) when the edges are unequal. Areas A_A, A_B in m2, force on the load in N, positive when
-/// the rod pushes. `Direction::Mean` is the mean of both speeds.
+/// the rod pushes. `SpoolDirection::Mean` is the mean of both speeds.
 ///
 /// # Example
 /// The edges of Table 5.1 at 70 bar: 6.51e-5 m3/(s V) extending and 4.13e-5 retracting
@@ -215,15 +220,15 @@ pub fn control_coefficients<S: Scalar>(
 /// let supply = Supply { pressure: 70e5, tank_pressure: 0.0 };
 /// let area = 1.58336e-3;
 /// let flow_gain = |direction| velocity_gain(&valve, &supply, [area, area], 0.0, direction).map(|v| area * v);
-/// assert!((flow_gain(Direction::Extending).unwrap() - 6.51e-5).abs() < 0.5e-7);
-/// assert!((flow_gain(Direction::Retracting).unwrap() - 4.13e-5).abs() < 0.5e-7);
+/// assert!((flow_gain(SpoolDirection::Extending).unwrap() - 6.51e-5).abs() < 0.5e-7);
+/// assert!((flow_gain(SpoolDirection::Retracting).unwrap() - 4.13e-5).abs() < 0.5e-7);
 /// ```
 pub fn velocity_gain(
     valve: &Servovalve,
     supply: &Supply,
     areas: [f64; 2],
     load_force: f64,
-    direction: Direction,
+    direction: SpoolDirection,
 ) -> Option<f64> {
     let flow = &valve.flow_coefficients;
     let [area_a, area_b] = areas;
@@ -236,8 +241,8 @@ pub fn velocity_gain(
     let extending = gain(area_a, area_b, flow.supply_to_a, flow.b_to_tank, load_force);
     let retracting = gain(area_b, area_a, flow.supply_to_b, flow.a_to_tank, -load_force);
     match direction {
-        Direction::Extending => extending,
-        Direction::Retracting => retracting,
-        Direction::Mean => Some((extending? + retracting?) / 2.0),
+        SpoolDirection::Extending => extending,
+        SpoolDirection::Retracting => retracting,
+        SpoolDirection::Mean => Some((extending? + retracting?) / 2.0),
     }
 }

@@ -4,7 +4,7 @@ use phea_dynamics::scalar::Scalar;
 
 use super::{StiffnessModel, chamber_compliance};
 use crate::cylinder::Cylinder;
-use crate::line::{Line, Member};
+use crate::line::{Line, StiffeningMember};
 
 /// Length of each of two equal lines that gives the wanted least stiffness over the stroke.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,8 +50,8 @@ pub fn hose_length_uniform<S: Scalar>(stiffness: S, area: S, stroke: S, bore: S,
 /// # Example
 /// The thesis' 2.24e6 N/m takes 3.64 m of its hose and not 1.5 m.
 /// ```
-/// use phea_hydraulics::{line::Member, reference_rig::hose, stiffness::hose_length_by_volume};
-/// let metre = hose().compliance_per_length(1.45e9, Member::Nominal);
+/// use phea_hydraulics::{line::StiffeningMember, reference_rig::hose, stiffness::hose_length_by_volume};
+/// let metre = hose().compliance_per_length(1.45e9, StiffeningMember::Nominal);
 /// let length = hose_length_by_volume(2.24e6, 1.58336e-3, 0.5, metre, 1.45e9);
 /// assert!((length - 3.64_f64).abs() < 0.005);
 /// ```
@@ -95,7 +95,7 @@ pub fn line_length_for_stiffness(
     fluid_modulus: f64,
     cylinder: &Cylinder,
     line: &Line,
-    member: Member,
+    member: StiffeningMember,
     stiffness: f64,
 ) -> LineLength {
     if stiffness.is_nan() || stiffness <= 0.0 {

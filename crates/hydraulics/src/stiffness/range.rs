@@ -1,6 +1,6 @@
 use super::{ChamberCompliance, StiffnessModel, chamber_compliance, compliance_at, hydraulic_stiffness};
 use crate::cylinder::Cylinder;
-use crate::line::{Line, Member};
+use crate::line::{Line, StiffeningMember};
 
 /// Least and greatest hydraulic stiffness over the stroke. Units: N/m, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,9 +77,9 @@ pub fn stiffening_range(
 ) -> StiffeningRange {
     let of = |member| chamber_compliance(model, [fluid_modulus; 2], cylinder, lines, member).over_stroke();
     StiffeningRange {
-        minimum: of(Member::Minimum),
-        nominal: of(Member::Nominal),
-        maximum: of(Member::Maximum),
+        minimum: of(StiffeningMember::Minimum),
+        nominal: of(StiffeningMember::Nominal),
+        maximum: of(StiffeningMember::Maximum),
     }
 }
 
@@ -115,14 +115,14 @@ pub struct ModelDifference {
 /// # let hose = Hose { bore: 12.7e-3, volumetric_expansion: 1.56e-5, operating_expansion: 7.774e-6,
 /// #     expansion_slope: 2.236e-12, dynamic_stiffening };
 /// # let line = Line::Hose { hose, length: 1.5 };
-/// let difference = model_difference([1.45e9; 2], &cylinder, [&line, &line], Member::Nominal);
+/// let difference = model_difference([1.45e9; 2], &cylinder, [&line, &line], StiffeningMember::Nominal);
 /// assert!((difference.minimum_ratio - 2.07).abs() < 0.005);
 /// ```
 pub fn model_difference(
     fluid_moduli: [f64; 2],
     cylinder: &Cylinder,
     lines: [&Line; 2],
-    member: Member,
+    member: StiffeningMember,
 ) -> ModelDifference {
     let of = |model| chamber_compliance(model, fluid_moduli, cylinder, lines, member);
     let (uniform, chambers) = (of(StiffnessModel::Uniform).over_stroke(), of(StiffnessModel::ByVolume));

@@ -6,7 +6,7 @@ use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients};
 use super::TwoPressureModel;
 use crate::linear::polynomial::{product, scaled, shifted, sum};
 use crate::operating_point::OperatingPoint;
-use crate::servovalve::{ChamberCoefficients, Direction, chamber_coefficients};
+use crate::servovalve::{ChamberCoefficients, SpoolDirection, chamber_coefficients};
 use crate::stiffness::compliance_at;
 
 /// The two-pressure model linearised: everything its transfer functions depend on. Units: m2,
@@ -39,7 +39,7 @@ pub struct TwoPressureLinearParameters<S = f64> {
 pub fn two_pressure_linear_parameters<S: Scalar>(
     model: &TwoPressureModel<S>,
     point: &OperatingPoint<S>,
-    direction: Direction,
+    direction: SpoolDirection,
 ) -> TwoPressureLinearParameters<S> {
     let OperatingPoint { position, command, pressure_a, pressure_b, .. } = *point;
     TwoPressureLinearParameters {

@@ -4,7 +4,7 @@ use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{
     Input, InputSchedule, Profile, Settings, Simulated, Status, System, simulate,
 };
-use phea_hydraulics::line::{Conduit, DynamicLine, LineModel, Member, TransmissionLine};
+use phea_hydraulics::line::{Conduit, DynamicLine, LineModel, StiffeningMember, TransmissionLine};
 use phea_hydraulics::reference_rig::hose_line;
 
 use super::oracle::{conduit, fluid};
@@ -98,9 +98,9 @@ fn all_models_of_a_hose_take_up_a_slow_flow_alike() {
         LineModel::TransmissionLine { end_share: 0.01 },
         LineModel::TwoWave { end_share: 0.01, wall: None },
     ];
-    let compliance = hose_line().compliance(1.45e9, Member::Nominal);
+    let compliance = hose_line().compliance(1.45e9, StiffeningMember::Nominal);
     for model in models {
-        let line = DynamicLine::new(&hose_line(), &fluid(), 35e5, Member::Nominal, &model).unwrap();
+        let line = DynamicLine::new(&hose_line(), &fluid(), 35e5, StiffeningMember::Nominal, &model).unwrap();
         let fed = Fed { line, chamber: 1e-13 };
         let inflow = Profile::smooth_step(0.0, 0.4, 1e-4).unwrap();
         let result = fed.run(0.0, inflow, Profile::constant(0.0), 0.5);

@@ -3,7 +3,7 @@
 use nalgebra::{Complex, DMatrix, DVector};
 use num_complex::Complex64;
 use phea_hydraulics::fluid::Fluid;
-use phea_hydraulics::line::{Conduit, DynamicLine, LineResponse, Member};
+use phea_hydraulics::line::{Conduit, DynamicLine, LineResponse, StiffeningMember};
 use phea_hydraulics::reference_rig::{components, hose_line};
 use phea_hydraulics::stiffness::StiffnessModel;
 
@@ -13,7 +13,7 @@ pub(crate) fn fluid() -> Fluid {
 
 /// 1.5 m of the thesis' hose.
 pub(crate) fn conduit() -> Conduit {
-    Conduit::of_line(&hose_line(), &fluid(), 35e5, Member::Nominal).unwrap()
+    Conduit::of_line(&hose_line(), &fluid(), 35e5, StiffeningMember::Nominal).unwrap()
 }
 
 pub(crate) fn at(frequency: f64) -> Complex64 {

@@ -3,8 +3,8 @@
 use num_complex::Complex64;
 use phea_dynamics::scalar::Lanes;
 use phea_hydraulics::line::{
-    Conduit, DynamicLine, END_SHARE, LaminarFriction, Line, LineError, LineModel, LineResponse, Member,
-    Segments, StandardLinearSolid, TransmissionLine, friction_factor,
+    Conduit, DynamicLine, END_SHARE, LaminarFriction, Line, LineError, LineModel, LineResponse, Segments,
+    StandardLinearSolid, StiffeningMember, TransmissionLine, friction_factor,
 };
 use phea_hydraulics::reference_rig::{hose, hose_line, pipe_line};
 
@@ -79,7 +79,11 @@ fn the_transmission_line_follows_the_exact_line() {
 #[test]
 fn every_model_is_symmetric_and_reciprocal() {
     let hose = conduit();
-    let wall = StandardLinearSolid::of_hose(&phea_hydraulics::reference_rig::hose(), Member::Nominal, 0.05);
+    let wall = StandardLinearSolid::of_hose(
+        &phea_hydraulics::reference_rig::hose(),
+        StiffeningMember::Nominal,
+        0.05,
+    );
     let creeping = Segments::new(&hose, 3, LaminarFriction::FrequencyDependent).unwrap();
     for line in [
         transmission_line(&hose, END_SHARE),
@@ -98,7 +102,7 @@ fn every_model_is_symmetric_and_reciprocal() {
 #[test]
 fn every_model_has_the_compliance_and_the_resistance_of_the_lumped_line() {
     let hose = conduit();
-    let lumped = hose_line().compliance(1.45e9, Member::Nominal);
+    let lumped = hose_line().compliance(1.45e9, StiffeningMember::Nominal);
     for line in [
         DynamicLine::Segments(Segments::lumped(lumped)),
         segments(&hose, 1, LaminarFriction::Steady),
@@ -131,7 +135,7 @@ fn every_model_of_a_hose_keeps_to_its_sheet() {
         (1.0, LineModel::Creeping { relaxation_time: 0.02 }),
         (1.0, segments(Some(0.02))),
     ] {
-        let line = DynamicLine::new(&hose_line(), &fluid(), 35e5, Member::Nominal, &model).unwrap();
+        let line = DynamicLine::new(&hose_line(), &fluid(), 35e5, StiffeningMember::Nominal, &model).unwrap();
         let s = at(0.01);
         let capacity = transfer_matrix(&line, s)[1][0] / s;
         let expected = 2.236e-12 * 1.5 / r_beta + oil;
@@ -144,11 +148,11 @@ fn every_model_of_a_hose_keeps_to_its_sheet() {
 #[test]
 fn a_creeping_wall_is_soft_at_rest_and_stiff_when_fast() {
     let (hose, conduit) = (hose().filled(), conduit());
-    let wall = StandardLinearSolid::of_hose(&hose, Member::Nominal, 0.02);
+    let wall = StandardLinearSolid::of_hose(&hose, StiffeningMember::Nominal, 0.02);
     let volume = hose_line().filled().volume();
     let (soft, stiff) = (
         volume * (1.0 / 1.45e9 + 1.0 / hose.static_modulus()),
-        hose_line().compliance(1.45e9, Member::Nominal),
+        hose_line().compliance(1.45e9, StiffeningMember::Nominal),
     );
     for count in [0, 4] {
         let line = Segments::new(&conduit, count, LaminarFriction::Steady).unwrap();
@@ -206,7 +210,7 @@ fn the_transmission_line_is_passive_at_every_frequency() {
 
 #[test]
 fn what_carries_no_wave_is_refused() {
-    let of = |line: &Line| Conduit::of_line(line, &fluid(), 35e5, Member::Nominal);
+    let of = |line: &Line| Conduit::of_line(line, &fluid(), 35e5, StiffeningMember::Nominal);
     assert_eq!(of(&Line::Hose { hose: hose(), length: 0.0 }), Err(LineError::NoLength));
     let volume = Line::Volume { volume: 1e-4, effective_bulk_modulus: 1e9 };
     assert_eq!(of(&volume), Err(LineError::NoBore));
@@ -225,7 +229,7 @@ fn what_carries_no_wave_is_refused() {
 /// Lanes give the bits of the plain number.
 #[test]
 fn lanes_and_the_plain_number_agree_to_the_bit() {
-    let pipe = Conduit::of_line(&pipe_line(), &fluid(), 35e5, Member::Nominal).unwrap();
+    let pipe = Conduit::of_line(&pipe_line(), &fluid(), 35e5, StiffeningMember::Nominal).unwrap();
     for line in [transmission_line(&pipe, END_SHARE), segments(&pipe, 3, LaminarFriction::FrequencyDependent)]
     {
         let wide: DynamicLine<Lanes<2>> = line.convert(&mut |value: f64| Lanes([value, value]));

@@ -1,7 +1,7 @@
 //! Lines in time, by a small fixed-step method with delays kept as histories.
 
 use phea_hydraulics::line::{
-    Conduit, DynamicLine, END_SHARE, LaminarFriction, Member, Segments, StandardLinearSolid,
+    Conduit, DynamicLine, END_SHARE, LaminarFriction, Segments, StandardLinearSolid, StiffeningMember,
     TransmissionLine, TwoWaveHose,
 };
 use phea_hydraulics::reference_rig::hose;
@@ -89,12 +89,12 @@ impl Run {
 }
 
 fn two_waves() -> TwoWaveHose {
-    TwoWaveHose::assumed(&hose(), 1.5, &fluid(), 35e5, Member::Nominal)
+    TwoWaveHose::assumed(&hose(), 1.5, &fluid(), 35e5, StiffeningMember::Nominal)
 }
 
 fn models() -> Vec<DynamicLine> {
     let conduit = conduit();
-    let wall = StandardLinearSolid::of_hose(&hose(), Member::Nominal, 0.01);
+    let wall = StandardLinearSolid::of_hose(&hose(), StiffeningMember::Nominal, 0.01);
     let creeping = Segments::new(&conduit, 3, LaminarFriction::FrequencyDependent).unwrap();
     vec![
         DynamicLine::Segments(creeping.with_creep(&conduit, &wall).unwrap()),
@@ -165,7 +165,7 @@ fn volume_is_conserved() {
         let chamber = 1e-13;
         let creeping = matches!(line, DynamicLine::Segments(_));
         let conduit = conduit();
-        let wall = StandardLinearSolid::of_hose(&hose(), Member::Nominal, 0.01);
+        let wall = StandardLinearSolid::of_hose(&hose(), StiffeningMember::Nominal, 0.01);
         let volume = conduit.area() * conduit.length;
         let crept = if creeping { volume * wall.retarded_compliance() } else { 0.0 };
         let mut run = Run::new(line, chamber, 1e-5, 10e5);

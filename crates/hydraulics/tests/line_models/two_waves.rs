@@ -3,8 +3,8 @@
 use nalgebra::{Complex, DMatrix};
 use num_complex::Complex64;
 use phea_hydraulics::line::{
-    BraidedWall, DynamicLine, END_SHARE, LineError, LineResponse, Member, TransmissionLine, TwoWaveHose,
-    friction_factor,
+    BraidedWall, DynamicLine, END_SHARE, LineError, LineResponse, StiffeningMember, TransmissionLine,
+    TwoWaveHose, friction_factor,
 };
 use phea_hydraulics::reference_rig::{hose, hose_line};
 
@@ -28,7 +28,7 @@ fn round_hose() -> TwoWaveHose {
 }
 
 fn assumed_hose() -> TwoWaveHose {
-    TwoWaveHose::assumed(&hose(), 1.5, &fluid(), 35e5, Member::Nominal)
+    TwoWaveHose::assumed(&hose(), 1.5, &fluid(), 35e5, StiffeningMember::Nominal)
 }
 
 fn in_time(hose: &TwoWaveHose, end_share: f64) -> DynamicLine {
@@ -162,7 +162,7 @@ fn without_coupling_one_wave_is_left() {
 /// Slow, the hose between fixed ends is the lumped line `by_volume`, since its braid lies at the neutral angle.
 #[test]
 fn the_assumed_hose_is_at_rest_as_soft_as_its_catalogue_says() {
-    let lumped = hose_line().compliance(1.45e9, Member::Nominal);
+    let lumped = hose_line().compliance(1.45e9, StiffeningMember::Nominal);
     let hose = assumed_hose();
     assert!((hose.fixed_end_conduit().compliance() / lumped - 1.0).abs() < 1e-12);
     let s = at(0.1);

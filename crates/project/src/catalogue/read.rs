@@ -3,10 +3,10 @@
 use std::sync::{Arc, OnceLock};
 
 use super::built_in::BUILT_IN;
-use super::{Catalogue, Entry, Kind};
+use super::{Catalogue, CatalogueEntry, Kind};
 use crate::source::Source;
 use crate::{
-    Findings, Found, HoseProperties, Node, Reader, Report, TreeValue, Valve, Visitor, key, plain, read_tree,
+    Findings, Found, HoseProperties, Node, Reader, Refusal, TreeValue, Valve, Visitor, key, plain, read_tree,
 };
 use phea_quantity::RATIO;
 
@@ -16,8 +16,8 @@ const HEAD: [&str; 7] = ["schema", "kind", "name", "title", "manufacturer", "sou
 /// The built-in catalogue and what the given files and folders add or replace.
 ///
 /// # Errors
-/// [`Report`] with everything that is wrong in the files given.
-pub fn load(source: &dyn Source, paths: &[String]) -> Result<Catalogue, Report> {
+/// [`Refusal`] with everything that is wrong in the files given.
+pub fn load(source: &dyn Source, paths: &[String]) -> Result<Catalogue, Refusal> {
     let mut findings = Findings::default();
     let catalogue = Catalogue::gather(source, paths, &mut findings);
     if findings.has_errors() { Err(findings.report()) } else { Ok(catalogue) }
@@ -95,7 +95,7 @@ impl Head {
     }
 }
 
-fn entry(file: &str, root: Node, findings: &mut Findings) -> Option<Entry> {
+fn entry(file: &str, root: Node, findings: &mut Findings) -> Option<CatalogueEntry> {
     let nothing = Catalogue::default();
     let mut head = Head::default();
     let mut hose = None;
@@ -114,7 +114,7 @@ fn entry(file: &str, root: Node, findings: &mut Findings) -> Option<Entry> {
     }
     reader.close();
     let sources = sources(&root, &head, findings);
-    Some(Entry {
+    Some(CatalogueEntry {
         kind: head.kind,
         name: head.name?,
         title: head.title?,

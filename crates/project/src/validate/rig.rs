@@ -2,8 +2,8 @@
 
 use super::{Check, line_motion};
 use crate::{
-    Actuator, Component, Cylinder, Friction, FrictionLaw, Interval, Line, Lines, NullLeakage, StribeckCurve,
-    Supply, Valve,
+    Actuator, BoundedNumber, Component, Cylinder, Friction, FrictionLaw, Line, Lines, NullLeakage,
+    StribeckCurve, Supply, Valve,
 };
 use phea_quantity::{self as quantity, PRESSURE};
 
@@ -167,8 +167,8 @@ fn line(line: &Line, path: &str, check: &mut Check<'_, '_>) {
 }
 
 impl Check<'_, '_> {
-    fn interval(&mut self, path: &str, interval: Option<Interval>) {
-        let Some(Interval { nominal, minimum, maximum }) = interval else { return };
+    fn interval(&mut self, path: &str, interval: Option<BoundedNumber>) {
+        let Some(BoundedNumber { nominal, minimum, maximum }) = interval else { return };
         self.bounds(path, [minimum, nominal, maximum]);
     }
 

@@ -7,7 +7,7 @@ use super::covering::covering;
 use super::function::BoundFunction;
 use super::interval::GainIntervals;
 use super::phases::{PhaseGrid, Sample, sampled};
-use super::{Bound, BoundError, Fill};
+use super::{Bound, BoundError, TemplateFill};
 use crate::specification::Specification;
 use crate::template::Template;
 
@@ -16,7 +16,7 @@ use crate::template::Template;
 /// # Example
 /// ```
 /// use num_complex::Complex64;
-/// use phea_qft::bound::{Feasibility, Fill, FrequencyBounds, PhaseGrid, Placement};
+/// use phea_qft::bound::{Feasibility, TemplateFill, FrequencyBounds, PhaseGrid, Placement};
 /// use phea_qft::specification::{Limit, Requirement, Specification};
 /// use phea_qft::template::{Resolution, Template, TemplatePoint};
 /// let one = Complex64::new(1.0, 0.0);
@@ -31,7 +31,7 @@ use crate::template::Template;
 /// let bounds = FrequencyBounds::new(&template, &[
 ///     specification(Requirement::Sensitivity(Limit::Constant(0.4))),
 ///     specification(Requirement::RobustStability(Limit::Constant(0.5))),
-/// ], Fill::Points)?;
+/// ], TemplateFill::Points)?;
 /// let Feasibility::Nowhere { collisions } = bounds.combined(&PhaseGrid::default()).feasibility else { panic!() };
 /// assert_eq!(collisions[0].specifications, [0, 1]); // more gain for the first, less for the second
 /// assert_eq!(bounds.placement(Complex64::new(4.0, 0.0)), Placement::Forbidden { by: vec![1], nearest_db: None });
@@ -117,7 +117,7 @@ impl FrequencyBounds {
     pub fn new(
         template: &Template,
         specifications: &[Specification],
-        fill: Fill,
+        fill: TemplateFill,
     ) -> Result<FrequencyBounds, BoundError> {
         let frequency_rad_per_s = template.frequency_rad_per_s;
         let functions = specifications

@@ -10,7 +10,7 @@ use super::interval::GainIntervals;
 use super::phases::{PhaseGrid, sampled};
 use super::rule::Rule;
 use super::tree::Tree;
-use super::{Bound, BoundError, Fill};
+use super::{Bound, BoundError, TemplateFill};
 use crate::specification::Requirement;
 use crate::template::{Template, TemplatePoint};
 
@@ -32,7 +32,7 @@ use crate::template::{Template, TemplatePoint};
 /// # Example
 /// ```
 /// use num_complex::Complex64;
-/// use phea_qft::bound::{BoundFunction, Fill};
+/// use phea_qft::bound::{BoundFunction, TemplateFill};
 /// use phea_qft::specification::{Limit, Requirement};
 /// use phea_qft::template::{Resolution, Template, TemplatePoint};
 /// let one = Complex64::new(1.0, 0.0);
@@ -41,7 +41,7 @@ use crate::template::{Template, TemplatePoint};
 ///     frequency_rad_per_s: 1.0, nominal: one, points: vec![plant], outlines: vec![], resolution: Resolution::Members,
 /// };
 /// let limit = Requirement::RobustStability(Limit::Constant(2.0));
-/// let bound = BoundFunction::new(&template, &limit, Fill::Points)?;
+/// let bound = BoundFunction::new(&template, &limit, TemplateFill::Points)?;
 /// let forbidden = bound.forbidden(-std::f64::consts::PI);
 /// let [low, high] = forbidden.intervals()[0];
 /// assert!((low - 2.0 / 3.0).abs() < 1e-14 && (high - 2.0).abs() < 1e-14); // g/|1 - g| = 2 at 2/3 and at 2
@@ -63,7 +63,7 @@ pub struct BoundFunction {
 impl BoundFunction {
     /// Prepares the plants of a template for a requirement.
     ///
-    /// `Fill::Filled` counts every point of the template's outlines as a plant and forbids -L0 inside of them. What an outline does not carry, H
+    /// `TemplateFill::Filled` counts every point of the template's outlines as a plant and forbids -L0 inside of them. What an outline does not carry, H
     /// and Pd, is taken from the plant nearest to each of its corners.
     ///
     /// # Errors
@@ -72,7 +72,7 @@ impl BoundFunction {
     pub fn new(
         template: &Template,
         requirement: &Requirement,
-        fill: Fill,
+        fill: TemplateFill,
     ) -> Result<BoundFunction, BoundError> {
         let rule = Rule::new(requirement, template)?;
         let frequency_rad_per_s = template.frequency_rad_per_s;
@@ -99,7 +99,7 @@ impl BoundFunction {
             }
             Form::Complementary | Form::Sensitivity => Vec::new(),
         };
-        if fill == Fill::Filled {
+        if fill == TemplateFill::Filled {
             for outline in &template.outlines {
                 let corners = corners(&rule, template, outline);
                 let ours = judged(&rule, &corners, frequency_rad_per_s)?;

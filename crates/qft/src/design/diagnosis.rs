@@ -11,7 +11,7 @@ mod pointwise;
 
 use phea_dynamics::controller::Controller;
 
-pub use finding::{Constraint, Finding, Party, Place, Severity, SharedLimit};
+pub use finding::{Constraint, ConstraintPlace, Finding, FindingSeverity, Party, SharedLimit};
 
 use self::candidate::{Candidate, candidates};
 use self::ceiling::Ceilings;
@@ -42,7 +42,7 @@ use crate::specification::{Limit, Specification};
 /// # use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients, UncertainPlant};
 /// # use phea_qft::family::{Extent, Family, UncertainFamily};
 /// use num_complex::Complex64;
-/// use phea_qft::design::{DesignProblem, Finding, Place, diagnose};
+/// use phea_qft::design::{DesignProblem, Finding, ConstraintPlace, diagnose};
 /// use phea_qft::specification::{Limit, Requirement, Specification};
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let roll_off = TransferFunction::from_factors(3.0, vec![], vec![Complex64::new(-2.0, 0.0)])?; // 3/(s + 2)
@@ -68,7 +68,7 @@ use crate::specification::{Limit, Specification};
 /// };
 /// let findings = diagnose(&problem);
 /// let Finding::RightHalfPlane { constraint, relaxation_db } = &findings[0] else { panic!("{findings:?}") };
-/// assert_eq!(constraint.place, Place::UnstablePole(Complex64::new(4.0, 0.0)));
+/// assert_eq!(constraint.place, ConstraintPlace::UnstablePole(Complex64::new(4.0, 0.0)));
 /// assert!((constraint.complementary - 0.5).abs() < 1e-3); // 3/(4 + 2), where T(4) = 1
 /// assert!((relaxation_db - 6.02).abs() < 0.01);
 /// # Ok(())

@@ -8,7 +8,7 @@ use phea_dynamics::watch::{Progress, Watch, unwatched};
 use super::attempt::{Attempt, Beginning, DesignError, Ending, FEASIBLE_DB};
 use super::binding::{all_conflicts, binding_limits};
 use super::candidates::Ground;
-use super::diagnosis::{Finding, Severity, diagnose};
+use super::diagnosis::{Finding, FindingSeverity, diagnose};
 use super::problem::{ControllerChoice, DesignOptions, DesignProblem};
 use super::result::{Design, DesignRound, DesignStatus, Relaxation};
 use super::stabilising::has_poles_to_move;
@@ -115,7 +115,7 @@ fn design_knowing(
     let Known { samples, sampled, rounds } = known;
     let mut run = Run::new(problem, options, &sampled);
     // where no controller of any order will do, what is left is by how much
-    run.relaxing = findings.iter().any(|finding| finding.severity() == Severity::Impossible);
+    run.relaxing = findings.iter().any(|finding| finding.severity() == FindingSeverity::Impossible);
     (run.samples, run.rounds) = (samples, rounds);
     if let Some(found) = found {
         run.begin_at(&found);

@@ -17,7 +17,7 @@ pub(crate) const COARSE: f64 = 3e-2;
 const CLOSEST: f64 = 1e-6;
 
 /// Frequency in rad/s, and both paths there.
-pub(crate) type Point = (f64, [Complex64; 2]);
+pub(crate) type TabulatedPoint = (f64, [Complex64; 2]);
 
 /// The response between two frequencies in rad/s, at points so dense that what [`MeasuredPlant::response`] interpolates is that of the
 /// plant to this part of itself halfway between any two of them ([`FINE`] is 0.2 %): what a search looks at thousands of times.
@@ -28,7 +28,7 @@ pub fn tabulated(plant: &dyn RespondingPlant, range: [f64; 2], tolerance: f64) -
 }
 
 /// The table of these points, of a plant with so many poles of its own in the unstable region, where they are known.
-pub(crate) fn table(found: Vec<Point>, unstable_poles: Option<usize>) -> MeasuredPlant {
+pub(crate) fn table(found: Vec<TabulatedPoint>, unstable_poles: Option<usize>) -> MeasuredPlant {
     MeasuredPlant {
         name: String::new(),
         frequencies_rad_per_s: found.iter().map(|point| point.0).collect(),
@@ -45,16 +45,16 @@ pub(crate) fn points(
     response: impl Fn(f64) -> Option<[Complex64; 2]>,
     [from, to]: [f64; 2],
     tolerance: f64,
-) -> Vec<Point> {
+) -> Vec<TabulatedPoint> {
     let at = |frequency: f64| Some((frequency, response(frequency)?));
     let decades = portable::ln(to / from) / std::f64::consts::LN_10;
     let grid = logarithmic_grid(from, to, (POINTS_PER_DECADE * decades).ceil() as usize).unwrap_or_default();
-    let mut left: Vec<Point> = grid.iter().rev().filter_map(|frequency| at(*frequency)).collect();
-    let mut found: Vec<Point> = Vec::with_capacity(2 * left.len());
+    let mut left: Vec<TabulatedPoint> = grid.iter().rev().filter_map(|frequency| at(*frequency)).collect();
+    let mut found: Vec<TabulatedPoint> = Vec::with_capacity(2 * left.len());
     found.extend(left.pop());
     while let (Some(&next), Some(&previous)) = (left.last(), found.last()) {
         let close = next.0 - previous.0 <= CLOSEST * next.0;
-        let is_bent = |middle: &Point| {
+        let is_bent = |middle: &TabulatedPoint| {
             !close && (0..2).any(|path| apart(previous.1[path], middle.1[path], next.1[path]) > tolerance)
         };
         match at((previous.0 * next.0).sqrt()).filter(is_bent) {

@@ -11,7 +11,7 @@ use phea_dynamics::watch::{Stopped, Watch, tell};
 use super::search::{Aim, Judgement, MarginRow, SearchProblem, Slopes};
 use super::subproblem::{Answer, Failure, Subproblem, dot};
 pub(super) use curvature::Curvature;
-pub use outcome::{Binding, DescentResult, DescentStatus, Work};
+pub use outcome::{Binding, DescentResult, DescentStatus, DescentWork};
 use place::Place;
 
 /// First trust region, and the largest, in units of x.
@@ -149,7 +149,7 @@ pub(super) struct Descent {
     binding: Vec<Binding>,
     failures: usize,
     steps: usize,
-    work: Work,
+    work: DescentWork,
     status: Option<DescentStatus>,
 }
 
@@ -167,7 +167,7 @@ impl Descent {
             binding: vec![],
             failures: 0,
             steps: 0,
-            work: Work::default(),
+            work: DescentWork::default(),
             status: None,
         }
     }
@@ -193,7 +193,7 @@ impl Descent {
     }
 
     /// Work done so far.
-    pub(super) fn work(&self) -> Work {
+    pub(super) fn work(&self) -> DescentWork {
         self.work
     }
 

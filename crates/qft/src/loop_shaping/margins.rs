@@ -18,7 +18,7 @@ use crate::specification::{ClosedLoop, PlantPath, Specification};
 use crate::verification::TrackingJudgement;
 
 pub(super) use crossover::{DelayMargins, bandwidth, delay_margins};
-pub(super) use rows::{Candidate, candidates};
+pub(super) use rows::{MarginCandidate, candidates};
 
 /// What is demanded of the plants at one frequency.
 #[derive(Clone, Copy, Debug, PartialEq)]

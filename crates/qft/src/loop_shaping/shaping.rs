@@ -5,7 +5,9 @@ use phea_dynamics::controller::{Compensator, Controller};
 use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_dynamics::portable;
 
-use super::margins::{Candidate, ColumnLoop, DelayMargins, Demand, bandwidth, candidates, delay_margins};
+use super::margins::{
+    ColumnLoop, DelayMargins, Demand, MarginCandidate, bandwidth, candidates, delay_margins,
+};
 use super::sample_stability::SampleStability;
 use super::samples::{Column, Samples, SamplesError};
 use super::structure::{DECIBELS_PER_NEPER, Structure, StructureResponse};
@@ -420,7 +422,7 @@ fn near(looked: &Looked) -> Vec<(usize, usize)> {
 }
 
 /// A number for the margin of this plant, or pair, to this demand at this column.
-fn sample_number(column: usize, demand: usize, plants: usize, found: &Candidate) -> usize {
+fn sample_number(column: usize, demand: usize, plants: usize, found: &MarginCandidate) -> usize {
     let pair = found.plant * (plants + 1) + found.other.map_or(plants, |other| other);
     (column * Demand::PER_COLUMN + demand) * (plants + 1) * (plants + 1) + pair
 }

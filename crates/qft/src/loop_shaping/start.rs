@@ -7,7 +7,7 @@ use std::cmp::Ordering;
 
 use phea_dynamics::watch::{Stopped, Watch, part, tell};
 
-use super::descent::{Binding, Descent, DescentOptions, DescentStatus, Work, is_usable};
+use super::descent::{Binding, Descent, DescentOptions, DescentStatus, DescentWork, is_usable};
 use super::search::{Aim, Judgement, SearchProblem};
 use evolution::Evolution;
 use spread::Spread;
@@ -64,7 +64,7 @@ pub enum SearchStatus {
 
 /// Where one descent ended.
 #[derive(Clone, Debug, PartialEq)]
-pub struct End {
+pub struct DescentEnd {
     /// x
     pub x: Vec<f64>,
     /// Its judgement.
@@ -85,7 +85,7 @@ pub struct SearchResult {
     /// The margins that stand in the way there, the strongest first.
     pub binding: Vec<Binding>,
     /// Every descent that was led to its end, the best first.
-    pub ends: Vec<End>,
+    pub ends: Vec<DescentEnd>,
     /// How much worse the worst of these ends is than the best, dB: of the objective, or of the worst margin where that is aimed at or no
     /// end keeps the reserve; infinite where only some do. `None` with fewer than two ends.
     pub spread_db: Option<f64>,
@@ -94,7 +94,7 @@ pub struct SearchResult {
     /// How many of them are stable.
     pub stable_points: usize,
     /// All work, that of descents left behind included.
-    pub work: Work,
+    pub work: DescentWork,
 }
 
 /// A point and its judgement.
@@ -181,7 +181,7 @@ pub fn search(
     options: &SearchOptions,
     watch: Watch<'_>,
 ) -> Result<Option<SearchResult>, Stopped> {
-    let mut search = Search { problem, options, work: Work::default(), random: options.seed };
+    let mut search = Search { problem, options, work: DescentWork::default(), random: options.seed };
     let samples = search.sampled(given, &mut part(watch, STAGE, [0.0, 0.2]))?;
     let points = search.evolved(samples, &mut part(watch, STAGE, [0.2, 0.4]))?;
     let mut descents = search.descents_from(&points);
@@ -199,7 +199,7 @@ struct Search<'a> {
     problem: &'a mut dyn SearchProblem,
     options: &'a SearchOptions,
     /// Work of samples, evolution, and descents left behind.
-    work: Work,
+    work: DescentWork,
     random: u64,
 }
 
@@ -332,11 +332,15 @@ impl Search<'_> {
 
     fn result(&self, points: &[Candidate], descents: &[Descent]) -> Option<SearchResult> {
         let end = |descent: &Descent| {
-            Some(End { x: descent.x().to_vec(), judgement: descent.judgement()?, status: descent.status()? })
+            Some(DescentEnd {
+                x: descent.x().to_vec(),
+                judgement: descent.judgement()?,
+                status: descent.status()?,
+            })
         };
-        let ends: Vec<End> = descents.iter().filter_map(end).collect();
+        let ends: Vec<DescentEnd> = descents.iter().filter_map(end).collect();
         let (status, best) = match ends.first() {
-            Some(End { x, judgement, status }) => {
+            Some(DescentEnd { x, judgement, status }) => {
                 (SearchStatus::Ended(*status), Candidate { x: x.clone(), judgement: *judgement })
             }
             None => {
@@ -357,8 +361,8 @@ impl Search<'_> {
         })
     }
 
-    fn spread_db(&self, ends: &[End]) -> Option<f64> {
-        let standing = |end: &End| standing(&self.options.descent, Some(end.judgement));
+    fn spread_db(&self, ends: &[DescentEnd]) -> Option<f64> {
+        let standing = |end: &DescentEnd| standing(&self.options.descent, Some(end.judgement));
         let [best, .., worst] = ends else { return None };
         let (best, worst) = (standing(best), standing(worst));
         Some(if best.0 == worst.0 { worst.1 - best.1 } else { f64::INFINITY })

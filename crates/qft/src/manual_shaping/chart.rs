@@ -3,7 +3,7 @@
 use num_complex::Complex64;
 use phea_dynamics::portable;
 
-use crate::bound::{BoundError, Fill, FrequencyBounds, Placement};
+use crate::bound::{BoundError, FrequencyBounds, Placement, TemplateFill};
 use crate::closed_loop::Compensation;
 use crate::family::Family;
 use crate::specification::{LoopResponse, Specification};
@@ -114,7 +114,7 @@ impl DesignChart {
     ) -> Result<DesignChart, BoundError> {
         let station = |template: Template| {
             let frequency = template.frequency_rad_per_s;
-            let bounds = |of: &[Specification]| FrequencyBounds::new(&template, of, Fill::Filled);
+            let bounds = |of: &[Specification]| FrequencyBounds::new(&template, of, TemplateFill::Filled);
             let demanded = specifications.iter().enumerate().filter(|(_, one)| demands(one, frequency));
             let each = demanded.map(|(index, one)| Ok((index, bounds(std::slice::from_ref(one))?)));
             Ok(Station { bounds: bounds(specifications)?, each: each.collect::<Result<_, _>>()?, template })

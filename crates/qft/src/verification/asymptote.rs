@@ -22,7 +22,7 @@ pub(crate) enum End {
 
 /// coefficient s^power
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Asymptote {
+pub(crate) struct PowerTerm {
     pub(crate) coefficient: f64,
     pub(crate) power: i32,
 }
@@ -30,20 +30,20 @@ pub(crate) struct Asymptote {
 /// Sums of two asymptotes that cancel to this share of either are not resolved.
 const CANCELLED: f64 = 1e-12;
 
-impl Asymptote {
-    const ONE: Asymptote = Asymptote { coefficient: 1.0, power: 0 };
+impl PowerTerm {
+    const ONE: PowerTerm = PowerTerm { coefficient: 1.0, power: 0 };
 
-    fn times(self, other: Asymptote) -> Asymptote {
-        Asymptote { coefficient: self.coefficient * other.coefficient, power: self.power + other.power }
+    fn times(self, other: PowerTerm) -> PowerTerm {
+        PowerTerm { coefficient: self.coefficient * other.coefficient, power: self.power + other.power }
     }
 
-    fn over(self, other: Asymptote) -> Asymptote {
-        Asymptote { coefficient: self.coefficient / other.coefficient, power: self.power - other.power }
+    fn over(self, other: PowerTerm) -> PowerTerm {
+        PowerTerm { coefficient: self.coefficient / other.coefficient, power: self.power - other.power }
     }
 
     /// What is the greater at the end; of two like powers the sum, or its largest magnitude where one is turned without end. What is left
     /// of two that cancel is less than either.
-    fn plus(self, other: Asymptote, spun: bool, end: End) -> Asymptote {
+    fn plus(self, other: PowerTerm, spun: bool, end: End) -> PowerTerm {
         if other.coefficient == 0.0 {
             return self;
         }
@@ -56,34 +56,34 @@ impl Asymptote {
             std::cmp::Ordering::Greater => self,
             std::cmp::Ordering::Less => other,
             std::cmp::Ordering::Equal if spun => {
-                Asymptote { coefficient: self.coefficient.abs() + other.coefficient.abs(), ..self }
+                PowerTerm { coefficient: self.coefficient.abs() + other.coefficient.abs(), ..self }
             }
             std::cmp::Ordering::Equal => {
-                Asymptote { coefficient: self.coefficient + other.coefficient, ..self }
+                PowerTerm { coefficient: self.coefficient + other.coefficient, ..self }
             }
         }
     }
 
     /// Of a polynomial, highest power first; zero if it is zero.
-    fn of_polynomial(coefficients: &[f64], end: End) -> Asymptote {
+    fn of_polynomial(coefficients: &[f64], end: End) -> PowerTerm {
         let degree = coefficients.len() as i32 - 1;
         let mut powers = coefficients.iter().zip(0..).filter(|(coefficient, _)| **coefficient != 0.0);
         let dominant = match end {
             End::Zero => powers.last(),
             End::Infinity => powers.next(),
         };
-        dominant.map_or(Asymptote { coefficient: 0.0, power: 0 }, |(&coefficient, index)| Asymptote {
+        dominant.map_or(PowerTerm { coefficient: 0.0, power: 0 }, |(&coefficient, index)| PowerTerm {
             coefficient,
             power: degree - index,
         })
     }
 
     /// Of a transfer function; in a sampled one z - 1 counts as s T, and there is no infinite frequency.
-    pub(super) fn of_transfer_function(function: &TransferFunction, end: End) -> Option<Asymptote> {
+    pub(super) fn of_transfer_function(function: &TransferFunction, end: End) -> Option<PowerTerm> {
         let (point, step) = match (function.domain(), end) {
             (TimeDomain::Continuous, End::Infinity) => {
                 let power = function.zeros().len() as i32 - function.poles().len() as i32;
-                return Some(Asymptote { coefficient: function.gain(), power });
+                return Some(PowerTerm { coefficient: function.gain(), power });
             }
             (TimeDomain::Continuous, End::Zero) => (Complex64::new(0.0, 0.0), 1.0),
             (TimeDomain::Discrete { sample_time_s }, End::Zero) => (Complex64::new(1.0, 0.0), sample_time_s),
@@ -96,13 +96,13 @@ impl Asymptote {
         };
         let here = |roots: &[Complex64]| roots.iter().filter(|&&root| root == point).count() as i32;
         let coefficient = function.gain() * product(function.zeros()) / product(function.poles());
-        Some(Asymptote { coefficient, power: here(function.zeros()) - here(function.poles()) })
+        Some(PowerTerm { coefficient, power: here(function.zeros()) - here(function.poles()) })
     }
 
-    fn of_limit(limit: &Limit, end: End) -> Option<Asymptote> {
+    fn of_limit(limit: &Limit, end: End) -> Option<PowerTerm> {
         match limit {
-            Limit::Constant(value) => Some(Asymptote { coefficient: *value, power: 0 }),
-            Limit::Rational(function) => Asymptote::of_transfer_function(function, end),
+            Limit::Constant(value) => Some(PowerTerm { coefficient: *value, power: 0 }),
+            Limit::Rational(function) => PowerTerm::of_transfer_function(function, end),
             Limit::Table(_) => None,
         }
     }
@@ -118,11 +118,11 @@ impl Asymptote {
 
 /// P, Pd, G, F, H of one plant at an end; `spun` where dead time turns the loop without end.
 struct LoopAsymptotes {
-    plant: Asymptote,
-    load_motion: Asymptote,
-    feedback: Asymptote,
-    prefilter: Asymptote,
-    open_loop: Asymptote,
+    plant: PowerTerm,
+    load_motion: PowerTerm,
+    feedback: PowerTerm,
+    prefilter: PowerTerm,
+    open_loop: PowerTerm,
     spun: bool,
 }
 
@@ -152,7 +152,7 @@ pub(super) fn margin(
     let parts = parts(compensation, member, with_prefilter, end)?;
     let numerator = match criterion.closed_loop {
         ClosedLoop::RobustStability => parts.open_loop,
-        ClosedLoop::Sensitivity => Asymptote::ONE,
+        ClosedLoop::Sensitivity => PowerTerm::ONE,
         ClosedLoop::PlantInputDisturbance => parts.plant,
         ClosedLoop::ControlEffort => parts.feedback,
         ClosedLoop::LoadMotion => parts.load_motion,
@@ -161,9 +161,9 @@ pub(super) fn margin(
     let mut closed = numerator.over(parts.one_plus_loop(criterion.side, end)?);
     let power = closed.power;
     if let (false, Some(upper)) = (with_prefilter, &criterion.upper) {
-        closed.power = Asymptote::of_limit(upper, end)?.power;
+        closed.power = PowerTerm::of_limit(upper, end)?.power;
     }
-    let limit = Asymptote::of_limit(&criterion.limit, end)?;
+    let limit = PowerTerm::of_limit(&criterion.limit, end)?;
     let ratio = match criterion.side {
         Side::Below => limit.over(closed),
         Side::Above => closed.over(limit),
@@ -189,10 +189,10 @@ pub(crate) fn tracking_ratio(
     member: &Member,
     limit: &Limit,
     end: End,
-) -> Option<Asymptote> {
+) -> Option<PowerTerm> {
     let parts = parts(compensation, member, false, end)?;
     let closed = parts.plant.times(parts.feedback).over(parts.one_plus_loop(Side::Below, end)?);
-    Some(Asymptote::of_limit(limit, end)?.over(closed))
+    Some(PowerTerm::of_limit(limit, end)?.over(closed))
 }
 
 /// Where the asymptote of the loop at zero frequency has unit magnitude, rad/s.
@@ -204,13 +204,13 @@ pub(super) fn crossing(compensation: &Compensation, member: &Member) -> Option<f
 
 impl LoopAsymptotes {
     /// 1 + L. Where L neither grows nor vanishes and dead time turns it, the magnitude that is worse for the side.
-    fn one_plus_loop(&self, side: Side, end: End) -> Option<Asymptote> {
+    fn one_plus_loop(&self, side: Side, end: End) -> Option<PowerTerm> {
         let open_loop = self.open_loop;
         if open_loop.coefficient == 0.0 {
-            return Some(Asymptote::ONE);
+            return Some(PowerTerm::ONE);
         }
         match open_loop.order(end) {
-            std::cmp::Ordering::Less => Some(Asymptote::ONE),
+            std::cmp::Ordering::Less => Some(PowerTerm::ONE),
             std::cmp::Ordering::Greater => Some(open_loop),
             std::cmp::Ordering::Equal => {
                 let size = open_loop.coefficient.abs();
@@ -219,7 +219,7 @@ impl LoopAsymptotes {
                     (true, Side::Below) => 1.0 - size,
                     (true, Side::Above) => 1.0 + size,
                 };
-                (sum.abs() > CANCELLED * size.max(1.0)).then_some(Asymptote { coefficient: sum, power: 0 })
+                (sum.abs() > CANCELLED * size.max(1.0)).then_some(PowerTerm { coefficient: sum, power: 0 })
             }
         }
     }
@@ -231,18 +231,18 @@ fn parts(
     with_prefilter: bool,
     end: End,
 ) -> Option<LoopAsymptotes> {
-    let zero = Asymptote { coefficient: 0.0, power: 0 };
-    let of = |function: &TransferFunction| Asymptote::of_transfer_function(function, end);
+    let zero = PowerTerm { coefficient: 0.0, power: 0 };
+    let of = |function: &TransferFunction| PowerTerm::of_transfer_function(function, end);
     let rational = |numerator: &[f64], denominator: &[f64]| {
-        Asymptote::of_polynomial(numerator, end).over(Asymptote::of_polynomial(denominator, end))
+        PowerTerm::of_polynomial(numerator, end).over(PowerTerm::of_polynomial(denominator, end))
     };
     let path = |path: &Option<RationalCoefficients<f64>>| {
         path.as_ref().map_or(zero, |path| rational(&path.numerator, &path.denominator))
     };
     let forward = |fed: &FedForward| {
-        let gain = Asymptote { coefficient: fed.gain, power: 0 };
+        let gain = PowerTerm { coefficient: fed.gain, power: 0 };
         let path = fed.path.as_ref().map(|path| rational(&path.numerator, &path.denominator));
-        gain.times(path.unwrap_or(Asymptote { coefficient: 1.0, power: 1 }))
+        gain.times(path.unwrap_or(PowerTerm { coefficient: 1.0, power: 1 }))
     };
     let (plant, load_motion, with_sensor, forward, turns) = match member {
         Member::Continuous { plant, sensor, fed_forward } => {
@@ -271,14 +271,14 @@ fn parts(
         plant,
         load_motion,
         feedback,
-        prefilter: if with_prefilter { of(compensation.prefilter())? } else { Asymptote::ONE },
+        prefilter: if with_prefilter { of(compensation.prefilter())? } else { PowerTerm::ONE },
         open_loop: with_sensor.times(feedback),
         spun: turns && end == End::Infinity,
     })
 }
 
 /// What bounds the gain of a plant without polynomials towards infinite frequency.
-fn rolled_off(plant: &dyn RespondingPlant) -> Option<Asymptote> {
+fn rolled_off(plant: &dyn RespondingPlant) -> Option<PowerTerm> {
     let [_, from] = plant.range_rad_per_s();
-    Some(Asymptote { coefficient: plant.roll_off(from)? * from * from * from, power: -3 })
+    Some(PowerTerm { coefficient: plant.roll_off(from)? * from * from * from, power: -3 })
 }

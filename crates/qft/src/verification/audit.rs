@@ -35,7 +35,7 @@ pub enum TrackingJudgement {
 
 /// What an audit did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Work {
+pub struct AuditWork {
     /// Plants that were looked at, corners of the box among them.
     pub plants: u64,
     /// Searches inside the box.
@@ -132,7 +132,7 @@ impl AuditProblem<'_> {
 pub fn audit_specifications(
     problem: &AuditProblem<'_>,
     watch: Watch<'_>,
-) -> Result<(Vec<SpecificationFinding>, Work), Stopped> {
+) -> Result<(Vec<SpecificationFinding>, AuditWork), Stopped> {
     audit_among(problem, &[], &SampledPlants::default(), watch)
 }
 
@@ -142,7 +142,7 @@ pub(crate) fn audit_among(
     others: &[Vec<f64>],
     sampled: &SampledPlants,
     watch: Watch<'_>,
-) -> Result<(Vec<SpecificationFinding>, Work), Stopped> {
+) -> Result<(Vec<SpecificationFinding>, AuditWork), Stopped> {
     let mut audit = SpecificationAudit::new(problem, others, sampled);
     audit.prepare(&mut part(watch, STAGE, [0.0, 0.2]))?;
     audit.look(&mut part(watch, STAGE, [0.2, 0.6]))?;
@@ -151,7 +151,7 @@ pub(crate) fn audit_among(
     audit.search(&mut part(watch, STAGE, [0.75, 0.95]))?;
     let findings = audit.findings(&mut part(watch, STAGE, [0.95, 1.0]))?;
     let (plants, searches) = (audit.plants.len() as u64, audit.searches as u64);
-    Ok((findings, Work { plants, searches, responses: audit.evaluator.responses() }))
+    Ok((findings, AuditWork { plants, searches, responses: audit.evaluator.responses() }))
 }
 
 /// What the watch is told.

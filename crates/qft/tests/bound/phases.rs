@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 use num_complex::Complex64;
 use phea_dynamics::portable;
 use phea_qft::bound::{
-    Bound, BoundError, BoundFunction, Feasibility, Fill, FrequencyBounds, PhaseGrid, Placement,
+    Bound, BoundError, BoundFunction, Feasibility, FrequencyBounds, PhaseGrid, Placement, TemplateFill,
 };
 use phea_qft::specification::{Limit, LimitTable, Requirement, Specification};
 use phea_qft::template::{Resolution, Template, TemplatePoint};
@@ -34,7 +34,7 @@ fn unit() -> Template {
 }
 
 fn function(template: &Template, requirement: Requirement) -> BoundFunction {
-    BoundFunction::new(template, &requirement, Fill::Points).unwrap()
+    BoundFunction::new(template, &requirement, TemplateFill::Points).unwrap()
 }
 
 fn specification(requirement: Requirement) -> Specification {
@@ -202,7 +202,7 @@ fn limits_at_the_ends_of_what_they_can_be() {
     assert!(forbidden(Requirement::RobustStability(constant(0.0))).is_everything());
     assert!(forbidden(Requirement::Sensitivity(constant(0.0))).is_everything());
     let refused = |template: &Template, limit| {
-        BoundFunction::new(template, &Requirement::Sensitivity(limit), Fill::Points).unwrap_err()
+        BoundFunction::new(template, &Requirement::Sensitivity(limit), TemplateFill::Points).unwrap_err()
     };
     let table = Limit::Table(LimitTable::new(vec![(2.0, 1.0)]).unwrap());
     assert_eq!(refused(&unit(), table), BoundError::NoLimit { frequency_rad_per_s: 1.0 });
@@ -230,7 +230,7 @@ fn specifications_that_collide_are_named_with_their_phases() {
             specification(Requirement::RobustStability(limit.clone())),
             specification(Requirement::Sensitivity(limit)),
         ],
-        Fill::Points,
+        TemplateFill::Points,
     )
     .unwrap();
     let combined = bounds.combined(&FINE);
@@ -255,7 +255,7 @@ fn specifications_that_collide_are_named_with_their_phases() {
 fn a_specification_that_forbids_everything_stands_alone() {
     let impossible = specification(Requirement::Sensitivity(Limit::Constant(0.0)));
     let margin = specification(Requirement::RobustStability(Limit::Constant(1.2)));
-    let bounds = FrequencyBounds::new(&unit(), &[margin, impossible], Fill::Points).unwrap();
+    let bounds = FrequencyBounds::new(&unit(), &[margin, impossible], TemplateFill::Points).unwrap();
     let Feasibility::Nowhere { collisions } = bounds.combined(&PhaseGrid::default()).feasibility else {
         panic!()
     };
@@ -269,7 +269,7 @@ fn a_loop_is_placed_with_its_distance_in_db() {
     let bounds = FrequencyBounds::new(
         &unit(),
         &[specification(Requirement::RobustStability(Limit::Constant(2.0)))],
-        Fill::Points,
+        TemplateFill::Points,
     )
     .unwrap();
     let at = |re: f64| bounds.placement(Complex64::new(re, 0.0));

@@ -3,7 +3,7 @@
 
 use num_complex::Complex64;
 use phea_dynamics::portable;
-use phea_qft::bound::{BoundFunction, Fill, GainIntervals};
+use phea_qft::bound::{BoundFunction, GainIntervals, TemplateFill};
 use phea_qft::specification::{Limit, Requirement};
 use phea_qft::template::{Template, TemplatePoint};
 
@@ -113,7 +113,7 @@ fn the_same_intervals_as_the_plain_method() {
     for trial in 0..300 {
         let template = random_template(&mut numbers);
         for requirement in random_requirements(&mut numbers, &template) {
-            let function = BoundFunction::new(&template, &requirement, Fill::Points).unwrap();
+            let function = BoundFunction::new(&template, &requirement, TemplateFill::Points).unwrap();
             for _ in 0..6 {
                 let phase = numbers.between(-std::f64::consts::TAU, 0.0);
                 let (found, expected) = (function.forbidden(phase), plain(&template, &requirement, phase));
@@ -131,7 +131,7 @@ fn the_same_intervals_for_a_thousand_plants() {
     for trial in 0..12 {
         let template = template_of(&mut numbers, 1000);
         for requirement in random_requirements(&mut numbers, &template) {
-            let function = BoundFunction::new(&template, &requirement, Fill::Points).unwrap();
+            let function = BoundFunction::new(&template, &requirement, TemplateFill::Points).unwrap();
             let tracking = matches!(requirement, Requirement::Tracking { .. });
             for _ in 0..if tracking { 2 } else { 40 } {
                 let phase = numbers.between(-std::f64::consts::TAU, 0.0);

@@ -2,7 +2,7 @@
 
 use num_complex::Complex64;
 use phea_dynamics::portable;
-use phea_qft::bound::{BoundFunction, Fill};
+use phea_qft::bound::{BoundFunction, TemplateFill};
 use phea_qft::specification::{Limit, LoopResponse, Requirement, Specification};
 use phea_qft::template::{Resolution, Template, TemplatePoint};
 
@@ -56,7 +56,7 @@ fn outside_of_a_bound_every_plant_meets_the_limit_and_inside_one_does_not() {
     for trial in 0..250 {
         let template = random_template(&mut numbers);
         for (kind, requirement) in random_requirements(&mut numbers, &template).into_iter().enumerate() {
-            let function = BoundFunction::new(&template, &requirement, Fill::Points).unwrap();
+            let function = BoundFunction::new(&template, &requirement, TemplateFill::Points).unwrap();
             for _ in 0..8 {
                 let nominal_loop = numbers.polar([0.01, 100.0], [-std::f64::consts::TAU, 0.0]);
                 let phase = portable::argument(nominal_loop);
@@ -125,7 +125,7 @@ fn a_filled_bound_serves_the_whole_region_and_forbids_only_what_a_plant_of_it_fo
             if matches!(requirement, Requirement::LoadMotion(_) | Requirement::ControlEffort(_)) {
                 continue;
             }
-            let [points, filled] = [Fill::Points, Fill::Filled]
+            let [points, filled] = [TemplateFill::Points, TemplateFill::Filled]
                 .map(|fill| BoundFunction::new(&template, &requirement, fill).unwrap());
             for _ in 0..12 {
                 let nominal_loop = numbers.polar([0.05, 20.0], [-std::f64::consts::TAU, 0.0]);
@@ -180,7 +180,7 @@ fn a_filled_bound_of_the_control_effort_serves_the_region_in_the_plane_of_the_pl
     let mut counts = [0; 2];
     for _ in 0..60 {
         let requirement = Requirement::ControlEffort(Limit::Constant(numbers.factor(0.05, 5.0)));
-        let function = BoundFunction::new(&template, &requirement, Fill::Filled).unwrap();
+        let function = BoundFunction::new(&template, &requirement, TemplateFill::Filled).unwrap();
         for _ in 0..5 {
             let nominal_loop = numbers.polar([0.05, 5.0], [-std::f64::consts::TAU, 0.0]);
             let worst = worst_db(&template, members.iter(), &requirement, nominal_loop);

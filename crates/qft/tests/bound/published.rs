@@ -3,7 +3,7 @@
 use num_complex::Complex64;
 use phea_dynamics::linear::{Polynomial, TransferFunction};
 use phea_dynamics::portable;
-use phea_qft::bound::{BoundFunction, Fill, GainIntervals};
+use phea_qft::bound::{BoundFunction, GainIntervals, TemplateFill};
 use phea_qft::specification::{Limit, Requirement};
 use phea_qft::template::{Resolution, Template, TemplatePoint};
 
@@ -72,7 +72,7 @@ fn example_b(frequency: f64) -> (Template, Requirement) {
 
 fn forbidden(template: &Template, requirements: &[Requirement], phase_deg: f64) -> GainIntervals {
     requirements.iter().fold(GainIntervals::default(), |union, requirement| {
-        let function = BoundFunction::new(template, requirement, Fill::Points).unwrap();
+        let function = BoundFunction::new(template, requirement, TemplateFill::Points).unwrap();
         union.union(&function.forbidden(phase_deg.to_radians()))
     })
 }

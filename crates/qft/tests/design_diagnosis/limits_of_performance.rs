@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use num_complex::Complex64;
 use phea_dynamics::linear::TransferFunction;
-use phea_qft::design::{DesignProblem, Place};
+use phea_qft::design::{ConstraintPlace, DesignProblem};
 use phea_qft::family::Family;
 use phea_qft::specification::{Limit, Requirement};
 
@@ -22,7 +22,7 @@ fn limit_of_s(limit: f64) -> Requirement {
 }
 
 /// A limit that falls short by 1 dB is found, with that 1 dB; one with 0.05 dB to spare is not.
-fn check(family: &Family, requirement: impl Fn(f64) -> Requirement, least: f64, place: Place) {
+fn check(family: &Family, requirement: impl Fn(f64) -> Requirement, least: f64, place: ConstraintPlace) {
     let of = |limit: f64| problem(family.clone(), vec![everywhere(requirement(limit))]);
     let short = constraints(&of(least / 10f64.powf(1.0 / 20.0)));
     let (constraint, relaxation) = short.first().unwrap();
@@ -33,12 +33,12 @@ fn check(family: &Family, requirement: impl Fn(f64) -> Requirement, least: f64, 
     assert_eq!(impossibilities(&enough), []);
 }
 
-fn pole(p: f64) -> Place {
-    Place::UnstablePole(Complex64::new(p, 0.0))
+fn pole(p: f64) -> ConstraintPlace {
+    ConstraintPlace::UnstablePole(Complex64::new(p, 0.0))
 }
 
-fn zero(z: f64) -> Place {
-    Place::RightHalfPlaneZero(Complex64::new(z, 0.0))
+fn zero(z: f64) -> ConstraintPlace {
+    ConstraintPlace::RightHalfPlaneZero(Complex64::new(z, 0.0))
 }
 
 /// |T| >= e^(p T_d) |z + p|/|z - p|, and the same without dead time for S.
@@ -132,7 +132,7 @@ fn a_stable_plant_has_a_water_bed() {
     };
     let least = ((3.0 * 100f64.ln() - 10.0 * (PI / 2.0 - 2f64.ln())) / 7.0).exp();
     let found = constraints(&of(0.93 * least, 0.0));
-    assert!(matches!(found[0].0.place, Place::Point(_)), "{found:?}");
+    assert!(matches!(found[0].0.place, ConstraintPlace::Point(_)), "{found:?}");
     assert_eq!(found[0].0.specifications, [0, 1, 2]);
     assert_eq!(impossibilities(&of(1.07 * least, 0.0)), []);
     let late = constraints(&of(1.07 * least, 0.1));
@@ -174,7 +174,7 @@ fn zeros_of_sampling_cost_sensitivity() {
     assert_eq!(impossibilities(&of(1.02)), []);
     let found = constraints(&of(0.9));
     assert!(found.iter().any(|(constraint, _)| match constraint.place {
-        Place::RightHalfPlaneZero(zero) => (zero.im - PI / 0.001).abs() < 1e-6,
+        ConstraintPlace::RightHalfPlaneZero(zero) => (zero.im - PI / 0.001).abs() < 1e-6,
         _ => false,
     }));
 }

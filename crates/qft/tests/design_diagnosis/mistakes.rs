@@ -1,6 +1,6 @@
 //! The mistakes of `examples/qft/mistakes`: each is explained, in one sentence, with its numbers.
 
-use phea_qft::design::{Finding, Place, diagnose};
+use phea_qft::design::{ConstraintPlace, Finding, diagnose};
 use phea_qft::specification::{Limit, Requirement};
 
 use super::problems::{EVERYWHERE, boxed, decibels, demand, plain, problem, rational};
@@ -64,7 +64,7 @@ fn fast_unstable_pole() {
     let found = diagnose(&problem(family, vec![specification]));
     let Finding::RightHalfPlane { constraint, relaxation_db } = &found[0] else { panic!("{found:?}") };
     assert_eq!(found[0].relaxation_db(), Some(*relaxation_db));
-    let Place::UnstablePole(pole) = constraint.place else { panic!("{found:?}") };
+    let ConstraintPlace::UnstablePole(pole) = constraint.place else { panic!("{found:?}") };
     assert!((pole.re - 4.2).abs() < 1e-9);
     assert!((relaxation_db - decibels(6.2 / 3.0)).abs() < 0.01);
     assert!((constraint.crossover_rad_per_s.unwrap() - 5_f64.sqrt()).abs() < 0.05, "{constraint:?}");

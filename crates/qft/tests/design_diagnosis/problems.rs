@@ -6,7 +6,7 @@ use phea_dynamics::linear::{Polynomial, TransferFunction};
 use phea_dynamics::uncertain_plant::{
     PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant,
 };
-use phea_qft::design::{Constraint, DesignProblem, Finding, Severity, diagnose};
+use phea_qft::design::{Constraint, DesignProblem, Finding, FindingSeverity, diagnose};
 use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, grid};
 use phea_qft::specification::{Limit, Requirement, Specification};
 
@@ -92,7 +92,7 @@ pub(crate) fn sampled(problem: DesignProblem, sample_time_s: f64, delay_s: f64) 
 
 pub(crate) fn impossibilities(problem: &DesignProblem) -> Vec<Finding> {
     let mut findings = diagnose(problem);
-    findings.retain(|finding| finding.severity() == Severity::Impossible);
+    findings.retain(|finding| finding.severity() == FindingSeverity::Impossible);
     findings
 }
 

@@ -2,7 +2,7 @@
 
 use phea_dynamics::expression::Recorded;
 use phea_dynamics::uncertain_plant::{PlantCoefficients, UncertainParameter, UncertainPlant};
-use phea_qft::design::{Severity, diagnose};
+use phea_qft::design::{FindingSeverity, diagnose};
 use phea_qft::family::{Extent, Family, UncertainFamily};
 use phea_qft::specification::{Limit, Requirement, Specification};
 
@@ -98,7 +98,7 @@ fn unstable() {
     assert_eq!(of(0.0), []);
     // ORIGIN: analytic, e^(sqrt(2.5) T) = 2.1 at T = 0.4692 s
     assert_eq!(of(0.465), []);
-    assert_eq!(of(0.49).first().map(|finding| finding.severity()), Some(Severity::Impossible));
+    assert_eq!(of(0.49).first().map(|finding| finding.severity()), Some(FindingSeverity::Impossible));
 }
 
 fn rig<'t>(p: &[Recorded<'t>]) -> PlantCoefficients<Recorded<'t>> {
@@ -130,5 +130,5 @@ fn thesis() {
     let continuous = problem(boxed(&parameters, 2, rig), specifications);
     assert_eq!(diagnose(&continuous), []);
     let found = diagnose(&sampled(continuous, 1e-3, 0.5e-3));
-    assert!(found.iter().all(|finding| finding.severity() == Severity::Warning), "{found:?}");
+    assert!(found.iter().all(|finding| finding.severity() == FindingSeverity::Warning), "{found:?}");
 }

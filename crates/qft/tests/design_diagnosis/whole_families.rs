@@ -1,7 +1,7 @@
 //! What a family forbids as a whole.
 
 use num_complex::Complex64;
-use phea_qft::design::{DesignProblem, Finding, Severity, diagnose};
+use phea_qft::design::{DesignProblem, Finding, FindingSeverity, diagnose};
 use phea_qft::family::{Family, MeasuredFamily, MeasuredPlant};
 use phea_qft::specification::{Limit, Requirement};
 
@@ -54,7 +54,10 @@ fn plants_that_no_stable_controller_stabilises() {
     let [finding @ Finding::UnstableController { between_zeros_rad_per_s, .. }] = found.as_slice() else {
         panic!("{found:?}")
     };
-    assert_eq!((*between_zeros_rad_per_s, finding.severity()), ([1.0, f64::INFINITY], Severity::Warning));
+    assert_eq!(
+        (*between_zeros_rad_per_s, finding.severity()),
+        ([1.0, f64::INFINITY], FindingSeverity::Warning)
+    );
     assert_eq!(of(3.0), []);
 }
 
@@ -84,7 +87,7 @@ fn a_static_gain_that_is_not_one() {
     let tracking = Requirement::Tracking { lower: Limit::Constant(0.8), upper: Limit::Constant(0.9) };
     let found = diagnose(&problem(single(&[1.0], &[1.0, 0.0], 0.0), vec![demand(tracking, &[], [0.0, 1.0])]));
     assert_eq!(found, [Finding::StaticGain { specification: 0, lower: 0.8, upper: 0.9 }]);
-    assert_eq!(found[0].severity(), Severity::Warning);
+    assert_eq!(found[0].severity(), FindingSeverity::Warning);
 }
 
 /// Of a measured plant the response alone is known, and the dead time of the loop: the water bed is told nevertheless.

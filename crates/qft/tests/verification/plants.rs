@@ -7,7 +7,7 @@ use phea_qft::closed_loop::Compensation;
 use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, grid};
 use phea_qft::specification::{Limit, Requirement, Specification};
 use phea_qft::verification::{
-    AuditProblem, SpecificationFinding, TOLERANCE_DB, TrackingJudgement, Work, audit_specifications,
+    AuditProblem, AuditWork, SpecificationFinding, TOLERANCE_DB, TrackingJudgement, audit_specifications,
 };
 
 pub(crate) fn parameter(name: &str, nominal: f64, minimum: f64, maximum: f64) -> UncertainParameter {
@@ -53,7 +53,7 @@ pub(crate) fn audited(
     compensation: &Compensation,
     specifications: &[Specification],
     tracking: TrackingJudgement,
-) -> (Vec<SpecificationFinding>, Work) {
+) -> (Vec<SpecificationFinding>, AuditWork) {
     let problem = AuditProblem { family, compensation, specifications, tracking, tolerance_db: TOLERANCE_DB };
     let mut before = 0.0;
     let found = audit_specifications(&problem, &mut |progress| {

@@ -9,7 +9,7 @@ use phea_dynamics::frequency::{logarithmic_grid, margins};
 use phea_dynamics::linear::{Discretization, LinearError, StateSpace, TimeDomain, TransferFunction};
 use phea_dynamics::portable::magnitude;
 use phea_dynamics::time_response::{
-    Signal, StepBaseline, TimeResponseError, forced_response_of_states, step_metrics, step_response,
+    SampledSignal, StepBaseline, TimeResponseError, forced_response_of_states, step_metrics, step_response,
 };
 use serde_json::{Value, json};
 
@@ -163,7 +163,7 @@ fn step(system: &ReferenceSystem, factors: &TransferFunction) -> Result<Value, T
         Form::Factored(factors) => step_response(factors, &times)?,
         Form::States(states) => {
             let rest = nalgebra::DVector::zeros(states.order());
-            let outputs = forced_response_of_states(states, &rest, &[Signal::step(1.0)], &times)?;
+            let outputs = forced_response_of_states(states, &rest, &[SampledSignal::step(1.0)], &times)?;
             outputs.iter().map(|output| output[0]).collect()
         }
     };

@@ -3,7 +3,7 @@ use phea_qft::verification::{SpecificationFinding, Verdict, ViolatedBand, WorstC
 use serde::Serialize;
 
 use super::{NamedPlant, PlantNames};
-use super::{ProjectAudit, Reached};
+use super::{ProjectAudit, ReachedLimit};
 use super::{
     evidence_key, kind_key, kind_words, remark_sentences, stability_reason, verdict_key, why_not_proven,
 };
@@ -143,7 +143,7 @@ fn specification<'a>(
     names: &PlantNames,
     name: &'a str,
     finding: &'a SpecificationFinding,
-    reached: Option<Reached>,
+    reached: Option<ReachedLimit>,
     proof: Option<SpecificationProofRow>,
 ) -> SpecificationRow<'a> {
     let worst = finding.worst.as_ref();
@@ -162,7 +162,7 @@ fn specification<'a>(
         other_plant: worst.and_then(|worst| worst.other.as_ref()).map(|other| names.named(other)),
         reason: worst.is_none().then_some("there is no margin; see remarks"),
         reached: reached
-            .map(|Reached { magnitude, limit, .. }| ReachedRow { magnitude, limit: Number(limit) }),
+            .map(|ReachedLimit { magnitude, limit, .. }| ReachedRow { magnitude, limit: Number(limit) }),
         interior: finding.interior.as_ref().map(|worst| case(names, worst)),
         proof,
         violations: finding.violations.iter().map(violation).collect(),

@@ -9,7 +9,7 @@ use super::{
     stability_sentence, standing_word, verdict_words, why_not_proven, worst_at_design,
 };
 use crate::answer::significant;
-use crate::document::{Cell, Document, Mark, Table};
+use crate::document::{Cell, Document, StatusMark, Table};
 use crate::figure::Figure;
 use crate::quantity::DisplayUnit;
 use crate::trial::{self, Trial};
@@ -145,11 +145,11 @@ fn not_proven(view: &ProjectAudit, proof: &Proof) -> Vec<String> {
     told.into_iter().map(|(reason, names)| format!("{}: {reason}", names.join(", "))).collect()
 }
 
-fn mark_of(standing: &Standing) -> Mark {
+fn mark_of(standing: &Standing) -> StatusMark {
     match standing {
-        Standing::Proven => Mark::Good,
-        Standing::Refuted => Mark::Bad,
-        Standing::NotProven(_) => Mark::Note,
+        Standing::Proven => StatusMark::Good,
+        Standing::Refuted => StatusMark::Bad,
+        Standing::NotProven(_) => StatusMark::Note,
     }
 }
 

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::{CommandError, Request};
 use crate::answer;
-use crate::project::{Loaded, Report as Refusal, Severity, sha256};
+use crate::project::{Loaded, Refusal, Severity, sha256};
 use crate::source::Source;
 
 #[derive(Serialize)]

@@ -2,7 +2,7 @@
 
 use super::Derived;
 use crate::answer::significant;
-use crate::document::{Cell, Document, Mark, Table};
+use crate::document::{Cell, Document, StatusMark, Table};
 use crate::family::{Extreme, VisitedRange};
 use crate::project::Project;
 
@@ -26,7 +26,9 @@ pub(crate) fn document(derived: &[Derived]) -> Document {
     if !stated.is_empty() {
         out.heading("Stated by the project and used instead of the derived value");
         out.explanation("The linear models use these values. Where a stated value and the derived one differ, the nonlinear machine follows the derived one.");
-        out.marked(stated.into_iter().map(|one| (one.contradicts().then_some(Mark::Bad), sentence(one))));
+        out.marked(
+            stated.into_iter().map(|one| (one.contradicts().then_some(StatusMark::Bad), sentence(one))),
+        );
     }
     out
 }

@@ -9,7 +9,7 @@ use crate::trial::{Agreement, agreement_word};
 
 /// A verdict as a form and a colour beside its word, so that none of them is needed alone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Mark {
+pub(crate) enum StatusMark {
     /// A circle with a tick.
     Good,
     /// A triangle with an exclamation mark.
@@ -18,28 +18,28 @@ pub(crate) enum Mark {
     Bad,
 }
 
-impl From<bool> for Mark {
-    fn from(good: bool) -> Mark {
-        if good { Mark::Good } else { Mark::Bad }
+impl From<bool> for StatusMark {
+    fn from(good: bool) -> StatusMark {
+        if good { StatusMark::Good } else { StatusMark::Bad }
     }
 }
 
-impl From<Verdict> for Mark {
-    fn from(verdict: Verdict) -> Mark {
+impl From<Verdict> for StatusMark {
+    fn from(verdict: Verdict) -> StatusMark {
         match verdict {
-            Verdict::Met => Mark::Good,
-            Verdict::NotProven => Mark::Note,
-            Verdict::Violated => Mark::Bad,
+            Verdict::Met => StatusMark::Good,
+            Verdict::NotProven => StatusMark::Note,
+            Verdict::Violated => StatusMark::Bad,
         }
     }
 }
 
-impl From<Agreement> for Mark {
-    fn from(agreement: Agreement) -> Mark {
+impl From<Agreement> for StatusMark {
+    fn from(agreement: Agreement) -> StatusMark {
         match agreement {
-            Agreement::Agrees => Mark::Good,
-            Agreement::Differs => Mark::Note,
-            Agreement::Contradicts => Mark::Bad,
+            Agreement::Agrees => StatusMark::Good,
+            Agreement::Differs => StatusMark::Note,
+            Agreement::Contradicts => StatusMark::Bad,
         }
     }
 }
@@ -73,7 +73,7 @@ pub(crate) enum Cell {
     /// A number with its unit, which is empty where the heading has it.
     Quantity { value: f64, precision: Precision, unit: &'static str },
     /// What is good or bad.
-    Status(Mark, Box<Cell>),
+    Status(StatusMark, Box<Cell>),
     /// No such thing.
     #[default]
     Missing,
@@ -120,7 +120,7 @@ impl Cell {
     }
 
     /// With a mark.
-    pub(crate) fn marked(self, mark: impl Into<Mark>) -> Cell {
+    pub(crate) fn marked(self, mark: impl Into<StatusMark>) -> Cell {
         Cell::Status(mark.into(), Box::new(self))
     }
 

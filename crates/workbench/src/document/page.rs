@@ -3,7 +3,7 @@
 use maud::{Markup, PreEscaped, html};
 
 use super::typeset::unit;
-use super::{Block, Cell, Document, Mark, Table, coded, prose, typeset};
+use super::{Block, Cell, Document, StatusMark, Table, coded, prose, typeset};
 use crate::figure::Figure;
 
 /// Columns from which a table takes the whole width of the paper, as one with equations always does.
@@ -106,23 +106,23 @@ pub(crate) fn place(figure: &Figure) -> Markup {
     }
 }
 
-impl Mark {
+impl StatusMark {
     /// The class of its colour, which that of an edge begins with.
     fn class(self) -> &'static str {
         match self {
-            Mark::Good => "good",
-            Mark::Note => "note",
-            Mark::Bad => "bad",
+            StatusMark::Good => "good",
+            StatusMark::Note => "note",
+            StatusMark::Bad => "bad",
         }
     }
 }
 
 /// The form with the word in its colour.
-pub(crate) fn badge(mark: Mark, word: &str) -> Markup {
+pub(crate) fn badge(mark: StatusMark, word: &str) -> Markup {
     let (outline, inside) = match mark {
-        Mark::Good => ("M8 1a7 7 0 1 1 0 14a7 7 0 1 1 0-14z", "M4.5 8.3l2.4 2.4l4.6-5.2"),
-        Mark::Note => ("M8 1.2l7.2 13.2h-14.4z", "M8 6v4.2M8 12v.8"),
-        Mark::Bad => ("M1.5 1.5h13v13h-13z", "M5 5l6 6M11 5l-6 6"),
+        StatusMark::Good => ("M8 1a7 7 0 1 1 0 14a7 7 0 1 1 0-14z", "M4.5 8.3l2.4 2.4l4.6-5.2"),
+        StatusMark::Note => ("M8 1.2l7.2 13.2h-14.4z", "M8 6v4.2M8 12v.8"),
+        StatusMark::Bad => ("M1.5 1.5h13v13h-13z", "M5 5l6 6M11 5l-6 6"),
     };
     html! {
         span class={ "mark " (mark.class()) } {

@@ -6,7 +6,7 @@ use phea_hydraulics::linear::ResponseDifference;
 use serde::Serialize;
 
 use super::sweep_answer::{SweepRow, SweptRow, head, rows};
-use super::{Agreement, Comparison, Linearization, PortView, Sweep, models, stiffness_sentence};
+use super::{AgreementBand, Linearization, PortView, ReductionDifference, Sweep, models, stiffness_sentence};
 use crate::answer::{self, Number, OutputFile};
 use crate::caveat::of_models;
 use crate::project::Loaded;
@@ -156,7 +156,7 @@ fn pairs(roots: &[Complex64]) -> Vec<[f64; 2]> {
     roots.iter().map(|root| [root.re, root.im]).collect()
 }
 
-fn difference(comparison: &Comparison) -> Difference {
+fn difference(comparison: &ReductionDifference) -> Difference {
     let ResponseDifference { magnitude_db, magnitude_frequency, phase_deg, phase_frequency } = comparison.all;
     Difference {
         magnitude_db,
@@ -234,8 +234,8 @@ fn factors(function: &TransferFunction) -> FactorRow {
     FactorRow { gain: function.gain(), zeros: pairs(function.zeros()), poles: pairs(function.poles()) }
 }
 
-fn agreement_row(agreement: &Agreement) -> AgreementRow<'_> {
-    let Agreement { model, equation, bands_rad_per_s } = agreement;
+fn agreement_row(agreement: &AgreementBand) -> AgreementRow<'_> {
+    let AgreementBand { model, equation, bands_rad_per_s } = agreement;
     AgreementRow { model, equation: format!("thesis {equation}"), bands_rad_per_s }
 }
 

@@ -5,7 +5,7 @@ use phea_dynamics::frequency::PassivityReport;
 use phea_dynamics::linear::TransferFunction;
 use phea_hydraulics::linear::{ModeShare, ResponseDifference};
 
-use super::{Agreement, Comparison, Linearization, WITHIN_DB, WITHIN_DEG, stiffness_sentence};
+use super::{AgreementBand, Linearization, ReductionDifference, WITHIN_DB, WITHIN_DEG, stiffness_sentence};
 use crate::answer::significant;
 use crate::caveat::of_models;
 use crate::document::{Cell, Document, Table};
@@ -45,13 +45,14 @@ pub(crate) fn document(linearization: &Linearization, figures: Vec<Figure>) -> D
         Table::new(["model", "equation", "poles, rad/s"]).with(models(linearization).map(pole)),
     );
     out.figures(figures);
-    let band = |one: &Agreement| [one.model.into(), one.equation.into(), Cell::Text(band_words(one))];
+    let band = |one: &AgreementBand| [one.model.into(), one.equation.into(), Cell::Text(band_words(one))];
     out.section(
         format!("Where a reduction is within {WITHIN_DB} dB and {WITHIN_DEG}° of the plant"),
         Table::new(["model", "equation", "frequencies"]).with(linearization.agreement.iter().map(band)),
     );
-    let error =
-        |(name, one): (&str, &Comparison)| [name.to_string(), difference_text(&one.low), located(&one.all)];
+    let error = |(name, one): (&str, &ReductionDifference)| {
+        [name.to_string(), difference_text(&one.low), located(&one.all)]
+    };
     out.section(
         "Largest differences",
         Table::new(["comparison", "below 1000 rad/s", "everywhere"])
@@ -75,7 +76,7 @@ fn mode_cells(mode: &ModeShare) -> [Cell; 3] {
 }
 
 /// The bands of an agreement in words.
-fn band_words(agreement: &Agreement) -> String {
+fn band_words(agreement: &AgreementBand) -> String {
     let band = |[from, to]: &[f64; 2]| format!("{} to {} rad/s", significant(*from, 3), significant(*to, 3));
     let bands: Vec<String> = agreement.bands_rad_per_s.iter().map(band).collect();
     if bands.is_empty() { "nowhere".to_string() } else { bands.join(", ") }
@@ -95,7 +96,7 @@ pub(crate) fn models(linearization: &Linearization) -> [(&'static str, &'static 
 }
 
 /// Every comparison with its name.
-fn comparisons(linearization: &Linearization) -> [(&'static str, &Comparison); 4] {
+fn comparisons(linearization: &Linearization) -> [(&'static str, &ReductionDifference); 4] {
     [
         ("6.7 instead of two-pressure, both with derived parameters", &linearization.reduction),
         ("6.12 as printed instead of 6.7", &linearization.printed_decomposition),

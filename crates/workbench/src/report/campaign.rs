@@ -9,7 +9,7 @@ use crate::campaign::{
     Worst, campaign, counted, lumps, metrics, pictures,
 };
 use crate::command::{CommandError, Watch};
-use crate::document::{Cell, Document, Mark, Table};
+use crate::document::{Cell, Document, StatusMark, Table};
 use crate::figure::Figure;
 use crate::project::{Distribution, Loaded};
 use crate::simulate::{Window, cause_words, metric_of};
@@ -55,7 +55,7 @@ pub(super) fn driven(
     let (document, fact) = match told() {
         Err(error) => {
             let mut out = Document::default();
-            out.verdict(Mark::Bad, format!("Not simulated: {error}"), vec![]);
+            out.verdict(StatusMark::Bad, format!("Not simulated: {error}"), vec![]);
             (out, None)
         }
         Ok((_, count, _, _)) if count < RUNS => return Err(ProcedureError::Stopped.into()),

@@ -16,7 +16,7 @@ use crate::answer::{OutputFile, significant};
 use crate::audit::basis;
 use crate::command::{CommandError, Watch};
 use crate::design::{DesignError, ProjectDesign, costs, design_project, files, laws, side_by_side, status};
-use crate::document::{Document, Mark};
+use crate::document::{Document, StatusMark};
 use crate::figure::Figure;
 use crate::project::{Loaded, Project};
 use crate::robust::DesignFrequency;
@@ -129,7 +129,7 @@ impl Designed {
             Designed::Found(design) => chapter(design),
             Designed::Nothing(sentences) => {
                 let mut out = Document::default();
-                out.verdict(Mark::Bad, "No controller was designed", sentences.clone());
+                out.verdict(StatusMark::Bad, "No controller was designed", sentences.clone());
                 Ok(Chapter::of(ANCHOR, TITLE, out))
             }
         }

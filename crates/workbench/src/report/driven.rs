@@ -6,7 +6,7 @@ use crate::project::Project;
 use crate::quantity::DisplayUnit;
 use crate::setup::Setup;
 use crate::simulate::{
-    Cause, Named, OVERSHOOT, SETTLING, ScenarioRun, SimulateError, Window, Wish, cause_words, cells_of,
+    Cause, NamedRun, OVERSHOOT, SETTLING, ScenarioRun, SimulateError, Window, Wish, cause_words, cells_of,
     simulate_project,
 };
 use crate::source::Source;
@@ -64,9 +64,9 @@ pub(super) fn driven(
 
 impl Driven {
     /// The runs of a scenario by its place in the file. Where a stated command drives the valve, no controller does: one run tells all.
-    pub(super) fn of_scenario<'a>(&'a self, index: usize) -> Vec<Named<'a>> {
-        let named = |side: &'a DrivenSide| Some(Named { name: side.name, run: run_of(side, index)? });
-        let mut named: Vec<Named<'a>> = self.sides.iter().filter_map(named).collect();
+    pub(super) fn of_scenario<'a>(&'a self, index: usize) -> Vec<NamedRun<'a>> {
+        let named = |side: &'a DrivenSide| Some(NamedRun { name: side.name, run: run_of(side, index)? });
+        let mut named: Vec<NamedRun<'a>> = self.sides.iter().filter_map(named).collect();
         if named.iter().any(|named| named.run.open_loop) {
             named.truncate(1);
         }
@@ -74,7 +74,7 @@ impl Driven {
     }
 
     /// The same in the order of the figures that compare both, whose first colour is the designed one's.
-    pub(super) fn drawn(&self, index: usize) -> Vec<Named<'_>> {
+    pub(super) fn drawn(&self, index: usize) -> Vec<NamedRun<'_>> {
         let mut named = self.of_scenario(index);
         named.reverse();
         named

@@ -9,7 +9,9 @@ use super::chapter::{Chapter, cell, place, table, without};
 use super::load_motion::{self, Moved};
 use crate::answer::significant;
 use crate::document::{prose, typeset};
-use crate::figure::{Asymptote, Figure, FrequencyMark, FrequencySeries, ImpedanceInput, Words, impedance};
+use crate::figure::{
+    AsymptoteLine, Figure, FrequencyMark, FrequencySeries, ImpedanceInput, Words, impedance,
+};
 use crate::linearize::{Linearization, PortView, frequency_grid, passivity_sentence};
 use crate::project::Project;
 use crate::quantity::DisplayUnit;
@@ -123,14 +125,14 @@ fn figure(linearization: &Linearization) -> Result<Figure, LinearError> {
         response: grid.iter().map(|frequency| function.at_frequency(*frequency)).collect(),
         frequencies_rad_per_s: grid.clone(),
     };
-    let mut lines: Vec<Asymptote> = Vec::new();
+    let mut lines: Vec<AsymptoteLine> = Vec::new();
     for (name, view) in views(linearization) {
         for asymptote in &view.asymptotes {
             // Plateau and limit are the same for both loops; one line is enough.
             if name != "open loop" && asymptote.kind != AsymptoteKind::LowFrequency {
                 continue;
             }
-            lines.push(Asymptote {
+            lines.push(AsymptoteLine {
                 label: match asymptote.kind {
                     AsymptoteKind::LowFrequency => format!("{}, {name}", behaviour(asymptote.power)),
                     AsymptoteKind::CompliancePlateau => "K_eq/s".to_string(),

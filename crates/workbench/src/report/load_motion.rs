@@ -2,7 +2,7 @@
 
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::time_response::{
-    Interpolation, Signal, TimeResponseError, forced_response, uniform_times,
+    Interpolation, SampledSignal, TimeResponseError, forced_response, uniform_times,
 };
 
 use crate::answer::significant;
@@ -38,11 +38,11 @@ fn motion(project: &Project) -> (f64, f64) {
 /// ```text
 /// x = h (10 u^3 - 15 u^4 + 6 u^5),    v = h/T 30 u^2 (1 - u)^2,    u = t/T
 /// ```
-fn velocity(distance: f64, duration: f64) -> Result<Signal, TimeResponseError> {
+fn velocity(distance: f64, duration: f64) -> Result<SampledSignal, TimeResponseError> {
     let shares = (0..=MOTION_SAMPLES).map(|sample| f64::from(sample) / f64::from(MOTION_SAMPLES));
     let (times, velocities) =
         shares.map(|u| (u * duration, distance / duration * 30.0 * u * u * (1.0 - u) * (1.0 - u))).unzip();
-    Signal::new(times, velocities, Interpolation::Linear)
+    SampledSignal::new(times, velocities, Interpolation::Linear)
 }
 
 /// The force at one port while the load moves.

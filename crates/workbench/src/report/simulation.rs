@@ -4,11 +4,11 @@
 use super::chapter::Chapter;
 use super::driven::Driven;
 use super::driving;
-use crate::document::{Cell, Document, Mark, Table};
+use crate::document::{Cell, Document, StatusMark, Table};
 use crate::figure::Figure;
 use crate::project::{Project, Scenario};
 use crate::simulate::{
-    Held, METRICS, Metrics, Named, ScenarioRun, Window, Wish, cause_words, cells_of, close_ups,
+    HeldWish, METRICS, Metrics, NamedRun, ScenarioRun, Window, Wish, cause_words, cells_of, close_ups,
     coarse_sentence, headline, measured, measured_together, metrics_row, occurrence_sentences, pictures,
     published, published_row, together, windows,
 };
@@ -23,7 +23,7 @@ pub(super) fn chapter(project: &Project, driven: &Driven) -> Chapter {
             } else {
                 String::new()
             };
-            out.verdict(Mark::Bad, format!("Not simulated{with}: {error}"), vec![]);
+            out.verdict(StatusMark::Bad, format!("Not simulated{with}: {error}"), vec![]);
         }
     }
     let any = (0..project.scenarios.len()).any(|index| !driven.of_scenario(index).is_empty());
@@ -57,7 +57,7 @@ pub(super) fn inside(project: &Project, driven: &Driven) -> Option<Chapter> {
 }
 
 /// All controllers in one figure; of one alone, everything of it.
-fn drawn(runs: &[Named<'_>], number: usize, wish: Option<&Wish>) -> Vec<Figure> {
+fn drawn(runs: &[NamedRun<'_>], number: usize, wish: Option<&Wish>) -> Vec<Figure> {
     match runs {
         [alone] => pictures(alone.run, number),
         several => {
@@ -68,7 +68,12 @@ fn drawn(runs: &[Named<'_>], number: usize, wish: Option<&Wish>) -> Vec<Figure> 
     }
 }
 
-fn scenario(runs: &[Named<'_>], declared: &Scenario, wish: Option<&Wish>, figures: Vec<Figure>) -> Document {
+fn scenario(
+    runs: &[NamedRun<'_>],
+    declared: &Scenario,
+    wish: Option<&Wish>,
+    figures: Vec<Figure>,
+) -> Document {
     let mut out = Document::default();
     out.heading(runs.first().map(|named| named.run.name.as_str()).unwrap_or_default());
     out.explanations(runs.iter().map(|named| format!("{}{}.", of(named, runs), headline(named.run))));
@@ -93,7 +98,7 @@ fn scenario(runs: &[Named<'_>], declared: &Scenario, wish: Option<&Wish>, figure
 }
 
 /// Whose run a sentence is about, where there are several.
-fn of(named: &Named<'_>, runs: &[Named<'_>]) -> String {
+fn of(named: &NamedRun<'_>, runs: &[NamedRun<'_>]) -> String {
     if runs.len() > 1 { format!("{}: ", capital(named.name)) } else { String::new() }
 }
 
@@ -103,7 +108,7 @@ fn capital(word: &str) -> String {
 }
 
 /// What is read off each event: a row of each controller, beside what was published of it.
-fn metrics(runs: &[Named<'_>], declared: &Scenario, wish: Option<&Wish>) -> Document {
+fn metrics(runs: &[NamedRun<'_>], declared: &Scenario, wish: Option<&Wish>) -> Document {
     let mut out = Document::default();
     let Some(first) = runs.first().map(|named| named.run).filter(|first| !first.windows.is_empty()) else {
         return out;
@@ -155,10 +160,10 @@ pub(super) fn told<'a>(windows: impl Iterator<Item = &'a (Window, Metrics)>) -> 
 /// The worst of all steps of some runs beside a wish: `None` where there is none to judge.
 pub(super) fn worst(
     runs: &[ScenarioRun],
-    reached: impl Fn(&Metrics) -> Option<(f64, Held)>,
-) -> Option<(Held, usize)> {
+    reached: impl Fn(&Metrics) -> Option<(f64, HeldWish)>,
+) -> Option<(HeldWish, usize)> {
     let windows = runs.iter().flat_map(|run| &run.windows);
-    let held: Vec<(f64, Held)> = windows.filter_map(|(_, metrics)| reached(metrics)).collect();
+    let held: Vec<(f64, HeldWish)> = windows.filter_map(|(_, metrics)| reached(metrics)).collect();
     let count = held.len();
     let worst = held.into_iter().max_by(|one, other| one.0.total_cmp(&other.0))?;
     Some((worst.1, count))

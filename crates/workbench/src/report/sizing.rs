@@ -3,8 +3,8 @@
 use super::chapter::Chapter;
 use crate::document::Document;
 use crate::figure::{
-    DisplayUnit, Figure, NomographBore, NomographInput, SizingCandidate, SizingChartInput, SizingCurve,
-    TornadoBar, TornadoInput, Verdict, Words, nomograph, sizing_chart, tornado,
+    CandidateVerdict, DisplayUnit, Figure, NomographBore, NomographInput, SizingCandidate, SizingChartInput,
+    SizingCurve, TornadoBar, TornadoInput, Words, nomograph, sizing_chart, tornado,
 };
 use crate::sizing::{BoreVerdict, Candidate, Sizing, SizingProblem, document, model_name};
 use phea_hydraulics::stiffness::StiffnessModel;
@@ -27,9 +27,9 @@ fn bores(problem: &SizingProblem, sizing: &Sizing) -> Figure {
         bore_m: bore.bore_m,
         label: bore.name.clone(),
         verdict: match bore.verdict {
-            BoreVerdict::Recommended => Verdict::Accepted,
-            BoreVerdict::Slow => Verdict::Warned,
-            BoreVerdict::TooFast => Verdict::Rejected,
+            BoreVerdict::Recommended => CandidateVerdict::Accepted,
+            BoreVerdict::Slow => CandidateVerdict::Warned,
+            BoreVerdict::TooFast => CandidateVerdict::Rejected,
         },
     };
     let [slowest, fastest] = problem.oil_velocity;
@@ -79,7 +79,11 @@ fn lengths(problem: &SizingProblem, sizing: &Sizing) -> Figure {
             length_m: candidate.length_m(),
             stiffness_n_per_m: candidate.branch.stiffness.minimum,
             gain_v_per_n: candidate.branch.gain_v_per_n,
-            verdict: if candidate.accepted() { Verdict::Accepted } else { Verdict::Rejected },
+            verdict: if candidate.accepted() {
+                CandidateVerdict::Accepted
+            } else {
+                CandidateVerdict::Rejected
+            },
         });
     let input = SizingChartInput {
         curves,

@@ -1,6 +1,6 @@
 //! The chapter on stiffness over the stroke, Figure 6.4, in both models.
 
-use phea_hydraulics::line::Member;
+use phea_hydraulics::line::StiffeningMember;
 use phea_hydraulics::stiffness::StiffnessModel;
 
 use super::chapter::Chapter;
@@ -42,11 +42,11 @@ fn curve(rig: &Rig, model: StiffnessModel) -> StiffnessCurve {
     let positions_m: Vec<f64> =
         (0..=POSITIONS).map(|step| stroke * f64::from(step) / f64::from(POSITIONS)).collect();
     let at = |member| positions_m.iter().map(|x| stiffness_at(rig, model, member, *x)).collect::<Vec<f64>>();
-    let (minimum, maximum) = (at(Member::Minimum), at(Member::Maximum));
+    let (minimum, maximum) = (at(StiffeningMember::Minimum), at(StiffeningMember::Maximum));
     let uncertain = minimum != maximum;
     StiffnessCurve {
         name: model_name(model).to_string(),
-        stiffness_n_per_m: at(Member::Nominal),
+        stiffness_n_per_m: at(StiffeningMember::Nominal),
         minimum_n_per_m: if uncertain { minimum } else { vec![] },
         maximum_n_per_m: if uncertain { maximum } else { vec![] },
         positions_m,

@@ -2,7 +2,7 @@ use phea_qft::bound::Placement;
 use phea_qft::verification::Verdict;
 use serde::Serialize;
 
-use super::Shaping;
+use super::ProjectShaping;
 use super::text::polar;
 use crate::answer::{self, Number, OutputFile};
 use crate::audit::{NamedPlant, kind_key, stability_reason, verdict_key};
@@ -88,7 +88,7 @@ fn placement(placement: &Placement) -> PlacementRow {
     }
 }
 
-fn margin_rows(view: &Shaping) -> Vec<MarginRow> {
+fn margin_rows(view: &ProjectShaping) -> Vec<MarginRow> {
     let kind = |index: usize| {
         view.problem
             .specifications
@@ -108,7 +108,7 @@ fn margin_rows(view: &Shaping) -> Vec<MarginRow> {
 }
 
 /// The JSON object of `shape`.
-pub fn json(loaded: &Loaded, view: &Shaping) -> String {
+pub fn json(loaded: &Loaded, view: &ProjectShaping) -> String {
     let element = |(index, element): (usize, &crate::project::Element)| ElementRow {
         number: index + 1,
         kind: element.kind.name(),
@@ -152,7 +152,7 @@ pub fn json(loaded: &Loaded, view: &Shaping) -> String {
 pub const SHAPED_PROJECT: &str = "shaped.toml";
 
 /// The project file with the changed elements; then the margins as a table for other programs.
-pub fn files(view: &Shaping) -> Vec<OutputFile> {
+pub fn files(view: &ProjectShaping) -> Vec<OutputFile> {
     let mut csv = String::from("specification,kind,frequency_rad_per_s,margin_db,allowed\n");
     for MarginRow { specification, kind, frequency_rad_per_s, margin_db, placement, .. } in margin_rows(view)
     {

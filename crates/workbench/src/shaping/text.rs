@@ -4,14 +4,14 @@ use phea_dynamics::portable;
 use phea_qft::bound::Placement;
 use phea_qft::manual_shaping::DesignMargin;
 
-use super::{Shaped, Shaping};
+use super::{ProjectShaping, Shaped};
 use crate::answer::significant;
 use crate::audit::{frequency_number, stability_sentence};
 use crate::document::{Cell, Document, Table};
 use phea_qft::verification::Verdict;
 
 /// The tables and sentences of `shape`.
-pub fn text(view: &Shaping) -> String {
+pub fn text(view: &ProjectShaping) -> String {
     let what = match view.shaped {
         Shaped::Controller => "Controller",
         Shaped::Prefilter => "Prefilter",
@@ -55,7 +55,7 @@ pub fn text(view: &Shaping) -> String {
     out.text()
 }
 
-fn margins(view: &Shaping) -> Table {
+fn margins(view: &ProjectShaping) -> Table {
     let row = |margin: &DesignMargin| {
         let plants = [Some(&margin.plant), margin.other.as_ref()].into_iter().flatten();
         let plants: Vec<String> = plants.map(|plant| view.names.text(plant)).collect();
@@ -84,7 +84,7 @@ fn placement(placement: &Placement) -> String {
     }
 }
 
-fn points(view: &Shaping) -> Table {
+fn points(view: &ProjectShaping) -> Table {
     let mut rows = Table::new(["rad/s", "|L0| dB", "phase deg", "among all bounds"]);
     for point in &view.points {
         let (decibels, degrees) = polar(point.nominal_loop);

@@ -2,13 +2,13 @@
 
 use serde::Serialize;
 
-use super::FrequencyResponse;
+use super::MachineResponses;
 use super::check::{self, CheckRow};
 use super::frequency;
 use super::metrics::MetricsRow;
 use super::state_names;
 use super::{
-    BeyondExpansion, Cause, Comparison, Exceeded, Metrics, Occurrence, Overlay, ScenarioRun, Window,
+    BeyondExpansion, Cause, Exceeded, Metrics, Occurrence, Overlay, ScenarioComparison, ScenarioRun, Window,
 };
 use crate::answer;
 use crate::project::Loaded;
@@ -141,13 +141,13 @@ struct FrequencyBody<'a> {
 }
 
 /// The JSON object of `simulate` where a frequency response is asked for: no scenario is run.
-pub(crate) fn frequency_json(loaded: &Loaded, found: &FrequencyResponse) -> String {
+pub(crate) fn frequency_json(loaded: &Loaded, found: &MachineResponses) -> String {
     let (frequency_response, body) = (frequency::body(found), body(loaded, &[]));
     answer::json("simulate", loaded, FrequencyBody { frequency_response, body })
 }
 
 /// The JSON object of `compare`, in the envelope of the first project.
-pub(crate) fn compare_json(comparison: &Comparison<'_>) -> String {
+pub(crate) fn compare_json(comparison: &ScenarioComparison<'_>) -> String {
     let Some((first, _)) = comparison.projects.first() else { return String::new() };
     let rows = comparison.projects.iter().map(|(loaded, runs)| ProjectRow {
         path: &loaded.path,

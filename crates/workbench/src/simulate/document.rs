@@ -4,7 +4,8 @@ use super::check;
 use super::exceeded_words;
 use super::metrics::{METRICS, OVERSHOOT, SETTLING, cells_of};
 use super::{
-    BeyondExpansion, Cause, Comparison, Metrics, Occurrence, Overlay, ScenarioRun, Stopped, Window, Wish,
+    BeyondExpansion, Cause, Metrics, Occurrence, Overlay, ScenarioComparison, ScenarioRun, StoppedRun,
+    Window, Wish,
 };
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
@@ -48,7 +49,7 @@ pub(crate) fn headline(run: &ScenarioRun) -> String {
     }
 }
 
-fn why(stopped: &Stopped) -> String {
+fn why(stopped: &StoppedRun) -> String {
     let told = match (stopped.word, stopped.mode) {
         (_, Some(mode)) => {
             return format!(
@@ -233,7 +234,7 @@ fn occurrence_words(occurrence: &Occurrence) -> String {
 }
 
 /// The tables of `compare`: a row for each metric, a column for each project; projects that were not begun are named.
-pub(crate) fn compare_text(comparison: &Comparison<'_>, asked: &[Loaded]) -> String {
+pub(crate) fn compare_text(comparison: &ScenarioComparison<'_>, asked: &[Loaded]) -> String {
     let mut out = String::new();
     for (number, (loaded, runs)) in comparison.projects.iter().enumerate() {
         out.push_str(&format!("{}  {} ({})\n", letter(number), loaded.project.title, loaded.path));

@@ -1,6 +1,6 @@
 //! Figures of runs over time.
 
-use super::{Cause, Comparison, Metrics, Record, ScenarioRun, Window, cause_words};
+use super::{Cause, Metrics, Record, ScenarioComparison, ScenarioRun, Window, cause_words};
 use crate::answer::{OutputFile, significant};
 use crate::figure::{
     DisplayUnit, Figure, FigureError, SettlingBand, StepResponseInput, TimeEvent, TimePanel, TimePanelsInput,
@@ -292,14 +292,14 @@ fn step(run: &ScenarioRun, window: &Window, (number, event): (usize, usize)) -> 
 ///
 /// # Errors
 /// A figure that the rasteriser refuses.
-pub(crate) fn comparison_files(comparison: &Comparison<'_>) -> Result<Vec<OutputFile>, FigureError> {
+pub(crate) fn comparison_files(comparison: &ScenarioComparison<'_>) -> Result<Vec<OutputFile>, FigureError> {
     let scenarios = comparison.scenarios().into_iter().enumerate();
     let figures = scenarios.flat_map(|(number, name)| compared(comparison, name, number + 1));
     picture_files(&figures.collect::<Vec<_>>())
 }
 
 /// One scenario of all projects that have it: the whole, and each event of the first.
-fn compared(comparison: &Comparison<'_>, name: &str, number: usize) -> Vec<Figure> {
+fn compared(comparison: &ScenarioComparison<'_>, name: &str, number: usize) -> Vec<Figure> {
     let titles = comparison.projects.iter().map(|(loaded, _)| loaded.project.title.clone());
     let (titles, runs): (Vec<String>, Vec<&ScenarioRun>) =
         titles.zip(comparison.runs_of(name)).filter_map(|(title, run)| Some((title, run?))).unzip();

@@ -8,7 +8,7 @@ use crate::figure::{DisplayUnit, Figure, TimePanel, TimePanelsInput, TimeSeries,
 
 /// A run with the name of its controller.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Named<'a> {
+pub(crate) struct NamedRun<'a> {
     /// Such as `designed`.
     pub(crate) name: &'static str,
     /// Of the scenario that all have in common.
@@ -16,7 +16,7 @@ pub(crate) struct Named<'a> {
 }
 
 /// The whole run, and each event enlarged, every controller in each figure.
-pub(crate) fn together(runs: &[Named<'_>], number: usize, wish: Option<&Wish>) -> Vec<Figure> {
+pub(crate) fn together(runs: &[NamedRun<'_>], number: usize, wish: Option<&Wish>) -> Vec<Figure> {
     let Some(first) = runs.first() else { return vec![] };
     let end = end_of(runs);
     let words = Words::new(
@@ -38,7 +38,7 @@ pub(crate) fn together(runs: &[Named<'_>], number: usize, wish: Option<&Wish>) -
 }
 
 /// Force and command from the first event to a little after the last, or of the whole run where nothing begins.
-pub(crate) fn at_a_glance(name: &str, runs: &[Named<'_>], wish: Option<&Wish>) -> Option<Figure> {
+pub(crate) fn at_a_glance(name: &str, runs: &[NamedRun<'_>], wish: Option<&Wish>) -> Option<Figure> {
     let first = runs.first()?;
     let end = end_of(runs);
     let starts = || first.run.windows.iter().map(|(window, _)| window.start_s);
@@ -54,8 +54,8 @@ pub(crate) fn at_a_glance(name: &str, runs: &[Named<'_>], wish: Option<&Wish>) -
 }
 
 /// What happens inside the machine at each event, of one controller: as Figure 6.17 of Ledezma (2019).
-pub(crate) fn close_ups(named: Named<'_>, number: usize) -> Vec<Figure> {
-    let Named { name, run } = named;
+pub(crate) fn close_ups(named: NamedRun<'_>, number: usize) -> Vec<Figure> {
+    let NamedRun { name, run } = named;
     let end = end_of(&[named]);
     let events = enlarged(&run.windows, end).into_iter();
     let figure = |(index, window): (usize, &Window)| {
@@ -70,7 +70,7 @@ pub(crate) fn close_ups(named: Named<'_>, number: usize) -> Vec<Figure> {
 }
 
 /// What was measured, on what the machine does under each controller: a panel for each signal.
-pub(crate) fn measured_together(runs: &[Named<'_>], number: usize) -> Option<Figure> {
+pub(crate) fn measured_together(runs: &[NamedRun<'_>], number: usize) -> Option<Figure> {
     let first = runs.first()?;
     let overlays = &first.run.measured;
     let height = if overlays.len() > 3 { 100.0 } else { 170.0 };
@@ -100,12 +100,12 @@ fn curve(times_s: &[f64], values: &[f64]) -> TimeSeries {
     TimeSeries { name: String::new(), times_s: times_s.to_vec(), values: values.to_vec() }
 }
 
-fn end_of(runs: &[Named<'_>]) -> f64 {
+fn end_of(runs: &[NamedRun<'_>]) -> f64 {
     runs.iter().filter_map(|named| named.run.record.times_s.last().copied()).fold(0.0, f64::max)
 }
 
 /// `under the designed and the given controller`.
-fn whose(runs: &[Named<'_>]) -> String {
+fn whose(runs: &[NamedRun<'_>]) -> String {
     let names: Vec<String> = runs.iter().map(|named| format!("the {}", named.name)).collect();
     format!("under {} controller", names.join(" and "))
 }
@@ -118,7 +118,7 @@ fn of_wish(wish: Option<&Wish>) -> String {
 
 fn drawn(
     words: Words,
-    runs: &[Named<'_>],
+    runs: &[NamedRun<'_>],
     span_s: [f64; 2],
     ([tall, low], positions): ([f64; 2], bool),
     wish: Option<&Wish>,
@@ -142,7 +142,7 @@ fn drawn(
 }
 
 /// Names, span and events; the panels are to follow.
-fn input(runs: &[Named<'_>], span_s: [f64; 2]) -> TimePanelsInput {
+fn input(runs: &[NamedRun<'_>], span_s: [f64; 2]) -> TimePanelsInput {
     let windows = runs.first().map(|named| named.run.windows.as_slice()).unwrap_or_default();
     let mut legend: Vec<String> = runs.iter().map(|named| named.name.to_string()).collect();
     if force_measured(runs).is_some() {
@@ -157,17 +157,17 @@ fn input(runs: &[Named<'_>], span_s: [f64; 2]) -> TimePanelsInput {
     }
 }
 
-fn each(runs: &[Named<'_>], values: impl Fn(&Record) -> Vec<f64>) -> Vec<TimeSeries> {
+fn each(runs: &[NamedRun<'_>], values: impl Fn(&Record) -> Vec<f64>) -> Vec<TimeSeries> {
     runs.iter().map(|named| over_time(&named.run.record, values(&named.run.record))).collect()
 }
 
 /// The force as it was measured on the rig, where it was.
-fn force_measured(runs: &[Named<'_>]) -> Option<TimeSeries> {
+fn force_measured(runs: &[NamedRun<'_>]) -> Option<TimeSeries> {
     let overlay = runs.first()?.run.measured.iter().find(|overlay| overlay.signal == "force_n")?;
     Some(curve(&overlay.times_s, &overlay.measured))
 }
 
-fn forces(runs: &[Named<'_>], height: f64, span_s: [f64; 2], wish: Option<&Wish>) -> TimePanel {
+fn forces(runs: &[NamedRun<'_>], height: f64, span_s: [f64; 2], wish: Option<&Wish>) -> TimePanel {
     let mut curves = each(runs, |record| record.signal("force_n"));
     curves.extend(force_measured(runs));
     let first = runs.first().map(|named| named.run);
@@ -184,7 +184,7 @@ fn forces(runs: &[Named<'_>], height: f64, span_s: [f64; 2], wish: Option<&Wish>
 
 /// The force, and below it enlarged what lies around the reference of the one step that is seen, where something was wished of it.
 fn forces_enlarged(
-    runs: &[Named<'_>],
+    runs: &[NamedRun<'_>],
     [tall, low]: [f64; 2],
     span_s: [f64; 2],
     wish: Option<&Wish>,
@@ -206,7 +206,7 @@ const ABOVE: f64 = 0.04;
 const OVERSHOOTS: f64 = 1.2;
 
 /// Around the reference after the one step that begins in a span; `None` where none does, or several.
-fn near_reference(runs: &[Named<'_>], span_s: [f64; 2]) -> Option<[f64; 2]> {
+fn near_reference(runs: &[NamedRun<'_>], span_s: [f64; 2]) -> Option<[f64; 2]> {
     let [start_s, end_s] = span_s;
     let seen = |window: &Window| (start_s..end_s).contains(&window.start_s);
     let first = runs.first()?.run;
@@ -222,7 +222,7 @@ fn near_reference(runs: &[Named<'_>], span_s: [f64; 2]) -> Option<[f64; 2]> {
     (above.is_finite() && above < 1.0).then(|| [ends[0].min(ends[1]), ends[0].max(ends[1])])
 }
 
-fn commands(runs: &[Named<'_>], height: f64) -> TimePanel {
+fn commands(runs: &[NamedRun<'_>], height: f64) -> TimePanel {
     // the longer title does not fit beside a low frame
     let title = if height < 100.0 { "U_C" } else { "Command U_C" };
     panel(title, DisplayUnit::VOLT, height, each(runs, |record| record.control_v.clone()))

@@ -1,7 +1,7 @@
 use serde::Serialize;
 
 use super::model_name;
-use super::{BoreVerdict, Candidate, Severity, Sizing};
+use super::{BoreVerdict, Candidate, Consequence, Sizing};
 use crate::answer::{self, Number, OutputFile};
 use crate::project::Loaded;
 
@@ -119,8 +119,8 @@ fn candidate_row(candidate: &Candidate) -> CandidateRow<'_> {
         steady_state_gain: candidate.steady_state_gain.map(Number),
         accepted: candidate.accepted(),
         reasons: candidate.findings.iter().map(|finding| finding.text.as_str()).collect(),
-        rejections: of(Severity::Rejects),
-        warnings: of(Severity::Warns),
+        rejections: of(Consequence::Rejects),
+        warnings: of(Consequence::Warns),
         iterations: iterations.collect(),
     }
 }

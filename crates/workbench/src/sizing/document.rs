@@ -1,9 +1,9 @@
 //! What a sizing says to people.
 
 use super::answer::branch_name;
-use super::{Candidate, Influence, Severity, Sizing, model_name};
+use super::{Candidate, Consequence, Influence, Sizing, model_name};
 use crate::answer::significant;
-use crate::document::{Cell, Document, Mark, Table};
+use crate::document::{Cell, Document, StatusMark, Table};
 use crate::figure::Figure;
 use crate::quantity::DisplayUnit;
 
@@ -84,8 +84,8 @@ fn findings(out: &mut Document, group: &[&Candidate]) {
     let names: Vec<String> = group.iter().map(name).collect();
     out.heading(format!("{} ({}): {verdict}", first.option.name, names.join(", ")));
     out.marked(first.findings.iter().map(|finding| match finding.severity {
-        Severity::Rejects => (Some(Mark::Bad), format!("rejects: {}", finding.text)),
-        _ => (Some(Mark::Note), format!("warns: {}", finding.text)),
+        Consequence::Rejects => (Some(StatusMark::Bad), format!("rejects: {}", finding.text)),
+        _ => (Some(StatusMark::Note), format!("warns: {}", finding.text)),
     }));
 }
 

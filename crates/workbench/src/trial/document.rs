@@ -1,6 +1,6 @@
 //! What the machine did with a verdict, for people.
 
-use super::{Agreement, Response, Run, Step, Trial, agreement_word, percent_words};
+use super::{Agreement, Run, Step, StepResponse, Trial, agreement_word, percent_words};
 use crate::document::{Cell, Document, Table};
 use crate::figure::{FamilyStepInput, Figure, TimeSeries, Words, family_step};
 use crate::quantity::DisplayUnit;
@@ -64,7 +64,7 @@ fn figure(trial: &Trial, [name, title]: [&str; 2]) -> Option<Figure> {
     let driven_s = first.machine_response.times_s.last().copied()?;
     let settles_s = first.linear.and_then(|step| step.settling_time_s);
     let end_s = settles_s.map_or(driven_s, |time_s| driven_s.min(SETTLING_TIMES * time_s));
-    let series = |name: &str, response: &Response| {
+    let series = |name: &str, response: &StepResponse| {
         let rows = response.times_s.iter().copied().zip(response.values.iter().copied());
         let shown = rows.take_while(|(time_s, value)| *time_s <= end_s && SHOWN.contains(value));
         let (times_s, values): (Vec<f64>, Vec<f64>) = shown.unzip();

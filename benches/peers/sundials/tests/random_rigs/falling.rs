@@ -14,7 +14,7 @@ use phea_hydraulics::fluid::Fluid;
 use phea_hydraulics::force_sensor::ForceSensor;
 use phea_hydraulics::friction::{Friction, LuGre, Stribeck};
 use phea_hydraulics::line::Line;
-use phea_hydraulics::machine::{Machine, MachineOptions, Start};
+use phea_hydraulics::machine::{Machine, MachineOptions, StartValues};
 use phea_hydraulics::servovalve::{Servovalve, Supply};
 use phea_hydraulics::stiffness::StiffnessModel;
 
@@ -39,7 +39,8 @@ pub(crate) fn rig(number: u64) -> Result<Rig, Refusal> {
 
     let pressure = 0.5 * components.supply.pressure;
     let position = 0.5 * components.cylinder.stroke;
-    let start = Start { position, pressure_a: pressure, pressure_b: pressure, ..Start::default() };
+    let start =
+        StartValues { position, pressure_a: pressure, pressure_b: pressure, ..StartValues::default() };
     let beginning = machine.start(&start).map_err(Refusal::Machine)?;
     let sign = if chance.happens(0.5) { 1.0 } else { -1.0 };
     let force = sign * components.supply.pressure * components.cylinder.area_b * chance.decades(0.05, 0.6);

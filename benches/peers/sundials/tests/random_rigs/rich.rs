@@ -3,8 +3,8 @@
 use phea_hydraulics::actuator::Components;
 use phea_hydraulics::contact::Contact;
 use phea_hydraulics::line::{
-    Anchoring, DynamicLine, END_SHARE, Hose, LaminarFriction, Line, LineError, LineModel, Member, Pipe,
-    PipeWall, Stiffening,
+    Anchoring, DynamicLine, END_SHARE, Hose, LaminarFriction, Line, LineError, LineModel, Pipe, PipeWall,
+    Stiffening, StiffeningMember,
 };
 use phea_hydraulics::machine::{Accumulator, LoadModel, MachineOptions, PowerUnit};
 
@@ -34,7 +34,8 @@ pub(crate) fn lines(chance: &mut Chance, components: &mut Components) -> Result<
     } else {
         LineModel::TwoWave { end_share: END_SHARE, wall: None }
     };
-    DynamicLine::new(&line, &components.fluid, pressure, Member::Nominal, &model).map(|line| [line; 2])
+    DynamicLine::new(&line, &components.fluid, pressure, StiffeningMember::Nominal, &model)
+        .map(|line| [line; 2])
 }
 
 fn hose(chance: &mut Chance, bore: f64, length: f64, pressure: f64) -> Line {

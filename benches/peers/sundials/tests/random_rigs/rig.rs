@@ -11,7 +11,7 @@ use phea_hydraulics::force_sensor::ForceSensor;
 use phea_hydraulics::friction::{Friction, LuGre, Stribeck};
 use phea_hydraulics::line::{DynamicLine, Line, LineError};
 use phea_hydraulics::machine::{
-    LoadModel, Machine, MachineError, MachineOptions, PowerUnit, PumpLimited, Start,
+    LoadModel, Machine, MachineError, MachineOptions, PowerUnit, PumpLimited, StartValues,
 };
 use phea_hydraulics::servovalve::{Edges, Servovalve, SpoolImperfection, Supply};
 use phea_hydraulics::stiffness::StiffnessModel;
@@ -122,7 +122,8 @@ pub(crate) fn rig(number: u64) -> Result<Rig, Refusal> {
         share = if pulls { left } else { 1.0 - left };
     }
     let position = components.cylinder.stroke * share;
-    let start = Start { position, pressure_a: pressure, pressure_b: pressure, ..Start::default() };
+    let start =
+        StartValues { position, pressure_a: pressure, pressure_b: pressure, ..StartValues::default() };
     let beginning = machine.start(&start).map_err(Refusal::Machine)?;
     let reference = Profile::steps(0.0, &[(REFERENCE_S, sign * size)]).expect("times ascend");
     let distance = sign * components.cylinder.stroke * chance.decades(1e-4, 0.05);
@@ -324,7 +325,7 @@ fn control(chance: &mut Chance, components: &Components, like_benchmark: bool) -
 fn twin(
     components: &Components,
     control: &Control,
-    start: &Start,
+    start: &StartValues,
     force: f64,
     distance: f64,
     [time_constant, duration]: [f64; 2],

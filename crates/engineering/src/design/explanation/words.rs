@@ -5,7 +5,7 @@ use std::fmt::{Display, Formatter, Result};
 
 use num_complex::Complex64;
 
-use phea_qft::design::{Constraint, Finding, Party, Place};
+use phea_qft::design::{Constraint, ConstraintPlace, Finding, Party};
 
 use crate::audit::rounded;
 
@@ -187,14 +187,14 @@ fn constrained(f: &mut Formatter<'_>, constraint: &Constraint) -> Result {
     };
     let (sensitivity, complementary) = (rounded(*sensitivity), rounded(*complementary));
     match constraint.place {
-        Place::UnstablePole(pole) => {
+        ConstraintPlace::UnstablePole(pole) => {
             write!(f, "the unstable pole at {} rad/s demands |T| = 1 there, and {by}", root(pole))?;
             if let Some(crossover) = crossover_rad_per_s {
                 write!(f, ", with |T| below 1 above {} rad/s,", rounded(*crossover))?;
             }
             write!(f, " {leave} at most {complementary}{delay}")
         }
-        Place::RightHalfPlaneZero(zero) => {
+        ConstraintPlace::RightHalfPlaneZero(zero) => {
             write!(
                 f,
                 "the zero at {} rad/s in the right half plane demands |S| = 1 there, and {by}",
@@ -205,7 +205,7 @@ fn constrained(f: &mut Formatter<'_>, constraint: &Constraint) -> Result {
             }
             write!(f, " {leave} at most {sensitivity}")
         }
-        Place::Point(s) => write!(
+        ConstraintPlace::Point(s) => write!(
             f,
             "S + T = 1 holds at s = {} rad/s too, and there {by} {leave} at most |S| = {sensitivity} and |T| = {complementary}{delay}",
             rounded(s)
@@ -213,11 +213,11 @@ fn constrained(f: &mut Formatter<'_>, constraint: &Constraint) -> Result {
     }
 }
 
-fn place(place: Place) -> String {
+fn place(place: ConstraintPlace) -> String {
     match place {
-        Place::UnstablePole(pole) => format!("the unstable pole at {} rad/s", root(pole)),
-        Place::RightHalfPlaneZero(zero) => format!("the zero at {} rad/s", root(zero)),
-        Place::Point(s) => format!("S + T = 1 at s = {} rad/s", rounded(s)),
+        ConstraintPlace::UnstablePole(pole) => format!("the unstable pole at {} rad/s", root(pole)),
+        ConstraintPlace::RightHalfPlaneZero(zero) => format!("the zero at {} rad/s", root(zero)),
+        ConstraintPlace::Point(s) => format!("S + T = 1 at s = {} rad/s", rounded(s)),
     }
 }
 

@@ -1,6 +1,6 @@
 //! What the columns of a measurement hold, by their names.
 
-use super::table::{Cell, Table};
+use super::table::{MeasuredCell, MeasuredTable};
 use crate::project::{Findings, Found};
 use crate::quantity::{self, ANGLE, ANGULAR_FREQUENCY, Dimension, GAIN, RATIO};
 use crate::spelling::nearest;
@@ -86,7 +86,7 @@ impl Form {
 
 impl Columns {
     /// Reads the first row; `None` where it does not say what is needed.
-    pub(super) fn find(table: &Table<'_>, findings: &mut Findings) -> Option<Columns> {
+    pub(super) fn find(table: &MeasuredTable<'_>, findings: &mut Findings) -> Option<Columns> {
         let mut columns: Vec<Column> = Vec::new();
         let mut sound = true;
         for (index, cell) in table.header.iter().enumerate() {
@@ -142,7 +142,7 @@ fn roles(find: &dyn Fn(Role) -> Option<Column>, roles: [Role; 4]) -> [Option<Col
     roles.map(find)
 }
 
-fn column(index: usize, cell: &Cell<'_>, earlier: &[Column]) -> Result<Column, Found> {
+fn column(index: usize, cell: &MeasuredCell<'_>, earlier: &[Column]) -> Result<Column, Found> {
     let Some(known) = NAMES.iter().find(|known| known.name == cell.text) else {
         let found = Found::error(cell.place, format!("unknown column `{}`", cell.text));
         let names = || NAMES.iter().map(|known| known.name);
@@ -165,12 +165,12 @@ fn column(index: usize, cell: &Cell<'_>, earlier: &[Column]) -> Result<Column, F
 
 impl Column {
     /// Its value in a complete row.
-    pub(super) fn cell<'a>(&self, row: &[Cell<'a>]) -> Cell<'a> {
+    pub(super) fn cell<'a>(&self, row: &[MeasuredCell<'a>]) -> MeasuredCell<'a> {
         row[self.index]
     }
 
     /// SI.
-    pub(super) fn value(&self, row: &[Cell<'_>], findings: &mut Findings) -> Option<f64> {
+    pub(super) fn value(&self, row: &[MeasuredCell<'_>], findings: &mut Findings) -> Option<f64> {
         let cell = self.cell(row);
         let expected =
             if self.unit.is_empty() { "a number".to_string() } else { format!("a number in {}", self.unit) };

@@ -4,7 +4,7 @@ use crate::project::{Findings, Found, Place};
 
 /// A value as written.
 #[derive(Clone, Copy, Debug)]
-pub struct Cell<'a> {
+pub struct MeasuredCell<'a> {
     /// As written.
     pub text: &'a str,
     /// Where.
@@ -12,15 +12,15 @@ pub struct Cell<'a> {
 }
 
 /// The first row, and all others.
-pub struct Table<'a> {
+pub struct MeasuredTable<'a> {
     /// Names of the columns.
-    pub header: Vec<Cell<'a>>,
+    pub header: Vec<MeasuredCell<'a>>,
     /// All rows below.
-    pub rows: Vec<Vec<Cell<'a>>>,
+    pub rows: Vec<Vec<MeasuredCell<'a>>>,
 }
 
 /// Takes a file in; `None` if it is no text or has no rows.
-pub fn read<'a>(path: &str, bytes: &'a [u8], findings: &mut Findings) -> Option<Table<'a>> {
+pub fn read<'a>(path: &str, bytes: &'a [u8], findings: &mut Findings) -> Option<MeasuredTable<'a>> {
     let skipped = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
     let Ok(content) = std::str::from_utf8(&bytes[skipped..]) else {
         findings.unreadable(path, "the file is no UTF-8 text");
@@ -43,22 +43,22 @@ pub fn read<'a>(path: &str, bytes: &'a [u8], findings: &mut Findings) -> Option<
             .push(Found::error(whole, "the file is empty").expected("a row with the names of the columns"));
         return None;
     };
-    let rows: Vec<Vec<Cell<'_>>> = rows.collect();
+    let rows: Vec<Vec<MeasuredCell<'_>>> = rows.collect();
     if rows.is_empty() {
         findings.push(Found::error(whole, "the file has no rows below the names of its columns"));
         return None;
     }
-    Some(Table { header, rows })
+    Some(MeasuredTable { header, rows })
 }
 
 /// The values of a line that starts at a byte of its text.
-fn cells(line: &str, start: usize, index: usize) -> Vec<Cell<'_>> {
+fn cells(line: &str, start: usize, index: usize) -> Vec<MeasuredCell<'_>> {
     let mut from = start;
     let cell = |part| {
         let text = unquoted(part);
         let first = from + (text.as_ptr() as usize - part.as_ptr() as usize);
         from += part.len() + 1;
-        Cell { text, place: Place { text: index, start: first, end: first + text.len() } }
+        MeasuredCell { text, place: Place { text: index, start: first, end: first + text.len() } }
     };
     line.trim_end().split(',').map(cell).collect()
 }
@@ -69,9 +69,9 @@ fn unquoted(part: &str) -> &str {
     text.strip_prefix('"').and_then(|rest| rest.strip_suffix('"')).map_or(text, str::trim)
 }
 
-impl Table<'_> {
+impl MeasuredTable<'_> {
     /// Whether a row has a value for every column and no more.
-    pub fn is_complete(&self, row: &[Cell<'_>], findings: &mut Findings) -> bool {
+    pub fn is_complete(&self, row: &[MeasuredCell<'_>], findings: &mut Findings) -> bool {
         let (Some(first), Some(last)) = (row.first(), row.last()) else { return false };
         let columns = self.header.len();
         if row.len() == columns {

@@ -10,12 +10,12 @@ use phea_dynamics::linear::LinearError;
 use phea_dynamics::portable;
 use phea_dynamics::simulation::{CommandedPlant, Input, Profile, Sensed, Settings};
 use phea_hydraulics::machine::Machine;
-use phea_machine::{Control, Digital, Sampled, Samples, Waking, force_amplitude};
+use phea_machine::{Control, ControllerSamples, Digital, Sampled, Waking, force_amplitude};
 use phea_qft::closed_loop::{Compensation, Member};
 
 use super::open_loop::profile;
 use super::point::{ResponsePoint, Resting, finer, point, respond};
-use super::{FrequencyRequest, Response, Rested, USUAL_AMPLITUDE, curve};
+use super::{FrequencyRequest, MachineResponse, Rested, USUAL_AMPLITUDE, curve};
 use crate::rig::Rig;
 use crate::setup::Setup;
 use crate::simulate::SimulateError;
@@ -35,7 +35,7 @@ pub(super) fn measured(
     frequencies: &[f64],
     request: &FrequencyRequest,
     goes_on: &mut dyn FnMut(usize) -> bool,
-) -> Result<Result<Response, String>, SimulateError> {
+) -> Result<Result<MachineResponse, String>, SimulateError> {
     let Some(given) = &setup.controller else {
         return Ok(Err("the project gives no controller".to_string()));
     };
@@ -92,10 +92,10 @@ impl Shared<'_> {
         points: Vec<ResponsePoint>,
         frequencies: &[f64],
         machine: Vec<Complex64>,
-    ) -> Result<Response, SimulateError> {
+    ) -> Result<MachineResponse, SimulateError> {
         let curve_rad_per_s = curve(frequencies);
         let linear_plant = curve_rad_per_s.iter().map(|frequency| self.model.at(*frequency));
-        Ok(Response {
+        Ok(MachineResponse {
             points,
             linear_plant: linear_plant.collect::<Result<_, _>>()?,
             linearised_machine: machine,
@@ -108,7 +108,7 @@ impl Shared<'_> {
         (control, closed): (&Control, &CommandedPlant<Sensed<Machine>>),
         frequencies: &[f64],
         goes_on: &mut dyn FnMut(usize) -> bool,
-    ) -> Result<Response, SimulateError> {
+    ) -> Result<MachineResponse, SimulateError> {
         let rest = &self.rested.rest;
         let mut state = rest.state.clone();
         state.extend(closed.plant().sensor_at_rest(self.rested.force_n));
@@ -148,7 +148,7 @@ impl Shared<'_> {
         sampled: &Sampled,
         frequencies: &[f64],
         goes_on: &mut dyn FnMut(usize) -> bool,
-    ) -> Result<Response, SimulateError> {
+    ) -> Result<MachineResponse, SimulateError> {
         let quiet = Sampled { noise: 0.0, ..sampled.clone() };
         let (held, rest) = (&quiet.held, &self.rested.rest);
         let mut state = rest.state.clone();
@@ -179,7 +179,7 @@ impl Shared<'_> {
                     .collect(),
                 settings: self.settings(),
             };
-            let log = RefCell::new(Samples::default());
+            let log = RefCell::new(ControllerSamples::default());
             let waking = Waking::Holding([filtered[0], filtered[1], rest.command]);
             let digital = Box::new(Digital::new(&quiet, &waking, &log));
             let sine = [*frequency, self.amplitude];

@@ -7,7 +7,7 @@ use phea_dynamics::simulation::{CommandedPlant, Input, Plant, Profile, Sensed};
 use phea_machine::{Control, force_amplitude};
 
 use super::point::{Resting, finer, point, respond};
-use super::{FrequencyRequest, Response, Rested, SimulateError, USUAL_AMPLITUDE, curve};
+use super::{FrequencyRequest, MachineResponse, Rested, SimulateError, USUAL_AMPLITUDE, curve};
 
 /// Measures the response at these frequencies; ends before the first for which `goes_on` is false.
 pub(super) fn measured(
@@ -15,7 +15,7 @@ pub(super) fn measured(
     frequencies: &[f64],
     request: &FrequencyRequest,
     goes_on: &mut dyn FnMut(usize) -> bool,
-) -> Result<Response, SimulateError> {
+) -> Result<MachineResponse, SimulateError> {
     let through = TransferFunction::gain_only(1.0);
     let held = CommandedPlant::on_hold(Sensed::new(rested.machine, &through)?, &through)?;
     let control = Control::Open(Box::new(held));
@@ -51,7 +51,7 @@ pub(super) fn measured(
     let curve_rad_per_s = curve(frequencies);
     let of_machine =
         |frequency: &f64| Some(force_amplitude(&rested.machine, &orbit(&control, rested, *frequency)?));
-    Ok(Response {
+    Ok(MachineResponse {
         points,
         linear_plant: curve_rad_per_s.iter().map(|frequency| rested.rig.response(*frequency)).collect(),
         linearised_machine: curve_rad_per_s.iter().map(of_machine).collect::<Option<_>>().unwrap_or_default(),

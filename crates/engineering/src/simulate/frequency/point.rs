@@ -9,7 +9,7 @@ use phea_hydraulics::machine::INDICATORS;
 use phea_machine::{Control, Shaken};
 
 use crate::simulate::SimulateError;
-use crate::simulate::run::{COMMAND_LIMIT, Stopped};
+use crate::simulate::run::{COMMAND_LIMIT, StoppedRun};
 
 /// Shortest window, s, and in periods.
 const WINDOW_S: f64 = 1.0;
@@ -129,6 +129,6 @@ pub(super) fn point(
         periods: found.periods,
         steps: found.work.steps,
         reached: found.indicators.iter().map(name).collect(),
-        ended: found.ended.and_then(|status| Some(Stopped::of(status)?.word)),
+        ended: found.ended.and_then(|status| Some(StoppedRun::of(status)?.word)),
     }
 }

@@ -2,7 +2,7 @@ use phea_dynamics::scalar::Scalar;
 
 use super::super::equations::{Flows, constant};
 use super::super::signals::ground_of;
-use super::super::{Chambers, LoadMotion, Machine, MachineState, PowerUnit};
+use super::super::{Chambers, Machine, MachineState, Motion, PowerUnit};
 use super::Account;
 use super::volume::{Law, Volume};
 use crate::line::{Content, DynamicLine};
@@ -10,8 +10,8 @@ use crate::line::{Content, DynamicLine};
 /// Everything that the accounts of a rig are made of, at one instant.
 pub(super) struct Instant<T> {
     pub(super) state: MachineState<T>,
-    pub(super) load: LoadMotion<T>,
-    pub(super) ground: LoadMotion<T>,
+    pub(super) load: Motion<T>,
+    pub(super) ground: Motion<T>,
     /// Of the force from outside on the load, in W.
     pub(super) external_power: T,
     pub(super) flows: Flows<T>,

@@ -18,7 +18,7 @@ use super::ceiling::{Ceilings, demanded};
 use super::finding::{Finding, Party};
 use super::interpolation::least_relaxation_db;
 use super::plane::Boundary;
-use crate::bound::{Bound, Feasibility, Fill, FrequencyBounds, PhaseGrid};
+use crate::bound::{Bound, Feasibility, FrequencyBounds, PhaseGrid, TemplateFill};
 use crate::closed_loop::MemberResponse;
 use crate::specification::{Limit, LoopResponse, Specification};
 use crate::template::{Resolution, Template, TemplatePoint};
@@ -136,7 +136,7 @@ impl<'a> Place<'a> {
             .iter()
             .filter_map(|(_, specification)| constant(specification, self.frequency, factor))
             .collect();
-        let bounds = FrequencyBounds::new(&self.template, &relaxed, Fill::Points).ok()?;
+        let bounds = FrequencyBounds::new(&self.template, &relaxed, TemplateFill::Points).ok()?;
         let combined = bounds.combined(&PhaseGrid::uniform(spacing_rad));
         let nowhere = matches!(combined.feasibility, Feasibility::Nowhere { .. });
         Some((combined.union, nowhere))

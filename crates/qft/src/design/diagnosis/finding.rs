@@ -6,7 +6,7 @@ use crate::verification::PlantPoint;
 
 /// How much a finding says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Severity {
+pub enum FindingSeverity {
     /// No controller whatever meets the specifications.
     Impossible,
     /// It is hard, or not what was meant.
@@ -15,7 +15,7 @@ pub enum Severity {
 
 /// Where T or S is known whatever the controller, or where S + T = 1 is held against the limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Place {
+pub enum ConstraintPlace {
     /// A pole of P H in the right half plane, rad/s: T = 1 there.
     UnstablePole(Complex64),
     /// A zero of P H in the right half plane, rad/s: S = 1 there. In a sampled loop z = e^(sT) is a zero of the sampled plant.
@@ -28,7 +28,7 @@ pub enum Place {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Constraint {
     /// The point.
-    pub place: Place,
+    pub place: ConstraintPlace,
     /// The plant.
     pub plant: PlantPoint,
     /// Dead time of plant, sensor and loop, with the samples of delay in a sampled loop, s.
@@ -188,7 +188,7 @@ pub enum Finding {
 
 impl Finding {
     /// How much it says.
-    pub fn severity(&self) -> Severity {
+    pub fn severity(&self) -> FindingSeverity {
         match self {
             Finding::CrossedLimits { .. }
             | Finding::SumBelowOne { .. }
@@ -197,11 +197,11 @@ impl Finding {
             | Finding::ZeroOnTheAxis { .. }
             | Finding::RightHalfPlane { .. }
             | Finding::GainSign { .. }
-            | Finding::DelayMargin { .. } => Severity::Impossible,
+            | Finding::DelayMargin { .. } => FindingSeverity::Impossible,
             Finding::ForcedPeak { .. }
             | Finding::UnstableController { .. }
             | Finding::OutOfReach { .. }
-            | Finding::StaticGain { .. } => Severity::Warning,
+            | Finding::StaticGain { .. } => FindingSeverity::Warning,
         }
     }
 

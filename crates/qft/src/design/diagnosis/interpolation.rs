@@ -13,7 +13,7 @@ use phea_dynamics::portable;
 
 use super::candidate::Candidate;
 use super::ceiling::{Ceiling, Ceilings};
-use super::finding::{Constraint, Finding, Place};
+use super::finding::{Constraint, ConstraintPlace, Finding};
 use super::plane::{Plane, share};
 
 /// Deficits below this are left to the search: where something happens on the axis, the cells may err by as much. 0.1 dB.
@@ -207,10 +207,12 @@ fn constraint(ceilings: &Ceilings, candidates: &[Candidate], deficit: &Deficit) 
     let place = match spot.kind {
         Kind::Pole => {
             let all = candidate.poles.iter().zip(&candidate.unstable_poles);
-            Place::UnstablePole(all.into_iter().find(|(image, _)| **image == spot.at).map(|pair| *pair.1)?)
+            ConstraintPlace::UnstablePole(
+                all.into_iter().find(|(image, _)| **image == spot.at).map(|pair| *pair.1)?,
+            )
         }
-        Kind::Zero => Place::RightHalfPlaneZero(boundary.plane.root(spot.at)),
-        Kind::Point => Place::Point(boundary.plane.root(spot.at).re),
+        Kind::Zero => ConstraintPlace::RightHalfPlaneZero(boundary.plane.root(spot.at)),
+        Kind::Point => ConstraintPlace::Point(boundary.plane.root(spot.at).re),
     };
     let mut shares: Vec<(usize, f64)> = Vec::new();
     let mut crossover = None;

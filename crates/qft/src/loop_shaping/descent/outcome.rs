@@ -45,12 +45,12 @@ pub struct DescentResult {
     /// The margins that stood in the way of the last step, the strongest first.
     pub binding: Vec<Binding>,
     /// Work done.
-    pub work: Work,
+    pub work: DescentWork,
 }
 
 /// Work done: counts, not times.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Work {
+pub struct DescentWork {
     /// Points judged.
     pub judgements: usize,
     /// Points at which slopes were taken.
@@ -59,11 +59,11 @@ pub struct Work {
     pub subproblems: usize,
 }
 
-impl std::ops::Add for Work {
-    type Output = Work;
+impl std::ops::Add for DescentWork {
+    type Output = DescentWork;
 
-    fn add(self, other: Work) -> Work {
-        Work {
+    fn add(self, other: DescentWork) -> DescentWork {
+        DescentWork {
             judgements: self.judgements + other.judgements,
             slopes: self.slopes + other.slopes,
             subproblems: self.subproblems + other.subproblems,

@@ -16,7 +16,7 @@ const PLANTS_MAXIMUM: usize = 4;
 
 /// One margin: `d margin/dx = -(20/ln 10) Re(c d ln G/dx)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Candidate {
+pub(crate) struct MarginCandidate {
     pub(crate) margin_db: f64,
     /// c; for a lower limit its negative, for a spread the difference of the c of both plants.
     pub(crate) sensitivity: Complex64,
@@ -33,7 +33,7 @@ pub(crate) fn candidates(
     column: &Column,
     around: &ColumnLoop,
     feedback: Complex64,
-) -> Vec<Candidate> {
+) -> Vec<MarginCandidate> {
     let squares: Vec<f64> =
         (0..column.plants.len()).map(|place| demand.squared(column, around, place)).collect();
     let [least, greatest] = extremes(squares.iter().copied());
@@ -41,7 +41,12 @@ pub(crate) fn candidates(
     let of = |place: usize, margin_db: f64, sign: f64| {
         let open = column.loop_at(place) * feedback;
         let coefficient = demand.feedback_power() - open / (1.0 + open);
-        Candidate { margin_db, sensitivity: coefficient * sign, plant: column.plants[place], other: None }
+        MarginCandidate {
+            margin_db,
+            sensitivity: coefficient * sign,
+            plant: column.plants[place],
+            other: None,
+        }
     };
     let below = |allowed: f64| {
         let high = squares.iter().enumerate().filter(|(_, square)| **square * WINDOW >= greatest);
@@ -57,9 +62,9 @@ pub(crate) fn candidates(
         Limited::Spread => {
             let (tops, bottoms) = (below(1.0), above(1.0));
             let allowed_db = half_decibels(allowed);
-            let mut pairs: Vec<Candidate> = Vec::new();
+            let mut pairs: Vec<MarginCandidate> = Vec::new();
             for top in &tops {
-                pairs.extend(bottoms.iter().map(|bottom| Candidate {
+                pairs.extend(bottoms.iter().map(|bottom| MarginCandidate {
                     margin_db: allowed_db + top.margin_db + bottom.margin_db,
                     sensitivity: top.sensitivity + bottom.sensitivity,
                     plant: top.plant,
@@ -73,15 +78,16 @@ pub(crate) fn candidates(
 }
 
 /// The worst first; margins that are no numbers are left out.
-fn prominent(mut all: Vec<Candidate>) -> Vec<Candidate> {
+fn prominent(mut all: Vec<MarginCandidate>) -> Vec<MarginCandidate> {
     all.retain(|candidate| candidate.margin_db.is_finite() && candidate.sensitivity.is_finite());
     all.sort_by(|one, other| one.margin_db.total_cmp(&other.margin_db));
     let Some(&worst) = all.first() else { return all };
     let mut chosen = vec![worst];
     while chosen.len() < PLANTS_MAXIMUM {
-        let squared =
-            |candidate: &Candidate, from: &Candidate| (candidate.sensitivity - from.sensitivity).norm_sqr();
-        let threat = |candidate: &Candidate| {
+        let squared = |candidate: &MarginCandidate, from: &MarginCandidate| {
+            (candidate.sensitivity - from.sensitivity).norm_sqr()
+        };
+        let threat = |candidate: &MarginCandidate| {
             let nearest = chosen.iter().map(|from| squared(candidate, from)).fold(f64::INFINITY, f64::min);
             DECIBELS_PER_NEPER * REACH * nearest.sqrt() - (candidate.margin_db - worst.margin_db)
         };

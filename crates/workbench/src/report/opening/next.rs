@@ -211,7 +211,7 @@ fn machine_words(side: &Side<'_>, run: &Run) -> String {
 /// A step of the machine that misses what was wished, and what the limits of tracking themselves do.
 fn wishes(contents: &Contents<'_>, side: &Side<'_>) -> Option<String> {
     let wish: &Wish = contents.driven?.wish.as_ref()?;
-    let missed = |held: Option<(crate::simulate::Held, usize)>| {
+    let missed = |held: Option<(crate::simulate::HeldWish, usize)>| {
         held.filter(|(held, _)| held.kept == Some(false)).map(|(held, _)| held.words)
     };
     let overshoot = missed(side.overshoot(wish)).map(|words| format!("overshoots by {words}"));

@@ -8,7 +8,7 @@ use crate::design::LoopFigures;
 use crate::report::driven::{DESIGNED, Driven, GIVEN};
 use crate::report::judged::Judged;
 use crate::report::simulation::worst;
-use crate::simulate::{Held, Metrics, ScenarioRun, Wish};
+use crate::simulate::{HeldWish, Metrics, ScenarioRun, Wish};
 use crate::trial::Trial;
 
 /// A controller.
@@ -64,13 +64,13 @@ impl Side<'_> {
     }
 
     /// The step that overshoots most, and of how many; `None` where nothing was wished or driven.
-    pub(super) fn overshoot(&self, wish: &Wish) -> Option<(Held, usize)> {
+    pub(super) fn overshoot(&self, wish: &Wish) -> Option<(HeldWish, usize)> {
         let reached = |metrics: &Metrics| Some((metrics.overshoot_percent.ok()?, wish.overshoot(metrics)?));
         worst(self.runs?, reached)
     }
 
     /// The step that settles last, likewise.
-    pub(super) fn settling(&self, wish: &Wish) -> Option<(Held, usize)> {
+    pub(super) fn settling(&self, wish: &Wish) -> Option<(HeldWish, usize)> {
         let reached = |metrics: &Metrics| {
             let held = wish.settling(metrics)?;
             Some((metrics.settling_time_s.unwrap_or(f64::INFINITY), held))

@@ -8,12 +8,12 @@ use super::Contents;
 use super::side::Side;
 use crate::answer::significant;
 use crate::audit::frequency_words;
-use crate::document::{Cell, Mark, badge};
+use crate::document::{Cell, StatusMark, badge};
 use crate::document::{prose, typeset};
 use crate::quantity::DisplayUnit;
 use crate::report::chapter::{cell, grouped};
 use crate::report::specifications::demand;
-use crate::simulate::{Held, ScenarioRun};
+use crate::simulate::{HeldWish, ScenarioRun};
 use crate::trial;
 
 type Rows = Vec<Vec<Markup>>;
@@ -129,10 +129,10 @@ fn wished(words: &str, steps: Option<usize>) -> Markup {
     html! { "wished of " (steps) ": " (words) }
 }
 
-fn held(held: Held) -> Markup {
+fn held(held: HeldWish) -> Markup {
     match held.kept {
         Some(kept) => {
-            let (mark, word) = if kept { (Mark::Good, "kept") } else { (Mark::Bad, "missed") };
+            let (mark, word) = if kept { (StatusMark::Good, "kept") } else { (StatusMark::Bad, "missed") };
             html! { (badge(mark, word)) ": " (held.words) " at worst" }
         }
         None => html! { (held.words) ", which is not the band of the wish" },
@@ -143,11 +143,13 @@ fn driven(runs: &[ScenarioRun]) -> Markup {
     let ended = runs.iter().filter(|run| run.stopped().is_none()).count();
     let outside = runs.iter().filter(|run| run.outside_model_s.is_some()).count();
     if ended < runs.len() {
-        return html! { (badge(Mark::Bad, "no")) ": " (ended) " of " (runs.len()) };
+        return html! { (badge(StatusMark::Bad, "no")) ": " (ended) " of " (runs.len()) };
     }
     match outside {
-        0 => html! { (badge(Mark::Good, "yes")) },
-        _ => html! { (badge(Mark::Note, "yes")) ", but " (outside) " beyond what the equations hold for" },
+        0 => html! { (badge(StatusMark::Good, "yes")) },
+        _ => {
+            html! { (badge(StatusMark::Note, "yes")) ", but " (outside) " beyond what the equations hold for" }
+        }
     }
 }
 

@@ -6,7 +6,7 @@ use num_complex::Complex64;
 use phea_dynamics::portable;
 use serde::Serialize;
 
-use super::{FrequencyResponse, Response, ResponsePoint};
+use super::{MachineResponse, MachineResponses, ResponsePoint};
 use crate::answer::{NumberTable, OutputFile, TableFormat};
 
 #[derive(Serialize)]
@@ -59,7 +59,7 @@ const NO_SYSTEM: &str =
     "a sampled loop around a machine with states and waves is no linear system of finite order here";
 
 /// The part of the JSON object.
-pub(crate) fn body(found: &FrequencyResponse) -> Body<'_> {
+pub(crate) fn body(found: &MachineResponses) -> Body<'_> {
     Body {
         position_m: found.position_m,
         force_n: found.force_n,
@@ -71,7 +71,7 @@ pub(crate) fn body(found: &FrequencyResponse) -> Body<'_> {
     }
 }
 
-fn response(response: &Response, open: bool) -> ResponseRow {
+fn response(response: &MachineResponse, open: bool) -> ResponseRow {
     ResponseRow { points: response.points.iter().map(|point| row(point, open)).collect() }
 }
 
@@ -118,7 +118,7 @@ fn row(point: &ResponsePoint, open: bool) -> PointRow {
 ///
 /// # Errors
 /// Those of the table.
-pub(crate) fn files(found: &FrequencyResponse, format: TableFormat) -> io::Result<Vec<OutputFile>> {
+pub(crate) fn files(found: &MachineResponses, format: TableFormat) -> io::Result<Vec<OutputFile>> {
     let mut files = vec![file("open_loop", "amplitude_v", &found.open_loop, format)?];
     if let Ok(closed) = &found.closed_loop {
         files.push(file("closed_loop", "amplitude_n", closed, format)?);
@@ -126,7 +126,12 @@ pub(crate) fn files(found: &FrequencyResponse, format: TableFormat) -> io::Resul
     Ok(files)
 }
 
-fn file(name: &str, amplitude: &str, response: &Response, format: TableFormat) -> io::Result<OutputFile> {
+fn file(
+    name: &str,
+    amplitude: &str,
+    response: &MachineResponse,
+    format: TableFormat,
+) -> io::Result<OutputFile> {
     let heads = [
         "frequency_rad_per_s",
         amplitude,

@@ -1,10 +1,10 @@
 //! Bode diagrams of a frequency response: points of the machine on the curves of its models.
 
-use super::{FrequencyResponse, Response};
+use super::{MachineResponse, MachineResponses};
 use crate::figure::{Figure, MeasuredResponseInput, ResponseCurve, Words, measured_response};
 
 /// A diagram for each loop.
-pub(crate) fn pictures(found: &FrequencyResponse) -> Vec<Figure> {
+pub(crate) fn pictures(found: &MachineResponses) -> Vec<Figure> {
     let mut figures = vec![diagram(
         &found.open_loop,
         (
@@ -31,7 +31,7 @@ pub(crate) fn pictures(found: &FrequencyResponse) -> Vec<Figure> {
 }
 
 fn diagram(
-    response: &Response,
+    response: &MachineResponse,
     (name, title, quantity, unit, model): (&str, &str, &str, &str, &str),
 ) -> Figure {
     let caption = "Each point is the fundamental of the force, over whole periods of a sine that the nonlinear machine has settled to; \

@@ -2,18 +2,18 @@
 
 use phea_dynamics::portable;
 
-use super::{FrequencyResponse, Response, ResponsePoint};
+use super::{MachineResponse, MachineResponses, ResponsePoint};
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
 use crate::quantity::{FORCE, LENGTH, VOLTAGE, display};
 
 /// The tables and sentences of a frequency response.
-pub(crate) fn text(found: &FrequencyResponse) -> String {
+pub(crate) fn text(found: &MachineResponses) -> String {
     let position = display(found.position_m, &LENGTH, 4);
     let (force, command) = (display(found.force_n, &FORCE, 4), display(found.command_v, &VOLTAGE, 4));
     let mut out = Document::default();
     out.preformatted(format!("Around rest at {position}, {force} on the load, a command of {command}.\n"));
-    let mut section = |title: &str, found: &Response, unit: &str| {
+    let mut section = |title: &str, found: &MachineResponse, unit: &str| {
         out.heading(title);
         out.table(response(found, unit));
         out.sentences(found.points.iter().filter_map(remark));
@@ -29,7 +29,7 @@ pub(crate) fn text(found: &FrequencyResponse) -> String {
     out.text()
 }
 
-fn response(response: &Response, unit: &str) -> Table {
+fn response(response: &MachineResponse, unit: &str) -> Table {
     let with_machine = response.points.iter().any(|point| point.linearised_machine.is_some());
     let amplitude = format!("amplitude, {unit}");
     let mut heads = vec!["rad/s", &amplitude, "machine, dB", "phase, deg", "less linear plant, dB", "deg"];
