@@ -141,7 +141,7 @@ pub fn compensator(
 }
 
 /// A ratio of two formulas without parameters.
-pub fn from_formulas(
+pub(crate) fn from_formulas(
     numerator: &Formula,
     denominator: &Formula,
 ) -> Result<Result<TransferFunction, LinearError>, FormulaError> {

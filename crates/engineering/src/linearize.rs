@@ -28,7 +28,7 @@ use phea_hydraulics::two_pressure::two_pressure_coefficients;
 
 pub use agreement::AgreementBand;
 pub use agreement::{WITHIN_DB, WITHIN_DEG};
-pub use sweep::{MOST_POINTS, POINTS, Sweep, SweepPoint, SweepRequest, Swept, sweep};
+pub use sweep::{POINTS, Sweep, SweepPoint, SweepRequest, Swept, sweep};
 
 use crate::rig::Rig;
 

@@ -169,7 +169,7 @@ fn write_group<W: Write + Send>(
 
 /// Appends the shortest text that reads back as the same number; nothing for a number that does not
 /// exist.
-pub fn push_number(text: &mut Vec<u8>, value: f64) {
+pub(crate) fn push_number(text: &mut Vec<u8>, value: f64) {
     if value.is_finite() {
         let mut buffer = zmij::Buffer::new();
         let digits = buffer.format_finite(value);

@@ -28,16 +28,21 @@ use crate::project::{self, Project};
 
 pub use assembly::{actuator, components};
 pub use in_loop::FeedForwardPath;
-pub use in_loop::{as_response, feed_forward, limits_load_motion};
+pub(crate) use in_loop::as_response;
+pub use in_loop::feed_forward;
+pub(crate) use in_loop::limits_load_motion;
 pub use lines::{in_motion, lines};
 pub use numbers::Numbers;
 pub use parameters::{ParameterOrigin, ResolvedParameter};
 pub use place::place;
-pub use plant::{
-    YieldingLoad, are_equal, linear, plant, sides, stated, states_one_pressure, with_supply, yielding_load,
-};
+pub(crate) use plant::are_equal;
+pub(crate) use plant::states_one_pressure;
+pub(crate) use plant::with_supply;
+pub(crate) use plant::yielding_load;
+pub use plant::{YieldingLoad, linear, plant, sides, stated};
 pub use sizing::{SizingError, sizing_problem};
-pub use supply::{power_unit, settled_supply, yielding_supply};
+pub(crate) use supply::yielding_supply;
+pub use supply::{power_unit, settled_supply};
 
 /// A rig ready to be computed with.
 #[derive(Clone, Debug, PartialEq)]

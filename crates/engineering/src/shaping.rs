@@ -11,7 +11,7 @@ pub use change::{Change, RequestedChange};
 
 use num_complex::Complex64;
 use phea_dynamics::controller::Compensator;
-use phea_qft::manual_shaping::{DesignChart, DesignMargin, DesignPoint, History};
+use phea_qft::manual_shaping::{DesignChart, DesignMargin, DesignPoint, apply};
 use phea_qft::stability::family_stability;
 use phea_qft::template::{TemplateError, TemplateOptions, Templates};
 use phea_qft::verification::{StabilityFinding, TrackingJudgement};
@@ -113,16 +113,15 @@ pub fn shape(
     // without the elements, which may be none that can be sampled before they are changed
     let bare = workpiece::with_elements(&loaded.project, shaped, &[]);
     let bare = robust_problem(source, &Setup::new(&bare)?)?;
-    let mut history = History::new(workpiece.given().clone());
+    let mut shaping = workpiece.given().clone();
     for requested in changes {
         let mut findings = Findings::default();
-        let edit = change::edit(requested, &mut workpiece, history.present(), &bare, &mut findings);
+        let edit = change::edit(requested, &mut workpiece, &shaping, &bare, &mut findings);
         let edit = edit?.ok_or_else(|| ShapingError::Refused(findings.clone().report()))?;
-        if let Err(error) = history.edit(&edit) {
-            return Err(ShapingError::Refused(change::refused(requested, &error)).into());
-        }
+        let refused = |error| ShapingError::Refused(change::refused(requested, &error));
+        shaping = apply(&shaping, &edit).map_err(refused)?;
     }
-    let elements = workpiece.declared(history.present());
+    let elements = workpiece.declared(&shaping);
     let saved = save::saved(source, loaded, shaped, &elements)?;
     let edited = workpiece::with_elements(&loaded.project, shaped, &elements);
     let problem = robust_problem(source, &Setup::new(&edited)?)?;

@@ -37,12 +37,14 @@ pub use frequency::{FrequencyRequest, MachineResponse, MachineResponses, Respons
 pub use measured::Overlay;
 pub use metrics::{Cause, Measured, Metrics, Window};
 pub use record::{Look, Record};
-pub use run::{BeyondExpansion, COMMAND_LIMIT, Occurrence, ScenarioRun, StoppedRun, UnresolvedMode};
+pub use run::COMMAND_LIMIT;
+pub use run::{BeyondExpansion, Occurrence, ScenarioRun, StoppedRun, UnresolvedMode};
 pub use saved::SavedState;
 
 pub use bench::options;
-pub use course::{Driven, course_of, driven};
-pub use file_names::table_names;
+pub(crate) use course::course_of;
+pub use course::{Driven, driven};
+pub(crate) use file_names::table_names;
 pub use files::{Table, files};
 pub use follower::Follower;
 pub use run::occurrences;

@@ -9,7 +9,7 @@ use phea_qft::specification::{
 };
 
 use self::limit::{MarginOf, TrackingLimit};
-pub use self::rounding::of_rounding;
+pub(crate) use self::rounding::of_rounding;
 use crate::project::{self, FormulaError, Project, SpecificationKind};
 
 /// Why a declared specification cannot be judged by.

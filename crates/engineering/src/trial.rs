@@ -10,7 +10,8 @@ mod rigs;
 mod run;
 pub use run::percent_words;
 
-pub use rigs::{waves_alone, with_waves};
+pub(crate) use rigs::waves_alone;
+pub use rigs::with_waves;
 pub use run::{Agreement, Run, Step, StepResponse, agreement_word};
 
 use crate::audit::ProjectAudit;

@@ -78,9 +78,9 @@ use svg::{Names, SvgDestination};
 /// Width of every figure's view box.
 pub const WIDTH: f64 = 560.0;
 /// Font size of axis titles.
-pub const TITLE_SIZE: f64 = 13.5;
+pub(crate) const TITLE_SIZE: f64 = 13.5;
 /// Font size of tick labels, legends and annotations.
-pub const LABEL_SIZE: f64 = 13.0;
+pub(crate) const LABEL_SIZE: f64 = 13.0;
 /// Smallest font size.
 pub const SMALL_SIZE: f64 = 12.0;
 

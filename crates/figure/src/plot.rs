@@ -5,7 +5,7 @@ mod labels;
 mod layout;
 mod paint;
 
-pub use paint::draw_marker;
+pub(crate) use paint::draw_marker;
 
 use super::axis::Axis;
 use super::colour::Role;

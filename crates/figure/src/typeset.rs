@@ -20,14 +20,14 @@ pub const FONT: &[u8] = include_bytes!("../fonts/DejaVuSans.ttf");
 
 /// Families a browser tries: the embedded font where the page or the machine has it, then faces
 /// about as wide.
-pub const FONT_FAMILY: &str = "'DejaVu Sans',Verdana,Geneva,'Segoe UI',sans-serif";
+pub(crate) const FONT_FAMILY: &str = "'DejaVu Sans',Verdana,Geneva,'Segoe UI',sans-serif";
 
 /// Height of a capital, in font sizes.
-pub const CAPITAL: f64 = 0.729;
+pub(crate) const CAPITAL: f64 = 0.729;
 const ASCENDER: f64 = 0.76;
 const DESCENDER: f64 = 0.236;
 /// Size of a sub- or superscript, in font sizes of its line.
-pub const SCRIPT_SIZE: f64 = 0.74;
+pub(crate) const SCRIPT_SIZE: f64 = 0.74;
 const RAISED: f64 = 0.36;
 const LOWERED: f64 = 0.2;
 

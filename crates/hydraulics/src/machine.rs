@@ -33,7 +33,7 @@ mod state;
 pub use chambers::{AeratedChambers, Chambers};
 pub use ledger::{Account, ENERGY_ACCOUNTS, Ledger, OIL_ACCOUNTS};
 pub use load::{LoadModel, Motion};
-pub use options::{MachineError, MachineOptions, VAPOUR_PRESSURE_ABSOLUTE};
+pub use options::{MachineError, MachineOptions};
 pub use power_unit::{Accumulator, PowerUnit, PumpLimited};
 pub use signals::{INDICATORS, SIGNALS};
 pub use start::{Beginning, StartValues};

@@ -6,9 +6,10 @@ mod flow;
 mod spool;
 mod tare;
 
+pub(crate) use coefficients::supply_coefficients;
 pub use coefficients::{
     ChamberCoefficients, ControlCoefficients, SpoolDirection, SupplyCoefficients, chamber_coefficients,
-    control_coefficients, supply_coefficients, velocity_gain,
+    control_coefficients, velocity_gain,
 };
 pub use flow::{
     ChamberFlows, EdgeFlows, Openings, chamber_flows, control_flow, edge_flows, hyperbolic_secant,

@@ -76,12 +76,6 @@ impl Cylinder {
         declared.unwrap_or(self.rod_diameters_m().map(|rod| FRAC_PI_4 * (piston - rod) * (piston + rod)))
     }
 
-    /// m³, of chamber A and B.
-    pub fn dead_volumes_m3(&self) -> [f64; 2] {
-        let volume = self.dead_volume.unwrap_or(0.0);
-        self.dead_volumes.unwrap_or([volume, volume])
-    }
-
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
         let k =
             key("piston_diameter", &LENGTH, "Diameter of the piston; or `piston_area` or `piston_areas`.")

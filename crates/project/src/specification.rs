@@ -41,7 +41,7 @@ pub enum SpecificationKind {
 }
 
 /// The words of `kind`.
-pub static SPECIFICATION_KINDS: [(&str, SpecificationKind); 6] = [
+pub(crate) static SPECIFICATION_KINDS: [(&str, SpecificationKind); 6] = [
     ("robust_stability", SpecificationKind::RobustStability),
     ("sensitivity", SpecificationKind::Sensitivity),
     ("plant_input_disturbance", SpecificationKind::PlantInputDisturbance),

@@ -112,7 +112,7 @@ impl Findings {
     }
 
     /// Index of the text taken in last.
-    pub fn last_text(&self) -> usize {
+    pub(crate) fn last_text(&self) -> usize {
         self.texts.len().saturating_sub(1)
     }
 
@@ -143,7 +143,7 @@ impl Findings {
     }
 
     /// Whether something within a place was refused already.
-    pub fn has_error_within(&self, place: Place) -> bool {
+    pub(crate) fn has_error_within(&self, place: Place) -> bool {
         let within = |inner: &Place| {
             inner.text == place.text && inner.start >= place.start && inner.end <= place.end && place.end > 0
         };

@@ -10,12 +10,10 @@
 
 mod chart;
 mod edit;
-mod history;
 mod passing;
 mod reach;
 
 pub use chart::{DesignChart, DesignMargin, DesignPoint};
 pub use edit::{Edit, EditError, apply};
-pub use history::History;
 pub use passing::{PassError, WantedPoint, pass_through};
 pub use reach::{Pattern, Reach};

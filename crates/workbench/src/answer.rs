@@ -16,7 +16,7 @@ pub use crate::source::OutputFile;
 use crate::project::Loaded;
 
 /// Version of the JSON layout.
-pub const SCHEMA: u32 = 1;
+pub(crate) const SCHEMA: u32 = 1;
 
 /// What a command has to say, ready to be printed and written by a shell.
 #[derive(Clone, Debug, PartialEq)]

@@ -7,4 +7,5 @@ pub use phea_engineering::derived::*;
 
 pub use answer::{files, json};
 pub(crate) use document::document;
-pub use document::{text, visited_text};
+pub use document::text;
+pub(crate) use document::visited_text;

@@ -6,8 +6,9 @@ mod sweep_answer;
 
 pub use phea_engineering::linearize::*;
 
-pub use answer::{files, json, json_swept};
+pub(crate) use answer::json_swept;
+pub use answer::{files, json};
 pub use document::text;
 pub(crate) use document::{document, models, passivity_sentence, root_list};
-pub use sweep_answer::sweep_text;
+pub(crate) use sweep_answer::sweep_text;
 pub(crate) use sweep_answer::{sweep_figure, sweep_files};

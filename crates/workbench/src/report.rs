@@ -260,7 +260,7 @@ fn audit_words(view: &ProjectAudit) -> String {
 
 impl Report {
     /// The page.
-    pub fn page_file(&self) -> OutputFile {
+    pub(crate) fn page_file(&self) -> OutputFile {
         OutputFile { name: "report.html".to_string(), bytes: self.html.clone().into_bytes() }
     }
 

@@ -71,7 +71,7 @@ impl AuditedController {
     }
 
     /// Whether the law itself is given in z.
-    pub fn is_in_z(&self) -> bool {
+    pub(crate) fn is_in_z(&self) -> bool {
         let law = self.controller.feedback.transfer_function();
         law.is_ok_and(|law| law.domain() != TimeDomain::Continuous)
     }

@@ -32,7 +32,7 @@ pub struct SweepRequest {
 /// Values where no number of them is asked for.
 pub const POINTS: usize = 11;
 /// Most values.
-pub const MOST_POINTS: usize = 1000;
+pub(crate) const MOST_POINTS: usize = 1000;
 /// Ends of one sign that lie more than this factor apart are stepped by ratio.
 const DECADES: f64 = 100.0;
 /// Part by which a pole must move to be said to follow the swept number.

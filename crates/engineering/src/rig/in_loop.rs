@@ -92,7 +92,7 @@ impl FeedForwardPath {
 
 /// The plant without polynomials that the loop sees: with these lines in motion, or with its lumped
 /// ones where a load that yields is fed forward late; `None` where there are polynomials.
-pub fn as_response(
+pub(crate) fn as_response(
     fed: Option<FeedForwardPath>,
     moving: Option<PlantInMotion>,
     lumped: &LinearPlant,
@@ -103,7 +103,7 @@ pub fn as_response(
 }
 
 /// Whether a specification limits the path that a prescribed load has into the loop.
-pub fn limits_load_motion(project: &Project) -> bool {
+pub(crate) fn limits_load_motion(project: &Project) -> bool {
     project.specifications.iter().any(|specification| specification.kind == SpecificationKind::LoadMotion)
 }
 

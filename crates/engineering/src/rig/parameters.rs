@@ -28,13 +28,6 @@ pub struct ResolvedParameter {
     pub bounds: Option<[f64; 2]>,
 }
 
-impl ResolvedParameter {
-    /// How far the value that holds is from the derived one, relative to the latter.
-    pub fn relative_difference(&self) -> f64 {
-        (self.value - self.derived) / self.derived
-    }
-}
-
 /// The one place that says which field of the linear model belongs to which key.
 pub(super) fn parameter_field<'a, S>(
     parameters: &'a mut LinearParameters<S>,

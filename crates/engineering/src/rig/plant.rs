@@ -44,7 +44,7 @@ impl<S: Scalar> YieldingLoad<S> {
 /// The load at a force on it in N; `None` where its motion is prescribed. A wall is touched where
 /// the force presses on it, or where there is no gap. Hunt and Crossley's damping K c d of a wall
 /// pressed by d = F/K is c F.
-pub fn yielding_load<S: Scalar>(
+pub(crate) fn yielding_load<S: Scalar>(
     declared: &project::Load,
     numbers: &Numbers<'_, S>,
     force: S,
@@ -75,14 +75,14 @@ pub fn yielding_load<S: Scalar>(
 
 /// Whether the project states a parameter of the linear model that speaks of one load pressure;
 /// `uncertain` are names of its numbers.
-pub fn states_one_pressure(parameters: &[ResolvedParameter], uncertain: &[String]) -> bool {
+pub(crate) fn states_one_pressure(parameters: &[ResolvedParameter], uncertain: &[String]) -> bool {
     let speaks = |name: &str| OF_LOAD_PRESSURE.contains(&name);
     let stated = |one: &ResolvedParameter| one.origin != ParameterOrigin::Derived && speaks(one.name);
     parameters.iter().any(stated) || uncertain.iter().any(|name| speaks(name))
 }
 
 /// Whether numbers of both chambers are equal, so that one load pressure tells all of them.
-pub fn are_equal(sides: impl IntoIterator<Item = [f64; 2]>) -> bool {
+pub(crate) fn are_equal(sides: impl IntoIterator<Item = [f64; 2]>) -> bool {
     sides.into_iter().all(|[a, b]| (a - b).abs() <= EQUAL * a.abs())
 }
 
@@ -131,7 +131,7 @@ pub fn plant<S: Scalar>(
 
 /// The same plant at a supply that yields. Where a stated number makes the valve of one load
 /// pressure another than its parts are, what it takes from the supply is another alike.
-pub fn with_supply<S: Scalar>(
+pub(crate) fn with_supply<S: Scalar>(
     plant: LinearPlant<S>,
     supply: YieldingSupply<S>,
     chambers: &TwoPressureLinearParameters<S>,

@@ -46,7 +46,7 @@ pub fn settled_supply<S: Scalar>(
 }
 
 /// That supply for small motions.
-pub fn yielding_supply<S: Scalar>(
+pub(crate) fn yielding_supply<S: Scalar>(
     declared: &project::Actuator,
     numbers: &Numbers<'_, S>,
     balance: &Balance<S>,

@@ -15,7 +15,7 @@ use crate::project::{self, LoadMotion, MotionShape, Project, Scenario};
 use crate::source::Source;
 
 /// A scenario ready to be run.
-pub struct PreparedScenario {
+pub(crate) struct PreparedScenario {
     /// In N.
     pub reference: Profile,
     /// In V, of an open loop.
@@ -51,7 +51,7 @@ pub struct Driven {
 
 impl PreparedScenario {
     /// The inputs of the machine other than its command.
-    pub fn machine_inputs(&self) -> Vec<Input> {
+    pub(crate) fn machine_inputs(&self) -> Vec<Input> {
         let ground = [Input::Value(self.ground.clone()), Input::Rate(self.ground.clone())];
         ground.into_iter().chain(self.external_force.clone().map(Input::Value)).collect()
     }
@@ -91,7 +91,7 @@ pub fn driven(
 }
 
 /// The scenario for the machine of a bench.
-pub fn course_of(
+pub(crate) fn course_of(
     driven: &Driven,
     bench: &Bench,
     scenario: &Scenario,

@@ -6,7 +6,7 @@ pub fn state_names<'a>(scenarios: impl Iterator<Item = &'a str>) -> Vec<String> 
 }
 
 /// Names of the tables of scenarios with these names, each after its own and no two alike.
-pub fn table_names<'a>(scenarios: impl Iterator<Item = &'a str>, ending: &str) -> Vec<String> {
+pub(crate) fn table_names<'a>(scenarios: impl Iterator<Item = &'a str>, ending: &str) -> Vec<String> {
     names(scenarios).into_iter().map(|name| format!("{name}.{ending}")).collect()
 }
 

@@ -70,7 +70,7 @@ pub struct HoseOption {
 impl SizingProblem {
     /// Hydraulic stiffness that gives the desired time constant under gain K_p, thesis (6.16), N/m;
     /// infinite at and below the gain where not even a rigid transmission is stiff enough.
-    pub fn stiffness_for_gain(&self, gain: f64) -> f64 {
+    pub(crate) fn stiffness_for_gain(&self, gain: f64) -> f64 {
         match required_stiffness(&self.linear, self.time_constant, gain) {
             RequiredStiffness::Stiffness(stiffness) => stiffness,
             RequiredStiffness::TooSlow { .. } => f64::INFINITY,
@@ -83,7 +83,7 @@ impl SizingProblem {
     }
 
     /// The gain at which equation 6.16 has its pole, V/N.
-    pub fn pole_gain(&self) -> f64 {
+    pub(crate) fn pole_gain(&self) -> f64 {
         rigid_limit_gain(&self.linear, self.time_constant)
     }
 
@@ -107,7 +107,7 @@ impl SizingProblem {
 
     /// Length of each line when the stock is shared, or the longest acceptable one, whichever is
     /// shorter, m.
-    pub fn available_length(&self) -> f64 {
+    pub(crate) fn available_length(&self) -> f64 {
         let longest = self.hose_length[1];
         self.stock_length.map_or(longest, |stock| longest.min(stock / 2.0))
     }

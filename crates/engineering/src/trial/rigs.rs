@@ -105,7 +105,7 @@ pub fn with_waves(project: &Project) -> Option<Project> {
 
 /// The rig with waves as it is: without uncertainty, and without the numbers that stand in the
 /// place of those that follow from it, which no machine has. `None` where it has no further waves.
-pub fn waves_alone(setup: &Setup<'_>) -> Option<Project> {
+pub(crate) fn waves_alone(setup: &Setup<'_>) -> Option<Project> {
     let rig = setup.rig().ok()?;
     let mut alone = with_waves(setup.project)?;
     let fed = alone.controller.as_mut().and_then(|given| given.load_velocity_feed_forward.as_mut());

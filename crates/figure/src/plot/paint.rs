@@ -177,7 +177,7 @@ fn hatch(scene: &mut Scene, area: Rectangle, stroke: Stroke) {
 }
 
 /// Draws a marker, with a tooltip where there is one.
-pub fn draw_marker(scene: &mut Scene, at: Point, style: MarkerStyle, note: Option<&str>) {
+pub(crate) fn draw_marker(scene: &mut Scene, at: Point, style: MarkerStyle, note: Option<&str>) {
     let r = style.radius;
     let by = |dx: f64, dy: f64| point(at.x + dx * r, at.y + dy * r);
     let filled = (Some(Stroke::solid(Role::Background, 1.0)), Some(Fill::solid(style.role)));

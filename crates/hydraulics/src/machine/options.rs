@@ -5,7 +5,7 @@ use crate::servovalve::SpoolImperfection;
 
 /// Absolute vapour pressure of mineral oil in Pa: a few pascals at working temperatures, negligible
 /// against an atmosphere.
-pub const VAPOUR_PRESSURE_ABSOLUTE: f64 = 0.0;
+pub(crate) const VAPOUR_PRESSURE_ABSOLUTE: f64 = 0.0;
 
 /// What a machine has beyond its actuator. The default adds nothing: a prescribed load on a
 /// constant supply.

@@ -92,7 +92,7 @@ pub struct SupplyCoefficients<S = f64> {
 /// ```
 ///
 /// s_A is that part of K_cA which is the supply's.
-pub fn supply_coefficients<S: Scalar>(
+pub(crate) fn supply_coefficients<S: Scalar>(
     valve: &Servovalve<S>,
     supply: &Supply<S>,
     spool: S,

@@ -156,7 +156,7 @@ impl Samples {
     ///
     /// # Errors
     /// Those of [`Samples::new`].
-    pub fn add_plant(&mut self, plant: &PlantPoint) -> Result<(), SamplesError> {
+    pub(crate) fn add_plant(&mut self, plant: &PlantPoint) -> Result<(), SamplesError> {
         let index = self.plant(plant)?;
         for place in 0..self.columns.len() {
             if self.columns[place].grid {

@@ -24,7 +24,7 @@ pub struct Judgement {
 
 impl Judgement {
     /// Of a controller that has no response.
-    pub const UNUSABLE: Judgement = Judgement {
+    pub(crate) const UNUSABLE: Judgement = Judgement {
         objective_db: f64::INFINITY,
         worst_margin_db: f64::NEG_INFINITY,
         stable: false,

@@ -206,7 +206,7 @@ struct OnMachine<'a> {
 }
 
 /// The JSON object of `verify --on-machine`.
-pub fn json_on_machine(loaded: &Loaded, view: &ProjectAudit, trial: &Trial) -> String {
+pub(crate) fn json_on_machine(loaded: &Loaded, view: &ProjectAudit, trial: &Trial) -> String {
     answer::json("verify", loaded, OnMachine { audit: body(view), machine: trial::body(trial) })
 }
 

@@ -43,7 +43,7 @@ fn cells(quantity: &Derived) -> [Cell; 4] {
 }
 
 /// The box of linear parameters that the family visits, for people.
-pub fn visited_text(project: &Project, ranges: &[VisitedRange]) -> String {
+pub(crate) fn visited_text(project: &Project, ranges: &[VisitedRange]) -> String {
     let mut out = Document::default();
     out.heading("The box of the family: what its operating points and numbers make of the linear model");
     let row = |range: &VisitedRange| {

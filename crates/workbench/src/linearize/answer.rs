@@ -176,7 +176,7 @@ pub fn json(loaded: &Loaded, linearization: &Linearization) -> String {
 }
 
 /// The same with what a sweep found.
-pub fn json_swept(loaded: &Loaded, linearization: &Linearization, sweep: &Sweep) -> String {
+pub(crate) fn json_swept(loaded: &Loaded, linearization: &Linearization, sweep: &Sweep) -> String {
     let body = Body { swept: Some(head(sweep)), sweep: rows(sweep), ..body(loaded, linearization) };
     answer::json("linearize", loaded, body)
 }

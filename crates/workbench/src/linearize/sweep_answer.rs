@@ -111,7 +111,7 @@ fn resonance(found: &Swept) -> Option<[f64; 2]> {
 }
 
 /// The table of a sweep for people.
-pub fn sweep_text(sweep: &Sweep) -> String {
+pub(crate) fn sweep_text(sweep: &Sweep) -> String {
     let mut out = String::new();
     for caveat in &sweep.caveats {
         out.push_str(&format!("warning: {}\n", caveat.sentence));
