@@ -112,7 +112,7 @@ fn new(folder: &Path) -> Result<u8, Failure> {
         let text = format!("{} exists and is not an empty folder; nothing was written", folder.display());
         return Err(Failure::wrong_input(format!("error: {text}")));
     }
-    let file = OutputFile { name: "project.toml".to_string(), bytes: STARTER.as_bytes().to_vec() };
+    let file = OutputFile::new("project.toml", STARTER);
     let path = write_as(&folder.join(&file.name), &file).map_err(|message| Failure::not_written(&message))?;
     say(&format!("Wrote {}. Next: phea check {0}\n", path.display()))?;
     Ok(DONE)

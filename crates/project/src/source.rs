@@ -14,6 +14,13 @@ pub struct OutputFile {
     pub bytes: Vec<u8>,
 }
 
+impl OutputFile {
+    /// A file of this name with a text or bytes.
+    pub fn new(name: impl Into<String>, content: impl Into<Vec<u8>>) -> OutputFile {
+        OutputFile { name: name.into(), bytes: content.into() }
+    }
+}
+
 /// Where files come from. A path is what the user wrote; only the implementation gives it a meaning.
 pub trait Source {
     /// The bytes of a file.
@@ -142,7 +149,7 @@ impl HeldFiles {
 
 impl Destination for HeldFiles {
     fn begin<'a>(&'a self, name: &str) -> Result<Box<dyn Unfinished + 'a>, WriteError> {
-        let file = OutputFile { name: name.to_string(), bytes: Vec::new() };
+        let file = OutputFile::new(name, []);
         Ok(Box::new(Growing { file, finished: &self.0 }))
     }
 }

@@ -3,15 +3,19 @@
 //! Each command has one typed output; this module gives them all the same envelope, the same treatment of numbers that
 //! do not exist.
 
+mod csv;
 mod number;
+mod pictures;
 
 use serde::Serialize;
 
 pub use crate::quantity::significant;
+pub(crate) use csv::{Csv, quoted};
 pub use number::Number;
 pub use phea_engineering::number_table::{NumberTable, TableFormat};
 
 pub use crate::source::OutputFile;
+pub(crate) use pictures::{part_files, picture_files};
 
 use crate::project::Loaded;
 

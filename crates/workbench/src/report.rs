@@ -34,7 +34,7 @@ pub use opening::{Decided, Decision};
 
 use phea_qft::verification::{SpecificationFinding, Verdict};
 
-use crate::answer::{OutputFile, significant};
+use crate::answer::{OutputFile, picture_files, significant};
 use crate::audit::{CERTIFICATE_FILE, ProjectAudit, certificate_of, verdict_words};
 use crate::command::{CommandError, Watch};
 use crate::derived::{self, derive};
@@ -72,9 +72,6 @@ const NOMINAL_LOOP: &str = "Nominal linear loop";
 
 /// Band of the settling time where no scenario states one, percent.
 const SETTLING_BAND: f64 = 1.0;
-
-/// Scale of the figures as PNG: 1120 pixels of width.
-const PNG_SCALE: f64 = 2.0;
 
 /// The report of a project: the page that decides, then rig, sizing, simulation, campaign, specifications, audit and design; in the appendix derived
 /// quantities, stiffness, linear models, impedance, the linear step, what happens inside the machine, its sensitivity, templates and bounds,
@@ -261,7 +258,7 @@ fn audit_words(view: &ProjectAudit) -> String {
 impl Report {
     /// The page.
     pub(crate) fn page_file(&self) -> OutputFile {
-        OutputFile { name: "report.html".to_string(), bytes: self.html.clone().into_bytes() }
+        OutputFile::new("report.html", self.html.clone())
     }
 
     /// The page and every figure as SVG and PNG.
@@ -271,11 +268,7 @@ impl Report {
     pub fn files(&self) -> Result<Vec<OutputFile>, FigureError> {
         let mut files = vec![self.page_file()];
         files.extend(self.tables.iter().cloned());
-        for figure in &self.figures {
-            let svg = figure.to_svg_standalone().into_bytes();
-            files.push(OutputFile { name: format!("{}.svg", figure.name), bytes: svg });
-            files.push(OutputFile { name: format!("{}.png", figure.name), bytes: figure.to_png(PNG_SCALE)? });
-        }
+        files.extend(picture_files(&self.figures)?);
         Ok(files)
     }
 }

@@ -15,7 +15,7 @@ pub fn files(loaded: &Loaded, runs: &[ScenarioRun]) -> Vec<OutputFile> {
     let names = state_names(runs.iter().map(|run| run.name.as_str()));
     let state = |(run, name): (&ScenarioRun, String)| {
         let end = run.end.as_ref().ok()?;
-        Some(OutputFile { name, bytes: end.text(&run.name, &loaded.sha256).into_bytes() })
+        Some(OutputFile::new(name, end.text(&run.name, &loaded.sha256)))
     };
     runs.iter().zip(names).filter_map(state).collect()
 }

@@ -7,7 +7,7 @@ use super::{ProjectAudit, ReachedLimit};
 use super::{
     evidence_key, kind_key, kind_words, remark_sentences, stability_reason, verdict_key, why_not_proven,
 };
-use crate::answer::{self, Number, OutputFile};
+use crate::answer::{self, Csv, Number, OutputFile};
 use crate::project::Loaded;
 use crate::trial::{self, Trial};
 
@@ -267,11 +267,11 @@ pub(crate) fn body(view: &ProjectAudit) -> Body<'_> {
 
 /// The family's worst margins over frequency as a table for other programs.
 pub fn files(view: &ProjectAudit) -> Vec<OutputFile> {
-    let mut csv = String::from("specification,kind,frequency_rad_per_s,worst_margin_db\n");
+    let mut csv = Csv::new("specification,kind,frequency_rad_per_s,worst_margin_db");
     for (index, finding) in view.audit.specifications.iter().enumerate() {
         for (frequency, margin) in &finding.envelope {
-            csv.push_str(&format!("{index},{},{frequency},{margin}\n", kind_key(&finding.requirement)));
+            csv.row(&[&index, &kind_key(&finding.requirement), frequency, margin]);
         }
     }
-    vec![OutputFile { name: "margins.csv".to_string(), bytes: csv.into_bytes() }]
+    vec![csv.file("margins.csv")]
 }

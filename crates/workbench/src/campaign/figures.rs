@@ -5,7 +5,7 @@ use super::QUANTILES;
 use super::Summary;
 use super::{CampaignError, Effort, Shard};
 use super::{METRIC_NAMES, Row};
-use crate::answer::OutputFile;
+use crate::answer::{OutputFile, part_files};
 use crate::figure::{
     DisplayUnit, Figure, TimeBands, TimeBandsInput, TimeEvent, TimeSeries, Words, time_bands,
 };
@@ -14,9 +14,6 @@ use crate::simulate::{Cause, Window, cause_words};
 /// How much is drawn before and after what begins a window, s.
 const BEFORE_S: f64 = 0.02;
 const AFTER_S: f64 = 0.5;
-
-/// Scale of figures as PNG: 1120 pixels of width.
-const PNG_SCALE: f64 = 2.0;
 
 /// The bands over the whole scenario, and around each event; none where no run got anywhere.
 ///
@@ -129,16 +126,9 @@ pub(crate) fn files(
     (shard, rows): (&Shard, &[Row]),
     summary: &Summary,
 ) -> Result<Vec<OutputFile>, crate::command::CommandError> {
-    let mut files = vec![OutputFile {
-        name: format!("{}.parquet", shard.name()),
-        bytes: plan.parquet(rows).map_err(CampaignError::RowStore)?,
-    }];
-    let part = shard.part();
-    for figure in pictures(plan, summary)? {
-        let png = figure.to_png(PNG_SCALE).map_err(crate::command::CommandError::Figure)?;
-        let svg = figure.to_svg_standalone().into_bytes();
-        files.push(OutputFile { name: format!("{}{part}.svg", figure.name), bytes: svg });
-        files.push(OutputFile { name: format!("{}{part}.png", figure.name), bytes: png });
-    }
+    let rows = plan.parquet(rows).map_err(CampaignError::RowStore)?;
+    let mut files = vec![OutputFile::new(format!("{}.parquet", shard.name()), rows)];
+    let pictures = part_files(&pictures(plan, summary)?, &shard.part());
+    files.extend(pictures.map_err(crate::command::CommandError::Figure)?);
     Ok(files)
 }

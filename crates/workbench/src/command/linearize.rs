@@ -2,10 +2,10 @@
 
 use super::CommandError;
 use crate::answer::Answer;
+use crate::answer::picture_files;
 use crate::linearize::{self, Linearization, SweepRequest, linearize, sweep};
 use crate::project::Loaded;
 use crate::setup::Setup;
-use crate::simulate::picture_files;
 use crate::source::Source;
 
 fn linearized(loaded: &Loaded) -> Result<Linearization, CommandError> {

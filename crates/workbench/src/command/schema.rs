@@ -16,5 +16,5 @@ pub const SCHEMA_FILE: &str = "phea.schema.json";
 /// assert!(file.bytes.starts_with(b"{\n") && file.bytes.ends_with(b"}\n"));
 /// ```
 pub fn schema() -> OutputFile {
-    OutputFile { name: SCHEMA_FILE.to_string(), bytes: format!("{:#}\n", project::schema()).into_bytes() }
+    OutputFile::new(SCHEMA_FILE, format!("{:#}\n", project::schema()))
 }

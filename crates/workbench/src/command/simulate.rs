@@ -1,13 +1,13 @@
 //! `simulate`: scenarios, or a frequency response.
 
 use super::{CommandError, Watch, error_words};
-use crate::answer::{Answer, OutputFile, TableFormat};
+use crate::answer::{Answer, OutputFile, TableFormat, picture_files};
 use crate::project::Loaded;
 use crate::quantity::{self, ANGULAR_FREQUENCY, Dimension, FORCE, VOLTAGE};
 use crate::setup::Setup;
 use crate::simulate::{
     FrequencyRequest, ScenarioRun, figure_files, files, frequency_files, frequency_json, frequency_pictures,
-    frequency_response, frequency_text, json, picture_files, simulate_checked, simulate_into, text,
+    frequency_response, frequency_text, json, simulate_checked, simulate_into, text,
 };
 use crate::source::{Destination, Source};
 use phea_engineering::error::ProcedureError;

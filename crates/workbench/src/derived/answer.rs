@@ -3,7 +3,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::Derived;
-use crate::answer::{self, Number, OutputFile};
+use crate::answer::{self, Csv, Number, OutputFile, quoted};
 use crate::family::{Extreme, VisitedRange};
 use crate::project::Loaded;
 use crate::specification::{CheckedWish, WishRow};
@@ -107,16 +107,12 @@ pub fn json(
 
 /// The list as a table for other programs.
 pub fn files(derived: &[Derived]) -> Vec<OutputFile> {
-    let mut csv = String::from("name,value,unit,equation,stated_value\n");
+    let mut csv = Csv::new("name,value,unit,equation,stated_value");
     for quantity in derived {
         let stated = quantity.stated.as_ref().map_or(String::new(), |stated| stated.value.to_string());
-        csv.push_str(&format!(
-            "{},{},{},\"{}\",{stated}\n",
-            quantity.name,
-            quantity.value.map_or("NaN".to_string(), |value| value.to_string()),
-            quantity.unit,
-            quantity.equation.replace(['{', '}'], "")
-        ));
+        let value = quantity.value.unwrap_or(f64::NAN);
+        let equation = quoted(&quantity.equation.replace(['{', '}'], ""));
+        csv.row(&[&quantity.name, &value, &quantity.unit, &equation, &stated]);
     }
-    vec![OutputFile { name: "derived.csv".to_string(), bytes: csv.into_bytes() }]
+    vec![csv.file("derived.csv")]
 }

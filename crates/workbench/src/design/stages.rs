@@ -1,9 +1,7 @@
 //! The stages of a design as files: templates, bounds, loop, prefilter, audit, rounds, and the project that it makes.
 
-use std::fmt::Write as _;
-
 use phea_dynamics::frequency::decibels;
-use phea_dynamics::linear::LinearError;
+use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_dynamics::portable;
 use phea_qft::bound::Placement;
 use phea_qft::specification::Requirement;
@@ -11,7 +9,7 @@ use phea_qft::specification::Requirement;
 use super::Factors;
 use super::{AuditedController, ProjectDesign, Repair};
 use super::{DESIGNED_CERTIFICATE, DESIGNED_PROJECT, NEAREST_PROJECT, structure_words};
-use crate::answer::OutputFile;
+use crate::answer::{Csv, OutputFile};
 use crate::audit::{self, certificate_of};
 use crate::command::{CommandError, Watch};
 use crate::project::{Loaded, with_laws};
@@ -21,6 +19,9 @@ use crate::robust::{DesignFrequency, RobustProblem};
 /// How far the drawn frequencies reach beyond the design frequencies.
 const BEYOND: [f64; 2] = [0.1, 30.0];
 
+/// The nominal loop over frequency.
+const LOOP: &str = "loop.csv";
+
 /// The project with the designed controller and prefilter in it, everything else byte for byte as it was.
 pub fn files(loaded: &Loaded, view: &ProjectDesign) -> Vec<OutputFile> {
     let nearest = view.repair.as_ref().and_then(Repair::nearest);
@@ -28,7 +29,7 @@ pub fn files(loaded: &Loaded, view: &ProjectDesign) -> Vec<OutputFile> {
     let file = |(name, design): (&str, Option<&ProjectDesign>)| {
         let (controller, prefilter) = (&design?.declared_controller, design?.declared_prefilter.as_ref());
         let bytes = with_laws(&loaded.bytes, &loaded.settings, controller, prefilter);
-        Some(OutputFile { name: name.to_string(), bytes })
+        Some(OutputFile::new(name, bytes))
     };
     let certificate = certificate_of(loaded, &view.designed.view, DESIGNED_CERTIFICATE);
     named.into_iter().filter_map(file).chain(certificate).collect()
@@ -49,27 +50,20 @@ pub fn stage_files(
     if !view.stopped {
         files.extend(bound_files(&side.problem, &found));
     }
-    files.push(file("loop.csv", nominal_loop(&side.problem, &found)?));
-    files.push(file("controller.json", transfer_json(&Factors::of(side.problem.compensation.feedback()))));
+    files.push(nominal_loop(&side.problem, &found)?);
+    files.push(transfer_file("controller.json", side.problem.compensation.feedback()));
     if side.problem.has_prefilter {
-        files
-            .push(file("prefilter.json", transfer_json(&Factors::of(side.problem.compensation.prefilter()))));
+        files.push(transfer_file("prefilter.json", side.problem.compensation.prefilter()));
     }
-    if let Some(band) = prefilter_band(side)? {
-        files.push(file("prefilter_band.csv", band));
-    }
-    files.push(file("verification.json", audit::json(loaded, &side.view)));
+    files.extend(prefilter_band(side)?);
+    files.push(OutputFile::new("verification.json", audit::json(loaded, &side.view)));
     files.extend(audit::files(&side.view));
-    files.push(file("rounds.csv", rounds(view)));
+    files.push(rounds(view));
     Ok(files)
 }
 
-fn file(name: &str, text: String) -> OutputFile {
-    OutputFile { name: name.to_string(), bytes: text.into_bytes() }
-}
-
-fn transfer_json(factors: &Factors) -> String {
-    serde_json::to_string_pretty(factors).unwrap_or_default()
+fn transfer_file(name: &str, function: &TransferFunction) -> OutputFile {
+    OutputFile::new(name, serde_json::to_string_pretty(&Factors::of(function)).unwrap_or_default())
 }
 
 fn drawn(problem: &RobustProblem) -> Vec<f64> {
@@ -81,9 +75,9 @@ fn drawn(problem: &RobustProblem) -> Vec<f64> {
 }
 
 /// L0 over frequency, and at the design frequencies how far it lies from the bounds.
-fn nominal_loop(problem: &RobustProblem, found: &[DesignFrequency]) -> Result<String, LinearError> {
-    let mut csv = String::from("frequency_rad_per_s,magnitude_db,phase_deg,allowed,distance_db\n");
-    let Some(nominal) = problem.nominal()? else { return Ok(csv) };
+fn nominal_loop(problem: &RobustProblem, found: &[DesignFrequency]) -> Result<OutputFile, LinearError> {
+    let mut csv = Csv::new("frequency_rad_per_s,magnitude_db,phase_deg,allowed,distance_db");
+    let Some(nominal) = problem.nominal()? else { return Ok(csv.file(LOOP)) };
     for frequency in drawn(problem) {
         let Some(response) = problem.response(&nominal, frequency) else { continue };
         let value = response.open_loop();
@@ -96,17 +90,17 @@ fn nominal_loop(problem: &RobustProblem, found: &[DesignFrequency]) -> Result<St
                 ("false", nearest_db.map_or(String::new(), |distance| distance.to_string()))
             }
         };
-        let _ = writeln!(csv, "{frequency},{},{phase},{allowed},{distance}", decibels(magnitude));
+        csv.row(&[&frequency, &decibels(magnitude), &phase, &allowed, &distance]);
     }
-    Ok(csv)
+    Ok(csv.file(LOOP))
 }
 
 /// Least and greatest |F T| of the members against the limits of tracking, and what is left on either side; `None` without tracking or
 /// prefilter.
-fn prefilter_band(side: &AuditedController) -> Result<Option<String>, LinearError> {
+fn prefilter_band(side: &AuditedController) -> Result<Option<OutputFile>, LinearError> {
     let problem = &side.problem;
-    let mut csv = String::from(
-        "specification,frequency_rad_per_s,lower_db,least_db,greatest_db,upper_db,left_below_db,left_above_db\n",
+    let mut csv = Csv::new(
+        "specification,frequency_rad_per_s,lower_db,least_db,greatest_db,upper_db,left_below_db,left_above_db",
     );
     let tracking = problem.specifications.iter().enumerate();
     let mut any = false;
@@ -128,33 +122,29 @@ fn prefilter_band(side: &AuditedController) -> Result<Option<String>, LinearErro
                 continue;
             };
             let [low, least, greatest, high] = [low, least, greatest, high].map(decibels);
-            let _ = writeln!(
-                csv,
-                "{index},{frequency},{low},{least},{greatest},{high},{},{}",
-                least - low,
-                high - greatest
-            );
+            let (below, above) = (least - low, high - greatest);
+            csv.row(&[&index, &frequency, &low, &least, &greatest, &high, &below, &above]);
         }
     }
-    Ok(any.then_some(csv))
+    Ok(any.then(|| csv.file("prefilter_band.csv")))
 }
 
-fn rounds(view: &ProjectDesign) -> String {
-    let mut csv = String::from(
-        "round,structure,objective_db,plants,frequencies,searched_margin_db,audited_margin_db\n",
-    );
+fn rounds(view: &ProjectDesign) -> OutputFile {
+    let mut csv =
+        Csv::new("round,structure,objective_db,plants,frequencies,searched_margin_db,audited_margin_db");
     for (index, round) in view.design.rounds.iter().enumerate() {
         let audited = round.audited_margin_db.map_or(String::new(), |margin| margin.to_string());
         let structure = structure_words(&round.structure).replace(", ", " + ");
-        let _ = writeln!(
-            csv,
-            "{},{structure},{},{},{},{},{audited}",
-            index + 1,
-            round.objective_db,
-            round.plants,
-            round.frequencies,
-            round.searched_margin_db
-        );
+        let number = index + 1;
+        csv.row(&[
+            &number,
+            &structure,
+            &round.objective_db,
+            &round.plants,
+            &round.frequencies,
+            &round.searched_margin_db,
+            &audited,
+        ]);
     }
-    csv
+    csv.file("rounds.csv")
 }

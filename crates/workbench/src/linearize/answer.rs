@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::sweep_answer::{SweepRow, SweptRow, head, rows};
 use super::{AgreementBand, Linearization, PortView, ReductionDifference, Sweep, models, stiffness_sentence};
-use crate::answer::{self, Number, OutputFile};
+use crate::answer::{self, Csv, Number, OutputFile, quoted};
 use crate::caveat::of_models;
 use crate::project::Loaded;
 
@@ -299,11 +299,11 @@ fn passivity_row(report: &PassivityReport) -> PassivityRow {
 
 /// The poles of every model as a table for other programs.
 pub fn files(linearization: &Linearization) -> Vec<OutputFile> {
-    let mut csv = String::from("model,equation,real_rad_per_s,imaginary_rad_per_s\n");
+    let mut csv = Csv::new("model,equation,real_rad_per_s,imaginary_rad_per_s");
     for (model, equation, function) in models(linearization) {
         for pole in function.poles() {
-            csv.push_str(&format!("\"{model}\",{equation},{},{}\n", pole.re, pole.im));
+            csv.row(&[&quoted(model), &equation, &pole.re, &pole.im]);
         }
     }
-    vec![OutputFile { name: "poles.csv".to_string(), bytes: csv.into_bytes() }]
+    vec![csv.file("poles.csv")]
 }

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::root_list;
 use super::{Sweep, SweepPoint, Swept};
-use crate::answer::{OutputFile, significant};
+use crate::answer::{Csv, OutputFile, significant};
 use crate::document::Table;
 use crate::figure::{Figure, PoleSweepInput, PoleSweepPoint, Words, pole_sweep};
 use crate::quantity::DisplayUnit;
@@ -208,11 +208,11 @@ pub(crate) fn sweep_figure(sweep: &Sweep) -> Figure {
 
 /// Every pole at every value as a table for other programs.
 pub(crate) fn sweep_files(sweep: &Sweep) -> Vec<OutputFile> {
-    let mut csv = String::from("value,real_rad_per_s,imaginary_rad_per_s\n");
+    let mut csv = Csv::new("value,real_rad_per_s,imaginary_rad_per_s");
     for point in &sweep.points {
         for pole in point.found.iter().flat_map(|found| &found.poles) {
-            csv.push_str(&format!("{},{},{}\n", point.value, pole.re, pole.im));
+            csv.row(&[&point.value, &pole.re, &pole.im]);
         }
     }
-    vec![OutputFile { name: "sweep.csv".to_string(), bytes: csv.into_bytes() }]
+    vec![csv.file("sweep.csv")]
 }

@@ -8,7 +8,7 @@ use phea_qft::template::{Resolution, Template};
 use phea_qft::verification::Verdict;
 
 use super::chapter::{Chapter, cell, place, table};
-use crate::answer::{OutputFile, significant};
+use crate::answer::{Csv, OutputFile, significant};
 use crate::audit::{ProjectAudit, closed_loop_symbol, frequency_number, kind_key};
 use crate::command::CommandError;
 use crate::figure::{
@@ -227,30 +227,31 @@ fn feasibility(problem: &RobustProblem, found: &[DesignFrequency]) -> Vec<String
 
 /// Bounds and templates as tables for other programs.
 pub(crate) fn files(problem: &RobustProblem, found: &[DesignFrequency]) -> Vec<OutputFile> {
-    let mut bounds = String::from(
-        "specification,kind,frequency_rad_per_s,phase_deg,forbidden_from_gain,forbidden_to_gain\n",
-    );
-    let mut plants = String::from("frequency_rad_per_s,real,imaginary\n");
+    let mut bounds =
+        Csv::new("specification,kind,frequency_rad_per_s,phase_deg,forbidden_from_gain,forbidden_to_gain");
+    let mut plants = Csv::new("frequency_rad_per_s,real,imaginary");
     for one in found {
         for part in &one.bounds.parts {
             let Some(specification) = problem.specifications.get(part.specification) else { continue };
             let kind = kind_key(&specification.requirement);
             for (phase, forbidden) in part.bound.phases_rad.iter().zip(&part.bound.forbidden) {
                 for [low, high] in forbidden.intervals() {
-                    bounds.push_str(&format!(
-                        "{},{kind},{},{},{low},{high}\n",
-                        part.specification,
-                        one.frequency_rad_per_s,
-                        phase.to_degrees()
-                    ));
+                    let phase_deg = phase.to_degrees();
+                    bounds.row(&[
+                        &part.specification,
+                        &kind,
+                        &one.frequency_rad_per_s,
+                        &phase_deg,
+                        &low,
+                        &high,
+                    ]);
                 }
             }
         }
         for point in &one.template.template.points {
             let response = point.response;
-            plants.push_str(&format!("{},{},{}\n", one.frequency_rad_per_s, response.re, response.im));
+            plants.row(&[&one.frequency_rad_per_s, &response.re, &response.im]);
         }
     }
-    let file = |name: &str, text: String| OutputFile { name: name.to_string(), bytes: text.into_bytes() };
-    vec![file("bounds.csv", bounds), file("templates.csv", plants)]
+    vec![bounds.file("bounds.csv"), plants.file("templates.csv")]
 }

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::ProjectShaping;
 use super::text::polar;
-use crate::answer::{self, Number, OutputFile};
+use crate::answer::{self, Csv, Number, OutputFile};
 use crate::audit::{NamedPlant, kind_key, stability_reason, verdict_key};
 use crate::project::Loaded;
 
@@ -153,14 +153,10 @@ pub const SHAPED_PROJECT: &str = "shaped.toml";
 
 /// The project file with the changed elements; then the margins as a table for other programs.
 pub fn files(view: &ProjectShaping) -> Vec<OutputFile> {
-    let mut csv = String::from("specification,kind,frequency_rad_per_s,margin_db,allowed\n");
-    for MarginRow { specification, kind, frequency_rad_per_s, margin_db, placement, .. } in margin_rows(view)
-    {
-        let (margin, allowed) = (margin_db.0, placement.allowed);
-        csv.push_str(&format!("{specification},{kind},{frequency_rad_per_s},{margin},{allowed}\n"));
+    let mut csv = Csv::new("specification,kind,frequency_rad_per_s,margin_db,allowed");
+    for row in margin_rows(view) {
+        let (margin_db, allowed) = (row.margin_db.0, row.placement.allowed);
+        csv.row(&[&row.specification, &row.kind, &row.frequency_rad_per_s, &margin_db, &allowed]);
     }
-    vec![
-        OutputFile { name: SHAPED_PROJECT.to_string(), bytes: view.saved.clone() },
-        OutputFile { name: "margins.csv".to_string(), bytes: csv.into_bytes() },
-    ]
+    vec![OutputFile::new(SHAPED_PROJECT, view.saved.clone()), csv.file("margins.csv")]
 }

@@ -1,7 +1,7 @@
 //! Figures of runs over time.
 
 use super::{Cause, Metrics, Record, ScenarioComparison, ScenarioRun, Window, cause_words};
-use crate::answer::{OutputFile, significant};
+use crate::answer::{OutputFile, picture_files, significant};
 use crate::figure::{
     DisplayUnit, Figure, FigureError, SettlingBand, StepResponseInput, TimeEvent, TimePanel, TimePanelsInput,
     TimeSeries, Words, step_response, time_panels,
@@ -13,9 +13,6 @@ pub(super) const AFTER_S: f64 = 0.5;
 
 /// Most events that are enlarged each; of more, all that is no step, and the greatest step.
 const ENLARGED: usize = 3;
-
-/// Scale of figures as PNG: 1120 pixels of width.
-const PNG_SCALE: f64 = 2.0;
 
 /// The whole run, and each event enlarged.
 pub(crate) fn pictures(run: &ScenarioRun, number: usize) -> Vec<Figure> {
@@ -215,20 +212,6 @@ pub(super) fn panel(quantity: &str, unit: DisplayUnit, height: f64, series: Vec<
 
 pub(super) fn over_time(record: &Record, values: Vec<f64>) -> TimeSeries {
     TimeSeries { name: String::new(), times_s: record.times_s.clone(), values }
-}
-
-/// Figures as SVG and PNG.
-///
-/// # Errors
-/// A figure that the rasteriser refuses.
-pub(crate) fn picture_files(figures: &[Figure]) -> Result<Vec<OutputFile>, FigureError> {
-    let mut files = Vec::new();
-    for figure in figures {
-        let svg = figure.to_svg_standalone().into_bytes();
-        files.push(OutputFile { name: format!("{}.svg", figure.name), bytes: svg });
-        files.push(OutputFile { name: format!("{}.png", figure.name), bytes: figure.to_png(PNG_SCALE)? });
-    }
-    Ok(files)
 }
 
 /// Each scenario over time, its events enlarged, and its steps with their settling bands, as SVG and PNG.

@@ -2,7 +2,7 @@ use serde::Serialize;
 
 use super::model_name;
 use super::{BoreVerdict, Candidate, Consequence, Sizing};
-use crate::answer::{self, Number, OutputFile};
+use crate::answer::{self, Csv, Number, OutputFile, quoted};
 use crate::project::Loaded;
 
 #[derive(Serialize)]
@@ -139,30 +139,24 @@ pub(crate) fn branch_name(by_gain: bool) -> &'static str {
 
 /// The candidates as a table for other programs.
 pub fn files(sizing: &Sizing) -> Vec<OutputFile> {
-    let mut csv = String::from(
-        "accepted,hose,compliance,branch,bore_m,length_m,stiffness_minimum_n_per_m,stiffness_maximum_n_per_m,proportional_gain_v_per_n,reasons\n",
+    let mut csv = Csv::new(
+        "accepted,hose,compliance,branch,bore_m,length_m,stiffness_minimum_n_per_m,stiffness_maximum_n_per_m,proportional_gain_v_per_n,reasons",
     );
     for candidate in &sizing.candidates {
         let branch = &candidate.branch;
         let reasons: Vec<&str> = candidate.findings.iter().map(|finding| finding.text.as_str()).collect();
-        csv.push_str(&format!(
-            "{},{},{},{},{},{},{},{},{},{}\n",
-            candidate.accepted(),
-            quoted(&candidate.option.name),
-            model_name(branch.model),
-            branch_name(branch.by_gain),
-            candidate.option.hose.bore,
-            branch.length_m,
-            branch.stiffness.minimum,
-            branch.stiffness.maximum,
-            branch.gain_v_per_n,
-            quoted(&reasons.join("; "))
-        ));
+        csv.row(&[
+            &candidate.accepted(),
+            &quoted(&candidate.option.name),
+            &model_name(branch.model),
+            &branch_name(branch.by_gain),
+            &candidate.option.hose.bore,
+            &branch.length_m,
+            &branch.stiffness.minimum,
+            &branch.stiffness.maximum,
+            &branch.gain_v_per_n,
+            &quoted(&reasons.join("; ")),
+        ]);
     }
-    vec![OutputFile { name: "sizing.csv".to_string(), bytes: csv.into_bytes() }]
-}
-
-/// A text as one field of comma-separated values.
-fn quoted(text: &str) -> String {
-    format!("\"{}\"", text.replace('"', "\"\""))
+    vec![csv.file("sizing.csv")]
 }

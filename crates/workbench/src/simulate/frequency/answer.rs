@@ -162,5 +162,5 @@ fn file(
         row.push(f64::from(u8::from(point.settled)));
         table.row(&row)?;
     }
-    Ok(OutputFile { name: format!("frequency_response_{name}.{}", format.ending()), bytes: table.finish()? })
+    Ok(OutputFile::new(format!("frequency_response_{name}.{}", format.ending()), table.finish()?))
 }
