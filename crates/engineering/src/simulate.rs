@@ -45,7 +45,7 @@ pub use bench::options;
 pub(crate) use course::course_of;
 pub use course::{Driven, driven};
 pub(crate) use file_names::table_names;
-pub use files::{Table, files};
+pub use files::{RunTable, files};
 pub use follower::Follower;
 pub use run::occurrences;
 pub use wish::{HeldWish, Wish};
@@ -234,7 +234,7 @@ pub fn simulate_into(
     let names = table_names(project.scenarios.iter().map(|scenario| scenario.name.as_str()), ending);
     for ((scenario, (bench, course, measured)), name) in project.scenarios.iter().zip(&prepared).zip(&names) {
         let pushed = course.external_force.is_some();
-        let begin = |(destination, format)| Table::begin((destination, name), format, pushed);
+        let begin = |(destination, format)| RunTable::begin((destination, name), format, pushed);
         let table = destination.map(begin).transpose()?;
         let mut told =
             |time_s: f64| watch(Progress { stage: "simulating", share: (before + time_s) / whole });

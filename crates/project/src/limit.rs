@@ -3,7 +3,7 @@
 use super::formula::Formula;
 use super::key::{Key, key, plain};
 use super::plant::Rational;
-use super::visitor::{Form, Shape, Visitor};
+use super::visitor::{Form, FormulaShape, Visitor};
 use phea_quantity::{ANGLE, ANGULAR_FREQUENCY, GAIN, RATIO, TIME};
 
 /// A limit over frequency.
@@ -105,7 +105,7 @@ impl Limit {
             }
             Form::Text => {
                 let mut formula = if let Some(Limit::Text(f)) = field.take() { Some(f) } else { None };
-                v.formula(k, Shape::Ratio, &mut formula, false);
+                v.formula(k, FormulaShape::Ratio, &mut formula, false);
                 *field = formula.map(Limit::Text);
             }
             Form::Table => v.table(k, field, Limit::visit_table),
@@ -120,9 +120,9 @@ impl Limit {
         let k = key("values", &GAIN, "The limit at each frequency.").positive();
         v.quantities(k, &mut parts.table.values, false);
         let k = plain("numerator", "Polynomial, such as \"2116*(s + 75)/75\".");
-        v.formula(k, Shape::Polynomial, &mut parts.numerator, false);
+        v.formula(k, FormulaShape::Polynomial, &mut parts.numerator, false);
         let k = plain("denominator", "Polynomial, such as \"s^2 + 73.6*s + 2116\".");
-        v.formula(k, Shape::Polynomial, &mut parts.denominator, parts.numerator.is_some());
+        v.formula(k, FormulaShape::Polynomial, &mut parts.denominator, parts.numerator.is_some());
         parts.margins.visit(v);
         parts.response.visit(v);
         *self = parts.limit();

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::formula::Formula;
 use super::key::Key;
-use super::visitor::{Form, Kinds, Named, Shape, Variants, Visitor};
+use super::visitor::{Form, FormulaShape, Kinds, Named, Variants, Visitor};
 use crate::catalogue::Kind;
 
 /// Walks a project without changing it, but for the numbers it is asked to set.
@@ -180,12 +180,12 @@ impl Visitor for Listing {
         self.of_variant = outside;
     }
 
-    fn formula(&mut self, key: Key, shape: Shape, _field: &mut Option<Formula>, required: bool) {
+    fn formula(&mut self, key: Key, shape: FormulaShape, _field: &mut Option<Formula>, required: bool) {
         let takes = match shape {
-            Shape::Polynomial => "a polynomial in s or z, in text",
-            Shape::Parametric => "a polynomial in s and named parameters, in text",
-            Shape::Ratio => "a ratio of polynomials in s, in text",
-            Shape::Coefficient => "named parameters and numbers, in text",
+            FormulaShape::Polynomial => "a polynomial in s or z, in text",
+            FormulaShape::Parametric => "a polynomial in s and named parameters, in text",
+            FormulaShape::Ratio => "a ratio of polynomials in s, in text",
+            FormulaShape::Coefficient => "named parameters and numbers, in text",
         };
         self.list(key, takes, required);
     }

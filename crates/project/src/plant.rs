@@ -2,7 +2,7 @@
 
 use super::formula::Formula;
 use super::key::{Key, key, plain};
-use super::visitor::{Form, Shape, Visitor};
+use super::visitor::{Form, FormulaShape, Visitor};
 use phea_quantity::TIME;
 
 /// A transfer function in `s` and named parameters.
@@ -39,7 +39,7 @@ impl Delay {
         if v.form(k, form) == Form::Text {
             let mut formula =
                 if let Delay::Formula(formula) = self { Some(std::mem::take(formula)) } else { None };
-            v.formula(k, Shape::Coefficient, &mut formula, false);
+            v.formula(k, FormulaShape::Coefficient, &mut formula, false);
             *self = formula.map_or_else(Delay::default, Delay::Formula);
         } else {
             let mut seconds = if let Delay::Constant(seconds) = self { *seconds } else { 0.0 };
@@ -60,14 +60,14 @@ pub struct Rational {
 
 impl Rational {
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
-        self.visit_as(Shape::Polynomial, v);
+        self.visit_as(FormulaShape::Polynomial, v);
     }
 
     fn visit_parametric<V: Visitor>(&mut self, v: &mut V) {
-        self.visit_as(Shape::Parametric, v);
+        self.visit_as(FormulaShape::Parametric, v);
     }
 
-    fn visit_as<V: Visitor>(&mut self, shape: Shape, v: &mut V) {
+    fn visit_as<V: Visitor>(&mut self, shape: FormulaShape, v: &mut V) {
         let k = plain("numerator", "Polynomial, such as \"2116*(s + 75)/75\".");
         required(k, shape, &mut self.numerator, v);
         let k = plain("denominator", "Polynomial, such as \"s^2 + 73.6*s + 2116\".");
@@ -75,7 +75,7 @@ impl Rational {
     }
 }
 
-fn required<V: Visitor>(key: Key, shape: Shape, field: &mut Formula, v: &mut V) {
+fn required<V: Visitor>(key: Key, shape: FormulaShape, field: &mut Formula, v: &mut V) {
     let mut formula = Some(std::mem::take(field));
     v.formula(key, shape, &mut formula, true);
     *field = formula.unwrap_or_default();

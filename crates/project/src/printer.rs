@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::formula::Formula;
 use super::key::Key;
-use super::visitor::{Form, Kinds, Named, Shape, Variants, Visitor};
+use super::visitor::{Form, FormulaShape, Kinds, Named, Variants, Visitor};
 use crate::catalogue::Kind;
 use phea_quantity as quantity;
 
@@ -226,7 +226,7 @@ impl Visitor for Printer {
         field.visit(self);
     }
 
-    fn formula(&mut self, key: Key, _shape: Shape, field: &mut Option<Formula>, _required: bool) {
+    fn formula(&mut self, key: Key, _shape: FormulaShape, field: &mut Option<Formula>, _required: bool) {
         if let Some(formula) = field {
             self.line(key.name, quoted(formula.text()));
         }

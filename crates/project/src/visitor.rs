@@ -63,7 +63,7 @@ pub(crate) trait Visitor: Sized {
     /// field keeps its variant unless `required`.
     fn variant<T: Variants>(&mut self, key: Key, field: &mut T, required: bool);
     /// A formula; required if `required`.
-    fn formula(&mut self, key: Key, shape: Shape, field: &mut Option<Formula>, required: bool);
+    fn formula(&mut self, key: Key, shape: FormulaShape, field: &mut Option<Formula>, required: bool);
     /// The name of a catalogue entry, whose values serve where the table itself is silent.
     fn catalogue(&mut self, key: Key, kind: Kind, field: &mut Option<String>);
     /// A table that may be absent.
@@ -136,7 +136,7 @@ pub(crate) struct Named<'a> {
 
 /// What a formula may be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Shape {
+pub(crate) enum FormulaShape {
     /// A polynomial in `s` or `z`.
     Polynomial,
     /// A polynomial with parameters.

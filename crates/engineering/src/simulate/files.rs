@@ -21,7 +21,7 @@ pub fn files(loaded: &Loaded, runs: &[ScenarioRun]) -> Vec<OutputFile> {
 }
 
 /// A table that is written row by row, columns named with their units.
-pub struct Table<'a> {
+pub struct RunTable<'a> {
     name: String,
     columns: Columns,
     table: NumberTable<Box<dyn Unfinished + 'a>>,
@@ -29,18 +29,18 @@ pub struct Table<'a> {
     values: Vec<f64>,
 }
 
-impl<'a> Table<'a> {
+impl<'a> RunTable<'a> {
     /// A table with its head, and a last column for the force from outside where the load is
     /// `pushed`.
     pub(super) fn begin(
         (destination, name): (&'a dyn Destination, &str),
         format: TableFormat,
         pushed: bool,
-    ) -> Result<Table<'a>, WriteError> {
+    ) -> Result<RunTable<'a>, WriteError> {
         let columns = Columns::new(pushed);
         let table = NumberTable::new(destination.begin(name)?, format, &columns.names());
         let table = table.map_err(|error| unwritten(name, &error))?;
-        Ok(Table { name: name.to_string(), columns, table, values: Vec::new() })
+        Ok(RunTable { name: name.to_string(), columns, table, values: Vec::new() })
     }
 
     pub(super) fn row(&mut self, look: &Look) -> Result<(), WriteError> {
@@ -50,7 +50,7 @@ impl<'a> Table<'a> {
 
     /// Puts it under its name.
     pub(super) fn finish(self) -> Result<(), WriteError> {
-        let Table { name, table, .. } = self;
+        let RunTable { name, table, .. } = self;
         table.finish().and_then(Unfinished::finish).map_err(|error| unwritten(&name, &error))
     }
 }

@@ -8,7 +8,7 @@ use phea_machine::{Control, ControllerSamples, Sample};
 
 use super::bench::Bench;
 use super::course::PreparedScenario;
-use super::files::Table;
+use super::files::RunTable;
 use super::follower::Follower;
 use super::measured::{Measurement, Overlay, Overlaying};
 use super::record::{Look, Record};
@@ -37,7 +37,7 @@ pub(super) struct Looking<'a> {
     /// Looks so far.
     count: u64,
     looks_per_row: u64,
-    table: Option<Table<'a>>,
+    table: Option<RunTable<'a>>,
     record: Record,
     follower: Follower<'a>,
     /// Of chambers A and B, and the highest so far, Pa.
@@ -53,7 +53,7 @@ impl<'a> Looking<'a> {
     pub(super) fn new(
         bench: &'a Bench,
         samples: &'a RefCell<ControllerSamples>,
-        (table, looks_per_row): (Option<Table<'a>>, usize),
+        (table, looks_per_row): (Option<RunTable<'a>>, usize),
         measurements: &'a [Measurement],
         full: &'a Cell<bool>,
         (course, band): (&'a PreparedScenario, f64),

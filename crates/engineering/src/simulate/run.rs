@@ -14,7 +14,7 @@ use super::measured::{Measurement, Overlay};
 use super::metrics::Metrics;
 use super::record::Record;
 use super::saved::{self, SavedState};
-use super::{Check, SimulateError, Table, Window};
+use super::{Check, RunTable, SimulateError, Window};
 use crate::project::Scenario;
 
 /// Longest time between two looks at the machine, of which figures are drawn: 1 ms would cut the
@@ -146,7 +146,7 @@ pub(super) fn run(
     bench: &Bench,
     scenario: &Scenario,
     (course, measurements): (&PreparedScenario, &[Measurement]),
-    table: Option<Table<'_>>,
+    table: Option<RunTable<'_>>,
     watch: &mut dyn FnMut(f64) -> bool,
 ) -> Result<ScenarioRun, SimulateError> {
     let looks_per_row = looks_per_row(scenario);

@@ -2,7 +2,7 @@
 
 use crate::formula::{Formula, Variable};
 use crate::key::{key, plain};
-use crate::visitor::{Shape, Visitor};
+use crate::visitor::{FormulaShape, Visitor};
 use phea_quantity::RATIO;
 
 /// A ratio of polynomials in s or z: numerator and denominator, or gain, zeros and poles.
@@ -40,9 +40,9 @@ impl RationalFunction {
 
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
         let k = plain("numerator", "Polynomial in s, or in z when sampled.");
-        v.formula(k, Shape::Polynomial, &mut self.numerator, false);
+        v.formula(k, FormulaShape::Polynomial, &mut self.numerator, false);
         let k = plain("denominator", "Polynomial in s, or in z when sampled.");
-        v.formula(k, Shape::Polynomial, &mut self.denominator, false);
+        v.formula(k, FormulaShape::Polynomial, &mut self.denominator, false);
         let k = key("gain", &RATIO, "Leading coefficient: k of k prod(s - z)/prod(s - p).");
         v.optional(k, &mut self.gain);
         let k = key("zeros", &RATIO, "Numbers, or [re, im] pairs with their conjugates.");

@@ -8,7 +8,7 @@ use crate::key::Key;
 use crate::listing::keys_of;
 use crate::text::Found;
 use crate::tree::{Node, Value};
-use crate::visitor::{Form, Kinds, Named, Shape, Variants, Visitor};
+use crate::visitor::{Form, FormulaShape, Kinds, Named, Variants, Visitor};
 use phea_quantity::spelling::nearest;
 
 impl Visitor for Reader<'_> {
@@ -165,7 +165,7 @@ impl Visitor for Reader<'_> {
         }
     }
 
-    fn formula(&mut self, key: Key, shape: Shape, field: &mut Option<Formula>, required: bool) {
+    fn formula(&mut self, key: Key, shape: FormulaShape, field: &mut Option<Formula>, required: bool) {
         match self.find(key) {
             Some(hit) => *field = self.read_formula(key, shape, hit.node),
             None if required => self.missing(key),

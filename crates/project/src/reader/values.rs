@@ -5,7 +5,7 @@ use crate::formula::{Formula, Ratio};
 use crate::key::Key;
 use crate::text::{Found, Place};
 use crate::tree::{Node, Value};
-use crate::visitor::Shape;
+use crate::visitor::FormulaShape;
 use phea_quantity as quantity;
 use phea_quantity::spelling::nearest;
 
@@ -63,10 +63,10 @@ impl Reader<'_> {
     }
 
     /// A formula of that shape; a number is one too.
-    pub(super) fn read_formula(&mut self, key: Key, shape: Shape, node: &Node) -> Option<Formula> {
+    pub(super) fn read_formula(&mut self, key: Key, shape: FormulaShape, node: &Node) -> Option<Formula> {
         let (formula, text) = match &node.value {
             Value::Text(text) => {
-                let parametric = matches!(shape, Shape::Parametric | Shape::Coefficient);
+                let parametric = matches!(shape, FormulaShape::Parametric | FormulaShape::Coefficient);
                 let named = parametric && self.parameters.iter().any(|parameter| parameter == "z");
                 let parse =
                     if named && !self.is_sampled() { Formula::parse_continuous } else { Formula::parse };
@@ -87,13 +87,13 @@ impl Reader<'_> {
             Ok((formula, ratio)) => {
                 let known = self.check_parameters(&formula, shape, node, text);
                 let plain = match (shape, formula.variable()) {
-                    (Shape::Coefficient, Some(variable)) => {
+                    (FormulaShape::Coefficient, Some(variable)) => {
                         let message =
                             format!("`{}` is a number: `{}` has no meaning here", key.name, variable.name());
                         self.findings.push(Found::error(node.place, message));
                         false
                     }
-                    (Shape::Coefficient, None) => true,
+                    (FormulaShape::Coefficient, None) => true,
                     _ => self.check_shape(key, ratio.as_ref(), shape, node),
                 };
                 (known && plain).then_some(formula)
@@ -126,9 +126,9 @@ impl Reader<'_> {
         named || text.contains(['*', '(', '+', '^']) || text.trim_start().starts_with(char::is_alphabetic)
     }
 
-    fn check_parameters(&mut self, formula: &Formula, shape: Shape, node: &Node, text: &str) -> bool {
+    fn check_parameters(&mut self, formula: &Formula, shape: FormulaShape, node: &Node, text: &str) -> bool {
         let mut known = true;
-        let parametric = matches!(shape, Shape::Parametric | Shape::Coefficient);
+        let parametric = matches!(shape, FormulaShape::Parametric | FormulaShape::Coefficient);
         for (name, range) in formula.parameters() {
             if parametric && self.parameters.iter().any(|parameter| parameter == name) {
                 continue;
@@ -146,9 +146,15 @@ impl Reader<'_> {
         known
     }
 
-    fn check_shape(&mut self, key: Key, ratio: Option<&Ratio<f64>>, shape: Shape, node: &Node) -> bool {
+    fn check_shape(
+        &mut self,
+        key: Key,
+        ratio: Option<&Ratio<f64>>,
+        shape: FormulaShape,
+        node: &Node,
+    ) -> bool {
         let Some(ratio) = ratio else { return true };
-        let message = if shape != Shape::Ratio && ratio.denominator.len() > 1 {
+        let message = if shape != FormulaShape::Ratio && ratio.denominator.len() > 1 {
             format!("`{}` must be a polynomial: here the variable is divided by", key.name)
         } else if ratio.numerator.iter().all(|c| *c == 0.0) || ratio.denominator.iter().all(|c| *c == 0.0) {
             format!("`{}` is zero", key.name)

@@ -8,7 +8,7 @@ use crate::catalogue::Kind;
 use crate::formula::Formula;
 use crate::key::Key;
 use crate::listing::{Listing, keys_of};
-use crate::visitor::{Form, Kinds, Named, Shape, Variants, Visitor};
+use crate::visitor::{Form, FormulaShape, Kinds, Named, Variants, Visitor};
 use crate::{HoseProperties, Valve};
 
 /// Puts the schema together, table by table.
@@ -178,7 +178,7 @@ impl Visitor for Writer {
         }
     }
 
-    fn formula(&mut self, key: Key, _shape: Shape, _field: &mut Option<Formula>, required: bool) {
+    fn formula(&mut self, key: Key, _shape: FormulaShape, _field: &mut Option<Formula>, required: bool) {
         self.property(key, json!({ "type": ["string", "number"] }), required);
     }
 
