@@ -6,7 +6,7 @@ use phea_qft::proof::{Certificate, Claim, Limited, Rejection, Side, check};
 use serde::Serialize;
 
 use super::{ProjectAudit, closed_loop_key};
-use crate::answer::{Answer, OutputFile, significant};
+use crate::answer::{Answer, OutputFile};
 use crate::project::Loaded;
 pub use layout::CertificateError;
 use layout::File;
@@ -106,7 +106,7 @@ fn band(certificate: &Certificate, limited: &Limited) -> String {
         certificate.sampling.as_ref().map_or(f64::INFINITY, |own| std::f64::consts::PI / own.sample_time_s);
     match to.min(end) {
         f64::INFINITY => format!("from {from} rad/s on"),
-        to => format!("from {from} to {} rad/s", significant(to, 6)),
+        to => format!("from {from} to {} rad/s", format!("{to:.5e}").parse().unwrap_or(to)),
     }
 }
 
