@@ -20,9 +20,11 @@ use crate::roughness::{Roughness, is_rough, roughest};
 
 /// Of CVODE's runs.
 const EXACT: f64 = 1e-11;
+/// Of one more, where phea differs from them.
+const FINEST: f64 = 1e-13;
 /// What a project has that does not say otherwise; the size of the errors that are granted.
 pub(crate) const TOLERANCE: f64 = 1e-6;
-/// Of the run that is held to them.
+/// Of the run that is held to them, where nothing else is asked for.
 pub(crate) const JUDGED: f64 = 1e-7;
 /// Errors put into the other reference, every hundredth of a second.
 const KICKS: Kicks = Kicks { period_s: 1e-2, size: 1e-8, seed: 1 };
@@ -226,18 +228,23 @@ impl Compared {
     }
 
     /// Takes phea's runs, the judged one first, and holds them against CVODE's: the reference, the same moved by chance, and a looser one.
-    fn take(&mut self, runs: [(Ours, Vec<f64>); 2], references: [&[f64]; 3]) {
-        let [reference, ..] = references;
-        let [judged, by_default] = &runs;
+    fn take(&mut self, runs: &[(Ours, Vec<f64>); 2], references: &[&[f64]]) {
+        let reference = references[0];
+        let [judged, by_default] = runs;
         self.estimate = self.part_of_peak(&judged.1, &by_default.1, reference.len());
-        let [ours, by_default] = runs.map(|(ours, found)| Ours {
-            error: self.part_of_peak(reference, &found, self.rows),
-            error_of_all: self.part_of_peak(reference, &found, reference.len()),
-            beyond: self.beyond(reference, &found),
-            roughness: Roughness::compared(&found, &references, self.rows, self.peak, OUTPUT_STEP_S),
-            ..ours
+        let [ours, by_default] = runs.each_ref().map(|(ours, found)| Ours {
+            error: self.part_of_peak(reference, found, self.rows),
+            error_of_all: self.part_of_peak(reference, found, reference.len()),
+            beyond: self.beyond(reference, found),
+            roughness: Roughness::compared(found, references, self.rows, self.peak, OUTPUT_STEP_S),
+            ..*ours
         });
         (self.ours, self.by_default) = (Some(ours), Some(by_default));
+    }
+
+    /// Whether a run of phea's is beyond a rule.
+    fn differs(&self) -> bool {
+        [self.ours, self.by_default].into_iter().flatten().any(|ours| ours.fault().is_some())
     }
 
     /// What CVODE costs at phea's error, by the methods of [`Compared::costs_of_cvode`].
@@ -270,8 +277,17 @@ impl Compared {
     }
 }
 
-/// Runs a rig both ways. `timed` asks for CVODE at the same error too, which takes longer.
-pub(crate) fn compare(rig: &Rig, number: u64, program: &Path, timed: bool) -> Compared {
+/// How a rig is compared.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Manner {
+    /// Tolerance of the run that is judged.
+    pub(crate) judged: f64,
+    /// Whether CVODE is asked for the same error too, which takes longer.
+    pub(crate) timed: bool,
+}
+
+/// Runs a rig both ways.
+pub(crate) fn compare(rig: &Rig, number: u64, program: &Path, manner: Manner) -> Compared {
     let controller = controller(&rig.control);
     let [value, rate] = [Input::Value, Input::Rate].map(|input| input(rig.ground.clone()));
     let reference = Input::Value(rig.reference.clone());
@@ -283,7 +299,7 @@ pub(crate) fn compare(rig: &Rig, number: u64, program: &Path, timed: bool) -> Co
             let closed = CommandedPlant::in_loop(sensed, &controller, 0.0).expect("a proper controller");
             let closed = Loop::Continuous(Box::new(closed));
             let sampler = || None::<Box<dyn Sampler>>;
-            judge(rig, &closed, &course(vec![reference, value, rate]), &sampler, timed)
+            judge(rig, &closed, &course(vec![reference, value, rate]), &sampler, manner)
         }
         Some(sample_time_s) => {
             let prefilter = controller.prefilter.transfer_function().expect("a prefilter");
@@ -298,7 +314,13 @@ pub(crate) fn compare(rig: &Rig, number: u64, program: &Path, timed: bool) -> Co
                     Box::new(Digital { held: held.commanded(), controller, state, delay_s });
                 Some(sampler)
             };
-            judge(rig, &held, &course(vec![Input::Command, reference, value, rate]), &sampler, false)
+            judge(
+                rig,
+                &held,
+                &course(vec![Input::Command, reference, value, rate]),
+                &sampler,
+                Manner { timed: false, ..manner },
+            )
         }
     };
     if let (Some(parameters), None) = (&rig.twin, &compared.0.without_reference) {
@@ -339,7 +361,7 @@ fn judge<'a>(
     system: &'a Loop,
     course: &InputSchedule,
     sampler: &NewSampler<'a>,
-    timed: bool,
+    manner: Manner,
 ) -> (Compared, Vec<f64>) {
     let mut start = rig.start.clone();
     start.resize(system.size()[0], 0.0);
@@ -364,7 +386,7 @@ fn judge<'a>(
         let seconds = begun.elapsed().as_secs_f64();
         (Ours::new(&outcome.expect("a course that fits"), seconds), force(&states))
     };
-    let runs = [JUDGED, TOLERANCE].map(by_phea);
+    let runs = [manner.judged, TOLERANCE].map(by_phea);
     let mut compared = Compared::default();
     let exact = Following::new(EXACT, Method::BackwardDifferentiation);
     let kicked = Following { kicks: Some(KICKS), ..Following::new(EXACT, Method::Adams) };
@@ -385,8 +407,16 @@ fn judge<'a>(
     let looser = looser.map(|states| force(&states));
     let apart = |looser: &Vec<f64>| compared.part_of_peak(&reference, looser, reference.len());
     compared.well_posed = looser.as_ref().is_some_and(|looser| apart(looser) <= WELL_POSED);
-    compared.take(runs, [&reference, &kicked, looser.as_deref().unwrap_or(&reference)]);
-    if timed {
+    let mut references = vec![&reference[..], &kicked, looser.as_deref().unwrap_or(&reference)];
+    compared.take(&runs, &references);
+    // whether CVODE's own errors are what rings
+    let finest = || by_cvode(&Following::new(FINEST, Method::BackwardDifferentiation)).ok();
+    let finest = compared.differs().then(finest).flatten().map(|states| force(&states));
+    if let Some(finest) = &finest {
+        references.push(finest);
+        compared.take(&runs, &references);
+    }
+    if manner.timed {
         compared.costs_of_cvode = compared.costs(&reference, &|following| {
             let begun = Instant::now();
             let (states, evaluations) = counted(following).ok()?;

@@ -6,7 +6,8 @@
 //! whose friction falls with the velocity where a slow load lets the piston go, so that it feeds the ringing on the load cell. One
 //! of these words runs that family alone. The reference is CVODE at 1e-11, phea is judged at the tolerance 1e-7. What it does at
 //! 1e-6, which a project has by default, is told beside it. Every fourth rig of the first family is compared with `closed_loop.h` as
-//! well; `timed` adds what CVODE costs at the same error; `only=N` runs one rig, `from=N` begins with it.
+//! well; `timed` adds what CVODE costs at the same error; `only=N` runs one rig, `from=N` begins with it; `judged=1e-9` judges phea at
+//! that tolerance.
 //!
 //! No solver keeps near a trajectory that leaves its neighbours. How fast they part CVODE finds alone, at 1e-11:
 //!
@@ -37,7 +38,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use compare::{Compared, compare};
+use compare::{Compared, JUDGED, Manner, compare};
 use rig::{Control, Refusal};
 use tally::Tally;
 
@@ -65,7 +66,7 @@ impl Family {
 /// What the command line asks for.
 struct Asked {
     numbers: std::ops::Range<u64>,
-    timed: bool,
+    manner: Manner,
     /// Whether all that is known of each rig is told.
     told: bool,
 }
@@ -75,10 +76,11 @@ fn main() -> ExitCode {
     let said = |wanted: &str| words.iter().any(|word| word == wanted);
     let number = |prefix: &str| words.iter().find_map(|word| word.strip_prefix(prefix)?.parse::<u64>().ok());
     let count: u64 = words.iter().find_map(|word| word.parse().ok()).unwrap_or(100);
+    let judged = words.iter().find_map(|word| word.strip_prefix("judged=")?.parse().ok()).unwrap_or(JUDGED);
     let only = number("only=");
     let first = number("from=").unwrap_or(0);
     let numbers = only.map_or(first..first + count, |only| only..only + 1);
-    let asked = Asked { numbers, timed: said("timed"), told: only.is_some() };
+    let asked = Asked { numbers, manner: Manner { judged, timed: said("timed") }, told: only.is_some() };
     let program = match compiled() {
         Ok(program) => program,
         Err(problem) => {
@@ -95,17 +97,20 @@ fn main() -> ExitCode {
 /// Runs a family and tells what came of it.
 fn passes(family: Family, asked: &Asked, program: &Path) -> bool {
     println!("family `{}`", family.word());
-    let Asked { numbers, timed, told } = asked;
+    let Asked { numbers, manner, told } = asked;
     // Times are taken one after the other.
-    let at_once =
-        if *timed { 1 } else { std::thread::available_parallelism().map_or(1, |cores| cores.get() as u64) };
+    let at_once = if manner.timed {
+        1
+    } else {
+        std::thread::available_parallelism().map_or(1, |cores| cores.get() as u64)
+    };
     let next = AtomicU64::new(numbers.start);
     let mut outcomes: Vec<(u64, Outcome)> = std::thread::scope(|scope| {
         let share = |_| {
             scope.spawn(|| {
                 let taken = std::iter::repeat_with(|| next.fetch_add(1, Ordering::Relaxed));
                 let mine = taken.take_while(|number| numbers.contains(number));
-                mine.map(|number| (number, outcome(family, number, program, *timed))).collect::<Vec<_>>()
+                mine.map(|number| (number, outcome(family, number, program, *manner))).collect::<Vec<_>>()
             })
         };
         let workers: Vec<_> = (0..at_once).map(share).collect();
@@ -128,14 +133,14 @@ struct Described {
     features: Vec<&'static str>,
 }
 
-fn outcome(family: Family, number: u64, program: &Path, timed: bool) -> Outcome {
+fn outcome(family: Family, number: u64, program: &Path, manner: Manner) -> Outcome {
     let rig = match family {
         Family::Any => rig::rig(number),
         Family::Falling => falling::rig(number),
     };
     match rig {
         Ok(rig) => {
-            let compared = compare(&rig, number, program, timed);
+            let compared = compare(&rig, number, program, manner);
             Ok((Described { control: rig.control, features: rig.features }, compared))
         }
         Err(Refusal::Actuator(error)) => Err(error.to_string()),

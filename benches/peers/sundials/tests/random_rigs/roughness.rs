@@ -6,7 +6,8 @@
 //!
 //! The phase of a ringing that grew out of next to nothing says nothing, how strong it is does, as far as anybody knows: an onset may
 //! fall into the window before or after, and where CVODE's own runs (at 1e-11, the same moved by chance, at 1e-9) differ by
-//! more than these parts in the largest of R_(k-1), R_k, R_(k+1), the strength hangs on what is smaller than any tolerance.
+//! more than these parts in the largest of R_(k-1), R_k, R_(k+1), the strength hangs on what is smaller than any tolerance. A rig on
+//! which phea differs from them is run by CVODE at 1e-13 too: it may be CVODE's own error that grew into a ringing, and phea is right.
 //!
 //! ```text
 //! known       largest of R_(k-1), R_k, R_(k+1)  >=  0.7 smallest of CVODE's R_k

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use phea_dynamics::simulation::Status;
 
-use crate::compare::{Compared, JUDGED, Ours, TOLERANCE};
+use crate::compare::{Compared, Ours, TOLERANCE};
 use crate::roughness::Roughness;
 use crate::{Described, LARGEST_ERROR, Outcome};
 
@@ -185,7 +185,7 @@ impl Tally {
             spread(name, values);
         }
         self.checks.print();
-        println!("steps at {JUDGED:e}: {}, evaluations {}", self.steps, self.evaluations);
+        println!("steps of the run that is judged: {}, evaluations {}", self.steps, self.evaluations);
         println!("steps at {TOLERANCE:e}: {}", self.default_steps);
         for fault in &self.default_faults {
             println!("{fault}");
