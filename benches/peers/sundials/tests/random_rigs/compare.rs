@@ -363,9 +363,7 @@ fn judge<'a>(
     sampler: &NewSampler<'a>,
     manner: Manner,
 ) -> (Compared, Vec<f64>) {
-    let mut start = rig.start.clone();
-    start.resize(system.size()[0], 0.0);
-    start.extend(&rig.waves);
+    let start = rig.beginning(system.size()[0]);
     let force = |states: &[Vec<f64>]| force_of(rig, states);
     let counted = |following: &Following| {
         let patient = Patient { control: system, left: Cell::new(PATIENCE) };
@@ -388,9 +386,9 @@ fn judge<'a>(
     };
     let runs = [manner.judged, TOLERANCE].map(by_phea);
     let mut compared = Compared::default();
-    let exact = Following::new(EXACT, Method::BackwardDifferentiation);
+    let at = |tolerance: f64| Following::new(tolerance, Method::BackwardDifferentiation);
     let kicked = Following { kicks: Some(KICKS), ..Following::new(EXACT, Method::Adams) };
-    let [reference, kicked] = match (by_cvode(&exact), by_cvode(&kicked)) {
+    let [reference, kicked] = match (by_cvode(&at(EXACT)), by_cvode(&kicked)) {
         (Ok(states), Ok(kicked)) => {
             let (reference, kicked) = (force(&states), force(&kicked));
             compared.look_at(rig.reference.value(rig.duration_s), &reference, &kicked);
@@ -403,15 +401,14 @@ fn judge<'a>(
             return (compared, Vec::new());
         }
     };
-    let looser = by_cvode(&Following::new(LOOSER, Method::BackwardDifferentiation)).ok();
-    let looser = looser.map(|states| force(&states));
+    let forces_at = |tolerance: f64| by_cvode(&at(tolerance)).ok().map(|states| force(&states));
+    let looser = forces_at(LOOSER);
     let apart = |looser: &Vec<f64>| compared.part_of_peak(&reference, looser, reference.len());
     compared.well_posed = looser.as_ref().is_some_and(|looser| apart(looser) <= WELL_POSED);
     let mut references = vec![&reference[..], &kicked, looser.as_deref().unwrap_or(&reference)];
     compared.take(&runs, &references);
     // whether CVODE's own errors are what rings
-    let finest = || by_cvode(&Following::new(FINEST, Method::BackwardDifferentiation)).ok();
-    let finest = compared.differs().then(finest).flatten().map(|states| force(&states));
+    let finest = compared.differs().then(|| forces_at(FINEST)).flatten();
     if let Some(finest) = &finest {
         references.push(finest);
         compared.take(&runs, &references);

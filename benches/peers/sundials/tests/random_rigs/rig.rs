@@ -55,6 +55,16 @@ pub(crate) struct Rig {
     pub(crate) features: Vec<&'static str>,
 }
 
+impl Rig {
+    /// Its state at the beginning, so many numbers without those of its waves: what a controller adds is at rest.
+    pub(crate) fn beginning(&self, states: usize) -> Vec<f64> {
+        let mut start = self.start.clone();
+        start.resize(states, 0.0);
+        start.extend(&self.waves);
+        start
+    }
+}
+
 /// Why there is no such rig.
 #[derive(Debug)]
 pub(crate) enum Refusal {
