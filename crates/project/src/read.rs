@@ -217,12 +217,22 @@ impl Project {
 
     /// The number at a dotted path such as `supply.pressure`, in SI.
     pub fn number(&self, path: &str) -> Option<f64> {
-        if let Some(number) = self.operating_point.clone().at_path(path) {
-            return *number;
+        self.number_among(path, &self.system_numbers())
+    }
+
+    /// The same, from [`Project::system_numbers`]: listing them takes longer than one look.
+    pub(crate) fn number_among(&self, path: &str, numbers: &BTreeMap<String, f64>) -> Option<f64> {
+        match self.operating_point.clone().at_path(path) {
+            Some(number) => *number,
+            None => numbers.get(path).copied(),
         }
+    }
+
+    /// Every number of the system by its dotted path, in SI.
+    pub(crate) fn system_numbers(&self) -> BTreeMap<String, f64> {
         let mut listing = Listing::default();
         self.clone().visit_system(&mut listing);
-        listing.numbers.get(path).map(|(_, value)| *value)
+        listing.numbers.into_iter().map(|(path, (_, value))| (path, value)).collect()
     }
 
     /// What each number measures, by its path or its name in the linear model.

@@ -245,6 +245,8 @@ fn nominal_formula(project: &Project, formula: &Formula, path: &str, check: &mut
 }
 
 pub(super) fn uncertainty(project: &Project, check: &mut Check<'_, '_>) {
+    let names: Vec<&str> = project.uncertainty.iter().map(|other| other.name.as_str()).collect();
+    let numbers = project.system_numbers();
     for uncertain in &project.uncertainty {
         let path = format!("uncertainty.{}", uncertain.name);
         check.bounds(&path, [uncertain.minimum, uncertain.nominal, uncertain.maximum]);
@@ -265,9 +267,8 @@ pub(super) fn uncertainty(project: &Project, check: &mut Check<'_, '_>) {
             check.error(&path, message);
         }
         depends(uncertain, project, check);
-        let names: Vec<&str> = project.uncertainty.iter().map(|other| other.name.as_str()).collect();
         both_sides("uncertainty", "uncertain", &uncertain.name, &names, check);
-        stated_elsewhere(uncertain, project, check);
+        stated_elsewhere(uncertain, project.number_among(&uncertain.name, &numbers), check);
     }
 }
 
@@ -289,8 +290,8 @@ fn both_sides(table: &str, how: &str, name: &str, all: &[&str], check: &mut Chec
 }
 
 /// The nominal value of a path should be the number that the project states there.
-fn stated_elsewhere(uncertain: &Uncertain, project: &Project, check: &mut Check<'_, '_>) {
-    let Some(stated) = project.number(&uncertain.name) else { return };
+fn stated_elsewhere(uncertain: &Uncertain, stated: Option<f64>, check: &mut Check<'_, '_>) {
+    let Some(stated) = stated else { return };
     if (stated - uncertain.nominal).abs() > 1e-9 * stated.abs() {
         let dimension = check.reader.named.get(&uncertain.name).map_or(&RATIO, |key| key.dimension);
         let [stated, nominal] =
