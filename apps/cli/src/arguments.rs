@@ -150,6 +150,8 @@ pub(crate) enum Command {
         #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
         threads: Option<u16>,
     },
+    /// Virtual tests of the servovalve, as instruments would record them: internal leakage, metering and pressure gain (ISO 10770-1)
+    Bench(Common),
     /// Everything above as one self-contained HTML page; a controller is designed where the project has a design section or gives no law
     Report(Common),
 }

@@ -75,6 +75,7 @@ pub(crate) fn run(arguments: Arguments) -> ExitCode {
                 Err(message) => Err(Failure::wrong_input(format!("error: {message}"))),
             }
         }
+        Command::Bench(common) => on_project(&common, &Request::Bench),
         Command::Report(common) => {
             let request = if common.out.is_some() { Request::Report } else { Request::Page };
             on_project(&common, &request)

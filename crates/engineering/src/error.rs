@@ -3,6 +3,7 @@
 use phea_project::Refusal;
 
 use crate::audit::AuditError;
+use crate::bench::BenchError;
 use crate::campaign::CampaignError;
 use crate::control::ControlError;
 use crate::design::DesignError;
@@ -66,6 +67,9 @@ pub enum ProcedureError {
     /// The machine cannot be simulated.
     #[error(transparent)]
     Simulate(#[from] SimulateError),
+    /// The valve cannot be tested.
+    #[error(transparent)]
+    Bench(#[from] BenchError),
     /// There is no campaign.
     #[error(transparent)]
     Campaign(#[from] CampaignError),

@@ -6,11 +6,13 @@
 //! Setup   -> derived, sizing, linearize                       what follows from the rig
 //! Setup   -> family -> robust::RobustProblem -> audit, shaping, design (-> trial on the machine -> repair)
 //! Setup   -> simulate::Bench -> simulate, campaign            the nonlinear machine
+//! Setup   -> bench                                            static tests of the valve
 //! ```
 //!
 //! Results are values; text, JSON and figures of them are made in the workbench.
 
 pub mod audit;
+pub mod bench;
 pub mod campaign;
 pub mod caveat;
 pub mod control;

@@ -3,8 +3,12 @@
 
 mod coefficients;
 mod flow;
+mod identification;
+mod ports;
+mod slow_motion;
 mod spool;
 mod tare;
+mod test_stand;
 
 pub(crate) use coefficients::supply_coefficients;
 pub use coefficients::{
@@ -14,8 +18,14 @@ pub use coefficients::{
 pub use flow::{
     ChamberFlows, EdgeFlows, Openings, chamber_flows, control_flow, edge_flows, hyperbolic_secant,
 };
+pub use identification::{
+    PortCircuit, STATIC_COEFFICIENTS, Sensitive, StaticCoefficients, TestInput, TestOutput, TestedValve,
+};
+pub use ports::{PortState, blocked_ports, connected_ports};
+pub use slow_motion::SlowSpool;
 pub use spool::{SpoolImperfection, SpoolState};
 pub use tare::tare_flow;
+pub use test_stand::{StandState, TestStand};
 
 use phea_dynamics::scalar::Scalar;
 

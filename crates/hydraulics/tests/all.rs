@@ -18,3 +18,4 @@ mod servovalve;
 mod settling;
 mod stiffness;
 mod two_pressure;
+mod valve_on_test;

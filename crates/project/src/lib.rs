@@ -2,6 +2,7 @@
 //!
 //! Inside, everything is SI. Keys are a contract: other tools read them.
 
+mod bench;
 mod campaign;
 pub mod catalogue;
 mod controller;
@@ -42,6 +43,7 @@ mod validate;
 mod valve;
 mod visitor;
 
+pub use bench::*;
 pub use campaign::*;
 pub use controller::*;
 pub use cylinder::*;
@@ -120,6 +122,8 @@ pub struct Project {
     pub simulation: Simulation,
     /// What a Monte Carlo campaign varies.
     pub campaign: Option<Campaign>,
+    /// How the servovalve is tested; absent: by the defaults.
+    pub bench: Bench,
 }
 
 /// The hydraulic actuator and what it works against.
@@ -236,6 +240,8 @@ impl Project {
         let k = plain("simulation", "How exactly scenarios are simulated.");
         table_or_default(k, &mut self.simulation, Simulation::visit, v);
         v.table(plain("campaign", "What a campaign varies."), &mut self.campaign, Campaign::visit);
+        let k = plain("bench", "How the servovalve is tested.");
+        table_or_default(k, &mut self.bench, Bench::visit, v);
     }
 }
 

@@ -18,6 +18,7 @@ use serde::Serialize;
 
 use crate::answer::{self, Answer, OutputFile};
 use crate::audit::{self, CERTIFICATE_FILE, audit_project, certificate_of, outside, prove_audit};
+use crate::bench;
 use crate::campaign::Nowhere;
 use crate::caveat::caveats;
 use crate::derived::{self, derive};
@@ -89,6 +90,8 @@ pub enum Request {
     Compare,
     /// The nonlinear machine with drawn numbers, many times.
     Campaign(CampaignRequest),
+    /// Static tests of the servovalve.
+    Bench,
     /// The page with every figure as a file.
     Report,
     /// The page alone.
@@ -108,6 +111,7 @@ impl Request {
             Request::Simulate | Request::SimulateAs(_) => "simulate",
             Request::Compare => "compare",
             Request::Campaign(_) => "campaign",
+            Request::Bench => "bench",
             Request::Report | Request::Page => "report",
         }
     }
@@ -229,6 +233,7 @@ pub fn answer_into(
         Request::Campaign(asked) => {
             campaign_watched(source, loaded, catalogues, asked, (&mut Nowhere, destination), watch)
         }
+        Request::Bench => bench_answer(loaded, watch),
         Request::Report => report_answer(source, loaded, catalogues, watch, Report::files),
         Request::Page => {
             report_answer(source, loaded, catalogues, watch, |report| Ok(vec![report.page_file()]))
@@ -348,6 +353,12 @@ fn verify_answer(
         files,
         affirmative: is_met && trial.agreement() != Agreement::Contradicts,
     })
+}
+
+fn bench_answer(loaded: &Loaded, watch: Watch<'_>) -> Result<Answer, CommandError> {
+    let runs = bench::bench(&Setup::new(&loaded.project)?, watch)?;
+    let (text, json) = (bench::text(loaded, &runs), bench::json(loaded, &runs));
+    Ok(Answer { text, json, files: bench::files(&runs), affirmative: true })
 }
 
 fn design_answer(

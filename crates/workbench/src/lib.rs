@@ -4,6 +4,7 @@
 
 pub mod answer;
 pub mod audit;
+pub mod bench;
 pub mod campaign;
 pub mod command;
 pub mod derived;

@@ -5,7 +5,7 @@ use crate::parameter::{ParameterError, Problems};
 
 /// How much stiffer than its own spring a sticking spool is: of a command within the threshold it
 /// follows 1/(1 + this).
-const STICKING_STIFFNESS: f64 = 20.0;
+pub(super) const STICKING_STIFFNESS: f64 = 20.0;
 
 /// What real spools add to the second-order model. Units: V, V/s. [`SpoolImperfection::default`]
 /// adds nothing.

@@ -1,0 +1,54 @@
+//! Transducers, meters and the converters behind them.
+
+use phea_dynamics::controller::Converter;
+use phea_dynamics::random::normal;
+
+use crate::project::{Bench, FlowMeter};
+
+/// Share of its range that a transducer with a live zero (4 to 20 mA) shows below zero.
+const LIVE_ZERO: f64 = 0.025;
+
+/// The instruments of a test, all with converters of the same number of bits.
+pub(super) struct Instruments {
+    command: Option<Converter>,
+    pressure: Option<Converter>,
+    pressure_noise: f64,
+    bits: u32,
+}
+
+impl Instruments {
+    pub(super) fn new(settings: &Bench, nominal_voltage: f64) -> Instruments {
+        let bits = settings.converter_bits;
+        Instruments {
+            command: Converter::new(bits, [-nominal_voltage, nominal_voltage]).ok(),
+            pressure: Converter::new(bits, [-LIVE_ZERO * settings.pressure_range, settings.pressure_range])
+                .ok(),
+            pressure_noise: settings.pressure_noise,
+            bits,
+        }
+    }
+
+    /// The command that leaves the computer, in V.
+    pub(super) fn command(&self, wanted: f64) -> f64 {
+        self.command.as_ref().map_or(wanted, |converter| converter.rounded(wanted))
+    }
+
+    /// What is read of a pressure in Pa.
+    pub(super) fn pressure(&mut self, value: f64, noise: &mut u64) -> f64 {
+        let shown = value + self.pressure_noise * normal(noise);
+        self.pressure.as_ref().map_or(shown, |converter| converter.rounded(shown))
+    }
+
+    /// What is read of a flow in m3/s: a turbine stands still below its smallest flow, and tells no
+    /// direction unless it is signed.
+    pub(super) fn flow(&self, meter: &FlowMeter, value: f64, noise: &mut u64) -> f64 {
+        let disturbed = value + meter.noise * normal(noise);
+        let turning = if value.abs() < meter.minimum { 0.0 } else { disturbed };
+        let shown = if meter.signed { turning } else { turning.abs() };
+        let lowest = if meter.signed { -meter.range } else { 0.0 };
+        match Converter::new(self.bits, [lowest, meter.range]) {
+            Ok(converter) => converter.rounded(shown),
+            Err(_) => shown,
+        }
+    }
+}

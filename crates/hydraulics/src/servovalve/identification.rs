@@ -1,0 +1,185 @@
+//! What static tests of a valve would show for other coefficients, with derivatives.
+
+use phea_dynamics::scalar::{Dual, Scalar};
+
+use super::{
+    Edges, Servovalve, SlowSpool, SpoolImperfection, Supply, blocked_ports, connected_ports, tare_flow,
+};
+
+/// How many numbers static tests tell of a valve.
+pub const STATIC_COEFFICIENTS: usize = 12;
+
+/// A number with its derivatives with respect to all static coefficients.
+pub type Sensitive = Dual<STATIC_COEFFICIENTS>;
+
+/// The numbers that static tests tell of a valve. Units: m3/(s Pa^0.5), m3/s, V.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StaticCoefficients<S = f64> {
+    /// K_v3 to K_v6.
+    pub flow_coefficients: Edges<S>,
+    /// K_vin3 to K_vin6.
+    pub leakage_coefficients: Edges<S>,
+    /// Shape lambda of the leakage.
+    pub leakage_shape: S,
+    /// Tare flow q_tare at the reference drop.
+    pub tare_flow: S,
+    /// Spool position U_0 at which the valve is at null.
+    pub null_bias: S,
+    /// Width of the hysteresis, positive.
+    pub hysteresis_width: S,
+}
+
+impl<S: Copy> StaticCoefficients<S> {
+    /// In the order of the fields, edges 3, 4, 5, 6.
+    pub fn to_array(&self) -> [S; STATIC_COEFFICIENTS] {
+        let [f3, f4, f5, f6] = self.flow_coefficients.to_array();
+        let [l3, l4, l5, l6] = self.leakage_coefficients.to_array();
+        let rest = [self.leakage_shape, self.tare_flow, self.null_bias, self.hysteresis_width];
+        let [shape, tare, bias, width] = rest;
+        [f3, f4, f5, f6, l3, l4, l5, l6, shape, tare, bias, width]
+    }
+
+    /// In the same order.
+    pub fn from_array(numbers: [S; STATIC_COEFFICIENTS]) -> StaticCoefficients<S> {
+        let [f3, f4, f5, f6, l3, l4, l5, l6, leakage_shape, tare_flow, null_bias, hysteresis_width] = numbers;
+        StaticCoefficients {
+            flow_coefficients: Edges::from_array([f3, f4, f5, f6]),
+            leakage_coefficients: Edges::from_array([l3, l4, l5, l6]),
+            leakage_shape,
+            tare_flow,
+            null_bias,
+            hysteresis_width,
+        }
+    }
+}
+
+/// How the ports are piped in a test.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PortCircuit {
+    /// Both shut.
+    Blocked,
+    /// Joined through a meter.
+    Connected,
+}
+
+/// What acts on the valve in one row of a test. Units: V, Pa.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TestInput {
+    /// Command U_C.
+    pub command: f64,
+    /// Supply and tank pressure.
+    pub supply: Supply,
+    /// p_A - p_B across the meter, where the ports are joined.
+    pub load_pressure: f64,
+}
+
+/// What one row of a test shows. Units: Pa, m3/s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TestOutput<S = f64> {
+    /// p_A.
+    pub pressure_a: S,
+    /// p_B.
+    pub pressure_b: S,
+    /// Flow from the supply, tare flow included.
+    pub leak_flow: S,
+    /// Flow from port A to port B.
+    pub port_flow: S,
+}
+
+/// What is known of a valve under test before its coefficients are. Units: V, Pa.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TestedValve {
+    /// Command of full opening U_Cn.
+    pub nominal_voltage: f64,
+    /// Drop below which an edge's flow is laminar.
+    pub transition_pressure: f64,
+    /// Drop at which the tare flow is stated.
+    pub tare_reference_drop: f64,
+}
+
+impl TestedValve {
+    /// What a slow test shows row by row, the spool without memory at its beginning.
+    ///
+    /// Equations: [`blocked_ports`], [`connected_ports`], [`tare_flow`],
+    /// [`SpoolImperfection::slow_opening`].
+    pub fn outputs<S: Scalar>(
+        &self,
+        coefficients: &StaticCoefficients<S>,
+        circuit: PortCircuit,
+        inputs: &[TestInput],
+    ) -> Vec<TestOutput<S>> {
+        let valve = self.servovalve(coefficients);
+        let spool = SpoolImperfection {
+            null_bias: coefficients.null_bias,
+            hysteresis_width: Some(coefficients.hysteresis_width),
+            threshold: None,
+            rate_limit: None,
+        };
+        let mut memory = None;
+        let one = |input: &TestInput| {
+            let command = S::from(input.command);
+            let memory = memory.get_or_insert(SlowSpool::at(command));
+            let opening = spool.slow_opening(memory, command);
+            let supply = input.supply.convert(&mut S::from);
+            let found = match circuit {
+                PortCircuit::Blocked => blocked_ports(&valve, &supply, opening),
+                PortCircuit::Connected => {
+                    connected_ports(&valve, &supply, opening, S::from(input.load_pressure))
+                }
+            };
+            TestOutput {
+                pressure_a: found.pressure_a,
+                pressure_b: found.pressure_b,
+                leak_flow: found.supply_flow + tare_flow(&valve, &supply, S::from(self.tare_reference_drop)),
+                port_flow: found.port_flow,
+            }
+        };
+        inputs.iter().map(one).collect()
+    }
+
+    /// The same with derivatives with respect to all coefficients, in their order.
+    ///
+    /// # Example
+    /// The whole tare flow is in the leakage, whatever the spool does.
+    /// ```
+    /// use phea_hydraulics::servovalve::{
+    ///     Edges, PortCircuit, StaticCoefficients, Supply, TestInput, TestedValve,
+    /// };
+    /// let tested = TestedValve { nominal_voltage: 10.0, transition_pressure: 1e3, tare_reference_drop: 70e5 };
+    /// let coefficients = StaticCoefficients {
+    ///     flow_coefficients: Edges::equal(3e-7), leakage_coefficients: Edges::equal(2e-9), leakage_shape: 100.0,
+    ///     tare_flow: 7.55e-6, null_bias: 0.0, hysteresis_width: 0.1,
+    /// };
+    /// let supply = Supply { pressure: 70e5, tank_pressure: 0.0 };
+    /// let inputs = [TestInput { command: 0.3, supply, load_pressure: 0.0 }];
+    /// let found = tested.sensitive_outputs(&coefficients, PortCircuit::Blocked, &inputs);
+    /// assert!((found[0].leak_flow.gradient()[9] - 1.0).abs() < 1e-12);
+    /// ```
+    pub fn sensitive_outputs(
+        &self,
+        coefficients: &StaticCoefficients,
+        circuit: PortCircuit,
+        inputs: &[TestInput],
+    ) -> Vec<TestOutput<Sensitive>> {
+        let mut index = 0;
+        let open = coefficients.to_array().map(|value| {
+            index += 1;
+            Sensitive::variable(value, index - 1)
+        });
+        self.outputs(&StaticCoefficients::from_array(open), circuit, inputs)
+    }
+
+    fn servovalve<S: Scalar>(&self, coefficients: &StaticCoefficients<S>) -> Servovalve<S> {
+        Servovalve {
+            flow_coefficients: coefficients.flow_coefficients,
+            leakage_coefficients: coefficients.leakage_coefficients,
+            leakage_shape: coefficients.leakage_shape,
+            tare_flow: coefficients.tare_flow,
+            nominal_voltage: S::from(self.nominal_voltage),
+            // a spool at rest has no dynamics
+            natural_frequency: S::from(1.0),
+            damping_ratio: S::from(1.0),
+            transition_pressure: S::from(self.transition_pressure),
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! A test stand around a servovalve: a pump that may give less than the valve takes, and a meter that
+//! takes a part of the pressure.
+
+use super::{PortCircuit, PortState, Servovalve, Supply, blocked_ports, connected_ports, tare_flow};
+use crate::orifice::regular_root;
+
+/// A valve on its test stand, ports as the test pipes them. Units: Pa, m3/s, m3/(s Pa^0.5).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TestStand {
+    /// The valve.
+    pub valve: Servovalve,
+    /// Supply as stated, and tank.
+    pub supply: Supply,
+    /// Drop at which the tare flow is stated.
+    pub tare_reference_drop: f64,
+    /// Flow of the pump, and the rise of pressure over which its relief valve opens; `None` of a
+    /// supply that nothing moves.
+    pub pump: Option<[f64; 2]>,
+    /// Flow of the meter between the ports at a drop of 1 Pa; infinite where it takes no pressure.
+    pub meter_coefficient: f64,
+}
+
+/// Where a test stand settles. Units: Pa, m3/s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StandState {
+    /// Supply pressure that is left.
+    pub supply_pressure: f64,
+    /// Ports and flows.
+    pub ports: PortState,
+    /// Tare flow of the first stage.
+    pub tare_flow: f64,
+}
+
+/// Halvings of an interval: a supply of 1000 bar to 0.1 mPa.
+const HALVINGS: usize = 40;
+
+impl TestStand {
+    /// Where it settles at a position of the edges in V.
+    ///
+    /// ```text
+    /// q_P = q_v3 + q_v5 + q_tare + q_relief(p_S)        q_relief = q_P (p_S - p_stated + dp_o)/dp_o, not below 0
+    /// q_port = K_m root(p_A - p_B)                       in place of p_A = p_B where the meter takes pressure
+    /// ```
+    ///
+    /// # Example
+    /// The pump of the thesis cannot fill its valve at 30 % of the command.
+    /// ```
+    /// use phea_hydraulics::reference_rig::valve;
+    /// use phea_hydraulics::servovalve::{PortCircuit, Supply, TestStand};
+    /// let stand = TestStand {
+    ///     valve: valve(), supply: Supply { pressure: 70e5, tank_pressure: 0.0 }, tare_reference_drop: 70e5,
+    ///     pump: Some([1.6e-4, 5e5]), meter_coefficient: f64::INFINITY,
+    /// };
+    /// let found = stand.settled(PortCircuit::Connected, 3.0);
+    /// assert!(found.supply_pressure < 55e5);
+    /// assert!((found.ports.supply_flow + found.tare_flow - 1.6e-4).abs() < 1e-9);
+    /// ```
+    pub fn settled(&self, circuit: PortCircuit, opening: f64) -> StandState {
+        let at = |pressure: f64| {
+            let supply = Supply { pressure, ..self.supply };
+            let ports = self.ports(&supply, circuit, opening);
+            let tare_flow = tare_flow(&self.valve, &supply, self.tare_reference_drop);
+            StandState { supply_pressure: pressure, ports, tare_flow }
+        };
+        let Some([pump_flow, relief_override]) = self.pump else { return at(self.supply.pressure) };
+        let surplus = |pressure: f64| {
+            let found = at(pressure);
+            let relief = (pressure - self.supply.pressure + relief_override).max(0.0) / relief_override;
+            pump_flow * (1.0 - relief) - found.ports.supply_flow - found.tare_flow
+        };
+        at(falling_zero(surplus, [self.supply.tank_pressure, self.supply.pressure]))
+    }
+
+    fn ports(&self, supply: &Supply, circuit: PortCircuit, opening: f64) -> PortState {
+        if circuit == PortCircuit::Blocked {
+            return blocked_ports(&self.valve, supply, opening);
+        }
+        let at = |load_pressure| connected_ports(&self.valve, supply, opening, load_pressure);
+        if self.meter_coefficient.is_infinite() {
+            return at(0.0);
+        }
+        let surplus = |load_pressure: f64| {
+            let metered =
+                self.meter_coefficient * regular_root(load_pressure, self.valve.transition_pressure);
+            at(load_pressure).port_flow - metered
+        };
+        // the meter never takes all of the pressure: at the ends the valve passes its leakage alone
+        let whole = 0.999 * (supply.pressure - supply.tank_pressure);
+        at(falling_zero(surplus, [-whole, whole]))
+    }
+}
+
+/// Zero of a falling function between two ends; the nearer end where there is none.
+fn falling_zero(function: impl Fn(f64) -> f64, [mut low, mut high]: [f64; 2]) -> f64 {
+    for _ in 0..HALVINGS {
+        let middle = f64::midpoint(low, high);
+        if function(middle) > 0.0 { low = middle } else { high = middle }
+    }
+    f64::midpoint(low, high)
+}

@@ -1,0 +1,168 @@
+//! `[bench]`: the virtual tests of the servovalve.
+
+use super::key::{Key, key, plain};
+use super::visitor::Visitor;
+use phea_quantity::{FLOW, PRESSURE, RATIO, TIME};
+
+/// How the command runs through its cycle.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum BenchWaveform {
+    /// A sine from zero.
+    #[default]
+    Sine,
+    /// A triangle from zero.
+    Triangle,
+}
+
+/// How the servovalve is tested, and with which instruments.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bench {
+    /// s, of one test.
+    pub duration: f64,
+    /// Cycles of the command in a test.
+    pub cycles: u32,
+    /// How the command runs through its cycle.
+    pub waveform: BenchWaveform,
+    /// Of the command, as share of the nominal voltage, of leakage and metering.
+    pub amplitude: f64,
+    /// The same of the pressure gain test.
+    pub pressure_gain_amplitude: f64,
+    /// s, between two rows.
+    pub sample_time: f64,
+    /// m³/s, of the pump; absent: that of a pump-limited supply, and no limit otherwise.
+    pub pump_flow: Option<f64>,
+    /// Meter of the leakage.
+    pub leak_meter: FlowMeter,
+    /// Meter between the ports.
+    pub flow_meter: FlowMeter,
+    /// Pa, root mean square of the noise of every pressure.
+    pub pressure_noise: f64,
+    /// Pa, range of every pressure transducer, from zero.
+    pub pressure_range: f64,
+    /// Of the converters of all signals; zero converts nothing.
+    pub converter_bits: u32,
+    /// Of the noise.
+    pub seed: u32,
+}
+
+/// A flow meter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FlowMeter {
+    /// m³/s, the highest flow.
+    pub range: f64,
+    /// m³/s, below which it stands still.
+    pub minimum: f64,
+    /// m³/s, root mean square of its noise.
+    pub noise: f64,
+    /// Pa, its drop at the highest flow.
+    pub pressure_drop: f64,
+    /// Whether it tells the direction.
+    pub signed: bool,
+}
+
+/// One litre per minute.
+const LITRE_PER_MINUTE: f64 = 1.0 / 60_000.0;
+
+/// Meter of the leakage where a project does not say.
+const LEAK_METER: FlowMeter = FlowMeter {
+    range: 5.0 * LITRE_PER_MINUTE,
+    minimum: 0.0,
+    noise: 0.005 * LITRE_PER_MINUTE,
+    pressure_drop: 0.0,
+    signed: false,
+};
+
+/// Meter between the ports where a project does not say.
+const FLOW_METER: FlowMeter = FlowMeter {
+    range: 60.0 * LITRE_PER_MINUTE,
+    minimum: LITRE_PER_MINUTE,
+    noise: 0.05 * LITRE_PER_MINUTE,
+    pressure_drop: 2e5,
+    signed: false,
+};
+
+impl Default for Bench {
+    fn default() -> Bench {
+        Bench {
+            duration: 240.0,
+            cycles: 1,
+            waveform: BenchWaveform::Sine,
+            amplitude: 0.3,
+            pressure_gain_amplitude: 0.05,
+            sample_time: 0.1,
+            pump_flow: None,
+            leak_meter: LEAK_METER,
+            flow_meter: FLOW_METER,
+            pressure_noise: 5e3,
+            pressure_range: 100e5,
+            converter_bits: 16,
+            seed: 1,
+        }
+    }
+}
+
+impl Bench {
+    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let k = key("duration", &TIME, "Duration of each test.").positive().at_most(1e6).or(240.0);
+        v.quantity(k, &mut self.duration);
+        let k = key("cycles", &RATIO, "Cycles of the command in a test.").at_least(1.0).at_most(1e3).or(1.0);
+        v.count(k, &mut self.cycles);
+        let words = &[("sine", BenchWaveform::Sine), ("triangle", BenchWaveform::Triangle)];
+        let k = plain("waveform", "How the command runs through its cycle, from zero.");
+        v.choice(k, words, &mut self.waveform, false);
+        let k = key("amplitude", &RATIO, "Amplitude of the command over the nominal voltage.");
+        v.quantity(k.positive().at_most(1.0).or(0.3), &mut self.amplitude);
+        let k = key("pressure_gain_amplitude", &RATIO, "The same of the pressure gain test.");
+        v.quantity(k.positive().at_most(1.0).or(0.05), &mut self.pressure_gain_amplitude);
+        let k = key("sample_time", &TIME, "Time between two rows.").at_least(1e-4).at_most(1e4).or(0.1);
+        v.quantity(k, &mut self.sample_time);
+        let k =
+            key("pump_flow", &FLOW, "Flow of the pump; absent: that of a pump-limited supply, or no limit.");
+        v.optional(k.positive(), &mut self.pump_flow);
+        let k = plain("leak_meter", "Meter of the leakage.");
+        meter(k, &mut self.leak_meter, LEAK_METER, v);
+        let k = plain("flow_meter", "Meter between the ports.");
+        meter(k, &mut self.flow_meter, FLOW_METER, v);
+        let k = key("pressure_noise", &PRESSURE, "Root mean square of the noise of every pressure.");
+        v.quantity(k.not_negative().or(5e3), &mut self.pressure_noise);
+        let k = key("pressure_range", &PRESSURE, "Range of every pressure transducer, from zero.");
+        v.quantity(k.positive().or(100e5), &mut self.pressure_range);
+        let k = key("converter_bits", &RATIO, "Bits of the converters of all signals; 0 converts nothing.");
+        v.count(k.not_negative().at_most(32.0).or(16.0), &mut self.converter_bits);
+        let k = key("seed", &RATIO, "Seed of the noise.").not_negative().at_most(4e9).or(1.0);
+        v.count(k, &mut self.seed);
+    }
+}
+
+/// A meter, by defaults of its own where the table or a key of it is absent.
+fn meter<V: Visitor>(key: Key, field: &mut FlowMeter, absent: FlowMeter, v: &mut V) {
+    let mut declared = (*field != absent).then_some(Declared(*field));
+    v.table(key, &mut declared, |declared, v| declared.0.visit(absent, v));
+    *field = declared.map_or(absent, |declared| declared.0);
+}
+
+/// A meter while it is read.
+struct Declared(FlowMeter);
+
+impl Default for Declared {
+    fn default() -> Declared {
+        Declared(FLOW_METER)
+    }
+}
+
+impl FlowMeter {
+    fn visit<V: Visitor>(&mut self, absent: FlowMeter, v: &mut V) {
+        let k = key("range", &FLOW, "The highest flow it measures.").positive().or(absent.range);
+        v.quantity(k, &mut self.range);
+        let k = key("minimum", &FLOW, "Flow below which it stands still.").not_negative().or(absent.minimum);
+        v.quantity(k, &mut self.minimum);
+        let k = key("noise", &FLOW, "Root mean square of its noise.").not_negative().or(absent.noise);
+        v.quantity(k, &mut self.noise);
+        let k = key("pressure_drop", &PRESSURE, "Its pressure drop at the highest flow.").not_negative();
+        v.quantity(k.or(absent.pressure_drop), &mut self.pressure_drop);
+        v.flag(
+            plain("signed", "Whether it tells the direction of the flow; absent: false."),
+            &mut self.signed,
+        );
+    }
+}

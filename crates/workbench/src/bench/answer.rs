@@ -1,0 +1,111 @@
+use std::io;
+
+use serde::Serialize;
+
+use super::{BenchRow, BenchRun};
+use crate::answer::{self, NumberTable, OutputFile, TableFormat};
+use crate::project::Loaded;
+use crate::quantity::DisplayUnit;
+
+#[derive(Serialize)]
+struct Body {
+    tests: Vec<TestBody>,
+}
+
+#[derive(Serialize)]
+struct TestBody {
+    name: &'static str,
+    file: String,
+    rows: usize,
+    duration_s: f64,
+    /// Smallest and largest value of each signal, as recorded.
+    signals: Vec<SignalBody>,
+    lowest_supply_pressure_pa: f64,
+}
+
+#[derive(Serialize)]
+struct SignalBody {
+    name: &'static str,
+    unit: &'static str,
+    range: [f64; 2],
+}
+
+/// A column of a test's table: name in SI, unit of the table, and where its value is.
+pub(super) struct Signal {
+    /// As the table's column is called.
+    pub(super) column: &'static str,
+    /// For people.
+    pub(super) quantity: &'static str,
+    /// Of the table.
+    pub(super) unit: DisplayUnit,
+    /// SI unit.
+    pub(super) si: &'static str,
+    pub(super) of: fn(&BenchRow) -> f64,
+}
+
+/// What a test records beside its time.
+pub(super) fn signals(run: &BenchRun) -> Vec<Signal> {
+    let (volt, bar, litres) = (DisplayUnit::VOLT, DisplayUnit::BAR, DisplayUnit::LITRE_PER_MINUTE);
+    let signal = |column, quantity, unit, si, of| Signal { column, quantity, unit, si, of };
+    let [leak, flow] = run.test.measures_flow();
+    let mut signals: Vec<Signal> = vec![
+        signal("command_v", "command", volt, "V", |row: &BenchRow| row.command),
+        signal("supply_pressure_bar", "supply pressure", bar, "Pa", |row: &BenchRow| row.supply_pressure),
+        signal("pressure_a_bar", "pressure at A", bar, "Pa", |row: &BenchRow| row.pressure_a),
+        signal("pressure_b_bar", "pressure at B", bar, "Pa", |row: &BenchRow| row.pressure_b),
+    ];
+    if leak {
+        signals
+            .push(signal("leak_flow_l_per_min", "leakage", litres, "m3/s", |row: &BenchRow| row.leak_flow));
+    }
+    if flow {
+        signals.push(signal("flow_l_per_min", "flow", litres, "m3/s", |row: &BenchRow| row.flow));
+    }
+    signals
+}
+
+/// Smallest and largest recorded value, SI.
+pub(super) fn range(run: &BenchRun, signal: &Signal) -> [f64; 2] {
+    let values = || run.rows.iter().map(|row| (signal.of)(row));
+    [values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max)]
+}
+
+fn file_name(run: &BenchRun) -> String {
+    format!("{}.csv", run.test.name())
+}
+
+/// The JSON object of `bench`.
+pub fn json(loaded: &Loaded, runs: &[BenchRun]) -> String {
+    let test = |run: &BenchRun| TestBody {
+        name: run.test.name(),
+        file: file_name(run),
+        rows: run.rows.len(),
+        duration_s: run.rows.last().map_or(0.0, |row| row.time),
+        signals: signals(run)
+            .iter()
+            .map(|signal| SignalBody { name: signal.quantity, unit: signal.si, range: range(run, signal) })
+            .collect(),
+        lowest_supply_pressure_pa: run.lowest_supply_pressure,
+    };
+    answer::json("bench", loaded, Body { tests: runs.iter().map(test).collect() })
+}
+
+/// The tables, a file for each test.
+pub fn files(runs: &[BenchRun]) -> Vec<OutputFile> {
+    // nothing that is written to memory can fail
+    runs.iter()
+        .map(|run| OutputFile { name: file_name(run), bytes: table(run).unwrap_or_default() })
+        .collect()
+}
+
+fn table(run: &BenchRun) -> io::Result<Vec<u8>> {
+    let signals = signals(run);
+    let columns: Vec<&str> =
+        std::iter::once("time_s").chain(signals.iter().map(|signal| signal.column)).collect();
+    let mut table = NumberTable::new(Vec::new(), TableFormat::Csv, &columns)?;
+    for row in &run.rows {
+        let shown = signals.iter().map(|signal| signal.unit.of((signal.of)(row)));
+        table.row(&std::iter::once(row.time).chain(shown).collect::<Vec<f64>>())?;
+    }
+    table.finish()
+}
