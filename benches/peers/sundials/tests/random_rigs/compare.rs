@@ -8,8 +8,8 @@ use std::time::Instant;
 use phea_dynamics::controller::{Compensator, Controller, ControllerState, Element, SampledController};
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::simulation::{
-    CommandedPlant, Input, InputSchedule, Observer, Outcome, Plant, Sampler, Sensed, Settings, Status, Task,
-    Work,
+    CommandedPlant, Input, InputSchedule, Observer, Outcome, Plant, Sampler, Sensed, Settings, Status,
+    StepCounts, Task,
 };
 use phea_hydraulics::machine::INDICATORS;
 use phea_machine::{Commanded, Control as Loop, Watcher};
@@ -91,7 +91,7 @@ pub(crate) struct Ours {
     pub(crate) beyond: f64,
     /// Its ringing where trajectories have separated; `None` where they do not.
     pub(crate) roughness: Option<Roughness>,
-    pub(crate) work: Work,
+    pub(crate) work: StepCounts,
     pub(crate) seconds: f64,
 }
 
@@ -248,11 +248,7 @@ impl Compared {
     }
 
     /// What CVODE costs at phea's error, by the methods of [`Compared::costs_of_cvode`].
-    fn costs(
-        &self,
-        reference: &[f64],
-        run: &dyn Fn(&Following) -> Option<(Vec<f64>, Cost)>,
-    ) -> [Option<Cost>; 2] {
+    fn costs(&self, reference: &[f64], run: &Costing<'_>) -> [Option<Cost>; 2] {
         [Method::StabilityLimit, Method::Adams].map(|method| {
             cost_at(self.ours?.error, &|tolerance| {
                 let (found, cost) = run(&Following::new(tolerance, method))?;
@@ -276,6 +272,9 @@ impl Compared {
         parts.fold(0.0, f64::max)
     }
 }
+
+/// A run of CVODE: its force and what it cost, where it comes to an end.
+type Costing<'a> = dyn Fn(&Following) -> Option<(Vec<f64>, Cost)> + 'a;
 
 /// How a rig is compared.
 #[derive(Clone, Copy, Debug)]
