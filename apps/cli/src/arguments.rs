@@ -152,6 +152,8 @@ pub(crate) enum Command {
     },
     /// Virtual tests of the servovalve, as instruments would record them: internal leakage, metering and pressure gain (ISO 10770-1)
     Bench(Common),
+    /// Coefficients of a servovalve from recorded static tests, with confidence intervals and what the data do not tell
+    Identify(Recorded),
     /// Everything above as one self-contained HTML page; a controller is designed where the project has a design section or gives no law
     Report(Common),
 }
@@ -193,4 +195,30 @@ pub(crate) struct Common {
     /// A catalogue file or folder of your own, searched before the built-in one; may be repeated
     #[arg(long = "catalogue", value_name = "PATH")]
     pub(crate) catalogues: Vec<String>,
+}
+
+/// What `identify` takes.
+#[derive(Args, Debug)]
+pub(crate) struct Recorded {
+    /// Recorded tests, CSV files with units in the names of their columns
+    #[arg(required = true, num_args = 1..)]
+    pub(crate) files: Vec<String>,
+    /// The project of the valve: nominal voltage, and pressures that the files lack
+    #[arg(long, value_name = "PROJECT.toml")]
+    pub(crate) project: Option<PathBuf>,
+    /// Print one JSON object on standard output and nothing else
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Write the identified [valve] into this folder, as valve.toml
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Override a value of the project, e.g. --set "valve.nominal_voltage=5 V"; may be repeated
+    #[arg(long = "set", value_name = "PATH=VALUE", requires = "project")]
+    pub(crate) settings: Vec<String>,
+    /// Starting points of the search (6)
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub(crate) starts: Option<u16>,
+    /// Seed of the starting points
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(crate) seed: u32,
 }

@@ -1,4 +1,5 @@
 mod campaign;
+mod identify;
 
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
@@ -76,6 +77,7 @@ pub(crate) fn run(arguments: Arguments) -> ExitCode {
             }
         }
         Command::Bench(common) => on_project(&common, &Request::Bench),
+        Command::Identify(recorded) => told(recorded.json, identify::answered(&recorded)),
         Command::Report(common) => {
             let request = if common.out.is_some() { Request::Report } else { Request::Page };
             on_project(&common, &request)

@@ -8,6 +8,7 @@
 //! Element -> Compensator -> Controller -> SampledController                    the controller
 //! System + InputSchedule + Settings -> simulate -> Trajectory, Outcome         simulation
 //! Plant -> Sensed -> CommandedPlant -> System                                  the closed loop
+//! residuals, derivatives -> Minimum -> Uncertainty                             what data tell
 //! ```
 //!
 //! SI units inside, angles in radians, frequencies in rad/s, polynomials with the highest power
@@ -17,6 +18,7 @@ pub mod analytic;
 pub mod controller;
 pub mod expression;
 pub mod frequency;
+pub mod least_squares;
 pub mod linear;
 pub mod portable;
 pub mod random;

@@ -7,6 +7,7 @@
 //! Setup   -> family -> robust::RobustProblem -> audit, shaping, design (-> trial on the machine -> repair)
 //! Setup   -> simulate::Bench -> simulate, campaign            the nonlinear machine
 //! Setup   -> bench                                            static tests of the valve
+//! files   -> identify                                         the valve that explains recorded tests
 //! ```
 //!
 //! Results are values; text, JSON and figures of them are made in the workbench.
@@ -20,6 +21,7 @@ pub mod derived;
 pub mod design;
 pub mod error;
 pub mod family;
+pub mod identify;
 pub mod linear_loop;
 pub mod linearize;
 pub mod number_table;

@@ -1,14 +1,17 @@
 //! The commands on a project: what is asked, and the answer that a shell prints and writes.
 
 mod campaign;
+mod identify;
 mod linearize;
 mod refusal;
 mod schema;
 mod simulate;
 
 pub use campaign::{CampaignRequest, CampaignRuns, campaign_watched};
+pub use identify::{IdentifyRequest, identify_watched};
 pub use phea_engineering::error::ProcedureError;
-pub use refusal::{error_json, failure_json, refusal_json};
+pub use phea_engineering::identify::IdentifyError;
+pub use refusal::{error_json, failure_json, files_json, refusal_json};
 pub use schema::{SCHEMA_FILE, schema};
 pub use simulate::{FrequencyOptions, SimulateRequest};
 

@@ -10,6 +10,7 @@ pub mod command;
 pub mod derived;
 pub mod design;
 pub mod document;
+pub mod identify;
 pub mod linearize;
 pub mod report;
 pub mod shaping;

@@ -47,6 +47,7 @@ mod specification;
 mod sweep;
 mod trial;
 mod trusted_data;
+mod valve_identification;
 mod valve_tests;
 mod verify_contract;
 mod waves_in_the_loop;

@@ -86,6 +86,25 @@ pub struct TestOutput<S = f64> {
     pub port_flow: S,
 }
 
+impl TestOutput<Sensitive> {
+    /// A combination of p_A, p_B, leakage and port flow.
+    pub fn combined(&self, weights: [f64; 4]) -> Sensitive {
+        let all = [self.pressure_a, self.pressure_b, self.leak_flow, self.port_flow];
+        let shown = all.into_iter().zip(weights).filter(|(_, weight)| *weight != 0.0);
+        shown.fold(Sensitive::from(0.0), |sum, (signal, weight)| sum + signal.times(weight))
+    }
+
+    /// Without derivatives.
+    pub fn values(&self) -> TestOutput {
+        TestOutput {
+            pressure_a: self.pressure_a.value(),
+            pressure_b: self.pressure_b.value(),
+            leak_flow: self.leak_flow.value(),
+            port_flow: self.port_flow.value(),
+        }
+    }
+}
+
 /// What is known of a valve under test before its coefficients are. Units: V, Pa.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TestedValve {

@@ -43,6 +43,11 @@ pub fn error_json(loaded: &Loaded, request: &Request, error: &CommandError) -> S
     }
 }
 
+/// The JSON object of a command whose files beside a project were refused.
+pub fn files_json(command: &str, project_sha256: Option<&str>, refusal: &Refusal) -> String {
+    refusal_body(Some(command), project_sha256, refusal_rows(refusal))
+}
+
 fn refusal_rows(refusal: &Refusal) -> Vec<RefusalRow<'_>> {
     let place = |number: usize| Some(number).filter(|number| *number > 0);
     let rows = refusal.diagnostics.iter().map(|diagnostic| RefusalRow {

@@ -1,0 +1,51 @@
+//! `identify`: recorded tests beside a project or without one.
+
+use std::path::PathBuf;
+
+use phea_workbench::answer::Answer;
+use phea_workbench::command::{self, IdentifyError, IdentifyRequest, Request};
+
+use super::{load, styled};
+use crate::arguments::Recorded;
+use crate::failure::Failure;
+use crate::file_system::FileSystem;
+use crate::interruption::Interruption;
+use crate::output::write;
+use crate::voice::ProgressLine;
+
+/// The answer, and the files that were written.
+pub(super) fn answered(recorded: &Recorded) -> Result<(Answer, Vec<PathBuf>), Failure> {
+    let project = recorded.project.as_ref().map(|path| path.to_string_lossy());
+    let loaded = project.map(|path| load(&path, &recorded.settings, &[], &Request::Bench)).transpose()?;
+    let asked = IdentifyRequest {
+        files: recorded.files.clone(),
+        starts: recorded.starts.map(usize::from),
+        seed: recorded.seed,
+    };
+    let mut line = ProgressLine::default();
+    let interruption = Interruption::listen();
+    let answer = command::identify_watched(&FileSystem, loaded.as_ref(), &asked, &mut |progress| {
+        line.show(progress);
+        !interruption.is_asked()
+    });
+    line.clear();
+    let hash = loaded.as_ref().map(|loaded| loaded.sha256.as_str());
+    let explain = |message: &str| command::failure_json(Some("identify"), hash, message);
+    let answer = answer.map_err(|error| {
+        let text = match &error {
+            IdentifyError::Files(report) => report.render(styled()),
+            other => format!("error: {other}"),
+        };
+        let json = match &error {
+            IdentifyError::Files(report) => command::files_json("identify", hash, report),
+            other => explain(&other.to_string()),
+        };
+        Failure::wrong_input(text).with_json(json)
+    })?;
+    let written = match &recorded.out {
+        Some(folder) => write(folder, &answer.files)
+            .map_err(|message| Failure::not_written(&message).with_json(explain(&message)))?,
+        None => vec![],
+    };
+    Ok((answer, written))
+}

@@ -1,0 +1,102 @@
+//! How well data tell variables: covariance, and directions that they do not tell.
+
+use nalgebra::{DMatrix, SymmetricEigen};
+
+use super::Linearised;
+
+/// How well data tell variables.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Uncertainty {
+    /// Standard deviation of each variable; infinite where nothing depends on it.
+    pub deviations: Vec<f64>,
+    /// Correlation of each pair, row by row.
+    pub correlations: Vec<f64>,
+    /// Combinations of variables, the best told first.
+    pub directions: Vec<Direction>,
+}
+
+/// A combination of variables, and how well data tell it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Direction {
+    /// Share of each variable; of length one.
+    pub shares: Vec<f64>,
+    /// Standard deviation along it; infinite where nothing depends on it.
+    pub deviation: f64,
+}
+
+/// Relative eigenvalue of the information below which it is a rounding error.
+const ROUNDING: f64 = 1e-15;
+
+/// Covariance of the variables at a minimum, by the sandwich of White (1980) and Huber (1967): noise
+/// may differ from residual to residual, and its size is taken from the residuals themselves.
+///
+/// ```text
+/// cov = H^-1 S H^-1 n/(n - m)      H = sum psi' j j',  S = sum psi^2 j j'
+/// ```
+///
+/// with j the derivatives of one residual, n residuals and m variables. Along each eigenvector of H
+/// the standard deviation is that of the covariance.
+///
+/// # Example
+/// The mean of n numbers is known to their deviation over the root of n.
+/// ```
+/// use phea_dynamics::least_squares::{Linearised, uncertainty};
+/// let residuals = vec![-1.0, 1.0, -1.0, 1.0, 1.0, -1.0, 1.0, -1.0];
+/// let found = uncertainty(&Linearised { residuals, jacobian: vec![1.0; 8] }, 1, f64::INFINITY);
+/// assert!((found.deviations[0] - 1.0 / 7.0_f64.sqrt()).abs() < 1e-12);
+/// ```
+pub fn uncertainty(at: &Linearised, count: usize, robust_beyond: f64) -> Uncertainty {
+    let mut information = DMatrix::<f64>::zeros(count, count);
+    let mut scatter = DMatrix::<f64>::zeros(count, count);
+    for (residual, row) in at.residuals.iter().zip(at.jacobian.chunks_exact(count)) {
+        let inside = residual.abs() <= robust_beyond;
+        let score = if inside { *residual } else { robust_beyond };
+        for (i, first) in row.iter().enumerate() {
+            for (j, second) in row.iter().enumerate() {
+                information[(i, j)] += if inside { first * second } else { 0.0 };
+                scatter[(i, j)] += score * score * first * second;
+            }
+        }
+    }
+    let (rows, variables) = (at.residuals.len() as f64, count as f64);
+    let freedom = if rows > variables { rows / (rows - variables) } else { f64::INFINITY };
+    sandwich(information, &(scatter * freedom))
+}
+
+fn sandwich(information: DMatrix<f64>, scatter: &DMatrix<f64>) -> Uncertainty {
+    let count = information.nrows();
+    let eigen = SymmetricEigen::new(information);
+    let largest = eigen.eigenvalues.max();
+    let is_told = |value: f64| value > ROUNDING * largest && value > 0.0;
+    let mut inverse = DMatrix::<f64>::zeros(count, count);
+    for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
+        if is_told(*value) {
+            inverse += vector * vector.transpose() / *value;
+        }
+    }
+    let covariance = &inverse * scatter * &inverse;
+    let mut directions: Vec<(f64, Direction)> = Vec::with_capacity(count);
+    for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
+        let variance = (vector.transpose() * &covariance * vector).x;
+        let deviation = if is_told(*value) { variance.max(0.0).sqrt() } else { f64::INFINITY };
+        directions.push((*value, Direction { shares: vector.iter().copied().collect(), deviation }));
+    }
+    directions.sort_by(|(first, _), (second, _)| second.total_cmp(first));
+    let directions: Vec<Direction> = directions.into_iter().map(|(_, direction)| direction).collect();
+    let untold = |index: usize| {
+        let share = |direction: &Direction| direction.shares.get(index).copied().unwrap_or(0.0);
+        directions.iter().any(|one| one.deviation.is_infinite() && share(one).abs() > 1e-6)
+    };
+    let deviation = |index: usize| match untold(index) {
+        true => f64::INFINITY,
+        false => covariance[(index, index)].max(0.0).sqrt(),
+    };
+    let deviations: Vec<f64> = (0..count).map(deviation).collect();
+    let correlation = |i: usize, j: usize| {
+        let product = (covariance[(i, i)] * covariance[(j, j)]).sqrt();
+        if i == j { 1.0 } else { covariance[(i, j)] / product }
+    };
+    let correlations = (0..count).flat_map(|i| (0..count).map(move |j| (i, j)));
+    let correlations = correlations.map(|(i, j)| correlation(i, j)).collect();
+    Uncertainty { deviations, correlations, directions }
+}

@@ -1,0 +1,125 @@
+//! A static test as it was recorded.
+
+use phea_hydraulics::servovalve::{PortCircuit, TestInput, TestOutput};
+
+/// A recorded test, rows in the order of time. SI.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Recording {
+    /// Path of the file.
+    pub file: String,
+    /// How the ports were piped.
+    pub circuit: PortCircuit,
+    /// What acted on the valve.
+    pub inputs: Vec<TestInput>,
+    /// What was recorded of it.
+    pub signals: Vec<RecordedSignal>,
+}
+
+/// A signal over the rows of a recording. SI.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RecordedSignal {
+    /// Which.
+    pub kind: SignalKind,
+    /// A value for each row; `None` where the instrument showed nothing.
+    pub values: Vec<Option<f64>>,
+}
+
+/// What a signal is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SignalKind {
+    /// p_A.
+    PressureA,
+    /// p_B.
+    PressureB,
+    /// (p_A + p_B)/2 of joined ports, whose difference is an input.
+    MeanPressure,
+    /// Flow from the supply, tare flow included.
+    LeakFlow,
+    /// Flow from port A to port B.
+    PortFlow,
+    /// The same by a meter that tells no direction.
+    PortFlowMagnitude,
+}
+
+impl SignalKind {
+    /// As columns and JSON call it.
+    pub fn name(self) -> &'static str {
+        match self {
+            SignalKind::PressureA => "pressure_a",
+            SignalKind::PressureB => "pressure_b",
+            SignalKind::MeanPressure => "mean_pressure",
+            SignalKind::LeakFlow => "leak_flow",
+            SignalKind::PortFlow | SignalKind::PortFlowMagnitude => "flow",
+        }
+    }
+
+    /// Whether it is a pressure.
+    pub fn is_pressure(self) -> bool {
+        matches!(self, SignalKind::PressureA | SignalKind::PressureB | SignalKind::MeanPressure)
+    }
+
+    /// What the model shows of it: weights of p_A, p_B, leakage and port flow.
+    pub(super) fn weights(self, output: &TestOutput) -> [f64; 4] {
+        match self {
+            SignalKind::PressureA => [1.0, 0.0, 0.0, 0.0],
+            SignalKind::PressureB => [0.0, 1.0, 0.0, 0.0],
+            SignalKind::MeanPressure => [0.5, 0.5, 0.0, 0.0],
+            SignalKind::LeakFlow => [0.0, 0.0, 1.0, 0.0],
+            SignalKind::PortFlow => [0.0, 0.0, 0.0, 1.0],
+            SignalKind::PortFlowMagnitude => [0.0, 0.0, 0.0, output.port_flow.signum()],
+        }
+    }
+}
+
+impl Recording {
+    /// A signal of it.
+    pub fn signal(&self, kind: SignalKind) -> Option<&RecordedSignal> {
+        self.signals.iter().find(|signal| signal.kind == kind)
+    }
+
+    /// The rows of these indices alone.
+    pub(super) fn only(&self, rows: &[usize]) -> Recording {
+        let inputs = rows.iter().filter_map(|row| self.inputs.get(*row).copied()).collect();
+        let signals = self.signals.iter().map(|signal| RecordedSignal {
+            kind: signal.kind,
+            values: rows.iter().map(|row| signal.values.get(*row).copied().flatten()).collect(),
+        });
+        Recording { inputs, signals: signals.collect(), file: self.file.clone(), ..*self }
+    }
+}
+
+impl RecordedSignal {
+    /// Smallest and largest value, single rows that their neighbours contradict left out.
+    pub fn range(&self) -> [f64; 2] {
+        let values = self.despiked();
+        let known = || values.iter().flatten().copied();
+        [known().fold(f64::INFINITY, f64::min), known().fold(f64::NEG_INFINITY, f64::max)]
+    }
+
+    /// Each value, or its neighbour where that lies between it and its other neighbour: the median of
+    /// three.
+    pub(super) fn despiked(&self) -> Vec<Option<f64>> {
+        let at = |row: Option<usize>| row.and_then(|row| self.values.get(row).copied().flatten());
+        let of = |(row, value): (usize, &Option<f64>)| {
+            let value = (*value)?;
+            let [before, after] = [at(row.checked_sub(1)), at(row.checked_add(1))];
+            Some(before.zip(after).map_or(value, |(before, after)| {
+                let [low, high] = [before.min(after), before.max(after)];
+                value.max(low).min(high)
+            }))
+        };
+        self.values.iter().enumerate().map(of).collect()
+    }
+}
+
+/// Median drop from supply to tank, in Pa.
+pub(super) fn usual_drop(recordings: &[Recording]) -> f64 {
+    let inputs = recordings.iter().flat_map(|recording| &recording.inputs);
+    median(inputs.map(|input| input.supply.pressure - input.supply.tank_pressure).collect())
+}
+
+/// Middle of some numbers; NaN of none.
+pub(super) fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
+}

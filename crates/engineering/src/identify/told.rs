@@ -1,0 +1,101 @@
+//! What the data do not tell, and which further test would.
+
+use phea_dynamics::least_squares::Uncertainty;
+use phea_hydraulics::servovalve::{STATIC_COEFFICIENTS, StaticCoefficients, Supply, TestInput, TestedValve};
+
+use super::COEFFICIENT_NAMES;
+use super::recording::{Recording, SignalKind, usual_drop};
+use crate::bench::StaticTest;
+
+/// Standard deviation in the logarithm of a coefficient beyond which it is not told: a factor of
+/// e^0.98 = 2.7 either way at 95 %.
+const UNTOLD: f64 = 0.5;
+
+/// Standard deviation below which a test tells a combination.
+const TOLD: f64 = 0.1;
+
+/// Share of a direction below which a coefficient has no part in it.
+const PART: f64 = 0.2;
+
+/// A combination of coefficients that the data do not tell.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Untold {
+    /// Coefficients with the share that each has of it, as factors: of length one, the greatest
+    /// first.
+    pub shares: Vec<(&'static str, f64)>,
+    /// Standard deviation along it, in the logarithm; infinite where nothing recorded depends on it.
+    pub deviation: f64,
+    /// Tests that would tell it, at 30 % of the command with errors of 1 % of each signal's range.
+    pub told_by: Vec<StaticTest>,
+}
+
+/// The combinations that are not told, the least known first.
+pub(super) fn untold(
+    told: &Uncertainty,
+    coefficients: &StaticCoefficients,
+    slopes: &[f64; STATIC_COEFFICIENTS],
+    (recordings, tested): (&[Recording], &TestedValve),
+) -> Vec<Untold> {
+    let unknown = told.directions.iter().rev().filter(|direction| direction.deviation > UNTOLD);
+    let tests =
+        StaticTest::ALL.map(|test| (test, sensitivities(test, coefficients, slopes, (recordings, tested))));
+    unknown
+        .map(|direction| {
+            let parts = COEFFICIENT_NAMES.iter().zip(&direction.shares);
+            let mut shares: Vec<(&'static str, f64)> = parts
+                .filter(|(_, share)| share.abs() > PART)
+                .map(|((name, _), share)| (*name, *share))
+                .collect();
+            shares.sort_by(|(_, first), (_, second)| second.abs().total_cmp(&first.abs()));
+            let tells = |rows: &[[f64; STATIC_COEFFICIENTS]]| {
+                let along = |row: &[f64; STATIC_COEFFICIENTS]| -> f64 {
+                    row.iter().zip(&direction.shares).map(|(slope, share)| slope * share).sum()
+                };
+                rows.iter().map(|row| along(row) * along(row)).sum::<f64>() > 1.0 / (TOLD * TOLD)
+            };
+            let told_by = tests.iter().filter(|(_, rows)| tells(rows)).map(|(test, _)| *test).collect();
+            Untold { shares, deviation: direction.deviation, told_by }
+        })
+        .collect()
+}
+
+/// Derivatives of what a test would show, over a hundredth of the range of each signal.
+fn sensitivities(
+    test: StaticTest,
+    coefficients: &StaticCoefficients,
+    slopes: &[f64; STATIC_COEFFICIENTS],
+    (recordings, tested): (&[Recording], &TestedValve),
+) -> Vec<[f64; STATIC_COEFFICIENTS]> {
+    const ROWS: i32 = 100;
+    let share = if test == StaticTest::PressureGain { 0.05 } else { 0.3 };
+    let supply = Supply { pressure: usual_drop(recordings), tank_pressure: 0.0 };
+    let inputs: Vec<TestInput> = (-ROWS..=ROWS)
+        .chain((-ROWS..ROWS).rev())
+        .map(|step| f64::from(step) / f64::from(ROWS))
+        // finer around null
+        .map(|position| share * tested.nominal_voltage * position * position.abs())
+        .map(|command| TestInput { command, supply, load_pressure: 0.0 })
+        .collect();
+    let outputs = tested.sensitive_outputs(coefficients, test.circuit(), &inputs);
+    let kinds: &[SignalKind] = match test {
+        StaticTest::Leakage => &[SignalKind::PressureA, SignalKind::PressureB, SignalKind::LeakFlow],
+        StaticTest::PressureGain => &[SignalKind::PressureA, SignalKind::PressureB],
+        StaticTest::Metering => &[SignalKind::MeanPressure, SignalKind::PortFlow],
+    };
+    let mut rows = Vec::new();
+    for kind in kinds {
+        let shown: Vec<_> =
+            outputs.iter().map(|output| output.combined(kind.weights(&output.values()))).collect();
+        let least = shown.iter().map(|one| one.value()).fold(f64::INFINITY, f64::min);
+        let most = shown.iter().map(|one| one.value()).fold(f64::NEG_INFINITY, f64::max);
+        let scale = 0.01 * (most - least);
+        for one in shown {
+            let mut row = *one.gradient();
+            for (slope, own) in row.iter_mut().zip(slopes) {
+                *slope *= own / scale;
+            }
+            rows.push(row);
+        }
+    }
+    rows
+}

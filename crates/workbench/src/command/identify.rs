@@ -1,0 +1,54 @@
+//! `identify`: the valve that explains recorded tests.
+
+use crate::answer::Answer;
+use crate::identify::{self, IdentifyError, Known, Search, identify, recordings};
+use crate::project::Loaded;
+use crate::source::Source;
+
+use super::Watch;
+
+/// What a valve is identified from.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct IdentifyRequest {
+    /// Recorded tests, CSV files.
+    pub files: Vec<String>,
+    /// Starting points of the search; absent: 6.
+    pub starts: Option<usize>,
+    /// Of the starting points.
+    pub seed: u32,
+}
+
+/// Identifies a valve from files, with what a project says of it: nominal voltage, supply pressure,
+/// tank pressure, transition pressure and the drop that the tare flow belongs to.
+///
+/// # Errors
+/// [`IdentifyError`] for files that are no tests, and recordings that no valve explains.
+pub fn identify_watched(
+    source: &dyn Source,
+    loaded: Option<&Loaded>,
+    asked: &IdentifyRequest,
+    watch: Watch<'_>,
+) -> Result<Answer, IdentifyError> {
+    let known = loaded.map_or(Known::default(), known);
+    let recorded = recordings(source, &asked.files, &known).map_err(IdentifyError::Files)?;
+    let usual = Search::default();
+    let search = Search { starts: asked.starts.unwrap_or(usual.starts), seed: asked.seed };
+    let found = identify(recorded, &known, search, watch)?;
+    Ok(Answer {
+        text: identify::text(&found),
+        json: identify::json(loaded, &found),
+        files: identify::files(&found),
+        affirmative: found.has_converged() && found.untold.is_empty(),
+    })
+}
+
+fn known(loaded: &Loaded) -> Known {
+    let Some(actuator) = &loaded.project.actuator else { return Known::default() };
+    Known {
+        nominal_voltage: actuator.valve.nominal_voltage,
+        transition_pressure: actuator.valve.transition_pressure,
+        supply_pressure: Some(actuator.supply.pressure),
+        tank_pressure: actuator.supply.tank_pressure,
+        tare_pressure: actuator.valve.tare_pressure,
+    }
+}

@@ -1,0 +1,113 @@
+//! What an identified valve says to people.
+
+use super::answer::correlations;
+use super::{COEFFICIENT_NAMES, Identification, SignalFit, SimpleCalculations};
+use crate::answer::significant;
+use crate::document::{Cell, Document, Table};
+use crate::quantity::DisplayUnit;
+
+/// The coefficients with their intervals, how well the signals are explained, and what is not told.
+pub fn text(found: &Identification) -> String {
+    let mut out = Document::default();
+    let headings = ["coefficient", "identified", "95 % from", "to", "by hand", "unit"];
+    out.section("Coefficients of the valve", Table::new(headings).with(coefficients(found)));
+    out.sentences([
+        "By hand: the calculations of Ledezma (2019), section 5.2, which take the edges as equal."
+            .to_string(),
+    ]);
+    let headings = ["file", "signal", "rows", "rms of residuals", "range", "unit", "neighbours correlate"];
+    out.section(
+        "How well the recordings are explained",
+        Table::new(headings).with(found.signals.iter().map(|one| signal(found, one))),
+    );
+    out.sentences(remarks(found));
+    let together = correlations(found);
+    if !together.is_empty() {
+        out.heading("Coefficients that the data tell only together");
+        out.sentences(together.into_iter().map(|([first, second], correlation)| {
+            format!("{first} and {second}: correlation {}.", significant(correlation, 3))
+        }));
+    }
+    if !found.untold.is_empty() {
+        out.heading("What the data cannot tell apart");
+        out.sentences(found.untold.iter().map(not_told));
+    }
+    out.text()
+}
+
+fn coefficients(found: &Identification) -> Vec<[Cell; 6]> {
+    let numbers = found.coefficients.to_array();
+    let by_hand = by_hand(&found.simple);
+    let all = COEFFICIENT_NAMES.iter().zip(numbers).zip(found.intervals).zip(by_hand);
+    all.map(|((((name, unit), value), interval), by_hand)| {
+        let number = |value: Option<f64>| value.map_or(Cell::Missing, |value| Cell::number(value, 4));
+        let [low, high] = [interval.map(|[low, _]| low), interval.map(|[_, high]| high)];
+        let value = interval.map(|_| value);
+        [
+            Cell::Code((*name).to_string()),
+            number(value),
+            number(low),
+            number(high),
+            number(by_hand),
+            Cell::Unit(unit),
+        ]
+    })
+    .collect()
+}
+
+/// The simple calculations in the order of the coefficients.
+fn by_hand(simple: &SimpleCalculations) -> [Option<f64>; 12] {
+    let [extending, retracting] = simple.flow_coefficients;
+    let leak = simple.leakage_coefficient;
+    let rest = [simple.leakage_shape, simple.tare_flow, simple.null_bias(), simple.hysteresis()];
+    let [shape, tare, bias, width] = rest;
+    [extending, retracting, retracting, extending, leak, leak, leak, leak, shape, tare, bias, width]
+}
+
+fn signal(found: &Identification, signal: &SignalFit) -> [Cell; 7] {
+    let unit = if signal.kind.is_pressure() { DisplayUnit::BAR } else { DisplayUnit::LITRE_PER_MINUTE };
+    let file = found.recordings.get(signal.recording).map_or(String::new(), |one| one.file.clone());
+    [
+        Cell::from(file),
+        Cell::from(signal.kind.name().replace('_', " ")),
+        Cell::count(signal.rows),
+        Cell::number(unit.of(signal.rms), 3),
+        Cell::number(unit.of(signal.range), 4),
+        Cell::from(unit.symbol),
+        Cell::decimal(signal.correlation, 2),
+    ]
+}
+
+/// What a reader should know before the numbers are used.
+fn remarks(found: &Identification) -> Vec<String> {
+    let mut remarks = Vec::new();
+    let [starts, agreeing] = found.starts;
+    if starts > 1 {
+        remarks.push(format!("{agreeing} of {starts} starting points lead to these coefficients."));
+    }
+    if !found.has_converged() {
+        remarks.push("The search did not converge: the numbers are its best so far.".to_string());
+    }
+    if !found.at_bounds.is_empty() {
+        remarks.push(format!("At a bound of the search: {}.", found.at_bounds.join(", ")));
+    }
+    let wrong: Vec<&str> =
+        found.signals.iter().filter(|one| one.correlation > 0.5).map(|one| one.kind.name()).collect();
+    if !wrong.is_empty() {
+        remarks.push(format!("Neighbouring residuals of {} are alike: the model does not explain all of it, and the intervals are too narrow.", wrong.join(", ")));
+    }
+    remarks
+}
+
+fn not_told(untold: &super::Untold) -> String {
+    let names: Vec<&str> = untold.shares.iter().map(|(name, _)| *name).collect();
+    let first = match names.as_slice() {
+        [only] => format!("{only} is not told"),
+        several => format!("{} are not told apart", several.join(", ")),
+    };
+    let tests: Vec<String> = untold.told_by.iter().map(|test| test.name().replace('_', " ")).collect();
+    match tests.as_slice() {
+        [] => format!("{first}; none of the static tests at 30 % of the command tells."),
+        tests => format!("{first}; a test of {} with all its columns would tell.", tests.join(" or ")),
+    }
+}

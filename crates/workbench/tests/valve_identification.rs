@@ -1,0 +1,256 @@
+//! The coefficients of a valve from recorded tests: truth recovered within its intervals, what is not told, files of
+//! every kind, and the way back into a project.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
+#![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
+
+use crate::ask::{HOSE, answer, json, load};
+use phea_workbench::answer::Answer;
+use phea_workbench::command::{IdentifyError, IdentifyRequest, Request, identify_watched};
+use phea_workbench::source::Memory;
+use serde_json::Value;
+
+/// Of the valve on the bench.
+const VALVE: [&str; 3] =
+    ["valve.null_bias=\"14 mV\"", "valve.hysteresis=\"128 mV\"", "bench.sample_time=\"500 ms\""];
+
+/// ORIGIN: thesis Table 5.1, values obtained via optimization; 7.55e-6 m3/s of section 5.2.1
+const TRUTH: [(&str, f64); 12] = [
+    ("/flow_coefficients/supply_to_a", 3.2e-7),
+    ("/flow_coefficients/a_to_tank", 2.5e-7),
+    ("/flow_coefficients/supply_to_b", 2.0e-7),
+    ("/flow_coefficients/b_to_tank", 3.85e-7),
+    ("/leakage_coefficients/supply_to_a", 2.35e-9),
+    ("/leakage_coefficients/a_to_tank", 2.2e-9),
+    ("/leakage_coefficients/supply_to_b", 1.7e-9),
+    ("/leakage_coefficients/b_to_tank", 2.35e-9),
+    ("/leakage_shape", 100.0),
+    ("/tare_flow_m3_per_s", 7.55e-6),
+    ("/null_bias_v", 0.014),
+    ("/hysteresis_v", 0.128),
+];
+
+/// The tables of the bench, by their names.
+fn recorded(settings: &[&str]) -> Vec<(String, String)> {
+    let settings = [&VALVE, settings].concat();
+    let found = answer(HOSE, &settings, &[], &Request::Bench);
+    found.files.into_iter().map(|file| (file.name, String::from_utf8(file.bytes).unwrap())).collect()
+}
+
+fn try_identify(files: &[(String, String)], starts: usize) -> Result<Answer, IdentifyError> {
+    let source =
+        files.iter().fold(Memory::default(), |source, (name, text)| source.with(name, text.as_str()));
+    let names = files.iter().map(|(name, _)| name.clone()).collect();
+    let asked = IdentifyRequest { files: names, starts: Some(starts), seed: 1 };
+    // the tare flow of the project is stated at 70 bar
+    let loaded = load(HOSE, &[], &[]);
+    identify_watched(&source, Some(&loaded), &asked, &mut |_| true)
+}
+
+fn identified(files: &[(String, String)]) -> Value {
+    let found = try_identify(files, 1).unwrap_or_else(|error| panic!("{error}"));
+    serde_json::from_str(&found.json).unwrap()
+}
+
+fn value(found: &Value, path: &str) -> f64 {
+    found.pointer(&format!("{path}/value")).and_then(Value::as_f64).expect("a value")
+}
+
+fn interval(found: &Value, path: &str) -> Option<[f64; 2]> {
+    let ends = found.pointer(&format!("{path}/confidence_95"))?.as_array()?;
+    Some([ends[0].as_f64()?, ends[1].as_f64()?])
+}
+
+/// Each interval covers the truth as often as a binomial distribution of 40 trials at 95 % allows.
+#[test]
+fn intervals_cover_the_truth() {
+    let mut covered = [0; 12];
+    for seed in 1..=40 {
+        let found = identified(&recorded(&[&format!("bench.seed={seed}")]));
+        for (count, (path, truth)) in covered.iter_mut().zip(TRUTH) {
+            let [low, high] = interval(&found, path).expect("an interval");
+            assert!(high - low < 0.1 * truth, "{path} {low} {high}");
+            *count += usize::from((low..=high).contains(&truth));
+        }
+    }
+    assert!(covered.iter().all(|count| (33..=40).contains(count)), "{covered:?}");
+}
+
+#[test]
+fn without_noise_the_valve_is_found_to_what_the_converters_leave() {
+    let quiet = [
+        "bench.pressure_noise=0",
+        "bench.leak_meter.noise=0",
+        "bench.flow_meter.noise=0",
+        "bench.converter_bits=0",
+    ];
+    let found = identified(&recorded(&quiet));
+    for (path, truth) in TRUTH {
+        let value = value(&found, path);
+        assert!((value / truth - 1.0).abs() < 1e-6, "{path} {value}");
+    }
+    assert_eq!(found["converged"], true);
+}
+
+#[test]
+fn outliers_are_not_believed() {
+    let mut files = recorded(&[]);
+    for (_, text) in &mut files {
+        let rows = text.lines().enumerate().map(|(index, line)| {
+            let Some((before, last)) = line.rsplit_once(',').filter(|_| index > 0 && index % 50 == 7) else {
+                return line.to_string();
+            };
+            format!("{before},{}", 3.0 + 1.5 * last.parse::<f64>().unwrap())
+        });
+        *text = rows.collect::<Vec<_>>().join("\n");
+    }
+    let found = identified(&files);
+    for (path, truth) in TRUTH {
+        let value = value(&found, path);
+        assert!((value / truth - 1.0).abs() < 0.02, "{path} {value}");
+    }
+}
+
+/// A metering test alone passes nothing of the tare flow through its meter, and leakage below what the meter shows.
+#[test]
+fn metering_alone_does_not_tell_the_leakage() {
+    let files: Vec<_> = recorded(&[]).into_iter().filter(|(name, _)| name == "metering.csv").collect();
+    let answer = try_identify(&files, 6).unwrap();
+    assert!(!answer.affirmative);
+    let found: Value = serde_json::from_str(&answer.json).unwrap();
+    assert!(interval(&found, "/tare_flow_m3_per_s").is_none());
+    let untold = found["not_told"].as_array().unwrap();
+    let names: Vec<&str> = untold
+        .iter()
+        .flat_map(|one| one["coefficients"].as_array().unwrap())
+        .filter_map(Value::as_str)
+        .collect();
+    assert!(
+        names.contains(&"tare_flow") && names.iter().any(|name| name.starts_with("leakage_coefficients")),
+        "{names:?}"
+    );
+    let by_leakage = |one: &Value| one["told_by"].as_array().unwrap().iter().any(|test| test == "leakage");
+    let of_tare =
+        |one: &&Value| one["coefficients"].as_array().unwrap().iter().any(|name| name == "tare_flow");
+    assert!(untold.iter().filter(of_tare).all(by_leakage) && untold.iter().any(by_leakage), "{untold:?}");
+    assert!(answer.text.contains("a test of leakage"));
+    // what it does tell
+    let flow = interval(&found, "/flow_coefficients/supply_to_a").unwrap();
+    assert!(flow[0] <= 3.2e-7 && flow[1] >= 3.2e-7 && flow[1] < 1.2 * flow[0], "{flow:?}");
+}
+
+/// Without pressures, edges in series cannot be told apart: only K_3 K_6/sqrt(K_3^2 + K_6^2) passes the meter.
+#[test]
+fn a_flow_alone_does_not_tell_edges_in_series_apart() {
+    let files = recorded(&["bench.flow_meter.pressure_drop=0"]);
+    let (_, text) = files.iter().find(|(name, _)| name == "metering.csv").unwrap();
+    let columns = |line: &str| {
+        let cells: Vec<&str> = line.split(',').collect();
+        [cells[0], cells[1], cells[2], cells[5]].join(",")
+    };
+    let bare = text.lines().map(columns).collect::<Vec<_>>().join("\n");
+    let found = identified(&[("flow.csv".to_string(), bare)]);
+    let untold = found["not_told"].as_array().unwrap();
+    let pair = |first: &str, second: &str| {
+        untold.iter().any(|one| {
+            let names: Vec<&str> =
+                one["coefficients"].as_array().unwrap().iter().filter_map(Value::as_str).collect();
+            names.contains(&first) && names.contains(&second)
+        })
+    };
+    assert!(pair("flow_coefficients.supply_to_a", "flow_coefficients.b_to_tank"), "{untold:?}");
+    let [three, six] =
+        ["/flow_coefficients/supply_to_a", "/flow_coefficients/b_to_tank"].map(|path| value(&found, path));
+    let series = three * six / (three * three + six * six).sqrt();
+    // ORIGIN: analytic, 3.2e-7 and 3.85e-7 of thesis Table 5.1 in series
+    assert!((series / 2.4609e-7 - 1.0).abs() < 5e-3, "{series}");
+}
+
+/// Semicolons, decimal commas, a preamble, units in a row of their own: the same numbers.
+#[test]
+fn files_of_every_kind_say_the_same() {
+    let files = recorded(&[]);
+    let spreadsheet = |(name, text): &(String, String)| {
+        let mut lines = text.lines();
+        let header: Vec<&str> = lines.next().unwrap().split(',').collect();
+        let split = |column: &str| {
+            let units = [("_l_per_min", "L/min"), ("_bar", "bar"), ("_v", "V"), ("_s", "s")];
+            let (ending, unit) = units.into_iter().find(|(ending, _)| column.ends_with(ending)).unwrap();
+            (column.strip_suffix(ending).unwrap().to_string(), unit)
+        };
+        let (names, units): (Vec<String>, Vec<&str>) = header.into_iter().map(split).unzip();
+        let rows = lines.map(|line| line.replace(',', ";").replace('.', ","));
+        let body = rows.collect::<Vec<_>>().join("\r\n");
+        let text =
+            format!("Bench 3;;\r\nvalve 17\r\n\r\n{}\r\n{}\r\n{body}\r\n", names.join(";"), units.join(";"));
+        (name.clone(), text)
+    };
+    let others: Vec<_> = files.iter().map(spreadsheet).collect();
+    let (first, second) = (identified(&files), identified(&others));
+    for (path, _) in TRUTH {
+        assert_eq!(value(&first, path), value(&second, path));
+    }
+}
+
+#[track_caller]
+fn refused(change: impl Fn(usize, &str) -> String) -> String {
+    let (name, text) = recorded(&[]).remove(0);
+    let rows = text.lines().enumerate().map(|(index, line)| change(index, line));
+    let text = rows.collect::<Vec<_>>().join("\n");
+    match try_identify(&[(name, text)], 1) {
+        Err(IdentifyError::Files(report)) => report.to_string(),
+        other => panic!("{other:?}"),
+    }
+}
+
+/// The cell in this row (from 1, below the names) and column (from 0) replaced.
+fn cell(row: usize, column: usize, with: &'static str) -> impl Fn(usize, &str) -> String {
+    move |index, line| {
+        let replaced = |(at, cell): (usize, &str)| {
+            if index == row && at == column { with.to_string() } else { cell.to_string() }
+        };
+        line.split(',').enumerate().map(replaced).collect::<Vec<_>>().join(",")
+    }
+}
+
+#[test]
+fn files_that_are_no_tests_are_refused_with_their_place() {
+    let cases = [
+        (cell(3, 3, "NaN"), "`NaN` is no number", "leakage.csv:4:"),
+        (cell(5, 3, ""), "`pressure_a` has a gap here", "leakage.csv:6:"),
+        (cell(4, 0, "1"), "the time of the row before", "leakage.csv:5:1"),
+        (cell(4, 0, "0.2"), "a time before that of the row before", "leakage.csv:5:1"),
+        (cell(9, 2, "7e6"), "7e6 bar is no supply_pressure of a valve test", "leakage.csv:10:"),
+        (cell(0, 3, "pressure_a"), "`pressure_a` has no unit", "leakage.csv:1:"),
+        (cell(0, 3, "pressure_a_v"), "`v` is no unit of a pressure", "leakage.csv:1:"),
+        (cell(0, 3, "pressure_b_bar"), "a second column of `pressure_b`", "leakage.csv:1:"),
+        (cell(0, 1, "comand_v"), "there is no column `command`", "leakage.csv:1:"),
+    ];
+    for (change, message, place) in cases {
+        let report = refused(change);
+        assert!(report.contains(message) && report.contains(place), "{message} {place}:\n{report}");
+    }
+    let standing =
+        refused(|index, line| if index == 0 { line.to_string() } else { cell(index, 1, "0")(index, line) });
+    assert!(standing.contains("the command never moves"), "{standing}");
+    let short = refused(|index, line| if index < 10 { line.to_string() } else { String::new() });
+    assert!(short.contains("9 rows are too few"), "{short}");
+}
+
+/// The fragment in place of the project's own table is a sound project with the same valve.
+#[test]
+fn the_identified_valve_goes_back_into_a_project() {
+    let answer = try_identify(&recorded(&[]), 1).unwrap();
+    let fragment = String::from_utf8(answer.files[0].bytes.clone()).unwrap();
+    let (before, rest) = HOSE.split_once("[valve]").unwrap();
+    let (_, after) = rest.split_once("[cylinder]").unwrap();
+    let named = fragment.replace("[valve]\n", "[valve]\nmodel = \"moog_760_c263a\"\n");
+    let project = format!("{before}{named}\n[cylinder]{after}");
+    let loaded = load(&project, &[], &[]);
+    let valve = &loaded.project.actuator.as_ref().unwrap().valve;
+    let edges = valve.flow.edges().unwrap().in_order();
+    assert!((edges[0] / 3.2e-7 - 1.0).abs() < 1e-2 && (valve.null_bias - 0.014).abs() < 2e-3);
+    assert!((valve.tare_drop(&loaded.project.actuator.as_ref().unwrap().supply) - 70e5).abs() < 1.0);
+    let checked = json(&project, &[], &[], &Request::Check);
+    assert!(!checked["derived"].as_array().unwrap().is_empty());
+}
