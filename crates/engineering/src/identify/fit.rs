@@ -95,7 +95,7 @@ impl<'a> Together<'a> {
         let channels = all.flat_map(|(recording, one)| {
             one.signals.iter().enumerate().filter_map(move |(signal, values)| {
                 let [least, most] = values.range();
-                (most > least).then(|| Channel { recording, signal, scale: FIRST_SCALE * (most - least) })
+                (most > least).then_some(Channel { recording, signal, scale: FIRST_SCALE * (most - least) })
             })
         });
         Together { recordings, channels: channels.collect(), tested, variables }
