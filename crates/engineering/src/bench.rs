@@ -52,7 +52,7 @@ impl StaticTest {
         }
     }
 
-    /// The columns of its table without their units.
+    /// Whether it measures the leakage, and the flow between the ports.
     pub fn measures_flow(self) -> [bool; 2] {
         [self == StaticTest::Leakage, self == StaticTest::Metering]
     }
@@ -94,7 +94,7 @@ pub enum BenchError {
     /// The valve cannot be computed with.
     #[error(transparent)]
     Rig(#[from] RigError),
-    /// It would have to be told more rows than there is room for.
+    /// A test would have more rows than are recorded.
     #[error("[bench] asks for {rows} rows a test: at most {most} are recorded")]
     TooManyRows {
         /// Of one test.
@@ -102,7 +102,7 @@ pub enum BenchError {
         /// How many there may be.
         most: usize,
     },
-    /// Whoever watched stopped it.
+    /// Stopped by the watch.
     #[error("stopped")]
     Stopped,
 }

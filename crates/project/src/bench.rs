@@ -158,8 +158,11 @@ impl FlowMeter {
         v.quantity(k, &mut self.minimum);
         let k = key("noise", &FLOW, "Root mean square of its noise.").not_negative().or(absent.noise);
         v.quantity(k, &mut self.noise);
-        let k = key("pressure_drop", &PRESSURE, "Its pressure drop at the highest flow.").not_negative();
-        v.quantity(k.or(absent.pressure_drop), &mut self.pressure_drop);
+        // The leakage flows to the valve through a meter whose drop the regulated supply makes up for.
+        if absent.pressure_drop > 0.0 {
+            let k = key("pressure_drop", &PRESSURE, "Its pressure drop at the highest flow.").not_negative();
+            v.quantity(k.or(absent.pressure_drop), &mut self.pressure_drop);
+        }
         v.flag(
             plain("signed", "Whether it tells the direction of the flow; absent: false."),
             &mut self.signed,

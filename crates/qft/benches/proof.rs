@@ -17,10 +17,8 @@ use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
 use phea_dynamics::expression::Recorded;
 use phea_dynamics::linear::{Polynomial, TransferFunction};
 use phea_dynamics::portable;
-use phea_dynamics::scalar::{Interval, Scalar};
-use phea_dynamics::uncertain_plant::{
-    PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant,
-};
+use phea_dynamics::scalar::Interval;
+use phea_dynamics::uncertain_plant::{PlantCoefficients, UncertainParameter, UncertainPlant};
 use phea_dynamics::watch::unwatched;
 use phea_qft::audit::audit;
 use phea_qft::closed_loop::Compensation;
@@ -28,6 +26,12 @@ use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, ver
 use phea_qft::proof::{Claim, Panel, ProofOptions, check, prove};
 use phea_qft::specification::{Limit, Requirement, Specification};
 use phea_qft::verification::{AuditProblem, TOLERANCE_DB, TrackingJudgement};
+
+#[path = "../tests/rig.rs"]
+#[allow(clippy::panic, reason = "a wrong number of parameters is a mistake of this program")]
+mod rig;
+
+use rig::force;
 
 type Failure = Box<dyn std::error::Error>;
 
@@ -120,24 +124,6 @@ fn family(uncertain: usize) -> Result<Family, Failure> {
     let coordinates: Vec<Coordinate> = (0..uncertain).map(along).collect();
     let members = vertices(&plant, &coordinates)?;
     Ok(Family::Uncertain(UncertainFamily::new(plant, coordinates, members, Extent::Box)?))
-}
-
-/// Command to force by equation 6.7, A = 1.58336e-3 m2.
-fn force<S: Scalar>(p: &[S]) -> RationalCoefficients<S> {
-    let [friction, flow_gain, leakage, stiffness, w, damping, mass, sensor] =
-        [0, 1, 2, 3, 4, 5, 6, 7].map(|index| p[index]);
-    let area = S::from(1.58336e-3);
-    let (area2, w2, spool) = (area * area, w * w, S::from(2.0) * damping * w);
-    let (leak, springs) = (leakage * stiffness, stiffness + sensor);
-    let denominator = vec![
-        area2 * mass,
-        spool * area2 * mass + area2 * friction + leak * mass,
-        spool * area2 * friction + w2 * area2 * mass + leak * (spool * mass + friction) + area2 * springs,
-        spool * area2 * springs + w2 * area2 * friction + leak * (spool * friction + w2 * mass + sensor),
-        w2 * area2 * springs + leak * (spool * sensor + w2 * friction),
-        w2 * leak * sensor,
-    ];
-    RationalCoefficients { numerator: vec![area * stiffness * flow_gain * sensor * w2], denominator }
 }
 
 fn rational(coefficients: [&[f64]; 2]) -> Result<TransferFunction, Failure> {

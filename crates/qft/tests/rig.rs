@@ -3,10 +3,18 @@
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::uncertain_plant::RationalCoefficients;
 
-/// Command to force by equation 6.7 with A = 1.58336e-3 m2, M = 13.1 kg, K_S = 2e7 N/m; parameters f_v, K_qU, K_c, K_H, w_nv, xi_v.
+/// Command to force by equation 6.7 with A = 1.58336e-3 m2; parameters f_v, K_qU, K_c, K_H, w_nv, xi_v, then M and K_S, which are
+/// 13.1 kg and 2e7 N/m where absent.
 pub(crate) fn force<S: Scalar>(p: &[S]) -> RationalCoefficients<S> {
-    let &[friction, flow_gain, leakage, stiffness, w, damping] = p else { panic!("six parameters") };
-    let (area, mass, sensor) = (S::from(1.58336e-3), S::from(13.1), S::from(2e7));
+    let &[friction, flow_gain, leakage, stiffness, w, damping, ref others @ ..] = p else {
+        panic!("six parameters or eight")
+    };
+    let (mass, sensor) = match *others {
+        [] => (S::from(13.1), S::from(2e7)),
+        [mass, sensor] => (mass, sensor),
+        _ => panic!("six parameters or eight"),
+    };
+    let area = S::from(1.58336e-3);
     let (area2, w2, spool) = (area * area, w * w, S::from(2.0) * damping * w);
     let (leak, springs) = (leakage * stiffness, stiffness + sensor);
     let denominator = vec![

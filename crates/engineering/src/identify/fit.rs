@@ -272,12 +272,10 @@ fn intervals(
     deviations: &[f64],
 ) -> [Option<[f64; 2]>; COUNT] {
     let numbers = coefficients.to_array();
-    let mut index = 0;
-    numbers.map(|number| {
-        index += 1;
-        let half = NORMAL_95 * deviations.get(index - 1).copied().unwrap_or(f64::INFINITY);
-        // a factor beyond a million is no statement
-        (half < 14.0).then(|| [-half, half].map(|by| variables.moved(index - 1, number, by)))
+    std::array::from_fn(|index| {
+        let half = NORMAL_95 * deviations.get(index).copied().unwrap_or(f64::INFINITY);
+        // a factor beyond a million says nothing
+        (half < 14.0).then(|| [-half, half].map(|by| variables.moved(index, numbers[index], by)))
     })
 }
 

@@ -6,7 +6,7 @@ use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
 use crate::quantity::DisplayUnit;
 
-/// The coefficients with their intervals, how well the signals are explained, and what is not told.
+/// The coefficients with their intervals, how well the signals are explained, and what the data do not determine.
 pub fn text(found: &Identification) -> String {
     let mut out = Document::default();
     let headings = ["coefficient", "identified", "95 % from", "to", "by hand", "unit"];
@@ -23,7 +23,7 @@ pub fn text(found: &Identification) -> String {
     out.sentences(remarks(found));
     let together = correlations(found);
     if !together.is_empty() {
-        out.heading("Coefficients that the data tell only together");
+        out.heading("Coefficients that the data determine only together");
         out.sentences(together.into_iter().map(|([first, second], correlation)| {
             format!("{first} and {second}: correlation {}.", significant(correlation, 3))
         }));
@@ -102,12 +102,12 @@ fn remarks(found: &Identification) -> Vec<String> {
 fn not_told(untold: &super::Untold) -> String {
     let names: Vec<&str> = untold.shares.iter().map(|(name, _)| *name).collect();
     let first = match names.as_slice() {
-        [only] => format!("{only} is not told"),
-        several => format!("{} are not told apart", several.join(", ")),
+        [only] => format!("The data do not determine {only}"),
+        several => format!("The data cannot tell apart {}", several.join(", ")),
     };
     let tests: Vec<String> = untold.told_by.iter().map(|test| test.name().replace('_', " ")).collect();
     match tests.as_slice() {
-        [] => format!("{first}; none of the static tests at 30 % of the command tells."),
-        tests => format!("{first}; a test of {} with all its columns would tell.", tests.join(" or ")),
+        [] => format!("{first}, nor would any of the static tests at 30 % of the command."),
+        tests => format!("{first}; a test of {} with all its columns would.", tests.join(" or ")),
     }
 }
