@@ -34,8 +34,8 @@ mod vector;
 
 pub use commanded_plant::{CommandedPlant, LoopSignals};
 pub use course::{
-    Attention, Event, Input, InputSchedule, Observer, Outcome, Sampler, Settings, SimulationError, Status,
-    StepCounts,
+    Amplification, Attention, Event, Input, InputSchedule, Observer, Outcome, Sampler, Settings,
+    SimulationError, Status, StepCounts,
 };
 pub use driver::drive;
 pub use equilibrium::{EquilibriumError, equilibrium};

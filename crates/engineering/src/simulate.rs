@@ -37,8 +37,8 @@ pub use frequency::{FrequencyRequest, MachineResponse, MachineResponses, Respons
 pub use measured::Overlay;
 pub use metrics::{Cause, Measured, Metrics, Window};
 pub use record::{Look, Record};
-pub use run::COMMAND_LIMIT;
 pub use run::{BeyondExpansion, Occurrence, ScenarioRun, StoppedRun, UnresolvedMode};
+pub use run::{COMMAND_LIMIT, ERRORS_AMPLIFIED, errors_amplified};
 pub use saved::SavedState;
 
 pub use bench::options;

@@ -110,6 +110,31 @@ fn an_answer_tells_the_check_where_it_was_asked_for() {
     assert!(unsure["check"]["part_of_peak"].as_f64().unwrap() > 1e-3 && text.contains(doubt), "{text}");
 }
 
+/// Without a check, too, it is reported where errors may have grown until they are visible: within the motion that lets the piston
+/// follow, at a frequency of the piston on the load cell, and not where nothing grows.
+#[test]
+fn a_run_reports_where_errors_may_be_visible() {
+    let ask = |settings: &[&str]| {
+        let answer = command::answer(&Memory::default(), &load(settings), &[], &Request::Simulate).unwrap();
+        let json: Value = serde_json::from_str(&answer.json).unwrap();
+        (json["scenarios"][0].clone(), answer.text)
+    };
+    let words = "errors within the tolerance may become visible";
+    let (calm, text) = ask(&[SHORT]);
+    assert!(calm["errors_amplified"].is_null() && calm["errors_amplified_reason"].is_string());
+    assert!(!text.contains(words), "{text}");
+    let (ringing, text) = ask(&SLOW);
+    assert!(text.contains(words), "{text}");
+    let [from, until, frequency] = ["from_s", "until_s", "frequency_rad_per_s"]
+        .map(|key| ringing["errors_amplified"][key].as_f64().unwrap());
+    let begins = ringing["events"][1]["time_s"].as_f64().unwrap();
+    assert!(begins <= from && from < until && until <= begins + 3.0, "{from} to {until} s after {begins} s");
+    let project = load(&SLOW).project;
+    let rig = Setup::rig_of(&project).unwrap().linear;
+    let on_the_cell = (rig.sensor_stiffness / rig.moving_mass).sqrt();
+    assert!((frequency / on_the_cell - 1.0).abs() < 0.3, "{frequency} rad/s, {on_the_cell} without oil");
+}
+
 /// What is stopped while it is checked keeps its run, and says how far the check came.
 #[test]
 fn a_check_that_is_stopped_compares_what_there_is() {

@@ -1,6 +1,7 @@
 //! Inputs, observers, settings and outcome of a simulation.
 
 use super::{Method, Profile, Stretch};
+use crate::portable;
 
 /// Duration, inputs and output step of a simulation.
 #[derive(Clone, Debug, PartialEq)]
@@ -229,6 +230,38 @@ pub struct StepCounts {
     pub evaluations: u64,
 }
 
+/// Part of the scale of a state from which on an error is visible.
+const VISIBLE: f64 = 1e-3;
+
+/// An oscillation that grew by itself, without being suppressed by the method.
+///
+/// ```text
+/// factor = exp(integral of Re(lambda) over the time from its begin to its end)
+/// ```
+///
+/// lambda is the least stable of the fast eigenvalues of the Jacobian along the trajectory, as far
+/// as these are known between the steps at which they are computed. The factor shows where errors
+/// of the solver may have been amplified; it is not the ratio of two amplitudes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Amplification {
+    /// Logarithm of the factor.
+    pub logarithm: f64,
+    /// When the growth began, in s of simulated time.
+    pub from_s: f64,
+    /// When it was largest, in s of simulated time.
+    pub until_s: f64,
+    /// Magnitude of the eigenvalue at that time, in rad/s.
+    pub frequency_rad_per_s: f64,
+}
+
+impl Amplification {
+    /// Whether errors as large as the tolerance may have grown to a thousandth of the scales of the
+    /// states.
+    pub fn may_show_errors(&self, tolerance: f64) -> bool {
+        self.logarithm >= portable::ln(VISIBLE / tolerance)
+    }
+}
+
 /// The outcome of one simulation, apart from what its observer received.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcome {
@@ -240,6 +273,8 @@ pub struct Outcome {
     pub work: StepCounts,
     /// State at the end.
     pub end: Vec<f64>,
+    /// What grew most; `None` where nothing did.
+    pub amplification: Option<Amplification>,
 }
 
 /// Why a simulation did not start.

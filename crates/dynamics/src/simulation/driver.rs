@@ -467,7 +467,8 @@ impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
         let mut events = passage.events;
         events.sort_by(|one, other| one.time_s.total_cmp(&other.time_s));
         let end = self.state.iter().map(|state| state.lane(lane)).collect();
-        Some((Outcome { status, events, work: passage.work, end }, observer))
+        let amplification = self.watches[lane].amplification();
+        Some((Outcome { status, events, work: passage.work, end, amplification }, observer))
     }
 }
 

@@ -6,8 +6,8 @@
 
 use nalgebra::DMatrix;
 
-use super::Lane;
 use super::rosenbrock::Rosenbrock;
+use super::{Amplification, Lane};
 use crate::linear::working_eigenvalues;
 use crate::portable;
 
@@ -117,6 +117,33 @@ impl Mode {
     }
 }
 
+/// The growth since it last began, and the largest so far.
+#[derive(Clone, Copy, Debug, Default)]
+struct Amplifying {
+    /// Time and growth rate of the last step that was asked for.
+    before: Option<(f64, f64)>,
+    from_s: f64,
+    logarithm: f64,
+    largest: Option<Amplification>,
+}
+
+impl Amplifying {
+    /// The trapezoidal rule over the growth rate; decay below the initial amplitude is forgotten.
+    fn advance(&mut self, time_s: f64, growth_per_s: f64, frequency_rad_per_s: f64) {
+        let (before_s, before) = self.before.replace((time_s, growth_per_s)).unwrap_or((time_s, 0.0));
+        let logarithm = self.logarithm + 0.5 * (before + growth_per_s) * (time_s - before_s);
+        if logarithm > 0.0 {
+            self.logarithm = logarithm;
+        } else {
+            (self.logarithm, self.from_s) = (0.0, time_s);
+        }
+        if self.logarithm > self.largest.map_or(0.0, |largest| largest.logarithm) {
+            let (logarithm, from_s) = (self.logarithm, self.from_s);
+            self.largest = Some(Amplification { logarithm, from_s, until_s: time_s, frequency_rad_per_s });
+        }
+    }
+}
+
 /// What is known of the modes of the machine in one lane.
 ///
 /// Eigenvalues cost several steps, so they are computed only when they may have changed: at fixed
@@ -151,6 +178,10 @@ pub(super) struct GrowthWatch {
     before: Option<(f64, f64)>,
     /// Logarithm of what the least stable mode has grown by and has not decayed by since.
     grown: f64,
+    /// Growth of the least stable fast mode, as its eigenvalue has it, in 1/s.
+    eigenvalue: f64,
+    /// What grows now, and what has grown most.
+    growing: Amplifying,
     /// Steps since the last look; `None` before the first.
     age: Option<u64>,
     interval: u64,
@@ -179,6 +210,7 @@ impl GrowthWatch {
     pub(super) fn forget(&mut self) {
         self.age = None;
         (self.before, self.grown) = (None, 0.0);
+        self.growing = Amplifying::default();
     }
 
     /// The mode that limits a step of this length, from the Jacobian at its start, `steps` steps
@@ -202,6 +234,8 @@ impl GrowthWatch {
         }
         let growth_per_s = self.growth_at(damping);
         self.follow(time_s, growth_per_s);
+        let eigenvalue = self.eigenvalue + 0.5 * (self.damping - damping);
+        self.growing.advance(time_s, eigenvalue, self.fastest);
         if !self.is_known_at(damping) {
             let (small_s, frequency_rad_per_s) = (self.small_s, self.fastest);
             let small = Growing { step_s: small_s, frequency_rad_per_s, growth_per_s };
@@ -221,6 +255,11 @@ impl GrowthWatch {
             let grown = self.grown + 0.5 * (before + growth_per_s) * (time_s - before_s);
             self.grown = grown.clamp(0.0, MOST_GROWN);
         }
+    }
+
+    /// What has grown most.
+    pub(super) fn amplification(&self) -> Option<Amplification> {
+        self.growing.largest
     }
 
     /// The longest step that shows how what has grown decays.
@@ -287,12 +326,14 @@ impl GrowthWatch {
         self.age = Some(0);
         self.modes.clear();
         (self.fastest, self.most) = (0.0, f64::NEG_INFINITY);
+        let mut eigenvalues: Vec<Mode> = Vec::new();
         for block in &self.blocks {
             let order = block.len();
             let matrix = DMatrix::from_fn(order, order, |row, column| jacobian[(block[row], block[column])]);
             for value in working_eigenvalues(matrix).unwrap_or_default() {
                 let mode = Mode { magnitude: portable::magnitude(value), growth: value.re };
                 if value.im > 0.0 || (value.im == 0.0 && value.re > 0.0) {
+                    eigenvalues.push(mode);
                     let mode = self.told(mode, value.im);
                     self.fastest = self.fastest.max(mode.magnitude);
                     self.most = self.most.max(mode.growth);
@@ -300,8 +341,11 @@ impl GrowthWatch {
                 }
             }
         }
-        let fast = self.modes.iter().filter(|mode| mode.magnitude > FAST * self.fastest);
-        self.growth = fast.fold(f64::NEG_INFINITY, |most, mode| most.max(mode.growth));
+        let growth = |modes: &[Mode]| {
+            let fast = modes.iter().filter(|mode| mode.magnitude > FAST * self.fastest);
+            fast.fold(f64::NEG_INFINITY, |most, mode| most.max(mode.growth))
+        };
+        (self.growth, self.eigenvalue) = (growth(&self.modes), growth(&eigenvalues));
         self.small_s = if self.fastest > 0.0 { SMALL_ANGLE / self.fastest } else { 0.0 };
         self.damping = self.friction(method, lane);
     }

@@ -63,6 +63,10 @@ fn two_masses_grow_at_their_rate() {
                 let course = course(duration_s, duration_s, vec![]);
                 let run = simulate(&system, &begin, &course, None, &settings, &mut |_| true).unwrap();
                 assert_eq!(run.outcome.status, Status::Completed);
+                let grown = run.outcome.amplification.unwrap();
+                let expected = law.alpha * (grown.until_s - grown.from_s);
+                assert!((grown.logarithm / expected - 1.0).abs() < 1e-3 && grown.from_s == 0.0, "{grown:?}");
+                assert!(grown.until_s > 0.5 * duration_s, "{grown:?} of {duration_s} s");
                 let (before, after) = (law.amplitudes(&begin), law.amplitudes(&run.outcome.end));
                 for (before, after) in before.into_iter().zip(after) {
                     let rate = (after - before) / duration_s;

@@ -12,7 +12,8 @@ use super::row::{Ran, Row, RowOutcome, numbers};
 use crate::rig::{RigError, actuator};
 use crate::setup::Setup;
 use crate::simulate::{
-    Bench, COMMAND_LIMIT, Follower, Occurrence, SimulateError, StoppedRun, course_of, occurrences, options,
+    Bench, COMMAND_LIMIT, ERRORS_AMPLIFIED, Follower, Occurrence, SimulateError, StoppedRun, course_of,
+    errors_amplified, occurrences, options,
 };
 
 /// A run ready to be driven.
@@ -130,6 +131,9 @@ impl Prepared {
         let mut found = occurrences(control, &self.start, &first, &outcome.events);
         if let Some((time_s, begins)) = self.log.borrow().limits.first().copied() {
             found.push(Occurrence { time_s, kind: COMMAND_LIMIT, begins });
+        }
+        if let Some(grown) = errors_amplified(&self.bench, outcome) {
+            found.push(Occurrence { time_s: grown.from_s, kind: ERRORS_AMPLIFIED, begins: true });
         }
         found
     }

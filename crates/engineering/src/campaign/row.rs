@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use phea_hydraulics::machine::INDICATORS;
 use sha2::{Digest, Sha256};
 
-use super::simulate::{COMMAND_LIMIT, Cause, Metrics, Window};
+use super::simulate::{COMMAND_LIMIT, Cause, ERRORS_AMPLIFIED, Metrics, Window};
 
 /// Names of the metrics, in the order of a row.
 pub const METRIC_NAMES: [&str; 9] = [
@@ -274,7 +274,7 @@ impl Columns {
         if status == REFUSED {
             return Some(Row { run, values, lumps, outcome: RowOutcome::Refused(reason) });
         }
-        let known = || INDICATORS.iter().chain(std::iter::once(&COMMAND_LIMIT));
+        let known = || INDICATORS.iter().chain([&COMMAND_LIMIT, &ERRORS_AMPLIFIED]);
         let kinds = happened.split(';').filter(|kind| !kind.is_empty());
         let occurrences = kinds.map(|kind| known().find(|known| **known == kind).copied());
         let went = forces.iter().take_while(|force| !force.is_empty());

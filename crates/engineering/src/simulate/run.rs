@@ -2,7 +2,9 @@
 
 use std::cell::{Cell, RefCell};
 
-use phea_dynamics::simulation::{Event, Input, InputSchedule, Outcome, Sampler, Status, StepCounts, Task};
+use phea_dynamics::simulation::{
+    Amplification, Event, Input, InputSchedule, Outcome, Sampler, Status, StepCounts, Task,
+};
 use phea_hydraulics::machine::INDICATORS;
 use phea_machine::{Control, ControllerSamples, Digital, DigitalMemory, Watcher};
 
@@ -52,6 +54,9 @@ pub struct ScenarioRun {
     pub measured: Vec<Overlay>,
     /// How far a run at a tenth of the tolerance differs; `None` where nobody asked.
     pub check: Option<Check>,
+    /// An oscillation that grew so much that errors within the tolerance may be visible; `None`
+    /// where none did.
+    pub errors_amplified: Option<Amplification>,
     /// Whether a stated command drove the valve, and no controller.
     pub open_loop: bool,
     /// Chambers whose pressure went beyond what the expansion of their hose was measured at.
@@ -200,6 +205,7 @@ pub(super) fn run(
         outside_model_s,
         settling_band_percent: band,
         measured,
+        errors_amplified: errors_amplified(bench, &outcome),
         open_loop: scenario.is_open_loop(),
         beyond_expansion: beyond_expansion(bench, peak_pressures_pa),
         exceeded,
@@ -259,6 +265,14 @@ fn looks_per_row(scenario: &Scenario) -> usize {
 /// What an [`Occurrence`] is called while the command is at its limit, beside the names of what a
 /// machine tells of itself.
 pub const COMMAND_LIMIT: &str = "command_limit";
+
+/// What a campaign calls [`ScenarioRun::errors_amplified`], with the names of what a machine reports.
+pub const ERRORS_AMPLIFIED: &str = "errors_amplified";
+
+/// The oscillation that grew so much that errors within the tolerance may be visible.
+pub fn errors_amplified(bench: &Bench, outcome: &Outcome) -> Option<Amplification> {
+    outcome.amplification.filter(|grown| grown.may_show_errors(bench.settings.tolerance))
+}
 
 /// Inputs at time zero: those before the machine's, its ground, the force from outside, and the
 /// waves under way.

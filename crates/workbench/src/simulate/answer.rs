@@ -12,6 +12,7 @@ use super::{
 };
 use crate::answer;
 use crate::project::Loaded;
+use phea_dynamics::simulation::Amplification;
 
 #[derive(Serialize)]
 pub(crate) struct Body<'a> {
@@ -41,6 +42,8 @@ struct ScenarioRow<'a> {
     outside_model_s: Option<f64>,
     outside_model_s_reason: Option<&'static str>,
     measured: Vec<MeasuredRow<'a>>,
+    errors_amplified: Option<AmplifiedRow>,
+    errors_amplified_reason: Option<&'static str>,
     check: Option<CheckRow>,
     check_reason: Option<&'static str>,
     /// Chambers above the pressure that the expansion of their hose is stated at.
@@ -83,6 +86,13 @@ struct MeasuredRow<'a> {
 struct ModeRow {
     frequency_rad_per_s: f64,
     growth_per_s: f64,
+}
+
+#[derive(Serialize)]
+struct AmplifiedRow {
+    from_s: f64,
+    until_s: f64,
+    frequency_rad_per_s: f64,
 }
 
 #[derive(Serialize)]
@@ -197,6 +207,11 @@ fn scenario(run: &ScenarioRun, state_file: String) -> ScenarioRow<'_> {
         outside_model_s: run.outside_model_s,
         outside_model_s_reason: run.outside_model_s.is_none().then_some("its equations hold throughout"),
         measured: run.measured.iter().map(measured).collect(),
+        errors_amplified: run.errors_amplified.map(amplified),
+        errors_amplified_reason: run
+            .errors_amplified
+            .is_none()
+            .then_some("no oscillation grew so much that errors within the tolerance may be visible"),
         check: run.check.as_ref().map(check::row),
         check_reason: run.check.is_none().then_some("it was not checked"),
         beyond_expansion: run.beyond_expansion.iter().map(beyond).collect(),
@@ -207,6 +222,11 @@ fn scenario(run: &ScenarioRun, state_file: String) -> ScenarioRow<'_> {
 fn exceeded(exceeded: &Exceeded) -> ExceededRow {
     let Exceeded { limit, limit_value, peak, peak_time_s, first_time_s } = *exceeded;
     ExceededRow { what: limit.word(), limit: limit_value, peak, peak_time_s, first_time_s }
+}
+
+fn amplified(grown: Amplification) -> AmplifiedRow {
+    let Amplification { from_s, until_s, frequency_rad_per_s, .. } = grown;
+    AmplifiedRow { from_s, until_s, frequency_rad_per_s }
 }
 
 fn beyond(beyond: &BeyondExpansion) -> BeyondRow {

@@ -193,6 +193,16 @@ pub(crate) fn coarse_sentence(run: &ScenarioRun) -> Option<String> {
     })
 }
 
+/// What may depend on the tolerance.
+fn amplified_sentence(run: &ScenarioRun) -> Option<String> {
+    let grown = run.errors_amplified?;
+    let [from, until] = [grown.from_s, grown.until_s].map(|time| DisplayUnit::SECOND.number(time, 4));
+    Some(format!(
+        "from {from} to {until} s an oscillation of {} rad/s grows so much that errors within the tolerance may become visible: `--check` estimates how far the result depends on them",
+        significant(grown.frequency_rad_per_s, 3),
+    ))
+}
+
 /// What happened on the way, a sentence each.
 pub(crate) fn occurrence_sentences(run: &ScenarioRun) -> Vec<String> {
     let found = &run.occurrences;
@@ -200,6 +210,7 @@ pub(crate) fn occurrence_sentences(run: &ScenarioRun) -> Vec<String> {
     if found.len() > TOLD {
         sentences.push(format!("and {} more changes of this kind, listed in the JSON", found.len() - TOLD));
     }
+    sentences.extend(amplified_sentence(run));
     sentences.extend(run.beyond_expansion.iter().map(beyond_words));
     sentences.extend(run.exceeded.iter().map(exceeded_words));
     sentences.extend(run.outside_model_s.map(|time_s| {
@@ -250,8 +261,9 @@ pub(crate) fn compare_text(comparison: &ScenarioComparison<'_>, asked: &[Loaded]
         let columns: Vec<Option<&ScenarioRun>> = comparison.runs_of(name).collect();
         out.push_str(&format!("\n{name}\n{}\n", side_by_side(&columns).text()));
         for (number, run) in columns.iter().enumerate() {
-            for exceeded in run.iter().flat_map(|run| &run.exceeded) {
-                out.push_str(&format!("   {}: {}\n", letter(number), exceeded_words(exceeded)));
+            let exceeded = run.iter().flat_map(|run| &run.exceeded).map(exceeded_words);
+            for sentence in run.and_then(amplified_sentence).into_iter().chain(exceeded) {
+                out.push_str(&format!("   {}: {sentence}\n", letter(number)));
             }
         }
     }

@@ -91,6 +91,8 @@ pub(crate) struct Ours {
     pub(crate) beyond: f64,
     /// Its ringing where trajectories have separated; `None` where they do not.
     pub(crate) roughness: Option<Roughness>,
+    /// Whether it reports that errors of [`TOLERANCE`] may be visible.
+    pub(crate) may_show_errors: bool,
     pub(crate) work: StepCounts,
     pub(crate) seconds: f64,
 }
@@ -99,7 +101,9 @@ impl Ours {
     /// A run whose errors are not known yet.
     fn new(outcome: &Outcome, seconds: f64) -> Ours {
         let (status, work) = (outcome.status, outcome.work);
-        Ours { status, error: 0.0, error_of_all: 0.0, beyond: 0.0, roughness: None, work, seconds }
+        let may_show_errors = outcome.amplification.is_some_and(|grown| grown.may_show_errors(TOLERANCE));
+        let (error, error_of_all, beyond) = (0.0, 0.0, 0.0);
+        Ours { status, error, error_of_all, beyond, roughness: None, may_show_errors, work, seconds }
     }
 
     /// Whether it keeps what is asked for, and how it fails otherwise.

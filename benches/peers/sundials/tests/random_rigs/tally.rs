@@ -50,6 +50,9 @@ struct Checks {
     well_posed: usize,
     /// Errors over all rows of well-posed rigs.
     errors: Vec<f64>,
+    /// Rigs whose error at the default tolerance exceeds the largest, and rigs whose error does not: all, of those with the report that
+    /// errors may be visible, of those where a check says so, and of those with either.
+    reported: [[usize; 4]; 2],
     /// True error over what the check says, where either exceeds the largest: of well-posed rigs, and of the others.
     factors: [Vec<f64>; 2],
 }
@@ -205,6 +208,11 @@ impl Checks {
             self.errors.push(error);
         }
         let larger = error >= LARGEST_ERROR;
+        let (grown, checked) = (run.may_show_errors, estimate >= LARGEST_ERROR);
+        let counts = &mut self.reported[usize::from(!larger)];
+        for (count, counted) in counts.iter_mut().zip([true, grown, checked, grown || checked]) {
+            *count += usize::from(counted);
+        }
         if larger && compared.well_posed {
             println!(
                 "rig {number}: well posed, errs by {error:.1e} at {TOLERANCE:e}; a check says {estimate:.1e}"
@@ -220,6 +228,11 @@ impl Checks {
         println!("well posed: {}", self.well_posed);
         let beyond = self.errors.iter().filter(|error| **error >= LARGEST_ERROR).count();
         println!("of those, error at {TOLERANCE:e} of {LARGEST_ERROR:e} or more in any row: {beyond}");
+        for (name, [all, grown, checked, either]) in ["exceeds it", "does not"].iter().zip(self.reported) {
+            println!(
+                "error at {TOLERANCE:e} {name}: {all} rigs, {grown} report that errors may be visible, a check shows it of {checked}, either of {either}"
+            );
+        }
         let [well, ill] = &mut self.factors;
         spread("error of well-posed rigs at the default tolerance, all rows", &mut self.errors);
         spread("where error or check exceed it: error over check, well posed", well);
