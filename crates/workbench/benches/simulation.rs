@@ -10,16 +10,17 @@
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a bench talks to the person who started it")]
 #![allow(missing_docs, reason = "a program of its own")]
 
+use std::cell::RefCell;
 use std::fmt::Write as _;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use phea_dynamics::controller::{ControllerState, SampledController};
 use phea_dynamics::simulation::{
-    CommandedPlant, Input, InputSchedule, Observer, Outcome, Profile, Queue, Sampler, Sensed, Settings,
-    Status, System, Task, drive,
+    Input, InputSchedule, Observer, Outcome, Profile, Sampler, Settings, Status, Task,
 };
-use phea_hydraulics::machine::{Machine, MachineOptions, StartValues};
+use phea_engineering::simulate;
+use phea_hydraulics::machine::StartValues;
+use phea_machine::{Control, Digital, Waking, Watcher};
 use phea_workbench::project::{self, MotionShape, Project, Signal};
 use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
@@ -118,26 +119,21 @@ fn read(text: &str) -> Result<Project, Fault> {
     Ok(loaded.project)
 }
 
-/// What runs of one project share.
+/// What runs of one project share: the kernel that the command runs, compiled as for the command.
 struct Bench {
     control: Control,
+    settings: Settings,
     start: Vec<f64>,
     course: InputSchedule,
     stiffness: f64,
 }
 
-enum Control {
-    Continuous(Box<CommandedPlant<Sensed<Machine>>>),
-    Sampled { held: Box<CommandedPlant<Sensed<Machine>>>, digital: SampledController },
-}
-
 impl Bench {
     fn new(project: &Project) -> Result<Bench, Fault> {
-        let rig = Setup::rig_of(project)?;
-        let machine = Machine::new(&rig.actuator, &MachineOptions::default())?;
+        let shared = simulate::Bench::new(&Setup::new(project)?)?;
         let scenario = project.scenarios.first().ok_or("no scenario")?;
         let stated = scenario.start.as_ref().ok_or("no start")?;
-        let beginning = machine.start(&StartValues {
+        let beginning = shared.machine.start(&StartValues {
             position: stated.position.unwrap_or(0.0),
             pressure_a: stated.pressure_a.unwrap_or(0.0),
             pressure_b: stated.pressure_b.unwrap_or(0.0),
@@ -152,74 +148,32 @@ impl Bench {
         let motion = Profile::smooth_step(declared.start, duration, distance)?;
         let ground = motion.shifted(beginning.inputs[0]);
         let mut inputs = vec![reference, Input::Value(ground.clone()), Input::Rate(ground)];
-
-        let mut law = Setup::new(project)?.controller.ok_or("no controller")?;
-        let sensed = Sensed::new(machine, &Setup::new(project)?.sensor)?;
-        let control = match law.timing.sample_time_s {
-            None => Control::Continuous(Box::new(CommandedPlant::in_loop(sensed, &law, 0.0)?)),
-            Some(sample_time_s) => {
-                let between = std::mem::take(&mut law.prefilter);
-                inputs.insert(0, Input::Command);
-                let held = Box::new(CommandedPlant::on_hold(sensed, &between.transfer_function()?)?);
-                Control::Sampled { held, digital: law.sampled(sample_time_s)? }
-            }
-        };
-        let states = match &control {
-            Control::Continuous(closed) => closed.states(),
-            Control::Sampled { held, .. } => held.states(),
-        };
+        if matches!(shared.control, Control::Sampled(_)) {
+            inputs.insert(0, Input::Command);
+        }
+        let [states, _] = shared.control.size();
         let mut start = beginning.state;
         start.resize(states, 0.0);
         let course =
             InputSchedule { duration_s: scenario.duration, output_step_s: scenario.output_step, inputs };
-        Ok(Bench { control, start, course, stiffness: rig.actuator.components().force_sensor.stiffness })
+        let stiffness = shared.rig.actuator.components().force_sensor.stiffness;
+        Ok(Bench { control: shared.control, settings: shared.settings, start, course, stiffness })
     }
 
     fn run(&self, tolerance: f64) -> Result<(Outcome, Vec<[f64; 2]>), Fault> {
-        let settings = Settings { tolerance, ..Settings::default() };
-        match &self.control {
-            Control::Continuous(closed) => self.drive(&mut closed.as_ref().clone(), None, &settings),
-            Control::Sampled { held, digital } => {
-                let state = digital.at_rest();
-                let sampler = Digital { held: held.as_ref(), controller: digital, state };
-                self.drive(&mut held.as_ref().clone(), Some(Box::new(sampler)), &settings)
+        let settings = Settings { tolerance, ..self.settings };
+        let log = RefCell::default();
+        let sampler = match &self.control {
+            Control::Sampled(sampled) => {
+                Some(Box::new(Digital::new(sampled, &Waking::AtRest, &log)) as Box<dyn Sampler + '_>)
             }
-        }
-    }
-
-    fn drive<'a, E: System<f64>>(
-        &'a self,
-        system: &mut E,
-        sampler: Option<Box<dyn Sampler + 'a>>,
-        settings: &Settings,
-    ) -> Result<(Outcome, Vec<[f64; 2]>), Fault> {
-        let force = Force { stiffness: self.stiffness, rows: Vec::new() };
-        let task = Task { start: self.start.clone(), course: &self.course, sampler, observer: force };
-        let mut queue = Single { task: Some(task), result: None };
-        drive(system, &mut queue, settings)?;
-        queue.result.ok_or_else(|| "no result".into())
-    }
-}
-
-/// The controller in its computer.
-struct Digital<'a> {
-    held: &'a CommandedPlant<Sensed<Machine>>,
-    controller: &'a SampledController,
-    state: ControllerState,
-}
-
-impl Sampler for Digital<'_> {
-    fn sample_time_s(&self) -> f64 {
-        self.controller.sample_time_s()
-    }
-
-    fn delay_s(&self) -> f64 {
-        0.0
-    }
-
-    fn command(&mut self, _time_s: f64, state: &[f64], inputs: &[f64]) -> f64 {
-        let [reference, measurement] = self.held.sampled(state, inputs);
-        self.controller.step(&mut self.state, reference, measurement).command
+            Control::Continuous(_) | Control::Open(_) => None,
+        };
+        let mut force = Force { stiffness: self.stiffness, rows: Vec::new() };
+        let observer: Watcher<'_> = Box::new(&mut force);
+        let task = Task { start: self.start.clone(), course: &self.course, sampler, observer };
+        let outcome = self.control.drive(task, &settings, &mut |_| true)?;
+        Ok((outcome, force.rows))
     }
 }
 
@@ -240,27 +194,6 @@ impl Observer for Force {
 
     fn wants_inputs(&self) -> bool {
         false
-    }
-}
-
-struct Single<'a> {
-    task: Option<Task<'a, Force>>,
-    result: Option<(Outcome, Vec<[f64; 2]>)>,
-}
-
-impl<'a, E> Queue<'a, E> for Single<'a> {
-    type Observer = Force;
-
-    fn next(&mut self, _system: &mut E, _lane: usize) -> Option<Task<'a, Force>> {
-        self.task.take()
-    }
-
-    fn done(&mut self, _lane: usize, outcome: Outcome, observer: Force) {
-        self.result = Some((outcome, observer.rows));
-    }
-
-    fn goes_on(&mut self, _lane: usize, _time_s: f64) -> bool {
-        true
     }
 }
 
