@@ -218,7 +218,24 @@ pub(crate) struct Recorded {
     /// Starting points of the search (6)
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub(crate) starts: Option<u16>,
-    /// Seed of the starting points
+    /// Seed of the starting points and of the bootstrap
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(crate) seed: u32,
+    /// Intervals by a bootstrap of this many repetitions too, 50 or more
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(50..=1_000_000))]
+    pub(crate) bootstrap: Option<u32>,
+    /// The model of the leakage, if the recordings are not to decide
+    #[arg(long, value_name = "MODEL")]
+    pub(crate) leakage_model: Option<LeakageWord>,
+}
+
+/// A model of the leakage, as the project file calls it.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+pub(crate) enum LeakageWord {
+    /// One secant for each edge
+    #[value(name = "each_edge")]
+    EachEdge,
+    /// One curve for the whole valve
+    #[value(name = "one_curve")]
+    OneCurve,
 }

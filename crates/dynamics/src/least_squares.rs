@@ -4,9 +4,9 @@
 //! minimise  sum rho(r_i(x))    with  lower <= x <= upper,     rho(r) = r^2/2 for |r| <= k,  k|r| - k^2/2 beyond
 //! ```
 //!
-//! A damped Gauss-Newton method (Levenberg 1944, Marquardt 1963) on the normal equations, each
-//! residual weighted by psi(r)/r with psi = rho' (Huber 1964). A variable at a bound that the step
-//! would leave is held for that step. The caller scales the variables to order one and the
+//! A damped Gauss-Newton method (Levenberg 1944, Marquardt 1963) on the normal equations, with psi =
+//! rho' (Huber 1964) for the residuals and psi' for their curvature. A variable at a bound that the
+//! step would leave is held for that step. The caller scales the variables to order one and the
 //! residuals to their noise.
 
 mod uncertainty;
@@ -43,6 +43,9 @@ impl Default for Settings {
         Settings { robust_beyond: 1.345, maximum_evaluations: 100, tolerance: 1e-10 }
     }
 }
+
+/// Damping below which a step is as good as that of Gauss and Newton.
+const FULL_STEP: f64 = 1e-3;
 
 /// How a search ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -122,11 +125,12 @@ pub fn minimise(
     };
     let cost = sum(&linearised);
     let mut best = Minimum { variables, cost, linearised, evaluations, ending: Ending::OutOfEvaluations };
-    let mut damping = 1e-3;
+    let mut damping = FULL_STEP;
+    let mut curvature = Curvature::OfLoss;
     // steps in a row that changed next to nothing
     let mut idle = 0;
     while evaluations < settings.maximum_evaluations && idle < 3 {
-        let Some(step) = step(&best, bounds, damping, settings.robust_beyond) else {
+        let Some(step) = step(&best, bounds, damping, (curvature, settings.robust_beyond)) else {
             idle = 3;
             continue;
         };
@@ -136,59 +140,99 @@ pub fn minimise(
         let found = evaluate(&tried)?;
         let better = found.map(|found| (sum(&found), found)).filter(|(cost, _)| *cost < best.cost);
         let Some((cost, linearised)) = better else {
-            damping *= 8.0;
+            (curvature, damping) = match curvature {
+                Curvature::OfLoss => (Curvature::Weighted, damping),
+                Curvature::Weighted => (Curvature::OfLoss, 8.0 * damping),
+            };
             idle = if damping > 1e12 { 3 } else { idle };
             continue;
         };
-        idle = if best.cost - cost <= settings.tolerance * best.cost { idle + 1 } else { 0 };
+        let changed = best.cost - cost > settings.tolerance * best.cost;
+        // a step that next to nothing damped and that changed next to nothing will not be followed by another
+        let is_full = damping <= FULL_STEP;
+        idle = if changed { 0 } else { idle + if is_full { 3 } else { 1 } };
         best = Minimum { variables: tried, cost, linearised, ..best };
-        damping = (damping / 5.0).max(1e-12);
+        (curvature, damping) = (Curvature::OfLoss, (damping / 5.0).max(1e-12));
     }
     let ending = if idle < 3 { Ending::OutOfEvaluations } else { Ending::Converged };
     Ok(Minimum { evaluations, ending, ..best })
 }
 
+/// What a residual counts for in the curvature of the sum.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Curvature {
+    /// psi': Newton's method where residuals are linear, good near the minimum.
+    OfLoss,
+    /// psi/r: shorter steps, good where most residuals are beyond the bend of the loss.
+    Weighted,
+}
+
 /// The damped step, or none where every variable is held by its bound.
 ///
 /// ```text
-/// (J' W J + damping diag(J' W J)) step = -J' W r
+/// (sum h j j' + damping diag(sum psi/r j j')) step = -sum psi j        h = psi' or psi/r
 /// ```
-fn step(at: &Minimum, bounds: &[[f64; 2]], damping: f64, beyond: f64) -> Option<Vec<f64>> {
+fn step(
+    at: &Minimum,
+    bounds: &[[f64; 2]],
+    damping: f64,
+    (curvature, beyond): (Curvature, f64),
+) -> Option<Vec<f64>> {
     let count = at.variables.len();
-    let (mut normal, mut slope) = normal_equations(&at.linearised, count, beyond);
+    let Equations { mut normal, mut weighted, mut slope } =
+        equations(&at.linearised, count, curvature, beyond);
     for (index, (x, [lower, upper])) in at.variables.iter().zip(bounds).enumerate() {
         let descent = -slope.get(index).copied().unwrap_or(0.0);
         if (x <= lower && descent < 0.0) || (x >= upper && descent > 0.0) {
             normal.row_mut(index).fill(0.0);
             normal.column_mut(index).fill(0.0);
+            weighted[index] = 0.0;
             slope[index] = 0.0;
         }
     }
-    let largest = normal.diagonal().max();
+    let largest = weighted.max();
     if largest <= 0.0 || slope.amax() == 0.0 {
         return None;
     }
     for index in 0..count {
         // what nothing depends on stays where it is
-        normal[(index, index)] += damping * normal[(index, index)] + 1e-14 * largest;
+        normal[(index, index)] += damping * weighted[index] + 1e-14 * largest;
     }
     let step = normal.cholesky()?.solve(&-slope);
     Some(step.iter().copied().collect())
 }
 
-/// J' W J and J' W r.
-fn normal_equations(at: &Linearised, count: usize, beyond: f64) -> (DMatrix<f64>, DVector<f64>) {
+/// What a step follows from.
+struct Equations {
+    /// Sum of h j j'.
+    normal: DMatrix<f64>,
+    /// Diagonal of the sum of psi/r j j'.
+    weighted: DVector<f64>,
+    /// Sum of psi j.
+    slope: DVector<f64>,
+}
+
+fn equations(at: &Linearised, count: usize, curvature: Curvature, beyond: f64) -> Equations {
     let mut normal = DMatrix::zeros(count, count);
+    let mut weighted = DVector::zeros(count);
     let mut slope = DVector::zeros(count);
     for (residual, row) in at.residuals.iter().zip(at.jacobian.chunks_exact(count)) {
         let weight = weight(*residual, beyond);
         for (i, first) in row.iter().enumerate() {
             slope[i] += weight * first * residual;
+            weighted[i] += weight * first * first;
+        }
+        let counts = match curvature {
+            Curvature::Weighted => weight,
+            Curvature::OfLoss if weight < 1.0 => continue,
+            Curvature::OfLoss => 1.0,
+        };
+        for (i, first) in row.iter().enumerate() {
             for (j, second) in row.iter().enumerate().take(i + 1) {
-                normal[(i, j)] += weight * first * second;
+                normal[(i, j)] += counts * first * second;
             }
         }
     }
     normal.fill_upper_triangle_with_lower_triangle();
-    (normal, slope)
+    Equations { normal, weighted, slope }
 }

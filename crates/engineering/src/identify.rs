@@ -7,12 +7,19 @@
 //! The model is [`phea_hydraulics::servovalve::TestedValve`]; all signals of all files are explained
 //! by one set of coefficients.
 
+mod bootstrap;
+mod channels;
+mod evidence;
 mod fit;
 mod guess;
+mod intervals;
 mod reading;
 mod recording;
 mod told;
+mod variables;
 
+pub use bootstrap::{Bootstrap, FEWEST_REPETITIONS};
+pub use evidence::{DECISIVE, Evidence, ExplainedBy};
 pub use guess::SimpleCalculations;
 pub use reading::recordings;
 pub use recording::{RecordedSignal, Recording, SignalKind};
@@ -20,8 +27,9 @@ pub use told::Untold;
 
 use phea_dynamics::least_squares::Ending;
 use phea_dynamics::watch::{Stopped, Watch};
-use phea_hydraulics::servovalve::{STATIC_COEFFICIENTS, StaticCoefficients, TestedValve};
+use phea_hydraulics::servovalve::{LeakageModel, STATIC_COEFFICIENTS, StaticCoefficients, TestedValve};
 
+use self::variables::Variables;
 use crate::project::Refusal;
 
 /// What the coefficients are called, in their order, and their units.
@@ -53,6 +61,8 @@ pub struct Known {
     pub tank_pressure: f64,
     /// Pa, drop at which the tare flow is to be stated; absent: that of the files.
     pub tare_pressure: Option<f64>,
+    /// Model of the leakage where the recordings do not decide.
+    pub leakage_model: LeakageModel,
 }
 
 impl Default for Known {
@@ -63,6 +73,7 @@ impl Default for Known {
             supply_pressure: None,
             tank_pressure: 0.0,
             tare_pressure: None,
+            leakage_model: LeakageModel::EachEdge,
         }
     }
 }
@@ -72,13 +83,18 @@ impl Default for Known {
 pub struct Search {
     /// Starting points, the first guess among them.
     pub starts: usize,
-    /// Of the others.
+    /// Of the others, and of the bootstrap.
     pub seed: u32,
+    /// The model of the leakage whose coefficients are wanted; absent: the one that the recordings
+    /// speak for.
+    pub leakage_model: Option<LeakageModel>,
+    /// Repetitions of the bootstrap; zero makes none.
+    pub bootstrap: usize,
 }
 
 impl Default for Search {
     fn default() -> Search {
-        Search { starts: 6, seed: 1 }
+        Search { starts: 6, seed: 1, leakage_model: None, bootstrap: 0 }
     }
 }
 
@@ -91,16 +107,24 @@ pub struct Identification {
     pub coefficients: StaticCoefficients,
     /// 95 % confidence interval of each, linearised; `None` where the data do not tell it.
     pub intervals: [Option<[f64; 2]>; STATIC_COEFFICIENTS],
+    /// Intervals by the bootstrap, where it was asked for.
+    pub bootstrap: Option<Bootstrap>,
     /// Correlation of each pair, row by row.
     pub correlations: Vec<f64>,
     /// Combinations that the data do not tell, the least known first.
     pub untold: Vec<Untold>,
     /// By the calculations of section 5.2, for comparison.
     pub simple: SimpleCalculations,
+    /// Where the search began.
+    pub first_guess: StaticCoefficients,
+    /// Both models of the leakage compared.
+    pub evidence: Evidence,
     /// How well each signal is explained.
     pub signals: Vec<SignalFit>,
     /// Root mean square of all residuals, each over the range of its signal.
     pub residual_rms: f64,
+    /// What was minimised: the sum of the losses of all residuals over their scales.
+    pub cost: f64,
     /// Coefficients that ended at a bound of the search.
     pub at_bounds: Vec<&'static str>,
     /// Starting points, and how many of them lead to this minimum.
@@ -171,8 +195,56 @@ pub fn identify(
         nominal_voltage: known.nominal_voltage,
         transition_pressure: known.transition_pressure,
         tare_reference_drop: known.tare_pressure.unwrap_or_else(|| recording::usual_drop(&recordings)),
+        leakage_model: known.leakage_model,
     };
     let simple = guess::simple_calculations(&recordings, &tested);
-    let start = guess::first_guess(&recordings, &tested, &simple);
-    fit::fitted(recordings, tested, (simple, start), search, watch)
+    let first_guess = guess::first_guess(&recordings, &tested, &simple);
+    let variables = Variables::around(&first_guess, tested.nominal_voltage);
+    let first = fit::fitted(&recordings, tested, &variables, search, watch)?;
+    let second = fit::with_the_other_model(&first, watch)?;
+    let starts = first.starts;
+    let evidence = Evidence::of([&first, &second]);
+    let wanted = search.leakage_model.or(evidence.preferred()).unwrap_or(known.leakage_model);
+    let found = if wanted == first.together.tested.leakage_model { first } else { second };
+    let coefficients = found.coefficients();
+    let groups = found.together.groups();
+    let told = intervals::told(&found.minimum.linearised, &groups, &variables, &coefficients);
+    let intervals = intervals::intervals(&variables, &coefficients, &told.deviations);
+    // what is not told may have ended anywhere: a further test is judged where it usually is
+    let mut usual = coefficients.to_array();
+    for ((number, interval), start) in usual.iter_mut().zip(intervals).zip(first_guess.to_array()) {
+        *number = if interval.is_some() { *number } else { start };
+    }
+    let usual = StaticCoefficients::from_array(usual);
+    let bootstrap = match search.bootstrap {
+        0 => None,
+        repetitions => Some(bootstrap::bootstrap(&found, repetitions, search.seed, watch)?),
+    };
+    let tested = found.together.tested;
+    let signals = found.signals();
+    Ok(Identification {
+        coefficients,
+        intervals,
+        bootstrap,
+        untold: told::untold(&told, &usual, &variables.scales(&usual), (&recordings, &tested)),
+        correlations: told.correlations,
+        simple,
+        first_guess,
+        evidence,
+        residual_rms: residual_rms(&signals),
+        cost: found.minimum.cost,
+        signals,
+        at_bounds: found.at_bounds(),
+        starts,
+        ending: found.minimum.ending,
+        tested,
+        recordings,
+    })
+}
+
+/// Root mean square of all residuals, each over the range of its signal.
+fn residual_rms(signals: &[SignalFit]) -> f64 {
+    let of = |one: &SignalFit| one.rows as f64 * (one.rms / one.range) * (one.rms / one.range);
+    let rows: usize = signals.iter().map(|one| one.rows).sum();
+    (signals.iter().map(of).sum::<f64>() / rows as f64).sqrt()
 }

@@ -13,7 +13,7 @@ use crate::force_sensor::ForceSensor;
 use crate::friction::{Friction, LuGre, Stribeck};
 use crate::line::{Hose, Line, Pipe, PipeWall, Stiffening};
 use crate::linear::LinearParameters;
-use crate::servovalve::{Edges, Servovalve, SpoolImperfection, Supply};
+use crate::servovalve::{Edges, LeakageModel, Servovalve, SpoolImperfection, Supply};
 use crate::stiffness::StiffnessModel;
 
 /// Useful piston area of a 50 mm piston with 22 mm rods, in m2.
@@ -73,6 +73,7 @@ pub fn valve() -> Servovalve {
         flow_coefficients: Edges::from_array([3.2e-7, 2.5e-7, 2.0e-7, 3.85e-7]),
         leakage_coefficients: Edges::from_array([2.35e-9, 2.2e-9, 1.7e-9, 2.35e-9]),
         leakage_shape: 100.0,
+        leakage_model: LeakageModel::EachEdge,
         tare_flow: 7.55e-6,
         nominal_voltage: 10.0,
         natural_frequency: 1099.0,

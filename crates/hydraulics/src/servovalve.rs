@@ -16,7 +16,8 @@ pub use coefficients::{
     control_coefficients, velocity_gain,
 };
 pub use flow::{
-    ChamberFlows, EdgeFlows, Openings, chamber_flows, control_flow, edge_flows, hyperbolic_secant,
+    ChamberFlows, EdgeFlows, LeakageModel, Openings, chamber_flows, control_flow, edge_conductances,
+    edge_flows, hyperbolic_secant,
 };
 pub use identification::{
     PortCircuit, STATIC_COEFFICIENTS, Sensitive, StaticCoefficients, TestInput, TestOutput, TestedValve,
@@ -81,6 +82,8 @@ pub struct Servovalve<S = f64> {
     /// Shape lambda of the leakage over the spool position; the larger the narrower, 0 keeps the
     /// leakage constant.
     pub leakage_shape: S,
+    /// What lambda and the leakage coefficients mean away from null.
+    pub leakage_model: LeakageModel,
     /// Flow of the hydraulic amplifier q_tare in m3/s; takes no part in the motion.
     pub tare_flow: S,
     /// Voltage of full opening U_Cn in V.
@@ -131,6 +134,7 @@ impl<S: Copy> Servovalve<S> {
             flow_coefficients: self.flow_coefficients.convert(of),
             leakage_coefficients: self.leakage_coefficients.convert(of),
             leakage_shape: of(self.leakage_shape),
+            leakage_model: self.leakage_model,
             tare_flow: of(self.tare_flow),
             nominal_voltage: of(self.nominal_voltage),
             natural_frequency: of(self.natural_frequency),

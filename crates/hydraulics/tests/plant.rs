@@ -18,7 +18,7 @@ use phea_hydraulics::machine::{Beginning, LoadModel, Machine, MachineOptions, Po
 use phea_hydraulics::operating_point::{Balance, Condition, OperatingPoint, Steady, operating_point};
 use phea_hydraulics::plant::{LinearLoad, LinearPlant};
 use phea_hydraulics::reference_rig::{components, cylinder, hose_line, leaking, nominal_plant, pipe_line};
-use phea_hydraulics::servovalve::{SpoolDirection, Supply};
+use phea_hydraulics::servovalve::{LeakageModel, Servovalve, SpoolDirection, Supply};
 use phea_hydraulics::stiffness::StiffnessModel;
 use phea_hydraulics::two_pressure::{
     TwoPressureModel, two_pressure_coefficients, two_pressure_linear_parameters,
@@ -48,10 +48,12 @@ fn drawn(number: u64) -> Drawn {
     let line_b = if number.is_multiple_of(2) { hose_line() } else { pipe_line() };
     let model = if number % 5 < 2 { StiffnessModel::Uniform } else { StiffnessModel::ByVolume };
     let reference = components(hose_line(), model);
+    let leakage_model = if number % 7 < 4 { LeakageModel::EachEdge } else { LeakageModel::OneCurve };
     let parts = Components {
         fluid: Fluid { entrained_air: air, ..reference.fluid },
         cylinder: Cylinder { area_a, area_b, moving_mass: spread(2.0, 80.0), ..cylinder() },
         line_b,
+        valve: Servovalve { leakage_model, ..reference.valve },
         friction: Friction::Viscous { viscous: friction },
         force_sensor: ForceSensor { stiffness: spread(1e6, 1e8) },
         ..reference

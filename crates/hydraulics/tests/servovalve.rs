@@ -6,9 +6,9 @@ use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::operating_point::{Condition, operating_point};
 use phea_hydraulics::reference_rig::{USEFUL_AREA, components, hose_line, valve, valve_with_equal_edges};
 use phea_hydraulics::servovalve::{
-    ChamberFlows, Edges, Openings, Servovalve, SpoolDirection, Supply, chamber_coefficients, chamber_flows,
-    control_coefficients, control_flow, edge_flows, flow_coefficient_from_rating,
-    leakage_coefficient_from_rating, velocity_gain,
+    ChamberFlows, Edges, LeakageModel, Servovalve, SpoolDirection, Supply, blocked_ports,
+    chamber_coefficients, chamber_flows, control_coefficients, control_flow, edge_conductances, edge_flows,
+    flow_coefficient_from_rating, leakage_coefficient_from_rating, velocity_gain,
 };
 use phea_hydraulics::stiffness::StiffnessModel;
 
@@ -135,8 +135,8 @@ fn total_leakage_peaks_beside_null() {
         let total = |relative: f64| {
             let spool = 10.0 * side * relative;
             let point = operating_point(&actuator, 0.25, Condition::Command(spool)).unwrap();
-            let openings = Openings::at(&valve, spool);
-            let flows = edge_flows(&valve, &SUPPLY, &openings, point.pressure_a, point.pressure_b);
+            let conductances = edge_conductances(&valve, spool);
+            let flows = edge_flows(&valve, &SUPPLY, &conductances, point.pressure_a, point.pressure_b);
             flows.supply_to_a + flows.supply_to_b
         };
         let null = total(0.0);
@@ -146,11 +146,42 @@ fn total_leakage_peaks_beside_null() {
     }
 }
 
+/// ORIGIN: analytic, thesis (4.14): wherever the spool is, the whole leakage is one secant, and at null that of the other
+/// model.
+#[test]
+fn one_curve_is_the_curve_of_the_whole_valve() {
+    let each = Servovalve { transition_pressure: 1e-3, ..valve() };
+    let one = Servovalve { leakage_model: LeakageModel::OneCurve, ..each };
+    let series = |first: f64, second: f64| first * second / (first * first + second * second).sqrt();
+    let null = (series(2.35e-9, 2.2e-9) + series(1.7e-9, 2.35e-9)) * 70e5_f64.sqrt();
+    for spool in [-0.5, -0.1, -0.03, 0.0, 0.01, 0.04, 0.2, 0.4] {
+        let leak = blocked_ports(&one, &SUPPLY, spool).supply_flow;
+        let curve = null / portable::cosh(100.0 * spool / 10.0);
+        assert!((leak / curve - 1.0).abs() < 1e-8, "{spool}: {leak} is not {curve}");
+    }
+    let [of_each, of_one] = [each, one].map(|valve| edge_conductances(&valve, 0.0).to_array());
+    for (each, one) in of_each.into_iter().zip(of_one) {
+        assert!((each / one - 1.0).abs() < 1e-15);
+    }
+}
+
+/// ORIGIN: analytic, equal edges: what one edge opens the other closes, so that null passes twice the flow gain of one
+/// edge.
+#[test]
+fn one_curve_doubles_the_flow_gain_at_null() {
+    let one = Servovalve { leakage_model: LeakageModel::OneCurve, ..valve_with_equal_edges() };
+    let gain =
+        |valve, spool| control_coefficients(&valve, &SUPPLY, spool, 0.0, SpoolDirection::Extending).flow_gain;
+    assert!((gain(one, 0.0) / gain(valve_with_equal_edges(), 0.0) - 2.0).abs() < 1e-12);
+    assert!((gain(one, 1.0) / gain(valve_with_equal_edges(), 1.0) - 1.0).abs() < 1e-3);
+}
+
 /// Analytic derivatives of both chambers' flows against dual numbers, everywhere, the laminar zone and reversed drops
 /// included.
 #[test]
 fn chamber_coefficients_are_the_derivatives_of_the_flows() {
-    for valve in [valve(), valve_with_equal_edges()] {
+    let one_curve = Servovalve { leakage_model: LeakageModel::OneCurve, ..valve() };
+    for valve in [valve(), valve_with_equal_edges(), one_curve] {
         for spool in [-9.0, -0.3, -0.04, -1e-9, 1e-9, 0.02, 0.5, 10.0] {
             for (pressure_a, pressure_b) in [(35e5, 35e5), (69.9995e5, 300.0), (12e5, 71e5), (-0.5e5, 60e5)] {
                 let found = chamber_coefficients(
@@ -182,8 +213,14 @@ fn chamber_coefficients_are_the_derivatives_of_the_flows() {
 
 #[test]
 fn direction_decides_at_null_and_the_mean_is_between() {
-    let at = |direction| chamber_coefficients(&valve(), &SUPPLY, 0.0, 37e5, 24e5, direction);
-    let beside = |spool| chamber_coefficients(&valve(), &SUPPLY, spool, 37e5, 24e5, SpoolDirection::Mean);
+    for leakage_model in [LeakageModel::EachEdge, LeakageModel::OneCurve] {
+        direction_decides(&Servovalve { leakage_model, ..valve() });
+    }
+}
+
+fn direction_decides(valve: &Servovalve) {
+    let at = |direction| chamber_coefficients(valve, &SUPPLY, 0.0, 37e5, 24e5, direction);
+    let beside = |spool| chamber_coefficients(valve, &SUPPLY, spool, 37e5, 24e5, SpoolDirection::Mean);
     let (extending, retracting, mean) =
         (at(SpoolDirection::Extending), at(SpoolDirection::Retracting), at(SpoolDirection::Mean));
     for (one_sided, limit) in [(extending, beside(1e-12)), (retracting, beside(-1e-12))] {
@@ -192,7 +229,7 @@ fn direction_decides_at_null_and_the_mean_is_between() {
     }
     assert!((2.0 * mean.flow_gain_a / (extending.flow_gain_a + retracting.flow_gain_a) - 1.0).abs() < 1e-15);
     let dual = chamber_flows(
-        &valve().convert(&mut Into::into),
+        &valve.convert(&mut Into::into),
         &SUPPLY.convert(&mut Into::into),
         Dual::<1>::variable(0.0, 0),
         Dual::constant(37e5),

@@ -12,7 +12,7 @@ use phea_hydraulics::operating_point::{
     Balance, OperatingPoint, Settled, Steady, SteadyLoad, operating_point,
 };
 use phea_hydraulics::reference_rig::{components, cylinder, hose_line, leaking, valve};
-use phea_hydraulics::servovalve::{Edges, Servovalve, Supply};
+use phea_hydraulics::servovalve::{Edges, LeakageModel, Servovalve, Supply};
 use phea_hydraulics::stiffness::StiffnessModel;
 
 /// A number between two ends, evenly or by a factor.
@@ -31,7 +31,11 @@ impl Draw {
         Edges::from_array([0; 4].map(|_| self.factor(low, high)))
     }
 
-    /// Edges that differ threefold, any leakage of them, one rod or two, and a supply from 30 to 300 bar.
+    fn leakage_model(&mut self) -> LeakageModel {
+        if share(&mut self.0) < 0.5 { LeakageModel::EachEdge } else { LeakageModel::OneCurve }
+    }
+
+    /// Edges that differ threefold, any leakage of them by either model, one rod or two, and a supply from 30 to 300 bar.
     fn rig(&mut self) -> Actuator {
         let rods = [self.even(0.0, 0.036), self.even(0.0, 0.036)];
         let [area_a, area_b] = rods.map(|rod| annulus_area(0.05, rod));
@@ -41,6 +45,7 @@ impl Draw {
             flow_coefficients: self.edges(1e-7, 3e-7),
             leakage_coefficients: self.edges(1e-9, 3e-9),
             leakage_shape: self.even(0.0, 200.0),
+            leakage_model: self.leakage_model(),
             transition_pressure: self.factor(1e2, 1e4),
             ..valve()
         };
@@ -150,9 +155,10 @@ fn leaking_points_are_where_the_machine_rests() {
 }
 
 /// Edges, pressures, areas, leakage, velocity and force, in this order, and where they settle.
-fn settle<S: phea_dynamics::scalar::Scalar>(p: &[S]) -> Vec<S> {
+fn settle<S: phea_dynamics::scalar::Scalar>(p: &[S], leakage_model: LeakageModel) -> Vec<S> {
     let balance = Balance {
         valve: Servovalve {
+            leakage_model,
             flow_coefficients: Edges::from_array([p[0], p[1], p[2], p[3]]),
             leakage_coefficients: Edges::from_array([p[4], p[5], p[6], p[7]]),
             ..valve().convert(&mut Into::into)
@@ -172,7 +178,13 @@ const NAMES: [&str; 15] =
 /// point itself, by the theorem of implicit functions.
 #[test]
 fn a_recorded_point_is_right_everywhere_with_its_derivatives() {
-    let recorded = Expression::record(&NAMES, |p| settle(p));
+    for leakage_model in [LeakageModel::EachEdge, LeakageModel::OneCurve] {
+        check_recorded_point(leakage_model);
+    }
+}
+
+fn check_recorded_point(leakage_model: LeakageModel) {
+    let recorded = Expression::record(&NAMES, |p| settle(p, leakage_model));
     let mut draw = Draw(3);
     let mut sides = [0; 2];
     for _ in 0..300 {
@@ -181,7 +193,7 @@ fn a_recorded_point_is_right_everywhere_with_its_derivatives() {
         values.extend([draw.even(60e5, 90e5), draw.even(0.0, 5e5)]);
         values.extend([draw.even(1.2e-3, 1.6e-3), draw.even(1.4e-3, 2e-3), draw.factor(1e-14, 1e-11)]);
         values.extend([draw.even(-0.03, 0.03), draw.even(-4000.0, 4000.0)]);
-        let point = settle(&values);
+        let point = settle(&values, leakage_model);
         assert_eq!(recorded.evaluate(&values), point);
         sides[usize::from(point[0] > 0.0)] += 1;
         for index in 0..values.len() {
@@ -197,7 +209,7 @@ fn a_recorded_point_is_right_everywhere_with_its_derivatives() {
             let moved = |step: f64| {
                 let mut other = values.clone();
                 other[index] += step * scale;
-                settle(&other)
+                settle(&other, leakage_model)
             };
             let (before, after) = (moved(-1e-6), moved(1e-6));
             if before[0] * after[0] < 0.0 {

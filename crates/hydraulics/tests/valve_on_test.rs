@@ -2,8 +2,9 @@
 
 use phea_hydraulics::reference_rig::valve;
 use phea_hydraulics::servovalve::{
-    Edges, Openings, PortCircuit, Servovalve, SlowSpool, SpoolImperfection, SpoolState, StaticCoefficients,
-    Supply, TestInput, TestedValve, blocked_ports, connected_ports, edge_flows,
+    Edges, LeakageModel, PortCircuit, Servovalve, SlowSpool, SpoolImperfection, SpoolState,
+    StaticCoefficients, Supply, TestInput, TestedValve, blocked_ports, connected_ports, edge_conductances,
+    edge_flows,
 };
 
 const SUPPLY: Supply = Supply { pressure: 70e5, tank_pressure: 2e5 };
@@ -14,14 +15,18 @@ fn openings() -> Vec<f64> {
     fine.chain((-20..=20).map(|step| f64::from(step) * 0.5)).collect()
 }
 
+const MODELS: [LeakageModel; 2] = [LeakageModel::EachEdge, LeakageModel::OneCurve];
+
 #[test]
 fn blocked_ports_pass_on_what_they_take() {
-    for shape in [0.0, 100.0, 4000.0] {
-        let valve = Servovalve { leakage_shape: shape, ..valve() };
+    for (shape, leakage_model) in
+        MODELS.into_iter().flat_map(|model| [0.0, 100.0, 4000.0].map(|shape| (shape, model)))
+    {
+        let valve = Servovalve { leakage_shape: shape, leakage_model, ..valve() };
         for opening in openings() {
             let found = blocked_ports(&valve, &SUPPLY, opening);
-            let openings = Openings::at(&valve, opening);
-            let edges = edge_flows(&valve, &SUPPLY, &openings, found.pressure_a, found.pressure_b);
+            let conductances = edge_conductances(&valve, opening);
+            let edges = edge_flows(&valve, &SUPPLY, &conductances, found.pressure_a, found.pressure_b);
             // where an edge is wide open its drop is below one rounding error of the supply pressure
             let rounding = 1e-9 * 2.0 * 3.85e-7 * opening.abs() / 10.0 / 1e3_f64.sqrt() + 1e-20;
             assert!((edges.supply_to_a - edges.a_to_tank).abs() < rounding, "{opening} {edges:?}");
@@ -36,11 +41,13 @@ fn blocked_ports_pass_on_what_they_take() {
 #[test]
 fn connected_ports_give_to_each_other() {
     for opening in openings() {
-        for load in [0.0, 0.9] {
+        for (load, leakage_model) in MODELS.into_iter().flat_map(|model| [0.0, 0.9].map(|load| (load, model)))
+        {
+            let valve = Servovalve { leakage_model, ..valve() };
             let load_pressure = opening.signum() * load * (SUPPLY.pressure - SUPPLY.tank_pressure);
-            let found = connected_ports(&valve(), &SUPPLY, opening, load_pressure);
-            let openings = Openings::at(&valve(), opening);
-            let edges = edge_flows(&valve(), &SUPPLY, &openings, found.pressure_a, found.pressure_b);
+            let found = connected_ports(&valve, &SUPPLY, opening, load_pressure);
+            let conductances = edge_conductances(&valve, opening);
+            let edges = edge_flows(&valve, &SUPPLY, &conductances, found.pressure_a, found.pressure_b);
             let into_b = edges.supply_to_b - edges.b_to_tank;
             let scale = edges.supply_to_a.abs() + edges.supply_to_b.abs();
             assert!((found.port_flow + into_b).abs() < 1e-9 * scale, "{opening} {load}");
@@ -101,7 +108,19 @@ fn a_slow_spool_is_the_fast_one_at_rest() {
 /// Derivatives against differences, for every coefficient and both circuits.
 #[test]
 fn sensitivities_are_derivatives() {
-    let tested = TestedValve { nominal_voltage: 10.0, transition_pressure: 1e3, tare_reference_drop: 60e5 };
+    for leakage_model in MODELS {
+        check_sensitivities(&TestedValve { leakage_model, ..TESTED });
+    }
+}
+
+const TESTED: TestedValve = TestedValve {
+    nominal_voltage: 10.0,
+    transition_pressure: 1e3,
+    tare_reference_drop: 60e5,
+    leakage_model: LeakageModel::EachEdge,
+};
+
+fn check_sensitivities(tested: &TestedValve) {
     let coefficients = StaticCoefficients {
         flow_coefficients: valve().flow_coefficients,
         leakage_coefficients: valve().leakage_coefficients,
@@ -143,7 +162,6 @@ fn sensitivities_are_derivatives() {
 /// Where an edge is shut for good, derivatives exist all the same.
 #[test]
 fn a_shut_edge_has_finite_derivatives() {
-    let tested = TestedValve { nominal_voltage: 10.0, transition_pressure: 1e3, tare_reference_drop: 60e5 };
     let coefficients = StaticCoefficients {
         flow_coefficients: Edges::equal(3e-7),
         leakage_coefficients: Edges::equal(2e-9),
@@ -153,7 +171,11 @@ fn a_shut_edge_has_finite_derivatives() {
         hysteresis_width: 1e-6,
     };
     let inputs = [TestInput { command: 10.0, supply: SUPPLY, load_pressure: 0.0 }];
-    for circuit in [PortCircuit::Blocked, PortCircuit::Connected] {
+    let circuits = [PortCircuit::Blocked, PortCircuit::Connected];
+    for (circuit, leakage_model) in
+        circuits.into_iter().flat_map(|circuit| MODELS.map(|model| (circuit, model)))
+    {
+        let tested = TestedValve { leakage_model, ..TESTED };
         for output in tested.sensitive_outputs(&coefficients, circuit, &inputs) {
             for number in [output.pressure_a, output.pressure_b, output.leak_flow, output.port_flow] {
                 assert!(number.gradient().iter().all(|slope| slope.is_finite()));

@@ -4,6 +4,7 @@ use super::Supply;
 use super::key::{key, plain};
 use super::visitor::Visitor;
 use crate::catalogue::Kind;
+use phea_hydraulics::servovalve::LeakageModel;
 use phea_quantity::{
     ANGULAR_FREQUENCY, FLOW, FLOW_COEFFICIENT, PRESSURE, RATIO, TIME, VOLTAGE, VOLTAGE_RATE,
 };
@@ -21,6 +22,8 @@ pub struct Valve {
     pub damping_ratio: f64,
     /// λ of sech(λ U/U_n) in the leakage; zero keeps the leakage constant.
     pub leakage_shape: f64,
+    /// What λ and the leakage coefficients mean away from null.
+    pub leakage_model: LeakageModel,
     /// m³/s, pilot stage flow from supply to tank.
     pub tare_flow: f64,
     /// Pa, drop from supply to tank at which the tare flow is stated; absent: the supply's.
@@ -184,6 +187,9 @@ impl Valve {
         v.quantity(k, &mut self.damping_ratio);
         let k = key("leakage_shape", &RATIO, "λ of sech(λ U/U_n) in the leakage; 0 keeps it constant.");
         v.quantity(k.not_negative().or(0.0), &mut self.leakage_shape);
+        let words = &[("each_edge", LeakageModel::EachEdge), ("one_curve", LeakageModel::OneCurve)];
+        let k = plain("leakage_model", "What follows sech(λ U/U_n): each edge's leakage, or the valve's.");
+        v.choice(k, words, &mut self.leakage_model, false);
         let k = key("tare_flow", &FLOW, "Pilot stage flow from supply to tank.").not_negative().or(0.0);
         v.quantity(k, &mut self.tare_flow);
         let k = key("transition_pressure", &PRESSURE, "Drop below which the square root is made regular.");

@@ -11,6 +11,7 @@ pub use campaign::{CampaignRequest, CampaignRuns, campaign_watched};
 pub use identify::{IdentifyRequest, identify_watched};
 pub use phea_engineering::error::ProcedureError;
 pub use phea_engineering::identify::IdentifyError;
+pub use phea_hydraulics::servovalve::LeakageModel;
 pub use refusal::{error_json, failure_json, files_json, refusal_json};
 pub use schema::{SCHEMA_FILE, schema};
 pub use simulate::{FrequencyOptions, SimulateRequest};

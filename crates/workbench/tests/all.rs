@@ -47,6 +47,8 @@ mod specification;
 mod sweep;
 mod trial;
 mod trusted_data;
+mod valve_coverage;
+mod valve_evidence;
 mod valve_identification;
 mod valve_tests;
 mod verify_contract;

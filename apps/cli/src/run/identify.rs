@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 
 use phea_workbench::answer::Answer;
-use phea_workbench::command::{self, IdentifyError, IdentifyRequest, Request};
+use phea_workbench::command::{self, IdentifyError, IdentifyRequest, LeakageModel, Request};
 
 use super::{load, styled};
-use crate::arguments::Recorded;
+use crate::arguments::{LeakageWord, Recorded};
 use crate::failure::Failure;
 use crate::file_system::FileSystem;
 use crate::interruption::Interruption;
@@ -21,6 +21,11 @@ pub(super) fn answered(recorded: &Recorded) -> Result<(Answer, Vec<PathBuf>), Fa
         files: recorded.files.clone(),
         starts: recorded.starts.map(usize::from),
         seed: recorded.seed,
+        bootstrap: recorded.bootstrap.map_or(0, |count| count as usize),
+        leakage_model: recorded.leakage_model.map(|word| match word {
+            LeakageWord::EachEdge => LeakageModel::EachEdge,
+            LeakageWord::OneCurve => LeakageModel::OneCurve,
+        }),
     };
     let mut line = ProgressLine::default();
     let interruption = Interruption::listen();

@@ -31,36 +31,61 @@ const ROUNDING: f64 = 1e-15;
 /// may differ from residual to residual, and its size is taken from the residuals themselves.
 ///
 /// ```text
-/// cov = H^-1 S H^-1 n/(n - m)      H = sum psi' j j',  S = sum psi^2 j j'
+/// cov = H^-1 S H^-1 n/(n - m)      H = sum psi' j j',  S = sum over groups of g g',  g = sum psi j within a group
 /// ```
 ///
-/// with j the derivatives of one residual, n residuals and m variables. Along each eigenvector of H
-/// the standard deviation is that of the covariance.
+/// with j the derivatives of one residual, n residuals and m variables. Residuals of one group may
+/// depend on each other, as what was read at one instant does (Liang and Zeger 1986); `groups` has
+/// the index of each residual's group. Along each eigenvector of H the standard deviation is that of
+/// the covariance.
 ///
 /// # Example
 /// The mean of n numbers is known to their deviation over the root of n.
 /// ```
 /// use phea_dynamics::least_squares::{Linearised, uncertainty};
 /// let residuals = vec![-1.0, 1.0, -1.0, 1.0, 1.0, -1.0, 1.0, -1.0];
-/// let found = uncertainty(&Linearised { residuals, jacobian: vec![1.0; 8] }, 1, f64::INFINITY);
-/// assert!((found.deviations[0] - 1.0 / 7.0_f64.sqrt()).abs() < 1e-12);
+/// let found = Linearised { residuals, jacobian: vec![1.0; 8] };
+/// let alone = uncertainty(&found, &[0, 1, 2, 3, 4, 5, 6, 7], 1, f64::INFINITY);
+/// assert!((alone.deviations[0] - 1.0 / 7.0_f64.sqrt()).abs() < 1e-12);
+/// // read twice each, they are half as many
+/// let residuals = vec![-1.0, -1.0, 1.0, 1.0, 1.0, 1.0, -1.0, -1.0];
+/// let found = Linearised { residuals, jacobian: vec![1.0; 8] };
+/// let pairs = uncertainty(&found, &[0, 0, 1, 1, 2, 2, 3, 3], 1, f64::INFINITY);
+/// assert!((pairs.deviations[0] / alone.deviations[0] - 2.0_f64.sqrt()).abs() < 1e-12);
 /// ```
-pub fn uncertainty(at: &Linearised, count: usize, robust_beyond: f64) -> Uncertainty {
+pub fn uncertainty(at: &Linearised, groups: &[usize], count: usize, robust_beyond: f64) -> Uncertainty {
     let mut information = DMatrix::<f64>::zeros(count, count);
-    let mut scatter = DMatrix::<f64>::zeros(count, count);
-    for (residual, row) in at.residuals.iter().zip(at.jacobian.chunks_exact(count)) {
+    let last = groups.iter().copied().max().unwrap_or(0);
+    let mut scores = vec![0.0; (last + 1) * count];
+    for ((residual, row), group) in at.residuals.iter().zip(at.jacobian.chunks_exact(count)).zip(groups) {
         let inside = residual.abs() <= robust_beyond;
-        let score = if inside { *residual } else { robust_beyond };
-        for (i, first) in row.iter().enumerate() {
-            for (j, second) in row.iter().enumerate() {
-                information[(i, j)] += if inside { first * second } else { 0.0 };
-                scatter[(i, j)] += score * score * first * second;
-            }
+        let score = residual.max(-robust_beyond).min(robust_beyond);
+        let of_group = scores.iter_mut().skip(group * count);
+        for (sum, slope) in of_group.zip(row) {
+            *sum += score * slope;
+        }
+        if inside {
+            add_square(&mut information, row);
         }
     }
+    let mut scatter = DMatrix::<f64>::zeros(count, count);
+    for scores in scores.chunks_exact(count) {
+        add_square(&mut scatter, scores);
+    }
+    information.fill_upper_triangle_with_lower_triangle();
+    scatter.fill_upper_triangle_with_lower_triangle();
     let (rows, variables) = (at.residuals.len() as f64, count as f64);
     let freedom = if rows > variables { rows / (rows - variables) } else { f64::INFINITY };
     sandwich(information, &(scatter * freedom))
+}
+
+/// Adds the lower triangle of a row's product with itself.
+fn add_square(matrix: &mut DMatrix<f64>, row: &[f64]) {
+    for (i, first) in row.iter().enumerate() {
+        for (j, second) in row.iter().enumerate().take(i + 1) {
+            matrix[(i, j)] += first * second;
+        }
+    }
 }
 
 fn sandwich(information: DMatrix<f64>, scatter: &DMatrix<f64>) -> Uncertainty {

@@ -40,10 +40,10 @@ impl SimpleCalculations {
 ///
 /// ```text
 /// q_tare   mean leakage beyond 60 % of the amplitude
-/// nulls    commands of the greatest leakage, rising and falling (else of p_A = p_B)
+/// nulls    commands of the greatest leakage, rising and falling; else between the zeros of the flow's lines; else of p_A = p_B
 /// K_vinp = (q_peak - q_tare)/sqrt(2 p_S)                       thesis (4.13)
 /// lambda = 1.317/u_half                                        sech(1.317) = 1/2
-/// K_vp   = q/(u sqrt(p_S/2)) at the largest commands           thesis (4.12), corrected
+/// K_vp   = dq/du/sqrt(p_S/2), by a straight line               thesis (4.12), corrected
 /// ```
 pub(super) fn simple_calculations(recordings: &[Recording], tested: &TestedValve) -> SimpleCalculations {
     let mut found = SimpleCalculations::default();
@@ -64,7 +64,8 @@ pub(super) fn simple_calculations(recordings: &[Recording], tested: &TestedValve
     found
 }
 
-/// Where all coefficients begin: the calculations, and what is usual where there are none.
+/// Where all coefficients begin: the calculations, and what is usual where there are none. What may
+/// be zero begins at a size that would matter.
 pub(super) fn first_guess(
     recordings: &[Recording],
     tested: &TestedValve,
@@ -75,18 +76,20 @@ pub(super) fn first_guess(
     // leakage at null is about a hundredth of full flow
     let usual = forward.or(backward).or(leak.map(|leak| 120.0 * leak)).unwrap_or(3e-7);
     let [forward, backward] = [forward.unwrap_or(usual), backward.unwrap_or(usual)];
-    let leak = leak.unwrap_or(f64::midpoint(forward, backward) / 120.0);
+    let mean = f64::midpoint(forward, backward);
+    let leak = leak.unwrap_or(mean / 120.0).max(mean / 2000.0);
+    let null_leakage = leak * (2.0 * tested.tare_reference_drop).sqrt();
     let largest = largest_command(recordings);
     StaticCoefficients {
         flow_coefficients: Edges::from_array([forward, backward, backward, forward]),
         leakage_coefficients: Edges::equal(leak),
         leakage_shape: simple.leakage_shape.unwrap_or(100.0),
-        tare_flow: simple.tare_flow.unwrap_or(1e-5).max(1e-9),
+        tare_flow: simple.tare_flow.unwrap_or(0.8 * null_leakage).max(0.1 * null_leakage),
         null_bias: simple.null_bias().unwrap_or(0.0),
         hysteresis_width: simple
             .hysteresis()
-            .filter(|width| *width > 0.0)
-            .unwrap_or(0.002 * tested.nominal_voltage)
+            .unwrap_or(0.0)
+            .max(0.002 * tested.nominal_voltage)
             .min(largest / 2.0),
     }
 }
@@ -158,21 +161,58 @@ fn crossing(recording: &Recording, rising: bool) -> Option<f64> {
     (!commands.is_empty()).then(|| median(commands))
 }
 
+/// Both branches of the flow as straight lines, going up and down: their slopes are the flow
+/// coefficients, and between their zeros is null.
 fn flow(recording: &Recording, tested: &TestedValve, found: &mut SimpleCalculations) {
     let kinds = [SignalKind::PortFlow, SignalKind::PortFlowMagnitude];
     let Some(signal) = kinds.into_iter().find_map(|kind| recording.signal(kind)) else { return };
-    let bias = found.null_bias().unwrap_or(0.0);
     let largest = largest_command(std::slice::from_ref(recording));
-    for (coefficient, sign) in found.flow_coefficients.iter_mut().zip([1.0, -1.0]) {
-        let of_row = |(input, value): (&phea_hydraulics::servovalve::TestInput, &Option<f64>)| {
-            let opening = sign * (input.command - bias) / tested.nominal_voltage;
+    let values = signal.despiked();
+    let branch = |sign: f64, rising: bool| {
+        let of_row = |(row, value): (usize, &Option<f64>)| {
+            let input = recording.inputs.get(row)?;
             let drop = input.supply.pressure - input.supply.tank_pressure - input.load_pressure.abs();
-            let open = opening > 0.8 * largest / tested.nominal_voltage && drop > 0.0;
-            let flow = (*value)?.abs();
-            open.then(|| flow_coefficient_from_rating(flow / opening, drop))
+            let share = sign * input.command / largest;
+            // away from the leakage and from the reversals
+            let counts = (0.3..0.95).contains(&share) && direction(recording, row) == Some(rising);
+            let edge = flow_coefficient_from_rating((*value)?.abs(), drop);
+            (counts && drop > 0.0).then_some((input.command, edge))
         };
-        let all: Vec<f64> = recording.inputs.iter().zip(&signal.values).filter_map(of_row).collect();
-        let found = median(all);
-        *coefficient = coefficient.or((found > 0.0).then_some(found));
+        straight_line(&values.iter().enumerate().filter_map(of_row).collect::<Vec<_>>())
+    };
+    let mut slopes = [vec![], vec![]];
+    for (null, rising) in found.nulls.iter_mut().zip([true, false]) {
+        let mut zeros = vec![];
+        for (slopes, sign) in slopes.iter_mut().zip([1.0, -1.0]) {
+            let line = branch(sign, rising).filter(|[_, slope]| sign * slope > 0.0);
+            slopes.extend(line.map(|[_, slope]| slope.abs() * tested.nominal_voltage));
+            zeros.extend(line.map(|[zero, _]| zero));
+        }
+        let middle = zeros.iter().sum::<f64>() / zeros.len() as f64;
+        *null = null.or((zeros.len() == 2).then_some(middle));
     }
+    for (coefficient, slopes) in found.flow_coefficients.iter_mut().zip(slopes) {
+        let mean = slopes.iter().sum::<f64>() / slopes.len() as f64;
+        *coefficient = coefficient.or((!slopes.is_empty()).then_some(mean));
+    }
+}
+
+/// Where the straight line through points is zero, and its slope; points far from the others' line
+/// do not count.
+fn straight_line(points: &[(f64, f64)]) -> Option<[f64; 2]> {
+    const FEWEST: usize = 5;
+    let fitted = |points: &[(f64, f64)]| -> Option<[f64; 2]> {
+        let count = points.len() as f64;
+        let [x, y] = [points.iter().map(|(x, _)| x).sum::<f64>(), points.iter().map(|(_, y)| y).sum::<f64>()]
+            .map(|sum| sum / count);
+        let square: f64 = points.iter().map(|(at, _)| (at - x) * (at - x)).sum();
+        let product: f64 = points.iter().map(|(at, value)| (at - x) * (value - y)).sum();
+        let slope = product / square;
+        (points.len() >= FEWEST && square > 0.0 && slope != 0.0).then_some([x - y / slope, slope])
+    };
+    let [zero, slope] = fitted(points)?;
+    let away = |(x, y): &(f64, f64)| (y - slope * (x - zero)).abs();
+    let usual = median(points.iter().map(away).collect());
+    let near: Vec<(f64, f64)> = points.iter().filter(|point| away(point) <= 4.0 * usual).copied().collect();
+    fitted(&near)
 }

@@ -108,6 +108,7 @@ fn valve<S: Scalar>(declared: &project::Valve, numbers: &Numbers<'_, S>, supply_
             }
         },
         leakage_shape: at("leakage_shape", declared.leakage_shape),
+        leakage_model: declared.leakage_model,
         tare_flow,
         nominal_voltage: at("nominal_voltage", declared.nominal_voltage),
         natural_frequency: at("natural_frequency", declared.natural_frequency),

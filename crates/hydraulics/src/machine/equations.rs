@@ -5,7 +5,7 @@ use super::{Machine, MachineState, Motion, PowerUnit};
 use crate::force_sensor;
 use crate::friction::FrictionForce;
 use crate::operating_point::hydraulic_force;
-use crate::servovalve::{EdgeFlows, Edges, Openings, Servovalve, Supply, edge_flows, tare_flow};
+use crate::servovalve::{EdgeFlows, Edges, Servovalve, Supply, edge_conductances, edge_flows, tare_flow};
 
 /// Every flow at one instant, in m3/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,7 +57,7 @@ impl<S: Copy> LocalFunction<S, 4, 4> for ValveEdges<'_, S> {
     fn at<T: Scalar>(&self, [opening, a, b, pressure]: [T; 4], constant: impl Fn(S) -> T + Copy) -> [T; 4] {
         let valve = self.valve.convert(&mut |parameter| constant(parameter));
         let supply = Supply { pressure, tank_pressure: constant(self.supply.tank_pressure) };
-        edge_flows(&valve, &supply, &Openings::at(&valve, opening), a, b).to_array()
+        edge_flows(&valve, &supply, &edge_conductances(&valve, opening), a, b).to_array()
     }
 }
 

@@ -10,7 +10,7 @@ use phea_dynamics::scalar::Scalar;
 
 use super::{Balance, SteadyLoad};
 use crate::servovalve::{
-    ChamberCoefficients, ChamberFlows, Openings, SpoolDirection, chamber_coefficients, chamber_flows,
+    ChamberCoefficients, ChamberFlows, SpoolDirection, chamber_coefficients, chamber_flows, edge_conductances,
 };
 
 /// What is known of an operating point, over any scalar.
@@ -160,18 +160,8 @@ impl<S: Scalar> Balance<S> {
 
     /// Of each chamber, the conductances of its edge from supply and of its edge to tank.
     fn conductances(&self, command: S) -> [[S; 2]; 2] {
-        let (flow, leak) = (&self.valve.flow_coefficients, &self.valve.leakage_coefficients);
-        let Openings { forward, backward, leakage } = Openings::at(&self.valve, command);
-        [
-            [
-                flow.supply_to_a * forward + leak.supply_to_a * leakage,
-                flow.a_to_tank * backward + leak.a_to_tank * leakage,
-            ],
-            [
-                flow.supply_to_b * backward + leak.supply_to_b * leakage,
-                flow.b_to_tank * forward + leak.b_to_tank * leakage,
-            ],
-        ]
+        let edges = edge_conductances(&self.valve, command);
+        [[edges.supply_to_a, edges.a_to_tank], [edges.supply_to_b, edges.b_to_tank]]
     }
 
     /// Both pressures by plain square roots, the leakage across the piston being that of a stated

@@ -4,7 +4,7 @@ use phea_dynamics::scalar::Scalar;
 
 use super::{Balance, Settled, Steady};
 use crate::machine::PumpLimited;
-use crate::servovalve::{Openings, Supply, edge_flows, tare_flow};
+use crate::servovalve::{Supply, edge_conductances, edge_flows, tare_flow};
 
 /// A supply, the valve and both chambers, settled. Units: Pa, m3/s, 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,8 +63,8 @@ impl<S: Scalar> Balance<S> {
         let supply = Supply { pressure, ..self.supply };
         let settled = Balance { supply, ..*self }.settle(steady);
         let [pressure_a, pressure_b] = settled.pressures;
-        let openings = Openings::at(&self.valve, settled.command);
-        let edges = edge_flows(&self.valve, &supply, &openings, pressure_a, pressure_b);
+        let conductances = edge_conductances(&self.valve, settled.command);
+        let edges = edge_flows(&self.valve, &supply, &conductances, pressure_a, pressure_b);
         let taken = edges.supply_to_a + edges.supply_to_b + tare_flow(&self.valve, &supply, tare_drop);
         SettledSupply { supply, settled, taken }
     }

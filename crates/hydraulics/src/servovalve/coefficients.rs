@@ -1,6 +1,7 @@
 use phea_dynamics::scalar::Scalar;
 
-use super::{Openings, Servovalve, Supply};
+use super::flow::left;
+use super::{Edges, LeakageModel, Openings, Servovalve, Supply, edge_conductances};
 use crate::orifice::{regular_root, regular_root_slope};
 
 /// Which side of null is meant where the spool stands exactly at null, as other edges open on each
@@ -37,10 +38,8 @@ pub struct ChamberCoefficients<S = f64> {
 /// edges.
 ///
 /// ```text
-/// K_qA =  (K_v3 u+' + K_vin3 sech') root(p_S - p_A) - (K_v4 u-' + K_vin4 sech') root(p_A - p_T)
-/// K_qB = -(K_v5 u-' + K_vin5 sech') root(p_S - p_B) + (K_v6 u+' + K_vin6 sech') root(p_B - p_T)
-/// K_cA =  (K_v3 u+ + K_vin3 sech) root'(p_S - p_A) + (K_v4 u- + K_vin4 sech) root'(p_A - p_T)
-/// K_cB =  (K_v5 u- + K_vin5 sech) root'(p_S - p_B) + (K_v6 u+ + K_vin6 sech) root'(p_B - p_T)
+/// K_qA =  G_3' root(p_S - p_A) - G_4' root(p_A - p_T)        K_cA = G_3 root'(p_S - p_A) + G_4 root'(p_A - p_T)
+/// K_qB = -G_5' root(p_S - p_B) + G_6' root(p_B - p_T)        K_cB = G_5 root'(p_S - p_B) + G_6 root'(p_B - p_T)
 /// ```
 ///
 /// with primes for d/dU and d/dp; sech' = -(lambda/U_n) sech tanh is the leakage's part, which
@@ -53,23 +52,19 @@ pub fn chamber_coefficients<S: Scalar>(
     pressure_b: S,
     direction: SpoolDirection,
 ) -> ChamberCoefficients<S> {
-    let (flow, leak) = (&valve.flow_coefficients, &valve.leakage_coefficients);
-    let Openings { forward, backward, leakage } = Openings::at(valve, spool);
-    let (forward_slope, backward_slope, leakage_slope) = opening_slopes(valve, spool, leakage, direction);
+    let conductances = edge_conductances(valve, spool);
+    let slopes = conductance_slopes(valve, spool, direction);
     let root = |drop| regular_root(drop, valve.transition_pressure);
     let slope = |drop| regular_root_slope(drop, valve.transition_pressure);
     let [from_supply_a, to_tank_a] = [supply.pressure - pressure_a, pressure_a - supply.tank_pressure];
     let [from_supply_b, to_tank_b] = [supply.pressure - pressure_b, pressure_b - supply.tank_pressure];
     ChamberCoefficients {
-        flow_gain_a: (flow.supply_to_a * forward_slope + leak.supply_to_a * leakage_slope)
-            * root(from_supply_a)
-            - (flow.a_to_tank * backward_slope + leak.a_to_tank * leakage_slope) * root(to_tank_a),
-        flow_pressure_a: (flow.supply_to_a * forward + leak.supply_to_a * leakage) * slope(from_supply_a)
-            + (flow.a_to_tank * backward + leak.a_to_tank * leakage) * slope(to_tank_a),
-        flow_gain_b: (flow.b_to_tank * forward_slope + leak.b_to_tank * leakage_slope) * root(to_tank_b)
-            - (flow.supply_to_b * backward_slope + leak.supply_to_b * leakage_slope) * root(from_supply_b),
-        flow_pressure_b: (flow.supply_to_b * backward + leak.supply_to_b * leakage) * slope(from_supply_b)
-            + (flow.b_to_tank * forward + leak.b_to_tank * leakage) * slope(to_tank_b),
+        flow_gain_a: slopes.supply_to_a * root(from_supply_a) - slopes.a_to_tank * root(to_tank_a),
+        flow_pressure_a: conductances.supply_to_a * slope(from_supply_a)
+            + conductances.a_to_tank * slope(to_tank_a),
+        flow_gain_b: slopes.b_to_tank * root(to_tank_b) - slopes.supply_to_b * root(from_supply_b),
+        flow_pressure_b: conductances.supply_to_b * slope(from_supply_b)
+            + conductances.b_to_tank * slope(to_tank_b),
     }
 }
 
@@ -87,8 +82,8 @@ pub struct SupplyCoefficients<S = f64> {
 /// Derivatives of the flow from the supply at any spool position and chamber pressures p_A and p_B.
 ///
 /// ```text
-/// s_A  = (K_v3 u+ + K_vin3 sech) root'(p_S - p_A)        s_B = (K_v5 u- + K_vin5 sech) root'(p_S - p_B)
-/// K_qS = (K_v3 u+' + K_vin3 sech') root(p_S - p_A) + (K_v5 u-' + K_vin5 sech') root(p_S - p_B)
+/// s_A  = G_3 root'(p_S - p_A)        s_B = G_5 root'(p_S - p_B)
+/// K_qS = G_3' root(p_S - p_A) + G_5' root(p_S - p_B)
 /// ```
 ///
 /// s_A is that part of K_cA which is the supply's.
@@ -99,18 +94,70 @@ pub(crate) fn supply_coefficients<S: Scalar>(
     pressures: [S; 2],
     direction: SpoolDirection,
 ) -> SupplyCoefficients<S> {
-    let (flow, leak) = (&valve.flow_coefficients, &valve.leakage_coefficients);
-    let Openings { forward, backward, leakage } = Openings::at(valve, spool);
-    let (forward_slope, backward_slope, leakage_slope) = opening_slopes(valve, spool, leakage, direction);
+    let conductances = edge_conductances(valve, spool);
+    let slopes = conductance_slopes(valve, spool, direction);
     let [drop_a, drop_b] = pressures.map(|pressure| supply.pressure - pressure);
     let root = |drop| regular_root(drop, valve.transition_pressure);
     let slope = |drop| regular_root_slope(drop, valve.transition_pressure);
     SupplyCoefficients {
-        edge_a: (flow.supply_to_a * forward + leak.supply_to_a * leakage) * slope(drop_a),
-        edge_b: (flow.supply_to_b * backward + leak.supply_to_b * leakage) * slope(drop_b),
-        flow_gain: (flow.supply_to_a * forward_slope + leak.supply_to_a * leakage_slope) * root(drop_a)
-            + (flow.supply_to_b * backward_slope + leak.supply_to_b * leakage_slope) * root(drop_b),
+        edge_a: conductances.supply_to_a * slope(drop_a),
+        edge_b: conductances.supply_to_b * slope(drop_b),
+        flow_gain: slopes.supply_to_a * root(drop_a) + slopes.supply_to_b * root(drop_b),
     }
+}
+
+/// dG_i/dU of [`edge_conductances`], in m3/(s Pa^0.5 V).
+///
+/// ```text
+/// G_i' = K_vi u+-' + K_vini sech'                                              each edge
+/// G_i' = K_vi u+-' + k (O^3 sech' - k^2 sech^3 O')/(O^2 - k^2 sech^2)^(3/2)      one curve
+///        with O = K_vj u+- + K_vinj sech of the other edge at the same port
+/// ```
+fn conductance_slopes<S: Scalar>(valve: &Servovalve<S>, spool: S, direction: SpoolDirection) -> Edges<S> {
+    let (flow, leak) = (&valve.flow_coefficients, &valve.leakage_coefficients);
+    let Openings { forward, backward, leakage } = Openings::at(valve, spool);
+    let (forward_slope, backward_slope, leakage_slope) = opening_slopes(valve, spool, leakage, direction);
+    match valve.leakage_model {
+        LeakageModel::EachEdge => Edges {
+            supply_to_a: flow.supply_to_a * forward_slope + leak.supply_to_a * leakage_slope,
+            a_to_tank: flow.a_to_tank * backward_slope + leak.a_to_tank * leakage_slope,
+            supply_to_b: flow.supply_to_b * backward_slope + leak.supply_to_b * leakage_slope,
+            b_to_tank: flow.b_to_tank * forward_slope + leak.b_to_tank * leakage_slope,
+        },
+        LeakageModel::OneCurve => {
+            let forward = [forward, forward_slope];
+            let backward = [backward, backward_slope];
+            let leakage = [left(leakage), leakage_slope];
+            let opened = |coefficient: S, by: [S; 2]| by.map(|share| coefficient * share);
+            let [open_a, shut_a] = [opened(flow.supply_to_a, forward), opened(flow.a_to_tank, backward)];
+            let [open_b, shut_b] = [opened(flow.supply_to_b, backward), opened(flow.b_to_tank, forward)];
+            Edges {
+                supply_to_a: open_a[1] + closing_slope(shut_a, [leak.a_to_tank, leak.supply_to_a], leakage),
+                a_to_tank: shut_a[1] + closing_slope(open_a, [leak.supply_to_a, leak.a_to_tank], leakage),
+                supply_to_b: open_b[1] + closing_slope(shut_b, [leak.b_to_tank, leak.supply_to_b], leakage),
+                b_to_tank: shut_b[1] + closing_slope(open_b, [leak.supply_to_b, leak.b_to_tank], leakage),
+            }
+        }
+    }
+}
+
+/// Slope of what an edge leaks that closes while its partner opens, in one curve; what the partner
+/// is opened, and the secant, each with its slope.
+fn closing_slope<S: Scalar>(
+    [opened, opened_slope]: [S; 2],
+    [partner, own]: [S; 2],
+    [leakage, leakage_slope]: [S; 2],
+) -> S {
+    let squares = partner.squared() + own.squared();
+    let series = partner * own / squares.sqrt();
+    let all = opened + partner * leakage;
+    let all_slope = opened_slope + partner * leakage_slope;
+    let partner_squared = partner.squared();
+    let rest = opened * (opened + S::from(2.0) * partner * leakage)
+        + partner_squared * partner_squared / squares * leakage.squared();
+    let closing =
+        all * all.squared() * leakage_slope - series.squared() * leakage * leakage.squared() * all_slope;
+    series * closing / (rest * rest.sqrt())
 }
 
 /// d/dU of the openings u+ and u- and of sech(lambda u).
@@ -169,7 +216,7 @@ pub struct ControlCoefficients<S = f64> {
 /// # use phea_hydraulics::servovalve::*;
 /// # let valve = Servovalve {
 /// #     flow_coefficients: Edges::equal(2.97e-7), leakage_coefficients: Edges::equal(2.40e-9),
-/// #     leakage_shape: 100.0, tare_flow: 7.55e-6, nominal_voltage: 10.0,
+/// #     leakage_shape: 100.0, leakage_model: LeakageModel::EachEdge, tare_flow: 7.55e-6, nominal_voltage: 10.0,
 /// #     natural_frequency: 1099.0, damping_ratio: 0.9, transition_pressure: 1e3,
 /// # };
 /// let supply = Supply { pressure: 70e5, tank_pressure: 0.0 };
@@ -214,7 +261,7 @@ pub fn control_coefficients<S: Scalar>(
 /// # let valve = Servovalve {
 /// #     flow_coefficients: Edges::from_array([3.2e-7, 2.5e-7, 2.0e-7, 3.85e-7]),
 /// #     leakage_coefficients: Edges::equal(2.40e-9),
-/// #     leakage_shape: 100.0, tare_flow: 7.55e-6, nominal_voltage: 10.0,
+/// #     leakage_shape: 100.0, leakage_model: LeakageModel::EachEdge, tare_flow: 7.55e-6, nominal_voltage: 10.0,
 /// #     natural_frequency: 1099.0, damping_ratio: 0.9, transition_pressure: 1e3,
 /// # };
 /// let supply = Supply { pressure: 70e5, tank_pressure: 0.0 };

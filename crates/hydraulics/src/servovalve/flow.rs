@@ -59,52 +59,117 @@ pub fn hyperbolic_secant<S: Scalar>(argument: S) -> S {
     S::from(2.0) * decay / (S::from(1.0) + decay.squared())
 }
 
+/// How the leakage follows the spool.
+///
+/// The thesis states one curve for the leakage of the whole valve (4.14), and edges that close as
+/// they like (4.2 to 4.9). Both models have the same coefficients and the same flows at null; away
+/// from it a lambda and a K_vin that were found with one mean something else in the other.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LeakageModel {
+    /// One secant for each edge: the leakage of every edge goes with sech(lambda u).
+    #[default]
+    EachEdge,
+    /// One curve for the whole valve: with shut ports, what leaks through it goes with sech(lambda
+    /// u).
+    OneCurve,
+}
+
+/// What each edge passes at a root of one, in m3/(s Pa^0.5), at spool position U_Csp in V.
+///
+/// ```text
+/// G_i = K_vi u+- + K_vini sech(lambda u)                                    each edge; thesis (4.2) to (4.9)
+/// G_i = K_vi u+- + k sech G_j/sqrt(G_j^2 - k^2 sech^2)                      one curve, i the edge that closes
+///       with G_j = K_vj u+- + K_vinj sech of the other edge at the same port, k = K_vini K_vinj/sqrt(K_vini^2 + K_vinj^2)
+/// ```
+///
+/// plus for edges 3 and 6, minus for 4 and 5. With one curve two edges in series pass k sech
+/// sqrt(p_S - p_T) when their port is shut, wherever the spool is, so that the whole leakage is that
+/// of thesis (4.14) with K_vinp sqrt(2) the sum of both k. At null both are K_vini.
+///
+/// # Example
+/// The leakage of equal edges away from null: one curve, and sqrt(2) of it.
+/// ```
+/// use phea_hydraulics::reference_rig::valve;
+/// use phea_hydraulics::servovalve::{Edges, LeakageModel, Servovalve, edge_conductances, hyperbolic_secant};
+/// let each = Servovalve { leakage_coefficients: Edges::equal(2.4e-9), ..valve() };
+/// let one = Servovalve { leakage_model: LeakageModel::OneCurve, ..each };
+/// let closing = |valve| edge_conductances(valve, 0.5).a_to_tank / (2.4e-9 * hyperbolic_secant(5.0));
+/// assert!((closing(&each) - 1.0_f64).abs() < 1e-12);
+/// assert!((closing(&one) - 0.5_f64.sqrt()).abs() < 1e-5);
+/// ```
+#[inline(always)]
+pub fn edge_conductances<S: Scalar>(valve: &Servovalve<S>, spool: S) -> Edges<S> {
+    let (flow, leak) = (&valve.flow_coefficients, &valve.leakage_coefficients);
+    let Openings { forward, backward, leakage } = Openings::at(valve, spool);
+    let (open_a, open_b) = (flow.supply_to_a * forward, flow.supply_to_b * backward);
+    let (shut_a, shut_b) = (flow.a_to_tank * backward, flow.b_to_tank * forward);
+    match valve.leakage_model {
+        LeakageModel::EachEdge => Edges {
+            supply_to_a: open_a + leak.supply_to_a * leakage,
+            a_to_tank: shut_a + leak.a_to_tank * leakage,
+            supply_to_b: open_b + leak.supply_to_b * leakage,
+            b_to_tank: shut_b + leak.b_to_tank * leakage,
+        },
+        LeakageModel::OneCurve => {
+            let leakage = left(leakage);
+            let of_a = [leak.supply_to_a, leak.a_to_tank];
+            let of_b = [leak.supply_to_b, leak.b_to_tank];
+            let [supply_to_a, a_to_tank] = in_series([open_a, shut_a], of_a, leakage);
+            let [supply_to_b, b_to_tank] = in_series([open_b, shut_b], of_b, leakage);
+            Edges { supply_to_a, a_to_tank, supply_to_b, b_to_tank }
+        }
+    }
+}
+
+/// The secant where nothing is divided by it: of edges that are shut for good it moves nothing.
+#[inline(always)]
+pub(super) fn left<S: Scalar>(leakage: S) -> S {
+    leakage.maximum(S::from(1e-60))
+}
+
+/// Conductances of two edges at one port, from what the spool opens of them and their leakage at
+/// null, where both together leak in one curve.
+///
+/// The edge that opens has the same conductance by the rule of the edge that closes, whose partner
+/// then is at its leakage: so nothing depends on the direction.
+#[inline(always)]
+fn in_series<S: Scalar>([open, shut]: [S; 2], [first, second]: [S; 2], leakage: S) -> [S; 2] {
+    let squares = first.squared() + second.squared();
+    let series = first * second / squares.sqrt() * leakage;
+    // G^2 - k^2 sech^2 without the difference of two large numbers
+    let rest = |opened: S, own: S| {
+        let own_squared = own.squared();
+        opened * (opened + S::from(2.0) * own * leakage)
+            + own_squared * own_squared / squares * leakage.squared()
+    };
+    let closing = |opened: S, own: S| series * (opened + own * leakage) / rest(opened, own).sqrt();
+    [open + closing(shut, second), shut + closing(open, first)]
+}
+
 /// Flows through the four edges, in m3/s.
 ///
 /// ```text
-/// q_v3 = (K_v3 u+ + K_vin3 sech(lambda u)) root(p_S - p_A)             thesis (4.2), (4.6)
-/// q_v4 = (K_v4 u- + K_vin4 sech(lambda u)) root(p_A - p_T)             thesis (4.3), (4.7)
-/// q_v5 = (K_v5 u- + K_vin5 sech(lambda u)) root(p_S - p_B)             thesis (4.4), (4.8)
-/// q_v6 = (K_v6 u+ + K_vin6 sech(lambda u)) root(p_B - p_T)             thesis (4.5), (4.9)
+/// q_v3 = G_3 root(p_S - p_A)        thesis (4.2), (4.6)        q_v4 = G_4 root(p_A - p_T)        thesis (4.3), (4.7)
+/// q_v5 = G_5 root(p_S - p_B)        thesis (4.4), (4.8)        q_v6 = G_6 root(p_B - p_T)        thesis (4.5), (4.9)
 /// ```
 ///
-/// with u = U_Csp/U_Cn, its positive and negative parts u+ and u-, and the regular root of
-/// [`crate::orifice`]. The leakage's shape is that of thesis (4.14), here on each edge. `spool` in
-/// V, pressures in Pa.
+/// with the conductances of [`edge_conductances`] and the regular root of [`crate::orifice`].
+/// Pressures in Pa.
 #[inline(always)]
 pub fn edge_flows<S: Scalar>(
     valve: &Servovalve<S>,
     supply: &Supply<S>,
-    openings: &Openings<S>,
+    conductances: &Edges<S>,
     pressure_a: S,
     pressure_b: S,
 ) -> EdgeFlows<S> {
-    let (flow, leakage, transition) =
-        (&valve.flow_coefficients, &valve.leakage_coefficients, valve.transition_pressure);
-    let (out_of_supply_a, into_tank_a) = (supply.pressure - pressure_a, pressure_a - supply.tank_pressure);
-    let (out_of_supply_b, into_tank_b) = (supply.pressure - pressure_b, pressure_b - supply.tank_pressure);
-    let Openings { forward, backward, leakage: shape } = *openings;
+    let transition = valve.transition_pressure;
+    let flow = |conductance, drop| orifice::flow(conductance, drop, transition);
     Edges {
-        supply_to_a: orifice::flow(
-            flow.supply_to_a * forward + leakage.supply_to_a * shape,
-            out_of_supply_a,
-            transition,
-        ),
-        a_to_tank: orifice::flow(
-            flow.a_to_tank * backward + leakage.a_to_tank * shape,
-            into_tank_a,
-            transition,
-        ),
-        supply_to_b: orifice::flow(
-            flow.supply_to_b * backward + leakage.supply_to_b * shape,
-            out_of_supply_b,
-            transition,
-        ),
-        b_to_tank: orifice::flow(
-            flow.b_to_tank * forward + leakage.b_to_tank * shape,
-            into_tank_b,
-            transition,
-        ),
+        supply_to_a: flow(conductances.supply_to_a, supply.pressure - pressure_a),
+        a_to_tank: flow(conductances.a_to_tank, pressure_a - supply.tank_pressure),
+        supply_to_b: flow(conductances.supply_to_b, supply.pressure - pressure_b),
+        b_to_tank: flow(conductances.b_to_tank, pressure_b - supply.tank_pressure),
     }
 }
 
@@ -119,10 +184,10 @@ pub fn edge_flows<S: Scalar>(
 /// # Example
 /// Equal edges at null and half the supply pressure: what leaks in leaks out.
 /// ```
-/// use phea_hydraulics::servovalve::{Edges, Servovalve, Supply, chamber_flows};
+/// use phea_hydraulics::servovalve::{Edges, LeakageModel, Servovalve, Supply, chamber_flows};
 /// let valve = Servovalve {
 ///     flow_coefficients: Edges::equal(2.97e-7), leakage_coefficients: Edges::equal(2.48e-9),
-///     leakage_shape: 100.0, tare_flow: 7.55e-6, nominal_voltage: 10.0,
+///     leakage_shape: 100.0, leakage_model: LeakageModel::EachEdge, tare_flow: 7.55e-6, nominal_voltage: 10.0,
 ///     natural_frequency: 1099.0, damping_ratio: 0.9, transition_pressure: 1e3,
 /// };
 /// let supply = Supply { pressure: 70e5, tank_pressure: 0.0 };
@@ -138,7 +203,7 @@ pub fn chamber_flows<S: Scalar>(
     pressure_a: S,
     pressure_b: S,
 ) -> ChamberFlows<S> {
-    let edges = edge_flows(valve, supply, &Openings::at(valve, spool), pressure_a, pressure_b);
+    let edges = edge_flows(valve, supply, &edge_conductances(valve, spool), pressure_a, pressure_b);
     ChamberFlows { into_a: edges.supply_to_a - edges.a_to_tank, into_b: edges.supply_to_b - edges.b_to_tank }
 }
 

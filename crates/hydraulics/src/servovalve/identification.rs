@@ -2,8 +2,10 @@
 
 use phea_dynamics::scalar::{Dual, Scalar};
 
+use super::ports::KnownPorts;
 use super::{
-    Edges, Servovalve, SlowSpool, SpoolImperfection, Supply, blocked_ports, connected_ports, tare_flow,
+    Edges, LeakageModel, PortState, Servovalve, SlowSpool, SpoolImperfection, Supply, blocked_ports,
+    connected_ports, edge_conductances, tare_flow,
 };
 
 /// How many numbers static tests tell of a valve.
@@ -114,6 +116,8 @@ pub struct TestedValve {
     pub transition_pressure: f64,
     /// Drop at which the tare flow is stated.
     pub tare_reference_drop: f64,
+    /// What lambda and the leakage coefficients mean away from null.
+    pub leakage_model: LeakageModel,
 }
 
 impl TestedValve {
@@ -121,50 +125,43 @@ impl TestedValve {
     ///
     /// Equations: [`blocked_ports`], [`connected_ports`], [`tare_flow`],
     /// [`SpoolImperfection::slow_opening`].
-    pub fn outputs<S: Scalar>(
+    pub fn outputs(
         &self,
-        coefficients: &StaticCoefficients<S>,
+        coefficients: &StaticCoefficients,
         circuit: PortCircuit,
         inputs: &[TestInput],
-    ) -> Vec<TestOutput<S>> {
+    ) -> Vec<TestOutput> {
         let valve = self.servovalve(coefficients);
-        let spool = SpoolImperfection {
-            null_bias: coefficients.null_bias,
-            hysteresis_width: Some(coefficients.hysteresis_width),
-            threshold: None,
-            rate_limit: None,
-        };
-        let mut memory = None;
-        let one = |input: &TestInput| {
-            let command = S::from(input.command);
-            let memory = memory.get_or_insert(SlowSpool::at(command));
-            let opening = spool.slow_opening(memory, command);
-            let supply = input.supply.convert(&mut S::from);
+        let openings = openings(coefficients, inputs);
+        let one = |(input, opening): (&TestInput, f64)| {
             let found = match circuit {
-                PortCircuit::Blocked => blocked_ports(&valve, &supply, opening),
+                PortCircuit::Blocked => blocked_ports(&valve, &input.supply, opening),
                 PortCircuit::Connected => {
-                    connected_ports(&valve, &supply, opening, S::from(input.load_pressure))
+                    connected_ports(&valve, &input.supply, opening, input.load_pressure)
                 }
             };
-            TestOutput {
-                pressure_a: found.pressure_a,
-                pressure_b: found.pressure_b,
-                leak_flow: found.supply_flow + tare_flow(&valve, &supply, S::from(self.tare_reference_drop)),
-                port_flow: found.port_flow,
-            }
+            let tare = tare_flow(&valve, &input.supply, self.tare_reference_drop);
+            let PortState { pressure_a, pressure_b, supply_flow, port_flow } = found;
+            TestOutput { pressure_a, pressure_b, leak_flow: supply_flow + tare, port_flow }
         };
-        inputs.iter().map(one).collect()
+        inputs.iter().zip(openings).map(one).collect()
     }
 
     /// The same with derivatives with respect to all coefficients, in their order.
+    ///
+    /// The ports are found over plain numbers; one more step of Newton's method over numbers with
+    /// derivatives brings these.
     ///
     /// # Example
     /// The whole tare flow is in the leakage, whatever the spool does.
     /// ```
     /// use phea_hydraulics::servovalve::{
-    ///     Edges, PortCircuit, StaticCoefficients, Supply, TestInput, TestedValve,
+    ///     Edges, LeakageModel, PortCircuit, StaticCoefficients, Supply, TestInput, TestedValve,
     /// };
-    /// let tested = TestedValve { nominal_voltage: 10.0, transition_pressure: 1e3, tare_reference_drop: 70e5 };
+    /// let tested = TestedValve {
+    ///     nominal_voltage: 10.0, transition_pressure: 1e3, tare_reference_drop: 70e5,
+    ///     leakage_model: LeakageModel::EachEdge,
+    /// };
     /// let coefficients = StaticCoefficients {
     ///     flow_coefficients: Edges::equal(3e-7), leakage_coefficients: Edges::equal(2e-9), leakage_shape: 100.0,
     ///     tare_flow: 7.55e-6, null_bias: 0.0, hysteresis_width: 0.1,
@@ -180,12 +177,28 @@ impl TestedValve {
         circuit: PortCircuit,
         inputs: &[TestInput],
     ) -> Vec<TestOutput<Sensitive>> {
+        let known = self.outputs(coefficients, circuit, inputs);
         let mut index = 0;
         let open = coefficients.to_array().map(|value| {
             index += 1;
             Sensitive::variable(value, index - 1)
         });
-        self.outputs(&StaticCoefficients::from_array(open), circuit, inputs)
+        let open = StaticCoefficients::from_array(open);
+        let valve = self.servovalve(&open);
+        let one = |((input, known), opening): ((&TestInput, &TestOutput), Sensitive)| {
+            let ports = KnownPorts {
+                circuit,
+                supply: input.supply,
+                transition_pressure: self.transition_pressure,
+                pressures: [known.pressure_a, known.pressure_b],
+            };
+            let edges = edge_conductances(&valve, opening).to_array();
+            let [pressure_a, pressure_b, supply_flow, port_flow] = Sensitive::local(&ports, edges);
+            let supply = input.supply.convert(&mut Sensitive::from);
+            let tare = tare_flow(&valve, &supply, Sensitive::from(self.tare_reference_drop));
+            TestOutput { pressure_a, pressure_b, leak_flow: supply_flow + tare, port_flow }
+        };
+        inputs.iter().zip(&known).zip(openings(&open, inputs)).map(one).collect()
     }
 
     fn servovalve<S: Scalar>(&self, coefficients: &StaticCoefficients<S>) -> Servovalve<S> {
@@ -193,6 +206,7 @@ impl TestedValve {
             flow_coefficients: coefficients.flow_coefficients,
             leakage_coefficients: coefficients.leakage_coefficients,
             leakage_shape: coefficients.leakage_shape,
+            leakage_model: self.leakage_model,
             tare_flow: coefficients.tare_flow,
             nominal_voltage: S::from(self.nominal_voltage),
             // a spool at rest has no dynamics
@@ -201,4 +215,20 @@ impl TestedValve {
             transition_pressure: S::from(self.transition_pressure),
         }
     }
+}
+
+/// Position of the edges in V row by row.
+fn openings<S: Scalar>(coefficients: &StaticCoefficients<S>, inputs: &[TestInput]) -> Vec<S> {
+    let spool = SpoolImperfection {
+        null_bias: coefficients.null_bias,
+        hysteresis_width: Some(coefficients.hysteresis_width),
+        threshold: None,
+        rate_limit: None,
+    };
+    let mut memory = None;
+    let one = |input: &TestInput| {
+        let command = S::from(input.command);
+        spool.slow_opening(memory.get_or_insert(SlowSpool::at(command)), command)
+    };
+    inputs.iter().map(one).collect()
 }

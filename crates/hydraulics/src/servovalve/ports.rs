@@ -1,9 +1,9 @@
 //! A servovalve on a test bench: its ports blocked, or connected to each other through a meter.
 
-use phea_dynamics::scalar::Scalar;
+use phea_dynamics::scalar::{LocalFunction, Scalar};
 
-use super::{Openings, Servovalve, Supply, edge_flows};
-use crate::orifice::{regular_root, regular_root_slope};
+use super::{PortCircuit, Servovalve, Supply, edge_conductances};
+use crate::orifice::{self, regular_root, regular_root_slope};
 
 /// Where a valve at rest settles on a test bench. Units: Pa, m3/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,10 +40,10 @@ const LOADED_STEPS: usize = 6;
 /// # Example
 /// Equal edges at null hold half the supply pressure in both ports.
 /// ```
-/// use phea_hydraulics::servovalve::{Edges, Servovalve, Supply, blocked_ports};
+/// use phea_hydraulics::servovalve::{Edges, LeakageModel, Servovalve, Supply, blocked_ports};
 /// let valve = Servovalve {
 ///     flow_coefficients: Edges::equal(2.97e-7), leakage_coefficients: Edges::equal(2.48e-9),
-///     leakage_shape: 100.0, tare_flow: 7.55e-6, nominal_voltage: 10.0,
+///     leakage_shape: 100.0, leakage_model: LeakageModel::EachEdge, tare_flow: 7.55e-6, nominal_voltage: 10.0,
 ///     natural_frequency: 1099.0, damping_ratio: 0.9, transition_pressure: 1e3,
 /// };
 /// let supply = Supply { pressure: 70e5, tank_pressure: 0.0 };
@@ -52,10 +52,12 @@ const LOADED_STEPS: usize = 6;
 /// assert!((found.supply_flow / (2.48e-9 * 140e5_f64.sqrt()) - 1.0).abs() < 1e-6); // thesis (4.13)
 /// ```
 pub fn blocked_ports<S: Scalar>(valve: &Servovalve<S>, supply: &Supply<S>, opening: S) -> PortState<S> {
-    let [supply_a, tank_a, supply_b, tank_b] = conductances(valve, opening);
+    let edges = edge_conductances(valve, opening).to_array();
+    let [supply_a, tank_a, supply_b, tank_b] = edges;
     let whole = supply.pressure - supply.tank_pressure;
-    let of = |from_supply, to_tank| supply.tank_pressure + divided(from_supply, to_tank, whole, valve);
-    state(valve, supply, opening, [of(supply_a, tank_a), of(supply_b, tank_b)], S::from(0.0))
+    let transition = valve.transition_pressure;
+    let of = |from_supply, to_tank| supply.tank_pressure + divided(from_supply, to_tank, whole, transition);
+    state(edges, supply, transition, [of(supply_a, tank_a), of(supply_b, tank_b)], S::from(0.0))
 }
 
 /// Ports connected to each other with the load pressure p_A - p_B between them in Pa, zero without a
@@ -83,39 +85,73 @@ pub fn connected_ports<S: Scalar>(
     opening: S,
     load_pressure: S,
 ) -> PortState<S> {
-    let edges = conductances(valve, opening);
+    let edges = edge_conductances(valve, opening).to_array();
     let [supply_a, tank_a, supply_b, tank_b] = edges;
+    let transition = valve.transition_pressure;
     let half = load_pressure * S::from(0.5);
     // the drop over the two edges that meter, shared as without a load
     let metered = supply.pressure - supply.tank_pressure - load_pressure.abs();
-    let start = divided(supply_a + supply_b, tank_a + tank_b, metered, valve);
+    let start = divided(supply_a + supply_b, tank_a + tank_b, metered, transition);
     let mut mean = supply.tank_pressure + start + half.abs();
-    let transition = valve.transition_pressure;
     for _ in 0..LOADED_STEPS {
-        let [a, b] = [mean + half, mean - half];
-        let drops =
-            [supply.pressure - a, a - supply.tank_pressure, supply.pressure - b, b - supply.tank_pressure];
-        let mut surplus = S::from(0.0);
-        let mut slope = S::from(0.0);
-        for ((edge, drop), sign) in edges.into_iter().zip(drops).zip([-1.0, 1.0, -1.0, 1.0]) {
-            surplus = surplus + edge * regular_root(drop, transition).times(sign);
-            slope = slope + edge * regular_root_slope(drop, transition);
-        }
-        mean = mean - surplus / slope;
+        mean = mean - imbalance(edges, supply, transition, [mean + half, mean - half]);
     }
-    state(valve, supply, opening, [mean + half, mean - half], S::from(1.0))
+    state(edges, supply, transition, [mean + half, mean - half], S::from(1.0))
 }
 
-/// What each edge passes at a root of one, in the order 3, 4, 5, 6, in m3/(s Pa^0.5).
-fn conductances<S: Scalar>(valve: &Servovalve<S>, opening: S) -> [S; 4] {
-    let Openings { forward, backward, leakage } = Openings::at(valve, opening);
-    let [flow, leak] = [&valve.flow_coefficients, &valve.leakage_coefficients];
-    [
-        flow.supply_to_a * forward + leak.supply_to_a * leakage,
-        flow.a_to_tank * backward + leak.a_to_tank * leakage,
-        flow.supply_to_b * backward + leak.supply_to_b * leakage,
-        flow.b_to_tank * forward + leak.b_to_tank * leakage,
-    ]
+/// Where the ports are, by one step of Newton's method from where they are known to be: over numbers
+/// with derivatives, the derivatives of what the steps above lead to.
+pub(super) struct KnownPorts {
+    /// How the ports are piped.
+    pub(super) circuit: PortCircuit,
+    /// Supply and tank.
+    pub(super) supply: Supply,
+    /// Drop in Pa below which an edge's flow is laminar.
+    pub(super) transition_pressure: f64,
+    /// p_A and p_B in Pa.
+    pub(super) pressures: [f64; 2],
+}
+
+/// Of the four conductances: p_A, p_B, flow from the supply, flow from port to port.
+impl LocalFunction<f64, 4, 4> for KnownPorts {
+    fn at<T: Scalar>(&self, edges: [T; 4], constant: impl Fn(f64) -> T + Copy) -> [T; 4] {
+        let supply = self.supply.convert(&mut |pressure| constant(pressure));
+        let transition = constant(self.transition_pressure);
+        let [a, b] = self.pressures.map(constant);
+        let none = constant(0.0);
+        let [three, four, five, six] = edges;
+        let (pressures, connected) = match self.circuit {
+            PortCircuit::Blocked => {
+                let of_a = imbalance([three, four, none, none], &supply, transition, [a, a]);
+                let of_b = imbalance([none, none, five, six], &supply, transition, [b, b]);
+                ([a - of_a, b - of_b], none)
+            }
+            PortCircuit::Connected => {
+                let of_both = imbalance(edges, &supply, transition, [a, b]);
+                ([a - of_both, b - of_both], constant(1.0))
+            }
+        };
+        let found = state(edges, &supply, transition, pressures, connected);
+        [found.pressure_a, found.pressure_b, found.supply_flow, found.port_flow]
+    }
+}
+
+/// Newton's step of the pressures, moved together, towards a balance of the flows into the ports, in
+/// Pa.
+///
+/// ```text
+/// (q_4 + q_6 - q_3 - q_5)/(q_4' + q_6' + q_3' + q_5')              primes for the slope over the own drop
+/// ```
+fn imbalance<S: Scalar>(edges: [S; 4], supply: &Supply<S>, transition: S, [a, b]: [S; 2]) -> S {
+    let drops =
+        [supply.pressure - a, a - supply.tank_pressure, supply.pressure - b, b - supply.tank_pressure];
+    let mut surplus = S::from(0.0);
+    let mut slope = S::from(0.0);
+    for ((edge, drop), sign) in edges.into_iter().zip(drops).zip([-1.0, 1.0, -1.0, 1.0]) {
+        surplus = surplus + edge * regular_root(drop, transition).times(sign);
+        slope = slope + edge * regular_root_slope(drop, transition);
+    }
+    surplus / slope
 }
 
 /// Pressure between two edges in series above that behind the second, in Pa.
@@ -125,8 +161,7 @@ fn conductances<S: Scalar>(valve: &Servovalve<S>, opening: S) -> [S; 4] {
 /// ```
 ///
 /// The root has a closed inverse, d^2 = h^2 (h^2 + sqrt(h^4 + 4 dp_t^2))/2 for root(d) = h.
-fn divided<S: Scalar>(first: S, second: S, whole: S, valve: &Servovalve<S>) -> S {
-    let transition = valve.transition_pressure;
+fn divided<S: Scalar>(first: S, second: S, whole: S, transition: S) -> S {
     let tank_is_wider = first.less_than(second);
     let [wide, narrow] = [S::select(tank_is_wider, second, first), S::select(tank_is_wider, first, second)];
     let ratio = (narrow / wide).maximum(S::from(CLOSED));
@@ -144,17 +179,19 @@ fn divided<S: Scalar>(first: S, second: S, whole: S, valve: &Servovalve<S>) -> S
 }
 
 fn state<S: Scalar>(
-    valve: &Servovalve<S>,
+    [supply_a, tank_a, supply_b, _]: [S; 4],
     supply: &Supply<S>,
-    opening: S,
+    transition: S,
     [pressure_a, pressure_b]: [S; 2],
     connected: S,
 ) -> PortState<S> {
-    let edges = edge_flows(valve, supply, &Openings::at(valve, opening), pressure_a, pressure_b);
+    let from_supply_a = orifice::flow(supply_a, supply.pressure - pressure_a, transition);
+    let from_supply_b = orifice::flow(supply_b, supply.pressure - pressure_b, transition);
+    let into_tank_a = orifice::flow(tank_a, pressure_a - supply.tank_pressure, transition);
     PortState {
         pressure_a,
         pressure_b,
-        supply_flow: edges.supply_to_a + edges.supply_to_b,
-        port_flow: connected * (edges.supply_to_a - edges.a_to_tank),
+        supply_flow: from_supply_a + from_supply_b,
+        port_flow: connected * (from_supply_a - into_tank_a),
     }
 }

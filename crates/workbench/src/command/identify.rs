@@ -4,6 +4,7 @@ use crate::answer::Answer;
 use crate::identify::{self, IdentifyError, Known, Search, identify, recordings};
 use crate::project::Loaded;
 use crate::source::Source;
+use phea_hydraulics::servovalve::LeakageModel;
 
 use super::Watch;
 
@@ -14,8 +15,12 @@ pub struct IdentifyRequest {
     pub files: Vec<String>,
     /// Starting points of the search; absent: 6.
     pub starts: Option<usize>,
-    /// Of the starting points.
+    /// Of the starting points and of the bootstrap.
     pub seed: u32,
+    /// Repetitions of the bootstrap; zero makes none.
+    pub bootstrap: usize,
+    /// The model of the leakage; absent: the one that the recordings speak for.
+    pub leakage_model: Option<LeakageModel>,
 }
 
 /// Identifies a valve from files, with what a project says of it: nominal voltage, supply pressure,
@@ -32,7 +37,12 @@ pub fn identify_watched(
     let known = loaded.map_or(Known::default(), known);
     let recorded = recordings(source, &asked.files, &known).map_err(IdentifyError::Files)?;
     let usual = Search::default();
-    let search = Search { starts: asked.starts.unwrap_or(usual.starts), seed: asked.seed };
+    let search = Search {
+        starts: asked.starts.unwrap_or(usual.starts),
+        seed: asked.seed,
+        leakage_model: asked.leakage_model,
+        bootstrap: asked.bootstrap,
+    };
     let found = identify(recorded, &known, search, watch)?;
     Ok(Answer {
         text: identify::text(&found),
@@ -50,5 +60,6 @@ fn known(loaded: &Loaded) -> Known {
         supply_pressure: Some(actuator.supply.pressure),
         tank_pressure: actuator.supply.tank_pressure,
         tare_pressure: actuator.valve.tare_pressure,
+        leakage_model: actuator.valve.leakage_model,
     }
 }

@@ -1,7 +1,9 @@
-use phea_hydraulics::servovalve::PortCircuit;
+use std::collections::BTreeMap;
+
+use phea_hydraulics::servovalve::{LeakageModel, PortCircuit, StaticCoefficients};
 use serde::Serialize;
 
-use super::{COEFFICIENT_NAMES, Identification, SimpleCalculations, Untold};
+use super::{Bootstrap, COEFFICIENT_NAMES, ExplainedBy, Identification, SimpleCalculations, Untold};
 use crate::answer::{self, Number, OutputFile};
 use crate::project::Loaded;
 use crate::quantity::print_bare;
@@ -20,6 +22,13 @@ struct Body<'a> {
     tare_pressure_pa: f64,
     null_bias_v: Estimate,
     hysteresis_v: Estimate,
+    leakage_model: &'static str,
+    leakage_models: Vec<ModelBody>,
+    leakage_models_difference: Number,
+    leakage_model_preferred: Option<&'static str>,
+    bootstrap: Option<BootstrapBody>,
+    first_guess: BTreeMap<&'static str, f64>,
+    cost: Number,
     residual_rms: Number,
     signals: Vec<SignalBody>,
     correlations: Vec<CorrelationBody>,
@@ -51,7 +60,24 @@ struct Estimate {
     value: f64,
     confidence_95: Option<[f64; 2]>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    bootstrap_95: Option<[Number; 2]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     reason: Option<&'static str>,
+}
+
+#[derive(Serialize)]
+struct ModelBody {
+    model: &'static str,
+    criterion: Number,
+    residual_rms: Number,
+    coefficients: BTreeMap<&'static str, f64>,
+}
+
+#[derive(Serialize)]
+struct BootstrapBody {
+    repetitions: usize,
+    failed: usize,
+    block_rows: usize,
 }
 
 #[derive(Serialize)]
@@ -91,19 +117,27 @@ struct SimpleBody {
     hysteresis_v: Option<f64>,
 }
 
+/// The coefficient that a project leaves out where it may be zero.
+const HYSTERESIS: &str = "hysteresis";
+
 /// Correlations below this magnitude are not listed.
 const REMARKABLE: f64 = 0.9;
 
 /// The JSON object of `identify`, beside a project or not.
 pub fn json(loaded: Option<&Loaded>, found: &Identification) -> String {
     let numbers = found.coefficients.to_array();
-    let mut estimates = numbers.into_iter().zip(found.intervals).map(|(value, confidence_95)| Estimate {
+    let bootstrap = |index: usize| found.bootstrap.as_ref()?.intervals.get(index).copied();
+    let all = numbers.into_iter().zip(found.intervals).enumerate();
+    let mut estimates = all.map(|(index, (value, confidence_95))| Estimate {
         value,
         confidence_95,
-        reason: confidence_95.is_none().then_some("the data do not tell it"),
+        bootstrap_95: confidence_95.and(bootstrap(index)).map(|ends| ends.map(Number)),
+        reason: confidence_95.is_none().then_some("the data do not determine it"),
     });
-    let mut next =
-        || estimates.next().unwrap_or(Estimate { value: f64::NAN, confidence_95: None, reason: None });
+    let mut next = || {
+        let none = Estimate { value: f64::NAN, confidence_95: None, bootstrap_95: None, reason: None };
+        estimates.next().unwrap_or(none)
+    };
     let mut edges =
         || EdgesBody { supply_to_a: next(), a_to_tank: next(), supply_to_b: next(), b_to_tank: next() };
     let (flow_coefficients, leakage_coefficients) = (edges(), edges());
@@ -120,6 +154,13 @@ pub fn json(loaded: Option<&Loaded>, found: &Identification) -> String {
         tare_pressure_pa: found.tested.tare_reference_drop,
         null_bias_v: next(),
         hysteresis_v: next(),
+        leakage_model: word(found.tested.leakage_model),
+        leakage_models: found.evidence.models.iter().map(model).collect(),
+        leakage_models_difference: Number(found.evidence.difference()),
+        leakage_model_preferred: found.evidence.preferred().map(word),
+        bootstrap: found.bootstrap.as_ref().map(bootstrap_body),
+        first_guess: by_name(&found.first_guess),
+        cost: Number(found.cost),
         residual_rms: Number(found.residual_rms),
         signals: signals(found),
         correlations: correlations(found)
@@ -138,6 +179,31 @@ pub fn json(loaded: Option<&Loaded>, found: &Identification) -> String {
     };
     // every number that may not exist is one of `Number` or `Option`
     serde_json::to_string_pretty(&body).unwrap_or_default()
+}
+
+/// As the project file calls a model.
+pub(super) fn word(model: LeakageModel) -> &'static str {
+    match model {
+        LeakageModel::EachEdge => "each_edge",
+        LeakageModel::OneCurve => "one_curve",
+    }
+}
+
+fn model(explained: &ExplainedBy) -> ModelBody {
+    ModelBody {
+        model: word(explained.model),
+        criterion: Number(explained.criterion),
+        residual_rms: Number(explained.residual_rms),
+        coefficients: by_name(&explained.coefficients),
+    }
+}
+
+fn by_name(coefficients: &StaticCoefficients) -> BTreeMap<&'static str, f64> {
+    COEFFICIENT_NAMES.iter().map(|(name, _)| *name).zip(coefficients.to_array()).collect()
+}
+
+fn bootstrap_body(found: &Bootstrap) -> BootstrapBody {
+    BootstrapBody { repetitions: found.repetitions, failed: found.failed, block_rows: found.block_rows }
 }
 
 fn tests(found: &Identification) -> Vec<TestBody<'_>> {
@@ -214,21 +280,25 @@ pub fn files(found: &Identification) -> Vec<OutputFile> {
             unit => format!("\"{} {unit}\"", in_toml(value, 5)),
         };
         match found.intervals.get(index).copied().flatten() {
+            Some([low, high]) if low == 0.0 && name == HYSTERESIS => {
+                format!("# {key}: at most {} V\n", in_toml(high, 4))
+            }
             Some([low, high]) => {
                 let ends = [low, high].map(|end| in_toml(end, 4));
                 format!("{key} = {text}    # 95 %: {} to {}\n", ends[0], ends[1])
             }
-            None => format!("# {key}: the data do not tell it\n"),
+            None => format!("# {key}: the data do not determine it\n"),
         }
     };
     let lines = |range: std::ops::Range<usize>| range.map(line).collect::<String>();
     let files: Vec<&str> = found.recordings.iter().map(|one| one.file.as_str()).collect();
     let text = format!(
-        "# Identified by phea from {}.\n[valve]\nnominal_voltage = \"{} V\"\ntransition_pressure = \"{} Pa\"\ntare_pressure = \"{} Pa\"\n{}\n[valve.flow_coefficients]    # m3/(s.Pa^0.5)\n{}\n[valve.leakage_coefficients]\n{}",
+        "# Identified by phea from {}.\n[valve]\nnominal_voltage = \"{} V\"\ntransition_pressure = \"{} Pa\"\ntare_pressure = \"{} Pa\"\nleakage_model = \"{}\"\n{}\n[valve.flow_coefficients]    # m3/(s.Pa^0.5)\n{}\n[valve.leakage_coefficients]\n{}",
         files.join(", "),
         in_toml(found.tested.nominal_voltage, 6),
         in_toml(found.tested.transition_pressure, 6),
         in_toml(found.tested.tare_reference_drop, 6),
+        word(found.tested.leakage_model),
         lines(8..12),
         lines(0..4),
         lines(4..8),

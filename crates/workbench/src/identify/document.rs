@@ -1,20 +1,30 @@
 //! What an identified valve says to people.
 
-use super::answer::correlations;
-use super::{COEFFICIENT_NAMES, Identification, SignalFit, SimpleCalculations};
+use phea_hydraulics::servovalve::LeakageModel;
+
+use super::answer::{correlations, word};
+use super::{Bootstrap, COEFFICIENT_NAMES, DECISIVE, Identification, SignalFit, SimpleCalculations};
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
 use crate::quantity::DisplayUnit;
 
-/// The coefficients with their intervals, how well the signals are explained, and what the data do not determine.
+/// What the leakage is, the coefficients with their intervals, how well the signals are explained,
+/// and what the data do not determine.
 pub fn text(found: &Identification) -> String {
     let mut out = Document::default();
-    let headings = ["coefficient", "identified", "95 % from", "to", "by hand", "unit"];
+    out.heading("Model of the leakage");
+    out.sentences(leakage(found));
+    let mut headings = vec!["coefficient", "identified", "95 % from", "to"];
+    if found.bootstrap.is_some() {
+        headings.extend(["bootstrap from", "to"]);
+    }
+    headings.extend(["by hand", "unit"]);
     out.section("Coefficients of the valve", Table::new(headings).with(coefficients(found)));
     out.sentences([
         "By hand: the calculations of Ledezma (2019), section 5.2, which take the edges as equal."
             .to_string(),
     ]);
+    out.sentences(found.bootstrap.as_ref().map(bootstrap));
     let headings = ["file", "signal", "rows", "rms of residuals", "range", "unit", "neighbours correlate"];
     out.section(
         "How well the recordings are explained",
@@ -35,22 +45,65 @@ pub fn text(found: &Identification) -> String {
     out.text()
 }
 
-fn coefficients(found: &Identification) -> Vec<[Cell; 6]> {
+/// Which model the recordings speak for, and which the numbers are of.
+fn leakage(found: &Identification) -> Vec<String> {
+    let (used, evidence) = (found.tested.leakage_model, &found.evidence);
+    let [better, worse] = &evidence.models;
+    let by = significant(evidence.difference(), 3);
+    let first = match evidence.preferred() {
+        Some(model) => format!(
+            "The recordings speak for {} (`{}`) rather than {}: the information criterion of Schwarz is lower by {by}, where {DECISIVE} is decisive.",
+            described(model),
+            word(model),
+            described(worse.model)
+        ),
+        None => format!(
+            "The recordings do not decide between {} and {}: the information criterion of Schwarz differs by {by}, where {DECISIVE} would be decisive.",
+            described(better.model),
+            described(worse.model)
+        ),
+    };
+    let agrees = evidence.preferred().is_none_or(|preferred| preferred == used);
+    let but = if agrees { "" } else { ", against the recordings" };
+    vec![
+        first,
+        format!("The numbers below, and the fragment, are for `leakage_model = \"{}\"`{but}.", word(used)),
+    ]
+}
+
+fn described(model: LeakageModel) -> &'static str {
+    match model {
+        LeakageModel::EachEdge => "one secant for each edge",
+        LeakageModel::OneCurve => "one curve for the whole valve",
+    }
+}
+
+fn bootstrap(found: &Bootstrap) -> String {
+    let failed = match found.failed {
+        0 => String::new(),
+        failed => format!(", {failed} of which did not converge and are left out"),
+    };
+    let rows = if found.block_rows == 1 { "row" } else { "rows" };
+    format!("Bootstrap: {} repetitions{failed}, in blocks of {} {rows}.", found.repetitions, found.block_rows)
+}
+
+fn coefficients(found: &Identification) -> Vec<Vec<Cell>> {
     let numbers = found.coefficients.to_array();
     let by_hand = by_hand(&found.simple);
-    let all = COEFFICIENT_NAMES.iter().zip(numbers).zip(found.intervals).zip(by_hand);
-    all.map(|((((name, unit), value), interval), by_hand)| {
+    let all = COEFFICIENT_NAMES.iter().zip(numbers).zip(found.intervals).zip(by_hand).enumerate();
+    all.map(|(index, ((((name, unit), value), interval), by_hand))| {
         let number = |value: Option<f64>| value.map_or(Cell::Missing, |value| Cell::number(value, 4));
-        let [low, high] = [interval.map(|[low, _]| low), interval.map(|[_, high]| high)];
-        let value = interval.map(|_| value);
-        [
-            Cell::Code((*name).to_string()),
-            number(value),
-            number(low),
-            number(high),
-            number(by_hand),
-            Cell::Unit(unit),
-        ]
+        let ends = |interval: Option<[f64; 2]>| match interval {
+            Some([low, high]) => [Some(low), Some(high)].map(number),
+            None => [Cell::Missing, Cell::Missing],
+        };
+        let mut row = vec![Cell::Code((*name).to_string()), number(interval.map(|_| value))];
+        row.extend(ends(interval));
+        if let Some(bootstrap) = &found.bootstrap {
+            row.extend(ends(interval.and(bootstrap.intervals.get(index).copied())));
+        }
+        row.extend([number(by_hand), Cell::Unit(unit)]);
+        row
     })
     .collect()
 }
@@ -90,6 +143,15 @@ fn remarks(found: &Identification) -> Vec<String> {
     }
     if !found.at_bounds.is_empty() {
         remarks.push(format!("At a bound of the search: {}.", found.at_bounds.join(", ")));
+    }
+    let zero = COEFFICIENT_NAMES
+        .iter()
+        .zip(found.intervals)
+        .filter(|((name, _), interval)| *name != "null_bias" && interval.is_some_and(|[low, _]| low == 0.0));
+    let zero: Vec<&str> = zero.map(|((name, _), _)| *name).collect();
+    if !zero.is_empty() {
+        let names = zero.join(", ");
+        remarks.push(format!("These may be zero: {names}; their intervals are bounds from above."));
     }
     let wrong: Vec<&str> =
         found.signals.iter().filter(|one| one.correlation > 0.5).map(|one| one.kind.name()).collect();

@@ -15,7 +15,7 @@ use phea_hydraulics::force_sensor::ForceSensor;
 use phea_hydraulics::friction::{Friction, LuGre, Stribeck};
 use phea_hydraulics::line::Line;
 use phea_hydraulics::machine::{Machine, MachineOptions, StartValues};
-use phea_hydraulics::servovalve::{Servovalve, Supply};
+use phea_hydraulics::servovalve::{LeakageModel, Servovalve, Supply};
 use phea_hydraulics::stiffness::StiffnessModel;
 
 use crate::rig::{Chance, Control, Refusal, Rig};
@@ -91,6 +91,7 @@ fn components(chance: &mut Chance) -> Components {
             flow_coefficients: chance.edges(flow_coefficient),
             leakage_coefficients: chance.edges(leakage),
             leakage_shape: 100.0,
+            leakage_model: LeakageModel::EachEdge,
             tare_flow: 0.0,
             nominal_voltage: 10.0,
             natural_frequency: chance.decades(300.0, 2000.0),

@@ -13,7 +13,7 @@ use phea_hydraulics::line::{DynamicLine, Line, LineError};
 use phea_hydraulics::machine::{
     LoadModel, Machine, MachineError, MachineOptions, PowerUnit, PumpLimited, StartValues,
 };
-use phea_hydraulics::servovalve::{Edges, Servovalve, SpoolImperfection, Supply};
+use phea_hydraulics::servovalve::{Edges, LeakageModel, Servovalve, SpoolImperfection, Supply};
 use phea_hydraulics::stiffness::StiffnessModel;
 
 use crate::rich;
@@ -212,6 +212,7 @@ fn components(chance: &mut Chance, like_benchmark: bool) -> Components {
             flow_coefficients: chance.edges(flow_coefficient),
             leakage_coefficients: chance.edges(leakage),
             leakage_shape: chance.decades(10.0, 300.0),
+            leakage_model: LeakageModel::EachEdge,
             tare_flow: 0.0,
             nominal_voltage: 10.0,
             natural_frequency: chance.decades(150.0, 3000.0),

@@ -1,0 +1,152 @@
+//! Intervals by fitting again what the noise might have been.
+
+use phea_dynamics::least_squares::{Ending, Settings};
+use phea_dynamics::random::{share, stream};
+use phea_dynamics::watch::{Stopped, Watch, tell, unwatched};
+
+use super::channels::Together;
+use super::fit::Fit;
+use super::recording::{RecordedSignal, Recording};
+use super::variables::{COUNT, Kind};
+
+/// Fewest repetitions whose 2.5 % are more than the outermost.
+pub const FEWEST_REPETITIONS: usize = 50;
+
+/// Relative decrease of the sum at which a repetition ends.
+const TOLERANCE: f64 = 1e-7;
+
+/// Longest block, as share of a recording.
+const LONGEST_BLOCK: usize = 10;
+
+/// Intervals by the bootstrap.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bootstrap {
+    /// 95 % interval of each coefficient, from the 2.5th to the 97.5th percentile.
+    pub intervals: [[f64; 2]; COUNT],
+    /// Repetitions that were made.
+    pub repetitions: usize,
+    /// Those of them whose fit did not converge: they are left out.
+    pub failed: usize,
+    /// Rows of a block.
+    pub block_rows: usize,
+}
+
+/// The wild bootstrap of blocks: each repetition fits recordings made of what the valve shows and of
+/// its residuals with random signs, one sign for all signals of a block of neighbouring rows.
+///
+/// ```text
+/// y* = y(K) + s_b r sqrt(n/(n - m))        s_b = +-1
+/// ```
+///
+/// So noise that differs from row to row stays where it is, signals of a row stay together, and what
+/// neighbouring residuals have in common stays within a block (Liu 1988, Shao 2010). A block is as
+/// long as the residuals of any signal are alike: up to the lag at which their correlation is below
+/// 2/sqrt(n).
+pub(super) fn bootstrap(
+    fit: &Fit<'_>,
+    repetitions: usize,
+    seed: u32,
+    watch: Watch<'_>,
+) -> Result<Bootstrap, Stopped> {
+    let together = &fit.together;
+    let block_rows = block_rows(fit);
+    let residuals = fit.minimum.linearised.residuals.len() as f64;
+    let widening = (residuals / (residuals - COUNT as f64)).sqrt();
+    let mut estimates: [Vec<f64>; COUNT] = std::array::from_fn(|_| Vec::with_capacity(repetitions));
+    let mut failed = 0;
+    for repetition in 0..repetitions {
+        tell(watch, "bootstrap", repetition, repetitions)?;
+        let mut state = stream(u64::from(seed), repetition as u64);
+        let recordings = repeated(fit, widening, block_rows, &mut state);
+        let again = Together { recordings: &recordings, ..together.clone() };
+        let found = again.searched(&fit.minimum.variables, TOLERANCE, &mut unwatched)?;
+        if found.ending != Ending::Converged {
+            failed += 1;
+            continue;
+        }
+        let numbers = together.variables.coefficients(&found.variables).to_array();
+        for (estimates, number) in estimates.iter_mut().zip(numbers) {
+            estimates.push(number);
+        }
+    }
+    let lowest = together.variables.bounds().map(|[lower, _]| lower);
+    let lowest = together.variables.coefficients(&lowest).to_array();
+    let mut intervals = [[f64::NAN; 2]; COUNT];
+    for (index, ((ends, estimates), least)) in
+        intervals.iter_mut().zip(&mut estimates).zip(lowest).enumerate()
+    {
+        estimates.sort_by(f64::total_cmp);
+        *ends = [0.025, 0.975].map(|share| percentile(estimates, share));
+        // what ends where the search ends may be nothing at all
+        if Kind::vanishes(index) && ends[0] <= least {
+            ends[0] = 0.0;
+        }
+    }
+    Ok(Bootstrap { intervals, repetitions, failed, block_rows })
+}
+
+/// The recordings with the signs of their residuals drawn anew.
+fn repeated(fit: &Fit<'_>, widening: f64, block_rows: usize, state: &mut u64) -> Vec<Recording> {
+    let together = &fit.together;
+    let mut recordings = together.recordings.to_vec();
+    let signs: Vec<Vec<f64>> = recordings
+        .iter()
+        .map(|recording| {
+            let blocks = recording.inputs.len().div_ceil(block_rows);
+            (0..blocks).map(|_| if share(state) < 0.5 { -widening } else { widening }).collect()
+        })
+        .collect();
+    let residuals = together.by_channel(&fit.minimum.linearised.residuals);
+    for (channel, residuals) in together.channels.iter().zip(residuals) {
+        let Some((recording, signs)) =
+            recordings.get_mut(channel.recording).zip(signs.get(channel.recording))
+        else {
+            continue;
+        };
+        let Some(signal) = recording.signals.get_mut(channel.signal) else { continue };
+        let signs = signs.iter().flat_map(|sign| std::iter::repeat_n(sign, block_rows));
+        replace(signal, residuals, channel.scale, signs);
+    }
+    recordings
+}
+
+/// Each value, which is what the model shows less its residual, with the residual times a sign.
+fn replace<'s>(
+    signal: &mut RecordedSignal,
+    residuals: &[f64],
+    scale: f64,
+    signs: impl Iterator<Item = &'s f64>,
+) {
+    let read = signal.values.iter_mut().zip(signs).filter_map(|(value, sign)| Some((value.as_mut()?, sign)));
+    for ((value, sign), residual) in read.zip(residuals) {
+        *value += residual * scale * (1.0 - sign);
+    }
+}
+
+/// Rows after which the residuals of no signal are alike any more.
+fn block_rows(fit: &Fit<'_>) -> usize {
+    let beyond = Settings::default().robust_beyond;
+    let residuals = fit.together.by_channel(&fit.minimum.linearised.residuals);
+    let of = |own: &[f64]| {
+        // a single outlier says nothing of its neighbours
+        let own: Vec<f64> = own.iter().map(|residual| residual.max(-beyond).min(beyond)).collect();
+        let squares: f64 = own.iter().map(|residual| residual * residual).sum();
+        let limit = 2.0 / (own.len() as f64).sqrt() * squares;
+        let alike = |lag: &usize| {
+            let products = own.iter().zip(own.iter().skip(*lag)).map(|(one, next)| one * next);
+            products.sum::<f64>() < limit
+        };
+        let longest = (own.len() / LONGEST_BLOCK).max(1);
+        (1..longest).find(alike).unwrap_or(longest)
+    };
+    residuals.into_iter().map(of).max().unwrap_or(1)
+}
+
+/// Percentile of sorted numbers; NaN of none.
+fn percentile(sorted: &[f64], share: f64) -> f64 {
+    let place = share * sorted.len().saturating_sub(1) as f64;
+    let below = place.floor();
+    let at = |index: usize| sorted.get(index).or(sorted.last()).copied().unwrap_or(f64::NAN);
+    let (low, high) = (at(below as usize), at(below as usize + 1));
+    low + (place - below) * (high - low)
+}

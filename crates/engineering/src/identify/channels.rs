@@ -1,0 +1,149 @@
+//! The recorded signals that are explained together, and what the model leaves of them.
+
+use phea_dynamics::least_squares::{Linearised, Minimum, Settings, minimise};
+use phea_dynamics::watch::{Stopped, Watch, tell};
+use phea_hydraulics::servovalve::TestedValve;
+
+use super::recording::{RecordedSignal, Recording, median};
+use super::variables::Variables;
+
+/// Scale of a residual, over the range of its signal, before the data say.
+const FIRST_SCALE: f64 = 0.01;
+
+/// Least scale over the range: what no instrument resolves.
+const RESOLUTION: f64 = 1e-6;
+
+/// Evaluations of a search.
+const EVALUATIONS: usize = 60;
+
+/// A signal and the scale of its residuals.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Channel {
+    pub(super) recording: usize,
+    pub(super) signal: usize,
+    pub(super) scale: f64,
+    /// Largest less smallest value.
+    pub(super) range: f64,
+}
+
+impl Channel {
+    /// What no instrument resolves.
+    pub(super) fn least_scale(&self) -> f64 {
+        RESOLUTION * self.range
+    }
+}
+
+/// Recordings that are explained together.
+#[derive(Clone, Debug)]
+pub(super) struct Together<'a> {
+    pub(super) recordings: &'a [Recording],
+    pub(super) channels: Vec<Channel>,
+    pub(super) tested: TestedValve,
+    pub(super) variables: &'a Variables,
+}
+
+impl<'a> Together<'a> {
+    pub(super) fn new(
+        recordings: &'a [Recording],
+        tested: TestedValve,
+        variables: &'a Variables,
+    ) -> Together<'a> {
+        let all = recordings.iter().enumerate();
+        let channels = all.flat_map(|(recording, one)| {
+            one.signals.iter().enumerate().filter_map(move |(signal, values)| {
+                let [least, most] = values.range();
+                let range = most - least;
+                (range > 0.0).then_some(Channel { recording, signal, scale: FIRST_SCALE * range, range })
+            })
+        });
+        Together { recordings, channels: channels.collect(), tested, variables }
+    }
+
+    pub(super) fn signal(&self, channel: &Channel) -> Option<&RecordedSignal> {
+        self.recordings.get(channel.recording)?.signals.get(channel.signal)
+    }
+
+    /// Residuals over their scales, channel by channel, with derivatives.
+    pub(super) fn linearised(&self, variables: &[f64]) -> Linearised {
+        let coefficients = self.variables.coefficients(variables);
+        let slopes = self.variables.slopes(&coefficients);
+        let of = |one: &Recording| self.tested.sensitive_outputs(&coefficients, one.circuit, &one.inputs);
+        let outputs: Vec<_> = self.recordings.iter().map(of).collect();
+        let mut found = Linearised { residuals: Vec::new(), jacobian: Vec::new() };
+        for channel in &self.channels {
+            let Some((signal, outputs)) = self.signal(channel).zip(outputs.get(channel.recording)) else {
+                continue;
+            };
+            for (output, value) in outputs.iter().zip(&signal.values) {
+                let Some(value) = value else { continue };
+                let shown = output.combined(signal.kind.weights(&output.values()));
+                found.residuals.push((shown.value() - value) / channel.scale);
+                let gradient = shown.gradient().iter().zip(slopes);
+                found.jacobian.extend(gradient.map(|(slope, own)| slope * own / channel.scale));
+            }
+        }
+        found
+    }
+
+    /// The group of each residual: what was read at one instant.
+    pub(super) fn groups(&self) -> Vec<usize> {
+        let mut before = 0;
+        let mut firsts = Vec::with_capacity(self.recordings.len());
+        for recording in self.recordings {
+            firsts.push(before);
+            before += recording.inputs.len();
+        }
+        let mut groups = Vec::new();
+        for channel in &self.channels {
+            let Some((signal, first)) = self.signal(channel).zip(firsts.get(channel.recording)) else {
+                continue;
+            };
+            let read = signal.values.iter().enumerate().filter(|(_, value)| value.is_some());
+            groups.extend(read.map(|(row, _)| first + row));
+        }
+        groups
+    }
+
+    /// Where a search from here ends, at this relative decrease of the sum.
+    pub(super) fn searched(
+        &self,
+        start: &[f64],
+        tolerance: f64,
+        watch: Watch<'_>,
+    ) -> Result<Minimum, Stopped> {
+        let settings = Settings { maximum_evaluations: EVALUATIONS, tolerance, ..Settings::default() };
+        let mut done = 0;
+        minimise(start, &self.variables.bounds(), settings, &mut |variables| {
+            done += 1;
+            tell(watch, "fitting", done, EVALUATIONS)?;
+            Ok(Some(self.linearised(variables)))
+        })
+    }
+
+    /// Residuals of each channel, over their scales.
+    pub(super) fn by_channel<'r>(&self, residuals: &'r [f64]) -> Vec<&'r [f64]> {
+        let mut rest = residuals;
+        let count = |channel| self.signal(channel).map_or(0, |signal| signal.values.iter().flatten().count());
+        let mut split = |channel| {
+            let (own, others) = rest.split_at(count(channel).min(rest.len()));
+            rest = others;
+            own
+        };
+        self.channels.iter().map(&mut split).collect()
+    }
+
+    /// Takes the scale of each signal from its residuals: 1.4826 times their median magnitude, which
+    /// outliers do not move; not below what no instrument resolves. Returns the largest relative
+    /// change.
+    pub(super) fn rescale(&mut self, residuals: &[f64]) -> f64 {
+        let of = |own: &[f64]| median(own.iter().map(|residual| residual.abs()).collect());
+        let medians: Vec<f64> = self.by_channel(residuals).into_iter().map(of).collect();
+        let mut change = 0.0_f64;
+        for (channel, median) in self.channels.iter_mut().zip(medians) {
+            let scale = (1.4826 * median * channel.scale).max(channel.least_scale());
+            change = change.max((scale / channel.scale - 1.0).abs());
+            channel.scale = scale;
+        }
+        change
+    }
+}

@@ -1,0 +1,124 @@
+//! Which model of the leakage the recordings speak for.
+
+use phea_dynamics::least_squares::Settings;
+use phea_dynamics::portable;
+use phea_hydraulics::servovalve::{LeakageModel, StaticCoefficients};
+
+use super::fit::Fit;
+use super::variables::COUNT;
+
+/// Difference of the criterion beyond which the evidence is decisive: odds of 150 to 1 (Kass and
+/// Raftery 1995, "very strong").
+pub const DECISIVE: f64 = 10.0;
+
+/// Rounds in which a scale comes to its likeliest value.
+const ROUNDS: usize = 30;
+
+/// Greatest correlation of neighbours that is believed: of the rows, one in two hundred counts.
+const MOST_CORRELATED: f64 = 0.99;
+
+/// How well a model of the leakage explains the recordings.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ExplainedBy {
+    /// Which.
+    pub model: LeakageModel,
+    /// Coefficients that do it best.
+    pub coefficients: StaticCoefficients,
+    /// Information criterion; the lower the better, its zero has no meaning.
+    pub criterion: f64,
+    /// Root mean square of all residuals, each over the range of its signal.
+    pub residual_rms: f64,
+}
+
+/// The models of the leakage compared.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Evidence {
+    /// Both, the one that explains the recordings better first.
+    pub models: [ExplainedBy; 2],
+    /// Rows that count, all signals together: fewer than were read where neighbouring residuals are
+    /// alike.
+    pub independent_rows: f64,
+}
+
+impl Evidence {
+    /// By how much the criterion of the better model is lower.
+    pub fn difference(&self) -> f64 {
+        let [better, worse] = &self.models;
+        worse.criterion - better.criterion
+    }
+
+    /// The better model, if the difference is decisive.
+    pub fn preferred(&self) -> Option<LeakageModel> {
+        (self.difference() >= DECISIVE).then_some(self.models[0].model)
+    }
+
+    /// The information criterion of Schwarz (1978) for both fits of the same recordings.
+    ///
+    /// ```text
+    /// BIC = m ln n - 2 ln L        ln L = -sum over signals of f (n_c ln s_c + sum rho(r/s_c)),   n = sum f n_c
+    /// ```
+    ///
+    /// with s_c the likeliest scale of each signal, m the number of coefficients and scales, and f =
+    /// (1 - c)/(1 + c), c the correlation of neighbouring residuals of the better model: the share of
+    /// rows that are independent (Bayley and Hammersley 1946). A constant that both models share is
+    /// left out.
+    pub(super) fn of(fits: [&Fit<'_>; 2]) -> Evidence {
+        let signals = fits.map(Fit::signals);
+        let losses = fits.map(losses);
+        let sum = |losses: &[f64], shares: &[f64]| -> f64 {
+            losses.iter().zip(shares).map(|(loss, share)| loss * share).sum()
+        };
+        let all = vec![1.0; losses[0].len()];
+        let second_is_better = sum(&losses[1], &all) < sum(&losses[0], &all);
+        let [first, second] = &signals;
+        let better = if second_is_better { second } else { first };
+        let share = |correlation: f64| {
+            let correlation = correlation.clamp(0.0, MOST_CORRELATED);
+            (1.0 - correlation) / (1.0 + correlation)
+        };
+        let shares: Vec<f64> = better.iter().map(|signal| share(signal.correlation)).collect();
+        let independent_rows: f64 =
+            better.iter().zip(&shares).map(|(signal, share)| share * signal.rows as f64).sum();
+        let numbers = (COUNT + shares.len()) as f64;
+        let explained = |fit: &Fit<'_>, signals: &[super::SignalFit], losses: &[f64]| ExplainedBy {
+            model: fit.together.tested.leakage_model,
+            coefficients: fit.coefficients(),
+            criterion: numbers * portable::ln(independent_rows) + 2.0 * sum(losses, &shares),
+            residual_rms: super::residual_rms(signals),
+        };
+        let of = |index: usize| explained(fits[index], &signals[index], &losses[index]);
+        let mut models = [of(0), of(1)];
+        // by the rows that count, the order may be another
+        if models[1].criterion < models[0].criterion {
+            models.reverse();
+        }
+        Evidence { models, independent_rows }
+    }
+}
+
+/// What each signal adds to -ln L at its likeliest scale.
+fn losses(fit: &Fit<'_>) -> Vec<f64> {
+    let beyond = Settings::default().robust_beyond;
+    let residuals = fit.together.by_channel(&fit.minimum.linearised.residuals);
+    let of = |(channel, own): (&super::channels::Channel, &[f64])| {
+        let count = own.len() as f64;
+        // over the scale of the fit; no finer than an instrument resolves
+        let least = channel.least_scale() / channel.scale;
+        let mut scale = 1.0_f64.max(least);
+        for _ in 0..ROUNDS {
+            let weighted = |residual: &f64| {
+                let relative = (residual / scale).abs();
+                relative.min(beyond) * relative
+            };
+            let square = own.iter().map(weighted).sum::<f64>() / count;
+            scale = (scale * square.sqrt()).max(least);
+        }
+        let loss = |residual: &f64| {
+            let relative = (residual / scale).abs();
+            let inside = relative.min(beyond);
+            inside * (relative - inside / 2.0)
+        };
+        count * portable::ln(scale * channel.scale) + own.iter().map(loss).sum::<f64>()
+    };
+    fit.together.channels.iter().zip(residuals).map(of).collect()
+}
