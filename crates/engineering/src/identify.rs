@@ -7,12 +7,14 @@
 //! The model is [`phea_hydraulics::servovalve::TestedValve`]; all signals of all files are explained
 //! by one set of coefficients.
 
+mod contents;
 mod fit;
 mod guess;
 mod reading;
 mod recording;
 mod told;
 
+pub use contents::{ColumnContents, FileContents, Recorded};
 pub use guess::SimpleCalculations;
 pub use reading::recordings;
 pub use recording::{RecordedSignal, Recording, SignalKind};

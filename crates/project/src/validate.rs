@@ -2,6 +2,7 @@
 
 mod design;
 mod family;
+mod identify;
 mod line_motion;
 mod linear_loop;
 mod measured;
@@ -35,6 +36,9 @@ pub(super) fn project(project: &Project, reader: &mut Reader<'_>) {
     specification::specifications(project, &mut check);
     linear_loop::controllers(project, &mut check);
     design::design(project, &mut check);
+    if let Some(identified) = &project.identify {
+        identify::identify(identified, &mut check);
+    }
 }
 
 /// Reports what cannot be in one element; `path` leads to it.

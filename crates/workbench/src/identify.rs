@@ -2,8 +2,10 @@
 
 mod answer;
 mod document;
+mod files;
 
 pub use phea_engineering::identify::*;
 
 pub use answer::{files, json};
 pub use document::text;
+pub use files::Read;

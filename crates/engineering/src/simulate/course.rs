@@ -7,7 +7,7 @@ use phea_machine::{Control, HeldInputs, Rest, Waking};
 
 use super::bench::Bench;
 use super::equilibrium::{Rested, rest};
-use super::motion_file::{self, Column};
+use super::motion_file::{self, FORCES, VOLTAGES};
 use super::saved::{self, SavedState};
 use super::signal::{self, Beginning as Begun};
 use super::{Cause, SimulateError, Window};
@@ -75,14 +75,13 @@ pub fn driven(
     scenario: &Scenario,
 ) -> Result<Driven, SimulateError> {
     let named = |error: ProfileError| SimulateError::Profile { name: scenario.name.clone(), error };
-    let reference = signal::profile(source, project, &scenario.name, &scenario.reference, Column::FORCE)?;
+    let reference = signal::profile(source, project, &scenario.name, &scenario.reference, &FORCES)?;
     let motion = match &scenario.load_motion {
         None => Profile::constant(0.0),
         Some(declared) => motion(source, project, declared).map_err(SimulateError::Motion)?.map_err(named)?,
     };
-    let command = signal::profile(source, project, &scenario.name, &scenario.command, Column::VOLTAGE)?;
-    let external_force =
-        signal::profile(source, project, &scenario.name, &scenario.external_force, Column::FORCE)?;
+    let command = signal::profile(source, project, &scenario.name, &scenario.command, &VOLTAGES)?;
+    let external_force = signal::profile(source, project, &scenario.name, &scenario.external_force, &FORCES)?;
     let windows = windows(scenario, [&reference, &command, &external_force]);
     let file = scenario.start.as_ref().and_then(|start| start.file.as_ref());
     let read = |file: &String| saved::read(source, project, file, bench).map_err(SimulateError::Motion);

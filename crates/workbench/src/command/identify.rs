@@ -1,8 +1,8 @@
 //! `identify`: the valve that explains recorded tests.
 
 use crate::answer::Answer;
-use crate::identify::{self, IdentifyError, Known, Search, identify, recordings};
-use crate::project::Loaded;
+use crate::identify::{self, IdentifyError, Known, Read, Recorded, Search, identify, recordings};
+use crate::project::{Loaded, RecordedTest};
 use crate::source::Source;
 
 use super::Watch;
@@ -10,7 +10,7 @@ use super::Watch;
 /// What a valve is identified from.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct IdentifyRequest {
-    /// Recorded tests, CSV files.
+    /// Recorded tests, as text or Parquet; none: those of the project's `[identify]`.
     pub files: Vec<String>,
     /// Starting points of the search; absent: 6.
     pub starts: Option<usize>,
@@ -30,13 +30,16 @@ pub fn identify_watched(
     watch: Watch<'_>,
 ) -> Result<Answer, IdentifyError> {
     let known = loaded.map_or(Known::default(), known);
-    let recorded = recordings(source, &asked.files, &known).map_err(IdentifyError::Files)?;
+    let files = files(loaded, asked)?;
+    let Recorded { recordings, contents, warnings } =
+        recordings(source, &files, &known).map_err(IdentifyError::Files)?;
+    let read = Read { contents, warnings };
     let usual = Search::default();
     let search = Search { starts: asked.starts.unwrap_or(usual.starts), seed: asked.seed };
-    let found = identify(recorded, &known, search, watch)?;
+    let found = identify(recordings, &known, search, watch)?;
     Ok(Answer {
-        text: identify::text(&found),
-        json: identify::json(loaded, &found),
+        text: identify::text(&found, &read),
+        json: identify::json(loaded, &found, &read),
         files: identify::files(&found),
         affirmative: found.has_converged() && found.untold.is_empty(),
     })
@@ -51,4 +54,23 @@ fn known(loaded: &Loaded) -> Known {
         tank_pressure: actuator.supply.tank_pressure,
         tare_pressure: actuator.valve.tare_pressure,
     }
+}
+
+/// The files that are asked for, or those of the project, each relative to it.
+fn files(loaded: Option<&Loaded>, asked: &IdentifyRequest) -> Result<Vec<RecordedTest>, IdentifyError> {
+    if !asked.files.is_empty() {
+        return Ok(asked.files.iter().map(|file| RecordedTest::of(file)).collect());
+    }
+    let project = loaded.map(|loaded| &loaded.project);
+    let declared = project.and_then(|project| Some((project, project.identify.as_ref()?)));
+    let files: Vec<RecordedTest> = declared.map_or(Vec::new(), |(project, identify)| {
+        let all = identify.recordings.iter();
+        all.map(|one| RecordedTest { file: project.path_of(&one.file), ..one.clone() }).collect()
+    });
+    if files.is_empty() {
+        let message =
+            "there is no recorded test: name files, or declare `[[identify.recording]]` in the project";
+        return Err(IdentifyError::Data(message.to_string()));
+    }
+    Ok(files)
 }

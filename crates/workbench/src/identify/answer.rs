@@ -1,7 +1,7 @@
-use phea_hydraulics::servovalve::PortCircuit;
 use serde::Serialize;
 
-use super::{COEFFICIENT_NAMES, Identification, SimpleCalculations, Untold};
+use super::files::{TestBody, WarningBody};
+use super::{COEFFICIENT_NAMES, Identification, Read, SimpleCalculations, Untold};
 use crate::answer::{self, Number, OutputFile};
 use crate::project::Loaded;
 use crate::quantity::print_bare;
@@ -13,6 +13,7 @@ struct Body<'a> {
     command: &'static str,
     project_sha256: Option<&'a str>,
     tests: Vec<TestBody<'a>>,
+    warnings: Vec<WarningBody<'a>>,
     flow_coefficients: EdgesBody,
     leakage_coefficients: EdgesBody,
     leakage_shape: Estimate,
@@ -29,13 +30,6 @@ struct Body<'a> {
     starts_that_agree: usize,
     converged: bool,
     at_bounds: &'a [&'static str],
-}
-
-#[derive(Serialize)]
-struct TestBody<'a> {
-    file: &'a str,
-    ports: &'static str,
-    rows: usize,
 }
 
 #[derive(Serialize)]
@@ -95,7 +89,7 @@ struct SimpleBody {
 const REMARKABLE: f64 = 0.9;
 
 /// The JSON object of `identify`, beside a project or not.
-pub fn json(loaded: Option<&Loaded>, found: &Identification) -> String {
+pub fn json(loaded: Option<&Loaded>, found: &Identification, read: &Read) -> String {
     let numbers = found.coefficients.to_array();
     let mut estimates = numbers.into_iter().zip(found.intervals).map(|(value, confidence_95)| Estimate {
         value,
@@ -112,7 +106,8 @@ pub fn json(loaded: Option<&Loaded>, found: &Identification) -> String {
         version: env!("CARGO_PKG_VERSION"),
         command: "identify",
         project_sha256: loaded.map(|loaded| loaded.sha256.as_str()),
-        tests: tests(found),
+        tests: read.tests(found),
+        warnings: read.warnings(),
         flow_coefficients,
         leakage_coefficients,
         leakage_shape: next(),
@@ -138,15 +133,6 @@ pub fn json(loaded: Option<&Loaded>, found: &Identification) -> String {
     };
     // every number that may not exist is one of `Number` or `Option`
     serde_json::to_string_pretty(&body).unwrap_or_default()
-}
-
-fn tests(found: &Identification) -> Vec<TestBody<'_>> {
-    let test = |recording: &'_ super::Recording| match recording.circuit {
-        PortCircuit::Blocked => "blocked",
-        PortCircuit::Connected => "connected",
-    };
-    let all = found.recordings.iter();
-    all.map(|one| TestBody { file: &one.file, ports: test(one), rows: one.inputs.len() }).collect()
 }
 
 fn signals(found: &Identification) -> Vec<SignalBody> {

@@ -1,14 +1,15 @@
 //! What an identified valve says to people.
 
 use super::answer::correlations;
-use super::{COEFFICIENT_NAMES, Identification, SignalFit, SimpleCalculations};
+use super::{COEFFICIENT_NAMES, Identification, Read, SignalFit, SimpleCalculations};
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
 use crate::quantity::DisplayUnit;
 
 /// The coefficients with their intervals, how well the signals are explained, and what the data do not determine.
-pub fn text(found: &Identification) -> String {
+pub fn text(found: &Identification, read: &Read) -> String {
     let mut out = Document::default();
+    read.tell(&mut out);
     let headings = ["coefficient", "identified", "95 % from", "to", "by hand", "unit"];
     out.section("Coefficients of the valve", Table::new(headings).with(coefficients(found)));
     out.sentences([
