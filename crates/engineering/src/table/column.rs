@@ -182,7 +182,10 @@ impl Table {
             _ if is_absolute => {
                 Some("pressures are gauge here: subtract the atmospheric pressure".to_string())
             }
-            near => near.map(|near| format!("did you mean `{near}`?")),
+            near => near.map(|near| match sought.heading {
+                Some(_) => format!("did you mean `{near}`?"),
+                None => format!("did you mean `{}_{near}`?", sought.measurand.name),
+            }),
         })
     }
 
