@@ -4,7 +4,7 @@
 //! ```text
 //! U_sp = w^2/(s^2 + 2 xi w s + w^2) U_C                                  spool, thesis (4.1)
 //! D F_h = N_u U_sp - N_v s X                                             chambers: ChamberDynamics
-//! (M s^2 + f_v s) X = F_h - F_e,       F_e = K_S (X - X_L)               piston and force sensor, thesis (4.29)
+//! (M s^2 + f_v s) X = F_h - F_e,       F_e = K_S (X - X_L)               piston and force sensor, thesis (6.6)
 //! X_L = X_0,   or   (m s^2 + c s + k) X_L = F_e + (c s + k) X_0          load: LinearLoad
 //! U_C -> U_C + K_x s X_L                                                 what is fed forward of the load's velocity
 //! ```
@@ -56,7 +56,7 @@ pub struct LinearPlant<S = f64> {
 /// How pressures build up. Units: m2, m3/(s V), m3/(s Pa), N/m, m3/Pa.
 ///
 /// ```text
-/// load pressure    D = A^2 s + (K_c + G) K_H,   N_u = A K_H K_qU,   N_v = A^2 K_H             thesis (6.7)
+/// load pressure    D = A^2 s + (K_c + G) K_H,   N_u = A K_H K_qU,   N_v = A^2 K_H             thesis (6.5) with (4.20)
 /// two pressures    Y_A = C_A s + K_cA,   Y_B = C_B s + K_cB,   D = Y_A Y_B + G (Y_A + Y_B)
 ///                  N_u = A_A K_qA Y_B + A_B K_qB Y_A + G (A_A - A_B) (K_qA - K_qB)
 ///                  N_v = A_A^2 Y_B + A_B^2 Y_A + G (A_A - A_B)^2

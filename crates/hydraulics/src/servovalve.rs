@@ -46,7 +46,12 @@ pub struct Edges<S = f64> {
 }
 
 impl<S: Copy> Edges<S> {
-    /// The same number for all four: thesis (4.15), (4.16).
+    /// The same number for all four edges.
+    ///
+    /// ```text
+    /// K_v3 = K_v4 = K_v5 = K_v6 = K_vp                 thesis (4.15)
+    /// K_vin3 = K_vin4 = K_vin5 = K_vin6 = K_vinp       thesis (4.16)
+    /// ```
     pub fn equal(value: S) -> Edges<S> {
         Edges { supply_to_a: value, a_to_tank: value, supply_to_b: value, b_to_tank: value }
     }

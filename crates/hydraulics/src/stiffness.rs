@@ -119,16 +119,22 @@ pub fn compliance_at<S: Scalar>(chambers: &ChamberCompliance<S>, x: S) -> [S; 2]
     ]
 }
 
-/// Stiffness K_HA = A_A^2/C_A and K_HB = A_B^2/C_B of the two shut chambers at piston position x,
-/// in N/m.
+/// Stiffness of the two shut chambers at piston position x, in N/m.
 ///
-/// Source: thesis (6.1).
+/// ```text
+/// K_HA = A_A^2/C_A(x)        K_HB = A_B^2/C_B(x)                       thesis (6.1)
+/// ```
 pub fn chamber_stiffness<S: Scalar>(chambers: &ChamberCompliance<S>, x: S) -> [S; 2] {
     let [compliance_a, compliance_b] = compliance_at(chambers, x);
     [chambers.area_a.squared() / compliance_a, chambers.area_b.squared() / compliance_b]
 }
 
-/// Hydraulic stiffness K_H = K_HA + K_HB at piston position x, in N/m: thesis (6.1) to (6.4).
+/// Hydraulic stiffness at piston position x, in N/m.
+///
+/// ```text
+/// K_H = K_HA + K_HB                                                    thesis (6.1), (6.2), (6.3)
+///     = 2 beta_e A^2/V        equal chambers of volume V               thesis (6.4)
+/// ```
 pub fn hydraulic_stiffness<S: Scalar>(chambers: &ChamberCompliance<S>, x: S) -> S {
     let [stiffness_a, stiffness_b] = chamber_stiffness(chambers, x);
     stiffness_a + stiffness_b

@@ -27,8 +27,19 @@ pub use time_domain::{
     tracking_upper,
 };
 
-/// What is limited. L = P G H is the loop of plant P, controller G and sensor H; F the prefilter; Pd = F_e/X_L the load-motion
-/// path.
+/// Which closed loop is limited, and how.
+///
+/// ```text
+/// robust stability          |L/(1+L)|  <= limit              thesis (3.14), (6.30)
+/// sensitivity               |1/(1+L)|  <= limit              thesis (3.15), (6.31)
+/// plant input disturbance   |P/(1+L)|  <= limit              thesis (3.16)
+/// control effort            |G/(1+L)|  <= limit              thesis (3.3), (3.17)
+/// load motion               |Pd/(1+L)| <= limit
+/// tracking         lower <= |F P G/(1+L)| <= upper           thesis (3.18), (6.32)
+/// ```
+///
+/// L = P G H is the loop of plant P, controller G and sensor H; F is the prefilter, and Pd = F_e/X_L
+/// the path of the load motion.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Requirement {
     /// |L/(1+L)| <= limit

@@ -1,4 +1,4 @@
-//! Every number in the built-in catalogue has a source.
+//! Every number in the built-in catalogue has a source, and every file of it is built in.
 //!
 //! A file in `crates/project/catalogue/` describes one product and is called after it. `source` holds for every
 //! number of the file, `[sources]` for single ones.
@@ -6,6 +6,7 @@
 use super::Violation;
 use crate::repository::Repository;
 
+const BUILT_IN: &str = "crates/project/src/catalogue/built_in.rs";
 const FOLDER: &str = "crates/project/catalogue/";
 
 /// A source shorter than this names no document.
@@ -13,7 +14,15 @@ const SHORTEST_SOURCE: usize = 12;
 
 pub(super) fn check(repository: &Repository) -> Vec<Violation> {
     let files = repository.texts(|path| path.starts_with(FOLDER) && path.ends_with(".toml"));
-    files.flat_map(|(path, text)| check_file(path, text)).collect()
+    let built_in = repository.text(BUILT_IN).unwrap_or_default();
+    let check = |(path, text)| check_file(path, text).into_iter().chain(check_built_in(path, built_in));
+    files.flat_map(check).collect()
+}
+
+fn check_built_in(path: &str, built_in: &str) -> Option<Violation> {
+    let included =
+        path.strip_prefix(FOLDER).is_some_and(|name| built_in.contains(&format!("catalogue/{name}")));
+    (!included).then(|| Violation::new(path, 0, format!("has no line in {BUILT_IN}")))
 }
 
 fn check_file(path: &str, text: &str) -> Vec<Violation> {
@@ -62,7 +71,9 @@ mod tests {
     fn messages(text: &str) -> Vec<String> {
         let path = "crates/project/catalogue/hoses/example.toml";
         let text = format!("schema = 1\nname = \"example\"\n{text}");
-        check(&Repository::from_texts(&[(path, &text)])).iter().map(|v| v.message.clone()).collect()
+        let built_in = "include_str!(\"../../catalogue/hoses/example.toml\")";
+        let files = [(path, text.as_str()), (BUILT_IN, built_in)];
+        check(&Repository::from_texts(&files)).iter().map(|v| v.message.clone()).collect()
     }
 
     #[test]
@@ -85,7 +96,13 @@ mod tests {
     #[test]
     fn a_file_is_called_after_its_product() {
         assert_eq!(messages("").len(), 0);
-        let other = Repository::from_texts(&[("crates/project/catalogue/a.toml", "name = \"b\"")]);
-        assert_eq!(check(&other).len(), 1);
+        let files = [("crates/project/catalogue/a.toml", "name = \"b\""), (BUILT_IN, "catalogue/a.toml")];
+        assert_eq!(check(&Repository::from_texts(&files)).len(), 1);
+    }
+
+    #[test]
+    fn a_file_is_built_in() {
+        let files = [("crates/project/catalogue/a.toml", "name = \"a\""), (BUILT_IN, "")];
+        assert_eq!(check(&Repository::from_texts(&files)).len(), 1);
     }
 }

@@ -1,11 +1,11 @@
-//! Every equation of the thesis that the code cites stands in the book's index of equations, and what the index
-//! says implements it exists.
+//! Every equation of the thesis that the code cites stands in the book's index of equations, what the index says
+//! implements it exists, and the file that it names holds the equation as a formula.
 
 use std::collections::BTreeSet;
 
 use super::Violation;
-use super::citation::{cited, numbers};
-use super::notation::{Vocabulary, tables};
+use super::citation::{Equation, cited, numbers};
+use super::notation::{Row, Vocabulary, tables};
 use crate::repository::Repository;
 
 const INDEX: &str = "book/src/theory/equations.md";
@@ -22,10 +22,11 @@ pub(super) fn check(repository: &Repository) -> Vec<Violation> {
         if equations.is_empty() {
             found.push(Violation::new(INDEX, row.line, "a row without an equation number such as 6.12"));
         }
-        known.extend(equations);
         found.extend(vocabulary.unknown(&row.spans("implemented by")).into_iter().map(|name| {
             Violation::new(INDEX, row.line, format!("`{name}` is no word of the code in crates/"))
         }));
+        found.extend(misplaced(repository, &row, &equations));
+        known.extend(equations);
     }
     let sources = repository.texts(|path| path.starts_with("crates/") && path.ends_with(".rs"));
     for (path, text) in sources {
@@ -43,14 +44,51 @@ pub(super) fn check(repository: &Repository) -> Vec<Violation> {
     found
 }
 
+/// Equations of a row that no file of the row holds, and files that hold none of them.
+fn misplaced(repository: &Repository, row: &Row<'_>, equations: &[Equation]) -> Vec<Violation> {
+    let mut found = Vec::new();
+    let mut held = BTreeSet::new();
+    for name in row.spans("in") {
+        let path = name.split_once('/').map(|(package, file)| format!("crates/{package}/src/{file}"));
+        let formulae = path.and_then(|path| repository.text(&path)).map(formulae).unwrap_or_default();
+        if !equations.iter().any(|equation| formulae.contains(equation)) {
+            let message = format!("`{name}` has none of these equations in a `text` fence");
+            found.push(Violation::new(INDEX, row.line, message));
+        }
+        held.extend(formulae);
+    }
+    let missing = equations.iter().filter(|equation| !held.contains(equation));
+    found.extend(missing.map(|(chapter, number)| {
+        let message = format!("{chapter}.{number} stands in no `text` fence of the files in column `in`");
+        Violation::new(INDEX, row.line, message)
+    }));
+    found
+}
+
+/// The equations cited within the `text` fences of a file's comments.
+fn formulae(text: &str) -> BTreeSet<Equation> {
+    let mut inside = false;
+    let mut found = BTreeSet::new();
+    for line in text.lines().map(str::trim_start) {
+        match line.trim_start_matches(['/', '!']).trim() {
+            "```text" => inside = true,
+            "```" => inside = false,
+            _ if inside => found.extend(cited(line)),
+            _ => {}
+        }
+    }
+    found
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    const CODE: &str = "/// thesis (6.18), (6.20)\npub fn effective_modulus() {}\n";
+    const CODE: &str =
+        "/// ```text\n/// B = 1     thesis (6.18), (6.20)\n/// ```\npub fn effective_modulus() {}\n";
 
     fn messages(rows: &str) -> Vec<String> {
-        let head = "| equation | gives | implemented by |\n|---|---|---|\n";
+        let head = "| equation | gives | implemented by | in |\n|---|---|---|---|\n";
         let index = format!("{head}{rows}\n");
         let files = [(INDEX, index.as_str()), ("crates/hydraulics/src/line.rs", CODE)];
         check(&Repository::from_texts(&files)).iter().map(Violation::to_string).collect()
@@ -58,19 +96,31 @@ mod tests {
 
     #[test]
     fn what_is_cited_is_listed() {
-        assert!(messages("| 6.18 to 6.20 | modulus | `effective_modulus` |").is_empty());
+        assert!(messages("| 6.18, 6.20 | modulus | `effective_modulus` | `hydraulics/line.rs` |").is_empty());
         assert_eq!(
-            messages("| 6.20 | modulus | `effective_modulus` |"),
-            ["crates/hydraulics/src/line.rs:1: cites 6.18, which book/src/theory/equations.md does not list"]
+            messages("| 6.20 | modulus | `effective_modulus` | `hydraulics/line.rs` |"),
+            ["crates/hydraulics/src/line.rs:2: cites 6.18, which book/src/theory/equations.md does not list"]
         );
     }
 
     #[test]
     fn what_is_listed_exists() {
-        assert_eq!(messages("| 6.18, 6.20 | modulus | `series_modulus` |").len(), 1);
+        let messages = |row: &str| messages(&format!("| 6.18, 6.20 | modulus | {row} |"));
+        assert_eq!(messages("`series_modulus` | `hydraulics/line.rs`").len(), 1);
+        assert_eq!(messages("`effective_modulus` | `hydraulics/line.rs` |\n| six | x | not yet |").len(), 1);
+    }
+
+    #[test]
+    fn an_equation_stands_as_a_formula_where_the_index_says() {
+        let row = |equations: &str, file: &str| {
+            messages(&format!("| {equations} | modulus | `effective_modulus` | {file} |"))
+        };
+        let place = "book/src/theory/equations.md:3";
         assert_eq!(
-            messages("| 6.18, 6.20 | modulus | `effective_modulus` |\n| six | x | not yet |").len(),
-            1
+            row("6.18 to 6.20", "`hydraulics/line.rs`"),
+            [format!("{place}: 6.19 stands in no `text` fence of the files in column `in`")]
         );
+        assert_eq!(row("6.18, 6.20", "`hydraulics/line.rs`, `hydraulics/hose.rs`").len(), 1);
+        assert_eq!(row("6.18, 6.20", "").len(), 2);
     }
 }

@@ -142,12 +142,16 @@ impl SecondOrder {
         (ratio < 1.0).then(|| self.natural_frequency_rad_per_s * ((1.0 - ratio) * (1.0 + ratio)).sqrt())
     }
 
-    /// Time of the first peak, pi/w_d, thesis (3.6); none from critical damping on.
+    /// Time of the first peak in s; `None` from critical damping on.
+    ///
+    /// ```text
+    /// t_p = pi/w_d                                                    thesis (3.6)
+    /// ```
     pub fn peak_time_s(&self) -> Option<f64> {
         self.damped_frequency_rad_per_s().map(|damped| PI / damped)
     }
 
-    /// Rise time from 0 to 100 percent; none from critical damping on.
+    /// Rise time from 0 to 100 percent in s; `None` from critical damping on.
     ///
     /// ```text
     /// t_r = (pi - atan(w_d/sigma)) / w_d,  sigma = xi w_n             thesis (3.7), corrected
@@ -157,8 +161,11 @@ impl SecondOrder {
         self.damped_frequency_rad_per_s().map(|damped| (PI - atan2(damped, sigma)) / damped)
     }
 
-    /// Largest overshoot, 100 exp(-pi sigma/w_d) percent, thesis (3.8); zero from critical damping
-    /// on.
+    /// Largest overshoot in percent; zero from critical damping on.
+    ///
+    /// ```text
+    /// M_p = 100 exp(-pi sigma/w_d)                                    thesis (3.8)
+    /// ```
     pub fn overshoot_percent(&self) -> f64 {
         let ratio = self.damping_ratio;
         if ratio >= 1.0 {

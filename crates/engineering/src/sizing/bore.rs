@@ -27,7 +27,11 @@ pub struct CommercialBore {
     pub verdict: BoreVerdict,
 }
 
-/// Mean oil velocity in a bore, m/s: 4 q/(pi D^2), thesis (6.17).
+/// Mean oil velocity in a bore, m/s.
+///
+/// ```text
+/// v = 4 q/(pi D^2)                                                         thesis (6.17)
+/// ```
 pub(super) fn oil_velocity(problem: &SizingProblem, bore: f64) -> f64 {
     4.0 * problem.maximum_flow / (PI * bore * bore)
 }
@@ -44,8 +48,11 @@ pub(super) fn verdict(problem: &SizingProblem, bore: f64) -> BoreVerdict {
     }
 }
 
-/// Bores at the highest and at the lowest recommended velocity, m: D = sqrt(4 q/(pi v)), thesis
-/// (6.17).
+/// Bores at the highest and at the lowest recommended velocity, m.
+///
+/// ```text
+/// D = sqrt(4 q/(pi v))                                                     thesis (6.17)
+/// ```
 pub(super) fn range(problem: &SizingProblem) -> [f64; 2] {
     let [slowest, fastest] = problem.oil_velocity;
     [fastest, slowest].map(|velocity| (4.0 * problem.maximum_flow / (PI * velocity)).sqrt())

@@ -37,7 +37,11 @@ pub enum LuGrePassivity {
 }
 
 impl<S: Scalar> LuGre<S> {
-    /// dz/dt in m/s at sliding velocity v in m/s and bristle deflection z in m.
+    /// Rate of the bristle deflection in m/s, at sliding velocity v in m/s and deflection z in m.
+    ///
+    /// ```text
+    /// dz/dt = v - sigma_0 |v| z/g(v)                                       thesis (4.30), corrected
+    /// ```
     ///
     /// # Example
     /// At a steady velocity the bristles settle where sigma_0 z = sign(v) g(v).
@@ -66,6 +70,10 @@ impl<S: Scalar> LuGre<S> {
     }
 
     /// Friction force in N at sliding velocity v in m/s and bristle deflection z in m.
+    ///
+    /// ```text
+    /// F = sigma_0 z + sigma_1 dz/dt + sigma_2 v                            thesis (4.32)
+    /// ```
     #[inline(always)]
     pub fn force(&self, velocity: S, deflection: S) -> S {
         self.bristle_stiffness * deflection

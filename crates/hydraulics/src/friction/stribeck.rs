@@ -72,7 +72,11 @@ impl<S: Scalar> Stribeck<S> {
         self.sliding_force_of(shape, velocity) * velocity / speed + self.viscous * velocity
     }
 
-    /// g(v) in N: what the bristles carry when sliding steadily at v in m/s.
+    /// The force that the bristles carry when sliding steadily at v in m/s, in N.
+    ///
+    /// ```text
+    /// g(v) = F_C + (F_S - F_C) exp(-|v/v_S|^alpha)                         thesis (4.31), corrected
+    /// ```
     pub fn sliding_force(&self, velocity: S) -> S {
         // The least positive number stands for zero velocity, whose logarithm does not exist; its
         // power is zero.
@@ -82,7 +86,11 @@ impl<S: Scalar> Stribeck<S> {
         self.coulomb + (self.static_friction - self.coulomb) * (-power).exp()
     }
 
-    /// F(v) in N, zero at standstill (where any force up to F_S is possible).
+    /// The steady friction force in N; zero at standstill, where any force up to F_S is possible.
+    ///
+    /// ```text
+    /// F(v) = sign(v) g(v) + sigma_2 v                                      thesis (4.33)
+    /// ```
     ///
     /// # Example
     /// Odd in the velocity, and Coulomb plus viscous friction far above the Stribeck velocity

@@ -177,7 +177,11 @@ impl<S: Scalar> Conduit<S> {
         self.length / self.speed()
     }
 
-    /// Characteristic impedance Z_c = rho c/A in Pa s/m3: thesis (4.38) over the area.
+    /// Characteristic impedance in Pa s/m3.
+    ///
+    /// ```text
+    /// Z_c = rho c/A                                                        thesis (4.38), over the area
+    /// ```
     pub fn characteristic_impedance(&self) -> S {
         self.density * self.speed() / self.area()
     }

@@ -12,19 +12,20 @@ use crate::parameter::{ParameterError, Problems};
 /// A hose along which two waves travel each way, shared by fluid and wall, held at both ends.
 pub type TwoWaveLine<S = f64> = TravellingWaves<2, S>;
 
-/// A hose whose wall moves along its axis: thesis (4.36) to (4.44), after Johnston (2006).
+/// A hose whose wall moves along its axis, after Johnston (2006).
 ///
 /// ```text
 /// rho v_t = -p_x                 m u_t = F_x                  v, u velocities of fluid and wall
 /// v_x = -(1/B + C_pp) p_t - C_pF F_t         u_x = A C_pF p_t + C_FF F_t
 /// lambda = 1/c^2:  (lambda - lf)(lambda - lw) = A rho m C_pF^2,    lf = rho (1/B + C_pp),  lw = m C_FF
 /// N_i = u/v = (lf - lambda_i)/(C_pF m)       N_1 N_2 = -rho A/m
+/// v_1 = q/(A (1 - N_1/N_2)),  v_2 = q/(A (1 - N_2/N_1))        u = 0 at the ends; thesis (4.39), (4.40), corrected
+/// p = p_1 + p_2,  Z_i = rho c_i/(A (1 - N_i/N_j))              thesis (4.36), (4.38) over the area
 /// ```
 ///
-/// With the wall held at both ends (u = 0) v_1 = q/(A (1 - N_1/N_2)) and v_2 = q/(A (1 - N_2/N_1)),
-/// thesis (4.39) and (4.40) corrected: both waves see the same flow and their pressures add. So the
-/// hose is two lines in series at both ends, of impedances Z_i = rho c_i/(A (1 - N_i/N_j)), thesis
-/// (4.38), and that is how it is calculated. Friction acts between fluid and wall.
+/// With the wall held at both ends both waves see the same flow and their pressures add. So the hose
+/// is calculated as two lines of impedances Z_i in series at both ends: [`TravellingWaves`]. Friction
+/// acts between fluid and wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TwoWaveHose {
     /// Length L in m.

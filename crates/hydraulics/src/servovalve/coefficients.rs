@@ -20,7 +20,7 @@ pub enum SpoolDirection {
 /// operation.
 ///
 /// ```text
-/// dq_A = K_qA dU - K_cA dp_A        dq_B = -K_qB dU - K_cB dp_B
+/// dq_A = K_qA dU - K_cA dp_A        dq_B = -K_qB dU - K_cB dp_B        thesis (4.19), for each chamber
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChamberCoefficients<S = f64> {
@@ -201,6 +201,7 @@ pub struct ControlCoefficients<S = f64> {
 /// and load pressure p_L.
 ///
 /// ```text
+/// dq_vC = K_qU dU - K_c dp_L                                                              thesis (4.20)
 /// K_qU =  dq_vC/dU   = K_vp/U_n sqrt((p_S - p_T - s p_L)/2) + K_vinp sech' (...)          thesis (4.21), corrected
 /// K_c  = -dq_vC/dp_L = (K_vp |u| + K_vinp sech)/sqrt(8 (p_S - p_T - s p_L))
 ///                      + K_vinp sech/sqrt(8 (p_S - p_T + s p_L))                          thesis (4.22), corrected

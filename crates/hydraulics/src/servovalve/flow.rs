@@ -80,6 +80,7 @@ pub enum LeakageModel {
 /// G_i = K_vi u+- + K_vini sech(lambda u)                                    each edge; thesis (4.2) to (4.9)
 /// G_i = K_vi u+- + k sech G_j/sqrt(G_j^2 - k^2 sech^2)                      one curve, i the edge that closes
 ///       with G_j = K_vj u+- + K_vinj sech of the other edge at the same port, k = K_vini K_vinj/sqrt(K_vini^2 + K_vinj^2)
+/// q_vin = K_vinp sech(lambda u) sqrt(2 (p_S - p_T))                         shut ports, one curve; thesis (4.14)
 /// ```
 ///
 /// plus for edges 3 and 6, minus for 4 and 5. With one curve two edges in series pass k sech

@@ -3,13 +3,20 @@ use crate::cylinder::Cylinder;
 use crate::line::{Line, StiffeningMember};
 
 /// Least and greatest hydraulic stiffness over the stroke. Units: N/m, m.
+///
+/// For a symmetric cylinder with equal lines, in the model `uniform`:
+///
+/// ```text
+/// K_Hmax = beta_e A^2 (A L + 2 V)/(V (A L + V))        at both ends        thesis (6.18)
+/// K_Hmin = 4 beta_e A^2/(A L + 2 V)                    at mid stroke       thesis (6.19)
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StrokeStiffness {
-    /// Least stiffness; thesis (6.19) for a symmetric cylinder with equal lines.
+    /// Least stiffness.
     pub minimum: f64,
     /// Where it is; mid stroke for a symmetric cylinder with equal lines.
     pub minimum_position: f64,
-    /// Greatest stiffness; thesis (6.18) for a symmetric cylinder with equal lines.
+    /// Greatest stiffness.
     pub maximum: f64,
     /// Where it is: at one of the ends.
     pub maximum_position: f64,

@@ -13,6 +13,11 @@ pub(super) const RESOLVED_DB: f64 = 1e-9;
 const AMPLE_DB: f64 = 1.0;
 
 /// The least and the greatest |F| at one frequency, each with the member that sets it.
+///
+/// ```text
+/// width = upper/lower - max|T|/min|T|, in dB: what is allowed less the spread        thesis (3.24), corrected
+/// allowed = upper/lower, in dB                                                        thesis (3.25), corrected
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PrefilterBandPoint {
     /// rad/s; zero for the limit at rest.
@@ -21,7 +26,7 @@ pub struct PrefilterBandPoint {
     pub least_db: f64,
     /// upper/max|T|, dB
     pub greatest_db: f64,
-    /// upper/lower, dB: what the specification allows all plants together (thesis 3.25).
+    /// upper/lower, dB: the spread that the specification allows to the family.
     pub allowed_db: f64,
     /// Index of the member with the least |T|.
     pub least_member: usize,
@@ -53,7 +58,8 @@ impl PrefilterBandPoint {
         }
     }
 
-    /// The residual band, dB: what the specification allows less the spread of the family (thesis 3.24). Negative where no prefilter will do.
+    /// The residual band, dB: the spread that the specification allows less that of the family.
+    /// Negative where no prefilter satisfies it.
     pub fn width_db(&self) -> f64 {
         self.greatest_db - self.least_db
     }

@@ -23,14 +23,14 @@ pub struct TrackingExtremes {
     pub least_member: usize,
 }
 
-/// The extremes of a family at each frequency (thesis 3.22, 3.23, with the prefilter left out).
+/// The extremes of a family at each frequency, the prefilter left out.
 ///
 /// ```text
-/// T = P G/(1 + P G H)
+/// max |T|,  min |T|,    T = P G/(1 + P G H)                thesis (3.22), (3.23) with F = 1
 /// ```
 ///
-/// At an undamped pole of a plant T is continuous: |P| grows without bound there, and T tends to 1/H. It is taken a billionth of the
-/// frequency beside.
+/// At an undamped pole of a plant T is continuous: |P| grows without bound there, and T tends to
+/// 1/H. It is evaluated at a frequency that is higher by a billionth.
 ///
 /// # Errors
 /// [`PrefilterError::NoResponse`] where a measurement does not reach, or a plant has no value;
