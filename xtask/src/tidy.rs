@@ -12,6 +12,7 @@ mod keys;
 mod layout;
 mod links;
 mod lints;
+mod names;
 mod notation;
 mod parameters;
 mod purity;
@@ -63,6 +64,7 @@ const CHECKS: &[(&str, Check)] = &[
     ("layout", layout::check),
     ("links", links::check),
     ("lints", lints::check),
+    ("names", names::check),
     ("notation", notation::check),
     ("purity", purity::check),
     ("sizes", sizes::check),

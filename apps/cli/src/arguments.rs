@@ -153,7 +153,7 @@ pub(crate) enum Command {
     /// Virtual tests of the servovalve, as instruments would record them: internal leakage, metering and pressure gain (ISO 10770-1)
     Bench(Common),
     /// Coefficients of a servovalve from recorded static tests, with confidence intervals and what the data do not tell
-    Identify(Recorded),
+    Identify(IdentifyArguments),
     /// Everything above as one self-contained HTML page; a controller is designed where the project has a design section or gives no law
     Report(Common),
 }
@@ -199,7 +199,7 @@ pub(crate) struct Common {
 
 /// What `identify` takes.
 #[derive(Args, Debug)]
-pub(crate) struct Recorded {
+pub(crate) struct IdentifyArguments {
     /// Recorded tests, CSV files with units in the names of their columns
     #[arg(required = true, num_args = 1..)]
     pub(crate) files: Vec<String>,

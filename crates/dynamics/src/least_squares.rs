@@ -126,7 +126,7 @@ pub fn minimise(
     let cost = sum(&linearised);
     let mut best = Minimum { variables, cost, linearised, evaluations, ending: Ending::OutOfEvaluations };
     let mut damping = FULL_STEP;
-    let mut curvature = Curvature::OfLoss;
+    let mut curvature = CurvatureWeight::OfLoss;
     // steps in a row that changed next to nothing
     let mut idle = 0;
     while evaluations < settings.maximum_evaluations && idle < 3 {
@@ -141,8 +141,8 @@ pub fn minimise(
         let better = found.map(|found| (sum(&found), found)).filter(|(cost, _)| *cost < best.cost);
         let Some((cost, linearised)) = better else {
             (curvature, damping) = match curvature {
-                Curvature::OfLoss => (Curvature::Weighted, damping),
-                Curvature::Weighted => (Curvature::OfLoss, 8.0 * damping),
+                CurvatureWeight::OfLoss => (CurvatureWeight::Weighted, damping),
+                CurvatureWeight::Weighted => (CurvatureWeight::OfLoss, 8.0 * damping),
             };
             idle = if damping > 1e12 { 3 } else { idle };
             continue;
@@ -152,7 +152,7 @@ pub fn minimise(
         let is_full = damping <= FULL_STEP;
         idle = if changed { 0 } else { idle + if is_full { 3 } else { 1 } };
         best = Minimum { variables: tried, cost, linearised, ..best };
-        (curvature, damping) = (Curvature::OfLoss, (damping / 5.0).max(1e-12));
+        (curvature, damping) = (CurvatureWeight::OfLoss, (damping / 5.0).max(1e-12));
     }
     let ending = if idle < 3 { Ending::OutOfEvaluations } else { Ending::Converged };
     Ok(Minimum { evaluations, ending, ..best })
@@ -160,7 +160,7 @@ pub fn minimise(
 
 /// What a residual counts for in the curvature of the sum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Curvature {
+enum CurvatureWeight {
     /// psi': Newton's method where residuals are linear, good near the minimum.
     OfLoss,
     /// psi/r: shorter steps, good where most residuals are beyond the bend of the loss.
@@ -176,10 +176,10 @@ fn step(
     at: &Minimum,
     bounds: &[[f64; 2]],
     damping: f64,
-    (curvature, beyond): (Curvature, f64),
+    (curvature, beyond): (CurvatureWeight, f64),
 ) -> Option<Vec<f64>> {
     let count = at.variables.len();
-    let Equations { mut normal, mut weighted, mut slope } =
+    let StepEquations { mut normal, mut weighted, mut slope } =
         equations(&at.linearised, count, curvature, beyond);
     for (index, (x, [lower, upper])) in at.variables.iter().zip(bounds).enumerate() {
         let descent = -slope.get(index).copied().unwrap_or(0.0);
@@ -203,7 +203,7 @@ fn step(
 }
 
 /// What a step follows from.
-struct Equations {
+struct StepEquations {
     /// Sum of h j j'.
     normal: DMatrix<f64>,
     /// Diagonal of the sum of psi/r j j'.
@@ -212,7 +212,7 @@ struct Equations {
     slope: DVector<f64>,
 }
 
-fn equations(at: &Linearised, count: usize, curvature: Curvature, beyond: f64) -> Equations {
+fn equations(at: &Linearised, count: usize, curvature: CurvatureWeight, beyond: f64) -> StepEquations {
     let mut normal = DMatrix::zeros(count, count);
     let mut weighted = DVector::zeros(count);
     let mut slope = DVector::zeros(count);
@@ -223,9 +223,9 @@ fn equations(at: &Linearised, count: usize, curvature: Curvature, beyond: f64) -
             weighted[i] += weight * first * first;
         }
         let counts = match curvature {
-            Curvature::Weighted => weight,
-            Curvature::OfLoss if weight < 1.0 => continue,
-            Curvature::OfLoss => 1.0,
+            CurvatureWeight::Weighted => weight,
+            CurvatureWeight::OfLoss if weight < 1.0 => continue,
+            CurvatureWeight::OfLoss => 1.0,
         };
         for (i, first) in row.iter().enumerate() {
             for (j, second) in row.iter().enumerate().take(i + 1) {
@@ -234,5 +234,5 @@ fn equations(at: &Linearised, count: usize, curvature: Curvature, beyond: f64) -
         }
     }
     normal.fill_upper_triangle_with_lower_triangle();
-    Equations { normal, weighted, slope }
+    StepEquations { normal, weighted, slope }
 }

@@ -6,7 +6,7 @@
 //! parameters -> Expression -> UncertainPlant -> PlantMember                    the family
 //! StateSpace -> TransferFunction -> FrequencyResponse -> margins, passivity    linear analysis
 //! Element -> Compensator -> Controller -> SampledController                    the controller
-//! System + InputSchedule + Settings -> simulate -> Trajectory, Outcome         simulation
+//! System + InputSchedule + SimulationSettings -> simulate -> Trajectory, Outcome
 //! Plant -> Sensed -> CommandedPlant -> System                                  the closed loop
 //! residuals, derivatives -> Minimum -> Uncertainty                             what data tell
 //! ```

@@ -34,14 +34,14 @@ mod vector;
 
 pub use commanded_plant::{CommandedPlant, LoopSignals};
 pub use course::{
-    Amplification, Attention, Event, Input, InputSchedule, Observer, Outcome, Sampler, Settings,
-    SimulationError, Status, StepCounts,
+    Amplification, Attention, Event, Input, InputSchedule, Observer, Outcome, Sampler, SimulationError,
+    SimulationSettings, Status, StepCounts,
 };
 pub use driver::drive;
 pub use equilibrium::{EquilibriumError, equilibrium};
 pub use growth::Sliding;
 pub use method::Method;
-pub use profile::{Harmonic, Moment, Piece, Profile, ProfileError, schroeder_phases};
+pub use profile::{Harmonic, Moment, Profile, ProfileError, ProfilePiece, schroeder_phases};
 pub use quartic::Quartic;
 pub use sensed::Sensed;
 pub use sine_response::{SinePlan, SineResponse, sine_response};

@@ -122,12 +122,12 @@ pub enum PlantMember {
 #[derive(Clone, Debug)]
 pub struct UncertainPlant {
     parameters: Vec<UncertainParameter>,
-    equations: Equations,
+    equations: PlantEquations,
 }
 
 /// What a plant is made of.
 #[derive(Clone, Debug)]
-enum Equations {
+enum PlantEquations {
     Rational(RecordedPlant),
     Responding(Arc<dyn RespondingPlants>),
 }
@@ -147,8 +147,10 @@ impl PartialEq for UncertainPlant {
     fn eq(&self, other: &UncertainPlant) -> bool {
         self.parameters == other.parameters
             && match (&self.equations, &other.equations) {
-                (Equations::Rational(one), Equations::Rational(other)) => one == other,
-                (Equations::Responding(one), Equations::Responding(other)) => Arc::ptr_eq(one, other),
+                (PlantEquations::Rational(one), PlantEquations::Rational(other)) => one == other,
+                (PlantEquations::Responding(one), PlantEquations::Responding(other)) => {
+                    Arc::ptr_eq(one, other)
+                }
                 _ => false,
             }
     }
@@ -181,7 +183,7 @@ impl UncertainPlant {
         check_lengths(command)?;
         disturbance.map_or(Ok(()), check_lengths)?;
         let recorded = RecordedPlant { coefficients, command, disturbance, rate };
-        Ok(UncertainPlant { parameters, equations: Equations::Rational(recorded) })
+        Ok(UncertainPlant { parameters, equations: PlantEquations::Rational(recorded) })
     }
 
     /// A plant without polynomials.
@@ -193,7 +195,7 @@ impl UncertainPlant {
         plants: Arc<dyn RespondingPlants>,
     ) -> Result<UncertainPlant, UncertainPlantError> {
         check_parameters(&parameters)?;
-        Ok(UncertainPlant { parameters, equations: Equations::Responding(plants) })
+        Ok(UncertainPlant { parameters, equations: PlantEquations::Responding(plants) })
     }
 
     /// The parameters, in the order in which values are taken.
@@ -203,13 +205,13 @@ impl UncertainPlant {
 
     /// Whether it has polynomials.
     pub fn is_rational(&self) -> bool {
-        matches!(self.equations, Equations::Rational(_))
+        matches!(self.equations, PlantEquations::Rational(_))
     }
 
     fn recorded(&self) -> Option<&RecordedPlant> {
         match &self.equations {
-            Equations::Rational(recorded) => Some(recorded),
-            Equations::Responding(_) => None,
+            PlantEquations::Rational(recorded) => Some(recorded),
+            PlantEquations::Responding(_) => None,
         }
     }
 
@@ -252,8 +254,8 @@ impl UncertainPlant {
     /// for all values.
     pub fn member(&self, values: &[f64]) -> Option<PlantMember> {
         match &self.equations {
-            Equations::Rational(recorded) => Some(PlantMember::Rational(recorded.at(values))),
-            Equations::Responding(plants) => plants.at(values).map(PlantMember::Responding),
+            PlantEquations::Rational(recorded) => Some(PlantMember::Rational(recorded.at(values))),
+            PlantEquations::Responding(plants) => plants.at(values).map(PlantMember::Responding),
         }
     }
 

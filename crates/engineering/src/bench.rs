@@ -16,7 +16,7 @@ use phea_dynamics::watch::{Stopped, Watch, tell};
 use phea_hydraulics::servovalve::{PortCircuit, SlowSpool, SpoolImperfection, TestStand};
 
 use self::instrument::Instruments;
-use crate::project::{Actuator, Bench, BenchWaveform, SupplyModel};
+use crate::project::{Bench, BenchWaveform, DeclaredActuator, SupplyModel};
 use crate::rig::RigError;
 use crate::setup::Setup;
 
@@ -155,7 +155,7 @@ pub fn bench(setup: &Setup<'_>, watch: Watch<'_>) -> Result<Vec<BenchRun>, Bench
 }
 
 /// Flow of the pump and the override of its relief valve, where the supply is limited.
-fn pump(declared: &Actuator, settings: &Bench) -> Option<[f64; 2]> {
+fn pump(declared: &DeclaredActuator, settings: &Bench) -> Option<[f64; 2]> {
     // a relief valve that opens within 1 % of the pressure, where none is described
     let sharp = 0.01 * (declared.supply.pressure - declared.supply.tank_pressure);
     match (&declared.supply.model, settings.pump_flow) {

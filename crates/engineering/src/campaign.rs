@@ -22,12 +22,12 @@ mod supply;
 mod varied;
 mod workers;
 
-pub use ledger::{Nowhere, RowStore, Shard, Wanted};
+pub use ledger::{Nowhere, RequestedRuns, RowStore, Shard};
 pub use plan::{Draw, Plan};
 pub use range::VariedRange;
 pub use row::{LUMP_NAMES, METRIC_NAMES, Ran, Row, RowOutcome, STATUS_WORDS};
 pub use spread::{QUANTILES, Spread};
-pub use statistics::{Bands, Summary, Worst};
+pub use statistics::{Bands, Summary, WorstRun};
 pub use workers::Effort;
 
 pub use ledger::campaign;

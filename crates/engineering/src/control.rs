@@ -60,9 +60,9 @@ pub fn controller(project: &Project) -> Result<Option<Controller>, ControlError>
         timing: timing(project),
         command_limit: declared.saturation,
         anti_windup: match declared.anti_windup {
-            project::AntiWindup::None => AntiWindup::None,
-            project::AntiWindup::BackCalculation => AntiWindup::BackCalculation,
-            project::AntiWindup::Clamping => AntiWindup::Clamping,
+            project::DeclaredAntiWindup::None => AntiWindup::None,
+            project::DeclaredAntiWindup::BackCalculation => AntiWindup::BackCalculation,
+            project::DeclaredAntiWindup::Clamping => AntiWindup::Clamping,
         },
     }))
 }
@@ -85,9 +85,9 @@ pub fn timing(project: &Project) -> Timing {
         sample_time_s: declared.sample_time,
         delay_s: declared.delay,
         discretization: match declared.discretization {
-            project::Discretization::Tustin => Discretization::Tustin,
-            project::Discretization::ZeroOrderHold => Discretization::ZeroOrderHold,
-            project::Discretization::Matched => Discretization::Matched,
+            project::DeclaredDiscretization::Tustin => Discretization::Tustin,
+            project::DeclaredDiscretization::ZeroOrderHold => Discretization::ZeroOrderHold,
+            project::DeclaredDiscretization::Matched => Discretization::Matched,
         },
         continuous_prefilter: project.prefilter.as_ref().is_some_and(|prefilter| prefilter.continuous),
         rate_feed_forward: 0.0,
@@ -134,7 +134,7 @@ pub fn compensator(
     transfer: &Transfer,
     sample_time: Option<f64>,
 ) -> Result<Compensator, ControlError> {
-    let stage = |declared: &project::Element| {
+    let stage = |declared: &project::DeclaredElement| {
         Ok(Stage { element: element(place, declared, sample_time)?, enabled: declared.enabled })
     };
     Ok(Compensator { stages: transfer.as_elements().iter().map(stage).collect::<Result<_, ControlError>>()? })
@@ -155,7 +155,7 @@ pub(crate) fn from_formulas(
 /// An element as the loop has it.
 pub fn element(
     place: &'static str,
-    declared: &project::Element,
+    declared: &project::DeclaredElement,
     sample_time: Option<f64>,
 ) -> Result<Element, ControlError> {
     Ok(match declared.kind {

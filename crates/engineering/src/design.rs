@@ -59,7 +59,7 @@ pub enum DesignError {
     NoController(Vec<String>),
     /// A part of the problem cannot be searched with.
     #[error(transparent)]
-    Search(#[from] phea_qft::design::DesignError),
+    Search(#[from] phea_qft::design::LoopDesignError),
 }
 
 /// A design, and the published controller for comparison.
@@ -93,7 +93,7 @@ pub struct ProjectDesign {
     /// asked for.
     pub repair: Option<Repair>,
     /// The designed controller as a project declares it.
-    pub declared_controller: project::Controller,
+    pub declared_controller: project::DeclaredController,
     /// The designed prefilter likewise; absent where none was designed.
     pub declared_prefilter: Option<project::Prefilter>,
 }
@@ -126,7 +126,7 @@ impl ProjectDesign {
         let view = ProjectAudit::new(&problem, design.audit.clone(), of_rig);
         let rounding = rounding::rounding(setup, &problem)?;
         let declared = project.controller.clone().unwrap_or_default();
-        let declared_controller = project::Controller {
+        let declared_controller = project::DeclaredController {
             transfer: factors::declared(&law.feedback.transfer_function()?),
             ..declared
         };

@@ -7,7 +7,7 @@ use crate::bench::BenchError;
 use crate::campaign::CampaignError;
 use crate::control::ControlError;
 use crate::design::DesignError;
-use crate::family::FamilyError;
+use crate::family::ProjectFamilyError;
 use crate::rig::RigError;
 use crate::shaping::ShapingError;
 use crate::simulate::SimulateError;
@@ -54,7 +54,7 @@ pub enum ProcedureError {
     Design(#[from] DesignError),
     /// There is no family of plants.
     #[error(transparent)]
-    Family(#[from] FamilyError),
+    Family(#[from] ProjectFamilyError),
     /// A specification cannot be met by any loop, or is contradictory.
     #[error(transparent)]
     Specification(#[from] crate::specification::SpecificationError),
@@ -89,7 +89,7 @@ impl ProcedureError {
     pub fn refusal(&self) -> Option<&Refusal> {
         match self {
             ProcedureError::Catalogue(report) => Some(report),
-            ProcedureError::Family(FamilyError::Measurement(report)) => Some(report),
+            ProcedureError::Family(ProjectFamilyError::Measurement(report)) => Some(report),
             ProcedureError::Shaping(ShapingError::Refused(report)) => Some(report),
             ProcedureError::Campaign(CampaignError::Settings(report)) => Some(report),
             ProcedureError::Simulate(error) | ProcedureError::Campaign(CampaignError::Simulate(error)) => {

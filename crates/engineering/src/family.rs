@@ -22,7 +22,7 @@ pub use visited_box::{Extreme, VisitedRange, visited_box};
 
 /// Why a project has no uncertain plant.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum FamilyError {
+pub enum ProjectFamilyError {
     /// The rig cannot be computed with.
     #[error(transparent)]
     Rig(#[from] RigError),
@@ -114,7 +114,7 @@ pub enum FamilyError {
 /// the `cases` stand alone nothing between them belongs to the family.
 ///
 /// # Errors
-/// [`FamilyError`] if there is no rig, an uncertain name is no parameter of the plant, or a member
+/// [`ProjectFamilyError`] if there is no rig, an uncertain name is no parameter of the plant, or a member
 /// lies outside of the box.
 ///
 /// # Example
@@ -131,7 +131,7 @@ pub enum FamilyError {
 /// assert_eq!(gains, [2.0, 1.0, 4.0]); // the nominal plant first, then what else is on the grid
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn family(setup: &Setup<'_>, source: &dyn Source) -> Result<Family, FamilyError> {
+pub fn family(setup: &Setup<'_>, source: &dyn Source) -> Result<Family, ProjectFamilyError> {
     let project = setup.project;
     let family = match &project.family {
         Some(declared) if !declared.measured.is_empty() => {
@@ -148,19 +148,19 @@ pub fn family(setup: &Setup<'_>, source: &dyn Source) -> Result<Family, FamilyEr
 }
 
 /// A limit on load motion needs a path from it.
-fn check_second_path(project: &Project, family: &Family) -> Result<(), FamilyError> {
+fn check_second_path(project: &Project, family: &Family) -> Result<(), ProjectFamilyError> {
     let wanted = project.specifications.iter().any(|one| one.kind == SpecificationKind::LoadMotion);
     match family {
         Family::Measured(family) if wanted => {
             let without = family.plants().iter().find(|plant| plant.disturbance.is_none());
-            without.map_or(Ok(()), |plant| Err(FamilyError::LoadMotion(plant.name.clone())))
+            without.map_or(Ok(()), |plant| Err(ProjectFamilyError::LoadMotion(plant.name.clone())))
         }
         _ => Ok(()),
     }
 }
 
 /// The plant over the box of its uncertain parameters.
-fn uncertain_plant(setup: &Setup<'_>) -> Result<UncertainPlant, FamilyError> {
+fn uncertain_plant(setup: &Setup<'_>) -> Result<UncertainPlant, ProjectFamilyError> {
     let project = setup.project;
     let parameters = uncertain::parameters(project)?;
     let is_outside = |one: &&UncertainParameter| {
@@ -169,7 +169,7 @@ fn uncertain_plant(setup: &Setup<'_>) -> Result<UncertainPlant, FamilyError> {
     };
     if let Some(UncertainParameter { name, nominal, minimum, maximum }) = parameters.iter().find(is_outside) {
         let (value, minimum, maximum) = (*nominal, *minimum, *maximum);
-        return Err(FamilyError::Linear { name: name.clone(), value, minimum, maximum });
+        return Err(ProjectFamilyError::Linear { name: name.clone(), value, minimum, maximum });
     }
     match &project.plant {
         Some(plant) => formula::uncertain_plant(plant, parameters),

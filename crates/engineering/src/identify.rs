@@ -19,7 +19,7 @@ mod told;
 mod variables;
 
 pub use bootstrap::{Bootstrap, FEWEST_REPETITIONS};
-pub use evidence::{DECISIVE, Evidence, ExplainedBy};
+pub use evidence::{DECISIVE, ExplainedBy, ModelEvidence};
 pub use guess::SimpleCalculations;
 pub use reading::recordings;
 pub use recording::{RecordedSignal, Recording, SignalKind};
@@ -118,7 +118,7 @@ pub struct Identification {
     /// Where the search began.
     pub first_guess: StaticCoefficients,
     /// Both models of the leakage compared.
-    pub evidence: Evidence,
+    pub evidence: ModelEvidence,
     /// How well each signal is explained.
     pub signals: Vec<SignalFit>,
     /// Root mean square of all residuals, each over the range of its signal.
@@ -203,7 +203,7 @@ pub fn identify(
     let first = fit::fitted(&recordings, tested, &variables, search, watch)?;
     let second = fit::with_the_other_model(&first, watch)?;
     let starts = first.starts;
-    let evidence = Evidence::of([&first, &second]);
+    let evidence = ModelEvidence::of([&first, &second]);
     let wanted = search.leakage_model.or(evidence.preferred()).unwrap_or(known.leakage_model);
     let found = if wanted == first.together.tested.leakage_model { first } else { second };
     let coefficients = found.coefficients();

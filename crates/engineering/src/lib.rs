@@ -5,7 +5,7 @@
 //! Project -> setup::Setup { rig, controller, prefilter, sensor, timing }
 //! Setup   -> derived, sizing, linearize                       what follows from the rig
 //! Setup   -> family -> robust::RobustProblem -> audit, shaping, design (-> trial on the machine -> repair)
-//! Setup   -> simulate::Bench -> simulate, campaign            the nonlinear machine
+//! Setup   -> simulate::ControlledMachine -> simulate, campaign the nonlinear machine
 //! Setup   -> bench                                            static tests of the valve
 //! files   -> identify                                         the valve that explains recorded tests
 //! ```

@@ -118,7 +118,7 @@ impl Rig {
     ///
     /// # Errors
     /// [`RigError`] if a parameter is impossible, or nothing balances at the operating point.
-    pub fn of(project: &Project, declared: &project::Actuator) -> Result<Rig, RigError> {
+    pub fn of(project: &Project, declared: &project::DeclaredActuator) -> Result<Rig, RigError> {
         let actuator = assembly::actuator(declared)?;
         let components = actuator.components();
         let numbers = Numbers::declared();

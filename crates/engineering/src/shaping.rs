@@ -18,7 +18,7 @@ use phea_qft::verification::{StabilityFinding, TrackingJudgement};
 
 use crate::audit::PlantNames;
 use crate::error::ProcedureError;
-use crate::project::{self, Element, Findings, Loaded, Refusal};
+use crate::project::{self, DeclaredElement, Findings, Loaded, Refusal};
 use crate::robust::{RobustError, RobustProblem, robust_problem};
 use crate::setup::Setup;
 use crate::source::Source;
@@ -76,7 +76,7 @@ pub struct ProjectShaping {
     /// How many changes were made.
     pub changes: usize,
     /// The elements, those that do not act among them.
-    pub elements: Vec<Element>,
+    pub elements: Vec<DeclaredElement>,
     /// The problem with these elements in its loop.
     pub problem: RobustProblem,
     /// What the numbers of a plant are called.
@@ -105,7 +105,7 @@ pub fn shape(
     changes: &[RequestedChange],
     watch: Watch<'_>,
 ) -> Result<ProjectShaping, ProcedureError> {
-    let has_law = loaded.project.controller.as_ref().is_some_and(project::Controller::has_law);
+    let has_law = loaded.project.controller.as_ref().is_some_and(project::DeclaredController::has_law);
     if shaped == Shaped::Prefilter && !has_law {
         return Err(ShapingError::NoController.into());
     }

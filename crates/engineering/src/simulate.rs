@@ -28,8 +28,8 @@ mod wish;
 pub use file_names::state_names;
 pub use metrics::NOT_SETTLED;
 
-pub use bench::Bench;
-pub use check::{Check, Difference, MetricDifferences, simulate_checked};
+pub use bench::ControlledMachine;
+pub use check::{Difference, MetricDifferences, ToleranceCheck, simulate_checked};
 pub use columns::LOOP_SIGNALS;
 pub use compare::{ScenarioComparison, compare_projects};
 pub use exceeded::{Exceeded, RigLimit, words as exceeded_words};
@@ -43,12 +43,12 @@ pub use saved::SavedState;
 
 pub use bench::options;
 pub(crate) use course::course_of;
-pub use course::{Driven, driven};
+pub use course::{ScenarioDrive, driven};
 pub(crate) use file_names::table_names;
 pub use files::{RunTable, files};
 pub use follower::Follower;
 pub use run::occurrences;
-pub use wish::{HeldWish, Wish};
+pub use wish::{HeldWish, TrackingWish};
 
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::simulation::{EquilibriumError, ProfileError, SimulationError};
@@ -223,7 +223,7 @@ pub fn simulate_into(
     }
     let mut prepared = Vec::new();
     for scenario in &project.scenarios {
-        let bench = Bench::of_scenario(setup, scenario)?;
+        let bench = ControlledMachine::of_scenario(setup, scenario)?;
         let course = course::course(source, project, &bench, scenario)?;
         let measured = measured::measurements(source, project, scenario).map_err(SimulateError::Motion)?;
         prepared.push((bench, course, measured));

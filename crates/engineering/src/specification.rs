@@ -8,7 +8,7 @@ use phea_qft::specification::{
     LimitError, MarginError, Requirement, Specification, TimeDomainError, WishCheck, WishOutcome,
 };
 
-use self::limit::{MarginOf, TrackingLimit};
+use self::limit::{MarginOf, TrackingSide};
 pub(crate) use self::rounding::of_rounding;
 use crate::project::{self, FormulaError, Project, SpecificationKind};
 
@@ -115,11 +115,10 @@ pub fn wishes(project: &Project) -> Result<Vec<CheckedWish>, SpecificationError>
     let mut checked = Vec::new();
     for (index, declared) in project.specifications.iter().enumerate() {
         let number = index + 1;
-        for (key, side, limit) in [
-            ("upper", TrackingLimit::Upper, &declared.upper),
-            ("lower", TrackingLimit::Lower, &declared.lower),
-        ] {
-            if let Some(project::Limit::Response(wish)) = limit {
+        for (key, side, limit) in
+            [("upper", TrackingSide::Upper, &declared.upper), ("lower", TrackingSide::Lower, &declared.lower)]
+        {
+            if let Some(project::DeclaredLimit::Response(wish)) = limit {
                 let (_, check) = limit::of_wish(wish, side).map_err(|reason| SpecificationError {
                     number,
                     key,
@@ -133,10 +132,10 @@ pub fn wishes(project: &Project) -> Result<Vec<CheckedWish>, SpecificationError>
 }
 
 fn specification(
-    declared: &project::Specification,
+    declared: &project::DeclaredSpecification,
     number: usize,
 ) -> Result<Specification, SpecificationError> {
-    let found = |key: &'static str, limit: &Option<project::Limit>, takes: limit::Takes| {
+    let found = |key: &'static str, limit: &Option<project::DeclaredLimit>, takes: limit::Takes| {
         let found = limit.as_ref().ok_or(SpecificationProblem::Missing);
         let found = found.and_then(|limit| limit::over_frequency(limit, takes));
         found.map_err(|reason| SpecificationError { number, key, reason })
@@ -154,8 +153,8 @@ fn specification(
         SpecificationKind::ControlEffort => Requirement::ControlEffort(plain()?),
         SpecificationKind::LoadMotion => Requirement::LoadMotion(plain()?),
         SpecificationKind::Tracking => Requirement::Tracking {
-            lower: found("lower", &declared.lower, limit::Takes::Wish(TrackingLimit::Lower))?,
-            upper: found("upper", &declared.upper, limit::Takes::Wish(TrackingLimit::Upper))?,
+            lower: found("lower", &declared.lower, limit::Takes::Wish(TrackingSide::Lower))?,
+            upper: found("upper", &declared.upper, limit::Takes::Wish(TrackingSide::Upper))?,
         },
     };
     Ok(Specification {

@@ -12,7 +12,7 @@ pub use run::percent_words;
 
 pub(crate) use rigs::waves_alone;
 pub use rigs::with_waves;
-pub use run::{Agreement, Run, Step, StepResponse, agreement_word};
+pub use run::{Agreement, StepResponse, TrialRun, TrialStep, agreement_word};
 
 use crate::audit::ProjectAudit;
 use crate::error::ProcedureError;
@@ -25,7 +25,7 @@ use phea_dynamics::watch::{Progress, Watch};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trial {
     /// At least one.
-    pub runs: Vec<Run>,
+    pub runs: Vec<TrialRun>,
     /// Plants that no rig was found for, and why.
     pub not_driven: Vec<String>,
 }

@@ -2,7 +2,7 @@
 
 use phea_dynamics::portable::log10;
 
-use super::ticks::{self, Steps, Tick};
+use super::ticks::{self, Tick, TickSteps};
 
 /// How values map to lengths.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,14 +31,14 @@ pub struct Axis {
     /// Upper end.
     pub maximum: f64,
     /// Which steps count as round on a linear axis.
-    pub steps: Steps,
+    pub steps: TickSteps,
 }
 
 impl Axis {
     /// A linear axis with exactly these ends (made distinct and finite where they are not).
     pub fn linear(title: impl Into<String>, minimum: f64, maximum: f64) -> Self {
         let (minimum, maximum) = distinct(minimum, maximum);
-        Axis { title: title.into(), scale: Scale::Linear, minimum, maximum, steps: Steps::Decimal }
+        Axis { title: title.into(), scale: Scale::Linear, minimum, maximum, steps: TickSteps::Decimal }
     }
 
     /// A logarithmic axis with exactly these ends (made positive and distinct where they are not).
@@ -51,25 +51,25 @@ impl Axis {
             (false, true) => (maximum / 1e3, maximum),
             (false, false) => (1.0, 10.0),
         };
-        Axis { title: title.into(), scale: Scale::Logarithmic, minimum, maximum, steps: Steps::Decimal }
+        Axis { title: title.into(), scale: Scale::Logarithmic, minimum, maximum, steps: TickSteps::Decimal }
     }
 
     /// A linear axis that holds the finite values and ends on round numbers.
     pub fn fit_linear(title: impl Into<String>, values: impl IntoIterator<Item = f64>) -> Self {
-        Self::fit_steps(title, values, Steps::Decimal)
+        Self::fit_steps(title, values, TickSteps::Decimal)
     }
 
     /// Like [`Axis::fit_linear`], in degrees.
     pub fn fit_angle(title: impl Into<String>, values: impl IntoIterator<Item = f64>) -> Self {
-        Self::fit_steps(title, values, Steps::Angle)
+        Self::fit_steps(title, values, TickSteps::Angle)
     }
 
     /// Like [`Axis::fit_linear`], in decibels.
     pub fn fit_decibel(title: impl Into<String>, values: impl IntoIterator<Item = f64>) -> Self {
-        Self::fit_steps(title, values, Steps::Decibel)
+        Self::fit_steps(title, values, TickSteps::Decibel)
     }
 
-    fn fit_steps(title: impl Into<String>, values: impl IntoIterator<Item = f64>, steps: Steps) -> Self {
+    fn fit_steps(title: impl Into<String>, values: impl IntoIterator<Item = f64>, steps: TickSteps) -> Self {
         let (low, high) = extent(values.into_iter().filter(|v| v.is_finite() && v.abs() < 1e250));
         let (low, high) = distinct(low, high);
         let step = ticks::round_step(high - low, 5, steps);
@@ -111,7 +111,7 @@ impl Axis {
         let minimum = if low < 0.0 { grown(low) } else { -limit };
         let maximum = if high > 0.0 { grown(high) } else { limit };
         let scale = Scale::SignedLogarithmic { limit };
-        Axis { title: title.into(), scale, minimum, maximum, steps: Steps::Decimal }
+        Axis { title: title.into(), scale, minimum, maximum, steps: TickSteps::Decimal }
     }
 
     /// Where a value lies: 0 at the lower end, 1 at the upper; not a number where the scale has no

@@ -7,7 +7,7 @@ use phea_dynamics::portable::{argument, log10, magnitude};
 use super::axis::{Axis, extent};
 use super::colour::{Role, series_stroke};
 use super::legend::LegendEntry;
-use super::plot::{Direction, Mark, Panel, Plot};
+use super::plot::{AxisDirection, Mark, Panel, Plot};
 use super::scene::{Dash, Stroke};
 use super::ticks::plain;
 use super::{Figure, FrequencyMark, Words};
@@ -72,7 +72,7 @@ pub(super) fn mark_frequencies(panels: &mut [Panel], marks: &[FrequencyMark]) {
                 _ => String::new(),
             };
             panel.marks.push(Mark::Reference {
-                direction: Direction::X,
+                direction: AxisDirection::X,
                 at: mark.frequency_rad_per_s,
                 stroke: Stroke::solid(Role::Muted, 1.2).dashed(Dash::Dashed),
                 label,
@@ -81,7 +81,7 @@ pub(super) fn mark_frequencies(panels: &mut [Panel], marks: &[FrequencyMark]) {
     }
 }
 
-pub(super) struct Curve {
+pub(super) struct BodeCurve {
     pub(super) index: usize,
     pub(super) name: String,
     pub(super) frequencies: Vec<f64>,
@@ -91,11 +91,11 @@ pub(super) struct Curve {
 
 /// Magnitude and unwrapped phase of each response; a later one starts within half a turn of the
 /// first.
-fn curves(series: &[FrequencySeries]) -> Vec<Curve> {
-    let mut result: Vec<Curve> = Vec::with_capacity(series.len());
+fn curves(series: &[FrequencySeries]) -> Vec<BodeCurve> {
+    let mut result: Vec<BodeCurve> = Vec::with_capacity(series.len());
     for (index, one) in series.iter().enumerate() {
         let start = result.first().and_then(|first| first.degrees.first().copied());
-        result.push(Curve {
+        result.push(BodeCurve {
             index,
             name: one.name.clone(),
             frequencies: one.frequencies_rad_per_s.clone(),
@@ -128,12 +128,12 @@ pub(crate) fn unwrapped_degrees(response: &[Complex64], start: Option<f64>) -> V
 
 /// Panels of |difference| in dB and degrees: models that agree to 1e-4 dB and models that part by
 /// 40 dB in one picture.
-fn difference_panels(curves: &[Curve]) -> Vec<Panel> {
+fn difference_panels(curves: &[BodeCurve]) -> Vec<Panel> {
     let differences = differences(curves);
     if differences.is_empty() {
         return Vec::new();
     }
-    let axis = |title: &str, of: fn(&Curve) -> &Vec<f64>| {
+    let axis = |title: &str, of: fn(&BodeCurve) -> &Vec<f64>| {
         let (_, largest) = extent(all(&differences, of));
         let floor = largest * 1e-7;
         Axis::fit_logarithmic(title, all(&differences, of).map(|v| v.max(floor).max(1e-9)))
@@ -145,13 +145,13 @@ fn difference_panels(curves: &[Curve]) -> Vec<Panel> {
 }
 
 /// Each later curve minus the first, its size, where both have the same frequencies.
-fn differences(curves: &[Curve]) -> Vec<Curve> {
+fn differences(curves: &[BodeCurve]) -> Vec<BodeCurve> {
     let Some((first, others)) = curves.split_first() else { return Vec::new() };
     let minus = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).collect();
     others
         .iter()
         .filter(|other| other.frequencies == first.frequencies)
-        .map(|other| Curve {
+        .map(|other| BodeCurve {
             index: other.index,
             name: other.name.clone(),
             frequencies: other.frequencies.clone(),
@@ -161,11 +161,14 @@ fn differences(curves: &[Curve]) -> Vec<Curve> {
         .collect()
 }
 
-fn all<'a>(curves: &'a [Curve], of: impl Fn(&Curve) -> &Vec<f64> + 'a) -> impl Iterator<Item = f64> + 'a {
+fn all<'a>(
+    curves: &'a [BodeCurve],
+    of: impl Fn(&BodeCurve) -> &Vec<f64> + 'a,
+) -> impl Iterator<Item = f64> + 'a {
     curves.iter().flat_map(move |curve| of(curve).clone())
 }
 
-fn panel(y: Axis, height: f64, curves: &[Curve], of: impl Fn(&Curve) -> &Vec<f64>) -> Panel {
+fn panel(y: Axis, height: f64, curves: &[BodeCurve], of: impl Fn(&BodeCurve) -> &Vec<f64>) -> Panel {
     let marks = curves
         .iter()
         .map(|curve| Mark::Line {

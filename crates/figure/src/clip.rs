@@ -35,9 +35,10 @@ pub fn segment(from: Point, to: Point, frame: &Rectangle) -> Option<(Point, Poin
         (from.y - frame.top, to.y - frame.top),
         (frame.bottom - from.y, frame.bottom - to.y),
     ];
-    let (mut enter, mut leave) = (Along { done: 0.0, left: 1.0 }, Along { done: 1.0, left: 0.0 });
+    let (mut enter, mut leave) =
+        (SegmentFraction { done: 0.0, left: 1.0 }, SegmentFraction { done: 1.0, left: 0.0 });
     for (at_from, at_to) in sides {
-        let crossing = Along { done: at_from / (at_from - at_to), left: at_to / (at_to - at_from) };
+        let crossing = SegmentFraction { done: at_from / (at_from - at_to), left: at_to / (at_to - at_from) };
         if at_from < 0.0 && enter.is_before(crossing) {
             enter = crossing;
         } else if at_to < 0.0 && crossing.is_before(leave) {
@@ -47,7 +48,7 @@ pub fn segment(from: Point, to: Point, frame: &Rectangle) -> Option<(Point, Poin
     if leave.is_before(enter) {
         return None;
     }
-    let at = |place: Along| {
+    let at = |place: SegmentFraction| {
         let (x, y) = if place.done < 0.5 {
             (from.x + place.done * dx, from.y + place.done * dy)
         } else {
@@ -64,13 +65,13 @@ pub fn segment(from: Point, to: Point, frame: &Rectangle) -> Option<(Point, Poin
 /// A place along a segment by the parts done and left: both, because one of them alone is lost to
 /// rounding when an end is very far away.
 #[derive(Clone, Copy)]
-struct Along {
+struct SegmentFraction {
     done: f64,
     left: f64,
 }
 
-impl Along {
-    fn is_before(self, other: Along) -> bool {
+impl SegmentFraction {
+    fn is_before(self, other: SegmentFraction) -> bool {
         if self.done + other.done < 1.0 { self.done < other.done } else { self.left > other.left }
     }
 }

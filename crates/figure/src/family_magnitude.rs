@@ -6,7 +6,7 @@ use super::axis::{Axis, extent};
 use super::colour::{Role, series_role};
 use super::legend::LegendEntry;
 use super::open_loop::decibel_axis;
-use super::plot::{Direction, Mark, Marker, MarkerStyle, Panel, Plot};
+use super::plot::{AxisDirection, Mark, Marker, MarkerStyle, Panel, Plot};
 use super::scene::{Dash, Fill, Stroke};
 use super::{Figure, Words};
 
@@ -176,7 +176,7 @@ fn areas(input: &FamilyMagnitudeInput) -> Vec<Mark> {
     between(&input.greatest, &input.least, FAMILY);
     for corners in violated(input) {
         let (from, to) = extent(corners.iter().map(|corner| corner.0));
-        let (direction, fill) = (Direction::X, Fill { opacity: 0.09, ..EXCESS });
+        let (direction, fill) = (AxisDirection::X, Fill { opacity: 0.09, ..EXCESS });
         marks.push(Mark::Band { direction, from, to, fill, hatched: false, label: String::new() });
         marks.push(Mark::Area { corners, fill: EXCESS });
     }

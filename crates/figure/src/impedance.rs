@@ -8,7 +8,7 @@ use super::axis::{Axis, extent};
 use super::bode::{FrequencySeries, mark_frequencies, unwrapped_degrees};
 use super::colour::{Role, series_stroke};
 use super::legend::LegendEntry;
-use super::plot::{Direction, Mark, Panel, Plot, Side};
+use super::plot::{AxisDirection, Mark, Panel, Plot, PointSide};
 use super::scene::{Dash, Fill, Stroke};
 use super::{Figure, FrequencyMark, Words};
 
@@ -92,7 +92,7 @@ fn bands(input: &ImpedanceInput, label: &str) -> Vec<Mark> {
         .non_passive_bands_rad_per_s
         .iter()
         .map(|&(from, to)| Mark::Band {
-            direction: Direction::X,
+            direction: AxisDirection::X,
             from,
             to,
             fill: Fill::tint(Role::Bad),
@@ -112,7 +112,7 @@ fn asymptote_label(line: &AsymptoteLine, x: &Axis) -> Mark {
     let (from, to) = (line.from_rad_per_s.max(x.minimum), line.to_rad_per_s.min(x.maximum));
     let middle = (from * to).sqrt();
     let at = (middle, line.coefficient * pow(middle, f64::from(line.exponent)));
-    let side = if line.exponent < 0 { Side::Right } else { Side::Above };
+    let side = if line.exponent < 0 { PointSide::Right } else { PointSide::Above };
     Mark::Label { at: vec![at], text: line.label.clone(), role: Role::Text, side }
 }
 
@@ -124,7 +124,7 @@ fn phase_panel(input: &ImpedanceInput) -> Panel {
     let mut marks = bands(input, "");
     for limit in [-90.0, 90.0] {
         marks.push(Mark::Reference {
-            direction: Direction::Y,
+            direction: AxisDirection::Y,
             at: limit,
             stroke: Stroke::solid(Role::Bad, 1.2).dashed(Dash::LongDash),
             label: String::new(),

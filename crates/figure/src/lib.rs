@@ -73,7 +73,7 @@ pub use time_panels::{TimePanel, TimePanelsInput, time_panels};
 pub use tornado::{TornadoBar, TornadoInput, tornado};
 
 use scene::Scene;
-use svg::{Names, SvgDestination};
+use svg::{SvgDestination, SvgNames};
 
 /// Width of every figure's view box.
 pub const WIDTH: f64 = 560.0;
@@ -219,7 +219,7 @@ impl Figure {
     }
 
     fn write(&self, destination: SvgDestination) -> String {
-        let names = Names { identifier: &self.name, title: &self.title, description: &self.caption };
+        let names = SvgNames { identifier: &self.name, title: &self.title, description: &self.caption };
         svg::write(&self.scene, names, destination)
     }
 }

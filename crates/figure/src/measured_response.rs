@@ -8,7 +8,7 @@ use super::axis::Axis;
 use super::bode::{FrequencySeries, unwrapped_degrees};
 use super::colour::{Role, series_stroke};
 use super::legend::LegendEntry;
-use super::plot::{Direction, Mark, Marker, MarkerStyle, Panel, Plot};
+use super::plot::{AxisDirection, Mark, Marker, MarkerStyle, Panel, Plot};
 use super::scene::{Dash, Stroke};
 use super::{Figure, Words};
 
@@ -72,7 +72,12 @@ pub fn measured_response(words: Words, input: &MeasuredResponseInput) -> Figure 
     ];
     for panel in panels.iter_mut().skip(2) {
         let stroke = Stroke::solid(Role::Muted, 1.2).dashed(Dash::Dotted);
-        panel.marks.push(Mark::Reference { direction: Direction::Y, at: 0.0, stroke, label: String::new() });
+        panel.marks.push(Mark::Reference {
+            direction: AxisDirection::Y,
+            at: 0.0,
+            stroke,
+            label: String::new(),
+        });
     }
     let points = [&measured, &measured_phase, &differences, &angles, &input.distortion_percent];
     for (panel, values) in panels.iter_mut().zip(points) {

@@ -12,7 +12,7 @@ use std::f64::consts::PI;
 use super::axis::Axis;
 use super::colour::Role;
 use super::legend::LegendEntry;
-use super::plot::{Direction, Mark, Panel, Plot, Side};
+use super::plot::{AxisDirection, Mark, Panel, Plot, PointSide};
 use super::scene::{Dash, Fill, Stroke};
 use super::ticks::plain;
 use super::{CandidateVerdict, Figure, Words};
@@ -60,7 +60,7 @@ pub fn nomograph(words: Words, input: &NomographInput) -> Figure {
     );
     let mut marks = vec![
         Mark::Band {
-            direction: Direction::Y,
+            direction: AxisDirection::Y,
             from: slowest,
             to: fastest,
             fill: Fill::tint(Role::Good),
@@ -68,7 +68,7 @@ pub fn nomograph(words: Words, input: &NomographInput) -> Figure {
             label: format!("{} to {} m/s", plain(slowest), plain(fastest)),
         },
         Mark::Reference {
-            direction: Direction::X,
+            direction: AxisDirection::X,
             at: flow,
             stroke: Stroke::solid(Role::Accent, 1.8),
             label: format!("design flow {} L/min", plain(flow)),
@@ -118,7 +118,7 @@ fn limits(marks: &mut Vec<Mark>, input: &NomographInput, x: &Axis) {
         let bore = (4.0 * input.design_flow_m3_per_s / (PI * limit)).sqrt();
         marks.push(Mark::Line { points: line_of(bore, x), stroke: limit_stroke() });
         let text = format!("{} mm", plain(DisplayUnit::MILLIMETRE.of(bore)));
-        marks.push(Mark::Label { at: vec![(flow, limit)], text, role: Role::Good, side: Side::Left });
+        marks.push(Mark::Label { at: vec![(flow, limit)], text, role: Role::Good, side: PointSide::Left });
     }
     marks.push(Mark::Line {
         points: vec![(flow, slowest), (flow, fastest)],

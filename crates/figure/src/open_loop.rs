@@ -5,10 +5,10 @@ use phea_dynamics::portable::{argument, log10, magnitude};
 
 use super::axis::{Axis, extent};
 use super::bode::{FrequencySeries, unwrapped_degrees};
-use super::ticks::Steps;
+use super::ticks::TickSteps;
 
 /// A response with its phase unwrapped, most of it between -360 and 0 degrees.
-pub(super) struct OpenLoop {
+pub(super) struct UnwrappedResponse {
     frequencies: Vec<f64>,
     /// (phase in degrees, magnitude in dB)
     pub(super) points: Vec<(f64, f64)>,
@@ -29,11 +29,11 @@ pub(super) fn decibel_axis(title: &str, values: impl IntoIterator<Item = f64>) -
     const ROOM: f64 = 2.0;
     let (low, high) = extent(values.into_iter().filter(|v| v.is_finite()));
     let (low, high) = (10.0 * ((low - ROOM) / 10.0).floor(), 10.0 * ((high + ROOM) / 10.0).ceil());
-    Axis { steps: Steps::Decibel, ..Axis::linear(title, low, high) }
+    Axis { steps: TickSteps::Decibel, ..Axis::linear(title, low, high) }
 }
 
-impl OpenLoop {
-    pub(super) fn new(series: &FrequencySeries) -> OpenLoop {
+impl UnwrappedResponse {
+    pub(super) fn new(series: &FrequencySeries) -> UnwrappedResponse {
         let degrees = unwrapped_degrees(&series.response, None);
         let inside = |turns: i32| {
             let shifted = degrees.iter().map(|phase| phase + 360.0 * f64::from(turns));
@@ -46,7 +46,7 @@ impl OpenLoop {
             .zip(&series.response)
             .map(|(phase, response)| (phase + 360.0 * f64::from(turns), decibel(*response)))
             .collect();
-        OpenLoop { frequencies: series.frequencies_rad_per_s.clone(), points }
+        UnwrappedResponse { frequencies: series.frequencies_rad_per_s.clone(), points }
     }
 
     /// Phase and magnitude at a frequency, between neighbours by the logarithm of frequency; `None`

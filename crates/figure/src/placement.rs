@@ -32,7 +32,7 @@ fn distance(point: Point, bounds: &Rectangle) -> f64 {
 
 /// A piece of a curve.
 #[derive(Clone, Copy, Debug)]
-struct Piece {
+struct CurvePiece {
     from: Point,
     to: Point,
     width: f64,
@@ -42,7 +42,7 @@ struct Piece {
 #[derive(Clone, Debug, Default)]
 pub struct Occupancy {
     texts: Vec<Rectangle>,
-    segments: Vec<Piece>,
+    segments: Vec<CurvePiece>,
     /// Solid things a label must not hide, markers above all.
     obstacles: Vec<Rectangle>,
     /// Lines from points to their labels.
@@ -62,7 +62,7 @@ impl Occupancy {
 
     /// A curve of some width to keep away from.
     pub(crate) fn add_polyline(&mut self, points: &[Point], width: f64) {
-        let piece = |pair: &[Point]| Some(Piece { from: *pair.first()?, to: *pair.get(1)?, width });
+        let piece = |pair: &[Point]| Some(CurvePiece { from: *pair.first()?, to: *pair.get(1)?, width });
         self.segments.extend(points.windows(2).filter_map(piece));
     }
 

@@ -89,7 +89,7 @@ pub enum Mark {
     /// A band across the panel.
     Band {
         /// The axis that `from` and `to` belong to.
-        direction: Direction,
+        direction: AxisDirection,
         /// Lower end.
         from: f64,
         /// Upper end.
@@ -104,7 +104,7 @@ pub enum Mark {
     /// A straight line across the panel.
     Reference {
         /// The axis that `at` belongs to.
-        direction: Direction,
+        direction: AxisDirection,
         /// Where.
         at: f64,
         /// Line.
@@ -140,13 +140,13 @@ pub enum Mark {
         /// Colour.
         role: Role,
         /// The side tried first.
-        side: Side,
+        side: PointSide,
     },
 }
 
 /// Which axis a value belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Direction {
+pub enum AxisDirection {
     /// A value of x: the mark is upright.
     X,
     /// A value of y: the mark lies.
@@ -155,7 +155,7 @@ pub enum Direction {
 
 /// Side of a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Side {
+pub enum PointSide {
     /// Above.
     Above,
     /// Below.

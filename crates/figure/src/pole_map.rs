@@ -7,7 +7,7 @@ use phea_dynamics::portable::{cos, pow, sin};
 use super::axis::{Axis, Scale};
 use super::colour::{Role, series_role};
 use super::legend::LegendEntry;
-use super::plot::{Direction, Mark, Marker, MarkerStyle, Panel, Plot, Side};
+use super::plot::{AxisDirection, Mark, Marker, MarkerStyle, Panel, Plot, PointSide};
 use super::scene::{Dash, Fill, Stroke};
 use super::ticks::{decimal_power, floor_log10, plain};
 use super::{Figure, Words};
@@ -49,7 +49,7 @@ pub struct PoleMapInput {
 pub fn pole_map(words: Words, input: &PoleMapInput) -> Figure {
     let (x, y) = axes(input);
     let mut marks = vec![Mark::Band {
-        direction: Direction::X,
+        direction: AxisDirection::X,
         from: 0.0,
         to: f64::INFINITY,
         fill: unstable_fill(),
@@ -58,7 +58,7 @@ pub fn pole_map(words: Words, input: &PoleMapInput) -> Figure {
     }];
     grid(&mut marks, input, &x, &y);
     let axis_stroke = Stroke::solid(Role::Axis, 1.2);
-    for direction in [Direction::X, Direction::Y] {
+    for direction in [AxisDirection::X, AxisDirection::Y] {
         marks.push(Mark::Reference { direction, at: 0.0, stroke: axis_stroke, label: String::new() });
     }
     let mut legend = Vec::new();
@@ -164,7 +164,7 @@ fn grid(marks: &mut Vec<Mark>, input: &PoleMapInput, x: &Axis, y: &Axis) {
         let farthest = (x.minimum.abs() / ratio.max(1e-9)).min(y.maximum / height.max(1e-9));
         let places = PLACES.map(|part| at(part * farthest, 1.0)).to_vec();
         let text = format!("ζ {}", plain(ratio));
-        marks.push(Mark::Label { at: places, text, role: Role::Muted, side: Side::On });
+        marks.push(Mark::Label { at: places, text, role: Role::Muted, side: PointSide::On });
     }
     for &frequency in &input.natural_frequencies_rad_per_s {
         let points: Vec<(f64, f64)> = (0..=90)
@@ -179,6 +179,6 @@ fn grid(marks: &mut Vec<Mark>, input: &PoleMapInput, x: &Axis, y: &Axis) {
             .map(|angle| (frequency * cos(angle), frequency * sin(angle)))
             .to_vec();
         let text = format!("{} rad/s", plain(frequency));
-        marks.push(Mark::Label { at: places, text, role: Role::Muted, side: Side::On });
+        marks.push(Mark::Label { at: places, text, role: Role::Muted, side: PointSide::On });
     }
 }

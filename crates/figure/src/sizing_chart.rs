@@ -4,7 +4,7 @@
 use super::axis::Axis;
 use super::colour::{Role, series_stroke};
 use super::legend::LegendEntry;
-use super::plot::{Direction, Mark, Panel, Plot, Side};
+use super::plot::{AxisDirection, Mark, Panel, Plot, PointSide};
 use super::scene::{Dash, Fill, Stroke};
 use super::{CandidateVerdict, Figure, Words};
 use phea_quantity::DisplayUnit;
@@ -102,7 +102,7 @@ fn panel_marks(
     let mut marks = Vec::new();
     if let Some((from, to)) = input.length_range_m {
         marks.push(Mark::Band {
-            direction: Direction::X,
+            direction: AxisDirection::X,
             from,
             to,
             fill: Fill::tint(Role::Good),
@@ -124,7 +124,7 @@ fn panel_marks(
     for candidate in input.candidates.iter().filter(|c| named && !c.label.is_empty()) {
         let at = (candidate.length_m, unit.of(candidate_value(candidate)));
         let role = candidate.verdict.role();
-        marks.push(Mark::Label { at: vec![at], text: candidate.label.clone(), role, side: Side::Above });
+        marks.push(Mark::Label { at: vec![at], text: candidate.label.clone(), role, side: PointSide::Above });
     }
     marks
 }
@@ -133,7 +133,7 @@ fn gain_limits(marks: &mut Vec<Mark>, input: &SizingChartInput) {
     let unit = DisplayUnit::MILLIVOLT_PER_NEWTON;
     if let Some(floor) = input.minimum_gain_v_per_n {
         marks.push(Mark::Reference {
-            direction: Direction::Y,
+            direction: AxisDirection::Y,
             at: unit.of(floor),
             stroke: Stroke::solid(Role::Warning, 1.6).dashed(Dash::LongDash),
             label: "smallest gain".to_string(),
@@ -141,7 +141,7 @@ fn gain_limits(marks: &mut Vec<Mark>, input: &SizingChartInput) {
     }
     if let Some(pole) = input.pole_gain_v_per_n {
         marks.push(Mark::Reference {
-            direction: Direction::Y,
+            direction: AxisDirection::Y,
             at: unit.of(pole),
             stroke: Stroke::solid(Role::Bad, 1.6).dashed(Dash::DashDot),
             label: "K_H infinite".to_string(),

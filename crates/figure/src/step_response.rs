@@ -3,7 +3,7 @@
 use super::axis::{Axis, extent};
 use super::colour::{Role, series_stroke};
 use super::legend::LegendEntry;
-use super::plot::{Direction, Mark, Panel, Plot};
+use super::plot::{AxisDirection, Mark, Panel, Plot};
 use super::scene::{Dash, Fill, Stroke};
 use super::{Figure, Words};
 use phea_quantity::DisplayUnit;
@@ -87,7 +87,7 @@ pub fn step_response(words: Words, input: &StepResponseInput) -> Figure {
     for panel in &mut panels {
         let first = !panel.y.title.starts_with("Control");
         panel.marks.extend(input.events.iter().map(|event| Mark::Reference {
-            direction: Direction::X,
+            direction: AxisDirection::X,
             at: event.time_s,
             stroke: Stroke::solid(Role::Muted, 1.2).dashed(Dash::Dotted),
             label: if first { event.label.clone() } else { String::new() },
@@ -113,7 +113,7 @@ fn marks(input: &StepResponseInput) -> Vec<Mark> {
     if let Some(band) = &input.settling_band {
         let half = 0.01 * band.percent * band.level;
         marks.push(Mark::Band {
-            direction: Direction::Y,
+            direction: AxisDirection::Y,
             from: input.unit.of(band.level - half),
             to: input.unit.of(band.level + half),
             fill: Fill { role: Role::Good, opacity: 0.25 },

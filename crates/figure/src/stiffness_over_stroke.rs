@@ -4,7 +4,7 @@
 use super::axis::{Axis, extent};
 use super::colour::{Role, series_role, series_stroke};
 use super::legend::LegendEntry;
-use super::plot::{Direction, Mark, Marker, MarkerStyle, Panel, Plot, Side};
+use super::plot::{AxisDirection, Mark, Marker, MarkerStyle, Panel, Plot, PointSide};
 use super::scene::{Dash, Fill, Stroke};
 use super::ticks::plain;
 use super::{Figure, Words};
@@ -69,7 +69,7 @@ pub fn stiffness_over_stroke(words: Words, input: &StiffnessInput) -> Figure {
     }
     if let Some(position) = input.operating_position_m {
         marks.push(Mark::Reference {
-            direction: Direction::X,
+            direction: AxisDirection::X,
             at: length.of(position),
             stroke: Stroke::solid(Role::Muted, 1.2).dashed(Dash::Dotted),
             label: "operating point".to_string(),
@@ -102,6 +102,6 @@ fn curve_marks(marks: &mut Vec<Mark>, index: usize, curve: &StiffnessCurve) {
         let style = MarkerStyle { marker: Marker::Circle, role: series_role(index), radius: 4.0 };
         let text = format!("{} {}", plain(y), stiffness.symbol);
         marks.push(Mark::Markers { points: vec![(x, y, format!("softest: {text}"))], style });
-        marks.push(Mark::Label { at: vec![(x, y)], text, role: Role::Text, side: Side::Above });
+        marks.push(Mark::Label { at: vec![(x, y)], text, role: Role::Text, side: PointSide::Above });
     }
 }

@@ -18,7 +18,7 @@ pub enum SvgDestination {
 
 /// The names a reader or a screen reader needs.
 #[derive(Clone, Copy, Debug)]
-pub struct Names<'a> {
+pub struct SvgNames<'a> {
     /// Identifier, unique on a page; letters, digits and hyphens survive.
     pub identifier: &'a str,
     /// Short title.
@@ -28,7 +28,7 @@ pub struct Names<'a> {
 }
 
 /// Writes a scene.
-pub fn write(scene: &Scene, names: Names<'_>, destination: SvgDestination) -> String {
+pub fn write(scene: &Scene, names: SvgNames<'_>, destination: SvgDestination) -> String {
     let mut out = String::with_capacity(64 * scene.items.len() + 512);
     let identifier = slug(names.identifier);
     let (width, height) = (number(scene.width), number(scene.height));
@@ -43,7 +43,7 @@ pub fn write(scene: &Scene, names: Names<'_>, destination: SvgDestination) -> St
         escaped(names.title),
         escaped(names.description)
     ));
-    let writer = Writer { destination };
+    let writer = SvgWriter { destination };
     if let SvgDestination::File(_) = destination {
         let fill = writer.paint("fill", Role::Background);
         out.push_str(&format!("<rect width=\"{width}\" height=\"{height}\"{fill}/>\n"));
@@ -55,11 +55,11 @@ pub fn write(scene: &Scene, names: Names<'_>, destination: SvgDestination) -> St
     out
 }
 
-struct Writer {
+struct SvgWriter {
     destination: SvgDestination,
 }
 
-impl Writer {
+impl SvgWriter {
     /// The attribute with the resolved colour.
     fn paint(&self, attribute: &str, role: Role) -> String {
         let theme = match self.destination {

@@ -11,7 +11,7 @@ pub struct Tick {
 
 /// Which steps count as round.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Steps {
+pub enum TickSteps {
     /// 1, 2, 5 times a power of ten.
     Decimal,
     /// 15, 30, 45, 90, 180, 360 degrees.
@@ -26,19 +26,19 @@ pub enum Steps {
 ///
 /// # Example
 /// ```
-/// use phea_figure::ticks::{Steps, round_step};
-/// assert_eq!(round_step(0.5, 5, Steps::Decimal), 0.1);
-/// assert_eq!(round_step(360.0, 5, Steps::Angle), 90.0);
-/// assert_eq!(round_step(360.0, 5, Steps::Every(45)), 45.0);
+/// use phea_figure::ticks::{TickSteps, round_step};
+/// assert_eq!(round_step(0.5, 5, TickSteps::Decimal), 0.1);
+/// assert_eq!(round_step(360.0, 5, TickSteps::Angle), 90.0);
+/// assert_eq!(round_step(360.0, 5, TickSteps::Every(45)), 45.0);
 /// ```
-pub fn round_step(span: f64, count: usize, steps: Steps) -> f64 {
-    if let Steps::Every(step) = steps {
+pub fn round_step(span: f64, count: usize, steps: TickSteps) -> f64 {
+    if let TickSteps::Every(step) = steps {
         return f64::from(step.max(1));
     }
     let least = span / count.max(1) as f64;
     let listed: &[f64] = match steps {
-        Steps::Angle if least > 5.0 => &[15.0, 30.0, 45.0, 90.0, 180.0, 360.0],
-        Steps::Decibel if least > 5.0 && least <= 100.0 => &[10.0, 20.0, 40.0, 60.0, 80.0, 100.0],
+        TickSteps::Angle if least > 5.0 => &[15.0, 30.0, 45.0, 90.0, 180.0, 360.0],
+        TickSteps::Decibel if least > 5.0 && least <= 100.0 => &[10.0, 20.0, 40.0, 60.0, 80.0, 100.0],
         _ => &[],
     };
     if let (Some(found), _) | (None, Some(found)) = (
@@ -61,17 +61,17 @@ pub fn round_step(span: f64, count: usize, steps: Steps) -> f64 {
 ///
 /// # Example
 /// ```
-/// use phea_figure::ticks::{Steps, linear};
-/// let labels: Vec<String> = linear(15.0, 35.0, 2, Steps::Decimal, 0).into_iter().filter_map(|tick| tick.label).collect();
+/// use phea_figure::ticks::{TickSteps, linear};
+/// let labels: Vec<String> = linear(15.0, 35.0, 2, TickSteps::Decimal, 0).into_iter().filter_map(|tick| tick.label).collect();
 /// assert_eq!(labels, ["20", "30"]);
-/// let labels: Vec<String> = linear(22.0, 38.0, 2, Steps::Decimal, 0).into_iter().filter_map(|tick| tick.label).collect();
+/// let labels: Vec<String> = linear(22.0, 38.0, 2, TickSteps::Decimal, 0).into_iter().filter_map(|tick| tick.label).collect();
 /// assert_eq!(labels, ["25", "30", "35"]);
 /// ```
-pub fn linear(minimum: f64, maximum: f64, count: usize, steps: Steps, exponent: i32) -> Vec<Tick> {
+pub fn linear(minimum: f64, maximum: f64, count: usize, steps: TickSteps, exponent: i32) -> Vec<Tick> {
     let slack = 1e-9 * (maximum - minimum);
     let ends = |step: f64| [((minimum - slack) / step).ceil(), ((maximum + slack) / step).floor()];
     let mut step = round_step(maximum - minimum, count, steps);
-    if steps == Steps::Decimal && ends(step)[1] - ends(step)[0] < 1.0 {
+    if steps == TickSteps::Decimal && ends(step)[1] - ends(step)[0] < 1.0 {
         step = round_step(maximum - minimum, 2 * count, steps);
     }
     let [first, last] = ends(step);

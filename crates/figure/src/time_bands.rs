@@ -3,7 +3,7 @@
 use super::axis::Axis;
 use super::colour::Role;
 use super::legend::LegendEntry;
-use super::plot::{Direction, Mark, Panel, Plot};
+use super::plot::{AxisDirection, Mark, Panel, Plot};
 use super::scene::{Dash, Fill, Stroke};
 use super::step_response::{TimeEvent, TimeSeries};
 use super::{Figure, Words};
@@ -55,7 +55,7 @@ pub fn time_bands(words: Words, input: &TimeBandsInput) -> Figure {
     let mut marks: Vec<Mark> = input.bands.iter().enumerate().map(|(i, band)| area(i, band, input)).collect();
     marks.extend(lines.iter().map(|(series, stroke)| Mark::Line { points: points(series), stroke: *stroke }));
     marks.extend(input.events.iter().map(|event| Mark::Reference {
-        direction: Direction::X,
+        direction: AxisDirection::X,
         at: event.time_s,
         stroke: Stroke::solid(Role::Muted, 1.2).dashed(Dash::Dotted),
         label: event.label.clone(),

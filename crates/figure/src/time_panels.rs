@@ -3,7 +3,7 @@
 use super::axis::Axis;
 use super::colour::{Role, series_stroke};
 use super::legend::LegendEntry;
-use super::plot::{Direction, Mark, Panel, Plot};
+use super::plot::{AxisDirection, Mark, Panel, Plot};
 use super::scene::{Dash, Stroke};
 use super::step_response::{TimeEvent, TimeSeries};
 use super::{Figure, Words};
@@ -52,7 +52,7 @@ pub fn time_panels(words: Words, input: &TimePanelsInput) -> Figure {
     let labelled = input.panels.iter().position(|panel| panel.height == tallest);
     for (index, panel) in panels.iter_mut().enumerate() {
         panel.marks.extend(input.events.iter().map(|event| Mark::Reference {
-            direction: Direction::X,
+            direction: AxisDirection::X,
             at: event.time_s,
             stroke: Stroke::solid(Role::Muted, 1.2).dashed(Dash::Dotted),
             label: if Some(index) == labelled { event.label.clone() } else { String::new() },

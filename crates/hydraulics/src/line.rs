@@ -29,7 +29,7 @@ pub use laminar_friction::friction_factor;
 pub use line_model::LineModel;
 pub use line_response::LineResponse;
 pub use pipe::{Anchoring, Pipe, PipeWall, pipe_wall_compliance};
-pub(crate) use segments::Content;
+pub(crate) use segments::LineContent;
 pub use segments::{LaminarFriction, Segments};
 pub use standard_linear_solid::StandardLinearSolid;
 pub use transfer_matrix::TransferMatrix;

@@ -36,7 +36,7 @@ pub use load::{LoadModel, Motion};
 pub use options::{MachineError, MachineOptions};
 pub use power_unit::{Accumulator, PowerUnit, PumpLimited};
 pub use signals::{INDICATORS, SIGNALS};
-pub use start::{Beginning, StartValues};
+pub use start::{InitialCondition, StartValues};
 pub use state::MachineState;
 
 use phea_dynamics::scalar::{Lanes, Scalar};

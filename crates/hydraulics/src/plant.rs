@@ -108,21 +108,21 @@ pub enum LinearLoad<S = f64> {
 }
 
 /// D, N_u and N_v: polynomials, highest power first, or their values.
-struct Chambers<T> {
+struct ChamberPolynomials<T> {
     own: T,
     driven: T,
     displaced: T,
 }
 
 impl<S: Scalar> ChamberDynamics<S> {
-    fn polynomials(&self, leakage: S) -> Chambers<Vec<S>> {
+    fn polynomials(&self, leakage: S) -> ChamberPolynomials<Vec<S>> {
         match *self {
             ChamberDynamics::LoadPressure {
                 useful_area: area,
                 flow_gain,
                 flow_pressure_coefficient,
                 hydraulic_stiffness: stiffness,
-            } => Chambers {
+            } => ChamberPolynomials {
                 own: vec![area.squared(), (flow_pressure_coefficient + leakage) * stiffness],
                 driven: vec![area * stiffness * flow_gain],
                 displaced: vec![area.squared() * stiffness],
@@ -134,7 +134,7 @@ impl<S: Scalar> ChamberDynamics<S> {
                 let across = |value: S| [leakage * value];
                 let both = sum(&scaled(area_a * gain_a, &b), &scaled(area_b * gain_b, &a));
                 let squares = sum(&scaled(area_a.squared(), &b), &scaled(area_b.squared(), &a));
-                Chambers {
+                ChamberPolynomials {
                     own: sum(&product(&a, &b), &scaled(leakage, &sum(&a, &b))),
                     driven: sum(&both, &across((area_a - area_b) * (gain_a - gain_b))),
                     displaced: sum(&squares, &across((area_a - area_b).squared())),
@@ -146,7 +146,7 @@ impl<S: Scalar> ChamberDynamics<S> {
 
 impl<S: Scalar> ChamberDynamics<S> {
     /// The same with a supply that yields, of either form.
-    fn behind(&self, supply: &YieldingSupply<S>, leakage: S) -> Chambers<Vec<S>> {
+    fn behind(&self, supply: &YieldingSupply<S>, leakage: S) -> ChamberPolynomials<Vec<S>> {
         let [one, other] = [self.side(0), self.side(1)];
         let [of_a, of_b] = supply.edges;
         let coupled = Coupled {
@@ -285,7 +285,7 @@ impl<S: Scalar> LinearPlant<S> {
         let damping = S::from(2.0) * self.valve_damping_ratio * self.valve_natural_frequency;
         let spool = [one, damping, square];
         let sensor = self.sensor_stiffness;
-        let Chambers { own, driven, displaced } = match &self.supply {
+        let ChamberPolynomials { own, driven, displaced } = match &self.supply {
             None => self.chambers.polynomials(self.internal_leakage),
             Some(supply) => self.chambers.behind(supply, self.internal_leakage),
         };

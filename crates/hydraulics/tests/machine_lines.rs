@@ -4,7 +4,9 @@
 #![allow(clippy::unwrap_used)] // helpers of tests
 
 use phea_dynamics::scalar::Scalar;
-use phea_dynamics::simulation::{Input, InputSchedule, Plant, Profile, Settings, Status, System, simulate};
+use phea_dynamics::simulation::{
+    Input, InputSchedule, Plant, Profile, SimulationSettings, Status, System, simulate,
+};
 use phea_hydraulics::actuator::Actuator;
 use phea_hydraulics::line::{
     Conduit, DynamicLine, END_SHARE, LaminarFriction, Line, Segments, StiffeningMember, TransmissionLine,
@@ -93,7 +95,7 @@ fn forces(line: Option<DynamicLine>, motion_s: f64, duration_s: f64) -> Vec<f64>
         &[rest.state.clone(), rest.waves.clone()].concat(),
         &course,
         None,
-        &Settings::default(),
+        &SimulationSettings::default(),
         &mut |_| true,
     )
     .unwrap();
@@ -155,7 +157,7 @@ fn nothing_is_felt_before_the_wave_arrives() {
     let inputs = vec![Input::Value(ground.clone()), Input::Rate(ground)];
     let course = InputSchedule { duration_s: 0.008, output_step_s: 1e-4, inputs };
     let held = Held { machine, command: rest.command + 5.0, ground: rest.inputs[0] };
-    let settings = Settings { tolerance: 1e-8, ..Settings::default() };
+    let settings = SimulationSettings { tolerance: 1e-8, ..SimulationSettings::default() };
     let result = simulate(
         &held,
         &[rest.state.clone(), rest.waves.clone()].concat(),

@@ -4,7 +4,7 @@
 
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{
-    Input, InputSchedule, Plant, Profile, Settings, Simulated, Status, System, simulate,
+    Input, InputSchedule, Plant, Profile, Simulated, SimulationSettings, Status, System, simulate,
 };
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::contact::Contact;
@@ -58,7 +58,7 @@ fn drive(
     let command = Profile::steps(0.0, command).unwrap();
     let inputs = vec![Input::Value(command), Input::Value(ground.clone()), Input::Rate(ground)];
     let course = InputSchedule { duration_s, output_step_s: duration_s / 1000.0, inputs };
-    let settings = Settings { maximum_steps: 200_000, ..Settings::default() };
+    let settings = SimulationSettings { maximum_steps: 200_000, ..SimulationSettings::default() };
     let result =
         simulate(&Commanded(machine), &beginning.state, &course, None, &settings, &mut |_| true).unwrap();
     let rows = result.trajectory.states.iter().zip(&result.trajectory.inputs);

@@ -14,7 +14,7 @@ use phea_hydraulics::force_sensor::ForceSensor;
 use phea_hydraulics::friction::Friction;
 use phea_hydraulics::line::StiffeningMember;
 use phea_hydraulics::linear::linear_model_coefficients;
-use phea_hydraulics::machine::{Beginning, LoadModel, Machine, MachineOptions, PowerUnit};
+use phea_hydraulics::machine::{InitialCondition, LoadModel, Machine, MachineOptions, PowerUnit};
 use phea_hydraulics::operating_point::{Balance, Condition, OperatingPoint, Steady, operating_point};
 use phea_hydraulics::plant::{LinearLoad, LinearPlant};
 use phea_hydraulics::reference_rig::{components, cylinder, hose_line, leaking, nominal_plant, pipe_line};
@@ -31,7 +31,7 @@ struct Drawn {
     actuator: Actuator,
     machine: Machine,
     unit: PowerUnit,
-    rest: Beginning,
+    rest: InitialCondition,
     friction: f64,
     leakage: f64,
     load: LinearLoad,

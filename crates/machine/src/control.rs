@@ -2,9 +2,9 @@
 
 use phea_dynamics::controller::{Converter, SampledController};
 use phea_dynamics::simulation::{
-    CommandedPlant, Observer, Outcome, Sensed, Settings, SimulationError, System, Task, drive_one,
+    CommandedPlant, Observer, Outcome, Sensed, SimulationError, SimulationSettings, System, Task, drive_one,
 };
-use phea_hydraulics::machine::{Beginning, Machine};
+use phea_hydraulics::machine::{InitialCondition, Machine};
 
 /// Who looks at a run.
 pub type Watcher<'a> = Box<dyn Observer + 'a>;
@@ -118,7 +118,7 @@ impl Control {
     /// The waves under way while the machine stands as it begins: those of its lines, and those
     /// that controller and sensor sent, the one from the other. `first` are the inputs before the
     /// machine's.
-    pub fn under_way(&self, state: &[f64], first: &[f64], beginning: &Beginning) -> Vec<f64> {
+    pub fn under_way(&self, state: &[f64], first: &[f64], beginning: &InitialCondition) -> Vec<f64> {
         let system = self.commanded();
         let mut inputs = [first, &beginning.all_inputs()].concat();
         let (known, lines) = (inputs.len(), beginning.waves.len());
@@ -141,7 +141,7 @@ impl Control {
     pub fn drive(
         &self,
         task: Task<'_, Watcher<'_>>,
-        settings: &Settings,
+        settings: &SimulationSettings,
         watch: &mut dyn FnMut(f64) -> bool,
     ) -> Result<Outcome, SimulationError> {
         let (outcome, _) = drive_one(self.commanded(), task, settings, watch)?;

@@ -7,7 +7,7 @@ use phea_dynamics::random;
 use phea_dynamics::simulation::{Plant, Sampler};
 
 use super::control::Sampled;
-use super::samples::{ControllerSamples, Sample};
+use super::samples::{ControllerSample, ControllerSamples};
 
 /// All that a sampled controller knows.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -103,7 +103,7 @@ impl Sampler for Digital<'_> {
         let wanted = output.command + forward;
         let within = wanted.clamp(-command_limit, *command_limit);
         let command_v = self.sampled.command_converter.map_or(within, |converter| converter.rounded(within));
-        self.log.borrow_mut().take(Sample {
+        self.log.borrow_mut().take(ControllerSample {
             time_s,
             filtered_reference_n: output.filtered_reference,
             command_v,

@@ -4,7 +4,7 @@ use phea_dynamics::controller::Controller;
 use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_dynamics::scalar::Lanes;
 use phea_dynamics::simulation::{
-    CommandedPlant, Lane, Outcome, Queue, Sensed, Settings, SimulationError, Task, can_drive, drive,
+    CommandedPlant, Lane, Outcome, Queue, Sensed, SimulationError, SimulationSettings, Task, can_drive, drive,
 };
 use phea_hydraulics::machine::{Machine, MachineError};
 
@@ -38,7 +38,7 @@ pub trait Fleet<'a> {
 pub fn one_by_one<'a>(
     control: &Control,
     fleet: &mut dyn Fleet<'a>,
-    settings: &Settings,
+    settings: &SimulationSettings,
 ) -> Result<(), SimulationError> {
     drive::<f64, _, _>(&mut control.commanded().clone(), &mut Queued(fleet), settings)
 }
@@ -78,7 +78,7 @@ impl Lanewise {
     pub fn in_lanes<'a>(
         &mut self,
         fleet: &mut dyn Fleet<'a>,
-        settings: &Settings,
+        settings: &SimulationSettings,
     ) -> Result<(), SimulationError> {
         drive(self.0.as_mut(), &mut Queued(fleet), settings)
     }

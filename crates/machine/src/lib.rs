@@ -22,5 +22,5 @@ pub use control::{Commanded, Control, Sampled, Watcher};
 pub use digital::{Digital, DigitalMemory, Waking};
 pub use lanes::{Fleet, Lanewise, one_by_one};
 pub use rest::{HeldInputs, Rest, at_rest};
-pub use samples::{ControllerSamples, Sample};
+pub use samples::{ControllerSample, ControllerSamples};
 pub use shaken::{Shaken, force, force_amplitude};

@@ -2,7 +2,7 @@
 
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{EquilibriumError, Plant, System, equilibrium};
-use phea_hydraulics::machine::Beginning;
+use phea_hydraulics::machine::InitialCondition;
 
 use super::control::{Commanded, Control};
 
@@ -38,7 +38,7 @@ pub struct Rest {
 pub fn at_rest(
     control: &Control,
     guess: &[f64],
-    beginning: &Beginning,
+    beginning: &InitialCondition,
     standing: HeldInputs,
 ) -> Result<Rest, EquilibriumError> {
     let machine = control.sensed().plant();
@@ -59,7 +59,7 @@ pub fn at_rest(
             Rest { measured_n: signals.measurement, command_v: signals.wanted, limit_v, start }
         }
         Control::Sampled(sampled) => {
-            let resting = Resting { held: &sampled.held, gains: sampled.controller.steady_gains() };
+            let resting = RestingMachine { held: &sampled.held, gains: sampled.controller.steady_gains() };
             let mut guess = guess.to_vec();
             let states = System::<f64>::states(&sampled.held);
             guess.insert(states, beginning.command);
@@ -81,13 +81,13 @@ pub fn at_rest(
 /// ```
 ///
 /// Its last state is the command u.
-struct Resting<'a> {
+struct RestingMachine<'a> {
     held: &'a Commanded,
     /// F(1) and G(1).
     gains: [Option<f64>; 2],
 }
 
-impl System<f64> for Resting<'_> {
+impl System<f64> for RestingMachine<'_> {
     fn states(&self) -> usize {
         System::<f64>::states(self.held) + 1
     }

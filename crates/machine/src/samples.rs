@@ -2,7 +2,7 @@
 
 /// What happened at one sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sample {
+pub struct ControllerSample {
     /// s
     pub time_s: f64,
     /// Behind the prefilter, N.
@@ -23,13 +23,13 @@ pub struct Sample {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ControllerSamples {
     /// The last one.
-    pub last: Option<Sample>,
+    pub last: Option<ControllerSample>,
     /// When the command came to its limit (`true`) or left it, s.
     pub limits: Vec<(f64, bool)>,
 }
 
 impl ControllerSamples {
-    pub(crate) fn take(&mut self, sample: Sample) {
+    pub(crate) fn take(&mut self, sample: ControllerSample) {
         let before = self.last.is_some_and(|last| last.limited);
         if before != sample.limited {
             self.limits.push((sample.time_s, sample.limited));

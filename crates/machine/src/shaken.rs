@@ -3,7 +3,8 @@
 
 use num_complex::Complex64;
 use phea_dynamics::simulation::{
-    Input, Plant, Sampler, Settings, SimulationError, SinePlan, SineResponse, sine_response, small_signal,
+    Input, Plant, Sampler, SimulationError, SimulationSettings, SinePlan, SineResponse, sine_response,
+    small_signal,
 };
 use phea_hydraulics::machine::Machine;
 
@@ -18,7 +19,7 @@ pub struct Shaken<'a> {
     /// The computer that commands it, if there is one.
     pub sampler: Option<Box<dyn Sampler + 'a>>,
     /// How exactly.
-    pub settings: Settings,
+    pub settings: SimulationSettings,
     /// For how long.
     pub plan: SinePlan,
 }

@@ -5,10 +5,10 @@
 //!
 //! # Example
 //! ```
-//! use phea_project::catalogue::{self, Kind};
+//! use phea_project::catalogue::{self, CatalogueKind};
 //! use phea_project::source::Memory;
 //! let catalogue = catalogue::load(&Memory::default(), &[])?;
-//! let hose = catalogue.find(Kind::Hose, "eaton_synflex_3130_08").expect("built in");
+//! let hose = catalogue.find(CatalogueKind::Hose, "eaton_synflex_3130_08").expect("built in");
 //! assert_eq!(hose.hose.as_ref().map(|hose| hose.bore), Some(0.0127));
 //! assert_eq!(hose.source_of("bore"), "Ledezma (2019), section 6.4.1 and Table A.1");
 //! # Ok::<(), phea_project::Refusal>(())
@@ -23,11 +23,11 @@ pub use read::load;
 
 use std::sync::Arc;
 
-use crate::{HoseProperties, Node};
+use crate::{HoseProperties, TreeNode};
 
 /// What a catalogue entry describes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Kind {
+pub enum CatalogueKind {
     /// A hose, for `line.hose`.
     #[default]
     Hose,
@@ -35,12 +35,12 @@ pub enum Kind {
     Valve,
 }
 
-impl Kind {
+impl CatalogueKind {
     /// As it is written in a catalogue file.
     pub fn name(self) -> &'static str {
         match self {
-            Kind::Hose => "hose",
-            Kind::Valve => "valve",
+            CatalogueKind::Hose => "hose",
+            CatalogueKind::Valve => "valve",
         }
     }
 }
@@ -55,7 +55,7 @@ pub struct Catalogue {
 #[derive(Clone, Debug)]
 pub struct CatalogueEntry {
     /// What it is.
-    pub kind: Kind,
+    pub kind: CatalogueKind,
     /// The name projects use.
     pub name: String,
     /// The name people use.
@@ -71,7 +71,7 @@ pub struct CatalogueEntry {
     /// Key and source.
     sources: Vec<(String, String)>,
     /// The whole file.
-    pub(crate) values: Node,
+    pub(crate) values: TreeNode,
 }
 
 impl CatalogueEntry {
@@ -84,17 +84,17 @@ impl CatalogueEntry {
 
 impl Catalogue {
     /// The entry of that kind and name.
-    pub fn find(&self, kind: Kind, name: &str) -> Option<&CatalogueEntry> {
+    pub fn find(&self, kind: CatalogueKind, name: &str) -> Option<&CatalogueEntry> {
         self.entries(kind).find(|entry| entry.name == name)
     }
 
     /// The entries of that kind, built-in ones first, each group by name.
-    pub fn entries(&self, kind: Kind) -> impl Iterator<Item = &CatalogueEntry> {
+    pub fn entries(&self, kind: CatalogueKind) -> impl Iterator<Item = &CatalogueEntry> {
         self.entries.iter().map(Arc::as_ref).filter(move |entry| entry.kind == kind)
     }
 
     /// The names of that kind.
-    pub fn names(&self, kind: Kind) -> Vec<&str> {
+    pub fn names(&self, kind: CatalogueKind) -> Vec<&str> {
         self.entries(kind).map(|entry| entry.name.as_str()).collect()
     }
 }

@@ -3,13 +3,13 @@
 mod element;
 mod rational_function;
 
-pub use element::{Element, ElementKind};
+pub use element::{DeclaredElement, ElementKind};
 pub use rational_function::RationalFunction;
 
 use super::key::{key, plain};
 use super::reader::Reader;
 use super::text::Findings;
-use super::tree::Node;
+use super::tree::TreeNode;
 use super::visitor::Visitor;
 use crate::catalogue::Catalogue;
 use phea_quantity::{FORCE, RATIO, TIME, VOLTAGE, VOLTAGE_PER_VELOCITY};
@@ -20,7 +20,7 @@ pub struct Transfer {
     /// The ratio; empty where it has elements.
     pub ratio: RationalFunction,
     /// Elements in series.
-    pub elements: Vec<Element>,
+    pub elements: Vec<DeclaredElement>,
 }
 
 impl Transfer {
@@ -35,15 +35,15 @@ impl Transfer {
     /// assert_eq!(general.kind, ElementKind::General(ratio));
     /// assert!(Transfer::default().as_elements().is_empty());
     /// ```
-    pub fn as_elements(&self) -> Vec<Element> {
+    pub fn as_elements(&self) -> Vec<DeclaredElement> {
         match self.ratio.is_stated() {
             false => self.elements.clone(),
-            true => vec![Element::new(ElementKind::General(self.ratio.clone()))],
+            true => vec![DeclaredElement::new(ElementKind::General(self.ratio.clone()))],
         }
     }
 
     /// What a table says of it, other keys left alone.
-    pub fn read(table: &Node, findings: &mut Findings) -> Transfer {
+    pub fn read(table: &TreeNode, findings: &mut Findings) -> Transfer {
         let catalogue = Catalogue::default();
         let mut transfer = Transfer::default();
         transfer.visit(&mut Reader::new(table, table.place.text, &catalogue, findings));
@@ -52,25 +52,25 @@ impl Transfer {
 
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
         self.ratio.visit(v);
-        v.tables(plain("elements", "Elements in series."), &mut self.elements, Element::visit);
+        v.tables(plain("elements", "Elements in series."), &mut self.elements, DeclaredElement::visit);
     }
 }
 
 /// The controller as declared.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Controller {
+pub struct DeclaredController {
     /// From force error to command.
     pub transfer: Transfer,
     /// V (or the plant's input unit), limit of the command.
     pub saturation: Option<f64>,
     /// What happens to the integrator at the limit.
-    pub anti_windup: AntiWindup,
+    pub anti_windup: DeclaredAntiWindup,
     /// s; absent: continuous.
     pub sample_time: Option<f64>,
     /// s, computation and transport delay of the loop.
     pub delay: f64,
     /// How a continuous controller becomes a sampled one.
-    pub discretization: Discretization,
+    pub discretization: DeclaredDiscretization,
     /// What its computer rounds; absent: nothing.
     pub quantization: Option<Quantization>,
     /// What it adds for a load that moves; absent: nothing.
@@ -145,7 +145,7 @@ impl Quantization {
 
 /// What happens to the integrator at the limit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum AntiWindup {
+pub enum DeclaredAntiWindup {
     /// It winds up.
     #[default]
     None,
@@ -157,7 +157,7 @@ pub enum AntiWindup {
 
 /// How a continuous controller becomes a sampled one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Discretization {
+pub enum DeclaredDiscretization {
     /// The bilinear rule.
     #[default]
     Tustin,
@@ -167,7 +167,7 @@ pub enum Discretization {
     Matched,
 }
 
-impl Controller {
+impl DeclaredController {
     /// Whether it says what it does, and not only when: without a law it is to be designed.
     pub fn has_law(&self) -> bool {
         !self.transfer.as_elements().is_empty()
@@ -178,9 +178,9 @@ impl Controller {
         let k = key("saturation", &VOLTAGE, "Limit of the command.").positive();
         v.optional(k, &mut self.saturation);
         let words = &[
-            ("none", AntiWindup::None),
-            ("back_calculation", AntiWindup::BackCalculation),
-            ("clamping", AntiWindup::Clamping),
+            ("none", DeclaredAntiWindup::None),
+            ("back_calculation", DeclaredAntiWindup::BackCalculation),
+            ("clamping", DeclaredAntiWindup::Clamping),
         ];
         let k = plain("anti_windup", "What happens to the integrator at the limit.");
         v.choice(k, words, &mut self.anti_windup, false);
@@ -189,9 +189,9 @@ impl Controller {
         let k = key("delay", &TIME, "Computation and transport delay of the loop, part of every verdict.");
         v.quantity(k.not_negative().or(0.0), &mut self.delay);
         let words = &[
-            ("tustin", Discretization::Tustin),
-            ("zero_order_hold", Discretization::ZeroOrderHold),
-            ("matched", Discretization::Matched),
+            ("tustin", DeclaredDiscretization::Tustin),
+            ("zero_order_hold", DeclaredDiscretization::ZeroOrderHold),
+            ("matched", DeclaredDiscretization::Matched),
         ];
         let k = plain("discretization", "How a continuous controller becomes a sampled one.");
         v.choice(k, words, &mut self.discretization, false);

@@ -11,7 +11,7 @@ use phea_quantity::{
 
 /// The cylinder; `a` is the end x = 0, and x grows from A to B.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Cylinder {
+pub struct DeclaredCylinder {
     /// m; this or `piston_area`.
     pub piston_diameter: Option<f64>,
     /// m², on which the pressure acts, the same in both chambers: rods are subtracted already.
@@ -35,7 +35,7 @@ pub struct Cylinder {
     /// What the piston meets at both ends; absent: the ends are reported, and nothing stops it.
     pub end_stops: Option<EndStops>,
     /// Friction of seals and bearings.
-    pub friction: Option<Friction>,
+    pub friction: Option<DeclaredFriction>,
 }
 
 /// What the piston meets at both ends of its stroke.
@@ -55,7 +55,7 @@ impl EndStops {
     }
 }
 
-impl Cylinder {
+impl DeclaredCylinder {
     /// m, of the piston: declared, or from the larger area and the rod on its side.
     pub fn piston_diameter_m(&self) -> f64 {
         let faces = self.effective_areas_m2().into_iter().zip(self.rod_diameters_m());
@@ -106,13 +106,13 @@ impl Cylinder {
         let k = plain("end_stops", "What the piston meets at both ends; absent: nothing stops it there.");
         v.table(k, &mut self.end_stops, EndStops::visit);
         let k = plain("friction", "Friction of seals and bearings; absent: none.");
-        v.table(k, &mut self.friction, Friction::visit);
+        v.table(k, &mut self.friction, DeclaredFriction::visit);
     }
 }
 
 /// Friction of seals and bearings.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Friction {
+pub struct DeclaredFriction {
     /// What it has beside its viscous part.
     pub law: FrictionLaw,
     /// N·s/m, slope at high velocity (σ₂ of LuGre).
@@ -209,7 +209,7 @@ impl Variants for FrictionLaw {
     }
 }
 
-impl Friction {
+impl DeclaredFriction {
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
         v.variant(plain("model", "Which friction law."), &mut self.law, true);
         let k = key("viscous", &DAMPING, "Slope of friction over velocity, σ₂ of LuGre.").not_negative();

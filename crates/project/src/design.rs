@@ -1,13 +1,13 @@
 //! `[design]`: how a controller is looked for.
 
-use super::controller::Element;
+use super::controller::DeclaredElement;
 use super::key::{key, plain};
 use super::visitor::{Variants, Visitor};
 use phea_quantity::{ANGULAR_FREQUENCY, RATIO, TIME};
 
 /// What is made best, and among which controllers.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Design {
+pub struct DeclaredDesign {
     /// What is made least or greatest.
     pub objective: DesignObjective,
     /// Most poles of the controller.
@@ -77,16 +77,16 @@ pub enum StructurePart {
     /// An element without free numbers.
     Fixed {
         /// As in a controller.
-        element: Element,
+        element: DeclaredElement,
     },
 }
 
 /// Most poles that are tried.
 const MAXIMUM_ORDER: f64 = 20.0;
 
-impl Default for Design {
-    fn default() -> Design {
-        Design {
+impl Default for DeclaredDesign {
+    fn default() -> DeclaredDesign {
+        DeclaredDesign {
             objective: DesignObjective::default(),
             maximum_order: 4,
             prefilter_maximum_order: 3,
@@ -98,7 +98,7 @@ impl Default for Design {
     }
 }
 
-impl Design {
+impl DeclaredDesign {
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
         let k = plain("objective", "What is made least or greatest.");
         v.choice(k, &DESIGN_OBJECTIVES, &mut self.objective, false);
@@ -128,7 +128,7 @@ impl Variants for StructurePart {
             StructurePart::Pole { frequency },
             StructurePart::ZeroPair { frequency, damping_ratio },
             StructurePart::PolePair { frequency, damping_ratio },
-            StructurePart::Fixed { element: Element::default() },
+            StructurePart::Fixed { element: DeclaredElement::default() },
         ]
     }
 
@@ -159,7 +159,7 @@ impl Variants for StructurePart {
             }
             StructurePart::Fixed { element } => {
                 let k = plain("element", "Of a fixed factor: an element as in [controller].");
-                v.needed_table(k, element, Element::visit);
+                v.needed_table(k, element, DeclaredElement::visit);
             }
         }
     }

@@ -6,7 +6,7 @@ use phea_quantity::{DAMPING, FORCE, INVERSE_VELOCITY, LENGTH, MASS, STIFFNESS};
 
 /// The load cell.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct ForceSensor {
+pub struct DeclaredForceSensor {
     /// N/m, K_S: the cell in series with its environment when the load is a prescribed motion.
     pub stiffness: f64,
     /// N, root mean square of the white noise that a sampled controller sees.
@@ -15,7 +15,7 @@ pub struct ForceSensor {
     pub capacity: Option<f64>,
 }
 
-impl ForceSensor {
+impl DeclaredForceSensor {
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
         let k = key("stiffness", &STIFFNESS, "K_S: with a prescribed load motion, of cell and environment.");
         v.quantity(k.positive(), &mut self.stiffness);

@@ -6,7 +6,7 @@ use phea_quantity::{FORCE, LENGTH, RATIO, VELOCITY};
 
 /// The members of the family. Without any of them it is the grid of `[uncertainty]`.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Family {
+pub struct DeclaredFamily {
     /// The grid, beside the other members.
     pub grid: bool,
     /// All corners of the box.
@@ -63,7 +63,7 @@ pub struct Case {
     pub parameters: Vec<(String, f64)>,
 }
 
-impl Family {
+impl DeclaredFamily {
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
         v.flag(plain("grid", "The grid of [uncertainty], in addition to other members."), &mut self.grid);
         v.flag(plain("vertices", "All corners of the box."), &mut self.vertices);

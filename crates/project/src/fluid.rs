@@ -6,7 +6,7 @@ use phea_quantity::{DENSITY, FLOW, KINEMATIC_VISCOSITY, PRESSURE, RATIO, VOLUME}
 
 /// The oil.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Fluid {
+pub struct DeclaredFluid {
     /// Pa, of the liquid without air.
     pub bulk_modulus: f64,
     /// kg/m³.
@@ -21,7 +21,7 @@ pub struct Fluid {
     pub vapour_pressure: f64,
 }
 
-impl Fluid {
+impl DeclaredFluid {
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
         let k = key("bulk_modulus", &PRESSURE, "Bulk modulus of the liquid without air.").positive();
         v.quantity(k, &mut self.bulk_modulus);
@@ -40,7 +40,7 @@ impl Fluid {
 
 /// The pressure supply.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Supply {
+pub struct DeclaredSupply {
     /// How the pressure behaves under load.
     pub model: SupplyModel,
     /// Pa, gauge.
@@ -51,7 +51,7 @@ pub struct Supply {
 
 /// A gas-charged accumulator.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Accumulator {
+pub struct DeclaredAccumulator {
     /// m³, of the gas at its precharge.
     pub gas_volume: f64,
     /// Pa, gauge.
@@ -60,7 +60,7 @@ pub struct Accumulator {
     pub polytropic_exponent: f64,
 }
 
-impl Accumulator {
+impl DeclaredAccumulator {
     fn visit<V: Visitor>(&mut self, v: &mut V) {
         let k = key("gas_volume", &VOLUME, "Volume of the gas at its precharge.").positive();
         v.quantity(k, &mut self.gas_volume);
@@ -95,7 +95,7 @@ pub struct Pump {
     /// Pa, of the supply line; absent: the fluid's.
     pub effective_bulk_modulus: Option<f64>,
     /// On the supply line.
-    pub accumulator: Option<Accumulator>,
+    pub accumulator: Option<DeclaredAccumulator>,
 }
 
 impl Default for SupplyModel {
@@ -138,11 +138,11 @@ impl Pump {
         let k = key("effective_bulk_modulus", &PRESSURE, "Of that line; absent: the fluid's.").positive();
         v.optional(k, &mut self.effective_bulk_modulus);
         let k = plain("accumulator", "A gas-charged accumulator on that line.");
-        v.table(k, &mut self.accumulator, Accumulator::visit);
+        v.table(k, &mut self.accumulator, DeclaredAccumulator::visit);
     }
 }
 
-impl Supply {
+impl DeclaredSupply {
     /// m³/s, what the pump can give, where it is stated.
     pub fn flow(&self) -> Option<f64> {
         match &self.model {

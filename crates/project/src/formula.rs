@@ -20,19 +20,19 @@ use phea_dynamics::scalar::Scalar;
 pub struct Formula {
     text: String,
     /// Operands before their operators; the last is the whole.
-    nodes: Vec<Node>,
+    nodes: Vec<FormulaNode>,
 }
 
 /// A part of a formula, and where it stands in the text.
 #[derive(Clone, Debug)]
-struct Node {
-    part: Part,
+struct FormulaNode {
+    part: FormulaPart,
     range: Range<usize>,
 }
 
 /// What a part is; operands by their index.
 #[derive(Clone, Debug)]
-enum Part {
+enum FormulaPart {
     Number(f64),
     Variable(Variable),
     Parameter(String),
@@ -133,7 +133,7 @@ impl Formula {
     pub fn number(value: f64) -> Formula {
         let text = format!("{value}");
         let range = 0..text.len();
-        Formula { text, nodes: vec![Node { part: Part::Number(value), range }] }
+        Formula { text, nodes: vec![FormulaNode { part: FormulaPart::Number(value), range }] }
     }
 
     /// As written.
@@ -143,14 +143,16 @@ impl Formula {
 
     /// The variable, if it occurs.
     pub fn variable(&self) -> Option<Variable> {
-        self.nodes.iter().find_map(|node| if let Part::Variable(v) = node.part { Some(v) } else { None })
+        self.nodes
+            .iter()
+            .find_map(|node| if let FormulaPart::Variable(v) = node.part { Some(v) } else { None })
     }
 
     /// Names of the parameters and where each first occurs, in text order.
     pub fn parameters(&self) -> Vec<(&str, Range<usize>)> {
         let mut found: Vec<(&str, Range<usize>)> = Vec::new();
         for node in &self.nodes {
-            if let Part::Parameter(name) = &node.part
+            if let FormulaPart::Parameter(name) = &node.part
                 && found.iter().all(|(known, _)| known != name)
             {
                 found.push((name, node.range.clone()));

@@ -1,7 +1,7 @@
 //! A number known within bounds: `5`, or `{ nominal = 5, minimum = 4, maximum = 5 }`.
 
 use super::key::Key;
-use super::visitor::{Form, Visitor};
+use super::visitor::{ValueForm, Visitor};
 
 /// A number known within bounds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -26,7 +26,7 @@ impl BoundedNumber {
 
     pub(crate) fn visit<V: Visitor>(v: &mut V, key: Key, field: &mut Option<BoundedNumber>) {
         let spread = field.is_some_and(|interval| !interval.is_exact());
-        if v.form(key, if spread { Form::Table } else { Form::Number }) != Form::Table {
+        if v.form(key, if spread { ValueForm::Table } else { ValueForm::Number }) != ValueForm::Table {
             let mut number = field.map(|interval| interval.nominal);
             v.optional(key, &mut number);
             *field = number.map(BoundedNumber::exactly);

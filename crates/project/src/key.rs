@@ -10,7 +10,7 @@ pub struct Key {
     /// What its numbers measure.
     pub dimension: &'static Dimension,
     /// Which of its numbers are accepted.
-    pub range: Range,
+    pub range: AcceptedRange,
     /// The value of an absent key; `None` where the key is required or its absence has a meaning of its own.
     pub default: Option<f64>,
     /// What it means, in one sentence.
@@ -19,7 +19,7 @@ pub struct Key {
 
 /// Which numbers are accepted, in SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Range {
+pub struct AcceptedRange {
     /// The lowest number.
     pub minimum: f64,
     /// The highest number.
@@ -32,9 +32,9 @@ pub struct Range {
     pub infinity: bool,
 }
 
-impl Range {
+impl AcceptedRange {
     /// Every finite number.
-    pub const ANY: Range = Range {
+    pub const ANY: AcceptedRange = AcceptedRange {
         minimum: f64::MIN,
         maximum: f64::MAX,
         above_minimum: false,
@@ -55,7 +55,7 @@ impl Range {
 
 /// A key whose numbers have a dimension.
 pub(crate) const fn key(name: &'static str, dimension: &'static Dimension, doc: &'static str) -> Key {
-    Key { name, dimension, range: Range::ANY, default: None, doc }
+    Key { name, dimension, range: AcceptedRange::ANY, default: None, doc }
 }
 
 /// A key without a dimension: a table, a list, a text or a choice.

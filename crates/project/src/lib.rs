@@ -54,7 +54,7 @@ pub use family::*;
 pub use fluid::*;
 pub use formula::*;
 pub use interval::*;
-pub use key::{Key, Range};
+pub use key::{AcceptedRange, Key};
 pub use limit::*;
 pub use line::*;
 pub use line_motion::*;
@@ -79,8 +79,8 @@ pub(crate) use key::{key, plain};
 pub(crate) use reader::Reader;
 pub use rewrite::{snippet, with_law, with_laws};
 pub(crate) use signal::SignalUnit;
-pub use text::{Findings, Found, Place};
-pub use tree::{Entry, Node, Value as TreeValue, read as read_tree, value_or_finding};
+pub use text::{Findings, Place, RawFinding};
+pub use tree::{Entry, TreeNode, Value as TreeValue, read as read_tree, value_or_finding};
 pub(crate) use visitor::Visitor;
 
 use phea_quantity::RATIO;
@@ -93,29 +93,29 @@ pub struct Project {
     /// One line for people.
     pub title: String,
     /// The hydraulic actuator and what it works against.
-    pub actuator: Option<Actuator>,
+    pub actuator: Option<DeclaredActuator>,
     /// Any other plant, as a transfer function.
-    pub plant: Option<Plant>,
+    pub plant: Option<DeclaredPlant>,
     /// Which plants are looked at; absent: the grid of `uncertainty`.
-    pub family: Option<Family>,
+    pub family: Option<DeclaredFamily>,
     /// What lies between the controlled output and the controller; absent: 1.
     pub sensor: Option<Sensor>,
     /// What the compliant component is sized for.
-    pub sizing: Option<Sizing>,
+    pub sizing: Option<DeclaredSizing>,
     /// Where the linear model is taken.
-    pub operating_point: OperatingPoint,
+    pub operating_point: DeclaredOperatingPoint,
     /// Parameters of the linear model that are set outright.
     pub linear: Linear,
     /// Uncertain numbers, in file order.
     pub uncertainty: Vec<Uncertain>,
     /// What the closed loop must meet, in file order.
-    pub specifications: Vec<Specification>,
+    pub specifications: Vec<DeclaredSpecification>,
     /// Given, to be verified; absent or without a law, to be designed.
-    pub controller: Option<Controller>,
+    pub controller: Option<DeclaredController>,
     /// Given, to be verified; absent, to be designed.
     pub prefilter: Option<Prefilter>,
     /// How a controller is looked for; absent: by the defaults.
-    pub design: Option<Design>,
+    pub design: Option<DeclaredDesign>,
     /// What is simulated.
     pub scenarios: Vec<Scenario>,
     /// How scenarios are simulated.
@@ -128,19 +128,19 @@ pub struct Project {
 
 /// The hydraulic actuator and what it works against.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Actuator {
+pub struct DeclaredActuator {
     /// The oil.
-    pub fluid: Fluid,
+    pub fluid: DeclaredFluid,
     /// The pressure supply.
-    pub supply: Supply,
+    pub supply: DeclaredSupply,
     /// The servovalve.
     pub valve: Valve,
     /// The cylinder.
-    pub cylinder: Cylinder,
+    pub cylinder: DeclaredCylinder,
     /// The lines between valve and cylinder.
-    pub line: Lines,
+    pub line: DeclaredLines,
     /// The load cell.
-    pub force_sensor: ForceSensor,
+    pub force_sensor: DeclaredForceSensor,
     /// What the force acts on.
     pub load: Load,
 }
@@ -206,17 +206,21 @@ impl Project {
         let mut title = (!self.title.is_empty()).then(|| std::mem::take(&mut self.title));
         v.text(plain("title", "One line for people."), &mut title, false);
         self.title = title.unwrap_or_default();
-        v.table(plain("plant", "Any plant but an actuator."), &mut self.plant, Plant::visit);
-        v.part(&mut self.actuator, Actuator::visit);
+        v.table(plain("plant", "Any plant but an actuator."), &mut self.plant, DeclaredPlant::visit);
+        v.part(&mut self.actuator, DeclaredActuator::visit);
     }
 
     /// What is wanted of the system.
     fn visit_wishes<V: Visitor>(&mut self, v: &mut V) {
         let k = plain("operating_point", "Where the linear model is taken.");
-        table_or_default(k, &mut self.operating_point, OperatingPoint::visit, v);
+        table_or_default(k, &mut self.operating_point, DeclaredOperatingPoint::visit, v);
         let k = plain("linear", "Parameters of the linear model, set outright.");
         table_or_default(k, &mut self.linear, Linear::visit, v);
-        v.table(plain("sizing", "What the compliance is sized for."), &mut self.sizing, Sizing::visit);
+        v.table(
+            plain("sizing", "What the compliance is sized for."),
+            &mut self.sizing,
+            DeclaredSizing::visit,
+        );
         let k = plain("uncertainty", "Uncertain numbers and their grids.");
         v.dictionary(
             k,
@@ -227,15 +231,15 @@ impl Project {
                 uncertain.visit(number.key, v);
             },
         );
-        v.table(plain("family", "Which plants are looked at."), &mut self.family, Family::visit);
+        v.table(plain("family", "Which plants are looked at."), &mut self.family, DeclaredFamily::visit);
         v.table(plain("sensor", "Dynamics of the sensor."), &mut self.sensor, Sensor::visit);
         let k = plain("specification", "What the closed loop must meet.");
-        v.tables(k, &mut self.specifications, Specification::visit);
+        v.tables(k, &mut self.specifications, DeclaredSpecification::visit);
         let k = plain("controller", "Given, to be verified; absent, to be designed.");
-        v.table(k, &mut self.controller, Controller::visit);
+        v.table(k, &mut self.controller, DeclaredController::visit);
         let k = plain("prefilter", "Given, to be verified; absent, to be designed.");
         v.table(k, &mut self.prefilter, Prefilter::visit);
-        v.table(plain("design", "How a controller is looked for."), &mut self.design, Design::visit);
+        v.table(plain("design", "How a controller is looked for."), &mut self.design, DeclaredDesign::visit);
         v.tables(plain("scenario", "What is simulated."), &mut self.scenarios, Scenario::visit);
         let k = plain("simulation", "How exactly scenarios are simulated.");
         table_or_default(k, &mut self.simulation, Simulation::visit, v);
@@ -258,17 +262,22 @@ fn table_or_default<T: Default + PartialEq, V: Visitor>(
     *field = table.unwrap_or_default();
 }
 
-impl Actuator {
+impl DeclaredActuator {
     /// The tables of an actuator, which must all be there but `[load]`.
     const REQUIRED: [&'static str; 6] = ["fluid", "supply", "valve", "cylinder", "line", "force_sensor"];
 
     fn visit<V: Visitor>(&mut self, v: &mut V) {
-        required(plain("fluid", "The oil."), &mut self.fluid, Fluid::visit, v);
-        required(plain("supply", "The pressure supply."), &mut self.supply, Supply::visit, v);
+        required(plain("fluid", "The oil."), &mut self.fluid, DeclaredFluid::visit, v);
+        required(plain("supply", "The pressure supply."), &mut self.supply, DeclaredSupply::visit, v);
         required(plain("valve", "The servovalve."), &mut self.valve, Valve::visit, v);
-        required(plain("cylinder", "The cylinder."), &mut self.cylinder, Cylinder::visit, v);
-        required(plain("line", "From the valve to each chamber."), &mut self.line, Lines::visit, v);
-        required(plain("force_sensor", "The load cell."), &mut self.force_sensor, ForceSensor::visit, v);
+        required(plain("cylinder", "The cylinder."), &mut self.cylinder, DeclaredCylinder::visit, v);
+        required(plain("line", "From the valve to each chamber."), &mut self.line, DeclaredLines::visit, v);
+        required(
+            plain("force_sensor", "The load cell."),
+            &mut self.force_sensor,
+            DeclaredForceSensor::visit,
+            v,
+        );
         table_or_default(plain("load", "What the force acts on."), &mut self.load, Load::visit, v);
     }
 }

@@ -3,12 +3,12 @@
 use super::formula::Formula;
 use super::key::{Key, key, plain};
 use super::plant::Rational;
-use super::visitor::{Form, FormulaShape, Visitor};
+use super::visitor::{FormulaShape, ValueForm, Visitor};
 use phea_quantity::{ANGLE, ANGULAR_FREQUENCY, GAIN, RATIO, TIME};
 
 /// A limit over frequency.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Limit {
+pub enum DeclaredLimit {
     /// The same at every frequency.
     Constant(f64),
     /// The magnitude of a ratio of polynomials in one text.
@@ -16,7 +16,7 @@ pub enum Limit {
     /// The magnitude of a transfer function.
     Rational(Rational),
     /// Numbers at frequencies, between which it is log-log linear.
-    Table(LimitTable),
+    Table(DeclaredLimitTable),
     /// What guarantees these margins.
     Margins(MarginWish),
     /// What follows from a wish in time, or is checked against one.
@@ -25,7 +25,7 @@ pub enum Limit {
 
 /// A limit at frequencies.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct LimitTable {
+pub struct DeclaredLimitTable {
     /// rad/s, increasing.
     pub frequencies: Vec<f64>,
     /// Ratios, as many.
@@ -84,31 +84,33 @@ pub enum ResponseRule {
     CriticallyDampedTwoPercent,
 }
 
-impl Limit {
+impl DeclaredLimit {
     pub(super) fn visit<V: Visitor>(
         name: &'static str,
         doc: &'static str,
-        field: &mut Option<Limit>,
+        field: &mut Option<DeclaredLimit>,
         v: &mut V,
     ) {
         let k = key(name, &GAIN, doc).positive();
         let form = match field {
-            None | Some(Limit::Constant(_)) => Form::Number,
-            Some(Limit::Text(_)) => Form::Text,
-            Some(_) => Form::Table,
+            None | Some(DeclaredLimit::Constant(_)) => ValueForm::Number,
+            Some(DeclaredLimit::Text(_)) => ValueForm::Text,
+            Some(_) => ValueForm::Table,
         };
         match v.form(k, form) {
-            Form::Number => {
-                let mut number = if let Some(Limit::Constant(value)) = field { Some(*value) } else { None };
+            ValueForm::Number => {
+                let mut number =
+                    if let Some(DeclaredLimit::Constant(value)) = field { Some(*value) } else { None };
                 v.optional(k, &mut number);
-                *field = number.map(Limit::Constant);
+                *field = number.map(DeclaredLimit::Constant);
             }
-            Form::Text => {
-                let mut formula = if let Some(Limit::Text(f)) = field.take() { Some(f) } else { None };
+            ValueForm::Text => {
+                let mut formula =
+                    if let Some(DeclaredLimit::Text(f)) = field.take() { Some(f) } else { None };
                 v.formula(k, FormulaShape::Ratio, &mut formula, false);
-                *field = formula.map(Limit::Text);
+                *field = formula.map(DeclaredLimit::Text);
             }
-            Form::Table => v.table(k, field, Limit::visit_table),
+            ValueForm::Table => v.table(k, field, DeclaredLimit::visit_table),
         }
     }
 
@@ -132,7 +134,7 @@ impl Limit {
 /// What a limit is made of, whatever its form.
 #[derive(Default)]
 struct Parts {
-    table: LimitTable,
+    table: DeclaredLimitTable,
     numerator: Option<Formula>,
     denominator: Option<Formula>,
     margins: MarginWish,
@@ -140,24 +142,24 @@ struct Parts {
 }
 
 impl Parts {
-    fn of(limit: &mut Limit) -> Parts {
+    fn of(limit: &mut DeclaredLimit) -> Parts {
         let mut parts = Parts::default();
         let function = match std::mem::take(limit) {
-            Limit::Rational(rational) => Some(rational),
-            Limit::Response(mut response) => {
+            DeclaredLimit::Rational(rational) => Some(rational),
+            DeclaredLimit::Response(mut response) => {
                 let function = response.function.take();
                 parts.response = response;
                 function
             }
-            Limit::Table(table) => {
+            DeclaredLimit::Table(table) => {
                 parts.table = table;
                 None
             }
-            Limit::Margins(margins) => {
+            DeclaredLimit::Margins(margins) => {
                 parts.margins = margins;
                 None
             }
-            Limit::Constant(_) | Limit::Text(_) => None,
+            DeclaredLimit::Constant(_) | DeclaredLimit::Text(_) => None,
         };
         if let Some(Rational { numerator, denominator }) = function {
             (parts.numerator, parts.denominator) = (Some(numerator), Some(denominator));
@@ -166,17 +168,17 @@ impl Parts {
     }
 
     /// The form that the parts make; nothing at all counts as an empty table.
-    fn limit(self) -> Limit {
+    fn limit(self) -> DeclaredLimit {
         let function = self.numerator.zip(self.denominator);
         let function = function.map(|(numerator, denominator)| Rational { numerator, denominator });
         if !self.table.frequencies.is_empty() {
-            Limit::Table(self.table)
+            DeclaredLimit::Table(self.table)
         } else if self.margins != MarginWish::default() {
-            Limit::Margins(self.margins)
+            DeclaredLimit::Margins(self.margins)
         } else if self.response != ResponseWish::default() {
-            Limit::Response(ResponseWish { function, ..self.response })
+            DeclaredLimit::Response(ResponseWish { function, ..self.response })
         } else {
-            function.map_or(Limit::Table(self.table), Limit::Rational)
+            function.map_or(DeclaredLimit::Table(self.table), DeclaredLimit::Rational)
         }
     }
 }
@@ -229,8 +231,8 @@ impl ResponseWish {
     }
 }
 
-impl Default for Limit {
+impl Default for DeclaredLimit {
     fn default() -> Self {
-        Limit::Table(LimitTable::default())
+        DeclaredLimit::Table(DeclaredLimitTable::default())
     }
 }

@@ -4,18 +4,18 @@ use super::interval::BoundedNumber;
 use super::key::{key, plain};
 use super::line_motion::LineMotion;
 use super::visitor::{Kinds, Visitor};
-use crate::catalogue::Kind;
+use crate::catalogue::CatalogueKind;
 use phea_quantity::{EXPANSION_SLOPE, LENGTH, PRESSURE, RATIO, VOLUME, VOLUME_PER_LENGTH};
 
 /// The lines between the valve and the chambers.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Lines {
+pub struct DeclaredLines {
     /// Which volume the line's effective bulk modulus holds for.
     pub compliance: Compliance,
     /// The line to chamber A.
-    pub a: Line,
+    pub a: DeclaredLine,
     /// The line to chamber B.
-    pub b: Line,
+    pub b: DeclaredLine,
 }
 
 /// Which volume the line's effective bulk modulus holds for.
@@ -30,7 +30,7 @@ pub enum Compliance {
 
 /// One line.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Line {
+pub struct DeclaredLine {
     /// What it is made of.
     pub component: Component,
     /// r_β, dynamic over static modulus of the hose.
@@ -54,7 +54,7 @@ pub enum Component {
     /// A pipe.
     Pipe {
         /// Its dimensions and wall.
-        pipe: Pipe,
+        pipe: DeclaredPipe,
         /// m, of this one line.
         length: f64,
     },
@@ -109,7 +109,7 @@ pub enum HoseExpansion {
 
 /// A pipe with an elastic wall.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Pipe {
+pub struct DeclaredPipe {
     /// m, inner diameter.
     pub bore: f64,
     /// What is known of the wall; absent: it is rigid.
@@ -139,7 +139,7 @@ impl Default for HoseExpansion {
     }
 }
 
-impl Line {
+impl DeclaredLine {
     /// What a line can be.
     const COMPONENTS: Kinds = Kinds {
         chosen_by: &["hose", "pipe", "volume"],
@@ -158,7 +158,7 @@ impl Line {
         ],
     };
     /// What a side may choose for itself.
-    const KINDS: &[Kinds] = &[Line::COMPONENTS, LineMotion::MODELS];
+    const KINDS: &[Kinds] = &[DeclaredLine::COMPONENTS, LineMotion::MODELS];
 
     /// Its hose.
     pub fn hose(&self) -> Option<&HoseProperties> {
@@ -207,9 +207,9 @@ impl Component {
             Component::Pipe { pipe: of, length: m } => (pipe, length) = (Some(of), m),
             Component::Volume(of) => volume = Some(of),
         }
-        v.catalogue(plain("hose", "Name of a hose of the catalogue."), Kind::Hose, &mut name);
+        v.catalogue(plain("hose", "Name of a hose of the catalogue."), CatalogueKind::Hose, &mut name);
         v.way(&Component::HOSE, &mut hose, HoseProperties::visit);
-        v.table(plain("pipe", "A pipe instead of a hose."), &mut pipe, Pipe::visit);
+        v.table(plain("pipe", "A pipe instead of a hose."), &mut pipe, DeclaredPipe::visit);
         v.way(&Component::VOLUME, &mut volume, LineVolume::visit);
         let k = key("length", &LENGTH, "Length of the line to one chamber.").positive();
         match (hose, pipe, volume) {
@@ -304,7 +304,7 @@ impl HoseProperties {
     }
 }
 
-impl Pipe {
+impl DeclaredPipe {
     fn visit<V: Visitor>(&mut self, v: &mut V) {
         v.quantity(key("bore", &LENGTH, "Inner diameter of the pipe.").positive(), &mut self.bore);
         v.way(&["wall_thickness", "youngs_modulus"], &mut self.wall, ElasticWall::visit);
@@ -323,14 +323,14 @@ impl ElasticWall {
     }
 }
 
-impl Lines {
+impl DeclaredLines {
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
         let k = plain("compliance", "Which volume the line's effective bulk modulus holds for.");
         let words = &[("by_volume", Compliance::ByVolume), ("uniform", Compliance::Uniform)];
         v.choice(k, words, &mut self.compliance, false);
         let keys = [plain("a", "The line to chamber A."), plain("b", "The line to chamber B.")];
         let mut sides = [std::mem::take(&mut self.a), std::mem::take(&mut self.b)];
-        v.sides(keys, Line::KINDS, &mut sides, Line::visit);
+        v.sides(keys, DeclaredLine::KINDS, &mut sides, DeclaredLine::visit);
         [self.a, self.b] = sides;
     }
 }

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use super::formula::Formula;
 use super::key::Key;
-use super::visitor::{Form, FormulaShape, Kinds, Named, Variants, Visitor};
-use crate::catalogue::Kind;
+use super::visitor::{FormulaShape, Kinds, NamedNumber, ValueForm, Variants, Visitor};
+use crate::catalogue::CatalogueKind;
 
 /// Walks a project without changing it, but for the numbers it is asked to set.
 #[derive(Default)]
@@ -190,7 +190,7 @@ impl Visitor for Listing {
         self.list(key, takes, required);
     }
 
-    fn catalogue(&mut self, key: Key, kind: Kind, _field: &mut Option<String>) {
+    fn catalogue(&mut self, key: Key, kind: CatalogueKind, _field: &mut Option<String>) {
         self.list(key, format!("the name of a {} of the catalogue", kind.name()), false);
     }
 
@@ -242,11 +242,11 @@ impl Visitor for Listing {
         key: Key,
         _name_of: fn(&T) -> &str,
         _field: &mut Vec<T>,
-        visit: impl Fn(&mut T, Named<'_>, &mut Self),
+        visit: impl Fn(&mut T, NamedNumber<'_>, &mut Self),
     ) {
         if self.everything {
             self.within(&format!("{}.NAME", key.name), |listing| {
-                visit(&mut T::default(), Named { name: "NAME", key }, listing);
+                visit(&mut T::default(), NamedNumber { name: "NAME", key }, listing);
             });
         }
     }
@@ -274,7 +274,7 @@ impl Visitor for Listing {
         }
     }
 
-    fn form(&mut self, _key: Key, field: Form) -> Form {
+    fn form(&mut self, _key: Key, field: ValueForm) -> ValueForm {
         field
     }
 }

@@ -5,12 +5,12 @@ use std::collections::BTreeMap;
 use super::key::{Key, key, plain};
 use super::listing::Listing;
 use super::visitor::Visitor;
-use super::{OperatingRegion, Project, Spacing, Uncertain};
+use super::{DeclaredSpacing, OperatingRegion, Project, Uncertain};
 use phea_quantity::{FORCE, LENGTH, PRESSURE, VELOCITY, VOLTAGE};
 
 /// Where the linear model is taken; absent parts are mid stroke and null.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct OperatingPoint {
+pub struct DeclaredOperatingPoint {
     /// m, from the end of chamber A.
     pub position: Option<f64>,
     /// Pa, p_A - p_B.
@@ -26,7 +26,7 @@ pub struct OperatingPoint {
 /// Beginning of the paths of its numbers.
 const TABLE: &str = "operating_point";
 
-impl OperatingPoint {
+impl DeclaredOperatingPoint {
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
         let k = key("position", &LENGTH, "Position of the piston; absent: mid stroke.").not_negative();
         v.optional(k, &mut self.position);
@@ -71,20 +71,20 @@ impl OperatingPoint {
 pub(super) fn operating_numbers() -> BTreeMap<String, Key> {
     let mut listing = Listing::default();
     let number = Some(0.0);
-    let mut all = Some(OperatingPoint {
+    let mut all = Some(DeclaredOperatingPoint {
         position: number,
         load_pressure: number,
         load_force: number,
         velocity: number,
         command: None,
     });
-    listing.table(plain(TABLE, ""), &mut all, OperatingPoint::visit);
+    listing.table(plain(TABLE, ""), &mut all, DeclaredOperatingPoint::visit);
     listing.numbers.into_iter().map(|(path, (key, _))| (path, key)).collect()
 }
 
 impl Project {
     /// The operating point with what is uncertain of it: where nothing is declared, the nominal value.
-    pub fn resolved_operating_point(&self) -> OperatingPoint {
+    pub fn resolved_operating_point(&self) -> DeclaredOperatingPoint {
         let mut point = self.operating_point.clone();
         for uncertain in self.uncertain_numbers() {
             if let Some(number) = point.at_path(&uncertain.name) {
@@ -130,7 +130,7 @@ impl Project {
                 minimum,
                 maximum,
                 points: region.points,
-                spacing: Spacing::Linear,
+                spacing: DeclaredSpacing::Linear,
             })
         };
         numbers.into_iter().filter_map(uncertain).collect()

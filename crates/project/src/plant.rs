@@ -2,12 +2,12 @@
 
 use super::formula::Formula;
 use super::key::{Key, key, plain};
-use super::visitor::{Form, FormulaShape, Visitor};
+use super::visitor::{FormulaShape, ValueForm, Visitor};
 use phea_quantity::TIME;
 
 /// A transfer function in `s` and named parameters.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Plant {
+pub struct DeclaredPlant {
     /// Numerator and denominator.
     pub transfer: Rational,
     /// Dead time.
@@ -35,8 +35,8 @@ impl Delay {
     fn visit<V: Visitor>(&mut self, v: &mut V) {
         let doc = "Dead time, or a formula of the uncertain parameters that gives seconds.";
         let k = key("delay", &TIME, doc).not_negative().or(0.0);
-        let form = if let Delay::Formula(_) = self { Form::Text } else { Form::Number };
-        if v.form(k, form) == Form::Text {
+        let form = if let Delay::Formula(_) = self { ValueForm::Text } else { ValueForm::Number };
+        if v.form(k, form) == ValueForm::Text {
             let mut formula =
                 if let Delay::Formula(formula) = self { Some(std::mem::take(formula)) } else { None };
             v.formula(k, FormulaShape::Coefficient, &mut formula, false);
@@ -84,7 +84,7 @@ fn required<V: Visitor>(key: Key, shape: FormulaShape, field: &mut Formula, v: &
 /// Path of the dead time.
 pub(crate) const DELAY_PATH: &str = "plant.delay";
 
-impl Plant {
+impl DeclaredPlant {
     /// Every formula with its path.
     pub(crate) fn formulas(&self) -> Vec<(&'static str, &Formula)> {
         let mut formulas = vec![("plant.numerator", &self.transfer.numerator)];

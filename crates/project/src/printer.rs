@@ -4,30 +4,30 @@ use std::collections::BTreeMap;
 
 use super::formula::Formula;
 use super::key::Key;
-use super::visitor::{Form, FormulaShape, Kinds, Named, Variants, Visitor};
-use crate::catalogue::Kind;
+use super::visitor::{FormulaShape, Kinds, NamedNumber, ValueForm, Variants, Visitor};
+use crate::catalogue::CatalogueKind;
 use phea_quantity as quantity;
 
 /// Writes tables; the innermost is the last of `open`.
 pub(crate) struct Printer {
-    open: Vec<Section>,
+    open: Vec<PrintedTable>,
     /// Dimension and range of numbers that are named by their path.
     named: BTreeMap<String, Key>,
 }
 
 /// A table: its lines, then the tables in it.
 #[derive(Debug, Default)]
-struct Section {
+struct PrintedTable {
     header: String,
     /// Key and value as TOML.
     lines: Vec<(String, String)>,
-    inner: Vec<Section>,
+    inner: Vec<PrintedTable>,
 }
 
 /// Longest table written in one line.
 const INLINE_WIDTH: usize = 96;
 
-impl Section {
+impl PrintedTable {
     /// As an inline table, if it has no tables of its own.
     fn inline(&self) -> Option<String> {
         if !self.inner.is_empty() {
@@ -52,17 +52,17 @@ impl Section {
 
 impl Printer {
     pub(crate) fn new(named: BTreeMap<String, Key>) -> Self {
-        Printer { open: vec![Section::default()], named }
+        Printer { open: vec![PrintedTable::default()], named }
     }
 
     /// What was written since the beginning as one inline table.
     pub(crate) fn finish_inline(self) -> Option<String> {
-        self.open.first().and_then(Section::inline)
+        self.open.first().and_then(PrintedTable::inline)
     }
 
     /// The lines of the outermost table: each key with its value, a table in it in one line.
     pub(crate) fn lines(self) -> Vec<(String, String)> {
-        let Section { mut lines, inner, .. } = self.open.into_iter().next().unwrap_or_default();
+        let PrintedTable { mut lines, inner, .. } = self.open.into_iter().next().unwrap_or_default();
         let tables = inner.iter().filter_map(|section| {
             let key = section.header.strip_prefix('[')?.strip_suffix(']')?;
             Some((key.to_string(), section.inline()?)).filter(|_| !key.starts_with('['))
@@ -93,11 +93,11 @@ impl Printer {
     }
 
     fn enter(&mut self, header: String) {
-        self.open.push(Section { header, ..Section::default() });
+        self.open.push(PrintedTable { header, ..PrintedTable::default() });
     }
 
-    fn leave(&mut self) -> Section {
-        if self.open.len() > 1 { self.open.pop().unwrap_or_default() } else { Section::default() }
+    fn leave(&mut self) -> PrintedTable {
+        if self.open.len() > 1 { self.open.pop().unwrap_or_default() } else { PrintedTable::default() }
     }
 
     /// Ends a table: short ones below the first level go into one line, and all that keep the order of their names.
@@ -232,7 +232,7 @@ impl Visitor for Printer {
         }
     }
 
-    fn catalogue(&mut self, key: Key, _kind: Kind, field: &mut Option<String>) {
+    fn catalogue(&mut self, key: Key, _kind: CatalogueKind, field: &mut Option<String>) {
         self.text(key, field, false);
     }
 
@@ -271,7 +271,7 @@ impl Visitor for Printer {
             sections.push(self.leave());
         }
         let nested = self.open.len() > 1;
-        let texts: Option<Vec<String>> = sections.iter().map(Section::inline).collect();
+        let texts: Option<Vec<String>> = sections.iter().map(PrintedTable::inline).collect();
         match texts.filter(|texts| nested && !texts.is_empty()) {
             Some(texts) => self.line(key.name, list(texts.into_iter())),
             None => {
@@ -291,7 +291,7 @@ impl Visitor for Printer {
         key: Key,
         name_of: fn(&T) -> &str,
         field: &mut Vec<T>,
-        visit: impl Fn(&mut T, Named<'_>, &mut Self),
+        visit: impl Fn(&mut T, NamedNumber<'_>, &mut Self),
     ) {
         if field.is_empty() {
             return;
@@ -301,7 +301,7 @@ impl Visitor for Printer {
             let name = name_of(value).to_string();
             let Some(number) = self.named.get(&name).copied() else { continue };
             self.enter(format!("[{}]", self.path(&name)));
-            visit(value, Named { name: &name, key: number }, self);
+            visit(value, NamedNumber { name: &name, key: number }, self);
             self.attach(&name, true);
         }
         self.attach(key.name, false);
@@ -333,7 +333,7 @@ impl Visitor for Printer {
         }
     }
 
-    fn form(&mut self, _key: Key, field: Form) -> Form {
+    fn form(&mut self, _key: Key, field: ValueForm) -> ValueForm {
         field
     }
 }

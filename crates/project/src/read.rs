@@ -11,9 +11,9 @@ use super::listing::{KeyEntry, Listing};
 use super::operating_point::operating_numbers;
 use super::printer::Printer;
 use super::reader::Reader;
-use super::text::{Findings, Found, Place};
-use super::tree::{self, Node};
-use super::{Actuator, Loaded, Project, setting, validate};
+use super::text::{Findings, Place, RawFinding};
+use super::tree::{self, TreeNode};
+use super::{DeclaredActuator, Loaded, Project, setting, validate};
 use crate::catalogue::Catalogue;
 use crate::source::Source;
 use phea_quantity::{Dimension, RATIO, display};
@@ -78,7 +78,7 @@ pub fn sha256(bytes: &[u8]) -> String {
     Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-fn project(reader: &mut Reader<'_>, root: &Node) -> Project {
+fn project(reader: &mut Reader<'_>, root: &TreeNode) -> Project {
     let mut project = Project::default();
     reader.parameters = parameters(root);
     let is_measured = measured(root).is_some();
@@ -103,13 +103,13 @@ fn project(reader: &mut Reader<'_>, root: &Node) -> Project {
 }
 
 /// The key that names measured plants.
-fn measured(root: &Node) -> Option<&tree::Entry> {
+fn measured(root: &TreeNode) -> Option<&tree::Entry> {
     root.get("family")?.node.get("measured")
 }
 
 /// Names that formulas of the plant may contain: what `[uncertainty]` and `[family]` give values to.
-fn parameters(root: &Node) -> Vec<String> {
-    let names = |node: &Node| node.entries().iter().map(|entry| entry.key.clone()).collect::<Vec<_>>();
+fn parameters(root: &TreeNode) -> Vec<String> {
+    let names = |node: &TreeNode| node.entries().iter().map(|entry| entry.key.clone()).collect::<Vec<_>>();
     let mut parameters = root.get("uncertainty").map(|entry| names(&entry.node)).unwrap_or_default();
     let cases = root.get("family").and_then(|entry| entry.node.get("cases"));
     if let Some(tree::Value::List(cases)) = cases.map(|entry| &entry.node.value) {
@@ -121,8 +121,8 @@ fn parameters(root: &Node) -> Vec<String> {
 }
 
 /// Either an actuator, or a plant, or measured ones, and all of it.
-fn refuse_mixture(reader: &mut Reader<'_>, root: &Node, is_plant: bool, is_measured: bool) {
-    let tables = Actuator::REQUIRED.iter().chain(&["load"]).copied();
+fn refuse_mixture(reader: &mut Reader<'_>, root: &TreeNode, is_plant: bool, is_measured: bool) {
+    let tables = DeclaredActuator::REQUIRED.iter().chain(&["load"]).copied();
     let present: Vec<_> = tables.clone().filter_map(|name| root.get(name)).collect();
     if is_measured {
         for entry in
@@ -130,7 +130,7 @@ fn refuse_mixture(reader: &mut Reader<'_>, root: &Node, is_plant: bool, is_measu
         {
             let message =
                 format!("[{}] describes a plant, but [family] `measured` gives measured ones", entry.key);
-            reader.findings.push(Found::error(entry.key_place, message).help("remove one of the two"));
+            reader.findings.push(RawFinding::error(entry.key_place, message).help("remove one of the two"));
         }
         reader.parts = false;
         tables.for_each(|name| reader.know(name));
@@ -139,7 +139,7 @@ fn refuse_mixture(reader: &mut Reader<'_>, root: &Node, is_plant: bool, is_measu
     if is_plant {
         for entry in present {
             let message = format!("[{}] describes an actuator, but [plant] replaces it", entry.key);
-            reader.findings.push(Found::error(entry.key_place, message).help("remove one of the two"));
+            reader.findings.push(RawFinding::error(entry.key_place, message).help("remove one of the two"));
         }
         reader.parts = false;
         tables.for_each(|name| reader.know(name));
@@ -148,12 +148,12 @@ fn refuse_mixture(reader: &mut Reader<'_>, root: &Node, is_plant: bool, is_measu
     if present.is_empty() {
         reader.parts = false;
         let message = "nothing is described: neither an actuator nor a plant";
-        let found = Found::error(root.place, message).consequence();
+        let found = RawFinding::error(root.place, message).consequence();
         let expected = "[fluid], [supply], [valve], [cylinder], [line] and [force_sensor], or [plant], or [family] `measured`";
         return reader.findings.push(found.expected(expected));
     }
-    for name in Actuator::REQUIRED.iter().filter(|name| root.get(name).is_none()) {
-        reader.findings.push(Found::error(root.place, format!("missing table [{name}]")).consequence());
+    for name in DeclaredActuator::REQUIRED.iter().filter(|name| root.get(name).is_none()) {
+        reader.findings.push(RawFinding::error(root.place, format!("missing table [{name}]")).consequence());
     }
 }
 
@@ -297,6 +297,6 @@ impl Findings {
     /// A file that could not be read at all.
     pub fn unreadable(&mut self, path: &str, reason: &str) {
         let text = self.add_text(path, "", 0);
-        self.push(Found::error(Place { text, start: 0, end: 0 }, reason.to_string()).syntax());
+        self.push(RawFinding::error(Place { text, start: 0, end: 0 }, reason.to_string()).syntax());
     }
 }

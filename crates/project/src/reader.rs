@@ -7,8 +7,8 @@ mod values;
 use std::collections::BTreeMap;
 
 use super::key::Key;
-use super::text::{Findings, Found, Place};
-use super::tree::{Entry, Node, Value};
+use super::text::{Findings, Place, RawFinding};
+use super::tree::{Entry, TreeNode, Value};
 use super::{Origin, Provenance};
 use crate::catalogue::Catalogue;
 use phea_quantity::spelling::nearest;
@@ -17,7 +17,7 @@ use phea_quantity::spelling::nearest;
 pub(crate) struct Reader<'a> {
     pub(crate) findings: &'a mut Findings,
     catalogue: &'a Catalogue,
-    root: &'a Node,
+    root: &'a TreeNode,
     frames: Vec<Frame<'a>>,
     /// Index of the text of the project itself; others are settings.
     project_text: usize,
@@ -56,13 +56,13 @@ struct Frame<'a> {
     /// While the keys of another variant are looked at: those that are taken for absent, as they are read already.
     passed_over: Option<Vec<&'static str>>,
     /// The values of a table written as an array, in the order of its keys.
-    in_order: Option<std::slice::Iter<'a, Node>>,
+    in_order: Option<std::slice::Iter<'a, TreeNode>>,
 }
 
 /// A table, or what it inherits from.
 #[derive(Clone)]
 struct Layer<'a> {
-    node: &'a Node,
+    node: &'a TreeNode,
     /// Keys of it that do not count.
     hidden: Vec<&'static str>,
     /// The catalogue's entry it comes from.
@@ -72,13 +72,13 @@ struct Layer<'a> {
 /// A value that was found.
 #[derive(Clone, Copy)]
 struct Hit<'a> {
-    node: &'a Node,
+    node: &'a TreeNode,
     entry: Option<&'a crate::catalogue::CatalogueEntry>,
 }
 
 impl<'a> Reader<'a> {
     pub(crate) fn new(
-        root: &'a Node,
+        root: &'a TreeNode,
         project_text: usize,
         catalogue: &'a Catalogue,
         findings: &'a mut Findings,
@@ -134,7 +134,7 @@ impl<'a> Reader<'a> {
         }
         if let Some(extra) = frame.in_order.and_then(|mut rest| rest.next()) {
             let message = format!("too many values: `{}` has {}", frame.path, frame.asked.len());
-            self.findings.push(Found::error(extra.place, message));
+            self.findings.push(RawFinding::error(extra.place, message));
         }
         frame.asked
     }
@@ -237,7 +237,7 @@ impl<'a> Reader<'a> {
         let needs = self.frames.last().and_then(|frame| frame.chosen.as_ref());
         let needs = needs.map_or(String::new(), |chosen| format!(": {chosen} needs it"));
         let message = format!("missing `{}`{}{needs}", key.name, self.of_table());
-        let mut found = Found::error(self.place(), message).consequence().help(key.doc);
+        let mut found = RawFinding::error(self.place(), message).consequence().help(key.doc);
         if !std::ptr::eq(key.dimension, &phea_quantity::RATIO) {
             found = found.expected(format!("{}, such as {}", key.dimension.name, key.dimension.examples));
         }
@@ -256,9 +256,9 @@ impl<'a> Reader<'a> {
         if path.is_empty() { String::new() } else { format!(" in [{path}]") }
     }
 
-    fn wrong_kind(&mut self, key: Key, expected: &str, node: &Node) {
+    fn wrong_kind(&mut self, key: Key, expected: &str, node: &TreeNode) {
         let message = format!("`{}` must be {expected}, not {}", key.name, node.kind());
-        self.findings.push(Found::error(node.place, message));
+        self.findings.push(RawFinding::error(node.place, message));
     }
 
     /// Opens the table under a hit; whether it is one.
@@ -273,9 +273,9 @@ impl<'a> Reader<'a> {
 }
 
 /// A key nobody asked for.
-fn unknown(entry: &Entry, frame: &Frame<'_>) -> Found {
+fn unknown(entry: &Entry, frame: &Frame<'_>) -> RawFinding {
     let place = if frame.path.is_empty() { String::new() } else { format!(" in [{}]", frame.path) };
-    let found = Found::error(entry.key_place, format!("unknown key `{}`{place}", entry.key));
+    let found = RawFinding::error(entry.key_place, format!("unknown key `{}`{place}", entry.key));
     match nearest(&entry.key, frame.asked.iter().copied()) {
         Some(name) => found.help(format!("did you mean `{name}`?")),
         None if frame.asked.len() <= 12 => found.help(format!("known here: {}", frame.asked.join(", "))),

@@ -8,9 +8,9 @@ mod surgery;
 
 use std::collections::BTreeMap;
 
-use self::surgery::{LAW, Lines, replaced};
+use self::surgery::{KeyValues, LAW, replaced};
 use super::printer::Printer;
-use super::{Controller, Prefilter, Transfer};
+use super::{DeclaredController, Prefilter, Transfer};
 
 /// Keys of [controller] beside its law.
 const BESIDE: [&str; 7] = [
@@ -28,7 +28,7 @@ const BESIDE: [&str; 7] = [
 pub fn with_laws(
     bytes: &[u8],
     settings: &[String],
-    controller: &Controller,
+    controller: &DeclaredController,
     prefilter: Option<&Prefilter>,
 ) -> Vec<u8> {
     // what was read as a project is UTF-8
@@ -57,15 +57,15 @@ pub fn with_law(text: &str, table: &str, lines: &[(String, String)]) -> String {
 }
 
 /// Those that say what their absence would say too are left out.
-fn prefilter_lines(prefilter: &Prefilter) -> Lines {
+fn prefilter_lines(prefilter: &Prefilter) -> KeyValues {
     let mut printer = Printer::new(BTreeMap::new());
     prefilter.clone().visit(&mut printer);
     printer.lines().into_iter().filter(|(key, _)| key != "continuous" || prefilter.continuous).collect()
 }
 
 /// Controller and prefilter as tables of a project file, ready to be pasted into one.
-pub fn snippet(controller: &Controller, prefilter: Option<&Prefilter>) -> String {
-    let table = |name: &str, lines: Lines| {
+pub fn snippet(controller: &DeclaredController, prefilter: Option<&Prefilter>) -> String {
+    let table = |name: &str, lines: KeyValues| {
         lines.iter().fold(format!("[{name}]\n"), |text, (key, value)| format!("{text}{key} = {value}\n"))
     };
     let prefilter = prefilter.map(|prefilter| table("prefilter", prefilter_lines(prefilter)));
@@ -76,19 +76,19 @@ pub fn snippet(controller: &Controller, prefilter: Option<&Prefilter>) -> String
         .join("\n")
 }
 
-fn law_lines(transfer: &Transfer) -> Lines {
+fn law_lines(transfer: &Transfer) -> KeyValues {
     let mut printer = Printer::new(BTreeMap::new());
     transfer.clone().visit(&mut printer);
     printer.lines()
 }
 
 /// Those that say what their absence would say too are left out.
-fn controller_lines(controller: &Controller) -> Lines {
-    let lines = |mut controller: Controller| {
+fn controller_lines(controller: &DeclaredController) -> KeyValues {
+    let lines = |mut controller: DeclaredController| {
         let mut printer = Printer::new(BTreeMap::new());
         controller.visit(&mut printer);
         printer.lines()
     };
-    let absent = lines(Controller::default());
+    let absent = lines(DeclaredController::default());
     lines(controller.clone()).into_iter().filter(|line| !absent.contains(line)).collect()
 }

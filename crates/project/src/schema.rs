@@ -9,9 +9,9 @@ mod writer;
 
 use serde_json::{Value, json};
 
-use super::{Actuator, Project};
+use super::{DeclaredActuator, Project};
 use quantity::definitions;
-use writer::Writer;
+use writer::SchemaWriter;
 
 /// The JSON Schema of the project file.
 ///
@@ -23,7 +23,7 @@ use writer::Writer;
 /// assert!(pressure["description"].as_str().is_some_and(|text| text.contains("70 bar")));
 /// ```
 pub fn schema() -> Value {
-    let mut writer = Writer::default();
+    let mut writer = SchemaWriter::default();
     let mut project = Project::default();
     let table = writer.table_of(|writer| {
         project.visit_system(writer);
@@ -42,16 +42,16 @@ pub fn schema() -> Value {
 }
 
 /// Either an actuator, all of it, or a plant, or measured ones.
-fn what_is_described(writer: &mut Writer) {
+fn what_is_described(writer: &mut SchemaWriter) {
     let measured =
         json!({ "required": ["family"], "properties": { "family": { "required": ["measured"] } } });
     let plant = json!({ "required": ["plant"] });
-    let actuator: Vec<&str> = Actuator::REQUIRED.iter().chain(&["load"]).copied().collect();
+    let actuator: Vec<&str> = DeclaredActuator::REQUIRED.iter().chain(&["load"]).copied().collect();
     let other: Vec<&str> = actuator.iter().chain(&["plant", "uncertainty"]).copied().collect();
     writer.rule(json!({
         "if": measured,
         "then": without(&other),
-        "else": { "if": plant, "then": without(&actuator), "else": { "required": Actuator::REQUIRED } },
+        "else": { "if": plant, "then": without(&actuator), "else": { "required": DeclaredActuator::REQUIRED } },
     }));
 }
 

@@ -1,17 +1,17 @@
 //! `--set path=value`: puts a value into the tree before anything is checked.
 
-use super::text::{Findings, Found, Place};
-use super::tree::{self, Entry, Node, Value};
+use super::text::{Findings, Place, RawFinding};
+use super::tree::{self, Entry, TreeNode, Value};
 
 /// Most parts of a path.
 const MAXIMUM_PARTS: usize = 16;
 
 /// Applies one setting. Its own errors, and those of its value later on, point into the setting's text.
-pub(crate) fn apply(root: &mut Node, setting: &str, findings: &mut Findings) {
+pub(crate) fn apply(root: &mut TreeNode, setting: &str, findings: &mut Findings) {
     let text = findings.add_text(&format!("--set {setting}"), setting, 0);
     let whole = Place { text, start: 0, end: setting.len() };
     let Some(equals) = setting.find('=') else {
-        let found = Found::error(whole, "a setting has the form path=value");
+        let found = RawFinding::error(whole, "a setting has the form path=value");
         return findings.push(found.help("for instance --set line.length=\"2 m\""));
     };
     let parts = match parts(text, &setting[..equals]) {
@@ -25,9 +25,9 @@ pub(crate) fn apply(root: &mut Node, setting: &str, findings: &mut Findings) {
 }
 
 /// A part of the path and where it stands.
-type Part = (String, Place);
+type PathPart = (String, Place);
 
-fn parts(text: usize, path: &str) -> Result<Vec<Part>, Found> {
+fn parts(text: usize, path: &str) -> Result<Vec<PathPart>, RawFinding> {
     let mut parts = Vec::new();
     let mut at = 0;
     for piece in split(path) {
@@ -35,13 +35,13 @@ fn parts(text: usize, path: &str) -> Result<Vec<Part>, Found> {
         at += piece.len() + 1;
         let name = piece.trim().trim_matches('"');
         if name.is_empty() {
-            return Err(Found::error(place, "an empty name in the path"));
+            return Err(RawFinding::error(place, "an empty name in the path"));
         }
         parts.push((name.to_string(), place));
     }
     let whole = Place { text, start: 0, end: path.len() };
     if parts.len() > MAXIMUM_PARTS {
-        return Err(Found::error(whole, format!("a path of more than {MAXIMUM_PARTS} parts")));
+        return Err(RawFinding::error(whole, format!("a path of more than {MAXIMUM_PARTS} parts")));
     }
     Ok(parts)
 }
@@ -57,16 +57,16 @@ fn split(path: &str) -> Vec<&str> {
 }
 
 /// A TOML value, or else the bare text.
-fn value(text: usize, start: usize, setting: &str, findings: &mut Findings) -> Node {
+fn value(text: usize, start: usize, setting: &str, findings: &mut Findings) -> TreeNode {
     let written = &setting[start..];
     let from = start + written.len() - written.trim_start().len();
     let to = start + written.trim_end().len();
     let place = Place { text, start: from.min(to), end: to };
-    let bare = || Node { place, value: Value::Text(written.trim().to_string()) };
+    let bare = || TreeNode { place, value: Value::Text(written.trim().to_string()) };
     tree::value(text, place.start..place.end, findings).unwrap_or_else(bare)
 }
 
-fn insert(table: &mut Node, path: &[Part], value: Node) -> Result<(), Found> {
+fn insert(table: &mut TreeNode, path: &[PathPart], value: TreeNode) -> Result<(), RawFinding> {
     let Some(((name, place), rest)) = path.split_first() else { return Ok(()) };
     let kind = table.kind();
     match &mut table.value {
@@ -74,7 +74,7 @@ fn insert(table: &mut Node, path: &[Part], value: Node) -> Result<(), Found> {
             let index = match entries.iter().position(|entry| entry.key == *name) {
                 Some(index) => index,
                 None => {
-                    let node = Node { place: *place, value: Value::Table(Vec::new()) };
+                    let node = TreeNode { place: *place, value: Value::Table(Vec::new()) };
                     entries.push(Entry { key: name.clone(), key_place: *place, node });
                     entries.len() - 1
                 }
@@ -91,7 +91,8 @@ fn insert(table: &mut Node, path: &[Part], value: Node) -> Result<(), Found> {
             let count = items.len();
             let item = name.parse::<usize>().ok().and_then(|index| items.get_mut(index));
             let wrong = || {
-                let found = Found::error(*place, format!("`{name}` is no element of this list of {count}"));
+                let found =
+                    RawFinding::error(*place, format!("`{name}` is no element of this list of {count}"));
                 found.help("elements are counted from 0")
             };
             let item = item.ok_or_else(wrong)?;
@@ -101,6 +102,6 @@ fn insert(table: &mut Node, path: &[Part], value: Node) -> Result<(), Found> {
             }
             insert(item, rest, value)
         }
-        _ => Err(Found::error(*place, format!("nothing can be set inside {kind}"))),
+        _ => Err(RawFinding::error(*place, format!("nothing can be set inside {kind}"))),
     }
 }

@@ -131,15 +131,15 @@ impl SignalUnit {
 
 /// A signal as it is written, which depends on what it is of.
 #[derive(Clone)]
-struct Written {
+struct WrittenSignal {
     unit: SignalUnit,
     signal: Signal,
 }
 
-impl Variants for Written {
+impl Variants for WrittenSignal {
     const STRICT: bool = true;
 
-    fn all(&self) -> Vec<Written> {
+    fn all(&self) -> Vec<WrittenSignal> {
         let (start, amplitude, frequency) = (None, 0.0, 0.0);
         let all = [
             Signal::default(),
@@ -150,7 +150,7 @@ impl Variants for Written {
             Signal::Multisine(Multisine::default()),
             Signal::File { start, file: String::new() },
         ];
-        all.map(|signal| Written { unit: self.unit, signal }).into()
+        all.map(|signal| WrittenSignal { unit: self.unit, signal }).into()
     }
 
     fn word(&self) -> &'static str {
@@ -298,7 +298,7 @@ impl Signal {
     /// Reads or prints it as what it is of.
     pub(crate) fn visitor<V: Visitor>(unit: SignalUnit) -> impl Fn(&mut Signal, &mut V) {
         move |signal, v| {
-            let mut written = Written { unit, signal: std::mem::take(signal) };
+            let mut written = WrittenSignal { unit, signal: std::mem::take(signal) };
             v.variant(plain("kind", "Its shape in time; absent: a step."), &mut written, false);
             *signal = written.signal;
         }

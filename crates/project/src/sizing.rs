@@ -6,7 +6,7 @@ use phea_quantity::{FLOW_GAIN, FLOW_PRESSURE_COEFFICIENT, LENGTH, RATIO, TIME, V
 
 /// What the compliant component is sized for.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Sizing {
+pub struct DeclaredSizing {
     /// How fast the closed loop is to be.
     pub speed: Speed,
     /// m³/(s·V), K_qU; absent: derived from the valve at null.
@@ -74,7 +74,7 @@ impl SettlingTime {
     }
 }
 
-impl Sizing {
+impl DeclaredSizing {
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
         self.speed.visit(v);
         let k = key("flow_gain", &FLOW_GAIN, "K_qU; absent: derived from the valve at null.").positive();

@@ -1,21 +1,21 @@
 //! `[[specification]]`: what the closed loop must meet.
 
 use super::key::{key, plain};
-use super::limit::Limit;
+use super::limit::DeclaredLimit;
 use super::visitor::Visitor;
 use phea_quantity::ANGULAR_FREQUENCY;
 
 /// One specification.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Specification {
+pub struct DeclaredSpecification {
     /// Which closed loop is limited.
     pub kind: SpecificationKind,
     /// Upper limit; of every kind but tracking.
-    pub limit: Option<Limit>,
+    pub limit: Option<DeclaredLimit>,
     /// Upper limit of tracking.
-    pub upper: Option<Limit>,
+    pub upper: Option<DeclaredLimit>,
     /// Lower limit of tracking.
-    pub lower: Option<Limit>,
+    pub lower: Option<DeclaredLimit>,
     /// rad/s, where bounds are drawn.
     pub frequencies: Vec<f64>,
     /// rad/s, where it must hold; absent: the span of `frequencies`.
@@ -50,7 +50,7 @@ pub(crate) static SPECIFICATION_KINDS: [(&str, SpecificationKind); 6] = [
     ("tracking", SpecificationKind::Tracking),
 ];
 
-impl Specification {
+impl DeclaredSpecification {
     /// Where it must hold, rad/s: the declared band, or the span of the frequencies.
     pub fn band_rad_per_s(&self) -> [f64; 2] {
         let first = self.frequencies.first().copied().unwrap_or(0.0);
@@ -60,9 +60,9 @@ impl Specification {
 
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
         v.choice(plain("kind", "Which closed loop is limited."), &SPECIFICATION_KINDS, &mut self.kind, true);
-        Limit::visit("limit", "Upper limit, of every kind but tracking.", &mut self.limit, v);
-        Limit::visit("upper", "Upper limit of tracking.", &mut self.upper, v);
-        Limit::visit("lower", "Lower limit of tracking.", &mut self.lower, v);
+        DeclaredLimit::visit("limit", "Upper limit, of every kind but tracking.", &mut self.limit, v);
+        DeclaredLimit::visit("upper", "Upper limit of tracking.", &mut self.upper, v);
+        DeclaredLimit::visit("lower", "Lower limit of tracking.", &mut self.lower, v);
         let k = key("frequencies", &ANGULAR_FREQUENCY, "Where bounds are drawn, increasing.").positive();
         v.quantities(k, &mut self.frequencies, false);
         let k = key("band", &ANGULAR_FREQUENCY, "Where it must hold; absent: the span of `frequencies`.");

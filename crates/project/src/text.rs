@@ -16,8 +16,8 @@ pub struct Place {
 /// The texts that are read, and what was found in them.
 #[derive(Clone, Debug, Default)]
 pub struct Findings {
-    texts: Vec<Text>,
-    found: Vec<Found>,
+    texts: Vec<NamedText>,
+    found: Vec<RawFinding>,
     /// How many errors and warnings are kept, and how many findings are not.
     errors: usize,
     warnings: usize,
@@ -26,7 +26,7 @@ pub struct Findings {
 
 /// A named text.
 #[derive(Clone, Debug)]
-struct Text {
+struct NamedText {
     name: String,
     content: String,
     /// Bytes of the file before the content, such as a byte order mark.
@@ -36,7 +36,7 @@ struct Text {
 
 /// A finding before its line and column are counted.
 #[derive(Clone, Debug)]
-pub struct Found {
+pub struct RawFinding {
     severity: Severity,
     place: Place,
     message: String,
@@ -47,17 +47,17 @@ pub struct Found {
     syntax: bool,
 }
 
-impl Found {
+impl RawFinding {
     /// An error at a place.
     pub fn error(place: Place, message: impl Into<String>) -> Self {
         let message = message.into();
         let severity = Severity::Error;
-        Found { severity, place, message, expected: None, help: None, consequence: false, syntax: false }
+        RawFinding { severity, place, message, expected: None, help: None, consequence: false, syntax: false }
     }
 
     /// A warning at a place.
     pub fn warning(place: Place, message: impl Into<String>) -> Self {
-        Found { severity: Severity::Warning, ..Found::error(place, message) }
+        RawFinding { severity: Severity::Warning, ..RawFinding::error(place, message) }
     }
 
     /// The same with what was expected instead.
@@ -107,7 +107,12 @@ impl Findings {
     pub fn add_text(&mut self, name: &str, content: &str, skipped: usize) -> usize {
         let starts = content.bytes().enumerate().filter(|(_, byte)| *byte == b'\n').map(|(at, _)| at + 1);
         let line_starts = std::iter::once(0).chain(starts).collect();
-        self.texts.push(Text { name: name.to_string(), content: content.to_string(), skipped, line_starts });
+        self.texts.push(NamedText {
+            name: name.to_string(),
+            content: content.to_string(),
+            skipped,
+            line_starts,
+        });
         self.texts.len() - 1
     }
 
@@ -117,7 +122,7 @@ impl Findings {
     }
 
     /// Takes a finding in; beyond the most that are kept it is only counted.
-    pub fn push(&mut self, found: Found) {
+    pub fn push(&mut self, found: RawFinding) {
         let kept = if found.severity == Severity::Error { &mut self.errors } else { &mut self.warnings };
         if *kept < MAXIMUM_KEPT {
             *kept += 1;
@@ -173,13 +178,13 @@ impl Findings {
     }
 }
 
-impl Text {
+impl NamedText {
     /// From 1.
     fn line(&self, at: usize) -> usize {
         self.line_starts.partition_point(|start| *start <= at)
     }
 
-    fn diagnostic(&self, found: &Found) -> Diagnostic {
+    fn diagnostic(&self, found: &RawFinding) -> Diagnostic {
         let end = self.content.len();
         let (from, to) = (found.place.start.min(end), found.place.end.min(end));
         let line = self.line(from);

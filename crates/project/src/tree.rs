@@ -5,11 +5,11 @@ use toml::de::{DeTable, DeValue};
 use toml_parser::Source;
 use toml_parser::lexer::TokenKind;
 
-use super::text::{Findings, Found, Place};
+use super::text::{Findings, Place, RawFinding};
 
 /// A value and its place.
 #[derive(Clone, Debug)]
-pub struct Node {
+pub struct TreeNode {
     /// Where it is written.
     pub place: Place,
     /// What is written there.
@@ -28,7 +28,7 @@ pub enum Value {
     /// A date, which no key takes.
     Date,
     /// A list.
-    List(Vec<Node>),
+    List(Vec<TreeNode>),
     /// A table, its keys in the order of the file.
     Table(Vec<Entry>),
 }
@@ -41,10 +41,10 @@ pub struct Entry {
     /// Where the key is written.
     pub key_place: Place,
     /// Its value.
-    pub node: Node,
+    pub node: TreeNode,
 }
 
-impl Node {
+impl TreeNode {
     /// The keys of a table; none of anything else.
     pub fn entries(&self) -> &[Entry] {
         if let Value::Table(entries) = &self.value { entries } else { &[] }
@@ -76,11 +76,11 @@ const MAXIMUM_DEPTH: usize = 16;
 const MAXIMUM_SYNTAX_ERRORS: usize = 200;
 
 /// Takes a file in: its encoding, size and nesting are checked, then its syntax. `None` if nothing can be read.
-pub fn read(name: &str, bytes: &[u8], findings: &mut Findings) -> Option<Node> {
+pub fn read(name: &str, bytes: &[u8], findings: &mut Findings) -> Option<TreeNode> {
     if bytes.len() > MAXIMUM_BYTES {
         let text = findings.add_text(name, "", 0);
         let message = format!("the file has {} bytes; at most {MAXIMUM_BYTES} are read", bytes.len());
-        findings.push(Found::error(Place { text, start: 0, end: 0 }, message).syntax());
+        findings.push(RawFinding::error(Place { text, start: 0, end: 0 }, message).syntax());
         return None;
     }
     let skipped = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
@@ -96,14 +96,14 @@ pub fn read(name: &str, bytes: &[u8], findings: &mut Findings) -> Option<Node> {
             let text = findings.add_text(name, &shown, skipped);
             let place = Place { text, start: valid, end: valid + '\u{fffd}'.len_utf8() };
             let message = format!("byte {} of the file is not valid UTF-8", valid + skipped + 1);
-            findings.push(Found::error(place, message).syntax().help("save the file as UTF-8"));
+            findings.push(RawFinding::error(place, message).syntax().help("save the file as UTF-8"));
             None
         }
     }
 }
 
 /// Reads a text of TOML.
-pub(crate) fn document(text: usize, findings: &mut Findings) -> Option<Node> {
+pub(crate) fn document(text: usize, findings: &mut Findings) -> Option<TreeNode> {
     let content = findings.content(text).to_string();
     if let Some(found) = too_deep(text, &content) {
         findings.push(found);
@@ -113,24 +113,28 @@ pub(crate) fn document(text: usize, findings: &mut Findings) -> Option<Node> {
     for error in errors.iter().take(MAXIMUM_SYNTAX_ERRORS) {
         findings.push(syntax_error(text, &content, error));
     }
-    let mut converter = Converter { text, findings };
+    let mut converter = TreeBuilder { text, findings };
     Some(converter.table(table.get_ref(), Place { text, start: 0, end: 0 }))
 }
 
 /// Reads a single value of TOML.
-pub(crate) fn value(text: usize, range: std::ops::Range<usize>, findings: &mut Findings) -> Option<Node> {
+pub(crate) fn value(text: usize, range: std::ops::Range<usize>, findings: &mut Findings) -> Option<TreeNode> {
     let content = findings.content(text).get(range.clone())?.to_string();
     if too_deep(text, &content).is_some() {
         return None;
     }
     let value = DeValue::parse(&content).ok()?;
-    let mut node = Converter { text, findings }.node(&value);
+    let mut node = TreeBuilder { text, findings }.node(&value);
     shift(&mut node, range.start);
     Some(node)
 }
 
 /// The same, its syntax error among the findings.
-pub fn value_or_finding(text: usize, range: std::ops::Range<usize>, findings: &mut Findings) -> Option<Node> {
+pub fn value_or_finding(
+    text: usize,
+    range: std::ops::Range<usize>,
+    findings: &mut Findings,
+) -> Option<TreeNode> {
     let content = findings.content(text).get(range.clone())?.to_string();
     let found = value(text, range.clone(), findings);
     if found.is_none() {
@@ -138,13 +142,13 @@ pub fn value_or_finding(text: usize, range: std::ops::Range<usize>, findings: &m
         let span = error.as_ref().and_then(toml::de::Error::span).unwrap_or(0..content.len());
         let message = error.map_or("nested too deep".to_string(), |error| error.message().to_string());
         let place = Place { text, start: range.start + span.start, end: range.start + span.end };
-        findings.push(Found::error(place, message).syntax());
+        findings.push(RawFinding::error(place, message).syntax());
     }
     found
 }
 
 /// Moves a whole tree to where it stands in the text.
-fn shift(node: &mut Node, by: usize) {
+fn shift(node: &mut TreeNode, by: usize) {
     node.place.start += by;
     node.place.end += by;
     match &mut node.value {
@@ -159,7 +163,7 @@ fn shift(node: &mut Node, by: usize) {
 }
 
 /// Nesting is checked on the tokens, so that no later walk over the tree can be deep.
-fn too_deep(text: usize, content: &str) -> Option<Found> {
+fn too_deep(text: usize, content: &str) -> Option<RawFinding> {
     let (mut depth, mut parts) = (0_usize, 0_usize);
     for token in Source::new(content).lex() {
         match token.kind() {
@@ -172,20 +176,20 @@ fn too_deep(text: usize, content: &str) -> Option<Found> {
         if depth > MAXIMUM_DEPTH || parts > MAXIMUM_DEPTH {
             let place = Place { text, start: token.span().start(), end: token.span().end() };
             let message = format!("nested deeper than {MAXIMUM_DEPTH}");
-            return Some(Found::error(place, message).syntax());
+            return Some(RawFinding::error(place, message).syntax());
         }
     }
     None
 }
 
-fn syntax_error(text: usize, content: &str, error: &toml::de::Error) -> Found {
+fn syntax_error(text: usize, content: &str, error: &toml::de::Error) -> RawFinding {
     let span = error.span().unwrap_or(0..0);
     let place = Place { text, start: span.start, end: span.end };
     let message = match content.get(span.clone()) {
         Some(key) if error.message() == "duplicate key" => format!("duplicate key `{key}`"),
         _ => error.message().to_string(),
     };
-    let found = Found::error(place, message).syntax();
+    let found = RawFinding::error(place, message).syntax();
     let line_start = content[..boundary(content, span.start)].rfind('\n').map_or(0, |at| at + 1);
     let line = content[line_start..].lines().next().unwrap_or_default();
     let help = line.split_once('=').and_then(|(_, value)| quote_help(value.trim()));
@@ -208,18 +212,18 @@ fn quote_help(value: &str) -> Option<String> {
 }
 
 /// Makes the tree, and refuses numbers that f64 cannot hold.
-struct Converter<'a> {
+struct TreeBuilder<'a> {
     text: usize,
     findings: &'a mut Findings,
 }
 
-impl Converter<'_> {
+impl TreeBuilder<'_> {
     fn place(&self, span: std::ops::Range<usize>) -> Place {
         Place { text: self.text, start: span.start, end: span.end }
     }
 
     /// Entries in the order they are written.
-    fn table(&mut self, table: &DeTable<'_>, place: Place) -> Node {
+    fn table(&mut self, table: &DeTable<'_>, place: Place) -> TreeNode {
         let mut entries: Vec<Entry> = Vec::with_capacity(table.len());
         for (key, value) in table {
             let key_place = self.place(key.span());
@@ -227,10 +231,10 @@ impl Converter<'_> {
             entries.push(Entry { key: key.get_ref().to_string(), key_place, node });
         }
         entries.sort_by_key(|entry| (entry.key_place, entry.node.place));
-        Node { place, value: Value::Table(entries) }
+        TreeNode { place, value: Value::Table(entries) }
     }
 
-    fn node(&mut self, value: &Spanned<DeValue<'_>>) -> Node {
+    fn node(&mut self, value: &Spanned<DeValue<'_>>) -> TreeNode {
         let place = self.place(value.span());
         let value = match value.get_ref() {
             DeValue::String(text) => Value::Text(text.to_string()),
@@ -245,7 +249,7 @@ impl Converter<'_> {
             DeValue::Array(items) => Value::List(items.iter().map(|item| self.node(item)).collect()),
             DeValue::Table(table) => return self.table(table, place),
         };
-        Node { place, value }
+        TreeNode { place, value }
     }
 
     fn number(&mut self, text: &str, place: Place) -> Value {
@@ -254,14 +258,14 @@ impl Converter<'_> {
         let mantissa = text.split(['e', 'E']).next().unwrap_or_default();
         if value == 0.0 && mantissa.contains(|c: char| c.is_ascii_digit() && c != '0') {
             let message = "the number is too small to be distinguished from zero";
-            self.findings.push(Found::error(place, message));
+            self.findings.push(RawFinding::error(place, message));
         }
         self.check(value, place, infinite)
     }
 
     fn check(&mut self, value: f64, place: Place, may_be_infinite: bool) -> Value {
         if value.is_infinite() && !may_be_infinite {
-            self.findings.push(Found::error(place, "the number is too large"));
+            self.findings.push(RawFinding::error(place, "the number is too large"));
         }
         Value::Number(value)
     }

@@ -18,12 +18,12 @@ pub struct Uncertain {
     /// Points of the grid over it.
     pub points: u32,
     /// How the points are spread.
-    pub spacing: Spacing,
+    pub spacing: DeclaredSpacing,
 }
 
 /// How grid points are spread.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Spacing {
+pub enum DeclaredSpacing {
     /// Evenly.
     #[default]
     Linear,
@@ -40,7 +40,7 @@ impl Uncertain {
         v.quantity(part("maximum", "The most it may be."), &mut self.maximum);
         let k = key("points", &RATIO, "Points of the grid over it.").at_least(1.0).at_most(1000.0).or(3.0);
         v.count(k, &mut self.points);
-        let words = &[("linear", Spacing::Linear), ("log", Spacing::Logarithmic)];
+        let words = &[("linear", DeclaredSpacing::Linear), ("log", DeclaredSpacing::Logarithmic)];
         v.choice(plain("spacing", "How the points are spread."), words, &mut self.spacing, false);
     }
 }

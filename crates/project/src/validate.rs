@@ -12,8 +12,8 @@ mod specification;
 mod wishes;
 
 use super::reader::Reader;
-use super::text::{Found, Place};
-use super::{Element, LINEAR_PARAMETERS, Project};
+use super::text::{Place, RawFinding};
+use super::{DeclaredElement, LINEAR_PARAMETERS, Project};
 
 /// Reports everything that cannot be together.
 pub(super) fn project(project: &Project, reader: &mut Reader<'_>) {
@@ -38,7 +38,12 @@ pub(super) fn project(project: &Project, reader: &mut Reader<'_>) {
 }
 
 /// Reports what cannot be in one element; `path` leads to it.
-pub(super) fn element(element: &Element, path: &str, sample_time: Option<f64>, reader: &mut Reader<'_>) {
+pub(super) fn element(
+    element: &DeclaredElement,
+    path: &str,
+    sample_time: Option<f64>,
+    reader: &mut Reader<'_>,
+) {
     linear_loop::one_element(element, path, sample_time, &mut Check { reader });
 }
 
@@ -74,14 +79,14 @@ impl Check<'_, '_> {
     }
 
     fn error(&mut self, path: &str, message: impl Into<String>) {
-        self.push_error(path, Found::error(self.place(path), message));
+        self.push_error(path, RawFinding::error(self.place(path), message));
     }
 
     fn error_with_help(&mut self, path: &str, message: impl Into<String>, help: impl Into<String>) {
-        self.push_error(path, Found::error(self.place(path), message).help(help));
+        self.push_error(path, RawFinding::error(self.place(path), message).help(help));
     }
 
-    fn push_error(&mut self, path: &str, found: Found) {
+    fn push_error(&mut self, path: &str, found: RawFinding) {
         if !self.refused(path) {
             self.reader.findings.push(found);
         }
@@ -94,7 +99,7 @@ impl Check<'_, '_> {
 
     fn warning(&mut self, path: &str, message: impl Into<String>) {
         let place = self.place(path);
-        self.reader.findings.push(Found::warning(place, message));
+        self.reader.findings.push(RawFinding::warning(place, message));
     }
 
     /// Something is absent from the table at `path`; perhaps because its value was refused.
@@ -103,7 +108,7 @@ impl Check<'_, '_> {
             return;
         }
         let place = self.place(path);
-        self.reader.findings.push(Found::error(place, message).consequence());
+        self.reader.findings.push(RawFinding::error(place, message).consequence());
     }
 
     /// Two numbers must be in order.

@@ -1,9 +1,9 @@
 //! `[valve]`.
 
-use super::Supply;
+use super::DeclaredSupply;
 use super::key::{key, plain};
 use super::visitor::Visitor;
-use crate::catalogue::Kind;
+use crate::catalogue::CatalogueKind;
 use phea_hydraulics::servovalve::LeakageModel;
 use phea_quantity::{
     ANGULAR_FREQUENCY, FLOW, FLOW_COEFFICIENT, PRESSURE, RATIO, TIME, VOLTAGE, VOLTAGE_RATE,
@@ -173,12 +173,16 @@ impl EdgeCoefficients {
 
 impl Valve {
     /// Pa, drop from supply to tank at which the tare flow is stated.
-    pub fn tare_drop(&self, supply: &Supply) -> f64 {
+    pub fn tare_drop(&self, supply: &DeclaredSupply) -> f64 {
         self.tare_pressure.unwrap_or(supply.pressure - supply.tank_pressure)
     }
 
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
-        v.catalogue(plain("model", "Name of a valve of the catalogue."), Kind::Valve, &mut self.model);
+        v.catalogue(
+            plain("model", "Name of a valve of the catalogue."),
+            CatalogueKind::Valve,
+            &mut self.model,
+        );
         let k = key("nominal_voltage", &VOLTAGE, "Command of full opening.").positive().or(10.0);
         v.quantity(k, &mut self.nominal_voltage);
         let k = key("natural_frequency", &ANGULAR_FREQUENCY, "Natural frequency of the spool's dynamics.");

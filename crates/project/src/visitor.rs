@@ -5,7 +5,7 @@
 
 use super::formula::Formula;
 use super::key::Key;
-use crate::catalogue::Kind;
+use crate::catalogue::CatalogueKind;
 
 /// A choice with keys of its own for each of its variants.
 pub(crate) trait Variants: Clone {
@@ -65,7 +65,7 @@ pub(crate) trait Visitor: Sized {
     /// A formula; required if `required`.
     fn formula(&mut self, key: Key, shape: FormulaShape, field: &mut Option<Formula>, required: bool);
     /// The name of a catalogue entry, whose values serve where the table itself is silent.
-    fn catalogue(&mut self, key: Key, kind: Kind, field: &mut Option<String>);
+    fn catalogue(&mut self, key: Key, kind: CatalogueKind, field: &mut Option<String>);
     /// A table that may be absent.
     fn table<T: Default>(&mut self, key: Key, field: &mut Option<T>, visit: impl Fn(&mut T, &mut Self));
     /// A table that must be there.
@@ -100,7 +100,7 @@ pub(crate) trait Visitor: Sized {
         key: Key,
         name_of: fn(&T) -> &str,
         field: &mut Vec<T>,
-        visit: impl Fn(&mut T, Named<'_>, &mut Self),
+        visit: impl Fn(&mut T, NamedNumber<'_>, &mut Self),
     );
     /// The present table as a list of names and numbers.
     fn numbers(&mut self, key: Key, field: &mut Vec<(String, f64)>);
@@ -113,7 +113,7 @@ pub(crate) trait Visitor: Sized {
         visit: impl Fn(&mut T, &mut Self),
     );
     /// In which of its forms the key's value is written; a reader looks, everyone else goes by the `field`'s form.
-    fn form(&mut self, key: Key, field: Form) -> Form;
+    fn form(&mut self, key: Key, field: ValueForm) -> ValueForm;
 }
 
 /// Kinds of a thing of which one is chosen.
@@ -127,7 +127,7 @@ pub(crate) struct Kinds {
 
 /// A number of the project, named by the user.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Named<'a> {
+pub(crate) struct NamedNumber<'a> {
     /// As written.
     pub(crate) name: &'a str,
     /// Its dimension and range.
@@ -149,7 +149,7 @@ pub(crate) enum FormulaShape {
 
 /// The form of a value, where more than one is accepted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Form {
+pub(crate) enum ValueForm {
     /// A number, bare or with its unit in text.
     Number,
     /// A text that is no quantity.

@@ -7,10 +7,11 @@
     reason = "helpers of tests may fail the test"
 )]
 
-use phea_project::catalogue::{self, Kind};
+use phea_project::catalogue::{self, CatalogueKind};
 use phea_project::source::Memory;
 use phea_project::{
-    self as project, Component, Cylinder, HoseExpansion, Line, Loaded, Origin, Project, Refusal, STARTER,
+    self as project, Component, DeclaredCylinder, DeclaredLine, HoseExpansion, Loaded, Origin, Project,
+    Refusal, STARTER,
 };
 
 fn read(text: &str) -> Result<Loaded, Refusal> {
@@ -198,14 +199,14 @@ fn catalogues_are_added_and_every_number_has_a_source() {
     assert_eq!(report.diagnostics.len(), 3);
 
     let own = catalogue::load(&Memory::default(), &[]).expect("built in");
-    for kind in [Kind::Hose, Kind::Valve] {
+    for kind in [CatalogueKind::Hose, CatalogueKind::Valve] {
         for entry in own.entries(kind) {
             assert!(entry.file.contains(&format!("{}s/{}.toml", kind.name(), entry.name)), "{}", entry.file);
         }
     }
     // Read as a user's files, so that everything wrong with one is reported.
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("catalogue");
-    for kind in [Kind::Hose, Kind::Valve] {
+    for kind in [CatalogueKind::Hose, CatalogueKind::Valve] {
         let files = std::fs::read_dir(folder.join(format!("{}s", kind.name()))).expect("a folder");
         let files: Vec<_> = files.map(|file| file.expect("a file").path()).collect();
         assert_eq!(own.names(kind).len(), files.len());
@@ -291,7 +292,7 @@ fn a_side_inherits_what_it_does_not_say() {
         });
     let lines = |project: &Project| project.actuator.clone().expect("a rig").line;
     let (piped, narrowed) = (lines(&pipe), lines(&own));
-    let bore = |line: &Line| line.hose().map(|hose| hose.bore);
+    let bore = |line: &DeclaredLine| line.hose().map(|hose| hose.bore);
     assert_eq!(bore(&piped.a), Some(0.013));
     assert!(
         matches!(&piped.b.component, Component::Pipe { pipe, length } if pipe.bore == 0.01 && *length == 1.5)
@@ -311,15 +312,22 @@ fn a_side_inherits_what_it_does_not_say() {
 
 #[test]
 fn areas_come_from_diameters_or_stand_for_themselves() {
-    let diameters =
-        Cylinder { piston_diameter: Some(0.05), rod_diameter: Some(0.022), ..Cylinder::default() };
+    let diameters = DeclaredCylinder {
+        piston_diameter: Some(0.05),
+        rod_diameter: Some(0.022),
+        ..DeclaredCylinder::default()
+    };
     let [area_a, area_b] = diameters.effective_areas_m2();
     // ORIGIN: analytic, pi/4 (0.05^2 - 0.022^2) = 1.58336e-3
     assert!((area_a - 1.58336e-3).abs() < 0.5e-8 && area_a == area_b);
     // An area is what the pressure acts on: a rod given beside it takes nothing away.
-    let area = Cylinder { piston_area: Some(1.583e-3), rod_diameter: Some(0.022), ..Cylinder::default() };
+    let area = DeclaredCylinder {
+        piston_area: Some(1.583e-3),
+        rod_diameter: Some(0.022),
+        ..DeclaredCylinder::default()
+    };
     assert_eq!(area.effective_areas_m2(), [1.583e-3; 2]);
     assert!((area.piston_diameter_m() - 0.05).abs() < 1e-5);
-    let areas = Cylinder { piston_areas: Some([2e-3, 1e-3]), ..Cylinder::default() };
+    let areas = DeclaredCylinder { piston_areas: Some([2e-3, 1e-3]), ..DeclaredCylinder::default() };
     assert_eq!(areas.effective_areas_m2(), [2e-3, 1e-3]);
 }

@@ -22,7 +22,7 @@ use phea_qft::design::{
     ControllerChoice, Design, DesignOptions, DesignProblem, DesignStatus, Objective, PrefilterChoice, design,
 };
 use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, grid};
-use phea_qft::loop_shaping::{Part, Structure};
+use phea_qft::loop_shaping::{Structure, StructureFactor};
 use phea_qft::specification::{Limit, Requirement, Specification};
 use phea_qft::verification::TOLERANCE_DB;
 
@@ -109,8 +109,8 @@ fn timed(task: &Task, problem: &DesignProblem, seed: u64) -> Result<(f64, Design
 fn options(task: &Task, seed: u64) -> DesignOptions {
     let (corner, damping_ratio) = ([0.1, 1e5], task.damping_ratio);
     let parts = vec![
-        Part::RealZero { frequency: corner },
-        Part::PolePair { natural_frequency: corner, damping_ratio },
+        StructureFactor::RealZero { frequency: corner },
+        StructureFactor::PolePair { natural_frequency: corner, damping_ratio },
     ];
     DesignOptions {
         objective: Objective::LeastHighFrequencyGain,

@@ -23,7 +23,7 @@ use phea_dynamics::watch::unwatched;
 use phea_qft::audit::audit;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, vertices};
-use phea_qft::proof::{Claim, Panel, ProofOptions, check, prove};
+use phea_qft::proof::{Claim, FrequencyPanel, ProofOptions, check, prove};
 use phea_qft::specification::{Limit, Requirement, Specification};
 use phea_qft::verification::{AuditProblem, TOLERANCE_DB, TrackingJudgement};
 
@@ -163,7 +163,7 @@ fn proved(uncertain: usize, margin_db: f64) -> Result<(Effort, f64, f64), Failur
     let check_s = begun.elapsed().as_secs_f64();
     let limited = certificate.claims.iter().find_map(|claim| match claim {
         Claim::Limited { ratio, boxes, .. } => {
-            Some((*ratio, boxes.iter().flatten().map(Panel::leaves).sum()))
+            Some((*ratio, boxes.iter().flatten().map(FrequencyPanel::leaves).sum()))
         }
         _ => None,
     });

@@ -12,7 +12,7 @@ mod result;
 mod run;
 mod stabilising;
 
-pub use attempt::DesignError;
+pub use attempt::LoopDesignError;
 pub use candidates::gain_range;
 pub use diagnosis::{Constraint, ConstraintPlace, Finding, FindingSeverity, Party, SharedLimit, diagnose};
 pub use problem::{ControllerChoice, DesignOptions, DesignProblem, Objective, PrefilterChoice};

@@ -22,4 +22,4 @@ pub use samples::{Samples, SamplesError, search_frequencies};
 pub use search::{Aim, Judgement, MarginRow, SearchProblem, Slopes};
 pub use shaping::{SampledMargin, Shaping};
 pub use start::{DescentEnd, SearchOptions, SearchResult, SearchStatus, search};
-pub use structure::{Part, Structure, StructureResponse};
+pub use structure::{Structure, StructureFactor, StructureResponse};

@@ -16,4 +16,4 @@ mod reach;
 pub use chart::{DesignChart, DesignMargin, DesignPoint};
 pub use edit::{Edit, EditError, apply};
 pub use passing::{PassError, WantedPoint, pass_through};
-pub use reach::{Pattern, Reach};
+pub use reach::{ElementPattern, Reach};

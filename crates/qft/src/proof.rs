@@ -40,12 +40,13 @@ mod supremum;
 mod walk;
 
 pub use certificate::{
-    Bound, Certificate, CertifiedPlant, Claim, Count, LEAF, Late, Law, LimitOf, Limited, Member, Panel,
-    Quotient, Sampling, Sections, Segment, Side, StableBox,
+    Certificate, CertificateMember, CertificateSide, CertifiedPlant, Claim, ControlLaw, FrequencyPanel, LEAF,
+    Late, LimitOf, LimitedLoop, ParameterSegment, PoleCount, Quotient, RollOffBound, Sampling, Sections,
+    StableBox,
 };
 pub use checker::{Rejection, check};
 pub use prove::{ProofOptions, prove};
-pub use walk::Region;
+pub use walk::ProofRegion;
 
 use crate::verification::WorstCase;
 
@@ -108,7 +109,7 @@ pub enum NotProven {
     /// The loop is not shown to be stable, and closed loops mean nothing.
     Unstable,
     /// So many leaves did not suffice; this part remains.
-    Budget(Region),
+    Budget(ProofRegion),
     /// The ratio grows without an end that was found.
     Unbounded,
     /// No plant of the box could be shown to be stable, nor unstable.

@@ -39,7 +39,7 @@ use crate::closed_loop::{Compensation, Member};
 use characteristic::Characteristic;
 pub(crate) use characteristic::FeedbackPath;
 pub(crate) use measured::{is_stable as is_stable_by_points, points_with_sensor};
-use responding::Count;
+use responding::PoleCounting;
 pub(crate) use responding::own_poles;
 
 /// To four significant digits, as a reader wants it.
@@ -240,7 +240,7 @@ fn of_member(member: &Member, compensation: &Compensation, path: &FeedbackPath) 
         Some(Ok(characteristic)) => of_characteristic(&characteristic),
         Some(Err(reason)) => MemberStability::not_resolved(reason),
         None if matches!(member, Member::Responding { .. }) => {
-            responding::stability(member, compensation, Count::Enclosed)
+            responding::stability(member, compensation, PoleCounting::Enclosed)
         }
         None => measured::stability(member, compensation),
     }

@@ -13,7 +13,7 @@ mod scan;
 mod search;
 mod start;
 
-pub(crate) use asymptote::{End, tracking_ratio};
+pub(crate) use asymptote::{AxisEnd, tracking_ratio};
 pub use audit::{AuditProblem, AuditWork, TOLERANCE_DB, TrackingJudgement, audit_specifications};
 pub(crate) use audit::{audit_among, corners};
 pub(crate) use minimum::between;

@@ -13,7 +13,9 @@ use phea_dynamics::uncertain_plant::{
 use phea_qft::bound::Placement;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, grid};
-use phea_qft::manual_shaping::{DesignChart, Edit, PassError, Pattern, WantedPoint, apply, pass_through};
+use phea_qft::manual_shaping::{
+    DesignChart, Edit, ElementPattern, PassError, WantedPoint, apply, pass_through,
+};
 use phea_qft::specification::{Limit, Requirement, Specification};
 use phea_qft::template::{TemplateOptions, template};
 use phea_qft::verification::TrackingJudgement;
@@ -36,21 +38,21 @@ impl Shares {
     }
 }
 
-const PATTERNS: [Pattern; 14] = [
-    Pattern::Gain,
-    Pattern::RealPole,
-    Pattern::RealZero,
-    Pattern::Lead,
-    Pattern::Lag,
-    Pattern::ComplexPoles,
-    Pattern::ComplexZeros,
-    Pattern::RollOff { damping_ratio: 0.3 },
-    Pattern::RollOff { damping_ratio: 0.8 },
-    Pattern::RollOff { damping_ratio: 2.5 },
-    Pattern::ProportionalIntegral,
-    Pattern::NotchHere { pole_damping_ratio: 0.6 },
-    Pattern::NotchBeside { natural_frequency: 0.5 },
-    Pattern::NotchBeside { natural_frequency: 1e4 },
+const PATTERNS: [ElementPattern; 14] = [
+    ElementPattern::Gain,
+    ElementPattern::RealPole,
+    ElementPattern::RealZero,
+    ElementPattern::Lead,
+    ElementPattern::Lag,
+    ElementPattern::ComplexPoles,
+    ElementPattern::ComplexZeros,
+    ElementPattern::RollOff { damping_ratio: 0.3 },
+    ElementPattern::RollOff { damping_ratio: 0.8 },
+    ElementPattern::RollOff { damping_ratio: 2.5 },
+    ElementPattern::ProportionalIntegral,
+    ElementPattern::NotchHere { pole_damping_ratio: 0.6 },
+    ElementPattern::NotchBeside { natural_frequency: 0.5 },
+    ElementPattern::NotchBeside { natural_frequency: 1e4 },
 ];
 
 fn polar(decibels: f64, degrees: f64) -> Complex64 {
@@ -82,8 +84,11 @@ fn every_solved_element_passes_its_point() {
             let frequency = 10_f64.powf(shares.between(0.0, 3.0));
             let [present_db, present_deg] = [shares.between(-40.0, 40.0), shares.between(-360.0, 0.0)];
             let [raise, turn] = [shares.between(-30.0, 30.0), shares.between(-179.0, 180.0)];
-            let wants =
-                if matches!(pattern, Pattern::Gain | Pattern::NotchHere { .. }) { 0 } else { round % 3 };
+            let wants = if matches!(pattern, ElementPattern::Gain | ElementPattern::NotchHere { .. }) {
+                0
+            } else {
+                round % 3
+            };
             let wanted = WantedPoint {
                 frequency_rad_per_s: frequency,
                 magnitude_db: (wants != 1).then_some(present_db + raise),
@@ -115,7 +120,10 @@ fn every_solved_element_passes_its_point() {
                 Err(other) => panic!("{pattern:?}: {other}"),
             }
         }
-        assert!(passed > 50 && (refused > 50 || pattern == Pattern::Gain), "{pattern:?} {passed} {refused}");
+        assert!(
+            passed > 50 && (refused > 50 || pattern == ElementPattern::Gain),
+            "{pattern:?} {passed} {refused}"
+        );
     }
 }
 
@@ -131,15 +139,15 @@ fn the_ends_of_what_can_be_reached_are_where_they_are_said_to_be() {
         pass_through(pattern, &wanted, Complex64::new(1.0, 0.0), &Timing::default())
     };
     let lift = -20.0 * 60_f64.to_radians().cos().log10();
-    let beside = Pattern::NotchBeside { natural_frequency: 20.0 };
+    let beside = ElementPattern::NotchBeside { natural_frequency: 20.0 };
     for (pattern, edge_db, inward_db, edge_deg, inward_deg) in [
-        (Pattern::Lead, lift, 0.01_f64, 60.0, 0.0),
-        (Pattern::Lag, -lift, -0.01, -60.0, 0.0),
-        (Pattern::ComplexPoles, -lift, 0.01, -60.0, 0.0),
-        (Pattern::ComplexPoles, -40.0, 0.0, -180.0, 0.01),
-        (Pattern::ComplexZeros, lift, -0.01, 60.0, 0.0),
-        (Pattern::ProportionalIntegral, 3.0, 0.0, -90.0, 0.01),
-        (Pattern::ProportionalIntegral, 3.0, 0.0, 0.0, -0.01),
+        (ElementPattern::Lead, lift, 0.01_f64, 60.0, 0.0),
+        (ElementPattern::Lag, -lift, -0.01, -60.0, 0.0),
+        (ElementPattern::ComplexPoles, -lift, 0.01, -60.0, 0.0),
+        (ElementPattern::ComplexPoles, -40.0, 0.0, -180.0, 0.01),
+        (ElementPattern::ComplexZeros, lift, -0.01, 60.0, 0.0),
+        (ElementPattern::ProportionalIntegral, 3.0, 0.0, -90.0, 0.01),
+        (ElementPattern::ProportionalIntegral, 3.0, 0.0, 0.0, -0.01),
         (beside, -lift, -0.01, -60.0, 0.0),
     ] {
         let outside = at(pattern, edge_db - inward_db, edge_deg - inward_deg);
@@ -159,7 +167,7 @@ fn a_real_pole_reaches_its_curve_and_says_so() {
     };
     let solved = |magnitude_db| {
         let one = Complex64::new(1.0, 0.0);
-        pass_through(Pattern::RealPole, &wanted(magnitude_db), one, &Timing::default())
+        pass_through(ElementPattern::RealPole, &wanted(magnitude_db), one, &Timing::default())
     };
     let Ok(Element::RealPole { frequency }) = solved(-10.0 * 2_f64.log10()) else { panic!() };
     assert!((frequency - 10.0).abs() < 1e-12);
@@ -178,33 +186,33 @@ fn what_an_element_cannot_do_is_said_in_words() {
     };
     let continuous = Timing::default();
     assert_eq!(
-        message(Pattern::Lead, Some(0.0), Some(-30.0), continuous),
+        message(ElementPattern::Lead, Some(0.0), Some(-30.0), continuous),
         "a lead turns the loop by more than 0 and less than 90 degrees; the point needs +120 degrees"
     );
     assert_eq!(
-        message(Pattern::Lead, Some(-9.0), Some(-110.0), continuous),
+        message(ElementPattern::Lead, Some(-9.0), Some(-110.0), continuous),
         "a lead, turning it by +40 degrees, raises the loop by more than +2.315 dB; the point needs +1 dB"
     );
     assert_eq!(
-        message(Pattern::Gain, Some(0.0), Some(-140.0), continuous),
+        message(ElementPattern::Gain, Some(0.0), Some(-140.0), continuous),
         "a gain leaves the phase as it is; the point needs +10 degrees"
     );
     assert_eq!(
-        message(Pattern::RealZero, Some(-12.0), None, continuous),
+        message(ElementPattern::RealZero, Some(-12.0), None, continuous),
         "a real zero raises the loop by more than 0 dB; the point needs -2 dB"
     );
     assert_eq!(
-        message(Pattern::Lag, Some(-12.0), None, continuous),
+        message(ElementPattern::Lag, Some(-12.0), None, continuous),
         "a lag needs magnitude and phase of the point"
     );
     assert_eq!(
-        message(Pattern::NotchHere { pole_damping_ratio: 0.5 }, None, Some(-170.0), continuous),
+        message(ElementPattern::NotchHere { pole_damping_ratio: 0.5 }, None, Some(-170.0), continuous),
         "a notch at this frequency needs the magnitude of the point"
     );
     let held =
         Timing { sample_time_s: Some(0.01), discretization: Discretization::Matched, ..Timing::default() };
     assert_eq!(
-        message(Pattern::Lag, Some(-12.0), Some(-160.0), held),
+        message(ElementPattern::Lag, Some(-12.0), Some(-160.0), held),
         "in a sampled loop an element is solved for with the discretization `tustin` alone"
     );
 }

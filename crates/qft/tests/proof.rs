@@ -12,7 +12,8 @@ use phea_qft::audit::audit;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, vertices};
 use phea_qft::proof::{
-    Certificate, Claim, Late, Law, LimitOf, Panel, Proof, ProofOptions, Standing, check, prove,
+    Certificate, Claim, ControlLaw, FrequencyPanel, Late, LimitOf, Proof, ProofOptions, Standing, check,
+    prove,
 };
 use phea_qft::specification::{Limit, LimitTable, Requirement, Specification};
 use phea_qft::stability::{StabilityStatus, member_stability};
@@ -317,11 +318,11 @@ fn a_certificate_that_was_tampered_with_is_rejected() {
     assert!(altered(&|other| other.plant.boxes[0][0].low /= 10.0));
     // another controller
     assert!(altered(&|other| {
-        if let Law::Continuous(law) = &mut other.feedback {
+        if let ControlLaw::Continuous(law) = &mut other.feedback {
             law.numerator[1] *= 2.0;
         }
     }));
-    let each_panel = |certificate: &mut Certificate, change: &dyn Fn(&mut Vec<Panel>)| {
+    let each_panel = |certificate: &mut Certificate, change: &dyn Fn(&mut Vec<FrequencyPanel>)| {
         for claim in &mut certificate.claims {
             match claim {
                 Claim::Stable(boxes) => boxes.iter_mut().for_each(|one| change(&mut one.panels)),
@@ -466,7 +467,7 @@ fn a_certificate_that_overflows_is_rejected() {
         check(&other).is_err()
     };
     assert!(rejects(&|other| {
-        if let Law::Continuous(law) = &mut other.prefilter {
+        if let ControlLaw::Continuous(law) = &mut other.prefilter {
             law.denominator = vec![0.0];
         }
     }));

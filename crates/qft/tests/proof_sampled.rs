@@ -10,7 +10,7 @@ use phea_dynamics::watch::unwatched;
 use phea_qft::audit::audit;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, vertices};
-use phea_qft::proof::{Certificate, Claim, Law, Proof, ProofOptions, Standing, check, prove};
+use phea_qft::proof::{Certificate, Claim, ControlLaw, Proof, ProofOptions, Standing, check, prove};
 use phea_qft::specification::{Limit, Requirement, Specification};
 use phea_qft::verification::{AuditProblem, TOLERANCE_DB, TrackingJudgement};
 
@@ -170,18 +170,18 @@ fn a_certificate_of_a_sampled_loop_that_was_tampered_with_is_rejected() {
     assert!(altered(&|other| other.sampling.as_mut().unwrap().sample_time_s *= 4.0));
     assert!(altered(&|other| other.plant.delay_s *= 10.0));
     assert!(altered(&|other| {
-        if let Law::Sampled(sections) = &mut other.feedback {
+        if let ControlLaw::Sampled(sections) = &mut other.feedback {
             sections.gain *= 2.0;
         }
     }));
     assert!(altered(&|other| {
-        if let Law::Sampled(sections) = &mut other.feedback {
+        if let ControlLaw::Sampled(sections) = &mut other.feedback {
             sections.denominator[0][1] -= 0.1;
         }
     }));
     // a prefilter with a pole on the circle
     assert!(altered(&|other| {
-        if let Law::Sampled(sections) = &mut other.prefilter {
+        if let ControlLaw::Sampled(sections) = &mut other.prefilter {
             sections.denominator.push(vec![1.0, 2.0]);
         }
     }));

@@ -74,7 +74,7 @@ pub fn parse(text: &str, dimension: &Dimension) -> Result<f64, QuantityError> {
         error.expected = error.expected.or_else(expected);
         error
     };
-    let number = Number::read(text).map_err(with_expected)?;
+    let number = DecimalNumber::read(text).map_err(with_expected)?;
     let unit_start = number.end + text[number.end..].len() - text[number.end..].trim_start().len();
     let unit_text = text[unit_start..].trim_end();
     let unit_range = unit_start..unit_start + unit_text.len();
@@ -82,11 +82,11 @@ pub fn parse(text: &str, dimension: &Dimension) -> Result<f64, QuantityError> {
         return unitless(text, &number, dimension).map_err(with_expected);
     }
     if unit_text == "dB" && std::ptr::eq(dimension, &GAIN) {
-        let decibels = number.times(&Product::default(), text).map_err(with_expected)?;
+        let decibels = number.times(&UnitProduct::default(), text).map_err(with_expected)?;
         return finite(phea_dynamics::scalar::Scalar::exp(decibels * LN_10 / 20.0), text);
     }
     let product =
-        Reader { text, at: unit_start, end: unit_range.end, factors: 0 }.unit().map_err(with_expected)?;
+        UnitReader { text, at: unit_start, end: unit_range.end, factors: 0 }.unit().map_err(with_expected)?;
     if !accepts(dimension, product.exponents) {
         let message = format!("expected {}, found {}", dimension.name, name_of(product.exponents));
         return Err(with_expected(QuantityError::new(message, unit_range)));
@@ -94,9 +94,9 @@ pub fn parse(text: &str, dimension: &Dimension) -> Result<f64, QuantityError> {
     number.times(&product, text).map_err(with_expected)
 }
 
-fn unitless(text: &str, number: &Number, dimension: &Dimension) -> Result<f64, QuantityError> {
+fn unitless(text: &str, number: &DecimalNumber, dimension: &Dimension) -> Result<f64, QuantityError> {
     if number.infinite || dimension.exponents == Exponents::NONE {
-        return number.times(&Product::default(), text);
+        return number.times(&UnitProduct::default(), text);
     }
     let bare = text.trim();
     let message = "this number has no unit";
@@ -127,7 +127,7 @@ fn finite(value: f64, text: &str) -> Result<f64, QuantityError> {
 }
 
 /// A decimal number, as written.
-struct Number {
+struct DecimalNumber {
     negative: bool,
     infinite: bool,
     digits: String,
@@ -135,8 +135,8 @@ struct Number {
     end: usize,
 }
 
-impl Number {
-    fn read(text: &str) -> Result<Number, QuantityError> {
+impl DecimalNumber {
+    fn read(text: &str) -> Result<DecimalNumber, QuantityError> {
         let start = text.len() - text.trim_start().len();
         let bytes = text.as_bytes();
         let mut at = start;
@@ -146,7 +146,13 @@ impl Number {
         }
         let negative = sign == Some(b'-');
         if text[at..].trim_end() == "inf" {
-            return Ok(Number { negative, infinite: true, digits: String::new(), ten: 0, end: text.len() });
+            return Ok(DecimalNumber {
+                negative,
+                infinite: true,
+                digits: String::new(),
+                ten: 0,
+                end: text.len(),
+            });
         }
         let take = |from: usize| from + bytes[from..].iter().take_while(|b| b.is_ascii_digit()).count();
         let whole_end = take(at);
@@ -157,7 +163,7 @@ impl Number {
             digits.push_str(&text[whole_end + 1..end]);
         }
         if digits.is_empty() {
-            return Err(Number::missing(text, start));
+            return Err(DecimalNumber::missing(text, start));
         }
         let mut ten = -i64::try_from(end - whole_end).unwrap_or(0).saturating_sub(1).max(0);
         if matches!(bytes.get(end), Some(b'e' | b'E')) {
@@ -175,7 +181,7 @@ impl Number {
             let error = QuantityError::new("a comma inside a number", end..end + 1);
             return Err(error.help("write the decimal sign as a point and no separators"));
         }
-        Ok(Number { negative, infinite: false, digits, ten, end })
+        Ok(DecimalNumber { negative, infinite: false, digits, ten, end })
     }
 
     fn missing(text: &str, start: usize) -> QuantityError {
@@ -184,7 +190,7 @@ impl Number {
         QuantityError::new(message, start..start + rest)
     }
 
-    fn times(&self, product: &Product, text: &str) -> Result<f64, QuantityError> {
+    fn times(&self, product: &UnitProduct, text: &str) -> Result<f64, QuantityError> {
         if self.infinite {
             return Ok(if self.negative { f64::NEG_INFINITY } else { f64::INFINITY });
         }
@@ -207,7 +213,7 @@ impl Number {
 
 /// A product of units: `over / under · 10^ten · rounded`.
 #[derive(Clone, Debug)]
-struct Product {
+struct UnitProduct {
     exponents: Exponents,
     over: Vec<u64>,
     under: Vec<u64>,
@@ -215,23 +221,23 @@ struct Product {
     rounded: f64,
 }
 
-impl Default for Product {
+impl Default for UnitProduct {
     fn default() -> Self {
-        Product { exponents: Exponents::NONE, over: Vec::new(), under: Vec::new(), ten: 0, rounded: 1.0 }
+        UnitProduct { exponents: Exponents::NONE, over: Vec::new(), under: Vec::new(), ten: 0, rounded: 1.0 }
     }
 }
 
-impl Product {
-    fn of(unit: &Unit) -> Product {
+impl UnitProduct {
+    fn of(unit: &Unit) -> UnitProduct {
         let rounded = if unit.turns == 1 { TAU } else { 1.0 };
         let (over, under) = (vec![unit.numerator], vec![unit.denominator]);
-        Product { exponents: unit.exponents, over, under, ten: i64::from(unit.ten), rounded }
+        UnitProduct { exponents: unit.exponents, over, under, ten: i64::from(unit.ten), rounded }
     }
 
     /// To the power of `halves`/2.
-    fn power(&self, halves: i32) -> Option<Product> {
+    fn power(&self, halves: i32) -> Option<UnitProduct> {
         let exponents = self.exponents.to_halves(i8::try_from(halves).ok()?)?;
-        let mut result = Product::default();
+        let mut result = UnitProduct::default();
         let half = halves % 2 != 0;
         if half {
             let mut square = Whole::from_digits("1");
@@ -249,8 +255,8 @@ impl Product {
         Some(result)
     }
 
-    fn inverse(&self) -> Product {
-        Product {
+    fn inverse(&self) -> UnitProduct {
+        UnitProduct {
             exponents: Exponents(self.exponents.0.map(|exponent| -exponent)),
             over: self.under.clone(),
             under: self.over.clone(),
@@ -259,7 +265,7 @@ impl Product {
         }
     }
 
-    fn times(mut self, other: &Product) -> Option<Product> {
+    fn times(mut self, other: &UnitProduct) -> Option<UnitProduct> {
         for (sum, term) in self.exponents.0.iter_mut().zip(other.exponents.0) {
             *sum = sum.checked_add(term)?;
         }
@@ -272,15 +278,15 @@ impl Product {
 }
 
 /// Reads a unit from left to right.
-struct Reader<'a> {
+struct UnitReader<'a> {
     text: &'a str,
     at: usize,
     end: usize,
     factors: usize,
 }
 
-impl Reader<'_> {
-    fn unit(&mut self) -> Result<Product, QuantityError> {
+impl UnitReader<'_> {
+    fn unit(&mut self) -> Result<UnitProduct, QuantityError> {
         let product = self.product(true)?;
         if self.at < self.end {
             let range = self.at..self.at + self.peek().map_or(0, char::len_utf8);
@@ -300,7 +306,7 @@ impl Reader<'_> {
         spaces > 0
     }
 
-    fn product(&mut self, group_allowed: bool) -> Result<Product, QuantityError> {
+    fn product(&mut self, group_allowed: bool) -> Result<UnitProduct, QuantityError> {
         let mut result = self.factor(group_allowed)?;
         let mut divided = false;
         loop {
@@ -329,7 +335,7 @@ impl Reader<'_> {
         }
     }
 
-    fn factor(&mut self, group_allowed: bool) -> Result<Product, QuantityError> {
+    fn factor(&mut self, group_allowed: bool) -> Result<UnitProduct, QuantityError> {
         self.factors += 1;
         let start = self.at;
         if self.factors > MAXIMUM_FACTORS {
@@ -356,12 +362,12 @@ impl Reader<'_> {
         }
     }
 
-    fn named(&mut self) -> Result<Product, QuantityError> {
+    fn named(&mut self) -> Result<UnitProduct, QuantityError> {
         let start = self.at;
         let unity = self.text[self.at..self.end].strip_prefix('1').map(str::trim_start);
         if unity.is_some_and(|rest| rest.starts_with('/')) {
             self.at += 1;
-            return Ok(Product::default());
+            return Ok(UnitProduct::default());
         }
         let letters = |c: &char| c.is_alphabetic() || matches!(c, '%' | '°');
         let length: usize =
@@ -372,7 +378,7 @@ impl Reader<'_> {
         }
         self.at += length;
         let name = &self.text[start..self.at];
-        unit::find(name).map(|unit| Product::of(&unit)).ok_or_else(|| unknown(name, start..self.at))
+        unit::find(name).map(|unit| UnitProduct::of(&unit)).ok_or_else(|| unknown(name, start..self.at))
     }
 
     /// The exponent in halves; `None` if it is absent.

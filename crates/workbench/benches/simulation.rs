@@ -16,7 +16,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use phea_dynamics::simulation::{
-    Input, InputSchedule, Observer, Outcome, Profile, Sampler, Settings, Status, Task,
+    Input, InputSchedule, Observer, Outcome, Profile, Sampler, SimulationSettings, Status, Task,
 };
 use phea_engineering::simulate;
 use phea_hydraulics::machine::StartValues;
@@ -122,7 +122,7 @@ fn read(text: &str) -> Result<Project, Fault> {
 /// What runs of one project share: the kernel that the command runs, compiled as for the command.
 struct Bench {
     control: Control,
-    settings: Settings,
+    settings: SimulationSettings,
     start: Vec<f64>,
     course: InputSchedule,
     stiffness: f64,
@@ -130,7 +130,7 @@ struct Bench {
 
 impl Bench {
     fn new(project: &Project) -> Result<Bench, Fault> {
-        let shared = simulate::Bench::new(&Setup::new(project)?)?;
+        let shared = simulate::ControlledMachine::new(&Setup::new(project)?)?;
         let scenario = project.scenarios.first().ok_or("no scenario")?;
         let stated = scenario.start.as_ref().ok_or("no start")?;
         let beginning = shared.machine.start(&StartValues {
@@ -161,7 +161,7 @@ impl Bench {
     }
 
     fn run(&self, tolerance: f64) -> Result<(Outcome, Vec<[f64; 2]>), Fault> {
-        let settings = Settings { tolerance, ..self.settings };
+        let settings = SimulationSettings { tolerance, ..self.settings };
         let log = RefCell::default();
         let sampler = match &self.control {
             Control::Sampled(sampled) => {

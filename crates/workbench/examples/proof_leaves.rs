@@ -9,7 +9,7 @@ use phea_workbench::figure::Figure;
 use phea_workbench::figure::axis::Axis;
 use phea_workbench::figure::colour::{Role, series_marker, series_role};
 use phea_workbench::figure::legend::LegendEntry;
-use phea_workbench::figure::plot::{Direction, Mark, Marker, MarkerStyle, Panel, Plot};
+use phea_workbench::figure::plot::{AxisDirection, Mark, Marker, MarkerStyle, Panel, Plot};
 use phea_workbench::figure::scene::{Dash, Stroke};
 
 const MEASURED: &str = include_str!("../../../benches/peers/proof_leaves.csv");
@@ -50,7 +50,7 @@ fn figure() -> Figure {
     let not_shown = MarkerStyle { marker: Marker::OpenSquare, ..series_marker(1) };
     let marks = vec![
         Mark::Reference {
-            direction: Direction::Y,
+            direction: AxisDirection::Y,
             at: BOXES_MAXIMUM,
             stroke: Stroke::solid(Role::Muted, 1.2).dashed(Dash::Dashed),
             label: String::new(),

@@ -9,7 +9,7 @@ use phea_workbench::figure::Figure;
 use phea_workbench::figure::axis::Axis;
 use phea_workbench::figure::colour::{Role, series_marker, series_role};
 use phea_workbench::figure::legend::LegendEntry;
-use phea_workbench::figure::plot::{Direction, Mark, Panel, Plot};
+use phea_workbench::figure::plot::{AxisDirection, Mark, Panel, Plot};
 use phea_workbench::figure::scene::{Dash, Stroke};
 
 const MEASURED: &str = include_str!("../../../benches/peers/work_precision.csv");
@@ -44,7 +44,7 @@ fn points(controller: &str, method: &str) -> Vec<(f64, f64)> {
 fn figure() -> Figure {
     let panel = |controller: &str, title: &str| {
         let mut marks = vec![Mark::Reference {
-            direction: Direction::X,
+            direction: AxisDirection::X,
             at: 0.02,
             stroke: Stroke::solid(Role::Muted, 1.2).dashed(Dash::Dashed),
             label: "0.02 N".to_string(),

@@ -41,13 +41,13 @@ use crate::derived::{self, derive};
 use crate::figure::{Figure, FigureError};
 use crate::linear_loop::{LinearLoop, LoopStability, StepView, linear_loop_of, settling_words};
 use crate::linearize::{Linearization, linearize};
-use crate::project::{Actuator, Loaded, Project, Signal};
+use crate::project::{DeclaredActuator, Loaded, Project, Signal};
 use crate::quantity::DisplayUnit;
 use crate::setup::Setup;
 use crate::sizing::{Question, Sizing, SizingProblem, size};
 use crate::source::Source;
 
-use driven::Driven;
+use driven::MachineChapter;
 use judged::Judged;
 use opening::{Contents, opening};
 use page::Page;
@@ -98,7 +98,7 @@ pub fn report(
     let campaign = campaign::driven(source, loaded, watch)?;
 
     let mut facts = rig.as_ref().map(|rig| rig.facts.clone()).unwrap_or_default();
-    let mut results: Facts = driven.iter().flat_map(Driven::facts).collect();
+    let mut results: Facts = driven.iter().flat_map(MachineChapter::facts).collect();
     results.extend(campaign.as_ref().and_then(|campaign| campaign.fact.clone()));
     let contents = Contents {
         setup,
@@ -213,7 +213,7 @@ struct RigPart {
 
 fn rig_part(
     setup: &Setup<'_>,
-    actuator: &Actuator,
+    actuator: &DeclaredActuator,
     problem: Option<&SizingProblem>,
 ) -> Result<RigPart, CommandError> {
     let (project, rig, sensor) = (setup.project, setup.rig()?, &setup.sensor);

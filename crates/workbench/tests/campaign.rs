@@ -10,8 +10,8 @@ use std::path::Path;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::Field;
 use phea_workbench::campaign::{
-    CampaignError, Effort, METRIC_NAMES, Plan, Row, RowOutcome, RowStore, STATUS_WORDS, Shard, Summary,
-    Wanted,
+    CampaignError, Effort, METRIC_NAMES, Plan, RequestedRuns, Row, RowOutcome, RowStore, STATUS_WORDS, Shard,
+    Summary,
 };
 use phea_workbench::command::{self, CampaignRequest, CampaignRuns, CommandError, ProcedureError, Request};
 use phea_workbench::project::{self, Loaded};
@@ -206,7 +206,7 @@ impl RowStore for Page {
 }
 
 fn request(runs: u64, shard: Shard) -> CampaignRequest {
-    let wanted = Wanted { runs, shard, effort: lanes(2) };
+    let wanted = RequestedRuns { runs, shard, effort: lanes(2) };
     CampaignRequest { seed: 1, asked: CampaignRuns::All(wanted), files: false }
 }
 

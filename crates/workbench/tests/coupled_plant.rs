@@ -92,7 +92,7 @@ fn the_load_feels_the_leakage_and_not_itself() {
 fn satisfied(settings: &[&str]) -> Project {
     let mut project = loaded(HOSE, settings);
     project.specifications.truncate(1);
-    project.specifications[0].limit = Some(project::Limit::Constant(1000.0));
+    project.specifications[0].limit = Some(project::DeclaredLimit::Constant(1000.0));
     project
 }
 
@@ -303,7 +303,7 @@ fn a_family_that_does_not_contain_the_rig_says_so_first() {
     let range = "uncertainty.flow_gain={ nominal = 2.5e-5, minimum = 2.4e-5, maximum = 2.6e-5 }";
     let mut far = satisfied(&[range]);
     far.uncertainty.retain(|uncertain| uncertain.name == "flow_gain");
-    far.specifications[0].limit = Some(project::Limit::Constant(2.0));
+    far.specifications[0].limit = Some(project::DeclaredLimit::Constant(2.0));
     let view = audited(&far);
     assert_eq!(view.audit.verdict, Verdict::NotProven);
     assert_eq!(view.audit.specifications[0].verdict, Verdict::Met);

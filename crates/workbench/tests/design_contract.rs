@@ -7,7 +7,7 @@ use crate::ask::{HOSE, answer, json, load, try_answer};
 use phea_qft::design::{
     ControllerChoice, DesignOptions, DesignProblem, Objective, PrefilterChoice, diagnose,
 };
-use phea_qft::loop_shaping::{Part, Structure};
+use phea_qft::loop_shaping::{Structure, StructureFactor};
 use phea_workbench::audit::AuditError;
 use phea_workbench::command::{CommandError, ProcedureError, Request};
 use phea_workbench::design::{DesignError, Explanation, design_options, design_problem};
@@ -41,10 +41,12 @@ fn the_section_becomes_what_a_design_begins_with() {
     assert_eq!((*sign, *gain, parts.len()), (-1.0, [0.1, 100.0], 6));
     // ORIGIN: analytic, 1 Hz
     let pair = [std::f64::consts::TAU, 100.0];
-    assert!(matches!(&parts[2], Part::ZeroPair { natural_frequency, .. } if *natural_frequency == pair));
-    assert_eq!(parts[3], Part::RealPole { frequency: [10.0, 2000.0] });
+    assert!(
+        matches!(&parts[2], StructureFactor::ZeroPair { natural_frequency, .. } if *natural_frequency == pair)
+    );
+    assert_eq!(parts[3], StructureFactor::RealPole { frequency: [10.0, 2000.0] });
     // around the design frequencies, 0.1 and 1 rad/s, where the project says nothing
-    let Part::RealZero { frequency: [low, high] } = parts[1] else { panic!("{parts:?}") };
+    let StructureFactor::RealZero { frequency: [low, high] } = parts[1] else { panic!("{parts:?}") };
     assert!(low < 0.1 && high > 1.0, "{low} {high}");
     // a prefilter beside a controller without a law is kept
     let PrefilterChoice::Given(kept) = &options.prefilter else { panic!("{options:?}") };

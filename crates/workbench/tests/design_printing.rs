@@ -14,7 +14,7 @@ use phea_qft::design::{
     BindingLimit, Conflict, ControllerChoice, Design, DesignProblem, DesignRound, DesignStatus,
     PrefilterChoice, Relaxation,
 };
-use phea_qft::loop_shaping::{Part, Structure};
+use phea_qft::loop_shaping::{Structure, StructureFactor};
 use phea_qft::verification::{AuditProblem, PlantPoint, TOLERANCE_DB, TrackingJudgement, Verdict};
 use phea_workbench::audit::audit_project;
 use phea_workbench::command::{Request, answer};
@@ -67,7 +67,10 @@ fn design(problem: &DesignProblem, coefficients: CoefficientFormat, status: Desi
     let structure = Structure {
         sign: 1.0,
         gain: [0.1, 100.0],
-        parts: vec![Part::RealZero { frequency: [1.0, 100.0] }, Part::RealPole { frequency: [10.0, 1000.0] }],
+        parts: vec![
+            StructureFactor::RealZero { frequency: [1.0, 100.0] },
+            StructureFactor::RealPole { frequency: [10.0, 1000.0] },
+        ],
     };
     let plant = PlantPoint::Parameters(vec![20.0]);
     Design {
@@ -306,12 +309,12 @@ fn what_a_setting_says_beside_the_law_is_written_with_it() {
         ratio: RationalFunction { gain: Some(2.0), ..RationalFunction::default() },
         ..Transfer::default()
     };
-    view.declared_controller = project::Controller {
+    view.declared_controller = project::DeclaredController {
         transfer: transfer.clone(),
         sample_time: Some(1e-3),
         quantization: Some(Quantization { command_bits: 12, ..Quantization::default() }),
         load_velocity_feed_forward: Some(FeedForward { gain: Some(3.0) }),
-        ..project::Controller::default()
+        ..project::DeclaredController::default()
     };
     view.declared_prefilter = Some(Prefilter { transfer, continuous: true, ..Prefilter::default() });
     loaded.bytes = text.as_bytes().to_vec();

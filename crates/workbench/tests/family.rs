@@ -10,7 +10,7 @@
 use num_complex::Complex64;
 use phea_dynamics::portable;
 use phea_qft::family::{Extent, Family, UncertainFamily};
-use phea_workbench::family::{FamilyError, family};
+use phea_workbench::family::{ProjectFamilyError, family};
 use phea_workbench::project::{self, Project};
 use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
@@ -27,7 +27,7 @@ fn loaded(text: &str) -> Project {
     project::read(&source, "p.toml", &[], &[]).unwrap_or_else(|report| panic!("{report}")).project
 }
 
-fn found(text: &str) -> Result<Family, FamilyError> {
+fn found(text: &str) -> Result<Family, ProjectFamilyError> {
     family(&Setup::new(&loaded(text)).unwrap(), &Memory::default())
 }
 
@@ -114,7 +114,7 @@ fn correlated_parameters_move_together() {
 fn members_without_a_possible_dead_time_are_refused() {
     let text = SERVO.replace("T + 1e-3", "T - (a - 3)/1e3");
     let error = found(&text).unwrap_err();
-    assert!(matches!(error, FamilyError::Delay { delay_s, .. } if delay_s == -1e-3), "{error}");
+    assert!(matches!(error, ProjectFamilyError::Delay { delay_s, .. } if delay_s == -1e-3), "{error}");
     assert_eq!(error.to_string(), "[plant] `delay` is -0.001 s at k = 1, a = 4, b = 4, T = 0");
 }
 

@@ -5,7 +5,7 @@
 use phea_dynamics::uncertain_plant::{RationalCoefficients, UncertainParameter, UncertainPlant};
 use phea_hydraulics::linear::{LinearParameters, linear_model_coefficients};
 use phea_qft::family::Family;
-use phea_workbench::family::{FamilyError, family};
+use phea_workbench::family::{ProjectFamilyError, family};
 use phea_workbench::project::{self, LINEAR_PARAMETERS, Project, Random, Uncertain};
 use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
@@ -18,8 +18,11 @@ fn loaded(text: &str) -> Project {
 const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");
 
 /// The plant of the family, of which few members are looked at: their grid may be large.
-fn recorded(project: &Project) -> Result<UncertainPlant, FamilyError> {
-    let few = project::Family { random: Some(Random { count: 1, seed: 1 }), ..project::Family::default() };
+fn recorded(project: &Project) -> Result<UncertainPlant, ProjectFamilyError> {
+    let few = project::DeclaredFamily {
+        random: Some(Random { count: 1, seed: 1 }),
+        ..project::DeclaredFamily::default()
+    };
     let project = Project { family: Some(few), ..project.clone() };
     match family(&Setup::new(&project).unwrap(), &Memory::default())? {
         Family::Uncertain(family) => Ok(family.plant().clone()),

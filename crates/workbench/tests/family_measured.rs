@@ -11,14 +11,14 @@ use num_complex::Complex64;
 use phea_dynamics::portable;
 use phea_qft::family::{Family, MeasuredFamily};
 use phea_workbench::command::{Request, answer};
-use phea_workbench::family::{FamilyError, family};
+use phea_workbench::family::{ProjectFamilyError, family};
 use phea_workbench::project;
 use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 
 const PROJECT: &str = "schema = 1\n[family]\nmeasured = [\"a.csv\"]\n";
 
-fn read(text: &str, csv: impl Into<Vec<u8>>) -> Result<Family, FamilyError> {
+fn read(text: &str, csv: impl Into<Vec<u8>>) -> Result<Family, ProjectFamilyError> {
     let source = Memory::default().with("rigs/p.toml", text).with("rigs/a.csv", csv);
     let loaded = project::read(&source, "rigs/p.toml", &[], &[]).unwrap_or_else(|report| panic!("{report}"));
     family(&Setup::new(&loaded.project).unwrap(), &source)
@@ -123,7 +123,7 @@ fn the_first_file_is_the_nominal_plant_and_poles_are_counted() {
 /// Findings as `line:column message; expected; help`.
 #[track_caller]
 fn refuses(csv: impl Into<Vec<u8>>, expected: &[&str]) {
-    let Err(FamilyError::Measurement(report)) = read(PROJECT, csv) else { panic!("accepted") };
+    let Err(ProjectFamilyError::Measurement(report)) = read(PROJECT, csv) else { panic!("accepted") };
     let found: Vec<String> = report
         .diagnostics
         .iter()
@@ -220,7 +220,7 @@ fn files_that_are_none_are_told() {
 fn a_limit_on_load_motion_needs_its_columns() {
     let wish = "[[specification]]\nkind = \"load_motion\"\nlimit = 1\nfrequencies = [1]\n";
     let error = read(&format!("{PROJECT}{wish}"), "frequency_hz,real,imaginary\n1,1,0\n").unwrap_err();
-    assert_eq!(error, FamilyError::LoadMotion("a.csv".to_string()));
+    assert_eq!(error, ProjectFamilyError::LoadMotion("a.csv".to_string()));
 }
 
 /// `check` reads the files too, and says what it found.

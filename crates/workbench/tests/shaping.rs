@@ -5,7 +5,7 @@
 
 use crate::ask::{answer, json, try_answer};
 use phea_workbench::command::{CommandError, ProcedureError, Request};
-use phea_workbench::project::{self, Element, ElementKind, Loaded};
+use phea_workbench::project::{self, DeclaredElement, ElementKind, Loaded};
 use phea_workbench::shaping::{Change, RequestedChange, Shaped};
 use phea_workbench::source::Memory;
 use serde_json::Value;
@@ -39,7 +39,7 @@ fn read(text: &str) -> Loaded {
         .unwrap_or_else(|report| panic!("{report}\n{text}"))
 }
 
-fn elements(text: &str) -> Vec<Element> {
+fn elements(text: &str) -> Vec<DeclaredElement> {
     read(text).project.controller.map(|controller| controller.transfer.as_elements()).unwrap_or_default()
 }
 
@@ -115,13 +115,13 @@ fn everything_else_stays_byte_for_byte() {
         let declared = elements(&saved);
         assert_eq!(declared.len(), elements(&text).len() + 1, "{saved}");
         assert_eq!(declared[..declared.len() - 1], elements(&text)[..], "{saved}");
-        let printed: Vec<String> = declared.iter().map(Element::print).collect();
+        let printed: Vec<String> = declared.iter().map(DeclaredElement::print).collect();
         let shown = found["elements"].as_array().unwrap().iter();
         assert_eq!(shown.map(|row| row["element"].as_str().unwrap()).collect::<Vec<_>>(), printed);
         let before = read(&text).project.controller.unwrap_or_default();
         let after = read(&saved).project.controller.unwrap();
         let transfer = before.transfer.clone();
-        assert_eq!(project::Controller { transfer, ..after }, before, "{saved}");
+        assert_eq!(project::DeclaredController { transfer, ..after }, before, "{saved}");
         assert_eq!(saved.contains('\r'), text.contains('\r'));
         let bare = saved.replace("\r\n", "");
         assert!(!text.contains('\r') || !bare.contains(['\r', '\n']), "{saved:?}");

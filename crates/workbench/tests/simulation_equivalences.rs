@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 use num_complex::Complex64;
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::simulation::{
-    CommandedPlant, Input, InputSchedule, Observer, Profile, Sensed, Settings, Status, Task,
+    CommandedPlant, Input, InputSchedule, Observer, Profile, Sensed, SimulationSettings, Status, Task,
 };
 use phea_hydraulics::machine::{Machine, MachineOptions};
 use phea_machine::{Control, Watcher};
@@ -84,7 +84,7 @@ fn small_signal(rig: &Rig, shaken: &Shaken, amplitude: f64, frequency: f64) -> C
         output_step_s: period / ROWS_PER_PERIOD,
         inputs,
     };
-    let settings = Settings { tolerance: 1e-9, ..Settings::default() };
+    let settings = SimulationSettings { tolerance: 1e-9, ..SimulationSettings::default() };
     let mut forces = Forces::default();
     let task = Task {
         start: rest.state,

@@ -9,7 +9,7 @@ use phea_workbench::catalogue::Catalogue;
 use phea_workbench::project::{self, KeyEntry, Project};
 use phea_workbench::rig::{Rig, sizing_problem};
 use phea_workbench::setup::Setup;
-use phea_workbench::simulate::Bench;
+use phea_workbench::simulate::ControlledMachine;
 use phea_workbench::sizing::{Question, size};
 use phea_workbench::source::Memory;
 
@@ -170,7 +170,7 @@ fn computed(project: &Project) -> [Option<String>; PARTS.len()] {
         [0.3, 20.0, 400.0, 1000.0, 3000.0].map(at).concat()
     });
     // the machine of a bench stands behind its rig, and before what a scenario adds
-    let machine = Bench::new(&setup).ok().map(|bench| {
+    let machine = ControlledMachine::new(&setup).ok().map(|bench| {
         let all = format!("{bench:?}");
         all[all.find(", machine: ").unwrap()..].to_string()
     });

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use phea_workbench::answer::Answer;
-use phea_workbench::campaign::{Effort, Nowhere, RowStore, Shard, Wanted};
+use phea_workbench::campaign::{Effort, Nowhere, RequestedRuns, RowStore, Shard};
 use phea_workbench::command::{self, CampaignRequest, CampaignRuns, Request};
 use phea_workbench::source::Destination;
 
@@ -35,7 +35,7 @@ pub(super) fn request(
     let threads = threads.map_or_else(all, usize::from);
     let asked = match (run, runs) {
         (Some(run), _) => CampaignRuns::One(run),
-        (None, runs) => CampaignRuns::All(Wanted {
+        (None, runs) => CampaignRuns::All(RequestedRuns {
             runs: runs.unwrap_or_default(),
             shard,
             effort: Effort { threads, ..Effort::default() },
@@ -54,7 +54,7 @@ pub(super) fn answered(common: &Common, asked: &CampaignRequest) -> Result<(Answ
     let mut table = match (&common.out, asked.asked) {
         (Some(folder), CampaignRuns::All(wanted)) => {
             let path = folder.join(format!("{}.csv", wanted.shard.name()));
-            Some(Table::open(&path).map_err(|message| failed(&request, &loaded, &message))?)
+            Some(LockedTable::open(&path).map_err(|message| failed(&request, &loaded, &message))?)
         }
         _ => None,
     };
@@ -84,15 +84,15 @@ pub(super) fn answered(common: &Common, asked: &CampaignRequest) -> Result<(Answ
 }
 
 /// A file that grows at its end, and that nobody else writes meanwhile: the system releases the lock with the process.
-struct Table {
+struct LockedTable {
     path: PathBuf,
     file: File,
     /// Until when the disk was told to keep all of it.
     kept: Instant,
 }
 
-impl Table {
-    fn open(path: &Path) -> Result<Table, String> {
+impl LockedTable {
+    fn open(path: &Path) -> Result<LockedTable, String> {
         if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
             fs::create_dir_all(folder).map_err(|error| unwritten(folder, &error))?;
         }
@@ -108,7 +108,7 @@ impl Table {
                 format!("cannot lock {}: {error}; choose a folder on another disk", path.display())
             }
         })?;
-        Ok(Table { path: path.to_path_buf(), file, kept: Instant::now() })
+        Ok(LockedTable { path: path.to_path_buf(), file, kept: Instant::now() })
     }
 
     fn explain(&self, error: &std::io::Error) -> String {
@@ -129,7 +129,7 @@ impl Table {
     }
 }
 
-impl RowStore for Table {
+impl RowStore for LockedTable {
     fn kept(&mut self) -> Result<String, String> {
         let mut text = String::new();
         let read = self.file.rewind().and_then(|()| self.file.read_to_string(&mut text));

@@ -6,7 +6,7 @@ use phea_workbench::answer::Answer;
 use phea_workbench::command::{self, IdentifyError, IdentifyRequest, LeakageModel, Request};
 
 use super::{load, styled};
-use crate::arguments::{LeakageWord, Recorded};
+use crate::arguments::{IdentifyArguments, LeakageWord};
 use crate::failure::Failure;
 use crate::file_system::FileSystem;
 use crate::interruption::Interruption;
@@ -14,7 +14,7 @@ use crate::output::write;
 use crate::voice::ProgressLine;
 
 /// The answer, and the files that were written.
-pub(super) fn answered(recorded: &Recorded) -> Result<(Answer, Vec<PathBuf>), Failure> {
+pub(super) fn answered(recorded: &IdentifyArguments) -> Result<(Answer, Vec<PathBuf>), Failure> {
     let project = recorded.project.as_ref().map(|path| path.to_string_lossy());
     let loaded = project.map(|path| load(&path, &recorded.settings, &[], &Request::Bench)).transpose()?;
     let asked = IdentifyRequest {

@@ -11,7 +11,7 @@ use std::time::Instant;
 
 use phea_dynamics::controller::{AntiWindup, Compensator, Controller, Element};
 use phea_dynamics::simulation::{
-    CommandedPlant, Input, InputSchedule, Plant, Profile, Settings, System, simulate,
+    CommandedPlant, Input, InputSchedule, Plant, Profile, SimulationSettings, System, simulate,
 };
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::cylinder::Cylinder;
@@ -61,7 +61,7 @@ fn main() {
     for word in &words {
         let tolerance: f64 = word.parse().expect("a tolerance");
         let begun = Instant::now();
-        let settings = Settings { tolerance, ..Settings::default() };
+        let settings = SimulationSettings { tolerance, ..SimulationSettings::default() };
         if let Ok(run) = simulate(&closed, &state, &course, None, &settings, &mut |_| true) {
             let rows: Vec<f64> = run.trajectory.states.iter().map(force).collect();
             let work = run.outcome.work;

@@ -1,7 +1,9 @@
 //! phea's method and CVODE on the same equations, inputs and samples.
 
 use phea_dynamics::scalar::Scalar;
-use phea_dynamics::simulation::{Input, InputSchedule, Profile, Sampler, Settings, Status, System, simulate};
+use phea_dynamics::simulation::{
+    Input, InputSchedule, Profile, Sampler, SimulationSettings, Status, System, simulate,
+};
 use sundials::{CvodeError, Following, Method, follow};
 
 /// y'' = mu (1 - y^2) y' - y + w1 + c w2, with a load's motion w1 and its velocity w2, and a command.
@@ -88,7 +90,7 @@ fn a_stiff_oscillator_moves_alike_under_both_methods() {
     for motion in &motions {
         for mu in [0.1, 5.0, 100.0] {
             let (system, course) = (Oscillator { mu }, course(motion, 0.05));
-            let settings = Settings { tolerance: 1e-10, ..Settings::default() };
+            let settings = SimulationSettings { tolerance: 1e-10, ..SimulationSettings::default() };
             let ours = simulate(&system, &[1.5, 0.0], &course, None, &settings, &mut |_| true).unwrap();
             assert_eq!(ours.outcome.status, Status::Completed);
             let rows = follow(
@@ -114,7 +116,7 @@ fn samples_and_late_commands_act_alike() {
     for (output_step_s, delay_s) in [(0.05, 0.0), (0.05, 0.013), (0.07, 0.031)] {
         let (system, course) = (Oscillator { mu: 2.0 }, course(&motion, output_step_s));
         let mut feedback = Feedback { gain: 3.0, sample_time_s: 0.025, delay_s };
-        let settings = Settings { tolerance: 1e-10, ..Settings::default() };
+        let settings = SimulationSettings { tolerance: 1e-10, ..SimulationSettings::default() };
         let sampler = Box::new(Feedback { ..feedback });
         let ours = simulate(&system, &[1.5, 0.0], &course, Some(sampler), &settings, &mut |_| true).unwrap();
         let rows =

@@ -2,12 +2,12 @@
 //! bisection.
 
 /// A function of frequency with its slope (only the slope's sign is used).
-pub(super) struct Curve<V, S> {
+pub(super) struct SlopedFunction<V, S> {
     pub(super) value: V,
     pub(super) slope: S,
 }
 
-impl<V: Fn(f64) -> f64, S: Fn(f64) -> f64> Curve<V, S> {
+impl<V: Fn(f64) -> f64, S: Fn(f64) -> f64> SlopedFunction<V, S> {
     /// All frequencies at which the value changes sign or touches zero. Two crossings between
     /// neighbouring grid points are found by the extremum that must lie between them.
     pub(super) fn zeros(&self, grid: &[f64]) -> Vec<f64> {

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use num_complex::Complex64;
 
-use super::crossings::Curve;
+use super::crossings::SlopedFunction;
 use super::decibels;
 use super::grid::{rotation_limit, search_grid};
 use crate::linear::{TimeDomain, TransferFunction};
@@ -177,7 +177,7 @@ fn gain_margins(open_loop: &TransferFunction, grid: &[f64]) -> Vec<GainMargin> {
         while level <= highest {
             // a response that runs along the negative axis does not cross it
             if ends.iter().any(|phase| (phase - level).abs() > 1e-12) {
-                let curve = Curve {
+                let curve = SlopedFunction {
                     value: |w: f64| open_loop.phase_rad(w) - level,
                     slope: |w: f64| logarithmic_slope(open_loop, w).im,
                 };
@@ -225,7 +225,7 @@ fn gain_margins_at_the_ends(open_loop: &TransferFunction) -> Vec<GainMargin> {
 }
 
 fn phase_margins(open_loop: &TransferFunction, grid: &[f64]) -> Vec<PhaseMargin> {
-    let curve = Curve {
+    let curve = SlopedFunction {
         value: |w: f64| ln(magnitude(open_loop.at_frequency(w))),
         slope: |w: f64| logarithmic_slope(open_loop, w).re,
     };
@@ -246,7 +246,7 @@ fn phase_margin(open_loop: &TransferFunction, frequency_rad_per_s: f64) -> Phase
 fn modulus_margin(open_loop: &TransferFunction, grid: &[f64]) -> ModulusMargin {
     let one = Complex64::new(1.0, 0.0);
     let distance = |w: f64| magnitude(one + open_loop.at_frequency(w));
-    let curve = Curve {
+    let curve = SlopedFunction {
         value: distance,
         slope: |w: f64| {
             let value = open_loop.at_frequency(w);

@@ -66,12 +66,12 @@ impl Held {
             return Err(unbounded);
         }
         let held = if fraction_s == 0.0 {
-            let whole = Step::new(&plant, sample_time_s);
+            let whole = HeldStep::new(&plant, sample_time_s);
             Held::assembled(plant, &whole.transition, whole.input, None)
         } else {
             let rest_s = sample_time_s - fraction_s;
-            let late = Step::new(&plant, rest_s);
-            let other = (rest_s != fraction_s).then(|| Step::new(&plant, fraction_s));
+            let late = HeldStep::new(&plant, rest_s);
+            let other = (rest_s != fraction_s).then(|| HeldStep::new(&plant, fraction_s));
             let early = other.as_ref().unwrap_or(&late);
             let previous = late.transition.times_column(&early.input);
             let whole = late.transition.times(&early.transition);
@@ -122,13 +122,13 @@ impl Held {
 
     /// N at a point; `None` at a pole.
     pub(super) fn numerator(&self, z: ComplexDoubleDouble) -> Option<ComplexDoubleDouble> {
-        let local = Arch::new().dispatch(Evaluation { held: self, z, with_slope: false })?;
+        let local = Arch::new().dispatch(VectorizedResponse { held: self, z, with_slope: false })?;
         Some(local.value * local.determinant)
     }
 
     /// `None` at a pole.
     pub(super) fn at(&self, z: ComplexDoubleDouble) -> Option<Local> {
-        Arch::new().dispatch(Evaluation { held: self, z, with_slope: true })
+        Arch::new().dispatch(VectorizedResponse { held: self, z, with_slope: true })
     }
 
     /// b(z)
@@ -157,7 +157,7 @@ impl Held {
 
     /// (z I - Phi)^-1 b in the place of b, from the last state to the first.
     #[inline(always)]
-    fn substitute(&self, blocks: &[Block], states: &mut WideColumn) {
+    fn substitute(&self, blocks: &[InvertedBlock], states: &mut WideColumn) {
         for (block, inverted) in self.diagonal.iter().zip(blocks) {
             let (upper, lower) = (states.get(block.first), states.get(block.last));
             if block.first == block.last {
@@ -206,7 +206,7 @@ fn diagonal_blocks(transition: &Wide) -> Vec<DiagonalBlock> {
 }
 
 /// A diagonal block of z I - Phi, inverted.
-struct Block {
+struct InvertedBlock {
     diagonal: [ComplexDoubleDouble; 2],
     determinant: ComplexDoubleDouble,
     inverse: ComplexDoubleDouble,
@@ -215,7 +215,7 @@ struct Block {
 impl DiagonalBlock {
     /// Within z I - Phi; `None` where it is singular.
     #[inline(always)]
-    fn inverted(&self, z: ComplexDoubleDouble) -> Option<Block> {
+    fn inverted(&self, z: ComplexDoubleDouble) -> Option<InvertedBlock> {
         let diagonal = self.diagonal.map(|entry| z - entry.into());
         let determinant = if self.first == self.last {
             diagonal[0]
@@ -224,24 +224,24 @@ impl DiagonalBlock {
         };
         let singular = determinant.value() == Complex64::new(0.0, 0.0);
         let inverse = ComplexDoubleDouble::from(1.0).divided_by(determinant);
-        (!singular).then_some(Block { diagonal, determinant, inverse })
+        (!singular).then_some(InvertedBlock { diagonal, determinant, inverse })
     }
 }
 
 /// The response of a plant at a point, with the instructions of the processor at hand; its slope is
 /// zero where it is not asked for.
-struct Evaluation<'a> {
+struct VectorizedResponse<'a> {
     held: &'a Held,
     z: ComplexDoubleDouble,
     with_slope: bool,
 }
 
-impl WithSimd for Evaluation<'_> {
+impl WithSimd for VectorizedResponse<'_> {
     type Output = Option<Local>;
 
     #[inline(always)]
     fn with_simd<D: Simd>(self, _: D) -> Option<Local> {
-        let Evaluation { held, z, with_slope } = self;
+        let VectorizedResponse { held, z, with_slope } = self;
         let mut blocks = Vec::with_capacity(held.diagonal.len());
         let mut determinant = ComplexDoubleDouble::from(1.0);
         for block in &held.diagonal {
@@ -266,19 +266,19 @@ impl WithSimd for Evaluation<'_> {
 }
 
 /// exp(A h), and the effect of a constant input over h.
-struct Step {
+struct HeldStep {
     transition: Wide,
     input: Vec<DoubleDouble>,
 }
 
-impl Step {
-    fn new(plant: &Chain, time: f64) -> Step {
+impl HeldStep {
+    fn new(plant: &Chain, time: f64) -> HeldStep {
         let order = plant.taps.len();
         let mut augmented = DMatrix::zeros(order + 1, order + 1);
         augmented.view_mut((0, 0), (order, order)).copy_from(&plant.a);
         augmented.view_mut((0, order), (order, 1)).copy_from(&plant.b);
         let result = exponential(&augmented, time);
-        Step {
+        HeldStep {
             transition: Wide::from_fn(order, |i, j| result.entry(i, j)),
             input: (0..order).map(|i| result.entry(i, order)).collect(),
         }

@@ -13,14 +13,14 @@ use super::{LinearError, Polynomial, StateSpace, TransferFunction};
 
 /// gain (s - r_1) (s - r_2) ...
 #[derive(Clone)]
-struct Factors {
+struct RootFactors {
     gain: f64,
     roots: Vec<Complex64>,
 }
 
-impl Factors {
+impl RootFactors {
     fn product(gain: f64, left: &[Complex64], right: &[Complex64]) -> Self {
-        Factors { gain, roots: [left, right].concat() }
+        RootFactors { gain, roots: [left, right].concat() }
     }
 
     /// Value and derivative at s.
@@ -37,7 +37,7 @@ impl Factors {
 
     /// The factors of the sum of two products. Leading and trailing coefficients that cancel to
     /// rounding are zero.
-    fn sum(&self, other: &Factors) -> Result<Factors, LinearError> {
+    fn sum(&self, other: &RootFactors) -> Result<RootFactors, LinearError> {
         let (left, right) = (expand(self.gain, &self.roots), expand(other.gain, &other.roots));
         let length = left.len().max(right.len());
         let padded = |c: &[DoubleDouble], i: usize| {
@@ -56,7 +56,7 @@ impl Factors {
         coefficients.iter_mut().zip(&negligible).rev().take_while(|(_, small)| **small).for_each(clear);
         let polynomial = Polynomial::new(coefficients);
         if polynomial.is_zero() {
-            return Ok(Factors { gain: 0.0, roots: Vec::new() });
+            return Ok(RootFactors { gain: 0.0, roots: Vec::new() });
         }
         let mut roots = polynomial.roots()?;
         refine(&mut roots, 6, |s| {
@@ -64,7 +64,7 @@ impl Factors {
             let step = (a + b).value() / (a_slope + b_slope).value();
             step.is_finite().then_some(step)
         });
-        Ok(Factors { gain: polynomial.leading_coefficient(), roots: symmetrise(&roots) })
+        Ok(RootFactors { gain: polynomial.leading_coefficient(), roots: symmetrise(&roots) })
     }
 }
 
@@ -98,8 +98,8 @@ impl TransferFunction {
                 None => only_self.push(pole),
             }
         }
-        let left = Factors::product(self.gain(), self.zeros(), &only_other);
-        let right = Factors::product(other.gain(), other.zeros(), &only_self);
+        let left = RootFactors::product(self.gain(), self.zeros(), &only_other);
+        let right = RootFactors::product(other.gain(), other.zeros(), &only_self);
         let numerator = left.sum(&right)?;
         let poles = [self.poles(), &only_other].concat();
         TransferFunction::assembled(numerator.gain, numerator.roots, poles, domain)
@@ -117,8 +117,8 @@ impl TransferFunction {
         if self.dead_time_s() != 0.0 || other.dead_time_s() != 0.0 {
             return Err(LinearError::NotRational { operation: "a closed loop" });
         }
-        let open = Factors::product(1.0, self.poles(), other.poles());
-        let loop_numerator = Factors::product(self.gain() * other.gain(), self.zeros(), other.zeros());
+        let open = RootFactors::product(1.0, self.poles(), other.poles());
+        let loop_numerator = RootFactors::product(self.gain() * other.gain(), self.zeros(), other.zeros());
         let characteristic = open.sum(&loop_numerator)?;
         let degree = open.roots.len().max(loop_numerator.roots.len());
         if characteristic.roots.len() < degree || characteristic.gain == 0.0 {

@@ -59,7 +59,7 @@ pub(super) fn chain_of(system: &TransferFunction) -> Result<Chain, LinearError> 
     for pole in slowest_first(poles, system.domain()) {
         let (quotient, remainder) = divided(&numerator, &denominator(pole));
         numerator = quotient;
-        chain.push(Section { pole, remainder, exponent: exponent_of(pole) });
+        chain.push(ChainSection { pole, remainder, exponent: exponent_of(pole) });
     }
     let feedthrough = if zeros.len() == poles.len() { system.gain() } else { 0.0 };
     Ok(states_of(&chain, poles.len(), feedthrough))
@@ -74,7 +74,7 @@ pub(crate) fn delay_states(samples: f64) -> Result<usize, LinearError> {
 }
 
 /// A real pole or a complex pair (by its upper member), with its digit of the numerator.
-struct Section {
+struct ChainSection {
     pole: Complex64,
     remainder: Vec<DoubleDouble>,
     /// Its input and its inner coupling are multiplied by this power of two, near the magnitude of
@@ -120,7 +120,7 @@ fn divided(dividend: &[DoubleDouble], divisor: &[DoubleDouble]) -> (Vec<DoubleDo
 ///
 /// With w = 2^exponent a section with input v has the state x = w v/(s - p), or the two states x_1 = w^2 v/d and
 /// x_2 = w (s - sigma) v/d; x or x_1 is its output.
-fn states_of(chain: &[Section], order: usize, feedthrough: f64) -> Chain {
+fn states_of(chain: &[ChainSection], order: usize, feedthrough: f64) -> Chain {
     let mut a = DMatrix::zeros(order, order);
     let mut b = DMatrix::zeros(order, 1);
     let mut taps = vec![DoubleDouble::ZERO; order];

@@ -64,10 +64,10 @@ pub(crate) type WideVector = Vec<ComplexDoubleDouble>;
 pub(crate) struct Resolvent<'a> {
     matrix: &'a DMatrix<f64>,
     s: Complex64,
-    blocks: Vec<Block>,
+    blocks: Vec<StructureBlock>,
 }
 
-struct Block {
+struct StructureBlock {
     states: Vec<usize>,
     units: DVector<f64>,
     factors: LU<Complex64, Dyn, Dyn>,
@@ -83,7 +83,7 @@ impl<'a> Resolvent<'a> {
             let units = balance(&mut balanced);
             let shifted = DMatrix::from_diagonal_element(size, size, s)
                 - balanced.map(|entry| Complex64::new(entry, 0.0));
-            Block { states, units, factors: shifted.lu() }
+            StructureBlock { states, units, factors: shifted.lu() }
         };
         Resolvent { matrix, s, blocks: irreducible_blocks(matrix).into_iter().map(block).collect() }
     }

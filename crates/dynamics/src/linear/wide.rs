@@ -8,12 +8,12 @@ const LANES: usize = 4;
 
 /// A few numbers of twice the working precision, all first parts before all second ones.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Several {
+pub(super) struct WideNumbers {
     high: [f64; LANES],
     low: [f64; LANES],
 }
 
-impl Several {
+impl WideNumbers {
     #[inline(always)]
     pub(super) fn get(&self, lane: usize) -> DoubleDouble {
         DoubleDouble { high: self.high[lane], low: self.low[lane] }
@@ -26,7 +26,7 @@ impl Several {
 
     /// Adds the product of one number with others.
     #[inline(always)]
-    pub(super) fn add_product(&mut self, left: DoubleDouble, right: &Several) {
+    pub(super) fn add_product(&mut self, left: DoubleDouble, right: &WideNumbers) {
         for lane in 0..LANES {
             self.set(lane, self.get(lane) + left * right.get(lane));
         }
@@ -38,7 +38,7 @@ pub(super) struct Wide {
     order: usize,
     /// Of a row.
     groups: usize,
-    entries: Vec<Several>,
+    entries: Vec<WideNumbers>,
 }
 
 impl Wide {
@@ -59,14 +59,14 @@ impl Wide {
 
     /// The numbers of a row.
     #[inline(always)]
-    pub(super) fn row(&self, row: usize) -> &[Several] {
+    pub(super) fn row(&self, row: usize) -> &[WideNumbers] {
         &self.entries[row * self.groups..(row + 1) * self.groups]
     }
 
     #[inline(always)]
     fn zero(order: usize) -> Self {
         let groups = order.div_ceil(LANES);
-        Wide { order, groups, entries: vec![Several::default(); order * groups] }
+        Wide { order, groups, entries: vec![WideNumbers::default(); order * groups] }
     }
 
     #[inline(always)]
@@ -143,14 +143,14 @@ impl Wide {
 /// A column of complex numbers in twice the working precision.
 #[derive(Clone)]
 pub(super) struct WideColumn {
-    re: Vec<Several>,
-    im: Vec<Several>,
+    re: Vec<WideNumbers>,
+    im: Vec<WideNumbers>,
 }
 
 impl WideColumn {
     #[inline(always)]
     pub(super) fn zero(order: usize) -> Self {
-        let none = vec![Several::default(); order.div_ceil(LANES)];
+        let none = vec![WideNumbers::default(); order.div_ceil(LANES)];
         WideColumn { re: none.clone(), im: none }
     }
 
@@ -169,7 +169,7 @@ impl WideColumn {
 
     /// Adds the product of one number with the first of these real ones.
     #[inline(always)]
-    pub(super) fn add_product(&mut self, left: ComplexDoubleDouble, right: &[Several], count: usize) {
+    pub(super) fn add_product(&mut self, left: ComplexDoubleDouble, right: &[WideNumbers], count: usize) {
         let groups = count.div_ceil(LANES);
         for (group, right) in right.iter().take(groups).enumerate() {
             self.re[group].add_product(left.re, right);

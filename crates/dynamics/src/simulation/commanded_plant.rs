@@ -28,13 +28,13 @@ use crate::scalar::Scalar;
 pub struct CommandedPlant<P> {
     plant: P,
     /// Absent behind a hold.
-    law: Option<Law>,
+    law: Option<ContinuousLaw>,
     prefilter: Realization,
 }
 
 /// A continuous controller, its prefilter apart.
 #[derive(Clone, Debug, PartialEq)]
-struct Law {
+struct ContinuousLaw {
     feedback: Realization,
     /// Reads the integral part of the command off the states of G.
     integral: Vec<f64>,
@@ -44,7 +44,7 @@ struct Law {
     delay_s: f64,
 }
 
-impl Law {
+impl ContinuousLaw {
     /// What drives the states of G.
     #[inline(always)]
     fn driving<T: Scalar>(&self, signals: &LoopSignals<T>) -> T {
@@ -92,7 +92,7 @@ impl<P> CommandedPlant<P> {
         }
         let limit = controller.command_limit.unwrap_or(f64::INFINITY);
         let delay_s = controller.timing.delay_s;
-        let law = Law { feedback, integral, limit, anti_windup, feed_forward, delay_s };
+        let law = ContinuousLaw { feedback, integral, limit, anti_windup, feed_forward, delay_s };
         Ok(CommandedPlant { plant, law: Some(law), prefilter })
     }
 
@@ -129,7 +129,7 @@ impl<P> CommandedPlant<P> {
     /// The same loop without a limit of the command, and so without anti-windup.
     #[must_use]
     pub fn unlimited(self) -> Self {
-        CommandedPlant { law: self.law.map(|law| Law { limit: f64::INFINITY, ..law }), ..self }
+        CommandedPlant { law: self.law.map(|law| ContinuousLaw { limit: f64::INFINITY, ..law }), ..self }
     }
 
     /// How many states controller and prefilter have.

@@ -152,7 +152,7 @@ pub enum Attention {
 
 /// Tolerance, limit of the work and method of a simulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settings {
+pub struct SimulationSettings {
     /// Largest error of a step as it is estimated, relative to the state plus its scale. Above 0
     /// and below 1.
     ///
@@ -165,9 +165,9 @@ pub struct Settings {
     pub method: Method,
 }
 
-impl Default for Settings {
-    fn default() -> Settings {
-        Settings { tolerance: 1e-6, maximum_steps: 10_000_000, method: Method::default() }
+impl Default for SimulationSettings {
+    fn default() -> SimulationSettings {
+        SimulationSettings { tolerance: 1e-6, maximum_steps: 10_000_000, method: Method::default() }
     }
 }
 

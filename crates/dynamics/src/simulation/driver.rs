@@ -2,7 +2,7 @@
 
 mod joined;
 
-use super::course::{Attention, Event, Observer, Outcome, Settings, SimulationError, Status};
+use super::course::{Attention, Event, Observer, Outcome, SimulationError, SimulationSettings, Status};
 use super::growth::GrowthWatch;
 use super::history::NODES;
 use super::kernel::Kernel;
@@ -24,7 +24,7 @@ struct Drive<'a, S, O> {
     watches: Vec<GrowthWatch>,
     /// For lanes that are sampled.
     propagator: Propagator<S>,
-    settings: Settings,
+    settings: SimulationSettings,
     slots: Vec<Option<Slot<'a, O>>>,
     state: Vec<S>,
     /// Whether a state, or what drives it, is not the one last linearised at.
@@ -33,10 +33,10 @@ struct Drive<'a, S, O> {
     inputs: StepInputs<S>,
     indicators: Vec<S>,
     /// Where a step is looked at between its ends.
-    between: Between<S>,
+    between: ErrorBetween<S>,
 }
 
-struct Between<S> {
+struct ErrorBetween<S> {
     /// States over the step, those that were asked for.
     extensions: Vec<Option<Extension<S>>>,
     /// Whether the step was taken with known matrices.
@@ -60,7 +60,11 @@ struct Between<S> {
 ///
 /// # Errors
 /// [`SimulationError`] when a task does not fit the system.
-pub fn drive<'a, S, E, Q>(system: &mut E, queue: &mut Q, settings: &Settings) -> Result<(), SimulationError>
+pub fn drive<'a, S, E, Q>(
+    system: &mut E,
+    queue: &mut Q,
+    settings: &SimulationSettings,
+) -> Result<(), SimulationError>
 where
     S: Lane,
     E: System<S>,
@@ -111,7 +115,7 @@ where
 }
 
 impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
-    fn new(system: &dyn Kernel<S>, settings: &Settings) -> Result<Self, SimulationError> {
+    fn new(system: &dyn Kernel<S>, settings: &SimulationSettings) -> Result<Self, SimulationError> {
         let (states, inputs, zero) = (system.states(), system.inputs(), S::from(0.0));
         let method =
             Stepper::new(settings.method, system).ok_or(SimulationError::TooLarge { states, inputs })?;
@@ -130,7 +134,7 @@ impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
             step: S::from(1e-6),
             inputs: StepInputs { stages, slopes: none.clone(), moving: false },
             indicators: vec![zero; system.indicators()],
-            between: Between {
+            between: ErrorBetween {
                 extensions: vec![None; states],
                 propagated: false,
                 wanted: Vec::new(),

@@ -94,7 +94,7 @@ pub fn equilibrium<E: System<f64>>(
     if let Some((what, found, expected)) = counts.into_iter().find(|(_, found, expected)| found != expected) {
         return Err(EquilibriumError::Count { what, found, expected });
     }
-    let search = Search { system, states, guess, inputs, kept, scales: scales(system, guess) };
+    let search = EquilibriumSearch { system, states, guess, inputs, kept, scales: scales(system, guess) };
     let mut best = guess.to_vec();
     let (mut rest, mut jacobian) = search.surplus(&best);
     if rest.iter().chain(jacobian.iter()).any(|value| !value.is_finite()) {
@@ -132,7 +132,7 @@ pub fn equilibrium<E: System<f64>>(
     search.checked(best, &rest, &jacobian)
 }
 
-struct Search<'a, E> {
+struct EquilibriumSearch<'a, E> {
     system: &'a E,
     states: usize,
     guess: &'a [f64],
@@ -141,7 +141,7 @@ struct Search<'a, E> {
     scales: Vec<f64>,
 }
 
-impl<E: System<f64>> Search<'_, E> {
+impl<E: System<f64>> EquilibriumSearch<'_, E> {
     /// What is left of each equation, and its derivatives by all unknowns, each in its scale.
     fn surplus(&self, unknowns: &[f64]) -> (DVector<f64>, DMatrix<f64>) {
         let count = unknowns.len();

@@ -2,7 +2,7 @@
 
 use super::Lane;
 use super::growth::AmplitudeLost;
-use super::kernel::{Kernel, Trial};
+use super::kernel::{Kernel, StepTrial};
 use super::method::{Extension, StepInputs, relative_error};
 
 /// Stages of the method, the first of the next step included.
@@ -83,10 +83,10 @@ impl<S: Lane> DormandPrince<S> {
     pub(super) fn attempt(
         &mut self,
         system: &dyn Kernel<S>,
-        trial: Trial<'_, S>,
+        trial: StepTrial<'_, S>,
         inputs: &StepInputs<S>,
     ) -> S {
-        let Trial { state, step, scales, tolerance } = trial;
+        let StepTrial { state, step, scales, tolerance } = trial;
         let states = state.len();
         self.step = step;
         for (before, weights) in A.iter().enumerate() {

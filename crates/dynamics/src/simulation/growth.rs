@@ -27,7 +27,7 @@ pub struct Sliding {
 
 /// A growing mode, and the longest step that resolves it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Growing {
+pub(super) struct GrowingMode {
     pub(super) step_s: f64,
     /// Magnitude of its eigenvalue, in rad/s.
     pub(super) frequency_rad_per_s: f64,
@@ -102,11 +102,12 @@ impl Mode {
     /// ```text
     /// c theta^p <= e zeta theta,        theta = h |lambda|, zeta = Re lambda/|lambda|
     /// ```
-    fn bound(&self, growth: f64, lost: AmplitudeLost, taken_s: f64) -> Option<Growing> {
+    fn bound(&self, growth: f64, lost: AmplitudeLost, taken_s: f64) -> Option<GrowingMode> {
         if growth.is_nan() || growth <= LEAST_GROWTH * self.magnitude {
             return None;
         }
-        let growing = |step_s| Growing { step_s, frequency_rad_per_s: self.magnitude, growth_per_s: growth };
+        let growing =
+            |step_s| GrowingMode { step_s, frequency_rad_per_s: self.magnitude, growth_per_s: growth };
         let far = FAR * taken_s * self.magnitude;
         let most = GROWTH_ERROR * growth / (lost.factor * self.magnitude);
         if far <= LARGEST_ANGLE && (1..lost.power).fold(1.0, |power, _| power * far) <= most {
@@ -222,7 +223,7 @@ impl GrowthWatch {
         steps: u64,
         method: &Rosenbrock<S>,
         lane: usize,
-    ) -> Option<Growing> {
+    ) -> Option<GrowingMode> {
         let age = self.age.map_or(u64::MAX, |age| age.saturating_add(steps));
         self.age = Some(age);
         let damping = self.friction(method, lane);
@@ -238,7 +239,7 @@ impl GrowthWatch {
         self.growing.advance(time_s, eigenvalue, self.fastest);
         if !self.is_known_at(damping) {
             let (small_s, frequency_rad_per_s) = (self.small_s, self.fastest);
-            let small = Growing { step_s: small_s, frequency_rad_per_s, growth_per_s };
+            let small = GrowingMode { step_s: small_s, frequency_rad_per_s, growth_per_s };
             return (small_s > 0.0 && step_s > small_s).then_some(small);
         }
         let followed = (self.grown > 0.0).then(|| self.followed(growth_per_s, step_s)).flatten();
@@ -263,10 +264,10 @@ impl GrowthWatch {
     }
 
     /// The longest step that shows how what has grown decays.
-    fn followed(&self, growth_per_s: f64, taken_s: f64) -> Option<Growing> {
+    fn followed(&self, growth_per_s: f64, taken_s: f64) -> Option<GrowingMode> {
         let mode = Mode { magnitude: self.fastest, growth: growth_per_s };
         let bound = mode.bound(growth_per_s.abs().max(LEAST_FOLLOWED * self.fastest), self.lost, taken_s)?;
-        Some(Growing { growth_per_s, ..bound })
+        Some(GrowingMode { growth_per_s, ..bound })
     }
 
     /// Growth of the least stable mode, in 1/s, under this damping of friction.
@@ -359,7 +360,7 @@ impl GrowthWatch {
 
     /// The mode that asks for the shortest step, if friction has added so much to the growth of
     /// each.
-    fn shortest(&self, added: f64, taken_s: f64) -> Option<Growing> {
+    fn shortest(&self, added: f64, taken_s: f64) -> Option<GrowingMode> {
         if self.most + added <= 0.0 {
             return None;
         }

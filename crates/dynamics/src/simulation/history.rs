@@ -10,11 +10,11 @@ pub(super) struct History {
     delay_s: f64,
     /// Before the first piece.
     initial: f64,
-    pieces: VecDeque<Piece>,
+    pieces: VecDeque<HistoryPiece>,
 }
 
 #[derive(Clone, Debug)]
-struct Piece {
+struct HistoryPiece {
     start_s: f64,
     length_s: f64,
     /// c_0 + c_1 x + ... + c_4 x^4 for x from 0 to 1
@@ -40,7 +40,7 @@ impl History {
         while self.pieces.front().is_some_and(|piece| piece.start_s + piece.length_s < arrived - length_s) {
             self.pieces.pop_front();
         }
-        self.pieces.push_back(Piece { start_s, length_s, coefficients: Quartic::through(values).0 });
+        self.pieces.push_back(HistoryPiece { start_s, length_s, coefficients: Quartic::through(values).0 });
     }
 
     /// What arrives at this time, and its slope. Where the wave jumps it is that of the side on

@@ -4,7 +4,7 @@ use pulp::{Simd, WithSimd};
 
 use super::growth::Sliding;
 use super::method::StepInputs;
-use super::pattern::Pattern;
+use super::pattern::JacobianPattern;
 use super::propagator::Propagator;
 use super::rosenbrock::{DIRECTIONS, Rosenbrock};
 use super::{Lane, System};
@@ -12,7 +12,7 @@ use crate::scalar::{Dependence, Dual};
 
 /// What a step is tried with.
 #[derive(Clone, Copy)]
-pub(super) struct Trial<'t, S> {
+pub(super) struct StepTrial<'t, S> {
     /// State at its start.
     pub(super) state: &'t [S],
     /// Its length, s.
@@ -45,16 +45,16 @@ pub(super) trait Kernel<S: Lane> {
     fn outgoing(&self, state: &[S], inputs: &[S], waves: &mut [S]);
     /// As [`System::indicate`].
     fn indicate(&self, state: &[S], inputs: &[S], indicators: &mut [S]);
-    /// As [`Pattern::of`].
-    fn pattern(&self) -> Option<Pattern>;
+    /// As [`JacobianPattern::of`].
+    fn pattern(&self) -> Option<JacobianPattern>;
     /// As [`Rosenbrock::linearize`].
     fn linearize(&self, method: &mut Rosenbrock<S>, state: &[S], inputs: &StepInputs<S>);
     /// As [`Rosenbrock::attempt`].
-    fn attempt(&self, method: &mut Rosenbrock<S>, trial: Trial<'_, S>, inputs: &StepInputs<S>) -> S;
+    fn attempt(&self, method: &mut Rosenbrock<S>, trial: StepTrial<'_, S>, inputs: &StepInputs<S>) -> S;
     /// As [`Rosenbrock::error_between`].
-    fn error_between(&self, method: &mut Rosenbrock<S>, trial: Trial<'_, S>, inputs: &[S]) -> S;
+    fn error_between(&self, method: &mut Rosenbrock<S>, trial: StepTrial<'_, S>, inputs: &[S]) -> S;
     /// As [`Propagator::step`].
-    fn propagate(&self, propagator: &mut Propagator<S>, trial: Trial<'_, S>, inputs: &[S]) -> S;
+    fn propagate(&self, propagator: &mut Propagator<S>, trial: StepTrial<'_, S>, inputs: &[S]) -> S;
 }
 
 impl<S: Lane, E: System<S>> Kernel<S> for E
@@ -98,37 +98,38 @@ where
         System::indicate(self, state, inputs, indicators);
     }
 
-    fn pattern(&self) -> Option<Pattern> {
-        Pattern::of(self)
+    fn pattern(&self) -> Option<JacobianPattern> {
+        JacobianPattern::of(self)
     }
 
     fn linearize(&self, method: &mut Rosenbrock<S>, state: &[S], inputs: &StepInputs<S>) {
-        S::vectorized(Linearization { method, system: self, state, inputs });
+        S::vectorized(VectorizedLinearization { method, system: self, state, inputs });
     }
 
-    fn attempt(&self, method: &mut Rosenbrock<S>, trial: Trial<'_, S>, inputs: &StepInputs<S>) -> S {
-        S::vectorized(Attempt { method, system: self, trial, inputs }).unwrap_or(S::from(f64::NAN))
+    fn attempt(&self, method: &mut Rosenbrock<S>, trial: StepTrial<'_, S>, inputs: &StepInputs<S>) -> S {
+        S::vectorized(VectorizedAttempt { method, system: self, trial, inputs }).unwrap_or(S::from(f64::NAN))
     }
 
-    fn error_between(&self, method: &mut Rosenbrock<S>, trial: Trial<'_, S>, inputs: &[S]) -> S {
-        S::vectorized(Between { method, system: self, trial, inputs }).unwrap_or(S::from(f64::NAN))
+    fn error_between(&self, method: &mut Rosenbrock<S>, trial: StepTrial<'_, S>, inputs: &[S]) -> S {
+        S::vectorized(VectorizedErrorBetween { method, system: self, trial, inputs })
+            .unwrap_or(S::from(f64::NAN))
     }
 
-    fn propagate(&self, propagator: &mut Propagator<S>, trial: Trial<'_, S>, inputs: &[S]) -> S {
+    fn propagate(&self, propagator: &mut Propagator<S>, trial: StepTrial<'_, S>, inputs: &[S]) -> S {
         S::vectorized(Propagation { propagator, system: self, trial, inputs }).unwrap_or(S::from(f64::NAN))
     }
 }
 
 /// [`Rosenbrock::linearize`] with the vector instructions that there are. A closure would not do:
 /// the call of a closure is a function of its own, and compiled without them.
-struct Linearization<'m, S, E> {
+struct VectorizedLinearization<'m, S, E> {
     method: &'m mut Rosenbrock<S>,
     system: &'m E,
     state: &'m [S],
     inputs: &'m StepInputs<S>,
 }
 
-impl<S: Lane, E: System<S>> WithSimd for Linearization<'_, S, E>
+impl<S: Lane, E: System<S>> WithSimd for VectorizedLinearization<'_, S, E>
 where
     Dependence: From<S>,
     Dual<DIRECTIONS, S>: From<f64> + From<S>,
@@ -142,14 +143,14 @@ where
 }
 
 /// [`Rosenbrock::attempt`] with the vector instructions that there are.
-struct Attempt<'m, S, E> {
+struct VectorizedAttempt<'m, S, E> {
     method: &'m mut Rosenbrock<S>,
     system: &'m E,
-    trial: Trial<'m, S>,
+    trial: StepTrial<'m, S>,
     inputs: &'m StepInputs<S>,
 }
 
-impl<S: Lane, E: System<S>> WithSimd for Attempt<'_, S, E> {
+impl<S: Lane, E: System<S>> WithSimd for VectorizedAttempt<'_, S, E> {
     type Output = S;
 
     #[inline(always)]
@@ -159,14 +160,14 @@ impl<S: Lane, E: System<S>> WithSimd for Attempt<'_, S, E> {
 }
 
 /// [`Rosenbrock::error_between`] with the vector instructions that there are.
-struct Between<'m, S, E> {
+struct VectorizedErrorBetween<'m, S, E> {
     method: &'m mut Rosenbrock<S>,
     system: &'m E,
-    trial: Trial<'m, S>,
+    trial: StepTrial<'m, S>,
     inputs: &'m [S],
 }
 
-impl<S: Lane, E: System<S>> WithSimd for Between<'_, S, E> {
+impl<S: Lane, E: System<S>> WithSimd for VectorizedErrorBetween<'_, S, E> {
     type Output = S;
 
     #[inline(always)]
@@ -179,7 +180,7 @@ impl<S: Lane, E: System<S>> WithSimd for Between<'_, S, E> {
 struct Propagation<'p, S, E> {
     propagator: &'p mut Propagator<S>,
     system: &'p E,
-    trial: Trial<'p, S>,
+    trial: StepTrial<'p, S>,
     inputs: &'p [S],
 }
 

@@ -3,7 +3,7 @@
 use super::Lane;
 use super::explicit::{self, DormandPrince};
 use super::growth::AmplitudeLost;
-use super::kernel::{Kernel, Trial};
+use super::kernel::{Kernel, StepTrial};
 use super::passage::Passage;
 use super::rosenbrock::{self, Rosenbrock};
 
@@ -35,7 +35,7 @@ pub(super) struct StepInputs<S> {
 
 /// A method with its memory.
 #[derive(Clone, Debug)]
-enum Steps<S> {
+enum MethodSteps<S> {
     Implicit(Box<Rosenbrock<S>>),
     /// With who finds the Jacobian, which is asked for the modes alone.
     Explicit(DormandPrince<S>, Box<Rosenbrock<S>>),
@@ -44,7 +44,7 @@ enum Steps<S> {
 /// The method of all lanes, and what it measures errors by.
 #[derive(Clone, Debug)]
 pub(super) struct Stepper<S> {
-    steps: Steps<S>,
+    steps: MethodSteps<S>,
     /// Typical magnitudes of the states; those of a lane change with its machine.
     pub(super) scales: Vec<S>,
 }
@@ -54,8 +54,8 @@ impl<S: Lane> Stepper<S> {
     pub(super) fn new(method: Method, system: &dyn Kernel<S>) -> Option<Self> {
         let implicit = Box::new(Rosenbrock::new(system)?);
         let steps = match method {
-            Method::Rosenbrock => Steps::Implicit(implicit),
-            Method::DormandPrince => Steps::Explicit(DormandPrince::new(system.states()), implicit),
+            Method::Rosenbrock => MethodSteps::Implicit(implicit),
+            Method::DormandPrince => MethodSteps::Explicit(DormandPrince::new(system.states()), implicit),
         };
         Some(Stepper { steps, scales: system.scales() })
     }
@@ -63,24 +63,24 @@ impl<S: Lane> Stepper<S> {
     /// Where in the step the inputs of each stage are taken.
     pub(super) fn stage_times(&self) -> [f64; 6] {
         match self.steps {
-            Steps::Implicit(_) => rosenbrock::STAGE_TIMES,
-            Steps::Explicit(..) => explicit::STAGE_TIMES,
+            MethodSteps::Implicit(_) => rosenbrock::STAGE_TIMES,
+            MethodSteps::Explicit(..) => explicit::STAGE_TIMES,
         }
     }
 
     /// Evaluations of the rates in one attempt.
     pub(super) fn evaluations(&self) -> u64 {
         match self.steps {
-            Steps::Implicit(_) => 7,
-            Steps::Explicit(..) => 6,
+            MethodSteps::Implicit(_) => 7,
+            MethodSteps::Explicit(..) => 6,
         }
     }
 
     /// Takes note of the start of a step: rates, and what derivatives the method needs.
     pub(super) fn linearize(&mut self, system: &dyn Kernel<S>, state: &[S], inputs: &StepInputs<S>) {
         let method = match &mut self.steps {
-            Steps::Implicit(method) => method,
-            Steps::Explicit(method, jacobian) => {
+            MethodSteps::Implicit(method) => method,
+            MethodSteps::Explicit(method, jacobian) => {
                 method.begin(system, state, inputs);
                 jacobian
             }
@@ -99,10 +99,10 @@ impl<S: Lane> Stepper<S> {
         inputs: &StepInputs<S>,
         tolerance: f64,
     ) -> S {
-        let trial = Trial { state, step, scales: &self.scales, tolerance };
+        let trial = StepTrial { state, step, scales: &self.scales, tolerance };
         match &mut self.steps {
-            Steps::Implicit(method) => system.attempt(method, trial, inputs),
-            Steps::Explicit(method, _) => method.attempt(system, trial, inputs),
+            MethodSteps::Implicit(method) => system.attempt(method, trial, inputs),
+            MethodSteps::Explicit(method, _) => method.attempt(system, trial, inputs),
         }
     }
 
@@ -128,49 +128,49 @@ impl<S: Lane> Stepper<S> {
         inputs: &[S],
         tolerance: f64,
     ) -> S {
-        let trial = Trial { state, step, scales: &self.scales, tolerance };
+        let trial = StepTrial { state, step, scales: &self.scales, tolerance };
         match &mut self.steps {
-            Steps::Implicit(method) => system.error_between(method, trial, inputs),
-            Steps::Explicit(..) => S::from(0.0),
+            MethodSteps::Implicit(method) => system.error_between(method, trial, inputs),
+            MethodSteps::Explicit(..) => S::from(0.0),
         }
     }
 
     /// The implicit method with the Jacobian that it last found.
     pub(super) fn linearized(&self) -> Option<&Rosenbrock<S>> {
         match &self.steps {
-            Steps::Implicit(method) => Some(method),
-            Steps::Explicit(..) => None,
+            MethodSteps::Implicit(method) => Some(method),
+            MethodSteps::Explicit(..) => None,
         }
     }
 
     /// The Jacobian last found.
     pub(super) fn jacobian(&self) -> &Rosenbrock<S> {
         match &self.steps {
-            Steps::Implicit(method) | Steps::Explicit(_, method) => method,
+            MethodSteps::Implicit(method) | MethodSteps::Explicit(_, method) => method,
         }
     }
 
     /// What a step takes from the amplitude of a mode that neither grows nor decays.
     pub(super) fn amplitude_lost(&self) -> AmplitudeLost {
         match self.steps {
-            Steps::Implicit(_) => rosenbrock::AMPLITUDE_LOST,
-            Steps::Explicit(..) => explicit::AMPLITUDE_LOST,
+            MethodSteps::Implicit(_) => rosenbrock::AMPLITUDE_LOST,
+            MethodSteps::Explicit(..) => explicit::AMPLITUDE_LOST,
         }
     }
 
     /// One state over the last step.
     pub(super) fn extension(&self, index: usize, start: S) -> Extension<S> {
         match &self.steps {
-            Steps::Implicit(method) => method.extension(index, start),
-            Steps::Explicit(method, _) => method.extension(index, start),
+            MethodSteps::Implicit(method) => method.extension(index, start),
+            MethodSteps::Explicit(method, _) => method.extension(index, start),
         }
     }
 
     /// State at the end of the last step.
     pub(super) fn end(&self) -> &[S] {
         match &self.steps {
-            Steps::Implicit(method) => &method.end,
-            Steps::Explicit(method, _) => &method.end,
+            MethodSteps::Implicit(method) => &method.end,
+            MethodSteps::Explicit(method, _) => &method.end,
         }
     }
 

@@ -3,9 +3,9 @@
 
 use std::collections::VecDeque;
 
-use super::growth::Growing;
+use super::growth::GrowingMode;
 use super::history::History;
-use super::{Attention, Event, Input, InputSchedule, Piece, Sampler, Status, StepCounts};
+use super::{Attention, Event, Input, InputSchedule, ProfilePiece, Sampler, Status, StepCounts};
 use crate::portable;
 
 /// No step grows by more than this, nor shrinks below the other.
@@ -18,18 +18,18 @@ const ECHOES: u8 = 12;
 
 /// An input between two breaks.
 #[derive(Clone, Debug)]
-enum Segment {
+enum InputSegment {
     Still(f64),
     Command,
-    Value(Piece),
-    Rate(Piece),
+    Value(ProfilePiece),
+    Rate(ProfilePiece),
 }
 
 /// One machine's way through time.
 pub(super) struct Passage<'a> {
     pub(super) course: &'a InputSchedule,
     /// The inputs of the course up to the next break.
-    segments: Vec<Segment>,
+    segments: Vec<InputSegment>,
     /// Whether no input moves before the next break.
     pub(super) still: bool,
     pub(super) time_s: f64,
@@ -38,7 +38,7 @@ pub(super) struct Passage<'a> {
     /// No step is longer.
     longest_s: f64,
     /// The mode that grows and asks for the shortest step, if any does.
-    pub(super) growing: Option<Growing>,
+    pub(super) growing: Option<GrowingMode>,
     /// Where the step being tried ends, if at a break.
     target_s: Option<f64>,
     /// The next break, sample or arrival.
@@ -147,7 +147,7 @@ impl<'a> Passage<'a> {
 
     /// Takes note of the mode that bounds the step; whether the step being tried is too long for
     /// it.
-    pub(super) fn limit(&mut self, growing: Option<Growing>) -> bool {
+    pub(super) fn limit(&mut self, growing: Option<GrowingMode>) -> bool {
         self.growing = growing;
         growing.is_some_and(|growing| growing.step_s < self.step_s * (1.0 - 1e-9))
     }
@@ -157,7 +157,7 @@ impl<'a> Passage<'a> {
         let time_s = self.time_s;
         match self.growing.filter(|growing| growing.growth_per_s > 0.0) {
             None => Status::TooManySteps { time_s },
-            Some(Growing { frequency_rad_per_s, growth_per_s, .. }) => {
+            Some(GrowingMode { frequency_rad_per_s, growth_per_s, .. }) => {
                 Status::UnresolvedOscillation { time_s, frequency_rad_per_s, growth_per_s }
             }
         }
@@ -201,10 +201,10 @@ impl<'a> Passage<'a> {
     pub(super) fn inputs_at(&self, time_s: f64, inputs: &mut [f64]) {
         for (place, segment) in inputs.iter_mut().zip(&self.segments) {
             *place = match segment {
-                Segment::Still(value) => *value,
-                Segment::Command => self.command,
-                Segment::Value(piece) => piece.at(time_s).value,
-                Segment::Rate(piece) => piece.at(time_s).rate,
+                InputSegment::Still(value) => *value,
+                InputSegment::Command => self.command,
+                InputSegment::Value(piece) => piece.at(time_s).value,
+                InputSegment::Rate(piece) => piece.at(time_s).rate,
             };
         }
         if let Some(waves) = inputs.get_mut(self.segments.len()..) {
@@ -218,9 +218,9 @@ impl<'a> Passage<'a> {
     /// Slopes of all inputs where the step begins.
     pub(super) fn slopes(&self, slopes: &mut [f64]) {
         let known = self.segments.iter().map(|segment| match segment {
-            Segment::Still(_) | Segment::Command => 0.0,
-            Segment::Value(piece) => piece.at(self.time_s).rate,
-            Segment::Rate(piece) => piece.at(self.time_s).acceleration,
+            InputSegment::Still(_) | InputSegment::Command => 0.0,
+            InputSegment::Value(piece) => piece.at(self.time_s).rate,
+            InputSegment::Rate(piece) => piece.at(self.time_s).acceleration,
         });
         let (time_s, middle_s) = (self.time_s, self.middle_s());
         let waves = self.histories.iter().map(|history| history.arriving(time_s, middle_s)[1]);
@@ -337,7 +337,8 @@ impl<'a> Passage<'a> {
     /// Whether no input has moved or will move before the next break, and this was so before.
     pub(super) fn stands_still(&mut self) -> bool {
         let was = self.still;
-        let at_rest = |segment: &Segment| matches!(segment, Segment::Still(_) | Segment::Command);
+        let at_rest =
+            |segment: &InputSegment| matches!(segment, InputSegment::Still(_) | InputSegment::Command);
         self.still = self.histories.is_empty() && self.segments.iter().all(at_rest);
         was && self.still
     }
@@ -371,16 +372,16 @@ pub(super) fn later(time_s: f64) -> f64 {
     time_s * (1.0 + 4.0 * f64::EPSILON)
 }
 
-fn segment(input: &Input, time_s: f64) -> Segment {
+fn segment(input: &Input, time_s: f64) -> InputSegment {
     match input {
-        Input::Command => Segment::Command,
+        Input::Command => InputSegment::Command,
         Input::Value(profile) => {
             let piece = profile.piece(time_s);
-            piece.constant().map_or(Segment::Value(piece), Segment::Still)
+            piece.constant().map_or(InputSegment::Value(piece), InputSegment::Still)
         }
         Input::Rate(profile) => {
             let piece = profile.piece(time_s);
-            piece.constant().map_or(Segment::Rate(piece), |_| Segment::Still(0.0))
+            piece.constant().map_or(InputSegment::Rate(piece), |_| InputSegment::Still(0.0))
         }
     }
 }

@@ -5,7 +5,7 @@ use crate::scalar::{Dependence, Scalar};
 
 /// Structure of the Jacobian of a system.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Pattern {
+pub(super) struct JacobianPattern {
     /// For each rate the states it depends on, rising.
     pub(super) rows: Vec<Vec<usize>>,
     /// A colour for each state: no rate depends on two states of one colour.
@@ -16,9 +16,9 @@ pub(super) struct Pattern {
     pub(super) driven: Vec<bool>,
 }
 
-impl Pattern {
+impl JacobianPattern {
     /// The pattern of this system, `None` when it has more states and inputs than can be followed.
-    pub(super) fn of<S: Scalar, E: System<S>>(system: &E) -> Option<Pattern>
+    pub(super) fn of<S: Scalar, E: System<S>>(system: &E) -> Option<JacobianPattern>
     where
         Dependence: From<S>,
     {
@@ -36,7 +36,7 @@ impl Pattern {
         let driven = driven.collect();
         let colours = coloured(&rows, states);
         let colour_count = colours.iter().max().map_or(0, |highest| highest + 1);
-        Some(Pattern { rows, colours, colour_count, driven })
+        Some(JacobianPattern { rows, colours, colour_count, driven })
     }
 }
 
@@ -83,7 +83,7 @@ mod tests {
 
     #[test]
     fn states_of_one_colour_share_no_rate() {
-        let pattern = Pattern::of(&Chain).unwrap();
+        let pattern = JacobianPattern::of(&Chain).unwrap();
         assert_eq!(pattern.rows[4], [0, 1, 2]);
         assert_eq!(pattern.driven, [false, false, false, true, false, false]);
         for row in &pattern.rows {

@@ -6,9 +6,9 @@ mod multisine;
 mod piece;
 
 pub use multisine::{Harmonic, schroeder_phases};
-pub use piece::{Moment, Piece};
+pub use piece::{Moment, ProfilePiece};
 
-use piece::Shape;
+use piece::PieceShape;
 
 /// A known function of time w(t), in whatever unit its user gives it: smooth pieces, one after the
 /// other.
@@ -17,7 +17,7 @@ use piece::Shape;
 /// w(t) = p_k(t)     for b_k <= t < b_{k+1},      b_0 = -inf          p_k smooth, b_1, b_2 ... the breaks
 /// ```
 ///
-/// At a break the new piece holds already. Whoever integrates across a break asks for the [`Piece`]
+/// At a break the new piece holds already. Whoever integrates across a break asks for the [`ProfilePiece`]
 /// of each side: a piece is an analytic function that can be evaluated beyond its ends.
 ///
 /// # Example
@@ -33,8 +33,8 @@ use piece::Shape;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Profile {
-    first: Piece,
-    later: Vec<(f64, Piece)>,
+    first: ProfilePiece,
+    later: Vec<(f64, ProfilePiece)>,
 }
 
 /// The function of time is invalid.
@@ -77,7 +77,7 @@ impl Profile {
     /// assert_eq!((Profile::constant(4.0).value(1e3), Profile::constant(4.0).rate(0.0)), (4.0, 0.0));
     /// ```
     pub fn constant(value: f64) -> Profile {
-        Profile { first: Piece::new(Shape::Constant { value }), later: Vec::new() }
+        Profile { first: ProfilePiece::new(PieceShape::Constant { value }), later: Vec::new() }
     }
 
     /// Piecewise constant: `initial` at first, and from each time on the value paired with it.
@@ -99,7 +99,8 @@ impl Profile {
         for value in steps.iter().map(|step| step.1).chain([initial]) {
             finite("a value of the steps", value)?;
         }
-        let piece = |&(time_s, value): &(f64, f64)| (time_s, Piece::new(Shape::Constant { value }));
+        let piece =
+            |&(time_s, value): &(f64, f64)| (time_s, ProfilePiece::new(PieceShape::Constant { value }));
         Ok(Profile { later: steps.iter().map(piece).collect(), ..Profile::constant(initial) })
     }
 
@@ -117,8 +118,8 @@ impl Profile {
         positive("the duration of a smooth step", duration_s)?;
         finite("the distance of a smooth step", distance)?;
         let coefficients = [0.0, 0.0, 0.0, 10.0, -15.0, 6.0].map(|coefficient| coefficient * distance);
-        let rise = Shape::Polynomial { origin_s: start_s, span_s: duration_s, coefficients };
-        let end = Shape::Constant { value: distance };
+        let rise = PieceShape::Polynomial { origin_s: start_s, span_s: duration_s, coefficients };
+        let end = PieceShape::Constant { value: distance };
         Ok(Profile::from_rest(&[(start_s, rise), (start_s + duration_s, end)]))
     }
 
@@ -144,8 +145,8 @@ impl Profile {
         positive("the duration of a ramp", duration_s)?;
         finite("the height of a ramp", distance)?;
         let coefficients = [0.0, distance, 0.0, 0.0, 0.0, 0.0];
-        let rise = Shape::Polynomial { origin_s: start_s, span_s: duration_s, coefficients };
-        let end = Shape::Constant { value: distance };
+        let rise = PieceShape::Polynomial { origin_s: start_s, span_s: duration_s, coefficients };
+        let end = PieceShape::Constant { value: distance };
         Ok(Profile::from_rest(&[(start_s, rise), (start_s + duration_s, end)]))
     }
 
@@ -162,7 +163,7 @@ impl Profile {
         finite("the start of a first-order step", start_s)?;
         positive("the time constant of a first-order step", time_constant_s)?;
         finite("the distance of a first-order step", distance)?;
-        let approach = Shape::Exponential { origin_s: start_s, time_constant_s, distance };
+        let approach = PieceShape::Exponential { origin_s: start_s, time_constant_s, distance };
         Ok(Profile::from_rest(&[(start_s, approach)]))
     }
 
@@ -178,7 +179,7 @@ impl Profile {
         finite("the start of a sine", start_s)?;
         finite("the amplitude of a sine", amplitude)?;
         positive("the frequency of a sine", frequency_rad_per_s)?;
-        let sine = Shape::Sine {
+        let sine = PieceShape::Sine {
             origin_s: start_s,
             amplitude,
             frequency_rad_per_s,
@@ -209,7 +210,7 @@ impl Profile {
         finite("the amplitude of a chirp", amplitude)?;
         positive("the initial frequency of a chirp", initial_rad_per_s)?;
         positive("the final frequency of a chirp", final_rad_per_s)?;
-        let sine = Shape::Sine {
+        let sine = PieceShape::Sine {
             origin_s: start_s,
             amplitude,
             frequency_rad_per_s: initial_rad_per_s,
@@ -218,7 +219,7 @@ impl Profile {
             phase_rad: 0.0,
         };
         let end_s = start_s + duration_s;
-        let end = Shape::Constant { value: Piece::new(sine).at(end_s).value };
+        let end = PieceShape::Constant { value: ProfilePiece::new(sine).at(end_s).value };
         Ok(Profile::from_rest(&[(start_s, sine), (end_s, end)]))
     }
 
@@ -301,16 +302,16 @@ impl Profile {
     /// assert_eq!((reference.piece(1.9).at(2.0).value, reference.piece(2.0).at(2.0).value), (0.0, 4000.0));
     /// # Ok::<(), phea_dynamics::simulation::ProfileError>(())
     /// ```
-    pub fn piece(&self, time_s: f64) -> Piece {
+    pub fn piece(&self, time_s: f64) -> ProfilePiece {
         self.holding(time_s).clone()
     }
 
-    fn holding(&self, time_s: f64) -> &Piece {
+    fn holding(&self, time_s: f64) -> &ProfilePiece {
         self.last_of(self.later.partition_point(|(start_s, _)| *start_s <= time_s))
     }
 
     /// The last of the pieces that have begun, given their number.
-    fn last_of(&self, begun: usize) -> &Piece {
+    fn last_of(&self, begun: usize) -> &ProfilePiece {
         begun.checked_sub(1).and_then(|last| self.later.get(last)).map_or(&self.first, |(_, piece)| piece)
     }
 
@@ -331,12 +332,12 @@ impl Profile {
     /// ```
     pub fn longest_step(&self) -> Option<f64> {
         let pieces = self.later.iter().map(|(_, piece)| piece).chain([&self.first]);
-        pieces.filter_map(Piece::quarter_period_s).reduce(f64::min)
+        pieces.filter_map(ProfilePiece::quarter_period_s).reduce(f64::min)
     }
 
     /// Zero, then these.
-    fn from_rest(shapes: &[(f64, Shape)]) -> Profile {
-        let later = shapes.iter().map(|&(start_s, shape)| (start_s, Piece::new(shape))).collect();
+    fn from_rest(shapes: &[(f64, PieceShape)]) -> Profile {
+        let later = shapes.iter().map(|&(start_s, shape)| (start_s, ProfilePiece::new(shape))).collect();
         Profile { later, ..Profile::constant(0.0) }
     }
 }

@@ -3,7 +3,7 @@
 
 use pulp::{Arch, Simd, WithSimd};
 
-use super::kernel::Trial;
+use super::kernel::StepTrial;
 use super::rosenbrock::Rosenbrock;
 use super::square::Square;
 use super::{Lane, System};
@@ -107,8 +107,8 @@ impl<S: Lane> Propagator<S> {
     /// The step from a state with inputs that stand still; the error of each lane in units of the
     /// tolerance.
     #[inline(always)]
-    pub(super) fn step<E: System<S>>(&mut self, system: &E, trial: Trial<'_, S>, inputs: &[S]) -> S {
-        let Trial { state, scales, tolerance, .. } = trial;
+    pub(super) fn step<E: System<S>>(&mut self, system: &E, trial: StepTrial<'_, S>, inputs: &[S]) -> S {
+        let StepTrial { state, scales, tolerance, .. } = trial;
         let [before, after] = &mut self.rates;
         system.rates(state, inputs, before);
         self.first.times(before, &mut self.difference);

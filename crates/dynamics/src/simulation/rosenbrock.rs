@@ -3,10 +3,10 @@
 use nalgebra::DMatrix;
 
 use super::growth::AmplitudeLost;
-use super::kernel::{Kernel, Trial};
+use super::kernel::{Kernel, StepTrial};
 use super::method::{Extension, LOOKED_AT, StepInputs, relative_error};
-use super::pattern::Pattern;
-use super::step_matrix::{COLUMN, Column, StepMatrix};
+use super::pattern::JacobianPattern;
+use super::step_matrix::{COLUMN, ColumnIndex, StepMatrix};
 use super::{Lane, System};
 use crate::linear::irreducible_blocks;
 use crate::scalar::{Dependence, Dual};
@@ -105,7 +105,7 @@ pub(super) const AMPLITUDE_LOST: AmplitudeLost = AmplitudeLost { factor: 1.2e-5,
 
 /// Where an entry of the Jacobian is found.
 #[derive(Clone, Copy, Debug)]
-struct Found {
+struct JacobianEntry {
     row: usize,
     /// Which evaluation finds it, and in which direction.
     pass: usize,
@@ -116,7 +116,7 @@ struct Found {
 
 /// States are combined in groups of four: whole vectors for the machine. The last group is filled
 /// up with zeros.
-type Group<S> = [S; 4];
+type StateGroup<S> = [S; 4];
 
 /// The method with its memory, for a system of one pattern.
 ///
@@ -129,16 +129,16 @@ type Group<S> = [S; 4];
 /// extension of order 4. Source: Rodas5P, Steinebach (2023), BIT Numerical Mathematics 63, 27.
 #[derive(Clone, Debug)]
 pub(super) struct Rosenbrock<S> {
-    pattern: Pattern,
+    pattern: JacobianPattern,
     matrix: StepMatrix<S>,
     /// u_i of all stages, group by group.
-    increments: Vec<[Group<S>; STAGES]>,
-    start: Vec<Group<S>>,
-    stage: Vec<Group<S>>,
-    rates: Vec<Group<S>>,
-    rates_of_stage: Vec<Group<S>>,
+    increments: Vec<[StateGroup<S>; STAGES]>,
+    start: Vec<StateGroup<S>>,
+    stage: Vec<StateGroup<S>>,
+    rates: Vec<StateGroup<S>>,
+    rates_of_stage: Vec<StateGroup<S>>,
     /// The right-hand side of a stage, and then its increment.
-    column: Box<Column<S>>,
+    column: Box<ColumnIndex<S>>,
     slopes: Vec<S>,
     slopes_between: Vec<S>,
     /// The states as variables, for one evaluation after another.
@@ -147,7 +147,7 @@ pub(super) struct Rosenbrock<S> {
     seeded_rates: Vec<Dual<DIRECTIONS, S>>,
     /// J, in the order in which it is found.
     jacobian: Vec<S>,
-    found: Vec<Found>,
+    found: Vec<JacobianEntry>,
     /// Which of them are what a state's rate makes of the state itself, and the least of these.
     own: Vec<usize>,
     fastest: S,
@@ -249,10 +249,10 @@ impl<S: Lane> Rosenbrock<S> {
     pub(super) fn attempt<E: System<S>>(
         &mut self,
         system: &E,
-        trial: Trial<'_, S>,
+        trial: StepTrial<'_, S>,
         inputs: &StepInputs<S>,
     ) -> S {
-        let Trial { state, step, scales, tolerance } = trial;
+        let StepTrial { state, step, scales, tolerance } = trial;
         let per_step = S::from(1.0) / step;
         self.matrix.reset(per_step * S::from(1.0 / GAMMA));
         for (&value, found) in self.jacobian.iter().zip(&self.found) {
@@ -298,8 +298,13 @@ impl<S: Lane> Rosenbrock<S> {
     /// Where a state is bound stiffly to others or to an input the error at the end says nothing of
     /// what lies between.
     #[inline(always)]
-    pub(super) fn error_between<E: System<S>>(&mut self, system: &E, trial: Trial<'_, S>, inputs: &[S]) -> S {
-        let Trial { state, step, scales, tolerance } = trial;
+    pub(super) fn error_between<E: System<S>>(
+        &mut self,
+        system: &E,
+        trial: StepTrial<'_, S>,
+        inputs: &[S],
+    ) -> S {
+        let StepTrial { state, step, scales, tolerance } = trial;
         let (states, per_step) = (state.len(), S::from(1.0) / step);
         for (index, &start) in state.iter().enumerate() {
             let extension = self.extension(index, start);
@@ -410,11 +415,11 @@ impl<S: Lane> Rosenbrock<S> {
 /// base + factor sum w_j u_j over the first K stages.
 #[inline(always)]
 fn combine<S: Lane, const K: usize>(
-    sums: &mut [Group<S>],
-    base: &[Group<S>],
+    sums: &mut [StateGroup<S>],
+    base: &[StateGroup<S>],
     weights: &[f64; K],
     factor: S,
-    increments: &[[Group<S>; STAGES]],
+    increments: &[[StateGroup<S>; STAGES]],
 ) {
     for ((sums, base), increments) in sums.iter_mut().zip(base).zip(increments) {
         let mut totals = [S::from(0.0); 4];
@@ -430,20 +435,20 @@ fn combine<S: Lane, const K: usize>(
 }
 
 /// Where each entry of the pattern is found and where it goes.
-fn found<S: Lane>(pattern: &Pattern, matrix: &StepMatrix<S>) -> Vec<Found> {
+fn found<S: Lane>(pattern: &JacobianPattern, matrix: &StepMatrix<S>) -> Vec<JacobianEntry> {
     let mut all = Vec::new();
     for (row, columns) in pattern.rows.iter().enumerate() {
         for (place, &column) in columns.iter().enumerate() {
             let colour = pattern.colours[column];
             let (pass, direction) = (colour / DIRECTIONS, colour % DIRECTIONS);
-            all.push(Found { row, pass, direction, entry: matrix.entry(row, place) });
+            all.push(JacobianEntry { row, pass, direction, entry: matrix.entry(row, place) });
         }
     }
     all
 }
 
 /// Places of the diagonal among the entries of the pattern.
-fn own(pattern: &Pattern) -> Vec<usize> {
+fn own(pattern: &JacobianPattern) -> Vec<usize> {
     let rows = pattern.rows.iter().enumerate();
     let places = rows.flat_map(|(row, columns)| columns.iter().map(move |&column| row == column));
     places.enumerate().filter_map(|(place, own)| own.then_some(place)).collect()

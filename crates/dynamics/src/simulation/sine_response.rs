@@ -6,7 +6,9 @@ use num_complex::Complex64;
 
 use super::task::Task;
 use super::trajectory::drive_one;
-use super::{Input, InputSchedule, Observer, Sampler, Settings, SimulationError, Status, StepCounts, System};
+use super::{
+    Input, InputSchedule, Observer, Sampler, SimulationError, SimulationSettings, Status, StepCounts, System,
+};
 use crate::portable;
 
 /// Rows of a period: harmonics up to the thirtieth do not meet one another.
@@ -71,7 +73,7 @@ pub struct SineResponse {
 /// What cubes a sine of amplitude a has the fundamental 3/4 a^3 and the third harmonic a^3/4.
 /// ```
 /// use phea_dynamics::scalar::Scalar;
-/// use phea_dynamics::simulation::{Input, Profile, Settings, SinePlan, System, sine_response};
+/// use phea_dynamics::simulation::{Input, Profile, SimulationSettings, SinePlan, System, sine_response};
 /// #[derive(Clone)]
 /// struct Lag;
 /// impl System<f64> for Lag {
@@ -90,7 +92,7 @@ pub struct SineResponse {
 /// }
 /// let plan = SinePlan { frequency_rad_per_s: 10.0, window_periods: 2, most_windows: 20, change: 1e-6 };
 /// let inputs = vec![Input::Value(Profile::sine(0.0, 0.5, 10.0)?)];
-/// let settings = Settings { tolerance: 1e-9, ..Settings::default() };
+/// let settings = SimulationSettings { tolerance: 1e-9, ..SimulationSettings::default() };
 /// let cubed = |_: &[f64], inputs: &[f64]| inputs[0].powi(3);
 /// let found = sine_response(&Lag, &[0.0], inputs.clone(), None, &settings, &plan, &cubed, &mut |_| true)?;
 /// assert!(found.settled && (found.fundamental.re - 0.75 * 0.125).abs() < 1e-9 && found.fundamental.im.abs() < 1e-9);
@@ -108,7 +110,7 @@ pub fn sine_response<E: System<f64> + Clone>(
     start: &[f64],
     inputs: Vec<Input>,
     sampler: Option<Box<dyn Sampler + '_>>,
-    settings: &Settings,
+    settings: &SimulationSettings,
     plan: &SinePlan,
     output: &dyn Fn(&[f64], &[f64]) -> f64,
     watch: &mut dyn FnMut(f64) -> bool,

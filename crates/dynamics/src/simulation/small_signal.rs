@@ -56,7 +56,7 @@ pub fn small_signal<E: System<f64>>(
     if state.len() != states || inputs.len() != own + waves {
         return None;
     }
-    let columns: Vec<Column> =
+    let columns: Vec<DerivativeColumn> =
         (0..states + own + waves).map(|place| column(system, state, inputs, place, waves)).collect();
     let late = delays.iter().map(|delay| Complex64::new(0.0, -frequency_rad_per_s * delay));
     let late: Vec<Complex64> = late.map(portable::exp_complex).collect();
@@ -66,7 +66,7 @@ pub fn small_signal<E: System<f64>>(
     let mut scales = system.scales();
     scales.resize(unknowns, 1.0);
     let of_unknown = |unknown: usize| if unknown < states { unknown } else { unknown + own };
-    let entry = |row: usize, column: &Column| match row.checked_sub(states) {
+    let entry = |row: usize, column: &DerivativeColumn| match row.checked_sub(states) {
         None => column.rates[row].into(),
         Some(wave) => late[wave] * column.sent[wave],
     };
@@ -102,12 +102,18 @@ pub fn small_signal<E: System<f64>>(
 }
 
 /// Derivatives with respect to one state or input.
-struct Column {
+struct DerivativeColumn {
     rates: Vec<f64>,
     sent: Vec<f64>,
 }
 
-fn column<E: System<f64>>(system: &E, state: &[f64], inputs: &[f64], place: usize, waves: usize) -> Column {
+fn column<E: System<f64>>(
+    system: &E,
+    state: &[f64],
+    inputs: &[f64],
+    place: usize,
+    waves: usize,
+) -> DerivativeColumn {
     let dual = |values: &[f64], from: usize| -> Vec<Dual<1>> {
         let one = |(index, value): (usize, &f64)| Dual::new(*value, [f64::from(from + index == place)]);
         values.iter().enumerate().map(one).collect()
@@ -118,5 +124,5 @@ fn column<E: System<f64>>(system: &E, state: &[f64], inputs: &[f64], place: usiz
     system.rates(&state, &inputs, &mut rates);
     let mut sent = vec![Dual::constant(0.0); waves];
     system.outgoing(&state, &inputs, &mut sent);
-    Column { rates: slopes(&rates), sent: slopes(&sent) }
+    DerivativeColumn { rates: slopes(&rates), sent: slopes(&sent) }
 }

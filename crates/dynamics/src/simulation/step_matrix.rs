@@ -13,7 +13,7 @@ struct Update {
 /// Two terms of a substitution: `vector[state] -= value * vector[other]` for both; rows of more
 /// terms take several.
 #[derive(Clone, Copy, Debug)]
-struct Terms<S> {
+struct TermPair<S> {
     values: [S; 2],
     others: [u8; 2],
     state: u8,
@@ -22,13 +22,13 @@ struct Terms<S> {
 /// A triangle in the order of its substitution.
 #[derive(Clone, Debug)]
 struct Triangle<S> {
-    terms: Vec<Terms<S>>,
+    terms: Vec<TermPair<S>>,
     /// Where the values of the terms are held, one after another; none for what fills a pair up.
     held: Vec<[Option<u32>; 2]>,
 }
 
 /// What a substitution works on: an index of eight bits is always inside.
-pub(super) type Column<S> = [S; COLUMN];
+pub(super) type ColumnIndex<S> = [S; COLUMN];
 
 /// As many states as a [`Dependence`](crate::scalar::Dependence) tells apart.
 pub(super) const COLUMN: usize = 256;
@@ -37,7 +37,7 @@ pub(super) const COLUMN: usize = 256;
 const SMALL: usize = 16;
 
 /// A small matrix by rows, each in groups of four.
-type Rows<S> = [[[S; 4]; SMALL / 4]; SMALL];
+type MatrixRows<S> = [[[S; 4]; SMALL / 4]; SMALL];
 
 /// The inverse of a small matrix.
 ///
@@ -52,7 +52,7 @@ struct Inverse<S> {
     /// Through U^T, then through L^T.
     triangles: [Triangle<S>; 2],
     /// W^-T, row by row, in groups of four columns.
-    rows: Box<Rows<S>>,
+    rows: Box<MatrixRows<S>>,
     /// How many groups are used.
     groups: usize,
 }
@@ -90,7 +90,7 @@ impl<S: Lane> Inverse<S> {
     }
 
     #[inline(always)]
-    fn apply(&self, vector: &mut Column<S>, states: usize) {
+    fn apply(&self, vector: &mut ColumnIndex<S>, states: usize) {
         match self.groups {
             0 | 1 => self.apply_groups::<1>(vector, states),
             2 => self.apply_groups::<2>(vector, states),
@@ -100,7 +100,7 @@ impl<S: Lane> Inverse<S> {
     }
 
     #[inline(always)]
-    fn apply_groups<const GROUPS: usize>(&self, vector: &mut Column<S>, states: usize) {
+    fn apply_groups<const GROUPS: usize>(&self, vector: &mut ColumnIndex<S>, states: usize) {
         let mut sums = [[S::from(0.0); 4]; GROUPS];
         for (row, &right) in self.rows[..states.min(SMALL)].iter().zip(&*vector) {
             for (sums, group) in sums.iter_mut().zip(row) {
@@ -121,7 +121,7 @@ impl<S: Lane> Triangle<S> {
         let mut triangle = Triangle { terms: Vec::new(), held: Vec::new() };
         for (state, row) in rows {
             for pair in row.chunks(2) {
-                let mut terms = Terms { values: [S::from(0.0); 2], others: [state; 2], state };
+                let mut terms = TermPair { values: [S::from(0.0); 2], others: [state; 2], state };
                 let mut held = [None; 2];
                 for (place, &(entry, other)) in pair.iter().enumerate() {
                     (held[place], terms.others[place]) = (Some(entry), other);
@@ -148,8 +148,8 @@ impl<S: Lane> Triangle<S> {
     /// The same for every column of a matrix that is given by rows of this number of groups.
     #[inline(always)]
     #[allow(clippy::needless_range_loop, reason = "three rows of one matrix, of which one is changed")]
-    fn substitute_rows<const GROUPS: usize>(&self, rows: &mut Rows<S>) {
-        for Terms { values, others, state } in &self.terms {
+    fn substitute_rows<const GROUPS: usize>(&self, rows: &mut MatrixRows<S>) {
+        for TermPair { values, others, state } in &self.terms {
             let [one, other] = others.map(|other| usize::from(other) % SMALL);
             let state = usize::from(*state) % SMALL;
             for group in 0..GROUPS {
@@ -166,8 +166,8 @@ impl<S: Lane> Triangle<S> {
     }
 
     #[inline(always)]
-    fn substitute(&self, vector: &mut Column<S>) {
-        for Terms { values, others, state } in &self.terms {
+    fn substitute(&self, vector: &mut ColumnIndex<S>) {
+        for TermPair { values, others, state } in &self.terms {
             let sum = vector[usize::from(*state)] - values[0] * vector[usize::from(others[0])];
             vector[usize::from(*state)] = sum - values[1] * vector[usize::from(others[1])];
         }
@@ -215,7 +215,7 @@ const LOST_DIGITS: f64 = 1e-10;
 
 impl<S: Lane> StepMatrix<S> {
     /// For matrices with these columns in each row, the diagonal besides; of no more rows than a
-    /// [`Column`] has.
+    /// [`ColumnIndex`] has.
     pub(super) fn new(rows: &[Vec<usize>]) -> StepMatrix<S> {
         let count = rows.len();
         let mut filled: Vec<Vec<bool>> = vec![vec![false; count]; count];
@@ -309,7 +309,7 @@ impl<S: Lane> StepMatrix<S> {
 
     /// Solves W x = b in the place of b.
     #[inline(always)]
-    pub(super) fn solve(&self, vector: &mut Column<S>) {
+    pub(super) fn solve(&self, vector: &mut ColumnIndex<S>) {
         if let Some(inverse) = &self.inverse {
             return inverse.apply(vector, self.inverses.len());
         }

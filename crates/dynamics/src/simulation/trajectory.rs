@@ -2,7 +2,7 @@
 
 use super::driver::drive;
 use super::task::{Queue, Task};
-use super::{InputSchedule, Observer, Outcome, Sampler, Settings, SimulationError, System};
+use super::{InputSchedule, Observer, Outcome, Sampler, SimulationError, SimulationSettings, System};
 
 /// States and inputs at the rows of a result.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -76,7 +76,7 @@ impl<'a, E, O: Observer> Queue<'a, E> for Single<'a, '_, O> {
 /// course.
 /// ```
 /// use phea_dynamics::scalar::Scalar;
-/// use phea_dynamics::simulation::{InputSchedule, Observer, Settings, System, Task, drive_one};
+/// use phea_dynamics::simulation::{InputSchedule, Observer, SimulationSettings, System, Task, drive_one};
 /// #[derive(Clone)]
 /// struct Drawn;
 /// impl System<f64> for Drawn {
@@ -104,14 +104,14 @@ impl<'a, E, O: Observer> Queue<'a, E> for Single<'a, '_, O> {
 /// }
 /// let course = InputSchedule { duration_s: 3.0, output_step_s: 1e-3, inputs: vec![] };
 /// let task = Task { start: vec![0.0], course: &course, sampler: None, observer: Largest(0.0) };
-/// let (_, Largest(force_n)) = drive_one(&Drawn, task, &Settings::default(), &mut |_| true)?;
+/// let (_, Largest(force_n)) = drive_one(&Drawn, task, &SimulationSettings::default(), &mut |_| true)?;
 /// assert!((force_n - 48.0).abs() < 1e-9);
 /// # Ok::<(), phea_dynamics::simulation::SimulationError>(())
 /// ```
 pub fn drive_one<'a, E: System<f64> + Clone, O: Observer>(
     system: &E,
     task: Task<'a, O>,
-    settings: &Settings,
+    settings: &SimulationSettings,
     watch: &mut dyn FnMut(f64) -> bool,
 ) -> Result<(Outcome, O), SimulationError> {
     let mut queue = Single { task: Some(task), watch, result: None };
@@ -131,7 +131,7 @@ pub fn drive_one<'a, E: System<f64> + Clone, O: Observer>(
 /// A mass of 2 kg on a spring of 8 N/m, pulled by 1 m and let go
 /// ```
 /// use phea_dynamics::scalar::Scalar;
-/// use phea_dynamics::simulation::{InputSchedule, Settings, Status, System, simulate};
+/// use phea_dynamics::simulation::{InputSchedule, SimulationSettings, Status, System, simulate};
 /// #[derive(Clone)]
 /// struct Oscillator;
 /// impl System<f64> for Oscillator {
@@ -150,7 +150,7 @@ pub fn drive_one<'a, E: System<f64> + Clone, O: Observer>(
 ///     }
 /// }
 /// let course = InputSchedule { duration_s: 3.0, output_step_s: 0.5, inputs: vec![] };
-/// let settings = Settings { tolerance: 1e-9, ..Settings::default() };
+/// let settings = SimulationSettings { tolerance: 1e-9, ..SimulationSettings::default() };
 /// let result = simulate(&Oscillator, &[1.0, 0.0], &course, None, &settings, &mut |_| true)?;
 /// assert_eq!(result.outcome.status, Status::Completed);
 /// for (time, state) in result.trajectory.times_s.iter().zip(&result.trajectory.states) {
@@ -163,7 +163,7 @@ pub fn simulate<E: System<f64> + Clone>(
     start: &[f64],
     course: &InputSchedule,
     sampler: Option<Box<dyn Sampler + '_>>,
-    settings: &Settings,
+    settings: &SimulationSettings,
     watch: &mut dyn FnMut(f64) -> bool,
 ) -> Result<Simulated, SimulationError> {
     let recorder = Recorder { wanted: (0..system.states()).collect(), trajectory: Trajectory::default() };

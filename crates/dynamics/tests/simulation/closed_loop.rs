@@ -4,7 +4,9 @@ use num_complex::Complex64;
 use phea_dynamics::controller::{AntiWindup, Compensator, Controller, Element};
 use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_dynamics::scalar::Scalar;
-use phea_dynamics::simulation::{CommandedPlant, Input, Plant, Profile, Settings, Simulated, Status};
+use phea_dynamics::simulation::{
+    CommandedPlant, Input, Plant, Profile, Simulated, SimulationSettings, Status,
+};
 use phea_dynamics::time_response::{Interpolation, SampledSignal, forced_response};
 
 use super::laws::{course, distance, run, simulate};
@@ -163,7 +165,7 @@ fn saturating(anti_windup: AntiWindup, tolerance: f64) -> Simulated {
     let plant = Chain::new(vec![-0.5, -5.0], 5.0);
     let system = CommandedPlant::in_loop(plant, &limited(anti_windup), 0.0).unwrap();
     let inputs = vec![Input::Value(Profile::steps(0.0, &[(0.1, 1.5), (4.0, -0.5)]).unwrap())];
-    let settings = Settings { tolerance, maximum_steps: 200_000, ..Settings::default() };
+    let settings = SimulationSettings { tolerance, maximum_steps: 200_000, ..SimulationSettings::default() };
     let result =
         simulate(&system, &[0.0; 3], &course(8.0, 0.1, inputs), None, &settings, &mut |_| true).unwrap();
     assert_eq!(result.outcome.status, Status::Completed, "{anti_windup:?} {:?}", result.outcome.work);

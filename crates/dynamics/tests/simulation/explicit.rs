@@ -1,7 +1,7 @@
 //! Two independent methods give one answer.
 
 use phea_dynamics::scalar::Scalar;
-use phea_dynamics::simulation::{Input, Method, Profile, Settings, Status};
+use phea_dynamics::simulation::{Input, Method, Profile, SimulationSettings, Status};
 
 use super::laws::{Law, Lawful, course, run_by, settings, simulate};
 
@@ -46,10 +46,10 @@ fn an_explicit_method_pays_for_a_fast_mode() {
     let stiff = Lawful(super::laws::Following(-1e7), 1.0);
     let inputs = || vec![Input::Value(Profile::constant(0.0)), Input::Value(Profile::constant(0.0))];
     let course = course(1.0, 1.0, inputs());
-    let limited = Settings { maximum_steps: 1000, ..settings(1e-6, Method::DormandPrince) };
+    let limited = SimulationSettings { maximum_steps: 1000, ..settings(1e-6, Method::DormandPrince) };
     let explicit = simulate(&stiff, &[1.0], &course, None, &limited, &mut |_| true).unwrap();
     assert!(matches!(explicit.outcome.status, Status::TooManySteps { time_s } if time_s < 1e-3));
-    let limited = Settings { method: Method::Rosenbrock, ..limited };
+    let limited = SimulationSettings { method: Method::Rosenbrock, ..limited };
     let implicit = simulate(&stiff, &[1.0], &course, None, &limited, &mut |_| true).unwrap();
     assert_eq!(implicit.outcome.status, Status::Completed);
 }

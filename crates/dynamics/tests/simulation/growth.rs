@@ -2,7 +2,9 @@
 
 use phea_dynamics::portable;
 use phea_dynamics::scalar::Scalar;
-use phea_dynamics::simulation::{Input, Method, Profile, Sampler, Settings, Sliding, Status, System};
+use phea_dynamics::simulation::{
+    Input, Method, Profile, Sampler, SimulationSettings, Sliding, Status, System,
+};
 
 use super::laws::{Law, Lawful, course, settings, simulate};
 
@@ -171,7 +173,7 @@ fn samples_do_not_hide_growth() {
 #[test]
 fn what_cannot_be_resolved_is_told() {
     let law = TwoMasses { omega: 1e4, alpha: 20.0 };
-    let settings = Settings { maximum_steps: 2_000, ..settings(1e-3, Method::Rosenbrock) };
+    let settings = SimulationSettings { maximum_steps: 2_000, ..settings(1e-3, Method::Rosenbrock) };
     let course = course(1e3, 1e3, vec![]);
     let start = [1e-12, 0.0, 0.0, 0.0];
     let run = simulate(&Lawful(law, 1e6), &start, &course, None, &settings, &mut |_| true).unwrap();

@@ -2,8 +2,8 @@
 
 use phea_dynamics::scalar::{Dependence, Dual, Lanes, Scalar};
 use phea_dynamics::simulation::{
-    Event, Input, InputSchedule, Lane, Method, Observer, Outcome, Profile, Queue, Sampler, Settings,
-    SimulationError, Sliding, Status, System, Task, drive,
+    Event, Input, InputSchedule, Lane, Method, Observer, Outcome, Profile, Queue, Sampler, SimulationError,
+    SimulationSettings, Sliding, Status, System, Task, drive,
 };
 
 use super::laws::settings;
@@ -183,7 +183,7 @@ fn cases() -> Vec<Case> {
         .collect()
 }
 
-fn driven<S>(cases: &[Case], waves: usize, order: Vec<usize>, settings: &Settings) -> Vec<Seen>
+fn driven<S>(cases: &[Case], waves: usize, order: Vec<usize>, settings: &SimulationSettings) -> Vec<Seen>
 where
     S: Lane,
     Dependence: From<S>,
@@ -265,7 +265,7 @@ fn a_neighbour_that_fails_fails_alone() {
         cases[index].parameters[1] = -2e3;
     }
     let order: Vec<usize> = (0..cases.len()).collect();
-    let settings = Settings { maximum_steps: 5_000, ..Settings::default() };
+    let settings = SimulationSettings { maximum_steps: 5_000, ..SimulationSettings::default() };
     let mixed = driven::<Lanes<4>>(&cases, 1, order.clone(), &settings);
     let alone = driven::<f64>(&good, 1, order, &settings);
     for (index, (seen, alone)) in mixed.iter().zip(&alone).enumerate() {
@@ -322,7 +322,7 @@ fn who_stands_still_is_not_moved_by_a_neighbour() {
     let (still, moving) =
         (course(Profile::constant(0.0)), course(Profile::table(&[0.0, 1.0], &[1.0, 4.0]).unwrap()));
     let mut ends = Ends(vec![&still, &moving], Vec::new(), &[0]);
-    drive::<Lanes<2>, _, _>(&mut Root, &mut ends, &Settings::default()).unwrap();
+    drive::<Lanes<2>, _, _>(&mut Root, &mut ends, &SimulationSettings::default()).unwrap();
     assert_eq!(ends.1, [Status::Completed; 2]);
 }
 
@@ -334,7 +334,7 @@ fn a_state_that_is_not_there_is_not_looked_at() {
         inputs: vec![Input::Value(Profile::constant(1.0))],
     };
     let mut ends = Ends(vec![&course], Vec::new(), &[0, 1]);
-    let result = drive::<f64, _, _>(&mut Root, &mut ends, &Settings::default());
+    let result = drive::<f64, _, _>(&mut Root, &mut ends, &SimulationSettings::default());
     assert!(matches!(result, Err(SimulationError::Count { found: 2, expected: 1, .. })), "{result:?}");
 }
 
@@ -362,7 +362,7 @@ fn stopping_stops_all() {
     let one = Lanes([1.0; 4]);
     let mut machine = Machine { stiffness: one, rate: one, delay_s: one, feeding: one, waves: 1 };
     let mut queue = Stopped(line, 0);
-    drive(&mut machine, &mut queue, &Settings::default()).unwrap();
+    drive(&mut machine, &mut queue, &SimulationSettings::default()).unwrap();
     let statuses: Vec<Status> =
         queue.0.results.iter().filter_map(|seen| seen.outcome.as_ref()).map(|outcome| outcome.0).collect();
     assert_eq!(statuses.len(), 4);

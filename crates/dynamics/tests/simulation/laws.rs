@@ -3,8 +3,8 @@
 use phea_dynamics::expression::{Expression, Recorded};
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{
-    self, Input, InputSchedule, Method, Sampler, Settings, Simulated, SimulationError, Sliding, Status,
-    System,
+    self, Input, InputSchedule, Method, Sampler, Simulated, SimulationError, SimulationSettings, Sliding,
+    Status, System,
 };
 
 /// Rates without parameters of each lane, delays or indicators.
@@ -117,7 +117,7 @@ pub(crate) fn simulate<E: System<f64>>(
     start: &[f64],
     course: &InputSchedule,
     sampler: Option<Box<dyn Sampler + '_>>,
-    settings: &Settings,
+    settings: &SimulationSettings,
     watch: &mut dyn FnMut(f64) -> bool,
 ) -> Result<Simulated, SimulationError> {
     simulation::simulate(&Recording::of(system), start, course, sampler, settings, watch)
@@ -179,8 +179,8 @@ pub(crate) fn course(duration_s: f64, output_step_s: f64, inputs: Vec<Input>) ->
     InputSchedule { duration_s, output_step_s, inputs }
 }
 
-pub(crate) fn settings(tolerance: f64, method: Method) -> Settings {
-    Settings { tolerance, method, ..Settings::default() }
+pub(crate) fn settings(tolerance: f64, method: Method) -> SimulationSettings {
+    SimulationSettings { tolerance, method, ..SimulationSettings::default() }
 }
 
 /// Driven to its end by the implicit method.

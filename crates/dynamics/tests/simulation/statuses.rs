@@ -2,7 +2,7 @@
 
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{
-    Input, InputSchedule, Profile, Sampler, Settings, Simulated, SimulationError, Status, System,
+    Input, InputSchedule, Profile, Sampler, Simulated, SimulationError, SimulationSettings, Status, System,
 };
 
 use super::laws::{Integral, Law, Lawful, Oscillator, course, simulate};
@@ -61,7 +61,7 @@ fn driven<E: System<f64> + Clone>(
     course: &InputSchedule,
     steps: u64,
 ) -> Simulated {
-    let settings = Settings { maximum_steps: steps, ..Settings::default() };
+    let settings = SimulationSettings { maximum_steps: steps, ..SimulationSettings::default() };
     let result = simulate(system, start, course, None, &settings, &mut |_| true).unwrap();
     let end = match result.outcome.status {
         Status::Completed => course.duration_s,
@@ -129,7 +129,8 @@ fn stopping_it() {
         asked.push(time_s);
         time_s < 30.0
     };
-    let result = simulate(&system, &[1.0, 0.0], &course, None, &Settings::default(), &mut watch).unwrap();
+    let result =
+        simulate(&system, &[1.0, 0.0], &course, None, &SimulationSettings::default(), &mut watch).unwrap();
     let Status::Cancelled { time_s } = result.outcome.status else { panic!("{:?}", result.outcome) };
     assert!((30.0..33.0).contains(&time_s) && asked.last() == Some(&time_s));
     assert!(asked.windows(2).all(|pair| pair[0] <= pair[1]));
@@ -157,7 +158,7 @@ fn a_command_that_is_no_number_ends_it() {
             let sampler = Box::new(Saying(0.1, delay_s, command));
             let course = course(1.0, 0.01, vec![Input::Command]);
             let system = Lawful(Integral, 1.0);
-            let settings = Settings::default();
+            let settings = SimulationSettings::default();
             let result = simulate(&system, &[0.0], &course, Some(sampler), &settings, &mut |_| true).unwrap();
             assert_eq!(result.outcome.status, Status::NotFinite { time_s: 0.5 });
             assert!(result.trajectory.states.iter().all(|row| row[0].is_finite()));
@@ -173,7 +174,7 @@ fn refused(
     sampler: Option<Saying>,
     tolerance: f64,
 ) -> SimulationError {
-    let settings = Settings { tolerance, ..Settings::default() };
+    let settings = SimulationSettings { tolerance, ..SimulationSettings::default() };
     let sampler = sampler.map(|sampler| Box::new(sampler) as Box<dyn Sampler>);
     simulate(&Lawful(Integral, 1.0), start, course, sampler, &settings, &mut |_| true).unwrap_err()
 }
@@ -213,7 +214,7 @@ fn what_does_not_fit_is_refused() {
 fn a_scale_that_is_no_magnitude_is_refused() {
     for scale in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let system = Lawful(Oscillator(1.0), scale);
-        let settings = Settings::default();
+        let settings = SimulationSettings::default();
         let result =
             simulate(&system, &[1.0, 0.0], &course(1.0, 1.0, vec![]), None, &settings, &mut |_| true);
         assert!(matches!(result, Err(SimulationError::Setting { .. })), "{scale}: {result:?}");

@@ -150,7 +150,7 @@ pub fn why_not_proven(view: &ProjectAudit, proof: &Proof, standing: &Standing) -
 }
 
 /// The part of the box that remains, as far as it is smaller than the box.
-fn part_of(view: &ProjectAudit, proof: &Proof, region: &phea_qft::proof::Region) -> String {
+fn part_of(view: &ProjectAudit, proof: &Proof, region: &phea_qft::proof::ProofRegion) -> String {
     let Some(certificate) = &proof.certificate else { return String::new() };
     let segments = certificate.plant.boxes.get(region.of_box).into_iter().flatten();
     let sides = segments.zip(view.names.headings()).filter_map(|(one, name)| {

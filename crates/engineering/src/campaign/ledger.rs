@@ -14,7 +14,7 @@ pub(super) const MOST_RUNS: u64 = 1_000_000;
 
 /// What is asked of a campaign.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Wanted {
+pub struct RequestedRuns {
     /// Runs of the whole campaign.
     pub runs: u64,
     /// Which part of it.
@@ -157,7 +157,7 @@ impl RowStore for Nowhere {
 /// [`CampaignError`] where the ledger holds another campaign or cannot be written.
 pub fn campaign(
     plan: &Plan,
-    wanted: Wanted,
+    wanted: RequestedRuns,
     ledger: &mut dyn RowStore,
     watch: Watch<'_>,
 ) -> Result<Vec<Row>, CampaignError> {
@@ -225,7 +225,7 @@ fn kept_row(plan: &Plan, run: u64, text: &str, line: usize) -> Result<Row, Campa
 
 /// The rows that are kept already; whatever was torn at the end is dropped, and an empty ledger is
 /// begun.
-fn resumed(plan: &Plan, wanted: Wanted, ledger: &mut dyn RowStore) -> Result<Vec<Row>, CampaignError> {
+fn resumed(plan: &Plan, wanted: RequestedRuns, ledger: &mut dyn RowStore) -> Result<Vec<Row>, CampaignError> {
     let runs = wanted.shard.runs_of(wanted.runs);
     let text = ledger.kept().map_err(CampaignError::RowStore)?;
     let (whole, torn) = text.split_at(text.rfind('\n').map_or(0, |last| last + 1));

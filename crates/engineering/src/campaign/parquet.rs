@@ -9,7 +9,7 @@ use parquet::file::properties::WriterProperties;
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::types::{Type, TypePtr};
 
-use super::row::{Columns, Row, RowOutcome, meaningful};
+use super::row::{CampaignColumns, Row, RowOutcome, meaningful};
 
 /// Rows of a group; its columns are held in memory while it is written.
 const GROUP: usize = 10_000;
@@ -18,19 +18,19 @@ const GROUP: usize = 10_000;
 ///
 /// # Errors
 /// In the words of the format's library.
-pub(super) fn table(columns: &Columns, rows: &[Row]) -> Result<Vec<u8>, String> {
+pub(super) fn table(columns: &CampaignColumns, rows: &[Row]) -> Result<Vec<u8>, String> {
     written(columns, rows).map_err(|error| error.to_string())
 }
 
 /// A column with its values.
-enum Column {
+enum ParquetColumn {
     Whole(Vec<Option<i64>>),
     Text(Vec<Option<ByteArray>>),
     Double(Vec<Option<f64>>),
     Single(Vec<Option<f32>>),
 }
 
-fn written(columns: &Columns, rows: &[Row]) -> Result<Vec<u8>, ParquetError> {
+fn written(columns: &CampaignColumns, rows: &[Row]) -> Result<Vec<u8>, ParquetError> {
     let header = columns.header();
     let names = header.trim_end().split(',');
     let kinds = contents(columns, &[]);
@@ -42,10 +42,10 @@ fn written(columns: &Columns, rows: &[Row]) -> Result<Vec<u8>, ParquetError> {
         let mut group = file.next_row_group()?;
         for column in &contents(columns, rows) {
             match column {
-                Column::Whole(values) => write::<Int64Type>(&mut group, values)?,
-                Column::Text(values) => write::<ByteArrayType>(&mut group, values)?,
-                Column::Double(values) => write::<DoubleType>(&mut group, values)?,
-                Column::Single(values) => write::<FloatType>(&mut group, values)?,
+                ParquetColumn::Whole(values) => write::<Int64Type>(&mut group, values)?,
+                ParquetColumn::Text(values) => write::<ByteArrayType>(&mut group, values)?,
+                ParquetColumn::Double(values) => write::<DoubleType>(&mut group, values)?,
+                ParquetColumn::Single(values) => write::<FloatType>(&mut group, values)?,
             }
         }
         group.close()?;
@@ -53,12 +53,12 @@ fn written(columns: &Columns, rows: &[Row]) -> Result<Vec<u8>, ParquetError> {
     file.into_inner()
 }
 
-fn field(name: &str, column: &Column) -> Result<TypePtr, ParquetError> {
+fn field(name: &str, column: &ParquetColumn) -> Result<TypePtr, ParquetError> {
     let (physical, logical) = match column {
-        Column::Whole(_) => (Physical::INT64, None),
-        Column::Text(_) => (Physical::BYTE_ARRAY, Some(LogicalType::String)),
-        Column::Double(_) => (Physical::DOUBLE, None),
-        Column::Single(_) => (Physical::FLOAT, None),
+        ParquetColumn::Whole(_) => (Physical::INT64, None),
+        ParquetColumn::Text(_) => (Physical::BYTE_ARRAY, Some(LogicalType::String)),
+        ParquetColumn::Double(_) => (Physical::DOUBLE, None),
+        ParquetColumn::Single(_) => (Physical::FLOAT, None),
     };
     let field = Type::primitive_type_builder(name, physical);
     Ok(Arc::new(field.with_repetition(Repetition::OPTIONAL).with_logical_type(logical).build()?))
@@ -78,12 +78,14 @@ fn write<T: DataType>(
 }
 
 /// In the order of the header.
-fn contents(columns: &Columns, rows: &[Row]) -> Vec<Column> {
+fn contents(columns: &CampaignColumns, rows: &[Row]) -> Vec<ParquetColumn> {
     let text = |of: &dyn Fn(&Row) -> Option<String>| {
-        Column::Text(rows.iter().map(|row| of(row).map(|text| ByteArray::from(text.as_str()))).collect())
+        ParquetColumn::Text(
+            rows.iter().map(|row| of(row).map(|text| ByteArray::from(text.as_str()))).collect(),
+        )
     };
-    let double = |of: &dyn Fn(&Row) -> Option<f64>| Column::Double(rows.iter().map(of).collect());
-    let whole = |of: &dyn Fn(&Row) -> Option<i64>| Column::Whole(rows.iter().map(of).collect());
+    let double = |of: &dyn Fn(&Row) -> Option<f64>| ParquetColumn::Double(rows.iter().map(of).collect());
+    let whole = |of: &dyn Fn(&Row) -> Option<i64>| ParquetColumn::Whole(rows.iter().map(of).collect());
     let reason = |row: &Row| match &row.outcome {
         RowOutcome::Refused(reason) => Some(reason.clone()),
         RowOutcome::Driven(_) => None,
@@ -106,7 +108,7 @@ fn contents(columns: &Columns, rows: &[Row]) -> Vec<Column> {
         );
     }
     let force = |index: usize| rows.iter().map(|row| row.ran()?.force_n.get(index).copied()).collect();
-    all.extend((0..columns.times_s.len()).map(|index| Column::Single(force(index))));
+    all.extend((0..columns.times_s.len()).map(|index| ParquetColumn::Single(force(index))));
     all.push(text(&|row| Some(columns.check(row))));
     all
 }

@@ -8,11 +8,11 @@ use sha2::{Digest, Sha256};
 
 use super::CampaignError;
 use super::range::VariedRange;
-use super::row::Columns;
+use super::row::CampaignColumns;
 use super::varied::ranges;
 use crate::project::{Loaded, MotionShape, Project, Scenario, Signal, print};
 use crate::setup::Setup;
-use crate::simulate::{Bench, Driven, SimulateError, Window, driven};
+use crate::simulate::{ControlledMachine, ScenarioDrive, SimulateError, Window, driven};
 use crate::source::Source;
 
 /// Most times at which the bands of the force are given over the whole scenario, and as many more
@@ -53,9 +53,9 @@ pub struct Plan {
     /// Its place in the project.
     place: usize,
     /// Machine and controller as declared.
-    pub(super) bench: Bench,
-    pub(super) driven: Driven,
-    pub(super) columns: Columns,
+    pub(super) bench: ControlledMachine,
+    pub(super) driven: ScenarioDrive,
+    pub(super) columns: CampaignColumns,
     /// Of every look, s.
     pub times_s: Vec<f64>,
     /// At every look, N; at a step, as it is from then on. Zero in an open loop.
@@ -105,14 +105,15 @@ impl Plan {
         };
         let scenario = project.scenarios.get(place).ok_or(CampaignError::NoScenario)?.clone();
         let ranges = ranges(&project, campaign, &scenario)?;
-        let bench = Bench::of_scenario(&Setup::new(&project).map_err(SimulateError::from)?, &scenario)?;
+        let bench =
+            ControlledMachine::of_scenario(&Setup::new(&project).map_err(SimulateError::from)?, &scenario)?;
         let driven = driven(source, &project, &bench, &scenario)?;
         let looks = (scenario.duration / scenario.output_step * (1.0 + 4.0 * f64::EPSILON)) as usize + 1;
         let times_s: Vec<f64> = (0..looks).map(|look| look as f64 * scenario.output_step).collect();
         let reference_n = times_s.iter().map(|time_s| driven.reference.value(*time_s)).collect();
         let windows = driven.windows.clone();
         let band_looks = band_looks(&times_s, &windows);
-        let columns = Columns {
+        let columns = CampaignColumns {
             mark: mark(source, &project, &scenario, seed),
             paths: ranges.iter().map(|range| range.path.clone()).collect(),
             times_s: band_looks

@@ -12,8 +12,8 @@ use super::row::{Ran, Row, RowOutcome, numbers};
 use crate::rig::{RigError, actuator};
 use crate::setup::Setup;
 use crate::simulate::{
-    Bench, COMMAND_LIMIT, ERRORS_AMPLIFIED, Follower, Occurrence, SimulateError, StoppedRun, course_of,
-    errors_amplified, occurrences, options,
+    COMMAND_LIMIT, ControlledMachine, ERRORS_AMPLIFIED, Follower, Occurrence, SimulateError, StoppedRun,
+    course_of, errors_amplified, occurrences, options,
 };
 
 /// A run ready to be driven.
@@ -21,7 +21,7 @@ pub(super) struct Prepared {
     pub(super) draw: Draw,
     pub(super) lumps: Option<[f64; 3]>,
     /// The controller around this machine.
-    pub(super) bench: Bench,
+    pub(super) bench: ControlledMachine,
     course: InputSchedule,
     start: Vec<f64>,
     waking: Waking,

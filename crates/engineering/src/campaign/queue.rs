@@ -13,7 +13,7 @@ use phea_machine::{Control, Fleet, Lanewise, Watcher};
 use super::plan::Plan;
 use super::prepared::{Prepared, Watched, prepared};
 use super::row::{Row, RowOutcome};
-use super::supply::Supply;
+use super::supply::RemainingRuns;
 use crate::setup::Setup;
 use crate::simulate::SimulateError;
 
@@ -34,7 +34,7 @@ pub(super) struct Shared<'p> {
     pub(super) rounds: AtomicU64,
     /// Whether the force at every look is asked for.
     forces: bool,
-    supply: Mutex<Supply>,
+    supply: Mutex<RemainingRuns>,
 }
 
 impl<'p> Shared<'p> {
@@ -44,7 +44,7 @@ impl<'p> Shared<'p> {
         threads: usize,
         forces: bool,
     ) -> Shared<'p> {
-        let supply = Mutex::new(Supply { runs, known, idle: threads });
+        let supply = Mutex::new(RemainingRuns { runs, known, idle: threads });
         let (done, rounds) = (AtomicU64::new(0), AtomicU64::new(0));
         Shared { plan, stop: AtomicBool::new(false), done, rounds, forces, supply }
     }

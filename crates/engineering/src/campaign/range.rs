@@ -81,16 +81,22 @@ impl VariedRange {
 
 #[cfg(test)]
 mod tests {
-    use super::super::project::Range;
+    use super::super::project::AcceptedRange;
     use super::super::quantity::{Dimension, PRESSURE, RATIO, VOLUME};
     use super::*;
 
-    fn key(dimension: &'static Dimension, range: Range) -> Key {
+    fn key(dimension: &'static Dimension, range: AcceptedRange) -> Key {
         Key { name: "a", dimension, range, default: None, doc: "" }
     }
 
     fn range(distribution: Distribution, minimum: f64, maximum: f64) -> VariedRange {
-        VariedRange { path: "a".to_string(), distribution, minimum, maximum, key: key(&RATIO, Range::ANY) }
+        VariedRange {
+            path: "a".to_string(),
+            distribution,
+            minimum,
+            maximum,
+            key: key(&RATIO, AcceptedRange::ANY),
+        }
     }
 
     /// Mean and variance of each distribution over a hundred thousand draws, within five standard
@@ -127,11 +133,12 @@ mod tests {
 
     #[test]
     fn what_the_project_would_not_accept_is_a_problem() {
-        let positive = Range { minimum: 0.0, above_minimum: true, ..Range::ANY };
+        let positive = AcceptedRange { minimum: 0.0, above_minimum: true, ..AcceptedRange::ANY };
         let mass = VariedRange { key: key(&RATIO, positive), ..range(Distribution::Normal, -1.0, 3.0) };
         assert_eq!(mass.problem(0.5), None);
         assert_eq!(mass.problem(-0.5), Some("a = -0.5 is outside its range (above 0)".to_string()));
-        let between = Range { minimum: -1e5, maximum: 1e8, below_maximum: true, ..Range::ANY };
+        let between =
+            AcceptedRange { minimum: -1e5, maximum: 1e8, below_maximum: true, ..AcceptedRange::ANY };
         let pressure = VariedRange { key: key(&PRESSURE, between), ..range(Distribution::Normal, -1e6, 3e6) };
         let expected = "a = -46.5 bar is outside its range (at least -1 bar and below 1000 bar)";
         assert_eq!(pressure.problem(-4.65e6), Some(expected.to_string()));
@@ -140,7 +147,7 @@ mod tests {
     #[test]
     fn a_range_is_shown_in_the_unit_of_its_larger_end() {
         let of = |dimension, minimum, maximum| {
-            let key = key(dimension, Range::ANY);
+            let key = key(dimension, AcceptedRange::ANY);
             let unit = VariedRange { key, ..range(Distribution::Uniform, minimum, maximum) }.unit();
             (unit.symbol, unit.number(maximum, 3))
         };

@@ -146,7 +146,7 @@ pub fn meaningful(window: &Window, open_loop: bool) -> impl Iterator<Item = usiz
 
 /// The columns of a campaign's table.
 #[derive(Clone, Debug)]
-pub(super) struct Columns {
+pub(super) struct CampaignColumns {
     /// What tells these rows from those of any other campaign.
     pub(super) mark: String,
     pub(super) paths: Vec<String>,
@@ -157,7 +157,7 @@ pub(super) struct Columns {
     pub(super) times_s: Vec<f64>,
 }
 
-impl Columns {
+impl CampaignColumns {
     /// The line above the rows.
     pub(super) fn header(&self) -> String {
         let mut text = "run,campaign,status,reason,ended_s,steps,occurrences".to_string();
@@ -343,9 +343,9 @@ fn push(cells: &mut [String], letter: char) {
 mod tests {
     use super::*;
 
-    fn columns() -> Columns {
+    fn columns() -> CampaignColumns {
         let step = Cause::ReferenceStep { from_n: 0.0, to_n: 4e3 };
-        Columns {
+        CampaignColumns {
             mark: "abc".to_string(),
             paths: vec!["supply.pressure".to_string(), "start.position".to_string()],
             windows: vec![
@@ -396,7 +396,7 @@ mod tests {
     #[test]
     fn lines_of_other_campaigns_and_torn_ones_hold_no_row() {
         let (columns, line) = (columns(), columns().line(&driven()));
-        let other = Columns { mark: "other".to_string(), ..columns.clone() };
+        let other = CampaignColumns { mark: "other".to_string(), ..columns.clone() };
         assert_eq!(other.row(line.trim_end()), Err(NoRow::Other));
         let torn = line.rsplit_once(',').unwrap().0;
         assert_eq!(columns.row(torn), Err(NoRow::Changed));

@@ -16,7 +16,7 @@ pub struct Bands {
 
 /// A run to look at again, and why.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Worst {
+pub struct WorstRun {
     /// Its index.
     pub run: u64,
     /// Window counted from 0 and place in [`METRIC_NAMES`] of all it is worst in.
@@ -43,7 +43,7 @@ pub struct Summary {
     /// Of the force.
     pub bands: Bands,
     /// Runs to look at again, in the order of what they are worst in.
-    pub worst: Vec<Worst>,
+    pub worst: Vec<WorstRun>,
 }
 
 impl Summary {
@@ -119,14 +119,14 @@ fn bands(times_s: &[f64], driven: &[(u64, &Ran)]) -> Bands {
     bands
 }
 
-fn worst(metrics: &[[Option<Spread>; METRIC_NAMES.len()]]) -> Vec<Worst> {
-    let mut found: Vec<Worst> = Vec::new();
+fn worst(metrics: &[[Option<Spread>; METRIC_NAMES.len()]]) -> Vec<WorstRun> {
+    let mut found: Vec<WorstRun> = Vec::new();
     for (window, spreads) in metrics.iter().enumerate() {
         for (metric, spread) in spreads.iter().enumerate() {
             let Some((_, run)) = spread.map(|spread| spread.worst) else { continue };
             match found.iter_mut().find(|known| known.run == run) {
                 Some(known) => known.of.push((window, metric)),
-                None => found.push(Worst { run, of: vec![(window, metric)] }),
+                None => found.push(WorstRun { run, of: vec![(window, metric)] }),
             }
         }
     }

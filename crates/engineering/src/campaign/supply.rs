@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 
 /// The runs that no thread has taken yet.
-pub(super) struct Supply {
+pub(super) struct RemainingRuns {
     pub(super) runs: Range<u64>,
     /// Those among them whose rows are there already.
     pub(super) known: BTreeSet<u64>,
@@ -12,7 +12,7 @@ pub(super) struct Supply {
     pub(super) idle: usize,
 }
 
-impl Supply {
+impl RemainingRuns {
     /// How many there are.
     pub(super) fn left(&mut self) -> u64 {
         while self.known.first() == Some(&self.runs.start) && self.runs.start < self.runs.end {
@@ -43,8 +43,8 @@ impl Supply {
 mod tests {
     use super::*;
 
-    fn supply(runs: u64, idle: usize) -> Supply {
-        Supply { runs: 0..runs, known: BTreeSet::new(), idle }
+    fn supply(runs: u64, idle: usize) -> RemainingRuns {
+        RemainingRuns { runs: 0..runs, known: BTreeSet::new(), idle }
     }
 
     /// As many runs as threads: each thread drives one, though the first could take all into its

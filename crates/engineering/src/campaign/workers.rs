@@ -109,7 +109,7 @@ fn work(shared: &Shared<'_>, effort: Effort, sender: &mpsc::Sender<Message>) {
 }
 
 /// A row that waits for those before it.
-struct Waiting {
+struct WaitingRow {
     finished: Finished,
     /// How often rows were collected since.
     rounds: u32,
@@ -126,9 +126,9 @@ fn in_order(
 ) -> Result<(), CampaignError> {
     let known = known.into_iter().map(|(run, row)| {
         let finished = Finished { row, force_n: Vec::new() };
-        (run, Waiting { finished, rounds: 0, told: true })
+        (run, WaitingRow { finished, rounds: 0, told: true })
     });
-    let mut waiting: BTreeMap<u64, Waiting> = known.collect();
+    let mut waiting: BTreeMap<u64, WaitingRow> = known.collect();
     loop {
         if !tell(News::Done(shared.done.load(Ordering::Relaxed)))? {
             shared.stop.store(true, Ordering::Relaxed);
@@ -137,8 +137,9 @@ fn in_order(
         shared.rounds.fetch_add(1, Ordering::Relaxed);
         let (news, over) = collected(receiver)?;
         waiting.values_mut().for_each(|one| one.rounds = one.rounds.saturating_add(1));
-        let arrived =
-            news.into_iter().map(|finished| (finished.row.run, Waiting { finished, rounds: 0, told: false }));
+        let arrived = news
+            .into_iter()
+            .map(|finished| (finished.row.run, WaitingRow { finished, rounds: 0, told: false }));
         waiting.extend(arrived);
         let mut rows = Vec::new();
         while let Some(one) = waiting.remove(&next) {
@@ -148,7 +149,7 @@ fn in_order(
         if !rows.is_empty() && !tell(News::Rows(rows))? {
             shared.stop.store(true, Ordering::Relaxed);
         }
-        let late = |one: &&mut Waiting| !one.told && (over || one.rounds >= LATE);
+        let late = |one: &&mut WaitingRow| !one.told && (over || one.rounds >= LATE);
         let ahead: Vec<Row> = waiting
             .values_mut()
             .filter(late)

@@ -107,7 +107,7 @@ fn chamber_slopes(rig: &Rig, list: &mut List) {
 }
 
 /// The coefficients of the edges, and beside what the data sheet says the mean of those declared.
-fn edges(declared: &project::Valve, supply: &project::Supply, rig: &Rig, list: &mut List) {
+fn edges(declared: &project::Valve, supply: &project::DeclaredSupply, rig: &Rig, list: &mut List) {
     let valve = &rig.actuator.components().valve;
     let origin = |is_declared, equation| if is_declared { "declared" } else { equation };
     let flow_origin = origin(declared.flow.edges().is_some(), FROM_RATING);

@@ -26,7 +26,7 @@ impl Explanation {
     /// Of what a diagnosis found.
     pub fn of(finding: &Finding) -> Explanation {
         Explanation {
-            sentence: words::Words(finding).to_string(),
+            sentence: words::FindingWords(finding).to_string(),
             is_impossible: finding.severity() == FindingSeverity::Impossible,
             frequency_rad_per_s: frequency(finding),
             plants: plants(finding),

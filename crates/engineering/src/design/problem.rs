@@ -4,7 +4,7 @@ use phea_dynamics::controller::Element;
 use phea_qft::design::{
     ControllerChoice, DesignOptions, DesignProblem, Objective, PrefilterChoice, gain_range,
 };
-use phea_qft::loop_shaping::{Part, Structure};
+use phea_qft::loop_shaping::{Structure, StructureFactor};
 use phea_qft::verification::TOLERANCE_DB;
 
 use crate::control::{ControlError, element};
@@ -92,7 +92,8 @@ fn structure(
     let first = frequencies.first().copied().unwrap_or(1.0);
     let last = frequencies.last().copied().unwrap_or(1.0);
     let wide = [first * FREQUENCY_FACTORS[0], last * FREQUENCY_FACTORS[1]];
-    let parts = declared.iter().map(|one| part(one, wide)).collect::<Result<Vec<Part>, ControlError>>()?;
+    let parts =
+        declared.iter().map(|one| part(one, wide)).collect::<Result<Vec<StructureFactor>, ControlError>>()?;
     let (sign, gain) = match gain {
         Some([low, high]) if high < 0.0 => (-1.0, [-high, -low]),
         Some(gain) => (1.0, gain),
@@ -102,23 +103,27 @@ fn structure(
 }
 
 /// A part that the project declares, its free numbers wide where it states none.
-fn part(declared: &StructurePart, wide: [f64; 2]) -> Result<Part, ControlError> {
+fn part(declared: &StructurePart, wide: [f64; 2]) -> Result<StructureFactor, ControlError> {
     let pair = |frequency: &Option<[f64; 2]>, damping_ratio: &Option<[f64; 2]>| {
         (frequency.unwrap_or(wide), damping_ratio.unwrap_or(DAMPING_RATIOS))
     };
     Ok(match declared {
-        StructurePart::Integrator => Part::Fixed(Element::Integrator),
-        StructurePart::Zero { frequency } => Part::RealZero { frequency: frequency.unwrap_or(wide) },
-        StructurePart::Pole { frequency } => Part::RealPole { frequency: frequency.unwrap_or(wide) },
+        StructurePart::Integrator => StructureFactor::Fixed(Element::Integrator),
+        StructurePart::Zero { frequency } => {
+            StructureFactor::RealZero { frequency: frequency.unwrap_or(wide) }
+        }
+        StructurePart::Pole { frequency } => {
+            StructureFactor::RealPole { frequency: frequency.unwrap_or(wide) }
+        }
         StructurePart::ZeroPair { frequency, damping_ratio } => {
             let (natural_frequency, damping_ratio) = pair(frequency, damping_ratio);
-            Part::ZeroPair { natural_frequency, damping_ratio }
+            StructureFactor::ZeroPair { natural_frequency, damping_ratio }
         }
         StructurePart::PolePair { frequency, damping_ratio } => {
             let (natural_frequency, damping_ratio) = pair(frequency, damping_ratio);
-            Part::PolePair { natural_frequency, damping_ratio }
+            StructureFactor::PolePair { natural_frequency, damping_ratio }
         }
         // in s, as every factor is
-        StructurePart::Fixed { element: fixed } => Part::Fixed(element("[design]", fixed, None)?),
+        StructurePart::Fixed { element: fixed } => StructureFactor::Fixed(element("[design]", fixed, None)?),
     })
 }

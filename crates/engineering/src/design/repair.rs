@@ -21,7 +21,7 @@ use crate::family::family;
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
 use crate::source::Source;
-use crate::trial::{self, Agreement, Run, waves_alone};
+use crate::trial::{self, Agreement, TrialRun, waves_alone};
 use phea_dynamics::watch::{Watch, part};
 
 /// What became of it.
@@ -174,7 +174,7 @@ fn with_waves(
 }
 
 /// The run with waves, where it contradicts.
-fn contradicting_waves(told: &ProjectDesign) -> Option<&Run> {
+fn contradicting_waves(told: &ProjectDesign) -> Option<&TrialRun> {
     let mut runs = told.trial.iter().flat_map(|trial| &trial.runs);
     runs.find(|run| run.agreement == Agreement::Contradicts && run.quarter_wave_rad_per_s.is_some())
 }

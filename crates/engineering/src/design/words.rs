@@ -2,7 +2,7 @@
 
 use phea_dynamics::controller::Element;
 use phea_qft::design::{ControllerChoice, DesignStatus, Objective};
-use phea_qft::loop_shaping::{Part, Structure};
+use phea_qft::loop_shaping::{Structure, StructureFactor};
 use phea_qft::verification::Verdict;
 
 use super::{ProjectDesign, Repair, RepairStatus};
@@ -93,13 +93,13 @@ pub fn structure_words(structure: &Structure) -> String {
 }
 
 /// The word of a factor, as the project file spells it.
-pub fn part_key(part: &Part) -> &'static str {
+pub fn part_key(part: &StructureFactor) -> &'static str {
     match part {
-        Part::Fixed(Element::Integrator) => "integrator",
-        Part::Fixed(_) => "fixed",
-        Part::RealZero { .. } => "zero",
-        Part::RealPole { .. } => "pole",
-        Part::ZeroPair { .. } => "zero_pair",
-        Part::PolePair { .. } => "pole_pair",
+        StructureFactor::Fixed(Element::Integrator) => "integrator",
+        StructureFactor::Fixed(_) => "fixed",
+        StructureFactor::RealZero { .. } => "zero",
+        StructureFactor::RealPole { .. } => "pole",
+        StructureFactor::ZeroPair { .. } => "zero_pair",
+        StructureFactor::PolePair { .. } => "pole_pair",
     }
 }

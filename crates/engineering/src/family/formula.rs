@@ -5,19 +5,19 @@ use phea_dynamics::uncertain_plant::{
     PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant,
 };
 
-use super::FamilyError;
-use crate::project::{Delay, FormulaError, Plant, Rational};
+use super::ProjectFamilyError;
+use crate::project::{DeclaredPlant, Delay, FormulaError, Rational};
 
 /// Records the coefficients of both paths and the dead time.
 pub(super) fn uncertain_plant(
-    plant: &Plant,
+    plant: &DeclaredPlant,
     parameters: Vec<UncertainParameter>,
-) -> Result<UncertainPlant, FamilyError> {
+) -> Result<UncertainPlant, ProjectFamilyError> {
     let names: Vec<String> = parameters.iter().map(|parameter| parameter.name.clone()).collect();
     // A trial with numbers finds every error of the text before the recording, which cannot fail,
     // begins.
     let nominal: Vec<f64> = parameters.iter().map(|parameter| parameter.nominal).collect();
-    coefficients(plant, &names, &nominal).map_err(FamilyError::Formula)?;
+    coefficients(plant, &names, &nominal).map_err(ProjectFamilyError::Formula)?;
     Ok(UncertainPlant::record(parameters, |values| {
         coefficients(plant, &names, values).unwrap_or_else(|_| PlantCoefficients {
             command: RationalCoefficients { numerator: vec![], denominator: vec![] },
@@ -29,7 +29,7 @@ pub(super) fn uncertain_plant(
 }
 
 fn coefficients<S: Scalar>(
-    plant: &Plant,
+    plant: &DeclaredPlant,
     names: &[String],
     values: &[S],
 ) -> Result<PlantCoefficients<S>, FormulaError> {

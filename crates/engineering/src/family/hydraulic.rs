@@ -19,9 +19,9 @@ use phea_hydraulics::two_pressure::{
     TwoPressureLinearParameters, TwoPressureModel, two_pressure_linear_parameters,
 };
 
-use super::FamilyError;
+use super::ProjectFamilyError;
 use super::visited::Visited;
-use crate::project::{Actuator, LINEAR_PARAMETERS, Project};
+use crate::project::{DeclaredActuator, LINEAR_PARAMETERS, Project};
 use crate::rig::{
     self, FeedForwardPath, Numbers, Rig, components, linear, place, plant, settled_supply, stated,
     with_supply, yielding_load, yielding_supply,
@@ -32,7 +32,7 @@ use crate::setup::Setup;
 pub(super) fn uncertain_plant(
     setup: &Setup<'_>,
     parameters: Vec<UncertainParameter>,
-) -> Result<UncertainPlant, FamilyError> {
+) -> Result<UncertainPlant, ProjectFamilyError> {
     let project = setup.project;
     let visited = Visited::new(setup, &parameters)?;
     let Visited { rig, names, equal, .. } = &visited;
@@ -44,7 +44,7 @@ pub(super) fn uncertain_plant(
     let expression = recorded.expression();
     let idle = (0..names.len()).find(|index| expression.is_some_and(|one| !one.depends_on(*index)));
     match idle.and_then(|index| names.get(index)) {
-        Some(path) => Err(FamilyError::Path { path: path.clone(), reason: reason(path) }),
+        Some(path) => Err(ProjectFamilyError::Path { path: path.clone(), reason: reason(path) }),
         None => Ok(recorded),
     }
 }
@@ -70,7 +70,7 @@ pub(super) fn in_motion(
 /// A rig with some of its numbers open.
 pub(super) struct Open<'a> {
     pub(super) project: &'a Project,
-    pub(super) declared: &'a Actuator,
+    pub(super) declared: &'a DeclaredActuator,
     pub(super) rig: &'a Rig,
     pub(super) names: &'a [String],
 }

@@ -13,7 +13,7 @@ use phea_hydraulics::line::LineError;
 use phea_hydraulics::plant::PlantInMotion;
 use phea_qft::family::{Extent, UncertainFamily, vertices};
 
-use super::FamilyError;
+use super::ProjectFamilyError;
 use super::hydraulic;
 use super::visited::Visited;
 use crate::project::Project;
@@ -28,7 +28,7 @@ const CORNER_COORDINATES: usize = 6;
 pub(super) fn family(
     setup: &Setup<'_>,
     lumped: &UncertainFamily,
-) -> Result<Option<UncertainFamily>, FamilyError> {
+) -> Result<Option<UncertainFamily>, ProjectFamilyError> {
     if setup.rig().ok().and_then(|rig| rig.in_loop().in_motion).is_none() {
         return Ok(None);
     }
@@ -38,9 +38,10 @@ pub(super) fn family(
     let members = members(lumped, &corners);
     for values in corners.iter().chain(&members) {
         let named = || named(&parameters, values);
-        let plant = moving.plant(values).map_err(|error| FamilyError::Line { error, member: named() })?;
+        let plant =
+            moving.plant(values).map_err(|error| ProjectFamilyError::Line { error, member: named() })?;
         if plant.is_none_or(|plant| !plant.is_passive()) {
-            return Err(FamilyError::NotPassive { member: named() });
+            return Err(ProjectFamilyError::NotPassive { member: named() });
         }
     }
     let plant = UncertainPlant::responding(parameters, Arc::new(moving))?;
@@ -71,7 +72,7 @@ impl RespondingPlants for Moving {
 }
 
 /// The corners of a box where they are few: every audit looks at them.
-fn corners(lumped: &UncertainFamily) -> Result<Vec<Vec<f64>>, FamilyError> {
+fn corners(lumped: &UncertainFamily) -> Result<Vec<Vec<f64>>, ProjectFamilyError> {
     let few = (1..=CORNER_COORDINATES).contains(&lumped.coordinates().len());
     Ok(match lumped.extent() {
         Extent::Box if few => vertices(lumped.plant(), lumped.coordinates())?,

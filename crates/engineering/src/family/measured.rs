@@ -15,18 +15,18 @@ use num_complex::Complex64;
 use phea_dynamics::portable;
 use phea_qft::family::{MeasuredFamily, MeasuredPlant};
 
-use self::column::{Columns, Form};
+use self::column::{MeasurementColumns, ResponseForm};
 use self::table::{MeasuredCell, MeasuredTable};
-use super::FamilyError;
-use crate::project::{Family, Findings, Found, Project, Severity};
+use super::ProjectFamilyError;
+use crate::project::{DeclaredFamily, Findings, Project, RawFinding, Severity};
 use crate::source::Source;
 
 /// The plants of the files, the nominal one first.
 pub(super) fn family(
     project: &Project,
-    declared: &Family,
+    declared: &DeclaredFamily,
     source: &dyn Source,
-) -> Result<MeasuredFamily, FamilyError> {
+) -> Result<MeasuredFamily, ProjectFamilyError> {
     let mut findings = Findings::default();
     let mut plants = Vec::new();
     for name in &declared.measured {
@@ -41,7 +41,7 @@ pub(super) fn family(
     }
     let report = findings.report();
     if report.diagnostics.iter().any(|diagnostic| diagnostic.severity == Severity::Error) {
-        return Err(FamilyError::Measurement(Box::new(report)));
+        return Err(ProjectFamilyError::Measurement(Box::new(report)));
     }
     Ok(MeasuredFamily::new(plants)?)
 }
@@ -55,7 +55,7 @@ fn plant(
     findings: &mut Findings,
 ) -> Option<MeasuredPlant> {
     let table = table::read(path, bytes, findings)?;
-    let columns = Columns::find(&table, findings)?;
+    let columns = MeasurementColumns::find(&table, findings)?;
     let mut plant = MeasuredPlant {
         name: name.to_string(),
         frequencies_rad_per_s: Vec::with_capacity(table.rows.len()),
@@ -75,7 +75,7 @@ fn plant(
 fn take(
     row: &[MeasuredCell<'_>],
     table: &MeasuredTable<'_>,
-    columns: &Columns,
+    columns: &MeasurementColumns,
     plant: &mut MeasuredPlant,
     findings: &mut Findings,
 ) {
@@ -93,12 +93,12 @@ fn take(
         let unit = columns.frequency.unit;
         let cell = columns.frequency.cell(row);
         return findings
-            .push(Found::error(cell.place, message).expected(format!("a higher frequency in {unit}")));
+            .push(RawFinding::error(cell.place, message).expected(format!("a higher frequency in {unit}")));
     }
     let Some(command) = response(&columns.command, row, findings) else { return };
     if command == Complex64::new(0.0, 0.0) {
         let place = columns.command.parts()[0].cell(row).place;
-        let found = Found::error(place, "the response is zero: it has no logarithm to interpolate");
+        let found = RawFinding::error(place, "the response is zero: it has no logarithm to interpolate");
         return findings.push(found.expected("a response that is not zero, or no row for this frequency"));
     }
     if let (Some(form), Some(values)) = (&columns.load_motion, &mut plant.disturbance) {
@@ -109,16 +109,18 @@ fn take(
     plant.command.push(command);
 }
 
-fn response(form: &Form, row: &[MeasuredCell<'_>], findings: &mut Findings) -> Option<Complex64> {
+fn response(form: &ResponseForm, row: &[MeasuredCell<'_>], findings: &mut Findings) -> Option<Complex64> {
     let [first, second] = form.parts();
     let (one, other) = (first.value(row, findings)?, second.value(row, findings)?);
     match form {
-        Form::Cartesian(..) => Some(Complex64::new(one, other)),
-        Form::Polar(..) if one < 0.0 => {
-            let found = Found::error(first.cell(row).place, "a magnitude is not negative");
+        ResponseForm::Cartesian(..) => Some(Complex64::new(one, other)),
+        ResponseForm::Polar(..) if one < 0.0 => {
+            let found = RawFinding::error(first.cell(row).place, "a magnitude is not negative");
             findings.push(found.expected("the sign in the phase, as 180 degrees"));
             None
         }
-        Form::Polar(..) => Some(Complex64::new(one * portable::cos(other), one * portable::sin(other))),
+        ResponseForm::Polar(..) => {
+            Some(Complex64::new(one * portable::cos(other), one * portable::sin(other)))
+        }
     }
 }

@@ -2,7 +2,7 @@
 
 use phea_hydraulics::servovalve::tare_flow;
 
-use super::FamilyError;
+use super::ProjectFamilyError;
 use crate::project::{Project, Uncertain};
 use crate::quantity::{VELOCITY, display};
 use crate::rig::{Numbers, components};
@@ -18,9 +18,9 @@ const PATH: &str = "operating_point.velocity";
 /// ```
 ///
 /// # Errors
-/// [`FamilyError::Region`] if nothing of the range is left, or the nominal velocity is not within
+/// [`ProjectFamilyError::Region`] if nothing of the range is left, or the nominal velocity is not within
 /// it.
-pub(super) fn within_reach(project: &Project) -> Result<Vec<Uncertain>, FamilyError> {
+pub(super) fn within_reach(project: &Project) -> Result<Vec<Uncertain>, ProjectFamilyError> {
     let mut numbers = project.uncertain_numbers();
     let region = project.family.as_ref().and_then(|family| family.operating_region.as_ref());
     let is_velocity = |one: &&mut Uncertain| one.name == PATH;
@@ -36,7 +36,7 @@ pub(super) fn within_reach(project: &Project) -> Result<Vec<Uncertain>, FamilyEr
         let [nominal, least, most] =
             [velocity.nominal, least, most].map(|value| display(value, &VELOCITY, 4));
         let message = format!("the pump gives {least} to {most}, and the nominal velocity is {nominal}");
-        return Err(FamilyError::Region(message));
+        return Err(ProjectFamilyError::Region(message));
     }
     Ok(numbers)
 }

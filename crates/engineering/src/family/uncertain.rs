@@ -6,16 +6,16 @@ use std::collections::BTreeSet;
 use phea_dynamics::uncertain_plant::{PlantCoefficients, UncertainParameter, UncertainPlant};
 use phea_qft::family::{self, Coordinate, Extent, UncertainFamily};
 
-use super::FamilyError;
+use super::ProjectFamilyError;
 use super::region::within_reach;
-use crate::project::{Case, Project, Spacing, Uncertain};
+use crate::project::{Case, DeclaredSpacing, Project, Uncertain};
 
 /// The uncertain parameters: those of `[uncertainty]`, then those that only explicit cases give
 /// values to.
 ///
 /// What `[linear]` sets outright goes before the nominal of `[uncertainty]`, as everywhere, and
 /// that before the first case.
-pub(super) fn parameters(project: &Project) -> Result<Vec<UncertainParameter>, FamilyError> {
+pub(super) fn parameters(project: &Project) -> Result<Vec<UncertainParameter>, ProjectFamilyError> {
     let numbers = within_reach(project)?;
     let declared = numbers.iter().map(|uncertain| UncertainParameter {
         name: uncertain.name.clone(),
@@ -47,7 +47,10 @@ pub(super) fn parameters(project: &Project) -> Result<Vec<UncertainParameter>, F
 }
 
 /// The family of a plant: the grid over its box, or what `[family]` chooses instead.
-pub(super) fn family(project: &Project, plant: UncertainPlant) -> Result<UncertainFamily, FamilyError> {
+pub(super) fn family(
+    project: &Project,
+    plant: UncertainPlant,
+) -> Result<UncertainFamily, ProjectFamilyError> {
     let coordinates = coordinates(project, &plant);
     let chosen = project.family.clone().unwrap_or_default();
     let mut members: Vec<Vec<f64>> = chosen.cases.iter().map(|case| member(case, &plant)).collect();
@@ -77,7 +80,7 @@ fn distinct(members: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
 }
 
 /// No dead time of a member may be negative.
-fn check_delay(family: &UncertainFamily) -> Result<(), FamilyError> {
+fn check_delay(family: &UncertainFamily) -> Result<(), ProjectFamilyError> {
     for values in family.members() {
         let Some(PlantCoefficients { dead_time_s: delay_s, .. }) = family.plant().coefficients(values) else {
             continue;
@@ -86,7 +89,7 @@ fn check_delay(family: &UncertainFamily) -> Result<(), FamilyError> {
             let names = family.plant().parameters().iter().map(|parameter| &parameter.name);
             let member: Vec<String> =
                 names.zip(values).map(|(name, value)| format!("{name} = {value}")).collect();
-            return Err(FamilyError::Delay { delay_s, member: member.join(", ") });
+            return Err(ProjectFamilyError::Delay { delay_s, member: member.join(", ") });
         }
     }
     Ok(())
@@ -142,7 +145,7 @@ fn coordinates(project: &Project, plant: &UncertainPlant) -> Vec<Coordinate> {
 
 fn spacing(uncertain: Option<&Uncertain>) -> family::Spacing {
     match uncertain.map(|uncertain| uncertain.spacing) {
-        Some(Spacing::Logarithmic) => family::Spacing::Logarithmic,
+        Some(DeclaredSpacing::Logarithmic) => family::Spacing::Logarithmic,
         _ => family::Spacing::Linear,
     }
 }

@@ -10,7 +10,7 @@ use phea_hydraulics::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 use phea_hydraulics::operating_point::{Settled, operating_point};
 use phea_qft::family::{Extent, UncertainFamily};
 
-use super::FamilyError;
+use super::ProjectFamilyError;
 use super::hydraulic::{Equal, Open};
 use crate::project::Project;
 use crate::quantity::significant;
@@ -40,7 +40,10 @@ pub(super) struct Visited {
 }
 
 impl Visited {
-    pub(super) fn new(setup: &Setup<'_>, parameters: &[UncertainParameter]) -> Result<Visited, FamilyError> {
+    pub(super) fn new(
+        setup: &Setup<'_>,
+        parameters: &[UncertainParameter],
+    ) -> Result<Visited, ProjectFamilyError> {
         let (project, rig) = (setup.project, setup.rig()?.clone());
         let Some(declared) = &project.actuator else { return Err(RigError::NoActuator.into()) };
         let names: Vec<String> = parameters.iter().map(|parameter| parameter.name.clone()).collect();
@@ -150,8 +153,8 @@ impl Visited {
 /// pressures are those of its operating point.
 ///
 /// # Errors
-/// [`FamilyError::OperatingPoint`] with the first where they are not, and why.
-pub(super) fn check(setup: &Setup<'_>, family: &UncertainFamily) -> Result<(), FamilyError> {
+/// [`ProjectFamilyError::OperatingPoint`] with the first where they are not, and why.
+pub(super) fn check(setup: &Setup<'_>, family: &UncertainFamily) -> Result<(), ProjectFamilyError> {
     let project = setup.project;
     let Some(declared) = &project.actuator else { return Ok(()) };
     let visited = Visited::new(setup, family.plant().parameters())?;
@@ -161,7 +164,10 @@ pub(super) fn check(setup: &Setup<'_>, family: &UncertainFamily) -> Result<(), F
     let open = Open { project, declared, rig: &visited.rig, names: &visited.names };
     for values in visited.places(family) {
         if let Some(reason) = visited.problem(&open, &values) {
-            return Err(FamilyError::OperatingPoint { member: visited.member(project, &values), reason });
+            return Err(ProjectFamilyError::OperatingPoint {
+                member: visited.member(project, &values),
+                reason,
+            });
         }
     }
     Ok(())

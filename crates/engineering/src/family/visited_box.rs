@@ -7,7 +7,7 @@ use phea_qft::family::{Coordinate, Extent, Family, UncertainFamily};
 
 use super::hydraulic::{Open, is_linear};
 use super::visited::Visited;
-use super::{FamilyError, family, uncertain};
+use super::{ProjectFamilyError, family, uncertain};
 use crate::setup::Setup;
 use crate::source::Memory;
 
@@ -69,7 +69,7 @@ const SEED: u64 = 1;
 ///
 /// # Errors
 /// Those of [`family`].
-pub fn visited_box(setup: &Setup<'_>) -> Result<Option<Vec<VisitedRange>>, FamilyError> {
+pub fn visited_box(setup: &Setup<'_>) -> Result<Option<Vec<VisitedRange>>, ProjectFamilyError> {
     let project = setup.project;
     let Some(declared) = &project.actuator else { return Ok(None) };
     let parameters = uncertain::parameters(project)?;

@@ -32,7 +32,7 @@ pub struct ExplainedBy {
 
 /// The models of the leakage compared.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Evidence {
+pub struct ModelEvidence {
     /// Both, the one that explains the recordings better first.
     pub models: [ExplainedBy; 2],
     /// Rows that count, all signals together: fewer than were read where neighbouring residuals are
@@ -40,7 +40,7 @@ pub struct Evidence {
     pub independent_rows: f64,
 }
 
-impl Evidence {
+impl ModelEvidence {
     /// By how much the criterion of the better model is lower.
     pub fn difference(&self) -> f64 {
         let [better, worse] = &self.models;
@@ -62,7 +62,7 @@ impl Evidence {
     /// (1 - c)/(1 + c), c the correlation of neighbouring residuals of the better model: the share of
     /// rows that are independent (Bayley and Hammersley 1946). A constant that both models share is
     /// left out.
-    pub(super) fn of(fits: [&Fit<'_>; 2]) -> Evidence {
+    pub(super) fn of(fits: [&Fit<'_>; 2]) -> ModelEvidence {
         let signals = fits.map(Fit::signals);
         let losses = fits.map(losses);
         let sum = |losses: &[f64], shares: &[f64]| -> f64 {
@@ -92,7 +92,7 @@ impl Evidence {
         if models[1].criterion < models[0].criterion {
             models.reverse();
         }
-        Evidence { models, independent_rows }
+        ModelEvidence { models, independent_rows }
     }
 }
 

@@ -13,7 +13,7 @@ use self::column::{Quantity, columns};
 use self::sheet::Sheet;
 use super::Known;
 use super::recording::{RecordedSignal, Recording, SignalKind};
-use crate::project::{Findings, Found, Refusal};
+use crate::project::{Findings, RawFinding, Refusal};
 use crate::source::Source;
 
 /// Fewest rows of a test.
@@ -59,7 +59,7 @@ fn recording(path: &str, bytes: &[u8], known: &Known, findings: &mut Findings) -
                         "a time before that of the row before"
                     };
                     findings.push(
-                        Found::error(column.place(row), message)
+                        RawFinding::error(column.place(row), message)
                             .expected("times that increase from row to row"),
                     );
                 }
@@ -73,7 +73,7 @@ fn recording(path: &str, bytes: &[u8], known: &Known, findings: &mut Findings) -
     }
     let whole = sheet.header_place();
     if sheet.rows.len() < FEWEST_ROWS {
-        let found = Found::error(whole, format!("{} rows are too few for a test", sheet.rows.len()));
+        let found = RawFinding::error(whole, format!("{} rows are too few for a test", sheet.rows.len()));
         findings.push(found.expected(format!("at least {FEWEST_ROWS} rows below the names of the columns")));
         return None;
     }
@@ -86,7 +86,7 @@ fn recording(path: &str, bytes: &[u8], known: &Known, findings: &mut Findings) -
         (None, None) => (vec![], false),
     };
     if !has_supply {
-        let found = Found::error(whole, "there is no supply pressure");
+        let found = RawFinding::error(whole, "there is no supply pressure");
         findings.push(found.expected("a column such as `supply_pressure_bar`, or a project that states it"));
         return None;
     }
@@ -158,6 +158,6 @@ fn checked(recording: Recording, whole: crate::project::Place, findings: &mut Fi
     } else {
         return Some(recording);
     };
-    findings.push(Found::error(whole, message));
+    findings.push(RawFinding::error(whole, message));
     None
 }

@@ -95,7 +95,7 @@ pub fn sweep(
     catalogues: &[String],
     request: &SweepRequest,
 ) -> Result<Sweep, ProcedureError> {
-    let Range { path, key, ends } = range(&request.range)?;
+    let SweepRange { path, key, ends } = range(&request.range)?;
     let count = points(request.points)?;
     let by_ratio = ends[0] * ends[1] > 0.0 && {
         let ratio = (ends[1] / ends[0]).abs();
@@ -120,7 +120,7 @@ pub fn sweep(
 }
 
 /// A range, read.
-struct Range {
+struct SweepRange {
     path: String,
     key: Key,
     /// SI.
@@ -131,7 +131,7 @@ fn refused(text: &str, message: String) -> ProcedureError {
     ProcedureError::Option { option: "sweep", text: text.to_string(), message }
 }
 
-fn range(text: &str) -> Result<Range, ProcedureError> {
+fn range(text: &str) -> Result<SweepRange, ProcedureError> {
     let form =
         || refused(text, "a sweep has the form KEY=FROM..TO, such as line.length=0.5 m..3 m".to_string());
     let (path, ends) = text.split_once('=').ok_or_else(form)?;
@@ -151,7 +151,7 @@ fn range(text: &str) -> Result<Range, ProcedureError> {
     if ends[0] == ends[1] {
         return Err(refused(text, "both ends are the same: there is nothing to sweep".to_string()));
     }
-    Ok(Range { path: path.to_string(), key, ends })
+    Ok(SweepRange { path: path.to_string(), key, ends })
 }
 
 /// What is known of the key, or the nearest spelling.

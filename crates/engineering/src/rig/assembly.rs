@@ -25,16 +25,19 @@ pub(super) const KINEMATIC_VISCOSITY: f64 = 46e-6;
 ///
 /// # Errors
 /// Every parameter that is impossible as physics.
-pub fn actuator(declared: &project::Actuator) -> Result<Actuator, ActuatorError> {
+pub fn actuator(declared: &project::DeclaredActuator) -> Result<Actuator, ActuatorError> {
     Actuator::new(components(declared, &Numbers::declared()))
 }
 
 /// The same over any scalar, before it is checked: each number of the project is taken at its path.
-pub fn components<S: Scalar>(declared: &project::Actuator, numbers: &Numbers<'_, S>) -> Components<S> {
+pub fn components<S: Scalar>(
+    declared: &project::DeclaredActuator,
+    numbers: &Numbers<'_, S>,
+) -> Components<S> {
     let pressure = numbers.at("supply.pressure", declared.supply.pressure);
     let tank_pressure = numbers.at("supply.tank_pressure", declared.supply.tank_pressure);
     let pressures = ExpansionPressures::of(pressure, tank_pressure);
-    let line = |side, declared: &project::Line| line(declared, &numbers.of_line(side), pressures);
+    let line = |side, declared: &project::DeclaredLine| line(declared, &numbers.of_line(side), pressures);
     Components {
         fluid: fluid(&declared.fluid, numbers),
         supply: Supply { pressure, tank_pressure },
@@ -57,7 +60,7 @@ pub(super) fn stiffness_model(compliance: Compliance) -> StiffnessModel {
     }
 }
 
-fn fluid<S: Scalar>(declared: &project::Fluid, numbers: &Numbers<'_, S>) -> Fluid<S> {
+fn fluid<S: Scalar>(declared: &project::DeclaredFluid, numbers: &Numbers<'_, S>) -> Fluid<S> {
     let numbers = numbers.within("fluid");
     let at = |key: &str, value: f64| numbers.at(key, value);
     let holds = |fraction: &f64| *fraction > 0.0 || numbers.is_open("fluid.entrained_air");
@@ -119,7 +122,7 @@ fn valve<S: Scalar>(declared: &project::Valve, numbers: &Numbers<'_, S>, supply_
 
 /// The line as physics.
 fn line<S: Scalar>(
-    declared: &project::Line,
+    declared: &project::DeclaredLine,
     numbers: &Numbers<'_, S>,
     pressures: ExpansionPressures<S>,
 ) -> Line<S> {
@@ -133,7 +136,7 @@ fn line<S: Scalar>(
             Line::Pipe { pipe: self::pipe(pipe, numbers), length: at("length", *length) }
         }
         Component::Hose { properties, length, .. } => {
-            let expansion = Expansion::of(&properties.expansion, numbers);
+            let expansion = VolumetricExpansion::of(&properties.expansion, numbers);
             let stiffening = stiffening(declared.dynamic_stiffening, numbers);
             Line::Hose {
                 hose: hose(at("bore", properties.bore), expansion, pressures, stiffening),
@@ -161,22 +164,22 @@ impl<S: Scalar> ExpansionPressures<S> {
 
 /// What a catalogue says of a hose's volumetric expansion, m3/m, Pa and m3/(m Pa).
 #[derive(Clone, Copy)]
-pub(super) struct Expansion<S = f64> {
+pub(super) struct VolumetricExpansion<S = f64> {
     pub(super) measured: Option<S>,
     pub(super) at: Option<S>,
     pub(super) slope: S,
 }
 
-impl<S: Scalar> Expansion<S> {
+impl<S: Scalar> VolumetricExpansion<S> {
     /// As it is declared.
-    pub(super) fn of(declared: &HoseExpansion, numbers: &Numbers<'_, S>) -> Expansion<S> {
+    pub(super) fn of(declared: &HoseExpansion, numbers: &Numbers<'_, S>) -> VolumetricExpansion<S> {
         let measured = declared.measured().map(|value| numbers.at("volumetric_expansion", value));
         let pressure = declared.pressure().map(|value| numbers.at("volumetric_expansion_pressure", value));
         let slope = match (declared, measured, pressure) {
             (HoseExpansion::Measured { .. }, Some(measured), Some(pressure)) => measured / pressure,
             _ => numbers.at("volumetric_expansion_slope", declared.slope()),
         };
-        Expansion { measured, at: pressure, slope }
+        VolumetricExpansion { measured, at: pressure, slope }
     }
 
     /// The declared point and the slope from there, or the slope from zero, m3/m; a point without a
@@ -191,7 +194,7 @@ impl<S: Scalar> Expansion<S> {
 
 pub(super) fn hose<S: Scalar>(
     bore: S,
-    expansion: Expansion<S>,
+    expansion: VolumetricExpansion<S>,
     pressures: ExpansionPressures<S>,
     dynamic_stiffening: Stiffening<S>,
 ) -> Hose<S> {
@@ -222,7 +225,7 @@ pub(super) fn stiffening<S: Scalar>(
     }
 }
 
-fn pipe<S: Scalar>(declared: &project::Pipe, numbers: &Numbers<'_, S>) -> Pipe<S> {
+fn pipe<S: Scalar>(declared: &project::DeclaredPipe, numbers: &Numbers<'_, S>) -> Pipe<S> {
     let numbers = numbers.within("pipe");
     let at = |key: &str, value: f64| numbers.at(key, value);
     let wall = declared.wall.map_or(PipeWall::Rigid, |wall| PipeWall::Elastic {
@@ -235,7 +238,7 @@ fn pipe<S: Scalar>(declared: &project::Pipe, numbers: &Numbers<'_, S>) -> Pipe<S
     Pipe { bore: at("bore", declared.bore), wall }
 }
 
-fn cylinder<S: Scalar>(declared: &project::Cylinder, numbers: &Numbers<'_, S>) -> Cylinder<S> {
+fn cylinder<S: Scalar>(declared: &project::DeclaredCylinder, numbers: &Numbers<'_, S>) -> Cylinder<S> {
     let numbers = numbers.within("cylinder");
     let at = |key: &str, value: f64| numbers.at(key, value);
     // two numbers in one key are never open; one number for both sides is
@@ -267,7 +270,10 @@ fn cylinder<S: Scalar>(declared: &project::Cylinder, numbers: &Numbers<'_, S>) -
     }
 }
 
-fn friction<S: Scalar>(declared: Option<&project::Friction>, numbers: &Numbers<'_, S>) -> Friction<S> {
+fn friction<S: Scalar>(
+    declared: Option<&project::DeclaredFriction>,
+    numbers: &Numbers<'_, S>,
+) -> Friction<S> {
     let Some(declared) = declared else { return Friction::Viscous { viscous: S::from(0.0) } };
     let numbers = numbers.within("cylinder.friction");
     let at = |key: &str, value: f64| numbers.at(key, value);

@@ -19,7 +19,7 @@ use crate::project::{self, LineFriction, LineMotion, LineSegments, LineWall};
 /// # Errors
 /// A line that its model does not fit.
 pub fn in_motion(
-    declared: &project::Lines,
+    declared: &project::DeclaredLines,
     components: &Components,
     point: &OperatingPoint,
     chambers: &TwoPressureLinearParameters,
@@ -66,7 +66,7 @@ fn without_volume(mut line: Line) -> Line {
 /// # Errors
 /// A line that its model does not fit.
 pub fn lines(
-    declared: &project::Lines,
+    declared: &project::DeclaredLines,
     lines: [&Line; 2],
     fluid: &Fluid,
     pressure: f64,

@@ -15,7 +15,7 @@ pub fn place<S: Scalar>(project: &Project, stroke: S, numbers: &Numbers<'_, S>) 
     let numbers = numbers.within("operating_point");
     let at = |name: &str, value: Option<f64>| value.map(|value| numbers.at(name, value));
     let position = at("position", declared.position).unwrap_or(stroke / S::from(2.0));
-    let project::OperatingPoint { load_pressure, load_force, velocity, command, .. } = declared;
+    let project::DeclaredOperatingPoint { load_pressure, load_force, velocity, command, .. } = declared;
     let pressure = at("load_pressure", load_pressure);
     let force = at("load_force", load_force);
     let none = S::from(0.0);

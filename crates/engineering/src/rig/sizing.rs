@@ -1,9 +1,9 @@
 use phea_dynamics::portable::ln;
 use phea_hydraulics::linear::LinearParameters;
 
-use super::assembly::{Expansion, ExpansionPressures, hose, stiffening};
+use super::assembly::{ExpansionPressures, VolumetricExpansion, hose, stiffening};
 use super::numbers::Numbers;
-use crate::catalogue::{Catalogue, DASH_SIZES, Kind};
+use crate::catalogue::{Catalogue, CatalogueKind, DASH_SIZES};
 use crate::project::{self, HoseProperties, SettlingTime, Speed};
 use crate::quantity::significant;
 use crate::setup::Setup;
@@ -107,7 +107,7 @@ fn time_constant(speed: Speed) -> (f64, String) {
     }
 }
 
-fn maximum_flow(actuator: &project::Actuator) -> Result<(f64, String), SizingError> {
+fn maximum_flow(actuator: &project::DeclaredActuator) -> Result<(f64, String), SizingError> {
     match (actuator.supply.flow(), actuator.valve.flow.rating().map(|rated| rated.flow)) {
         (Some(pump), Some(valve)) if pump <= valve => {
             Ok((pump, "the pump's, less than the valve's rated flow".to_string()))
@@ -121,11 +121,11 @@ fn maximum_flow(actuator: &project::Actuator) -> Result<(f64, String), SizingErr
 
 /// The hoses of the catalogue, with what the project says of one by the same name; its own hose if
 /// it has no name.
-fn hoses(actuator: &project::Actuator, catalogue: &Catalogue) -> Vec<HoseOption> {
+fn hoses(actuator: &project::DeclaredActuator, catalogue: &Catalogue) -> Vec<HoseOption> {
     let line = &actuator.line.a;
     let pressures = ExpansionPressures::of(actuator.supply.pressure, actuator.supply.tank_pressure);
     let option = |name: &str, properties: &HoseProperties| {
-        let expansion = Expansion::of(&properties.expansion, &Numbers::declared());
+        let expansion = VolumetricExpansion::of(&properties.expansion, &Numbers::declared());
         let stiffening = stiffening(line.dynamic_stiffening, &Numbers::declared());
         HoseOption {
             name: name.to_string(),
@@ -136,7 +136,7 @@ fn hoses(actuator: &project::Actuator, catalogue: &Catalogue) -> Vec<HoseOption>
     };
     let own = line.hose();
     let mut hoses: Vec<HoseOption> = catalogue
-        .entries(Kind::Hose)
+        .entries(CatalogueKind::Hose)
         .filter_map(|entry| {
             let own = own.filter(|_| line.hose_name() == Some(entry.name.as_str()));
             Some(option(&entry.name, own.or(entry.hose.as_ref())?))

@@ -10,7 +10,7 @@ use super::numbers::Numbers;
 use crate::project::{self, SupplyModel};
 
 /// Where the supply pressure comes from.
-pub fn power_unit<S: Scalar>(declared: &project::Actuator, numbers: &Numbers<'_, S>) -> PowerUnit<S> {
+pub fn power_unit<S: Scalar>(declared: &project::DeclaredActuator, numbers: &Numbers<'_, S>) -> PowerUnit<S> {
     let SupplyModel::PumpLimited(pump) = &declared.supply.model else { return PowerUnit::Constant };
     let of_supply = numbers.within("supply");
     let at = |key: &str, value: f64| of_supply.at(key, value);
@@ -32,7 +32,7 @@ pub fn power_unit<S: Scalar>(declared: &project::Actuator, numbers: &Numbers<'_,
 /// Where a limited pump settles with valve and chambers, the balance being that of the stated
 /// supply; `None` of a constant pressure.
 pub fn settled_supply<S: Scalar>(
-    declared: &project::Actuator,
+    declared: &project::DeclaredActuator,
     numbers: &Numbers<'_, S>,
     balance: &Balance<S>,
     steady: Steady<S>,
@@ -47,7 +47,7 @@ pub fn settled_supply<S: Scalar>(
 
 /// That supply for small motions.
 pub(crate) fn yielding_supply<S: Scalar>(
-    declared: &project::Actuator,
+    declared: &project::DeclaredActuator,
     numbers: &Numbers<'_, S>,
     balance: &Balance<S>,
     settled: &SettledSupply<S>,
@@ -58,7 +58,11 @@ pub(crate) fn yielding_supply<S: Scalar>(
 }
 
 /// Drop in Pa at which the tare flow is stated: that of the stated supply where nothing is said.
-fn tare_drop<S: Scalar>(declared: &project::Actuator, numbers: &Numbers<'_, S>, balance: &Balance<S>) -> S {
+fn tare_drop<S: Scalar>(
+    declared: &project::DeclaredActuator,
+    numbers: &Numbers<'_, S>,
+    balance: &Balance<S>,
+) -> S {
     let whole = balance.supply.pressure - balance.supply.tank_pressure;
     declared.valve.tare_pressure.map_or(whole, |drop| numbers.at("valve.tare_pressure", drop))
 }

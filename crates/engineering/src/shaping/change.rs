@@ -1,14 +1,14 @@
 //! Changes as they are asked for in text.
 
 use phea_dynamics::controller::{Compensator, Element as Solved, Stage};
-use phea_qft::manual_shaping::{Edit, EditError, Pattern, apply, pass_through};
+use phea_qft::manual_shaping::{Edit, EditError, ElementPattern, apply, pass_through};
 
-use super::piece::Piece;
+use super::piece::TextPiece;
 use super::present;
-use super::wish::{self, Wish};
+use super::wish::{self, ElementWish};
 use super::workpiece::Workpiece;
 use crate::error::ProcedureError;
-use crate::project::{Element, ElementKind, Findings, Found, Refusal, value_or_finding};
+use crate::project::{DeclaredElement, ElementKind, Findings, RawFinding, Refusal, value_or_finding};
 use crate::robust::RobustProblem;
 
 /// What is changed.
@@ -80,7 +80,7 @@ pub(super) fn edit(
 ) -> Result<Option<Edit>, ProcedureError> {
     let whole = taken_in(requested, findings);
     let count = now.stages.len();
-    let stage = |piece: &Piece<'_>, workpiece: &mut Workpiece<'_>, findings: &mut Findings| {
+    let stage = |piece: &TextPiece<'_>, workpiece: &mut Workpiece<'_>, findings: &mut Findings| {
         let declared = element(piece, workpiece.sample_time(), findings);
         declared.map(|declared| workpiece.know(declared)).transpose()
     };
@@ -110,20 +110,20 @@ pub(super) fn edit(
 pub(super) fn refused(requested: &RequestedChange, error: &EditError) -> Refusal {
     let mut findings = Findings::default();
     let whole = taken_in(requested, &mut findings);
-    findings.push(Found::error(whole.place(), error.to_string()));
+    findings.push(RawFinding::error(whole.place(), error.to_string()));
     findings.report()
 }
 
-fn taken_in<'a>(requested: &'a RequestedChange, findings: &mut Findings) -> Piece<'a> {
+fn taken_in<'a>(requested: &'a RequestedChange, findings: &mut Findings) -> TextPiece<'a> {
     let RequestedChange { change, text } = requested;
     let index = findings.add_text(&format!("--{} {text}", change.option()), text, 0);
-    Piece::whole(text, index)
+    TextPiece::whole(text, index)
 }
 
 /// The element of a wish: in place of the one it names, as a factor of the gain, or at the end.
 fn pass(
-    whole: &Piece<'_>,
-    wish: &Wish<'_>,
+    whole: &TextPiece<'_>,
+    wish: &ElementWish<'_>,
     workpiece: &mut Workpiece<'_>,
     now: &Compensator,
     bare: &RobustProblem,
@@ -151,40 +151,44 @@ fn pass(
     let element = match pass_through(wish.pattern, &wish.point, present, &workpiece.timing()) {
         Ok(element) => element,
         Err(error) => {
-            findings.push(Found::error(whole.place(), error.to_string()));
+            findings.push(RawFinding::error(whole.place(), error.to_string()));
             return Ok(None);
         }
     };
-    if let (Pattern::RollOff { damping_ratio }, Solved::ComplexPoles { natural_frequency, .. }) =
+    if let (ElementPattern::RollOff { damping_ratio }, Solved::ComplexPoles { natural_frequency, .. }) =
         (wish.pattern, &element)
     {
         let (frequency, damping_ratio) = (*natural_frequency, Some(damping_ratio));
-        workpiece.know(Element::new(ElementKind::RollOff { frequency, damping_ratio }))?;
+        workpiece.know(DeclaredElement::new(ElementKind::RollOff { frequency, damping_ratio }))?;
     }
     Ok(Some(match (replaced, wish.pattern, element) {
         (Some(index), _, element) => Edit::Replace(index, element),
-        (None, Pattern::Gain, Solved::Gain(factor)) => Edit::ScaleGain(factor),
+        (None, ElementPattern::Gain, Solved::Gain(factor)) => Edit::ScaleGain(factor),
         (None, _, element) => Edit::Add { at: now.stages.len(), stage: Stage { element, enabled: true } },
     }))
 }
 
-fn element(piece: &Piece<'_>, sample_time: Option<f64>, findings: &mut Findings) -> Option<Element> {
+fn element(
+    piece: &TextPiece<'_>,
+    sample_time: Option<f64>,
+    findings: &mut Findings,
+) -> Option<DeclaredElement> {
     if !piece.words.starts_with('{') {
         return piece.refuse(findings, "this is no element", ELEMENT_HELP);
     }
     let node = value_or_finding(piece.text(), piece.range(), findings)?;
-    Element::read(&node, sample_time, findings)
+    DeclaredElement::read(&node, sample_time, findings)
 }
 
 /// Two parts with an equals sign between them.
-fn pair<'a>(piece: &Piece<'a>, example: &str, findings: &mut Findings) -> Option<[Piece<'a>; 2]> {
+fn pair<'a>(piece: &TextPiece<'a>, example: &str, findings: &mut Findings) -> Option<[TextPiece<'a>; 2]> {
     piece
         .split("=")
         .or_else(|| piece.refuse(findings, "there is no `=` in it", &format!("for instance {example}")))
 }
 
 /// The number of an element, from 1, as an index.
-fn number(piece: &Piece<'_>, count: usize, findings: &mut Findings) -> Option<usize> {
+fn number(piece: &TextPiece<'_>, count: usize, findings: &mut Findings) -> Option<usize> {
     let message = format!("`{}` is no number of an element", piece.words);
     let Ok(number) = piece.words.parse::<usize>() else {
         return piece.refuse(findings, message, "elements are counted from 1");

@@ -1,19 +1,19 @@
 //! A part of a text that knows where it stands.
 
-use crate::project::{Findings, Found, Place};
+use crate::project::{Findings, Place, RawFinding};
 
 /// A part of a text, without the space around it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Piece<'a> {
+pub(super) struct TextPiece<'a> {
     pub(super) words: &'a str,
     text: usize,
     start: usize,
 }
 
-impl<'a> Piece<'a> {
+impl<'a> TextPiece<'a> {
     /// The whole of a text.
-    pub(super) fn whole(words: &'a str, text: usize) -> Piece<'a> {
-        Piece { words, text, start: 0 }.trimmed()
+    pub(super) fn whole(words: &'a str, text: usize) -> TextPiece<'a> {
+        TextPiece { words, text, start: 0 }.trimmed()
     }
 
     pub(super) fn place(&self) -> Place {
@@ -34,23 +34,23 @@ impl<'a> Piece<'a> {
     }
 
     /// What stands before and after the first place of a separator.
-    pub(super) fn split(&self, separator: &str) -> Option<[Piece<'a>; 2]> {
+    pub(super) fn split(&self, separator: &str) -> Option<[TextPiece<'a>; 2]> {
         self.words.find(separator).map(|at| self.cut(at, at + separator.len()))
     }
 
     /// What stands before and after the last place of a separator.
-    pub(super) fn split_last(&self, separator: &str) -> Option<[Piece<'a>; 2]> {
+    pub(super) fn split_last(&self, separator: &str) -> Option<[TextPiece<'a>; 2]> {
         self.words.rfind(separator).map(|at| self.cut(at, at + separator.len()))
     }
 
     /// What stands before an ending.
-    pub(super) fn before(&self, ending: &str) -> Option<Piece<'a>> {
+    pub(super) fn before(&self, ending: &str) -> Option<TextPiece<'a>> {
         let words = self.words.strip_suffix(ending)?;
-        Some(Piece { words, ..*self }.trimmed())
+        Some(TextPiece { words, ..*self }.trimmed())
     }
 
     /// Its first word, and the rest.
-    pub(super) fn first_word(&self) -> [Piece<'a>; 2] {
+    pub(super) fn first_word(&self) -> [TextPiece<'a>; 2] {
         let end = self.words.find(char::is_whitespace).unwrap_or(self.words.len());
         self.cut(end, end)
     }
@@ -62,20 +62,20 @@ impl<'a> Piece<'a> {
         message: impl Into<String>,
         help: &str,
     ) -> Option<T> {
-        findings.push(Found::error(self.place(), message).help(help));
+        findings.push(RawFinding::error(self.place(), message).help(help));
         None
     }
 
-    fn cut(&self, end: usize, start: usize) -> [Piece<'a>; 2] {
+    fn cut(&self, end: usize, start: usize) -> [TextPiece<'a>; 2] {
         let part = |from: usize, to: usize| {
             let words = self.words.get(from..to).unwrap_or_default();
-            Piece { words, text: self.text, start: self.start + from }.trimmed()
+            TextPiece { words, text: self.text, start: self.start + from }.trimmed()
         };
         [part(0, end), part(start, self.words.len())]
     }
 
-    fn trimmed(self) -> Piece<'a> {
+    fn trimmed(self) -> TextPiece<'a> {
         let skipped = self.words.len() - self.words.trim_start().len();
-        Piece { words: self.words.trim(), start: self.start + skipped, ..self }
+        TextPiece { words: self.words.trim(), start: self.start + skipped, ..self }
     }
 }

@@ -9,7 +9,7 @@ use std::ops::Range;
 use super::{Shaped, ShapingError};
 use crate::error::ProcedureError;
 use crate::project::{
-    self, Element, Entry, Findings, Loaded, Node, Transfer, TreeValue, read_tree, with_law,
+    self, DeclaredElement, Entry, Findings, Loaded, Transfer, TreeNode, TreeValue, read_tree, with_law,
 };
 use crate::source::{Source, SourceError};
 
@@ -20,10 +20,10 @@ struct Replacement {
 }
 
 /// An element as a file has it.
-struct Written<'a> {
+struct WrittenElement<'a> {
     /// `None` where it cannot be read; it is then written anew.
-    element: Option<Element>,
-    node: &'a Node,
+    element: Option<DeclaredElement>,
+    node: &'a TreeNode,
 }
 
 /// A file that is rewritten.
@@ -32,7 +32,7 @@ struct Draft<'a> {
     /// Its end of line.
     newline: &'static str,
     table: &'static str,
-    elements: &'a [Element],
+    elements: &'a [DeclaredElement],
 }
 
 /// The bytes of the project file with these elements; settings of the command line beside them are
@@ -41,7 +41,7 @@ pub(super) fn saved(
     source: &dyn Source,
     loaded: &Loaded,
     shaped: Shaped,
-    elements: &[Element],
+    elements: &[DeclaredElement],
 ) -> Result<Vec<u8>, ProcedureError> {
     let bytes = &loaded.bytes;
     let table = shaped.table();
@@ -64,13 +64,13 @@ fn read_back(
     source: &dyn Source,
     loaded: &Loaded,
     shaped: Shaped,
-    elements: &[Element],
+    elements: &[DeclaredElement],
     saved: &[u8],
 ) -> Result<(), ProcedureError> {
     if !loaded.settings.is_empty() {
         return Ok(()); // the file alone need not be a valid project
     }
-    let over = Over { source, path: &loaded.path, bytes: saved };
+    let over = OverriddenSource { source, path: &loaded.path, bytes: saved };
     let again = match project::read(&over, &loaded.path, &[], &[]) {
         Ok(again) => again,
         // names of the user's own catalogue are known to the command line alone
@@ -90,13 +90,13 @@ fn read_back(
 }
 
 /// A source in which one file has other bytes.
-struct Over<'a> {
+struct OverriddenSource<'a> {
     source: &'a dyn Source,
     path: &'a str,
     bytes: &'a [u8],
 }
 
-impl Source for Over<'_> {
+impl Source for OverriddenSource<'_> {
     fn read(&self, path: &str) -> Result<Vec<u8>, SourceError> {
         if path == self.path { Ok(self.bytes.to_vec()) } else { self.source.read(path) }
     }
@@ -107,7 +107,7 @@ impl Source for Over<'_> {
 }
 
 impl Draft<'_> {
-    fn rewritten(&self, root: &Node, findings: &mut Findings) -> Result<String, ShapingError> {
+    fn rewritten(&self, root: &TreeNode, findings: &mut Findings) -> Result<String, ShapingError> {
         let table = root.get(self.table).map(|entry| &entry.node);
         let given = table.map(|table| Transfer::read(table, findings).as_elements()).unwrap_or_default();
         if given == self.elements {
@@ -129,14 +129,14 @@ impl Draft<'_> {
 
     fn in_list(
         &self,
-        table: &Node,
+        table: &TreeNode,
         list: &Entry,
         findings: &mut Findings,
     ) -> Result<Vec<Replacement>, ShapingError> {
         let TreeValue::List(nodes) = &list.node.value else { return Ok(vec![]) };
         // elements in z want a sample time, whichever
-        let read = |node| Written { element: Element::read(node, Some(1.0), findings), node };
-        let written: Vec<Written<'_>> = nodes.iter().map(read).collect();
+        let read = |node| WrittenElement { element: DeclaredElement::read(node, Some(1.0), findings), node };
+        let written: Vec<WrittenElement<'_>> = nodes.iter().map(read).collect();
         let text = self.content.get(list.node.place.start..).unwrap_or_default();
         if text.starts_with("[[") {
             section::rewritten(self, table, &written)
@@ -147,15 +147,21 @@ impl Draft<'_> {
     }
 }
 
-impl Written<'_> {
+impl WrittenElement<'_> {
     /// Its text, from `start`, where it is this element already or becomes it by its `enabled`
     /// alone: that is changed where it is written, or comes behind the other keys.
-    fn text_as(&self, element: &Element, text: &str, start: usize, behind: (usize, &str)) -> Option<String> {
+    fn text_as(
+        &self,
+        element: &DeclaredElement,
+        text: &str,
+        start: usize,
+        behind: (usize, &str),
+    ) -> Option<String> {
         let own = self.element.as_ref()?;
         if own == element {
             return Some(text.to_string());
         }
-        if (Element { enabled: element.enabled, ..own.clone() }) != *element {
+        if (DeclaredElement { enabled: element.enabled, ..own.clone() }) != *element {
             return None;
         }
         let mut text = text.to_string();
@@ -176,7 +182,7 @@ impl Written<'_> {
 
 /// For each element the one of the file that it is: equal ones in order, then those that differ in
 /// `enabled` alone.
-fn matched(elements: &[Element], written: &[Written<'_>]) -> Vec<Option<usize>> {
+fn matched(elements: &[DeclaredElement], written: &[WrittenElement<'_>]) -> Vec<Option<usize>> {
     let mut free: Vec<usize> = (0..written.len()).collect();
     let mut found = vec![None; elements.len()];
     for exactly in [true, false] {
@@ -185,7 +191,7 @@ fn matched(elements: &[Element], written: &[Written<'_>]) -> Vec<Option<usize>> 
                 let other = written.get(*index).and_then(|written| written.element.as_ref());
                 other.is_some_and(|other| {
                     let enabled = if exactly { other.enabled } else { element.enabled };
-                    Element { enabled, ..other.clone() } == *element
+                    DeclaredElement { enabled, ..other.clone() } == *element
                 })
             };
             if let Some(place) = free.iter().position(alike) {

@@ -4,18 +4,18 @@
 //! wish   = [number "="] kind ["with" key value] "through" coordinate ["," coordinate] "at" frequency
 //! ```
 
-use phea_qft::manual_shaping::{Pattern, WantedPoint};
+use phea_qft::manual_shaping::{ElementPattern, WantedPoint};
 
-use super::piece::Piece;
-use crate::project::{Findings, Found};
+use super::piece::TextPiece;
+use crate::project::{Findings, RawFinding};
 use crate::quantity::{self, ANGULAR_FREQUENCY};
 use crate::spelling::nearest;
 
 /// An element that is to be solved for.
-pub(super) struct Wish<'a> {
+pub(super) struct ElementWish<'a> {
     /// The number of the element it takes the place of.
-    pub(super) replaced: Option<Piece<'a>>,
-    pub(super) pattern: Pattern,
+    pub(super) replaced: Option<TextPiece<'a>>,
+    pub(super) pattern: ElementPattern,
     pub(super) point: WantedPoint,
 }
 
@@ -25,21 +25,21 @@ const NOTCH_DAMPING: f64 = 0.5;
 /// Damping of a roll-off where none is given.
 const ROLL_OFF_DAMPING: f64 = std::f64::consts::FRAC_1_SQRT_2;
 /// Elements with free numbers.
-const SOLVED: [(&str, Pattern); 10] = [
-    ("gain", Pattern::Gain),
-    ("pole", Pattern::RealPole),
-    ("zero", Pattern::RealZero),
-    ("lead", Pattern::Lead),
-    ("lag", Pattern::Lag),
-    ("complex_poles", Pattern::ComplexPoles),
-    ("complex_zeros", Pattern::ComplexZeros),
-    ("roll_off", Pattern::RollOff { damping_ratio: ROLL_OFF_DAMPING }),
-    ("pi", Pattern::ProportionalIntegral),
-    ("notch", Pattern::NotchHere { pole_damping_ratio: NOTCH_DAMPING }),
+const SOLVED: [(&str, ElementPattern); 10] = [
+    ("gain", ElementPattern::Gain),
+    ("pole", ElementPattern::RealPole),
+    ("zero", ElementPattern::RealZero),
+    ("lead", ElementPattern::Lead),
+    ("lag", ElementPattern::Lag),
+    ("complex_poles", ElementPattern::ComplexPoles),
+    ("complex_zeros", ElementPattern::ComplexZeros),
+    ("roll_off", ElementPattern::RollOff { damping_ratio: ROLL_OFF_DAMPING }),
+    ("pi", ElementPattern::ProportionalIntegral),
+    ("notch", ElementPattern::NotchHere { pole_damping_ratio: NOTCH_DAMPING }),
 ];
 
 /// Reads a request; `None` where it is invalid, with the reason in the findings.
-pub(super) fn read<'a>(whole: &Piece<'a>, findings: &mut Findings) -> Option<Wish<'a>> {
+pub(super) fn read<'a>(whole: &TextPiece<'a>, findings: &mut Findings) -> Option<ElementWish<'a>> {
     let Some([head, place]) = whole.split("through") else {
         return whole.refuse(findings, "it does not say `through` which point", EXAMPLE);
     };
@@ -55,11 +55,15 @@ pub(super) fn read<'a>(whole: &Piece<'a>, findings: &mut Findings) -> Option<Wis
     let pattern = pattern(&head, findings)?;
     let [magnitude_db, phase_deg] = coordinates(&point, findings)?;
     let frequency_rad_per_s = frequency(&at, findings)?;
-    Some(Wish { replaced, pattern, point: WantedPoint { frequency_rad_per_s, magnitude_db, phase_deg } })
+    Some(ElementWish {
+        replaced,
+        pattern,
+        point: WantedPoint { frequency_rad_per_s, magnitude_db, phase_deg },
+    })
 }
 
 /// The element, and its number that is given.
-fn pattern(head: &Piece<'_>, findings: &mut Findings) -> Option<Pattern> {
+fn pattern(head: &TextPiece<'_>, findings: &mut Findings) -> Option<ElementPattern> {
     let [kind, given] = head.first_word();
     let Some((_, pattern)) = SOLVED.iter().find(|(name, _)| *name == kind.words) else {
         let names = SOLVED.map(|(name, _)| name);
@@ -71,7 +75,7 @@ fn pattern(head: &Piece<'_>, findings: &mut Findings) -> Option<Pattern> {
             format!("`{}` cannot be solved for", kind.words)
         };
         let near = nearest(kind.words, names).map(|name| format!("did you mean `{name}`?"));
-        findings.push(Found::error(kind.place(), message).expected(expected).maybe_help(near));
+        findings.push(RawFinding::error(kind.place(), message).expected(expected).maybe_help(near));
         return None;
     };
     if given.words.is_empty() {
@@ -90,20 +94,20 @@ fn pattern(head: &Piece<'_>, findings: &mut Findings) -> Option<Pattern> {
 
 /// The pattern with a number that is given.
 fn numbered(
-    pattern: Pattern,
-    key: &Piece<'_>,
-    value: &Piece<'_>,
+    pattern: ElementPattern,
+    key: &TextPiece<'_>,
+    value: &TextPiece<'_>,
     findings: &mut Findings,
-) -> Option<Pattern> {
+) -> Option<ElementPattern> {
     match (pattern, key.words) {
-        (Pattern::RollOff { .. }, "damping_ratio") => {
-            Some(Pattern::RollOff { damping_ratio: plain(value, findings)? })
+        (ElementPattern::RollOff { .. }, "damping_ratio") => {
+            Some(ElementPattern::RollOff { damping_ratio: plain(value, findings)? })
         }
-        (Pattern::NotchHere { .. }, "damping_ratio") => {
-            Some(Pattern::NotchHere { pole_damping_ratio: plain(value, findings)? })
+        (ElementPattern::NotchHere { .. }, "damping_ratio") => {
+            Some(ElementPattern::NotchHere { pole_damping_ratio: plain(value, findings)? })
         }
-        (Pattern::NotchHere { .. }, "frequency") => {
-            Some(Pattern::NotchBeside { natural_frequency: frequency(value, findings)? })
+        (ElementPattern::NotchHere { .. }, "frequency") => {
+            Some(ElementPattern::NotchBeside { natural_frequency: frequency(value, findings)? })
         }
         _ => {
             let message = format!("`{}` cannot be given for {}", key.words, pattern.name());
@@ -114,7 +118,7 @@ fn numbered(
 }
 
 /// Magnitude in dB and phase in degrees, whichever are given.
-fn coordinates(point: &Piece<'_>, findings: &mut Findings) -> Option<[Option<f64>; 2]> {
+fn coordinates(point: &TextPiece<'_>, findings: &mut Findings) -> Option<[Option<f64>; 2]> {
     let parts = point.split(",").map_or_else(|| vec![*point], |parts| parts.to_vec());
     let mut found = [None, None];
     for part in parts {
@@ -134,7 +138,7 @@ fn coordinates(point: &Piece<'_>, findings: &mut Findings) -> Option<[Option<f64
     Some(found)
 }
 
-fn plain(piece: &Piece<'_>, findings: &mut Findings) -> Option<f64> {
+fn plain(piece: &TextPiece<'_>, findings: &mut Findings) -> Option<f64> {
     match piece.words.parse::<f64>() {
         Ok(value) if value.is_finite() => Some(value),
         _ => piece.refuse(findings, format!("`{}` is no number", piece.words), EXAMPLE),
@@ -142,7 +146,7 @@ fn plain(piece: &Piece<'_>, findings: &mut Findings) -> Option<f64> {
 }
 
 /// rad/s where no unit is given.
-fn frequency(piece: &Piece<'_>, findings: &mut Findings) -> Option<f64> {
+fn frequency(piece: &TextPiece<'_>, findings: &mut Findings) -> Option<f64> {
     if let Some(value) = piece.words.parse::<f64>().ok().filter(|value| value.is_finite()) {
         return Some(value);
     }
@@ -150,7 +154,7 @@ fn frequency(piece: &Piece<'_>, findings: &mut Findings) -> Option<f64> {
         Ok(value) => Some(value),
         Err(error) => {
             let found =
-                Found::error(piece.place_of(&error.range), error.message).maybe_expected(error.expected);
+                RawFinding::error(piece.place_of(&error.range), error.message).maybe_expected(error.expected);
             findings.push(found.maybe_help(error.help));
             None
         }

@@ -14,7 +14,7 @@ pub(super) struct Workpiece<'a> {
     project: &'a Project,
     shaped: Shaped,
     given: Compensator,
-    known: Vec<(Element, project::Element)>,
+    known: Vec<(Element, project::DeclaredElement)>,
 }
 
 impl<'a> Workpiece<'a> {
@@ -56,7 +56,7 @@ impl<'a> Workpiece<'a> {
     }
 
     /// Takes an element in as it is declared, and gives it as the loop has it.
-    pub(super) fn know(&mut self, declared: project::Element) -> Result<Stage, ControlError> {
+    pub(super) fn know(&mut self, declared: project::DeclaredElement) -> Result<Stage, ControlError> {
         let place = match self.shaped {
             Shaped::Controller => "[controller]",
             Shaped::Prefilter => "[prefilter]",
@@ -69,16 +69,16 @@ impl<'a> Workpiece<'a> {
 
     /// The elements as the project file has them: each in the form in which it was named, new ones
     /// in that of their kind.
-    pub(super) fn declared(&self, compensator: &Compensator) -> Vec<project::Element> {
-        let mut free: Vec<&(Element, project::Element)> = self.known.iter().collect();
+    pub(super) fn declared(&self, compensator: &Compensator) -> Vec<project::DeclaredElement> {
+        let mut free: Vec<&(Element, project::DeclaredElement)> = self.known.iter().collect();
         let declared = |stage: &Stage| {
-            let same = |known: &&(Element, project::Element)| known.0 == stage.element;
+            let same = |known: &&(Element, project::DeclaredElement)| known.0 == stage.element;
             let found = match free.iter().position(same) {
                 Some(index) => Some(free.remove(index)),
                 None => self.known.iter().find(same),
             };
             let named = found.map_or_else(|| declared_of(&stage.element), |known| known.1.clone());
-            project::Element { enabled: stage.enabled, ..named }
+            project::DeclaredElement { enabled: stage.enabled, ..named }
         };
         compensator.stages.iter().map(declared).collect()
     }
@@ -111,7 +111,11 @@ impl<'a> Workpiece<'a> {
 }
 
 /// The project with these elements in place of what it gives.
-pub(super) fn with_elements(project: &Project, shaped: Shaped, elements: &[project::Element]) -> Project {
+pub(super) fn with_elements(
+    project: &Project,
+    shaped: Shaped,
+    elements: &[project::DeclaredElement],
+) -> Project {
     let transfer = Transfer { elements: elements.to_vec(), ..Transfer::default() };
     let mut project = project.clone();
     match shaped {
@@ -122,8 +126,8 @@ pub(super) fn with_elements(project: &Project, shaped: Shaped, elements: &[proje
 }
 
 /// An element that was never declared: a gain that was scaled, or one that was solved for.
-fn declared_of(element: &Element) -> project::Element {
-    project::Element::new(match *element {
+fn declared_of(element: &Element) -> project::DeclaredElement {
+    project::DeclaredElement::new(match *element {
         Element::Gain(value) => ElementKind::Gain { value },
         Element::Integrator => ElementKind::Integrator,
         Element::Differentiator => ElementKind::Differentiator,

@@ -3,7 +3,7 @@
 
 use phea_dynamics::controller::Controller;
 use phea_dynamics::linear::TransferFunction;
-use phea_dynamics::simulation::{CommandedPlant, Method, Sensed, Settings};
+use phea_dynamics::simulation::{CommandedPlant, Method, Sensed, SimulationSettings};
 use phea_hydraulics::actuator::Actuator;
 use phea_hydraulics::contact::Contact;
 use phea_hydraulics::line::StiffeningMember;
@@ -18,7 +18,7 @@ use crate::setup::Setup;
 
 /// A machine with its controller.
 #[derive(Clone, Debug)]
-pub struct Bench {
+pub struct ControlledMachine {
     /// The rig it was made of.
     pub rig: Rig,
     /// The machine.
@@ -26,7 +26,7 @@ pub struct Bench {
     /// What commands it.
     pub control: Control,
     /// How exactly it is integrated.
-    pub settings: Settings,
+    pub settings: SimulationSettings,
     /// From the load's velocity to the command, V s/m; zero where nothing is fed forward.
     pub feed_forward: f64,
     /// Pressures in Pa up to which the expansions of hoses A and B were measured, where they are
@@ -36,29 +36,29 @@ pub struct Bench {
     pub force_capacity_n: Option<f64>,
 }
 
-impl Bench {
+impl ControlledMachine {
     /// The machine and the controller of a project.
     ///
     /// # Errors
     /// [`SimulateError`] where one of them is missing or impossible.
-    pub fn new(setup: &Setup<'_>) -> Result<Bench, SimulateError> {
-        Bench::closed(setup, false)
+    pub fn new(setup: &Setup<'_>) -> Result<ControlledMachine, SimulateError> {
+        ControlledMachine::closed(setup, false)
     }
 
     /// What a scenario of the project is driven on: open loop where it states a command, with a
     /// force from outside where it states one.
     ///
     /// # Errors
-    /// As [`Bench::new`]; an open loop needs no controller.
-    pub fn of_scenario(setup: &Setup<'_>, scenario: &Scenario) -> Result<Bench, SimulateError> {
+    /// As [`ControlledMachine::new`]; an open loop needs no controller.
+    pub fn of_scenario(setup: &Setup<'_>, scenario: &Scenario) -> Result<ControlledMachine, SimulateError> {
         let external_force = !scenario.external_force.is_empty();
         match scenario.is_open_loop() {
-            false => Bench::closed(setup, external_force),
-            true => Bench::open(setup, external_force),
+            false => ControlledMachine::closed(setup, external_force),
+            true => ControlledMachine::open(setup, external_force),
         }
     }
 
-    fn closed(setup: &Setup<'_>, external_force: bool) -> Result<Bench, SimulateError> {
+    fn closed(setup: &Setup<'_>, external_force: bool) -> Result<ControlledMachine, SimulateError> {
         let project = setup.project;
         let (rig, sensed) = rig_and_machine(setup, external_force)?;
         let controller = setup.controller.clone().ok_or(SimulateError::NoController)?;
@@ -73,7 +73,7 @@ impl Bench {
             }
         };
         let (settings, expansion_stated_at) = (settings(project), expansion_stated_at(project));
-        Ok(Bench {
+        Ok(ControlledMachine {
             rig,
             machine,
             control,
@@ -86,14 +86,14 @@ impl Bench {
 
     /// The machine alone, for a command that is stated: limits, samples and delays of a controller
     /// do not act on it.
-    fn open(setup: &Setup<'_>, external_force: bool) -> Result<Bench, SimulateError> {
+    fn open(setup: &Setup<'_>, external_force: bool) -> Result<ControlledMachine, SimulateError> {
         let project = setup.project;
         let (rig, sensed) = rig_and_machine(setup, external_force)?;
         let machine = *sensed.plant();
         let control =
             Control::Open(Box::new(CommandedPlant::on_hold(sensed, &TransferFunction::gain_only(1.0))?));
         let (settings, expansion_stated_at) = (settings(project), expansion_stated_at(project));
-        Ok(Bench {
+        Ok(ControlledMachine {
             rig,
             machine,
             control,
@@ -105,7 +105,7 @@ impl Bench {
     }
 
     /// The same controller around another machine, made of this actuator.
-    pub fn around(&self, machine: Machine, actuator: Actuator) -> Bench {
+    pub fn around(&self, machine: Machine, actuator: Actuator) -> ControlledMachine {
         let mut bench = self.clone();
         bench.machine = machine;
         bench.rig.actuator = actuator;
@@ -128,13 +128,13 @@ fn capacity(project: &Project) -> Option<f64> {
 
 fn expansion_stated_at(project: &Project) -> [Option<f64>; 2] {
     let lines = project.actuator.as_ref().map(|actuator| &actuator.line);
-    lines.map_or([None; 2], |lines| [&lines.a, &lines.b].map(project::Line::expansion_stated_at))
+    lines.map_or([None; 2], |lines| [&lines.a, &lines.b].map(project::DeclaredLine::expansion_stated_at))
 }
 
 /// How the project wants its machine integrated.
-pub(super) fn settings(project: &Project) -> Settings {
+pub(super) fn settings(project: &Project) -> SimulationSettings {
     let declared = &project.simulation;
-    Settings {
+    SimulationSettings {
         tolerance: declared.tolerance,
         maximum_steps: u64::from(declared.maximum_steps),
         method: match declared.method {

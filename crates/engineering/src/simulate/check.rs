@@ -26,7 +26,7 @@ const NOT_COMPARED: &str = "one of the two runs has none";
 /// d = max over t of |F_h(t) - F_h/10(t)|,      part = d/max(|F_h|, |F_h/10|, |F_ref|)
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct Check {
+pub struct ToleranceCheck {
     /// Of the second run.
     pub tolerance: f64,
     /// How the second run ended, if before its time: what follows is compared until then.
@@ -77,7 +77,7 @@ impl Difference {
     }
 }
 
-impl Check {
+impl ToleranceCheck {
     /// Whether the force differs by more than a thousandth of its peak.
     pub fn is_doubtful(&self) -> bool {
         self.force.as_ref().is_some_and(|force| force.part_of_peak() > LARGEST_PART)
@@ -112,10 +112,10 @@ pub fn simulate_checked(
     Ok(runs)
 }
 
-fn check(run: &ScenarioRun, other: &ScenarioRun, tolerance: f64) -> Check {
+fn check(run: &ScenarioRun, other: &ScenarioRun, tolerance: f64) -> ToleranceCheck {
     let signals = differences(&run.record, &other.record);
     let metrics = run.windows.iter().zip(&other.windows).map(metric_differences).collect();
-    Check {
+    ToleranceCheck {
         tolerance,
         stopped: other.stopped(),
         look_s: run.look_s * run.record.looks_apart.max(other.record.looks_apart) as f64,

@@ -15,7 +15,7 @@ pub const LOOP_SIGNALS: [&str; 4] = ["command_v", "unlimited_control_v", "integr
 
 /// Where the numbers of a column come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Source {
+pub(super) enum ColumnSource {
     Time,
     Reference,
     Control,
@@ -57,7 +57,7 @@ const FIRST: [&str; 22] = [
 const EXTERNAL_FORCE: &str = "external_force_n";
 
 /// The columns of a table and where their numbers come from.
-pub(super) struct Columns(Vec<(&'static str, Source)>);
+pub(super) struct Columns(Vec<(&'static str, ColumnSource)>);
 
 impl Columns {
     /// Those that have stayed, then those that came later, the last one for the force from outside
@@ -81,21 +81,21 @@ impl Columns {
     }
 }
 
-impl Source {
+impl ColumnSource {
     /// Of a column; `None` for an unknown name.
-    pub(super) fn named(name: &str) -> Option<Source> {
+    pub(super) fn named(name: &str) -> Option<ColumnSource> {
         source(name)
     }
 
     pub(super) fn of(self, look: &Look) -> f64 {
         match self {
-            Source::Time => look.time_s,
-            Source::Reference => look.reference_n.unwrap_or(f64::NAN),
-            Source::Control => look.control_v,
-            Source::FilteredReference => look.filtered_reference_n.unwrap_or(f64::NAN),
-            Source::ExternalForce => look.external_force_n.unwrap_or(f64::NAN),
-            Source::Machine(place) => look.signals[place],
-            Source::Loop(place) => look.of_loop[place],
+            ColumnSource::Time => look.time_s,
+            ColumnSource::Reference => look.reference_n.unwrap_or(f64::NAN),
+            ColumnSource::Control => look.control_v,
+            ColumnSource::FilteredReference => look.filtered_reference_n.unwrap_or(f64::NAN),
+            ColumnSource::ExternalForce => look.external_force_n.unwrap_or(f64::NAN),
+            ColumnSource::Machine(place) => look.signals[place],
+            ColumnSource::Loop(place) => look.of_loop[place],
         }
     }
 }
@@ -103,26 +103,28 @@ impl Source {
 /// A column over time; empty for an unknown name.
 pub(super) fn signal(record: &Record, name: &str) -> Vec<f64> {
     match source(name) {
-        Some(Source::Time) => record.times_s.clone(),
-        Some(Source::Reference) => record.reference_n.clone(),
-        Some(Source::Control) => record.control_v.clone(),
-        Some(Source::FilteredReference) => record.filtered_reference_n.clone(),
-        Some(Source::ExternalForce) => record.external_force_n.clone(),
-        Some(Source::Machine(place)) => record.signals.iter().map(|signals| signals[place]).collect(),
-        Some(Source::Loop(place)) => record.of_loop.iter().map(|signals| signals[place]).collect(),
+        Some(ColumnSource::Time) => record.times_s.clone(),
+        Some(ColumnSource::Reference) => record.reference_n.clone(),
+        Some(ColumnSource::Control) => record.control_v.clone(),
+        Some(ColumnSource::FilteredReference) => record.filtered_reference_n.clone(),
+        Some(ColumnSource::ExternalForce) => record.external_force_n.clone(),
+        Some(ColumnSource::Machine(place)) => record.signals.iter().map(|signals| signals[place]).collect(),
+        Some(ColumnSource::Loop(place)) => record.of_loop.iter().map(|signals| signals[place]).collect(),
         None => Vec::new(),
     }
 }
 
-fn source(name: &str) -> Option<Source> {
+fn source(name: &str) -> Option<ColumnSource> {
     let place = |names: &[&str]| names.iter().position(|known| *known == name);
     match name {
-        "time_s" => Some(Source::Time),
-        "reference_n" => Some(Source::Reference),
-        "control_v" => Some(Source::Control),
-        "filtered_reference_n" => Some(Source::FilteredReference),
-        EXTERNAL_FORCE => Some(Source::ExternalForce),
-        _ => place(&SIGNALS).map(Source::Machine).or_else(|| place(&LOOP_SIGNALS).map(Source::Loop)),
+        "time_s" => Some(ColumnSource::Time),
+        "reference_n" => Some(ColumnSource::Reference),
+        "control_v" => Some(ColumnSource::Control),
+        "filtered_reference_n" => Some(ColumnSource::FilteredReference),
+        EXTERNAL_FORCE => Some(ColumnSource::ExternalForce),
+        _ => place(&SIGNALS)
+            .map(ColumnSource::Machine)
+            .or_else(|| place(&LOOP_SIGNALS).map(ColumnSource::Loop)),
     }
 }
 

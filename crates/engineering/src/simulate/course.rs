@@ -1,15 +1,15 @@
 //! Where a scenario begins, and what drives it.
 
 use phea_dynamics::simulation::{Input, Plant, Profile, ProfileError};
-use phea_hydraulics::machine::{Beginning, StartValues};
+use phea_hydraulics::machine::{InitialCondition, StartValues};
 use phea_hydraulics::operating_point::{Condition, SteadyLoad, operating_point};
 use phea_machine::{Control, HeldInputs, Rest, Waking};
 
-use super::bench::Bench;
-use super::equilibrium::{Rested, rest};
-use super::motion_file::{self, Column};
+use super::bench::ControlledMachine;
+use super::equilibrium::{RestedLoop, rest};
+use super::motion_file::{self, MotionColumn};
 use super::saved::{self, SavedState};
-use super::signal::{self, Beginning as Begun};
+use super::signal::{self, SignalOnset as Begun};
 use super::{Cause, SimulateError, Window};
 use crate::project::{self, LoadMotion, MotionShape, Project, Scenario};
 use crate::source::Source;
@@ -34,7 +34,7 @@ pub(crate) struct PreparedScenario {
 }
 
 /// What drives a scenario, whatever machine it drives.
-pub struct Driven {
+pub struct ScenarioDrive {
     /// In N.
     pub reference: Profile,
     /// In V, of an open loop.
@@ -60,7 +60,7 @@ impl PreparedScenario {
 pub(super) fn course(
     source: &dyn Source,
     project: &Project,
-    bench: &Bench,
+    bench: &ControlledMachine,
     scenario: &Scenario,
 ) -> Result<PreparedScenario, SimulateError> {
     let driven = driven(source, project, bench, scenario)?;
@@ -71,29 +71,30 @@ pub(super) fn course(
 pub fn driven(
     source: &dyn Source,
     project: &Project,
-    bench: &Bench,
+    bench: &ControlledMachine,
     scenario: &Scenario,
-) -> Result<Driven, SimulateError> {
+) -> Result<ScenarioDrive, SimulateError> {
     let named = |error: ProfileError| SimulateError::Profile { name: scenario.name.clone(), error };
-    let reference = signal::profile(source, project, &scenario.name, &scenario.reference, Column::FORCE)?;
+    let reference =
+        signal::profile(source, project, &scenario.name, &scenario.reference, MotionColumn::FORCE)?;
     let motion = match &scenario.load_motion {
         None => Profile::constant(0.0),
         Some(declared) => motion(source, project, declared).map_err(SimulateError::Motion)?.map_err(named)?,
     };
-    let command = signal::profile(source, project, &scenario.name, &scenario.command, Column::VOLTAGE)?;
+    let command = signal::profile(source, project, &scenario.name, &scenario.command, MotionColumn::VOLTAGE)?;
     let external_force =
-        signal::profile(source, project, &scenario.name, &scenario.external_force, Column::FORCE)?;
+        signal::profile(source, project, &scenario.name, &scenario.external_force, MotionColumn::FORCE)?;
     let windows = windows(scenario, [&reference, &command, &external_force]);
     let file = scenario.start.as_ref().and_then(|start| start.file.as_ref());
     let read = |file: &String| saved::read(source, project, file, bench).map_err(SimulateError::Motion);
     let saved = file.map(read).transpose()?;
-    Ok(Driven { reference, command, external_force, motion, windows, saved })
+    Ok(ScenarioDrive { reference, command, external_force, motion, windows, saved })
 }
 
 /// The scenario for the machine of a bench.
 pub(crate) fn course_of(
-    driven: &Driven,
-    bench: &Bench,
+    driven: &ScenarioDrive,
+    bench: &ControlledMachine,
     scenario: &Scenario,
 ) -> Result<PreparedScenario, SimulateError> {
     if let Some(saved) = &driven.saved {
@@ -110,13 +111,13 @@ pub(crate) fn course_of(
     let at = driven.at_start();
     let near = near_rest(bench, scenario, at.reference_n)?;
     let guess = loop_start(bench, &near, Some(at.reference_n));
-    let Rested { rest: Rest { start, measured_n, command_v, .. }, ground_m } =
+    let RestedLoop { rest: Rest { start, measured_n, command_v, .. }, ground_m } =
         rest(bench, &guess, &near, at, &scenario.name)?;
     let waking = Waking::Holding([at.reference_n, measured_n, command_v]);
     Ok(driven.course(bench, ground_m, start, waking))
 }
 
-impl Driven {
+impl ScenarioDrive {
     /// What stands still while the loop rests before time zero.
     fn at_start(&self) -> HeldInputs {
         HeldInputs {
@@ -127,7 +128,13 @@ impl Driven {
     }
 
     /// From a state, the ground of the load where it is in m.
-    fn course(&self, bench: &Bench, ground: f64, start: Vec<f64>, waking: Waking) -> PreparedScenario {
+    fn course(
+        &self,
+        bench: &ControlledMachine,
+        ground: f64,
+        start: Vec<f64>,
+        waking: Waking,
+    ) -> PreparedScenario {
         PreparedScenario {
             reference: self.reference.clone(),
             command: self.command.clone(),
@@ -161,9 +168,13 @@ fn motion(
 
 /// Where the search for a rest begins: the machine at the position of its operating point under the
 /// force of the reference, or without force where there is no such operating point.
-fn near_rest(bench: &Bench, scenario: &Scenario, reference_n: f64) -> Result<Beginning, SimulateError> {
+fn near_rest(
+    bench: &ControlledMachine,
+    scenario: &Scenario,
+    reference_n: f64,
+) -> Result<InitialCondition, SimulateError> {
     let position = bench.rig.point.position;
-    let near = |force: f64| -> Result<Beginning, SimulateError> {
+    let near = |force: f64| -> Result<InitialCondition, SimulateError> {
         let point = operating_point(&bench.rig.actuator, position, Condition::Load(SteadyLoad::Force(force)))
             .map_err(|error| SimulateError::Equilibrium { name: scenario.name.clone(), error })?;
         let start = StartValues {
@@ -193,7 +204,7 @@ fn stated_start(stated: &project::Start) -> StartValues {
 
 /// States of the loop with its machine there, and the waves under way. Controller and sensor hold
 /// the machine at a reference in N; without one they begin at zero, as all that is not stated.
-fn loop_start(bench: &Bench, beginning: &Beginning, held_at: Option<f64>) -> Vec<f64> {
+fn loop_start(bench: &ControlledMachine, beginning: &InitialCondition, held_at: Option<f64>) -> Vec<f64> {
     let mut start = beginning.state.clone();
     let measured = bench.machine.measurement(&beginning.state, &beginning.all_inputs());
     let reference = held_at.unwrap_or(0.0);

@@ -1,14 +1,14 @@
 //! The closed loop at rest: where a scenario begins that states no start.
 
 use phea_dynamics::simulation::EquilibriumError;
-use phea_hydraulics::machine::{Beginning, SIGNALS};
+use phea_hydraulics::machine::{InitialCondition, SIGNALS};
 use phea_machine::{HeldInputs, Rest, at_rest};
 
 use super::SimulateError;
-use super::bench::Bench;
+use super::bench::ControlledMachine;
 
 /// A loop in equilibrium.
-pub(super) struct Rested {
+pub(super) struct RestedLoop {
     pub(super) rest: Rest,
     /// Position of the load's ground, m.
     pub(super) ground_m: f64,
@@ -17,12 +17,12 @@ pub(super) struct Rested {
 /// The rest of the loop under what stands still, with the piston where the guess has it: the rates
 /// that are simulated, all zero.
 pub(super) fn rest(
-    bench: &Bench,
+    bench: &ControlledMachine,
     guess: &[f64],
-    beginning: &Beginning,
+    beginning: &InitialCondition,
     standing: HeldInputs,
     name: &str,
-) -> Result<Rested, SimulateError> {
+) -> Result<RestedLoop, SimulateError> {
     let reference_n = standing.reference_n;
     let named = |error| match error {
         EquilibriumError::NotFound { state, rate } => {
@@ -43,7 +43,7 @@ pub(super) fn rest(
         |start: &[f64]| place.map_or(0.0, |place| bench.machine.outputs::<f64>(start, &own)[place]);
     let [ground_m, _] = beginning.inputs;
     let ground_m = ground_m - (position(&rest.start) - position(&beginning.state));
-    Ok(Rested { rest, ground_m })
+    Ok(RestedLoop { rest, ground_m })
 }
 
 /// A state in words, by its place: [`phea_hydraulics::machine::MachineState`].

@@ -1,7 +1,7 @@
 //! Limits of the rig that a run goes beyond. Nothing is clamped by them: the machine has no such
 //! limits, the rig has.
 
-use super::{Bench, Record};
+use super::{ControlledMachine, Record};
 use crate::quantity::{DisplayUnit, FORCE, VOLTAGE, display};
 
 /// A limit of the rig, and how far a run goes beyond it.
@@ -46,7 +46,7 @@ impl RigLimit {
 const ROUNDING: f64 = 1e-6;
 
 /// What a run exceeds, by its looks.
-pub(super) fn exceeded(bench: &Bench, record: &Record) -> Vec<Exceeded> {
+pub(super) fn exceeded(bench: &ControlledMachine, record: &Record) -> Vec<Exceeded> {
     let components = bench.rig.actuator.components();
     let (cylinder, supply) = (&components.cylinder, &components.supply);
     let stalls_at = |pushed: f64, pulled: f64| pushed * supply.pressure - pulled * supply.tank_pressure;

@@ -3,11 +3,11 @@
 
 use std::cell::RefCell;
 
-use phea_dynamics::simulation::{Piece, Profile, Quartic, Stretch};
+use phea_dynamics::simulation::{Profile, ProfilePiece, Quartic, Stretch};
 use phea_machine::ControllerSamples;
 
-use super::sum::Sum;
-use super::tally::{Command, Passed, Tally};
+use super::sum::WeightedSum;
+use super::tally::{CommandStretch, Passed, Tally};
 use super::{Metrics, Window};
 
 /// Parts of a step over each of which an input that is no polynomial is followed by one of degree
@@ -17,18 +17,18 @@ const PARTS: u32 = 4;
 const SAME: f64 = 1e-9;
 
 /// Where the command comes from.
-pub(super) enum Commanded<'a> {
+pub(super) enum CommandSource<'a> {
     /// A continuous controller, which wants this and is held within this limit in V; or what is
     /// stated in an open loop.
-    Continuously(Sum, f64),
+    Continuously(WeightedSum, f64),
     /// What a sampled controller gave out last.
     Sampled(&'a RefCell<ControllerSamples>),
 }
 
 /// Keeps what the windows of a run are measured by.
 pub struct Follower<'a> {
-    force: Sum,
-    commanded: Commanded<'a>,
+    force: WeightedSum,
+    commanded: CommandSource<'a>,
     /// None in an open loop.
     reference: Option<&'a Profile>,
     tallies: Vec<Tally>,
@@ -42,8 +42,8 @@ impl<'a> Follower<'a> {
     /// Of a loop with this number of inputs, in windows in the order of their starts; the band of
     /// settling times in percent.
     pub(super) fn new(
-        force: Sum,
-        commanded: Commanded<'a>,
+        force: WeightedSum,
+        commanded: CommandSource<'a>,
         inputs: usize,
         reference: Option<&'a Profile>,
         (windows, band): (&[Window], f64),
@@ -77,10 +77,10 @@ impl<'a> Follower<'a> {
         }
         let force = self.force.over(stretch.states);
         let piece = self.reference.map(|reference| reference.piece(0.5 * (start_s + end_s)));
-        let still = piece.as_ref().map(Piece::constant);
+        let still = piece.as_ref().map(ProfilePiece::constant);
         let moved = match &self.commanded {
-            Commanded::Continuously(sum, _) => sum.has_inputs() && !stretch.is_still(),
-            Commanded::Sampled(_) => false,
+            CommandSource::Continuously(sum, _) => sum.has_inputs() && !stretch.is_still(),
+            CommandSource::Sampled(_) => false,
         };
         if !moved && still != Some(None) {
             let passed = Passed {
@@ -95,7 +95,7 @@ impl<'a> Follower<'a> {
         for part in 0..PARTS {
             let within = [part, part + 1].map(|part| f64::from(part) / f64::from(PARTS));
             let times_s = within.map(|part| start_s + part * (end_s - start_s));
-            let reference = |piece: &Piece| match piece.constant() {
+            let reference = |piece: &ProfilePiece| match piece.constant() {
                 Some(value) => Quartic::constant(value),
                 None => through(times_s, |time_s| piece.at(time_s).value),
             };
@@ -110,12 +110,12 @@ impl<'a> Follower<'a> {
     }
 
     /// The command over a part of a step.
-    fn command(&mut self, stretch: &Stretch<'_>, within: [f64; 2]) -> Command {
+    fn command(&mut self, stretch: &Stretch<'_>, within: [f64; 2]) -> CommandStretch {
         match &self.commanded {
-            Commanded::Sampled(log) => {
-                Command::Held(log.borrow().last.map_or(0.0, |sample| sample.command_v))
+            CommandSource::Sampled(log) => {
+                CommandStretch::Held(log.borrow().last.map_or(0.0, |sample| sample.command_v))
             }
-            Commanded::Continuously(sum, limit) => {
+            CommandSource::Continuously(sum, limit) => {
                 let wanted = sum.over(stretch.states);
                 let inputs = &mut self.inputs;
                 let wanted = match (sum.has_inputs(), stretch.is_still()) {
@@ -126,7 +126,7 @@ impl<'a> Follower<'a> {
                     }
                     (true, _) => through(within, |part| wanted.at(part) + sum.driven(stretch, part, inputs)),
                 };
-                Command::Wanted { wanted, limit: *limit }
+                CommandStretch::Wanted { wanted, limit: *limit }
             }
         }
     }
@@ -182,7 +182,7 @@ mod tests {
     use phea_dynamics::portable;
     use phea_dynamics::scalar::Scalar;
     use phea_dynamics::simulation::{
-        Attention, Input, InputSchedule, Observer, Settings, System, Task, drive_one,
+        Attention, Input, InputSchedule, Observer, SimulationSettings, System, Task, drive_one,
     };
 
     use super::super::Cause;
@@ -238,11 +238,11 @@ mod tests {
     ) -> Metrics {
         let course =
             InputSchedule { duration_s: 3.0, output_step_s, inputs: vec![Input::Value(driving.clone())] };
-        let commanded = Commanded::Continuously(Sum::single(1), limit);
-        let follower = Follower::new(Sum::single(0), commanded, 1, Some(reference), (&[window], 1.0));
+        let commanded = CommandSource::Continuously(WeightedSum::single(1), limit);
+        let follower = Follower::new(WeightedSum::single(0), commanded, 1, Some(reference), (&[window], 1.0));
         let observer = Following(follower);
         let task = Task { start: start.to_vec(), course: &course, sampler: None, observer };
-        let settings = Settings { tolerance: 1e-11, ..Settings::default() };
+        let settings = SimulationSettings { tolerance: 1e-11, ..SimulationSettings::default() };
         let (_, seen) = drive_one(swing, task, &settings, &mut |_| true).unwrap();
         seen.0.metrics().remove(0)
     }
@@ -350,11 +350,12 @@ mod tests {
             output_step_s: 1.0,
             inputs: vec![Input::Value(Profile::sine(0.1, 1e-9, 7.0).unwrap())],
         };
-        let commanded = Commanded::Continuously(Sum::single(1), f64::INFINITY);
-        let follower = Follower::new(Sum::single(0), commanded, 1, Some(&reference), (&[window], 1.0));
+        let commanded = CommandSource::Continuously(WeightedSum::single(1), f64::INFINITY);
+        let follower =
+            Follower::new(WeightedSum::single(0), commanded, 1, Some(&reference), (&[window], 1.0));
         let observer = Following(follower);
         let task = Task { start: vec![0.0; 2], course: &course, sampler: None, observer };
-        let (_, seen) = drive_one(&swing, task, &Settings::default(), &mut |_| true).unwrap();
+        let (_, seen) = drive_one(&swing, task, &SimulationSettings::default(), &mut |_| true).unwrap();
         let peak = seen.0.metrics().remove(0).disturbance_peak_n.unwrap();
         assert!((peak - 300.0).abs() < 1e-6 * 300.0, "{peak}");
     }

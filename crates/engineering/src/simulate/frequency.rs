@@ -8,8 +8,8 @@ mod point;
 pub use point::ResponsePoint;
 
 use num_complex::Complex64;
-use phea_dynamics::simulation::Settings;
-use phea_hydraulics::machine::{Beginning, Machine};
+use phea_dynamics::simulation::SimulationSettings;
+use phea_hydraulics::machine::{InitialCondition, Machine};
 
 use super::SimulateError;
 use super::bench::{options, settings};
@@ -71,15 +71,15 @@ pub struct MachineResponse {
 }
 
 /// A machine at rest, ready to be shaken.
-struct Rested {
+struct RestedMachine {
     rig: Rig,
     machine: Machine,
-    rest: Beginning,
+    rest: InitialCondition,
     /// On the load, N.
     force_n: f64,
     /// What the supply can push with, N.
     push_n: f64,
-    settings: Settings,
+    settings: SimulationSettings,
 }
 
 impl MachineResponses {
@@ -124,7 +124,7 @@ pub fn frequency_response(
     Ok(MachineResponses { position_m, force_n, command_v, open_loop, closed_loop, stopped })
 }
 
-fn rested(setup: &Setup<'_>) -> Result<Rested, SimulateError> {
+fn rested(setup: &Setup<'_>) -> Result<RestedMachine, SimulateError> {
     let (project, rig) = (setup.project, setup.rig()?.clone());
     let machine =
         Machine::new(&rig.actuator, &options(project, &rig.actuator)?).map_err(SimulateError::Machine)?;
@@ -133,11 +133,11 @@ fn rested(setup: &Setup<'_>) -> Result<Rested, SimulateError> {
     let components = rig.actuator.components();
     let area = 0.5 * (components.cylinder.area_a + components.cylinder.area_b);
     let push_n = area * (components.supply.pressure - components.supply.tank_pressure);
-    Ok(Rested { machine, rest, force_n, push_n, settings: settings(project), rig })
+    Ok(RestedMachine { machine, rest, force_n, push_n, settings: settings(project), rig })
 }
 
 /// Those asked for by rising frequency, or the usual ones.
-fn frequencies(request: &FrequencyRequest, rested: &Rested) -> Vec<f64> {
+fn frequencies(request: &FrequencyRequest, rested: &RestedMachine) -> Vec<f64> {
     let mut asked = request.frequencies_rad_per_s.clone();
     if asked.is_empty() {
         let last = LAST_OVER_VALVE * rested.rig.actuator.components().valve.natural_frequency;

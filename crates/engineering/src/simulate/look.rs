@@ -4,15 +4,15 @@
 use std::cell::{Cell, RefCell};
 
 use phea_dynamics::simulation::{Attention, Observer, Stretch};
-use phea_machine::{Control, ControllerSamples, Sample};
+use phea_machine::{Control, ControllerSample, ControllerSamples};
 
-use super::bench::Bench;
+use super::bench::ControlledMachine;
 use super::course::PreparedScenario;
 use super::files::RunTable;
 use super::follower::Follower;
 use super::measured::{Measurement, Overlay, Overlaying};
 use super::record::{Look, Record};
-use super::sum::Sum;
+use super::sum::WeightedSum;
 use super::sums;
 use super::{Metrics, SimulateError};
 use crate::source::WriteError;
@@ -29,7 +29,7 @@ pub(super) struct Sighted {
 
 /// Looks at a machine and its controller.
 pub(super) struct Looking<'a> {
-    bench: &'a Bench,
+    bench: &'a ControlledMachine,
     /// What a sampled controller did last.
     samples: &'a RefCell<ControllerSamples>,
     /// All states.
@@ -41,7 +41,7 @@ pub(super) struct Looking<'a> {
     record: Record,
     follower: Follower<'a>,
     /// Of chambers A and B, and the highest so far, Pa.
-    pressures: [Sum; 2],
+    pressures: [WeightedSum; 2],
     peak_pressures_pa: [f64; 2],
     overlays: Vec<Overlaying<'a>>,
     /// Whether the table takes no more, and why.
@@ -51,7 +51,7 @@ pub(super) struct Looking<'a> {
 
 impl<'a> Looking<'a> {
     pub(super) fn new(
-        bench: &'a Bench,
+        bench: &'a ControlledMachine,
         samples: &'a RefCell<ControllerSamples>,
         (table, looks_per_row): (Option<RunTable<'a>>, usize),
         measurements: &'a [Measurement],
@@ -113,7 +113,7 @@ impl<'a> Looking<'a> {
             }
             Control::Sampled(_) => {
                 let last = self.samples.borrow().last;
-                let of_sample = |number: fn(&Sample) -> f64| last.as_ref().map_or(0.0, number);
+                let of_sample = |number: fn(&ControllerSample) -> f64| last.as_ref().map_or(0.0, number);
                 let of_loop = [
                     inputs[0],
                     of_sample(|sample| sample.unlimited_v),

@@ -8,10 +8,10 @@
 //! s less often, which is told) and taken on a straight line between two looks.
 
 use super::Look;
-use super::columns::Source;
+use super::columns::ColumnSource;
 use super::metrics::Measured;
 use crate::family::measured::table::{self, MeasuredCell, MeasuredTable};
-use crate::project::{Findings, Found, MeasuredFile, Project, Refusal, Scenario};
+use crate::project::{Findings, MeasuredFile, Project, RawFinding, Refusal, Scenario};
 use crate::quantity::{self, Dimension, DisplayUnit, TIME};
 use crate::source;
 use crate::spelling::nearest;
@@ -106,7 +106,7 @@ pub(super) fn measurements(
 }
 
 /// A column of the file.
-struct Column<'u> {
+struct RecordingColumn<'u> {
     index: usize,
     unit: &'u str,
     dimension: &'static Dimension,
@@ -119,12 +119,12 @@ fn of_table(
     findings: &mut Findings,
 ) -> Vec<Measurement> {
     let time = time_column(declared, table, findings);
-    let columns: Vec<Option<Column<'_>>> = declared
+    let columns: Vec<Option<RecordingColumn<'_>>> = declared
         .signals
         .iter()
         .map(|signal| {
             let index = named(signal.column(), table, findings)?;
-            Some(Column { index, unit: signal.unit(), dimension: signal.dimension() })
+            Some(RecordingColumn { index, unit: signal.unit(), dimension: signal.dimension() })
         })
         .collect();
     let (Some(time), Some(columns)) = (time, columns.into_iter().collect::<Option<Vec<_>>>()) else {
@@ -139,8 +139,9 @@ fn of_table(
         let Some(time_s) = time.value(row, findings).map(|time_s| time_s + declared.offset) else { continue };
         if times_s.last().is_some_and(|last| *last >= time_s) {
             let place = row.get(time.index).map(|cell| cell.place).unwrap_or_default();
-            findings
-                .push(Found::error(place, "times must increase from row to row").expected("a later time"));
+            findings.push(
+                RawFinding::error(place, "times must increase from row to row").expected("a later time"),
+            );
             return Vec::new();
         }
         times_s.push(time_s);
@@ -150,7 +151,7 @@ fn of_table(
     }
     if !times_s.iter().any(|time_s| (0.0..=duration_s).contains(time_s)) && findings.error_count() == 0 {
         let place = table.rows.first().and_then(|row| row.get(time.index)).map(|cell| cell.place);
-        let found = Found::error(place.unwrap_or_default(), "no row lies within the scenario");
+        let found = RawFinding::error(place.unwrap_or_default(), "no row lies within the scenario");
         findings.push(found.help("`offset` is added to the times of the file"));
     }
     let signals = declared.signals.iter().zip(values);
@@ -170,10 +171,10 @@ fn time_column<'u>(
     declared: &'u MeasuredFile,
     table: &MeasuredTable<'_>,
     findings: &mut Findings,
-) -> Option<Column<'u>> {
+) -> Option<RecordingColumn<'u>> {
     let unit = declared.time_unit.as_deref().unwrap_or(TIME.si);
     if let Some(name) = &declared.time_column {
-        return Some(Column { index: named(name, table, findings)?, unit, dimension: &TIME });
+        return Some(RecordingColumn { index: named(name, table, findings)?, unit, dimension: &TIME });
     }
     let known =
         |cell: &MeasuredCell<'_>| TIMES.iter().find(|(name, _)| *name == cell.text).map(|(_, unit)| *unit);
@@ -181,16 +182,18 @@ fn time_column<'u>(
     let (first, second) = (found.next(), found.next());
     let place = |index: usize| table.header.get(index).map(|cell| cell.place).unwrap_or_default();
     if let Some((index, _)) = second {
-        findings
-            .push(Found::error(place(index), "this column is there twice, here in another unit or again"));
+        findings.push(RawFinding::error(
+            place(index),
+            "this column is there twice, here in another unit or again",
+        ));
         return None;
     }
     if first.is_none() {
         let [(one, _), (other, _)] = TIMES;
         let message = format!("the columns lack `{one}` or `{other}`, and no `time_column` is named");
-        findings.push(Found::error(place(0), message));
+        findings.push(RawFinding::error(place(0), message));
     }
-    first.map(|(index, unit)| Column { index, unit, dimension: &TIME })
+    first.map(|(index, unit)| RecordingColumn { index, unit, dimension: &TIME })
 }
 
 /// The place of the one column with this name.
@@ -198,13 +201,13 @@ fn named(name: &str, table: &MeasuredTable<'_>, findings: &mut Findings) -> Opti
     let mut found = table.header.iter().enumerate().filter(|(_, cell)| cell.text == name);
     let (first, second) = (found.next(), found.next());
     if let Some((_, cell)) = second {
-        findings.push(Found::error(cell.place, format!("a second column `{name}`")));
+        findings.push(RawFinding::error(cell.place, format!("a second column `{name}`")));
         return None;
     }
     if first.is_none() {
         let place = table.header.first().map(|cell| cell.place).unwrap_or_default();
         let names = || table.header.iter().map(|cell| cell.text);
-        let missing = Found::error(place, format!("there is no column `{name}`"));
+        let missing = RawFinding::error(place, format!("there is no column `{name}`"));
         findings.push(match nearest(name, names()) {
             Some(near) => missing.help(format!("did you mean `{near}`?")),
             None => missing.help(format!("there are: {}", names().collect::<Vec<_>>().join(", "))),
@@ -213,7 +216,7 @@ fn named(name: &str, table: &MeasuredTable<'_>, findings: &mut Findings) -> Opti
     first.map(|(index, _)| index)
 }
 
-impl Column<'_> {
+impl RecordingColumn<'_> {
     /// SI; a gap is reported like any other text that is not a number.
     fn value(&self, row: &[MeasuredCell<'_>], findings: &mut Findings) -> Option<f64> {
         let cell = row.get(self.index)?;
@@ -227,7 +230,8 @@ impl Column<'_> {
             } else {
                 format!("`{}` is no number", cell.text)
             };
-            findings.push(Found::error(cell.place, message).expected(format!("a number in {}", self.unit)));
+            findings
+                .push(RawFinding::error(cell.place, message).expected(format!("a number in {}", self.unit)));
         }
         value
     }
@@ -236,7 +240,7 @@ impl Column<'_> {
 /// A measurement that is laid over a run as it is looked at.
 pub(super) struct Overlaying<'a> {
     measurement: &'a Measurement,
-    source: Option<Source>,
+    source: Option<ColumnSource>,
     /// Time and value of the last look.
     before: Option<(f64, f64)>,
     /// The next row.
@@ -257,7 +261,7 @@ impl<'a> Overlaying<'a> {
             rmse: Err(NO_ROW),
             nrmse: Err(NO_ROW),
         };
-        let source = Source::named(measurement.signal);
+        let source = ColumnSource::named(measurement.signal);
         Overlaying { measurement, source, before: None, next: 0, overlay }
     }
 

@@ -11,31 +11,31 @@
 use phea_dynamics::simulation::{Profile, ProfileError};
 
 use crate::family::measured::table::{self, MeasuredCell};
-use crate::project::{Findings, Found, Project, Refusal};
+use crate::project::{Findings, Project, RawFinding, Refusal};
 use crate::quantity::{self, Dimension, FORCE, LENGTH, TIME, VOLTAGE};
 use crate::source::Source;
 use crate::spelling::nearest;
 
 /// Columns of time with the unit that belongs to each.
-const TIMES: Names = [("time_s", "s"), ("time_ms", "ms")];
+const TIMES: ColumnNames = [("time_s", "s"), ("time_ms", "ms")];
 
 /// Names of a column with the unit that belongs to each.
-type Names = [(&'static str, &'static str); 2];
+type ColumnNames = [(&'static str, &'static str); 2];
 
 /// A column of values.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Column {
-    names: Names,
+pub(super) struct MotionColumn {
+    names: ColumnNames,
     dimension: &'static Dimension,
 }
 
-impl Column {
-    const POSITION: Column =
-        Column { names: [("position_m", "m"), ("position_mm", "mm")], dimension: &LENGTH };
-    pub(super) const FORCE: Column =
-        Column { names: [("force_n", "N"), ("force_kn", "kN")], dimension: &FORCE };
-    pub(super) const VOLTAGE: Column =
-        Column { names: [("voltage_v", "V"), ("voltage_mv", "mV")], dimension: &VOLTAGE };
+impl MotionColumn {
+    const POSITION: MotionColumn =
+        MotionColumn { names: [("position_m", "m"), ("position_mm", "mm")], dimension: &LENGTH };
+    pub(super) const FORCE: MotionColumn =
+        MotionColumn { names: [("force_n", "N"), ("force_kn", "kN")], dimension: &FORCE };
+    pub(super) const VOLTAGE: MotionColumn =
+        MotionColumn { names: [("voltage_v", "V"), ("voltage_mv", "mV")], dimension: &VOLTAGE };
 }
 
 /// The motion as a function of time, beginning at `start_s`, or what is wrong with the file.
@@ -45,7 +45,7 @@ pub(super) fn motion(
     file: &str,
     start_s: f64,
 ) -> Result<Result<Profile, ProfileError>, Box<Refusal>> {
-    let rows = read(source, project, file, Column::POSITION)?;
+    let rows = read(source, project, file, MotionColumn::POSITION)?;
     let (first_s, first_m) = rows.first().copied().unwrap_or_default();
     let times: Vec<f64> = rows.iter().map(|row| start_s + row.0 - first_s).collect();
     let positions: Vec<f64> = rows.iter().map(|row| row.1 - first_m).collect();
@@ -58,7 +58,7 @@ pub(super) fn signal(
     project: &Project,
     file: &str,
     start_s: f64,
-    column: Column,
+    column: MotionColumn,
 ) -> Result<Result<Profile, ProfileError>, Box<Refusal>> {
     let rows = read(source, project, file, column)?;
     let (first_s, _) = rows.first().copied().unwrap_or_default();
@@ -71,7 +71,7 @@ fn read(
     source: &dyn Source,
     project: &Project,
     file: &str,
-    column: Column,
+    column: MotionColumn,
 ) -> Result<Vec<(f64, f64)>, Box<Refusal>> {
     let mut findings = Findings::default();
     let path = project.path_of(file);
@@ -85,7 +85,7 @@ fn read(
     if findings.error_count() > 0 { Err(Box::new(findings.report())) } else { Ok(rows) }
 }
 
-fn rows(path: &str, bytes: &[u8], values: Column, findings: &mut Findings) -> Vec<(f64, f64)> {
+fn rows(path: &str, bytes: &[u8], values: MotionColumn, findings: &mut Findings) -> Vec<(f64, f64)> {
     let Some(table) = table::read(path, bytes, findings) else { return Vec::new() };
     let columns = [column(&table.header, TIMES, findings), column(&table.header, values.names, findings)];
     unknown(&table.header, values.names, findings);
@@ -97,7 +97,7 @@ fn rows(path: &str, bytes: &[u8], values: Column, findings: &mut Findings) -> Ve
         match numbers {
             [Ok(time_s), Ok(_)] if rows.last().is_some_and(|last| last.0 >= time_s) => {
                 let place = row.get(time.0).map(|cell| cell.place).unwrap_or_default();
-                let found = Found::error(place, "times must increase from row to row");
+                let found = RawFinding::error(place, "times must increase from row to row");
                 findings.push(found.expected("a later time"));
                 return rows;
             }
@@ -110,7 +110,7 @@ fn rows(path: &str, bytes: &[u8], values: Column, findings: &mut Findings) -> Ve
     if rows.len() < 2 && findings.error_count() == 0 {
         let place = table.header.first().map(|cell| cell.place).unwrap_or_default();
         let what = if std::ptr::eq(values.dimension, &LENGTH) { "motion" } else { "signal" };
-        findings.push(Found::error(place, format!("a {what} needs two rows at least")));
+        findings.push(RawFinding::error(place, format!("a {what} needs two rows at least")));
     }
     rows
 }
@@ -118,7 +118,7 @@ fn rows(path: &str, bytes: &[u8], values: Column, findings: &mut Findings) -> Ve
 /// Where a column is, and its unit.
 fn column(
     header: &[MeasuredCell<'_>],
-    names: Names,
+    names: ColumnNames,
     findings: &mut Findings,
 ) -> Option<(usize, &'static str)> {
     let unit =
@@ -127,20 +127,20 @@ fn column(
         header.iter().enumerate().filter_map(|(index, cell)| Some((index, unit(cell)?, cell.place)));
     let (first, second) = (found.next(), found.next());
     if let Some((_, _, place)) = second {
-        findings.push(Found::error(place, "this column is there twice, here in another unit or again"));
+        findings.push(RawFinding::error(place, "this column is there twice, here in another unit or again"));
     }
     if first.is_none() {
         let place = header.first().map(|cell| cell.place).unwrap_or_default();
         let [(one, _), (other, _)] = names;
-        findings.push(Found::error(place, format!("the columns lack `{one}` or `{other}`")));
+        findings.push(RawFinding::error(place, format!("the columns lack `{one}` or `{other}`")));
     }
     first.map(|(index, unit, _)| (index, unit))
 }
 
-fn unknown(header: &[MeasuredCell<'_>], values: Names, findings: &mut Findings) {
+fn unknown(header: &[MeasuredCell<'_>], values: ColumnNames, findings: &mut Findings) {
     let names = || TIMES.iter().chain(&values).map(|(name, _)| *name);
     for cell in header.iter().filter(|cell| !names().any(|name| name == cell.text)) {
-        let found = Found::error(cell.place, format!("unknown column `{}`", cell.text));
+        let found = RawFinding::error(cell.place, format!("unknown column `{}`", cell.text));
         findings.push(match nearest(cell.text, names()) {
             Some(name) => found.help(format!("did you mean `{name}`?")),
             None => found.help(format!("known here: {}", names().collect::<Vec<_>>().join(", "))),
@@ -149,12 +149,16 @@ fn unknown(header: &[MeasuredCell<'_>], values: Names, findings: &mut Findings) 
 }
 
 /// SI.
-fn number(cell: Option<&MeasuredCell<'_>>, unit: &str, dimension: &'static Dimension) -> Result<f64, Found> {
+fn number(
+    cell: Option<&MeasuredCell<'_>>,
+    unit: &str,
+    dimension: &'static Dimension,
+) -> Result<f64, RawFinding> {
     let cell = cell.copied().unwrap_or(MeasuredCell { text: "", place: Default::default() });
     let bare = cell.text.parse::<f64>().is_ok_and(f64::is_finite);
     let value = bare.then(|| quantity::parse(&format!("{} {unit}", cell.text), dimension).ok()).flatten();
     value.filter(|value| value.is_finite()).ok_or_else(|| {
-        Found::error(cell.place, format!("`{}` is no number", cell.text))
+        RawFinding::error(cell.place, format!("`{}` is no number", cell.text))
             .expected(format!("a number in {unit}"))
     })
 }

@@ -8,7 +8,7 @@ use phea_dynamics::simulation::{
 use phea_hydraulics::machine::INDICATORS;
 use phea_machine::{Control, ControllerSamples, Digital, DigitalMemory, Watcher};
 
-use super::bench::Bench;
+use super::bench::ControlledMachine;
 use super::course::PreparedScenario;
 use super::exceeded::{Exceeded, exceeded};
 use super::look::{Looking, Sighted};
@@ -16,7 +16,7 @@ use super::measured::{Measurement, Overlay};
 use super::metrics::Metrics;
 use super::record::Record;
 use super::saved::{self, SavedState};
-use super::{Check, RunTable, SimulateError, Window};
+use super::{RunTable, SimulateError, ToleranceCheck, Window};
 use crate::project::Scenario;
 
 /// Longest time between two looks at the machine, of which figures are drawn: 1 ms would cut the
@@ -53,7 +53,7 @@ pub struct ScenarioRun {
     /// The measured signals and the simulated ones.
     pub measured: Vec<Overlay>,
     /// How far a run at a tenth of the tolerance differs; `None` where nobody asked.
-    pub check: Option<Check>,
+    pub check: Option<ToleranceCheck>,
     /// An oscillation that grew so much that errors within the tolerance may be visible; `None`
     /// where none did.
     pub errors_amplified: Option<Amplification>,
@@ -148,7 +148,7 @@ impl StoppedRun {
 /// Runs a scenario and writes its rows into a table, if one is given; `watch` is called with the
 /// simulated time at intervals.
 pub(super) fn run(
-    bench: &Bench,
+    bench: &ControlledMachine,
     scenario: &Scenario,
     (course, measurements): (&PreparedScenario, &[Measurement]),
     table: Option<RunTable<'_>>,
@@ -216,7 +216,7 @@ pub(super) fn run(
 
 /// All that happened on the way.
 fn found(
-    bench: &Bench,
+    bench: &ControlledMachine,
     course: &PreparedScenario,
     outcome: &Outcome,
     samples: &ControllerSamples,
@@ -248,7 +248,7 @@ fn outside_model_s(occurrences: &[Occurrence], has_end_stops: bool) -> Option<f6
     occurrences.iter().find(|one| one.begins && outside(one.kind)).map(|one| one.time_s)
 }
 
-fn beyond_expansion(bench: &Bench, peaks_pa: [f64; 2]) -> Vec<BeyondExpansion> {
+fn beyond_expansion(bench: &ControlledMachine, peaks_pa: [f64; 2]) -> Vec<BeyondExpansion> {
     let beyond = |((chamber, peak_pa), stated): ((char, f64), Option<f64>)| {
         let stated_pa = stated?;
         (peak_pa > stated_pa * (1.0 + 1e-6)).then_some(BeyondExpansion { chamber, peak_pa, stated_pa })
@@ -270,7 +270,7 @@ pub const COMMAND_LIMIT: &str = "command_limit";
 pub const ERRORS_AMPLIFIED: &str = "errors_amplified";
 
 /// The oscillation that grew so much that errors within the tolerance may be visible.
-pub fn errors_amplified(bench: &Bench, outcome: &Outcome) -> Option<Amplification> {
+pub fn errors_amplified(bench: &ControlledMachine, outcome: &Outcome) -> Option<Amplification> {
     outcome.amplification.filter(|grown| grown.may_show_errors(bench.settings.tolerance))
 }
 

@@ -20,10 +20,10 @@ use std::fmt::Write as _;
 use phea_dynamics::simulation::Status;
 use phea_machine::{Control, DigitalMemory};
 
-use super::bench::Bench;
+use super::bench::ControlledMachine;
 use super::course::PreparedScenario;
 use super::shortest_number::number;
-use crate::project::{Findings, Found, Node, Project, Refusal, TreeValue, read_tree};
+use crate::project::{Findings, Project, RawFinding, Refusal, TreeNode, TreeValue, read_tree};
 use crate::source::Source;
 
 /// Part of a sample time within which an end is at a sample.
@@ -43,7 +43,7 @@ pub struct SavedState {
 }
 
 /// Names of the continuous states, in the order of the vector.
-fn state_names(bench: &Bench) -> Vec<String> {
+fn state_names(bench: &ControlledMachine) -> Vec<String> {
     let states = |count: usize, of: &'static str| (1..=count).map(move |number| format!("{of}_{number}"));
     let mut names = bench.machine.state_names();
     let sensed = bench.control.sensed();
@@ -70,7 +70,7 @@ fn remembered(number: usize) -> String {
 
 /// The end of a run, or why it is not saved.
 pub(super) fn of_end(
-    bench: &Bench,
+    bench: &ControlledMachine,
     course: &PreparedScenario,
     (status, end, end_s): (Status, &[f64], f64),
     memory: Option<&DigitalMemory>,
@@ -136,7 +136,7 @@ pub(super) fn read(
     source: &dyn Source,
     project: &Project,
     file: &str,
-    bench: &Bench,
+    bench: &ControlledMachine,
 ) -> Result<SavedState, Box<Refusal>> {
     let mut findings = Findings::default();
     let path = project.path_of(file);
@@ -155,14 +155,17 @@ pub(super) fn read(
 }
 
 /// Every number that there should be and no other.
-fn taken(root: &Node, bench: &Bench, findings: &mut Findings) -> SavedState {
+fn taken(root: &TreeNode, bench: &ControlledMachine, findings: &mut Findings) -> SavedState {
     let known = ["schema", "project_sha256", "scenario", "time_s", "random", "state"];
     for entry in root.entries().iter().filter(|entry| !known.contains(&entry.key.as_str())) {
-        findings.push(Found::error(entry.key_place, format!("unknown key `{}` in a saved state", entry.key)));
+        findings.push(RawFinding::error(
+            entry.key_place,
+            format!("unknown key `{}` in a saved state", entry.key),
+        ));
     }
     match root.get("schema").map(|entry| &entry.node.value) {
         Some(TreeValue::Number(1.0)) => {}
-        _ => findings.push(Found::error(root.place, "a saved state says `schema = 1`")),
+        _ => findings.push(RawFinding::error(root.place, "a saved state says `schema = 1`")),
     }
     let random = match root.get("random").map(|entry| &entry.node.value) {
         Some(TreeValue::Text(text)) => u64::from_str_radix(text, 16).ok(),
@@ -173,20 +176,20 @@ fn taken(root: &Node, bench: &Bench, findings: &mut Findings) -> SavedState {
         Control::Continuous(_) | Control::Open(_) => None,
     };
     if memories.is_some() && random.is_none() {
-        findings.push(Found::error(root.place, "`random` is missing: 16 hexadecimal digits"));
+        findings.push(RawFinding::error(root.place, "`random` is missing: 16 hexadecimal digits"));
     }
     let state = root.get("state").map(|entry| &entry.node);
     let place = state.map_or(root.place, |node| node.place);
     let mut known: Vec<String> = Vec::new();
     let mut number = |name: String| {
         let value = match state.and_then(|node| node.get(&name)).map(|entry| &entry.node) {
-            Some(Node { value: TreeValue::Number(value), .. }) if value.is_finite() => Some(*value),
+            Some(TreeNode { value: TreeValue::Number(value), .. }) if value.is_finite() => Some(*value),
             Some(node) => {
-                findings.push(Found::error(node.place, format!("`{name}` must be a finite number")));
+                findings.push(RawFinding::error(node.place, format!("`{name}` must be a finite number")));
                 None
             }
             None => {
-                findings.push(Found::error(place, format!("the state `{name}` is missing")));
+                findings.push(RawFinding::error(place, format!("the state `{name}` is missing")));
                 None
             }
         };
@@ -203,10 +206,10 @@ fn taken(root: &Node, bench: &Bench, findings: &mut Findings) -> SavedState {
             random: random.unwrap_or_default(),
         }),
     };
-    for entry in state.map(Node::entries).unwrap_or_default() {
+    for entry in state.map(TreeNode::entries).unwrap_or_default() {
         if !known.contains(&entry.key) {
             let message = format!("this machine and its controller have no state `{}`", entry.key);
-            findings.push(Found::error(entry.key_place, message));
+            findings.push(RawFinding::error(entry.key_place, message));
         }
     }
     taken

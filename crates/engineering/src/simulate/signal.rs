@@ -3,13 +3,13 @@
 use phea_dynamics::simulation::{Harmonic, Profile, ProfileError, schroeder_phases};
 
 use super::SimulateError;
-use super::motion_file::{self, Column};
+use super::motion_file::{self, MotionColumn};
 use crate::project::{Multisine, Project, Signal};
 use crate::source::Source;
 
 /// What begins in a signal.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Beginning {
+pub(super) enum SignalOnset {
     /// It steps.
     Step {
         /// s.
@@ -34,7 +34,7 @@ pub(super) fn profile(
     project: &Project,
     scenario: &str,
     signals: &[Signal],
-    column: Column,
+    column: MotionColumn,
 ) -> Result<Profile, SimulateError> {
     let named = |error: ProfileError| SimulateError::Profile { name: scenario.to_string(), error };
     let (single, others): (Vec<&Signal>, Vec<&Signal>) =
@@ -51,7 +51,7 @@ fn shape(
     source: &dyn Source,
     project: &Project,
     signal: &Signal,
-    column: Column,
+    column: MotionColumn,
 ) -> Result<Result<Profile, ProfileError>, SimulateError> {
     let start_s = signal.begins_s();
     let ended = |profile: Profile| match signal.duration_s() {
@@ -88,23 +88,23 @@ fn harmonics(sines: &Multisine) -> Vec<Harmonic> {
 }
 
 /// What begins in the sum of these before the end. A step that changes nothing begins nothing.
-pub(super) fn beginnings(signals: &[Signal], profile: &Profile, end_s: f64) -> Vec<Beginning> {
+pub(super) fn beginnings(signals: &[Signal], profile: &Profile, end_s: f64) -> Vec<SignalOnset> {
     let steps = signals.iter().flat_map(Signal::steps).map(|(time_s, _)| time_s);
     let step = |time_s: f64| {
         let (from, to) = (profile.value_before(time_s), profile.value(time_s));
-        (from != to).then_some(Beginning::Step { time_s, from, to })
+        (from != to).then_some(SignalOnset::Step { time_s, from, to })
     };
     let moving = signals.iter().filter(|signal| signal.steps().is_empty());
-    let motion = |signal: &Signal| Beginning::Motion { time_s: signal.begins_s(), kind: signal.kind() };
+    let motion = |signal: &Signal| SignalOnset::Motion { time_s: signal.begins_s(), kind: signal.kind() };
     let all = steps.filter_map(step).chain(moving.map(motion));
     all.filter(|beginning| beginning.time_s() < end_s).collect()
 }
 
-impl Beginning {
+impl SignalOnset {
     /// When, s.
     pub(super) fn time_s(&self) -> f64 {
         match *self {
-            Beginning::Step { time_s, .. } | Beginning::Motion { time_s, .. } => time_s,
+            SignalOnset::Step { time_s, .. } | SignalOnset::Motion { time_s, .. } => time_s,
         }
     }
 }

@@ -9,18 +9,18 @@ use phea_dynamics::simulation::{Quartic, Stretch};
 /// s = sum of a_i y_i + sum of b_j w_j
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Sum {
+pub(super) struct WeightedSum {
     states: Vec<(usize, f64)>,
     inputs: Vec<(usize, f64)>,
 }
 
-impl Sum {
+impl WeightedSum {
     /// What a signal that is such a sum makes of each of these states, and of each input, alone.
     pub(super) fn of(
         wanted: &[usize],
         [states, inputs]: [usize; 2],
         signal: impl Fn(&[f64], &[f64]) -> f64,
-    ) -> Sum {
+    ) -> WeightedSum {
         let unit = |count: usize, place: Option<usize>| {
             (0..count).map(|index| f64::from(u8::from(Some(index) == place))).collect::<Vec<f64>>()
         };
@@ -29,7 +29,7 @@ impl Sum {
         let some = |weights: Vec<f64>| -> Vec<(usize, f64)> {
             weights.into_iter().enumerate().filter(|(_, weight)| *weight != 0.0).collect()
         };
-        Sum {
+        WeightedSum {
             states: some(wanted.iter().map(of_state).collect()),
             inputs: some((0..inputs).map(of_input).collect()),
         }
@@ -63,9 +63,9 @@ impl Sum {
 }
 
 #[cfg(test)]
-impl Sum {
+impl WeightedSum {
     /// One state by itself.
-    pub(super) fn single(place: usize) -> Sum {
-        Sum { states: vec![(place, 1.0)], inputs: Vec::new() }
+    pub(super) fn single(place: usize) -> WeightedSum {
+        WeightedSum { states: vec![(place, 1.0)], inputs: Vec::new() }
     }
 }

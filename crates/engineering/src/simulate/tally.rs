@@ -21,11 +21,11 @@ pub(super) struct Passed {
     pub(super) force: Quartic,
     /// None in an open loop.
     pub(super) reference: Option<Quartic>,
-    pub(super) command: Command,
+    pub(super) command: CommandStretch,
 }
 
 /// A command over a stretch of time, V.
-pub(super) enum Command {
+pub(super) enum CommandStretch {
     /// What is wanted, held within a limit.
     Wanted {
         wanted: Quartic,
@@ -185,13 +185,13 @@ impl Tally {
         }
     }
 
-    fn command(&mut self, command: &Command, span: [f64; 2], length_s: f64) {
+    fn command(&mut self, command: &CommandStretch, span: [f64; 2], length_s: f64) {
         match command {
-            Command::Held(value) => {
+            CommandStretch::Held(value) => {
                 self.command_peak = self.command_peak.max(value.abs());
                 self.command_square += value * value * length_s;
             }
-            Command::Wanted { wanted, limit } => {
+            CommandStretch::Wanted { wanted, limit } => {
                 let [low, high] = wanted.bounds();
                 if self.command_peak < *limit && low.abs().max(high.abs()) > self.command_peak {
                     let [low, high] = wanted.extremes(span);

@@ -11,7 +11,7 @@ const ROUNDED: f64 = 1e-6;
 /// Wishes of the first tracking specification that has any: the overshoot of its upper limit, the
 /// settling time of its lower one.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Wish {
+pub struct TrackingWish {
     /// Most overshoot, percent of the step.
     pub overshoot_percent: Option<f64>,
     /// Settled by then, s.
@@ -30,16 +30,16 @@ pub struct HeldWish {
     pub kept: Option<bool>,
 }
 
-impl Wish {
+impl TrackingWish {
     /// The wish of these limits; `None` without one.
-    pub fn of(wishes: &[CheckedWish]) -> Option<Wish> {
+    pub fn of(wishes: &[CheckedWish]) -> Option<TrackingWish> {
         let number = wishes.first()?.number;
         let side = |key: &str| {
             let of_side = |wish: &&CheckedWish| wish.number == number && wish.key == key;
             wishes.iter().find(of_side).map(|wish| wish.check.wished)
         };
         let (upper, lower) = (side("upper"), side("lower"));
-        Some(Wish {
+        Some(TrackingWish {
             overshoot_percent: upper.map(|wished| wished.overshoot_percent),
             settling_time_s: lower.map(|wished| wished.settling_time_s),
             band_percent: lower.or(upper)?.settling_band_percent,

@@ -20,7 +20,7 @@ use crate::project::{self, MarginWish, Rational, ResponseRule, ResponseWish};
 pub(super) enum Takes {
     Neither,
     Margins(MarginOf),
-    Wish(TrackingLimit),
+    Wish(TrackingSide),
 }
 
 /// The closed loop whose magnitude is to guarantee margins.
@@ -32,28 +32,33 @@ pub(super) enum MarginOf {
 
 /// Which limit of tracking.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum TrackingLimit {
+pub(super) enum TrackingSide {
     Upper,
     Lower,
 }
 
-pub(super) fn over_frequency(limit: &project::Limit, takes: Takes) -> Result<Limit, SpecificationProblem> {
+pub(super) fn over_frequency(
+    limit: &project::DeclaredLimit,
+    takes: Takes,
+) -> Result<Limit, SpecificationProblem> {
     Ok(match (limit, takes) {
-        (project::Limit::Constant(value), _) => Limit::Constant(*value),
-        (project::Limit::Text(formula), _) => {
+        (project::DeclaredLimit::Constant(value), _) => Limit::Constant(*value),
+        (project::DeclaredLimit::Text(formula), _) => {
             let ratio = formula.numbers().map_err(SpecificationProblem::Formula)?;
             let [numerator, denominator] = [ratio.numerator, ratio.denominator].map(Polynomial::new);
             Limit::Rational(TransferFunction::from_polynomials(&numerator, &denominator)?)
         }
-        (project::Limit::Rational(rational), _) => Limit::Rational(function(rational)?),
-        (project::Limit::Table(table), _) => {
+        (project::DeclaredLimit::Rational(rational), _) => Limit::Rational(function(rational)?),
+        (project::DeclaredLimit::Table(table), _) => {
             let points = table.frequencies.iter().copied().zip(table.values.iter().copied());
             Limit::Table(LimitTable::new(points.collect())?)
         }
-        (project::Limit::Margins(wish), Takes::Margins(of)) => of_margins(wish, of)?,
-        (project::Limit::Response(wish), Takes::Wish(side)) => Limit::Rational(of_wish(wish, side)?.0),
-        (project::Limit::Margins(_), _) => return Err(SpecificationProblem::Form("margins")),
-        (project::Limit::Response(_), _) => return Err(SpecificationProblem::Form("a wish in time")),
+        (project::DeclaredLimit::Margins(wish), Takes::Margins(of)) => of_margins(wish, of)?,
+        (project::DeclaredLimit::Response(wish), Takes::Wish(side)) => {
+            Limit::Rational(of_wish(wish, side)?.0)
+        }
+        (project::DeclaredLimit::Margins(_), _) => return Err(SpecificationProblem::Form("margins")),
+        (project::DeclaredLimit::Response(_), _) => return Err(SpecificationProblem::Form("a wish in time")),
     })
 }
 
@@ -96,14 +101,14 @@ fn of_margins(wish: &MarginWish, of: MarginOf) -> Result<Limit, SpecificationPro
 /// The limit that a wish in time makes, or the one given beside it, and what it does in time.
 pub(super) fn of_wish(
     wish: &ResponseWish,
-    side: TrackingLimit,
+    side: TrackingSide,
 ) -> Result<(TransferFunction, WishCheck), SpecificationProblem> {
     let needed = |value: Option<f64>| value.ok_or(SpecificationProblem::Missing);
     let settling_time_s = needed(wish.settling_time)?;
     let settling_band_percent = needed(wish.settling_band_percent)?;
     let given = wish.function.as_ref().map(function).transpose()?;
     match side {
-        TrackingLimit::Upper => {
+        TrackingSide::Upper => {
             let overshoot_percent = needed(wish.overshoot_percent)?;
             let wished = UpperWish { overshoot_percent, settling_time_s, settling_band_percent };
             if let Some(function) = given {
@@ -113,7 +118,7 @@ pub(super) fn of_wish(
             let limit = tracking_upper(&wished, extra(wish.zero), translation(wish.rule))?;
             Ok((limit.function, limit.check))
         }
-        TrackingLimit::Lower => {
+        TrackingSide::Lower => {
             let wished = LowerWish { settling_time_s, settling_band_percent };
             if let Some(function) = given {
                 let check = check_lower(&function, &wished)?;

@@ -6,11 +6,11 @@ use phea_qft::specification::Specification;
 use crate::setup::Setup;
 
 /// A specification and what it is called.
-pub(super) type Named = (Specification, &'static str);
+pub(super) type NamedSpecification = (Specification, &'static str);
 
 /// The specifications of `allowed_force_error` and `allowed_command_error`, with bounds at these
 /// frequencies, rad/s.
-pub(crate) fn of_rounding(setup: &Setup<'_>, frequencies_rad_per_s: &[f64]) -> Vec<Named> {
+pub(crate) fn of_rounding(setup: &Setup<'_>, frequencies_rad_per_s: &[f64]) -> Vec<NamedSpecification> {
     let Some(declared) = setup.project.controller.as_ref().and_then(|one| one.quantization.as_ref()) else {
         return vec![];
     };

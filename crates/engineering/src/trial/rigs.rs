@@ -11,7 +11,8 @@ use phea_qft::verification::PlantPoint;
 
 use crate::audit::{NamedPlant, ProjectAudit};
 use crate::project::{
-    Actuator, Component, LINEAR_PARAMETERS, Line, LineMotion, Linear, Project, ValveCoefficients,
+    Component, DeclaredActuator, DeclaredLine, LINEAR_PARAMETERS, LineMotion, Linear, Project,
+    ValveCoefficients,
 };
 use crate::rig::{Rig, feed_forward};
 use crate::robust::RobustProblem;
@@ -200,7 +201,7 @@ fn scaled(project: &Project, name: &str, factor: f64) -> Result<Project, String>
 }
 
 /// The numbers that a parameter of the linear model follows from, and as little else as possible.
-fn behind<'a>(actuator: &'a mut Actuator, name: &str) -> Vec<&'a mut f64> {
+fn behind<'a>(actuator: &'a mut DeclaredActuator, name: &str) -> Vec<&'a mut f64> {
     match name {
         "viscous_friction" => {
             actuator.cylinder.friction.iter_mut().map(|friction| &mut friction.viscous).collect()
@@ -227,7 +228,7 @@ fn behind<'a>(actuator: &'a mut Actuator, name: &str) -> Vec<&'a mut f64> {
 }
 
 /// The stated modulus of a line, or the stiffening of its wall.
-fn walls(line: &mut Line) -> Vec<&mut f64> {
+fn walls(line: &mut DeclaredLine) -> Vec<&mut f64> {
     let stiffening = line.dynamic_stiffening.iter_mut();
     let of_wall = stiffening.flat_map(|one| [&mut one.nominal, &mut one.minimum, &mut one.maximum]);
     let outright = match &mut line.component {

@@ -32,7 +32,7 @@ pub enum Agreement {
 
 /// What a step of the reference does.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Step {
+pub struct TrialStep {
     /// Percent of the step.
     pub overshoot_percent: Option<f64>,
     /// s; `None` where it does not settle within the run.
@@ -50,7 +50,7 @@ pub struct StepResponse {
 
 /// One machine, one step.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Run {
+pub struct TrialRun {
     /// Which machine.
     pub what: String,
     /// The plant of the audit that it was made of, where it is one.
@@ -61,9 +61,9 @@ pub struct Run {
     pub reference_n: [f64; 2],
     /// What the linear loop predicts; `None` where it has no response in closed form, or grows
     /// without bound.
-    pub linear: Option<Step>,
+    pub linear: Option<TrialStep>,
     /// What the machine does; `None` where it did not start.
-    pub machine: Option<Step>,
+    pub machine: Option<TrialStep>,
     /// The linear loop's response; empty if it is absent.
     pub linear_response: StepResponse,
     /// The machine's; empty where it did not start.
@@ -104,13 +104,16 @@ pub(super) fn run(
     problem: &RobustProblem,
     view: &ProjectAudit,
     watch: Watch<'_>,
-) -> Result<Option<Run>, ProcedureError> {
+) -> Result<Option<TrialRun>, ProcedureError> {
     let predicted = predicted(tried, problem)?;
     let grows = matches!(predicted, Prediction::Grows);
     let (linear, linear_response) = match predicted {
         Prediction::Step(metrics, response) => {
             let settling_time_s = metrics.settling.time_s();
-            (Some(Step { overshoot_percent: Some(metrics.overshoot_percent), settling_time_s }), response)
+            (
+                Some(TrialStep { overshoot_percent: Some(metrics.overshoot_percent), settling_time_s }),
+                response,
+            )
         }
         Prediction::Grows | Prediction::Unknown => (None, StepResponse::default()),
     };
@@ -121,7 +124,7 @@ pub(super) fn run(
     let project = stepped(&tried.project, reference_n, duration);
     let (what, plant) = (tried.what.clone(), tried.named.clone());
     let run = |status, met, (machine, machine_response), (agreement, reason)| {
-        Some(Run {
+        Some(TrialRun {
             what,
             plant,
             status,
@@ -184,9 +187,9 @@ fn stepped(project: &Project, [from, to]: [f64; 2], duration: f64) -> Project {
     Project { scenarios: vec![scenario], ..project.clone() }
 }
 
-fn step_of(driven: &ScenarioRun) -> Step {
+fn step_of(driven: &ScenarioRun) -> TrialStep {
     let metrics = driven.windows.last().map(|(_, metrics)| metrics);
-    Step {
+    TrialStep {
         overshoot_percent: metrics.and_then(|metrics| metrics.overshoot_percent.ok()),
         settling_time_s: metrics.and_then(|metrics| metrics.settling_time_s.ok()),
     }
@@ -210,8 +213,8 @@ fn not_started(error: &SimulateError, view: &ProjectAudit) -> (Agreement, String
 
 fn judge(
     (driven, reference_n): (&ScenarioRun, [f64; 2]),
-    (linear, grows): (Option<&Step>, bool),
-    machine: &Step,
+    (linear, grows): (Option<&TrialStep>, bool),
+    machine: &TrialStep,
     problem: &RobustProblem,
     view: &ProjectAudit,
 ) -> (Agreement, String) {

@@ -18,12 +18,12 @@ pub struct Boundary {
 }
 
 /// The forbidden spans at one phase, degrees and dB.
-struct Column {
+struct PhaseColumn {
     phase: f64,
     spans: Vec<[f64; 2]>,
 }
 
-impl Column {
+impl PhaseColumn {
     fn gaps(&self) -> Vec<[f64; 2]> {
         self.spans.windows(2).filter_map(|pair| Some([pair.first()?[1], pair.get(1)?[0]])).collect()
     }
@@ -76,16 +76,16 @@ pub fn boundaries(bound: &Bound) -> Vec<Boundary> {
 }
 
 /// The phases that are finite and increase, each with its spans in dB.
-fn columns(bound: &Bound) -> Vec<Column> {
+fn columns(bound: &Bound) -> Vec<PhaseColumn> {
     let decibel = |gain: f64| {
         if gain > 0.0 { (20.0 * log10(gain)).clamp(-FAR_DB, FAR_DB) } else { -FAR_DB }
     };
-    let mut columns: Vec<Column> = Vec::with_capacity(bound.phases_rad.len());
+    let mut columns: Vec<PhaseColumn> = Vec::with_capacity(bound.phases_rad.len());
     for (phase, forbidden) in bound.phases_rad.iter().zip(&bound.forbidden) {
         let phase = phase.to_degrees();
         if phase.is_finite() && columns.last().is_none_or(|last| last.phase < phase) {
             let spans = forbidden.intervals().iter().map(|[low, high]| [decibel(*low), decibel(*high)]);
-            columns.push(Column { phase, spans: spans.collect() });
+            columns.push(PhaseColumn { phase, spans: spans.collect() });
         }
     }
     columns
@@ -95,14 +95,14 @@ fn columns(bound: &Bound) -> Vec<Column> {
 /// a span before its upper one. Along an edge upper ends lead to the right and lower ends to the
 /// left.
 struct Strip<'a> {
-    columns: &'a [Column],
+    columns: &'a [PhaseColumn],
     first_ends: &'a [usize],
     left: usize,
     right: usize,
 }
 
 impl Strip<'_> {
-    fn column(&self, index: usize) -> Option<&Column> {
+    fn column(&self, index: usize) -> Option<&PhaseColumn> {
         self.columns.get(index)
     }
 
@@ -169,21 +169,21 @@ impl Strip<'_> {
                 set(self.lower(r, right.start), self.lower(l, left.start), Vec::new());
             }
             (false, true) => {
-                let tip = self.tip(l, r, left.start, Column::whole);
+                let tip = self.tip(l, r, left.start, PhaseColumn::whole);
                 set(self.upper(l, left.start), self.lower(l, left.start), tip.downwards());
             }
             (true, false) => {
-                let tip = self.tip(r, l, right.start, Column::whole);
+                let tip = self.tip(r, l, right.start, PhaseColumn::whole);
                 set(self.lower(r, right.start), self.upper(r, right.start), tip.upwards());
             }
             (true, true) => {}
         }
         for span in left.start + 1..left.end {
-            let tip = self.tip(l, r, span - 1, Column::gaps);
+            let tip = self.tip(l, r, span - 1, PhaseColumn::gaps);
             set(self.upper(l, span - 1), self.lower(l, span), tip.upwards());
         }
         for span in right.start + 1..right.end {
-            let tip = self.tip(r, l, span - 1, Column::gaps);
+            let tip = self.tip(r, l, span - 1, PhaseColumn::gaps);
             set(self.lower(r, span), self.upper(r, span - 1), tip.downwards());
         }
     }
@@ -191,7 +191,7 @@ impl Strip<'_> {
     /// The tip of a span or gap that is there at one phase and gone at the next. Its height shrinks
     /// with the square root of the distance to the tip, so its square at two phases gives the
     /// place.
-    fn tip(&self, at: usize, beyond: usize, which: usize, of: impl Fn(&Column) -> Vec<[f64; 2]>) -> Tip {
+    fn tip(&self, at: usize, beyond: usize, which: usize, of: impl Fn(&PhaseColumn) -> Vec<[f64; 2]>) -> Tip {
         let phase = |index: usize| self.column(index).map_or(0.0, |column| column.phase);
         let spans = |index: usize| self.column(index).map(&of).unwrap_or_default();
         let span = spans(at).get(which).copied().unwrap_or([0.0, 0.0]);
@@ -213,7 +213,7 @@ impl Strip<'_> {
     }
 }
 
-impl Column {
+impl PhaseColumn {
     fn whole(&self) -> Vec<[f64; 2]> {
         self.spans.clone()
     }

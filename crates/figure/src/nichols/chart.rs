@@ -5,11 +5,11 @@ use phea_qft::bound::Bound;
 use super::super::axis::{Axis, extent};
 use super::super::colour::{Role, ramp_role, series_dash, series_marker, series_role};
 use super::super::legend::LegendEntry;
-use super::super::open_loop::{OpenLoop, decibel, decibel_axis, phase_near};
-use super::super::plot::{Mark, Marker, MarkerStyle, Side};
+use super::super::open_loop::{UnwrappedResponse, decibel, decibel_axis, phase_near};
+use super::super::plot::{Mark, Marker, MarkerStyle, PointSide};
 use super::super::scene::{Dash, Stroke};
 use super::super::templates::PlacedTemplate;
-use super::super::ticks::{Steps, decimal, plain};
+use super::super::ticks::{TickSteps, decimal, plain};
 use super::{Boundary, NicholsInput, OpenLoopViolation, boundaries, magnitude_contour};
 
 /// Most turns that an axis of phase shows on either side of -360 to 0 degrees.
@@ -19,7 +19,7 @@ const TURNS: i32 = 2;
 pub(super) struct Chart<'a> {
     input: &'a NicholsInput<'a>,
     frequencies: Vec<f64>,
-    loops: Vec<OpenLoop>,
+    loops: Vec<UnwrappedResponse>,
     marks: Vec<LoopMark>,
     violations: Vec<(f64, f64)>,
     templates: Vec<PlacedTemplate>,
@@ -32,7 +32,7 @@ pub(super) struct Chart<'a> {
 impl<'a> Chart<'a> {
     pub(super) fn new(input: &'a NicholsInput<'a>) -> Chart<'a> {
         let frequencies = frequencies(input);
-        let loops: Vec<OpenLoop> = input.loops.iter().map(OpenLoop::new).collect();
+        let loops: Vec<UnwrappedResponse> = input.loops.iter().map(UnwrappedResponse::new).collect();
         let nominal = loops.first();
         let on_loop = |frequency: f64| nominal.and_then(|nominal| nominal.at(frequency));
         let marks = loop_marks(&loops, &input.design_frequencies_rad_per_s);
@@ -105,7 +105,7 @@ impl<'a> Chart<'a> {
         let most = 360.0 * f64::from(TURNS);
         let low = (90.0 * (low / 90.0).floor()).max(-360.0 - most);
         let high = (90.0 * (high / 90.0).ceil()).min(most);
-        let steps = if high - low > 450.0 { Steps::Every(90) } else { Steps::Every(45) };
+        let steps = if high - low > 450.0 { TickSteps::Every(90) } else { TickSteps::Every(45) };
         Axis { steps, ..Axis::linear(self.x.title.clone(), low, high) }
     }
 
@@ -241,7 +241,7 @@ impl<'a> Chart<'a> {
                     at: spread(&longest, group + index),
                     text: plain(bound.frequency_rad_per_s),
                     role: Role::Text,
-                    side: Side::On,
+                    side: PointSide::On,
                 });
             }
         }
@@ -262,7 +262,7 @@ impl<'a> Chart<'a> {
                     return Some(Mark::EdgeLabel { at, text: text(contour), role });
                 }
                 let at = spread(&points, 0);
-                Some(Mark::Label { at, text: text(contour), role, side: Side::On })
+                Some(Mark::Label { at, text: text(contour), role, side: PointSide::On })
             })
             .collect()
     }
@@ -312,7 +312,7 @@ struct LoopMark {
     magnitude_db: f64,
 }
 
-fn loop_marks(loops: &[OpenLoop], frequencies: &[f64]) -> Vec<LoopMark> {
+fn loop_marks(loops: &[UnwrappedResponse], frequencies: &[f64]) -> Vec<LoopMark> {
     let mut marks = Vec::new();
     for (loop_index, one) in loops.iter().enumerate() {
         let at = |&frequency: &f64| {
@@ -330,7 +330,7 @@ fn loop_marker(index: usize) -> MarkerStyle {
 }
 
 /// Degrees, on the turn of the loop that passes nearest at that frequency.
-fn phase_on_nearest(loops: &[OpenLoop], violation: &OpenLoopViolation) -> f64 {
+fn phase_on_nearest(loops: &[UnwrappedResponse], violation: &OpenLoopViolation) -> f64 {
     let magnitude = decibel(violation.open_loop);
     let places = loops.iter().filter_map(|one| one.at(violation.frequency_rad_per_s));
     let turned = places.map(|(phase, other)| {

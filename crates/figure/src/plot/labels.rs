@@ -8,12 +8,12 @@ use super::super::scene::{Anchor, Baseline, Point, Rectangle, Scene, Stroke, Tex
 use super::super::{LABEL_SIZE, WIDTH, typeset};
 use super::layout::{EDGE_GAP, Placed};
 use super::paint::{band_area, reference_line};
-use super::{Direction, Mark, Side};
+use super::{AxisDirection, Mark, PointSide};
 
 const ROW: f64 = 17.0;
 const CLEAR: f64 = 5.0;
 
-type Hold = (Point, Anchor, Baseline);
+type LabelHold = (Point, Anchor, Baseline);
 
 pub(super) fn draw(scene: &mut Scene, placed: &Placed<'_>, marks: &[Mark], occupancy: &mut Occupancy) {
     for mark in marks {
@@ -82,7 +82,7 @@ fn place(
     frame: Rectangle,
     text: &str,
     role: Role,
-    holds: &[Hold],
+    holds: &[LabelHold],
 ) {
     let texts: Vec<Text> = holds
         .iter()
@@ -144,7 +144,7 @@ fn beside(from: Point, to: Point) -> Point {
 }
 
 /// The eight directions from a point, sideways first.
-fn directions(at: Point, away: f64) -> [Hold; 8] {
+fn directions(at: Point, away: f64) -> [LabelHold; 8] {
     let (right, left) = (at.x + away, at.x - away);
     let slant = 0.75 * away;
     [
@@ -166,7 +166,7 @@ fn rows(top: f64, bottom: f64) -> impl Iterator<Item = f64> {
 
 /// Beside an upright line from the top down; above or below a lying line at its right end, its left
 /// end, its middle.
-fn beside_line(from: Point, to: Point, frame: Rectangle) -> Vec<Hold> {
+fn beside_line(from: Point, to: Point, frame: Rectangle) -> Vec<LabelHold> {
     if from.x == to.x {
         return rows(frame.top, frame.bottom)
             .flat_map(|y| {
@@ -196,9 +196,9 @@ fn beside_line(from: Point, to: Point, frame: Rectangle) -> Vec<Hold> {
 
 /// In the middle of an upright band from the top down, else beside it; in a lying band at its ends
 /// or its middle.
-fn inside_band(area: Rectangle, direction: Direction, frame: Rectangle) -> Vec<Hold> {
+fn inside_band(area: Rectangle, direction: AxisDirection, frame: Rectangle) -> Vec<LabelHold> {
     match direction {
-        Direction::X => rows(frame.top, frame.bottom)
+        AxisDirection::X => rows(frame.top, frame.bottom)
             .flat_map(|y| {
                 [
                     (point(area.centre().x, y), Anchor::Middle, Baseline::Top),
@@ -207,7 +207,7 @@ fn inside_band(area: Rectangle, direction: Direction, frame: Rectangle) -> Vec<H
                 ]
             })
             .collect(),
-        Direction::Y => [area.centre().y, area.top + ROW, area.bottom - ROW]
+        AxisDirection::Y => [area.centre().y, area.top + ROW, area.bottom - ROW]
             .into_iter()
             .flat_map(|y| {
                 [
@@ -222,23 +222,31 @@ fn inside_band(area: Rectangle, direction: Direction, frame: Rectangle) -> Vec<H
 
 /// Around a point: the wanted side and its corners, the other sides, the other corners, then
 /// farther away.
-fn around(at: Point, side: Side) -> Vec<Hold> {
+fn around(at: Point, side: PointSide) -> Vec<LabelHold> {
     const UP: [(f64, f64); 2] = [(1.0, -1.0), (-1.0, -1.0)];
     const DOWN: [(f64, f64); 2] = [(1.0, 1.0), (-1.0, 1.0)];
     const LEFT: [(f64, f64); 2] = [(-1.0, -1.0), (-1.0, 1.0)];
     const RIGHT: [(f64, f64); 2] = [(1.0, -1.0), (1.0, 1.0)];
     let (order, [first, second]) = match side {
-        Side::On => return vec![(at, Anchor::Middle, Baseline::Middle)],
-        Side::Above => ([Side::Above, Side::Right, Side::Left, Side::Below], [UP, DOWN]),
-        Side::Below => ([Side::Below, Side::Right, Side::Left, Side::Above], [DOWN, UP]),
-        Side::Left => ([Side::Left, Side::Above, Side::Below, Side::Right], [LEFT, RIGHT]),
-        Side::Right => ([Side::Right, Side::Above, Side::Below, Side::Left], [RIGHT, LEFT]),
+        PointSide::On => return vec![(at, Anchor::Middle, Baseline::Middle)],
+        PointSide::Above => {
+            ([PointSide::Above, PointSide::Right, PointSide::Left, PointSide::Below], [UP, DOWN])
+        }
+        PointSide::Below => {
+            ([PointSide::Below, PointSide::Right, PointSide::Left, PointSide::Above], [DOWN, UP])
+        }
+        PointSide::Left => {
+            ([PointSide::Left, PointSide::Above, PointSide::Below, PointSide::Right], [LEFT, RIGHT])
+        }
+        PointSide::Right => {
+            ([PointSide::Right, PointSide::Above, PointSide::Below, PointSide::Left], [RIGHT, LEFT])
+        }
     };
-    let near = |side: Side, away: f64| match side {
-        Side::Above => (point(at.x, at.y - away), Anchor::Middle, Baseline::Letters),
-        Side::Below => (point(at.x, at.y + away), Anchor::Middle, Baseline::Top),
-        Side::Left => (point(at.x - away, at.y), Anchor::End, Baseline::Middle),
-        Side::Right | Side::On => (point(at.x + away, at.y), Anchor::Start, Baseline::Middle),
+    let near = |side: PointSide, away: f64| match side {
+        PointSide::Above => (point(at.x, at.y - away), Anchor::Middle, Baseline::Letters),
+        PointSide::Below => (point(at.x, at.y + away), Anchor::Middle, Baseline::Top),
+        PointSide::Left => (point(at.x - away, at.y), Anchor::End, Baseline::Middle),
+        PointSide::Right | PointSide::On => (point(at.x + away, at.y), Anchor::Start, Baseline::Middle),
     };
     let corner = |(dx, dy): (f64, f64), away: f64| {
         let anchor = if dx > 0.0 { Anchor::Start } else { Anchor::End };

@@ -9,7 +9,7 @@ use super::super::placement::Occupancy;
 use super::super::scene::{Fill, Item, PathStep, Point, Rectangle, Scene, Shape, Stroke, point, run};
 use super::super::{clip, simplify};
 use super::layout::Placed;
-use super::{Direction, Mark, Marker, MarkerStyle};
+use super::{AxisDirection, Mark, Marker, MarkerStyle};
 
 /// What lies below the grid: bands and areas.
 pub(super) fn bands(scene: &mut Scene, placed: &Placed<'_>, marks: &[Mark]) {
@@ -89,31 +89,40 @@ pub(super) fn marks(scene: &mut Scene, placed: &Placed<'_>, marks: &[Mark], occu
 }
 
 /// The visible part of a band, or `None`.
-pub(super) fn band_area(placed: &Placed<'_>, direction: Direction, from: f64, to: f64) -> Option<Rectangle> {
+pub(super) fn band_area(
+    placed: &Placed<'_>,
+    direction: AxisDirection,
+    from: f64,
+    to: f64,
+) -> Option<Rectangle> {
     let axis = match direction {
-        Direction::X => placed.x,
-        Direction::Y => placed.y,
+        AxisDirection::X => placed.x,
+        AxisDirection::Y => placed.y,
     };
     let (low, high) = (from.min(to).max(axis.minimum), from.max(to).min(axis.maximum));
     if from.is_nan() || to.is_nan() || low >= high {
         return None;
     }
     let (a, b) = match direction {
-        Direction::X => (placed.at(low, placed.y.minimum), placed.at(high, placed.y.maximum)),
-        Direction::Y => (placed.at(placed.x.minimum, low), placed.at(placed.x.maximum, high)),
+        AxisDirection::X => (placed.at(low, placed.y.minimum), placed.at(high, placed.y.maximum)),
+        AxisDirection::Y => (placed.at(placed.x.minimum, low), placed.at(placed.x.maximum, high)),
     };
     Some(Rectangle::from_corners(a, b))
 }
 
 /// The ends of a reference line, or `None` when it lies outside.
-pub(super) fn reference_line(placed: &Placed<'_>, direction: Direction, at: f64) -> Option<(Point, Point)> {
+pub(super) fn reference_line(
+    placed: &Placed<'_>,
+    direction: AxisDirection,
+    at: f64,
+) -> Option<(Point, Point)> {
     let frame = placed.frame;
     match direction {
-        Direction::X => {
+        AxisDirection::X => {
             let x = placed.x_at(at);
             (x >= frame.left && x <= frame.right).then(|| (point(x, frame.bottom), point(x, frame.top)))
         }
-        Direction::Y => {
+        AxisDirection::Y => {
             let y = placed.y_at(at);
             (y >= frame.top && y <= frame.bottom).then(|| (point(frame.left, y), point(frame.right, y)))
         }

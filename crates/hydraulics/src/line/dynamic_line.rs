@@ -1,6 +1,6 @@
 use phea_dynamics::scalar::Scalar;
 
-use super::{Content, Segments, TransmissionLine, TwoWaveLine};
+use super::{LineContent, Segments, TransmissionLine, TwoWaveLine};
 
 /// What a line does between its valve port and its chamber, as a machine holds it: states, and
 /// waves that it sends and that arrive later.
@@ -134,7 +134,7 @@ impl<S: Scalar> DynamicLine<S> {
         &self,
         chamber_pressure: T,
         state: &[T],
-    ) -> Option<Content<T>> {
+    ) -> Option<LineContent<T>> {
         match self {
             DynamicLine::Segments(line) => Some(line.content(chamber_pressure, state)),
             DynamicLine::TransmissionLine(_) | DynamicLine::TwoWave(_) => None,

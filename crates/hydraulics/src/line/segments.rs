@@ -1,7 +1,7 @@
 mod content;
 mod response;
 
-pub(crate) use content::Content;
+pub(crate) use content::LineContent;
 
 use phea_dynamics::scalar::Scalar;
 

@@ -26,7 +26,7 @@ pub struct StartValues {
 
 /// Where a run begins.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Beginning {
+pub struct InitialCondition {
     /// The machine's states.
     pub state: Vec<f64>,
     /// The command in V that holds the spool there.
@@ -40,7 +40,7 @@ pub struct Beginning {
     pub waves: Vec<f64>,
 }
 
-impl Beginning {
+impl InitialCondition {
     /// All inputs of the machine: the ground's, the force from outside, and the waves.
     pub fn all_inputs(&self) -> Vec<f64> {
         [&self.inputs, self.external_force.as_slice(), self.waves.as_slice()].concat()
@@ -74,7 +74,7 @@ impl Machine {
     /// assert_eq!(beginning.inputs, [0.25, 0.0]);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn start(&self, start: &StartValues) -> Result<Beginning, MachineError> {
+    pub fn start(&self, start: &StartValues) -> Result<InitialCondition, MachineError> {
         check(start, self.cylinder.stroke)?;
         let mut state = MachineState::zero();
         state.spool.spool = start.spool;
@@ -95,7 +95,7 @@ impl Machine {
     ///
     /// # Errors
     /// As [`Machine::start`]; no balance near the operating point.
-    pub fn rest(&self, point: &OperatingPoint) -> Result<Beginning, MachineError> {
+    pub fn rest(&self, point: &OperatingPoint) -> Result<InitialCondition, MachineError> {
         self.settled(point, Kept::Spool)
     }
 
@@ -104,7 +104,7 @@ impl Machine {
     ///
     /// # Errors
     /// As [`Machine::rest`].
-    pub fn rest_under_load(&self, point: &OperatingPoint) -> Result<Beginning, MachineError> {
+    pub fn rest_under_load(&self, point: &OperatingPoint) -> Result<InitialCondition, MachineError> {
         self.settled(point, Kept::Force(point.hydraulic_force))
     }
 
@@ -125,7 +125,7 @@ impl Machine {
         self.layout.memories()
     }
 
-    fn settled(&self, point: &OperatingPoint, kept: Kept) -> Result<Beginning, MachineError> {
+    fn settled(&self, point: &OperatingPoint, kept: Kept) -> Result<InitialCondition, MachineError> {
         let start = StartValues {
             position: point.position,
             velocity: point.velocity,
@@ -165,7 +165,7 @@ impl Machine {
         Ok((MachineState { deflection, load, ..*state }, position - deflection - relative))
     }
 
-    fn begin(&self, state: &MachineState, ground: f64) -> Beginning {
+    fn begin(&self, state: &MachineState, ground: f64) -> InitialCondition {
         let mut vector = vec![0.0; self.layout.count()];
         self.layout.write(state, &mut vector);
         let pressures = [state.pressure_a, state.pressure_b];
@@ -177,7 +177,7 @@ impl Machine {
             place.copy_from_slice(&line_state);
             waves.extend(arriving);
         }
-        Beginning {
+        InitialCondition {
             state: vector,
             command: state.spool.spool,
             inputs: [ground, state.velocity],
@@ -198,7 +198,7 @@ impl Machine {
     }
 
     /// The greatest rate over the scale of its state, in 1/s: zero in a steady motion.
-    fn residual(&self, beginning: &Beginning) -> f64 {
+    fn residual(&self, beginning: &InitialCondition) -> f64 {
         let mut rates = vec![0.0; self.layout.count()];
         self.rates(&beginning.state, beginning.command, &beginning.all_inputs(), &mut rates);
         rates.iter().zip(self.scales()).fold(0.0, |largest, (rate, scale)| {

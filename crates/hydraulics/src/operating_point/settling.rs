@@ -53,7 +53,7 @@ pub(super) const AT_NULL: f64 = 1e-12;
 
 /// What each side of the piston takes, and how the pressures are bound to each other.
 #[derive(Clone, Copy)]
-struct Hold<S> {
+struct PressureHold<S> {
     velocity: S,
     /// w_A p_A - w_B p_B is wanted.
     weights: [S; 2],
@@ -151,10 +151,10 @@ impl<S: Scalar> Balance<S> {
         }
     }
 
-    fn hold(&self, velocity: S, load: SteadyLoad<S>) -> Hold<S> {
+    fn hold(&self, velocity: S, load: SteadyLoad<S>) -> PressureHold<S> {
         match load {
-            SteadyLoad::Force(wanted) => Hold { velocity, weights: self.areas, wanted },
-            SteadyLoad::Pressure(wanted) => Hold { velocity, weights: [S::from(1.0); 2], wanted },
+            SteadyLoad::Force(wanted) => PressureHold { velocity, weights: self.areas, wanted },
+            SteadyLoad::Pressure(wanted) => PressureHold { velocity, weights: [S::from(1.0); 2], wanted },
         }
     }
 
@@ -228,7 +228,7 @@ impl<S: Scalar> Balance<S> {
     }
 
     /// The Newton step of the spool and of p_A, p_B being bound to p_A by the load.
-    fn step_moving(&self, hold: &Hold<S>, command: S, pressure_a: S) -> [S; 2] {
+    fn step_moving(&self, hold: &PressureHold<S>, command: S, pressure_a: S) -> [S; 2] {
         let pressures = [pressure_a, hold.other(pressure_a)];
         let ([surplus_a, surplus_b], across) = self.surplus(command, hold.velocity, pressures);
         let slopes = self.slopes(command, pressures);
@@ -278,7 +278,7 @@ impl Balance {
     }
 }
 
-impl<S: Scalar> Hold<S> {
+impl<S: Scalar> PressureHold<S> {
     /// p_B with this p_A.
     fn other(&self, pressure_a: S) -> S {
         let [weight_a, weight_b] = self.weights;

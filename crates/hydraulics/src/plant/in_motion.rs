@@ -4,7 +4,7 @@ use num_complex::Complex64;
 use phea_dynamics::analytic::Analytic;
 
 use super::supply::{Coupled, Over};
-use super::{Chamber, Chambers, LinearLoad, LinearPlant, YieldingSupply};
+use super::{Chamber, ChamberPolynomials, LinearLoad, LinearPlant, YieldingSupply};
 use crate::line::{DynamicLine, Segments, TransferMatrix};
 
 /// The plant with lines that have dynamics of their own: what no quotient of polynomials is, but a
@@ -46,7 +46,7 @@ use crate::line::{DynamicLine, Segments, TransferMatrix};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlantInMotion {
     plant: LinearPlant,
-    sides: [Side; 2],
+    sides: [ChamberSide; 2],
     /// Whether both lines are the same.
     alike: bool,
     /// Delay of the load's velocity that is fed forward, s.
@@ -66,7 +66,7 @@ pub struct BehindLines {
 
 /// A chamber with its line.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Side {
+struct ChamberSide {
     area: f64,
     /// Of the chamber with the end of the line there.
     compliance: f64,
@@ -127,7 +127,7 @@ impl PlantInMotion {
             let stiffer = behind.lumped[side] / compliance;
             let line = behind.lines[side].stiffened(stiffer);
             let compliance = behind.chambers[side] / stiffer + line.chamber_compliance();
-            Side { area, compliance, flow_gain, flow_pressure, line }
+            ChamberSide { area, compliance, flow_gain, flow_pressure, line }
         };
         let sides = [side(0), side(1)];
         let alike = sides[0].line == sides[1].line;
@@ -152,7 +152,7 @@ impl PlantInMotion {
     }
 
     fn paths<A: Analytic>(&self, s: A) -> Paths<A> {
-        let Chambers { own, driven, displaced } = self.chambers(s);
+        let ChamberPolynomials { own, driven, displaced } = self.chambers(s);
         let sensor = self.plant.sensor_stiffness;
         let rubbed = s.scaled(self.plant.moving_mass) + A::from(self.plant.viscous_friction);
         let moved = s * (rubbed * own + displaced);
@@ -186,7 +186,7 @@ impl PlantInMotion {
 
     /// D, N_u and N_v at s, times what both lines pass, so that nothing is divided by what vanishes
     /// at a resonance.
-    fn chambers<A: Analytic>(&self, s: A) -> Chambers<A> {
+    fn chambers<A: Analytic>(&self, s: A) -> ChamberPolynomials<A> {
         let [one, other] = &self.sides;
         let line = one.line.transfer_matrix(s);
         let across = if self.alike { line } else { other.line.transfer_matrix(s) };
@@ -195,15 +195,16 @@ impl PlantInMotion {
         let [gain_a, gain_b] = self.sides.map(|side| side.flow_gain);
         let leakage = self.plant.internal_leakage;
         if let Some(supply) = &self.plant.supply {
-            let Chambers { own, driven, displaced } = self.behind(supply, &at, s).chambers([area_a, area_b]);
-            return Chambers { own: own.0, driven: driven.0, displaced: displaced.0 };
+            let ChamberPolynomials { own, driven, displaced } =
+                self.behind(supply, &at, s).chambers([area_a, area_b]);
+            return ChamberPolynomials { own: own.0, driven: driven.0, displaced: displaced.0 };
         }
         let [one, other] = at;
         let (a, b) = (one.admittance, other.admittance);
         let passed = one.passed * other.passed;
         let difference = area_a - area_b;
         let crossed = other.passed.scaled(gain_a) - one.passed.scaled(gain_b);
-        Chambers {
+        ChamberPolynomials {
             own: a * b + (a * other.passed + b * one.passed).scaled(leakage),
             driven: b.scaled(area_a * gain_a)
                 + a.scaled(area_b * gain_b)
@@ -270,7 +271,7 @@ impl PlantInMotion {
     }
 }
 
-impl Side {
+impl ChamberSide {
     fn at_chamber<A: Analytic>(&self, line: TransferMatrix<A>, s: A) -> AtChamber<A> {
         let passed = line.flow + line.impedance.scaled(self.flow_pressure);
         let taken = line.admittance + line.pressure.scaled(self.flow_pressure);

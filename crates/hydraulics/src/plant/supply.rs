@@ -1,7 +1,7 @@
 use phea_dynamics::analytic::Analytic;
 use phea_dynamics::scalar::Scalar;
 
-use super::Chambers;
+use super::ChamberPolynomials;
 use crate::linear::polynomial::{product, scaled, sum};
 use crate::machine::PumpLimited;
 use crate::operating_point::{Balance, SettledSupply};
@@ -114,7 +114,7 @@ impl<T> Coupled<T> {
     /// [-G    b   -s_B ] [p_B] = [-K_qB] U  +  [ A_B] s X,        D = a b c - 2 G s_A s_B - a s_B^2 - b s_A^2 - c G^2
     /// [-s_A -s_B  c   ] [p_S]   [-K_qS]       [  0 ]
     /// ```
-    pub(super) fn chambers<S: Scalar>(&self, [area_a, area_b]: [S; 2]) -> Chambers<T>
+    pub(super) fn chambers<S: Scalar>(&self, [area_a, area_b]: [S; 2]) -> ChamberPolynomials<T>
     where
         T: Admittance<S>,
     {
@@ -130,7 +130,7 @@ impl<T> Coupled<T> {
         let [by_a, by_b, by_supply] = [force(&bc, &ab), force(&ab, &ac), force(&from_a, &from_b)];
         let [gain_a, gain_b, gain_supply] = &self.gains;
         let taken = by_b.times(gain_b).plus(&by_supply.times(gain_supply));
-        Chambers {
+        ChamberPolynomials {
             own: a.times(&bc).plus(&minus(across.times(&ab).plus(&of_a.times(&from_a)))),
             driven: by_a.times(gain_a).plus(&minus(taken)),
             displaced: by_a.by(area_a).plus(&by_b.by(-area_b)),

@@ -2,7 +2,7 @@
 
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{
-    Input, InputSchedule, Profile, Settings, Simulated, Status, System, simulate,
+    Input, InputSchedule, Profile, Simulated, SimulationSettings, Status, System, simulate,
 };
 use phea_hydraulics::line::{Conduit, DynamicLine, LineModel, StiffeningMember, TransmissionLine};
 use phea_hydraulics::reference_rig::hose_line;
@@ -53,7 +53,7 @@ impl Fed {
             output_step_s: duration_s / 200.0,
             inputs: vec![Input::Value(inflow), Input::Value(outflow)],
         };
-        let settings = Settings { tolerance: 1e-7, ..Settings::default() };
+        let settings = SimulationSettings { tolerance: 1e-7, ..SimulationSettings::default() };
         let result = simulate(self, &start, &course, None, &settings, &mut |_| true).unwrap();
         assert_eq!(result.outcome.status, Status::Completed);
         result

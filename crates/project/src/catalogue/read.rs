@@ -3,10 +3,11 @@
 use std::sync::{Arc, OnceLock};
 
 use super::built_in::BUILT_IN;
-use super::{Catalogue, CatalogueEntry, Kind};
+use super::{Catalogue, CatalogueEntry, CatalogueKind};
 use crate::source::Source;
 use crate::{
-    Findings, Found, HoseProperties, Node, Reader, Refusal, TreeValue, Valve, Visitor, key, plain, read_tree,
+    Findings, HoseProperties, RawFinding, Reader, Refusal, TreeNode, TreeValue, Valve, Visitor, key, plain,
+    read_tree,
 };
 use phea_quantity::RATIO;
 
@@ -75,7 +76,7 @@ impl Catalogue {
 /// What a file says about its product.
 #[derive(Default)]
 struct Head {
-    kind: Kind,
+    kind: CatalogueKind,
     name: Option<String>,
     title: Option<String>,
     manufacturer: Option<String>,
@@ -86,7 +87,7 @@ impl Head {
     fn visit<V: Visitor>(&mut self, v: &mut V) {
         let mut schema = 1;
         v.count(key("schema", &RATIO, "Version of this format: 1.").at_least(1.0).at_most(1.0), &mut schema);
-        let words = &[("hose", Kind::Hose), ("valve", Kind::Valve)];
+        let words = &[("hose", CatalogueKind::Hose), ("valve", CatalogueKind::Valve)];
         v.choice(plain("kind", "What the product is."), words, &mut self.kind, true);
         v.text(plain("name", "The name projects use."), &mut self.name, true);
         v.text(plain("title", "The name people use."), &mut self.title, true);
@@ -95,7 +96,7 @@ impl Head {
     }
 }
 
-fn entry(file: &str, root: Node, findings: &mut Findings) -> Option<CatalogueEntry> {
+fn entry(file: &str, root: TreeNode, findings: &mut Findings) -> Option<CatalogueEntry> {
     let nothing = Catalogue::default();
     let mut head = Head::default();
     let mut hose = None;
@@ -105,12 +106,12 @@ fn entry(file: &str, root: Node, findings: &mut Findings) -> Option<CatalogueEnt
     reader.know("sources");
     let mut reader = reader.partial();
     match head.kind {
-        Kind::Hose => {
+        CatalogueKind::Hose => {
             let mut properties = HoseProperties::default();
             properties.visit(&mut reader);
             hose = Some(properties).filter(|_| !reader.incomplete);
         }
-        Kind::Valve => Valve::default().visit(&mut reader),
+        CatalogueKind::Valve => Valve::default().visit(&mut reader),
     }
     reader.close();
     let sources = sources(&root, &head, findings);
@@ -128,7 +129,7 @@ fn entry(file: &str, root: Node, findings: &mut Findings) -> Option<CatalogueEnt
 }
 
 /// The sources of single numbers. A number without any source is refused.
-fn sources(root: &Node, head: &Head, findings: &mut Findings) -> Vec<(String, String)> {
+fn sources(root: &TreeNode, head: &Head, findings: &mut Findings) -> Vec<(String, String)> {
     let mut sources = Vec::new();
     for entry in root.get("sources").map(|entry| entry.node.entries()).unwrap_or_default() {
         match &entry.node.value {
@@ -137,16 +138,16 @@ fn sources(root: &Node, head: &Head, findings: &mut Findings) -> Vec<(String, St
             }
             TreeValue::Text(_) => {
                 let message = format!("the source of `{}`, which this file does not have", entry.key);
-                findings.push(Found::error(entry.key_place, message));
+                findings.push(RawFinding::error(entry.key_place, message));
             }
-            _ => findings.push(Found::error(entry.node.place, "a source is a text")),
+            _ => findings.push(RawFinding::error(entry.node.place, "a source is a text")),
         }
     }
     for entry in root.entries().iter().filter(|entry| !HEAD.contains(&entry.key.as_str())) {
         let sourced = head.source.is_some() || sources.iter().any(|(name, _)| *name == entry.key);
         if !sourced {
             let place = entry.key_place;
-            let found = Found::error(place, format!("`{}` has no source", entry.key));
+            let found = RawFinding::error(place, format!("`{}` has no source", entry.key));
             findings.push(found.help("add `source` for the whole file, or name it under [sources]"));
         }
     }

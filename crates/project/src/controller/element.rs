@@ -8,7 +8,7 @@ use crate::key::{Key, key, plain};
 use crate::printer::Printer;
 use crate::reader::Reader;
 use crate::text::Findings;
-use crate::tree::{Entry, Node, Value};
+use crate::tree::{Entry, TreeNode, Value};
 use crate::validate;
 use crate::visitor::{Variants, Visitor};
 use phea_quantity::{ANGULAR_FREQUENCY, RATIO, TIME};
@@ -16,7 +16,7 @@ use phea_quantity::{ANGULAR_FREQUENCY, RATIO, TIME};
 /// One element of a controller; every kind but gain, `pi`, `pid` and `general` has unit gain at zero frequency (integrator and
 /// differentiator: at 1 rad/s).
 #[derive(Clone, Debug, PartialEq)]
-pub struct Element {
+pub struct DeclaredElement {
     /// Which element.
     pub kind: ElementKind,
     /// Whether it acts; one that does not is kept in the list all the same.
@@ -111,9 +111,9 @@ pub enum ElementKind {
     General(RationalFunction),
 }
 
-impl Default for Element {
+impl Default for DeclaredElement {
     fn default() -> Self {
-        Element::new(ElementKind::Gain { value: 0.0 })
+        DeclaredElement::new(ElementKind::Gain { value: 0.0 })
     }
 }
 
@@ -231,10 +231,10 @@ impl Variants for ElementKind {
 const PROPORTIONAL: Key = key("proportional_gain", &RATIO, "Of a PI or PID.");
 const INTEGRAL: Key = key("integral_gain", &RATIO, "Of a PI or PID, for each second.");
 
-impl Element {
+impl DeclaredElement {
     /// One that acts.
-    pub fn new(kind: ElementKind) -> Element {
-        Element { kind, enabled: true }
+    pub fn new(kind: ElementKind) -> DeclaredElement {
+        DeclaredElement { kind, enabled: true }
     }
 
     /// Whether it is written in `z`.
@@ -246,8 +246,8 @@ impl Element {
     ///
     /// # Example
     /// ```
-    /// use phea_project::{Element, ElementKind};
-    /// let zero = Element { kind: ElementKind::Zero { frequency: 20.0 }, enabled: false };
+    /// use phea_project::{DeclaredElement, ElementKind};
+    /// let zero = DeclaredElement { kind: ElementKind::Zero { frequency: 20.0 }, enabled: false };
     /// assert_eq!(zero.print(), r#"{ kind = "zero", frequency = "20 rad/s", enabled = false }"#);
     /// ```
     pub fn print(&self) -> String {
@@ -264,15 +264,19 @@ impl Element {
     }
 
     /// The element that a table describes; what is wrong with it goes to the findings. `sample_time` in s is that of the controller.
-    pub fn read(node: &Node, sample_time: Option<f64>, findings: &mut Findings) -> Option<Element> {
+    pub fn read(
+        node: &TreeNode,
+        sample_time: Option<f64>,
+        findings: &mut Findings,
+    ) -> Option<DeclaredElement> {
         let errors = findings.error_count();
         let place = node.place;
         let entry = Entry { key: "elements".to_string(), key_place: place, node: node.clone() };
-        let root = Node { place, value: Value::Table(vec![entry]) };
+        let root = TreeNode { place, value: Value::Table(vec![entry]) };
         let catalogue = Catalogue::default();
         let mut reader = Reader::new(&root, place.text, &catalogue, findings);
-        let mut element: Option<Element> = None;
-        reader.table(plain("elements", "An element."), &mut element, Element::visit);
+        let mut element: Option<DeclaredElement> = None;
+        reader.table(plain("elements", "An element."), &mut element, DeclaredElement::visit);
         if let Some(element) = &element {
             validate::element(element, "elements", sample_time, &mut reader);
         }

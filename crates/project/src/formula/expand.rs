@@ -3,7 +3,7 @@
 use phea_dynamics::scalar::Scalar;
 
 use super::parse::MAXIMUM_POWER;
-use super::{Formula, FormulaError, Node, Part, Ratio};
+use super::{Formula, FormulaError, FormulaNode, FormulaPart, Ratio};
 
 pub(super) fn ratio<S: Scalar>(
     formula: &Formula,
@@ -41,24 +41,24 @@ pub(super) fn trimmed(coefficients: Vec<f64>) -> Vec<f64> {
 
 /// The value of a node whose operands have theirs.
 fn of_node<S: Scalar>(
-    node: &Node,
+    node: &FormulaNode,
     values: &[Ratio<S>],
     parameter: &dyn Fn(&str) -> Option<S>,
 ) -> Result<Ratio<S>, FormulaError> {
     let one = S::from(1.0);
     Ok(match &node.part {
-        Part::Number(value) => constant(S::from(*value)),
-        Part::Variable(_) => Ratio { numerator: vec![one, S::from(0.0)], denominator: vec![one] },
-        Part::Parameter(name) => {
+        FormulaPart::Number(value) => constant(S::from(*value)),
+        FormulaPart::Variable(_) => Ratio { numerator: vec![one, S::from(0.0)], denominator: vec![one] },
+        FormulaPart::Parameter(name) => {
             let unknown = || FormulaError::new(format!("unknown parameter `{name}`"), node.range.clone());
             constant(parameter(name).ok_or_else(unknown)?)
         }
-        Part::Negate(a) => scaled(&values[*a], S::from(-1.0)),
-        Part::Add(a, b) => sum(&values[*a], &values[*b]),
-        Part::Subtract(a, b) => sum(&values[*a], &scaled(&values[*b], S::from(-1.0))),
-        Part::Multiply(a, b) => times(&values[*a], &values[*b]),
-        Part::Divide(a, b) => over(&values[*a], &values[*b]),
-        Part::Power(a, exponent) => {
+        FormulaPart::Negate(a) => scaled(&values[*a], S::from(-1.0)),
+        FormulaPart::Add(a, b) => sum(&values[*a], &values[*b]),
+        FormulaPart::Subtract(a, b) => sum(&values[*a], &scaled(&values[*b], S::from(-1.0))),
+        FormulaPart::Multiply(a, b) => times(&values[*a], &values[*b]),
+        FormulaPart::Divide(a, b) => over(&values[*a], &values[*b]),
+        FormulaPart::Power(a, exponent) => {
             let base = &values[*a];
             let degree = base.numerator.len().max(base.denominator.len()) - 1;
             if degree.saturating_mul(*exponent as usize) > MAXIMUM_POWER {

@@ -1,6 +1,6 @@
 //! Text to formula.
 
-use super::{Formula, FormulaError, Node, Part, Variable};
+use super::{Formula, FormulaError, FormulaNode, FormulaPart, Variable};
 
 /// Longest formula, in bytes.
 const MAXIMUM_LENGTH: usize = 2000;
@@ -14,7 +14,7 @@ pub(super) fn formula(text: &str, sampled: bool) -> Result<Formula, FormulaError
     if text.len() > MAXIMUM_LENGTH {
         return Err(FormulaError::new("too long for a formula", 0..text.len()));
     }
-    let mut reader = Reader { text, sampled, at: 0, nodes: Vec::new(), depth: 0, variable: None };
+    let mut reader = FormulaReader { text, sampled, at: 0, nodes: Vec::new(), depth: 0, variable: None };
     reader.skip_spaces();
     if reader.rest().is_empty() {
         return Err(FormulaError::new("an empty formula", 0..text.len()));
@@ -27,16 +27,16 @@ pub(super) fn formula(text: &str, sampled: bool) -> Result<Formula, FormulaError
 }
 
 /// Reads from left to right; each method returns the index of its node.
-struct Reader<'a> {
+struct FormulaReader<'a> {
     text: &'a str,
     sampled: bool,
     at: usize,
-    nodes: Vec<Node>,
+    nodes: Vec<FormulaNode>,
     depth: usize,
     variable: Option<Variable>,
 }
 
-impl<'a> Reader<'a> {
+impl<'a> FormulaReader<'a> {
     fn rest(&self) -> &'a str {
         &self.text[self.at..]
     }
@@ -54,9 +54,9 @@ impl<'a> Reader<'a> {
         found
     }
 
-    fn push(&mut self, part: Part, start: usize) -> usize {
+    fn push(&mut self, part: FormulaPart, start: usize) -> usize {
         let end = start + self.text[start..self.at].trim_end().len();
-        self.nodes.push(Node { part, range: start..end });
+        self.nodes.push(FormulaNode { part, range: start..end });
         self.nodes.len() - 1
     }
 
@@ -68,7 +68,7 @@ impl<'a> Reader<'a> {
         }
         let mut left = self.product()?;
         if negative {
-            left = self.push(Part::Negate(left), start);
+            left = self.push(FormulaPart::Negate(left), start);
         }
         loop {
             let add = self.take('+');
@@ -76,7 +76,7 @@ impl<'a> Reader<'a> {
                 return Ok(left);
             }
             let right = self.product()?;
-            let part = if add { Part::Add(left, right) } else { Part::Subtract(left, right) };
+            let part = if add { FormulaPart::Add(left, right) } else { FormulaPart::Subtract(left, right) };
             left = self.push(part, start);
         }
     }
@@ -90,7 +90,8 @@ impl<'a> Reader<'a> {
                 return Ok(left);
             }
             let right = self.power()?;
-            let part = if multiply { Part::Multiply(left, right) } else { Part::Divide(left, right) };
+            let part =
+                if multiply { FormulaPart::Multiply(left, right) } else { FormulaPart::Divide(left, right) };
             left = self.push(part, start);
         }
     }
@@ -112,7 +113,7 @@ impl<'a> Reader<'a> {
             return Err(FormulaError::new(message, exponent_start..end));
         };
         self.skip_spaces();
-        Ok(self.push(Part::Power(base, exponent), start))
+        Ok(self.push(FormulaPart::Power(base, exponent), start))
     }
 
     fn atom(&mut self) -> Result<usize, FormulaError> {
@@ -171,7 +172,7 @@ impl<'a> Reader<'a> {
         let value = self.text[start..end].parse::<f64>();
         self.at = end;
         let node = match value {
-            Ok(value) if value.is_finite() => self.push(Part::Number(value), start),
+            Ok(value) if value.is_finite() => self.push(FormulaPart::Number(value), start),
             Ok(_) => return Err(FormulaError::new("the number is too large", start..end)),
             Err(_) => return Err(FormulaError::new("this is no number", start..end)),
         };
@@ -195,7 +196,7 @@ impl<'a> Reader<'a> {
             return Err(FormulaError::new("both `s` and `z` in one formula", start..self.at));
         }
         self.variable = self.variable.or(variable);
-        let part = variable.map_or_else(|| Part::Parameter(name.to_string()), Part::Variable);
+        let part = variable.map_or_else(|| FormulaPart::Parameter(name.to_string()), FormulaPart::Variable);
         let node = self.push(part, start);
         self.skip_spaces();
         Ok(node)

@@ -3,8 +3,8 @@
 use super::{Layer, Reader};
 use crate::key::Key;
 use crate::listing::keys_of;
-use crate::text::{Found, Place};
-use crate::tree::{Node, Value};
+use crate::text::{Place, RawFinding};
+use crate::tree::{TreeNode, Value};
 use crate::visitor::Variants;
 use phea_quantity::spelling::nearest;
 
@@ -21,7 +21,7 @@ fn belongs_to<T: Variants>(key: Key, name: &str, all: &[T]) -> String {
 
 impl<'a> Reader<'a> {
     /// The place of a text among words of which it must be one.
-    pub(super) fn word(&mut self, key: Key, node: &Node, words: &[&'static str]) -> Option<usize> {
+    pub(super) fn word(&mut self, key: Key, node: &TreeNode, words: &[&'static str]) -> Option<usize> {
         let all = words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(", ");
         let Value::Text(text) = &node.value else {
             self.wrong_kind(key, &format!("one of {all}"), node);
@@ -33,7 +33,7 @@ impl<'a> Reader<'a> {
             let near = nearest(text, words.iter().copied());
             let help = near.map(|word| format!("did you mean \"{word}\"?"));
             let expected = format!("one of {all}");
-            self.findings.push(Found::error(node.place, message).expected(expected).maybe_help(help));
+            self.findings.push(RawFinding::error(node.place, message).expected(expected).maybe_help(help));
         }
         found
     }
@@ -61,7 +61,7 @@ impl<'a> Reader<'a> {
             for name in keys.iter().filter(|name| !read.contains(name)) {
                 if let Some(place) = self.written(name) {
                     let message = format!("`{name}` has no effect with {} \"{}\"", key.name, chosen.word());
-                    let found = if T::STRICT { Found::error } else { Found::warning };
+                    let found = if T::STRICT { RawFinding::error } else { RawFinding::warning };
                     self.findings.push(found(place, message).help(belongs_to(key, name, all)));
                 }
             }
@@ -77,7 +77,7 @@ impl<'a> Reader<'a> {
         for name in asked {
             if let Some(place) = self.written(name) {
                 let message = format!("`{name}` has no effect without `{chooses}`");
-                self.findings.push(Found::warning(place, message));
+                self.findings.push(RawFinding::warning(place, message));
             }
         }
     }
@@ -89,7 +89,7 @@ impl<'a> Reader<'a> {
         for (name, place) in written.collect::<Vec<_>>() {
             if !self.findings.has_error_within(place) {
                 let message = format!("both `{first}` and `{name}`: one says it all");
-                self.findings.push(Found::error(place, message));
+                self.findings.push(RawFinding::error(place, message));
             }
         }
     }

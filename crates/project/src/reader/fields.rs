@@ -2,13 +2,13 @@
 
 use super::{Hit, Layer, Reader};
 use crate::Origin;
-use crate::catalogue::Kind;
+use crate::catalogue::CatalogueKind;
 use crate::formula::Formula;
 use crate::key::Key;
 use crate::listing::keys_of;
-use crate::text::Found;
-use crate::tree::{Node, Value};
-use crate::visitor::{Form, FormulaShape, Kinds, Named, Variants, Visitor};
+use crate::text::RawFinding;
+use crate::tree::{TreeNode, Value};
+use crate::visitor::{FormulaShape, Kinds, NamedNumber, ValueForm, Variants, Visitor};
 use phea_quantity::spelling::nearest;
 
 impl Visitor for Reader<'_> {
@@ -43,7 +43,7 @@ impl Visitor for Reader<'_> {
         self.record_origin(key, origin);
         let [first, second] = items.as_slice() else {
             let message = format!("`{}` must have two values, not {}", key.name, items.len());
-            return self.findings.push(Found::error(hit.node.place, message));
+            return self.findings.push(RawFinding::error(hit.node.place, message));
         };
         if let (Some(first), Some(second)) = (self.number(key, first), self.number(key, second)) {
             *field = Some([first, second]);
@@ -173,7 +173,7 @@ impl Visitor for Reader<'_> {
         }
     }
 
-    fn catalogue(&mut self, key: Key, kind: Kind, field: &mut Option<String>) {
+    fn catalogue(&mut self, key: Key, kind: CatalogueKind, field: &mut Option<String>) {
         let catalogue = self.catalogue;
         self.text(key, field, false);
         let Some(name) = field.clone() else { return };
@@ -202,7 +202,7 @@ impl Visitor for Reader<'_> {
         };
         let place = self.places.get(&self.path(key.name)).copied().unwrap_or_default();
         let message = format!("no {} called \"{name}\" in the catalogue", kind.name());
-        self.findings.push(Found::error(place, message).help(help));
+        self.findings.push(RawFinding::error(place, message).help(help));
     }
 
     fn table<T: Default>(&mut self, key: Key, field: &mut Option<T>, visit: impl Fn(&mut T, &mut Self)) {
@@ -259,7 +259,7 @@ impl Visitor for Reader<'_> {
         let refused = ways.iter().any(|keys| keys.iter().all(|name| self.is_there(name)));
         if !self.takes_absent() && !self.is_lost() && !refused {
             let message = format!("missing {what}{}", self.of_table());
-            self.findings.push(Found::error(self.place(), message).consequence());
+            self.findings.push(RawFinding::error(self.place(), message).consequence());
         }
     }
 
@@ -272,7 +272,7 @@ impl Visitor for Reader<'_> {
             let (last, others) = keys.split_last().map_or(("", keys), |(last, others)| (*last, others));
             let others = others.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
             let message = format!("missing {others} or `{last}`{}", self.of_table());
-            self.findings.push(Found::error(self.place(), message).consequence());
+            self.findings.push(RawFinding::error(self.place(), message).consequence());
         }
     }
 
@@ -303,15 +303,15 @@ impl Visitor for Reader<'_> {
         let Value::List(items) = &hit.node.value else {
             let message = format!("`{}` must be a list of tables, not {}", key.name, hit.node.kind());
             let help = format!("write [[{}]] over each", self.path(key.name));
-            return self.findings.push(Found::error(hit.node.place, message).help(help));
+            return self.findings.push(RawFinding::error(hit.node.place, message).help(help));
         };
-        let items: Vec<&Node> = items.iter().collect();
+        let items: Vec<&TreeNode> = items.iter().collect();
         self.each_table(key, &items, hit, field, visit);
     }
 
     fn one_or_more<T: Default>(&mut self, key: Key, field: &mut Vec<T>, visit: impl Fn(&mut T, &mut Self)) {
         let Some(hit) = self.find(key) else { return };
-        let items: Vec<&Node> = match &hit.node.value {
+        let items: Vec<&TreeNode> = match &hit.node.value {
             Value::List(items) => items.iter().collect(),
             Value::Table(_) => vec![hit.node],
             _ => return self.wrong_kind(key, "a table or a list of tables", hit.node),
@@ -324,7 +324,7 @@ impl Visitor for Reader<'_> {
         key: Key,
         _name_of: fn(&T) -> &str,
         field: &mut Vec<T>,
-        visit: impl Fn(&mut T, Named<'_>, &mut Self),
+        visit: impl Fn(&mut T, NamedNumber<'_>, &mut Self),
     ) {
         let Some(hit) = self.find(key) else { return };
         if !matches!(hit.node.value, Value::Table(_)) {
@@ -342,14 +342,14 @@ impl Visitor for Reader<'_> {
                 } else {
                     format!("`{}` is no number of this project", entry.key)
                 };
-                self.findings.push(Found::error(entry.key_place, message).maybe_help(help));
+                self.findings.push(RawFinding::error(entry.key_place, message).maybe_help(help));
                 continue;
             };
             let path = format!("{}.{}", self.path(key.name), entry.key);
             self.places.insert(path.clone(), entry.key_place);
             if self.enter(number, Hit { node: &entry.node, entry: None }, path) {
                 let mut value = T::default();
-                visit(&mut value, Named { name: &entry.key, key: number }, self);
+                visit(&mut value, NamedNumber { name: &entry.key, key: number }, self);
                 self.close();
                 field.push(value);
             }
@@ -362,7 +362,7 @@ impl Visitor for Reader<'_> {
         for entry in entries.unwrap_or_default() {
             let Some(number) = self.named.get(&entry.key).copied() else {
                 let message = format!("`{}` is no uncertain {} of this project", entry.key, key.name);
-                self.findings.push(Found::error(entry.key_place, message));
+                self.findings.push(RawFinding::error(entry.key_place, message));
                 continue;
             };
             if let Some(value) = self.number(number, &entry.node) {
@@ -415,12 +415,12 @@ impl Visitor for Reader<'_> {
         }
     }
 
-    fn form(&mut self, key: Key, _field: Form) -> Form {
-        let Some(hit) = self.find(key) else { return Form::Number };
+    fn form(&mut self, key: Key, _field: ValueForm) -> ValueForm {
+        let Some(hit) = self.find(key) else { return ValueForm::Number };
         match &hit.node.value {
-            Value::Table(_) => Form::Table,
-            Value::Text(text) if self.reads_as_formula(key, text) => Form::Text,
-            _ => Form::Number,
+            Value::Table(_) => ValueForm::Table,
+            Value::Text(text) if self.reads_as_formula(key, text) => ValueForm::Text,
+            _ => ValueForm::Number,
         }
     }
 }
@@ -430,7 +430,7 @@ impl<'a> Reader<'a> {
     fn each_table<T: Default>(
         &mut self,
         key: Key,
-        items: &[&'a Node],
+        items: &[&'a TreeNode],
         hit: Hit<'a>,
         field: &mut Vec<T>,
         visit: impl Fn(&mut T, &mut Self),

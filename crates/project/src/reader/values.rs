@@ -3,22 +3,22 @@
 use super::Reader;
 use crate::formula::{Formula, Ratio};
 use crate::key::Key;
-use crate::text::{Found, Place};
-use crate::tree::{Node, Value};
+use crate::text::{Place, RawFinding};
+use crate::tree::{TreeNode, Value};
 use crate::visitor::FormulaShape;
 use phea_quantity as quantity;
 use phea_quantity::spelling::nearest;
 
 impl Reader<'_> {
     /// The SI value of a number or a quantity in text, within the key's range.
-    pub(super) fn number(&mut self, key: Key, node: &Node) -> Option<f64> {
+    pub(super) fn number(&mut self, key: Key, node: &TreeNode) -> Option<f64> {
         let value = match &node.value {
             Value::Number(value) => *value,
             Value::Text(text) => match quantity::parse(text, key.dimension) {
                 Ok(value) => value,
                 Err(error) => {
                     let place = self.inside(node, text, error.range);
-                    let found = Found::error(place, error.message).maybe_help(error.help);
+                    let found = RawFinding::error(place, error.message).maybe_help(error.help);
                     self.findings.push(found.maybe_expected(error.expected));
                     return None;
                 }
@@ -26,7 +26,7 @@ impl Reader<'_> {
             _ => {
                 let examples = format!("{}, such as {}", key.dimension.name, key.dimension.examples);
                 let message = format!("`{}` must be {}, not {}", key.name, key.dimension.name, node.kind());
-                self.findings.push(Found::error(node.place, message).expected(examples));
+                self.findings.push(RawFinding::error(node.place, message).expected(examples));
                 return None;
             }
         };
@@ -35,35 +35,35 @@ impl Reader<'_> {
         }
         // A number that f64 cannot hold was refused where it was read.
         if !self.findings.has_error_within(node.place) {
-            self.findings.push(Found::error(node.place, objection(key, value)));
+            self.findings.push(RawFinding::error(node.place, objection(key, value)));
         }
         None
     }
 
     /// A whole number within the key's range.
-    pub(super) fn whole(&mut self, key: Key, node: &Node) -> Option<u32> {
+    pub(super) fn whole(&mut self, key: Key, node: &TreeNode) -> Option<u32> {
         let number = self.number(key, node)?;
         if number.fract() == 0.0 && number >= 0.0 && number <= f64::from(u32::MAX) {
             return Some(number as u32);
         }
         let message = format!("`{}` must be a whole number", key.name);
-        self.findings.push(Found::error(node.place, message));
+        self.findings.push(RawFinding::error(node.place, message));
         None
     }
 
     /// A number, or a pair of real and imaginary part.
-    pub(super) fn complex(&mut self, key: Key, node: &Node) -> Option<[f64; 2]> {
+    pub(super) fn complex(&mut self, key: Key, node: &TreeNode) -> Option<[f64; 2]> {
         let Value::List(parts) = &node.value else { return Some([self.number(key, node)?, 0.0]) };
         if let [real, imaginary] = parts.as_slice() {
             return Some([self.number(key, real)?, self.number(key, imaginary)?]);
         }
         let message = format!("a complex number has two parts, not {}", parts.len());
-        self.findings.push(Found::error(node.place, message).help("write [real, imaginary]"));
+        self.findings.push(RawFinding::error(node.place, message).help("write [real, imaginary]"));
         None
     }
 
     /// A formula of that shape; a number is one too.
-    pub(super) fn read_formula(&mut self, key: Key, shape: FormulaShape, node: &Node) -> Option<Formula> {
+    pub(super) fn read_formula(&mut self, key: Key, shape: FormulaShape, node: &TreeNode) -> Option<Formula> {
         let (formula, text) = match &node.value {
             Value::Text(text) => {
                 let parametric = matches!(shape, FormulaShape::Parametric | FormulaShape::Coefficient);
@@ -75,7 +75,7 @@ impl Reader<'_> {
             Value::Number(value) if value.is_finite() => (Ok(Formula::number(*value)), ""),
             _ => {
                 let message = format!("`{}` must be a formula in text, not {}", key.name, node.kind());
-                self.findings.push(Found::error(node.place, message));
+                self.findings.push(RawFinding::error(node.place, message));
                 return None;
             }
         };
@@ -90,7 +90,7 @@ impl Reader<'_> {
                     (FormulaShape::Coefficient, Some(variable)) => {
                         let message =
                             format!("`{}` is a number: `{}` has no meaning here", key.name, variable.name());
-                        self.findings.push(Found::error(node.place, message));
+                        self.findings.push(RawFinding::error(node.place, message));
                         false
                     }
                     (FormulaShape::Coefficient, None) => true,
@@ -100,7 +100,7 @@ impl Reader<'_> {
             }
             Err(error) => {
                 let place = self.inside(node, text, error.range);
-                self.findings.push(Found::error(place, error.message).maybe_help(error.help));
+                self.findings.push(RawFinding::error(place, error.message).maybe_help(error.help));
                 None
             }
         }
@@ -126,7 +126,13 @@ impl Reader<'_> {
         named || text.contains(['*', '(', '+', '^']) || text.trim_start().starts_with(char::is_alphabetic)
     }
 
-    fn check_parameters(&mut self, formula: &Formula, shape: FormulaShape, node: &Node, text: &str) -> bool {
+    fn check_parameters(
+        &mut self,
+        formula: &Formula,
+        shape: FormulaShape,
+        node: &TreeNode,
+        text: &str,
+    ) -> bool {
         let mut known = true;
         let parametric = matches!(shape, FormulaShape::Parametric | FormulaShape::Coefficient);
         for (name, range) in formula.parameters() {
@@ -135,7 +141,7 @@ impl Reader<'_> {
             }
             known = false;
             let place = self.inside(node, text, range);
-            let found = Found::error(place, format!("unknown name `{name}`"));
+            let found = RawFinding::error(place, format!("unknown name `{name}`"));
             let near = nearest(name, self.parameters.iter().map(String::as_str));
             self.findings.push(match (parametric, near) {
                 (true, Some(near)) => found.help(format!("did you mean `{near}`?")),
@@ -151,7 +157,7 @@ impl Reader<'_> {
         key: Key,
         ratio: Option<&Ratio<f64>>,
         shape: FormulaShape,
-        node: &Node,
+        node: &TreeNode,
     ) -> bool {
         let Some(ratio) = ratio else { return true };
         let message = if shape != FormulaShape::Ratio && ratio.denominator.len() > 1 {
@@ -161,12 +167,12 @@ impl Reader<'_> {
         } else {
             return true;
         };
-        self.findings.push(Found::error(node.place, message));
+        self.findings.push(RawFinding::error(node.place, message));
         false
     }
 
     /// Where a part of a decoded text stands in the file: exact unless the text has escapes.
-    fn inside(&self, node: &Node, text: &str, range: std::ops::Range<usize>) -> Place {
+    fn inside(&self, node: &TreeNode, text: &str, range: std::ops::Range<usize>) -> Place {
         let Place { text: index, start, end } = node.place;
         let raw = self.findings.content(index).get(start..end).unwrap_or_default();
         let quotes = raw.len().saturating_sub(text.len()) / 2;

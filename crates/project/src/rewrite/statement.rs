@@ -7,13 +7,13 @@ use toml_parser::lexer::{Token, TokenKind};
 
 /// Whole lines of a text.
 pub(super) struct Statement {
-    pub(super) content: Content,
+    pub(super) content: StatementContent,
     /// In bytes of the text, its line end included.
     pub(super) range: Range<usize>,
 }
 
 /// What stands in a statement.
-pub(super) enum Content {
+pub(super) enum StatementContent {
     /// Space or a comment.
     Nothing,
     /// `[a.b]` or `[[a.b]]`.
@@ -84,12 +84,12 @@ pub(super) fn entries(table: &str) -> Vec<(String, String)> {
     found
 }
 
-fn content(text: &str, start: usize, line: &[Token]) -> Content {
+fn content(text: &str, start: usize, line: &[Token]) -> StatementContent {
     let empty = |kind| matches!(kind, TokenKind::Whitespace | TokenKind::Comment);
     let mut written = line.iter().filter(|token| !empty(token.kind()));
-    let Some(first) = written.next() else { return Content::Nothing };
+    let Some(first) = written.next() else { return StatementContent::Nothing };
     if first.kind() == TokenKind::LeftSquareBracket {
-        return Content::Header(path(text, line));
+        return StatementContent::Header(path(text, line));
     }
     let mut behind = line.iter().skip_while(|token| token.kind() != TokenKind::Equals).skip(1);
     let behind: Vec<&Token> = behind.by_ref().filter(|token| !empty(token.kind())).collect();
@@ -97,7 +97,7 @@ fn content(text: &str, start: usize, line: &[Token]) -> Content {
         (Some(first), Some(last)) => first.span().start() - start..last.span().end() - start,
         _ => 0..0,
     };
-    Content::Value { path: path(text, line), value }
+    StatementContent::Value { path: path(text, line), value }
 }
 
 /// The names before `=` or between the brackets of a header.

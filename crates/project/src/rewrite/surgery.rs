@@ -1,13 +1,13 @@
 //! Keys of one table of a text taken out, and lines put in their place.
 
-use super::statement::{Content, Statement, entries, statements};
+use super::statement::{Statement, StatementContent, entries, statements};
 
 /// Keys of [controller] and [prefilter] that make a law.
 pub(super) const LAW: [&str; 7] =
     ["numerator", "denominator", "gain", "zeros", "poles", "domain", "elements"];
 
 /// Keys with their values as TOML.
-pub(super) type Lines = Vec<(String, String)>;
+pub(super) type KeyValues = Vec<(String, String)>;
 
 /// The text with these keys of a top-level table taken out and these lines in their place.
 pub(super) fn replaced(text: &str, table: &str, keys: &[&str], lines: &[(String, String)]) -> String {
@@ -42,8 +42,8 @@ struct Surgery<'a> {
 impl Surgery<'_> {
     fn take(&mut self, written: &str, statement: &Statement) {
         match &statement.content {
-            Content::Nothing => self.out.push_str(written),
-            Content::Header(path) => {
+            StatementContent::Nothing => self.out.push_str(written),
+            StatementContent::Header(path) => {
                 self.section = path.clone();
                 if !self.is_replaced(path) {
                     self.out.push_str(written);
@@ -53,7 +53,7 @@ impl Surgery<'_> {
                     self.insert("");
                 }
             }
-            Content::Value { path, value } => {
+            StatementContent::Value { path, value } => {
                 let whole = [self.section.as_slice(), path].concat();
                 let is_table = whole.len() == 1 && whole.first().is_some_and(|first| first == self.table);
                 if is_table {
@@ -109,7 +109,7 @@ impl Surgery<'_> {
 mod tests {
     use super::*;
 
-    fn law() -> Lines {
+    fn law() -> KeyValues {
         [("gain", "2"), ("poles", "[0]")].map(|(key, value)| (key.to_string(), value.to_string())).to_vec()
     }
 

@@ -4,20 +4,20 @@ use serde_json::{Map, Value, json};
 
 /// A table: its keys, and what must be there.
 #[derive(Debug)]
-pub(super) struct Table {
+pub(super) struct SchemaTable {
     /// Each key with every form that its value may have, in the order in which they are read.
     properties: Vec<(&'static str, Vec<Value>)>,
     /// What the values of all other keys are.
     pub(super) others: Value,
     /// What must hold, the innermost condition last.
-    blocks: Vec<Block>,
+    blocks: Vec<ConditionalRequirement>,
     /// The key that names an entry of the catalogue, and the keys that the entry may have.
     pub(super) catalogue: Option<(&'static str, Vec<&'static str>)>,
 }
 
 /// What must hold where a condition does.
 #[derive(Debug, Default)]
-struct Block {
+struct ConditionalRequirement {
     required: Vec<&'static str>,
     /// Required unless the catalogue says it.
     required_or_catalogued: Vec<&'static str>,
@@ -25,12 +25,12 @@ struct Block {
     rules: Vec<Value>,
 }
 
-impl Default for Table {
+impl Default for SchemaTable {
     fn default() -> Self {
-        Table {
+        SchemaTable {
             properties: Vec::new(),
             others: Value::Bool(false),
-            blocks: vec![Block::default()],
+            blocks: vec![ConditionalRequirement::default()],
             catalogue: None,
         }
     }
@@ -46,7 +46,7 @@ pub(super) fn any_of(names: &[&str]) -> Value {
     }
 }
 
-impl Table {
+impl SchemaTable {
     /// Adds a key, or another form of its value.
     pub(super) fn property(&mut self, name: &'static str, schema: Value) {
         match self.properties.iter_mut().find(|(known, _)| *known == name) {
@@ -100,7 +100,7 @@ impl Table {
 
     /// From here on only what holds under a condition.
     pub(super) fn begin_condition(&mut self) {
-        self.blocks.push(Block::default());
+        self.blocks.push(ConditionalRequirement::default());
     }
 
     /// Ends what holds under a condition.
@@ -174,7 +174,7 @@ fn one_of(forms: &[Value]) -> Value {
     }
 }
 
-impl Block {
+impl ConditionalRequirement {
     fn schema(&self, catalogue: Option<&str>) -> Value {
         let mut schema = Map::new();
         let mut rules = self.rules.clone();

@@ -3,32 +3,32 @@
 use serde_json::{Value, json};
 
 use super::quantity::{ANY, described, number, whole};
-use super::table::{Table, any_of};
-use crate::catalogue::Kind;
+use super::table::{SchemaTable, any_of};
+use crate::catalogue::CatalogueKind;
 use crate::formula::Formula;
 use crate::key::Key;
 use crate::listing::{Listing, keys_of};
-use crate::visitor::{Form, FormulaShape, Kinds, Named, Variants, Visitor};
+use crate::visitor::{FormulaShape, Kinds, NamedNumber, ValueForm, Variants, Visitor};
 use crate::{HoseProperties, Valve};
 
 /// Puts the schema together, table by table.
 #[derive(Default)]
-pub(super) struct Writer {
+pub(super) struct SchemaWriter {
     /// The tables that are open, the innermost last.
-    tables: Vec<Table>,
+    tables: Vec<SchemaTable>,
     /// The form in which values that have several are described now.
-    form: Option<Form>,
+    form: Option<ValueForm>,
     /// Whether the present table has such a value.
     has_forms: bool,
 }
 
-const FORMS: [Form; 3] = [Form::Number, Form::Text, Form::Table];
+const FORMS: [ValueForm; 3] = [ValueForm::Number, ValueForm::Text, ValueForm::Table];
 
-impl Writer {
+impl SchemaWriter {
     /// A table, described once for each form of its values.
-    pub(super) fn table_of(&mut self, mut visit: impl FnMut(&mut Self)) -> Table {
+    pub(super) fn table_of(&mut self, mut visit: impl FnMut(&mut Self)) -> SchemaTable {
         let outside = (self.form, self.has_forms);
-        self.tables.push(Table::default());
+        self.tables.push(SchemaTable::default());
         for form in FORMS {
             (self.form, self.has_forms) = (Some(form), false);
             visit(self);
@@ -40,11 +40,11 @@ impl Writer {
         self.tables.pop().unwrap_or_default()
     }
 
-    fn described_by<T: Default>(&mut self, visit: impl Fn(&mut T, &mut Self)) -> Table {
+    fn described_by<T: Default>(&mut self, visit: impl Fn(&mut T, &mut Self)) -> SchemaTable {
         self.table_of(|writer| visit(&mut T::default(), writer))
     }
 
-    fn present(&mut self, change: impl FnOnce(&mut Table)) {
+    fn present(&mut self, change: impl FnOnce(&mut SchemaTable)) {
         if let Some(table) = self.tables.last_mut() {
             change(table);
         }
@@ -78,16 +78,16 @@ fn list_of_two(items: &Value) -> Value {
 }
 
 /// The keys that an entry of the catalogue may have.
-fn keys_of_entry(kind: Kind) -> Vec<&'static str> {
+fn keys_of_entry(kind: CatalogueKind) -> Vec<&'static str> {
     let mut listing = Listing::of_everything();
     match kind {
-        Kind::Hose => HoseProperties::default().visit(&mut listing),
-        Kind::Valve => Valve::default().visit(&mut listing),
+        CatalogueKind::Hose => HoseProperties::default().visit(&mut listing),
+        CatalogueKind::Valve => Valve::default().visit(&mut listing),
     }
     listing.outermost
 }
 
-impl Visitor for Writer {
+impl Visitor for SchemaWriter {
     fn names_everything(&self) -> bool {
         true
     }
@@ -162,7 +162,7 @@ impl Visitor for Writer {
         }
         self.property(key, schema, required);
         for one in &all {
-            self.present(Table::begin_condition);
+            self.present(SchemaTable::begin_condition);
             one.clone().visit(self);
             let own = keys_of(one);
             for name in all.iter().filter(|_| T::STRICT).flat_map(keys_of) {
@@ -182,7 +182,7 @@ impl Visitor for Writer {
         self.property(key, json!({ "type": ["string", "number"] }), required);
     }
 
-    fn catalogue(&mut self, key: Key, kind: Kind, _field: &mut Option<String>) {
+    fn catalogue(&mut self, key: Key, kind: CatalogueKind, _field: &mut Option<String>) {
         self.present(|table| table.catalogue = Some((key.name, keys_of_entry(kind))));
         self.property(key, json!({ "type": "string" }), false);
     }
@@ -209,7 +209,7 @@ impl Visitor for Writer {
     ) {
         // as if nothing chose it, so that what is needed instead is said
         *field = None;
-        self.present(Table::begin_condition);
+        self.present(SchemaTable::begin_condition);
         visit(&mut T::default(), self);
         self.present(|table| table.end_condition(&any_of(chosen_by)));
     }
@@ -243,9 +243,9 @@ impl Visitor for Writer {
         key: Key,
         _name_of: fn(&T) -> &str,
         _field: &mut Vec<T>,
-        visit: impl Fn(&mut T, Named<'_>, &mut Self),
+        visit: impl Fn(&mut T, NamedNumber<'_>, &mut Self),
     ) {
-        let named = Named { name: "NAME", key: Key { dimension: &ANY, ..key } };
+        let named = NamedNumber { name: "NAME", key: Key { dimension: &ANY, ..key } };
         let table = self.described_by(|value: &mut T, writer: &mut Self| visit(value, named, writer));
         let object = table.object();
         self.property(key, json!({ "type": "object", "additionalProperties": object }), false);
@@ -277,7 +277,7 @@ impl Visitor for Writer {
         });
     }
 
-    fn form(&mut self, _key: Key, field: Form) -> Form {
+    fn form(&mut self, _key: Key, field: ValueForm) -> ValueForm {
         self.has_forms = true;
         self.form.unwrap_or(field)
     }

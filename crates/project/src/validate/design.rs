@@ -2,7 +2,7 @@
 
 use super::Check;
 use super::linear_loop::{element_excess, one_element};
-use crate::{Element, Project, StructurePart};
+use crate::{DeclaredElement, Project, StructurePart};
 
 /// Most factors of a structure.
 const MAXIMUM_PARTS: usize = 40;
@@ -66,7 +66,7 @@ fn part(part: &StructurePart, path: &str, check: &mut Check<'_, '_>) {
 }
 
 /// An element that acts, in s as every factor is.
-fn fixed(element: &Element, path: &str, check: &mut Check<'_, '_>) {
+fn fixed(element: &DeclaredElement, path: &str, check: &mut Check<'_, '_>) {
     if !element.enabled {
         check.error(&format!("{path}.enabled"), "a fixed factor always acts and cannot be disabled");
     }

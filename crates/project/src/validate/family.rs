@@ -1,7 +1,7 @@
 //! `[family]`.
 
 use super::Check;
-use crate::{Correlation, Family, OperatingRegion, Project, Uncertain};
+use crate::{Correlation, DeclaredFamily, OperatingRegion, Project, Uncertain};
 
 pub(super) fn family(project: &Project, check: &mut Check<'_, '_>) {
     let Some(family) = &project.family else { return };
@@ -37,7 +37,7 @@ pub(super) fn family(project: &Project, check: &mut Check<'_, '_>) {
     }
 }
 
-fn measured(family: &Family, check: &mut Check<'_, '_>) {
+fn measured(family: &DeclaredFamily, check: &mut Check<'_, '_>) {
     let others = [
         ("grid", family.grid),
         ("vertices", family.vertices),
@@ -98,7 +98,7 @@ fn operating_region(project: &Project, region: &OperatingRegion, check: &mut Che
 }
 
 /// A case gives a value to every parameter of a plant's formulas, within the range that `[uncertainty]` states.
-fn cases(project: &Project, family: &Family, check: &mut Check<'_, '_>) {
+fn cases(project: &Project, family: &DeclaredFamily, check: &mut Check<'_, '_>) {
     let formulas = project.plant.as_ref().map(|plant| plant.formulas()).unwrap_or_default();
     let mut used: Vec<&str> = Vec::new();
     for (name, _) in formulas.iter().flat_map(|(_, formula)| formula.parameters()) {

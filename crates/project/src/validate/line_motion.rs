@@ -1,10 +1,10 @@
 //! Models of lines in motion: which model goes with which line.
 
 use super::Check;
-use crate::text::Found;
-use crate::{Component, Line, LineMotion};
+use crate::text::RawFinding;
+use crate::{Component, DeclaredLine, LineMotion};
 
-pub(super) fn motion(line: &Line, path: &str, check: &mut Check<'_, '_>) {
+pub(super) fn motion(line: &DeclaredLine, path: &str, check: &mut Check<'_, '_>) {
     if let LineMotion::Segments(segments) = line.motion
         && segments.count() > segments.most()
     {
@@ -24,7 +24,7 @@ pub(super) fn motion(line: &Line, path: &str, check: &mut Check<'_, '_>) {
 }
 
 /// A volume has nothing to move, and the wall of a pipe neither creeps nor moves along its axis.
-fn fits(line: &Line, path: &str, check: &mut Check<'_, '_>) {
+fn fits(line: &DeclaredLine, path: &str, check: &mut Check<'_, '_>) {
     let motion = &line.motion;
     let (at, model) = (format!("{path}.model"), motion.model());
     match (&line.component, motion) {
@@ -50,7 +50,7 @@ fn fits(line: &Line, path: &str, check: &mut Check<'_, '_>) {
 }
 
 /// A wall that is as stiff at rest as in motion has nothing to creep.
-fn creeps(line: &Line, path: &str, check: &mut Check<'_, '_>) {
+fn creeps(line: &DeclaredLine, path: &str, check: &mut Check<'_, '_>) {
     let stiffening = line.dynamic_stiffening.map_or(1.0, |stiffening| stiffening.nominal);
     if line.motion.relaxation_time().is_some() && line.hose().is_some() && stiffening == 1.0 {
         let message = "`relaxation_time` has no effect: with a `dynamic_stiffening` of 1 nothing creeps";
@@ -68,7 +68,7 @@ pub(super) fn nobody_inherits(check: &mut Check<'_, '_>) {
     for name in LineMotion::KEYS {
         if let Some(entry) = line.node.get(name) {
             let message = format!("`{name}` has no effect: [line.a] and [line.b] choose a model each");
-            let found = Found::error(entry.key_place, message);
+            let found = RawFinding::error(entry.key_place, message);
             check.reader.findings.push(found.help("write it next to the `model` that it belongs to"));
         }
     }

@@ -2,8 +2,8 @@
 
 use super::Check;
 use crate::{
-    AntiWindup, Discretization, Element, ElementKind, Formula, Prefilter, Project, Quantization,
-    RationalFunction, Transfer, Variable,
+    DeclaredAntiWindup, DeclaredDiscretization, DeclaredElement, ElementKind, Formula, Prefilter, Project,
+    Quantization, RationalFunction, Transfer, Variable,
 };
 
 /// Most zeros, poles or elements of a transfer function.
@@ -14,11 +14,11 @@ pub(super) fn controllers(project: &Project, check: &mut Check<'_, '_>) {
         let timing = ["sample_time", "delay", "discretization", "saturation", "anti_windup"];
         let only_timing = timing.iter().any(|name| check.declared(&format!("controller.{name}")));
         transfer(&controller.transfer, "controller", controller.sample_time, only_timing, check);
-        if controller.anti_windup != AntiWindup::None && controller.saturation.is_none() {
+        if controller.anti_windup != DeclaredAntiWindup::None && controller.saturation.is_none() {
             check.warning("controller.anti_windup", "`anti_windup` has no effect without `saturation`");
         }
         let discrete = is_discrete(&controller.transfer);
-        let chosen = controller.discretization != Discretization::default();
+        let chosen = controller.discretization != DeclaredDiscretization::default();
         if chosen && (discrete || controller.sample_time.is_none()) {
             let why = if discrete { "the controller is in `z` already" } else { "there is no `sample_time`" };
             check.warning("controller.discretization", format!("`discretization` has no effect: {why}"));
@@ -211,7 +211,7 @@ fn excess(transfer: &Transfer) -> Option<i64> {
 }
 
 /// Zeros less poles of an element, where they can be told.
-pub(super) fn element_excess(element: &Element) -> Option<i64> {
+pub(super) fn element_excess(element: &DeclaredElement) -> Option<i64> {
     let power = |count: usize| i64::try_from(count).ok();
     Some(match &element.kind {
         ElementKind::Gain { .. } | ElementKind::Lead { .. } | ElementKind::Lag { .. } => 0,
@@ -246,7 +246,7 @@ fn conjugates(roots: &[[f64; 2]], path: &str, check: &mut Check<'_, '_>) {
 
 /// One element, wherever it is written; `path` leads to it.
 pub(super) fn one_element(
-    element: &Element,
+    element: &DeclaredElement,
     path: &str,
     sample_time: Option<f64>,
     check: &mut Check<'_, '_>,

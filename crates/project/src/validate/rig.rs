@@ -2,19 +2,19 @@
 
 use super::{Check, line_motion};
 use crate::{
-    Actuator, BoundedNumber, Component, Cylinder, Friction, FrictionLaw, Line, Lines, NullLeakage,
-    StribeckCurve, Supply, Valve,
+    BoundedNumber, Component, DeclaredActuator, DeclaredCylinder, DeclaredFriction, DeclaredLine,
+    DeclaredLines, DeclaredSupply, FrictionLaw, NullLeakage, StribeckCurve, Valve,
 };
 use phea_quantity::{self as quantity, PRESSURE};
 
-pub(super) fn actuator(actuator: &Actuator, check: &mut Check<'_, '_>) {
+pub(super) fn actuator(actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
     supply(actuator, check);
     valve(&actuator.valve, &actuator.supply, check);
     cylinder(&actuator.cylinder, check);
     lines(actuator, &actuator.line, check);
 }
 
-fn supply(actuator: &Actuator, check: &mut Check<'_, '_>) {
+fn supply(actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
     let supply = &actuator.supply;
     if supply.pressure > 0.0 && supply.tank_pressure >= supply.pressure {
         let at =
@@ -34,7 +34,7 @@ fn imperfections(valve: &Valve, check: &mut Check<'_, '_>) {
     }
 }
 
-fn valve(valve: &Valve, supply: &Supply, check: &mut Check<'_, '_>) {
+fn valve(valve: &Valve, supply: &DeclaredSupply, check: &mut Check<'_, '_>) {
     imperfections(valve, check);
     if valve.flow.edges().is_some_and(|edges| edges.in_order().iter().all(|edge| *edge == 0.0)) {
         check.error("valve.flow_coefficients", "all flow coefficients are zero: the valve never opens");
@@ -51,7 +51,7 @@ fn valve(valve: &Valve, supply: &Supply, check: &mut Check<'_, '_>) {
     }
 }
 
-fn cylinder(cylinder: &Cylinder, check: &mut Check<'_, '_>) {
+fn cylinder(cylinder: &DeclaredCylinder, check: &mut Check<'_, '_>) {
     piston(cylinder, check);
     // an area has its rods subtracted already
     let by_area = cylinder.piston_area.is_some() || cylinder.piston_areas.is_some();
@@ -72,7 +72,7 @@ fn cylinder(cylinder: &Cylinder, check: &mut Check<'_, '_>) {
 }
 
 /// One area does for a rod through both chambers only.
-fn piston(cylinder: &Cylinder, check: &mut Check<'_, '_>) {
+fn piston(cylinder: &DeclaredCylinder, check: &mut Check<'_, '_>) {
     let [rod_a, rod_b] = cylinder.rod_diameters_m();
     if cylinder.piston_area.is_some() && rod_a != rod_b {
         let message = "with unequal rods `piston_area` is not the same in both chambers: give `piston_diameter`, or `piston_areas`";
@@ -80,7 +80,7 @@ fn piston(cylinder: &Cylinder, check: &mut Check<'_, '_>) {
     }
 }
 
-fn friction(friction: &Friction, check: &mut Check<'_, '_>) {
+fn friction(friction: &DeclaredFriction, check: &mut Check<'_, '_>) {
     let (FrictionLaw::Stribeck { curve, .. } | FrictionLaw::LuGre { curve, .. }) = &friction.law else {
         return;
     };
@@ -103,7 +103,7 @@ fn friction(friction: &Friction, check: &mut Check<'_, '_>) {
     }
 }
 
-fn lines(actuator: &Actuator, lines: &Lines, check: &mut Check<'_, '_>) {
+fn lines(actuator: &DeclaredActuator, lines: &DeclaredLines, check: &mut Check<'_, '_>) {
     line_motion::nobody_inherits(check);
     for (name, side) in [("a", &lines.a), ("b", &lines.b)] {
         let own = format!("line.{name}");
@@ -121,7 +121,7 @@ fn lines(actuator: &Actuator, lines: &Lines, check: &mut Check<'_, '_>) {
 }
 
 /// The expansion of a hose is known up to the pressure it is stated at.
-fn expansion(line: &Line, supply: f64, path: &str, check: &mut Check<'_, '_>) {
+fn expansion(line: &DeclaredLine, supply: f64, path: &str, check: &mut Check<'_, '_>) {
     let Some(stated) = line.expansion_stated_at().filter(|stated| supply > stated * (1.0 + 1e-9)) else {
         return;
     };
@@ -133,7 +133,7 @@ fn expansion(line: &Line, supply: f64, path: &str, check: &mut Check<'_, '_>) {
     check.warning(&format!("{path}.{key}"), message);
 }
 
-fn line(line: &Line, path: &str, check: &mut Check<'_, '_>) {
+fn line(line: &DeclaredLine, path: &str, check: &mut Check<'_, '_>) {
     let written = |names: &[&str]| names.iter().any(|name| check.declared(&format!("{path}.{name}")));
     let ways = [written(&Component::HOSE), written(&["pipe"]), written(&Component::VOLUME)];
     match ways {

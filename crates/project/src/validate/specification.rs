@@ -2,8 +2,8 @@
 
 use super::Check;
 use crate::{
-    Formula, Limit, MarginWish, Project, ResponseRule, ResponseWish, Specification, SpecificationKind,
-    Variable,
+    DeclaredLimit, DeclaredSpecification, Formula, MarginWish, Project, ResponseRule, ResponseWish,
+    SpecificationKind, Variable,
 };
 
 pub(super) fn specifications(project: &Project, check: &mut Check<'_, '_>) {
@@ -16,7 +16,7 @@ pub(super) fn specifications(project: &Project, check: &mut Check<'_, '_>) {
     }
 }
 
-fn one_specification(specification: &Specification, path: &str, check: &mut Check<'_, '_>) {
+fn one_specification(specification: &DeclaredSpecification, path: &str, check: &mut Check<'_, '_>) {
     let limits =
         [("limit", &specification.limit), ("upper", &specification.upper), ("lower", &specification.lower)];
     let tracking = specification.kind == SpecificationKind::Tracking;
@@ -35,7 +35,7 @@ fn one_specification(specification: &Specification, path: &str, check: &mut Chec
             one_limit(limit, specification.kind, name, &at, check);
         }
     }
-    if let (Some(Limit::Constant(lower)), Some(Limit::Constant(upper))) =
+    if let (Some(DeclaredLimit::Constant(lower)), Some(DeclaredLimit::Constant(upper))) =
         (&specification.lower, &specification.upper)
         && lower > upper
     {
@@ -44,7 +44,7 @@ fn one_specification(specification: &Specification, path: &str, check: &mut Chec
     frequencies(specification, path, check);
 }
 
-fn frequencies(specification: &Specification, path: &str, check: &mut Check<'_, '_>) {
+fn frequencies(specification: &DeclaredSpecification, path: &str, check: &mut Check<'_, '_>) {
     let at = format!("{path}.frequencies");
     if specification.frequencies.is_empty() {
         match check.declared(&at) {
@@ -60,16 +60,22 @@ fn frequencies(specification: &Specification, path: &str, check: &mut Check<'_, 
     }
 }
 
-fn one_limit(limit: &Limit, kind: SpecificationKind, name: &str, path: &str, check: &mut Check<'_, '_>) {
+fn one_limit(
+    limit: &DeclaredLimit,
+    kind: SpecificationKind,
+    name: &str,
+    path: &str,
+    check: &mut Check<'_, '_>,
+) {
     match limit {
-        Limit::Constant(_) => {}
-        Limit::Text(formula) => continuous(&[formula], path, check),
-        Limit::Rational(rational) => {
+        DeclaredLimit::Constant(_) => {}
+        DeclaredLimit::Text(formula) => continuous(&[formula], path, check),
+        DeclaredLimit::Rational(rational) => {
             continuous(&[&rational.numerator, &rational.denominator], path, check);
             refuse(&["values"], "needs `frequencies`", path, check);
         }
-        Limit::Table(table) if table.frequencies.is_empty() => nothing(path, check),
-        Limit::Table(table) => {
+        DeclaredLimit::Table(table) if table.frequencies.is_empty() => nothing(path, check),
+        DeclaredLimit::Table(table) => {
             if table.frequencies.len() != table.values.len() {
                 let (points, values) = (table.frequencies.len(), table.values.len());
                 check.error(path, format!("{points} frequencies but {values} values"));
@@ -78,13 +84,17 @@ fn one_limit(limit: &Limit, kind: SpecificationKind, name: &str, path: &str, che
             let because = "does not belong to a limit given by a table";
             refuse(&[FUNCTION_KEYS, MARGIN_KEYS, RESPONSE_KEYS].concat(), because, path, check);
         }
-        Limit::Margins(wish) => {
+        DeclaredLimit::Margins(wish) => {
             let because = "does not belong to a limit given by margins";
             refuse(&[&["values"], FUNCTION_KEYS, RESPONSE_KEYS].concat(), because, path, check);
             margins(wish, kind, path, check);
         }
-        Limit::Response(wish) if kind == SpecificationKind::Tracking => response(wish, name, path, check),
-        Limit::Response(_) => check.error(path, "a wish in time makes `upper` and `lower` of \"tracking\""),
+        DeclaredLimit::Response(wish) if kind == SpecificationKind::Tracking => {
+            response(wish, name, path, check)
+        }
+        DeclaredLimit::Response(_) => {
+            check.error(path, "a wish in time makes `upper` and `lower` of \"tracking\"")
+        }
     }
 }
 

@@ -6,8 +6,8 @@ use super::measured::measured;
 use super::signal::signals;
 use super::{Check, linear_parameter};
 use crate::{
-    Actuator, Campaign, DELAY_PATH, Distribution, Formula, LINEAR_PARAMETERS, LinearParameter, Load, Plant,
-    Project, Scenario, SignalUnit, Sizing, Spacing, Start, Uncertain,
+    Campaign, DELAY_PATH, DeclaredActuator, DeclaredPlant, DeclaredSizing, DeclaredSpacing, Distribution,
+    Formula, LINEAR_PARAMETERS, LinearParameter, Load, Project, Scenario, SignalUnit, Start, Uncertain,
 };
 use phea_quantity::significant;
 use phea_quantity::spelling::nearest;
@@ -19,7 +19,7 @@ const MAXIMUM_ROWS: f64 = 1e7;
 const ORDINARY_STEP: f64 = 1e-3;
 
 /// What only a project with an actuator has.
-pub(super) fn with_actuator(project: &Project, actuator: &Actuator, check: &mut Check<'_, '_>) {
+pub(super) fn with_actuator(project: &Project, actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
     if let Some(wanted) = &project.sizing {
         sizing(wanted, check);
     }
@@ -38,7 +38,7 @@ pub(super) fn with_actuator(project: &Project, actuator: &Actuator, check: &mut 
     }
 }
 
-fn sizing(sizing: &Sizing, check: &mut Check<'_, '_>) {
+fn sizing(sizing: &DeclaredSizing, check: &mut Check<'_, '_>) {
     check.ascending("sizing.oil_velocity", sizing.oil_velocity);
     check.ascending("sizing.hose_length", sizing.hose_length);
     if let (Some(minimum), Some(maximum)) = (sizing.minimum_gain, sizing.maximum_gain)
@@ -48,7 +48,7 @@ fn sizing(sizing: &Sizing, check: &mut Check<'_, '_>) {
     }
 }
 
-fn operating_point(project: &Project, actuator: &Actuator, check: &mut Check<'_, '_>) {
+fn operating_point(project: &Project, actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
     let point = &project.operating_point;
     let known = project.resolved_operating_point();
     let moved = known.load_force.is_some() || known.velocity.is_some();
@@ -97,7 +97,7 @@ fn rows(scenarios: &[Scenario], check: &mut Check<'_, '_>) {
     }
 }
 
-fn one_scenario(scenario: &Scenario, actuator: &Actuator, path: &str, check: &mut Check<'_, '_>) {
+fn one_scenario(scenario: &Scenario, actuator: &DeclaredActuator, path: &str, check: &mut Check<'_, '_>) {
     let stroke = actuator.cylinder.stroke;
     if scenario.output_step > scenario.duration && scenario.duration > 0.0 {
         check.error(&format!("{path}.output_step"), "`output_step` is longer than `duration`");
@@ -205,7 +205,7 @@ pub(super) fn without_actuator(project: &Project, check: &mut Check<'_, '_>) {
 }
 
 /// What only a project with a plant has.
-pub(super) fn with_plant(project: &Project, plant: &Plant, check: &mut Check<'_, '_>) {
+pub(super) fn with_plant(project: &Project, plant: &DeclaredPlant, check: &mut Check<'_, '_>) {
     let formulas = plant.formulas();
     let used: Vec<&str> =
         formulas.iter().flat_map(|(_, formula)| formula.parameters()).map(|(name, _)| name).collect();
@@ -250,7 +250,7 @@ pub(super) fn uncertainty(project: &Project, check: &mut Check<'_, '_>) {
     for uncertain in &project.uncertainty {
         let path = format!("uncertainty.{}", uncertain.name);
         check.bounds(&path, [uncertain.minimum, uncertain.nominal, uncertain.maximum]);
-        if uncertain.spacing == Spacing::Logarithmic && uncertain.minimum <= 0.0 {
+        if uncertain.spacing == DeclaredSpacing::Logarithmic && uncertain.minimum <= 0.0 {
             check.error(&format!("{path}.minimum"), "logarithmic spacing needs a `minimum` above zero");
         }
         if uncertain.points == 1 && uncertain.minimum < uncertain.maximum {

@@ -6,7 +6,7 @@ use super::quadratic::negative_gains;
 
 /// A plant that may have the greatest r |q + L0| somewhere.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Candidate {
+pub(super) struct CeilingPlant {
     /// q
     pub(super) inverse: Complex64,
     /// |q|
@@ -17,18 +17,18 @@ pub(super) struct Candidate {
 
 /// The gains along a ray at which one candidate is the greatest.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Piece {
-    pub(super) candidate: Candidate,
+pub(super) struct CeilingPiece {
+    pub(super) candidate: CeilingPlant,
     pub(super) window: [f64; 2],
 }
 
 /// Those candidates that can be the greatest at all: with equal weights the corners of the convex hull, since the farthest of points
 /// is always one of them; otherwise all.
-pub(super) fn contenders(mut candidates: Vec<Candidate>) -> Vec<Candidate> {
+pub(super) fn contenders(mut candidates: Vec<CeilingPlant>) -> Vec<CeilingPlant> {
     if candidates.windows(2).any(|pair| matches!(pair, [a, b] if a.weight != b.weight)) {
         return candidates;
     }
-    let order = |a: &Candidate, b: &Candidate| {
+    let order = |a: &CeilingPlant, b: &CeilingPlant| {
         a.inverse.re.total_cmp(&b.inverse.re).then(a.inverse.im.total_cmp(&b.inverse.im))
     };
     candidates.sort_unstable_by(order);
@@ -39,8 +39,8 @@ pub(super) fn contenders(mut candidates: Vec<Candidate>) -> Vec<Candidate> {
 }
 
 /// One side of the convex hull of sorted points, without its last point where there is more than one.
-fn chain<'a>(sorted: impl Iterator<Item = &'a Candidate>) -> Vec<Candidate> {
-    let mut side: Vec<Candidate> = Vec::new();
+fn chain<'a>(sorted: impl Iterator<Item = &'a CeilingPlant>) -> Vec<CeilingPlant> {
+    let mut side: Vec<CeilingPlant> = Vec::new();
     for candidate in sorted {
         while let [.., before, last] = side.as_slice() {
             let (first, second) = (last.inverse - before.inverse, candidate.inverse - last.inverse);
@@ -65,10 +65,10 @@ fn chain<'a>(sorted: impl Iterator<Item = &'a Candidate>) -> Vec<Candidate> {
 ///
 /// Two halves are solved for themselves and laid over each other; no pair of plants is looked at unless both are the
 /// greatest of their half.
-pub(super) fn greatest(direction: Complex64, candidates: &[Candidate]) -> Vec<Piece> {
+pub(super) fn greatest(direction: Complex64, candidates: &[CeilingPlant]) -> Vec<CeilingPiece> {
     match candidates {
         [] => Vec::new(),
-        [candidate] => vec![Piece { candidate: *candidate, window: [0.0, f64::INFINITY] }],
+        [candidate] => vec![CeilingPiece { candidate: *candidate, window: [0.0, f64::INFINITY] }],
         _ => {
             let (left, right) = candidates.split_at(candidates.len() / 2);
             overlay(direction, &greatest(direction, left), &greatest(direction, right))
@@ -77,13 +77,13 @@ pub(super) fn greatest(direction: Complex64, candidates: &[Candidate]) -> Vec<Pi
 }
 
 /// The greater of two functions in pieces.
-fn overlay(direction: Complex64, ours: &[Piece], theirs: &[Piece]) -> Vec<Piece> {
-    let mut pieces: Vec<Piece> = Vec::new();
-    let mut add = |candidate: Candidate, window: [f64; 2]| {
+fn overlay(direction: Complex64, ours: &[CeilingPiece], theirs: &[CeilingPiece]) -> Vec<CeilingPiece> {
+    let mut pieces: Vec<CeilingPiece> = Vec::new();
+    let mut add = |candidate: CeilingPlant, window: [f64; 2]| {
         if window[0] < window[1] {
             match pieces.last_mut() {
                 Some(last) if last.candidate == candidate => last.window[1] = window[1],
-                _ => pieces.push(Piece { candidate, window }),
+                _ => pieces.push(CeilingPiece { candidate, window }),
             }
         }
     };
@@ -112,9 +112,9 @@ fn overlay(direction: Complex64, ours: &[Piece], theirs: &[Piece]) -> Vec<Piece>
 }
 
 /// The gains at which the second is greater than the first.
-fn where_greater(direction: Complex64, first: &Candidate, second: &Candidate) -> [[f64; 2]; 2] {
+fn where_greater(direction: Complex64, first: &CeilingPlant, second: &CeilingPlant) -> [[f64; 2]; 2] {
     let along =
-        |candidate: &Candidate| candidate.inverse.re * direction.re + candidate.inverse.im * direction.im;
+        |candidate: &CeilingPlant| candidate.inverse.re * direction.re + candidate.inverse.im * direction.im;
     let (ours, theirs) = (first.weight * first.weight, second.weight * second.weight);
     let a = ours - theirs;
     let b = ours * along(first) - theirs * along(second);
@@ -127,13 +127,13 @@ fn where_greater(direction: Complex64, first: &Candidate, second: &Candidate) ->
 mod tests {
     use super::*;
 
-    fn candidate(re: f64, im: f64, weight: f64) -> Candidate {
+    fn candidate(re: f64, im: f64, weight: f64) -> CeilingPlant {
         let inverse = Complex64::new(re, im);
-        Candidate { inverse, modulus: phea_dynamics::portable::magnitude(inverse), weight }
+        CeilingPlant { inverse, modulus: phea_dynamics::portable::magnitude(inverse), weight }
     }
 
     /// Points of a sunflower: no two at one radius or angle.
-    fn scattered(count: u32, weight: impl Fn(f64) -> f64) -> Vec<Candidate> {
+    fn scattered(count: u32, weight: impl Fn(f64) -> f64) -> Vec<CeilingPlant> {
         (0..count)
             .map(|index| {
                 let (radius, angle) = (f64::from(index).sqrt(), 2.4 * f64::from(index));
@@ -146,8 +146,8 @@ mod tests {
             .collect()
     }
 
-    fn check(candidates: Vec<Candidate>) {
-        let value = |candidate: &Candidate, point: Complex64| {
+    fn check(candidates: Vec<CeilingPlant>) {
+        let value = |candidate: &CeilingPlant, point: Complex64| {
             candidate.weight * phea_dynamics::portable::magnitude(candidate.inverse + point)
         };
         let contenders = contenders(candidates.clone());

@@ -6,7 +6,7 @@ use phea_dynamics::portable;
 use super::covering::covering;
 use super::function::BoundFunction;
 use super::interval::GainIntervals;
-use super::phases::{PhaseGrid, Sample, sampled};
+use super::phases::{PhaseGrid, PhaseSample, sampled};
 use super::{Bound, BoundError, TemplateFill};
 use crate::specification::Specification;
 use crate::template::Template;
@@ -183,11 +183,11 @@ impl FrequencyBounds {
         }
     }
 
-    fn feasibility(&self, samples: &[Sample]) -> Feasibility {
+    fn feasibility(&self, samples: &[PhaseSample]) -> Feasibility {
         let mut collisions: Vec<Collision> = Vec::new();
         let mut continues = false;
         let mut blocked = 0;
-        for Sample { phase_rad, forbidden } in samples {
+        for PhaseSample { phase_rad, forbidden } in samples {
             let Some((union, parts)) = forbidden.split_last() else { continue };
             if !union.is_everything() {
                 continues = false;

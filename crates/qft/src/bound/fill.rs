@@ -2,7 +2,7 @@
 
 use num_complex::Complex64;
 
-use super::inequality::{Plant, Ray};
+use super::inequality::{Ray, WeightedPlant};
 use super::interval::GainIntervals;
 use super::quadratic::negative_gains;
 
@@ -28,24 +28,28 @@ pub(super) struct Edge {
 
 impl Edge {
     /// The edge between two plants held against |L0| or against another plant; e = |q|^2.
-    pub(super) fn of_complementary(ends: [&Plant; 2]) -> Edge {
+    pub(super) fn of_complementary(ends: [&WeightedPlant; 2]) -> Edge {
         let [from, to] = ends.map(|plant| plant.inverse);
         Edge {
             ends: [from, to],
             constants: [from.norm_sqr(), to.norm_sqr()],
             curvature: (to - from).norm_sqr(),
-            share: ends.map(Plant::share).into_iter().fold(0.0, f64::max),
+            share: ends.map(WeightedPlant::share).into_iter().fold(0.0, f64::max),
             reciprocal: false,
         }
     }
 
     /// The edge between two plants whose sensitivity is limited; e = |q|^2 - |u|^2/W^2, where u goes straight from one to the other.
-    pub(super) fn of_sensitivity(ends: [&Plant; 2], disturbances: [Complex64; 2], limit: f64) -> Edge {
+    pub(super) fn of_sensitivity(
+        ends: [&WeightedPlant; 2],
+        disturbances: [Complex64; 2],
+        limit: f64,
+    ) -> Edge {
         let [from, to] = ends.map(|plant| plant.inverse);
         let change = (disturbances[1] - disturbances[0]).norm_sqr() / limit / limit;
         Edge {
             ends: [from, to],
-            constants: ends.map(Plant::sensitivity_constant),
+            constants: ends.map(WeightedPlant::sensitivity_constant),
             curvature: (to - from).norm_sqr() - change,
             share: 0.0,
             reciprocal: false,
@@ -57,7 +61,7 @@ impl Edge {
     /// ```text
     /// |G/(1+L)| <= W :   (1/g)^2 + 2 Re(x e^(j phi)) (1/g) + |x|^2 - 1/(W |P0 H0|)^2 >= 0
     /// ```
-    pub(super) fn of_control_effort(ends: [&Plant; 2], nominal_limit: f64) -> Edge {
+    pub(super) fn of_control_effort(ends: [&WeightedPlant; 2], nominal_limit: f64) -> Edge {
         let [from, to] = ends.map(|plant| plant.inverse.inv().conj());
         let constant = |point: Complex64| point.norm_sqr() - 1.0 / nominal_limit / nominal_limit;
         Edge {

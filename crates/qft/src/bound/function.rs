@@ -3,9 +3,9 @@
 use num_complex::Complex64;
 use phea_dynamics::portable;
 
-use super::ceiling::{Candidate, Piece, contenders, greatest};
+use super::ceiling::{CeilingPiece, CeilingPlant, contenders, greatest};
 use super::fill::{Edge, inside};
-use super::inequality::{Form, Plant, Ray};
+use super::inequality::{InequalityForm, Ray, WeightedPlant};
 use super::interval::GainIntervals;
 use super::phases::{PhaseGrid, sampled};
 use super::rule::Rule;
@@ -50,11 +50,11 @@ use crate::template::{Template, TemplatePoint};
 #[derive(Clone, Debug)]
 pub struct BoundFunction {
     frequency_rad_per_s: f64,
-    form: Form,
+    form: InequalityForm,
     /// `None` where nothing is demanded: an infinite limit.
     plants: Option<Tree>,
     /// Contenders for the least |T|; in forms other than `Spread` the origin.
-    others: Vec<Candidate>,
+    others: Vec<CeilingPlant>,
     edges: Vec<Edge>,
     /// Outlines in the q-plane.
     polygons: Vec<Vec<Complex64>>,
@@ -77,7 +77,7 @@ impl BoundFunction {
         let rule = Rule::new(requirement, template)?;
         let frequency_rad_per_s = template.frequency_rad_per_s;
         let form = rule.form();
-        let origin = Candidate { inverse: Complex64::new(0.0, 0.0), modulus: 0.0, weight: 1.0 };
+        let origin = CeilingPlant { inverse: Complex64::new(0.0, 0.0), modulus: 0.0, weight: 1.0 };
         let mut function = BoundFunction {
             frequency_rad_per_s,
             form,
@@ -93,17 +93,17 @@ impl BoundFunction {
             return Ok(function);
         }
         let mut plants = judged(&rule, &template.points, frequency_rad_per_s)?;
-        let mut others: Vec<Candidate> = match form {
-            Form::Spread => {
+        let mut others: Vec<CeilingPlant> = match form {
+            InequalityForm::Spread => {
                 pairs(&plants, &template.points).map(|(plant, point)| rule.candidate(plant, point)).collect()
             }
-            Form::Complementary | Form::Sensitivity => Vec::new(),
+            InequalityForm::Complementary | InequalityForm::Sensitivity => Vec::new(),
         };
         if fill == TemplateFill::Filled {
             for outline in &template.outlines {
                 let corners = corners(&rule, template, outline);
                 let ours = judged(&rule, &corners, frequency_rad_per_s)?;
-                if form == Form::Spread {
+                if form == InequalityForm::Spread {
                     others.extend(pairs(&ours, &corners).map(|(plant, point)| rule.candidate(plant, point)));
                 }
                 let sides = pairs(&ours, &corners).zip(pairs(&ours, &corners).cycle().skip(1));
@@ -112,7 +112,7 @@ impl BoundFunction {
                 plants.extend(ours);
             }
         }
-        if form == Form::Spread {
+        if form == InequalityForm::Spread {
             function.others = contenders(others);
         }
         function.plants = Some(Tree::new(form, &plants));
@@ -154,9 +154,9 @@ impl BoundFunction {
         let weakest = self.others.iter().map(|other| other.weight).fold(f64::INFINITY, f64::min);
         for plant in self.plants.iter().flat_map(Tree::plants) {
             let sine = match self.form {
-                Form::Complementary | Form::Sensitivity => plant.weight / plant.limit,
-                Form::Spread => {
-                    let apart = |other: &Candidate| (other.inverse - plant.inverse).norm_sqr();
+                InequalityForm::Complementary | InequalityForm::Sensitivity => plant.weight / plant.limit,
+                InequalityForm::Spread => {
+                    let apart = |other: &CeilingPlant| (other.inverse - plant.inverse).norm_sqr();
                     let farthest = self.others.iter().map(apart).fold(0.0, f64::max).sqrt();
                     farthest / (1.0 + plant.limit / weakest) / plant.modulus
                 }
@@ -178,7 +178,7 @@ impl BoundFunction {
         let Some(plants) = &self.plants else {
             return union;
         };
-        for Piece { candidate, window } in greatest(direction, &self.others) {
+        for CeilingPiece { candidate, window } in greatest(direction, &self.others) {
             let ray = Ray {
                 form: self.form,
                 direction,
@@ -198,14 +198,18 @@ impl BoundFunction {
 }
 
 fn pairs<'a>(
-    plants: &'a [Plant],
+    plants: &'a [WeightedPlant],
     points: &'a [TemplatePoint],
-) -> impl Iterator<Item = (&'a Plant, &'a TemplatePoint)> + Clone {
+) -> impl Iterator<Item = (&'a WeightedPlant, &'a TemplatePoint)> + Clone {
     plants.iter().zip(points)
 }
 
 /// The plants of these points under a rule.
-fn judged(rule: &Rule, points: &[TemplatePoint], frequency_rad_per_s: f64) -> Result<Vec<Plant>, BoundError> {
+fn judged(
+    rule: &Rule,
+    points: &[TemplatePoint],
+    frequency_rad_per_s: f64,
+) -> Result<Vec<WeightedPlant>, BoundError> {
     points
         .iter()
         .enumerate()

@@ -2,7 +2,7 @@
 
 use num_complex::Complex64;
 
-use super::inequality::{Form, Plant, Ray};
+use super::inequality::{InequalityForm, Ray, WeightedPlant};
 use super::leaf::{Borders, lesser};
 use super::quadratic::negative_gains;
 
@@ -25,7 +25,7 @@ pub(super) struct Hull {
 }
 
 impl Hull {
-    pub(super) fn around(plants: &[Plant]) -> Option<Hull> {
+    pub(super) fn around(plants: &[WeightedPlant]) -> Option<Hull> {
         let ways = || plants.iter().map(|plant| (bearing(plant.inverse), plant));
         let (first, right) = ways().min_by(|a, b| a.0.total_cmp(&b.0))?;
         let (last, left) = ways().max_by(|a, b| a.0.total_cmp(&b.0))?;
@@ -34,7 +34,7 @@ impl Hull {
             modulus: [moduli().fold(f64::INFINITY, f64::min), moduli().fold(0.0, f64::max)],
             bearing: [first, last],
             ends: [right, left].map(|plant| plant.inverse / plant.modulus),
-            share: plants.iter().map(Plant::share).fold(0.0, f64::max),
+            share: plants.iter().map(WeightedPlant::share).fold(0.0, f64::max),
         })
     }
 
@@ -55,7 +55,7 @@ impl Hull {
     /// `Spread`.
     pub(super) fn stays_within(&self, ray: &Ray, borders: &Borders) -> bool {
         let rest = 1.0 - self.share - SLACK * (1.0 + self.share);
-        let (a, c) = if ray.form == Form::Complementary { (rest, 1.0) } else { (1.0, rest) };
+        let (a, c) = if ray.form == InequalityForm::Complementary { (rest, 1.0) } else { (1.0, rest) };
         let b = self.least_cosine(ray.direction);
         // The quadratic in u = g/|q|, times |q|^2: at the lower border for the nearest plant, at the upper one for the farthest.
         let [near, far] = self.modulus;
@@ -84,9 +84,9 @@ impl Hull {
         let share = self.share * ray.other_weight * ray.other_weight;
         let distance = |cosine: f64, modulus: f64| (gain + 2.0 * modulus * cosine) * gain + modulus * modulus;
         let limit = match ray.form {
-            Form::Complementary => gain * gain,
-            Form::Sensitivity => modulus * modulus,
-            Form::Spread => {
+            InequalityForm::Complementary => gain * gain,
+            InequalityForm::Sensitivity => modulus * modulus,
+            InequalityForm::Spread => {
                 gain * gain + 2.0 * gain * ray.along(ray.other) + ray.other_modulus * ray.other_modulus
             }
         };
@@ -113,9 +113,9 @@ impl Hull {
             negative_gains(a, least, c, least * least - a * c).map(|[low, high]| [low * near, high * far])
         };
         match ray.form {
-            Form::Complementary => scaled(rest, 1.0 - SLACK),
-            Form::Sensitivity => scaled(1.0 - SLACK, rest),
-            Form::Spread => {
+            InequalityForm::Complementary => scaled(rest, 1.0 - SLACK),
+            InequalityForm::Sensitivity => scaled(1.0 - SLACK, rest),
+            InequalityForm::Spread => {
                 let along = least * if least < 0.0 { far } else { near };
                 let other = ray.other_modulus;
                 let b = along - share * ray.along(ray.other) - SLACK * (far + share * other);

@@ -12,7 +12,7 @@ use super::quadratic::negative_gains;
 /// Spread           W |q_i + L0| >= r_k |q_k + L0|    |T_i|/|T_k| for every k
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Form {
+pub(super) enum InequalityForm {
     Complementary,
     Sensitivity,
     Spread,
@@ -20,7 +20,7 @@ pub(super) enum Form {
 
 /// One plant with its limit and weight, both divided by the same power of two so that neither squares to overflow.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Plant {
+pub(super) struct WeightedPlant {
     /// q
     pub(super) inverse: Complex64,
     /// |q|
@@ -31,7 +31,7 @@ pub(super) struct Plant {
     pub(super) weight: f64,
 }
 
-impl Plant {
+impl WeightedPlant {
     /// (r/W)^2
     pub(super) fn share(&self) -> f64 {
         let ratio = self.weight / self.limit;
@@ -48,7 +48,7 @@ impl Plant {
 /// A ray L0 = g e^(j phi) from the origin, and the plant whose |q + L0| all others are held against along it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ray {
-    pub(super) form: Form,
+    pub(super) form: InequalityForm,
     /// e^(j phi)
     pub(super) direction: Complex64,
     /// q_k; zero in forms other than `Spread`.
@@ -82,13 +82,13 @@ impl Ray {
     /// ```
     ///
     /// The differences of squares are taken as products of sum and difference.
-    pub(super) fn forbidden_by(&self, plant: &Plant) -> [[f64; 2]; 2] {
-        let Plant { inverse, modulus, limit, .. } = *plant;
+    pub(super) fn forbidden_by(&self, plant: &WeightedPlant) -> [[f64; 2]; 2] {
+        let WeightedPlant { inverse, modulus, limit, .. } = *plant;
         let weight = plant.weight * self.other_weight;
         let (along, across) = (self.along(inverse), self.across(inverse));
         let square = limit * limit;
         let found = match self.form {
-            Form::Complementary => {
+            InequalityForm::Complementary => {
                 let (radius, distance) = (limit * weight * modulus, square * across.abs());
                 negative_gains(
                     (limit - weight) * (limit + weight),
@@ -97,7 +97,7 @@ impl Ray {
                     (radius - distance) * (radius + distance),
                 )
             }
-            Form::Sensitivity => {
+            InequalityForm::Sensitivity => {
                 let (radius, distance) = (limit * weight * modulus, square * across.abs());
                 negative_gains(
                     square,
@@ -106,7 +106,7 @@ impl Ray {
                     (radius - distance) * (radius + distance),
                 )
             }
-            Form::Spread => {
+            InequalityForm::Spread => {
                 let other = weight * weight;
                 let apart = inverse - self.other;
                 let radius = limit * weight * (apart.re * apart.re + apart.im * apart.im).sqrt();

@@ -1,6 +1,6 @@
 //! A few plants at a time: whether they forbid anything that is not known already.
 
-use super::inequality::{Form, Plant, Ray};
+use super::inequality::{InequalityForm, Ray, WeightedPlant};
 use super::interval::GainIntervals;
 
 /// Plants in a leaf: enough to be looked at several at a time.
@@ -57,15 +57,17 @@ pub(super) fn lesser(a: f64, b: f64) -> f64 {
 
 impl Leaf {
     /// These plants, the last repeated where there are too few.
-    pub(super) fn of(form: Form, plants: &[Plant]) -> Leaf {
+    pub(super) fn of(form: InequalityForm, plants: &[WeightedPlant]) -> Leaf {
         let mut leaf = Leaf { re: [1.0; LEAF], im: [0.0; LEAF], constant: [1.0; LEAF], share: [0.0; LEAF] };
         let columns = leaf.re.iter_mut().zip(&mut leaf.im).zip(leaf.constant.iter_mut().zip(&mut leaf.share));
         let last = plants.last().into_iter().cycle();
         for (((re, im), (constant, share)), plant) in columns.zip(plants.iter().chain(last)) {
             (*re, *im) = (plant.inverse.re, plant.inverse.im);
             (*constant, *share) = match form {
-                Form::Sensitivity => (plant.sensitivity_constant(), 0.0),
-                Form::Complementary | Form::Spread => (plant.modulus * plant.modulus, plant.share()),
+                InequalityForm::Sensitivity => (plant.sensitivity_constant(), 0.0),
+                InequalityForm::Complementary | InequalityForm::Spread => {
+                    (plant.modulus * plant.modulus, plant.share())
+                }
             };
         }
         leaf

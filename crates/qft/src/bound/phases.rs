@@ -45,7 +45,7 @@ impl PhaseGrid {
 
 /// What several functions forbid at one phase; the last of all is their union.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Sample {
+pub(super) struct PhaseSample {
     pub(super) phase_rad: f64,
     pub(super) forbidden: Vec<GainIntervals>,
 }
@@ -54,13 +54,13 @@ pub(super) struct Sample {
 const PHASES_MAXIMUM: f64 = 1e5;
 
 /// The functions at the phases of the grid, in increasing order.
-pub(super) fn sampled(grid: &PhaseGrid, functions: &[&BoundFunction]) -> Vec<Sample> {
+pub(super) fn sampled(grid: &PhaseGrid, functions: &[&BoundFunction]) -> Vec<PhaseSample> {
     let sample = |phase_rad: f64| {
         let mut forbidden: Vec<GainIntervals> =
             functions.iter().map(|function| function.forbidden(phase_rad)).collect();
         let union = forbidden.iter().flat_map(GainIntervals::intervals).copied().collect();
         forbidden.push(GainIntervals::union_of(union));
-        Sample { phase_rad, forbidden }
+        PhaseSample { phase_rad, forbidden }
     };
     let mut samples = Vec::new();
     for phase_rad in phases(grid, functions) {
@@ -76,10 +76,10 @@ pub(super) fn sampled(grid: &PhaseGrid, functions: &[&BoundFunction]) -> Vec<Sam
 /// Adds the sample on the left and all that are needed between it and the one on the right.
 fn refine(
     grid: &PhaseGrid,
-    sample: &impl Fn(f64) -> Sample,
-    left: Sample,
-    right: &Sample,
-    samples: &mut Vec<Sample>,
+    sample: &impl Fn(f64) -> PhaseSample,
+    left: PhaseSample,
+    right: &PhaseSample,
+    samples: &mut Vec<PhaseSample>,
 ) {
     let width = right.phase_rad - left.phase_rad;
     let half_way = left.phase_rad + width / 2.0;

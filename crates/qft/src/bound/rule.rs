@@ -4,9 +4,9 @@ use num_complex::Complex64;
 use phea_dynamics::portable;
 
 use super::BoundError;
-use super::ceiling::Candidate;
+use super::ceiling::CeilingPlant;
 use super::fill::Edge;
-use super::inequality::{Form, Plant};
+use super::inequality::{InequalityForm, WeightedPlant};
 use super::power_of_two::power_of_two;
 use crate::specification::{ClosedLoop, Limit, PlantPath, Requirement};
 use crate::template::{Template, TemplatePoint};
@@ -45,11 +45,11 @@ impl Rule {
         self.limit == f64::INFINITY
     }
 
-    pub(super) fn form(&self) -> Form {
+    pub(super) fn form(&self) -> InequalityForm {
         match self.closed_loop {
-            ClosedLoop::Tracking => Form::Spread,
-            closed_loop if closed_loop.has_feedback() => Form::Complementary,
-            _ => Form::Sensitivity,
+            ClosedLoop::Tracking => InequalityForm::Spread,
+            closed_loop if closed_loop.has_feedback() => InequalityForm::Complementary,
+            _ => InequalityForm::Sensitivity,
         }
     }
 
@@ -66,7 +66,7 @@ impl Rule {
     /// ```
     ///
     /// `None` for a response that is zero or not finite.
-    pub(super) fn plant(&self, point: &TemplatePoint) -> Option<Plant> {
+    pub(super) fn plant(&self, point: &TemplatePoint) -> Option<WeightedPlant> {
         let inverse = self.nominal / point.response;
         let response = || portable::magnitude(point.response);
         let sensor = || portable::magnitude(point.sensor);
@@ -79,17 +79,17 @@ impl Rule {
         };
         let sound =
             is_response(point.response) && is_response(inverse) && limit.is_finite() && weight.is_finite();
-        sound.then(|| Plant { inverse, modulus: modulus(inverse), limit, weight })
+        sound.then(|| WeightedPlant { inverse, modulus: modulus(inverse), limit, weight })
     }
 
     /// What the plants are held against: for tracking every plant with its |H|, otherwise |L0| itself.
-    pub(super) fn candidate(&self, plant: &Plant, point: &TemplatePoint) -> Candidate {
+    pub(super) fn candidate(&self, plant: &WeightedPlant, point: &TemplatePoint) -> CeilingPlant {
         let weight = portable::magnitude(point.sensor) / self.tracking_scale();
-        Candidate { inverse: plant.inverse, modulus: plant.modulus, weight }
+        CeilingPlant { inverse: plant.inverse, modulus: plant.modulus, weight }
     }
 
     /// The contour between two plants.
-    pub(super) fn edge(&self, ends: [&Plant; 2], points: [&TemplatePoint; 2]) -> Edge {
+    pub(super) fn edge(&self, ends: [&WeightedPlant; 2], points: [&TemplatePoint; 2]) -> Edge {
         let [from, to] = points;
         match self.closed_loop {
             ClosedLoop::RobustStability | ClosedLoop::Tracking => Edge::of_complementary(ends),

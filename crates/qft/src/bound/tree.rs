@@ -1,21 +1,21 @@
 //! A tree over the plants of a template, which finds the few that decide a bound along a ray.
 
 use super::hull::{Hull, bearing};
-use super::inequality::{Form, Plant, Ray};
+use super::inequality::{InequalityForm, Ray, WeightedPlant};
 use super::interval::GainIntervals;
 use super::leaf::{Borders, LEAF, Leaf};
 
 /// The plants of a template in leaves, and above them hulls of leaves, of pairs of hulls, and so on to one hull around all.
 #[derive(Clone, Debug)]
 pub(super) struct Tree {
-    plants: Vec<Plant>,
+    plants: Vec<WeightedPlant>,
     leaves: Vec<Leaf>,
     levels: Vec<Vec<Hull>>,
 }
 
 impl Tree {
     /// A tree over these plants.
-    pub(super) fn new(form: Form, plants: &[Plant]) -> Tree {
+    pub(super) fn new(form: InequalityForm, plants: &[WeightedPlant]) -> Tree {
         let plants = along_a_curve(plants);
         let leaves = plants.chunks(LEAF).map(|plants| Leaf::of(form, plants)).collect();
         let mut levels: Vec<Vec<Hull>> = vec![plants.chunks(LEAF).filter_map(Hull::around).collect()];
@@ -28,7 +28,7 @@ impl Tree {
     }
 
     /// The plants, in an order of their own.
-    pub(super) fn plants(&self) -> &[Plant] {
+    pub(super) fn plants(&self) -> &[WeightedPlant] {
         &self.plants
     }
 
@@ -74,7 +74,7 @@ impl Tree {
     fn collect_below(&self, ray: &Ray, union: &mut GainIntervals, level: usize, place: usize) {
         let Some(hull) = self.hull(level, place) else { return };
         let settled = match ray.form {
-            Form::Spread => hull.could_forbid(ray).iter().all(|&interval| union.covers(interval)),
+            InequalityForm::Spread => hull.could_forbid(ray).iter().all(|&interval| union.covers(interval)),
             _ => Borders::of_each(ray, union).any(|borders| hull.stays_within(ray, &borders)),
         };
         if settled {
@@ -107,7 +107,7 @@ fn extent(intervals: &[[f64; 2]; 2]) -> [f64; 2] {
 }
 
 /// The plants in an order in which neighbours have similar magnitudes and phases: along a curve that fills the plane of both (Morton 1966).
-fn along_a_curve(plants: &[Plant]) -> Vec<Plant> {
+fn along_a_curve(plants: &[WeightedPlant]) -> Vec<WeightedPlant> {
     let places = || plants.iter().map(|plant| [octave(plant.modulus), bearing(plant.inverse)]);
     let empty = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
     let ranges = places().fold(empty, |ranges, place| {

@@ -20,7 +20,7 @@ const IMAGES_MAXIMUM: usize = 4000;
 /// ```text
 /// Z{hold P}(e^(jwT)) = sum over k of P(j v) e^(-j v T_d) e^(-j v T/2) sin(v T/2)/(v T/2),     v = w + 2 pi k/T
 /// ```
-pub(super) struct Images<'a> {
+pub(super) struct SamplingImages<'a> {
     pub(super) sensor: &'a TransferFunction,
     /// T_d, or T_d + T/2 in a sampled loop.
     pub(super) delay_s: f64,
@@ -29,7 +29,7 @@ pub(super) struct Images<'a> {
     pub(super) rate_feed_forward: f64,
 }
 
-impl Images<'_> {
+impl SamplingImages<'_> {
     /// A model has a response at every frequency.
     pub(super) fn of_model(
         &self,

@@ -4,7 +4,7 @@ use num_complex::Complex64;
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients};
 
-use super::images::Images;
+use super::images::SamplingImages;
 use super::{Member, MemberResponse, turned};
 
 impl MemberResponse {
@@ -47,15 +47,17 @@ impl Member {
         self.images()?.fed_back(plant.as_ref(), frequency_rad_per_s)
     }
 
-    fn images(&self) -> Option<Images<'_>> {
+    fn images(&self) -> Option<SamplingImages<'_>> {
         match self {
-            Member::Responding { sensor, delay_s, sample_time_s, rate_feed_forward, .. } => Some(Images {
-                sensor,
-                delay_s: *delay_s,
-                sample_time_s: *sample_time_s,
-                rate_feed_forward: *rate_feed_forward,
-            }),
-            Member::Measured { sensor, delay_s, sample_time_s, .. } => Some(Images {
+            Member::Responding { sensor, delay_s, sample_time_s, rate_feed_forward, .. } => {
+                Some(SamplingImages {
+                    sensor,
+                    delay_s: *delay_s,
+                    sample_time_s: *sample_time_s,
+                    rate_feed_forward: *rate_feed_forward,
+                })
+            }
+            Member::Measured { sensor, delay_s, sample_time_s, .. } => Some(SamplingImages {
                 sensor,
                 delay_s: *delay_s,
                 sample_time_s: *sample_time_s,

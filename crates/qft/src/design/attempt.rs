@@ -13,9 +13,9 @@ mod error;
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::watch::{Watch, part};
 
-pub(super) use self::beginning::Beginning;
+pub(super) use self::beginning::StartingPoints;
 use self::beginning::{best_of, search_options};
-pub use self::error::DesignError;
+pub use self::error::LoopDesignError;
 use super::counterexample::{Counterexample, counterexamples, worst_margin_db};
 use super::problem::{DesignOptions, DesignProblem, Objective, PrefilterChoice};
 use super::result::{DesignRound, Starts};
@@ -43,7 +43,7 @@ const RESERVE_DB: f64 = 0.001;
 
 /// What an attempt ended with.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Ending {
+pub(super) enum AttemptEnding {
     /// The audit finds every specification met.
     Met(Box<Audit>),
     /// With this worst margin over rate at best, dB; audited where that was asked for.
@@ -56,11 +56,11 @@ pub(super) enum Ending {
 
 /// What leaves the attempt before an audit agrees.
 enum Leave {
-    Ended(Ending),
-    Failed(DesignError),
+    Ended(AttemptEnding),
+    Failed(LoopDesignError),
 }
 
-impl<E: Into<DesignError>> From<E> for Leave {
+impl<E: Into<LoopDesignError>> From<E> for Leave {
     fn from(error: E) -> Leave {
         Leave::Failed(error.into())
     }
@@ -114,8 +114,8 @@ impl Attempt {
         mut samples: Samples,
         options: &DesignOptions,
         relaxes: bool,
-        beginning: Beginning,
-    ) -> Result<Attempt, DesignError> {
+        beginning: StartingPoints,
+    ) -> Result<Attempt, LoopDesignError> {
         let reserve_db = if relaxes { 0.0 } else { RESERVE_DB };
         samples.keep_in_reserve(reserve_db);
         let aim = match options.objective {
@@ -130,7 +130,7 @@ impl Attempt {
             _ => None,
         };
         let mut shaping = Shaping::new(structure.clone(), given, options.objective, samples)?;
-        let Beginning { mut simpler, stabilising, is_hard } = beginning;
+        let StartingPoints { mut simpler, stabilising, is_hard } = beginning;
         let stabilising = best_of(&mut shaping, stabilising);
         simpler.extend_from_slice(&stabilising);
         Ok(Attempt {
@@ -159,15 +159,19 @@ impl Attempt {
     /// are not sampled again.
     ///
     /// # Errors
-    /// [`DesignError::Stopped`] by the watch; what was found until then remains.
-    pub(super) fn run(&mut self, sampled: &SampledPlants, watch: Watch<'_>) -> Result<Ending, DesignError> {
+    /// [`LoopDesignError::Stopped`] by the watch; what was found until then remains.
+    pub(super) fn run(
+        &mut self,
+        sampled: &SampledPlants,
+        watch: Watch<'_>,
+    ) -> Result<AttemptEnding, LoopDesignError> {
         match self.until_agreed(sampled, watch) {
             Ok(ending) | Err(Leave::Ended(ending)) => Ok(ending),
             Err(Leave::Failed(error)) => Err(error),
         }
     }
 
-    fn until_agreed(&mut self, sampled: &SampledPlants, watch: Watch<'_>) -> Result<Ending, Leave> {
+    fn until_agreed(&mut self, sampled: &SampledPlants, watch: Watch<'_>) -> Result<AttemptEnding, Leave> {
         let given = std::mem::take(&mut self.given);
         self.search(given, self.options.seed, watch)?;
         loop {
@@ -217,18 +221,18 @@ impl Attempt {
     fn search(&mut self, given: Vec<Vec<f64>>, seed: u64, watch: Watch<'_>) -> Result<(), Leave> {
         let options = search_options(self.aim, seed, self.relaxes, self.is_hard);
         let found = search(&mut self.shaping, given, &options, &mut part(watch, SHAPING, WHOLE))?;
-        let Some(result) = found else { return Err(Leave::Ended(Ending::NotStabilised)) };
+        let Some(result) = found else { return Err(Leave::Ended(AttemptEnding::NotStabilised)) };
         self.starts = Some(Starts::of(&result));
         self.x = result.x;
         if matches!(result.status, SearchStatus::NotStabilised { .. }) {
-            return Err(Leave::Ended(Ending::NotStabilised));
+            return Err(Leave::Ended(AttemptEnding::NotStabilised));
         }
         if self.options.objective == Objective::BestWorstMargin && !self.relaxes {
             self.shaping.count_shares_of_room();
         }
         let worst_margin_db = result.judgement.worst_margin_db;
         if worst_margin_db < FEASIBLE_DB && !self.relaxes {
-            return Err(Leave::Ended(Ending::Missed { worst_margin_db, audit: None }));
+            return Err(Leave::Ended(AttemptEnding::Missed { worst_margin_db, audit: None }));
         }
         if self.fits_prefilter(watch)? { self.descend(false, watch) } else { Ok(()) }
     }
@@ -261,7 +265,7 @@ impl Attempt {
         let Some(FittedPrefilter { structure, x, .. }) = fitted else {
             let judgement = self.shaping.judge(&self.x);
             let worst_margin_db = judgement.worst_margin_db.min(-2.0 * BAND_ROOM_DB);
-            return Err(Leave::Ended(Ending::Missed { worst_margin_db, audit: None }));
+            return Err(Leave::Ended(AttemptEnding::Missed { worst_margin_db, audit: None }));
         };
         self.x.truncate(self.structure.dimension());
         self.x.extend(x);
@@ -270,7 +274,7 @@ impl Attempt {
     }
 
     /// The same samples and controller, with another prefilter or none.
-    fn shape_with(&mut self, prefilter: Option<Structure>) -> Result<(), DesignError> {
+    fn shape_with(&mut self, prefilter: Option<Structure>) -> Result<(), LoopDesignError> {
         let samples = self.shaping.samples().clone();
         self.shaping = Shaping::new(self.structure.clone(), prefilter, self.options.objective, samples)?;
         Ok(())
@@ -283,7 +287,7 @@ impl Attempt {
             let found = descend(&mut self.shaping, &self.x, options, &mut part(watch, SHAPING, WHOLE))?;
             self.x = found.x;
             let Some(judgement) = found.judgement.filter(|judgement| judgement.stable) else {
-                return Err(Leave::Ended(Ending::NotStabilised));
+                return Err(Leave::Ended(AttemptEnding::NotStabilised));
             };
             let worst_margin_db = judgement.worst_margin_db;
             if worst_margin_db >= FEASIBLE_DB || self.relaxes {
@@ -299,7 +303,7 @@ impl Attempt {
                     self.x.truncate(self.structure.dimension());
                     self.shape_with(None)?;
                 }
-                _ => return Err(Leave::Ended(Ending::Missed { worst_margin_db, audit: None })),
+                _ => return Err(Leave::Ended(AttemptEnding::Missed { worst_margin_db, audit: None })),
             }
             if !self.fits_prefilter(watch)? {
                 return Ok(());
@@ -329,7 +333,7 @@ impl Attempt {
     }
 
     /// Takes counterexamples in among the samples; false if they are among them already, or that was done often enough.
-    fn takes_in(&mut self, examples: &[Counterexample]) -> Result<bool, DesignError> {
+    fn takes_in(&mut self, examples: &[Counterexample]) -> Result<bool, LoopDesignError> {
         let mut news = false;
         self.missing_db =
             if self.relaxes { self.shaping.judge(&self.x).worst_margin_db.min(0.0) } else { 0.0 };

@@ -11,7 +11,7 @@ use super::feedback_sign::opposing_sign;
 use super::problem::DesignProblem;
 use super::stabilising::stabilising;
 use crate::family::Family;
-use crate::loop_shaping::{Part, Structure};
+use crate::loop_shaping::{Structure, StructureFactor};
 use crate::specification::{Limit, Requirement, Specification};
 use crate::verification::corners;
 
@@ -128,24 +128,28 @@ impl Ground {
 
     /// The structure of this order with so many zeros.
     pub(super) fn structure(&self, order: usize, zeros: usize) -> Structure {
-        let integrator = std::iter::repeat_n(Part::Fixed(Element::Integrator), self.integrators);
+        let integrator = std::iter::repeat_n(StructureFactor::Fixed(Element::Integrator), self.integrators);
         let poles = order.saturating_sub(self.integrators);
         let pair = |is_pole: bool| {
             let (natural_frequency, damping_ratio) = (self.corner, DAMPING_RATIOS);
             if is_pole {
-                Part::PolePair { natural_frequency, damping_ratio }
+                StructureFactor::PolePair { natural_frequency, damping_ratio }
             } else {
-                Part::ZeroPair { natural_frequency, damping_ratio }
+                StructureFactor::ZeroPair { natural_frequency, damping_ratio }
             }
         };
         let single = |is_pole: bool| {
             let frequency = self.corner;
-            if is_pole { Part::RealPole { frequency } } else { Part::RealZero { frequency } }
+            if is_pole {
+                StructureFactor::RealPole { frequency }
+            } else {
+                StructureFactor::RealZero { frequency }
+            }
         };
         let factors = |count: usize, is_pole: bool| {
             std::iter::repeat_n(pair(is_pole), count / 2)
                 .chain(std::iter::repeat_n(single(is_pole), count % 2))
-                .collect::<Vec<Part>>()
+                .collect::<Vec<StructureFactor>>()
         };
         let parts = integrator.chain(factors(zeros, false)).chain(factors(poles, true)).collect();
         Structure { sign: self.sign, gain: self.gain, parts }

@@ -13,9 +13,9 @@ use phea_dynamics::controller::Controller;
 
 pub use finding::{Constraint, ConstraintPlace, Finding, FindingSeverity, Party, SharedLimit};
 
-use self::candidate::{Candidate, candidates};
+use self::candidate::{PlantWithinLoop, candidates};
 use self::ceiling::Ceilings;
-use self::plane::{Boundary, Plane};
+use self::plane::{BoundaryCells, Plane};
 use super::DesignProblem;
 use crate::closed_loop::Compensation;
 use crate::specification::{Limit, Specification};
@@ -80,7 +80,7 @@ pub fn diagnose(problem: &DesignProblem) -> Vec<Finding> {
     let specifications = &problem.specifications;
     let candidates = candidates(&problem.family, &compensation);
     let plane = Plane { sample_time_s: compensation.sample_time_s() };
-    let boundary = Boundary::new(plane, &places(plane, specifications, &candidates));
+    let boundary = BoundaryCells::new(plane, &places(plane, specifications, &candidates));
     let ceilings = Ceilings::new(&boundary, specifications, &candidates);
     let continuous = compensation.sample_time_s().is_none();
 
@@ -102,7 +102,7 @@ pub fn diagnose(problem: &DesignProblem) -> Vec<Finding> {
 }
 
 /// Where something happens on the axis: ends of bands, design frequencies, roots of limits and of plants.
-fn places(plane: Plane, specifications: &[Specification], candidates: &[Candidate]) -> Vec<f64> {
+fn places(plane: Plane, specifications: &[Specification], candidates: &[PlantWithinLoop]) -> Vec<f64> {
     let mut frequencies: Vec<f64> = Vec::new();
     for specification in specifications {
         frequencies.extend(specification.band_rad_per_s);

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::watch::{Progress, Watch, unwatched};
 
-use super::attempt::{Attempt, Beginning, DesignError, Ending, FEASIBLE_DB};
+use super::attempt::{Attempt, AttemptEnding, FEASIBLE_DB, LoopDesignError, StartingPoints};
 use super::binding::{all_conflicts, binding_limits};
 use super::candidates::Ground;
 use super::diagnosis::{Finding, FindingSeverity, diagnose};
@@ -40,7 +40,7 @@ pub struct DesignOutcome {
     pub stopped: bool,
     /// What was tried when it was stopped.
     at_hand: Option<Box<Attempt>>,
-    known: Known,
+    known: LearntPlants,
 }
 
 impl DesignOutcome {
@@ -48,7 +48,7 @@ impl DesignOutcome {
     ///
     /// # Errors
     /// Those of [`design`].
-    pub fn conclude(&mut self) -> Result<(), DesignError> {
+    pub fn conclude(&mut self) -> Result<(), LoopDesignError> {
         let at_hand = self.at_hand.take().filter(|attempt| !attempt.x().is_empty());
         if let (None, Some(mut attempt)) = (&self.design, at_hand) {
             let audit = attempt.audited_as_it_is(&self.known.sampled, &mut unwatched)?;
@@ -62,7 +62,7 @@ impl DesignOutcome {
 
 /// What was learnt of the plants.
 #[derive(Clone, Debug, Default)]
-struct Known {
+struct LearntPlants {
     /// What searches look at; `None` before the first.
     samples: Option<Samples>,
     /// The plants that audits sampled.
@@ -74,13 +74,13 @@ struct Known {
 /// specification; then with fewer zeros as long as that does too. Where none does, the smallest relaxation is looked for.
 ///
 /// # Errors
-/// [`DesignError`] where a part of the problem is no transfer function, or cannot be put into the loop. A watch that stops it is no error.
+/// [`LoopDesignError`] where a part of the problem is no transfer function, or cannot be put into the loop. A watch that stops it is no error.
 pub fn design(
     problem: &DesignProblem,
     options: &DesignOptions,
     watch: Watch<'_>,
-) -> Result<DesignOutcome, DesignError> {
-    design_knowing(problem, options, None, Known::default(), watch)
+) -> Result<DesignOutcome, LoopDesignError> {
+    design_knowing(problem, options, None, LearntPlants::default(), watch)
 }
 
 /// Goes on from a design that has ended, with more plants beside the family that the loop must serve: of each the nominal one. What did not
@@ -88,13 +88,13 @@ pub fn design(
 /// known.
 ///
 /// # Errors
-/// Those of [`design`], and [`DesignError`] for a plant that does not fit the loop.
+/// Those of [`design`], and [`LoopDesignError`] for a plant that does not fit the loop.
 pub fn design_again(
     problem: &DesignProblem,
     options: &DesignOptions,
     before: DesignOutcome,
     watch: Watch<'_>,
-) -> Result<DesignOutcome, DesignError> {
+) -> Result<DesignOutcome, LoopDesignError> {
     let DesignOutcome { design, mut known, .. } = before;
     if let Some(samples) = &mut known.samples {
         for plant in problem.beside.iter().skip(samples.problem().beside.len()) {
@@ -108,12 +108,12 @@ fn design_knowing(
     problem: &DesignProblem,
     options: &DesignOptions,
     found: Option<Design>,
-    known: Known,
+    known: LearntPlants,
     watch: Watch<'_>,
-) -> Result<DesignOutcome, DesignError> {
+) -> Result<DesignOutcome, LoopDesignError> {
     let findings = diagnose(problem);
-    let Known { samples, sampled, rounds } = known;
-    let mut run = Run::new(problem, options, &sampled);
+    let LearntPlants { samples, sampled, rounds } = known;
+    let mut run = DesignProgress::new(problem, options, &sampled);
     // where no controller of any order will do, what is left is by how much
     run.relaxing = findings.iter().any(|finding| finding.severity() == FindingSeverity::Impossible);
     (run.samples, run.rounds) = (samples, rounds);
@@ -121,13 +121,13 @@ fn design_knowing(
         run.begin_at(&found);
     }
     let at_hand = run.try_structures(watch)?.map(Box::new);
-    let Run { design, samples, rounds, .. } = run;
-    let known = Known { samples, sampled, rounds };
+    let DesignProgress { design, samples, rounds, .. } = run;
+    let known = LearntPlants { samples, sampled, rounds };
     Ok(DesignOutcome { design, findings, stopped: at_hand.is_some(), at_hand, known })
 }
 
 /// A design on its way.
-struct Run<'a> {
+struct DesignProgress<'a> {
     problem: &'a DesignProblem,
     options: &'a DesignOptions,
     ground: Ground,
@@ -157,12 +157,16 @@ struct Run<'a> {
     design: Option<Design>,
 }
 
-impl<'a> Run<'a> {
-    fn new(problem: &'a DesignProblem, options: &'a DesignOptions, sampled: &'a SampledPlants) -> Run<'a> {
+impl<'a> DesignProgress<'a> {
+    fn new(
+        problem: &'a DesignProblem,
+        options: &'a DesignOptions,
+        sampled: &'a SampledPlants,
+    ) -> DesignProgress<'a> {
         let ground = Ground::new(problem);
         let is_hard = has_poles_to_move(problem);
         let waiting = structures_to_try(problem, options, &ground, is_hard);
-        Run {
+        DesignProgress {
             problem,
             options,
             ground,
@@ -195,11 +199,11 @@ impl<'a> Run<'a> {
     }
 
     /// Tries one structure after the other; the attempt at which the watch stopped it.
-    fn try_structures(&mut self, watch: Watch<'_>) -> Result<Option<Attempt>, DesignError> {
+    fn try_structures(&mut self, watch: Watch<'_>) -> Result<Option<Attempt>, LoopDesignError> {
         while let Some((structure, feedback)) = self.next() {
             let mut attempt = self.attempt(structure, feedback)?;
             match attempt.run(self.sampled, &mut self.part(watch)) {
-                Err(DesignError::Stopped(_)) => return Ok(Some(attempt)),
+                Err(LoopDesignError::Stopped(_)) => return Ok(Some(attempt)),
                 ending => {
                     if self.is_done_with(attempt, ending?)? {
                         return Ok(None);
@@ -211,7 +215,7 @@ impl<'a> Run<'a> {
             return Ok(None);
         };
         match attempt.audited_as_it_is(self.sampled, &mut self.part(watch)) {
-            Err(DesignError::Stopped(_)) => Ok(Some(attempt)),
+            Err(LoopDesignError::Stopped(_)) => Ok(Some(attempt)),
             audit => {
                 self.take(&attempt, DesignStatus::NotStabilised, audit?)?;
                 Ok(None)
@@ -251,14 +255,14 @@ impl<'a> Run<'a> {
         &mut self,
         structure: Structure,
         feedback: Option<TransferFunction>,
-    ) -> Result<Attempt, DesignError> {
+    ) -> Result<Attempt, LoopDesignError> {
         let simpler = feedback.map(|feedback| self.ground.grown(&structure, &feedback)).unwrap_or_default();
         let samples = match &self.samples {
             Some(samples) => samples.clone(),
             None => self.first_samples()?,
         };
         let stabilising = self.ground.stabilising(&structure, self.problem);
-        let beginning = Beginning { simpler, stabilising, is_hard: self.is_hard };
+        let beginning = StartingPoints { simpler, stabilising, is_hard: self.is_hard };
         let options = self.options_of(&structure);
         Attempt::new(structure, samples, &options, self.relaxing, beginning)
     }
@@ -273,7 +277,7 @@ impl<'a> Run<'a> {
         options
     }
 
-    fn first_samples(&self) -> Result<Samples, DesignError> {
+    fn first_samples(&self) -> Result<Samples, LoopDesignError> {
         let plants = first_plants(self.problem, self.options.seed);
         let frequencies = search_frequencies(self.problem, &plants, POINTS_PER_DECADE)?;
         let mut samples = Samples::new(self.problem, &plants, &frequencies)?;
@@ -284,18 +288,18 @@ impl<'a> Run<'a> {
     }
 
     /// Takes what an attempt found; whether no other is worth a try.
-    fn is_done_with(&mut self, attempt: Attempt, ending: Ending) -> Result<bool, DesignError> {
+    fn is_done_with(&mut self, attempt: Attempt, ending: AttemptEnding) -> Result<bool, LoopDesignError> {
         self.samples = Some(attempt.samples());
         self.rounds.extend_from_slice(attempt.rounds());
         self.before = attempt.feedback().or(self.before.take());
         match ending {
-            Ending::Met(audit) => {
+            AttemptEnding::Met(audit) => {
                 self.take(&attempt, DesignStatus::Met, *audit)?;
                 self.found = true;
                 self.waiting = fewer_zeros(&self.options.controller, attempt.structure());
                 Ok(self.relaxing || self.waiting.is_empty())
             }
-            Ending::Missed { worst_margin_db, audit: Some(_) }
+            AttemptEnding::Missed { worst_margin_db, audit: Some(_) }
                 if worst_margin_db > FEASIBLE_DB && !self.begun_again =>
             {
                 // it can be met after all: from here the objective is looked for
@@ -303,24 +307,24 @@ impl<'a> Run<'a> {
                 self.again = Some((attempt.structure().clone(), attempt.feedback()));
                 Ok(false)
             }
-            Ending::Missed { worst_margin_db, audit: Some(audit) } => {
+            AttemptEnding::Missed { worst_margin_db, audit: Some(audit) } => {
                 self.take_relaxation(&attempt, -worst_margin_db, *audit)?;
                 Ok(self.waiting.is_empty())
             }
-            Ending::Missed { worst_margin_db, audit: None } => {
+            AttemptEnding::Missed { worst_margin_db, audit: None } => {
                 if self.nearest.as_ref().is_none_or(|(best, ..)| worst_margin_db > *best) {
                     self.nearest = Some((worst_margin_db, attempt.structure().clone(), attempt.feedback()));
                 }
                 Ok(self.found)
             }
-            Ending::NotConverged(audit) => {
+            AttemptEnding::NotConverged(audit) => {
                 let status = DesignStatus::NotConverged { rounds: attempt.rounds().len() };
                 if self.design.is_none() {
                     self.take(&attempt, status, *audit)?;
                 }
                 Ok(self.found || self.relaxing)
             }
-            Ending::NotStabilised => {
+            AttemptEnding::NotStabilised => {
                 self.unstable = Some(attempt);
                 Ok(self.found)
             }
@@ -332,7 +336,7 @@ impl<'a> Run<'a> {
         attempt: &Attempt,
         relaxation_db: f64,
         audit: Audit,
-    ) -> Result<(), DesignError> {
+    ) -> Result<(), LoopDesignError> {
         if let Some(Design { status: DesignStatus::Infeasible(known), .. }) = &self.design
             && relaxation_db >= known.relaxation_db - RELAXATION_GAINED_DB
         {
@@ -342,7 +346,7 @@ impl<'a> Run<'a> {
         self.take(attempt, DesignStatus::Infeasible(Relaxation { relaxation_db, conflicts }), audit)
     }
 
-    fn take(&mut self, attempt: &Attempt, status: DesignStatus, audit: Audit) -> Result<(), DesignError> {
+    fn take(&mut self, attempt: &Attempt, status: DesignStatus, audit: Audit) -> Result<(), LoopDesignError> {
         self.design = Some(design_of(attempt, status, audit, &self.rounds)?);
         Ok(())
     }
@@ -353,7 +357,7 @@ fn design_of(
     status: DesignStatus,
     audit: Audit,
     rounds: &[DesignRound],
-) -> Result<Design, DesignError> {
+) -> Result<Design, LoopDesignError> {
     Ok(Design {
         status,
         controller: attempt.deployed()?,

@@ -41,7 +41,7 @@ struct Speeds {
 
 /// Zeros, poles and gain of a plant, dead time among them.
 #[derive(Clone, Debug, PartialEq)]
-struct Roots {
+struct PlantRoots {
     gain: f64,
     zeros: Vec<Complex64>,
     poles: Vec<Complex64>,
@@ -65,7 +65,7 @@ pub(super) fn stabilising(
     let delay_s = problem.timing.delay_s + 0.5 * problem.timing.sample_time_s.unwrap_or(0.0);
     let mut found = Vec::new();
     for plant in central_plants(family) {
-        let Some(roots) = Roots::of(&plant, &problem.sensor, delay_s) else { continue };
+        let Some(roots) = PlantRoots::of(&plant, &problem.sensor, delay_s) else { continue };
         let kept_least = roots.poles.iter().filter(|pole| has_to_move(**pole)).count();
         if kept_least == 0 {
             continue;
@@ -99,8 +99,8 @@ fn central_plants(family: &UncertainFamily) -> Vec<PlantCoefficients<f64>> {
     values.iter().filter_map(|values| plant.coefficients(values)).collect()
 }
 
-impl Roots {
-    fn of(plant: &PlantCoefficients<f64>, sensor: &TransferFunction, delay_s: f64) -> Option<Roots> {
+impl PlantRoots {
+    fn of(plant: &PlantCoefficients<f64>, sensor: &TransferFunction, delay_s: f64) -> Option<PlantRoots> {
         let polynomial = |coefficients: &[f64]| Polynomial::new(coefficients.to_vec());
         let command = &plant.command;
         let own = TransferFunction::from_polynomials(
@@ -108,7 +108,7 @@ impl Roots {
             &polynomial(&command.denominator),
         );
         let rational = own.ok()?.series(&sensor.clone().with_dead_time(0.0).ok()?).ok()?;
-        let mut roots = Roots {
+        let mut roots = PlantRoots {
             gain: rational.gain(),
             zeros: rational.zeros().to_vec(),
             poles: rational.poles().to_vec(),
@@ -128,7 +128,7 @@ impl Roots {
 
     /// With so many of its poles, or one more where that would part a pair: those that have to move and the slowest. What is left out keeps its
     /// gain at rest.
-    fn simplified(&self, kept: usize) -> Roots {
+    fn simplified(&self, kept: usize) -> PlantRoots {
         let parts = |at: usize| self.poles.get(at).is_some_and(|pole| pole.im < 0.0);
         let kept = if parts(kept) { kept + 1 } else { kept };
         let (poles, dropped) = self.poles.split_at(kept.min(self.poles.len()));
@@ -143,7 +143,7 @@ impl Roots {
             roots.iter().fold(Complex64::new(1.0, 0.0), |product, root| product * -root)
         };
         let gain = self.gain * (at_rest(left_out) / at_rest(dropped)).re;
-        Roots { gain, zeros: zeros.to_vec(), poles: poles.to_vec() }
+        PlantRoots { gain, zeros: zeros.to_vec(), poles: poles.to_vec() }
     }
 
     /// The controller that places the poles of the loop; `None` where it has roots in the right half plane, which no structure has.

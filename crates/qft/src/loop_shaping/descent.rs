@@ -9,10 +9,10 @@ use std::collections::BTreeMap;
 use phea_dynamics::watch::{Stopped, Watch, tell};
 
 use super::search::{Aim, Judgement, MarginRow, SearchProblem, Slopes};
-use super::subproblem::{Answer, Failure, Subproblem, dot};
+use super::subproblem::{PredictedStep, Subproblem, SubproblemFailure, dot};
 pub(super) use curvature::Curvature;
 pub use outcome::{Binding, DescentResult, DescentStatus, DescentWork};
-use place::Place;
+use place::DescentPoint;
 
 /// First trust region, and the largest, in units of x.
 const RADIUS_FIRST: f64 = 0.3;
@@ -140,7 +140,7 @@ pub(super) struct Descent {
     options: DescentOptions,
     x: Vec<f64>,
     /// Where it stands; `None` before it has begun.
-    here: Option<Place>,
+    here: Option<DescentPoint>,
     /// What is aimed at now: the worst margin before the objective.
     aim: Aim,
     radius: f64,
@@ -242,11 +242,11 @@ impl Descent {
             Aim::Objective if self.options.keeps(judgement.worst_margin_db, ENTERED) => Aim::Objective,
             _ => Aim::WorstMargin,
         };
-        self.here = Some(Place { x, judgement, slopes, beyond: vec![] });
+        self.here = Some(DescentPoint { x, judgement, slopes, beyond: vec![] });
     }
 
     /// One step: the place that it leads to, or where it began.
-    fn advanced(&mut self, problem: &mut dyn SearchProblem, here: Place) -> Place {
+    fn advanced(&mut self, problem: &mut dyn SearchProblem, here: DescentPoint) -> DescentPoint {
         let bounds = problem.bounds().to_vec();
         let answer = match self.solved(&here, &here.rows(), &bounds) {
             Ok(answer) => answer,
@@ -262,7 +262,7 @@ impl Descent {
             self.shrink(greatest(&answer.step) / 4.0);
             return here;
         }
-        let there = Place { slopes: self.slopes_at(problem, &x), x, judgement, beyond: vec![] };
+        let there = DescentPoint { slopes: self.slopes_at(problem, &x), x, judgement, beyond: vec![] };
         self.learn(&here, &there, &answer);
         if share >= GROWN {
             self.taken(there, &answer, share)
@@ -276,12 +276,12 @@ impl Descent {
     fn corrected(
         &mut self,
         problem: &mut dyn SearchProblem,
-        here: Place,
-        there: Place,
-        answer: &Answer,
+        here: DescentPoint,
+        there: DescentPoint,
+        answer: &PredictedStep,
         share: f64,
         bounds: &[[f64; 2]],
-    ) -> Place {
+    ) -> DescentPoint {
         let (mut last, mut last_step) = (there.clone(), answer.step.clone());
         let mut best = (share, there, answer.clone());
         for _ in 0..CORRECTIONS_MAXIMUM {
@@ -291,7 +291,7 @@ impl Descent {
             if share <= best.0 || !is_usable(&judgement) {
                 break;
             }
-            last = Place { slopes: self.slopes_at(problem, &x), x, judgement, beyond: vec![] };
+            last = DescentPoint { slopes: self.slopes_at(problem, &x), x, judgement, beyond: vec![] };
             last_step.clone_from(&next.step);
             self.learn(&here, &last, &next);
             best = (share, last.clone(), next);
@@ -308,7 +308,7 @@ impl Descent {
     }
 
     /// Moves on, and fits the trust region to how well the step kept its promise.
-    fn taken(&mut self, there: Place, answer: &Answer, share: f64) -> Place {
+    fn taken(&mut self, there: DescentPoint, answer: &PredictedStep, share: f64) -> DescentPoint {
         let size = greatest(&answer.step);
         if share < KEPT {
             self.radius = size / 2.0;
@@ -324,7 +324,12 @@ impl Descent {
     }
 
     /// The answer of the subproblem around a place, the penalty raised as long as that lessens the violation.
-    fn solved(&mut self, here: &Place, rows: &[MarginRow], bounds: &[[f64; 2]]) -> Result<Answer, Failure> {
+    fn solved(
+        &mut self,
+        here: &DescentPoint,
+        rows: &[MarginRow],
+        bounds: &[[f64; 2]],
+    ) -> Result<PredictedStep, SubproblemFailure> {
         let reach =
             |(x, [low, high]): (&f64, &[f64; 2])| [(low - x).max(-self.radius), (high - x).min(self.radius)];
         let step_bounds: Vec<[f64; 2]> = here.x.iter().zip(bounds).map(reach).collect();
@@ -356,10 +361,10 @@ impl Descent {
     }
 
     /// A smaller region, and nothing presumed of the curvature, after a subproblem without an answer.
-    fn without_answer(&mut self, failure: Failure, here: Place) -> Place {
+    fn without_answer(&mut self, failure: SubproblemFailure, here: DescentPoint) -> DescentPoint {
         self.work.subproblems += 1;
         self.failures += 1;
-        let hopeless = matches!(failure, Failure::NotFinite | Failure::NothingToDo);
+        let hopeless = matches!(failure, SubproblemFailure::NotFinite | SubproblemFailure::NothingToDo);
         if hopeless || self.failures >= FAILURES_MAXIMUM {
             self.status = Some(DescentStatus::NoStep { penalty: self.penalty });
         }
@@ -370,7 +375,7 @@ impl Descent {
 
     /// Whether the step is worth a try. Where nothing more is to be gained, by the model, `status` says what that means; where only the
     /// curvature says so, it is forgotten.
-    fn goes_on(&mut self, here: &Place, answer: &Answer) -> bool {
+    fn goes_on(&mut self, here: &DescentPoint, answer: &PredictedStep) -> bool {
         self.failures = 0;
         let tolerance = self.options.tolerance_db;
         let left = self.curvature.as_ref().map_or(0.0, |curvature| {
@@ -401,7 +406,7 @@ impl Descent {
         false
     }
 
-    fn note_binding(&mut self, here: &Place, answer: &Answer) {
+    fn note_binding(&mut self, here: &DescentPoint, answer: &PredictedStep) {
         let largest =
             answer.multipliers.iter().fold(0.0, |largest: f64, &multiplier| largest.max(multiplier));
         let mut strengths: BTreeMap<usize, f64> = BTreeMap::new();
@@ -416,7 +421,7 @@ impl Descent {
     }
 
     /// Takes what a step shows of the curvature of the Lagrangian.
-    fn learn(&mut self, here: &Place, there: &Place, answer: &Answer) {
+    fn learn(&mut self, here: &DescentPoint, there: &DescentPoint, answer: &PredictedStep) {
         let step: Vec<f64> = there.x.iter().zip(&here.x).map(|(there, here)| there - here).collect();
         let change = here.change_of_slopes(there, self.aim, &answer.multipliers);
         self.curvature = match &self.curvature {
@@ -433,7 +438,7 @@ impl Descent {
     }
 
     /// How much less the merit is there, dB; minus infinity where margins mean nothing.
-    fn gain(&self, here: &Place, there: &Judgement) -> f64 {
+    fn gain(&self, here: &DescentPoint, there: &Judgement) -> f64 {
         let merit = |judgement: &Judgement| match self.aim {
             Aim::WorstMargin => -judgement.worst_margin_db,
             Aim::Objective => {
@@ -447,7 +452,7 @@ impl Descent {
     fn tried(
         &mut self,
         problem: &mut dyn SearchProblem,
-        here: &Place,
+        here: &DescentPoint,
         step: &[f64],
         bounds: &[[f64; 2]],
     ) -> (Vec<f64>, Judgement) {

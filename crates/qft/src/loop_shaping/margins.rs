@@ -13,7 +13,7 @@ mod rows;
 use num_complex::Complex64;
 use phea_dynamics::portable;
 
-use super::samples::Column;
+use super::samples::FrequencyColumn;
 use crate::specification::{ClosedLoop, PlantPath, Specification};
 use crate::verification::TrackingJudgement;
 
@@ -25,7 +25,7 @@ pub(super) use rows::{MarginCandidate, candidates};
 pub(super) struct Demand {
     pub(super) specification: usize,
     pub(super) closed_loop: ClosedLoop,
-    limited: Limited,
+    limited: LimitedSide,
     /// The square of the limit; of the quotient of both limits for a spread.
     allowed: f64,
     rate: f64,
@@ -33,7 +33,7 @@ pub(super) struct Demand {
 
 /// From which side a closed loop is limited.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Limited {
+pub(super) enum LimitedSide {
     FromAbove,
     FromBelow,
     /// The greatest magnitude over the least, without a prefilter.
@@ -85,13 +85,14 @@ pub(super) fn demands(
         let [lower, upper] = [lower.map(|lower| lower / inwards), upper.map(|upper| upper * inwards)];
         let spread = specification.requirement.is_tracking() && tracking == TrackingJudgement::Spread;
         let limits = match spread {
-            true => {
-                [(Limited::Spread, ratio.map(|ratio| ratio * inwards * inwards)), (Limited::Spread, None)]
-            }
-            false => [(Limited::FromAbove, upper), (Limited::FromBelow, lower)],
+            true => [
+                (LimitedSide::Spread, ratio.map(|ratio| ratio * inwards * inwards)),
+                (LimitedSide::Spread, None),
+            ],
+            false => [(LimitedSide::FromAbove, upper), (LimitedSide::FromBelow, lower)],
         };
         demands.extend(limits.into_iter().filter_map(|(limited, allowed)| {
-            let unit = if limited == Limited::Spread { 2.0 } else { 1.0 };
+            let unit = if limited == LimitedSide::Spread { 2.0 } else { 1.0 };
             let rate = if share_of_room { unit * room_db.max(ROOM_LEAST_DB) } else { unit };
             let closed_loop = specification.requirement.closed_loop();
             Some(Demand { specification: index, closed_loop, limited, allowed: allowed?, rate })
@@ -109,7 +110,7 @@ impl Demand {
     const RESERVE: Demand = Demand {
         specification: usize::MAX,
         closed_loop: ClosedLoop::Sensitivity,
-        limited: Limited::FromAbove,
+        limited: LimitedSide::FromAbove,
         allowed: 100.0,
         rate: 1.0,
     };
@@ -129,14 +130,14 @@ impl Demand {
 
     /// Whether F stands in what is limited: in a spread it cancels.
     fn has_prefilter(&self) -> bool {
-        self.closed_loop.has_prefilter() && self.limited != Limited::Spread
+        self.closed_loop.has_prefilter() && self.limited != LimitedSide::Spread
     }
 
     /// The power of F in what is limited, with the sign of the limit: 1 for an upper one, -1 for a lower one.
     pub(super) fn prefilter_power(&self) -> f64 {
         match self.limited {
-            Limited::FromAbove if self.has_prefilter() => 1.0,
-            Limited::FromBelow if self.has_prefilter() => -1.0,
+            LimitedSide::FromAbove if self.has_prefilter() => 1.0,
+            LimitedSide::FromBelow if self.has_prefilter() => -1.0,
             _ => 0.0,
         }
     }
@@ -156,7 +157,7 @@ impl Demand {
     }
 
     /// The square of A of each plant; `None` where that is 1.
-    fn paths_squared<'c>(&self, column: &'c Column) -> Option<&'c [f64]> {
+    fn paths_squared<'c>(&self, column: &'c FrequencyColumn) -> Option<&'c [f64]> {
         match self.closed_loop.plant_path() {
             PlantPath::PlantAndSensor => Some(&column.loop_squared),
             PlantPath::One => None,
@@ -166,7 +167,7 @@ impl Demand {
     }
 
     /// The square of what is limited, of the plant at this place.
-    fn squared(&self, column: &Column, around: &ColumnLoop, place: usize) -> f64 {
+    fn squared(&self, column: &FrequencyColumn, around: &ColumnLoop, place: usize) -> f64 {
         let path = self.paths_squared(column).map_or(1.0, |paths| paths[place]);
         let closed = path * around.sensitivity_squared[place];
         let closed = if self.closed_loop.has_feedback() { closed * around.feedback_squared } else { closed };
@@ -174,23 +175,23 @@ impl Demand {
     }
 
     /// The square of how far the worst plant, or pair of plants, of the column goes beyond the limit; 0 where there is no plant.
-    pub(super) fn worst_excess(&self, column: &Column, around: &ColumnLoop) -> f64 {
+    pub(super) fn worst_excess(&self, column: &FrequencyColumn, around: &ColumnLoop) -> f64 {
         let sensitivity = &around.sensitivity_squared;
         let [least, greatest] = match self.paths_squared(column) {
             Some(paths) => extremes(products(paths, sensitivity)),
             None => extremes(sensitivity.iter().copied()),
         };
         match self.limited {
-            Limited::FromAbove => greatest * self.compensator_squared(around) / self.allowed,
-            Limited::FromBelow => self.allowed / (least * self.compensator_squared(around)),
-            Limited::Spread => greatest / (least * self.allowed),
+            LimitedSide::FromAbove => greatest * self.compensator_squared(around) / self.allowed,
+            LimitedSide::FromBelow => self.allowed / (least * self.compensator_squared(around)),
+            LimitedSide::Spread => greatest / (least * self.allowed),
         }
     }
 }
 
 impl ColumnLoop {
     /// Closes the loops of a column around this G, behind this F.
-    pub(super) fn close(&mut self, column: &Column, feedback: Complex64, prefilter: Complex64) {
+    pub(super) fn close(&mut self, column: &FrequencyColumn, feedback: Complex64, prefilter: Complex64) {
         self.feedback_squared = feedback.norm_sqr();
         self.prefilter_squared = prefilter.norm_sqr();
         self.sensitivity_squared.clear();

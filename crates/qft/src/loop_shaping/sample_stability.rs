@@ -24,7 +24,7 @@ use crate::stability::{
     FeedbackPath, Irresolution, StabilityStatus, is_stable_by_points, member_stability, own_poles,
     points_with_sensor, poles_lie_below,
 };
-use quotient::Quotient;
+use quotient::BilinearQuotient;
 use rounded_polynomial::{Hurwitz, RoundedPolynomial};
 
 /// Real parts that are told apart: so many a decade, from the least to the largest.
@@ -65,7 +65,7 @@ const ABOVE_NYQUIST: f64 = 20.0;
 #[derive(Clone, Debug)]
 pub struct SampleStability {
     compensation: Compensation,
-    plants: Vec<Plant>,
+    plants: Vec<PlantInLoop>,
     order: Vec<usize>,
 }
 
@@ -84,19 +84,19 @@ pub struct SampleJudgement {
 
 /// A plant within the loop; without a quotient where dead time or measurement leave none.
 #[derive(Clone, Debug)]
-struct Plant {
+struct PlantInLoop {
     member: Member,
-    quotient: Option<Quotient>,
+    quotient: Option<BilinearQuotient>,
     /// With its dead time as a quotient, where it has one: for ranking only.
-    approximation: Option<Quotient>,
+    approximation: Option<BilinearQuotient>,
     /// Frequency in rad/s and P H of a measured plant, which a controller does not move.
     with_sensor: Vec<(f64, Complex64)>,
 }
 
 /// The controller that is asked about.
-struct Question {
+struct AskedController {
     compensation: Compensation,
-    feedback: Option<Quotient>,
+    feedback: Option<BilinearQuotient>,
     path: OnceCell<Result<FeedbackPath, Irresolution>>,
 }
 
@@ -120,11 +120,12 @@ impl SampleStability {
             },
             other => other,
         };
-        let quotient = Quotient::of_member(&member);
-        let approximation = if quotient.is_none() { Quotient::of_delayed_member(&member) } else { None };
+        let quotient = BilinearQuotient::of_member(&member);
+        let approximation =
+            if quotient.is_none() { BilinearQuotient::of_delayed_member(&member) } else { None };
         self.order.insert(0, self.plants.len());
         let with_sensor = points_with_sensor(&member, &self.compensation);
-        self.plants.push(Plant { member, quotient, approximation, with_sensor });
+        self.plants.push(PlantInLoop { member, quotient, approximation, with_sensor });
     }
 
     /// A plant without polynomials, as far as the images of a sampled loop need it.
@@ -234,9 +235,13 @@ impl SampleStability {
         Ok(Some(greatest))
     }
 
-    fn question(&self, feedback: &TransferFunction) -> Result<Question, LinearError> {
+    fn question(&self, feedback: &TransferFunction) -> Result<AskedController, LinearError> {
         let compensation = self.compensation.with_feedback(feedback.clone())?;
-        Ok(Question { compensation, feedback: Quotient::of_function(feedback), path: OnceCell::new() })
+        Ok(AskedController {
+            compensation,
+            feedback: BilinearQuotient::of_function(feedback),
+            path: OnceCell::new(),
+        })
     }
 
     fn ask_first(&mut self, position: Option<usize>) {
@@ -246,8 +251,8 @@ impl SampleStability {
     }
 }
 
-impl Question {
-    fn is_stable(&self, plant: &Plant, undecided_tables: &mut usize) -> bool {
+impl AskedController {
+    fn is_stable(&self, plant: &PlantInLoop, undecided_tables: &mut usize) -> bool {
         match self.characteristic(plant).map(|characteristic| characteristic.hurwitz()) {
             Some(Hurwitz::Yes) => true,
             Some(Hurwitz::No) => false,
@@ -267,12 +272,12 @@ impl Question {
     }
 
     /// The characteristic polynomial, without a dead time that leaves none.
-    fn characteristic(&self, plant: &Plant) -> Option<RoundedPolynomial> {
+    fn characteristic(&self, plant: &PlantInLoop) -> Option<RoundedPolynomial> {
         Some(plant.quotient.as_ref()?.closed(self.feedback.as_ref()?))
     }
 
     /// Whether no pole has a real part above this one; where that cannot be told, it has none, unless there is no end to its turns.
-    fn lies_below(&self, plant: &Plant, real_part: f64) -> bool {
+    fn lies_below(&self, plant: &PlantInLoop, real_part: f64) -> bool {
         if let Some(characteristic) = self.characteristic(plant) {
             return self.all_below(&characteristic, real_part);
         }
@@ -301,7 +306,7 @@ impl Question {
     }
 
     /// The first of the real parts that are told apart below which all poles lie.
-    fn largest_real_part(&self, plant: &Plant) -> f64 {
+    fn largest_real_part(&self, plant: &PlantInLoop) -> f64 {
         first_below(|real_part| self.lies_below(plant, real_part))
     }
 }

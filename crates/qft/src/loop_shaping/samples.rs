@@ -85,12 +85,12 @@ pub struct Samples {
     keeping: Keeping,
     plants: Vec<PlantPoint>,
     members: Vec<Member>,
-    columns: Vec<Column>,
+    columns: Vec<FrequencyColumn>,
 }
 
 /// The plants at one frequency: P, Pd, H as they enter the closed loops, each number in an array of its own.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Column {
+pub(super) struct FrequencyColumn {
     pub(super) frequency: f64,
     /// Whether every plant is looked at here.
     grid: bool,
@@ -276,7 +276,7 @@ impl Samples {
         &self.around
     }
 
-    pub(super) fn columns(&self) -> &[Column] {
+    pub(super) fn columns(&self) -> &[FrequencyColumn] {
         &self.columns
     }
 
@@ -286,9 +286,9 @@ impl Samples {
             return Ok(index);
         }
         let member = match plant_at(&self.problem, point)? {
-            Plant::Rational(coefficients) => self.around.member(coefficients)?,
-            Plant::Measured(measured) => self.around.measured(measured),
-            Plant::Responding(plant) => self.around.responding(plant),
+            FamilyPlant::Rational(coefficients) => self.around.member(coefficients)?,
+            FamilyPlant::Measured(measured) => self.around.measured(measured),
+            FamilyPlant::Responding(plant) => self.around.responding(plant),
         };
         self.plants.push(point.clone());
         self.members.push(member);
@@ -300,7 +300,7 @@ impl Samples {
         let place = self.columns.partition_point(|column| column.frequency < frequency);
         if self.columns.get(place).is_none_or(|column| column.frequency != frequency) {
             let demands = self.demands(frequency);
-            self.columns.insert(place, Column::new(frequency, demands));
+            self.columns.insert(place, FrequencyColumn::new(frequency, demands));
         }
         place
     }
@@ -331,9 +331,9 @@ impl Samples {
     }
 }
 
-impl Column {
-    fn new(frequency: f64, demands: Vec<Demand>) -> Column {
-        Column {
+impl FrequencyColumn {
+    fn new(frequency: f64, demands: Vec<Demand>) -> FrequencyColumn {
+        FrequencyColumn {
             frequency,
             grid: false,
             demands,
@@ -353,16 +353,16 @@ impl Column {
 }
 
 /// A plant of a family.
-enum Plant<'a> {
+enum FamilyPlant<'a> {
     Rational(PlantCoefficients<f64>),
     Measured(&'a MeasuredPlant),
     Responding(Arc<dyn RespondingPlant>),
 }
 
-fn plant_at<'a>(problem: &'a DesignProblem, point: &PlantPoint) -> Result<Plant<'a>, SamplesError> {
+fn plant_at<'a>(problem: &'a DesignProblem, point: &PlantPoint) -> Result<FamilyPlant<'a>, SamplesError> {
     let of_box = |plant: PlantMember| match plant {
-        PlantMember::Rational(coefficients) => Plant::Rational(coefficients),
-        PlantMember::Responding(plant) => Plant::Responding(plant),
+        PlantMember::Rational(coefficients) => FamilyPlant::Rational(coefficients),
+        PlantMember::Responding(plant) => FamilyPlant::Responding(plant),
     };
     let plant = match (&problem.family, point) {
         (_, PlantPoint::Beside(index)) => {
@@ -374,7 +374,7 @@ fn plant_at<'a>(problem: &'a DesignProblem, point: &PlantPoint) -> Result<Plant<
             complete.then(|| family.plant().member(values)).flatten().map(of_box)
         }
         (Family::Measured(family), PlantPoint::Measured(index)) => {
-            family.plants().get(*index).map(Plant::Measured)
+            family.plants().get(*index).map(FamilyPlant::Measured)
         }
         _ => None,
     };

@@ -9,7 +9,7 @@ use super::margins::{
     ColumnLoop, DelayMargins, Demand, MarginCandidate, bandwidth, candidates, delay_margins,
 };
 use super::sample_stability::SampleStability;
-use super::samples::{Column, Samples, SamplesError};
+use super::samples::{FrequencyColumn, Samples, SamplesError};
 use super::structure::{DECIBELS_PER_NEPER, Structure, StructureResponse};
 use super::{Judgement, MarginRow, SearchProblem, Slopes};
 use crate::closed_loop::Compensation;
@@ -206,7 +206,7 @@ impl Shaping {
 
     /// Judges the law of this loop in place of the one at x, whose objective it keeps: what rounded coefficients make of a controller.
     pub(crate) fn judge_deployed(&mut self, x: &[f64], law: &Compensation) -> Judgement {
-        let response = |column: &Column| {
+        let response = |column: &FrequencyColumn| {
             let found = law.response(column.frequency);
             [found.feedback, found.prefilter]
         };

@@ -10,7 +10,7 @@ use phea_dynamics::watch::{Stopped, Watch, part, tell};
 use super::descent::{Binding, Descent, DescentOptions, DescentStatus, DescentWork, is_usable};
 use super::search::{Aim, Judgement, SearchProblem};
 use evolution::Evolution;
-use spread::Spread;
+use spread::AdditiveRecurrence;
 
 /// Starts nearer to one another than this share of the bounds in every coordinate count as one.
 const DISTINCT: f64 = 0.05;
@@ -99,15 +99,15 @@ pub struct SearchResult {
 
 /// A point and its judgement.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Candidate {
+pub(super) struct JudgedPoint {
     pub(super) x: Vec<f64>,
     pub(super) judgement: Judgement,
 }
 
-impl Candidate {
+impl JudgedPoint {
     /// Stable before unstable; then the larger worst margin, or where both come near to being met and the objective is aimed at the lesser
     /// objective; or the lesser instability.
-    fn is_better_than(&self, other: &Candidate, aim: Aim) -> bool {
+    fn is_better_than(&self, other: &JudgedPoint, aim: Aim) -> bool {
         match (is_usable(&self.judgement), is_usable(&other.judgement)) {
             (true, true) => {
                 let [own, others] = [&self.judgement, &other.judgement];
@@ -123,7 +123,7 @@ impl Candidate {
     }
 
     /// The best first, equals in their order.
-    fn sort(candidates: &mut [Candidate], aim: Aim) {
+    fn sort(candidates: &mut [JudgedPoint], aim: Aim) {
         candidates.sort_by(|a, b| match a.is_better_than(b, aim) {
             true => Ordering::Less,
             false if b.is_better_than(a, aim) => Ordering::Greater,
@@ -181,7 +181,7 @@ pub fn search(
     options: &SearchOptions,
     watch: Watch<'_>,
 ) -> Result<Option<SearchResult>, Stopped> {
-    let mut search = Search { problem, options, work: DescentWork::default(), random: options.seed };
+    let mut search = StartSearch { problem, options, work: DescentWork::default(), random: options.seed };
     let samples = search.sampled(given, &mut part(watch, STAGE, [0.0, 0.2]))?;
     let points = search.evolved(samples, &mut part(watch, STAGE, [0.2, 0.4]))?;
     let mut descents = search.descents_from(&points);
@@ -195,7 +195,7 @@ pub fn search(
 const STAGE: &str = "search";
 
 /// A search on its way.
-struct Search<'a> {
+struct StartSearch<'a> {
     problem: &'a mut dyn SearchProblem,
     options: &'a SearchOptions,
     /// Work of samples, evolution, and descents left behind.
@@ -203,9 +203,9 @@ struct Search<'a> {
     random: u64,
 }
 
-impl Search<'_> {
+impl StartSearch<'_> {
     /// The points that are given and those that are spread over the bounds, the best first.
-    fn sampled(&mut self, given: Vec<Vec<f64>>, watch: Watch<'_>) -> Result<Vec<Candidate>, Stopped> {
+    fn sampled(&mut self, given: Vec<Vec<f64>>, watch: Watch<'_>) -> Result<Vec<JudgedPoint>, Stopped> {
         let mut candidates = Vec::new();
         for x in given.into_iter().rev() {
             tell(watch, STAGE, candidates.len(), self.options.samples)?;
@@ -213,18 +213,18 @@ impl Search<'_> {
         }
         let bounds = self.problem.bounds().to_vec();
         if candidates.len() < self.options.samples {
-            let spread = Spread::new(bounds.len(), &mut self.random);
+            let spread = AdditiveRecurrence::new(bounds.len(), &mut self.random);
             for index in candidates.len()..self.options.samples {
                 tell(watch, STAGE, index, self.options.samples)?;
                 candidates.push(self.scanned(spread.point(index, &bounds)));
             }
         }
-        Candidate::sort(&mut candidates, self.options.descent.aim);
+        JudgedPoint::sort(&mut candidates, self.options.descent.aim);
         Ok(candidates)
     }
 
     /// The samples, where enough of them are stable; otherwise a population that has evolved from them, the best first.
-    fn evolved(&mut self, samples: Vec<Candidate>, watch: Watch<'_>) -> Result<Vec<Candidate>, Stopped> {
+    fn evolved(&mut self, samples: Vec<JudgedPoint>, watch: Watch<'_>) -> Result<Vec<JudgedPoint>, Stopped> {
         let mut evolution = Evolution::new(&samples, self.problem.bounds());
         if self.is_enough(evolution.candidates()) || evolution.is_too_small() {
             return Ok(samples);
@@ -235,12 +235,12 @@ impl Search<'_> {
             self.work.judgements += 1;
         }
         let mut candidates = evolution.candidates().to_vec();
-        Candidate::sort(&mut candidates, self.options.descent.aim);
+        JudgedPoint::sort(&mut candidates, self.options.descent.aim);
         Ok(candidates)
     }
 
     /// The point, or the best along its first x.
-    fn scanned(&mut self, x: Vec<f64>) -> Candidate {
+    fn scanned(&mut self, x: Vec<f64>) -> JudgedPoint {
         let range = self.problem.bounds().first().copied().unwrap_or_default();
         let values = (0..self.options.scanned).map(|step| {
             let share = (step as f64 + 0.5) / self.options.scanned as f64;
@@ -261,28 +261,28 @@ impl Search<'_> {
         best
     }
 
-    fn judged(&mut self, x: Vec<f64>) -> Candidate {
+    fn judged(&mut self, x: Vec<f64>) -> JudgedPoint {
         self.work.judgements += 1;
         let judgement = self.problem.judge(&x);
-        Candidate { x, judgement }
+        JudgedPoint { x, judgement }
     }
 
-    fn is_enough(&self, candidates: &[Candidate]) -> bool {
+    fn is_enough(&self, candidates: &[JudgedPoint]) -> bool {
         candidates.iter().filter(|candidate| is_usable(&candidate.judgement)).count() >= self.options.starts
     }
 
     /// Descents from the best candidates that are distinct; the candidates are sorted.
-    fn descents_from(&self, candidates: &[Candidate]) -> Vec<Descent> {
+    fn descents_from(&self, candidates: &[JudgedPoint]) -> Vec<Descent> {
         let bounds = self.problem.bounds();
-        let usable: Vec<&Candidate> =
+        let usable: Vec<&JudgedPoint> =
             candidates.iter().filter(|candidate| is_usable(&candidate.judgement)).collect();
-        let mut modest: Vec<&Candidate> =
+        let mut modest: Vec<&JudgedPoint> =
             usable.iter().copied().filter(|one| one.judgement.worst_margin_db > MODEST_DB).collect();
         modest.sort_by(|one, other| one.judgement.objective_db.total_cmp(&other.judgement.objective_db));
         if self.options.descent.aim == Aim::WorstMargin {
             modest.clear();
         }
-        let mut starts: Vec<&Candidate> = vec![];
+        let mut starts: Vec<&JudgedPoint> = vec![];
         add_distinct(&mut starts, self.options.starts / 2, &usable, bounds);
         add_distinct(&mut starts, self.options.starts, &modest, bounds);
         add_distinct(&mut starts, self.options.starts, &usable, bounds);
@@ -330,7 +330,7 @@ impl Search<'_> {
         });
     }
 
-    fn result(&self, points: &[Candidate], descents: &[Descent]) -> Option<SearchResult> {
+    fn result(&self, points: &[JudgedPoint], descents: &[Descent]) -> Option<SearchResult> {
         let end = |descent: &Descent| {
             Some(DescentEnd {
                 x: descent.x().to_vec(),
@@ -341,7 +341,7 @@ impl Search<'_> {
         let ends: Vec<DescentEnd> = descents.iter().filter_map(end).collect();
         let (status, best) = match ends.first() {
             Some(DescentEnd { x, judgement, status }) => {
-                (SearchStatus::Ended(*status), Candidate { x: x.clone(), judgement: *judgement })
+                (SearchStatus::Ended(*status), JudgedPoint { x: x.clone(), judgement: *judgement })
             }
             None => {
                 let best = points.first()?.clone();
@@ -382,9 +382,9 @@ fn standing(options: &DescentOptions, judgement: Option<Judgement>) -> (bool, f6
 
 /// Adds those that lie apart from all starts, until there are so many.
 fn add_distinct<'c>(
-    starts: &mut Vec<&'c Candidate>,
+    starts: &mut Vec<&'c JudgedPoint>,
     most: usize,
-    from: &[&'c Candidate],
+    from: &[&'c JudgedPoint],
     bounds: &[[f64; 2]],
 ) {
     for candidate in from {
@@ -395,7 +395,7 @@ fn add_distinct<'c>(
 }
 
 /// Whether two points differ by a share of the bounds worth a second descent.
-fn is_distinct(a: &Candidate, b: &Candidate, bounds: &[[f64; 2]]) -> bool {
+fn is_distinct(a: &JudgedPoint, b: &JudgedPoint, bounds: &[[f64; 2]]) -> bool {
     let apart = a.x.iter().zip(&b.x).zip(bounds);
     apart.into_iter().any(|((a, b), [low, high])| (a - b).abs() > DISTINCT * (high - low))
 }

@@ -15,7 +15,7 @@ pub(super) const DECIBELS_PER_NEPER: f64 = 20.0 / std::f64::consts::LN_10;
 
 /// One factor of a structure. Every number has its least and greatest value; frequencies in rad/s.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Part {
+pub enum StructureFactor {
     /// An element without free numbers, such as an integrator.
     Fixed(Element),
     /// s/z + 1
@@ -58,13 +58,13 @@ pub enum Part {
 /// ```
 /// use phea_dynamics::controller::Element;
 /// use phea_dynamics::portable::ln;
-/// use phea_qft::loop_shaping::{Part, Structure};
+/// use phea_qft::loop_shaping::{StructureFactor, Structure};
 /// # fn main() -> Result<(), phea_dynamics::linear::LinearError> {
 /// let corner = [0.1, 1000.0];
 /// let parts = vec![
-///     Part::Fixed(Element::Integrator),
-///     Part::RealZero { frequency: corner },
-///     Part::RealPole { frequency: corner },
+///     StructureFactor::Fixed(Element::Integrator),
+///     StructureFactor::RealZero { frequency: corner },
+///     StructureFactor::RealPole { frequency: corner },
 /// ];
 /// let structure = Structure { sign: 1.0, gain: [1e-3, 1e3], parts };
 /// let x = [2.0, 5.0, 50.0].map(ln); // k, z, p
@@ -82,7 +82,7 @@ pub struct Structure {
     /// Least and greatest magnitude of the gain k.
     pub gain: [f64; 2],
     /// The factors.
-    pub parts: Vec<Part>,
+    pub parts: Vec<StructureFactor>,
 }
 
 /// s/w + 1, or s^2/w^2 + 2 zeta s/w + 1, to the power of 1 or -1.
@@ -92,25 +92,29 @@ struct Factor {
     pair: bool,
 }
 
-impl Part {
+impl StructureFactor {
     /// `None` for an element without free numbers.
     fn factor(&self) -> Option<Factor> {
         match self {
-            Part::Fixed(_) => None,
-            Part::RealZero { .. } => Some(Factor { power: 1.0, pair: false }),
-            Part::RealPole { .. } => Some(Factor { power: -1.0, pair: false }),
-            Part::ZeroPair { .. } => Some(Factor { power: 1.0, pair: true }),
-            Part::PolePair { .. } => Some(Factor { power: -1.0, pair: true }),
+            StructureFactor::Fixed(_) => None,
+            StructureFactor::RealZero { .. } => Some(Factor { power: 1.0, pair: false }),
+            StructureFactor::RealPole { .. } => Some(Factor { power: -1.0, pair: false }),
+            StructureFactor::ZeroPair { .. } => Some(Factor { power: 1.0, pair: true }),
+            StructureFactor::PolePair { .. } => Some(Factor { power: -1.0, pair: true }),
         }
     }
 
     /// Least and greatest value of each number.
     fn ranges(&self) -> Vec<[f64; 2]> {
         match *self {
-            Part::Fixed(_) => vec![],
-            Part::RealZero { frequency } | Part::RealPole { frequency } => vec![frequency],
-            Part::ZeroPair { natural_frequency, damping_ratio }
-            | Part::PolePair { natural_frequency, damping_ratio } => vec![natural_frequency, damping_ratio],
+            StructureFactor::Fixed(_) => vec![],
+            StructureFactor::RealZero { frequency } | StructureFactor::RealPole { frequency } => {
+                vec![frequency]
+            }
+            StructureFactor::ZeroPair { natural_frequency, damping_ratio }
+            | StructureFactor::PolePair { natural_frequency, damping_ratio } => {
+                vec![natural_frequency, damping_ratio]
+            }
         }
     }
 
@@ -118,13 +122,13 @@ impl Part {
     fn element(&self, mut numbers: impl Iterator<Item = f64>) -> Element {
         let mut next = || numbers.next().unwrap_or(f64::NAN);
         match self {
-            Part::Fixed(element) => element.clone(),
-            Part::RealZero { .. } => Element::RealZero { frequency: next() },
-            Part::RealPole { .. } => Element::RealPole { frequency: next() },
-            Part::ZeroPair { .. } => {
+            StructureFactor::Fixed(element) => element.clone(),
+            StructureFactor::RealZero { .. } => Element::RealZero { frequency: next() },
+            StructureFactor::RealPole { .. } => Element::RealPole { frequency: next() },
+            StructureFactor::ZeroPair { .. } => {
                 Element::ComplexZeros { natural_frequency: next(), damping_ratio: next() }
             }
-            Part::PolePair { .. } => {
+            StructureFactor::PolePair { .. } => {
                 Element::ComplexPoles { natural_frequency: next(), damping_ratio: next() }
             }
         }
@@ -134,7 +138,7 @@ impl Part {
 impl Structure {
     /// What is given, without free numbers.
     pub fn fixed_to(function: &TransferFunction) -> Structure {
-        let parts = vec![Part::Fixed(Element::General(function.clone()))];
+        let parts = vec![StructureFactor::Fixed(Element::General(function.clone()))];
         Structure { sign: 1.0, gain: [1.0, 1.0], parts }
     }
 
@@ -159,7 +163,7 @@ impl Structure {
 
     /// Least and greatest value of every number, that of the gain first.
     fn ranges(&self) -> Vec<[f64; 2]> {
-        std::iter::once(self.gain).chain(self.parts.iter().flat_map(Part::ranges)).collect()
+        std::iter::once(self.gain).chain(self.parts.iter().flat_map(StructureFactor::ranges)).collect()
     }
 
     /// Every number at x, the gain first.
@@ -233,13 +237,13 @@ impl Structure {
 
     /// The parts with free numbers, in turn.
     fn factors(&self) -> impl Iterator<Item = Factor> {
-        self.parts.iter().filter_map(Part::factor)
+        self.parts.iter().filter_map(StructureFactor::factor)
     }
 
     /// The product of the parts without free numbers.
     fn fixed(&self) -> Result<TransferFunction, LinearError> {
         let elements = self.parts.iter().filter_map(|part| match part {
-            Part::Fixed(element) => Some(element.clone()),
+            StructureFactor::Fixed(element) => Some(element.clone()),
             _ => None,
         });
         Compensator::new(elements.collect()).transfer_function()

@@ -42,7 +42,7 @@ pub(super) struct Subproblem<'a> {
 
 /// A step and what it promises.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Answer {
+pub(super) struct PredictedStep {
     /// d
     pub(super) step: Vec<f64>,
     /// v at this step, from all rows; dB.
@@ -55,7 +55,7 @@ pub(super) struct Answer {
 
 /// Why there is no step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Failure {
+pub(super) enum SubproblemFailure {
     /// A slope, a margin or a bound is no number.
     NotFinite,
     /// Nothing may move, or no margin is given to improve.
@@ -83,9 +83,9 @@ struct Scaled {
 
 impl Subproblem<'_> {
     /// The best step.
-    pub(super) fn solve(&self) -> Result<Answer, Failure> {
+    pub(super) fn solve(&self) -> Result<PredictedStep, SubproblemFailure> {
         if !self.is_finite() {
-            return Err(Failure::NotFinite);
+            return Err(SubproblemFailure::NotFinite);
         }
         let scaled = self.scaled()?;
         let (matrix, limits) = scaled.constraints(self.margins);
@@ -103,14 +103,14 @@ impl Subproblem<'_> {
         };
         let cones = [NonnegativeConeT(limits.len())];
         let mut solver = DefaultSolver::new(&quadratic, &linear, &matrix, &limits, &cones, settings)
-            .map_err(|_| Failure::NotSolved)?;
+            .map_err(|_| SubproblemFailure::NotSolved)?;
         solver.solve();
         let solution = &solver.solution;
         if !matches!(
             solution.status,
             SolverStatus::Solved | SolverStatus::AlmostSolved | SolverStatus::InsufficientProgress
         ) {
-            return Err(Failure::NotSolved);
+            return Err(SubproblemFailure::NotSolved);
         }
         self.answer(&scaled, &solution.x, &solution.z)
     }
@@ -142,10 +142,10 @@ impl Subproblem<'_> {
         }
     }
 
-    fn scaled(&self) -> Result<Scaled, Failure> {
+    fn scaled(&self) -> Result<Scaled, SubproblemFailure> {
         let scale = self.step_bounds.iter().flatten().fold(0.0, |scale: f64, bound| scale.max(bound.abs()));
         if scale <= 0.0 || (self.aim == Aim::WorstMargin && self.margins.is_empty()) {
-            return Err(Failure::NothingToDo);
+            return Err(SubproblemFailure::NothingToDo);
         }
         let bounds: Vec<[f64; 2]> =
             self.step_bounds.iter().map(|[low, high]| [low / scale, high / scale]).collect();
@@ -186,9 +186,14 @@ impl Subproblem<'_> {
         (triangle.matrix(size, size), linear)
     }
 
-    fn answer(&self, scaled: &Scaled, point: &[f64], dual: &[f64]) -> Result<Answer, Failure> {
+    fn answer(
+        &self,
+        scaled: &Scaled,
+        point: &[f64],
+        dual: &[f64],
+    ) -> Result<PredictedStep, SubproblemFailure> {
         if !finite(point) || !finite(dual) {
-            return Err(Failure::NotSolved);
+            return Err(SubproblemFailure::NotSolved);
         }
         let mut step = vec![0.0; self.step_bounds.len()];
         let held = dual.iter().skip(scaled.kept.len());
@@ -209,7 +214,7 @@ impl Subproblem<'_> {
         }
         let error = self.optimality_error(scaled, &step, &multipliers);
         if error > ERROR_MAXIMUM {
-            return Err(Failure::Inaccurate(error));
+            return Err(SubproblemFailure::Inaccurate(error));
         }
         let violation_db = self.violation(&step);
         let bent = self.curvature.map_or(0.0, |curvature| dot(&curvature.times(&step), &step) / 2.0);
@@ -218,7 +223,7 @@ impl Subproblem<'_> {
             Aim::Objective => dot(self.objective_slopes, &step) + bent,
         };
         let decrease_db = self.penalty() * (scaled.violation - violation_db) - risen;
-        Ok(Answer { step, violation_db, decrease_db, multipliers })
+        Ok(PredictedStep { step, violation_db, decrease_db, multipliers })
     }
 
     /// How much the Lagrangian could still fall within the box, relative to what its terms could change it by: zero at the optimum.
@@ -420,8 +425,8 @@ mod tests {
         let rows = [row(0, f64::NAN, 1.0, &[1.0])];
         let solve =
             |aim, rows: &[MarginRow], bounds| subproblem(aim, &[1.0], rows, bounds).solve().unwrap_err();
-        assert_eq!(solve(Aim::Objective, &rows, &[[-1.0, 1.0]]), Failure::NotFinite);
-        assert_eq!(solve(Aim::WorstMargin, &[], &[[-1.0, 1.0]]), Failure::NothingToDo);
-        assert_eq!(solve(Aim::Objective, &[], &[[0.0, 0.0]]), Failure::NothingToDo);
+        assert_eq!(solve(Aim::Objective, &rows, &[[-1.0, 1.0]]), SubproblemFailure::NotFinite);
+        assert_eq!(solve(Aim::WorstMargin, &[], &[[-1.0, 1.0]]), SubproblemFailure::NothingToDo);
+        assert_eq!(solve(Aim::Objective, &[], &[[0.0, 0.0]]), SubproblemFailure::NothingToDo);
     }
 }

@@ -212,13 +212,13 @@ fn is_tracking(specification: &Specification) -> bool {
     specification.requirement.is_tracking()
 }
 
-type Plants<'a> = [(LoopResponse, &'a TemplatePoint)];
+type ChartPlants<'a> = [(LoopResponse, &'a TemplatePoint)];
 
 /// The plant with the least margin.
 fn worst<'a>(
     specification: &Specification,
     frequency: f64,
-    plants: &Plants<'a>,
+    plants: &ChartPlants<'a>,
 ) -> Option<(f64, &'a TemplatePoint)> {
     let margins = plants
         .iter()
@@ -230,7 +230,7 @@ fn worst<'a>(
 fn spread<'a>(
     specification: &Specification,
     frequency: f64,
-    plants: &Plants<'a>,
+    plants: &ChartPlants<'a>,
 ) -> Option<(f64, &'a TemplatePoint, &'a TemplatePoint)> {
     let (lower, upper) = specification.requirement.limits();
     let allowed = upper.magnitude(frequency)? / lower?.magnitude(frequency)?;

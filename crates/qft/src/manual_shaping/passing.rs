@@ -5,7 +5,7 @@ use phea_dynamics::controller::{Element, Timing};
 use phea_dynamics::linear::Discretization;
 use phea_dynamics::portable;
 
-use super::reach::{Change, Pattern, Reach};
+use super::reach::{ElementPattern, ElementTarget, Reach};
 use crate::stability::rounded;
 
 /// A point of the Nichols chart, or one of its coordinates.
@@ -40,7 +40,7 @@ pub enum PassError {
     #[error("{} needs {needs} of the point", pattern.name())]
     Incomplete {
         /// Which element.
-        pattern: Pattern,
+        pattern: ElementPattern,
         /// What of the point.
         needs: &'static str,
     },
@@ -48,7 +48,7 @@ pub enum PassError {
     #[error("{} cannot have {what} {value}", pattern.name())]
     Number {
         /// Which element.
-        pattern: Pattern,
+        pattern: ElementPattern,
         /// Which of its numbers.
         what: &'static str,
         /// As given.
@@ -61,7 +61,7 @@ pub enum PassError {
     #[error("{}", unreachable_words(*pattern, *turn_deg, *raise_db, reach))]
     Unreachable {
         /// Which element.
-        pattern: Pattern,
+        pattern: ElementPattern,
         /// The change of phase that it takes, degrees; `None` where no phase is wanted.
         turn_deg: Option<f64>,
         /// The change of magnitude that it takes, dB; `None` where no magnitude is wanted.
@@ -101,22 +101,22 @@ pub enum PassError {
 /// ```
 /// use num_complex::Complex64;
 /// use phea_dynamics::controller::Timing;
-/// use phea_qft::manual_shaping::{PassError, Pattern, WantedPoint, pass_through};
+/// use phea_qft::manual_shaping::{PassError, ElementPattern, WantedPoint, pass_through};
 /// let polar = |size: f64, degrees: f64| {
 ///     Complex64::new(size * degrees.to_radians().cos(), size * degrees.to_radians().sin())
 /// };
 /// let present = polar(0.251_188_643, -160.0);
 /// let wanted = WantedPoint { frequency_rad_per_s: 20.0, magnitude_db: Some(0.0), phase_deg: Some(-120.0) };
-/// let lead = pass_through(Pattern::Lead, &wanted, present, &Timing::default())?;
+/// let lead = pass_through(ElementPattern::Lead, &wanted, present, &Timing::default())?;
 /// let reached = present * lead.transfer_function().unwrap().at_frequency(20.0);
 /// assert!((reached - polar(1.0, -120.0)).norm_sqr() < 1e-28);
 /// let ahead = WantedPoint { phase_deg: Some(-60.0), ..wanted };
-/// let refused = pass_through(Pattern::Lead, &ahead, present, &Timing::default());
+/// let refused = pass_through(ElementPattern::Lead, &ahead, present, &Timing::default());
 /// assert!(matches!(refused, Err(PassError::Unreachable { reach, .. }) if reach.turn_deg == [0.0, 90.0]));
 /// # Ok::<(), PassError>(())
 /// ```
 pub fn pass_through(
-    pattern: Pattern,
+    pattern: ElementPattern,
     wanted: &WantedPoint,
     present: Complex64,
     timing: &Timing,
@@ -143,11 +143,11 @@ pub fn pass_through(
 
 /// What the element must be, and at which frequency of its own.
 fn change(
-    pattern: Pattern,
+    pattern: ElementPattern,
     wanted: &WantedPoint,
     present: Complex64,
     timing: &Timing,
-) -> Result<Change, PassError> {
+) -> Result<ElementTarget, PassError> {
     let frequency_rad_per_s = wanted.frequency_rad_per_s;
     if !(frequency_rad_per_s > 0.0 && frequency_rad_per_s.is_finite()) {
         return Err(PassError::Frequency { frequency_rad_per_s });
@@ -158,7 +158,7 @@ fn change(
     }
     let magnitude = wanted.magnitude_db.map_or(size, |decibels| portable::pow(10.0, decibels / 20.0));
     let turn = wanted.phase_deg.map_or(0.0, |degrees| degrees.to_radians() - portable::argument(present));
-    Ok(Change {
+    Ok(ElementTarget {
         frequency: element_frequency(pattern, frequency_rad_per_s, timing)?,
         ratio: magnitude / size,
         turn: principal(turn),
@@ -166,14 +166,18 @@ fn change(
 }
 
 /// w, or what the bilinear rule makes of it; a gain has no frequency.
-fn element_frequency(pattern: Pattern, frequency_rad_per_s: f64, timing: &Timing) -> Result<f64, PassError> {
+fn element_frequency(
+    pattern: ElementPattern,
+    frequency_rad_per_s: f64,
+    timing: &Timing,
+) -> Result<f64, PassError> {
     let Some(sample_time_s) = timing.sample_time_s else { return Ok(frequency_rad_per_s) };
     let half = frequency_rad_per_s * sample_time_s / 2.0;
     if half >= std::f64::consts::FRAC_PI_2 {
         return Err(PassError::Frequency { frequency_rad_per_s });
     }
     match (pattern, timing.discretization) {
-        (Pattern::Gain, _) => Ok(frequency_rad_per_s),
+        (ElementPattern::Gain, _) => Ok(frequency_rad_per_s),
         (_, Discretization::Tustin) => Ok(2.0 / sample_time_s * portable::tan(half)),
         _ => Err(PassError::Discretization),
     }
@@ -186,11 +190,11 @@ fn principal(angle: f64) -> f64 {
     if rest <= -std::f64::consts::PI { rest + turn } else { rest }
 }
 
-fn check_numbers(pattern: Pattern) -> Result<(), PassError> {
+fn check_numbers(pattern: ElementPattern) -> Result<(), PassError> {
     let (what, value) = match pattern {
-        Pattern::RollOff { damping_ratio } => ("a damping ratio of", damping_ratio),
-        Pattern::NotchHere { pole_damping_ratio } => ("a damping ratio of", pole_damping_ratio),
-        Pattern::NotchBeside { natural_frequency } => ("a frequency of", natural_frequency),
+        ElementPattern::RollOff { damping_ratio } => ("a damping ratio of", damping_ratio),
+        ElementPattern::NotchHere { pole_damping_ratio } => ("a damping ratio of", pole_damping_ratio),
+        ElementPattern::NotchBeside { natural_frequency } => ("a frequency of", natural_frequency),
         _ => return Ok(()),
     };
     if value > 0.0 && value.is_finite() { Ok(()) } else { Err(PassError::Number { pattern, what, value }) }
@@ -205,7 +209,7 @@ fn signed(value: f64) -> String {
 }
 
 fn unreachable_words(
-    pattern: Pattern,
+    pattern: ElementPattern,
     turn_deg: Option<f64>,
     raise_db: Option<f64>,
     reach: &Reach,

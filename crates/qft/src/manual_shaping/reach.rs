@@ -6,7 +6,7 @@ use phea_dynamics::portable;
 
 /// Which element is to be solved for, and its numbers that are not free.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Pattern {
+pub enum ElementPattern {
     /// k > 0: the magnitude alone.
     Gain,
     /// 1/(s/p + 1): magnitude or phase.
@@ -51,7 +51,7 @@ pub struct Reach {
 
 /// What an element must be at one frequency: E = r e^(j theta).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Change {
+pub(super) struct ElementTarget {
     /// w, rad/s
     pub(super) frequency: f64,
     /// r
@@ -63,46 +63,46 @@ pub(super) struct Change {
 /// Two magnitudes, or angles in rad, that are as good as equal.
 const TOLERANCE: f64 = 1e-9;
 
-impl Pattern {
+impl ElementPattern {
     /// Its name, with an article.
     pub fn name(self) -> &'static str {
         match self {
-            Pattern::Gain => "a gain",
-            Pattern::RealPole => "a real pole",
-            Pattern::RealZero => "a real zero",
-            Pattern::Lead => "a lead",
-            Pattern::Lag => "a lag",
-            Pattern::ComplexPoles => "a complex pair of poles",
-            Pattern::ComplexZeros => "a complex pair of zeros",
-            Pattern::RollOff { .. } => "a roll-off",
-            Pattern::ProportionalIntegral => "a PI element",
-            Pattern::NotchHere { .. } => "a notch at this frequency",
-            Pattern::NotchBeside { .. } => "a notch next to this frequency",
+            ElementPattern::Gain => "a gain",
+            ElementPattern::RealPole => "a real pole",
+            ElementPattern::RealZero => "a real zero",
+            ElementPattern::Lead => "a lead",
+            ElementPattern::Lag => "a lag",
+            ElementPattern::ComplexPoles => "a complex pair of poles",
+            ElementPattern::ComplexZeros => "a complex pair of zeros",
+            ElementPattern::RollOff { .. } => "a roll-off",
+            ElementPattern::ProportionalIntegral => "a PI element",
+            ElementPattern::NotchHere { .. } => "a notch at this frequency",
+            ElementPattern::NotchBeside { .. } => "a notch next to this frequency",
         }
     }
 
     /// Whether one of magnitude and phase decides it.
     pub(super) fn has_one_number(self) -> bool {
-        use Pattern::{Gain, NotchHere, RealPole, RealZero, RollOff};
+        use ElementPattern::{Gain, NotchHere, RealPole, RealZero, RollOff};
         matches!(self, Gain | RealPole | RealZero | RollOff { .. } | NotchHere { .. })
     }
 
     /// Whether it leaves the phase alone.
     pub(super) fn keeps_phase(self) -> bool {
-        matches!(self, Pattern::Gain | Pattern::NotchHere { .. })
+        matches!(self, ElementPattern::Gain | ElementPattern::NotchHere { .. })
     }
 
     /// What it can do; the magnitudes at this change of phase, or at any where none is given.
     pub(super) fn reach(self, frequency: f64, turn: Option<f64>) -> Reach {
         let (back, ahead) = ([-90.0, 0.0], [0.0, 90.0]);
         let turn_deg = match self {
-            Pattern::Gain | Pattern::NotchHere { .. } => [0.0, 0.0],
-            Pattern::RealPole | Pattern::Lag | Pattern::ProportionalIntegral => back,
-            Pattern::RealZero | Pattern::Lead => ahead,
-            Pattern::ComplexPoles | Pattern::RollOff { .. } => [-180.0, 0.0],
-            Pattern::ComplexZeros => [0.0, 180.0],
-            Pattern::NotchBeside { natural_frequency } if frequency < natural_frequency => back,
-            Pattern::NotchBeside { .. } => ahead,
+            ElementPattern::Gain | ElementPattern::NotchHere { .. } => [0.0, 0.0],
+            ElementPattern::RealPole | ElementPattern::Lag | ElementPattern::ProportionalIntegral => back,
+            ElementPattern::RealZero | ElementPattern::Lead => ahead,
+            ElementPattern::ComplexPoles | ElementPattern::RollOff { .. } => [-180.0, 0.0],
+            ElementPattern::ComplexZeros => [0.0, 180.0],
+            ElementPattern::NotchBeside { natural_frequency } if frequency < natural_frequency => back,
+            ElementPattern::NotchBeside { .. } => ahead,
         };
         let raise_db = match turn {
             Some(turn) if !within(turn.to_degrees(), turn_deg) => None,
@@ -116,27 +116,27 @@ impl Pattern {
         let whole = [0.0, f64::INFINITY];
         let cosine = turn.map_or(1.0, portable::cos);
         match (self, turn) {
-            (Pattern::Gain | Pattern::ProportionalIntegral, _) => whole,
-            (Pattern::NotchHere { .. }, _) => [0.0, 1.0],
-            (Pattern::Lag | Pattern::NotchBeside { .. }, _) => [0.0, cosine],
-            (Pattern::Lead, _) => [1.0 / cosine, f64::INFINITY],
-            (Pattern::RealPole, None) => [0.0, 1.0],
-            (Pattern::RealZero, None) => [1.0, f64::INFINITY],
-            (Pattern::RealPole, Some(_)) => [cosine; 2],
-            (Pattern::RealZero, Some(_)) => [1.0 / cosine; 2],
-            (Pattern::ComplexPoles | Pattern::ComplexZeros, None) => whole,
-            (Pattern::ComplexPoles, Some(_)) => [cosine.max(0.0), f64::INFINITY],
-            (Pattern::ComplexZeros, Some(_)) if cosine > 0.0 => [0.0, 1.0 / cosine],
-            (Pattern::ComplexZeros, Some(_)) => whole,
-            (Pattern::RollOff { damping_ratio }, None) => [0.0, peak(damping_ratio)],
-            (Pattern::RollOff { damping_ratio }, Some(turn)) => {
+            (ElementPattern::Gain | ElementPattern::ProportionalIntegral, _) => whole,
+            (ElementPattern::NotchHere { .. }, _) => [0.0, 1.0],
+            (ElementPattern::Lag | ElementPattern::NotchBeside { .. }, _) => [0.0, cosine],
+            (ElementPattern::Lead, _) => [1.0 / cosine, f64::INFINITY],
+            (ElementPattern::RealPole, None) => [0.0, 1.0],
+            (ElementPattern::RealZero, None) => [1.0, f64::INFINITY],
+            (ElementPattern::RealPole, Some(_)) => [cosine; 2],
+            (ElementPattern::RealZero, Some(_)) => [1.0 / cosine; 2],
+            (ElementPattern::ComplexPoles | ElementPattern::ComplexZeros, None) => whole,
+            (ElementPattern::ComplexPoles, Some(_)) => [cosine.max(0.0), f64::INFINITY],
+            (ElementPattern::ComplexZeros, Some(_)) if cosine > 0.0 => [0.0, 1.0 / cosine],
+            (ElementPattern::ComplexZeros, Some(_)) => whole,
+            (ElementPattern::RollOff { damping_ratio }, None) => [0.0, peak(damping_ratio)],
+            (ElementPattern::RollOff { damping_ratio }, Some(turn)) => {
                 [magnitude_of_pair(relative_frequency(damping_ratio, -turn), damping_ratio); 2]
             }
         }
     }
 
     /// The element with E(jw) = r e^(j theta); `None` where there is none.
-    pub(super) fn through(self, change: &Change) -> Option<Element> {
+    pub(super) fn through(self, change: &ElementTarget) -> Option<Element> {
         let reach = self.reach(change.frequency, Some(change.turn));
         let ratio_db = 20.0 * portable::log10(change.ratio);
         if !reach.raise_db.is_some_and(|range| within(ratio_db, range)) {
@@ -152,20 +152,22 @@ impl Pattern {
     }
 
     /// The element whose magnitude is right, whatever its phase.
-    pub(super) fn of_magnitude(self, change: &Change) -> Option<Element> {
-        let &Change { frequency: w, ratio: r, .. } = change;
+    pub(super) fn of_magnitude(self, change: &ElementTarget) -> Option<Element> {
+        let &ElementTarget { frequency: w, ratio: r, .. } = change;
         let [least, greatest] = self.raise(None);
         let element = match self {
-            Pattern::Gain => Element::Gain(r),
-            Pattern::RealPole => Element::RealPole { frequency: w * r / ((1.0 - r) * (1.0 + r)).sqrt() },
-            Pattern::RealZero => Element::RealZero { frequency: w / ((r - 1.0) * (r + 1.0)).sqrt() },
-            Pattern::RollOff { damping_ratio } => {
+            ElementPattern::Gain => Element::Gain(r),
+            ElementPattern::RealPole => {
+                Element::RealPole { frequency: w * r / ((1.0 - r) * (1.0 + r)).sqrt() }
+            }
+            ElementPattern::RealZero => Element::RealZero { frequency: w / ((r - 1.0) * (r + 1.0)).sqrt() },
+            ElementPattern::RollOff { damping_ratio } => {
                 // (1 - u^2)^2 + (2 zeta u)^2 = 1/r^2, the falling side of a peak
                 let half = 1.0 - 2.0 * damping_ratio * damping_ratio;
                 let square = half + (half * half - (1.0 - 1.0 / r) * (1.0 + 1.0 / r)).sqrt();
                 Element::ComplexPoles { natural_frequency: w / square.sqrt(), damping_ratio }
             }
-            Pattern::NotchHere { pole_damping_ratio } => Element::Notch {
+            ElementPattern::NotchHere { pole_damping_ratio } => Element::Notch {
                 natural_frequency: w,
                 zero_damping_ratio: r * pole_damping_ratio,
                 pole_damping_ratio,
@@ -176,13 +178,13 @@ impl Pattern {
     }
 
     /// The element whose phase is right, whatever its magnitude.
-    pub(super) fn of_phase(self, change: &Change) -> Option<Element> {
-        let &Change { frequency: w, turn, .. } = change;
+    pub(super) fn of_phase(self, change: &ElementTarget) -> Option<Element> {
+        let &ElementTarget { frequency: w, turn, .. } = change;
         self.reach(w, Some(turn)).raise_db?;
         let element = match self {
-            Pattern::RealPole => Element::RealPole { frequency: w / portable::tan(-turn) },
-            Pattern::RealZero => Element::RealZero { frequency: w / portable::tan(turn) },
-            Pattern::RollOff { damping_ratio } => {
+            ElementPattern::RealPole => Element::RealPole { frequency: w / portable::tan(-turn) },
+            ElementPattern::RealZero => Element::RealZero { frequency: w / portable::tan(turn) },
+            ElementPattern::RollOff { damping_ratio } => {
                 let u = relative_frequency(damping_ratio, -turn);
                 Element::ComplexPoles { natural_frequency: w / u, damping_ratio }
             }
@@ -192,15 +194,15 @@ impl Pattern {
     }
 
     /// Two numbers for two conditions.
-    fn of_both(self, change: &Change) -> Option<Element> {
-        let &Change { frequency: w, ratio: r, turn } = change;
+    fn of_both(self, change: &ElementTarget) -> Option<Element> {
+        let &ElementTarget { frequency: w, ratio: r, turn } = change;
         let e = Complex64::new(r * portable::cos(turn), r * portable::sin(turn));
         let element = match self {
-            Pattern::Lead | Pattern::Lag => {
+            ElementPattern::Lead | ElementPattern::Lag => {
                 let [x, y] = corners(change);
                 Element::LeadLag { zero_frequency: w / x, pole_frequency: w / y }
             }
-            Pattern::NotchBeside { natural_frequency } => {
+            ElementPattern::NotchBeside { natural_frequency } => {
                 let [x, y] = corners(change);
                 let u = w / natural_frequency;
                 let half = (1.0 - u) * (1.0 + u) / (2.0 * u);
@@ -210,15 +212,15 @@ impl Pattern {
                     pole_damping_ratio: y * half,
                 }
             }
-            Pattern::ComplexZeros => {
+            ElementPattern::ComplexZeros => {
                 let (natural_frequency, damping_ratio) = pair(w, e)?;
                 Element::ComplexZeros { natural_frequency, damping_ratio }
             }
-            Pattern::ComplexPoles => {
+            ElementPattern::ComplexPoles => {
                 let (natural_frequency, damping_ratio) = pair(w, 1.0 / e)?;
                 Element::ComplexPoles { natural_frequency, damping_ratio }
             }
-            Pattern::ProportionalIntegral => {
+            ElementPattern::ProportionalIntegral => {
                 Element::ProportionalIntegral { proportional_gain: e.re, integral_gain: -w * e.im }
             }
             _ => return None,
@@ -232,8 +234,8 @@ impl Pattern {
 /// ```text
 /// (1 + j x)/(1 + j y) = r e^(j theta):    x = (r - cos theta)/sin theta,    y = (cos theta - 1/r)/sin theta
 /// ```
-fn corners(change: &Change) -> [f64; 2] {
-    let &Change { ratio: r, turn, .. } = change;
+fn corners(change: &ElementTarget) -> [f64; 2] {
+    let &ElementTarget { ratio: r, turn, .. } = change;
     let (cosine, sine) = (portable::cos(turn), portable::sin(turn));
     [(r - cosine) / sine, (cosine - 1.0 / r) / sine]
 }

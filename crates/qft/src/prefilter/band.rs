@@ -2,7 +2,7 @@
 
 use phea_dynamics::frequency::decibels;
 
-use super::ends::{self, Demand};
+use super::ends::{self, TrackingDemand};
 use super::{PrefilterError, TrackingExtremes, tracking_extremes};
 use crate::closed_loop::{Compensation, Member};
 use crate::specification::Specification;
@@ -104,7 +104,7 @@ impl PrefilterBand {
         extremes: &[TrackingExtremes],
         specification: &Specification,
     ) -> Result<PrefilterBand, PrefilterError> {
-        let demand = Demand::of(specification)?;
+        let demand = TrackingDemand::of(specification)?;
         let point = |extremes: &TrackingExtremes| {
             let [lower, upper] = demand.at(extremes.frequency_rad_per_s)?;
             Some(PrefilterBandPoint::new(extremes, lower, upper))
@@ -163,7 +163,7 @@ impl PrefilterBand {
         compensation: &Compensation,
         members: &[Member],
         frequency_rad_per_s: f64,
-        demand: Demand,
+        demand: TrackingDemand,
     ) -> Result<Option<PrefilterBandPoint>, PrefilterError> {
         let Some([lower, upper]) = demand.at(frequency_rad_per_s) else { return Ok(None) };
         let found = tracking_extremes(compensation, members, &[frequency_rad_per_s])?;

@@ -6,7 +6,7 @@ use super::band::RESOLVED_DB;
 use super::{PrefilterBand, PrefilterBandPoint, PrefilterError};
 use crate::closed_loop::{Compensation, Member};
 use crate::specification::{Limit, Requirement, Specification};
-use crate::verification::{End, tracking_ratio};
+use crate::verification::{AxisEnd, tracking_ratio};
 
 /// Edges whose curvature changes by less than this share of their distance from one decade to the next have settled.
 const SETTLED_SHARE: f64 = 0.01;
@@ -15,17 +15,17 @@ const DECADES: [usize; 2] = [9, 3];
 
 /// Both limits and the band in which they are demanded.
 #[derive(Clone, Copy)]
-pub(super) struct Demand<'a> {
+pub(super) struct TrackingDemand<'a> {
     lower: &'a Limit,
     upper: &'a Limit,
     band: [f64; 2],
 }
 
-impl Demand<'_> {
-    pub(super) fn of(specification: &Specification) -> Result<Demand<'_>, PrefilterError> {
+impl TrackingDemand<'_> {
+    pub(super) fn of(specification: &Specification) -> Result<TrackingDemand<'_>, PrefilterError> {
         match &specification.requirement {
             Requirement::Tracking { lower, upper } => {
-                Ok(Demand { lower, upper, band: specification.band_rad_per_s })
+                Ok(TrackingDemand { lower, upper, band: specification.band_rad_per_s })
             }
             _ => Err(PrefilterError::NotTracking),
         }
@@ -46,7 +46,7 @@ pub(super) fn towards_zero(
     members: &[Member],
     specification: &Specification,
 ) -> Result<(), PrefilterError> {
-    let demand = Demand::of(specification)?;
+    let demand = TrackingDemand::of(specification)?;
     let Some(rest) = at_rest(compensation, members, demand) else { return Ok(()) };
     let meet = rest.allowed_db <= RESOLVED_DB;
     let known = meet && rest.width_db() >= -RESOLVED_DB;
@@ -91,7 +91,11 @@ fn settled(rest: &PrefilterBandPoint, before: &PrefilterBandPoint, point: &Prefi
 }
 
 /// The limit of the band as w -> 0; `None` where it has none, or T vanishes or grows there otherwise than its limits.
-fn at_rest(compensation: &Compensation, members: &[Member], demand: Demand) -> Option<PrefilterBandPoint> {
+fn at_rest(
+    compensation: &Compensation,
+    members: &[Member],
+    demand: TrackingDemand,
+) -> Option<PrefilterBandPoint> {
     let mut point = PrefilterBandPoint {
         frequency_rad_per_s: 0.0,
         least_db: f64::NEG_INFINITY,
@@ -102,7 +106,7 @@ fn at_rest(compensation: &Compensation, members: &[Member], demand: Demand) -> O
     };
     for (index, member) in members.iter().enumerate() {
         let ratio = |limit: &Limit| {
-            let ratio = tracking_ratio(compensation, member, limit, End::Zero)?;
+            let ratio = tracking_ratio(compensation, member, limit, AxisEnd::Zero)?;
             (ratio.power == 0 && ratio.coefficient != 0.0).then(|| decibels(ratio.coefficient.abs()))
         };
         let (least_db, greatest_db) = (ratio(demand.lower)?, ratio(demand.upper)?);
@@ -130,14 +134,14 @@ pub(super) fn towards_infinity(
     members: &[Member],
     specification: &Specification,
 ) -> Result<(), PrefilterError> {
-    let demand = Demand::of(specification)?;
+    let demand = TrackingDemand::of(specification)?;
     if demand.band[1] < f64::INFINITY || compensation.sample_time_s().is_some() {
         return Ok(());
     }
     let [mut least, mut greatest] = [0, i32::MAX];
     for member in members {
         let degree = |limit: &Limit| {
-            tracking_ratio(compensation, member, limit, End::Infinity).map(|ratio| -ratio.power)
+            tracking_ratio(compensation, member, limit, AxisEnd::Infinity).map(|ratio| -ratio.power)
         };
         let (Some(lower), Some(upper)) = (degree(demand.lower), degree(demand.upper)) else { return Ok(()) };
         (least, greatest) = (least.max(upper), greatest.min(lower));

@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use phea_dynamics::portable;
 
 use super::PrefilterBand;
-use crate::loop_shaping::{Part, Structure};
+use crate::loop_shaping::{Structure, StructureFactor};
 
 /// A pair of poles or zeros may ring as much as 0.3 allows, and be two real ones at a ratio of some 3600.
 const DAMPING_RATIO: [f64; 2] = [0.3, 30.0];
@@ -34,10 +34,10 @@ pub(super) fn structures(
 fn structure(band: &PrefilterBand, order: usize, zeros: usize) -> Structure {
     let [from, to] = band.span;
     let range = [from, BEYOND * to];
-    let pole = Part::RealPole { frequency: range };
-    let pole_pair = Part::PolePair { natural_frequency: range, damping_ratio: DAMPING_RATIO };
-    let zero = Part::RealZero { frequency: range };
-    let zero_pair = Part::ZeroPair { natural_frequency: range, damping_ratio: DAMPING_RATIO };
+    let pole = StructureFactor::RealPole { frequency: range };
+    let pole_pair = StructureFactor::PolePair { natural_frequency: range, damping_ratio: DAMPING_RATIO };
+    let zero = StructureFactor::RealZero { frequency: range };
+    let zero_pair = StructureFactor::ZeroPair { natural_frequency: range, damping_ratio: DAMPING_RATIO };
     let mut parts = vec![pole_pair; order / 2];
     parts.extend(vec![pole; order % 2]);
     parts.extend(vec![zero_pair; zeros / 2]);

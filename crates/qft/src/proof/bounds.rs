@@ -4,11 +4,11 @@ use num_complex::Complex64;
 use phea_dynamics::portable;
 use phea_dynamics::watch::{Stopped, Watch};
 
-use super::certificate::{Certificate, Panel};
+use super::certificate::{Certificate, FrequencyPanel};
 use super::claimed::{Claimed, Loop};
-use super::images::Images;
+use super::images::PlantImages;
 use super::panels::walk_band;
-use super::walk::{Effort, Walk};
+use super::walk::{ProofEffort, WalkOutcome};
 
 /// Images to either side that are taken one by one, by the relative degree of the plant: the slower they die out, the more.
 const IMAGES: [usize; 3] = [0, 12, 4];
@@ -22,7 +22,7 @@ const RAISES_MAXIMUM: usize = 40;
 /// The certificate with bounds on images, where its loop is sampled; `None` where there are none.
 pub(super) fn with_bounds(
     mut certificate: Certificate,
-    effort: Effort,
+    effort: ProofEffort,
     watch: Watch<'_>,
 ) -> Result<Option<Certificate>, Stopped> {
     let Some(mut sampling) = certificate.sampling.take() else { return Ok(Some(certificate)) };
@@ -30,7 +30,7 @@ pub(super) fn with_bounds(
     certificate.sampling = Some(sampling.clone());
     for (of_box, bounds) in sampling.bounds.iter_mut().enumerate() {
         let around = Loop::<f64>::over_box(&certificate, of_box);
-        let orders = around.as_ref().and_then(Loop::images).and_then(Images::relative_degrees);
+        let orders = around.as_ref().and_then(Loop::images).and_then(PlantImages::relative_degrees);
         let Some(orders) = orders else { return Ok(None) };
         for (bound, order) in bounds.iter_mut().rev().zip(orders.into_iter().rev()) {
             bound.order = order;
@@ -61,18 +61,18 @@ fn bounded(
     claimed: &Claimed<f64>,
     variables: usize,
     begin: f64,
-    effort: Effort,
+    effort: ProofEffort,
     watch: Watch<'_>,
-) -> Result<Option<(f64, Vec<Panel>)>, Stopped> {
+) -> Result<Option<(f64, Vec<FrequencyPanel>)>, Stopped> {
     // where it begins, with all variables at one
     let [u, v] = [claimed.value_of_u(begin), claimed.value_of_v(begin)]
         .map(|value| value.map_or(f64::NAN, |[re, im]| portable::magnitude(Complex64::new(re, im))));
     let mut ratio = rounded_up(ABOVE * v / u);
     for _ in 0..RAISES_MAXIMUM {
         match walk_band(&claimed.raised(ratio), variables, [begin, f64::INFINITY], effort, watch)? {
-            Walk::Shown(panels) => return Ok(Some((ratio, panels))),
-            Walk::Wrong { ratio: by, .. } => ratio = rounded_up(ratio * by * ABOVE),
-            Walk::Open(_) | Walk::TooLarge => return Ok(None),
+            WalkOutcome::Shown(panels) => return Ok(Some((ratio, panels))),
+            WalkOutcome::Wrong { ratio: by, .. } => ratio = rounded_up(ratio * by * ABOVE),
+            WalkOutcome::Open(_) | WalkOutcome::TooLarge => return Ok(None),
         }
     }
     Ok(None)

@@ -12,9 +12,9 @@ pub struct Certificate {
     /// The plant, as recorded operations on its parameters.
     pub plant: CertifiedPlant,
     /// G.
-    pub feedback: Law,
+    pub feedback: ControlLaw,
     /// F.
-    pub prefilter: Law,
+    pub prefilter: ControlLaw,
     /// H.
     pub sensor: Quotient,
     /// How the loop samples, where it does.
@@ -28,10 +28,12 @@ impl Certificate {
     pub fn leaves(&self) -> usize {
         let of_claim = |claim: &Claim| -> usize {
             match claim {
-                Claim::Stable(boxes) => {
-                    boxes.iter().flat_map(|one| one.panels.iter().chain(&one.delays)).map(Panel::leaves).sum()
-                }
-                Claim::Limited { boxes, .. } => boxes.iter().flatten().map(Panel::leaves).sum(),
+                Claim::Stable(boxes) => boxes
+                    .iter()
+                    .flat_map(|one| one.panels.iter().chain(&one.delays))
+                    .map(FrequencyPanel::leaves)
+                    .sum(),
+                Claim::Limited { boxes, .. } => boxes.iter().flatten().map(FrequencyPanel::leaves).sum(),
                 Claim::Unstable { .. } | Claim::Reached { .. } => 0,
             }
         };
@@ -47,7 +49,7 @@ pub struct CertifiedPlant {
     /// Number of variables t in [0, 1] that span each box.
     pub variables: usize,
     /// For each box how its parameters depend on the variables, in the order of `parameters`.
-    pub boxes: Vec<Vec<Segment>>,
+    pub boxes: Vec<Vec<ParameterSegment>>,
     /// Coefficients of P, of Pd where there is one, and the dead time of the plant where it has one.
     pub coefficients: Expression,
     /// Numbers of coefficients, highest power first: numerator and denominator of P, the same of Pd.
@@ -64,7 +66,7 @@ pub struct CertifiedPlant {
 
 /// A parameter in a box: `low + (high - low) t` of the variable with this index, or `low (high/low)^t`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Segment {
+pub struct ParameterSegment {
     /// Its value where the variable is 0.
     pub low: f64,
     /// Its value where the variable is 1.
@@ -75,10 +77,10 @@ pub struct Segment {
     pub by_factors: bool,
 }
 
-impl Segment {
+impl ParameterSegment {
     /// A value that nothing moves.
-    pub fn fixed(value: f64) -> Segment {
-        Segment { low: value, high: value, variable: None, by_factors: false }
+    pub fn fixed(value: f64) -> ParameterSegment {
+        ParameterSegment { low: value, high: value, variable: None, by_factors: false }
     }
 }
 
@@ -117,7 +119,7 @@ impl Quotient {
 
 /// A controller or prefilter.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Law {
+pub enum ControlLaw {
     /// In s.
     Continuous(Quotient),
     /// In z.
@@ -146,29 +148,29 @@ pub enum Claim {
     /// With this plant the loop has a pole on the boundary of stability or beyond it.
     Unstable {
         /// The plant.
-        member: Member,
+        member: CertificateMember,
         /// Of a sampled loop.
-        count: Option<Count>,
+        count: Option<PoleCount>,
     },
     /// A closed loop is within `ratio` times its limit.
     Limited {
         /// What is limited.
-        limited: Limited,
+        limited: LimitedLoop,
         /// The greatest ratio.
         ratio: f64,
         /// For each box, over the band without a gap.
-        boxes: Vec<Vec<Panel>>,
+        boxes: Vec<Vec<FrequencyPanel>>,
     },
     /// A closed loop is at least `ratio` times its limit somewhere.
     Reached {
         /// What is limited.
-        limited: Limited,
+        limited: LimitedLoop,
         /// The ratio.
         ratio: f64,
         /// Where, rad/s.
         frequency_rad_per_s: f64,
         /// With which plant.
-        member: Member,
+        member: CertificateMember,
     },
 }
 
@@ -178,22 +180,22 @@ pub struct StableBox {
     /// Variables of a plant that is stable without dead time.
     pub member: Vec<f64>,
     /// From zero to infinity without a gap: no pole on the boundary, for every plant of the box.
-    pub panels: Vec<Panel>,
+    pub panels: Vec<FrequencyPanel>,
     /// The same for this plant alone, while its dead time grows from zero to what it is; empty without dead time and of a sampled loop.
-    pub delays: Vec<Panel>,
+    pub delays: Vec<FrequencyPanel>,
     /// Of a sampled loop, which needs no way from a loop without dead time.
-    pub count: Option<Count>,
+    pub count: Option<PoleCount>,
 }
 
 /// How many poles of a sampled loop lie outside of the unit circle with one plant, from how often its characteristic function turns.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Count {
+pub struct PoleCount {
     /// The characteristic function f along the unit circle, up to pi/T.
-    pub characteristic: Vec<Panel>,
+    pub characteristic: Vec<FrequencyPanel>,
     /// The denominator of plant and sensor without its zeros at s = 0, up to pi/T.
-    pub denominator: Vec<Panel>,
+    pub denominator: Vec<FrequencyPanel>,
     /// The same from there to infinity.
-    pub beyond: Vec<Panel>,
+    pub beyond: Vec<FrequencyPanel>,
 }
 
 /// How a loop samples: the plant behind a zero-order hold, its response that of its images at w + 2 pi k/T together.
@@ -206,23 +208,23 @@ pub struct Sampling {
     /// So many images to either side are taken one by one.
     pub images: usize,
     /// For each box a bound on the others: of the plant with its sensor and, where that is not one, of the plant alone.
-    pub bounds: Vec<Vec<Bound>>,
+    pub bounds: Vec<Vec<RollOffBound>>,
 }
 
 /// |P(jw)| <= `ratio`/w^m from a frequency below those of all images that are not taken one by one.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Bound {
+pub struct RollOffBound {
     /// m, at least 1: by how much the degree of the denominator is greater than that of the numerator.
     pub order: usize,
     /// In the units of P and rad/s.
     pub ratio: f64,
     /// From there to infinity.
-    pub panels: Vec<Panel>,
+    pub panels: Vec<FrequencyPanel>,
 }
 
 /// A plant of a family.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Member {
+pub struct CertificateMember {
     /// Index of the box.
     pub of_box: usize,
     /// Its variables, each within 0 to 1.
@@ -231,11 +233,11 @@ pub struct Member {
 
 /// A closed loop with its limit.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Limited {
+pub struct LimitedLoop {
     /// The closed loop.
     pub closed_loop: ClosedLoop,
     /// Which side is limited.
-    pub side: Side,
+    pub side: CertificateSide,
     /// The limit.
     pub limit: LimitOf,
     /// From and to, rad/s.
@@ -253,7 +255,7 @@ pub enum LimitOf {
 
 /// On which side of a magnitude its limit lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Side {
+pub enum CertificateSide {
     /// The ratio is that of the magnitude to its limit.
     Upper,
     /// The ratio is that of the limit to the magnitude.
@@ -262,7 +264,7 @@ pub enum Side {
 
 /// A panel of frequencies and the tree of boxes that covers it with the box of the plants.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Panel {
+pub struct FrequencyPanel {
     /// rad/s
     pub from: f64,
     /// rad/s; may be infinite.
@@ -290,7 +292,7 @@ pub enum Late {
 /// Stands before the direction of a leaf.
 pub const LEAF: u8 = 255;
 
-impl Panel {
+impl FrequencyPanel {
     /// Number of leaves: of n, n - 1 halvings of a byte each stand before them.
     pub fn leaves(&self) -> usize {
         (self.tree.len() + 1) / 6

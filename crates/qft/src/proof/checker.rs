@@ -9,16 +9,16 @@
 use phea_dynamics::scalar::{Interval, Scalar};
 
 use super::certificate::{
-    Certificate, Claim, Count, LEAF, Late, LimitOf, Limited, Member, Panel, Quotient, Segment, Side,
-    StableBox,
+    Certificate, CertificateMember, CertificateSide, Claim, FrequencyPanel, LEAF, Late, LimitOf, LimitedLoop,
+    ParameterSegment, PoleCount, Quotient, StableBox,
 };
-use super::claimed::{Claimed, Loop, Piece};
+use super::claimed::{BandClaim, Claimed, Loop};
 use super::count::poles_outside;
 use super::dead_time::ends;
-use super::hurwitz::{Roots, roots_of};
-use super::images::Images;
+use super::hurwitz::{RootLocation, roots_of};
+use super::images::PlantImages;
 use super::patch::{Patch, at_point};
-use super::points::{Point, Range};
+use super::points::{PanelPoint, PanelRange};
 use super::polynomial::VARIABLES_MAXIMUM;
 use super::sampling::{check_bounds, check_sampling, pi_over_t, poles_of_law, prefilter_is_stable};
 use crate::specification::ClosedLoop;
@@ -103,7 +103,7 @@ pub(crate) fn check_claim(certificate: &Certificate, claim: &Claim) -> Result<()
         Claim::Stable(boxes) => {
             check_boxes(certificate, boxes.len())?;
             for (of_box, one) in boxes.iter().enumerate() {
-                let member = Member { of_box, variables: one.member.clone() };
+                let member = CertificateMember { of_box, variables: one.member.clone() };
                 check_stable_box(certificate, &member, one)?;
             }
             Ok(())
@@ -135,14 +135,20 @@ pub(crate) fn check_claim(certificate: &Certificate, claim: &Claim) -> Result<()
     }
 }
 
-fn check_stable_box(certificate: &Certificate, member: &Member, one: &StableBox) -> Result<(), Rejection> {
+fn check_stable_box(
+    certificate: &Certificate,
+    member: &CertificateMember,
+    one: &StableBox,
+) -> Result<(), Rejection> {
     let whole = stability_band(certificate);
     let at = at(certificate, member)?;
     let around = sound(Loop::over_box(certificate, member.of_box))?;
     check_bounds(certificate, member.of_box, &around)?;
     match (&certificate.sampling, &one.count) {
         (None, None) => {
-            if [&at.without_dead_time(), at.prefilter_denominator()].map(roots_of) != [Roots::AllLeft; 2] {
+            if [&at.without_dead_time(), at.prefilter_denominator()].map(roots_of)
+                != [RootLocation::AllLeft; 2]
+            {
                 return Err(Rejection::Poles);
             }
             if certificate.plant.is_late() {
@@ -166,7 +172,7 @@ fn stability_band(certificate: &Certificate) -> [f64; 2] {
 }
 
 /// Poles of a sampled loop outside of the unit circle with one plant.
-fn counted(certificate: &Certificate, at: &Loop<Interval>, count: &Count) -> Result<usize, Rejection> {
+fn counted(certificate: &Certificate, at: &Loop<Interval>, count: &PoleCount) -> Result<usize, Rejection> {
     let pi_over_t = pi_over_t(certificate).ok_or(Rejection::Poles)?;
     let (denominator, _) = at.denominator_claimed();
     check_panels(&at.stability(), 0, stability_band(certificate), &count.characteristic)?;
@@ -179,15 +185,16 @@ fn counted(certificate: &Certificate, at: &Loop<Interval>, count: &Count) -> Res
 
 fn check_unstable(
     certificate: &Certificate,
-    member: &Member,
-    count: Option<&Count>,
+    member: &CertificateMember,
+    count: Option<&PoleCount>,
 ) -> Result<(), Rejection> {
     let at = at(certificate, member)?;
     let is_shown = match count {
         None if certificate.sampling.is_some() => false,
         None => {
             let found = [&at.without_dead_time(), at.prefilter_denominator()].map(roots_of);
-            found[1] == Roots::SomeNotLeft || (found[0] == Roots::SomeNotLeft && !certificate.plant.is_late())
+            found[1] == RootLocation::SomeNotLeft
+                || (found[0] == RootLocation::SomeNotLeft && !certificate.plant.is_late())
         }
         Some(count) => {
             check_bounds_of(certificate, member.of_box)?;
@@ -205,7 +212,7 @@ fn check_bounds_of(certificate: &Certificate, of_box: usize) -> Result<(), Rejec
 }
 
 /// The loop of one plant, which belongs to the family.
-fn at(certificate: &Certificate, member: &Member) -> Result<Loop<Interval>, Rejection> {
+fn at(certificate: &Certificate, member: &CertificateMember) -> Result<Loop<Interval>, Rejection> {
     let within = member.variables.iter().all(|share| (0.0..=1.0).contains(share));
     if !within || member.variables.len() != certificate.plant.variables {
         return Err(Rejection::Number("a variable of a plant"));
@@ -220,7 +227,7 @@ fn sound(around: Option<Loop<Interval>>) -> Result<Loop<Interval>, Rejection> {
 /// The parameters are finite and moved by variables that exist, so that every box is a box; nothing is late by less than nothing.
 fn check_numbers(certificate: &Certificate) -> Result<(), Rejection> {
     let plant = &certificate.plant;
-    let is_box = |one: &Vec<Segment>| {
+    let is_box = |one: &Vec<ParameterSegment>| {
         one.len() == plant.parameters.len()
             && one.iter().all(|one| {
                 let moved = one.variable.is_none_or(|variable| variable < plant.variables);
@@ -243,7 +250,7 @@ fn check_boxes(certificate: &Certificate, shown: usize) -> Result<(), Rejection>
     if shown == certificate.plant.boxes.len() { Ok(()) } else { Err(Rejection::Boxes) }
 }
 
-fn check_ratio(certificate: &Certificate, limited: &Limited, ratio: f64) -> Result<(), Rejection> {
+fn check_ratio(certificate: &Certificate, limited: &LimitedLoop, ratio: f64) -> Result<(), Rejection> {
     let [from, to] = limited.band_rad_per_s;
     if pi_over_t(certificate).is_some_and(|end| from >= end.low()) {
         return Err(Rejection::Beyond(from));
@@ -257,7 +264,7 @@ fn check_ratio(certificate: &Certificate, limited: &Limited, ratio: f64) -> Resu
             points.iter().all(is_point) && points.windows(2).all(|pair| pair[0].0 < pair[1].0)
         }
     };
-    let has_side = limited.side == Side::Upper || limited.closed_loop == ClosedLoop::Tracking;
+    let has_side = limited.side == CertificateSide::Upper || limited.closed_loop == ClosedLoop::Tracking;
     match ratio.is_finite() && ratio > 0.0 && from >= 0.0 && from < to && has_limit && has_side {
         true => Ok(()),
         false => Err(Rejection::Number("a ratio or the end of a band")),
@@ -265,9 +272,13 @@ fn check_ratio(certificate: &Certificate, limited: &Limited, ratio: f64) -> Resu
 }
 
 /// The pieces of a band, one behind the other; each panel belongs to one of them.
-fn check_pieces(pieces: &[Piece<Interval>], variables: usize, panels: &[Panel]) -> Result<(), Rejection> {
+fn check_pieces(
+    pieces: &[BandClaim<Interval>],
+    variables: usize,
+    panels: &[FrequencyPanel],
+) -> Result<(), Rejection> {
     let mut left = panels;
-    for (index, Piece { band, claimed }) in pieces.iter().enumerate() {
+    for (index, BandClaim { band, claimed }) in pieces.iter().enumerate() {
         let is_last = index + 1 == pieces.len();
         let end =
             if is_last { left.len() } else { left.iter().take_while(|panel| panel.to <= band[1]).count() };
@@ -282,14 +293,14 @@ pub(super) fn check_panels(
     claimed: &Claimed<Interval>,
     variables: usize,
     [from, to]: [f64; 2],
-    panels: &[Panel],
+    panels: &[FrequencyPanel],
 ) -> Result<(), Rejection> {
     if ends(&claimed.dead_time)[0].low() < 0.0 {
         return Err(Rejection::Number("a dead time"));
     }
     let mut reached = from;
     // the circle ends there, and the images are enclosed little beyond it
-    let circle = claimed.images.as_ref().map(Images::band_ends);
+    let circle = claimed.images.as_ref().map(PlantImages::band_ends);
     for panel in panels {
         let is_panel = panel.from == reached && panel.from >= 0.0 && panel.to > panel.from;
         if !is_panel || (panel.to.is_infinite() && panel.from == 0.0) {
@@ -308,7 +319,7 @@ pub(super) fn check_panels(
         if circle.is_some_and(|[_, greatest]| panel.to > greatest) {
             return Err(Rejection::Beyond(panel.to));
         }
-        let range = Range { from: panel.from, to: panel.to, late: panel.late };
+        let range = PanelRange { from: panel.from, to: panel.to, late: panel.late };
         let whole = Patch::over(claimed, variables, range).ok_or(Rejection::TooLarge)?;
         check_tree(whole, panel)?;
         reached = panel.to;
@@ -318,7 +329,7 @@ pub(super) fn check_panels(
 }
 
 /// Walks the tree; what is still to be walked waits in a list, the next one last.
-fn check_tree(whole: Patch<Interval>, panel: &Panel) -> Result<(), Rejection> {
+fn check_tree(whole: Patch<Interval>, panel: &FrequencyPanel) -> Result<(), Rejection> {
     let malformed = Rejection::Tree(panel.from);
     let mut bytes = panel.tree.iter().copied();
     let mut waiting = vec![whole];
@@ -344,7 +355,7 @@ fn check_tree(whole: Patch<Interval>, panel: &Panel) -> Result<(), Rejection> {
 }
 
 /// Whether |V| <= |U| and U is not zero on the whole leaf, shown by this direction.
-fn shows([a, b]: [f64; 2], points: &[Point<Interval>]) -> bool {
+fn shows([a, b]: [f64; 2], points: &[PanelPoint<Interval>]) -> bool {
     let of = Interval::from;
     // integers of 16 bits: both are exact
     let (square, length) = (a * a + b * b, a.abs() + b.abs());

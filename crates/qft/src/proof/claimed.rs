@@ -23,13 +23,15 @@
 //!
 //! with R' for N Hn/(D Hd). To N belongs hold, and to N E what R' D or, of the plant alone, R D adds: `images`.
 
-use super::certificate::{Certificate, LimitOf, Limited, Member, Segment, Side};
+use super::certificate::{
+    Certificate, CertificateMember, CertificateSide, LimitOf, LimitedLoop, ParameterSegment,
+};
 use super::dead_time::{DeadTime, ends};
-use super::images::{Images, Which};
+use super::images::{PlantImages, Which};
 use super::model::{by_factors, modelled};
 use super::over_panel::{Complex, product, sum};
-use super::part::{OfFrequency, Part, Straight, law, number, quotient};
-use super::polynomial::{Decimal, InS, Polynomial, expanded};
+use super::part::{OfFrequency, PolynomialProduct, Straight, law, number, quotient};
+use super::polynomial::{BoxPolynomial, Decimal, InS, expanded};
 use crate::specification::ClosedLoop;
 
 /// The greatest exponent of a variable in a dead time, of which powers are taken.
@@ -41,28 +43,28 @@ const BEYOND: f64 = 1e-9;
 /// A loop in polynomials of s and functions of the frequency, over the box or at one plant.
 #[derive(Clone, Debug)]
 pub(crate) struct Loop<S> {
-    numerator: Part<S>,
-    denominator: Part<S>,
-    disturbance: Option<[Part<S>; 2]>,
+    numerator: PolynomialProduct<S>,
+    denominator: PolynomialProduct<S>,
+    disturbance: Option<[PolynomialProduct<S>; 2]>,
     /// Whether P and Pd have one denominator: the same operations.
     has_one_denominator: bool,
-    feedback: [Part<S>; 2],
-    prefilter: [Part<S>; 2],
-    sensor: [Part<S>; 2],
+    feedback: [PolynomialProduct<S>; 2],
+    prefilter: [PolynomialProduct<S>; 2],
+    sensor: [PolynomialProduct<S>; 2],
     dead_time: DeadTime<S>,
-    images: Option<Images<S>>,
+    images: Option<PlantImages<S>>,
 }
 
 /// Known without a remainder, of a low power in each variable, and not negative.
-fn is_dead_time<S: Decimal>(value: &Polynomial<S>) -> bool {
+fn is_dead_time<S: Decimal>(value: &BoxPolynomial<S>) -> bool {
     let least = ends(&DeadTime { value: value.clone(), terms: 1 })[0].least();
     let is_low = value.clone().up_to(DEAD_TIME_EXPONENT_MAXIMUM).is_some();
     is_low && value.rest().most() == 0.0 && least >= 0.0
 }
 
 /// The values of the parameters at one plant.
-fn at_member<S: Decimal>(segments: &[Segment], variables: &[f64]) -> Vec<Polynomial<S>> {
-    let value = |one: &Segment| {
+fn at_member<S: Decimal>(segments: &[ParameterSegment], variables: &[f64]) -> Vec<BoxPolynomial<S>> {
+    let value = |one: &ParameterSegment| {
         let (low, high) = (S::decimal(one.low), S::decimal(one.high));
         let share = one.variable.and_then(|variable| variables.get(variable)).map(|share| S::decimal(*share));
         match share {
@@ -71,33 +73,33 @@ fn at_member<S: Decimal>(segments: &[Segment], variables: &[f64]) -> Vec<Polynom
             Some(share) => low + (high - low) * share,
         }
     };
-    segments.iter().map(|one| Polynomial::constant(value(one))).collect()
+    segments.iter().map(|one| BoxPolynomial::constant(value(one))).collect()
 }
 
 /// A sum of parts.
-pub(crate) type Sum<S> = Vec<Part<S>>;
+pub(crate) type PartSum<S> = Vec<PolynomialProduct<S>>;
 
 /// U and V, each what is without dead time, what E multiplies, and what E and the images of the plant multiply.
 #[derive(Clone, Debug)]
 pub(crate) struct Claimed<S> {
-    pub(crate) u: [Sum<S>; 3],
-    pub(crate) v: [Sum<S>; 3],
+    pub(crate) u: [PartSum<S>; 3],
+    pub(crate) v: [PartSum<S>; 3],
     /// tau; nothing where there is none, and without the constant part that is in the functions of the frequency.
     pub(crate) dead_time: DeadTime<S>,
-    pub(crate) images: Option<Images<S>>,
+    pub(crate) images: Option<PlantImages<S>>,
     /// Which images those of U and of V are.
     pub(crate) which: [Which; 2],
 }
 
 /// A claim about a part of a band.
 #[derive(Clone, Debug)]
-pub(crate) struct Piece<S> {
+pub(crate) struct BandClaim<S> {
     /// rad/s
     pub(crate) band: [f64; 2],
     pub(crate) claimed: Claimed<S>,
 }
 
-impl<S: Decimal> Piece<S> {
+impl<S: Decimal> BandClaim<S> {
     /// Whether the loop has a response at a frequency, and a limit.
     pub(super) fn holds(&self, frequency_rad_per_s: f64) -> bool {
         let [from, to] = self.claimed.band(self.band);
@@ -106,21 +108,24 @@ impl<S: Decimal> Piece<S> {
 }
 
 /// What is without dead time, what E multiplies, and what the images multiply.
-type Three<S> = [Sum<S>; 3];
+type Three<S> = [PartSum<S>; 3];
 
-fn alone<S>(one: Part<S>) -> Three<S> {
+fn alone<S>(one: PolynomialProduct<S>) -> Three<S> {
     [vec![one], vec![], vec![]]
 }
 
-fn each<S: Decimal>(of: Three<S>, change: impl Fn(&Part<S>) -> Part<S>) -> Three<S> {
+fn each<S: Decimal>(
+    of: Three<S>,
+    change: impl Fn(&PolynomialProduct<S>) -> PolynomialProduct<S>,
+) -> Three<S> {
     of.map(|sum| sum.iter().map(&change).collect())
 }
 
 impl<S: Decimal> Claimed<S> {
     /// Of two polynomials.
     pub(super) fn polynomials(u: InS<S>, v: InS<S>) -> Claimed<S> {
-        let alone = |of| alone(Part::of(of));
-        let dead_time = DeadTime { value: Polynomial::zero(), terms: 1 };
+        let alone = |of| alone(PolynomialProduct::of(of));
+        let dead_time = DeadTime { value: BoxPolynomial::zero(), terms: 1 };
         Claimed { u: alone(u), v: alone(v), dead_time, images: None, which: [Which::WithSensor; 2] }
     }
 
@@ -129,7 +134,7 @@ impl<S: Decimal> Claimed<S> {
         let all = self.u.iter().chain(&self.v).flatten();
         let common = all.filter_map(|part| part.of_s.powers_of_s()).min().unwrap_or(0);
         let without = |of: Three<S>| {
-            each(of, |part| Part { of_s: part.of_s.without_powers_of_s(common), ..part.clone() })
+            each(of, |part| PolynomialProduct { of_s: part.of_s.without_powers_of_s(common), ..part.clone() })
         };
         Claimed { u: without(self.u), v: without(self.v), ..self }
     }
@@ -161,7 +166,7 @@ impl<S: Decimal> Claimed<S> {
     }
 
     fn value(&self, [own, late, imaged]: &Three<S>, which: Which, frequency: S) -> Option<Complex<S>> {
-        let values = |parts: &[Part<S>]| {
+        let values = |parts: &[PolynomialProduct<S>]| {
             let each = parts.iter().map(|part| part.value(frequency, self.sample_time_s()));
             each.fold([S::from(0.0); 2], sum)
         };
@@ -227,7 +232,7 @@ impl<S: Decimal> Claimed<S> {
 }
 
 /// One sum, parts with the same functions of the frequency added up.
-fn added<S: Decimal>(mut sum: Sum<S>, other: Sum<S>) -> Sum<S> {
+fn added<S: Decimal>(mut sum: PartSum<S>, other: PartSum<S>) -> PartSum<S> {
     for part in other {
         match sum.iter_mut().find(|known| known.of_frequency == part.of_frequency) {
             Some(known) => known.of_s = known.of_s.plus(&part.of_s),
@@ -243,15 +248,15 @@ impl<S: Decimal> Loop<S> {
         let segments = certificate.plant.boxes.get(of_box)?.iter();
         let degree = certificate.plant.model_degree;
         let values = segments.map(|one| match (degree, one.variable) {
-            (0, variable) => Some(Polynomial::between(one.low, one.high, variable)),
-            (_, None) => Some(Polynomial::number(one.low)),
+            (0, variable) => Some(BoxPolynomial::between(one.low, one.high, variable)),
+            (_, None) => Some(BoxPolynomial::number(one.low)),
             (_, Some(variable)) => {
                 let [low, high] = [one.low, one.high].map(S::decimal);
                 match one.by_factors {
                     true => by_factors([low, high], variable, degree),
                     false => {
                         let (middle, half) = ((low + high).times(0.5), (high - low).times(0.5));
-                        Some(Polynomial::about(middle, half, variable))
+                        Some(BoxPolynomial::about(middle, half, variable))
                     }
                 }
             }
@@ -260,12 +265,12 @@ impl<S: Decimal> Loop<S> {
     }
 
     /// With one plant.
-    pub(crate) fn at(certificate: &Certificate, member: &Member) -> Option<Loop<S>> {
+    pub(crate) fn at(certificate: &Certificate, member: &CertificateMember) -> Option<Loop<S>> {
         let segments = certificate.plant.boxes.get(member.of_box)?;
         Loop::of(certificate, member.of_box, &at_member(segments, &member.variables))
     }
 
-    fn of(certificate: &Certificate, of_box: usize, parameters: &[Polynomial<S>]) -> Option<Loop<S>> {
+    fn of(certificate: &Certificate, of_box: usize, parameters: &[BoxPolynomial<S>]) -> Option<Loop<S>> {
         let plant = &certificate.plant;
         let coefficients = match plant.model_degree {
             0 => expanded(&plant.coefficients, parameters)?,
@@ -274,12 +279,12 @@ impl<S: Decimal> Loop<S> {
         let mut left = coefficients.into_iter();
         let mut parts = vec![];
         for &length in &plant.lengths {
-            let mut highest_first: Vec<Polynomial<S>> = left.by_ref().take(length).collect();
+            let mut highest_first: Vec<BoxPolynomial<S>> = left.by_ref().take(length).collect();
             highest_first.reverse();
-            parts.push(Part::of(InS(highest_first)));
+            parts.push(PolynomialProduct::of(InS(highest_first)));
         }
         let sampling = certificate.sampling.as_ref();
-        let mut dead_time = Polynomial::number(plant.delay_s);
+        let mut dead_time = BoxPolynomial::number(plant.delay_s);
         if plant.has_dead_time {
             dead_time = dead_time.plus(&left.next()?);
         }
@@ -289,7 +294,7 @@ impl<S: Decimal> Loop<S> {
         // in a sampled loop, what is constant is a function of the frequency
         let late = dead_time.as_constant().filter(|_| sampling.is_some());
         if late.is_some() {
-            dead_time = Polynomial::zero();
+            dead_time = BoxPolynomial::zero();
         }
         let mut parts = parts.into_iter();
         let (numerator, denominator) = (parts.next()?, parts.next()?);
@@ -302,7 +307,7 @@ impl<S: Decimal> Loop<S> {
         let sensor = quotient(&certificate.sensor);
         let of_plant = [&numerator.of_s, &denominator.of_s];
         let images = match sampling {
-            Some(sampling) => Some(Images::of(sampling, of_box, late, of_plant, &certificate.sensor)?),
+            Some(sampling) => Some(PlantImages::of(sampling, of_box, late, of_plant, &certificate.sensor)?),
             None => None,
         };
         let mut held = numerator;
@@ -320,7 +325,7 @@ impl<S: Decimal> Loop<S> {
                 .map(|(numerator, denominator)| [numerator, denominator]),
             feedback: law(&certificate.feedback, sample_time_s),
             prefilter: law(&certificate.prefilter, sample_time_s),
-            sensor: sensor.map(Part::of),
+            sensor: sensor.map(PolynomialProduct::of),
             dead_time: DeadTime { value: dead_time, terms: plant.dead_time_terms },
             images,
         })
@@ -333,7 +338,7 @@ impl<S: Decimal> Loop<S> {
         coefficients.map(|one| one.rest().most() / one.size().most()).fold(0.0, f64::max)
     }
 
-    pub(super) fn images(&self) -> Option<&Images<S>> {
+    pub(super) fn images(&self) -> Option<&PlantImages<S>> {
         self.images.as_ref()
     }
 
@@ -352,14 +357,14 @@ impl<S: Decimal> Loop<S> {
     }
 
     /// c and n.
-    fn open(&self) -> [Part<S>; 2] {
+    fn open(&self) -> [PolynomialProduct<S>; 2] {
         let [[gn, gd], [hn, hd]] = [&self.feedback, &self.sensor];
         [self.denominator.times(gd).times(hd), self.numerator.times(gn).times(hn)]
     }
 
     /// What the images multiply in place of n: with N Hn as D Hd.
-    fn image(&self) -> Part<S> {
-        let hold = Part { of_s: self.denominator.of_s.clone(), ..self.numerator.clone() };
+    fn image(&self) -> PolynomialProduct<S> {
+        let hold = PolynomialProduct { of_s: self.denominator.of_s.clone(), ..self.numerator.clone() };
         hold.times(&self.feedback[0]).times(&self.sensor[1])
     }
 
@@ -386,7 +391,7 @@ impl<S: Decimal> Loop<S> {
 
     /// The same of one plant while its dead time grows from nothing, by the first variable.
     pub(crate) fn stability_while_delayed(&self) -> Claimed<S> {
-        let value = self.dead_time.value.times(&Polynomial::between(0.0, 1.0, Some(0)));
+        let value = self.dead_time.value.times(&BoxPolynomial::between(0.0, 1.0, Some(0)));
         Claimed { dead_time: DeadTime { value, ..self.dead_time }, ..self.stability() }
     }
 
@@ -396,12 +401,12 @@ impl<S: Decimal> Loop<S> {
     }
 
     /// A limit as claims, each about a part of its band; `None` of a plant without the path that is limited.
-    pub(crate) fn claimed(&self, limited: &Limited, ratio: f64) -> Option<Vec<Piece<S>>> {
+    pub(crate) fn claimed(&self, limited: &LimitedLoop, ratio: f64) -> Option<Vec<BandClaim<S>>> {
         let [from, to] = limited.band_rad_per_s;
         match &limited.limit {
             LimitOf::Quotient(limit) => {
-                let claimed = self.within(limited, quotient(limit).map(Part::of), ratio)?;
-                Some(vec![Piece { band: [from, to], claimed }])
+                let claimed = self.within(limited, quotient(limit).map(PolynomialProduct::of), ratio)?;
+                Some(vec![BandClaim { band: [from, to], claimed }])
             }
             LimitOf::Table(points) => {
                 let highest = self.images.as_ref().map_or(f64::INFINITY, |images| images.band_ends()[0]);
@@ -409,10 +414,13 @@ impl<S: Decimal> Loop<S> {
                     let band = [from.max(straight.from.0), to.min(straight.to.0)];
                     (band[0] < band[1].min(highest)).then_some((band, straight))
                 });
-                let one = |of_frequency| Part { of_s: InS(vec![Polynomial::number(1.0)]), of_frequency };
+                let one = |of_frequency| PolynomialProduct {
+                    of_s: InS(vec![BoxPolynomial::number(1.0)]),
+                    of_frequency,
+                };
                 let claimed = pieces.map(|(band, straight)| {
                     let limit = [one(vec![OfFrequency::Straight(straight)]), one(vec![])];
-                    Some(Piece { band, claimed: self.within(limited, limit, ratio)? })
+                    Some(BandClaim { band, claimed: self.within(limited, limit, ratio)? })
                 });
                 claimed.collect()
             }
@@ -420,14 +428,19 @@ impl<S: Decimal> Loop<S> {
     }
 
     /// A claim with a limit Wn/Wd.
-    fn within(&self, limited: &Limited, [wn, wd]: [Part<S>; 2], ratio: f64) -> Option<Claimed<S>> {
+    fn within(
+        &self,
+        limited: &LimitedLoop,
+        [wn, wd]: [PolynomialProduct<S>; 2],
+        ratio: f64,
+    ) -> Option<Claimed<S>> {
         let [[gn, gd], [fn_, fd], [_, hd]] = [&self.feedback, &self.prefilter, &self.sensor];
         let ratio = S::decimal(ratio);
         let d = &self.denominator;
         // the plant alone, and its images
         let plant = || {
             let own = self.numerator.times(hd);
-            let image = Part { of_s: d.of_s.clone(), ..self.numerator.clone() }.times(hd);
+            let image = PolynomialProduct { of_s: d.of_s.clone(), ..self.numerator.clone() }.times(hd);
             [vec![], vec![own], self.images.iter().map(|_| image.clone()).collect()]
         };
         // what stands over n E + c, and what besides under it
@@ -456,13 +469,13 @@ impl<S: Decimal> Loop<S> {
         };
         let under =
             each(self.characteristic(), |part| beside.map_or(part.clone(), |beside| part.times(beside)));
-        let raised = |of, by: &Part<S>| each(of, |part| by.times(part).scaled(ratio));
+        let raised = |of, by: &PolynomialProduct<S>| each(of, |part| by.times(part).scaled(ratio));
         let claimed = match limited.side {
-            Side::Upper => {
+            CertificateSide::Upper => {
                 let v = each(over, |part| wd.times(part));
                 self.claim(raised(under, &wn), v, [Which::WithSensor, which])
             }
-            Side::Lower => {
+            CertificateSide::Lower => {
                 let v = each(under, |part| wn.times(part));
                 self.claim(raised(over, &wd), v, [which, Which::WithSensor])
             }

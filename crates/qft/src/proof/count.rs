@@ -13,7 +13,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use num_complex::Complex64;
 use phea_dynamics::portable;
 
-use super::certificate::{Count, LEAF, Panel};
+use super::certificate::{FrequencyPanel, LEAF, PoleCount};
 use super::claimed::{Claimed, Loop};
 use super::over_panel::Complex;
 use super::polynomial::Decimal;
@@ -30,7 +30,7 @@ const CLEAR: f64 = 0.1;
 pub(super) fn poles_outside<S: Decimal>(
     around: &Loop<S>,
     controller_poles: usize,
-    count: &Count,
+    count: &PoleCount,
     pi_over_t: S,
 ) -> Option<usize> {
     let (denominator, zeros) = around.denominator_claimed();
@@ -51,7 +51,7 @@ fn whole_number(value: f64) -> Option<usize> {
 }
 
 /// By how much U turns over panels, rad: up to a frequency that is little before the end of the last, or to infinity.
-fn turn<S: Decimal>(claimed: &Claimed<S>, panels: &[Panel], to: Option<S>) -> Option<f64> {
+fn turn<S: Decimal>(claimed: &Claimed<S>, panels: &[FrequencyPanel], to: Option<S>) -> Option<f64> {
     let directions: Vec<Complex64> = panels.iter().flat_map(directions).collect();
     let (first, last) = (directions.first()?, directions.last()?);
     let begin = claimed.value_of_u(S::from(0.0))?;
@@ -77,7 +77,7 @@ fn clear<S: Decimal>([re, im]: Complex<S>) -> Option<Complex64> {
 }
 
 /// Directions of the leaves of a panel in the order of the frequency; of a tree that is well formed.
-fn directions(panel: &Panel) -> Vec<Complex64> {
+fn directions(panel: &FrequencyPanel) -> Vec<Complex64> {
     let mut out = vec![];
     let mut bytes = panel.tree.iter().copied();
     while let Some(byte) = bytes.next() {

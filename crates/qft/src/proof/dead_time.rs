@@ -6,14 +6,14 @@
 
 use phea_dynamics::scalar::{Interval, Scalar};
 
-use super::points::Range;
-use super::polynomial::{Decimal, InS, Polynomial};
+use super::points::PanelRange;
+use super::polynomial::{BoxPolynomial, Decimal, InS};
 
 /// A dead time, and how many terms of the series are taken.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct DeadTime<S> {
     /// s
-    pub(super) value: Polynomial<S>,
+    pub(super) value: BoxPolynomial<S>,
     /// m
     pub(super) terms: usize,
 }
@@ -26,7 +26,7 @@ pub(super) struct InFrequency<S> {
 }
 
 impl<S: Decimal> InFrequency<S> {
-    pub(super) fn parts(&self) -> [&[Polynomial<S>]; 2] {
+    pub(super) fn parts(&self) -> [&[BoxPolynomial<S>]; 2] {
         [&self.real.0, &self.imaginary.0]
     }
 
@@ -66,7 +66,7 @@ impl<S: Decimal> InFrequency<S> {
     pub(super) fn raise_degrees(&self, degrees: &mut [usize]) {
         for one in [&self.real, &self.imaginary] {
             degrees[0] = degrees[0].max(one.degree().unwrap_or(0));
-            for (exponents, _) in one.0.iter().flat_map(Polynomial::terms) {
+            for (exponents, _) in one.0.iter().flat_map(BoxPolynomial::terms) {
                 for (degree, exponent) in degrees.iter_mut().skip(1).zip(exponents) {
                     *degree = (*degree).max(usize::from(*exponent));
                 }
@@ -76,13 +76,13 @@ impl<S: Decimal> InFrequency<S> {
 }
 
 /// e^(-j w tau) over a finite panel, without the remainder, in powers of x as of [`InFrequency::along`].
-pub(super) fn turned<S: Decimal>(dead_time: &DeadTime<S>, range: Range, angle: f64) -> InFrequency<S> {
-    let Range { from, to, .. } = range;
+pub(super) fn turned<S: Decimal>(dead_time: &DeadTime<S>, range: PanelRange, angle: f64) -> InFrequency<S> {
+    let PanelRange { from, to, .. } = range;
     let by = |frequency: S| dead_time.value.scaled(frequency);
-    let begin = by(S::decimal(from)).plus(&Polynomial::number(-angle));
+    let begin = by(S::decimal(from)).plus(&BoxPolynomial::number(-angle));
     let turn = InS(vec![begin, by(S::decimal(to) - S::decimal(from))]);
     let mut sums = [InS(vec![]), InS(vec![])];
-    let mut term = InS(vec![Polynomial::number(1.0)]);
+    let mut term = InS(vec![BoxPolynomial::number(1.0)]);
     for power in 0..dead_time.terms {
         // (-j)^k: 1, -j, -1, j
         let sign = if (power + 1) % 4 < 2 { 1.0 } else { -1.0 };
@@ -91,13 +91,13 @@ pub(super) fn turned<S: Decimal>(dead_time: &DeadTime<S>, range: Range, angle: f
     }
     let [real, imaginary] = sums;
     let [cosine, sine] =
-        S::cosine_and_sine(S::decimal(angle)).map(|value| InS(vec![Polynomial::constant(value)]));
+        S::cosine_and_sine(S::decimal(angle)).map(|value| InS(vec![BoxPolynomial::constant(value)]));
     let start = InFrequency { real: cosine, imaginary: sine.scaled(S::from(-1.0)) };
     start.times(&InFrequency { real, imaginary })
 }
 
 /// The greatest magnitude of the remainder on a finite panel.
-pub(super) fn remainder<S: Decimal>(dead_time: &DeadTime<S>, range: Range, angle: f64) -> S {
+pub(super) fn remainder<S: Decimal>(dead_time: &DeadTime<S>, range: PanelRange, angle: f64) -> S {
     let [least, most] = ends(dead_time);
     let angle = S::decimal(angle);
     let beyond = (S::decimal(range.to) * most - angle).abs();

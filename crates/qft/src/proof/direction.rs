@@ -6,11 +6,11 @@
 use num_complex::Complex64;
 use phea_dynamics::portable;
 
-use super::points::{Point, Points};
+use super::points::{PanelPoint, Points};
 
 /// What became of a leaf.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Leaf {
+pub(crate) enum LeafOutcome {
     /// This direction shows it.
     Shown([i16; 2]),
     /// It is to be halved across this axis.
@@ -33,22 +33,22 @@ const CLEAR: f64 = 0.05;
 const BEHIND: f64 = 2.0;
 
 /// Looks at one leaf; `room` is kept for the rounding of the checker, of |V|^2.
-pub(crate) fn leaf(points: &Points<f64>, room: f64) -> Leaf {
+pub(crate) fn leaf(points: &Points<f64>, room: f64) -> LeafOutcome {
     if let Some((corner, ratio)) = worst_corner(points) {
-        return Leaf::Wrong { corner, ratio };
+        return LeafOutcome::Wrong { corner, ratio };
     }
     let pairs = points.points();
-    let Some(middle) = mean_direction(pairs) else { return Leaf::Halve(most_varied(points)) };
+    let Some(middle) = mean_direction(pairs) else { return LeafOutcome::Halve(most_varied(points)) };
     let near = rounded(middle);
     if shows(near, pairs, room) {
-        return Leaf::Shown(near);
+        return LeafOutcome::Shown(near);
     }
     if let Some(index) = turned_away(pairs, middle) {
-        return Leaf::Halve(back(points, index, middle));
+        return LeafOutcome::Halve(back(points, index, middle));
     }
     let [mut low, mut high] = [(f64::NEG_INFINITY, 0), (f64::INFINITY, 0)];
     for (index, pair) in pairs.iter().enumerate() {
-        let Some([from, to]) = arc(pair, middle) else { return Leaf::Halve(across(points, index)) };
+        let Some([from, to]) = arc(pair, middle) else { return LeafOutcome::Halve(across(points, index)) };
         if from > low.0 {
             low = (from, index);
         }
@@ -59,9 +59,9 @@ pub(crate) fn leaf(points: &Points<f64>, room: f64) -> Leaf {
     let angle = 0.5 * (low.0 + high.0);
     let direction = rounded(middle * portable::exp_complex(Complex64::new(0.0, angle)));
     if low.0 < high.0 && shows(direction, pairs, room) {
-        return Leaf::Shown(direction);
+        return LeafOutcome::Shown(direction);
     }
-    Leaf::Halve(between(points, [low.1, high.1], middle))
+    LeafOutcome::Halve(between(points, [low.1, high.1], middle))
 }
 
 /// The corner with the greatest |V|/|U| above one.
@@ -92,7 +92,7 @@ fn corners(points: &Points<f64>) -> impl Iterator<Item = (u64, usize)> {
     })
 }
 
-fn mean_direction(pairs: &[Point<f64>]) -> Option<Complex64> {
+fn mean_direction(pairs: &[PanelPoint<f64>]) -> Option<Complex64> {
     let sum: Complex64 = pairs.iter().map(|[re, im, ..]| unit(Complex64::new(*re, *im))).sum();
     let length = portable::magnitude(sum);
     (length > CLEAR * pairs.len() as f64).then(|| sum / length)
@@ -108,7 +108,7 @@ fn rounded(direction: Complex64) -> [i16; 2] {
 }
 
 /// What the checker asks, with room for its rounding.
-fn shows(direction: [i16; 2], pairs: &[Point<f64>], room: f64) -> bool {
+fn shows(direction: [i16; 2], pairs: &[PanelPoint<f64>], room: f64) -> bool {
     let [a, b] = direction.map(f64::from);
     let square = (a * a + b * b) * (1.0 + room);
     pairs.iter().all(|[ur, ui, vr, vi, rest]| {
@@ -119,7 +119,7 @@ fn shows(direction: [i16; 2], pairs: &[Point<f64>], room: f64) -> bool {
 }
 
 /// The arc of directions that show a pair, relative to this one; `None` where none does.
-fn arc([ur, ui, vr, vi, rest]: &Point<f64>, middle: Complex64) -> Option<[f64; 2]> {
+fn arc([ur, ui, vr, vi, rest]: &PanelPoint<f64>, middle: Complex64) -> Option<[f64; 2]> {
     let relative = Complex64::new(*ur, *ui) * middle.conj();
     let ratio = (portable::magnitude(Complex64::new(*vr, *vi)) + rest) / portable::magnitude(relative);
     let angle = portable::argument(relative);
@@ -129,7 +129,7 @@ fn arc([ur, ui, vr, vi, rest]: &Point<f64>, middle: Complex64) -> Option<[f64; 2
 }
 
 /// The point that is turned away most from a direction, where it stands behind: angles beyond are near to those on the other side.
-fn turned_away(pairs: &[Point<f64>], middle: Complex64) -> Option<usize> {
+fn turned_away(pairs: &[PanelPoint<f64>], middle: Complex64) -> Option<usize> {
     let angles = pairs.iter().map(|pair| angle(pair, middle).abs()).enumerate();
     let (index, greatest) = angles.max_by(|(_, one), (_, other)| one.total_cmp(other))?;
     (greatest > BEHIND).then_some(index)
@@ -148,7 +148,7 @@ fn back(points: &Points<f64>, index: usize, middle: Complex64) -> usize {
 }
 
 /// Of U, relative to a direction.
-fn angle([ur, ui, ..]: &Point<f64>, middle: Complex64) -> f64 {
+fn angle([ur, ui, ..]: &PanelPoint<f64>, middle: Complex64) -> f64 {
     portable::argument(Complex64::new(*ur, *ui) * middle.conj())
 }
 

@@ -7,7 +7,7 @@ use super::polynomial::InS;
 
 /// What is known of the roots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Roots {
+pub(crate) enum RootLocation {
     /// All have negative real parts.
     AllLeft,
     /// At least one has not.
@@ -20,26 +20,26 @@ pub(crate) enum Roots {
 ///
 /// Each entry of the first column is a quotient of two Hurwitz determinants: all have one sign if and only if all roots have negative
 /// real parts.
-pub(crate) fn roots_of(polynomial: &InS<Interval>) -> Roots {
-    let Some(degree) = polynomial.degree() else { return Roots::Unknown };
+pub(crate) fn roots_of(polynomial: &InS<Interval>) -> RootLocation {
+    let Some(degree) = polynomial.degree() else { return RootLocation::Unknown };
     let number = |power: usize| number(&polynomial.0[power]);
     let leading = number(degree);
-    let Some(sign) = sign_of(leading) else { return Roots::Unknown };
+    let Some(sign) = sign_of(leading) else { return RootLocation::Unknown };
     let highest_first = (0..=degree).rev().map(|power| number(power) * Interval::from(sign));
     let coefficients: Vec<Interval> = highest_first.collect();
     // a stable polynomial has no coefficient of another sign, nor one that is missing
     if coefficients.iter().any(|coefficient| coefficient.high() <= 0.0) {
-        return Roots::SomeNotLeft;
+        return RootLocation::SomeNotLeft;
     }
     let take = |first: usize| coefficients.iter().skip(first).step_by(2).copied().collect::<Vec<_>>();
     let (mut above, mut row) = (take(0), take(1));
     for _ in 0..degree {
-        let (Some(&upper), Some(&pivot)) = (above.first(), row.first()) else { return Roots::Unknown };
+        let (Some(&upper), Some(&pivot)) = (above.first(), row.first()) else { return RootLocation::Unknown };
         if pivot.high() <= 0.0 {
-            return Roots::SomeNotLeft;
+            return RootLocation::SomeNotLeft;
         }
         if pivot.low() <= 0.0 {
-            return Roots::Unknown;
+            return RootLocation::Unknown;
         }
         let factor = upper / pivot;
         let zero = Interval::from(0.0);
@@ -48,7 +48,7 @@ pub(crate) fn roots_of(polynomial: &InS<Interval>) -> Roots {
             above.iter().enumerate().skip(1).map(|(place, &value)| value - factor * under(place)).collect();
         above = std::mem::replace(&mut row, next);
     }
-    Roots::AllLeft
+    RootLocation::AllLeft
 }
 
 /// 1 or -1; `None` where it may be zero.

@@ -22,8 +22,8 @@ use super::claimed::Claimed;
 use super::dead_time::InFrequency;
 use super::over_panel::{Complex, product, size, sum};
 use super::part::{quotient, value};
-use super::points::{Point, Points, Range};
-use super::polynomial::{Decimal, InS, Polynomial};
+use super::points::{PanelPoint, PanelRange, Points};
+use super::polynomial::{BoxPolynomial, Decimal, InS};
 
 /// The band ends at this part of W at most, a little beyond pi/T.
 pub(super) const BAND_END: f64 = 0.51;
@@ -42,7 +42,7 @@ pub(crate) enum Which {
 
 /// The images of a plant over a box.
 #[derive(Clone, Debug)]
-pub(crate) struct Images<S> {
+pub(crate) struct PlantImages<S> {
     /// T
     pub(super) sample_time_s: S,
     count: usize,
@@ -50,13 +50,13 @@ pub(crate) struct Images<S> {
     dead_time_s: Option<S>,
     /// What of it is the sensor's.
     sensor_delay_s: S,
-    with_sensor: Imaged<S>,
-    alone: Imaged<S>,
+    with_sensor: ImagedQuotient<S>,
+    alone: ImagedQuotient<S>,
 }
 
 /// N and D, with the bound on what is not taken image by image.
 #[derive(Clone, Debug)]
-struct Imaged<S> {
+struct ImagedQuotient<S> {
     over: InS<S>,
     under: InS<S>,
     /// C, as a decimal.
@@ -65,32 +65,38 @@ struct Imaged<S> {
     order: usize,
 }
 
-impl<S: Decimal> Images<S> {
+impl<S: Decimal> PlantImages<S> {
     pub(super) fn of(
         sampling: &Sampling,
         of_box: usize,
         dead_time_s: Option<S>,
         [n, d]: [&InS<S>; 2],
         sensor: &Quotient,
-    ) -> Option<Images<S>> {
+    ) -> Option<PlantImages<S>> {
         let bounds = sampling.bounds.get(of_box)?;
         let last = bounds.last()?;
-        let alone = Imaged { over: n.clone(), under: d.clone(), ratio: last.ratio, order: last.order };
+        let alone =
+            ImagedQuotient { over: n.clone(), under: d.clone(), ratio: last.ratio, order: last.order };
         let with_sensor = match (sensor.is_one(), bounds.as_slice()) {
             (true, [_]) => alone.clone(),
             (false, [bound, _]) => {
                 let [hn, hd] = quotient(sensor);
-                Imaged { over: n.times(&hn), under: d.times(&hd), ratio: bound.ratio, order: bound.order }
+                ImagedQuotient {
+                    over: n.times(&hn),
+                    under: d.times(&hd),
+                    ratio: bound.ratio,
+                    order: bound.order,
+                }
             }
             _ => return None,
         };
         let sample_time_s = S::decimal(sampling.sample_time_s);
         let sensor_delay_s = S::decimal(sampling.sensor_delay_s);
         let count = sampling.images;
-        Some(Images { sample_time_s, count, dead_time_s, sensor_delay_s, with_sensor, alone })
+        Some(PlantImages { sample_time_s, count, dead_time_s, sensor_delay_s, with_sensor, alone })
     }
 
-    fn imaged(&self, which: Which) -> &Imaged<S> {
+    fn imaged(&self, which: Which) -> &ImagedQuotient<S> {
         match which {
             Which::WithSensor => &self.with_sensor,
             Which::Alone => &self.alone,
@@ -120,7 +126,7 @@ impl<S: Decimal> Images<S> {
     /// What is claimed of the bounds, with the sensor and without: |s^m N| <= C |D|.
     pub(super) fn bounded(&self) -> [Claimed<S>; 2] {
         [&self.with_sensor, &self.alone].map(|imaged| {
-            let s_to_m = [vec![Polynomial::zero(); imaged.order], vec![Polynomial::number(1.0)]];
+            let s_to_m = [vec![BoxPolynomial::zero(); imaged.order], vec![BoxPolynomial::number(1.0)]];
             let v = InS(s_to_m.concat()).times(&imaged.over);
             Claimed::polynomials(imaged.under.scaled(S::decimal(imaged.ratio)), v)
         })
@@ -137,13 +143,13 @@ impl<S: Decimal> Images<S> {
     }
 
     /// Control points of the images taken one by one, over a panel and the whole box.
-    pub(super) fn over(&self, which: Which, variables: usize, range: Range) -> Option<ImagePoints<S>> {
+    pub(super) fn over(&self, which: Which, variables: usize, range: PanelRange) -> Option<ImagePoints<S>> {
         let imaged = self.imaged(which);
         let turn = self.turn();
         let (from, width) = (S::decimal(range.from), S::decimal(range.to) - S::decimal(range.from));
-        let j_w = [Polynomial::constant(from), Polynomial::constant(width)];
+        let j_w = [BoxPolynomial::constant(from), BoxPolynomial::constant(width)];
         let j_w = InFrequency { real: InS(vec![]), imaginary: InS(j_w.to_vec()) };
-        let s = InS(vec![Polynomial::zero(), Polynomial::number(1.0)]);
+        let s = InS(vec![BoxPolynomial::zero(), BoxPolynomial::number(1.0)]);
         let under = InFrequency::of(&imaged.under.times(&s));
         let over = InFrequency::of(&imaged.over);
         // w is less than |w_k|
@@ -188,7 +194,7 @@ impl<S: Decimal> Images<S> {
     }
 
     /// What the images that are not taken one by one add at most, up to a frequency.
-    fn rest(&self, imaged: &Imaged<S>, frequency: S) -> S {
+    fn rest(&self, imaged: &ImagedQuotient<S>, frequency: S) -> S {
         let order = imaged.order;
         let own = S::from(self.count as f64 + INTEGRAL_BEGIN);
         let power = |of: S, exponent: usize| (0..exponent).fold(S::from(1.0), |product, _| product * of);
@@ -197,7 +203,7 @@ impl<S: Decimal> Images<S> {
     }
 }
 
-impl<S: Decimal> Imaged<S> {
+impl<S: Decimal> ImagedQuotient<S> {
     /// By how much the degree of D is greater than that of N, where it is.
     fn relative_degree(&self) -> Option<usize> {
         self.under.degree()?.checked_sub(self.over.degree()?).filter(|degree| *degree > 0)
@@ -213,7 +219,7 @@ pub(crate) struct ImagePoints<S> {
 
 /// A disc of complex numbers.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Disc<S> {
+pub(crate) struct ImageDisc<S> {
     pub(crate) center: Complex<S>,
     pub(crate) radius: S,
 }
@@ -234,15 +240,15 @@ impl<S: Decimal> ImagePoints<S> {
     }
 
     /// What holds R everywhere in this part.
-    pub(super) fn disc(&self) -> Disc<S> {
-        let whole = Disc { center: [S::from(0.0); 2], radius: self.rest };
+    pub(super) fn disc(&self) -> ImageDisc<S> {
+        let whole = ImageDisc { center: [S::from(0.0); 2], radius: self.rest };
         self.each.iter().fold(whole, |known, (points, phase)| {
-            let Disc { center, radius } = disc(points.points());
+            let ImageDisc { center, radius } = disc(points.points());
             let (center, radius) = match phase {
                 Some(phase) => (product(center, *phase), radius),
                 None => ([S::from(0.0); 2], radius + size(center)),
             };
-            Disc { center: sum(known.center, center), radius: known.radius + radius }
+            ImageDisc { center: sum(known.center, center), radius: known.radius + radius }
         })
     }
 
@@ -255,7 +261,7 @@ impl<S: Decimal> ImagePoints<S> {
 }
 
 /// What holds n/d, from the control points of both.
-fn disc<S: Decimal>(points: &[Point<S>]) -> Disc<S> {
+fn disc<S: Decimal>(points: &[PanelPoint<S>]) -> ImageDisc<S> {
     let middle = points.iter().fold([0.0; 4], |[dr, di, nr, ni], point| {
         [dr + point[0].middle(), di + point[1].middle(), nr + point[2].middle(), ni + point[3].middle()]
     });
@@ -275,5 +281,5 @@ fn disc<S: Decimal>(points: &[Point<S>]) -> Disc<S> {
     }
     // d leaves zero on one side
     let radius = if least > 0.0 { greatest * length / S::from(least) } else { S::from(f64::INFINITY) };
-    Disc { center, radius }
+    ImageDisc { center, radius }
 }

@@ -14,18 +14,18 @@
 
 use phea_dynamics::expression::{Binary, Expression, Node, Unary};
 
-use super::polynomial::{Decimal, Polynomial};
+use super::polynomial::{BoxPolynomial, Decimal};
 
 /// The results of an expression as polynomials in t of at most this degree with remainders, the parameters being such in x; `None` where an
 /// operation is not defined on the whole box.
 pub(super) fn modelled<S: Decimal>(
     expression: &Expression,
-    parameters: &[Polynomial<S>],
+    parameters: &[BoxPolynomial<S>],
     degree: usize,
-) -> Option<Vec<Polynomial<S>>> {
+) -> Option<Vec<BoxPolynomial<S>>> {
     let model = Model { degree };
     // an operation that is not defined is none that a choice may take
-    let mut values: Vec<Option<Polynomial<S>>> = Vec::with_capacity(expression.nodes().len());
+    let mut values: Vec<Option<BoxPolynomial<S>>> = Vec::with_capacity(expression.nodes().len());
     for node in expression.nodes() {
         let value = model.value(*node, &values, parameters);
         values.push(value);
@@ -39,10 +39,10 @@ pub(super) fn by_factors<S: Decimal>(
     [low, high]: [S; 2],
     variable: usize,
     degree: usize,
-) -> Option<Polynomial<S>> {
+) -> Option<BoxPolynomial<S>> {
     let half = (high / low).ln().times(0.5);
     let model = Model { degree };
-    let power = model.applied(&Polynomial::about(S::from(0.0), half, variable), Function::Exponential)?;
+    let power = model.applied(&BoxPolynomial::about(S::from(0.0), half, variable), Function::Exponential)?;
     Some(power.scaled((low * high).sqrt()))
 }
 
@@ -60,20 +60,20 @@ struct Model {
 }
 
 /// One of two, nobody knows which: their mean, half of their difference added to the remainder.
-fn either<S: Decimal>(one: &Polynomial<S>, other: &Polynomial<S>) -> Polynomial<S> {
+fn either<S: Decimal>(one: &BoxPolynomial<S>, other: &BoxPolynomial<S>) -> BoxPolynomial<S> {
     let apart = one.plus(&other.scaled(S::from(-1.0)));
     let half = (apart.size() + apart.rest()).times(0.5);
     one.plus(other).scaled(S::from(0.5)).with_rest(half)
 }
 
 /// Between which numbers a polynomial in x is, its remainder included.
-fn range<S: Decimal>(of: &Polynomial<S>) -> [S; 2] {
+fn range<S: Decimal>(of: &BoxPolynomial<S>) -> [S; 2] {
     let (center, reach) = parted(of);
     [center - reach, center + reach]
 }
 
 /// The coefficient without a variable, and what is beside it at most.
-fn parted<S: Decimal>(of: &Polynomial<S>) -> (S, S) {
+fn parted<S: Decimal>(of: &BoxPolynomial<S>) -> (S, S) {
     let zero = S::from(0.0);
     let (center, reach) =
         of.terms().fold((zero, zero), |(center, reach), (exponents, value)| {
@@ -89,14 +89,14 @@ impl Model {
     fn value<S: Decimal>(
         &self,
         node: Node,
-        values: &[Option<Polynomial<S>>],
-        parameters: &[Polynomial<S>],
-    ) -> Option<Polynomial<S>> {
+        values: &[Option<BoxPolynomial<S>>],
+        parameters: &[BoxPolynomial<S>],
+    ) -> Option<BoxPolynomial<S>> {
         let of = |index: usize| values.get(index)?.as_ref();
-        let minus = |of: &Polynomial<S>| of.scaled(S::from(-1.0));
+        let minus = |of: &BoxPolynomial<S>| of.scaled(S::from(-1.0));
         match node {
             Node::Parameter(index) => parameters.get(index).cloned(),
-            Node::Constant(value) => Some(Polynomial::number(value)),
+            Node::Constant(value) => Some(BoxPolynomial::number(value)),
             Node::Unary(Unary::Negate, y) => Some(minus(of(y)?)),
             Node::Unary(Unary::SquareRoot, y) => self.applied(of(y)?, Function::Root),
             Node::Unary(Unary::Exponential, y) => self.applied(of(y)?, Function::Exponential),
@@ -110,7 +110,7 @@ impl Model {
                 }
             }
             Node::Binary(Binary::Add, y, z) => Some(of(y)?.plus(of(z)?)),
-            Node::Binary(Binary::Subtract, y, z) if y == z => of(y).map(|_| Polynomial::zero()),
+            Node::Binary(Binary::Subtract, y, z) if y == z => of(y).map(|_| BoxPolynomial::zero()),
             Node::Binary(Binary::Subtract, y, z) => Some(of(y)?.plus(&minus(of(z)?))),
             Node::Binary(Binary::Multiply, y, z) => Some(self.product(of(y)?, of(z)?)),
             Node::Binary(Binary::Divide, y, z) => {
@@ -127,12 +127,12 @@ impl Model {
         }
     }
 
-    fn product<S: Decimal>(&self, one: &Polynomial<S>, other: &Polynomial<S>) -> Polynomial<S> {
+    fn product<S: Decimal>(&self, one: &BoxPolynomial<S>, other: &BoxPolynomial<S>) -> BoxPolynomial<S> {
         one.times(other).truncated(self.degree)
     }
 
     /// A function of a polynomial; `None` where it is not defined everywhere.
-    fn applied<S: Decimal>(&self, to: &Polynomial<S>, function: Function) -> Option<Polynomial<S>> {
+    fn applied<S: Decimal>(&self, to: &BoxPolynomial<S>, function: Function) -> Option<BoxPolynomial<S>> {
         let (center, reach) = parted(to);
         let [least, most] = [center - reach, center + reach];
         let is_defined = match function {
@@ -142,19 +142,19 @@ impl Model {
         };
         // zero has a root, and no derivative
         if to.is_zero() && matches!(function, Function::Root) {
-            return Some(Polynomial::zero());
+            return Some(BoxPolynomial::zero());
         }
         if !is_defined {
             return None;
         }
         if to.as_constant().is_some() {
-            return Some(Polynomial::constant(function.at(center)));
+            return Some(BoxPolynomial::constant(function.at(center)));
         }
-        let beside = to.plus(&Polynomial::constant(-center));
+        let beside = to.plus(&BoxPolynomial::constant(-center));
         let coefficients = function.coefficients(center, self.degree);
-        let mut out = Polynomial::zero();
+        let mut out = BoxPolynomial::zero();
         for &coefficient in coefficients.iter().rev() {
-            out = self.product(&out, &beside).plus(&Polynomial::constant(coefficient));
+            out = self.product(&out, &beside).plus(&BoxPolynomial::constant(coefficient));
         }
         let power = (0..=self.degree).fold(S::from(1.0), |product, _| product * reach);
         Some(out.with_rest(power * function.beyond([least, most], self.degree + 1)))

@@ -1,7 +1,7 @@
 //! How far plants whose coefficients are no polynomials are parted, so that polynomials stand for them with small remainders.
 
 use super::NotProven;
-use super::certificate::{Certificate, Segment};
+use super::certificate::{Certificate, ParameterSegment};
 use super::claimed::Loop;
 
 /// Degrees of the polynomials that stand for what is none, of which the first is taken that leaves little, else the last.
@@ -63,7 +63,7 @@ fn share(certificate: &Certificate, of_box: usize) -> Option<f64> {
 }
 
 /// Both halves of a box.
-type Halves = [Vec<Segment>; 2];
+type Halves = [Vec<ParameterSegment>; 2];
 
 /// Both halves of a box across the variable that makes the remainders smallest, and those.
 fn halved(certificate: &Certificate, of_box: usize) -> Option<(Halves, [f64; 2])> {
@@ -82,13 +82,13 @@ fn halved(certificate: &Certificate, of_box: usize) -> Option<(Halves, [f64; 2])
 }
 
 /// Both halves of a box across a variable; `None` where that moves nothing.
-fn halves(whole: &[Segment], variable: usize) -> Option<Halves> {
-    let moved = |one: &Segment| one.variable == Some(variable);
+fn halves(whole: &[ParameterSegment], variable: usize) -> Option<Halves> {
+    let moved = |one: &ParameterSegment| one.variable == Some(variable);
     let half = |lower: bool| {
         let each = whole.iter().map(|one| match (moved(one), lower) {
             (false, _) => *one,
-            (true, true) => Segment { high: one.value(0.5), ..*one },
-            (true, false) => Segment { low: one.value(0.5), ..*one },
+            (true, true) => ParameterSegment { high: one.value(0.5), ..*one },
+            (true, false) => ParameterSegment { low: one.value(0.5), ..*one },
         });
         each.collect()
     };

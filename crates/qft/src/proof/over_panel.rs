@@ -13,7 +13,7 @@
 
 use super::dead_time::InFrequency;
 use super::part::Straight;
-use super::polynomial::{Decimal, InS, Polynomial};
+use super::polynomial::{BoxPolynomial, Decimal, InS};
 
 /// Terms of the series of I_k.
 const HOLD_TERMS: usize = 40;
@@ -155,7 +155,7 @@ impl<S: Decimal> OverPanel<S> {
     /// The sum in powers of x, y = 2 x - 1.
     pub(super) fn along(&self) -> InFrequency<S> {
         let part =
-            |own: usize| InS(self.coefficients.iter().map(|one| Polynomial::constant(one[own])).collect());
+            |own: usize| InS(self.coefficients.iter().map(|one| BoxPolynomial::constant(one[own])).collect());
         InFrequency { real: part(0), imaginary: part(1) }.along(S::from(-1.0), S::from(2.0))
     }
 

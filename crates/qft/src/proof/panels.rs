@@ -7,9 +7,9 @@ use phea_dynamics::watch::{Stopped, Watch};
 use super::certificate::Late;
 use super::claimed::Claimed;
 use super::dead_time::ends;
-use super::points::Range;
-use super::polynomial::{InS, Polynomial};
-use super::walk::{Effort, Walk, walk};
+use super::points::PanelRange;
+use super::polynomial::{BoxPolynomial, InS};
+use super::walk::{ProofEffort, WalkOutcome, walk};
 
 /// Points of a decade at which plants are looked at.
 const POINTS_PER_DECADE: f64 = 24.0;
@@ -29,9 +29,9 @@ pub(super) fn walk_band(
     claimed: &Claimed<f64>,
     variables: usize,
     band: [f64; 2],
-    effort: Effort,
+    effort: ProofEffort,
     watch: Watch<'_>,
-) -> Result<Walk, Stopped> {
+) -> Result<WalkOutcome, Stopped> {
     let decades = decades(band, claimed);
     // the lowest last: it is taken first
     let mut waiting: Vec<[f64; 2]> = decades.windows(2).map(|pair| [pair[0], pair[1]]).rev().collect();
@@ -48,8 +48,8 @@ pub(super) fn walk_band(
             waiting.extend([[middle, to], [from, middle]]);
             continue;
         }
-        let mut over = |late: Late, effort: Effort| {
-            walk(claimed, variables, Range { from, to, late }, effort, &mut *watch)
+        let mut over = |late: Late, effort: ProofEffort| {
+            walk(claimed, variables, PanelRange { from, to, late }, effort, &mut *watch)
         };
         let found = match ends(&claimed.dead_time) {
             _ if claimed.dead_time.value.is_zero() => over(Late::Not, effort)?,
@@ -69,22 +69,22 @@ pub(super) fn walk_band(
             },
         };
         match found {
-            Walk::Shown(panels) => shown.extend(panels),
+            WalkOutcome::Shown(panels) => shown.extend(panels),
             other => return Ok(other),
         }
     }
-    Ok(Walk::Shown(shown))
+    Ok(WalkOutcome::Shown(shown))
 }
 
 /// Whether it is shown, or wrong, however far dead time turns.
 fn any(
-    over: &mut impl FnMut(Late, Effort) -> Result<Walk, Stopped>,
-    effort: Effort,
-) -> Result<Option<Walk>, Stopped> {
+    over: &mut impl FnMut(Late, ProofEffort) -> Result<WalkOutcome, Stopped>,
+    effort: ProofEffort,
+) -> Result<Option<WalkOutcome>, Stopped> {
     let (leaves, depth) = TRIAL;
     for late in [Late::Less, Late::More] {
-        let found = over(late, Effort { leaves, depth, ..effort })?;
-        if matches!(found, Walk::Shown(_) | Walk::Wrong { .. }) {
+        let found = over(late, ProofEffort { leaves, depth, ..effort })?;
+        if matches!(found, WalkOutcome::Shown(_) | WalkOutcome::Wrong { .. }) {
             return Ok(Some(found));
         }
     }
@@ -143,7 +143,7 @@ fn beyond(claimed: &Claimed<f64>) -> Option<f64> {
 
 /// About where the magnitudes of the terms of a polynomial are equal, at the end of the box where all variables are one.
 fn bends(of: &InS<f64>) -> Vec<f64> {
-    let size = |(power, coefficient): (usize, &Polynomial<f64>)| {
+    let size = |(power, coefficient): (usize, &BoxPolynomial<f64>)| {
         (power, coefficient.terms().map(|(_, value)| value).sum::<f64>().abs())
     };
     let sizes: Vec<(usize, f64)> =

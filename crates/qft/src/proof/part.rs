@@ -7,9 +7,9 @@
 //!
 //! zeta is zero where s is: as a factor it is written as s, so that an integrator in z meets one in s.
 
-use super::certificate::{Law, Quotient, Sections};
+use super::certificate::{ControlLaw, Quotient, Sections};
 use super::over_panel::{Complex, Middle, OverPanel, product, sum};
-use super::polynomial::{Decimal, InS, Polynomial};
+use super::polynomial::{BoxPolynomial, Decimal, InS};
 
 /// A function of the frequency alone.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,23 +44,23 @@ impl Straight {
 
 /// One product.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Part<S> {
+pub(crate) struct PolynomialProduct<S> {
     pub(crate) of_s: InS<S>,
     pub(crate) of_frequency: Vec<OfFrequency<S>>,
 }
 
-impl<S: Decimal> Part<S> {
-    pub(crate) fn of(of_s: InS<S>) -> Part<S> {
-        Part { of_s, of_frequency: vec![] }
+impl<S: Decimal> PolynomialProduct<S> {
+    pub(crate) fn of(of_s: InS<S>) -> PolynomialProduct<S> {
+        PolynomialProduct { of_s, of_frequency: vec![] }
     }
 
-    pub(crate) fn times(&self, other: &Part<S>) -> Part<S> {
+    pub(crate) fn times(&self, other: &PolynomialProduct<S>) -> PolynomialProduct<S> {
         let of_frequency = self.of_frequency.iter().chain(&other.of_frequency).cloned().collect();
-        Part { of_s: self.of_s.times(&other.of_s), of_frequency }
+        PolynomialProduct { of_s: self.of_s.times(&other.of_s), of_frequency }
     }
 
-    pub(crate) fn scaled(&self, factor: S) -> Part<S> {
-        Part { of_s: self.of_s.scaled(factor), of_frequency: self.of_frequency.clone() }
+    pub(crate) fn scaled(&self, factor: S) -> PolynomialProduct<S> {
+        PolynomialProduct { of_s: self.of_s.scaled(factor), of_frequency: self.of_frequency.clone() }
     }
 
     /// Its functions of the frequency over a panel; `None` where it has none.
@@ -94,7 +94,7 @@ pub(super) fn value<S: Decimal>(of: &InS<S>, frequency: S) -> Complex<S> {
 }
 
 /// The number that a polynomial is which depends on no variable.
-pub(super) fn number<S: Decimal>(of: &Polynomial<S>) -> S {
+pub(super) fn number<S: Decimal>(of: &BoxPolynomial<S>) -> S {
     of.terms().fold(S::uncertain(of.rest().most()), |sum, (_, value)| sum + value)
 }
 
@@ -104,14 +104,14 @@ pub(super) fn quotient<S: Decimal>(quotient: &Quotient) -> [InS<S>; 2] {
 }
 
 /// Numerator and denominator of a law.
-pub(super) fn law<S: Decimal>(law: &Law, sample_time_s: Option<f64>) -> [Part<S>; 2] {
+pub(super) fn law<S: Decimal>(law: &ControlLaw, sample_time_s: Option<f64>) -> [PolynomialProduct<S>; 2] {
     match law {
-        Law::Continuous(own) => quotient(own).map(Part::of),
-        Law::Sampled(Sections { gain, numerator, denominator }) => {
-            let gain = Part::of(InS(vec![Polynomial::number(*gain)]));
+        ControlLaw::Continuous(own) => quotient(own).map(PolynomialProduct::of),
+        ControlLaw::Sampled(Sections { gain, numerator, denominator }) => {
+            let gain = PolynomialProduct::of(InS(vec![BoxPolynomial::number(*gain)]));
             let sample_time_s = sample_time_s.map_or(S::from(0.0), S::decimal);
-            let one = Part::of(InS(vec![Polynomial::number(1.0)]));
-            let of = |sections: &[Vec<f64>], start: Part<S>| {
+            let one = PolynomialProduct::of(InS(vec![BoxPolynomial::number(1.0)]));
+            let of = |sections: &[Vec<f64>], start: PolynomialProduct<S>| {
                 sections.iter().fold(start, |known, section| known.times(&of_section(section, sample_time_s)))
             };
             [of(numerator, gain), of(denominator, one)]
@@ -120,18 +120,19 @@ pub(super) fn law<S: Decimal>(law: &Law, sample_time_s: Option<f64>) -> [Part<S>
 }
 
 /// A polynomial in zeta; as often as zeta divides it, that is written as s.
-fn of_section<S: Decimal>(section: &[f64], sample_time_s: S) -> Part<S> {
+fn of_section<S: Decimal>(section: &[f64], sample_time_s: S) -> PolynomialProduct<S> {
     let integrators = section.iter().rev().take_while(|coefficient| **coefficient == 0.0).count();
-    let mut out = Part::of(InS(vec![Polynomial::number(1.0)]));
+    let mut out = PolynomialProduct::of(InS(vec![BoxPolynomial::number(1.0)]));
     for _ in 0..integrators {
-        let s = InS(vec![Polynomial::zero(), Polynomial::constant(sample_time_s)]);
-        out = out.times(&Part { of_s: s, of_frequency: vec![OfFrequency::Hold, OfFrequency::Ahead] });
+        let s = InS(vec![BoxPolynomial::zero(), BoxPolynomial::constant(sample_time_s)]);
+        out = out
+            .times(&PolynomialProduct { of_s: s, of_frequency: vec![OfFrequency::Hold, OfFrequency::Ahead] });
     }
     let left = &section[..section.len() - integrators];
     match left {
         [number] => out.scaled(S::decimal(*number)),
-        _ => out.times(&Part {
-            of_s: InS(vec![Polynomial::number(1.0)]),
+        _ => out.times(&PolynomialProduct {
+            of_s: InS(vec![BoxPolynomial::number(1.0)]),
             of_frequency: vec![OfFrequency::Polynomial(left.to_vec())],
         }),
     }

@@ -5,8 +5,8 @@ use std::borrow::Cow;
 use super::certificate::Late;
 use super::claimed::Claimed;
 use super::dead_time::ends;
-use super::images::{Disc, ImagePoints, Which};
-use super::points::{Points, Range};
+use super::images::{ImageDisc, ImagePoints, Which};
+use super::points::{PanelRange, Points};
 use super::polynomial::Decimal;
 
 /// One part.
@@ -14,12 +14,12 @@ use super::polynomial::Decimal;
 pub(crate) struct Patch<S> {
     /// Without the images.
     own: Points<S>,
-    images: Option<Imaged<S>>,
+    images: Option<ImagedPlant<S>>,
 }
 
 /// What the images of a plant multiply, and the images: of U, and of V where those are others.
 #[derive(Clone, Debug)]
-struct Imaged<S> {
+struct ImagedPlant<S> {
     multiplied: Points<S>,
     of_u: ImagePoints<S>,
     of_v: Option<ImagePoints<S>>,
@@ -27,7 +27,7 @@ struct Imaged<S> {
 
 impl<S: Decimal> Patch<S> {
     /// A whole panel and the whole box; `None` where there are too many points.
-    pub(crate) fn over(claimed: &Claimed<S>, variables: usize, range: Range) -> Option<Patch<S>> {
+    pub(crate) fn over(claimed: &Claimed<S>, variables: usize, range: PanelRange) -> Option<Patch<S>> {
         let (own, multiplied) = Points::over(claimed, variables, range)?;
         let images = match claimed.images.as_ref().zip(multiplied) {
             None => None,
@@ -41,8 +41,8 @@ impl<S: Decimal> Patch<S> {
                 let of_u = of(&claimed.u[2], u).ok()?;
                 let of_v = if u == v && of_u.is_some() { None } else { of(&claimed.v[2], v).ok()? };
                 match (of_u, of_v) {
-                    (Some(of_u), of_v) => Some(Imaged { multiplied, of_u, of_v }),
-                    (None, Some(of_v)) => Some(Imaged { multiplied, of_u: of_v, of_v: None }),
+                    (Some(of_u), of_v) => Some(ImagedPlant { multiplied, of_u, of_v }),
+                    (None, Some(of_v)) => Some(ImagedPlant { multiplied, of_u: of_v, of_v: None }),
                     (None, None) => None,
                 }
             }
@@ -57,7 +57,7 @@ impl<S: Decimal> Patch<S> {
     /// Both halves across an axis.
     pub(crate) fn halves(self, axis: usize) -> [Patch<S>; 2] {
         let [low, high] = self.own.halves(axis);
-        let Some(Imaged { multiplied, of_u, of_v }) = self.images else {
+        let Some(ImagedPlant { multiplied, of_u, of_v }) = self.images else {
             return [low, high].map(|own| Patch { own, images: None });
         };
         let [low_multiplied, high_multiplied] = multiplied.halves(axis);
@@ -67,7 +67,7 @@ impl<S: Decimal> Patch<S> {
             None => [None, None],
         };
         let one =
-            |own, multiplied, of_u, of_v| Patch { own, images: Some(Imaged { multiplied, of_u, of_v }) };
+            |own, multiplied, of_u, of_v| Patch { own, images: Some(ImagedPlant { multiplied, of_u, of_v }) };
         [one(low, low_multiplied, low_u, low_v), one(high, high_multiplied, high_u, high_v)]
     }
 
@@ -82,13 +82,13 @@ impl<S: Decimal> Patch<S> {
     /// The same as if the images were known exactly, and the image that is known least; `None` where there are none.
     pub(crate) fn with_known_images(&self) -> Option<(Points<S>, &Points<S>)> {
         let images = self.images.as_ref()?;
-        let known = images.discs().map(|disc| Disc { radius: S::from(0.0), ..disc });
+        let known = images.discs().map(|disc| ImageDisc { radius: S::from(0.0), ..disc });
         Some((self.own.with_images(&images.multiplied, known), images.of_u.least_known()?))
     }
 }
 
-impl<S: Decimal> Imaged<S> {
-    fn discs(&self) -> [Disc<S>; 2] {
+impl<S: Decimal> ImagedPlant<S> {
+    fn discs(&self) -> [ImageDisc<S>; 2] {
         let of_u = self.of_u.disc();
         [of_u, self.of_v.as_ref().map_or(of_u, ImagePoints::disc)]
     }
@@ -103,9 +103,11 @@ pub(super) fn at_point<S: Decimal>(claimed: &Claimed<S>, frequency_rad_per_s: f6
             let [least, most] = ends(&claimed.dead_time);
             let angle = 0.5 * frequency_rad_per_s * (least.least() + most.most());
             let late = if is_late { Late::Turns(angle) } else { Late::Not };
-            Range { from: frequency_rad_per_s, to: frequency_rad_per_s, late }
+            PanelRange { from: frequency_rad_per_s, to: frequency_rad_per_s, late }
         }
-        false => Range { from: 1.0, to: f64::INFINITY, late: if is_late { Late::Less } else { Late::Not } },
+        false => {
+            PanelRange { from: 1.0, to: f64::INFINITY, late: if is_late { Late::Less } else { Late::Not } }
+        }
     };
     if range.to.is_infinite() {
         // both divided by the same power of the frequency

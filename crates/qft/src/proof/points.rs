@@ -10,17 +10,17 @@
 use super::certificate::Late;
 use super::claimed::Claimed;
 use super::dead_time::{InFrequency, remainder, turned};
-use super::images::Disc;
+use super::images::ImageDisc;
 use super::over_panel::{Middle, product, size};
-use super::part::Part;
-use super::polynomial::{Decimal, InS, Polynomial};
+use super::part::PolynomialProduct;
+use super::polynomial::{BoxPolynomial, Decimal, InS};
 
 /// Real and imaginary part of U, the same of V, and e.
-pub(crate) type Point<S> = [S; 5];
+pub(crate) type PanelPoint<S> = [S; 5];
 
 /// A panel of frequencies, rad/s, and how dead time is taken over it; it may end at infinity.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Range {
+pub(crate) struct PanelRange {
     pub(crate) from: f64,
     pub(crate) to: f64,
     pub(crate) late: Late,
@@ -30,26 +30,26 @@ pub(crate) struct Range {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Points<S> {
     degrees: Vec<usize>,
-    values: Vec<Point<S>>,
+    values: Vec<PanelPoint<S>>,
 }
 
 /// Control points at most: more are no claim that anybody makes.
 const POINTS_MAXIMUM: usize = 1 << 21;
 
 /// U and V over a panel as polynomials, and what remains of each: at most so much of a polynomial.
-struct Terms<S> {
+struct PanelTerms<S> {
     whole: [InFrequency<S>; 2],
     rests: Vec<(InFrequency<S>, S)>,
     /// Polynomials that count for the degrees alone.
     unused: Vec<InFrequency<S>>,
 }
 
-impl<S: Decimal> Terms<S> {
-    fn of(claimed: &Claimed<S>, pair: [[&[Part<S>]; 2]; 2], range: Range) -> Terms<S> {
+impl<S: Decimal> PanelTerms<S> {
+    fn of(claimed: &Claimed<S>, pair: [[&[PolynomialProduct<S>]; 2]; 2], range: PanelRange) -> PanelTerms<S> {
         let none = || InFrequency { real: InS(vec![]), imaginary: InS(vec![]) };
-        let mut out = Terms { whole: [none(), none()], rests: vec![], unused: vec![] };
+        let mut out = PanelTerms { whole: [none(), none()], rests: vec![], unused: vec![] };
         for (place, [own, late]) in pair.into_iter().enumerate() {
-            let mut add = |parts: &[Part<S>]| {
+            let mut add = |parts: &[PolynomialProduct<S>]| {
                 let mut sum = none();
                 for part in parts {
                     let (of_part, rests) = over_panel(claimed, part, range);
@@ -92,8 +92,8 @@ impl<S: Decimal> Terms<S> {
 /// A part over a panel, and what remains: of its functions of the frequency, and of its polynomial.
 fn over_panel<S: Decimal>(
     claimed: &Claimed<S>,
-    part: &Part<S>,
-    range: Range,
+    part: &PolynomialProduct<S>,
+    range: PanelRange,
 ) -> (InFrequency<S>, Vec<(InFrequency<S>, S)>) {
     let own = InFrequency::of(&part.of_s);
     let rests = InFrequency::of_rests(&part.of_s);
@@ -119,14 +119,14 @@ impl<S: Decimal> Points<S> {
     pub(crate) fn over(
         claimed: &Claimed<S>,
         variables: usize,
-        range: Range,
+        range: PanelRange,
     ) -> Option<(Points<S>, Option<Points<S>>)> {
         let Claimed { u, v, .. } = claimed;
-        let own = Terms::of(claimed, [[&u[0], &u[1]], [&v[0], &v[1]]], range);
+        let own = PanelTerms::of(claimed, [[&u[0], &u[1]], [&v[0], &v[1]]], range);
         let images = match range.late {
             // the images are late as well
-            Late::Not => Terms::of(claimed, [[&u[2], &[]], [&v[2], &[]]], range),
-            _ => Terms::of(claimed, [[&[], &u[2]], [&[], &v[2]]], range),
+            Late::Not => PanelTerms::of(claimed, [[&u[2], &[]], [&v[2], &[]]], range),
+            _ => PanelTerms::of(claimed, [[&[], &u[2]], [&[], &v[2]]], range),
         };
         let mut degrees = vec![0; variables + 1];
         own.raise_degrees(&mut degrees);
@@ -143,16 +143,16 @@ impl<S: Decimal> Points<S> {
         pair: [InFrequency<S>; 2],
         rests: impl Iterator<Item = InFrequency<S>>,
         variables: usize,
-        range: Range,
+        range: PanelRange,
     ) -> Option<Points<S>> {
         let rests = rests.map(|rests| (rests, S::from(1.0))).collect();
-        let terms = Terms { whole: pair, rests, unused: vec![] };
+        let terms = PanelTerms { whole: pair, rests, unused: vec![] };
         let mut degrees = vec![0; variables + 1];
         terms.raise_degrees(&mut degrees);
         Points::of(&terms, &degrees, range)
     }
 
-    fn of(terms: &Terms<S>, degrees: &[usize], range: Range) -> Option<Points<S>> {
+    fn of(terms: &PanelTerms<S>, degrees: &[usize], range: PanelRange) -> Option<Points<S>> {
         let [u, v] = &terms.whole;
         let mut points = Points::powers([u, v], degrees)?;
         points.bring_to(range);
@@ -167,8 +167,8 @@ impl<S: Decimal> Points<S> {
     }
 
     /// With images whose sum is in this disc, for U and for V: what remains of them is added to e.
-    pub(super) fn with_images(&self, images: &Points<S>, [of_u, of_v]: [Disc<S>; 2]) -> Points<S> {
-        let greatest = |disc: &Disc<S>| size(disc.center) + disc.radius;
+    pub(super) fn with_images(&self, images: &Points<S>, [of_u, of_v]: [ImageDisc<S>; 2]) -> Points<S> {
+        let greatest = |disc: &ImageDisc<S>| size(disc.center) + disc.radius;
         let most = greatest(&of_u).maximum(greatest(&of_v));
         // nothing is shown where a denominator of an image may vanish, not even of what is multiplied by zero
         let is_known = [of_u, of_v].iter().all(|disc| disc.radius.most().is_finite());
@@ -215,7 +215,7 @@ impl<S: Decimal> Points<S> {
     }
 
     /// From powers to control points. Towards infinity both are divided by the same power of the frequency, and its inverse is the variable.
-    fn bring_to(&mut self, range: Range) {
+    fn bring_to(&mut self, range: PanelRange) {
         if range.to.is_infinite() {
             self.reverse_frequency();
             self.scale_frequency(S::from(1.0) / S::decimal(range.from));
@@ -238,7 +238,7 @@ impl<S: Decimal> Points<S> {
         self.degrees[axis]
     }
 
-    pub(crate) fn points(&self) -> &[Point<S>] {
+    pub(crate) fn points(&self) -> &[PanelPoint<S>] {
         &self.values
     }
 
@@ -309,7 +309,11 @@ impl<S: Decimal> Points<S> {
     }
 
     /// Every line of points along an axis: the values, and where the point of a place stands.
-    fn for_lines(&mut self, axis: usize, mut of_line: impl FnMut(&mut [Point<S>], &dyn Fn(usize) -> usize)) {
+    fn for_lines(
+        &mut self,
+        axis: usize,
+        mut of_line: impl FnMut(&mut [PanelPoint<S>], &dyn Fn(usize) -> usize),
+    ) {
         let stride = self.stride(axis);
         let block = stride * (self.degrees[axis] + 1);
         for start in (0..self.values.len()).step_by(block) {
@@ -323,8 +327,8 @@ impl<S: Decimal> Points<S> {
 impl<S: Decimal> InFrequency<S> {
     /// What remains of a polynomial in s = j w at most, as a polynomial in w; `None` where nothing does.
     pub(super) fn of_rests(of: &InS<S>) -> Option<InFrequency<S>> {
-        let rests = of.0.iter().map(Polynomial::rest);
-        let rests: Vec<Polynomial<S>> = rests.map(Polynomial::constant).collect();
+        let rests = of.0.iter().map(BoxPolynomial::rest);
+        let rests: Vec<BoxPolynomial<S>> = rests.map(BoxPolynomial::constant).collect();
         let remains = of.0.iter().any(|one| one.rest().most() != 0.0);
         remains.then(|| InFrequency { real: InS(rests), imaginary: InS(vec![]) })
     }
@@ -334,7 +338,7 @@ impl<S: Decimal> InFrequency<S> {
         let part = |own: usize| {
             let signed =
                 of.0.iter().enumerate().map(|(power, coefficient)| match (power % 2 == own, power % 4 < 2) {
-                    (false, _) => Polynomial::zero(),
+                    (false, _) => BoxPolynomial::zero(),
                     (true, true) => coefficient.clone(),
                     (true, false) => coefficient.scaled(S::from(-1.0)),
                 });

@@ -107,35 +107,35 @@ const EXPONENT_MAXIMUM: u8 = 60;
 const PRODUCTS_MAXIMUM: usize = 1 << 20;
 
 /// Exponents of the variables.
-type Exponents = [u8; VARIABLES_MAXIMUM];
+type VariablePowers = [u8; VARIABLES_MAXIMUM];
 
 /// A polynomial in the variables of a box: exponents in increasing order, each with its coefficient. What it stands for differs from it by
 /// a remainder of at most `rest`, with the variables in [0, 1] as in [-1, 1].
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Polynomial<S> {
-    terms: Vec<(Exponents, S)>,
+pub(crate) struct BoxPolynomial<S> {
+    terms: Vec<(VariablePowers, S)>,
     rest: S,
 }
 
-impl<S: Decimal> Polynomial<S> {
+impl<S: Decimal> BoxPolynomial<S> {
     /// A number.
-    pub(crate) fn constant(value: S) -> Polynomial<S> {
-        Polynomial { terms: vec![([0; VARIABLES_MAXIMUM], value)], rest: S::from(0.0) }
+    pub(crate) fn constant(value: S) -> BoxPolynomial<S> {
+        BoxPolynomial { terms: vec![([0; VARIABLES_MAXIMUM], value)], rest: S::from(0.0) }
     }
 
     /// A decimal number; zero has no term.
-    pub(crate) fn number(value: f64) -> Polynomial<S> {
-        if value == 0.0 { Polynomial::zero() } else { Polynomial::constant(S::decimal(value)) }
+    pub(crate) fn number(value: f64) -> BoxPolynomial<S> {
+        if value == 0.0 { BoxPolynomial::zero() } else { BoxPolynomial::constant(S::decimal(value)) }
     }
 
     /// Nothing: no term.
-    pub(crate) fn zero() -> Polynomial<S> {
-        Polynomial { terms: vec![], rest: S::from(0.0) }
+    pub(crate) fn zero() -> BoxPolynomial<S> {
+        BoxPolynomial { terms: vec![], rest: S::from(0.0) }
     }
 
     /// `low + (high - low) t`, t being the variable with this index; `low` if there is none.
-    pub(crate) fn between(low: f64, high: f64, variable: Option<usize>) -> Polynomial<S> {
-        let mut out = Polynomial::constant(S::decimal(low));
+    pub(crate) fn between(low: f64, high: f64, variable: Option<usize>) -> BoxPolynomial<S> {
+        let mut out = BoxPolynomial::constant(S::decimal(low));
         let mut exponents = [0; VARIABLES_MAXIMUM];
         if let Some(slot) = variable.and_then(|variable| exponents.get_mut(variable)) {
             *slot = 1;
@@ -155,7 +155,7 @@ impl<S: Decimal> Polynomial<S> {
     }
 
     /// The same with more that it may differ by.
-    pub(super) fn with_rest(mut self, more: S) -> Polynomial<S> {
+    pub(super) fn with_rest(mut self, more: S) -> BoxPolynomial<S> {
         self.rest = self.rest + more;
         self
     }
@@ -184,19 +184,19 @@ impl<S: Decimal> Polynomial<S> {
         }
     }
 
-    pub(crate) fn scaled(&self, factor: S) -> Polynomial<S> {
+    pub(crate) fn scaled(&self, factor: S) -> BoxPolynomial<S> {
         let terms = self.terms.iter().map(|(exponents, coefficient)| (*exponents, *coefficient * factor));
-        Polynomial { terms: terms.collect(), rest: self.rest * factor.abs() }
+        BoxPolynomial { terms: terms.collect(), rest: self.rest * factor.abs() }
     }
 
-    pub(crate) fn plus(&self, other: &Polynomial<S>) -> Polynomial<S> {
+    pub(crate) fn plus(&self, other: &BoxPolynomial<S>) -> BoxPolynomial<S> {
         let terms = self.terms.iter().chain(&other.terms).copied().collect();
-        Polynomial::collected(terms, self.rest + other.rest)
+        BoxPolynomial::collected(terms, self.rest + other.rest)
     }
 
-    pub(crate) fn times(&self, other: &Polynomial<S>) -> Polynomial<S> {
+    pub(crate) fn times(&self, other: &BoxPolynomial<S>) -> BoxPolynomial<S> {
         if self.terms.len().saturating_mul(other.terms.len()) > PRODUCTS_MAXIMUM {
-            return Polynomial::constant(S::from(f64::NAN));
+            return BoxPolynomial::constant(S::from(f64::NAN));
         }
         let products = self.terms.iter().flat_map(|(one, a)| {
             other.terms.iter().map(|(another, b)| {
@@ -215,11 +215,11 @@ impl<S: Decimal> Polynomial<S> {
             true => self.size() * other.rest + self.rest * other.size() + self.rest * other.rest,
             false => S::from(0.0),
         };
-        Polynomial::collected(products.collect(), rest)
+        BoxPolynomial::collected(products.collect(), rest)
     }
 
     /// Terms in any order, those with the same exponents added up in it.
-    fn collected(mut terms: Vec<(Exponents, S)>, rest: S) -> Polynomial<S> {
+    fn collected(mut terms: Vec<(VariablePowers, S)>, rest: S) -> BoxPolynomial<S> {
         terms.sort_by_key(|(exponents, _)| *exponents);
         terms.dedup_by(|next, kept| {
             let same = next.0 == kept.0;
@@ -228,13 +228,14 @@ impl<S: Decimal> Polynomial<S> {
             }
             same
         });
-        Polynomial { terms, rest }
+        BoxPolynomial { terms, rest }
     }
 
     /// Its terms up to a total degree, what the others are at most added to the remainder.
-    pub(super) fn truncated(mut self, degree: usize) -> Polynomial<S> {
-        let is_kept =
-            |exponents: &Exponents| exponents.iter().map(|one| usize::from(*one)).sum::<usize>() <= degree;
+    pub(super) fn truncated(mut self, degree: usize) -> BoxPolynomial<S> {
+        let is_kept = |exponents: &VariablePowers| {
+            exponents.iter().map(|one| usize::from(*one)).sum::<usize>() <= degree
+        };
         let beyond = self.terms.iter().filter(|(exponents, _)| !is_kept(exponents));
         self.rest = beyond.fold(self.rest, |sum, (_, value)| sum + value.abs());
         self.terms.retain(|(exponents, _)| is_kept(exponents));
@@ -242,8 +243,8 @@ impl<S: Decimal> Polynomial<S> {
     }
 
     /// `middle + half x`, x being the variable with this index.
-    pub(super) fn about(middle: S, half: S, variable: usize) -> Polynomial<S> {
-        let mut out = Polynomial::constant(middle);
+    pub(super) fn about(middle: S, half: S, variable: usize) -> BoxPolynomial<S> {
+        let mut out = BoxPolynomial::constant(middle);
         let mut exponents = [0; VARIABLES_MAXIMUM];
         if let Some(slot) = exponents.get_mut(variable) {
             *slot = 1;
@@ -253,13 +254,13 @@ impl<S: Decimal> Polynomial<S> {
     }
 
     /// The same polynomial with x = 2 t - 1 in place of every variable.
-    pub(super) fn with_shares(&self) -> Polynomial<S> {
-        let mut out = Polynomial { terms: vec![], rest: self.rest };
+    pub(super) fn with_shares(&self) -> BoxPolynomial<S> {
+        let mut out = BoxPolynomial { terms: vec![], rest: self.rest };
         for (exponents, value) in &self.terms {
-            let start = Polynomial::constant(*value);
+            let start = BoxPolynomial::constant(*value);
             let powers = exponents.iter().enumerate().flat_map(|(variable, power)| {
                 std::iter::repeat_n(
-                    Polynomial::about(S::from(-1.0), S::from(2.0), variable),
+                    BoxPolynomial::about(S::from(-1.0), S::from(2.0), variable),
                     usize::from(*power),
                 )
             });
@@ -269,7 +270,7 @@ impl<S: Decimal> Polynomial<S> {
     }
 
     /// Itself, unless an exponent is greater than this.
-    pub(crate) fn up_to(self, greatest: u8) -> Option<Polynomial<S>> {
+    pub(crate) fn up_to(self, greatest: u8) -> Option<BoxPolynomial<S>> {
         let fits = self.terms.iter().flat_map(|(exponents, _)| exponents).all(|one| *one <= greatest);
         fits.then_some(self)
     }
@@ -279,15 +280,15 @@ impl<S: Decimal> Polynomial<S> {
 /// something else than sums, products and quotients by numbers.
 pub(crate) fn expanded<S: Decimal>(
     expression: &Expression,
-    parameters: &[Polynomial<S>],
-) -> Option<Vec<Polynomial<S>>> {
+    parameters: &[BoxPolynomial<S>],
+) -> Option<Vec<BoxPolynomial<S>>> {
     let minus_one = S::from(-1.0);
-    let mut values: Vec<Option<Polynomial<S>>> = Vec::with_capacity(expression.nodes().len());
+    let mut values: Vec<Option<BoxPolynomial<S>>> = Vec::with_capacity(expression.nodes().len());
     for node in expression.nodes() {
         let of = |index: usize| values.get(index).and_then(Option::as_ref);
         let value = match *node {
             Node::Parameter(index) => parameters.get(index).cloned(),
-            Node::Constant(value) => Some(Polynomial::number(value)),
+            Node::Constant(value) => Some(BoxPolynomial::number(value)),
             Node::Unary(Unary::Negate, x) => of(x).map(|x| x.scaled(minus_one)),
             Node::Binary(Binary::Add, x, y) => of(x).zip(of(y)).map(|(x, y)| x.plus(y)),
             Node::Binary(Binary::Subtract, x, y) => {
@@ -309,12 +310,12 @@ pub(crate) fn expanded<S: Decimal>(
 
 /// A polynomial in s, the lowest power first.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct InS<S>(pub(crate) Vec<Polynomial<S>>);
+pub(crate) struct InS<S>(pub(crate) Vec<BoxPolynomial<S>>);
 
 impl<S: Decimal> InS<S> {
     /// With these numbers as coefficients, the highest power first.
     pub(crate) fn of_decimals(coefficients: &[f64]) -> InS<S> {
-        InS(coefficients.iter().rev().map(|&value| Polynomial::number(value)).collect())
+        InS(coefficients.iter().rev().map(|&value| BoxPolynomial::number(value)).collect())
     }
 
     pub(crate) fn plus(&self, other: &InS<S>) -> InS<S> {
@@ -331,7 +332,7 @@ impl<S: Decimal> InS<S> {
     }
 
     pub(crate) fn times(&self, other: &InS<S>) -> InS<S> {
-        let mut out = vec![Polynomial::zero(); (self.0.len() + other.0.len()).saturating_sub(1)];
+        let mut out = vec![BoxPolynomial::zero(); (self.0.len() + other.0.len()).saturating_sub(1)];
         for (index, a) in self.0.iter().enumerate() {
             for (slot, b) in out.iter_mut().skip(index).zip(&other.0) {
                 *slot = slot.plus(&a.times(b));

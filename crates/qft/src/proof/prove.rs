@@ -4,16 +4,19 @@ use phea_dynamics::portable;
 use phea_dynamics::watch::{Stopped, Watch, part};
 
 use super::bounds::with_bounds;
-use super::certificate::{Certificate, Claim, Count, LimitOf, Limited, Member, Panel, Side, StableBox};
+use super::certificate::{
+    Certificate, CertificateMember, CertificateSide, Claim, FrequencyPanel, LimitOf, LimitedLoop, PoleCount,
+    StableBox,
+};
 use super::checker::check_claim;
 use super::claimed::{Claimed, Loop};
 use super::count::poles_outside;
-use super::hurwitz::{Roots, roots_of};
+use super::hurwitz::{RootLocation, roots_of};
 use super::panels::walk_band;
 use super::sampling::poles_of_law;
 use super::statement::{limit, member_of, stated, values_of};
-use super::supremum::{Enclosed, Place, Wanted, corners, enclose};
-use super::walk::{Effort, Region, Walk};
+use super::supremum::{EnclosedSupremum, PlantAtFrequency, SoughtSupremum, corners, enclose};
+use super::walk::{ProofEffort, ProofRegion, WalkOutcome};
 use super::{NotProven, Proof, SpecificationProof, Standing};
 use crate::family::Family;
 use crate::specification::{Limit, Specification};
@@ -60,7 +63,7 @@ pub fn prove(
         Ok(stated) => stated,
         Err(reason) => return Ok(nothing(problem, reason)),
     };
-    let effort = Effort { leaves: options.leaves_maximum, depth: DEPTH_MAXIMUM, room: ROOMS[0] };
+    let effort = ProofEffort { leaves: options.leaves_maximum, depth: DEPTH_MAXIMUM, room: ROOMS[0] };
     let Some(certificate) = with_bounds(certificate, effort, watch)? else {
         return Ok(nothing(problem, NotProven::Images));
     };
@@ -98,7 +101,7 @@ struct Prover<'a> {
     problem: &'a AuditProblem<'a>,
     certificate: Certificate,
     options: ProofOptions,
-    effort: Effort,
+    effort: ProofEffort,
 }
 
 impl Prover<'_> {
@@ -120,7 +123,7 @@ impl Prover<'_> {
                 Family::Measured(_) => None,
             };
             let named = nominal.into_iter().chain(worst.clone()).filter(|member| member.of_box == of_box);
-            let members: Vec<Member> = named.chain(corners(&self.certificate, of_box)).collect();
+            let members: Vec<CertificateMember> = named.chain(corners(&self.certificate, of_box)).collect();
             match self.stable_box(&members, watch)? {
                 Ok(stable) => boxes.push(stable),
                 Err(standing) => return Ok(standing),
@@ -135,7 +138,7 @@ impl Prover<'_> {
     /// One box, in which one of these plants is stable.
     fn stable_box(
         &mut self,
-        members: &[Member],
+        members: &[CertificateMember],
         watch: Watch<'_>,
     ) -> Result<Result<StableBox, Standing>, Stopped> {
         let mut stable = None;
@@ -145,12 +148,12 @@ impl Prover<'_> {
                 break;
             }
             match self.poles(member, watch)? {
-                Poles::Beyond(count)
+                PoleLocation::Beyond(count)
                     if self.keeps(Claim::Unstable { member: member.clone(), count: count.clone() }) =>
                 {
                     return Ok(Err(Standing::Refuted));
                 }
-                Poles::Within(count) if stable.is_none() => stable = Some((member, count)),
+                PoleLocation::Within(count) if stable.is_none() => stable = Some((member, count)),
                 _ => {}
             }
         }
@@ -176,25 +179,25 @@ impl Prover<'_> {
     }
 
     /// Where the poles of the loop with one plant are, those of the prefilter as well.
-    fn poles(&self, member: &Member, watch: Watch<'_>) -> Result<Poles, Stopped> {
+    fn poles(&self, member: &CertificateMember, watch: Watch<'_>) -> Result<PoleLocation, Stopped> {
         if self.certificate.sampling.is_some() {
             return self.counted(member, watch);
         }
-        let Some(at) = Loop::at(&self.certificate, member) else { return Ok(Poles::Unknown) };
+        let Some(at) = Loop::at(&self.certificate, member) else { return Ok(PoleLocation::Unknown) };
         let roots = [&at.without_dead_time(), at.prefilter_denominator()].map(roots_of);
         Ok(match roots {
-            [Roots::AllLeft, Roots::AllLeft] => Poles::Within(None),
-            roots if roots.contains(&Roots::SomeNotLeft) => Poles::Beyond(None),
-            _ => Poles::Unknown,
+            [RootLocation::AllLeft, RootLocation::AllLeft] => PoleLocation::Within(None),
+            roots if roots.contains(&RootLocation::SomeNotLeft) => PoleLocation::Beyond(None),
+            _ => PoleLocation::Unknown,
         })
     }
 
     /// The same of a sampled loop.
-    fn counted(&self, member: &Member, watch: Watch<'_>) -> Result<Poles, Stopped> {
+    fn counted(&self, member: &CertificateMember, watch: Watch<'_>) -> Result<PoleLocation, Stopped> {
         let (Some(at), Some(sampling)) =
             (Loop::<f64>::at(&self.certificate, member), &self.certificate.sampling)
         else {
-            return Ok(Poles::Unknown);
+            return Ok(PoleLocation::Unknown);
         };
         let (claimed, of_box) = (at.stability(), member.of_box);
         let (denominator, _) = at.denominator_claimed();
@@ -204,22 +207,22 @@ impl Prover<'_> {
         for (claimed, band) in bands {
             match self.never_zero_within(claimed, band, 0, of_box, watch)? {
                 Ok(panels) => found.push(panels),
-                Err(_) => return Ok(Poles::Unknown),
+                Err(_) => return Ok(PoleLocation::Unknown),
             }
         }
         let mut found = found.into_iter();
         let (Some(characteristic), Some(denominator), Some(beyond)) =
             (found.next(), found.next(), found.next())
         else {
-            return Ok(Poles::Unknown);
+            return Ok(PoleLocation::Unknown);
         };
-        let count = Count { characteristic, denominator, beyond };
+        let count = PoleCount { characteristic, denominator, beyond };
         let controller_poles = poles_of_law(&self.certificate.feedback);
         let half = std::f64::consts::PI / sampling.sample_time_s;
         Ok(match poles_outside(&at, controller_poles, &count, half) {
-            Some(0) => Poles::Within(Some(count)),
-            Some(_) => Poles::Beyond(Some(count)),
-            None => Poles::Unknown,
+            Some(0) => PoleLocation::Within(Some(count)),
+            Some(_) => PoleLocation::Beyond(Some(count)),
+            None => PoleLocation::Unknown,
         })
     }
 
@@ -230,7 +233,7 @@ impl Prover<'_> {
         variables: usize,
         of_box: usize,
         watch: Watch<'_>,
-    ) -> Result<Result<Vec<Panel>, NotProven>, Stopped> {
+    ) -> Result<Result<Vec<FrequencyPanel>, NotProven>, Stopped> {
         self.never_zero_within(claimed, WHOLE, variables, of_box, watch)
     }
 
@@ -241,13 +244,13 @@ impl Prover<'_> {
         variables: usize,
         of_box: usize,
         watch: Watch<'_>,
-    ) -> Result<Result<Vec<Panel>, NotProven>, Stopped> {
+    ) -> Result<Result<Vec<FrequencyPanel>, NotProven>, Stopped> {
         let band = claimed.band_covered(band);
         Ok(match walk_band(claimed, variables, band, self.effort, watch)? {
-            Walk::Shown(panels) => Ok(panels),
-            Walk::Open(region) => Err(NotProven::Budget(Region { of_box, ..region })),
-            Walk::Wrong { .. } => Err(NotProven::Rounding),
-            Walk::TooLarge => Err(NotProven::TooManyVariables),
+            WalkOutcome::Shown(panels) => Ok(panels),
+            WalkOutcome::Open(region) => Err(NotProven::Budget(ProofRegion { of_box, ..region })),
+            WalkOutcome::Wrong { .. } => Err(NotProven::Rounding),
+            WalkOutcome::TooLarge => Err(NotProven::TooManyVariables),
         })
     }
 
@@ -266,13 +269,16 @@ impl Prover<'_> {
         if requirement.is_tracking() && self.problem.tracking == TrackingJudgement::Spread {
             return Ok(SpecificationProof::without(Standing::NotProven(NotProven::Spread)));
         }
-        let hints: Vec<Place> = self.hints(finding);
+        let hints: Vec<PlantAtFrequency> = self.hints(finding);
         let (lower, upper) = requirement.limits();
-        let lower = lower.filter(|lower| **lower != Limit::Constant(0.0)).map(|lower| (Side::Lower, lower));
+        let lower = lower
+            .filter(|lower| **lower != Limit::Constant(0.0))
+            .map(|lower| (CertificateSide::Lower, lower));
         let mut whole = SpecificationProof::without(Standing::Proven);
-        for (side, own) in lower.into_iter().chain([(Side::Upper, upper)]) {
+        for (side, own) in lower.into_iter().chain([(CertificateSide::Upper, upper)]) {
             let (closed_loop, limit) = (requirement.closed_loop(), limit(own));
-            let limited = Limited { closed_loop, side, limit, band_rad_per_s: specification.band_rad_per_s };
+            let limited =
+                LimitedLoop { closed_loop, side, limit, band_rad_per_s: specification.band_rad_per_s };
             whole = whole.and(self.side(&limited, &hints, stability, watch)?);
         }
         Ok(whole)
@@ -281,13 +287,13 @@ impl Prover<'_> {
     /// One side of a specification.
     fn side(
         &mut self,
-        limited: &Limited,
-        hints: &[Place],
+        limited: &LimitedLoop,
+        hints: &[PlantAtFrequency],
         stability: &Standing,
         watch: Watch<'_>,
     ) -> Result<SpecificationProof, Stopped> {
         let decisive = from_db(self.problem.tolerance_db);
-        let wanted = Wanted {
+        let wanted = SoughtSupremum {
             width: from_db(self.options.width_db),
             decisive,
             effort: self.effort,
@@ -314,12 +320,13 @@ impl Prover<'_> {
         let mut most_db = self.keeps_most(limited, found.most.take());
         let rounding = most_db == Some(None);
         if rounding {
-            let effort = Effort { room: ROOMS[1], ..wanted.effort };
-            let again = enclose(&self.certificate, limited, hints, Wanted { effort, ..wanted }, watch)?;
+            let effort = ProofEffort { room: ROOMS[1], ..wanted.effort };
+            let again =
+                enclose(&self.certificate, limited, hints, SoughtSupremum { effort, ..wanted }, watch)?;
             most_db = self.keeps_most(limited, again.and_then(|again| again.most));
         }
         let most_db = most_db.flatten();
-        let Enclosed { least, at, open, .. } = found;
+        let EnclosedSupremum { least, at, open, .. } = found;
         let standing = match most_db {
             _ if is_reached && least > decisive => Standing::Refuted,
             Some(most_db) if most_db <= self.problem.tolerance_db => Standing::Proven,
@@ -340,8 +347,8 @@ impl Prover<'_> {
     /// Keeps a claim that a ratio is not exceeded: that ratio in dB, or nothing where the checker could not confirm it.
     fn keeps_most(
         &mut self,
-        limited: &Limited,
-        shown: Option<(f64, Vec<Vec<Panel>>)>,
+        limited: &LimitedLoop,
+        shown: Option<(f64, Vec<Vec<FrequencyPanel>>)>,
     ) -> Option<Option<f64>> {
         let (ratio, boxes) = shown?;
         let claim = Claim::Limited { limited: limited.clone(), ratio, boxes };
@@ -349,27 +356,27 @@ impl Prover<'_> {
     }
 
     /// Where the audit found the specification to be worst.
-    fn hints(&self, finding: &SpecificationFinding) -> Vec<Place> {
+    fn hints(&self, finding: &SpecificationFinding) -> Vec<PlantAtFrequency> {
         let bands = finding.violations.iter().map(|band| &band.worst);
         let cases =
             finding.worst.iter().chain(&finding.interior).chain(bands).chain(&finding.at_design_frequencies);
         cases.filter_map(|case| self.place(&case.plant, case.frequency_rad_per_s)).collect()
     }
 
-    fn place(&self, plant: &PlantPoint, frequency_rad_per_s: f64) -> Option<Place> {
-        Some(Place { frequency_rad_per_s, member: self.member(plant)? })
+    fn place(&self, plant: &PlantPoint, frequency_rad_per_s: f64) -> Option<PlantAtFrequency> {
+        Some(PlantAtFrequency { frequency_rad_per_s, member: self.member(plant)? })
     }
 
-    fn member(&self, plant: &PlantPoint) -> Option<Member> {
+    fn member(&self, plant: &PlantPoint) -> Option<CertificateMember> {
         let PlantPoint::Parameters(values) = plant else { return None };
         member_of(&self.certificate.plant, values)
     }
 }
 
 /// Where the poles of a loop are with one plant: within the boundary of stability, or at least one on it or beyond.
-enum Poles {
-    Within(Option<Count>),
-    Beyond(Option<Count>),
+enum PoleLocation {
+    Within(Option<PoleCount>),
+    Beyond(Option<PoleCount>),
     Unknown,
 }
 

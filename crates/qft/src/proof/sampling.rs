@@ -3,10 +3,10 @@
 
 use phea_dynamics::scalar::{Interval, Scalar};
 
-use super::certificate::{Bound, Certificate, Law, Panel, Sections};
+use super::certificate::{Certificate, ControlLaw, FrequencyPanel, RollOffBound, Sections};
 use super::checker::{Rejection, check_panels};
 use super::claimed::Loop;
-use super::hurwitz::{Roots, roots_of};
+use super::hurwitz::{RootLocation, roots_of};
 use super::polynomial::Decimal;
 
 /// Images to either side at most.
@@ -20,13 +20,13 @@ const SECTION_DEGREE_MAXIMUM: usize = 2;
 pub(super) fn check_sampling(certificate: &Certificate) -> Result<(), Rejection> {
     let Certificate { feedback, prefilter, sampling, plant, .. } = certificate;
     let Some(sampling) = sampling else {
-        let is_continuous = [feedback, prefilter].iter().all(|law| matches!(law, Law::Continuous(_)));
+        let is_continuous = [feedback, prefilter].iter().all(|law| matches!(law, ControlLaw::Continuous(_)));
         return if is_continuous { Ok(()) } else { Err(Rejection::NoSuchLoop) };
     };
-    let Law::Sampled(_) = feedback else { return Err(Rejection::NoSuchLoop) };
+    let ControlLaw::Sampled(_) = feedback else { return Err(Rejection::NoSuchLoop) };
     let laws_fit = [feedback, prefilter].iter().all(|law| match law {
-        Law::Continuous(_) => true,
-        Law::Sampled(sections) => is_causal(sections),
+        ControlLaw::Continuous(_) => true,
+        ControlLaw::Sampled(sections) => is_causal(sections),
     });
     let numbers = sampling.sample_time_s.is_finite() && sampling.sample_time_s > 0.0;
     let images = (1..=IMAGES_MAXIMUM).contains(&sampling.images);
@@ -36,7 +36,7 @@ pub(super) fn check_sampling(certificate: &Certificate) -> Result<(), Rejection>
     if laws_fit && numbers && images && bounded { Ok(()) } else { Err(Rejection::Number("of the sampling")) }
 }
 
-fn is_bound(bound: &Bound) -> bool {
+fn is_bound(bound: &RollOffBound) -> bool {
     bound.ratio.is_finite() && bound.ratio > 0.0 && (1..=ORDER_MAXIMUM).contains(&bound.order)
 }
 
@@ -60,18 +60,18 @@ pub(super) fn pi_over_t(certificate: &Certificate) -> Option<Interval> {
 }
 
 /// Poles of a sampled controller.
-pub(super) fn poles_of_law(law: &Law) -> usize {
+pub(super) fn poles_of_law(law: &ControlLaw) -> usize {
     match law {
-        Law::Continuous(_) => 0,
-        Law::Sampled(sections) => sections.denominator.iter().map(|section| section.len() - 1).sum(),
+        ControlLaw::Continuous(_) => 0,
+        ControlLaw::Sampled(sections) => sections.denominator.iter().map(|section| section.len() - 1).sum(),
     }
 }
 
 /// Whether all poles of the prefilter are within the unit circle, or to the left of the imaginary axis.
 pub(super) fn prefilter_is_stable(certificate: &Certificate, around: &Loop<Interval>) -> bool {
     match &certificate.prefilter {
-        Law::Continuous(_) => roots_of(around.prefilter_denominator()) == Roots::AllLeft,
-        Law::Sampled(sections) => sections.denominator.iter().all(|section| is_within_circle(section)),
+        ControlLaw::Continuous(_) => roots_of(around.prefilter_denominator()) == RootLocation::AllLeft,
+        ControlLaw::Sampled(sections) => sections.denominator.iter().all(|section| is_within_circle(section)),
     }
 }
 
@@ -104,7 +104,7 @@ pub(super) fn check_bounds(
     let claims = images.bounded();
     let bounds = sampling.bounds.get(of_box).ok_or(Rejection::Boxes)?;
     for (claimed, bound) in claims.iter().zip(bounds) {
-        let panels: &[Panel] = &bound.panels;
+        let panels: &[FrequencyPanel] = &bound.panels;
         let begin = panels.first().map_or(f64::INFINITY, |panel| panel.from);
         if begin > images.bound_begin().low() {
             return Err(Rejection::Gap(images.bound_begin().low()));

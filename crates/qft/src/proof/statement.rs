@@ -8,7 +8,8 @@ use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients, Un
 
 use super::NotProven;
 use super::certificate::{
-    Bound, Certificate, CertifiedPlant, Law, LimitOf, Member, Quotient, Sampling, Sections, Segment,
+    Certificate, CertificateMember, CertifiedPlant, ControlLaw, LimitOf, ParameterSegment, Quotient,
+    RollOffBound, Sampling, Sections,
 };
 use super::modelling::with_model;
 use super::polynomial::VARIABLES_MAXIMUM;
@@ -49,7 +50,7 @@ pub(super) fn stated(family: &Family, compensation: &Compensation) -> Result<Cer
     let [feedback, prefilter] = [parts[0], parts[1]].map(law);
     let sensor = quotient(parts[2]);
     let sampling = compensation.sample_time_s().map(|sample_time_s| {
-        let bound = Bound { order: 1, ratio: 1.0, panels: vec![] };
+        let bound = RollOffBound { order: 1, ratio: 1.0, panels: vec![] };
         let of_box = vec![bound; if sensor.is_one() { 1 } else { 2 }];
         let bounds = vec![of_box; plant.boxes.len()];
         Sampling { sample_time_s, sensor_delay_s: parts[2].dead_time_s(), images: 1, bounds }
@@ -60,10 +61,10 @@ pub(super) fn stated(family: &Family, compensation: &Compensation) -> Result<Cer
 }
 
 /// A law in s or in z.
-fn law(function: &TransferFunction) -> Law {
+fn law(function: &TransferFunction) -> ControlLaw {
     match function.domain() {
-        TimeDomain::Continuous => Law::Continuous(quotient(function)),
-        TimeDomain::Discrete { .. } => Law::Sampled(Sections {
+        TimeDomain::Continuous => ControlLaw::Continuous(quotient(function)),
+        TimeDomain::Discrete { .. } => ControlLaw::Sampled(Sections {
             gain: function.gain(),
             numerator: sections(function.zeros()),
             denominator: sections(function.poles()),
@@ -107,8 +108,10 @@ pub(super) fn limit(limit: &Limit) -> LimitOf {
 }
 
 /// The boxes of a family, and the number of variables.
-fn boxes(family: &UncertainFamily) -> Result<(Vec<Vec<Segment>>, usize), NotProven> {
-    let fixed = |values: &[f64]| -> Vec<Segment> { values.iter().copied().map(Segment::fixed).collect() };
+fn boxes(family: &UncertainFamily) -> Result<(Vec<Vec<ParameterSegment>>, usize), NotProven> {
+    let fixed = |values: &[f64]| -> Vec<ParameterSegment> {
+        values.iter().copied().map(ParameterSegment::fixed).collect()
+    };
     if family.extent() == Extent::Members {
         return Ok((family.members().iter().map(|values| fixed(values)).collect(), 0));
     }
@@ -139,7 +142,7 @@ fn boxes(family: &UncertainFamily) -> Result<(Vec<Vec<Segment>>, usize), NotProv
     }
     let beside =
         family.members().iter().filter(|values| !boxes.iter().any(|one| is_within(one, variables, values)));
-    let beside: Vec<Vec<Segment>> = beside.map(|values| fixed(values)).collect();
+    let beside: Vec<Vec<ParameterSegment>> = beside.map(|values| fixed(values)).collect();
     boxes.extend(beside);
     Ok((boxes, variables))
 }
@@ -150,7 +153,11 @@ const BOXES_MAXIMUM: usize = 256;
 const FACTOR_MAXIMUM: f64 = 1.6;
 
 /// A box in which a variable moves these parameters: parted, where it moves them by factors that are too great for one.
-fn parts(whole: &[Segment], moved: &[(usize, [f64; 2], bool)], variable: usize) -> Vec<Vec<Segment>> {
+fn parts(
+    whole: &[ParameterSegment],
+    moved: &[(usize, [f64; 2], bool)],
+    variable: usize,
+) -> Vec<Vec<ParameterSegment>> {
     let factor = |[low, high]: [f64; 2]| portable::ln(high / low).abs() / portable::ln(FACTOR_MAXIMUM);
     let greatest = moved.iter().filter(|one| one.2).map(|one| factor(one.1)).fold(1.0, f64::max);
     let count = greatest.ceil();
@@ -165,7 +172,7 @@ fn parts(whole: &[Segment], moved: &[(usize, [f64; 2], bool)], variable: usize) 
         for &(parameter, ends, by_factors) in moved {
             let [low, high] =
                 [index / count, (index + 1.0) / count].map(|share| value(ends, by_factors, share));
-            own[parameter] = Segment { low, high, variable: Some(variable), by_factors };
+            own[parameter] = ParameterSegment { low, high, variable: Some(variable), by_factors };
         }
         own
     };
@@ -177,7 +184,7 @@ const BESIDE: f64 = 1e-9;
 
 /// The variables of a plant that belongs to a box; `None` of one that does not, as one that is named need not do where parameters move
 /// together.
-fn variables_within(segments: &[Segment], variables: usize, values: &[f64]) -> Option<Vec<f64>> {
+fn variables_within(segments: &[ParameterSegment], variables: usize, values: &[f64]) -> Option<Vec<f64>> {
     let mut shares: Vec<Option<f64>> = vec![None; variables];
     let fits = segments.iter().zip(values).all(|(one, value)| {
         match one.variable.and_then(|own| shares.get_mut(own)) {
@@ -192,11 +199,11 @@ fn variables_within(segments: &[Segment], variables: usize, values: &[f64]) -> O
     fits.then(|| shares.into_iter().map(|share| share.unwrap_or(0.0).clamp(0.0, 1.0)).collect())
 }
 
-fn is_within(segments: &[Segment], variables: usize, values: &[f64]) -> bool {
+fn is_within(segments: &[ParameterSegment], variables: usize, values: &[f64]) -> bool {
     variables_within(segments, variables, values).is_some()
 }
 
-impl Segment {
+impl ParameterSegment {
     /// The variable at which a parameter has this value.
     fn share(&self, value: f64) -> f64 {
         match self.by_factors {
@@ -223,10 +230,10 @@ fn moves_straight(coordinate: &Coordinate) -> bool {
 
 /// The plant of a family with these values: of plants that are listed the one that has them, else that of a box that holds them, else that of
 /// the first box nearest to them.
-pub(super) fn member_of(plant: &CertifiedPlant, values: &[f64]) -> Option<Member> {
+pub(super) fn member_of(plant: &CertifiedPlant, values: &[f64]) -> Option<CertificateMember> {
     let within = plant.boxes.iter().enumerate().find_map(|(of_box, segments)| {
         let variables = variables_within(segments, plant.variables, values)?;
-        Some(Member { of_box, variables })
+        Some(CertificateMember { of_box, variables })
     });
     if within.is_some() || plant.variables == 0 {
         return within;
@@ -237,12 +244,12 @@ pub(super) fn member_of(plant: &CertifiedPlant, values: &[f64]) -> Option<Member
             *slot = one.share(*value).clamp(0.0, 1.0);
         }
     }
-    Some(Member { of_box: 0, variables })
+    Some(CertificateMember { of_box: 0, variables })
 }
 
 /// The values of the parameters of a plant.
-pub(super) fn values_of(plant: &CertifiedPlant, member: &Member) -> Vec<f64> {
-    let value = |one: &Segment| {
+pub(super) fn values_of(plant: &CertifiedPlant, member: &CertificateMember) -> Vec<f64> {
+    let value = |one: &ParameterSegment| {
         let share = one.variable.and_then(|variable| member.variables.get(variable)).copied();
         share.map_or(one.low, |share| one.value(share))
     };

@@ -4,13 +4,13 @@ use num_complex::Complex64;
 use phea_dynamics::portable;
 use phea_dynamics::watch::{Stopped, Watch};
 
-use super::certificate::{Certificate, Limited, Member, Panel};
-use super::claimed::{Claimed, Loop, Piece};
+use super::certificate::{Certificate, CertificateMember, FrequencyPanel, LimitedLoop};
+use super::claimed::{BandClaim, Claimed, Loop};
 use super::panels::{frequencies, walk_band};
-use super::part::{Part, number};
+use super::part::{PolynomialProduct, number};
 use super::patch::at_point;
 use super::polynomial::InS;
-use super::walk::{Effort, Region, Walk};
+use super::walk::{ProofEffort, ProofRegion, WalkOutcome};
 
 /// Corners of a box that are looked at before anything is shown.
 const CORNERS_MAXIMUM: usize = 64;
@@ -21,31 +21,31 @@ const ROUNDED: f64 = 1e-9;
 
 /// A plant and a frequency.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Place {
+pub(super) struct PlantAtFrequency {
     pub(super) frequency_rad_per_s: f64,
-    pub(super) member: Member,
+    pub(super) member: CertificateMember,
 }
 
 /// What was found of a supremum.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Enclosed {
+pub(super) struct EnclosedSupremum {
     /// A ratio that is reached, and where.
     pub(super) least: f64,
-    pub(super) at: Place,
+    pub(super) at: PlantAtFrequency,
     /// A ratio that is not exceeded, with what shows it.
-    pub(super) most: Option<(f64, Vec<Vec<Panel>>)>,
+    pub(super) most: Option<(f64, Vec<Vec<FrequencyPanel>>)>,
     /// What remained where there is none.
-    pub(super) open: Option<Region>,
+    pub(super) open: Option<ProofRegion>,
 }
 
 /// What is looked for.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Wanted {
+pub(super) struct SoughtSupremum {
     /// The factor between both ends of the enclosure at most.
     pub(super) width: f64,
     /// A ratio that decides: it is shown or refuted, though the enclosure might be narrower.
     pub(super) decisive: f64,
-    pub(super) effort: Effort,
+    pub(super) effort: ProofEffort,
     /// Whether only points are looked at.
     pub(super) only_points: bool,
 }
@@ -53,14 +53,14 @@ pub(super) struct Wanted {
 /// Encloses the supremum of the ratio of a closed loop to its limit; `None` of a loop without that path.
 pub(super) fn enclose(
     certificate: &Certificate,
-    limited: &Limited,
-    hints: &[Place],
-    wanted: Wanted,
+    limited: &LimitedLoop,
+    hints: &[PlantAtFrequency],
+    wanted: SoughtSupremum,
     watch: Watch<'_>,
-) -> Result<Option<Enclosed>, Stopped> {
+) -> Result<Option<EnclosedSupremum>, Stopped> {
     let boxes = 0..certificate.plant.boxes.len();
     let claims = boxes.map(|of_box| Loop::<f64>::over_box(certificate, of_box)?.claimed(limited, 1.0));
-    let Some(claims) = claims.collect::<Option<Vec<Vec<Piece<f64>>>>>() else { return Ok(None) };
+    let Some(claims) = claims.collect::<Option<Vec<Vec<BandClaim<f64>>>>>() else { return Ok(None) };
     let Some(mut found) = seen(certificate, limited, &claims, hints) else { return Ok(None) };
     for _ in 0..RAISES_MAXIMUM {
         if wanted.only_points {
@@ -97,31 +97,31 @@ fn rounded(value: f64) -> f64 {
 
 /// What became of a claim in all boxes.
 enum Boxes {
-    Shown(Vec<Vec<Panel>>),
-    Wrong { at: Place, ratio: f64 },
-    Open(Option<Region>),
+    Shown(Vec<Vec<FrequencyPanel>>),
+    Wrong { at: PlantAtFrequency, ratio: f64 },
+    Open(Option<ProofRegion>),
 }
 
 fn walk_boxes(
     certificate: &Certificate,
-    (claims, ratio): (&[Vec<Piece<f64>>], f64),
-    effort: Effort,
+    (claims, ratio): (&[Vec<BandClaim<f64>>], f64),
+    effort: ProofEffort,
     watch: Watch<'_>,
 ) -> Result<Boxes, Stopped> {
     let mut shown = vec![vec![]; claims.len()];
     let each =
         claims.iter().enumerate().flat_map(|(of_box, pieces)| pieces.iter().map(move |one| (of_box, one)));
-    for (of_box, Piece { band, claimed }) in each {
+    for (of_box, BandClaim { band, claimed }) in each {
         let band = claimed.band_covered(*band);
         match walk_band(&claimed.raised(ratio), certificate.plant.variables, band, effort, watch)? {
-            Walk::Shown(panels) => shown[of_box].extend(panels),
-            Walk::Wrong { at, ratio } => {
-                let member = Member { of_box, variables: at.variables };
-                let at = Place { frequency_rad_per_s: at.frequency_rad_per_s, member };
+            WalkOutcome::Shown(panels) => shown[of_box].extend(panels),
+            WalkOutcome::Wrong { at, ratio } => {
+                let member = CertificateMember { of_box, variables: at.variables };
+                let at = PlantAtFrequency { frequency_rad_per_s: at.frequency_rad_per_s, member };
                 return Ok(Boxes::Wrong { at, ratio });
             }
-            Walk::Open(region) => return Ok(Boxes::Open(Some(Region { of_box, ..region }))),
-            Walk::TooLarge => return Ok(Boxes::Open(None)),
+            WalkOutcome::Open(region) => return Ok(Boxes::Open(Some(ProofRegion { of_box, ..region }))),
+            WalkOutcome::TooLarge => return Ok(Boxes::Open(None)),
         }
     }
     Ok(Boxes::Shown(shown))
@@ -130,18 +130,18 @@ fn walk_boxes(
 /// The greatest ratio at points: hints, and corners over the band.
 fn seen(
     certificate: &Certificate,
-    limited: &Limited,
-    claims: &[Vec<Piece<f64>>],
-    hints: &[Place],
-) -> Option<Enclosed> {
-    let mut members: Vec<Member> = hints.iter().map(|hint| hint.member.clone()).collect();
+    limited: &LimitedLoop,
+    claims: &[Vec<BandClaim<f64>>],
+    hints: &[PlantAtFrequency],
+) -> Option<EnclosedSupremum> {
+    let mut members: Vec<CertificateMember> = hints.iter().map(|hint| hint.member.clone()).collect();
     members.extend((0..claims.len()).flat_map(|of_box| corners(certificate, of_box)));
     members.dedup();
     let own = hints.iter().map(|hint| hint.frequency_rad_per_s);
     let pieces = claims.first()?;
     let spread = pieces.iter().flat_map(|piece| frequencies(piece.claimed.band(piece.band), &piece.claimed));
     let frequencies: Vec<f64> = own.chain(spread).collect();
-    let mut best: Option<Enclosed> = None;
+    let mut best: Option<EnclosedSupremum> = None;
     for member in members {
         let pieces = Loop::<f64>::at(certificate, &member)?.claimed(limited, 1.0)?;
         let each = frequencies.iter().flat_map(|&one| {
@@ -150,8 +150,8 @@ fn seen(
         });
         for (frequency_rad_per_s, ratio) in each {
             if ratio.is_finite() && best.as_ref().is_none_or(|known| ratio > known.least) {
-                let at = Place { frequency_rad_per_s, member: member.clone() };
-                best = Some(Enclosed { least: ratio, at, most: None, open: None });
+                let at = PlantAtFrequency { frequency_rad_per_s, member: member.clone() };
+                best = Some(EnclosedSupremum { least: ratio, at, most: None, open: None });
             }
         }
     }
@@ -159,9 +159,9 @@ fn seen(
 }
 
 /// Corners of a box.
-pub(super) fn corners(certificate: &Certificate, of_box: usize) -> impl Iterator<Item = Member> {
+pub(super) fn corners(certificate: &Certificate, of_box: usize) -> impl Iterator<Item = CertificateMember> {
     let variables = certificate.plant.variables;
-    (0..1_usize << variables).take(CORNERS_MAXIMUM).map(move |bits| Member {
+    (0..1_usize << variables).take(CORNERS_MAXIMUM).map(move |bits| CertificateMember {
         of_box,
         variables: (0..variables).map(|axis| (bits >> axis & 1) as f64).collect(),
     })
@@ -176,11 +176,11 @@ fn ratio_at(claimed: &Claimed<f64>, frequency_rad_per_s: f64) -> f64 {
         true => size(claimed.value_of_v(frequency_rad_per_s)) / size(claimed.value_of_u(frequency_rad_per_s)),
         false => {
             let degree = claimed.of_s().filter_map(InS::degree).max().unwrap_or(0);
-            let leading = |of: &[Part<f64>]| -> f64 {
+            let leading = |of: &[PolynomialProduct<f64>]| -> f64 {
                 of.iter().map(|part| part.of_s.0.get(degree).map_or(0.0, number)).sum()
             };
             // dead time turns what it multiplies without end
-            let value = |[own, late, _]: &[Vec<Part<f64>>; 3]| {
+            let value = |[own, late, _]: &[Vec<PolynomialProduct<f64>>; 3]| {
                 if leading(late) == 0.0 { leading(own).abs() } else { f64::NAN }
             };
             value(&claimed.v) / value(&claimed.u)

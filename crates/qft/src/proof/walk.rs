@@ -2,21 +2,21 @@
 
 use phea_dynamics::watch::{Stopped, Watch, tell};
 
-use super::certificate::{LEAF, Panel};
+use super::certificate::{FrequencyPanel, LEAF};
 use super::claimed::Claimed;
-use super::direction::{Leaf, leaf, most_varied};
+use super::direction::{LeafOutcome, leaf, most_varied};
 use super::patch::Patch;
-use super::points::Range;
+use super::points::PanelRange;
 
 /// What became of a claim over a band.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Walk {
+pub(crate) enum WalkOutcome {
     /// These panels show it.
-    Shown(Vec<Panel>),
+    Shown(Vec<FrequencyPanel>),
     /// It is wrong at this place: |V| is greater than |U| by this ratio.
     Wrong { at: Shares, ratio: f64 },
     /// Too many leaves; this box is not shown.
-    Open(Region),
+    Open(ProofRegion),
     /// Too many control points.
     TooLarge,
 }
@@ -30,7 +30,7 @@ pub(crate) struct Shares {
 
 /// A part of the box and of the band.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Region {
+pub struct ProofRegion {
     /// Index of the box.
     pub of_box: usize,
     /// From and to, rad/s.
@@ -41,7 +41,7 @@ pub struct Region {
 
 /// How far a walk goes.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Effort {
+pub(crate) struct ProofEffort {
     /// Leaves of a panel at most.
     pub(crate) leaves: usize,
     /// Halvings on the way to a leaf at most.
@@ -51,7 +51,7 @@ pub(crate) struct Effort {
 }
 
 /// A box on its way: its control points, and from where to where it goes on each axis of its panel.
-struct Waiting {
+struct WaitingBox {
     patch: Patch<f64>,
     sides: Vec<[f64; 2]>,
     depth: usize,
@@ -65,17 +65,17 @@ const LOOK: usize = 64;
 pub(crate) fn walk(
     claimed: &Claimed<f64>,
     variables: usize,
-    range: Range,
-    effort: Effort,
+    range: PanelRange,
+    effort: ProofEffort,
     watch: Watch<'_>,
-) -> Result<Walk, Stopped> {
-    let Some(whole) = Patch::over(claimed, variables, range) else { return Ok(Walk::TooLarge) };
+) -> Result<WalkOutcome, Stopped> {
+    let Some(whole) = Patch::over(claimed, variables, range) else { return Ok(WalkOutcome::TooLarge) };
     let sides = vec![[0.0, 1.0]; whole.axes()];
-    let mut waiting = vec![Waiting { patch: whole, sides, depth: 0 }];
+    let mut waiting = vec![WaitingBox { patch: whole, sides, depth: 0 }];
     let (mut tree, mut leaves) = (vec![], 0);
-    while let Some(Waiting { patch, sides, depth }) = waiting.pop() {
+    while let Some(WaitingBox { patch, sides, depth }) = waiting.pop() {
         match look(&patch, effort.room) {
-            Leaf::Shown(direction) => {
+            LeafOutcome::Shown(direction) => {
                 tree.push(LEAF);
                 tree.extend(direction.iter().flat_map(|part| part.to_be_bytes()));
                 leaves += 1;
@@ -83,27 +83,31 @@ pub(crate) fn walk(
                     tell(watch, PROVING, leaves, effort.leaves)?;
                 }
             }
-            Leaf::Wrong { corner, ratio } => return Ok(Walk::Wrong { at: at(range, &sides, corner), ratio }),
-            Leaf::Halve(axis) if leaves + waiting.len() < effort.leaves && depth < effort.depth => {
+            LeafOutcome::Wrong { corner, ratio } => {
+                return Ok(WalkOutcome::Wrong { at: at(range, &sides, corner), ratio });
+            }
+            LeafOutcome::Halve(axis) if leaves + waiting.len() < effort.leaves && depth < effort.depth => {
                 tree.push(axis as u8);
                 let [lower, upper] = patch.halves(axis);
                 let [low_sides, high_sides] = halved(&sides, axis);
-                waiting.push(Waiting { patch: upper, sides: high_sides, depth: depth + 1 });
-                waiting.push(Waiting { patch: lower, sides: low_sides, depth: depth + 1 });
+                waiting.push(WaitingBox { patch: upper, sides: high_sides, depth: depth + 1 });
+                waiting.push(WaitingBox { patch: lower, sides: low_sides, depth: depth + 1 });
             }
-            Leaf::Halve(_) => return Ok(Walk::Open(region(range, &sides))),
+            LeafOutcome::Halve(_) => return Ok(WalkOutcome::Open(region(range, &sides))),
         }
     }
-    Ok(Walk::Shown(vec![Panel { from: range.from, to: range.to, late: range.late, tree }]))
+    Ok(WalkOutcome::Shown(vec![FrequencyPanel { from: range.from, to: range.to, late: range.late, tree }]))
 }
 
 /// What becomes of a patch. Where it would be shown if the images of the plant were known, it is halved so that they are known better.
-fn look(patch: &Patch<f64>, room: f64) -> Leaf {
+fn look(patch: &Patch<f64>, room: f64) -> LeafOutcome {
     let found = leaf(&patch.points(), room);
-    let (Leaf::Halve(_), Some((points, image))) = (found, patch.with_known_images()) else { return found };
+    let (LeafOutcome::Halve(_), Some((points, image))) = (found, patch.with_known_images()) else {
+        return found;
+    };
     match leaf(&points, room) {
-        Leaf::Halve(_) => found,
-        Leaf::Shown(_) | Leaf::Wrong { .. } => Leaf::Halve(most_varied(image)),
+        LeafOutcome::Halve(_) => found,
+        LeafOutcome::Shown(_) | LeafOutcome::Wrong { .. } => LeafOutcome::Halve(most_varied(image)),
     }
 }
 
@@ -116,14 +120,14 @@ fn halved(sides: &[[f64; 2]], axis: usize) -> [Vec<[f64; 2]>; 2] {
 }
 
 /// The frequency at this share of a panel.
-fn frequency(range: Range, share: f64) -> f64 {
+fn frequency(range: PanelRange, share: f64) -> f64 {
     match range.to.is_finite() {
         true => range.from + share * (range.to - range.from),
         false => range.from / share,
     }
 }
 
-fn at(range: Range, sides: &[[f64; 2]], corner: u64) -> Shares {
+fn at(range: PanelRange, sides: &[[f64; 2]], corner: u64) -> Shares {
     let shares = sides
         .iter()
         .enumerate()
@@ -134,9 +138,9 @@ fn at(range: Range, sides: &[[f64; 2]], corner: u64) -> Shares {
     Shares { frequency_rad_per_s: frequency(range, own), variables }
 }
 
-fn region(range: Range, sides: &[[f64; 2]]) -> Region {
+fn region(range: PanelRange, sides: &[[f64; 2]]) -> ProofRegion {
     let (own, others) =
         sides.split_first().map_or(([0.0, 1.0], vec![]), |(own, others)| (*own, others.to_vec()));
     let [one, other] = own.map(|share| frequency(range, share));
-    Region { of_box: 0, band_rad_per_s: [one.min(other), one.max(other)], variables: others }
+    ProofRegion { of_box: 0, band_rad_per_s: [one.min(other), one.max(other)], variables: others }
 }

@@ -3,7 +3,7 @@ use phea_dynamics::linear::{LinearError, Polynomial, TimeDomain, TransferFunctio
 use phea_dynamics::portable;
 use phea_dynamics::uncertain_plant::PlantCoefficients;
 
-use super::product::{Product, products};
+use super::product::{RootProduct, products};
 use super::{Compensation, Irresolution};
 
 /// What leads from the output back to the plant, as polynomials: G H of a continuous loop, G of a sampled one (there the
@@ -13,7 +13,7 @@ pub(crate) struct FeedbackPath {
     numerator: Polynomial,
     denominator: Polynomial,
     /// The same of a sampled loop.
-    products: Option<[Product; 2]>,
+    products: Option<[RootProduct; 2]>,
     dead_time_s: f64,
     domain: TimeDomain,
 }
@@ -33,7 +33,7 @@ pub(super) struct Characteristic {
     pub(super) denominator: Polynomial,
     pub(super) numerator: Polynomial,
     /// Numerator and denominator of a sampled loop.
-    pub(super) products: Option<[Product; 2]>,
+    pub(super) products: Option<[RootProduct; 2]>,
     pub(super) delay: f64,
     pub(super) domain: TimeDomain,
 }
@@ -197,7 +197,7 @@ impl Characteristic {
             let excess = numerator.roots.len() as f64 - denominator.roots.len() as f64 - self.delay;
             let moved = numerator.moved(shift);
             let gain = moved.gain * portable::exp(growth * excess);
-            [Product { gain, ..moved }, denominator.moved(shift)]
+            [RootProduct { gain, ..moved }, denominator.moved(shift)]
         });
         Characteristic {
             denominator: substituted(&self.denominator, shift, scale),

@@ -14,7 +14,7 @@ use phea_dynamics::portable;
 
 use super::Irresolution;
 use super::characteristic::Characteristic;
-use super::product::Product;
+use super::product::RootProduct;
 
 /// Expansions that one loop may take.
 const STEPS_MAXIMUM: usize = 50_000;
@@ -51,7 +51,7 @@ impl Characteristic {
     }
 
     fn walked(&self, visit: &mut dyn FnMut(f64)) -> Result<usize, Irresolution> {
-        let walk = Walk::new(self)?;
+        let walk = BoundaryWalk::new(self)?;
         let mut angle = 0.0;
         let mut reach = walk.end;
         let mut turned = 0.0;
@@ -127,7 +127,7 @@ impl Characteristic {
 }
 
 /// f split into what the delay does not turn and what it does, and the end of the walk.
-struct Walk<'a> {
+struct BoundaryWalk<'a> {
     characteristic: &'a Characteristic,
     prompt: Polynomial,
     delayed: Polynomial,
@@ -142,8 +142,8 @@ struct Expansion {
     delayed: Vec<f64>,
 }
 
-impl<'a> Walk<'a> {
-    fn new(characteristic: &'a Characteristic) -> Result<Walk<'a>, Irresolution> {
+impl<'a> BoundaryWalk<'a> {
+    fn new(characteristic: &'a Characteristic) -> Result<BoundaryWalk<'a>, Irresolution> {
         let Characteristic { denominator, numerator, delay, domain, .. } = characteristic;
         let (prompt, delayed) = if *delay > 0.0 {
             (denominator.clone(), numerator.clone())
@@ -154,7 +154,7 @@ impl<'a> Walk<'a> {
             TimeDomain::Continuous => end_of_axis(&prompt, &delayed)?,
             TimeDomain::Discrete { .. } => std::f64::consts::PI,
         };
-        Ok(Walk { characteristic, prompt, delayed, end })
+        Ok(BoundaryWalk { characteristic, prompt, delayed, end })
     }
 
     fn expanded(&self, angle: f64) -> Expansion {
@@ -181,7 +181,7 @@ impl<'a> Walk<'a> {
     }
 
     /// A sampled loop by its roots.
-    fn expanded_products(&self, angle: f64, numerator: &Product, denominator: &Product) -> Expansion {
+    fn expanded_products(&self, angle: f64, numerator: &RootProduct, denominator: &RootProduct) -> Expansion {
         let point = self.characteristic.boundary_point(angle);
         let (c, n) = (denominator.at(point), numerator.at(point));
         let (size_c, size_n) = (portable::magnitude(c), portable::magnitude(n));
@@ -335,7 +335,10 @@ mod tests {
             let sampled = Characteristic {
                 denominator: Polynomial::from_roots(1.0, &shifted).unwrap(),
                 numerator: Polynomial::new(vec![0.0]),
-                products: Some([Product { gain: 0.0, roots: vec![] }, Product { gain: 1.0, roots: shifted }]),
+                products: Some([
+                    RootProduct { gain: 0.0, roots: vec![] },
+                    RootProduct { gain: 1.0, roots: shifted },
+                ]),
                 delay: 0.0,
                 domain: TimeDomain::Discrete { sample_time_s: 1.0 },
             };

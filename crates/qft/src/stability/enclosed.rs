@@ -27,14 +27,14 @@ const SMALL_GAIN: f64 = 0.5;
 const FAR_ABOVE: f64 = 1e4;
 
 /// A plant without polynomials within a continuous loop.
-pub(super) struct Enclosed<'a> {
+pub(super) struct EnclosedLoop<'a> {
     pub(super) plant: &'a dyn RespondingPlant,
     pub(super) sensor: &'a TransferFunction,
     pub(super) delay_s: f64,
     pub(super) compensation: &'a Compensation,
 }
 
-impl Enclosed<'_> {
+impl EnclosedLoop<'_> {
     /// Poles of the closed loop in the right half plane.
     pub(super) fn unstable_poles(&self) -> Result<usize, Irresolution> {
         let feedback = self.compensation.feedback();

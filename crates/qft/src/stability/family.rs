@@ -7,8 +7,8 @@ use super::badness::{Badness, badness_of};
 use super::characteristic::FeedbackPath;
 use super::folding::{self, Folded};
 use super::infinity::{self, Infinity};
-use super::record::Record;
-use super::responding::Count;
+use super::record::StabilityRecord;
+use super::responding::PoleCounting;
 use super::search::climb;
 use super::{CriticalDelay, Irresolution, MemberStability, characteristic, of_member, resampled, responding};
 use crate::closed_loop::{Compensation, Member};
@@ -109,7 +109,7 @@ pub(crate) struct StabilityAudit<'a> {
     resampled: bool,
     /// The plants that were judged, within a sampled loop.
     sampled: &'a SampledPlants,
-    record: Record,
+    record: StabilityRecord,
 }
 
 /// What the watch is told.
@@ -139,7 +139,7 @@ impl<'a> StabilityAudit<'a> {
             estimated: Vec::new(),
             resampled: false,
             sampled,
-            record: Record::default(),
+            record: StabilityRecord::default(),
         }
     }
 
@@ -197,7 +197,7 @@ impl<'a> StabilityAudit<'a> {
     fn judged(&self, plant: &PlantPoint) -> MemberStability {
         match (&self.path, self.member(plant)) {
             (Ok(_), Ok(member @ Member::Responding { .. })) if self.plants.first() != Some(plant) => {
-                responding::stability(&member, self.compensation, Count::OnPoints)
+                responding::stability(&member, self.compensation, PoleCounting::OnPoints)
             }
             (Ok(path), Ok(member)) => of_member(&member, self.compensation, path),
             (Err(reason), _) => MemberStability::not_resolved(reason.clone()),

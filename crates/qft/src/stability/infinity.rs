@@ -39,7 +39,7 @@ pub(super) enum Infinity {
 
 /// What the loop adds to the leading coefficients of the plant: a factor of the numerator, that of the denominator being 1, and by how many
 /// powers of s more its denominator has.
-struct Around {
+struct LoopAtInfinity {
     numerator: f64,
     excess: i64,
     delay_s: f64,
@@ -54,12 +54,12 @@ pub(super) fn search(family: &UncertainFamily, compensation: &Compensation) -> I
         // its gain falls towards infinite frequency, which the count of every member asks for
         return Infinity::Kept;
     }
-    let around = Around::new(compensation);
+    let around = LoopAtInfinity::new(compensation);
     let dimension = family.coordinates().len();
     let signs = |low: &[f64], high: &[f64]| around.leading(family, low, high);
     let nominal = family.shares(family.plant().nominal().as_slice());
     let first: Vec<Option<bool>> = signs(&nominal, &nominal).into_iter().map(sign).collect();
-    let mut open = VecDeque::from([Part { low: vec![0.0; dimension], high: vec![1.0; dimension] }]);
+    let mut open = VecDeque::from([BoxPart { low: vec![0.0; dimension], high: vec![1.0; dimension] }]);
     let mut enclosed = 0;
     // the widest parts first, in which a plant with the other sign is soonest met
     while let Some(part) = open.pop_front() {
@@ -125,18 +125,18 @@ fn between(from: &[f64], to: &[f64], first: &[Option<bool>], signs: Signs<'_>) -
 }
 
 /// A part of the box, by the shares of two opposite corners.
-struct Part {
+struct BoxPart {
     low: Vec<f64>,
     high: Vec<f64>,
 }
 
-impl Part {
+impl BoxPart {
     fn middle(&self) -> Vec<f64> {
         self.low.iter().zip(&self.high).map(|(low, high)| 0.5 * (low + high)).collect()
     }
 
     /// Both halves along the coordinate without which the enclosures are narrowest; nothing where no coordinate has any width left.
-    fn halved(&self, middle: &[f64], signs: Signs<'_>) -> Option<[Part; 2]> {
+    fn halved(&self, middle: &[f64], signs: Signs<'_>) -> Option<[BoxPart; 2]> {
         let mut chosen: Option<(f64, f64, usize)> = None;
         for (coordinate, ((&from, &to), &half)) in self.low.iter().zip(&self.high).zip(middle).enumerate() {
             let width = to - from;
@@ -156,12 +156,15 @@ impl Part {
         let half = *middle.get(coordinate)?;
         let (mut below, mut above) = (self.high.clone(), self.low.clone());
         (*below.get_mut(coordinate)?, *above.get_mut(coordinate)?) = (half, half);
-        Some([Part { low: self.low.clone(), high: below }, Part { low: above, high: self.high.clone() }])
+        Some([
+            BoxPart { low: self.low.clone(), high: below },
+            BoxPart { low: above, high: self.high.clone() },
+        ])
     }
 }
 
-impl Around {
-    fn new(compensation: &Compensation) -> Around {
+impl LoopAtInfinity {
+    fn new(compensation: &Compensation) -> LoopAtInfinity {
         let (feedback, sensor) = (compensation.feedback(), compensation.sensor());
         let length = |polynomial: Polynomial| polynomial.degree() as i64;
         let (sensor_n, sensor_d) = (sensor.numerator(), sensor.denominator());
@@ -171,7 +174,7 @@ impl Around {
         let sampled = compensation.sample_time_s().is_some();
         let biproper = length(d.clone()) == length(n.clone()) && feedback.dead_time_s() == 0.0;
         let delay_s = compensation.delay_s() + sensor.dead_time_s() + feedback.dead_time_s();
-        Around {
+        LoopAtInfinity {
             numerator: if sampled { lead } else { lead * n.leading_coefficient() },
             excess: if sampled { own } else { own + length(d) - length(n.clone()) },
             delay_s,

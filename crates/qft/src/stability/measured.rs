@@ -33,13 +33,13 @@ const SLOPE_TOLERANCE: f64 = 0.3;
 pub(super) struct OpenLoop<'a> {
     member: &'a Member,
     compensation: &'a Compensation,
-    around: Around,
+    around: MeasuredLoop,
     points: Vec<(f64, Complex64)>,
 }
 
 /// Which loop L is of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Around {
+pub(super) enum MeasuredLoop {
     /// G P H, that of the controller.
     Output,
     /// -K P_v, that of a rate which is fed forward and moved by the command: its poles are those of the plant that the controller sees.
@@ -51,7 +51,7 @@ pub(super) fn stability(member: &Member, compensation: &Compensation) -> MemberS
         return MemberStability::not_resolved(Irresolution::Points);
     };
     let frequencies = &plant.frequencies_rad_per_s;
-    let open_loop = OpenLoop::new(member, compensation, Around::Output, frequencies, plant.is_resolved);
+    let open_loop = OpenLoop::new(member, compensation, MeasuredLoop::Output, frequencies, plant.is_resolved);
     match open_loop.unstable_closed_loop_poles(plant.unstable_poles, sensor) {
         Ok(unstable) => open_loop.stability(unstable),
         Err(reason) => MemberStability::not_resolved(reason),
@@ -82,7 +82,7 @@ pub(crate) fn is_stable(
     let feedback = compensation.feedback();
     let points =
         with_sensor.iter().map(|&(frequency, path)| (frequency, path * feedback.at_frequency(frequency)));
-    let mut open_loop = OpenLoop { member, compensation, around: Around::Output, points: Vec::new() };
+    let mut open_loop = OpenLoop { member, compensation, around: MeasuredLoop::Output, points: Vec::new() };
     open_loop.extend(points, plant.is_resolved);
     open_loop.unstable_closed_loop_poles(plant.unstable_poles, sensor) == Ok(0)
 }
@@ -93,7 +93,7 @@ impl<'a> OpenLoop<'a> {
     pub(super) fn new(
         member: &'a Member,
         compensation: &'a Compensation,
-        around: Around,
+        around: MeasuredLoop,
         frequencies_rad_per_s: &[f64],
         is_known_between: bool,
     ) -> OpenLoop<'a> {
@@ -150,7 +150,7 @@ impl<'a> OpenLoop<'a> {
     }
 
     fn at(&self, frequency: f64) -> Option<Complex64> {
-        if self.around == Around::Rate {
+        if self.around == MeasuredLoop::Rate {
             return self.member.fed_back(frequency).map(|back| -back);
         }
         let response = self.member.response(frequency)?;

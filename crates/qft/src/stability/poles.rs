@@ -4,7 +4,7 @@ use phea_dynamics::portable;
 
 use super::Irresolution;
 use super::characteristic::Characteristic;
-use super::product::Product;
+use super::product::RootProduct;
 
 /// Highest degree at which the poles of a sampled loop with whole samples of delay are computed: beyond it the powers of z lose too
 /// many digits.
@@ -34,7 +34,7 @@ impl Characteristic {
     }
 
     /// f = c z^k + n by their roots, and its derivative.
-    fn closed_product(&self, n: &Product, c: &Product, v: Complex64) -> (Complex64, Complex64) {
+    fn closed_product(&self, n: &RootProduct, c: &RootProduct, v: Complex64) -> (Complex64, Complex64) {
         let (mut value, mut slope) = c.with_slope(v);
         let z = v + 1.0;
         let mut samples = 0.0;

@@ -6,23 +6,23 @@ use phea_dynamics::portable;
 
 /// gain (v - v_1) (v - v_2) ... with v = z - 1.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Product {
+pub(super) struct RootProduct {
     pub(super) gain: f64,
     pub(super) roots: Vec<Complex64>,
 }
 
 /// Numerator and denominator of a sampled function, its dead time left out.
-pub(super) fn products(function: &TransferFunction) -> [Product; 2] {
+pub(super) fn products(function: &TransferFunction) -> [RootProduct; 2] {
     let shifted = |roots: &[Complex64]| roots.iter().map(|root| root - 1.0).collect();
     [
-        Product { gain: function.gain(), roots: shifted(function.zeros()) },
-        Product { gain: 1.0, roots: shifted(function.poles()) },
+        RootProduct { gain: function.gain(), roots: shifted(function.zeros()) },
+        RootProduct { gain: 1.0, roots: shifted(function.poles()) },
     ]
 }
 
-impl Product {
-    pub(super) fn times(&self, other: &Product) -> Product {
-        Product { gain: self.gain * other.gain, roots: [&self.roots[..], &other.roots[..]].concat() }
+impl RootProduct {
+    pub(super) fn times(&self, other: &RootProduct) -> RootProduct {
+        RootProduct { gain: self.gain * other.gain, roots: [&self.roots[..], &other.roots[..]].concat() }
     }
 
     pub(super) fn at(&self, v: Complex64) -> Complex64 {
@@ -55,8 +55,8 @@ impl Product {
     }
 
     /// With z = r z': the product over r to its degree, where `shift` is r - 1.
-    pub(super) fn moved(&self, shift: f64) -> Product {
+    pub(super) fn moved(&self, shift: f64) -> RootProduct {
         let roots = self.roots.iter().map(|root| (root - shift) / (1.0 + shift)).collect();
-        Product { gain: self.gain, roots }
+        RootProduct { gain: self.gain, roots }
     }
 }

@@ -5,7 +5,7 @@ use crate::verification::{ClosestApproach, DelayMargin, PlantPoint};
 
 /// The worst found so far.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Record {
+pub(super) struct StabilityRecord {
     pub(super) unstable: Option<(f64, Instability, PlantPoint)>,
     pub(super) unresolved: Option<(Irresolution, PlantPoint)>,
     pub(super) real_part: Option<(f64, PlantPoint)>,
@@ -13,7 +13,7 @@ pub(super) struct Record {
     pub(super) delay: Option<DelayMargin>,
 }
 
-impl Record {
+impl StabilityRecord {
     /// What keeps the verdict open, unless a plant does already.
     pub(super) fn doubt(&mut self, reason: Irresolution, plant: PlantPoint) {
         if self.unresolved.is_none() {

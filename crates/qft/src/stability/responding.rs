@@ -5,8 +5,8 @@ use phea_dynamics::frequency::logarithmic_grid;
 use phea_dynamics::portable::{log10, magnitude};
 use phea_dynamics::responding::RespondingPlant;
 
-use super::enclosed::Enclosed;
-use super::measured::{Around, OpenLoop};
+use super::enclosed::EnclosedLoop;
+use super::measured::{MeasuredLoop, OpenLoop};
 use super::{Irresolution, MemberStability, StabilityStatus};
 use crate::closed_loop::{Compensation, Member};
 use crate::family::{COARSE, tabulated};
@@ -19,22 +19,26 @@ const DECADES_BELOW: i32 = 9;
 
 /// How closed-loop poles are counted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Count {
+pub(super) enum PoleCounting {
     /// With 1 + L enclosed from each frequency to the next; in a sampled loop on points.
     Enclosed,
     /// On points between which 1 + L turns little: where the box is searched for the least |1 + L| anyway.
     OnPoints,
 }
 
-pub(super) fn stability(member: &Member, compensation: &Compensation, count: Count) -> MemberStability {
+pub(super) fn stability(
+    member: &Member,
+    compensation: &Compensation,
+    count: PoleCounting,
+) -> MemberStability {
     let Member::Responding { plant, sensor, delay_s, sample_time_s, .. } = member else {
         return MemberStability::not_resolved(Irresolution::Points);
     };
-    let points = || on_points(member, plant.as_ref(), compensation, Around::Output);
+    let points = || on_points(member, plant.as_ref(), compensation, MeasuredLoop::Output);
     let fed_back = own_poles(member, compensation);
     let counted = match (sample_time_s, count) {
-        (None, Count::Enclosed) if fed_back.is_none() => {
-            let enclosed = Enclosed { plant: plant.as_ref(), sensor, delay_s: *delay_s, compensation };
+        (None, PoleCounting::Enclosed) if fed_back.is_none() => {
+            let enclosed = EnclosedLoop { plant: plant.as_ref(), sensor, delay_s: *delay_s, compensation };
             enclosed.unstable_poles()
         }
         _ => {
@@ -62,16 +66,16 @@ pub(crate) fn own_poles(member: &Member, compensation: &Compensation) -> Option<
         return None;
     }
     let own = plant.unstable_poles().ok_or(Irresolution::OpenLoopPoles);
-    Some(
-        own.and_then(|own| on_points(member, plant.as_ref(), compensation, Around::Rate).unstable_poles(own)),
-    )
+    Some(own.and_then(|own| {
+        on_points(member, plant.as_ref(), compensation, MeasuredLoop::Rate).unstable_poles(own)
+    }))
 }
 
 fn on_points<'a>(
     member: &'a Member,
     plant: &dyn RespondingPlant,
     compensation: &'a Compensation,
-    around: Around,
+    around: MeasuredLoop,
 ) -> OpenLoop<'a> {
     let range = range(member, plant, compensation);
     let table = tabulated(plant, range, COARSE);
@@ -85,7 +89,7 @@ pub(super) fn first_look<'a>(member: &'a Member, compensation: &'a Compensation)
     let decades = log10(to / from);
     let count = (POINTS_PER_DECADE * decades).ceil() as usize;
     let grid = logarithmic_grid(from, to, count).ok()?;
-    Some(OpenLoop::new(member, compensation, Around::Output, &grid, true))
+    Some(OpenLoop::new(member, compensation, MeasuredLoop::Output, &grid, true))
 }
 
 /// Where the loop does something of its own, rad/s: an integrator that is slower than the plant has its crossover below it.

@@ -4,11 +4,11 @@
 //! image of a plant. A face whose image is not folded is the inside of the image of its four edges; one that is
 //! folded, or holds a resonance, is divided.
 
-use super::plants::{Line, Plants, Stop};
+use super::plants::{BoxLine, Plants, Stop};
 
 /// A part of a face: its sides, each beginning where the one before it ends.
-pub(super) struct Cell {
-    pub(super) sides: [Line; 4],
+pub(super) struct FaceCell {
+    pub(super) sides: [BoxLine; 4],
     depth: usize,
 }
 
@@ -25,15 +25,15 @@ fn depth_maximum(dimension: usize) -> (usize, usize) {
 const PARTS: usize = 4;
 
 /// The edges of the box: line `axis` from each corner that has it at 0.
-pub(super) struct Edges {
-    lines: Vec<Vec<Option<Line>>>,
+pub(super) struct BoxEdges {
+    lines: Vec<Vec<Option<BoxLine>>>,
 }
 
-impl Edges {
+impl BoxEdges {
     /// Lines along all edges of the box; corners are reached along edges, so that their phases belong together.
-    pub(super) fn new(plants: &mut Plants, dimension: usize) -> Result<Edges, Stop> {
+    pub(super) fn new(plants: &mut Plants, dimension: usize) -> Result<BoxEdges, Stop> {
         let mut corners = vec![plants.at(vec![0.0; dimension])?];
-        let mut lines: Vec<Vec<Option<Line>>> = vec![vec![None; dimension]];
+        let mut lines: Vec<Vec<Option<BoxLine>>> = vec![vec![None; dimension]];
         for corner in 1..1_usize << dimension {
             let shares = (0..dimension).map(|axis| (corner >> axis & 1) as f64).collect();
             corners.push(plants.at(shares)?);
@@ -44,16 +44,16 @@ impl Edges {
                 lines[from][axis] = Some(line);
             }
         }
-        Ok(Edges { lines })
+        Ok(BoxEdges { lines })
     }
 
     /// All lines.
-    pub(super) fn iter(&self) -> impl Iterator<Item = &Line> {
+    pub(super) fn iter(&self) -> impl Iterator<Item = &BoxLine> {
         self.lines.iter().flatten().flatten()
     }
 
     /// All two-dimensional faces.
-    pub(super) fn faces(&self) -> impl Iterator<Item = Cell> {
+    pub(super) fn faces(&self) -> impl Iterator<Item = FaceCell> {
         let dimension = self.lines.first().map_or(0, Vec::len);
         let pairs =
             (0..dimension).flat_map(move |first| (first + 1..dimension).map(move |second| (first, second)));
@@ -69,13 +69,13 @@ impl Edges {
                     side(corner | 1 << second, first)?.reversed(),
                     side(corner, second)?.reversed(),
                 ];
-                Some(Cell { sides, depth: 0 })
+                Some(FaceCell { sides, depth: 0 })
             })
         })
     }
 }
 
-impl Cell {
+impl FaceCell {
     /// Once around.
     fn walk(&self) -> Vec<usize> {
         let start = self.sides[0].plants.first().copied();
@@ -89,7 +89,7 @@ impl Cell {
 }
 
 /// Closed walks whose images wind around what the face covers.
-pub(super) fn walks(plants: &mut Plants, face: Cell, found: &mut Vec<Vec<usize>>) -> Result<(), Stop> {
+pub(super) fn walks(plants: &mut Plants, face: FaceCell, found: &mut Vec<Vec<usize>>) -> Result<(), Stop> {
     let (folded_maximum, open_maximum) = depth_maximum(plants.family.coordinates().len());
     let mut pending = vec![face];
     while let Some(cell) = pending.pop() {
@@ -127,7 +127,7 @@ fn remember_open(plants: &mut Plants, walk: &[usize]) {
 }
 
 /// Whether the quarters of a cell are not all turned the same way, seen from their corners.
-fn is_folded(plants: &Plants, cell: &Cell, centre: usize) -> bool {
+fn is_folded(plants: &Plants, cell: &FaceCell, centre: usize) -> bool {
     let middles: Vec<usize> = cell
         .sides
         .iter()
@@ -152,7 +152,7 @@ fn is_folded(plants: &Plants, cell: &Cell, centre: usize) -> bool {
 }
 
 /// The four quarters of a cell.
-fn divided(plants: &mut Plants, cell: &Cell, centre: usize) -> Result<Vec<Cell>, Stop> {
+fn divided(plants: &mut Plants, cell: &FaceCell, centre: usize) -> Result<Vec<FaceCell>, Stop> {
     let mut halves = vec![];
     let mut spokes = vec![];
     for side in &cell.sides {
@@ -162,7 +162,7 @@ fn divided(plants: &mut Plants, cell: &Cell, centre: usize) -> Result<Vec<Cell>,
     }
     let quarters = (0..4).map(|quarter| {
         let before = (quarter + 3) % 4;
-        Cell {
+        FaceCell {
             sides: [
                 halves[quarter][0].clone(),
                 spokes[quarter].clone(),

@@ -2,18 +2,18 @@
 
 use std::collections::BTreeSet;
 
-use super::cell::{Edges, walks};
+use super::cell::{BoxEdges, walks};
 use super::growth::grow;
-use super::plants::{Line, Place, Plants, Stop};
+use super::plants::{BoxLine, PlantPosition, Plants, Stop};
 use super::region::{Corner, Region};
 use super::witness::{Outside, outside, probes, take_in};
 
 /// What is known of the image of a box.
 pub(super) struct Exploration {
     witnesses: Vec<usize>,
-    edges: Option<Edges>,
+    edges: Option<BoxEdges>,
     /// Lines to witnesses away from the edges of a template without area.
-    branches: Vec<Line>,
+    branches: Vec<BoxLine>,
     walks: Vec<Vec<usize>>,
     region: Option<Region>,
     /// The witness farthest outside of the region, if there is one.
@@ -39,7 +39,7 @@ impl Exploration {
 
     fn lines(&self, plants: &Plants) -> Vec<Vec<Corner>> {
         let mut lines = vec![];
-        for line in self.edges.iter().flat_map(Edges::iter).chain(&self.branches) {
+        for line in self.edges.iter().flat_map(BoxEdges::iter).chain(&self.branches) {
             for part in plants.unbroken(&line.plants) {
                 let corner = |&plant: &usize| Corner { place: plants.place(plant), plant: Some(plant) };
                 let there = part.iter().map(corner);
@@ -66,8 +66,8 @@ pub(super) fn explore(plants: &mut Plants, found: &mut Exploration) -> Result<()
     if dimension == 0 {
         return Ok(());
     }
-    found.edges = Some(Edges::new(plants, dimension)?);
-    let faces: Vec<_> = found.edges.iter().flat_map(Edges::faces).collect();
+    found.edges = Some(BoxEdges::new(plants, dimension)?);
+    let faces: Vec<_> = found.edges.iter().flat_map(BoxEdges::faces).collect();
     let mut outcome = Ok(());
     for face in faces {
         outcome = walks(plants, face, &mut found.walks);
@@ -137,7 +137,7 @@ fn refine(
 /// A region for places as far apart as those that were found.
 fn empty_region(plants: &Plants) -> Region {
     let places = || plants.list.iter().map(|plant| plant.place).filter(|place| place.is_finite());
-    let corner = |start: f64, choose: fn(f64, f64) -> f64| Place {
+    let corner = |start: f64, choose: fn(f64, f64) -> f64| PlantPosition {
         phase_deg: places().map(|place| place.phase_deg).fold(start, choose),
         magnitude_db: places().map(|place| place.magnitude_db).fold(start, choose),
     };
@@ -155,7 +155,7 @@ fn divided(plants: &Plants, piece: &[Corner]) -> Vec<Corner> {
         let mut part = 1.0;
         while part < parts {
             let between = |from: f64, to: f64| from + part / parts * (to - from);
-            let place = Place {
+            let place = PlantPosition {
                 phase_deg: between(from.place.phase_deg, to.place.phase_deg),
                 magnitude_db: between(from.place.magnitude_db, to.place.magnitude_db),
             };

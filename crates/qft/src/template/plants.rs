@@ -9,14 +9,14 @@ use crate::family::UncertainFamily;
 
 /// Where a plant lies: phase and magnitude of P H, the phase continued from neighbour to neighbour.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Place {
+pub(super) struct PlantPosition {
     pub(super) phase_deg: f64,
     pub(super) magnitude_db: f64,
 }
 
-impl Place {
-    pub(super) fn of(response: Complex64) -> Place {
-        Place {
+impl PlantPosition {
+    pub(super) fn of(response: Complex64) -> PlantPosition {
+        PlantPosition {
             phase_deg: portable::argument(response) * 180.0 / std::f64::consts::PI,
             magnitude_db: 20.0 * portable::log10(portable::magnitude(response)),
         }
@@ -33,8 +33,8 @@ impl Place {
     }
 
     /// The same response with the phase nearest to that of another place.
-    pub(super) fn beside(self, other: Place) -> Place {
-        Place { phase_deg: other.phase_deg + turned_deg(self.phase_deg - other.phase_deg), ..self }
+    pub(super) fn beside(self, other: PlantPosition) -> PlantPosition {
+        PlantPosition { phase_deg: other.phase_deg + turned_deg(self.phase_deg - other.phase_deg), ..self }
     }
 }
 
@@ -45,10 +45,10 @@ fn turned_deg(angle_deg: f64) -> f64 {
 
 /// One point of the box.
 #[derive(Clone, Debug)]
-pub(super) struct Plant {
+pub(super) struct TemplatePlant {
     pub(super) shares: Vec<f64>,
     pub(super) response: MemberResponse,
-    pub(super) place: Place,
+    pub(super) place: PlantPosition,
     /// Whether the phase is continued from another plant.
     anchored: bool,
 }
@@ -72,14 +72,14 @@ pub(super) enum Stop {
 
 /// Neighbours on a straight line of the box, with their share of its length.
 #[derive(Clone, Debug)]
-pub(super) struct Line {
+pub(super) struct BoxLine {
     pub(super) plants: Vec<usize>,
     pub(super) positions: Vec<f64>,
 }
 
-impl Line {
-    pub(super) fn reversed(&self) -> Line {
-        Line {
+impl BoxLine {
+    pub(super) fn reversed(&self) -> BoxLine {
+        BoxLine {
             plants: self.plants.iter().rev().copied().collect(),
             positions: self.positions.iter().rev().map(|position| 1.0 - position).collect(),
         }
@@ -95,7 +95,7 @@ pub(super) struct Plants<'a> {
     compensation: &'a Compensation,
     frequency_rad_per_s: f64,
     pub(super) options: TemplateOptions,
-    pub(super) list: Vec<Plant>,
+    pub(super) list: Vec<TemplatePlant>,
     pub(super) evaluations: usize,
     /// Evaluations at which refinement stops.
     pub(super) evaluations_maximum: usize,
@@ -132,8 +132,8 @@ impl<'a> Plants<'a> {
 
     /// Adds a plant whose response is known.
     pub(super) fn keep(&mut self, shares: Vec<f64>, response: MemberResponse) -> usize {
-        let place = Place::of(response.plant * response.sensor);
-        self.list.push(Plant { shares, response, place, anchored: self.list.is_empty() });
+        let place = PlantPosition::of(response.plant * response.sensor);
+        self.list.push(TemplatePlant { shares, response, place, anchored: self.list.is_empty() });
         self.list.len() - 1
     }
 
@@ -152,7 +152,7 @@ impl<'a> Plants<'a> {
         self.at(shares)
     }
 
-    pub(super) fn place(&self, plant: usize) -> Place {
+    pub(super) fn place(&self, plant: usize) -> PlantPosition {
         self.list[plant].place
     }
 
@@ -163,7 +163,7 @@ impl<'a> Plants<'a> {
     }
 
     /// From one place to another, in tolerances of phase and magnitude.
-    pub(super) fn steps(&self, from: Place, to: Place) -> [f64; 2] {
+    pub(super) fn steps(&self, from: PlantPosition, to: PlantPosition) -> [f64; 2] {
         [
             (to.phase_deg - from.phase_deg) / self.options.phase_deg,
             (to.magnitude_db - from.magnitude_db) / self.options.magnitude_db,
@@ -212,8 +212,8 @@ impl<'a> Plants<'a> {
     }
 
     /// The straight line between two plants, halved until neighbours are at most a tolerance apart, or no longer divided.
-    pub(super) fn line(&mut self, from: usize, to: usize, pieces: usize) -> Result<Line, Stop> {
-        let mut line = Line { plants: vec![from], positions: vec![0.0] };
+    pub(super) fn line(&mut self, from: usize, to: usize, pieces: usize) -> Result<BoxLine, Stop> {
+        let mut line = BoxLine { plants: vec![from], positions: vec![0.0] };
         let mut pending = vec![(1.0, to)];
         for piece in (1..pieces).rev() {
             let position = piece as f64 / pieces as f64;
@@ -256,7 +256,7 @@ impl<'a> Plants<'a> {
     }
 
     /// Halves of a line.
-    pub(super) fn halves(&mut self, line: &Line) -> Result<[Line; 2], Stop> {
+    pub(super) fn halves(&mut self, line: &BoxLine) -> Result<[BoxLine; 2], Stop> {
         let after = line.positions.partition_point(|&position| position < 0.5);
         let mut whole = line.clone();
         if whole.positions[after] > 0.5 {
@@ -266,11 +266,11 @@ impl<'a> Plants<'a> {
             whole.plants.insert(after, middle);
             whole.positions.insert(after, 0.5);
         }
-        let first = Line {
+        let first = BoxLine {
             plants: whole.plants[..=after].to_vec(),
             positions: whole.positions[..=after].iter().map(|position| 2.0 * position).collect(),
         };
-        let second = Line {
+        let second = BoxLine {
             plants: whole.plants[after..].to_vec(),
             positions: whole.positions[after..].iter().map(|position| 2.0 * position - 1.0).collect(),
         };
@@ -279,7 +279,7 @@ impl<'a> Plants<'a> {
 
     /// The places along a closed walk of neighbours (the last is one of the first again, and is left out); `None` where it
     /// has a gap, or goes around a pole or a zero of the family.
-    pub(super) fn closed_walk(&self, walk: &[usize]) -> Option<Vec<(Place, usize)>> {
+    pub(super) fn closed_walk(&self, walk: &[usize]) -> Option<Vec<(PlantPosition, usize)>> {
         let first = *walk.first()?;
         let mut places = vec![(self.place(first), first)];
         let mut place = self.place(first);

@@ -12,19 +12,19 @@ use i_overlay::core::simplify::Simplify;
 use i_overlay::i_float::int::point::IntPoint;
 use i_overlay::i_shape::int::shape::{IntContour, IntShape, IntShapes};
 
-use super::plants::Place;
+use super::plants::PlantPosition;
 
 /// A corner of an outline, and the plant there if it is one.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Corner {
-    pub(super) place: Place,
+    pub(super) place: PlantPosition,
     pub(super) plant: Option<usize>,
 }
 
 /// A union of polygons.
 #[derive(Debug)]
 pub(super) struct Region {
-    origin: Place,
+    origin: PlantPosition,
     /// Size of an integer step, degrees and dB.
     quantum: [f64; 2],
     shapes: IntShapes<i32>,
@@ -52,13 +52,13 @@ const AREA_MINIMUM: f64 = 1e-6;
 
 impl Region {
     /// An empty region, with integers for places from `low` to `high` and some way beyond.
-    pub(super) fn new(low: Place, high: Place, tolerance: [f64; 2]) -> Region {
+    pub(super) fn new(low: PlantPosition, high: PlantPosition, tolerance: [f64; 2]) -> Region {
         let step =
             |low: f64, high: f64, tolerance: f64| ((high - low) / EXTENT).max(tolerance * STEP_MINIMUM);
         let turn = (360.0 / step(low.phase_deg, high.phase_deg, tolerance[0])).floor();
         let quantum = [360.0 / turn, step(low.magnitude_db, high.magnitude_db, tolerance[1])];
         Region {
-            origin: Place {
+            origin: PlantPosition {
                 phase_deg: (low.phase_deg + high.phase_deg) / 2.0,
                 magnitude_db: (low.magnitude_db + high.magnitude_db) / 2.0,
             },
@@ -70,21 +70,21 @@ impl Region {
         }
     }
 
-    fn point(&self, place: Place) -> Option<IntPoint<i32>> {
+    fn point(&self, place: PlantPosition) -> Option<IntPoint<i32>> {
         let x = ((place.phase_deg - self.origin.phase_deg) / self.quantum[0]).round();
         let y = ((place.magnitude_db - self.origin.magnitude_db) / self.quantum[1]).round();
         (x.abs() <= LIMIT && y.abs() <= LIMIT).then(|| IntPoint::new(x as i32, y as i32))
     }
 
-    fn place(&self, point: IntPoint<i32>) -> Place {
-        Place {
+    fn place(&self, point: IntPoint<i32>) -> PlantPosition {
+        PlantPosition {
             phase_deg: self.origin.phase_deg + f64::from(point.x) * self.quantum[0],
             magnitude_db: self.origin.magnitude_db + f64::from(point.y) * self.quantum[1],
         }
     }
 
     /// Adds what closed walks wind around.
-    pub(super) fn fill(&mut self, walks: &[Vec<(Place, usize)>]) {
+    pub(super) fn fill(&mut self, walks: &[Vec<(PlantPosition, usize)>]) {
         let mut contours: Vec<IntContour<i32>> =
             std::mem::take(&mut self.shapes).into_iter().flatten().collect();
         for walk in walks {
@@ -110,7 +110,7 @@ impl Region {
     }
 
     /// What a place is called among others; the same after any number of turns.
-    pub(super) fn key(&self, place: Place) -> Option<(i64, i32)> {
+    pub(super) fn key(&self, place: PlantPosition) -> Option<(i64, i32)> {
         self.point(place).map(|point| self.key_of(point))
     }
 

@@ -1,6 +1,6 @@
 //! Witnesses: plants of the box that must lie within the region, and are taken into it if they do not.
 
-use super::plants::{Place, Plants, Stop};
+use super::plants::{PlantPosition, Plants, Stop};
 use super::region::{Corner, Region};
 
 /// Witnesses taken in at a time.
@@ -53,7 +53,7 @@ pub(super) fn take_in(plants: &mut Plants, region: &mut Region, outside: &[Outsi
 }
 
 /// Distance of a place from the region, at any number of turns, and the plants at or beside the nearest corner.
-fn distance(plants: &Plants, contours: &[Vec<Corner>], place: Place) -> (f64, Option<[usize; 2]>) {
+fn distance(plants: &Plants, contours: &[Vec<Corner>], place: PlantPosition) -> (f64, Option<[usize; 2]>) {
     let phases = || contours.iter().flatten().map(|corner| corner.place.phase_deg);
     let (low, high) = (phases().fold(f64::INFINITY, f64::min), phases().fold(f64::NEG_INFINITY, f64::max));
     let first = ((low - place.phase_deg) / 360.0).floor();
@@ -62,7 +62,7 @@ fn distance(plants: &Plants, contours: &[Vec<Corner>], place: Place) -> (f64, Op
     let mut turn = 0.0;
     while turn <= turns {
         let phase_deg = place.phase_deg + 360.0 * (first + turn);
-        let candidate = distance_here(plants, contours, Place { phase_deg, ..place });
+        let candidate = distance_here(plants, contours, PlantPosition { phase_deg, ..place });
         if candidate.0 < nearest.0 {
             nearest = candidate;
         }
@@ -71,7 +71,11 @@ fn distance(plants: &Plants, contours: &[Vec<Corner>], place: Place) -> (f64, Op
     nearest
 }
 
-fn distance_here(plants: &Plants, contours: &[Vec<Corner>], place: Place) -> (f64, Option<[usize; 2]>) {
+fn distance_here(
+    plants: &Plants,
+    contours: &[Vec<Corner>],
+    place: PlantPosition,
+) -> (f64, Option<[usize; 2]>) {
     let mut inside = false;
     let mut nearest = (f64::INFINITY, None);
     for contour in contours {

@@ -7,13 +7,13 @@ use phea_dynamics::uncertain_plant::RationalCoefficients;
 
 use num_complex::Complex64;
 
-use super::criterion::{Criterion, Side};
+use super::criterion::{Criterion, MarginSide};
 use crate::closed_loop::{Compensation, FedForward, Member, closed};
 use crate::specification::{ClosedLoop, Limit};
 
 /// Which end of the frequency axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum End {
+pub(crate) enum AxisEnd {
     /// w -> 0
     Zero,
     /// w -> infinity
@@ -43,13 +43,13 @@ impl PowerTerm {
 
     /// What is the greater at the end; of two like powers the sum, or its largest magnitude where one is turned without end. What is left
     /// of two that cancel is less than either.
-    fn plus(self, other: PowerTerm, spun: bool, end: End) -> PowerTerm {
+    fn plus(self, other: PowerTerm, spun: bool, end: AxisEnd) -> PowerTerm {
         if other.coefficient == 0.0 {
             return self;
         }
         let by_power = match end {
-            End::Zero => other.power.cmp(&self.power),
-            End::Infinity => self.power.cmp(&other.power),
+            AxisEnd::Zero => other.power.cmp(&self.power),
+            AxisEnd::Infinity => self.power.cmp(&other.power),
         };
         match by_power {
             _ if self.coefficient == 0.0 => other,
@@ -65,12 +65,12 @@ impl PowerTerm {
     }
 
     /// Of a polynomial, highest power first; zero if it is zero.
-    fn of_polynomial(coefficients: &[f64], end: End) -> PowerTerm {
+    fn of_polynomial(coefficients: &[f64], end: AxisEnd) -> PowerTerm {
         let degree = coefficients.len() as i32 - 1;
         let mut powers = coefficients.iter().zip(0..).filter(|(coefficient, _)| **coefficient != 0.0);
         let dominant = match end {
-            End::Zero => powers.last(),
-            End::Infinity => powers.next(),
+            AxisEnd::Zero => powers.last(),
+            AxisEnd::Infinity => powers.next(),
         };
         dominant.map_or(PowerTerm { coefficient: 0.0, power: 0 }, |(&coefficient, index)| PowerTerm {
             coefficient,
@@ -79,15 +79,17 @@ impl PowerTerm {
     }
 
     /// Of a transfer function; in a sampled one z - 1 counts as s T, and there is no infinite frequency.
-    pub(super) fn of_transfer_function(function: &TransferFunction, end: End) -> Option<PowerTerm> {
+    pub(super) fn of_transfer_function(function: &TransferFunction, end: AxisEnd) -> Option<PowerTerm> {
         let (point, step) = match (function.domain(), end) {
-            (TimeDomain::Continuous, End::Infinity) => {
+            (TimeDomain::Continuous, AxisEnd::Infinity) => {
                 let power = function.zeros().len() as i32 - function.poles().len() as i32;
                 return Some(PowerTerm { coefficient: function.gain(), power });
             }
-            (TimeDomain::Continuous, End::Zero) => (Complex64::new(0.0, 0.0), 1.0),
-            (TimeDomain::Discrete { sample_time_s }, End::Zero) => (Complex64::new(1.0, 0.0), sample_time_s),
-            (TimeDomain::Discrete { .. }, End::Infinity) => return None,
+            (TimeDomain::Continuous, AxisEnd::Zero) => (Complex64::new(0.0, 0.0), 1.0),
+            (TimeDomain::Discrete { sample_time_s }, AxisEnd::Zero) => {
+                (Complex64::new(1.0, 0.0), sample_time_s)
+            }
+            (TimeDomain::Discrete { .. }, AxisEnd::Infinity) => return None,
         };
         let product = |roots: &[Complex64]| {
             let factor =
@@ -99,7 +101,7 @@ impl PowerTerm {
         Some(PowerTerm { coefficient, power: here(function.zeros()) - here(function.poles()) })
     }
 
-    fn of_limit(limit: &Limit, end: End) -> Option<PowerTerm> {
+    fn of_limit(limit: &Limit, end: AxisEnd) -> Option<PowerTerm> {
         match limit {
             Limit::Constant(value) => Some(PowerTerm { coefficient: *value, power: 0 }),
             Limit::Rational(function) => PowerTerm::of_transfer_function(function, end),
@@ -108,10 +110,10 @@ impl PowerTerm {
     }
 
     /// Whether this one is greater than a constant at the end, like it, or less.
-    fn order(self, end: End) -> std::cmp::Ordering {
+    fn order(self, end: AxisEnd) -> std::cmp::Ordering {
         match end {
-            End::Zero => 0.cmp(&self.power),
-            End::Infinity => self.power.cmp(&0),
+            AxisEnd::Zero => 0.cmp(&self.power),
+            AxisEnd::Infinity => self.power.cmp(&0),
         }
     }
 }
@@ -143,9 +145,12 @@ pub(super) fn margin(
     compensation: &Compensation,
     member: &Member,
     with_prefilter: bool,
-    end: End,
+    end: AxisEnd,
 ) -> Option<EndMargin> {
-    if criterion.side == Side::Above && end == End::Infinity && matches!(member, Member::Responding { .. }) {
+    if criterion.side == MarginSide::Above
+        && end == AxisEnd::Infinity
+        && matches!(member, Member::Responding { .. })
+    {
         // a bound from above says nothing of what must not fall
         return None;
     }
@@ -165,8 +170,8 @@ pub(super) fn margin(
     }
     let limit = PowerTerm::of_limit(&criterion.limit, end)?;
     let ratio = match criterion.side {
-        Side::Below => limit.over(closed),
-        Side::Above => closed.over(limit),
+        MarginSide::Below => limit.over(closed),
+        MarginSide::Above => closed.over(limit),
     };
     let size = ratio.coefficient.abs();
     if size.is_nan() {
@@ -188,23 +193,23 @@ pub(crate) fn tracking_ratio(
     compensation: &Compensation,
     member: &Member,
     limit: &Limit,
-    end: End,
+    end: AxisEnd,
 ) -> Option<PowerTerm> {
     let parts = parts(compensation, member, false, end)?;
-    let closed = parts.plant.times(parts.feedback).over(parts.one_plus_loop(Side::Below, end)?);
+    let closed = parts.plant.times(parts.feedback).over(parts.one_plus_loop(MarginSide::Below, end)?);
     Some(PowerTerm::of_limit(limit, end)?.over(closed))
 }
 
 /// Where the asymptote of the loop at zero frequency has unit magnitude, rad/s.
 pub(super) fn crossing(compensation: &Compensation, member: &Member) -> Option<f64> {
-    let open_loop = parts(compensation, member, false, End::Zero)?.open_loop;
+    let open_loop = parts(compensation, member, false, AxisEnd::Zero)?.open_loop;
     let frequency = portable::pow(open_loop.coefficient.abs(), -1.0 / f64::from(open_loop.power));
     (open_loop.power != 0 && frequency > 0.0 && frequency < f64::INFINITY).then_some(frequency)
 }
 
 impl LoopAsymptotes {
     /// 1 + L. Where L neither grows nor vanishes and dead time turns it, the magnitude that is worse for the side.
-    fn one_plus_loop(&self, side: Side, end: End) -> Option<PowerTerm> {
+    fn one_plus_loop(&self, side: MarginSide, end: AxisEnd) -> Option<PowerTerm> {
         let open_loop = self.open_loop;
         if open_loop.coefficient == 0.0 {
             return Some(PowerTerm::ONE);
@@ -216,8 +221,8 @@ impl LoopAsymptotes {
                 let size = open_loop.coefficient.abs();
                 let sum = match (self.spun, side) {
                     (false, _) => 1.0 + open_loop.coefficient,
-                    (true, Side::Below) => 1.0 - size,
-                    (true, Side::Above) => 1.0 + size,
+                    (true, MarginSide::Below) => 1.0 - size,
+                    (true, MarginSide::Above) => 1.0 + size,
                 };
                 (sum.abs() > CANCELLED * size.max(1.0)).then_some(PowerTerm { coefficient: sum, power: 0 })
             }
@@ -229,7 +234,7 @@ fn parts(
     compensation: &Compensation,
     member: &Member,
     with_prefilter: bool,
-    end: End,
+    end: AxisEnd,
 ) -> Option<LoopAsymptotes> {
     let zero = PowerTerm { coefficient: 0.0, power: 0 };
     let of = |function: &TransferFunction| PowerTerm::of_transfer_function(function, end);
@@ -258,14 +263,14 @@ fn parts(
             let slow = closed(*rate_feed_forward, plant.slow()).ok()?;
             let fed = FedForward::of(*rate_feed_forward, &plant.slow());
             let command = match end {
-                End::Zero => rational(&slow.command.numerator, &slow.command.denominator),
-                End::Infinity => rolled_off(plant.as_ref())?,
+                AxisEnd::Zero => rational(&slow.command.numerator, &slow.command.denominator),
+                AxisEnd::Infinity => rolled_off(plant.as_ref())?,
             };
             (command, path(&slow.disturbance), command.times(of(sensor)?), forward(&fed), true)
         }
         Member::Measured { .. } => return None,
     };
-    let load_motion = load_motion.plus(plant.times(forward), turns && end == End::Infinity, end);
+    let load_motion = load_motion.plus(plant.times(forward), turns && end == AxisEnd::Infinity, end);
     let feedback = of(compensation.feedback())?;
     Some(LoopAsymptotes {
         plant,
@@ -273,7 +278,7 @@ fn parts(
         feedback,
         prefilter: if with_prefilter { of(compensation.prefilter())? } else { PowerTerm::ONE },
         open_loop: with_sensor.times(feedback),
-        spun: turns && end == End::Infinity,
+        spun: turns && end == AxisEnd::Infinity,
     })
 }
 

@@ -6,9 +6,9 @@ use phea_dynamics::watch::{Stopped, Watch, part};
 
 use super::criterion::{Criterion, criteria};
 use super::evaluator::Evaluator;
-use super::finding::{Case, Part};
+use super::finding::{FoundMargin, SpecificationCriteria};
 use super::frequencies::{Features, features};
-use super::scan::{Plant, Scan};
+use super::scan::{Scan, ScannedPlant};
 use super::{Evidence, PlantPoint, SpecificationFinding, Verdict};
 use crate::closed_loop::Compensation;
 use crate::family::{Extent, Family, UncertainFamily, vertices};
@@ -161,13 +161,13 @@ const STAGE: &str = "specifications";
 struct SpecificationAudit<'a> {
     problem: &'a AuditProblem<'a>,
     evaluator: Evaluator<'a>,
-    parts: Vec<Part>,
+    parts: Vec<SpecificationCriteria>,
     /// The plants to be looked at, by their parameters; empty for measured ones.
     values: Vec<Vec<f64>>,
-    plants: Vec<Plant>,
+    plants: Vec<ScannedPlant>,
     scan: Scan,
     /// What was found of each specification, beyond the family's worst at the common frequencies.
-    cases: Vec<Vec<Case>>,
+    cases: Vec<Vec<FoundMargin>>,
     /// By specification: a frequency at which a plant met in a search has no margin.
     undefined: Vec<Option<f64>>,
     searches: usize,
@@ -185,7 +185,7 @@ impl<'a> SpecificationAudit<'a> {
         for specification in specifications {
             let own = criteria(specification, compensation.highest_frequency_rad_per_s());
             let spread = specification.requirement.is_tracking() && tracking == TrackingJudgement::Spread;
-            parts.push(Part { first: all.len(), count: own.len(), spread });
+            parts.push(SpecificationCriteria { first: all.len(), count: own.len(), spread });
             all.extend(own);
         }
         let with_prefilter = tracking == TrackingJudgement::Magnitude;
@@ -220,22 +220,22 @@ impl<'a> SpecificationAudit<'a> {
         }
     }
 
-    fn plant(&self, index: usize) -> Option<Plant> {
+    fn plant(&self, index: usize) -> Option<ScannedPlant> {
         match self.problem.family {
             Family::Uncertain(family) => Some(plant_at(&self.evaluator, family, self.values.get(index)?)),
             Family::Measured(family) => {
                 let member = self.evaluator.compensation.measured(family.plants().get(index)?);
                 let features = features(&self.evaluator, &member);
-                Some(Plant { point: PlantPoint::Measured(index), member: Some(member), features })
+                Some(ScannedPlant { point: PlantPoint::Measured(index), member: Some(member), features })
             }
         }
     }
 }
 
-fn plant_at(evaluator: &Evaluator<'_>, family: &UncertainFamily, values: &[f64]) -> Plant {
+fn plant_at(evaluator: &Evaluator<'_>, family: &UncertainFamily, values: &[f64]) -> ScannedPlant {
     let member = evaluator.member(family.plant(), values);
     let features = member.as_ref().map_or_else(Features::none, |member| features(evaluator, member));
-    Plant { point: PlantPoint::Parameters(values.to_vec()), member, features }
+    ScannedPlant { point: PlantPoint::Parameters(values.to_vec()), member, features }
 }
 
 /// The corners of a family's box, if it has one and they are not too many.

@@ -4,7 +4,7 @@ use crate::specification::{ClosedLoop, Limit, Specification};
 
 /// On which side of its limit the magnitude must stay.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Side {
+pub(super) enum MarginSide {
     /// magnitude <= limit
     Below,
     /// magnitude >= limit
@@ -15,7 +15,7 @@ pub(super) enum Side {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Criterion {
     pub(super) closed_loop: ClosedLoop,
-    pub(super) side: Side,
+    pub(super) side: MarginSide,
     pub(super) limit: Limit,
     /// The upper limit beside it, for tracking.
     pub(super) upper: Option<Limit>,
@@ -41,7 +41,9 @@ pub(super) fn criteria(specification: &Specification, highest_frequency: f64) ->
         upper: lower.is_some().then(|| upper.clone()),
         band: reach(limit, specification.band_rad_per_s, highest_frequency),
     };
-    std::iter::once(one(Side::Below, upper)).chain(lower.map(|lower| one(Side::Above, lower))).collect()
+    std::iter::once(one(MarginSide::Below, upper))
+        .chain(lower.map(|lower| one(MarginSide::Above, lower)))
+        .collect()
 }
 
 /// The part of a band in which the limit exists and the loop has a response; an end that is no number demands nothing.

@@ -7,7 +7,7 @@ use phea_dynamics::linear::Polynomial;
 use phea_dynamics::portable;
 use phea_dynamics::uncertain_plant::UncertainPlant;
 
-use super::asymptote::{self, End};
+use super::asymptote::{self, AxisEnd};
 use super::criterion::Criterion;
 use super::minimum;
 use super::response::{LoopAround, LoopAt, decibels};
@@ -83,8 +83,8 @@ impl<'a> Evaluator<'a> {
     pub(super) fn margin_db(&self, criterion: usize, member: &Member, frequency: f64) -> Option<f64> {
         let criterion = self.criteria.get(criterion)?;
         let end = match frequency {
-            0.0 => Some(End::Zero),
-            f64::INFINITY => Some(End::Infinity),
+            0.0 => Some(AxisEnd::Zero),
+            f64::INFINITY => Some(AxisEnd::Infinity),
             _ => None,
         };
         if let Some(end) = end {
@@ -117,14 +117,14 @@ impl<'a> Evaluator<'a> {
         (!excess.is_nan()).then(|| (closed, decibels(excess)))
     }
 
-    fn end_margin_db(&self, criterion: &Criterion, member: &Member, end: End) -> Option<f64> {
+    fn end_margin_db(&self, criterion: &Criterion, member: &Member, end: AxisEnd) -> Option<f64> {
         self.responses.set(self.responses.get() + 1);
         let found = asymptote::margin(criterion, self.compensation, member, self.with_prefilter, end)?;
         if self.with_prefilter || criterion.upper.is_none() {
             return Some(found.margin_db);
         }
         let [zero, infinity] = &self.steepness;
-        let steepness = if end == End::Zero { zero } else { infinity };
+        let steepness = if end == AxisEnd::Zero { zero } else { infinity };
         if steepness.get().is_none() {
             steepness.set(Some(found.power));
         }

@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::evaluator::Evaluator;
 use super::remark::remarks;
 use super::response::decibels;
-use super::scan::{Plant, Scan, Worst};
+use super::scan::{Scan, ScannedPlant, WorstPlant};
 use super::{Evidence, PlantPoint, SpecificationFinding, Verdict, ViolatedBand, WorstCase};
 use crate::family::Family;
 use crate::specification::Specification;
@@ -17,7 +17,7 @@ const EDGE_TOLERANCE: f64 = 1e-4;
 
 /// The criteria of one specification.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Part {
+pub(super) struct SpecificationCriteria {
     pub(super) first: usize,
     pub(super) count: usize,
     /// Whether their margins are summed, each with a plant of its own.
@@ -26,7 +26,7 @@ pub(super) struct Part {
 
 /// A margin that was found.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Case {
+pub(super) struct FoundMargin {
     pub(super) margin_db: f64,
     pub(super) frequency: f64,
     /// The criterion; of a spread both.
@@ -46,25 +46,25 @@ pub(super) struct EnvelopePoint {
     pub(super) plants: Vec<usize>,
 }
 
-impl Part {
+impl SpecificationCriteria {
     pub(super) fn criteria(self) -> Range<usize> {
         self.first..self.first + self.count
     }
 
     /// What is searched for by itself: a spread as a whole, otherwise each criterion.
-    pub(super) fn searched(self) -> Vec<Part> {
+    pub(super) fn searched(self) -> Vec<SpecificationCriteria> {
         if self.spread {
             return vec![self];
         }
-        self.criteria().map(|first| Part { first, count: 1, spread: false }).collect()
+        self.criteria().map(|first| SpecificationCriteria { first, count: 1, spread: false }).collect()
     }
 
     /// The worst of the family at one frequency; `None` where nothing is demanded or resolved.
-    pub(super) fn combined(self, frequency: f64, worst: &[Option<Worst>]) -> Option<EnvelopePoint> {
+    pub(super) fn combined(self, frequency: f64, worst: &[Option<WorstPlant>]) -> Option<EnvelopePoint> {
         let own = self
             .criteria()
             .map(|criterion| worst.get(criterion).copied().flatten().map(|worst| (criterion, worst)));
-        let chosen: Vec<(usize, Worst)> = if self.spread {
+        let chosen: Vec<(usize, WorstPlant)> = if self.spread {
             own.collect::<Option<_>>()?
         } else {
             vec![own.flatten().max_by(|left, right| left.1.excess.total_cmp(&right.1.excess))?]
@@ -80,9 +80,9 @@ impl Part {
 }
 
 /// A common frequency at which every criterion has a margin, and their spread has none.
-pub(super) fn undefined(part: Part, scan: &Scan) -> Option<f64> {
+pub(super) fn undefined(part: SpecificationCriteria, scan: &Scan) -> Option<f64> {
     let everywhere =
-        |worst: &[Option<Worst>]| part.criteria().all(|one| worst.get(one).is_some_and(Option::is_some));
+        |worst: &[Option<WorstPlant>]| part.criteria().all(|one| worst.get(one).is_some_and(Option::is_some));
     let mut points = scan.envelope();
     let lost =
         points.find(|(frequency, worst)| everywhere(worst) && part.combined(*frequency, worst).is_none());
@@ -90,7 +90,7 @@ pub(super) fn undefined(part: Part, scan: &Scan) -> Option<f64> {
 }
 
 /// The worst margin of the family at the common frequencies.
-pub(super) fn envelope(part: Part, scan: &Scan) -> Vec<EnvelopePoint> {
+pub(super) fn envelope(part: SpecificationCriteria, scan: &Scan) -> Vec<EnvelopePoint> {
     scan.envelope().filter_map(|(frequency, worst)| part.combined(frequency, worst)).collect()
 }
 
@@ -113,18 +113,18 @@ pub(super) fn local_minima(envelope: &[EnvelopePoint]) -> Vec<[f64; 3]> {
     minima.into_iter().map(|minimum| minimum.1).collect()
 }
 
-pub(super) fn points(plants: &[Plant], chosen: &[usize]) -> Vec<PlantPoint> {
+pub(super) fn points(plants: &[ScannedPlant], chosen: &[usize]) -> Vec<PlantPoint> {
     chosen.iter().filter_map(|plant| plants.get(*plant)).map(|plant| plant.point.clone()).collect()
 }
 
 /// All that a finding is made of.
 pub(super) struct Joining<'a> {
-    pub(super) part: Part,
+    pub(super) part: SpecificationCriteria,
     pub(super) family: &'a Family,
     pub(super) specification: &'a Specification,
     pub(super) evaluator: &'a Evaluator<'a>,
-    pub(super) plants: &'a [Plant],
-    pub(super) cases: &'a [Case],
+    pub(super) plants: &'a [ScannedPlant],
+    pub(super) cases: &'a [FoundMargin],
     /// A frequency at which a plant met in a search, or the spread of the family, has no margin.
     pub(super) undefined: Option<f64>,
     pub(super) tolerance_db: f64,
@@ -133,13 +133,13 @@ pub(super) struct Joining<'a> {
 impl Joining<'_> {
     pub(super) fn finding(&self, scan: &mut Scan) -> SpecificationFinding {
         let envelope = envelope(self.part, scan);
-        let all: Vec<Case> =
+        let all: Vec<FoundMargin> =
             envelope.iter().map(|point| self.case(point)).chain(self.cases.iter().cloned()).collect();
         let worst = least(all.iter());
         let ends = [envelope.first(), envelope.last()].map(|end| end.map(|point| point.frequency));
         let at_an_end = worst.is_some_and(|worst| ends.contains(&Some(worst.frequency)));
         let minima: Vec<f64> = local_minima(&envelope).iter().map(|bracket| bracket[1]).collect();
-        let interior = |case: &&Case| case.interior || minima.contains(&case.frequency);
+        let interior = |case: &&FoundMargin| case.interior || minima.contains(&case.frequency);
         let interior = least(all.iter().filter(interior)).filter(|_| at_an_end);
         let unresolved = self.part.criteria().find_map(|criterion| scan.unresolved(criterion));
         let violated = worst.is_some_and(|worst| worst.margin_db < -self.tolerance());
@@ -170,8 +170,8 @@ impl Joining<'_> {
         self.tolerance_db.max(ROUNDING_DB)
     }
 
-    fn case(&self, point: &EnvelopePoint) -> Case {
-        Case {
+    fn case(&self, point: &EnvelopePoint) -> FoundMargin {
+        FoundMargin {
             margin_db: point.margin_db,
             frequency: point.frequency,
             criteria: point.criteria.clone(),
@@ -190,7 +190,12 @@ impl Joining<'_> {
     }
 
     /// Runs of frequencies at which some plant violates the specification, their ends refined.
-    fn violations(&self, scan: &mut Scan, envelope: &[EnvelopePoint], all: &[Case]) -> Vec<ViolatedBand> {
+    fn violations(
+        &self,
+        scan: &mut Scan,
+        envelope: &[EnvelopePoint],
+        all: &[FoundMargin],
+    ) -> Vec<ViolatedBand> {
         let violated = |point: &EnvelopePoint| point.margin_db < -self.tolerance();
         let mut bands = Vec::new();
         let mut from: Option<usize> = None;
@@ -238,11 +243,11 @@ impl Joining<'_> {
     }
 }
 
-fn least<'a>(cases: impl Iterator<Item = &'a Case>) -> Option<&'a Case> {
+fn least<'a>(cases: impl Iterator<Item = &'a FoundMargin>) -> Option<&'a FoundMargin> {
     cases.min_by(|left, right| left.margin_db.total_cmp(&right.margin_db))
 }
 
-fn worst_case(case: &Case) -> WorstCase {
+fn worst_case(case: &FoundMargin) -> WorstCase {
     let mut points = case.points.iter().cloned();
     WorstCase {
         margin_db: case.margin_db,

@@ -1,14 +1,14 @@
 //! What was not looked at.
 
-use super::finding::{Case, Joining};
-use super::scan::Plant;
+use super::finding::{FoundMargin, Joining};
+use super::scan::ScannedPlant;
 use super::{PlantPoint, Remark};
 use crate::family::Family;
 use crate::specification::Limit;
 
 pub(super) fn remarks(
     joining: &Joining,
-    worst: Option<&Case>,
+    worst: Option<&FoundMargin>,
     unresolved: Option<(f64, usize)>,
 ) -> Vec<Remark> {
     let mut remarks = Vec::new();
@@ -52,7 +52,7 @@ fn without_response(joining: &Joining, frequency_rad_per_s: f64, index: usize) -
         return Remark::BeyondMeasurements { measured_rad_per_s };
     }
     match joining.plants.get(index) {
-        Some(Plant { member: None, .. }) => Remark::NotSampled { frequency_rad_per_s },
+        Some(ScannedPlant { member: None, .. }) => Remark::NotSampled { frequency_rad_per_s },
         plant => Remark::NoResponse { frequency_rad_per_s, plant: plant.map(|plant| plant.point.clone()) },
     }
 }

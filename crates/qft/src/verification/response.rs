@@ -10,7 +10,7 @@ use phea_dynamics::linear::{TimeDomain, TransferFunction};
 use phea_dynamics::portable;
 use phea_dynamics::uncertain_plant::RationalCoefficients;
 
-use super::criterion::{Criterion, Side};
+use super::criterion::{Criterion, MarginSide};
 use crate::closed_loop::{Compensation, Member};
 use crate::specification::ClosedLoop;
 
@@ -93,11 +93,11 @@ impl LoopAround {
     pub(super) fn vanishing(&self, criterion: &Criterion) -> Complex64 {
         let own = self.load_motion.denominator != self.loop_denominator;
         match (criterion.side, criterion.closed_loop) {
-            (Side::Above, _) => self.plant_numerator,
-            (Side::Below, ClosedLoop::LoadMotion) if own => {
+            (MarginSide::Above, _) => self.plant_numerator,
+            (MarginSide::Below, ClosedLoop::LoadMotion) if own => {
                 self.characteristic * self.load_motion.denominator
             }
-            (Side::Below, _) => self.characteristic,
+            (MarginSide::Below, _) => self.characteristic,
         }
     }
 }
@@ -205,8 +205,8 @@ impl LoopAt {
         };
         let characteristic = closed.characteristic.norm_sqr();
         Some(match criterion.side {
-            Side::Below => numerator / (characteristic * limit),
-            Side::Above => characteristic * limit / numerator,
+            MarginSide::Below => numerator / (characteristic * limit),
+            MarginSide::Above => characteristic * limit / numerator,
         })
     }
 

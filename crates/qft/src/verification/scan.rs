@@ -18,7 +18,7 @@ pub(super) const WORTH_POLISHING: f64 = 0.7;
 
 /// A plant that is looked at.
 #[derive(Clone, Debug)]
-pub(super) struct Plant {
+pub(super) struct ScannedPlant {
     pub(super) point: PlantPoint,
     /// `None` where it cannot be sampled.
     pub(super) member: Option<Member>,
@@ -27,7 +27,7 @@ pub(super) struct Plant {
 
 /// The worst of the family at one frequency for one criterion.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Worst {
+pub(super) struct WorstPlant {
     /// (quantity/limit)^2, or its inverse.
     pub(super) excess: f64,
     pub(super) plant: usize,
@@ -46,7 +46,7 @@ pub(super) struct Peak {
 pub(super) struct Scan {
     grid: Vec<(f64, Option<LoopAt>)>,
     /// By frequency and criterion; `None` where nothing is demanded or resolved.
-    worst: Vec<Vec<Option<Worst>>>,
+    worst: Vec<Vec<Option<WorstPlant>>>,
     /// By criterion.
     peaks: Vec<Vec<Peak>>,
     /// By criterion: where a margin was demanded and not to be had, as frequency and plant.
@@ -54,7 +54,7 @@ pub(super) struct Scan {
 }
 
 /// One plant at one frequency: an excess for each criterion, `None` where nothing is demanded or resolved.
-struct Sample {
+struct PlantSample {
     frequency: f64,
     characteristic: Option<Complex64>,
     excess: Vec<Option<f64>>,
@@ -73,7 +73,7 @@ impl Scan {
     }
 
     /// The common frequencies with the worst of each criterion.
-    pub(super) fn envelope(&self) -> impl Iterator<Item = (f64, &[Option<Worst>])> {
+    pub(super) fn envelope(&self) -> impl Iterator<Item = (f64, &[Option<WorstPlant>])> {
         self.grid.iter().map(|point| point.0).zip(self.worst.iter().map(Vec::as_slice))
     }
 
@@ -91,7 +91,12 @@ impl Scan {
     }
 
     /// Adds a frequency at which the whole family is looked at.
-    pub(super) fn add_frequency(&mut self, evaluator: &Evaluator<'_>, plants: &[Plant], frequency: f64) {
+    pub(super) fn add_frequency(
+        &mut self,
+        evaluator: &Evaluator<'_>,
+        plants: &[ScannedPlant],
+        frequency: f64,
+    ) {
         let place = self.grid.partition_point(|point| point.0 < frequency);
         if self.grid.get(place).is_some_and(|point| point.0 == frequency) {
             return;
@@ -105,9 +110,9 @@ impl Scan {
     pub(super) fn family_at(
         &mut self,
         evaluator: &Evaluator<'_>,
-        plants: &[Plant],
+        plants: &[ScannedPlant],
         frequency: f64,
-    ) -> Vec<Option<Worst>> {
+    ) -> Vec<Option<WorstPlant>> {
         let at = loop_at(evaluator, frequency);
         let mut worst = vec![None; evaluator.criteria.len()];
         for (index, plant) in plants.iter().enumerate() {
@@ -120,7 +125,7 @@ impl Scan {
     }
 
     /// Looks at one plant at all common frequencies and at its own.
-    pub(super) fn look_at(&mut self, evaluator: &Evaluator<'_>, plant: &Plant, index: usize) {
+    pub(super) fn look_at(&mut self, evaluator: &Evaluator<'_>, plant: &ScannedPlant, index: usize) {
         let common = std::mem::take(&mut self.grid);
         let mut samples = Vec::with_capacity(common.len() + plant.features.frequencies.len());
         for (place, (frequency, at)) in common.iter().enumerate() {
@@ -153,11 +158,11 @@ impl Scan {
     fn sample(
         &mut self,
         evaluator: &Evaluator<'_>,
-        plant: &Plant,
+        plant: &ScannedPlant,
         index: usize,
         frequency: f64,
         at: &Option<LoopAt>,
-    ) -> Sample {
+    ) -> PlantSample {
         let closed = plant.member.as_ref().zip(at.as_ref());
         let closed = closed.and_then(|(member, at)| Some((at, evaluator.closed(at, member)?)));
         let mut excess = Vec::with_capacity(evaluator.criteria.len());
@@ -175,7 +180,7 @@ impl Scan {
             }
             excess.push(value);
         }
-        Sample { frequency, characteristic: closed.map(|(_, closed)| closed.characteristic), excess }
+        PlantSample { frequency, characteristic: closed.map(|(_, closed)| closed.characteristic), excess }
     }
 
     fn note_unresolved(&mut self, criterion: usize, frequency: f64, plant: usize) {
@@ -188,11 +193,11 @@ impl Scan {
     fn with_resonances(
         &mut self,
         evaluator: &Evaluator<'_>,
-        plant: &Plant,
+        plant: &ScannedPlant,
         index: usize,
-        samples: Vec<Sample>,
-    ) -> Vec<Sample> {
-        let mut found: Vec<Sample> = Vec::with_capacity(samples.len());
+        samples: Vec<PlantSample>,
+    ) -> Vec<PlantSample> {
+        let mut found: Vec<PlantSample> = Vec::with_capacity(samples.len());
         for sample in samples {
             let mut ahead = vec![sample];
             let mut halvings = 0;
@@ -211,9 +216,9 @@ impl Scan {
         found
     }
 
-    fn keep_peaks(&mut self, plant: usize, samples: &[Sample]) {
+    fn keep_peaks(&mut self, plant: usize, samples: &[PlantSample]) {
         for (criterion, peaks) in self.peaks.iter_mut().enumerate() {
-            let excess = |sample: &Sample| sample.excess.get(criterion).copied().flatten();
+            let excess = |sample: &PlantSample| sample.excess.get(criterion).copied().flatten();
             let highest = peaks.iter().map(|peak| peak.excess).fold(0.0, f64::max);
             for triple in samples.windows(3) {
                 let [before, here, after] = triple else { continue };
@@ -236,16 +241,16 @@ fn loop_at(evaluator: &Evaluator<'_>, frequency: f64) -> Option<LoopAt> {
     (frequency > 0.0 && frequency < f64::INFINITY).then(|| evaluator.loop_at(frequency))
 }
 
-fn worse(so_far: Option<Worst>, excess: Option<f64>, plant: usize) -> Option<Worst> {
+fn worse(so_far: Option<WorstPlant>, excess: Option<f64>, plant: usize) -> Option<WorstPlant> {
     match (so_far, excess) {
         (Some(worst), Some(excess)) if excess <= worst.excess => Some(worst),
-        (_, Some(excess)) => Some(Worst { excess, plant }),
+        (_, Some(excess)) => Some(WorstPlant { excess, plant }),
         (so_far, None) => so_far,
     }
 }
 
 /// A frequency between two samples if the characteristic value turns too far from one to the other.
-fn halved(behind: &Sample, ahead: &Sample) -> Option<f64> {
+fn halved(behind: &PlantSample, ahead: &PlantSample) -> Option<f64> {
     let middle = (behind.frequency * ahead.frequency).sqrt();
     let turns = turns(behind.characteristic?, ahead.characteristic?);
     (turns && behind.frequency < middle && middle < ahead.frequency).then_some(middle)

@@ -25,7 +25,7 @@ const FREQUENCY_STEP: f64 = 0.01;
 
 /// Where a search starts.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Task {
+pub(super) struct SearchTask {
     /// The criteria whose margins are summed, each with a plant of its own.
     pub(super) criteria: Vec<usize>,
     /// Shares of each plant.
@@ -40,14 +40,14 @@ pub(super) struct Task {
 
 /// What a search ended at, and the first plant on its way that has no margin at some frequency.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Outcome {
-    pub(super) found: Option<Found>,
+pub(super) struct SearchOutcome {
+    pub(super) found: Option<SearchEnd>,
     pub(super) undefined: Option<f64>,
 }
 
 /// Where a search ended.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Found {
+pub(super) struct SearchEnd {
     pub(super) margin_db: f64,
     pub(super) frequency: f64,
     /// Parameter values of each plant.
@@ -56,7 +56,7 @@ pub(super) struct Found {
 
 /// A point of the search.
 #[derive(Clone, Debug)]
-struct Place {
+struct SearchPoint {
     shares: Vec<Vec<f64>>,
     members: Vec<Option<Member>>,
     margin_db: f64,
@@ -64,49 +64,53 @@ struct Place {
 }
 
 /// Goes downhill from a start until a sweep over all coordinates gains nothing.
-pub(super) fn search(evaluator: &Evaluator<'_>, family: &UncertainFamily, task: &Task) -> Outcome {
-    let descent = Descent { evaluator, family, task, follower: None, undefined: &Cell::new(None) };
+pub(super) fn search(
+    evaluator: &Evaluator<'_>,
+    family: &UncertainFamily,
+    task: &SearchTask,
+) -> SearchOutcome {
+    let descent = MarginDescent { evaluator, family, task, follower: None, undefined: &Cell::new(None) };
     let place = descent.start().map(|start| match task.resonances {
         true => descent.with_resonances(start),
         false => descent.descended(start),
     });
-    let found = place.map(|place| Found {
+    let found = place.map(|place| SearchEnd {
         margin_db: place.margin_db,
         frequency: place.frequency,
         values: place.shares.iter().map(|shares| family.values(shares)).collect(),
     });
-    Outcome { found, undefined: descent.undefined.get() }
+    SearchOutcome { found, undefined: descent.undefined.get() }
 }
 
 /// A coordinate of one of the plants.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Along {
+struct SearchCoordinate {
     block: usize,
     coordinate: usize,
 }
 
 #[derive(Clone, Copy)]
-struct Descent<'a> {
+struct MarginDescent<'a> {
     evaluator: &'a Evaluator<'a>,
     family: &'a UncertainFamily,
-    task: &'a Task,
+    task: &'a SearchTask,
     /// The share that follows its minimum.
-    follower: Option<Along>,
+    follower: Option<SearchCoordinate>,
     undefined: &'a Cell<Option<f64>>,
 }
 
-impl Descent<'_> {
+impl MarginDescent<'_> {
     fn member(&self, shares: &[f64]) -> Option<Member> {
         self.evaluator.member(self.family.plant(), &self.family.values(shares))
     }
 
-    fn start(&self) -> Option<Place> {
+    fn start(&self) -> Option<SearchPoint> {
         let members: Vec<Option<Member>> =
             self.task.shares.iter().map(|shares| self.member(shares)).collect();
         self.settled(self.task.shares.clone(), members, self.task.frequency)
     }
 
-    fn descended(&self, start: Place) -> Place {
+    fn descended(&self, start: SearchPoint) -> SearchPoint {
         let mut place = start;
         let mut radius = 0.25;
         for sweep in 0..SWEEPS_MAXIMUM {
@@ -140,9 +144,14 @@ impl Descent<'_> {
     }
 
     /// A place whose frequency, or follower, is at its minimum.
-    fn settled(&self, shares: Vec<Vec<f64>>, members: Vec<Option<Member>>, frequency: f64) -> Option<Place> {
+    fn settled(
+        &self,
+        shares: Vec<Vec<f64>>,
+        members: Vec<Option<Member>>,
+        frequency: f64,
+    ) -> Option<SearchPoint> {
         let (frequency, margin_db) = self.margin(&members, frequency)?;
-        let place = Place { shares, members, margin_db, frequency };
+        let place = SearchPoint { shares, members, margin_db, frequency };
         Some(match self.follower {
             Some(follower) => self.followed(place, follower),
             None => place,
@@ -176,7 +185,7 @@ impl Descent<'_> {
     }
 
     /// The same place with another share of one coordinate, and its margin.
-    fn moved(&self, place: &Place, block: usize, coordinate: usize, share: f64) -> Option<Place> {
+    fn moved(&self, place: &SearchPoint, block: usize, coordinate: usize, share: f64) -> Option<SearchPoint> {
         let mut shares = place.shares.clone();
         *shares.get_mut(block)?.get_mut(coordinate)? = share;
         let mut members = place.members.clone();
@@ -186,7 +195,14 @@ impl Descent<'_> {
 
     /// The best place along one coordinate: the neighbourhood of this share, and those of both ends; on the first sweep of the
     /// middle as well.
-    fn along(&self, place: Place, block: usize, coordinate: usize, radius: f64, first: bool) -> Place {
+    fn along(
+        &self,
+        place: SearchPoint,
+        block: usize,
+        coordinate: usize,
+        radius: f64,
+        first: bool,
+    ) -> SearchPoint {
         let elsewhere: &[f64] = if first { &[0.0, 0.5, 1.0] } else { &[0.0, 1.0] };
         let mut best = self.near(place.clone(), block, coordinate, radius);
         for &share in elsewhere {
@@ -198,15 +214,21 @@ impl Descent<'_> {
     }
 
     /// The local minimum along one coordinate, no further than `radius` away.
-    fn near(&self, place: Place, block: usize, coordinate: usize, radius: f64) -> Place {
+    fn near(&self, place: SearchPoint, block: usize, coordinate: usize, radius: f64) -> SearchPoint {
         let share = place.share(block, coordinate);
         let ends = [(share - radius).max(0.0), (share + radius).min(1.0)];
         let tolerance = (SHARE_STEP * radius).max(SHARE_TOLERANCE);
-        self.between(place, Along { block, coordinate }, ends, tolerance)
+        self.between(place, SearchCoordinate { block, coordinate }, ends, tolerance)
     }
 
     /// The local minimum between two shares of one coordinate.
-    fn between(&self, place: Place, along: Along, ends: [f64; 2], tolerance: f64) -> Place {
+    fn between(
+        &self,
+        place: SearchPoint,
+        along: SearchCoordinate,
+        ends: [f64; 2],
+        tolerance: f64,
+    ) -> SearchPoint {
         let start = (place.share(along.block, along.coordinate), place.margin_db);
         let mut best = place;
         minimum::between(|share| self.tried(&mut best, along, share), ends, start, tolerance);
@@ -214,7 +236,7 @@ impl Descent<'_> {
     }
 
     /// The margin with another share; the best place so far is kept.
-    fn tried(&self, best: &mut Place, along: Along, share: f64) -> f64 {
+    fn tried(&self, best: &mut SearchPoint, along: SearchCoordinate, share: f64) -> f64 {
         match self.moved(best, along.block, along.coordinate, share) {
             Some(found) => {
                 let margin_db = found.margin_db;
@@ -226,7 +248,7 @@ impl Descent<'_> {
     }
 
     /// Once more in the direction in which a sweep went, in steps that double, as long as it helps.
-    fn onwards(&self, from: &Place, to: Place) -> Place {
+    fn onwards(&self, from: &SearchPoint, to: SearchPoint) -> SearchPoint {
         let mut best = to.clone();
         let mut factor = 1.0;
         for _ in 0..10 {
@@ -251,13 +273,13 @@ impl Descent<'_> {
     }
 }
 
-impl Place {
+impl SearchPoint {
     fn share(&self, block: usize, coordinate: usize) -> f64 {
         self.shares.get(block).and_then(|shares| shares.get(coordinate)).copied().unwrap_or(0.0)
     }
 }
 
-fn better(place: Place, other: Option<Place>) -> Place {
+fn better(place: SearchPoint, other: Option<SearchPoint>) -> SearchPoint {
     match other {
         Some(other) if other.margin_db < place.margin_db => other,
         _ => place,

@@ -2,9 +2,9 @@
 
 use super::PlantPoint;
 use super::evaluator::Evaluator;
-use super::finding::{Case, EnvelopePoint, Part, envelope, local_minima};
-use super::scan::{Plant, Scan};
-use super::search::Task;
+use super::finding::{EnvelopePoint, FoundMargin, SpecificationCriteria, envelope, local_minima};
+use super::scan::{Scan, ScannedPlant};
+use super::search::SearchTask;
 use crate::family::UncertainFamily;
 
 /// Local minima of a family's margin, and plants, that are followed.
@@ -13,7 +13,11 @@ pub(super) const STARTS: usize = 4;
 const FREQUENCY_RATIO: f64 = 1.1;
 
 /// Between which finite frequencies a search may move.
-pub(super) fn interior_range(part: Part, evaluator: &Evaluator<'_>, scan: &Scan) -> Option<[f64; 2]> {
+pub(super) fn interior_range(
+    part: SpecificationCriteria,
+    evaluator: &Evaluator<'_>,
+    scan: &Scan,
+) -> Option<[f64; 2]> {
     let demanded = |frequency: &f64| {
         let mut bands = evaluator.criteria.iter().skip(part.first).take(part.count);
         *frequency > 0.0 && *frequency < f64::INFINITY && bands.all(|criterion| criterion.demands(*frequency))
@@ -37,16 +41,16 @@ fn beside_violations(envelope: &[EnvelopePoint]) -> Vec<f64> {
 /// Searches for one specification: at each design frequency and each end of the band, with the resonances there; beside violated frequencies; from its worst local minima, from the
 /// middle of the box, and from the plants with the worst peaks.
 pub(super) fn tasks(
-    part: Part,
+    part: SpecificationCriteria,
     family: &UncertainFamily,
-    (scan, plants): (&Scan, &[Plant]),
-    cases: &[Case],
+    (scan, plants): (&Scan, &[ScannedPlant]),
+    cases: &[FoundMargin],
     design_frequencies: &[f64],
     range: Option<[f64; 2]>,
-) -> Vec<Task> {
+) -> Vec<SearchTask> {
     let envelope = envelope(part, scan);
     let shares = |index: &usize| shares(family, plants.get(*index).map(|plant| &plant.point));
-    let from = |point: &EnvelopePoint, range: Option<[f64; 2]>| Task {
+    let from = |point: &EnvelopePoint, range: Option<[f64; 2]>| SearchTask {
         criteria: point.criteria.clone(),
         shares: point.plants.iter().map(shares).collect(),
         frequency: point.frequency,
@@ -60,8 +64,8 @@ pub(super) fn tasks(
     let mut tasks = Vec::new();
     for point in &envelope {
         if given.contains(&point.frequency) {
-            let task = Task { resonances: true, ..from(point, None) };
-            tasks.extend([task.clone(), Task { shares: middle(point), ..task }]);
+            let task = SearchTask { resonances: true, ..from(point, None) };
+            tasks.extend([task.clone(), SearchTask { shares: middle(point), ..task }]);
         } else if beside.contains(&point.frequency) {
             tasks.push(from(point, None));
         }
@@ -70,10 +74,11 @@ pub(super) fn tasks(
     let minima: Vec<f64> = local_minima(&envelope).iter().take(STARTS).map(|bracket| bracket[1]).collect();
     for point in envelope.iter().filter(|point| minima.contains(&point.frequency)) {
         tasks.push(from(point, Some(range)));
-        tasks.push(Task { shares: middle(point), ..from(point, Some(range)) });
+        tasks.push(SearchTask { shares: middle(point), ..from(point, Some(range)) });
     }
-    let of_part = |case: &&Case| case.criteria.iter().all(|criterion| part.criteria().contains(criterion));
-    tasks.extend(diverse(cases.iter().filter(of_part)).into_iter().map(|case| Task {
+    let of_part =
+        |case: &&FoundMargin| case.criteria.iter().all(|criterion| part.criteria().contains(criterion));
+    tasks.extend(diverse(cases.iter().filter(of_part)).into_iter().map(|case| SearchTask {
         criteria: case.criteria.clone(),
         shares: case.points.iter().map(|point| self::shares(family, Some(point))).collect(),
         frequency: case.frequency,
@@ -93,12 +98,12 @@ fn shares(family: &UncertainFamily, point: Option<&PlantPoint>) -> Vec<f64> {
 }
 
 /// The worst cases, each with a plant of its own, after the first few each with a frequency of its own.
-fn diverse<'a>(cases: impl Iterator<Item = &'a Case>) -> Vec<&'a Case> {
-    let apart = |case: &Case, other: &&Case| {
+fn diverse<'a>(cases: impl Iterator<Item = &'a FoundMargin>) -> Vec<&'a FoundMargin> {
+    let apart = |case: &FoundMargin, other: &&FoundMargin| {
         let ratio = case.frequency / other.frequency;
         !(1.0 / FREQUENCY_RATIO..=FREQUENCY_RATIO).contains(&ratio)
     };
-    let mut chosen: Vec<&Case> = Vec::new();
+    let mut chosen: Vec<&FoundMargin> = Vec::new();
     for case in cases {
         let new_plant = chosen.iter().all(|other| other.points != case.points);
         let wanted = chosen.len() < STARTS || chosen.iter().all(|other| apart(case, other));

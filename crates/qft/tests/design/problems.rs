@@ -14,7 +14,7 @@ use phea_qft::design::{
     ControllerChoice, Design, DesignOptions, DesignProblem, DesignStatus, Objective, PrefilterChoice, design,
 };
 use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, grid};
-use phea_qft::loop_shaping::{Part, Structure};
+use phea_qft::loop_shaping::{Structure, StructureFactor};
 use phea_qft::specification::{Limit, Requirement, Specification};
 use phea_qft::verification::{Audit, AuditProblem, TOLERANCE_DB, TrackingJudgement, Verdict};
 
@@ -114,11 +114,11 @@ pub(crate) fn structure(
 ) -> Structure {
     let natural_frequency = frequency;
     let part = |word| match word {
-        "I" => Part::Fixed(Element::Integrator),
-        "Z" => Part::RealZero { frequency },
-        "P" => Part::RealPole { frequency },
-        "ZZ" => Part::ZeroPair { natural_frequency, damping_ratio },
-        "PP" => Part::PolePair { natural_frequency, damping_ratio },
+        "I" => StructureFactor::Fixed(Element::Integrator),
+        "Z" => StructureFactor::RealZero { frequency },
+        "P" => StructureFactor::RealPole { frequency },
+        "ZZ" => StructureFactor::ZeroPair { natural_frequency, damping_ratio },
+        "PP" => StructureFactor::PolePair { natural_frequency, damping_ratio },
         _ => panic!("{word}"),
     };
     Structure { sign: 1.0, gain, parts: text.split_whitespace().map(part).collect() }

@@ -5,9 +5,11 @@ use phea_dynamics::watch::unwatched;
 use phea_qft::design::quantisation::{
     CoefficientFormat, Converter, Quantisation, QuantisationError, rounded,
 };
-use phea_qft::design::{Design, DesignError, DesignOptions, DesignProblem, DesignStatus, Objective, design};
+use phea_qft::design::{
+    Design, DesignOptions, DesignProblem, DesignStatus, LoopDesignError, Objective, design,
+};
 use phea_qft::family::{Family, Spacing};
-use phea_qft::loop_shaping::{Part, Structure};
+use phea_qft::loop_shaping::{Structure, StructureFactor};
 use phea_qft::specification::Requirement;
 use phea_qft::verification::{TrackingJudgement, Verdict};
 
@@ -34,7 +36,10 @@ fn regulation() -> DesignProblem {
 }
 
 fn proportional_integral() -> Structure {
-    let parts = vec![Part::Fixed(Element::Integrator), Part::RealZero { frequency: [0.1, 100.0] }];
+    let parts = vec![
+        StructureFactor::Fixed(Element::Integrator),
+        StructureFactor::RealZero { frequency: [0.1, 100.0] },
+    ];
     Structure { sign: 1.0, gain: [0.1, 100.0], parts }
 }
 
@@ -95,7 +100,7 @@ fn a_format_that_holds_no_controller_is_told() {
     let options = least_gain(proportional_integral(), 1);
     let options = DesignOptions { coefficients: fixed(0, 12), ..options };
     let error = design(&regulation(), &options, &mut unwatched).unwrap_err();
-    assert!(matches!(error, DesignError::Quantisation(QuantisationError::TooLarge { .. })), "{error}");
+    assert!(matches!(error, LoopDesignError::Quantisation(QuantisationError::TooLarge { .. })), "{error}");
 }
 
 /// A continuous controller has no coefficients that could be rounded.

@@ -5,7 +5,7 @@ use phea_dynamics::linear::{Discretization, TransferFunction};
 use phea_dynamics::portable::magnitude;
 use phea_dynamics::watch::unwatched;
 use phea_qft::closed_loop::Compensation;
-use phea_qft::loop_shaping::{Part, SearchProblem, Structure};
+use phea_qft::loop_shaping::{SearchProblem, Structure, StructureFactor};
 use phea_qft::prefilter::{
     FittedPrefilter, PrefilterBand, PrefilterFit, PrefilterOptions, PrefilterOutcome, TrackingExtremes,
     fit_prefilter,
@@ -216,10 +216,10 @@ fn the_slopes_of_a_fit_are_those_of_its_margins() {
     let range = [0.1, 100.0];
     let pair = ([0.1, 100.0], [0.1, 10.0]);
     let parts = vec![
-        Part::PolePair { natural_frequency: pair.0, damping_ratio: pair.1 },
-        Part::RealPole { frequency: range },
-        Part::ZeroPair { natural_frequency: pair.0, damping_ratio: pair.1 },
-        Part::RealZero { frequency: range },
+        StructureFactor::PolePair { natural_frequency: pair.0, damping_ratio: pair.1 },
+        StructureFactor::RealPole { frequency: range },
+        StructureFactor::ZeroPair { natural_frequency: pair.0, damping_ratio: pair.1 },
+        StructureFactor::RealZero { frequency: range },
     ];
     let structure = Structure { sign: 1.0, gain: [0.5, 2.0], parts };
     let (compensation, members, specification) = servo();

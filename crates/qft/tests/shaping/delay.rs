@@ -10,7 +10,7 @@ use phea_dynamics::uncertain_plant::{
 use phea_qft::closed_loop::Compensation;
 use phea_qft::design::{DesignProblem, Objective};
 use phea_qft::family::{Extent, Family, UncertainFamily};
-use phea_qft::loop_shaping::{Part, Samples, SearchProblem, Shaping, Structure};
+use phea_qft::loop_shaping::{Samples, SearchProblem, Shaping, Structure, StructureFactor};
 use phea_qft::stability::{StabilityStatus, member_stability};
 use phea_qft::verification::PlantPoint;
 
@@ -48,9 +48,9 @@ fn problem(delay_s: f64) -> DesignProblem {
 
 fn structure() -> Structure {
     let parts = vec![
-        Part::RealPole { frequency: [2.0, 20.0] },
-        Part::RealZero { frequency: [2.0, 20.0] },
-        Part::Fixed(Element::RealPole { frequency: 200.0 }),
+        StructureFactor::RealPole { frequency: [2.0, 20.0] },
+        StructureFactor::RealZero { frequency: [2.0, 20.0] },
+        StructureFactor::Fixed(Element::RealPole { frequency: 200.0 }),
     ];
     Structure { sign: 1.0, gain: [0.3, 3.0], parts }
 }

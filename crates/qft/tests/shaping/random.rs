@@ -8,7 +8,7 @@ use phea_dynamics::uncertain_plant::{
 };
 use phea_qft::design::DesignProblem;
 use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, random};
-use phea_qft::loop_shaping::{Part, Structure};
+use phea_qft::loop_shaping::{Structure, StructureFactor};
 use phea_qft::specification::{Limit, LimitTable, Requirement, Specification};
 use phea_qft::verification::PlantPoint;
 
@@ -40,12 +40,12 @@ pub(crate) fn structure(draw: &mut Draw) -> Structure {
         [middle / 2.0, middle * 2.0]
     };
     let parts = vec![
-        Part::RealZero { frequency: range(1.0, 20.0) },
-        Part::PolePair { natural_frequency: range(20.0, 200.0), damping_ratio: range(0.3, 2.0) },
-        Part::Fixed(Element::Integrator),
-        Part::ZeroPair { natural_frequency: range(2.0, 50.0), damping_ratio: range(0.2, 1.5) },
-        Part::RealPole { frequency: range(50.0, 500.0) },
-        Part::Fixed(Element::LeadLag { zero_frequency: 30.0, pole_frequency: 7.0 }),
+        StructureFactor::RealZero { frequency: range(1.0, 20.0) },
+        StructureFactor::PolePair { natural_frequency: range(20.0, 200.0), damping_ratio: range(0.3, 2.0) },
+        StructureFactor::Fixed(Element::Integrator),
+        StructureFactor::ZeroPair { natural_frequency: range(2.0, 50.0), damping_ratio: range(0.2, 1.5) },
+        StructureFactor::RealPole { frequency: range(50.0, 500.0) },
+        StructureFactor::Fixed(Element::LeadLag { zero_frequency: 30.0, pole_frequency: 7.0 }),
     ];
     let sign = if draw.share() < 0.5 { -1.0 } else { 1.0 };
     Structure { sign, gain: [0.2, 5.0], parts }

@@ -9,7 +9,7 @@ use phea_dynamics::uncertain_plant::{
 use phea_qft::design::{DesignProblem, Objective};
 use phea_qft::family::{Extent, Family, MeasuredFamily, MeasuredPlant, UncertainFamily};
 use phea_qft::loop_shaping::{
-    Part, Samples, SamplesError, SearchProblem, Shaping, Structure, search_frequencies,
+    Samples, SamplesError, SearchProblem, Shaping, Structure, StructureFactor, search_frequencies,
 };
 use phea_qft::specification::{Limit, Requirement};
 use phea_qft::verification::PlantPoint;
@@ -158,7 +158,7 @@ fn peaks_are_looked_at() {
 fn a_structure_without_a_response_is_refused() {
     let problem = undamped();
     let samples = Samples::new(&problem, &plants(&problem), &[2.0]).unwrap();
-    let parts = vec![Part::Fixed(Element::RealZero { frequency: 0.0 })];
+    let parts = vec![StructureFactor::Fixed(Element::RealZero { frequency: 0.0 })];
     let refused = Shaping::new(Structure { parts, ..gain() }, None, Objective::BestWorstMargin, samples);
     assert!(refused.is_err());
 }

@@ -6,7 +6,7 @@ use phea_dynamics::frequency::logarithmic_grid;
 use phea_dynamics::linear::{Discretization, LinearError, TransferFunction};
 use phea_dynamics::portable::magnitude;
 use phea_qft::closed_loop::Compensation;
-use phea_qft::loop_shaping::{Part, Structure};
+use phea_qft::loop_shaping::{Structure, StructureFactor};
 
 use super::random::{Draw, structure};
 
@@ -144,7 +144,8 @@ fn a_controller_and_its_point_belong_together() {
 #[test]
 fn what_does_not_fit_has_no_point() {
     let corner = [1.0, 10.0];
-    let parts = vec![Part::Fixed(Element::Integrator), Part::RealZero { frequency: corner }];
+    let parts =
+        vec![StructureFactor::Fixed(Element::Integrator), StructureFactor::RealZero { frequency: corner }];
     let structure = Structure { sign: 1.0, gain: [0.1, 10.0], parts };
     let integral = |gain: f64, zero: f64| {
         Compensator::new(vec![
@@ -179,7 +180,7 @@ fn unstable_and_undamped_roots_are_not_free() {
 
 #[test]
 fn more_zeros_than_poles_cannot_be_sampled() {
-    let parts = vec![Part::RealZero { frequency: [1.0, 2.0] }];
+    let parts = vec![StructureFactor::RealZero { frequency: [1.0, 2.0] }];
     let structure = Structure { sign: 1.0, gain: [1.0, 2.0], parts };
     let timing = Timing { sample_time_s: Some(0.1), ..Timing::default() };
     assert_eq!(structure.response(&timing, &[1.0]), Err(LinearError::Improper { zeros: 1, poles: 0 }));

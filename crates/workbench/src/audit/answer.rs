@@ -12,14 +12,14 @@ use crate::project::Loaded;
 use crate::trial::{self, Trial};
 
 #[derive(Serialize)]
-pub(crate) struct Body<'a> {
+pub(crate) struct VerifyAnswer<'a> {
     verdict: &'static str,
     evidence: &'static str,
     tolerance_db: f64,
     stable: Option<bool>,
     #[serde(skip_serializing_if = "Option::is_none")]
     stable_reason: Option<String>,
-    stability: StabilityRow,
+    stability: StabilityAnswer,
     #[serde(skip_serializing_if = "Option::is_none")]
     proof: Option<ProofRow>,
     delay_margin_s: Number,
@@ -68,7 +68,7 @@ struct TimingRow {
 }
 
 #[derive(Serialize)]
-struct StabilityRow {
+struct StabilityAnswer {
     verdict: &'static str,
     evidence: &'static str,
     largest_real_part_per_s: Number,
@@ -201,8 +201,8 @@ pub fn json(loaded: &Loaded, view: &ProjectAudit) -> String {
 #[derive(Serialize)]
 struct OnMachine<'a> {
     #[serde(flatten)]
-    audit: Body<'a>,
-    machine: trial::Body<'a>,
+    audit: VerifyAnswer<'a>,
+    machine: trial::TrialAnswer<'a>,
 }
 
 /// The JSON object of `verify --on-machine`.
@@ -211,11 +211,11 @@ pub(crate) fn json_on_machine(loaded: &Loaded, view: &ProjectAudit, trial: &Tria
 }
 
 /// What an audit says in JSON, beside what every object carries.
-pub(crate) fn body(view: &ProjectAudit) -> Body<'_> {
+pub(crate) fn body(view: &ProjectAudit) -> VerifyAnswer<'_> {
     let (audit, names) = (&view.audit, &view.names);
     let stability = &audit.stability;
     let margin = audit.delay_margin.as_ref();
-    Body {
+    VerifyAnswer {
         verdict: verdict_key(audit.verdict),
         evidence: evidence_key(audit.evidence),
         tolerance_db: audit.tolerance_db,
@@ -225,7 +225,7 @@ pub(crate) fn body(view: &ProjectAudit) -> Body<'_> {
             Verdict::NotProven => None,
         },
         stable_reason: (stability.verdict == Verdict::NotProven).then(|| stability_reason(stability)),
-        stability: StabilityRow {
+        stability: StabilityAnswer {
             verdict: verdict_key(stability.verdict),
             evidence: evidence_key(stability.evidence),
             largest_real_part_per_s: Number(stability.largest_real_part.unwrap_or(f64::NAN)),

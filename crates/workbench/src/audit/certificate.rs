@@ -2,7 +2,7 @@
 
 mod layout;
 
-use phea_qft::proof::{Certificate, Claim, Limited, Rejection, Side, check};
+use phea_qft::proof::{Certificate, CertificateSide, Claim, LimitedLoop, Rejection, check};
 use serde::Serialize;
 
 use super::{ProjectAudit, closed_loop_key};
@@ -100,7 +100,7 @@ fn answer(
 }
 
 /// At which frequencies something is claimed.
-fn band(certificate: &Certificate, limited: &Limited) -> String {
+fn band(certificate: &Certificate, limited: &LimitedLoop) -> String {
     let [from, to] = limited.band_rad_per_s;
     let end =
         certificate.sampling.as_ref().map_or(f64::INFINITY, |own| std::f64::consts::PI / own.sample_time_s);
@@ -113,9 +113,9 @@ fn band(certificate: &Certificate, limited: &Limited) -> String {
 /// A claim in a sentence without its end.
 fn sentence(certificate: &Certificate, claim: &Claim) -> String {
     let decibels = |ratio: f64| format!("{:+.4} dB", 20.0 * phea_dynamics::portable::log10(ratio));
-    let of = |limited: &Limited| match limited.side {
-        Side::Upper => format!("{} over its limit", closed_loop_key(limited.closed_loop)),
-        Side::Lower => format!("lower limit over {}", closed_loop_key(limited.closed_loop)),
+    let of = |limited: &LimitedLoop| match limited.side {
+        CertificateSide::Upper => format!("{} over its limit", closed_loop_key(limited.closed_loop)),
+        CertificateSide::Lower => format!("lower limit over {}", closed_loop_key(limited.closed_loop)),
     };
     match claim {
         Claim::Stable(_) => "every plant of the box is stable in the loop".to_string(),

@@ -8,30 +8,30 @@ use crate::project::Loaded;
 use crate::quantity::DisplayUnit;
 
 #[derive(Serialize)]
-struct Body {
-    tests: Vec<TestBody>,
+struct BenchAnswer {
+    tests: Vec<BenchTestAnswer>,
 }
 
 #[derive(Serialize)]
-struct TestBody {
+struct BenchTestAnswer {
     name: &'static str,
     file: String,
     rows: usize,
     duration_s: f64,
     /// Smallest and largest value of each signal, as recorded.
-    signals: Vec<SignalBody>,
+    signals: Vec<BenchSignalAnswer>,
     lowest_supply_pressure_pa: f64,
 }
 
 #[derive(Serialize)]
-struct SignalBody {
+struct BenchSignalAnswer {
     name: &'static str,
     unit: &'static str,
     range: [f64; 2],
 }
 
 /// A column of a test's table: name in SI, unit of the table, and where its value is.
-pub(super) struct Signal {
+pub(super) struct TableSignal {
     /// As the table's column is called.
     pub(super) column: &'static str,
     /// For people.
@@ -44,11 +44,11 @@ pub(super) struct Signal {
 }
 
 /// What a test records beside its time.
-pub(super) fn signals(run: &BenchRun) -> Vec<Signal> {
+pub(super) fn signals(run: &BenchRun) -> Vec<TableSignal> {
     let (volt, bar, litres) = (DisplayUnit::VOLT, DisplayUnit::BAR, DisplayUnit::LITRE_PER_MINUTE);
-    let signal = |column, quantity, unit, si, of| Signal { column, quantity, unit, si, of };
+    let signal = |column, quantity, unit, si, of| TableSignal { column, quantity, unit, si, of };
     let [leak, flow] = run.test.measures_flow();
-    let mut signals: Vec<Signal> = vec![
+    let mut signals: Vec<TableSignal> = vec![
         signal("command_v", "command", volt, "V", |row: &BenchRow| row.command),
         signal("supply_pressure_bar", "supply pressure", bar, "Pa", |row: &BenchRow| row.supply_pressure),
         signal("pressure_a_bar", "pressure at A", bar, "Pa", |row: &BenchRow| row.pressure_a),
@@ -65,7 +65,7 @@ pub(super) fn signals(run: &BenchRun) -> Vec<Signal> {
 }
 
 /// Smallest and largest recorded value, SI.
-pub(super) fn range(run: &BenchRun, signal: &Signal) -> [f64; 2] {
+pub(super) fn range(run: &BenchRun, signal: &TableSignal) -> [f64; 2] {
     let values = || run.rows.iter().map(|row| (signal.of)(row));
     [values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max)]
 }
@@ -76,18 +76,22 @@ fn file_name(run: &BenchRun) -> String {
 
 /// The JSON object of `bench`.
 pub fn json(loaded: &Loaded, runs: &[BenchRun]) -> String {
-    let test = |run: &BenchRun| TestBody {
+    let test = |run: &BenchRun| BenchTestAnswer {
         name: run.test.name(),
         file: file_name(run),
         rows: run.rows.len(),
         duration_s: run.rows.last().map_or(0.0, |row| row.time),
         signals: signals(run)
             .iter()
-            .map(|signal| SignalBody { name: signal.quantity, unit: signal.si, range: range(run, signal) })
+            .map(|signal| BenchSignalAnswer {
+                name: signal.quantity,
+                unit: signal.si,
+                range: range(run, signal),
+            })
             .collect(),
         lowest_supply_pressure_pa: run.lowest_supply_pressure,
     };
-    answer::json("bench", loaded, Body { tests: runs.iter().map(test).collect() })
+    answer::json("bench", loaded, BenchAnswer { tests: runs.iter().map(test).collect() })
 }
 
 /// The tables, a file for each test.

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::Wanted;
+use super::RequestedRuns;
 use super::{Bands, Summary};
 use super::{Draw, Plan};
 use super::{LUMP_NAMES, METRIC_NAMES, STATUS_WORDS, meaningful};
@@ -14,7 +14,7 @@ use crate::project::Loaded;
 use crate::simulate::{self, ScenarioRun};
 
 #[derive(Serialize)]
-struct Body<'a> {
+struct CampaignAnswer<'a> {
     scenario: &'a str,
     seed: u32,
     runs: RunsRow,
@@ -23,9 +23,9 @@ struct Body<'a> {
     statuses: BTreeMap<&'static str, usize>,
     refused: Vec<RefusedRow<'a>>,
     ended: Vec<EndedRow>,
-    occurrences: Vec<OccurrenceRow>,
+    occurrences: Vec<CampaignOccurrenceAnswer>,
     quantiles_percent: [u8; 5],
-    metrics: Vec<EventRow>,
+    metrics: Vec<CampaignEventAnswer>,
     lumps: Vec<LumpRow>,
     bands: BandsRow<'a>,
     worst_runs: Vec<WorstRow>,
@@ -62,22 +62,22 @@ struct EndedRow {
 }
 
 #[derive(Serialize)]
-struct OccurrenceRow {
+struct CampaignOccurrenceAnswer {
     kind: &'static str,
     runs: usize,
     first_run: u64,
 }
 
 #[derive(Serialize)]
-struct EventRow {
+struct CampaignEventAnswer {
     kind: &'static str,
     time_s: f64,
     until_s: f64,
-    metrics: Vec<MetricRow>,
+    metrics: Vec<CampaignMetricAnswer>,
 }
 
 #[derive(Serialize)]
-struct MetricRow {
+struct CampaignMetricAnswer {
     name: &'static str,
     #[serde(flatten)]
     spread: SpreadRow,
@@ -134,15 +134,21 @@ struct RunBody<'a> {
     run: u64,
     run_settings: &'a [String],
     #[serde(flatten)]
-    body: simulate::Body<'a>,
+    body: simulate::SimulateAnswer<'a>,
 }
 
 const NO_RUN: &str = "no run has one";
 
 /// The JSON object of a campaign.
-pub(crate) fn json(loaded: &Loaded, plan: &Plan, wanted: Wanted, rows: usize, summary: &Summary) -> String {
+pub(crate) fn json(
+    loaded: &Loaded,
+    plan: &Plan,
+    wanted: RequestedRuns,
+    rows: usize,
+    summary: &Summary,
+) -> String {
     let runs = wanted.shard.runs_of(wanted.runs);
-    let body = Body {
+    let body = CampaignAnswer {
         scenario: plan.scenario(),
         seed: plan.seed(),
         complete: rows as u64 == runs.end - runs.start,
@@ -154,7 +160,7 @@ pub(crate) fn json(loaded: &Loaded, plan: &Plan, wanted: Wanted, rows: usize, su
         occurrences: summary
             .occurrences
             .iter()
-            .map(|&(kind, runs, first_run)| OccurrenceRow { kind, runs, first_run })
+            .map(|&(kind, runs, first_run)| CampaignOccurrenceAnswer { kind, runs, first_run })
             .collect(),
         quantiles_percent: QUANTILES,
         metrics: events(plan, summary),
@@ -192,15 +198,15 @@ fn parameters(plan: &Plan) -> Vec<ParameterRow<'_>> {
     rows.collect()
 }
 
-fn events(plan: &Plan, summary: &Summary) -> Vec<EventRow> {
+fn events(plan: &Plan, summary: &Summary) -> Vec<CampaignEventAnswer> {
     let windows = plan.windows().iter().zip(&summary.metrics);
     windows
-        .map(|(window, spreads)| EventRow {
+        .map(|(window, spreads)| CampaignEventAnswer {
             kind: window.cause.word(),
             time_s: window.start_s,
             until_s: window.end_s,
             metrics: meaningful(window, plan.is_open_loop())
-                .map(|metric| MetricRow {
+                .map(|metric| CampaignMetricAnswer {
                     name: METRIC_NAMES[metric],
                     spread: spread_row(spreads[metric], summary.driven()),
                 })
@@ -244,7 +250,7 @@ fn bands_row(bands: &Bands) -> BandsRow<'_> {
 
 fn worst_runs(plan: &Plan, summary: &Summary) -> Vec<WorstRow> {
     let name = |(window, metric): &(usize, usize)| format!("event {} {}", window + 1, METRIC_NAMES[*metric]);
-    let row = |worst: &super::Worst| WorstRow {
+    let row = |worst: &super::WorstRun| WorstRow {
         run: worst.run,
         of: worst.of.iter().map(name).collect(),
         settings: plan.settings(&plan.draw(worst.run)),

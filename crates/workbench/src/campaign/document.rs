@@ -1,7 +1,7 @@
 //! What `campaign` says to people.
 
+use super::RequestedRuns;
 use super::Summary;
-use super::Wanted;
 use super::{Draw, Plan};
 use super::{LUMP_NAMES, METRIC_NAMES, STATUS_WORDS, meaningful};
 use super::{QUANTILES, Spread};
@@ -44,7 +44,12 @@ fn without(metric: usize, spread: Option<Spread>, driven: usize) -> Option<Strin
 }
 
 /// Tables and sentences of a campaign; whether its rows are kept.
-pub(crate) fn text(plan: &Plan, (wanted, kept): (Wanted, bool), rows: usize, summary: &Summary) -> String {
+pub(crate) fn text(
+    plan: &Plan,
+    (wanted, kept): (RequestedRuns, bool),
+    rows: usize,
+    summary: &Summary,
+) -> String {
     let runs = wanted.shard.runs_of(wanted.runs);
     let asked = runs.end - runs.start;
     let mut out = format!("{}: {}, seed {}\n", plan.scenario(), counted(rows), plan.seed());

@@ -2,7 +2,7 @@
 
 use super::{CommandError, Watch};
 use crate::answer::{Answer, TableFormat};
-use crate::campaign::{self, CampaignError, Plan, RowStore, Summary, Wanted};
+use crate::campaign::{self, CampaignError, Plan, RequestedRuns, RowStore, Summary};
 use crate::project::{self, Loaded};
 use crate::setup::Setup;
 use crate::simulate::{self, simulate_into};
@@ -23,7 +23,7 @@ pub struct CampaignRequest {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CampaignRuns {
     /// All, or a part of them.
-    All(Wanted),
+    All(RequestedRuns),
     /// The one with this index, told in full.
     One(u64),
 }

@@ -9,8 +9,8 @@ use crate::project::Loaded;
 use crate::specification::{CheckedWish, WishRow};
 
 #[derive(Serialize)]
-struct Body<'a> {
-    derived: Vec<Row<'a>>,
+struct CheckAnswer<'a> {
+    derived: Vec<DerivedAnswer<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     visited_box: Option<Vec<RangeRow<'a>>>,
     wishes: Vec<WishRow>,
@@ -18,7 +18,7 @@ struct Body<'a> {
 }
 
 #[derive(Serialize)]
-struct Row<'a> {
+struct DerivedAnswer<'a> {
     name: &'a str,
     group: &'a str,
     symbol: &'a str,
@@ -78,7 +78,7 @@ pub fn json(
     wishes: &[CheckedWish],
     told: Vec<String>,
 ) -> String {
-    let rows = derived.iter().map(|quantity| Row {
+    let rows = derived.iter().map(|quantity| DerivedAnswer {
         name: &quantity.name,
         group: quantity.group,
         symbol: quantity.symbol,
@@ -96,7 +96,7 @@ pub fn json(
     });
     let warnings = loaded.warnings.iter().map(|warning| warning.message.clone());
     let wishes = wishes.iter().map(WishRow::of);
-    let body = Body {
+    let body = CheckAnswer {
         derived: rows.collect(),
         visited_box: visited.map(|ranges| ranges.iter().map(RangeRow::from).collect()),
         wishes: wishes.collect(),

@@ -4,7 +4,7 @@ mod rounding;
 use phea_dynamics::controller::Controller;
 use phea_dynamics::linear::{LinearError, TimeDomain};
 use phea_qft::design::{BindingLimit, Conflict, DesignRound, DesignStatus, Starts};
-use phea_qft::loop_shaping::{Part, Structure};
+use phea_qft::loop_shaping::{Structure, StructureFactor};
 use phea_qft::verification::PlantPoint;
 use serde::Serialize;
 
@@ -19,7 +19,7 @@ use crate::project::Loaded;
 use crate::trial::{self, Agreement};
 
 #[derive(Serialize)]
-struct Body<'a> {
+struct DesignAnswer<'a> {
     status: &'static str,
     objective: ObjectiveRow,
     seed: u64,
@@ -31,7 +31,7 @@ struct Body<'a> {
     continuous_law: Option<LawRow>,
     figures: FiguresRow,
     structure: StructureRow,
-    verification: audit::Body<'a>,
+    verification: audit::VerifyAnswer<'a>,
     published: Option<PublishedRow<'a>>,
     /// In a sampled loop: the design that was made without samples, as it fares here.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -51,7 +51,7 @@ struct Body<'a> {
     explanations: Vec<ExplanationRow<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     rounding: Option<RoundingRow>,
-    machine: Option<trial::Body<'a>>,
+    machine: Option<trial::TrialAnswer<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     machine_reason: Option<&'static str>,
     repair: Option<repair::RepairRow<'a>>,
@@ -118,7 +118,7 @@ struct PublishedRow<'a> {
     controller: Factors,
     prefilter: Factors,
     figures: FiguresRow,
-    verification: audit::Body<'a>,
+    verification: audit::VerifyAnswer<'a>,
 }
 
 #[derive(Serialize)]
@@ -164,7 +164,7 @@ pub fn json(loaded: &Loaded, view: &ProjectDesign) -> Result<String, LinearError
         DesignStatus::Infeasible(relaxation) => Some(relaxation),
         _ => None,
     };
-    let body = Body {
+    let body = DesignAnswer {
         status: status_key(view),
         objective: ObjectiveRow {
             kind: objective_key(view.options.objective),
@@ -241,12 +241,14 @@ fn figures(side: &AuditedController) -> FiguresRow {
 }
 
 fn structure(structure: &Structure) -> StructureRow {
-    let part = |part: &Part| {
+    let part = |part: &StructureFactor| {
         let (frequency, damping_ratio) = match part {
-            Part::Fixed(_) => (None, None),
-            Part::RealZero { frequency } | Part::RealPole { frequency } => (Some(*frequency), None),
-            Part::ZeroPair { natural_frequency, damping_ratio }
-            | Part::PolePair { natural_frequency, damping_ratio } => {
+            StructureFactor::Fixed(_) => (None, None),
+            StructureFactor::RealZero { frequency } | StructureFactor::RealPole { frequency } => {
+                (Some(*frequency), None)
+            }
+            StructureFactor::ZeroPair { natural_frequency, damping_ratio }
+            | StructureFactor::PolePair { natural_frequency, damping_ratio } => {
                 (Some(*natural_frequency), Some(*damping_ratio))
             }
         };

@@ -8,12 +8,12 @@ pub(crate) struct Table {
     /// What the groups are; where there is none, the rows stand by themselves.
     pub(super) grouped_by: Option<String>,
     pub(super) headings: Vec<String>,
-    pub(super) groups: Vec<Group>,
+    pub(super) groups: Vec<RowGroup>,
 }
 
 /// Rows that belong together.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Group {
+pub(super) struct RowGroup {
     pub(super) name: String,
     pub(super) rows: Vec<Vec<Cell>>,
 }
@@ -34,7 +34,7 @@ impl Table {
 
     /// The rows that follow belong together.
     pub(crate) fn group(&mut self, name: impl Into<String>) {
-        self.groups.push(Group { name: name.into(), rows: vec![] });
+        self.groups.push(RowGroup { name: name.into(), rows: vec![] });
     }
 
     /// A row.
@@ -42,7 +42,7 @@ impl Table {
         let row = cells.into_iter().map(Into::into).collect();
         match self.groups.last_mut() {
             Some(group) => group.rows.push(row),
-            None => self.groups.push(Group { rows: vec![row], ..Group::default() }),
+            None => self.groups.push(RowGroup { rows: vec![row], ..RowGroup::default() }),
         }
     }
 

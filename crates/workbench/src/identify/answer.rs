@@ -9,7 +9,7 @@ use crate::project::Loaded;
 use crate::quantity::print_bare;
 
 #[derive(Serialize)]
-struct Body<'a> {
+struct IdentifyAnswer<'a> {
     schema: u32,
     version: &'static str,
     command: &'static str,
@@ -141,7 +141,7 @@ pub fn json(loaded: Option<&Loaded>, found: &Identification) -> String {
     let mut edges =
         || EdgesBody { supply_to_a: next(), a_to_tank: next(), supply_to_b: next(), b_to_tank: next() };
     let (flow_coefficients, leakage_coefficients) = (edges(), edges());
-    let body = Body {
+    let body = IdentifyAnswer {
         schema: answer::SCHEMA,
         version: env!("CARGO_PKG_VERSION"),
         command: "identify",

@@ -12,15 +12,15 @@ use crate::caveat::of_models;
 use crate::project::Loaded;
 
 #[derive(Serialize)]
-struct Body<'a> {
+struct LinearizeAnswer<'a> {
     stiffness: StiffnessRow,
-    poles: Poles,
+    poles: PolesAnswer,
     plant: PlantRow,
     agreement: Vec<AgreementRow<'a>>,
-    decomposition_error: DecompositionError,
-    reduction_error: Difference,
-    first_order_error: Difference,
-    dominance: Vec<Mode>,
+    decomposition_error: DecompositionErrorAnswer,
+    reduction_error: DifferenceAnswer,
+    first_order_error: DifferenceAnswer,
+    dominance: Vec<ModeAnswer>,
     impedance: Ports<'a, ImpedanceRow>,
     passivity: Ports<'a, PassivityRow>,
     compliance_hidden_above_rad_per_s: f64,
@@ -45,7 +45,7 @@ struct StiffnessRow {
 }
 
 #[derive(Serialize)]
-struct Poles {
+struct PolesAnswer {
     plant: Vec<[f64; 2]>,
     full: Vec<[f64; 2]>,
     decomposed: Vec<[f64; 2]>,
@@ -77,15 +77,15 @@ struct AgreementRow<'a> {
 }
 
 #[derive(Serialize)]
-struct DecompositionError {
+struct DecompositionErrorAnswer {
     #[serde(flatten)]
-    corrected: Difference,
-    as_printed: Difference,
+    corrected: DifferenceAnswer,
+    as_printed: DifferenceAnswer,
 }
 
 /// Largest differences over all frequencies, and below 1000 rad/s.
 #[derive(Serialize)]
-struct Difference {
+struct DifferenceAnswer {
     magnitude_db: f64,
     magnitude_at_rad_per_s: f64,
     phase_deg: f64,
@@ -100,7 +100,7 @@ struct LowDifference {
 }
 
 #[derive(Serialize)]
-struct Mode {
+struct ModeAnswer {
     pole: [f64; 2],
     step_share: Number,
     decay_ratio: Number,
@@ -156,9 +156,9 @@ fn pairs(roots: &[Complex64]) -> Vec<[f64; 2]> {
     roots.iter().map(|root| [root.re, root.im]).collect()
 }
 
-fn difference(comparison: &ReductionDifference) -> Difference {
+fn difference(comparison: &ReductionDifference) -> DifferenceAnswer {
     let ResponseDifference { magnitude_db, magnitude_frequency, phase_deg, phase_frequency } = comparison.all;
-    Difference {
+    DifferenceAnswer {
         magnitude_db,
         magnitude_at_rad_per_s: magnitude_frequency,
         phase_deg,
@@ -177,20 +177,21 @@ pub fn json(loaded: &Loaded, linearization: &Linearization) -> String {
 
 /// The same with what a sweep found.
 pub(crate) fn json_swept(loaded: &Loaded, linearization: &Linearization, sweep: &Sweep) -> String {
-    let body = Body { swept: Some(head(sweep)), sweep: rows(sweep), ..body(loaded, linearization) };
+    let body =
+        LinearizeAnswer { swept: Some(head(sweep)), sweep: rows(sweep), ..body(loaded, linearization) };
     answer::json("linearize", loaded, body)
 }
 
-fn body<'a>(loaded: &Loaded, linearization: &'a Linearization) -> Body<'a> {
+fn body<'a>(loaded: &Loaded, linearization: &'a Linearization) -> LinearizeAnswer<'a> {
     let [nominal, softest, stiffest] = linearization.stiffness;
     let models = &linearization.stiffness_models;
-    let modes = linearization.modes.iter().map(|mode| Mode {
+    let modes = linearization.modes.iter().map(|mode| ModeAnswer {
         pole: [mode.pole.re, mode.pole.im],
         step_share: Number(mode.step_share),
         decay_ratio: Number(mode.decay_ratio),
         reason: mode.absence.map(|absence| absence.to_string()),
     });
-    Body {
+    LinearizeAnswer {
         stiffness: StiffnessRow {
             minimum_n_per_m: nominal.minimum,
             maximum_n_per_m: nominal.maximum,
@@ -201,7 +202,7 @@ fn body<'a>(loaded: &Loaded, linearization: &'a Linearization) -> Body<'a> {
             by_volume: [models.by_volume.minimum, models.by_volume.maximum],
             sentence: stiffness_sentence(models),
         },
-        poles: Poles {
+        poles: PolesAnswer {
             plant: pairs(linearization.plant.command.poles()),
             full: pairs(linearization.full.command.poles()),
             decomposed: pairs(linearization.decomposed[1].poles()),
@@ -213,7 +214,7 @@ fn body<'a>(loaded: &Loaded, linearization: &'a Linearization) -> Body<'a> {
             load_position: factors(&linearization.plant.load_position),
         },
         agreement: linearization.agreement.iter().map(agreement_row).collect(),
-        decomposition_error: DecompositionError {
+        decomposition_error: DecompositionErrorAnswer {
             corrected: difference(&linearization.corrected_decomposition),
             as_printed: difference(&linearization.printed_decomposition),
         },

@@ -5,8 +5,8 @@ use phea_engineering::error::ProcedureError;
 use super::chapter::Chapter;
 use crate::answer::significant;
 use crate::campaign::{
-    CampaignError, METRIC_NAMES, Nowhere, Plan, QUANTILES, Shard, Spread, Summary, VariedRange, Wanted,
-    Worst, campaign, counted, lumps, metrics, pictures,
+    CampaignError, METRIC_NAMES, Nowhere, Plan, QUANTILES, RequestedRuns, Shard, Spread, Summary,
+    VariedRange, WorstRun, campaign, counted, lumps, metrics, pictures,
 };
 use crate::command::{CommandError, Watch};
 use crate::document::{Cell, Document, StatusMark, Table};
@@ -26,7 +26,7 @@ const WORST: usize = 4;
 const DIGITS: usize = 3;
 
 /// The chapter, and what it says in a few words.
-pub(super) struct Campaign {
+pub(super) struct CampaignChapter {
     pub(super) chapter: Chapter,
     pub(super) fact: Option<(&'static str, String)>,
 }
@@ -39,12 +39,12 @@ pub(super) fn driven(
     source: &dyn Source,
     loaded: &Loaded,
     watch: Watch<'_>,
-) -> Result<Option<Campaign>, CommandError> {
+) -> Result<Option<CampaignChapter>, CommandError> {
     if loaded.project.campaign.is_none() {
         return Ok(None);
     }
     let (anchor, title) = ("campaign", "Campaign: the machine with drawn numbers");
-    let wanted = Wanted { runs: RUNS, shard: Shard::default(), effort: Default::default() };
+    let wanted = RequestedRuns { runs: RUNS, shard: Shard::default(), effort: Default::default() };
     let mut told = || -> Result<_, CampaignError> {
         let plan = Plan::new(source, loaded, SEED)?;
         let rows = campaign(&plan, wanted, &mut Nowhere, watch)?;
@@ -64,7 +64,7 @@ pub(super) fn driven(
             (document(&plan, &summary, figures), Some(("Campaign", words)))
         }
     };
-    Ok(Some(Campaign { chapter: Chapter::of(anchor, title, document), fact }))
+    Ok(Some(CampaignChapter { chapter: Chapter::of(anchor, title, document), fact }))
 }
 
 /// Metrics of an event that a reader wants first, the best of those that it has.
@@ -117,8 +117,8 @@ fn document(plan: &Plan, summary: &Summary, figures: Vec<Figure>) -> Document {
 }
 
 /// The runs that are worst in most.
-fn told(summary: &Summary) -> Vec<&Worst> {
-    let mut told: Vec<&Worst> = summary.worst.iter().collect();
+fn told(summary: &Summary) -> Vec<&WorstRun> {
+    let mut told: Vec<&WorstRun> = summary.worst.iter().collect();
     told.sort_by_key(|worst| std::cmp::Reverse(worst.of.len()));
     told.truncate(WORST);
     told
@@ -130,12 +130,12 @@ fn worst(out: &mut Document, plan: &Plan, summary: &Summary) {
     out.explanations(told.first().map(|first| {
         format!("A run follows from seed and index: `phea campaign PROJECT.toml --seed {} --run {}` simulates it again and prints all that happens in it, with its numbers to their last digit.", plan.seed(), first.run)
     }));
-    let row = |worst: &&Worst| [worst.run.to_string(), worst_in(plan, worst)];
+    let row = |worst: &&WorstRun| [worst.run.to_string(), worst_in(plan, worst)];
     out.table(Table::new(["run", "worst in"]).with(told.iter().map(row)));
 }
 
 /// Event by event, the metrics in which a run is worst, without their units.
-fn worst_in(plan: &Plan, worst: &Worst) -> String {
+fn worst_in(plan: &Plan, worst: &WorstRun) -> String {
     let metric = |metric: usize| {
         METRIC_NAMES.get(metric).and_then(|key| metric_of(key)).map_or("", |metric| metric.word)
     };

@@ -6,8 +6,8 @@ use crate::project::Project;
 use crate::quantity::DisplayUnit;
 use crate::setup::Setup;
 use crate::simulate::{
-    Cause, NamedRun, OVERSHOOT, SETTLING, ScenarioRun, SimulateError, Window, Wish, cause_words, cells_of,
-    simulate_project,
+    Cause, NamedRun, OVERSHOOT, SETTLING, ScenarioRun, SimulateError, TrackingWish, Window, cause_words,
+    cells_of, simulate_project,
 };
 use crate::source::Source;
 use crate::specification::wishes;
@@ -19,11 +19,11 @@ pub(super) const GIVEN: &str = "given";
 pub(super) const DESIGNED: &str = "designed";
 
 /// What the machine does in every scenario.
-pub(super) struct Driven {
+pub(super) struct MachineChapter {
     /// Given and designed, as far as there are any.
     pub(super) sides: Vec<DrivenSide>,
     /// What was wished of a step in time.
-    pub(super) wish: Option<Wish>,
+    pub(super) wish: Option<TrackingWish>,
 }
 
 /// The same under one controller.
@@ -43,7 +43,7 @@ pub(super) fn driven(
     setup: &Setup<'_>,
     designed: Option<&Project>,
     watch: Watch<'_>,
-) -> Result<Option<Driven>, CommandError> {
+) -> Result<Option<MachineChapter>, CommandError> {
     let project = setup.project;
     if project.scenarios.is_empty() {
         return Ok(None);
@@ -59,10 +59,10 @@ pub(super) fn driven(
         }
         sides.push(DrivenSide { name, runs });
     }
-    Ok(Some(Driven { sides, wish: Wish::of(&wishes(project)?) }))
+    Ok(Some(MachineChapter { sides, wish: TrackingWish::of(&wishes(project)?) }))
 }
 
-impl Driven {
+impl MachineChapter {
     /// The runs of a scenario by its place in the file. Where a stated command drives the valve, no controller does: one run tells all.
     pub(super) fn of_scenario<'a>(&'a self, index: usize) -> Vec<NamedRun<'a>> {
         let named = |side: &'a DrivenSide| Some(NamedRun { name: side.name, run: run_of(side, index)? });

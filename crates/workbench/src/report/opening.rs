@@ -9,7 +9,7 @@ use maud::{Markup, PreEscaped, html};
 use serde::Serialize;
 
 use super::chapter::{Chapter, place};
-use super::driven::{DESIGNED, Driven, GIVEN};
+use super::driven::{DESIGNED, GIVEN, MachineChapter};
 use super::judged::Judged;
 use super::{Facts, NOMINAL_LOOP};
 use crate::audit::verdict_key;
@@ -26,7 +26,7 @@ use side::{Side, sides};
 pub(super) struct Contents<'a> {
     pub(super) setup: &'a Setup<'a>,
     pub(super) judged: Option<&'a Judged>,
-    pub(super) driven: Option<&'a Driven>,
+    pub(super) driven: Option<&'a MachineChapter>,
     /// Of the rig and its load: shown as cards.
     pub(super) facts: &'a Facts,
     /// Of what was driven, once and many times: shown as wider ones.
@@ -107,7 +107,7 @@ fn steps(next: &[String]) -> Markup {
 }
 
 /// The first scenario that is drawn, of both controllers.
-fn over_time(driven: &Driven) -> Option<Figure> {
+fn over_time(driven: &MachineChapter) -> Option<Figure> {
     let first = driven.drawn(0);
     at_a_glance("opening_force", &first, driven.wish.as_ref())
 }

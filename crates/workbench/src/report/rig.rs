@@ -10,7 +10,7 @@ use crate::project::{self, Component, LineVolume, Load, Project, RatedFlow, Supp
 use crate::quantity::{self, Dimension, FLOW, LENGTH, MASS, PRESSURE, STIFFNESS, VOLTAGE};
 use crate::rig::Rig;
 
-pub(super) fn chapter(project: &Project, actuator: &project::Actuator, rig: &Rig) -> Chapter {
+pub(super) fn chapter(project: &Project, actuator: &project::DeclaredActuator, rig: &Rig) -> Chapter {
     let mut out = Document::default();
     out.figures([circuit(project, actuator)]);
     out.table(facts(actuator, rig));
@@ -21,7 +21,7 @@ fn shown(value: f64, dimension: &Dimension) -> String {
     quantity::display(value, dimension, 4)
 }
 
-fn circuit(project: &Project, actuator: &project::Actuator) -> Figure {
+fn circuit(project: &Project, actuator: &project::DeclaredActuator) -> Figure {
     let cylinder = &actuator.cylinder;
     let [rod_a, rod_b] = cylinder.rod_diameters_m();
     let mut supply_rows = vec![shown(actuator.supply.pressure, &PRESSURE)];
@@ -71,7 +71,7 @@ fn shown_in_millimetres(length: f64) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_string() } else { text }
 }
 
-fn cylinder_words(cylinder: &project::Cylinder) -> String {
+fn cylinder_words(cylinder: &project::DeclaredCylinder) -> String {
     let millimetres = shown_in_millimetres;
     let piston = cylinder.piston_diameter_m();
     let [rod_a, rod_b] = cylinder.rod_diameters_m();
@@ -85,7 +85,7 @@ fn cylinder_words(cylinder: &project::Cylinder) -> String {
     format!("{}{rods}, stroke {}", millimetres(piston), shown(cylinder.stroke, &LENGTH))
 }
 
-fn line(declared: &project::Line) -> LineSymbol {
+fn line(declared: &project::DeclaredLine) -> LineSymbol {
     match &declared.component {
         Component::Pipe { pipe, length } => LineSymbol {
             kind: LineKind::Pipe,
@@ -103,7 +103,7 @@ fn line(declared: &project::Line) -> LineSymbol {
 }
 
 /// The load in a few words.
-pub(super) fn load_words(actuator: &project::Actuator) -> String {
+pub(super) fn load_words(actuator: &project::DeclaredActuator) -> String {
     let not_zero = |value: f64| Some(value).filter(|value| *value != 0.0);
     let words = |mass: Option<f64>, stiffness: f64, damping: f64, gap: f64| {
         let parts = [
@@ -128,8 +128,8 @@ pub(super) fn load_words(actuator: &project::Actuator) -> String {
 }
 
 /// The declared lines in a few words.
-pub(super) fn lines_words(actuator: &project::Actuator) -> String {
-    let words = |line: &project::Line| {
+pub(super) fn lines_words(actuator: &project::DeclaredActuator) -> String {
+    let words = |line: &project::DeclaredLine| {
         let name = line.hose_name().map(|name| format!("{name}, "));
         format!("{}{}", name.unwrap_or_default(), self::line(line).rows.join(", "))
     };
@@ -137,7 +137,7 @@ pub(super) fn lines_words(actuator: &project::Actuator) -> String {
     if a == b { format!("{a} each") } else { format!("A {a}; B {b}") }
 }
 
-fn controller_words(project: &Project, controller: &project::Controller) -> Vec<String> {
+fn controller_words(project: &Project, controller: &project::DeclaredController) -> Vec<String> {
     let words = |letter: &str, transfer: &project::Transfer| match (
         &transfer.ratio.numerator,
         &transfer.ratio.denominator,
@@ -161,7 +161,7 @@ fn polynomial(text: &str) -> String {
     if spaced.contains(['+', '-', ' ']) { format!("({spaced})") } else { spaced }
 }
 
-fn facts(actuator: &project::Actuator, rig: &Rig) -> Table {
+fn facts(actuator: &project::DeclaredActuator, rig: &Rig) -> Table {
     let components = rig.actuator.components();
     let mut rows = vec![
         (
@@ -194,7 +194,7 @@ fn facts(actuator: &project::Actuator, rig: &Rig) -> Table {
     Table::new(["component", "declared"]).with(rows.into_iter().map(|(name, text)| [name.to_string(), text]))
 }
 
-fn valve_words(actuator: &project::Actuator) -> String {
+fn valve_words(actuator: &project::DeclaredActuator) -> String {
     let valve = &actuator.valve;
     let name = match (&valve.model, valve.flow.rating()) {
         (Some(model), _) => model.clone(),

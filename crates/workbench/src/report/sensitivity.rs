@@ -3,7 +3,7 @@
 use phea_engineering::error::ProcedureError;
 
 use super::chapter::Chapter;
-use super::driven::Driven;
+use super::driven::MachineChapter;
 use super::simulation::told;
 use crate::command::{CommandError, Watch};
 use crate::document::{Document, Table};
@@ -24,7 +24,7 @@ const FRICTION_FACTORS: [(f64, &str); 4] = [(0.0, "none"), (0.5, "half"), (1.0, 
 pub(super) fn chapter(
     source: &dyn Source,
     project: &Project,
-    driven: &Driven,
+    driven: &MachineChapter,
     watch: Watch<'_>,
 ) -> Result<Option<Chapter>, CommandError> {
     let Some(side) = driven.sides.first().filter(|side| side.runs.is_ok()) else { return Ok(None) };
@@ -44,7 +44,7 @@ pub(super) fn chapter(
 }
 
 /// A quantity multiplied by a factor, and what comes of the first scenario.
-struct Varied {
+struct VariedQuantity {
     quantity: &'static str,
     factor: f64,
     value: String,
@@ -56,7 +56,7 @@ fn sensitivity(
     source: &dyn Source,
     project: &Project,
     watch: Watch<'_>,
-) -> Result<Vec<Varied>, CommandError> {
+) -> Result<Vec<VariedQuantity>, CommandError> {
     let mut first = project.clone();
     first.scenarios.truncate(1);
     let mut varied = Vec::new();
@@ -93,18 +93,18 @@ fn vary(
     project: &Project,
     (quantity, factor, value): (&'static str, f64, String),
     watch: Watch<'_>,
-) -> Result<Varied, CommandError> {
+) -> Result<VariedQuantity, CommandError> {
     let run = match simulate_project(source, &Setup::new(project)?, watch) {
         Ok(runs) if runs.iter().any(ScenarioRun::was_cancelled) => return Err(ProcedureError::Stopped.into()),
         Ok(runs) => runs.into_iter().next().ok_or_else(|| "no scenario".to_string()),
         Err(error) => Err(error.to_string()),
     };
-    Ok(Varied { quantity, factor, value, run })
+    Ok(VariedQuantity { quantity, factor, value, run })
 }
 
 /// What comes of one event, quantity by quantity.
-fn event_table(varied: &[Varied], event: usize) -> Option<Table> {
-    let seen = |varied: &Varied| Some(*varied.run.as_ref().ok()?.windows.get(event)?);
+fn event_table(varied: &[VariedQuantity], event: usize) -> Option<Table> {
+    let seen = |varied: &VariedQuantity| Some(*varied.run.as_ref().ok()?.windows.get(event)?);
     let windows: Vec<(Window, Metrics)> = varied.iter().filter_map(seen).collect();
     let shown = told(windows.iter());
     let event = cause_words(&windows.first()?.0);

@@ -2,19 +2,19 @@
 //! published and measured.
 
 use super::chapter::Chapter;
-use super::driven::Driven;
+use super::driven::MachineChapter;
 use super::driving;
 use crate::document::{Cell, Document, StatusMark, Table};
 use crate::figure::Figure;
 use crate::project::{Project, Scenario};
 use crate::simulate::{
-    HeldWish, METRICS, Metrics, NamedRun, ScenarioRun, Window, Wish, cause_words, cells_of, close_ups,
-    coarse_sentence, headline, measured, measured_together, metrics_row, occurrence_sentences, pictures,
-    published, published_row, together, windows,
+    HeldWish, METRICS, Metrics, NamedRun, ScenarioRun, TrackingWish, Window, cause_words, cells_of,
+    close_ups, coarse_sentence, headline, measured, measured_together, metrics_row, occurrence_sentences,
+    pictures, published, published_row, together, windows,
 };
 
 /// The chapter.
-pub(super) fn chapter(project: &Project, driven: &Driven) -> Chapter {
+pub(super) fn chapter(project: &Project, driven: &MachineChapter) -> Chapter {
     let mut out = Document::default();
     for side in &driven.sides {
         if let Err(error) = &side.runs {
@@ -40,7 +40,7 @@ pub(super) fn chapter(project: &Project, driven: &Driven) -> Chapter {
 }
 
 /// The appendix: what happens inside the machine at each event, for each of several controllers.
-pub(super) fn inside(project: &Project, driven: &Driven) -> Option<Chapter> {
+pub(super) fn inside(project: &Project, driven: &MachineChapter) -> Option<Chapter> {
     let scenarios = 0..project.scenarios.len();
     let several =
         scenarios.map(|index| (index, driven.of_scenario(index))).filter(|(_, runs)| runs.len() > 1);
@@ -57,7 +57,7 @@ pub(super) fn inside(project: &Project, driven: &Driven) -> Option<Chapter> {
 }
 
 /// All controllers in one figure; of one alone, everything of it.
-fn drawn(runs: &[NamedRun<'_>], number: usize, wish: Option<&Wish>) -> Vec<Figure> {
+fn drawn(runs: &[NamedRun<'_>], number: usize, wish: Option<&TrackingWish>) -> Vec<Figure> {
     match runs {
         [alone] => pictures(alone.run, number),
         several => {
@@ -71,7 +71,7 @@ fn drawn(runs: &[NamedRun<'_>], number: usize, wish: Option<&Wish>) -> Vec<Figur
 fn scenario(
     runs: &[NamedRun<'_>],
     declared: &Scenario,
-    wish: Option<&Wish>,
+    wish: Option<&TrackingWish>,
     figures: Vec<Figure>,
 ) -> Document {
     let mut out = Document::default();
@@ -108,7 +108,7 @@ fn capital(word: &str) -> String {
 }
 
 /// What is read off each event: a row of each controller, beside what was published of it.
-fn metrics(runs: &[NamedRun<'_>], declared: &Scenario, wish: Option<&Wish>) -> Document {
+fn metrics(runs: &[NamedRun<'_>], declared: &Scenario, wish: Option<&TrackingWish>) -> Document {
     let mut out = Document::default();
     let Some(first) = runs.first().map(|named| named.run).filter(|first| !first.windows.is_empty()) else {
         return out;
@@ -146,7 +146,7 @@ fn metrics(runs: &[NamedRun<'_>], declared: &Scenario, wish: Option<&Wish>) -> D
 }
 
 /// What was wished, in words.
-fn wished(wish: &Wish) -> Option<String> {
+fn wished(wish: &TrackingWish) -> Option<String> {
     let words: Vec<String> = [wish.overshoot_words(), wish.settling_words()].into_iter().flatten().collect();
     (!words.is_empty()).then(|| words.join(", "))
 }

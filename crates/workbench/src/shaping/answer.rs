@@ -9,17 +9,17 @@ use crate::audit::{NamedPlant, kind_key, stability_reason, verdict_key};
 use crate::project::Loaded;
 
 #[derive(Serialize)]
-struct Body<'a> {
+struct ShapeAnswer<'a> {
     shaped: &'static str,
     changes: usize,
     elements: Vec<ElementRow>,
     stable: Option<bool>,
     #[serde(skip_serializing_if = "Option::is_none")]
     stable_reason: Option<String>,
-    stability: StabilityRow,
-    margins: Vec<MarginRow>,
+    stability: ShapeStabilityAnswer,
+    margins: Vec<MarginAnswer>,
     #[serde(rename = "loop")]
-    points: Vec<PointRow>,
+    points: Vec<ShapePointAnswer>,
     unreached_rad_per_s: &'a [f64],
     warnings: Vec<&'a str>,
 }
@@ -33,14 +33,14 @@ struct ElementRow {
 }
 
 #[derive(Serialize)]
-struct StabilityRow {
+struct ShapeStabilityAnswer {
     verdict: &'static str,
     plant: NamedPlant,
     reason: String,
 }
 
 #[derive(Serialize)]
-struct MarginRow {
+struct MarginAnswer {
     specification: usize,
     kind: &'static str,
     frequency_rad_per_s: f64,
@@ -53,7 +53,7 @@ struct MarginRow {
 }
 
 #[derive(Serialize)]
-struct PointRow {
+struct ShapePointAnswer {
     frequency_rad_per_s: f64,
     magnitude_db: Number,
     phase_deg: Number,
@@ -88,14 +88,14 @@ fn placement(placement: &Placement) -> PlacementRow {
     }
 }
 
-fn margin_rows(view: &ProjectShaping) -> Vec<MarginRow> {
+fn margin_rows(view: &ProjectShaping) -> Vec<MarginAnswer> {
     let kind = |index: usize| {
         view.problem
             .specifications
             .get(index)
             .map_or("", |specification| kind_key(&specification.requirement))
     };
-    let row = |margin: &phea_qft::manual_shaping::DesignMargin| MarginRow {
+    let row = |margin: &phea_qft::manual_shaping::DesignMargin| MarginAnswer {
         specification: margin.specification + 1,
         kind: kind(margin.specification),
         frequency_rad_per_s: margin.frequency_rad_per_s,
@@ -109,7 +109,7 @@ fn margin_rows(view: &ProjectShaping) -> Vec<MarginRow> {
 
 /// The JSON object of `shape`.
 pub fn json(loaded: &Loaded, view: &ProjectShaping) -> String {
-    let element = |(index, element): (usize, &crate::project::Element)| ElementRow {
+    let element = |(index, element): (usize, &crate::project::DeclaredElement)| ElementRow {
         number: index + 1,
         kind: element.kind.name(),
         enabled: element.enabled,
@@ -117,7 +117,7 @@ pub fn json(loaded: &Loaded, view: &ProjectShaping) -> String {
     };
     let point = |point: &phea_qft::manual_shaping::DesignPoint| {
         let (decibels, degrees) = polar(point.nominal_loop);
-        PointRow {
+        ShapePointAnswer {
             frequency_rad_per_s: point.frequency_rad_per_s,
             magnitude_db: Number(decibels),
             phase_deg: Number(degrees),
@@ -125,7 +125,7 @@ pub fn json(loaded: &Loaded, view: &ProjectShaping) -> String {
         }
     };
     let stability = &view.stability;
-    let body = Body {
+    let body = ShapeAnswer {
         shaped: view.shaped.table(),
         changes: view.changes,
         elements: view.elements.iter().enumerate().map(element).collect(),
@@ -135,7 +135,7 @@ pub fn json(loaded: &Loaded, view: &ProjectShaping) -> String {
             Verdict::NotProven => None,
         },
         stable_reason: (stability.verdict == Verdict::NotProven).then(|| stability_reason(stability)),
-        stability: StabilityRow {
+        stability: ShapeStabilityAnswer {
             verdict: verdict_key(stability.verdict),
             plant: view.names.named(&stability.plant),
             reason: stability_reason(stability),

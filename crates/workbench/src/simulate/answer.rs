@@ -15,7 +15,7 @@ use crate::project::Loaded;
 use phea_dynamics::simulation::Amplification;
 
 #[derive(Serialize)]
-pub(crate) struct Body<'a> {
+pub(crate) struct SimulateAnswer<'a> {
     scenarios: Vec<ScenarioRow<'a>>,
     /// Scenarios that were not begun, because the run was stopped.
     not_run: Vec<&'a str>,
@@ -37,8 +37,8 @@ struct ScenarioRow<'a> {
     /// Name of the file with the state at the end.
     state_file: Option<String>,
     state_file_reason: Option<&'static str>,
-    events: Vec<EventRow<'a>>,
-    occurrences: Vec<OccurrenceRow>,
+    events: Vec<EventAnswer<'a>>,
+    occurrences: Vec<OccurrenceAnswer>,
     outside_model_s: Option<f64>,
     outside_model_s_reason: Option<&'static str>,
     measured: Vec<MeasuredRow<'a>>,
@@ -103,7 +103,7 @@ struct WorkRow {
 }
 
 #[derive(Serialize)]
-struct EventRow<'a> {
+struct EventAnswer<'a> {
     kind: &'static str,
     time_s: f64,
     until_s: f64,
@@ -116,7 +116,7 @@ struct EventRow<'a> {
 }
 
 #[derive(Serialize)]
-struct OccurrenceRow {
+struct OccurrenceAnswer {
     time_s: f64,
     kind: &'static str,
     begins: bool,
@@ -135,7 +135,7 @@ struct ProjectRow<'a> {
     settings: &'a [String],
     catalogue_files: &'a [String],
     #[serde(flatten)]
-    body: Body<'a>,
+    body: SimulateAnswer<'a>,
 }
 
 /// The JSON object of `simulate`.
@@ -145,9 +145,9 @@ pub(crate) fn json(loaded: &Loaded, runs: &[ScenarioRun]) -> String {
 
 #[derive(Serialize)]
 struct FrequencyBody<'a> {
-    frequency_response: frequency::Body<'a>,
+    frequency_response: frequency::FrequencyAnswer<'a>,
     #[serde(flatten)]
-    body: Body<'a>,
+    body: SimulateAnswer<'a>,
 }
 
 /// The JSON object of `simulate` where a frequency response is asked for: no scenario is run.
@@ -171,11 +171,11 @@ pub(crate) fn compare_json(comparison: &ScenarioComparison<'_>) -> String {
 }
 
 /// What `simulate` says of a project.
-pub(crate) fn body<'a>(loaded: &'a Loaded, runs: &'a [ScenarioRun]) -> Body<'a> {
+pub(crate) fn body<'a>(loaded: &'a Loaded, runs: &'a [ScenarioRun]) -> SimulateAnswer<'a> {
     let declared = loaded.project.scenarios.iter().map(|scenario| scenario.name.as_str());
     let names = state_names(runs.iter().map(|run| run.name.as_str()));
     let rows = runs.iter().zip(names).map(|(run, name)| scenario(run, name));
-    Body { scenarios: rows.collect(), not_run: declared.skip(runs.len()).collect() }
+    SimulateAnswer { scenarios: rows.collect(), not_run: declared.skip(runs.len()).collect() }
 }
 
 fn scenario(run: &ScenarioRun, state_file: String) -> ScenarioRow<'_> {
@@ -251,7 +251,7 @@ fn measured(overlay: &Overlay) -> MeasuredRow<'_> {
     }
 }
 
-fn event((window, metrics): &(Window, Metrics)) -> EventRow<'_> {
+fn event((window, metrics): &(Window, Metrics)) -> EventAnswer<'_> {
     let reference_n = match window.cause {
         Cause::ReferenceStep { from_n, to_n } => Some([from_n, to_n]),
         _ => None,
@@ -260,7 +260,7 @@ fn event((window, metrics): &(Window, Metrics)) -> EventRow<'_> {
         Cause::CommandStep { from_v, to_v } => Some([from_v, to_v]),
         _ => None,
     };
-    EventRow {
+    EventAnswer {
         kind: window.cause.word(),
         time_s: window.start_s,
         until_s: window.end_s,
@@ -272,6 +272,6 @@ fn event((window, metrics): &(Window, Metrics)) -> EventRow<'_> {
     }
 }
 
-fn occurrence(occurrence: &Occurrence) -> OccurrenceRow {
-    OccurrenceRow { time_s: occurrence.time_s, kind: occurrence.kind, begins: occurrence.begins }
+fn occurrence(occurrence: &Occurrence) -> OccurrenceAnswer {
+    OccurrenceAnswer { time_s: occurrence.time_s, kind: occurrence.kind, begins: occurrence.begins }
 }

@@ -5,7 +5,7 @@ use super::exceeded_words;
 use super::metrics::{METRICS, OVERSHOOT, SETTLING, cells_of};
 use super::{
     BeyondExpansion, Cause, Metrics, Occurrence, Overlay, ScenarioComparison, ScenarioRun, StoppedRun,
-    Window, Wish,
+    TrackingWish, Window,
 };
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
@@ -71,7 +71,7 @@ const RARE: [&str; 2] = ["tracking error peak", "force peak"];
 
 /// What is read off each event of a run, judged by what was wished; beside what was published of it, where only metrics that some event has
 /// are shown.
-pub(crate) fn windows(run: &ScenarioRun, wish: Option<&Wish>, declared: Option<&Scenario>) -> Table {
+pub(crate) fn windows(run: &ScenarioRun, wish: Option<&TrackingWish>, declared: Option<&Scenario>) -> Table {
     let cells: Vec<_> = run.windows.iter().map(|(_, metrics)| cells_of(metrics)).collect();
     let always = |name: &str| declared.is_none() && !run.open_loop && !RARE.contains(&name);
     let has = |place: &usize| cells.iter().any(|cells| cells[*place] != Cell::Missing);
@@ -97,7 +97,7 @@ pub(crate) fn metrics_row(
     name: String,
     shown: &[usize],
     metrics: &Metrics,
-    wish: Option<&Wish>,
+    wish: Option<&TrackingWish>,
 ) -> Vec<Cell> {
     let mut cells = cells_of(metrics);
     for (place, held) in [

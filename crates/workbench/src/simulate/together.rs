@@ -3,7 +3,7 @@
 use super::figures::{
     AFTER_S, BEFORE_S, around, asked_for, close_up, enlarged, instant, moves_load, over_time, panel,
 };
-use super::{Cause, Record, ScenarioRun, Window, Wish, cause_words};
+use super::{Cause, Record, ScenarioRun, TrackingWish, Window, cause_words};
 use crate::figure::{DisplayUnit, Figure, TimePanel, TimePanelsInput, TimeSeries, Words, time_panels};
 
 /// A run with the name of its controller.
@@ -16,7 +16,7 @@ pub(crate) struct NamedRun<'a> {
 }
 
 /// The whole run, and each event enlarged, every controller in each figure.
-pub(crate) fn together(runs: &[NamedRun<'_>], number: usize, wish: Option<&Wish>) -> Vec<Figure> {
+pub(crate) fn together(runs: &[NamedRun<'_>], number: usize, wish: Option<&TrackingWish>) -> Vec<Figure> {
     let Some(first) = runs.first() else { return vec![] };
     let end = end_of(runs);
     let words = Words::new(
@@ -38,7 +38,7 @@ pub(crate) fn together(runs: &[NamedRun<'_>], number: usize, wish: Option<&Wish>
 }
 
 /// Force and command from the first event to a little after the last, or of the whole run where nothing begins.
-pub(crate) fn at_a_glance(name: &str, runs: &[NamedRun<'_>], wish: Option<&Wish>) -> Option<Figure> {
+pub(crate) fn at_a_glance(name: &str, runs: &[NamedRun<'_>], wish: Option<&TrackingWish>) -> Option<Figure> {
     let first = runs.first()?;
     let end = end_of(runs);
     let starts = || first.run.windows.iter().map(|(window, _)| window.start_s);
@@ -110,7 +110,7 @@ fn whose(runs: &[NamedRun<'_>]) -> String {
     format!("under {} controller", names.join(" and "))
 }
 
-fn of_wish(wish: Option<&Wish>) -> String {
+fn of_wish(wish: Option<&TrackingWish>) -> String {
     let wished = wish.map(|wish| [wish.overshoot_words(), wish.settling_words()]);
     let words: Vec<String> = wished.into_iter().flatten().flatten().collect();
     if words.is_empty() { String::new() } else { format!("; wished: {}", words.join(", ")) }
@@ -121,7 +121,7 @@ fn drawn(
     runs: &[NamedRun<'_>],
     span_s: [f64; 2],
     ([tall, low], positions): ([f64; 2], bool),
-    wish: Option<&Wish>,
+    wish: Option<&TrackingWish>,
 ) -> Figure {
     let load_pressure = |record: &Record| {
         let (one, other) = (record.signal("pressure_a_pa"), record.signal("pressure_b_pa"));
@@ -167,7 +167,7 @@ fn force_measured(runs: &[NamedRun<'_>]) -> Option<TimeSeries> {
     Some(curve(&overlay.times_s, &overlay.measured))
 }
 
-fn forces(runs: &[NamedRun<'_>], height: f64, span_s: [f64; 2], wish: Option<&Wish>) -> TimePanel {
+fn forces(runs: &[NamedRun<'_>], height: f64, span_s: [f64; 2], wish: Option<&TrackingWish>) -> TimePanel {
     let mut curves = each(runs, |record| record.signal("force_n"));
     curves.extend(force_measured(runs));
     let first = runs.first().map(|named| named.run);
@@ -187,7 +187,7 @@ fn forces_enlarged(
     runs: &[NamedRun<'_>],
     [tall, low]: [f64; 2],
     span_s: [f64; 2],
-    wish: Option<&Wish>,
+    wish: Option<&TrackingWish>,
 ) -> Vec<TimePanel> {
     let whole = forces(runs, tall, span_s, wish);
     let near = near_reference(runs, span_s).filter(|_| !whole.wished.is_empty());

@@ -6,7 +6,7 @@ use crate::answer::{self, Csv, Number, OutputFile, quoted};
 use crate::project::Loaded;
 
 #[derive(Serialize)]
-struct Body<'a> {
+struct SizeAnswer<'a> {
     bore_range_m: [f64; 2],
     pole_gain_v_per_n: f64,
     bores: Vec<BoreRow<'a>>,
@@ -82,7 +82,7 @@ pub fn json(loaded: &Loaded, sizing: &Sizing) -> String {
     });
     let decisions =
         sizing.decisions.iter().map(|decision| DecisionRow { step: decision.step, text: &decision.text });
-    let body = Body {
+    let body = SizeAnswer {
         bore_range_m: sizing.bore_range_m,
         pole_gain_v_per_n: sizing.pole_gain_v_per_n,
         bores: bores.collect(),

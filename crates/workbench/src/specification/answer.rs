@@ -9,13 +9,13 @@ use crate::answer::significant;
 pub(crate) struct WishRow {
     specification: usize,
     limit: &'static str,
-    wished: StepRow,
-    reached: StepRow,
+    wished: StepLimitAnswer,
+    reached: StepLimitAnswer,
     met: bool,
 }
 
 #[derive(Serialize)]
-struct StepRow {
+struct StepLimitAnswer {
     overshoot_percent: f64,
     settling_time_s: Option<f64>,
     settling_band_percent: f64,
@@ -35,13 +35,13 @@ impl WishRow {
         WishRow {
             specification: wish.number,
             limit: wish.key,
-            wished: StepRow {
+            wished: StepLimitAnswer {
                 overshoot_percent: wished.overshoot_percent,
                 settling_time_s: Some(wished.settling_time_s),
                 settling_band_percent: wished.settling_band_percent,
                 reason: None,
             },
-            reached: StepRow {
+            reached: StepLimitAnswer {
                 overshoot_percent: reached.overshoot_percent,
                 settling_time_s: reached.settling.time_s(),
                 settling_band_percent: wished.settling_band_percent,

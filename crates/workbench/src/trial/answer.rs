@@ -2,12 +2,12 @@
 
 use serde::Serialize;
 
-use super::{Agreement, Run, Step, Trial, agreement_word};
+use super::{Agreement, Trial, TrialRun, TrialStep, agreement_word};
 use crate::audit::NamedPlant;
 
 /// The key `machine` of an answer.
 #[derive(Serialize)]
-pub(crate) struct Body<'a> {
+pub(crate) struct TrialAnswer<'a> {
     verdict: &'static str,
     runs: Vec<RunRow<'a>>,
     not_driven: &'a [String],
@@ -23,16 +23,16 @@ struct RunRow<'a> {
     agreement: &'static str,
     reason: &'a str,
     reference_n: [f64; 2],
-    linear: Option<StepRow>,
+    linear: Option<TrialStepAnswer>,
     #[serde(skip_serializing_if = "Option::is_none")]
     linear_reason: Option<&'static str>,
-    machine: Option<StepRow>,
+    machine: Option<TrialStepAnswer>,
     #[serde(skip_serializing_if = "Option::is_none")]
     machine_reason: Option<&'static str>,
 }
 
 #[derive(Serialize)]
-struct StepRow {
+struct TrialStepAnswer {
     overshoot_percent: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     overshoot_percent_reason: Option<&'static str>,
@@ -41,8 +41,8 @@ struct StepRow {
     settling_time_s_reason: Option<&'static str>,
 }
 
-fn step(step: &Step) -> StepRow {
-    StepRow {
+fn step(step: &TrialStep) -> TrialStepAnswer {
+    TrialStepAnswer {
         overshoot_percent: step.overshoot_percent,
         overshoot_percent_reason: step.overshoot_percent.is_none().then_some("the run ended before"),
         settling_time_s: step.settling_time_s,
@@ -50,7 +50,7 @@ fn step(step: &Step) -> StepRow {
     }
 }
 
-fn row(run: &Run) -> RunRow<'_> {
+fn row(run: &TrialRun) -> RunRow<'_> {
     RunRow {
         what: &run.what,
         plant: run.plant.as_ref(),
@@ -70,8 +70,8 @@ fn row(run: &Run) -> RunRow<'_> {
 }
 
 /// What a trial says in JSON.
-pub(crate) fn body(trial: &Trial) -> Body<'_> {
-    Body {
+pub(crate) fn body(trial: &Trial) -> TrialAnswer<'_> {
+    TrialAnswer {
         verdict: agreement_word(trial.agreement()),
         runs: trial.runs.iter().map(row).collect(),
         not_driven: &trial.not_driven,

@@ -1,6 +1,6 @@
 //! What the machine did with a verdict, for people.
 
-use super::{Agreement, Run, Step, StepResponse, Trial, agreement_word, percent_words};
+use super::{Agreement, StepResponse, Trial, TrialRun, TrialStep, agreement_word, percent_words};
 use crate::document::{Cell, Document, Table};
 use crate::figure::{FamilyStepInput, Figure, TimeSeries, Words, family_step};
 use crate::quantity::DisplayUnit;
@@ -27,13 +27,14 @@ pub(crate) fn document(trial: &Trial, figure_words: Option<[&str; 2]>) -> Docume
     out
 }
 
-fn cells(run: &Run) -> [Cell; 6] {
-    let settling = |step: Option<&Step>| {
+fn cells(run: &TrialRun) -> [Cell; 6] {
+    let settling = |step: Option<&TrialStep>| {
         let time_s = step.and_then(|step| step.settling_time_s);
         time_s.map_or(Cell::Missing, |time_s| Cell::quantity(time_s, 3, DisplayUnit::MILLISECOND))
     };
-    let overshoot =
-        |step: Option<&Step>| Cell::from(step.and_then(|step| step.overshoot_percent).map(percent_words));
+    let overshoot = |step: Option<&TrialStep>| {
+        Cell::from(step.and_then(|step| step.overshoot_percent).map(percent_words))
+    };
     let (linear, machine) = (run.linear.as_ref(), run.machine.as_ref());
     [
         run.what.as_str().into(),

@@ -8,8 +8,8 @@ use std::time::Instant;
 use phea_dynamics::controller::{Compensator, Controller, ControllerState, Element, SampledController};
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::simulation::{
-    CommandedPlant, Input, InputSchedule, Observer, Outcome, Plant, Sampler, Sensed, Settings, Status,
-    StepCounts, Task,
+    CommandedPlant, Input, InputSchedule, Observer, Outcome, Plant, Sampler, Sensed, SimulationSettings,
+    Status, StepCounts, Task,
 };
 use phea_hydraulics::machine::INDICATORS;
 use phea_machine::{Commanded, Control as Loop, Watcher};
@@ -377,7 +377,8 @@ fn judge<'a>(
     };
     let by_cvode = |following: &Following| counted(following).map(|(states, _)| states);
     let by_phea = |tolerance: f64| {
-        let settings = Settings { tolerance, maximum_steps: 2_000_000, ..Settings::default() };
+        let settings =
+            SimulationSettings { tolerance, maximum_steps: 2_000_000, ..SimulationSettings::default() };
         let mut states = Vec::new();
         let observer: Watcher<'_> =
             Box::new(Rows { wanted: (0..system.size()[0]).collect(), states: &mut states });

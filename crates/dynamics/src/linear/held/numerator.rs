@@ -22,7 +22,7 @@ const BESIDE_ZERO: f64 = 1e-3;
 const LEAST_ANGLE: f64 = 1e-3;
 
 /// The numerator N at a point of the unit circle.
-struct Sample {
+struct NumeratorSample {
     z: Complex64,
     numerator: Complex64,
 }
@@ -62,7 +62,7 @@ impl Held {
 
     /// Coefficients of N, highest power first, from its values at the roots of z^M = -1; and these
     /// values.
-    fn interpolated(&self) -> Option<(Vec<DoubleDouble>, Vec<Sample>)> {
+    fn interpolated(&self) -> Option<(Vec<DoubleDouble>, Vec<NumeratorSample>)> {
         let count = self.degree() + 1;
         let points = roots_of_unity(2 * count);
         let mut sums = vec![DoubleDouble::ZERO; count];
@@ -70,7 +70,7 @@ impl Held {
         for k in 0..count.div_ceil(2) {
             let z = *points.get(2 * k + 1)?;
             let numerator = self.numerator(z)?;
-            samples.push(Sample { z: z.value(), numerator: numerator.value() });
+            samples.push(NumeratorSample { z: z.value(), numerator: numerator.value() });
             // a point of the upper half counts for its conjugate too
             let weight = if 2 * k + 1 == count { 1.0 } else { 2.0 };
             for (power, sum) in sums.iter_mut().enumerate() {
@@ -84,14 +84,14 @@ impl Held {
     }
 
     /// N at the angles of the slow poles, between z = 1 and the points above.
-    fn beside_slow_poles(&self, poles: &[Complex64]) -> Vec<Sample> {
+    fn beside_slow_poles(&self, poles: &[Complex64]) -> Vec<NumeratorSample> {
         // of a pair one counts for both
         let upper = poles.iter().filter(|pole| pole.im >= 0.0);
         let angles = upper.map(|pole| magnitude(pole - 1.0));
         let within = angles.filter(|angle| (LEAST_ANGLE..1.0).contains(angle));
         let sample = |angle: f64| {
             let z = Complex64::new(cos(angle), sin(angle));
-            Some(Sample { z, numerator: self.numerator(z.into())?.value() })
+            Some(NumeratorSample { z, numerator: self.numerator(z.into())?.value() })
         };
         within.filter_map(sample).collect()
     }
@@ -114,7 +114,7 @@ impl Held {
 
 /// The gain with which the zeros give the samples; the leading coefficient itself, unless the zero
 /// of a coefficient that is small beside the others has been found better than that coefficient.
-fn matched(leading: f64, zeros: &[Complex64], samples: &[Sample]) -> f64 {
+fn matched(leading: f64, zeros: &[Complex64], samples: &[NumeratorSample]) -> f64 {
     let shape = |z: Complex64| zeros.iter().map(|zero| z - zero).product::<Complex64>();
     let shapes = samples.iter().map(|sample| (shape(sample.z), sample.numerator));
     let (product, square) = shapes.fold((0.0, 0.0), |(product, square), (shape, numerator)| {
@@ -124,7 +124,7 @@ fn matched(leading: f64, zeros: &[Complex64], samples: &[Sample]) -> f64 {
     if gain.is_nan() || (gain - leading).abs() <= 1e-12 * leading.abs() { leading } else { gain }
 }
 
-fn agrees(gain: f64, zeros: &[Complex64], sample: &Sample) -> bool {
+fn agrees(gain: f64, zeros: &[Complex64], sample: &NumeratorSample) -> bool {
     let factors = zeros.iter().map(|zero| sample.z - zero);
     let found = factors.clone().fold(Complex64::new(gain, 0.0), |product, factor| product * factor);
     let size = factors.fold(gain.abs(), |product, factor| product * magnitude(factor).max(BESIDE_ZERO));

@@ -1,7 +1,7 @@
 //! Lanes that go from sample to sample by matrices found once.
 
 use super::Drive;
-use crate::simulation::kernel::{Kernel, Trial};
+use crate::simulation::kernel::{Kernel, StepTrial};
 use crate::simulation::slot::Slot;
 use crate::simulation::{Attention, Lane, Observer};
 
@@ -52,7 +52,7 @@ impl<S: Lane, O: Observer> Drive<'_, S, O> {
         }
         let (inputs, tolerance) = (&self.inputs.stages[0], self.settings.tolerance);
         let (state, scales) = (&self.state[..], &self.method.scales[..]);
-        let trial = Trial { state, step: self.step, scales, tolerance };
+        let trial = StepTrial { state, step: self.step, scales, tolerance };
         let error = system.propagate(&mut self.propagator, trial, inputs);
         self.between.extensions.fill(None);
         self.between.propagated = true;

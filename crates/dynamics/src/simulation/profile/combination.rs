@@ -1,7 +1,7 @@
 //! Functions of time made of others.
 
 use super::Profile;
-use super::piece::{Piece, Shape};
+use super::piece::{PieceShape, ProfilePiece};
 
 impl Profile {
     /// The sum of functions; nothing sums to zero. It breaks where one of them does.
@@ -23,8 +23,8 @@ impl Profile {
         let mut breaks: Vec<f64> = profiles.iter().flat_map(Profile::breaks).collect();
         breaks.sort_by(f64::total_cmp);
         breaks.dedup();
-        let none = Piece::new(Shape::Constant { value: 0.0 });
-        let total = |of: &dyn Fn(&Profile) -> Piece| {
+        let none = ProfilePiece::new(PieceShape::Constant { value: 0.0 });
+        let total = |of: &dyn Fn(&Profile) -> ProfilePiece| {
             profiles.iter().fold(none.clone(), |sum, profile| sum.plus(&of(profile)))
         };
         let later = breaks.into_iter().map(|time_s| (time_s, total(&|profile| profile.piece(time_s))));
@@ -44,7 +44,7 @@ impl Profile {
     pub fn held_from(mut self, time_s: f64) -> Profile {
         let value = self.value_before(time_s);
         self.later.retain(|(start_s, _)| *start_s < time_s);
-        self.later.push((time_s, Piece::new(Shape::Constant { value })));
+        self.later.push((time_s, ProfilePiece::new(PieceShape::Constant { value })));
         self
     }
 

@@ -1,28 +1,32 @@
 //! Cubics through points that keep their shape.
 
 use super::Profile;
-use super::piece::{Piece, Shape};
+use super::piece::{PieceShape, ProfilePiece};
 
 /// Between two neighbouring points.
 #[derive(Clone, Copy)]
-struct Interval {
+struct InterpolationInterval {
     start_s: f64,
     length_s: f64,
     from: f64,
     to: f64,
 }
 
-impl Interval {
+impl InterpolationInterval {
     fn slope(self) -> f64 {
         (self.to - self.from) / self.length_s
     }
 
     /// The cubic with the values of the points and these slopes at them.
-    fn cubic(self, [left, right]: [f64; 2]) -> Piece {
+    fn cubic(self, [left, right]: [f64; 2]) -> ProfilePiece {
         let (rise, left, right) = (self.to - self.from, left * self.length_s, right * self.length_s);
         let [square, cube] = [3.0 * rise - 2.0 * left - right, left + right - 2.0 * rise];
         let coefficients = [self.from, left, square, cube, 0.0, 0.0];
-        Piece::new(Shape::Polynomial { origin_s: self.start_s, span_s: self.length_s, coefficients })
+        ProfilePiece::new(PieceShape::Polynomial {
+            origin_s: self.start_s,
+            span_s: self.length_s,
+            coefficients,
+        })
     }
 }
 
@@ -31,14 +35,14 @@ pub(super) fn through(times_s: &[f64], values: &[f64]) -> Profile {
     let points: Vec<(f64, f64)> = times_s.iter().copied().zip(values.iter().copied()).collect();
     let between = |pair: &[(f64, f64)]| match pair {
         [(start_s, from), (end_s, to)] => {
-            Some(Interval { start_s: *start_s, length_s: end_s - start_s, from: *from, to: *to })
+            Some(InterpolationInterval { start_s: *start_s, length_s: end_s - start_s, from: *from, to: *to })
         }
         _ => None,
     };
-    let intervals: Vec<Interval> = points.windows(2).filter_map(between).collect();
+    let intervals: Vec<InterpolationInterval> = points.windows(2).filter_map(between).collect();
     let slopes = slopes(&intervals);
-    let constant = |value| Piece::new(Shape::Constant { value });
-    let mut later: Vec<(f64, Piece)> = intervals
+    let constant = |value| ProfilePiece::new(PieceShape::Constant { value });
+    let mut later: Vec<(f64, ProfilePiece)> = intervals
         .iter()
         .zip(slopes.iter().zip(slopes.iter().skip(1)))
         .map(|(interval, (left, right))| (interval.start_s, interval.cubic([*left, *right])))
@@ -48,23 +52,25 @@ pub(super) fn through(times_s: &[f64], values: &[f64]) -> Profile {
 }
 
 /// The slope at each point.
-fn slopes(intervals: &[Interval]) -> Vec<f64> {
+fn slopes(intervals: &[InterpolationInterval]) -> Vec<f64> {
     let inner = intervals.windows(2).map(|pair| match pair {
         [before, after] => inner_slope(*before, *after),
         _ => 0.0,
     });
-    let end = |nearest: Option<&Interval>, next: Option<&Interval>| match (nearest, next) {
-        (Some(nearest), Some(next)) => end_slope(*nearest, *next),
-        (Some(only), None) => only.slope(),
-        _ => 0.0,
-    };
+    let end =
+        |nearest: Option<&InterpolationInterval>, next: Option<&InterpolationInterval>| match (nearest, next)
+        {
+            (Some(nearest), Some(next)) => end_slope(*nearest, *next),
+            (Some(only), None) => only.slope(),
+            _ => 0.0,
+        };
     let first = end(intervals.first(), intervals.get(1));
     let last = end(intervals.last(), intervals.len().checked_sub(2).and_then(|index| intervals.get(index)));
     std::iter::once(first).chain(inner).chain([last]).collect()
 }
 
 /// The weighted harmonic mean of the slopes on both sides; zero at an extreme point.
-fn inner_slope(before: Interval, after: Interval) -> f64 {
+fn inner_slope(before: InterpolationInterval, after: InterpolationInterval) -> f64 {
     let [steep_before, steep_after] = [before.slope(), after.slope()];
     if steep_before * steep_after <= 0.0 {
         return 0.0;
@@ -76,7 +82,7 @@ fn inner_slope(before: Interval, after: Interval) -> f64 {
 
 /// The slope of the parabola through the three points nearest to an end, limited so that the shape
 /// is kept.
-fn end_slope(nearest: Interval, next: Interval) -> f64 {
+fn end_slope(nearest: InterpolationInterval, next: InterpolationInterval) -> f64 {
     let [steep, steep_next] = [nearest.slope(), next.slope()];
     let parabola = ((2.0 * nearest.length_s + next.length_s) * steep - nearest.length_s * steep_next)
         / (nearest.length_s + next.length_s);

@@ -1,6 +1,6 @@
 //! Several sines at once.
 
-use super::piece::{Piece, Shape};
+use super::piece::{PieceShape, ProfilePiece};
 use super::{Profile, ProfileError, finite, positive};
 
 /// One sine of a multisine.
@@ -71,7 +71,7 @@ impl Profile {
             positive("a frequency of a multisine", harmonic.frequency_rad_per_s)?;
             finite("a phase of a multisine", harmonic.phase_rad)?;
         }
-        let shape = |harmonic: &Harmonic| Shape::Sine {
+        let shape = |harmonic: &Harmonic| PieceShape::Sine {
             origin_s: start_s,
             amplitude: harmonic.amplitude,
             frequency_rad_per_s: harmonic.frequency_rad_per_s,
@@ -79,7 +79,7 @@ impl Profile {
             span_s: 0.0,
             phase_rad: harmonic.phase_rad,
         };
-        let sum = Piece::of(harmonics.iter().map(shape).collect());
+        let sum = ProfilePiece::of(harmonics.iter().map(shape).collect());
         Ok(Profile { later: vec![(start_s, sum)], ..Profile::constant(0.0) })
     }
 }

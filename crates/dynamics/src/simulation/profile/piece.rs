@@ -2,9 +2,9 @@ use crate::portable;
 
 /// One smooth piece of a [`super::Profile`]: an analytic function, defined beyond its ends as well.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Piece {
+pub struct ProfilePiece {
     /// The terms added to the offset; a piece without terms is constant.
-    terms: Vec<Shape>,
+    terms: Vec<PieceShape>,
     offset: f64,
 }
 
@@ -20,7 +20,7 @@ pub struct Moment {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Shape {
+pub(super) enum PieceShape {
     /// A value.
     Constant { value: f64 },
     /// Sum over k of c_k s^k, s = (t - origin)/span; lowest power first.
@@ -39,26 +39,26 @@ pub(super) enum Shape {
     },
 }
 
-impl Piece {
-    pub(super) fn new(shape: Shape) -> Piece {
+impl ProfilePiece {
+    pub(super) fn new(shape: PieceShape) -> ProfilePiece {
         match shape {
-            Shape::Constant { value } => Piece { terms: Vec::new(), offset: value },
-            _ => Piece { terms: vec![shape], offset: 0.0 },
+            PieceShape::Constant { value } => ProfilePiece { terms: Vec::new(), offset: value },
+            _ => ProfilePiece { terms: vec![shape], offset: 0.0 },
         }
     }
 
     /// The sum of shapes that move.
-    pub(super) fn of(terms: Vec<Shape>) -> Piece {
-        Piece { terms, offset: 0.0 }
+    pub(super) fn of(terms: Vec<PieceShape>) -> ProfilePiece {
+        ProfilePiece { terms, offset: 0.0 }
     }
 
     /// The piece with a number added to its values.
-    pub(super) fn shifted(self, by: f64) -> Piece {
-        Piece { offset: self.offset + by, ..self }
+    pub(super) fn shifted(self, by: f64) -> ProfilePiece {
+        ProfilePiece { offset: self.offset + by, ..self }
     }
 
     /// The sum of two pieces.
-    pub(super) fn plus(mut self, other: &Piece) -> Piece {
+    pub(super) fn plus(mut self, other: &ProfilePiece) -> ProfilePiece {
         self.terms.extend_from_slice(&other.terms);
         self.shifted(other.offset)
     }
@@ -76,20 +76,27 @@ impl Piece {
     }
 }
 
-impl Shape {
+impl PieceShape {
     #[inline(always)]
     fn at(&self, time_s: f64) -> Moment {
         match *self {
-            Shape::Constant { value } => Moment { value, rate: 0.0, acceleration: 0.0 },
-            Shape::Polynomial { origin_s, span_s, coefficients } => {
+            PieceShape::Constant { value } => Moment { value, rate: 0.0, acceleration: 0.0 },
+            PieceShape::Polynomial { origin_s, span_s, coefficients } => {
                 polynomial(coefficients, (time_s - origin_s) / span_s, span_s)
             }
-            Shape::Exponential { origin_s, time_constant_s, distance } => {
+            PieceShape::Exponential { origin_s, time_constant_s, distance } => {
                 let approached = portable::expm1(-(time_s - origin_s) / time_constant_s);
                 let rate = distance * (1.0 + approached) / time_constant_s;
                 Moment { value: -distance * approached, rate, acceleration: -rate / time_constant_s }
             }
-            Shape::Sine { origin_s, amplitude, frequency_rad_per_s, sweep_rad_per_s2, phase_rad, .. } => {
+            PieceShape::Sine {
+                origin_s,
+                amplitude,
+                frequency_rad_per_s,
+                sweep_rad_per_s2,
+                phase_rad,
+                ..
+            } => {
                 let tau = time_s - origin_s;
                 let phase = (frequency_rad_per_s + 0.5 * sweep_rad_per_s2 * tau) * tau + phase_rad;
                 let frequency = frequency_rad_per_s + sweep_rad_per_s2 * tau;
@@ -104,7 +111,7 @@ impl Shape {
     }
 }
 
-impl Piece {
+impl ProfilePiece {
     /// The value of a piece that does not change.
     ///
     /// # Example
@@ -120,8 +127,8 @@ impl Piece {
 
     /// A quarter of the shortest period within the piece, in s; none without a swing.
     pub(super) fn quarter_period_s(&self) -> Option<f64> {
-        let quarter = |shape: &Shape| match *shape {
-            Shape::Sine { frequency_rad_per_s, sweep_rad_per_s2, span_s, .. } => {
+        let quarter = |shape: &PieceShape| match *shape {
+            PieceShape::Sine { frequency_rad_per_s, sweep_rad_per_s2, span_s, .. } => {
                 let highest = frequency_rad_per_s.max(frequency_rad_per_s + sweep_rad_per_s2 * span_s);
                 Some(0.5 * std::f64::consts::PI / highest)
             }

@@ -10,9 +10,9 @@ use phea_qft::design::{Constraint, ConstraintPlace, Finding, Party};
 use crate::audit::rounded;
 
 /// A finding as a sentence.
-pub(super) struct Words<'a>(pub(super) &'a Finding);
+pub(super) struct FindingWords<'a>(pub(super) &'a Finding);
 
-impl Display for Words<'_> {
+impl Display for FindingWords<'_> {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         match self.0 {
             Finding::CrossedLimits { specification, frequency_rad_per_s, lower, upper, relaxation_db } => {

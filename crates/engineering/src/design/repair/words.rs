@@ -6,10 +6,10 @@ use phea_qft::verification::Verdict;
 use super::{Repair, RepairStatus};
 use crate::audit::{ProjectAudit, frequency_words, margin_words, stability_sentence};
 use crate::design::{NEAREST_PROJECT, ProjectDesign};
-use crate::project::{Line, Project};
+use crate::project::{DeclaredLine, Project};
 use crate::quantity::significant;
 use crate::quantity::{DisplayUnit, FORCE, display};
-use crate::trial::{Agreement, Run, agreement_word};
+use crate::trial::{Agreement, TrialRun, agreement_word};
 
 /// What was taken in, what that came to, and what would help where it came to nothing.
 pub(super) fn sentences(
@@ -132,7 +132,7 @@ fn frequency(rad_per_s: f64) -> String {
 fn help(project: &Project, repair: &Repair, told: &ProjectDesign) -> String {
     let mut ways = Vec::new();
     let lines = project.actuator.as_ref().map(|actuator| [&actuator.line.a, &actuator.line.b]);
-    let longest = lines.iter().flatten().filter_map(|line| Line::length(line)).fold(0.0, f64::max);
+    let longest = lines.iter().flatten().filter_map(|line| DeclaredLine::length(line)).fold(0.0, f64::max);
     if let (Some(own), Some(quarter)) = (crossover_of(told), repair.quarter_wave_rad_per_s)
         && own > quarter
         && longest > 0.0
@@ -171,7 +171,7 @@ fn nearest(found: &ProjectDesign) -> Option<String> {
 }
 
 /// A machine with waves that contradicts, though its plant keeps to everything in the loop.
-pub(super) fn stable_with_waves(run: &Run) -> String {
+pub(super) fn stable_with_waves(run: &TrialRun) -> String {
     format!(
         "the linear loop satisfies every specification with waves in its plant too, and {} contradicts it all the same: so the waves are not the cause",
         run.what
@@ -185,14 +185,14 @@ pub(super) fn nothing_found() -> String {
 }
 
 /// What no linear plant explains, run by run, and what to change.
-pub(super) fn left<'a>(runs: impl Iterator<Item = &'a Run>) -> Vec<String> {
+pub(super) fn left<'a>(runs: impl Iterator<Item = &'a TrialRun>) -> Vec<String> {
     let contradicting = runs.filter(|run| run.agreement == Agreement::Contradicts);
     let others = contradicting.filter(|run| run.quarter_wave_rad_per_s.is_none());
     others.map(|run| format!("{}: {}: {}", run.what, run.reason, advice(run))).collect()
 }
 
 /// What to change, by what the run met.
-fn advice(run: &Run) -> String {
+fn advice(run: &TrialRun) -> String {
     let [from, to] = run.reference_n;
     let step = display((to - from).abs(), &FORCE, 3);
     let met = |names: &[&str]| run.met.iter().any(|one| names.iter().any(|name| one.starts_with(name)));

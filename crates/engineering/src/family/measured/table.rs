@@ -1,6 +1,6 @@
 //! A text of rows and columns whose every value knows where it is written.
 
-use crate::project::{Findings, Found, Place};
+use crate::project::{Findings, Place, RawFinding};
 
 /// A value as written.
 #[derive(Clone, Copy, Debug)]
@@ -39,13 +39,14 @@ pub fn read<'a>(path: &str, bytes: &'a [u8], findings: &mut Findings) -> Option<
     let mut rows = rows.into_iter();
     let whole = Place { text: index, start: 0, end: 0 };
     let Some(header) = rows.next() else {
-        findings
-            .push(Found::error(whole, "the file is empty").expected("a row with the names of the columns"));
+        findings.push(
+            RawFinding::error(whole, "the file is empty").expected("a row with the names of the columns"),
+        );
         return None;
     };
     let rows: Vec<Vec<MeasuredCell<'_>>> = rows.collect();
     if rows.is_empty() {
-        findings.push(Found::error(whole, "the file has no rows below the names of its columns"));
+        findings.push(RawFinding::error(whole, "the file has no rows below the names of its columns"));
         return None;
     }
     Some(MeasuredTable { header, rows })
@@ -80,7 +81,7 @@ impl MeasuredTable<'_> {
         let place = Place { end: last.place.end, ..first.place };
         let counted =
             |count: usize| if count == 1 { "one value".to_string() } else { format!("{count} values") };
-        let found = Found::error(place, format!("{} for {columns} columns", counted(row.len())));
+        let found = RawFinding::error(place, format!("{} for {columns} columns", counted(row.len())));
         findings.push(match row.len() > columns {
             true => found.help("write the decimal sign as a point"),
             false => found.help("separate values with commas, and write the decimal sign as a point"),

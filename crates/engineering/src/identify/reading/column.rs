@@ -2,7 +2,7 @@
 
 use super::sheet::Sheet;
 use crate::family::measured::table::MeasuredCell as Cell;
-use crate::project::{Findings, Found, Place};
+use crate::project::{Findings, Place, RawFinding};
 use crate::quantity::{self, Dimension, FLOW, PRESSURE, TIME, VOLTAGE};
 use crate::spelling::nearest;
 
@@ -104,7 +104,7 @@ pub(super) fn columns(sheet: &Sheet<'_>, findings: &mut Findings) -> Option<Vec<
     for (index, cell) in sheet.header.iter().enumerate() {
         let Some((quantity, suffix)) = stem_of(cell.text) else { continue };
         if found.iter().any(|column| column.quantity == quantity) {
-            findings.push(Found::error(cell.place, format!("a second column of `{}`", quantity.name())));
+            findings.push(RawFinding::error(cell.place, format!("a second column of `{}`", quantity.name())));
             continue;
         }
         let below = sheet.units.as_ref().and_then(|units| units.get(index)).map(|cell| cell.text);
@@ -115,7 +115,7 @@ pub(super) fn columns(sheet: &Sheet<'_>, findings: &mut Findings) -> Option<Vec<
     for quantity in [Quantity::Time, Quantity::Command] {
         if findings.error_count() == before && !found.iter().any(|column| column.quantity == quantity) {
             let missing =
-                Found::error(sheet.header_place(), format!("there is no column `{}`", quantity.name()));
+                RawFinding::error(sheet.header_place(), format!("there is no column `{}`", quantity.name()));
             let names = || sheet.header.iter().map(|cell| cell.text);
             let near = nearest(quantity.name(), names()).map(|near| format!("did you mean `{near}`?"));
             findings.push(missing.maybe_help(near));
@@ -124,7 +124,7 @@ pub(super) fn columns(sheet: &Sheet<'_>, findings: &mut Findings) -> Option<Vec<
     let leak = found.iter().any(|column| column.quantity == Quantity::LeakFlow);
     if leak && found.iter().any(|column| column.quantity == Quantity::Flow) {
         let message = "`leak_flow` is of blocked ports, `flow` of joined ones: one file holds one test";
-        findings.push(Found::error(sheet.header_place(), message));
+        findings.push(RawFinding::error(sheet.header_place(), message));
     }
     (findings.error_count() == before).then_some(found)
 }
@@ -147,7 +147,8 @@ fn unit_of(
             .iter()
             .filter(|(_, unit)| is_of(quantity, unit))
             .map(|(name, _)| format!("`{}_{name}`", quantity.name()));
-        Found::error(cell.place, message).expected(format!("one of {}", known.collect::<Vec<_>>().join(", ")))
+        RawFinding::error(cell.place, message)
+            .expected(format!("one of {}", known.collect::<Vec<_>>().join(", ")))
     };
     let Some(written) = written.filter(|unit| !unit.is_empty()) else {
         findings.push(refuse(format!("`{}` has no unit", cell.text)));
@@ -188,7 +189,8 @@ impl Column {
                 "" => format!("`{}` has a gap here", self.quantity.name()),
                 text => format!("`{text}` is no number"),
             };
-            findings.push(Found::error(cell.place, message).expected(format!("a number in {}", self.unit)));
+            findings
+                .push(RawFinding::error(cell.place, message).expected(format!("a number in {}", self.unit)));
             return None;
         };
         let value = match (self.quantity, self.unit.as_str()) {
@@ -198,7 +200,7 @@ impl Column {
         if value.abs() > self.quantity.plausible() {
             let message =
                 format!("{} {} is no {} of a valve test", cell.text, self.unit, self.quantity.name());
-            let found = Found::error(cell.place, message);
+            let found = RawFinding::error(cell.place, message);
             findings.push(found.help("is the unit of the column right?"));
             return None;
         }

@@ -1,7 +1,7 @@
 //! A text of rows and cells, whatever separates them.
 
 use crate::family::measured::table::MeasuredCell as Cell;
-use crate::project::{Findings, Found, Place};
+use crate::project::{Findings, Place, RawFinding};
 
 use super::column::stem_of;
 
@@ -50,7 +50,7 @@ impl<'a> Sheet<'a> {
             return Some(Sheet { header, units, rows, decimal_comma: separator != ',' });
         }
         let place = Place { text: index, start: 0, end: 0 };
-        let found = Found::error(place, "no row has the names of columns");
+        let found = RawFinding::error(place, "no row has the names of columns");
         findings.push(found.expected("a row such as `time_s,command_v,supply_pressure_bar,pressure_a_bar`"));
         None
     }
@@ -68,7 +68,8 @@ impl<'a> Sheet<'a> {
             return true;
         }
         let place = Place { end: last.place.end, ..first.place };
-        let found = Found::error(place, format!("{} values for {} columns", row.len(), self.header.len()));
+        let found =
+            RawFinding::error(place, format!("{} values for {} columns", row.len(), self.header.len()));
         findings.push(match self.decimal_comma {
             true => found,
             false => found.help("where the decimal sign is a comma, separate values with semicolons or tabs"),

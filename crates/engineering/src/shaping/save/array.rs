@@ -2,12 +2,12 @@
 
 use std::ops::Range;
 
-use super::{Draft, Written, matched};
-use crate::project::Element;
+use super::{Draft, WrittenElement, matched};
+use crate::project::DeclaredElement;
 
 /// An element in an array, with the comments that belong to it.
 #[derive(Default)]
-struct Row {
+struct ArrayElement {
     /// Comments in lines of their own above it.
     above: Vec<String>,
     text: String,
@@ -20,14 +20,17 @@ const LINE_WIDTH: usize = 90;
 
 /// An array of nothing but new elements.
 pub(super) fn fresh(draft: &Draft<'_>) -> String {
-    let rows = draft.elements.iter().map(|element| Row { text: element.print(), ..Row::default() });
+    let rows = draft
+        .elements
+        .iter()
+        .map(|element| ArrayElement { text: element.print(), ..ArrayElement::default() });
     array(rows.collect(), vec![], false, draft.newline)
 }
 
 /// The array with its elements changed: those that stay keep their text and their comments.
-pub(super) fn rewritten(draft: &Draft<'_>, range: &Range<usize>, written: &[Written<'_>]) -> String {
+pub(super) fn rewritten(draft: &Draft<'_>, range: &Range<usize>, written: &[WrittenElement<'_>]) -> String {
     let part = |from: usize, to: usize| draft.content.get(from..to).unwrap_or_default();
-    let mut rows: Vec<Option<Row>> = Vec::new();
+    let mut rows: Vec<Option<ArrayElement>> = Vec::new();
     let mut from = range.start + 1;
     for (index, one) in written.iter().enumerate() {
         let place = one.node.place;
@@ -35,7 +38,7 @@ pub(super) fn rewritten(draft: &Draft<'_>, range: &Range<usize>, written: &[Writ
         if let Some(Some(last)) = rows.last_mut() {
             last.behind = behind;
         }
-        rows.push(Some(Row { above, text: part(place.start, place.end).to_string(), behind: None }));
+        rows.push(Some(ArrayElement { above, text: part(place.start, place.end).to_string(), behind: None }));
         from = place.end;
     }
     let (behind, foot) = comments(part(from, range.end.saturating_sub(1)), !written.is_empty());
@@ -43,26 +46,26 @@ pub(super) fn rewritten(draft: &Draft<'_>, range: &Range<usize>, written: &[Writ
         last.behind = behind;
     }
     let kept = matched(draft.elements, written);
-    let row = |(element, place): (&Element, &Option<usize>)| {
+    let row = |(element, place): (&DeclaredElement, &Option<usize>)| {
         let own = place.and_then(|place| rows.get_mut(place)).and_then(Option::take).unwrap_or_default();
         let kept = place.and_then(|place| written.get(place)).and_then(|one| {
             let start = one.node.place.start;
             one.text_as(element, &own.text, start, (one.last_value() - start, ", enabled = ?"))
         });
-        Row { text: kept.unwrap_or_else(|| element.print()), ..own }
+        ArrayElement { text: kept.unwrap_or_else(|| element.print()), ..own }
     };
     let rows = draft.elements.iter().zip(&kept).map(row).collect();
     array(rows, foot, part(range.start, range.end).contains('\n'), draft.newline)
 }
 
-fn array(rows: Vec<Row>, foot: Vec<String>, several_lines: bool, newline: &str) -> String {
+fn array(rows: Vec<ArrayElement>, foot: Vec<String>, several_lines: bool, newline: &str) -> String {
     let line = format!("[{}]", rows.iter().map(|row| row.text.as_str()).collect::<Vec<_>>().join(", "));
     let commented = !foot.is_empty() || rows.iter().any(|row| !row.above.is_empty() || row.behind.is_some());
     if rows.is_empty() && foot.is_empty() || !commented && !several_lines && line.len() <= LINE_WIDTH {
         return line;
     }
     let mut lines = vec!["[".to_string()];
-    for Row { above, text, behind } in rows {
+    for ArrayElement { above, text, behind } in rows {
         lines.extend(above.iter().map(|comment| format!("    {comment}")));
         lines.push(format!("    {text},{}", behind.unwrap_or_default()));
     }

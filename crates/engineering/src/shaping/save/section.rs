@@ -1,10 +1,10 @@
 //! `[[controller.elements]]`, a table for each element.
 
-use super::{Draft, Replacement, ShapingError, Written, matched};
-use crate::project::{Element, Node};
+use super::{Draft, Replacement, ShapingError, WrittenElement, matched};
+use crate::project::{DeclaredElement, TreeNode};
 
 /// An element's table in the file.
-struct Section<'a> {
+struct ElementTable<'a> {
     /// Empty lines and comments before it.
     above: &'a str,
     /// All its lines, the last with its end.
@@ -15,8 +15,8 @@ struct Section<'a> {
 /// them.
 pub(super) fn rewritten(
     draft: &Draft<'_>,
-    table: &Node,
-    written: &[Written<'_>],
+    table: &TreeNode,
+    written: &[WrittenElement<'_>],
 ) -> Result<Vec<Replacement>, ShapingError> {
     let part = |from: usize, to: usize| draft.content.get(from..to).unwrap_or_default();
     let mut sections = Vec::new();
@@ -29,7 +29,7 @@ pub(super) fn rewritten(
         }
         let end = end_of_line(draft.content, one.last_value());
         let last_line = if part(start, end).ends_with('\n') { "" } else { draft.newline };
-        sections.push(Section { above, text: format!("{}{last_line}", part(start, end)) });
+        sections.push(ElementTable { above, text: format!("{}{last_line}", part(start, end)) });
         from = Some(end);
     }
     let first = written.first().map_or(0, |one| one.node.place.start);
@@ -54,13 +54,13 @@ pub(super) fn rewritten(
     Ok(vec![Replacement { range, text }])
 }
 
-fn fresh(draft: &Draft<'_>, element: &Element) -> String {
+fn fresh(draft: &Draft<'_>, element: &DeclaredElement) -> String {
     let lines = element.print_lines().replace('\n', draft.newline);
     format!("[[{}.elements]]{}{lines}", draft.table, draft.newline)
 }
 
 /// An empty list, in the table's own header where it has one.
-fn none_left(draft: &Draft<'_>, table: &Node, range: std::ops::Range<usize>) -> Vec<Replacement> {
+fn none_left(draft: &Draft<'_>, table: &TreeNode, range: std::ops::Range<usize>) -> Vec<Replacement> {
     let Draft { newline, table: name, .. } = *draft;
     let header = draft.content.get(table.place.start..table.place.end).unwrap_or_default();
     if header.starts_with('[') && !header.starts_with("[[") {

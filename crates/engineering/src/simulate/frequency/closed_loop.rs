@@ -8,18 +8,18 @@ use num_complex::Complex64;
 use phea_dynamics::controller::Controller;
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::portable;
-use phea_dynamics::simulation::{CommandedPlant, Input, Profile, Sensed, Settings};
+use phea_dynamics::simulation::{CommandedPlant, Input, Profile, Sensed, SimulationSettings};
 use phea_hydraulics::machine::Machine;
 use phea_machine::{Control, ControllerSamples, Digital, Sampled, Waking, force_amplitude};
 use phea_qft::closed_loop::{Compensation, Member};
 
 use super::open_loop::profile;
-use super::point::{ResponsePoint, Resting, finer, point, respond};
-use super::{FrequencyRequest, MachineResponse, Rested, USUAL_AMPLITUDE, curve};
+use super::point::{ResponsePoint, RestingRig, finer, point, respond};
+use super::{FrequencyRequest, MachineResponse, RestedMachine, USUAL_AMPLITUDE, curve};
 use crate::rig::Rig;
 use crate::setup::Setup;
 use crate::simulate::SimulateError;
-use crate::simulate::bench::Bench;
+use crate::simulate::bench::ControlledMachine;
 
 /// Fewest samples of a period: a command that changes its sign at each has no other form than a
 /// square.
@@ -31,7 +31,7 @@ const TYPICAL_PUSH: f64 = 0.1;
 /// The reason where there is no loop.
 pub(super) fn measured(
     setup: &Setup<'_>,
-    rested: &Rested,
+    rested: &RestedMachine,
     frequencies: &[f64],
     request: &FrequencyRequest,
     goes_on: &mut dyn FnMut(usize) -> bool,
@@ -39,14 +39,14 @@ pub(super) fn measured(
     let Some(given) = &setup.controller else {
         return Ok(Err("the project gives no controller".to_string()));
     };
-    let bench = Bench::new(setup)?;
+    let bench = ControlledMachine::new(setup)?;
     let amplitude = request.reference_amplitude_n.unwrap_or(USUAL_AMPLITUDE * rested.push_n);
-    let model = Model::new(setup, rested, given)?;
+    let model = LinearizedLoop::new(setup, rested, given)?;
     let reference_n = held_reference(rested, given)?;
     if !reference_n.is_finite() {
         return Ok(Err("no reference holds the force of the operating point".to_string()));
     }
-    let shared = Shared { rested, model: &model, reference_n, amplitude };
+    let shared = LoopParts { rested, model: &model, reference_n, amplitude };
     match &bench.control {
         Control::Continuous(closed) => {
             shared.continuous((&bench.control, closed), frequencies, goes_on).map(Ok)
@@ -58,22 +58,22 @@ pub(super) fn measured(
 
 /// The reference at which the controller holds the force and the command of the rest: (F_0 +
 /// U_0/G(0))/F(0).
-fn held_reference(rested: &Rested, given: &Controller) -> Result<f64, SimulateError> {
+fn held_reference(rested: &RestedMachine, given: &Controller) -> Result<f64, SimulateError> {
     let gain = given.feedback.transfer_function()?.dc_gain();
     let error = if rested.rest.command == 0.0 { 0.0 } else { rested.rest.command / gain };
     Ok((rested.force_n + error) / given.prefilter.transfer_function()?.dc_gain())
 }
 
 /// What both kinds of loop need.
-struct Shared<'a> {
-    rested: &'a Rested,
-    model: &'a Model,
+struct LoopParts<'a> {
+    rested: &'a RestedMachine,
+    model: &'a LinearizedLoop,
     reference_n: f64,
     amplitude: f64,
 }
 
-impl Shared<'_> {
-    fn settings(&self) -> Settings {
+impl LoopParts<'_> {
+    fn settings(&self) -> SimulationSettings {
         finer(self.rested.settings, self.amplitude / (TYPICAL_PUSH * self.rested.push_n))
     }
 
@@ -125,7 +125,7 @@ impl Shared<'_> {
             }
             let orbit = orbit(*frequency);
             let linearised = orbit.as_ref().map(force);
-            let resting = Resting {
+            let resting = RestingRig {
                 control,
                 start: &start,
                 orbit: orbit.unwrap_or_default(),
@@ -169,7 +169,7 @@ impl Shared<'_> {
             if !goes_on(index) {
                 break;
             }
-            let resting = Resting {
+            let resting = RestingRig {
                 control: &control,
                 start: &start,
                 orbit: Vec::new(),
@@ -207,7 +207,7 @@ fn whole(frequency: f64, sample_time_s: f64) -> Option<f64> {
 ///
 /// Where what is fed forward of a load that yields is fed back in samples, the command is more by
 /// P_z'/P_z, the plant in z with it and without.
-struct Model {
+struct LinearizedLoop {
     /// As the loop sees it.
     rig: Rig,
     compensation: Compensation,
@@ -217,8 +217,12 @@ struct Model {
     alone: Option<Member>,
 }
 
-impl Model {
-    fn new(setup: &Setup<'_>, rested: &Rested, given: &Controller) -> Result<Model, SimulateError> {
+impl LinearizedLoop {
+    fn new(
+        setup: &Setup<'_>,
+        rested: &RestedMachine,
+        given: &Controller,
+    ) -> Result<LinearizedLoop, SimulateError> {
         let rig = rested.rig.in_loop();
         let compensation = match given.timing.sample_time_s {
             None => Compensation::new(given, setup.sensor.clone())?,
@@ -231,7 +235,7 @@ impl Model {
         let is_fed = given.timing.sample_time_s.is_some() && given.timing.rate_feed_forward != 0.0;
         let alone = is_fed.then(|| within(&compensation.without_feed_forward())).transpose()?;
         let member = within(&compensation)?;
-        Ok(Model { rig, compensation, member, alone })
+        Ok(LinearizedLoop { rig, compensation, member, alone })
     }
 
     fn at(&self, frequency: f64) -> Result<Complex64, SimulateError> {

@@ -6,12 +6,12 @@ use phea_dynamics::portable;
 use phea_dynamics::simulation::{CommandedPlant, Input, Plant, Profile, Sensed};
 use phea_machine::{Control, force_amplitude};
 
-use super::point::{Resting, finer, point, respond};
-use super::{FrequencyRequest, MachineResponse, Rested, SimulateError, USUAL_AMPLITUDE, curve};
+use super::point::{RestingRig, finer, point, respond};
+use super::{FrequencyRequest, MachineResponse, RestedMachine, SimulateError, USUAL_AMPLITUDE, curve};
 
 /// Measures the response at these frequencies; ends before the first for which `goes_on` is false.
 pub(super) fn measured(
-    rested: &Rested,
+    rested: &RestedMachine,
     frequencies: &[f64],
     request: &FrequencyRequest,
     goes_on: &mut dyn FnMut(usize) -> bool,
@@ -33,7 +33,7 @@ pub(super) fn measured(
         let ground = Profile::constant(rested.rest.inputs[0]);
         let typical: f64 = Plant::<f64>::command_scale(&rested.machine);
         let start = [rested.rest.state.as_slice(), &rested.rest.waves].concat();
-        let resting = Resting {
+        let resting = RestingRig {
             control: &control,
             start: &start,
             orbit: orbit.unwrap_or_default(),
@@ -60,12 +60,12 @@ pub(super) fn measured(
 }
 
 /// States on the orbit of a command of one volt.
-fn orbit(control: &Control, rested: &Rested, frequency: f64) -> Option<Vec<Complex64>> {
+fn orbit(control: &Control, rested: &RestedMachine, frequency: f64) -> Option<Vec<Complex64>> {
     let inputs = [&[rested.rest.command, 0.0], rested.rest.all_inputs().as_slice()].concat();
     control.orbit(&rested.rest.state, &inputs, frequency)
 }
 
-fn usual(rested: &Rested, response: Complex64) -> f64 {
+fn usual(rested: &RestedMachine, response: Complex64) -> f64 {
     let voltage = rested.rig.actuator.components().valve.nominal_voltage;
     USUAL_AMPLITUDE * voltage.min(rested.push_n / portable::magnitude(response))
 }

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use num_complex::Complex64;
 use phea_dynamics::portable;
-use phea_dynamics::simulation::{Input, Sampler, Settings, SinePlan, SineResponse};
+use phea_dynamics::simulation::{Input, Sampler, SimulationSettings, SinePlan, SineResponse};
 use phea_hydraulics::machine::INDICATORS;
 use phea_machine::{Control, Shaken};
 
@@ -60,7 +60,7 @@ impl ResponsePoint {
 }
 
 /// The rig that is excited, and its initial state.
-pub(super) struct Resting<'a> {
+pub(super) struct RestingRig<'a> {
     pub(super) control: &'a Control,
     /// Of all states, followed by the waves in transit.
     pub(super) start: &'a [f64],
@@ -68,18 +68,18 @@ pub(super) struct Resting<'a> {
     /// empty if unknown.
     pub(super) orbit: Vec<Complex64>,
     pub(super) inputs: Vec<Input>,
-    pub(super) settings: Settings,
+    pub(super) settings: SimulationSettings,
 }
 
 /// What a machine answers to a sine of this frequency and amplitude. It begins on the orbit that
 /// its derivatives have, so that only what they leave out has to settle.
 pub(super) fn respond(
-    resting: Resting<'_>,
+    resting: RestingRig<'_>,
     sampler: Option<Box<dyn Sampler + '_>>,
     [frequency, amplitude]: [f64; 2],
     watch: &mut dyn FnMut() -> bool,
 ) -> Result<SineResponse, SimulateError> {
-    let Resting { control, start, orbit, inputs, settings } = resting;
+    let RestingRig { control, start, orbit, inputs, settings } = resting;
     let mut start = start.to_vec();
     for (state, part) in start.iter_mut().zip(&orbit) {
         *state += amplitude * part.im;
@@ -103,10 +103,10 @@ pub(super) fn respond(
 
 /// As fine as so small a sine needs: errors are measured by what is typical, which is larger than
 /// it.
-pub(super) fn finer(settings: Settings, amplitude_over_typical: f64) -> Settings {
+pub(super) fn finer(settings: SimulationSettings, amplitude_over_typical: f64) -> SimulationSettings {
     let [finest, coarsest] = TOLERANCE;
     let wanted = (coarsest * amplitude_over_typical).clamp(finest, coarsest);
-    Settings { tolerance: settings.tolerance.min(wanted), ..settings }
+    SimulationSettings { tolerance: settings.tolerance.min(wanted), ..settings }
 }
 
 /// The measured point and its models.

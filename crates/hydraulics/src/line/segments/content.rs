@@ -5,7 +5,7 @@ use super::{Creep, Segments};
 
 /// What a line holds, but for the capacity that its chamber takes.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Content<T> {
+pub(crate) struct LineContent<T> {
     /// Volume that it has taken up since zero gauge pressure, in m3.
     pub(crate) oil: T,
     /// Energy in J.
@@ -26,14 +26,14 @@ impl<S: Scalar> Segments<S> {
     ///
     /// A line is linear and hands on volumes, so that these squares are exact. In steady flow plug
     /// and lags together hold 4/3 of I q^2/2, the kinetic energy of Poiseuille's parabola.
-    pub(crate) fn content<T: Scalar + From<S>>(&self, chamber_pressure: T, state: &[T]) -> Content<T> {
+    pub(crate) fn content<T: Scalar + From<S>>(&self, chamber_pressure: T, state: &[T]) -> LineContent<T> {
         let (zero, half) = (<T as From<f64>>::from(0.0), <T as From<f64>>::from(0.5));
         let segments = <T as From<f64>>::from(self.count.max(1) as f64);
         let part = |whole: S| <T as From<S>>::from(whole) / segments;
         let (pressures, rest) = state.split_at(self.count);
         let (flows, rest) = rest.split_at(self.count);
         let (walls, lags) = rest.split_at(self.creeping());
-        let mut content = Content { oil: zero, energy: zero, heat: zero };
+        let mut content = LineContent { oil: zero, energy: zero, heat: zero };
         for (node, pressure) in pressures.iter().enumerate() {
             let capacity = part(self.compliance) * if node == 0 { half } else { <T as From<f64>>::from(1.0) };
             content.oil = content.oil + capacity * *pressure;

@@ -4,8 +4,8 @@ use super::super::equations::{Flows, constant};
 use super::super::signals::ground_of;
 use super::super::{Chambers, Machine, MachineState, Motion, PowerUnit};
 use super::Account;
-use super::volume::{Law, Volume};
-use crate::line::{Content, DynamicLine};
+use super::volume::{DensityLaw, Volume};
+use crate::line::{DynamicLine, LineContent};
 
 /// Everything that the accounts of a rig are made of, at one instant.
 pub(super) struct Instant<T> {
@@ -27,7 +27,7 @@ pub(super) struct LineInstant<T> {
     pub(super) into_chamber: T,
     chamber_pressure: T,
     from_valve: T,
-    content: Content<T>,
+    content: LineContent<T>,
 }
 
 /// The supply line and its accumulator. Flows in m3/s.
@@ -125,7 +125,7 @@ impl<S: Scalar> Machine<S> {
                     fluid: compliance * modulus,
                     beside: T::from(0.0),
                     pressure,
-                    law: Law::Constant(modulus),
+                    law: DensityLaw::Constant(modulus),
                 };
                 [
                     side(area_a / clean.slope_a, compliance_a, state.pressure_a),
@@ -165,7 +165,7 @@ impl<S: Scalar> Machine<S> {
             let relief = unit.relief_flow(pressure, constant(self.supply.pressure));
             supply.fed = unit.pump_flow - relief - self.tare_flow_of(state);
             supply.line.fluid = unit.volume;
-            supply.line.law = Law::Constant(unit.effective_bulk_modulus);
+            supply.line.law = DensityLaw::Constant(unit.effective_bulk_modulus);
             if let Some(gas) = unit.accumulator {
                 let oil = unit.volume / unit.effective_bulk_modulus;
                 let share = T::from(1.0) - oil / unit.compliance(pressure);

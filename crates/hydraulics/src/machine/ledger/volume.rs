@@ -24,12 +24,12 @@ pub(super) struct Volume<T> {
     /// p in Pa gauge.
     pub(super) pressure: T,
     /// beta(p).
-    pub(super) law: Law<T>,
+    pub(super) law: DensityLaw<T>,
 }
 
 /// How the density follows the pressure.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Law<T> {
+pub(super) enum DensityLaw<T> {
     /// A constant modulus in Pa: rho = exp(p/beta), w = beta (exp(p/beta) - 1 - p/beta).
     Constant(T),
     /// Fluid with air.
@@ -84,7 +84,7 @@ impl<T: Scalar> Volume<T> {
         pressure: T,
     ) -> Volume<T> {
         let wall = side.wall_slope / area;
-        let law = Law::Mixture(Mixture {
+        let law = DensityLaw::Mixture(Mixture {
             bulk_modulus: chambers.bulk_modulus,
             volume_fraction: chambers.volume_fraction,
             polytropic_exponent: chambers.polytropic_exponent,
@@ -126,20 +126,20 @@ impl<T: Scalar> Volume<T> {
     }
 }
 
-impl<T: Scalar> Law<T> {
+impl<T: Scalar> DensityLaw<T> {
     /// rho.
     pub(super) fn density(&self, pressure: T) -> T {
         match self {
-            Law::Constant(modulus) => (pressure / *modulus).exp(),
-            Law::Mixture(mixture) => T::from(1.0) / mixture.specific_volume(pressure),
+            DensityLaw::Constant(modulus) => (pressure / *modulus).exp(),
+            DensityLaw::Mixture(mixture) => T::from(1.0) / mixture.specific_volume(pressure),
         }
     }
 
     /// p + w in Pa.
     fn port_energy(&self, pressure: T) -> T {
         match self {
-            Law::Constant(modulus) => *modulus * (self.density(pressure) - T::from(1.0)),
-            Law::Mixture(mixture) => {
+            DensityLaw::Constant(modulus) => *modulus * (self.density(pressure) - T::from(1.0)),
+            DensityLaw::Mixture(mixture) => {
                 let thinned = integral(pressure, |pressure| mixture.specific_volume(pressure));
                 thinned / mixture.specific_volume(pressure)
             }
@@ -149,16 +149,16 @@ impl<T: Scalar> Law<T> {
     /// Integral of rho over the pressure, in Pa.
     fn density_integral(&self, pressure: T) -> T {
         match self {
-            Law::Constant(_) => self.port_energy(pressure),
-            Law::Mixture(_) => integral(pressure, |pressure| self.density(pressure)),
+            DensityLaw::Constant(_) => self.port_energy(pressure),
+            DensityLaw::Mixture(_) => integral(pressure, |pressure| self.density(pressure)),
         }
     }
 
     /// Integral of p + w over the pressure, in Pa2.
     fn port_energy_integral(&self, pressure: T) -> T {
         match self {
-            Law::Constant(modulus) => *modulus * (self.port_energy(pressure) - pressure),
-            Law::Mixture(_) => integral(pressure, |pressure| self.port_energy(pressure)),
+            DensityLaw::Constant(modulus) => *modulus * (self.port_energy(pressure) - pressure),
+            DensityLaw::Mixture(_) => integral(pressure, |pressure| self.port_energy(pressure)),
         }
     }
 }
@@ -197,8 +197,8 @@ mod tests {
 
     const MODULUS: f64 = 1.45e9;
 
-    fn mixture(volume_fraction: f64, polytropic_exponent: f64, wall: f64) -> Law<f64> {
-        Law::Mixture(Mixture {
+    fn mixture(volume_fraction: f64, polytropic_exponent: f64, wall: f64) -> DensityLaw<f64> {
+        DensityLaw::Mixture(Mixture {
             bulk_modulus: MODULUS,
             volume_fraction,
             polytropic_exponent,
@@ -231,15 +231,15 @@ mod tests {
     #[test]
     fn a_mixture_without_air_has_a_constant_modulus() {
         let wall = 1.0 / 3e8;
-        let (law, constant) = (mixture(0.0, 1.4, wall), Law::Constant(1.0 / (1.0 / MODULUS + wall)));
+        let (law, constant) = (mixture(0.0, 1.4, wall), DensityLaw::Constant(1.0 / (1.0 / MODULUS + wall)));
         for pressure in [-5e4, 35e5, 7e6] {
-            let close = |of: fn(&Law<f64>, f64) -> f64, tolerance: f64| {
+            let close = |of: fn(&DensityLaw<f64>, f64) -> f64, tolerance: f64| {
                 (of(&law, pressure) / of(&constant, pressure) - 1.0).abs() < tolerance
             };
-            assert!(close(Law::density, 1e-13) && close(Law::port_energy, 1e-10));
+            assert!(close(DensityLaw::density, 1e-13) && close(DensityLaw::port_energy, 1e-10));
             // the closed form is a difference of nearly equal numbers
             assert!(
-                close(Law::density_integral, 1e-10) && close(Law::port_energy_integral, 1e-6),
+                close(DensityLaw::density_integral, 1e-10) && close(DensityLaw::port_energy_integral, 1e-6),
                 "{pressure}"
             );
         }

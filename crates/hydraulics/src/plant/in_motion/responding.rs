@@ -9,7 +9,7 @@ use phea_dynamics::responding::RespondingPlant;
 use phea_dynamics::uncertain_plant::PlantCoefficients;
 
 use super::super::{ChamberDynamics, LinearLoad, LinearPlant, YieldingSupply};
-use super::{Paths, PlantInMotion, Side};
+use super::{ChamberSide, Paths, PlantInMotion};
 
 /// How far below the slowest and above the fastest thing of a plant its response is its own.
 const BELOW: f64 = 0.01;
@@ -48,8 +48,8 @@ impl RespondingPlant for PlantInMotion {
     ///
     /// and the edges of a supply that yields likewise.
     fn slow(&self) -> PlantCoefficients<f64> {
-        let of = |value: fn(&Side) -> f64| [value(&self.sides[0]), value(&self.sides[1])];
-        let passing = |side: &Side| 1.0 + side.flow_pressure * side.line.resistance();
+        let of = |value: fn(&ChamberSide) -> f64| [value(&self.sides[0]), value(&self.sides[1])];
+        let passing = |side: &ChamberSide| 1.0 + side.flow_pressure * side.line.resistance();
         let slow = [passing(&self.sides[0]), passing(&self.sides[1])];
         let over = |values: [f64; 2]| [values[0] / slow[0], values[1] / slow[1]];
         let chambers = ChamberDynamics::TwoPressures {

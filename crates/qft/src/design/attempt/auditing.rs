@@ -2,7 +2,7 @@
 
 use phea_dynamics::watch::{Watch, part};
 
-use super::{AUDITING, Attempt, DesignError, Ending, WHOLE};
+use super::{AUDITING, Attempt, AttemptEnding, LoopDesignError, WHOLE};
 use crate::audit::audit_with;
 use crate::design::counterexample::{
     Counterexample, audited_margin_db, counterexamples, of_beside, too_little_delay, unstable_plant,
@@ -27,7 +27,7 @@ impl Attempt {
         family: &Family,
         sampled: &SampledPlants,
         watch: Watch<'_>,
-    ) -> Result<Audit, DesignError> {
+    ) -> Result<Audit, LoopDesignError> {
         let problem = AuditProblem {
             family,
             compensation: &self.compensation()?,
@@ -38,12 +38,12 @@ impl Attempt {
         Ok(audit_with(&problem, sampled, &mut part(watch, AUDITING, WHOLE))?)
     }
 
-    fn audit_of_family(&self, sampled: &SampledPlants, watch: Watch<'_>) -> Result<Audit, DesignError> {
+    fn audit_of_family(&self, sampled: &SampledPlants, watch: Watch<'_>) -> Result<Audit, LoopDesignError> {
         self.audit_of(&self.shaping.samples().problem().family, sampled, watch)
     }
 
     /// The audits of the plants beside the family, one by one.
-    fn audit_of_next(&self, watch: Watch<'_>) -> Result<Option<Audit>, DesignError> {
+    fn audit_of_next(&self, watch: Watch<'_>) -> Result<Option<Audit>, LoopDesignError> {
         let beside = &self.shaping.samples().problem().beside;
         let Some(plant) = beside.get(self.beside.len()) else { return Ok(None) };
         let alone = Family::Uncertain(UncertainFamily::of_nominal(plant.clone()));
@@ -55,7 +55,7 @@ impl Attempt {
         &mut self,
         sampled: &SampledPlants,
         watch: Watch<'_>,
-    ) -> Result<Option<Ending>, DesignError> {
+    ) -> Result<Option<AttemptEnding>, LoopDesignError> {
         self.beside.clear();
         while let Some(audit) = self.audit_of_next(watch)? {
             let judgement = self.judgement();
@@ -75,7 +75,7 @@ impl Attempt {
         let problem = self.shaping.samples().problem();
         let is_met = |one: &Audit| one.verdict == Verdict::Met && too_little_delay(one, problem).is_empty();
         if all().all(is_met) {
-            return Ok(Some(Ending::Met(audit)));
+            return Ok(Some(AttemptEnding::Met(audit)));
         }
         let stable = all().all(|one| one.stability.verdict == Verdict::Met);
         let over_rate = |one: &Audit| worst_over_rate_db(&one.specifications, self.shaping.tracking());
@@ -86,8 +86,8 @@ impl Attempt {
         }
         let worst_margin_db = judgement.worst_margin_db.min(audited_db);
         Ok(Some(match self.relaxes && stable {
-            true => Ending::Missed { worst_margin_db, audit: Some(audit) },
-            false => Ending::NotConverged(audit),
+            true => AttemptEnding::Missed { worst_margin_db, audit: Some(audit) },
+            false => AttemptEnding::NotConverged(audit),
         }))
     }
 
@@ -96,7 +96,7 @@ impl Attempt {
         &mut self,
         sampled: &SampledPlants,
         watch: Watch<'_>,
-    ) -> Result<Audit, DesignError> {
+    ) -> Result<Audit, LoopDesignError> {
         self.beside.clear();
         while let Some(audit) = self.audit_of_next(watch)? {
             self.beside.push(audit);

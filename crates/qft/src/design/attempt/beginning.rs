@@ -7,7 +7,7 @@ const STABILISING_MAXIMUM: usize = 24;
 
 /// Points that a search looks at before any that is spread.
 #[derive(Clone, Debug, Default)]
-pub(in crate::design) struct Beginning {
+pub(in crate::design) struct StartingPoints {
     /// What a simpler controller does.
     pub(in crate::design) simpler: Vec<Vec<f64>>,
     /// What stabilises the nominal plant.

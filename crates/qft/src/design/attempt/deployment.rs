@@ -7,7 +7,7 @@
 use phea_dynamics::controller::Controller;
 use phea_dynamics::watch::Watch;
 
-use super::{Attempt, DesignError, Ending, FEASIBLE_DB, Leave, RESERVE_DB};
+use super::{Attempt, AttemptEnding, FEASIBLE_DB, Leave, LoopDesignError, RESERVE_DB};
 use crate::closed_loop::Compensation;
 use crate::design::quantisation::{CoefficientFormat, rounded};
 use crate::loop_shaping::{Aim, Judgement, SearchProblem};
@@ -21,7 +21,7 @@ const DRAWS_MAXIMUM: usize = 24;
 
 impl Attempt {
     /// The controller as it is deployed: in z and with rounded coefficients where the loop samples and they are not kept as they are.
-    pub(in crate::design) fn deployed(&self) -> Result<Controller, DesignError> {
+    pub(in crate::design) fn deployed(&self) -> Result<Controller, LoopDesignError> {
         let law = self.shaping.controller(&self.x);
         if !self.rounds_coefficients() {
             return Ok(law);
@@ -30,7 +30,7 @@ impl Attempt {
     }
 
     /// The loop of what is deployed.
-    pub(super) fn compensation(&self) -> Result<Compensation, DesignError> {
+    pub(super) fn compensation(&self) -> Result<Compensation, LoopDesignError> {
         let problem = self.shaping.samples().problem();
         Ok(Compensation::new(&self.deployed()?, problem.sensor.clone())?)
     }
@@ -59,7 +59,7 @@ impl Attempt {
                 return Ok(());
             }
             if self.draws >= DRAWS_MAXIMUM {
-                return Err(Leave::Ended(Ending::Missed { worst_margin_db, audit: None }));
+                return Err(Leave::Ended(AttemptEnding::Missed { worst_margin_db, audit: None }));
             }
             self.draws += 1;
             self.reserve_db += match stable {

@@ -9,7 +9,7 @@ use crate::prefilter::PrefilterError;
 
 /// Why a design cannot go on.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum DesignError {
+pub enum LoopDesignError {
     /// A part is no transfer function, or cannot be sampled.
     #[error("{0}")]
     Linear(#[from] LinearError),
@@ -27,11 +27,11 @@ pub enum DesignError {
     Stopped(#[from] Stopped),
 }
 
-impl From<PrefilterError> for DesignError {
-    fn from(error: PrefilterError) -> DesignError {
+impl From<PrefilterError> for LoopDesignError {
+    fn from(error: PrefilterError) -> LoopDesignError {
         match error {
-            PrefilterError::Stopped(stopped) => DesignError::Stopped(stopped),
-            error => DesignError::Prefilter(error),
+            PrefilterError::Stopped(stopped) => LoopDesignError::Stopped(stopped),
+            error => LoopDesignError::Prefilter(error),
         }
     }
 }

@@ -18,7 +18,7 @@ const ON_THE_AXIS: f64 = 1e-9;
 
 /// A plant within its loop.
 #[derive(Clone, Debug)]
-pub(super) struct Candidate {
+pub(super) struct PlantWithinLoop {
     pub(super) point: PlantPoint,
     pub(super) member: Member,
     /// P alone, where it is rational.
@@ -42,7 +42,7 @@ pub(super) struct Candidate {
 }
 
 /// Plants of a family: every one of them a plant that the loop must serve.
-pub(super) fn candidates(family: &Family, compensation: &Compensation) -> Vec<Candidate> {
+pub(super) fn candidates(family: &Family, compensation: &Compensation) -> Vec<PlantWithinLoop> {
     match family {
         Family::Uncertain(uncertain) => {
             let mut chosen: Vec<&Vec<f64>> = uncertain.members().iter().take(1).collect();
@@ -61,8 +61,8 @@ pub(super) fn candidates(family: &Family, compensation: &Compensation) -> Vec<Ca
                 let point = PlantPoint::Parameters(values.clone());
                 let member = compensation.member_of(uncertain.plant(), values).ok()?;
                 match uncertain.plant().coefficients(values) {
-                    Some(plant) => Candidate::rational(point, plant.command, member, compensation),
-                    None => Some(Candidate::without_roots(point, member, compensation)),
+                    Some(plant) => PlantWithinLoop::rational(point, plant.command, member, compensation),
+                    None => Some(PlantWithinLoop::without_roots(point, member, compensation)),
                 }
             };
             chosen.into_iter().filter_map(seen).collect()
@@ -72,7 +72,7 @@ pub(super) fn candidates(family: &Family, compensation: &Compensation) -> Vec<Ca
             plants
                 .map(|(index, plant)| {
                     let member = compensation.measured(plant);
-                    Candidate::without_roots(PlantPoint::Measured(index), member, compensation)
+                    PlantWithinLoop::without_roots(PlantPoint::Measured(index), member, compensation)
                 })
                 .collect()
         }
@@ -86,12 +86,12 @@ fn strided<T>(all: &[T], most: usize) -> impl Iterator<Item = &T> {
     (0..count).filter_map(move |index| all.get(index * last / count.saturating_sub(1).max(1)))
 }
 
-impl Candidate {
+impl PlantWithinLoop {
     /// Of a plant without polynomials no root is known; what follows without roots holds nevertheless.
-    fn without_roots(point: PlantPoint, member: Member, compensation: &Compensation) -> Candidate {
+    fn without_roots(point: PlantPoint, member: Member, compensation: &Compensation) -> PlantWithinLoop {
         let dead_time_s = compensation.delay_s() + compensation.sensor().dead_time_s();
         let sample = compensation.sample_time_s();
-        Candidate {
+        PlantWithinLoop {
             point,
             member,
             command: None,
@@ -112,7 +112,7 @@ impl Candidate {
         command: RationalCoefficients<f64>,
         member: Member,
         compensation: &Compensation,
-    ) -> Option<Candidate> {
+    ) -> Option<PlantWithinLoop> {
         let plane = Plane { sample_time_s: compensation.sample_time_s() };
         let sensor = compensation.sensor();
         let roots = |coefficients: &[f64]| Polynomial::new(coefficients.to_vec()).roots().ok();
@@ -135,7 +135,7 @@ impl Candidate {
             Member::Responding { .. } | Member::Measured { .. } => return None,
         };
         let size = |root: &Complex64| portable::magnitude(*root);
-        Some(Candidate {
+        Some(PlantWithinLoop {
             point,
             member,
             command: Some(command),

@@ -2,8 +2,8 @@
 
 use phea_dynamics::portable;
 
-use super::candidate::Candidate;
-use super::plane::Boundary;
+use super::candidate::PlantWithinLoop;
+use super::plane::BoundaryCells;
 use crate::closed_loop::MemberResponse;
 use crate::specification::{ClosedLoop, Requirement, Specification};
 
@@ -48,7 +48,7 @@ pub(super) fn demanded(specification: &Specification, frequency: f64) -> Option<
 
 /// What specifications demand at one frequency, of which plants.
 #[derive(Clone, Debug)]
-pub(super) struct Node {
+pub(super) struct FrequencyDemand {
     /// Specification with its limit.
     demands: Vec<(usize, f64)>,
     /// Responses of the candidates.
@@ -60,16 +60,16 @@ pub(super) struct Node {
 /// The demands on all candidates over all frequencies of a boundary.
 #[derive(Clone, Debug)]
 pub(super) struct Ceilings<'a> {
-    pub(super) boundary: &'a Boundary,
+    pub(super) boundary: &'a BoundaryCells,
     specifications: &'a [Specification],
-    nodes: Vec<Node>,
+    nodes: Vec<FrequencyDemand>,
 }
 
 impl<'a> Ceilings<'a> {
     pub(super) fn new(
-        boundary: &'a Boundary,
+        boundary: &'a BoundaryCells,
         specifications: &'a [Specification],
-        candidates: &[Candidate],
+        candidates: &[PlantWithinLoop],
     ) -> Ceilings<'a> {
         let node = |frequency: &f64| node(specifications, candidates, *frequency);
         Ceilings { boundary, specifications, nodes: boundary.frequencies.iter().map(node).collect() }
@@ -89,7 +89,7 @@ impl<'a> Ceilings<'a> {
     /// |T| <= W        |S| <= W        |P S| <= W: |S| <= W/|P|        |Pd S| <= W: |S| <= W/|Pd|        |G S| <= W: |T| <= W |P H|
     /// |S| <= 1 + |T|,  |T| <= 1 + |S|                                     since S + T = 1
     /// ```
-    fn at(&self, node: &Node, candidate: usize, factor: f64) -> Ceiling {
+    fn at(&self, node: &FrequencyDemand, candidate: usize, factor: f64) -> Ceiling {
         let mut ceiling = Ceiling { sensitivity: Share::FREE, complementary: Share::FREE };
         let own = node.responses.get(candidate).and_then(Option::as_ref);
         let size = portable::magnitude;
@@ -139,7 +139,7 @@ fn spread(own: &MemberResponse, partner: &MemberResponse, d: f64) -> [f64; 2] {
     [(scaled + portable::magnitude(x)) / apart, (scaled + 1.0) / apart]
 }
 
-fn node(specifications: &[Specification], candidates: &[Candidate], frequency: f64) -> Node {
+fn node(specifications: &[Specification], candidates: &[PlantWithinLoop], frequency: f64) -> FrequencyDemand {
     let demands: Vec<(usize, f64)> = specifications
         .iter()
         .enumerate()
@@ -162,7 +162,7 @@ fn node(specifications: &[Specification], candidates: &[Candidate], frequency: f
     let crossed =
         |demand: &(usize, f64)| of(&demand.0).is_some_and(Requirement::is_tracking) && !tracked(demand);
     let demands = demands.into_iter().filter(|demand| !crossed(demand)).collect();
-    Node { demands, responses, partners }
+    FrequencyDemand { demands, responses, partners }
 }
 
 /// The responses of least and greatest magnitude, and those that lag and lead the first one most.

@@ -13,11 +13,11 @@ use std::f64::consts::PI;
 use num_complex::Complex64;
 use phea_dynamics::portable;
 
-use super::candidate::Candidate;
+use super::candidate::PlantWithinLoop;
 use super::ceiling::{Ceilings, demanded};
 use super::finding::{Finding, Party};
 use super::interpolation::least_relaxation_db;
-use super::plane::Boundary;
+use super::plane::BoundaryCells;
 use crate::bound::{Bound, Feasibility, FrequencyBounds, PhaseGrid, TemplateFill};
 use crate::closed_loop::MemberResponse;
 use crate::specification::{Limit, LoopResponse, Specification};
@@ -37,7 +37,7 @@ const TOLERANCE_DB: f64 = 0.01;
 const RELAXATION_MAXIMUM_DB: f64 = 200.0;
 
 /// The plants at one frequency and what is demanded of them there.
-struct Place<'a> {
+struct DemandedPlants<'a> {
     frequency: f64,
     /// Requirements with the limits they have at this frequency, as constants.
     specifications: Vec<(usize, Specification)>,
@@ -48,8 +48,8 @@ struct Place<'a> {
 /// Contradictions at all design frequencies, the worst first.
 pub(super) fn contradictions(
     specifications: &[Specification],
-    candidates: &[Candidate],
-    boundary: &Boundary,
+    candidates: &[PlantWithinLoop],
+    boundary: &BoundaryCells,
 ) -> Vec<Finding> {
     let mut frequencies: Vec<f64> = specifications
         .iter()
@@ -63,7 +63,7 @@ pub(super) fn contradictions(
     let places = frequencies.iter().step_by(skip);
     let mut found: Vec<([f64; 2], Finding)> = places
         .filter_map(|&frequency| {
-            let place = Place::new(specifications, candidates, frequency)?;
+            let place = DemandedPlants::new(specifications, candidates, frequency)?;
             let largest = largest_complementary(specifications, candidates, boundary, frequency)?;
             place.contradiction(largest)
         })
@@ -75,11 +75,11 @@ pub(super) fn contradictions(
 /// The greatest |T| that the limits leave any plant; `None` where they leave too much to tell.
 fn largest_complementary(
     specifications: &[Specification],
-    candidates: &[Candidate],
-    boundary: &Boundary,
+    candidates: &[PlantWithinLoop],
+    boundary: &BoundaryCells,
     frequency: f64,
 ) -> Option<f64> {
-    let here = Boundary {
+    let here = BoundaryCells {
         plane: boundary.plane,
         cells: Vec::new(),
         frequencies: vec![frequency],
@@ -92,12 +92,12 @@ fn largest_complementary(
     Some(limits.fold(0.0, f64::max)).filter(|largest| *largest <= COMPLEMENTARY_MAXIMUM)
 }
 
-impl<'a> Place<'a> {
+impl<'a> DemandedPlants<'a> {
     fn new(
         specifications: &[Specification],
-        candidates: &'a [Candidate],
+        candidates: &'a [PlantWithinLoop],
         frequency: f64,
-    ) -> Option<Place<'a>> {
+    ) -> Option<DemandedPlants<'a>> {
         let at = |(index, specification): (usize, &Specification)| {
             let own = specification.frequencies_rad_per_s.contains(&frequency);
             demanded(specification, frequency).filter(|_| own)?;
@@ -125,7 +125,7 @@ impl<'a> Place<'a> {
             outlines: Vec::new(),
             resolution: Resolution::Members,
         };
-        (!specifications.is_empty()).then_some(Place { frequency, specifications, plants, template })
+        (!specifications.is_empty()).then_some(DemandedPlants { frequency, specifications, plants, template })
     }
 
     /// The union of all bounds with every limit relaxed; `None` without a bound.

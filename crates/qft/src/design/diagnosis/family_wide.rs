@@ -2,7 +2,7 @@
 
 use num_complex::Complex64;
 
-use super::candidate::Candidate;
+use super::candidate::PlantWithinLoop;
 use super::finding::Finding;
 use crate::specification::{Requirement, Specification};
 
@@ -21,7 +21,7 @@ struct Sign {
 /// The characteristic function D Gd + N Gn e^(-sT) of a stable loop has no zero on [0, inf), and for large s the sign of Gd times the leading
 /// coefficient of D. Where D (or, with integral action, Gd) vanishes it is N Gn: so the sign of N there over the
 /// leading coefficient of D must be the same for all plants.
-pub(super) fn gain_signs(specifications: &[Specification], candidates: &[Candidate]) -> Vec<Finding> {
+pub(super) fn gain_signs(specifications: &[Specification], candidates: &[PlantWithinLoop]) -> Vec<Finding> {
     let integral = specifications.iter().any(demands_integral_action);
     let signs: Vec<Sign> = candidates
         .iter()
@@ -56,7 +56,7 @@ fn demands_integral_action(specification: &Specification) -> bool {
     specification.band_rad_per_s[0] == 0.0 && limit.magnitude(0.0) == Some(0.0)
 }
 
-fn signs(index: usize, candidate: &Candidate, integral: bool) -> Vec<Sign> {
+fn signs(index: usize, candidate: &PlantWithinLoop, integral: bool) -> Vec<Sign> {
     let Some(command) = &candidate.command else { return Vec::new() };
     let value = |coefficients: &[f64], s: f64| coefficients.iter().fold(0.0, |sum, c| sum * s + c);
     let leading = command.denominator.iter().position(|c| *c != 0.0);
@@ -79,7 +79,7 @@ fn signs(index: usize, candidate: &Candidate, integral: bool) -> Vec<Sign> {
 }
 
 /// Whether P vanishes for large real s.
-fn is_strictly_proper(candidate: &Candidate) -> bool {
+fn is_strictly_proper(candidate: &PlantWithinLoop) -> bool {
     let degree = |coefficients: &[f64]| {
         coefficients.iter().position(|c| *c != 0.0).map_or(0, |first| coefficients.len() - first)
     };
@@ -91,7 +91,7 @@ fn is_strictly_proper(candidate: &Candidate) -> bool {
 
 /// More delay margin than 2/p, which no linear time-invariant controller of a continuous loop exceeds for a plant with the real
 /// unstable pole p (Middleton and Miller 2007).
-pub(super) fn delay_margin(minimum_s: f64, candidates: &[Candidate]) -> Option<Finding> {
+pub(super) fn delay_margin(minimum_s: f64, candidates: &[PlantWithinLoop]) -> Option<Finding> {
     let fastest = candidates.iter().flat_map(|candidate| {
         let real = candidate.unstable_poles.iter().filter(|pole| pole.im == 0.0);
         real.map(move |pole| (pole.re, candidate))
@@ -108,7 +108,7 @@ pub(super) fn delay_margin(minimum_s: f64, candidates: &[Candidate]) -> Option<F
 
 /// A plant with an odd number of real unstable poles between two of its real zeros in the right half plane, infinity among them: no stable
 /// controller stabilises it (Youla, Bongiorno and Lu 1974).
-pub(super) fn unstable_controller(candidates: &[Candidate]) -> Option<Finding> {
+pub(super) fn unstable_controller(candidates: &[PlantWithinLoop]) -> Option<Finding> {
     candidates.iter().find_map(|candidate| {
         let real = |roots: &[Complex64]| -> Vec<f64> {
             roots.iter().filter(|root| root.im == 0.0).map(|root| root.re).collect()
@@ -134,7 +134,7 @@ pub(super) fn unstable_controller(candidates: &[Candidate]) -> Option<Finding> {
 /// Design frequencies beyond pi/T, or beyond what was measured.
 pub(super) fn out_of_reach(
     specifications: &[Specification],
-    candidates: &[Candidate],
+    candidates: &[PlantWithinLoop],
     highest_rad_per_s: f64,
 ) -> Vec<Finding> {
     let measured = candidates.iter().filter_map(|candidate| match &candidate.member {

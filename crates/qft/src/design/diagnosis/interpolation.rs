@@ -11,7 +11,7 @@
 use num_complex::Complex64;
 use phea_dynamics::portable;
 
-use super::candidate::Candidate;
+use super::candidate::PlantWithinLoop;
 use super::ceiling::{Ceiling, Ceilings};
 use super::finding::{Constraint, ConstraintPlace, Finding};
 use super::plane::{Plane, share};
@@ -34,12 +34,12 @@ const RELAXATION_MAXIMUM_DB: f64 = 400.0;
 /// A point of the half plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Spot {
-    kind: Kind,
+    kind: LimitKind,
     at: Complex64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
+enum LimitKind {
     Pole,
     Zero,
     Point,
@@ -70,9 +70,9 @@ impl Left {
 }
 
 /// Mean logarithms of the limits in each cell; infinite where nothing is limited.
-type Curve = Vec<[f64; 2]>;
+type LimitCurve = Vec<[f64; 2]>;
 
-fn curve(ceilings: impl Iterator<Item = Ceiling>) -> Curve {
+fn curve(ceilings: impl Iterator<Item = Ceiling>) -> LimitCurve {
     let nodes: Vec<[f64; 2]> = ceilings
         .map(|ceiling| [portable::ln(ceiling.sensitivity.limit), portable::ln(ceiling.complementary.limit)])
         .collect();
@@ -83,7 +83,13 @@ fn curve(ceilings: impl Iterator<Item = Ceiling>) -> Curve {
     nodes.chunks(2).map(mean).collect()
 }
 
-fn left(curve: &Curve, shares: &[f64], candidate: &Candidate, plane: Plane, at: Complex64) -> Left {
+fn left(
+    curve: &LimitCurve,
+    shares: &[f64],
+    candidate: &PlantWithinLoop,
+    plane: Plane,
+    at: Complex64,
+) -> Left {
     let (mut sensitivity, mut complementary, mut free) = (0.0, 0.0, 0.0);
     for ([s, t], &share) in curve.iter().zip(shares) {
         if share <= 0.0 {
@@ -104,12 +110,14 @@ fn left(curve: &Curve, shares: &[f64], candidate: &Candidate, plane: Plane, at: 
 }
 
 /// The worst impossibility at a pole, a zero and elsewhere; where there is none, the highest peak that is forced.
-pub(super) fn findings(ceilings: &Ceilings, candidates: &[Candidate]) -> Vec<Finding> {
+pub(super) fn findings(ceilings: &Ceilings, candidates: &[PlantWithinLoop]) -> Vec<Finding> {
     let plane = ceilings.boundary.plane;
     let shares =
         |at: Complex64| -> Vec<f64> { ceilings.boundary.cells.iter().map(|cell| share(at, *cell)).collect() };
-    let points: Vec<(Spot, Vec<f64>)> =
-        real_points(ceilings).into_iter().map(|at| (Spot { kind: Kind::Point, at }, shares(at))).collect();
+    let points: Vec<(Spot, Vec<f64>)> = real_points(ceilings)
+        .into_iter()
+        .map(|at| (Spot { kind: LimitKind::Point, at }, shares(at)))
+        .collect();
     let mut deficits: Vec<Deficit> = Vec::new();
     let mut peaks: Vec<Deficit> = Vec::new();
     for (index, candidate) in candidates.iter().enumerate() {
@@ -124,7 +132,7 @@ pub(super) fn findings(ceilings: &Ceilings, candidates: &[Candidate]) -> Vec<Fin
             }
         };
         points.iter().for_each(|(spot, shares)| look(*spot, shares));
-        for (kind, roots) in [(Kind::Pole, &candidate.poles), (Kind::Zero, &candidate.zeros)] {
+        for (kind, roots) in [(LimitKind::Pole, &candidate.poles), (LimitKind::Zero, &candidate.zeros)] {
             for &at in roots.iter().filter(|root| root.im >= 0.0) {
                 look(Spot { kind, at }, &shares(at));
             }
@@ -141,17 +149,17 @@ fn worst<'a>(deficits: impl Iterator<Item = &'a Deficit>) -> Option<&'a Deficit>
     deficits.max_by(|a, b| a.lack.total_cmp(&b.lack))
 }
 
-fn impossible(ceilings: &Ceilings, candidates: &[Candidate], deficits: &[Deficit]) -> Vec<Finding> {
+fn impossible(ceilings: &Ceilings, candidates: &[PlantWithinLoop], deficits: &[Deficit]) -> Vec<Finding> {
     let busy = [0.0, ceilings.boundary.highest];
     let tolerance = |deficit: &Deficit| ROUNDING + TOLERANCE * share(deficit.spot.at, busy);
-    let of_kind = |kind: Kind| {
+    let of_kind = |kind: LimitKind| {
         let lacking = deficits.iter().filter(|deficit| deficit.lack > tolerance(deficit));
         worst(lacking.filter(|deficit| deficit.spot.kind == kind))
     };
-    let roots: Vec<&Deficit> = [Kind::Pole, Kind::Zero].into_iter().filter_map(of_kind).collect();
+    let roots: Vec<&Deficit> = [LimitKind::Pole, LimitKind::Zero].into_iter().filter_map(of_kind).collect();
     let known = roots.iter().map(|deficit| deficit.lack).fold(0.0, f64::max);
     // beside a pole or a zero that tells the same, a point has nothing to add
-    let point = of_kind(Kind::Point).filter(|point| roots.is_empty() || point.lack > known + 0.1);
+    let point = of_kind(LimitKind::Point).filter(|point| roots.is_empty() || point.lack > known + 0.1);
     roots
         .into_iter()
         .chain(point)
@@ -165,7 +173,7 @@ fn impossible(ceilings: &Ceilings, candidates: &[Candidate], deficits: &[Deficit
         .collect()
 }
 
-fn forced(ceilings: &Ceilings, candidates: &[Candidate], peaks: &[Deficit]) -> Option<Finding> {
+fn forced(ceilings: &Ceilings, candidates: &[PlantWithinLoop], peaks: &[Deficit]) -> Option<Finding> {
     const NEPER_DB: f64 = 20.0 / std::f64::consts::LN_10;
     let highest = worst(peaks.iter().filter(|peak| peak.lack.is_finite()))?;
     let peak_db = highest.lack * NEPER_DB;
@@ -176,7 +184,7 @@ fn forced(ceilings: &Ceilings, candidates: &[Candidate], peaks: &[Deficit]) -> O
 }
 
 /// The least relaxation under which |S| + |T| reaches 1 at the spot, by bisection.
-fn relaxation_db(ceilings: &Ceilings, candidate: &Candidate, deficit: &Deficit) -> f64 {
+fn relaxation_db(ceilings: &Ceilings, candidate: &PlantWithinLoop, deficit: &Deficit) -> f64 {
     let Deficit { spot, candidate: index, .. } = *deficit;
     let shares: Vec<f64> = ceilings.boundary.cells.iter().map(|cell| share(spot.at, *cell)).collect();
     let enough = |relaxation_db: f64| {
@@ -200,26 +208,26 @@ pub(super) fn least_relaxation_db(greatest_db: f64, enough: impl Fn(f64) -> bool
     high
 }
 
-fn constraint(ceilings: &Ceilings, candidates: &[Candidate], deficit: &Deficit) -> Option<Constraint> {
+fn constraint(ceilings: &Ceilings, candidates: &[PlantWithinLoop], deficit: &Deficit) -> Option<Constraint> {
     let Deficit { spot, candidate: index, left, .. } = *deficit;
     let candidate = candidates.get(index)?;
     let boundary = ceilings.boundary;
     let place = match spot.kind {
-        Kind::Pole => {
+        LimitKind::Pole => {
             let all = candidate.poles.iter().zip(&candidate.unstable_poles);
             ConstraintPlace::UnstablePole(
                 all.into_iter().find(|(image, _)| **image == spot.at).map(|pair| *pair.1)?,
             )
         }
-        Kind::Zero => ConstraintPlace::RightHalfPlaneZero(boundary.plane.root(spot.at)),
-        Kind::Point => ConstraintPlace::Point(boundary.plane.root(spot.at).re),
+        LimitKind::Zero => ConstraintPlace::RightHalfPlaneZero(boundary.plane.root(spot.at)),
+        LimitKind::Point => ConstraintPlace::Point(boundary.plane.root(spot.at).re),
     };
     let mut shares: Vec<(usize, f64)> = Vec::new();
     let mut crossover = None;
     let firsts = ceilings.of(index, 1.0).step_by(2);
     for (cell, ceiling) in boundary.cells.iter().zip(firsts) {
         let share = share(spot.at, *cell);
-        let [sensitivity, complementary] = [spot.kind != Kind::Pole, spot.kind != Kind::Zero];
+        let [sensitivity, complementary] = [spot.kind != LimitKind::Pole, spot.kind != LimitKind::Zero];
         let named = [(sensitivity, ceiling.sensitivity), (complementary, ceiling.complementary)];
         for specification in
             named.into_iter().filter_map(|(counts, one)| one.specification.filter(|_| counts))
@@ -230,9 +238,9 @@ fn constraint(ceilings: &Ceilings, candidates: &[Candidate], deficit: &Deficit) 
             }
         }
         let crossed = match spot.kind {
-            Kind::Pole => ceiling.complementary.limit >= 1.0,
-            Kind::Zero => ceiling.sensitivity.limit < 1.0,
-            Kind::Point => false,
+            LimitKind::Pole => ceiling.complementary.limit >= 1.0,
+            LimitKind::Zero => ceiling.sensitivity.limit < 1.0,
+            LimitKind::Point => false,
         };
         if crossed {
             crossover = Some(boundary.plane.frequency(cell[1]));

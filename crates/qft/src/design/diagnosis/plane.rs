@@ -86,7 +86,7 @@ pub(super) fn vanishing(point: Complex64, roots: &[Complex64]) -> f64 {
 
 /// The boundary cut into cells, with two frequencies in each at which limits are taken.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Boundary {
+pub(super) struct BoundaryCells {
     pub(super) plane: Plane,
     /// `[from, to]` of each cell.
     pub(super) cells: Vec<[f64; 2]>,
@@ -101,10 +101,10 @@ const DECADES_MAXIMUM: f64 = 14.0;
 /// How far the cells go beyond what happens on the axis.
 const REACH: f64 = 1e3;
 
-impl Boundary {
+impl BoundaryCells {
     /// Cells around these places, none of which lies inside a cell. What a power of s does on the first and the last cell, its mean
     /// logarithm tells exactly.
-    pub(super) fn new(plane: Plane, places: &[f64]) -> Boundary {
+    pub(super) fn new(plane: Plane, places: &[f64]) -> BoundaryCells {
         let sound = |place: &&f64| **place > 0.0 && place.is_finite();
         let places: Vec<f64> = places.iter().filter(sound).copied().collect();
         let least = places.iter().copied().fold(f64::INFINITY, f64::min).min(f64::MAX);
@@ -124,7 +124,7 @@ impl Boundary {
         cells.extend(ends.iter().zip(ends.iter().skip(1)).map(|(&from, &to)| [from, to]));
         cells.push([last, f64::INFINITY]);
         let frequencies = cells.iter().flat_map(|cell| nodes(*cell)).map(|place| plane.frequency(place));
-        Boundary { plane, frequencies: frequencies.collect(), cells, highest: high }
+        BoundaryCells { plane, frequencies: frequencies.collect(), cells, highest: high }
     }
 }
 
@@ -156,7 +156,7 @@ mod tests {
             (Some(0.1), Complex64::new(7.0, 3.0)),
         ] {
             let plane = Plane { sample_time_s };
-            let boundary = Boundary::new(plane, &[0.5, 3.0, 10.0]);
+            let boundary = BoundaryCells::new(plane, &[0.5, 3.0, 10.0]);
             let function = |s: Complex64| (s + 3.0) / (s * s + s * 0.5 + 9.0) / (s + 10.0);
             let value = |frequency: f64| {
                 portable::ln(portable::magnitude(function(Complex64::new(0.0, plane.place(frequency)))))

@@ -2,7 +2,7 @@
 
 use phea_dynamics::portable;
 
-use super::candidate::Candidate;
+use super::candidate::PlantWithinLoop;
 use super::ceiling::{Ceiling, Ceilings, demanded};
 use super::finding::{Finding, SharedLimit};
 use super::interpolation::least_relaxation_db;
@@ -41,7 +41,7 @@ pub(super) fn crossed(specifications: &[Specification], frequencies: &[f64]) -> 
 }
 
 /// The frequency and plant for which the limits of S and T add up to least, if that is below 1.
-pub(super) fn sum_below_one(ceilings: &Ceilings, candidates: &[Candidate]) -> Option<Finding> {
+pub(super) fn sum_below_one(ceilings: &Ceilings, candidates: &[PlantWithinLoop]) -> Option<Finding> {
     let sum = |ceiling: Ceiling| ceiling.sensitivity.limit + ceiling.complementary.limit;
     let all = (0..candidates.len()).flat_map(|candidate| {
         ceilings.of(candidate, 1.0).enumerate().map(move |(place, ceiling)| (candidate, place, sum(ceiling)))
@@ -70,7 +70,7 @@ pub(super) fn sum_below_one(ceilings: &Ceilings, candidates: &[Candidate]) -> Op
 /// Limits that a pole or zero of a plant on the axis contradicts, each specification once.
 pub(super) fn on_the_axis(
     specifications: &[Specification],
-    candidates: &[Candidate],
+    candidates: &[PlantWithinLoop],
     compensation: &Compensation,
 ) -> Vec<Finding> {
     let highest = compensation.highest_frequency_rad_per_s();
@@ -110,7 +110,11 @@ fn below_one(limit: f64) -> bool {
 }
 
 /// The limit that S = 1 and F P G S = 0 exceed.
-fn forbidden_by_zero(specification: &Specification, candidate: &Candidate, frequency: f64) -> Option<f64> {
+fn forbidden_by_zero(
+    specification: &Specification,
+    candidate: &PlantWithinLoop,
+    frequency: f64,
+) -> Option<f64> {
     let limit = demanded(specification, frequency)?;
     match &specification.requirement {
         Requirement::Sensitivity(_) => Some(limit).filter(|limit| below_one(*limit)),

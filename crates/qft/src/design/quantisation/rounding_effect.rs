@@ -216,7 +216,7 @@ impl Sums {
 
 /// Sections in series behind whole samples of delay.
 #[derive(Clone, Debug)]
-struct Chain {
+struct DelayedSections {
     sections: Vec<Section>,
     states: Vec<[f64; 2]>,
     waiting: VecDeque<f64>,
@@ -225,9 +225,9 @@ struct Chain {
 /// Output, measurement and controller at rest.
 #[derive(Clone, Debug)]
 struct SampledLoop {
-    output: Chain,
-    measured: Chain,
-    feedback: Chain,
+    output: DelayedSections,
+    measured: DelayedSections,
+    feedback: DelayedSections,
 }
 
 impl SampledLoop {
@@ -237,7 +237,7 @@ impl SampledLoop {
         feedback: &TransferFunction,
     ) -> Result<SampledLoop, QuantisationError> {
         let [output, measured, feedback] =
-            [Chain::new(output)?, Chain::new(measured)?, Chain::new(feedback)?];
+            [DelayedSections::new(output)?, DelayedSections::new(measured)?, DelayedSections::new(feedback)?];
         Ok(SampledLoop { output, measured, feedback })
     }
 
@@ -285,8 +285,8 @@ impl SampledLoop {
     }
 }
 
-impl Chain {
-    fn new(function: &TransferFunction) -> Result<Chain, LinearError> {
+impl DelayedSections {
+    fn new(function: &TransferFunction) -> Result<DelayedSections, LinearError> {
         let samples = match function.domain() {
             TimeDomain::Discrete { sample_time_s } => {
                 (function.dead_time_s() / sample_time_s).round() as usize
@@ -295,7 +295,7 @@ impl Chain {
         };
         let sections = Section::in_series(&function.clone().with_dead_time(0.0)?)?;
         let states = vec![[0.0; 2]; sections.len()];
-        Ok(Chain { sections, states, waiting: VecDeque::from(vec![0.0; samples]) })
+        Ok(DelayedSections { sections, states, waiting: VecDeque::from(vec![0.0; samples]) })
     }
 
     /// By how much an input of one changes the output at once.

@@ -7,7 +7,7 @@ use super::super::subproblem::dot;
 
 /// A point, its judgement, its slopes, and margins that a refused step has shown to matter nearby.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Place {
+pub(super) struct DescentPoint {
     pub(super) x: Vec<f64>,
     pub(super) judgement: Judgement,
     pub(super) slopes: Slopes,
@@ -15,7 +15,7 @@ pub(super) struct Place {
     pub(super) beyond: Vec<MarginRow>,
 }
 
-impl Place {
+impl DescentPoint {
     /// All margins that are known around here, those beyond last.
     pub(super) fn rows(&self) -> Vec<MarginRow> {
         self.slopes.margins.iter().chain(&self.beyond).cloned().collect()
@@ -27,7 +27,7 @@ impl Place {
 
     /// The margins of another place that are not among those here, continued to here along their slopes. None is worse here than the
     /// worst margin, which is known.
-    fn unknown_rows(&self, there: &Place) -> Vec<MarginRow> {
+    fn unknown_rows(&self, there: &DescentPoint) -> Vec<MarginRow> {
         let known = self.by_sample();
         let back: Vec<f64> = self.x.iter().zip(&there.x).map(|(here, there)| here - there).collect();
         let unknown = there.slopes.margins.iter().filter(|row| !known.contains_key(&row.sample));
@@ -40,7 +40,7 @@ impl Place {
     }
 
     /// The rows here so moved that they have the margins found at the end of a step, with those that only appear there.
-    pub(super) fn corrected_rows(&self, there: &Place, step: &[f64]) -> Vec<MarginRow> {
+    pub(super) fn corrected_rows(&self, there: &DescentPoint, step: &[f64]) -> Vec<MarginRow> {
         let found = there.by_sample();
         let corrected = |row: &MarginRow| match found.get(&row.sample) {
             Some(seen) => MarginRow { margin_db: seen.margin_db - dot(&row.slopes, step), ..row.clone() },
@@ -52,7 +52,7 @@ impl Place {
     }
 
     /// The same place, with the margins that only appear at the end of a refused step.
-    pub(super) fn with_rows_of(mut self, there: &Place) -> Place {
+    pub(super) fn with_rows_of(mut self, there: &DescentPoint) -> DescentPoint {
         let unknown = self.unknown_rows(there);
         self.beyond.retain(|row| unknown.iter().all(|new| new.sample != row.sample));
         self.beyond.extend(unknown);
@@ -61,7 +61,7 @@ impl Place {
 
     /// How much the slopes of the Lagrangian f - sum lambda_i m_i change from here to there; a margin that is not given at both places
     /// is taken as straight.
-    pub(super) fn change_of_slopes(&self, there: &Place, aim: Aim, multipliers: &[f64]) -> Vec<f64> {
+    pub(super) fn change_of_slopes(&self, there: &DescentPoint, aim: Aim, multipliers: &[f64]) -> Vec<f64> {
         let slopes = there.slopes.objective_slopes.iter().zip(&self.slopes.objective_slopes);
         let mut change: Vec<f64> = match aim {
             Aim::WorstMargin => vec![0.0; self.x.len()],

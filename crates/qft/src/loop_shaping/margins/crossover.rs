@@ -16,7 +16,7 @@ use std::f64::consts::PI;
 use num_complex::Complex64;
 use phea_dynamics::portable;
 
-use super::super::samples::Column;
+use super::super::samples::FrequencyColumn;
 use super::super::structure::DECIBELS_PER_NEPER;
 
 /// A peak or dip that comes this near to 1 is a margin, in nepers.
@@ -26,7 +26,7 @@ const ROUNDING: f64 = 1e-12;
 
 /// L of one plant at one column.
 #[derive(Clone, Copy, Debug)]
-struct Point {
+struct LoopValue {
     column: usize,
     logarithm_of_frequency: f64,
     open: Complex64,
@@ -47,7 +47,7 @@ struct Crossover {
 
 /// A number in dB that depends on G at some columns.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Moved {
+pub(crate) struct ColumnDependence {
     pub(crate) value_db: f64,
     /// It moves by Re(factor d ln G), summed over these columns.
     pub(crate) terms: Vec<(usize, Complex64)>,
@@ -57,14 +57,14 @@ pub(crate) struct Moved {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct DelayMargins {
     /// At gain crossovers.
-    pub(crate) crossovers: Vec<Moved>,
+    pub(crate) crossovers: Vec<ColumnDependence>,
     /// Where a crossover may come up or vanish.
-    pub(crate) peaks: Vec<Moved>,
+    pub(crate) peaks: Vec<ColumnDependence>,
 }
 
 /// The margins of so many plants to a delay in s; none where none is demanded.
 pub(crate) fn delay_margins(
-    columns: &[Column],
+    columns: &[FrequencyColumn],
     feedback: &[Complex64],
     plants: usize,
     delay_s: f64,
@@ -88,10 +88,10 @@ pub(crate) fn delay_margins(
 
 /// The highest gain crossover of the nominal loop, 20 log10 of its frequency in rad/s; beyond the columns |L| is taken to fall like 1/w.
 /// `None` where the nominal plant is nowhere looked at.
-pub(crate) fn bandwidth(columns: &[Column], feedback: &[Complex64]) -> Option<Moved> {
+pub(crate) fn bandwidth(columns: &[FrequencyColumn], feedback: &[Complex64]) -> Option<ColumnDependence> {
     let path = paths(columns, feedback, 1).into_iter().next()?;
     let (first, last) = (path.first()?, path.last()?);
-    let outside = |point: &Point| Moved {
+    let outside = |point: &LoopValue| ColumnDependence {
         value_db: DECIBELS_PER_NEPER * (point.logarithm_of_frequency + point.size()),
         terms: vec![(point.column, Complex64::new(DECIBELS_PER_NEPER, 0.0))],
     };
@@ -105,28 +105,28 @@ pub(crate) fn bandwidth(columns: &[Column], feedback: &[Complex64]) -> Option<Mo
     let Some((crossover, points)) = highest else { return Some(outside(first)) };
     let scale = DECIBELS_PER_NEPER * crossover.width;
     let slopes = crossover.share_slopes.map(|slope| Complex64::new(scale * slope, 0.0));
-    Some(Moved {
+    Some(ColumnDependence {
         value_db: DECIBELS_PER_NEPER * crossover.logarithm,
         terms: points.iter().map(|point| point.column).zip(slopes).collect(),
     })
 }
 
 /// L of the first so many plants along the columns.
-fn paths(columns: &[Column], feedback: &[Complex64], plants: usize) -> Vec<Vec<Point>> {
+fn paths(columns: &[FrequencyColumn], feedback: &[Complex64], plants: usize) -> Vec<Vec<LoopValue>> {
     let mut paths = vec![Vec::with_capacity(columns.len()); plants];
     for (index, (column, feedback)) in columns.iter().zip(feedback).enumerate() {
         let logarithm_of_frequency = portable::ln(column.frequency);
         for (place, &plant) in column.plants.iter().enumerate() {
             let open = column.loop_at(place) * feedback;
             if let Some(path) = paths.get_mut(plant) {
-                path.push(Point { column: index, logarithm_of_frequency, open });
+                path.push(LoopValue { column: index, logarithm_of_frequency, open });
             }
         }
     }
     paths
 }
 
-impl Point {
+impl LoopValue {
     /// ln|L|
     fn size(&self) -> f64 {
         0.5 * portable::ln(self.open.norm_sqr())
@@ -141,7 +141,7 @@ impl Point {
 /// ```text
 /// share = a/(a - b),   a, b = ln|L| at the lower and the upper column
 /// ```
-fn crossover(lower: &Point, upper: &Point) -> Option<Crossover> {
+fn crossover(lower: &LoopValue, upper: &LoopValue) -> Option<Crossover> {
     if (lower.open.norm_sqr() >= 1.0) == (upper.open.norm_sqr() >= 1.0) {
         return None;
     }
@@ -157,24 +157,24 @@ fn crossover(lower: &Point, upper: &Point) -> Option<Crossover> {
 }
 
 /// The margin to a delay at a crossover.
-fn delay_at(crossover: Crossover, [lower, upper]: [&Point; 2], delay_s: f64) -> Moved {
+fn delay_at(crossover: Crossover, [lower, upper]: [&LoopValue; 2], delay_s: f64) -> ColumnDependence {
     let turn = portable::argument(upper.open / lower.open);
     let angle = positive(lower.angle() + crossover.share * turn);
     let margin = portable::ln(angle) - crossover.logarithm - portable::ln(delay_s);
     let by_share = turn / angle - crossover.width;
     let shares = [1.0 - crossover.share, crossover.share];
-    let term = |point: &Point, share_slope: f64, share: f64| {
+    let term = |point: &LoopValue, share_slope: f64, share: f64| {
         (point.column, DECIBELS_PER_NEPER * Complex64::new(by_share * share_slope, -share / angle))
     };
     let [below, above] = crossover.share_slopes;
-    Moved {
+    ColumnDependence {
         value_db: DECIBELS_PER_NEPER * margin,
         terms: vec![term(lower, below, shares[0]), term(upper, above, shares[1])],
     }
 }
 
 /// |L| at a peak below 1 or a dip above it, where the phase alone would not bear the delay.
-fn peak(before: &Point, point: &Point, after: &Point, delay_s: f64) -> Option<Moved> {
+fn peak(before: &LoopValue, point: &LoopValue, after: &LoopValue, delay_s: f64) -> Option<ColumnDependence> {
     let [low, here, high] = [before, point, after].map(|point| point.open.norm_sqr());
     let sign = if here < 1.0 && low < here && high <= here {
         -1.0
@@ -185,7 +185,7 @@ fn peak(before: &Point, point: &Point, after: &Point, delay_s: f64) -> Option<Mo
     };
     let size = point.size();
     let bears = positive(point.angle()) > portable::exp(point.logarithm_of_frequency) * delay_s;
-    (!bears && size.abs() < NEAR).then(|| Moved {
+    (!bears && size.abs() < NEAR).then(|| ColumnDependence {
         value_db: DECIBELS_PER_NEPER * size.abs(),
         terms: vec![(point.column, Complex64::new(sign * DECIBELS_PER_NEPER, 0.0))],
     })

@@ -3,9 +3,9 @@
 use num_complex::Complex64;
 use phea_dynamics::portable;
 
-use super::super::samples::Column;
+use super::super::samples::FrequencyColumn;
 use super::super::structure::DECIBELS_PER_NEPER;
-use super::{ColumnLoop, Demand, Limited, extremes};
+use super::{ColumnLoop, Demand, LimitedSide, extremes};
 
 /// Change of ln G up to which a margin may be asked for.
 const REACH: f64 = 0.5;
@@ -30,7 +30,7 @@ pub(crate) struct MarginCandidate {
 /// plant whose c lies furthest from those chosen, for its distance.
 pub(crate) fn candidates(
     demand: &Demand,
-    column: &Column,
+    column: &FrequencyColumn,
     around: &ColumnLoop,
     feedback: Complex64,
 ) -> Vec<MarginCandidate> {
@@ -58,8 +58,8 @@ pub(crate) fn candidates(
     };
     let allowed = demand.allowed;
     match demand.limited {
-        Limited::FromBelow => above(allowed),
-        Limited::Spread => {
+        LimitedSide::FromBelow => above(allowed),
+        LimitedSide::Spread => {
             let (tops, bottoms) = (below(1.0), above(1.0));
             let allowed_db = half_decibels(allowed);
             let mut pairs: Vec<MarginCandidate> = Vec::new();
@@ -73,7 +73,7 @@ pub(crate) fn candidates(
             }
             prominent(pairs)
         }
-        Limited::FromAbove => below(allowed),
+        LimitedSide::FromAbove => below(allowed),
     }
 }
 

@@ -17,26 +17,26 @@ const DELAY_MAXIMUM: f64 = 24.0;
 
 /// Numerator over denominator, nothing cancelled; both of the same degree in w.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Quotient {
+pub(super) struct BilinearQuotient {
     numerator: RoundedPolynomial,
     denominator: RoundedPolynomial,
 }
 
-impl Quotient {
+impl BilinearQuotient {
     /// P H of a member; `None` for a measurement, and for a dead time that leaves no polynomials.
-    pub(super) fn of_member(member: &Member) -> Option<Quotient> {
+    pub(super) fn of_member(member: &Member) -> Option<BilinearQuotient> {
         match member {
             Member::Continuous { plant, sensor, .. } if plant.dead_time_s == 0.0 => {
-                let sensor = Quotient::of_function(sensor)?;
+                let sensor = BilinearQuotient::of_function(sensor)?;
                 let polynomial = |coefficients: &[f64]| {
                     RoundedPolynomial::exact(Polynomial::new(coefficients.to_vec()).coefficients())
                 };
-                Some(Quotient {
+                Some(BilinearQuotient {
                     numerator: polynomial(&plant.command.numerator).times(&sensor.numerator),
                     denominator: polynomial(&plant.command.denominator).times(&sensor.denominator),
                 })
             }
-            Member::Sampled { with_sensor, .. } => Quotient::of_function(with_sensor),
+            Member::Sampled { with_sensor, .. } => BilinearQuotient::of_function(with_sensor),
             Member::Continuous { .. } | Member::Responding { .. } | Member::Measured { .. } => None,
         }
     }
@@ -46,19 +46,19 @@ impl Quotient {
     /// ```text
     /// e^(-sT) ~ p(-sT)/p(sT),      p(u) = u^3/120 + u^2/10 + u/2 + 1
     /// ```
-    pub(super) fn of_delayed_member(member: &Member) -> Option<Quotient> {
+    pub(super) fn of_delayed_member(member: &Member) -> Option<BilinearQuotient> {
         let Member::Continuous { plant, sensor, fed_forward } = member else { return None };
         let own_s = plant.dead_time_s + sensor.dead_time_s();
         let mut plant = plant.clone();
         plant.dead_time_s = 0.0;
         let sensor = sensor.clone().with_dead_time(0.0).ok()?;
         let fed_forward = fed_forward.clone();
-        let rational = Quotient::of_member(&Member::Continuous { plant, sensor, fed_forward })?;
+        let rational = BilinearQuotient::of_member(&Member::Continuous { plant, sensor, fed_forward })?;
         let delay = |time_s: f64| {
             let [one, square, cube] = [time_s, time_s * time_s, time_s * time_s * time_s];
             RoundedPolynomial::exact(&[cube / 120.0, square / 10.0, one / 2.0, 1.0])
         };
-        Some(Quotient {
+        Some(BilinearQuotient {
             numerator: rational.numerator.times(&delay(-own_s)),
             denominator: rational.denominator.times(&delay(own_s)),
         })
@@ -66,12 +66,12 @@ impl Quotient {
 
     /// A transfer function in s or z; `None` for a dead time that leaves no polynomials, and for one in z that answers before it is
     /// asked.
-    pub(super) fn of_function(function: &TransferFunction) -> Option<Quotient> {
+    pub(super) fn of_function(function: &TransferFunction) -> Option<BilinearQuotient> {
         let TimeDomain::Discrete { sample_time_s } = function.domain() else {
             let once = |polynomial: &Polynomial| {
                 RoundedPolynomial::rounded(polynomial.coefficients(), polynomial.coefficients(), 1.0)
             };
-            let quotient = Quotient {
+            let quotient = BilinearQuotient {
                 numerator: once(&function.numerator()),
                 denominator: once(&function.denominator()),
             };
@@ -85,14 +85,14 @@ impl Quotient {
         let samples = samples as usize;
         let numerator = in_w(function.gain(), function.zeros());
         let denominator = in_w(1.0, function.poles());
-        Some(Quotient {
+        Some(BilinearQuotient {
             numerator: raised(numerator, &[-1.0, 1.0], lead + samples),
             denominator: raised(denominator, &[1.0, 1.0], samples),
         })
     }
 
     /// The characteristic polynomial of this in a loop with that.
-    pub(super) fn closed(&self, other: &Quotient) -> RoundedPolynomial {
+    pub(super) fn closed(&self, other: &BilinearQuotient) -> RoundedPolynomial {
         RoundedPolynomial::sum_of_products(&[
             (&self.denominator, &other.denominator),
             (&self.numerator, &other.numerator),

@@ -5,7 +5,7 @@ use phea_dynamics::frequency::logarithmic_grid;
 use phea_dynamics::linear::Polynomial;
 use phea_dynamics::portable;
 
-use super::{Plant, SamplesError, around, plant_at};
+use super::{FamilyPlant, SamplesError, around, plant_at};
 use crate::design::DesignProblem;
 use crate::family::{COARSE, tabulated};
 use crate::specification::Limit;
@@ -80,7 +80,7 @@ pub(super) fn bends(problem: &DesignProblem, plant: &PlantPoint) -> Result<Vec<f
 fn measured_by_all(problem: &DesignProblem, plants: &[PlantPoint]) -> Result<[f64; 2], SamplesError> {
     let mut common = [0.0, f64::INFINITY];
     for plant in plants {
-        if let Plant::Measured(plant) = plant_at(problem, plant)? {
+        if let FamilyPlant::Measured(plant) = plant_at(problem, plant)? {
             let frequencies = &plant.frequencies_rad_per_s;
             common[0] = frequencies.first().copied().unwrap_or(0.0).max(common[0]);
             common[1] = frequencies.last().copied().unwrap_or(0.0).min(common[1]);
@@ -105,19 +105,19 @@ fn features(problem: &DesignProblem, plants: &[PlantPoint]) -> Result<(Vec<f64>,
     }
     for plant in plants {
         match plant_at(problem, plant)? {
-            Plant::Rational(plant) => {
+            FamilyPlant::Rational(plant) => {
                 let paths = std::iter::once(&plant.command).chain(&plant.disturbance);
                 for coefficients in paths.flat_map(|path| [&path.numerator, &path.denominator]) {
                     // a polynomial without roots to be had has no peak to show
                     roots.extend(Polynomial::new(coefficients.clone()).roots().unwrap_or_default());
                 }
             }
-            Plant::Responding(plant) => {
+            FamilyPlant::Responding(plant) => {
                 let range = plant.range_rad_per_s();
                 peaks.extend(tabulated(plant.as_ref(), range, COARSE).frequencies_rad_per_s);
                 sizes.extend(range);
             }
-            Plant::Measured(plant) => {
+            FamilyPlant::Measured(plant) => {
                 peaks.extend(&plant.frequencies_rad_per_s);
                 sizes.extend(plant.frequencies_rad_per_s.first());
                 sizes.extend(plant.frequencies_rad_per_s.last());

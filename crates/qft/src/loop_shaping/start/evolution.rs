@@ -2,7 +2,7 @@
 
 use phea_dynamics::random::share;
 
-use super::Candidate;
+use super::JudgedPoint;
 use crate::loop_shaping::search::{Aim, SearchProblem};
 
 /// Weight of the difference that is added, and probability that a coordinate takes part.
@@ -24,19 +24,19 @@ const MEMBERS_NEEDED: usize = 4;
 /// half the way there.
 #[derive(Clone, Debug)]
 pub(super) struct Evolution {
-    population: Vec<Candidate>,
+    population: Vec<JudgedPoint>,
     generation: usize,
     member: usize,
 }
 
 impl Evolution {
     /// The best candidates, which are sorted, as a population.
-    pub(super) fn new(candidates: &[Candidate], bounds: &[[f64; 2]]) -> Evolution {
+    pub(super) fn new(candidates: &[JudgedPoint], bounds: &[[f64; 2]]) -> Evolution {
         let size = (MEMBERS_PER_COORDINATE * bounds.len()).max(MEMBERS_MINIMUM);
         Evolution { population: candidates.iter().take(size).cloned().collect(), generation: 0, member: 0 }
     }
 
-    pub(super) fn candidates(&self) -> &[Candidate] {
+    pub(super) fn candidates(&self) -> &[JudgedPoint] {
         &self.population
     }
 
@@ -54,7 +54,7 @@ impl Evolution {
     pub(super) fn step(&mut self, problem: &mut dyn SearchProblem, random: &mut u64) {
         let x = self.trial(problem.bounds(), random);
         let judgement = problem.judge(&x);
-        let trial = Candidate { x, judgement };
+        let trial = JudgedPoint { x, judgement };
         if !self.population[self.member].is_better_than(&trial, Aim::WorstMargin) {
             self.population[self.member] = trial;
         }

@@ -14,17 +14,17 @@ const ITERATIONS: usize = 64;
 ///
 /// Source: Weyl (1916) on additive recurrences; Roberts (2018) on these steps.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Spread {
+pub(super) struct AdditiveRecurrence {
     shifts: Vec<f64>,
     steps: Vec<f64>,
 }
 
-impl Spread {
-    pub(super) fn new(dimension: usize, random: &mut u64) -> Spread {
+impl AdditiveRecurrence {
+    pub(super) fn new(dimension: usize, random: &mut u64) -> AdditiveRecurrence {
         let root = 1.0 / (dimension as f64 + 1.0);
         let ratio = (0..ITERATIONS).fold(2.0, |ratio, _| portable::pow(1.0 + ratio, root));
         let step = |power: usize| portable::pow(ratio, -(power as f64));
-        Spread {
+        AdditiveRecurrence {
             shifts: (0..dimension).map(|_| share(random)).collect(),
             steps: (1..=dimension).map(step).collect(),
         }
@@ -40,13 +40,13 @@ impl Spread {
 
 #[cfg(test)]
 mod tests {
-    use super::Spread;
+    use super::AdditiveRecurrence;
 
     /// In one dimension the step is the golden section, with which any n points leave gaps of at most (1 + golden)/n.
     #[test]
     fn one_dimension_is_filled_by_the_golden_section() {
         let golden = (5.0_f64.sqrt() - 1.0) / 2.0;
-        let spread = Spread::new(1, &mut 5);
+        let spread = AdditiveRecurrence::new(1, &mut 5);
         assert!((spread.steps[0] - golden).abs() < 1e-14);
         for count in [10, 57, 233] {
             let mut points: Vec<f64> =
@@ -63,7 +63,7 @@ mod tests {
     #[test]
     fn every_slab_has_its_share() {
         let bounds = [[-1.0, 3.0], [2.0, 2.5], [0.0, 1e3], [-7.0, -6.0], [1.0, 1.0]];
-        let spread = Spread::new(5, &mut 11);
+        let spread = AdditiveRecurrence::new(5, &mut 11);
         let points: Vec<Vec<f64>> = (0..500).map(|index| spread.point(index, &bounds)).collect();
         for (coordinate, [low, high]) in bounds.into_iter().enumerate() {
             assert!(points.iter().all(|point| low <= point[coordinate] && point[coordinate] <= high));

@@ -5,7 +5,7 @@ use phea_dynamics::controller::{Compensator, Element};
 use phea_dynamics::linear::{TimeDomain, TransferFunction};
 use phea_dynamics::portable;
 
-use super::{Part, Structure};
+use super::{Structure, StructureFactor};
 
 /// Roots nearer to one another than this share of their magnitude are the same.
 const SAME: f64 = 1e-9;
@@ -19,8 +19,8 @@ impl Structure {
     /// # Example
     /// ```
     /// use phea_dynamics::controller::{Compensator, Element};
-    /// use phea_qft::loop_shaping::{Part, Structure};
-    /// let parts = vec![Part::PolePair { natural_frequency: [1.0, 100.0], damping_ratio: [0.1, 10.0] }];
+    /// use phea_qft::loop_shaping::{StructureFactor, Structure};
+    /// let parts = vec![StructureFactor::PolePair { natural_frequency: [1.0, 100.0], damping_ratio: [0.1, 10.0] }];
     /// let structure = Structure { sign: 1.0, gain: [0.1, 10.0], parts };
     /// let given = [Element::Gain(2.0), Element::RealPole { frequency: 4.0 }, Element::RealPole { frequency: 9.0 }];
     /// let x = structure.point_of(&Compensator::new(given.to_vec())).ok_or("it fits")?;
@@ -64,13 +64,13 @@ impl Structure {
     /// # Example
     /// ```
     /// use phea_dynamics::controller::Element;
-    /// use phea_qft::loop_shaping::{Part, Structure};
+    /// use phea_qft::loop_shaping::{StructureFactor, Structure};
     /// let integral = Element::ProportionalIntegral { proportional_gain: 0.001, integral_gain: 0.008 };
     /// let published = integral.transfer_function()?; // 0.008 (s/8 + 1)/s
     /// let (structure, x) = Structure::around(&published, 10.0).ok_or("a structure")?;
-    /// assert_eq!(structure.parts[0], Part::Fixed(Element::Integrator));
+    /// assert_eq!(structure.parts[0], StructureFactor::Fixed(Element::Integrator));
     /// let zero = &structure.parts[1];
-    /// assert!(matches!(zero, Part::RealZero { frequency: [low, high] } if (low * high - 64.0).abs() < 1e-12));
+    /// assert!(matches!(zero, StructureFactor::RealZero { frequency: [low, high] } if (low * high - 64.0).abs() < 1e-12));
     /// assert!((x[0].exp() - 0.008).abs() < 1e-17 && (x[1].exp() - 8.0).abs() < 1e-13);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
@@ -88,7 +88,7 @@ impl Structure {
         {
             for &root in roots.iter().filter(|root| root.im >= 0.0) {
                 if root == Complex64::new(0.0, 0.0) {
-                    parts.push(Part::Fixed(if power > 0.0 {
+                    parts.push(StructureFactor::Fixed(if power > 0.0 {
                         Element::Differentiator
                     } else {
                         Element::Integrator
@@ -110,7 +110,7 @@ impl Structure {
         let other = TransferFunction::from_factors(1.0, other_zeros, other_poles).ok()?;
         let other = other.with_dead_time(function.dead_time_s()).ok()?;
         if other != TransferFunction::gain_only(1.0) {
-            parts.push(Part::Fixed(Element::General(other)));
+            parts.push(StructureFactor::Fixed(Element::General(other)));
         }
         let structure = Structure { sign: gain.signum(), gain: free(gain.abs()), parts };
         let x = std::iter::once(gain.abs()).chain(numbers).map(portable::ln).collect();
@@ -120,7 +120,7 @@ impl Structure {
     /// The free numbers of each factor of this power, in turn, from the roots.
     fn assigned(&self, power: f64, roots: &[Complex64]) -> Option<Vec<Vec<f64>>> {
         let ranges = self.parts.iter().filter(|part| part.factor().is_some_and(|own| own.power == power));
-        let ranges: Vec<Vec<[f64; 2]>> = ranges.map(Part::ranges).collect();
+        let ranges: Vec<Vec<[f64; 2]>> = ranges.map(StructureFactor::ranges).collect();
         let upper: Vec<Complex64> = roots.iter().copied().filter(|root| root.im >= 0.0).collect();
         assigned(&ranges, &upper)
     }
@@ -158,12 +158,16 @@ fn of_pair([one, other]: [Complex64; 2]) -> Vec<f64> {
 }
 
 /// The part of this power with these numbers in the middle of their ranges.
-fn part(power: f64, numbers: &[f64], free: impl Fn(f64) -> [f64; 2]) -> Option<Part> {
+fn part(power: f64, numbers: &[f64], free: impl Fn(f64) -> [f64; 2]) -> Option<StructureFactor> {
     match (numbers, power > 0.0) {
-        (&[w], true) => Some(Part::RealZero { frequency: free(w) }),
-        (&[w], false) => Some(Part::RealPole { frequency: free(w) }),
-        (&[w, zeta], true) => Some(Part::ZeroPair { natural_frequency: free(w), damping_ratio: free(zeta) }),
-        (&[w, zeta], false) => Some(Part::PolePair { natural_frequency: free(w), damping_ratio: free(zeta) }),
+        (&[w], true) => Some(StructureFactor::RealZero { frequency: free(w) }),
+        (&[w], false) => Some(StructureFactor::RealPole { frequency: free(w) }),
+        (&[w, zeta], true) => {
+            Some(StructureFactor::ZeroPair { natural_frequency: free(w), damping_ratio: free(zeta) })
+        }
+        (&[w, zeta], false) => {
+            Some(StructureFactor::PolePair { natural_frequency: free(w), damping_ratio: free(zeta) })
+        }
         _ => None,
     }
 }

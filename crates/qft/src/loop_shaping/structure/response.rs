@@ -22,9 +22,9 @@ const DIFFERENCE: f64 = 1e-5;
 /// k/(s + 1) at 1 rad/s, and how it moves with ln k and with ln of its corner:
 /// ```
 /// use phea_dynamics::controller::Timing;
-/// use phea_qft::loop_shaping::{Part, Structure};
+/// use phea_qft::loop_shaping::{StructureFactor, Structure};
 /// # fn main() -> Result<(), phea_dynamics::linear::LinearError> {
-/// let parts = vec![Part::RealPole { frequency: [0.1, 10.0] }];
+/// let parts = vec![StructureFactor::RealPole { frequency: [0.1, 10.0] }];
 /// let structure = Structure { sign: 1.0, gain: [0.1, 10.0], parts };
 /// let response = structure.response(&Timing::default(), &[1.0])?;
 /// let x = [0.0, 0.0];

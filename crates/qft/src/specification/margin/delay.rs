@@ -89,35 +89,35 @@ pub fn delay_margin_limit_table(delay_s: f64, band_rad_per_s: [f64; 2]) -> Resul
 }
 
 /// A straight line in the diagram of ln limit over ln w.
-struct Line {
+struct LogarithmicLine {
     slope: f64,
     offset: f64,
 }
 
-impl Line {
+impl LogarithmicLine {
     fn at(&self, abscissa: f64) -> f64 {
         self.slope * abscissa + self.offset
     }
 
-    fn meets(&self, other: &Line) -> f64 {
+    fn meets(&self, other: &LogarithmicLine) -> f64 {
         (other.offset - self.offset) / (self.slope - other.slope)
     }
 }
 
 /// The asymptote 1/(w tau), tangents at w tau from 0.1 on, and just below the last one, at pi.
-fn tangents(delay_s: f64) -> Vec<Line> {
+fn tangents(delay_s: f64) -> Vec<LogarithmicLine> {
     const COUNT: usize = 64;
     const FIRST: f64 = 0.1;
     const BELOW_ONE_HALF: f64 = 1e-9;
-    let asymptote = Line { slope: -1.0, offset: -ln(delay_s) };
+    let asymptote = LogarithmicLine { slope: -1.0, offset: -ln(delay_s) };
     let touching = (0..COUNT).map(|index| {
         let angle = FIRST * exp(ln(PI / FIRST) * index as f64 / COUNT as f64);
         let half = angle / 2.0;
         // d ln(1/(2 sin(x/2)))/d ln x = -(x/2)/tan(x/2)
         let slope = -half / tan(half);
-        Line { slope, offset: -ln(2.0 * sin(half)) - slope * ln(angle / delay_s) }
+        LogarithmicLine { slope, offset: -ln(2.0 * sin(half)) - slope * ln(angle / delay_s) }
     });
-    let end = Line { slope: 0.0, offset: -ln(2.0) - BELOW_ONE_HALF };
+    let end = LogarithmicLine { slope: 0.0, offset: -ln(2.0) - BELOW_ONE_HALF };
     std::iter::once(asymptote).chain(touching).chain(std::iter::once(end)).collect()
 }
 

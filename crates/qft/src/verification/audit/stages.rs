@@ -4,12 +4,12 @@ use phea_dynamics::portable;
 use phea_dynamics::watch::{Stopped, Watch, tell};
 
 use super::super::evaluator::FREQUENCY_TOLERANCE;
-use super::super::finding::{self, Case, Part};
+use super::super::finding::{self, FoundMargin, SpecificationCriteria};
 use super::super::frequencies::common_grid;
 use super::super::minimum;
 use super::super::response::decibels;
-use super::super::scan::{Plant, Scan, WORTH_POLISHING};
-use super::super::search::{Outcome, Task, search};
+use super::super::scan::{Scan, ScannedPlant, WORTH_POLISHING};
+use super::super::search::{SearchOutcome, SearchTask, search};
 use super::super::start::{STARTS, interior_range, tasks};
 use super::super::{PlantPoint, SpecificationFinding};
 use super::{STAGE, SpecificationAudit, plant_at};
@@ -62,7 +62,7 @@ impl SpecificationAudit<'_> {
                         member.and_then(|member| self.evaluator.polished(criterion, member, peak.bracket));
                     let Some((frequency, margin_db)) = polished else { continue };
                     worst = worst.min(margin_db);
-                    cases.push(Case {
+                    cases.push(FoundMargin {
                         margin_db,
                         frequency,
                         criteria: vec![criterion],
@@ -106,7 +106,7 @@ impl SpecificationAudit<'_> {
     }
 
     /// The worst local minima of the margin of the spread, each polished over the whole family.
-    fn polished_spread(&mut self, part: Part) -> Vec<Case> {
+    fn polished_spread(&mut self, part: SpecificationCriteria) -> Vec<FoundMargin> {
         let envelope = finding::envelope(part, &self.scan);
         let mut cases = Vec::new();
         for bracket in finding::local_minima(&envelope).into_iter().take(STARTS) {
@@ -120,7 +120,7 @@ impl SpecificationAudit<'_> {
             let (logarithm, _) = minimum::between(margin, [low, high], start, FREQUENCY_TOLERANCE);
             let frequency = portable::exp(logarithm);
             let worst = self.scan.family_at(&self.evaluator, &self.plants, frequency);
-            cases.extend(part.combined(frequency, &worst).map(|point| Case {
+            cases.extend(part.combined(frequency, &worst).map(|point| FoundMargin {
                 margin_db: point.margin_db,
                 frequency,
                 criteria: point.criteria,
@@ -144,7 +144,7 @@ impl SpecificationAudit<'_> {
     }
 
     /// Where searches start, each with the specification that it serves.
-    fn starts(&self, family: &UncertainFamily) -> Vec<(usize, Task)> {
+    fn starts(&self, family: &UncertainFamily) -> Vec<(usize, SearchTask)> {
         if family.extent() == Extent::Members || family.coordinates().is_empty() {
             return Vec::new();
         }
@@ -162,15 +162,15 @@ impl SpecificationAudit<'_> {
         starts
     }
 
-    fn search_from(&mut self, family: &UncertainFamily, number: usize, task: &Task) {
-        let Outcome { found, undefined } = search(&self.evaluator, family, task);
+    fn search_from(&mut self, family: &UncertainFamily, number: usize, task: &SearchTask) {
+        let SearchOutcome { found, undefined } = search(&self.evaluator, family, task);
         if let Some(slot @ None) = self.undefined.get_mut(number) {
             *slot = undefined;
         }
         let Some(found) = found else { return };
         let inside = |[low, high]: [f64; 2]| low < found.frequency && found.frequency < high;
         if let Some(cases) = self.cases.get_mut(number) {
-            cases.push(Case {
+            cases.push(FoundMargin {
                 margin_db: found.margin_db,
                 frequency: found.frequency,
                 criteria: task.criteria.clone(),
@@ -179,7 +179,8 @@ impl SpecificationAudit<'_> {
             });
         }
         for values in found.values {
-            let known = |plant: &Plant| matches!(&plant.point, PlantPoint::Parameters(own) if *own == values);
+            let known =
+                |plant: &ScannedPlant| matches!(&plant.point, PlantPoint::Parameters(own) if *own == values);
             if !self.plants.iter().any(known) {
                 let plant = plant_at(&self.evaluator, family, &values);
                 self.scan.look_at(&self.evaluator, &plant, self.plants.len());

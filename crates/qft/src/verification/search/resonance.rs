@@ -6,7 +6,7 @@
 
 use num_complex::Complex64;
 
-use super::{Along, Descent, Place, better};
+use super::{MarginDescent, SearchCoordinate, SearchPoint, better};
 use crate::verification::minimum;
 use crate::verification::scan::{HALVINGS, turns};
 
@@ -21,15 +21,15 @@ const TOLERANCE: f64 = 1e-7;
 
 /// A plant on a line.
 #[derive(Clone, Copy)]
-struct Sample {
+struct LinePlant {
     share: f64,
     margin_db: f64,
     vanishing: Complex64,
 }
 
-impl Descent<'_> {
+impl MarginDescent<'_> {
     /// The worst of a plain search and of those from the resonances on the lines through its start and its end.
-    pub(super) fn with_resonances(&self, start: Place) -> Place {
+    pub(super) fn with_resonances(&self, start: SearchPoint) -> SearchPoint {
         let mut best = self.descended(start.clone());
         if start.frequency == 0.0 || start.frequency == f64::INFINITY {
             return best;
@@ -39,9 +39,9 @@ impl Descent<'_> {
         for from in froms {
             for block in 0..from.shares.len() {
                 for coordinate in 0..self.family.coordinates().len() {
-                    let along = Along { block, coordinate };
+                    let along = SearchCoordinate { block, coordinate };
                     let Some(resonant) = self.resonant(&from, &best, along) else { continue };
-                    let following = Descent { follower: Some(along), ..*self };
+                    let following = MarginDescent { follower: Some(along), ..*self };
                     best = better(best, Some(following.descended(resonant)));
                 }
             }
@@ -50,7 +50,12 @@ impl Descent<'_> {
     }
 
     /// With one plant on a line through where it is `from`, the others as they are in `best`: the worst resonance on it, if any.
-    fn resonant(&self, from: &Place, best: &Place, along: Along) -> Option<Place> {
+    fn resonant(
+        &self,
+        from: &SearchPoint,
+        best: &SearchPoint,
+        along: SearchCoordinate,
+    ) -> Option<SearchPoint> {
         let mut place = best.clone();
         *place.shares.get_mut(along.block)? = from.shares.get(along.block)?.clone();
         let [low, middle, high] = self.inner_minimum(&place, along)?;
@@ -59,7 +64,7 @@ impl Descent<'_> {
     }
 
     /// The shares of the worst local minimum inside a line, and beside it.
-    fn inner_minimum(&self, place: &Place, along: Along) -> Option<[f64; 3]> {
+    fn inner_minimum(&self, place: &SearchPoint, along: SearchCoordinate) -> Option<[f64; 3]> {
         let samples = self.line(place, along);
         let minima = samples.windows(3).filter_map(|triple| match triple {
             [before, here, after]
@@ -73,11 +78,11 @@ impl Descent<'_> {
     }
 
     /// Plants on a line, so near to each other that none hides a resonance from the next.
-    fn line(&self, place: &Place, along: Along) -> Vec<Sample> {
-        let mut found: Vec<Sample> = Vec::new();
+    fn line(&self, place: &SearchPoint, along: SearchCoordinate) -> Vec<LinePlant> {
+        let mut found: Vec<LinePlant> = Vec::new();
         let inner = (1..INTERVALS).map(|index| index as f64 / INTERVALS as f64);
         for share in [0.0, BESIDE_END].into_iter().chain(inner).chain([1.0 - BESIDE_END, 1.0]) {
-            let mut ahead: Vec<Sample> = self.sample(place, along, share).into_iter().collect();
+            let mut ahead: Vec<LinePlant> = self.sample(place, along, share).into_iter().collect();
             let mut halvings = 0;
             while let Some(next) = ahead.pop() {
                 let behind = found.last().filter(|behind| turns(behind.vanishing, next.vanishing));
@@ -93,18 +98,18 @@ impl Descent<'_> {
         found
     }
 
-    fn sample(&self, place: &Place, along: Along, share: f64) -> Option<Sample> {
+    fn sample(&self, place: &SearchPoint, along: SearchCoordinate, share: f64) -> Option<LinePlant> {
         let mut shares = place.shares.get(along.block)?.clone();
         *shares.get_mut(along.coordinate)? = share;
         let criterion = *self.task.criteria.get(along.block)?;
         let (vanishing, margin_db) =
             self.evaluator.resonance(criterion, &self.member(&shares)?, place.frequency)?;
-        Some(Sample { share, margin_db, vanishing })
+        Some(LinePlant { share, margin_db, vanishing })
     }
 
     /// The follower brought to its minimum.
-    pub(super) fn followed(&self, place: Place, follower: Along) -> Place {
-        let alone = Descent { follower: None, ..*self };
+    pub(super) fn followed(&self, place: SearchPoint, follower: SearchCoordinate) -> SearchPoint {
+        let alone = MarginDescent { follower: None, ..*self };
         let start = (place.share(follower.block, follower.coordinate), place.margin_db);
         let mut best = place;
         minimum::downhill(

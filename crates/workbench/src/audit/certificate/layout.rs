@@ -4,12 +4,13 @@ mod claims;
 
 use phea_dynamics::expression::{Binary, Expression, Node, Unary};
 use phea_qft::proof::{
-    Bound, Certificate, CertifiedPlant, Claim, Law, Quotient, Sampling, Sections, Segment,
+    Certificate, CertifiedPlant, Claim, ControlLaw, ParameterSegment, Quotient, RollOffBound, Sampling,
+    Sections,
 };
 use serde::{Deserialize, Serialize};
 
 use crate::project::Loaded;
-use claims::{Cover, Stated, covers, panels};
+use claims::{Cover, StatedClaim, covers, panels};
 
 /// What the file begins with.
 const FORMAT: &str = "phea-certificate";
@@ -30,7 +31,7 @@ pub(super) struct File {
     /// For each box, for each parameter.
     boxes: Vec<Vec<StatedSegment>>,
     operations: Vec<Operation>,
-    plant: Plant,
+    plant: CertificatePlant,
     #[serde(default, skip_serializing_if = "is_zero")]
     delay: f64,
     /// Of the series that stands for dead time.
@@ -39,10 +40,10 @@ pub(super) struct File {
     model_degree: usize,
     feedback: StatedLaw,
     prefilter: StatedLaw,
-    sensor: Rational,
+    sensor: CertificateRational,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     sampling: Option<StatedSampling>,
-    claims: Vec<Stated>,
+    claims: Vec<StatedClaim>,
 }
 
 /// Low, high and the variable; a word where it moves by equal factors.
@@ -56,9 +57,9 @@ enum StatedSegment {
 /// The word.
 const BY_FACTORS: &str = "by_factors";
 
-impl From<&Segment> for StatedSegment {
-    fn from(one: &Segment) -> StatedSegment {
-        let Segment { low, high, variable, by_factors } = *one;
+impl From<&ParameterSegment> for StatedSegment {
+    fn from(one: &ParameterSegment) -> StatedSegment {
+        let ParameterSegment { low, high, variable, by_factors } = *one;
         match variable.filter(|_| by_factors) {
             Some(variable) => StatedSegment::Named((low, high, variable, BY_FACTORS.to_string())),
             None => StatedSegment::Straight((low, high, variable)),
@@ -66,16 +67,16 @@ impl From<&Segment> for StatedSegment {
     }
 }
 
-impl TryFrom<StatedSegment> for Segment {
+impl TryFrom<StatedSegment> for ParameterSegment {
     type Error = CertificateError;
 
-    fn try_from(stated: StatedSegment) -> Result<Segment, CertificateError> {
+    fn try_from(stated: StatedSegment) -> Result<ParameterSegment, CertificateError> {
         match stated {
             StatedSegment::Straight((low, high, variable)) => {
-                Ok(Segment { low, high, variable, by_factors: false })
+                Ok(ParameterSegment { low, high, variable, by_factors: false })
             }
             StatedSegment::Named((low, high, variable, word)) if word == BY_FACTORS => {
-                Ok(Segment { low, high, variable: Some(variable), by_factors: true })
+                Ok(ParameterSegment { low, high, variable: Some(variable), by_factors: true })
             }
             StatedSegment::Named((.., word)) => {
                 Err(meaning(format!("`{word}` does not say how a parameter moves")))
@@ -118,7 +119,7 @@ fn unary_name(unary: Unary) -> &'static str {
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Plant {
+struct CertificatePlant {
     numerator: Vec<usize>,
     denominator: Vec<usize>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -131,7 +132,7 @@ struct Plant {
 
 #[derive(Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Rational {
+pub(super) struct CertificateRational {
     numerator: Vec<f64>,
     denominator: Vec<f64>,
 }
@@ -140,7 +141,7 @@ pub(super) struct Rational {
 #[derive(Clone, Serialize, Deserialize)]
 #[serde(untagged)]
 enum StatedLaw {
-    Continuous(Rational),
+    Continuous(CertificateRational),
     Sampled(StatedSections),
 }
 
@@ -241,7 +242,7 @@ impl File {
             parameters: plant.parameters.clone(),
             boxes: plant.boxes.iter().map(|one| one.iter().map(StatedSegment::from).collect()).collect(),
             operations: plant.coefficients.nodes().iter().filter_map(Operation::of).collect(),
-            plant: Plant {
+            plant: CertificatePlant {
                 numerator: parts.next().unwrap_or_default(),
                 denominator: parts.next().unwrap_or_default(),
                 disturbance_numerator: parts.next(),
@@ -257,7 +258,7 @@ impl File {
             prefilter: (&certificate.prefilter).into(),
             sensor: (&certificate.sensor).into(),
             sampling: certificate.sampling.as_ref().map(StatedSampling::from),
-            claims: certificate.claims.iter().map(Stated::from).collect(),
+            claims: certificate.claims.iter().map(StatedClaim::from).collect(),
         }
     }
 
@@ -278,8 +279,13 @@ impl File {
     pub(super) fn certificate(self) -> Result<Certificate, CertificateError> {
         let file = self;
         let nodes = file.operations.iter().map(Operation::node).collect::<Result<Vec<Node>, _>>()?;
-        let Plant { numerator, denominator, disturbance_numerator, disturbance_denominator, dead_time } =
-            file.plant;
+        let CertificatePlant {
+            numerator,
+            denominator,
+            disturbance_numerator,
+            disturbance_denominator,
+            dead_time,
+        } = file.plant;
         let mut parts = vec![numerator, denominator];
         parts
             .extend(disturbance_numerator.zip(disturbance_denominator).into_iter().flat_map(|(n, d)| [n, d]));
@@ -288,8 +294,9 @@ impl File {
         results.extend(dead_time);
         let coefficients = Expression::from_nodes(file.parameters.clone(), nodes, results)
             .ok_or_else(|| meaning("an operation acts on what does not stand before it"))?;
-        let segments = |one: Vec<StatedSegment>| one.into_iter().map(Segment::try_from).collect();
-        let boxes = file.boxes.into_iter().map(segments).collect::<Result<Vec<Vec<Segment>>, _>>()?;
+        let segments = |one: Vec<StatedSegment>| one.into_iter().map(ParameterSegment::try_from).collect();
+        let boxes =
+            file.boxes.into_iter().map(segments).collect::<Result<Vec<Vec<ParameterSegment>>, _>>()?;
         Ok(Certificate {
             plant: CertifiedPlant {
                 parameters: file.parameters,
@@ -361,25 +368,27 @@ impl Operation {
     }
 }
 
-impl From<&Law> for StatedLaw {
-    fn from(law: &Law) -> StatedLaw {
+impl From<&ControlLaw> for StatedLaw {
+    fn from(law: &ControlLaw) -> StatedLaw {
         match law {
-            Law::Continuous(quotient) => StatedLaw::Continuous(quotient.into()),
-            Law::Sampled(Sections { gain, numerator, denominator }) => StatedLaw::Sampled(StatedSections {
-                gain: *gain,
-                numerator: numerator.clone(),
-                denominator: denominator.clone(),
-            }),
+            ControlLaw::Continuous(quotient) => StatedLaw::Continuous(quotient.into()),
+            ControlLaw::Sampled(Sections { gain, numerator, denominator }) => {
+                StatedLaw::Sampled(StatedSections {
+                    gain: *gain,
+                    numerator: numerator.clone(),
+                    denominator: denominator.clone(),
+                })
+            }
         }
     }
 }
 
-impl From<StatedLaw> for Law {
-    fn from(stated: StatedLaw) -> Law {
+impl From<StatedLaw> for ControlLaw {
+    fn from(stated: StatedLaw) -> ControlLaw {
         match stated {
-            StatedLaw::Continuous(quotient) => Law::Continuous(quotient.into()),
+            StatedLaw::Continuous(quotient) => ControlLaw::Continuous(quotient.into()),
             StatedLaw::Sampled(StatedSections { gain, numerator, denominator }) => {
-                Law::Sampled(Sections { gain, numerator, denominator })
+                ControlLaw::Sampled(Sections { gain, numerator, denominator })
             }
         }
     }
@@ -387,8 +396,11 @@ impl From<StatedLaw> for Law {
 
 impl From<&Sampling> for StatedSampling {
     fn from(sampling: &Sampling) -> StatedSampling {
-        let bound =
-            |one: &Bound| StatedBound { order: one.order, ratio: one.ratio, panels: covers(&one.panels) };
+        let bound = |one: &RollOffBound| StatedBound {
+            order: one.order,
+            ratio: one.ratio,
+            panels: covers(&one.panels),
+        };
         let bounds = sampling.bounds.iter().map(|of_box| of_box.iter().map(bound).collect()).collect();
         StatedSampling {
             sample_time: sampling.sample_time_s,
@@ -403,8 +415,9 @@ impl TryFrom<StatedSampling> for Sampling {
     type Error = CertificateError;
 
     fn try_from(stated: StatedSampling) -> Result<Sampling, CertificateError> {
-        let bound =
-            |one: StatedBound| Ok(Bound { order: one.order, ratio: one.ratio, panels: panels(one.panels)? });
+        let bound = |one: StatedBound| {
+            Ok(RollOffBound { order: one.order, ratio: one.ratio, panels: panels(one.panels)? })
+        };
         let of_box = |bounds: Vec<StatedBound>| bounds.into_iter().map(bound).collect();
         let bounds = stated.bounds.into_iter().map(of_box).collect::<Result<_, CertificateError>>()?;
         let StatedSampling { sample_time, sensor_delay, images, .. } = stated;
@@ -412,14 +425,14 @@ impl TryFrom<StatedSampling> for Sampling {
     }
 }
 
-impl From<&Quotient> for Rational {
-    fn from(one: &Quotient) -> Rational {
-        Rational { numerator: one.numerator.clone(), denominator: one.denominator.clone() }
+impl From<&Quotient> for CertificateRational {
+    fn from(one: &Quotient) -> CertificateRational {
+        CertificateRational { numerator: one.numerator.clone(), denominator: one.denominator.clone() }
     }
 }
 
-impl From<Rational> for Quotient {
-    fn from(one: Rational) -> Quotient {
+impl From<CertificateRational> for Quotient {
+    fn from(one: CertificateRational) -> Quotient {
         Quotient { numerator: one.numerator, denominator: one.denominator }
     }
 }

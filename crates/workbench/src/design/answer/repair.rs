@@ -26,9 +26,9 @@ pub(super) struct RepairRow<'a> {
     conflicts: Vec<LimitRow>,
     /// The plant that was taken in within the loop of the first design, and within the one that was found.
     #[serde(skip_serializing_if = "Option::is_none")]
-    plant_before: Option<audit::Body<'a>>,
+    plant_before: Option<audit::VerifyAnswer<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    plant_after: Option<audit::Body<'a>>,
+    plant_after: Option<audit::VerifyAnswer<'a>>,
     /// The first design, where another one took its place.
     #[serde(skip_serializing_if = "Option::is_none")]
     before: Option<PublishedRow<'a>>,
@@ -36,13 +36,13 @@ pub(super) struct RepairRow<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     nearest: Option<PublishedRow<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    nearest_machine: Option<trial::Body<'a>>,
+    nearest_machine: Option<trial::TrialAnswer<'a>>,
     /// Of the search for the nearest controller; those of the first design come before them, as they do in `rounds` where it is met.
     #[serde(skip_serializing_if = "Option::is_none")]
     nearest_rounds: Option<Vec<RoundRow>>,
     /// The controller that was found with the waves in every plant of the family.
     #[serde(skip_serializing_if = "Option::is_none")]
-    family_with_waves: Option<audit::Body<'a>>,
+    family_with_waves: Option<audit::VerifyAnswer<'a>>,
     sentences: &'a [String],
 }
 

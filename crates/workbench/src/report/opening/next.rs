@@ -15,8 +15,8 @@ use crate::quantity::DisplayUnit;
 use crate::report::design::Designed;
 use crate::report::driven::{DESIGNED, GIVEN};
 use crate::setup::Setup;
-use crate::simulate::Wish;
-use crate::trial::{Agreement, Run};
+use crate::simulate::TrackingWish;
+use crate::trial::{Agreement, TrialRun};
 
 /// Sentences that a reader still reads.
 const MOST: usize = 6;
@@ -173,17 +173,18 @@ fn infeasible_words(view: &ProjectDesign, relaxation: &Relaxation) -> String {
 /// What the machine objects to a controller: of each kind of machine one sentence, the worst first.
 fn machine(side: &Side<'_>) -> Vec<String> {
     let Some(trial) = side.trial else { return vec![] };
-    let mut others: Vec<&Run> = trial.runs.iter().filter(|run| run.agreement != Agreement::Agrees).collect();
+    let mut others: Vec<&TrialRun> =
+        trial.runs.iter().filter(|run| run.agreement != Agreement::Agrees).collect();
     others.sort_by_key(|run| std::cmp::Reverse(run.agreement));
     let with_waves = others.iter().find(|run| run.quarter_wave_rad_per_s.is_some());
     let of_plant = others.iter().find(|run| run.plant.is_some());
     let declared = others.iter().find(|run| run.plant.is_none() && run.quarter_wave_rad_per_s.is_none());
-    let mut told: Vec<&Run> = [declared, with_waves, of_plant].into_iter().flatten().copied().collect();
+    let mut told: Vec<&TrialRun> = [declared, with_waves, of_plant].into_iter().flatten().copied().collect();
     told.sort_by_key(|run| std::cmp::Reverse(run.agreement));
     told.into_iter().map(|run| machine_words(side, run)).collect()
 }
 
-fn machine_words(side: &Side<'_>, run: &Run) -> String {
+fn machine_words(side: &Side<'_>, run: &TrialRun) -> String {
     // the machine's chapter has the rest: where the force swings, and how long a wave takes
     let why = run.reason.split(". The lines are").next().unwrap_or_default();
     let why = why.split(": at the end it swings").next().unwrap_or_default();
@@ -210,7 +211,7 @@ fn machine_words(side: &Side<'_>, run: &Run) -> String {
 
 /// A step of the machine that misses what was wished, and what the limits of tracking themselves do.
 fn wishes(contents: &Contents<'_>, side: &Side<'_>) -> Option<String> {
-    let wish: &Wish = contents.driven?.wish.as_ref()?;
+    let wish: &TrackingWish = contents.driven?.wish.as_ref()?;
     let missed = |held: Option<(crate::simulate::HeldWish, usize)>| {
         held.filter(|(held, _)| held.kept == Some(false)).map(|(held, _)| held.words)
     };

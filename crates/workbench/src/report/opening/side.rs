@@ -5,10 +5,10 @@ use phea_qft::verification::Verdict;
 
 use crate::audit::ProjectAudit;
 use crate::design::LoopFigures;
-use crate::report::driven::{DESIGNED, Driven, GIVEN};
+use crate::report::driven::{DESIGNED, GIVEN, MachineChapter};
 use crate::report::judged::Judged;
 use crate::report::simulation::worst;
-use crate::simulate::{HeldWish, Metrics, ScenarioRun, Wish};
+use crate::simulate::{HeldWish, Metrics, ScenarioRun, TrackingWish};
 use crate::trial::Trial;
 
 /// A controller.
@@ -26,7 +26,7 @@ pub(super) struct Side<'a> {
 }
 
 /// Given and designed, as far as something is known of them.
-pub(super) fn sides<'a>(judged: Option<&'a Judged>, driven: Option<&'a Driven>) -> Vec<Side<'a>> {
+pub(super) fn sides<'a>(judged: Option<&'a Judged>, driven: Option<&'a MachineChapter>) -> Vec<Side<'a>> {
     let found = judged.and_then(Judged::found);
     let given = Side {
         name: GIVEN,
@@ -64,13 +64,13 @@ impl Side<'_> {
     }
 
     /// The step that overshoots most, and of how many; `None` where nothing was wished or driven.
-    pub(super) fn overshoot(&self, wish: &Wish) -> Option<(HeldWish, usize)> {
+    pub(super) fn overshoot(&self, wish: &TrackingWish) -> Option<(HeldWish, usize)> {
         let reached = |metrics: &Metrics| Some((metrics.overshoot_percent.ok()?, wish.overshoot(metrics)?));
         worst(self.runs?, reached)
     }
 
     /// The step that settles last, likewise.
-    pub(super) fn settling(&self, wish: &Wish) -> Option<(HeldWish, usize)> {
+    pub(super) fn settling(&self, wish: &TrackingWish) -> Option<(HeldWish, usize)> {
         let reached = |metrics: &Metrics| {
             let held = wish.settling(metrics)?;
             Some((metrics.settling_time_s.unwrap_or(f64::INFINITY), held))
@@ -79,7 +79,7 @@ impl Side<'_> {
     }
 
     /// Whether all steps keep to the wish; `None` where none can be judged.
-    pub(super) fn keeps(&self, wish: &Wish) -> Option<bool> {
+    pub(super) fn keeps(&self, wish: &TrackingWish) -> Option<bool> {
         let held = [self.overshoot(wish), self.settling(wish)].into_iter().flatten();
         held.filter_map(|(held, _)| held.kept).reduce(|one, other| one && other)
     }

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{Check, Difference, MetricDifferences};
+use super::{Difference, MetricDifferences, ToleranceCheck};
 use crate::answer::significant;
 use crate::simulate::Measured;
 
@@ -16,7 +16,7 @@ pub(crate) struct CheckRow {
     part_of_peak: Option<f64>,
     part_of_peak_reason: Option<&'static str>,
     signals: Vec<SignalRow>,
-    events: Vec<EventRow>,
+    events: Vec<EventCheckAnswer>,
 }
 
 #[derive(Serialize)]
@@ -29,14 +29,14 @@ struct SignalRow {
 }
 
 #[derive(Serialize)]
-struct EventRow {
+struct EventCheckAnswer {
     kind: &'static str,
     time_s: f64,
-    metrics: Vec<MetricRow>,
+    metrics: Vec<MetricCheckAnswer>,
 }
 
 #[derive(Serialize)]
-struct MetricRow {
+struct MetricCheckAnswer {
     name: &'static str,
     difference: Option<f64>,
     difference_reason: Option<&'static str>,
@@ -45,7 +45,7 @@ struct MetricRow {
 const NO_LOOKS: &str = "the two runs have no look in common";
 
 /// The object `check` of a scenario.
-pub(crate) fn row(check: &Check) -> CheckRow {
+pub(crate) fn row(check: &ToleranceCheck) -> CheckRow {
     let force = check.force.as_ref();
     let missing = force.is_none().then_some(NO_LOOKS);
     CheckRow {
@@ -71,13 +71,13 @@ fn signal(found: &Difference) -> SignalRow {
     }
 }
 
-fn event(found: &MetricDifferences) -> EventRow {
-    let metric = |(name, measured): &(&'static str, Measured)| MetricRow {
+fn event(found: &MetricDifferences) -> EventCheckAnswer {
+    let metric = |(name, measured): &(&'static str, Measured)| MetricCheckAnswer {
         name,
         difference: measured.ok(),
         difference_reason: measured.err(),
     };
-    EventRow {
+    EventCheckAnswer {
         kind: found.window.cause.word(),
         time_s: found.window.start_s,
         metrics: found.differences.iter().map(metric).collect(),
@@ -85,7 +85,7 @@ fn event(found: &MetricDifferences) -> EventRow {
 }
 
 /// What a check found, a sentence each.
-pub(crate) fn sentences(check: &Check) -> Vec<String> {
+pub(crate) fn sentences(check: &ToleranceCheck) -> Vec<String> {
     let tolerance = significant(check.tolerance, 3);
     let mut told = Vec::new();
     if let Some(stopped) = check.stopped {
@@ -113,7 +113,7 @@ pub(crate) fn sentences(check: &Check) -> Vec<String> {
 }
 
 /// The difference of the disturbance peak, where the load moves.
-fn of_disturbance(check: &Check) -> String {
+fn of_disturbance(check: &ToleranceCheck) -> String {
     let found = check.metrics.iter().find_map(|metrics| metrics.of("disturbance_peak_n")?.ok());
     found.map_or(String::new(), |found| format!("; the disturbance peak by {} N", significant(found, 2)))
 }

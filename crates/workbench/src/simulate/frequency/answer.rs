@@ -10,7 +10,7 @@ use super::{MachineResponse, MachineResponses, ResponsePoint};
 use crate::answer::{NumberTable, OutputFile, TableFormat};
 
 #[derive(Serialize)]
-pub(crate) struct Body<'a> {
+pub(crate) struct FrequencyAnswer<'a> {
     position_m: f64,
     force_n: f64,
     command_v: f64,
@@ -22,11 +22,11 @@ pub(crate) struct Body<'a> {
 
 #[derive(Serialize)]
 struct ResponseRow {
-    points: Vec<PointRow>,
+    points: Vec<FrequencyPointAnswer>,
 }
 
 #[derive(Serialize)]
-struct PointRow {
+struct FrequencyPointAnswer {
     frequency_rad_per_s: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     amplitude_v: Option<f64>,
@@ -59,8 +59,8 @@ const NO_SYSTEM: &str =
     "a sampled loop around a machine with states and waves is no linear system of finite order here";
 
 /// The part of the JSON object.
-pub(crate) fn body(found: &MachineResponses) -> Body<'_> {
-    Body {
+pub(crate) fn body(found: &MachineResponses) -> FrequencyAnswer<'_> {
+    FrequencyAnswer {
         position_m: found.position_m,
         force_n: found.force_n,
         command_v: found.command_v,
@@ -75,7 +75,7 @@ fn response(response: &MachineResponse, open: bool) -> ResponseRow {
     ResponseRow { points: response.points.iter().map(|point| row(point, open)).collect() }
 }
 
-fn row(point: &ResponsePoint, open: bool) -> PointRow {
+fn row(point: &ResponsePoint, open: bool) -> FrequencyPointAnswer {
     let finite = |value: f64| value.is_finite().then_some(value);
     let pair = |value: Complex64| value.is_finite().then_some([value.re, value.im]);
     let [difference_db, difference_deg] = point.differs(point.linear_plant).map(finite);
@@ -88,7 +88,7 @@ fn row(point: &ResponsePoint, open: bool) -> PointRow {
         _ => None,
     };
     let change_percent = finite(100.0 * point.change);
-    PointRow {
+    FrequencyPointAnswer {
         frequency_rad_per_s: point.frequency_rad_per_s,
         amplitude_v: open.then_some(point.amplitude),
         amplitude_n: (!open).then_some(point.amplitude),

@@ -1,15 +1,18 @@
 //! The claims of a certificate and their panels, as the file has them.
 
-use phea_qft::proof::{Claim, Count, Late, LimitOf, Limited, Member, Panel, Side, StableBox};
+use phea_qft::proof::{
+    CertificateMember, CertificateSide, Claim, FrequencyPanel, Late, LimitOf, LimitedLoop, PoleCount,
+    StableBox,
+};
 use phea_qft::specification::ClosedLoop;
 use serde::{Deserialize, Serialize};
 
-use super::{CertificateError, Rational, meaning};
+use super::{CertificateError, CertificateRational, meaning};
 use crate::audit::closed_loop_key;
 
 #[derive(Serialize, Deserialize)]
 #[serde(tag = "claim", rename_all = "snake_case", deny_unknown_fields)]
-pub(super) enum Stated {
+pub(super) enum StatedClaim {
     Stable {
         boxes: Vec<StatedBox>,
     },
@@ -24,7 +27,7 @@ pub(super) enum Stated {
         closed_loop: String,
         side: String,
         limit: StatedLimit,
-        band: [End; 2],
+        band: [FrequencyEnd; 2],
         ratio: f64,
         boxes: Vec<Vec<Cover>>,
     },
@@ -32,9 +35,9 @@ pub(super) enum Stated {
         closed_loop: String,
         side: String,
         limit: StatedLimit,
-        band: [End; 2],
+        band: [FrequencyEnd; 2],
         ratio: f64,
-        frequency: End,
+        frequency: FrequencyEnd,
         #[serde(rename = "box")]
         of_box: usize,
         member: Vec<f64>,
@@ -60,30 +63,30 @@ pub(super) struct StatedCount {
     beyond: Vec<Cover>,
 }
 
-impl From<&Count> for StatedCount {
-    fn from(count: &Count) -> StatedCount {
-        let Count { characteristic, denominator, beyond } = count;
+impl From<&PoleCount> for StatedCount {
+    fn from(count: &PoleCount) -> StatedCount {
+        let PoleCount { characteristic, denominator, beyond } = count;
         let [characteristic, denominator, beyond] =
             [characteristic, denominator, beyond].map(|one| covers(one));
         StatedCount { characteristic, denominator, beyond }
     }
 }
 
-impl TryFrom<StatedCount> for Count {
+impl TryFrom<StatedCount> for PoleCount {
     type Error = CertificateError;
 
-    fn try_from(stated: StatedCount) -> Result<Count, CertificateError> {
+    fn try_from(stated: StatedCount) -> Result<PoleCount, CertificateError> {
         let StatedCount { characteristic, denominator, beyond } = stated;
         let (characteristic, denominator) = (panels(characteristic)?, panels(denominator)?);
-        Ok(Count { characteristic, denominator, beyond: panels(beyond)? })
+        Ok(PoleCount { characteristic, denominator, beyond: panels(beyond)? })
     }
 }
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Cover {
-    from: End,
-    to: End,
+    from: FrequencyEnd,
+    to: FrequencyEnd,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     late: Option<Lateness>,
     tree: String,
@@ -93,7 +96,7 @@ pub(super) struct Cover {
 #[derive(Serialize, Deserialize)]
 #[serde(untagged)]
 pub(super) enum StatedLimit {
-    Quotient(Rational),
+    Quotient(CertificateRational),
     Table(StatedTable),
 }
 
@@ -133,23 +136,27 @@ pub(super) enum Lateness {
 /// A frequency in rad/s, or "inf".
 #[derive(Serialize, Deserialize)]
 #[serde(untagged)]
-pub(super) enum End {
+pub(super) enum FrequencyEnd {
     Finite(f64),
     Infinite(String),
 }
 
-impl From<f64> for End {
-    fn from(value: f64) -> End {
-        if value.is_finite() { End::Finite(value) } else { End::Infinite("inf".to_string()) }
+impl From<f64> for FrequencyEnd {
+    fn from(value: f64) -> FrequencyEnd {
+        if value.is_finite() {
+            FrequencyEnd::Finite(value)
+        } else {
+            FrequencyEnd::Infinite("inf".to_string())
+        }
     }
 }
 
-impl End {
+impl FrequencyEnd {
     fn value(&self) -> Result<f64, CertificateError> {
         match self {
-            End::Finite(value) => Ok(*value),
-            End::Infinite(word) if word == "inf" => Ok(f64::INFINITY),
-            End::Infinite(word) => Err(meaning(format!("`{word}` is not a frequency"))),
+            FrequencyEnd::Finite(value) => Ok(*value),
+            FrequencyEnd::Infinite(word) if word == "inf" => Ok(f64::INFINITY),
+            FrequencyEnd::Infinite(word) => Err(meaning(format!("`{word}` is not a frequency"))),
         }
     }
 }
@@ -173,9 +180,9 @@ fn late(lateness: Option<Lateness>) -> Result<Late, CertificateError> {
     }
 }
 
-pub(super) fn covers(panels: &[Panel]) -> Vec<Cover> {
+pub(super) fn covers(panels: &[FrequencyPanel]) -> Vec<Cover> {
     let hexadecimal = |tree: &[u8]| tree.iter().map(|byte| format!("{byte:02x}")).collect::<String>();
-    let cover = |panel: &Panel| Cover {
+    let cover = |panel: &FrequencyPanel| Cover {
         from: panel.from.into(),
         to: panel.to.into(),
         late: lateness(panel.late),
@@ -184,7 +191,7 @@ pub(super) fn covers(panels: &[Panel]) -> Vec<Cover> {
     panels.iter().map(cover).collect()
 }
 
-pub(super) fn panels(covers: Vec<Cover>) -> Result<Vec<Panel>, CertificateError> {
+pub(super) fn panels(covers: Vec<Cover>) -> Result<Vec<FrequencyPanel>, CertificateError> {
     let bytes = |text: &str| -> Result<Vec<u8>, CertificateError> {
         let digits = text.chars().map(|digit| digit.to_digit(16)).collect::<Option<Vec<u32>>>();
         let digits = digits.filter(|digits| digits.len() % 2 == 0);
@@ -193,15 +200,15 @@ pub(super) fn panels(covers: Vec<Cover>) -> Result<Vec<Panel>, CertificateError>
     };
     let panel = |cover: Cover| {
         let (from, to) = (cover.from.value()?, cover.to.value()?);
-        Ok(Panel { from, to, late: late(cover.late)?, tree: bytes(&cover.tree)? })
+        Ok(FrequencyPanel { from, to, late: late(cover.late)?, tree: bytes(&cover.tree)? })
     };
     covers.into_iter().map(panel).collect()
 }
 
-fn side_key(side: Side) -> String {
+fn side_key(side: CertificateSide) -> String {
     match side {
-        Side::Upper => "upper",
-        Side::Lower => "lower",
+        CertificateSide::Upper => "upper",
+        CertificateSide::Lower => "lower",
     }
     .to_string()
 }
@@ -210,8 +217,8 @@ fn limited(
     closed_loop: &str,
     side: &str,
     limit: StatedLimit,
-    band: &[End; 2],
-) -> Result<Limited, CertificateError> {
+    band: &[FrequencyEnd; 2],
+) -> Result<LimitedLoop, CertificateError> {
     let known = [
         ClosedLoop::RobustStability,
         ClosedLoop::Sensitivity,
@@ -221,11 +228,11 @@ fn limited(
         ClosedLoop::Tracking,
     ];
     let found = known.into_iter().find(|one| closed_loop_key(*one) == closed_loop);
-    Ok(Limited {
+    Ok(LimitedLoop {
         closed_loop: found.ok_or_else(|| meaning(format!("`{closed_loop}` is not a closed loop")))?,
         side: match side {
-            "upper" => Side::Upper,
-            "lower" => Side::Lower,
+            "upper" => CertificateSide::Upper,
+            "lower" => CertificateSide::Lower,
             _ => return Err(meaning(format!("`{side}` is not a side of a limit"))),
         },
         limit: limit.into(),
@@ -233,11 +240,11 @@ fn limited(
     })
 }
 
-impl From<&Claim> for Stated {
-    fn from(claim: &Claim) -> Stated {
-        let of = |limited: &Limited| {
+impl From<&Claim> for StatedClaim {
+    fn from(claim: &Claim) -> StatedClaim {
+        let of = |limited: &LimitedLoop| {
             let key = closed_loop_key(limited.closed_loop).to_string();
-            let band = limited.band_rad_per_s.map(End::from);
+            let band = limited.band_rad_per_s.map(FrequencyEnd::from);
             (key, side_key(limited.side), StatedLimit::from(&limited.limit), band)
         };
         match claim {
@@ -248,55 +255,64 @@ impl From<&Claim> for Stated {
                     delays: covers(&one.delays),
                     count: one.count.as_ref().map(StatedCount::from),
                 };
-                Stated::Stable { boxes: boxes.iter().map(stated).collect() }
+                StatedClaim::Stable { boxes: boxes.iter().map(stated).collect() }
             }
             Claim::Unstable { member, count } => {
                 let count = count.as_ref().map(StatedCount::from);
-                Stated::Unstable { of_box: member.of_box, member: member.variables.clone(), count }
+                StatedClaim::Unstable { of_box: member.of_box, member: member.variables.clone(), count }
             }
             Claim::Limited { limited, ratio, boxes } => {
                 let (closed_loop, side, limit, band) = of(limited);
                 let boxes = boxes.iter().map(|panels| covers(panels)).collect();
-                Stated::Limited { closed_loop, side, limit, band, ratio: *ratio, boxes }
+                StatedClaim::Limited { closed_loop, side, limit, band, ratio: *ratio, boxes }
             }
             Claim::Reached { limited, ratio, frequency_rad_per_s, member } => {
                 let (closed_loop, side, limit, band) = of(limited);
-                let (frequency, of_box) = (End::from(*frequency_rad_per_s), member.of_box);
+                let (frequency, of_box) = (FrequencyEnd::from(*frequency_rad_per_s), member.of_box);
                 let member = member.variables.clone();
-                Stated::Reached { closed_loop, side, limit, band, ratio: *ratio, frequency, of_box, member }
+                StatedClaim::Reached {
+                    closed_loop,
+                    side,
+                    limit,
+                    band,
+                    ratio: *ratio,
+                    frequency,
+                    of_box,
+                    member,
+                }
             }
         }
     }
 }
 
-impl TryFrom<Stated> for Claim {
+impl TryFrom<StatedClaim> for Claim {
     type Error = CertificateError;
 
-    fn try_from(stated: Stated) -> Result<Claim, CertificateError> {
+    fn try_from(stated: StatedClaim) -> Result<Claim, CertificateError> {
         Ok(match stated {
-            Stated::Stable { boxes } => {
+            StatedClaim::Stable { boxes } => {
                 let stable = |one: StatedBox| {
                     let (panels, delays) = (panels(one.panels)?, panels(one.delays)?);
-                    let count = one.count.map(Count::try_from).transpose()?;
+                    let count = one.count.map(PoleCount::try_from).transpose()?;
                     Ok(StableBox { member: one.member, panels, delays, count })
                 };
                 Claim::Stable(boxes.into_iter().map(stable).collect::<Result<_, CertificateError>>()?)
             }
-            Stated::Unstable { of_box, member, count } => {
-                let count = count.map(Count::try_from).transpose()?;
-                Claim::Unstable { member: Member { of_box, variables: member }, count }
+            StatedClaim::Unstable { of_box, member, count } => {
+                let count = count.map(PoleCount::try_from).transpose()?;
+                Claim::Unstable { member: CertificateMember { of_box, variables: member }, count }
             }
-            Stated::Limited { closed_loop, side, limit, band, ratio, boxes } => Claim::Limited {
+            StatedClaim::Limited { closed_loop, side, limit, band, ratio, boxes } => Claim::Limited {
                 limited: limited(&closed_loop, &side, limit, &band)?,
                 ratio,
                 boxes: boxes.into_iter().map(panels).collect::<Result<_, _>>()?,
             },
-            Stated::Reached { closed_loop, side, limit, band, ratio, frequency, of_box, member } => {
+            StatedClaim::Reached { closed_loop, side, limit, band, ratio, frequency, of_box, member } => {
                 Claim::Reached {
                     limited: limited(&closed_loop, &side, limit, &band)?,
                     ratio,
                     frequency_rad_per_s: frequency.value()?,
-                    member: Member { of_box, variables: member },
+                    member: CertificateMember { of_box, variables: member },
                 }
             }
         })
