@@ -1,4 +1,5 @@
-//! The audit of a controller: stability, delay margin and specifications of a family put together into one verdict.
+//! The audit of a controller: stability, delay margin and specifications of a family, combined into
+//! one verdict.
 //!
 //! ```text
 //! stability -> unstable: nothing more to look at
@@ -23,7 +24,8 @@ const STAGE: &str = "auditing";
 /// [`Stopped`] by the watch.
 ///
 /// # Example
-/// The integrator 1/s closed with gain 1 is stable, tolerates pi/2 s of delay, and satisfies |T| <= 1.2 everywhere:
+/// The integrator 1/s closed with gain 1 is stable, tolerates pi/2 s of delay, and satisfies |T| <=
+/// 1.2 everywhere:
 /// ```
 /// use phea_dynamics::controller::Controller;
 /// use phea_dynamics::linear::TransferFunction;
@@ -66,7 +68,8 @@ pub fn audit(problem: &AuditProblem<'_>, watch: Watch<'_>) -> Result<Audit, Stop
     audit_with(problem, &SampledPlants::default(), watch)
 }
 
-/// The same, with plants of the same family within the same loop, whatever its controller, so that none is sampled twice.
+/// The same, given plants of this family that were already sampled in the same loop (with any
+/// controller), so that none is sampled twice.
 pub(crate) fn audit_with(
     problem: &AuditProblem<'_>,
     sampled: &SampledPlants,
@@ -128,7 +131,7 @@ fn suspects(findings: &[SpecificationFinding]) -> Vec<PlantPoint> {
     plants
 }
 
-/// A violation outweighs what is not proven, and that what is met.
+/// A violation outweighs an unproven result, which outweighs a specification that is met.
 fn worse(one: Verdict, other: Verdict) -> Verdict {
     match (one, other) {
         (Verdict::Violated, _) | (_, Verdict::Violated) => Verdict::Violated,
@@ -137,15 +140,15 @@ fn worse(one: Verdict, other: Verdict) -> Verdict {
     }
 }
 
-/// Whether a loop of the family is unstable. Where all poles decay and stability is violated, it is by the prefilter, which only the
-/// reference goes through.
+/// Whether a loop of the family is unstable. If stability is violated although all poles of the
+/// loop decay, the prefilter is unstable; only the reference passes through it.
 fn is_unstable(stability: &StabilityFinding) -> bool {
     let decays = stability.largest_real_part.is_some_and(|real| real < 0.0);
     stability.verdict == Verdict::Violated && !decays
 }
 
-/// The magnitudes of an unstable loop are those of no response: it keeps to no specification, by no margin. Of a loop that is not known to
-/// be stable, they may be.
+/// The magnitudes of an unstable loop do not describe a response: it satisfies no specification and
+/// has no margin. The same may hold for a loop that is not known to be stable.
 fn without_stability(finding: &mut SpecificationFinding, stability: &StabilityFinding) {
     let tracks = finding.requirement.is_tracking();
     match stability.verdict {

@@ -1,4 +1,5 @@
-//! Bounds: where the nominal loop L0 may not be, so that every plant of a template keeps to a specification.
+//! Bounds: where the nominal loop L0 may not be, so that every plant of a template satisfies a
+//! specification.
 
 mod ceiling;
 mod combined;
@@ -34,10 +35,12 @@ pub struct Bound {
 /// What of a template counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TemplateFill {
-    /// Its plants alone. Where they are sparse, the regions that neighbours forbid do not overlap, and islands seem allowed between them.
+    /// Only the plants. Where they are sparse, the regions forbidden by neighbours do not overlap,
+    /// and islands between them appear to be allowed.
     Points,
-    /// Its plants, every point of its outlines, and what these enclose. A side of an outline is taken as straight in P0/P (for the control effort
-    /// in P), which between neighbours half a decibel and two degrees apart is within 0.01 dB of any other way to join them.
+    /// Its plants, every point of its outlines, and what these enclose. A side of an outline is
+    /// taken as straight in P0/P (in P for the control effort); between neighbours that are half a
+    /// decibel and two degrees apart any other way to join them differs by less than 0.01 dB.
     Filled,
 }
 
@@ -66,13 +69,14 @@ pub enum BoundError {
         /// Index of the plant, or of the corner of an outline, from 0.
         index: usize,
     },
-    /// A limit given as a table that does not reach.
+    /// A limit given as a table that does not cover the frequency.
     #[error("the limit is not given at {frequency_rad_per_s} rad/s")]
     NoLimit {
         /// rad/s
         frequency_rad_per_s: f64,
     },
-    /// A limit that is no magnitude; for tracking the quotient of upper and lower.
+    /// A limit that is not a valid magnitude; for tracking, the quotient of the upper and lower
+    /// limits.
     #[error("the limit at {frequency_rad_per_s} rad/s is {limit}")]
     Limit {
         /// rad/s

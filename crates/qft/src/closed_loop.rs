@@ -1,4 +1,5 @@
-//! The loop around a plant: controller, prefilter, sensor, delay and sampling, and what they make of one member.
+//! The loop around a plant: controller, prefilter, sensor, delay and sampling, and the closed loops
+//! of one member.
 
 mod fed_forward;
 mod images;
@@ -21,7 +22,8 @@ pub(crate) use fed_forward::closed;
 use fed_forward::{FedBack, rate_path};
 use member::{continuous, load_motion};
 
-/// What is the same for every plant: G, F, H, the delay of the loop, and when it samples.
+/// The part of the loop that is the same for every plant: G, F, H, the delay of the loop, and its
+/// sampling.
 ///
 /// ```text
 /// continuous:  L = P G H e^(-s T_d),  T = P G e^(-s T_d)/(1 + L)                                   thesis 3.1, 3.2
@@ -33,11 +35,12 @@ use member::{continuous, load_motion};
 /// Pd + K V_d P         the path of its disturbance, P with its hold and delay; V_d = s where v is the rate of d itself
 /// ```
 ///
-/// The samples of the output follow this exactly for a sine of the disturbance: P and P_v are those of the samples.
+/// The samples of the output follow this exactly for a sine of the disturbance: P and P_v are those
+/// of the samples.
 ///
-/// The prefilter of a sampled loop is F(z), or F(s) where it acts on the reference before this is sampled. Of a sine of the reference
-/// below pi/T the samples behind F(s) are those of F(jw) times the sine: F T is taken with F(jw), and holds for references without parts
-/// beyond pi/T.
+/// The prefilter of a sampled loop is F(z), or F(s) where it acts on the reference before this is
+/// sampled. Of a sine of the reference below pi/T the samples behind F(s) are those of F(jw) times
+/// the sine: F T is taken with F(jw), and holds for references without parts beyond pi/T.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Compensation {
     feedback: TransferFunction,
@@ -111,7 +114,8 @@ pub enum Member {
 pub struct MemberResponse {
     /// P
     pub plant: Complex64,
-    /// Pd with what is fed forward of the disturbance's rate; zero where the plant has no such path.
+    /// Pd with what is fed forward of the disturbance's rate; zero where the plant has no such
+    /// path.
     pub load_motion: Complex64,
     /// H
     pub sensor: Complex64,
@@ -121,8 +125,9 @@ impl Compensation {
     /// The loop of a controller with this sensor (1 where the output itself is fed back).
     ///
     /// # Errors
-    /// [`LinearError`] if a part is no transfer function or cannot be sampled; [`LinearError::DomainMismatch`] for a controller
-    /// or prefilter in z whose samples are not those of the loop; [`LinearError::WrongDomain`] for a sensor in z.
+    /// [`LinearError`] if a part is no transfer function or cannot be sampled;
+    /// [`LinearError::DomainMismatch`] for a controller or prefilter in z whose samples are not
+    /// those of the loop; [`LinearError::WrongDomain`] for a sensor in z.
     ///
     /// # Example
     /// The published force controller with 1 ms of delay: at 100 rad/s L lags by 0.1 rad more.
@@ -173,8 +178,9 @@ impl Compensation {
         &self.prefilter
     }
 
-    /// F as a step of the reference meets it, in the domain of the loop: where it acts before the samples, the F(z) whose step response is
-    /// the samples of that of F(s).
+    /// F as a step of the reference passes through it, in the domain of the loop: where it acts
+    /// before the sampling, the F(z) whose step response has the samples of the step response of
+    /// F(s).
     ///
     /// # Errors
     /// [`LinearError`] where F(s) cannot be sampled.
@@ -217,7 +223,7 @@ impl Compensation {
         self.delay_s
     }
 
-    /// K, what the rate of a disturbance adds to the command.
+    /// K: the gain from the rate of a disturbance to the command.
     pub fn rate_feed_forward(&self) -> f64 {
         self.rate_feed_forward
     }
@@ -241,12 +247,12 @@ impl Compensation {
         Ok(Compensation { feedback, ..self.clone() })
     }
 
-    /// Whether a root of its controller stands at zero frequency: s = 0, or z = 1.
+    /// Whether its controller has a root at zero frequency: s = 0, or z = 1.
     pub(crate) fn is_at_zero_frequency(&self, root: Complex64) -> bool {
         root == Complex64::new(if self.sample_time_s.is_some() { 1.0 } else { 0.0 }, 0.0)
     }
 
-    /// The highest frequency that has a meaning, rad/s: pi/T, or infinity.
+    /// The highest meaningful frequency, rad/s: pi/T, or infinity.
     pub fn highest_frequency_rad_per_s(&self) -> f64 {
         self.sample_time_s.map_or(f64::INFINITY, |sample_time_s| std::f64::consts::PI / sample_time_s)
     }
@@ -262,7 +268,8 @@ impl Compensation {
     /// A rational plant within this loop.
     ///
     /// # Errors
-    /// [`LinearError`] if the plant has a negative dead time or cannot be sampled; a continuous loop takes every other plant.
+    /// [`LinearError`] if the plant has a negative dead time or cannot be sampled; a continuous
+    /// loop accepts every other plant.
     pub fn member(&self, mut plant: PlantCoefficients<f64>) -> Result<Member, LinearError> {
         check_dead_time(plant.dead_time_s)?;
         plant.dead_time_s += self.delay_s;
@@ -277,7 +284,8 @@ impl Compensation {
             &Polynomial::new(plant.command.numerator),
             &Polynomial::new(plant.command.denominator),
         )?;
-        // The dead time of the plant acts after the hold; in front of the sensor's own it adds to it.
+        // The dead time of the plant acts after the hold; in front of the sensor's own it adds to
+        // it.
         let held = |function: TransferFunction| {
             let dead_time_s = function.dead_time_s() + plant.dead_time_s;
             function.with_dead_time(dead_time_s)?.discretized(sample_time_s, Discretization::ZeroOrderHold)
@@ -336,8 +344,8 @@ impl Compensation {
         }
     }
 
-    /// P, Pd and H of a plant at one frequency: what its [`Compensation::member`] gives there, for a tenth of the work in a sampled
-    /// loop, whose member looks for its zeros first.
+    /// P, Pd and H of a plant at one frequency: what its [`Compensation::member`] gives there, with
+    /// a tenth of the work in a sampled loop, where forming the member involves finding its zeros.
     ///
     /// # Errors
     /// Those of [`Compensation::member`].
@@ -421,7 +429,7 @@ fn deployed(function: TransferFunction, timing: &Timing) -> Result<TransferFunct
     }
 }
 
-/// A plant that answers before it is asked is none.
+/// Rejects a negative dead time: the plant would be non-causal.
 fn check_dead_time(dead_time_s: f64) -> Result<(), LinearError> {
     if dead_time_s.is_finite() && dead_time_s >= 0.0 {
         Ok(())

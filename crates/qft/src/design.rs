@@ -1,4 +1,5 @@
-//! The design of a controller and its prefilter: search, audit, and a new constraint for every counterexample, until both agree.
+//! The design of a controller and its prefilter: search, audit, and a new constraint for every
+//! counterexample, until both agree.
 
 mod attempt;
 mod binding;

@@ -1,7 +1,8 @@
-//! Families of plants: the members that are looked at, and what lies between them.
+//! Families of plants: the members that are examined, and what lies between them.
 //!
-//! A family over a box has members at grid points, corners, random points or given cases, and everything between them
-//! belongs to it too; a family of explicit cases or of measured responses has its members and nothing else.
+//! A family over a box has members at grid points, corners, random points or given cases, and
+//! everything between them belongs to it too; a family of explicit cases or of measured responses
+//! consists of its members only.
 
 mod coordinate;
 mod measured;
@@ -16,12 +17,12 @@ pub use tabulated::{FINE, tabulated};
 
 use phea_dynamics::uncertain_plant::UncertainPlant;
 
-/// The plants that a loop must serve.
+/// The plants that a loop must control.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Family {
     /// An uncertain plant and the members of its family.
     Uncertain(UncertainFamily),
-    /// Frequency responses that were measured: between two of them nothing can be claimed.
+    /// Measured frequency responses: nothing can be claimed between two of them.
     Measured(MeasuredFamily),
 }
 
@@ -61,13 +62,14 @@ pub enum FamilyError {
         /// The parameter's upper bound.
         maximum: f64,
     },
-    /// A coordinate that moves a parameter which does not exist, or which another coordinate moves already.
+    /// A coordinate that moves a parameter which does not exist, or which another coordinate moves
+    /// already.
     #[error("a coordinate moves parameter {0}, which does not exist or is moved already")]
     Coordinate(usize),
     /// Equal factors need positive bounds.
     #[error("parameter `{0}` cannot be spaced by equal factors: its lower bound is not positive")]
     Logarithmic(String),
-    /// More members than can be looked at.
+    /// More members than can be examined.
     #[error("the family would have {0} members; at most {1} are looked at")]
     TooManyMembers(f64, usize),
 }
@@ -75,7 +77,8 @@ pub enum FamilyError {
 /// Largest number of members that a family may have.
 pub const MEMBERS_MAXIMUM: usize = 2_000_000;
 
-/// An uncertain plant, the coordinates that span its box, and the members looked at; the nominal plant is member 0.
+/// An uncertain plant, the coordinates that span its box, and the members that are examined; the
+/// nominal plant is member 0.
 ///
 /// # Example
 /// ```
@@ -110,7 +113,7 @@ impl UncertainFamily {
     /// A family with these members, to which the nominal plant is added in front.
     ///
     /// # Errors
-    /// [`FamilyError`] for members that are no plants of the box, and for coordinates that do not fit the plant.
+    /// [`FamilyError`] for members outside the box, and for coordinates that do not fit the plant.
     pub fn new(
         plant: UncertainPlant,
         coordinates: Vec<Coordinate>,
@@ -125,7 +128,7 @@ impl UncertainFamily {
         Ok(UncertainFamily { plant, coordinates, members, extent })
     }
 
-    /// The nominal plant, and nothing else.
+    /// The nominal plant alone.
     pub fn of_nominal(plant: UncertainPlant) -> UncertainFamily {
         let members = vec![plant.nominal()];
         UncertainFamily { plant, coordinates: vec![], members, extent: Extent::Members }
@@ -151,8 +154,8 @@ impl UncertainFamily {
         &self.coordinates
     }
 
-    /// Parameter values at a point of the box, given by a share in [0, 1] of each coordinate. Shares outside are brought
-    /// to the nearest end, missing ones count as zero.
+    /// Parameter values at a point of the box, given by a share in [0, 1] of each coordinate.
+    /// Shares outside this range are set to the nearest end, and missing ones count as zero.
     pub fn values(&self, shares: &[f64]) -> Vec<f64> {
         coordinate::values(&self.plant, &self.coordinates, shares)
     }

@@ -1,7 +1,8 @@
-//! Quantitative Feedback Theory: what a closed loop must keep to, for every plant of an uncertain family.
+//! Quantitative Feedback Theory: the limits that a closed loop must satisfy for every plant of an
+//! uncertain family.
 //!
-//! This crate knows plants only as `phea_dynamics::uncertain_plant::UncertainPlant` or as measured responses; it never sees a valve
-//! or a hose.
+//! This crate knows plants only as `phea_dynamics::uncertain_plant::UncertainPlant` or as measured
+//! responses; it never sees a valve or a hose.
 
 pub mod audit;
 pub mod bound;

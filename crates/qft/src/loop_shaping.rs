@@ -1,4 +1,5 @@
-//! Loop shaping: a controller with free numbers, what every plant makes of it, and the search for the best one.
+//! Loop shaping: a controller with free parameters, the closed loops that it forms with every
+//! plant, and the search for the best one.
 //!
 //! ```text
 //! structure x -> G(j w; x) -> margins of the samples (plant, frequency, specification) -> descent -> x

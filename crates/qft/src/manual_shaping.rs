@@ -1,12 +1,13 @@
-//! Loop shaping by hand: edits of a controller as values, elements solved so that the loop passes a wanted point, and what every
-//! plant makes of the result.
+//! Loop shaping by hand: edits of a controller as values, elements solved so that the loop passes
+//! through a wanted point, and the resulting margins of every plant.
 //!
 //! ```text
 //! elements -> edit -> elements -> G(j w) -> margin of every specification at every design frequency -> edit -> ...
 //! ```
 //!
-//! Elements are added one after the other until the nominal loop keeps to the bounds at every design frequency (thesis, section
-//! 3.1.4). The templates do not depend on the controller: they are built once, and each edit costs only the margins.
+//! Elements are added one after the other until the nominal loop satisfies the bounds at every
+//! design frequency (thesis, section 3.1.4). The templates do not depend on the controller: they
+//! are built once, and each edit costs only the margins.
 
 mod chart;
 mod edit;

@@ -1,13 +1,16 @@
-//! The prefilter: what the closed loop leaves for it, and the one of least order that keeps to it (thesis 3.1.5).
+//! The prefilter: the band that the closed loop leaves for it, and the one of least order that
+//! stays within it (thesis 3.1.5).
 //!
-//! The controller decides by how much the plants of a family differ, the prefilter where they lie. At each frequency
+//! The controller determines the spread of the plants of a family, the prefilter its position. At
+//! each frequency
 //!
 //! ```text
 //! lower/min|T| <= |F| <= upper/max|T|,      T = P G/(1+L)          over the family, so that lower <= |F T| <= upper (3.18)
 //! ```
 //!
-//! is all that F has to keep to: a band for its magnitude. Where the band has no width, no prefilter of any order will do, and the
-//! two plants that collide can be named. Otherwise a stable F of minimum phase is fitted into it.
+//! is the only condition on F: a band for its magnitude. Where the band has no width, no prefilter
+//! of any order satisfies it, and the two conflicting plants can be named. Otherwise a stable F of
+//! minimum phase is fitted into it.
 
 mod band;
 mod ends;
@@ -29,7 +32,7 @@ use phea_dynamics::watch::Stopped;
 /// Why there is no band for a prefilter, or no search in it.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PrefilterError {
-    /// A specification that no prefilter has a part in.
+    /// A specification that the prefilter does not affect.
     #[error("only tracking leaves a band for a prefilter")]
     NotTracking,
     /// A family without members.
@@ -46,7 +49,7 @@ pub enum PrefilterError {
         /// rad/s
         frequency_rad_per_s: f64,
     },
-    /// A prefilter that cannot be sampled as the loop is.
+    /// A prefilter that cannot be sampled in the way of the loop.
     #[error(transparent)]
     Linear(#[from] LinearError),
     /// The watch stopped the synthesis.

@@ -1,20 +1,22 @@
-//! Proof: what an audit found by searching, shown for every plant of the box and every frequency of the band, as a certificate that a
-//! sceptic can check again.
+//! Proof: the result that an audit found by searching is shown for every plant of the box and every
+//! frequency of the band, as a certificate that a sceptic can check again.
 //!
 //! ```text
 //! loop and box -> polynomials in s and the variables -> control points -> tree of leaves -> certificate        the prover, not trusted
 //!                                                            certificate -> polynomials -> control points -> checked        the checker
 //! ```
 //!
-//! Every claim is |V(jw, p)| <= |U(jw, p)| with two polynomials, see the table of `claimed`. Over a box of plants and a panel of frequencies
-//! both are means of their control points, with the same weights. A leaf is shown by one direction d:
+//! Every claim is |V(jw, p)| <= |U(jw, p)| with two polynomials, see the table of `claimed`. Over a
+//! box of plants and a panel of frequencies both are means of their control points, with the same
+//! weights. A leaf is shown by one direction d:
 //!
 //! ```text
 //! Re(conj(d) U_k) >= |d| |V_k| for every control point   ->   |V| <= |U| on the whole leaf
 //! ```
 //!
-//! A loop is stable where n + c, the numerator of 1 + L, has no zero on the imaginary axis nor at infinity for any plant of the box, and the
-//! roots of one plant lie to its left: roots move continuously, and none can cross.
+//! A loop is stable where n + c, the numerator of 1 + L, has no zero on the imaginary axis nor at
+//! infinity for any plant of the box, and the roots of one plant lie to the left of it: roots move
+//! continuously, so none can cross.
 
 mod bounds;
 mod certificate;
@@ -50,10 +52,10 @@ pub use walk::ProofRegion;
 
 use crate::verification::WorstCase;
 
-/// What was shown of a loop.
+/// What was shown about a loop.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Proof {
-    /// All claims that hold; `None` where nothing can be stated of such a loop.
+    /// All claims that hold; `None` where nothing can be stated about such a loop.
     pub certificate: Option<Certificate>,
     /// That every plant is stable.
     pub stability: Standing,
@@ -61,14 +63,15 @@ pub struct Proof {
     pub specifications: Vec<SpecificationProof>,
 }
 
-/// What was shown of a specification.
+/// What was shown about a specification.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpecificationProof {
     /// Whether it is satisfied by every plant, up to the tolerance.
     pub standing: Standing,
-    /// The greatest ratio of closed loop to limit is not less than this, dB: it is reached somewhere.
+    /// Lower bound of the greatest ratio of closed loop to limit, dB: this value is reached
+    /// somewhere.
     pub least_db: Option<f64>,
-    /// It is not greater than this, dB.
+    /// Upper bound of this ratio, dB.
     pub most_db: Option<f64>,
     /// Where the least is reached.
     pub worst: Option<WorstCase>,
@@ -88,9 +91,10 @@ pub enum Standing {
 /// Why a claim is neither shown nor refuted.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NotProven {
-    /// The plants were measured: between two of them nothing can be claimed.
+    /// The plants were measured: nothing can be claimed between two of them.
     Measured,
-    /// The loop is sampled, and no bound was found on the images of the plant: its response does not fall with the frequency, or too late.
+    /// The loop is sampled, and no bound was found on the images of the plant: its response does
+    /// not fall with the frequency, or too late.
     Images,
     /// The band lies beyond half of the sampling frequency.
     BeyondSampling,
@@ -106,13 +110,13 @@ pub enum NotProven {
     TableLimit,
     /// There is no prefilter: the spread of a family is not a ratio at one plant.
     Spread,
-    /// The loop is not shown to be stable, and closed loops mean nothing.
+    /// The loop is not shown to be stable, so that closed loops have no meaning.
     Unstable,
-    /// So many leaves did not suffice; this part remains.
+    /// This number of leaves did not suffice; this part remains.
     Budget(ProofRegion),
-    /// The ratio grows without an end that was found.
+    /// The ratio grows, and no maximum was found.
     Unbounded,
-    /// No plant of the box could be shown to be stable, nor unstable.
+    /// No plant of the box could be shown to be stable or unstable.
     NoStableMember,
     /// The search has found a violation of what seems to be proven.
     Contradicted,

@@ -1,4 +1,4 @@
-//! Plants within a sampled loop, each sampled once however often it is looked at.
+//! Plants within a sampled loop, each sampled once however often it is used.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -11,8 +11,9 @@ use super::closed_loop::{Compensation, Member};
 /// Plants that are kept, of less than a kilobyte each.
 const PLANTS_MAXIMUM: usize = 100_000;
 
-/// Plants of one family within one loop that were sampled before, by the bits of their parameter values: sampling costs more than a
-/// thousand responses. A continuous loop takes its plants as they are and keeps none.
+/// Plants of one family within one loop that were already sampled, by the bits of their parameter
+/// values: sampling costs more than a thousand responses. A continuous loop takes its plants as
+/// they are and keeps none.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SampledPlants(RefCell<BTreeMap<Vec<u64>, Result<Member, LinearError>>>);
 
@@ -63,7 +64,7 @@ mod tests {
         plants.member(&around, &lag.unwrap(), &[gain]).unwrap()
     }
 
-    /// A loop with more delay shows that a plant is not sampled again.
+    /// Each plant is sampled once: the stored plant is returned even for a loop with more delay.
     #[test]
     fn a_plant_is_sampled_once() {
         let sampled = Timing { sample_time_s: Some(0.1), ..Timing::default() };

@@ -1,4 +1,5 @@
-//! Specifications: a closed-loop magnitude, its limit over frequency, where bounds are drawn and where it must hold.
+//! Specifications: a closed-loop magnitude, its limit over frequency, the frequencies at which
+//! bounds are drawn, and the band where it must hold.
 
 mod closed_loop;
 mod limit;
@@ -38,8 +39,8 @@ pub use time_domain::{
 /// tracking         lower <= |F P G/(1+L)| <= upper           thesis (3.18), (6.32)
 /// ```
 ///
-/// L = P G H is the loop of plant P, controller G and sensor H; F is the prefilter, and Pd = F_e/X_L
-/// the path of the load motion.
+/// L = P G H is the loop of plant P, controller G and sensor H; F is the prefilter, and Pd =
+/// F_e/X_L the path of the load motion.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Requirement {
     /// |L/(1+L)| <= limit
@@ -61,7 +62,8 @@ pub enum Requirement {
     },
 }
 
-/// One member of a closed loop at one frequency: plant, load-motion path, controller, prefilter and sensor.
+/// One member of a closed loop at one frequency: plant, load-motion path, controller, prefilter and
+/// sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoopResponse {
     /// P(j w)
@@ -114,7 +116,8 @@ impl LoopResponse {
     }
 }
 
-/// A requirement with the frequencies at which bounds are drawn and the band over which it must hold, rad/s.
+/// A requirement with the frequencies at which bounds are drawn and the band over which it must
+/// hold, rad/s.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Specification {
     /// What is limited, and by how much.
@@ -126,13 +129,14 @@ pub struct Specification {
 }
 
 impl Specification {
-    /// By how much the loop keeps to the limit at this frequency, in dB; negative where it violates it.
+    /// The margin of the loop to the limit at this frequency, in dB; negative where the limit is
+    /// violated.
     ///
     /// ```text
     /// margin = 20 log10(limit / |closed loop|)              for tracking the smaller of the margins to both limits
     /// ```
     ///
-    /// `None` where a limit given as a table does not reach.
+    /// `None` where a limit given as a table does not cover the frequency.
     ///
     /// # Example
     /// ```

@@ -1,5 +1,5 @@
-//! Whether every plant of a family is stable within its loop, how close it comes to not being so, and how much further dead
-//! time it bears.
+//! Whether every plant of a family is stable within its loop, how close it comes to instability,
+//! and how much more dead time it tolerates.
 //!
 //! ```text
 //! poles:             zeros of c + n, of c z^k + n: their largest real part                  no dead time, or whole samples
@@ -10,8 +10,9 @@
 //! leading coefficient:   enclosed over the box: while it is not zero, no pole passes through infinity
 //! ```
 //!
-//! Nothing is cancelled: an unstable mode of plant, controller or sensor that the loop does not move counts. Prefilter and load-motion
-//! path lie outside of the loop; of the prefilter the audit of the family asks that it be stable by itself.
+//! Nothing is cancelled: an unstable mode of plant, controller or sensor that the loop does not
+//! move counts. Prefilter and load-motion path lie outside the loop; the audit of the family
+//! requires that the prefilter be stable by itself.
 
 mod badness;
 mod characteristic;
@@ -42,7 +43,7 @@ pub(crate) use measured::{is_stable as is_stable_by_points, points_with_sensor};
 use responding::PoleCounting;
 pub(crate) use responding::own_poles;
 
-/// To four significant digits, as a reader wants it.
+/// To four significant digits, for a reader.
 pub(crate) fn rounded(value: f64) -> f64 {
     format!("{value:.3e}").parse().unwrap_or(value)
 }
@@ -66,22 +67,24 @@ pub enum Instability {
         /// ln|z|/T in a sampled loop.
         real_part: f64,
     },
-    /// So many closed-loop poles outside of the stable region.
+    /// Number of closed-loop poles outside the stable region.
     Poles {
         /// Their number.
         count: usize,
     },
-    /// Dead time in a loop whose gain stays above one however high the frequency: infinitely many unstable poles.
+    /// Dead time in a loop whose gain stays above one however high the frequency: infinitely many
+    /// unstable poles.
     GainAtInfinity,
 }
 
 /// Why the stability of a loop could not be decided.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Irresolution {
-    /// The loop is no loop, or cannot be computed.
+    /// The loop is not valid, or cannot be computed.
     #[error("{0}")]
     Linear(LinearError),
-    /// A closed-loop pole lies so near the boundary of stability that rounding hides its side.
+    /// A closed-loop pole lies so near the boundary of stability that rounding hides on which side
+    /// it lies.
     #[error(
         "a closed-loop pole near {} rad/s cannot be distinguished from the boundary of stability",
         rounded(*frequency_rad_per_s)
@@ -104,12 +107,14 @@ pub enum Irresolution {
         "with dead time and a gain of one at infinite frequency, poles approach the boundary of stability"
     )]
     GainAtInfinity,
-    /// Plants of the box between which a pole passes through infinity, and none of which was found to be unstable.
+    /// Plants of the box between which a pole passes through infinity, and none of which was found
+    /// to be unstable.
     #[error(
         "the leading coefficient of the characteristic equation changes its sign inside the box, so that a pole passes through infinity"
     )]
     PoleThroughInfinity,
-    /// Modes beyond half of the sampling rate pass through the band more often than plants between them can be looked at.
+    /// Modes beyond half the sampling rate pass through the band more often than plants in between
+    /// can be examined.
     #[error(
         "modes beyond half of the sampling rate pass through the band while parameters move, too often to be followed"
     )]
@@ -119,10 +124,12 @@ pub enum Irresolution {
         "which modes beyond half of the sampling rate fold into the band between one plant and the next is not known where lines move"
     )]
     FoldingUnknown,
-    /// The enclosures of what must not vanish for no pole to pass through infinity still hold zero.
+    /// The enclosures of the coefficients that must not vanish, so that no pole passes through
+    /// infinity, still contain zero.
     #[error("it could not be shown that no pole passes through infinity inside the box")]
     InfinityOpen,
-    /// A controller or sensor with undamped poles beside the origin, in a loop that is known by measured points only.
+    /// A controller or sensor with undamped poles beside the origin, in a loop that is known by
+    /// measured points only.
     #[error(
         "controller or sensor has poles on the boundary of stability, which measured points cannot go around"
     )]
@@ -158,7 +165,8 @@ pub enum Irresolution {
         /// |L|
         gain: f64,
     },
-    /// What the loop does below the first measured point cannot be told from it.
+    /// The behaviour of the loop below the first measured point cannot be concluded from the
+    /// measurement.
     #[error(
         "below {} rad/s, where the measurement begins, the loop's integrators cannot be identified",
         rounded(*frequency_rad_per_s)
@@ -184,29 +192,31 @@ pub struct Approach {
     pub frequency_rad_per_s: f64,
 }
 
-/// What was found of one loop.
+/// What was found about one loop.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MemberStability {
     /// Stable or not.
     pub status: StabilityStatus,
-    /// Largest real part of a closed-loop pole in 1/s, ln|z|/T in a sampled loop; minus infinity where there are no poles,
-    /// `None` where dead time or measurement leave none to be computed.
+    /// Largest real part of a closed-loop pole in 1/s, ln|z|/T in a sampled loop; minus infinity
+    /// where there are no poles, `None` where dead time or measurement leave none to be computed.
     pub largest_real_part: Option<f64>,
-    /// How near L comes to -1; of a stable loop.
+    /// How near L comes to -1; for a stable loop.
     pub closest_approach: Option<Approach>,
-    /// The further dead time that it bears; of a stable loop.
+    /// The additional dead time that it tolerates; for a stable loop.
     pub critical_delay: Option<CriticalDelay>,
 }
 
 /// Stability of one plant within its loop.
 ///
-/// A rational loop must be stable by its poles and by the turns of its characteristic function alike, or it is not
-/// resolved. In a sampled loop the critical delay is phase over frequency at the crossovers of the sampled L: exact where it is a whole
-/// number of samples; between, a delay also changes what hold and sampler make of the plant. [`family_stability`] samples the worst
-/// plants anew, but where a rate is fed back within the plant: of such a plant it is the delay of the controller's own path.
+/// For a rational loop both the poles and the turns of the characteristic function must show
+/// stability; otherwise it is not resolved. In a sampled loop the critical delay is phase over
+/// frequency at the crossovers of the sampled L: exact where it is a whole number of samples;
+/// between whole samples a delay also changes the sampled plant. [`family_stability`] samples the
+/// worst plants anew, except where a rate is fed back within the plant: for such a plant it is the
+/// delay of the controller's own path.
 ///
 /// # Example
-/// k e^(-s)/s is stable for 0 < k < pi/2, and bears pi/(2 k) of dead time:
+/// k e^(-s)/s is stable for 0 < k < pi/2, and tolerates pi/(2 k) of dead time:
 /// ```
 /// use phea_dynamics::controller::Controller;
 /// use phea_dynamics::linear::TransferFunction;
@@ -255,8 +265,9 @@ fn characteristic(member: &Member, path: &FeedbackPath) -> Option<Result<Charact
     }
 }
 
-/// Whether all closed-loop poles of a rational plant have real parts below this one in 1/s (ln|z|/T in a sampled loop), dead time
-/// included: by the turns of the characteristic function on a parallel to the boundary of stability.
+/// Whether all closed-loop poles of a rational plant have real parts below this one in 1/s (ln|z|/T
+/// in a sampled loop), dead time included: by the turns of the characteristic function on a
+/// parallel to the boundary of stability.
 pub(crate) fn poles_lie_below(
     member: &Member,
     path: &FeedbackPath,
@@ -305,7 +316,7 @@ fn of_characteristic(characteristic: &Characteristic) -> MemberStability {
             Err(reason) => found(StabilityStatus::NotResolved(reason)),
         },
         (count, None) => found(StabilityStatus::Unstable(Instability::Poles { count })),
-        // the poles say stable, the turns do not: rounding
+        // the poles show stability and the turns do not: rounding
         (_, Some(_)) => {
             found(StabilityStatus::NotResolved(Irresolution::NearBoundary { frequency_rad_per_s }))
         }

@@ -1,8 +1,9 @@
-//! Templates: what the responses of a family look like at one frequency.
+//! Templates: the responses of a family at one frequency.
 //!
-//! The members come first. A family over a box is then refined: lines along the edges of the box until neighbouring
-//! plants are close, what the edges of its two-dimensional faces wind around, growth of that region over all coordinates, and
-//! witnesses (members and evenly spread probes) that must lie within it.
+//! The members come first. A family over a box is then refined: lines along the edges of the box
+//! until neighbouring plants are close, the regions enclosed by the edges of its two-dimensional
+//! faces, growth of these regions over all coordinates, and witnesses (members and evenly spread
+//! probes) that must lie within it.
 
 mod build;
 mod cell;
@@ -20,18 +21,20 @@ use crate::family::Family;
 
 pub use build::template;
 
-/// How finely a template is looked at.
+/// How finely a template is resolved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TemplateOptions {
     /// Largest distance of neighbouring plants, degrees; above 0 and below 90.
     pub phase_deg: f64,
     /// Largest distance of neighbouring plants, dB; above 0.
     pub magnitude_db: f64,
-    /// Plants evaluated beyond the members before refinement gives up.
+    /// Number of plants, in addition to the members, after which refinement gives up.
     pub evaluations_maximum: usize,
-    /// Plants spread evenly over the box that must lie within the outline, beside the members.
+    /// Number of plants, spread evenly over the box, that must lie within the outline in addition
+    /// to the members.
     pub probes: usize,
-    /// Rounds of growth before refinement gives up; each pushes what the round before uncovered.
+    /// Number of rounds of growth after which refinement gives up; each extends the contour of the
+    /// previous round.
     pub rounds_maximum: usize,
 }
 
@@ -73,7 +76,8 @@ pub enum TemplateError {
         /// rad/s
         frequency_rad_per_s: f64,
     },
-    /// A response that is zero or not finite, of the nominal plant or in a family of nothing but members.
+    /// A response that is zero or not finite, of the nominal plant or in a family that consists of
+    /// members only.
     #[error("member {member} has the response {response} at {frequency_rad_per_s} rad/s")]
     NotFinite {
         /// Index of the member in its family.
@@ -94,7 +98,8 @@ pub struct BuiltTemplate {
     pub evaluations: usize,
 }
 
-/// Templates of a family at many frequencies: an iterator, so that whoever owns the loop decides when the next one is built.
+/// Templates of a family at many frequencies: an iterator, so that whoever owns the loop decides
+/// when the next one is built.
 ///
 /// # Example
 /// A gain between 1 and 2 before an integrator is a segment of the negative imaginary axis:
@@ -156,11 +161,13 @@ impl Iterator for Templates<'_> {
     }
 }
 
-/// The response of the family at one frequency: points that are plants, and the region that they fill.
+/// The response of the family at one frequency: points that are plants, and the region that they
+/// fill.
 ///
 /// # Example
-/// Why the region has to be known as filled. P = k e^(-sT) with k between 1 and 2 is a bent strip; a controller puts the plant in its
-/// middle on L = -1, and yet every plant on the outline keeps to |T| <= 4:
+/// Why the region has to be known as filled. P = k e^(-sT) with k between 1 and 2 is a bent strip;
+/// a controller puts the plant in its middle on L = -1, and yet every plant on the outline
+/// satisfies |T| <= 4:
 /// ```
 /// # use num_complex::Complex64;
 /// # use phea_dynamics::controller::Controller;
@@ -200,11 +207,14 @@ pub struct Template {
     pub frequency_rad_per_s: f64,
     /// P0 H0, the nominal plant with its sensor.
     pub nominal: Complex64,
-    /// Plants: the members in order, the nominal one first, then those that refinement found on the outlines.
+    /// Plants: the members in order, the nominal one first, then those that refinement found on the
+    /// outlines.
     pub points: Vec<TemplatePoint>,
-    /// Closed polygons of responses P H (the last point joins the first) around the region whose interior is known to be filled: without
-    /// holes, side by side, corners no farther apart than the tolerance. More than one where the family falls into pieces or
-    /// has a hollow; a line there and back where it has no area; none for a family without anything between its members.
+    /// Closed polygons of responses P H (the last point joins the first) around the region whose
+    /// interior is known to be filled: without holes, side by side, corners no farther apart than
+    /// the tolerance. There are several where the family is disconnected or has a hole, a line
+    /// traversed in both directions where it has no area, and none for a family that has nothing
+    /// between its members.
     pub outlines: Vec<Vec<Complex64>>,
     /// How well the region is known.
     pub resolution: Resolution,
@@ -225,24 +235,25 @@ pub struct TemplatePoint {
     pub sensor: Complex64,
 }
 
-/// How far neighbouring plants of a template lie apart.
+/// How far apart neighbouring plants of a template lie.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Resolution {
-    /// Neighbours are closer than the tolerance everywhere along the outlines, and no witness lies farther outside.
+    /// Neighbours are closer than the tolerance everywhere along the outlines, and no witness lies
+    /// farther outside.
     Resolved {
         /// Largest distance of two neighbours, degrees.
         phase_deg: f64,
         /// Largest distance of two neighbours, dB.
         magnitude_db: f64,
     },
-    /// A gap did not close (an undamped resonance inside the family never does), or the plants or rounds allowed were spent. The outlines
-    /// hold what was found until then.
+    /// A gap did not close (an undamped resonance inside the family never does), or the plants or
+    /// rounds allowed were spent. The outlines contain what was found until then.
     NotResolved {
         /// Largest distance of two neighbours, degrees; 180 where a response is infinite or zero.
         phase_deg: f64,
         /// Largest distance of two neighbours, dB; infinite where a response is infinite or zero.
         magnitude_db: f64,
-        /// Parameters of the plant beside the widest gap.
+        /// Parameters of the plant next to the widest gap.
         near: Vec<f64>,
     },
     /// Nothing lies between the members.

@@ -1,4 +1,5 @@
-//! Verification: whether every plant of a family keeps to every specification, at every frequency that was asked for.
+//! Verification: whether every plant of a family satisfies every specification at every required
+//! frequency.
 
 mod asymptote;
 mod audit;
@@ -22,7 +23,8 @@ use crate::family::{Extent, Family};
 use crate::specification::Requirement;
 use crate::stability::{Instability, Irresolution};
 
-/// A verdict. `Met` means that the margin is not below the negative of the tolerance, everywhere that was looked at.
+/// A verdict. `Met` means that the margin is not below the negative of the tolerance, wherever it
+/// was evaluated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// Every plant keeps to it.
@@ -36,20 +38,21 @@ pub enum Verdict {
 /// What a verdict rests on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Evidence {
-    /// The members, at the frequencies of a grid: nothing between them is claimed.
+    /// The members, at the frequencies of a grid: nothing is claimed between them.
     Grid,
-    /// The worst case was searched continuously over the box and the band, and not found beyond what is stated; not proven.
+    /// The worst case was searched for continuously over the box and the band, and nothing worse
+    /// was found; this is not a proof.
     Search,
     /// Proven for every plant and every frequency.
     Proof,
 }
 
 impl Evidence {
-    /// What an audit of a family rests on.
+    /// The evidence for an audit of a family.
     fn of(family: &Family) -> Evidence {
         match family {
             Family::Uncertain(family) if family.extent() == Extent::Box => Evidence::Search,
-            // given plants and measurements are looked at one by one
+            // given plants and measurements are examined one by one
             Family::Uncertain(_) | Family::Measured(_) => Evidence::Grid,
         }
     }
@@ -62,7 +65,7 @@ pub enum PlantPoint {
     Parameters(Vec<f64>),
     /// Index of a measured plant.
     Measured(usize),
-    /// Index of a plant that a design keeps to beside its family.
+    /// Index of an additional plant of a design.
     Beside(usize),
 }
 
@@ -71,7 +74,7 @@ pub enum PlantPoint {
 pub struct WorstCase {
     /// Limit over closed loop in dB; negative where it is violated.
     pub margin_db: f64,
-    /// rad/s; may be zero or infinite, for a limit that was taken.
+    /// rad/s; zero or infinite for a limit.
     pub frequency_rad_per_s: f64,
     /// The plant.
     pub plant: PlantPoint,
@@ -79,18 +82,19 @@ pub struct WorstCase {
     pub other: Option<PlantPoint>,
 }
 
-/// What was found of the stability of the family.
+/// What was found about the stability of the family.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StabilityFinding {
     /// `Met` when every plant is stable.
     pub verdict: Verdict,
     /// What the verdict rests on.
     pub evidence: Evidence,
-    /// Largest real part of a closed-loop pole, 1/s (in a sampled loop ln|z|/T); `None` where there are no poles to be had (dead time, measurements).
+    /// Largest real part of a closed-loop pole, 1/s (in a sampled loop ln|z|/T); `None` where the
+    /// poles are not available (dead time, measurements).
     pub largest_real_part: Option<f64>,
     /// The plant that has it, or that is unstable, or that could not be resolved.
     pub plant: PlantPoint,
-    /// How near the family comes to -1; `None` unless it is stable.
+    /// How near the loops of the family come to -1; `None` unless it is stable.
     pub closest_approach: Option<ClosestApproach>,
     /// How it was decided.
     pub reason: StabilityReason,
@@ -99,13 +103,13 @@ pub struct StabilityFinding {
 /// How the stability of a family was decided.
 #[derive(Clone, Debug, PartialEq)]
 pub enum StabilityReason {
-    /// All plants that were looked at are stable.
+    /// All plants that were examined are stable.
     AllStable {
         /// How many of them are members.
         members: usize,
         /// How many are corners of the box.
         corners: usize,
-        /// How many lie between these, because modes beyond half of the sampling rate fold.
+        /// How many lie between these, because modes beyond half the sampling rate fold.
         between: usize,
         /// How each was judged.
         method: StabilityMethod,
@@ -116,7 +120,7 @@ pub enum StabilityReason {
     Unstable(Instability),
     /// The prefilter itself is not.
     UnstablePrefilter,
-    /// Of a plant it could not be resolved.
+    /// It could not be resolved for one plant.
     NotResolved(Irresolution),
 }
 
@@ -149,7 +153,7 @@ pub struct ClosestApproach {
 /// The least dead time that makes a plant of the family unstable.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DelayMargin {
-    /// s, beyond the delay that the loop has already; infinite where none does.
+    /// s, in addition to the delay that the loop already has; infinite if none does.
     pub delay_s: f64,
     /// The gain crossover where it happens, rad/s.
     pub frequency_rad_per_s: f64,
@@ -157,7 +161,7 @@ pub struct DelayMargin {
     pub plant: PlantPoint,
 }
 
-/// What was found of one specification.
+/// What was found about one specification.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpecificationFinding {
     /// What was limited.
@@ -166,7 +170,8 @@ pub struct SpecificationFinding {
     pub verdict: Verdict,
     /// What the verdict rests on.
     pub evidence: Evidence,
-    /// The worst margin over the band and the family; `None` where a specification has nothing to be judged by.
+    /// The worst margin over the band and the family; `None` where there is nothing by which to
+    /// judge a specification.
     pub worst: Option<WorstCase>,
     /// The worst interior minimum of the margin, where the worst one lies at an end of the band.
     pub interior: Option<WorstCase>,
@@ -176,7 +181,7 @@ pub struct SpecificationFinding {
     pub at_design_frequencies: Vec<WorstCase>,
     /// The worst margin over the family at each frequency of a grid, for drawing: (rad/s, dB).
     pub envelope: Vec<(f64, f64)>,
-    /// What was not looked at; empty where all was.
+    /// What was not examined; empty if everything was.
     pub remarks: Vec<Remark>,
 }
 
@@ -193,7 +198,7 @@ pub enum Remark {
         /// From and to.
         table_rad_per_s: [f64; 2],
     },
-    /// No limit demands anything within the band.
+    /// There is no limit within the band.
     NothingDemanded,
     /// A design frequency lies outside of the band.
     DesignFrequencyOutside {
@@ -204,7 +209,7 @@ pub enum Remark {
     JudgedBySpread,
     /// Between two frequencies of a measurement the response is interpolated.
     Interpolated,
-    /// The band reaches beyond what was measured of every plant.
+    /// The band extends beyond the range in which every plant was measured.
     BeyondMeasurements {
         /// From and to.
         measured_rad_per_s: [f64; 2],
@@ -221,14 +226,14 @@ pub enum Remark {
         /// The plant, where it is known.
         plant: Option<PlantPoint>,
     },
-    /// A plant inside of the box, met in a search, cannot be judged.
+    /// A plant inside the box, found in a search, cannot be judged.
     UndefinedInBox {
         /// Where this was met.
         frequency_rad_per_s: f64,
     },
     /// The loop is unstable, so that it has no margin.
     Unstable,
-    /// The loop is not known to be stable: its margins may be those of no response.
+    /// The loop is not known to be stable: its margins may not describe any response.
     StabilityNotKnown,
 }
 
@@ -252,7 +257,7 @@ pub struct Audit {
     pub tolerance_db: f64,
     /// Stability of the family.
     pub stability: StabilityFinding,
-    /// The delay that the family still bears; `None` for an unstable one.
+    /// The additional delay that the family tolerates; `None` for an unstable one.
     pub delay_margin: Option<DelayMargin>,
     /// The specifications, in order.
     pub specifications: Vec<SpecificationFinding>,

@@ -1,4 +1,4 @@
-//! The plant with the weakest tracking response along a ray: what all others are held against.
+//! The plant with the weakest tracking response along a ray, with which all others are compared.
 
 use num_complex::Complex64;
 
@@ -22,8 +22,8 @@ pub(super) struct CeilingPiece {
     pub(super) window: [f64; 2],
 }
 
-/// Those candidates that can be the greatest at all: with equal weights the corners of the convex hull, since the farthest of points
-/// is always one of them; otherwise all.
+/// Those candidates that can be the greatest at all: with equal weights the corners of the convex
+/// hull, since the farthest point is always one of them; otherwise all.
 pub(super) fn contenders(mut candidates: Vec<CeilingPlant>) -> Vec<CeilingPlant> {
     if candidates.windows(2).any(|pair| matches!(pair, [a, b] if a.weight != b.weight)) {
         return candidates;
@@ -38,7 +38,8 @@ pub(super) fn contenders(mut candidates: Vec<CeilingPlant>) -> Vec<CeilingPlant>
     hull
 }
 
-/// One side of the convex hull of sorted points, without its last point where there is more than one.
+/// One side of the convex hull of sorted points, without its last point where there is more than
+/// one.
 fn chain<'a>(sorted: impl Iterator<Item = &'a CeilingPlant>) -> Vec<CeilingPlant> {
     let mut side: Vec<CeilingPlant> = Vec::new();
     for candidate in sorted {
@@ -57,14 +58,15 @@ fn chain<'a>(sorted: impl Iterator<Item = &'a CeilingPlant>) -> Vec<CeilingPlant
     side
 }
 
-/// Which candidate is the greatest at which gain, along the ray e^(j phi): pieces that follow on one another from 0 to infinity.
+/// Which candidate is the greatest at which gain, along the ray e^(j phi): pieces that follow on
+/// one another from 0 to infinity.
 ///
 /// ```text
 /// max over k of r_k^2 |q_k + L0|^2 = r_k^2 (g^2 + 2 c_k g + |q_k|^2)
 /// ```
 ///
-/// Two halves are solved for themselves and laid over each other; no pair of plants is looked at unless both are the
-/// greatest of their half.
+/// The two halves are solved separately and then merged; a pair of plants is compared only if each
+/// is the greatest of its half.
 pub(super) fn greatest(direction: Complex64, candidates: &[CeilingPlant]) -> Vec<CeilingPiece> {
     match candidates {
         [] => Vec::new(),
@@ -132,7 +134,7 @@ mod tests {
         CeilingPlant { inverse, modulus: phea_dynamics::portable::magnitude(inverse), weight }
     }
 
-    /// Points of a sunflower: no two at one radius or angle.
+    /// Points of a sunflower: no two have the same radius or angle.
     fn scattered(count: u32, weight: impl Fn(f64) -> f64) -> Vec<CeilingPlant> {
         (0..count)
             .map(|index| {

@@ -1,4 +1,5 @@
-//! All specifications at one frequency together: where the nominal loop may be, who forbids what, and who collides with whom.
+//! All specifications at one frequency together: where the nominal loop may be, which specification
+//! forbids what, and which contradict each other.
 
 use num_complex::Complex64;
 use phea_dynamics::portable;
@@ -52,7 +53,8 @@ pub struct SpecificationBound {
     pub bound: Bound,
 }
 
-/// The bounds of several specifications at one frequency, all at the same phases, and what they forbid together.
+/// The bounds of several specifications at one frequency, all at the same phases, and what they
+/// forbid together.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CombinedBound {
     /// What any specification forbids.
@@ -66,29 +68,30 @@ pub struct CombinedBound {
 /// Whether a loop can be anywhere at a frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Feasibility {
-    /// Some gain is allowed at every phase that was looked at.
+    /// Some gain is allowed at every phase that was examined.
     Everywhere,
     /// At some phases nothing is allowed.
     Somewhere {
-        /// Where nothing is, by increasing phase.
+        /// The phases at which nothing is allowed, in increasing order.
         collisions: Vec<Collision>,
     },
-    /// At no phase that was looked at anything is allowed.
+    /// No gain is allowed at any phase that was examined.
     Nowhere {
-        /// Where and why, by increasing phase.
+        /// Where and why, in order of increasing phase.
         collisions: Vec<Collision>,
     },
 }
 
-/// Phases at which nothing is allowed, and the specifications that leave nothing.
+/// Phases at which nothing is allowed, and the specifications that together exclude every gain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Collision {
     /// rad/s
     pub frequency_rad_per_s: f64,
-    /// First and last of the neighbouring phases where it is so, rad.
+    /// First and last of these neighbouring phases, rad.
     pub phases_rad: [f64; 2],
-    /// The fewest specifications that together forbid every gain: one alone, or two that collide, the one that forbids the lowest gains (and so
-    /// demands more) first; more only where no two of them do.
+    /// The fewest specifications that together forbid every gain: one alone, or two that contradict
+    /// each other, first the one that forbids the lowest gains (and so demands more); more than two
+    /// only if no two of them suffice.
     pub specifications: Vec<usize>,
 }
 
@@ -104,13 +107,15 @@ pub enum Placement {
     Forbidden {
         /// Indices of those that do.
         by: Vec<usize>,
-        /// The way to the nearest gain at its phase that all allow, dB: positive for more gain. `None` if there is none.
+        /// The change to the nearest gain at its phase that all specifications allow, dB; positive
+        /// for more gain. `None` if there is no such gain.
         nearest_db: Option<f64>,
     },
 }
 
 impl FrequencyBounds {
-    /// Prepares the bounds of those specifications whose design frequencies include the template's and that are demanded there.
+    /// Prepares the bounds of those specifications whose design frequencies include the template's
+    /// and that apply there.
     ///
     /// # Errors
     /// [`BoundError`], see [`BoundFunction::new`].
@@ -126,7 +131,7 @@ impl FrequencyBounds {
             .filter(|(_, specification)| specification.frequencies_rad_per_s.contains(&frequency_rad_per_s))
             .filter_map(|(index, specification)| {
                 match BoundFunction::new(template, &specification.requirement, fill) {
-                    // a table that does not reach demands nothing here
+                    // a table that does not cover this frequency demands nothing here
                     Err(BoundError::NoLimit { .. }) => None,
                     function => Some(function.map(|function| (index, function))),
                 }
@@ -135,7 +140,7 @@ impl FrequencyBounds {
         Ok(FrequencyBounds { frequency_rad_per_s, functions })
     }
 
-    /// The bounds at the phases of a grid, refined where any of them or their union turns.
+    /// The bounds at the phases of a grid, refined where any of them or their union bends.
     pub fn combined(&self, grid: &PhaseGrid) -> CombinedBound {
         let functions: Vec<&BoundFunction> = self.functions.iter().map(|(_, function)| function).collect();
         let samples = sampled(grid, &functions);
@@ -159,7 +164,8 @@ impl FrequencyBounds {
 
     /// Whether a nominal loop may be here, exactly at its own phase.
     ///
-    /// A loop of zero or one that is not finite has no phase: it is judged at phase 0, and by then its gain is allowed or not.
+    /// A loop that is zero or not finite has no phase: it is judged at phase 0, where its gain
+    /// alone decides.
     pub fn placement(&self, nominal_loop: Complex64) -> Placement {
         let gain = portable::magnitude(nominal_loop);
         let phased = gain > 0.0 && gain.is_finite();
@@ -212,7 +218,7 @@ impl FrequencyBounds {
         }
     }
 
-    /// The fewest specifications that together forbid every gain, all of which do.
+    /// The fewest of these specifications that together forbid every gain, as all of them do.
     fn culprits(&self, parts: &[GainIntervals]) -> Vec<usize> {
         let own = || self.functions.iter().map(|(index, _)| *index).zip(parts);
         if let Some((index, _)) = own().find(|(_, part)| part.is_everything()) {

@@ -2,7 +2,8 @@
 
 use super::interval::GainIntervals;
 
-/// Specifications that together forbid every gain, each of them needed: gains are climbed with whichever reaches farthest.
+/// A minimal set of specifications that together forbid every gain: starting from zero gain, the
+/// one that reaches farthest is taken next.
 pub(super) fn covering(parts: Vec<(usize, &GainIntervals)>) -> Vec<usize> {
     let mut reached = 0.0;
     let mut chosen = Vec::new();

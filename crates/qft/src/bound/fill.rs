@@ -1,4 +1,4 @@
-//! What lies between the plants of a template: its contour and its interior.
+//! The region between the plants of a template: its contour and its interior.
 
 use num_complex::Complex64;
 
@@ -27,7 +27,7 @@ pub(super) struct Edge {
 }
 
 impl Edge {
-    /// The edge between two plants held against |L0| or against another plant; e = |q|^2.
+    /// The edge between two plants that are compared with |L0| or with another plant; e = |q|^2.
     pub(super) fn of_complementary(ends: [&WeightedPlant; 2]) -> Edge {
         let [from, to] = ends.map(|plant| plant.inverse);
         Edge {
@@ -39,7 +39,8 @@ impl Edge {
         }
     }
 
-    /// The edge between two plants whose sensitivity is limited; e = |q|^2 - |u|^2/W^2, where u goes straight from one to the other.
+    /// The edge between two plants whose sensitivity is limited; e = |q|^2 - |u|^2/W^2, where u
+    /// goes straight from one to the other.
     pub(super) fn of_sensitivity(
         ends: [&WeightedPlant; 2],
         disturbances: [Complex64; 2],
@@ -73,7 +74,8 @@ impl Edge {
         }
     }
 
-    /// The gains that the inner points of the edge forbid; its ends are plants, and judged as such.
+    /// The gains forbidden by the inner points of the edge; its ends are plants and are judged as
+    /// such.
     ///
     /// ```text
     /// t(g) = (kappa - (e_b - e_a) - 2 g (c_b - c_a))/(2 kappa) = t_0 + t_1 g     where the quadratic is least over t
@@ -114,10 +116,12 @@ impl Edge {
     }
 }
 
-/// The gains at which -L0 lies inside a closed polygon of q = P0/P: some plant between the plants then has 1 + L = 0.
+/// The gains at which -L0 lies inside a closed polygon of q = P0/P: some plant between the plants
+/// then has 1 + L = 0.
 ///
-/// Inside is whatever the polygon winds around: one that overlaps itself, as the outline of a template over more than a turn of phase does,
-/// encloses the overlap too. Far outside nothing is wound around, and each side that the ray crosses on its way in changes that by one.
+/// The inside is whatever the polygon winds around: a polygon that overlaps itself, such as the
+/// outline of a template over more than a full turn of phase, encloses the overlap too. Far outside
+/// the winding number is zero, and each side that the ray crosses on its way in changes it by one.
 pub(super) fn inside(polygon: &[Complex64], direction: Complex64) -> GainIntervals {
     let across = |point: &Complex64| point.re * direction.im - point.im * direction.re;
     let along = |point: &Complex64| -(point.re * direction.re + point.im * direction.im);

@@ -14,20 +14,22 @@ use super::{Bound, BoundError, TemplateFill};
 use crate::specification::Requirement;
 use crate::template::{Template, TemplatePoint};
 
-/// Where the nominal loop L0 = g e^(j phi) may not be at one frequency, so that every plant of a template keeps to one requirement:
-/// at any phase, exactly.
+/// Where the nominal loop L0 = g e^(j phi) may not be at one frequency, so that every plant of a
+/// template satisfies one requirement: exactly, at any phase.
 ///
-/// With q = P0 H0/(P H), so that L = L0/q, each closed loop is a quotient of distances in the q-plane:
+/// With q = P0 H0/(P H), so that L = L0/q, each closed loop is a quotient of distances in the
+/// q-plane:
 ///
 /// ```text
 /// |L/(1+L)| = g/|q + L0|               |1/(1+L)| = |q|/|q + L0|          |P/(1+L)| = |P| |q|/|q + L0|
 /// |G/(1+L)| = g/(|P H| |q + L0|)       |Pd/(1+L)| = |Pd| |q|/|q + L0|    |P G/(1+L)| = g/(|H| |q + L0|)    thesis 3.14 to 3.18
 /// ```
 ///
-/// and along a ray |q + L0|^2 = g^2 + 2 g Re(conj(q) e^(j phi)) + |q|^2, so that each plant forbids the gains where a quadratic is negative
-/// (Chait and Yaniv 1993). Tracking is judged by its spread, max|T|/min|T| <= upper/lower, since a prefilter is free to move the rest:
-/// the plant of min|T| is the farthest from -L0, a corner of the convex hull, found piece by piece along the
-/// ray, and all plants are held against it; no pairs are formed.
+/// and along a ray |q + L0|^2 = g^2 + 2 g Re(conj(q) e^(j phi)) + |q|^2, so that each plant forbids
+/// the gains where a quadratic is negative (Chait and Yaniv 1993). Tracking is judged by its
+/// spread, max|T|/min|T| <= upper/lower, since a prefilter is free to move the rest: the plant of
+/// min|T| is the farthest from -L0, a corner of the convex hull, found piece by piece along the
+/// ray, and all plants are compared with it; no pairs are formed.
 ///
 /// # Example
 /// ```
@@ -53,7 +55,7 @@ pub struct BoundFunction {
     form: InequalityForm,
     /// `None` where nothing is demanded: an infinite limit.
     plants: Option<Tree>,
-    /// Contenders for the least |T|; in forms other than `Spread` the origin.
+    /// Candidates for the least |T|; the origin in forms other than `Spread`.
     others: Vec<CeilingPlant>,
     edges: Vec<Edge>,
     /// Outlines in the q-plane.
@@ -63,12 +65,13 @@ pub struct BoundFunction {
 impl BoundFunction {
     /// Prepares the plants of a template for a requirement.
     ///
-    /// `TemplateFill::Filled` counts every point of the template's outlines as a plant and forbids -L0 inside of them. What an outline does not carry, H
-    /// and Pd, is taken from the plant nearest to each of its corners.
+    /// `TemplateFill::Filled` counts every point of the template's outlines as a plant and forbids
+    /// -L0 inside them. H and Pd, which an outline does not contain, are taken from the plant
+    /// nearest to each of its corners.
     ///
     /// # Errors
-    /// [`BoundError`] for a template without plants, a response that is zero or not finite, a limit that is no magnitude or that does
-    /// not reach to the template's frequency.
+    /// [`BoundError`] for a template without plants, a response that is zero or not finite, a limit
+    /// that is not a valid magnitude or does not cover the template's frequency.
     pub fn new(
         template: &Template,
         requirement: &Requirement,
@@ -139,7 +142,8 @@ impl BoundFunction {
         }
     }
 
-    /// Arcs of phases in [-2 pi, 0], `[from, to]`, all of which some plant forbids at some gain and which are narrower than the spacing.
+    /// Arcs of phases in [-2 pi, 0], `[from, to]`, all of which some plant forbids at some gain and
+    /// which are narrower than the spacing.
     ///
     /// ```text
     /// |phi - arg(-q)| <= arcsin(r/W)                                           limits of T and S alike, where r < W
@@ -172,7 +176,7 @@ impl BoundFunction {
         arcs
     }
 
-    /// What [`BoundFunction::forbidden`] tells, in the direction e^(j phi).
+    /// The result of [`BoundFunction::forbidden`] in the direction e^(j phi).
     pub(super) fn forbidden_towards(&self, direction: Complex64) -> GainIntervals {
         let mut union = GainIntervals::default();
         let Some(plants) = &self.plants else {
@@ -217,7 +221,8 @@ fn judged(
         .collect()
 }
 
-/// The corners of an outline as plants, each with sensor and load-motion path of the plant nearest to it, where they are needed.
+/// The corners of an outline as plants, each with sensor and load-motion path of the plant nearest
+/// to it, where they are needed.
 fn corners(rule: &Rule, template: &Template, outline: &[Complex64]) -> Vec<TemplatePoint> {
     let distance = |point: &TemplatePoint, corner: Complex64| (point.response - corner).norm_sqr();
     let like = |corner: Complex64| {

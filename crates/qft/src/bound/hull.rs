@@ -1,4 +1,4 @@
-//! What some plants of a template have in common, and what that allows any of them to forbid.
+//! Common bounds of a group of plants, and the largest region that any of them could forbid.
 
 use num_complex::Complex64;
 
@@ -6,10 +6,10 @@ use super::inequality::{InequalityForm, Ray, WeightedPlant};
 use super::leaf::{Borders, lesser};
 use super::quadratic::negative_gains;
 
-/// Added to what a box may forbid, relative, so that no rounding hides a plant from the ray.
+/// Relative allowance added to what a box may forbid, so that rounding hides no plant from the ray.
 const SLACK: f64 = 1e-14;
 
-/// What some plants have in common.
+/// Common bounds of a group of plants.
 ///
 /// ```text
 /// least <= |q| <= greatest,   arg q within an arc,   (r/W)^2 <= share
@@ -51,13 +51,14 @@ impl Hull {
         })
     }
 
-    /// Whether plants inside forbid nothing beyond the borders, or nothing at all, told by signs alone; a `false` decides nothing. Not for
-    /// `Spread`.
+    /// Whether the plants inside forbid nothing beyond the borders, or nothing at all, judged by
+    /// signs alone; `false` decides nothing. Not for `Spread`.
     pub(super) fn stays_within(&self, ray: &Ray, borders: &Borders) -> bool {
         let rest = 1.0 - self.share - SLACK * (1.0 + self.share);
         let (a, c) = if ray.form == InequalityForm::Complementary { (rest, 1.0) } else { (1.0, rest) };
         let b = self.least_cosine(ray.direction);
-        // The quadratic in u = g/|q|, times |q|^2: at the lower border for the nearest plant, at the upper one for the farthest.
+        // The quadratic in u = g/|q|, times |q|^2: at the lower border for the nearest plant, at
+        // the upper one for the farthest.
         let [near, far] = self.modulus;
         let below = borders.below(a, b * near, c * near * near);
         let above = borders.above(a, b * far, c * far * far);
@@ -93,8 +94,9 @@ impl Hull {
         distance(cosine, modulus) - share * limit
     }
 
-    /// Gains among which all lie that a plant inside could forbid: where the least quadratic that the hull allows is negative. Under a limit
-    /// of its own, a plant's quadratic depends on u = g/|q|:
+    /// Gains among which all lie that a plant inside could forbid: where the least quadratic that
+    /// the hull allows is negative. Under a limit of its own, a plant's quadratic depends on u =
+    /// g/|q|:
     ///
     /// ```text
     /// Complementary   (1 - share) u^2 + 2 u min cos + 1 < 0

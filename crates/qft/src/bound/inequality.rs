@@ -4,7 +4,8 @@ use num_complex::Complex64;
 
 use super::quadratic::negative_gains;
 
-/// Which closed loop is held against its limit W; q = P0 H0/(P H), weights r are set plant by plant.
+/// Which closed loop is compared with its limit W; q = P0 H0/(P H), weights r are set plant by
+/// plant.
 ///
 /// ```text
 /// Complementary    W |q + L0| >= r |L0|              |T| = |L0|/|q + L0|
@@ -18,7 +19,8 @@ pub(super) enum InequalityForm {
     Spread,
 }
 
-/// One plant with its limit and weight, both divided by the same power of two so that neither squares to overflow.
+/// One plant with its limit and weight, both divided by the same power of two so that neither
+/// squares to overflow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct WeightedPlant {
     /// q
@@ -45,7 +47,8 @@ impl WeightedPlant {
     }
 }
 
-/// A ray L0 = g e^(j phi) from the origin, and the plant whose |q + L0| all others are held against along it.
+/// A ray L0 = g e^(j phi) from the origin, and the plant whose |q + L0| is the reference for all
+/// others along it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ray {
     pub(super) form: InequalityForm,
@@ -81,7 +84,7 @@ impl Ray {
     ///                          b^2 - a c = W^2 (r^2 |q|^2 - W^2 s^2)
     /// ```
     ///
-    /// The differences of squares are taken as products of sum and difference.
+    /// Differences of squares are computed as products of sum and difference.
     pub(super) fn forbidden_by(&self, plant: &WeightedPlant) -> [[f64; 2]; 2] {
         let WeightedPlant { inverse, modulus, limit, .. } = *plant;
         let weight = plant.weight * self.other_weight;
@@ -123,8 +126,8 @@ impl Ray {
         found.map(|interval| self.within_window(interval))
     }
 
-    /// The part of an interval inside the window. An end that rounding has put beside an end of the window is moved onto it: what goes
-    /// on beyond that end must meet it there.
+    /// The part of an interval inside the window. An end that rounding has placed next to an end of
+    /// the window is moved onto it, so that intervals on both sides of that end meet there.
     pub(super) fn within_window(&self, interval: [f64; 2]) -> [f64; 2] {
         const ROUNDING: f64 = 1e-12;
         let [from, to] = self.window;

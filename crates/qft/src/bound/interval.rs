@@ -1,7 +1,7 @@
 //! Unions of gain intervals.
 
-/// A union of disjoint open intervals of gains, in increasing order; the last may end at infinity. The gains themselves, not
-/// dB.
+/// A union of disjoint open intervals of gains, in increasing order; the last may end at infinity.
+/// The gains themselves, not dB.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GainIntervals(Vec<[f64; 2]>);
 
@@ -69,7 +69,7 @@ impl GainIntervals {
         self.0.iter().copied().find(|&[low, high]| low < gain && gain < high)
     }
 
-    /// What is in one of two unions.
+    /// The union of two unions.
     pub fn union(&self, other: &GainIntervals) -> GainIntervals {
         GainIntervals::union_of(self.0.iter().chain(&other.0).copied().collect())
     }
@@ -92,7 +92,7 @@ impl GainIntervals {
         self.0.insert(place, [low, high]);
     }
 
-    /// Whether all of this interval is within the union; one without width always is.
+    /// Whether all of this interval is within the union; an interval without width always is.
     pub(super) fn covers(&self, [low, high]: [f64; 2]) -> bool {
         !matches!(low.partial_cmp(&high), Some(std::cmp::Ordering::Less))
             || self.0.iter().any(|other| other[0] <= low && high <= other[1])

@@ -1,9 +1,10 @@
-//! A few plants at a time: whether they forbid anything that is not known already.
+//! Tests a few plants at a time: whether they forbid anything that is not yet known to be
+//! forbidden.
 
 use super::inequality::{InequalityForm, Ray, WeightedPlant};
 use super::interval::GainIntervals;
 
-/// Plants in a leaf: enough to be looked at several at a time.
+/// Plants in a leaf: enough to be processed several at a time.
 pub(super) const LEAF: usize = 8;
 
 /// The quadratics of some plants in columns, divided by W^2.
@@ -19,7 +20,8 @@ pub(super) struct Leaf {
     share: [f64; LEAF],
 }
 
-/// An interval that is forbidden already, and what is to be added where nothing lies beyond an end: infinity.
+/// An interval that is already known to be forbidden, and the value to be added where nothing lies
+/// beyond an end: infinity.
 pub(super) struct Borders {
     ends: [f64; 2],
     beyond: [f64; 2],
@@ -37,20 +39,23 @@ impl Borders {
         })
     }
 
-    /// Positive only if a quadratic that opens upwards is positive below the interval: it is so at the border, and falls there.
+    /// Positive only if a quadratic that opens upwards is positive everywhere below the interval:
+    /// at the border it is positive and falls.
     pub(super) fn below(&self, a: f64, b: f64, c: f64) -> f64 {
         let end = self.ends[0];
         lesser(-(a * end + b), (a * end + 2.0 * b) * end + c) + self.beyond[0]
     }
 
-    /// Positive only if a quadratic that opens upwards is positive above the interval: it is so at the border, and rises there.
+    /// Positive only if a quadratic that opens upwards is positive everywhere above the interval:
+    /// at the border it is positive and rises.
     pub(super) fn above(&self, a: f64, b: f64, c: f64) -> f64 {
         let end = self.ends[1];
         lesser(a * end + b, (a * end + 2.0 * b) * end + c) + self.beyond[1]
     }
 }
 
-/// The lesser of two numbers; unlike `f64::min` without regard to what is no number, and so a single instruction.
+/// The lesser of two numbers; unlike `f64::min` it disregards NaN, and so compiles to a single
+/// instruction.
 pub(super) fn lesser(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }
@@ -73,7 +78,8 @@ impl Leaf {
         leaf
     }
 
-    /// Whether its plants forbid nothing beyond the borders, or nothing at all, told by signs alone; a `false` decides nothing.
+    /// Whether its plants forbid nothing beyond the borders, or nothing at all, judged by signs
+    /// alone; `false` decides nothing.
     pub(super) fn stays_within(&self, ray: &Ray, borders: &Borders) -> bool {
         let square = ray.other_weight * ray.other_weight;
         let (along, other) = (ray.along(ray.other), ray.other_modulus * ray.other_modulus);

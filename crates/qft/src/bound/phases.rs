@@ -5,17 +5,20 @@ use phea_dynamics::portable;
 use super::function::BoundFunction;
 use super::interval::GainIntervals;
 
-/// Phases over [-2 pi, 0]: equally spaced ones, and more between them where a bound is not straight.
+/// Phases over [-2 pi, 0]: equally spaced ones, and more between them where a bound is not
+/// straight.
 ///
-/// Half way between two phases the bound is compared with the straight line in dB between its ends there. Where it differs by more than
-/// the tolerance, or where an interval begins, ends or splits, both halves are looked at in the same way, down to the finest
-/// spacing: a closed bound shuts like a square root, so that at its tip a gap of 1e-5 rad leaves 0.04 dB, where a grid of 5
-/// degrees is off by decibels. Besides, one phase goes into whatever arc of phases a plant forbids that would fall between two others: no
-/// island is overlooked however small.
+/// Halfway between two phases the bound is compared with the straight line in dB between its values
+/// at both. Where it differs by more than the tolerance, or where an interval begins, ends or
+/// splits, both halves are treated in the same way, down to the finest spacing: a closed bound
+/// closes like a square root, so that at its tip a gap of 1e-5 rad leaves 0.04 dB, where a grid of
+/// 5 degrees is off by decibels. In addition, one phase is placed in every arc of phases that a
+/// plant forbids and that would fall between two others, so that no island is overlooked, however
+/// small.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PhaseGrid {
-    /// Largest distance of two phases, rad. There are no more than 100,000 equally spaced ones; a spacing that is not positive leaves
-    /// the two ends of the range.
+    /// Largest distance between two phases, rad. At most 100,000 equally spaced phases are used; if
+    /// the spacing is not positive, only the two ends of the range are.
     pub spacing_rad: f64,
     /// Largest deviation from a straight line between neighbours, dB; infinite for a plain grid.
     pub tolerance_db: f64,
@@ -31,7 +34,8 @@ impl Default for PhaseGrid {
 }
 
 impl PhaseGrid {
-    /// Equally spaced phases and no others, except for those that keep a small island from being overlooked.
+    /// Equally spaced phases and no others, except for those that keep a small island from being
+    /// overlooked.
     ///
     /// # Example
     /// ```
@@ -43,7 +47,7 @@ impl PhaseGrid {
     }
 }
 
-/// What several functions forbid at one phase; the last of all is their union.
+/// What each of several functions forbids at one phase, followed by their union.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct PhaseSample {
     pub(super) phase_rad: f64,
@@ -99,7 +103,8 @@ fn refine(
     refine(grid, sample, middle, right, samples);
 }
 
-/// Whether three unions have the same intervals with each middle end on the straight line between its neighbours.
+/// Whether three unions have the same intervals with each middle end on the straight line between
+/// its neighbours.
 fn is_straight(
     left: &GainIntervals,
     middle: &GainIntervals,

@@ -1,4 +1,4 @@
-//! What a requirement says of one plant: its limit and weight in the q-plane.
+//! What a requirement means for one plant: its limit and weight in the q-plane.
 
 use num_complex::Complex64;
 use phea_dynamics::portable;
@@ -82,7 +82,8 @@ impl Rule {
         sound.then(|| WeightedPlant { inverse, modulus: modulus(inverse), limit, weight })
     }
 
-    /// What the plants are held against: for tracking every plant with its |H|, otherwise |L0| itself.
+    /// What the plants are compared with: for tracking every plant with its |H|, otherwise |L0|
+    /// itself.
     pub(super) fn candidate(&self, plant: &WeightedPlant, point: &TemplatePoint) -> CeilingPlant {
         let weight = portable::magnitude(point.sensor) / self.tracking_scale();
         CeilingPlant { inverse: plant.inverse, modulus: plant.modulus, weight }
@@ -110,13 +111,13 @@ impl Rule {
         }
     }
 
-    /// Common to all plants, since they are held against each other.
+    /// Common to all plants, since they are compared with each other.
     fn tracking_scale(&self) -> f64 {
         power_of_two(self.limit.max(1.0))
     }
 }
 
-/// A number that a plant can be: neither zero nor without bound.
+/// A number that a plant can have: neither zero nor infinite.
 fn is_response(value: Complex64) -> bool {
     value.is_finite() && value != Complex64::new(0.0, 0.0)
 }
@@ -127,8 +128,8 @@ fn modulus(value: Complex64) -> f64 {
     if square > 1e-280 && square < 1e280 { square.sqrt() } else { portable::magnitude(value) }
 }
 
-/// Limit and weight over a power of two common to both, so that neither squares to overflow. Where neither a limit nor anything to
-/// limit is left, nothing can be violated.
+/// Limit and weight over a power of two common to both, so that neither squares to overflow. Where
+/// underflow leaves neither a limit nor anything to be limited, nothing can be violated.
 fn scaled(limit: f64, weight: f64) -> (f64, f64) {
     let scale = power_of_two(limit.max(weight));
     if limit == 0.0 && weight == 0.0 { (1.0, 0.0) } else { (limit / scale, weight / scale) }

@@ -5,7 +5,8 @@ use super::inequality::{InequalityForm, Ray, WeightedPlant};
 use super::interval::GainIntervals;
 use super::leaf::{Borders, LEAF, Leaf};
 
-/// The plants of a template in leaves, and above them hulls of leaves, of pairs of hulls, and so on to one hull around all.
+/// The plants of a template in leaves, and above them hulls of leaves, of pairs of hulls, and so on
+/// to one hull around all.
 #[derive(Clone, Debug)]
 pub(super) struct Tree {
     plants: Vec<WeightedPlant>,
@@ -34,8 +35,9 @@ impl Tree {
 
     /// Adds to the union whatever some plant of the tree forbids along the ray.
     ///
-    /// First the leaves that seem to reach lowest and highest, then those that bridge the gap between them, each found by one descent: almost
-    /// everything that is forbidden is known by then, and whole hulls need no further look.
+    /// First the leaves that seem to reach lowest and highest, then those that bridge the gap
+    /// between them, each found by one descent: almost everything that is forbidden is known by
+    /// then, and whole hulls need no further look.
     pub(super) fn collect(&self, ray: &Ray, union: &mut GainIntervals) {
         let top = self.levels.len().saturating_sub(1);
         let Some(hull) = self.hull(top, 0) else { return };
@@ -99,14 +101,16 @@ impl Tree {
     }
 }
 
-/// The gains between the least and the greatest of two intervals; where there are none, an interval turned over.
+/// The gains between the least and the greatest of two intervals; where there are none, an interval
+/// turned over.
 fn extent(intervals: &[[f64; 2]; 2]) -> [f64; 2] {
     let none = [f64::INFINITY, f64::NEG_INFINITY];
     let some = intervals.iter().filter(|[low, high]| low < high);
     some.fold(none, |all, interval| [all[0].min(interval[0]), all[1].max(interval[1])])
 }
 
-/// The plants in an order in which neighbours have similar magnitudes and phases: along a curve that fills the plane of both (Morton 1966).
+/// The plants in an order in which neighbours have similar magnitudes and phases: along a curve
+/// that fills the plane of both (Morton 1966).
 fn along_a_curve(plants: &[WeightedPlant]) -> Vec<WeightedPlant> {
     let places = || plants.iter().map(|plant| [octave(plant.modulus), bearing(plant.inverse)]);
     let empty = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
@@ -137,7 +141,8 @@ fn spread_bits(value: f64) -> u64 {
     bits
 }
 
-/// A number that grows with a positive one about as its logarithm does: straight between powers of two.
+/// A number that grows with a positive one about as its logarithm does: straight between powers of
+/// two.
 fn octave(value: f64) -> f64 {
     (value.to_bits() >> 20) as f64
 }

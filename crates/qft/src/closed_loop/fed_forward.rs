@@ -1,13 +1,13 @@
-//! A rate that is fed forward, sampled or late as the rest of the command: a path beside the disturbance's own, and a loop where the command
-//! moves that rate too.
+//! A rate that is fed forward, sampled and delayed like the rest of the command: a second path of
+//! the disturbance, and a loop where the command moves that rate too.
 //!
 //! ```text
 //! u = G (F r - y) + K v,     y = P u + Pd d,     v = P_v u + V_d d
 //! P' = P/(1 - K P_v),        Pd' = Pd + K V_d P'                    V_d = s and P_v = 0 where v is the rate of d itself
 //! ```
 //!
-//! In a sampled loop P and P_v are held and sampled, V_d is not: of a sine of d the samples of v are those of a sine. P and P_v have the
-//! same poles, and P' those of 1 - K P_v in their place.
+//! In a sampled loop P and P_v are held and sampled, V_d is not: of a sine of d the samples of v
+//! are those of a sine. P and P_v have the same poles, and P' those of 1 - K P_v in their place.
 
 use num_complex::Complex64;
 use phea_dynamics::linear::{LinearError, Polynomial, TimeDomain, TransferFunction};
@@ -27,7 +27,7 @@ pub struct FedForward {
 pub(super) struct FedBack {
     own: Vec<Complex64>,
     closed: Vec<Complex64>,
-    /// Whole samples by which P and P_v are late.
+    /// Whole samples by which P and P_v are delayed.
     samples: usize,
     sample_time_s: f64,
 }
@@ -64,7 +64,8 @@ pub(super) fn rate_path(
     TransferFunction::from_polynomials(&Polynomial::new(rate.command.clone()), &denominator).map(Some)
 }
 
-/// A plant of a continuous loop without dead time, what is fed back within it: N/(D - K N_v).
+/// A plant of a continuous loop without dead time, including what is fed back within it: N/(D - K
+/// N_v).
 pub(crate) fn closed(
     gain: f64,
     mut plant: PlantCoefficients<f64>,
@@ -100,7 +101,8 @@ impl FedBack {
         })
     }
 
-    /// P/(1 - K P_v), and so with what stands behind P as a sensor does: it has the poles of P_v, and its dead time at least.
+    /// P/(1 - K P_v), and so with what stands behind P as a sensor does: it has the poles of P_v,
+    /// and its dead time at least.
     pub(super) fn around(&self, function: &TransferFunction) -> Result<TransferFunction, LinearError> {
         let (mut poles, mut zeros) = (function.poles().to_vec(), function.zeros().to_vec());
         let mut samples = (function.dead_time_s() / self.sample_time_s).round() - self.samples as f64;

@@ -1,4 +1,5 @@
-//! Plants that are known frequency by frequency, behind a hold and sampled: the images of their response folded onto one another.
+//! Sampled plants that are known frequency by frequency: the images of their response behind the
+//! hold are folded onto one another.
 
 use num_complex::Complex64;
 use phea_dynamics::linear::TransferFunction;
@@ -8,9 +9,9 @@ use phea_dynamics::responding::RespondingPlant;
 use super::{MemberResponse, turned};
 use crate::family::MeasuredPlant;
 
-/// What lies beyond a measurement may count for this share of its sampled response.
+/// The part beyond a measurement may contribute at most this share of its sampled response.
 const UNKNOWN_SHARE: f64 = 0.01;
-/// Images of a model are summed until what is left counts for this share, 0.001 dB.
+/// Images of a model are summed until the rest contributes less than this share, 0.001 dB.
 const LEFT_SHARE: f64 = 1e-4;
 /// Images to each side at most.
 const IMAGES_MAXIMUM: usize = 4000;
@@ -86,7 +87,7 @@ impl SamplingImages<'_> {
                     *largest = largest.max(portable::magnitude(response) * held);
                 }
             }
-            // later images fall by the cube of their frequency at least, but for resonances
+            // later images fall at least with the cube of their frequency, except at resonances
             let beyond = away > plant.range_rad_per_s()[1].min(spacing * IMAGES_MAXIMUM as f64 / 4.0);
             let left = largest.map(|largest| largest * order as f64);
             let back = portable::magnitude(1.0 - self.rate_feed_forward * sum[2]);
@@ -107,7 +108,8 @@ impl SamplingImages<'_> {
         }
     }
 
-    /// As far as the measurement reaches; `None` where what lies beyond it could count, were it as large as at its end.
+    /// As far as the measurement reaches; `None` where the part beyond it could matter if it were
+    /// as large as at its end.
     pub(super) fn of_measurement(
         &self,
         plant: &MeasuredPlant,
@@ -143,7 +145,8 @@ impl SamplingImages<'_> {
         MemberResponse { plant, load_motion, sensor: self.sensor.at_frequency(frequency) }
     }
 
-    /// The terms of one k, of P and of P H; a response at a negative frequency is the conjugate of that at the positive one.
+    /// The terms of one k, of P and of P H; a response at a negative frequency is the conjugate of
+    /// that at the positive one.
     fn image(&self, response: Complex64, v: f64, sample_time_s: f64) -> [Complex64; 2] {
         let sensor = self.sensor.at_frequency(v.abs());
         let held = self.held(response, v, sample_time_s);

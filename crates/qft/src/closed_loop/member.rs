@@ -1,4 +1,4 @@
-//! What a plant within its loop answers.
+//! Responses of a plant within its loop.
 
 use num_complex::Complex64;
 use phea_dynamics::linear::TransferFunction;
@@ -8,7 +8,7 @@ use super::images::SamplingImages;
 use super::{Member, MemberResponse, turned};
 
 impl MemberResponse {
-    /// The same with this fed forward of the disturbance: Pd + K V_d P.
+    /// The same with this much of the disturbance fed forward: Pd + K V_d P.
     pub(super) fn fed(self, forward: Complex64) -> MemberResponse {
         MemberResponse { load_motion: self.load_motion + forward * self.plant, ..self }
     }
@@ -17,8 +17,9 @@ impl MemberResponse {
 impl Member {
     /// P, Pd and H at a frequency; `None` where a measurement does not reach.
     ///
-    /// Sampling folds the response of a measured plant beyond pi/T back: its images at w + 2 pi k/T are summed as far as the measurement
-    /// reaches. Where what lies beyond it could still count for a hundredth (were it as large as at the end of the measurement), the
+    /// Sampling folds the response of a measured plant beyond pi/T back: its images at w + 2 pi k/T
+    /// are summed as far as the measurement reaches. Where the part beyond it could still
+    /// contribute one hundredth (if it were as large as at the end of the measurement), the
     /// response is not known.
     pub fn response(&self, frequency_rad_per_s: f64) -> Option<MemberResponse> {
         match self {
@@ -40,8 +41,8 @@ impl Member {
         }
     }
 
-    /// K P_v(jw) of a plant without polynomials, with the delay of the loop and sampled where that samples; `None` of other plants, and
-    /// where its images do not die out.
+    /// K P_v(jw) of a plant without polynomials, with the delay of the loop and sampled where that
+    /// samples; `None` of other plants, and where its images do not die out.
     pub(crate) fn fed_back(&self, frequency_rad_per_s: f64) -> Option<Complex64> {
         let Member::Responding { plant, .. } = self else { return None };
         self.images()?.fed_back(plant.as_ref(), frequency_rad_per_s)

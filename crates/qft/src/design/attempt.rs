@@ -28,17 +28,20 @@ use crate::sampled::SampledPlants;
 use crate::specification::Specification;
 use crate::verification::{Audit, AuditProblem, TrackingJudgement, audit_among};
 
-/// Below this worst margin of the samples, the reserve taken off, a structure counts as unable to meet the specifications, dB.
+/// Below this worst margin of the samples, the reserve taken off, a structure counts as unable to
+/// meet the specifications, dB.
 pub(super) const FEASIBLE_DB: f64 = -1.5e-3;
-/// Where a counterexample misses by this much more than all samples did, the margins of what was found lead nowhere, dB.
+/// Where a counterexample misses by this much more than all samples did, the margins of what was
+/// found lead nowhere, dB.
 const ASTRAY_DB: f64 = -6.0;
-/// Beside the frequency of a counterexample the same plants are looked at at these multiples of it.
+/// The plants of a counterexample are also evaluated at these multiples of its frequency.
 const NEIGHBOURS: [f64; 4] = [0.94, 0.97, 1.03, 1.06];
-/// Audits of one structure at most.
+/// Largest number of audits of one structure.
 const ROUNDS_MAXIMUM: usize = 40;
 /// Room that a start of a prefilter may take from both edges of its band, dB.
 const BAND_ROOM_DB: f64 = 3.0;
-/// How far inside its limits a search stays, dB: what the audit finds between the samples then still meets them.
+/// How far inside its limits a search stays, dB, so that what the audit finds between the samples
+/// still satisfies them.
 const RESERVE_DB: f64 = 0.001;
 
 /// What an attempt ended with.
@@ -54,7 +57,7 @@ pub(super) enum AttemptEnding {
     NotConverged(Box<Audit>),
 }
 
-/// What leaves the attempt before an audit agrees.
+/// Why the attempt ends before an audit agrees.
 enum Leave {
     Ended(AttemptEnding),
     Failed(LoopDesignError),
@@ -84,16 +87,17 @@ pub(super) struct Attempt {
     relaxes: bool,
     /// How far inside its limits the search stays, dB.
     reserve_db: f64,
-    /// How often it was drawn in for what rounding takes.
+    /// How often the limits were tightened to make up for rounding.
     draws: usize,
     /// Order of the prefilter that is fitted next.
     prefilter_order: usize,
     restarts: u64,
-    /// The worst margin before the last counterexamples were taken in, dB, at most 0; of no account where no relaxation is looked for.
+    /// The worst margin before the last counterexamples were taken in, dB, at most 0; unused unless
+    /// a relaxation is sought.
     missing_db: f64,
-    /// The last x from which margins led on.
+    /// The last x from which the margins could still be improved.
     sound: Vec<f64>,
-    /// Points that the first search looks at before any that is spread.
+    /// Points that the first search evaluates before those that are spread over the bounds.
     given: Vec<Vec<f64>>,
     /// Points at which the nominal plant is stabilised.
     stabilising: Vec<Vec<f64>>,
@@ -107,8 +111,8 @@ pub(super) struct Attempt {
 }
 
 impl Attempt {
-    /// An attempt that has not begun, with points to begin with. With `relaxes` it looks for
-    /// the smallest common relaxation.
+    /// A new attempt with its starting points. With `relaxes` it looks for the smallest common
+    /// relaxation.
     pub(super) fn new(
         structure: Structure,
         mut samples: Samples,
@@ -155,8 +159,8 @@ impl Attempt {
         })
     }
 
-    /// Shapes the loop and audits it, again with every counterexample, until search and audit agree. Plants that were sampled in the same loop
-    /// are not sampled again.
+    /// Shapes the loop and audits it, again with every counterexample, until search and audit
+    /// agree. Plants that were sampled in the same loop are not sampled again.
     ///
     /// # Errors
     /// [`LoopDesignError::Stopped`] by the watch; what was found until then remains.
@@ -212,7 +216,7 @@ impl Attempt {
         &self.rounds
     }
 
-    /// Everything that was looked at, for the next attempt.
+    /// All plants and frequencies that were evaluated, for the next attempt.
     pub(super) fn samples(&self) -> Samples {
         self.shaping.samples().clone()
     }
@@ -237,7 +241,8 @@ impl Attempt {
         if self.fits_prefilter(watch)? { self.descend(false, watch) } else { Ok(()) }
     }
 
-    /// Fits a prefilter to the loop as it is, a start for the descent with both; false where none is looked for.
+    /// Fits a prefilter to the loop as it is, a start for the descent with both; false where none
+    /// is looked for.
     fn fits_prefilter(&mut self, watch: Watch<'_>) -> Result<bool, Leave> {
         let missing_db = if self.relaxes { -self.shaping.judge(&self.x).worst_margin_db } else { 0.0 };
         let room_db = BAND_ROOM_DB + missing_db.max(0.0);
@@ -254,7 +259,7 @@ impl Attempt {
         let order = self.prefilter_order.min(*maximum_order);
         let options =
             PrefilterOptions { least_order: order, ..PrefilterOptions::new(order, self.options.seed) };
-        // what the band lacks the descent that follows will find: only a start is wanted here
+        // only a starting point is needed here; the descent that follows finds what the band lacks
         let band = band.relaxed(room_db);
         let outcome = fit_prefilter(&band, &problem.timing, &options, &mut part(watch, FITTING, WHOLE))?;
         let fitted = match outcome {
@@ -280,7 +285,8 @@ impl Attempt {
         Ok(())
     }
 
-    /// Descends until the samples satisfy the specifications: from near by, then with the steps of a start, then with prefilters of more poles.
+    /// Descends until the samples satisfy the specifications: from the present point, then with the
+    /// steps of a new start, then with prefilters of more poles.
     fn descend(&mut self, mut is_near: bool, watch: Watch<'_>) -> Result<(), Leave> {
         loop {
             let options = DescentOptions { reserve_db: 0.0, is_near, ..DescentOptions::new(self.aim) };
@@ -311,7 +317,8 @@ impl Attempt {
         }
     }
 
-    /// Looks between the samples, over the whole box, but beginning from the plants of the samples; whether counterexamples were taken in.
+    /// Searches between the samples, over the whole box, starting from the plants of the samples;
+    /// returns whether counterexamples were added.
     fn learns_between_samples(&mut self, sampled: &SampledPlants, watch: Watch<'_>) -> Result<bool, Leave> {
         let samples = self.shaping.samples();
         let problem = AuditProblem {
@@ -332,14 +339,15 @@ impl Attempt {
         Ok(self.takes_in(&examples)?)
     }
 
-    /// Takes counterexamples in among the samples; false if they are among them already, or that was done often enough.
+    /// Adds counterexamples to the samples; false if they are already among them, or if this was
+    /// done often enough.
     fn takes_in(&mut self, examples: &[Counterexample]) -> Result<bool, LoopDesignError> {
         let mut news = false;
         self.missing_db =
             if self.relaxes { self.shaping.judge(&self.x).worst_margin_db.min(0.0) } else { 0.0 };
         let [lowest, highest] = self.frequency_range();
         for example in examples {
-            // towards the ends of the axis a decade at a time
+            // towards the ends of the frequency axis one decade at a time
             let at = match example.frequency_rad_per_s {
                 None => lowest,
                 Some(frequency) if frequency <= 0.0 => 0.1 * lowest,
@@ -347,7 +355,7 @@ impl Attempt {
                 Some(frequency) => frequency,
             };
             news |= self.shaping.add(&example.plants, at)?;
-            // a peak moves with the next controller: its neighbourhood is looked at too
+            // a peak moves with the next controller, so its neighbourhood is evaluated too
             for share in NEIGHBOURS.into_iter().filter(|_| example.frequency_rad_per_s.is_some()) {
                 self.shaping.add(&example.plants, (at * share).clamp(lowest, highest))?;
             }
@@ -355,7 +363,8 @@ impl Attempt {
         Ok(news && self.rounds.len() < ROUNDS_MAXIMUM)
     }
 
-    /// Descends again, with the counterexamples among the samples; searches anew where their margins lead nowhere from here.
+    /// Descends again, with the counterexamples among the samples; starts a new search where their
+    /// margins cannot be improved from here.
     fn shape_again(&mut self, watch: Watch<'_>) -> Result<(), Leave> {
         let judgement = self.shaping.judge(&self.x);
         if judgement.stable && judgement.worst_margin_db > self.missing_db + ASTRAY_DB {
@@ -365,8 +374,9 @@ impl Attempt {
         self.search_anew(watch)
     }
 
-    /// A plant that was added is unstable with what was found, or nearly so, and margins lead nowhere from there: begins again among all plants
-    /// that are known now, where they last led on besides.
+    /// An added plant is unstable with the controller that was found, or nearly so, and its margins
+    /// cannot be improved from there: starts again with all plants that are known now, also from
+    /// the last point where the margins could be improved.
     fn search_anew(&mut self, watch: Watch<'_>) -> Result<(), Leave> {
         self.restarts += 1;
         self.x.truncate(self.structure.dimension());

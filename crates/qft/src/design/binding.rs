@@ -3,7 +3,8 @@
 use super::result::{BindingLimit, Conflict};
 use crate::verification::{Audit, PlantPoint, WorstCase};
 
-/// At each design frequency of a specification the one that leaves the loop least room, by increasing frequency.
+/// For each design frequency the specification that leaves the loop the least room, in order of
+/// increasing frequency.
 pub(super) fn binding_limits(audit: &Audit) -> Vec<BindingLimit> {
     let mut limits: Vec<BindingLimit> = Vec::new();
     for (specification, finding) in audit.specifications.iter().enumerate() {
@@ -29,7 +30,7 @@ fn binding(specification: usize, case: &WorstCase) -> BindingLimit {
     }
 }
 
-/// The worst violations of the family and of the plants beside it.
+/// The worst violations of the family and of the additional plants.
 pub(super) fn all_conflicts(audit: &Audit, beside: &[Audit], tolerance_db: f64) -> Vec<Conflict> {
     let mut found = conflicts(audit, tolerance_db);
     for (index, audit) in beside.iter().enumerate() {
@@ -42,8 +43,8 @@ pub(super) fn all_conflicts(audit: &Audit, beside: &[Audit], tolerance_db: f64) 
     found
 }
 
-/// The worst violations of every specification that is broken, the worst first: what stands against one another where the common
-/// relaxation is as small as it can be.
+/// The worst violation of every violated specification, the worst first: the limits that conflict
+/// where the common relaxation is as small as possible.
 fn conflicts(audit: &Audit, tolerance_db: f64) -> Vec<Conflict> {
     let mut found: Vec<Conflict> = Vec::new();
     for (specification, finding) in audit.specifications.iter().enumerate() {

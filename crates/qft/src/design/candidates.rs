@@ -15,8 +15,8 @@ use crate::loop_shaping::{Structure, StructureFactor};
 use crate::specification::{Limit, Requirement, Specification};
 use crate::verification::corners;
 
-/// How far the corners of a controller may lie below and above the highest frequency of the specifications, and below the lowest, as
-/// factors.
+/// How far the corners of a controller may lie below and above the highest frequency of the
+/// specifications, and below the lowest, as factors.
 const BELOW_HIGHEST: f64 = 1e-3;
 const ABOVE: f64 = 200.0;
 const BELOW_LOWEST: f64 = 0.1;
@@ -26,13 +26,15 @@ const CORNERS: usize = 9;
 const BEYOND_FASTEST: [f64; 2] = [3.0, 20.0];
 /// Damping ratios of free pairs; beyond 1 a pair is two real roots.
 const DAMPING_RATIOS: [f64; 2] = [0.1, 20.0];
-/// Decades that the gain may lie beyond those that put the crossover on a frequency of the specifications.
+/// Decades that the gain may lie beyond those that put the crossover on a frequency of the
+/// specifications.
 const GAIN_ROOM: f64 = 100.0;
-/// Two limits that differ by less than this share at low frequency ask for one gain.
+/// Two limits that differ by less than this share at low frequency demand a specific gain.
 const SAME: f64 = 1e-6;
 
-/// The sign that feedback needs to oppose the nominal plant, and a wide range for the gain k of a controller with unit corners: from below
-/// to above every value that puts the crossover on a frequency of the specifications.
+/// The sign that feedback needs to oppose the nominal plant, and a wide range for the gain k of a
+/// controller with unit corners: it includes every value that puts the crossover at a frequency of
+/// the specifications, with a reserve at both ends.
 ///
 /// # Example
 /// 4/s with a specification from 1 to 10 rad/s: k = 1/4 crosses over at 1 rad/s.
@@ -75,7 +77,7 @@ pub fn gain_range(problem: &DesignProblem) -> (f64, [f64; 2]) {
 /// What the structures of a problem have in common.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Ground {
-    /// Integrators that the specifications ask for beyond those of the plants.
+    /// Integrators that the specifications require beyond those of the plants.
     pub(super) integrators: usize,
     sign: f64,
     corner: [f64; 2],
@@ -88,7 +90,8 @@ impl Ground {
         let span = span(&problem.specifications);
         let low = LowFrequency::of(problem, span[0]);
         let wanted = problem.specifications.iter().map(wanted_type).max().unwrap_or(0);
-        // an integrator would cancel a zero of the plant at the origin, and the loop keep a pole there
+        // an integrator would cancel a zero of the plant at the origin, and the loop would keep a
+        // pole there
         let integrators = usize::try_from(wanted - low.plant_type.max(0)).unwrap_or(0);
         let corner = [(BELOW_LOWEST * span[0]).max(BELOW_HIGHEST * span[1]), ABOVE * span[1]];
         // With k = w^integrators / |P(jw)| the loop of unit corners crosses over at w.
@@ -104,8 +107,9 @@ impl Ground {
         Ground { integrators, sign: low.sign, corner, gain }
     }
 
-    /// Points of a structure from which it can do what a simpler controller does, or nearly: poles and zeros are added at one corner each, where
-    /// they cancel if there are as many of one as of the other; a zero too many is left out.
+    /// Points at which a structure is equal to a simpler controller, or nearly: poles and zeros are
+    /// added at one corner each, where they cancel if there are equally many; a surplus zero is
+    /// left out.
     pub(super) fn grown(&self, structure: &Structure, simpler: &TransferFunction) -> Vec<Vec<f64>> {
         let middle =
             [self.corner[0].max(10.0 * BELOW_HIGHEST * self.corner[1] / ABOVE), 0.3 * self.corner[1]];
@@ -113,7 +117,8 @@ impl Ground {
         corners.iter().filter_map(|corner| grown_at(structure, simpler, *corner)).collect()
     }
 
-    /// Points of a structure at which it stabilises the nominal plant, or nearly; see [`stabilising`].
+    /// Points of a structure at which it stabilises the nominal plant, or nearly; see
+    /// [`stabilising`].
     pub(super) fn stabilising(&self, structure: &Structure, problem: &DesignProblem) -> Vec<Vec<f64>> {
         let simpler = stabilising(problem, self.integrators, structure.roots(-1.0));
         let at = |function: &TransferFunction| {
@@ -126,7 +131,7 @@ impl Ground {
         points
     }
 
-    /// The structure of this order with so many zeros.
+    /// The structure of this order with this number of zeros.
     pub(super) fn structure(&self, order: usize, zeros: usize) -> Structure {
         let integrator = std::iter::repeat_n(StructureFactor::Fixed(Element::Integrator), self.integrators);
         let poles = order.saturating_sub(self.integrators);
@@ -156,7 +161,8 @@ impl Ground {
     }
 }
 
-/// The point of a structure at which it is a simpler controller with poles and zeros added at this corner, a zero too many left out.
+/// The point of a structure at which it is a simpler controller with poles and zeros added at this
+/// corner; a surplus zero is left out.
 fn grown_at(structure: &Structure, simpler: &TransferFunction, corner: f64) -> Option<Vec<f64>> {
     let mut gain = simpler.gain();
     let (mut zeros, mut poles) = (simpler.zeros().to_vec(), simpler.poles().to_vec());
@@ -191,7 +197,8 @@ fn span(specifications: &[Specification]) -> [f64; 2] {
     inside.reduce(joined).unwrap_or([0.1, 10.0])
 }
 
-/// The exponent of w with which a loop must grow as w tends to zero, if this specification is to be kept to.
+/// The exponent of w with which a loop must grow as w tends to zero, if this specification is to be
+/// satisfied.
 fn wanted_type(specification: &Specification) -> i64 {
     match &specification.requirement {
         Requirement::Sensitivity(limit) => order_at_zero(limit).max(0),
@@ -199,7 +206,7 @@ fn wanted_type(specification: &Specification) -> i64 {
             let at_zero = |limit: &Limit| match limit {
                 Limit::Constant(value) => Some(*value),
                 Limit::Rational(function) => Some(function.dc_gain().abs()),
-                // what a table says below its first point is nothing
+                // a table demands nothing below its first point
                 Limit::Table(_) => None,
             };
             let narrow = at_zero(lower).zip(at_zero(upper));
@@ -219,7 +226,7 @@ fn order_at_zero(limit: &Limit) -> i64 {
     at_origin(function.zeros()) - at_origin(function.poles())
 }
 
-/// What the plants are at low frequency.
+/// The behaviour of the plants at low frequency.
 struct LowFrequency {
     /// Least number of integrators of a plant.
     plant_type: i64,

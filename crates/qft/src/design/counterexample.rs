@@ -1,18 +1,19 @@
-//! What an audit teaches the search: plants and frequencies that it had not looked at.
+//! What the search learns from an audit: plants and frequencies that it had not evaluated.
 
 use super::problem::DesignProblem;
 use crate::specification::Requirement;
 use crate::verification::{Audit, DelayMargin, PlantPoint, SpecificationFinding, TrackingJudgement, Verdict};
 
-/// A plant, or the pair of a spread, and the frequency at which it breaks a limit (0 and infinity included), where there is one.
+/// A plant, or the pair of a spread, and the frequency at which it violates a limit (0 and infinity
+/// included), if there is one.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Counterexample {
     pub(super) plants: Vec<PlantPoint>,
     pub(super) frequency_rad_per_s: Option<f64>,
 }
 
-/// The plants whose margin lies below minus a tolerance (that of tracking counts for both limits of a spread), each once with each of its
-/// frequencies.
+/// The plants whose margin lies below minus a tolerance (that of tracking counts for both limits of
+/// a spread), each once with each of its frequencies.
 pub(super) fn counterexamples(
     findings: &[SpecificationFinding],
     [tolerance_db, of_tracking_db]: [f64; 2],
@@ -39,7 +40,7 @@ pub(super) fn counterexamples(
     found
 }
 
-/// The same of the audit of a plant beside the family, by its index there.
+/// The same for the audit of an additional plant, by its index.
 pub(super) fn of_beside(index: usize, examples: Vec<Counterexample>) -> Vec<Counterexample> {
     let named =
         |example: Counterexample| Counterexample { plants: vec![PlantPoint::Beside(index)], ..example };
@@ -56,7 +57,7 @@ pub(super) fn unstable_plant(audit: &Audit) -> Vec<Counterexample> {
     }
 }
 
-/// The plant that bears less delay than is demanded.
+/// The plant that tolerates less delay than is required.
 pub(super) fn too_little_delay(audit: &Audit, problem: &DesignProblem) -> Vec<Counterexample> {
     let least = audit.delay_margin.iter().filter(|margin| !problem.bears_its_delay(margin.delay_s));
     let example = |margin: &DelayMargin| Counterexample {
@@ -72,12 +73,13 @@ pub(super) fn worst_margin_db(findings: &[SpecificationFinding]) -> f64 {
     margins.map(|worst| worst.margin_db).fold(f64::INFINITY, f64::min)
 }
 
-/// The same of an audit; `None` where a plant is not known to be stable.
+/// The same for an audit; `None` where a plant is not known to be stable.
 pub(super) fn audited_margin_db(audit: &Audit) -> Option<f64> {
     (audit.stability.verdict == Verdict::Met).then(|| worst_margin_db(&audit.specifications))
 }
 
-/// The same over what one dB of relaxation of every limit adds to each: 2 for a spread.
+/// The same, divided by what one dB of relaxation of every limit adds to the margin: 2 for a
+/// spread.
 pub(super) fn worst_over_rate_db(findings: &[SpecificationFinding], tracking: TrackingJudgement) -> f64 {
     let margins = findings.iter().filter_map(|finding| {
         let margin_db = finding.worst.as_ref()?.margin_db;

@@ -1,4 +1,5 @@
-//! What can be said of a problem before any search: impossibilities that are theorems, and what is merely hard.
+//! What is known about a problem before any search: impossibilities that are theorems, and what is
+//! merely hard.
 
 mod candidate;
 mod ceiling;
@@ -20,19 +21,24 @@ use super::DesignProblem;
 use crate::closed_loop::Compensation;
 use crate::specification::{Limit, Specification};
 
-/// What no controller can do, and what will be hard, told without a search: impossibilities first.
+/// What no controller can achieve, and what will be hard, found without a search; impossibilities
+/// come first.
 ///
-/// Each impossibility holds for every linear time-invariant controller and every prefilter, because a plant of the family alone forbids what is asked
-/// for (or a few plants at one frequency): it is never a failure of a search. Nothing found does not mean that a controller exists. Plants are the nominal
-/// one, at most 64 corners and as many members as make 96; limits are taken at some hundred frequencies, and deficits below 0.1 dB are left alone.
+/// Each impossibility holds for every linear time-invariant controller and every prefilter, because
+/// a single plant of the family (or a few plants at one frequency) forbids what is required: it is
+/// never a failure of a search. If nothing is found, that does not mean that a controller exists.
+/// The plants are the nominal one, at most 64 corners, and members up to a total of 96; limits are
+/// evaluated at some hundred frequencies, and deficits below 0.1 dB are ignored.
 ///
 /// ```text
 /// S + T = 1                                          on the axis and at every point of the right half plane
 /// |S(s0)| <= exp(mean ln|S|) prod |s0 - p|/|s0 + conj p|,  |T(s0)| <= exp(mean ln|T|) prod |s0 - z|/|s0 + conj z| e^(-Re(s0) T_d)
 /// ```
 ///
-/// The means are over the axis, weighted by what s0 sees of it (Poisson); poles p and zeros z of P H in the right half plane; a sampled loop is treated
-/// exactly, in z. Sources: Freudenberg and Looze (1985); Seron, Braslavsky and Goodwin (1997); Skogestad and Postlethwaite (2005), chapter 5.
+/// The means are taken over the axis, weighted by the Poisson kernel of s0; poles p and zeros z of
+/// P H in the right half plane; a sampled loop is treated exactly, in z. Sources: Freudenberg and
+/// Looze (1985); Seron, Braslavsky and Goodwin (1997); Skogestad and Postlethwaite (2005), chapter
+/// 5.
 ///
 /// # Example
 /// An unstable pole above the bandwidth that is allowed:
@@ -101,7 +107,7 @@ pub fn diagnose(problem: &DesignProblem) -> Vec<Finding> {
     findings
 }
 
-/// Where something happens on the axis: ends of bands, design frequencies, roots of limits and of plants.
+/// Frequencies of interest: ends of bands, design frequencies, roots of limits and of plants.
 fn places(plane: Plane, specifications: &[Specification], candidates: &[PlantWithinLoop]) -> Vec<f64> {
     let mut frequencies: Vec<f64> = Vec::new();
     for specification in specifications {

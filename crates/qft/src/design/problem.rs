@@ -9,38 +9,39 @@ use crate::family::Family;
 use crate::loop_shaping::Structure;
 use crate::specification::Specification;
 
-/// What must be kept to, by which plants, in which loop.
+/// The design problem: which specifications which plants must satisfy, in which loop.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DesignProblem {
     /// The plants.
     pub family: Family,
-    /// Plants beside them that the loop must serve as well: of each the nominal one alone.
+    /// Additional plants that the loop must also control; only the nominal plant of each counts.
     pub beside: Vec<UncertainPlant>,
     /// H; 1 where the output itself is fed back.
     pub sensor: TransferFunction,
-    /// Sample time, delay and discretization of the controller that is looked for.
+    /// Sample time, delay and discretization of the wanted controller.
     pub timing: Timing,
     /// What must be kept to.
     pub specifications: Vec<Specification>,
-    /// Delay beyond that of the loop which every plant must bear, s; 0 asks for none.
+    /// Delay, in addition to that of the loop, that every plant must tolerate, s; 0 requires none.
     pub minimum_delay_margin_s: f64,
 }
 
-/// A delay that is missed by less than this share of it counts as borne.
+/// A required delay that is missed by less than this share counts as tolerated.
 const DELAY_SHARE: f64 = 0.01;
 
 impl DesignProblem {
-    /// Whether a loop with this delay margin in s bears the delay that is asked for, to a hundredth of it.
+    /// Whether a loop with this delay margin in s tolerates the required delay, to within a
+    /// hundredth of it.
     pub fn bears_its_delay(&self, delay_margin_s: f64) -> bool {
         delay_margin_s >= (1.0 - DELAY_SHARE) * self.minimum_delay_margin_s
     }
 }
 
-/// What is made least or greatest among the controllers that keep to every specification.
+/// What is minimised or maximised among the controllers that satisfy every specification.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Objective {
-    /// lim s^r G(s), r the relative degree; in a sampled loop that of the elements before they are sampled, which by Tustin's rule is
-    /// what |G| leaves at pi/T beside its r zeros there.
+    /// lim s^r G(s), r the relative degree; in a sampled loop that of the elements before they are
+    /// sampled, which by Tustin's rule is |G| at pi/T without its r zeros there.
     #[default]
     LeastHighFrequencyGain,
     /// The gain crossover of the nominal loop.
@@ -64,7 +65,7 @@ pub enum ControllerChoice {
 /// Which prefilters are tried.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PrefilterChoice {
-    /// None: tracking is judged by its spread.
+    /// No prefilter: tracking is judged by its spread.
     None,
     /// This one.
     Given(TransferFunction),
@@ -78,7 +79,7 @@ pub enum PrefilterChoice {
 /// How a design is made.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DesignOptions {
-    /// What is made least or greatest.
+    /// What is minimised or maximised.
     pub objective: Objective,
     /// Which controllers are tried.
     pub controller: ControllerChoice,
@@ -88,6 +89,7 @@ pub struct DesignOptions {
     pub seed: u64,
     /// A margin of minus this much still counts as met, dB.
     pub tolerance_db: f64,
-    /// How the coefficients of a sampled controller are kept: it is judged with those. A continuous one has none.
+    /// The number format of the coefficients of a sampled controller, which is judged with rounded
+    /// coefficients. A continuous controller is not rounded.
     pub coefficients: CoefficientFormat,
 }

@@ -1,4 +1,4 @@
-//! What a computer with finite converters and coefficients makes of a sampled loop.
+//! The effect of finite converters and coefficients on a sampled loop.
 //!
 //! ```text
 //! y = P (u + e_u) ...          command rounded by the DA converter:       |e_u| <= q_u/2,   to the force by   P/(1+L)
@@ -17,18 +17,19 @@ use phea_dynamics::linear::LinearError;
 
 use crate::specification::{Limit, Requirement, Specification};
 
-/// The converters and the coefficients of the computer that runs a controller; a converter that is absent does not round.
+/// The converters and the coefficients of the computer that runs a controller; a converter that is
+/// absent does not round.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Quantisation {
     /// DA converter of the command, in the command's unit.
     pub command: Option<Converter>,
     /// AD converter of the measured output, in the output's unit.
     pub measurement: Option<Converter>,
-    /// How the coefficients of the controller are kept.
+    /// The number format of the coefficients of the controller.
     pub coefficients: CoefficientFormat,
 }
 
-/// Why the effect of rounding cannot be told.
+/// Why the effect of rounding cannot be computed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum QuantisationError {
     /// A converter is impossible.
@@ -42,13 +43,14 @@ pub enum QuantisationError {
     TooLarge {
         /// The coefficient.
         value: f64,
-        /// The largest that can be held.
+        /// The largest that can be represented.
         largest: f64,
     },
     /// All coefficients of a numerator are rounded to zero.
     #[error("the numerator {0:?} is rounded to zero")]
     Vanished([f64; 3]),
-    /// The effect of one rounding has not died away within so many samples: a loop that is unstable or nearly so.
+    /// The effect of one rounding has not died away within so many samples: a loop that is unstable
+    /// or nearly so.
     #[error("the effect of a rounding on plant {plant} has not died away within {samples} samples")]
     NotSettled {
         /// Index of the plant.
@@ -56,21 +58,22 @@ pub enum QuantisationError {
         /// Samples.
         samples: usize,
     },
-    /// A part is no transfer function that can be run.
+    /// A part is not a transfer function that can be run.
     #[error("{0}")]
     Linear(#[from] LinearError),
 }
 
 impl Quantisation {
-    /// The specification that keeps the force error of a rounded command below so much, rms: for a design that knows its converter
-    /// from the start.
+    /// The specification that keeps the force error due to a rounded command below a given rms
+    /// value: for a design that takes its converter into account from the start.
     ///
     /// ```text
     /// rms(y) <= sup |P/(1+L)| q_u/2         |P/(1+L)| <= allowed/(q_u/2)
     /// ```
     ///
-    /// Holds whatever the rounding does, limit cycles included. `None` without a DA converter. `frequencies_rad_per_s` are those at which
-    /// bounds are drawn; it must hold at every frequency.
+    /// Holds whatever the rounding does, limit cycles included. `None` without a DA converter.
+    /// `frequencies_rad_per_s` are those at which bounds are drawn; it must hold at every
+    /// frequency.
     ///
     /// # Example
     /// 5 N allowed for 16 bits over 20 V
@@ -95,7 +98,8 @@ impl Quantisation {
         Some(everywhere(Requirement::PlantInputDisturbance(limit), frequencies_rad_per_s))
     }
 
-    /// The specification that keeps what a rounded measurement makes of the command below so much, rms.
+    /// The specification that keeps the effect of a rounded measurement on the command below a
+    /// given rms value.
     ///
     /// ```text
     /// rms(u) <= sup |G/(1+L)| q_y/2         |G/(1+L)| <= allowed/(q_y/2)

@@ -10,27 +10,28 @@ use crate::verification::{Audit, PlantPoint};
 pub enum DesignStatus {
     /// The audit finds that every specification is met.
     Met,
-    /// No controller that was tried meets every specification; this is the smallest relaxation under which one does.
+    /// No controller that was tried meets every specification; this is the smallest relaxation
+    /// under which one does.
     Infeasible(Relaxation),
     /// The audit could not be brought to agree within the rounds allowed.
     NotConverged {
         /// How many rounds were made.
         rounds: usize,
     },
-    /// No controller that was tried stabilises the family.
+    /// None of the controllers that were tried stabilises the family.
     NotStabilised,
 }
 
 /// The smallest common relaxation of all limits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Relaxation {
-    /// dB added to every upper limit and taken from every lower one.
+    /// dB by which every upper limit is raised and every lower one lowered.
     pub relaxation_db: f64,
-    /// The limits that stand against one another at it.
+    /// The limits that conflict at this relaxation.
     pub conflicts: Vec<Conflict>,
 }
 
-/// A limit that is reached where the design can do no better.
+/// A limit that is reached where the design cannot be improved.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Conflict {
     /// Index of the specification.
@@ -39,7 +40,7 @@ pub struct Conflict {
     pub frequency_rad_per_s: f64,
     /// The plant.
     pub plant: PlantPoint,
-    /// Its margin to the limit as it was asked for, dB.
+    /// Its margin to the original limit, dB.
     pub margin_db: f64,
 }
 
@@ -63,9 +64,9 @@ pub struct DesignRound {
     pub structure: Structure,
     /// Its objective, dB.
     pub objective_db: f64,
-    /// Plants that were looked at by the search.
+    /// Number of plants that the search evaluated.
     pub plants: usize,
-    /// Frequencies that were looked at by the search.
+    /// Number of frequencies that the search evaluated.
     pub frequencies: usize,
     /// Worst margin on them, dB.
     pub searched_margin_db: f64,
@@ -73,22 +74,24 @@ pub struct DesignRound {
     pub audited_margin_db: Option<f64>,
 }
 
-/// Where the starts of the last search ended, which tells how much a result owes to its starts.
+/// Where the starts of the last search ended, which shows how much the result depends on them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Starts {
-    /// Points at which the search looked before its descents.
+    /// Points that the search evaluated before its descents.
     pub tried: usize,
-    /// How many of them stabilise every plant that was looked at.
+    /// How many of them stabilise every plant that was evaluated.
     pub stabilised: usize,
-    /// Descents that were led to their end.
+    /// Number of completed descents.
     pub ended: usize,
-    /// Worst margin at these ends over its rate, dB: the best of them, their median and the worst of them; `None` where there is no end.
+    /// Worst margin over its rate at the ends of these descents, dB: best, median and worst; `None`
+    /// if no descent was completed.
     pub margins_db: Option<[f64; 3]>,
-    /// The objective at those ends that keep to every limit to 0.01 dB, dB: least, median and greatest; `None` where none does.
+    /// The objective at those ends that satisfy every limit to 0.01 dB, dB: least, median and
+    /// greatest; `None` if none does.
     pub objectives_db: Option<[f64; 3]>,
 }
 
-/// An end that misses by less than this keeps to its limits, dB.
+/// An end that misses its limits by less than this satisfies them, dB.
 const KEPT_DB: f64 = 0.01;
 
 impl Starts {
@@ -105,7 +108,7 @@ impl Starts {
     }
 }
 
-/// Of an even number the median is the lesser one in the middle.
+/// The median of an even number of values is the lesser of the middle two.
 fn least_median_greatest(mut values: Vec<f64>) -> Option<[f64; 3]> {
     values.sort_by(f64::total_cmp);
     let middle = *values.get(values.len().saturating_sub(1) / 2)?;
@@ -117,7 +120,8 @@ fn least_median_greatest(mut values: Vec<f64>) -> Option<[f64; 3]> {
 pub struct Design {
     /// Why it ended.
     pub status: DesignStatus,
-    /// Controller, prefilter and timing, as they are deployed and were audited: where coefficients are rounded, in z and with those.
+    /// Controller, prefilter and timing as they are deployed and were audited: in z with rounded
+    /// coefficients, where coefficients are rounded.
     pub controller: Controller,
     /// The same before it was sampled and rounded.
     pub law: Controller,
@@ -127,9 +131,9 @@ pub struct Design {
     pub starts: Option<Starts>,
     /// Its objective, dB.
     pub objective_db: f64,
-    /// Its audit against the specifications as they were asked for.
+    /// Its audit against the original specifications.
     pub audit: Audit,
-    /// The same of each plant beside the family.
+    /// The same for each additional plant.
     pub beside: Vec<Audit>,
     /// The limits that it touches, by frequency.
     pub binding: Vec<BindingLimit>,

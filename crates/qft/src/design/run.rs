@@ -1,4 +1,4 @@
-//! The design: which structures are tried after which, and what is taken of them.
+//! The design: in which order structures are tried, and which result is kept.
 
 use std::collections::VecDeque;
 
@@ -34,7 +34,7 @@ const RELAXATION_GAINED_DB: f64 = 0.01;
 pub struct DesignOutcome {
     /// The best design; `None` where no controller was found.
     pub design: Option<Design>,
-    /// What no controller can do, and what will be hard; see [`diagnose`].
+    /// What no controller can achieve, and what will be hard; see [`diagnose`].
     pub findings: Vec<Finding>,
     /// Whether the watch stopped it: then the design is the best so far.
     pub stopped: bool,
@@ -44,7 +44,8 @@ pub struct DesignOutcome {
 }
 
 impl DesignOutcome {
-    /// Where it was stopped before any design was there: audits the controller at hand, which becomes one that is not converged.
+    /// If it was stopped before any design existed, audits the present controller, which becomes a
+    /// design that has not converged.
     ///
     /// # Errors
     /// Those of [`design`].
@@ -60,21 +61,23 @@ impl DesignOutcome {
     }
 }
 
-/// What was learnt of the plants.
+/// What was learnt about the plants.
 #[derive(Clone, Debug, Default)]
 struct LearntPlants {
-    /// What searches look at; `None` before the first.
+    /// The samples that searches evaluate; `None` before the first search.
     samples: Option<Samples>,
     /// The plants that audits sampled.
     sampled: SampledPlants,
     rounds: Vec<DesignRound>,
 }
 
-/// Designs a controller and its prefilter: structures of growing order are tried, each by search and audit, until one meets every
-/// specification; then with fewer zeros as long as that does too. Where none does, the smallest relaxation is looked for.
+/// Designs a controller and its prefilter: structures of growing order are tried, each by search
+/// and audit, until one meets every specification; then with fewer zeros, as long as these also
+/// satisfy the specifications. Where none does, the smallest relaxation is looked for.
 ///
 /// # Errors
-/// [`LoopDesignError`] where a part of the problem is no transfer function, or cannot be put into the loop. A watch that stops it is no error.
+/// [`LoopDesignError`] where a part of the problem is no transfer function, or cannot be put into
+/// the loop. A watch that stops it is no error.
 pub fn design(
     problem: &DesignProblem,
     options: &DesignOptions,
@@ -83,9 +86,9 @@ pub fn design(
     design_knowing(problem, options, None, LearntPlants::default(), watch)
 }
 
-/// Goes on from a design that has ended, with more plants beside the family that the loop must serve: of each the nominal one. What did not
-/// do without these plants does not do with them, so that structures of the order that was found come first, and what was looked at is
-/// known.
+/// Continues a finished design with additional plants that the loop must control (the nominal one
+/// of each). A structure that failed without these plants also fails with them, so the search
+/// begins with structures of the order that was found, and reuses its samples.
 ///
 /// # Errors
 /// Those of [`design`], and [`LoopDesignError`] for a plant that does not fit the loop.
@@ -114,7 +117,7 @@ fn design_knowing(
     let findings = diagnose(problem);
     let LearntPlants { samples, sampled, rounds } = known;
     let mut run = DesignProgress::new(problem, options, &sampled);
-    // where no controller of any order will do, what is left is by how much
+    // where no controller of any order suffices, it remains to find by how much
     run.relaxing = findings.iter().any(|finding| finding.severity() == FindingSeverity::Impossible);
     (run.samples, run.rounds) = (samples, rounds);
     if let Some(found) = found {
@@ -134,7 +137,8 @@ struct DesignProgress<'a> {
     /// (order, zeros) that are still to be tried.
     waiting: VecDeque<(usize, usize)>,
     all: usize,
-    /// Whether plants have poles that the loop has to move: every structure is tried twice, for a search may miss what is there.
+    /// Whether plants have poles that the loop has to move: every structure is tried twice, for a
+    /// search may miss what is there.
     is_hard: bool,
     /// The structure that was tried last.
     last: Option<Structure>,
@@ -142,14 +146,15 @@ struct DesignProgress<'a> {
     found: bool,
     /// Whether the smallest relaxation is looked for.
     relaxing: bool,
-    /// What was thought infeasible and is begun anew, from this controller; that is done once.
+    /// A structure that seemed infeasible and is tried again from this controller; this is done
+    /// once.
     again: Option<(Structure, Option<TransferFunction>)>,
     begun_again: bool,
     /// The attempt that came nearest, with its worst margin over rate.
     nearest: Option<(f64, Structure, Option<TransferFunction>)>,
     /// The controller of the attempt before.
     before: Option<TransferFunction>,
-    /// The last attempt that found nothing stable.
+    /// The last attempt that found no stable loop.
     unstable: Option<Attempt>,
     samples: Option<Samples>,
     rounds: Vec<DesignRound>,
@@ -188,7 +193,8 @@ impl<'a> DesignProgress<'a> {
         }
     }
 
-    /// Leaves out what has fewer poles than a design of fewer plants, and begins with its controller.
+    /// Skips structures with fewer poles than the design for fewer plants, and begins with its
+    /// controller.
     fn begin_at(&mut self, found: &Design) {
         if let ControllerChoice::Grow { .. } = self.options.controller {
             let order = found.structure.roots(-1.0);
@@ -223,7 +229,8 @@ impl<'a> DesignProgress<'a> {
         }
     }
 
-    /// The next structure, with a controller to begin from: what was begun anew, what waits, or a relaxation of what came nearest.
+    /// The next structure, with a controller to begin from: the one that is tried again, the next
+    /// in the queue, or a relaxation of the one that came nearest.
     fn next(&mut self) -> Option<(Structure, Option<TransferFunction>)> {
         if let Some(again) = self.again.take() {
             return Some(again);
@@ -240,7 +247,8 @@ impl<'a> DesignProgress<'a> {
         Some((structure, feedback))
     }
 
-    /// The watch of one attempt. The share is an estimate, for the structures that it takes are not known before.
+    /// The watch of one attempt. The share is an estimate, because the number of structures is not
+    /// known in advance.
     fn part<'w>(&self, watch: Watch<'w>) -> impl FnMut(Progress) -> bool + use<'w> {
         let left = self.waiting.len() as f64 + 1.0;
         let share = (1.0 - left / (self.all as f64 + 1.0)).max(0.0);
@@ -287,7 +295,7 @@ impl<'a> DesignProgress<'a> {
         Ok(samples)
     }
 
-    /// Takes what an attempt found; whether no other is worth a try.
+    /// Takes the result of an attempt; returns whether no other attempt is worthwhile.
     fn is_done_with(&mut self, attempt: Attempt, ending: AttemptEnding) -> Result<bool, LoopDesignError> {
         self.samples = Some(attempt.samples());
         self.rounds.extend_from_slice(attempt.rounds());
@@ -302,7 +310,7 @@ impl<'a> DesignProgress<'a> {
             AttemptEnding::Missed { worst_margin_db, audit: Some(_) }
                 if worst_margin_db > FEASIBLE_DB && !self.begun_again =>
             {
-                // it can be met after all: from here the objective is looked for
+                // it can be met after all: from here on the objective is optimised
                 (self.begun_again, self.relaxing) = (true, false);
                 self.again = Some((attempt.structure().clone(), attempt.feedback()));
                 Ok(false)
@@ -390,8 +398,8 @@ fn structures_to_try(
     each.flat_map(|degrees| std::iter::repeat_n(degrees, if is_hard { 2 } else { 1 })).collect()
 }
 
-/// (order, zeros) of an order: one pole more than zeros; as many for a gain alone, for proportional-integral control, and where the loop is
-/// sampled and its gain ends at pi/T anyway.
+/// (order, zeros) of an order: one pole more than zeros; as many for a gain alone, for
+/// proportional-integral control, and where the loop is sampled and its gain ends at pi/T anyway.
 fn degrees(order: usize, integrators: usize, sampled: bool) -> Vec<(usize, usize)> {
     match order {
         0 => vec![(0, 0)],
@@ -400,13 +408,15 @@ fn degrees(order: usize, integrators: usize, sampled: bool) -> Vec<(usize, usize
     }
 }
 
-/// Whether a continuous controller of this order is tried with as many zeros as poles too, once none with fewer zeros has done: a pair of
-/// zeros over a pair of poles, say, which has the phase of the zeros at every frequency above.
+/// Whether a continuous controller of this order is also tried with as many zeros as poles, once
+/// none with fewer zeros has succeeded: a pair of zeros over a pair of poles, say, which has the
+/// phase of the zeros at every frequency above.
 fn is_worth_as_many_zeros(order: usize, ground: &Ground) -> bool {
     order >= 2 && order > ground.integrators
 }
 
-/// The same order with one zero fewer, where structures grow: a larger relative degree has less gain at high frequency than any smaller one.
+/// The same order with one zero fewer, where structures grow: a larger relative degree has less
+/// gain at high frequency than any smaller one.
 fn fewer_zeros(choice: &ControllerChoice, structure: &Structure) -> VecDeque<(usize, usize)> {
     let [order, zeros] = [structure.roots(-1.0), structure.roots(1.0)];
     let fewer = zeros.checked_sub(1).filter(|_| matches!(choice, ControllerChoice::Grow { .. }));

@@ -1,12 +1,13 @@
-//! Controllers that stabilise a nominal plant by placing its poles: where a search begins for plants with unstable or undamped poles,
-//! which hardly any random controller stabilises.
+//! Controllers that stabilise a nominal plant by placing its poles: where a search begins for
+//! plants with unstable or undamped poles, which hardly any random controller stabilises.
 //!
 //! ```text
 //! P ~ n(s)/d(s), simplified        s^q d(s) x(s) + n(s) y(s) = target(s)        G = y(s)/(s^q x(s))
 //! ```
 //!
-//! The target mirrors the poles of the plant into the left half plane and moves them out by a factor, which is scanned. Source: Åström and
-//! Murray, Feedback Systems (2008), chapter 7; Goodwin, Graebe and Salgado, Control System Design (2001), chapter 7.
+//! The target mirrors the poles of the plant into the left half plane and moves them out by a
+//! factor, which is scanned. Source: Åström and Murray, Feedback Systems (2008), chapter 7;
+//! Goodwin, Graebe and Salgado, Control System Design (2001), chapter 7.
 
 mod placement;
 
@@ -26,7 +27,8 @@ const OBSERVER: [f64; 2] = [1.0, 4.0];
 /// A pole at the origin is moved to this share of the slowest other pole.
 const SLOW: f64 = 0.3;
 
-/// A pole slower than this share of the fastest one that has to move stays slow, at these multiples of its magnitude.
+/// A pole that is slower than this share of the fastest pole to be moved stays slow, at these
+/// multiples of its magnitude.
 const MUCH_SLOWER: f64 = 0.1;
 const SLOW_SPEEDS: [f64; 3] = [0.3, 1.0, 3.0];
 
@@ -35,11 +37,11 @@ const SLOW_SPEEDS: [f64; 3] = [0.3, 1.0, 3.0];
 struct Speeds {
     control: f64,
     observer: f64,
-    /// Of poles that are much slower than others that have to move.
+    /// For poles that are much slower than others that have to move.
     slow: f64,
 }
 
-/// Zeros, poles and gain of a plant, dead time among them.
+/// Zeros, poles and gain of a plant, those of its dead time included.
 #[derive(Clone, Debug, PartialEq)]
 struct PlantRoots {
     gain: f64,
@@ -47,15 +49,17 @@ struct PlantRoots {
     poles: Vec<Complex64>,
 }
 
-/// Whether the nominal plant, or that in the middle of the box, has a pole that the loop has to move; not known of plants without polynomials.
+/// Whether the nominal plant, or that in the middle of the box, has a pole that the loop has to
+/// move; unknown for plants without polynomials.
 pub(super) fn has_poles_to_move(problem: &DesignProblem) -> bool {
     let Family::Uncertain(family) = &problem.family else { return false };
     let polynomial = |plant: PlantCoefficients<f64>| Polynomial::new(plant.command.denominator).roots().ok();
     central_plants(family).into_iter().filter_map(polynomial).flatten().any(has_to_move)
 }
 
-/// Controllers of at most this order, with so many integrators, that stabilise simplifications of the nominal plant and of the middle of
-/// the box; empty where no pole of the plant is unstable or undamped, and for plants without polynomials.
+/// Controllers of at most this order, with this number of integrators, that stabilise
+/// simplifications of the nominal plant and of the middle of the box; empty where no pole of the
+/// plant is unstable or undamped, and for plants without polynomials.
 pub(super) fn stabilising(
     problem: &DesignProblem,
     integrators: usize,
@@ -70,7 +74,7 @@ pub(super) fn stabilising(
         if kept_least == 0 {
             continue;
         }
-        // for a plant of n poles G has n - 1 + q poles beside its q integrators
+        // for a plant of n poles G has n - 1 + q poles in addition to its q integrators
         let kept_most = (order + 1).saturating_sub(2 * integrators).min(roots.poles.len());
         for kept in kept_least..=kept_most {
             let simple = roots.simplified(kept);
@@ -126,8 +130,8 @@ impl PlantRoots {
         (finite && roots.poles.len() > roots.zeros.len()).then_some(roots)
     }
 
-    /// With so many of its poles, or one more where that would part a pair: those that have to move and the slowest. What is left out keeps its
-    /// gain at rest.
+    /// The plant reduced to this number of its poles, or one more where a pair would be split:
+    /// those that have to move and the slowest. The static gain is preserved.
     fn simplified(&self, kept: usize) -> PlantRoots {
         let parts = |at: usize| self.poles.get(at).is_some_and(|pole| pole.im < 0.0);
         let kept = if parts(kept) { kept + 1 } else { kept };
@@ -146,7 +150,8 @@ impl PlantRoots {
         PlantRoots { gain, zeros: zeros.to_vec(), poles: poles.to_vec() }
     }
 
-    /// The controller that places the poles of the loop; `None` where it has roots in the right half plane, which no structure has.
+    /// The controller that places the poles of the loop; `None` where it has roots in the right
+    /// half plane, which structures cannot have.
     fn controller(&self, integrators: usize, speeds: Speeds) -> Option<TransferFunction> {
         let scale = self.scale()?;
         let scaled = |roots: &[Complex64]| roots.iter().map(|root| root / scale).collect::<Vec<_>>();
@@ -186,7 +191,8 @@ impl PlantRoots {
         MUCH_SLOWER * moved.map(|pole| portable::magnitude(*pole)).fold(0.0, f64::max)
     }
 
-    /// The multiples that are tried for poles that stay slow; one of them where there is no such pole.
+    /// The multiples that are tried for poles that stay slow; one of them where there is no such
+    /// pole.
     fn slow_speeds(&self) -> &'static [f64] {
         let below = self.much_slower();
         let any = self.poles.iter().any(|pole| portable::magnitude(*pole) < below && pole.norm_sqr() > 0.0);

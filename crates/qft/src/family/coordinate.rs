@@ -15,7 +15,8 @@ pub enum Spacing {
     Logarithmic,
 }
 
-/// One direction of the box, run through by a share from 0 to 1. Several parameters in it are fully correlated.
+/// One direction of the box, run through by a share from 0 to 1. Several parameters in it are fully
+/// correlated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coordinate {
     /// Indices of the parameters it moves, in the order of the plant.

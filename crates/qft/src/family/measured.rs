@@ -14,10 +14,10 @@ pub struct MeasuredPlant {
     pub command: Vec<Complex64>,
     /// Pd(j w) at each frequency, where the load-motion path was measured too.
     pub disturbance: Option<Vec<Complex64>>,
-    /// Open-loop poles in the right half plane, which a response cannot tell.
+    /// Number of open-loop poles in the right half plane, which cannot be seen from a response.
     pub unstable_poles: usize,
-    /// Whether between two points the response is what is interpolated there, as that of [`super::tabulated`] is. What a measurement does
-    /// not show is not assumed.
+    /// Whether the response between two points is known to be the interpolated one, as it is for
+    /// [`super::tabulated`]. Nothing is assumed that a measurement does not show.
     pub is_resolved: bool,
 }
 
@@ -33,7 +33,8 @@ pub enum MeasurementError {
     /// There is no plant.
     #[error("no response was measured")]
     Empty,
-    /// Frequencies must be positive, finite and increase; responses finite, not zero, and as many.
+    /// Frequencies must be positive, finite and increasing; responses must be finite, not zero, and
+    /// equal in number.
     #[error(
         "{plant}: point {point} is not one of increasing positive frequencies with a finite response that is not zero"
     )]
@@ -91,8 +92,9 @@ impl MeasuredPlant {
         if count == 0 || lengths.iter().any(|&length| length != count) { Some(count) } else { None }
     }
 
-    /// P and Pd at a frequency: as measured, or between two points straight in magnitude (dB) and phase over the logarithm of
-    /// frequency, the phase going the shorter way. `None` beyond the ends of the measurement.
+    /// P and Pd at a frequency: as measured, or between two points straight in magnitude (dB) and
+    /// phase over the logarithm of frequency, the phase going the shorter way. `None` beyond the
+    /// ends of the measurement.
     pub fn response(&self, frequency_rad_per_s: f64) -> Option<(Complex64, Option<Complex64>)> {
         let upper = self.frequencies_rad_per_s.partition_point(|&w| w < frequency_rad_per_s);
         let last = *self.frequencies_rad_per_s.get(upper)?;

@@ -22,8 +22,9 @@ pub fn vertices(plant: &UncertainPlant, coordinates: &[Coordinate]) -> Result<Ve
     combinations(plant, coordinates, &vec![2; coordinates.len()])
 }
 
-/// Points of the box drawn at random: the share of every coordinate evenly over [0, 1], so that a logarithmic one is drawn
-/// evenly in its logarithm. Equal seeds give equal points on every machine, and a longer draw begins with the shorter one.
+/// Points of the box drawn at random: the share of every coordinate evenly over [0, 1], so that a
+/// logarithmic one is drawn evenly in its logarithm. Equal seeds give equal points on every
+/// machine, and a longer draw begins with the shorter one.
 ///
 /// Source: the generator is SplitMix64, Steele, Lea and Flood (2014).
 ///

@@ -1,4 +1,4 @@
-//! The response of a plant without polynomials in a table: point by point where it bends.
+//! The response of a plant without polynomials as a table, which is dense where the response bends.
 
 use num_complex::Complex64;
 use phea_dynamics::frequency::logarithmic_grid;
@@ -9,25 +9,27 @@ use super::MeasuredPlant;
 
 /// Points in a decade before they are made denser.
 const POINTS_PER_DECADE: f64 = 25.0;
-/// Part of a response by which the middle between two points may lie off what is interpolated there, for tables that stand for a plant.
+/// Relative deviation of a response from the interpolated value halfway between two points that is
+/// allowed in tables that replace a plant.
 pub const FINE: f64 = 2e-3;
-/// The same where a table only says at which frequencies a response bends.
+/// The same where a table only shows at which frequencies a response bends.
 pub(crate) const COARSE: f64 = 3e-2;
-/// Two points are no closer than this part of their frequency.
+/// Least distance of two points, relative to their frequency.
 const CLOSEST: f64 = 1e-6;
 
 /// Frequency in rad/s, and both paths there.
 pub(crate) type TabulatedPoint = (f64, [Complex64; 2]);
 
-/// The response between two frequencies in rad/s, at points so dense that what [`MeasuredPlant::response`] interpolates is that of the
-/// plant to this part of itself halfway between any two of them ([`FINE`] is 0.2 %): what a search looks at thousands of times.
+/// The response between two frequencies in rad/s, at points so dense that the value that
+/// [`MeasuredPlant::response`] interpolates halfway between any two of them has at most this
+/// relative error ([`FINE`] is 0.2 %), for searches that evaluate it thousands of times.
 pub fn tabulated(plant: &dyn RespondingPlant, range: [f64; 2], tolerance: f64) -> MeasuredPlant {
     let points = points(|frequency| Some(plant.response(frequency)), range, tolerance);
     let unstable_poles = plant.unstable_poles();
     table(points, unstable_poles)
 }
 
-/// The table of these points, of a plant with so many poles of its own in the unstable region, where they are known.
+/// The table of these points, with the number of unstable poles of the plant, if it is known.
 pub(crate) fn table(found: Vec<TabulatedPoint>, unstable_poles: Option<usize>) -> MeasuredPlant {
     MeasuredPlant {
         name: String::new(),
@@ -39,8 +41,8 @@ pub(crate) fn table(found: Vec<TabulatedPoint>, unstable_poles: Option<usize>) -
     }
 }
 
-/// Both paths between two frequencies in rad/s, as dense as a table of this tolerance needs them; where there is no response there is no
-/// point.
+/// Both paths between two frequencies in rad/s, as dense as a table of this tolerance needs them;
+/// points without a response are left out.
 pub(crate) fn points(
     response: impl Fn(f64) -> Option<[Complex64; 2]>,
     [from, to]: [f64; 2],
@@ -68,7 +70,7 @@ pub(crate) fn points(
     found
 }
 
-/// The part of itself by which the middle between two points is off their geometric mean.
+/// Relative deviation of the value halfway between two points from their geometric mean.
 fn apart(from: Complex64, middle: Complex64, to: Complex64) -> f64 {
     let turn = to / from;
     let half = Complex64::new(portable::ln(portable::magnitude(turn)), portable::argument(turn)) / 2.0;

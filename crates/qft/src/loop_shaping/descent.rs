@@ -20,39 +20,43 @@ const RADIUS_NEAR: f64 = 0.1;
 const RADIUS_LARGEST: f64 = 2.0;
 /// A trust region below this ends the descent.
 const RADIUS_LEAST: f64 = 1e-8;
-/// Share of the promised decrease from which a step is taken, from which the region is kept, and from which it may grow.
+/// Share of the promised decrease from which a step is taken, from which the region is kept, and
+/// from which it may grow.
 const TAKEN: f64 = 0.05;
 const KEPT: f64 = 0.25;
 const GROWN: f64 = 0.7;
-/// Corrections of one step at most.
+/// Largest number of corrections of one step.
 const CORRECTIONS_MAXIMUM: usize = 3;
 /// dB of the objective for each dB of violation: the first penalty, its growth, its largest.
 const PENALTY_FIRST: f64 = 10.0;
 const PENALTY_GROWTH: f64 = 4.0;
 const PENALTY_LARGEST: f64 = 1e7;
-/// Share of the tolerance by which margins may miss the reserve for the objective to be aimed at.
+/// Share of the tolerance by which margins may miss the reserve while the objective is optimised.
 const ENTERED: f64 = 0.5;
-/// How far the slopes that are left may still lead, in units of x, for a point to count as the end.
+/// How far the remaining slopes may still lead, in units of x, for a point to count as the end.
 const REACH: f64 = 0.1;
-/// Subproblems without an answer, one after the other, until the descent gives up.
+/// Number of successive subproblems without a solution after which the descent gives up.
 const FAILURES_MAXIMUM: usize = 8;
 /// A multiplier below this share of the largest is rounding.
 const MULTIPLIER_LEAST: f64 = 1e-6;
 
-/// What a descent looks for, how closely, and how long.
+/// What a descent looks for, how accurately, and for how long.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DescentOptions {
-    /// What is made least or greatest.
+    /// What is minimised or maximised.
     pub aim: Aim,
-    /// Least margin to be left, dB, for [`Aim::Objective`]. Limits that leave no room, as those of tracking at low frequency, keep none; a
-    /// negative reserve, of what an audit tolerates, takes them for what they are worth.
+    /// Least margin to be left, dB, for [`Aim::Objective`]. Limits that leave no room, such as
+    /// those of tracking at low frequency, keep no reserve; a negative reserve, equal to what an
+    /// audit tolerates, accounts for this.
     pub reserve_db: f64,
-    /// The objective, or the worst margin that is looked for, is found to this, and a margin may miss its reserve by this; dB.
+    /// Accuracy to which the objective or the worst margin is found, and by which a margin may miss
+    /// its reserve; dB.
     pub tolerance_db: f64,
     /// Steps at most.
     pub steps_maximum: usize,
-    /// Whether the start lies near the end, as after a margin was added: objective and violation are lessened together from the beginning, instead
-    /// of the worst margin first, which may lead far away.
+    /// Whether the start lies near the end, as after a margin was added: objective and violation
+    /// are then reduced together from the beginning; reducing the worst violation first may lead
+    /// far away.
     pub is_near: bool,
 }
 
@@ -74,13 +78,15 @@ impl DescentOptions {
 /// merit(x) = f(x) + sigma max(0, m_r - m(x)),   m(x) the worst margin;     -m(x) for Aim::WorstMargin
 /// ```
 ///
-/// Each step minimises a convex model of the merit within a box (sequential quadratic programming, the box a trust region, the
-/// penalty exact), and is taken if the merit falls by a share of what the model promises; a step into an unstable region never is.
-/// A step that the curvature of the margins spoils is corrected with the margins found at its end (second-order correction). The
-/// curvature of the Lagrangian is learnt from its slopes (damped BFGS). For [`Aim::Objective`] the worst margin is raised first, until
-/// all margins keep their reserve.
+/// Each step minimises a convex model of the merit within a box (sequential quadratic programming,
+/// the box a trust region, the penalty exact), and is taken if the merit falls by a share of what
+/// the model promises; a step into an unstable region is never taken. A step that the curvature of
+/// the margins makes too long is corrected with the margins found at its end (second-order
+/// correction). The curvature of the Lagrangian is learnt from its slopes (damped BFGS). For
+/// [`Aim::Objective`] the worst margin is raised first, until all margins keep their reserve.
 ///
-/// The end is a local optimum. Source: Fletcher (1987), chapters 12 and 14; Nocedal and Wright (2006), chapter 18.
+/// The end is a local optimum. Source: Fletcher (1987), chapters 12 and 14; Nocedal and Wright
+/// (2006), chapter 18.
 ///
 /// # Errors
 /// [`Stopped`] by the watch.
@@ -139,9 +145,9 @@ pub fn descend(
 pub(super) struct Descent {
     options: DescentOptions,
     x: Vec<f64>,
-    /// Where it stands; `None` before it has begun.
+    /// The present point; `None` before the first step.
     here: Option<DescentPoint>,
-    /// What is aimed at now: the worst margin before the objective.
+    /// The present aim: first the worst margin, then the objective.
     aim: Aim,
     radius: f64,
     penalty: f64,
@@ -154,7 +160,7 @@ pub(super) struct Descent {
 }
 
 impl Descent {
-    /// A descent that has not begun.
+    /// A new descent.
     pub(super) fn new(x: &[f64], options: DescentOptions) -> Descent {
         Descent {
             options,
@@ -177,7 +183,7 @@ impl Descent {
         self.here.as_ref().map_or(&self.x, |here| &here.x)
     }
 
-    /// The judgement of where it stands; `None` before the first step.
+    /// The judgement of the present point; `None` before the first step.
     pub(super) fn judgement(&self) -> Option<Judgement> {
         self.here.as_ref().map(|here| here.judgement)
     }
@@ -187,7 +193,7 @@ impl Descent {
         self.status
     }
 
-    /// The margins that stood in the way of the last step, the strongest first.
+    /// The margins that limited the last step, the strongest first.
     pub(super) fn binding(&self) -> &[Binding] {
         &self.binding
     }
@@ -203,7 +209,7 @@ impl Descent {
         DescentResult { x: here.map_or(x, |here| here.x), judgement, status, binding, work }
     }
 
-    /// Makes one step, of a few judgements; why it ended, as soon as it has.
+    /// Makes one step, with a few judgements; returns why the descent ended, once it has.
     pub(super) fn advance(&mut self, problem: &mut dyn SearchProblem) -> Option<DescentStatus> {
         if self.status.is_some() {
             return self.status;
@@ -245,7 +251,7 @@ impl Descent {
         self.here = Some(DescentPoint { x, judgement, slopes, beyond: vec![] });
     }
 
-    /// One step: the place that it leads to, or where it began.
+    /// One step: the point that it leads to, or the point where it began.
     fn advanced(&mut self, problem: &mut dyn SearchProblem, here: DescentPoint) -> DescentPoint {
         let bounds = problem.bounds().to_vec();
         let answer = match self.solved(&here, &here.rows(), &bounds) {
@@ -271,8 +277,8 @@ impl Descent {
         }
     }
 
-    /// The step again, with the margins that were found at its end: theirs are the constants, those of the start the slopes; and again, as
-    /// long as that is better. The best is taken, if it is good enough.
+    /// The step again, with the margins found at its end as constants and the slopes at its start;
+    /// repeated as long as the result improves. The best is taken if it is good enough.
     fn corrected(
         &mut self,
         problem: &mut dyn SearchProblem,
@@ -307,7 +313,7 @@ impl Descent {
         here.with_rows_of(&there)
     }
 
-    /// Moves on, and fits the trust region to how well the step kept its promise.
+    /// Moves on, and adjusts the trust region to how well the model predicted the step.
     fn taken(&mut self, there: DescentPoint, answer: &PredictedStep, share: f64) -> DescentPoint {
         let size = greatest(&answer.step);
         if share < KEPT {
@@ -323,7 +329,8 @@ impl Descent {
         there
     }
 
-    /// The answer of the subproblem around a place, the penalty raised as long as that lessens the violation.
+    /// The answer of the subproblem around a place, the penalty raised as long as that lessens the
+    /// violation.
     fn solved(
         &mut self,
         here: &DescentPoint,
@@ -360,7 +367,7 @@ impl Descent {
         Ok(answer)
     }
 
-    /// A smaller region, and nothing presumed of the curvature, after a subproblem without an answer.
+    /// A smaller region and a curvature that is reset, after a subproblem without a solution.
     fn without_answer(&mut self, failure: SubproblemFailure, here: DescentPoint) -> DescentPoint {
         self.work.subproblems += 1;
         self.failures += 1;
@@ -373,8 +380,8 @@ impl Descent {
         here
     }
 
-    /// Whether the step is worth a try. Where nothing more is to be gained, by the model, `status` says what that means; where only the
-    /// curvature says so, it is forgotten.
+    /// Whether the step is worth trying. If the model predicts no further gain, `status` states
+    /// what that means; if only the curvature is the reason, it is reset.
     fn goes_on(&mut self, here: &DescentPoint, answer: &PredictedStep) -> bool {
         self.failures = 0;
         let tolerance = self.options.tolerance_db;
@@ -420,7 +427,7 @@ impl Descent {
         self.binding.sort_by(|a, b| b.multiplier.total_cmp(&a.multiplier));
     }
 
-    /// Takes what a step shows of the curvature of the Lagrangian.
+    /// Updates the curvature of the Lagrangian from a step.
     fn learn(&mut self, here: &DescentPoint, there: &DescentPoint, answer: &PredictedStep) {
         let step: Vec<f64> = there.x.iter().zip(&here.x).map(|(there, here)| there - here).collect();
         let change = here.change_of_slopes(there, self.aim, &answer.multipliers);
@@ -437,7 +444,7 @@ impl Descent {
         }
     }
 
-    /// How much less the merit is there, dB; minus infinity where margins mean nothing.
+    /// The decrease of the merit, dB; minus infinity where margins have no meaning.
     fn gain(&self, here: &DescentPoint, there: &Judgement) -> f64 {
         let merit = |judgement: &Judgement| match self.aim {
             Aim::WorstMargin => -judgement.worst_margin_db,

@@ -1,11 +1,12 @@
-//! Margins of the samples: what is demanded at a frequency, and how far the plants there keep to it.
+//! Margins of the samples: what is demanded at a frequency, and by how much the plants satisfy it.
 //!
 //! ```text
 //! X = A G^a/(1 + B G),  B = P H,       margin = 20 log10(limit/|X|)
 //! d margin/dx = -(20/ln 10) Re(c d ln G/dx),    c = a - B G/(1 + B G)
 //! ```
 //!
-//! A margin thus moves with two real numbers of its plant, the parts of c. The search of a worst plant compares squares of magnitudes.
+//! A margin thus depends on two real numbers of its plant, the parts of c. The search of a worst
+//! plant compares squares of magnitudes.
 
 mod crossover;
 mod rows;
@@ -26,7 +27,7 @@ pub(super) struct Demand {
     pub(super) specification: usize,
     pub(super) closed_loop: ClosedLoop,
     limited: LimitedSide,
-    /// The square of the limit; of the quotient of both limits for a spread.
+    /// The square of the limit or, for a spread, of the quotient of both limits.
     allowed: f64,
     rate: f64,
 }
@@ -51,17 +52,19 @@ pub(super) struct ColumnLoop {
 /// How limits are kept to.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Keeping {
-    /// Every limit is drawn in by this much, dB; where two limits leave less than 1 dB between them, by that share of it.
+    /// Every limit is tightened by this much, dB; where two limits are less than 1 dB apart, by
+    /// that share of it.
     pub(super) reserve_db: f64,
-    /// Whether a margin counts by its share of what two limits leave between them, where that is less than 1 dB. Limits that meet, as those
-    /// of tracking do at rest, leave no margin otherwise that could be made greater.
+    /// Whether a margin counts by its share of what two limits leave between them, where that is
+    /// less than 1 dB. Otherwise limits that meet, as those of tracking do at zero frequency, would
+    /// leave no margin to be increased.
     pub(super) share_of_room: bool,
 }
 
-/// Less room than this counts as this much, dB.
+/// Smallest room that is used, dB.
 const ROOM_LEAST_DB: f64 = 1e-6;
 
-/// What the specifications demand at a frequency, of a loop that has a meaning up to the highest one.
+/// What the specifications demand at a frequency, for a loop that is defined up to the highest one.
 pub(super) fn demands(
     specifications: &[Specification],
     tracking: TrackingJudgement,
@@ -105,8 +108,8 @@ pub(super) fn demands(
 }
 
 impl Demand {
-    /// Where no specification demands anything: |1/(1+L)| stays below 20 dB, so that no search for the least objective slides along the
-    /// edge of stability beyond the bands.
+    /// Where no specification demands anything: |1/(1+L)| stays below 20 dB, so that no search for
+    /// the least objective moves along the limit of stability beyond the bands.
     const RESERVE: Demand = Demand {
         specification: usize::MAX,
         closed_loop: ClosedLoop::Sensitivity,
@@ -115,12 +118,12 @@ impl Demand {
         rate: 1.0,
     };
 
-    /// Whether it belongs to no specification.
+    /// Whether it belongs to none of the specifications.
     pub(super) fn is_reserve(&self) -> bool {
         self.specification == usize::MAX
     }
 
-    /// More demands than one column can have.
+    /// A number that exceeds the demands of any column.
     pub(super) const PER_COLUMN: usize = 64;
 
     /// What one dB of relaxation of every limit adds to the margin; see [`Keeping::share_of_room`].
@@ -128,12 +131,13 @@ impl Demand {
         self.rate
     }
 
-    /// Whether F stands in what is limited: in a spread it cancels.
+    /// Whether F is a factor of the limited magnitude: it cancels in a spread.
     fn has_prefilter(&self) -> bool {
         self.closed_loop.has_prefilter() && self.limited != LimitedSide::Spread
     }
 
-    /// The power of F in what is limited, with the sign of the limit: 1 for an upper one, -1 for a lower one.
+    /// The power of F in the limited magnitude, with the sign of the limit: 1 for an upper one, -1
+    /// for a lower one.
     pub(super) fn prefilter_power(&self) -> f64 {
         match self.limited {
             LimitedSide::FromAbove if self.has_prefilter() => 1.0,
@@ -142,12 +146,12 @@ impl Demand {
         }
     }
 
-    /// a: the power of G in what is limited.
+    /// a: the power of G in the limited magnitude.
     fn feedback_power(&self) -> f64 {
         if self.closed_loop.has_feedback() { 1.0 } else { 0.0 }
     }
 
-    /// The square of G and F in what is limited.
+    /// The square of the factors G and F of the limited magnitude.
     fn compensator_squared(&self, around: &ColumnLoop) -> f64 {
         match (self.closed_loop.has_feedback(), self.has_prefilter()) {
             (true, true) => around.feedback_squared * around.prefilter_squared,
@@ -166,7 +170,7 @@ impl Demand {
         }
     }
 
-    /// The square of what is limited, of the plant at this place.
+    /// The square of the limited magnitude of the plant with this index.
     fn squared(&self, column: &FrequencyColumn, around: &ColumnLoop, place: usize) -> f64 {
         let path = self.paths_squared(column).map_or(1.0, |paths| paths[place]);
         let closed = path * around.sensitivity_squared[place];
@@ -174,7 +178,8 @@ impl Demand {
         if self.has_prefilter() { closed * around.prefilter_squared } else { closed }
     }
 
-    /// The square of how far the worst plant, or pair of plants, of the column goes beyond the limit; 0 where there is no plant.
+    /// The square of how far the worst plant, or pair of plants, of the column goes beyond the
+    /// limit; 0 where there is no plant.
     pub(super) fn worst_excess(&self, column: &FrequencyColumn, around: &ColumnLoop) -> f64 {
         let sensitivity = &around.sensitivity_squared;
         let [least, greatest] = match self.paths_squared(column) {
@@ -208,7 +213,7 @@ fn products<'a>(one: &'a [f64], other: &'a [f64]) -> impl Iterator<Item = f64> +
     one.iter().zip(other).map(|(one, other)| one * other)
 }
 
-/// The least and the greatest; infinity and 0 of none.
+/// The least and the greatest; infinity and 0 if there are no values.
 fn extremes(values: impl Iterator<Item = f64>) -> [f64; 2] {
     values.fold([f64::INFINITY, 0.0], |[least, greatest], value| {
         [if value < least { value } else { least }, if value > greatest { value } else { greatest }]

@@ -1,12 +1,13 @@
-//! Whether a sample of plants is stable with one controller after another: asked thousands of times by a search.
+//! Whether a sample of plants is stable with a given controller: a search asks this thousands of
+//! times.
 //!
 //! ```text
 //! D(s) Gd(s) + N(s) Gn(s) = 0          every root left of the imaginary axis?        Routh's table, N and D made ready once
 //! in a sampled loop the same in w = (z - 1)/(z + 1), whose imaginary axis is the unit circle of z
 //! ```
 //!
-//! The table is made with bounds of its rounding, so that it answers yes, no, or not at all; then, and for dead time and measured
-//! plants, the counts of [`crate::stability`] are asked.
+//! The table carries bounds of its rounding, so that it answers yes, no, or undecided; if
+//! undecided, and for dead time and measured plants, the counts of [`crate::stability`] decide.
 
 mod quotient;
 mod rounded_polynomial;
@@ -27,21 +28,21 @@ use crate::stability::{
 use quotient::BilinearQuotient;
 use rounded_polynomial::{Hurwitz, RoundedPolynomial};
 
-/// Real parts that are told apart: so many a decade, from the least to the largest.
+/// Resolution of real parts: this many per decade, from the least to the largest.
 const REAL_PARTS_PER_DECADE: f64 = 256.0;
 const LEAST_REAL_PART: f64 = 1e-9;
 const DECADES: usize = 21;
 /// How far above half the sampling rate a plant without polynomials is tabulated.
 const ABOVE_NYQUIST: f64 = 20.0;
 
-/// Plants of one loop, made ready to be asked about its controller.
+/// Plants of one loop, prepared for tests of many controllers.
 ///
-/// Those found unstable last are asked first: [`SampleStability::is_stable`] ends at the first of them. Answers do not depend on
-/// that order.
+/// Those found unstable last are tested first, because [`SampleStability::is_stable`] ends at the
+/// first unstable plant. Answers do not depend on that order.
 ///
 /// # Example
-/// k/(s (s + 1) (s + 2)) is stable for 0 < k < 6; at k = 24 its poles are those of s^3 + 3 s^2 + 2 s + 24 = 0, two of them with the
-/// real part 0.5.
+/// k/(s (s + 1) (s + 2)) is stable for 0 < k < 6; at k = 24 its poles are those of s^3 + 3 s^2 + 2
+/// s + 24 = 0, two of them with the real part 0.5.
 /// ```
 /// use phea_dynamics::controller::Controller;
 /// use phea_dynamics::linear::TransferFunction;
@@ -69,31 +70,32 @@ pub struct SampleStability {
     order: Vec<usize>,
 }
 
-/// What a controller makes of the plants.
+/// The stability of the plants with a controller.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SampleJudgement {
     /// Plants that are unstable, or cannot be shown to be stable.
     pub unstable_plants: usize,
-    /// A bound, to one percent, of the real parts of the closed-loop poles of the unstable plants in 1/s, ln|z|/T in a sampled loop:
-    /// by how much the loop would have to decay faster. 0 where all are stable or where the bound is below 1e-9; infinite for a
-    /// delayed loop whose gain grows with frequency. Measured plants, whose poles are not known, do not count.
+    /// A bound, to one percent, on the real parts of the closed-loop poles of the unstable plants
+    /// in 1/s (ln|z|/T in a sampled loop): the decay rate that the loop lacks. 0 where all are
+    /// stable or where the bound is below 1e-9; infinite for a delayed loop whose gain grows with
+    /// frequency. Measured plants, whose poles are not known, do not count.
     pub largest_real_part: f64,
     /// Plants about which the table could not decide.
     pub undecided_tables: usize,
 }
 
-/// A plant within the loop; without a quotient where dead time or measurement leave none.
+/// A plant within the loop; without a quotient where it has dead time or is measured.
 #[derive(Clone, Debug)]
 struct PlantInLoop {
     member: Member,
     quotient: Option<BilinearQuotient>,
-    /// With its dead time as a quotient, where it has one: for ranking only.
+    /// With its dead time, if any, approximated by a quotient: for ranking only.
     approximation: Option<BilinearQuotient>,
     /// Frequency in rad/s and P H of a measured plant, which a controller does not move.
     with_sensor: Vec<(f64, Complex64)>,
 }
 
-/// The controller that is asked about.
+/// The controller that is tested.
 struct AskedController {
     compensation: Compensation,
     feedback: Option<BilinearQuotient>,
@@ -101,7 +103,8 @@ struct AskedController {
 }
 
 impl SampleStability {
-    /// These plants within this loop, whose controller does not count: it is what the questions are about.
+    /// These plants within this loop; the controller of the loop is not used, since it is what is
+    /// tested.
     pub fn new(compensation: &Compensation, members: Vec<Member>) -> SampleStability {
         let none = SampleStability { compensation: compensation.clone(), plants: vec![], order: vec![] };
         members.into_iter().fold(none, |mut plants, member| {
@@ -113,7 +116,7 @@ impl SampleStability {
     /// One more plant.
     pub fn add(&mut self, member: Member) {
         let member = match member {
-            // a search asks too often for the plant itself
+            // a search evaluates this too often to use the plant itself
             Member::Responding { ref plant, .. } => match own_poles(&member, &self.compensation) {
                 Some(own) => self.folded(&member, plant.as_ref(), own.ok()),
                 None => self.compensation.measured(&self.tabulated(plant.as_ref())),
@@ -135,7 +138,7 @@ impl SampleStability {
         tabulated(plant, [from, to.max(ABOVE_NYQUIST * highest)], COARSE)
     }
 
-    /// P H as the controller sees them where a rate is fed back, a table of what is sampled already.
+    /// P H as the controller sees it where a rate is fed back: a table of the sampled response.
     fn folded(&self, member: &Member, plant: &dyn RespondingPlant, own: Option<usize>) -> Member {
         let [from, to] = plant.range_rad_per_s();
         let response = |frequency: f64| {
@@ -151,12 +154,13 @@ impl SampleStability {
         }
     }
 
-    /// Whether no plant has dead time or is known by measurements only: then a question costs little.
+    /// Whether no plant has dead time or is known by measurements only: then a test costs little.
     pub fn is_rational(&self) -> bool {
         self.plants.iter().all(|plant| plant.quotient.is_some())
     }
 
-    /// Whether every plant is stable with this controller; a plant of which that cannot be shown counts as unstable.
+    /// Whether every plant is stable with this controller; a plant for which this cannot be shown
+    /// counts as unstable.
     ///
     /// # Errors
     /// [`LinearError::DomainMismatch`] for a controller that is not in the time domain of the loop.
@@ -169,8 +173,8 @@ impl SampleStability {
         Ok(unstable.is_none())
     }
 
-    /// How many plants are unstable with this controller, and by how much: for ranking controllers that fail, which takes about ten
-    /// times as long as to say of one that it does not.
+    /// How many plants are unstable with this controller, and by how much: for ranking controllers
+    /// that fail, which takes about ten times as long as showing that one does not fail.
     ///
     /// # Errors
     /// Those of [`SampleStability::is_stable`].
@@ -194,15 +198,18 @@ impl SampleStability {
         Ok(judgement)
     }
 
-    /// A bound, to one percent, of the real parts of all closed-loop poles in 1/s, 0 where none is positive, dead time being replaced by
-    /// its Padé approximation of third order: for ranking controllers that fail in a loop with dead time, where the poles themselves
-    /// are dear. `None` where a plant is measured, the controller has dead time, or the loop is sampled and its delay is long.
+    /// A bound, to one percent, of the real parts of all closed-loop poles in 1/s, 0 where none is
+    /// positive, dead time being replaced by its Padé approximation of third order: for ranking
+    /// controllers that fail in a loop with dead time, where the poles themselves are expensive to
+    /// compute. `None` where a plant is measured, the controller has dead time, or the loop is
+    /// sampled and its delay is long.
     ///
     /// # Errors
     /// Those of [`SampleStability::is_stable`].
     ///
     /// # Example
-    /// e^(-sT)/(s - 2) with a gain of 1 keeps a pole between 0 and 2 1/s, here at 1.1 1/s: s - 2 + e^(-0.0957 s) = 0.
+    /// e^(-sT)/(s - 2) with a gain of 1 keeps a pole between 0 and 2 1/s, here at 1.1 1/s: s - 2 +
+    /// e^(-0.0957 s) = 0.
     /// ```
     /// use phea_dynamics::controller::Controller;
     /// use phea_dynamics::linear::TransferFunction;
@@ -271,12 +278,13 @@ impl AskedController {
         member_stability(member, &self.compensation).status == StabilityStatus::Stable
     }
 
-    /// The characteristic polynomial, without a dead time that leaves none.
+    /// The characteristic polynomial; `None` where dead time leaves no polynomial.
     fn characteristic(&self, plant: &PlantInLoop) -> Option<RoundedPolynomial> {
         Some(plant.quotient.as_ref()?.closed(self.feedback.as_ref()?))
     }
 
-    /// Whether no pole has a real part above this one; where that cannot be told, it has none, unless there is no end to its turns.
+    /// Whether no pole has a real part above this one; true where this cannot be decided, unless
+    /// the number of turns is unlimited.
     fn lies_below(&self, plant: &PlantInLoop, real_part: f64) -> bool {
         if let Some(characteristic) = self.characteristic(plant) {
             return self.all_below(&characteristic, real_part);
@@ -285,7 +293,8 @@ impl AskedController {
         !matches!(found, Ok(false) | Err(Irresolution::Budget { .. }))
     }
 
-    /// Whether no root of this characteristic polynomial is known to have a real part above this one.
+    /// Whether no root of this characteristic polynomial is known to have a real part above this
+    /// one.
     fn all_below(&self, characteristic: &RoundedPolynomial, real_part: f64) -> bool {
         let moved = match self.compensation.sample_time_s() {
             None => characteristic.substituted(real_part, 0.0),
@@ -305,13 +314,14 @@ impl AskedController {
         }
     }
 
-    /// The first of the real parts that are told apart below which all poles lie.
+    /// The first of the resolved real parts below which all poles lie.
     fn largest_real_part(&self, plant: &PlantInLoop) -> f64 {
         first_below(|real_part| self.lies_below(plant, real_part))
     }
 }
 
-/// The first of the real parts that are told apart of which this holds; 0 where it holds of all, infinity where of none.
+/// The first of the resolved real parts for which this holds; 0 where it holds for all, infinity
+/// where it holds for none.
 fn first_below(lies_below: impl Fn(f64) -> bool) -> f64 {
     let per_decade = std::f64::consts::LN_10 / REAL_PARTS_PER_DECADE;
     let real_part = |number: usize| LEAST_REAL_PART * portable::exp(per_decade * number as f64);

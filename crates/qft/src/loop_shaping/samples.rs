@@ -1,4 +1,5 @@
-//! What a search looks at: plants, frequencies, and the responses of each plant at each frequency, taken once.
+//! The samples of a search: plants, frequencies, and the response of each plant at each frequency,
+//! evaluated once.
 
 mod frequencies;
 
@@ -19,7 +20,8 @@ use crate::design::DesignProblem;
 use crate::family::{Extent, Family, MeasuredPlant, UncertainFamily};
 use crate::verification::{PlantPoint, TrackingJudgement};
 
-/// Beside an undamped pole of the plant, where it has no response, it is looked at this share of the frequency higher.
+/// At an undamped pole, where a plant has no response, it is evaluated at a frequency higher by
+/// this share.
 const BESIDE: f64 = 1e-9;
 
 /// Why there are no samples.
@@ -28,13 +30,14 @@ pub enum SamplesError {
     /// The loop cannot be formed.
     #[error("{0}")]
     Linear(#[from] LinearError),
-    /// This is no plant of the family.
+    /// A point that is not a plant of the family.
     #[error("{0:?} is no plant of the family")]
     Plant(PlantPoint),
 }
 
-/// The plants and frequencies that a search looks at, frozen in their loop: every plant at every frequency of a grid, and single plants
-/// at single frequencies besides. Delay, hold and sensor are those of the loop, as the audit takes them.
+/// The plants and frequencies that a search evaluates in their loop: every plant at every frequency
+/// of a grid, and in addition single plants at single frequencies. Delay, hold and sensor are those
+/// of the loop, as the audit takes them.
 ///
 /// # Example
 /// k/s at 1 and 10 rad/s with a gain of 1 and of 4, then the counterexample k = 3 at 2 rad/s:
@@ -88,14 +91,15 @@ pub struct Samples {
     columns: Vec<FrequencyColumn>,
 }
 
-/// The plants at one frequency: P, Pd, H as they enter the closed loops, each number in an array of its own.
+/// The plants at one frequency: P, Pd and H as they enter the closed loops, each quantity in an
+/// array of its own.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct FrequencyColumn {
     pub(super) frequency: f64,
-    /// Whether every plant is looked at here.
+    /// Whether every plant is evaluated here.
     grid: bool,
     pub(super) demands: Vec<Demand>,
-    /// Indices of the plants; what follows is in their order.
+    /// Indices of the plants; the following fields are in their order.
     pub(super) plants: Vec<usize>,
     /// P H
     pub(super) loop_re: Vec<f64>,
@@ -109,11 +113,11 @@ pub(super) struct FrequencyColumn {
 }
 
 impl Samples {
-    /// Every one of these plants at every one of these frequencies, rad/s, positive, at most pi/T in a sampled loop. The first plant
-    /// is the nominal one.
+    /// Every one of these plants at every one of these frequencies, rad/s, positive, at most pi/T
+    /// in a sampled loop. The first plant is the nominal one.
     ///
     /// # Errors
-    /// A point that is no plant of the family; a plant or sensor that does not fit the loop.
+    /// A point that is not a plant of the family; a plant or sensor that does not fit the loop.
     pub fn new(
         problem: &DesignProblem,
         plants: &[PlantPoint],
@@ -138,7 +142,7 @@ impl Samples {
         Ok(samples)
     }
 
-    /// Looks at these plants at this frequency too; whether one of them was not looked at there before.
+    /// Adds these plants at this frequency; returns whether one of them is new there.
     ///
     /// # Errors
     /// Those of [`Samples::new`].
@@ -152,7 +156,7 @@ impl Samples {
         Ok(new)
     }
 
-    /// Looks at this plant at every frequency of the grid.
+    /// Adds this plant at every frequency of the grid.
     ///
     /// # Errors
     /// Those of [`Samples::new`].
@@ -166,7 +170,7 @@ impl Samples {
         Ok(())
     }
 
-    /// Takes a plant in that the loop must serve beside its family, the nominal one of this.
+    /// Adds the nominal plant of another family, which the loop must also control.
     ///
     /// # Errors
     /// Those of [`Samples::new`].
@@ -177,7 +181,8 @@ impl Samples {
         self.look_closely_at(&point)
     }
 
-    /// Looks at this plant wherever its own response bends: between the frequencies of a grid a resonance may hide.
+    /// Adds this plant at the frequencies where its own response bends, since a resonance may lie
+    /// between the frequencies of the grid.
     ///
     /// # Errors
     /// Those of [`Samples::new`].
@@ -194,20 +199,22 @@ impl Samples {
         self.tracking
     }
 
-    /// Judges tracking so from now on.
+    /// Judges tracking in this way from now on.
     pub(crate) fn judge_tracking_by(&mut self, tracking: TrackingJudgement) {
         self.tracking = tracking;
         self.demand_anew();
     }
 
-    /// Draws every limit in by this much, dB; where two limits leave less than 1 dB between them, by that share of it.
+    /// Tightens every limit by this much, dB; where two limits are less than 1 dB apart, by that
+    /// share of it.
     pub fn keep_in_reserve(&mut self, reserve_db: f64) {
         self.keeping.reserve_db = reserve_db;
         self.demand_anew();
     }
 
-    /// Counts a margin by its share of what two limits leave between them, where that is less than 1 dB: limits that meet, as those of
-    /// tracking do at rest, leave no margin otherwise that could be made greater.
+    /// Measures a margin by its share of the distance between two limits, where that is less than 1
+    /// dB. Otherwise limits that meet, as those of tracking do at zero frequency, would leave no
+    /// margin to be increased.
     pub fn count_shares_of_room(&mut self, share_of_room: bool) {
         self.keeping.share_of_room = share_of_room;
         self.demand_anew();
@@ -224,7 +231,8 @@ impl Samples {
         demands(&self.problem.specifications, self.tracking, self.keeping, [frequency, highest])
     }
 
-    /// The family with the plants of the samples for its members: its box, where it has one, is the same.
+    /// The family with the plants of the samples for its members: its box, where it has one, is the
+    /// same.
     pub fn family(&self) -> Family {
         match &self.problem.family {
             Family::Uncertain(family) if family.extent() == Extent::Box => {
@@ -261,12 +269,12 @@ impl Samples {
         self.columns.iter().map(|column| column.frequency).collect()
     }
 
-    /// The frequencies at which every plant is looked at, increasing, rad/s.
+    /// The frequencies at which every plant is evaluated, increasing, rad/s.
     pub(crate) fn grid_frequencies_rad_per_s(&self) -> Vec<f64> {
         self.columns.iter().filter(|column| column.grid).map(|column| column.frequency).collect()
     }
 
-    /// How many pairs of a plant and a frequency are looked at.
+    /// Number of pairs of a plant and a frequency.
     pub fn pairs(&self) -> usize {
         self.columns.iter().map(|column| column.plants.len()).sum()
     }
@@ -280,7 +288,7 @@ impl Samples {
         &self.columns
     }
 
-    /// The index of a plant, which is put into the loop if it is new.
+    /// The index of a plant, which is added to the loop if it is new.
     fn plant(&mut self, point: &PlantPoint) -> Result<usize, SamplesError> {
         if let Some(index) = self.plants.iter().position(|known| known == point) {
             return Ok(index);
@@ -295,7 +303,7 @@ impl Samples {
         Ok(self.plants.len() - 1)
     }
 
-    /// The place of the column of a frequency, which is made if it is new.
+    /// The index of the column of a frequency, which is added if it is new.
     fn column(&mut self, frequency: f64) -> usize {
         let place = self.columns.partition_point(|column| column.frequency < frequency);
         if self.columns.get(place).is_none_or(|column| column.frequency != frequency) {
@@ -305,7 +313,8 @@ impl Samples {
         place
     }
 
-    /// Whether the plant was not in the column before. A measured plant is not looked at where it was not measured.
+    /// Whether the plant was not in the column before. A measured plant is not evaluated where it
+    /// was not measured.
     fn put(&mut self, plant: usize, place: usize) -> bool {
         let column = &mut self.columns[place];
         if column.plants.contains(&plant) {

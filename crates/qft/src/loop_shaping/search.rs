@@ -1,4 +1,5 @@
-//! What a search sees of a problem: an objective, margins that must not be negative, and their slopes.
+//! What a search sees of a problem: an objective, margins that must not be negative, and their
+//! slopes.
 
 /// What a search is after.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,14 +17,15 @@ pub struct Judgement {
     pub objective_db: f64,
     /// The least of margin over rate, dB.
     pub worst_margin_db: f64,
-    /// Whether every plant that was looked at is stable; margins of an unstable loop mean nothing.
+    /// Whether every plant of the samples is stable; margins of an unstable loop have no meaning.
     pub stable: bool,
-    /// 0 where stable; else how far from it, greater being worse: only its order counts. What is not known may be left at 0.
+    /// 0 where stable; otherwise a measure of instability, greater being worse, of which only the
+    /// order counts. It may be 0 where it is not known.
     pub instability: f64,
 }
 
 impl Judgement {
-    /// Of a controller that has no response.
+    /// For a controller that has no response.
     pub(crate) const UNUSABLE: Judgement = Judgement {
         objective_db: f64::INFINITY,
         worst_margin_db: f64::NEG_INFINITY,
@@ -35,13 +37,15 @@ impl Judgement {
 /// One margin with its slopes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MarginRow {
-    /// What it is the margin of, a specification at a frequency for a plant: by this number a search knows it again at another x.
+    /// Identifies the margin (a specification at a frequency for a plant), so that a search
+    /// recognises it at another x.
     pub sample: usize,
     /// dB; negative where it is violated.
     pub margin_db: f64,
-    /// What one dB of relaxation of every limit adds to it: 1, and 2 for the spread between two limits.
+    /// What one dB of relaxation of every limit adds to it: 1, and 2 for the spread between two
+    /// limits.
     pub rate: f64,
-    /// dB for each unit of x.
+    /// dB per unit of x.
     pub slopes: Vec<f64>,
 }
 
@@ -50,7 +54,7 @@ pub struct MarginRow {
 pub struct Slopes {
     /// The objective, dB.
     pub objective_db: f64,
-    /// dB for each unit of x.
+    /// dB per unit of x.
     pub objective_slopes: Vec<f64>,
     /// The margins near the worst one of each specification and frequency; all others are larger.
     pub margins: Vec<MarginRow>,

@@ -1,4 +1,4 @@
-//! The shaping of a loop as a search sees it.
+//! The shaping of a loop as a problem of a search.
 
 use num_complex::Complex64;
 use phea_dynamics::controller::{Compensator, Controller};
@@ -18,7 +18,7 @@ use crate::verification::{PlantPoint, TrackingJudgement};
 
 /// Rows of one linearisation.
 const ROWS_MAXIMUM: usize = 240;
-/// How far from stability a loop counts of which that is too dear to know.
+/// The measure of instability for a loop for which it is too expensive to compute.
 const UNSTABLE: f64 = 1.0;
 /// Columns whose worst margin is further above the worst of all give no rows, dB.
 const WINDOW_DB: f64 = 20.0;
@@ -29,11 +29,13 @@ const WINDOW_DB: f64 = 20.0;
 /// minimise objective(x)   subject to   margin(x; plant, frequency, specification) + rate relaxation >= 0
 /// ```
 ///
-/// With a prefilter, of a structure of its own, tracking is judged by magnitude and x holds the free numbers of the controller, then
-/// those of the prefilter; without one, tracking is judged by the spread of the plants.
+/// With a prefilter, of a structure of its own, tracking is judged by magnitude and x holds the
+/// free numbers of the controller, then those of the prefilter; without one, tracking is judged by
+/// the spread of the plants.
 ///
-/// A demanded delay margin is a margin too: 20 log10 of the least delay that a plant bears over the delay demanded, the gain crossovers
-/// and their phases interpolated between the frequencies of the samples.
+/// A required delay is a margin too: 20 log10 of the least delay that a plant tolerates over the
+/// required delay, the gain crossovers and their phases interpolated between the frequencies of the
+/// samples.
 ///
 /// # Example
 /// |1/(1+L)| <= 2 at 1 rad/s for 1/s and 4/s under a gain k: the worst plant is 1/s, for which it is w/|j w + k|.
@@ -93,14 +95,14 @@ pub struct Shaping {
     around: ColumnLoop,
 }
 
-/// The least margin at one frequency to one specification.
+/// The least margin to one specification at one frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SampledMargin {
     /// Index of the specification.
     pub specification: usize,
     /// rad/s
     pub frequency_rad_per_s: f64,
-    /// dB, to the limit as it was asked for.
+    /// dB, to the original limit.
     pub margin_db: f64,
     /// The plant.
     pub plant: PlantPoint,
@@ -120,7 +122,8 @@ impl Shaping {
     /// The problem without relaxation.
     ///
     /// # Errors
-    /// A fixed element that is no continuous transfer function, a structure that cannot be sampled.
+    /// A fixed element that is not a continuous transfer function; a structure that cannot be
+    /// sampled.
     pub fn new(
         structure: Structure,
         prefilter: Option<Structure>,
@@ -150,7 +153,8 @@ impl Shaping {
         })
     }
 
-    /// Raises every upper limit by this much and lowers every lower one; a demanded delay falls by as many dB.
+    /// Raises every upper limit by this much and lowers every lower one; a required delay is
+    /// reduced by as many dB.
     pub fn relax(&mut self, relaxation_db: f64) {
         self.relaxation_db = relaxation_db;
     }
@@ -170,8 +174,8 @@ impl Shaping {
         &self.samples
     }
 
-    /// Looks at these plants at this frequency too, and at every frequency of the grid if they are new; whether one of them was not looked
-    /// at there before.
+    /// Adds these plants at this frequency, and at every frequency of the grid if they are new;
+    /// returns whether one of them is new there.
     ///
     /// # Errors
     /// Those of [`Samples::add`].
@@ -194,17 +198,19 @@ impl Shaping {
         Ok(new)
     }
 
-    /// Counts margins by their share of the room between two limits; see [`Samples::count_shares_of_room`].
+    /// Counts margins by their share of the room between two limits; see
+    /// [`Samples::count_shares_of_room`].
     pub fn count_shares_of_room(&mut self) {
         self.samples.count_shares_of_room(true);
     }
 
-    /// Draws every limit in by this much from now on; see [`Samples::keep_in_reserve`].
+    /// Tightens every limit by this much from now on; see [`Samples::keep_in_reserve`].
     pub fn keep_in_reserve(&mut self, reserve_db: f64) {
         self.samples.keep_in_reserve(reserve_db);
     }
 
-    /// Judges the law of this loop in place of the one at x, whose objective it keeps: what rounded coefficients make of a controller.
+    /// Judges the controller of this loop in place of the one at x, but with the objective at x:
+    /// the effect of rounded coefficients.
     pub(crate) fn judge_deployed(&mut self, x: &[f64], law: &Compensation) -> Judgement {
         let response = |column: &FrequencyColumn| {
             let found = law.response(column.frequency);
@@ -232,7 +238,8 @@ impl Shaping {
         }
     }
 
-    /// The least margin to each specification at each frequency, by frequency; empty for a controller without a response.
+    /// The least margin to each specification at each frequency, by frequency; empty for a
+    /// controller without a response.
     pub fn margins(&self, x: &[f64]) -> Vec<SampledMargin> {
         let Some(forward) = self.forward(x) else { return vec![] };
         let mut around = ColumnLoop::default();
@@ -259,7 +266,8 @@ impl Shaping {
         x.split_at(self.structure.dimension().min(x.len()))
     }
 
-    /// G and F at the frequencies of the samples; `None` where they cannot be sampled or are no numbers.
+    /// G and F at the frequencies of the samples; `None` where they cannot be sampled or are not
+    /// finite.
     fn forward(&self, x: &[f64]) -> Option<Vec<[Complex64; 2]>> {
         let (own, behind) = self.split(x);
         let feedback = self.response.values(own).ok()?;
@@ -271,7 +279,8 @@ impl Shaping {
         both.iter().flatten().all(|one| one.is_finite()).then_some(both)
     }
 
-    /// The slopes of ln G and of ln F at the frequencies of the samples, each among zeros for the numbers of the other.
+    /// The slopes of ln G and of ln F at the frequencies of the samples, each among zeros for the
+    /// numbers of the other.
     fn forward_slopes(&self, x: &[f64]) -> Option<[Vec<Vec<Complex64>>; 2]> {
         let (own, behind) = self.split(x);
         let zeros = |count: usize| vec![Complex64::new(0.0, 0.0); count];

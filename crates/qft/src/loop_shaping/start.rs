@@ -1,4 +1,5 @@
-//! The global search: points spread over the bounds, evolution where none of them is stable, descents from the best.
+//! The global search: points spread over the bounds, evolution if none of them is stable, and
+//! descents from the best.
 
 mod evolution;
 mod spread;
@@ -16,10 +17,11 @@ use spread::AdditiveRecurrence;
 const DISTINCT: f64 = 0.05;
 /// Steps of each descent before the better ones are chosen.
 const STEPS_ROUGH: usize = 12;
-/// A start with no worse margin than this is as good as feasible, dB.
+/// A start whose worst margin is at least this counts as feasible, dB.
 const NEAR_DB: f64 = -3.0;
-/// Half of the starts are those of least objective among the samples above this worst margin, dB: the largest worst margins lie where the
-/// gain is large, from where the way to the least objective may be barred.
+/// Half of the starts are those of least objective among the samples above this worst margin, dB:
+/// the largest worst margins lie at high gain, from where a descent may not reach the least
+/// objective.
 const MODEST_DB: f64 = -15.0;
 
 /// How widely a search looks.
@@ -29,21 +31,22 @@ pub struct SearchOptions {
     pub seed: u64,
     /// Points spread over the bounds.
     pub samples: usize,
-    /// Of each of these points the first x is tried at so many values over its bounds (a gain may be right for hardly any shape), and the best is
-    /// kept; at most 1 leaves the points as they are.
+    /// At each of these points the first x is tried at this number of values over its bounds
+    /// (hardly any gain may suit a given shape), and the best is kept; 0 or 1 leaves the points
+    /// unchanged.
     pub scanned: usize,
     /// Points that descents begin from.
     pub starts: usize,
-    /// Descents that are led to their end.
+    /// Number of completed descents.
     pub finished: usize,
-    /// Generations of evolution at most, where fewer samples than `starts` are stable.
+    /// Largest number of generations of evolution, used if fewer samples than `starts` are stable.
     pub generations: usize,
     /// What each descent looks for.
     pub descent: DescentOptions,
 }
 
 impl SearchOptions {
-    /// 300 samples, 8 starts, 4 of them finished, 60 generations.
+    /// 300 samples, 8 starts of which 4 are completed, 60 generations.
     pub fn new(aim: Aim, seed: u64) -> SearchOptions {
         let descent = DescentOptions::new(aim);
         SearchOptions { seed, samples: 300, scanned: 0, starts: 8, finished: 4, generations: 60, descent }
@@ -55,7 +58,7 @@ impl SearchOptions {
 pub enum SearchStatus {
     /// The best descent ended so.
     Ended(DescentStatus),
-    /// No point that was looked at is stable.
+    /// None of the evaluated points is stable.
     NotStabilised {
         /// The least [`Judgement::instability`].
         instability: f64,
@@ -78,22 +81,24 @@ pub struct DescentEnd {
 pub struct SearchResult {
     /// Why it ended.
     pub status: SearchStatus,
-    /// The best point; the least unstable one where none is stable.
+    /// The best point, or the least unstable one if none is stable.
     pub x: Vec<f64>,
     /// Its judgement.
     pub judgement: Judgement,
-    /// The margins that stand in the way there, the strongest first.
+    /// The margins that limit further steps there, the strongest first.
     pub binding: Vec<Binding>,
-    /// Every descent that was led to its end, the best first.
+    /// Every completed descent, the best first.
     pub ends: Vec<DescentEnd>,
-    /// How much worse the worst of these ends is than the best, dB: of the objective, or of the worst margin where that is aimed at or no
-    /// end keeps the reserve; infinite where only some do. `None` with fewer than two ends.
+    /// How much worse the worst of these ends is than the best, dB: of the objective, or of the
+    /// worst margin where that is the aim or no end keeps the reserve; infinite where only some
+    /// ends do. `None` with fewer than two ends.
     pub spread_db: Option<f64>,
-    /// Points that were looked at before the descents: given ones, samples and, where there was an evolution, its last generation.
+    /// Number of points that were evaluated before the descents: given ones, samples and the last
+    /// generation of an evolution, if any.
     pub points: usize,
     /// How many of them are stable.
     pub stable_points: usize,
-    /// All work, that of descents left behind included.
+    /// All work, including that of abandoned descents.
     pub work: DescentWork,
 }
 
@@ -105,8 +110,9 @@ pub(super) struct JudgedPoint {
 }
 
 impl JudgedPoint {
-    /// Stable before unstable; then the larger worst margin, or where both come near to being met and the objective is aimed at the lesser
-    /// objective; or the lesser instability.
+    /// Stable before unstable. Among stable points the larger worst margin is better or, where both
+    /// nearly satisfy the limits and the objective is the aim, the lesser objective; among unstable
+    /// ones the lesser instability.
     fn is_better_than(&self, other: &JudgedPoint, aim: Aim) -> bool {
         match (is_usable(&self.judgement), is_usable(&other.judgement)) {
             (true, true) => {
@@ -132,14 +138,15 @@ impl JudgedPoint {
     }
 }
 
-/// Searches from many starts, the same on every machine. The points that are `given` are looked at besides: where a simpler problem ended,
-/// say. `None` where not one point is looked at.
+/// Searches from many starts, with the same result on every machine. The points that are `given`
+/// are evaluated too, such as the end of a simpler problem. `None` if no point is evaluated.
 ///
 /// ```text
 /// samples -> (evolution, if too few are stable) -> a few steps down from the best distinct ones -> the best of these to their end
 /// ```
 ///
-/// The result is the best local optimum that was met; how far the other ends are from it says what that is worth.
+/// The result is the best local optimum that was found; the distance of the other ends shows how
+/// reliable it is.
 ///
 /// # Errors
 /// [`Stopped`] by the watch.
@@ -198,7 +205,7 @@ const STAGE: &str = "search";
 struct StartSearch<'a> {
     problem: &'a mut dyn SearchProblem,
     options: &'a SearchOptions,
-    /// Work of samples, evolution, and descents left behind.
+    /// Work of samples, evolution and abandoned descents.
     work: DescentWork,
     random: u64,
 }
@@ -223,7 +230,8 @@ impl StartSearch<'_> {
         Ok(candidates)
     }
 
-    /// The samples, where enough of them are stable; otherwise a population that has evolved from them, the best first.
+    /// The samples, where enough of them are stable; otherwise a population that has evolved from
+    /// them, the best first.
     fn evolved(&mut self, samples: Vec<JudgedPoint>, watch: Watch<'_>) -> Result<Vec<JudgedPoint>, Stopped> {
         let mut evolution = Evolution::new(&samples, self.problem.bounds());
         if self.is_enough(evolution.candidates()) || evolution.is_too_small() {
@@ -369,7 +377,8 @@ impl StartSearch<'_> {
     }
 }
 
-/// Whether a point misses the reserve, and how good it is besides, dB, less being better: the order of descents.
+/// Whether a point misses the reserve, and then how good it is, dB, less being better: the order of
+/// descents.
 fn standing(options: &DescentOptions, judgement: Option<Judgement>) -> (bool, f64) {
     let Some(judgement) = judgement else { return (true, f64::INFINITY) };
     let misses = judgement.worst_margin_db < options.reserve_db - options.tolerance_db;
@@ -380,7 +389,7 @@ fn standing(options: &DescentOptions, judgement: Option<Judgement>) -> (bool, f6
     }
 }
 
-/// Adds those that lie apart from all starts, until there are so many.
+/// Adds points that lie apart from all starts, until there are enough.
 fn add_distinct<'c>(
     starts: &mut Vec<&'c JudgedPoint>,
     most: usize,
@@ -394,7 +403,7 @@ fn add_distinct<'c>(
     }
 }
 
-/// Whether two points differ by a share of the bounds worth a second descent.
+/// Whether two points differ by a share of the bounds that justifies a second descent.
 fn is_distinct(a: &JudgedPoint, b: &JudgedPoint, bounds: &[[f64; 2]]) -> bool {
     let apart = a.x.iter().zip(&b.x).zip(bounds);
     apart.into_iter().any(|((a, b), [low, high])| (a - b).abs() > DISTINCT * (high - low))

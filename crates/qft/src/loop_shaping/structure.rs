@@ -50,8 +50,8 @@ pub enum StructureFactor {
 /// G(s; x) = sign k part_1(s) part_2(s) ...,      x = (ln k, ln of each free number in turn)
 /// ```
 ///
-/// The numbers of a pair are its natural frequency, then its damping ratio. A number whose least and greatest value are the same, the gain
-/// among them, is not free: it has no x.
+/// The numbers of a pair are its natural frequency, then its damping ratio. A number whose least
+/// and greatest value are the same, the gain among them, is not free: it has no x.
 ///
 /// # Example
 /// Integral control with a lead, its two corners free:
@@ -136,7 +136,7 @@ impl StructureFactor {
 }
 
 impl Structure {
-    /// What is given, without free numbers.
+    /// A given element, without free numbers.
     pub fn fixed_to(function: &TransferFunction) -> Structure {
         let parts = vec![StructureFactor::Fixed(Element::General(function.clone()))];
         Structure { sign: 1.0, gain: [1.0, 1.0], parts }
@@ -175,7 +175,7 @@ impl Structure {
         self.ranges().into_iter().map(number).collect()
     }
 
-    /// Of what is given for every number, that of the free ones.
+    /// The entries of the free numbers, from a list for all numbers.
     fn of_free<T>(&self, all: impl IntoIterator<Item = T>) -> Vec<T> {
         let pairs = all.into_iter().zip(self.ranges());
         pairs.filter(|(_, range)| is_free(range)).map(|(one, _)| one).collect()
@@ -184,7 +184,7 @@ impl Structure {
     /// Number of poles.
     ///
     /// # Errors
-    /// A fixed element that is no transfer function.
+    /// A fixed element that is not a transfer function.
     pub fn order(&self) -> Result<usize, LinearError> {
         Ok(self.degrees()?[1])
     }
@@ -192,7 +192,7 @@ impl Structure {
     /// Poles less zeros, r.
     ///
     /// # Errors
-    /// A fixed element that is no transfer function.
+    /// A fixed element that is not a transfer function.
     pub fn relative_degree(&self) -> Result<i32, LinearError> {
         let [zeros, poles] = self.degrees()?;
         Ok(poles as i32 - zeros as i32)
@@ -204,11 +204,12 @@ impl Structure {
     /// 20 log10 |lim s^r G(s)|,      r the relative degree
     /// ```
     ///
-    /// In a sampled loop it is that of the elements before they are sampled: by Tustin's rule s = (2/T) (z - 1)/(z + 1) goes to infinity
-    /// as the frequency goes to pi/T, where G has its r zeros; what is left of it there is this limit.
+    /// In a sampled loop it is that of the elements before they are sampled: by Tustin's rule s =
+    /// (2/T) (z - 1)/(z + 1) goes to infinity as the frequency goes to pi/T, where G has its r
+    /// zeros; the remaining factor there is this limit.
     ///
     /// # Errors
-    /// A fixed element that is no transfer function.
+    /// A fixed element that is not a transfer function.
     pub fn high_frequency_gain_db(&self, x: &[f64]) -> Result<f64, LinearError> {
         let numbers = self.numbers(x).into_iter().map(portable::ln);
         let free: f64 =
@@ -216,7 +217,7 @@ impl Structure {
         Ok(free + decibels(self.fixed()?.gain().abs()))
     }
 
-    /// dB of high-frequency gain for each unit of x; the same at every x.
+    /// dB of high-frequency gain per unit of x; the same at every x.
     pub fn high_frequency_slopes_db(&self) -> Vec<f64> {
         self.of_free(self.all_high_frequency_slopes_db())
     }

@@ -8,14 +8,14 @@ use super::search::{Aim, MarginRow};
 
 /// A coordinate whose range is a smaller share of the box than this stays where it is.
 const RANGE_MINIMUM: f64 = 1e-9;
-/// A share of the box that may be left to a bound that binds.
+/// Distance to a binding bound that is tolerated, as a share of the box.
 const ROOM_LARGEST: f64 = 1e-6;
 /// Largest error of the conditions of optimality, relative to the slopes in them.
 const ERROR_MAXIMUM: f64 = 1e-5;
 const ITERATIONS_MAXIMUM: u32 = 100;
 const TOLERANCE: f64 = 1e-9;
 
-/// What is known around a point, and how far the next one may be.
+/// What is known around a point, and how far away the next one may be.
 ///
 /// ```text
 /// least       g.d + d.B d/2 + sigma v              over the step d and the violation v
@@ -23,11 +23,12 @@ const TOLERANCE: f64 = 1e-9;
 ///             l <= d <= u,   v >= 0
 /// ```
 ///
-/// For [`Aim::WorstMargin`] g = 0, sigma = 1, and v may be negative: -v is what the worst margin exceeds the reserve m_r by. The
-/// violation v is the slack of an exact penalty, so that a step always exists. Nothing depends on the order of the rows but rounding.
+/// For [`Aim::WorstMargin`] g = 0, sigma = 1, and v may be negative: -v is the amount by which the
+/// worst margin exceeds the reserve m_r. The violation v is the slack of an exact penalty, so that
+/// a step always exists. The order of the rows affects only the rounding.
 pub(super) struct Subproblem<'a> {
     pub(super) aim: Aim,
-    /// g, dB for each unit of x.
+    /// g, dB per unit of x.
     pub(super) objective_slopes: &'a [f64],
     /// B; `None` for zero.
     pub(super) curvature: Option<&'a Curvature>,
@@ -40,7 +41,7 @@ pub(super) struct Subproblem<'a> {
     pub(super) penalty: f64,
 }
 
-/// A step and what it promises.
+/// A step and its predicted effect.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct PredictedStep {
     /// d
@@ -56,9 +57,9 @@ pub(super) struct PredictedStep {
 /// Why there is no step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum SubproblemFailure {
-    /// A slope, a margin or a bound is no number.
+    /// A slope, a margin or a bound is NaN.
     NotFinite,
-    /// Nothing may move, or no margin is given to improve.
+    /// Nothing can move, or there is no margin to improve.
     NothingToDo,
     /// The interior-point method ended without a solution.
     NotSolved,
@@ -66,7 +67,8 @@ pub(super) enum SubproblemFailure {
     Inaccurate(f64),
 }
 
-/// The subproblem in shares of its box: d = scale e, v = v0 + scale w, and everything divided by scale.
+/// The subproblem scaled by its box: d = scale e, v = v0 + scale w, and everything divided by
+/// scale.
 struct Scaled {
     scale: f64,
     /// v0, the violation without a step.
@@ -226,7 +228,8 @@ impl Subproblem<'_> {
         Ok(PredictedStep { step, violation_db, decrease_db, multipliers })
     }
 
-    /// How much the Lagrangian could still fall within the box, relative to what its terms could change it by: zero at the optimum.
+    /// How much the Lagrangian could still fall within the box, relative to the possible change of
+    /// its terms: zero at the optimum.
     ///
     /// ```text
     /// g + B d - sum lambda_i s_i = 0 where d is within its bounds, pointing inside at a bound
@@ -270,7 +273,8 @@ impl Subproblem<'_> {
 }
 
 impl Scaled {
-    /// Constraints `matrix (e, w) <= limits`: the rows, the upper and lower bounds of e, the least w.
+    /// Constraints `matrix (e, w) <= limits`: the rows, the upper and lower bounds of e, the least
+    /// w.
     fn constraints(&self, margins: &[MarginRow]) -> (CscMatrix<f64>, Vec<f64>) {
         let (rows, columns) = (self.kept.len(), self.free.len());
         let mut entries = Triplets::default();
@@ -315,7 +319,8 @@ impl Triplets {
     }
 }
 
-/// Whether a bound binds: its multiplier is the larger one of the two that the interior-point method keeps above zero.
+/// Whether a bound binds: its multiplier is the larger one of the two that the interior-point
+/// method keeps above zero.
 fn is_held(room: f64, multiplier: f64) -> bool {
     room < ROOM_LARGEST && room < multiplier
 }
@@ -361,8 +366,9 @@ mod tests {
         assert!(found.len() == expected.len() && close, "{found:?} {expected:?}");
     }
 
-    /// Most of x + 2 y below x + y <= 4 and y <= 2: the vertex (2, 2), each margin worth 1; a far margin and one of the objective's own
-    /// direction count for nothing. In a box a thousand times as small, the corner.
+    /// Most of x + 2 y below x + y <= 4 and y <= 2: the vertex (2, 2), each margin worth 1; a far
+    /// margin and one of the objective's own direction count for nothing. In a box a thousand times
+    /// as small, the corner.
     #[test]
     fn vertex_of_a_linear_problem() {
         let rows = [
@@ -380,7 +386,8 @@ mod tests {
         near(&answer.multipliers, &[0.0; 4]);
     }
 
-    /// Least (x - 1)^2 + (y - 5/2)^2 below x - 2 y + 2 >= 0 and others that do not bind, from the origin.
+    /// Least (x - 1)^2 + (y - 5/2)^2 below x - 2 y + 2 >= 0 and others that do not bind, from the
+    /// origin.
     #[test]
     fn multipliers_of_a_quadratic_problem() {
         // ORIGIN: Nocedal and Wright (2006), example 16.4: (1.4, 1.7), multiplier 0.8
@@ -397,7 +404,8 @@ mod tests {
         near(&[answer.decrease_db], &[7.25 - 0.8]);
     }
 
-    /// A margin that a relaxation helps twice as much: x >= t and 3 - x >= 2 t meet at t = 1, each worth a third.
+    /// A margin that a relaxation helps twice as much: x >= t and 3 - x >= 2 t meet at t = 1, each
+    /// worth a third.
     #[test]
     fn common_margin_is_weighed_by_the_rates() {
         let rows = [row(0, 0.0, 1.0, &[1.0]), row(1, 3.0, 2.0, &[-1.0])];
@@ -409,7 +417,7 @@ mod tests {
         near(&[answer.violation_db, answer.decrease_db], &[0.25 - 1.0, 1.0]);
     }
 
-    /// What the box does not allow is left as a violation, which costs the penalty.
+    /// What the box does not allow remains as a violation, which is penalised.
     #[test]
     fn violation_is_elastic() {
         let rows = [row(0, -1.0, 1.0, &[1.0, 0.0])];

@@ -1,4 +1,4 @@
-//! The design frequencies of a problem, ready to judge one controller after the other.
+//! The design frequencies of a problem, prepared for judging one controller after the other.
 
 use num_complex::Complex64;
 use phea_dynamics::portable;
@@ -13,7 +13,8 @@ use crate::verification::{PlantPoint, TrackingJudgement};
 /// Templates and bounds at the design frequencies, which no controller changes.
 ///
 /// # Example
-/// A gain between 1 and 4 must keep |S| <= 1/2: with G = 2 the smallest plant gives |S| = 1/3, so that the loop may fall by half.
+/// A gain between 1 and 4 must satisfy |S| <= 1/2: with G = 2 the smallest plant gives |S| = 1/3,
+/// so that the loop gain may fall by half.
 /// ```
 /// use num_complex::Complex64;
 /// use phea_dynamics::controller::{Compensator, Controller, Element};
@@ -69,7 +70,7 @@ struct Station {
     template: Template,
     /// Of all specifications together.
     bounds: FrequencyBounds,
-    /// Of each specification that has this design frequency and demands something there, by its index.
+    /// For each specification that applies at this design frequency, by its index.
     each: Vec<(usize, FrequencyBounds)>,
 }
 
@@ -80,14 +81,16 @@ pub struct DesignMargin {
     pub specification: usize,
     /// rad/s
     pub frequency_rad_per_s: f64,
-    /// Limit over closed loop of the worst plant of the template, dB; negative where it is violated.
+    /// Limit over closed loop of the worst plant of the template, dB; negative where it is
+    /// violated.
     pub margin_db: f64,
-    /// The plant; of a spread that with the greatest |T|.
+    /// The plant; for a spread, the one with the greatest |T|.
     pub plant: PlantPoint,
-    /// Of a spread the plant with the least |T|.
+    /// For a spread, the plant with the least |T|.
     pub other: Option<PlantPoint>,
-    /// Where the nominal loop lies among the gains that this specification allows at its phase, the interior of the template counted as
-    /// plants: how far it may move, or must. Tracking is judged by its spread.
+    /// Where the nominal loop lies among the gains that this specification allows at its phase, the
+    /// interior of the template counting as plants: how far it may, or must, move. Tracking is
+    /// judged by its spread.
     pub placement: Placement,
 }
 
@@ -126,7 +129,8 @@ impl DesignChart {
         })
     }
 
-    /// The margin of every specification at each of its design frequencies, the worst first; equal ones by frequency.
+    /// The margin of every specification at each of its design frequencies, the worst first; equal
+    /// ones by frequency.
     pub fn margins(&self, compensation: &Compensation, tracking: TrackingJudgement) -> Vec<DesignMargin> {
         let mut margins: Vec<DesignMargin> =
             self.stations.iter().flat_map(|station| self.at(station, compensation, tracking)).collect();

@@ -30,10 +30,10 @@ pub enum Edit {
     ScaleGain(f64),
 }
 
-/// Why a list of elements cannot be changed so.
+/// Why a list of elements cannot be changed in this way.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum EditError {
-    /// An element that is not there.
+    /// An element that does not exist.
     #[error("there is no element {index}, counted from 0: there are {count}")]
     NoElement {
         /// As asked for, from 0.
@@ -41,7 +41,7 @@ pub enum EditError {
         /// How many there are.
         count: usize,
     },
-    /// An element that is no transfer function.
+    /// An element that is not a transfer function.
     #[error("the element is no transfer function: {0}")]
     Element(LinearError),
     /// An element that makes the loop zero.
@@ -52,10 +52,11 @@ pub enum EditError {
     Factor(f64),
 }
 
-/// The elements with one change made; those given stay as they are.
+/// The elements with one change made; the given ones are not modified.
 ///
 /// # Errors
-/// [`EditError`] for an element or place that is not there, an element that is no transfer function, a factor of zero.
+/// [`EditError`] for an element or position that does not exist, an element that is not a transfer
+/// function, or a factor of zero.
 ///
 /// # Example
 /// ```

@@ -1,4 +1,4 @@
-//! An element solved so that the loop passes a wanted point of the chart.
+//! An element solved so that the loop passes through a wanted point of the chart.
 
 use num_complex::Complex64;
 use phea_dynamics::controller::{Element, Timing};
@@ -36,7 +36,7 @@ pub enum PassError {
         /// rad/s
         frequency_rad_per_s: f64,
     },
-    /// The point does not say what the element needs.
+    /// The point does not specify the coordinate that the element needs.
     #[error("{} needs {needs} of the point", pattern.name())]
     Incomplete {
         /// Which element.
@@ -44,7 +44,7 @@ pub enum PassError {
         /// What of the point.
         needs: &'static str,
     },
-    /// Numbers of the element that are given cannot be.
+    /// Given numbers of the element are invalid.
     #[error("{} cannot have {what} {value}", pattern.name())]
     Number {
         /// Which element.
@@ -54,10 +54,11 @@ pub enum PassError {
         /// As given.
         value: f64,
     },
-    /// A sampled loop whose elements are not discretised by the bilinear rule, for which alone there is a closed form.
+    /// A sampled loop whose elements are not discretised by the bilinear rule, for which alone
+    /// there is a closed form.
     #[error("in a sampled loop an element is solved for with the discretization `tustin` alone")]
     Discretization,
-    /// The element cannot move the loop there.
+    /// The element cannot move the loop to this point.
     #[error("{}", unreachable_words(*pattern, *turn_deg, *raise_db, reach))]
     Unreachable {
         /// Which element.
@@ -90,14 +91,16 @@ pub enum PassError {
 ///                   r < cos theta, -90 < theta < 0 below w_n, 0 < theta < 90 above it
 /// ```
 ///
-/// Elements with one number need one coordinate of the point; given both, the point must lie on their curve. In a sampled loop the bilinear
-/// rule makes of E(s) at frequency w what E is at w' = 2/T tan(w T/2), and w' takes the place of w.
+/// Elements with one number need one coordinate of the point; given both, the point must lie on
+/// their curve. In a sampled loop the bilinear rule turns E(s) at frequency w into E at w' = 2/T
+/// tan(w T/2), so that w' takes the place of w.
 ///
 /// # Errors
-/// [`PassError`]; what cannot be reached comes with what can.
+/// [`PassError`]; for a point out of reach, it states what is within reach.
 ///
 /// # Example
-/// A lead that lifts a loop from -12 dB, -160 degrees to 0 dB, -120 degrees at 20 rad/s; and what no lead can do:
+/// A lead that raises a loop from -12 dB, -160 degrees to 0 dB, -120 degrees at 20 rad/s; and a
+/// point that no lead reaches:
 /// ```
 /// use num_complex::Complex64;
 /// use phea_dynamics::controller::Timing;
@@ -141,7 +144,7 @@ pub fn pass_through(
     })
 }
 
-/// What the element must be, and at which frequency of its own.
+/// The required response of the element, and the frequency at which it is evaluated.
 fn change(
     pattern: ElementPattern,
     wanted: &WantedPoint,
@@ -165,7 +168,7 @@ fn change(
     })
 }
 
-/// w, or what the bilinear rule makes of it; a gain has no frequency.
+/// w, or its image under the bilinear rule; a gain has no frequency.
 fn element_frequency(
     pattern: ElementPattern,
     frequency_rad_per_s: f64,

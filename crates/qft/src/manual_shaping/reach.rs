@@ -40,12 +40,14 @@ pub enum ElementPattern {
     },
 }
 
-/// What a pattern can make of the loop at one frequency. Ends are excluded, unless both are the same.
+/// The changes of the loop at one frequency that a pattern can achieve. Ends are excluded, unless
+/// both are the same.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reach {
-    /// From and to which change of phase, degrees.
+    /// Range of the change of phase, degrees.
     pub turn_deg: [f64; 2],
-    /// From and to which change of magnitude at the wanted change of phase, dB; `None` where that phase is out of reach.
+    /// Range of the change of magnitude at the wanted change of phase, dB; `None` where that phase
+    /// is out of reach.
     pub raise_db: Option<[f64; 2]>,
 }
 
@@ -60,7 +62,7 @@ pub(super) struct ElementTarget {
     pub(super) turn: f64,
 }
 
-/// Two magnitudes, or angles in rad, that are as good as equal.
+/// Whether two magnitudes, or angles in rad, are practically equal.
 const TOLERANCE: f64 = 1e-9;
 
 impl ElementPattern {
@@ -81,18 +83,19 @@ impl ElementPattern {
         }
     }
 
-    /// Whether one of magnitude and phase decides it.
+    /// Whether magnitude or phase alone determines it.
     pub(super) fn has_one_number(self) -> bool {
         use ElementPattern::{Gain, NotchHere, RealPole, RealZero, RollOff};
         matches!(self, Gain | RealPole | RealZero | RollOff { .. } | NotchHere { .. })
     }
 
-    /// Whether it leaves the phase alone.
+    /// Whether it does not change the phase.
     pub(super) fn keeps_phase(self) -> bool {
         matches!(self, ElementPattern::Gain | ElementPattern::NotchHere { .. })
     }
 
-    /// What it can do; the magnitudes at this change of phase, or at any where none is given.
+    /// What it can achieve; the magnitudes are those at this change of phase, or at any if none is
+    /// given.
     pub(super) fn reach(self, frequency: f64, turn: Option<f64>) -> Reach {
         let (back, ahead) = ([-90.0, 0.0], [0.0, 90.0]);
         let turn_deg = match self {
@@ -276,12 +279,12 @@ fn peak(damping_ratio: f64) -> f64 {
     }
 }
 
-/// Inside the ends, or at them where they are one.
+/// Inside the ends, or equal to them where they coincide.
 fn within(value: f64, [low, high]: [f64; 2]) -> bool {
     if low == high { (value - low).abs() <= TOLERANCE } else { low < value && value < high }
 }
 
-/// Whether rounding left a transfer function with numbers that can be.
+/// Whether a valid transfer function remained after rounding.
 fn is_sound(element: &Element) -> bool {
     element.transfer_function().is_ok_and(|function| {
         let roots = function.zeros().iter().chain(function.poles());

@@ -9,7 +9,7 @@ use crate::specification::Specification;
 
 /// Widths below this are lost in rounding, dB.
 pub(super) const RESOLVED_DB: f64 = 1e-9;
-/// From this distance to an edge on, more of it is worth no more than elsewhere, dB.
+/// Beyond this distance to an edge, more distance is worth no more than elsewhere, dB.
 const AMPLE_DB: f64 = 1.0;
 
 /// The least and the greatest |F| at one frequency, each with the member that sets it.
@@ -64,18 +64,19 @@ impl PrefilterBandPoint {
         self.greatest_db - self.least_db
     }
 
-    /// What a margin to an edge is measured in: half of the width, as far as it is resolved, and at most 1 dB.
+    /// The unit of a margin to an edge: half the width, as far as it is resolved, and at most 1 dB.
     ///
-    /// Towards zero frequency, where both limits meet, all margins shrink with the square of the frequency; measured in the width
-    /// they do not, and demand there what the limits' curvatures demand.
+    /// Towards zero frequency, where both limits meet, all margins shrink with the square of the
+    /// frequency; measured in the width they do not, and represent there what the curvatures of the
+    /// limits demand.
     pub fn rate(&self) -> f64 {
         (self.width_db() / 2.0).clamp(RESOLVED_DB, AMPLE_DB)
     }
 }
 
 impl PrefilterBand {
-    /// The band at frequencies of which the extremes of the family are known, in increasing order; those at which nothing is demanded
-    /// are left out.
+    /// The band at frequencies of which the extremes of the family are known, in increasing order;
+    /// those at which nothing is demanded are left out.
     ///
     /// # Errors
     /// [`PrefilterError::NotTracking`], [`PrefilterError::NoFrequency`].
@@ -120,8 +121,8 @@ impl PrefilterBand {
         Ok(PrefilterBand { points, relative_degree: [0, usize::MAX], gain_db, span })
     }
 
-    /// The band of a family at these frequencies (positive, increasing), and what follows from the ends of the frequency axis: see
-    /// [`PrefilterBand::with_ends`].
+    /// The band of a family at these frequencies (positive, increasing), with the conditions at the
+    /// ends of the frequency axis: see [`PrefilterBand::with_ends`].
     ///
     /// # Errors
     /// Those of [`PrefilterBand::new`] and [`tracking_extremes`].
@@ -135,7 +136,7 @@ impl PrefilterBand {
         PrefilterBand::new(&extremes, specification)?.with_ends(compensation, members, specification)
     }
 
-    /// The same band, and what follows from the ends of the frequency axis.
+    /// The same band with the conditions at the ends of the frequency axis.
     ///
     /// ```text
     /// w -> 0           F(0) between the limits over T(0); where both limits meet there, F(0) is that value even if the band that is
@@ -143,7 +144,7 @@ impl PrefilterBand {
     /// w -> infinity    where tracking is demanded up to infinity: the relative degrees that F may have, and three decades of frequencies
     /// ```
     ///
-    /// A measured family has no ends, and the band remains as it is.
+    /// For a measured family there are no ends, and the band remains unchanged.
     ///
     /// # Errors
     /// Those of [`tracking_extremes`].
@@ -170,7 +171,8 @@ impl PrefilterBand {
         Ok(found.first().map(|extremes| PrefilterBandPoint::new(extremes, lower, upper)))
     }
 
-    /// The same band for limits that are eased: every upper one raised and every lower one lowered by this, dB. F(0) stays as it was.
+    /// The same band for limits that are eased: every upper one raised and every lower one lowered
+    /// by this, dB. F(0) is unchanged.
     pub fn relaxed(mut self, relaxation_db: f64) -> PrefilterBand {
         for point in &mut self.points {
             point.least_db -= relaxation_db;
@@ -185,20 +187,22 @@ impl PrefilterBand {
         &self.points
     }
 
-    /// Least and greatest relative degree that F may have by what is demanded at infinite frequency.
+    /// Least and greatest relative degree that F may have by what is demanded at infinite
+    /// frequency.
     pub fn relative_degree(&self) -> [usize; 2] {
         self.relative_degree
     }
 
-    /// Where the family uses the largest share of the spread that it is allowed. (The width itself vanishes wherever the limits meet,
-    /// as they do at zero frequency.)
+    /// The point where the family uses the largest share of the allowed spread. (The width itself
+    /// vanishes wherever the limits meet, as they do at zero frequency.)
     pub fn tightest(&self) -> Option<&PrefilterBandPoint> {
         let share = |point: &PrefilterBandPoint| point.width_db() / point.allowed_db;
         let resolved = self.points.iter().filter(|point| point.is_resolved());
         resolved.min_by(|left, right| share(left).total_cmp(&share(right)))
     }
 
-    /// Where the band is narrowest, if it is so narrow that a margin of minus this many decibels at both edges is not enough.
+    /// Where the band is narrowest, if it is so narrow that a margin of minus this many decibels at
+    /// both edges is not enough.
     pub fn closed(&self, tolerance_db: f64) -> Option<&PrefilterBandPoint> {
         let narrowest = self.points.iter().min_by(|left, right| left.width_db().total_cmp(&right.width_db()));
         narrowest.filter(|point| point.width_db() < -2.0 * tolerance_db.max(RESOLVED_DB))
@@ -206,7 +210,7 @@ impl PrefilterBand {
 }
 
 impl PrefilterBandPoint {
-    /// Whether the limits lie apart by more than rounding.
+    /// Whether the limits differ by more than rounding.
     pub(super) fn is_resolved(&self) -> bool {
         self.allowed_db > RESOLVED_DB || self.width_db() < -RESOLVED_DB
     }

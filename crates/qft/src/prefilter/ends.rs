@@ -1,4 +1,4 @@
-//! What a band demands towards zero and infinite frequency.
+//! The conditions of a band towards zero and infinite frequency.
 
 use phea_dynamics::frequency::decibels;
 
@@ -8,9 +8,10 @@ use crate::closed_loop::{Compensation, Member};
 use crate::specification::{Limit, Requirement, Specification};
 use crate::verification::{AxisEnd, tracking_ratio};
 
-/// Edges whose curvature changes by less than this share of their distance from one decade to the next have settled.
+/// Edges whose curvature changes by less than this share of their distance from one decade to the
+/// next have settled.
 const SETTLED_SHARE: f64 = 0.01;
-/// Decades that are looked at below the lowest frequency, and above the highest.
+/// Decades that are examined below the lowest frequency and above the highest.
 const DECADES: [usize; 2] = [9, 3];
 
 /// Both limits and the band in which they are demanded.
@@ -78,7 +79,8 @@ pub(super) fn towards_zero(
     Ok(())
 }
 
-/// Whether both edges of two points follow the same c w^2 from the value at rest on.
+/// Whether both edges of two points follow the same c w^2, starting from the value at zero
+/// frequency.
 fn settled(rest: &PrefilterBandPoint, before: &PrefilterBandPoint, point: &PrefilterBandPoint) -> bool {
     let square = |point: &PrefilterBandPoint| point.frequency_rad_per_s * point.frequency_rad_per_s;
     let curvatures = |point: &PrefilterBandPoint| {
@@ -90,7 +92,8 @@ fn settled(rest: &PrefilterBandPoint, before: &PrefilterBandPoint, point: &Prefi
     changes.fold(0.0, f64::max) <= SETTLED_SHARE * (greatest - least).abs()
 }
 
-/// The limit of the band as w -> 0; `None` where it has none, or T vanishes or grows there otherwise than its limits.
+/// The limit of the band as w -> 0; `None` where it has none, or where T vanishes or grows there
+/// differently from its limits.
 fn at_rest(
     compensation: &Compensation,
     members: &[Member],
@@ -123,7 +126,8 @@ fn at_rest(
     Some(point)
 }
 
-/// Adds the relative degrees that the limits leave, and frequencies above, where tracking is demanded up to infinity.
+/// Adds the relative degrees that the limits allow, and higher frequencies, where tracking is
+/// demanded up to infinity.
 ///
 /// ```text
 /// F -> f s^-r,   limit/|T| -> c s^n:        r >= -n of the upper limit,  r <= -n of the lower one

@@ -5,7 +5,8 @@ use phea_dynamics::portable;
 use super::PrefilterError;
 use crate::closed_loop::{Compensation, Member};
 
-/// At an undamped pole of the plant, where it has no response, the closed loop is taken this share of the frequency higher.
+/// At an undamped pole of the plant, where it has no response, the closed loop is evaluated at a
+/// frequency higher by this share.
 const BESIDE: f64 = 1e-9;
 
 /// The greatest and the least |P G/(1+L)| of a family at one frequency, the prefilter left out.

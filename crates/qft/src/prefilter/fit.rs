@@ -13,16 +13,16 @@ use crate::loop_shaping::{Judgement, MarginRow, SearchProblem, Slopes, Structure
 /// dB in a neper.
 const DECIBELS_PER_NEPER: f64 = 20.0 / std::f64::consts::LN_10;
 
-/// A structure to be fitted into a band: its margins to both edges at each frequency, over what they are measured in
-/// ([`super::PrefilterBandPoint::rate`]).
+/// A structure to be fitted into a band: its margins to both edges at each frequency, divided by
+/// their unit ([`super::PrefilterBandPoint::rate`]).
 ///
 /// ```text
 /// m = (|F| - least)/rate  and  (greatest - |F|)/rate        magnitudes in dB
 /// dm/dx = +-(20/ln 10) Re(d ln F/dx)/rate
 /// ```
 ///
-/// Every rate is 1 after that, and there is no objective: the aim is the greatest worst margin, which lies in the middle of the band where it
-/// is narrow.
+/// Every rate is 1 after that, and there is no objective: the aim is the greatest worst margin,
+/// which lies in the middle of the band where it is narrow.
 #[derive(Clone, Debug)]
 pub struct PrefilterFit {
     structure: Structure,
@@ -40,11 +40,12 @@ struct Target {
 }
 
 impl PrefilterFit {
-    /// The fit of a structure, sampled as the loop samples its prefilter. Where the band has no width, but not by more than the tolerance at both edges
-    /// (dB), it is widened by it.
+    /// The fit of a structure, sampled as the loop samples its prefilter. Where the edges of the
+    /// band have crossed by no more than the tolerance (dB) at each edge, the band is widened by
+    /// it.
     ///
     /// # Errors
-    /// [`LinearError`] for a structure that cannot be sampled so.
+    /// [`LinearError`] for a structure that cannot be sampled in this way.
     pub fn new(
         band: &PrefilterBand,
         structure: Structure,
@@ -91,7 +92,7 @@ impl Target {
         [(magnitude - self.least) / self.rate, (self.greatest - magnitude) / self.rate]
     }
 
-    /// Both margins with their slopes; one to an edge that is nowhere is left out.
+    /// Both margins with their slopes; a margin to an edge at infinity is left out.
     fn rows(&self, point: usize, value: Complex64, slopes: &[Complex64]) -> Vec<MarginRow> {
         let scale = DECIBELS_PER_NEPER / self.rate;
         let sides = self.margins(value).into_iter().zip([scale, -scale]).enumerate();

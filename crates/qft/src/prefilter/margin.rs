@@ -25,22 +25,23 @@ pub struct PrefilterMargin {
     pub edge: BandEdge,
     /// Distance to it in dB; negative where it is passed.
     pub margin_db: f64,
-    /// What it is measured in, dB: see [`PrefilterBandPoint::rate`].
+    /// Its unit, dB: see [`PrefilterBandPoint::rate`].
     pub rate: f64,
     /// Index of the member that sets the edge.
     pub member: usize,
 }
 
 impl PrefilterMargin {
-    /// The margin over what it is measured in: 1 in the middle of a band that is narrower than 2 dB.
+    /// The margin in its unit: 1 in the middle of a band that is narrower than 2 dB.
     pub fn share(&self) -> f64 {
         self.margin_db / self.rate
     }
 }
 
 impl PrefilterBand {
-    /// The margins of a prefilter, made by hand or found, the least share first: one for each frequency, in samples if the loop is
-    /// (`Compensation::prefilter` is so). At zero frequency, where the band may be a single value, a violation alone is listed.
+    /// The margins of a prefilter, made by hand or found, the least share first: one for each
+    /// frequency; the prefilter must be sampled if the loop is (as `Compensation::prefilter` is).
+    /// At zero frequency, where the band may be a single value, a violation alone is listed.
     ///
     /// # Example
     /// A lag with its corner at 2 rad/s where 0.5 to 1 is asked for at 3 rad/s:
@@ -75,7 +76,8 @@ impl PrefilterBand {
 }
 
 impl PrefilterBandPoint {
-    /// The smaller margin of this |F|; minus infinity for one that is no number, as at a pole on the imaginary axis.
+    /// The smaller margin of this |F|; minus infinity if it is NaN, as at a pole on the imaginary
+    /// axis.
     fn margin(&self, magnitude_db: f64) -> PrefilterMargin {
         let magnitude_db = if magnitude_db.is_nan() { f64::INFINITY } else { magnitude_db };
         let [above, below] = [magnitude_db - self.least_db, self.greatest_db - magnitude_db];

@@ -7,9 +7,10 @@ use phea_dynamics::portable;
 use super::PrefilterBand;
 use crate::loop_shaping::{Structure, StructureFactor};
 
-/// A pair of poles or zeros may ring as much as 0.3 allows, and be two real ones at a ratio of some 3600.
+/// Range of the damping ratio of a pair: from moderate ringing at 0.3 to two real roots at a ratio
+/// of about 3600.
 const DAMPING_RATIO: [f64; 2] = [0.3, 30.0];
-/// How far above the highest frequency a pole or zero may lie: from there on it does nothing.
+/// How far above the highest frequency a pole or zero may lie; beyond that it has no effect.
 const BEYOND: f64 = 10.0;
 /// The gain may differ by this much, dB, where tracking is not limited from below.
 const GAIN_RANGE_DB: f64 = 40.0;
@@ -46,7 +47,8 @@ fn structure(band: &PrefilterBand, order: usize, zeros: usize) -> Structure {
     Structure { sign: 1.0, gain, parts }
 }
 
-/// The range of the gain: the middle of edges that have passed one another, and an end where nothing is demanded from below.
+/// The range of the gain: the middle of edges that have passed one another, and an end where
+/// nothing is demanded from below.
 fn gain_db([least, greatest]: [f64; 2]) -> [f64; 2] {
     if least > greatest {
         return [(least + greatest) / 2.0; 2];

@@ -21,7 +21,7 @@ pub struct PrefilterOptions {
     pub least_order: usize,
     /// Largest number of poles.
     pub maximum_order: usize,
-    /// Least number of poles less zeros, as far as the band allows it.
+    /// Least relative degree (poles less zeros), as far as the band allows it.
     pub least_relative_degree: usize,
     /// A margin of minus this much still counts as met, dB.
     pub tolerance_db: f64,
@@ -30,7 +30,8 @@ pub struct PrefilterOptions {
 }
 
 impl PrefilterOptions {
-    /// Relative degree 1 at least, so that a step of the reference reaches the controller without a jump; the tolerance of the audit.
+    /// Relative degree 1 at least, so that a step of the reference reaches the controller without a
+    /// jump; the tolerance of the audit.
     pub fn new(maximum_order: usize, seed: u64) -> PrefilterOptions {
         PrefilterOptions {
             least_order: 0,
@@ -51,18 +52,21 @@ pub struct FittedPrefilter {
     pub x: Vec<f64>,
     /// The prefilter.
     pub compensator: Compensator,
-    /// Its worst margin: that of the least share, and of several as small to 1 % the one where the band is widest.
+    /// Its worst margin: the one with the least share or, among several that are equal to within 1
+    /// %, the one where the band is widest.
     pub worst: PrefilterMargin,
 }
 
 /// What the synthesis ended with.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PrefilterOutcome {
-    /// The prefilter of least order that keeps to its band, as far in the middle as it can.
+    /// The prefilter of least order that stays within its band, as near to the middle as possible.
     Found(FittedPrefilter),
-    /// The band is closed: no prefilter of any order will do. The members of this point are the two plants that collide.
+    /// The band is closed: no prefilter of any order satisfies it. The members of this point are
+    /// the two conflicting plants.
     NoBand(PrefilterBandPoint),
-    /// The band is open, and no prefilter of the orders tried keeps to it; the one that comes nearest, if any was tried.
+    /// The band is open, but no prefilter of the orders that were tried stays within it; the one
+    /// that comes nearest, if any was tried.
     OrderTooLow {
         /// Its worst margin is negative.
         best: Option<FittedPrefilter>,
@@ -71,14 +75,16 @@ pub enum PrefilterOutcome {
 
 /// Fits the prefilter of least order into its band, for a loop with this timing.
 ///
-/// Structures of growing order are fitted into the band, each by a search from many starts for the greatest worst margin over rate
-/// ([`PrefilterFit`]); the first one that satisfies both edges everywhere is taken. Source of the band: thesis 3.1.5.
+/// Structures of growing order are fitted into the band, each by a search from many starts for the
+/// greatest worst margin over rate ([`PrefilterFit`]); the first one that satisfies both edges
+/// everywhere is taken. Source of the band: thesis 3.1.5.
 ///
 /// # Errors
-/// [`PrefilterError::Linear`] for a sample time or a prewarping frequency that cannot be; [`PrefilterError::Stopped`] by the watch.
+/// [`PrefilterError::Linear`] for an invalid sample time or prewarping frequency;
+/// [`PrefilterError::Stopped`] by the watch.
 ///
 /// # Example
-/// A band of 1 dB to both sides of a lag with its corner at 2 rad/s: the lag is found.
+/// A band of 1 dB on both sides of a lag with its corner at 2 rad/s: the lag is found.
 /// ```
 /// use phea_dynamics::controller::{Element, Timing};
 /// use phea_dynamics::portable::magnitude;
@@ -124,7 +130,7 @@ pub fn fit_prefilter(
     let mut best: Option<(f64, FittedPrefilter)> = None;
     for (done, fit) in fits.iter_mut().enumerate() {
         let shares = [done as f64 / all, (done as f64 + 1.0) / all];
-        // the more starts the more free numbers there are
+        // more free numbers need more starts
         let samples = SAMPLES_PER_NUMBER * fit.structure().dimension();
         let options = SearchOptions { samples, ..SearchOptions::new(Aim::WorstMargin, options.seed) };
         let found = search(fit, vec![], &options, &mut part(watch, "fitting the prefilter", shares))?;
@@ -138,7 +144,7 @@ pub fn fit_prefilter(
             best = Some((share, fitted));
         }
     }
-    // none satisfies the band to the last digit: the tolerance may forgive the best
+    // none satisfies the band to the last digit: the best may be within the tolerance
     let best = best.map(|(_, best)| best);
     Ok(match best {
         Some(best) if synthesis.is_within(&best, options.tolerance_db) => PrefilterOutcome::Found(best),
@@ -146,7 +152,7 @@ pub fn fit_prefilter(
     })
 }
 
-/// What is the same for every structure.
+/// The data common to all structures.
 struct Synthesis<'a> {
     band: &'a PrefilterBand,
     timing: Timing,

@@ -1,4 +1,4 @@
-//! Looks for bounds on the images of a sampled plant that are not taken one by one.
+//! Finds bounds on the images of a sampled plant that are not enclosed one by one.
 
 use num_complex::Complex64;
 use phea_dynamics::portable;
@@ -10,13 +10,14 @@ use super::images::PlantImages;
 use super::panels::walk_band;
 use super::walk::{ProofEffort, WalkOutcome};
 
-/// Images to either side that are taken one by one, by the relative degree of the plant: the slower they die out, the more.
+/// Images on either side that are enclosed one by one, by the relative degree of the plant: the
+/// slower they die out, the more.
 const IMAGES: [usize; 3] = [0, 12, 4];
-/// The same of greater relative degrees.
+/// The same for greater relative degrees.
 const FAR_IMAGES: usize = 3;
-/// By how much a bound is raised above what is reached.
+/// Factor by which a bound is raised above the value that is reached.
 const ABOVE: f64 = 1.3;
-/// How often it is raised at most.
+/// Largest number of times that it is raised.
 const RAISES_MAXIMUM: usize = 40;
 
 /// The certificate with bounds on images, where its loop is sampled; `None` where there are none.
@@ -56,7 +57,7 @@ pub(super) fn with_bounds(
     Ok(Some(certificate))
 }
 
-/// A claim with the bound one, raised until it holds: the bound, and what shows it.
+/// A claim with the bound one, raised until it holds: the bound and its proof.
 fn bounded(
     claimed: &Claimed<f64>,
     variables: usize,

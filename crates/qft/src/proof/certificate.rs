@@ -1,4 +1,4 @@
-//! What is claimed of a loop, and what shows it: everything that a checker needs, and nothing else.
+//! What is claimed about a loop, with its proof: everything that a checker needs, and nothing else.
 
 use phea_dynamics::expression::Expression;
 
@@ -6,7 +6,7 @@ use crate::specification::ClosedLoop;
 
 /// A claim about every plant of a box at every frequency of a band, with its proof.
 ///
-/// Numbers mean the decimals that they print as, the shortest that read back as them.
+/// A number stands for the decimal number that it prints as: the shortest that reads back as it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Certificate {
     /// The plant, as recorded operations on its parameters.
@@ -50,21 +50,24 @@ pub struct CertifiedPlant {
     pub variables: usize,
     /// For each box how its parameters depend on the variables, in the order of `parameters`.
     pub boxes: Vec<Vec<ParameterSegment>>,
-    /// Coefficients of P, of Pd where there is one, and the dead time of the plant where it has one.
+    /// Coefficients of P, of Pd if there is one, and the dead time of the plant if it has one.
     pub coefficients: Expression,
-    /// Numbers of coefficients, highest power first: numerator and denominator of P, the same of Pd.
+    /// Numbers of coefficients, highest power first: numerator and denominator of P, and the same
+    /// for Pd.
     pub lengths: Vec<usize>,
-    /// Whether the dead time of the plant stands behind the coefficients.
+    /// Whether the dead time of the plant follows the coefficients.
     pub has_dead_time: bool,
-    /// Dead time of the loop besides, s.
+    /// Additional dead time of the loop, s.
     pub delay_s: f64,
     /// Terms of the series that stands for dead time.
     pub dead_time_terms: usize,
-    /// The degree of the polynomials that stand for coefficients which are none, with a remainder; 0 where all are polynomials.
+    /// The degree of the polynomials, with a remainder, that replace coefficients which are not
+    /// polynomials; 0 where all are polynomials.
     pub model_degree: usize,
 }
 
-/// A parameter in a box: `low + (high - low) t` of the variable with this index, or `low (high/low)^t`.
+/// A parameter in a box: `low + (high - low) t` of the variable with this index, or
+/// `low (high/low)^t`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ParameterSegment {
     /// Its value where the variable is 0.
@@ -73,7 +76,7 @@ pub struct ParameterSegment {
     pub high: f64,
     /// Which variable moves it; `None` where it is `low` always.
     pub variable: Option<usize>,
-    /// Whether it moves by equal factors.
+    /// Whether it varies logarithmically.
     pub by_factors: bool,
 }
 
@@ -174,20 +177,23 @@ pub enum Claim {
     },
 }
 
-/// Why every plant of a box is stable: one is, and on the way to every other plant none of its poles crosses the boundary of stability.
+/// Proof that every plant of a box is stable: one is, and on the way to every other plant none of
+/// its poles crosses the boundary of stability.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StableBox {
     /// Variables of a plant that is stable without dead time.
     pub member: Vec<f64>,
     /// From zero to infinity without a gap: no pole on the boundary, for every plant of the box.
     pub panels: Vec<FrequencyPanel>,
-    /// The same for this plant alone, while its dead time grows from zero to what it is; empty without dead time and of a sampled loop.
+    /// The same for this plant alone, while its dead time grows from zero to its value; empty
+    /// without dead time and for a sampled loop.
     pub delays: Vec<FrequencyPanel>,
-    /// Of a sampled loop, which needs no way from a loop without dead time.
+    /// For a sampled loop, which needs no path from a loop without dead time.
     pub count: Option<PoleCount>,
 }
 
-/// How many poles of a sampled loop lie outside of the unit circle with one plant, from how often its characteristic function turns.
+/// The number of poles of a sampled loop outside the unit circle with one plant, from the number of
+/// turns of its characteristic function.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PoleCount {
     /// The characteristic function f along the unit circle, up to pi/T.
@@ -198,23 +204,26 @@ pub struct PoleCount {
     pub beyond: Vec<FrequencyPanel>,
 }
 
-/// How a loop samples: the plant behind a zero-order hold, its response that of its images at w + 2 pi k/T together.
+/// How a loop samples: the plant behind a zero-order hold, its response being the sum of its images
+/// at w + 2 pi k/T.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sampling {
     /// T, s.
     pub sample_time_s: f64,
-    /// What of the dead time stands behind the output, s: the sensor's, which is no part of P.
+    /// The part of the dead time that follows the output, s: that of the sensor, which is not part
+    /// of P.
     pub sensor_delay_s: f64,
-    /// So many images to either side are taken one by one.
+    /// Number of images on either side that are enclosed one by one.
     pub images: usize,
-    /// For each box a bound on the others: of the plant with its sensor and, where that is not one, of the plant alone.
+    /// For each box a bound on the other images: for the plant with its sensor and, where the
+    /// sensor is not 1, for the plant alone.
     pub bounds: Vec<Vec<RollOffBound>>,
 }
 
 /// |P(jw)| <= `ratio`/w^m from a frequency below those of all images that are not taken one by one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RollOffBound {
-    /// m, at least 1: by how much the degree of the denominator is greater than that of the numerator.
+    /// m, at least 1: the degree of the denominator less that of the numerator.
     pub order: usize,
     /// In the units of P and rad/s.
     pub ratio: f64,
@@ -249,11 +258,12 @@ pub struct LimitedLoop {
 pub enum LimitOf {
     /// The magnitude of this.
     Quotient(Quotient),
-    /// Points of frequency, rad/s, and magnitude: between them straight in a double logarithmic diagram, beyond them nothing.
+    /// Points of frequency, rad/s, and magnitude: straight between them in a double logarithmic
+    /// diagram, and without a limit beyond them.
     Table(Vec<(f64, f64)>),
 }
 
-/// On which side of a magnitude its limit lies.
+/// Whether a limit bounds a magnitude from above or from below.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CertificateSide {
     /// The ratio is that of the magnitude to its limit.
@@ -271,29 +281,31 @@ pub struct FrequencyPanel {
     pub to: f64,
     /// How dead time is taken.
     pub late: Late,
-    /// In order: an axis across which the box is halved, 0 being that of the frequency, then the lower half, then the upper one; or
-    /// [`LEAF`] with the direction that shows the claim there, two numbers of 16 bits, the greater byte first.
+    /// In order: an axis across which the box is halved, 0 being that of the frequency, then the
+    /// lower half, then the upper one; or [`LEAF`] with the direction that shows the claim there,
+    /// two numbers of 16 bits, the greater byte first.
     pub tree: Vec<u8>,
 }
 
-/// How dead time E = e^(-j w tau) is taken over a panel.
+/// How dead time E = e^(-j w tau) is treated over a panel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Late {
     /// There is none.
     Not,
-    /// It turns about this angle, rad: about half way between the least and the greatest frequency times dead time.
+    /// It is expanded about this angle, rad: about halfway between the least and the greatest
+    /// product of frequency and dead time.
     Turns(f64),
-    /// As any number of magnitude one: what it multiplies is less than the rest.
+    /// As any number of magnitude one: the part that it multiplies is smaller than the rest.
     Less,
-    /// The same where what it multiplies is more than the rest.
+    /// The same where the part that it multiplies is larger than the rest.
     More,
 }
 
-/// Stands before the direction of a leaf.
+/// Precedes the direction of a leaf.
 pub const LEAF: u8 = 255;
 
 impl FrequencyPanel {
-    /// Number of leaves: of n, n - 1 halvings of a byte each stand before them.
+    /// Number of leaves: n leaves come with n - 1 halvings of one byte each.
     pub fn leaves(&self) -> usize {
         (self.tree.len() + 1) / 6
     }

@@ -1,10 +1,12 @@
-//! The checker: whether a certificate proves what it claims. It trusts nobody, and rounds outwards wherever it rounds.
+//! The checker: whether a certificate proves what it claims. It relies on nothing but the
+//! certificate, and rounds outwards wherever it rounds.
 //!
 //! ```text
 //! leaf with direction (a, b):   x_k = a Re U_k + b Im U_k - (|a| + |b|) e_k > 0,   x_k^2 >= (a^2 + b^2) |V_k|^2      for every control point
 //! ```
 //!
-//! Re(conj(d) U) - |d| (|V| + e) is concave in (U, V, e): where it is not negative at the control points, it is not between them.
+//! Re(conj(d) U) - |d| (|V| + e) is concave in (U, V, e): where it is not negative at the control
+//! points, it is not negative between them.
 
 use phea_dynamics::scalar::{Interval, Scalar};
 
@@ -23,18 +25,18 @@ use super::polynomial::VARIABLES_MAXIMUM;
 use super::sampling::{check_bounds, check_sampling, pi_over_t, poles_of_law, prefilter_is_stable};
 use crate::specification::ClosedLoop;
 
-/// Halvings on the way to a leaf at most: no proof needs as many.
+/// Largest number of halvings on the way to a leaf: no proof needs as many.
 const DEPTH_MAXIMUM: usize = 256;
 
-/// The degree of a polynomial that stands for a coefficient at most.
+/// Largest degree of a polynomial that replaces a coefficient.
 const MODEL_DEGREE_MAXIMUM: usize = 8;
-/// Terms of the series of dead time at most.
+/// Largest number of terms of the series of dead time.
 const DEAD_TIME_TERMS_MAXIMUM: usize = 24;
 
 /// Why a certificate is rejected.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Rejection {
-    /// The plant is not polynomial in its parameters, or has not the path that is limited.
+    /// The plant is not polynomial in its parameters, or lacks the path that is limited.
     #[error("the certificate does not describe the loop that it makes a claim about")]
     NoSuchLoop,
     /// A number that is not finite, a band without width, a ratio or frequency that is negative.
@@ -46,7 +48,7 @@ pub enum Rejection {
     /// Another number of boxes than the family has.
     #[error("it does not speak of every box of the family")]
     Boxes,
-    /// More control points than a claim has.
+    /// More control points than a claim may have.
     #[error("a claim has too many control points")]
     TooLarge,
     /// Panels with a gap, or short of an end.
@@ -55,7 +57,7 @@ pub enum Rejection {
     /// A panel or a band beyond the frequencies at which a sampled loop is known.
     #[error("{0} rad/s is beyond half of the sampling frequency")]
     Beyond(f64),
-    /// Dead time taken where there is none, or not as it can be on such a panel.
+    /// Dead time where there is none, or treated in a way that such a panel does not allow.
     #[error("dead time is not taken as it is on the panel from {0} rad/s")]
     Late(f64),
     /// A tree that ends too early or too late, or halves an axis that does not exist.
@@ -69,7 +71,7 @@ pub enum Rejection {
         /// rad/s
         from: f64,
     },
-    /// A plant that does not have the poles that it is said to have.
+    /// A plant that does not have the claimed poles.
     #[error("the poles of the plant that is named cannot be shown to be where they are said to be")]
     Poles,
     /// A point at which the ratio is not reached.
@@ -77,7 +79,7 @@ pub enum Rejection {
     Point,
 }
 
-/// Checks every claim, of which there must be one.
+/// Checks every claim; there must be at least one.
 ///
 /// # Errors
 /// [`Rejection`] with the number of the claim, from 1, that is not shown.
@@ -171,7 +173,7 @@ fn stability_band(certificate: &Certificate) -> [f64; 2] {
     [0.0, if certificate.sampling.is_some() { f64::MAX } else { f64::INFINITY }]
 }
 
-/// Poles of a sampled loop outside of the unit circle with one plant.
+/// Number of poles of a sampled loop outside the unit circle with one plant.
 fn counted(certificate: &Certificate, at: &Loop<Interval>, count: &PoleCount) -> Result<usize, Rejection> {
     let pi_over_t = pi_over_t(certificate).ok_or(Rejection::Poles)?;
     let (denominator, _) = at.denominator_claimed();
@@ -224,7 +226,8 @@ fn sound(around: Option<Loop<Interval>>) -> Result<Loop<Interval>, Rejection> {
     around.filter(Loop::has_denominators).ok_or(Rejection::NoSuchLoop)
 }
 
-/// The parameters are finite and moved by variables that exist, so that every box is a box; nothing is late by less than nothing.
+/// The parameters are finite and moved by variables that exist, so that every box is valid; no dead
+/// time is negative.
 fn check_numbers(certificate: &Certificate) -> Result<(), Rejection> {
     let plant = &certificate.plant;
     let is_box = |one: &Vec<ParameterSegment>| {
@@ -271,7 +274,7 @@ fn check_ratio(certificate: &Certificate, limited: &LimitedLoop, ratio: f64) -> 
     }
 }
 
-/// The pieces of a band, one behind the other; each panel belongs to one of them.
+/// The pieces of a band, one after the other; each panel belongs to one of them.
 fn check_pieces(
     pieces: &[BandClaim<Interval>],
     variables: usize,
@@ -299,7 +302,7 @@ pub(super) fn check_panels(
         return Err(Rejection::Number("a dead time"));
     }
     let mut reached = from;
-    // the circle ends there, and the images are enclosed little beyond it
+    // the circle ends there, and the images are enclosed only slightly beyond it
     let circle = claimed.images.as_ref().map(PlantImages::band_ends);
     for panel in panels {
         let is_panel = panel.from == reached && panel.from >= 0.0 && panel.to > panel.from;
@@ -365,7 +368,8 @@ fn shows([a, b]: [f64; 2], points: &[PanelPoint<Interval>]) -> bool {
     })
 }
 
-/// Whether |V| >= |U| at a frequency, or in the limit towards infinity, where dead time must not matter; coefficients are numbers.
+/// Whether |V| >= |U| at a frequency, or in the limit towards infinity, where dead time must have
+/// no effect; coefficients are numbers.
 fn reaches(claimed: &Claimed<Interval>, frequency_rad_per_s: f64) -> bool {
     if claimed.images.as_ref().is_some_and(|images| frequency_rad_per_s > images.band_ends()[0]) {
         return false;

@@ -1,4 +1,5 @@
-//! A claim as two polynomials: |V| <= |U| on the whole boundary of stability and for all plants, or U without a zero there.
+//! A claim as two polynomials: |V| <= |U| on the whole boundary of stability and for all plants, or
+//! U without a zero there.
 //!
 //! ```text
 //! P = N/D E, E = e^(-s tau), G = Gn/Gd, H = Hn/Hd, F = Fn/Fd, limit W = Wn/Wd, c = D Gd Hd, n = N Gn Hn, ratio r
@@ -15,13 +16,15 @@
 //!
 //! |E| = 1 on the boundary of stability, so that it is dropped where it is a factor. Powers of s that divide both are dropped.
 //!
-//! In a sampled loop G and F are functions of z, and P is the plant behind its hold, the sum of its images:
+//! In a sampled loop G and F are functions of z, and P is the plant behind its hold, the sum of its
+//! images:
 //!
 //! ```text
 //! P = hold E (N/D + R),   R = sum over k != 0 of w/w_k e^(-j (w_k - w) tau) N/D(j w_k),   w_k = w + 2 pi k/T
 //! ```
 //!
-//! with R' for N Hn/(D Hd). To N belongs hold, and to N E what R' D or, of the plant alone, R D adds: `images`.
+//! with R' for N Hn/(D Hd). N includes the hold, and N E the addition R' D or, for the plant alone,
+//! R D: `images`.
 
 use super::certificate::{
     Certificate, CertificateMember, CertificateSide, LimitOf, LimitedLoop, ParameterSegment,
@@ -34,10 +37,10 @@ use super::part::{OfFrequency, PolynomialProduct, Straight, law, number, quotien
 use super::polynomial::{BoxPolynomial, Decimal, InS, expanded};
 use crate::specification::ClosedLoop;
 
-/// The greatest exponent of a variable in a dead time, of which powers are taken.
+/// The greatest exponent of a variable in a dead time, whose powers are needed.
 const DEAD_TIME_EXPONENT_MAXIMUM: u8 = 4;
 
-/// By how much the panels of a sampled loop reach beyond pi/T, in parts of that.
+/// How far the panels of a sampled loop extend beyond pi/T, as a share of it.
 const BEYOND: f64 = 1e-9;
 
 /// A loop in polynomials of s and functions of the frequency, over the box or at one plant.
@@ -79,15 +82,17 @@ fn at_member<S: Decimal>(segments: &[ParameterSegment], variables: &[f64]) -> Ve
 /// A sum of parts.
 pub(crate) type PartSum<S> = Vec<PolynomialProduct<S>>;
 
-/// U and V, each what is without dead time, what E multiplies, and what E and the images of the plant multiply.
+/// U and V, each in three parts: without dead time, multiplied by E, and multiplied by E and the
+/// images of the plant.
 #[derive(Clone, Debug)]
 pub(crate) struct Claimed<S> {
     pub(crate) u: [PartSum<S>; 3],
     pub(crate) v: [PartSum<S>; 3],
-    /// tau; nothing where there is none, and without the constant part that is in the functions of the frequency.
+    /// tau, without the constant part that is in the functions of the frequency; `None` without
+    /// dead time.
     pub(crate) dead_time: DeadTime<S>,
     pub(crate) images: Option<PlantImages<S>>,
-    /// Which images those of U and of V are.
+    /// The images to which U and V refer.
     pub(crate) which: [Which; 2],
 }
 
@@ -107,7 +112,7 @@ impl<S: Decimal> BandClaim<S> {
     }
 }
 
-/// What is without dead time, what E multiplies, and what the images multiply.
+/// The parts without dead time, multiplied by E, and multiplied by the images.
 type Three<S> = [PartSum<S>; 3];
 
 fn alone<S>(one: PolynomialProduct<S>) -> Three<S> {
@@ -186,7 +191,7 @@ impl<S: Decimal> Claimed<S> {
         [from, self.images.as_ref().map_or(to, |images| to.min(images.band_ends()[0]))]
     }
 
-    /// What panels cover for that: a little more where a sampled loop ends, at pi/T.
+    /// The range that panels cover for it: slightly more where a sampled loop ends, at pi/T.
     pub(super) fn band_covered(&self, [from, to]: [f64; 2]) -> [f64; 2] {
         let [_, end] = self.band([from, to]);
         let beyond = end * (1.0 + BEYOND);
@@ -212,26 +217,27 @@ impl<S: Decimal> Claimed<S> {
         self.u.iter().chain(&self.v).flatten().map(|part| &part.of_s)
     }
 
-    /// The frequency times this is how far its functions of the frequency turn, about, s.
+    /// The frequency times this is approximately the angle by which its functions of the frequency
+    /// turn, s.
     pub(crate) fn turn_s(&self) -> f64 {
         let late = self.u.iter().chain(&self.v).flatten().flat_map(|part| &part.of_frequency);
         let late = late.map(|one| if let OfFrequency::Late(time_s) = one { time_s.middle() } else { 0.0 });
         self.sample_time_s().middle() + late.fold(0.0, f64::max)
     }
 
-    /// Whether a power of the frequency is among its functions, of which panels must not be wide.
+    /// Whether a power of the frequency is among its functions, which allows narrow panels only.
     pub(crate) fn has_powers(&self) -> bool {
         let all = self.u.iter().chain(&self.v).flatten().flat_map(|part| &part.of_frequency);
         all.into_iter().any(|one| matches!(one, OfFrequency::Straight(_)))
     }
 
-    /// 0 where nothing is sampled, s.
+    /// Sample time, s; 0 for a continuous loop.
     pub(crate) fn sample_time_s(&self) -> S {
         self.images.as_ref().map_or(S::from(0.0), |images| images.sample_time_s)
     }
 }
 
-/// One sum, parts with the same functions of the frequency added up.
+/// One sum, in which parts with the same functions of the frequency are combined.
 fn added<S: Decimal>(mut sum: PartSum<S>, other: PartSum<S>) -> PartSum<S> {
     for part in other {
         match sum.iter_mut().find(|known| known.of_frequency == part.of_frequency) {
@@ -331,7 +337,7 @@ impl<S: Decimal> Loop<S> {
         })
     }
 
-    /// The greatest remainder of a coefficient of the plant beside its size.
+    /// The greatest remainder of a coefficient of the plant, relative to its size.
     pub(super) fn remainder_share(&self) -> f64 {
         let own = [&self.numerator, &self.denominator].into_iter().chain(self.disturbance.iter().flatten());
         let coefficients = own.flat_map(|part| &part.of_s.0).filter(|one| one.rest().most() != 0.0);
@@ -342,14 +348,15 @@ impl<S: Decimal> Loop<S> {
         self.images.as_ref()
     }
 
-    /// Whether nothing is divided by zero.
+    /// Claims that nothing is divided by zero.
     pub(crate) fn has_denominators(&self) -> bool {
         let quotients = [&self.feedback, &self.prefilter, &self.sensor].map(|[_, under]| under);
         let own = self.disturbance.iter().map(|[_, under]| under).chain([&self.denominator]);
         quotients.into_iter().chain(own).all(|under| under.of_s.degree().is_some())
     }
 
-    /// That D Hd without its zeros at s = 0 is not zero on the imaginary axis, and how many those are.
+    /// That D Hd without its zeros at s = 0 is not zero on the imaginary axis, and the number of
+    /// these zeros.
     pub(crate) fn denominator_claimed(&self) -> (Claimed<S>, usize) {
         let whole = self.denominator.of_s.times(&self.sensor[1].of_s);
         let zeros = whole.powers_of_s().unwrap_or(0);
@@ -362,7 +369,7 @@ impl<S: Decimal> Loop<S> {
         [self.denominator.times(gd).times(hd), self.numerator.times(gn).times(hn)]
     }
 
-    /// What the images multiply in place of n: with N Hn as D Hd.
+    /// The factor of the images in place of n: with N Hn replaced by D Hd.
     fn image(&self) -> PolynomialProduct<S> {
         let hold = PolynomialProduct { of_s: self.denominator.of_s.clone(), ..self.numerator.clone() };
         hold.times(&self.feedback[0]).times(&self.sensor[1])
@@ -374,7 +381,7 @@ impl<S: Decimal> Loop<S> {
         [vec![c], vec![n], self.images.iter().map(|_| self.image()).collect()]
     }
 
-    /// n + c, as without dead time.
+    /// n + c: the characteristic function without dead time.
     pub(crate) fn without_dead_time(&self) -> InS<S> {
         let [c, n] = self.open();
         c.of_s.plus(&n.of_s)
@@ -389,18 +396,19 @@ impl<S: Decimal> Loop<S> {
         self.claim(self.characteristic(), Default::default(), [Which::WithSensor; 2]).joined()
     }
 
-    /// The same of one plant while its dead time grows from nothing, by the first variable.
+    /// The same for one plant while its dead time grows from zero with the first variable.
     pub(crate) fn stability_while_delayed(&self) -> Claimed<S> {
         let value = self.dead_time.value.times(&BoxPolynomial::between(0.0, 1.0, Some(0)));
         Claimed { dead_time: DeadTime { value, ..self.dead_time }, ..self.stability() }
     }
 
-    /// The denominator of the prefilter, where that is one in s.
+    /// The denominator of the prefilter, if it is a function of s.
     pub(crate) fn prefilter_denominator(&self) -> &InS<S> {
         &self.prefilter[1].of_s
     }
 
-    /// A limit as claims, each about a part of its band; `None` of a plant without the path that is limited.
+    /// A limit as claims, each about a part of its band; `None` for a plant without the limited
+    /// path.
     pub(crate) fn claimed(&self, limited: &LimitedLoop, ratio: f64) -> Option<Vec<BandClaim<S>>> {
         let [from, to] = limited.band_rad_per_s;
         match &limited.limit {
@@ -443,7 +451,7 @@ impl<S: Decimal> Loop<S> {
             let image = PolynomialProduct { of_s: d.of_s.clone(), ..self.numerator.clone() }.times(hd);
             [vec![], vec![own], self.images.iter().map(|_| image.clone()).collect()]
         };
-        // what stands over n E + c, and what besides under it
+        // the numerator over n E + c, and the additional denominator
         let (over, beside, which) = match limited.closed_loop {
             ClosedLoop::RobustStability => {
                 let [_, n, images] = self.characteristic();
@@ -462,7 +470,7 @@ impl<S: Decimal> Loop<S> {
             }
             ClosedLoop::Tracking => (each(plant(), |one| fn_.times(one).times(gn)), Some(fd), Which::Alone),
         };
-        // of a magnitude, what E multiplies as a whole
+        // a factor E of the whole does not change a magnitude
         let over = match over {
             [own, late, images] if own.is_empty() && images.is_empty() => [late, vec![], vec![]],
             other => other,

@@ -1,12 +1,14 @@
-//! How many poles of a sampled loop lie outside of the unit circle, from how often its characteristic function turns.
+//! The number of poles of a sampled loop outside the unit circle, from the number of turns of its
+//! characteristic function.
 //!
 //! ```text
 //! f = (1 + L) D Hd Gd,    chi(z) = (1 + L) Gd z^n product of (z - e^(s_i T)),    s_i the roots of D Hd
 //! turn of f - turn of D' Hd' - i pi/2 = pi (degree of Gd + roots of D Hd to the right - poles of the loop outside)     from 0 to pi/T
 //! ```
 //!
-//! with D Hd = s^i D' Hd'. Both are followed along leaves: each has a direction from which its function deviates by less than a quarter
-//! turn, and so have two that touch from each other by less than half a turn.
+//! with D Hd = s^i D' Hd'. Both are followed along leaves: each has a direction from which its
+//! function deviates by less than a quarter turn, so that the directions of two adjacent leaves
+//! differ by less than half a turn.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -18,15 +20,15 @@ use super::claimed::{Claimed, Loop};
 use super::over_panel::Complex;
 use super::polynomial::Decimal;
 
-/// A number of half turns is known if it is this near to a whole one: four values whose directions are known to [`CLEAR`] make no more of
-/// it than 0.2.
+/// A number of half turns is known if it is this near to a whole number: four values whose
+/// directions are known to [`CLEAR`] change it by at most 0.2.
 const WHOLE: f64 = 0.2;
-/// The direction of a value is known if its parts are, to this share of its magnitude; by how much it may deviate then, rad, is not more
-/// than one and a half times that.
+/// The direction of a value is known if its parts are, to this share of its magnitude; its
+/// deviation in rad is then at most one and a half times that.
 const CLEAR: f64 = 0.1;
 
-/// How many poles with one plant lie outside of the unit circle; `None` where that cannot be told. The panels are those of a proof that
-/// neither function is zero.
+/// The number of poles outside the unit circle with one plant; `None` where it cannot be
+/// determined. The panels are those of a proof that neither function is zero.
 pub(super) fn poles_outside<S: Decimal>(
     around: &Loop<S>,
     controller_poles: usize,
@@ -39,7 +41,7 @@ pub(super) fn poles_outside<S: Decimal>(
     let whole = [&count.denominator[..], &count.beyond[..]].concat();
     let all = turn(&denominator, &whole, None)?;
     let degree = denominator.of_s().next()?.degree()?;
-    // a root on the left turns by a quarter, one on the right by as much backwards
+    // a root on the left turns by a quarter turn, one on the right by a quarter turn backwards
     let to_right = whole_number(0.5 * (degree as f64 - all / FRAC_PI_2))?;
     let turned = (characteristic - within - zeros as f64 * FRAC_PI_2) / PI;
     let outside = (controller_poles + to_right) as f64 - turned;
@@ -50,13 +52,14 @@ fn whole_number(value: f64) -> Option<usize> {
     ((value - value.round()).abs() < WHOLE && value > -0.5).then_some(value.round() as usize)
 }
 
-/// By how much U turns over panels, rad: up to a frequency that is little before the end of the last, or to infinity.
+/// The angle by which U turns over panels, rad: up to a frequency slightly below the end of the
+/// last, or to infinity.
 fn turn<S: Decimal>(claimed: &Claimed<S>, panels: &[FrequencyPanel], to: Option<S>) -> Option<f64> {
     let directions: Vec<Complex64> = panels.iter().flat_map(directions).collect();
     let (first, last) = (directions.first()?, directions.last()?);
     let begin = claimed.value_of_u(S::from(0.0))?;
     let end = match to {
-        // where the last panel ends: little has turned since
+        // at the end of the last panel, with little turn in between
         Some(frequency) => claimed.value_of_u(frequency.up_to(S::decimal(panels.last()?.to)))?,
         None => claimed.direction_at_infinity()?,
     };
@@ -69,14 +72,14 @@ fn between(one: Complex64, other: Complex64) -> f64 {
     portable::argument(other * one.conj())
 }
 
-/// The direction of a value that is known well enough.
+/// The direction of a value, if it is known well enough.
 fn clear<S: Decimal>([re, im]: Complex<S>) -> Option<Complex64> {
     let value = Complex64::new(re.middle(), im.middle());
     let beside = 0.5 * (re.most() - re.least()).max(im.most() - im.least());
     (beside <= CLEAR * portable::magnitude(value) && value != Complex64::ZERO).then_some(value)
 }
 
-/// Directions of the leaves of a panel in the order of the frequency; of a tree that is well formed.
+/// Directions of the leaves of a panel in the order of the frequency; for a well-formed tree.
 fn directions(panel: &FrequencyPanel) -> Vec<Complex64> {
     let mut out = vec![];
     let mut bytes = panel.tree.iter().copied();

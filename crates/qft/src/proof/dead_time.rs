@@ -9,7 +9,7 @@ use phea_dynamics::scalar::{Interval, Scalar};
 use super::points::PanelRange;
 use super::polynomial::{BoxPolynomial, Decimal, InS};
 
-/// A dead time, and how many terms of the series are taken.
+/// A dead time, and the number of terms of the series.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct DeadTime<S> {
     /// s
@@ -62,7 +62,7 @@ impl<S: Decimal> InFrequency<S> {
         InFrequency { real: one(&self.real), imaginary: one(&self.imaginary) }
     }
 
-    /// Raises the degrees of the axes to those that it has.
+    /// Raises the degrees of the axes to those of this polynomial.
     pub(super) fn raise_degrees(&self, degrees: &mut [usize]) {
         for one in [&self.real, &self.imaginary] {
             degrees[0] = degrees[0].max(one.degree().unwrap_or(0));
@@ -75,7 +75,8 @@ impl<S: Decimal> InFrequency<S> {
     }
 }
 
-/// e^(-j w tau) over a finite panel, without the remainder, in powers of x as of [`InFrequency::along`].
+/// e^(-j w tau) over a finite panel, without the remainder, in powers of x as of
+/// [`InFrequency::along`].
 pub(super) fn turned<S: Decimal>(dead_time: &DeadTime<S>, range: PanelRange, angle: f64) -> InFrequency<S> {
     let PanelRange { from, to, .. } = range;
     let by = |frequency: S| dead_time.value.scaled(frequency);
@@ -117,11 +118,11 @@ pub(super) fn ends<S: Decimal>(dead_time: &DeadTime<S>) -> [S; 2] {
     })
 }
 
-/// What the cosine and the sine of an angle are known to, in units of one and of the angle.
+/// Accuracy of the cosine and the sine of an angle, in units of one and of the angle.
 const TRIGONOMETRIC_ERROR: f64 = 4.0 * f64::EPSILON;
 
-/// The cosine and the sine of every angle of an interval: neither changes faster than the angle, and the functions of the library are good
-/// to less than the error that is taken here.
+/// The cosine and the sine of every angle of an interval: neither changes faster than the angle,
+/// and the functions of the library are more accurate than the error assumed here.
 pub(super) fn enclosed_cosine_and_sine(angle: Interval) -> [Interval; 2] {
     let middle = angle.middle();
     let beside = (angle - Interval::from(middle)).abs().high();

@@ -1,7 +1,9 @@
-//! The direction that shows a leaf, or the axis across which it is better halved. Nothing here is trusted: the checker looks again.
+//! The direction that shows a leaf, or the axis across which it is better halved. Nothing here
+//! needs to be trusted: the checker verifies it.
 //!
-//! A direction at the angle phi shows the pair (U_k, V_k) where |phi - arg U_k| <= acos(|V_k|/|U_k|). All pairs are shown where these
-//! arcs have a point in common; where they have none, two of them tell across which axis they differ.
+//! A direction at the angle phi shows the pair (U_k, V_k) where |phi - arg U_k| <=
+//! acos(|V_k|/|U_k|). All pairs are shown where these arcs have a point in common; where they have
+//! none, two of them show across which axis they differ.
 
 use num_complex::Complex64;
 use phea_dynamics::portable;
@@ -13,9 +15,10 @@ use super::points::{PanelPoint, Points};
 pub(crate) enum LeafOutcome {
     /// This direction shows it.
     Shown([i16; 2]),
-    /// It is to be halved across this axis.
+    /// The leaf is to be halved across this axis.
     Halve(usize),
-    /// At this corner, a bit for each axis, |V| is greater than |U| by this ratio: the claim is wrong.
+    /// At this corner, a bit for each axis, |V| is greater than |U| by this ratio: the claim is
+    /// wrong.
     Wrong {
         /// The lowest bit is that of the frequency.
         corner: u64,
@@ -32,7 +35,7 @@ const CLEAR: f64 = 0.05;
 /// Beyond this angle, rad, a point counts as turned away.
 const BEHIND: f64 = 2.0;
 
-/// Looks at one leaf; `room` is kept for the rounding of the checker, of |V|^2.
+/// Examines one leaf; `room` is the reserve for the rounding of the checker, as a share of |V|^2.
 pub(crate) fn leaf(points: &Points<f64>, room: f64) -> LeafOutcome {
     if let Some((corner, ratio)) = worst_corner(points) {
         return LeafOutcome::Wrong { corner, ratio };
@@ -68,7 +71,7 @@ pub(crate) fn leaf(points: &Points<f64>, room: f64) -> LeafOutcome {
 fn worst_corner(points: &Points<f64>) -> Option<(u64, f64)> {
     let wrong = corners(points).filter_map(|(corner, index)| {
         let [ur, ui, vr, vi, rest] = points.points()[index];
-        // beyond what dead time leaves over
+        // beyond the remainder of dead time
         let u = (ur * ur + ui * ui).sqrt() + 2.0 * rest;
         let (u, v) = (u * u, vr * vr + vi * vi);
         (v > u).then(|| (corner, (v / u).sqrt()))
@@ -107,7 +110,7 @@ fn rounded(direction: Complex64) -> [i16; 2] {
     [direction.re, direction.im].map(|part| (part * FULL).round() as i16)
 }
 
-/// What the checker asks, with room for its rounding.
+/// The condition of the checker, with room for its rounding.
 fn shows(direction: [i16; 2], pairs: &[PanelPoint<f64>], room: f64) -> bool {
     let [a, b] = direction.map(f64::from);
     let square = (a * a + b * b) * (1.0 + room);
@@ -118,7 +121,7 @@ fn shows(direction: [i16; 2], pairs: &[PanelPoint<f64>], room: f64) -> bool {
     })
 }
 
-/// The arc of directions that show a pair, relative to this one; `None` where none does.
+/// The arc of directions that show a pair, relative to this one; `None` if there is none.
 fn arc([ur, ui, vr, vi, rest]: &PanelPoint<f64>, middle: Complex64) -> Option<[f64; 2]> {
     let relative = Complex64::new(*ur, *ui) * middle.conj();
     let ratio = (portable::magnitude(Complex64::new(*vr, *vi)) + rest) / portable::magnitude(relative);
@@ -128,14 +131,15 @@ fn arc([ur, ui, vr, vi, rest]: &PanelPoint<f64>, middle: Complex64) -> Option<[f
     Some([angle - half, angle + half])
 }
 
-/// The point that is turned away most from a direction, where it stands behind: angles beyond are near to those on the other side.
+/// The point whose direction deviates most, if it points backwards: larger angles are close to
+/// those on the other side.
 fn turned_away(pairs: &[PanelPoint<f64>], middle: Complex64) -> Option<usize> {
     let angles = pairs.iter().map(|pair| angle(pair, middle).abs()).enumerate();
     let (index, greatest) = angles.max_by(|(_, one), (_, other)| one.total_cmp(other))?;
     (greatest > BEHIND).then_some(index)
 }
 
-/// Across the axis along which a point that is turned away comes back most.
+/// Chooses the axis along which a point in the wrong direction returns the most.
 fn back(points: &Points<f64>, index: usize, middle: Complex64) -> usize {
     let of = |index: usize| angle(&points.points()[index], middle).abs();
     let gain = |axis: usize| {
@@ -152,13 +156,14 @@ fn angle([ur, ui, ..]: &PanelPoint<f64>, middle: Complex64) -> f64 {
     portable::argument(Complex64::new(*ur, *ui) * middle.conj())
 }
 
-/// The place of a point along an axis, and the last place.
+/// The index of a point along an axis, and the last index.
 fn place(points: &Points<f64>, index: usize, axis: usize) -> [usize; 2] {
     let degree = points.degree(axis);
     [index / points.stride(axis) % (degree + 1), degree]
 }
 
-/// Halving moves a point that is not at the end of an axis. Of these axes that along which its line bends most.
+/// Halving moves a point that is not at the end of an axis. Chooses, of these axes, the one along
+/// which its line bends most.
 fn across(points: &Points<f64>, index: usize) -> usize {
     let bend = |axis: usize| {
         let [own, last] = place(points, index, axis);
@@ -172,7 +177,8 @@ fn across(points: &Points<f64>, index: usize) -> usize {
     greatest(points.axes(), bend).unwrap_or_else(|| most_varied(points))
 }
 
-/// Across the axis that brings two clashing arcs nearest to each other: one of the points is moved along it to the place of the other.
+/// Chooses the axis that brings two conflicting arcs nearest to each other, when one of the points
+/// is moved along it to the index of the other.
 fn between(points: &Points<f64>, [low, high]: [usize; 2], middle: Complex64) -> usize {
     let arc_at = |index: usize| arc(&points.points()[index], middle);
     let (Some([from, _]), Some([_, to])) = (arc_at(low), arc_at(high)) else { return most_varied(points) };

@@ -1,11 +1,12 @@
-//! On which side of the imaginary axis the roots of a polynomial lie, by the array of Routh in intervals.
+//! On which side of the imaginary axis the roots of a polynomial lie, by Routh's array in
+//! intervals.
 
 use phea_dynamics::scalar::Interval;
 
 use super::part::number;
 use super::polynomial::InS;
 
-/// What is known of the roots.
+/// What is known about the roots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum RootLocation {
     /// All have negative real parts.
@@ -16,10 +17,10 @@ pub(crate) enum RootLocation {
     Unknown,
 }
 
-/// Of a polynomial with numbers as coefficients.
+/// For a polynomial with numbers as coefficients.
 ///
-/// Each entry of the first column is a quotient of two Hurwitz determinants: all have one sign if and only if all roots have negative
-/// real parts.
+/// Each entry of the first column is a quotient of two Hurwitz determinants: all have one sign if
+/// and only if all roots have negative real parts.
 pub(crate) fn roots_of(polynomial: &InS<Interval>) -> RootLocation {
     let Some(degree) = polynomial.degree() else { return RootLocation::Unknown };
     let number = |power: usize| number(&polynomial.0[power]);
@@ -27,7 +28,7 @@ pub(crate) fn roots_of(polynomial: &InS<Interval>) -> RootLocation {
     let Some(sign) = sign_of(leading) else { return RootLocation::Unknown };
     let highest_first = (0..=degree).rev().map(|power| number(power) * Interval::from(sign));
     let coefficients: Vec<Interval> = highest_first.collect();
-    // a stable polynomial has no coefficient of another sign, nor one that is missing
+    // all coefficients of a stable polynomial have the same sign, and none is zero
     if coefficients.iter().any(|coefficient| coefficient.high() <= 0.0) {
         return RootLocation::SomeNotLeft;
     }

@@ -1,17 +1,18 @@
-//! The images of a plant that is sampled: what its response at w + 2 pi k/T adds to that at w.
+//! The images of a sampled plant: what its response at w + 2 pi k/T adds to that at w.
 //!
 //! ```text
 //! R = sum over k != 0 of q_k,    q_k = w/w_k e^(-j k W tau) N/D(j w_k),      w_k = w + k W,   W = 2 pi/T,   0 <= w <= 0.51 W
 //! ```
 //!
-//! The first `count` to either side are enclosed one by one, each by a disc: over a part of the box, with control points n_i of j w N and
-//! d_i of s D at s = j w_k, and any number c,
+//! The first `count` on either side are enclosed one by one, each by a disc: over a part of the
+//! box, with control points n_i of j w N and d_i of s D at s = j w_k, and any number c,
 //!
 //! ```text
 //! |q_k - c e^(-j k W tau)| <= greatest |n_i - c d_i|/least |d_i|
 //! ```
 //!
-//! The others are bounded together. Where |N/D| <= C/w^m from 0.49 + count images on, with m >= 1, they add at most
+//! The others are bounded together. Where |N/D| <= C/w^m from 0.49 + count images on, with m >= 1,
+//! they add at most
 //!
 //! ```text
 //! 2 w C W^-(m+1) sum over k > count of (k - 0.51)^-(m+1)  <=  2 w C W^-(m+1) (count - 0.01)^-m/m
@@ -25,9 +26,10 @@ use super::part::{quotient, value};
 use super::points::{PanelPoint, PanelRange, Points};
 use super::polynomial::{BoxPolynomial, Decimal, InS};
 
-/// The band ends at this part of W at most, a little beyond pi/T.
+/// The band ends at this share of W at most, slightly beyond pi/T.
 pub(super) const BAND_END: f64 = 0.51;
-/// What follows for the bound on the images beyond those that are taken one by one: where it begins, and where its integral does.
+/// Constants of the bound on the images beyond those that are enclosed one by one: where it begins,
+/// and where its integral begins.
 const BOUND_BEGIN: f64 = 0.49;
 const INTEGRAL_BEGIN: f64 = -0.01;
 
@@ -46,15 +48,15 @@ pub(crate) struct PlantImages<S> {
     /// T
     pub(super) sample_time_s: S,
     count: usize,
-    /// The dead time up to the sensor's output, where no variable moves it.
+    /// The dead time up to the sensor's output, if no variable changes it.
     dead_time_s: Option<S>,
-    /// What of it is the sensor's.
+    /// The part of it that belongs to the sensor.
     sensor_delay_s: S,
     with_sensor: ImagedQuotient<S>,
     alone: ImagedQuotient<S>,
 }
 
-/// N and D, with the bound on what is not taken image by image.
+/// N and D, with the bound on the images that are not enclosed one by one.
 #[derive(Clone, Debug)]
 struct ImagedQuotient<S> {
     over: InS<S>,
@@ -103,7 +105,7 @@ impl<S: Decimal> PlantImages<S> {
         }
     }
 
-    /// The dead time of this plant, where no variable moves it.
+    /// The dead time of this plant, if no variable changes it.
     fn late(&self, which: Which) -> Option<S> {
         let whole = self.dead_time_s?;
         Some(match which {
@@ -117,13 +119,14 @@ impl<S: Decimal> PlantImages<S> {
         S::pi().times(2.0) / self.sample_time_s
     }
 
-    /// The circle is covered from zero to the first of these; the images are enclosed up to the second.
+    /// The circle is covered from zero to the first of these; the images are enclosed up to the
+    /// second.
     pub(super) fn band_ends(&self) -> [f64; 2] {
         let half = S::pi() / self.sample_time_s;
         [half.most(), (self.turn() * S::from(BAND_END)).least()]
     }
 
-    /// What is claimed of the bounds, with the sensor and without: |s^m N| <= C |D|.
+    /// The claims about the bounds, with the sensor and without: |s^m N| <= C |D|.
     pub(super) fn bounded(&self) -> [Claimed<S>; 2] {
         [&self.with_sensor, &self.alone].map(|imaged| {
             let s_to_m = [vec![BoxPolynomial::zero(); imaged.order], vec![BoxPolynomial::number(1.0)]];
@@ -132,17 +135,18 @@ impl<S: Decimal> PlantImages<S> {
         })
     }
 
-    /// By how much the degree of the denominator is greater than that of the numerator, with the sensor and without; `None` where it is not.
+    /// The degree of the denominator less that of the numerator, with the sensor and without;
+    /// `None` where it is not positive.
     pub(super) fn relative_degrees(&self) -> Option<[usize; 2]> {
         Some([self.with_sensor.relative_degree()?, self.alone.relative_degree()?])
     }
 
-    /// From which frequency on the bounds are needed.
+    /// Frequency above which the bounds are needed.
     pub(super) fn bound_begin(&self) -> S {
         self.turn() * S::from(self.count as f64 + BOUND_BEGIN)
     }
 
-    /// Control points of the images taken one by one, over a panel and the whole box.
+    /// Control points of the images enclosed one by one, over a panel and the whole box.
     pub(super) fn over(&self, which: Which, variables: usize, range: PanelRange) -> Option<ImagePoints<S>> {
         let imaged = self.imaged(which);
         let turn = self.turn();
@@ -174,7 +178,7 @@ impl<S: Decimal> PlantImages<S> {
         })
     }
 
-    /// What holds R at a frequency, of a plant with numbers as coefficients.
+    /// A set that contains R at a frequency, for a plant with numbers as coefficients.
     pub(super) fn at(&self, which: Which, frequency: S) -> Option<Complex<S>> {
         let dead_time_s = self.late(which)?;
         let imaged = self.imaged(which);
@@ -193,7 +197,7 @@ impl<S: Decimal> PlantImages<S> {
         Some(each.fold([rest; 2], sum))
     }
 
-    /// What the images that are not taken one by one add at most, up to a frequency.
+    /// The most that the images which are not enclosed one by one add, up to a frequency.
     fn rest(&self, imaged: &ImagedQuotient<S>, frequency: S) -> S {
         let order = imaged.order;
         let own = S::from(self.count as f64 + INTEGRAL_BEGIN);
@@ -204,13 +208,14 @@ impl<S: Decimal> PlantImages<S> {
 }
 
 impl<S: Decimal> ImagedQuotient<S> {
-    /// By how much the degree of D is greater than that of N, where it is.
+    /// The degree of D less that of N, if it is positive.
     fn relative_degree(&self) -> Option<usize> {
         self.under.degree()?.checked_sub(self.over.degree()?).filter(|degree| *degree > 0)
     }
 }
 
-/// Control points of the images over a part of a panel and of the box: of each d_i and n_i, and its phase where that is known.
+/// Control points of the images over a part of a panel and of the box: of each d_i and n_i, with
+/// its phase where that is known.
 #[derive(Clone, Debug)]
 pub(crate) struct ImagePoints<S> {
     each: Vec<(Points<S>, Option<Complex<S>>)>,
@@ -239,7 +244,7 @@ impl<S: Decimal> ImagePoints<S> {
         [low, high].map(|each| ImagePoints { each, rest })
     }
 
-    /// What holds R everywhere in this part.
+    /// A set that contains R everywhere in this part.
     pub(super) fn disc(&self) -> ImageDisc<S> {
         let whole = ImageDisc { center: [S::from(0.0); 2], radius: self.rest };
         self.each.iter().fold(whole, |known, (points, phase)| {
@@ -252,7 +257,7 @@ impl<S: Decimal> ImagePoints<S> {
         })
     }
 
-    /// The points of the image that is known least.
+    /// The points of the image that is known least accurately.
     pub(super) fn least_known(&self) -> Option<&Points<S>> {
         let radius = |points: &Points<S>| disc(points.points()).radius.most();
         let all = self.each.iter().map(|(points, _)| points);
@@ -260,14 +265,14 @@ impl<S: Decimal> ImagePoints<S> {
     }
 }
 
-/// What holds n/d, from the control points of both.
+/// A set that contains n/d, from the control points of both.
 fn disc<S: Decimal>(points: &[PanelPoint<S>]) -> ImageDisc<S> {
     let middle = points.iter().fold([0.0; 4], |[dr, di, nr, ni], point| {
         [dr + point[0].middle(), di + point[1].middle(), nr + point[2].middle(), ni + point[3].middle()]
     });
     let [dr, di, nr, ni] = middle;
     let square = dr * dr + di * di;
-    // whatever it is, it is exact
+    // its value does not matter, but it is exact
     let center = [(nr * dr + ni * di) / square, (ni * dr - nr * di) / square].map(S::from);
     let squared = |part: f64| S::from(part) * S::from(part);
     let length = (squared(dr) + squared(di)).sqrt();
@@ -279,7 +284,7 @@ fn disc<S: Decimal>(points: &[PanelPoint<S>]) -> ImageDisc<S> {
         greatest = greatest.maximum((re * re + im * im).sqrt() + *rest * (S::from(1.0) + size(center)));
         least = least.min((dr_i.times(dr) + di_i.times(di) - *rest * length).least());
     }
-    // d leaves zero on one side
+    // d does not enclose zero
     let radius = if least > 0.0 { greatest * length / S::from(least) } else { S::from(f64::INFINITY) };
     ImageDisc { center, radius }
 }

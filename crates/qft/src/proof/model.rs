@@ -1,4 +1,5 @@
-//! Coefficients that are not polynomials in the variables of a box: a polynomial with a remainder for each operation, after Taylor.
+//! Coefficients that are not polynomials in the variables of a box: a polynomial with a remainder
+//! for each operation, after Taylor.
 //!
 //! ```text
 //! t = (x + 1)/2,  x in [-1, 1],    y = c + u,  |u| <= rho,    f(y) = sum over k <= d of f_k u^k + r,    |r| <= rho^(d+1) greatest |f_(d+1)|
@@ -9,22 +10,22 @@
 //! ln y      f_0 = ln c, f_k = (-1)^(k-1)/(k c^k)                 1/((d+1) least^(d+1))
 //! ```
 //!
-//! c is the coefficient without a variable; least and greatest are those of y, which is between c - rho and c + rho. What a product has
-//! beyond the degree d, the sum of the exponents, is added to its remainder.
+//! c is the coefficient without a variable; least and greatest are those of y, which is between c -
+//! rho and c + rho. Terms of a product whose total degree exceeds d are added to its remainder.
 
 use phea_dynamics::expression::{Binary, Expression, Node, Unary};
 
 use super::polynomial::{BoxPolynomial, Decimal};
 
-/// The results of an expression as polynomials in t of at most this degree with remainders, the parameters being such in x; `None` where an
-/// operation is not defined on the whole box.
+/// The results of an expression as polynomials in t of at most this degree with remainders, the
+/// parameters being such in x; `None` where an operation is not defined on the whole box.
 pub(super) fn modelled<S: Decimal>(
     expression: &Expression,
     parameters: &[BoxPolynomial<S>],
     degree: usize,
 ) -> Option<Vec<BoxPolynomial<S>>> {
     let model = Model { degree };
-    // an operation that is not defined is none that a choice may take
+    // a choice must not take an operation that is not defined
     let mut values: Vec<Option<BoxPolynomial<S>>> = Vec::with_capacity(expression.nodes().len());
     for node in expression.nodes() {
         let value = model.value(*node, &values, parameters);
@@ -34,7 +35,8 @@ pub(super) fn modelled<S: Decimal>(
     results.map(|value| Some(value?.with_shares())).collect()
 }
 
-/// A parameter that moves from low to high by equal factors with t: root(low high) exp(x ln(high/low)/2).
+/// A parameter that varies logarithmically from low to high with t: root(low high) exp(x
+/// ln(high/low)/2).
 pub(super) fn by_factors<S: Decimal>(
     [low, high]: [S; 2],
     variable: usize,
@@ -59,20 +61,21 @@ struct Model {
     degree: usize,
 }
 
-/// One of two, nobody knows which: their mean, half of their difference added to the remainder.
+/// One of two polynomials, undecided: their mean, with half their difference added to the
+/// remainder.
 fn either<S: Decimal>(one: &BoxPolynomial<S>, other: &BoxPolynomial<S>) -> BoxPolynomial<S> {
     let apart = one.plus(&other.scaled(S::from(-1.0)));
     let half = (apart.size() + apart.rest()).times(0.5);
     one.plus(other).scaled(S::from(0.5)).with_rest(half)
 }
 
-/// Between which numbers a polynomial in x is, its remainder included.
+/// The range of a polynomial in x, its remainder included.
 fn range<S: Decimal>(of: &BoxPolynomial<S>) -> [S; 2] {
     let (center, reach) = parted(of);
     [center - reach, center + reach]
 }
 
-/// The coefficient without a variable, and what is beside it at most.
+/// The constant coefficient, and the greatest magnitude of the rest.
 fn parted<S: Decimal>(of: &BoxPolynomial<S>) -> (S, S) {
     let zero = S::from(0.0);
     let (center, reach) =

@@ -1,22 +1,26 @@
-//! How far plants whose coefficients are no polynomials are parted, so that polynomials stand for them with small remainders.
+//! How far a box is divided where coefficients are not polynomials, so that polynomials replace
+//! them with small remainders.
 
 use super::NotProven;
 use super::certificate::{Certificate, ParameterSegment};
 use super::claimed::Loop;
 
-/// Degrees of the polynomials that stand for what is none, of which the first is taken that leaves little, else the last.
+/// Degrees of the polynomials that replace such coefficients: the first with a small remainder is
+/// used, otherwise the last.
 const DEGREES: [usize; 3] = [3, 5, 8];
-/// Their terms multiply with the variables: the last degree for so many, and for more.
+/// The number of terms grows with the number of variables: the last degree for this number of
+/// variables, and for more.
 const LAST_DEGREES: [usize; 5] = [8, 8, 8, 6, 5];
 const MANY_VARIABLES_DEGREE: usize = 4;
-/// A remainder of a coefficient that is this small beside it needs no smaller box.
+/// A remainder of a coefficient this small, relative to it, needs no smaller box.
 const SMALL: f64 = 1e-6;
-/// Halving a box is worth it where it makes its remainder less than this part of what it was.
+/// A box is halved if this reduces its remainder below this share.
 const WORTH: f64 = 0.5;
 /// Boxes at most.
 const BOXES_MAXIMUM: usize = 64;
 
-/// Where the coefficients are no polynomials they get such with a remainder, and boxes are halved until that is small.
+/// Coefficients that are not polynomials are replaced by polynomials with a remainder, and boxes
+/// are halved until the remainder is small.
 pub(super) fn with_model(certificate: &mut Certificate) -> Result<(), NotProven> {
     let of_all = |certificate: &Certificate| -> Option<Vec<f64>> {
         (0..certificate.plant.boxes.len()).map(|of_box| share(certificate, of_box)).collect()
@@ -39,7 +43,7 @@ pub(super) fn with_model(certificate: &mut Certificate) -> Result<(), NotProven>
     while place < shares.len() && shares.len() < BOXES_MAXIMUM {
         let (of_box, own) = (place, shares[place]);
         let worth = |(_, of_halves): &(Halves, [f64; 2])| {
-            // where there is none yet, any is better
+            // any is better than none
             own.is_infinite() || of_halves.iter().all(|half| *half <= WORTH * own)
         };
         let halves = if own > SMALL { halved(certificate, of_box).filter(worth) } else { None };
@@ -57,7 +61,8 @@ pub(super) fn with_model(certificate: &mut Certificate) -> Result<(), NotProven>
     if of_all(certificate).is_some() { Ok(()) } else { Err(NotProven::NotPolynomial) }
 }
 
-/// The greatest remainder of a coefficient of the plant over a box, beside its size; `None` where the box has no such polynomials.
+/// The greatest remainder of a coefficient of the plant over a box, relative to its size; `None`
+/// where the box has no such polynomials.
 fn share(certificate: &Certificate, of_box: usize) -> Option<f64> {
     Some(Loop::<f64>::over_box(certificate, of_box)?.remainder_share())
 }
@@ -65,7 +70,8 @@ fn share(certificate: &Certificate, of_box: usize) -> Option<f64> {
 /// Both halves of a box.
 type Halves = [Vec<ParameterSegment>; 2];
 
-/// Both halves of a box across the variable that makes the remainders smallest, and those.
+/// Both halves of a box across the variable that makes the remainders smallest, with these
+/// remainders.
 fn halved(certificate: &Certificate, of_box: usize) -> Option<(Halves, [f64; 2])> {
     let own = certificate.plant.boxes.get(of_box)?;
     let mut alone = certificate.clone();
@@ -81,7 +87,7 @@ fn halved(certificate: &Certificate, of_box: usize) -> Option<(Halves, [f64; 2])
     candidates.min_by(|(_, one), (_, other)| greatest(one).total_cmp(&greatest(other)))
 }
 
-/// Both halves of a box across a variable; `None` where that moves nothing.
+/// Both halves of a box across a variable; `None` where it changes nothing.
 fn halves(whole: &[ParameterSegment], variable: usize) -> Option<Halves> {
     let moved = |one: &ParameterSegment| one.variable == Some(variable);
     let half = |lower: bool| {

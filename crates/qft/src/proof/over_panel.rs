@@ -1,5 +1,5 @@
-//! Functions of the frequency alone over a finite panel: a polynomial, and a remainder. Sampled controllers, holds and whole delays are such
-//! functions.
+//! Functions of the frequency alone over a finite panel: a polynomial, and a remainder. Sampled
+//! controllers, holds and whole delays are such functions.
 //!
 //! ```text
 //! w = middle + half y,  y in [-1, 1],      f(w) = sum over k < m of f_k y^k + r,   |r| <= rest
@@ -9,7 +9,8 @@
 //! W (w/v)^alpha                   f_k = W (middle/v)^alpha C(alpha, k) u^k           u = half/middle, rest: |f_m|/(1 - u max(1, (m + |alpha|)/(m + 1)))
 //! ```
 //!
-//! C(alpha, k + 1)/C(alpha, k) = (alpha - k)/(k + 1), whose magnitude from k = m on is not greater than that maximum.
+//! C(alpha, k + 1)/C(alpha, k) = (alpha - k)/(k + 1), whose magnitude from k = m on is not greater
+//! than that maximum.
 
 use super::dead_time::InFrequency;
 use super::part::Straight;
@@ -17,7 +18,8 @@ use super::polynomial::{BoxPolynomial, Decimal, InS};
 
 /// Terms of the series of I_k.
 const HOLD_TERMS: usize = 40;
-/// What they leave out at most: less than 2 a^40/40!, which is 2e-27 for the angle a = 3.3, little more than half a turn.
+/// Largest sum of the omitted terms: less than 2 a^40/40!, which is 2e-27 for the angle a = 3.3,
+/// slightly more than half a turn.
 const HOLD_REST: f64 = 1e-20;
 
 /// A complex number.
@@ -28,7 +30,7 @@ pub(super) type Complex<S> = [S; 2];
 pub(super) struct OverPanel<S> {
     /// Of the powers of y.
     coefficients: Vec<Complex<S>>,
-    /// What the sum differs from the function by at most.
+    /// Largest difference between the sum and the function.
     rest: S,
 }
 
@@ -125,7 +127,7 @@ impl<S: Decimal> Middle<S> {
         })
     }
 
-    /// The product, what is beyond the terms that are kept added to the remainder.
+    /// The product; terms beyond those that are kept are added to the remainder.
     pub(super) fn product(self, one: &OverPanel<S>, other: &OverPanel<S>) -> OverPanel<S> {
         let length = (one.coefficients.len() + other.coefficients.len()).saturating_sub(1);
         let mut all = vec![[S::from(0.0); 2]; length];
@@ -142,12 +144,12 @@ impl<S: Decimal> Middle<S> {
 }
 
 impl<S: Decimal> OverPanel<S> {
-    /// What the sum differs from the function by at most.
+    /// Largest difference between the sum and the function.
     pub(super) fn rest(&self) -> S {
         self.rest
     }
 
-    /// The magnitude of the sum at most.
+    /// Largest magnitude of the sum.
     pub(super) fn size(&self) -> S {
         self.coefficients.iter().fold(S::from(0.0), |sum, &one| sum + size(one))
     }

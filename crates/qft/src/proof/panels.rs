@@ -1,5 +1,5 @@
-//! The panels of a band: its decades, and what lies below and beyond them. With dead time a panel is one over which it turns little, or one
-//! where how far it turns does not matter.
+//! The panels of a band: its decades, and the ranges below and beyond them. With dead time a panel
+//! is one over which the dead time turns little, or one where its angle does not matter.
 
 use phea_dynamics::portable;
 use phea_dynamics::watch::{Stopped, Watch};
@@ -11,17 +11,17 @@ use super::points::PanelRange;
 use super::polynomial::{BoxPolynomial, InS};
 use super::walk::{ProofEffort, WalkOutcome, walk};
 
-/// Points of a decade at which plants are looked at.
+/// Points per decade at which plants are evaluated.
 const POINTS_PER_DECADE: f64 = 24.0;
-/// By how much dead time turns over a panel at most, to either side of its middle, rad.
+/// Largest angle by which dead time turns over a panel, to either side of its middle, rad.
 const TURN: f64 = 1.0;
-/// The same of functions of the samples, in parts of that.
+/// The same for functions of the samples, as a share of that.
 const SAMPLED_TURN: f64 = 0.5;
 /// The greatest ratio of the ends of a panel over which a power of the frequency is expanded.
 const POWER_PANEL: f64 = 1.6;
-/// A panel is parted no more where its ends are nearer than by this ratio.
+/// A panel is not divided further if the ratio of its ends is below this.
 const NARROWEST: f64 = 1.02;
-/// How far it is tried whether dead time matters: leaves and depth.
+/// Effort for testing whether dead time matters: leaves and depth.
 const TRIAL: (usize, usize) = (40, 24);
 
 /// Looks for trees that show |V| <= |U| over a band.
@@ -33,7 +33,7 @@ pub(super) fn walk_band(
     watch: Watch<'_>,
 ) -> Result<WalkOutcome, Stopped> {
     let decades = decades(band, claimed);
-    // the lowest last: it is taken first
+    // the lowest last, since it is taken first
     let mut waiting: Vec<[f64; 2]> = decades.windows(2).map(|pair| [pair[0], pair[1]]).rev().collect();
     let mut shown = vec![];
     let sampled_turn = claimed.turn_s();
@@ -76,7 +76,7 @@ pub(super) fn walk_band(
     Ok(WalkOutcome::Shown(shown))
 }
 
-/// Whether it is shown, or wrong, however far dead time turns.
+/// Whether it is shown, or refuted, whatever the angle of the dead time.
 fn any(
     over: &mut impl FnMut(Late, ProofEffort) -> Result<WalkOutcome, Stopped>,
     effort: ProofEffort,
@@ -91,12 +91,13 @@ fn any(
     Ok(None)
 }
 
-/// From where to where frequency times dead time goes.
+/// The range of frequency times dead time.
 fn angles([from, to]: [f64; 2], [least, most]: [f64; 2]) -> [f64; 2] {
     [from * least, to * most]
 }
 
-/// Where a panel is parted, over which dead time turns too far; `None` where it does not, or where parting helps no more.
+/// Where to divide a panel over which dead time turns too far; `None` where it does not, or where
+/// dividing no longer helps.
 fn parted([from, to]: [f64; 2], [begin, end]: [f64; 2]) -> Option<f64> {
     let middle = if from > 0.0 { rounded((from * to).sqrt()) } else { rounded(0.1 * to) };
     let turns_little = end - begin <= 2.0 * TURN;
@@ -126,10 +127,10 @@ fn decades([from, to]: [f64; 2], claimed: &Claimed<f64>) -> Vec<f64> {
     ends
 }
 
-/// By how much what is late is less than what is not where a panel to infinity begins.
+/// How much smaller the delayed part is than the rest where a panel to infinity begins.
 const LESS: f64 = 10.0;
 
-/// Beyond this frequency what is late has lost its weight.
+/// Beyond this frequency the delayed part is negligible.
 fn beyond(claimed: &Claimed<f64>) -> Option<f64> {
     let leading = |of: &InS<f64>| {
         let degree = of.degree()?;
@@ -141,7 +142,8 @@ fn beyond(claimed: &Claimed<f64>) -> Option<f64> {
     (own > late).then(|| portable::pow(LESS * slow / fast, 1.0 / (own - late)))
 }
 
-/// About where the magnitudes of the terms of a polynomial are equal, at the end of the box where all variables are one.
+/// The approximate frequency where the magnitudes of the terms of a polynomial are equal, at the
+/// corner of the box where all variables are one.
 fn bends(of: &InS<f64>) -> Vec<f64> {
     let size = |(power, coefficient): (usize, &BoxPolynomial<f64>)| {
         (power, coefficient.terms().map(|(_, value)| value).sum::<f64>().abs())
@@ -155,7 +157,7 @@ fn bends(of: &InS<f64>) -> Vec<f64> {
     between.filter(|bend| bend.is_finite() && *bend > 0.0).collect()
 }
 
-/// Frequencies at which plants are looked at: the ends of the panels, and points in each decade.
+/// Frequencies at which plants are evaluated: the ends of the panels, and points in each decade.
 pub(super) fn frequencies(band: [f64; 2], claimed: &Claimed<f64>) -> Vec<f64> {
     let ends = decades(band, claimed);
     let inner = ends.windows(2).flat_map(|pair| {

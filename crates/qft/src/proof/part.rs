@@ -1,11 +1,12 @@
-//! Products of a polynomial in s and of functions of the frequency alone, those of the samples among them: what the loops of a certificate
-//! consist of.
+//! Products of a polynomial in s and functions of the frequency alone, including those of the
+//! samples: the building blocks of the loops of a certificate.
 //!
 //! ```text
 //! z = e^(j w T),   zeta = z - 1 = j w T e^(j w T) hold,   hold = (1 - e^(-j w T))/(j w T)
 //! ```
 //!
-//! zeta is zero where s is: as a factor it is written as s, so that an integrator in z meets one in s.
+//! zeta is zero where s is: as a factor it is written as s, so that an integrator in z can cancel
+//! one in s.
 
 use super::certificate::{ControlLaw, Quotient, Sections};
 use super::over_panel::{Complex, Middle, OverPanel, product, sum};
@@ -26,7 +27,8 @@ pub(crate) enum OfFrequency<S> {
     Straight(Straight),
 }
 
-/// A power of the frequency between two points of a table: straight in a double logarithmic diagram.
+/// A power of the frequency between two points of a table: straight in a double logarithmic
+/// diagram.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Straight {
     /// Frequency in rad/s, and magnitude.
@@ -93,7 +95,7 @@ pub(super) fn value<S: Decimal>(of: &InS<S>, frequency: S) -> Complex<S> {
     })
 }
 
-/// The number that a polynomial is which depends on no variable.
+/// The value of a polynomial that depends on no variable.
 pub(super) fn number<S: Decimal>(of: &BoxPolynomial<S>) -> S {
     of.terms().fold(S::uncertain(of.rest().most()), |sum, (_, value)| sum + value)
 }
@@ -103,7 +105,7 @@ pub(super) fn quotient<S: Decimal>(quotient: &Quotient) -> [InS<S>; 2] {
     [&quotient.numerator, &quotient.denominator].map(|coefficients| InS::of_decimals(coefficients))
 }
 
-/// Numerator and denominator of a law.
+/// Numerator and denominator of a compensator.
 pub(super) fn law<S: Decimal>(law: &ControlLaw, sample_time_s: Option<f64>) -> [PolynomialProduct<S>; 2] {
     match law {
         ControlLaw::Continuous(own) => quotient(own).map(PolynomialProduct::of),
@@ -119,7 +121,7 @@ pub(super) fn law<S: Decimal>(law: &ControlLaw, sample_time_s: Option<f64>) -> [
     }
 }
 
-/// A polynomial in zeta; as often as zeta divides it, that is written as s.
+/// A polynomial in zeta, whose factors zeta are written as s.
 fn of_section<S: Decimal>(section: &[f64], sample_time_s: S) -> PolynomialProduct<S> {
     let integrators = section.iter().rev().take_while(|coefficient| **coefficient == 0.0).count();
     let mut out = PolynomialProduct::of(InS(vec![BoxPolynomial::number(1.0)]));

@@ -1,4 +1,5 @@
-//! A part of a panel and of the box, with the control points of a claim on it; those of a sampled loop with the images of its plant.
+//! A part of a panel and of the box, with the control points of a claim on it and, for a sampled
+//! loop, with the images of its plant.
 
 use std::borrow::Cow;
 
@@ -17,7 +18,7 @@ pub(crate) struct Patch<S> {
     images: Option<ImagedPlant<S>>,
 }
 
-/// What the images of a plant multiply, and the images: of U, and of V where those are others.
+/// The factors of the images of a plant, and the images: for U, and for V if they differ.
 #[derive(Clone, Debug)]
 struct ImagedPlant<S> {
     multiplied: Points<S>,
@@ -33,7 +34,7 @@ impl<S: Decimal> Patch<S> {
             None => None,
             Some((images, multiplied)) => {
                 let [u, v] = claimed.which;
-                // what multiplies nothing need not be known
+                // images that are multiplied by nothing need not be known
                 let of = |sum: &[_], which: Which| match sum.is_empty() {
                     true => Ok(None),
                     false => images.over(which, variables, range).map(Some).ok_or(()),
@@ -71,7 +72,7 @@ impl<S: Decimal> Patch<S> {
         [one(low, low_multiplied, low_u, low_v), one(high, high_multiplied, high_u, high_v)]
     }
 
-    /// Its control points, those of the images within.
+    /// Its control points, including those of the images.
     pub(crate) fn points(&self) -> Cow<'_, Points<S>> {
         match &self.images {
             None => Cow::Borrowed(&self.own),
@@ -79,7 +80,8 @@ impl<S: Decimal> Patch<S> {
         }
     }
 
-    /// The same as if the images were known exactly, and the image that is known least; `None` where there are none.
+    /// The same as if the images were known exactly, and the image that is known least accurately;
+    /// `None` if there are no images.
     pub(crate) fn with_known_images(&self) -> Option<(Points<S>, &Points<S>)> {
         let images = self.images.as_ref()?;
         let known = images.discs().map(|disc| ImageDisc { radius: S::from(0.0), ..disc });
@@ -119,6 +121,6 @@ pub(super) fn at_point<S: Decimal>(claimed: &Claimed<S>, frequency_rad_per_s: f6
     let [at_u, at_v] =
         own.map(|one| Some(Patch::over(&one, 0, range)?.points().points().first()?.map(S::abs)));
     let ([ur, ui, _, _, of_u], [_, _, vr, vi, of_v]) = (at_u?, at_v?);
-    // a remainder makes |U| greater and |V| less by at most so much
+    // a remainder changes |U| and |V| by at most this much
     Some([(ur * ur + ui * ui).sqrt() + of_u, (vr * vr + vi * vi).sqrt() - of_v])
 }

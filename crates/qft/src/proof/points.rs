@@ -1,11 +1,12 @@
-//! Control points: what U and V are spanned by over a box and a panel of frequencies, in the basis of Bernstein.
+//! Control points: the coefficients of U and V over a box and a panel of frequencies, in the
+//! Bernstein basis.
 //!
 //! ```text
 //! U = sum over k of U_k B_k(t),     B_k >= 0,   sum over k of B_k = 1        t in [0, 1]^n
 //! ```
 //!
-//! Every pair (U, V) on the box is a mean of the pairs (U_k, V_k), with the same weights for both. What dead time leaves over has the
-//! magnitude e, at most the same mean of e_k.
+//! Every pair (U, V) on the box is a mean of the pairs (U_k, V_k), with the same weights for both.
+//! The remainder of dead time has the magnitude e, at most the same mean of e_k.
 
 use super::certificate::Late;
 use super::claimed::Claimed;
@@ -18,7 +19,7 @@ use super::polynomial::{BoxPolynomial, Decimal, InS};
 /// Real and imaginary part of U, the same of V, and e.
 pub(crate) type PanelPoint<S> = [S; 5];
 
-/// A panel of frequencies, rad/s, and how dead time is taken over it; it may end at infinity.
+/// A panel of frequencies, rad/s, and how dead time is treated over it; it may end at infinity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct PanelRange {
     pub(crate) from: f64,
@@ -33,14 +34,14 @@ pub(crate) struct Points<S> {
     values: Vec<PanelPoint<S>>,
 }
 
-/// Control points at most: more are no claim that anybody makes.
+/// Largest number of control points: more than any practical claim needs.
 const POINTS_MAXIMUM: usize = 1 << 21;
 
-/// U and V over a panel as polynomials, and what remains of each: at most so much of a polynomial.
+/// U and V over a panel as polynomials, each with a bound of its remainder.
 struct PanelTerms<S> {
     whole: [InFrequency<S>; 2],
     rests: Vec<(InFrequency<S>, S)>,
-    /// Polynomials that count for the degrees alone.
+    /// Polynomials of which only the degrees matter.
     unused: Vec<InFrequency<S>>,
 }
 
@@ -89,7 +90,7 @@ impl<S: Decimal> PanelTerms<S> {
     }
 }
 
-/// A part over a panel, and what remains: of its functions of the frequency, and of its polynomial.
+/// A part over a panel, and the remainders of its functions of the frequency and of its polynomial.
 fn over_panel<S: Decimal>(
     claimed: &Claimed<S>,
     part: &PolynomialProduct<S>,
@@ -114,8 +115,8 @@ fn over_panel<S: Decimal>(
 }
 
 impl<S: Decimal> Points<S> {
-    /// The control points of a claim over a panel and the whole box, and of what its images multiply, in the same degrees; `None` where
-    /// they are too many.
+    /// The control points of a claim over a panel and the whole box, and of the factors of its
+    /// images, in the same degrees; `None` if there are too many.
     pub(crate) fn over(
         claimed: &Claimed<S>,
         variables: usize,
@@ -124,7 +125,7 @@ impl<S: Decimal> Points<S> {
         let Claimed { u, v, .. } = claimed;
         let own = PanelTerms::of(claimed, [[&u[0], &u[1]], [&v[0], &v[1]]], range);
         let images = match range.late {
-            // the images are late as well
+            // the images are delayed as well
             Late::Not => PanelTerms::of(claimed, [[&u[2], &[]], [&v[2], &[]]], range),
             _ => PanelTerms::of(claimed, [[&[], &u[2]], [&[], &v[2]]], range),
         };
@@ -138,7 +139,7 @@ impl<S: Decimal> Points<S> {
         }
     }
 
-    /// The control points of two polynomials on a finite panel, with what remains of both.
+    /// The control points of two polynomials on a finite panel, with the remainders of both.
     pub(super) fn of_pair(
         pair: [InFrequency<S>; 2],
         rests: impl Iterator<Item = InFrequency<S>>,
@@ -166,11 +167,12 @@ impl<S: Decimal> Points<S> {
         Some(points)
     }
 
-    /// With images whose sum is in this disc, for U and for V: what remains of them is added to e.
+    /// With images whose sum is in this disc, for U and for V; their remainder is added to e.
     pub(super) fn with_images(&self, images: &Points<S>, [of_u, of_v]: [ImageDisc<S>; 2]) -> Points<S> {
         let greatest = |disc: &ImageDisc<S>| size(disc.center) + disc.radius;
         let most = greatest(&of_u).maximum(greatest(&of_v));
-        // nothing is shown where a denominator of an image may vanish, not even of what is multiplied by zero
+        // nothing is shown where a denominator of an image may vanish, even if the image is
+        // multiplied by zero
         let is_known = [of_u, of_v].iter().all(|disc| disc.radius.most().is_finite());
         let unknown = S::from(if is_known { 0.0 } else { f64::INFINITY });
         let mut out = self.clone();
@@ -214,7 +216,8 @@ impl<S: Decimal> Points<S> {
         digits.zip(&self.degrees).fold(0, |index, (digit, degree)| index * (degree + 1) + digit)
     }
 
-    /// From powers to control points. Towards infinity both are divided by the same power of the frequency, and its inverse is the variable.
+    /// From powers to control points. Towards infinity both are divided by the same power of the
+    /// frequency, and its inverse is the variable.
     fn bring_to(&mut self, range: PanelRange) {
         if range.to.is_infinite() {
             self.reverse_frequency();
@@ -308,7 +311,7 @@ impl<S: Decimal> Points<S> {
         });
     }
 
-    /// Every line of points along an axis: the values, and where the point of a place stands.
+    /// Every line of points along an axis: the values, and the position of each point.
     fn for_lines(
         &mut self,
         axis: usize,
@@ -325,7 +328,8 @@ impl<S: Decimal> Points<S> {
 }
 
 impl<S: Decimal> InFrequency<S> {
-    /// What remains of a polynomial in s = j w at most, as a polynomial in w; `None` where nothing does.
+    /// Bound of the remainder of a polynomial in s = j w, as a polynomial in w; `None` if there is
+    /// none.
     pub(super) fn of_rests(of: &InS<S>) -> Option<InFrequency<S>> {
         let rests = of.0.iter().map(BoxPolynomial::rest);
         let rests: Vec<BoxPolynomial<S>> = rests.map(BoxPolynomial::constant).collect();

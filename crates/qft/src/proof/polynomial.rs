@@ -8,19 +8,21 @@ use phea_dynamics::scalar::{Interval, Scalar};
 
 use super::dead_time::enclosed_cosine_and_sine;
 
-/// A number of a certificate: what it prints as in decimals is meant, of which binary numbers hold the nearest.
+/// A number of a certificate: it stands for the decimal number that it prints as, to which the
+/// binary number is the nearest.
 pub(crate) trait Decimal: Scalar + PartialEq {
-    /// What holds the decimal number that this one prints as.
+    /// An enclosure of the decimal number that this one prints as.
     fn decimal(value: f64) -> Self;
-    /// What holds the cosine and the sine of every angle that this stands for, rad.
+    /// Enclosures of the cosine and the sine of every angle that this stands for, rad.
     fn cosine_and_sine(angle: Self) -> [Self; 2];
-    /// What holds every number of at most this magnitude; zero where rounding is not kept account of.
+    /// An enclosure of every number of at most this magnitude; zero where rounding is not tracked.
     fn uncertain(magnitude: f64) -> Self;
     /// What holds pi.
     fn pi() -> Self;
-    /// What holds both and all between them; the other where rounding is not kept account of.
+    /// An enclosure of both and everything between them; the other number where rounding is not
+    /// tracked.
     fn up_to(self, other: Self) -> Self;
-    /// A number in the midst of those that this stands for.
+    /// A number in the middle of those that this stands for.
     fn middle(self) -> f64;
     /// Not less than any number that this stands for.
     fn most(self) -> f64;
@@ -63,7 +65,7 @@ impl Decimal for f64 {
 }
 
 impl Decimal for Interval {
-    /// Decimals that read as a number are nearer to it than its neighbours are; zero is zero.
+    /// A decimal that reads as this number is nearer to it than to its neighbours; zero is exact.
     fn decimal(value: f64) -> Interval {
         if value == 0.0 { Interval::from(0.0) } else { Interval::new(value.next_down(), value.next_up()) }
     }
@@ -76,7 +78,7 @@ impl Decimal for Interval {
         Interval::new(-magnitude, magnitude)
     }
 
-    /// The double nearest to pi is less than it.
+    /// The double nearest to pi is less than pi.
     fn pi() -> Interval {
         Interval::new(PI, PI.next_up())
     }
@@ -98,19 +100,21 @@ impl Decimal for Interval {
     }
 }
 
-/// Variables of a box at most.
+/// Largest number of variables of a box.
 pub(crate) const VARIABLES_MAXIMUM: usize = 12;
-/// The greatest exponent of a variable in a coefficient of a plant: products of two such polynomials keep within a byte.
+/// The greatest exponent of a variable in a coefficient of a plant: the exponents of a product of
+/// two such polynomials fit into a byte.
 const EXPONENT_MAXIMUM: u8 = 60;
 
-/// Products of terms at most: of what has more nothing is known.
+/// Largest number of products of terms: a polynomial with more is unbounded.
 const PRODUCTS_MAXIMUM: usize = 1 << 20;
 
 /// Exponents of the variables.
 type VariablePowers = [u8; VARIABLES_MAXIMUM];
 
-/// A polynomial in the variables of a box: exponents in increasing order, each with its coefficient. What it stands for differs from it by
-/// a remainder of at most `rest`, with the variables in [0, 1] as in [-1, 1].
+/// A polynomial in the variables of a box: exponents in increasing order, each with its
+/// coefficient. The function that it stands for differs from it by a remainder of at most `rest`,
+/// with the variables in [0, 1] or in [-1, 1].
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct BoxPolynomial<S> {
     terms: Vec<(VariablePowers, S)>,
@@ -149,18 +153,18 @@ impl<S: Decimal> BoxPolynomial<S> {
         self.terms.iter().map(|(exponents, coefficient)| (exponents.as_slice(), *coefficient))
     }
 
-    /// What it stands for differs from it by this at most.
+    /// Bound of the difference between it and the function that it stands for.
     pub(crate) fn rest(&self) -> S {
         self.rest
     }
 
-    /// The same with more that it may differ by.
+    /// The same with an increased remainder.
     pub(super) fn with_rest(mut self, more: S) -> BoxPolynomial<S> {
         self.rest = self.rest + more;
         self
     }
 
-    /// Its magnitude at most, without the remainder.
+    /// Bound of its magnitude, without the remainder.
     pub(super) fn size(&self) -> S {
         self.terms.iter().fold(S::from(0.0), |sum, (_, value)| sum + value.abs())
     }
@@ -174,7 +178,7 @@ impl<S: Decimal> BoxPolynomial<S> {
         self.terms.is_empty() && !self.has_rest()
     }
 
-    /// The number that it is, if it depends on no variable.
+    /// Its value, if it depends on no variable.
     pub(crate) fn as_constant(&self) -> Option<S> {
         match self.terms.as_slice() {
             _ if self.has_rest() => None,
@@ -206,7 +210,7 @@ impl<S: Decimal> BoxPolynomial<S> {
                     fits &= slot.checked_add(*exponent).is_some();
                     *slot = slot.saturating_add(*exponent);
                 }
-                // a power that has no place is no power of this polynomial: nothing is known of the sum
+                // a power beyond the largest cannot be stored: nothing is known about the sum
                 let product = if fits { *a * *b } else { S::from(f64::NAN) };
                 (exponents, product)
             })
@@ -218,7 +222,7 @@ impl<S: Decimal> BoxPolynomial<S> {
         BoxPolynomial::collected(products.collect(), rest)
     }
 
-    /// Terms in any order, those with the same exponents added up in it.
+    /// From terms in any order; those with the same exponents are added.
     fn collected(mut terms: Vec<(VariablePowers, S)>, rest: S) -> BoxPolynomial<S> {
         terms.sort_by_key(|(exponents, _)| *exponents);
         terms.dedup_by(|next, kept| {
@@ -231,7 +235,7 @@ impl<S: Decimal> BoxPolynomial<S> {
         BoxPolynomial { terms, rest }
     }
 
-    /// Its terms up to a total degree, what the others are at most added to the remainder.
+    /// Its terms up to a total degree; the bound of the others is added to the remainder.
     pub(super) fn truncated(mut self, degree: usize) -> BoxPolynomial<S> {
         let is_kept = |exponents: &VariablePowers| {
             exponents.iter().map(|one| usize::from(*one)).sum::<usize>() <= degree
@@ -276,8 +280,8 @@ impl<S: Decimal> BoxPolynomial<S> {
     }
 }
 
-/// The results of an expression as polynomials in the variables of a box, its parameters being such polynomials; `None` where it takes
-/// something else than sums, products and quotients by numbers.
+/// The results of an expression as polynomials in the variables of a box, its parameters being such
+/// polynomials; `None` where it uses operations other than sums, products and quotients by numbers.
 pub(crate) fn expanded<S: Decimal>(
     expression: &Expression,
     parameters: &[BoxPolynomial<S>],
@@ -351,7 +355,7 @@ impl<S: Decimal> InS<S> {
         self.0.iter().position(|coefficient| !coefficient.is_zero())
     }
 
-    /// Divided by so many s, which must divide it.
+    /// The quotient by this power of s, which must divide it.
     pub(crate) fn without_powers_of_s(&self, count: usize) -> InS<S> {
         InS(self.0.iter().skip(count).cloned().collect())
     }

@@ -27,29 +27,30 @@ use crate::verification::{
 /// How far a proof goes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProofOptions {
-    /// The enclosure of a supremum is at most this wide, dB.
+    /// Largest width of the enclosure of a supremum, dB.
     pub width_db: f64,
-    /// Leaves of one claim at most.
+    /// Largest number of leaves of one claim.
     pub leaves_maximum: usize,
 }
 
 impl Default for ProofOptions {
-    /// 0.05 dB, and leaves enough for every example that is known.
+    /// 0.05 dB, and enough leaves for every known example.
     fn default() -> ProofOptions {
         ProofOptions { width_db: 0.05, leaves_maximum: 100_000 }
     }
 }
 
-/// What is kept for the rounding of the checker, in parts of |V|^2: at first, and where that did not suffice.
+/// Reserve for the rounding of the checker, as a share of |V|^2: at first, and where that did not
+/// suffice.
 const ROOMS: [f64; 2] = [1e-11, 3e-5];
-/// Halvings on the way to a leaf at most.
+/// Largest number of halvings on the way to a leaf.
 const DEPTH_MAXIMUM: usize = 120;
-/// Plants that are always looked at: the nominal one, and the least stable that the audit found.
+/// Plants that are always examined: the nominal one, and the least stable that the audit found.
 const NAMED: usize = 2;
 /// From the lowest to the highest frequency.
 const WHOLE: [f64; 2] = [0.0, f64::INFINITY];
 
-/// Proves or refutes what an audit found.
+/// Proves or refutes the result of an audit.
 ///
 /// # Errors
 /// [`Stopped`] by the watch.
@@ -81,7 +82,7 @@ pub fn prove(
     Ok(Proof { certificate: Some(prover.certificate), stability, specifications })
 }
 
-/// Of a loop that cannot be stated.
+/// For a loop that cannot be stated as a certificate.
 fn nothing(problem: &AuditProblem<'_>, reason: NotProven) -> Proof {
     let one = SpecificationProof::without(Standing::NotProven(reason.clone()));
     Proof {
@@ -143,7 +144,7 @@ impl Prover<'_> {
     ) -> Result<Result<StableBox, Standing>, Stopped> {
         let mut stable = None;
         for (index, member) in members.iter().enumerate() {
-            // every other plant of a sampled loop is judged by the box alone
+            // in a sampled loop every other plant is judged by the box alone
             if stable.is_some() && self.certificate.sampling.is_some() && index >= NAMED {
                 break;
             }
@@ -178,7 +179,7 @@ impl Prover<'_> {
         Ok(Ok(StableBox { member: member.variables.clone(), panels, delays, count }))
     }
 
-    /// Where the poles of the loop with one plant are, those of the prefilter as well.
+    /// The position of the poles of the loop with one plant, including those of the prefilter.
     fn poles(&self, member: &CertificateMember, watch: Watch<'_>) -> Result<PoleLocation, Stopped> {
         if self.certificate.sampling.is_some() {
             return self.counted(member, watch);
@@ -192,7 +193,7 @@ impl Prover<'_> {
         })
     }
 
-    /// The same of a sampled loop.
+    /// The same for a sampled loop.
     fn counted(&self, member: &CertificateMember, watch: Watch<'_>) -> Result<PoleLocation, Stopped> {
         let (Some(at), Some(sampling)) =
             (Loop::<f64>::at(&self.certificate, member), &self.certificate.sampling)
@@ -344,7 +345,8 @@ impl Prover<'_> {
         Ok(SpecificationProof { standing, least_db: is_reached.then(|| db(least)), most_db, worst })
     }
 
-    /// Keeps a claim that a ratio is not exceeded: that ratio in dB, or nothing where the checker could not confirm it.
+    /// Keeps a claim that a ratio is not exceeded; returns that ratio in dB, or `None` if the
+    /// checker could not confirm it.
     fn keeps_most(
         &mut self,
         limited: &LimitedLoop,
@@ -373,7 +375,8 @@ impl Prover<'_> {
     }
 }
 
-/// Where the poles of a loop are with one plant: within the boundary of stability, or at least one on it or beyond.
+/// The position of the poles of a loop with one plant: all within the boundary of stability, or at
+/// least one on it or beyond.
 enum PoleLocation {
     Within(Option<PoleCount>),
     Beyond(Option<PoleCount>),
@@ -381,7 +384,7 @@ enum PoleLocation {
 }
 
 impl SpecificationProof {
-    /// Both sides together: the worse standing, and the greater of both suprema.
+    /// Both sides together: the worse verdict, and the greater of both suprema.
     fn and(self, other: SpecificationProof) -> SpecificationProof {
         let rank = |standing: &Standing| match standing {
             Standing::Refuted => 0,

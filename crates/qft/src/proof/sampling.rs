@@ -1,5 +1,6 @@
-//! What a checker looks at in a sampled loop besides its claims: that its controller is a sampled one, that its prefilter is stable, and
-//! that the images beyond those taken one by one are bounded.
+//! What a checker verifies for a sampled loop in addition to its claims: that its controller is
+//! sampled, that its prefilter is stable, and that the images beyond those enclosed one by one are
+//! bounded.
 
 use phea_dynamics::scalar::{Interval, Scalar};
 
@@ -9,11 +10,11 @@ use super::claimed::Loop;
 use super::hurwitz::{RootLocation, roots_of};
 use super::polynomial::Decimal;
 
-/// Images to either side at most.
+/// Largest number of images on either side.
 const IMAGES_MAXIMUM: usize = 64;
-/// The order of a bound at most.
+/// Largest order of a bound.
 const ORDER_MAXIMUM: usize = 64;
-/// The degree of a section at most.
+/// Largest degree of a section.
 const SECTION_DEGREE_MAXIMUM: usize = 2;
 
 /// Controller and prefilter fit the loop.
@@ -67,7 +68,8 @@ pub(super) fn poles_of_law(law: &ControlLaw) -> usize {
     }
 }
 
-/// Whether all poles of the prefilter are within the unit circle, or to the left of the imaginary axis.
+/// Whether all poles of the prefilter are within the unit circle, or to the left of the imaginary
+/// axis.
 pub(super) fn prefilter_is_stable(certificate: &Certificate, around: &Loop<Interval>) -> bool {
     match &certificate.prefilter {
         ControlLaw::Continuous(_) => roots_of(around.prefilter_denominator()) == RootLocation::AllLeft,
@@ -75,8 +77,9 @@ pub(super) fn prefilter_is_stable(certificate: &Certificate, around: &Loop<Inter
     }
 }
 
-/// Whether the roots of a polynomial in zeta = z - 1, of degree two at most, have |z| < 1: with the leading coefficient 1, that of zeta b1
-/// and the last b0, P(z = 1) = b0 > 0, P(z = -1) = 4 - 2 b1 + b0 > 0 and b0 - b1 + 1 < 1.
+/// Whether the roots of a polynomial in zeta = z - 1, of degree two at most, have |z| < 1: with
+/// coefficients 1, b1 (of zeta) and b0, P(z = 1) = b0 > 0, P(z = -1) = 4 - 2 b1 + b0 > 0 and b0 -
+/// b1 + 1 < 1.
 fn is_within_circle(section: &[f64]) -> bool {
     let number = |value: f64| if value == 0.0 { Interval::from(0.0) } else { Interval::decimal(value) };
     let is_positive = |value: Interval| value.low() > 0.0;

@@ -1,4 +1,4 @@
-//! The loop of an audit as a certificate states it, and which plants stand at which variables.
+//! The loop of an audit as a certificate states it, and the variables of each plant.
 
 use num_complex::Complex64;
 use phea_dynamics::linear::{TimeDomain, TransferFunction};
@@ -17,7 +17,8 @@ use crate::closed_loop::Compensation;
 use crate::family::{Coordinate, Extent, Family, Spacing, UncertainFamily};
 use crate::specification::Limit;
 
-/// Terms of the series that stands for dead time: over a panel it turns by one radian to either side, so that 2e-9 remains.
+/// Terms of the series that replaces dead time: over a panel it turns by one radian to either side,
+/// so that the remainder is 2e-9.
 const DEAD_TIME_TERMS: usize = 12;
 
 /// The certificate of a loop, without a claim.
@@ -42,7 +43,7 @@ pub(super) fn stated(family: &Family, compensation: &Compensation) -> Result<Cer
         coefficients: expression.first(count),
         lengths,
         has_dead_time,
-        // that of the prefilter changes no magnitude
+        // the dead time of the prefilter changes no magnitude
         delay_s: compensation.delay_s() + parts[0].dead_time_s() + parts[2].dead_time_s(),
         dead_time_terms: DEAD_TIME_TERMS,
         model_degree: 0,
@@ -60,7 +61,7 @@ pub(super) fn stated(family: &Family, compensation: &Compensation) -> Result<Cer
     Ok(certificate)
 }
 
-/// A law in s or in z.
+/// A compensator in s or in z.
 fn law(function: &TransferFunction) -> ControlLaw {
     match function.domain() {
         TimeDomain::Continuous => ControlLaw::Continuous(quotient(function)),
@@ -147,12 +148,13 @@ fn boxes(family: &UncertainFamily) -> Result<(Vec<Vec<ParameterSegment>>, usize)
     Ok((boxes, variables))
 }
 
-/// Boxes that a family is parted into at most.
+/// Largest number of boxes into which a family is divided.
 const BOXES_MAXIMUM: usize = 256;
-/// By which factor a parameter that moves by equal factors is changed in one box at most.
+/// Largest factor by which a parameter on a logarithmic scale changes within one box.
 const FACTOR_MAXIMUM: f64 = 1.6;
 
-/// A box in which a variable moves these parameters: parted, where it moves them by factors that are too great for one.
+/// Boxes in which a variable moves these parameters: more than one if it changes them by too large
+/// a factor for a single box.
 fn parts(
     whole: &[ParameterSegment],
     moved: &[(usize, [f64; 2], bool)],
@@ -179,11 +181,11 @@ fn parts(
     (0..count as usize).map(|index| part(index as f64)).collect()
 }
 
-/// By how much a plant may stand beside the box through rounding, in parts of the range of a parameter.
+/// How far rounding may place a plant outside the box, as a share of the range of a parameter.
 const BESIDE: f64 = 1e-9;
 
-/// The variables of a plant that belongs to a box; `None` of one that does not, as one that is named need not do where parameters move
-/// together.
+/// The variables of a plant that belongs to a box; `None` if it does not, as may be the case for a
+/// declared plant where parameters are correlated.
 fn variables_within(segments: &[ParameterSegment], variables: usize, values: &[f64]) -> Option<Vec<f64>> {
     let mut shares: Vec<Option<f64>> = vec![None; variables];
     let fits = segments.iter().zip(values).all(|(one, value)| {
@@ -212,7 +214,7 @@ impl ParameterSegment {
         }
     }
 
-    /// The value of a parameter where its variable is this.
+    /// The value of a parameter at this value of its variable.
     pub fn value(&self, share: f64) -> f64 {
         match share {
             0.0 => self.low,
@@ -228,8 +230,8 @@ fn moves_straight(coordinate: &Coordinate) -> bool {
     coordinate.parameters.len() == 1 || coordinate.spacing.iter().all(|spacing| *spacing == Spacing::Linear)
 }
 
-/// The plant of a family with these values: of plants that are listed the one that has them, else that of a box that holds them, else that of
-/// the first box nearest to them.
+/// The plant of a family with these values: the listed plant that has them, otherwise that of a box
+/// that contains them, otherwise the nearest one of the first box.
 pub(super) fn member_of(plant: &CertifiedPlant, values: &[f64]) -> Option<CertificateMember> {
     let within = plant.boxes.iter().enumerate().find_map(|(of_box, segments)| {
         let variables = variables_within(segments, plant.variables, values)?;

@@ -12,11 +12,11 @@ use super::patch::at_point;
 use super::polynomial::InS;
 use super::walk::{ProofEffort, ProofRegion, WalkOutcome};
 
-/// Corners of a box that are looked at before anything is shown.
+/// Corners of a box that are evaluated before anything is shown.
 const CORNERS_MAXIMUM: usize = 64;
-/// How often a tree may be begun anew because the supremum turned out to be greater.
+/// How often a tree may be restarted because the supremum turned out to be greater.
 const RAISES_MAXIMUM: usize = 48;
-/// What a ratio that is reached is lowered by, so that rounding does not hide it.
+/// The amount by which a ratio that is reached is lowered, so that rounding does not hide it.
 const ROUNDED: f64 = 1e-9;
 
 /// A plant and a frequency.
@@ -26,31 +26,33 @@ pub(super) struct PlantAtFrequency {
     pub(super) member: CertificateMember,
 }
 
-/// What was found of a supremum.
+/// What was found about a supremum.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct EnclosedSupremum {
     /// A ratio that is reached, and where.
     pub(super) least: f64,
     pub(super) at: PlantAtFrequency,
-    /// A ratio that is not exceeded, with what shows it.
+    /// A ratio that is not exceeded, with its proof.
     pub(super) most: Option<(f64, Vec<Vec<FrequencyPanel>>)>,
-    /// What remained where there is none.
+    /// Why there is no such proof.
     pub(super) open: Option<ProofRegion>,
 }
 
 /// What is looked for.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SoughtSupremum {
-    /// The factor between both ends of the enclosure at most.
+    /// Largest ratio of the two ends of the enclosure.
     pub(super) width: f64,
-    /// A ratio that decides: it is shown or refuted, though the enclosure might be narrower.
+    /// A ratio that decides: the search ends once it is shown or refuted, even if the enclosure
+    /// could be narrower.
     pub(super) decisive: f64,
     pub(super) effort: ProofEffort,
-    /// Whether only points are looked at.
+    /// Whether only points are evaluated.
     pub(super) only_points: bool,
 }
 
-/// Encloses the supremum of the ratio of a closed loop to its limit; `None` of a loop without that path.
+/// Encloses the supremum of the ratio of a closed loop to its limit; `None` for a loop without that
+/// path.
 pub(super) fn enclose(
     certificate: &Certificate,
     limited: &LimitedLoop,
@@ -179,7 +181,7 @@ fn ratio_at(claimed: &Claimed<f64>, frequency_rad_per_s: f64) -> f64 {
             let leading = |of: &[PolynomialProduct<f64>]| -> f64 {
                 of.iter().map(|part| part.of_s.0.get(degree).map_or(0.0, number)).sum()
             };
-            // dead time turns what it multiplies without end
+            // dead time turns the part that it multiplies without limit
             let value = |[own, late, _]: &[Vec<PolynomialProduct<f64>>; 3]| {
                 if leading(late) == 0.0 { leading(own).abs() } else { f64::NAN }
             };

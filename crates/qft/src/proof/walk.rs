@@ -1,4 +1,5 @@
-//! The prover: halves boxes until every leaf is shown, in plain numbers. What it finds is for the checker to confirm.
+//! The prover: halves boxes until every leaf is shown, in plain numbers. The checker must confirm
+//! what it finds.
 
 use phea_dynamics::watch::{Stopped, Watch, tell};
 
@@ -13,7 +14,7 @@ use super::points::PanelRange;
 pub(crate) enum WalkOutcome {
     /// These panels show it.
     Shown(Vec<FrequencyPanel>),
-    /// It is wrong at this place: |V| is greater than |U| by this ratio.
+    /// It is refuted at this point: |V| is greater than |U| by this ratio.
     Wrong { at: Shares, ratio: f64 },
     /// Too many leaves; this box is not shown.
     Open(ProofRegion),
@@ -35,22 +36,22 @@ pub struct ProofRegion {
     pub of_box: usize,
     /// From and to, rad/s.
     pub band_rad_per_s: [f64; 2],
-    /// From and to for each variable, within 0 to 1.
+    /// The range of each variable, within 0 to 1.
     pub variables: Vec<[f64; 2]>,
 }
 
 /// How far a walk goes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ProofEffort {
-    /// Leaves of a panel at most.
+    /// Largest number of leaves of a panel.
     pub(crate) leaves: usize,
     /// Halvings on the way to a leaf at most.
     pub(crate) depth: usize,
-    /// What is kept for the rounding of the checker, in parts of |V|^2.
+    /// Reserve for the rounding of the checker, as a share of |V|^2.
     pub(crate) room: f64,
 }
 
-/// A box on its way: its control points, and from where to where it goes on each axis of its panel.
+/// A box to be processed: its control points, and its range on each axis of its panel.
 struct WaitingBox {
     patch: Patch<f64>,
     sides: Vec<[f64; 2]>,
@@ -58,10 +59,10 @@ struct WaitingBox {
 }
 
 const PROVING: &str = "proving";
-/// Leaves between two looks at the watch.
+/// Number of leaves after which the watch is consulted.
 const LOOK: usize = 64;
 
-/// Looks for a tree that shows |V| <= |U| over one panel: it alone, where it is shown.
+/// Looks for a tree that shows |V| <= |U| over one panel, and returns it if it is found.
 pub(crate) fn walk(
     claimed: &Claimed<f64>,
     variables: usize,
@@ -99,7 +100,8 @@ pub(crate) fn walk(
     Ok(WalkOutcome::Shown(vec![FrequencyPanel { from: range.from, to: range.to, late: range.late, tree }]))
 }
 
-/// What becomes of a patch. Where it would be shown if the images of the plant were known, it is halved so that they are known better.
+/// The outcome for a patch. If it would be shown with exactly known images, it is halved so that
+/// the images are known better.
 fn look(patch: &Patch<f64>, room: f64) -> LeafOutcome {
     let found = leaf(&patch.points(), room);
     let (LeafOutcome::Halve(_), Some((points, image))) = (found, patch.with_known_images()) else {

@@ -40,7 +40,7 @@ pub enum ClosedLoop {
     Tracking,
 }
 
-/// What of the plant stands in a closed loop besides S: A.
+/// The factor A that the plant contributes to a closed loop in addition to S.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum PlantPath {
     /// P H
@@ -77,12 +77,12 @@ impl ClosedLoop {
         }
     }
 
-    /// Whether G stands before S: a = 1.
+    /// Whether G is a factor: a = 1.
     pub(crate) fn has_feedback(self) -> bool {
         matches!(self, ClosedLoop::RobustStability | ClosedLoop::ControlEffort | ClosedLoop::Tracking)
     }
 
-    /// Whether F does: f = 1.
+    /// Whether F is a factor: f = 1.
     pub(crate) fn has_prefilter(self) -> bool {
         self == ClosedLoop::Tracking
     }

@@ -18,13 +18,14 @@ pub struct LimitTable {
     points: Vec<(f64, f64)>,
 }
 
-/// Why a table of limits is refused.
+/// Why a table of limits is rejected.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LimitError {
     /// A table without points.
     #[error("a table of limits needs at least one point")]
     Empty,
-    /// Frequencies must be positive and increase, magnitudes be positive; this point (counted from 0) is not so.
+    /// Frequencies must be positive and increase, magnitudes be positive; this point (counted from
+    /// 0) violates that.
     #[error(
         "point {0} of the table: frequencies must be positive and increase, magnitudes be positive and finite"
     )]
@@ -71,7 +72,8 @@ impl LimitTable {
 }
 
 impl Limit {
-    /// The limit at this frequency; `None` beyond the ends of a table, where nothing is demanded or promised.
+    /// The limit at this frequency; `None` beyond the ends of a table, where nothing is demanded or
+    /// promised.
     ///
     /// # Example
     /// ```

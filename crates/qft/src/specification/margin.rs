@@ -1,8 +1,9 @@
-//! Stability margins and the limits that guarantee them, both ways.
+//! Stability margins and the limits that guarantee them, in both directions.
 //!
-//! A limit on |L/(1+L)| or |1/(1+L)| keeps L out of a circle near -1, and so guarantees margins: each formula here is the
-//! place where that circle meets the negative real axis, the unit circle, or the point nearest to -1. All are attained by
-//! some L, so none can be sharpened. They hold for a loop that is stable when closed and keeps to the limit at every frequency.
+//! A limit on |L/(1+L)| or |1/(1+L)| keeps L out of a circle near -1, and so guarantees margins:
+//! each formula here is the place where that circle meets the negative real axis, the unit circle,
+//! or the point nearest to -1. All are attained by some L, so none can be sharpened. They hold for
+//! a loop that is stable when closed and satisfies the limit at every frequency.
 //!
 //! # Example
 //! The thesis' limit of 1.3 on |L/(1+L)| (6.30) stands for a gain margin of 5 dB, almost:
@@ -42,7 +43,7 @@ pub enum MarginError {
         /// The range, in words.
         expected: &'static str,
     },
-    /// The limit is given as a table that says nothing at this frequency.
+    /// The limit is given as a table that does not cover this frequency.
     #[error("the limit says nothing at {frequency_rad_per_s} rad/s, where a guarantee is asked for")]
     Silent {
         /// The frequency, rad/s.
@@ -50,8 +51,8 @@ pub enum MarginError {
     },
 }
 
-/// The margins that a limit guarantees, for a loop that is stable when closed and keeps to the limit at every frequency. Each is
-/// attained by some loop.
+/// The margins that a limit guarantees, for a loop that is stable when closed and satisfies the
+/// limit at every frequency. Each is attained by some loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GuaranteedMargins {
     /// Factor above one by which the gain may grow; infinity where no increase is excluded.
@@ -122,8 +123,9 @@ pub fn guaranteed_margins_of_sensitivity(limit: f64) -> Result<GuaranteedMargins
     })
 }
 
-/// The margins that a requirement guarantees where it holds at every frequency; `None` for a requirement that says nothing about
-/// them: another closed loop than |L/(1+L)| and |1/(1+L)|, or a limit that depends on frequency.
+/// The margins that a requirement guarantees where it holds at every frequency; `None` for a
+/// requirement that says nothing about them: another closed loop than |L/(1+L)| and |1/(1+L)|, or a
+/// limit that depends on frequency.
 ///
 /// # Errors
 /// [`MarginError::OutOfRange`] for a constant that is not positive and finite.
@@ -161,7 +163,8 @@ pub fn robust_stability_limit_for_gain_increase(factor: f64) -> Result<f64, Marg
     Ok(1.0 / (above_one("the increase of gain", factor)? - 1.0))
 }
 
-/// The limit on |L/(1+L)| that lets the gain fall to this factor (above zero, below one): W = 1/(1 - factor).
+/// The limit on |L/(1+L)| that lets the gain fall to this factor (above zero, below one): W = 1/(1
+/// - factor).
 ///
 /// # Errors
 /// [`MarginError::OutOfRange`].
@@ -174,7 +177,8 @@ pub fn robust_stability_limit_for_gain_reduction(factor: f64) -> Result<f64, Mar
     Ok(1.0 / (1.0 - between_zero_and_one("the reduction of gain", factor)?))
 }
 
-/// The limit on |L/(1+L)| for this phase margin in rad (above zero, up to pi): W = 1/(2 sin(phase/2)).
+/// The limit on |L/(1+L)| for this phase margin in rad (above zero, up to pi): W = 1/(2
+/// sin(phase/2)).
 ///
 /// # Errors
 /// [`MarginError::OutOfRange`].
@@ -189,7 +193,8 @@ pub fn robust_stability_limit_for_phase_margin(phase_rad: f64) -> Result<f64, Ma
     limit_for_phase_margin(phase_rad)
 }
 
-/// The limit on |L/(1+L)| that keeps |1 + L| at this distance (above zero, below one) or more: W = 1/distance - 1.
+/// The limit on |L/(1+L)| that keeps |1 + L| at this distance (above zero, below one) or more: W =
+/// 1/distance - 1.
 ///
 /// # Errors
 /// [`MarginError::OutOfRange`].
@@ -203,7 +208,8 @@ pub fn robust_stability_limit_for_modulus_margin(distance: f64) -> Result<f64, M
     Ok((1.0 - distance) / distance)
 }
 
-/// The limit on |1/(1+L)| that lets the gain grow by this factor (above one): W = factor/(factor - 1).
+/// The limit on |1/(1+L)| that lets the gain grow by this factor (above one): W = factor/(factor -
+/// 1).
 ///
 /// # Errors
 /// [`MarginError::OutOfRange`].
@@ -217,7 +223,8 @@ pub fn sensitivity_limit_for_gain_increase(factor: f64) -> Result<f64, MarginErr
     Ok(factor / (factor - 1.0))
 }
 
-/// The limit on |1/(1+L)| that lets the gain fall to this factor (above zero, below one): W = factor/(1 - factor).
+/// The limit on |1/(1+L)| that lets the gain fall to this factor (above zero, below one): W =
+/// factor/(1 - factor).
 ///
 /// # Errors
 /// [`MarginError::OutOfRange`].
@@ -231,7 +238,8 @@ pub fn sensitivity_limit_for_gain_reduction(factor: f64) -> Result<f64, MarginEr
     Ok(factor / (1.0 - factor))
 }
 
-/// The limit on |1/(1+L)| for this phase margin in rad (above zero, up to pi): W = 1/(2 sin(phase/2)), as for
+/// The limit on |1/(1+L)| for this phase margin in rad (above zero, up to pi): W = 1/(2
+/// sin(phase/2)), as for
 /// |L/(1+L)|, since both are equal where |L| = 1.
 ///
 /// # Errors
@@ -247,8 +255,8 @@ pub fn sensitivity_limit_for_phase_margin(phase_rad: f64) -> Result<f64, MarginE
     limit_for_phase_margin(phase_rad)
 }
 
-/// The limit on |1/(1+L)| that keeps |1 + L| at this distance (above zero) or more: W = 1/distance. A loop that vanishes
-/// at high frequency cannot keep more than one.
+/// The limit on |1/(1+L)| that keeps |1 + L| at this distance (above zero) or more: W = 1/distance.
+/// A loop that vanishes at high frequency cannot keep more than one.
 ///
 /// # Errors
 /// [`MarginError::OutOfRange`].

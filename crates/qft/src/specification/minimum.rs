@@ -1,4 +1,5 @@
-/// Where a function with one minimum between `low` and `high` has it, and its value there, by golden section.
+/// Where a function with one minimum between `low` and `high` has it, and its value there, by
+/// golden section.
 pub(super) fn minimum_between<F: FnMut(f64) -> f64>(low: f64, high: f64, mut function: F) -> (f64, f64) {
     const STEPS: usize = 60;
     let share = (5.0_f64.sqrt() - 1.0) / 2.0;

@@ -1,12 +1,14 @@
-//! From a wish in time to limits of tracking over frequency, and what those limits really do in time.
+//! From a requirement in time to limits of tracking over frequency, and the actual response of
+//! those limits in time.
 //!
-//! A wish (overshoot, settling time) becomes a second-order model, thesis (3.5) to (3.13), whose magnitude limits |F L/(1+L)|. An
-//! extra zero lifts the upper limit, an extra pole lowers the lower one, so that they part at high frequency (6.28, 6.29). Either
-//! changes the response in time: the rules of thumb do not see it, the exact translation does, and every result says what it
-//! reaches.
+//! A wish (overshoot, settling time) becomes a second-order model, thesis (3.5) to (3.13), whose
+//! magnitude limits |F L/(1+L)|. An extra zero lifts the upper limit, an extra pole lowers the
+//! lower one, so that they part at high frequency (6.28, 6.29). Either changes the response in
+//! time: the rules of thumb do not see it, the exact translation does, and every result says what
+//! it reaches.
 //!
-//! A magnitude below the upper limit does not make a response that stays below the limit's own: the translation is the custom of
-//! the method, not a theorem. What the loop does in time is simulated.
+//! A magnitude below the upper limit does not make a response that stays below the limit's own: the
+//! translation is the custom of the method, not a theorem. What the loop does in time is simulated.
 
 mod check;
 mod spread;
@@ -20,7 +22,7 @@ pub use check::{Reached, WishCheck, WishOutcome, Wished, check_lower, check_uppe
 pub use spread::{LimitOrder, TrackingSpread, tracking_spread};
 pub use translation::{tracking_lower, tracking_upper};
 
-/// What the fastest acceptable response does after a step.
+/// The fastest acceptable response to a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UpperWish {
     /// Largest overshoot, percent of the step, from 0 up to but not 100.
@@ -31,7 +33,7 @@ pub struct UpperWish {
     pub settling_band_percent: f64,
 }
 
-/// What the slowest acceptable response does after a step: it settles in time, without overshoot.
+/// The slowest acceptable response to a step: it settles in time, without overshoot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LowerWish {
     /// Time after which it stays within the band, s.
@@ -62,11 +64,11 @@ pub enum ExtraRoot {
 pub enum Translation {
     /// By a rule of thumb, as if there were no extra root: (3.9) and (3.10) to (3.13).
     Rule(phea_dynamics::time_response::SettlingRule),
-    /// Such that the response, extra root included, has the overshoot and the settling time wished.
+    /// Such that the response, extra root included, has the wanted overshoot and settling time.
     Exact,
 }
 
-/// A limit of tracking, and what it does in time.
+/// A limit of tracking, and its response in time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrackingLimit {
     /// B_U or B_L; its magnitude is the limit.
@@ -118,7 +120,7 @@ pub enum TimeDomainError {
     /// A sampled function where a limit is continuous.
     #[error("a limit of tracking is a continuous transfer function")]
     NotContinuous,
-    /// The response to a step does not end: a pole with this real part.
+    /// The response to a step does not settle: there is a pole with this real part.
     #[error("the limit has a pole with real part {real_part}: its step response has no end to check")]
     NotStable {
         /// Real part of the pole, 1/s.

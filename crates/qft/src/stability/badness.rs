@@ -1,16 +1,17 @@
-//! What the searches of a box make as large as they can.
+//! The quantities that the searches of a box maximise.
 
 use super::MemberStability;
 use super::characteristic::Characteristic;
 use super::measured::OpenLoop;
 
-/// What the search makes as large as it can.
+/// The quantity that the search maximises.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Badness {
     RealPart,
     Closeness,
     DelaySensitivity,
-    /// The largest |L| of a resonance: where it reaches one there is a further crossover, which may bear much less delay.
+    /// The largest |L| of a resonance: where it reaches one there is another crossover, which may
+    /// tolerate much less delay.
     Peak,
 }
 
@@ -27,7 +28,7 @@ impl Badness {
         }
     }
 
-    /// Of a plant without polynomials, whose poles are not known.
+    /// For a plant without polynomials, whose poles are not known.
     pub(super) fn of_response(self, open_loop: &OpenLoop) -> Option<f64> {
         match self {
             Badness::Closeness => Some(-open_loop.closest_approach().distance),
@@ -36,7 +37,7 @@ impl Badness {
         }
     }
 
-    /// What was kept of a plant.
+    /// What is remembered about a plant.
     pub(super) fn among(self, plant: &[f64; 3]) -> f64 {
         let &[real_part, closeness, delay_sensitivity] = plant;
         match self {

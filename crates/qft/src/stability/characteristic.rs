@@ -6,28 +6,29 @@ use phea_dynamics::uncertain_plant::PlantCoefficients;
 use super::product::{RootProduct, products};
 use super::{Compensation, Irresolution};
 
-/// What leads from the output back to the plant, as polynomials: G H of a continuous loop, G of a sampled one (there the
-/// sensor is sampled together with the plant).
+/// The path from the output back to the plant, as polynomials: G H in a continuous loop, G in a
+/// sampled one (where the sensor is sampled together with the plant).
 #[derive(Clone, Debug)]
 pub(crate) struct FeedbackPath {
     numerator: Polynomial,
     denominator: Polynomial,
-    /// The same of a sampled loop.
+    /// The same for a sampled loop.
     products: Option<[RootProduct; 2]>,
     dead_time_s: f64,
     domain: TimeDomain,
 }
 
-/// The characteristic equation of one loop, from which no factor was cancelled.
+/// The characteristic equation of one loop, without cancelled factors.
 ///
 /// ```text
 /// continuous:  c(s) + n(s) e^(-s T) = 0            c = D Gd Hd,  n = N Gn Hn
 /// sampled:     c(v) + n(v) z^(-k) = 0,  v = z - 1
 /// ```
 ///
-/// Around z = 1, where slow poles crowd, v keeps the digits that z has lost. `delay` is T in s or k in samples; the boundary of
-/// stability is run through by an angle, w in rad/s or w T in rad. A sampled loop is judged by its products; its polynomials are where
-/// searches for roots begin.
+/// Around z = 1, where slow poles are crowded, v keeps the digits that z would lose. `delay` is T
+/// in s or k in samples; the boundary of stability is parametrised by an angle, w in rad/s or w T
+/// in rad. A sampled loop is judged by its products; its polynomials provide the starting points of
+/// searches for roots.
 #[derive(Clone, Debug)]
 pub(super) struct Characteristic {
     pub(super) denominator: Polynomial,
@@ -150,7 +151,7 @@ impl Characteristic {
         angle / self.time_unit()
     }
 
-    /// 1 s, or the sample time: what `delay` counts in, and the inverse of what the angle counts in.
+    /// 1 s, or the sample time: the unit of `delay`, and the inverse of the unit of the angle.
     pub(super) fn time_unit(&self) -> f64 {
         time_unit(self.domain)
     }
@@ -166,7 +167,7 @@ impl Characteristic {
         }
     }
 
-    /// Degree of f in z, what the delay takes of it counted with its sign.
+    /// Degree of f in z, including the (signed) contribution of the delay.
     pub(super) fn sampled_degree(&self) -> f64 {
         let numerator = self.numerator.degree() as f64 - self.delay;
         let numerator = if self.numerator.is_zero() { 0.0 } else { numerator };
@@ -182,7 +183,7 @@ impl Characteristic {
 }
 
 impl Characteristic {
-    /// The equation whose poles have real parts that are smaller by this, in 1/s.
+    /// The equation whose poles have real parts reduced by this, in 1/s.
     ///
     /// ```text
     /// continuous:  s = a + s'                    sampled:  z = r z', v = (r - 1) + r v', r = e^(a T)

@@ -1,7 +1,8 @@
 //! The dead time that brings a loop to the boundary of stability.
 //!
-//! Dead time turns L and leaves |L| alone, so poles can cross only at frequencies where |n| = |c|. These are roots of one
-//! real polynomial, in w^2 or in |z - 1|^2: none of them is overlooked between the points of a grid.
+//! Dead time turns L and leaves |L| alone, so poles can cross only at frequencies where |n| = |c|.
+//! These are roots of one real polynomial, in w^2 or in |z - 1|^2: none of them is overlooked
+//! between the points of a grid.
 
 use num_complex::Complex64;
 use phea_dynamics::linear::{LinearError, Polynomial, TimeDomain};
@@ -13,7 +14,7 @@ use super::characteristic::{Characteristic, evaluate};
 /// The least further dead time at which a closed-loop pole reaches the boundary of stability.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CriticalDelay {
-    /// s; infinite where no dead time does.
+    /// s; infinite if no dead time does.
     pub delay_s: f64,
     /// The gain crossover, rad/s; infinite where |L| does not fall below one.
     pub frequency_rad_per_s: f64,
@@ -57,7 +58,8 @@ impl Characteristic {
         Ok(angles.into_iter().map(|angle| self.polished(angle)).collect())
     }
 
-    /// The largest |L| where |L| is stationary over frequency, such as at a resonance; `None` where it is nowhere.
+    /// The largest |L| where |L| is stationary over frequency, such as at a resonance; `None` if it
+    /// is stationary nowhere.
     pub(super) fn largest_peak(&self) -> Option<f64> {
         let (c, n) = (self.squared_magnitude(&self.denominator), self.squared_magnitude(&self.numerator));
         let slope = n.derivative().product(&c).sum(&n.product(&c.derivative()).scaled(-1.0));
@@ -82,8 +84,8 @@ impl Characteristic {
 
     /// |p|^2 on the boundary of stability as a polynomial in q = |s|^2 or q = |v|^2.
     ///
-    /// There s^2 = -q, or v^2 = -q v - q; so p = a(q) + b(q) s and |p|^2 = a^2 + a b t + b^2 q with t = s + conj(s), which is
-    /// 0 or -q.
+    /// There s^2 = -q, or v^2 = -q v - q; so p = a(q) + b(q) s and |p|^2 = a^2 + a b t + b^2 q with
+    /// t = s + conj(s), which is 0 or -q.
     fn squared_magnitude(&self, polynomial: &Polynomial) -> Polynomial {
         let continuous = self.domain == TimeDomain::Continuous;
         let times_q = |p: &Polynomial| {
@@ -101,7 +103,8 @@ impl Characteristic {
         if continuous { squares } else { squares.sum(&times_q(&a.product(&b)).scaled(-1.0)) }
     }
 
-    /// Newton's method on ln|n| - ln|c| along the boundary; a crossover that it does not improve is left as it was.
+    /// Newton's method on ln|n| - ln|c| along the boundary; a crossover that it does not improve is
+    /// left as it was.
     fn polished(&self, start: f64) -> f64 {
         let (slope_c, slope_n) = (self.denominator.derivative(), self.numerator.derivative());
         let mut angle = start;

@@ -1,4 +1,5 @@
-//! Counting closed-loop poles outside the stable region by the turns of the characteristic function on its boundary.
+//! Counting closed-loop poles outside the stable region by the turns of the characteristic function
+//! on its boundary.
 //!
 //! ```text
 //! f(s) = c(s) + n(s) e^(-s T)          has no poles, so neither integrators nor an unstable plant need a detour
@@ -6,7 +7,8 @@
 //! Z = N - (1/pi) (change of arg f, w T = 0 .. pi)                  sampled: zeros on or outside of the unit circle
 //! ```
 //!
-//! One step follows another such that f, expanded at the left end, stays within a disc that does not hold zero: no turn is missed.
+//! The steps are chosen so that f, expanded at the left end, stays within a disc that does not
+//! contain zero: no turn is missed.
 
 use num_complex::Complex64;
 use phea_dynamics::linear::{Polynomial, TimeDomain};
@@ -18,10 +20,11 @@ use super::product::RootProduct;
 
 /// Expansions that one loop may take.
 const STEPS_MAXIMUM: usize = 50_000;
-/// Radius of the disc around f that a step may fill, as a share of |f|: below 1 the disc does not hold zero.
+/// Radius of the disc around f that a step may fill, as a share of |f|: below 1 the disc does not
+/// contain zero.
 const DISC: f64 = 0.95;
 
-/// What a walk along the boundary of stability found.
+/// The result of a walk along the boundary of stability.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Encirclement {
     /// Z
@@ -34,8 +37,9 @@ impl Characteristic {
     /// Walks along the boundary of stability.
     ///
     /// # Errors
-    /// [`Irresolution::NearBoundary`] where |f| is not above its rounding, [`Irresolution::Budget`],
-    /// [`Irresolution::GainAtInfinity`] for a delayed loop with |L| >= 1 at infinite frequency.
+    /// [`Irresolution::NearBoundary`] where |f| is not above its rounding,
+    /// [`Irresolution::Budget`], [`Irresolution::GainAtInfinity`] for a delayed loop with |L| >= 1
+    /// at infinite frequency.
     pub(super) fn encirclement(&self) -> Result<Encirclement, Irresolution> {
         let mut visited: Vec<(f64, f64)> = Vec::new();
         let unstable_poles = self.walked(&mut |angle| visited.push((self.distance(angle), angle)))?;
@@ -84,8 +88,8 @@ impl Characteristic {
         if distance.is_nan() { f64::INFINITY } else { distance }
     }
 
-    /// The smallest distance: of the minima among those visited, each that comes near the smallest is refined between its
-    /// neighbours.
+    /// The smallest distance: among the visited points, each minimum near the smallest is refined
+    /// between its neighbours.
     fn closest(&self, visited: &[(f64, f64)]) -> (f64, f64) {
         const NEAR: f64 = 1.25;
         let nearer = |best: (f64, f64), next: (f64, f64)| if next.0 < best.0 { next } else { best };
@@ -126,7 +130,7 @@ impl Characteristic {
     }
 }
 
-/// f split into what the delay does not turn and what it does, and the end of the walk.
+/// f split into the parts without and with the delay, and the end of the walk.
 struct BoundaryWalk<'a> {
     characteristic: &'a Characteristic,
     prompt: Polynomial,
@@ -134,7 +138,8 @@ struct BoundaryWalk<'a> {
     end: f64,
 }
 
-/// f around one point of the boundary, f(s + u) = sum a_k u^k + e^(-u T) sum b_k u^k: the sizes of a_k and b_k, or more.
+/// f around one point of the boundary, f(s + u) = sum a_k u^k + e^(-u T) sum b_k u^k: the sizes of
+/// a_k and b_k, or more.
 struct Expansion {
     value: Complex64,
     rounding: f64,
@@ -246,7 +251,8 @@ fn taylor(polynomial: &Polynomial, point: Complex64) -> Vec<Complex64> {
     terms
 }
 
-/// Where the highest power takes over: beyond it |f/(c_0 s^N) - 1| stays below 1 in the whole right half plane.
+/// Where the highest power takes over: beyond it |f/(c_0 s^N) - 1| stays below 1 in the whole right
+/// half plane.
 fn end_of_axis(prompt: &Polynomial, delayed: &Polynomial) -> Result<f64, Irresolution> {
     let leading = prompt.leading_coefficient().abs();
     let improper = delayed.degree() > prompt.degree();
@@ -285,7 +291,7 @@ fn end_of_axis(prompt: &Polynomial, delayed: &Polynomial) -> Result<f64, Irresol
 mod tests {
     use super::*;
 
-    /// Roots with real parts of either sign over six decades, some of them hard by the axis.
+    /// Roots with real parts of either sign over six decades, some of them close to the axis.
     fn random_roots(random: &mut impl FnMut() -> f64, count: usize) -> Vec<Complex64> {
         let mut roots = Vec::new();
         while roots.len() < count {
@@ -302,7 +308,7 @@ mod tests {
         roots
     }
 
-    /// The turns count the roots that were put there, whatever part of the polynomial is called numerator.
+    /// The turns count the prescribed roots, whatever part of the polynomial is called numerator.
     #[test]
     fn turns_count_the_roots_outside() {
         let mut seed = 7_u64;
@@ -342,7 +348,8 @@ mod tests {
                 delay: 0.0,
                 domain: TimeDomain::Discrete { sample_time_s: 1.0 },
             };
-            // fast roots crowd around z = -1, where some cannot be told from the circle
+            // fast roots are crowded around z = -1, where some cannot be distinguished from the
+            // circle
             if let Ok(found) = sampled.encirclement() {
                 assert_eq!(found.unstable_poles, outside, "{roots:?}");
                 resolved += 1;

@@ -1,11 +1,13 @@
-//! Nyquist's count for a plant without polynomials, by enclosures: between two points nothing is missed.
+//! Nyquist's count for a plant without polynomials, by enclosures: between two points nothing is
+//! missed.
 //!
 //! ```text
 //! Z = P - (1/pi) (change of arg(1 + L), w = 0 .. infinity)
 //! ```
 //!
-//! From each frequency to the next 1 + L lies in a disc that does not hold zero, so that its turn is the angle between its ends. Below
-//! the first frequency s^m (1 + L) does, m being the integrators of the controller; above the last |L| stays below one.
+//! From each frequency to the next 1 + L lies in a disc that does not contain zero, so that its
+//! turn is the angle between its ends. Below the first frequency the same holds for s^m (1 + L),
+//! where m is the number of integrators of the controller; above the last |L| stays below one.
 
 use num_complex::Complex64;
 use phea_dynamics::analytic::{Analytic, Disc};
@@ -19,11 +21,12 @@ use crate::closed_loop::Compensation;
 
 /// Steps along the axis.
 const STEPS_MAXIMUM: usize = 100_000;
-/// A step that is this part of its frequency and still not enclosed is on the boundary.
+/// If a step of this share of its frequency is still not enclosed, the loop counts as being on the
+/// boundary.
 const SHORTEST: f64 = 1e-10;
 /// |L| that is never reached beyond the last frequency.
 const SMALL_GAIN: f64 = 0.5;
-/// How far above the range of the plant it is followed.
+/// How far above the range of the plant the loop is followed.
 const FAR_ABOVE: f64 = 1e4;
 
 /// A plant without polynomials within a continuous loop.
@@ -70,7 +73,8 @@ impl EnclosedLoop<'_> {
         Err(Irresolution::Budget { frequency_rad_per_s: from })
     }
 
-    /// The first frequency, and the turn of 1 + L up to there around m integrators by the right: that of s^m (1 + L), less m pi/2.
+    /// The first frequency, and the turn of 1 + L up to there, passing m integrators on the right:
+    /// that of s^m (1 + L), less m pi/2.
     fn below(&self, integrators: i32) -> Result<(f64, f64), Irresolution> {
         let [mut first, _] = self.plant.range_rad_per_s();
         for _ in 0..40 {
@@ -96,14 +100,14 @@ impl EnclosedLoop<'_> {
         plant * self.around(s) / power
     }
 
-    /// A disc that holds L between two frequencies.
+    /// A disc that contains L between two frequencies.
     fn enclosed(&self, frequencies: [f64; 2], integrators: i32) -> Disc {
         let s = Disc::of_frequencies(frequencies);
         let power = (0..integrators).fold(Disc::from(1.0), |power, _| power * s);
         self.without_integrators(frequencies) / power
     }
 
-    /// A disc that holds s^m L between two frequencies.
+    /// A disc that contains s^m L between two frequencies.
     fn without_integrators(&self, frequencies: [f64; 2]) -> Disc {
         self.plant.enclosure(frequencies) * self.around(Disc::of_frequencies(frequencies))
     }

@@ -20,13 +20,13 @@ use crate::verification::{
 
 /// Starts of the search for each worst case.
 const STARTS: usize = 4;
-/// A smallest |1 + L| below which it is not told from zero.
+/// Value of |1 + L| below which it is not distinguished from zero.
 const ZERO: f64 = 1e-6;
 
-/// What was found of a family.
+/// What was found about a family.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FamilyStability {
-    /// The verdict, what it rests on, and the plant nearest to instability.
+    /// The verdict, its basis, and the plant nearest to instability.
     pub finding: StabilityFinding,
     /// The least further dead time that makes a plant unstable; `None` unless the family is stable.
     pub delay_margin: Option<DelayMargin>,
@@ -34,7 +34,8 @@ pub struct FamilyStability {
 
 /// Stability of a family: every member, then what lies between the members.
 ///
-/// Over a box, searches start from the worst members for the largest real part (where there are poles), for the smallest
+/// Over a box, searches start from the worst members for the largest real part (where there are
+/// poles), for the smallest
 /// |1 + L|, and for the least critical delay.
 ///
 /// # Errors
@@ -99,13 +100,13 @@ pub(crate) struct StabilityAudit<'a> {
     path: Result<FeedbackPath, Irresolution>,
     /// The members, the corners of the box, and plants between them whose modes fold.
     plants: Vec<PlantPoint>,
-    /// The last of them, once the others were looked at.
+    /// The last of them, once the others were examined.
     folded: Folded,
-    /// Real part, closeness and delay sensitivity of each plant, as far as it was looked at.
+    /// Real part, closeness and delay sensitivity of each plant, as far as it was examined.
     badness: Vec<[f64; 3]>,
     /// Plants of a sampled loop whose critical delay is still an estimate.
     estimated: Vec<Vec<f64>>,
-    /// Whether the delay margin of a sampled loop is one already, and not an estimate.
+    /// Whether the delay margin of a sampled loop is exact already, and not an estimate.
     resampled: bool,
     /// The plants that were judged, within a sampled loop.
     sampled: &'a SampledPlants,
@@ -116,7 +117,7 @@ pub(crate) struct StabilityAudit<'a> {
 const STAGE: &str = "stability";
 
 impl<'a> StabilityAudit<'a> {
-    /// An audit that has not begun; plants that were sampled already are not sampled again.
+    /// A new audit; plants that were already sampled are not sampled again.
     pub(crate) fn new(
         family: &'a Family,
         compensation: &'a Compensation,
@@ -143,7 +144,8 @@ impl<'a> StabilityAudit<'a> {
         }
     }
 
-    /// Looks at members and corners, at the plants between them whose modes fold, and then between all of these.
+    /// Examines members and corners, the plants between them whose modes fold, and then searches
+    /// between all of these.
     pub(crate) fn look(&mut self, watch: Watch<'_>) -> Result<(), Stopped> {
         self.look_at_plants(&mut part(watch, STAGE, [0.0, 0.3]))?;
         self.folded = self.fold();
@@ -156,7 +158,7 @@ impl<'a> StabilityAudit<'a> {
         Ok(())
     }
 
-    /// The plants that were not looked at yet.
+    /// The plants that were not examined yet.
     fn look_at_plants(&mut self, watch: Watch<'_>) -> Result<(), Stopped> {
         let (first, all) = (self.badness.len(), self.plants.len());
         for index in first..all {
@@ -169,10 +171,11 @@ impl<'a> StabilityAudit<'a> {
         Ok(())
     }
 
-    /// Over a box, searches from the worst plants; and whether a pole passes through infinity inside it.
+    /// Over a box, searches from the worst plants, and finds whether a pole passes through infinity
+    /// inside it.
     fn look_between(&mut self, watch: Watch<'_>) -> Result<(), Stopped> {
         let Family::Uncertain(family) = self.family else { return Ok(()) };
-        // an unstable plant decides, and without polynomials a search costs much
+        // an unstable plant decides the verdict, and without polynomials a search is expensive
         let decided = self.record.unstable.is_some() && !family.plant().is_rational();
         if family.extent() != Extent::Box || decided {
             return Ok(());
@@ -232,13 +235,15 @@ impl<'a> StabilityAudit<'a> {
         self.take(plant, found);
     }
 
-    /// Records a plant; an estimate of its delay no longer counts once the worst were sampled anew.
+    /// Records a plant; an estimate of its delay no longer counts once the worst plants were
+    /// sampled anew.
     fn take(&mut self, plant: PlantPoint, mut found: MemberStability) {
         found.critical_delay = found.critical_delay.filter(|_| !self.resampled);
         self.record.take(plant, &found);
     }
 
-    /// Replaces the delay margin by the least that the worst plants bear when they are sampled anew with every delay.
+    /// Replaces the delay margin by the least that the worst plants tolerate when they are sampled
+    /// anew with every delay.
     fn resample(&mut self) {
         let (Family::Uncertain(family), Ok(path)) = (self.family, &self.path) else { return };
         let worst = self.record.delay.as_ref().map(|margin| margin.plant.clone());
@@ -279,13 +284,15 @@ impl<'a> StabilityAudit<'a> {
         chosen
     }
 
-    /// Whether two plants lie so far apart, along one coordinate at least, that searches from both may find different things.
+    /// Whether two plants lie so far apart, along one coordinate at least, that searches from both
+    /// may find different things.
     fn apart(&self, one: &[f64], other: &[f64]) -> bool {
         let distances = &self.folded.apart;
         one.iter().zip(other).zip(distances).any(|((a, b), distance)| (a - b).abs() > *distance)
     }
 
-    /// The plants between members and corners that modes beyond half of the sampling rate call for, around the worst so far.
+    /// The plants between members and corners that are needed because of modes beyond half the
+    /// sampling rate, around the worst plants so far.
     fn fold(&mut self) -> Folded {
         let Family::Uncertain(family) = self.family else { return Folded::none(0) };
         let dimension = family.coordinates().len();
@@ -307,12 +314,14 @@ impl<'a> StabilityAudit<'a> {
         folded
     }
 
-    /// The plants that were found to be of interest to other audits: those that fold, and the nearest to instability.
+    /// The plants that are of interest to other audits: those whose modes fold, and those nearest
+    /// to instability.
     pub(crate) fn plants_between(&self) -> Vec<Vec<f64>> {
         self.folded.plants.iter().cloned().chain(self.record.worst()).collect()
     }
 
-    /// Looks at plants that were the worst of something else, and searches from those that are worse than what was found here.
+    /// Examines plants that were the worst in another audit, and searches from those that are worse
+    /// than the plants found here.
     pub(crate) fn look_at(&mut self, plants: &[PlantPoint], watch: Watch<'_>) -> Result<(), Stopped> {
         for (done, plant) in plants.iter().rev().enumerate() {
             tell(watch, STAGE, done, plants.len())?;

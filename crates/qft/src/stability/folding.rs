@@ -1,12 +1,13 @@
-//! Plants between those of a sampled family whose modes beyond half of the sampling rate move.
+//! Plants between those of a sampled family, needed where modes beyond half the sampling rate move.
 //!
 //! ```text
 //! z = e^(pT):   while Im p moves by 2 pi/T, the sampled mode passes through the whole band, up and down
 //! ```
 //!
-//! Between two plants that a search over the box compares, such a mode may have been at every frequency. So the coordinates that move it
-//! are run through in steps over which its phase turns no further than its damping spreads it. Where that takes more plants than can be
-//! looked at, nothing is claimed of what lies between.
+//! Between two plants that a search over the box compares, such a mode may pass every frequency. So
+//! the coordinates that move it are sampled in steps over which its phase turns no further than its
+//! damping spreads it. Where this takes more plants than can be examined, nothing is claimed about
+//! the plants in between.
 
 use num_complex::Complex64;
 use phea_dynamics::linear::Polynomial;
@@ -16,24 +17,27 @@ use crate::family::UncertainFamily;
 
 /// A mode that has decayed to less than this after a sample leaves nothing to fold.
 const ALIVE: f64 = 0.01;
-/// Angles by which a mode may turn from one plant to the next, rad: the first for one without damping, the second at most.
+/// Angles by which a mode may turn from one plant to the next, rad: the first for a mode without
+/// damping, the second the largest.
 const TURNS: [f64; 2] = [0.04, 0.7];
 /// Points of a line on which the roots are followed.
 const POINTS: usize = 48;
 /// Plants that may be added.
 pub(super) const PLANTS_MAXIMUM: usize = 4000;
 
-/// Half a pass of a mode through the band, by a share of a coordinate: two plants that lie farther apart are of different passes.
+/// Half a pass of a mode through the band, as a share of a coordinate: two plants that lie farther
+/// apart belong to different passes.
 const PASS: f64 = std::f64::consts::FRAC_PI_2;
 /// Shares of an unmoved coordinate beyond which two plants count as apart.
 const APART: f64 = 0.3;
 
-/// Plants to be looked at besides, and whether they are as many as the modes need.
+/// Additional plants to be examined, and whether there are enough for the modes.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Folded {
     pub(super) plants: Vec<Vec<f64>>,
     pub(super) complete: bool,
-    /// By coordinate: how far two shares lie apart at least for searches from both to find different things.
+    /// For each coordinate: the least distance between two shares at which searches from both may
+    /// find different results.
     pub(super) apart: Vec<f64>,
 }
 
@@ -47,13 +51,14 @@ struct Movement {
 }
 
 impl Folded {
-    /// Of a family without modes that fold.
+    /// For a family without modes that fold.
     pub(super) fn none(dimension: usize) -> Folded {
         Folded { plants: Vec::new(), complete: true, apart: vec![APART; dimension] }
     }
 }
 
-/// Plants of a family on the grid of those coordinates that move a mode beyond pi/T, for each of these shares of the others.
+/// Plants of a family on the grid of those coordinates that move a mode beyond pi/T, for each of
+/// these shares of the others.
 pub(super) fn plants(family: &UncertainFamily, sample_time_s: f64, bases: &[Vec<f64>]) -> Folded {
     let dimension = family.coordinates().len();
     let movement = |coordinate: usize| {
@@ -89,7 +94,7 @@ pub(super) fn plants(family: &UncertainFamily, sample_time_s: f64, bases: &[Vec<
     Folded { plants, complete: grid <= PLANTS_MAXIMUM, apart: apart.collect() }
 }
 
-/// Each of these at so many shares of one coordinate.
+/// Each of these at this number of shares of one coordinate.
 fn along(plants: &[Vec<f64>], coordinate: usize, count: usize) -> Vec<Vec<f64>> {
     let last = count.saturating_sub(1).max(1) as f64;
     let mut all = Vec::with_capacity(plants.len() * count);
@@ -105,7 +110,7 @@ fn along(plants: &[Vec<f64>], coordinate: usize, count: usize) -> Vec<Vec<f64>> 
     all
 }
 
-/// Along one coordinate, of the mode that needs most steps.
+/// Along one coordinate, for the mode that needs the most steps.
 fn movement(family: &UncertainFamily, sample_time_s: f64, base: &[f64], coordinate: usize) -> Movement {
     let modes = |point: usize| {
         let mut shares = base.to_vec();

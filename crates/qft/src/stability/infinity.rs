@@ -1,7 +1,8 @@
 //! Poles that pass through infinity between one plant of a box and the next.
 //!
-//! Between two plants a pole becomes unstable across the boundary of stability, where 1 + L vanishes at some frequency, or through
-//! infinity, where the leading coefficient of the characteristic equation does and no frequency shows it:
+//! Between two plants a pole becomes unstable across the boundary of stability, where 1 + L
+//! vanishes at some frequency, or through infinity, where the leading coefficient of the
+//! characteristic equation vanishes without a trace at any frequency:
 //!
 //! ```text
 //! c_0 s^N + ... + (n_0 s^M + ...) e^(-s T) = 0
@@ -10,7 +11,8 @@
 //! sampled:         c_0 of the plant with its sensor, whose poles p become e^(pT); without dead time also c_0 + n_0 G(inf)
 //! ```
 //!
-//! The recorded coefficients are enclosed over the box, which is halved until each part has one sign, or a plant with the other is found.
+//! The recorded coefficients are enclosed over the box, which is halved until each part has one
+//! sign, or a plant with the other sign is found.
 
 use std::collections::VecDeque;
 
@@ -23,22 +25,23 @@ use crate::family::UncertainFamily;
 
 /// Parts of the box that are enclosed.
 const PARTS_MAXIMUM: usize = 4000;
-/// Plants between one sign and the other that are judged besides.
+/// Additional plants between one sign and the other that are judged.
 const BETWEEN: usize = 12;
 
 /// Whether a pole passes through infinity inside the box.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Infinity {
-    /// No: what must keep its sign does.
+    /// No: the coefficients that must keep their sign do.
     Kept,
-    /// Yes: these plants, given by their shares of the box, have the other sign than the first member, or lie beside the change.
+    /// Yes: these plants, given by their shares of the box, have the opposite sign to the first
+    /// member, or lie next to the change of sign.
     Changed(Vec<Vec<f64>>),
     /// Neither was shown.
     Open,
 }
 
-/// What the loop adds to the leading coefficients of the plant: a factor of the numerator, that of the denominator being 1, and by how many
-/// powers of s more its denominator has.
+/// The contribution of the loop to the leading coefficients of the plant: a factor of the numerator
+/// (that of the denominator is 1), and the number of additional powers of s in the denominator.
 struct LoopAtInfinity {
     numerator: f64,
     excess: i64,
@@ -51,7 +54,7 @@ struct LoopAtInfinity {
 /// Looks for a change of sign over the whole box.
 pub(super) fn search(family: &UncertainFamily, compensation: &Compensation) -> Infinity {
     if !family.plant().is_rational() {
-        // its gain falls towards infinite frequency, which the count of every member asks for
+        // its gain falls towards infinite frequency, which the count of every member requires
         return Infinity::Kept;
     }
     let around = LoopAtInfinity::new(compensation);
@@ -61,7 +64,7 @@ pub(super) fn search(family: &UncertainFamily, compensation: &Compensation) -> I
     let first: Vec<Option<bool>> = signs(&nominal, &nominal).into_iter().map(sign).collect();
     let mut open = VecDeque::from([BoxPart { low: vec![0.0; dimension], high: vec![1.0; dimension] }]);
     let mut enclosed = 0;
-    // the widest parts first, in which a plant with the other sign is soonest met
+    // the widest parts first, in which a plant with the other sign is found soonest
     while let Some(part) = open.pop_front() {
         enclosed += 1;
         if enclosed > PARTS_MAXIMUM {
@@ -103,7 +106,7 @@ fn sign(enclosure: Interval) -> Option<bool> {
 
 type Signs<'a> = &'a dyn Fn(&[f64], &[f64]) -> Vec<Interval>;
 
-/// Plants from that of the other sign towards the change, on the line to the first member.
+/// Plants from the one with the other sign towards the change, on the line to the first member.
 fn between(from: &[f64], to: &[f64], first: &[Option<bool>], signs: Signs<'_>) -> Vec<Vec<f64>> {
     let at = |share: f64| -> Vec<f64> {
         from.iter().zip(to).map(|(from, to)| from + share * (to - from)).collect()
@@ -135,7 +138,8 @@ impl BoxPart {
         self.low.iter().zip(&self.high).map(|(low, high)| 0.5 * (low + high)).collect()
     }
 
-    /// Both halves along the coordinate without which the enclosures are narrowest; nothing where no coordinate has any width left.
+    /// Both halves along the coordinate whose halving narrows the enclosures most; `None` where no
+    /// coordinate has any width left.
     fn halved(&self, middle: &[f64], signs: Signs<'_>) -> Option<[BoxPart; 2]> {
         let mut chosen: Option<(f64, f64, usize)> = None;
         for (coordinate, ((&from, &to), &half)) in self.low.iter().zip(&self.high).zip(middle).enumerate() {
@@ -183,7 +187,7 @@ impl LoopAtInfinity {
         }
     }
 
-    /// Enclosures of all that must keep its sign while the shares run from `low` to `high`.
+    /// Enclosures of everything that must keep its sign while the shares run from `low` to `high`.
     fn leading(&self, family: &UncertainFamily, low: &[f64], high: &[f64]) -> Vec<Interval> {
         let (from, to) = (family.values(low), family.values(high));
         let parameters: Vec<Interval> =
@@ -193,7 +197,7 @@ impl LoopAtInfinity {
             return vec![Interval::WHOLE];
         };
         let zero = Interval::from(0.0);
-        // a coefficient that is zero for every plant is none
+        // a coefficient that is zero for every plant does not count
         let kept = |coefficients: Vec<Interval>| -> (Interval, i64) {
             let rest: Vec<Interval> = coefficients.into_iter().skip_while(|one| *one == zero).collect();
             (rest.first().copied().unwrap_or(zero), rest.len() as i64)

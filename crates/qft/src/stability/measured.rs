@@ -1,10 +1,11 @@
-//! Nyquist's count on the points of a response, and what else is read from them.
+//! Nyquist's count on the points of a response, and other results from the same points.
 //!
 //! ```text
 //! Z = P - (1/pi) (change of arg(1 + L), w = 0 .. infinity)        P: open-loop poles in the right half plane, stated with the measurement
 //! ```
 //!
-//! What the points do not show is not assumed: turns between two of them, the loop below the first, and the loop above the last.
+//! Nothing is assumed that the points do not show: turns between two of them, the loop below the
+//! first, and the loop above the last.
 
 use num_complex::Complex64;
 use phea_dynamics::linear::{TimeDomain, TransferFunction};
@@ -18,13 +19,13 @@ use crate::verification::between;
 const TURN_MAXIMUM: f64 = std::f64::consts::FRAC_PI_3;
 /// tan([`TURN_MAXIMUM`])
 const SQRT_3: f64 = 1.732_050_807_568_877_2;
-/// Points of a resolved response are no closer than this part of their frequency.
+/// Least distance of points of a resolved response, as a share of their frequency.
 const CLOSEST: f64 = 1e-9;
 /// |L| that is well below one.
 const SMALL_GAIN: f64 = 0.5;
 /// |L| that is well above one.
 const LARGE_GAIN: f64 = 2.0;
-/// The frequency of the least |1 + L| is found to this part of itself.
+/// Relative accuracy of the frequency of the least |1 + L|.
 const POLISHED: f64 = 1e-7;
 /// How near to a whole number of integrators the slope of ln|L| must be at the low end.
 const SLOPE_TOLERANCE: f64 = 0.3;
@@ -42,7 +43,8 @@ pub(super) struct OpenLoop<'a> {
 pub(super) enum MeasuredLoop {
     /// G P H, that of the controller.
     Output,
-    /// -K P_v, that of a rate which is fed forward and moved by the command: its poles are those of the plant that the controller sees.
+    /// -K P_v, the loop of a rate that is fed forward and moved by the command: its poles are those
+    /// of the plant that the controller sees.
     Rate,
 }
 
@@ -58,8 +60,8 @@ pub(super) fn stability(member: &Member, compensation: &Compensation) -> MemberS
     }
 }
 
-/// P H of a measured plant at its points up to half the sampling rate, frequencies in rad/s: what stays as it is while controllers change.
-/// Of other plants there is none.
+/// P H of a measured plant at its points up to half the sampling rate, frequencies in rad/s: it
+/// does not change with the controller. Empty for other plants.
 pub(crate) fn points_with_sensor(member: &Member, compensation: &Compensation) -> Vec<(f64, Complex64)> {
     let Member::Measured { plant, .. } = member else { return vec![] };
     let highest = compensation.highest_frequency_rad_per_s();
@@ -71,8 +73,8 @@ pub(crate) fn points_with_sensor(member: &Member, compensation: &Compensation) -
     frequencies.filter_map(at).collect()
 }
 
-/// Whether a measured plant is stable within its loop, given its [`points_with_sensor`]: the status of [`super::member_stability`] without
-/// what else is read from the points.
+/// Whether a measured plant is stable within its loop, given its [`points_with_sensor`]: the status
+/// of [`super::member_stability`] without the other results.
 pub(crate) fn is_stable(
     member: &Member,
     with_sensor: &[(f64, Complex64)],
@@ -88,8 +90,8 @@ pub(crate) fn is_stable(
 }
 
 impl<'a> OpenLoop<'a> {
-    /// At these frequencies in rad/s; where the response is known between them, at as many more as 1 + L needs to turn little from each
-    /// to the next.
+    /// L at these frequencies in rad/s; where the response is known between them, at as many more
+    /// as are needed for 1 + L to turn little from each to the next.
     pub(super) fn new(
         member: &'a Member,
         compensation: &'a Compensation,
@@ -106,7 +108,8 @@ impl<'a> OpenLoop<'a> {
         open_loop
     }
 
-    /// Takes these points in, with as many between them as 1 + L needs where the response is known there.
+    /// Adds these points, with as many between them as 1 + L needs where the response is known
+    /// there.
     fn extend(&mut self, points: impl Iterator<Item = (f64, Complex64)>, is_known_between: bool) {
         for point in points {
             if is_known_between {
@@ -116,7 +119,7 @@ impl<'a> OpenLoop<'a> {
         }
     }
 
-    /// What is known of a loop with so many unstable poles.
+    /// What is known about a loop with this number of unstable poles.
     pub(super) fn stability(&self, unstable: usize) -> MemberStability {
         let stable = unstable == 0;
         MemberStability {
@@ -131,7 +134,8 @@ impl<'a> OpenLoop<'a> {
         }
     }
 
-    /// Points between the last one and this one, as many as 1 + L needs to turn little from each to the next.
+    /// Points between the last one and this one, as many as are needed for 1 + L to turn little
+    /// from each to the next.
     fn fill_up_to(&mut self, end: (f64, Complex64)) {
         let mut ahead = vec![end];
         while let (Some(&next), Some(&last)) = (ahead.last(), self.points.last()) {
@@ -157,7 +161,8 @@ impl<'a> OpenLoop<'a> {
         Some(response.plant * response.sensor * self.compensation.feedback().at_frequency(frequency))
     }
 
-    /// Poles of the closed loop outside of the stable region, around a plant with so many of its own.
+    /// Number of poles of the closed loop outside the stable region, given the number of those of
+    /// the plant.
     pub(super) fn unstable_closed_loop_poles(
         &self,
         of_plant: usize,
@@ -169,7 +174,7 @@ impl<'a> OpenLoop<'a> {
         self.unstable_poles(own)
     }
 
-    /// Zeros of 1 + L outside of the stable region, of an L with so many poles there.
+    /// Number of zeros of 1 + L outside the stable region, given the number of poles of L there.
     pub(super) fn unstable_poles(&self, own: usize) -> Result<usize, Irresolution> {
         let &[first, second, ..] = self.points.as_slice() else { return Err(Irresolution::Points) };
         let turned_below = turn_below(first, second)?;
@@ -187,7 +192,8 @@ impl<'a> OpenLoop<'a> {
         if gain.is_nan() || gain > SMALL_GAIN {
             return Err(Irresolution::HighEnd { frequency_rad_per_s, gain });
         }
-        // from the first point to the last 1 + L turns by 2 pi rounds and the difference of the angles there, from the last on back to zero
+        // from the first point to the last 1 + L turns by 2 pi rounds and the difference of the
+        // angles there, from the last on back to zero
         let turned = turned_below - portable::argument(1.0 + first.1) + 2.0 * std::f64::consts::PI * rounds;
         let count = own as f64 - turned / std::f64::consts::PI;
         if (count - count.round()).abs() > 1e-6 || count.round() < 0.0 {
@@ -196,7 +202,8 @@ impl<'a> OpenLoop<'a> {
         Ok(count.round() as usize)
     }
 
-    /// The least |1 + L|: that of the points, or beside the least of them where the response is known there.
+    /// The least |1 + L|: that of the points, refined around the least of them where the response
+    /// is known.
     pub(super) fn closest_approach(&self) -> Approach {
         let distance = |value: Complex64| portable::magnitude(1.0 + value);
         let order = |one: &&[(f64, Complex64)], other: &&[(f64, Complex64)]| {
@@ -258,7 +265,8 @@ fn turns_little(before: Complex64, after: Complex64) -> bool {
         && (is_small(before) && is_small(after) || is_turned_little(before, after))
 }
 
-/// Whether the angle between two numbers is at most [`TURN_MAXIMUM`]; not where one of them is zero or no number.
+/// Whether the angle between two numbers is at most [`TURN_MAXIMUM`]; false where one of them is
+/// zero or NaN.
 ///
 /// ```text
 /// |arg(b/a)| <= pi/3          where |Im(b a*)| <= sqrt(3) Re(b a*)
@@ -268,7 +276,8 @@ fn is_turned_little(before: Complex64, after: Complex64) -> bool {
     product.re > 0.0 && product.im.abs() <= SQRT_3 * product.re && product.is_finite()
 }
 
-/// 1 where the argument of a number that turns by less than a right angle goes beyond pi, -1 where it goes back.
+/// 1 where the argument of a number that turns by less than a right angle goes beyond pi, -1 where
+/// it goes back.
 fn rounds_begun(before: Complex64, after: Complex64) -> f64 {
     match (before.im.is_sign_negative(), after.im.is_sign_negative()) {
         (false, true) if after.re < 0.0 => 1.0,
@@ -277,7 +286,8 @@ fn rounds_begun(before: Complex64, after: Complex64) -> f64 {
     }
 }
 
-/// The angle that 1 + L turns by from one point to the next, and L itself where it is not small, whichever is wider, rad.
+/// The angle that 1 + L turns by from one point to the next, and L itself where it is not small,
+/// whichever is wider, rad.
 fn turn(before: Complex64, after: Complex64) -> f64 {
     let own = portable::argument((1.0 + after) / (1.0 + before)).abs();
     if portable::magnitude(before).max(portable::magnitude(after)) > SMALL_GAIN {
@@ -299,8 +309,9 @@ pub(super) fn outside_of_stable_region(function: &TransferFunction) -> Result<us
     Ok(poles().filter(|pole| excess(pole) > 0.0).count())
 }
 
-/// The change of arg(1 + L) from zero frequency, where 1 + L is real, to the first point, around m integrators by the right:
-/// -m pi/2 and the little by which the first point is off. The slope of |L| there tells m.
+/// The change of arg(1 + L) from zero frequency, where 1 + L is real, to the first point, passing m
+/// integrators on the right: -m pi/2 and the small deviation of the first point. The slope of |L|
+/// there determines m.
 fn turn_below(first: (f64, Complex64), second: (f64, Complex64)) -> Result<f64, Irresolution> {
     let unknown = Err(Irresolution::LowEnd { frequency_rad_per_s: first.0 });
     let gain = portable::magnitude(first.1);

@@ -6,17 +6,18 @@ use super::Irresolution;
 use super::characteristic::Characteristic;
 use super::product::RootProduct;
 
-/// Highest degree at which the poles of a sampled loop with whole samples of delay are computed: beyond it the powers of z lose too
-/// many digits.
+/// Highest degree at which the poles of a sampled loop with whole samples of delay are computed:
+/// beyond it the powers of z lose too many digits.
 const HIGHEST_SAMPLED_DEGREE: usize = 24;
 
-/// Sweeps over the roots of a sampled loop, and the share of itself by which one may move at once.
+/// Number of sweeps over the roots of a sampled loop, and the share of its magnitude by which a
+/// root may move at once.
 const SWEEPS_MAXIMUM: usize = 20;
 const STEP_MAXIMUM: f64 = 0.1;
 
 impl Characteristic {
-    /// The largest real part of a closed-loop pole in 1/s, ln|z|/T in a sampled loop; minus infinity for a loop without poles.
-    /// `None` where a delay leaves no polynomial.
+    /// The largest real part of a closed-loop pole in 1/s, ln|z|/T in a sampled loop; minus
+    /// infinity for a loop without poles. `None` where a delay leaves no polynomial.
     pub(super) fn largest_real_part(&self) -> Result<Option<f64>, Irresolution> {
         let Some(polynomial) = self.closed_loop_polynomial()? else { return Ok(None) };
         let mut roots = polynomial.roots().map_err(Irresolution::Linear)?;
@@ -69,8 +70,8 @@ impl Characteristic {
     }
 }
 
-/// Moves roots of an expanded polynomial to those of the function it stands for, all at once by the iteration of Ehrlich and Aberth; a
-/// root whose steps do not shrink is left where it is.
+/// Moves roots of an expanded polynomial to those of the function it stands for, all at once by the
+/// iteration of Ehrlich and Aberth; a root whose steps do not shrink is left where it is.
 fn polish(roots: &mut [Complex64], function: impl Fn(Complex64) -> (Complex64, Complex64)) {
     let mut last = vec![Some(f64::INFINITY); roots.len()];
     for _ in 0..SWEEPS_MAXIMUM {

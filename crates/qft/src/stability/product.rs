@@ -1,4 +1,5 @@
-//! A sampled polynomial kept as its roots: expanded in z it would lose what fast poles, near z = 0, leave of the slow ones.
+//! A sampled polynomial kept as its roots: expanded in z, fast poles near z = 0 would cost the
+//! digits of the slow ones.
 
 use num_complex::Complex64;
 use phea_dynamics::linear::TransferFunction;
@@ -38,8 +39,8 @@ impl RootProduct {
         })
     }
 
-    /// Coefficients of |gain| (|v - v_1| + u) (|v - v_2| + u) ..., lowest power of u first: no Taylor coefficient of the product at v is
-    /// larger.
+    /// Coefficients of |gain| (|v - v_1| + u) (|v - v_2| + u) ..., lowest power of u first: no
+    /// Taylor coefficient of the product at v is larger.
     pub(super) fn majorant(&self, v: Complex64) -> Vec<f64> {
         let mut terms = Vec::with_capacity(self.roots.len() + 1);
         terms.push(self.gain.abs());

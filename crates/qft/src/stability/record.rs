@@ -1,4 +1,4 @@
-//! The worst that was found of a family.
+//! The worst results that were found for a family.
 
 use super::{Instability, Irresolution, MemberStability, StabilityStatus};
 use crate::verification::{ClosestApproach, DelayMargin, PlantPoint};
@@ -14,14 +14,14 @@ pub(super) struct StabilityRecord {
 }
 
 impl StabilityRecord {
-    /// What keeps the verdict open, unless a plant does already.
+    /// The reason why the verdict is open, unless a plant already is.
     pub(super) fn doubt(&mut self, reason: Irresolution, plant: PlantPoint) {
         if self.unresolved.is_none() {
             self.unresolved = Some((reason, plant));
         }
     }
 
-    /// Whether a plant is nearer to instability than the nearest so far.
+    /// Whether a plant is nearer to instability than any before.
     pub(super) fn is_worse(&self, found: &MemberStability) -> bool {
         let real_part = found.largest_real_part.zip(self.real_part.as_ref());
         let distance = found.closest_approach.zip(self.closest.as_ref());

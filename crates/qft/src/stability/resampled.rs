@@ -1,11 +1,12 @@
 //! The critical delay of a sampled loop, its plant held and sampled anew with each delay.
 //!
-//! Phase over frequency at the crossovers of the sampled L is that delay where it is a whole number of samples. Between, a delay also
-//! changes |L|: for k/s with k T = 1.25 it says 0.66 samples where the truth is 0.8. Each time the loop is sampled anew nearer to
-//! its limit the estimate of what remains errs by less.
+//! Phase over frequency at the crossovers of the sampled L is that delay where it is a whole number
+//! of samples. Between whole samples a delay also changes |L|: for k/s with k T = 1.25 this gives
+//! 0.66 samples instead of the true 0.8. Each time the loop is sampled anew, nearer to its limit,
+//! the error of the estimate of the remaining delay is smaller.
 //!
-//! Where a rate is fed back within the plant, the delay that remains is that of the controller's own path, and a plant sampled anew would
-//! have the rate later too: there the phase over the frequency is kept.
+//! Where a rate is fed back within the plant, the remaining delay is that of the controller's own
+//! path, and sampling the plant anew would delay the rate too: there phase over frequency is used.
 
 use phea_dynamics::uncertain_plant::PlantCoefficients;
 
@@ -13,12 +14,13 @@ use super::characteristic::FeedbackPath;
 use super::{CriticalDelay, StabilityStatus, of_member};
 use crate::closed_loop::Compensation;
 
-/// What remains of the delay, as a share of the whole, when the search stops.
+/// The remaining delay, as a share of the whole, at which the search stops.
 const TOLERANCE: f64 = 1e-9;
 /// Steps of the search, and then of halving.
 const STEPS_MAXIMUM: usize = 60;
 
-/// `None` for a loop that is not stable to begin with, and where a rate is fed back within the plant.
+/// `None` for a loop that is not stable to begin with, and where a rate is fed back within the
+/// plant.
 pub(super) fn critical_delay(
     plant: &PlantCoefficients<f64>,
     compensation: &Compensation,

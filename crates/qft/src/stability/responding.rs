@@ -11,7 +11,7 @@ use super::{Irresolution, MemberStability, StabilityStatus};
 use crate::closed_loop::{Compensation, Member};
 use crate::family::{COARSE, tabulated};
 
-/// Points in a decade of a first look, which does not count poles.
+/// Points per decade of a first look, which does not count poles.
 const POINTS_PER_DECADE: f64 = 30.0;
 /// |L| that integrators have reached where a look begins, and decades below the range of the plant that are tried for it.
 const LARGE_GAIN: f64 = 2.0;
@@ -22,7 +22,8 @@ const DECADES_BELOW: i32 = 9;
 pub(super) enum PoleCounting {
     /// With 1 + L enclosed from each frequency to the next; in a sampled loop on points.
     Enclosed,
-    /// On points between which 1 + L turns little: where the box is searched for the least |1 + L| anyway.
+    /// On points between which 1 + L turns little, for a box that is searched for the least |1 + L|
+    /// anyway.
     OnPoints,
 }
 
@@ -58,7 +59,8 @@ pub(super) fn stability(
     }
 }
 
-/// Poles in the unstable region of a plant whose rate is fed back within it, as the controller sees it; `None` where nothing is fed back.
+/// Poles in the unstable region of a plant whose rate is fed back within it, as the controller sees
+/// it; `None` where nothing is fed back.
 pub(crate) fn own_poles(member: &Member, compensation: &Compensation) -> Option<Result<usize, Irresolution>> {
     let Member::Responding { plant, rate_feed_forward, .. } = member else { return None };
     let [_, highest] = plant.range_rad_per_s();
@@ -82,7 +84,7 @@ fn on_points<'a>(
     OpenLoop::new(member, compensation, around, &table.frequencies_rad_per_s, true)
 }
 
-/// L on an even grid: a look that a search can afford at every plant.
+/// L on an even grid: cheap enough for a search to evaluate at every plant.
 pub(super) fn first_look<'a>(member: &'a Member, compensation: &'a Compensation) -> Option<OpenLoop<'a>> {
     let Member::Responding { plant, .. } = member else { return None };
     let [from, to] = range(member, plant.as_ref(), compensation);
@@ -92,7 +94,8 @@ pub(super) fn first_look<'a>(member: &'a Member, compensation: &'a Compensation)
     Some(OpenLoop::new(member, compensation, MeasuredLoop::Output, &grid, true))
 }
 
-/// Where the loop does something of its own, rad/s: an integrator that is slower than the plant has its crossover below it.
+/// Frequencies of interest of the loop itself, rad/s: an integrator that is slower than the plant
+/// has its crossover below the range of the plant.
 fn range(member: &Member, plant: &dyn RespondingPlant, compensation: &Compensation) -> [f64; 2] {
     let [mut from, to] = plant.range_rad_per_s();
     let integrates =

@@ -1,13 +1,13 @@
 //! The largest value of a function over the unit box, from one start.
 
-/// The smallest step, as a share of the box, at which a climb still looks around.
+/// The smallest step of a climb, as a share of the box.
 const SMALLEST_STEP: f64 = 1e-7;
-/// A step below which a climb that ended in a corner looks around no more.
+/// The smallest step of a climb that has ended in a corner.
 const SMALL_STEP: f64 = 1e-3;
-/// Values that one climb may ask for.
+/// Largest number of values that one climb may evaluate.
 const VALUES_MAXIMUM: usize = 2000;
 
-/// A function over the unit box and the best point known; values that are not numbers count as lowest.
+/// A function over the unit box and the best point known; NaN counts as the lowest value.
 struct Climb<'a> {
     objective: &'a mut dyn FnMut(&[f64]) -> f64,
     shares: Vec<f64>,
@@ -15,8 +15,9 @@ struct Climb<'a> {
     values_asked: usize,
 }
 
-/// Climbs to a local maximum: along one coordinate after the other, to the better of two neighbours or to the top of the
-/// parabola over three values, with steps that shrink once they are longer than the way.
+/// Climbs to a local maximum: along one coordinate after the other, to the better of two neighbours
+/// or to the top of the parabola over three values, with steps that shrink once they are longer
+/// than the distance moved.
 pub(super) fn climb(start: &[f64], objective: &mut dyn FnMut(&[f64]) -> f64) -> (Vec<f64>, f64) {
     let value = objective(start);
     let value = if value.is_nan() { f64::NEG_INFINITY } else { value };
@@ -36,7 +37,7 @@ pub(super) fn climb(start: &[f64], objective: &mut dyn FnMut(&[f64]) -> f64) -> 
 }
 
 impl Climb<'_> {
-    /// Moves along one coordinate; how far.
+    /// Moves along one coordinate, and returns how far.
     fn along(&mut self, coordinate: usize, step: f64) -> f64 {
         let Some(&centre) = self.shares.get(coordinate) else { return 0.0 };
         let here = self.value;
@@ -44,7 +45,7 @@ impl Climb<'_> {
         let at_low = if low < centre { self.visit(coordinate, low) } else { f64::NEG_INFINITY };
         let at_high = if high > centre { self.visit(coordinate, high) } else { f64::NEG_INFINITY };
         if here >= at_low && here >= at_high {
-            // Newton's form of the parabola through the three
+            // Newton's form of the parabola through the three points points
             let (left, right) = ((here - at_low) / (centre - low), (at_high - here) / (high - centre));
             let top = 0.5 * (low + centre) + 0.5 * (high - low) * left / (left - right);
             if top > low && top < high && top != centre {

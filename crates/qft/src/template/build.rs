@@ -17,14 +17,16 @@ use crate::family::{Extent, Family, MeasuredFamily};
 /// template(w) = { P(jw) H(jw) : P in the family }                                                    thesis 3.1.1
 /// ```
 ///
-/// `points` are the members in order, then the plants that refinement found on the outline. The outline is known from within: what it
-/// encloses is filled by plants of the family, to the tolerance of its chords; that nothing lies beyond it was searched, from every
-/// point of the outline and with all witnesses, and not found. Magnitude and phase are looked at, with the phase continued
-/// from plant to plant; [`Template`] has an example. A member whose response is zero or infinite is no point; `NotResolved` names it.
+/// `points` are the members in order, then the plants that refinement found on the outline. The
+/// outline is known from within: its interior is filled by plants of the family, to the tolerance
+/// of its chords. Plants beyond it were searched for, from every point of the outline and with all
+/// witnesses, and none was found. Magnitude and phase are compared, with the phase continued from
+/// plant to plant; [`Template`] has an example. A member whose response is zero or infinite is left
+/// out; `NotResolved` names it.
 ///
 /// # Errors
-/// [`TemplateError`] for tolerances that cannot be met, plants that cannot be sampled, measurements that do not reach, and a
-/// nominal plant that is zero or infinite.
+/// [`TemplateError`] for tolerances that cannot be met, plants that cannot be sampled, measurements
+/// that do not reach, and a nominal plant that is zero or infinite.
 pub fn template(
     family: &Family,
     compensation: &Compensation,
@@ -129,7 +131,8 @@ fn finite(point: TemplatePoint, frequency_rad_per_s: f64) -> Result<TemplatePoin
     Err(TemplateError::NotFinite { member: member.unwrap_or(0), response, frequency_rad_per_s })
 }
 
-/// The members that are points of the box; a nominal plant need not be one where parameters are correlated.
+/// The members that are points of the box; the nominal plant need not be one of them where
+/// parameters are correlated.
 fn member_witnesses(plants: &mut Plants, points: &[TemplatePoint]) -> Vec<usize> {
     let family = plants.family;
     let mut witnesses = vec![];

@@ -1,18 +1,20 @@
-//! Two-dimensional faces of the box: what their edges wind around is filled.
+//! Two-dimensional faces of the box: the region that their edges enclose is filled.
 //!
-//! A closed curve of the box can be drawn together to a point within the box, so every response that its image winds around is the
-//! image of a plant. A face whose image is not folded is the inside of the image of its four edges; one that is
-//! folded, or holds a resonance, is divided.
+//! A closed curve of the box can be drawn together to a point within the box, so every response
+//! that its image winds around is the image of a plant. A face whose image is not folded is the
+//! inside of the image of its four edges; a face that is folded, or contains a resonance, is
+//! divided.
 
 use super::plants::{BoxLine, Plants, Stop};
 
-/// A part of a face: its sides, each beginning where the one before it ends.
+/// A part of a face: its sides, each beginning where the previous one ends.
 pub(super) struct FaceCell {
     pub(super) sides: [BoxLine; 4],
     depth: usize,
 }
 
-/// How often a face is divided, by the dimension of the box: where it is folded, and where a loop does not close.
+/// How often a face is divided, by the dimension of the box: where it is folded, and where a loop
+/// does not close.
 fn depth_maximum(dimension: usize) -> (usize, usize) {
     match dimension {
         2 => (4, 6),
@@ -21,7 +23,7 @@ fn depth_maximum(dimension: usize) -> (usize, usize) {
     }
 }
 
-/// First parts of an edge of the box: an excursion narrower than that may be missed.
+/// Initial divisions of an edge of the box: a narrower excursion may be missed.
 const PARTS: usize = 4;
 
 /// The edges of the box: line `axis` from each corner that has it at 0.
@@ -30,7 +32,8 @@ pub(super) struct BoxEdges {
 }
 
 impl BoxEdges {
-    /// Lines along all edges of the box; corners are reached along edges, so that their phases belong together.
+    /// Lines along all edges of the box; corners are reached along edges, so that their phases
+    /// belong together.
     pub(super) fn new(plants: &mut Plants, dimension: usize) -> Result<BoxEdges, Stop> {
         let mut corners = vec![plants.at(vec![0.0; dimension])?];
         let mut lines: Vec<Vec<Option<BoxLine>>> = vec![vec![None; dimension]];
@@ -88,7 +91,7 @@ impl FaceCell {
     }
 }
 
-/// Closed walks whose images wind around what the face covers.
+/// Closed walks whose images enclose the region that the face covers.
 pub(super) fn walks(plants: &mut Plants, face: FaceCell, found: &mut Vec<Vec<usize>>) -> Result<(), Stop> {
     let (folded_maximum, open_maximum) = depth_maximum(plants.family.coordinates().len());
     let mut pending = vec![face];
@@ -112,7 +115,8 @@ pub(super) fn walks(plants: &mut Plants, face: FaceCell, found: &mut Vec<Vec<usi
     Ok(())
 }
 
-/// A walk without a gap that does not close goes around a pole or a zero; the plant of it that stands out is near.
+/// A walk without a gap that does not close goes around a pole or a zero; its most extreme plant is
+/// near it.
 fn remember_open(plants: &mut Plants, walk: &[usize]) {
     if plants.unbroken(walk).len() > 1 {
         return;
@@ -126,7 +130,7 @@ fn remember_open(plants: &mut Plants, walk: &[usize]) {
     }
 }
 
-/// Whether the quarters of a cell are not all turned the same way, seen from their corners.
+/// Whether the quarters of a cell have different orientations, judged by their corners.
 fn is_folded(plants: &Plants, cell: &FaceCell, centre: usize) -> bool {
     let middles: Vec<usize> = cell
         .sides

@@ -8,7 +8,7 @@ use super::plants::{BoxLine, PlantPosition, Plants, Stop};
 use super::region::{Corner, Region};
 use super::witness::{Outside, outside, probes, take_in};
 
-/// What is known of the image of a box.
+/// What is known about the image of a box.
 pub(super) struct Exploration {
     witnesses: Vec<usize>,
     edges: Option<BoxEdges>,
@@ -26,8 +26,8 @@ impl Exploration {
         Exploration { witnesses, edges: None, branches: vec![], walks: vec![], region: None, outside: None }
     }
 
-    /// Polygons with corners no farther apart than the tolerance: pieces of the region, or lines there and back where the template has
-    /// no area.
+    /// Polygons with corners no farther apart than the tolerance: pieces of the region, or lines
+    /// there and back where the template has no area.
     pub(super) fn outlines(&self, plants: &Plants) -> Vec<Vec<Corner>> {
         match &self.region {
             Some(region) if region.has_area() => {
@@ -57,10 +57,11 @@ impl Exploration {
 /// Rounds of growth of a family that does not close.
 const ROUNDS_BESIDE_A_GAP: usize = 1;
 
-/// Shortest line, in tolerances, that is more than rounding.
+/// Shortest line, in tolerances, that is not due to rounding.
 const LENGTH_MINIMUM: f64 = 1e-9;
 
-/// Explores until nothing moves and all witnesses lie within, or until plants or rounds are spent; what was found until then stays.
+/// Explores until nothing moves and all witnesses lie within, or until plants or rounds are used
+/// up; what was found until then is kept.
 pub(super) fn explore(plants: &mut Plants, found: &mut Exploration) -> Result<(), Stop> {
     let dimension = plants.family.coordinates().len();
     if dimension == 0 {
@@ -94,7 +95,8 @@ pub(super) fn explore(plants: &mut Plants, found: &mut Exploration) -> Result<()
     }
 }
 
-/// A template without area is a line; a witness that is not on it is joined to it by a line of the box.
+/// A template without area is a line; a witness that is not on it is joined to it by a line of the
+/// box.
 fn branch(plants: &mut Plants, found: &mut Exploration) -> Result<(), Stop> {
     for _ in 0..plants.options.rounds_maximum {
         let Some(beyond) = outside(plants, &found.lines(plants), &found.witnesses).into_iter().next() else {
@@ -107,7 +109,7 @@ fn branch(plants: &mut Plants, found: &mut Exploration) -> Result<(), Stop> {
     Err(Stop::Exhausted)
 }
 
-/// Rounds of growth; where nothing moves any more, witnesses outside are taken in.
+/// Rounds of growth; where nothing moves any more, witnesses outside are added.
 fn refine(
     plants: &mut Plants,
     region: &mut Region,
@@ -134,7 +136,7 @@ fn refine(
     Err(Stop::Exhausted)
 }
 
-/// A region for places as far apart as those that were found.
+/// A region that is large enough for the places that were found.
 fn empty_region(plants: &Plants) -> Region {
     let places = || plants.list.iter().map(|plant| plant.place).filter(|place| place.is_finite());
     let corner = |start: f64, choose: fn(f64, f64) -> f64| PlantPosition {
@@ -145,7 +147,8 @@ fn empty_region(plants: &Plants) -> Region {
     Region::new(corner(f64::INFINITY, f64::min), corner(f64::NEG_INFINITY, f64::max), tolerance)
 }
 
-/// The same polygon with places between corners that lie farther apart than the tolerance: seams along which a piece was cut.
+/// The same polygon with places between corners that lie farther apart than the tolerance: seams
+/// along which a piece was cut.
 fn divided(plants: &Plants, piece: &[Corner]) -> Vec<Corner> {
     let mut corners = vec![];
     for (from, to) in piece.iter().zip(piece.iter().cycle().skip(1)) {

@@ -1,22 +1,23 @@
-//! Growth of the region: plants on its contour are pushed outward over all coordinates, and what they sweep is filled.
+//! Growth of the region: plants on its contour are pushed outward over all coordinates, and the
+//! region that they sweep is filled.
 //!
-//! The edges of two-dimensional faces do not reach where magnitude and phase turn together inside the box (their gradients are
-//! parallel there). From a plant p on the contour, with outward normal n and tangent t in the plane of phase and
-//! magnitude z, the next one is the linear answer to
+//! The edges of two-dimensional faces do not reach where magnitude and phase turn together inside
+//! the box (their gradients are parallel there). From a plant p on the contour, with outward normal
+//! n and tangent t in the plane of phase and magnitude z, the next one is the linear answer to
 //!
 //! ```text
 //! maximise n . dz     subject to t . dz = 0,   dz = sum_i (dz/dp_i) d_i,   p + d in the box, |d_i| <= reach
 //! ```
 //!
-//! taken when the plant found there really lies further out; the walk from the contour to the new plants and back is closed, so
-//! what it winds around is filled.
+//! taken when the plant found there really lies further out; the walk from the contour to the new
+//! plants and back is closed, so the region that it encloses is filled.
 
 use std::collections::BTreeSet;
 
 use super::plants::{Plants, Stop};
 use super::region::{Corner, Region};
 
-/// Outward gain, in tolerances, that is worth a push.
+/// Least outward gain of a push, in tolerances.
 const GAIN_MINIMUM: f64 = 0.1;
 
 /// Longest outward gain of one push, in tolerances: towards a pole there would be no end.
@@ -31,7 +32,8 @@ const SLOPE_SHARE: f64 = 1e-4;
 /// Smallest reach of a push, in shares.
 const REACH_MINIMUM: f64 = 0.003;
 
-/// One round: every corner of the contour that was not tried before is pushed. Returns whether anything moved.
+/// One round: pushes every corner of the contour that was not tried before. Returns whether
+/// anything moved.
 pub(super) fn grow(
     plants: &mut Plants,
     region: &mut Region,
@@ -114,7 +116,8 @@ fn direction(step: [f64; 2]) -> Option<[f64; 2]> {
     (length > 0.0 && length.is_finite()).then(|| [step[0] / length, step[1] / length])
 }
 
-/// Neighbours from a plant to the one it is pushed to along the normal; only itself where it cannot move.
+/// Neighbours from a plant to the one it is pushed to along the normal; only itself where it cannot
+/// move.
 fn pushed(plants: &mut Plants, plant: usize, normal: [f64; 2]) -> Result<Vec<usize>, Stop> {
     let mut trail = vec![plant];
     let mut from = plant;
@@ -174,12 +177,13 @@ fn slopes(plants: &mut Plants, from: usize) -> Result<Vec<[f64; 2]>, Stop> {
 
 /// The moves that lead farthest along the normal and, to first order, not along the contour.
 ///
-/// For a price on moving sideways every coordinate goes to one of its ends; the price at which the sum turns is that of one
-/// coordinate, which goes part of its way.
+/// For a price on moving sideways every coordinate goes to one of its ends; the price at which the
+/// sum turns is that of one coordinate, which goes part of its way.
 fn outward_moves(slopes: &[[f64; 2]], shares: &[f64], normal: [f64; 2], reach: f64) -> Vec<f64> {
     let tangent = [-normal[1], normal[0]];
     let ends = shares.iter().map(|&share| [(-share).max(-reach), (1.0 - share).min(reach)]);
-    // each coordinate: gain and drift per share, ends in the order in which a rising price visits them
+    // each coordinate: gain and drift per share, ends in the order in which a rising price visits
+    // them
     let rates: Vec<[f64; 2]> =
         slopes.iter().map(|&slope| [dot(slope, normal), dot(slope, tangent)]).collect();
     let ends: Vec<[f64; 2]> = ends

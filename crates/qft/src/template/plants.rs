@@ -1,4 +1,4 @@
-//! The plants that a template has looked at, where they lie, and lines of neighbours between them.
+//! The plants that a template has evaluated, their places, and lines of neighbours between them.
 
 use num_complex::Complex64;
 use phea_dynamics::portable;
@@ -64,7 +64,7 @@ pub(super) struct Gap {
 
 /// Why refinement stopped.
 pub(super) enum Stop {
-    /// The plants or the rounds that were allowed are spent.
+    /// The allowed plants or rounds are used up.
     Exhausted,
     /// A plant cannot be evaluated.
     Failed(TemplateError),
@@ -86,10 +86,10 @@ impl BoxLine {
     }
 }
 
-/// Smallest part of a line that is divided further: a gap that is left there does not close.
+/// Smallest part of a line that is divided further: a gap that remains there does not close.
 const PART_MINIMUM: f64 = 1.0 / (1 << 20) as f64;
 
-/// All plants looked at, at one frequency.
+/// All plants that were evaluated at one frequency.
 pub(super) struct Plants<'a> {
     pub(super) family: &'a UncertainFamily,
     compensation: &'a Compensation,
@@ -199,7 +199,8 @@ impl<'a> Plants<'a> {
         self.gap = Some(Gap { phase_deg, magnitude_db, plant, apart });
     }
 
-    /// Remembers that a pole or a zero is near; of several plants the one with the largest magnitude.
+    /// Remembers that a pole or a zero is near; of several plants the one with the largest
+    /// magnitude.
     pub(super) fn remember_pole(&mut self, plant: usize) {
         let magnitude_db = self.place(plant).magnitude_db;
         let kept = self.gap.as_ref().is_some_and(|gap| {
@@ -211,7 +212,8 @@ impl<'a> Plants<'a> {
         }
     }
 
-    /// The straight line between two plants, halved until neighbours are at most a tolerance apart, or no longer divided.
+    /// The straight line between two plants, halved until neighbours are at most a tolerance apart,
+    /// or no longer divided.
     pub(super) fn line(&mut self, from: usize, to: usize, pieces: usize) -> Result<BoxLine, Stop> {
         let mut line = BoxLine { plants: vec![from], positions: vec![0.0] };
         let mut pending = vec![(1.0, to)];
@@ -277,8 +279,8 @@ impl<'a> Plants<'a> {
         Ok([first, second])
     }
 
-    /// The places along a closed walk of neighbours (the last is one of the first again, and is left out); `None` where it
-    /// has a gap, or goes around a pole or a zero of the family.
+    /// The places along a closed walk of neighbours (the last repeats the first, and is left out);
+    /// `None` where it has a gap, or goes around a pole or a zero of the family.
     pub(super) fn closed_walk(&self, walk: &[usize]) -> Option<Vec<(PlantPosition, usize)>> {
         let first = *walk.first()?;
         let mut places = vec![(self.place(first), first)];

@@ -1,7 +1,8 @@
-//! The region that a template is known to fill, as a union of polygons in the plane of phase and magnitude.
+//! The region that a template is known to fill, as a union of polygons in the plane of phase and
+//! magnitude.
 //!
-//! Polygons are taken to integers (a step is 2^-26 of the template's extent) and united by `i_overlay`, exactly and
-//! in the same way on every machine.
+//! Polygons are taken to integers (a step is 2^-26 of the template's extent) and united by
+//! `i_overlay`, exactly and in the same way on every machine.
 
 use std::collections::BTreeMap;
 
@@ -47,11 +48,11 @@ const FARTHEST: i32 = (1 << 30) - 1;
 /// Smallest step in tolerances: below it a template is a line.
 const STEP_MINIMUM: f64 = 1e-9;
 
-/// Smallest area, in parts of the square of the extent, that is more than rounding.
+/// Smallest area, as a share of the square of the extent, that is not due to rounding.
 const AREA_MINIMUM: f64 = 1e-6;
 
 impl Region {
-    /// An empty region, with integers for places from `low` to `high` and some way beyond.
+    /// An empty region, with integers for places from `low` to `high` and somewhat beyond.
     pub(super) fn new(low: PlantPosition, high: PlantPosition, tolerance: [f64; 2]) -> Region {
         let step =
             |low: f64, high: f64, tolerance: f64| ((high - low) / EXTENT).max(tolerance * STEP_MINIMUM);
@@ -83,7 +84,7 @@ impl Region {
         }
     }
 
-    /// Adds what closed walks wind around.
+    /// Adds the regions that closed walks enclose.
     pub(super) fn fill(&mut self, walks: &[Vec<(PlantPosition, usize)>]) {
         let mut contours: Vec<IntContour<i32>> =
             std::mem::take(&mut self.shapes).into_iter().flatten().collect();
@@ -103,13 +104,13 @@ impl Region {
         }
     }
 
-    /// Whether there is more than lines.
+    /// Whether the region consists of more than lines.
     pub(super) fn has_area(&self) -> bool {
         let whole: f64 = self.shapes.iter().flatten().map(area).sum();
         whole > AREA_MINIMUM * EXTENT * EXTENT
     }
 
-    /// What a place is called among others; the same after any number of turns.
+    /// Identifies a place; the same after any number of turns.
     pub(super) fn key(&self, place: PlantPosition) -> Option<(i64, i32)> {
         self.point(place).map(|point| self.key_of(point))
     }
@@ -147,7 +148,8 @@ impl Region {
         pieces
     }
 
-    /// The region itself if it is no wider than a turn; otherwise what lies beyond a turn is laid over the rest.
+    /// The region itself if it is no wider than a turn; otherwise the part beyond a turn is mapped
+    /// onto the rest.
     fn within_a_turn(&self) -> IntShapes<i32> {
         let ends = |choose: fn(i32, i32) -> i32| {
             self.shapes.iter().flatten().flatten().map(|point| point.x).reduce(choose)
@@ -183,7 +185,8 @@ fn united(contours: &[IntContour<i32>]) -> IntShapes<i32> {
     shapes
 }
 
-/// Whether no place of a hole is more than half a tolerance away from its rim, because it is small or thin.
+/// Whether no place of a hole is more than half a tolerance away from its rim, because it is small
+/// or thin.
 fn is_narrow(hole: &IntContour<i32>, tolerance: [f64; 2]) -> bool {
     let extent = |coordinate: fn(&IntPoint<i32>) -> i32| {
         let low = hole.iter().map(coordinate).min().unwrap_or(0);

@@ -1,19 +1,22 @@
-//! Witnesses: plants of the box that must lie within the region, and are taken into it if they do not.
+//! Witnesses: plants of the box that must lie within the region, and are added to it if they do
+//! not.
 
 use super::plants::{PlantPosition, Plants, Stop};
 use super::region::{Corner, Region};
 
-/// Witnesses taken in at a time.
+/// Number of witnesses added at a time.
 const TAKEN_IN: usize = 8;
 
-/// A plant outside of the region, with its distance in tolerances and the nearest corners that are plants.
+/// A plant outside of the region, with its distance in tolerances and the nearest corners that are
+/// plants.
 pub(super) struct Outside {
     pub(super) plant: usize,
     pub(super) distance: f64,
     pub(super) beside: Option<[usize; 2]>,
 }
 
-/// Points spread evenly over the box: multiples of powers of the generalised golden ratio (Roberts 2018), modulo 1.
+/// Points spread evenly over the box: multiples of powers of the generalised golden ratio (Roberts
+/// 2018), modulo 1.
 pub(super) fn probes(dimension: usize, count: usize) -> Vec<Vec<f64>> {
     let mut ratio = 1.5;
     for _ in 0..60 {
@@ -27,7 +30,7 @@ pub(super) fn probes(dimension: usize, count: usize) -> Vec<Vec<f64>> {
     (1..=count).map(|number| (0..dimension).map(|axis| share(number, axis)).collect()).collect()
 }
 
-/// Witnesses more than a tolerance outside of what the contours enclose, the farthest first.
+/// Witnesses more than a tolerance outside the contours, the farthest first.
 pub(super) fn outside(plants: &Plants, contours: &[Vec<Corner>], witnesses: &[usize]) -> Vec<Outside> {
     let found = witnesses.iter().filter_map(|&plant| {
         let (distance, beside) = distance(plants, contours, plants.place(plant));
@@ -38,7 +41,7 @@ pub(super) fn outside(plants: &Plants, contours: &[Vec<Corner>], witnesses: &[us
     found
 }
 
-/// Takes the farthest witnesses in, by a walk from the contour to each and back.
+/// Adds the farthest witnesses, by a walk from the contour to each and back.
 pub(super) fn take_in(plants: &mut Plants, region: &mut Region, outside: &[Outside]) -> Result<(), Stop> {
     let mut walks = vec![];
     for witness in outside.iter().take(TAKEN_IN) {
@@ -52,7 +55,8 @@ pub(super) fn take_in(plants: &mut Plants, region: &mut Region, outside: &[Outsi
     Ok(())
 }
 
-/// Distance of a place from the region, at any number of turns, and the plants at or beside the nearest corner.
+/// Distance of a place from the region, at any number of turns, and the plants at or next to the
+/// nearest corner.
 fn distance(plants: &Plants, contours: &[Vec<Corner>], place: PlantPosition) -> (f64, Option<[usize; 2]>) {
     let phases = || contours.iter().flatten().map(|corner| corner.place.phase_deg);
     let (low, high) = (phases().fold(f64::INFINITY, f64::min), phases().fold(f64::NEG_INFINITY, f64::max));

@@ -1,4 +1,4 @@
-//! Limits at zero and infinite frequency: every function behaves there like one power of s.
+//! Limits at zero and infinite frequency, where every function behaves like one power of s.
 
 use phea_dynamics::linear::{TimeDomain, TransferFunction};
 use phea_dynamics::portable;
@@ -41,8 +41,9 @@ impl PowerTerm {
         PowerTerm { coefficient: self.coefficient / other.coefficient, power: self.power - other.power }
     }
 
-    /// What is the greater at the end; of two like powers the sum, or its largest magnitude where one is turned without end. What is left
-    /// of two that cancel is less than either.
+    /// The sum at an end: the greater of the two; for equal powers their sum, or its largest
+    /// magnitude where one of them turns without limit. If two cancel, the remainder is smaller
+    /// than either.
     fn plus(self, other: PowerTerm, spun: bool, end: AxisEnd) -> PowerTerm {
         if other.coefficient == 0.0 {
             return self;
@@ -64,7 +65,7 @@ impl PowerTerm {
         }
     }
 
-    /// Of a polynomial, highest power first; zero if it is zero.
+    /// The asymptote of a polynomial, highest power first; zero if it is zero.
     fn of_polynomial(coefficients: &[f64], end: AxisEnd) -> PowerTerm {
         let degree = coefficients.len() as i32 - 1;
         let mut powers = coefficients.iter().zip(0..).filter(|(coefficient, _)| **coefficient != 0.0);
@@ -78,7 +79,8 @@ impl PowerTerm {
         })
     }
 
-    /// Of a transfer function; in a sampled one z - 1 counts as s T, and there is no infinite frequency.
+    /// The asymptote of a transfer function; in a sampled one z - 1 counts as s T, and there is no
+    /// infinite frequency.
     pub(super) fn of_transfer_function(function: &TransferFunction, end: AxisEnd) -> Option<PowerTerm> {
         let (point, step) = match (function.domain(), end) {
             (TimeDomain::Continuous, AxisEnd::Infinity) => {
@@ -109,7 +111,7 @@ impl PowerTerm {
         }
     }
 
-    /// Whether this one is greater than a constant at the end, like it, or less.
+    /// Whether this one is greater than, like, or less than a constant at the end.
     fn order(self, end: AxisEnd) -> std::cmp::Ordering {
         match end {
             AxisEnd::Zero => 0.cmp(&self.power),
@@ -118,7 +120,7 @@ impl PowerTerm {
     }
 }
 
-/// P, Pd, G, F, H of one plant at an end; `spun` where dead time turns the loop without end.
+/// P, Pd, G, F, H of one plant at an end; `spun` where dead time turns the loop without limit.
 struct LoopAsymptotes {
     plant: PowerTerm,
     load_motion: PowerTerm,
@@ -136,10 +138,11 @@ pub(super) struct EndMargin {
     pub(super) power: i32,
 }
 
-/// The limit of the margin; `None` where there is none.
+/// The limit of the margin; `None` if it does not exist.
 ///
-/// Without a prefilter tracking is judged by its spread, to which any prefilter is as good as another: one is taken that makes |T| as
-/// steep as its upper limit. It is the same for plants of equal power, and only these can be compared.
+/// Without a prefilter tracking is judged by its spread, for which all prefilters are equivalent:
+/// the one is used that makes |T| as steep as its upper limit. It is the same for plants of equal
+/// power, and only these can be compared.
 pub(super) fn margin(
     criterion: &Criterion,
     compensation: &Compensation,
@@ -151,7 +154,7 @@ pub(super) fn margin(
         && end == AxisEnd::Infinity
         && matches!(member, Member::Responding { .. })
     {
-        // a bound from above says nothing of what must not fall
+        // an upper bound says nothing about a magnitude that must not fall
         return None;
     }
     let parts = parts(compensation, member, with_prefilter, end)?;
@@ -187,8 +190,8 @@ pub(super) fn margin(
     Some(EndMargin { margin_db, power })
 }
 
-/// A limit over P G/(1+L) at an end; where dead time turns the loop, of its largest value; `None` where there
-/// is none.
+/// A limit over P G/(1+L) at an end; where dead time turns the loop, of its largest value; `None`
+/// where there is none.
 pub(crate) fn tracking_ratio(
     compensation: &Compensation,
     member: &Member,
@@ -208,7 +211,8 @@ pub(super) fn crossing(compensation: &Compensation, member: &Member) -> Option<f
 }
 
 impl LoopAsymptotes {
-    /// 1 + L. Where L neither grows nor vanishes and dead time turns it, the magnitude that is worse for the side.
+    /// 1 + L. Where L neither grows nor vanishes and dead time turns it, the magnitude that is
+    /// worse for the side.
     fn one_plus_loop(&self, side: MarginSide, end: AxisEnd) -> Option<PowerTerm> {
         let open_loop = self.open_loop;
         if open_loop.coefficient == 0.0 {
@@ -282,7 +286,7 @@ fn parts(
     })
 }
 
-/// What bounds the gain of a plant without polynomials towards infinite frequency.
+/// A bound of the gain of a plant without polynomials towards infinite frequency.
 fn rolled_off(plant: &dyn RespondingPlant) -> Option<PowerTerm> {
     let [_, from] = plant.range_rad_per_s();
     Some(PowerTerm { coefficient: plant.roll_off(from)? * from * from * from, power: -3 })

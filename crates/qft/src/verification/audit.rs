@@ -15,9 +15,9 @@ use crate::family::{Extent, Family, UncertainFamily, vertices};
 use crate::sampled::SampledPlants;
 use crate::specification::Specification;
 
-/// A margin of minus this much still counts as met unless another tolerance is asked for, dB.
+/// A margin of minus this much still counts as met, unless another tolerance is requested, dB.
 pub const TOLERANCE_DB: f64 = 0.001;
-/// Corners of a box are looked at up to this dimension.
+/// Corners of a box are examined up to this dimension.
 const CORNERS_DIMENSION_MAXIMUM: usize = 8;
 
 /// How a tracking specification is judged.
@@ -36,11 +36,11 @@ pub enum TrackingJudgement {
 /// What an audit did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct AuditWork {
-    /// Plants that were looked at, corners of the box among them.
+    /// Number of plants that were examined, including corners of the box.
     pub plants: u64,
     /// Searches inside the box.
     pub searches: u64,
-    /// Responses of one plant at one frequency.
+    /// Number of responses of one plant at one frequency.
     pub responses: u64,
 }
 
@@ -51,7 +51,7 @@ pub struct AuditProblem<'a> {
     pub family: &'a Family,
     /// The loop around each.
     pub compensation: &'a Compensation,
-    /// What the loop must satisfy with each.
+    /// The specifications that the loop must satisfy with each plant.
     pub specifications: &'a [Specification],
     /// How tracking is judged.
     pub tracking: TrackingJudgement,
@@ -60,7 +60,7 @@ pub struct AuditProblem<'a> {
 }
 
 impl AuditProblem<'_> {
-    /// The specifications as they stand before anything was looked at: not proven.
+    /// The specifications before anything was examined: not proven.
     pub(crate) fn unexamined(&self) -> Vec<SpecificationFinding> {
         let finding = |specification: &Specification| SpecificationFinding {
             requirement: specification.requirement.clone(),
@@ -79,9 +79,10 @@ impl AuditProblem<'_> {
 
 /// Audits the specifications over the family, without its stability.
 ///
-/// Every plant of the family and every corner of its box is looked at over the whole band: at common frequencies, around its
-/// lightly damped roots, at the limits of zero and infinite frequency; peaks are polished; then the box is searched from
-/// the worst of them. See the chapter on verification in the book.
+/// Every plant of the family and every corner of its box is examined over the whole band: at common
+/// frequencies, around its lightly damped roots, and in the limits of zero and infinite frequency;
+/// peaks are polished; then the box is searched from the worst of them. See the chapter on
+/// verification in the book.
 ///
 /// # Errors
 /// [`Stopped`] by the watch.
@@ -136,7 +137,8 @@ pub fn audit_specifications(
     audit_among(problem, &[], &SampledPlants::default(), watch)
 }
 
-/// The same, where another audit of the same box found plants worth to be looked at too, and sampled plants of the same loop.
+/// The same, with further plants that another audit of the same box found worth examining, and with
+/// plants already sampled in the same loop.
 pub(crate) fn audit_among(
     problem: &AuditProblem<'_>,
     others: &[Vec<f64>],
@@ -162,13 +164,14 @@ struct SpecificationAudit<'a> {
     problem: &'a AuditProblem<'a>,
     evaluator: Evaluator<'a>,
     parts: Vec<SpecificationCriteria>,
-    /// The plants to be looked at, by their parameters; empty for measured ones.
+    /// The plants to be examined, by their parameters; empty for measured ones.
     values: Vec<Vec<f64>>,
     plants: Vec<ScannedPlant>,
     scan: Scan,
-    /// What was found of each specification, beyond the family's worst at the common frequencies.
+    /// The findings for each specification, in addition to the worst of the family at the common
+    /// frequencies.
     cases: Vec<Vec<FoundMargin>>,
-    /// By specification: a frequency at which a plant met in a search has no margin.
+    /// For each specification: a frequency at which a plant found in a search has no margin.
     undefined: Vec<Option<f64>>,
     searches: usize,
 }
@@ -212,7 +215,7 @@ impl<'a> SpecificationAudit<'a> {
         }
     }
 
-    /// Number of plants to be looked at.
+    /// Number of plants to be examined.
     fn count(&self) -> usize {
         match self.problem.family {
             Family::Uncertain(_) => self.values.len(),
@@ -238,7 +241,7 @@ fn plant_at(evaluator: &Evaluator<'_>, family: &UncertainFamily, values: &[f64])
     ScannedPlant { point: PlantPoint::Parameters(values.to_vec()), member, features }
 }
 
-/// The corners of a family's box, if it has one and they are not too many.
+/// The corners of a family's box, if it has one and there are not too many.
 pub(crate) fn corners(family: &UncertainFamily) -> Vec<Vec<f64>> {
     let dimension = family.coordinates().len();
     if family.extent() == Extent::Members || dimension == 0 || dimension > CORNERS_DIMENSION_MAXIMUM {

@@ -2,7 +2,7 @@
 
 use crate::specification::{ClosedLoop, Limit, Specification};
 
-/// On which side of its limit the magnitude must stay.
+/// Whether the magnitude must stay below or above its limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum MarginSide {
     /// magnitude <= limit
@@ -17,14 +17,15 @@ pub(super) struct Criterion {
     pub(super) closed_loop: ClosedLoop,
     pub(super) side: MarginSide,
     pub(super) limit: Limit,
-    /// The upper limit beside it, for tracking.
+    /// The corresponding upper limit, for tracking.
     pub(super) upper: Option<Limit>,
-    /// Where it is demanded: the band of the specification, as far as a table and the sampling reach, rad/s.
+    /// The band where it applies: that of the specification, as far as a table and the sampling
+    /// reach, rad/s.
     pub(super) band: [f64; 2],
 }
 
 impl Criterion {
-    /// Whether anything is demanded at this frequency.
+    /// Whether it applies at this frequency.
     pub(super) fn demands(&self, frequency: f64) -> bool {
         self.band[0] <= frequency && frequency <= self.band[1]
     }
@@ -46,7 +47,8 @@ pub(super) fn criteria(specification: &Specification, highest_frequency: f64) ->
         .collect()
 }
 
-/// The part of a band in which the limit exists and the loop has a response; an end that is no number demands nothing.
+/// The part of a band in which the limit exists and the loop has a response; nothing is demanded if
+/// an end is NaN.
 fn reach(limit: &Limit, band: [f64; 2], highest_frequency: f64) -> [f64; 2] {
     if band.iter().any(|end| end.is_nan()) {
         return band;

@@ -1,4 +1,5 @@
-//! Margins of one plant: everything about a loop and its specifications but the family, and a count of the work.
+//! Margins of one plant: everything about a loop and its specifications except the family, and a
+//! count of the work.
 
 use std::cell::Cell;
 
@@ -14,10 +15,10 @@ use super::response::{LoopAround, LoopAt, decibels};
 use crate::closed_loop::{Compensation, Member};
 use crate::sampled::SampledPlants;
 
-/// Frequencies are polished to this share of themselves.
+/// Relative accuracy of polished frequencies.
 pub(super) const FREQUENCY_TOLERANCE: f64 = 1e-7;
 
-/// A loop without its plant, and what is demanded of it.
+/// A loop without its plant, and its specifications.
 #[derive(Debug)]
 pub(super) struct Evaluator<'a> {
     pub(super) compensation: &'a Compensation,
@@ -28,7 +29,8 @@ pub(super) struct Evaluator<'a> {
     /// Dead time of G H, s.
     pub(super) compensator_dead_time_s: f64,
     responses: Cell<u64>,
-    /// The power of s that the first plant's |T| follows at either end; plants of another power have no spread there.
+    /// The power of s that the first plant's |T| follows at either end; plants with another power
+    /// have no spread there.
     steepness: [Cell<Option<i32>>; 2],
     /// Plants that were sampled before.
     sampled: &'a SampledPlants,
@@ -59,7 +61,7 @@ impl<'a> Evaluator<'a> {
         }
     }
 
-    /// Responses of a plant that were evaluated so far.
+    /// Number of responses of a plant that were evaluated so far.
     pub(super) fn responses(&self) -> u64 {
         self.responses.get()
     }
@@ -78,8 +80,8 @@ impl<'a> Evaluator<'a> {
         at.closed(member)
     }
 
-    /// The margin of one plant to one criterion, in dB; at zero and infinite frequency its limit. `None` where it is not defined
-    /// or nothing is demanded.
+    /// The margin of one plant to one criterion, in dB; at zero and infinite frequency its limit.
+    /// `None` where it is not defined or does not apply.
     pub(super) fn margin_db(&self, criterion: usize, member: &Member, frequency: f64) -> Option<f64> {
         let criterion = self.criteria.get(criterion)?;
         let end = match frequency {
@@ -97,7 +99,8 @@ impl<'a> Evaluator<'a> {
         self.finite(criterion, member, frequency).map(|(_, margin_db)| margin_db)
     }
 
-    /// What vanishes at a resonance, and the margin in dB, at a frequency that is neither zero nor infinite.
+    /// A quantity that vanishes at a resonance, and the margin in dB, at a frequency that is
+    /// neither zero nor infinite.
     pub(super) fn resonance(
         &self,
         criterion: usize,

@@ -10,9 +10,9 @@ use super::{Evidence, PlantPoint, SpecificationFinding, Verdict, ViolatedBand, W
 use crate::family::Family;
 use crate::specification::Specification;
 
-/// Margins above minus this much are rounding, dB.
+/// Violations below this are due to rounding, dB.
 const ROUNDING_DB: f64 = 1e-9;
-/// Ends of violated bands are found to this share of themselves.
+/// Relative accuracy of the ends of violated bands.
 const EDGE_TOLERANCE: f64 = 1e-4;
 
 /// The criteria of one specification.
@@ -29,9 +29,9 @@ pub(super) struct SpecificationCriteria {
 pub(super) struct FoundMargin {
     pub(super) margin_db: f64,
     pub(super) frequency: f64,
-    /// The criterion; of a spread both.
+    /// The criterion; both for a spread.
     pub(super) criteria: Vec<usize>,
-    /// The plant; of a spread, that with the greatest |T| and that with the least.
+    /// The plant; for a spread, the one with the greatest |T| and the one with the least.
     pub(super) points: Vec<PlantPoint>,
     /// Whether the margin has a minimum here, at a frequency inside the band.
     pub(super) interior: bool,
@@ -51,7 +51,7 @@ impl SpecificationCriteria {
         self.first..self.first + self.count
     }
 
-    /// What is searched for by itself: a spread as a whole, otherwise each criterion.
+    /// The units of a search: a spread as a whole, otherwise each criterion.
     pub(super) fn searched(self) -> Vec<SpecificationCriteria> {
         if self.spread {
             return vec![self];
@@ -59,7 +59,7 @@ impl SpecificationCriteria {
         self.criteria().map(|first| SpecificationCriteria { first, count: 1, spread: false }).collect()
     }
 
-    /// The worst of the family at one frequency; `None` where nothing is demanded or resolved.
+    /// The worst of the family at one frequency; `None` where nothing applies or is resolved.
     pub(super) fn combined(self, frequency: f64, worst: &[Option<WorstPlant>]) -> Option<EnvelopePoint> {
         let own = self
             .criteria()
@@ -117,7 +117,7 @@ pub(super) fn points(plants: &[ScannedPlant], chosen: &[usize]) -> Vec<PlantPoin
     chosen.iter().filter_map(|plant| plants.get(*plant)).map(|plant| plant.point.clone()).collect()
 }
 
-/// All that a finding is made of.
+/// All data of a finding.
 pub(super) struct Joining<'a> {
     pub(super) part: SpecificationCriteria,
     pub(super) family: &'a Family,
@@ -125,7 +125,7 @@ pub(super) struct Joining<'a> {
     pub(super) evaluator: &'a Evaluator<'a>,
     pub(super) plants: &'a [ScannedPlant],
     pub(super) cases: &'a [FoundMargin],
-    /// A frequency at which a plant met in a search, or the spread of the family, has no margin.
+    /// A frequency at which a plant found in a search, or the spread of the family, has no margin.
     pub(super) undefined: Option<f64>,
     pub(super) tolerance_db: f64,
 }
@@ -180,7 +180,7 @@ impl Joining<'_> {
         }
     }
 
-    /// The envelope, with what searches found beyond the plants.
+    /// The envelope, including what searches found between the plants.
     fn drawn(&self, envelope: &[EnvelopePoint]) -> Vec<(f64, f64)> {
         let margin = |point: &EnvelopePoint| {
             let here = self.cases.iter().filter(|case| case.frequency == point.frequency);
@@ -226,7 +226,7 @@ impl Joining<'_> {
         found
     }
 
-    /// The last violated frequency between one that is and one that is not.
+    /// The boundary between a violated frequency and one that is not violated.
     fn edge(&self, scan: &mut Scan, violated: f64, kept: Option<f64>) -> f64 {
         let finite = |frequency: f64| frequency > 0.0 && frequency < f64::INFINITY;
         let Some(mut kept) = kept.filter(|kept| finite(*kept) && finite(violated)) else { return violated };

@@ -1,4 +1,4 @@
-//! Where to look: frequencies between which a margin has no feature that is not seen from them.
+//! The frequencies to be examined: a margin has no feature between them that they do not show.
 
 use num_complex::Complex64;
 use phea_dynamics::frequency::logarithmic_grid;
@@ -11,25 +11,26 @@ use crate::closed_loop::Member;
 use crate::family::{COARSE, tabulated};
 use crate::specification::{ClosedLoop, Limit};
 
-/// Points in a decade where roots are, and beyond them.
+/// Points per decade in the range of the roots, and beyond it.
 const POINTS_PER_DECADE: f64 = 40.0;
 const POINTS_PER_OUTER_DECADE: f64 = 8.0;
-/// Decades beyond the roots that are looked at before the limit at the end of the axis takes over.
+/// Decades beyond the roots that are examined before the limit at the end of the axis takes over.
 const OUTER_DECADES: f64 = 3.0;
 /// A root with a damping ratio below this one makes a peak that the grid could miss.
 const LIGHTLY_DAMPED: f64 = 0.2;
 /// Angle by which dead time or a sample may turn a loop from one point to the next, rad.
 const TURN: f64 = 0.3;
-/// Points that dead time may add.
+/// Largest number of points added because of dead time.
 const TURNS_MAXIMUM: usize = 600;
 
-/// The frequencies at which one plant is looked at besides the common ones, and the range of its roots.
+/// The additional frequencies at which one plant is examined, and the range of its roots.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Features {
     pub(super) frequencies: Vec<f64>,
     /// Smallest and largest magnitude of a root, rad/s.
     pub(super) range: Option<[f64; 2]>,
-    /// Whether every resonance of the closed loop is among them; otherwise the turning of 1 + L must tell.
+    /// Whether every resonance of the closed loop is among them; otherwise the turning of 1 + L
+    /// must tell.
     pub(super) complete: bool,
     pub(super) dead_time_s: f64,
 }
@@ -149,7 +150,8 @@ pub(super) fn common_features(evaluator: &Evaluator<'_>) -> Features {
     Features::of_roots(&roots, true, compensation.delay_s())
 }
 
-/// The frequencies at which every plant is looked at: increasing, from zero (0) or to infinity where a band reaches there.
+/// The frequencies at which every plant is looked at: increasing, from zero (0) or to infinity
+/// where a band reaches there.
 pub(super) fn common_grid<'a>(
     evaluator: &Evaluator<'_>,
     features: impl Iterator<Item = &'a Features>,

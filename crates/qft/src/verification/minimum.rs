@@ -7,8 +7,8 @@ const STEPS_MAXIMUM: usize = 80;
 /// A point and the value there.
 pub(crate) type At = (f64, f64);
 
-/// A local minimum between two ends, from a point between them: parabolas through the last points, golden sections where they
-/// fail (Brent 1973, chapter 5). NaN counts as infinite.
+/// A local minimum between two ends, from a point between them: parabolas through the last points,
+/// golden sections where they fail (Brent 1973, chapter 5). NaN counts as infinite.
 pub(crate) fn between<F: FnMut(f64) -> f64>(mut f: F, ends: [f64; 2], start: At, tolerance: f64) -> At {
     let [mut low, mut high] = ends;
     let (mut best, mut second, mut third) = (start, start, start);
@@ -56,7 +56,8 @@ fn parabola(best: At, second: At, third: At) -> Option<f64> {
     (offset.is_finite() && curvature != 0.0).then_some(offset)
 }
 
-/// Downhill from a point, in steps that double, until the function rises or an end is met; then the minimum between.
+/// Downhill from a point, in steps that double, until the function rises or an end is met; then the
+/// minimum between.
 pub(super) fn downhill<F: FnMut(f64) -> f64>(
     mut f: F,
     ends: [f64; 2],

@@ -1,5 +1,5 @@
-//! Closed-loop magnitudes of one plant at one frequency, from numerators and denominators, so that a pole of the plant on the
-//! imaginary axis is an ordinary point.
+//! Closed-loop magnitudes of one plant at one frequency, from numerators and denominators, so that
+//! a pole of the plant on the imaginary axis is an ordinary point.
 //!
 //! ```text
 //! L = N_l/D_l N_g/D_g,    a = D_l D_g,    b = N_l N_g,    1 + L = (a + b)/a
@@ -88,8 +88,9 @@ fn turned(angle: f64) -> Complex64 {
 }
 
 impl LoopAround {
-    /// What is nearly zero where a criterion has a peak: the characteristic value, with the denominator of a Pd that has its own;
-    /// the plant's numerator for a magnitude that must not fall.
+    /// What is nearly zero where a criterion has a peak: the characteristic value, with the
+    /// denominator of a Pd that has its own; the plant's numerator for a magnitude that must not
+    /// fall.
     pub(super) fn vanishing(&self, criterion: &Criterion) -> Complex64 {
         let own = self.load_motion.denominator != self.loop_denominator;
         match (criterion.side, criterion.closed_loop) {
@@ -103,7 +104,8 @@ impl LoopAround {
 }
 
 impl LoopAt {
-    /// G, F, H and the limits at a frequency that is neither zero nor infinite. Without a prefilter F counts as 1.
+    /// G, F, H and the limits at a frequency that is neither zero nor infinite. Without a prefilter
+    /// F counts as 1.
     pub(super) fn new(
         compensation: &Compensation,
         criteria: &[Criterion],
@@ -187,8 +189,8 @@ impl LoopAt {
         Fraction { numerator: load_motion.numerator + shared, ..load_motion }
     }
 
-    /// The square of how far a criterion is exceeded: (quantity/limit)^2 for an upper limit, its inverse for a lower one. `None`
-    /// where nothing is demanded; NaN where it is not defined.
+    /// The square of how far a criterion is exceeded: (quantity/limit)^2 for an upper limit, its
+    /// inverse for a lower one. `None` where nothing is demanded; NaN where it is not defined.
     pub(super) fn excess(&self, index: usize, criterion: &Criterion, closed: &LoopAround) -> Option<f64> {
         let limit = (*self.limits_squared.get(index)?)?;
         let numerator = match criterion.closed_loop {

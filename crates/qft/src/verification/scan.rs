@@ -1,4 +1,5 @@
-//! The look at every plant: the family's worst margin at each common frequency, and the peaks of each plant between them.
+//! The look at every plant: the family's worst margin at each common frequency, and the peaks of
+//! each plant between them.
 
 use num_complex::Complex64;
 use phea_dynamics::portable;
@@ -9,11 +10,13 @@ use super::frequencies::Features;
 use super::response::LoopAt;
 use crate::closed_loop::Member;
 
-/// A characteristic value that turns by more than this from one point to the next has a resonance between them: cos of it.
+/// A characteristic value that turns by more than this from one point to the next has a resonance
+/// between them: cos of it.
 const TURN_COSINE: f64 = 0.5;
 /// How often an interval is halved in search of a resonance.
 pub(super) const HALVINGS: usize = 40;
-/// Peaks are worth polishing if that could make them the worst: by this factor of the squared excess, 1.5 dB.
+/// Peaks are worth polishing if that could make them the worst: by this factor of the squared
+/// excess, 1.5 dB.
 pub(super) const WORTH_POLISHING: f64 = 0.7;
 
 /// A plant that is looked at.
@@ -53,7 +56,8 @@ pub(super) struct Scan {
     unresolved: Vec<Option<(f64, usize)>>,
 }
 
-/// One plant at one frequency: an excess for each criterion, `None` where nothing is demanded or resolved.
+/// One plant at one frequency: an excess for each criterion, `None` where nothing is demanded or
+/// resolved.
 struct PlantSample {
     frequency: f64,
     characteristic: Option<Complex64>,
@@ -189,7 +193,8 @@ impl Scan {
         }
     }
 
-    /// Halves each interval over which the characteristic value turns too far to be without a resonance.
+    /// Halves each interval over which the characteristic value turns too far to be without a
+    /// resonance.
     fn with_resonances(
         &mut self,
         evaluator: &Evaluator<'_>,

@@ -1,5 +1,5 @@
-//! The worst case inside the box: a local search over the shares of its coordinates, the frequency following its minimum; at a
-//! given frequency a share follows instead, where there is a resonance.
+//! The worst case inside the box: a local search over the shares of its coordinates, the frequency
+//! following its minimum; at a given frequency a share follows instead, where there is a resonance.
 
 mod resonance;
 
@@ -12,15 +12,15 @@ use super::minimum::{self, At};
 use crate::closed_loop::Member;
 use crate::family::UncertainFamily;
 
-/// Sweeps over the coordinates at most.
+/// Largest number of sweeps over the coordinates.
 const SWEEPS_MAXIMUM: usize = 20;
 /// A sweep that gains less than this ends the search, dB.
 const GAIN_MINIMUM: f64 = 1e-6;
 /// Shares are found to this.
 const SHARE_TOLERANCE: f64 = 1e-5;
-/// As long as a sweep still looks far, to this share of how far.
+/// Accuracy of a sweep while its range is still wide, as a share of the range.
 const SHARE_STEP: f64 = 1e-3;
-/// First step of a frequency that follows its minimum, as a share of itself.
+/// First relative step of a frequency that follows its minimum.
 const FREQUENCY_STEP: f64 = 0.01;
 
 /// Where a search starts.
@@ -32,13 +32,13 @@ pub(super) struct SearchTask {
     pub(super) shares: Vec<Vec<f64>>,
     /// rad/s; zero and infinity are limits.
     pub(super) frequency: f64,
-    /// Between which the frequency may move; `None` where it is given.
+    /// The range in which the frequency may move; `None` where it is given.
     pub(super) range: Option<[f64; 2]>,
     /// Whether resonances between the plants are searched for at a given frequency.
     pub(super) resonances: bool,
 }
 
-/// What a search ended at, and the first plant on its way that has no margin at some frequency.
+/// The end of a search, and the first plant on its way that has no margin at some frequency.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct SearchOutcome {
     pub(super) found: Option<SearchEnd>,
@@ -138,7 +138,7 @@ impl MarginDescent<'_> {
         place
     }
 
-    /// With a follower only its own plant moves, and it by itself.
+    /// With a follower only its own plant moves, and the follower moves by itself.
     fn moves(&self, block: usize, coordinate: usize) -> bool {
         self.follower.is_none_or(|follower| follower.block == block && follower.coordinate != coordinate)
     }
@@ -193,8 +193,8 @@ impl MarginDescent<'_> {
         self.settled(shares, members, place.frequency)
     }
 
-    /// The best place along one coordinate: the neighbourhood of this share, and those of both ends; on the first sweep of the
-    /// middle as well.
+    /// The best place along one coordinate: the neighbourhood of this share, those of both ends
+    /// and, on the first sweep, that of the middle.
     fn along(
         &self,
         place: SearchPoint,

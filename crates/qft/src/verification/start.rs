@@ -7,12 +7,12 @@ use super::scan::{Scan, ScannedPlant};
 use super::search::SearchTask;
 use crate::family::UncertainFamily;
 
-/// Local minima of a family's margin, and plants, that are followed.
+/// Number of local minima of a family's margin, and of plants, that are followed.
 pub(super) const STARTS: usize = 4;
 /// Frequencies further apart than by this factor count as different.
 const FREQUENCY_RATIO: f64 = 1.1;
 
-/// Between which finite frequencies a search may move.
+/// The range of finite frequencies in which a search may move.
 pub(super) fn interior_range(
     part: SpecificationCriteria,
     evaluator: &Evaluator<'_>,
@@ -28,7 +28,8 @@ pub(super) fn interior_range(
     Some([first, last])
 }
 
-/// Frequencies next to violated ones: there the box may hold a plant that violates as well.
+/// Frequencies next to violated ones, where the box may contain another plant that violates the
+/// limit.
 fn beside_violations(envelope: &[EnvelopePoint]) -> Vec<f64> {
     let kept = envelope.windows(2).filter_map(|pair| match pair {
         [left, right] if left.margin_db < 0.0 && right.margin_db >= 0.0 => Some(right.frequency),
@@ -38,8 +39,9 @@ fn beside_violations(envelope: &[EnvelopePoint]) -> Vec<f64> {
     kept.take(2 * STARTS).collect()
 }
 
-/// Searches for one specification: at each design frequency and each end of the band, with the resonances there; beside violated frequencies; from its worst local minima, from the
-/// middle of the box, and from the plants with the worst peaks.
+/// Searches for one specification: at each design frequency and each end of the band, with the
+/// resonances there; next to violated frequencies; from its worst local minima, from the middle of
+/// the box, and from the plants with the worst peaks.
 pub(super) fn tasks(
     part: SpecificationCriteria,
     family: &UncertainFamily,
@@ -97,7 +99,8 @@ fn shares(family: &UncertainFamily, point: Option<&PlantPoint>) -> Vec<f64> {
     }
 }
 
-/// The worst cases, each with a plant of its own, after the first few each with a frequency of its own.
+/// The worst cases, each with a plant of its own, after the first few each with a frequency of its
+/// own.
 fn diverse<'a>(cases: impl Iterator<Item = &'a FoundMargin>) -> Vec<&'a FoundMargin> {
     let apart = |case: &FoundMargin, other: &&FoundMargin| {
         let ratio = case.frequency / other.frequency;

@@ -1,4 +1,5 @@
-//! The audits of an attempt: of each plant beside its family by itself, then of the family, which takes longer.
+//! The audits of an attempt: first of each additional plant by itself, then of the family, which
+//! takes longer.
 
 use phea_dynamics::watch::{Watch, part};
 
@@ -13,11 +14,11 @@ use crate::loop_shaping::{Aim, Judgement};
 use crate::sampled::SampledPlants;
 use crate::verification::{Audit, AuditProblem, Verdict};
 
-/// A relaxation is found to this, dB.
+/// Accuracy to which a relaxation is found, dB.
 const RELAXATION_TOLERANCE_DB: f64 = 0.005;
 
 impl Attempt {
-    /// The audits of the plants beside the family, once it has ended with an audit.
+    /// The audits of the additional plants, once the attempt has ended with an audit.
     pub(in crate::design) fn beside(&self) -> &[Audit] {
         &self.beside
     }
@@ -42,7 +43,7 @@ impl Attempt {
         self.audit_of(&self.shaping.samples().problem().family, sampled, watch)
     }
 
-    /// The audits of the plants beside the family, one by one.
+    /// The audits of the additional plants, one by one.
     fn audit_of_next(&self, watch: Watch<'_>) -> Result<Option<Audit>, LoopDesignError> {
         let beside = &self.shaping.samples().problem().beside;
         let Some(plant) = beside.get(self.beside.len()) else { return Ok(None) };
@@ -50,7 +51,8 @@ impl Attempt {
         self.audit_of(&alone, &SampledPlants::default(), watch).map(Some)
     }
 
-    /// What the audits say of the attempt; `None` where they found counterexamples, which were taken in.
+    /// The outcome of the attempt by its audits; `None` where they found counterexamples, which
+    /// were added to the samples.
     pub(super) fn audited(
         &mut self,
         sampled: &SampledPlants,
@@ -91,7 +93,8 @@ impl Attempt {
         }))
     }
 
-    /// The audit of an attempt that has come to no end, or to none that is stable, as it is.
+    /// The audit of an attempt as it stands, if it has not ended or has ended without a stable
+    /// loop.
     pub(in crate::design) fn audited_as_it_is(
         &mut self,
         sampled: &SampledPlants,
@@ -113,8 +116,10 @@ impl Attempt {
         examples
     }
 
-    /// Margins below minus these are new, of single limits and of tracking: where the worst margin itself is looked for, what is worse than all
-    /// that was looked at. Limits of tracking may meet, and a margin to them counts by its share of the room: a negative one is new.
+    /// Margins below minus these values count as new, for single limits and for tracking: where the
+    /// worst margin itself is sought, a margin is new if it is worse than all that were evaluated.
+    /// Limits of tracking may meet, and a margin to them counts by its share of the room: a
+    /// negative one is new.
     pub(super) fn new_below_db(&self, judgement: &Judgement) -> [f64; 2] {
         let worst_db = judgement.worst_margin_db;
         let ordinary = 0.5 * self.options.tolerance_db;

@@ -1,11 +1,11 @@
-//! What a search begins with, and how widely it looks.
+//! The starting points of a search, and how widely it looks.
 
 use crate::loop_shaping::{Aim, DescentOptions, SearchOptions, SearchProblem, Shaping};
 
-/// Of the points at which the nominal plant is stabilised, so many begin a search at most.
+/// Largest number of points that stabilise the nominal plant with which a search begins.
 const STABILISING_MAXIMUM: usize = 24;
 
-/// Points that a search looks at before any that is spread.
+/// Points that a search evaluates before those that are spread over the bounds.
 #[derive(Clone, Debug, Default)]
 pub(in crate::design) struct StartingPoints {
     /// What a simpler controller does.
@@ -16,7 +16,8 @@ pub(in crate::design) struct StartingPoints {
     pub(in crate::design) is_hard: bool,
 }
 
-/// The best of these points: those that stabilise every plant by their worst margin, then the others by how far from it they are.
+/// The best of these points: those that stabilise every plant by their worst margin, then the
+/// others by how far from it they are.
 pub(super) fn best_of(shaping: &mut Shaping, points: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     let mut judged: Vec<((bool, f64), Vec<f64>)> = Vec::with_capacity(points.len());
     for x in points {
@@ -28,8 +29,9 @@ pub(super) fn best_of(shaping: &mut Shaping, points: Vec<Vec<f64>>) -> Vec<Vec<f
     judged.into_iter().map(|(_, x)| x).take(STABILISING_MAXIMUM).collect()
 }
 
-/// The gain is scanned, for hardly any is right for a random shape; a relaxation takes more descents to their end, for the answer is a
-/// number, and so does a plant that is hard to stabilise, whose local optima are many.
+/// The gain is scanned, because hardly any gain suits a random shape. More descents are completed
+/// for a relaxation, whose result is a number, and for a plant that is hard to stabilise, which has
+/// many local optima.
 pub(super) fn search_options(aim: Aim, seed: u64, relaxes: bool, is_hard: bool) -> SearchOptions {
     let descent = DescentOptions { reserve_db: 0.0, ..DescentOptions::new(aim) };
     let (samples, starts, finished) = match (is_hard, relaxes) {

@@ -1,8 +1,10 @@
-//! What is deployed of an attempt: its controller with the coefficients that the computer keeps.
+//! The controller of an attempt as it is deployed, with the coefficients that the computer stores.
 //!
-//! The search shapes a loop without rounding, for rounded coefficients have no slopes. What is judged, audited and handed out is the rounded
-//! controller. Where that breaks a limit which the search kept, the search is drawn in by what rounding took, and a little more, until the
-//! rounded controller keeps to the limits too: rounding moves a controller by no more than so much, in a direction that nobody can tell.
+//! The search shapes a loop without rounding, for rounded coefficients have no slopes. What is
+//! judged, audited and handed out is the rounded controller. Where it violates a limit that the
+//! search satisfied, the limits of the search are tightened by what rounding cost, and a little
+//! more, until the rounded controller satisfies the limits too: rounding moves a controller by a
+//! limited amount in an unpredictable direction.
 
 use phea_dynamics::controller::Controller;
 use phea_dynamics::watch::Watch;
@@ -12,15 +14,17 @@ use crate::closed_loop::Compensation;
 use crate::design::quantisation::{CoefficientFormat, rounded};
 use crate::loop_shaping::{Aim, Judgement, SearchProblem};
 
-/// The search is drawn in by this many times what is missing.
+/// The limits of the search are tightened by this multiple of what is missing.
 const DRAWN: f64 = 1.25;
-/// By how much where the rounded controller is not stable or cannot be kept, dB; twice as much each time.
+/// By how much the limits are tightened where the rounded controller is not stable or cannot be
+/// stored, dB; doubled each time.
 const DRAWN_BLINDLY_DB: f64 = 0.1;
-/// How often a search is drawn in.
+/// How often the limits of a search are tightened.
 const DRAWS_MAXIMUM: usize = 24;
 
 impl Attempt {
-    /// The controller as it is deployed: in z and with rounded coefficients where the loop samples and they are not kept as they are.
+    /// The controller as it is deployed: in z and with rounded coefficients where the loop is
+    /// sampled and coefficients are rounded.
     pub(in crate::design) fn deployed(&self) -> Result<Controller, LoopDesignError> {
         let law = self.shaping.controller(&self.x);
         if !self.rounds_coefficients() {
@@ -35,7 +39,8 @@ impl Attempt {
         Ok(Compensation::new(&self.deployed()?, problem.sensor.clone())?)
     }
 
-    /// What is deployed, judged by the samples; unusable where it cannot be kept.
+    /// The deployed controller, judged by the samples; unusable where its coefficients cannot be
+    /// stored.
     pub(super) fn judgement(&mut self) -> Judgement {
         if !self.rounds_coefficients() {
             return self.shaping.judge(&self.x);
@@ -47,8 +52,8 @@ impl Attempt {
         judgement
     }
 
-    /// Descends further inside its limits, as long as rounding breaks one that the search kept. A worst margin that is made as large as it
-    /// can be has nothing to be drawn in from.
+    /// Descends further inside its limits, as long as rounding violates one that the search
+    /// satisfied. This does not apply when the worst margin itself is maximised.
     pub(super) fn draw_in(&mut self, watch: Watch<'_>) -> Result<(), Leave> {
         if !self.rounds_coefficients() || self.aim == Aim::WorstMargin {
             return Ok(());

@@ -10,16 +10,16 @@ use crate::prefilter::PrefilterError;
 /// Why a design cannot go on.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LoopDesignError {
-    /// A part is no transfer function, or cannot be sampled.
+    /// A part is not a transfer function, or cannot be sampled.
     #[error("{0}")]
     Linear(#[from] LinearError),
-    /// The plants cannot be looked at.
+    /// The plants cannot be evaluated.
     #[error("{0}")]
     Samples(#[from] SamplesError),
     /// There is no band for a prefilter.
     #[error("{0}")]
     Prefilter(PrefilterError),
-    /// The coefficients of the controller cannot be kept in their format.
+    /// The coefficients of the controller cannot be represented in their format.
     #[error("{0}")]
     Quantisation(#[from] QuantisationError),
     /// The watch stopped the design.

@@ -1,4 +1,4 @@
-//! The plants that are looked at, each with what no controller can take from it.
+//! The plants that are examined, each with the properties that no controller can change.
 
 use num_complex::Complex64;
 use phea_dynamics::linear::Polynomial;
@@ -10,7 +10,7 @@ use crate::closed_loop::{Compensation, Member};
 use crate::family::Family;
 use crate::verification::{PlantPoint, corners};
 
-/// Plants that are looked at: the nominal one, corners of the box, members.
+/// Plants that are examined: the nominal one, corners of the box, members.
 const PLANTS_MAXIMUM: usize = 96;
 const CORNERS_MAXIMUM: usize = 64;
 /// Real parts below this share of a root's magnitude count as zero.
@@ -41,7 +41,7 @@ pub(super) struct PlantWithinLoop {
     pub(super) features: Vec<f64>,
 }
 
-/// Plants of a family: every one of them a plant that the loop must serve.
+/// Plants of a family, each of which the loop must control.
 pub(super) fn candidates(family: &Family, compensation: &Compensation) -> Vec<PlantWithinLoop> {
     match family {
         Family::Uncertain(uncertain) => {
@@ -79,7 +79,7 @@ pub(super) fn candidates(family: &Family, compensation: &Compensation) -> Vec<Pl
     }
 }
 
-/// Evenly chosen ones, the first and the last among them.
+/// Evenly spaced choices, including the first and the last.
 fn strided<T>(all: &[T], most: usize) -> impl Iterator<Item = &T> {
     let count = all.len().min(most);
     let last = all.len().saturating_sub(1);
@@ -87,7 +87,7 @@ fn strided<T>(all: &[T], most: usize) -> impl Iterator<Item = &T> {
 }
 
 impl PlantWithinLoop {
-    /// Of a plant without polynomials no root is known; what follows without roots holds nevertheless.
+    /// No root is known for a plant without polynomials; conclusions that need no roots still hold.
     fn without_roots(point: PlantPoint, member: Member, compensation: &Compensation) -> PlantWithinLoop {
         let dead_time_s = compensation.delay_s() + compensation.sensor().dead_time_s();
         let sample = compensation.sample_time_s();
@@ -155,7 +155,8 @@ impl PlantWithinLoop {
         vanishing(point, &self.poles)
     }
 
-    /// The same of |T|: its zeros are those of P H, and dead time is of magnitude 1 on the boundary.
+    /// The same of |T|: its zeros are those of P H, and dead time is of magnitude 1 on the
+    /// boundary.
     pub(super) fn complementary_factor(&self, plane: Plane, point: Complex64) -> f64 {
         let delays = plane.image_of_delay().map_or(1.0, |delay| {
             let one = vanishing(point, &[Complex64::new(delay, 0.0)]);
@@ -174,7 +175,8 @@ fn is_right(root: &Complex64) -> bool {
     root.re > ON_THE_AXIS * portable::magnitude(*root)
 }
 
-/// Zeros outside of the unit circle. Those next to z = 1 are left out: rounding may have carried them there.
+/// Zeros outside the unit circle. Those next to z = 1 are left out: rounding may have moved them
+/// there.
 fn images_of_z(plane: Plane, zeros: &[Complex64]) -> Vec<Complex64> {
     const NEXT_TO: f64 = 1e-6;
     let scale = plane.image_of_delay().unwrap_or(1.0);

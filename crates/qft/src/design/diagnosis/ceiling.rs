@@ -1,4 +1,5 @@
-//! What all specifications together leave of |S| and |T| of one plant, frequency by frequency.
+//! The upper limits of |S| and |T| of one plant that all specifications together leave, frequency
+//! by frequency.
 
 use phea_dynamics::portable;
 
@@ -31,7 +32,8 @@ impl Share {
     }
 }
 
-/// The limit of a specification at a frequency, upper over lower for tracking; `None` where nothing is demanded.
+/// The limit of a specification at a frequency, upper over lower for tracking; `None` where nothing
+/// is required.
 pub(super) fn demanded(specification: &Specification, frequency: f64) -> Option<f64> {
     let [from, to] = specification.band_rad_per_s;
     if !(from <= frequency && frequency <= to) {
@@ -53,7 +55,7 @@ pub(super) struct FrequencyDemand {
     demands: Vec<(usize, f64)>,
     /// Responses of the candidates.
     responses: Vec<Option<MemberResponse>>,
-    /// Plants that tracking holds the others against: those of extreme magnitude and phase.
+    /// Plants with which tracking compares the others: those of extreme magnitude and phase.
     partners: Vec<MemberResponse>,
 }
 
@@ -75,7 +77,8 @@ impl<'a> Ceilings<'a> {
         Ceilings { boundary, specifications, nodes: boundary.frequencies.iter().map(node).collect() }
     }
 
-    /// The limits of one candidate at all frequencies, with every specification relaxed by a factor.
+    /// The limits of one candidate at all frequencies, with every specification relaxed by a
+    /// factor.
     pub(super) fn of(&self, candidate: usize, factor: f64) -> impl Iterator<Item = Ceiling> {
         self.nodes.iter().map(move |node| self.at(node, candidate, factor))
     }
@@ -126,7 +129,8 @@ impl<'a> Ceilings<'a> {
     }
 }
 
-/// What a spread of at most d between two plants leaves of |S| and |T| of the first.
+/// The limits on |S| and |T| of the first plant that follow from a spread of at most d between two
+/// plants.
 ///
 /// ```text
 /// x = L2/L1,  rho = |P1/P2|:      P1 S1/(P2 S2) = (P1/P2) (x + (1 - x) S1) = (P1/P2) (1 - (1 - x) T1),  at most d, so
@@ -155,7 +159,7 @@ fn node(specifications: &[Specification], candidates: &[PlantWithinLoop], freque
         .map(|candidate| if needed { candidate.member.response(frequency) } else { None })
         .collect();
     let tracked = |(index, limit): &(usize, f64)| {
-        // crossed limits are told of by themselves
+        // crossed limits are reported separately
         *limit >= 1.0 && of(index).is_some_and(Requirement::is_tracking)
     };
     let partners = if demands.iter().any(tracked) { extremes(&responses) } else { Vec::new() };

@@ -1,12 +1,14 @@
 //! Design frequencies at which every loop is forbidden by the bounds of some plants.
 //!
-//! The plants are few and the phases of a grid, and yet a loop that is not found does not exist: between two phases L0 turns by a factor 1 + e,
+//! Only a few plants and the phases of a grid are examined, and yet a loop that is not found does
+//! not exist: between two phases L0 turns by a factor 1 + e,
 //!
 //! ```text
 //! |T'| = |T| |1 + e|/|1 + e T|,  |S'| = |S|/|1 + e T|,     both greater by at most (1 + |e|)/(1 - |e| |T|)
 //! ```
 //!
-//! so that a loop allowed anywhere is allowed at the nearest phase of the grid, once every limit is relaxed by that factor.
+//! so that a loop allowed anywhere is allowed at the nearest phase of the grid, once every limit is
+//! relaxed by that factor.
 
 use std::f64::consts::PI;
 
@@ -24,15 +26,15 @@ use crate::specification::{Limit, LoopResponse, Specification};
 use crate::template::{Resolution, Template, TemplatePoint};
 use crate::verification::PlantPoint;
 
-/// Design frequencies that are looked at.
+/// Design frequencies that are examined.
 const FREQUENCIES_MAXIMUM: usize = 64;
 /// Phases of the first look.
 const COARSE_RAD: f64 = PI / 36.0;
 /// |e| (1 + |T|) between two phases of the fine grid.
 const FINE: f64 = 0.008;
-/// Loops with a larger |T| than this are not looked at.
+/// Loops with a larger |T| than this are not considered.
 const COMPLEMENTARY_MAXIMUM: f64 = 60.0;
-/// Contradictions that are smaller are left to the search, dB.
+/// Smaller contradictions are left to the search, dB.
 const TOLERANCE_DB: f64 = 0.01;
 const RELAXATION_MAXIMUM_DB: f64 = 200.0;
 
@@ -72,7 +74,8 @@ pub(super) fn contradictions(
     found.into_iter().map(|(_, finding)| finding).collect()
 }
 
-/// The greatest |T| that the limits leave any plant; `None` where they leave too much to tell.
+/// The greatest |T| that the limits allow any plant; `None` where they allow too much for a
+/// conclusion.
 fn largest_complementary(
     specifications: &[Specification],
     candidates: &[PlantWithinLoop],
@@ -128,7 +131,7 @@ impl<'a> DemandedPlants<'a> {
         (!specifications.is_empty()).then_some(DemandedPlants { frequency, specifications, plants, template })
     }
 
-    /// The union of all bounds with every limit relaxed; `None` without a bound.
+    /// The union of all bounds with every limit relaxed; `None` if there is no bound.
     fn union(&self, relaxation_db: f64, spacing_rad: f64) -> Option<(Bound, bool)> {
         let factor = portable::pow(10.0, relaxation_db / 20.0);
         let relaxed: Vec<Specification> = self
@@ -173,7 +176,8 @@ impl<'a> DemandedPlants<'a> {
         Some(([low, high], finding))
     }
 
-    /// Phase and gain of a loop that the relaxed limits allow, where the allowed gains reach widest.
+    /// Phase and gain of a loop that the relaxed limits allow, where the allowed gains reach
+    /// widest.
     fn allowed(&self, relaxation_db: f64, spacing_rad: f64) -> Option<[f64; 2]> {
         if !relaxation_db.is_finite() {
             return None;
@@ -197,7 +201,7 @@ impl<'a> DemandedPlants<'a> {
         Some([phase, gain])
     }
 
-    /// Who is violated by that loop, with the plant that violates most.
+    /// Which specifications that loop violates, each with its worst plant.
     fn parties(&self, [phase_rad, gain]: [f64; 2], relaxation_db: f64) -> Vec<Party> {
         let nominal = Complex64::new(gain * portable::cos(phase_rad), gain * portable::sin(phase_rad));
         let parties = self.specifications.iter().filter_map(|(index, specification)| {
@@ -207,7 +211,7 @@ impl<'a> DemandedPlants<'a> {
         parties.collect()
     }
 
-    /// The worst margin of one specification, and how much of it 1 dB of relaxation gives back.
+    /// The worst margin of one specification, and how much 1 dB of relaxation improves it.
     fn party(&self, index: usize, specification: &Specification, nominal: Complex64) -> Option<(Party, f64)> {
         let one = Complex64::new(1.0, 0.0);
         let size_db = |(point, plant): &(&'a PlantPoint, MemberResponse)| {
@@ -234,8 +238,9 @@ impl<'a> DemandedPlants<'a> {
     }
 }
 
-/// A relaxation that is not enough, from the least one that is on the grid: what two phases leave between them is taken off. Limits grow by
-/// the square of a relaxation at most, and so does the largest |T|.
+/// A relaxation that is certainly too small, from the least one found on the grid: the allowance
+/// for the gap between two phases is subtracted. Limits grow at most with the square of a
+/// relaxation, and so does the largest |T|.
 fn proven_db(high_db: f64, turn: f64, largest_complementary: f64) -> f64 {
     const COVERED: f64 = 0.1;
     let far = (COVERED / (turn * largest_complementary)).sqrt();

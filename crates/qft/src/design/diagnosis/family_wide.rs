@@ -1,4 +1,4 @@
-//! What no controller can do for the family as a whole, or for one plant whatever its limits.
+//! What no controller can achieve for the family as a whole, or for one plant whatever its limits.
 
 use num_complex::Complex64;
 
@@ -6,7 +6,7 @@ use super::candidate::PlantWithinLoop;
 use super::finding::Finding;
 use crate::specification::{Requirement, Specification};
 
-/// Poles of two plants that differ by less than this share are the same.
+/// Poles of two plants that differ by less than this share count as equal.
 const SAME: f64 = 1e-9;
 
 /// The sign of a closed loop's polynomial where it does not depend on the controller alone.
@@ -18,9 +18,10 @@ struct Sign {
 
 /// Plants of different sign.
 ///
-/// The characteristic function D Gd + N Gn e^(-sT) of a stable loop has no zero on [0, inf), and for large s the sign of Gd times the leading
-/// coefficient of D. Where D (or, with integral action, Gd) vanishes it is N Gn: so the sign of N there over the
-/// leading coefficient of D must be the same for all plants.
+/// The characteristic function D Gd + N Gn e^(-sT) of a stable loop has no zero on [0, inf), and
+/// for large s the sign of Gd times the leading coefficient of D. Where D (or, with integral
+/// action, Gd) vanishes it is N Gn: so the sign of N there over the leading coefficient of D must
+/// be the same for all plants.
 pub(super) fn gain_signs(specifications: &[Specification], candidates: &[PlantWithinLoop]) -> Vec<Finding> {
     let integral = specifications.iter().any(demands_integral_action);
     let signs: Vec<Sign> = candidates
@@ -50,7 +51,7 @@ pub(super) fn gain_signs(specifications: &[Specification], candidates: &[PlantWi
     found
 }
 
-/// Whether S(0) = 0 is asked for.
+/// Whether S(0) = 0 is required.
 fn demands_integral_action(specification: &Specification) -> bool {
     let Requirement::Sensitivity(limit) = &specification.requirement else { return false };
     specification.band_rad_per_s[0] == 0.0 && limit.magnitude(0.0) == Some(0.0)
@@ -89,8 +90,9 @@ fn is_strictly_proper(candidate: &PlantWithinLoop) -> bool {
     candidate.dead_time_s > 0.0 || candidate.delays > 0 || candidate.command.as_ref().is_some_and(proper)
 }
 
-/// More delay margin than 2/p, which no linear time-invariant controller of a continuous loop exceeds for a plant with the real
-/// unstable pole p (Middleton and Miller 2007).
+/// The required delay margin exceeds 2/p, the most that a linear time-invariant controller of a
+/// continuous loop can achieve for a plant with the real unstable pole p (Middleton and Miller
+/// 2007).
 pub(super) fn delay_margin(minimum_s: f64, candidates: &[PlantWithinLoop]) -> Option<Finding> {
     let fastest = candidates.iter().flat_map(|candidate| {
         let real = candidate.unstable_poles.iter().filter(|pole| pole.im == 0.0);
@@ -106,8 +108,9 @@ pub(super) fn delay_margin(minimum_s: f64, candidates: &[PlantWithinLoop]) -> Op
     })
 }
 
-/// A plant with an odd number of real unstable poles between two of its real zeros in the right half plane, infinity among them: no stable
-/// controller stabilises it (Youla, Bongiorno and Lu 1974).
+/// A plant with an odd number of real unstable poles between two of its real zeros in the right
+/// half plane, infinity included: no stable controller stabilises it (Youla, Bongiorno and Lu
+/// 1974).
 pub(super) fn unstable_controller(candidates: &[PlantWithinLoop]) -> Option<Finding> {
     candidates.iter().find_map(|candidate| {
         let real = |roots: &[Complex64]| -> Vec<f64> {

@@ -1,4 +1,4 @@
-//! What can be said of a problem before any search.
+//! What is known about a problem before any search.
 
 use num_complex::Complex64;
 
@@ -7,24 +7,26 @@ use crate::verification::PlantPoint;
 /// How much a finding says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum FindingSeverity {
-    /// No controller whatever meets the specifications.
+    /// No controller meets the specifications.
     Impossible,
-    /// It is hard, or not what was meant.
+    /// It is hard, or probably not what was intended.
     Warning,
 }
 
-/// Where T or S is known whatever the controller, or where S + T = 1 is held against the limits.
+/// The point where T or S is the same for every controller, or where S + T = 1 is compared with the
+/// limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ConstraintPlace {
     /// A pole of P H in the right half plane, rad/s: T = 1 there.
     UnstablePole(Complex64),
-    /// A zero of P H in the right half plane, rad/s: S = 1 there. In a sampled loop z = e^(sT) is a zero of the sampled plant.
+    /// A zero of P H in the right half plane, rad/s: S = 1 there. In a sampled loop z = e^(sT) is a
+    /// zero of the sampled plant.
     RightHalfPlaneZero(Complex64),
     /// A positive real s, rad/s; infinite for z = infinity in a sampled loop.
     Point(f64),
 }
 
-/// What the limits leave at a point s of the right half plane.
+/// What the limits allow at a point s of the right half plane.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Constraint {
     /// The point.
@@ -33,11 +35,12 @@ pub struct Constraint {
     pub plant: PlantPoint,
     /// Dead time of plant, sensor and loop, with the samples of delay in a sampled loop, s.
     pub dead_time_s: f64,
-    /// The greatest |S(s)| that the limits leave.
+    /// The greatest |S(s)| that the limits allow.
     pub sensitivity: f64,
-    /// The greatest |T(s)| that the limits leave.
+    /// The greatest |T(s)| that the limits allow.
     pub complementary: f64,
-    /// At a pole the frequency above which |T| must stay below 1, at a zero that up to which |S| must, rad/s.
+    /// At a pole the frequency above which |T| must stay below 1, at a zero that up to which |S|
+    /// must, rad/s.
     pub crossover_rad_per_s: Option<f64>,
     /// The specifications that matter.
     pub specifications: Vec<usize>,
@@ -48,9 +51,9 @@ pub struct Constraint {
 pub struct Party {
     /// Index of the specification.
     pub specification: usize,
-    /// The plant with the least margin; of tracking, the one with the greatest |T|.
+    /// The plant with the least margin; for tracking, the one with the greatest |T|.
     pub plant: PlantPoint,
-    /// Of tracking, the plant with the least |T|.
+    /// For tracking, the plant with the least |T|.
     pub other: Option<PlantPoint>,
     /// Its margin where the contradiction is least, dB.
     pub margin_db: f64,
@@ -61,7 +64,7 @@ pub struct Party {
 pub struct SharedLimit {
     /// Index of the specification.
     pub specification: usize,
-    /// What it leaves of |S| or |T|.
+    /// The greatest |S| or |T| that it allows.
     pub limit: f64,
 }
 
@@ -78,10 +81,11 @@ pub enum Finding {
         lower: f64,
         /// The upper limit there.
         upper: f64,
-        /// dB added to the upper and taken from the lower one that would bring them together.
+        /// How far the upper limit would have to be raised and the lower one lowered for them to
+        /// meet, dB.
         relaxation_db: f64,
     },
-    /// At one frequency the limits leave |S| + |T| < 1, though S + T = 1.
+    /// At one frequency the limits allow only |S| + |T| < 1, although S + T = 1.
     SumBelowOne {
         /// Where it is worst, rad/s.
         frequency_rad_per_s: f64,
@@ -91,7 +95,7 @@ pub enum Finding {
         sensitivity: SharedLimit,
         /// What is left of |T|.
         complementary: SharedLimit,
-        /// The least relaxation of every limit under which it would do, dB.
+        /// The least relaxation of every limit that would suffice, dB.
         relaxation_db: f64,
     },
     /// At one design frequency every loop is forbidden by some bound.
@@ -104,7 +108,8 @@ pub enum Finding {
         gain: f64,
         /// Who stands against whom there.
         parties: Vec<Party>,
-        /// Between which bounds the least relaxation of every limit lies that leaves a loop at this frequency, dB.
+        /// Lower and upper bound on the least relaxation of every limit that would allow a loop at
+        /// this frequency, dB.
         relaxation_db: [f64; 2],
     },
     /// A pole of P H on the axis makes T = 1 there, which a limit forbids.
@@ -125,21 +130,23 @@ pub enum Finding {
         /// The specification, with its limit of |S|, or the lower one of tracking.
         limit: SharedLimit,
     },
-    /// At a point of the right half plane the limits leave |S| + |T| < 1.
+    /// At a point of the right half plane the limits allow only |S| + |T| < 1.
     RightHalfPlane {
         /// What is left there.
         constraint: Constraint,
-        /// The least relaxation of every limit under which it would do at this point, dB; infinite if none would.
+        /// The least relaxation of every limit that would suffice at this point, dB; infinite if
+        /// none does.
         relaxation_db: f64,
     },
     /// Plants whose gain has different signs where every closed loop must have the same.
     GainSign {
-        /// 0 for the static gain, otherwise the unstable pole that the plants have in common, rad/s.
+        /// 0 for the static gain, otherwise the unstable pole that the plants have in common,
+        /// rad/s.
         pole_rad_per_s: f64,
         /// Two plants of different sign.
         plants: [PlantPoint; 2],
     },
-    /// More delay margin is asked for than an unstable pole leaves.
+    /// The required delay margin is larger than an unstable pole allows.
     DelayMargin {
         /// The pole, rad/s.
         pole_rad_per_s: f64,
@@ -150,9 +157,9 @@ pub enum Finding {
         /// What no linear controller exceeds, 2/p, s.
         greatest_s: f64,
     },
-    /// Where nothing is limited, |S| or |T| must rise at least so far.
+    /// Where nothing is limited, |S| or |T| must rise at least this far.
     ForcedPeak {
-        /// What is left at the point, without what is not limited.
+        /// What the limits allow at the point, the unlimited part of the axis left out.
         constraint: Constraint,
         /// The least peak, dB.
         peak_db: f64,
@@ -161,10 +168,11 @@ pub enum Finding {
     UnstableController {
         /// The plant.
         plant: PlantPoint,
-        /// An odd number of its real unstable poles lies between these zeros (the second may be infinite), rad/s.
+        /// An odd number of its real unstable poles lies between these zeros (the second may be
+        /// infinite), rad/s.
         between_zeros_rad_per_s: [f64; 2],
     },
-    /// Design frequencies that the loop or a measurement does not reach: nothing can be said there.
+    /// Design frequencies beyond the range of the loop or of a measurement: nothing is known there.
     OutOfReach {
         /// Index of the specification.
         specification: usize,
@@ -175,7 +183,8 @@ pub enum Finding {
         /// The measured plant; `None` where the sampling ends the band.
         plant: Option<PlantPoint>,
     },
-    /// Both limits of tracking at zero frequency exclude 1: the output is not to follow the reference at rest.
+    /// The limits of tracking at zero frequency exclude 1: the output would not follow the
+    /// reference at rest.
     StaticGain {
         /// Index of the specification.
         specification: usize,
@@ -232,8 +241,8 @@ impl Finding {
         all
     }
 
-    /// The least common relaxation of all limits without which nothing can be met, dB: a lower bound of what a design would need. `None` where
-    /// no relaxation helps, or none is needed.
+    /// The least common relaxation of all limits below which no design can meet them, dB: a lower
+    /// bound of what a design would need. `None` where no relaxation helps or none is needed.
     pub fn relaxation_db(&self) -> Option<f64> {
         match self {
             Finding::CrossedLimits { relaxation_db, .. }

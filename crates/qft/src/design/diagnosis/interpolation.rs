@@ -1,7 +1,8 @@
-//! S + T = 1 in the right half plane, where the limits on the axis bound both.
+//! S + T = 1 holds in the right half plane, where the limits on the axis bound both.
 //!
-//! S and T of a stable loop are analytic and bounded there, so that at any of its points the logarithm of their magnitude is at most the mean
-//! of its boundary values, weighted by harmonic measure, and less by what their zeros take (Poisson and Jensen):
+//! S and T of a stable loop are analytic and bounded there, so that at any of its points the
+//! logarithm of their magnitude is at most the mean of its boundary values, weighted by harmonic
+//! measure and reduced by the contribution of their zeros (Poisson and Jensen):
 //!
 //! ```text
 //! |S(s0)| <= exp(mean ln|S|) prod |s0 - p|/|s0 + conj p|                      p the unstable poles, where S = 0
@@ -16,13 +17,14 @@ use super::ceiling::{Ceiling, Ceilings};
 use super::finding::{Constraint, ConstraintPlace, Finding};
 use super::plane::{Plane, share};
 
-/// Deficits below this are left to the search: where something happens on the axis, the cells may err by as much. 0.1 dB.
+/// Deficits below this are left to the search, since the error of the cells can be as large. 0.1
+/// dB.
 const TOLERANCE: f64 = 0.0115;
 /// What they may err elsewhere.
 const ROUNDING: f64 = 1e-6;
-/// Peaks that are not worth a word, dB.
+/// Peaks below this are not reported, dB.
 const PEAK_DB: f64 = 6.0;
-/// A share of the axis that counts as none.
+/// A share of the axis that counts as zero.
 const NOTHING: f64 = 1e-9;
 /// Specifications whose limit rules over less of the axis are not named.
 const NAMED: f64 = 0.01;
@@ -45,7 +47,7 @@ enum LimitKind {
     Point,
 }
 
-/// What the limits leave at a spot, apart from the share of the axis on which nothing is limited.
+/// What the limits allow at a point, apart from the share of the axis on which nothing is limited.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Left {
     sensitivity: f64,
@@ -53,7 +55,7 @@ struct Left {
     free: f64,
 }
 
-/// A spot where too little is left.
+/// A point where the limits allow too little.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Deficit {
     spot: Spot,
@@ -109,7 +111,8 @@ fn left(
     }
 }
 
-/// The worst impossibility at a pole, a zero and elsewhere; where there is none, the highest peak that is forced.
+/// The worst impossibility at a pole, at a zero and elsewhere; where there is none, the highest
+/// peak that is unavoidable.
 pub(super) fn findings(ceilings: &Ceilings, candidates: &[PlantWithinLoop]) -> Vec<Finding> {
     let plane = ceilings.boundary.plane;
     let shares =
@@ -158,7 +161,7 @@ fn impossible(ceilings: &Ceilings, candidates: &[PlantWithinLoop], deficits: &[D
     };
     let roots: Vec<&Deficit> = [LimitKind::Pole, LimitKind::Zero].into_iter().filter_map(of_kind).collect();
     let known = roots.iter().map(|deficit| deficit.lack).fold(0.0, f64::max);
-    // beside a pole or a zero that tells the same, a point has nothing to add
+    // a point adds nothing to a pole or a zero that shows the same
     let point = of_kind(LimitKind::Point).filter(|point| roots.is_empty() || point.lack > known + 0.1);
     roots
         .into_iter()
@@ -263,7 +266,8 @@ fn constraint(ceilings: &Ceilings, candidates: &[PlantWithinLoop], deficit: &Def
     })
 }
 
-/// Real points over all that happens on the axis; in a sampled loop up to the image of z = infinity.
+/// Real points over the range of the frequencies of interest; in a sampled loop up to the image of
+/// z = infinity.
 fn real_points(ceilings: &Ceilings) -> Vec<Complex64> {
     let cells = &ceilings.boundary.cells;
     let ends = cells.first().zip(cells.last()).map_or([1.0, 1.0], |(first, last)| [first[1], last[0]]);

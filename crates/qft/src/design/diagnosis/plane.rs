@@ -1,11 +1,12 @@
-//! The half plane on which S and T are analytic, and what of its boundary a point of it sees.
+//! The half plane on which S and T are analytic, and the harmonic measure of its boundary.
 
 use std::f64::consts::PI;
 
 use num_complex::Complex64;
 use phea_dynamics::portable;
 
-/// The open right half plane of s, or, of a sampled loop, that into which everything outside of the unit circle is taken:
+/// The open right half plane of s or, for a sampled loop, the half plane to which the outside of
+/// the unit circle is mapped:
 ///
 /// ```text
 /// sigma = (2/T) (z - 1)/(z + 1),     z = e^(jwT)  ->  j (2/T) tan(w T/2)
@@ -62,7 +63,8 @@ impl Plane {
     }
 }
 
-/// The share of the boundary that a point sees between two places and between their conjugates: harmonic measure.
+/// Harmonic measure: the weight, at a point, of the boundary between two places and between their
+/// conjugates.
 ///
 /// ```text
 /// (1/pi) integral of Re s0/|s0 - j w|^2 dw = (1/pi) [atan((w - Im s0)/Re s0)]        1 for the whole axis
@@ -73,7 +75,8 @@ pub(super) fn share(point: Complex64, [from, to]: [f64; 2]) -> f64 {
     (angle(to) - angle(from) + mirrored(to) - mirrored(from)) / PI
 }
 
-/// The magnitude at a point of the function of magnitude 1 on the boundary that vanishes at these roots alone (Blaschke).
+/// The magnitude at a point of the function of magnitude 1 on the boundary that vanishes at these
+/// roots alone (Blaschke).
 ///
 /// ```text
 /// prod |s0 - r|/|s0 + conj r|
@@ -92,18 +95,18 @@ pub(super) struct BoundaryCells {
     pub(super) cells: Vec<[f64; 2]>,
     /// rad/s, two for each cell.
     pub(super) frequencies: Vec<f64>,
-    /// The last place at which something happens: beyond it limits are powers of s.
+    /// The last frequency of interest: beyond it the limits are powers of s.
     pub(super) highest: f64,
 }
 
 const CELLS_PER_DECADE: f64 = 48.0;
 const DECADES_MAXIMUM: f64 = 14.0;
-/// How far the cells go beyond what happens on the axis.
+/// How far the cells extend beyond the frequencies of interest.
 const REACH: f64 = 1e3;
 
 impl BoundaryCells {
-    /// Cells around these places, none of which lies inside a cell. What a power of s does on the first and the last cell, its mean
-    /// logarithm tells exactly.
+    /// Cells around these places, none of which lies inside a cell. On the first and the last cell
+    /// the mean logarithm of a power of s is exact.
     pub(super) fn new(plane: Plane, places: &[f64]) -> BoundaryCells {
         let sound = |place: &&f64| **place > 0.0 && place.is_finite();
         let places: Vec<f64> = places.iter().filter(sound).copied().collect();
@@ -128,7 +131,8 @@ impl BoundaryCells {
     }
 }
 
-/// The two points of Gauss in the logarithm; on the first and the last cell the one at which a logarithm has its mean.
+/// The two points of Gauss in the logarithm; on the first and the last cell the one at which a
+/// logarithm has its mean.
 fn nodes([from, to]: [f64; 2]) -> [f64; 2] {
     let e = std::f64::consts::E;
     if from == 0.0 {
@@ -147,7 +151,8 @@ fn nodes([from, to]: [f64; 2]) -> [f64; 2] {
 mod tests {
     use super::*;
 
-    /// ln|f| of a function without zeros in the right half plane is the mean of its boundary values, in either plane.
+    /// ln|f| of a function without zeros in the right half plane is the mean of its boundary
+    /// values, in either plane.
     #[test]
     fn the_mean_over_the_boundary_is_the_value_at_the_point() {
         for (sample_time_s, point) in [

@@ -1,4 +1,4 @@
-//! What cannot be at a single frequency, plant by plant.
+//! What is impossible at a single frequency, plant by plant.
 
 use phea_dynamics::portable;
 
@@ -9,7 +9,7 @@ use super::interpolation::least_relaxation_db;
 use crate::closed_loop::Compensation;
 use crate::specification::{Requirement, Specification};
 
-/// What two limits may lack before it is told, dB: each verdict forgives 0.001 dB.
+/// The deficit of two limits below which nothing is reported, dB: each verdict tolerates 0.001 dB.
 const TOLERANCE_DB: f64 = 0.002;
 const RELAXATION_MAXIMUM_DB: f64 = 400.0;
 
@@ -17,7 +17,8 @@ fn decibels(ratio: f64) -> f64 {
     20.0 * portable::log10(ratio)
 }
 
-/// Tracking limits that are crossed, each specification where it is worst, over its design frequencies and those of the cells.
+/// Tracking limits that are crossed, each specification where it is worst, over its design
+/// frequencies and those of the cells.
 pub(super) fn crossed(specifications: &[Specification], frequencies: &[f64]) -> Vec<Finding> {
     let of = |(index, specification): (usize, &Specification)| {
         if !specification.requirement.is_tracking() {
@@ -93,7 +94,7 @@ pub(super) fn on_the_axis(
                 let plant = candidate.point.clone();
                 add(Finding::PoleOnTheAxis { frequency_rad_per_s: frequency, plant, complementary });
             }
-            // sampling keeps no zero but that of a plant without static gain
+            // sampling preserves only the zero of a plant without static gain
             for &frequency in candidate.axis_zeros.iter().filter(|zero| !sampled || **zero == 0.0) {
                 let Some(limit) = forbidden_by_zero(demand, candidate, frequency) else { continue };
                 let limit = SharedLimit { specification, limit };

@@ -10,7 +10,7 @@ use super::QuantisationError;
 /// How a coefficient is kept.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum CoefficientFormat {
-    /// IEEE 754 with 53 bits: as it is.
+    /// IEEE 754 with 53 bits: unchanged.
     #[default]
     Double,
     /// IEEE 754 with 24 bits.
@@ -27,11 +27,12 @@ pub enum CoefficientFormat {
 /// A controller as it is deployed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RoundedController {
-    /// The controller of these sections, to be audited: feedback and prefilter are in z, a prefilter that acts before the samples as it was.
+    /// The controller of these sections, to be audited: feedback and prefilter are in z, a
+    /// prefilter that acts before the samples as it was.
     pub controller: Controller,
-    /// G, coefficient by coefficient as it is run.
+    /// G with the coefficients with which it runs.
     pub feedback: Vec<Section>,
-    /// F, likewise; empty where it acts before the samples.
+    /// F likewise; empty where it acts before the sampling.
     pub prefilter: Vec<Section>,
     /// What rounding did to G.
     pub feedback_effect: CoefficientEffect,
@@ -42,9 +43,11 @@ pub struct RoundedController {
 /// What rounding did to a transfer function.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CoefficientEffect {
-    /// The largest |p' - p|/|1 - p| of a pole p: its shift as a share of its distance from z = 1, where slow poles lie.
+    /// The largest |p' - p|/|1 - p| of a pole p: its shift as a share of its distance from z = 1,
+    /// where slow poles lie.
     pub largest_pole_shift: f64,
-    /// Gain at zero frequency over that before; `None` where there is none, as behind an integrator.
+    /// Gain at zero frequency divided by that before rounding; `None` where it is infinite or zero,
+    /// as with an integrator.
     pub dc_gain_ratio: Option<f64>,
 }
 
@@ -53,7 +56,8 @@ impl CoefficientEffect {
 }
 
 impl CoefficientFormat {
-    /// The nearest number that can be held; halves go away from zero in fixed point, to even in floating point.
+    /// The nearest number that can be represented; halves are rounded away from zero in fixed
+    /// point, and to even in floating point.
     ///
     /// # Errors
     /// [`QuantisationError::TooLarge`].
@@ -81,15 +85,17 @@ impl CoefficientFormat {
 
 /// The controller with its coefficients rounded to this format, section by section.
 ///
-/// A continuous compensator is sampled first, by the controller's own timing. A section with a pole at z = 1 keeps it: a_1 + a_2 = -1
-/// holds after rounding, too, since an integrator that leaks, or grows, is another controller.
+/// A continuous compensator is sampled first, by the controller's own timing. A section with a pole
+/// at z = 1 keeps it: a_1 + a_2 = -1 holds after rounding, too, since an integrator that leaks, or
+/// grows, is another controller.
 ///
 /// # Errors
-/// [`QuantisationError::Continuous`] for a controller without sample time, [`QuantisationError::TooLarge`],
-/// [`QuantisationError::Vanished`], and those of sampling.
+/// [`QuantisationError::Continuous`] for a controller without sample time,
+/// [`QuantisationError::TooLarge`], [`QuantisationError::Vanished`], and those of sampling.
 ///
 /// # Example
-/// A lag of 20 rad/s at 1 kHz: its gain at zero frequency is (b_0 + b_1)/(1 - p), where 1 - p = 0.02 has lost two digits.
+/// A lag of 20 rad/s at 1 kHz: its gain at zero frequency is (b_0 + b_1)/(1 - p), where 1 - p =
+/// 0.02 has lost two digits.
 /// ```
 /// use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
 /// use phea_qft::design::quantisation::{CoefficientFormat, rounded};

@@ -1,4 +1,4 @@
-//! What the rounding of converters does to force and command.
+//! The effect of the rounding of converters on force and command.
 //!
 //! ```text
 //! y(k) = sum h(i) e(k - i),  |e| <= q/2:      |y| <= q/2 sum |h(i)|,       white e:  rms(y) = q/sqrt(12) sqrt(sum h(i)^2)
@@ -14,7 +14,7 @@ use phea_dynamics::linear::{LinearError, TimeDomain, TransferFunction};
 use super::{Quantisation, QuantisationError};
 use crate::closed_loop::{Compensation, Member};
 
-/// Samples that are run at least, and at most.
+/// Least and greatest number of samples that are run.
 const SAMPLES_MINIMUM: usize = 4096;
 const SAMPLES_MAXIMUM: usize = 1 << 21;
 /// The last half of the samples may add this share.
@@ -23,11 +23,12 @@ const SETTLED: f64 = 1e-6;
 /// The largest effect of a rounding among the plants, in the unit of what it acts on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RoundingEffect {
-    /// No rounding, however unlucky, does more at any sample: q/2 times the sum of |h|.
+    /// The most that any rounding can cause at any sample: q/2 times the sum of |h|.
     pub peak: f64,
     /// Index of the plant with this peak.
     pub peak_plant: usize,
-    /// Rms of what roundings do that are independent of each other: q/sqrt(12) times the root of the sum of h^2.
+    /// Rms effect of roundings that are independent of each other: q/sqrt(12) times the root of the
+    /// sum of h^2.
     pub rms: f64,
     /// Index of the plant with this rms.
     pub rms_plant: usize,
@@ -36,27 +37,30 @@ pub struct RoundingEffect {
 /// Whether the loop can come to rest between the levels of its converters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LimitCycle {
-    /// The controller does not integrate, so that it need not find the one command that leaves no error.
+    /// The controller does not integrate, so that it need not find the one command that leaves no
+    /// error.
     NotIntegrating,
     /// Some level of the command leaves no error that the measurement shows, for every plant.
     CanRest {
-        /// What one step of the command makes of the measurement at rest, at most.
+        /// The most by which one step of the command changes the measurement at rest.
         rest_step: f64,
         /// One step of the measurement.
         measurement_step: f64,
     },
-    /// For this plant no level need: the command then wanders between two of them for ever.
+    /// For this plant perhaps no level does: the command then alternates between two of them for
+    /// ever.
     Expected {
         /// Index of the plant with the largest step.
         plant: usize,
-        /// What one step of the command makes of the measurement at rest; infinite for a plant that integrates.
+        /// How much one step of the command changes the measurement at rest; infinite for a plant
+        /// that integrates.
         rest_step: f64,
         /// One step of the measurement.
         measurement_step: f64,
     },
 }
 
-/// What the converters do to a loop; what needs a converter that is absent is `None`.
+/// The effects of the converters on a loop; `None` for an effect whose converter is absent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RoundingEffects {
     /// The rounded command on the output.
@@ -65,8 +69,9 @@ pub struct RoundingEffects {
     pub force_from_measurement: Option<RoundingEffect>,
     /// The rounded measurement on the command.
     pub command_from_measurement: Option<RoundingEffect>,
-    /// Steps by which the command jumps at once where the measurement moves by one step, |G(z = infinity)| q_y/q_u: far above one the
-    /// valve is shaken by the last bit of the sensor, far below one it does not see it until the controller has integrated.
+    /// Steps by which the command jumps at once where the measurement moves by one step, |G(z =
+    /// infinity)| q_y/q_u: far above one, the last bit of the sensor shakes the valve; far below
+    /// one, the valve does not respond to it until the controller has integrated.
     pub command_steps_at_once: Option<f64>,
     /// Whether the loop can come to rest.
     pub limit_cycle: Option<LimitCycle>,
@@ -74,21 +79,24 @@ pub struct RoundingEffects {
 
 /// What rounding does to the loops of these plants, at the samples.
 ///
-/// An integrating controller can rest if one step of the command moves the measurement by less than one step of its own,
+/// An integrating controller can rest if one step of the command moves the measurement by less than
+/// one step of its own,
 ///
 /// ```text
 /// |P H (z = 1)| q_u < q_y
 /// ```
 ///
-/// Source: Peterchev and Sanders (2003), the condition on resolutions. Friction and dead band of a valve make limit cycles of their own,
-/// of which a linear loop knows nothing.
+/// Source: Peterchev and Sanders (2003), the condition on resolutions. Friction and dead band of a
+/// valve cause limit cycles of their own, which a linear loop does not show.
 ///
 /// # Errors
-/// [`QuantisationError::Continuous`] for a continuous loop or a plant that was measured; [`QuantisationError::NotSettled`] for a loop
-/// that is not stable; [`QuantisationError::Linear`] for a controller that cannot be run.
+/// [`QuantisationError::Continuous`] for a continuous loop or a plant that was measured;
+/// [`QuantisationError::NotSettled`] for a loop that is not stable; [`QuantisationError::Linear`]
+/// for a controller that cannot be run.
 ///
 /// # Example
-/// k/s with the gain g closes to z - 1 + K, K = g k T. A rounded command moves the output by k T (1 - K)^n, in all by 1/g:
+/// k/s with the gain g closes to z - 1 + K, K = g k T. A rounded command moves the output by k T (1
+/// - K)^n, in all by 1/g:
 /// ```
 /// use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
 /// use phea_dynamics::linear::TransferFunction;
@@ -241,7 +249,8 @@ impl SampledLoop {
         Ok(SampledLoop { output, measured, feedback })
     }
 
-    /// The sums of what output and command do after one error of command and measurement; `None` if they do not settle.
+    /// The sums of what output and command do after one error of command and measurement; `None` if
+    /// they do not settle.
     fn response(&self, error: [f64; 2]) -> Option<(Sums, Sums)> {
         let mut running = self.clone();
         let (mut output, mut command) = (Sums::default(), Sums::default());
@@ -271,7 +280,7 @@ impl SampledLoop {
     /// u = -G m,   m = P H v + e_y,   y = P v,   v = u + e_u
     /// ```
     ///
-    /// Where controller and plant both answer at once, u is solved for.
+    /// Where both controller and plant have direct feedthrough, u is solved for.
     fn step(&mut self, [command_error, measurement_error]: [f64; 2]) -> (f64, f64) {
         let (plant, controller) = (self.measured.at_once(), self.feedback.at_once());
         let measured = self.measured.free() + plant * command_error + measurement_error;

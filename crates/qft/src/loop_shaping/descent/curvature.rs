@@ -2,10 +2,11 @@
 
 use super::super::subproblem::dot;
 
-/// Share of the curvature so far that a change of slopes must show, or it is mixed with what was expected (Powell 1978).
+/// Share of the present curvature that a change of slopes must show; otherwise it is mixed with the
+/// expected change (Powell 1978).
 const DAMPING: f64 = 0.2;
 
-/// An entry beyond this is no curvature but a kink, dB for the square of a neper.
+/// An entry beyond this indicates a kink and not a curvature, dB per square neper.
 const LARGEST: f64 = 1e6;
 
 /// A positive definite matrix B, kept by the damped BFGS formula.
@@ -21,7 +22,8 @@ pub(crate) struct Curvature {
 }
 
 impl Curvature {
-    /// The same curvature |d.y|/(d.d) in every direction; `None` where step or change say nothing.
+    /// The same curvature |d.y|/(d.d) in every direction; `None` where step or change carry no
+    /// information.
     pub(crate) fn first(step: &[f64], change: &[f64]) -> Option<Curvature> {
         let size = dot(step, change).abs() / dot(step, step);
         let row = |at: usize| (0..step.len()).map(|column| if column == at { size } else { 0.0 }).collect();
@@ -38,7 +40,8 @@ impl Curvature {
         self.rows.iter().map(|row| dot(row, step)).collect()
     }
 
-    /// B', from a step d and the change y of the slopes along it; `None` where a kink or rounding has spoilt it.
+    /// B', from a step d and the change y of the slopes along it; `None` where a kink or rounding
+    /// has made it useless.
     pub(super) fn updated(&self, step: &[f64], change: &[f64]) -> Option<Curvature> {
         let expected = self.times(step);
         let before = dot(step, &expected);
@@ -69,7 +72,8 @@ impl Curvature {
 mod tests {
     use super::*;
 
-    /// Along conjugate steps of a quadratic function the formula finds its matrix, whatever it began with.
+    /// Along conjugate steps of a quadratic function the formula finds its matrix, whatever it
+    /// began with.
     #[test]
     fn a_quadratic_function_is_learnt_exactly() {
         let hessian = |d: &[f64]| vec![4.0 * d[0] + d[1], d[0] + 3.0 * d[1]];

@@ -5,14 +5,17 @@ use crate::loop_shaping::search::Judgement;
 /// Why a descent ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DescentStatus {
-    /// No small step gains more than the tolerance, and no margin misses its reserve by more: a local optimum.
+    /// No small step gains more than the tolerance, and no margin misses its reserve by more: a
+    /// local optimum.
     Converged,
-    /// No small step brings the worst margin nearer to the reserve, dB: a local optimum of the worst margin.
+    /// No small step brings the worst margin nearer to the reserve, dB: a local optimum of the
+    /// worst margin.
     Infeasible {
         /// The worst margin there.
         worst_margin_db: f64,
     },
-    /// Only steps below this gain anything, and less than was promised: a kink, or slopes that are not those of the margins.
+    /// Only steps smaller than this gain anything, and less than was predicted: there is a kink, or
+    /// the slopes do not match the margins.
     TrustRegionTooSmall {
         /// Size of the last step that was tried, in units of x.
         radius: f64,
@@ -27,7 +30,7 @@ pub enum DescentStatus {
         /// The penalty then, dB for each dB.
         penalty: f64,
     },
-    /// The start is not stable, or has margins that are no numbers.
+    /// The start is not stable, or has margins that are NaN.
     StartUnusable,
     /// The start lies outside of the bounds.
     StartOutside,
@@ -42,7 +45,7 @@ pub struct DescentResult {
     pub judgement: Option<Judgement>,
     /// Why it ended there.
     pub status: DescentStatus,
-    /// The margins that stood in the way of the last step, the strongest first.
+    /// The margins that limited the last step, the strongest first.
     pub binding: Vec<Binding>,
     /// Work done.
     pub work: DescentWork,
@@ -71,7 +74,7 @@ impl std::ops::Add for DescentWork {
     }
 }
 
-/// A margin that stands in the way.
+/// A margin that limits a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Binding {
     /// Its [`MarginRow::sample`](crate::loop_shaping::MarginRow::sample).

@@ -1,4 +1,4 @@
-//! A point with all that is known around it.
+//! A point with everything that is known about its neighbourhood.
 
 use std::collections::BTreeMap;
 
@@ -11,12 +11,12 @@ pub(super) struct DescentPoint {
     pub(super) x: Vec<f64>,
     pub(super) judgement: Judgement,
     pub(super) slopes: Slopes,
-    /// Margins that the slopes here leave out, as they look from the end of a refused step.
+    /// Margins that are missing among the slopes here, as seen from the end of a rejected step.
     pub(super) beyond: Vec<MarginRow>,
 }
 
 impl DescentPoint {
-    /// All margins that are known around here, those beyond last.
+    /// All margins that are known around here, those from other points last.
     pub(super) fn rows(&self) -> Vec<MarginRow> {
         self.slopes.margins.iter().chain(&self.beyond).cloned().collect()
     }
@@ -25,8 +25,8 @@ impl DescentPoint {
         self.slopes.margins.iter().map(|row| (row.sample, row)).collect()
     }
 
-    /// The margins of another place that are not among those here, continued to here along their slopes. None is worse here than the
-    /// worst margin, which is known.
+    /// The margins of another place that are not among those here, continued to here along their
+    /// slopes. None of them is worse here than the worst margin, which is known.
     fn unknown_rows(&self, there: &DescentPoint) -> Vec<MarginRow> {
         let known = self.by_sample();
         let back: Vec<f64> = self.x.iter().zip(&there.x).map(|(here, there)| here - there).collect();
@@ -39,7 +39,8 @@ impl DescentPoint {
         continued.collect()
     }
 
-    /// The rows here so moved that they have the margins found at the end of a step, with those that only appear there.
+    /// The rows here, shifted so that they have the margins found at the end of a step, together
+    /// with those that only appear there.
     pub(super) fn corrected_rows(&self, there: &DescentPoint, step: &[f64]) -> Vec<MarginRow> {
         let found = there.by_sample();
         let corrected = |row: &MarginRow| match found.get(&row.sample) {
@@ -51,7 +52,7 @@ impl DescentPoint {
         rows
     }
 
-    /// The same place, with the margins that only appear at the end of a refused step.
+    /// The same point, with the margins that only appear at the end of a rejected step.
     pub(super) fn with_rows_of(mut self, there: &DescentPoint) -> DescentPoint {
         let unknown = self.unknown_rows(there);
         self.beyond.retain(|row| unknown.iter().all(|new| new.sample != row.sample));
@@ -59,8 +60,8 @@ impl DescentPoint {
         self
     }
 
-    /// How much the slopes of the Lagrangian f - sum lambda_i m_i change from here to there; a margin that is not given at both places
-    /// is taken as straight.
+    /// How much the slopes of the Lagrangian f - sum lambda_i m_i change from here to there; a
+    /// margin that is not given at both points is taken as linear.
     pub(super) fn change_of_slopes(&self, there: &DescentPoint, aim: Aim, multipliers: &[f64]) -> Vec<f64> {
         let slopes = there.slopes.objective_slopes.iter().zip(&self.slopes.objective_slopes);
         let mut change: Vec<f64> = match aim {

@@ -1,15 +1,17 @@
-//! What happens where |L| = 1: the delay that a plant bears, and the bandwidth of the nominal loop.
+//! Quantities at |L| = 1: the delay that a plant tolerates, and the bandwidth of the nominal loop.
 //!
 //! ```text
 //! delay = (arg L + pi)/w at each gain crossover w,      margin = 20 log10(least delay/delay demanded)
 //! ```
 //!
-//! Poles of a stable loop cross to the right half plane at a gain crossover only, so this is the whole demand: it is exact but
-//! for the frequency of the crossover and the phase there, which are interpolated between the frequencies of the samples, ln|L| and
-//! arg L straight over ln w. The margin is as steep for a demand that is missed as for one that is met, and falls to minus infinity
-//! as a loop becomes unstable. In a sampled loop it is that of the sampled L, exact for a delay of whole samples. A crossover comes and
-//! goes with a peak of |L| through 1; so the peaks below 1 and the dips above, where the phase alone would not do, are margins too
-//! for the slopes, though not for the judgement.
+//! Poles of a stable loop cross to the right half plane at a gain crossover only, so this is the
+//! complete demand: it is exact except for the frequency of the crossover and the phase there,
+//! which are interpolated between the frequencies of the samples, ln|L| and arg L straight over ln
+//! w. The margin is as steep for a demand that is missed as for one that is met, and falls to minus
+//! infinity as a loop becomes unstable. In a sampled loop it is that of the sampled L, exact for a
+//! delay of whole samples. A crossover appears or vanishes when a peak of |L| passes through 1; so
+//! the peaks below 1 and the dips above it at which the phase alone would violate the demand are
+//! also margins for the slopes, though not for the judgement.
 
 use std::f64::consts::PI;
 
@@ -41,7 +43,7 @@ struct Crossover {
     width: f64,
     /// Where between the columns, from 0 to 1.
     share: f64,
-    /// What d ln|L| at either column adds to d share.
+    /// Derivative of the share with respect to ln|L| at either column.
     share_slopes: [f64; 2],
 }
 
@@ -53,16 +55,16 @@ pub(crate) struct ColumnDependence {
     pub(crate) terms: Vec<(usize, Complex64)>,
 }
 
-/// The margins to a demanded delay.
+/// The margins to a required delay.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct DelayMargins {
     /// At gain crossovers.
     pub(crate) crossovers: Vec<ColumnDependence>,
-    /// Where a crossover may come up or vanish.
+    /// Where a crossover may appear or vanish.
     pub(crate) peaks: Vec<ColumnDependence>,
 }
 
-/// The margins of so many plants to a delay in s; none where none is demanded.
+/// The margins of this number of plants to a delay in s; empty where no delay is required.
 pub(crate) fn delay_margins(
     columns: &[FrequencyColumn],
     feedback: &[Complex64],
@@ -86,8 +88,8 @@ pub(crate) fn delay_margins(
     margins
 }
 
-/// The highest gain crossover of the nominal loop, 20 log10 of its frequency in rad/s; beyond the columns |L| is taken to fall like 1/w.
-/// `None` where the nominal plant is nowhere looked at.
+/// The highest gain crossover of the nominal loop, 20 log10 of its frequency in rad/s; beyond the
+/// columns |L| is assumed to fall as 1/w. `None` where the nominal plant is not evaluated.
 pub(crate) fn bandwidth(columns: &[FrequencyColumn], feedback: &[Complex64]) -> Option<ColumnDependence> {
     let path = paths(columns, feedback, 1).into_iter().next()?;
     let (first, last) = (path.first()?, path.last()?);
@@ -111,7 +113,7 @@ pub(crate) fn bandwidth(columns: &[FrequencyColumn], feedback: &[Complex64]) -> 
     })
 }
 
-/// L of the first so many plants along the columns.
+/// L of this number of plants along the columns.
 fn paths(columns: &[FrequencyColumn], feedback: &[Complex64], plants: usize) -> Vec<Vec<LoopValue>> {
     let mut paths = vec![Vec::with_capacity(columns.len()); plants];
     for (index, (column, feedback)) in columns.iter().zip(feedback).enumerate() {

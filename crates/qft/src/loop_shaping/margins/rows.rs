@@ -7,9 +7,10 @@ use super::super::samples::FrequencyColumn;
 use super::super::structure::DECIBELS_PER_NEPER;
 use super::{ColumnLoop, Demand, LimitedSide, extremes};
 
-/// Change of ln G up to which a margin may be asked for.
+/// Largest change of ln G for which a margin may be needed.
 const REACH: f64 = 0.5;
-/// Plants whose magnitude squared is further from the worst one's than by this factor, 12 dB, are not looked at.
+/// Plants whose magnitude squared is further from the worst one's than by this factor, 12 dB, are
+/// not considered.
 const WINDOW: f64 = 16.0;
 /// Plants that are kept of one column and demand.
 const PLANTS_MAXIMUM: usize = 4;
@@ -26,8 +27,9 @@ pub(crate) struct MarginCandidate {
     pub(crate) other: Option<usize>,
 }
 
-/// The worst margin of the column, and those that may become it within a change of ln G of [`REACH`]: after the worst, each time the
-/// plant whose c lies furthest from those chosen, for its distance.
+/// The worst margin of the column, and those that may become the worst within a change of ln G of
+/// [`REACH`]: after the worst, each time the plant whose c lies farthest from those already chosen,
+/// relative to its distance.
 pub(crate) fn candidates(
     demand: &Demand,
     column: &FrequencyColumn,
@@ -77,7 +79,7 @@ pub(crate) fn candidates(
     }
 }
 
-/// The worst first; margins that are no numbers are left out.
+/// The worst first; margins that are NaN are left out.
 fn prominent(mut all: Vec<MarginCandidate>) -> Vec<MarginCandidate> {
     all.retain(|candidate| candidate.margin_db.is_finite() && candidate.sensitivity.is_finite());
     all.sort_by(|one, other| one.margin_db.total_cmp(&other.margin_db));

@@ -4,7 +4,8 @@
 //! w = (z - 1)/(z + 1):   z - p = ((2 + r) w - r)/(1 - w)  with r = p - 1,      z = (1 + w)/(1 - w)
 //! ```
 //!
-//! The factors of 1 - w are multiplied out. A slow pole lies near w = s T/2 and keeps its digits.
+//! The factors of 1 - w are multiplied out. A slow pole lies near w = s T/2, so that no digits are
+//! lost.
 
 use num_complex::Complex64;
 use phea_dynamics::linear::{Polynomial, TimeDomain, TransferFunction};
@@ -41,7 +42,8 @@ impl BilinearQuotient {
         }
     }
 
-    /// P H of a continuous member with dead time T, which is replaced by its Padé approximation of third order; `None` for other members.
+    /// P H of a continuous member with dead time T, which is replaced by its Padé approximation of
+    /// third order; `None` for other members.
     ///
     /// ```text
     /// e^(-sT) ~ p(-sT)/p(sT),      p(u) = u^3/120 + u^2/10 + u/2 + 1
@@ -64,8 +66,8 @@ impl BilinearQuotient {
         })
     }
 
-    /// A transfer function in s or z; `None` for a dead time that leaves no polynomials, and for one in z that answers before it is
-    /// asked.
+    /// A transfer function in s or z; `None` for a dead time that leaves no polynomials, and for a
+    /// non-causal one in z.
     pub(super) fn of_function(function: &TransferFunction) -> Option<BilinearQuotient> {
         let TimeDomain::Discrete { sample_time_s } = function.domain() else {
             let once = |polynomial: &Polynomial| {
@@ -91,7 +93,7 @@ impl BilinearQuotient {
         })
     }
 
-    /// The characteristic polynomial of this in a loop with that.
+    /// The characteristic polynomial of a loop with both.
     pub(super) fn closed(&self, other: &BilinearQuotient) -> RoundedPolynomial {
         RoundedPolynomial::sum_of_products(&[
             (&self.denominator, &other.denominator),
@@ -100,7 +102,7 @@ impl BilinearQuotient {
     }
 }
 
-/// The polynomial times so many of these factors.
+/// The polynomial times this number of these factors.
 fn raised(polynomial: RoundedPolynomial, factor: &[f64], count: usize) -> RoundedPolynomial {
     let factor = RoundedPolynomial::exact(factor);
     (0..count).fold(polynomial, |product, _| product.times(&factor))

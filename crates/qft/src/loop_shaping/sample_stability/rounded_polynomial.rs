@@ -1,6 +1,7 @@
 //! Polynomials whose coefficients are known up to their rounding, and Routh's table of them.
 
-/// Coefficients, highest power first, each with a bound of its error. Leading ones may be zero: roots at infinity.
+/// Coefficients, highest power first, each with a bound of its error. Leading ones may be zero:
+/// roots at infinity.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct RoundedPolynomial {
     values: Vec<f64>,
@@ -12,19 +13,19 @@ pub(super) struct RoundedPolynomial {
 pub(super) enum Hurwitz {
     /// They do.
     Yes,
-    /// At least one has not, or lies at infinity.
+    /// At least one root has a non-negative real part, or lies at infinity.
     No,
-    /// The errors of the coefficients, or the rounding of the table, hide it.
+    /// Undecided because of the errors of the coefficients or the rounding of the table.
     Undecided,
 }
 
 impl RoundedPolynomial {
-    /// Coefficients that are what they are.
+    /// Exact coefficients.
     pub(super) fn exact(values: &[f64]) -> RoundedPolynomial {
         RoundedPolynomial { values: values.to_vec(), errors: vec![0.0; values.len()] }
     }
 
-    /// Coefficients each of which is off by so many roundings of its scale at most.
+    /// Coefficients, each with an error of at most this number of roundings of its scale.
     pub(super) fn rounded(values: &[f64], scales: &[f64], roundings: f64) -> RoundedPolynomial {
         let errors = scales.iter().map(|scale| roundings * f64::EPSILON * scale.abs()).collect();
         RoundedPolynomial { values: values.to_vec(), errors }
@@ -44,7 +45,8 @@ impl RoundedPolynomial {
         let (mut values, mut errors) = (vec![0.0; degree + 1], vec![0.0; degree + 1]);
         for (left, right) in pairs {
             let offset = degree - left.degree() - right.degree();
-            // each product is rounded once, and each sum of as many products as overlap, and of two such sums
+            // each product is rounded once, and each sum of as many products as overlap, and of two
+            // such sums
             let roundings = (left.degree().min(right.degree()) + 4) as f64 * f64::EPSILON;
             for (power, (a, a_error)) in left.values.iter().zip(&left.errors).enumerate() {
                 let (slack, size) = (a_error + roundings * a.abs(), a.abs() + a_error);
@@ -75,14 +77,16 @@ impl RoundedPolynomial {
         }
     }
 
-    /// Routh's table: all roots lie in the left half plane if and only if its first column has one sign.
+    /// Routh's table: all roots lie in the left half plane if and only if its first column has one
+    /// sign.
     ///
     /// ```text
     /// r_0 = c_0, c_2, c_4, ...      r_1 = c_1, c_3, ...      r_(i+1),j = r_(i-1),j+1 - (r_(i-1),0 / r_i,0) r_i,j+1
     /// ```
     ///
-    /// Every entry carries a bound of its error. A scale of s scales every entry by a power of itself, so none is needed. Source: Routh
-    /// (1877), as in Gantmacher, The Theory of Matrices (1959), volume 2, chapter XV.
+    /// Every entry carries a bound of its error. A scale of s scales every entry by a power of
+    /// itself, so none is needed. Source: Routh (1877), as in Gantmacher, The Theory of Matrices
+    /// (1959), volume 2, chapter XV.
     pub(super) fn hurwitz(&self) -> Hurwitz {
         let known = |sign: f64| self.values.iter().zip(&self.errors).any(move |(v, e)| sign * v > *e);
         let vanishes = |(value, error): (&f64, &f64)| *value == 0.0 && *error == 0.0;

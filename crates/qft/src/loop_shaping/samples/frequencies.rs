@@ -11,7 +11,7 @@ use crate::family::{COARSE, tabulated};
 use crate::specification::Limit;
 use crate::verification::PlantPoint;
 
-/// How far beyond roots and design frequencies a band that has no end is looked at, as a factor.
+/// How far beyond roots and design frequencies an unlimited band is sampled, as a factor.
 const BEYOND: f64 = 30.0;
 /// Beyond this factor the grid is coarse.
 const DENSE: f64 = 5.0;
@@ -19,19 +19,22 @@ const DENSE: f64 = 5.0;
 const COARSENESS: f64 = 4.0;
 /// A root with a damping ratio below this one makes a peak that the grid could miss.
 const LIGHTLY_DAMPED: f64 = 0.2;
-/// Frequencies of peaks that are added at most.
+/// Largest number of frequencies of peaks that are added.
 const PEAKS_MAXIMUM: usize = 80;
 
-/// The frequencies at which these plants are looked at: a logarithmic grid over all bands, the ends of the bands, the design
-/// frequencies, and the lightly damped roots of the plants; increasing, rad/s.
+/// The frequencies at which these plants are evaluated: a logarithmic grid over all bands, the ends
+/// of the bands, the design frequencies, and the lightly damped roots of the plants; increasing,
+/// rad/s.
 ///
-/// A band from 0 begins a factor 30 below the slowest root of a plant or a limit and the least design frequency, one to infinity
-/// ends as far above the fastest; where every band ends, the grid goes on a factor 30 further, so that a search sees how near to instability
-/// the loop comes there. Between 5 times those and there, the grid is four times as coarse. A sampled loop ends at pi/T.
-/// Of peaks that crowd, some are left out. Where plants are known by their responses, the grid keeps to what all of them reach.
+/// A band from 0 begins a factor 30 below the slowest root of a plant or a limit and the least
+/// design frequency, one to infinity ends as far above the fastest; where every band ends, the grid
+/// goes on a factor 30 further, so that a search sees how near to instability the loop comes there.
+/// Between 5 times those and there, the grid is four times as coarse. A sampled loop ends at pi/T.
+/// Where peaks are crowded, some are left out. Where plants are known by their responses, the grid
+/// is limited to the range that all of them cover.
 ///
 /// # Errors
-/// A point that is no plant of the family; a loop that cannot be formed.
+/// A point that is not a plant of the family; a loop that cannot be formed.
 pub fn search_frequencies(
     problem: &DesignProblem,
     plants: &[PlantPoint],
@@ -69,14 +72,16 @@ pub fn search_frequencies(
     Ok(grid)
 }
 
-/// The frequencies around which the response of one plant bends, rad/s: all of them, however they crowd.
+/// The frequencies around which the response of one plant bends, rad/s: all of them, however
+/// crowded.
 pub(super) fn bends(problem: &DesignProblem, plant: &PlantPoint) -> Result<Vec<f64>, SamplesError> {
     let (_, mut peaks) = features(problem, std::slice::from_ref(plant))?;
     peaks.retain(|frequency| *frequency > 0.0 && frequency.is_finite());
     Ok(peaks)
 }
 
-/// Between which frequencies every measured plant has a response; everywhere where none is measured.
+/// The range of frequencies in which every measured plant has a response; unlimited if no plant is
+/// measured.
 fn measured_by_all(problem: &DesignProblem, plants: &[PlantPoint]) -> Result<[f64; 2], SamplesError> {
     let mut common = [0.0, f64::INFINITY];
     for plant in plants {
@@ -89,7 +94,8 @@ fn measured_by_all(problem: &DesignProblem, plants: &[PlantPoint]) -> Result<[f6
     Ok(common)
 }
 
-/// The magnitudes of the roots of plants and limits with the design frequencies, and the frequencies of peaks.
+/// The magnitudes of the roots of plants and limits with the design frequencies, and the
+/// frequencies of peaks.
 fn features(problem: &DesignProblem, plants: &[PlantPoint]) -> Result<(Vec<f64>, Vec<f64>), SamplesError> {
     let given = problem.specifications.iter().flat_map(|specification| &specification.frequencies_rad_per_s);
     let mut sizes: Vec<f64> = given.copied().collect();
@@ -108,7 +114,7 @@ fn features(problem: &DesignProblem, plants: &[PlantPoint]) -> Result<(Vec<f64>,
             FamilyPlant::Rational(plant) => {
                 let paths = std::iter::once(&plant.command).chain(&plant.disturbance);
                 for coefficients in paths.flat_map(|path| [&path.numerator, &path.denominator]) {
-                    // a polynomial without roots to be had has no peak to show
+                    // a polynomial whose roots are not found shows no peak
                     roots.extend(Polynomial::new(coefficients.clone()).roots().unwrap_or_default());
                 }
             }
@@ -138,7 +144,7 @@ fn around_root(root: Complex64) -> Vec<f64> {
     [-2.0, -1.0, 0.0, 1.0, 2.0].iter().map(|offset| centre + offset * width).collect()
 }
 
-/// Of frequencies that crowd, some are left out.
+/// Where frequencies are crowded, some are left out.
 fn thin(frequencies: &mut Vec<f64>) {
     frequencies.sort_by(f64::total_cmp);
     let mut apart = 1e-3;

@@ -1,4 +1,4 @@
-//! Differential evolution: a population that finds its way where no slopes are to be had.
+//! Differential evolution: a population that improves where no slopes are available.
 
 use phea_dynamics::random::share;
 
@@ -8,20 +8,21 @@ use crate::loop_shaping::search::{Aim, SearchProblem};
 /// Weight of the difference that is added, and probability that a coordinate takes part.
 const WEIGHT: f64 = 0.7;
 const CROSSOVER: f64 = 0.9;
-/// Members: for each coordinate, and at least.
+/// Number of members for each coordinate, and their least number.
 const MEMBERS_PER_COORDINATE: usize = 8;
 const MEMBERS_MINIMUM: usize = 24;
-/// A member, and three others to breed from.
+/// A member, and three others from which a trial point is formed.
 const MEMBERS_NEEDED: usize = 4;
 
-/// A population on its way from unstable points to stable ones, and from small worst margins to larger ones.
+/// A population on its way from unstable points to stable ones, and from small worst margins to
+/// larger ones.
 ///
 /// ```text
 /// trial_j = a_j + F (b_j - c_j)  with probability CR,  else x_j;      the trial replaces x unless it is worse
 /// ```
 ///
-/// a, b and c are three other members. Source: Storn and Price (1997), variant rand/1/bin; a coordinate that would leave its bounds goes
-/// half the way there.
+/// a, b and c are three other members. Source: Storn and Price (1997), variant rand/1/bin; a
+/// coordinate that would leave its bounds moves half the way to them.
 #[derive(Clone, Debug)]
 pub(super) struct Evolution {
     population: Vec<JudgedPoint>,
@@ -45,7 +46,7 @@ impl Evolution {
         self.generation
     }
 
-    /// Whether there are too few members to breed from.
+    /// Whether there are too few members to form trial points.
     pub(super) fn is_too_small(&self) -> bool {
         self.population.len() < MEMBERS_NEEDED
     }

@@ -6,7 +6,8 @@ use phea_dynamics::random::share;
 /// Steps of the fixed-point iteration, which gains a digit in two or three.
 const ITERATIONS: usize = 64;
 
-/// Additive recurrence from a random beginning: every point is the last one moved by steps that fill the unit cube evenly.
+/// Additive recurrence from a random beginning: every point is the last one moved by steps that
+/// fill the unit cube evenly.
 ///
 /// ```text
 /// e_j(i) = frac(shift_j + i phi^-j),     phi^(n + 1) = phi + 1,     j = 1 ... n
@@ -42,7 +43,8 @@ impl AdditiveRecurrence {
 mod tests {
     use super::AdditiveRecurrence;
 
-    /// In one dimension the step is the golden section, with which any n points leave gaps of at most (1 + golden)/n.
+    /// In one dimension the step is the golden section, with which any n points leave gaps of at
+    /// most (1 + golden)/n.
     #[test]
     fn one_dimension_is_filled_by_the_golden_section() {
         let golden = (5.0_f64.sqrt() - 1.0) / 2.0;
@@ -59,7 +61,8 @@ mod tests {
         }
     }
 
-    /// In several dimensions every slab of a tenth holds nearly a tenth of the points, and all points lie within the bounds.
+    /// In several dimensions every slab of a tenth holds nearly a tenth of the points, and all
+    /// points lie within the bounds.
     #[test]
     fn every_slab_has_its_share() {
         let bounds = [[-1.0, 3.0], [2.0, 2.5], [0.0, 1e3], [-7.0, -6.0], [1.0, 1.0]];

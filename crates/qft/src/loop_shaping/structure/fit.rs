@@ -1,4 +1,5 @@
-//! From a controller to a structure: the point at which a structure is it, and the structure around it.
+//! From a controller to a structure: the point at which a structure equals it, and the structure
+//! around it.
 
 use num_complex::Complex64;
 use phea_dynamics::controller::{Compensator, Element};
@@ -11,10 +12,12 @@ use super::{Structure, StructureFactor};
 const SAME: f64 = 1e-9;
 
 impl Structure {
-    /// The x at which this structure is that controller; `None` where it is no such one, or only beyond the bounds.
+    /// The x at which this structure equals that controller; `None` if there is none within the
+    /// bounds.
     ///
-    /// A complex pair of roots or any two real ones go to a pair, a real root to a single factor: the first assignment that keeps to
-    /// the bounds, roots taken in the order of their magnitude.
+    /// A complex pair of roots or any two real ones go to a pair, a real root to a single factor:
+    /// the first assignment within the bounds is used, with the roots in the order of their
+    /// magnitude.
     ///
     /// # Example
     /// ```
@@ -49,7 +52,7 @@ impl Structure {
         }
         let all: Vec<f64> = std::iter::once(gain).chain(numbers).map(portable::ln).collect();
         let ranges: Vec<[f64; 2]> = self.ranges().into_iter().map(|range| range.map(portable::ln)).collect();
-        // the ends of the range are points of it
+        // the ends of the range belong to it
         let inside = |(x, [low, high]): (&f64, &[f64; 2])| low - SAME <= *x && *x <= high + SAME;
         all.iter().zip(&ranges).all(inside).then(|| {
             let clamped = all.iter().zip(&ranges).map(|(x, [low, high])| x.max(*low).min(*high));
@@ -57,9 +60,10 @@ impl Structure {
         })
     }
 
-    /// A structure with the poles and zeros of this controller, each number free within this factor (above 1) either way, and the
-    /// point at which it is the controller. Roots at the origin, on the imaginary axis and in the right half plane stay as they
-    /// are. `None` for a sampled controller, one with zero gain, and a factor that is not above 1.
+    /// A structure with the poles and zeros of this controller, each number free within this factor
+    /// (above 1) either way, and the point at which it is the controller. Roots at the origin, on
+    /// the imaginary axis and in the right half plane stay as they are. `None` for a sampled
+    /// controller, one with zero gain, and a factor that is not above 1.
     ///
     /// # Example
     /// ```
@@ -126,8 +130,9 @@ impl Structure {
     }
 }
 
-/// For each list of ranges a real root, or a pair of two of them, within them, such that no root is left: the first choice that
-/// works, roots tried in the order of their magnitude. Of complex roots only the upper ones are given.
+/// For each list of ranges a real root, or a pair of two of them, within them, such that all roots
+/// are used: the first choice that works, with the roots in the order of their magnitude. Of
+/// complex roots only the upper ones are given.
 fn assigned(ranges: &[Vec<[f64; 2]>], roots: &[Complex64]) -> Option<Vec<Vec<f64>>> {
     let Some((own, others)) = ranges.split_first() else { return roots.is_empty().then(Vec::new) };
     let left = |taken: &[usize]| -> Vec<Complex64> {
@@ -172,7 +177,7 @@ fn part(power: f64, numbers: &[f64], free: impl Fn(f64) -> [f64; 2]) -> Option<S
     }
 }
 
-/// The roots that are left when those have been taken away; `None` where one of them is not there.
+/// The roots that remain when those have been removed; `None` where one of them is missing.
 fn without(roots: &[Complex64], taken: &[Complex64]) -> Option<Vec<Complex64>> {
     let mut left = roots.to_vec();
     for root in taken {

@@ -1,4 +1,4 @@
-//! The response of a structure at frequencies that are given once, and its slopes.
+//! The response of a structure, and its slopes, at frequencies that are given once.
 
 use num_complex::Complex64;
 use phea_dynamics::controller::Timing;
@@ -10,7 +10,7 @@ use super::{Factor, Structure};
 /// Step of x for slopes of a controller that is sampled at each x.
 const DIFFERENCE: f64 = 1e-5;
 
-/// A structure in a loop, ready to be evaluated at its frequencies.
+/// A structure in a loop, prepared for evaluation at its frequencies.
 ///
 /// ```text
 /// continuous                s = j w
@@ -44,7 +44,8 @@ pub struct StructureResponse {
 
 #[derive(Clone, Debug, PartialEq)]
 enum Evaluation {
-    /// By the factors at points of the s plane, with the response of the fixed parts and the sign there.
+    /// By the factors at points of the s plane, with the response of the fixed parts and the sign
+    /// there.
     Factors(Vec<(Complex64, Complex64)>),
     /// By sampling the controller.
     Sampling { sample_time_s: f64, discretization: Discretization },
@@ -54,7 +55,8 @@ impl Structure {
     /// This structure in a loop with this timing at these frequencies, rad/s, up to pi/T.
     ///
     /// # Errors
-    /// A fixed element that is no continuous transfer function; a sampled loop whose controller would have more zeros than poles, or whose sample time or prewarping cannot be.
+    /// A fixed element that is not a continuous transfer function; a sampled loop whose controller
+    /// would have more zeros than poles, or whose sample time or prewarping frequency is invalid.
     pub fn response(
         &self,
         timing: &Timing,
@@ -69,7 +71,7 @@ impl Structure {
             return Err(LinearError::Improper { zeros, poles });
         }
         if let Some(period) = timing.sample_time_s {
-            // refuses a sample time or a prewarping frequency that cannot be
+            // rejects an invalid sample time or prewarping frequency
             TransferFunction::gain_only(1.0).discretized(period, timing.discretization)?;
         }
         let rational = fixed.clone().with_dead_time(0.0)?;

@@ -9,14 +9,15 @@ use super::super::minimum::minimum_between;
 use super::super::{Limit, LimitTable};
 use super::{MarginError, in_range, phase_margin, positive};
 
-/// The limit on |L/(1+L)| that lets every loop bear this much additional delay in s (positive).
+/// The limit on |L/(1+L)| that lets every loop tolerate this much additional delay in s (positive).
 ///
 /// ```text
 /// |L/(1+L)| <= 1/(w tau)          since 1 + L e^(-s tau) = (1 + L)(1 + (e^(-s tau) - 1) L/(1+L))
 ///                                 and |e^(-jw tau) - 1| <= w tau
 /// ```
 ///
-/// Sufficient, by the small gain theorem: the loop may bear more. Sharper but no rational function is [`delay_margin_limit_table`].
+/// Sufficient, by the small gain theorem: the loop may tolerate more. [`delay_margin_limit_table`]
+/// is sharper but not a rational function.
 ///
 /// # Errors
 /// [`MarginError::OutOfRange`].
@@ -38,8 +39,8 @@ pub fn delay_margin_limit(delay_s: f64) -> Result<Limit, MarginError> {
     })
 }
 
-/// The sharper limit on |L/(1+L)| for a delay in s (positive), as a table over a band `[from, to]` in rad/s
-/// (positive, finite).
+/// The sharper limit on |L/(1+L)| for a delay in s (positive), as a table over a band `[from, to]`
+/// in rad/s (positive, finite).
 ///
 /// ```text
 /// |L/(1+L)| <= 1/(2 sin(w tau/2))     w tau < pi,       since |e^(-jw t) - 1| = 2 |sin(w t/2)|
@@ -48,9 +49,10 @@ pub fn delay_margin_limit(delay_s: f64) -> Result<Limit, MarginError> {
 ///
 /// (1/2 less a billionth, since |L| = 1 is to be excluded there.)
 ///
-/// Where |L| = 1 this asks for a phase margin of w tau and no more: it is sharp there. In a double logarithmic diagram the limit
-/// is convex, so the table, straight between its points, is made of its tangents: never above it, less than 0.01 dB below.
-/// Outside the band the table demands nothing; the guarantee then covers encirclements of -1 inside the band.
+/// Where |L| = 1 this requires a phase margin of exactly w tau: it is sharp there. In a double
+/// logarithmic diagram the limit is convex, so the table, straight between its points, is made of
+/// its tangents: never above it, less than 0.01 dB below. Outside the band the table demands
+/// nothing; the guarantee then covers encirclements of -1 inside the band.
 ///
 /// # Errors
 /// [`MarginError::OutOfRange`].
@@ -124,25 +126,28 @@ fn tangents(delay_s: f64) -> Vec<LogarithmicLine> {
 /// The delay that a limit on |L/(1+L)| guarantees, and the frequency that decides.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DelayGuarantee {
-    /// No shorter delay brings the loop to -1 at a frequency of the band, s; infinity where |L| can never be one.
+    /// No shorter delay brings the loop to -1 at a frequency of the band, s; infinity where |L| can
+    /// never be one.
     pub delay_s: f64,
     /// Where the limit allows the least delay, rad/s.
     pub frequency_rad_per_s: f64,
 }
 
-/// The additional delay that |L/(1+L)| <= W(w) guarantees over a band `[from, to]` in rad/s (positive, finite).
+/// The additional delay that |L/(1+L)| <= W(w) guarantees over a band `[from, to]` in rad/s
+/// (positive, finite).
 ///
 /// ```text
 /// tau = min over w of  2 asin(1/(2 W(w)))/w          over all w with W(w) >= 1/2
 /// ```
 ///
-/// Delay turns L without changing its size, so -1 is reached where |L| = 1; there the phase margin is at least 2 asin(1/(2W)).
-/// The loop must be stable when closed. A constant limit over a band that reaches far gives little: it is the limit's fall that
-/// guarantees delay. The minimum is searched on a grid of 4000 points and refined.
+/// Delay turns L without changing its size, so -1 is reached where |L| = 1; there the phase margin
+/// is at least 2 asin(1/(2W)). The loop must be stable when closed. A constant limit over a band
+/// that reaches far gives little: it is the decrease of the limit that guarantees delay. The
+/// minimum is searched on a grid of 4000 points and refined.
 ///
 /// # Errors
-/// [`MarginError::OutOfRange`] for a band that is not positive, finite and increasing, or a limit that is not positive;
-/// [`MarginError::Silent`] where a table does not cover the band.
+/// [`MarginError::OutOfRange`] for a band that is not positive, finite and increasing, or a limit
+/// that is not positive; [`MarginError::Silent`] where a table does not cover the band.
 ///
 /// # Example
 /// There and back:

@@ -7,7 +7,8 @@ use phea_dynamics::time_response::Settling;
 use super::step::reached;
 use super::{LowerWish, TimeDomainError, UpperWish};
 
-/// What is equal up to this share counts as equal: a peak that touches the band stays in it, a wish met to it is met.
+/// Values that differ by less than this share count as equal: a peak that touches the band stays in
+/// it, and a wish that is met to this accuracy is met.
 pub(super) const TOLERANCE: f64 = 1e-9;
 
 /// What was wished.
@@ -21,7 +22,7 @@ pub struct Wished {
     pub settling_band_percent: f64,
 }
 
-/// What the step response does, against a reference of one.
+/// Properties of the step response to a reference of one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reached {
     /// By how much it exceeds one, percent; zero when it does not.
@@ -30,14 +31,14 @@ pub struct Reached {
     pub settling: Settling,
 }
 
-/// A limit of tracking held against the wish it was made for.
+/// A limit of tracking compared with the wish it was made for.
 ///
-/// Displayed, it is a sentence of a report: see [`check_upper`].
+/// It displays as a sentence for a report: see [`check_upper`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WishCheck {
     /// What was wished.
     pub wished: Wished,
-    /// What the response of the limit itself does.
+    /// Properties of the response of the limit itself.
     pub reached: Reached,
 }
 
@@ -48,21 +49,23 @@ pub enum WishOutcome {
     Met,
     /// Not so.
     Missed {
-        /// Overshoot beyond the wish, percent of the step; zero where it is kept.
+        /// Overshoot beyond the wish, percent of the step; zero where the wish is met.
         overshoot_excess_percent: f64,
-        /// Settling time beyond the wish, s; zero where it is kept, infinity when it never settles.
+        /// Settling time beyond the wish, s; zero where the wish is met, infinity when it never
+        /// settles.
         settling_excess_s: f64,
     },
 }
 
-/// Holds any upper limit against a wish.
+/// Compares any upper limit with a wish.
 ///
 /// # Errors
-/// [`TimeDomainError::OutOfRange`] for the wish; [`TimeDomainError::NotContinuous`], [`TimeDomainError::NotStable`],
-/// [`TimeDomainError::RingsTooLong`] or an improper function for the limit.
+/// [`TimeDomainError::OutOfRange`] for the wish; [`TimeDomainError::NotContinuous`],
+/// [`TimeDomainError::NotStable`], [`TimeDomainError::RingsTooLong`] or an improper function for
+/// the limit.
 ///
 /// # Example
-/// The limit 6.28 against what it was to give:
+/// The limit of 6.28 against its intended response:
 /// ```
 /// use num_complex::Complex64;
 /// use phea_dynamics::linear::TransferFunction;
@@ -84,7 +87,7 @@ pub fn check_upper(function: &TransferFunction, wish: &UpperWish) -> Result<Wish
     Ok(WishCheck { wished, reached: reached(function, settling_band_percent)? })
 }
 
-/// Holds any lower limit against a wish, which allows no overshoot.
+/// Compares any lower limit with a wish, which allows no overshoot.
 ///
 /// # Errors
 /// As [`check_upper`].
@@ -128,8 +131,8 @@ impl WishCheck {
     }
 }
 
-/// One sentence, without a full stop: "wished: at most 1 % overshoot, settled within 1 % in 0.1 s; the limit itself reaches
-/// 2.19 % overshoot and settles in 0.126 s".
+/// One sentence, without a full stop: "wished: at most 1 % overshoot, settled within 1 % in 0.1 s;
+/// the limit itself reaches 2.19 % overshoot and settles in 0.126 s".
 impl fmt::Display for WishCheck {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Wished { overshoot_percent, settling_time_s, settling_band_percent } = self.wished;
@@ -160,7 +163,7 @@ impl fmt::Display for WishCheck {
     }
 }
 
-/// The value in three digits, or as many more as tell it from the other.
+/// The value in three digits, or as many more as distinguish it from the other.
 fn beside(value: f64, other: f64) -> String {
     let differs = |digits: &i32| value == other || significant(value, *digits) != significant(other, *digits);
     significant(value, (3..12).find(differs).unwrap_or(12))

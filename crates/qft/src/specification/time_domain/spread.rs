@@ -10,10 +10,11 @@ use super::TimeDomainError;
 pub struct TrackingSpread {
     /// Whether the upper limit is above the lower one.
     pub order: LimitOrder,
-    /// Frequency from which on upper/lower never falls again, rad/s; none when it falls at the end of the band.
+    /// Frequency from which on upper/lower never falls again, rad/s; none when it falls at the end
+    /// of the band.
     ///
-    /// A loop that vanishes at high frequency leaves the spread of the plants as it is: there the limits must be at least as
-    /// far apart as the plants are.
+    /// A loop that vanishes at high frequency leaves the spread of the plants as it is: there the
+    /// limits must differ by at least as much as the plants do.
     pub grows_from_rad_per_s: Option<f64>,
     /// upper/lower at the end of the band, dB; may be infinite at infinite frequency.
     pub at_end_db: f64,
@@ -29,7 +30,7 @@ pub enum LimitOrder {
         /// Where, rad/s.
         frequency_rad_per_s: f64,
     },
-    /// Not so: no loop meets both limits there.
+    /// It is not: no loop satisfies both limits there.
     Crossed {
         /// The lowest frequency at which lower and upper limit meet, rad/s.
         from_rad_per_s: f64,
@@ -40,19 +41,20 @@ pub enum LimitOrder {
     },
 }
 
-/// Compares two limits of tracking over a band `[from, to]` in rad/s (`to` may be infinite), where both are demanded: a table
-/// demands nothing beyond its ends.
+/// Compares two limits of tracking over a band `[from, to]` in rad/s (`to` may be infinite), where
+/// both apply: a table demands nothing beyond its ends.
 ///
 /// ```text
 /// spread(w) = 20 log10(B_U(w)/B_L(w))
 /// ```
 ///
-/// The squared ratio is a rational function of x = w^2, times a power of x between the points of tables; between the roots of its
-/// derivative it rises or falls throughout, so those roots and the ends of the pieces tell everything.
+/// The squared ratio is a rational function of x = w^2, times a power of x between the points of
+/// tables; between the roots of its derivative it rises or falls throughout, so those roots and the
+/// ends of the pieces determine everything.
 ///
 /// # Errors
-/// [`TimeDomainError::OutOfRange`] for the band, [`TimeDomainError::NeverTogether`], [`TimeDomainError::NotContinuous`], and where the
-/// roots cannot be found.
+/// [`TimeDomainError::OutOfRange`] for the band, [`TimeDomainError::NeverTogether`],
+/// [`TimeDomainError::NotContinuous`], and where the roots cannot be found.
 ///
 /// # Example
 /// Two lags part by 20 dB, from the corner of the slow one to that of the fast one:
@@ -106,7 +108,7 @@ fn common_band(lower: &Limit, upper: &Limit, [from, to]: [f64; 2]) -> Result<[f6
     if from <= to { Ok([from, to]) } else { Err(TimeDomainError::NeverTogether) }
 }
 
-/// The points of a table; none for another limit.
+/// The points of a table; empty for other limits.
 fn table(limit: &Limit) -> &[(f64, f64)] {
     match limit {
         Limit::Table(table) => table.points(),
@@ -133,12 +135,13 @@ fn order(ratio: &SquaredRatio<'_>, spread: &[(f64, f64)]) -> LimitOrder {
     };
     let before = spread.get(first.saturating_sub(1)).copied().unwrap_or(least);
     let crossed = spread.get(first).map_or(before.0, |knot| knot.0);
-    // limits that are equal at the knot before part from there on
+    // limits that are equal at the preceding point diverge from there on
     let from_rad_per_s = if before.1 > ROUNDING_DB { crossing(ratio, before.0, crossed) } else { before.0 };
     LimitOrder::Crossed { from_rad_per_s, excess_db: -least.1, frequency_rad_per_s: least.0 }
 }
 
-/// Where the limits meet, between a frequency where they are apart and one, perhaps infinite, where they have crossed.
+/// Where the limits meet, between a frequency where they are apart and one, perhaps infinite, where
+/// they have crossed.
 fn crossing(ratio: &SquaredRatio<'_>, apart: f64, crossed: f64) -> f64 {
     let (mut apart, mut crossed) = (apart, crossed);
     loop {
@@ -205,7 +208,7 @@ impl<'a> SquaredRatio<'a> {
         if slope.is_zero() {
             return Ok(Vec::new());
         }
-        // a point too many does no harm: roots that are real up to rounding count
+        // a surplus point does no harm: roots that are real up to rounding count
         let real = slope.roots()?.into_iter().filter(|root| root.re > 0.0 && root.im.abs() <= 1e-6 * root.re);
         let mut frequencies: Vec<f64> = real.map(|root| root.re.sqrt()).collect();
         frequencies.sort_by(f64::total_cmp);
@@ -213,7 +216,8 @@ impl<'a> SquaredRatio<'a> {
     }
 }
 
-/// Numerator and denominator of the squared magnitude of a limit as polynomials in x = w^2; one for a table.
+/// Numerator and denominator of the squared magnitude of a limit as polynomials in x = w^2; one for
+/// a table.
 fn squared(limit: &Limit) -> Result<(Polynomial, Polynomial), TimeDomainError> {
     let one = || Polynomial::new(vec![1.0]);
     match limit {

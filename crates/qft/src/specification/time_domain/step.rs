@@ -7,11 +7,12 @@ use super::super::minimum::minimum_between;
 use super::TimeDomainError;
 use super::check::{Reached, TOLERANCE};
 
-/// Overshoot and settling time of the unit step response of any stable continuous function, measured against one.
+/// Overshoot and settling time of the unit step response of any stable continuous function,
+/// measured against one.
 ///
-/// Samples are spaced by the fastest mode still alive, a tenth of a radian; the peak, and the extremes near the edge of the
-/// band, are refined on the exact response, and so is the time at which it enters the band for good. A deviation that
-/// equals the band up to rounding is inside.
+/// Samples are spaced by the fastest mode still alive, a tenth of a radian; the peak, and the
+/// extremes near the edge of the band, are refined on the exact response, and so is the time at
+/// which it enters the band for good. A deviation that equals the band up to rounding is inside.
 pub(super) fn reached(function: &TransferFunction, band_percent: f64) -> Result<Reached, TimeDomainError> {
     if function.domain() != TimeDomain::Continuous {
         return Err(TimeDomainError::NotContinuous);
@@ -40,11 +41,12 @@ impl Response {
     }
 
     fn value(&self, time_s: f64) -> f64 {
-        // the function answered for the samples, so it answers for every time
+        // the function had a value for the samples, so it has one for every time
         step_response(&self.function, &[time_s]).map_or(f64::NAN, |values| values.iter().sum())
     }
 
-    /// By how much the response exceeds one; rounding of the response is no overshoot.
+    /// By how much the response exceeds one; a rounding error of the response does not count as
+    /// overshoot.
     fn overshoot(&self) -> Result<f64, TimeDomainError> {
         const ROUNDING: f64 = 1e-12;
         let highest =

@@ -20,12 +20,14 @@ use super::{ExtraRoot, LowerWish, TimeDomainError, TrackingLimit, Translation, U
 /// t_1 = (pi - atan2(w_d, z - sigma))/w_d,   overshoot = exp(-sigma t_1) sqrt(1 - 2 sigma/z + (w_n/z)^2)
 /// ```
 ///
-/// which gives xi for each z/w_n (above one where z is below w_n); w_n follows by bisection on whether the response stays in the band
-/// from the settling time on. Where the settling time jumps, since an extreme leaves the band, the faster side is taken.
+/// which gives xi for each z/w_n (above one where z is below w_n); w_n follows by bisection on
+/// whether the response stays in the band from the settling time on. Where the settling time jumps
+/// because an extreme leaves the band, the faster side is used.
 ///
 /// # Errors
-/// [`TimeDomainError::OutOfRange`], [`TimeDomainError::RuleBand`], and [`TimeDomainError::ExtraRootTooSlow`] when the slow decay behind a fixed
-/// zero keeps the response out of the band.
+/// [`TimeDomainError::OutOfRange`], [`TimeDomainError::RuleBand`], and
+/// [`TimeDomainError::ExtraRootTooSlow`] when the slow decay behind a fixed zero keeps the response
+/// out of the band.
 ///
 /// # Example
 /// ```
@@ -70,11 +72,13 @@ pub fn tracking_upper(
 /// B_L(s) = w_n^2/(s + w_n)^2 p/(s + p)                                      thesis (6.29)
 /// ```
 ///
-/// Exact: the response rises monotonically, so w_n follows by bisection on its value at the settling time.
+/// Exact: the response rises monotonically, so w_n follows by bisection on its value at the
+/// settling time.
 ///
 /// # Errors
-/// [`TimeDomainError::OutOfRange`], [`TimeDomainError::RuleBand`], and [`TimeDomainError::ExtraRootTooSlow`] when a fixed pole alone takes longer:
-/// p t_s must exceed ln(100/band).
+/// [`TimeDomainError::OutOfRange`], [`TimeDomainError::RuleBand`], and
+/// [`TimeDomainError::ExtraRootTooSlow`] when a fixed pole alone takes longer: p t_s must exceed
+/// ln(100/band).
 ///
 /// # Example
 /// ```
@@ -177,14 +181,15 @@ fn upper_settles(
             false => (time <= first).then_some(first),
         }
     });
-    // half of what the check forgives: where an extreme just fits, it forgives the result
+    // half the tolerance of the check, so that the check accepts a result whose extreme just fits
     Ok(next.is_none_or(|next| extreme(ratio, share, next) <= band * (1.0 + 0.5 * TOLERANCE)))
 }
 
-/// The first time, in units of 1/w_n, at which the response with zero z = w_n/share is at rest; none where it only rises.
+/// The first time, in units of 1/w_n, at which the response with zero z = w_n/share is at rest;
+/// `None` where it only rises.
 ///
-/// The slope is proportional to exp(-xi t) ((1 - xi share) S + share C), with C = cos, S = sin/sqrt(1 - xi^2) of sqrt(1 - xi^2) t,
-/// or their hyperbolic twins.
+/// The slope is proportional to exp(-xi t) ((1 - xi share) S + share C), with C = cos, S =
+/// sin/sqrt(1 - xi^2) of sqrt(1 - xi^2) t, or their hyperbolic twins.
 fn first_extreme(ratio: f64, share: f64) -> Option<f64> {
     let (rise, square) = (ratio * share - 1.0, (1.0 - ratio) * (1.0 + ratio));
     if square > 0.0 {
@@ -202,14 +207,15 @@ fn first_extreme(ratio: f64, share: f64) -> Option<f64> {
     Some((log1p(tangent) - log1p(-tangent)) / (2.0 * spread))
 }
 
-/// How far the response is from its final value when it is at rest at this time (in units of 1/w_n).
+/// How far the response is from its final value when it is at rest at this time (in units of
+/// 1/w_n).
 fn extreme(ratio: f64, share: f64, time: f64) -> f64 {
     exp(-ratio * time) * (1.0 - 2.0 * ratio * share + share * share).max(0.0).sqrt()
 }
 
 /// The damping ratio with which the response with zero z = w_n/share overshoots by this ratio.
 fn damping_ratio(overshoot: f64, share: f64) -> f64 {
-    // from here on there is none: critically damped, or the slow pole meets the zero
+    // beyond this there is no overshoot: critically damped, or the slow pole meets the zero
     let most = if share <= 1.0 { 1.0 } else { (share + 1.0 / share) / 2.0 };
     let overshoots = |ratio: f64| first_extreme(ratio, share).map_or(0.0, |time| extreme(ratio, share, time));
     if overshoot == 0.0 {
@@ -225,7 +231,8 @@ fn damping_ratio(overshoot: f64, share: f64) -> f64 {
     }
 }
 
-/// The natural frequency from which on the response has settled by the wished time, by doubling and bisection.
+/// The natural frequency from which on the response has settled by the wished time, by doubling and
+/// bisection.
 fn least_natural_frequency<F: Fn(f64) -> Result<bool, TimeDomainError>>(
     settling_time_s: f64,
     extra_root: ExtraRoot,

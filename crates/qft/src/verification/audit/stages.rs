@@ -15,13 +15,14 @@ use super::super::{PlantPoint, SpecificationFinding};
 use super::{STAGE, SpecificationAudit, plant_at};
 use crate::family::{Extent, Family, UncertainFamily};
 
-/// Cases of each specification whose frequencies are looked at for the whole family.
+/// Number of cases of each specification whose frequencies are examined for the whole family.
 const FREQUENCIES: usize = 8;
-/// By what share of themselves these frequencies lie apart at least.
+/// Least relative distance of these frequencies.
 const FREQUENCY_DISTANCE: f64 = 1e-3;
 
 impl SpecificationAudit<'_> {
-    /// Places the plants within the loop, and chooses the frequencies at which all of them are looked at.
+    /// Places the plants within the loop, and chooses the frequencies at which all of them are
+    /// examined.
     pub(super) fn prepare(&mut self, watch: Watch<'_>) -> Result<(), Stopped> {
         let all = self.count();
         for index in 0..all {
@@ -37,7 +38,7 @@ impl SpecificationAudit<'_> {
         Ok(())
     }
 
-    /// Looks at every plant over the whole band.
+    /// Examines every plant over the whole band.
     pub(super) fn look(&mut self, watch: Watch<'_>) -> Result<(), Stopped> {
         for (index, plant) in self.plants.iter().enumerate() {
             tell(watch, STAGE, index, self.plants.len())?;
@@ -46,7 +47,8 @@ impl SpecificationAudit<'_> {
         Ok(())
     }
 
-    /// Polishes the peaks of each criterion, the highest first, as long as they can become its worst.
+    /// Polishes the peaks of each criterion, the highest first, as long as they can become its
+    /// worst.
     pub(super) fn polish(&mut self, watch: Watch<'_>) -> Result<(), Stopped> {
         for (number, (part, cases)) in self.parts.iter().zip(&mut self.cases).enumerate() {
             for criterion in part.criteria() {
@@ -75,7 +77,8 @@ impl SpecificationAudit<'_> {
         Ok(())
     }
 
-    /// Looks at the whole family where each specification is worst; with a spread, polishes the family's margin there.
+    /// Examines the whole family where each specification is worst; for a spread, polishes the
+    /// margin of the family there.
     pub(super) fn look_at_worst(&mut self, watch: Watch<'_>) -> Result<(), Stopped> {
         for (number, part) in self.parts.clone().into_iter().enumerate() {
             tell(watch, STAGE, number, self.parts.len())?;
@@ -91,7 +94,8 @@ impl SpecificationAudit<'_> {
         Ok(())
     }
 
-    /// Sorts the cases of a specification, the worst first, and looks at the whole family where the worst are.
+    /// Sorts the cases of a specification, the worst first, and examines the whole family at the
+    /// worst.
     fn look_at_cases(&mut self, number: usize) {
         let Some(cases) = self.cases.get_mut(number) else { return };
         cases.sort_by(|left, right| left.margin_db.total_cmp(&right.margin_db));
@@ -189,7 +193,7 @@ impl SpecificationAudit<'_> {
         }
     }
 
-    /// What was found of each specification, in order.
+    /// The findings for each specification, in order.
     pub(super) fn findings(&mut self, watch: Watch<'_>) -> Result<Vec<SpecificationFinding>, Stopped> {
         let mut findings = Vec::new();
         let specifications = self.problem.specifications.iter();

@@ -1,8 +1,9 @@
-//! Resonances at a given frequency: plants between those of the grid, in an interval of a share that a search steps over.
+//! Resonances at a given frequency: plants between those of the grid, in an interval of a share
+//! that a search steps over.
 //!
-//! On a line through the box the characteristic value of a lightly damped plant turns by half a turn where its resonance passes
-//! the given frequency. Intervals over which it turns too far are halved; from the resonance, a share follows its minimum as
-//! the frequency does in other searches.
+//! On a line through the box the characteristic value of a lightly damped plant turns by half a
+//! turn where its resonance passes the given frequency. Intervals over which it turns too far are
+//! halved; from the resonance, a share follows its minimum as the frequency does in other searches.
 
 use num_complex::Complex64;
 
@@ -10,13 +11,13 @@ use super::{MarginDescent, SearchCoordinate, SearchPoint, better};
 use crate::verification::minimum;
 use crate::verification::scan::{HALVINGS, turns};
 
-/// Intervals of a line to begin with.
+/// Initial number of intervals of a line.
 const INTERVALS: usize = 16;
-/// Beside its ends: there a minimum may begin.
+/// Points next to its ends, where a minimum may begin.
 const BESIDE_END: f64 = 1e-4;
 /// First step of a share that follows its minimum.
 const STEP: f64 = 0.01;
-/// To this it is found: a resonance may be narrow.
+/// Accuracy of the share: a resonance may be narrow.
 const TOLERANCE: f64 = 1e-7;
 
 /// A plant on a line.
@@ -28,7 +29,8 @@ struct LinePlant {
 }
 
 impl MarginDescent<'_> {
-    /// The worst of a plain search and of those from the resonances on the lines through its start and its end.
+    /// The worst of a plain search and of those from the resonances on the lines through its start
+    /// and its end.
     pub(super) fn with_resonances(&self, start: SearchPoint) -> SearchPoint {
         let mut best = self.descended(start.clone());
         if start.frequency == 0.0 || start.frequency == f64::INFINITY {
@@ -49,7 +51,8 @@ impl MarginDescent<'_> {
         best
     }
 
-    /// With one plant on a line through where it is `from`, the others as they are in `best`: the worst resonance on it, if any.
+    /// With one plant on a line through where it is `from`, the others as they are in `best`: the
+    /// worst resonance on it, if any.
     fn resonant(
         &self,
         from: &SearchPoint,
@@ -63,7 +66,7 @@ impl MarginDescent<'_> {
         Some(self.between(place, along, [low, high], TOLERANCE))
     }
 
-    /// The shares of the worst local minimum inside a line, and beside it.
+    /// The shares of the worst local minimum inside a line, and of its neighbours.
     fn inner_minimum(&self, place: &SearchPoint, along: SearchCoordinate) -> Option<[f64; 3]> {
         let samples = self.line(place, along);
         let minima = samples.windows(3).filter_map(|triple| match triple {
@@ -77,7 +80,7 @@ impl MarginDescent<'_> {
         minima.min_by(|left, right| left.0.total_cmp(&right.0)).map(|minimum| minimum.1)
     }
 
-    /// Plants on a line, so near to each other that none hides a resonance from the next.
+    /// Plants on a line, so near to each other that no resonance is hidden between them.
     fn line(&self, place: &SearchPoint, along: SearchCoordinate) -> Vec<LinePlant> {
         let mut found: Vec<LinePlant> = Vec::new();
         let inner = (1..INTERVALS).map(|index| index as f64 / INTERVALS as f64);
