@@ -1,5 +1,5 @@
 //! The audit of a given controller: family, loop and specifications from the project, findings from
-//! `phea_qft`, and how they are told.
+//! `phea_qft`, and their wording.
 
 mod alone;
 mod plant;
@@ -41,7 +41,7 @@ pub enum AuditError {
     /// There is no controller.
     #[error("the project gives no [controller] to be verified")]
     NoController,
-    /// There is a controller without a law.
+    /// There is a controller without a transfer function.
     #[error(
         "[controller] says only when it acts, and leaves its law to be designed: `phea design` does that"
     )]
@@ -57,7 +57,7 @@ const STAGE: &str = "auditing";
 /// Audits the given controller and prefilter over the whole family and band.
 ///
 /// # Errors
-/// [`ProcedureError`] for a project without a controller, a part of it that is no transfer
+/// [`ProcedureError`] for a project without a controller, a part of it that is not a transfer
 /// function, a family that cannot be built, or a watcher that stops.
 pub fn audit_project(
     source: &dyn Source,
@@ -76,7 +76,7 @@ pub fn audit_project(
     audit_problem(&robust_problem(source, setup)?, watch)
 }
 
-/// The same of a robust problem that is at hand already.
+/// The same for an existing robust problem.
 ///
 /// # Errors
 /// [`ProcedureError::Stopped`] where the watcher stops it.
@@ -88,7 +88,7 @@ pub fn audit_problem(problem: &RobustProblem, watch: Watch<'_>) -> Result<Projec
     Ok(ProjectAudit::new(problem, audit, of_rig))
 }
 
-/// What is audited of a problem, over a family that may be another.
+/// Audits a problem, possibly over another family.
 fn asked<'a>(problem: &'a RobustProblem, family: &'a Family) -> AuditProblem<'a> {
     AuditProblem {
         family,
@@ -102,7 +102,7 @@ fn asked<'a>(problem: &'a RobustProblem, family: &'a Family) -> AuditProblem<'a>
     }
 }
 
-/// What the plants of a family are called.
+/// The names of the plants of a family.
 pub fn names(project: &Project, family: &Family) -> PlantNames {
     match family {
         Family::Uncertain(family) => PlantNames::of_parameters(
@@ -120,7 +120,7 @@ pub fn names(project: &Project, family: &Family) -> PlantNames {
 pub struct ProjectAudit {
     /// What was found.
     pub audit: Audit,
-    /// What the numbers of a plant are called.
+    /// The names of the parameters of a plant.
     pub names: PlantNames,
     /// What each specification is called.
     pub specification_names: Vec<String>,
@@ -128,22 +128,22 @@ pub struct ProjectAudit {
     pub members: usize,
     /// Whether everything between them belongs to the family.
     pub whole_box: bool,
-    /// Why its plants have no polynomials; `None` where they have.
+    /// Why its plants have no polynomials; `None` where they have them.
     pub without_polynomials: Option<&'static str>,
     /// s; `None` for a continuous controller.
     pub sample_time_s: Option<f64>,
     /// Delay of the loop, s.
     pub delay_s: f64,
-    /// What is declared that the audit does not count.
+    /// Declared effects that the audit does not include.
     pub caveats: Vec<Caveat>,
     /// What the worst plant of each specification reaches, where that is a magnitude against a
     /// limit.
     pub reached: Vec<Option<ReachedLimit>>,
-    /// What was proven of it, where that was asked for.
+    /// What was proven about it, if a proof was requested.
     pub proof: Option<Proof>,
 }
 
-/// A closed-loop magnitude and the limit that it comes nearest to, or leaves.
+/// A closed-loop magnitude and the limit that it comes nearest to, or violates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReachedLimit {
     /// The magnitude.
@@ -154,7 +154,7 @@ pub struct ReachedLimit {
     pub side: LimitSide,
 }
 
-/// On which side of a magnitude a limit lies.
+/// Whether a limit bounds a magnitude from above or from below.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LimitSide {
     /// The only one, an upper one.
@@ -176,8 +176,8 @@ fn reached(problem: &RobustProblem, finding: &SpecificationFinding) -> Option<Re
     let (lower, upper) = finding.requirement.limits();
     let upper = upper.magnitude(frequency)?;
     if !(frequency > 0.0 && frequency.is_finite()) {
-        // A loop has no response there, but its margin has a limit, and so the magnitude where the
-        // limit is one.
+        // A loop has no response there, but its margin tends to a limit, and so does the magnitude
+        // if its limit is a number.
         let single = lower.is_none() && upper > 0.0 && upper.is_finite();
         let magnitude = upper * portable::exp(-worst.margin_db / DECIBELS_PER_NEPER);
         return single.then_some(ReachedLimit { magnitude, limit: upper, side: LimitSide::Only });
@@ -199,8 +199,8 @@ fn reached(problem: &RobustProblem, finding: &SpecificationFinding) -> Option<Re
 }
 
 impl ProjectAudit {
-    /// An audit of the loop of this problem, with what was found of the rig where the family does
-    /// not contain it.
+    /// An audit of the loop of this problem, with the findings for the rig itself where the family
+    /// does not contain it.
     pub(crate) fn new(problem: &RobustProblem, mut audit: Audit, of_rig: Option<Caveat>) -> ProjectAudit {
         let RobustProblem { family, compensation, .. } = problem;
         let caveats: Vec<Caveat> = of_rig.into_iter().chain(problem.caveats.clone()).collect();

@@ -5,8 +5,8 @@
 //! command -> opening (hysteresis, null bias) -> test stand (pump, meter) -> instruments (noise, conversion) -> rows
 //! ```
 //!
-//! The spool is taken to be at rest at each row: its own lag of a few milliseconds is far below the
-//! memory of the hysteresis at a cycle of minutes.
+//! The spool is assumed to be at rest at each row: its lag of a few milliseconds is negligible
+//! compared with the hysteresis in a cycle of minutes.
 
 mod instrument;
 
@@ -58,7 +58,7 @@ impl StaticTest {
     }
 }
 
-/// What the instruments show at one time. Units: s, V, Pa, m3/s.
+/// The readings of the instruments at one time. Units: s, V, Pa, m3/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BenchRow {
     /// Time from the beginning.
@@ -84,7 +84,7 @@ pub struct BenchRun {
     pub test: StaticTest,
     /// Rows in the order of time.
     pub rows: Vec<BenchRow>,
-    /// Lowest supply pressure that was left, without noise, in Pa.
+    /// Lowest supply pressure during the test, without noise, in Pa.
     pub lowest_supply_pressure: f64,
 }
 
@@ -94,7 +94,7 @@ pub enum BenchError {
     /// The valve cannot be computed with.
     #[error(transparent)]
     Rig(#[from] RigError),
-    /// A test would have more rows than are recorded.
+    /// A test would have more rows than can be recorded.
     #[error("[bench] asks for {rows} rows a test: at most {most} are recorded")]
     TooManyRows {
         /// Of one test.
@@ -119,7 +119,7 @@ const MOST_ROWS: usize = 1_000_000;
 /// All static tests of the project's valve.
 ///
 /// # Errors
-/// [`BenchError`] for a project without an actuator, one that is impossible, and too many rows.
+/// [`BenchError`] for a project without an actuator, an impossible one, or too many rows.
 pub fn bench(setup: &Setup<'_>, watch: Watch<'_>) -> Result<Vec<BenchRun>, BenchError> {
     let declared = setup.project.actuator.as_ref().ok_or(RigError::NoActuator)?;
     let rig = setup.rig()?;
@@ -200,7 +200,7 @@ fn record(
     Ok(run)
 }
 
-/// The command's course over its amplitude after a number of cycles: from zero up first.
+/// The command over its amplitude after a number of cycles: first rising from zero.
 fn wave(waveform: BenchWaveform, cycles: f64) -> f64 {
     let phase = cycles - cycles.floor();
     match waveform {

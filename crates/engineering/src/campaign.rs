@@ -6,8 +6,8 @@
 //! ```
 //!
 //! A run follows from seed and index alone. Rows are in the order of the runs and the same bytes
-//! for any number of threads, in lanes or one by one; a draw that is no machine is a row that says
-//! so, never drawn again.
+//! for any number of threads, in lanes or one by one; a draw that does not give a machine becomes a
+//! row that says so, and is not repeated.
 
 mod ledger;
 mod parquet;
@@ -37,7 +37,7 @@ use crate::project::{self, Refusal};
 use crate::quantity;
 use crate::simulate::{self, SimulateError};
 
-/// Why a sound project has no campaign.
+/// Why a valid project has no campaign.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CampaignError {
     /// It declares none.
@@ -49,25 +49,25 @@ pub enum CampaignError {
     /// There is nothing to drive.
     #[error("there is nothing to drive: the project has no [[scenario]]")]
     NoScenario,
-    /// The scenario it names is not there.
+    /// The scenario that it names does not exist.
     #[error("[campaign] names a scenario \"{name}\" that the project does not have")]
     NoSuchScenario {
         /// As named.
         name: String,
     },
-    /// A path that leads to no number.
+    /// A path that does not lead to a number.
     #[error("[campaign] varies `{path}`, but this project has no such number")]
     Unknown {
         /// As written.
         path: String,
     },
-    /// A start that is an equilibrium has no numbers.
+    /// A start that is an equilibrium has no numbers to vary.
     #[error("[campaign] varies `{path}`, but the scenario states no `start` and begins in equilibrium")]
     NoStart {
         /// As written.
         path: String,
     },
-    /// A start that was saved is what it is.
+    /// A saved start cannot be varied.
     #[error("[campaign] varies `{path}`, but the scenario goes on from a saved state")]
     SavedStart {
         /// As written.
@@ -81,7 +81,7 @@ pub enum CampaignError {
         /// As written.
         path: String,
     },
-    /// A logarithm of a number that has none.
+    /// A logarithmic spread of a number that has no logarithm.
     #[error("[campaign] draws the logarithm of `{path}`, whose least value is {minimum}")]
     NoLogarithm {
         /// As written.
@@ -95,13 +95,13 @@ pub enum CampaignError {
         /// As written.
         text: String,
     },
-    /// More runs than are held at once.
+    /// More runs than can be held at once.
     #[error("{runs} runs are more than {} at once: draw shards of them", ledger::MOST_RUNS)]
     TooMany {
         /// As asked for.
         runs: u64,
     },
-    /// What is kept there is of another campaign.
+    /// The stored rows belong to another campaign.
     #[error(
         "line {line} of the kept table is no row of this campaign: choose another folder, or remove the table"
     )]
@@ -109,7 +109,7 @@ pub enum CampaignError {
         /// Counted from 1.
         line: usize,
     },
-    /// A row that is kept there is not what was written.
+    /// A stored row has been altered.
     #[error(
         "line {line} of the kept table {fault}: remove it and all lines after it (head -n {} keeps those before), and the same command drives them again",
         .line - 1
@@ -120,7 +120,7 @@ pub enum CampaignError {
         /// What is wrong with it.
         fault: &'static str,
     },
-    /// Another program has written the table anew.
+    /// Another program has rewritten the table.
     #[error(
         "line {line} of the kept table ends in CR LF, where LF was written: give it back its line ends, or remove the table"
     )]
@@ -128,7 +128,7 @@ pub enum CampaignError {
         /// Counted from 1.
         line: usize,
     },
-    /// More is kept there than is asked for.
+    /// More rows are stored than were requested.
     #[error(
         "the kept table has {kept} rows, more than the {asked} that are asked for: choose another folder"
     )]
@@ -144,7 +144,7 @@ pub enum CampaignError {
     /// The machine or its controller cannot be simulated.
     #[error(transparent)]
     Simulate(#[from] SimulateError),
-    /// A run, written as settings, is no project any more.
+    /// A run, written as settings, is no longer a valid project.
     #[error("{0}")]
     Settings(Box<Refusal>),
 }

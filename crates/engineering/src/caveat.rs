@@ -1,6 +1,6 @@
-//! What a verdict on the linear loop does not speak of, although the project declares it.
+//! Effects that the project declares and a verdict on the linear loop does not include.
 //!
-//! A simulation is of the whole machine. What the linear plant cannot represent is stated before
+//! A simulation includes the whole machine. What the linear plant cannot represent is stated before
 //! the verdict; where a specification depends on it, the verdict is not proven.
 
 use crate::project::{LineMotion, Load, Project, Pump, SupplyModel};
@@ -8,21 +8,21 @@ use crate::quantity::DisplayUnit;
 use crate::rig::limits_load_motion;
 use crate::setup::Setup;
 
-/// Something declared that the linear loop does not count.
+/// A declared effect that the linear loop does not include.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Caveat {
-    /// What it is, and where it is counted.
+    /// What it is, and where it is included.
     pub sentence: String,
-    /// Whether a specification may fail for it that the linear loop satisfies.
+    /// Whether a specification that the linear loop satisfies may be violated because of it.
     pub unproven: bool,
 }
 
-/// What is declared and in no linear loop.
+/// Declared effects that no linear loop includes.
 pub fn caveats(setup: &Setup<'_>) -> Vec<Caveat> {
     apart_from_lines(setup.project).chain(supply(setup)).collect()
 }
 
-/// What is declared and in no linear model, in sentences.
+/// Declared effects that no linear model includes, in sentences.
 pub fn of_models(project: &Project) -> Vec<String> {
     let others = apart_from_lines(project).map(|caveat| caveat.sentence);
     lumped(project)
@@ -38,7 +38,7 @@ fn apart_from_lines(project: &Project) -> impl Iterator<Item = Caveat> {
     [load(project), feed_forward(project)].into_iter().flatten()
 }
 
-/// A wall whose mass nobody states.
+/// A wall without a stated mass of the load.
 fn load(project: &Project) -> Option<Caveat> {
     let load = &project.actuator.as_ref()?.load;
     matches!(load, Load::Wall { mass: None, .. }).then(|| Caveat {
@@ -48,7 +48,7 @@ fn load(project: &Project) -> Option<Caveat> {
     })
 }
 
-/// What the models of a linearisation do not count of the lines.
+/// Effects of the lines that the models of a linearisation do not include.
 fn lumped(project: &Project) -> Option<String> {
     let (place, model) = moving(project)?;
     Some(format!(
@@ -69,8 +69,8 @@ fn moving(project: &Project) -> Option<(&'static str, &'static str)> {
     Some((place, motion.model()))
 }
 
-/// A supply that yields is counted as small motions see it, which a large step is not; where more
-/// is taken than the pump gives there is no rest to be linearised at.
+/// The effect of a limited supply is included for small motions, but not for a large step; where
+/// more flow is taken than the pump delivers, there is no equilibrium about which to linearise.
 fn supply(setup: &Setup<'_>) -> Option<Caveat> {
     let project = setup.project;
     let supply = &project.actuator.as_ref()?.supply;
@@ -96,7 +96,7 @@ fn supply(setup: &Setup<'_>) -> Option<Caveat> {
     Some(Caveat { sentence, unproven: !rests })
 }
 
-/// What the models of a linearisation do not count of the supply.
+/// Effects of the supply that the models of a linearisation do not include.
 fn constant_supply(project: &Project) -> Option<String> {
     let supply = &project.actuator.as_ref()?.supply;
     matches!(supply.model, SupplyModel::PumpLimited(_)).then(|| {
@@ -111,8 +111,8 @@ fn is_measured(project: &Project) -> bool {
     project.family.as_ref().is_some_and(|family| !family.measured.is_empty())
 }
 
-/// The load's velocity on the command: with a load that yields a feedback, else a path of the
-/// load's motion. Of a rig the loop counts both.
+/// The load's velocity on the command: a feedback if the load can move under force, otherwise a
+/// path of the load motion. The loop of a rig includes both.
 fn feed_forward(project: &Project) -> Option<Caveat> {
     let controller = project.controller.as_ref()?;
     let declared = controller.load_velocity_feed_forward?;
@@ -135,8 +135,8 @@ fn feed_forward(project: &Project) -> Option<Caveat> {
     })
 }
 
-/// What the models of a linearisation, which are of the rig without its controller, do not count of
-/// the load's velocity.
+/// The feed-forward of the load velocity, which the models of a linearisation do not include
+/// because they describe the rig without its controller.
 fn fed_in_loop(project: &Project) -> Option<String> {
     let controller = project.controller.as_ref()?;
     let declared = controller.load_velocity_feed_forward?;

@@ -10,10 +10,10 @@ use crate::project::{
     self, ElementKind, Formula, FormulaError, Project, Rational, RationalFunction, Transfer,
 };
 
-/// Why a declared controller or prefilter is no transfer function.
+/// Why a declared controller or prefilter is not a transfer function.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ControlError {
-    /// The text is no ratio of polynomials.
+    /// The text is not a ratio of polynomials.
     #[error("{place}: {error}", error = error.message)]
     Formula {
         /// `[controller]`, `[prefilter]` or `[sensor]`.
@@ -21,7 +21,7 @@ pub enum ControlError {
         /// What is wrong with it.
         error: FormulaError,
     },
-    /// The factors or polynomials make no transfer function.
+    /// The factors or polynomials do not form a transfer function.
     #[error("{place}: {error}")]
     Linear {
         /// `[controller]`, `[prefilter]` or `[sensor]`.
@@ -46,10 +46,11 @@ pub enum ControlError {
     },
 }
 
-/// The given controller with its prefilter; `None` where the project gives no law for one.
+/// The given controller with its prefilter; `None` where the project gives no transfer function for
+/// one.
 ///
 /// # Errors
-/// [`ControlError`] if one of them is no transfer function.
+/// [`ControlError`] if one of them is not a transfer function.
 pub fn controller(project: &Project) -> Result<Option<Controller>, ControlError> {
     let Some(declared) = project.controller.as_ref().filter(|controller| controller.has_law()) else {
         return Ok(None);
@@ -70,15 +71,15 @@ pub fn controller(project: &Project) -> Result<Option<Controller>, ControlError>
 /// The given prefilter; `None` where the project gives none.
 ///
 /// # Errors
-/// [`ControlError`] if it is no transfer function.
+/// [`ControlError`] if it is not a transfer function.
 pub fn prefilter(project: &Project) -> Result<Option<Compensator>, ControlError> {
     let Some(declared) = &project.prefilter else { return Ok(None) };
     let sample_time = declared.sample_time.or(timing(project).sample_time_s);
     compensator("[prefilter]", &declared.transfer, sample_time).map(Some)
 }
 
-/// When the controller acts, be its law given or to be designed; continuous and without delay where
-/// the project says nothing.
+/// When the controller acts, whether it is given or to be designed; continuous and without delay
+/// where the project does not say.
 pub fn timing(project: &Project) -> Timing {
     let Some(declared) = &project.controller else { return Timing::default() };
     Timing {
@@ -94,10 +95,10 @@ pub fn timing(project: &Project) -> Timing {
     }
 }
 
-/// What the computer of the controller rounds: nothing where the project does not say.
+/// The rounding in the controller's computer: none where the project does not say.
 ///
 /// # Errors
-/// [`ControlError::Quantisation`] for a converter that is none.
+/// [`ControlError::Quantisation`] for an invalid converter.
 pub fn quantization(project: &Project) -> Result<Quantisation, ControlError> {
     let declared = project.controller.as_ref().and_then(|controller| controller.quantization.clone());
     let Some(declared) = declared else { return Ok(Quantisation::default()) };
@@ -114,10 +115,10 @@ pub fn quantization(project: &Project) -> Result<Quantisation, ControlError> {
     })
 }
 
-/// H; 1 where the project says nothing of a sensor.
+/// H; 1 where the project declares no sensor.
 ///
 /// # Errors
-/// [`ControlError`] if what it says is no transfer function.
+/// [`ControlError`] if it is not a transfer function.
 pub fn sensor(project: &Project) -> Result<TransferFunction, ControlError> {
     let Some(declared) = &project.sensor else { return Ok(TransferFunction::gain_only(1.0)) };
     let place = "[sensor]";
@@ -128,7 +129,7 @@ pub fn sensor(project: &Project) -> Result<TransferFunction, ControlError> {
     delayed.map_err(|error| ControlError::Linear { place, error })
 }
 
-/// The elements in series, those that do not act among them.
+/// The elements in series, including disabled ones.
 pub fn compensator(
     place: &'static str,
     transfer: &Transfer,
@@ -152,7 +153,7 @@ pub(crate) fn from_formulas(
     Ok(TransferFunction::from_polynomials(&top, &bottom))
 }
 
-/// An element as the loop has it.
+/// An element as it acts in the loop.
 pub fn element(
     place: &'static str,
     declared: &project::DeclaredElement,

@@ -1,5 +1,5 @@
-//! Every quantity that follows from what a project declares, with its equation, and where it
-//! contradicts a declared one.
+//! Every quantity that follows from what a project declares, with its equation, and any
+//! contradiction with a declared one.
 
 mod list;
 mod rig;
@@ -22,7 +22,7 @@ pub struct Derived {
     pub unit: &'static str,
     /// Equation it follows from.
     pub equation: &'static str,
-    /// The value that holds instead, where the project states one.
+    /// The value in use instead, where the project states one.
     pub stated: Option<Stated>,
 }
 

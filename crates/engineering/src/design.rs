@@ -1,5 +1,5 @@
-//! The design of a controller and its prefilter: from the project to a law that satisfies every
-//! specification, beside the one that was published, and how both are told.
+//! The design of a controller and its prefilter: from the project to a controller that satisfies
+//! every specification, its comparison with the given one, and the wording of both.
 
 mod comparison;
 mod explanation;
@@ -42,10 +42,10 @@ use phea_dynamics::watch::{Stopped, Watch, part};
 pub const DESIGNED_PROJECT: &str = "designed.toml";
 
 /// Name of the file with the project under the controller that comes nearest to what the machine
-/// asks for and cannot be had.
+/// requires, where no controller satisfies it.
 pub const NEAREST_PROJECT: &str = "nearest.toml";
 
-/// Name of the file with what was proven of the designed controller.
+/// Name of the file with the proof for the designed controller.
 pub const DESIGNED_CERTIFICATE: &str = "designed_certificate.json";
 
 /// Why nothing is designed.
@@ -54,7 +54,7 @@ pub enum DesignError {
     /// There is no specification for a controller.
     #[error("the project states no [[specification]] to design a controller for")]
     NoSpecification,
-    /// The search found no controller at all; with what could be said of the problem before it.
+    /// The search found no controller at all; with what was known about the problem before.
     #[error("the search ended without a controller{}", .0.iter().map(|one| format!("; {one}")).collect::<String>())]
     NoController(Vec<String>),
     /// A part of the problem cannot be searched with.
@@ -62,18 +62,18 @@ pub enum DesignError {
     Search(#[from] phea_qft::design::LoopDesignError),
 }
 
-/// A design, and the published controller for comparison.
+/// A design, and the given controller for comparison.
 #[derive(Clone, Debug)]
 pub struct ProjectDesign {
     /// What was found.
     pub design: Design,
     /// How it was looked for.
     pub options: DesignOptions,
-    /// Delay beyond that of the loop that was asked for, s.
+    /// Required delay in addition to that of the loop, s.
     pub minimum_delay_margin_s: f64,
-    /// Whether the designed loop tolerates it, whatever else it does.
+    /// Whether the designed loop tolerates it, regardless of the specifications.
     pub bears_its_delay: bool,
-    /// Whether whoever watched it stopped it: then it is the best so far.
+    /// Whether the watch stopped it: then it is the best so far.
     pub stopped: bool,
     /// The designed controller with its audit.
     pub designed: AuditedController,
@@ -82,15 +82,16 @@ pub struct ProjectDesign {
     /// In a sampled loop: the design that was made for the continuous one, sampled and audited as
     /// the loop is.
     pub continuous: Option<AuditedController>,
-    /// What no controller can do, and what will be hard, whatever the search found.
+    /// What no controller can achieve, and what will be hard, whatever the search found.
     pub explanations: Vec<Explanation>,
-    /// What the computer's converters do to the designed loop; absent where nothing is rounded.
+    /// The effect of the computer's converters on the designed loop; absent where nothing is
+    /// rounded.
     pub rounding: Option<Rounding>,
-    /// What the nonlinear machine does under the designed controller; absent without a machine, and
+    /// The trial of the designed controller on the nonlinear machine; absent without a machine, and
     /// where the design was stopped.
     pub trial: Option<Trial>,
-    /// What was done about a machine that contradicts it; absent where none does, or nothing was
-    /// asked for.
+    /// What was done about a machine that contradicts the design; absent where none does, or where
+    /// this was not requested.
     pub repair: Option<Repair>,
     /// The designed controller as a project declares it.
     pub declared_controller: project::DeclaredController,
@@ -99,12 +100,12 @@ pub struct ProjectDesign {
 }
 
 impl ProjectDesign {
-    /// A design with what is to be told of it alone: without a published controller beside it, and
-    /// without explanations. The family in the loop of the project is `given`, and what was `asked`
-    /// for is the problem that was designed for.
+    /// A design by itself, without the given controller for comparison and without explanations.
+    /// `given` is the family in the loop of the project, and `asked` is the problem that was
+    /// solved.
     ///
     /// # Errors
-    /// [`ProcedureError`] for a law or a sensor that is no transfer function.
+    /// [`ProcedureError`] for a controller or a sensor that is not a transfer function.
     pub fn new(
         setup: &Setup<'_>,
         given: &RobustProblem,
@@ -177,8 +178,8 @@ impl ProjectDesign {
     }
 }
 
-/// Designs a controller for the project, and goes on where the machine contradicts it: the plant
-/// that does is taken in.
+/// Designs a controller for the project and, if the machine contradicts it, continues with the
+/// contradicting plant added.
 ///
 /// # Errors
 /// Those of [`design_project`].
@@ -206,13 +207,13 @@ pub fn design_project(
     designed(source, setup, seed, watch).map(|(_, told)| told)
 }
 
-/// What was designed for, and what came of it.
+/// The problem and its result.
 struct DesignRun {
     problem: DesignProblem,
     outcome: DesignOutcome,
 }
 
-/// The design with what it was made from.
+/// The design with its problem.
 fn designed(
     source: &dyn Source,
     setup: &Setup<'_>,
@@ -270,9 +271,8 @@ fn tried_design(
     tried(source, &Setup::new(&deployed)?, &told.designed.problem, &told.designed.view, watch)
 }
 
-/// What a design that knows nothing of samples and delay becomes by them: made for the continuous
-/// loop, audited in the sampled one. `None` where the loop does not sample, or no such design is
-/// found.
+/// The effect of sampling and delay on a design that ignores them: made for the continuous loop,
+/// audited in the sampled one. `None` where the loop is not sampled, or no such design is found.
 fn continuous_as_sampled(
     setup: &Setup<'_>,
     sampled: &DesignProblem,

@@ -18,7 +18,7 @@ pub enum ProcedureError {
     /// The rig cannot be computed with.
     #[error(transparent)]
     Rig(#[from] RigError),
-    /// The controller is no transfer function.
+    /// The controller is not a transfer function.
     #[error(transparent)]
     Control(#[from] ControlError),
     /// A linear system cannot be computed.
@@ -46,7 +46,7 @@ pub enum ProcedureError {
     /// The project does not say what to size for.
     #[error("{0}")]
     Sizing(#[from] crate::rig::SizingError),
-    /// There is nothing that could be audited.
+    /// There is nothing to audit.
     #[error(transparent)]
     Audit(#[from] AuditError),
     /// There is nothing to design for, or nothing was found.
@@ -61,7 +61,7 @@ pub enum ProcedureError {
     /// Templates or bounds cannot be computed.
     #[error(transparent)]
     Robust(#[from] crate::robust::RobustError),
-    /// A controller cannot be shaped so.
+    /// A controller cannot be shaped in this way.
     #[error(transparent)]
     Shaping(#[from] ShapingError),
     /// The machine cannot be simulated.
@@ -73,7 +73,7 @@ pub enum ProcedureError {
     /// There is no campaign.
     #[error(transparent)]
     Campaign(#[from] CampaignError),
-    /// Whoever watched a long procedure stopped it.
+    /// The watch stopped a long procedure.
     #[error("stopped")]
     Stopped,
 }
@@ -85,7 +85,7 @@ impl From<phea_dynamics::watch::Stopped> for ProcedureError {
 }
 
 impl ProcedureError {
-    /// The findings, where files that the project names were refused with a place for each.
+    /// The findings, if files that the project names were rejected, with a place for each.
     pub fn refusal(&self) -> Option<&Refusal> {
         match self {
             ProcedureError::Catalogue(report) => Some(report),
@@ -99,7 +99,7 @@ impl ProcedureError {
         }
     }
 
-    /// Whether a file could not be written or read back: nothing is wrong with what was asked.
+    /// Whether a file could not be written or read back, although the request was valid.
     pub fn is_of_files(&self) -> bool {
         matches!(
             self,

@@ -26,7 +26,7 @@ pub enum ProjectFamilyError {
     /// The rig cannot be computed with.
     #[error(transparent)]
     Rig(#[from] RigError),
-    /// A parameter of the linear model that is set outright, outside of its own range.
+    /// A parameter of the linear model that is stated directly, outside its own range.
     #[error(
         "`linear.{name}` = {value:e} lies outside of its range in [uncertainty], {minimum:e} to {maximum:e}: widen the range, or take the number out of [linear]"
     )]
@@ -40,13 +40,13 @@ pub enum ProjectFamilyError {
         /// Upper end of the range, SI.
         maximum: f64,
     },
-    /// The box is empty or its coefficients are.
+    /// The box or its coefficients are empty.
     #[error("[uncertainty]: {0}")]
     Plant(#[from] UncertainPlantError),
-    /// The members are no plants of the box.
+    /// The members are not plants of the box.
     #[error("[uncertainty]: {0}")]
     Members(#[from] phea_qft::family::FamilyError),
-    /// A dead time that is negative, or no number, at a member.
+    /// A dead time that is negative, or not a number, at a member.
     #[error("[plant] `delay` is {delay_s} s at {member}")]
     Delay {
         /// What the formula gives, s.
@@ -54,14 +54,14 @@ pub enum ProjectFamilyError {
         /// The member's parameters with their values.
         member: String,
     },
-    /// Files of measured responses that cannot be taken as they are, with every place.
+    /// Files of measured responses that cannot be read, with every place.
     #[error("[family] `measured` cannot be taken as it is\n{0}")]
     Measurement(Box<Refusal>),
-    /// Measured responses that are no family.
+    /// Measured responses that do not form a family.
     #[error("[family] `measured`: {0}")]
     Measured(#[from] MeasurementError),
-    /// A member without polynomials and with a coefficient that gives energy: how many of its own
-    /// poles grow is not known.
+    /// A member without polynomials and with a coefficient that supplies energy: the number of its
+    /// unstable poles is not known.
     #[error(
         "with lines in motion, or a load velocity fed forward late, every coefficient of friction, leakage, valve and load must be zero or \
          more, or the plant's own stability is not known: {member}"
@@ -78,24 +78,24 @@ pub enum ProjectFamilyError {
         /// The member's parameters with their values.
         member: String,
     },
-    /// A limit on load motion, and a measured plant without that path.
+    /// A limit on load motion for a measured plant without that path.
     #[error("\"load_motion\" needs the columns `load_motion_...`, which {0} lacks")]
     LoadMotion(String),
-    /// The plant's text is no ratio of polynomials.
+    /// The text of the plant is not a ratio of polynomials.
     #[error("[plant]: {message}", message = .0.message)]
     Formula(FormulaError),
-    /// No operating point at a plant of the box, or none that is known to be the rig's.
+    /// No operating point at a plant of the box, or none that is known to be that of the rig.
     #[error("no operating point at {member}: {reason}")]
     OperatingPoint {
-        /// The parameters that move it, with their values.
+        /// The parameters that determine it, with their values.
         member: String,
         /// Why it does not exist.
         reason: String,
     },
-    /// A region that the pump does not reach.
+    /// A region that the flow of the pump does not reach.
     #[error("[family.operating_region] `velocity`: {0}")]
     Region(String),
-    /// An uncertain path without a formula that carries it into the linear model.
+    /// An uncertain number without a formula that relates it to the linear model.
     #[error("[uncertainty] `{path}`: {reason}")]
     Path {
         /// The path.
@@ -109,13 +109,13 @@ pub enum ProjectFamilyError {
 /// over the box of `[uncertainty]`; or the plants that were measured. Where lines move its plants
 /// have no polynomials.
 ///
-/// `[family]` says which plants of the box are looked at: its `grid`, its `vertices`, points at
-/// `random`, explicit `cases`, or several of them together; the grid where it says nothing. Where
-/// the `cases` stand alone nothing between them belongs to the family.
+/// `[family]` states which plants of the box are examined: its `grid`, its `vertices`, points at
+/// `random`, explicit `cases`, or several of them together; the grid where it states nothing. If
+/// only `cases` are given, nothing between them belongs to the family.
 ///
 /// # Errors
-/// [`ProjectFamilyError`] if there is no rig, an uncertain name is no parameter of the plant, or a member
-/// lies outside of the box.
+/// [`ProjectFamilyError`] if there is no rig, an uncertain name is not a parameter of the plant, or
+/// a member lies outside the box.
 ///
 /// # Example
 /// ```

@@ -1,5 +1,5 @@
-//! The engineer's procedures: what a project says becomes a rig, and what is asked of it an answer
-//! in values.
+//! The engineer's procedures: a project becomes a rig, and each question about it an answer in
+//! values.
 //!
 //! ```text
 //! Project -> setup::Setup { rig, controller, prefilter, sensor, timing }

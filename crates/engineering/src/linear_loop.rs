@@ -12,7 +12,7 @@ use phea_dynamics::uncertain_plant::PlantCoefficients;
 use phea_hydraulics::linear::transfer_functions;
 use phea_qft::closed_loop::{Compensation, Member};
 
-/// The loop, closed, and what is read off it.
+/// The closed loop and its properties.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinearLoop {
     /// G
@@ -25,7 +25,7 @@ pub struct LinearLoop {
     pub margins: Margins,
     /// Whether the closed loop is stable.
     pub stability: LoopStability,
-    /// F P G/(1 + L), where it can be had.
+    /// F P G/(1 + L), where it can be computed.
     pub step: Result<StepView, String>,
 }
 
@@ -36,7 +36,7 @@ pub enum LoopStability {
     Stable,
     /// A pole of the closed loop does not decay.
     Unstable,
-    /// Its poles cannot be had, and why.
+    /// Its poles cannot be computed, with the reason.
     Unknown(String),
 }
 
@@ -51,7 +51,7 @@ pub struct StepView {
     pub filtered_reference: Vec<f64>,
     /// The command per newton of reference, V/N.
     pub command_v_per_n: Vec<f64>,
-    /// With the band they are stated for.
+    /// With the band of the settling time.
     pub metrics: StepMetrics,
 }
 
@@ -70,7 +70,7 @@ pub enum LoopError {
 const SAMPLES: usize = 2000;
 
 /// The loop of a plant as [`linear_loop`] closes it, with the rate that its controller feeds
-/// forward in samples.
+/// forward at its samples.
 ///
 /// # Errors
 /// Those of [`linear_loop`].
@@ -95,8 +95,8 @@ pub fn linear_loop_of(
 /// Closes the loop of plant P with a controller that sees the output through the sensor H.
 ///
 /// A continuous controller in a continuous loop; a sampled one with the plant held by a zero-order
-/// hold, the delay of the loop in it. A prefilter that acts before the samples is met by a step as
-/// the samples of its step response.
+/// hold, the delay of the loop in it. For a prefilter that acts before the sampling, a step passes
+/// as the samples of the step response of the prefilter.
 ///
 /// # Errors
 /// A system that cannot be built or discretised.
@@ -137,7 +137,7 @@ pub fn linear_loop(
     closed(&plant, &with_sensor, feedback, [prefilter, of_step], band_percent)
 }
 
-/// The loop of P and P H with G, and with F as it is and as a step meets it.
+/// The loop of P and P H with G, and with F itself and as a step passes through it.
 fn closed(
     plant: &TransferFunction,
     with_sensor: &TransferFunction,
@@ -209,7 +209,7 @@ fn step_view(
     })
 }
 
-/// Eight time constants of the slowest pole that matters for what is seen, within a tenth of a
+/// Eight time constants of the slowest pole that matters for the response, between a tenth of a
 /// second and a minute.
 fn duration(through: &TransferFunction) -> f64 {
     let rate = |pole: &num_complex::Complex64| match through.domain() {

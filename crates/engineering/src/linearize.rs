@@ -1,5 +1,5 @@
 //! The linear models of a rig side by side: two-pressure, fifth order (6.7), decomposed (6.12),
-//! first order (6.13); what they leave out, what the load feels, and whether that is passive.
+//! first order (6.13); their omissions, the impedance at the load, and whether it is passive.
 
 mod agreement;
 mod sweep;
@@ -35,33 +35,32 @@ use crate::rig::Rig;
 /// Frequency up to which the thesis compares its models, rad/s.
 const COMPARISON_END: f64 = 1000.0;
 
-/// Everything that the linear view of a rig says.
+/// All linear models and properties of a rig.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Linearization {
     /// Stiffness over the stroke by the project's model: nominal, softest and stiffest wall.
     pub stiffness: [StrokeStiffness; 3],
     /// Both stiffness models side by side, nominal.
     pub stiffness_models: ModelDifference,
-    /// The plant that every verdict is of: with its load, its leakage, and the parameters that
-    /// hold.
+    /// The plant of every verdict: with its load, its leakage, and the parameters in use.
     pub plant: LinearModel,
     /// Whether 6.7 is the plant: one load pressure, no leakage across the piston, a load whose
     /// motion is prescribed.
     pub plant_is_fifth_order: bool,
     /// The linearised two-pressure model of the rig as declared, at its operating point.
     pub two_pressure: LinearModel,
-    /// The fifth-order model of the parameters that hold, equation 6.7, K_c with the leakage across
-    /// the piston beside it.
+    /// The fifth-order model with the parameters in use, equation 6.7; K_c includes the leakage
+    /// across the piston.
     pub full: LinearModel,
-    /// The same of the derived parameters: what the two-pressure model is compared with.
+    /// The same with the derived parameters: the two-pressure model is compared with this one.
     pub derived_full: LinearModel,
     /// Equation 6.12 as printed, and with the damping corrected.
     pub decomposed: [TransferFunction; 2],
     /// Equation 6.13.
     pub first_order: TransferFunction,
-    /// Where each reduction is the plant.
+    /// The bands in which each reduction agrees with the plant.
     pub agreement: Vec<AgreementBand>,
-    /// What the fifth order leaves out of the two-pressure model, both with derived parameters.
+    /// Difference between the fifth-order and the two-pressure model, both with derived parameters.
     pub reduction: ReductionDifference,
     /// Equation 6.12 as printed against 6.7.
     pub printed_decomposition: ReductionDifference,
@@ -71,11 +70,12 @@ pub struct Linearization {
     pub truncation: ReductionDifference,
     /// Share of each mode in the step response of 6.7.
     pub modes: Vec<ModeShare>,
-    /// What the load feels with the command held still.
+    /// The impedance at the load with constant command.
     pub open_loop: PortView,
-    /// What it feels with the given controller, where that is continuous and without dead time.
+    /// The impedance at the load with the given controller, if it is continuous and without dead
+    /// time.
     pub closed_loop: Option<PortView>,
-    /// Why there is no closed-loop view.
+    /// Why there is no closed loop.
     pub closed_loop_absent: Option<String>,
     /// Above this frequency the piston's mass hides the compliance, rad/s.
     pub compliance_hidden_above_rad_per_s: f64,
@@ -99,8 +99,7 @@ pub struct PortView {
     pub asymptotes: Vec<Asymptote>,
     /// Whether it is passive, and where not.
     pub passivity: PassivityReport,
-    /// Force that a load step of 1 mm leaves in the end, N (Proposition 6.2: none); absent if
-    /// unstable.
+    /// Force that remains after a load step of 1 mm, N (Proposition 6.2: zero); absent if unstable.
     pub final_force_n: Option<f64>,
 }
 
@@ -108,14 +107,14 @@ pub struct PortView {
 /// the sensor H.
 ///
 /// # Errors
-/// A model without finite roots: parameters so extreme that the arithmetic ends.
+/// A model without finite roots: parameters so extreme that the arithmetic overflows.
 pub fn linearize(
     rig: &Rig,
     controller: Option<&Controller>,
     sensor: &TransferFunction,
 ) -> Result<Linearization, LinearError> {
     let feedback = controller.map(|given| given.feedback.transfer_function()).transpose()?;
-    // Load motion is answered by G H.
+    // The load motion acts through G H.
     let feedback = match feedback {
         Some(function) if is_continuous(&function) => Some(function.series(sensor)?),
         other => other,
@@ -197,8 +196,8 @@ fn open_loop_view(rig: &Rig, port: &LinearModel) -> Result<PortView, LinearError
     })
 }
 
-/// Whether the plant is thesis (6.7): one load pressure, a prescribed load, and neither leakage nor
-/// a supply that is seen.
+/// Whether the plant is thesis (6.7): one load pressure, a prescribed load, no leakage, and no
+/// effect of the supply.
 fn is_fifth_order(rig: &Rig) -> bool {
     matches!(rig.plant.chambers, ChamberDynamics::LoadPressure { .. })
         && rig.internal_leakage == 0.0
@@ -206,7 +205,7 @@ fn is_fifth_order(rig: &Rig) -> bool {
         && rig.plant.supply.is_none()
 }
 
-/// What the load feels: the actuator without it.
+/// The impedance at the load: the actuator without the load.
 fn felt(plant: &LinearPlant) -> Result<LinearModel, LinearError> {
     transfer_functions(&LinearPlant { load: LinearLoad::Prescribed, ..*plant }.coefficients())
 }

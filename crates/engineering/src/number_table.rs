@@ -67,7 +67,7 @@ impl<W: Write + Send> NumberTable<W> {
     /// A table with these columns and no row yet.
     ///
     /// # Errors
-    /// Those of the sink, and a name that the format does not take.
+    /// Those of the sink, and a name that the format does not accept.
     pub fn new(mut sink: W, format: TableFormat, columns: &[&str]) -> io::Result<Self> {
         let writing = match format {
             TableFormat::Csv => {
@@ -90,8 +90,8 @@ impl<W: Write + Send> NumberTable<W> {
         Ok(NumberTable(writing))
     }
 
-    /// Adds a row, a value for each column; what is missing does not exist, what is too much is
-    /// refused.
+    /// Adds a row, a value for each column; missing values do not exist, surplus values are
+    /// rejected.
     ///
     /// # Errors
     /// Those of the sink; [`io::ErrorKind::InvalidInput`] for more values than columns.

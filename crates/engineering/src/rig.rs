@@ -1,5 +1,5 @@
-//! From what is declared to what is computed with: the actuator as physics, its operating point,
-//! and every parameter of the linear model with where it comes from.
+//! From the declaration to the values for computing: the actuator as physics, its operating point,
+//! and every parameter of the linear model with its origin.
 
 mod assembly;
 mod in_loop;
@@ -44,16 +44,17 @@ pub use sizing::{SizingError, sizing_problem};
 pub(crate) use supply::yielding_supply;
 pub use supply::{power_unit, settled_supply};
 
-/// A rig ready to be computed with.
+/// A rig with everything that procedures compute with.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rig {
     /// The actuator as physics.
     pub actuator: Actuator,
-    /// Where the linear models are taken.
+    /// The point about which the linear models are taken.
     pub point: OperatingPoint,
-    /// Where a supply that yields settles at that point; `None` of one with a constant pressure.
+    /// The settled state of a limited supply at that point; `None` for one with a constant
+    /// pressure.
     pub supply: Option<SettledSupply>,
-    /// What is known of that point.
+    /// What is known about that point.
     pub condition: Condition,
     /// The nonlinear two-pressure model, nominal stiffening.
     pub model: TwoPressureModel,
@@ -61,27 +62,25 @@ pub struct Rig {
     pub two_pressure: TwoPressureLinearParameters,
     /// Parameters of the fifth-order model as they follow from the rig.
     pub derived: LinearParameters,
-    /// The same with what the project sets: `[linear]` before the nominal of `[uncertainty]` before
-    /// the derived value.
+    /// The same in use: the value of `[linear]` takes precedence over the nominal one of
+    /// `[uncertainty]`, and this over the derived value.
     pub parameters: Vec<ResolvedParameter>,
     /// The values that hold.
     pub linear: LinearParameters,
     /// Leakage across the piston in m3/(s Pa).
     pub internal_leakage: f64,
-    /// What the force sensor pushes on, where it yields.
+    /// The load on the force sensor, if it can move under force.
     pub load: Option<YieldingLoad>,
-    /// The linear plant that every verdict is of: nominal, at the operating point, with lumped
-    /// lines.
+    /// The linear plant of every verdict: nominal, at the operating point, with lumped lines.
     pub plant: LinearPlant,
-    /// The same with its lines in motion, which is then what every verdict is of; `None` where both
-    /// are lumped.
+    /// The same with its lines in motion, which is then the plant of every verdict; `None` where
+    /// both are lumped.
     pub in_motion: Option<PlantInMotion>,
-    /// What the linear loop counts of the load's velocity that is fed forward; [`Rig::in_loop`] has
-    /// it.
+    /// The feed-forward of the load velocity in the linear loop, which [`Rig::in_loop`] includes.
     pub fed: Option<FeedForwardPath>,
 }
 
-/// Why a project has no rig to compute with.
+/// Why a project has no rig.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RigError {
     /// The project describes another plant.
@@ -93,13 +92,13 @@ pub enum RigError {
     /// No equilibrium at the declared operating point.
     #[error("[operating_point]: {0}")]
     OperatingPoint(#[from] OperatingPointError),
-    /// A line that its model does not fit.
+    /// A line that its model cannot describe.
     #[error("[line] model: {0}")]
     Line(#[from] LineError),
 }
 
 impl Rig {
-    /// F_e/U_C in N/V at a frequency in rad/s: of the plant that every verdict is of.
+    /// F_e/U_C in N/V at a frequency in rad/s: of the plant of every verdict.
     pub fn response(&self, frequency_rad_per_s: f64) -> Complex64 {
         match &self.in_motion {
             Some(plant) => plant.response(Complex64::new(0.0, frequency_rad_per_s))[0],
@@ -108,7 +107,7 @@ impl Rig {
     }
 
     /// The linear parameters in use, with the leakage across the piston in parallel to K_c: with
-    /// one load pressure both act alike.
+    /// one load pressure both have the same effect.
     pub fn leaking(&self) -> LinearParameters {
         let flow_pressure_coefficient = self.linear.flow_pressure_coefficient + self.internal_leakage;
         LinearParameters { flow_pressure_coefficient, ..self.linear }
@@ -117,7 +116,8 @@ impl Rig {
     /// Assembles the rig of a project and linearises it: [`Setup`](crate::setup::Setup) holds it.
     ///
     /// # Errors
-    /// [`RigError`] if a parameter is impossible, or nothing balances at the operating point.
+    /// [`RigError`] if a parameter is impossible, or there is no equilibrium at the operating
+    /// point.
     pub fn of(project: &Project, declared: &project::DeclaredActuator) -> Result<Rig, RigError> {
         let actuator = assembly::actuator(declared)?;
         let components = actuator.components();
@@ -127,8 +127,8 @@ impl Rig {
         let balance = Balance::of(components);
         let supply = settled_supply(declared, &numbers, &balance, steady);
         let supply = supply.filter(|found| found.supply.pressure.is_finite());
-        // the valve at the pressure that the pump holds there, lines and stall forces at the stated
-        // one
+        // the valve at the pressure that the pump maintains there, lines and stall forces at the
+        // stated one
         let settled = supply.map_or(components.supply, |found| found.supply);
         let at_valve = Actuator::new(Components { supply: settled, ..*components })?;
         let point = operating_point(&at_valve, position, condition)?;

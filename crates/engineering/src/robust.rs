@@ -1,5 +1,5 @@
-//! What the robust method sees of a project: its family within its loop, templates and bounds at
-//! the design frequencies, and where the given loop lies among them.
+//! The problem of the robust method for a project: its family within its loop, templates and bounds
+//! at the design frequencies, and the position of the given loop.
 
 use num_complex::Complex64;
 use phea_dynamics::controller::Controller;
@@ -22,12 +22,12 @@ use crate::source::Source;
 use crate::specification::{of_rounding, specifications};
 use phea_dynamics::watch::{Progress, Watch};
 
-/// A family of plants within a loop, and what the loop must keep to.
+/// A family of plants within a loop, and the specifications of the loop.
 #[derive(Clone, Debug)]
 pub struct RobustProblem {
     /// The plants.
     pub family: Family,
-    /// What the numbers of a plant are called.
+    /// The names of the parameters of a plant.
     pub names: PlantNames,
     /// The loop; with a controller of 1 where none is given.
     pub compensation: Compensation,
@@ -35,17 +35,16 @@ pub struct RobustProblem {
     pub has_controller: bool,
     /// Whether it gives a prefilter; tracking is judged by its spread where not.
     pub has_prefilter: bool,
-    /// What must be kept to: the specifications in file order, then what the rounding of converters
-    /// may do.
+    /// The specifications in file order, then those for the rounding of converters.
     pub specifications: Vec<Specification>,
-    /// What each of them is called: by its kind, or by what is rounded.
+    /// The name of each: its kind, or the signal that is rounded.
     pub specification_names: Vec<String>,
     /// The rig itself as a family of one, where the family does not contain it, and what of it is
     /// outside.
     pub rig_outside: Option<(Family, String)>,
-    /// Why the plants of the family have no polynomials; `None` where they have.
+    /// Why the plants of the family have no polynomials; `None` where they have them.
     pub without_polynomials: Option<&'static str>,
-    /// What is declared that none of this counts.
+    /// Declared effects that none of this includes.
     pub caveats: Vec<Caveat>,
 }
 
@@ -58,13 +57,13 @@ pub struct DesignFrequency {
     pub template: BuiltTemplate,
     /// Bounds with the template's interior counted as plants.
     pub bounds: CombinedBound,
-    /// The same before they were sampled: they judge any loop there.
+    /// The same before sampling over the phase: they judge any loop at this frequency.
     pub exact_bounds: FrequencyBounds,
     /// The nominal loop L0 there.
     pub nominal_loop: Complex64,
-    /// Where it lies among bounds that count the plants of the template alone.
+    /// Its position among bounds that count only the plants of the template.
     pub placement: Placement,
-    /// Where it lies among bounds that count the template's interior too.
+    /// Its position among bounds that also count the interior of the template.
     pub filled_placement: Placement,
 }
 
@@ -90,7 +89,7 @@ pub enum RobustError {
 /// The robust problem of a project.
 ///
 /// # Errors
-/// [`ProcedureError`] for parts that are no transfer functions, families or limits.
+/// [`ProcedureError`] for parts that are not valid transfer functions, families or limits.
 pub fn robust_problem(source: &dyn Source, setup: &Setup<'_>) -> Result<RobustProblem, ProcedureError> {
     let compensation = match &setup.controller {
         Some(given) => setup.compensation(given)?,
@@ -127,8 +126,8 @@ fn without_polynomials(setup: &Setup<'_>, family: &Family) -> Option<&'static st
     (!family.plant().is_rational()).then_some(why)
 }
 
-/// What must be kept to, and what it is called. Bounds on the rounding of converters are drawn at
-/// every design frequency that the loop reaches.
+/// The specifications and their names. Bounds on the rounding of converters are drawn at every
+/// design frequency that the loop reaches.
 fn named_specifications(
     setup: &Setup<'_>,
     highest_frequency_rad_per_s: f64,
@@ -174,7 +173,7 @@ impl RobustProblem {
         let templates = Templates::new(&self.family, &self.compensation, &frequencies, options);
         for (index, built) in templates.enumerate() {
             match built {
-                // beyond a measurement nothing is known, so that there is no template either
+                // nothing is known beyond a measurement, so there is no template either
                 Err(TemplateError::OutOfReach { .. }) => {}
                 built => found.push(self.at_template(built.map_err(RobustError::from)?)?),
             }

@@ -1,5 +1,5 @@
-//! A project, lowered: what every procedure computes with, made of what is declared in this one
-//! place.
+//! A project, lowered: the values with which every procedure computes, made from the declaration in
+//! this one place.
 //!
 //! ```text
 //! Project -> Setup { rig, controller, prefilter, sensor, timing, quantization } -> machine, plant, family, sizing, reductions
@@ -14,22 +14,23 @@ use crate::control::{self, ControlError};
 use crate::project::Project;
 use crate::rig::{Rig, RigError};
 
-/// The rig of a project with its controller, as values to compute with. Another rig, with a number
-/// changed, is another setup.
+/// The rig of a project with its controller, as values to compute with. A rig with a changed number
+/// is another setup.
 #[derive(Clone, Debug)]
 pub struct Setup<'a> {
-    /// What was declared, and what is asked of it: specifications, scenarios, wishes.
+    /// The declaration with its specifications, scenarios and wishes.
     pub project: &'a Project,
-    /// The given controller with its prefilter; `None` where the project gives no law for one.
+    /// The given controller with its prefilter; `None` where the project gives no transfer function
+    /// for one.
     pub controller: Option<Controller>,
     /// The given prefilter; `None` where the project gives none.
     pub prefilter: Option<Compensator>,
-    /// H; 1 where the project says nothing of a sensor.
+    /// H; 1 where the project declares no sensor.
     pub sensor: TransferFunction,
-    /// When the controller acts, be its law given or to be designed; continuous and without delay
-    /// where the project says nothing.
+    /// When the controller acts, whether it is given or to be designed; continuous and without
+    /// delay where the project does not say.
     pub timing: Timing,
-    /// What the computer of the controller rounds: nothing where the project does not say.
+    /// The rounding in the controller's computer: none where the project does not say.
     pub quantization: Quantisation,
     rig: Result<Rig, RigError>,
 }
@@ -39,7 +40,7 @@ impl<'a> Setup<'a> {
     ///
     /// # Errors
     /// [`ControlError`] for a controller, prefilter or sensor that is not a transfer function. An
-    /// error of the rig is reported where it is asked for.
+    /// error of the rig is reported when the rig is needed.
     ///
     /// # Example
     /// ```
@@ -79,20 +80,20 @@ impl<'a> Setup<'a> {
     /// The rig.
     ///
     /// # Errors
-    /// [`RigError`] for a project without an actuator, a rig that is impossible, and one that does
-    /// not rest at its operating point.
+    /// [`RigError`] for a project without an actuator, a rig that is impossible, or one without an
+    /// equilibrium at its operating point.
     pub fn rig(&self) -> Result<&Rig, RigError> {
         self.rig.as_ref().map_err(Clone::clone)
     }
 
-    /// The same rig and controller, of which something else is asked: in its scenarios,
-    /// specifications and settings alone may the project differ.
+    /// The same rig and controller for another question: the project may differ only in its
+    /// scenarios, specifications and settings.
     pub fn asked<'b>(&self, project: &'b Project) -> Setup<'b> {
         let Setup { controller, prefilter, sensor, timing, quantization, rig, .. } = self.clone();
         Setup { project, controller, prefilter, sensor, timing, quantization, rig }
     }
 
-    /// A controller as the project's computer runs it: in z with rounded coefficients, or as it is
+    /// A controller as the project's computer runs it: in z with rounded coefficients, or unchanged
     /// where nothing is rounded.
     ///
     /// # Errors
@@ -104,7 +105,7 @@ impl<'a> Setup<'a> {
         }
     }
 
-    /// The loop around the plant that a controller makes as it is deployed.
+    /// The loop around the plant with a controller as it is deployed.
     ///
     /// # Errors
     /// [`ControlError`] if it cannot be sampled or rounded.

@@ -25,7 +25,7 @@ use crate::source::Source;
 use phea_dynamics::watch::{Watch, tell};
 use workpiece::Workpiece;
 
-/// What of a project is shaped.
+/// Whether the controller or the prefilter is shaped.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Shaped {
     /// G
@@ -60,7 +60,7 @@ pub enum ShapingError {
         /// `controller` or `prefilter`.
         table: &'static str,
     },
-    /// A file that would not read back as what was to be written.
+    /// A file that would not read back as the intended elements.
     #[error("the project file cannot be rewritten: {reason}")]
     NotWritten {
         /// Why.
@@ -68,14 +68,14 @@ pub enum ShapingError {
     },
 }
 
-/// A project with its elements changed, and what every plant makes of them.
+/// A project with its elements changed, and the margins of every plant.
 #[derive(Clone, Debug)]
 pub struct ProjectShaping {
     /// What was shaped.
     pub shaped: Shaped,
     /// How many changes were made.
     pub changes: usize,
-    /// The elements, those that do not act among them.
+    /// The elements, including disabled ones.
     pub elements: Vec<DeclaredElement>,
     /// The problem with these elements in its loop.
     pub problem: RobustProblem,
@@ -89,7 +89,7 @@ pub struct ProjectShaping {
     pub points: Vec<DesignPoint>,
     /// Design frequencies that a measurement does not reach, rad/s.
     pub unreached_rad_per_s: Vec<f64>,
-    /// The project file with these elements, all else as it was.
+    /// The project file with these elements, everything else unchanged.
     pub saved: Vec<u8>,
 }
 
@@ -110,7 +110,7 @@ pub fn shape(
         return Err(ShapingError::NoController.into());
     }
     let mut workpiece = Workpiece::new(&loaded.project, shaped)?;
-    // without the elements, which may be none that can be sampled before they are changed
+    // without the elements, since the original ones may be such that they cannot be sampled
     let bare = workpiece::with_elements(&loaded.project, shaped, &[]);
     let bare = robust_problem(source, &Setup::new(&bare)?)?;
     let mut shaping = workpiece.given().clone();
@@ -161,8 +161,8 @@ fn chart(problem: &RobustProblem, watch: Watch<'_>) -> Result<(DesignChart, Vec<
     Ok((chart, unreached))
 }
 
-/// Where what is shaped lies at a frequency: the nominal loop L0, or the prefilter F. `None` where
-/// it is not known.
+/// The value at a frequency of what is shaped: the nominal loop L0, or the prefilter F. `None`
+/// where it is not known.
 fn present(
     workpiece: &Workpiece<'_>,
     bare: &RobustProblem,

@@ -66,13 +66,13 @@ use crate::setup::Setup;
 use crate::source::{Destination, Source, WriteError};
 use phea_dynamics::watch::{Progress, Watch};
 
-/// Why a sound project is not simulated.
+/// Why a valid project is not simulated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SimulateError {
-    /// The rig cannot be computed with.
+    /// The rig cannot be computed.
     #[error(transparent)]
     Rig(#[from] RigError),
-    /// The controller is no transfer function.
+    /// The controller is not a transfer function.
     #[error(transparent)]
     Control(#[from] ControlError),
     /// There is nothing to simulate.
@@ -81,7 +81,7 @@ pub enum SimulateError {
     /// Nobody commands the valve.
     #[error("nobody commands the valve: [controller] gives no law, and a scenario states no `command`")]
     NoController,
-    /// Controller, prefilter or sensor cannot be run in time.
+    /// Controller, prefilter or sensor cannot be simulated in time.
     #[error("[controller], [prefilter] or [sensor]: {0}")]
     Loop(#[from] LinearError),
     /// The linear plant cannot be computed.
@@ -90,12 +90,12 @@ pub enum SimulateError {
     /// The linear loop cannot be closed.
     #[error("the linear loop: {0}")]
     LinearLoop(#[from] LoopError),
-    /// A load before a wall that has no mass to be stopped.
+    /// A load in front of a wall without a mass.
     #[error(
         "[load] model \"wall\" is simulated with the `mass` of what moves beyond the load cell: none is stated"
     )]
     LoadMass,
-    /// A line that its model does not fit.
+    /// A line that its model cannot describe.
     #[error("[line] model: {0}")]
     Line(#[from] LineError),
     /// The machine is impossible.
@@ -109,7 +109,7 @@ pub enum SimulateError {
         /// What is wrong with its start.
         error: MachineError,
     },
-    /// There is no operating point to begin a search for rest with.
+    /// There is no operating point from which to search for an equilibrium.
     #[error(
         "scenario \"{name}\" states no `start`, and there is no operating point without force at mid stroke: {error}"
     )]
@@ -119,7 +119,7 @@ pub enum SimulateError {
         /// Why not.
         error: OperatingPointError,
     },
-    /// There is no rest to begin with.
+    /// There is no equilibrium to start from.
     #[error(
         "scenario \"{name}\" states no `start`, and the closed loop does not rest at its reference of {}: where \
          all moves least, {what} still moves by {rate:.2e} of its typical magnitude a second",
@@ -135,7 +135,7 @@ pub enum SimulateError {
         /// 1/s.
         rate: f64,
     },
-    /// To rest takes more than the command may be.
+    /// The equilibrium needs a command beyond its limit.
     #[error(
         "scenario \"{name}\" states no `start`, and to rest at its reference of {} takes a command of {}, beyond the limit of {}",
         display(*reference_n, &FORCE, 6), display(*command_v, &VOLTAGE, 4), display(*limit_v, &VOLTAGE, 6)
@@ -150,7 +150,7 @@ pub enum SimulateError {
         /// V.
         limit_v: f64,
     },
-    /// The search for rest does not fit the loop.
+    /// The search for an equilibrium does not fit the loop.
     #[error("scenario \"{name}\" states no `start`: {error}")]
     Rest {
         /// Of the scenario.
@@ -158,7 +158,7 @@ pub enum SimulateError {
         /// What does not fit.
         error: EquilibriumError,
     },
-    /// A reference or motion that is no function of time.
+    /// A reference or motion that is not a function of time.
     #[error("scenario \"{name}\": {error}")]
     Profile {
         /// Of the scenario.
@@ -166,10 +166,10 @@ pub enum SimulateError {
         /// What is wrong with it.
         error: ProfileError,
     },
-    /// A file with a motion, a signal, a state or a measurement was refused.
+    /// A file with a motion, a signal, a state or a measurement was rejected.
     #[error("{0}")]
     Motion(Box<Refusal>),
-    /// Start, course or settings do not fit the machine.
+    /// Start, input schedule or settings do not fit the machine.
     #[error("scenario \"{name}\": {error}")]
     Simulation {
         /// Of the scenario.
@@ -183,7 +183,7 @@ pub enum SimulateError {
 }
 
 impl SimulateError {
-    /// The findings, where a file that the project names was refused with a place for each.
+    /// The findings, if a file that the project names was rejected, with a place for each.
     pub fn refusal(&self) -> Option<&Refusal> {
         match self {
             SimulateError::Motion(report) => Some(report),
@@ -192,12 +192,13 @@ impl SimulateError {
     }
 }
 
-/// Drives the machine of a project through each of its scenarios, in file order. Where the watch
-/// answers `false` the scenario under way ends there, with what it has, and no later one begins.
+/// Drives the machine of a project through each of its scenarios, in file order. If the watch
+/// answers `false`, the current scenario ends there with its results so far, and no later one
+/// begins.
 ///
 /// # Errors
-/// [`SimulateError`] if the project does not describe a machine with a controller and a scenario.
-/// What goes wrong on the way is in the status of its scenario.
+/// [`SimulateError`] if the project does not describe a machine with a controller and a scenario. A
+/// failure during a run is in the status of its scenario.
 pub fn simulate_project(
     source: &dyn Source,
     setup: &Setup<'_>,
@@ -207,7 +208,7 @@ pub fn simulate_project(
 }
 
 /// The same, with a table of each scenario, `SCENARIO.csv` or `SCENARIO.parquet`, its rows written
-/// as they come: no row is held, however many there are.
+/// as they are computed: no row is kept in memory, however many there are.
 ///
 /// # Errors
 /// As [`simulate_project`], and [`SimulateError::Write`].

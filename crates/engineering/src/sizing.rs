@@ -1,7 +1,7 @@
 //! Sizing of high-volumetric-expansion hoses: the procedure of Ledezma (2019), section 6.3, over a
 //! whole catalogue.
 //!
-//! A first-order force response with time constant tau_d under a proportional gain K_p asks for one
+//! A first-order force response with time constant tau_d under a proportional gain K_p requires one
 //! hydraulic stiffness; a hose of bore D and length L_ho gives one. [`size`] walks both branches of
 //! the flowchart (by gain, by length) for every hose and for both stiffness models, and records
 //! each decision with its numbers.
@@ -20,7 +20,7 @@ pub use sensitivity::{Influence, sensitivity};
 
 use phea_hydraulics::stiffness::StiffnessModel;
 
-/// Which question is asked of every hose.
+/// The question that is asked about every hose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Question {
     /// Both branches: the gain is searched for, and the stock length is tried.
@@ -47,15 +47,16 @@ pub struct Sizing {
     pub bores: Vec<CommercialBore>,
     /// Bores from equation 6.17 at the highest and at the lowest recommended velocity, m.
     pub bore_range_m: [f64; 2],
-    /// Gain at which equation 6.16 asks for an infinitely stiff transmission, V/N.
+    /// Gain at which equation 6.16 requires an infinitely stiff transmission, V/N.
     pub pole_gain_v_per_n: f64,
     /// The stiffness model of the project.
     pub model: StiffnessModel,
-    /// Every candidate: accepted ones first, of those the project's model, of those shorter ones.
+    /// Every candidate: accepted ones first, among these the project's model first, then the
+    /// shorter ones.
     pub candidates: Vec<Candidate>,
     /// The decisions in order.
     pub decisions: Vec<SizingStep>,
-    /// Influence of what is uncertain on the best candidate of the project's stiffness model.
+    /// Influence of the uncertainties on the best candidate of the project's stiffness model.
     pub influences: Vec<Influence>,
 }
 

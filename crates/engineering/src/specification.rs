@@ -12,11 +12,11 @@ use self::limit::{MarginOf, TrackingSide};
 pub(crate) use self::rounding::of_rounding;
 use crate::project::{self, FormulaError, Project, SpecificationKind};
 
-/// Why a declared specification cannot be judged by.
+/// Why a declared specification cannot be used.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("[[specification]] {number}, `{key}`: {reason}")]
 pub struct SpecificationError {
-    /// Its place in the file, from 1.
+    /// Its number in the file, from 1.
     pub number: usize,
     /// `limit`, `upper` or `lower`.
     pub key: &'static str,
@@ -30,10 +30,10 @@ pub enum SpecificationProblem {
     /// It is not there.
     #[error("this kind of specification needs it")]
     Missing,
-    /// The text is no ratio of polynomials.
+    /// The text is not a ratio of polynomials.
     #[error("{message}", message = .0.message)]
     Formula(FormulaError),
-    /// The polynomials make no transfer function.
+    /// The polynomials do not form a transfer function.
     #[error(transparent)]
     Linear(#[from] LinearError),
     /// The table is invalid.
@@ -45,15 +45,15 @@ pub enum SpecificationProblem {
     /// The wish in time has no limit, or the limit no response to check.
     #[error(transparent)]
     TimeDomain(#[from] TimeDomainError),
-    /// A form of limit that another kind of specification takes.
+    /// A form of limit that belongs to another kind of specification.
     #[error("this kind of specification does not take {0}")]
     Form(&'static str),
 }
 
-/// A limit of tracking that was wished in time, and what its own step response does.
+/// A limit of tracking that was stated in time, and its own step response.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CheckedWish {
-    /// Place of the specification in the file, from 1.
+    /// Number of the specification in the file, from 1.
     pub number: usize,
     /// `upper` or `lower`.
     pub key: &'static str,
@@ -62,7 +62,7 @@ pub struct CheckedWish {
 }
 
 impl CheckedWish {
-    /// Whether the limit does what was wished.
+    /// Whether the limit meets the wish.
     pub fn is_met(&self) -> bool {
         self.check.outcome() == WishOutcome::Met
     }
@@ -71,7 +71,7 @@ impl CheckedWish {
 /// The specifications of a project, in file order.
 ///
 /// # Errors
-/// [`SpecificationError`] for a limit that is absent or no function of frequency.
+/// [`SpecificationError`] for a limit that is absent or not a function of frequency.
 ///
 /// # Example
 /// ```
@@ -91,13 +91,13 @@ pub fn specifications(project: &Project) -> Result<Vec<Specification>, Specifica
     numbered.map(|(index, declared)| specification(declared, index + 1)).collect()
 }
 
-/// Every limit of tracking that was wished in time, held against its wish; in file order.
+/// Every limit of tracking that was stated in time, compared with its wish; in file order.
 ///
 /// # Errors
 /// [`SpecificationError`] for a wish without a limit, or a limit whose step response has no end.
 ///
 /// # Example
-/// The thesis' upper limit (6.28), given outright, and what it was to reach:
+/// The thesis' upper limit (6.28), given directly, and its intended response:
 /// ```
 /// use phea_project::source::Memory;
 /// let text = "schema = 1\n[plant]\nnumerator = \"1\"\ndenominator = \"s\"\n\

@@ -26,7 +26,7 @@ use phea_dynamics::watch::{Progress, Watch};
 pub struct Trial {
     /// At least one.
     pub runs: Vec<TrialRun>,
-    /// Plants that no rig was found for, and why.
+    /// Plants for which no rig was found, and why.
     pub not_driven: Vec<String>,
 }
 
@@ -41,7 +41,7 @@ impl Trial {
 /// project without an actuator.
 ///
 /// # Errors
-/// [`ProcedureError`] for a controller or a sensor that is no transfer function, and where the
+/// [`ProcedureError`] for a controller or a sensor that is not a transfer function, and where the
 /// watcher stops it.
 pub fn tried(
     source: &dyn Source,

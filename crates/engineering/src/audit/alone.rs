@@ -11,11 +11,12 @@ use crate::rig::{ParameterOrigin, ResolvedParameter};
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
 
-/// Part of a derived value by which it may lie outside of bounds that are printed to three digits.
+/// Relative amount by which a derived value may lie outside bounds that are printed to three
+/// digits.
 const ROUNDED: f64 = 0.01;
 
-/// The project without its uncertainty, and what of it the box does not contain. `None` where the
-/// box contains the rig, or nothing is known of a rig.
+/// The project without its uncertainty, and the parameters that the box does not contain. `None`
+/// where the box contains the rig, or there is no rig.
 pub fn outside(setup: &Setup<'_>) -> Option<(Project, String)> {
     let (project, rig) = (setup.project, setup.rig().ok()?);
     let beyond = |one: &&ResolvedParameter| {
@@ -42,14 +43,14 @@ pub fn outside(setup: &Setup<'_>) -> Option<(Project, String)> {
     (!outside.is_empty()).then(|| (alone(), outside.join("; ")))
 }
 
-/// What the loop of a problem does to the rig itself, where the family does not contain it.
+/// The audit of the rig itself in the loop of a problem, where the family does not contain it.
 pub(crate) fn caveat(problem: &RobustProblem, watch: Watch<'_>) -> Result<Option<Caveat>, Stopped> {
     let Some((alone, beyond)) = &problem.rig_outside else { return Ok(None) };
     let audit = phea_qft::audit::audit(&asked(problem, alone), watch)?;
     Ok(Some(of_rig(beyond, does(problem, &audit), audit.verdict != Verdict::Met)))
 }
 
-/// The same where the watch stopped it: nothing is known then.
+/// The result where the watch stopped it: unknown.
 pub(crate) fn unexamined(problem: &RobustProblem) -> Option<Caveat> {
     let (_, beyond) = problem.rig_outside.as_ref()?;
     Some(of_rig(beyond, NOTHING_PROVEN.to_string(), true))
@@ -62,7 +63,7 @@ fn of_rig(beyond: &str, does: String, unproven: bool) -> Caveat {
     Caveat { sentence, unproven }
 }
 
-/// What the loop with the rig does.
+/// The audit of the loop with the rig.
 fn does(problem: &RobustProblem, audit: &Audit) -> String {
     let violated: Vec<String> = audit
         .specifications

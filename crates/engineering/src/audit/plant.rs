@@ -1,4 +1,4 @@
-//! How the plants of a family are named to people and programs.
+//! The names of the plants of a family, for people and programs.
 
 use phea_qft::verification::PlantPoint;
 use serde::ser::{Serialize, SerializeMap, Serializer};
@@ -9,7 +9,7 @@ use crate::quantity::{Dimension, RATIO, display};
 /// What the numbers of a plant are called.
 #[derive(Clone, Debug)]
 pub enum PlantNames {
-    /// Uncertain parameters in the order of the plant, with what they measure.
+    /// Uncertain parameters in the order of the plant, with their dimensions.
     Parameters(Vec<(String, &'static Dimension)>),
     /// Names of the measurements.
     Measured(Vec<String>),
@@ -34,7 +34,7 @@ impl PlantNames {
         PlantNames::Parameters(names.map(|name| (name.to_string(), dimension(name))).collect())
     }
 
-    /// Names and values of a plant that has any.
+    /// Names and values of a plant, if it has any.
     pub fn numbers<'a>(
         &'a self,
         plant: &'a PlantPoint,
@@ -72,7 +72,7 @@ impl PlantNames {
         }
     }
 
-    /// What stands above the columns of [`PlantNames::cells`].
+    /// The headings of the columns of [`PlantNames::cells`].
     pub fn headings(&self) -> Vec<&str> {
         match self {
             PlantNames::Parameters(names) => names.iter().map(|(name, _)| name.as_str()).collect(),

@@ -1,4 +1,4 @@
-//! What an audit found by searching, proven or refuted: the verdict then rests on that.
+//! Proves or refutes what an audit found by searching; the verdict then rests on the proof.
 
 use phea_dynamics::watch::Watch;
 use phea_qft::proof::{NotProven, Proof, ProofOptions, Standing, prove};
@@ -8,8 +8,9 @@ use super::{ProjectAudit, asked, rounded};
 use crate::error::ProcedureError;
 use crate::robust::RobustProblem;
 
-/// Proves or refutes stability and every specification of an audit. What is neither is `not_proven`, whatever the search found, but for a
-/// violation, which it has shown by a plant and a frequency.
+/// Proves or refutes stability and every specification of an audit. What is neither proven nor
+/// refuted becomes `not_proven`, whatever the search found, except for a violation, which is shown
+/// by a plant and a frequency.
 ///
 /// # Errors
 /// [`ProcedureError::Stopped`] where the watcher stops it.
@@ -23,7 +24,8 @@ pub fn prove_audit(
     Ok(())
 }
 
-/// The same of an audit that nobody asked to be proven: what is neither proven nor refuted is what the search found, and less is tried.
+/// The same for an audit for which no proof was requested: what is neither proven nor refuted keeps
+/// the result of the search, and less effort is spent.
 ///
 /// # Errors
 /// [`ProcedureError::Stopped`] where the watcher stops it.
@@ -38,10 +40,10 @@ pub fn try_to_prove(
     Ok(())
 }
 
-/// Leaves of a panel where nobody asked for a proof.
+/// Number of leaves of a panel if no proof was requested.
 const TRIED_LEAVES: usize = 10_000;
 
-/// Rests the verdict on a proof; `unproven` is what an audit that is met becomes where nothing is proven.
+/// Rests the verdict on a proof; `unproven` is the verdict for an audit that is met but not proven.
 fn rest_on(view: &mut ProjectAudit, mut proof: Proof, unproven: Verdict) {
     let audit = &mut view.audit;
     for (finding, found) in audit.specifications.iter().zip(&mut proof.specifications) {
@@ -70,14 +72,14 @@ fn rest_on(view: &mut ProjectAudit, mut proof: Proof, unproven: Verdict) {
     audit.verdict = match worst {
         Some(0) => Verdict::Violated,
         Some(1) => Verdict::NotProven,
-        // what is declared and not counted
+        // effects that are declared but not included
         _ if audit.verdict == Verdict::NotProven => Verdict::NotProven,
         _ => Verdict::Met,
     };
     let verdict = audit.verdict;
     let deciding = all().filter(|(own, _)| verdict == Verdict::Met || *own == verdict);
     let evidence = match verdict {
-        // one violation that is shown is enough
+        // one proven violation is enough
         Verdict::Violated => deciding.map(|(_, evidence)| evidence).max(),
         Verdict::Met | Verdict::NotProven => deciding.map(|(_, evidence)| evidence).min(),
     };
@@ -85,7 +87,7 @@ fn rest_on(view: &mut ProjectAudit, mut proof: Proof, unproven: Verdict) {
     view.proof = Some(proof);
 }
 
-/// A plant and a frequency at which the search found a violation stand against any proof.
+/// A plant and a frequency at which the search found a violation outweigh any proof.
 fn contradicted(standing: &mut Standing, searched: Verdict) {
     if *standing == Standing::Proven && searched == Verdict::Violated {
         *standing = Standing::NotProven(NotProven::Contradicted);
@@ -100,7 +102,7 @@ fn rank(verdict: Verdict) -> usize {
     }
 }
 
-/// What became of a claim, in a word.
+/// The outcome of a claim, in a word.
 pub fn standing_word(standing: &Standing) -> &'static str {
     match standing {
         Standing::Proven => "proven",
@@ -109,7 +111,8 @@ pub fn standing_word(standing: &Standing) -> &'static str {
     }
 }
 
-/// Why a claim is neither proven nor refuted, in a sentence without its end; `None` where it is.
+/// Why a claim is neither proven nor refuted, in a sentence without its full stop; `None` if it is
+/// either.
 pub fn why_not_proven(view: &ProjectAudit, proof: &Proof, standing: &Standing) -> Option<String> {
     let Standing::NotProven(reason) = standing else { return None };
     Some(match reason {
@@ -149,7 +152,7 @@ pub fn why_not_proven(view: &ProjectAudit, proof: &Proof, standing: &Standing) -
     })
 }
 
-/// The part of the box that remains, as far as it is smaller than the box.
+/// The part of the box that remains, if it is smaller than the box.
 fn part_of(view: &ProjectAudit, proof: &Proof, region: &phea_qft::proof::ProofRegion) -> String {
     let Some(certificate) = &proof.certificate else { return String::new() };
     let segments = certificate.plant.boxes.get(region.of_box).into_iter().flatten();

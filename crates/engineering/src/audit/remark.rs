@@ -1,4 +1,4 @@
-//! What the verdict on a specification leaves out, in words.
+//! The omissions of the verdict on a specification, in words.
 
 use phea_qft::verification::{PlantPoint, Remark, SpecificationFinding};
 

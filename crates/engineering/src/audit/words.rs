@@ -36,7 +36,7 @@ pub fn evidence_key(evidence: Evidence) -> &'static str {
     }
 }
 
-/// What a verdict rests on, in a sentence.
+/// The evidence for a verdict, in a sentence.
 pub fn evidence_sentence(evidence: Evidence, verdict: Verdict, one_plant: bool) -> &'static str {
     match evidence {
         Evidence::Proof if verdict == Verdict::Violated => {
@@ -106,7 +106,7 @@ pub fn frequency_words(frequency_rad_per_s: f64) -> String {
     }
 }
 
-/// A frequency with four digits, without zeros that say nothing: `0.01`, `1304`.
+/// A frequency with four digits, without trailing zeros: `0.01`, `1304`.
 pub fn frequency_number(frequency_rad_per_s: f64) -> String {
     if frequency_rad_per_s == f64::INFINITY {
         "inf".to_string()
@@ -120,7 +120,7 @@ pub fn worst_at_design(finding: &SpecificationFinding) -> Option<&WorstCase> {
     finding.at_design_frequencies.iter().min_by(|a, b| a.margin_db.total_cmp(&b.margin_db))
 }
 
-/// One sentence on a specification: what it says, whether it holds, and where it is worst.
+/// One sentence on a specification: what it requires, whether it holds, and where it is worst.
 pub fn finding_sentence(
     name: &str,
     finding: &SpecificationFinding,
@@ -174,7 +174,7 @@ pub fn place_words(frequency_rad_per_s: f64) -> String {
     format!("{words} ({} Hz)", significant(frequency_rad_per_s / std::f64::consts::TAU, 3))
 }
 
-/// What a customer wants to know of a kind.
+/// The meaning of a kind for the user of the machine.
 pub fn meaning(requirement: &Requirement) -> &'static str {
     match requirement {
         Requirement::RobustStability(_) => "no resonance of the closed loop above the limit",
@@ -186,7 +186,7 @@ pub fn meaning(requirement: &Requirement) -> &'static str {
     }
 }
 
-/// Whether the family is stable, and how it is known.
+/// Whether the family is stable, and how this is known.
 pub fn stability_sentence(stability: &StabilityFinding, names: &PlantNames) -> String {
     let plant = names.text(&stability.plant);
     let rate = |value: f64| significant(value, 3);
@@ -244,7 +244,7 @@ fn method_words(method: StabilityMethod) -> &'static str {
     }
 }
 
-/// To four significant digits, as a reader wants it.
+/// To four significant digits, for a reader.
 pub(crate) fn rounded(value: f64) -> f64 {
     format!("{value:.3e}").parse().unwrap_or(value)
 }

@@ -33,14 +33,14 @@ impl Instruments {
         self.command.as_ref().map_or(wanted, |converter| converter.rounded(wanted))
     }
 
-    /// What is read of a pressure in Pa.
+    /// The reading of a pressure in Pa.
     pub(super) fn pressure(&mut self, value: f64, noise: &mut u64) -> f64 {
         let shown = value + self.pressure_noise * normal(noise);
         self.pressure.as_ref().map_or(shown, |converter| converter.rounded(shown))
     }
 
-    /// What is read of a flow in m3/s: a turbine stands still below its smallest flow, and tells no
-    /// direction unless it is signed.
+    /// The reading of a flow in m3/s: a turbine stands still below its smallest flow, and does not
+    /// show the direction unless it is signed.
     pub(super) fn flow(&self, meter: &FlowMeter, value: f64, noise: &mut u64) -> f64 {
         let disturbed = value + meter.noise * normal(noise);
         let turning = if value.abs() < meter.minimum { 0.0 } else { disturbed };

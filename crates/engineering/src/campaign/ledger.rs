@@ -1,4 +1,4 @@
-//! A campaign from its first row or from where it was interrupted, its rows kept as they come.
+//! A campaign from its first row or from where it was interrupted, its rows stored as they come.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -12,7 +12,7 @@ use phea_dynamics::watch::{Progress, Watch};
 /// Rows that are held at once.
 pub(super) const MOST_RUNS: u64 = 1_000_000;
 
-/// What is asked of a campaign.
+/// The requested part of a campaign.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RequestedRuns {
     /// Runs of the whole campaign.
@@ -23,7 +23,7 @@ pub struct RequestedRuns {
     pub effort: Effort,
 }
 
-/// A part of a campaign: whole parts, one after the other, are the whole.
+/// A part of a campaign: all parts, one after the other, form the whole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
     number: u64,
@@ -66,7 +66,7 @@ impl Shard {
         share(self.number - 1)..share(self.number)
     }
 
-    /// Whether it begins the table, with the line above the rows.
+    /// Whether it begins the table, with the header line.
     fn begins(&self) -> bool {
         self.number == 1
     }
@@ -76,8 +76,8 @@ impl Shard {
         format!("runs{}", self.part())
     }
 
-    /// What tells its files from those of other parts: nothing, or `-2-of-4`, numbers of one
-    /// length.
+    /// The suffix that distinguishes its files from those of other parts: empty, or `-2-of-4`, with
+    /// numbers of equal length.
     pub fn part(&self) -> String {
         let Shard { number, of } = *self;
         let digits = of.to_string().len();
@@ -105,8 +105,8 @@ pub trait RowStore {
     /// Why it cannot be written.
     fn append(&mut self, text: &str) -> Result<(), String>;
 
-    /// Rows that wait for one before them, as they were kept by [`RowStore::keep_ahead`]; whatever
-    /// else is there is passed over.
+    /// Rows that wait for an earlier one, as stored by [`RowStore::keep_ahead`]; anything else
+    /// there is ignored.
     ///
     /// # Errors
     /// Why they cannot be read.
@@ -114,8 +114,8 @@ pub trait RowStore {
         Ok(String::new())
     }
 
-    /// Keeps rows that wait for one before them, so that they are not driven again after an end in
-    /// between. A ledger may keep none.
+    /// Stores rows that wait for an earlier one, so that they are not driven again after an
+    /// interruption. A ledger may store none.
     ///
     /// # Errors
     /// Why they cannot be written.
@@ -123,7 +123,7 @@ pub trait RowStore {
         Ok(())
     }
 
-    /// Forgets them: all are in the table.
+    /// Deletes them: all are in the table.
     ///
     /// # Errors
     /// Why they cannot be removed.
@@ -150,8 +150,8 @@ impl RowStore for Nowhere {
     }
 }
 
-/// Drives what is missing of a campaign, and gives all rows there are: fewer than asked for where
-/// it was stopped.
+/// Drives the missing runs of a campaign, and returns all rows: fewer than requested if it was
+/// stopped.
 ///
 /// # Errors
 /// [`CampaignError`] where the ledger holds another campaign or cannot be written.
@@ -194,7 +194,7 @@ pub fn campaign(
     Ok(rows)
 }
 
-/// Rows of these runs that were done before others: a line that is not as it was written is driven
+/// Stored rows of these runs that wait for earlier ones; a run whose line was altered is driven
 /// again.
 fn ahead(
     plan: &Plan,
@@ -207,7 +207,7 @@ fn ahead(
     Ok(rows.filter(ours).map(|row| (row.run, row)).collect())
 }
 
-/// A kept row, as it must have been written for that run.
+/// A stored row, verified to be the one that was written for that run.
 fn kept_row(plan: &Plan, run: u64, text: &str, line: usize) -> Result<Row, CampaignError> {
     let row = plan.columns.row(text).map_err(|fault| match fault {
         NoRow::Other => CampaignError::OtherCampaign { line },
@@ -223,8 +223,8 @@ fn kept_row(plan: &Plan, run: u64, text: &str, line: usize) -> Result<Row, Campa
     Ok(row)
 }
 
-/// The rows that are kept already; whatever was torn at the end is dropped, and an empty ledger is
-/// begun.
+/// The rows that are already stored; an incomplete line at the end is dropped, and an empty ledger
+/// is started.
 fn resumed(plan: &Plan, wanted: RequestedRuns, ledger: &mut dyn RowStore) -> Result<Vec<Row>, CampaignError> {
     let runs = wanted.shard.runs_of(wanted.runs);
     let text = ledger.kept().map_err(CampaignError::RowStore)?;

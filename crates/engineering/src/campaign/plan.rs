@@ -1,4 +1,4 @@
-//! What all runs of a campaign share.
+//! The data that all runs of a campaign share.
 
 use phea_dynamics::random;
 use phea_dynamics::scalar::Dependence;
@@ -15,18 +15,18 @@ use crate::setup::Setup;
 use crate::simulate::{ControlledMachine, ScenarioDrive, SimulateError, Window, driven};
 use crate::source::Source;
 
-/// Most times at which the bands of the force are given over the whole scenario, and as many more
-/// around what begins its windows.
+/// Largest number of times at which the bands of the force are given over the whole scenario, and
+/// of additional times after the starts of its windows.
 const BAND_TIMES: usize = 125;
-/// How long after what begins a window the force is looked at more often, s.
+/// How long after the start of a window the force is recorded more often, s.
 const EVENT_S: f64 = 0.5;
-/// Letters of the mark by which rows of a campaign are known.
+/// Number of letters of the mark that identifies the rows of a campaign.
 const MARK_LENGTH: usize = 16;
-/// Of seeds of the noise that a sampled controller sees, which are drawn too.
+/// Range of the seeds of the measurement noise of a sampled controller, which are drawn too.
 const SEEDS: f64 = 4e9;
 
-/// A Monte Carlo campaign of the nonlinear machine: a scenario of a project, and what of it is
-/// drawn for each run.
+/// A Monte Carlo campaign of the nonlinear machine: a scenario of a project, and the numbers that
+/// are drawn for each run.
 ///
 /// # Example
 /// Every run follows from seed and index.
@@ -58,9 +58,10 @@ pub struct Plan {
     pub(super) columns: CampaignColumns,
     /// Of every look, s.
     pub times_s: Vec<f64>,
-    /// At every look, N; at a step, as it is from then on. Zero in an open loop.
+    /// Reference at every recorded time, N; at a step, the value from then on. Zero in an open
+    /// loop.
     pub reference_n: Vec<f64>,
-    /// Looks at the times of the bands.
+    /// Indices of the recorded times of the bands.
     pub(super) band_looks: Vec<usize>,
     /// Indices of the states that force and command depend on.
     pub(super) look: Vec<usize>,
@@ -75,7 +76,7 @@ pub struct Draw {
     pub run: u64,
     /// In SI, in the order of [`Plan::ranges`].
     pub values: Vec<f64>,
-    /// Of the noise that a sampled controller sees, where there is noise.
+    /// Seed of the measurement noise of a sampled controller, if there is noise.
     pub(super) noise_seed: Option<u32>,
 }
 
@@ -83,7 +84,7 @@ impl Plan {
     /// Rows as a Parquet table.
     ///
     /// # Errors
-    /// What the writer of the format says.
+    /// The error of the writer of the format.
     pub fn parquet(&self, rows: &[super::Row]) -> Result<Vec<u8>, String> {
         super::parquet::table(&self.columns, rows)
     }
@@ -91,7 +92,7 @@ impl Plan {
     /// The campaign that a project declares, with these random numbers.
     ///
     /// # Errors
-    /// [`CampaignError`] if it declares none, or nothing that can be driven.
+    /// [`CampaignError`] if it declares none, or one that cannot be driven.
     pub fn new(source: &dyn Source, loaded: &Loaded, seed: u32) -> Result<Plan, CampaignError> {
         let project = loaded.project.clone();
         let campaign = project.campaign.as_ref().ok_or(CampaignError::Absent)?;
@@ -151,7 +152,7 @@ impl Plan {
         &self.scenario.name
     }
 
-    /// What is looked at by itself in each run.
+    /// The windows that are evaluated in each run.
     pub fn windows(&self) -> &[Window] {
         &self.columns.windows
     }
@@ -172,7 +173,7 @@ impl Plan {
         Some([uncertain.minimum, uncertain.maximum])
     }
 
-    /// What is drawn for a run.
+    /// The numbers that are drawn for a run.
     pub fn draw(&self, run: u64) -> Draw {
         let mut stream = random::stream(u64::from(self.seed), run);
         let values = self.ranges.iter().map(|range| range.draw(&mut stream)).collect();
@@ -215,8 +216,8 @@ impl Plan {
         settings
     }
 
-    /// The gain of a feed-forward that the project leaves to be derived: the drawn machine must not
-    /// change the controller.
+    /// The gain of a feed-forward that the project does not state: it is fixed beforehand, so that
+    /// the drawn machine does not change the controller.
     fn feed_forward(&self) -> Option<String> {
         if self.is_open_loop() {
             return None;
@@ -266,7 +267,7 @@ fn band_looks(times_s: &[f64], windows: &[Window]) -> Vec<usize> {
     looks
 }
 
-/// A time without what rounding left of its step: twelve digits are its own.
+/// A time without the rounding error of its step, to twelve digits.
 fn plain(time_s: f64) -> f64 {
     format!("{time_s:.11e}").parse().unwrap_or(time_s)
 }
@@ -274,7 +275,7 @@ fn plain(time_s: f64) -> f64 {
 /// Tables of the project that may be written as arrays.
 const EDGES: [&str; 2] = ["valve.flow_coefficients", "valve.leakage_coefficients"];
 
-/// What everything follows from: project with settings and catalogue in it, the files it names,
+/// Everything that determines the rows: project with settings and catalogue, the files it names,
 /// seed, and version.
 fn mark(source: &dyn Source, project: &Project, scenario: &Scenario, seed: u32) -> String {
     let mut hash = Sha256::new();
@@ -298,7 +299,7 @@ fn mark(source: &dyn Source, project: &Project, scenario: &Scenario, seed: u32) 
     text.chars().take(MARK_LENGTH).collect()
 }
 
-/// Indices of the states that force and command depend on: all that has to be looked at.
+/// Indices of the states that force and command depend on: only these need to be observed.
 fn look(control: &Control) -> Vec<usize> {
     let variables =
         |count: usize, from: usize| -> Vec<Dependence> { (from..from + count).map(Dependence::on).collect() };

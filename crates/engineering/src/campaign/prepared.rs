@@ -1,4 +1,4 @@
-//! One run, ready to be driven, and who looks at it.
+//! One run, ready to be driven, with its observer.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -82,7 +82,7 @@ pub(super) fn prepared(plan: &Plan, draw: Draw) -> Result<Prepared, Box<Row>> {
 }
 
 impl Prepared {
-    /// What is to be done in a lane.
+    /// The task of a lane.
     pub(super) fn task<'a>(&'a self, observer: Watcher<'a>) -> Task<'a, Watcher<'a>> {
         let sampler: Option<Box<dyn Sampler + 'a>> = match &self.bench.control {
             Control::Continuous(_) | Control::Open(_) => None,
@@ -139,7 +139,7 @@ impl Prepared {
     }
 }
 
-/// What is seen of a run, by whom watches it and by whom it is for.
+/// The observer of a run, for progress and for its result.
 pub(super) struct Watched<'a> {
     plan: &'a Plan,
     seen: Rc<RefCell<Seen<'a>>>,
@@ -149,7 +149,7 @@ pub(super) struct Watched<'a> {
 struct Seen<'a> {
     plan: &'a Plan,
     follower: Follower<'a>,
-    /// Whether all looks are kept, or those of the bands alone.
+    /// Whether the force at all recorded times is kept, or only at those of the bands.
     every_look: bool,
     /// N.
     force_n: Vec<f64>,
@@ -170,7 +170,7 @@ impl<'a> Watched<'a> {
         Box::new(Watched { plan: self.plan, seen: Rc::clone(&self.seen) })
     }
 
-    /// The force at every look that was kept, N.
+    /// The force at every recorded time that was kept, N.
     pub(super) fn force_n(&self) -> Vec<f64> {
         self.seen.borrow().force_n.clone()
     }

@@ -30,9 +30,10 @@ pub(super) struct Shared<'p> {
     pub(super) stop: AtomicBool,
     /// Runs that are done.
     pub(super) done: AtomicU64,
-    /// How often rows were collected: all that threads know of time, and no result depends on it.
+    /// How often rows were collected: the only measure of time that threads have; no result depends
+    /// on it.
     pub(super) rounds: AtomicU64,
-    /// Whether the force at every look is asked for.
+    /// Whether the force at every recorded time is wanted.
     forces: bool,
     supply: Mutex<RemainingRuns>,
 }
@@ -60,13 +61,13 @@ impl<'p> Shared<'p> {
         if self.stop.load(Ordering::Relaxed) { None } else { supply.take(driving, works) }
     }
 
-    /// A thread drives nothing any more.
+    /// A thread has finished.
     fn rest(&self) {
         self.supply.lock().unwrap_or_else(PoisonError::into_inner).idle += 1;
     }
 }
 
-/// A run with the force at every look, where that is asked for.
+/// A run, with the force at every recorded time if that is wanted.
 pub(super) struct Finished {
     pub(super) row: Row,
     pub(super) force_n: Vec<f64>,
@@ -86,9 +87,10 @@ pub(super) fn one_by_one(shared: &Shared<'_>, most: usize, give: Give<'_>) -> Re
 }
 
 /// Simulates at most this number of runs in lanes; runs that were stopped are not returned. Under a
-/// sampled controller they are driven one by one: from sample to sample a machine goes by its own
-/// matrices, and where one has to leave them its neighbours wait. Lanes have the same bits there,
-/// and take as long. So are all on a processor without the vector instructions that lanes want.
+/// sampled controller they are driven one by one: from sample to sample a machine follows its own
+/// matrices, and if one machine has to leave them, its neighbours wait. Lanes would give the same
+/// bits there, and take as long. All runs are driven one by one on a processor without the vector
+/// instructions that lanes need.
 ///
 /// # Errors
 /// A start or course that does not fit the machine.
@@ -109,7 +111,7 @@ pub(super) fn in_lanes(shared: &Shared<'_>, most: usize, give: Give<'_>) -> Resu
     driven(shared, (most, give), |batch| lanes.in_lanes(batch, &plan.bench.settings))
 }
 
-/// Lets runs be driven, each made when its turn comes.
+/// Drives runs, each prepared when its turn comes.
 fn driven(
     shared: &Shared<'_>,
     (most, give): (usize, Give<'_>),

@@ -1,4 +1,4 @@
-//! Where the varied numbers lie, and what is drawn from there.
+//! The ranges of the varied numbers, and the draws from them.
 
 use phea_dynamics::{portable, random};
 
@@ -23,7 +23,7 @@ pub struct VariedRange {
     pub minimum: f64,
     /// In SI.
     pub maximum: f64,
-    /// What the project says of such a number.
+    /// The declaration of such a number in the project.
     pub(super) key: Key,
 }
 

@@ -1,4 +1,4 @@
-//! One run as a line of a table: what was drawn, how it ended, what is read off it.
+//! One run as a line of a table: its drawn numbers, its end, and its metrics.
 
 use std::fmt::Write as _;
 
@@ -32,7 +32,7 @@ pub const STATUS_WORDS: [&str; 6] =
 
 const REFUSED: &str = "refused";
 
-/// What is measured against the force that is asked for.
+/// Metrics that compare the force with the reference.
 const OF_A_REFERENCE: [&str; 6] = [
     "overshoot_percent",
     "rise_time_s",
@@ -45,14 +45,14 @@ const OF_A_REFERENCE: [&str; 6] = [
 /// Hexadecimal digits of the sum that ends a row.
 const CHECK_LENGTH: usize = 8;
 
-/// Why a line is no row that was written here.
+/// Why a line is not a row that was written here.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum NoRow {
-    /// Of another campaign, or of none.
+    /// It belongs to another campaign, or to none.
     Other,
     /// It ends in CR LF.
     LineEnd,
-    /// It does not have its own sum.
+    /// Its checksum is wrong.
     Changed,
 }
 
@@ -72,13 +72,13 @@ pub struct Row {
 /// What came of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RowOutcome {
-    /// There is no such machine, or it cannot start so.
+    /// There is no such machine, or it cannot start in this state.
     Refused(String),
     /// It was driven.
     Driven(Ran),
 }
 
-/// What is read off a run.
+/// The results of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ran {
     /// One of [`STATUS_WORDS`].
@@ -87,7 +87,7 @@ pub struct Ran {
     pub ended_s: Option<f64>,
     /// Accepted steps.
     pub steps: u64,
-    /// What began on the way, each kind once: `cavitation_a`, `command_limit` and so on.
+    /// Events on the way, each kind once: `cavitation_a`, `command_limit` and so on.
     pub occurrences: Vec<&'static str>,
     /// [`METRIC_NAMES`] of each window; absent where there is no such number.
     pub metrics: Vec<[Option<f64>; METRIC_NAMES.len()]>,
@@ -104,7 +104,7 @@ impl Row {
         }
     }
 
-    /// What was read off it, if it was driven.
+    /// Its results, if it was driven.
     pub fn ran(&self) -> Option<&Ran> {
         match &self.outcome {
             RowOutcome::Refused(_) => None,
@@ -128,7 +128,7 @@ pub(super) fn numbers(metrics: &Metrics) -> [Option<f64>; METRIC_NAMES.len()] {
     ]
 }
 
-/// Which of [`METRIC_NAMES`] a window can have; in an open loop no force is asked for.
+/// Which of [`METRIC_NAMES`] a window can have; an open loop has no reference.
 pub fn meaningful(window: &Window, open_loop: bool) -> impl Iterator<Item = usize> + use<> {
     let left_out: &[&str] = match window.cause {
         Cause::ReferenceStep { .. } => &["disturbance_peak_n", "tracking_error_peak_n", "force_peak_n"],
@@ -147,7 +147,7 @@ pub fn meaningful(window: &Window, open_loop: bool) -> impl Iterator<Item = usiz
 /// The columns of a campaign's table.
 #[derive(Clone, Debug)]
 pub(super) struct CampaignColumns {
-    /// What tells these rows from those of any other campaign.
+    /// The mark that distinguishes these rows from those of any other campaign.
     pub(super) mark: String,
     pub(super) paths: Vec<String>,
     pub(super) windows: Vec<Window>,
@@ -177,7 +177,7 @@ impl CampaignColumns {
         text
     }
 
-    /// How the line of a run begins.
+    /// The beginning of the line of a run.
     pub(super) fn beginning(&self, run: u64) -> String {
         format!("{run},{},", self.mark)
     }
@@ -188,12 +188,12 @@ impl CampaignColumns {
         format!("{text},{}\n", check(&text))
     }
 
-    /// What ends the line of a row.
+    /// The end of the line of a row.
     pub(super) fn check(&self, row: &Row) -> String {
         check(&self.text(row))
     }
 
-    /// A row without what ends it.
+    /// A row without its end.
     fn text(&self, row: &Row) -> String {
         let mut text = self.beginning(row.run);
         let _ = write!(text, "{},", row.status());
@@ -227,7 +227,7 @@ impl CampaignColumns {
         text
     }
 
-    /// The row that a line holds.
+    /// The row that a line contains.
     ///
     /// # Errors
     /// Why it holds none.
@@ -290,7 +290,7 @@ impl CampaignColumns {
     }
 }
 
-/// The sum of a row: the first digits of SHA-256 of its text.
+/// The checksum of a row: the first digits of SHA-256 of its text.
 fn check(text: &str) -> String {
     let sum: String = Sha256::digest(text).iter().map(|byte| format!("{byte:02x}")).collect();
     sum.chars().take(CHECK_LENGTH).collect()
@@ -300,7 +300,7 @@ fn word(words: &[&'static str], text: &str) -> Option<&'static str> {
     words.iter().copied().find(|word| *word == text)
 }
 
-/// An empty cell is no number; another must be one.
+/// An empty cell stands for no number; any other must be a number.
 fn number(cell: &str) -> Option<Option<f64>> {
     if cell.is_empty() { Some(None) } else { cell.parse().ok().map(Some) }
 }
@@ -403,7 +403,7 @@ mod tests {
         assert_eq!(columns.row(""), Err(NoRow::Other));
     }
 
-    /// Whatever letter of a row is another than was written, it is seen.
+    /// A change of any letter of a row is detected.
     #[test]
     fn a_changed_line_holds_no_row() {
         let (columns, line) = (columns(), columns().line(&driven()));

@@ -1,4 +1,4 @@
-//! How a number is spread over the runs of a campaign.
+//! The distribution of a number over the runs of a campaign.
 
 /// Shares of the runs below each quantile, percent.
 pub const QUANTILES: [u8; 5] = [5, 25, 50, 75, 95];
@@ -8,9 +8,9 @@ pub const QUANTILES: [u8; 5] = [5, 25, 50, 75, 95];
 pub struct Spread {
     /// Runs that have one.
     pub count: usize,
-    /// Runs that were simulated and do not have one.
+    /// Number of simulated runs that do not have one.
     pub missing: usize,
-    /// [`QUANTILES`], between two runs on a straight line.
+    /// [`QUANTILES`], interpolated linearly between two runs.
     pub quantiles: [f64; 5],
     /// The least and the greatest.
     pub extremes: [f64; 2],
@@ -39,7 +39,7 @@ pub(super) fn spread(numbers: impl Iterator<Item = (u64, Option<f64>)>) -> Optio
     Some(Spread { count: values.len(), missing, quantiles: quantiles(&values)?, extremes, worst: worst? })
 }
 
-/// Of sorted values: at (n - 1) q, between two on a straight line; `None` of none.
+/// Quantile of sorted values: at (n - 1) q, interpolated linearly; `None` if there are none.
 pub(super) fn quantiles(sorted: &[f64]) -> Option<[f64; 5]> {
     let (greatest, last) = (sorted.last()?, sorted.len() - 1);
     Some(QUANTILES.map(|percent| {

@@ -1,11 +1,10 @@
-//! What all runs of a campaign say together: counts, quantiles, bands over time, and the worst of
-//! them.
+//! Statistics of all runs of a campaign: counts, quantiles, bands over time, and the worst runs.
 
 use super::plan::Plan;
 use super::row::{LUMP_NAMES, METRIC_NAMES, Ran, Row, RowOutcome, STATUS_WORDS, meaningful};
 use super::spread::{Spread, quantiles, spread};
 
-/// Quantiles of the force over time, of all runs that got so far.
+/// Quantiles of the force over time, of all runs that lasted until then.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Bands {
     /// s.
@@ -19,22 +18,23 @@ pub struct Bands {
 pub struct WorstRun {
     /// Its index.
     pub run: u64,
-    /// Window counted from 0 and place in [`METRIC_NAMES`] of all it is worst in.
+    /// For everything it is worst in: the window, counted from 0, and the index in
+    /// [`METRIC_NAMES`].
     pub of: Vec<(usize, usize)>,
 }
 
-/// What the runs of a campaign say together.
+/// Statistics of the runs of a campaign.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Summary {
     /// How many ended in each of [`STATUS_WORDS`].
     pub statuses: [usize; STATUS_WORDS.len()],
-    /// Runs that are no machine, with the reason.
+    /// Runs without a machine, with the reason.
     pub refused: Vec<(u64, String)>,
     /// Runs that ended before their time, with the word for it and the time in s.
     pub ended: Vec<(u64, &'static str, f64)>,
-    /// What happened on the way: its kind, in how many runs, and the first of them.
+    /// Events on the way: kind, number of runs, and the first of them.
     pub occurrences: Vec<(&'static str, usize, u64)>,
-    /// For each window, of each of [`METRIC_NAMES`] that it can have and a run has.
+    /// For each window, the spread of each of [`METRIC_NAMES`] that occurs in it.
     pub metrics: Vec<[Option<Spread>; METRIC_NAMES.len()]>,
     /// Of [`LUMP_NAMES`].
     pub lumps: [Option<Spread>; LUMP_NAMES.len()],
@@ -42,7 +42,7 @@ pub struct Summary {
     pub outside: [Option<usize>; LUMP_NAMES.len()],
     /// Of the force.
     pub bands: Bands,
-    /// Runs to look at again, in the order of what they are worst in.
+    /// Runs to look at again, in the order of the metrics they are worst in.
     pub worst: Vec<WorstRun>,
 }
 
@@ -88,7 +88,7 @@ impl Summary {
 
 fn outside(plan: &Plan, rows: &[Row], lump: usize) -> Option<usize> {
     let [low, high] = plan.bounds(LUMP_NAMES[lump])?;
-    // a bound that a draw meets up to rounding is met
+    // a draw that equals a bound up to rounding lies within it
     let beyond = |value: f64| value < low * (1.0 - 1e-9) || value > high * (1.0 + 1e-9);
     Some(rows.iter().filter(|row| row.lumps.is_some_and(|lumps| beyond(lumps[lump]))).count())
 }

@@ -1,4 +1,4 @@
-//! The runs of a campaign that are still to be driven, and to whom they are given.
+//! The runs of a campaign that are still to be driven, and their distribution over threads.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -6,7 +6,7 @@ use std::ops::Range;
 /// The runs that no thread has taken yet.
 pub(super) struct RemainingRuns {
     pub(super) runs: Range<u64>,
-    /// Those among them whose rows are there already.
+    /// Those among them whose rows already exist.
     pub(super) known: BTreeSet<u64>,
     /// Idle threads.
     pub(super) idle: usize,

@@ -7,8 +7,8 @@ use crate::project::{Campaign, Distribution, Project, Scenario, Varied};
 /// The ranges of everything a campaign varies, in file order.
 ///
 /// # Errors
-/// [`CampaignError`] where a spread has no declared number to spread around, or a logarithm would
-/// be of none.
+/// [`CampaignError`] where a spread has no declared number to spread around, or a logarithm does
+/// not exist.
 pub(super) fn ranges(
     project: &Project,
     campaign: &Campaign,

@@ -14,15 +14,15 @@ use super::{CampaignError, Row};
 const ROUND: Duration = Duration::from_millis(20);
 /// Rounds until a row that waits for earlier ones is reported: about a second.
 const LATE: u32 = 50;
-/// Rounds of a run beyond which it is driven alone: in lanes four take little more than twice as
-/// long as one, but nothing of them is there before, and some four seconds of work may be lost at
-/// any time.
+/// Rounds of a run beyond which it is driven alone: four runs in lanes take little more than twice
+/// as long as one, but none of them finishes earlier, and at most some four seconds of work may be
+/// lost at any time.
 const LONG: u64 = 85;
 
 /// How a campaign is computed; its rows do not depend on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Effort {
-    /// Threads that drive machines; at least one is taken.
+    /// Number of threads that drive machines; at least one is used.
     pub threads: usize,
     /// Whether several machines are driven at once in the lanes of vectors, and not one by one.
     pub lanes: bool,
@@ -37,11 +37,11 @@ impl Default for Effort {
 
 /// What the caller of a campaign is notified of.
 pub(super) enum News {
-    /// So many runs of those that were asked for are done.
+    /// This number of the requested runs is done.
     Done(u64),
     /// The next rows.
     Rows(Vec<Finished>),
-    /// Rows that wait for a run before them. They come again when it is their turn.
+    /// Rows that wait for an earlier run. They are passed on again in their turn.
     Ahead(Vec<Row>),
 }
 
@@ -51,15 +51,15 @@ pub(super) type Tell<'t> = &'t mut dyn FnMut(News) -> Result<bool, CampaignError
 /// Which runs are driven.
 pub(super) struct Asked {
     pub(super) runs: std::ops::Range<u64>,
-    /// Rows of some of them that are there already.
+    /// Rows of some of them that already exist.
     pub(super) known: BTreeMap<u64, Row>,
-    /// Whether the force at every look is asked for too.
+    /// Whether the force at every recorded time is wanted too.
     pub(super) forces: bool,
 }
 
-/// Drives runs and tells of them, rows in the order of the runs; where the answer is `false`,
-/// everything ends soon and the rows so far are all there will be. Each thread drives a run as soon
-/// as there is one for it, and takes more into its lanes where there are more than threads.
+/// Drives runs and reports them, rows in the order of the runs; if the answer is `false`,
+/// everything ends soon with the rows obtained so far. Each thread drives a run as soon as there is
+/// one for it, and takes more into its lanes where there are more than threads.
 ///
 /// # Errors
 /// [`CampaignError`] where a run does not fit the machine, or a notification fails.
@@ -86,10 +86,10 @@ pub(super) fn run(plan: &Plan, asked: Asked, effort: Effort, tell: Tell<'_>) -> 
 
 type Message = Result<Finished, CampaignError>;
 
-/// One thread, as long as there are runs. It drives one alone, and where that was not long as many
+/// One thread, as long as there are runs. It drives one run alone and, if that was short, as many
 /// in lanes as it keeps machines; then one alone again.
 fn work(shared: &Shared<'_>, effort: Effort, sender: &mpsc::Sender<Message>) {
-    // where nobody listens any more, everything is stopped too
+    // if the receiver is gone, everything is stopped too
     let mut give = |finished| drop(sender.send(Ok(finished)));
     let mut in_lanes_next = false;
     while shared.has_more() {
@@ -167,7 +167,7 @@ fn in_order(
     }
 }
 
-/// What has come, and whether no more will come.
+/// The items received, and whether no more will come.
 fn collected(receiver: &mpsc::Receiver<Message>) -> Result<(Vec<Finished>, bool), CampaignError> {
     let mut news = Vec::new();
     loop {
@@ -189,7 +189,7 @@ impl Plan {
     }
 
     /// Force in N at each row of the scenario, of runs in their order; empty for one that was
-    /// refused.
+    /// rejected.
     ///
     /// # Errors
     /// [`CampaignError`] where a run does not fit the machine.

@@ -37,7 +37,7 @@ impl List {
         self.entries.push(Derived { group: self.group, name, symbol, value, unit, equation, stated: None });
     }
 
-    /// States beside the last quantity what the project says of it.
+    /// Adds to the last quantity the value that the project states for it.
     pub(super) fn stated(&mut self, value: f64, place: &'static str, bounds: Option<[f64; 2]>) {
         if let Some(last) = self.entries.last_mut() {
             last.stated = Some(Stated { value, place, bounds });

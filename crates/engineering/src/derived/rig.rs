@@ -287,7 +287,7 @@ fn flow(project: &Project, rig: &Rig, list: &mut List) {
     }
 }
 
-/// What `[sizing]` states of the valve, beside what follows from it.
+/// The values of the valve that `[sizing]` states, next to the derived ones.
 fn sizing(project: &Project, rig: &Rig, list: &mut List) {
     let Some(sizing) = &project.sizing else { return };
     list.group("Sizing");

@@ -25,7 +25,7 @@ const EDGES: [(&str, &str, &str); 4] = [
 const FROM_RATING: &str = "K_{vp} = q_{vn}/sqrt(Δp_{tn}/2)";
 const FROM_LEAKAGE: &str = "K_{vinp} = (q_0 - q_{tare} sqrt(p_{in}/p_{tare}))/sqrt(2 p_{in})";
 
-/// What follows for the servovalve: edges, flow gains, slopes.
+/// Derived quantities of the servovalve: edges, flow gains, slopes.
 pub(super) fn valve(project: &Project, rig: &Rig, list: &mut List) {
     let components = rig.actuator.components();
     let (valve, supply, cylinder) = (&components.valve, &components.supply, &components.cylinder);
@@ -106,7 +106,8 @@ fn chamber_slopes(rig: &Rig, list: &mut List) {
     );
 }
 
-/// The coefficients of the edges, and beside what the data sheet says the mean of those declared.
+/// The coefficients of the edges; next to the value from the data sheet, the mean of the declared
+/// ones.
 fn edges(declared: &project::Valve, supply: &project::DeclaredSupply, rig: &Rig, list: &mut List) {
     let valve = &rig.actuator.components().valve;
     let origin = |is_declared, equation| if is_declared { "declared" } else { equation };

@@ -1,4 +1,4 @@
-//! What controllers are compared by, in words.
+//! The criteria by which controllers are compared, in words.
 
 use phea_qft::verification::Verdict;
 

@@ -1,11 +1,11 @@
-//! What can be said of a problem whatever a search finds: impossibilities, and what will be hard.
+//! What is known about a problem whatever a search finds: impossibilities, and what will be hard.
 
 mod words;
 
 use phea_qft::design::{Finding, FindingSeverity};
 use phea_qft::verification::PlantPoint;
 
-/// One sentence on what a controller cannot do, or only hardly.
+/// One sentence on what is impossible or hard for a controller.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Explanation {
     /// For an engineer.
@@ -18,7 +18,7 @@ pub struct Explanation {
     pub plants: Vec<PlantPoint>,
     /// Indices of the specifications that it concerns.
     pub specifications: Vec<usize>,
-    /// A common relaxation of all limits below which nothing helps, dB.
+    /// The least common relaxation of all limits that may help, dB.
     pub relaxation_db: Option<f64>,
 }
 

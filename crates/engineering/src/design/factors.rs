@@ -71,7 +71,7 @@ fn variable(function: &TransferFunction) -> Variable {
 }
 
 fn pairs(roots: &[Complex64]) -> Vec<[f64; 2]> {
-    // a negative zero is one that nobody wrote
+    // a negative zero is not intended
     roots.iter().map(|root| [root.re + 0.0, root.im + 0.0]).collect()
 }
 

@@ -1,4 +1,4 @@
-//! From a project to what a design begins with.
+//! From a project to the problem of a design.
 
 use phea_dynamics::controller::Element;
 use phea_qft::design::{
@@ -15,10 +15,10 @@ use crate::setup::Setup;
 
 /// How far corner frequencies may lie below and above the design frequencies.
 const FREQUENCY_FACTORS: [f64; 2] = [0.1, 100.0];
-/// Damping ratios of a pair whose project says nothing of them.
+/// Damping ratios of a pair for which the project states none.
 const DAMPING_RATIOS: [f64; 2] = [0.1, 5.0];
 
-/// What must be kept to, by which plants, in which loop.
+/// Which specifications which plants must satisfy, in which loop.
 pub fn design_problem(setup: &Setup<'_>, given: &RobustProblem) -> DesignProblem {
     DesignProblem {
         family: given.family.clone(),
@@ -66,8 +66,8 @@ fn count(number: u32) -> usize {
     usize::try_from(number).unwrap_or(usize::MAX)
 }
 
-/// A prefilter is designed for tracking alone, and never in place of one that stands beside a
-/// controller without a law.
+/// A prefilter is designed for tracking only, and never in place of one that is given next to a
+/// controller without a transfer function.
 fn prefilter_choice(
     setup: &Setup<'_>,
     given: &RobustProblem,
@@ -102,7 +102,7 @@ fn structure(
     Ok(Structure { sign, gain, parts })
 }
 
-/// A part that the project declares, its free numbers wide where it states none.
+/// A part that the project declares; the ranges of its free numbers are wide where it states none.
 fn part(declared: &StructurePart, wide: [f64; 2]) -> Result<StructureFactor, ControlError> {
     let pair = |frequency: &Option<[f64; 2]>, damping_ratio: &Option<[f64; 2]>| {
         (frequency.unwrap_or(wide), damping_ratio.unwrap_or(DAMPING_RATIOS))

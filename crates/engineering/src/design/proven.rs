@@ -1,4 +1,5 @@
-//! What was designed, proven: where the proof refutes what the search called met, the plants that do are taken in, and the design goes on.
+//! The proof of a design: if it refutes a specification that the search found to be met, the
+//! refuting plants are added and the design continues.
 
 use phea_dynamics::uncertain_plant::UncertainPlant;
 use phea_dynamics::watch::Watch;
@@ -13,10 +14,11 @@ use crate::error::ProcedureError;
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
 
-/// How often a design goes on with plants that refute it.
+/// How often a design continues with plants that refute it.
 const REFUTATIONS_MAXIMUM: usize = 4;
 
-/// The design, and its audit with the proof; `None` where nothing was found, or the watch stopped it.
+/// The design, and its audit with the proof; `None` where nothing was found, or the watch stopped
+/// it.
 pub(super) fn proven(
     (setup, given): (&Setup<'_>, &RobustProblem),
     mut run: DesignRun,
@@ -40,7 +42,7 @@ pub(super) fn proven(
     Ok((run, None))
 }
 
-/// The plants that refute what a search called met.
+/// The plants that refute a specification that the search found to be met.
 fn refuting(designed: &AuditedController) -> Vec<UncertainPlant> {
     let Family::Uncertain(family) = &designed.problem.family else { return vec![] };
     let proofs = designed.view.proof.iter().flat_map(|proof| &proof.specifications);

@@ -1,5 +1,5 @@
-//! What follows where the machine contradicts a design: the plant that does is taken in, and the
-//! design goes on with it, or it is said what cannot be had.
+//! What follows if the machine contradicts a design: the contradicting plant is added and the
+//! design continues with it, or the report states what cannot be achieved.
 //!
 //! ```text
 //! trial contradicts -> the plant of that machine, its lines in motion -> audit of the loop with it
@@ -27,21 +27,21 @@ use phea_dynamics::watch::{Watch, part};
 /// What became of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RepairStatus {
-    /// The controller now satisfies every specification over the family, and with the plant that
-    /// was taken in.
+    /// The controller now satisfies every specification over the family, and with the added plant.
     Met,
-    /// No controller that was tried does; one does with every limit this much wider.
+    /// None of the controllers that were tried does; one does if every limit is relaxed by this
+    /// much.
     Infeasible {
-        /// dB added to every upper limit and taken from every lower one.
+        /// dB by which every upper limit is raised and every lower one lowered.
         relaxation_db: f64,
     },
     /// Search and audit did not come to agree.
     NotConverged,
-    /// No controller that was tried makes every plant stable.
+    /// None of the controllers that were tried makes every plant stable.
     NotStabilised,
     /// Whoever watched stopped it.
     Stopped,
-    /// No linear plant is known that does what the machine does: there was nothing to take in.
+    /// No linear plant is known that behaves like the machine: there was nothing to add.
     NothingToTakeIn,
 }
 
@@ -50,21 +50,21 @@ pub enum RepairStatus {
 pub struct Repair {
     /// What became of it.
     pub status: RepairStatus,
-    /// The machine whose plant was taken in, as its run is called; `None` where none was.
+    /// The name of the run of the machine whose plant was added; `None` if none was.
     pub taken_in: Option<String>,
     /// Where the slower line of that machine is a quarter of a wave long, rad/s.
     pub quarter_wave_rad_per_s: Option<f64>,
     /// That plant in the loop of the first design.
     pub before: Option<ProjectAudit>,
-    /// The same in the loop that was found; `None` where none was.
+    /// The same in the loop that was found; `None` if none was found.
     pub after: Option<ProjectAudit>,
-    /// The loop that was found with the waves in every plant of the family; `None` where none was,
-    /// or nothing is known of them.
+    /// The loop that was found, with waves in every plant of the family; `None` if none was found,
+    /// or if this is unknown.
     pub whole: Option<ProjectAudit>,
     /// Where it is met, the first design; otherwise the controller that comes nearest, where there
     /// is one.
     pub other: Option<Box<ProjectDesign>>,
-    /// What was done and what cannot be had, for an engineer.
+    /// What was done and what cannot be achieved, for an engineer.
     pub sentences: Vec<String>,
 }
 
@@ -82,16 +82,16 @@ impl Repair {
         }
     }
 
-    /// The controller that comes nearest to what cannot be had.
+    /// The controller that comes nearest to what cannot be achieved.
     pub fn nearest(&self) -> Option<&ProjectDesign> {
         self.other.as_deref().filter(|_| self.status != RepairStatus::Met)
     }
 }
 
-/// What is being done, for whoever watches.
+/// The current stage, for the watch.
 const STAGE: &str = "designing again, with waves in the lines";
 
-/// The design after what the machine taught it; as it is where the machine does not contradict it.
+/// The design after the correction by the machine; unchanged if the machine does not contradict it.
 pub(super) fn repaired(
     (source, setup): (&dyn Source, &Setup<'_>),
     run: DesignRun,
@@ -128,7 +128,7 @@ pub(super) fn repaired(
     Ok(ProjectDesign { repair: Some(repair), ..design })
 }
 
-/// Takes in the plant with waves in its lines, where that is what contradicts.
+/// Adds the plant with waves in its lines, if this plant contradicts the design.
 fn with_waves(
     (source, setup): (&dyn Source, &Setup<'_>),
     run: DesignRun,
@@ -173,7 +173,7 @@ fn with_waves(
     Ok(Repair { sentences, other: Some(Box::new(found)), ..repair })
 }
 
-/// The run with waves, where it contradicts.
+/// The run with waves, if it contradicts the design.
 fn contradicting_waves(told: &ProjectDesign) -> Option<&TrialRun> {
     let mut runs = told.trial.iter().flat_map(|trial| &trial.runs);
     runs.find(|run| run.agreement == Agreement::Contradicts && run.quarter_wave_rad_per_s.is_some())
@@ -189,7 +189,7 @@ fn alone_in_loop(plant: &UncertainPlant, design: &ProjectDesign) -> RobustProble
     }
 }
 
-/// The loop of a design with waves in every plant of its family, of which one was taken in; `None`
+/// The loop of a design with waves in every plant of its family, one of which was added; `None`
 /// where there is no such family.
 fn family_with_waves(
     (source, setup): (&dyn Source, &Setup<'_>),
@@ -203,8 +203,8 @@ fn family_with_waves(
     audit_problem(&problem, watch).map(Some)
 }
 
-/// The design gone on with the plant among those that it serves, tried on the machine; `None` where
-/// no controller was found.
+/// The design continued with the additional plant and tried on the machine; `None` where no
+/// controller was found.
 fn designed_again(
     (source, setup): (&dyn Source, &Setup<'_>),
     run: DesignRun,

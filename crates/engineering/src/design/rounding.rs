@@ -1,4 +1,4 @@
-//! What the converters of the controller's computer do to its loop.
+//! The effect of the converters of the controller's computer on its loop.
 
 use phea_qft::design::quantisation::{LimitCycle, RoundingEffect, RoundingEffects, rounding_effects};
 use phea_qft::family::Family;
@@ -13,7 +13,7 @@ use crate::setup::Setup;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rounding {
     effects: Result<RoundingEffects, String>,
-    /// The plants that the effects count.
+    /// The plants for which the effects are computed.
     plants: Vec<PlantPoint>,
 }
 
@@ -35,7 +35,7 @@ pub(super) fn rounding(
 }
 
 impl Rounding {
-    /// What is rounded, what that acts on, and the effect.
+    /// The rounded signal, the affected signal, and the effect.
     pub fn each(&self) -> Vec<(&'static str, &'static str, RoundingEffect)> {
         let Ok(effects) = &self.effects else { return vec![] };
         let rows = [
@@ -51,7 +51,7 @@ impl Rounding {
         self.effects.as_ref().map_err(String::as_str)
     }
 
-    /// The plant of this number among those that the effects count.
+    /// The plant with this index among those for which the effects are computed.
     pub fn plant(&self, index: usize) -> PlantPoint {
         self.plants.get(index).cloned().unwrap_or(PlantPoint::Measured(index))
     }

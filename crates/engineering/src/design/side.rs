@@ -26,16 +26,17 @@ pub struct AuditedController {
 /// The numbers by which controllers are compared, in addition to their verdicts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoopFigures {
-    /// Poles of the controller: of the continuous law where there is one, even in a sampled loop.
+    /// Poles of the controller: of the continuous controller if there is one, even in a sampled
+    /// loop.
     pub order: usize,
-    /// Poles less zeros of the same.
+    /// Poles less zeros of the same controller.
     pub relative_degree: i64,
-    /// lim s^r G(s) for that relative degree r, of the continuous law where there is one; of a law
-    /// in z |G| at pi/T; dB.
+    /// lim s^r G(s) for that relative degree r, of the continuous controller if there is one; for
+    /// one in z, |G| at pi/T; dB.
     pub high_frequency_gain_db: f64,
     /// Poles of the prefilter, likewise.
     pub prefilter_order: usize,
-    /// Of the nominal loop; `None` for an unstable or measured family.
+    /// Of the nominal loop; `None` for an unstable or a measured family.
     pub nominal: Option<NominalMargins>,
     /// The least |1 + L| of the family; `None` unless it is stable.
     pub modulus_margin: Option<f64>,
@@ -60,7 +61,7 @@ impl AuditedController {
     /// A controller with the audit of its loop.
     ///
     /// # Errors
-    /// [`LinearError`] for a controller or a nominal plant that is no transfer function.
+    /// [`LinearError`] for a controller or a nominal plant that is not a transfer function.
     pub fn new(
         controller: Controller,
         problem: RobustProblem,
@@ -70,7 +71,7 @@ impl AuditedController {
         Ok(AuditedController { controller, problem, view, figures })
     }
 
-    /// Whether the law itself is given in z.
+    /// Whether the controller itself is given in z.
     pub(crate) fn is_in_z(&self) -> bool {
         let law = self.controller.feedback.transfer_function();
         law.is_ok_and(|law| law.domain() != TimeDomain::Continuous)

@@ -52,7 +52,7 @@ pub fn status_sentence(view: &ProjectDesign) -> String {
     }
 }
 
-/// The word of what a repair came to, in JSON.
+/// The word of the outcome of a repair, in JSON.
 pub fn repair_key(repair: &Repair) -> &'static str {
     match repair.status {
         RepairStatus::Met => "met",

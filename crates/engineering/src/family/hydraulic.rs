@@ -1,8 +1,8 @@
 //! The uncertain plant of an actuator: the linear plant of its rig over parameters of the linear
 //! model and over numbers of the project.
 //!
-//! There is one chain from the project to the plant, and it is that of [`Rig`]: here it runs over
-//! recorded numbers. Pressures that an uncertain number moves are recorded with it, see
+//! There is one chain from the project to the plant, that of [`Rig`]; here it runs over recorded
+//! numbers. Pressures that depend on an uncertain number are recorded with it, see
 //! [`phea_hydraulics::operating_point::Balance::settle`].
 
 use phea_dynamics::scalar::Scalar;
@@ -28,7 +28,7 @@ use crate::rig::{
 };
 use crate::setup::Setup;
 
-/// Records the plant with the uncertain numbers open and all others at the values that hold.
+/// Records the plant with the uncertain numbers as parameters and all others at their values.
 pub(super) fn uncertain_plant(
     setup: &Setup<'_>,
     parameters: Vec<UncertainParameter>,
@@ -49,11 +49,11 @@ pub(super) fn uncertain_plant(
     }
 }
 
-/// The plant of one member behind lines in motion, or with what is fed forward late; `None` where
-/// both lines are lumped and nothing is.
+/// The plant of one member behind lines in motion, or with delayed feed-forward; `None` where both
+/// lines are lumped and nothing is fed forward with a delay.
 ///
 /// # Errors
-/// A line that its model does not fit.
+/// A line that its model cannot describe.
 pub(super) fn in_motion(
     project: &Project,
     visited: &Visited,
@@ -81,24 +81,25 @@ pub(super) struct RigAtPoint<S> {
     pub(super) components: Components<S>,
     pub(super) point: OperatingPoint<S>,
     pub(super) chambers: TwoPressureLinearParameters<S>,
-    /// With what `[linear]` and `[uncertainty]` state of the linear model in its place.
+    /// With the parameters of the linear model that `[linear]` and `[uncertainty]` state.
     pub(super) linear: LinearParameters<S>,
     pub(super) leakage: S,
     /// `None` where the supply has a constant pressure.
     pub(super) supply: Option<YieldingSupply<S>>,
 }
 
-/// What is equal on both sides of every plant of a family.
+/// Equalities between both sides of every plant of a family.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Equal {
-    /// All of both chambers, or all that is stated: one load pressure tells all of them.
+    /// Both chambers are equal, or their parameters are stated: one load pressure describes them.
     pub(super) one_pressure: bool,
-    /// What the supply gives to them, so that the difference of their pressures does not see it.
+    /// Their coupling to the supply is equal, so that it does not affect the difference of their
+    /// pressures.
     pub(super) edges: bool,
 }
 
 impl Open<'_> {
-    /// What decides the pressures, the supply as it settles.
+    /// What determines the pressures, with the settled supply.
     pub(super) fn balance<S: Scalar>(&self, values: &[S]) -> (S, Steady<S>, Balance<S>) {
         let numbers = Numbers::open(self.names, values);
         self.settled(&numbers, self.idle(&components(self.declared, &numbers), &numbers))
@@ -124,8 +125,8 @@ impl Open<'_> {
         (position, steady, Balance::of(components))
     }
 
-    /// The rig with these values, and its plant with lumped lines as the loop sees it. What is fed
-    /// forward is that of the declared rig.
+    /// The rig with these values, and its plant with lumped lines as the loop sees it. The
+    /// feed-forward is that of the declared rig.
     fn plant<S: Scalar>(&self, values: &[S], moved: bool, equal: Equal) -> (RigAtPoint<S>, LinearPlant<S>) {
         let place = self.place(values, moved);
         let numbers = Numbers::open(self.names, values);
@@ -143,7 +144,7 @@ impl Open<'_> {
         (place, LinearPlant { load_velocity_feed_forward, ..plant })
     }
 
-    /// The rig with these values; its pressures are those of the declared rig where nothing moves
+    /// The rig with these values; its pressures are those of the declared rig if nothing changes
     /// them.
     pub(super) fn place<S: Scalar>(&self, values: &[S], moved: bool) -> RigAtPoint<S> {
         let numbers = Numbers::open(self.names, values);
@@ -192,7 +193,7 @@ pub(super) fn is_linear(name: &str) -> bool {
     LINEAR_PARAMETERS.iter().any(|parameter| parameter.key.name == name)
 }
 
-/// Why a number does not move the plant.
+/// Why a number does not affect the plant.
 fn reason(path: &str) -> String {
     match LINEAR_PARAMETERS.iter().any(|parameter| parameter.follows_from(path)) {
         true => "what the project states goes before what would follow from it".to_string(),

@@ -1,4 +1,4 @@
-//! The family of a rig whose lines move, or whose load's velocity is fed forward late: plants
+//! The family of a rig whose lines move, or whose load velocity is fed forward with a delay: plants
 //! without polynomials over the same box.
 //!
 //! ```text
@@ -19,12 +19,13 @@ use super::visited::Visited;
 use crate::project::Project;
 use crate::setup::Setup;
 
-/// Members of a box that are looked at, its corners among them; what lies between them is searched.
+/// Number of members of a box that are examined, including its corners; the box between them is
+/// searched.
 const MEMBERS_MAXIMUM: usize = 200;
-/// Boxes with more coordinates have too many corners to look at.
+/// Boxes with more coordinates have too many corners to examine.
 const CORNER_COORDINATES: usize = 6;
 
-/// The family without polynomials; `None` where there are.
+/// The family without polynomials; `None` if its plants have polynomials.
 pub(super) fn family(
     setup: &Setup<'_>,
     lumped: &UncertainFamily,
@@ -49,7 +50,7 @@ pub(super) fn family(
     Ok(Some(UncertainFamily::new(plant, coordinates, members, lumped.extent())?))
 }
 
-/// A rig without polynomials, its uncertain numbers open.
+/// A rig without polynomials, with its uncertain numbers as parameters.
 #[derive(Debug)]
 struct Moving {
     project: Project,
@@ -63,15 +64,15 @@ impl Moving {
 }
 
 impl RespondingPlants for Moving {
-    /// No plant where a line does not fit its model, or something would give energy: how many poles
-    /// grow is not known there.
+    /// There is no plant where a model cannot describe a line, or where something would supply
+    /// energy, so that the number of unstable poles is not known.
     fn at(&self, values: &[f64]) -> Option<Arc<dyn RespondingPlant>> {
         let plant = self.plant(values).ok()??;
         plant.is_passive().then(|| Arc::new(plant) as Arc<dyn RespondingPlant>)
     }
 }
 
-/// The corners of a box where they are few: every audit looks at them.
+/// The corners of a box if there are few: every audit examines them.
 fn corners(lumped: &UncertainFamily) -> Result<Vec<Vec<f64>>, ProjectFamilyError> {
     let few = (1..=CORNER_COORDINATES).contains(&lumped.coordinates().len());
     Ok(match lumped.extent() {

@@ -5,7 +5,7 @@
 //! frequency_hz, magnitude_db, phase_deg
 //! 0.5,          -12.1,        -91.2
 //! ```
-//! A row for each frequency, columns separated by commas and named in the first row that is no
+//! A row for each frequency, columns separated by commas and named in the first row that is not a
 //! comment; the unit belongs to the name.
 
 mod column;
@@ -46,7 +46,7 @@ pub(super) fn family(
     Ok(MeasuredFamily::new(plants)?)
 }
 
-/// The plant of one file; `None` where something was found wrong with it.
+/// The plant of one file; `None` if it has an error.
 fn plant(
     name: &str,
     path: &str,
@@ -71,7 +71,7 @@ fn plant(
     (findings.error_count() == before).then_some(plant)
 }
 
-/// One row, if every value of it is sound.
+/// One row, if every value in it is valid.
 fn take(
     row: &[MeasuredCell<'_>],
     table: &MeasuredTable<'_>,

@@ -1,4 +1,4 @@
-//! What of an operating region the pump can give.
+//! The part of an operating region that the pump can supply.
 
 use phea_hydraulics::servovalve::tare_flow;
 
@@ -10,16 +10,16 @@ use crate::rig::{Numbers, components};
 /// Path of the number that a pump limits.
 const PATH: &str = "operating_point.velocity";
 
-/// The uncertain numbers, the velocity of `[family.operating_region]` cut to what the pump can give
-/// at the declared numbers.
+/// The uncertain numbers, with the velocity of `[family.operating_region]` limited to what the pump
+/// can supply at the declared numbers.
 ///
 /// ```text
 /// -(q_pump - q_tare)/A_B <= v <= (q_pump - q_tare)/A_A          the chamber that supply fills; leakage is left aside
 /// ```
 ///
 /// # Errors
-/// [`ProjectFamilyError::Region`] if nothing of the range is left, or the nominal velocity is not within
-/// it.
+/// [`ProjectFamilyError::Region`] if nothing remains of the range, or the nominal velocity is not
+/// within it.
 pub(super) fn within_reach(project: &Project) -> Result<Vec<Uncertain>, ProjectFamilyError> {
     let mut numbers = project.uncertain_numbers();
     let region = project.family.as_ref().and_then(|family| family.operating_region.as_ref());
@@ -41,7 +41,7 @@ pub(super) fn within_reach(project: &Project) -> Result<Vec<Uncertain>, ProjectF
     Ok(numbers)
 }
 
-/// The least and the greatest velocity in m/s that the pump can give; `None` where no flow is
+/// The least and the greatest velocity in m/s that the pump can supply; `None` where no flow is
 /// declared.
 pub(super) fn limits(project: &Project) -> Option<[f64; 2]> {
     let declared = project.actuator.as_ref()?;

@@ -1,5 +1,5 @@
-//! The box of a project's uncertain numbers, the coordinates that span it, and the plants looked
-//! at.
+//! The box of a project's uncertain numbers, the coordinates that span it, and the plants that are
+//! examined.
 
 use std::collections::BTreeSet;
 
@@ -13,8 +13,8 @@ use crate::project::{Case, DeclaredSpacing, Project, Uncertain};
 /// The uncertain parameters: those of `[uncertainty]`, then those that only explicit cases give
 /// values to.
 ///
-/// What `[linear]` sets outright goes before the nominal of `[uncertainty]`, as everywhere, and
-/// that before the first case.
+/// A value of `[linear]` takes precedence over the nominal value of `[uncertainty]`, as everywhere,
+/// and this over the first case.
 pub(super) fn parameters(project: &Project) -> Result<Vec<UncertainParameter>, ProjectFamilyError> {
     let numbers = within_reach(project)?;
     let declared = numbers.iter().map(|uncertain| UncertainParameter {
@@ -72,7 +72,7 @@ pub(super) fn family(
     Ok(family)
 }
 
-/// Every member once, where it comes first.
+/// Every member once, at its first occurrence.
 fn distinct(members: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     let mut seen = BTreeSet::new();
     let bits = |values: &[f64]| values.iter().map(|value| value.to_bits()).collect::<Vec<u64>>();
@@ -99,7 +99,7 @@ fn cases(project: &Project) -> &[Case] {
     project.family.as_ref().map_or(&[], |family| &family.cases)
 }
 
-/// The values of a case; what it does not name is nominal.
+/// The values of a case; parameters that it does not name are nominal.
 fn member(case: &Case, plant: &UncertainPlant) -> Vec<f64> {
     let value = |parameter: &UncertainParameter| {
         let found = case.parameters.iter().find(|(name, _)| *name == parameter.name);

@@ -1,5 +1,5 @@
-//! The operating points of a family: recorded with what moves them, checked at its plants, and the
-//! box of linear parameters that they visit.
+//! The operating points of a family: recorded with the numbers that determine them, checked at its
+//! plants, and the box of linear parameters that they visit.
 
 use std::collections::BTreeSet;
 
@@ -17,23 +17,23 @@ use crate::quantity::significant;
 use crate::rig::{Numbers, Rig, RigError, are_equal, components, sides, states_one_pressure};
 use crate::setup::Setup;
 
-/// Relative error of a pressure that is none.
+/// Relative error of a pressure that is negligible.
 const EXACT: f64 = 1e-9;
-/// Most corners of a box that are looked at one by one.
+/// Largest number of corners of a box that are examined one by one.
 const CORNERS: usize = 4096;
-/// Points within a box at which equal chambers are looked for.
+/// Points within a box at which equality of the chambers is tested.
 const WITHIN: usize = 64;
 
-/// The rig of a family with its uncertain numbers open.
+/// The rig of a family with its uncertain numbers as parameters.
 #[derive(Debug)]
 pub(super) struct Visited {
     pub(super) rig: Rig,
     pub(super) names: Vec<String>,
-    /// Whether an uncertain number moves the pressures.
+    /// Whether the pressures depend on an uncertain number.
     pub(super) moved: bool,
     /// What is equal on both sides of every plant.
     pub(super) equal: Equal,
-    /// The uncertain numbers that move them.
+    /// The uncertain numbers on which they depend.
     movers: Vec<usize>,
     /// Command and both pressures.
     settled: Expression,
@@ -77,8 +77,7 @@ impl Visited {
         Ok(Visited { rig, names, moved, equal: Equal { one_pressure, edges }, movers, settled })
     }
 
-    /// What is wrong at a plant; nothing where its recorded pressures are those of its operating
-    /// point.
+    /// The error at a plant; `None` if its recorded pressures are those of its operating point.
     fn problem(&self, open: &Open<'_>, values: &[f64]) -> Option<String> {
         let (position, steady, balance) = open.balance(values);
         let results = self.settled.evaluate(values);
@@ -112,7 +111,7 @@ impl Visited {
         })
     }
 
-    /// The parameters that move the operating point, with their values.
+    /// The parameters that determine the operating point, with their values.
     fn member(&self, project: &Project, values: &[f64]) -> String {
         let named =
             self.movers.iter().filter_map(|&index| Some((self.names.get(index)?, values.get(index)?)));
@@ -121,8 +120,8 @@ impl Visited {
         named.join(", ")
     }
 
-    /// The plants of a family, and the corners of its box, that differ in what moves the operating
-    /// point.
+    /// The plants of a family, and the corners of its box, that differ in the numbers that
+    /// determine the operating point.
     fn places(&self, family: &UncertainFamily) -> Vec<Vec<f64>> {
         let moves = |parameters: &[usize]| parameters.iter().any(|index| self.movers.contains(index));
         let axes: Vec<usize> = (0..family.coordinates().len())
@@ -149,8 +148,8 @@ impl Visited {
     }
 }
 
-/// Looks at every plant of the family, and at every corner of its box, whether the recorded
-/// pressures are those of its operating point.
+/// Checks at every plant of the family, and at every corner of its box, that the recorded pressures
+/// are those of its operating point.
 ///
 /// # Errors
 /// [`ProjectFamilyError::OperatingPoint`] with the first where they are not, and why.

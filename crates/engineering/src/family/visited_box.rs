@@ -1,5 +1,5 @@
-//! The box of linear parameters that a family visits: what a table such as Table 6.3 of the thesis
-//! states without saying where it is from.
+//! The box of linear parameters that a family visits: a table such as Table 6.3 of the thesis
+//! states it without its origin.
 
 use phea_dynamics::expression::Expression;
 use phea_dynamics::random;
@@ -31,8 +31,8 @@ pub struct VisitedRange {
 pub struct Extreme {
     /// SI.
     pub value: f64,
-    /// The uncertain numbers that the parameter follows from: name, and value in SI. One that makes
-    /// no difference there is left out.
+    /// The uncertain numbers that the parameter follows from: name, and value in SI. A number
+    /// without influence there is left out.
     pub at: Vec<(String, f64)>,
 }
 
@@ -47,8 +47,8 @@ const PARAMETERS: [(&str, &str, &str); 4] = [
 const VELOCITY: &str = "operating_point.velocity";
 /// First step of the search for an extreme, as a share of each range, and its least.
 const STEPS: [f64; 2] = [0.25, 1e-5];
-/// Least distance within which the crest of a coefficient is looked for, points of a scan to either
-/// side, and thirds from there on.
+/// Least distance within which the crest of a coefficient is searched for, number of points of a
+/// scan to either side, and number of ternary steps from there on.
 const NEAR: f64 = 0.02;
 const SCANNED: f64 = 8.0;
 const THIRDS: usize = 25;
@@ -61,11 +61,10 @@ const DRAWN: usize = 500;
 /// What the draws begin with.
 const SEED: u64 = 1;
 
-/// The box of K_qU, K_c, K_H and f_v that encloses the family; `None` where no number of the
-/// project moves one of them.
+/// The box of K_qU, K_c, K_H and f_v that encloses the family; `None` where they depend on no
+/// number of the project.
 ///
-/// The members are looked at first; from the most extreme of them a search goes on inside of the
-/// box.
+/// The members are evaluated first; a search inside the box starts from the most extreme of them.
 ///
 /// # Errors
 /// Those of [`family`].
@@ -110,7 +109,8 @@ pub fn visited_box(setup: &Setup<'_>) -> Result<Option<Vec<VisitedRange>>, Proje
 /// The most of a result over a family with sign 1, the least with sign -1.
 fn extreme(family: &UncertainFamily, expression: &Expression, sign: f64) -> Extreme {
     let value = |values: &[f64]| sign * expression.evaluate(values).first().copied().unwrap_or(f64::NAN);
-    // of plants that differ by rounding alone the first is kept, the nearest to nominal
+    // among plants that differ only by rounding the first is kept, which is nearest to the nominal
+    // one
     let unit = SAME * value(&family.plant().nominal()).abs();
     let rounded = |values: &[f64]| (value(values) / unit).round();
     let names = |coordinate: &Coordinate| {
@@ -164,9 +164,9 @@ fn drawn(family: &UncertainFamily) -> Vec<Vec<f64>> {
     (0..DRAWN).map(&mut point).collect()
 }
 
-/// Steps along each coordinate, and across all of them, while they lead up; ever smaller ones.
-/// After each step the coordinate `along` goes to the best place near: a coefficient has a crest
-/// where the spool stands at null, and steps that leave it lead down.
+/// Steps along each coordinate, and along all of them together, while they increase the value, with
+/// decreasing length. After each step the coordinate `along` moves to the best place nearby: a
+/// coefficient has a crest where the spool is at null, and steps away from it decrease the value.
 fn climb(shares: Vec<f64>, along: Option<usize>, height: impl Fn(&[f64]) -> f64) -> Vec<f64> {
     let [mut step, least] = STEPS;
     let at_crest = |shares: Vec<f64>, step: f64| match along {
@@ -203,8 +203,8 @@ fn climb(shares: Vec<f64>, along: Option<usize>, height: impl Fn(&[f64]) -> f64)
     shares
 }
 
-/// The best place along one coordinate within a distance: by scanning it, then by thirds around the
-/// best.
+/// The best place along one coordinate within a distance: by a scan, then by ternary search around
+/// the best.
 fn crest(mut shares: Vec<f64>, axis: usize, within: f64, height: &impl Fn(&[f64]) -> f64) -> Vec<f64> {
     let Some(middle) = shares.get(axis).copied() else { return shares };
     let mut at = |share: f64| {

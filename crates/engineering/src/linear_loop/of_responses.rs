@@ -1,4 +1,4 @@
-//! The closed loop around a plant that is known by its response, as its steps are computed from it.
+//! The closed loop around a plant that is known by its response, for computing step responses.
 
 use std::sync::Arc;
 
@@ -8,9 +8,10 @@ use phea_dynamics::responding::RespondingPlant;
 use phea_qft::closed_loop::{Compensation, Member};
 use phea_qft::family::{FINE, tabulated};
 
-/// Part of the step by which the closed loop's response may lie off the line between two points.
+/// Deviation of the closed loop's response from the line between two points that is allowed, as a
+/// share of the step.
 const STRAIGHT: f64 = 1e-3;
-/// Two points are no closer than this part of their frequency.
+/// Least distance of two points, relative to their frequency.
 const CLOSEST: f64 = 1e-6;
 
 /// Frequencies in rad/s with the real part of F P G/(1 + L) there, straight between them: what
@@ -29,7 +30,7 @@ pub fn real_parts(
     Ok(straight(&grid, highest, |frequency| closed(&member, compensation, &prefilter, frequency)))
 }
 
-/// F P G/(1 + L), F as a step meets it.
+/// F P G/(1 + L), with F as a step passes through it.
 fn closed(
     member: &Member,
     compensation: &Compensation,

@@ -1,4 +1,4 @@
-//! Over which frequencies a reduced model says what the plant says.
+//! The frequencies at which a reduced model agrees with the plant.
 
 use num_complex::Complex64;
 use phea_dynamics::linear::TransferFunction;
@@ -6,20 +6,19 @@ use phea_dynamics::portable;
 
 use crate::rig::Rig;
 
-/// Difference within which a reduction counts as the plant, dB.
+/// Difference within which a reduction agrees with the plant, dB.
 pub const WITHIN_DB: f64 = 1.0;
-/// The same of the phase, degrees.
+/// The same for the phase, degrees.
 pub const WITHIN_DEG: f64 = 5.0;
 
-/// Where a reduction is the plant to 1 dB and 5 degrees.
+/// Where a reduction agrees with the plant to 1 dB and 5 degrees.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AgreementBand {
     /// Name of the model.
     pub model: &'static str,
     /// Its equation.
     pub equation: &'static str,
-    /// Bands in rad/s in which it is, by rising frequency, as the grid of frequencies resolves
-    /// them.
+    /// Bands in rad/s in which it agrees, by rising frequency, as resolved by the grid.
     pub bands_rad_per_s: Vec<[f64; 2]>,
 }
 
@@ -31,8 +30,8 @@ const REDUCTIONS: [[&str; 2]; 4] = [
     ["first order", "6.13"],
 ];
 
-/// Where the reductions, in this order, are the plant on a grid of frequencies in rad/s; before
-/// them, where lines move, the plant with lumped lines.
+/// Where the reductions, in this order, agree with the plant on a grid of frequencies in rad/s;
+/// where lines move, the plant with lumped lines comes first.
 pub(super) fn agreement(
     rig: &Rig,
     grid: &[f64],
@@ -50,7 +49,7 @@ pub(super) fn agreement(
 }
 
 /// The bands of a grid in which two responses differ by no more than that; a single frequency is
-/// none.
+/// not a band.
 fn bands(grid: &[f64], plant: impl Fn(f64) -> Complex64, model: &TransferFunction) -> Vec<[f64; 2]> {
     let mut bands: Vec<[f64; 2]> = Vec::new();
     let mut inside = false;

@@ -20,24 +20,24 @@ use crate::setup::Setup;
 use crate::source::Source;
 use crate::spelling::nearest;
 
-/// What is asked for, as written.
+/// The request, as written.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SweepRequest {
     /// Such as `line.length=0.5 m..3 m`; a unit at the end holds for a bare number at the start.
     pub range: String,
-    /// How many values, both ends among them; absent: [`POINTS`].
+    /// Number of values, including both ends; absent: [`POINTS`].
     pub points: Option<usize>,
 }
 
-/// Values where no number of them is asked for.
+/// Number of values if none is requested.
 pub const POINTS: usize = 11;
 /// Most values.
 pub(crate) const MOST_POINTS: usize = 1000;
 /// Ends of one sign that lie more than this factor apart are stepped by ratio.
 const DECADES: f64 = 100.0;
-/// Part by which a pole must move to be said to follow the swept number.
+/// Relative change by which a pole must move to count as dependent on the swept number.
 const MOVED: f64 = 1e-9;
-/// Band of the settling time that a loop is computed with, percent; no step is told.
+/// Band of the settling time with which a loop is computed, percent; steps are not reported.
 const BAND_PERCENT: f64 = 2.0;
 
 /// A sweep.
@@ -51,11 +51,11 @@ pub struct Sweep {
     pub si: &'static str,
     /// Whether the values are evenly spaced by ratio.
     pub by_ratio: bool,
-    /// Whether the plant that every verdict is of follows the key. Where the project states the
-    /// parameters of the linear model it may not: then everything told of poles is of the derived
-    /// parameters.
+    /// Whether the plant of every verdict depends on the key. It may not where the project states
+    /// the parameters of the linear model: then everything reported about poles refers to the
+    /// derived parameters.
     pub plant_follows: bool,
-    /// What no verdict on the linear loop counts of the project.
+    /// Effects of the project that no verdict on the linear loop includes.
     pub caveats: Vec<Caveat>,
     /// In order.
     pub points: Vec<SweepPoint>,
@@ -66,7 +66,7 @@ pub struct Sweep {
 pub struct SweepPoint {
     /// SI.
     pub value: f64,
-    /// What the models are there, or why there are none.
+    /// The models there, or why there are none.
     pub found: Result<Swept, String>,
 }
 
@@ -75,20 +75,21 @@ pub struct SweepPoint {
 pub struct Swept {
     /// As `linearize` tells it.
     pub linearization: Linearization,
-    /// Poles of the plant, or of the derived parameters where the plant does not follow, rad/s.
+    /// Poles of the plant or, where the plant does not depend on the key, with the derived
+    /// parameters, rad/s.
     pub poles: Vec<Complex64>,
     /// The least damped of them with a resonance.
     pub resonance: Option<Complex64>,
-    /// Up to which force over reference stays within 3 dB of its value towards zero frequency,
-    /// rad/s; or why not.
+    /// Frequency up to which force over reference stays within 3 dB of its value towards zero
+    /// frequency, rad/s; or why there is none.
     pub bandwidth_rad_per_s: Result<f64, &'static str>,
 }
 
 /// Sweeps a number of a project.
 ///
 /// # Errors
-/// [`ProcedureError::Option`] for a key, a range or a number of points that is none,
-/// [`ProcedureError::Catalogue`] for a project that one of the values makes wrong.
+/// [`ProcedureError::Option`] for an invalid key, range or number of points,
+/// [`ProcedureError::Catalogue`] for a project that one of the values makes invalid.
 pub fn sweep(
     source: &dyn Source,
     loaded: &Loaded,
@@ -154,7 +155,7 @@ fn range(text: &str) -> Result<SweepRange, ProcedureError> {
     Ok(SweepRange { path: path.to_string(), key, ends })
 }
 
-/// What is known of the key, or the nearest spelling.
+/// The entry of the key, or the nearest spelling.
 fn key(text: &str, path: &str) -> Result<Key, ProcedureError> {
     let keys = project::keys();
     let is_number = |entry: &&KeyEntry| entry.takes == entry.key.dimension.name;
@@ -222,10 +223,10 @@ fn values([from, to]: [f64; 2], count: usize, by_ratio: bool) -> Vec<f64> {
     (0..count).map(at).collect()
 }
 
-/// The models with the controller that goes around them.
+/// The models with their controller.
 struct Models {
     linearization: Linearization,
-    /// From command to force, as the loop sees it.
+    /// From command to force, as in the loop.
     seen: PlantCoefficients<f64>,
     given: Option<Controller>,
     sensor: TransferFunction,
@@ -241,7 +242,7 @@ fn linearized(loaded: &Loaded) -> Result<Models, String> {
     found().map_err(|error| error.to_string())
 }
 
-/// Whether a pole of the plant is elsewhere at another value.
+/// Whether a pole of the plant changes with the value.
 fn moves(found: &[(f64, Result<Models, String>)]) -> bool {
     let mut plants =
         found.iter().filter_map(|(_, found)| Some(found.as_ref().ok()?.linearization.plant.command.poles()));
@@ -275,11 +276,11 @@ fn swept(models: Models, plant_follows: bool) -> Swept {
     }
 }
 
-/// Frequencies between which a bandwidth is looked for, rad/s, and how finely.
+/// Range of frequencies in which a bandwidth is searched for, rad/s, and the resolution.
 const LOOKED_AT: [f64; 2] = [1e-2, 1e5];
 const STEPS_PER_DECADE: f64 = 200.0;
 
-/// Where |F L/(1 + L)/H| first leaves 3 dB around its value towards zero frequency downwards.
+/// Where |F L/(1 + L)/H| first falls 3 dB below its value towards zero frequency.
 fn bandwidth(closed: &LinearLoop, sensor: &TransferFunction) -> Result<f64, &'static str> {
     if closed.stability == LoopStability::Unstable {
         return Err("the closed loop is unstable");

@@ -17,7 +17,7 @@ use crate::project::{
     NullLeakage, RatedFlow, StribeckCurve, ValveCoefficients,
 };
 
-/// Kinematic viscosity of ISO VG 46 oil at 40 degrees Celsius, m2/s: taken where a project states
+/// Kinematic viscosity of ISO VG 46 oil at 40 degrees Celsius, m2/s: used where a project states
 /// none.
 pub(super) const KINEMATIC_VISCOSITY: f64 = 46e-6;
 
@@ -29,7 +29,8 @@ pub fn actuator(declared: &project::DeclaredActuator) -> Result<Actuator, Actuat
     Actuator::new(components(declared, &Numbers::declared()))
 }
 
-/// The same over any scalar, before it is checked: each number of the project is taken at its path.
+/// The same over any scalar, before it is checked: each number of the project is looked up by its
+/// path.
 pub fn components<S: Scalar>(
     declared: &project::DeclaredActuator,
     numbers: &Numbers<'_, S>,
@@ -146,7 +147,7 @@ fn line<S: Scalar>(
     }
 }
 
-/// Pressures in Pa at which a hose's expansion is wanted.
+/// Pressures in Pa at which the expansion of a hose is evaluated.
 #[derive(Clone, Copy)]
 pub(super) struct ExpansionPressures<S = f64> {
     /// The supply's: the thesis refers the wall's modulus to it.
@@ -162,7 +163,7 @@ impl<S: Scalar> ExpansionPressures<S> {
     }
 }
 
-/// What a catalogue says of a hose's volumetric expansion, m3/m, Pa and m3/(m Pa).
+/// The catalogue data of a hose's volumetric expansion, m3/m, Pa and m3/(m Pa).
 #[derive(Clone, Copy)]
 pub(super) struct VolumetricExpansion<S = f64> {
     pub(super) measured: Option<S>,
@@ -183,7 +184,7 @@ impl<S: Scalar> VolumetricExpansion<S> {
     }
 
     /// The declared point and the slope from there, or the slope from zero, m3/m; a point without a
-    /// pressure is taken as that of the working pressure.
+    /// pressure is assumed to be at the working pressure.
     fn at(self, pressure: S, working_pressure: S) -> S {
         match self.measured {
             Some(measured) => measured + self.slope * (pressure - self.at.unwrap_or(working_pressure)),
@@ -208,7 +209,7 @@ pub(super) fn hose<S: Scalar>(
     }
 }
 
-/// A ratio without spread is open as a whole, one with spread by its parts.
+/// A ratio without a spread is one uncertain number, one with a spread has three.
 pub(super) fn stiffening<S: Scalar>(
     declared: Option<BoundedNumber>,
     numbers: &Numbers<'_, S>,
@@ -241,7 +242,7 @@ fn pipe<S: Scalar>(declared: &project::DeclaredPipe, numbers: &Numbers<'_, S>) -
 fn cylinder<S: Scalar>(declared: &project::DeclaredCylinder, numbers: &Numbers<'_, S>) -> Cylinder<S> {
     let numbers = numbers.within("cylinder");
     let at = |key: &str, value: f64| numbers.at(key, value);
-    // two numbers in one key are never open; one number for both sides is
+    // two numbers in one key are never uncertain; one number for both sides can be
     let both = |pair: Option<[f64; 2]>, key: &str, single: Option<f64>| match pair {
         Some(pair) => pair.map(S::from),
         None => [at(key, single.unwrap_or(0.0)); 2],

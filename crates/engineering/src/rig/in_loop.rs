@@ -1,4 +1,4 @@
-//! The plant as the loop around it sees it: with the velocity of the load that is fed forward.
+//! The plant as it appears to the loop: with the feed-forward of the load velocity.
 
 use phea_hydraulics::linear::LinearParameters;
 use phea_hydraulics::plant::{LinearPlant, PlantInMotion};
@@ -7,14 +7,13 @@ use super::Rig;
 use crate::project::{Load, Project, SpecificationKind};
 
 impl Rig {
-    /// The same rig, with the velocity of its load fed forward. Where the command follows at once
-    /// it is in `plant` and `in_motion`; where it is late and the load yields there are no
-    /// polynomials of it, and it is in `in_motion` alone, which lumped lines have then too. What is
-    /// sampled is no part of the plant, nor what is late on the path of a prescribed motion: the
-    /// loop has it.
+    /// The same rig with the velocity of its load fed forward. Without delay it is in `plant` and
+    /// `in_motion`. With delay and a load that can move it has no polynomials and is in `in_motion`
+    /// alone, which then exists for lumped lines too. A sampled feed-forward is not part of the
+    /// plant, nor a delayed one on the path of a prescribed motion: the loop includes them.
     ///
     /// # Example
-    /// Beside a prescribed load only the path of its motion changes.
+    /// For a prescribed load only the path of its motion changes.
     /// ```
     /// use phea_engineering::setup::Setup;
     /// use phea_project::source::Memory;
@@ -40,11 +39,10 @@ impl Rig {
     }
 }
 
-/// The load's velocity on the command, as the linear loop counts it: a gain in V s/m, and where it
-/// is.
+/// The feed-forward of the load velocity in the linear loop: a gain in V s/m, and where it acts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FeedForwardPath {
-    /// In the plant: at once, or late by a delay in s where the load yields.
+    /// In the plant: without delay, or with a delay in s where the load can move.
     InPlant {
         /// V s/m
         gain: f64,
@@ -60,7 +58,7 @@ pub enum FeedForwardPath {
 }
 
 impl FeedForwardPath {
-    /// What the loop of a project counts; `None` where nothing is fed forward.
+    /// The feed-forward in the loop of a project; `None` where nothing is fed forward.
     pub(super) fn of(project: &Project, linear: &LinearParameters) -> Option<FeedForwardPath> {
         let controller = project.controller.as_ref()?;
         let yields = project.actuator.as_ref()?.load != Load::Prescribed;
@@ -73,7 +71,7 @@ impl FeedForwardPath {
         }
     }
 
-    /// The gain where it is in the plant and acts at once.
+    /// The gain, if it acts in the plant without delay.
     pub fn at_once(&self) -> Option<f64> {
         match *self {
             FeedForwardPath::InPlant { gain, delay: 0.0 } => Some(gain),
@@ -81,7 +79,7 @@ impl FeedForwardPath {
         }
     }
 
-    /// The gain where the loop around the plant has it.
+    /// The gain, if it acts in the loop around the plant.
     pub(crate) fn in_loop(&self) -> Option<f64> {
         match *self {
             FeedForwardPath::InLoop { gain } => Some(gain),
@@ -90,8 +88,9 @@ impl FeedForwardPath {
     }
 }
 
-/// The plant without polynomials that the loop sees: with these lines in motion, or with its lumped
-/// ones where a load that yields is fed forward late; `None` where there are polynomials.
+/// The plant without polynomials as it appears to the loop: with these lines in motion, or with
+/// lumped lines and the delayed velocity of a load that can move; `None` where there are
+/// polynomials.
 pub(crate) fn as_response(
     fed: Option<FeedForwardPath>,
     moving: Option<PlantInMotion>,
@@ -108,7 +107,7 @@ pub(crate) fn limits_load_motion(project: &Project) -> bool {
 }
 
 /// Gain of the load's velocity on the command in V s/m, zero where nothing is fed forward; the area
-/// over the flow gain holds the flow that the motion takes.
+/// over the flow gain supplies the flow that the motion needs.
 pub fn feed_forward(project: &Project, linear: &LinearParameters) -> f64 {
     let declared = project.controller.as_ref().and_then(|controller| controller.load_velocity_feed_forward);
     declared.map_or(0.0, |declared| declared.gain.unwrap_or(linear.useful_area / linear.flow_gain))

@@ -14,10 +14,10 @@ use phea_hydraulics::two_pressure::TwoPressureLinearParameters;
 
 use crate::project::{self, LineFriction, LineMotion, LineSegments, LineWall};
 
-/// The plant with lines as they move, in place of its lumped ones; `None` where both are lumped.
+/// The plant with lines in motion in place of its lumped ones; `None` where both are lumped.
 ///
 /// # Errors
-/// A line that its model does not fit.
+/// A line that its model cannot describe.
 pub fn in_motion(
     declared: &project::DeclaredLines,
     components: &Components,
@@ -38,8 +38,8 @@ pub fn in_motion(
     }))
 }
 
-/// A hose of one stiffening: what a member of a family has for it is its own, and need not lie in
-/// the declared interval.
+/// A hose with a single stiffening ratio: that of a member of a family need not lie in the declared
+/// interval.
 fn stiffened_alike(line: Line) -> Line {
     match line {
         Line::Hose { mut hose, length } => {
@@ -60,11 +60,11 @@ fn without_volume(mut line: Line) -> Line {
     line
 }
 
-/// These lines as the project says that they move, filled with a fluid at a mean pressure in Pa;
-/// `None` where both are lumped, and nothing of them moves.
+/// These lines with the declared models of motion, filled with a fluid at a mean pressure in Pa;
+/// `None` where both are lumped.
 ///
 /// # Errors
-/// A line that its model does not fit.
+/// A line that its model cannot describe.
 pub fn lines(
     declared: &project::DeclaredLines,
     lines: [&Line; 2],
@@ -110,8 +110,8 @@ fn segmented(declared: &LineSegments) -> LineModel {
     }
 }
 
-/// What is not stated is assumed, but for what follows from the rest: a braid at its neutral angle,
-/// and the catalogue's expansion.
+/// Values that are not stated are assumed, except those that follow from others: a braid at its
+/// neutral angle, and the catalogue's expansion.
 fn braided_wall(declared: &LineWall, hose: &Hose) -> BraidedWall {
     let assumed = BraidedWall::assumed(hose, StiffeningMember::Nominal);
     let axial_compliance = declared.axial_compliance.unwrap_or(assumed.axial_compliance);

@@ -1,13 +1,12 @@
 use phea_dynamics::scalar::Scalar;
 
-/// The numbers of a project at their paths: as they are declared, but for those that are open.
-/// Every plant of a family asks for all of them, so that paths are compared part by part and never
-/// written.
+/// The numbers of a project by their paths: as declared, except those that are uncertain. Every
+/// plant of a family needs all of them, so paths are compared part by part and never assembled.
 #[derive(Clone, Copy, Debug)]
 pub struct Numbers<'a, S = f64> {
     names: &'a [String],
     values: &'a [S],
-    /// `a` or `b` inside of a line, whose keys are then without their table.
+    /// `a` or `b` inside a line, whose keys are then without their table.
     side: Option<&'static str>,
     /// The nested tables of a key; empty names are ignored.
     tables: [&'static str; 2],
@@ -21,23 +20,24 @@ impl Numbers<'_, f64> {
 }
 
 impl<'a, S: Scalar> Numbers<'a, S> {
-    /// These numbers open, in their order.
+    /// These numbers uncertain, in their order.
     pub fn open(names: &'a [String], values: &'a [S]) -> Numbers<'a, S> {
         Numbers { names, values, side: None, tables: [""; 2] }
     }
 
-    /// Inside of the line to chamber `a` or `b`: a number of one line goes before the same of both.
+    /// Inside the line to chamber `a` or `b`: a number for one line takes precedence over the same
+    /// for both.
     pub(super) fn of_line(&self, side: &'static str) -> Numbers<'a, S> {
         Numbers { side: Some(side), ..*self }
     }
 
-    /// Inside of a table, and of one in it.
+    /// Inside a table, and a table in it.
     pub(super) fn within(&self, table: &'static str) -> Numbers<'a, S> {
         let [first, _] = self.tables;
         Numbers { tables: if first.is_empty() { [table, ""] } else { [first, table] }, ..*self }
     }
 
-    /// The value of an open number.
+    /// The value of an uncertain number.
     pub fn get(&self, path: &str) -> Option<S> {
         let found = |is_named: &dyn Fn(&str) -> Option<bool>| {
             let mut numbers = self.names.iter().zip(self.values);
@@ -49,7 +49,7 @@ impl<'a, S: Scalar> Numbers<'a, S> {
         found(&of_side).or_else(|| found(&|name| rest(inside(name, "line")?)))
     }
 
-    /// What of a path is left inside of the tables.
+    /// The rest of a path inside the tables.
     fn within_tables<'n>(&self, name: &'n str) -> Option<&'n str> {
         let mut tables = self.tables.iter().filter(|table| !table.is_empty());
         tables.try_fold(name, |name, table| inside(name, table))
@@ -65,7 +65,7 @@ impl<'a, S: Scalar> Numbers<'a, S> {
     }
 }
 
-/// What of a path is left inside of a table.
+/// The rest of a path inside a table.
 fn inside<'n>(name: &'n str, table: &str) -> Option<&'n str> {
     name.strip_prefix(table)?.strip_prefix('.')
 }

@@ -2,7 +2,7 @@ use phea_hydraulics::linear::LinearParameters;
 
 use crate::project::{LINEAR_PARAMETERS, Project};
 
-/// Who decides the value of a parameter of the linear model.
+/// The origin of the value of a parameter of the linear model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ParameterOrigin {
     /// Set outright in `[linear]`.
@@ -28,7 +28,7 @@ pub struct ResolvedParameter {
     pub bounds: Option<[f64; 2]>,
 }
 
-/// The one place that says which field of the linear model belongs to which key.
+/// The only place that assigns the fields of the linear model to keys.
 pub(super) fn parameter_field<'a, S>(
     parameters: &'a mut LinearParameters<S>,
     name: &str,

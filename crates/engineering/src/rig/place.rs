@@ -1,4 +1,4 @@
-//! Where the linear model is taken: what the project states of the operating point, over any
+//! The point about which the linear model is taken: the operating point of the project, over any
 //! scalar.
 
 use phea_dynamics::scalar::Scalar;
@@ -7,9 +7,9 @@ use phea_hydraulics::operating_point::{Steady, SteadyLoad};
 use super::numbers::Numbers;
 use crate::project::{self, Project};
 
-/// The position in m and what is known of the pressures. Null blocks the piston; a command moves
-/// it, with no load pressure where none is declared, thesis (4.18); a velocity has no load where
-/// none is declared.
+/// The position in m and the condition for the pressures. At null the piston is blocked; with a
+/// command it moves, without load pressure unless one is declared, thesis (4.18); with a velocity
+/// there is no load unless one is declared.
 pub fn place<S: Scalar>(project: &Project, stroke: S, numbers: &Numbers<'_, S>) -> (S, Steady<S>) {
     let declared = project.resolved_operating_point();
     let numbers = numbers.within("operating_point");

@@ -1,5 +1,5 @@
-//! The linear plant of a rig: at its operating point, with its load and its leakage, and with what
-//! the project states of it.
+//! The linear plant of a rig: at its operating point, with its load, its leakage and the parameters
+//! that the project states.
 
 use phea_dynamics::scalar::Scalar;
 use phea_hydraulics::linear::LinearParameters;
@@ -11,13 +11,13 @@ use super::numbers::Numbers;
 use super::parameters::{ParameterOrigin, ResolvedParameter, parameter_field};
 use crate::project;
 
-/// Parameters of the linear model that speak of one load pressure.
+/// Parameters of the linear model that presuppose one load pressure.
 const OF_LOAD_PRESSURE: [&str; 4] =
     ["piston_area", "flow_gain", "flow_pressure_coefficient", "hydraulic_stiffness"];
 /// Chambers whose numbers differ by less, relative to them, are equal.
 const EQUAL: f64 = 1e-9;
 
-/// What the load is to the plant, before it is given a value. Units: kg, N s/m, N/m.
+/// The load in the plant. Units: kg, N s/m, N/m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct YieldingLoad<S = f64> {
     /// Moving mass.
@@ -26,7 +26,7 @@ pub struct YieldingLoad<S = f64> {
     pub damping: S,
     /// Zero where the load touches no wall.
     pub stiffness: S,
-    /// What the touch of a wall damps.
+    /// Damping of the contact with a wall.
     pub contact_damping: S,
 }
 
@@ -41,9 +41,9 @@ impl<S: Scalar> YieldingLoad<S> {
     }
 }
 
-/// The load at a force on it in N; `None` where its motion is prescribed. A wall is touched where
-/// the force presses on it, or where there is no gap. Hunt and Crossley's damping K c d of a wall
-/// pressed by d = F/K is c F.
+/// The load at a force on it in N; `None` where its motion is prescribed. The load is in contact
+/// with a wall where the force presses on it, or where there is no gap. Hunt and Crossley's damping
+/// K c d of a wall pressed by d = F/K is c F.
 pub(crate) fn yielding_load<S: Scalar>(
     declared: &project::Load,
     numbers: &Numbers<'_, S>,
@@ -73,7 +73,7 @@ pub(crate) fn yielding_load<S: Scalar>(
     }
 }
 
-/// Whether the project states a parameter of the linear model that speaks of one load pressure;
+/// Whether the project states a parameter of the linear model that presupposes one load pressure;
 /// `uncertain` are names of its numbers.
 pub(crate) fn states_one_pressure(parameters: &[ResolvedParameter], uncertain: &[String]) -> bool {
     let speaks = |name: &str| OF_LOAD_PRESSURE.contains(&name);
@@ -81,7 +81,7 @@ pub(crate) fn states_one_pressure(parameters: &[ResolvedParameter], uncertain: &
     parameters.iter().any(stated) || uncertain.iter().any(|name| speaks(name))
 }
 
-/// Whether numbers of both chambers are equal, so that one load pressure tells all of them.
+/// Whether numbers of both chambers are equal, so that one load pressure describes them.
 pub(crate) fn are_equal(sides: impl IntoIterator<Item = [f64; 2]>) -> bool {
     sides.into_iter().all(|[a, b]| (a - b).abs() <= EQUAL * a.abs())
 }
@@ -92,8 +92,8 @@ pub fn sides<S: Scalar>(chambers: &TwoPressureLinearParameters<S>) -> [[S; 2]; 3
     [chambers.areas, chambers.compliances, [flow_pressure_a, flow_pressure_b]]
 }
 
-/// The parameters of the fifth-order model as these chambers have them, each stated one in its
-/// place, in their order.
+/// The parameters of the fifth-order model from these chambers, replaced by the stated ones, in
+/// their order.
 pub fn linear<'n, S: Scalar>(
     chambers: &TwoPressureLinearParameters<S>,
     stated: impl Iterator<Item = (&'n str, S)>,
@@ -107,7 +107,7 @@ pub fn linear<'n, S: Scalar>(
     linear
 }
 
-/// The plant of these chambers with what is stated of it.
+/// The plant of these chambers with the stated parameters.
 pub fn plant<S: Scalar>(
     chambers: &TwoPressureLinearParameters<S>,
     linear: &LinearParameters<S>,
@@ -129,8 +129,8 @@ pub fn plant<S: Scalar>(
     LinearPlant::of_two_pressures(&stated, leakage, load)
 }
 
-/// The same plant at a supply that yields. Where a stated number makes the valve of one load
-/// pressure another than its parts are, what it takes from the supply is another alike.
+/// The same plant with a limited supply. Where a stated number changes the valve in the model with
+/// one load pressure, the flow from the supply changes in proportion.
 pub(crate) fn with_supply<S: Scalar>(
     plant: LinearPlant<S>,
     supply: YieldingSupply<S>,
@@ -152,7 +152,7 @@ pub(crate) fn with_supply<S: Scalar>(
     LinearPlant { supply: Some(supply), ..plant }
 }
 
-/// What the project states of the linear model: name and value.
+/// The parameters of the linear model that the project states: name and value.
 pub fn stated(parameters: &[ResolvedParameter]) -> impl Iterator<Item = (&'static str, f64)> {
     let stated = parameters.iter().filter(|one| one.origin != ParameterOrigin::Derived);
     stated.map(|one| (one.name, one.value))

@@ -12,7 +12,7 @@ use crate::sizing::{HoseOption, SizingProblem};
 /// Recommended oil velocity of pressure lines, m/s (Rabie 2009, quoted in Ledezma 2019, section
 /// 6.3.1.1).
 const OIL_VELOCITY: [f64; 2] = [2.1, 4.6];
-/// Least practical gain, V/N (Ledezma 2019, section 6.3.2, step j).
+/// Smallest practical gain, V/N (Ledezma 2019, section 6.3.2, step j).
 const MINIMUM_GAIN: f64 = 1e-4;
 /// Gain at which the search starts, V/N (the same, step f: a unitary value).
 const MAXIMUM_GAIN: f64 = 1.0;
@@ -33,7 +33,7 @@ pub enum SizingError {
     /// No flow limits the bore.
     #[error("sizing needs the largest flow: `flow` in [supply], or `nominal_flow` in [valve]")]
     Flow,
-    /// The catalogue holds nothing to choose from.
+    /// The catalogue contains nothing to choose from.
     #[error("no hose with bore and volumetric expansion in the catalogue or the project")]
     NoHose,
 }
@@ -41,7 +41,7 @@ pub enum SizingError {
 /// Everything the sizing procedure needs, resolved from project, rig and catalogue.
 ///
 /// # Errors
-/// [`SizingError`] if the project does not say what to size for.
+/// [`SizingError`] if the project does not state what to size for.
 pub fn sizing_problem(setup: &Setup<'_>, catalogue: &Catalogue) -> Result<SizingProblem, SizingError> {
     let (project, rig) = (setup.project, setup.rig()?);
     let wish = project.sizing.as_ref().ok_or(SizingError::Absent)?;
@@ -53,8 +53,8 @@ pub fn sizing_problem(setup: &Setup<'_>, catalogue: &Catalogue) -> Result<Sizing
     if hoses.is_empty() {
         return Err(SizingError::NoHose);
     }
-    // The valve at null, unless [linear] sets it outright; the nominal of [uncertainty] belongs to
-    // the controller's plant.
+    // The valve at null, unless [linear] states its parameters; the nominal value of [uncertainty]
+    // belongs to the plant of the controller.
     let outright = |name: &str, derived: f64| project.linear.get(name).unwrap_or(derived);
     let leakage = rig.parameters.iter().find(|parameter| parameter.name == "flow_pressure_coefficient");
     Ok(SizingProblem {
@@ -119,8 +119,8 @@ fn maximum_flow(actuator: &project::DeclaredActuator) -> Result<(f64, String), S
     }
 }
 
-/// The hoses of the catalogue, with what the project says of one by the same name; its own hose if
-/// it has no name.
+/// The hoses of the catalogue, with the values that the project states for one of the same name;
+/// its own hose if it has no name.
 fn hoses(actuator: &project::DeclaredActuator, catalogue: &Catalogue) -> Vec<HoseOption> {
     let line = &actuator.line.a;
     let pressures = ExpansionPressures::of(actuator.supply.pressure, actuator.supply.tank_pressure);

@@ -1,4 +1,4 @@
-//! The supply of a rig as it is declared, and where it settles, over any scalar.
+//! The declared supply of a rig, and its settled state, over any scalar.
 
 use phea_dynamics::scalar::Scalar;
 use phea_hydraulics::machine::{Accumulator, PowerUnit, PumpLimited};
@@ -29,8 +29,8 @@ pub fn power_unit<S: Scalar>(declared: &project::DeclaredActuator, numbers: &Num
     })
 }
 
-/// Where a limited pump settles with valve and chambers, the balance being that of the stated
-/// supply; `None` of a constant pressure.
+/// The settled state of a limited pump with valve and chambers, given the balance at the stated
+/// supply; `None` for a constant pressure.
 pub fn settled_supply<S: Scalar>(
     declared: &project::DeclaredActuator,
     numbers: &Numbers<'_, S>,
@@ -57,7 +57,7 @@ pub(crate) fn yielding_supply<S: Scalar>(
     Some(YieldingSupply::new(&unit, balance, drops, settled, SpoolDirection::Mean))
 }
 
-/// Drop in Pa at which the tare flow is stated: that of the stated supply where nothing is said.
+/// Drop in Pa at which the tare flow is stated: that of the stated supply where none is stated.
 fn tare_drop<S: Scalar>(
     declared: &project::DeclaredActuator,
     numbers: &Numbers<'_, S>,

@@ -1,4 +1,4 @@
-//! Changes as they are asked for in text.
+//! Changes as they are requested in text.
 
 use phea_dynamics::controller::{Compensator, Element as Solved, Stage};
 use phea_qft::manual_shaping::{Edit, EditError, ElementPattern, apply, pass_through};
@@ -24,7 +24,7 @@ pub enum Change {
     Enable,
     /// `N`
     Disable,
-    /// `N=M`: element N to place M.
+    /// `N=M`: element N to position M.
     Move,
     /// `[N=]KIND [with KEY VALUE] through POINT at FREQUENCY`: an element solved for, added or in
     /// place of N.
@@ -57,7 +57,7 @@ impl Change {
     }
 }
 
-/// A change as it was asked for. Elements are counted from 1.
+/// A requested change. Elements are counted from 1.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RequestedChange {
     /// What is changed.
@@ -66,11 +66,11 @@ pub struct RequestedChange {
     pub text: String,
 }
 
-/// An example of an element, for whoever wrote none.
+/// An example of an element, for a message where none was written.
 const ELEMENT_HELP: &str =
     "an element is an inline table: { kind = \"lead\", zero_frequency = 5, pole_frequency = 50 }";
 
-/// The edit that is asked for; `None` where it cannot be, and the findings say why.
+/// The requested edit; `None` where it is impossible, with the reason in the findings.
 pub(super) fn edit(
     requested: &RequestedChange,
     workpiece: &mut Workpiece<'_>,
@@ -106,7 +106,7 @@ pub(super) fn edit(
     })
 }
 
-/// The findings of a change that the list of elements does not bear.
+/// The findings for a change that the list of elements does not allow.
 pub(super) fn refused(requested: &RequestedChange, error: &EditError) -> Refusal {
     let mut findings = Findings::default();
     let whole = taken_in(requested, &mut findings);
@@ -120,7 +120,8 @@ fn taken_in<'a>(requested: &'a RequestedChange, findings: &mut Findings) -> Text
     TextPiece::whole(text, index)
 }
 
-/// The element of a wish: in place of the one it names, as a factor of the gain, or at the end.
+/// The element of a request: in place of the one that it names, as a factor of the gain, or at the
+/// end.
 fn pass(
     whole: &TextPiece<'_>,
     wish: &ElementWish<'_>,

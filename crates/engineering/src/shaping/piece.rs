@@ -1,4 +1,4 @@
-//! A part of a text that knows where it stands.
+//! A part of a text that knows its position.
 
 use crate::project::{Findings, Place, RawFinding};
 
@@ -20,7 +20,7 @@ impl<'a> TextPiece<'a> {
         Place { text: self.text, start: self.start, end: self.start + self.words.len() }
     }
 
-    /// Where a part of it stands.
+    /// The position of a part of it.
     pub(super) fn place_of(&self, range: &std::ops::Range<usize>) -> Place {
         Place { text: self.text, start: self.start + range.start, end: self.start + range.end }
     }
@@ -33,12 +33,12 @@ impl<'a> TextPiece<'a> {
         self.start..self.start + self.words.len()
     }
 
-    /// What stands before and after the first place of a separator.
+    /// The parts before and after the first occurrence of a separator.
     pub(super) fn split(&self, separator: &str) -> Option<[TextPiece<'a>; 2]> {
         self.words.find(separator).map(|at| self.cut(at, at + separator.len()))
     }
 
-    /// What stands before and after the last place of a separator.
+    /// The parts before and after the last occurrence of a separator.
     pub(super) fn split_last(&self, separator: &str) -> Option<[TextPiece<'a>; 2]> {
         self.words.rfind(separator).map(|at| self.cut(at, at + separator.len()))
     }

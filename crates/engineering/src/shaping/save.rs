@@ -1,5 +1,5 @@
 //! The elements written back into the file they came from: they are replaced, and every other byte
-//! stays.
+//! is unchanged.
 
 mod array;
 mod section;
@@ -13,15 +13,15 @@ use crate::project::{
 };
 use crate::source::{Source, SourceError};
 
-/// Some bytes of a text and what takes their place.
+/// Some bytes of a text and their replacement.
 struct Replacement {
     range: Range<usize>,
     text: String,
 }
 
-/// An element as a file has it.
+/// An element as it stands in a file.
 struct WrittenElement<'a> {
-    /// `None` where it cannot be read; it is then written anew.
+    /// `None` where it cannot be read; it is then rewritten.
     element: Option<DeclaredElement>,
     node: &'a TreeNode,
 }
@@ -35,8 +35,7 @@ struct Draft<'a> {
     elements: &'a [DeclaredElement],
 }
 
-/// The bytes of the project file with these elements; settings of the command line beside them are
-/// not written.
+/// The bytes of the project file with these elements; settings of the command line are not written.
 pub(super) fn saved(
     source: &dyn Source,
     loaded: &Loaded,
@@ -59,7 +58,7 @@ pub(super) fn saved(
     Ok(saved)
 }
 
-/// What is to be written must say what was meant.
+/// Checks that the written text has the intended meaning.
 fn read_back(
     source: &dyn Source,
     loaded: &Loaded,
@@ -73,7 +72,7 @@ fn read_back(
     let over = OverriddenSource { source, path: &loaded.path, bytes: saved };
     let again = match project::read(&over, &loaded.path, &[], &[]) {
         Ok(again) => again,
-        // names of the user's own catalogue are known to the command line alone
+        // names of the user's own catalogue are known only to the command line
         Err(_) if !loaded.catalogue_files.iter().all(|file| file.starts_with("built-in:")) => return Ok(()),
         Err(report) => return Err(ShapingError::Refused(report).into()),
     };
@@ -134,7 +133,7 @@ impl Draft<'_> {
         findings: &mut Findings,
     ) -> Result<Vec<Replacement>, ShapingError> {
         let TreeValue::List(nodes) = &list.node.value else { return Ok(vec![]) };
-        // elements in z want a sample time, whichever
+        // elements in z need a sample time, whatever its value
         let read = |node| WrittenElement { element: DeclaredElement::read(node, Some(1.0), findings), node };
         let written: Vec<WrittenElement<'_>> = nodes.iter().map(read).collect();
         let text = self.content.get(list.node.place.start..).unwrap_or_default();
@@ -148,8 +147,8 @@ impl Draft<'_> {
 }
 
 impl WrittenElement<'_> {
-    /// Its text, from `start`, where it is this element already or becomes it by its `enabled`
-    /// alone: that is changed where it is written, or comes behind the other keys.
+    /// Its text, from `start`, if it is this element already or differs from it only in `enabled`:
+    /// this key is changed where it is written, or added after the other keys.
     fn text_as(
         &self,
         element: &DeclaredElement,
@@ -180,8 +179,8 @@ impl WrittenElement<'_> {
     }
 }
 
-/// For each element the one of the file that it is: equal ones in order, then those that differ in
-/// `enabled` alone.
+/// For each element the matching one of the file: equal ones in order, then those that differ only
+/// in `enabled`.
 fn matched(elements: &[DeclaredElement], written: &[WrittenElement<'_>]) -> Vec<Option<usize>> {
     let mut free: Vec<usize> = (0..written.len()).collect();
     let mut found = vec![None; elements.len()];

@@ -13,7 +13,7 @@ use crate::spelling::nearest;
 
 /// An element that is to be solved for.
 pub(super) struct ElementWish<'a> {
-    /// The number of the element it takes the place of.
+    /// The number of the element that it replaces.
     pub(super) replaced: Option<TextPiece<'a>>,
     pub(super) pattern: ElementPattern,
     pub(super) point: WantedPoint,

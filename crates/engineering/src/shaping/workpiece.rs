@@ -1,4 +1,4 @@
-//! The elements in both their forms: as the project file has them, and as the loop does.
+//! The elements in both forms: as in the project file, and as in the loop.
 
 use num_complex::Complex64;
 use phea_dynamics::controller::{Compensator, Element, Stage, Timing};
@@ -8,7 +8,7 @@ use super::Shaped;
 use crate::control::{self, ControlError};
 use crate::project::{self, ElementKind, Project, RationalFunction, Transfer};
 
-/// The elements of a project, and every element that was ever named, so that none loses the form in
+/// The elements of a project, and every element that was ever named, so that each keeps the form in
 /// which it was written.
 pub(super) struct Workpiece<'a> {
     project: &'a Project,
@@ -18,7 +18,7 @@ pub(super) struct Workpiece<'a> {
 }
 
 impl<'a> Workpiece<'a> {
-    /// The elements that the project gives; none where it gives nothing.
+    /// The elements that the project gives; empty if it gives none.
     pub(super) fn new(project: &'a Project, shaped: Shaped) -> Result<Workpiece<'a>, ControlError> {
         let mut workpiece = Workpiece { project, shaped, given: Compensator::default(), known: vec![] };
         let declared = workpiece.transfer().map(Transfer::as_elements).unwrap_or_default();
@@ -55,7 +55,7 @@ impl<'a> Workpiece<'a> {
         }
     }
 
-    /// Takes an element in as it is declared, and gives it as the loop has it.
+    /// Registers an element as it is declared, and returns it as it acts in the loop.
     pub(super) fn know(&mut self, declared: project::DeclaredElement) -> Result<Stage, ControlError> {
         let place = match self.shaped {
             Shaped::Controller => "[controller]",
@@ -67,8 +67,8 @@ impl<'a> Workpiece<'a> {
         Ok(Stage { element, enabled })
     }
 
-    /// The elements as the project file has them: each in the form in which it was named, new ones
-    /// in that of their kind.
+    /// The elements as in the project file: each in the form in which it was named, new ones in the
+    /// form of their kind.
     pub(super) fn declared(&self, compensator: &Compensator) -> Vec<project::DeclaredElement> {
         let mut free: Vec<&(Element, project::DeclaredElement)> = self.known.iter().collect();
         let declared = |stage: &Stage| {
@@ -110,7 +110,7 @@ impl<'a> Workpiece<'a> {
     }
 }
 
-/// The project with these elements in place of what it gives.
+/// The project with these elements in place of its own.
 pub(super) fn with_elements(
     project: &Project,
     shaped: Shaped,

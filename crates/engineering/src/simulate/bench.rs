@@ -1,4 +1,4 @@
-//! What all scenarios of a project share: the machine as its controller sees it, and the controller
+//! The common basis of all scenarios of a project: the machine with its sensor, and the controller
 //! as it is deployed.
 
 use phea_dynamics::controller::Controller;
@@ -19,7 +19,7 @@ use crate::setup::Setup;
 /// A machine with its controller.
 #[derive(Clone, Debug)]
 pub struct ControlledMachine {
-    /// The rig it was made of.
+    /// The rig from which it was made.
     pub rig: Rig,
     /// The machine.
     pub machine: Machine,
@@ -29,10 +29,9 @@ pub struct ControlledMachine {
     pub settings: SimulationSettings,
     /// From the load's velocity to the command, V s/m; zero where nothing is fed forward.
     pub feed_forward: f64,
-    /// Pressures in Pa up to which the expansions of hoses A and B were measured, where they are
-    /// stated.
+    /// Pressures in Pa up to which the expansions of hoses A and B were measured, if stated.
     pub expansion_stated_at: [Option<f64>; 2],
-    /// What the force sensor survives, N, where it is stated.
+    /// The capacity of the force sensor, N, if stated.
     pub force_capacity_n: Option<f64>,
 }
 
@@ -45,8 +44,8 @@ impl ControlledMachine {
         ControlledMachine::closed(setup, false)
     }
 
-    /// What a scenario of the project is driven on: open loop where it states a command, with a
-    /// force from outside where it states one.
+    /// The machine for a scenario of the project: in open loop if it states a command, with an
+    /// external force if it states one.
     ///
     /// # Errors
     /// As [`ControlledMachine::new`]; an open loop needs no controller.
@@ -84,8 +83,8 @@ impl ControlledMachine {
         })
     }
 
-    /// The machine alone, for a command that is stated: limits, samples and delays of a controller
-    /// do not act on it.
+    /// The machine alone, for a stated command, which is not subject to limits, samples and delays
+    /// of a controller.
     fn open(setup: &Setup<'_>, external_force: bool) -> Result<ControlledMachine, SimulateError> {
         let project = setup.project;
         let (rig, sensed) = rig_and_machine(setup, external_force)?;
@@ -104,7 +103,7 @@ impl ControlledMachine {
         })
     }
 
-    /// The same controller around another machine, made of this actuator.
+    /// The same controller around another machine, made from this actuator.
     pub fn around(&self, machine: Machine, actuator: Actuator) -> ControlledMachine {
         let mut bench = self.clone();
         bench.machine = machine;
@@ -131,7 +130,7 @@ fn expansion_stated_at(project: &Project) -> [Option<f64>; 2] {
     lines.map_or([None; 2], |lines| [&lines.a, &lines.b].map(project::DeclaredLine::expansion_stated_at))
 }
 
-/// How the project wants its machine integrated.
+/// The settings of the project for the integration.
 pub(super) fn settings(project: &Project) -> SimulationSettings {
     let declared = &project.simulation;
     SimulationSettings {
@@ -168,8 +167,8 @@ fn sampled(
     })
 }
 
-/// The prefilter, taken out of a sampled controller where the project lets it act between samples
-/// too.
+/// The prefilter, removed from a sampled controller if the project lets it also act between
+/// samples.
 fn between_samples(
     project: &Project,
     controller: &mut Controller,
@@ -180,7 +179,7 @@ fn between_samples(
     Ok(TransferFunction::gain_only(1.0))
 }
 
-/// What the machine has beyond its actuator, whatever acts on it.
+/// The parts of the machine other than its actuator, whatever acts on it.
 pub fn options(project: &Project, actuator: &Actuator) -> Result<MachineOptions, SimulateError> {
     let Some(declared) = &project.actuator else { return Ok(MachineOptions::default()) };
     let friction_regular_velocity = match declared.cylinder.friction.as_ref().map(|friction| &friction.law) {

@@ -12,9 +12,9 @@ use crate::setup::Setup;
 use crate::source::{Destination, Source};
 use phea_dynamics::watch::{Progress, Watch};
 
-/// Of the second run's tolerance over that of the first.
+/// Ratio of the second run's tolerance to that of the first.
 const TIGHTER: f64 = 0.1;
-/// Part of the peak from which on a difference of the force is worth a sentence.
+/// Share of the peak above which a difference of the force is reported.
 pub(super) const LARGEST_PART: f64 = 1e-3;
 /// Beside [`SIGNALS`].
 const COMMAND: &str = "control_v";
@@ -29,13 +29,13 @@ const NOT_COMPARED: &str = "one of the two runs has none";
 pub struct ToleranceCheck {
     /// Of the second run.
     pub tolerance: f64,
-    /// How the second run ended, if before its time: what follows is compared until then.
+    /// How the second run ended, if it ended early: the comparison extends until then.
     pub stopped: Option<StoppedRun>,
-    /// Time between two looks that are compared, s.
+    /// Time between two compared samples, s.
     pub look_s: f64,
-    /// Of the force; `None` where the two runs have no look in common.
+    /// Of the force; `None` if the two runs have no sample in common.
     pub force: Option<Difference>,
-    /// Of the command and of all that the machine tells of itself.
+    /// Of the command and of all signals of the machine.
     pub signals: Vec<Difference>,
     /// Of each window's metrics, in order.
     pub metrics: Vec<MetricDifferences>,
@@ -48,9 +48,9 @@ pub struct Difference {
     pub name: &'static str,
     /// In that unit.
     pub difference: f64,
-    /// When it is so large, s.
+    /// When it occurs, s.
     pub time_s: f64,
-    /// Largest magnitude in both runs; of the force, that of the reference too.
+    /// Largest magnitude in both runs and, for the force, of the reference.
     pub peak: f64,
 }
 
@@ -59,7 +59,7 @@ pub struct Difference {
 pub struct MetricDifferences {
     /// The window.
     pub window: Window,
-    /// Name, with its unit, and magnitude of the difference in it.
+    /// Name, with its unit, and magnitude of the difference in this unit.
     pub differences: Vec<(&'static str, Measured)>,
 }
 
@@ -125,7 +125,7 @@ fn check(run: &ScenarioRun, other: &ScenarioRun, tolerance: f64) -> ToleranceChe
     }
 }
 
-/// Of all signals, over the looks that both records have.
+/// Of all signals, over the samples that both records contain.
 fn differences(one: &Record, other: &Record) -> Vec<Difference> {
     let rows = common_rows(one, other);
     let reference = one.reference_n.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
@@ -142,7 +142,8 @@ fn differences(one: &Record, other: &Record) -> Vec<Difference> {
     found
 }
 
-/// Places of the looks at the same times: one record may have been thinned out more than the other.
+/// Indices of the samples at the same times: one record may have been thinned out more than the
+/// other.
 fn common_rows(one: &Record, other: &Record) -> Vec<(usize, usize)> {
     let apart = one.looks_apart.max(other.looks_apart);
     let [first, second] = [one, other].map(|record| (apart / record.looks_apart) as usize);

@@ -1,4 +1,4 @@
-//! The columns of a scenario's table: what each is, with sign and unit in the guide.
+//! The columns of a scenario's table; the guide states their signs and units.
 
 use phea_hydraulics::machine::SIGNALS;
 
@@ -13,7 +13,7 @@ use super::record::{Look, Record};
 /// controller measures it, after the sensor.
 pub const LOOP_SIGNALS: [&str; 4] = ["command_v", "unlimited_control_v", "integral_v", "measurement_n"];
 
-/// Where the numbers of a column come from.
+/// The source of the numbers of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ColumnSource {
     Time,
@@ -27,7 +27,7 @@ pub(super) enum ColumnSource {
     ExternalForce,
 }
 
-/// Columns that have stayed where they are: other programs read some of them by their place.
+/// Columns whose positions never change: other programs read some of them by position.
 const FIRST: [&str; 22] = [
     "time_s",
     "reference_n",
@@ -56,12 +56,11 @@ const FIRST: [&str; 22] = [
 /// The force on the load from outside.
 const EXTERNAL_FORCE: &str = "external_force_n";
 
-/// The columns of a table and where their numbers come from.
+/// The columns of a table and the sources of their numbers.
 pub(super) struct Columns(Vec<(&'static str, ColumnSource)>);
 
 impl Columns {
-    /// Those that have stayed, then those that came later, the last one for the force from outside
-    /// where the load is `pushed`.
+    /// The fixed ones, then those added later, and last the external force if the load is `pushed`.
     pub(super) fn new(pushed: bool) -> Columns {
         let later = SIGNALS.iter().chain(&LOOP_SIGNALS).filter(|name| !FIRST.contains(name));
         let pushed = pushed.then_some(&EXTERNAL_FORCE);
@@ -73,8 +72,7 @@ impl Columns {
         self.0.iter().map(|(name, _)| *name).collect()
     }
 
-    /// The numbers of a row, in place of those of the last; what an open loop does not have is not
-    /// a number.
+    /// Replaces the numbers of the previous row; signals that an open loop lacks are NaN.
     pub(super) fn read(&self, look: &Look, values: &mut Vec<f64>) {
         values.clear();
         values.extend(self.0.iter().map(|(_, source)| source.of(look)));
@@ -132,7 +130,7 @@ fn source(name: &str) -> Option<ColumnSource> {
 mod tests {
     use super::*;
 
-    /// What can be measured are the columns of the table but for time.
+    /// The columns that can be measured: all except time.
     #[test]
     fn every_column_can_be_measured() {
         let mut columns = Columns::new(true).names();

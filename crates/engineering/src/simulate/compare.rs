@@ -9,7 +9,7 @@ use phea_dynamics::watch::{Progress, Watch};
 /// Projects with the results of their scenarios.
 #[derive(Debug)]
 pub struct ScenarioComparison<'a> {
-    /// In the order they were named; one that was stopped is the last.
+    /// In the order in which they were named; a stopped one is the last.
     pub projects: Vec<(&'a Loaded, Vec<ScenarioRun>)>,
 }
 
@@ -42,7 +42,7 @@ impl<'a> ScenarioComparison<'a> {
 /// Simulates each project; a watch that answers `false` stops it there.
 ///
 /// # Errors
-/// That of the first project that cannot be simulated, with its place in the list.
+/// The error of the first project that cannot be simulated, with its index in the list.
 pub fn compare_projects<'a>(
     source: &dyn Source,
     projects: &'a [Loaded],

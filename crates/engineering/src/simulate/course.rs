@@ -1,4 +1,4 @@
-//! Where a scenario begins, and what drives it.
+//! The start of a scenario, and its inputs.
 
 use phea_dynamics::simulation::{Input, Plant, Profile, ProfileError};
 use phea_hydraulics::machine::{InitialCondition, StartValues};
@@ -22,28 +22,28 @@ pub(crate) struct PreparedScenario {
     pub command: Profile,
     /// Position of the load or of its ground in m.
     pub ground: Profile,
-    /// On the load from outside in N, where the machine has that input.
+    /// External force on the load in N, if the machine has that input.
     pub external_force: Option<Profile>,
-    /// States of the machine, its sensor and all that is continuous in its controller, and the
-    /// waves under way.
+    /// States of the machine, of its sensor and of the continuous part of its controller, and the
+    /// waves in transit.
     pub start: Vec<f64>,
     /// How a sampled controller begins.
     pub waking: Waking,
-    /// What is looked at by itself.
+    /// The windows that are evaluated.
     pub windows: Vec<Window>,
 }
 
-/// What drives a scenario, whatever machine it drives.
+/// The inputs of a scenario, whatever machine they drive.
 pub struct ScenarioDrive {
     /// In N.
     pub reference: Profile,
     /// In V, of an open loop.
     command: Profile,
-    /// On the load from outside in N.
+    /// External force on the load in N.
     external_force: Profile,
-    /// Of the load or of its ground in m, from where it starts.
+    /// Position of the load or of its ground in m, relative to its start.
     pub motion: Profile,
-    /// What is looked at by itself.
+    /// The windows that are evaluated.
     pub windows: Vec<Window>,
     /// Where it goes on from.
     saved: Option<SavedState>,
@@ -118,7 +118,7 @@ pub(crate) fn course_of(
 }
 
 impl ScenarioDrive {
-    /// What stands still while the loop rests before time zero.
+    /// The constant inputs while the loop is in equilibrium before time zero.
     fn at_start(&self) -> HeldInputs {
         HeldInputs {
             reference_n: self.reference.value(0.0),
@@ -127,7 +127,7 @@ impl ScenarioDrive {
         }
     }
 
-    /// From a state, the ground of the load where it is in m.
+    /// From a state, with the position of the load's ground in m.
     fn course(
         &self,
         bench: &ControlledMachine,
@@ -166,8 +166,8 @@ fn motion(
     })
 }
 
-/// Where the search for a rest begins: the machine at the position of its operating point under the
-/// force of the reference, or without force where there is no such operating point.
+/// Where the search for an equilibrium begins: the machine at the position of its operating point
+/// under the force of the reference, or without force if there is no such operating point.
 fn near_rest(
     bench: &ControlledMachine,
     scenario: &Scenario,
@@ -202,8 +202,9 @@ fn stated_start(stated: &project::Start) -> StartValues {
     }
 }
 
-/// States of the loop with its machine there, and the waves under way. Controller and sensor hold
-/// the machine at a reference in N; without one they begin at zero, as all that is not stated.
+/// States of the loop with its machine there, and the waves in transit. Controller and sensor hold
+/// the machine at a reference in N; without one they begin at zero, like everything that is not
+/// stated.
 fn loop_start(bench: &ControlledMachine, beginning: &InitialCondition, held_at: Option<f64>) -> Vec<f64> {
     let mut start = beginning.state.clone();
     let measured = bench.machine.measurement(&beginning.state, &beginning.all_inputs());
@@ -225,8 +226,8 @@ fn loop_start(bench: &ControlledMachine, beginning: &InitialCondition, held_at: 
     start
 }
 
-/// One for whatever begins in reference, command and force from outside, and for the motion of the
-/// load, each until the next.
+/// One window for each event in reference, command and external force, and for the motion of the
+/// load, each lasting until the next.
 fn windows(scenario: &Scenario, [reference, command, external]: [&Profile; 3]) -> Vec<Window> {
     let end_s = scenario.duration;
     let window = |cause: Cause, start_s: f64| Window { cause, start_s, end_s };
@@ -242,7 +243,7 @@ fn windows(scenario: &Scenario, [reference, command, external]: [&Profile; 3]) -
     let of_command = signal::beginnings(&scenario.command, command, end_s).into_iter().map(commanded);
     let outside = signal::beginnings(&scenario.external_force, external, end_s).into_iter();
     let outside = outside.map(|begun| window(Cause::ExternalForce, begun.time_s()));
-    // a loop that begins at rest begins with what stands at time zero
+    // a loop that starts in equilibrium starts with the inputs at time zero
     let stands = |window: &Window| {
         let steps = matches!(window.cause, Cause::ReferenceStep { .. } | Cause::CommandStep { .. });
         scenario.start.is_none() && steps && window.start_s <= 0.0

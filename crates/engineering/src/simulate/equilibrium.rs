@@ -1,4 +1,4 @@
-//! The closed loop at rest: where a scenario begins that states no start.
+//! The equilibrium of the closed loop: the start of a scenario that states none.
 
 use phea_dynamics::simulation::EquilibriumError;
 use phea_hydraulics::machine::{InitialCondition, SIGNALS};
@@ -14,8 +14,8 @@ pub(super) struct RestedLoop {
     pub(super) ground_m: f64,
 }
 
-/// The rest of the loop under what stands still, with the piston where the guess has it: the rates
-/// that are simulated, all zero.
+/// The equilibrium of the loop under constant inputs, with the piston at the position of the
+/// initial guess: all simulated rates are zero.
 pub(super) fn rest(
     bench: &ControlledMachine,
     guess: &[f64],
@@ -36,7 +36,7 @@ pub(super) fn rest(
         let name = name.to_string();
         return Err(SimulateError::RestBeyondLimit { name, reference_n, command_v, limit_v });
     }
-    // nothing but its position knows where the ground lies
+    // only its position depends on that of the ground
     let place = SIGNALS.iter().position(|signal| *signal == "position_m");
     let own = beginning.all_inputs();
     let position =
@@ -46,7 +46,7 @@ pub(super) fn rest(
     Ok(RestedLoop { rest, ground_m })
 }
 
-/// A state in words, by its place: [`phea_hydraulics::machine::MachineState`].
+/// A state in words, by its index: [`phea_hydraulics::machine::MachineState`].
 fn what(state: usize) -> &'static str {
     let first = [
         "the spool",

@@ -1,17 +1,17 @@
-//! Limits of the rig that a run goes beyond. Nothing is clamped by them: the machine has no such
-//! limits, the rig has.
+//! Limits of the rig that a run exceeds. Nothing is clamped by them: the real rig has these limits,
+//! the simulated machine does not.
 
 use super::{ControlledMachine, Record};
 use crate::quantity::{DisplayUnit, FORCE, VOLTAGE, display};
 
-/// A limit of the rig, and how far a run goes beyond it.
+/// A limit of the rig, and how far a run exceeds it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Exceeded {
     /// Which.
     pub limit: RigLimit,
-    /// N or V; the one that was exceeded first where there are two.
+    /// N or V; the one that was exceeded first if there are two.
     pub limit_value: f64,
-    /// The value furthest beyond, N or V, and when, s.
+    /// The value farthest beyond it, N or V, and its time, s.
     pub peak: f64,
     /// s.
     pub peak_time_s: f64,
@@ -19,15 +19,15 @@ pub struct Exceeded {
     pub first_time_s: f64,
 }
 
-/// Limits of a rig: what it cannot reach, or what damages it.
+/// Limits of a rig: values that it cannot reach, or that damage it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RigLimit {
     /// `force_sensor.capacity`, in both directions.
     SensorCapacity,
     /// The force at which the piston stalls, A_A p_S - A_B p_T one way and A_B p_S - A_A p_T the
-    /// other: no reference beyond it is reached.
+    /// other: a reference beyond it is not reached.
     StallForce,
-    /// The voltage of full opening, where no `saturation` keeps the command within it.
+    /// The voltage of full opening, unless `saturation` keeps the command within it.
     NominalVoltage,
 }
 
@@ -42,10 +42,10 @@ impl RigLimit {
     }
 }
 
-/// Beyond a limit by less than this part of it counts as rounding.
+/// Exceeding a limit by less than this share of it counts as rounding.
 const ROUNDING: f64 = 1e-6;
 
-/// What a run exceeds, by its looks.
+/// The limits that a run exceeds, by its samples.
 pub(super) fn exceeded(bench: &ControlledMachine, record: &Record) -> Vec<Exceeded> {
     let components = bench.rig.actuator.components();
     let (cylinder, supply) = (&components.cylinder, &components.supply);

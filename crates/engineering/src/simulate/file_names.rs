@@ -1,16 +1,17 @@
-//! What the files of scenarios are called.
+//! The names of the files of scenarios.
 
 /// Names of the files with the states of these scenarios.
 pub fn state_names<'a>(scenarios: impl Iterator<Item = &'a str>) -> Vec<String> {
     names(scenarios).into_iter().map(|name| format!("{name}.state.toml")).collect()
 }
 
-/// Names of the tables of scenarios with these names, each after its own and no two alike.
+/// Names of the tables of these scenarios, each derived from the scenario's name, and all
+/// different.
 pub(crate) fn table_names<'a>(scenarios: impl Iterator<Item = &'a str>, ending: &str) -> Vec<String> {
     names(scenarios).into_iter().map(|name| format!("{name}.{ending}")).collect()
 }
 
-/// Each after its own and no two alike.
+/// Each derived from its name, and all different.
 fn names<'a>(scenarios: impl Iterator<Item = &'a str>) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for scenario in scenarios {
@@ -24,7 +25,7 @@ fn names<'a>(scenarios: impl Iterator<Item = &'a str>) -> Vec<String> {
     names
 }
 
-/// What file systems do not take in a name becomes an underscore.
+/// Characters that file systems do not accept become underscores.
 fn file_name(name: &str) -> String {
     let plain =
         |letter: char| if letter.is_control() || "/\\:*?\"<>|".contains(letter) { '_' } else { letter };

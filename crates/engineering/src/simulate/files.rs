@@ -30,8 +30,7 @@ pub struct RunTable<'a> {
 }
 
 impl<'a> RunTable<'a> {
-    /// A table with its head, and a last column for the force from outside where the load is
-    /// `pushed`.
+    /// A table with its headings, and a last column for the external force if the load is `pushed`.
     pub(super) fn begin(
         (destination, name): (&'a dyn Destination, &str),
         format: TableFormat,

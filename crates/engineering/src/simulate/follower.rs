@@ -1,5 +1,5 @@
-//! Follows a run from step to step, so that what is measured of its windows is that of the
-//! solution, wherever rows fall.
+//! Follows a run from step to step, so that the metrics of its windows are those of the solution,
+//! independent of the rows.
 
 use std::cell::RefCell;
 
@@ -10,29 +10,30 @@ use super::sum::WeightedSum;
 use super::tally::{CommandStretch, Passed, Tally};
 use super::{Metrics, Window};
 
-/// Parts of a step over each of which an input that is no polynomial is followed by one of degree
-/// four: a sine over a quarter of its period, the longest step there is, to 3e-7 of its amplitude.
+/// Number of parts of a step over each of which an input that is not a polynomial is replaced by
+/// one of degree four: a sine over a quarter of its period, the longest possible step, to 3e-7 of
+/// its amplitude.
 const PARTS: u32 = 4;
-/// Ends that are one but for rounding, in steps.
+/// Distance of ends that differ only by rounding, in steps.
 const SAME: f64 = 1e-9;
 
 /// Where the command comes from.
 pub(super) enum CommandSource<'a> {
-    /// A continuous controller, which wants this and is held within this limit in V; or what is
-    /// stated in an open loop.
+    /// The command that a continuous controller demands, with its limit in V, or the stated command
+    /// of an open loop.
     Continuously(WeightedSum, f64),
-    /// What a sampled controller gave out last.
+    /// The last command of a sampled controller.
     Sampled(&'a RefCell<ControllerSamples>),
 }
 
-/// Keeps what the windows of a run are measured by.
+/// Accumulates the metrics of the windows of a run.
 pub struct Follower<'a> {
     force: WeightedSum,
     commanded: CommandSource<'a>,
     /// None in an open loop.
     reference: Option<&'a Profile>,
     tallies: Vec<Tally>,
-    /// The first that has not come to its end.
+    /// The first that has not ended.
     first: usize,
     /// Room for all inputs.
     inputs: Vec<f64>,
@@ -148,7 +149,7 @@ impl<'a> Follower<'a> {
     }
 
     /// Whether a step from sample to sample may hold an extreme that counts, or leave a band: then
-    /// it is to be known more exactly than by a cubic.
+    /// the force is needed more accurately than by a cubic.
     pub fn looks_closer(&self, stretch: &Stretch<'_>) -> bool {
         let (start_s, end_s) = (stretch.start_s(), stretch.end_s());
         let open = |tally: &&Tally| tally.window.start_s < end_s && tally.window.end_s > start_s;
@@ -166,7 +167,7 @@ impl<'a> Follower<'a> {
     }
 }
 
-/// The reference where a window ends, before what begins there.
+/// The reference at the end of a window, before the event there.
 fn last_value(reference: &Profile, window: &Window) -> f64 {
     let before_s = window.end_s - 1e-6 * (window.end_s - window.start_s);
     reference.piece(before_s).at(window.end_s).value
@@ -227,7 +228,7 @@ mod tests {
         }
     }
 
-    /// A run of three seconds and what its window comes to.
+    /// A run of three seconds and the metrics of its window.
     fn measured(
         swing: &Swing,
         start: [f64; 2],
@@ -287,7 +288,8 @@ mod tests {
         let first_peak = std::f64::consts::PI / (frequency * sine);
         let rise = crossing(0.0, first_peak, 0.9) - crossing(0.0, first_peak, 0.1);
         assert!(near(seen.rise_time_s.unwrap(), rise), "{seen:?} {rise}");
-        // the peaks are exp(-n pi d/s): the last beyond a hundredth is the fourth, below the step
+        // the peaks are exp(-n pi d/s): the last one outside a hundredth is the fourth, below the
+        // step
         let last = crossing(4.0 * first_peak, 5.0 * first_peak, 0.99);
         assert!(response(4.0 * first_peak) < 0.99 && response(5.0 * first_peak) < 1.01);
         assert!(near(seen.settling_time_s.unwrap(), last), "{seen:?} {last}");
@@ -335,14 +337,14 @@ mod tests {
         assert!(never.disturbance_peak_n.is_err() && never.control_rms_v.is_err());
     }
 
-    /// A reference that moves as no polynomial does: the largest difference from a force that
+    /// A reference that does not move as a polynomial: the largest difference from a force that
     /// stands still.
     #[test]
     fn a_moving_reference_is_followed_within_each_step() {
         let swing = Swing { frequency: 5.0, damping: 1.0 };
         let (nothing, reference) = (Profile::constant(0.0), Profile::sine(0.1, 300.0, 7.0).unwrap());
         let window = Window { cause: Cause::LoadMotion, start_s: 0.0, end_s: 3.0 };
-        // the steps are those of a course that it drives
+        // the steps are those of the input schedule
         let driven = measured(&swing, [0.0; 2], [&reference, &nothing], window, f64::INFINITY, 1.0);
         assert!(driven.disturbance_peak_n.unwrap() > 1.0);
         let course = InputSchedule {

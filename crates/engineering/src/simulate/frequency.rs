@@ -17,32 +17,33 @@ use crate::rig::Rig;
 use crate::setup::Setup;
 use phea_dynamics::watch::{Progress, Watch};
 
-/// Part of the nominal voltage, and of what the supply can push with, that a sine has where nothing
-/// is asked for.
+/// Default amplitude of a sine, as a share of the nominal voltage and of the force that the supply
+/// can produce.
 const USUAL_AMPLITUDE: f64 = 0.01;
-/// Usual number of frequencies, the first, and the last over the natural frequency of the valve.
+/// Default number of frequencies, the first, and the ratio of the last to the natural frequency of
+/// the valve.
 const POINTS: usize = 28;
 const FIRST_RAD_PER_S: f64 = 0.1;
 const LAST_OVER_VALVE: f64 = 3.0;
 
-/// What is asked of a frequency response; what is not stated is chosen.
+/// The request for a frequency response; values that are not stated are chosen.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FrequencyRequest {
     /// rad/s; none: 28 from 0.1 rad/s to three times the natural frequency of the valve.
     pub frequencies_rad_per_s: Vec<f64>,
     /// Amplitude of the command of the open loop, V; absent: at each frequency a hundredth of the
-    /// nominal voltage, or what makes a hundredth of the force that the supply can push with, if
-    /// that is less.
+    /// nominal voltage or, if it is less, the voltage that causes a hundredth of the force that the
+    /// supply can produce.
     pub command_amplitude_v: Option<f64>,
     /// Amplitude of the reference of the closed loop, N; absent: a hundredth of the force that the
-    /// supply can push with.
+    /// supply can produce.
     pub reference_amplitude_n: Option<f64>,
 }
 
 /// Responses of a machine at its operating point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MachineResponses {
-    /// Where the machine rests: position of the piston, m.
+    /// Equilibrium position of the piston, m.
     pub position_m: f64,
     /// Force on the load, N.
     pub force_n: f64,
@@ -65,19 +66,19 @@ pub struct MachineResponse {
     pub curve_rad_per_s: Vec<f64>,
     /// The linear plant, or the loop it closes, at these.
     pub linear_plant: Vec<Complex64>,
-    /// The machine's own exact derivatives at its rest, at these; empty where they are no linear
-    /// system.
+    /// The response of the machine's exact derivatives at its equilibrium, at these frequencies;
+    /// empty where they do not form a linear system.
     pub linearised_machine: Vec<Complex64>,
 }
 
-/// A machine at rest, ready to be shaken.
+/// A machine in equilibrium, ready to be excited.
 struct RestedMachine {
     rig: Rig,
     machine: Machine,
     rest: InitialCondition,
     /// On the load, N.
     force_n: f64,
-    /// What the supply can push with, N.
+    /// The force that the supply can produce, N.
     push_n: f64,
     settings: SimulationSettings,
 }
@@ -94,7 +95,7 @@ impl MachineResponses {
 /// closed from reference to force where the project gives a controller. Scenarios are not run.
 ///
 /// # Errors
-/// [`SimulateError`] if the project describes no machine, or one that does not rest at the
+/// [`SimulateError`] if the project describes no machine, or one without an equilibrium at the
 /// operating point.
 pub fn frequency_response(
     setup: &Setup<'_>,
@@ -136,7 +137,7 @@ fn rested(setup: &Setup<'_>) -> Result<RestedMachine, SimulateError> {
     Ok(RestedMachine { machine, rest, force_n, push_n, settings: settings(project), rig })
 }
 
-/// Those asked for by rising frequency, or the usual ones.
+/// The requested ones by rising frequency, or the default ones.
 fn frequencies(request: &FrequencyRequest, rested: &RestedMachine) -> Vec<f64> {
     let mut asked = request.frequencies_rad_per_s.clone();
     if asked.is_empty() {

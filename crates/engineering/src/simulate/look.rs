@@ -1,5 +1,5 @@
-//! What is seen of a run on the way: each look goes into the table, each step into the metrics, and
-//! a course is kept for figures.
+//! The observer of a run: each sample goes into the table, each step into the metrics, and a record
+//! is kept for figures.
 
 use std::cell::{Cell, RefCell};
 
@@ -17,7 +17,7 @@ use super::sums;
 use super::{Metrics, SimulateError};
 use crate::source::WriteError;
 
-/// What was seen of a run.
+/// The observations of a run.
 pub(super) struct Sighted {
     pub(super) record: Record,
     /// Of each window.
@@ -27,10 +27,10 @@ pub(super) struct Sighted {
     pub(super) measured: Vec<Overlay>,
 }
 
-/// Looks at a machine and its controller.
+/// Observes a machine and its controller.
 pub(super) struct Looking<'a> {
     bench: &'a ControlledMachine,
-    /// What a sampled controller did last.
+    /// The last output of a sampled controller.
     samples: &'a RefCell<ControllerSamples>,
     /// All states.
     wanted: Vec<usize>,
@@ -44,7 +44,7 @@ pub(super) struct Looking<'a> {
     pressures: [WeightedSum; 2],
     peak_pressures_pa: [f64; 2],
     overlays: Vec<Overlaying<'a>>,
-    /// Whether the table takes no more, and why.
+    /// The error of the table, if it accepts no more rows.
     full: &'a Cell<bool>,
     fault: Option<WriteError>,
 }
@@ -80,13 +80,13 @@ impl<'a> Looking<'a> {
         }
     }
 
-    /// Allocates memory for this many looks at once.
+    /// Allocates memory for this many samples at once.
     pub(super) fn expecting(mut self, looks: f64) -> Looking<'a> {
         self.record.reserve(looks as usize);
         self
     }
 
-    /// What was seen, its table finished.
+    /// The observations, with the table finished.
     ///
     /// # Errors
     /// [`SimulateError::Write`] where a row could not be written.

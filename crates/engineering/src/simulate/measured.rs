@@ -1,11 +1,11 @@
-//! What was measured on the rig, laid over what was simulated.
+//! Measurements on the rig, compared with the simulation.
 //!
 //! ```text
 //! NRMSE = sqrt(mean (m - s)^2)/(max m - min m)           m measured, s simulated, over the rows within the scenario
 //! ```
 //!
-//! The simulation is looked at every quarter of a millisecond or more often (a scenario beyond 100
-//! s less often, which is told) and taken on a straight line between two looks.
+//! The simulation is sampled every quarter of a millisecond or more often (less often, as reported,
+//! in a scenario of more than 100 s) and interpolated linearly.
 
 use super::Look;
 use super::columns::ColumnSource;
@@ -38,7 +38,7 @@ pub struct Overlay {
     pub file: String,
     /// Its column.
     pub column: String,
-    /// The simulation's, as the column of its table is called.
+    /// The simulated signal, by the name of its column in the table.
     pub signal: &'static str,
     /// Times of the rows that are compared, s.
     pub times_s: Vec<f64>,
@@ -50,12 +50,12 @@ pub struct Overlay {
     pub rows_outside: usize,
     /// Root mean square of the difference, SI.
     pub rmse: Measured,
-    /// The same over the range of what was measured.
+    /// The same over the range of the measured values.
     pub nrmse: Measured,
 }
 
 impl Overlay {
-    /// What people read the signal in.
+    /// The unit in which people read the signal.
     pub fn display_unit(&self) -> DisplayUnit {
         let by_ending = [
             ("_m3_per_s", DisplayUnit::LITRE_PER_MINUTE),
@@ -166,7 +166,7 @@ fn of_table(
         .collect()
 }
 
-/// The column of times: the one that is named, or one that is known.
+/// The column of times: the one that is named, or one with a known name.
 fn time_column<'u>(
     declared: &'u MeasuredFile,
     table: &MeasuredTable<'_>,
@@ -196,7 +196,7 @@ fn time_column<'u>(
     first.map(|(index, unit)| RecordingColumn { index, unit, dimension: &TIME })
 }
 
-/// The place of the one column with this name.
+/// The index of the only column with this name.
 fn named(name: &str, table: &MeasuredTable<'_>, findings: &mut Findings) -> Option<usize> {
     let mut found = table.header.iter().enumerate().filter(|(_, cell)| cell.text == name);
     let (first, second) = (found.next(), found.next());
@@ -237,11 +237,11 @@ impl RecordingColumn<'_> {
     }
 }
 
-/// A measurement that is laid over a run as it is looked at.
+/// A measurement that is compared with a run while it is sampled.
 pub(super) struct Overlaying<'a> {
     measurement: &'a Measurement,
     source: Option<ColumnSource>,
-    /// Time and value of the last look.
+    /// Time and value of the last sample.
     before: Option<(f64, f64)>,
     /// The next row.
     next: usize,
@@ -265,7 +265,7 @@ impl<'a> Overlaying<'a> {
         Overlaying { measurement, source, before: None, next: 0, overlay }
     }
 
-    /// Takes every row since the last look, on the straight line between both.
+    /// Takes every row since the last sample, interpolated linearly between the two.
     pub(super) fn take(&mut self, look: &Look) {
         let Some(source) = self.source else { return };
         let (now_s, now) = (look.time_s, source.of(look));

@@ -1,7 +1,6 @@
-//! What is measured of a run: one window for each step of the reference and for the motion of the
-//! load.
+//! The metrics of a run: one window for each step of the reference and for the motion of the load.
 
-/// Part of a run that is looked at by itself.
+/// Part of a run that is evaluated by itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Window {
     /// What begins it.
@@ -41,7 +40,7 @@ pub enum Cause {
     },
     /// The load begins to move.
     LoadMotion,
-    /// A force on the load from outside begins or changes.
+    /// An external force on the load begins or changes.
     ExternalForce,
 }
 
@@ -58,7 +57,7 @@ impl Cause {
         }
     }
 
-    /// What a figure says of the moment.
+    /// The label of the moment in a figure.
     pub fn label(&self) -> &'static str {
         match self {
             Cause::ReferenceStep { .. } | Cause::CommandStep { .. } => "step",
@@ -72,8 +71,8 @@ impl Cause {
 /// A number, or why it is absent.
 pub type Measured = Result<f64, &'static str>;
 
-/// What is measured of a window: of the solution itself over each step of the integration, wherever
-/// rows fall.
+/// The metrics of a window: of the solution itself over each step of the integration, independent
+/// of the rows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Metrics {
     /// How far the force exceeds the new reference, percent of the step.
@@ -85,12 +84,12 @@ pub struct Metrics {
     /// The band of the settling time: percent of the step, or of the reference that a load motion
     /// disturbs.
     pub settling_band_percent: f64,
-    /// Largest difference of force and reference while the load moves, or is pushed from outside,
-    /// and after, N.
+    /// Largest difference of force and reference while the load moves, or an external force acts,
+    /// and afterwards, N.
     pub disturbance_peak_n: Measured,
     /// Largest difference of force and reference while the reference moves, N.
     pub tracking_error_peak_n: Measured,
-    /// Largest magnitude of the force where no force is asked for, N.
+    /// Largest magnitude of the force where there is no reference, N.
     pub force_peak_n: Measured,
     /// Reference less force, mean over the last tenth of the window, N.
     pub steady_state_error_n: Measured,
@@ -105,7 +104,7 @@ pub(super) const NO_STEP: &str = "the reference does not step";
 pub(super) const NO_MOTION: &str = "the load does not begin to move";
 pub(super) const NOT_REACHED: &str = "the force does not come to 90 % of the step";
 pub(super) const BEGUN_BEYOND: &str = "the force is beyond 10 % of the step when it comes";
-/// Why there is no settling time of a step that was seen to its end.
+/// Why there is no settling time for a step that was observed to its end.
 pub const NOT_SETTLED: &str = "outside the band at the end of the window";
 pub(super) const MOVES: &str = "the reference moves";
 pub(super) const OPEN_LOOP: &str = "open loop: no force is asked for";
@@ -114,7 +113,7 @@ pub(super) const STANDS_STILL: &str = "the reference stands still";
 pub(super) const NO_REFERENCE: &str = "the reference is zero: a band around it has no width";
 
 impl Metrics {
-    /// Each that is measured with its name, in the order of an answer.
+    /// Each available metric with its name, in the order of an answer.
     pub fn named(&self) -> [(&'static str, Measured); 9] {
         [
             ("overshoot_percent", self.overshoot_percent),

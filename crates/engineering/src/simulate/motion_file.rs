@@ -5,8 +5,8 @@
 //! 0.000,  0.00
 //! 0.010,  0.02
 //! ```
-//! Rows in the order of time. A motion is counted from the first row, and starts where the load is;
-//! a signal has the values of the file, from its first row on.
+//! Rows in the order of time. A motion is relative to the first row, and starts at the position of
+//! the load; a signal has the values of the file, from its first row on.
 
 use phea_dynamics::simulation::{Profile, ProfileError};
 
@@ -16,10 +16,10 @@ use crate::quantity::{self, Dimension, FORCE, LENGTH, TIME, VOLTAGE};
 use crate::source::Source;
 use crate::spelling::nearest;
 
-/// Columns of time with the unit that belongs to each.
+/// Columns of time with the unit of each.
 const TIMES: ColumnNames = [("time_s", "s"), ("time_ms", "ms")];
 
-/// Names of a column with the unit that belongs to each.
+/// Names of a column with the unit of each.
 type ColumnNames = [(&'static str, &'static str); 2];
 
 /// A column of values.
@@ -38,7 +38,7 @@ impl MotionColumn {
         MotionColumn { names: [("voltage_v", "V"), ("voltage_mv", "mV")], dimension: &VOLTAGE };
 }
 
-/// The motion as a function of time, beginning at `start_s`, or what is wrong with the file.
+/// The motion as a function of time, beginning at `start_s`, or the errors of the file.
 pub(super) fn motion(
     source: &dyn Source,
     project: &Project,
@@ -52,7 +52,7 @@ pub(super) fn motion(
     Ok(Profile::table(&times, &positions))
 }
 
-/// The signal as a function of time, zero before its first row, or what is wrong with the file.
+/// The signal as a function of time, zero before its first row, or the errors of the file.
 pub(super) fn signal(
     source: &dyn Source,
     project: &Project,
@@ -115,7 +115,7 @@ fn rows(path: &str, bytes: &[u8], values: MotionColumn, findings: &mut Findings)
     rows
 }
 
-/// Where a column is, and its unit.
+/// The index of a column, and its unit.
 fn column(
     header: &[MeasuredCell<'_>],
     names: ColumnNames,

@@ -1,10 +1,10 @@
-//! What is kept of a run: looks at the machine and its controller, evenly over time.
+//! The record of a run: samples of the machine and its controller, evenly spaced in time.
 
 use phea_hydraulics::machine::SIGNALS;
 
 use super::columns::{self, LOOP_SIGNALS};
 
-/// Most looks of a run that its record keeps.
+/// Largest number of samples of a run that its record keeps.
 const MOST_KEPT: usize = 100_000;
 
 /// The machine and its controller at one time.
@@ -12,40 +12,40 @@ const MOST_KEPT: usize = 100_000;
 pub struct Look {
     /// s.
     pub time_s: f64,
-    /// N; at a step, as it is from then on. `None` in an open loop.
+    /// N; at a step, the value from then on. `None` in an open loop.
     pub reference_n: Option<f64>,
     /// N, after the prefilter. `None` in an open loop.
     pub filtered_reference_n: Option<f64>,
-    /// V, what the controller gives out, or what is commanded in an open loop.
+    /// V, output of the controller, or the command of an open loop.
     pub control_v: f64,
-    /// N, on the load from outside, where there is such a force.
+    /// N, external force on the load, if there is one.
     pub external_force_n: Option<f64>,
-    /// What the machine tells of itself, in the order of [`SIGNALS`].
+    /// The signals of the machine, in the order of [`SIGNALS`].
     pub signals: [f64; SIGNALS.len()],
-    /// What the control loop tells of itself, in the order of [`LOOP_SIGNALS`]; in an open loop
-    /// what is commanded, and nothing that integrates.
+    /// The signals of the control loop, in the order of [`LOOP_SIGNALS`]; in an open loop the
+    /// command, without an integral part.
     pub of_loop: [f64; LOOP_SIGNALS.len()],
 }
 
-/// The machine and its controller over time: every look, or of a long run every second, fourth,
-/// eighth and so on, so that no more than a hundred thousand are held.
+/// The machine and its controller over time: every sample or, in a long run, every second, fourth,
+/// eighth and so on, so that no more than a hundred thousand are kept.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Record {
     /// s.
     pub times_s: Vec<f64>,
-    /// N; at a step, as it is from then on. None in an open loop.
+    /// N; at a step, the value from then on. Empty in an open loop.
     pub reference_n: Vec<f64>,
     /// N, after the prefilter. Empty in an open loop.
     pub filtered_reference_n: Vec<f64>,
-    /// V, what the controller gives out, or what is commanded in an open loop.
+    /// V, output of the controller, or the command of an open loop.
     pub control_v: Vec<f64>,
-    /// N, on the load from outside; none where there is no such force.
+    /// N, external force on the load; empty if there is none.
     pub external_force_n: Vec<f64>,
-    /// What the machine tells of itself, each in the order of [`SIGNALS`].
+    /// The signals of the machine, each in the order of [`SIGNALS`].
     pub signals: Vec<[f64; SIGNALS.len()]>,
-    /// What the control loop tells of itself, each in the order of [`LOOP_SIGNALS`].
+    /// The signals of the control loop, each in the order of [`LOOP_SIGNALS`].
     pub of_loop: Vec<[f64; LOOP_SIGNALS.len()]>,
-    /// Looks from one of these to the next.
+    /// Number of samples from one of these to the next.
     pub looks_apart: u64,
 }
 
@@ -70,7 +70,7 @@ impl Record {
         columns::signal(self, name)
     }
 
-    /// Allocates memory for this many looks at once, but for no more than are kept of a long run.
+    /// Allocates memory for this many samples at once, but for no more than a long run keeps.
     pub(super) fn reserve(&mut self, looks: usize) {
         let looks = looks.min(MOST_KEPT + 1);
         self.times_s.reserve(looks);
@@ -79,7 +79,7 @@ impl Record {
         self.of_loop.reserve(looks);
     }
 
-    /// Takes the look of this number, counted from zero, or leaves it out.
+    /// Keeps the sample of this number, counted from zero, or leaves it out.
     pub(super) fn take(&mut self, number: u64, look: &Look) {
         if !number.is_multiple_of(self.looks_apart) {
             return;
@@ -124,7 +124,7 @@ fn every_second<T>(values: &mut Vec<T>) {
 mod tests {
     use super::*;
 
-    /// However long a run is, its record is short, evenly spaced, and begins with the first look.
+    /// However long a run is, its record is short, evenly spaced, and begins with the first sample.
     #[test]
     fn a_record_is_even_and_never_long() {
         let mut record = Record::default();

@@ -19,10 +19,10 @@ use super::saved::{self, SavedState};
 use super::{RunTable, SimulateError, ToleranceCheck, Window};
 use crate::project::Scenario;
 
-/// Longest time between two looks at the machine, of which figures are drawn: 1 ms would cut the
-/// peaks of a ringing load cell.
+/// Longest time between two samples, from which figures are drawn: 1 ms would cut off the peaks of
+/// a ringing load cell.
 const LONGEST_LOOK_S: f64 = 0.25e-3;
-/// Most looks where the project asks for fewer rows.
+/// Largest number of samples where the project requests fewer rows.
 const MOST_LOOKS: f64 = 400_000.0;
 /// Steps between two reports of progress.
 const STEPS_UNWATCHED: u32 = 64;
@@ -36,34 +36,34 @@ pub struct ScenarioRun {
     pub status: Status,
     /// What it cost.
     pub work: StepCounts,
-    /// What was seen, every [`ScenarioRun::look_s`], or at fewer looks of a long run.
+    /// The record, every [`ScenarioRun::look_s`], or less often in a long run.
     pub record: Record,
-    /// Looks between two rows of the result.
+    /// Number of samples between two rows of the result.
     pub looks_per_row: usize,
-    /// Time between two looks, s: what is shorter is not drawn.
+    /// Time between two samples, s: shorter events are not drawn.
     pub look_s: f64,
-    /// Each window with what is read off it.
+    /// Each window with its metrics.
     pub windows: Vec<(Window, Metrics)>,
-    /// What happened on the way, in the order of time.
+    /// The events of the run, in the order of time.
     pub occurrences: Vec<Occurrence>,
-    /// From when on the machine is where its equations do not hold, s.
+    /// The time from which the equations of the machine do not hold, s.
     pub outside_model_s: Option<f64>,
     /// Percent, of every settling time.
     pub settling_band_percent: f64,
     /// The measured signals and the simulated ones.
     pub measured: Vec<Overlay>,
-    /// How far a run at a tenth of the tolerance differs; `None` where nobody asked.
+    /// The difference from a run at a tenth of the tolerance; `None` if it was not requested.
     pub check: Option<ToleranceCheck>,
-    /// An oscillation that grew so much that errors within the tolerance may be visible; `None`
-    /// where none did.
+    /// An oscillation that grew so much that errors within the tolerance may be visible; `None` if
+    /// there is none.
     pub errors_amplified: Option<Amplification>,
     /// Whether a stated command drove the valve, and no controller.
     pub open_loop: bool,
-    /// Chambers whose pressure went beyond what the expansion of their hose was measured at.
+    /// Chambers whose pressure exceeded that up to which the expansion of their hose was measured.
     pub beyond_expansion: Vec<BeyondExpansion>,
-    /// Limits of the rig that it goes beyond.
+    /// Limits of the rig that it exceeds.
     pub exceeded: Vec<Exceeded>,
-    /// Its end, to go on from, or why it is not saved.
+    /// Its final state, from which another run can continue, or why it is not saved.
     pub end: Result<SavedState, &'static str>,
 }
 
@@ -89,14 +89,14 @@ pub struct Occurrence {
     pub begins: bool,
 }
 
-/// How a run ended before its time.
+/// How a run ended early.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StoppedRun {
     /// s.
     pub time_s: f64,
     /// In one word, as in an answer.
     pub word: &'static str,
-    /// The mode whose oscillation would take more steps than there are.
+    /// The mode whose oscillation would need more steps than are allowed.
     pub mode: Option<UnresolvedMode>,
 }
 
@@ -110,7 +110,7 @@ pub struct UnresolvedMode {
 }
 
 impl ScenarioRun {
-    /// Whether it is so long that it was looked at less often than its figures want.
+    /// Whether it is so long that it was sampled less often than its figures need.
     pub fn is_coarse(&self) -> bool {
         self.look_s > LONGEST_LOOK_S * (1.0 + 1e-9)
     }
@@ -120,14 +120,14 @@ impl ScenarioRun {
         matches!(self.status, Status::Cancelled { .. })
     }
 
-    /// Why and when it ended before its time; `None` if it did not.
+    /// Why and when it ended early; `None` if it did not.
     pub fn stopped(&self) -> Option<StoppedRun> {
         StoppedRun::of(self.status)
     }
 }
 
 impl StoppedRun {
-    /// What a status says; `None` of a run that came to its end.
+    /// The meaning of a status; `None` for a run that was completed.
     pub fn of(status: Status) -> Option<StoppedRun> {
         let mut mode = None;
         let (time_s, word) = match status {
@@ -237,8 +237,8 @@ fn found(
     found
 }
 
-/// When a chamber first cavitates or has no volume, or the piston leaves a stroke that nothing
-/// limits.
+/// When a chamber first cavitates or has no volume, or the piston leaves a stroke without end
+/// stops.
 fn outside_model_s(occurrences: &[Occurrence], has_end_stops: bool) -> Option<f64> {
     let outside = |kind: &str| match kind {
         "cavitation_a" | "cavitation_b" | "empty_a" | "empty_b" => true,
@@ -262,11 +262,12 @@ fn looks_per_row(scenario: &Scenario) -> usize {
     wanted.min((MOST_LOOKS / rows).floor().max(1.0)) as usize
 }
 
-/// What an [`Occurrence`] is called while the command is at its limit, beside the names of what a
-/// machine tells of itself.
+/// The name of an [`Occurrence`] while the command is at its limit, in addition to the indicators
+/// of a machine.
 pub const COMMAND_LIMIT: &str = "command_limit";
 
-/// What a campaign calls [`ScenarioRun::errors_amplified`], with the names of what a machine reports.
+/// What a campaign calls [`ScenarioRun::errors_amplified`], with the names of what a machine
+/// reports.
 pub const ERRORS_AMPLIFIED: &str = "errors_amplified";
 
 /// The oscillation that grew so much that errors within the tolerance may be visible.
@@ -274,8 +275,8 @@ pub fn errors_amplified(bench: &ControlledMachine, outcome: &Outcome) -> Option<
     outcome.amplification.filter(|grown| grown.may_show_errors(bench.settings.tolerance))
 }
 
-/// Inputs at time zero: those before the machine's, its ground, the force from outside, and the
-/// waves under way.
+/// Inputs at time zero: those of the loop, the ground, the external force, and the waves in
+/// transit.
 fn inputs_at_start(course: &PreparedScenario, mut first: Vec<f64>, control: &Control) -> Vec<f64> {
     first.extend([course.ground.value(0.0), course.ground.rate(0.0)]);
     first.extend(course.external_force.as_ref().map(|force| force.value(0.0)));
@@ -284,8 +285,8 @@ fn inputs_at_start(course: &PreparedScenario, mut first: Vec<f64>, control: &Con
     first
 }
 
-/// What there is from the start, and every change of an indicator. Those of the machine are
-/// positive while all is well, that of the command's limit while it is reached.
+/// The events that exist from the start, and every change of an indicator. Those of the machine are
+/// positive while nothing is wrong, that of the command's limit while it is reached.
 pub fn occurrences(control: &Control, start: &[f64], first: &[f64], events: &[Event]) -> Vec<Occurrence> {
     let kind = |index: usize| INDICATORS.get(index).copied().unwrap_or(COMMAND_LIMIT);
     let begins = |index: usize, positive: bool| positive != (index < INDICATORS.len());

@@ -1,4 +1,4 @@
-//! The state at the end of a scenario, as a file to go on from.
+//! The state at the end of a scenario, as a file from which another run can continue.
 //!
 //! ```text
 //! schema = 1
@@ -10,10 +10,10 @@
 //! spool_v = 0.125
 //! ```
 //!
-//! Every state of machine, sensor, controller and prefilter is there by its name, and where the
-//! load's ground stands; of a sampled controller what it remembers, the command that is held and
-//! where its random numbers are. What is under way in a delay is no number: such an end is not
-//! saved.
+//! It contains every state of machine, sensor, controller and prefilter by its name, and the
+//! position of the load's ground; for a sampled controller also its memories, the held command and
+//! the position in its random numbers. The content of a delay cannot be stored as numbers: such an
+//! end is not saved.
 
 use std::fmt::Write as _;
 
@@ -29,14 +29,14 @@ use crate::source::Source;
 /// Part of a sample time within which an end is at a sample.
 const AT_A_SAMPLE: f64 = 1e-9;
 
-/// A state to go on from.
+/// A state from which a run can continue.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SavedState {
     /// When, in s of its run.
     pub time_s: f64,
     /// Every continuous state by its name, in order.
     pub states: Vec<(String, f64)>,
-    /// m, where the load's ground stands.
+    /// m, position of the load's ground.
     pub ground_m: f64,
     /// What a sampled controller remembers.
     pub(crate) memory: Option<DigitalMemory>,
@@ -63,7 +63,7 @@ const GROUND: &str = "ground_position_m";
 /// What a sampled controller holds.
 const HELD: &str = "held_command_v";
 
-/// What a sampled controller remembers, each number from 1 on.
+/// The memories of a sampled controller, numbered from 1.
 fn remembered(number: usize) -> String {
     format!("controller_memory_{number}")
 }
@@ -131,7 +131,7 @@ impl SavedState {
     }
 }
 
-/// The state that a file holds for this bench, or what is wrong with the file.
+/// The state in a file for this bench, or the errors of the file.
 pub(super) fn read(
     source: &dyn Source,
     project: &Project,
@@ -154,7 +154,7 @@ pub(super) fn read(
     }
 }
 
-/// Every number that there should be and no other.
+/// Every expected number, and no other.
 fn taken(root: &TreeNode, bench: &ControlledMachine, findings: &mut Findings) -> SavedState {
     let known = ["schema", "project_sha256", "scenario", "time_s", "random", "state"];
     for entry in root.entries().iter().filter(|entry| !known.contains(&entry.key.as_str())) {

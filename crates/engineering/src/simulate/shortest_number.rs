@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 pub(super) fn number(text: &mut String, value: f64) {
     let size = value.abs();
     let plain = size == 0.0 || (1e-4..1e15).contains(&size);
-    // a text takes all that is written into it
+    // writing to a text does not fail
     let _ = if plain { write!(text, "{value}") } else { write!(text, "{value:e}") };
 }
 

@@ -1,4 +1,4 @@
-//! Signals of a scenario as functions of time, and what in them begins a window.
+//! Signals of a scenario as functions of time, and the events in them that begin a window.
 
 use phea_dynamics::simulation::{Harmonic, Profile, ProfileError, schroeder_phases};
 
@@ -87,7 +87,7 @@ fn harmonics(sines: &Multisine) -> Vec<Harmonic> {
     .collect()
 }
 
-/// What begins in the sum of these before the end. A step that changes nothing begins nothing.
+/// The events in the sum of these before the end. A step that changes nothing is not an event.
 pub(super) fn beginnings(signals: &[Signal], profile: &Profile, end_s: f64) -> Vec<SignalOnset> {
     let steps = signals.iter().flat_map(Signal::steps).map(|(time_s, _)| time_s);
     let step = |time_s: f64| {

@@ -2,8 +2,7 @@
 
 use phea_dynamics::simulation::{Quartic, Stretch};
 
-/// What is added up for a signal: places among the states that an observer wants, and inputs, each
-/// with its weight.
+/// The terms of a signal: indices of the observed states, and of inputs, each with its weight.
 ///
 /// ```text
 /// s = sum of a_i y_i + sum of b_j w_j
@@ -15,7 +14,8 @@ pub(super) struct WeightedSum {
 }
 
 impl WeightedSum {
-    /// What a signal that is such a sum makes of each of these states, and of each input, alone.
+    /// From a signal that is such a sum: its value for each of these states, and for each input,
+    /// alone.
     pub(super) fn of(
         wanted: &[usize],
         [states, inputs]: [usize; 2],
@@ -35,7 +35,7 @@ impl WeightedSum {
         }
     }
 
-    /// Its states' part over a step.
+    /// The contribution of the states over a step.
     #[inline]
     pub(super) fn over(&self, states: &[Quartic]) -> Quartic {
         self.states.iter().fold(Quartic::constant(0.0), |sum, &(place, weight)| {
@@ -43,18 +43,18 @@ impl WeightedSum {
         })
     }
 
-    /// Its states' part at one time.
+    /// The contribution of the states at one time.
     pub(super) fn at(&self, states: &[f64]) -> f64 {
         let part = |&(place, weight): &(usize, f64)| weight * states.get(place).copied().unwrap_or(f64::NAN);
         self.states.iter().map(part).sum()
     }
 
-    /// Whether inputs have a part in it.
+    /// Whether inputs contribute to it.
     pub(super) fn has_inputs(&self) -> bool {
         !self.inputs.is_empty()
     }
 
-    /// Its inputs' part at a part of a step.
+    /// The contribution of the inputs over a part of a step.
     pub(super) fn driven(&self, stretch: &Stretch<'_>, part: f64, inputs: &mut [f64]) -> f64 {
         stretch.inputs_at(part, inputs);
         let part = |&(place, weight): &(usize, f64)| weight * inputs.get(place).copied().unwrap_or(f64::NAN);

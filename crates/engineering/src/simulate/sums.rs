@@ -17,15 +17,15 @@ pub(super) fn pressures(bench: &ControlledMachine, wanted: &[usize]) -> [Weighte
     })
 }
 
-/// The machine's own force, whatever a sensor makes of it.
+/// The machine's own force, before the sensor.
 pub(super) fn force(bench: &ControlledMachine, wanted: &[usize]) -> WeightedSum {
     let others = bench.control.leading_inputs();
     let force = |state: &[f64], inputs: &[f64]| bench.machine.measurement(state, &inputs[others..]);
     WeightedSum::of(wanted, bench.control.size(), force)
 }
 
-/// What a continuous controller wants before the limit, or what is stated in an open loop; nothing
-/// of a sampled one.
+/// The command of a continuous controller before its limit, or the stated command of an open loop;
+/// zero for a sampled controller.
 pub(super) fn command(bench: &ControlledMachine, wanted: &[usize]) -> WeightedSum {
     match &bench.control {
         Control::Continuous(closed) => {

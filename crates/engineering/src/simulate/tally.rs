@@ -1,4 +1,4 @@
-//! What is kept of a window while a run goes through it.
+//! The running metrics of a window.
 
 use phea_dynamics::simulation::Quartic;
 
@@ -12,10 +12,10 @@ use super::{Cause, Metrics, Window};
 const STEADY_SHARE: f64 = 0.1;
 /// Parts of the step between which the rise time is taken.
 const RISE: [f64; 2] = [0.1, 0.9];
-/// What an extreme may change by without being worth a closer look, of the largest deviation.
+/// Change of an extreme that justifies no refinement, as a share of the largest deviation.
 const WORTH: f64 = 1e-7;
 
-/// A stretch of time, all signals over it.
+/// An interval of time with all signals over it.
 pub(super) struct Passed {
     pub(super) times_s: [f64; 2],
     pub(super) force: Quartic,
@@ -24,9 +24,9 @@ pub(super) struct Passed {
     pub(super) command: CommandStretch,
 }
 
-/// A command over a stretch of time, V.
+/// A command over an interval of time, V.
 pub(super) enum CommandStretch {
-    /// What is wanted, held within a limit.
+    /// The command of the controller, limited.
     Wanted {
         wanted: Quartic,
         limit: f64,
@@ -34,7 +34,7 @@ pub(super) enum CommandStretch {
     Held(f64),
 }
 
-/// What is kept of a window.
+/// The running metrics of a window.
 ///
 /// ```text
 /// deviation    of a step of the reference: how far the force is beyond its new value, in the direction of the step
@@ -46,13 +46,12 @@ pub(super) struct Tally {
     /// Half the width of the band around the reference, N.
     width: f64,
     followed_until_s: f64,
-    /// Of the deviation: where it begins, lowest and highest, N.
+    /// Deviation: initial, lowest and highest, N.
     first: f64,
     extremes: [f64; 2],
     /// Largest difference of force and reference, N.
     tracking_error: f64,
-    /// The reference so far, where it stood still, N; whether it moved, and whether it did in the
-    /// last part.
+    /// The constant reference so far, N; whether it moved, and whether it did so in the last part.
     reference: Option<f64>,
     moves: bool,
     moves_late: bool,
@@ -70,7 +69,7 @@ pub(super) struct Tally {
 }
 
 impl Tally {
-    /// Nothing yet; with the reference at the end of the window in N; `None` in an open loop.
+    /// An empty record, with the reference at the end of the window in N; `None` in an open loop.
     pub(super) fn new(window: Window, band_percent: f64, last_reference: Option<f64>) -> Tally {
         let height = match window.cause {
             Cause::ReferenceStep { from_n, to_n } => to_n - from_n,
@@ -108,7 +107,7 @@ impl Tally {
         }
     }
 
-    /// Takes note of a stretch of time, from one part of it to another.
+    /// Records an interval of time, from one share of it to another.
     pub(super) fn pass(&mut self, passed: &Passed, span: [f64; 2]) {
         let [start_s, end_s] = passed.times_s;
         let time_at = |part: f64| start_s + part * (end_s - start_s);
@@ -130,7 +129,7 @@ impl Tally {
         self.command(&passed.command, span, time_at(span[1]) - time_at(span[0]));
     }
 
-    /// What the reference does, how far the force is from it, and how far on average in the end.
+    /// Records the reference, the deviation of the force from it, and its mean at the end.
     fn track(&mut self, reference: &Quartic, force: &Quartic, [start_s, end_s]: [f64; 2], span: [f64; 2]) {
         let [from_s, until_s] = span.map(|part| start_s + part * (end_s - start_s));
         let late_s = self.window.end_s - STEADY_SHARE * (self.window.end_s - self.window.start_s);
@@ -172,7 +171,7 @@ impl Tally {
         let width = self.width;
         self.ends_outside = deviation.at(span[1]).abs() > width;
         if self.ends_outside || (-width <= bounds[0] && bounds[1] <= width) {
-            // where it ends outside, the next stretch says more
+            // if it ends outside, the next interval decides
             if self.ends_outside {
                 self.outside_s = Some(time_at(span[1]));
             }
@@ -207,7 +206,7 @@ impl Tally {
     pub(super) fn looks_closer(&self, force: &Quartic, reference: Option<f64>) -> bool {
         let reference = reference.map(Quartic::constant);
         let [low, high] = self.deviation(force, reference.as_ref()).bounds();
-        // what the cubic leaves out is less than what it bends by
+        // the error of the cubic is less than its deviation from a straight line
         let [low, high] = [low - (high - low), high + (high - low)];
         let [lowest, highest] = self.extremes;
         let worth = WORTH * lowest.abs().max(highest.abs()).max(self.width);

@@ -20,18 +20,17 @@ pub struct TrackingWish {
     pub band_percent: f64,
 }
 
-/// A wish held against a step.
+/// A wish compared with a step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeldWish {
     /// What the step does.
     pub words: String,
-    /// Whether it is as was wished; `None` where the two are not of the same band, or the run ended
-    /// before.
+    /// Whether the wish is met; `None` if the two bands differ, or the run ended before.
     pub kept: Option<bool>,
 }
 
 impl TrackingWish {
-    /// The wish of these limits; `None` without one.
+    /// The wish of these limits; `None` if there is none.
     pub fn of(wishes: &[CheckedWish]) -> Option<TrackingWish> {
         let number = wishes.first()?.number;
         let side = |key: &str| {
@@ -46,13 +45,13 @@ impl TrackingWish {
         })
     }
 
-    /// What is wished of the overshoot, in words.
+    /// The wish for the overshoot, in words.
     pub fn overshoot_words(&self) -> Option<String> {
         let most = self.overshoot_percent?;
         Some(if most == 0.0 { "no overshoot".to_string() } else { format!("at most {most} % overshoot") })
     }
 
-    /// What is wished of the settling, in words.
+    /// The wish for the settling time, in words.
     pub fn settling_words(&self) -> Option<String> {
         self.settling_time_s.map(|time_s| format!("settled within {} % in {time_s} s", self.band_percent))
     }

@@ -8,7 +8,7 @@ use crate::quantity::DisplayUnit;
 pub enum BoreVerdict {
     /// The velocity is within the recommended range.
     Recommended,
-    /// Slower than recommended: larger and dearer than necessary, but sound.
+    /// Slower than recommended: larger and more expensive than necessary, but acceptable.
     Slow,
     /// Faster than recommended: refused.
     TooFast,

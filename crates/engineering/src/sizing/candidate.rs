@@ -81,7 +81,7 @@ pub(super) fn assess(problem: &SizingProblem, option: &HoseOption, branch: Branc
     let mut findings = Vec::new();
     length(problem, &candidate, &mut findings);
     practical_gain(problem, &candidate, &mut findings);
-    // Nothing else can be said of a hose that is not there.
+    // Nothing else can be said about a hose that does not exist.
     if candidate.length_m() > 0.0 {
         velocity(problem, &candidate, &mut findings);
         pressure(problem, &candidate, &mut findings);
@@ -130,7 +130,7 @@ fn length(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<Siz
     let [shortest, longest] = problem.hose_length;
     let length = candidate.length_m();
     if length == 0.0 && candidate.branch.gain_v_per_n <= problem.pole_gain() {
-        // No stiffness would do; the gain's own finding says so.
+        // No stiffness would suffice; the finding on the gain says so.
     } else if length == 0.0 {
         let why = match candidate.branch.model {
             StiffnessModel::Uniform => {
@@ -228,7 +228,7 @@ fn bending(candidate: &Candidate, findings: &mut Vec<SizingReason>) {
     }
 }
 
-/// A wall with its static modulus is softer than the braided hoses that are measured in motion.
+/// A wall with its static modulus is softer than measured dynamic values of braided hoses.
 fn stiffening(option: &HoseOption, findings: &mut Vec<SizingReason>) {
     if option.hose.dynamic_stiffening.maximum <= 1.0 {
         let text = "[line] declares no `dynamic_stiffening`: the wall has its static modulus, and a stiffer one takes more hose";
@@ -249,7 +249,7 @@ fn settling(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<S
         );
     }
     let [at_null, at_largest] = candidate.steady_state_gain;
-    // Without a positive gain there is no loop to speak of; the gain itself is refused above.
+    // Without a positive gain there is no loop; the gain itself is rejected above.
     if candidate.branch.gain_v_per_n > 0.0 && at_largest < 0.95 {
         warns(
             findings,

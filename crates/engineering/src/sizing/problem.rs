@@ -8,15 +8,15 @@ use phea_hydraulics::stiffness::{StiffnessModel, StrokeStiffness, chamber_compli
 use super::SizingStep;
 use crate::quantity::{DisplayUnit, significant};
 
-/// What the procedure needs to know, every value resolved. SI units.
+/// The input of the procedure, with every value resolved. SI units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SizingProblem {
     /// The cylinder.
     pub cylinder: Cylinder,
-    /// Leakage across the piston, which K_c of the linear model counts, m3/(s Pa).
+    /// Leakage across the piston, which K_c of the linear model includes, m3/(s Pa).
     pub internal_leakage: f64,
     /// Parameters of the linear model, K_c with the leakage across the piston; the hydraulic
-    /// stiffness is what is looked for, its value is not used.
+    /// stiffness is to be found; its value is not used.
     pub linear: LinearParameters,
     /// Bulk modulus of the fluid beta_0, Pa.
     pub fluid_modulus: f64,
@@ -40,7 +40,7 @@ pub struct SizingProblem {
     pub maximum_gain: f64,
     /// Hoses are cut to multiples of this, m.
     pub length_increment: Option<f64>,
-    /// Hose that can be had, for both lines together, m.
+    /// Available length of hose, for both lines together, m.
     pub stock_length: Option<f64>,
     /// Acceptable length of each line, m.
     pub hose_length: [f64; 2],
@@ -142,7 +142,7 @@ impl SizingProblem {
         ]
     }
 
-    /// Step f: where the search over the gain begins, and what bounds it.
+    /// Step f: where the search over the gain begins, and what limits it.
     pub(super) fn search_decision(&self) -> SizingStep {
         let text = format!(
             "K_p starts at {} V/N and is halved while the hose is longer than {} m, but not below {} V/N; at {} V/N even a rigid transmission would be too slow (K_H infinite).",

@@ -4,13 +4,13 @@ use phea_hydraulics::stiffness::{LineLength, line_length_for_stiffness};
 use super::{Candidate, SizingProblem};
 use crate::quantity::DisplayUnit;
 
-/// What one uncertain number does to stiffness and length when it goes from low to high, all else
-/// nominal.
+/// The effect of one uncertain number on stiffness and length as it goes from low to high,
+/// everything else being nominal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Influence {
     /// What is varied, in words.
     pub quantity: &'static str,
-    /// The unit people read its values in.
+    /// The unit in which people read its values.
     pub unit: DisplayUnit,
     /// Its low, nominal and high value in SI.
     pub values: [f64; 3],

@@ -98,7 +98,7 @@ fn of_margins(wish: &MarginWish, of: MarginOf) -> Result<Limit, SpecificationPro
     strictest.map(Limit::Constant).ok_or(SpecificationProblem::Missing)
 }
 
-/// The limit that a wish in time makes, or the one given beside it, and what it does in time.
+/// The limit that follows from a wish in time, or the one given with it, and its response in time.
 pub(super) fn of_wish(
     wish: &ResponseWish,
     side: TrackingSide,

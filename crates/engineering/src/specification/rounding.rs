@@ -1,11 +1,11 @@
-//! Specifications that the converters of a sampled controller make: how much of their rounding may
-//! reach force and command.
+//! Specifications that follow from the converters of a sampled controller: how much their rounding
+//! may affect force and command.
 
 use phea_qft::specification::Specification;
 
 use crate::setup::Setup;
 
-/// A specification and what it is called.
+/// A specification and its name.
 pub(super) type NamedSpecification = (Specification, &'static str);
 
 /// The specifications of `allowed_force_error` and `allowed_command_error`, with bounds at these

@@ -21,13 +21,13 @@ use crate::setup::Setup;
 const DURATIONS_S: [f64; 3] = [0.5, 2.0, 10.0];
 const POINTS: usize = 4000;
 
-/// What the linear loop does after a unit step of its reference.
+/// The response of the linear loop to a unit step of its reference.
 pub(super) enum Prediction {
     /// It settles, or would.
     Step(StepMetrics, StepResponse),
     /// It grows without bound.
     Grows,
-    /// It has no response that is known.
+    /// Its response is not known.
     Unknown,
 }
 

@@ -1,5 +1,5 @@
 //! Which machines a verdict is tried on: the declared one, the worst plants of the audit made into
-//! rigs, and lumped lines with their waves.
+//! rigs, and the rig with waves in its lumped lines.
 
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
@@ -18,7 +18,7 @@ use crate::rig::{Rig, feed_forward};
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
 
-/// A machine and the plant that the linear loop has for it.
+/// A machine and its plant in the linear loop.
 #[derive(Clone, Debug)]
 pub(super) struct Tried {
     pub(super) what: String,
@@ -31,14 +31,14 @@ pub(super) struct Tried {
     pub(super) plant: Option<PlantMember>,
 }
 
-/// Part by which a parameter of the linear model may miss that of a plant.
+/// Relative deviation of a parameter of the linear model from that of a plant that is allowed.
 const CLOSE: f64 = 1e-3;
-/// Passes over all parameters of a plant, which move one another a little.
+/// Number of passes over all parameters of a plant, which affect each other slightly.
 const PASSES: usize = 8;
 /// Change of a number by which its effect on a parameter is measured.
 const NUDGE: f64 = 1e-3;
 
-/// The machines, and what was said of plants that none was found for.
+/// The machines, and the reasons for plants without one.
 pub(super) fn rigs(
     setup: &Setup<'_>,
     rig: &Rig,
@@ -89,8 +89,7 @@ pub(super) fn rigs(
     (rigs, missing)
 }
 
-/// The same rig, its lumped lines as transmission lines; `None` where nothing of them is lumped or
-/// long.
+/// The same rig with its lumped lines as transmission lines; `None` if no line is lumped and long.
 pub fn with_waves(project: &Project) -> Option<Project> {
     let mut other = project.clone();
     let line = &mut other.actuator.as_mut()?.line;
@@ -104,8 +103,8 @@ pub fn with_waves(project: &Project) -> Option<Project> {
     moved.then_some(other)
 }
 
-/// The rig with waves as it is: without uncertainty, and without the numbers that stand in the
-/// place of those that follow from it, which no machine has. `None` where it has no further waves.
+/// The declared rig with waves: without uncertainty, and without stated parameters that replace
+/// derived ones, which no machine has. `None` if it has no additional waves.
 pub(crate) fn waves_alone(setup: &Setup<'_>) -> Option<Project> {
     let rig = setup.rig().ok()?;
     let mut alone = with_waves(setup.project)?;
@@ -129,8 +128,8 @@ fn quarter_wave(rig: &Rig) -> Option<f64> {
     (longest > 0.0).then(|| FRAC_PI_2 / longest)
 }
 
-/// A project whose rig has these parameters: numbers of the project and of its operating point at
-/// their places, those of the linear model by what they follow from.
+/// A project whose rig has these parameters: numbers of the project and of its operating point
+/// directly, those of the linear model through the numbers that determine them.
 fn made(setup: &Setup<'_>, declared: &Rig, names: &[&str], values: &[f64]) -> Result<Project, String> {
     let project = setup.project;
     let is_linear = |name: &str| LINEAR_PARAMETERS.iter().any(|parameter| parameter.key.name == name);
@@ -175,7 +174,7 @@ fn derived(project: &Project, name: &str) -> Result<f64, String> {
     found.map(|parameter| parameter.derived).ok_or_else(|| format!("`{name}` is no parameter"))
 }
 
-/// The rig with what this parameter follows from changed by one secant step of its logarithm.
+/// The rig after one secant step, in the logarithm, of the numbers that determine this parameter.
 fn towards(project: &Project, name: &str, now: f64, wanted: f64) -> Result<Project, String> {
     use phea_dynamics::portable::{ln, pow};
     let nudged = scaled(project, name, 1.0 + NUDGE)?;
@@ -186,7 +185,7 @@ fn towards(project: &Project, name: &str, now: f64, wanted: f64) -> Result<Proje
     scaled(project, name, pow(wanted / now, 1.0 / slope))
 }
 
-/// The rig with what a parameter of the linear model follows from, times a factor.
+/// The rig with the numbers that determine a parameter of the linear model multiplied by a factor.
 fn scaled(project: &Project, name: &str, factor: f64) -> Result<Project, String> {
     let mut rig = project.clone();
     let Some(actuator) = rig.actuator.as_mut() else { return Err("there is no rig".to_string()) };
@@ -200,7 +199,8 @@ fn scaled(project: &Project, name: &str, factor: f64) -> Result<Project, String>
     Ok(rig)
 }
 
-/// The numbers that a parameter of the linear model follows from, and as little else as possible.
+/// The numbers that determine a parameter of the linear model and affect others as little as
+/// possible.
 fn behind<'a>(actuator: &'a mut DeclaredActuator, name: &str) -> Vec<&'a mut f64> {
     match name {
         "viscous_friction" => {

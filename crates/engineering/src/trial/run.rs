@@ -19,18 +19,18 @@ use crate::simulate::{ScenarioRun, SimulateError, simulate_project};
 use crate::source::Source;
 use phea_dynamics::watch::Watch;
 
-/// How a machine agrees with its linear loop, best first.
+/// How well a machine agrees with its linear loop, best first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Agreement {
-    /// It does what the linear loop predicts.
+    /// It behaves as the linear loop predicts.
     Agrees,
     /// It settles, but not as predicted, or meets a limit on the way.
     Differs,
-    /// It does not do what a verdict that is met promises.
+    /// It does not behave as a met verdict promises.
     Contradicts,
 }
 
-/// What a step of the reference does.
+/// Properties of a step response.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrialStep {
     /// Percent of the step.
@@ -39,7 +39,7 @@ pub struct TrialStep {
     pub settling_time_s: Option<f64>,
 }
 
-/// A step response from the step on: part of the step over time.
+/// A step response from the step on: share of the step over time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StepResponse {
     /// s.
@@ -53,16 +53,15 @@ pub struct StepResponse {
 pub struct TrialRun {
     /// Which machine.
     pub what: String,
-    /// The plant of the audit that it was made of, where it is one.
+    /// The plant of the audit from which it was made, if any.
     pub plant: Option<NamedPlant>,
     /// Its status: `completed`, or the word of what ended it.
     pub status: &'static str,
     /// The reference, from and to, N.
     pub reference_n: [f64; 2],
-    /// What the linear loop predicts; `None` where it has no response in closed form, or grows
-    /// without bound.
+    /// What the linear loop predicts; `None` if it has no known response, or grows without bound.
     pub linear: Option<TrialStep>,
-    /// What the machine does; `None` where it did not start.
+    /// The step response of the machine; `None` if it did not start.
     pub machine: Option<TrialStep>,
     /// The linear loop's response; empty if it is absent.
     pub linear_response: StepResponse,
@@ -72,29 +71,30 @@ pub struct TrialRun {
     pub agreement: Agreement,
     /// Why, in a sentence.
     pub reason: String,
-    /// Where the lines of a machine with waves begin to oscillate, rad/s; `None` of one without.
+    /// Where the lines of a machine with waves begin to oscillate, rad/s; `None` for one without.
     pub quarter_wave_rad_per_s: Option<f64>,
-    /// What was met on the way, as an occurrence is called: the limit of the command, cavitation,
-    /// an end stop.
+    /// Events on the way, by the names of occurrences: the limit of the command, cavitation, an end
+    /// stop.
     pub met: Vec<&'static str>,
 }
 
-/// The step over what the supply can push with.
+/// The step over the force that the supply can produce.
 const STEP_SHARE: f64 = 0.1;
-/// The reference stays within this part of that.
+/// The reference stays within this share of that force.
 const REACH: f64 = 0.8;
 /// Percent of the step within which the force counts as settled.
 pub(super) const BAND_PERCENT: f64 = 2.0;
 /// s, before the step.
 const BEFORE_S: f64 = 0.05;
-/// So many settling times of the linear loop are driven, within these bounds in s.
+/// Duration of a run in settling times of the linear loop, and its bounds in s.
 const SETTLING_TIMES: f64 = 5.0;
 const DURATION_S: [f64; 2] = [0.5, 20.0];
-/// Part of the step by which a force that has come to rest still moves.
+/// Motion of a force that counts as settled, as a share of the step.
 const STILL: f64 = 0.01;
 /// Factor by which settling times may differ.
 const SETTLING_RATIO: f64 = 2.0;
-/// Percent of the step by which an overshoot may differ: friction takes as much from a small step.
+/// Percent of the step by which an overshoot may differ: friction has an effect of this size on a
+/// small step.
 const OVERSHOOT_ROOM_PERCENT: f64 = 5.0;
 
 /// Drives one machine; `None` where the watcher stops it.
@@ -161,7 +161,7 @@ pub(super) fn run(
     }
 }
 
-/// From the force of the operating point, towards where there is room.
+/// A step from the force of the operating point, in the direction with more room.
 fn reference(project: &Project) -> Result<[f64; 2], ProcedureError> {
     let rig = Setup::rig_of(project)?;
     let components = rig.actuator.components();
@@ -173,7 +173,7 @@ fn reference(project: &Project) -> Result<[f64; 2], ProcedureError> {
     Ok([from, from + towards])
 }
 
-/// The project with one scenario: at rest under the first reference, then the second.
+/// The project with one scenario: in equilibrium under the first reference, then the second.
 fn stepped(project: &Project, [from, to]: [f64; 2], duration: f64) -> Project {
     let at = |at, value| Signal::Step { at, value, published: None };
     let scenario = Scenario {
@@ -195,7 +195,7 @@ fn step_of(driven: &ScenarioRun) -> TrialStep {
     }
 }
 
-/// The force from the step on, as part of it.
+/// The force from the step on, as a share of it.
 fn response_of(driven: &ScenarioRun, [from, to]: [f64; 2]) -> StepResponse {
     let rows = driven.record.times_s.iter().zip(driven.record.signal("force_n"));
     let after = rows.filter(|(time_s, _)| **time_s >= BEFORE_S);
@@ -204,7 +204,7 @@ fn response_of(driven: &ScenarioRun, [from, to]: [f64; 2]) -> StepResponse {
     StepResponse { times_s, values }
 }
 
-/// A machine that has no rest under its controller, or no equations.
+/// A machine without an equilibrium under its controller, or without equations.
 fn not_started(error: &SimulateError, view: &ProjectAudit) -> (Agreement, String) {
     let agreement =
         if view.audit.verdict == Verdict::Met { Agreement::Contradicts } else { Agreement::Differs };
@@ -260,7 +260,7 @@ fn judge(
     }
 }
 
-/// The limits and ends that the machine met, in the order in which it did.
+/// The limits and ends that the machine reached, in order.
 fn met(driven: &ScenarioRun) -> Vec<&'static str> {
     driven.occurrences.iter().filter(|one| one.begins).map(|one| one.kind).collect()
 }
@@ -270,7 +270,7 @@ pub fn percent_words(percent: f64) -> String {
     if percent < 0.01 { "0 %".to_string() } else { format!("{} %", significant(percent, 3)) }
 }
 
-/// Between what the force swings over the last fifth of the run, N.
+/// The range of the force over the last fifth of the run, N.
 fn swing(driven: &ScenarioRun) -> Option<[f64; 2]> {
     let force = driven.record.signal("force_n");
     let last = force.get(force.len() - force.len() / 5..)?;
@@ -305,7 +305,7 @@ fn most_overshoot_percent(problem: &RobustProblem) -> Option<f64> {
     Some(100.0 * exp(-PI * ratio))
 }
 
-/// The wall that may damp a wave in these lines, by what their models take; pipes have none.
+/// The wall that may damp a wave in these lines, if their models include one; pipes have none.
 fn damping_wall(project: &Project) -> &'static str {
     let Some(line) = project.actuator.as_ref().map(|actuator| &actuator.line) else { return "" };
     let mut models = [&line.a, &line.b]

@@ -94,7 +94,7 @@ impl Scan {
         peaks
     }
 
-    /// Adds a frequency at which the whole family is looked at.
+    /// Adds a frequency at which the whole family is examined.
     pub(super) fn add_frequency(
         &mut self,
         evaluator: &Evaluator<'_>,
@@ -128,7 +128,7 @@ impl Scan {
         worst
     }
 
-    /// Looks at one plant at all common frequencies and at its own.
+    /// Examines one plant at all common frequencies and at its own.
     pub(super) fn look_at(&mut self, evaluator: &Evaluator<'_>, plant: &ScannedPlant, index: usize) {
         let common = std::mem::take(&mut self.grid);
         let mut samples = Vec::with_capacity(common.len() + plant.features.frequencies.len());
@@ -151,7 +151,7 @@ impl Scan {
             }
         }
         samples.sort_by(|left, right| left.frequency.total_cmp(&right.frequency));
-        // a frequency that stands there twice would hide one side of a peak
+        // a duplicate frequency would hide one side of a peak
         samples.dedup_by(|next, kept| next.frequency == kept.frequency);
         if !plant.features.complete {
             samples = self.with_resonances(evaluator, plant, index, samples);
@@ -193,7 +193,7 @@ impl Scan {
         }
     }
 
-    /// Halves each interval over which the characteristic value turns too far to be without a
+    /// Halves each interval over which the characteristic value turns so far that it may contain a
     /// resonance.
     fn with_resonances(
         &mut self,
@@ -261,7 +261,8 @@ fn halved(behind: &PlantSample, ahead: &PlantSample) -> Option<f64> {
     (turns && behind.frequency < middle && middle < ahead.frequency).then_some(middle)
 }
 
-/// Whether a value turns too far from one point to the next to be without a resonance between them.
+/// Whether a value turns so far from one point to the next that there may be a resonance between
+/// them.
 pub(super) fn turns(from: Complex64, to: Complex64) -> bool {
     let (from, to) = (from / portable::magnitude(from), to / portable::magnitude(to));
     (from.conj() * to).re < TURN_COSINE

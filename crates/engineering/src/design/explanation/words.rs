@@ -1,4 +1,4 @@
-//! What a diagnosis found, in words.
+//! The findings of a diagnosis, in words.
 
 use std::f64::consts::TAU;
 use std::fmt::{Display, Formatter, Result};

@@ -1,4 +1,4 @@
-//! What a repair did, and what cannot be had, in sentences.
+//! What a repair did, and what cannot be achieved, in sentences.
 
 use phea_qft::design::ControllerChoice;
 use phea_qft::verification::Verdict;
@@ -11,7 +11,7 @@ use crate::quantity::significant;
 use crate::quantity::{DisplayUnit, FORCE, display};
 use crate::trial::{Agreement, TrialRun, agreement_word};
 
-/// What was taken in, what that came to, and what would help where it came to nothing.
+/// What was added, the result, and what would help if it failed.
 pub(super) fn sentences(
     project: &Project,
     repair: &Repair,
@@ -30,7 +30,7 @@ pub(super) fn sentences(
     sentences
 }
 
-/// What is known of the plants that were not taken in.
+/// What is known about the plants that were not added.
 fn whole(view: Option<&ProjectAudit>) -> String {
     let every = "with `line.model = \"transmission_line\"` waves are in every plant of the family";
     let told = match view {
@@ -48,7 +48,7 @@ fn whole(view: Option<&ProjectAudit>) -> String {
     )
 }
 
-/// What the loop of the first design does with the plant.
+/// The loop of the first design with the plant.
 fn before(view: &ProjectAudit) -> String {
     match view.audit.stability.verdict {
         Verdict::Met => format!(
@@ -83,7 +83,7 @@ fn outcome(repair: &Repair, found: &ProjectDesign) -> String {
     }
 }
 
-/// What the loop that was found does with the plant.
+/// The loop that was found with the plant.
 fn with_waves(status: RepairStatus, view: &ProjectAudit) -> String {
     let whose = if status == RepairStatus::Met { "with waves" } else { "with waves, the nearest controller" };
     match view.audit.stability.verdict {
@@ -159,7 +159,7 @@ fn help(project: &Project, repair: &Repair, told: &ProjectDesign) -> String {
     format!("what would help: {}", ways.join("; "))
 }
 
-/// What the machine does under the controller that comes nearest.
+/// The trial of the nearest controller on the machine.
 fn nearest(found: &ProjectDesign) -> Option<String> {
     let trial = found.trial.as_ref()?;
     let waves = trial.runs.iter().find(|run| run.quarter_wave_rad_per_s.is_some())?;
@@ -170,7 +170,8 @@ fn nearest(found: &ProjectDesign) -> Option<String> {
     ))
 }
 
-/// A machine with waves that contradicts, though its plant keeps to everything in the loop.
+/// A machine with waves that contradicts the design although its plant satisfies every
+/// specification in the loop.
 pub(super) fn stable_with_waves(run: &TrialRun) -> String {
     format!(
         "the linear loop satisfies every specification with waves in its plant too, and {} contradicts it all the same: so the waves are not the cause",
@@ -184,14 +185,14 @@ pub(super) fn nothing_found() -> String {
         .to_string()
 }
 
-/// What no linear plant explains, run by run, and what to change.
+/// Deviations that no linear plant explains, run by run, and what to change.
 pub(super) fn left<'a>(runs: impl Iterator<Item = &'a TrialRun>) -> Vec<String> {
     let contradicting = runs.filter(|run| run.agreement == Agreement::Contradicts);
     let others = contradicting.filter(|run| run.quarter_wave_rad_per_s.is_none());
     others.map(|run| format!("{}: {}: {}", run.what, run.reason, advice(run))).collect()
 }
 
-/// What to change, by what the run met.
+/// What to change, by the events of the run.
 fn advice(run: &TrialRun) -> String {
     let [from, to] = run.reference_n;
     let step = display((to - from).abs(), &FORCE, 3);

@@ -8,17 +8,17 @@ use crate::project::DeclaredElement;
 /// An element in an array, with the comments that belong to it.
 #[derive(Default)]
 struct ArrayElement {
-    /// Comments in lines of their own above it.
+    /// Comments on lines of their own above it.
     above: Vec<String>,
     text: String,
     /// The comment after it, with the space before the comment.
     behind: Option<String>,
 }
 
-/// Longest array that stands in one line.
+/// Longest array that is written on one line.
 const LINE_WIDTH: usize = 90;
 
-/// An array of nothing but new elements.
+/// An array of new elements only.
 pub(super) fn fresh(draft: &Draft<'_>) -> String {
     let rows = draft
         .elements
@@ -27,7 +27,7 @@ pub(super) fn fresh(draft: &Draft<'_>) -> String {
     array(rows.collect(), vec![], false, draft.newline)
 }
 
-/// The array with its elements changed: those that stay keep their text and their comments.
+/// The array with its elements changed: those that remain keep their text and their comments.
 pub(super) fn rewritten(draft: &Draft<'_>, range: &Range<usize>, written: &[WrittenElement<'_>]) -> String {
     let part = |from: usize, to: usize| draft.content.get(from..to).unwrap_or_default();
     let mut rows: Vec<Option<ArrayElement>> = Vec::new();
@@ -82,7 +82,7 @@ fn comments(gap: &str, behind_another: bool) -> (Option<String>, Vec<String>) {
     (behind, lines.filter_map(comment).map(|(_, text)| text.to_string()).collect())
 }
 
-/// The comment of a line in which nothing else stands but a comma and space, and what is before it.
+/// The comment of a line that otherwise contains only a comma and spaces, and the text before it.
 fn comment(line: &str) -> Option<(&str, &str)> {
     line.find('#').map(|at| line.trim_end().split_at(at))
 }

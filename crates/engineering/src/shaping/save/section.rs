@@ -11,7 +11,7 @@ struct ElementTable<'a> {
     text: String,
 }
 
-/// The tables with their elements changed: those that stay keep their text and the comments above
+/// The tables with their elements changed: those that remain keep their text and the comments above
 /// them.
 pub(super) fn rewritten(
     draft: &Draft<'_>,
@@ -59,7 +59,7 @@ fn fresh(draft: &Draft<'_>, element: &DeclaredElement) -> String {
     format!("[[{}.elements]]{}{lines}", draft.table, draft.newline)
 }
 
-/// An empty list, in the table's own header where it has one.
+/// An empty list, below the header of the table if it has one.
 fn none_left(draft: &Draft<'_>, table: &TreeNode, range: std::ops::Range<usize>) -> Vec<Replacement> {
     let Draft { newline, table: name, .. } = *draft;
     let header = draft.content.get(table.place.start..table.place.end).unwrap_or_default();

@@ -21,10 +21,10 @@ use crate::setup::Setup;
 use crate::simulate::SimulateError;
 use crate::simulate::bench::ControlledMachine;
 
-/// Fewest samples of a period: a command that changes its sign at each has no other form than a
-/// square.
+/// Least number of samples per period: a command that changes its sign at every sample can only be
+/// a square wave.
 const FEWEST_SAMPLES: f64 = 4.0;
-/// Part of what the supply can push with by which errors of the force are measured.
+/// The scale for errors of the force, as a share of the force that the supply can produce.
 const TYPICAL_PUSH: f64 = 0.1;
 
 /// Measures the response at these frequencies; ends before the first for which `goes_on` is false.
@@ -56,15 +56,15 @@ pub(super) fn measured(
     }
 }
 
-/// The reference at which the controller holds the force and the command of the rest: (F_0 +
-/// U_0/G(0))/F(0).
+/// The reference at which the controller maintains the force and the command of the equilibrium:
+/// (F_0 + U_0/G(0))/F(0).
 fn held_reference(rested: &RestedMachine, given: &Controller) -> Result<f64, SimulateError> {
     let gain = given.feedback.transfer_function()?.dc_gain();
     let error = if rested.rest.command == 0.0 { 0.0 } else { rested.rest.command / gain };
     Ok((rested.force_n + error) / given.prefilter.transfer_function()?.dc_gain())
 }
 
-/// What both kinds of loop need.
+/// The data that both kinds of loop need.
 struct LoopParts<'a> {
     rested: &'a RestedMachine,
     model: &'a LinearizedLoop,
@@ -197,23 +197,23 @@ fn whole(frequency: f64, sample_time_s: f64) -> Option<f64> {
     (samples >= FEWEST_SAMPLES).then(|| TAU / (samples * sample_time_s))
 }
 
-/// The loop that the linear plant closes, from reference to force; with lines in motion that of
-/// their response.
+/// The loop that the linear plant closes, from reference to force; with lines in motion, from their
+/// response.
 ///
 /// ```text
 /// T = F G P e^(-s d)/(1 + G P H e^(-s d))
 /// sampled: T = F G/(1 + L) hold P e^(-s d),    hold = (1 - e^(-s T))/(s T), L in z; the fundamental of what is between the samples.
 /// ```
 ///
-/// Where what is fed forward of a load that yields is fed back in samples, the command is more by
-/// P_z'/P_z, the plant in z with it and without.
+/// If the velocity of a load that can move is fed forward at the samples, the command grows by the
+/// factor P_z'/P_z, where these are the plants in z with and without it.
 struct LinearizedLoop {
     /// As the loop sees it.
     rig: Rig,
     compensation: Compensation,
-    /// The rig within its loop, sampled where that samples.
+    /// The rig within its loop, sampled if the loop is.
     member: Member,
-    /// The same without what is fed forward, where the loop has it.
+    /// The same without the feed-forward, if the loop includes one.
     alone: Option<Member>,
 }
 

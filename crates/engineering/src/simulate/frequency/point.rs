@@ -1,4 +1,4 @@
-//! One frequency: a machine on its linear orbit, shaken until what it answers has settled.
+//! One frequency: a machine on its linear orbit, excited until its response has settled.
 
 use std::f64::consts::TAU;
 
@@ -15,22 +15,22 @@ use crate::simulate::run::{COMMAND_LIMIT, StoppedRun};
 const WINDOW_S: f64 = 1.0;
 const WINDOW_PERIODS: f64 = 2.0;
 const MOST_WINDOWS: u32 = 60;
-/// What two windows may differ by.
+/// Largest difference between two windows.
 const CHANGE: f64 = 1e-4;
 /// Finest and coarsest tolerance of the integration.
 const TOLERANCE: [f64; 2] = [1e-10, 1e-6];
 
-/// What was measured at one frequency, and what the models say.
+/// The measured response at one frequency, and those of the models.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResponsePoint {
     /// rad/s.
     pub frequency_rad_per_s: f64,
-    /// Of the sine: V of the open loop, N of the closed one.
+    /// Amplitude of the sine: V in the open loop, N in the closed one.
     pub amplitude: f64,
-    /// Fundamental of the force over the amplitude: N/V or 1; not a number where no window was seen
-    /// to its end.
+    /// Fundamental of the force over the amplitude: N/V or 1; NaN if no window was completed.
     pub machine: Complex64,
-    /// The machine's own exact derivatives at its rest; absent where they are no linear system.
+    /// The response of the machine's exact derivatives at its equilibrium; absent where they do not
+    /// form a linear system.
     pub linearised_machine: Option<Complex64>,
     /// The linear plant, or the loop it closes.
     pub linear_plant: Complex64,
@@ -44,9 +44,9 @@ pub struct ResponsePoint {
     pub periods: u64,
     /// Steps of the integration.
     pub steps: u64,
-    /// What was reached on the way, and is no more the neighbourhood of the rest.
+    /// Events on the way, which lie outside the neighbourhood of the equilibrium.
     pub reached: Vec<&'static str>,
-    /// In a word, why the simulation ended where it did not settle.
+    /// In a word, why the simulation ended if it did not settle.
     pub ended: Option<&'static str>,
 }
 
@@ -71,8 +71,8 @@ pub(super) struct RestingRig<'a> {
     pub(super) settings: SimulationSettings,
 }
 
-/// What a machine answers to a sine of this frequency and amplitude. It begins on the orbit that
-/// its derivatives have, so that only what they leave out has to settle.
+/// The response of a machine to a sine of this frequency and amplitude. It begins on the orbit of
+/// its linearisation, so that only the nonlinear part has to settle.
 pub(super) fn respond(
     resting: RestingRig<'_>,
     sampler: Option<Box<dyn Sampler + '_>>,
@@ -101,8 +101,8 @@ pub(super) fn respond(
     answered.map_err(|error| SimulateError::Simulation { name: "frequency response".to_string(), error })
 }
 
-/// As fine as so small a sine needs: errors are measured by what is typical, which is larger than
-/// it.
+/// A tolerance fine enough for so small a sine, because errors are scaled by typical values, which
+/// are larger.
 pub(super) fn finer(settings: SimulationSettings, amplitude_over_typical: f64) -> SimulationSettings {
     let [finest, coarsest] = TOLERANCE;
     let wanted = (coarsest * amplitude_over_typical).clamp(finest, coarsest);
