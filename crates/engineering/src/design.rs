@@ -14,7 +14,6 @@ pub use factors::factored;
 pub use words::{objective_key, part_key, repair_key, repair_words, status_key};
 
 pub use explanation::Explanation;
-pub use factors::Factors;
 pub use problem::{design_options, design_problem};
 pub use repair::{Repair, RepairStatus};
 pub use rounding::Rounding;

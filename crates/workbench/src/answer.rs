@@ -5,6 +5,7 @@
 
 mod csv;
 mod number;
+mod object;
 mod pictures;
 
 use serde::Serialize;
@@ -12,6 +13,7 @@ use serde::Serialize;
 pub use crate::quantity::significant;
 pub(crate) use csv::{Csv, quoted};
 pub use number::Number;
+pub(crate) use object::{Json, Object};
 pub use phea_engineering::number_table::{NumberTable, TableFormat};
 
 pub use crate::source::OutputFile;

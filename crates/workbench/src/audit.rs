@@ -7,7 +7,7 @@ mod document;
 pub use phea_engineering::audit::*;
 
 pub(crate) use answer::json_on_machine;
-pub(crate) use answer::{VerifyAnswer, body};
+pub(crate) use answer::{body, stable};
 pub use answer::{files, json};
 pub(crate) use certificate::certificate_of;
 pub use certificate::{CERTIFICATE_FILE, CertificateError, check_certificate, read_certificate};

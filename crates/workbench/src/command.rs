@@ -18,9 +18,8 @@ pub use simulate::{FrequencyOptions, SimulateRequest};
 
 use phea_qft::family::Family;
 use phea_qft::verification::Verdict;
-use serde::Serialize;
 
-use crate::answer::{self, Answer, OutputFile};
+use crate::answer::{self, Answer, Object, OutputFile};
 use crate::audit::{self, CERTIFICATE_FILE, audit_project, certificate_of, outside, prove_audit};
 use crate::bench;
 use crate::campaign::Nowhere;
@@ -32,7 +31,7 @@ use crate::figure::FigureError;
 use crate::linearize::SweepRequest;
 use crate::project::{Loaded, Refusal};
 use crate::quantity::{self, LENGTH, VOLTAGE_PER_FORCE};
-use crate::report::{Decision, Report, report};
+use crate::report::{Report, report};
 use crate::rig::{RigError, sizing_problem};
 use crate::robust::robust_problem;
 use crate::setup::Setup;
@@ -410,19 +409,6 @@ pub fn compare_watched(
     })
 }
 
-#[derive(Serialize)]
-struct ReportBody {
-    summary: Vec<SummaryRow>,
-    figures: Vec<String>,
-    decision: Decision,
-}
-
-#[derive(Serialize)]
-struct SummaryRow {
-    name: &'static str,
-    text: String,
-}
-
 fn report_answer(
     source: &dyn Source,
     loaded: &Loaded,
@@ -440,11 +426,12 @@ fn report_answer(
     };
     let report = report(source, loaded, &setup, problem.as_ref(), watch)?;
     let text: String = report.summary.iter().map(|(name, value)| format!("{name}: {value}\n")).collect();
-    let body = ReportBody {
-        summary: report.summary.iter().map(|(name, text)| SummaryRow { name, text: text.clone() }).collect(),
-        figures: report.figures.iter().map(|figure| figure.name.clone()).collect(),
-        decision: report.decision.clone(),
-    };
+    let body = Object::new()
+        .each("summary", &report.summary, |(name, text)| {
+            Object::new().with("name", *name).with("text", text.as_str())
+        })
+        .each("figures", &report.figures, |figure| figure.name.as_str())
+        .with("decision", report.decision.json());
     Ok(Answer {
         text,
         json: answer::json("report", loaded, body),

@@ -10,7 +10,7 @@ mod together;
 
 pub use phea_engineering::simulate::*;
 
-pub(crate) use answer::{SimulateAnswer, body, compare_json, frequency_json, json};
+pub(crate) use answer::{body, compare_json, frequency_json, json};
 pub(crate) use document::{
     cause_words, coarse_sentence, compare_text, headline, measured, metrics_row, occurrence_sentences,
     published, published_row, text, windows,

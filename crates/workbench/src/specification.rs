@@ -4,4 +4,4 @@ mod answer;
 
 pub use phea_engineering::specification::*;
 
-pub(crate) use answer::{WishRow, text};
+pub(crate) use answer::{text, wish_row};

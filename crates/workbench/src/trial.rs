@@ -5,5 +5,5 @@ mod document;
 
 pub use phea_engineering::trial::*;
 
-pub(crate) use answer::{TrialAnswer, body};
+pub(crate) use answer::body;
 pub(crate) use document::{document, words};

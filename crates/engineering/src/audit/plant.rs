@@ -1,7 +1,6 @@
 //! The names of the plants of a family, for people and programs.
 
 use phea_qft::verification::PlantPoint;
-use serde::ser::{Serialize, SerializeMap, Serializer};
 
 use crate::project::Project;
 use crate::quantity::{Dimension, RATIO, display};
@@ -15,13 +14,16 @@ pub enum PlantNames {
     Measured(Vec<String>),
 }
 
-/// One plant with its names, as JSON shows it: an object of name to SI value.
+/// One plant with its names: of each number its name and SI value.
 #[derive(Clone, Debug, PartialEq)]
-pub struct NamedPlant(Vec<(String, NamedValue)>);
+pub struct NamedPlant(pub Vec<(String, NamedValue)>);
 
+/// What a plant is named by.
 #[derive(Clone, Debug, PartialEq)]
-enum NamedValue {
+pub enum NamedValue {
+    /// A parameter, SI.
     Number(f64),
+    /// A measurement, or where the plant comes from.
     Text(String),
 }
 
@@ -80,7 +82,7 @@ impl PlantNames {
         }
     }
 
-    /// The plant for JSON.
+    /// The plant with its names.
     pub fn named(&self, plant: &PlantPoint) -> NamedPlant {
         match self.numbers(plant) {
             Some(numbers) => NamedPlant(
@@ -91,18 +93,5 @@ impl PlantNames {
                 NamedPlant(vec![(key.to_string(), NamedValue::Text(self.text(plant)))])
             }
         }
-    }
-}
-
-impl Serialize for NamedPlant {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(Some(self.0.len()))?;
-        for (name, value) in &self.0 {
-            match value {
-                NamedValue::Number(number) => map.serialize_entry(name, number)?,
-                NamedValue::Text(text) => map.serialize_entry(name, text)?,
-            }
-        }
-        map.end()
     }
 }

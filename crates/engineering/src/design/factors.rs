@@ -1,50 +1,10 @@
-//! A transfer function by its factors: for programs, for people, and as a project declares it.
+//! A transfer function by its factors: for people, and as a project declares it.
 
 use num_complex::Complex64;
 use phea_dynamics::linear::{TimeDomain, TransferFunction};
-use serde::Serialize;
 
 use super::project::{RationalFunction, Transfer, Variable};
 use super::quantity::{RATIO, display};
-
-/// k Π(s - z)/Π(s - p) in JSON, or the same in z.
-///
-/// # Example
-/// ```
-/// use phea_dynamics::linear::TransferFunction;
-/// use phea_engineering::design::Factors;
-/// let integrator = TransferFunction::from_factors(0.001, vec![(-8.0).into()], vec![0.0.into()])?;
-/// let json = serde_json::to_string(&Factors::of(&integrator)).unwrap();
-/// let expected = "{\"gain\":0.001,\"zeros\":[[-8.0,0.0]],\"poles\":[[0.0,0.0]],\"domain\":\"s\",\
-///     \"sample_time_s\":null,\"sample_time_s_reason\":\"it is continuous\"}";
-/// assert_eq!(json, expected);
-/// # Ok::<(), phea_dynamics::linear::LinearError>(())
-/// ```
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Factors {
-    gain: f64,
-    zeros: Vec<[f64; 2]>,
-    poles: Vec<[f64; 2]>,
-    domain: &'static str,
-    sample_time_s: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    sample_time_s_reason: Option<&'static str>,
-}
-
-impl Factors {
-    /// Those of a transfer function.
-    pub fn of(function: &TransferFunction) -> Factors {
-        let sample_time_s = sample_time_s(function);
-        Factors {
-            gain: function.gain(),
-            zeros: pairs(function.zeros()),
-            poles: pairs(function.poles()),
-            domain: variable(function).name(),
-            sample_time_s,
-            sample_time_s_reason: sample_time_s.is_none().then_some("it is continuous"),
-        }
-    }
-}
 
 /// As [controller] or [prefilter] declares it.
 pub(super) fn declared(function: &TransferFunction) -> Transfer {
@@ -133,6 +93,5 @@ mod tests {
         let sampled = pole.in_domain(TimeDomain::Discrete { sample_time_s: 0.001 }).unwrap();
         assert_eq!(declared(&sampled).ratio.domain, Some(Variable::Z));
         assert_eq!(factored(&sampled, 2), "0.5 / (z - 0.9)");
-        assert_eq!(Factors::of(&sampled).sample_time_s, Some(0.001));
     }
 }

@@ -3,10 +3,9 @@
 mod layout;
 
 use phea_qft::proof::{Certificate, CertificateSide, Claim, LimitedLoop, Rejection, check};
-use serde::Serialize;
 
 use super::{ProjectAudit, closed_loop_key};
-use crate::answer::{Answer, OutputFile};
+use crate::answer::{Answer, Object, OutputFile, SCHEMA};
 use crate::project::Loaded;
 pub use layout::CertificateError;
 use layout::File;
@@ -47,21 +46,6 @@ pub fn check_certificate(text: &str) -> Result<Answer, CertificateError> {
     Ok(answer(&title, &project_sha256, &certificate, rejected.as_ref()))
 }
 
-#[derive(Serialize)]
-struct CheckBody<'a> {
-    schema: u32,
-    version: &'static str,
-    command: &'static str,
-    title: &'a str,
-    project_sha256: &'a str,
-    valid: bool,
-    claims: Vec<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    rejected_claim: Option<usize>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    reason: Option<String>,
-}
-
 fn answer(
     title: &str,
     project_sha256: &str,
@@ -84,19 +68,17 @@ fn answer(
         }
         None => text.push_str(&format!("Every claim holds: {}.\n", claims.len())),
     }
-    let body = CheckBody {
-        schema: crate::answer::SCHEMA,
-        version: env!("CARGO_PKG_VERSION"),
-        command: "check-certificate",
-        title,
-        project_sha256,
-        valid: rejected.is_none(),
-        claims,
-        rejected_claim: rejected.map(|(number, _)| *number),
-        reason: rejected.map(|(_, reason)| reason.to_string()),
-    };
-    let json = serde_json::to_string_pretty(&body).unwrap_or_default();
-    Answer { text, json, files: vec![], affirmative: rejected.is_none() }
+    let body = Object::new()
+        .with("schema", SCHEMA)
+        .with("version", env!("CARGO_PKG_VERSION"))
+        .with("command", "check-certificate")
+        .with("title", title)
+        .with("project_sha256", project_sha256)
+        .with("valid", rejected.is_none())
+        .with("claims", claims)
+        .maybe("rejected_claim", rejected.map(|(number, _)| *number))
+        .maybe("reason", rejected.map(|(_, reason)| reason.to_string()));
+    Answer { text, json: body.print(), files: vec![], affirmative: rejected.is_none() }
 }
 
 /// At which frequencies something is claimed.

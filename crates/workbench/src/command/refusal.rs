@@ -1,31 +1,9 @@
 //! What a program is told where a command has no answer.
 
-use serde::Serialize;
-
 use super::{CommandError, Request};
-use crate::answer;
-use crate::project::{Loaded, Refusal, Severity, sha256};
+use crate::answer::{Object, SCHEMA};
+use crate::project::{Diagnostic, Loaded, Refusal, Severity, sha256};
 use crate::source::Source;
-
-#[derive(Serialize)]
-struct RefusalBody<'a> {
-    schema: u32,
-    version: &'static str,
-    command: Option<&'a str>,
-    project_sha256: Option<&'a str>,
-    errors: Vec<RefusalRow<'a>>,
-}
-
-#[derive(Serialize)]
-struct RefusalRow<'a> {
-    severity: &'static str,
-    message: &'a str,
-    file: Option<&'a str>,
-    line: Option<usize>,
-    column: Option<usize>,
-    expected: Option<&'a str>,
-    help: Option<&'a str>,
-}
 
 /// The JSON object of a command whose project, at `path`, was refused.
 pub fn refusal_json(source: &dyn Source, path: &str, request: &Request, refusal: &Refusal) -> String {
@@ -48,18 +26,19 @@ pub fn files_json(command: &str, project_sha256: Option<&str>, refusal: &Refusal
     refusal_body(Some(command), project_sha256, refusal_rows(refusal))
 }
 
-fn refusal_rows(refusal: &Refusal) -> Vec<RefusalRow<'_>> {
+fn refusal_rows(refusal: &Refusal) -> Vec<Object> {
+    refusal.diagnostics.iter().map(refusal_row).collect()
+}
+
+fn refusal_row(found: &Diagnostic) -> Object {
     let place = |number: usize| Some(number).filter(|number| *number > 0);
-    let rows = refusal.diagnostics.iter().map(|diagnostic| RefusalRow {
-        severity: if diagnostic.severity == Severity::Error { "error" } else { "warning" },
-        message: &diagnostic.message,
-        file: Some(&diagnostic.file),
-        line: place(diagnostic.line),
-        column: place(diagnostic.column),
-        expected: diagnostic.expected.as_deref(),
-        help: diagnostic.help.as_deref(),
-    });
-    rows.collect()
+    let severity = if found.severity == Severity::Error { "error" } else { "warning" };
+    let row = Object::new().with("severity", severity).with("message", found.message.as_str());
+    row.with("file", found.file.as_str())
+        .with("line", place(found.line))
+        .with("column", place(found.column))
+        .with("expected", found.expected.as_deref())
+        .with("help", found.help.as_deref())
 }
 
 /// The JSON object of a command that failed beyond its project file; `command` is absent where the command line is none.
@@ -70,20 +49,18 @@ fn refusal_rows(refusal: &Refusal) -> Vec<RefusalRow<'_>> {
 /// assert!(json.contains("\"command\": \"size\"") && json.contains("permission denied"));
 /// ```
 pub fn failure_json(command: Option<&str>, project_sha256: Option<&str>, message: &str) -> String {
-    let error = RefusalRow {
-        severity: "error",
-        message,
-        file: None,
-        line: None,
-        column: None,
-        expected: None,
-        help: None,
-    };
-    refusal_body(command, project_sha256, vec![error])
+    let row = Object::new().with("severity", "error").with("message", message);
+    let nowhere = ["file", "line", "column", "expected", "help"];
+    let row = nowhere.into_iter().fold(row, |row, key| row.with(key, None::<&str>));
+    refusal_body(command, project_sha256, vec![row])
 }
 
-fn refusal_body(command: Option<&str>, project_sha256: Option<&str>, errors: Vec<RefusalRow<'_>>) -> String {
-    let version = env!("CARGO_PKG_VERSION");
-    let body = RefusalBody { schema: answer::SCHEMA, version, command, project_sha256, errors };
-    serde_json::to_string_pretty(&body).unwrap_or_default()
+fn refusal_body(command: Option<&str>, project_sha256: Option<&str>, errors: Vec<Object>) -> String {
+    let body = Object::new()
+        .with("schema", SCHEMA)
+        .with("version", env!("CARGO_PKG_VERSION"))
+        .with("command", command)
+        .with("project_sha256", project_sha256)
+        .with("errors", errors);
+    body.print()
 }

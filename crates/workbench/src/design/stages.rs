@@ -6,7 +6,7 @@ use phea_dynamics::portable;
 use phea_qft::bound::Placement;
 use phea_qft::specification::Requirement;
 
-use super::Factors;
+use super::answer::factors;
 use super::{AuditedController, ProjectDesign, Repair};
 use super::{DESIGNED_CERTIFICATE, DESIGNED_PROJECT, NEAREST_PROJECT, structure_words};
 use crate::answer::{Csv, OutputFile};
@@ -63,7 +63,7 @@ pub fn stage_files(
 }
 
 fn transfer_file(name: &str, function: &TransferFunction) -> OutputFile {
-    OutputFile::new(name, serde_json::to_string_pretty(&Factors::of(function)).unwrap_or_default())
+    OutputFile::new(name, factors(function).print())
 }
 
 fn drawn(problem: &RobustProblem) -> Vec<f64> {

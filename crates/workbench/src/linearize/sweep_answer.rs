@@ -1,106 +1,56 @@
 //! What a sweep says to people and to programs, and its figure.
 
-use serde::Serialize;
-
 use super::root_list;
 use super::{Sweep, SweepPoint, Swept};
-use crate::answer::{Csv, OutputFile, significant};
+use crate::answer::{Csv, Object, OutputFile, significant};
 use crate::document::Table;
 use crate::figure::{Figure, PoleSweepInput, PoleSweepPoint, Words, pole_sweep};
 use crate::quantity::DisplayUnit;
 
-/// A value of the swept key in the JSON of `linearize`.
-#[derive(Serialize)]
-pub(super) struct SweepRow {
-    /// SI.
-    value: f64,
-    stiffness: Option<SweptStiffness>,
-    poles: Option<SweptPoles>,
-    resonance: Option<SweptResonance>,
-    bandwidth_rad_per_s: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    bandwidth_rad_per_s_reason: Option<&'static str>,
-    passive: Option<Passive>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    reason: Option<String>,
-}
-
-#[derive(Serialize)]
-struct SweptStiffness {
-    minimum_n_per_m: f64,
-    maximum_n_per_m: f64,
-}
-
-#[derive(Serialize)]
-struct SweptPoles {
-    plant: Vec<[f64; 2]>,
-    derived: Vec<[f64; 2]>,
-}
-
-#[derive(Serialize)]
-struct SweptResonance {
-    frequency_rad_per_s: f64,
-    damping_ratio: f64,
-}
-
-#[derive(Serialize)]
-struct Passive {
-    open_loop: bool,
-    closed_loop: Option<bool>,
-}
-
 /// What was swept, in the JSON of `linearize`.
-#[derive(Serialize)]
-pub(super) struct SweptRow<'a> {
-    key: &'a str,
-    unit: &'static str,
-    points: usize,
-    spacing: &'static str,
-    plant_follows: bool,
+pub(super) fn head(sweep: &Sweep) -> Object {
+    Object::new()
+        .with("key", sweep.path.as_str())
+        .with("unit", sweep.si)
+        .with("points", sweep.points.len())
+        .with("spacing", if sweep.by_ratio { "log" } else { "linear" })
+        .with("plant_follows", sweep.plant_follows)
 }
 
-pub(super) fn head(sweep: &Sweep) -> SweptRow<'_> {
-    SweptRow {
-        key: &sweep.path,
-        unit: sweep.si,
-        points: sweep.points.len(),
-        spacing: if sweep.by_ratio { "log" } else { "linear" },
-        plant_follows: sweep.plant_follows,
-    }
-}
-
-pub(super) fn rows(sweep: &Sweep) -> Vec<SweepRow> {
+/// What came of each value.
+pub(super) fn rows(sweep: &Sweep) -> Vec<Object> {
     sweep.points.iter().map(row).collect()
 }
 
-fn row(point: &SweepPoint) -> SweepRow {
+fn row(point: &SweepPoint) -> Object {
     let found = point.found.as_ref().ok();
-    let pairs = |function: &phea_dynamics::linear::TransferFunction| {
-        function.poles().iter().map(|pole| [pole.re, pole.im]).collect()
-    };
     let models = found.map(|found| &found.linearization);
-    SweepRow {
-        value: point.value,
-        stiffness: models.map(|models| SweptStiffness {
-            minimum_n_per_m: models.stiffness[0].minimum,
-            maximum_n_per_m: models.stiffness[0].maximum,
-        }),
-        poles: models.map(|models| SweptPoles {
-            plant: pairs(&models.plant.command),
-            derived: pairs(&models.derived_full.command),
-        }),
-        resonance: found.and_then(resonance).map(|[frequency_rad_per_s, damping_ratio]| SweptResonance {
-            frequency_rad_per_s,
-            damping_ratio,
-        }),
-        bandwidth_rad_per_s: found.and_then(|found| found.bandwidth_rad_per_s.ok()),
-        bandwidth_rad_per_s_reason: found.and_then(|found| found.bandwidth_rad_per_s.err()),
-        passive: models.map(|models| Passive {
-            open_loop: models.open_loop.passivity.passive,
-            closed_loop: models.closed_loop.as_ref().map(|view| view.passivity.passive),
-        }),
-        reason: point.found.as_ref().err().cloned(),
-    }
+    let stiffness = models.map(|models| {
+        Object::new()
+            .with("minimum_n_per_m", models.stiffness[0].minimum)
+            .with("maximum_n_per_m", models.stiffness[0].maximum)
+    });
+    let poles = models.map(|models| {
+        Object::new()
+            .with("plant", models.plant.command.poles())
+            .with("derived", models.derived_full.command.poles())
+    });
+    let resonance = found.and_then(resonance).map(|[frequency, damping_ratio]| {
+        Object::new().with("frequency_rad_per_s", frequency).with("damping_ratio", damping_ratio)
+    });
+    let passive = models.map(|models| {
+        let closed_loop = models.closed_loop.as_ref().map(|view| view.passivity.passive);
+        Object::new().with("open_loop", models.open_loop.passivity.passive).with("closed_loop", closed_loop)
+    });
+    Object::new()
+        .with("value", point.value)
+        .with("stiffness", stiffness)
+        .with("poles", poles)
+        .with("resonance", resonance)
+        .with("bandwidth_rad_per_s", found.and_then(|found| found.bandwidth_rad_per_s.ok()))
+        .maybe("bandwidth_rad_per_s_reason", found.and_then(|found| found.bandwidth_rad_per_s.err()))
+        .with("passive", passive)
+        .maybe("reason", point.found.as_ref().err().map(String::as_str))
 }
 
 /// Frequency and damping ratio of the resonance.

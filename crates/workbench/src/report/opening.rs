@@ -6,12 +6,12 @@ mod side;
 mod verdicts;
 
 use maud::{Markup, PreEscaped, html};
-use serde::Serialize;
 
 use super::chapter::{Chapter, place};
 use super::driven::{DESIGNED, GIVEN, MachineChapter};
 use super::judged::Judged;
 use super::{Facts, NOMINAL_LOOP};
+use crate::answer::Object;
 use crate::audit::verdict_key;
 use crate::design::explanation_words;
 use crate::document::{coded, prose};
@@ -36,36 +36,51 @@ pub(super) struct Contents<'a> {
 }
 
 /// What the page says, for programs.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Decision {
     /// The controller that the project gives; absent where it gives none.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub given: Option<Decided>,
     /// The one that was designed.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub designed: Option<Decided>,
     /// What to do next, a sentence each.
     pub next: Vec<String>,
 }
 
 /// What is known of one controller; absent is what nobody asked for.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Decided {
     /// Of the family: `met`, `violated`, `not_proven`.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub verdict: Option<&'static str>,
     /// The same of each specification, in file order.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub specifications: Vec<&'static str>,
     /// Whether all of that is proven for every plant and every frequency; absent where no proof was attempted.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub proven: Option<bool>,
     /// What the machine did with the verdict: `agrees`, `differs`, `contradicts`.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub machine: Option<&'static str>,
     /// Whether every step on the machine kept to what was wished in time.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub wishes_kept: Option<bool>,
+}
+
+impl Decision {
+    /// For programs.
+    pub(crate) fn json(&self) -> Object {
+        Object::new()
+            .maybe("given", self.given.as_ref().map(Decided::json))
+            .maybe("designed", self.designed.as_ref().map(Decided::json))
+            .with("next", self.next.as_slice())
+    }
+}
+
+impl Decided {
+    fn json(&self) -> Object {
+        let specifications = self.specifications.as_slice();
+        Object::new()
+            .maybe("verdict", self.verdict)
+            .maybe("specifications", Some(specifications).filter(|all| !all.is_empty()))
+            .maybe("proven", self.proven)
+            .maybe("machine", self.machine)
+            .maybe("wishes_kept", self.wishes_kept)
+    }
 }
 
 /// The page as the first chapter, and what it says.

@@ -6,6 +6,6 @@ mod text;
 
 use phea_engineering::simulate::*;
 
-pub(crate) use answer::{FrequencyAnswer, body, files};
+pub(crate) use answer::{body, files};
 pub(crate) use figures::pictures;
 pub(crate) use text::text;

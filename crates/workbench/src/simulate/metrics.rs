@@ -1,8 +1,7 @@
 //! The metrics of an event: words, units and digits of each, for tables and for answers.
 
-use serde::ser::{Serialize, SerializeMap, Serializer};
-
 use super::{Metrics, NOT_SETTLED};
+use crate::answer::Object;
 use crate::document::Cell;
 use crate::quantity::DisplayUnit;
 
@@ -69,18 +68,10 @@ fn small_as_zero(error_n: f64) -> f64 {
 }
 
 /// The metrics in an answer: of each its value, and the reason where there is none.
-pub(crate) struct MetricsRow<'a>(pub(crate) &'a Metrics);
-
-impl Serialize for MetricsRow<'_> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(None)?;
-        for (place, (name, measured)) in self.0.named().into_iter().enumerate() {
-            map.serialize_entry(name, &measured.ok())?;
-            map.serialize_entry(&format!("{name}_reason"), &measured.err())?;
-            if place == SETTLING {
-                map.serialize_entry("settling_band_percent", &self.0.settling_band_percent)?;
-            }
-        }
-        map.end()
-    }
+pub(crate) fn metrics_row(metrics: &Metrics) -> Object {
+    let named = metrics.named().into_iter().enumerate();
+    named.fold(Object::new(), |row, (place, (name, measured))| {
+        let band = (place == SETTLING).then_some(metrics.settling_band_percent);
+        row.told(name, measured).maybe("settling_band_percent", band)
+    })
 }

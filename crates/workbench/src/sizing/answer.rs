@@ -1,128 +1,64 @@
-use serde::Serialize;
-
 use super::model_name;
 use super::{BoreVerdict, Candidate, Consequence, Sizing};
-use crate::answer::{self, Csv, Number, OutputFile, quoted};
+use crate::answer::{self, Csv, Object, OutputFile, quoted};
 use crate::project::Loaded;
-
-#[derive(Serialize)]
-struct SizeAnswer<'a> {
-    bore_range_m: [f64; 2],
-    pole_gain_v_per_n: f64,
-    bores: Vec<BoreRow<'a>>,
-    candidates: Vec<CandidateRow<'a>>,
-    decisions: Vec<DecisionRow<'a>>,
-    influences: Vec<InfluenceRow<'a>>,
-}
-
-#[derive(Serialize)]
-struct BoreRow<'a> {
-    name: &'a str,
-    bore_m: f64,
-    oil_velocity_m_per_s: f64,
-    verdict: &'static str,
-}
-
-#[derive(Serialize)]
-struct CandidateRow<'a> {
-    hose: &'a str,
-    compliance: &'static str,
-    branch: &'static str,
-    bore_m: f64,
-    length_m: Number,
-    stiffness_n_per_m: Number,
-    stiffness_maximum_n_per_m: Number,
-    proportional_gain_v_per_n: Number,
-    oil_velocity_m_per_s: f64,
-    surge_pressure_pa: f64,
-    time_constant_s: [Number; 2],
-    steady_state_gain: [Number; 2],
-    accepted: bool,
-    /// Everything that speaks against it, rejections first.
-    reasons: Vec<&'a str>,
-    rejections: Vec<&'a str>,
-    warnings: Vec<&'a str>,
-    iterations: Vec<IterationRow>,
-}
-
-#[derive(Serialize)]
-struct IterationRow {
-    proportional_gain_v_per_n: f64,
-    stiffness_n_per_m: Number,
-    length_m: Number,
-}
-
-#[derive(Serialize)]
-struct DecisionRow<'a> {
-    step: &'a str,
-    text: &'a str,
-}
-
-#[derive(Serialize)]
-struct InfluenceRow<'a> {
-    quantity: &'a str,
-    values: [f64; 3],
-    stiffness_n_per_m: [Number; 3],
-    length_m: [Number; 3],
-}
 
 /// The JSON object of `size`.
 pub fn json(loaded: &Loaded, sizing: &Sizing) -> String {
-    let bores = sizing.bores.iter().map(|bore| BoreRow {
-        name: &bore.name,
-        bore_m: bore.bore_m,
-        oil_velocity_m_per_s: bore.oil_velocity_m_per_s,
-        verdict: verdict_name(bore.verdict),
-    });
-    let influences = sizing.influences.iter().map(|influence| InfluenceRow {
-        quantity: influence.quantity,
-        values: influence.values,
-        stiffness_n_per_m: influence.stiffness_n_per_m.map(Number),
-        length_m: influence.length_m.map(Number),
-    });
-    let decisions =
-        sizing.decisions.iter().map(|decision| DecisionRow { step: decision.step, text: &decision.text });
-    let body = SizeAnswer {
-        bore_range_m: sizing.bore_range_m,
-        pole_gain_v_per_n: sizing.pole_gain_v_per_n,
-        bores: bores.collect(),
-        candidates: sizing.candidates.iter().map(candidate_row).collect(),
-        decisions: decisions.collect(),
-        influences: influences.collect(),
-    };
+    let body = Object::new()
+        .with("bore_range_m", sizing.bore_range_m)
+        .with("pole_gain_v_per_n", sizing.pole_gain_v_per_n)
+        .each("bores", &sizing.bores, |bore| {
+            Object::new()
+                .with("name", bore.name.as_str())
+                .with("bore_m", bore.bore_m)
+                .with("oil_velocity_m_per_s", bore.oil_velocity_m_per_s)
+                .with("verdict", verdict_name(bore.verdict))
+        })
+        .each("candidates", &sizing.candidates, candidate)
+        .each("decisions", &sizing.decisions, |decision| {
+            Object::new().with("step", decision.step).with("text", decision.text.as_str())
+        })
+        .each("influences", &sizing.influences, |influence| {
+            Object::new()
+                .with("quantity", influence.quantity)
+                .with("values", influence.values)
+                .with("stiffness_n_per_m", influence.stiffness_n_per_m)
+                .with("length_m", influence.length_m)
+        });
     answer::json("size", loaded, body)
 }
 
-fn candidate_row(candidate: &Candidate) -> CandidateRow<'_> {
+/// Of its reasons those that reject it come first.
+fn candidate(candidate: &Candidate) -> Object {
     let branch = &candidate.branch;
-    let iterations = branch.steps.iter().map(|step| IterationRow {
-        proportional_gain_v_per_n: step.gain_v_per_n,
-        stiffness_n_per_m: Number(step.stiffness_n_per_m),
-        length_m: Number(step.length_m),
-    });
     let of = |severity| {
-        let same = candidate.findings.iter().filter(|finding| finding.severity == severity);
-        same.map(|finding| finding.text.as_str()).collect()
+        let same = candidate.findings.iter().filter(move |finding| finding.severity == severity);
+        same.map(|finding| finding.text.as_str()).collect::<Vec<_>>()
     };
-    CandidateRow {
-        hose: &candidate.option.name,
-        compliance: model_name(branch.model),
-        branch: branch_name(branch.by_gain),
-        bore_m: candidate.option.hose.bore,
-        length_m: Number(branch.length_m),
-        stiffness_n_per_m: Number(branch.stiffness.minimum),
-        stiffness_maximum_n_per_m: Number(branch.stiffness.maximum),
-        proportional_gain_v_per_n: Number(branch.gain_v_per_n),
-        oil_velocity_m_per_s: candidate.oil_velocity_m_per_s,
-        surge_pressure_pa: candidate.surge_pressure_pa,
-        time_constant_s: candidate.time_constant_s.map(Number),
-        steady_state_gain: candidate.steady_state_gain.map(Number),
-        accepted: candidate.accepted(),
-        reasons: candidate.findings.iter().map(|finding| finding.text.as_str()).collect(),
-        rejections: of(Consequence::Rejects),
-        warnings: of(Consequence::Warns),
-        iterations: iterations.collect(),
-    }
+    Object::new()
+        .with("hose", candidate.option.name.as_str())
+        .with("compliance", model_name(branch.model))
+        .with("branch", branch_name(branch.by_gain))
+        .with("bore_m", candidate.option.hose.bore)
+        .with("length_m", branch.length_m)
+        .with("stiffness_n_per_m", branch.stiffness.minimum)
+        .with("stiffness_maximum_n_per_m", branch.stiffness.maximum)
+        .with("proportional_gain_v_per_n", branch.gain_v_per_n)
+        .with("oil_velocity_m_per_s", candidate.oil_velocity_m_per_s)
+        .with("surge_pressure_pa", candidate.surge_pressure_pa)
+        .with("time_constant_s", candidate.time_constant_s)
+        .with("steady_state_gain", candidate.steady_state_gain)
+        .with("accepted", candidate.accepted())
+        .each("reasons", &candidate.findings, |finding| finding.text.as_str())
+        .with("rejections", of(Consequence::Rejects))
+        .with("warnings", of(Consequence::Warns))
+        .each("iterations", &branch.steps, |step| {
+            Object::new()
+                .with("proportional_gain_v_per_n", step.gain_v_per_n)
+                .with("stiffness_n_per_m", step.stiffness_n_per_m)
+                .with("length_m", step.length_m)
+        })
 }
 
 fn verdict_name(verdict: BoreVerdict) -> &'static str {

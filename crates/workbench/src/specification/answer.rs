@@ -1,55 +1,30 @@
 use phea_dynamics::time_response::Settling;
-use serde::Serialize;
 
 use super::CheckedWish;
-use crate::answer::significant;
+use crate::answer::{Object, significant};
 
 /// A wish in time in the JSON of `check`.
-#[derive(Serialize)]
-pub(crate) struct WishRow {
-    specification: usize,
-    limit: &'static str,
-    wished: StepLimitAnswer,
-    reached: StepLimitAnswer,
-    met: bool,
-}
-
-#[derive(Serialize)]
-struct StepLimitAnswer {
-    overshoot_percent: f64,
-    settling_time_s: Option<f64>,
-    settling_band_percent: f64,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    reason: Option<String>,
-}
-
-impl WishRow {
-    pub(crate) fn of(wish: &CheckedWish) -> WishRow {
-        let (wished, reached) = (wish.check.wished, wish.check.reached);
-        let reason = match reached.settling {
-            Settling::Settled { .. } => None,
-            Settling::NotSettled { deviation_percent } => {
-                Some(format!("does not settle: it stays {} % off", significant(deviation_percent, 3)))
-            }
-        };
-        WishRow {
-            specification: wish.number,
-            limit: wish.key,
-            wished: StepLimitAnswer {
-                overshoot_percent: wished.overshoot_percent,
-                settling_time_s: Some(wished.settling_time_s),
-                settling_band_percent: wished.settling_band_percent,
-                reason: None,
-            },
-            reached: StepLimitAnswer {
-                overshoot_percent: reached.overshoot_percent,
-                settling_time_s: reached.settling.time_s(),
-                settling_band_percent: wished.settling_band_percent,
-                reason,
-            },
-            met: wish.is_met(),
+pub(crate) fn wish_row(wish: &CheckedWish) -> Object {
+    let (wished, reached) = (wish.check.wished, wish.check.reached);
+    let step = |overshoot_percent: f64, settling_time_s: Option<f64>| {
+        Object::new()
+            .with("overshoot_percent", overshoot_percent)
+            .with("settling_time_s", settling_time_s)
+            .with("settling_band_percent", wished.settling_band_percent)
+    };
+    let reason = match reached.settling {
+        Settling::Settled { .. } => None,
+        Settling::NotSettled { deviation_percent } => {
+            Some(format!("does not settle: it stays {} % off", significant(deviation_percent, 3)))
         }
-    }
+    };
+    let reached = step(reached.overshoot_percent, reached.settling.time_s());
+    Object::new()
+        .with("specification", wish.number)
+        .with("limit", wish.key)
+        .with("wished", step(wished.overshoot_percent, Some(wished.settling_time_s)))
+        .with("reached", reached.maybe("reason", reason))
+        .with("met", wish.is_met())
 }
 
 /// The section of `check` on wishes in time, with an empty line below; nothing where there is no wish.

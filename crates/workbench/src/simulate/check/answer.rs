@@ -1,87 +1,32 @@
 //! What a check says, in an answer and to people.
 
-use serde::Serialize;
-
-use super::{Difference, MetricDifferences, ToleranceCheck};
-use crate::answer::significant;
-use crate::simulate::Measured;
-
-#[derive(Serialize)]
-pub(crate) struct CheckRow {
-    tolerance: f64,
-    status: &'static str,
-    look_s: f64,
-    force_difference_n: Option<f64>,
-    force_difference_n_reason: Option<&'static str>,
-    part_of_peak: Option<f64>,
-    part_of_peak_reason: Option<&'static str>,
-    signals: Vec<SignalRow>,
-    events: Vec<EventCheckAnswer>,
-}
-
-#[derive(Serialize)]
-struct SignalRow {
-    name: &'static str,
-    difference: f64,
-    time_s: f64,
-    peak: f64,
-    part_of_peak: f64,
-}
-
-#[derive(Serialize)]
-struct EventCheckAnswer {
-    kind: &'static str,
-    time_s: f64,
-    metrics: Vec<MetricCheckAnswer>,
-}
-
-#[derive(Serialize)]
-struct MetricCheckAnswer {
-    name: &'static str,
-    difference: Option<f64>,
-    difference_reason: Option<&'static str>,
-}
-
-const NO_LOOKS: &str = "the two runs have no look in common";
+use super::{Difference, ToleranceCheck};
+use crate::answer::{Object, significant};
 
 /// The object `check` of a scenario.
-pub(crate) fn row(check: &ToleranceCheck) -> CheckRow {
-    let force = check.force.as_ref();
-    let missing = force.is_none().then_some(NO_LOOKS);
-    CheckRow {
-        tolerance: check.tolerance,
-        status: check.stopped.map_or("completed", |stopped| stopped.word),
-        look_s: check.look_s,
-        force_difference_n: force.map(|force| force.difference),
-        force_difference_n_reason: missing,
-        part_of_peak: force.map(Difference::part_of_peak),
-        part_of_peak_reason: missing,
-        signals: check.signals.iter().map(signal).collect(),
-        events: check.metrics.iter().map(event).collect(),
-    }
-}
-
-fn signal(found: &Difference) -> SignalRow {
-    SignalRow {
-        name: found.name,
-        difference: found.difference,
-        time_s: found.time_s,
-        peak: found.peak,
-        part_of_peak: found.part_of_peak(),
-    }
-}
-
-fn event(found: &MetricDifferences) -> EventCheckAnswer {
-    let metric = |(name, measured): &(&'static str, Measured)| MetricCheckAnswer {
-        name,
-        difference: measured.ok(),
-        difference_reason: measured.err(),
-    };
-    EventCheckAnswer {
-        kind: found.window.cause.word(),
-        time_s: found.window.start_s,
-        metrics: found.differences.iter().map(metric).collect(),
-    }
+pub(crate) fn row(check: &ToleranceCheck) -> Object {
+    let force = check.force.as_ref().ok_or("the two runs have no look in common");
+    Object::new()
+        .with("tolerance", check.tolerance)
+        .with("status", check.stopped.map_or("completed", |stopped| stopped.word))
+        .with("look_s", check.look_s)
+        .told("force_difference_n", force.map(|force| force.difference))
+        .told("part_of_peak", force.map(Difference::part_of_peak))
+        .each("signals", &check.signals, |found| {
+            Object::new()
+                .with("name", found.name)
+                .with("difference", found.difference)
+                .with("time_s", found.time_s)
+                .with("peak", found.peak)
+                .with("part_of_peak", found.part_of_peak())
+        })
+        .each("events", &check.metrics, |found| {
+            Object::new().with("kind", found.window.cause.word()).with("time_s", found.window.start_s).each(
+                "metrics",
+                &found.differences,
+                |(name, measured)| Object::new().with("name", *name).told("difference", *measured),
+            )
+        })
 }
 
 /// What a check found, a sentence each.

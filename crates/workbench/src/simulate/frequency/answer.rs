@@ -4,114 +4,57 @@ use std::io;
 
 use num_complex::Complex64;
 use phea_dynamics::portable;
-use serde::Serialize;
 
 use super::{MachineResponse, MachineResponses, ResponsePoint};
-use crate::answer::{NumberTable, OutputFile, TableFormat};
-
-#[derive(Serialize)]
-pub(crate) struct FrequencyAnswer<'a> {
-    position_m: f64,
-    force_n: f64,
-    command_v: f64,
-    stopped: bool,
-    open_loop: ResponseRow,
-    closed_loop: Option<ResponseRow>,
-    closed_loop_reason: Option<&'a str>,
-}
-
-#[derive(Serialize)]
-struct ResponseRow {
-    points: Vec<FrequencyPointAnswer>,
-}
-
-#[derive(Serialize)]
-struct FrequencyPointAnswer {
-    frequency_rad_per_s: f64,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    amplitude_v: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    amplitude_n: Option<f64>,
-    machine: Option<[f64; 2]>,
-    machine_reason: Option<&'static str>,
-    linear_plant: [f64; 2],
-    linearised_machine: Option<[f64; 2]>,
-    linearised_machine_reason: Option<&'static str>,
-    difference_db: Option<f64>,
-    difference_deg: Option<f64>,
-    linearised_difference_db: Option<f64>,
-    linearised_difference_deg: Option<f64>,
-    distortion_percent: Option<f64>,
-    /// Of the five above, where one is absent.
-    reason: Option<&'static str>,
-    settled: bool,
-    change_percent: Option<f64>,
-    change_percent_reason: Option<&'static str>,
-    periods: u64,
-    steps: u64,
-    reached: Vec<&'static str>,
-    ended: Option<&'static str>,
-    ended_reason: Option<&'static str>,
-}
+use crate::answer::{NumberTable, Object, OutputFile, TableFormat};
 
 const NO_WINDOW: &str = "the simulation ended before a window did";
 const NO_SYSTEM: &str =
     "a sampled loop around a machine with states and waves is no linear system of finite order here";
 
 /// The part of the JSON object.
-pub(crate) fn body(found: &MachineResponses) -> FrequencyAnswer<'_> {
-    FrequencyAnswer {
-        position_m: found.position_m,
-        force_n: found.force_n,
-        command_v: found.command_v,
-        stopped: found.stopped,
-        open_loop: response(&found.open_loop, true),
-        closed_loop: found.closed_loop.as_ref().ok().map(|closed| response(closed, false)),
-        closed_loop_reason: found.closed_loop.as_ref().err().map(String::as_str),
-    }
+pub(crate) fn body(found: &MachineResponses) -> Object {
+    let points = |response: &MachineResponse, amplitude: &str| {
+        Object::new().each("points", &response.points, |point| row(point, amplitude))
+    };
+    let closed_loop = found.closed_loop.as_ref().map(|closed| points(closed, "amplitude_n"));
+    Object::new()
+        .with("position_m", found.position_m)
+        .with("force_n", found.force_n)
+        .with("command_v", found.command_v)
+        .with("stopped", found.stopped)
+        .with("open_loop", points(&found.open_loop, "amplitude_v"))
+        .told("closed_loop", closed_loop.map_err(String::as_str))
 }
 
-fn response(response: &MachineResponse, open: bool) -> ResponseRow {
-    ResponseRow { points: response.points.iter().map(|point| row(point, open)).collect() }
-}
-
-fn row(point: &ResponsePoint, open: bool) -> FrequencyPointAnswer {
+/// `reason` is that of the five numbers above it, where one is missing.
+fn row(point: &ResponsePoint, amplitude: &str) -> Object {
     let finite = |value: f64| value.is_finite().then_some(value);
-    let pair = |value: Complex64| value.is_finite().then_some([value.re, value.im]);
+    let pair = |value: Complex64| value.is_finite().then_some(value);
     let [difference_db, difference_deg] = point.differs(point.linear_plant).map(finite);
     let linearised = point.linearised_machine.map(|model| point.differs(model).map(finite));
     let [linearised_difference_db, linearised_difference_deg] = linearised.unwrap_or([None; 2]);
-    let machine = pair(point.machine);
-    let reason = match (machine, point.linearised_machine) {
-        (None, _) => Some(NO_WINDOW),
-        (_, None) => Some(NO_SYSTEM),
-        _ => None,
-    };
-    let change_percent = finite(100.0 * point.change);
-    FrequencyPointAnswer {
-        frequency_rad_per_s: point.frequency_rad_per_s,
-        amplitude_v: open.then_some(point.amplitude),
-        amplitude_n: (!open).then_some(point.amplitude),
-        machine_reason: machine.is_none().then_some(NO_WINDOW),
-        machine,
-        linear_plant: [point.linear_plant.re, point.linear_plant.im],
-        linearised_machine: point.linearised_machine.and_then(pair),
-        linearised_machine_reason: point.linearised_machine.is_none().then_some(NO_SYSTEM),
-        difference_db,
-        difference_deg,
-        linearised_difference_db,
-        linearised_difference_deg,
-        distortion_percent: finite(100.0 * point.distortion),
-        reason,
-        settled: point.settled,
-        change_percent_reason: change_percent.is_none().then_some("fewer than two windows were seen"),
-        change_percent,
-        periods: point.periods,
-        steps: point.steps,
-        reached: point.reached.clone(),
-        ended: point.ended,
-        ended_reason: point.ended.is_none().then_some("it did not end early"),
-    }
+    let machine = pair(point.machine).ok_or(NO_WINDOW);
+    let no_system = point.linearised_machine.is_none().then_some(NO_SYSTEM);
+    Object::new()
+        .with("frequency_rad_per_s", point.frequency_rad_per_s)
+        .with(amplitude, point.amplitude)
+        .told("machine", machine)
+        .with("linear_plant", point.linear_plant)
+        .with("linearised_machine", point.linearised_machine.and_then(pair))
+        .with("linearised_machine_reason", no_system)
+        .with("difference_db", difference_db)
+        .with("difference_deg", difference_deg)
+        .with("linearised_difference_db", linearised_difference_db)
+        .with("linearised_difference_deg", linearised_difference_deg)
+        .with("distortion_percent", finite(100.0 * point.distortion))
+        .with("reason", machine.err().or(no_system))
+        .with("settled", point.settled)
+        .told("change_percent", finite(100.0 * point.change).ok_or("fewer than two windows were seen"))
+        .with("periods", point.periods)
+        .with("steps", point.steps)
+        .with("reached", point.reached.as_slice())
+        .told("ended", point.ended.ok_or("it did not end early"))
 }
 
 /// A table for each loop.
