@@ -1,7 +1,7 @@
 """Curves that the theory pages draw and quote, from the equations alone and without phea; SI units inside.
 
 The rig is that of examples/ybitu/hose.toml: edges of Table 5.1, 70 bar, 1.5 m of Eaton Synflex 3130-08 a side. `figures.py` draws
-these curves, `recompute_curves.py` checks the numbers that the pages quote, `comparisons/compare_book.py` holds both against phea.
+these curves, `recompute_curves.py` checks the numbers that the pages quote, `comparisons/compare_book.py` compares both with phea.
 """
 
 import math

@@ -4,7 +4,7 @@
     python book/figures.py            # all of them
     python book/figures.py friction   # those whose name contains the word
 
-Colours are those of phea's own figures, apart for every kind of colour vision; dashes and markers carry the same distinction into a grey
+Colours are those of phea's own figures, distinguishable with every kind of colour vision; dashes and markers carry the same distinction into a grey
 print. Letters are outlines, so a figure looks alike wherever it is shown. The same versions draw the same bytes.
 """
 

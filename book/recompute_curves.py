@@ -1,6 +1,6 @@
-"""Recomputes the numbers that the pages on servovalve, friction, stiffness and passivity quote of their curves, without phea.
+"""Recomputes the numbers that the pages on servovalve, friction, stiffness and passivity quote from their curves, without phea.
 
-Each `expect` states a number of the book with the precision it is quoted to; the script fails where they part.
+Each `expect` states a number of the book with the precision it is quoted to; the script fails where they differ.
 """
 
 import math

@@ -1,4 +1,4 @@
-"""Derives with SymPy what the theory pages state of the linear models, and stops where page and derivation part.
+"""Derives with SymPy what the theory pages state about the linear models, and stops where page and derivation differ.
 
 Each `same` states a formula of the book; both sides must be equal for every value of the symbols.
 """

@@ -1,6 +1,6 @@
 """Recomputes the numbers that the theory pages of the book quote, from the equations alone and without phea.
 
-Each `expect` states a number of the book with the precision it is quoted to; the script fails where they part.
+Each `expect` states a number of the book with the precision it is quoted to; the script fails where they differ.
 """
 
 import math

@@ -3,13 +3,13 @@
     python3 certificate/check_certificate.py FILE
 
 Reads the format of book/src/guide/certificate.md, from which alone it was written, and needs nothing but Python 3.11. Exit
-status 0: every claim holds, and is printed; 1: a claim is rejected; 2: the file is no certificate of a known version.
+status 0: every claim holds, and is printed; 1: a claim is rejected; 2: the file is not a certificate of a known version.
 Polynomial loops without dead time are checked in whole numbers throughout, and nothing is rounded. Cosines, sines, roots,
-exponentials and logarithms are enclosed by rational numbers; where one is used, control points keep 320 bits, and what that
-leaves out is in e_k.
+exponentials and logarithms are enclosed by rational numbers; where one is used, control points keep 320 bits, and the
+omitted part is added to e_k.
 
 arithmetic.py: polynomials, enclosures. layout.py: the file. panels.py: control points and trees. functions.py: functions of the
-frequency. sampling.py: images, poles counted. remainders.py: coefficients that are no polynomials. closed_loops.py: the
+frequency. sampling.py: images, poles counted. remainders.py: coefficients that are not polynomials. closed_loops.py: the
 plant, U and V. This file: the claims.
 """
 

@@ -1,4 +1,4 @@
-"""Reads the layout of a certificate, and refuses what is no certificate of version 1."""
+"""Reads the layout of a certificate, and rejects a file that is not a certificate of version 1."""
 
 import json
 import re

@@ -1,4 +1,4 @@
-"""Results of operations that are no polynomials: polynomials of x = 2 t - 1 with remainders, y = p(x) + r, |r| <= rest."""
+"""Results of operations that are not polynomials: polynomials of x = 2 t - 1 with remainders, y = p(x) + r, |r| <= rest."""
 
 import math
 from fractions import Fraction

@@ -1,4 +1,4 @@
-"""Holds both checkers of certificates against each other, on certificates as they are written and on mutated ones.
+"""Compares both checkers of certificates with each other, on certificates as they are written and on mutated ones.
 
     python comparisons/compare_certificate.py [--mutations N] [PHEA]     # or the variable PHEA; without either, what cargo builds
 

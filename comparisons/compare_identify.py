@@ -1,9 +1,9 @@
-"""Holds `phea identify` against scipy.optimize.least_squares on the same recordings.
+"""Compares `phea identify` with scipy.optimize.least_squares on the same recordings.
 
     python comparisons/compare_identify.py [PHEA]        # or the variable PHEA; without either, what cargo builds
 
 `phea bench` records the tests of the example's valve with noise. Both fit them: phea with its own method, SciPy with a
-model written here anew from theory/valve_tests.md (plain square roots, closed forms, derivatives by differences) and its
+model written independently here from theory/valve_tests.md (plain square roots, closed forms, derivatives by differences) and its
 own Huber loss. Both must find the same coefficients, to a tenth of the width of phea's 95 % intervals.
 """
 

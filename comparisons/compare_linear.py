@@ -3,10 +3,10 @@
     python comparisons/compare_linear.py [systems.json]
 
 `cargo run --example reference_systems`, or the program that the variable REFERENCE_SYSTEMS names, prints a hundred random
-systems with everything phea computes of them; here the same is computed by python-control 0.10 and SciPy 1.17 and must agree
+systems with everything that phea computes from them; here the same is computed by python-control 0.10 and SciPy 1.17 and must agree
 to 1e-9 relative (step metrics: within one sample on the same samples).
 
-python-control expands a factored system into polynomials, which loses small roots beside large ones, so it is given
+python-control expands a factored system into polynomials, which loses small roots next to large ones, so it is given
 factored systems as a series of first- and second-order state-space sections. Where a peer still differs, arithmetic
 with 50 digits (mpmath) on the same input decides: phea must be within the tolerance of it, and the case is counted as
 "peer inaccurate". No tolerance is loosened.

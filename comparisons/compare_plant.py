@@ -3,7 +3,7 @@
     python comparisons/compare_plant.py [PHEA]        # or the variable PHEA; without either, what cargo builds
 
 Forty random rigs: four different edges, unequal areas, lines and dead volumes, entrained air, leakage across the piston, every load. The
-rest is found by SciPy, the derivatives by complex steps of 1e-30, and force per command and per motion of the load's ground must agree to
+equilibrium is found by SciPy, the derivatives by complex steps of 1e-30, and force per command and per motion of the load's ground must agree to
 1e-6 at forty frequencies. At null, where other edges open on either side, a small motion sees the mean of both.
 """
 

@@ -1,11 +1,11 @@
-"""Holds the schema of the project file against the reader.
+"""Compares the schema of the project file with the reader.
 
     python comparisons/compare_schema.py
 
 The program `schema_cases` of the package phea-project, or the one that the variable SCHEMA_CASES names, prints the schema
 and the reader's verdict on every project of `examples/`, on the valid and the malformed projects of the tests, and on
-thousands of mutations. The schema must accept all projects that the reader accepts, and refuse every malformed project
-except those of `UNSEEN`, which a schema cannot refuse.
+thousands of mutations. The schema must accept all projects that the reader accepts, and reject every malformed project
+except those of `UNSEEN`, which a schema cannot reject.
 """
 
 import json

@@ -1,4 +1,4 @@
-"""Compares `phea verify` with a search of its own over the same project files.
+"""Compares `phea verify` with an independent search over the same project files.
 
     python comparisons/compare_verify.py [--alone] [PHEA]        # or the variable PHEA; without either, what cargo builds
 
@@ -6,7 +6,7 @@ Each loop of the examples is evaluated from the text of its project file (loop_m
 dense grids and SciPy's searches (worst_case.py), its stability and delay margin by poles, by the growth of the argument
 where there is dead time, and by the states of the sampled loop (loop_stability.py). Three things are then demanded of
 phea: what it reports for a plant and a frequency is true there; it found nothing milder than the search did; and its
-verdicts, exit status and frequencies agree. `--alone` leaves phea out and holds the search to published numbers only.
+verdicts, exit status and frequencies agree. `--alone` leaves phea out and compares the search with published numbers only.
 """
 
 import concurrent.futures

@@ -1,4 +1,4 @@
-"""What the plants of a family make of a controller and prefilter with free numbers. Read by loop_search.py and recompute_design.py.
+"""The closed loops of a family of plants with a controller and prefilter with free parameters. Read by loop_search.py and recompute_design.py.
 
 Independent of phea. The free numbers are natural logarithms of gain, corner frequencies and damping ratios; every margin in dB has an analytic
 slope (d ln T = S d ln G, d ln S = -T d ln G). Every margin is looked at beside the imaginary parts of the closed-loop roots too, for a grid

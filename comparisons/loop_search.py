@@ -1,7 +1,7 @@
 """The search for the numbers of a controller by a sequence of linear programs. Read by recompute_design.py.
 
-Independent of phea. Each step solves a linear program over the least margins inside a trust region, and refuses whatever makes a plant of
-the sample unstable. Worst points of the box that are found afterwards join the sample, until nothing is found.
+Independent of phea. Each step solves a linear program over the least margins inside a trust region, and rejects any step that makes a
+plant of the sample unstable. Worst points of the box that are found afterwards join the sample, until nothing is found.
 """
 
 import numpy as np

@@ -1,4 +1,4 @@
-"""Writes the measured responses of examples/qft/measured: a known resonant plant, as an analyser would have given it.
+"""Writes the measured responses of examples/qft/measured: a known resonant plant, as an analyser would record it.
 
     python comparisons/measured_plants.py
 

@@ -1,4 +1,4 @@
-"""Recomputes the audits that the tests of qft's verification hold phea to, and asserts them.
+"""Recomputes the audits with which the tests of qft's verification compare phea, and asserts them.
 
 Independent of phea: NumPy and SciPy only. Plants are brute-forced over grids and corners on dense frequencies, with points about
 every closed-loop root, and the worst case inside a box is found by differential evolution. Sources of the cases: Ledezma (2019),

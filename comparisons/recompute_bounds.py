@@ -1,4 +1,4 @@
-"""Recomputes the QFT bounds that the tests of qft hold phea to, by scanning the gain of the nominal loop.
+"""Recomputes the QFT bounds with which the tests of qft compare phea, by scanning the gain of the nominal loop.
 
 Independent of phea: closed loops of every plant on a dense grid of gains in dB, and bisection where the verdict changes. No quadratic, no
 geometry. Two examples:

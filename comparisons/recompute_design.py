@@ -1,4 +1,4 @@
-"""Recomputes the designs, least gains and smallest relaxations that the tests of qft and workbench hold phea to, and asserts them.
+"""Recomputes the designs, least gains and smallest relaxations with which the tests of qft and workbench compare phea, and asserts them.
 
 Independent of phea: loop_design.py searches, and what it finds is judged here on 20,000 points of the box and on dense frequencies with points
 about every closed-loop root. The rig is that of Ledezma (2019), Table 6.3 and section 6.4.2; A, B, D and E are the published QFT examples of

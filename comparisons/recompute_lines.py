@@ -1,4 +1,4 @@
-"""Fits and recomputes what the dynamic line models of hydraulics embed or are held to.
+"""Fits and recomputes what the dynamic line models of hydraulics embed or are compared with.
 
 Independent of phea: NumPy and SciPy only, exact lines with Bessel functions of complex argument. Four parts, each of which
 asserts what it computes:

@@ -1,4 +1,4 @@
-"""Recomputes what the load and the leakage make of the rig of Ledezma (2019): overshoot and slow pole, from block equations.
+"""Recomputes the effect of load and leakage on the rig of Ledezma (2019): overshoot and slow pole, from block equations.
 
 The spool follows the command, C s p = K_qU U - (K_c + G) p - A s x, M s^2 x = A p - f_v s x - F, F = K_S (x - x_L),
 m s^2 x_L = F - c s x_L - k x_L, with Table 6.3's nominal plant, G_1 and F_1.

@@ -1,7 +1,7 @@
-"""Recomputes the numbers of the thesis' rig that the tests of hydraulics and workbench hold phea to.
+"""Recomputes the numbers of the thesis' rig with which the tests of hydraulics and workbench compare phea.
 
 Independent of phea: NumPy and SciPy only, from the component equations (matrices of the physical states, roots by
-bracketing), never from the expanded coefficients of Ledezma (2019), equation 6.7. Prints one line a number.
+bracketing), never from the expanded coefficients of Ledezma (2019), equation 6.7. Prints one line for each number.
 
     python comparisons/recompute_rig.py
 """

@@ -1,4 +1,4 @@
-"""Recomputes what a hose and a pipe do to the force under a reference step and under steps of the load.
+"""Recomputes the effect of a hose and of a pipe on the force under a reference step and under steps of the load.
 
 Independent of phea: the closed loop in C of benches/peers, by Runge-Kutta in fixed steps of 10 us. `uniform` stiffness:
 2.609e8 Pa with 1.9e-4 m3 for the hose, 1.45e9 Pa with 3.03e-5 m3 for the pipe; controllers G1, F1 and G2, F2 of

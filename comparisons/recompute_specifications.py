@@ -1,7 +1,7 @@
-"""Recomputes the numbers that the tests of the specifications hold phea to, and states them.
+"""Recomputes the numbers with which the tests of the specifications compare phea, and states them.
 
 Independent of phea: responses by the matrix exponential (SciPy) of a companion form, exact limits by a root finder on overshoot and
-settling time together, margins and delays by brute force on the circle itself. Fails where a stated number is not what comes out.
+settling time together, margins and delays by brute force on the circle itself. Fails where a stated number differs from the result.
 
     python comparisons/recompute_specifications.py
 """

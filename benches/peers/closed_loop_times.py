@@ -1,8 +1,8 @@
 """Times phea, CVODE and Runge-Kutta on the closed loop of closed_loop.h and prints work against precision.
 
 phea runs the project files of examples/benchmark (crates/workbench/benches/simulation.rs) in turn with CVODE on one core;
-the best of all its runs is compared with the best of all of CVODE's, at the tolerance that the file states against CVODE's
-1e-6, and at equal error, where CVODE's time is read off its own curve. Then the curves and CVODE's settings one by one.
+the best of all its runs is compared with the best of all of CVODE's, at the tolerance stated in the file for phea and 1e-6
+for CVODE, and at equal error, where CVODE's time is read off its own curve. Then the curves and CVODE's settings one by one.
 
 Time of one thread, the best of many runs, largest error of the force at 1 ms against CVODE at 1e-12. With
 stability-limit detection CVODE falls by chance into one of two regimes, a factor of two apart in steps: the tolerance is

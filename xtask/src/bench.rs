@@ -1,8 +1,9 @@
-//! Times what is promised of the command, measured and never asserted: `report` and its siblings on the example rigs,
-//! and with `build` the release build from scratch.
+//! Times what is promised of the command, measured and never asserted: `report` and its siblings on
+//! the example rigs, and with `build` the release build from scratch.
 //!
-//! A plain stopwatch around the command itself: what a user waits for is its start, reading, arithmetic, drawing and
-//! writing together, which a statistics harness inside one process would not see.
+//! A plain stopwatch around the command itself: what a user waits for is its start, reading,
+//! arithmetic, drawing and writing together, which a statistics harness inside one process would
+//! not see.
 
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -21,7 +22,8 @@ const COMMANDS: [&[&str]; 7] = [
     &["report", "examples/ybitu/pipe.toml"],
 ];
 
-/// Benches in a target folder of its own; `from_scratch` empties it first and times the build. Whether all went well.
+/// Benches in a target folder of its own; `from_scratch` empties it first and times the build.
+/// Whether all went well.
 pub(crate) fn run(root: &Path, from_scratch: bool) -> bool {
     let target = root.join("target").join("bench");
     if from_scratch && target.exists() && std::fs::remove_dir_all(&target).is_err() {

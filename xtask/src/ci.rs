@@ -1,6 +1,8 @@
-//! The test command: stages one after the other, comparisons beside them, the time of each in a table at the end.
+//! The test command: stages one after the other, comparisons beside them, the time of each in a
+//! table at the end.
 //!
-//! A stage that fails does not stop the later ones, so that one run tells everything there is to mend.
+//! A stage that fails does not stop the later ones, so that one run shows everything that has to be
+//! mended.
 
 mod comparisons;
 mod tools;
@@ -17,7 +19,7 @@ pub(crate) enum Outcome {
     Passed,
     /// Something is wrong: what, in a few words.
     Failed(String),
-    /// The stage could not be run here, and why that is no fault of the project.
+    /// The stage could not be run here, for a reason outside the project.
     Skipped(String),
 }
 
@@ -43,7 +45,7 @@ const STORIES: &str = "stories::";
 
 type Stage = fn(&Path) -> Outcome;
 
-/// Cheap and telling first; what needs a network last.
+/// Cheap and informative stages first; those that need a network last.
 const STAGES: &[(&str, Stage)] = &[
     ("formatting", formatting),
     ("clippy", clippy),
@@ -59,10 +61,10 @@ const STAGES: &[(&str, Stage)] = &[
     (SOAK, soak),
 ];
 
-/// The stage whose scripts go on beside the others.
+/// The stage whose scripts run in parallel with the others.
 const COMPARISONS: &str = "comparisons";
 
-/// The stage that builds what the comparisons ask.
+/// The stage that builds the programs that the comparisons call.
 const TESTS: &str = "tests";
 
 /// The stages that run only where they are named.
@@ -80,7 +82,8 @@ pub(crate) const STAGE_NAMES: [&str; STAGES.len()] = {
     names
 };
 
-/// Runs the named stages, when none is named all but those that wait to be named; whether nothing failed.
+/// Runs the named stages or, if none is named, all except those that run only where they are named;
+/// returns whether nothing failed.
 ///
 /// Where the variable `CI` is set, a stage that had to be skipped fails the run.
 pub(crate) fn run(root: &Path, wanted: &[&str]) -> bool {
@@ -144,12 +147,13 @@ fn built_tests(root: &Path, begun: Option<&mut comparisons::Begun>) -> Outcome {
     }
 }
 
-/// Builds all tests, and the programs and examples that the comparisons ask: those only where no kind of target is named.
+/// Builds all tests, and the programs and examples that the comparisons ask: those only where no
+/// kind of target is named.
 fn build(root: &Path) -> Outcome {
     for_all(root, &["test", "--workspace", "--no-run"], &[])
 }
 
-/// What leaves out the package that links CVODE.
+/// The arguments that leave out the package that links CVODE.
 const WITHOUT_PEERS: [&str; 2] = ["--exclude", "sundials"];
 
 /// The rigs that phea and CVODE solve both: a test of that package.
@@ -172,7 +176,7 @@ fn execute_with(root: &Path, program: &str, arguments: &[&str], variables: &[(&s
     let mut command = Command::new(program);
     command.args(arguments).envs(variables.iter().copied()).current_dir(root);
     if is_strict() {
-        // Nothing will be built a second time.
+        // Nothing is built a second time.
         command.env("CARGO_INCREMENTAL", "0");
     }
     match command.status() {
@@ -212,7 +216,8 @@ fn tests(root: &Path) -> Outcome {
     for_all(root, &["test", "--workspace", "--tests", "--no-fail-fast"], &["--", "--skip", STORIES])
 }
 
-/// The example stories, by the whole workspace, so that what was built for the other tests serves again.
+/// The example stories, by the whole workspace, so that what was built for the other tests serves
+/// again.
 fn stories(root: &Path) -> Outcome {
     for_all(root, &["test", "--workspace", "--test", "all"], &["--", STORIES])
 }
@@ -222,7 +227,8 @@ fn mutation(root: &Path) -> Outcome {
     execute(root, "cargo", &["test", "--workspace", "--test", "all", "--", "--ignored", "mutation::"])
 }
 
-/// Four hundred valves identified from recordings of one: how often their intervals cover the truth.
+/// Four hundred valves identified from recordings of one: how often their intervals cover the
+/// truth.
 const IDENTIFIED_VALVES: [&str; 11] = [
     "test",
     "--release",
@@ -237,8 +243,9 @@ const IDENTIFIED_VALVES: [&str; 11] = [
     "valve_coverage::soak",
 ];
 
-/// A hundred kills of campaigns on one, two and four threads, two gigabytes of rows, and four hundred identified valves, as they are
-/// shipped: what went and how fast is told.
+/// A hundred kills of campaigns on one, two and four threads, two gigabytes of rows, and four
+/// hundred identified valves, in the release profile: what was lost, and how fast it was, is
+/// printed.
 fn soak(root: &Path) -> Outcome {
     let tests =
         ["campaign_killed::", "streamed_rows::", "--include-ignored", "--nocapture", "--test-threads=1"];
@@ -253,8 +260,8 @@ fn doctests(root: &Path) -> Outcome {
     for_all(root, &["test", "--workspace", "--doc", "--no-fail-fast"], &[])
 }
 
-/// With the examples, whose dependencies switch on the features that clippy's did, and by clippy's compiler: what it read of all crates
-/// serves again.
+/// With the examples, whose dependencies switch on the features that clippy's did, and by clippy's
+/// compiler: what it read of all crates serves again.
 fn rustdoc(root: &Path) -> Outcome {
     let arguments = ["doc", "--workspace", "--no-deps", "--lib", "--bins", "--examples"];
     let of_clippy = tools::clippy_variables();
@@ -278,7 +285,8 @@ fn wasm32(root: &Path) -> Outcome {
     execute(root, "cargo", &[&["check", "--target", TARGET][..], &packages].concat())
 }
 
-/// Rigs that phea and CVODE solve both. The other tests of the package that links CVODE run with those of all packages.
+/// Rigs that phea and CVODE solve both. The other tests of the package that links CVODE run with
+/// those of all packages.
 fn peers(root: &Path) -> Outcome {
     if let Err(missing) = tools::sundials() {
         println!("\n**** SKIPPED: {missing}\n**** nothing was compared with CVODE in this run\n");

@@ -1,7 +1,7 @@
 //! Chores of the repository, written in Rust so that they run wherever the project does.
 //!
-//! `cargo xtask ci` is the test command; `cargo xtask tidy` checks the rules that neither the compiler nor clippy
-//! knows.
+//! `cargo xtask ci` is the test command; `cargo xtask tidy` checks the rules that neither the
+//! compiler nor clippy knows.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a chore talks to the person who started it")]
 
 mod bench;

@@ -1,5 +1,5 @@
-//! The files of the repository as one value, so that every check is a function that a test can call with made-up
-//! files.
+//! The files of the repository as one value, so that every check is a function that a test can call
+//! with made-up files.
 
 mod rust_file;
 

@@ -1,5 +1,5 @@
-//! The rules of the house that neither the compiler nor clippy knows, each one a function from the repository's
-//! files to the places that break it.
+//! The rules of the house that neither the compiler nor clippy knows, each one a function from the
+//! repository's files to the places that break it.
 
 mod book;
 mod catalogue;

@@ -5,7 +5,8 @@ use phea_workbench::answer::TableFormat;
 
 use crate::changes::Changes;
 
-/// Hydraulic force control through added compliance: size the hose, see the models, audit, shape or design the controller, simulate the machine, get the report.
+/// Hydraulic force control through added compliance: size the hose, see the models, audit, shape or
+/// design the controller, simulate the machine, get the report.
 #[derive(Debug, Parser)]
 #[command(name = "phea", version, arg_required_else_help = true)]
 #[command(
@@ -23,7 +24,8 @@ pub(crate) enum Command {
         /// Folder to create; it must be empty or absent
         folder: PathBuf,
     },
-    /// Print the JSON Schema of the project file, with which editors of TOML check it and complete its keys
+    /// Print the JSON Schema of the project file, with which editors of TOML check it and complete
+    /// its keys
     Schema {
         /// Write it into this folder, as phea.schema.json, instead of printing it
         #[arg(long, value_name = "DIR")]
@@ -42,22 +44,26 @@ pub(crate) enum Command {
         #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
         length: Option<String>,
     },
-    /// Linear models: poles, differences, stiffness over the stroke, driving-point impedance, passivity
+    /// Linear models: poles, differences, stiffness over the stroke, driving-point impedance,
+    /// passivity
     Linearize {
         #[command(flatten)]
         common: Common,
-        /// A number of the project that goes from one end to another, such as "line.length=0.5 m..3 m": poles, K_H and bandwidth over it
+        /// A number of the project that goes from one end to another, such as "line.length=0.5 m..3
+        /// m": poles, K_H and bandwidth over it
         #[arg(long, value_name = "KEY=FROM..TO", allow_hyphen_values = true)]
         sweep: Option<String>,
         /// Values of the sweep, both ends among them (11)
         #[arg(long, value_name = "N", requires = "sweep")]
         points: Option<usize>,
     },
-    /// Audit the given controller and prefilter: every plant of the family, every specification, its whole band
+    /// Audit the given controller and prefilter: every plant of the family, every specification,
+    /// its whole band
     Verify {
         #[command(flatten)]
         common: Common,
-        /// Try the verdict on the nonlinear machine: a step of the rig, of its worst plants, and with waves in its lines
+        /// Try the verdict on the nonlinear machine: a step of the rig, of its worst plants, and
+        /// with waves in its lines
         #[arg(long)]
         on_machine: bool,
         /// Prove or refute the verdict: for every plant of the box and every frequency of the band
@@ -67,7 +73,8 @@ pub(crate) enum Command {
         #[arg(long, value_name = "FILE")]
         certificate: Option<PathBuf>,
     },
-    /// Check a certificate of `verify --certificate` again: every claim in it, with rounding outwards
+    /// Check a certificate of `verify --certificate` again: every claim in it, with rounding
+    /// outwards
     CheckCertificate {
         /// The certificate
         file: PathBuf,
@@ -75,7 +82,8 @@ pub(crate) enum Command {
         #[arg(long)]
         json: bool,
     },
-    /// Shape the controller by hand: change its elements in the order given, see every margin at the design frequencies
+    /// Shape the controller by hand: change its elements in the order given, see every margin at
+    /// the design frequencies
     Shape {
         #[command(flatten)]
         common: Common,
@@ -84,11 +92,13 @@ pub(crate) enum Command {
         /// Change the prefilter instead of the controller
         #[arg(long)]
         prefilter: bool,
-        /// Write the project with the changed elements to this file; all else of it stays byte for byte
+        /// Write the project with the changed elements to this file; all else of it stays byte for
+        /// byte
         #[arg(long, value_name = "FILE")]
         save: Option<PathBuf>,
     },
-    /// Find a controller and prefilter that satisfy every specification, for every plant; Ctrl-C gives the best so far
+    /// Find a controller and prefilter that satisfy every specification, for every plant; Ctrl-C
+    /// gives the best so far
     Design {
         #[command(flatten)]
         common: Common,
@@ -98,11 +108,13 @@ pub(crate) enum Command {
         /// Write the project with the designed controller and prefilter in it to this file
         #[arg(long, value_name = "FILE")]
         save: Option<PathBuf>,
-        /// Leave it at a verdict that the machine contradicts, and do not design again with the plant that does
+        /// Leave it at a verdict that the machine contradicts, and do not design again with the
+        /// plant that does
         #[arg(long)]
         no_repair: bool,
     },
-    /// The nonlinear machine under its controller, through every scenario; Ctrl-C ends it with what there is
+    /// The nonlinear machine under its controller, through every scenario; Ctrl-C ends it with what
+    /// there is
     Simulate {
         #[command(flatten)]
         common: Common,
@@ -112,10 +124,12 @@ pub(crate) enum Command {
         /// Write no figures beside the tables: they take most of the time of a short run
         #[arg(long, requires = "out")]
         no_figures: bool,
-        /// Instead of the scenarios, the machine's response to sines around its operating point, beside the linear plant
+        /// Instead of the scenarios, the machine's response to sines around its operating point,
+        /// beside the linear plant
         #[arg(long)]
         frequency_response: bool,
-        /// Frequencies of the sines, such as "1, 10, 100 rad/s"; a unit holds for the numbers before it
+        /// Frequencies of the sines, such as "1, 10, 100 rad/s"; a unit holds for the numbers
+        /// before it
         #[arg(long, value_name = "LIST", requires = "frequency_response", allow_hyphen_values = true)]
         frequencies: Option<String>,
         /// Amplitude of the command of the open loop ("0.1 V")
@@ -124,13 +138,15 @@ pub(crate) enum Command {
         /// Amplitude of the reference of the closed loop ("100 N")
         #[arg(long, value_name = "FORCE", requires = "frequency_response", allow_hyphen_values = true)]
         reference_amplitude: Option<String>,
-        /// Run each scenario a second time at a tenth of the tolerance: how far the two differ estimates the error
+        /// Run each scenario a second time at a tenth of the tolerance: how far the two differ
+        /// estimates the error
         #[arg(long, conflicts_with = "frequency_response")]
         check: bool,
     },
     /// The same scenarios of several projects side by side
     Compare(Several),
-    /// Monte Carlo: the nonlinear machine with drawn numbers, many times; Ctrl-C keeps what is done, and the same command goes on
+    /// Monte Carlo: the nonlinear machine with drawn numbers, many times; Ctrl-C keeps what is
+    /// done, and the same command goes on
     Campaign {
         #[command(flatten)]
         common: Common,
@@ -140,7 +156,8 @@ pub(crate) enum Command {
         /// Seed of all random numbers: with a run's index it gives its numbers
         #[arg(long, value_name = "S", default_value_t = 1)]
         seed: u32,
-        /// A part of the runs, such as 2/4; the tables of all parts, one after the other, are the table of the whole
+        /// A part of the runs, such as 2/4; the tables of all parts, one after the other, are the
+        /// table of the whole
         #[arg(long, value_name = "I/N")]
         shard: Option<String>,
         /// One run again, by its index: its numbers as --set, and all that happened
@@ -150,11 +167,14 @@ pub(crate) enum Command {
         #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
         threads: Option<u16>,
     },
-    /// Virtual tests of the servovalve, as instruments would record them: internal leakage, metering and pressure gain (ISO 10770-1)
+    /// Virtual tests of the servovalve, as instruments would record them: internal leakage,
+    /// metering and pressure gain (ISO 10770-1)
     Bench(Common),
-    /// Coefficients of a servovalve from recorded static tests, with confidence intervals and what the data do not tell
+    /// Coefficients of a servovalve from recorded static tests, with confidence intervals and what
+    /// the data do not tell
     Identify(IdentifyArguments),
-    /// Everything above as one self-contained HTML page; a controller is designed where the project has a design section or gives no law
+    /// Everything above as one self-contained HTML page; a controller is designed where the project
+    /// has a design section or gives no law
     Report(Common),
 }
 

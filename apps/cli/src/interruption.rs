@@ -3,18 +3,20 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Exit status of a command that was interrupted twice, as shells count it: 128 and the number of the signal.
+/// Exit status of a command that was interrupted twice, as shells count it: 128 and the number of
+/// the signal.
 const INTERRUPTED: i32 = 130;
 
 /// Whether the command was asked to stop.
 pub(crate) struct Interruption(Arc<AtomicBool>);
 
 impl Interruption {
-    /// Listens from now on. The first Ctrl-C asks the command to stop with what it has, the second ends it at once.
+    /// Listens from now on. The first Ctrl-C asks the command to stop with what it has, the second
+    /// ends it at once.
     pub(crate) fn listen() -> Interruption {
         let asked = Arc::new(AtomicBool::new(false));
         let heard = Arc::clone(&asked);
-        // where nothing can listen, Ctrl-C ends the command as ever
+        // if no handler can be installed, Ctrl-C ends the command as usual
         let _ = ctrlc::set_handler(move || {
             if heard.swap(true, Ordering::Relaxed) {
                 std::process::exit(INTERRUPTED);

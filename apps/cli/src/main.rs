@@ -1,4 +1,5 @@
-//! The `phea` command: a thin shell over `phea_workbench`. It opens paths and prints; it computes nothing.
+//! The `phea` command: a thin shell over `phea_workbench`. It opens paths and prints; it computes
+//! nothing.
 
 mod arguments;
 mod changes;

@@ -1,5 +1,6 @@
-//! What a command writes. A file has its name only when it is whole: until then it stands beside it under another, which goes
-//! away with an error, and is all that a process leaves that was killed.
+//! The files that a command writes. A file receives its name only when it is complete: until then
+//! it has a temporary name in the same folder. After an error the temporary file is removed; only a
+//! killed process leaves it behind.
 
 use std::cell::RefCell;
 use std::fs::{self, File, OpenOptions};
@@ -15,7 +16,7 @@ use crate::file_system::reason;
 /// Bytes that are collected before they are written.
 const COLLECTED: usize = 1 << 18;
 
-/// A folder that long files are written into as they come.
+/// A folder for long files, which are written as they are produced.
 pub(crate) struct Folder<'f> {
     path: &'f Path,
     begun: RefCell<Vec<PathBuf>>,
@@ -26,7 +27,7 @@ impl<'f> Folder<'f> {
         Folder { path, begun: RefCell::default() }
     }
 
-    /// Every file that was begun, in that order; where nothing failed all are whole.
+    /// Every file that was begun, in order; all are complete if nothing failed.
     pub(crate) fn into_begun(self) -> Vec<PathBuf> {
         self.begun.into_inner()
     }
@@ -42,10 +43,10 @@ impl Destination for Folder<'_> {
     }
 }
 
-/// A file that is not whole yet.
+/// A file that is not complete yet.
 struct Pending {
     path: PathBuf,
-    /// Where it is until then; `None` where there is no such place, and when it is whole.
+    /// Its temporary path; `None` if it has none, and when it is complete.
     temporary: Option<PathBuf>,
     file: BufWriter<File>,
 }
@@ -55,13 +56,13 @@ impl Pending {
         if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
             fs::create_dir_all(folder)?;
         }
-        // what a link leads to is replaced, not the link
+        // the target of a link is replaced, not the link
         let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
         let known = fs::metadata(&path).ok();
         if known.as_ref().is_some_and(|known| known.is_file() && known.permissions().readonly()) {
             return Err(ErrorKind::PermissionDenied.into());
         }
-        // a terminal or a pipe has no place beside it
+        // a terminal or a pipe has no temporary file
         if known.as_ref().is_some_and(|known| !known.is_file()) {
             let file = OpenOptions::new().write(true).open(&path)?;
             return Ok(Pending { path, temporary: None, file: BufWriter::with_capacity(COLLECTED, file) });
@@ -79,7 +80,8 @@ impl Pending {
     fn whole(mut self) -> io::Result<()> {
         self.file.flush()?;
         let Some(temporary) = &self.temporary else { return Ok(()) };
-        // a name must not reach the disk before what it names; where a file system knows no such order, nothing is lost
+        // a name must not reach the disk before the content; on a file system without such an order
+        // nothing is lost
         match self.file.get_ref().sync_all() {
             Err(error) if !matches!(error.kind(), ErrorKind::InvalidInput | ErrorKind::Unsupported) => {
                 return Err(error);
@@ -92,7 +94,7 @@ impl Pending {
     }
 }
 
-/// Of this process alone, and short, however long the name of the file is.
+/// Unique to this process, and short, however long the name of the file is.
 fn temporary_name() -> String {
     static COUNT: AtomicU64 = AtomicU64::new(0);
     format!(".phea-{}-{}.part", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed))
@@ -132,7 +134,7 @@ pub(crate) fn write(folder: &Path, files: &[OutputFile]) -> Result<Vec<PathBuf>,
     files.iter().map(|file| write_as(&folder.join(&file.name), file)).collect()
 }
 
-/// Writes a file under a path of its own, whose folder is made if need be, and gives that.
+/// Writes a file to the given path, creating its folder if needed, and returns the path.
 pub(crate) fn write_as(path: &Path, file: &OutputFile) -> Result<PathBuf, String> {
     let written = Pending::begin(path).and_then(|mut pending| {
         pending.file.write_all(&file.bytes)?;

@@ -86,7 +86,7 @@ pub(crate) fn run(arguments: Arguments) -> ExitCode {
     ended(outcome)
 }
 
-/// A command line that is none, or that asks for help.
+/// An invalid command line, or one that requests help.
 pub(crate) fn misused(error: &clap::Error) -> ExitCode {
     if !error.use_stderr() {
         return ended(say(&error.render().to_string()).map(|()| DONE));
@@ -155,7 +155,7 @@ fn on_project_saving(common: &Common, request: &Request, save: Option<&Path>) ->
     told(common.json, answered(common, request, save))
 }
 
-/// Says an answer with what was written, or why there is none.
+/// Prints an answer with the files that were written, or why there is none.
 fn told(json: bool, outcome: Result<(Answer, Vec<PathBuf>), Failure>) -> Result<u8, Failure> {
     match outcome {
         Ok((answer, _)) if json => say(&format!("{}\n", answer.json)).map(|()| status(&answer)),
@@ -194,7 +194,7 @@ fn compared(several: &Several) -> Result<(Answer, Vec<PathBuf>), Failure> {
         !interruption.is_asked()
     });
     line.clear();
-    // the command line asks for one project at least
+    // the command line requires at least one project
     let Some(first) = loaded.first() else {
         return Err(Failure::wrong_input("error: no project"));
     };
@@ -219,7 +219,8 @@ fn answered(
     let path = common.project.to_string_lossy();
     let loaded = load(&path, &common.settings, &common.catalogues, request)?;
     let mut line = ProgressLine::default();
-    // what ends in a best result so far is asked to stop; everything else has nothing to save
+    // commands that can return their best result so far are asked to stop; all others have nothing
+    // to save
     let interruption = matches!(request, Request::Design { .. } | Request::Simulate | Request::SimulateAs(_))
         .then(Interruption::listen);
     let tables = common.out.as_deref().map(Folder::new);
@@ -243,7 +244,7 @@ fn answered(
     Ok((answer, written))
 }
 
-/// Reads a project and says what is doubtful in it.
+/// Reads a project and prints its warnings.
 fn load(
     path: &str,
     settings: &[String],
@@ -286,7 +287,8 @@ fn written_sentence(written: &[PathBuf]) -> String {
     }
 }
 
-/// The report is written even without `--out`, as one page named after the project; other files only when asked for.
+/// The report is written even without `--out`, as one page named after the project; other files
+/// only on request.
 fn write_files(common: &Common, request: &Request, answer: &Answer) -> Result<Vec<PathBuf>, String> {
     if let Some(folder) = &common.out {
         return write(folder, &answer.files);
@@ -302,7 +304,7 @@ fn write_files(common: &Common, request: &Request, answer: &Answer) -> Result<Ve
     write(Path::new("."), &page)
 }
 
-/// Colours for a person at a terminal who has not asked for none.
+/// Colours for a person at a terminal who has not disabled them.
 fn styled() -> bool {
     std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none()
 }

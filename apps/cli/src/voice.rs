@@ -1,4 +1,4 @@
-//! What the command says, and where.
+//! The messages of the command, and where they go.
 
 use std::io::{self, ErrorKind, IsTerminal, Write};
 use std::time::{Duration, Instant};
@@ -8,7 +8,8 @@ use phea_workbench::command::Progress;
 use crate::failure::Failure;
 use crate::file_system::reason;
 
-/// Says it on standard output. A reader that has gone away (`phea check rig.toml | head`) has what it wanted.
+/// Prints to standard output. A reader that has closed the pipe (`phea check rig.toml | head`) has
+/// what it wanted.
 pub(crate) fn say(text: &str) -> Result<(), Failure> {
     let mut stream = io::stdout().lock();
     match stream.write_all(text.as_bytes()).and_then(|()| stream.flush()) {
@@ -19,29 +20,30 @@ pub(crate) fn say(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// Says it on standard error; nobody is left to be told if that fails.
+/// Prints to standard error; a failure of that cannot be reported.
 pub(crate) fn complain(text: &str) {
     let _ = writeln!(io::stderr().lock(), "{}", text.trim_end());
 }
 
-/// Time after which a person wants to know that something happens, and between two lines about it.
+/// Time after which progress is shown, and between two updates.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// The same where no terminal shows it: lines that stay, in the log of another program.
+/// The same without a terminal, where lines remain in a log.
 const PATIENCE_OF_LOGS: Duration = Duration::from_secs(5);
 
 /// The variable of the environment that keeps progress out of logs, and its value.
 const KEEP_OUT: (&str, &str) = ("PHEA_PROGRESS", "never");
 
-/// Longest time that is told, s.
+/// Longest remaining time that is shown, s.
 const LONGEST_S: f64 = 1e9;
 
-/// Follows a long command on standard error: one line that changes on a terminal, a line every few seconds elsewhere.
+/// Follows a long command on standard error: one line that changes on a terminal, a line every few
+/// seconds elsewhere.
 pub(crate) struct ProgressLine {
     next: Option<Instant>,
     terminal: bool,
     shown: bool,
-    /// When it was first told how far it is, and how far that was: of work that goes on evenly.
+    /// Time and share of the first report, for work that proceeds evenly.
     even: Option<(Instant, f64)>,
 }
 
@@ -57,7 +59,7 @@ impl Default for ProgressLine {
 }
 
 impl ProgressLine {
-    /// The same for work that goes on evenly, with the time that remains.
+    /// The same for work that proceeds evenly, with the remaining time.
     pub(crate) fn show_evenly(&mut self, progress: Progress) {
         let now = Instant::now();
         let (start, share) = *self.even.get_or_insert((now, progress.share));
@@ -76,7 +78,7 @@ impl ProgressLine {
         if self.terminal { PATIENCE } else { PATIENCE_OF_LOGS }
     }
 
-    /// Shows how far it is, not too often.
+    /// Shows the progress, not too often.
     pub(crate) fn show(&mut self, progress: Progress) {
         self.write(progress, "");
     }

@@ -1,4 +1,5 @@
-//! A campaign's table on the disk: one writer at a time, and nothing of one part over that of another.
+//! A campaign's table on the disk: one writer at a time, and nothing of one part over that of
+//! another.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -31,7 +32,8 @@ fn complaint(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
-/// A second one is refused while the first has the table, leaves it as it is, and goes on as soon as the first is gone.
+/// A second one is refused while the first has the table, leaves it as it is, and goes on as soon
+/// as the first is gone.
 #[test]
 fn a_table_has_one_writer() {
     let folder = folder("campaign_lock");

@@ -1,7 +1,8 @@
 //! Campaigns that are killed at any time, and go on to the bytes of one that never was.
 //!
-//! A kill is one that nothing can catch (SIGKILL). Twelve in the test command; `PHEA_KILLS=100` makes a hundred, and says with
-//! `--nocapture` how many rows each left, and how many seconds of work went.
+//! A kill is one that nothing can catch (SIGKILL). Twelve in the test command; `PHEA_KILLS=100`
+//! makes a hundred, and says with `--nocapture` how many rows each left, and how many seconds of
+//! work went.
 
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
@@ -60,7 +61,8 @@ fn spread(start: u32) -> f64 {
     (f64::from(start) * 0.5 * (5.0_f64.sqrt() - 1.0)).fract()
 }
 
-/// Whatever a kill leaves, every file that has its name is whole, and the same command makes all of them.
+/// Whatever a kill leaves, every file that has its name is whole, and the same command makes all of
+/// them.
 #[test]
 fn a_campaign_goes_on_after_any_kill_to_the_same_bytes() {
     let folder = folder();

@@ -1,11 +1,13 @@
-//! The exit status of every kind of outcome, and that `--json` prints one JSON object and nothing else on standard output.
+//! The exit status of every kind of outcome, and that `--json` prints one JSON object and nothing
+//! else on standard output.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
-/// A folder with the example project, a binary file, an empty one, and a file where a folder is wanted.
+/// A folder with the example project, a binary file, an empty one, and a file where a folder is
+/// wanted.
 fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     let _ = std::fs::remove_dir_all(&folder);
@@ -101,7 +103,8 @@ const OUTCOMES: &[(&[&str], i32)] = &[
     (&["chek", "hose.toml"], 2),
 ];
 
-/// Each outcome is run once, as programs ask for it: what standard error says and the status are the same for people.
+/// Each outcome is run once, as programs ask for it: what standard error says and the status are
+/// the same for people.
 #[test]
 fn every_outcome_has_its_exit_status_and_one_json_object() {
     let folder = folder("exit_status");
@@ -163,7 +166,8 @@ fn a_bad_row_of_a_measurement_has_its_place() {
     assert!(complaint.contains("--> drive.csv:3:3"), "{complaint}");
 }
 
-/// Changes are made in the order of the command line; the file is written where it is said, and the same bytes where nothing changes.
+/// Changes are made in the order of the command line; the file is written where it is said, and the
+/// same bytes where nothing changes.
 #[test]
 fn shape_writes_what_was_asked_for_and_nothing_else() {
     let folder = folder("shape");
@@ -218,8 +222,8 @@ fn a_reader_that_goes_away_is_no_error() {
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
 }
 
-/// Ctrl-C while runs are under way: what is done is kept, and the same command goes on to the bytes of a campaign that was never
-/// interrupted.
+/// Ctrl-C while runs are under way: what is done is kept, and the same command goes on to the bytes
+/// of a campaign that was never interrupted.
 #[cfg(unix)]
 #[test]
 fn a_campaign_goes_on_after_ctrl_c() {

@@ -1,6 +1,7 @@
 //! Rows are written as they come and never held: gigabytes of them take the memory of a page.
 //!
-//! `cargo xtask ci soak` asks for it, with `PHEA_KILLS=100`; `--nocapture` tells how much was written, in what time, and within what memory.
+//! `cargo xtask ci soak` asks for it, with `PHEA_KILLS=100`; `--nocapture` tells how much was
+//! written, in what time, and within what memory.
 
 #![cfg(target_os = "linux")]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]

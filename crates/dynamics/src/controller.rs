@@ -1,4 +1,4 @@
-//! A controller as one value: what it is made of, when it acts, and where it is limited.
+//! A controller as one value: its elements, its timing, and its limits.
 //!
 //! Loop shaping edits the elements, verification takes the responses, simulation and generated code
 //! take the sample step of [`SampledController`]: four users of one value.
@@ -44,7 +44,7 @@ impl Timing {
     }
 }
 
-/// What the integral part does while the command is limited.
+/// The behaviour of the integral part while the command is limited.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum AntiWindup {
     /// It goes on integrating.
@@ -84,6 +84,6 @@ pub struct Controller {
     pub timing: Timing,
     /// Largest magnitude of the command, in its own unit (V); absent: unlimited.
     pub command_limit: Option<f64>,
-    /// What the integral part does at the limit.
+    /// The behaviour of the integral part at the limit.
     pub anti_windup: AntiWindup,
 }

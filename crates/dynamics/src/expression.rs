@@ -56,8 +56,8 @@ impl Expression {
         &self.results
     }
 
-    /// Operations that were recorded elsewhere; `None` where one refers to itself or to a later one, to a parameter that does not exist, or
-    /// where a result does not exist.
+    /// Operations that were recorded elsewhere; `None` where one refers to itself or to a later
+    /// one, to a parameter that does not exist, or where a result does not exist.
     ///
     /// # Example
     /// ```

@@ -4,9 +4,9 @@
 //! minimise  sum rho(r_i(x))    with  lower <= x <= upper,     rho(r) = r^2/2 for |r| <= k,  k|r| - k^2/2 beyond
 //! ```
 //!
-//! A damped Gauss-Newton method (Levenberg 1944, Marquardt 1963) on the normal equations, with psi =
-//! rho' (Huber 1964) for the residuals and psi' for their curvature. A variable at a bound that the
-//! step would leave is held for that step. The caller scales the variables to order one and the
+//! A damped Gauss-Newton method (Levenberg 1944, Marquardt 1963) on the normal equations, with psi
+//! = rho' (Huber 1964) for the residuals and psi' for their curvature. A variable at a bound that
+//! the step would leave is held for that step. The caller scales the variables to order one and the
 //! residuals to their noise.
 
 mod uncertainty;
@@ -148,7 +148,8 @@ pub fn minimise(
             continue;
         };
         let changed = best.cost - cost > settings.tolerance * best.cost;
-        // a step that next to nothing damped and that changed next to nothing will not be followed by another
+        // a step that next to nothing damped and that changed next to nothing will not be followed
+        // by another
         let is_full = damping <= FULL_STEP;
         idle = if changed { 0 } else { idle + if is_full { 3 } else { 1 } };
         best = Minimum { variables: tried, cost, linearised, ..best };
@@ -158,7 +159,7 @@ pub fn minimise(
     Ok(Minimum { evaluations, ending, ..best })
 }
 
-/// What a residual counts for in the curvature of the sum.
+/// The weight of a residual in the curvature of the sum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum CurvatureWeight {
     /// psi': Newton's method where residuals are linear, good near the minimum.
@@ -195,7 +196,7 @@ fn step(
         return None;
     }
     for index in 0..count {
-        // what nothing depends on stays where it is
+        // a variable on which nothing depends does not move
         normal[(index, index)] += damping * weighted[index] + 1e-14 * largest;
     }
     let step = normal.cholesky()?.solve(&-slope);

@@ -128,7 +128,7 @@ pub enum LinearError {
     /// Two systems in different time domains, or with different sample times, cannot be joined.
     #[error("the systems live in different time domains")]
     DomainMismatch,
-    /// The operation asks for the other time domain.
+    /// The operation needs the other time domain.
     #[error("{operation} needs a {needed} system")]
     WrongDomain {
         /// What was asked for.

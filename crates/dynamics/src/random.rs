@@ -75,7 +75,8 @@ mod tests {
     /// them.
     #[test]
     fn the_generator_is_the_published_one() {
-        // ORIGIN: paper, Steele, Lea and Flood (2014): outputs of the reference implementation for seed 1234567
+        // ORIGIN: paper, Steele, Lea and Flood (2014): outputs of the reference implementation for
+        // seed 1234567
         let expected: [u64; 3] =
             [6_457_827_717_110_365_317, 3_203_168_211_198_807_973, 9_817_491_932_198_370_423];
         let mut state = 1_234_567;

@@ -43,7 +43,7 @@ pub enum AuditError {
     NoController,
     /// There is a controller without a transfer function.
     #[error(
-        "[controller] says only when it acts, and leaves its law to be designed: `phea design` does that"
+        "[controller] states only when it acts and leaves its transfer function to be designed: `phea design` does that"
     )]
     NoLaw,
     /// There is no specification to audit.
@@ -243,7 +243,7 @@ impl ProjectAudit {
             PlantNames::Measured(names) => format!("Family: {}.", counted(names.len(), "measured response")),
             PlantNames::Parameters(names) if names.is_empty() => format!("Family: one plant{moving}."),
             PlantNames::Parameters(names) if self.whole_box => format!(
-                "Family: {} plants of a box over {}, and what lies between them{moving}.",
+                "Family: {} plants of a box over {}, and everything between them{moving}.",
                 self.members,
                 counted(names.len(), "uncertain parameter")
             ),
@@ -268,7 +268,7 @@ impl ProjectAudit {
             Some(sample_time) => {
                 let images = match self.names {
                     PlantNames::Measured(_) => {
-                        " What lies beyond the measurements is taken as no larger than at their ends."
+                        " Beyond the measurements the response is assumed to be no larger than at their ends."
                     }
                     PlantNames::Parameters(_) => "",
                 };

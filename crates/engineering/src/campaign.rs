@@ -68,7 +68,7 @@ pub enum CampaignError {
         path: String,
     },
     /// A saved start cannot be varied.
-    #[error("[campaign] varies `{path}`, but the scenario goes on from a saved state")]
+    #[error("[campaign] varies `{path}`, but the scenario continues from a saved state")]
     SavedStart {
         /// As written.
         path: String,
@@ -103,7 +103,7 @@ pub enum CampaignError {
     },
     /// The stored rows belong to another campaign.
     #[error(
-        "line {line} of the kept table is no row of this campaign: choose another folder, or remove the table"
+        "line {line} of the kept table is not a row of this campaign: choose another folder, or remove the table"
     )]
     OtherCampaign {
         /// Counted from 1.

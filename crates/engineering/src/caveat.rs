@@ -42,7 +42,7 @@ fn apart_from_lines(project: &Project) -> impl Iterator<Item = Caveat> {
 fn load(project: &Project) -> Option<Caveat> {
     let load = &project.actuator.as_ref()?.load;
     matches!(load, Load::Wall { mass: None, .. }).then(|| Caveat {
-        sentence: "load.model = \"wall\" is not counted without load.mass: this is the loop with a load that does not yield"
+        sentence: "load.model = \"wall\" is not included without load.mass: this is the loop with a load that does not move"
             .to_string(),
         unproven: true,
     })
@@ -85,11 +85,11 @@ fn supply(setup: &Setup<'_>) -> Option<Caveat> {
     let rests = found.taken < gives;
     let sentence = match rests {
         true => format!(
-            "supply.model = \"pump_limited\" is counted as small motions see it, at {pressure} where the valve takes {taken} of the \
-             pump's {gives_words}: what a large step takes beyond it only a simulation shows"
+            "supply.model = \"pump_limited\" is included for small motions, at {pressure} where the valve takes {taken} of the \
+             pump's {gives_words}: only a simulation shows what a large step takes beyond that"
         ),
         false => format!(
-            "supply.model = \"pump_limited\" does not rest at the operating point, where the valve takes {taken} and the pump gives \
+            "supply.model = \"pump_limited\" has no equilibrium at the operating point, where the valve takes {taken} and the pump gives \
              {gives_words}: the plant is that at {pressure}, where the relief valve shuts"
         ),
     };
@@ -119,7 +119,7 @@ fn feed_forward(project: &Project) -> Option<Caveat> {
     let actuator = project.actuator.as_ref();
     let yields = actuator.is_some_and(|actuator| actuator.load != Load::Prescribed);
     let why = match actuator {
-        None => "no load is known of a [plant]",
+        None => "a [plant] declares no load",
         Some(_) if is_measured(project) => "the plants of the family were measured without it",
         Some(_) => return None,
     };
@@ -142,7 +142,7 @@ fn fed_in_loop(project: &Project) -> Option<String> {
     let declared = controller.load_velocity_feed_forward?;
     let why = match controller.sample_time {
         None if controller.delay == 0.0 => "which have no controller",
-        None => "as controller.delay makes it late",
+        None => "as controller.delay delays it",
         Some(_) => "as the controller samples it",
     };
     (declared.gain != Some(0.0) && feed_forward(project).is_none()).then(|| {

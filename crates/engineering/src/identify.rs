@@ -32,7 +32,7 @@ use phea_hydraulics::servovalve::{LeakageModel, STATIC_COEFFICIENTS, StaticCoeff
 use self::variables::Variables;
 use crate::project::Refusal;
 
-/// What the coefficients are called, in their order, and their units.
+/// Names of the coefficients, in order, and their units.
 pub const COEFFICIENT_NAMES: [(&str, &str); STATIC_COEFFICIENTS] = [
     ("flow_coefficients.supply_to_a", "m3/(s.Pa^0.5)"),
     ("flow_coefficients.a_to_tank", "m3/(s.Pa^0.5)"),
@@ -48,16 +48,16 @@ pub const COEFFICIENT_NAMES: [(&str, &str); STATIC_COEFFICIENTS] = [
     ("hysteresis", "V"),
 ];
 
-/// What is known beside the files.
+/// What is known in addition to the files.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Known {
     /// V, command of full opening.
     pub nominal_voltage: f64,
     /// Pa, drop below which an edge's flow is laminar.
     pub transition_pressure: f64,
-    /// Pa, where a file has no column for it.
+    /// Pa, used if a file has no column for it.
     pub supply_pressure: Option<f64>,
-    /// Pa, where a file has no column for it.
+    /// Pa, used if a file has no column for it.
     pub tank_pressure: f64,
     /// Pa, drop at which the tare flow is to be stated; absent: that of the files.
     pub tare_pressure: Option<f64>,
@@ -81,12 +81,12 @@ impl Default for Known {
 /// How thoroughly is searched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Search {
-    /// Starting points, the first guess among them.
+    /// Number of starting points, including the first guess.
     pub starts: usize,
-    /// Of the others, and of the bootstrap.
+    /// Seed of the others, and of the bootstrap.
     pub seed: u32,
     /// The model of the leakage whose coefficients are wanted; absent: the one that the recordings
-    /// speak for.
+    /// support.
     pub leakage_model: Option<LeakageModel>,
     /// Repetitions of the bootstrap; zero makes none.
     pub bootstrap: usize,
@@ -105,13 +105,13 @@ pub struct Identification {
     pub recordings: Vec<Recording>,
     /// Its coefficients.
     pub coefficients: StaticCoefficients,
-    /// 95 % confidence interval of each, linearised; `None` where the data do not tell it.
+    /// 95 % confidence interval of each, linearised; `None` where the data do not determine it.
     pub intervals: [Option<[f64; 2]>; STATIC_COEFFICIENTS],
-    /// Intervals by the bootstrap, where it was asked for.
+    /// Intervals by the bootstrap, if requested.
     pub bootstrap: Option<Bootstrap>,
     /// Correlation of each pair, row by row.
     pub correlations: Vec<f64>,
-    /// Combinations that the data do not tell, the least known first.
+    /// Combinations that the data do not determine, the least known first.
     pub untold: Vec<Untold>,
     /// By the calculations of section 5.2, for comparison.
     pub simple: SimpleCalculations,
@@ -127,7 +127,7 @@ pub struct Identification {
     pub cost: f64,
     /// Coefficients that ended at a bound of the search.
     pub at_bounds: Vec<&'static str>,
-    /// Starting points, and how many of them lead to this minimum.
+    /// Number of starting points, and how many of them lead to this minimum.
     pub starts: [usize; 2],
     /// How the search ended.
     pub ending: Ending,
@@ -167,7 +167,7 @@ pub enum IdentifyError {
     /// Files are refused.
     #[error("{0}")]
     Files(Box<Refusal>),
-    /// The files say nothing that coefficients follow from.
+    /// The files contain nothing from which coefficients follow.
     #[error("{0}")]
     Data(String),
     /// Whoever watched stopped it.
@@ -210,7 +210,8 @@ pub fn identify(
     let groups = found.together.groups();
     let told = intervals::told(&found.minimum.linearised, &groups, &variables, &coefficients);
     let intervals = intervals::intervals(&variables, &coefficients, &told.deviations);
-    // what is not told may have ended anywhere: a further test is judged where it usually is
+    // a coefficient that is not determined may have ended anywhere: a further test is judged at its
+    // usual value
     let mut usual = coefficients.to_array();
     for ((number, interval), start) in usual.iter_mut().zip(intervals).zip(first_guess.to_array()) {
         *number = if interval.is_some() { *number } else { start };

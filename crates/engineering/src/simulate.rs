@@ -79,7 +79,9 @@ pub enum SimulateError {
     #[error("there is nothing to simulate: the project has no [[scenario]]")]
     NoScenario,
     /// Nobody commands the valve.
-    #[error("nobody commands the valve: [controller] gives no law, and a scenario states no `command`")]
+    #[error(
+        "nothing commands the valve: [controller] gives no transfer function, and a scenario states no `command`"
+    )]
     NoController,
     /// Controller, prefilter or sensor cannot be simulated in time.
     #[error("[controller], [prefilter] or [sensor]: {0}")]
@@ -121,7 +123,7 @@ pub enum SimulateError {
     },
     /// There is no equilibrium to start from.
     #[error(
-        "scenario \"{name}\" states no `start`, and the closed loop does not rest at its reference of {}: where \
+        "scenario \"{name}\" states no `start`, and the closed loop has no equilibrium at its reference of {}: where \
          all moves least, {what} still moves by {rate:.2e} of its typical magnitude a second",
         display(*reference_n, &FORCE, 6)
     )]
@@ -137,7 +139,7 @@ pub enum SimulateError {
     },
     /// The equilibrium needs a command beyond its limit.
     #[error(
-        "scenario \"{name}\" states no `start`, and to rest at its reference of {} takes a command of {}, beyond the limit of {}",
+        "scenario \"{name}\" states no `start`, and the equilibrium at its reference of {} needs a command of {}, beyond the limit of {}",
         display(*reference_n, &FORCE, 6), display(*command_v, &VOLTAGE, 4), display(*limit_v, &VOLTAGE, 6)
     )]
     RestBeyondLimit {

@@ -42,7 +42,7 @@ pub enum Role {
     Accent,
     /// Accepted.
     Good,
-    /// To be looked at.
+    /// To be noticed.
     Warning,
     /// Rejected or violated.
     Bad,

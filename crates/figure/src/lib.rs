@@ -6,10 +6,10 @@
 //!
 //! The layer is our own because one small list of primitives with roles for colours serves axes,
 //! the circuit diagram, the nomograph and control charts alike, and lets one SVG follow a light or
-//! dark page. The plotting libraries looked at resolve every colour when they draw: plotters 0.3
-//! passes RGB values to its back ends; the themes of kuva 0.6 stop at axes and text, its clip paths
-//! are numbered by a counter of the process, so the same figure drawn twice differs, and the
-//! circuit diagram and the nomograph would have stayed our own drawing in either.
+//! dark page. The plotting libraries that were examined resolve every colour when they draw:
+//! plotters 0.3 passes RGB values to its back ends; the themes of kuva 0.6 stop at axes and text,
+//! its clip paths are numbered by a counter of the process, so the same figure drawn twice differs,
+//! and the circuit diagram and the nomograph would have stayed our own drawing in either.
 //!
 //! Sizes: the view box is [`WIDTH`] units wide. Shown 680 px wide a unit is 1.21 px and the text of
 //! axes (13 units) is 16 px; printed 85 mm wide a unit is 0.152 mm and that text is 5.6 pt, the

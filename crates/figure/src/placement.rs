@@ -1,4 +1,4 @@
-//! Where labels go: the first free place among candidates, away from curves where that can be had.
+//! Where labels go: the first free place among candidates, away from curves if possible.
 
 use phea_dynamics::portable::hypot;
 
@@ -120,7 +120,7 @@ impl Occupancy {
         best.map(|(index, _)| index)
     }
 
-    /// What speaks against a label that lies nearer to other markers than to the point it names.
+    /// The penalty of a label that lies nearer to other markers than to the point it names.
     fn ambiguity(&self, point: Point, bounds: &Rectangle) -> f64 {
         const COST: f64 = 6.0;
         let own = distance(point, bounds);

@@ -14,7 +14,7 @@ use super::{Figure, Words};
 pub struct PrefilterPoint {
     /// rad/s
     pub frequency_rad_per_s: f64,
-    /// lower/min|T|, dB; minus infinity where nothing is demanded from below.
+    /// lower/min|T|, dB; minus infinity if there is no lower limit.
     pub least_db: f64,
     /// upper/max|T|, dB
     pub greatest_db: f64,

@@ -63,8 +63,8 @@ impl Actuator {
     ///
     /// # Errors
     /// Every parameter outside physics, by its path (`valve.flow_coefficients.supply_to_a`), with
-    /// what it must be. A line and dead volumes of zero on one side are refused too: with the
-    /// piston at that end the chamber would hold nothing.
+    /// the requirement. A line and dead volumes of zero on one side are rejected too: with the
+    /// piston at that end the chamber would have no volume.
     pub fn new(components: Components) -> Result<Actuator, ActuatorError> {
         let Components { fluid, supply, valve, line_a, line_b, cylinder, friction, force_sensor, .. } =
             components;

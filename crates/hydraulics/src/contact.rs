@@ -4,7 +4,7 @@ use phea_dynamics::scalar::Scalar;
 
 use crate::parameter::{ParameterError, Problems};
 
-/// A surface that pushes back what presses into it, and never pulls. Units: N/m, s/m.
+/// A surface that pushes back and never pulls. Units: N/m, s/m.
 ///
 /// ```text
 /// F = K d+ (1 + c d')+                    d penetration, d' its rate, + the positive part
@@ -23,7 +23,7 @@ pub struct Contact<S = f64> {
 }
 
 impl Contact {
-    /// What about this contact is impossible; empty if nothing is.
+    /// Impossible parameters of this contact; empty if there are none.
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
         problems.positive("stiffness", self.stiffness);

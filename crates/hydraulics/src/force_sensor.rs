@@ -4,7 +4,7 @@ use phea_dynamics::scalar::Scalar;
 
 use crate::parameter::{ParameterError, Problems};
 
-/// A load cell, in series with what it stands on when the load is a prescribed motion.
+/// A load cell, in series with its foundation when the load is a prescribed motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ForceSensor<S = f64> {
     /// Stiffness K_S in N/m.
@@ -12,7 +12,7 @@ pub struct ForceSensor<S = f64> {
 }
 
 impl ForceSensor {
-    /// What about this sensor is impossible; empty if nothing is.
+    /// Impossible parameters of this sensor; empty if there are none.
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
         problems.positive("stiffness", self.stiffness);
@@ -39,7 +39,7 @@ pub fn force<S: Scalar>(stiffness: S, deflection: S) -> S {
 /// use phea_hydraulics::force_sensor::in_series;
 /// assert!((in_series(9.81e7, 2.51e7) - 2.0e7_f64).abs() < 0.5e5);
 /// ```
-/// A spring that does not give leaves the other alone
+/// A rigid spring leaves the stiffness of the other
 /// ```
 /// assert_eq!(phea_hydraulics::force_sensor::in_series(f64::INFINITY, 2.0e7), 2.0e7);
 /// ```

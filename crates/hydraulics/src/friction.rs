@@ -33,8 +33,8 @@ pub enum Friction<S = f64> {
 pub enum ViscousSlope {
     /// The viscous part alone, sigma_2: right when sliding fast; the least damping.
     Viscous,
-    /// Steady force over velocity, F(v)/v, at this speed in m/s: what an equivalent damper would
-    /// give there.
+    /// Steady force over velocity, F(v)/v, at this speed in m/s: the coefficient of an equivalent
+    /// damper.
     Secant(f64),
     /// Slope of the steady curve at this speed in m/s; negative on the falling part of the Stribeck
     /// curve.
@@ -56,7 +56,7 @@ impl<S: Copy> Friction<S> {
 }
 
 impl Friction {
-    /// What about this friction is impossible; empty if nothing is.
+    /// Impossible parameters of this friction; empty if there are none.
     pub fn problems(&self) -> Vec<ParameterError> {
         match self {
             Friction::Viscous { viscous } => {

@@ -1,4 +1,4 @@
-//! Driving-point impedance: what the load feels when it moves the actuator.
+//! Driving-point impedance: the resistance to a load that moves the actuator.
 //!
 //! ```text
 //! Z(s) = -F_e/(s X_L)                          passive: Re Z(jw) >= 0 (thesis 2.2, with the sign that makes it so)
@@ -80,8 +80,7 @@ pub fn closed_loop_load_motion(
     Ok(product.without_common_factors(0.0))
 }
 
-/// Force in N that remains long after the load has stepped by `step` in m: Proposition 6.2 says
-/// none.
+/// Force in N that remains long after the load has stepped by `step` in m: zero by Proposition 6.2.
 ///
 /// ```text
 /// F_e(inf) = lim s (F_e/X_L) x_L0/s = (F_e/X_L)(0) x_L0                thesis (6.9) to (6.11)

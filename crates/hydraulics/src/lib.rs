@@ -9,10 +9,10 @@
 //!
 //! Every equation is written once over [`phea_dynamics::scalar::Scalar`] and cites its number in
 //! Ledezma (2019), the thesis. Parameters are plain structs in SI units;
-//! [`actuator::Actuator::new`] is the one gate that refuses impossible ones. Signs: the piston
-//! position grows from the A end to the B end, chamber flows are positive into their chamber, the
-//! force on the load is positive when the rod pushes, pressures are gauge unless a name says
-//! `absolute`.
+//! [`actuator::Actuator::new`] is the only constructor, and rejects impossible ones. Signs: the
+//! piston position grows from the A end to the B end, chamber flows are positive into their
+//! chamber, the force on the load is positive when the rod pushes, pressures are gauge unless a
+//! name says `absolute`.
 
 pub mod actuator;
 pub mod contact;

@@ -1,7 +1,7 @@
-//! The line between a valve port and a cylinder chamber: hose, pipe or plain volume, and what it
-//! does in motion.
+//! The line between a valve port and a cylinder chamber: hose, pipe or plain volume, and its
+//! dynamics.
 //!
-//! [`Line`] says what it is, [`LineModel`] and [`DynamicLine`] what a machine calculates:
+//! [`Line`] describes it, [`LineModel`] and [`DynamicLine`] are the models that a machine computes:
 //! capacities with or without inertances ([`Segments`]), a wall that creeps
 //! ([`StandardLinearSolid`]), one wave ([`TransmissionLine`]) or two ([`TwoWaveHose`]).
 
@@ -81,7 +81,7 @@ pub enum StiffeningMember {
 }
 
 impl Line {
-    /// What about this line is impossible; empty if nothing is. A length or volume of zero is
+    /// Impossible parameters of this line; empty if there are none. A length or volume of zero is
     /// possible: no line.
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
@@ -150,7 +150,8 @@ impl<S: Scalar> Line<S> {
         }
     }
 
-    /// Compliance dV/dp in m3/Pa: what the line takes up per pascal; a hose as its sheet says.
+    /// Compliance dV/dp in m3/Pa: the volume that the line takes up per pascal; for a hose by its
+    /// data sheet.
     ///
     /// ```text
     /// dV/dp = V/beta_e          hose: epsilon L/r_beta + (A_ho + E(p)) L/beta_0         p the operating pressure

@@ -64,7 +64,7 @@ impl<S: Scalar> LinearParameters<S> {
 }
 
 impl LinearParameters {
-    /// What about these parameters is impossible; empty if nothing is.
+    /// Impossible ones among these parameters; empty if there are none.
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
         problems.positive("useful_area", self.useful_area);

@@ -68,11 +68,9 @@ pub struct OperatingPoint<S = f64> {
     pub velocity: S,
     /// Force of the pressures on the piston, A_A p_A - A_B p_B, in N.
     pub hydraulic_force: S,
-    /// What flows into chamber A beyond what the piston takes, in m3/s: zero but for
-    /// [`Condition::Matched`].
+    /// Surplus flow into chamber A, in m3/s: zero except for [`Condition::Matched`].
     pub net_flow_a: S,
-    /// What flows into chamber B beyond what the piston takes, in m3/s: zero but for
-    /// [`Condition::Matched`].
+    /// Surplus flow into chamber B, in m3/s: zero except for [`Condition::Matched`].
     pub net_flow_b: S,
 }
 

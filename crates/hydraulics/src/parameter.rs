@@ -1,4 +1,4 @@
-//! Refusal of parameters outside physics, naming the quantity, its value and what was required.
+//! Refusal of parameters outside physics, naming the quantity, its value and the requirement.
 
 /// A parameter that cannot describe a real component.
 ///
@@ -15,7 +15,7 @@ pub struct ParameterError {
     pub quantity: String,
     /// The value given, in SI units.
     pub value: f64,
-    /// What the value must be, to follow "must be".
+    /// The requirement, to follow "must be".
     pub requirement: &'static str,
 }
 

@@ -1,5 +1,4 @@
-//! The linear plant: what the controller commands, at an operating point, with lumped lines and
-//! with the load that is there.
+//! The linear plant of the controller at an operating point, with lumped lines and with its load.
 //!
 //! ```text
 //! U_sp = w^2/(s^2 + 2 xi w s + w^2) U_C                                  spool, thesis (4.1)
@@ -90,7 +89,7 @@ pub enum ChamberDynamics<S = f64> {
     },
 }
 
-/// What the force sensor pushes on, as linear as it is at the operating point.
+/// The load on the force sensor, linearised at the operating point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LinearLoad<S = f64> {
     /// Its motion is prescribed, whatever the force.
@@ -199,7 +198,8 @@ struct Chamber<S> {
 }
 
 impl<S: Scalar> LinearPlant<S> {
-    /// The plant of these parameters of the fifth-order model, with what that model leaves out.
+    /// The plant of these parameters of the fifth-order model, with the effects that this model
+    /// leaves out.
     pub fn of_load_pressure(
         parameters: &LinearParameters<S>,
         leakage: S,
@@ -224,7 +224,8 @@ impl<S: Scalar> LinearPlant<S> {
         }
     }
 
-    /// The plant of these parameters of the two-pressure model, with what that model leaves out.
+    /// The plant of these parameters of the two-pressure model, with the effects that this model
+    /// leaves out.
     pub fn of_two_pressures(
         parameters: &TwoPressureLinearParameters<S>,
         leakage: S,
@@ -264,7 +265,7 @@ impl<S: Scalar> LinearPlant<S> {
     /// and in the denominator V (...) is less by K_S w^2 N_u K_x s of a load that yields.
     ///
     /// # Example
-    /// What the load adds: with a mass as heavy as the earth it does not move.
+    /// The effect of the load: with a mass as heavy as the earth it does not move.
     /// ```
     /// # use phea_hydraulics::linear::{LinearParameters, linear_model_coefficients};
     /// use phea_hydraulics::plant::{LinearLoad, LinearPlant};

@@ -111,7 +111,7 @@ pub struct Supply<S = f64> {
 }
 
 impl Servovalve {
-    /// What about this valve is impossible; empty if nothing is.
+    /// Impossible parameters of this valve; empty if there are none.
     pub fn problems(&self) -> Vec<ParameterError> {
         const NAMES: [&str; 4] = ["supply_to_a", "a_to_tank", "supply_to_b", "b_to_tank"];
         let mut problems = Problems::default();
@@ -158,7 +158,7 @@ impl<S: Copy> Supply<S> {
 }
 
 impl Supply {
-    /// What about this supply is impossible; empty if nothing is.
+    /// Impossible parameters of this supply; empty if there are none.
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
         let Supply { pressure, tank_pressure } = *self;

@@ -1,4 +1,4 @@
-//! What the load feels: asymptotes, the published controller's lack of passivity, and the step that leaves no force.
+//! The impedance at the load: asymptotes, the published controller's lack of passivity, and the step that leaves no force.
 
 #![allow(clippy::unwrap_used)] // helpers of tests
 

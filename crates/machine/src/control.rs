@@ -6,10 +6,10 @@ use phea_dynamics::simulation::{
 };
 use phea_hydraulics::machine::{InitialCondition, Machine};
 
-/// Who looks at a run.
+/// The observer of a run.
 pub type Watcher<'a> = Box<dyn Observer + 'a>;
 
-/// A machine as the controller sees it, with what commands it.
+/// A machine as it appears to the controller, with its source of commands.
 pub type Commanded<S = f64> = CommandedPlant<Sensed<Machine<S>>>;
 
 /// A machine under its controller.
@@ -36,18 +36,18 @@ pub struct Sampled {
     pub command_limit: f64,
     /// From the load's velocity to the command, V s/m.
     pub feed_forward: f64,
-    /// Converter of the command, where it rounds.
+    /// Converter of the command, if it rounds.
     pub command_converter: Option<Converter>,
-    /// Converter of the measurement, where it rounds.
+    /// Converter of the measurement, if it rounds.
     pub measurement_converter: Option<Converter>,
     /// Root mean square of the noise, N.
     pub noise: f64,
-    /// Where the random numbers of the noise begin.
+    /// Seed of the random numbers of the noise.
     pub seed: u64,
 }
 
 impl Control {
-    /// The machine with what commands it, from sample to sample a hold.
+    /// The machine with its source of commands, which is a hold between samples.
     pub fn commanded(&self) -> &Commanded {
         match self {
             Control::Continuous(commanded) | Control::Open(commanded) => commanded,
@@ -62,7 +62,7 @@ impl Control {
         }
     }
 
-    /// The plant as the controller sees it.
+    /// The plant as it appears to the controller.
     pub fn sensed(&self) -> &Sensed<Machine> {
         self.commanded().plant()
     }
@@ -74,7 +74,7 @@ impl Control {
         self
     }
 
-    /// Number of states and of inputs, waves that arrive among them.
+    /// Number of states and of inputs, including arriving waves.
     pub fn size(&self) -> [usize; 2] {
         let system = self.commanded();
         [System::<f64>::states(system), System::<f64>::inputs(system)]
@@ -86,7 +86,7 @@ impl Control {
         self.commanded().leading_inputs()
     }
 
-    /// Delays of the waves under way, s.
+    /// Delays of the waves in transit, s.
     pub fn delays(&self) -> Vec<f64> {
         System::<f64>::delays(self.commanded())
     }
@@ -106,7 +106,7 @@ impl Control {
         self.commanded().outgoing(state, inputs, waves);
     }
 
-    /// Indicators in a state: those of the machine are positive while all is well, that of the
+    /// Indicators in a state: those of the machine are positive while nothing is wrong, that of the
     /// command's limit while it is reached.
     pub fn indicators(&self, state: &[f64], inputs: &[f64]) -> Vec<f64> {
         let system = self.commanded();
@@ -115,9 +115,8 @@ impl Control {
         indicators
     }
 
-    /// The waves under way while the machine stands as it begins: those of its lines, and those
-    /// that controller and sensor sent, the one from the other. `first` are the inputs before the
-    /// machine's.
+    /// The waves in transit while the machine is in its initial state: those of its lines, and
+    /// those between controller and sensor. `first` are the inputs before the machine's.
     pub fn under_way(&self, state: &[f64], first: &[f64], beginning: &InitialCondition) -> Vec<f64> {
         let system = self.commanded();
         let mut inputs = [first, &beginning.all_inputs()].concat();
@@ -137,7 +136,7 @@ impl Control {
     /// step and stops it by returning false.
     ///
     /// # Errors
-    /// [`SimulationError`] when start or course do not fit the machine.
+    /// [`SimulationError`] when start or input schedule do not fit the machine.
     pub fn drive(
         &self,
         task: Task<'_, Watcher<'_>>,

@@ -9,23 +9,23 @@ use phea_dynamics::simulation::{Plant, Sampler};
 use super::control::Sampled;
 use super::samples::{ControllerSample, ControllerSamples};
 
-/// All that a sampled controller knows.
+/// The state of a sampled controller.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DigitalMemory {
     /// Its last command, V.
     pub command_v: f64,
     /// Of its sections.
     pub memories: Vec<f64>,
-    /// Where its random numbers are.
+    /// The position in its random numbers.
     pub random: u64,
 }
 
-/// How a sampled controller begins.
+/// The initial state of a sampled controller.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Waking {
     /// At rest.
     AtRest,
-    /// Holding a command while reference and measurement stand still: these three.
+    /// Holding a command at constant reference and measurement: these three.
     Holding([f64; 3]),
     /// Where another run ended.
     Resumed(DigitalMemory),
@@ -44,12 +44,12 @@ pub struct Digital<'a> {
     /// Before its first command takes effect, V.
     held: f64,
     log: &'a RefCell<ControllerSamples>,
-    /// Where it leaves what it knows.
+    /// Where it stores its state.
     memory: Option<&'a RefCell<DigitalMemory>>,
 }
 
 impl<'a> Digital<'a> {
-    /// A controller that begins so.
+    /// A controller with this initial state.
     pub fn new(sampled: &'a Sampled, waking: &Waking, log: &'a RefCell<ControllerSamples>) -> Digital<'a> {
         let controller = &sampled.controller;
         let (state, held, random) = match waking {
@@ -58,7 +58,7 @@ impl<'a> Digital<'a> {
                 (controller.holding(*reference, *measurement, *command), *command, sampled.seed)
             }
             Waking::Resumed(memory) => {
-                // a state that was read has as many memories as its controller
+                // a state from a file has as many memories as its controller
                 let resumed = controller.resumed(&memory.memories).unwrap_or_else(|| controller.at_rest());
                 (resumed, memory.command_v, memory.random)
             }
@@ -66,7 +66,7 @@ impl<'a> Digital<'a> {
         Digital { sampled, state, random, held, log, memory: None }
     }
 
-    /// Leaves what it knows after each sample.
+    /// Stores its state after each sample.
     pub fn remembered_in(self, memory: &'a RefCell<DigitalMemory>) -> Digital<'a> {
         Digital { memory: Some(memory), ..self }
     }

@@ -14,20 +14,19 @@ use super::control::{Commanded, Control, Watcher};
 /// divisions and roots take.
 const LANES: usize = 4;
 
-/// Where machines come from, and where their outcomes go.
+/// The source of machines, and the destination of their outcomes.
 pub trait Fleet<'a> {
-    /// The next machine, put into its lane, and what is to be done with it; `None` when there are
-    /// no more.
+    /// The next machine, put into its lane, with its task; `None` when there are no more.
     fn next(
         &mut self,
         lane: usize,
         put: &mut dyn FnMut(&Machine) -> Result<(), MachineError>,
     ) -> Option<Task<'a, Watcher<'a>>>;
 
-    /// Takes what came of the machine in this lane.
+    /// Takes the outcome of the machine in this lane.
     fn done(&mut self, lane: usize, outcome: Outcome);
 
-    /// Asked once a step: false ends everything.
+    /// Called once per step: false ends everything.
     fn goes_on(&mut self) -> bool;
 }
 
@@ -47,14 +46,14 @@ pub fn one_by_one<'a>(
 pub struct Lanewise(Box<Commanded<Lanes<LANES>>>);
 
 impl Lanewise {
-    /// Whether this processor has the vector instructions that lanes want; [`one_by_one`] gives the
-    /// same bits without.
+    /// Whether this processor has the vector instructions that lanes need; [`one_by_one`] gives the
+    /// same bits without them.
     pub fn is_available() -> bool {
         can_drive::<Lanes<LANES>>()
     }
 
-    /// Lanes of machines built like this one, with this sensor, under a controller with what it
-    /// feeds forward of the load's velocity in V s/m; without one under a stated command.
+    /// Lanes of machines built like this one, with this sensor, under a controller with its
+    /// feed-forward of the load velocity in V s/m, or without one under a stated command.
     ///
     /// # Errors
     /// [`LinearError`] for a sensor or a controller that cannot be simulated.

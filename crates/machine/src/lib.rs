@@ -1,5 +1,5 @@
-//! The nonlinear machine with what commands it: a continuous controller, a computer that samples,
-//! or a stated command.
+//! The nonlinear machine with its source of commands: a continuous controller, a computer that
+//! samples, or a stated command.
 //!
 //! ```text
 //! Machine (hydraulics) -> Sensed -> Control { Continuous | Sampled | Open }
@@ -8,8 +8,8 @@
 //! Control         -> at_rest, Control::orbit, Control::shaken       rest, small signals, sines
 //! ```
 //!
-//! The methods of [`phea_dynamics::simulation`] are generic; here they meet the one machine there
-//! is, so that each is compiled once, and optimised in test builds too.
+//! The methods of [`phea_dynamics::simulation`] are generic; here they are instantiated for the
+//! only machine, so that each is compiled once, and optimised in test builds too.
 
 mod control;
 mod digital;

@@ -1,4 +1,4 @@
-//! A loop at rest: the rates that are simulated, all zero.
+//! The equilibrium of a loop: all simulated rates are zero.
 
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{EquilibriumError, Plant, System, equilibrium};
@@ -6,32 +6,32 @@ use phea_hydraulics::machine::InitialCondition;
 
 use super::control::{Commanded, Control};
 
-/// What stands still while a loop rests.
+/// The constant inputs of a loop in equilibrium.
 #[derive(Clone, Copy, Debug)]
 pub struct HeldInputs {
     /// N.
     pub reference_n: f64,
     /// Of an open loop, V.
     pub command_v: f64,
-    /// On the load from outside, N, where the machine has that input.
+    /// External force on the load, N, if the machine has that input.
     pub external_n: f64,
 }
 
 /// A loop in equilibrium.
 #[derive(Clone, Debug)]
 pub struct Rest {
-    /// States of the loop, and the waves under way.
+    /// States of the loop, and the waves in transit.
     pub start: Vec<f64>,
-    /// What the controller measures, N.
+    /// The measurement of the controller, N.
     pub measured_n: f64,
-    /// What the controller wants, V.
+    /// The command of the controller, V.
     pub command_v: f64,
     /// Largest magnitude of the command, V.
     pub limit_v: f64,
 }
 
-/// The rest of a loop under what stands still, near a guess of its states; `beginning` is where its
-/// machine stands there.
+/// The equilibrium of a loop under constant inputs, near a guess of its states; `beginning` is the
+/// state of its machine there.
 ///
 /// # Errors
 /// [`EquilibriumError`] where none is found.

@@ -1,30 +1,30 @@
-//! What is kept of a sampled controller on the way.
+//! The record of a sampled controller during a run.
 
-/// What happened at one sample.
+/// The events of one sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ControllerSample {
     /// s
     pub time_s: f64,
     /// Behind the prefilter, N.
     pub filtered_reference_n: f64,
-    /// What the computer gives out, V.
+    /// The output of the computer, V.
     pub command_v: f64,
-    /// The same before its limit and its rounding, V.
+    /// The same before limit and rounding, V.
     pub unlimited_v: f64,
     /// Part of the command that the integral part of G holds, V.
     pub integral_v: f64,
-    /// What the computer read, N.
+    /// The measurement that the computer read, N.
     pub measurement_n: f64,
     /// Whether its limit held the command.
     pub limited: bool,
 }
 
-/// What is kept of a sampled controller on the way.
+/// The record of a sampled controller during a run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ControllerSamples {
     /// The last one.
     pub last: Option<ControllerSample>,
-    /// When the command came to its limit (`true`) or left it, s.
+    /// When the command reached its limit (`true`) or left it, s.
     pub limits: Vec<(f64, bool)>,
 }
 

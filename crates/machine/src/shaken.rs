@@ -1,4 +1,4 @@
-//! A machine that is shaken: by its exact derivatives, and by sines until what it answers has
+//! A machine that is excited: by its exact derivatives, and by sines until its response has
 //! settled.
 
 use num_complex::Complex64;
@@ -10,7 +10,7 @@ use phea_hydraulics::machine::Machine;
 
 use super::control::Control;
 
-/// What is shaken, and from where.
+/// The excited machine, and its initial state.
 pub struct Shaken<'a> {
     /// States at the start, followed by the waves in transit.
     pub start: &'a [f64],
@@ -41,21 +41,21 @@ impl Control {
     }
 
     /// Amplitudes of the states for a sine of amplitude one at the first input, by exact
-    /// derivatives; `None` where they are no linear system.
+    /// derivatives; `None` where they do not form a linear system.
     pub fn orbit(&self, state: &[f64], inputs: &[f64], frequency_rad_per_s: f64) -> Option<Vec<Complex64>> {
         let amplitude = [Complex64::ONE];
         small_signal(self.commanded(), state, inputs, &amplitude, frequency_rad_per_s)
     }
 }
 
-/// Force on the load at a state of a machine, or of what begins with it; not a number for fewer
+/// Force on the load at a state of a machine, or at the beginning of a longer vector; NaN for fewer
 /// states.
 pub fn force(machine: &Machine, state: &[f64]) -> f64 {
     let own: usize = Plant::<f64>::states(machine);
     state.get(..own).map_or(f64::NAN, |state| Plant::<f64>::measurement(machine, state, &[]))
 }
 
-/// The same of complex amplitudes, in which it is linear.
+/// The same for complex amplitudes, in which it is linear.
 pub fn force_amplitude(machine: &Machine, amplitudes: &[Complex64]) -> Complex64 {
     let part = |of: fn(&Complex64) -> f64| force(machine, &amplitudes.iter().map(of).collect::<Vec<_>>());
     Complex64::new(part(|amplitude| amplitude.re), part(|amplitude| amplitude.im))

@@ -4,7 +4,7 @@ use super::key::{Key, key, plain};
 use super::visitor::Visitor;
 use phea_quantity::{FLOW, PRESSURE, RATIO, TIME};
 
-/// How the command runs through its cycle.
+/// The form of the command over a cycle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BenchWaveform {
     /// A sine from zero.
@@ -14,18 +14,19 @@ pub enum BenchWaveform {
     Triangle,
 }
 
-/// How the servovalve is tested, and with which instruments.
+/// The tests of the servovalve, and their instruments.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bench {
     /// s, of one test.
     pub duration: f64,
     /// Cycles of the command in a test.
     pub cycles: u32,
-    /// How the command runs through its cycle.
+    /// The form of the command over a cycle.
     pub waveform: BenchWaveform,
-    /// Of the command, as share of the nominal voltage, of leakage and metering.
+    /// Amplitude of the command in the leakage and metering tests, as a share of the nominal
+    /// voltage.
     pub amplitude: f64,
-    /// The same of the pressure gain test.
+    /// The same for the pressure gain test.
     pub pressure_gain_amplitude: f64,
     /// s, between two rows.
     pub sample_time: f64,
@@ -39,7 +40,7 @@ pub struct Bench {
     pub pressure_noise: f64,
     /// Pa, range of every pressure transducer, from zero.
     pub pressure_range: f64,
-    /// Of the converters of all signals; zero converts nothing.
+    /// Bits of the converters of all signals; zero: no conversion.
     pub converter_bits: u32,
     /// Of the noise.
     pub seed: u32,
@@ -50,7 +51,7 @@ pub struct Bench {
 pub struct FlowMeter {
     /// m³/s, the highest flow.
     pub range: f64,
-    /// m³/s, below which it stands still.
+    /// m³/s, flow below which it stands still.
     pub minimum: f64,
     /// m³/s, root mean square of its noise.
     pub noise: f64,
@@ -63,7 +64,7 @@ pub struct FlowMeter {
 /// One litre per minute.
 const LITRE_PER_MINUTE: f64 = 1.0 / 60_000.0;
 
-/// Meter of the leakage where a project does not say.
+/// Default meter of the leakage.
 const LEAK_METER: FlowMeter = FlowMeter {
     range: 5.0 * LITRE_PER_MINUTE,
     minimum: 0.0,
@@ -72,7 +73,7 @@ const LEAK_METER: FlowMeter = FlowMeter {
     signed: false,
 };
 
-/// Meter between the ports where a project does not say.
+/// Default meter between the ports.
 const FLOW_METER: FlowMeter = FlowMeter {
     range: 60.0 * LITRE_PER_MINUTE,
     minimum: LITRE_PER_MINUTE,
@@ -112,7 +113,7 @@ impl Bench {
         v.choice(k, words, &mut self.waveform, false);
         let k = key("amplitude", &RATIO, "Amplitude of the command over the nominal voltage.");
         v.quantity(k.positive().at_most(1.0).or(0.3), &mut self.amplitude);
-        let k = key("pressure_gain_amplitude", &RATIO, "The same of the pressure gain test.");
+        let k = key("pressure_gain_amplitude", &RATIO, "The same for the pressure gain test.");
         v.quantity(k.positive().at_most(1.0).or(0.05), &mut self.pressure_gain_amplitude);
         let k = key("sample_time", &TIME, "Time between two rows.").at_least(1e-4).at_most(1e4).or(0.1);
         v.quantity(k, &mut self.sample_time);
@@ -127,14 +128,14 @@ impl Bench {
         v.quantity(k.not_negative().or(5e3), &mut self.pressure_noise);
         let k = key("pressure_range", &PRESSURE, "Range of every pressure transducer, from zero.");
         v.quantity(k.positive().or(100e5), &mut self.pressure_range);
-        let k = key("converter_bits", &RATIO, "Bits of the converters of all signals; 0 converts nothing.");
+        let k = key("converter_bits", &RATIO, "Bits of the converters of all signals; 0: no conversion.");
         v.count(k.not_negative().at_most(32.0).or(16.0), &mut self.converter_bits);
         let k = key("seed", &RATIO, "Seed of the noise.").not_negative().at_most(4e9).or(1.0);
         v.count(k, &mut self.seed);
     }
 }
 
-/// A meter, by defaults of its own where the table or a key of it is absent.
+/// A meter, with its own defaults where the table or a key of it is absent.
 fn meter<V: Visitor>(key: Key, field: &mut FlowMeter, absent: FlowMeter, v: &mut V) {
     let mut declared = (*field != absent).then_some(Declared(*field));
     v.table(key, &mut declared, |declared, v| declared.0.visit(absent, v));
@@ -158,7 +159,8 @@ impl FlowMeter {
         v.quantity(k, &mut self.minimum);
         let k = key("noise", &FLOW, "Root mean square of its noise.").not_negative().or(absent.noise);
         v.quantity(k, &mut self.noise);
-        // The leakage flows to the valve through a meter whose drop the regulated supply makes up for.
+        // The leakage flows to the valve through a meter whose drop the regulated supply makes up
+        // for.
         if absent.pressure_drop > 0.0 {
             let k = key("pressure_drop", &PRESSURE, "Its pressure drop at the highest flow.").not_negative();
             v.quantity(k.or(absent.pressure_drop), &mut self.pressure_drop);

@@ -9,7 +9,7 @@ use phea_quantity::RATIO;
 pub struct Campaign {
     /// What is varied, in file order.
     pub parameters: Vec<Varied>,
-    /// How it is distributed where a parameter does not say.
+    /// The distribution of parameters that do not state one.
     pub distribution: Distribution,
     /// Name of the scenario that is driven; absent: the first.
     pub scenario: Option<String>,
@@ -20,7 +20,7 @@ pub struct Campaign {
 pub struct Varied {
     /// A path of the project, or `start.` and a state.
     pub path: String,
-    /// Share of the declared value, to either side.
+    /// Half-width of the range, as a share of the declared value.
     pub spread: Option<f64>,
     /// In SI.
     pub minimum: Option<f64>,
@@ -60,7 +60,7 @@ static VARIED: [(&str, Option<Distribution>); 4] = [
 
 impl Campaign {
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
-        let k = plain("distribution", "How everything is distributed that does not say otherwise.");
+        let k = plain("distribution", "Default distribution of the parameters.");
         v.choice(k, &DISTRIBUTIONS, &mut self.distribution, false);
         v.text(plain("scenario", "Which scenario is driven; absent, the first."), &mut self.scenario, false);
         let k = plain("parameters", "What is varied, by its path.");
@@ -78,7 +78,8 @@ impl Campaign {
 
 impl Varied {
     fn visit<V: Visitor>(&mut self, number: Key, v: &mut V) {
-        let k = key("spread", &RATIO, "Share of the declared value, to either side.").positive();
+        let k =
+            key("spread", &RATIO, "Half-width of the range, as a share of the declared value.").positive();
         v.optional(k, &mut self.spread);
         let part = |name, doc| Key { name, doc, default: None, ..number };
         v.optional(part("minimum", "The least it takes."), &mut self.minimum);

@@ -1,7 +1,7 @@
 //! Components with the source of every number: one TOML file for each product.
 //!
-//! The built-in files hold only what was found in print. A user adds a file or a folder; a name that is there already
-//! is replaced by the later file.
+//! The built-in files contain only data found in print. A user adds a file or a folder; an entry of
+//! the same name is replaced by the later file.
 //!
 //! # Example
 //! ```
@@ -64,7 +64,7 @@ pub struct CatalogueEntry {
     pub manufacturer: String,
     /// The file it was read from; `built-in:` and a path for those that come with the workbench.
     pub file: String,
-    /// Of a hose that needs nothing beside it.
+    /// For a hose that is complete by itself.
     pub hose: Option<HoseProperties>,
     /// Source of every number that has none of its own.
     source: Option<String>,

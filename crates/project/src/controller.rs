@@ -24,7 +24,8 @@ pub struct Transfer {
 }
 
 impl Transfer {
-    /// All of it as elements in series: a ratio is one general element, with every number as it was written.
+    /// All of it as elements in series: a ratio is one general element, with every number as it was
+    /// written.
     ///
     /// # Example
     /// ```
@@ -42,7 +43,7 @@ impl Transfer {
         }
     }
 
-    /// What a table says of it, other keys left alone.
+    /// The transfer function in a table; other keys are ignored.
     pub fn read(table: &TreeNode, findings: &mut Findings) -> Transfer {
         let catalogue = Catalogue::default();
         let mut transfer = Transfer::default();
@@ -71,16 +72,17 @@ pub struct DeclaredController {
     pub delay: f64,
     /// How a continuous controller becomes a sampled one.
     pub discretization: DeclaredDiscretization,
-    /// What its computer rounds; absent: nothing.
+    /// The rounding in its computer; absent: none.
     pub quantization: Option<Quantization>,
-    /// What it adds for a load that moves; absent: nothing.
+    /// The feed-forward of the load velocity; absent: none.
     pub load_velocity_feed_forward: Option<FeedForward>,
 }
 
 /// What the controller adds to its command for a measured velocity of the load.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FeedForward {
-    /// V·s/m; absent: the piston area over the flow gain of the linear model, which holds the flow the motion takes.
+    /// V·s/m; absent: the piston area over the flow gain of the linear model, which supplies the
+    /// flow that the motion needs.
     pub gain: Option<f64>,
 }
 
@@ -98,26 +100,27 @@ impl FeedForward {
 /// What the computer of a sampled controller rounds.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Quantization {
-    /// Of the converter of the command; 0: it does not round.
+    /// Bits of the converter of the command; 0: no rounding.
     pub command_bits: u32,
     /// V (or the plant's input unit), from and to.
     pub command_range: Option<[f64; 2]>,
-    /// Of the converter of the measurement; 0: it does not round.
+    /// Bits of the converter of the measurement; 0: no rounding.
     pub measurement_bits: u32,
     /// N (or the plant's output unit), from and to.
     pub measurement_range: Option<[f64; 2]>,
     /// How the coefficients are kept.
     pub coefficients: Coefficients,
-    /// N (or the plant's output unit), rms: what the rounded command may do to the force.
+    /// N (or the plant's output unit), rms: allowed error of the force due to the rounded command.
     pub allowed_force_error: Option<f64>,
-    /// V (or the plant's input unit), rms: what the rounded measurement may do to the command.
+    /// V (or the plant's input unit), rms: allowed error of the command due to the rounded
+    /// measurement.
     pub allowed_command_error: Option<f64>,
 }
 
 /// How coefficients are kept.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Coefficients {
-    /// With 53 bits: as they are.
+    /// With 53 bits: unchanged.
     #[default]
     Double,
     /// With 24 bits.
@@ -168,7 +171,8 @@ pub enum DeclaredDiscretization {
 }
 
 impl DeclaredController {
-    /// Whether it says what it does, and not only when: without a law it is to be designed.
+    /// Whether it states a transfer function, and not only its timing: without one it is to be
+    /// designed.
     pub fn has_law(&self) -> bool {
         !self.transfer.as_elements().is_empty()
     }

@@ -26,19 +26,19 @@ pub struct DeclaredCylinder {
     pub stroke: f64,
     /// kg, piston, rod and what moves with them.
     pub moving_mass: f64,
-    /// m³, in each chamber beside the swept volume and the line; this or `dead_volumes`.
+    /// m³, in each chamber in addition to the swept volume and the line; this or `dead_volumes`.
     pub dead_volume: Option<f64>,
     /// m³, in chamber A and in chamber B.
     pub dead_volumes: Option<[f64; 2]>,
     /// m³/(s·Pa), laminar leakage across the piston.
     pub internal_leakage: Option<f64>,
-    /// What the piston meets at both ends; absent: the ends are reported, and nothing stops it.
+    /// End stops of the piston; absent: the ends are reported, and nothing stops it.
     pub end_stops: Option<EndStops>,
     /// Friction of seals and bearings.
     pub friction: Option<DeclaredFriction>,
 }
 
-/// What the piston meets at both ends of its stroke.
+/// The end stops at both ends of the stroke.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct EndStops {
     /// N/m.
@@ -103,7 +103,7 @@ impl DeclaredCylinder {
         v.one_of(&["dead_volume", "dead_volumes"], false);
         let k = key("internal_leakage", &FLOW_PRESSURE_COEFFICIENT, "Laminar leakage across the piston.");
         v.optional(k.positive(), &mut self.internal_leakage);
-        let k = plain("end_stops", "What the piston meets at both ends; absent: nothing stops it there.");
+        let k = plain("end_stops", "End stops of the piston at both ends; absent: none.");
         v.table(k, &mut self.end_stops, EndStops::visit);
         let k = plain("friction", "Friction of seals and bearings; absent: none.");
         v.table(k, &mut self.friction, DeclaredFriction::visit);
@@ -113,13 +113,13 @@ impl DeclaredCylinder {
 /// Friction of seals and bearings.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DeclaredFriction {
-    /// What it has beside its viscous part.
+    /// Its part other than the viscous one.
     pub law: FrictionLaw,
     /// N·s/m, slope at high velocity (σ₂ of LuGre).
     pub viscous: f64,
 }
 
-/// A friction law, beside its viscous part.
+/// A friction law, without its viscous part.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum FrictionLaw {
     /// Nothing: proportional to velocity.
@@ -129,7 +129,7 @@ pub enum FrictionLaw {
     Stribeck {
         /// The function.
         curve: StribeckCurve,
-        /// m/s, smooths its jump at standstill, where it is to be simulated.
+        /// m/s, smooths its jump at standstill for simulation.
         regular_velocity: Option<f64>,
     },
     /// Bristles with a state of their own.

@@ -1,30 +1,30 @@
-//! `[design]`: how a controller is looked for.
+//! `[design]`: how a controller is designed.
 
 use super::controller::DeclaredElement;
 use super::key::{key, plain};
 use super::visitor::{Variants, Visitor};
 use phea_quantity::{ANGULAR_FREQUENCY, RATIO, TIME};
 
-/// What is made best, and among which controllers.
+/// What is optimised, and among which controllers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DeclaredDesign {
-    /// What is made least or greatest.
+    /// What is minimised or maximised.
     pub objective: DesignObjective,
     /// Most poles of the controller.
     pub maximum_order: u32,
-    /// Most poles of the prefilter; 0: none is designed.
+    /// Largest number of poles of the prefilter; 0: none is designed.
     pub prefilter_maximum_order: u32,
-    /// What the random starting points begin with.
+    /// The seed of the random starting points.
     pub seed: u32,
-    /// s, which every plant must bear beyond the delay of the loop.
+    /// s, which every plant must tolerate in addition to the delay of the loop.
     pub minimum_delay_margin: f64,
     /// Least and greatest gain of `structure`; both negative for a controller of negative sign.
     pub gain: Option<[f64; 2]>,
-    /// The controller's factors; none: structures of growing order are tried.
+    /// The controller's factors; empty: structures of growing order are tried.
     pub structure: Vec<StructurePart>,
 }
 
-/// What is made least or greatest among the controllers that keep to every specification.
+/// What is minimised or maximised among the controllers that satisfy every specification.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum DesignObjective {
     /// The high-frequency gain.
@@ -43,8 +43,8 @@ pub static DESIGN_OBJECTIVES: [(&str, DesignObjective); 3] = [
     ("best_worst_margin", DesignObjective::BestWorstMargin),
 ];
 
-/// One factor of a structure. Every free number has its least and greatest value, frequencies in rad/s; absent: wide around the design
-/// frequencies.
+/// One factor of a structure. Every free number has its least and greatest value, frequencies in
+/// rad/s; absent: wide around the design frequencies.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum StructurePart {
     /// 1/s.
@@ -100,13 +100,17 @@ impl Default for DeclaredDesign {
 
 impl DeclaredDesign {
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
-        let k = plain("objective", "What is made least or greatest.");
+        let k = plain("objective", "What is minimised or maximised.");
         v.choice(k, &DESIGN_OBJECTIVES, &mut self.objective, false);
         let k = key("maximum_order", &RATIO, "Most poles of the controller.").not_negative();
         v.count(k.at_most(MAXIMUM_ORDER).or(4.0), &mut self.maximum_order);
-        let k = key("prefilter_maximum_order", &RATIO, "Most poles of the prefilter; 0: none is designed.");
+        let k = key(
+            "prefilter_maximum_order",
+            &RATIO,
+            "Largest number of poles of the prefilter; 0: none is designed.",
+        );
         v.count(k.not_negative().at_most(MAXIMUM_ORDER).or(3.0), &mut self.prefilter_maximum_order);
-        let k = key("seed", &RATIO, "What the random starting points begin with.").not_negative();
+        let k = key("seed", &RATIO, "The seed of the random starting points.").not_negative();
         v.count(k.or(1.0), &mut self.seed);
         let doc = "Delay beyond that of the loop that every plant must tolerate.";
         let k = key("minimum_delay_margin", &TIME, doc).not_negative().or(0.0);

@@ -1,4 +1,4 @@
-//! What is wrong with a file, where, and what would be right.
+//! The errors of a file: where they are, and what was expected.
 
 use std::ops::Range;
 
@@ -25,16 +25,16 @@ pub struct Diagnostic {
     pub help: Option<String>,
 }
 
-/// Whether a finding refuses the file.
+/// Whether a finding rejects the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
     /// The file is refused.
     Error,
-    /// The file is taken as it is.
+    /// The file is accepted.
     Warning,
 }
 
-/// Why a project was refused: every finding of one run, and the texts they point into.
+/// Why a project was rejected: every finding of one run, and the texts they point into.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Refusal {
     /// Errors first, each in file order.
@@ -48,7 +48,8 @@ pub struct Refusal {
 /// Longest line that is shown, in bytes.
 const MAXIMUM_SHOWN: usize = 400;
 
-/// The findings for people: each with its line, what was expected and what would help. `styled` adds terminal colours.
+/// The findings for people: each with its line, what was expected and what would help. `styled`
+/// adds terminal colours.
 pub fn render(diagnostics: &[Diagnostic], texts: &[(String, String)], styled: bool) -> String {
     let renderer = if styled { Renderer::styled() } else { Renderer::plain() };
     let one = |diagnostic: &Diagnostic| renderer.render(&diagnostic.groups(texts));
@@ -88,7 +89,7 @@ impl Diagnostic {
         std::iter::once(group).chain(help).collect()
     }
 
-    /// The line with the span underlined and what was expected beside it.
+    /// The line with the span underlined and the expectation next to it.
     fn snippet<'a>(&'a self, line: &'a str) -> Snippet<'a, annotate_snippets::Annotation<'a>> {
         let start: usize = line.chars().take(self.column.saturating_sub(1)).map(char::len_utf8).sum();
         let mut end = (start + self.span.len()).min(line.len());

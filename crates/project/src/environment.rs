@@ -11,7 +11,7 @@ pub struct DeclaredForceSensor {
     pub stiffness: f64,
     /// N, root mean square of the white noise that a sampled controller sees.
     pub noise: f64,
-    /// N, the force that it survives, in both directions.
+    /// N, the largest force that it tolerates, in both directions.
     pub capacity: Option<f64>,
 }
 
@@ -30,7 +30,7 @@ impl DeclaredForceSensor {
 /// What the force acts on.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Load {
-    /// It moves as the scenario says, whatever the force.
+    /// It moves as the scenario states, whatever the force.
     #[default]
     Prescribed,
     /// Mass, spring and damper.
@@ -44,7 +44,7 @@ pub enum Load {
     },
     /// A guided mass; nothing up to the gap, then the wall.
     Wall {
-        /// kg; only what moves freely needs it.
+        /// kg; needed only for a load that moves freely.
         mass: Option<f64>,
         /// N·s/m, of its guide.
         damping: f64,

@@ -1,4 +1,4 @@
-//! `[family]`: which plants of the box are looked at, or plants that were measured.
+//! `[family]`: which plants of the box are examined, or measured plants.
 
 use super::key::{key, plain};
 use super::visitor::Visitor;
@@ -7,7 +7,7 @@ use phea_quantity::{FORCE, LENGTH, RATIO, VELOCITY};
 /// The members of the family. Without any of them it is the grid of `[uncertainty]`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DeclaredFamily {
-    /// The grid, beside the other members.
+    /// The grid, in addition to the other members.
     pub grid: bool,
     /// All corners of the box.
     pub vertices: bool,
@@ -15,24 +15,25 @@ pub struct DeclaredFamily {
     pub random: Option<Random>,
     /// Plants by their parameters: name and value, in file order.
     pub cases: Vec<Case>,
-    /// Groups of parameters that run through their ranges together.
+    /// Groups of parameters that are fully correlated.
     pub correlation: Vec<Correlation>,
-    /// The operating points that the rig visits, with what the pump can give.
+    /// The operating points that the rig visits, limited by the flow of the pump.
     pub operating_region: Option<OperatingRegion>,
-    /// Files with measured frequency responses, the nominal plant first; paths are relative to the project file.
+    /// Files with measured frequency responses, the nominal plant first; paths are relative to the
+    /// project file.
     pub measured: Vec<String>,
     /// Open-loop poles of each measured plant in the right half plane.
     pub unstable_poles: u32,
 }
 
-/// Ranges of the operating point: their plants are correlated through the pressures that follow.
+/// Ranges of the operating point: the plants are correlated through the resulting pressures.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct OperatingRegion {
     /// m, of the piston.
     pub position: Option<[f64; 2]>,
     /// N, that the pressures hold.
     pub load_force: Option<[f64; 2]>,
-    /// m/s; what the pump cannot give is cut off.
+    /// m/s; limited to what the pump can supply.
     pub velocity: Option<[f64; 2]>,
     /// Points of the grid over each.
     pub points: u32,
@@ -47,7 +48,7 @@ pub struct Random {
     pub seed: u32,
 }
 
-/// Parameters that run through their ranges together.
+/// Parameters that are fully correlated.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Correlation {
     /// Names of uncertain parameters.
@@ -69,7 +70,7 @@ impl DeclaredFamily {
         v.flag(plain("vertices", "All corners of the box."), &mut self.vertices);
         v.table(plain("random", "Points of the box drawn at random."), &mut self.random, Random::visit);
         v.tables(plain("cases", "Plants by their parameters."), &mut self.cases, Case::visit);
-        let k = plain("correlation", "Groups of parameters that run through their ranges together.");
+        let k = plain("correlation", "Groups of parameters that are fully correlated.");
         v.tables(k, &mut self.correlation, Correlation::visit);
         let k = plain("operating_region", "The operating points that the rig visits.");
         v.table(k, &mut self.operating_region, OperatingRegion::visit);

@@ -76,7 +76,7 @@ impl DeclaredAccumulator {
 pub enum SupplyModel {
     /// It stays as declared.
     Constant {
-        /// m³/s, what the pump can give: sizing and the operating region keep to it.
+        /// m³/s, the flow of the pump, which limits sizing and the operating region.
         flow: Option<f64>,
     },
     /// It falls when the demand exceeds the pump's flow.
@@ -143,7 +143,7 @@ impl Pump {
 }
 
 impl DeclaredSupply {
-    /// m³/s, what the pump can give, where it is stated.
+    /// m³/s, the flow of the pump, if stated.
     pub fn flow(&self) -> Option<f64> {
         match &self.model {
             SupplyModel::Constant { flow } => *flow,

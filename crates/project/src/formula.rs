@@ -23,14 +23,14 @@ pub struct Formula {
     nodes: Vec<FormulaNode>,
 }
 
-/// A part of a formula, and where it stands in the text.
+/// A part of a formula, and its position in the text.
 #[derive(Clone, Debug)]
 struct FormulaNode {
     part: FormulaPart,
     range: Range<usize>,
 }
 
-/// What a part is; operands by their index.
+/// The kind of a part; operands by their index.
 #[derive(Clone, Debug)]
 enum FormulaPart {
     Number(f64),
@@ -99,7 +99,8 @@ impl Formula {
     /// Reads a formula.
     ///
     /// # Errors
-    /// [`FormulaError`] for text outside the grammar, both `s` and `z`, a power above 50, or nesting above 32.
+    /// [`FormulaError`] for text outside the grammar, both `s` and `z`, a power above 50, or
+    /// nesting above 32.
     ///
     /// # Example
     /// ```
@@ -162,8 +163,8 @@ impl Formula {
         found
     }
 
-    /// The ratio of polynomials in the variable, its parameters given as numbers of any kind: plain, dual or recorded.
-    /// A divisor without the variable divides the coefficients.
+    /// The ratio of polynomials in the variable, its parameters given as numbers of any kind:
+    /// plain, dual or recorded. A divisor without the variable divides the coefficients.
     ///
     /// # Errors
     /// [`FormulaError`] for a parameter that is not given, or a power above 50.
@@ -181,8 +182,9 @@ impl Formula {
         Ok(Ratio { numerator, denominator })
     }
 
-    /// The coefficients of a polynomial without parameters, highest power first, leading zeros dropped; `None` if
-    /// there are parameters, the variable in a divisor, or coefficients that f64 cannot hold.
+    /// The coefficients of a polynomial without parameters, highest power first, leading zeros
+    /// dropped; `None` if there are parameters, the variable in a divisor, or coefficients that f64
+    /// cannot hold.
     pub fn polynomial(&self) -> Option<Vec<f64>> {
         let ratio = self.numbers().ok()?;
         if ratio.denominator.len() != 1 { None } else { Some(ratio.numerator) }

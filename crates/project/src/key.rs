@@ -2,7 +2,8 @@
 
 use phea_quantity::{Dimension, RATIO};
 
-/// One key of the project file. Built at the place where its field is described, in the `visit` function of its table.
+/// One key of the project file. Built at the place where its field is described, in the `visit`
+/// function of its table.
 #[derive(Clone, Copy, Debug)]
 pub struct Key {
     /// As written in the file.
@@ -11,7 +12,8 @@ pub struct Key {
     pub dimension: &'static Dimension,
     /// Which of its numbers are accepted.
     pub range: AcceptedRange,
-    /// The value of an absent key; `None` where the key is required or its absence has a meaning of its own.
+    /// The value of an absent key; `None` where the key is required or its absence has a meaning of
+    /// its own.
     pub default: Option<f64>,
     /// What it means, in one sentence.
     pub doc: &'static str,
@@ -24,9 +26,9 @@ pub struct AcceptedRange {
     pub minimum: f64,
     /// The highest number.
     pub maximum: f64,
-    /// Whether the lowest number itself is outside.
+    /// Whether the lowest number itself is excluded.
     pub above_minimum: bool,
-    /// Whether the highest number itself is outside.
+    /// Whether the highest number itself is excluded.
     pub below_maximum: bool,
     /// Whether `inf` is accepted.
     pub infinity: bool,

@@ -1,4 +1,4 @@
-//! The project file: a rig, or any other plant, and what is wanted of it, in one readable text.
+//! The project file: a rig, or any other plant, and its requirements, in one readable text.
 //!
 //! Inside, everything is SI. Keys are a contract: other tools read them.
 
@@ -85,10 +85,12 @@ pub(crate) use visitor::Visitor;
 
 use phea_quantity::RATIO;
 
-/// A project as it was declared. Exactly one of `actuator`, `plant` and measured plants in `family` is there.
+/// A project as it was declared. It has exactly one of `actuator`, `plant` and measured plants in
+/// `family`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Project {
-    /// What the paths of other files are relative to: the project file's own path up to its name. Not a key.
+    /// The folder to which paths of other files are relative: the project file's own path up to its
+    /// name. Not a key.
     pub folder: String,
     /// One line for people.
     pub title: String,
@@ -96,7 +98,7 @@ pub struct Project {
     pub actuator: Option<DeclaredActuator>,
     /// Any other plant, as a transfer function.
     pub plant: Option<DeclaredPlant>,
-    /// Which plants are looked at; absent: the grid of `uncertainty`.
+    /// Which plants are examined; absent: the grid of `uncertainty`.
     pub family: Option<DeclaredFamily>,
     /// What lies between the controlled output and the controller; absent: 1.
     pub sensor: Option<Sensor>,
@@ -104,17 +106,17 @@ pub struct Project {
     pub sizing: Option<DeclaredSizing>,
     /// Where the linear model is taken.
     pub operating_point: DeclaredOperatingPoint,
-    /// Parameters of the linear model that are set outright.
+    /// Parameters of the linear model that are stated directly.
     pub linear: Linear,
     /// Uncertain numbers, in file order.
     pub uncertainty: Vec<Uncertain>,
     /// What the closed loop must meet, in file order.
     pub specifications: Vec<DeclaredSpecification>,
-    /// Given, to be verified; absent or without a law, to be designed.
+    /// Given, to be verified; absent or without a transfer function, to be designed.
     pub controller: Option<DeclaredController>,
     /// Given, to be verified; absent, to be designed.
     pub prefilter: Option<Prefilter>,
-    /// How a controller is looked for; absent: by the defaults.
+    /// How a controller is designed; absent: by the defaults.
     pub design: Option<DeclaredDesign>,
     /// What is simulated.
     pub scenarios: Vec<Scenario>,
@@ -148,16 +150,16 @@ pub struct DeclaredActuator {
 /// A commented project to start from.
 pub const STARTER: &str = include_str!("starter.toml");
 
-/// A project that was read, and what belongs to the reading rather than to the rig.
+/// A project that was read, with information about the reading.
 #[derive(Clone, Debug)]
 pub struct Loaded {
     /// What was declared, with settings applied, catalogue values and defaults filled in.
     pub project: Project,
-    /// What is doubtful without being wrong.
+    /// Warnings: values that are doubtful but not wrong.
     pub warnings: Vec<Diagnostic>,
     /// Name and content of every text a warning points into.
     pub texts: Vec<(String, String)>,
-    /// Where the file is, as it was given.
+    /// The path of the file, as it was given.
     pub path: String,
     /// The file's bytes.
     pub bytes: Vec<u8>,
@@ -194,7 +196,7 @@ pub enum Origin {
         /// Author, title and table.
         source: String,
     },
-    /// Nobody: it is the default of the key.
+    /// The default of the key.
     Default,
 }
 
@@ -210,7 +212,7 @@ impl Project {
         v.part(&mut self.actuator, DeclaredActuator::visit);
     }
 
-    /// What is wanted of the system.
+    /// The requirements on the system.
     fn visit_wishes<V: Visitor>(&mut self, v: &mut V) {
         let k = plain("operating_point", "Where the linear model is taken.");
         table_or_default(k, &mut self.operating_point, DeclaredOperatingPoint::visit, v);
@@ -231,7 +233,7 @@ impl Project {
                 uncertain.visit(number.key, v);
             },
         );
-        v.table(plain("family", "Which plants are looked at."), &mut self.family, DeclaredFamily::visit);
+        v.table(plain("family", "Which plants are examined."), &mut self.family, DeclaredFamily::visit);
         v.table(plain("sensor", "Dynamics of the sensor."), &mut self.sensor, Sensor::visit);
         let k = plain("specification", "What the closed loop must meet.");
         v.tables(k, &mut self.specifications, DeclaredSpecification::visit);
@@ -239,7 +241,7 @@ impl Project {
         v.table(k, &mut self.controller, DeclaredController::visit);
         let k = plain("prefilter", "Given, to be verified; absent, to be designed.");
         v.table(k, &mut self.prefilter, Prefilter::visit);
-        v.table(plain("design", "How a controller is looked for."), &mut self.design, DeclaredDesign::visit);
+        v.table(plain("design", "How a controller is designed."), &mut self.design, DeclaredDesign::visit);
         v.tables(plain("scenario", "What is simulated."), &mut self.scenarios, Scenario::visit);
         let k = plain("simulation", "How exactly scenarios are simulated.");
         table_or_default(k, &mut self.simulation, Simulation::visit, v);
@@ -263,7 +265,7 @@ fn table_or_default<T: Default + PartialEq, V: Visitor>(
 }
 
 impl DeclaredActuator {
-    /// The tables of an actuator, which must all be there but `[load]`.
+    /// The tables of an actuator, all of which are required except `[load]`.
     const REQUIRED: [&'static str; 6] = ["fluid", "supply", "valve", "cylinder", "line", "force_sensor"];
 
     fn visit<V: Visitor>(&mut self, v: &mut V) {

@@ -1,4 +1,4 @@
-//! `limit`, `upper` and `lower` of a specification, in each of the forms they may be written.
+//! `limit`, `upper` and `lower` of a specification, in each of their forms.
 
 use super::formula::Formula;
 use super::key::{Key, key, plain};
@@ -15,11 +15,11 @@ pub enum DeclaredLimit {
     Text(Formula),
     /// The magnitude of a transfer function.
     Rational(Rational),
-    /// Numbers at frequencies, between which it is log-log linear.
+    /// Numbers at frequencies, interpolated linearly in a log-log diagram.
     Table(DeclaredLimitTable),
     /// What guarantees these margins.
     Margins(MarginWish),
-    /// What follows from a wish in time, or is checked against one.
+    /// A limit that follows from a wish in time, or is checked against one.
     Response(ResponseWish),
 }
 
@@ -32,7 +32,7 @@ pub struct DeclaredLimitTable {
     pub values: Vec<f64>,
 }
 
-/// Margins that a limit is to guarantee; of several the strictest decides.
+/// Margins that a limit must guarantee; the strictest of several decides.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MarginWish {
     /// Factor by which the gain may grow, above 1.
@@ -47,7 +47,7 @@ pub struct MarginWish {
     pub delay_margin: Option<f64>,
 }
 
-/// What a step response is to do: the fastest one for `upper`, the slowest for `lower`.
+/// The wanted step response: the fastest one for `upper`, the slowest for `lower`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ResponseWish {
     /// Percent of the step; of `upper`.
@@ -69,7 +69,7 @@ pub struct ResponseWish {
 /// How a wish in time becomes a second-order model.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ResponseRule {
-    /// Such that the response, extra zero or pole included, does what is wished.
+    /// Such that the response, extra zero or pole included, meets the wish.
     #[default]
     Exact,
     /// 3 over xi w_n.
@@ -114,7 +114,8 @@ impl DeclaredLimit {
         }
     }
 
-    /// Every key is asked for, so that a misspelt one finds its neighbour; what is there decides the form.
+    /// Every key is read, so that the nearest spelling of a misspelt one is found; the keys that
+    /// are present decide the form.
     fn visit_table<V: Visitor>(&mut self, v: &mut V) {
         let mut parts = Parts::of(self);
         let k = key("frequencies", &ANGULAR_FREQUENCY, "Frequencies of a tabled limit, increasing.");
@@ -131,7 +132,7 @@ impl DeclaredLimit {
     }
 }
 
-/// What a limit is made of, whatever its form.
+/// The parts of a limit, whatever its form.
 #[derive(Default)]
 struct Parts {
     table: DeclaredLimitTable,
@@ -167,7 +168,7 @@ impl Parts {
         parts
     }
 
-    /// The form that the parts make; nothing at all counts as an empty table.
+    /// The form that the parts make; no part at all counts as an empty table.
     fn limit(self) -> DeclaredLimit {
         let function = self.numerator.zip(self.denominator);
         let function = function.map(|(numerator, denominator)| Rational { numerator, denominator });

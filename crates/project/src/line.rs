@@ -10,7 +10,7 @@ use phea_quantity::{EXPANSION_SLOPE, LENGTH, PRESSURE, RATIO, VOLUME, VOLUME_PER
 /// The lines between the valve and the chambers.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DeclaredLines {
-    /// Which volume the line's effective bulk modulus holds for.
+    /// To which volume the line's effective bulk modulus applies.
     pub compliance: Compliance,
     /// The line to chamber A.
     pub a: DeclaredLine,
@@ -18,7 +18,7 @@ pub struct DeclaredLines {
     pub b: DeclaredLine,
 }
 
-/// Which volume the line's effective bulk modulus holds for.
+/// To which volume the line's effective bulk modulus applies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Compliance {
     /// Each volume has its own: the chamber keeps the fluid's.
@@ -46,7 +46,7 @@ pub enum Component {
     Hose {
         /// Name of the catalogue's hose, if it came from there.
         name: Option<String>,
-        /// What is known of it, from the catalogue or written here.
+        /// Its data, from the catalogue or stated here.
         properties: HoseProperties,
         /// m, of this one line.
         length: f64,
@@ -62,7 +62,7 @@ pub enum Component {
     Volume(LineVolume),
 }
 
-/// A volume with the modulus it has.
+/// A volume with its modulus.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LineVolume {
     /// m³.
@@ -71,7 +71,7 @@ pub struct LineVolume {
     pub effective_bulk_modulus: f64,
 }
 
-/// What is known of a hose.
+/// The data of a hose.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct HoseProperties {
     /// m, inner diameter of the hose.
@@ -93,12 +93,12 @@ pub enum HoseExpansion {
     Slope {
         /// m³/(m·Pa).
         slope: f64,
-        /// m³/m that were measured, where they are stated.
+        /// m³/m, measured value, if stated.
         measured: Option<f64>,
         /// Pa, at which they were.
         pressure: Option<f64>,
     },
-    /// By what was measured, on a straight line from zero.
+    /// From the measured value, on a straight line through zero.
     Measured {
         /// m³/m.
         measured: f64,
@@ -112,7 +112,7 @@ pub enum HoseExpansion {
 pub struct DeclaredPipe {
     /// m, inner diameter.
     pub bore: f64,
-    /// What is known of the wall; absent: it is rigid.
+    /// The data of the wall; absent: it is rigid.
     pub wall: Option<ElasticWall>,
     /// Of the wall.
     pub poisson_ratio: f64,
@@ -178,7 +178,7 @@ impl DeclaredLine {
         }
     }
 
-    /// Pa, the pressure up to which the expansion of a hose was measured, where it is stated.
+    /// Pa, the pressure up to which the expansion of a hose was measured, if stated.
     pub fn expansion_stated_at(&self) -> Option<f64> {
         self.hose().and_then(|hose| hose.expansion.pressure())
     }
@@ -195,7 +195,7 @@ impl Component {
     /// Keys of which each makes it a hose.
     pub(crate) const HOSE: [&'static str; 4] =
         ["hose", "bore", "volumetric_expansion", "volumetric_expansion_slope"];
-    /// Keys of which each makes it a volume given outright.
+    /// Keys of which each makes it a volume that is stated directly.
     pub(crate) const VOLUME: [&'static str; 2] = ["volume", "effective_bulk_modulus"];
 
     fn visit<V: Visitor>(&mut self, v: &mut V) {
@@ -247,7 +247,7 @@ impl HoseExpansion {
         }
     }
 
-    /// m³/m that were measured, where they are stated.
+    /// m³/m, measured value, if stated.
     pub fn measured(&self) -> Option<f64> {
         match *self {
             HoseExpansion::Slope { measured, .. } => measured,
@@ -265,7 +265,7 @@ impl HoseExpansion {
 
     fn visit<V: Visitor>(&mut self, v: &mut V) {
         let (mut measured, mut pressure) = (self.measured(), self.pressure());
-        // a slope is positive, but for that of an expansion which is not read yet
+        // a slope is positive, except for an expansion that is not read yet
         let mut slope = match *self {
             HoseExpansion::Slope { slope, .. } if slope > 0.0 => Some(slope),
             HoseExpansion::Slope { .. } | HoseExpansion::Measured { .. } => None,
@@ -325,7 +325,7 @@ impl ElasticWall {
 
 impl DeclaredLines {
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
-        let k = plain("compliance", "Which volume the line's effective bulk modulus holds for.");
+        let k = plain("compliance", "To which volume the line's effective bulk modulus applies.");
         let words = &[("by_volume", Compliance::ByVolume), ("uniform", Compliance::Uniform)];
         v.choice(k, words, &mut self.compliance, false);
         let keys = [plain("a", "The line to chamber A."), plain("b", "The line to chamber B.")];

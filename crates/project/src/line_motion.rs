@@ -1,10 +1,10 @@
-//! How a line moves: `model` of `[line]`, and the keys that go with it.
+//! The dynamic model of a line: `model` of `[line]`, and its keys.
 
 use super::key::{Key, key, plain};
 use super::visitor::{Kinds, Variants, Visitor};
 use phea_quantity::{MASS_PER_LENGTH, RATIO, STRAIN_PER_FORCE, STRAIN_PER_PRESSURE, TIME};
 
-/// How a line moves, with the numbers of its model.
+/// The dynamic model of a line with its parameters.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum LineMotion {
     /// One pressure.
@@ -19,14 +19,15 @@ pub enum LineMotion {
     Segments(LineSegments),
     /// Fluid waves.
     TransmissionLine {
-        /// Share of the line's compliance that is a plain volume at each end; absent: `phea_hydraulics::line::END_SHARE`.
+        /// Share of the line's compliance that is a plain volume at each end; absent:
+        /// `phea_hydraulics::line::END_SHARE`.
         end_share: Option<f64>,
     },
     /// Fluid and wall waves, coupled.
     TwoWave {
         /// As of a transmission line.
         end_share: Option<f64>,
-        /// What is known of a wall that moves along its axis.
+        /// The data of a wall that moves along its axis.
         wall: Option<LineWall>,
     },
 }
@@ -36,13 +37,13 @@ pub enum LineMotion {
 pub struct LineSegments {
     /// How many; absent: [`LineSegments::COUNT`].
     pub count: Option<u32>,
-    /// What resists the flow in them; absent: it depends on frequency.
+    /// The friction of the flow in them; absent: it depends on frequency.
     pub friction: Option<LineFriction>,
     /// s, of a wall that creeps; absent: it is elastic.
     pub relaxation_time: Option<f64>,
 }
 
-/// How laminar friction in segments is taken.
+/// The model of laminar friction in segments.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LineFriction {
     /// As in steady flow.
@@ -51,7 +52,7 @@ pub enum LineFriction {
     FrequencyDependent,
 }
 
-/// What is known of a hose's wall that moves along its axis; what is absent is assumed.
+/// The data of a hose's wall that moves along its axis; absent values are assumed.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LineWall {
     /// kg/m.
@@ -115,7 +116,7 @@ impl Variants for LineMotion {
 }
 
 impl LineMotion {
-    /// Keys that go with one model or another.
+    /// Keys that belong to one model or another.
     pub(crate) const KEYS: [&'static str; 5] =
         ["segments", "friction", "relaxation_time", "end_share", "wall"];
     /// A side that chooses its model has that model's keys of its own too.
@@ -146,9 +147,10 @@ impl LineMotion {
 }
 
 impl LineSegments {
-    /// Segments of a line that does not say how many: the first resonance of a line closed at one end is 0.2 % low.
+    /// Default number of segments: the first resonance of a line closed at one end is 0.2 % low.
     pub const COUNT: u32 = 8;
-    /// States that segments of one line may have, so that both lines and what is around them fit into a simulation.
+    /// States that segments of one line may have, so that both lines and what is around them fit
+    /// into a simulation.
     const MOST_STATES: u32 = 112;
 
     /// How many there are.

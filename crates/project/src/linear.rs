@@ -7,7 +7,7 @@ use phea_quantity::{
     ANGULAR_FREQUENCY, AREA, DAMPING, FLOW_GAIN, FLOW_PRESSURE_COEFFICIENT, MASS, RATIO, STIFFNESS,
 };
 
-/// Parameters of the linear model that are set outright.
+/// Parameters of the linear model that are stated directly.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Linear {
     /// N·s/m, f_v.
@@ -40,7 +40,7 @@ pub struct LinearParameter {
 }
 
 impl LinearParameter {
-    /// Whether it follows from the number at a path; of a line, how it moves does not matter.
+    /// Whether it follows from the number at a path; the dynamic model of a line does not matter.
     pub fn follows_from(&self, path: &str) -> bool {
         !LineMotion::owns(path)
             && self.depends_on.iter().any(|table| {

@@ -7,7 +7,7 @@ use super::key::Key;
 use super::visitor::{FormulaShape, Kinds, NamedNumber, ValueForm, Variants, Visitor};
 use crate::catalogue::CatalogueKind;
 
-/// Walks a project without changing it, but for the numbers it is asked to set.
+/// Walks a project without changing it, except for the numbers to be set.
 #[derive(Default)]
 pub(crate) struct Listing {
     /// Tables that are absent are listed too.
@@ -17,7 +17,8 @@ pub(crate) struct Listing {
     pub(crate) keys: Vec<KeyEntry>,
     /// The keys of the outermost table.
     pub(crate) outermost: Vec<&'static str>,
-    /// Whether keys belong to a variant or a way, which needs them where it is chosen.
+    /// Whether keys belong to a variant or to one of several ways, which needs them where it is
+    /// chosen.
     of_variant: bool,
     /// Every number that exists, by its path.
     pub(crate) numbers: BTreeMap<String, (Key, f64)>,
@@ -32,7 +33,7 @@ pub(crate) struct Listing {
 /// A key as the documentation lists it.
 #[derive(Clone, Debug)]
 pub struct KeyEntry {
-    /// Dotted; `[]` stands for each element of a list, `NAME` for a name of the user's.
+    /// Dotted; `[]` stands for each element of a list, `NAME` for a name chosen by the user.
     pub path: String,
     /// What is known of it.
     pub key: Key,
@@ -43,7 +44,7 @@ pub struct KeyEntry {
 }
 
 impl Listing {
-    /// Lists every key there can be.
+    /// Lists every possible key.
     pub(crate) fn of_everything() -> Self {
         Listing { everything: true, ..Listing::default() }
     }

@@ -1,4 +1,4 @@
-//! `[[scenario.measured]]`: what was measured on the rig, to be laid over the simulation.
+//! `[[scenario.measured]]`: measurements on the rig, to be compared with the simulation.
 
 use super::key::{key, plain};
 use super::visitor::Visitor;
@@ -19,10 +19,10 @@ pub struct MeasuredFile {
     pub signals: Vec<MeasuredSignal>,
 }
 
-/// A column of a measurement, and the signal of the simulation that it is.
+/// A column of a measurement, and the corresponding signal of the simulation.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MeasuredSignal {
-    /// As the column of the simulation's table is called.
+    /// By the name of the column of the simulation's table.
     pub signal: &'static str,
     /// Name of the file's column; absent: that of the signal.
     pub column: Option<String>,
@@ -35,8 +35,8 @@ const fn signal(name: &'static str) -> (&'static str, &'static str) {
     (name, name)
 }
 
-/// The signals that can be measured, each as a project names it and as the column of a simulation's table is called: every
-/// column but time.
+/// The signals that can be measured, each as a project names it and as the column of a simulation's
+/// table is called: every column but time.
 pub static MEASURABLE: [(&str, &str); 27] = [
     signal("force_n"),
     signal("reference_n"),
@@ -82,7 +82,7 @@ impl MeasuredFile {
 
 impl MeasuredSignal {
     fn visit<V: Visitor>(&mut self, v: &mut V) {
-        let k = plain("signal", "As the column of the simulation's table is called.");
+        let k = plain("signal", "By the name of the column of the simulation's table.");
         v.choice(k, &MEASURABLE, &mut self.signal, true);
         v.text(
             plain("column", "Name of the file's column; absent: that of the signal."),
@@ -103,7 +103,7 @@ impl MeasuredSignal {
         self.unit.as_deref().unwrap_or(self.dimension().si)
     }
 
-    /// What the signal measures, by the unit in its name.
+    /// The dimension of the signal, by the unit in its name.
     pub fn dimension(&self) -> &'static Dimension {
         let by_ending: [(&str, &'static Dimension); 6] = [
             ("_m3_per_s", &FLOW),

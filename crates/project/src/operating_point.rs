@@ -45,7 +45,11 @@ impl DeclaredOperatingPoint {
         let k = key("velocity", &VELOCITY, "Steady velocity of the piston and its load; absent: standstill.");
         v.optional(k, &mut self.velocity);
         v.optional(
-            key("command", &VOLTAGE, "Command of the valve; absent: null, or what holds the load."),
+            key(
+                "command",
+                &VOLTAGE,
+                "Command of the valve; absent: null, or the command that holds the load.",
+            ),
             &mut self.command,
         );
     }
@@ -83,7 +87,7 @@ pub(super) fn operating_numbers() -> BTreeMap<String, Key> {
 }
 
 impl Project {
-    /// The operating point with what is uncertain of it: where nothing is declared, the nominal value.
+    /// The operating point, with the nominal values of uncertain numbers where none are declared.
     pub fn resolved_operating_point(&self) -> DeclaredOperatingPoint {
         let mut point = self.operating_point.clone();
         for uncertain in self.uncertain_numbers() {
@@ -94,7 +98,8 @@ impl Project {
         point
     }
 
-    /// The numbers of `[uncertainty]`, then those of `[family.operating_region]`, before the pump limits them.
+    /// The numbers of `[uncertainty]`, then those of `[family.operating_region]`, before the pump
+    /// limits them.
     ///
     /// # Example
     /// ```
@@ -112,7 +117,8 @@ impl Project {
         self.uncertainty.iter().cloned().chain(of_region).collect()
     }
 
-    /// Nominal is what is declared; else mid stroke, no force and standstill, or what of the region is nearest to these.
+    /// The nominal value is the declared one; otherwise mid stroke, no force and standstill, or the
+    /// nearest value in the region.
     fn of_region(&self, region: &OperatingRegion) -> Vec<Uncertain> {
         let middle = self.actuator.as_ref().map_or(0.0, |actuator| actuator.cylinder.stroke / 2.0);
         let point = &self.operating_point;

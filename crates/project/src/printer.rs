@@ -86,7 +86,7 @@ impl Printer {
         }
     }
 
-    /// The present table's dotted path with one part more.
+    /// The present table's dotted path with one more part.
     fn path(&self, key: &str) -> String {
         let header = self.open.last().map_or("", |section| section.header.trim_matches(['[', ']']));
         if header.is_empty() { bare_or_quoted(key) } else { format!("{header}.{}", bare_or_quoted(key)) }
@@ -100,7 +100,8 @@ impl Printer {
         if self.open.len() > 1 { self.open.pop().unwrap_or_default() } else { PrintedTable::default() }
     }
 
-    /// Ends a table: short ones below the first level go into one line, and all that keep the order of their names.
+    /// Ends a table: short ones below the first level, and those that keep the order of their
+    /// names, go into one line.
     fn attach(&mut self, key: &str, in_order: bool) {
         let nested = self.open.len() > 2;
         let section = self.leave();

@@ -1,4 +1,4 @@
-//! From the bytes of a file to a project: settings, tables, then what must hold between them.
+//! From the bytes of a file to a project: settings, tables, then the conditions between them.
 
 use std::collections::BTreeMap;
 
@@ -18,11 +18,11 @@ use crate::catalogue::Catalogue;
 use crate::source::Source;
 use phea_quantity::{Dimension, RATIO, display};
 
-/// Reads a project file, applies `path=value` settings, and looks names up in the catalogue, to which the given files
-/// and folders are added.
+/// Reads a project file, applies `path=value` settings, and looks names up in the catalogue, to
+/// which the given files and folders are added.
 ///
 /// # Errors
-/// [`Refusal`] with everything that is wrong, each with file, line and column.
+/// [`Refusal`] with all errors, each with file, line and column.
 ///
 /// # Example
 /// ```
@@ -107,7 +107,8 @@ fn measured(root: &TreeNode) -> Option<&tree::Entry> {
     root.get("family")?.node.get("measured")
 }
 
-/// Names that formulas of the plant may contain: what `[uncertainty]` and `[family]` give values to.
+/// Names that formulas of the plant may contain: those that receive values from `[uncertainty]` and
+/// `[family]`.
 fn parameters(root: &TreeNode) -> Vec<String> {
     let names = |node: &TreeNode| node.entries().iter().map(|entry| entry.key.clone()).collect::<Vec<_>>();
     let mut parameters = root.get("uncertainty").map(|entry| names(&entry.node)).unwrap_or_default();
@@ -120,7 +121,7 @@ fn parameters(root: &TreeNode) -> Vec<String> {
     parameters
 }
 
-/// Either an actuator, or a plant, or measured ones, and all of it.
+/// Either a complete actuator, or a plant, or measured plants.
 fn refuse_mixture(reader: &mut Reader<'_>, root: &TreeNode, is_plant: bool, is_measured: bool) {
     let tables = DeclaredActuator::REQUIRED.iter().chain(&["load"]).copied();
     let present: Vec<_> = tables.clone().filter_map(|name| root.get(name)).collect();
@@ -157,7 +158,8 @@ fn refuse_mixture(reader: &mut Reader<'_>, root: &TreeNode, is_plant: bool, is_m
     }
 }
 
-/// Every number of the project that can be named, and the parameters of its linear model; and its whole numbers, which cannot vary.
+/// Every number of the project that can be named, and the parameters of its linear model; and its
+/// whole numbers, which cannot vary.
 fn numbers(project: &mut Project) -> (BTreeMap<String, Key>, Vec<String>) {
     let mut listing = Listing::default();
     project.visit_system(&mut listing);
@@ -174,7 +176,7 @@ fn numbers(project: &mut Project) -> (BTreeMap<String, Key>, Vec<String>) {
     (named, listing.counts)
 }
 
-/// The project as TOML: [`read`] gives an equal project, if the same catalogue is at hand.
+/// The project as TOML: [`read`] gives an equal project, if the same catalogue is available.
 pub fn print(project: &Project) -> String {
     let mut project = project.clone();
     let (mut named, _) = numbers(&mut project);
@@ -198,7 +200,8 @@ pub fn keys() -> Vec<KeyEntry> {
 }
 
 impl Project {
-    /// The path of a file that the project names, as [`Source`] takes it: relative ones start at the project file.
+    /// The path of a file that the project names, as [`Source`] takes it: relative paths start at
+    /// the project file.
     ///
     /// # Example
     /// ```
@@ -220,7 +223,7 @@ impl Project {
         self.number_among(path, &self.system_numbers())
     }
 
-    /// The same, from [`Project::system_numbers`]: listing them takes longer than one look.
+    /// The same, from [`Project::system_numbers`]: listing them takes longer than one lookup.
     pub(crate) fn number_among(&self, path: &str, numbers: &BTreeMap<String, f64>) -> Option<f64> {
         match self.operating_point.clone().at_path(path) {
             Some(number) => *number,
@@ -235,7 +238,7 @@ impl Project {
         listing.numbers.into_iter().map(|(path, (_, value))| (path, value)).collect()
     }
 
-    /// What each number measures, by its path or its name in the linear model.
+    /// The dimension of each number, by its path or its name in the linear model.
     pub fn dimensions(&self) -> BTreeMap<String, &'static Dimension> {
         let (named, _) = numbers(&mut self.clone());
         named.into_iter().map(|(path, key)| (path, key.dimension)).collect()
@@ -247,13 +250,15 @@ impl Project {
         named.get(path).map_or_else(|| value.to_string(), |key| display(value, key.dimension, 4))
     }
 
-    /// The same project with another number at a path; `None` if there is no number. Those of the operating point always are.
+    /// The same project with another number at a path; `None` if there is no number. Those of the
+    /// operating point always are.
     #[must_use]
     pub fn with_number(&self, path: &str, value: f64) -> Option<Project> {
         self.with_numbers(&[(path, value)])
     }
 
-    /// The same project with other numbers at several paths; `None` if one of them leads to no number.
+    /// The same project with other numbers at several paths; `None` if one of them leads to no
+    /// number.
     ///
     /// # Example
     /// ```
@@ -283,7 +288,8 @@ impl Project {
         (listing.assigned == wanted).then_some(project)
     }
 
-    /// What is known of every number a campaign may vary, and its value where one is stated; those of the start have none here.
+    /// The key of every number that a campaign may vary, and its value if one is stated; those of
+    /// the start have none here.
     pub fn listed_numbers(&self) -> BTreeMap<String, (Key, Option<f64>)> {
         let mut listing = Listing::default();
         self.clone().visit_system(&mut listing);

@@ -21,13 +21,13 @@ pub(crate) struct Reader<'a> {
     frames: Vec<Frame<'a>>,
     /// Index of the text of the project itself; others are settings.
     project_text: usize,
-    /// Whether absent keys are no errors, as in the catalogue.
+    /// Whether absent keys are allowed, as in the catalogue.
     partial: bool,
     /// Whether something was absent that a project needs.
     pub(crate) incomplete: bool,
     /// Whether the parts of an actuator are read.
     pub(crate) parts: bool,
-    /// Numbers of the project that can be named, with what is known of them.
+    /// Numbers of the project that can be named, with their keys.
     pub(crate) named: BTreeMap<String, Key>,
     /// Its whole numbers, which have no range to vary in.
     pub(crate) counts: Vec<String>,
@@ -49,11 +49,13 @@ struct Frame<'a> {
     layers: Vec<Layer<'a>>,
     /// Keys asked for so far.
     asked: Vec<&'static str>,
-    /// What chose the variant being read, in words.
+    /// The choice of the variant being read, in words.
     chosen: Option<String>,
-    /// Whether it names an entry that the catalogue does not have, so that what seems to be missing may not be.
+    /// Whether it names an entry that the catalogue does not have, so that keys that seem to be
+    /// missing may not be.
     lost: bool,
-    /// While the keys of another variant are looked at: those that are taken for absent, as they are read already.
+    /// While the keys of another variant are examined: those that count as absent, since they are
+    /// already read.
     passed_over: Option<Vec<&'static str>>,
     /// The values of a table written as an array, in the order of its keys.
     in_order: Option<std::slice::Iter<'a, TreeNode>>,
@@ -63,7 +65,7 @@ struct Frame<'a> {
 #[derive(Clone)]
 struct Layer<'a> {
     node: &'a TreeNode,
-    /// Keys of it that do not count.
+    /// Its keys that do not count.
     hidden: Vec<&'static str>,
     /// The catalogue's entry it comes from.
     entry: Option<&'a crate::catalogue::CatalogueEntry>,
@@ -104,7 +106,7 @@ impl<'a> Reader<'a> {
         reader
     }
 
-    /// Takes absent keys as they are.
+    /// Accepts absent keys.
     pub(crate) fn partial(mut self) -> Self {
         self.partial = true;
         self
@@ -123,7 +125,7 @@ impl<'a> Reader<'a> {
         });
     }
 
-    /// Ends a table: what nobody asked for is unknown. Gives the keys that were asked for.
+    /// Ends a table: keys that were not read are unknown. Returns the keys that were read.
     pub(crate) fn close(&mut self) -> Vec<&'static str> {
         let Some(frame) = self.frames.pop() else { return Vec::new() };
         let Some(own) = frame.layers.first() else { return frame.asked };
@@ -139,7 +141,7 @@ impl<'a> Reader<'a> {
         frame.asked
     }
 
-    /// Ends a table whose unknown keys someone else reports. Gives the keys that were asked for.
+    /// Ends a table whose unknown keys are reported elsewhere. Returns the keys that were read.
     fn leave(&mut self) -> Vec<&'static str> {
         self.frames.pop().map(|frame| frame.asked).unwrap_or_default()
     }
@@ -149,7 +151,7 @@ impl<'a> Reader<'a> {
         Place { text: self.project_text, start: 0, end: 0 }
     }
 
-    /// A top-level key, whether asked for or not.
+    /// A top-level key, whether read or not.
     pub(crate) fn root_entry(&self, key: &str) -> Option<&'a Entry> {
         self.root.get(key)
     }
@@ -198,7 +200,7 @@ impl<'a> Reader<'a> {
         Some(hit)
     }
 
-    /// How to write a name with dots in it, where it was taken for tables in each other.
+    /// How to write a name with dots in it, if it was parsed as nested tables.
     fn quoted(&self, key: Key, entry: &Entry) -> Option<String> {
         let (mut name, mut node) = (entry.key.clone(), &entry.node);
         while !self.named.contains_key(&name) {
@@ -244,7 +246,7 @@ impl<'a> Reader<'a> {
         self.findings.push(found);
     }
 
-    /// Whether what is absent is taken as it is, which is remembered.
+    /// Whether absent keys are accepted, which is remembered.
     fn takes_absent(&mut self) -> bool {
         self.incomplete = true;
         self.partial || self.looks_elsewhere()
@@ -261,7 +263,7 @@ impl<'a> Reader<'a> {
         self.findings.push(RawFinding::error(node.place, message));
     }
 
-    /// Opens the table under a hit; whether it is one.
+    /// Opens the table under a hit; returns whether it is one.
     fn enter(&mut self, key: Key, hit: Hit<'a>, path: String) -> bool {
         if !matches!(hit.node.value, Value::Table(_)) {
             self.wrong_kind(key, "a table", hit.node);

@@ -1,7 +1,10 @@
-//! A project's text with another controller and prefilter in it, everything else byte for byte as it was.
+//! A project's text with another controller and prefilter in it, everything else byte for byte as
+//! it was.
 //!
-//! It rests on the tokens of `toml_parser`. The crate `toml_edit` (0.25) does not keep every byte: it drops all carriage returns, ends the last line
-//! where it had no end, and does not keep the order of dotted keys. Settings (`--set`) change the tree that was read, whose places errors name, and no text.
+//! It rests on the tokens of `toml_parser`. The crate `toml_edit` (0.25) does not keep every byte:
+//! it drops all carriage returns, ends the last line where it had no end, and does not keep the
+//! order of dotted keys. Settings (`--set`) change the tree that was read, to whose positions
+//! errors refer, and not the text.
 
 mod statement;
 mod surgery;
@@ -12,7 +15,7 @@ use self::surgery::{KeyValues, LAW, replaced};
 use super::printer::Printer;
 use super::{DeclaredController, Prefilter, Transfer};
 
-/// Keys of [controller] beside its law.
+/// Keys of [controller] other than its transfer function.
 const BESIDE: [&str; 7] = [
     "saturation",
     "anti_windup",
@@ -23,15 +26,16 @@ const BESIDE: [&str; 7] = [
     "load_velocity_feed_forward",
 ];
 
-/// The bytes of a project file with this controller, and with this prefilter if there is one, in place of what it said. Keys of `[controller]`
-/// and `[prefilter]` beside the law stay as they are written, unless `settings` overrode them.
+/// The bytes of a project file with this controller, and with this prefilter if there is one, in
+/// place of the old ones. Other keys of `[controller]` and `[prefilter]` remain as they are
+/// written, unless `settings` overrode them.
 pub fn with_laws(
     bytes: &[u8],
     settings: &[String],
     controller: &DeclaredController,
     prefilter: Option<&Prefilter>,
 ) -> Vec<u8> {
-    // what was read as a project is UTF-8
+    // a text that was read as a project is UTF-8
     let text = String::from_utf8_lossy(bytes);
     let (mark, content) =
         text.strip_prefix('\u{feff}').map_or(("", text.as_ref()), |rest| ("\u{feff}", rest));
@@ -41,7 +45,7 @@ pub fn with_laws(
     let keys: Vec<&str> = LAW.into_iter().chain(BESIDE.into_iter().filter(|_| overridden)).collect();
     let mut content = replaced(content, "controller", &keys, &lines);
     if let Some(prefilter) = prefilter {
-        // samples of a law in z are those of the loop
+        // a controller in z has the samples of the loop
         let overridden = overrides("prefilter");
         let lines = if overridden { prefilter_lines(prefilter) } else { law_lines(&prefilter.transfer) };
         let keys: Vec<&str> =
@@ -51,12 +55,12 @@ pub fn with_laws(
     format!("{mark}{content}").into_bytes()
 }
 
-/// The text with these lines in place of whatever law the table has.
+/// The text with these lines in place of the transfer function of the table.
 pub fn with_law(text: &str, table: &str, lines: &[(String, String)]) -> String {
     replaced(text, table, &LAW, lines)
 }
 
-/// Those that say what their absence would say too are left out.
+/// Keys with their default values are left out.
 fn prefilter_lines(prefilter: &Prefilter) -> KeyValues {
     let mut printer = Printer::new(BTreeMap::new());
     prefilter.clone().visit(&mut printer);
@@ -82,7 +86,7 @@ fn law_lines(transfer: &Transfer) -> KeyValues {
     printer.lines()
 }
 
-/// Those that say what their absence would say too are left out.
+/// Keys with their default values are left out.
 fn controller_lines(controller: &DeclaredController) -> KeyValues {
     let lines = |mut controller: DeclaredController| {
         let mut printer = Printer::new(BTreeMap::new());

@@ -15,19 +15,21 @@ pub struct Scenario {
     pub duration: f64,
     /// s, between rows of the result.
     pub output_step: f64,
-    /// The state at the start; absent: the closed loop at rest at the position of the operating point, mid stroke by default.
+    /// The state at the start; absent: the closed loop at rest at the position of the operating
+    /// point, mid stroke by default.
     pub start: Option<Start>,
     /// The reference force, the sum of these.
     pub reference: Vec<Signal>,
-    /// The open-loop command of the valve, the sum of these; none: the controller commands.
+    /// The open-loop command of the valve, the sum of these; empty: the controller commands.
     pub command: Vec<Signal>,
     /// What the load does.
     pub load_motion: Option<LoadMotion>,
-    /// A force on the load from outside, the sum of these; positive in the direction of positive position.
+    /// An external force on the load, the sum of these; positive in the direction of positive
+    /// position.
     pub external_force: Vec<Signal>,
     /// Percent, of every settling time.
     pub settling_band_percent: f64,
-    /// What was measured on the rig.
+    /// Measurements on the rig.
     pub measured: Vec<MeasuredFile>,
 }
 
@@ -59,7 +61,7 @@ pub struct Published {
     pub settling_time: Option<f64>,
     /// Where it is published.
     pub source: Option<String>,
-    /// What a reader should know of it.
+    /// A remark for the reader.
     pub remark: Option<String>,
 }
 
@@ -72,7 +74,8 @@ pub struct LoadMotion {
     pub start: f64,
 }
 
-/// Shape of the load motion in time. Distances and amplitudes in m, times in s, frequencies in rad/s.
+/// Shape of the load motion in time. Distances and amplitudes in m, times in s, frequencies in
+/// rad/s.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MotionShape {
     /// Quintic: velocity and acceleration are zero at both ends.
@@ -211,12 +214,12 @@ impl Scenario {
 }
 
 impl Start {
-    /// A number of it by its key.
+    /// Its number at a key.
     pub fn number(&self, key: &str) -> Option<f64> {
         *self.clone().place(key)?
     }
 
-    /// Another number for a key; nothing for a key it does not have.
+    /// Replaces the number at a key; has no effect for a key that it does not have.
     pub fn set_number(&mut self, key: &str, value: f64) {
         if let Some(place) = self.place(key) {
             *place = Some(value);
@@ -254,7 +257,7 @@ impl Published {
         let k = key("settling_time", &TIME, "Settling time.").positive();
         v.optional(k, &mut self.settling_time);
         v.text(plain("source", "Where it is published."), &mut self.source, true);
-        v.text(plain("remark", "What a reader should know of it."), &mut self.remark, false);
+        v.text(plain("remark", "A remark for the reader."), &mut self.remark, false);
     }
 }
 

@@ -1,7 +1,8 @@
 //! The JSON Schema of the project file, for editors, made from the descriptions that read it.
 //!
-//! It is of draft 7, the newest that the editors of TOML check with. What only numbers or several tables together decide is left to the reader:
-//! the schema accepts every file that the reader accepts, and refuses what is wrong with its structure.
+//! It is of draft 7, the newest that the editors of TOML check with. Conditions on numbers or on
+//! several tables are left to the reader: the schema accepts every file that the reader accepts,
+//! and rejects errors of structure.
 
 mod quantity;
 mod table;

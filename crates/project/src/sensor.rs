@@ -1,4 +1,4 @@
-//! `[sensor]`: what lies between the controlled output and what the controller sees.
+//! `[sensor]`: the dynamics between the controlled output and the input of the controller.
 
 use super::key::key;
 use super::plant::Rational;

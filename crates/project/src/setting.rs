@@ -6,7 +6,8 @@ use super::tree::{self, Entry, TreeNode, Value};
 /// Most parts of a path.
 const MAXIMUM_PARTS: usize = 16;
 
-/// Applies one setting. Its own errors, and those of its value later on, point into the setting's text.
+/// Applies one setting. Its own errors, and those of its value later on, point into the setting's
+/// text.
 pub(crate) fn apply(root: &mut TreeNode, setting: &str, findings: &mut Findings) {
     let text = findings.add_text(&format!("--set {setting}"), setting, 0);
     let whole = Place { text, start: 0, end: setting.len() };
@@ -24,7 +25,7 @@ pub(crate) fn apply(root: &mut TreeNode, setting: &str, findings: &mut Findings)
     }
 }
 
-/// A part of the path and where it stands.
+/// A part of the path and its position.
 type PathPart = (String, Place);
 
 fn parts(text: usize, path: &str) -> Result<Vec<PathPart>, RawFinding> {

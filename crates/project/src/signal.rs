@@ -1,12 +1,13 @@
-//! Known functions of time that a scenario asks for: a reference force, an open-loop command, a force from outside.
+//! Functions of time in a scenario: a reference force, an open-loop command, an external force.
 
 use super::key::{Key, key, plain};
 use super::scenario::Published;
 use super::visitor::{Variants, Visitor};
 use phea_quantity::{ANGLE, ANGULAR_FREQUENCY, Dimension, FORCE, TIME, VOLTAGE};
 
-/// One part of a function of time; the parts add up, each zero before it begins. Values and amplitudes in the unit of what it is of, times
-/// in s, frequencies in rad/s. Without a start it begins at once; once its duration is over it holds the value it ends with.
+/// One part of a function of time; the parts add up, each zero before it begins. Values and
+/// amplitudes are in the unit of the signal, times in s, frequencies in rad/s. Without a start it
+/// begins at once; after its duration it holds its final value.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Signal {
     /// A value that holds until the next step.
@@ -15,7 +16,7 @@ pub enum Signal {
         at: f64,
         /// From then on.
         value: f64,
-        /// What somebody published of a step of the reference, to stand beside the simulation's own.
+        /// Published values for a step of the reference, for comparison with the simulation.
         published: Option<Published>,
     },
     /// Several steps.
@@ -80,11 +81,11 @@ pub struct Multisine {
     pub amplitudes: Amplitudes,
     /// rad/s.
     pub frequencies: Vec<f64>,
-    /// rad; none: Schroeder's, which keep its peak low.
+    /// rad; absent: Schroeder's phases, which keep its peak low.
     pub phases: Vec<f64>,
 }
 
-/// How large the sines of a multisine are.
+/// The amplitudes of the sines of a multisine.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Amplitudes {
     /// All of one size.
@@ -105,7 +106,7 @@ impl Default for Signal {
     }
 }
 
-/// What a signal is of, and how its values are called.
+/// The quantity of a signal, and the names of its values.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SignalUnit {
     /// Key of one value.
@@ -113,7 +114,7 @@ pub(crate) struct SignalUnit {
     /// Key of several.
     pub(crate) values: &'static str,
     pub(crate) dimension: &'static Dimension,
-    /// Whether a step has room for what somebody published of it.
+    /// Whether a step may have published values.
     published: bool,
 }
 
@@ -121,7 +122,7 @@ impl SignalUnit {
     /// Of a reference.
     pub(crate) const REFERENCE: SignalUnit =
         SignalUnit { value: "force", values: "forces", dimension: &FORCE, published: true };
-    /// Of a force on the load from outside.
+    /// Of an external force on the load.
     pub(crate) const EXTERNAL_FORCE: SignalUnit =
         SignalUnit { value: "force", values: "forces", dimension: &FORCE, published: false };
     /// Of an open-loop command.
@@ -129,7 +130,7 @@ impl SignalUnit {
         SignalUnit { value: "voltage", values: "voltages", dimension: &VOLTAGE, published: false };
 }
 
-/// A signal as it is written, which depends on what it is of.
+/// A signal as it is written, which depends on its quantity.
 #[derive(Clone)]
 struct WrittenSignal {
     unit: SignalUnit,
@@ -224,7 +225,7 @@ impl Variants for WrittenSignal {
 }
 
 impl Amplitudes {
-    /// One for each of so many sines.
+    /// One for each sine.
     pub fn of(&self, count: usize) -> Vec<f64> {
         match self {
             Amplitudes::Equal(amplitude) => vec![*amplitude; count],
@@ -272,7 +273,7 @@ impl Signal {
         }
     }
 
-    /// How long it moves, s, where that is stated.
+    /// How long it moves, s, if stated.
     pub fn duration_s(&self) -> Option<f64> {
         match self {
             Signal::Ramp { duration, .. } | Signal::Chirp { duration, .. } => Some(*duration),
@@ -290,12 +291,12 @@ impl Signal {
         }
     }
 
-    /// What somebody published of it, of a step of the reference.
+    /// Published values, for a step of the reference.
     pub fn published(&self) -> Option<&Published> {
         if let Signal::Step { published, .. } = self { published.as_ref() } else { None }
     }
 
-    /// Reads or prints it as what it is of.
+    /// Reads or prints it as a signal of its quantity.
     pub(crate) fn visitor<V: Visitor>(unit: SignalUnit) -> impl Fn(&mut Signal, &mut V) {
         move |signal, v| {
             let mut written = WrittenSignal { unit, signal: std::mem::take(signal) };

@@ -1,4 +1,4 @@
-//! `[simulation]`: how exactly scenarios are simulated.
+//! `[simulation]`: how accurately scenarios are simulated.
 
 use super::key::{key, plain};
 use super::visitor::Visitor;
@@ -14,14 +14,14 @@ pub enum StepMethod {
     DormandPrince,
 }
 
-/// By which method, how exactly, with which random numbers, and with how much work at most.
+/// The method, accuracy, random numbers and largest effort.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Simulation {
     /// How steps are made.
     pub method: StepMethod,
     /// Largest error of a step, relative to each state plus its scale.
     pub tolerance: f64,
-    /// Steps after which a simulation ends.
+    /// Number of steps after which a simulation ends.
     pub maximum_steps: u32,
     /// Of all random numbers.
     pub seed: u32,
@@ -39,7 +39,7 @@ impl Simulation {
         v.choice(plain("method", "How steps are made."), words, &mut self.method, false);
         let k = key("tolerance", &RATIO, "Largest error of a step, relative to each state plus its scale.");
         v.quantity(k.at_least(1e-12).at_most(1e-2).or(1e-6), &mut self.tolerance);
-        let k = key("maximum_steps", &RATIO, "Steps after which a simulation ends.").at_least(1.0);
+        let k = key("maximum_steps", &RATIO, "Number of steps after which a simulation ends.").at_least(1.0);
         v.count(k.at_most(4e9).or(1e7), &mut self.maximum_steps);
         let k = key("seed", &RATIO, "Seed of all random numbers.").not_negative().at_most(4e9).or(1.0);
         v.count(k, &mut self.seed);

@@ -4,16 +4,17 @@ use super::key::key;
 use super::visitor::Visitor;
 use phea_quantity::{FLOW_GAIN, FLOW_PRESSURE_COEFFICIENT, LENGTH, RATIO, TIME, VELOCITY, VOLTAGE_PER_FORCE};
 
-/// What the compliant component is sized for.
+/// The requirements for the compliant component.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DeclaredSizing {
-    /// How fast the closed loop is to be.
+    /// The wanted speed of the closed loop.
     pub speed: Speed,
     /// m³/(s·V), K_qU; absent: derived from the valve at null.
     pub flow_gain: Option<f64>,
     /// m³/(s·Pa), K_c; absent: derived from the valve at null.
     pub flow_pressure_coefficient: Option<f64>,
-    /// m/s, range of the oil velocity: above rejects, below warns.
+    /// m/s, range of the oil velocity: a velocity above it rejects a bore, one below it causes a
+    /// warning.
     pub oil_velocity: Option<[f64; 2]>,
     /// V/N, floor of the search over the proportional gain.
     pub minimum_gain: Option<f64>,
@@ -27,7 +28,7 @@ pub struct DeclaredSizing {
     pub length_increment: Option<f64>,
 }
 
-/// How fast a closed loop is to be.
+/// The wanted speed of a closed loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Speed {
     /// s, its time constant.
@@ -87,7 +88,7 @@ impl DeclaredSizing {
         v.optional(k.positive(), &mut self.minimum_gain);
         let k = key("maximum_gain", &VOLTAGE_PER_FORCE, "Start of the search over the proportional gain.");
         v.optional(k.positive(), &mut self.maximum_gain);
-        let k = key("stock_length", &LENGTH, "Hose to be had, for both lines together.").positive();
+        let k = key("stock_length", &LENGTH, "Available hose, for both lines together.").positive();
         v.optional(k, &mut self.stock_length);
         let k = key("hose_length", &LENGTH, "Acceptable range of the length of one hose.").positive();
         v.pair(k, &mut self.hose_length);

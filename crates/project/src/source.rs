@@ -1,5 +1,5 @@
-//! The workbench's only doors to text and bytes: where files come from, and where long ones go. Shells implement them over the
-//! file system.
+//! The only interfaces to text and bytes: where files come from, and where long ones go. Shells
+//! implement them over the file system.
 
 use std::collections::BTreeMap;
 use std::io;
@@ -21,7 +21,7 @@ impl OutputFile {
     }
 }
 
-/// Where files come from. A path is what the user wrote; only the implementation gives it a meaning.
+/// Where files come from. A path is the text of the user, which only the implementation interprets.
 pub trait Source {
     /// The bytes of a file.
     ///
@@ -29,8 +29,8 @@ pub trait Source {
     /// [`SourceError`] if there is no such file or it cannot be read.
     fn read(&self, path: &str) -> Result<Vec<u8>, SourceError>;
 
-    /// The paths of the files in a folder, each such that [`Source::read`] takes it; in any order. A path that is a
-    /// file gives `None`.
+    /// The paths of the files in a folder, each such that [`Source::read`] takes it; in any order.
+    /// A path that is a file gives `None`.
     ///
     /// # Errors
     /// [`SourceError`] if there is neither, or it cannot be read.
@@ -92,18 +92,19 @@ impl Source for Memory {
     }
 }
 
-/// Where files go that are too long to be held: they are written as they come.
+/// Where files go that are too long for memory: they are written as they are produced.
 pub trait Destination {
-    /// Begins a file. It has its name only when it is finished, and is nowhere if it never is.
+    /// Begins a file. It receives its name only when it is finished, and does not exist if it never
+    /// is.
     ///
     /// # Errors
     /// [`WriteError`] if it cannot be begun.
     fn begin<'a>(&'a self, name: &str) -> Result<Box<dyn Unfinished + 'a>, WriteError>;
 }
 
-/// A file that is being written. What is written may wait in a buffer until it is finished.
+/// A file that is being written. Data may wait in a buffer until it is finished.
 pub trait Unfinished: io::Write + Send {
-    /// Puts it under its name, whole.
+    /// Stores the complete file under its name.
     ///
     /// # Errors
     /// What the system says.
@@ -141,7 +142,7 @@ pub struct WriteError {
 pub struct HeldFiles(Mutex<Vec<OutputFile>>);
 
 impl HeldFiles {
-    /// All that were finished, in that order.
+    /// All finished files, in order.
     pub fn into_files(self) -> Vec<OutputFile> {
         self.0.into_inner().unwrap_or_else(PoisonError::into_inner)
     }

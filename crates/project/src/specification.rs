@@ -1,4 +1,4 @@
-//! `[[specification]]`: what the closed loop must meet.
+//! `[[specification]]`: a requirement on the closed loop.
 
 use super::key::{key, plain};
 use super::limit::DeclaredLimit;
@@ -10,7 +10,7 @@ use phea_quantity::ANGULAR_FREQUENCY;
 pub struct DeclaredSpecification {
     /// Which closed loop is limited.
     pub kind: SpecificationKind,
-    /// Upper limit; of every kind but tracking.
+    /// Upper limit; for every kind except tracking.
     pub limit: Option<DeclaredLimit>,
     /// Upper limit of tracking.
     pub upper: Option<DeclaredLimit>,

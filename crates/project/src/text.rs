@@ -1,4 +1,4 @@
-//! Texts, places in them, and findings: what everything that reads a file shares.
+//! Texts, positions in them, and findings: the common basis of everything that reads a file.
 
 use super::diagnostic::{Diagnostic, Refusal, Severity};
 
@@ -13,12 +13,12 @@ pub struct Place {
     pub end: usize,
 }
 
-/// The texts that are read, and what was found in them.
+/// The texts that are read, and the findings in them.
 #[derive(Clone, Debug, Default)]
 pub struct Findings {
     texts: Vec<NamedText>,
     found: Vec<RawFinding>,
-    /// How many errors and warnings are kept, and how many findings are not.
+    /// The numbers of errors and warnings that are kept, and of findings that are not.
     errors: usize,
     warnings: usize,
     more: usize,
@@ -60,25 +60,25 @@ impl RawFinding {
         RawFinding { severity: Severity::Warning, ..RawFinding::error(place, message) }
     }
 
-    /// The same with what was expected instead.
+    /// The same with the expectation.
     pub fn expected(mut self, expected: impl Into<String>) -> Self {
         self.expected = Some(expected.into());
         self
     }
 
-    /// The same with what was expected instead, where that is known.
+    /// The same with the expectation, if known.
     pub fn maybe_expected(mut self, expected: Option<String>) -> Self {
         self.expected = expected.or(self.expected);
         self
     }
 
-    /// The same with what to do about it.
+    /// The same with a remedy.
     pub fn help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
         self
     }
 
-    /// The same with what to do about it, where that is known.
+    /// The same with a remedy, if known.
     pub fn maybe_help(mut self, help: Option<String>) -> Self {
         self.help = help.or(self.help);
         self
@@ -99,11 +99,12 @@ impl RawFinding {
 
 /// More findings than this are counted but not listed.
 const MAXIMUM_LISTED: usize = 200;
-/// More errors, or warnings, than this are counted but not kept, so that the work for each stays small.
+/// More errors, or warnings, than this are counted but not kept, so that the work for each stays
+/// small.
 const MAXIMUM_KEPT: usize = 400;
 
 impl Findings {
-    /// Takes a text in and gives its index.
+    /// Adds a text and returns its index.
     pub fn add_text(&mut self, name: &str, content: &str, skipped: usize) -> usize {
         let starts = content.bytes().enumerate().filter(|(_, byte)| *byte == b'\n').map(|(at, _)| at + 1);
         let line_starts = std::iter::once(0).chain(starts).collect();
@@ -116,12 +117,12 @@ impl Findings {
         self.texts.len() - 1
     }
 
-    /// Index of the text taken in last.
+    /// Index of the text added last.
     pub(crate) fn last_text(&self) -> usize {
         self.texts.len().saturating_sub(1)
     }
 
-    /// Takes a finding in; beyond the most that are kept it is only counted.
+    /// Adds a finding; beyond the largest number that is kept it is only counted.
     pub fn push(&mut self, found: RawFinding) {
         let kept = if found.severity == Severity::Error { &mut self.errors } else { &mut self.warnings };
         if *kept < MAXIMUM_KEPT {
@@ -147,7 +148,7 @@ impl Findings {
         self.found.iter().any(|found| found.severity == Severity::Error)
     }
 
-    /// Whether something within a place was refused already.
+    /// Whether something within a place was already rejected.
     pub(crate) fn has_error_within(&self, place: Place) -> bool {
         let within = |inner: &Place| {
             inner.text == place.text && inner.start >= place.start && inner.end <= place.end && place.end > 0
@@ -155,7 +156,8 @@ impl Findings {
         self.found.iter().any(|found| found.severity == Severity::Error && within(&found.place))
     }
 
-    /// Everything found, in order of place, without what a syntax error of the same text explains.
+    /// All findings, in order of position, without those that a syntax error of the same text
+    /// explains.
     pub fn report(self) -> Refusal {
         let Findings { texts, mut found, more, .. } = self;
         let line = |place: &Place| texts.get(place.text).map_or(0, |text| text.line(place.start));

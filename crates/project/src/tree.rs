@@ -1,4 +1,4 @@
-//! A TOML text as a tree whose every part knows where it is written.
+//! A TOML text as a tree in which every part knows its position.
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -25,7 +25,7 @@ pub enum Value {
     Number(f64),
     /// True or false.
     Flag(bool),
-    /// A date, which no key takes.
+    /// A date, which no key accepts.
     Date,
     /// A list.
     List(Vec<TreeNode>),
@@ -45,7 +45,7 @@ pub struct Entry {
 }
 
 impl TreeNode {
-    /// The keys of a table; none of anything else.
+    /// The keys of a table; empty for anything else.
     pub fn entries(&self) -> &[Entry] {
         if let Value::Table(entries) = &self.value { entries } else { &[] }
     }
@@ -55,7 +55,7 @@ impl TreeNode {
         self.entries().iter().find(|entry| entry.key == key)
     }
 
-    /// What it is, with its article.
+    /// Its kind, with an article.
     pub fn kind(&self) -> &'static str {
         match &self.value {
             Value::Text(_) => "a text",
@@ -72,10 +72,11 @@ impl TreeNode {
 pub(crate) const MAXIMUM_BYTES: usize = 1 << 20;
 /// Deepest nesting of brackets, and most parts of a dotted name.
 const MAXIMUM_DEPTH: usize = 16;
-/// Most syntax errors that are looked at.
+/// Largest number of syntax errors that are examined.
 const MAXIMUM_SYNTAX_ERRORS: usize = 200;
 
-/// Takes a file in: its encoding, size and nesting are checked, then its syntax. `None` if nothing can be read.
+/// Reads a file: its encoding, size and nesting are checked, then its syntax. `None` if nothing can
+/// be read.
 pub fn read(name: &str, bytes: &[u8], findings: &mut Findings) -> Option<TreeNode> {
     if bytes.len() > MAXIMUM_BYTES {
         let text = findings.add_text(name, "", 0);
@@ -147,7 +148,7 @@ pub fn value_or_finding(
     found
 }
 
-/// Moves a whole tree to where it stands in the text.
+/// Moves a whole tree to its position in the text.
 fn shift(node: &mut TreeNode, by: usize) {
     node.place.start += by;
     node.place.end += by;
@@ -211,7 +212,7 @@ fn quote_help(value: &str) -> Option<String> {
         .then(|| format!("a quantity with its unit is written in quotes: \"{value}\""))
 }
 
-/// Makes the tree, and refuses numbers that f64 cannot hold.
+/// Builds the tree, and rejects numbers that f64 cannot hold.
 struct TreeBuilder<'a> {
     text: usize,
     findings: &'a mut Findings,

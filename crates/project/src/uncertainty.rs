@@ -1,4 +1,4 @@
-//! `[uncertainty]`: which numbers are uncertain, and how they are gridded.
+//! `[uncertainty]`: which numbers are uncertain, and the grid over them.
 
 use super::key::{Key, key, plain};
 use super::visitor::Visitor;

@@ -1,4 +1,4 @@
-//! What must hold between the values of a project, beyond the range of each.
+//! Conditions between the values of a project, in addition to the range of each.
 
 mod design;
 mod family;
@@ -15,7 +15,7 @@ use super::reader::Reader;
 use super::text::{Place, RawFinding};
 use super::{DeclaredElement, LINEAR_PARAMETERS, Project};
 
-/// Reports everything that cannot be together.
+/// Reports all contradictions between values.
 pub(super) fn project(project: &Project, reader: &mut Reader<'_>) {
     let mut check = Check { reader };
     if let Some(actuator) = &project.actuator {
@@ -37,7 +37,7 @@ pub(super) fn project(project: &Project, reader: &mut Reader<'_>) {
     design::design(project, &mut check);
 }
 
-/// Reports what cannot be in one element; `path` leads to it.
+/// Reports contradictions within one element at `path`.
 pub(super) fn element(
     element: &DeclaredElement,
     path: &str,
@@ -73,7 +73,7 @@ impl Check<'_, '_> {
         self.reader.places.contains_key(path)
     }
 
-    /// Whether the value of a path was refused already, so that nothing follows from it.
+    /// Whether the value of a path was already rejected, so that nothing follows from it.
     fn refused(&self, path: &str) -> bool {
         self.reader.places.get(path).is_some_and(|place| self.reader.findings.has_error_within(*place))
     }
@@ -92,7 +92,7 @@ impl Check<'_, '_> {
         }
     }
 
-    /// Whether the first table of a path is there at all.
+    /// Whether the first table of a path is present at all.
     fn has_table(&self, path: &str) -> bool {
         self.reader.root_entry(path.split(['.', '[']).next().unwrap_or(path)).is_some()
     }
@@ -102,7 +102,7 @@ impl Check<'_, '_> {
         self.reader.findings.push(RawFinding::warning(place, message));
     }
 
-    /// Something is absent from the table at `path`; perhaps because its value was refused.
+    /// Something is absent from the table at `path`, perhaps because its value was rejected.
     fn missing(&mut self, path: &str, name: &str, message: impl Into<String>) {
         if self.declared(&format!("{path}.{name}")) || !self.has_table(path) {
             return;

@@ -22,7 +22,7 @@ pub struct Valve {
     pub damping_ratio: f64,
     /// λ of sech(λ U/U_n) in the leakage; zero keeps the leakage constant.
     pub leakage_shape: f64,
-    /// What λ and the leakage coefficients mean away from null.
+    /// The meaning of λ and the leakage coefficients away from null.
     pub leakage_model: LeakageModel,
     /// m³/s, pilot stage flow from supply to tank.
     pub tare_flow: f64,
@@ -36,7 +36,7 @@ pub struct Valve {
     pub threshold: Option<f64>,
     /// V/s, greatest rate of the spool.
     pub rate_limit: Option<f64>,
-    /// Pa, pressure drop below which the square root is made regular.
+    /// Pa, pressure drop below which the square root is smoothed.
     pub transition_pressure: f64,
     /// K_v3 to K_v6, or what they follow from.
     pub flow: ValveCoefficients<RatedFlow>,
@@ -46,14 +46,15 @@ pub struct Valve {
     pub response_time: Option<f64>,
 }
 
-/// ValveCoefficients of the edges as they are declared, or what the data sheet says, from which they follow, equal for all edges.
+/// Coefficients of the edges as declared, or the data sheet values from which they follow, equal
+/// for all edges.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ValveCoefficients<R> {
     /// Declared for each edge, m³/(s·√Pa).
     Edges {
         /// As declared.
         edges: EdgeCoefficients,
-        /// What the data sheet says beside.
+        /// The data sheet values, in addition.
         rating: Option<R>,
     },
     /// From the data sheet.
@@ -76,7 +77,7 @@ pub struct NullLeakage {
     pub flow: f64,
     /// m³/s, the highest, tare flow included, where the data sheet prints a range.
     pub maximum: Option<f64>,
-    /// Pa, supply pressure it was measured at.
+    /// Pa, supply pressure at which it was measured.
     pub pressure: f64,
 }
 
@@ -87,7 +88,7 @@ impl<R: Default> Default for ValveCoefficients<R> {
 }
 
 impl<R> ValveCoefficients<R> {
-    /// Of each edge, where they are declared.
+    /// The coefficients of each edge, if declared.
     pub fn edges(&self) -> Option<&EdgeCoefficients> {
         if let ValveCoefficients::Edges { edges, .. } = self { Some(edges) } else { None }
     }

@@ -1,7 +1,8 @@
 //! One description of every table serves reading, printing and listing.
 //!
-//! Each type of the project has one `visit` function that names its keys beside its fields. A reader fills the
-//! fields from the file, a printer writes them, a listing collects what may be written: so a key has one place.
+//! Each type of the project has one `visit` function that names its keys beside its fields. A
+//! reader fills the fields from the file, a printer writes them, a listing collects the possible
+//! keys: so each key is defined in one place.
 
 use super::formula::Formula;
 use super::key::Key;
@@ -13,9 +14,9 @@ pub(crate) trait Variants: Clone {
     const STRICT: bool = false;
     /// Every variant, before it is read.
     fn all(&self) -> Vec<Self>;
-    /// As it is written.
+    /// The word of the choice in the file.
     fn word(&self) -> &'static str;
-    /// Whether it is written without its word.
+    /// Whether its word may be omitted.
     fn goes_without_saying(&self) -> bool {
         false
     }
@@ -23,9 +24,9 @@ pub(crate) trait Variants: Clone {
     fn visit<V: Visitor>(&mut self, v: &mut V);
 }
 
-/// How a table's description is carried out.
+/// The operations on the description of a table.
 pub(crate) trait Visitor: Sized {
-    /// Whether keys are named that a reader asks for only beside others.
+    /// Whether keys are listed that a reader reads only together with others.
     fn names_everything(&self) -> bool {
         false
     }
@@ -59,16 +60,16 @@ pub(crate) trait Visitor: Sized {
         field: &mut T,
         required: bool,
     );
-    /// A word that chooses a variant, whose own keys follow in the present table; those of the other variants have no effect. Absent, the
-    /// field keeps its variant unless `required`.
+    /// A word that chooses a variant, whose own keys follow in the present table; those of the
+    /// other variants have no effect. Absent, the field keeps its variant unless `required`.
     fn variant<T: Variants>(&mut self, key: Key, field: &mut T, required: bool);
     /// A formula; required if `required`.
     fn formula(&mut self, key: Key, shape: FormulaShape, field: &mut Option<Formula>, required: bool);
-    /// The name of a catalogue entry, whose values serve where the table itself is silent.
+    /// The name of a catalogue entry, whose values apply where the table states none.
     fn catalogue(&mut self, key: Key, kind: CatalogueKind, field: &mut Option<String>);
     /// A table that may be absent.
     fn table<T: Default>(&mut self, key: Key, field: &mut Option<T>, visit: impl Fn(&mut T, &mut Self));
-    /// A table that must be there.
+    /// A required table.
     fn needed_table<T: Default>(&mut self, key: Key, field: &mut T, visit: impl Fn(&mut T, &mut Self)) {
         let mut value = Some(std::mem::take(field));
         self.table(key, &mut value, visit);
@@ -76,15 +77,16 @@ pub(crate) trait Visitor: Sized {
     }
     /// Keys of the present table that belong to a part which may be absent as a whole.
     fn part<T: Default>(&mut self, field: &mut Option<T>, visit: impl Fn(&mut T, &mut Self));
-    /// Keys of the present table that describe one thing in one way: it is described so if one of `chosen_by` is there, and the others have
-    /// no effect without.
+    /// Keys of the present table that describe one thing in one way: this way is chosen if one of
+    /// `chosen_by` is present, and without it the others have no effect.
     fn way<T: Default>(
         &mut self,
         chosen_by: &'static [&'static str],
         field: &mut Option<T>,
         visit: impl Fn(&mut T, &mut Self),
     );
-    /// Nothing that is needed is there: a reader says what, unless all keys of one of these ways to state it are written, and were refused.
+    /// A required description is missing: a reader reports it, unless all keys of one of these ways
+    /// to state it are written and were rejected.
     fn lacks(&mut self, _ways: &[&[&'static str]], _what: &str) {}
     /// Of these keys of the present table at most one may be written, and one must be if `needed`.
     fn one_of(&mut self, _keys: &'static [&'static str], _needed: bool) {}
@@ -94,7 +96,8 @@ pub(crate) trait Visitor: Sized {
     fn tables<T: Default>(&mut self, key: Key, field: &mut Vec<T>, visit: impl Fn(&mut T, &mut Self));
     /// One table, or an array of them.
     fn one_or_more<T: Default>(&mut self, key: Key, field: &mut Vec<T>, visit: impl Fn(&mut T, &mut Self));
-    /// A table whose keys name numbers of the project; each is handed to `visit` with what is known of it.
+    /// A table whose keys name numbers of the project; each is passed to `visit` with its
+    /// properties.
     fn dictionary<T: Default>(
         &mut self,
         key: Key,
@@ -104,7 +107,8 @@ pub(crate) trait Visitor: Sized {
     );
     /// The present table as a list of names and numbers.
     fn numbers(&mut self, key: Key, field: &mut Vec<(String, f64)>);
-    /// Two tables `a` and `b` that inherit what the present table says, unless they choose a kind of their own.
+    /// Two tables `a` and `b` that inherit what the present table says, unless they choose a kind
+    /// of their own.
     fn sides<T: Default + Clone + PartialEq>(
         &mut self,
         keys: [Key; 2],
@@ -112,16 +116,18 @@ pub(crate) trait Visitor: Sized {
         fields: &mut [T; 2],
         visit: impl Fn(&mut T, &mut Self),
     );
-    /// In which of its forms the key's value is written; a reader looks, everyone else goes by the `field`'s form.
+    /// The form in which the key's value is written; a reader examines the file, other visitors use
+    /// the form of `field`.
     fn form(&mut self, key: Key, field: ValueForm) -> ValueForm;
 }
 
-/// Kinds of a thing of which one is chosen.
+/// Kinds of which one is chosen.
 #[derive(Debug)]
 pub(crate) struct Kinds {
     /// Keys that choose.
     pub(crate) chosen_by: &'static [&'static str],
-    /// Keys that belong to one kind or another; whoever chooses inherits none of them.
+    /// Keys that belong to one kind or another; a side that chooses its own kind inherits none of
+    /// them.
     pub(crate) keys: &'static [&'static str],
 }
 

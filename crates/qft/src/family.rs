@@ -70,7 +70,7 @@ pub enum FamilyError {
     #[error("parameter `{0}` cannot be spaced by equal factors: its lower bound is not positive")]
     Logarithmic(String),
     /// More members than can be examined.
-    #[error("the family would have {0} members; at most {1} are looked at")]
+    #[error("the family would have {0} members; at most {1} are examined")]
     TooManyMembers(f64, usize),
 }
 

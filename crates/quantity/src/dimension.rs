@@ -14,7 +14,7 @@ impl Exponents {
     /// The dimension of a pure number.
     pub const NONE: Exponents = Exponents([0; 5]);
 
-    /// Of the power `halves`/2; `None` where one of them would be no half.
+    /// Of the power `halves`/2; `None` where one of them would not be a multiple of one half.
     pub(crate) fn to_halves(self, halves: i8) -> Option<Exponents> {
         let mut exponents = [0; 5];
         for (power, exponent) in exponents.iter_mut().zip(self.0) {
@@ -52,7 +52,7 @@ impl Exponents {
     }
 }
 
-/// A kind of quantity: what it is called, its exponents, and the units it is shown in.
+/// A kind of quantity: its name, its exponents, and the units in which it is shown.
 #[derive(Debug)]
 pub struct Dimension {
     /// With its article, as it stands in "expected a pressure".

@@ -15,7 +15,7 @@ use super::exact::Whole;
 use super::unit::{self, Unit};
 use crate::spelling::nearest;
 
-/// What is wrong with a quantity, and where in its text.
+/// The error of a quantity, and where it is in its text.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{message}")]
 pub struct QuantityError {
@@ -55,7 +55,7 @@ const MAXIMUM_EXPONENT: i32 = 16;
 /// key's business.
 ///
 /// # Errors
-/// [`QuantityError`] for text that is no quantity, an unknown unit, another dimension, a missing
+/// [`QuantityError`] for text that is not a quantity, an unknown unit, another dimension, a missing
 /// unit, or a number that f64 cannot hold.
 ///
 /// # Example

@@ -1,4 +1,5 @@
-//! Quantities as regular expressions, for schemas that editors check a file with as it is written.
+//! Quantities as regular expressions, for schemas with which editors check a file while it is
+//! edited.
 
 use super::dimension::{Dimension, Exponents, GAIN};
 use super::parse::accepts;
@@ -9,8 +10,8 @@ const NUMBER: &str = r"[+-]?(?:[0-9]+(?:\.[0-9]+)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?
 /// An exponent of any size.
 const EXPONENT: &str = r"(?:\^?-?[0-9]*\.?[0-9]+|[²³])?";
 
-/// Matches every text that [`parse`](super::parse()) accepts for this dimension and whose unit is one name with an exponent, or no unit.
-/// A unit of another dimension is not matched.
+/// Matches every text that [`parse`](super::parse()) accepts for this dimension and whose unit is
+/// one name with an exponent, or no unit. A unit of another dimension is not matched.
 ///
 /// The syntax is what ECMA-262, Python and the crate `regex` have in common.
 ///
@@ -29,7 +30,8 @@ pub fn single_unit_pattern(dimension: &Dimension) -> String {
     format!(r"^\s*{NUMBER}\s*(?:{}){needed}\s*$", units.join("|"))
 }
 
-/// Matches every number with a product of units, or with a unit in parentheses, whatever its dimension.
+/// Matches every number with a product of units, or with a unit in parentheses, whatever its
+/// dimension.
 pub fn compound_unit_pattern() -> String {
     let names: Vec<String> = unit::all().map(names).collect();
     let named = format!("(?:(?:{}){EXPONENT}|1)", names.join("|"));
@@ -49,7 +51,8 @@ pub fn any_quantity_pattern() -> String {
     format!(r"^\s*(?:{NUMBER}|[+-]?inf\s*$)")
 }
 
-/// The names of a unit with the exponent that makes it one of the dimension; `None` where no exponent does.
+/// The names of a unit with the exponent that makes it one of the dimension; `None` where no
+/// exponent does.
 fn power_of(unit: &Unit, dimension: &Dimension) -> Option<String> {
     if unit.exponents == Exponents::NONE {
         let free = format!("{}{EXPONENT}", names(unit));
@@ -65,7 +68,7 @@ fn power_of(unit: &Unit, dimension: &Dimension) -> Option<String> {
     Some(format!("{}(?:{exponents})", names(unit)))
 }
 
-/// An exponent of so many halves; that of 1 may be absent.
+/// An exponent of this number of halves; 1 may be omitted.
 fn exponent(halves: i8) -> String {
     let sign = if halves < 0 { "-" } else { "" };
     let (whole, half) = (halves.unsigned_abs() / 2, halves % 2 != 0);

@@ -4,8 +4,8 @@ use super::dimension::Dimension;
 use super::display_unit::DisplayUnit;
 use super::parse::parse;
 
-/// The shortest TOML text that reads back as exactly `value`: `"70 bar"` with its quotes where an
-/// engineering unit can say it, a bare SI number where none can.
+/// The shortest TOML text that reads back as exactly `value`: `"70 bar"` with its quotes if an
+/// engineering unit can express it, otherwise a bare SI number.
 ///
 /// # Example
 /// ```
@@ -46,7 +46,7 @@ pub fn display(value: f64, dimension: &Dimension, significant_digits: usize) -> 
     }
 }
 
-/// The unit that people expect of such a value, for several numbers in one unit.
+/// The unit that people expect for such a value, for several numbers in one unit.
 ///
 /// # Example
 /// ```

@@ -2,9 +2,9 @@
 
 /// The candidate a reader most likely meant, or none if every one is far off.
 ///
-/// Equal but for case wins; otherwise the fewest insertions, deletions, substitutions and swaps of
-/// neighbours, at most a third of the name's length (one for two or three characters, two from four
-/// on). Ties go to the earlier one. Another word for a candidate is taken for it.
+/// A name that differs only in case wins; otherwise the fewest insertions, deletions, substitutions
+/// and swaps of neighbours, at most a third of the name's length (one for two or three characters,
+/// two from four on). Ties go to the earlier one. Another word for a candidate is taken for it.
 ///
 /// # Example
 /// ```
@@ -39,10 +39,10 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
     best.map(|(_, candidate)| candidate)
 }
 
-/// Words for what is called otherwise here.
+/// Synonyms of names.
 const OTHER_WORDS: [(&str, &str); 2] = [("gauss", "normal"), ("gaussian", "normal")];
 
-/// More candidates are not looked at.
+/// Largest number of candidates that are compared.
 const MAXIMUM_CANDIDATES: usize = 1000;
 /// Longer names are compared by their beginning only.
 const MAXIMUM_LENGTH: usize = 64;

@@ -15,7 +15,8 @@ fn check(text: &str, dimension: &Dimension, expected: f64) {
 
 #[test]
 fn units_are_exact() {
-    // ORIGIN: analytic, from the definitions 1 in = 25.4 mm, 1 lb = 0.45359237 kg, g = 9.80665 m/s2, 1 gal = 231 in3.
+    // ORIGIN: analytic, from the definitions 1 in = 25.4 mm, 1 lb = 0.45359237 kg, g = 9.80665
+    // m/s2, 1 gal = 231 in3.
     check("70 bar", &PRESSURE, 70e5);
     check("12.7 mm", &LENGTH, 0.0127);
     check("0.5 in", &LENGTH, 0.0127);

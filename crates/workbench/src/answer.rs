@@ -1,7 +1,7 @@
 //! What a command answers: a text for people, one JSON object for programs, and files.
 //!
-//! Each command has one typed output; this module gives them all the same envelope, the same treatment of numbers that
-//! do not exist.
+//! Each command has one typed output; this module gives all of them the same envelope and the same
+//! treatment of numbers that do not exist.
 
 mod csv;
 mod number;
@@ -24,7 +24,7 @@ use crate::project::Loaded;
 /// Version of the JSON layout.
 pub(crate) const SCHEMA: u32 = 1;
 
-/// What a command has to say, ready to be printed and written by a shell.
+/// The answer of a command, ready to be printed and written by a shell.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Answer {
     /// Tables and short sentences for people.
@@ -37,7 +37,7 @@ pub struct Answer {
     pub affirmative: bool,
 }
 
-/// What every JSON object carries beside the command's own keys.
+/// The keys of every JSON object in addition to those of the command.
 #[derive(Clone, Debug, Serialize)]
 struct Envelope<'a, Body> {
     schema: u32,

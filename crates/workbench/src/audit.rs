@@ -1,4 +1,4 @@
-//! What is told of `audit`: text, JSON, files and figures.
+//! The output of `audit`: text, JSON, files and figures.
 
 mod answer;
 mod certificate;

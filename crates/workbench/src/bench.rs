@@ -1,4 +1,4 @@
-//! What is told of `bench`: text, JSON and tables.
+//! The output of `bench`: text, JSON and tables.
 
 mod answer;
 mod document;

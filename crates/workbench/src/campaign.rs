@@ -1,4 +1,4 @@
-//! What is told of `campaign`: text, JSON, files and figures.
+//! The output of `campaign`: text, JSON, files and figures.
 
 mod answer;
 mod document;

@@ -1,4 +1,4 @@
-//! The commands on a project: what is asked, and the answer that a shell prints and writes.
+//! The commands on a project: requests, and the answers that a shell prints and writes.
 
 mod campaign;
 mod identify;
@@ -44,7 +44,7 @@ use crate::trial::{Agreement, tried};
 use linearize::{linearize_answer, swept_answer};
 use simulate::simulate_answer;
 
-/// What is asked of a project.
+/// A request on a project.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Request {
     /// Every derived quantity.
@@ -58,7 +58,7 @@ pub enum Request {
     },
     /// Linear models.
     Linearize,
-    /// The same while a number of the project goes from one end to another.
+    /// The same over a range of one number of the project.
     LinearizeSwept(SweepRequest),
     /// The audit of the given controller.
     Verify,
@@ -76,18 +76,18 @@ pub enum Request {
         /// The changes.
         changes: Vec<RequestedChange>,
     },
-    /// A controller that keeps to the specifications.
+    /// A controller that satisfies the specifications.
     Design {
         /// In place of the project's.
         seed: Option<u32>,
-        /// Whether every stage is wanted as files, and not the designed project alone.
+        /// Whether every stage is wanted as files, and not only the designed project.
         stages: bool,
-        /// Whether it goes on where the machine contradicts it.
+        /// Whether the design continues if the machine contradicts it.
         repair: bool,
     },
     /// The nonlinear machine through every scenario, its tables as text.
     Simulate,
-    /// The same with the files that are asked for, or the machine's frequency response.
+    /// The same with the requested files, or the machine's frequency response.
     SimulateAs(SimulateRequest),
     /// The same scenarios of this project and others side by side.
     Compare,
@@ -120,7 +120,7 @@ impl Request {
     }
 }
 
-/// Why a sound project has no answer.
+/// Why a valid project has no answer.
 #[derive(Debug, thiserror::Error)]
 pub enum CommandError {
     /// A procedure has no result.
@@ -129,7 +129,7 @@ pub enum CommandError {
     /// A figure cannot be drawn.
     #[error("a figure: {0}")]
     Figure(FigureError),
-    /// A plant that is no actuator, and nothing demanded of it.
+    /// A plant that is not an actuator, without specifications.
     #[error(
         "a report on a [plant] needs at least one [[specification]]; one on a rig needs [valve], [cylinder] and [line]"
     )]
@@ -145,7 +145,7 @@ pub enum CommandError {
 }
 
 impl CommandError {
-    /// The findings, where files that the project names were refused with a place for each.
+    /// The findings, if files that the project names were rejected, with a place for each.
     pub fn refusal(&self) -> Option<&Refusal> {
         match self {
             CommandError::Procedure(error) => error.refusal(),
@@ -154,7 +154,7 @@ impl CommandError {
         }
     }
 
-    /// Whether a file could not be written or read back: nothing is wrong with what was asked.
+    /// Whether a file could not be written or read back, although the request was valid.
     pub fn is_of_files(&self) -> bool {
         matches!(self, CommandError::Procedure(error) if error.is_of_files())
     }
@@ -171,7 +171,8 @@ pub use phea_dynamics::watch::{Progress, Watch};
 /// Answers a request on a project; `catalogues` are the user's files and folders.
 ///
 /// # Errors
-/// [`CommandError`] if the project does not hold what the command needs, or something in it cannot be computed.
+/// [`CommandError`] if the project lacks something that the command needs, or something in it
+/// cannot be computed.
 pub fn answer(
     source: &dyn Source,
     loaded: &Loaded,
@@ -269,14 +270,15 @@ fn check(source: &dyn Source, loaded: &Loaded) -> Result<Answer, CommandError> {
     Ok(Answer { text, json, files, affirmative: true })
 }
 
-/// What no verdict on the linear loop counts, and what of the rig lies outside of its own family.
+/// Effects that no verdict on the linear loop includes, and parameters of the rig outside its own
+/// family.
 fn told_first(setup: &Setup<'_>) -> Vec<String> {
     let outside = outside(setup)
         .map(|(_, words)| format!("the family does not contain the rig as it is derived ({words})"));
     outside.into_iter().chain(caveats(setup).into_iter().map(|caveat| caveat.sentence)).collect()
 }
 
-/// The family is all that a project without an actuator has: it must be one.
+/// A project without an actuator has only its family, which must be valid.
 fn without_derived(source: &dyn Source, setup: &Setup<'_>) -> Result<&'static str, CommandError> {
     Ok(match family(setup, source)? {
         Family::Measured(_) => "Its plants were measured, and nothing is derived from them.",
@@ -304,7 +306,7 @@ fn question(gain: Option<&str>, length: Option<&str>) -> Result<Question, Comman
     })
 }
 
-/// What is wrong with a quantity, and what would be right.
+/// The error of a quantity, and what is expected.
 fn error_words(error: &quantity::QuantityError, dimension: &quantity::Dimension) -> String {
     let help = error.help.as_ref().map_or(String::new(), |help| format!("; {help}"));
     format!("{error}; write {}, such as {}{help}", dimension.name, dimension.examples)
@@ -383,7 +385,8 @@ fn design_answer(
     })
 }
 
-/// The same scenarios of several projects side by side, with `figures` as files, telling its progress. The answer is yes if every one ran to its end.
+/// The same scenarios of several projects side by side, with `figures` as files, reporting
+/// progress. The answer is yes if every run was completed.
 ///
 /// # Errors
 /// [`CommandError`] if a project cannot be simulated.

@@ -1,4 +1,4 @@
-//! What is told of `derived`: text, JSON, files and figures.
+//! The output of `check`: text, JSON, files and figures.
 
 mod answer;
 mod document;

@@ -1,4 +1,4 @@
-//! What is told of `design`: text, JSON, files and figures.
+//! The output of `design`: text, JSON, files and figures.
 
 mod answer;
 mod document;

@@ -1,5 +1,5 @@
-//! What a result says, once for everybody who reads it: headings, sentences, tables of typed cells, figures. A procedure builds the tree,
-//! the terminal and the page print it.
+//! A result, written once for all readers: headings, sentences, tables of typed cells, figures. A
+//! procedure builds the tree; the terminal and the page print it.
 
 mod cell;
 mod page;
@@ -21,20 +21,21 @@ pub(crate) struct Document {
     blocks: Vec<Block>,
 }
 
-/// One part of a document. In every text, words such as `K_H` are symbols, and what stands between back ticks is code.
+/// One part of a document. In every text, words such as `K_H` are symbols, and text between
+/// backticks is code.
 #[derive(Clone, Debug)]
 enum Block {
     /// Begins a section.
     Heading(String),
-    /// The same where a terminal has room for an empty line alone.
+    /// The same, for which a terminal prints only an empty line.
     HeadingOnPage(String),
     /// Above figures.
     HeadingOfFigures(String),
-    /// Begins a section with what came of it; the sentences say why.
+    /// Begins a section with its result; the sentences give the reasons.
     Verdict { mark: StatusMark, title: String, sentences: Vec<String> },
-    /// What only a reader of the page has the time for.
+    /// Explanations only for readers of the page.
     Explanation(String),
-    /// A sentence each, those that decide with a mark.
+    /// A sentence each, the decisive ones with a mark.
     Sentences(Vec<(Option<StatusMark>, String)>),
     /// One in each line.
     Equations(Vec<String>),
@@ -42,7 +43,7 @@ enum Block {
     Table(Table),
     /// On the page alone.
     Figure(Box<Figure>),
-    /// What the page shows where it is asked for.
+    /// Details that the page shows on request.
     Folded(String, Table),
     /// Lines as they are.
     Preformatted(String),
@@ -54,12 +55,12 @@ impl Document {
         self.blocks.push(Block::Heading(title.into()));
     }
 
-    /// Begins a section that a terminal sets off by an empty line alone.
+    /// Begins a section that a terminal separates only by an empty line.
     pub(crate) fn heading_on_page(&mut self, title: impl Into<String>) {
         self.blocks.push(Block::HeadingOnPage(title.into()));
     }
 
-    /// Begins a section with what came of it.
+    /// Begins a section with its result.
     pub(crate) fn verdict(&mut self, mark: StatusMark, title: impl Into<String>, sentences: Vec<String>) {
         self.blocks.push(Block::Verdict { mark, title: title.into(), sentences });
     }
@@ -102,7 +103,7 @@ impl Document {
         self.blocks.extend(tables.into_iter().filter(|table| !table.is_empty()).map(Block::Table));
     }
 
-    /// A table below its heading; nothing where it has no rows.
+    /// A table below its heading; omitted if it has no rows.
     pub(crate) fn section(&mut self, title: impl Into<String>, table: Table) {
         if !table.is_empty() {
             self.heading(title);
@@ -110,7 +111,7 @@ impl Document {
         }
     }
 
-    /// A table that the page shows where it is asked for.
+    /// A table that the page shows on request.
     pub(crate) fn folded(&mut self, summary: impl Into<String>, table: Table) {
         self.blocks.push(Block::Folded(summary.into(), table));
     }
@@ -133,7 +134,7 @@ impl Document {
         self.blocks.push(Block::Preformatted(text.into()));
     }
 
-    /// What another document says, behind this one.
+    /// Appends another document.
     pub(crate) fn append(&mut self, other: Document) {
         self.blocks.extend(other.blocks);
     }

@@ -1,4 +1,4 @@
-//! What is told of `identify`: text, JSON and the fragment of a project file.
+//! The output of `identify`: text, JSON and the fragment of a project file.
 
 mod answer;
 mod document;

@@ -1,4 +1,5 @@
-//! What an engineer is told: commands on a project, with the text, JSON, files and figures of their answers, and the report.
+//! The output for the engineer: commands on a project, with the text, JSON, files and figures of
+//! their answers, and the report.
 //!
 //! A shell hands in text and bytes through [`source::Source`] and prints what an [`answer::Answer`] holds.
 

@@ -1,4 +1,4 @@
-//! What is told of `linearize`: text, JSON, files and figures.
+//! The output of `linearize`: text, JSON, files and figures.
 
 mod answer;
 mod document;

@@ -1,4 +1,4 @@
-//! The report: everything this workbench can say of a rig, as one page that needs nothing else.
+//! The report: all results for a rig, as one self-contained page.
 
 mod audit;
 mod bounds;
@@ -61,22 +61,24 @@ pub struct Report {
     pub figures: Vec<Figure>,
     /// Its data as tables for other programs.
     pub tables: Vec<OutputFile>,
-    /// What it says in a few numbers.
+    /// Its content in a few numbers.
     pub summary: Vec<(&'static str, String)>,
     /// What its first page says.
     pub decision: Decision,
 }
 
-/// The fact on the linear step, which the first page tells of the machine instead.
+/// The fact on the linear step, which the first page states for the machine instead.
 const NOMINAL_LOOP: &str = "Nominal linear loop";
 
 /// Band of the settling time where no scenario states one, percent.
 const SETTLING_BAND: f64 = 1.0;
 
-/// The report of a project: the page that decides, then rig, sizing, simulation, campaign, specifications, audit and design; in the appendix derived
-/// quantities, stiffness, linear models, impedance, the linear step, what happens inside the machine, its sensitivity, templates and bounds,
-/// provenance. Of a plant given as a transfer function, the robust part of it. Where the project has `[design]`, or gives no controller, one is
-/// designed, and everything is shown of both.
+/// The report of a project: the page that decides, then rig, sizing, simulation, campaign,
+/// specifications, audit and design; in the appendix derived quantities, stiffness, linear models,
+/// impedance, the linear step, what happens inside the machine, its sensitivity, templates and
+/// bounds, provenance. For a plant given as a transfer function, only the robust part. If the
+/// project has `[design]`, or gives no controller, one is designed, and everything is shown for
+/// both.
 ///
 /// # Errors
 /// [`CommandError`] if there is nothing to report on or something in it cannot be computed.
@@ -144,10 +146,11 @@ pub fn report(
     Ok(Report { html, figures, tables, summary: facts, decision })
 }
 
-/// What the report says in a few numbers: name and text.
+/// The report in a few numbers: name and text.
 type Facts = Vec<(&'static str, String)>;
 
-/// Nichols charts: the one that decides, and the one of the given loop alone where that is another.
+/// Nichols charts: the one of the first page, and the one of the given loop alone if it is
+/// different.
 #[derive(Default)]
 struct Charts {
     opening: Option<Figure>,
@@ -203,7 +206,7 @@ fn verdict_facts(judged: &Judged) -> Facts {
     facts
 }
 
-/// What is said of an actuator, whatever its controller does.
+/// The chapters on an actuator, independent of its controller.
 struct RigPart {
     chapters: Vec<Chapter>,
     appendix: Vec<Chapter>,
@@ -264,7 +267,7 @@ impl Report {
     /// The page and every figure as SVG and PNG.
     ///
     /// # Errors
-    /// A figure that the rasteriser refuses.
+    /// A figure that the rasteriser rejects.
     pub fn files(&self) -> Result<Vec<OutputFile>, FigureError> {
         let mut files = vec![self.page_file()];
         files.extend(self.tables.iter().cloned());

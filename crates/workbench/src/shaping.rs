@@ -1,4 +1,4 @@
-//! What is told of `shaping`: text, JSON, files and figures.
+//! The output of `shape`: text, JSON, files and figures.
 
 mod answer;
 mod text;

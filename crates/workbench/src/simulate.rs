@@ -1,4 +1,4 @@
-//! What is told of `simulate`: text, JSON, files and figures.
+//! The output of `simulate`: text, JSON, files and figures.
 
 mod answer;
 mod check;

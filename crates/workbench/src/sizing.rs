@@ -1,4 +1,4 @@
-//! What is told of `sizing`: text, JSON, files and figures.
+//! The output of `size`: text, JSON, files and figures.
 
 mod answer;
 mod document;

@@ -1,4 +1,4 @@
-//! What is told of `specification`: text, JSON, files and figures.
+//! The output on specifications: text and JSON.
 
 mod answer;
 

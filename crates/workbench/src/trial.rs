@@ -1,4 +1,4 @@
-//! What is told of `trial`: text, JSON, files and figures.
+//! The output of trials: text, JSON, files and figures.
 
 mod answer;
 mod document;

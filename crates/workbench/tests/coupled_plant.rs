@@ -108,7 +108,7 @@ fn what_is_not_counted_is_told_first() {
     for (settings, key) in [
         (
             &["supply.model=pump_limited", "supply.flow=0.5 L/min"][..],
-            "supply.model = \"pump_limited\" does not rest at the operating point, where the valve takes",
+            "supply.model = \"pump_limited\" has no equilibrium at the operating point, where the valve takes",
         ),
         (
             &[
@@ -118,7 +118,7 @@ fn what_is_not_counted_is_told_first() {
                 "load.relative_damping=0.1",
                 "load.gap=0.001",
             ],
-            "load.model = \"wall\" is not counted without load.mass: this is the loop with a load that does not yield",
+            "load.model = \"wall\" is not included without load.mass: this is the loop with a load that does not move",
         ),
     ] {
         let view = audited(&satisfied(settings));
@@ -156,7 +156,7 @@ fn a_limited_pump_is_counted() {
     let view = audited(&satisfied(&["supply.model=pump_limited"]));
     assert_eq!(view.audit.verdict, Verdict::Met);
     let told = view.caveats.iter().find(|caveat| caveat.sentence.contains("supply.model")).unwrap();
-    assert!(told.sentence.contains("is counted as small motions see it") && !told.unproven, "{told:?}");
+    assert!(told.sentence.contains("is included for small motions") && !told.unproven, "{told:?}");
     let rig = Setup::rig_of(&loaded(HOSE, &["supply.model=pump_limited"])).unwrap();
     let found = rig.supply.unwrap();
     // what the pump gives above what is taken goes through a relief valve that opens over 5 bar

@@ -121,7 +121,7 @@ fn people_read_the_status_first_and_the_law_as_it_is_pasted() {
     let (_, loaded, view) = view(&PROJECT.replace("TIMING\n", ""), infeasible());
     let text = text(&loaded, &view).unwrap();
     assert!(
-        text.starts_with("Design: infeasible: no controller that was tried, of order 4 at most, "),
+        text.starts_with("Design: infeasible: none of the controllers tried, of order 4 at most, "),
         "{text}"
     );
     for words in [

@@ -169,7 +169,7 @@ fn every_chapter_is_there() {
         "Stiffness over the stroke",
         "Sizing of the hose",
         "models",
-        "What the load feels",
+        "The impedance at the load",
         "Step response",
         "Specifications",
         "Provenance and assumptions",

@@ -199,7 +199,7 @@ fn where_there_is_no_rest_it_is_said_why() {
     let text = still(BENCHMARK, "reference = [{ at = 0, force = \"50 kN\" }]");
     let error = run(&text, &[]).unwrap_err();
     assert!(matches!(error, SimulateError::NoRest { .. }), "{error}");
-    assert!(error.to_string().contains("does not rest at its reference of 50 kN"), "{error}");
+    assert!(error.to_string().contains("has no equilibrium at its reference of 50 kN"), "{error}");
     // a command beyond what the controller may give
     let limited = settings(&["controller.saturation=1 mV"]);
     let error = run(&asymmetric(&still(EXAMPLES[1], "")), &limited).unwrap_err();

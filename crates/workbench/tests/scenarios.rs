@@ -172,7 +172,7 @@ fn a_command_played_back_gives_the_force_it_was_recorded_with() {
     let (window, metrics) = &open.windows[0];
     assert_eq!(window.cause, Cause::CommandMotion { kind: "file" });
     assert!(open.record.reference_n.is_empty() && open.record.filtered_reference_n.is_empty());
-    assert_eq!(metrics.overshoot_percent, Err("open loop: no force is asked for"));
+    assert_eq!(metrics.overshoot_percent, Err("open loop: there is no reference"));
     let largest = open.record.signal("force_n").into_iter().map(f64::abs).fold(0.0, f64::max);
     let found = metrics.force_peak_n.unwrap();
     assert!(found >= largest && found < 1.001 * largest, "{found} {largest}");
@@ -356,7 +356,7 @@ fn a_state_is_refused_where_it_does_not_fit_and_not_written_where_it_would_not_b
         run_with(&change(rig(&first)), &Memory::default()).end.unwrap_err()
     };
     let delayed = |text: String| text.replace("saturation", "delay = \"0.5 ms\"\nsaturation");
-    assert_eq!(unsaved(&delayed), "what is under way in a delay or along a line is no state");
+    assert_eq!(unsaved(&delayed), "what is in transit in a delay or along a line is not a state");
     let slow = |text: String| text.replace("saturation", "sample_time = \"3 ms\"\nsaturation");
     assert_eq!(unsaved(&slow), "it ends between two samples of the controller");
     let late =

@@ -368,7 +368,7 @@ fn a_long_scenario_says_how_often_it_was_looked_at() {
         let json: Value = serde_json::from_str(&answer.json).unwrap();
         let found = json["scenarios"][0]["look_s"].as_f64().unwrap();
         assert!((found / look_s - 1.0).abs() < 1e-9, "{found}");
-        assert_eq!(answer.text.contains("is drawn from looks every 5.00 ms only"), told, "{}", answer.text);
+        assert_eq!(answer.text.contains("is drawn from samples every 5.00 ms only"), told, "{}", answer.text);
     }
 }
 

@@ -1,4 +1,5 @@
-//! Comparisons with other tools and recomputed numbers, in Python, in a virtual environment of their own.
+//! Comparisons with other tools and recomputed numbers, in Python, in a virtual environment of
+//! their own.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -16,9 +17,9 @@ const REQUIREMENTS: &str = "comparisons/requirements.txt";
 /// Each script that failed, or why none could be run.
 type Compared = Result<Vec<String>, String>;
 
-/// Scripts that go on beside the other stages.
+/// Scripts that run in parallel with the other stages.
 pub(super) struct Begun {
-    /// What they print, and what came of them.
+    /// Their output, and their results.
     running: JoinHandle<(String, Compared)>,
     /// Hears that phea is built.
     waiting: Option<Sender<()>>,
@@ -28,19 +29,20 @@ impl Begun {
     /// phea is built: the scripts that ask it may run.
     pub(super) fn ask_phea(&mut self) {
         if let Some(waiting) = self.waiting.take() {
-            // Where nobody listens any more, the end of the stage tells why.
+            // If the receiver is gone, the end of the stage shows why.
             waiting.send(()).ok();
         }
     }
 }
 
-/// Makes the environment, runs every comparison and every script that a golden number names as its origin.
+/// Makes the environment, runs every comparison and every script that a golden number names as its
+/// origin.
 pub(super) fn run(root: &Path) -> Outcome {
     end(root, begin(root))
 }
 
-/// Begins with the scripts that ask nothing of phea, and goes on with the others once [`Begun::ask_phea`] is called; their output is
-/// kept until the end.
+/// Begins with the scripts that do not call phea, and continues with the others once
+/// [`Begun::ask_phea`] is called; their output is kept until the end.
 pub(super) fn begin(root: &Path) -> Begun {
     let root = root.to_path_buf();
     let (waiting, built) = channel();
@@ -52,7 +54,7 @@ pub(super) fn begin(root: &Path) -> Begun {
     Begun { running, waiting: Some(waiting) }
 }
 
-/// Waits for what was begun, phea being built first where no other stage did.
+/// Waits for the running scripts; phea is built first if no other stage did so.
 pub(super) fn end(root: &Path, mut begun: Begun) -> Outcome {
     let built = if begun.waiting.is_some() { build(root) } else { Outcome::Passed };
     if matches!(built, Outcome::Passed) {
@@ -123,7 +125,8 @@ fn quietly(root: &Path, told: &mut String, program: &str, arguments: &[&str]) ->
     ended
 }
 
-/// `comparisons/compare_*.py`, `book/recompute_*.py` and the scripts named in `ORIGIN: recomputed by PATH`.
+/// `comparisons/compare_*.py`, `book/recompute_*.py` and the scripts named in
+/// `ORIGIN: recomputed by PATH`.
 fn scripts(repository: &Repository) -> Vec<String> {
     let comparison = |path: &str| {
         (path.starts_with(COMPARE) || path.starts_with("book/recompute_")) && path.ends_with(".py")

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::sync::{Mutex, PoisonError};
 
-/// Sees to it that `cargo SUBCOMMAND` works; says what is missing where it cannot.
+/// Ensures that `cargo SUBCOMMAND` works; states what is missing if it cannot.
 pub(super) fn component(name: &str, subcommand: &str) -> Result<(), String> {
     let works = || quietly("cargo", &[subcommand, "--version"]);
     if works() || (quietly("rustup", &["component", "add", name]) && works()) {
@@ -13,8 +13,9 @@ pub(super) fn component(name: &str, subcommand: &str) -> Result<(), String> {
     Err(format!("`cargo {subcommand}` is missing and `rustup component add {name}` did not bring it"))
 }
 
-/// With which other commands of cargo take what `cargo clippy -- -D warnings` read for their own, instead of reading all crates of
-/// the workspace once more; none where clippy's compiler does not lie beside the other.
+/// With which other commands of cargo take what `cargo clippy -- -D warnings` read for their own,
+/// instead of reading all crates of the workspace once more; none where clippy's compiler does not
+/// lie beside the other.
 pub(super) fn clippy_variables() -> Vec<(&'static str, String)> {
     let printed = Command::new("rustc").args(["--print", "sysroot"]).output();
     let Ok(printed) = printed else { return Vec::new() };
@@ -26,7 +27,8 @@ pub(super) fn clippy_variables() -> Vec<(&'static str, String)> {
     vec![("RUSTC_WORKSPACE_WRAPPER", driver.to_string_lossy().into_owned()), ("CLIPPY_ARGS", arguments)]
 }
 
-/// Sees to it that the standard library for this target is there; says what is missing where it cannot.
+/// Ensures that the standard library for this target is installed; states what is missing if it
+/// cannot.
 pub(super) fn target(name: &str) -> Result<(), String> {
     if is_target_there(name) || (quietly("rustup", &["target", "add", name]) && is_target_there(name)) {
         return Ok(());
@@ -34,7 +36,8 @@ pub(super) fn target(name: &str) -> Result<(), String> {
     Err(format!("the target {name} is missing and `rustup target add {name}` did not bring it"))
 }
 
-/// Sees to it that SUNDIALS can be linked against; says what is missing where it cannot. Root of a Debian may install it.
+/// Ensures that SUNDIALS can be linked; states what is missing if it cannot. It is installed if the
+/// user is root on Debian.
 pub(super) fn sundials() -> Result<(), String> {
     // Asked for by two stages at once, it is installed once.
     static ASKED: Mutex<()> = Mutex::new(());

@@ -1,7 +1,7 @@
 //! Every number in the built-in catalogue has a source, and every file of it is built in.
 //!
-//! A file in `crates/project/catalogue/` describes one product and is called after it. `source` holds for every
-//! number of the file, `[sources]` for single ones.
+//! A file in `crates/project/catalogue/` describes one product and is called after it. `source`
+//! holds for every number of the file, `[sources]` for single ones.
 
 use super::Violation;
 use crate::repository::Repository;

@@ -1,5 +1,5 @@
-//! Equation numbers of the thesis as comments cite them: "thesis (6.20)", "thesis 6.1 to 6.4", "Ledezma (2019),
-//! equation 6.12".
+//! Equation numbers of the thesis as comments cite them: "thesis (6.20)", "thesis 6.1 to 6.4",
+//! "Ledezma (2019), equation 6.12".
 
 /// Chapter and number.
 pub(super) type Equation = (u32, u32);

@@ -12,7 +12,8 @@ use std::collections::BTreeSet;
 use super::Violation;
 use crate::repository::Repository;
 
-/// The packages by their folder, those outside the workspace too, and those of ours that each may use.
+/// The packages by their folder, those outside the workspace too, and those of ours that each may
+/// use.
 const ALLOWED: &[(&str, &[&str])] = &[
     ("crates/dynamics", &[]),
     ("crates/hydraulics", &["phea-dynamics"]),
@@ -48,7 +49,8 @@ const ALLOWED: &[(&str, &[&str])] = &[
 pub(super) const LOWER_CRATES: [&str; 5] =
     ["crates/dynamics/", "crates/hydraulics/", "crates/machine/", "crates/qft/", "crates/quantity/"];
 
-/// What a crate that only computes has no use for: files formats, clocks, threads, unseeded random numbers.
+/// What a crate that only computes has no use for: files formats, clocks, threads, unseeded random
+/// numbers.
 const FOREIGN_TO_LOWER_CRATES: [&str; 10] =
     ["serde", "serde_json", "toml", "clap", "rand", "getrandom", "rayon", "chrono", "time", "tempfile"];
 
@@ -81,7 +83,8 @@ fn check_manifest(path: &str, text: &str) -> Vec<Violation> {
         .collect()
 }
 
-/// The packages named in `[dependencies]`, `[dev-dependencies]`, `[build-dependencies]`, also below `[target]`.
+/// The packages named in `[dependencies]`, `[dev-dependencies]`, `[build-dependencies]`, also below
+/// `[target]`.
 fn collect_dependencies(table: &toml::Table, used: &mut BTreeSet<String>) {
     for (key, value) in table {
         let Some(inner) = value.as_table() else { continue };

@@ -1,5 +1,5 @@
-//! Every equation of the thesis that the code cites stands in the book's index of equations, what the index says
-//! implements it exists, and the file that it names holds the equation as a formula.
+//! Every equation of the thesis that the code cites stands in the book's index of equations, what
+//! the index says implements it exists, and the file that it names holds the equation as a formula.
 
 use std::collections::BTreeSet;
 

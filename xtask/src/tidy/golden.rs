@@ -1,8 +1,8 @@
 //! A golden number names its origin.
 //!
-//! A test, and a function, constant or static in a `tests` folder, carries a comment `ORIGIN: ...`, inside or
-//! directly above, if an assertion in it names a number of four significant digits or more; in files called
-//! `golden*.rs`, if any number in it has so many.
+//! A test, and a function, constant or static in a `tests` folder, carries a comment `ORIGIN: ...`,
+//! inside or directly above, if an assertion in it names a number of four significant digits or
+//! more; in files called `golden*.rs`, if any number in it has so many.
 
 use proc_macro2::{Span, TokenStream, TokenTree};
 use syn::spanned::Spanned;
@@ -81,7 +81,8 @@ fn with_comments_above(text: &str, span: Span) -> String {
     lines[start..end].join("\n")
 }
 
-/// Whether a number of four digits or more stands among the tokens: anywhere, or in an assertion only.
+/// Whether a number of four digits or more stands among the tokens: anywhere, or in an assertion
+/// only.
 fn has_golden_number(tokens: TokenStream, anywhere: bool) -> bool {
     let mut word = String::new();
     tokens.into_iter().any(|token| match token {
@@ -100,7 +101,8 @@ fn has_golden_number(tokens: TokenStream, anywhere: bool) -> bool {
     })
 }
 
-/// Significant digits of a floating-point literal; trailing zeros of a whole number count for nothing.
+/// Significant digits of a floating-point literal; trailing zeros of a whole number count for
+/// nothing.
 fn significant_digits(literal: &str) -> usize {
     let number = literal.replace('_', "");
     if number.parse::<f64>().is_err() || !number.contains(['.', 'e']) {

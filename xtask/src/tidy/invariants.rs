@@ -1,5 +1,5 @@
-//! Every invariant of ARCHITECTURE.md names what enforces it, and that exists: a tidy check, a stage of the test
-//! command, or a test.
+//! Every invariant of ARCHITECTURE.md names what enforces it, and that exists: a tidy check, a
+//! stage of the test command, or a test.
 
 use super::links::{code_spans, prose_lines};
 use super::{CHECKS, Violation};

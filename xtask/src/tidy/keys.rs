@@ -1,7 +1,7 @@
 //! The guide describes every key of the project file, and no key that there is not.
 //!
-//! A key is declared in `crates/project/src/` by `key("name", ...)`, `plain("name", ...)`, `part("name",
-//! ...)` or `visit("name", ...)`; the words of a choice are pairs `("word", Value)`.
+//! A key is declared in `crates/project/src/` by `key("name", ...)`, `plain("name", ...)`,
+//! `part("name", ...)` or `visit("name", ...)`; the words of a choice are pairs `("word", Value)`.
 
 use std::collections::BTreeSet;
 
@@ -14,7 +14,8 @@ use crate::repository::Repository;
 
 const GUIDE: &str = "book/src/guide/project_file.md";
 const DECLARATIONS: &str = "crates/project/src/";
-/// There are tables declared, which the guide has as headings, what a catalogue file alone has, and words of JSON Schema.
+/// There are tables declared, which the guide has as headings, what a catalogue file alone has, and
+/// words of JSON Schema.
 const NO_KEYS: [&str; 3] =
     ["crates/project/src/lib.rs", "crates/project/src/catalogue/", "crates/project/src/schema"];
 

@@ -1,5 +1,5 @@
-//! One concept a file, named after it: `foo.rs` beside `foo/`, no drawer for leftovers. The tests of a package are one
-//! program, and no file of tests is left out of it.
+//! One concept a file, named after it: `foo.rs` beside `foo/`, no drawer for leftovers. The tests
+//! of a package are one program, and no file of tests is left out of it.
 
 use super::Violation;
 use crate::repository::Repository;

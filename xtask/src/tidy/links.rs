@@ -1,5 +1,5 @@
-//! Every path and link that a document names exists, in prose, in code spans and in the commands of console
-//! blocks.
+//! Every path and link that a document names exists, in prose, in code spans and in the commands of
+//! console blocks.
 
 use super::Violation;
 use crate::repository::Repository;
@@ -101,8 +101,8 @@ fn slug(heading: &str) -> String {
     kept.map(|c| if c == ' ' { '-' } else { c }).collect()
 }
 
-/// A code span that looks like a path of the repository must be one; `*` and capitals as in `NAME` stand for
-/// anything.
+/// A code span that looks like a path of the repository must be one; `*` and capitals as in `NAME`
+/// stand for anything.
 fn check_span(repository: &Repository, span: &str) -> bool {
     let looks_like_path = FOLDERS.iter().any(|folder| span.starts_with(folder)) && !span.contains(' ');
     let placeholder =

@@ -30,7 +30,8 @@ pub(super) fn check(repository: &Repository) -> Vec<Violation> {
     repeated.collect()
 }
 
-/// Types that a file defines outside of its tests; those of implementations and traits belong to these.
+/// Types that a file defines outside of its tests; those of implementations and traits belong to
+/// these.
 #[derive(Default)]
 struct Types {
     names: Vec<(String, Span)>,

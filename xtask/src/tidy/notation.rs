@@ -1,7 +1,8 @@
 //! NOTATION.md names what exists, and names every parameter of the actuator.
 //!
-//! In every table that has a column `identifier`, each code span of that column is a word of the code or
-//! `Type::member`. A parameter is named by its word, or by `Type::word` where the word alone would be ambiguous.
+//! In every table that has a column `identifier`, each code span of that column is a word of the
+//! code or `Type::member`. A parameter is named by its word, or by `Type::word` where the word
+//! alone would be ambiguous.
 
 use std::collections::{BTreeMap, BTreeSet};
 

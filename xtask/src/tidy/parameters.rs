@@ -1,6 +1,6 @@
-//! The parameters of the actuator: the public numbers of those types of `crates/hydraulics` that can be refused,
-//! because they have a method `problems` or are part of a type that has one. Somebody types these numbers and has
-//! to know what they mean.
+//! The parameters of the actuator: the public numbers of those types of `crates/hydraulics` that
+//! can be refused, because they have a method `problems` or are part of a type that has one.
+//! Somebody types these numbers and has to know what they mean.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,5 +1,5 @@
-//! The three lower crates compute and do nothing else: no file, clock, thread, environment, hashed iteration order
-//! or serialisation. No library crate opens a path: only shells do.
+//! The three lower crates compute and do nothing else: no file, clock, thread, environment, hashed
+//! iteration order or serialisation. No library crate opens a path: only shells do.
 
 use super::Violation;
 use super::dependencies::LOWER_CRATES;

@@ -1,4 +1,5 @@
-//! The project speaks of itself alone: nothing in it tells on which desk, or from which plan, it was written.
+//! The project speaks of itself alone: nothing in it tells on which desk, or from which plan, it
+//! was written.
 
 use super::Violation;
 use crate::repository::Repository;

@@ -19,7 +19,7 @@ use crate::interruption::Interruption;
 use crate::output::{Folder, unwritten, write};
 use crate::voice::ProgressLine;
 
-/// Longest time after which the disk is told to keep the rows.
+/// Longest time after which the rows are flushed to the disk.
 const KEEPING: Duration = Duration::from_secs(2);
 
 /// What is asked for.
@@ -73,7 +73,7 @@ pub(super) fn answered(common: &Common, asked: &CampaignRequest) -> Result<(Answ
     let answer = command::campaign_watched(&FileSystem, &loaded, catalogues, asked, into, &mut watch);
     line.clear();
     let answer = answer.map_err(|error| refused(&loaded, &request, &error))?;
-    // the table stays locked until everything beside it is written
+    // the table stays locked until all other files are written
     let mut written: Vec<PathBuf> = table.iter().map(|table| table.path.clone()).collect();
     written.extend(tables.map(Folder::into_begun).unwrap_or_default());
     if let Some(folder) = &common.out {
@@ -83,11 +83,12 @@ pub(super) fn answered(common: &Common, asked: &CampaignRequest) -> Result<(Answ
     Ok((answer, written))
 }
 
-/// A file that grows at its end, and that nobody else writes meanwhile: the system releases the lock with the process.
+/// A file that grows at its end and is locked meanwhile: the system releases the lock with the
+/// process.
 struct LockedTable {
     path: PathBuf,
     file: File,
-    /// Until when the disk was told to keep all of it.
+    /// When all of it was last flushed to the disk.
     kept: Instant,
 }
 
@@ -115,14 +116,14 @@ impl LockedTable {
         unwritten(&self.path, error)
     }
 
-    /// Where rows are that wait for one before them, beside the table.
+    /// The file, next to the table, with rows that wait for an earlier one.
     fn beside(&self) -> PathBuf {
         let mut name = self.path.clone().into_os_string();
         name.push(".ahead");
         name.into()
     }
 
-    /// Lets the disk keep all of it, and not the system's memory alone.
+    /// Flushes all of it to the disk.
     fn keep(&mut self) -> Result<(), String> {
         self.kept = Instant::now();
         self.file.sync_data().map_err(|error| self.explain(&error))
@@ -144,7 +145,7 @@ impl RowStore for LockedTable {
     fn append(&mut self, text: &str) -> Result<(), String> {
         let before = self.file.seek(SeekFrom::End(0)).map_err(|error| self.explain(&error))?;
         let written = self.file.write_all(text.as_bytes());
-        // what was torn is taken back: the table has whole rows alone
+        // an incomplete row is removed: the table has complete rows only
         written.map_err(|error| {
             let _ = self.file.set_len(before);
             self.explain(&error)
@@ -163,7 +164,7 @@ impl RowStore for LockedTable {
     fn keep_ahead(&mut self, text: &str) -> Result<(), String> {
         let path = self.beside();
         let file = OpenOptions::new().create(true).append(true).open(&path);
-        // what was torn before ends in a line of its own
+        // an earlier incomplete row ends in a line of its own
         let written = file.and_then(|mut file| file.write_all(format!("\n{text}").as_bytes()));
         written.map_err(|error| unwritten(&path, &error))
     }

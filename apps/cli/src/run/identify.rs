@@ -1,4 +1,4 @@
-//! `identify`: recorded tests beside a project or without one.
+//! `identify`: recorded tests with or without a project.
 
 use std::path::PathBuf;
 

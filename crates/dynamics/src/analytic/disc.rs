@@ -212,7 +212,8 @@ mod tests {
         }
     }
 
-    /// ORIGIN: analytic; the image of a circle under 1/z is a circle, so that an inverse cannot be smaller.
+    /// ORIGIN: analytic; the image of a circle under 1/z is a circle, so that an inverse cannot be
+    /// smaller.
     #[test]
     fn an_inverse_is_the_image_of_the_disc() {
         let disc = Disc::new(Complex64::new(3.0, 0.0), 1.0);

@@ -113,8 +113,8 @@ mod tests {
         (s * s + A::from(4.0)).scaled(0.5) * delayed / (s + A::from(1.0)) - s.scaled(0.7).mean_of_decay()
     }
 
-    /// What is enclosed holds the function at every point, and comes closer by a hundred where the
-    /// stretch is ten times shorter.
+    /// The enclosure contains the function at every point, and its excess falls by a factor of a
+    /// hundred over an interval ten times shorter.
     #[test]
     fn enclosures_hold_and_shrink_by_the_square() {
         for middle in [0.0, 0.2, 1.0, 5.0, 40.0] {

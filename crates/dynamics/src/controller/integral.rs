@@ -1,4 +1,4 @@
-//! What the integral part of a compensator holds.
+//! The content of the integral part of a compensator.
 
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
@@ -8,7 +8,7 @@ use crate::linear::TransferFunction;
 /// Poles this near to the integrating point integrate: 1e-12 rad/s, or as much of a pole angle.
 const INTEGRATING: f64 = 1e-12;
 
-/// Singular values below this are zero: an equation that says nothing.
+/// Singular values below this are zero: an equation without information.
 const SINGULAR: f64 = 1e-13;
 
 /// The row w that reads the integral part of an output off the states, w x; all zero where nothing
@@ -19,8 +19,8 @@ const SINGULAR: f64 = 1e-13;
 /// w (A - p)^m = 0,    w (A - p)^(k - 1) B = c_k,    k = 1 ... m
 /// ```
 ///
-/// The first equation says that the rest of the states takes no part, the others that what is read
-/// is what the integral part of G makes of the input.
+/// By the first equation the other states do not contribute; by the others the value is the
+/// response of the integral part of G to the input.
 pub(crate) fn integral_row(
     function: &TransferFunction,
     dynamics: &DMatrix<f64>,
@@ -54,7 +54,7 @@ pub(crate) fn integral_row(
     solution.map_or_else(|_| vec![f64::NAN; states], |row| row.iter().copied().collect())
 }
 
-/// c_1, c_2 ... of the partial fractions at this point; none where nothing integrates.
+/// c_1, c_2 ... of the partial fractions at this point; empty where nothing integrates.
 fn residues(function: &TransferFunction, point: f64) -> Vec<f64> {
     let integrates = |pole: &Complex64| (pole - point).norm_sqr() <= INTEGRATING * INTEGRATING;
     let order = function.poles().iter().filter(|pole| integrates(pole)).count();
@@ -109,8 +109,7 @@ mod tests {
         near(of(&[1.0], &[1.0, 2.0]), &[]);
     }
 
-    /// Driven by a constant error, what is read is the integral of it, however fast the other poles
-    /// are.
+    /// Driven by a constant error, the value is its integral, however fast the other poles are.
     #[test]
     fn the_row_reads_the_integral() {
         let polynomial = |coefficients: &[f64]| Polynomial::new(coefficients.to_vec());

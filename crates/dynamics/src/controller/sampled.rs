@@ -92,8 +92,8 @@ impl SampledController {
     }
 
     /// The state in which it holds a command while reference and measurement stand still: an
-    /// integral part carries the command, and a controller without one gives what its error makes
-    /// of it.
+    /// integral part carries the command, and a controller without one gives its response to the
+    /// error.
     ///
     /// # Example
     /// ```
@@ -139,7 +139,8 @@ impl SampledController {
         Some(ControllerState { feedback: pairs(of_feedback), prefilter: pairs(of_prefilter) })
     }
 
-    /// What prefilter and feedback make of inputs that stand still; `None` of one that integrates.
+    /// The steady response of prefilter and feedback to constant inputs; `None` for one that
+    /// integrates.
     ///
     /// # Example
     /// ```
@@ -212,8 +213,8 @@ impl SampledController {
     }
 }
 
-/// The row that reads the integral part off the states of these sections: their matrices are what
-/// each state alone and the input alone make of them.
+/// The row that reads the integral part off the states of these sections: their matrices follow
+/// from the response to each state alone and to the input alone.
 fn integral_of(function: &TransferFunction, sections: &[Section]) -> Vec<f64> {
     let states = 2 * sections.len();
     let next = |state: &[f64], input: f64| -> Vec<f64> {
@@ -231,6 +232,6 @@ fn integral_of(function: &TransferFunction, sections: &[Section]) -> Vec<f64> {
     let columns: Vec<f64> = (0..states).flat_map(|place| next(&unit(place), 0.0)).collect();
     let dynamics = DMatrix::from_vec(states, states, columns);
     let drive = DVector::from_vec(next(&vec![0.0; states], 1.0));
-    // a first-order section leaves its second state unused: nothing is to be read off it
+    // a first-order section leaves its second state unused: it has no information
     integral_row(function, &dynamics, &drive, 1.0)
 }

@@ -78,8 +78,8 @@ impl Section {
         self.numerator[0] * input + state[0]
     }
 
-    /// The state in which a constant input gives a constant output, which takes the input's place;
-    /// a section that integrates gives what is wanted of it.
+    /// The state in which a constant input gives a constant output, which replaces the input; for a
+    /// section that integrates, the output is the wanted one.
     pub(super) fn settled(&self, signal: &mut f64, wanted: f64) -> [f64; 2] {
         let input = *signal;
         let under = 1.0 + self.denominator.iter().sum::<f64>();
@@ -89,7 +89,7 @@ impl Section {
         [self.numerator[1] * input - self.denominator[0] * *signal + second, second]
     }
 
-    /// What a constant input of one gives in the end; `None` of a section that integrates.
+    /// The final output for a constant input of one; `None` for a section that integrates.
     pub(super) fn steady_gain(&self) -> Option<f64> {
         let under = 1.0 + self.denominator.iter().sum::<f64>();
         (under.abs() > INTEGRATING).then(|| self.numerator.iter().sum::<f64>() / under)

@@ -1,4 +1,4 @@
-//! How well data tell variables: covariance, and directions that they do not tell.
+//! How well data determine variables: covariance, and directions that they do not determine.
 
 use nalgebra::{DMatrix, SymmetricEigen};
 
@@ -15,7 +15,7 @@ pub struct Uncertainty {
     pub directions: Vec<Direction>,
 }
 
-/// A combination of variables, and how well data tell it.
+/// A combination of variables, and how well data determine it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Direction {
     /// Share of each variable; of length one.
@@ -27,16 +27,16 @@ pub struct Direction {
 /// Relative eigenvalue of the information below which it is a rounding error.
 const ROUNDING: f64 = 1e-15;
 
-/// Covariance of the variables at a minimum, by the sandwich of White (1980) and Huber (1967): noise
-/// may differ from residual to residual, and its size is taken from the residuals themselves.
+/// Covariance of the variables at a minimum, by the sandwich of White (1980) and Huber (1967):
+/// noise may differ from residual to residual, and its size is taken from the residuals themselves.
 ///
 /// ```text
 /// cov = H^-1 S H^-1 n/(n - m)      H = sum psi' j j',  S = sum over groups of g g',  g = sum psi j within a group
 /// ```
 ///
 /// with j the derivatives of one residual, n residuals and m variables. Residuals of one group may
-/// depend on each other, as what was read at one instant does (Liang and Zeger 1986); `groups` has
-/// the index of each residual's group. Along each eigenvector of H the standard deviation is that of
+/// depend on each other, as readings of one instant do (Liang and Zeger 1986); `groups` has the
+/// index of each residual's group. Along each eigenvector of H the standard deviation is that of
 /// the covariance.
 ///
 /// # Example

@@ -33,9 +33,8 @@ pub(crate) fn eigenvalues_of_computed(matrix: &DMatrix<f64>) -> Result<Vec<Compl
     by_blocks(matrix, |_, _| ())
 }
 
-/// The same in working precision, unsorted, for a matrix that is looked at again and again: to a
-/// part of its largest eigenvalue, and not of each. `None` where the iteration stopped without an
-/// answer.
+/// The same in working precision, unsorted, for a matrix that is evaluated repeatedly: to a part of
+/// its largest eigenvalue, and not of each. `None` where the iteration stopped without an answer.
 pub(crate) fn working_eigenvalues(mut matrix: DMatrix<f64>) -> Option<Vec<Complex64>> {
     if matrix.iter().any(|entry| !entry.is_finite()) {
         return None;

@@ -67,7 +67,7 @@ impl WithSimd for Squaring {
 /// One exact step of dx/dt = A x + B u over a time h, with u straight between its values at both
 /// ends.
 pub(crate) struct ExactStep {
-    /// exp(A h) - I: what the state gains over the step by itself.
+    /// exp(A h) - I: the change of the state over the step by itself.
     pub(crate) increment: DMatrix<f64>,
     /// Effect of a constant input: integral of exp(A t) B over the step.
     pub(crate) constant: DMatrix<f64>,

@@ -23,8 +23,8 @@ pub(crate) fn of_polynomial(polynomial: &Polynomial) -> Result<Vec<Complex64>, L
     found(polynomial, |deflated| Ok(merge_multiple(deflated, iterate(deflated)?)))
 }
 
-/// The same as far as working precision tells them, multiple roots a little apart: for a polynomial
-/// whose coefficients are rounded, and whose roots are refined by other means.
+/// The same to working precision, with multiple roots slightly apart: for a polynomial whose
+/// coefficients are rounded, and whose roots are refined by other means.
 pub(crate) fn guessed(polynomial: &Polynomial) -> Result<Vec<Complex64>, LinearError> {
     found(polynomial, |deflated| {
         let mut roots = starting_points(deflated.coefficients());
@@ -34,8 +34,8 @@ pub(crate) fn guessed(polynomial: &Polynomial) -> Result<Vec<Complex64>, LinearE
     })
 }
 
-/// All roots, sorted, by who finds them of what is left without those at the origin, if it is of
-/// the second degree at least.
+/// All roots, sorted; `find` gives those of the polynomial without roots at the origin, if its
+/// degree is at least two.
 fn found(
     polynomial: &Polynomial,
     find: impl FnOnce(&Polynomial) -> Result<Vec<Complex64>, LinearError>,
@@ -223,7 +223,8 @@ fn quotient(a: Complex64, b: Complex64) -> Option<Complex64> {
     result.is_finite().then_some(result)
 }
 
-/// Puts roots that a rounding of the coefficients cannot tell from the imaginary axis on it.
+/// Moves roots that rounding of the coefficients cannot distinguish from the imaginary axis onto
+/// it.
 fn on_the_axis(mut roots: Vec<Complex64>) -> Vec<Complex64> {
     for root in roots.iter_mut().filter(|root| root.re.abs() <= 0.5 * f64::EPSILON * root.im.abs()) {
         root.re = 0.0;

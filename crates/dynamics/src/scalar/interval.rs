@@ -264,7 +264,8 @@ mod tests {
         assert!(x.times(0.1) == x * Interval::from(0.1) && x.times(-0.1) == x * Interval::from(-0.1));
         assert_eq!(Interval::from(0.25) + Interval::from(0.5), Interval::from(0.75));
         assert_eq!(Interval::new(1.0, 2.0) - Interval::new(f64::NAN, 0.0), Interval::WHOLE);
-        // ORIGIN: analytic. The double nearest to 0.1 is more than a tenth, ten times it rounds to one.
+        // ORIGIN: analytic. The double nearest to 0.1 is more than a tenth, ten times it rounds to
+        // one.
         let one = Interval::from(0.1) * Interval::from(10.0);
         assert!(one.low() == 1.0 && one.high() > 1.0);
     }

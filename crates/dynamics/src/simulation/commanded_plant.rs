@@ -1,4 +1,5 @@
-//! A plant with what commands it: a controller that acts continuously, or a hold between samples.
+//! A plant with its source of commands: a controller that acts continuously, or a hold between
+//! samples.
 
 use super::realization::Realization;
 use super::{Plant, Sliding, System};
@@ -142,8 +143,8 @@ impl<P> CommandedPlant<P> {
         self.law.as_ref().map_or(0, |law| law.feedback.states)
     }
 
-    /// States of G and F, in this order, that hold a command while reference and measurement stand
-    /// still: where none do, those that come nearest. On hold those of F.
+    /// States of G and F, in this order, that hold a command at constant reference and measurement,
+    /// or come nearest to it. On hold those of F.
     ///
     /// # Example
     /// An integrator holds any command while there is no error.
@@ -255,7 +256,7 @@ impl<P> CommandedPlant<P> {
         delayed.unwrap_or_else(|| self.signals::<f64, f64>(state, inputs).command)
     }
 
-    /// What a sampled controller reads: reference after the prefilter, and measurement.
+    /// The inputs of a sampled controller: reference after the prefilter, and measurement.
     pub fn sampled<S: Scalar, T: Scalar + From<S>>(&self, state: &[T], inputs: &[T]) -> [T; 2]
     where
         P: Plant<S>,

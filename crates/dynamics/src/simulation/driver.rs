@@ -20,19 +20,19 @@ use crate::scalar::{Dependence, Dual};
 /// All lanes and the method they share.
 struct Drive<'a, S, O> {
     method: Stepper<S>,
-    /// What is known of the modes in each lane.
+    /// The known modes of each lane.
     watches: Vec<GrowthWatch>,
     /// For lanes that are sampled.
     propagator: Propagator<S>,
     settings: SimulationSettings,
     slots: Vec<Option<Slot<'a, O>>>,
     state: Vec<S>,
-    /// Whether a state, or what drives it, is not the one last linearised at.
+    /// Whether a state or its input differs from the last point of linearisation.
     fresh: bool,
     step: S,
     inputs: StepInputs<S>,
     indicators: Vec<S>,
-    /// Where a step is looked at between its ends.
+    /// Points inside a step at which it is evaluated.
     between: ErrorBetween<S>,
 }
 

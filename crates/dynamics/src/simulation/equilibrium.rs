@@ -49,12 +49,12 @@ pub enum EquilibriumError {
 /// f(y, w, z) = 0,    z = g(y, w, z)        y states, w inputs, z the waves, which arrive as they were sent
 /// ```
 ///
-/// The Jacobian is exact. What these equations leave open (a load before its wall, the share of
-/// equal waves) stays as it was guessed, and so do the states in `kept`: memories such as the
-/// bristles of friction, which stand still anywhere.
+/// The Jacobian is exact. Values that these equations leave open (a load in front of its wall, the
+/// share of equal waves) remain as guessed, and so do the states in `kept`: memories such as the
+/// bristles of friction, which can rest anywhere.
 ///
 /// # Errors
-/// [`EquilibriumError`]; what the system cannot do within its equations is not found.
+/// [`EquilibriumError`]; an equilibrium outside its equations is not found.
 ///
 /// # Example
 /// A tank of which more flows out the higher it stands, sqrt(y), holds at 4 what flows in
@@ -142,7 +142,8 @@ struct EquilibriumSearch<'a, E> {
 }
 
 impl<E: System<f64>> EquilibriumSearch<'_, E> {
-    /// What is left of each equation, and its derivatives by all unknowns, each in its scale.
+    /// The residual of each equation, and its derivatives with respect to all unknowns, each in its
+    /// scale.
     fn surplus(&self, unknowns: &[f64]) -> (DVector<f64>, DMatrix<f64>) {
         let count = unknowns.len();
         let (mut rest, mut jacobian) = (DVector::zeros(count), DMatrix::zeros(count, count));

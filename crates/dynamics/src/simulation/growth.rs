@@ -72,7 +72,7 @@ const FALLEN: f64 = 0.02;
 /// Where waves come back late the Jacobian does not tell whether a mode decays: one that decays by
 /// less than this part of its frequency is taken to grow by the other.
 const UNTOLD: [f64; 2] = [0.05, 1e-3];
-/// More growth than this, as a logarithm, ends in what no linear mode tells.
+/// More growth than this, as a logarithm, leads beyond any linear mode.
 const MOST_GROWN: f64 = 20.0;
 /// Decay is followed as if it were at least this part of the frequency.
 const LEAST_FOLLOWED: f64 = 1e-3;
@@ -145,7 +145,7 @@ impl Amplifying {
     }
 }
 
-/// What is known of the modes of the machine in one lane.
+/// The known modes of the machine in one lane.
 ///
 /// Eigenvalues cost several steps, so they are computed only when they may have changed: at fixed
 /// numbers of steps for slow changes, and when the damping of friction changes its sign or falls to
@@ -175,7 +175,7 @@ pub(super) struct GrowthWatch {
     growth: f64,
     /// d at the last look.
     damping: f64,
-    /// When growth was last estimated, and what it was.
+    /// When growth was last estimated, and its value.
     before: Option<(f64, f64)>,
     /// Logarithm of what the least stable mode has grown by and has not decayed by since.
     grown: f64,
@@ -358,7 +358,7 @@ impl GrowthWatch {
         Mode { growth: if unsure { mode.growth.max(growth) } else { mode.growth }, ..mode }
     }
 
-    /// The mode that asks for the shortest step, if friction has added so much to the growth of
+    /// The mode that requires the shortest step, if friction has added this much to the growth of
     /// each.
     fn shortest(&self, added: f64, taken_s: f64) -> Option<GrowingMode> {
         if self.most + added <= 0.0 {

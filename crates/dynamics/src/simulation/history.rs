@@ -21,7 +21,7 @@ struct HistoryPiece {
     coefficients: [f64; 5],
 }
 
-/// Where in a step a wave is looked at, so that a polynomial of degree four follows it.
+/// Points of a step at which a wave is sampled, so that a polynomial of degree four follows it.
 pub(super) const NODES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
 impl History {
@@ -43,8 +43,8 @@ impl History {
         self.pieces.push_back(HistoryPiece { start_s, length_s, coefficients: Quartic::through(values).0 });
     }
 
-    /// What arrives at this time, and its slope. Where the wave jumps it is that of the side on
-    /// which `beside_s` lies, within what rounding does to a time and a delay.
+    /// The wave that arrives at this time, and its slope. Where the wave jumps it is that of the
+    /// side on which `beside_s` lies, within what rounding does to a time and a delay.
     pub(super) fn arriving(&self, time_s: f64, beside_s: f64) -> [f64; 2] {
         let sent = time_s - self.delay_s;
         let rounding = 8.0 * f64::EPSILON * time_s;

@@ -17,8 +17,8 @@ pub enum Method {
     /// L-stable, linearly implicit, of order 5: for stiff systems. Rodas5P, Steinebach (2023).
     #[default]
     Rosenbrock,
-    /// Explicit, of order 5: an independent check where no mode is much faster than what is looked
-    /// at. Dormand and Prince (1980).
+    /// Explicit, of order 5: an independent check where no mode is much faster than the motion of
+    /// interest. Dormand and Prince (1980).
     DormandPrince,
 }
 
@@ -41,7 +41,7 @@ enum MethodSteps<S> {
     Explicit(DormandPrince<S>, Box<Rosenbrock<S>>),
 }
 
-/// The method of all lanes, and what it measures errors by.
+/// The method of all lanes, and its scales of errors.
 #[derive(Clone, Debug)]
 pub(super) struct Stepper<S> {
     steps: MethodSteps<S>,
@@ -150,7 +150,7 @@ impl<S: Lane> Stepper<S> {
         }
     }
 
-    /// What a step takes from the amplitude of a mode that neither grows nor decays.
+    /// Relative loss of amplitude in a step, for a mode that neither grows nor decays.
     pub(super) fn amplitude_lost(&self) -> AmplitudeLost {
         match self.steps {
             MethodSteps::Implicit(_) => rosenbrock::AMPLITUDE_LOST,

@@ -175,7 +175,7 @@ impl<'a> Passage<'a> {
         self.attention != Attention::Rows || !self.histories.is_empty() || next_row_s < self.end_s()
     }
 
-    /// Length of the step to the next break, if no input moves and no row is looked at on the way.
+    /// Length of the step to the next break, if no input moves and no row is recorded on the way.
     pub(super) fn whole_step(&self) -> Option<f64> {
         let step_s = self.goal_s - self.time_s;
         let past = self.next_row_s() <= later(self.time_s);

@@ -17,8 +17,9 @@ use piece::PieceShape;
 /// w(t) = p_k(t)     for b_k <= t < b_{k+1},      b_0 = -inf          p_k smooth, b_1, b_2 ... the breaks
 /// ```
 ///
-/// At a break the new piece holds already. Whoever integrates across a break asks for the [`ProfilePiece`]
-/// of each side: a piece is an analytic function that can be evaluated beyond its ends.
+/// At a break the new piece holds already. Whoever integrates across a break asks for the
+/// [`ProfilePiece`] of each side: a piece is an analytic function that can be evaluated beyond its
+/// ends.
 ///
 /// # Example
 /// A load that moves by 5 mm in 0.1 s, three seconds after the start

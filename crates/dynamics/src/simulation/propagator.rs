@@ -8,7 +8,7 @@ use super::rosenbrock::Rosenbrock;
 use super::square::Square;
 use super::{Lane, System};
 
-/// The equations around a state, and what they make of a step of one length, lane by lane.
+/// The equations around a state, and their solution over a step of one length, lane by lane.
 ///
 /// ```text
 /// y_1 = y_0 + h phi_1(h J) f(y_0),      r = f(y_1) - f(y_0) - J (y_1 - y_0)

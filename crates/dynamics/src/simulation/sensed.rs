@@ -83,7 +83,7 @@ impl<P> Sensed<P> {
         &mut self.plant
     }
 
-    /// States of the sensor while what the plant gives stands still.
+    /// States of the sensor at constant output of the plant.
     pub fn sensor_at_rest(&self, measured: f64) -> Vec<f64> {
         self.sensor.at_rest(measured, None)
     }

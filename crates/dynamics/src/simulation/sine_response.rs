@@ -41,7 +41,7 @@ pub struct SineResponse {
     pub distortion: f64,
     /// Whether it settled within its windows.
     pub settled: bool,
-    /// What the last two windows differ by, over the fundamental.
+    /// Difference of the last two windows, over the fundamental.
     pub change: f64,
     /// Periods that were watched.
     pub periods: u64,
@@ -61,16 +61,16 @@ pub struct SineResponse {
 /// Y = (2 j/N) sum over a window of (y - trend) e^(-j w t)         N rows, 64 a period, whole periods
 /// ```
 ///
-/// The trend is the straight line between the ends of the window: what still drifts slowly leaves
-/// nothing in the fundamental to first order. `watch` is called with the simulated time after each
-/// step; if it returns false, the simulation stops.
+/// The trend is the straight line between the ends of the window: a slow drift does not affect the
+/// fundamental to first order. `watch` is called with the simulated time after each step; if it
+/// returns false, the simulation stops.
 ///
 /// # Errors
 /// [`SimulationError`] when start, inputs or settings do not fit the system, or the plan is
 /// invalid.
 ///
 /// # Example
-/// What cubes a sine of amplitude a has the fundamental 3/4 a^3 and the third harmonic a^3/4.
+/// The cube of a sine of amplitude a has the fundamental 3/4 a^3 and the third harmonic a^3/4.
 /// ```
 /// use phea_dynamics::scalar::Scalar;
 /// use phea_dynamics::simulation::{Input, Profile, SimulationSettings, SinePlan, System, sine_response};

@@ -1,4 +1,4 @@
-//! A machine in its lane, and what its observer is shown.
+//! A machine in its lane, and the data for its observer.
 
 use super::course::{Observer, Sampler};
 use super::method::Extension;
@@ -54,7 +54,7 @@ impl<O: Observer> Slot<'_, O> {
         let seen = if observer.wants_inputs() { inputs.len() } else { 0 };
         loop {
             let time_s = passage.next_row_s();
-            // at a break the row is of what follows
+            // at a break the row shows the values after it
             if later(time_s) >= before_s {
                 return;
             }

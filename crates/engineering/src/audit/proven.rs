@@ -122,7 +122,7 @@ pub fn why_not_proven(view: &ProjectAudit, proof: &Proof, standing: &Standing) -
         NotProven::Images => {
             "the loop is sampled, and the response of the plant could not be bounded beyond the images".into()
         }
-        NotProven::BeyondSampling => "its band lies beyond half of the sampling frequency".into(),
+        NotProven::BeyondSampling => "its band lies beyond half the sampling frequency".into(),
         NotProven::RateFedForward => {
             "the load's velocity is fed forward, which the prover does not yet cover".into()
         }
@@ -135,8 +135,8 @@ pub fn why_not_proven(view: &ProjectAudit, proof: &Proof, standing: &Standing) -
         NotProven::TableLimit => "its limit is a table without two points within its band".into(),
         NotProven::Spread => "there is no prefilter, and a spread is not the ratio of one plant".into(),
         NotProven::Unstable => "the loop is not proven to be stable".into(),
-        NotProven::Unbounded => "the ratio grows without an end that was found".into(),
-        NotProven::NoStableMember => "no plant could be shown to be stable, nor unstable".into(),
+        NotProven::Unbounded => "the ratio grows, and no maximum was found".into(),
+        NotProven::NoStableMember => "no plant could be shown to be stable or unstable".into(),
         NotProven::Rounding => "the checker, which rounds outwards, could not confirm it".into(),
         NotProven::Contradicted => {
             "the search found a plant and a frequency that violate it, which is a defect of search or proof"

@@ -45,7 +45,7 @@ fn sentence(remark: &Remark, finding: &SpecificationFinding, names: &PlantNames)
         }
         Remark::Unstable => "the loop is unstable, so that it has no margin".to_string(),
         Remark::StabilityNotKnown => {
-            "the loop is not known to be stable: its margins may be those of no response".to_string()
+            "the loop is not known to be stable: its margins may not describe any response".to_string()
         }
     }
 }

@@ -43,11 +43,13 @@ pub fn evidence_sentence(evidence: Evidence, verdict: Verdict, one_plant: bool) 
             "Refuted by a plant of the box and a frequency of the band, which can be checked again."
         }
         Evidence::Search if one_plant => {
-            "The plant was looked at over the whole band, between the frequencies of any grid too; a search is no proof."
+            "The plant was examined over the whole band, also between the frequencies of any grid; a search is not a proof."
         }
-        Evidence::Grid => "Looked at the plants of the family one by one; nothing between them is claimed.",
+        Evidence::Grid => {
+            "The plants of the family were examined one by one; nothing is claimed between them."
+        }
         Evidence::Search => {
-            "The worst case was searched over the whole parameter box and band, not only on the grid; a search is no proof."
+            "The worst case was searched for over the whole parameter box and band, not only on the grid; a search is not a proof."
         }
         Evidence::Proof => "Proven for every plant of the box and every frequency of the band.",
     }
@@ -147,7 +149,7 @@ pub fn finding_sentence(
             };
             format!("{name} is violated by {size} dB {place}{reached}{hidden}")
         }
-        Verdict::Met if worst.margin_db < 5e-4 => format!("{name} is met, just so, {place}"),
+        Verdict::Met if worst.margin_db < 5e-4 => format!("{name} is only just met, {place}"),
         Verdict::Met => format!("{name} is met, with {size} dB to spare {place}"),
         Verdict::NotProven => {
             format!("{name} is not proven; worst margin found {} {place}", margin_words(worst.margin_db))

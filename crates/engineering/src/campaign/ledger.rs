@@ -215,7 +215,7 @@ fn kept_row(plan: &Plan, run: u64, text: &str, line: usize) -> Result<Row, Campa
         NoRow::Changed => CampaignError::Damaged { line, fault: "is not as it was written" },
     })?;
     if row.run != run {
-        return Err(CampaignError::Damaged { line, fault: "is another run than belongs there" });
+        return Err(CampaignError::Damaged { line, fault: "belongs to another run" });
     }
     if row.values != plan.draw(run).values {
         return Err(CampaignError::Damaged { line, fault: "has other numbers than its run draws" });

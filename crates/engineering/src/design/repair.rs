@@ -143,7 +143,7 @@ fn with_waves(
         Ok(Family::Uncertain(family)) => family.plant().clone(),
         Ok(Family::Measured(_)) => return Ok(nothing),
         Err(error) => {
-            let sentences = vec![format!("the plant with waves in its lines cannot be taken in: {error}")];
+            let sentences = vec![format!("the plant with waves in its lines cannot be added: {error}")];
             return Ok(Repair { sentences, ..nothing });
         }
     };

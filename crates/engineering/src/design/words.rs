@@ -31,12 +31,12 @@ pub fn status_sentence(view: &ProjectDesign) -> String {
     }
     match &view.design.status {
         DesignStatus::Met if view.designed.view.audit.verdict == Verdict::NotProven => {
-            "not proven: the controller satisfies every specification over the family, which does not count all that is declared"
+            "not proven: the controller satisfies every specification over the family, which does not include everything that is declared"
                 .to_string()
         }
         DesignStatus::Met => "met: the controller satisfies every specification".to_string(),
         DesignStatus::Infeasible(relaxation) => format!(
-            "infeasible: no controller that was tried{} satisfies every specification; with every limit {} dB wider one does",
+            "infeasible: none of the controllers tried{} satisfies every specification; with every limit {} dB wider one does",
             tried(&view.options.controller),
             significant(relaxation.relaxation_db, 3)
         ),
@@ -45,7 +45,7 @@ pub fn status_sentence(view: &ProjectDesign) -> String {
         ),
         DesignStatus::NotStabilised => {
             format!(
-                "not stabilised: no controller that was tried{} makes every plant stable",
+                "not stabilised: none of the controllers tried{} makes every plant stable",
                 tried(&view.options.controller)
             )
         }

@@ -1,4 +1,4 @@
-//! Intervals by fitting again what the noise might have been.
+//! Intervals from repeated fits with resampled noise.
 
 use phea_dynamics::least_squares::{Ending, Settings};
 use phea_dynamics::random::{share, stream};
@@ -9,7 +9,7 @@ use super::fit::Fit;
 use super::recording::{RecordedSignal, Recording};
 use super::variables::{COUNT, Kind};
 
-/// Fewest repetitions whose 2.5 % are more than the outermost.
+/// Least number of repetitions, so that the 2.5 % quantile is not the outermost value.
 pub const FEWEST_REPETITIONS: usize = 50;
 
 /// Relative decrease of the sum at which a repetition ends.
@@ -31,17 +31,17 @@ pub struct Bootstrap {
     pub block_rows: usize,
 }
 
-/// The wild bootstrap of blocks: each repetition fits recordings made of what the valve shows and of
+/// The wild bootstrap of blocks: each repetition fits recordings composed of the model's values and
 /// its residuals with random signs, one sign for all signals of a block of neighbouring rows.
 ///
 /// ```text
 /// y* = y(K) + s_b r sqrt(n/(n - m))        s_b = +-1
 /// ```
 ///
-/// So noise that differs from row to row stays where it is, signals of a row stay together, and what
-/// neighbouring residuals have in common stays within a block (Liu 1988, Shao 2010). A block is as
-/// long as the residuals of any signal are alike: up to the lag at which their correlation is below
-/// 2/sqrt(n).
+/// So noise that differs from row to row stays in its row, signals of a row stay together, and the
+/// correlation of neighbouring residuals stays within a block (Liu 1988, Shao 2010). A block is as
+/// long as the residuals of any signal are correlated: up to the lag at which their correlation is
+/// below 2/sqrt(n).
 pub(super) fn bootstrap(
     fit: &Fit<'_>,
     repetitions: usize,
@@ -77,7 +77,7 @@ pub(super) fn bootstrap(
     {
         estimates.sort_by(f64::total_cmp);
         *ends = [0.025, 0.975].map(|share| percentile(estimates, share));
-        // what ends where the search ends may be nothing at all
+        // a coefficient that ends at the bound of the search may be zero
         if Kind::vanishes(index) && ends[0] <= least {
             ends[0] = 0.0;
         }
@@ -110,7 +110,7 @@ fn repeated(fit: &Fit<'_>, widening: f64, block_rows: usize, state: &mut u64) ->
     recordings
 }
 
-/// Each value, which is what the model shows less its residual, with the residual times a sign.
+/// Each value (the model's value less the residual), with the residual multiplied by a sign.
 fn replace<'s>(
     signal: &mut RecordedSignal,
     residuals: &[f64],
@@ -123,12 +123,12 @@ fn replace<'s>(
     }
 }
 
-/// Rows after which the residuals of no signal are alike any more.
+/// Number of rows after which the residuals of no signal are correlated.
 fn block_rows(fit: &Fit<'_>) -> usize {
     let beyond = Settings::default().robust_beyond;
     let residuals = fit.together.by_channel(&fit.minimum.linearised.residuals);
     let of = |own: &[f64]| {
-        // a single outlier says nothing of its neighbours
+        // a single outlier has no effect on its neighbours
         let own: Vec<f64> = own.iter().map(|residual| residual.max(-beyond).min(beyond)).collect();
         let squares: f64 = own.iter().map(|residual| residual * residual).sum();
         let limit = 2.0 / (own.len() as f64).sqrt() * squares;
@@ -142,7 +142,7 @@ fn block_rows(fit: &Fit<'_>) -> usize {
     residuals.into_iter().map(of).max().unwrap_or(1)
 }
 
-/// Percentile of sorted numbers; NaN of none.
+/// Percentile of sorted numbers; NaN if there are none.
 fn percentile(sorted: &[f64], share: f64) -> f64 {
     let place = share * sorted.len().saturating_sub(1) as f64;
     let below = place.floor();

@@ -1,4 +1,4 @@
-//! The recorded signals that are explained together, and what the model leaves of them.
+//! The recorded signals that are explained together, and their residuals.
 
 use phea_dynamics::least_squares::{Linearised, Minimum, Settings, minimise};
 use phea_dynamics::watch::{Stopped, Watch, tell};
@@ -7,10 +7,10 @@ use phea_hydraulics::servovalve::TestedValve;
 use super::recording::{RecordedSignal, Recording, median};
 use super::variables::Variables;
 
-/// Scale of a residual, over the range of its signal, before the data say.
+/// Initial scale of a residual, over the range of its signal.
 const FIRST_SCALE: f64 = 0.01;
 
-/// Least scale over the range: what no instrument resolves.
+/// Least scale over the range, which no instrument resolves.
 const RESOLUTION: f64 = 1e-6;
 
 /// Evaluations of a search.
@@ -85,7 +85,7 @@ impl<'a> Together<'a> {
         found
     }
 
-    /// The group of each residual: what was read at one instant.
+    /// The group of each residual: the readings of one instant.
     pub(super) fn groups(&self) -> Vec<usize> {
         let mut before = 0;
         let mut firsts = Vec::with_capacity(self.recordings.len());
@@ -132,8 +132,8 @@ impl<'a> Together<'a> {
         self.channels.iter().map(&mut split).collect()
     }
 
-    /// Takes the scale of each signal from its residuals: 1.4826 times their median magnitude, which
-    /// outliers do not move; not below what no instrument resolves. Returns the largest relative
+    /// Takes the scale of each signal from its residuals: 1.4826 times their median magnitude,
+    /// which outliers do not move; at least what instruments resolve. Returns the largest relative
     /// change.
     pub(super) fn rescale(&mut self, residuals: &[f64]) -> f64 {
         let of = |own: &[f64]| median(own.iter().map(|residual| residual.abs()).collect());

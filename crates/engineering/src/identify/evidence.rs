@@ -1,4 +1,4 @@
-//! Which model of the leakage the recordings speak for.
+//! Which model of the leakage the recordings support.
 
 use phea_dynamics::least_squares::Settings;
 use phea_dynamics::portable;
@@ -11,10 +11,10 @@ use super::variables::COUNT;
 /// Raftery 1995, "very strong").
 pub const DECISIVE: f64 = 10.0;
 
-/// Rounds in which a scale comes to its likeliest value.
+/// Number of rounds for finding the likeliest value of a scale.
 const ROUNDS: usize = 30;
 
-/// Greatest correlation of neighbours that is believed: of the rows, one in two hundred counts.
+/// Greatest correlation of neighbours that is used: one row in two hundred counts.
 const MOST_CORRELATED: f64 = 0.99;
 
 /// How well a model of the leakage explains the recordings.
@@ -35,8 +35,8 @@ pub struct ExplainedBy {
 pub struct ModelEvidence {
     /// Both, the one that explains the recordings better first.
     pub models: [ExplainedBy; 2],
-    /// Rows that count, all signals together: fewer than were read where neighbouring residuals are
-    /// alike.
+    /// Rows that count, all signals together: fewer than were read if neighbouring residuals are
+    /// correlated.
     pub independent_rows: f64,
 }
 
@@ -88,7 +88,7 @@ impl ModelEvidence {
         };
         let of = |index: usize| explained(fits[index], &signals[index], &losses[index]);
         let mut models = [of(0), of(1)];
-        // by the rows that count, the order may be another
+        // the order may differ for the rows that count
         if models[1].criterion < models[0].criterion {
             models.reverse();
         }
@@ -96,7 +96,7 @@ impl ModelEvidence {
     }
 }
 
-/// What each signal adds to -ln L at its likeliest scale.
+/// The contribution of each signal to -ln L at its likeliest scale.
 fn losses(fit: &Fit<'_>) -> Vec<f64> {
     let beyond = Settings::default().robust_beyond;
     let residuals = fit.together.by_channel(&fit.minimum.linearised.residuals);

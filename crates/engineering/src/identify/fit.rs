@@ -10,20 +10,20 @@ use super::recording::Recording;
 use super::variables::{COUNT, Kind, Variables};
 use super::{COEFFICIENT_NAMES, IdentifyError, Search, SignalFit};
 
-/// Rounds in which the scale of each signal follows from its residuals.
+/// Number of rounds in which the scale of each signal is computed from its residuals.
 const ROUNDS: usize = 4;
 
-/// Relative decrease of the sum at which a search ends that another follows.
+/// Relative decrease of the sum at which an intermediate search ends.
 const ROUGH: f64 = 1e-5;
 
-/// Relative change of the scales below which another round changes nothing.
+/// Relative change of the scales below which no further round is made.
 const SAME_SCALE: f64 = 1e-3;
 
-/// A valve that explains the recordings, with the signals and their scales at which it does so best.
+/// The valve that explains the recordings best, with the signals and their scales.
 pub(super) struct Fit<'a> {
     pub(super) together: Together<'a>,
     pub(super) minimum: Minimum,
-    /// Starting points, and how many of them lead here.
+    /// Number of starting points, and how many of them lead here.
     pub(super) starts: [usize; 2],
 }
 
@@ -32,7 +32,7 @@ impl Fit<'_> {
         self.together.variables.coefficients(&self.minimum.variables)
     }
 
-    /// Coefficients that ended at a bound of the search, but for those that may vanish and did.
+    /// Coefficients that ended at a bound of the search, except those that may vanish and did.
     pub(super) fn at_bounds(&self) -> Vec<&'static str> {
         let bounds = self.together.variables.bounds();
         let all = self.minimum.variables.iter().zip(bounds).zip(COEFFICIENT_NAMES).enumerate();
@@ -131,7 +131,7 @@ fn best_start(
     Ok((best.map_or(together.variables.start(), |minimum| minimum.variables), agreeing))
 }
 
-/// Rows that a first search needs: all near null, and some of the others.
+/// Rows for a first search: all near null, and some of the others.
 fn thinned(recording: &Recording) -> Recording {
     const OTHERS: usize = 150;
     let largest = recording.inputs.iter().map(|input| input.command.abs()).fold(0.0, f64::max);

@@ -1,4 +1,4 @@
-//! First guesses: what section 5.2 of the thesis reads off the curves by hand.
+//! First guesses: the values that section 5.2 of the thesis reads from the curves by hand.
 
 use phea_hydraulics::servovalve::{
     Edges, PortCircuit, StaticCoefficients, TestedValve, flow_coefficient_from_rating,
@@ -6,8 +6,8 @@ use phea_hydraulics::servovalve::{
 
 use super::recording::{Recording, SignalKind, median};
 
-/// What the calculations of the thesis, section 5.2, give; `None` where the test for it is missing.
-/// SI.
+/// The results of the calculations of the thesis, section 5.2; `None` where the test for it is
+/// missing. SI.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SimpleCalculations {
     /// K_vp by (4.12), corrected, for positive commands (edges 3 and 6) and negative ones (4 and 5).
@@ -36,7 +36,7 @@ impl SimpleCalculations {
     }
 }
 
-/// The calculations, from whatever test allows them.
+/// The calculations, from the tests that allow them.
 ///
 /// ```text
 /// q_tare   mean leakage beyond 60 % of the amplitude
@@ -64,8 +64,8 @@ pub(super) fn simple_calculations(recordings: &[Recording], tested: &TestedValve
     found
 }
 
-/// Where all coefficients begin: the calculations, and what is usual where there are none. What may
-/// be zero begins at a size that would matter.
+/// The starting point of all coefficients: the calculations, or usual values where there are none.
+/// A coefficient that may be zero starts at a value that would matter.
 pub(super) fn first_guess(
     recordings: &[Recording],
     tested: &TestedValve,
@@ -112,7 +112,7 @@ fn leakage(recording: &Recording, tested: &TestedValve, found: &mut SimpleCalcul
     let tare = median(base.map(|(_, _, leak)| leak).collect());
     let mut highest: Vec<f64> = rows().map(|(_, _, leak)| leak).collect();
     highest.sort_by(f64::total_cmp);
-    // what only the noise of a hundredth of the rows exceeds
+    // a level that only a hundredth of the rows exceeds by noise
     let Some(peak) = highest.get(highest.len() * 99 / 100).copied().filter(|peak| *peak > tare) else {
         return;
     };
@@ -140,7 +140,7 @@ fn leakage(recording: &Recording, tested: &TestedValve, found: &mut SimpleCalcul
     }
 }
 
-/// Whether the command rises at a row; `None` where it stands.
+/// Whether the command rises at a row; `None` where it is constant.
 fn direction(recording: &Recording, row: usize) -> Option<bool> {
     let before = recording.inputs.get(row.checked_sub(1)?)?.command;
     let now = recording.inputs.get(row)?.command;
@@ -162,7 +162,7 @@ fn crossing(recording: &Recording, rising: bool) -> Option<f64> {
 }
 
 /// Both branches of the flow as straight lines, going up and down: their slopes are the flow
-/// coefficients, and between their zeros is null.
+/// coefficients, and null is midway between their zeros.
 fn flow(recording: &Recording, tested: &TestedValve, found: &mut SimpleCalculations) {
     let kinds = [SignalKind::PortFlow, SignalKind::PortFlowMagnitude];
     let Some(signal) = kinds.into_iter().find_map(|kind| recording.signal(kind)) else { return };

@@ -9,11 +9,11 @@ use super::variables::{COUNT, Kind, Variables};
 /// Half width of a 95 % interval of a normal distribution, in standard deviations.
 const NORMAL_95: f64 = 1.96;
 
-/// Half width, over the change that matters, beyond which an interval says nothing: a factor of a
-/// million.
+/// Half width, over the change that matters, beyond which an interval carries no information: a
+/// factor of a million.
 const NOTHING_SAID: f64 = 14.0;
 
-/// How well the recordings tell the coefficients: in changes that matter, see
+/// How well the recordings determine the coefficients: in changes that matter, see
 /// [`Variables::scales`].
 pub(super) fn told(
     at: &Linearised,
@@ -38,8 +38,8 @@ pub(super) fn told(
 
 /// The interval of each coefficient, from its standard deviation over the change that matters.
 ///
-/// Of what is positive both ends are positive. What may vanish has the part of the interval that is
-/// not negative: where its lower end is zero, the interval is a bound from above.
+/// For a positive coefficient both ends are positive. For one that may vanish the negative part of
+/// the interval is cut off: where its lower end is zero, the interval is an upper bound.
 pub(super) fn intervals(
     variables: &Variables,
     coefficients: &StaticCoefficients,

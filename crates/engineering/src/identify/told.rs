@@ -1,4 +1,4 @@
-//! What the data do not tell, and which further test would.
+//! What the data do not determine, and which further test would.
 
 use phea_dynamics::least_squares::Uncertainty;
 use phea_hydraulics::servovalve::{STATIC_COEFFICIENTS, StaticCoefficients, Supply, TestInput, TestedValve};
@@ -7,17 +7,17 @@ use super::COEFFICIENT_NAMES;
 use super::recording::{Recording, SignalKind, usual_drop};
 use crate::bench::StaticTest;
 
-/// Standard deviation in the logarithm of a coefficient beyond which it is not told: a factor of
-/// e^0.98 = 2.7 either way at 95 %.
+/// Standard deviation in the logarithm of a coefficient beyond which it is not determined: a factor
+/// of e^0.98 = 2.7 either way at 95 %.
 const UNTOLD: f64 = 0.5;
 
-/// Standard deviation below which a test tells a combination.
+/// Standard deviation below which a test determines a combination.
 const TOLD: f64 = 0.1;
 
-/// Share of a direction below which a coefficient has no part in it.
+/// Share of a direction below which a coefficient does not count.
 const PART: f64 = 0.2;
 
-/// A combination of coefficients that the data do not tell.
+/// A combination of coefficients that the data do not determine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Untold {
     /// Coefficients with the share that each has of it, as factors: of length one, the greatest
@@ -25,11 +25,12 @@ pub struct Untold {
     pub shares: Vec<(&'static str, f64)>,
     /// Standard deviation along it, in the logarithm; infinite where nothing recorded depends on it.
     pub deviation: f64,
-    /// Tests that would tell it, at 30 % of the command with errors of 1 % of each signal's range.
+    /// Tests that would determine it, at 30 % of the command with errors of 1 % of each signal's
+    /// range.
     pub told_by: Vec<StaticTest>,
 }
 
-/// The combinations that are not told, the least known first.
+/// The combinations that are not determined, the least known first.
 pub(super) fn untold(
     told: &Uncertainty,
     coefficients: &StaticCoefficients,
@@ -59,7 +60,7 @@ pub(super) fn untold(
         .collect()
 }
 
-/// Derivatives of what a test would show, over a hundredth of the range of each signal.
+/// Derivatives of the readings of a test, over a hundredth of the range of each signal.
 fn sensitivities(
     test: StaticTest,
     coefficients: &StaticCoefficients,

@@ -6,7 +6,7 @@ use phea_hydraulics::servovalve::{STATIC_COEFFICIENTS, StaticCoefficients};
 
 pub(super) const COUNT: usize = STATIC_COEFFICIENTS;
 
-/// Where the shape, the tare flow, the null bias and the width of the hysteresis stand.
+/// Indices of the shape, the tare flow, the null bias and the width of the hysteresis.
 const SHAPE: usize = 8;
 const TARE_FLOW: usize = 9;
 const NULL_BIAS: usize = 10;
@@ -39,7 +39,7 @@ impl Kind {
         }
     }
 
-    /// Of a coefficient that may end at zero.
+    /// The scale of a coefficient that may end at zero.
     pub(super) fn vanishes(index: usize) -> bool {
         Kind::of(index) == Kind::MayVanish
     }
@@ -113,8 +113,8 @@ impl Variables {
         found
     }
 
-    /// How far each may go: a factor of a hundred, down to nothing where a coefficient may vanish;
-    /// shape, tare flow and width as far as they have a meaning, the null within a tenth of the
+    /// The bounds of each: a factor of a hundred, down to zero where a coefficient may vanish;
+    /// shape, tare flow and width within their meaningful range, the null within a tenth of the
     /// nominal voltage.
     pub(super) fn bounds(&self) -> [[f64; 2]; COUNT] {
         let mut bounds = [[-4.6, 4.6]; COUNT];

@@ -56,5 +56,5 @@ fn what(state: usize) -> &'static str {
         "the force",
         "the piston",
     ];
-    first.get(state).copied().unwrap_or("a state beside force, pressures and spool")
+    first.get(state).copied().unwrap_or("a state other than force, pressures and spool")
 }

@@ -102,12 +102,12 @@ pub struct Metrics {
 pub(super) const UNREACHED: &str = "the run ended before";
 pub(super) const NO_STEP: &str = "the reference does not step";
 pub(super) const NO_MOTION: &str = "the load does not begin to move";
-pub(super) const NOT_REACHED: &str = "the force does not come to 90 % of the step";
-pub(super) const BEGUN_BEYOND: &str = "the force is beyond 10 % of the step when it comes";
+pub(super) const NOT_REACHED: &str = "the force does not reach 90 % of the step";
+pub(super) const BEGUN_BEYOND: &str = "the force is already beyond 10 % of the step when it begins";
 /// Why there is no settling time for a step that was observed to its end.
 pub const NOT_SETTLED: &str = "outside the band at the end of the window";
 pub(super) const MOVES: &str = "the reference moves";
-pub(super) const OPEN_LOOP: &str = "open loop: no force is asked for";
+pub(super) const OPEN_LOOP: &str = "open loop: there is no reference";
 pub(super) const ASKED_FOR: &str = "the reference says which force there should be";
 pub(super) const STANDS_STILL: &str = "the reference stands still";
 pub(super) const NO_REFERENCE: &str = "the reference is zero: a band around it has no width";

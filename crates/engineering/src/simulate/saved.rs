@@ -76,10 +76,10 @@ pub(super) fn of_end(
     memory: Option<&DigitalMemory>,
 ) -> Result<SavedState, &'static str> {
     if status != Status::Completed {
-        return Err("it did not come to its end");
+        return Err("it was not completed");
     }
     if !bench.control.delays().is_empty() {
-        return Err("what is under way in a delay or along a line is no state");
+        return Err("what is in transit in a delay or along a line is not a state");
     }
     if let (Control::Sampled(sampled), Some(_)) = (&bench.control, memory) {
         let sample_time_s = sampled.controller.sample_time_s();

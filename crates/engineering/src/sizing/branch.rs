@@ -168,7 +168,7 @@ impl Branch {
         let Some((end, trials)) = self.steps.split_last() else { return };
         if let (Some(first), Some(last)) = (trials.first(), trials.last()) {
             let text = format!(
-                "K_p = {} V/N asks for {} m of hose a line (6.16, 6.25), too long{}.",
+                "K_p = {} V/N asks for {} m of hose per line (6.16, 6.25), too long{}.",
                 number(first.gain_v_per_n),
                 number(first.length_m),
                 if trials.len() > 1 {
@@ -193,9 +193,9 @@ impl Branch {
         }
         let length = match end.length_m {
             0.0 => "for which no hose is needed".to_string(),
-            length => format!("which {} m of hose a line gives (6.25)", number(length)),
+            length => format!("which {} m of hose per line gives (6.25)", number(length)),
         };
-        decide("i, j", format!("K_p = {gain} V/N asks for K_H = {stiffness} N/m (6.16), {length}."));
+        decide("i, j", format!("K_p = {gain} V/N requires K_H = {stiffness} N/m (6.16), {length}."));
         // Lengths that differ by the search's rounding are one length.
         if (self.length_m - end.length_m).abs() > 1e-6 {
             let (length, gain) = (number(self.length_m), number(self.gain_v_per_n));

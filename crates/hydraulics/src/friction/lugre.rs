@@ -24,7 +24,7 @@ pub struct LuGre<S = f64> {
 /// Whether a LuGre model can only take energy from the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LuGrePassivity {
-    /// It is passive; the viscous friction exceeds what is required by this, in N s/m.
+    /// It is passive; the viscous friction exceeds the requirement by this, in N s/m.
     Passive {
         /// sigma_2 less the required value, zero or positive, in N s/m.
         surplus: f64,
@@ -83,8 +83,8 @@ impl<S: Scalar> LuGre<S> {
 }
 
 impl LuGre {
-    /// What about this friction is impossible; empty if nothing is. Lack of passivity is no
-    /// impossibility: see [`LuGre::passivity`].
+    /// Impossible parameters of this friction; empty if there are none. Lack of passivity is
+    /// possible: see [`LuGre::passivity`].
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
         problems.positive("bristle_stiffness", self.bristle_stiffness);

@@ -52,9 +52,9 @@ impl<S: Scalar> Stribeck<S> {
     /// F(v) = g(v) v/sqrt(v^2 + v_r^2) + sigma_2 v
     /// ```
     ///
-    /// The sign of thesis (4.33) is replaced by a quotient that reaches 99 % of it at 7 v_r. What
-    /// should stick under a force F creeps instead, at about v_r F/F_S: hold a load with
-    /// [`super::LuGre`].
+    /// The sign of thesis (4.33) is replaced by a quotient that reaches 99 % of it at 7 v_r. A
+    /// piston that should stick under a force F creeps instead, at about v_r F/F_S: to hold a load,
+    /// use [`super::LuGre`].
     ///
     /// # Example
     /// ```
@@ -112,7 +112,7 @@ impl<S: Scalar> Stribeck<S> {
 }
 
 impl Stribeck {
-    /// What about this curve is impossible; empty if nothing is.
+    /// Impossible parameters of this curve; empty if there are none.
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
         problems.positive("coulomb", self.coulomb);

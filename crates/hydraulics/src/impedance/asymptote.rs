@@ -4,7 +4,7 @@ use phea_dynamics::portable;
 
 use crate::linear::LinearParameters;
 
-/// What an asymptote of the driving-point impedance stands for.
+/// The meaning of an asymptote of the driving-point impedance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AsymptoteKind {
     /// Valve leakage, or the feedback loop, gives way.

@@ -1,7 +1,7 @@
 use super::{Hose, StiffeningMember};
 use crate::parameter::{ParameterError, Problems};
 
-/// The wall of a hose that moves along its axis: what it weighs and how it yields.
+/// The wall of a hose that moves along its axis: its mass and its compliances.
 ///
 /// ```text
 /// area strain  = C_pp p + C_pF F         axial strain = A C_pF p + C_FF F         F the tension in the wall
@@ -47,7 +47,7 @@ impl BraidedWall {
     /// of the hose's stiffening.
     ///
     /// # Example
-    /// Free ends do not move, and take up what the catalogue says.
+    /// With free ends it does not move, and takes up the volume stated in the catalogue.
     /// ```
     /// use phea_hydraulics::line::{BraidedWall, StiffeningMember};
     /// let hose = phea_hydraulics::reference_rig::hose().filled();
@@ -67,7 +67,7 @@ impl BraidedWall {
         BraidedWall::of_hose(hose, member, axial_compliance, -axial_compliance, mass_per_length)
     }
 
-    /// The wall of these compliances in 1/N that swells as the catalogue says where its ends are
+    /// The wall of these compliances in 1/N that expands as the catalogue states if its ends are
     /// closed and free, around the bore that the hose has at the operating pressure.
     ///
     /// ```text
@@ -112,8 +112,8 @@ impl BraidedWall {
         BraidedWall::neutral(hose, member, stiffness, WALL_DENSITY * area)
     }
 
-    /// What about this wall is impossible; empty if nothing is. Whether it stores positive energy
-    /// depends on the fluid.
+    /// Impossible parameters of this wall; empty if there are none. Whether it stores positive
+    /// energy depends on the fluid.
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
         problems.positive("mass_per_length", self.mass_per_length);

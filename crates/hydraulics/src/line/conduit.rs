@@ -45,7 +45,7 @@ pub enum LineError {
         "friction mixes the waves: their lags take {needed} Pa s/m3 at each end, steady flow gives {half_resistance}"
     )]
     MixedByFriction {
-        /// What the lags of the waves take, in Pa s/m3.
+        /// Resistance that the lags of the waves need, in Pa s/m3.
         needed: f64,
         /// Half of the steady resistance, in Pa s/m3.
         half_resistance: f64,
@@ -115,7 +115,7 @@ impl Conduit {
         conduit.check().map(|()| conduit)
     }
 
-    /// What about this conduit is impossible; empty if nothing is. A length of zero is possible
+    /// Impossible parameters of this conduit; empty if there are none. A length of zero is possible
     /// here.
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();

@@ -2,8 +2,8 @@ use phea_dynamics::scalar::Scalar;
 
 use super::{LineContent, Segments, TransmissionLine, TwoWaveLine};
 
-/// What a line does between its valve port and its chamber, as a machine holds it: states, and
-/// waves that it sends and that arrive later.
+/// The dynamics of a line between its valve port and its chamber, as part of a machine: states, and
+/// waves that are sent and arrive later.
 ///
 /// The valve gives its flow, the chamber its pressure; the line answers with its port's pressure
 /// and the flow into the chamber, and adds [`DynamicLine::chamber_compliance`] to the chamber. So
@@ -78,7 +78,7 @@ impl<S: Copy> DynamicLine<S> {
 }
 
 impl<S: Scalar> DynamicLine<S> {
-    /// What the line adds to the compliance of the chamber, in m3/Pa.
+    /// The contribution of the line to the compliance of the chamber, in m3/Pa.
     pub fn chamber_compliance(&self) -> S {
         match self {
             DynamicLine::Segments(line) => line.chamber_compliance(),
@@ -128,8 +128,8 @@ impl<S: Scalar> DynamicLine<S> {
         }
     }
 
-    /// What the line holds; `None` with waves, much of whose content is under way and no part of
-    /// its states.
+    /// The content of the line; `None` with waves, since much of their content is in transit and
+    /// not part of its states.
     pub(crate) fn content<T: Scalar + From<S>>(
         &self,
         chamber_pressure: T,
@@ -141,7 +141,7 @@ impl<S: Scalar> DynamicLine<S> {
         }
     }
 
-    /// What is sent into each delay, in Pa.
+    /// The waves sent into each delay, in Pa.
     #[inline]
     pub fn outgoing<T: Scalar + From<S>>(
         &self,

@@ -10,8 +10,8 @@ use crate::parameter::{ParameterError, Problems};
 pub struct Hose<S = f64> {
     /// Bore D_ho in m.
     pub bore: S,
-    /// Volumetric expansion per length at the working pressure, E, in m3/m (ISO 6801): what the
-    /// thesis' modulus refers to.
+    /// Volumetric expansion per length at the working pressure, E, in m3/m (ISO 6801), to which the
+    /// thesis' modulus refers.
     pub volumetric_expansion: S,
     /// The same at the operating pressure, in m3/m: how much more oil a metre holds than its bore.
     /// Below zero only where the straight line through a measured point of the catalogue misses the
@@ -55,7 +55,7 @@ impl<S: Copy> Stiffening<S> {
 }
 
 impl Hose {
-    /// What about this hose is impossible; empty if nothing is.
+    /// Impossible parameters of this hose; empty if there are none.
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
         problems.positive("bore", self.bore);
@@ -78,16 +78,16 @@ impl Hose {
 }
 
 impl<S: Scalar> Hose<S> {
-    /// Compliance of a metre by its sheet, in m2/Pa: what the wall gives, and the oil that the bore
-    /// holds at the operating pressure p.
+    /// Compliance of a metre by its data sheet, in m2/Pa: the expansion of the wall, and the oil in
+    /// the bore at the operating pressure p.
     ///
     /// ```text
     /// dV/dp / L = epsilon/r_beta + (A_ho + E(p))/beta_0
     /// ```
     ///
     /// The thesis refers beta_hoSS to the bore expanded at the working pressure (6.24) but
-    /// multiplies it with the unexpanded volume (6.25): of what the wall gives that leaves
-    /// A_ho/(A_ho + E).
+    /// multiplies it with the unexpanded volume (6.25): this reduces the expansion of the wall to
+    /// A_ho/(A_ho + E) of it.
     ///
     /// # Example
     /// Eaton Synflex 3130-08 at 35 bar

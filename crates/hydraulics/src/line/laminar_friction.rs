@@ -80,8 +80,7 @@ mod tests {
             let error = fitted / exact_weighting(tau) - 1.0;
             assert!(error.abs() < tolerance, "W({tau}) is {error} off");
         }
-        // What is left of friction at long times adds a third to the inertia: 4 W integrated over
-        // tau.
+        // At long times friction adds a third to the inertia: 4 W integrated over tau.
         let inertia: f64 = UNSTEADY_FRICTION.iter().map(|(corner, weight)| 4.0 * weight / corner).sum();
         assert!((inertia - 1.0 / 3.0).abs() < 3e-3, "{inertia}");
     }

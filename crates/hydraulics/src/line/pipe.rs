@@ -44,7 +44,7 @@ pub enum Anchoring {
 }
 
 impl Pipe {
-    /// What about this pipe is impossible; empty if nothing is.
+    /// Impossible parameters of this pipe; empty if there are none.
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
         problems.positive("bore", self.bore);
@@ -82,8 +82,7 @@ impl<S: Scalar> Pipe<S> {
 /// Lamé's solution.
 ///
 /// # Example
-/// A thick steel wall is what Lamé found: (dA/A)/p = 2/E ((b^2 + a^2)/(b^2 - a^2) + nu) for radii a
-/// and b
+/// A thick steel wall follows Lamé: (dA/A)/p = 2/E ((b^2 + a^2)/(b^2 - a^2) + nu) for radii a and b
 /// ```
 /// use phea_hydraulics::line::{Anchoring, pipe_wall_compliance};
 /// let (a, b, e, nu) = (5e-3, 8e-3, 206e9, 0.3);

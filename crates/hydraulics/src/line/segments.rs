@@ -95,7 +95,7 @@ impl Segments {
     }
 
     /// The same segments with a wall that creeps. The modulus of their conduit must be that of the
-    /// fluid with the wall's dynamic modulus: what creeps comes on top.
+    /// fluid with the wall's dynamic modulus: the creep is added.
     ///
     /// # Errors
     /// A wall that is impossible.
@@ -162,7 +162,7 @@ impl<S: Copy> Segments<S> {
 }
 
 impl<S: Scalar> Segments<S> {
-    /// What the line adds to the compliance of the chamber, in m3/Pa.
+    /// The contribution of the line to the compliance of the chamber, in m3/Pa.
     pub fn chamber_compliance(&self) -> S {
         if self.count == 0 { self.compliance } else { self.share() / S::from(2.0) }
     }
@@ -219,7 +219,7 @@ impl<S: Scalar> Segments<S> {
         inflow
     }
 
-    /// What the creeping wall takes up at a node, in m3/s.
+    /// The flow into the creeping wall at a node, in m3/s.
     fn creep_rate<T: Scalar + From<S>>(&self, node: usize, pressure: T, state: &[T], rates: &mut [T]) -> T {
         let Some(creep) = self.creep else {
             return <T as From<f64>>::from(0.0);

@@ -11,9 +11,9 @@ use crate::parameter::{ParameterError, Problems};
 /// beta(s) = beta_static + (beta_dynamic - beta_static) tau s/(1 + tau s)
 /// ```
 ///
-/// At rest it is as soft as the catalogue says, worked fast as stiff as was measured at high
-/// frequency, and between it dissipates. One relaxation time is the least that joins both ends;
-/// measured hoses spread theirs over decades.
+/// At rest it is as soft as stated in the catalogue, in fast motion as stiff as measured at high
+/// frequency, and in between it dissipates. A single relaxation time is the simplest model between
+/// these limits; those of measured hoses are spread over decades.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StandardLinearSolid<S = f64> {
     /// Modulus at rest in Pa.
@@ -47,7 +47,7 @@ impl StandardLinearSolid {
         }
     }
 
-    /// What about this wall is impossible; empty if nothing is.
+    /// Impossible parameters of this wall; empty if there are none.
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
         problems.positive("static_modulus", self.static_modulus);
@@ -62,7 +62,7 @@ impl StandardLinearSolid {
         problems.into_vec()
     }
 
-    /// Compliance 1/beta(s) per volume in 1/Pa: what yields at once and what follows.
+    /// Compliance 1/beta(s) per volume in 1/Pa: the immediate and the delayed part.
     ///
     /// ```text
     /// 1/beta(s) = 1/beta_dynamic + (1/beta_static - 1/beta_dynamic)/(1 + theta s)
@@ -73,7 +73,7 @@ impl StandardLinearSolid {
 }
 
 impl<S: Scalar> StandardLinearSolid<S> {
-    /// What follows per volume, 1/beta_static - 1/beta_dynamic, in 1/Pa.
+    /// The delayed part per volume, 1/beta_static - 1/beta_dynamic, in 1/Pa.
     pub fn retarded_compliance(&self) -> S {
         let one = S::from(1.0);
         one / self.static_modulus - one / self.dynamic_modulus

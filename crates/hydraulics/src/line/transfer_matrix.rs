@@ -3,7 +3,7 @@ use phea_dynamics::analytic::Analytic;
 
 use super::DynamicLine;
 
-/// What a line does at one frequency, from its valve port to its chamber.
+/// The response of a line at one frequency, from its valve port to its chamber.
 ///
 /// ```text
 /// p_port  = a p_chamber + b q_chamber
@@ -30,7 +30,7 @@ impl<A: Analytic> TransferMatrix<A> {
         TransferMatrix { pressure: one, impedance: zero, admittance: zero, flow: one }
     }
 
-    /// This line, and at its chamber's end what takes up flow.
+    /// This line with a compliance at the end of its chamber.
     pub(super) fn across(&self, admittance: A) -> TransferMatrix<A> {
         TransferMatrix {
             pressure: self.pressure + self.impedance * admittance,
@@ -69,8 +69,8 @@ impl DynamicLine {
         }
     }
 
-    /// What fluid and wall yield at once, in m3/Pa, the end at the chamber included: the compliance
-    /// of the lumped line. A wall that creeps yields more later.
+    /// The immediate compliance of fluid and wall, in m3/Pa, the end at the chamber included: the
+    /// compliance of the lumped line. A wall that creeps yields more later.
     pub fn elastic_compliance(&self) -> f64 {
         match self {
             DynamicLine::Segments(line) => line.elastic_compliance(),
@@ -87,7 +87,8 @@ impl DynamicLine {
         }
     }
 
-    /// What fluid and wall yield in the end, in m3/Pa: at once, and what the wall creeps.
+    /// The final compliance of fluid and wall, in m3/Pa: the immediate part, and the creep of the
+    /// wall.
     pub(crate) fn static_compliance(&self) -> f64 {
         match self {
             DynamicLine::Segments(line) => line.elastic_compliance() + line.creep_compliance(),

@@ -47,7 +47,7 @@ struct Wave<S> {
     weights: [S; TERMS],
 }
 
-/// What friction leaves of a wave: impedance in Pa s/m3, delay in s, dissipation number.
+/// A wave with friction: impedance in Pa s/m3, delay in s, dissipation number.
 pub(super) struct WaveData {
     pub(super) impedance: f64,
     pub(super) delay: f64,
@@ -115,7 +115,8 @@ impl<const M: usize, S: Copy> TravellingWaves<M, S> {
         self.waves.iter().chain(&self.waves).map(|wave| wave.delay).collect()
     }
 
-    /// What the line adds to the compliance of the chamber, in m3/Pa: its end volume there.
+    /// The contribution of the line to the compliance of the chamber, in m3/Pa: its end volume
+    /// there.
     pub fn chamber_compliance(&self) -> S {
         self.end_compliance
     }
@@ -141,7 +142,7 @@ impl<const M: usize, S: Scalar> TravellingWaves<M, S> {
         let (forward, backward) = (towards(S::from(1.0)), towards(S::from(-1.0)));
         let waves: Vec<S> = forward.clone().chain(backward.clone()).collect();
         let mut state = vec![middle + self.half_resistance * flow];
-        // What leaves an end arrives unchanged at the other.
+        // A wave that leaves one end arrives unchanged at the other.
         for (entering, leaving) in [(flow, forward.collect::<Vec<S>>()), (-flow, backward.collect())] {
             for wave in leaving {
                 state.extend([entering; TERMS]);
@@ -174,7 +175,7 @@ impl<const M: usize, S: Scalar> TravellingWaves<M, S> {
         -from_chamber
     }
 
-    /// What is sent into each delay, in Pa.
+    /// The waves sent into each delay, in Pa.
     #[inline]
     pub fn outgoing<T: Scalar + From<S>>(
         &self,

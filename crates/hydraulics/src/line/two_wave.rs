@@ -23,9 +23,9 @@ pub type TwoWaveLine<S = f64> = TravellingWaves<2, S>;
 /// p = p_1 + p_2,  Z_i = rho c_i/(A (1 - N_i/N_j))              thesis (4.36), (4.38) over the area
 /// ```
 ///
-/// With the wall held at both ends both waves see the same flow and their pressures add. So the hose
-/// is calculated as two lines of impedances Z_i in series at both ends: [`TravellingWaves`]. Friction
-/// acts between fluid and wall.
+/// With the wall held at both ends both waves see the same flow and their pressures add. So the
+/// hose is calculated as two lines of impedances Z_i in series at both ends: [`TravellingWaves`].
+/// Friction acts between fluid and wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TwoWaveHose {
     /// Length L in m.
@@ -81,7 +81,8 @@ impl TwoWaveHose {
         TwoWaveHose::new(hose, length, fluid, pressure, BraidedWall::assumed(hose, member))
     }
 
-    /// What about this hose is impossible; empty if nothing is. A length of zero is possible here.
+    /// Impossible parameters of this hose; empty if there are none. A length of zero is possible
+    /// here.
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
         problems.positive("fluid_modulus", self.fluid_modulus);

@@ -31,7 +31,7 @@ pub struct Decomposition<S = f64> {
     pub valve_damping: S,
 }
 
-/// The fifth-order model taken apart into what fluid, piston and spool contribute.
+/// The fifth-order model decomposed into the contributions of fluid, piston and spool.
 ///
 /// ```text
 /// F_e/U_C = (K_qU K_eq/A_u)/(s + K_c K_eq/A_u^2)  d_0/(s^2 + d_1 s + d_0)  e_0/(s^2 + e_1 s + e_0)      thesis (6.12)
@@ -119,7 +119,7 @@ pub fn decomposed_model(
     TransferFunction::from_factors(gain, Vec::new(), factors.poles())
 }
 
-/// What the decomposition costs against the fifth-order model.
+/// The error of the decomposition compared with the fifth-order model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DecompositionError {
     /// Largest differences over the frequencies asked for.

@@ -2,7 +2,7 @@ use num_complex::Complex64;
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::portable;
 
-/// What one mode (a real pole or a conjugate pair) contributes to the step response.
+/// The contribution of one mode (a real pole or a conjugate pair) to the step response.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ModeShare {
     /// The pole, of a pair the one with positive imaginary part, in rad/s.
@@ -10,7 +10,7 @@ pub struct ModeShare {
     /// Greatest amplitude of this mode in the step response over the final value: |residue/pole|,
     /// twice that for a pair.
     pub step_share: f64,
-    /// Decay rate of this mode over that of the slowest: how many times faster it is gone.
+    /// Decay rate of this mode over that of the slowest: how many times faster it decays.
     pub decay_ratio: f64,
     /// Why a number does not exist and is not a number.
     pub absence: Option<ShareAbsence>,

@@ -103,7 +103,7 @@ pub fn proportional_gain<S: Scalar>(parameters: &LinearParameters<S>, time_const
     (needed - parameters.flow_pressure_coefficient / area) / parameters.flow_gain
 }
 
-/// Proportional gain in V/N at which (6.16) asks for an infinite stiffness: (6.27) with the sensor
+/// Proportional gain in V/N at which (6.16) requires an infinite stiffness: (6.27) with the sensor
 /// as the only spring.
 ///
 /// ```text

@@ -5,7 +5,7 @@ use super::equations::constant;
 use super::{Machine, MachineState, PowerUnit};
 use crate::operating_point::hydraulic_force;
 
-/// What a rest keeps while the pressures find their balance.
+/// The values that an equilibrium keeps while the pressures are found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Kept {
     /// The position of the spool.
@@ -14,8 +14,8 @@ pub(super) enum Kept {
     Force(f64),
 }
 
-/// What surplus flows in m3/s, the supply pressure in Pa, the spool in V and the force in N are
-/// measured by.
+/// The scales of surplus flows in m3/s, of the supply pressure in Pa, of the spool in V and of the
+/// force in N.
 const FLOW_SCALE: f64 = 1e-6;
 const PRESSURE_SCALE: f64 = 1e5;
 const FORCE_SCALE: f64 = 10.0;
@@ -60,7 +60,7 @@ impl Machine {
         balanced
     }
 
-    /// What is left of each of the four equations, and their derivatives by the unknowns.
+    /// The residuals of the four equations, and their derivatives with respect to the unknowns.
     fn surplus(&self, state: &MachineState, unknowns: Unknowns, kept: Kept) -> (Unknowns, Matrix4<f64>) {
         let variable = |index: usize| Dual::<4>::variable(unknowns[index], index);
         let mut dual = MachineState::<Dual<4>>::zero();
@@ -95,8 +95,8 @@ impl Machine {
         (rows.map(|row| row.value()).into(), slopes)
     }
 
-    /// What the chambers take in steady motion, in m3/s: the piston's displacement and the leakage
-    /// across it.
+    /// The flows into the chambers in steady motion, in m3/s: the piston's displacement and the
+    /// leakage across it.
     pub(super) fn steady_flows<T: Scalar + From<f64>>(&self, state: &MachineState<T>) -> [T; 2] {
         let leakage = self.leakage(state);
         [

@@ -25,8 +25,8 @@ pub enum Chambers<S = f64> {
 /// C_A(x, p) = (V_A + A_A x)/beta(p) + W_A + w_A x              and likewise C_B with L - x
 /// ```
 ///
-/// V holds fluid whose modulus is that of the mixture, W is what walls and stated moduli give.
-/// Units: Pa, 1, m, m3, m2, m3/Pa, m2/Pa.
+/// V holds fluid whose modulus is that of the mixture, W is the compliance of walls and stated
+/// moduli. Units: Pa, 1, m, m3, m2, m3/Pa, m2/Pa.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AeratedChambers<S = f64> {
     pub(super) bulk_modulus: S,
@@ -104,7 +104,7 @@ fn without_volume(line: Line) -> Line {
     }
 }
 
-/// What of a side is fluid with air, and what yields without it.
+/// The part of a side that is fluid with air, and the compliance without it.
 fn aerated_side(
     model: StiffnessModel,
     area: f64,

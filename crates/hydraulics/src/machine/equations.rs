@@ -100,7 +100,7 @@ impl<S: Scalar> Machine<S> {
         [line_a.port_pressure(state_a, chambers[0]), line_b.port_pressure(state_b, chambers[1])]
     }
 
-    /// Compliance of both chambers with what their lines add, in m3/Pa.
+    /// Compliance of both chambers including their lines, in m3/Pa.
     #[inline(always)]
     pub(super) fn compliance<T: Scalar + From<S>>(&self, state: &MachineState<T>, position: T) -> [T; 2] {
         self.chambers.compliance(position, [state.pressure_a, state.pressure_b])
@@ -230,7 +230,7 @@ impl<S: Scalar> Machine<S> {
         ]
     }
 
-    /// What is sent into the lines' delays, in Pa.
+    /// The waves sent into the delays of the lines, in Pa.
     pub(super) fn write_outgoing<T: Scalar + From<S>>(&self, vector: &[T], inputs: &[T], waves: &mut [T]) {
         let state = self.layout.read(vector);
         let [state_a, state_b] = self.layout.lines(vector);

@@ -7,13 +7,13 @@ use super::Machine;
 use super::equations::constant;
 use instant::Instant;
 
-/// Names of the accounts of oil, in the order of [`Ledger::oil`]. What a machine does not have is
-/// zero.
+/// Names of the accounts of oil, in the order of [`Ledger::oil`]. Accounts of parts that a machine
+/// lacks are zero.
 pub const OIL_ACCOUNTS: [&str; 7] =
     ["chamber_a", "chamber_b", "line_a", "line_b", "supply", "accumulator", "rig"];
 
-/// Names of the accounts of energy, in the order of [`Ledger::energy`]. What a machine does not
-/// have is zero.
+/// Names of the accounts of energy, in the order of [`Ledger::energy`]. Accounts of parts that a
+/// machine lacks are zero.
 pub const ENERGY_ACCOUNTS: [&str; 14] = [
     "chamber_a",
     "chamber_b",
@@ -31,7 +31,7 @@ pub const ENERGY_ACCOUNTS: [&str; 14] = [
     "rig",
 ];
 
-/// What a component holds, what enters it and what it loses.
+/// The content of a component, its inflow and its losses.
 ///
 /// ```text
 /// d(stored)/dt = inflow - lost
@@ -41,13 +41,12 @@ pub const ENERGY_ACCOUNTS: [&str; 14] = [
 /// definition.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Account<T> {
-    /// What the component holds: J, or m3 of oil, which is counted at zero gauge pressure but for
-    /// the volumes of lines and gas.
+    /// The content of the component: J, or m3 of oil, which is counted at zero gauge pressure
+    /// except for the volumes of lines and gas.
     pub stored: T,
-    /// What enters through its ports, in W or m3/s.
+    /// Inflow through its ports, in W or m3/s.
     pub inflow: T,
-    /// What it turns into heat, in W; of oil, what an equation in volumes does not hand on, in
-    /// m3/s.
+    /// Dissipation, in W; for oil, the loss of an equation in volumes, in m3/s.
     pub lost: T,
 }
 
@@ -60,7 +59,7 @@ pub struct Ledger<T> {
     pub energy: [Account<T>; ENERGY_ACCOUNTS.len()],
 }
 
-/// What only takes power and turns it into heat.
+/// A component that only dissipates power.
 fn heat<T: Scalar>(power: T) -> Account<T> {
     Account { stored: T::from(0.0), inflow: power, lost: power }
 }
@@ -70,8 +69,8 @@ fn total<T: Scalar>(accounts: &[Account<T>], of: fn(&Account<T>) -> T) -> T {
 }
 
 impl<S: Scalar> Machine<S> {
-    /// The accounts of oil and energy; `None` where waves travel along a line: what is under way is
-    /// no part of states and inputs.
+    /// The accounts of oil and energy; `None` where waves travel along a line: their content in
+    /// transit is not part of states and inputs.
     ///
     /// ```text
     ///               oil                        energy
@@ -88,10 +87,10 @@ impl<S: Scalar> Machine<S> {
     /// yield as much; with air it is the fluid's own, and the oil that yielding walls take is
     /// added.
     ///
-    /// Edges, lines and gas hand on volumes: what such an element takes at one density and gives at
-    /// another is lost to the rig's account of oil, q times the difference of both densities, at
-    /// most p_S/beta of the flow where no air is. A supply that is constant holds nothing, at the
-    /// density of side A.
+    /// Edges, lines and gas pass on volumes: the difference between the densities at which such an
+    /// element receives and delivers oil is lost to the rig's account of oil, q times the
+    /// difference of both densities, at most p_S/beta of the flow where no air is. A constant
+    /// supply has no content, and the density of side A.
     pub fn ledger<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T]) -> Option<Ledger<T>> {
         let instant = self.instant(state, inputs)?;
         Some(Ledger { oil: self.oil(&instant), energy: self.energy(&instant) })
@@ -158,8 +157,8 @@ impl<S: Scalar> Machine<S> {
             end_stops,
             load,
         ];
-        // Only what crosses the rig's border: flow work and compression energy of the oil, the work
-        // of the force from outside, and that on the ground.
+        // Only the flows across the rig's border: flow work and compression energy of the oil, the
+        // work of the external force, and that on the ground.
         let carried = side_a.compression() * into_a
             + side_b.compression() * into_b
             + supply.line.compression() * supply.line_flow();

@@ -3,7 +3,7 @@ use phea_dynamics::scalar::Scalar;
 use crate::contact::Contact;
 use crate::parameter::{ParameterError, Problems};
 
-/// What the force sensor pushes on. Units: kg, N/m, N s/m, m.
+/// The load on the force sensor. Units: kg, N/m, N s/m, m.
 ///
 /// Each has a ground, whose position x_0 in m and velocity v_0 in m/s are the two inputs of the
 /// machine.
@@ -54,7 +54,7 @@ pub struct Motion<S = f64> {
 }
 
 impl LoadModel {
-    /// What about this load is impossible; empty if nothing is.
+    /// Impossible parameters of this load; empty if there are none.
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
         match *self {
@@ -125,8 +125,7 @@ impl<S: Scalar> LoadModel<S> {
         }
     }
 
-    /// Energy in J that the load holds, what its ground takes from it in W, and what it turns into
-    /// heat in W.
+    /// Energy of the load in J, power that its ground takes from it in W, and its dissipation in W.
     pub(super) fn powers(&self, load: &Motion<S>, ground: &Motion<S>) -> [S; 3] {
         let (zero, half) = (S::from(0.0), S::from(0.5));
         let relative = relative(load, ground);
@@ -150,7 +149,7 @@ impl<S: Scalar> LoadModel<S> {
         }
     }
 
-    /// What is left of the gap in m; negative in contact. One metre for loads without a wall.
+    /// The remaining gap in m; negative in contact. One metre for loads without a wall.
     pub fn clearance(&self, load: &Motion<S>, ground: &Motion<S>) -> S {
         match self {
             LoadModel::Wall { gap, .. } => *gap - relative(load, ground).position,

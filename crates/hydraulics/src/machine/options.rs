@@ -7,7 +7,7 @@ use crate::servovalve::SpoolImperfection;
 /// against an atmosphere.
 pub(crate) const VAPOUR_PRESSURE_ABSOLUTE: f64 = 0.0;
 
-/// What a machine has beyond its actuator. The default adds nothing: a prescribed load on a
+/// The parts of a machine other than its actuator. The default adds nothing: a prescribed load on a
 /// constant supply.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MachineOptions {
@@ -54,7 +54,7 @@ impl Default for MachineOptions {
 }
 
 impl MachineOptions {
-    /// What about these options is impossible; empty if nothing is.
+    /// Impossible ones among these options; empty if there are none.
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
         problems.component("valve", self.spool.problems());
@@ -95,7 +95,7 @@ pub enum MachineError {
     ChamberVanishes {
         /// How far into the stop, in m.
         penetration: f64,
-        /// What is left of the compliance of the smaller chamber with its line, in m3/Pa.
+        /// The remaining compliance of the smaller chamber with its line, in m3/Pa.
         compliance: f64,
     },
     /// The start lies outside the stroke.

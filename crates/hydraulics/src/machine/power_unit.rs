@@ -24,8 +24,7 @@ pub enum PowerUnit<S = f64> {
     PumpLimited(PumpLimited<S>),
 }
 
-/// A pump of fixed flow, a relief valve and what lies between them and the servovalve. Units: m3/s,
-/// Pa, m3.
+/// A pump with fixed flow, a relief valve and the line to the servovalve. Units: m3/s, Pa, m3.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PumpLimited<S = f64> {
     /// Flow of the pump in m3/s.
@@ -53,7 +52,7 @@ pub struct Accumulator<S = f64> {
 }
 
 impl PumpLimited {
-    /// What about this power unit is impossible; empty if nothing is.
+    /// Impossible parameters of this power unit; empty if there are none.
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
         problems.not_negative("pump_flow", self.pump_flow);
@@ -164,7 +163,7 @@ impl<S: Scalar> Accumulator<S> {
         self.gas_volume * (S::from(1.0) - (-self.squeeze(pressure)).exp())
     }
 
-    /// What was put into it at gauge pressure since the bladder filled the shell, in J.
+    /// Energy supplied to it at gauge pressure since the bladder filled the shell, in J.
     ///
     /// ```text
     /// integral of p dV = P_0 V_0 ((P/P_0)^((n-1)/n) - 1)/(n - 1) - p_atm (V_0 - V)

@@ -3,7 +3,7 @@ use phea_dynamics::scalar::Scalar;
 use super::equations::constant;
 use super::{Machine, Motion};
 
-/// Names of what a machine tells of itself, with units, in the order of [`Machine::outputs`].
+/// Names of the signals of a machine, with units, in the order of [`Machine::outputs`].
 pub const SIGNALS: [&str; 19] = [
     "force_n",
     "spool_v",
@@ -44,8 +44,8 @@ pub const INDICATORS: [&str; 8] = [
 ];
 
 impl<S: Scalar> Machine<S> {
-    /// The [`SIGNALS`] at a state and inputs. `spool_v` is the spool's position U, `opening_v` what
-    /// the edges are opened by, y = U - U_0 - z, less null bias and magnetic lag
+    /// The [`SIGNALS`] at a state and inputs. `spool_v` is the spool's position U, `opening_v` the
+    /// opening of the edges, y = U - U_0 - z, less null bias and magnetic lag
     /// ([`crate::servovalve::SpoolImperfection`]); flows are those of the valve's ports A and B
     /// into the lines. `port_pressure` is that of a line's end at the valve, `pressure` that of its
     /// end at the chamber, which is the chamber's. `force_n` is what the rod pushes on the load
@@ -122,7 +122,7 @@ impl<S: Scalar> Machine<S> {
     }
 }
 
-/// The machine's inputs by name; what is missing is not a number.
+/// The machine's inputs by name; missing inputs are NaN.
 #[inline(always)]
 pub(super) fn ground_of<T: Scalar>(inputs: &[T]) -> Motion<T> {
     let mut entries = inputs.iter().copied();

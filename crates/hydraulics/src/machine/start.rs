@@ -6,8 +6,8 @@ use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 use crate::friction::MovingFriction;
 use crate::operating_point::OperatingPoint;
 
-/// Values that a run starts from; what is not stated is zero, the supply's pressure as its power
-/// unit holds it.
+/// Initial values of a run; values that are not stated are zero, and the supply pressure is that of
+/// its power unit.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StartValues {
     /// Piston position x in m.
@@ -47,7 +47,7 @@ impl InitialCondition {
     }
 }
 
-/// What may remain of a rest, in scales per second.
+/// Largest residual of an equilibrium, in scales per second.
 const REST_TOLERANCE: f64 = 1e-4;
 /// Force in N that is rounding: a load without spring or wall holds it.
 const ROUNDED_FORCE: f64 = 1e-6;
@@ -89,9 +89,9 @@ impl Machine {
     /// The machine at rest, or in steady motion with its load, at an operating point of its
     /// actuator: its command is kept.
     ///
-    /// What the operating point leaves out (leakage across the piston, a pump that yields, lines
-    /// that resist) moves the pressures to where all flows balance, and the force is what they
-    /// hold.
+    /// Effects that the operating point leaves out (leakage across the piston, a limited pump,
+    /// resistance of lines) shift the pressures to where all flows balance, and the force is the
+    /// one that they hold.
     ///
     /// # Errors
     /// As [`Machine::start`]; no balance near the operating point.

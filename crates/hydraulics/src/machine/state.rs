@@ -4,12 +4,12 @@ use phea_dynamics::simulation::Sliding;
 use super::{Machine, Motion};
 use crate::servovalve::SpoolState;
 
-/// States of a machine, or their rates, by name. What a machine does not have is zero and takes no
+/// States of a machine, or their rates, by name. States that a machine lacks are zero and have no
 /// place in its vector.
 ///
 /// The order of the vector is that of the fields: spool voltage and rate, p_A, p_B, deflection,
-/// velocity, and then what there is of bristles, load, supply, spool friction, magnetic lag. The
-/// states of lines, which have no names, follow.
+/// velocity, and then, if present, those of bristles, load, supply, spool friction, magnetic lag.
+/// The states of lines, which have no names, follow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MachineState<T = f64> {
     /// Position of the spool in V and what moves it; its two memories stand last in the vector.
@@ -25,8 +25,8 @@ pub struct MachineState<T = f64> {
     /// Deflection z of the bristles in m.
     pub bristle: T,
     /// A load that moves by itself: its position from its ground, x_L - x_0, in m, and its velocity
-    /// v_L in m/s. Errors are measured by what moves its spring or its wall, not by how far it
-    /// stands from the cylinder's end.
+    /// v_L in m/s. Errors are scaled by the deformation of its spring or wall, not by its distance
+    /// from the end of the cylinder.
     pub load: Motion<T>,
     /// Supply pressure p_S in Pa, where a pump is limited.
     pub supply_pressure: T,
@@ -162,7 +162,7 @@ impl Layout {
         two_parts(inputs, self.before_waves(), self.waves)
     }
 
-    /// Places of what is sent into both lines.
+    /// Indices of the waves sent into both lines.
     pub(super) fn outgoing<'a, T>(&self, waves: &'a mut [T]) -> [&'a mut [T]; 2] {
         match waves.split_at_mut_checked(self.waves[0]) {
             Some(parts) => [parts.0, parts.1],
@@ -170,7 +170,7 @@ impl Layout {
         }
     }
 
-    /// The states by name; what the vector lacks is not a number.
+    /// The states by name; states that the vector lacks are NaN.
     #[inline(always)]
     pub(super) fn read<T: Scalar>(&self, vector: &[T]) -> MachineState<T> {
         let mut state = MachineState::zero();
@@ -272,8 +272,8 @@ const NAMES: MachineState<&str> = MachineState {
 };
 
 impl<S: Scalar> Machine<S> {
-    /// A tenth of what the supply can push with, in N: the magnitude from which those of the states
-    /// follow.
+    /// A tenth of the force that the supply can produce, in N: the typical magnitudes of the states
+    /// follow from it.
     pub(super) fn typical_force(&self) -> S {
         self.typical_pressure() * (self.cylinder.area_a + self.cylinder.area_b) / S::from(2.0)
     }
@@ -287,8 +287,8 @@ impl<S: Scalar> Machine<S> {
         self.valve.nominal_voltage / S::from(10.0)
     }
 
-    /// Typical magnitudes of the states, by which errors are measured: what the typical force and
-    /// command make of each.
+    /// Typical magnitudes of the states, by which errors are scaled, from the typical force and
+    /// command.
     fn typical_state(&self) -> MachineState<S> {
         let (command, pressure, force) =
             (self.typical_command(), self.typical_pressure(), self.typical_force());

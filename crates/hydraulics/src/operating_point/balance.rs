@@ -6,7 +6,8 @@ use super::{OperatingPoint, OperatingPointError, SteadyLoad, hydraulic_force};
 use crate::actuator::Components;
 use crate::servovalve::{ChamberFlows, Servovalve, Supply, chamber_flows};
 
-/// What the balance of flows and forces depends on. Units: those of the components, m2, m3/(s Pa).
+/// The parameters of the balance of flows and forces. Units: those of the components, m2, m3/(s
+/// Pa).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Balance<S = f64> {
     /// The servovalve.
@@ -67,7 +68,7 @@ impl Balance {
         }
     }
 
-    /// What these pressures hold, in the load's own unit.
+    /// The load that these pressures hold, in its own unit.
     fn held(&self, load: SteadyLoad, [pressure_a, pressure_b]: [f64; 2]) -> f64 {
         match load {
             SteadyLoad::Force(_) => hydraulic_force(self.areas, [pressure_a, pressure_b]),

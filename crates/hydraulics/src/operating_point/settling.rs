@@ -4,7 +4,7 @@
 //! A `Scalar` never branches on a value, so nothing here stops early. Closed forms of plain square
 //! roots bracket the unknown, halvings of the bracket come near it from anywhere, and a fixed
 //! number of Newton steps on the regular equations of [`crate::servovalve`] does the rest;
-//! [`Balance::error`] measures what is left.
+//! [`Balance::error`] measures the residual.
 
 use phea_dynamics::scalar::Scalar;
 
@@ -13,7 +13,7 @@ use crate::servovalve::{
     ChamberCoefficients, ChamberFlows, SpoolDirection, chamber_coefficients, chamber_flows, edge_conductances,
 };
 
-/// What is known of an operating point, over any scalar.
+/// The conditions of an operating point, over any scalar.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Steady<S = f64> {
     /// Standstill at this spool command in V.
@@ -42,16 +42,17 @@ pub struct Settled<S = f64> {
 /// Halvings of the spool's travel: to 4e-6 of it, where the leakage of the edges takes a hundredth
 /// to fall.
 const HALVINGS_OF_TRAVEL: usize = 18;
-/// Halvings of the load pressure that leakage across the piston leaves.
+/// Number of halvings for the load pressure that remains with leakage across the piston.
 const HALVINGS_OF_LEAKAGE: usize = 12;
 /// How often the load pressure of unequal areas is taken anew.
 const ROUNDS: usize = 3;
 /// Newton steps without and with leakage across the piston.
 const STEPS: [usize; 2] = [5, 9];
-/// Part of the nominal voltage within which a spool stands at null: nearer than rounding tells.
+/// Share of the nominal voltage within which a spool counts as at null: closer than rounding can
+/// distinguish.
 pub(super) const AT_NULL: f64 = 1e-12;
 
-/// What each side of the piston takes, and how the pressures are bound to each other.
+/// The flow into each side of the piston, and the relation between the pressures.
 #[derive(Clone, Copy)]
 struct PressureHold<S> {
     velocity: S,
@@ -200,8 +201,8 @@ impl<S: Scalar> Balance<S> {
         S::select(is_above, self.supply.tank_pressure + above.squared(), not_above)
     }
 
-    /// What flows into each chamber beyond what the piston and the leakage across it take, and the
-    /// leakage's conductance.
+    /// The surplus flow into each chamber, after the piston and the leakage across it, and the
+    /// conductance of the leakage.
     fn surplus(&self, command: S, velocity: S, [pressure_a, pressure_b]: [S; 2]) -> ([S; 2], S) {
         let ChamberFlows { into_a, into_b } =
             chamber_flows(&self.valve, &self.supply, command, pressure_a, pressure_b);

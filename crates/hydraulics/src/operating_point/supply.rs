@@ -13,7 +13,7 @@ pub struct SettledSupply<S = f64> {
     pub supply: Supply<S>,
     /// Command and chamber pressures.
     pub settled: Settled<S>,
-    /// What the valve takes from the supply, its tare flow included.
+    /// The flow of the valve from the supply, its tare flow included.
     pub taken: S,
 }
 
@@ -33,7 +33,7 @@ impl<S: Scalar> Balance<S> {
     /// this is not an equilibrium, and the pressure falls.
     ///
     /// # Example
-    /// At null a pump of 10 L/min gives what leaks and the tare flow, 0.92 L/min in all.
+    /// At null a pump of 10 L/min supplies the leakage and the tare flow, 0.92 L/min in all.
     /// ```
     /// # use phea_hydraulics::{reference_rig::{components, hose_line}, stiffness::StiffnessModel};
     /// use phea_hydraulics::machine::PumpLimited;

@@ -7,8 +7,8 @@ use super::supply::{Coupled, Over};
 use super::{Chamber, ChamberPolynomials, LinearLoad, LinearPlant, YieldingSupply};
 use crate::line::{DynamicLine, Segments, TransferMatrix};
 
-/// The plant with lines that have dynamics of their own: what no quotient of polynomials is, but a
-/// response at every frequency.
+/// The plant with lines that have dynamics of their own: it is not a quotient of polynomials, but
+/// has a response at every frequency.
 ///
 /// ```text
 /// q_valve = K_q U_sp - K_c p_port                                              valve
@@ -53,7 +53,7 @@ pub struct PlantInMotion {
     lateness: f64,
 }
 
-/// What the chambers of a plant consist of. Units: m3/Pa.
+/// The chambers of a plant. Units: m3/Pa.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BehindLines {
     /// The lines.
@@ -85,8 +85,8 @@ struct AtChamber<A> {
     impedance: A,
 }
 
-/// F_e (sensed - fed) = command U_C + ground X_0, `fed` being what the velocity of a load that
-/// yields feeds back.
+/// F_e (sensed - fed) = command U_C + ground X_0, `fed` being the feedback through the velocity of
+/// a load that can move.
 struct Paths<A> {
     command: A,
     ground: A,
@@ -103,7 +103,7 @@ impl PlantInMotion {
         PlantInMotion { plant: LinearPlant { load_velocity_feed_forward, ..self.plant }, ..self }
     }
 
-    /// The same with what is fed forward late by a delay in s: K_x e^(-s tau) for K_x.
+    /// The same with the feed-forward delayed by a time in s: K_x e^(-s tau) for K_x.
     #[must_use]
     pub fn late(self, lateness: f64) -> PlantInMotion {
         PlantInMotion { lateness, ..self }
@@ -184,8 +184,8 @@ impl PlantInMotion {
         }
     }
 
-    /// D, N_u and N_v at s, times what both lines pass, so that nothing is divided by what vanishes
-    /// at a resonance.
+    /// D, N_u and N_v at s, multiplied by the transmission of both lines, so that nothing is
+    /// divided by a quantity that vanishes at a resonance.
     fn chambers<A: Analytic>(&self, s: A) -> ChamberPolynomials<A> {
         let [one, other] = &self.sides;
         let line = one.line.transfer_matrix(s);
@@ -215,7 +215,8 @@ impl PlantInMotion {
         }
     }
 
-    /// With a supply that yields. Its edges end at the valve's ports, whose pressures are, with a d - b c = 1,
+    /// With a supply that yields. Its edges end at the valve's ports, whose pressures are, with a d
+    /// - b c = 1,
     ///
     /// ```text
     /// p_port = (p + b K_q U + b s_i p_S)/(d + K_c b)
@@ -240,8 +241,8 @@ impl PlantInMotion {
         }
     }
 
-    /// Whether nothing in it but what is fed forward gives energy, so that without that none of its
-    /// poles lies in the right half plane: its lines are passive, and so are valve, leakage,
+    /// Whether nothing in it except the feed-forward supplies energy, so that without it none of
+    /// its poles lies in the right half plane: its lines are passive, and so are valve, leakage,
     /// friction and load where none of their coefficients is negative.
     pub fn is_passive(&self) -> bool {
         let load = match self.plant.load {

@@ -84,8 +84,8 @@ pub enum LeakageModel {
 /// ```
 ///
 /// plus for edges 3 and 6, minus for 4 and 5. With one curve two edges in series pass k sech
-/// sqrt(p_S - p_T) when their port is shut, wherever the spool is, so that the whole leakage is that
-/// of thesis (4.14) with K_vinp sqrt(2) the sum of both k. At null both are K_vini.
+/// sqrt(p_S - p_T) when their port is shut, wherever the spool is, so that the whole leakage is
+/// that of thesis (4.14) with K_vinp sqrt(2) the sum of both k. At null both are K_vini.
 ///
 /// # Example
 /// The leakage of equal edges away from null: one curve, and sqrt(2) of it.

@@ -60,8 +60,8 @@ pub fn blocked_ports<S: Scalar>(valve: &Servovalve<S>, supply: &Supply<S>, openi
     state(edges, supply, transition, [of(supply_a, tank_a), of(supply_b, tank_b)], S::from(0.0))
 }
 
-/// Ports connected to each other with the load pressure p_A - p_B between them in Pa, zero without a
-/// meter: the metering test of ISO 10770-1.
+/// Ports connected to each other with the load pressure p_A - p_B between them in Pa, zero without
+/// a meter: the metering test of ISO 10770-1.
 ///
 /// ```text
 /// q_v3(p_A) + q_v5(p_B) = q_v4(p_A) + q_v6(p_B)        p_A - p_B = p_L
@@ -99,8 +99,8 @@ pub fn connected_ports<S: Scalar>(
     state(edges, supply, transition, [mean + half, mean - half], S::from(1.0))
 }
 
-/// Where the ports are, by one step of Newton's method from where they are known to be: over numbers
-/// with derivatives, the derivatives of what the steps above lead to.
+/// Where the ports are, by one step of Newton's method from where they are known to be: over
+/// numbers with derivatives, the derivatives of what the steps above lead to.
 pub(super) struct KnownPorts {
     /// How the ports are piped.
     pub(super) circuit: PortCircuit,
@@ -136,8 +136,8 @@ impl LocalFunction<f64, 4, 4> for KnownPorts {
     }
 }
 
-/// Newton's step of the pressures, moved together, towards a balance of the flows into the ports, in
-/// Pa.
+/// Newton's step of the pressures, moved together, towards a balance of the flows into the ports,
+/// in Pa.
 ///
 /// ```text
 /// (q_4 + q_6 - q_3 - q_5)/(q_4' + q_6' + q_3' + q_5')              primes for the slope over the own drop

@@ -54,7 +54,7 @@ pub struct SpoolState<S> {
 }
 
 impl SpoolImperfection {
-    /// What about this spool is impossible; empty if nothing is.
+    /// Impossible parameters of this spool; empty if there are none.
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
         problems.require("null_bias", self.null_bias, true, "a finite number");

@@ -1,5 +1,5 @@
-//! A test stand around a servovalve: a pump that may give less than the valve takes, and a meter that
-//! takes a part of the pressure.
+//! A test stand around a servovalve: a pump that may give less than the valve takes, and a meter
+//! that takes a part of the pressure.
 
 use super::{PortCircuit, PortState, Servovalve, Supply, blocked_ports, connected_ports, tare_flow};
 use crate::orifice::regular_root;

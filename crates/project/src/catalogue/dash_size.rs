@@ -1,5 +1,5 @@
-/// Hose bores on the market by dash size (sixteenths of an inch), m. Source: dealers' hose size charts for hydraulic
-/// hose, which agree on these nominal inner diameters.
+/// Hose bores on the market by dash size (sixteenths of an inch), m. Source: dealers' hose size
+/// charts for hydraulic hose, which agree on these nominal inner diameters.
 pub const DASH_SIZES: [(&str, f64); 8] = [
     ("dash 3", 4.8e-3),
     ("dash 4", 6.4e-3),

@@ -11,7 +11,7 @@ use crate::{
 };
 use phea_quantity::RATIO;
 
-/// Keys of a file that are about the product rather than of it.
+/// Keys of a file that describe the entry rather than the product.
 const HEAD: [&str; 7] = ["schema", "kind", "name", "title", "manufacturer", "source", "sources"];
 
 /// The built-in catalogue and what the given files and folders add or replace.
@@ -52,7 +52,7 @@ impl Catalogue {
         catalogue
     }
 
-    /// What comes with the workbench. Its files are checked by tests, so that nothing is found in them here.
+    /// The built-in catalogue. Its files are checked by tests, so that no findings arise here.
     fn built_in() -> Catalogue {
         let mut catalogue = Catalogue::default();
         let mut findings = Findings::default();
@@ -73,7 +73,7 @@ impl Catalogue {
     }
 }
 
-/// What a file says about its product.
+/// The description of a product in a file.
 #[derive(Default)]
 struct Head {
     kind: CatalogueKind,
@@ -128,7 +128,7 @@ fn entry(file: &str, root: TreeNode, findings: &mut Findings) -> Option<Catalogu
     })
 }
 
-/// The sources of single numbers. A number without any source is refused.
+/// The sources of single numbers. A number without any source is rejected.
 fn sources(root: &TreeNode, head: &Head, findings: &mut Findings) -> Vec<(String, String)> {
     let mut sources = Vec::new();
     for entry in root.get("sources").map(|entry| entry.node.entries()).unwrap_or_default() {

@@ -13,13 +13,13 @@ use crate::validate;
 use crate::visitor::{Variants, Visitor};
 use phea_quantity::{ANGULAR_FREQUENCY, RATIO, TIME};
 
-/// One element of a controller; every kind but gain, `pi`, `pid` and `general` has unit gain at zero frequency (integrator and
-/// differentiator: at 1 rad/s).
+/// One element of a controller; every kind but gain, `pi`, `pid` and `general` has unit gain at
+/// zero frequency (integrator and differentiator: at 1 rad/s).
 #[derive(Clone, Debug, PartialEq)]
 pub struct DeclaredElement {
     /// Which element.
     pub kind: ElementKind,
-    /// Whether it acts; one that does not is kept in the list all the same.
+    /// Whether it acts; a disabled element stays in the list.
     pub enabled: bool,
 }
 
@@ -263,7 +263,8 @@ impl DeclaredElement {
         printer.finish()
     }
 
-    /// The element that a table describes; what is wrong with it goes to the findings. `sample_time` in s is that of the controller.
+    /// The element that a table describes; its errors go to the findings. `sample_time` in s is
+    /// that of the controller.
     pub fn read(
         node: &TreeNode,
         sample_time: Option<f64>,

@@ -26,7 +26,7 @@ pub(super) fn ratio<S: Scalar>(
     values.pop().ok_or_else(|| FormulaError::new("an empty formula", 0..formula.text.len()))
 }
 
-/// What speaks against coefficients that are numbers.
+/// Why the coefficients are not plain numbers.
 pub(super) fn not_finite(value: &Ratio<f64>) -> Option<&'static str> {
     let finite = value.numerator.iter().chain(&value.denominator).all(|c| c.is_finite());
     if finite { None } else { Some("a coefficient is too large, or divided by zero") }
@@ -39,7 +39,7 @@ pub(super) fn trimmed(coefficients: Vec<f64>) -> Vec<f64> {
     coefficients.into_iter().skip(kept).collect()
 }
 
-/// The value of a node whose operands have theirs.
+/// The value of a node whose operands are evaluated.
 fn of_node<S: Scalar>(
     node: &FormulaNode,
     values: &[Ratio<S>],

@@ -1,4 +1,4 @@
-//! Variants and ways: what chooses them, and the keys of those that were not chosen.
+//! Variants and ways: their choice, and the keys of those that were not chosen.
 
 use super::{Layer, Reader};
 use crate::key::Key;
@@ -50,7 +50,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Tells the keys of other variants that are written all the same; their values must be right.
+    /// Reports keys of other variants that are written nevertheless; their values must be valid.
     pub(super) fn without_effect<T: Variants>(&mut self, key: Key, chosen: &T, all: &[T]) {
         let mut read = keys_of(chosen);
         for other in all {
@@ -69,7 +69,8 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Warns of keys that were asked for since so many were known, where nothing chose what they belong to.
+    /// Warns about keys read since this number of keys was known, if nothing chose the way that
+    /// they belong to.
     pub(super) fn without_choice(&mut self, chosen_by: &[&'static str], known: usize) {
         let asked =
             self.frames.last().and_then(|frame| frame.asked.get(known..)).unwrap_or_default().to_vec();
@@ -82,7 +83,8 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Refuses every key that is written beside an earlier one, unless its value was refused already.
+    /// Rejects every key that is written together with an earlier one, unless its value was already
+    /// rejected.
     pub(super) fn at_most_one(&mut self, keys: &[&'static str]) {
         let mut written = keys.iter().filter_map(|name| Some((*name, self.written(name)?)));
         let Some((first, _)) = written.next() else { return };
@@ -94,7 +96,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Whether one of these keys is there, or none has to be.
+    /// Whether one of these keys is present, or none is needed.
     pub(super) fn takes_absent_of(&mut self, keys: &[&'static str]) -> bool {
         keys.iter().any(|name| self.is_there(name)) || self.takes_absent()
     }
@@ -109,7 +111,8 @@ impl<'a> Reader<'a> {
         self.frames.last().is_some_and(|frame| frame.lost)
     }
 
-    /// Where a key of the present table is written, here or in what it inherits; what the catalogue says is not.
+    /// Where a key of the present table is written, here or in what it inherits; keys from the
+    /// catalogue are not.
     pub(super) fn written(&self, name: &str) -> Option<Place> {
         let seen = |layer: &&Layer<'_>| layer.entry.is_none() && !layer.hidden.contains(&name);
         let mut layers = self.frames.last()?.layers.iter().filter(seen);

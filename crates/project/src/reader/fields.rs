@@ -1,4 +1,4 @@
-//! What each description of a table does when it is read.
+//! How each description of a table is read.
 
 use super::{Hit, Layer, Reader};
 use crate::Origin;
@@ -160,7 +160,7 @@ impl Visitor for Reader<'_> {
                 self.choose(None);
                 self.without_effect(key, field, &all);
             }
-            // what is not known to be of another variant is not unknown
+            // a key that may belong to another variant does not count as unknown
             None => all.iter().flat_map(keys_of).for_each(|name| self.know(name)),
         }
     }

@@ -1,4 +1,4 @@
-//! Numbers and formulas, and what is wrong with them.
+//! Numbers and formulas, and their errors.
 
 use super::Reader;
 use crate::formula::{Formula, Ratio};
@@ -33,7 +33,7 @@ impl Reader<'_> {
         if key.range.contains(value) {
             return Some(value);
         }
-        // A number that f64 cannot hold was refused where it was read.
+        // A number that f64 cannot hold was rejected where it was read.
         if !self.findings.has_error_within(node.place) {
             self.findings.push(RawFinding::error(node.place, objection(key, value)));
         }
@@ -171,7 +171,7 @@ impl Reader<'_> {
         false
     }
 
-    /// Where a part of a decoded text stands in the file: exact unless the text has escapes.
+    /// The position of a part of a decoded text in the file: exact unless the text has escapes.
     fn inside(&self, node: &TreeNode, text: &str, range: std::ops::Range<usize>) -> Place {
         let Place { text: index, start, end } = node.place;
         let raw = self.findings.content(index).get(start..end).unwrap_or_default();

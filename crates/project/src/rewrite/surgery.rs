@@ -1,15 +1,15 @@
-//! Keys of one table of a text taken out, and lines put in their place.
+//! Removes keys of one table of a text and puts lines in their place.
 
 use super::statement::{Statement, StatementContent, entries, statements};
 
-/// Keys of [controller] and [prefilter] that make a law.
+/// Keys of [controller] and [prefilter] that form a transfer function.
 pub(super) const LAW: [&str; 7] =
     ["numerator", "denominator", "gain", "zeros", "poles", "domain", "elements"];
 
 /// Keys with their values as TOML.
 pub(super) type KeyValues = Vec<(String, String)>;
 
-/// The text with these keys of a top-level table taken out and these lines in their place.
+/// The text with these keys of a top-level table removed and these lines in their place.
 pub(super) fn replaced(text: &str, table: &str, keys: &[&str], lines: &[(String, String)]) -> String {
     let end = if text.contains("\r\n") { "\r\n" } else { "\n" };
     let mut surgery =
@@ -25,10 +25,10 @@ pub(super) fn replaced(text: &str, table: &str, keys: &[&str], lines: &[(String,
     surgery.out
 }
 
-/// A text on its way from statement to statement.
+/// A text that is processed statement by statement.
 struct Surgery<'a> {
     table: &'a str,
-    /// Keys of it that are taken out.
+    /// Its keys that are removed.
     keys: &'a [&'a str],
     lines: &'a [(String, String)],
     /// End of a line.
@@ -72,7 +72,7 @@ impl Surgery<'_> {
         }
     }
 
-    /// Whether a key or table is part of what is replaced.
+    /// Whether a key or table is replaced.
     fn is_replaced(&self, path: &[String]) -> bool {
         matches!(path, [table, key, ..] if table == self.table && self.keys.contains(&key.as_str()))
     }
@@ -84,7 +84,7 @@ impl Surgery<'_> {
         }
     }
 
-    /// `controller = { ... }`: what stays of it and the new entries, in one line.
+    /// `controller = { ... }`: the remaining and the new entries, in one line.
     fn inline(&mut self, written: &str, value: std::ops::Range<usize>) {
         self.inserted = true;
         let kept = entries(written.get(value.clone()).unwrap_or_default());

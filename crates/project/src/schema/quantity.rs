@@ -8,7 +8,7 @@ use serde_json::{Map, Value, json};
 
 use crate::key::Key;
 
-/// Of a number whose dimension is that of whatever the user names.
+/// Of a number whose dimension depends on what the user names.
 pub(super) static ANY: Dimension = Dimension {
     name: "a quantity",
     exponents: Exponents::NONE,
@@ -36,7 +36,7 @@ pub(super) fn definitions() -> Value {
     Value::Object(all)
 }
 
-/// The name of a dimension, without its article and what a pointer cannot hold.
+/// The name of a dimension, without its article and characters that a pointer cannot contain.
 fn identifier(dimension: &Dimension) -> String {
     let name = dimension.name.trim_start_matches("an ").trim_start_matches("a ");
     name.replace(|c: char| !c.is_ascii_alphanumeric(), "_")
@@ -46,7 +46,8 @@ fn reference(name: &str) -> Value {
     json!({ "$ref": format!("#/definitions/{name}") })
 }
 
-/// A number, bare or in text with its unit. The check of the text stands behind an empty `if`, as what stands beside `$ref` would be lost.
+/// A number, bare or in text with its unit. The check of the text follows an empty `if`, since
+/// keywords next to `$ref` would be ignored.
 pub(super) fn number(key: Key) -> Value {
     let mut text = reference(&identifier(key.dimension));
     if key.range.infinity {
@@ -78,7 +79,7 @@ pub(super) fn whole(key: Key) -> Value {
     members
 }
 
-/// The same with what it means and what it is when absent.
+/// The same with its meaning and its default.
 pub(super) fn described(key: Key, mut members: Value) -> Value {
     let dimension = key.dimension;
     let bare = if dimension.exponents == Exponents::NONE {

@@ -2,24 +2,24 @@
 
 use serde_json::{Map, Value, json};
 
-/// A table: its keys, and what must be there.
+/// A table: its keys, and what is required.
 #[derive(Debug)]
 pub(super) struct SchemaTable {
     /// Each key with every form that its value may have, in the order in which they are read.
     properties: Vec<(&'static str, Vec<Value>)>,
-    /// What the values of all other keys are.
+    /// The schema of the values of all other keys.
     pub(super) others: Value,
-    /// What must hold, the innermost condition last.
+    /// The rules, the innermost condition last.
     blocks: Vec<ConditionalRequirement>,
     /// The key that names an entry of the catalogue, and the keys that the entry may have.
     pub(super) catalogue: Option<(&'static str, Vec<&'static str>)>,
 }
 
-/// What must hold where a condition does.
+/// A rule that applies under a condition.
 #[derive(Debug, Default)]
 struct ConditionalRequirement {
     required: Vec<&'static str>,
-    /// Required unless the catalogue says it.
+    /// Required unless the catalogue supplies it.
     required_or_catalogued: Vec<&'static str>,
     refused: Vec<&'static str>,
     rules: Vec<Value>,
@@ -98,12 +98,12 @@ impl SchemaTable {
         }
     }
 
-    /// From here on only what holds under a condition.
+    /// Rules added from here on apply only under a condition.
     pub(super) fn begin_condition(&mut self) {
         self.blocks.push(ConditionalRequirement::default());
     }
 
-    /// Ends what holds under a condition.
+    /// Ends the rules under a condition.
     pub(super) fn end_condition(&mut self, condition: &Value) {
         let Some(block) = self.blocks.pop() else { return };
         let then = block.schema(self.catalogue.as_ref().map(|(name, _)| *name));
@@ -121,7 +121,7 @@ impl SchemaTable {
         self.properties
     }
 
-    /// The keys and nothing of what must hold.
+    /// The keys without the rules.
     pub(super) fn loose(&self) -> Value {
         json!({ "type": "object", "properties": self.properties_in_json(), "additionalProperties": self.others })
     }
@@ -132,7 +132,8 @@ impl SchemaTable {
         self.blocks.first().map_or(json!({}), |block| block.schema(name))
     }
 
-    /// All of it. Rules stand behind an empty `if`: editors look for the keys to offer beside an `allOf` in vain.
+    /// The complete schema. Rules follow an empty `if`, because editors do not find keys to offer
+    /// next to an `allOf`.
     pub(super) fn object(&self) -> Value {
         let mut schema = self.loose();
         let mut rules = self.rules();

@@ -1,4 +1,4 @@
-//! What each description of a table becomes in the schema.
+//! How each description of a table becomes part of the schema.
 
 use serde_json::{Value, json};
 
@@ -68,7 +68,7 @@ impl SchemaWriter {
     }
 }
 
-/// A list, each of whose items is so.
+/// A list, each of whose items is described in full by `schema`.
 fn list(items: &Value) -> Value {
     json!({ "type": "array", "items": items })
 }
@@ -207,7 +207,7 @@ impl Visitor for SchemaWriter {
         field: &mut Option<T>,
         visit: impl Fn(&mut T, &mut Self),
     ) {
-        // as if nothing chose it, so that what is needed instead is said
+        // as if nothing chose it, so that the requirement of the alternative is stated
         *field = None;
         self.present(SchemaTable::begin_condition);
         visit(&mut T::default(), self);
@@ -256,7 +256,8 @@ impl Visitor for SchemaWriter {
         self.present(|table| table.others = value);
     }
 
-    /// What a table lacks each of its sides may have, so that nothing is required where there is one.
+    /// Each side may have the keys that a table lacks, so that nothing is required where there is a
+    /// side.
     fn sides<T: Default + Clone + PartialEq>(
         &mut self,
         keys: [Key; 2],

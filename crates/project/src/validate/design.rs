@@ -77,7 +77,7 @@ fn fixed(element: &DeclaredElement, path: &str, check: &mut Check<'_, '_>) {
     }
 }
 
-/// Zeros less poles of a factor, where they can be told.
+/// Zeros less poles of a factor, if known.
 fn excess(part: &StructurePart) -> i64 {
     match part {
         StructurePart::Integrator | StructurePart::Pole { .. } => -1,

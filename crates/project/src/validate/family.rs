@@ -59,7 +59,7 @@ fn measured(family: &DeclaredFamily, check: &mut Check<'_, '_>) {
     }
 }
 
-/// Ranges in order that hold what is declared, each number uncertain in one place.
+/// Ranges are in order and contain the declared values, and each number is uncertain in one place.
 fn operating_region(project: &Project, region: &OperatingRegion, check: &mut Check<'_, '_>) {
     let path = "family.operating_region";
     let Some(actuator) = &project.actuator else {
@@ -97,7 +97,8 @@ fn operating_region(project: &Project, region: &OperatingRegion, check: &mut Che
     }
 }
 
-/// A case gives a value to every parameter of a plant's formulas, within the range that `[uncertainty]` states.
+/// A case gives a value to every parameter of a plant's formulas, within the range that
+/// `[uncertainty]` states.
 fn cases(project: &Project, family: &DeclaredFamily, check: &mut Check<'_, '_>) {
     let formulas = project.plant.as_ref().map(|plant| plant.formulas()).unwrap_or_default();
     let mut used: Vec<&str> = Vec::new();

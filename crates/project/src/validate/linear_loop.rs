@@ -102,7 +102,7 @@ fn is_discrete(transfer: &Transfer) -> bool {
         || transfer.elements.iter().any(|element| element.enabled && element.is_sampled())
 }
 
-/// Without a law a controller that says when it acts is one to be designed.
+/// A controller that states its timing but no transfer function is to be designed.
 fn transfer(
     transfer: &Transfer,
     path: &str,
@@ -205,12 +205,12 @@ fn sample_time_of_z(
     }
 }
 
-/// Powers of all numerators less those of all denominators, where they can be told.
+/// Powers of all numerators less those of all denominators, if known.
 fn excess(transfer: &Transfer) -> Option<i64> {
     transfer.as_elements().iter().filter(|element| element.enabled).map(element_excess).sum()
 }
 
-/// Zeros less poles of an element, where they can be told.
+/// Zeros less poles of an element, if known.
 pub(super) fn element_excess(element: &DeclaredElement) -> Option<i64> {
     let power = |count: usize| i64::try_from(count).ok();
     Some(match &element.kind {
@@ -244,7 +244,7 @@ fn conjugates(roots: &[[f64; 2]], path: &str, check: &mut Check<'_, '_>) {
     }
 }
 
-/// One element, wherever it is written; `path` leads to it.
+/// One element at `path`, wherever it is written.
 pub(super) fn one_element(
     element: &DeclaredElement,
     path: &str,

@@ -4,7 +4,7 @@ use super::Check;
 use crate::MeasuredFile;
 use phea_quantity::{self as quantity, Dimension, TIME};
 
-/// Units that are none, and signals that are there twice.
+/// Invalid units, and signals that occur twice.
 pub(super) fn measured(files: &[MeasuredFile], path: &str, check: &mut Check<'_, '_>) {
     for (number, declared) in files.iter().enumerate() {
         let path = format!("{path}.measured[{number}]");

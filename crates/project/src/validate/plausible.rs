@@ -1,11 +1,11 @@
-//! Numbers that no such part has: nearly always a unit that was meant and not written.
+//! Implausible numbers: nearly always a unit was intended and not written.
 
 use super::Check;
 use crate::Project;
 use crate::listing::Listing;
 use phea_quantity::display;
 
-/// What such parts usually have, SI: path, least, most, and of what.
+/// Usual ranges in SI: path, least, greatest, and the part.
 const USUAL: [(&str, f64, f64, &str); 17] = [
     ("fluid.bulk_modulus", 1e9, 2.5e9, "fluids of hydraulics"),
     ("fluid.density", 700.0, 1300.0, "fluids of hydraulics"),
@@ -25,14 +25,14 @@ const USUAL: [(&str, f64, f64, &str); 17] = [
     ("line.volume", 1e-6, 0.05, "lines"),
     ("force_sensor.stiffness", 1e6, 1e10, "load cells"),
 ];
-/// So many times below or above that a number is called implausible.
+/// Factor below or above the range at which a number is called implausible.
 const BEYOND: f64 = 10.0;
-/// What a pressure is off by where its unit was forgotten or slipped: bar, mega, kilo, giga.
+/// Typical factors of a pressure whose unit is missing or wrong: bar, mega, kilo, giga.
 const SLIPS_OF_PRESSURE: [f64; 5] = [1e5, 1e6, 1e3, 1e9, 1e-3];
-/// The same of anything else: milli, centi, L/min, kilo, mega, micro.
+/// The same for other quantities: milli, centi, L/min, kilo, mega, micro.
 const SLIPS: [f64; 6] = [1e-3, 1e-2, 1e-3 / 60.0, 1e3, 1e6, 1e-6];
 
-/// Warns of every declared number that no such part has.
+/// Warns about every implausible number that is declared.
 pub(super) fn numbers(project: &Project, check: &mut Check<'_, '_>) {
     let mut listing = Listing::default();
     project.clone().visit_system(&mut listing);

@@ -1,4 +1,4 @@
-//! The actuator: what geometry and physics forbid.
+//! The actuator: conditions of geometry and physics.
 
 use super::{Check, line_motion};
 use crate::{
@@ -71,7 +71,7 @@ fn cylinder(cylinder: &DeclaredCylinder, check: &mut Check<'_, '_>) {
     }
 }
 
-/// One area does for a rod through both chambers only.
+/// A single area suffices only for a rod through both chambers.
 fn piston(cylinder: &DeclaredCylinder, check: &mut Check<'_, '_>) {
     let [rod_a, rod_b] = cylinder.rod_diameters_m();
     if cylinder.piston_area.is_some() && rod_a != rod_b {
@@ -148,7 +148,7 @@ fn line(line: &DeclaredLine, path: &str, check: &mut Check<'_, '_>) {
                 .error(&format!("{path}.{at}"), "a line is a hose, a pipe or a volume: only one of them");
         }
     }
-    // what one side has no use for may be for the other
+    // a key that one side does not use may be for the other
     let [length, stiffening] =
         ["length", "dynamic_stiffening"].map(|key| path == "line" && check.declared(&format!("line.{key}")));
     if length && matches!(line.component, Component::Volume(_)) {

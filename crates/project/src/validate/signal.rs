@@ -1,4 +1,4 @@
-//! Functions of time that a scenario asks for.
+//! The functions of time of a scenario.
 
 use super::Check;
 use crate::{Amplitudes, Multisine, Signal, SignalUnit};
@@ -6,7 +6,7 @@ use crate::{Amplitudes, Multisine, Signal, SignalUnit};
 /// Most sines of a multisine.
 const MOST_SINES: usize = 1000;
 
-/// Every part of the signal under this key of a scenario that lasts so many seconds.
+/// Checks every part of the signal under this key of a scenario with this duration in s.
 pub(super) fn signals(
     signals: &[Signal],
     unit: SignalUnit,

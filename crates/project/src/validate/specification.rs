@@ -98,7 +98,7 @@ fn one_limit(
     }
 }
 
-/// None of the forms of a limit is there; perhaps because something in it was refused.
+/// None of the forms of a limit is present, perhaps because something in it was rejected.
 fn nothing(path: &str, check: &mut Check<'_, '_>) {
     let found = ["values", "denominator"].iter().find(|name| check.declared(&format!("{path}.{name}")));
     let message = match found {
@@ -116,7 +116,7 @@ const MARGIN_KEYS: &[&str] =
 const RESPONSE_KEYS: &[&str] =
     &["overshoot_percent", "settling_time", "settling_band_percent", "zero", "pole", "rule"];
 
-/// Keys that are there but should not be.
+/// Keys that are present but should not be.
 fn refuse(names: &[&str], because: &str, path: &str, check: &mut Check<'_, '_>) {
     for name in names {
         let at = format!("{path}.{name}");

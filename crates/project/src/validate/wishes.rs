@@ -15,10 +15,10 @@ use phea_quantity::{self as quantity, RATIO};
 
 /// Most rows of all scenarios together: four gigabytes of tables.
 const MAXIMUM_ROWS: f64 = 1e7;
-/// Where a step is shorter, s, it is to blame for the rows, otherwise the duration.
+/// If a step is shorter than this, s, it is the cause of too many rows, otherwise the duration.
 const ORDINARY_STEP: f64 = 1e-3;
 
-/// What only a project with an actuator has.
+/// Tables that only a project with an actuator may have.
 pub(super) fn with_actuator(project: &Project, actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
     if let Some(wanted) = &project.sizing {
         sizing(wanted, check);
@@ -80,7 +80,7 @@ fn operating_point(project: &Project, actuator: &DeclaredActuator, check: &mut C
     }
 }
 
-/// Refused at the scenario that brings them above what is held.
+/// Rejected at the scenario that exceeds the limit.
 fn rows(scenarios: &[Scenario], check: &mut Check<'_, '_>) {
     let mut before = 0.0;
     for (index, scenario) in scenarios.iter().enumerate() {
@@ -204,7 +204,7 @@ pub(super) fn without_actuator(project: &Project, check: &mut Check<'_, '_>) {
     }
 }
 
-/// What only a project with a plant has.
+/// Tables that only a project with a plant may have.
 pub(super) fn with_plant(project: &Project, plant: &DeclaredPlant, check: &mut Check<'_, '_>) {
     let formulas = plant.formulas();
     let used: Vec<&str> =
@@ -277,7 +277,7 @@ fn is_sampled(project: &Project) -> bool {
     controller.or(project.prefilter.as_ref().and_then(|prefilter| prefilter.sample_time)).is_some()
 }
 
-/// A number of both lines beside the same of one line would be set twice.
+/// A number for both lines together with the same number for one line would be set twice.
 fn both_sides(table: &str, how: &str, name: &str, all: &[&str], check: &mut Check<'_, '_>) {
     let Some(key) = name.strip_prefix("line.") else { return };
     for side in ["line.a", "line.b"] {
@@ -289,7 +289,7 @@ fn both_sides(table: &str, how: &str, name: &str, all: &[&str], check: &mut Chec
     }
 }
 
-/// The nominal value of a path should be the number that the project states there.
+/// The nominal value of a path should equal the number that the project states there.
 fn stated_elsewhere(uncertain: &Uncertain, stated: Option<f64>, check: &mut Check<'_, '_>) {
     let Some(stated) = stated else { return };
     if (stated - uncertain.nominal).abs() > 1e-9 * stated.abs() {
@@ -304,7 +304,8 @@ fn stated_elsewhere(uncertain: &Uncertain, stated: Option<f64>, check: &mut Chec
     }
 }
 
-/// A linear parameter beside a path it is derived from would count the same uncertainty twice.
+/// A linear parameter together with a path from which it is derived would include the same
+/// uncertainty twice.
 fn depends(uncertain: &Uncertain, project: &Project, check: &mut Check<'_, '_>) {
     let Some(parameter) = linear_parameter(&uncertain.name) else {
         return hidden(&uncertain.name, project, check);
@@ -326,7 +327,7 @@ fn depends(uncertain: &Uncertain, project: &Project, check: &mut Check<'_, '_>) 
     }
 }
 
-/// An uncertain path whose every linear parameter `[linear]` sets has no effect.
+/// An uncertain path has no effect if `[linear]` states every linear parameter that depends on it.
 fn hidden(name: &str, project: &Project, check: &mut Check<'_, '_>) {
     let depends = |parameter: &&LinearParameter| parameter.follows_from(name);
     let mut reached = LINEAR_PARAMETERS.iter().filter(depends).peekable();

@@ -1,18 +1,18 @@
 use super::OutputFile;
 use crate::figure::{Figure, FigureError};
 
-/// Pixels of a PNG for each unit of the drawing.
+/// Pixels of a PNG per unit of the drawing.
 const PNG_SCALE: f64 = 2.0;
 
 /// Figures as SVG and PNG.
 ///
 /// # Errors
-/// A figure that the rasteriser refuses.
+/// A figure that the rasteriser rejects.
 pub(crate) fn picture_files(figures: &[Figure]) -> Result<Vec<OutputFile>, FigureError> {
     part_files(figures, "")
 }
 
-/// The same of a part of a whole, whose name stands behind that of the figure.
+/// The same for a part, whose name follows that of the figure.
 pub(crate) fn part_files(figures: &[Figure], part: &str) -> Result<Vec<OutputFile>, FigureError> {
     let mut files = Vec::new();
     for figure in figures {

@@ -20,7 +20,7 @@ pub(crate) fn json_on_machine(loaded: &Loaded, view: &ProjectAudit, trial: &Tria
     answer::json("verify", loaded, body(view).with("machine", trial::body(trial)))
 }
 
-/// What an audit says in JSON, beside what every object carries.
+/// An audit in JSON, without the keys of every object.
 pub(crate) fn body(view: &ProjectAudit) -> Object {
     let (audit, names) = (&view.audit, &view.names);
     let stability = &audit.stability;
@@ -122,7 +122,7 @@ fn standing(view: &ProjectAudit, proof: &Proof, standing: &Standing) -> Object {
     Object::new().with("proven", proven).maybe("proven_reason", why_not_proven(view, proof, standing))
 }
 
-/// The same of a specification, with what encloses the greatest ratio of closed loop to limit.
+/// The same for a specification, with bounds of the greatest ratio of closed loop to limit.
 fn specification_proof(view: &ProjectAudit, index: usize) -> Option<Object> {
     let proof = view.proof.as_ref()?;
     let own = proof.specifications.get(index)?;

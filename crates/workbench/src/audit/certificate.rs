@@ -13,7 +13,7 @@ use layout::File;
 /// Its name in a folder.
 pub const CERTIFICATE_FILE: &str = "certificate.json";
 
-/// The file of what was proven of an audit, with this name; `None` where nothing was.
+/// The file with the proof of an audit, with this name; `None` if nothing was proven.
 pub(crate) fn certificate_of(loaded: &Loaded, view: &ProjectAudit, name: &str) -> Option<OutputFile> {
     let certificate = view.proof.as_ref()?.certificate.as_ref()?;
     Some(OutputFile { name: name.to_string(), ..file(loaded, certificate) })
@@ -37,7 +37,7 @@ pub fn read_certificate(text: &str) -> Result<Certificate, CertificateError> {
 /// Checks the file of a certificate: the answer is yes where every claim holds.
 ///
 /// # Errors
-/// [`CertificateError`] for a file that is no certificate.
+/// [`CertificateError`] for a file that is not a certificate.
 pub fn check_certificate(text: &str) -> Result<Answer, CertificateError> {
     let file = File::read(text)?;
     let (title, project_sha256) = (file.title.clone(), file.project_sha256.clone());
@@ -81,7 +81,7 @@ fn answer(
     Answer { text, json: body.print(), files: vec![], affirmative: rejected.is_none() }
 }
 
-/// At which frequencies something is claimed.
+/// The frequencies of a claim.
 fn band(certificate: &Certificate, limited: &LimitedLoop) -> String {
     let [from, to] = limited.band_rad_per_s;
     let end =
@@ -92,7 +92,7 @@ fn band(certificate: &Certificate, limited: &LimitedLoop) -> String {
     }
 }
 
-/// A claim in a sentence without its end.
+/// A claim in a sentence without its full stop.
 fn sentence(certificate: &Certificate, claim: &Claim) -> String {
     let decibels = |ratio: f64| format!("{:+.4} dB", 20.0 * phea_dynamics::portable::log10(ratio));
     let of = |limited: &LimitedLoop| match limited.side {

@@ -1,4 +1,4 @@
-//! What an audit says to people.
+//! An audit for people.
 
 use phea_qft::proof::{Proof, Standing};
 use phea_qft::verification::{SpecificationFinding, Verdict, WorstCase};
@@ -25,14 +25,14 @@ fn with_proof(view: &ProjectAudit) -> Document {
     out
 }
 
-/// The same with what the machine did.
+/// The same with the trial on the machine.
 pub(crate) fn text_on_machine(view: &ProjectAudit, tried: &Trial) -> String {
     let mut out = with_proof(view);
     out.append(trial::document(tried, None));
     out.text()
 }
 
-/// What an audit says: the verdict first, then what it rests on; before that the figures.
+/// An audit: the verdict first, then the figures, then its basis.
 pub(crate) fn document(view: &ProjectAudit, figures: Vec<Figure>) -> Document {
     let verdict = view.audit.verdict;
     let mut out = Document::default();
@@ -46,7 +46,8 @@ pub(crate) fn document(view: &ProjectAudit, figures: Vec<Figure>) -> Document {
     out
 }
 
-/// Stability, delay margin and each specification, a sentence each; before them what none of them counts.
+/// Stability, delay margin and each specification, a sentence each, preceded by the effects that
+/// none of them includes.
 pub(crate) fn summary(view: &ProjectAudit) -> Vec<String> {
     let mut sentences: Vec<String> = view.caveats.iter().map(|caveat| caveat.sentence.clone()).collect();
     sentences.push(stability_sentence(&view.audit.stability, &view.names));
@@ -101,7 +102,7 @@ fn specifications(view: &ProjectAudit) -> Table {
         row.extend(margin_at(finding.worst.as_ref()));
         row.extend(margin_at(worst_at_design(finding)));
         rows.row(row);
-        // a worst margin at an end of the band says little
+        // a worst margin at an end of the band is of little interest
         let interior = finding.interior.as_ref().filter(|interior| finding.worst.as_ref() != Some(*interior));
         if let Some(interior) = interior {
             let [margin, frequency] = margin_at(Some(interior));
@@ -113,7 +114,7 @@ fn specifications(view: &ProjectAudit) -> Table {
     rows
 }
 
-/// What was proven: a row for each claim, and why a claim is not; nothing where no proof was asked for.
+/// What was proven: a row for each claim, and why a claim is not; empty if no proof was requested.
 pub(crate) fn proven(view: &ProjectAudit, title: &str) -> Document {
     let mut out = Document::default();
     let Some(proof) = &view.proof else { return out };
@@ -198,7 +199,7 @@ fn violations(view: &ProjectAudit) -> Table {
     rows
 }
 
-/// Family, loop, tolerance and everything that was not looked at.
+/// Family, loop, tolerance and everything that was not examined.
 pub(crate) fn basis(view: &ProjectAudit) -> Vec<String> {
     let audit = &view.audit;
     let mut sentences = vec![
@@ -211,7 +212,7 @@ pub(crate) fn basis(view: &ProjectAudit) -> Vec<String> {
     sentences
 }
 
-/// Each remark once, with the specifications that it is made of.
+/// Each remark once, with the specifications that it concerns.
 fn remarks(view: &ProjectAudit) -> Vec<String> {
     let mut found: Vec<(String, Vec<String>)> = Vec::new();
     for (index, finding) in view.audit.specifications.iter().enumerate() {

@@ -30,9 +30,9 @@ struct BenchSignalAnswer {
     range: [f64; 2],
 }
 
-/// A column of a test's table: name in SI, unit of the table, and where its value is.
+/// A column of a test's table: name in SI, unit of the table, and the source of its value.
 pub(super) struct TableSignal {
-    /// As the table's column is called.
+    /// The name of the table's column.
     pub(super) column: &'static str,
     /// For people.
     pub(super) quantity: &'static str,
@@ -43,7 +43,7 @@ pub(super) struct TableSignal {
     pub(super) of: fn(&BenchRow) -> f64,
 }
 
-/// What a test records beside its time.
+/// The signals that a test records, without time.
 pub(super) fn signals(run: &BenchRun) -> Vec<TableSignal> {
     let (volt, bar, litres) = (DisplayUnit::VOLT, DisplayUnit::BAR, DisplayUnit::LITRE_PER_MINUTE);
     let signal = |column, quantity, unit, si, of| TableSignal { column, quantity, unit, si, of };

@@ -1,4 +1,4 @@
-//! What the static tests of a valve say to people.
+//! The static tests of a valve for people.
 
 use super::answer::{range, signals};
 use super::{BenchRun, StaticTest};

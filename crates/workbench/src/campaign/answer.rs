@@ -92,7 +92,7 @@ fn events(plan: &Plan, summary: &Summary) -> Vec<Object> {
     windows.map(event).collect()
 }
 
-/// Of so many runs that could have such a number.
+/// Number of runs that could have such a number.
 fn spread_row(spread: Option<Spread>, runs: usize) -> Object {
     let worst = spread.map(|spread| Object::new().with("value", spread.worst.0).with("run", spread.worst.1));
     Object::new()

@@ -10,7 +10,7 @@ use crate::document::{Cell, Table};
 use crate::project::Loaded;
 use crate::simulate::{self, ScenarioRun, cause_words, metric_of};
 
-/// Refused and ended runs that are named one by one.
+/// Largest number of rejected and ended runs that are listed.
 const TOLD: usize = 6;
 
 const LUMP_WORDS: [&str; 3] = ["K_H (N/m)", "K_qU (m3/(s.V))", "K_c (m3/(s.Pa))"];
@@ -31,7 +31,8 @@ pub(crate) fn counted(runs: usize) -> String {
     if runs == 1 { "1 run".to_string() } else { format!("{runs} runs") }
 }
 
-/// How many of the driven runs are left out of the quantiles of a metric because they have no such number; `None` where all have one.
+/// How many of the driven runs are left out of the quantiles of a metric because they have no such
+/// number; `None` if all have one.
 fn without(metric: usize, spread: Option<Spread>, driven: usize) -> Option<String> {
     let missing = spread.map_or(driven, |spread| spread.missing);
     let words = match (METRIC_NAMES.get(metric), missing) {
@@ -55,8 +56,8 @@ pub(crate) fn text(
     let mut out = format!("{}: {}, seed {}\n", plan.scenario(), counted(rows), plan.seed());
     if (rows as u64) < asked {
         let next = match kept {
-            true => "the same command goes on from there",
-            false => "with --out they would be kept, and the same command would go on from there",
+            true => "the same command continues from there",
+            false => "with --out they would be kept, and the same command would continue from there",
         };
         out.push_str(&format!("Stopped after {rows} of {asked} runs; {next}.\n"));
     }
@@ -81,7 +82,7 @@ pub(crate) fn text(
     }
     if let Some(worst) = summary.worst.first() {
         out.push_str(&format!(
-            "Any run again: --run INDEX, such as --run {}; its numbers as --set, and the whole of what happened.\n",
+            "To repeat a run: --run INDEX, such as --run {}; it prints the numbers as --set, and everything that happened.\n",
             worst.run
         ));
     }
@@ -105,7 +106,7 @@ pub(crate) fn metrics(plan: &Plan, summary: &Summary) -> Table {
     rows
 }
 
-/// Quantiles, and the worst with its run; nothing where no run has such a number.
+/// Quantiles, and the worst with its run; empty if no run has such a number.
 fn spread_cells(spread: Option<Spread>) -> Vec<Cell> {
     let Some(spread) = spread else { return vec![Cell::Missing; QUANTILES.len() + 1] };
     let (value, run) = spread.worst;
@@ -113,7 +114,8 @@ fn spread_cells(spread: Option<Spread>) -> Vec<Cell> {
     spread.quantiles.iter().map(|value| Cell::number(*value, 4)).chain([worst]).collect()
 }
 
-/// The parameters of the linear models that were visited, beside the box for which the controller is judged.
+/// The parameters of the linear models that were visited, next to the box for which the controller
+/// is judged.
 pub(crate) fn lumps(plan: &Plan, summary: &Summary) -> Table {
     let row = |(index, spread): (usize, &Option<Spread>)| {
         let spread = (*spread)?;
@@ -133,7 +135,7 @@ pub(crate) fn lumps(plan: &Plan, summary: &Summary) -> Table {
         .with(summary.lumps.iter().enumerate().filter_map(row))
 }
 
-/// One run: its numbers as settings, and what `simulate` says of it.
+/// One run: its numbers as settings, and the output of `simulate`.
 pub(crate) fn run_text(draw: &Draw, settings: &[String], drawn: &Loaded, runs: &[ScenarioRun]) -> String {
     let lines: String = settings.iter().map(|setting| format!("  --set \"{setting}\"\n")).collect();
     format!("Run {}:\n{lines}\n{}", draw.run, simulate::text(drawn, runs))

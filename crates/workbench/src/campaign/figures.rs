@@ -11,11 +11,11 @@ use crate::figure::{
 };
 use crate::simulate::{Cause, Window, cause_words};
 
-/// How much is drawn before and after what begins a window, s.
+/// Time drawn before and after the start of a window, s.
 const BEFORE_S: f64 = 0.02;
 const AFTER_S: f64 = 0.5;
 
-/// The bands over the whole scenario, and around each event; none where no run got anywhere.
+/// The bands over the whole scenario, and around each event; empty if no run was driven.
 ///
 /// # Errors
 /// As [`Plan::forces`].
@@ -46,7 +46,7 @@ pub(crate) fn pictures(plan: &Plan, summary: &Summary) -> Result<Vec<Figure>, Ca
     Ok(figures)
 }
 
-/// What a window's worst run is chosen by.
+/// The metric by which a window's worst run is chosen.
 fn worst_metric(window: &Window, open_loop: bool) -> &'static str {
     match window.cause {
         _ if open_loop => "force_peak_n",
@@ -67,7 +67,7 @@ fn worst_words(window: &Window, open_loop: bool) -> &'static str {
     }
 }
 
-/// The whole course of a window's worst run.
+/// The complete force of a window's worst run.
 fn worst_series(plan: &Plan, summary: &Summary, index: usize) -> Result<Option<TimeSeries>, CampaignError> {
     let metric = plan.windows().get(index).map(|window| worst_metric(window, plan.is_open_loop()));
     let place = METRIC_NAMES.iter().position(|name| Some(*name) == metric);

@@ -1,4 +1,4 @@
-//! Campaigns as a command: all runs with their rows kept somewhere, or one run again.
+//! Campaigns as a command: all runs with their rows stored, or one run again.
 
 use super::{CommandError, Watch};
 use crate::answer::{Answer, TableFormat};
@@ -8,7 +8,7 @@ use crate::setup::Setup;
 use crate::simulate::{self, simulate_into};
 use crate::source::{Destination, Source};
 
-/// What is asked of the campaign that a project declares.
+/// A request on the campaign that a project declares.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CampaignRequest {
     /// Of all random numbers.
@@ -24,12 +24,13 @@ pub struct CampaignRequest {
 pub enum CampaignRuns {
     /// All, or a part of them.
     All(RequestedRuns),
-    /// The one with this index, told in full.
+    /// The run with this index, in full.
     One(u64),
 }
 
-/// Answers a campaign, its rows kept in a ledger, from which an interrupted one goes on. The answer is yes if every run has its
-/// row, however it ended. The table over time of one run that is driven again goes to the destination, where there is one.
+/// Answers a campaign, its rows stored in a ledger, from which an interrupted one continues. The
+/// answer is yes if every run has its row, however it ended. The table over time of a single run
+/// goes to the destination, if there is one.
 ///
 /// # Errors
 /// [`CommandError`] if the project declares no campaign, or the ledger fails.
@@ -62,7 +63,8 @@ pub fn campaign_watched(
     })
 }
 
-/// One run: its numbers as settings of the project, and all that `simulate` says with them.
+/// One run: its numbers as settings of the project, and the complete output of `simulate` with
+/// them.
 fn one(
     source: &dyn Source,
     loaded: &Loaded,

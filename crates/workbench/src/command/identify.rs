@@ -15,19 +15,19 @@ pub struct IdentifyRequest {
     pub files: Vec<String>,
     /// Starting points of the search; absent: 6.
     pub starts: Option<usize>,
-    /// Of the starting points and of the bootstrap.
+    /// Seed of the starting points and of the bootstrap.
     pub seed: u32,
     /// Repetitions of the bootstrap; zero makes none.
     pub bootstrap: usize,
-    /// The model of the leakage; absent: the one that the recordings speak for.
+    /// The model of the leakage; absent: the one that the recordings support.
     pub leakage_model: Option<LeakageModel>,
 }
 
 /// Identifies a valve from files, with what a project says of it: nominal voltage, supply pressure,
-/// tank pressure, transition pressure and the drop that the tare flow belongs to.
+/// tank pressure, transition pressure and the drop at which the tare flow is stated.
 ///
 /// # Errors
-/// [`IdentifyError`] for files that are no tests, and recordings that no valve explains.
+/// [`IdentifyError`] for files that are not tests, and recordings that no valve explains.
 pub fn identify_watched(
     source: &dyn Source,
     loaded: Option<&Loaded>,

@@ -1,18 +1,18 @@
-//! What a program is told where a command has no answer.
+//! The JSON where a command has no answer.
 
 use super::{CommandError, Request};
 use crate::answer::{Object, SCHEMA};
 use crate::project::{Diagnostic, Loaded, Refusal, Severity, sha256};
 use crate::source::Source;
 
-/// The JSON object of a command whose project, at `path`, was refused.
+/// The JSON object of a command whose project, at `path`, was rejected.
 pub fn refusal_json(source: &dyn Source, path: &str, request: &Request, refusal: &Refusal) -> String {
     let hash = source.read(path).ok().map(|bytes| sha256(&bytes));
     refusal_body(Some(request.name()), hash.as_deref(), refusal_rows(refusal))
 }
 
-/// The JSON object of a command that has no answer on a sound project: a row for every finding in its files, or one for the
-/// error itself.
+/// The JSON object of a command that has no answer on a valid project: a row for every finding in
+/// its files, or one for the error itself.
 pub fn error_json(loaded: &Loaded, request: &Request, error: &CommandError) -> String {
     let (command, hash) = (Some(request.name()), Some(loaded.sha256.as_str()));
     match error.refusal() {
@@ -21,7 +21,7 @@ pub fn error_json(loaded: &Loaded, request: &Request, error: &CommandError) -> S
     }
 }
 
-/// The JSON object of a command whose files beside a project were refused.
+/// The JSON object of a command whose files other than the project were rejected.
 pub fn files_json(command: &str, project_sha256: Option<&str>, refusal: &Refusal) -> String {
     refusal_body(Some(command), project_sha256, refusal_rows(refusal))
 }
@@ -41,7 +41,8 @@ fn refusal_row(found: &Diagnostic) -> Object {
         .with("help", found.help.as_deref())
 }
 
-/// The JSON object of a command that failed beyond its project file; `command` is absent where the command line is none.
+/// The JSON object of a command that failed for another reason than its project file; `command` is
+/// absent if the command line is invalid.
 ///
 /// # Example
 /// ```

@@ -21,7 +21,8 @@ pub struct SimulateRequest {
     pub figures: bool,
     /// The frequency response of the machine instead of its scenarios.
     pub frequency_response: Option<FrequencyOptions>,
-    /// Whether each scenario is run a second time at a tenth of the tolerance, and how far the two differ is told.
+    /// Whether each scenario is run a second time at a tenth of the tolerance, with a report of the
+    /// difference.
     pub check: bool,
 }
 
@@ -37,10 +38,10 @@ pub struct FrequencyOptions {
 }
 
 impl FrequencyOptions {
-    /// What they ask for, in SI.
+    /// The request, in SI.
     ///
     /// # Errors
-    /// [`ProcedureError::Option`] for a text that is no positive quantity of its kind.
+    /// [`ProcedureError::Option`] for a text that is not a positive quantity of its kind.
     ///
     /// # Example
     /// ```
@@ -98,7 +99,7 @@ fn frequency_answer(
     watch: Watch<'_>,
 ) -> Result<Answer, CommandError> {
     let found = frequency_response(&Setup::new(&loaded.project)?, request, watch)?;
-    // nothing that is written to memory can fail
+    // writing to memory cannot fail
     let mut written: Vec<OutputFile> = frequency_files(&found, asked.table).unwrap_or_default();
     if asked.figures {
         written.extend(picture_files(&frequency_pictures(&found)).map_err(CommandError::Figure)?);

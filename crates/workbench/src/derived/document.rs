@@ -1,4 +1,4 @@
-//! What follows from a project, for people.
+//! The derived quantities of a project, for people.
 
 use super::Derived;
 use crate::answer::significant;
@@ -11,7 +11,7 @@ pub fn text(derived: &[Derived]) -> String {
     document(derived).text()
 }
 
-/// Everything that follows, and what the project states instead.
+/// All derived quantities, and the values that the project states instead.
 pub(crate) fn document(derived: &[Derived]) -> Document {
     let mut out = Document::default();
     let mut groups: Vec<&str> = derived.iter().map(|quantity| quantity.group).collect();
@@ -45,7 +45,9 @@ fn cells(quantity: &Derived) -> [Cell; 4] {
 /// The box of linear parameters that the family visits, for people.
 pub(crate) fn visited_text(project: &Project, ranges: &[VisitedRange]) -> String {
     let mut out = Document::default();
-    out.heading("The box of the family: what its operating points and numbers make of the linear model");
+    out.heading(
+        "The box of the family: the parameters of the linear model over its operating points and numbers",
+    );
     let row = |range: &VisitedRange| {
         let [least, most] = [&range.minimum, &range.maximum].map(|end| Cell::number(end.value, 4));
         [range.symbol.into(), least, most, Cell::Unit(range.unit)]
@@ -65,8 +67,8 @@ pub(crate) fn visited_text(project: &Project, ranges: &[VisitedRange]) -> String
 /// Difference in percent below which a stated value is unremarkable: it prints as zero.
 const UNREMARKABLE: f64 = 0.05;
 
-/// What the project states for quantities that also follow from the rest: contradictions first, then what differs, then
-/// the unremarkable.
+/// The values that the project states for derived quantities: contradictions first, then those that
+/// differ, then the unremarkable ones.
 fn stated(derived: &[Derived]) -> Vec<&Derived> {
     let mut stated: Vec<&Derived> = derived.iter().filter(|quantity| quantity.stated.is_some()).collect();
     stated.sort_by_key(|quantity| match quantity.difference_percent() {
@@ -77,7 +79,7 @@ fn stated(derived: &[Derived]) -> Vec<&Derived> {
     stated
 }
 
-/// What is stated beside what follows, in a sentence.
+/// A stated value next to the derived one, in a sentence.
 fn sentence(quantity: &Derived) -> String {
     let Some(stated) = &quantity.stated else { return String::new() };
     let with_unit = match quantity.unit {

@@ -94,7 +94,7 @@ pub(super) fn factors(function: &TransferFunction) -> Object {
         .known("sample_time_s", sample_time_s, "it is continuous")
 }
 
-/// What a sampled loop's law is in continuous time, where it was given so.
+/// The continuous-time form of the controller of a sampled loop, if it was given in this form.
 fn continuous_law(side: &AuditedController) -> Result<Option<Object>, LinearError> {
     let Controller { feedback, prefilter, .. } = &side.controller;
     let law = feedback.transfer_function()?;

@@ -1,4 +1,4 @@
-//! What a design says to people.
+//! A design for people.
 
 use phea_dynamics::linear::{LinearError, TimeDomain, TransferFunction};
 use phea_qft::design::{DesignRound, DesignStatus, Objective, Starts};
@@ -15,10 +15,11 @@ use crate::project::{Loaded, snippet};
 use crate::quantity::DisplayUnit;
 use crate::trial;
 
-/// Digits of the numbers of a law, for people.
+/// Digits of the numbers of a controller, for people.
 const DIGITS: usize = 5;
 
-/// What `design` says to people: the status first, then the law, what it reaches, and what that rests on.
+/// The output of `design` for people: the status first, then the controller, its performance, and
+/// the evidence.
 pub fn text(loaded: &Loaded, view: &ProjectDesign) -> Result<String, LinearError> {
     let mut out = status(view);
     if view.minimum_delay_margin_s > 0.0 {
@@ -50,7 +51,7 @@ pub fn text(loaded: &Loaded, view: &ProjectDesign) -> Result<String, LinearError
     Ok(out.text())
 }
 
-/// How the search ended, what can be said whatever a search finds, and what the audit says of what was found.
+/// How the search ended, what is known whatever a search finds, and the audit of the result.
 pub(crate) fn status(view: &ProjectDesign) -> Document {
     let mut sentences: Vec<String> =
         view.explanations.iter().map(|explanation| explanation_words(view, explanation)).collect();
@@ -62,7 +63,8 @@ pub(crate) fn status(view: &ProjectDesign) -> Document {
     out
 }
 
-/// What followed from the machine's contradiction; with the laws that come nearest to what cannot be had.
+/// The consequences of the machine's contradiction, with the controllers that come nearest to what
+/// cannot be achieved.
 fn repaired(repair: &Repair) -> Result<Document, LinearError> {
     let mut out = Document::default();
     out.heading(format!("Repair: {}", repair_words(repair)));
@@ -76,13 +78,13 @@ fn repaired(repair: &Repair) -> Result<Document, LinearError> {
     Ok(out)
 }
 
-/// What stands against one another, what the specifications cost, and how it was found.
+/// The limits that conflict, what the specifications cost, and how it was found.
 pub(crate) fn costs(view: &ProjectDesign) -> Document {
     let mut out = Document::default();
     out.section("What stands against one another", conflicts(view));
     if let DesignStatus::Infeasible(relaxation) = &view.design.status {
         out.explanation(format!(
-            "With every limit {} dB wider these are all reached at once: to improve one of them costs another.",
+            "With every limit {} dB wider these are all reached at once: improving one of them worsens another.",
             significant(relaxation.relaxation_db, 3)
         ));
     }
@@ -116,7 +118,8 @@ pub(crate) fn explanation_words(view: &ProjectDesign, explanation: &Explanation)
     format!("{kind}{}{plant}", explanation.sentence)
 }
 
-/// The laws of one controller in factored form; those of a sampled loop before and as they are deployed.
+/// The transfer functions of one controller in factored form; in a sampled loop both before and
+/// after sampling.
 pub(crate) fn laws(side: &AuditedController) -> Result<Document, LinearError> {
     let deployed = &side.problem.compensation;
     let mut laws = vec![("G", side.controller.feedback.transfer_function()?, deployed.feedback())];
@@ -141,8 +144,8 @@ pub(crate) fn laws(side: &AuditedController) -> Result<Document, LinearError> {
     Ok(out)
 }
 
-/// What is compared, a row each: the given controller, the one before the repair, the designed one, and in a sampled loop the one that
-/// was designed without samples.
+/// The compared quantities, a row each: the given controller, the one before the repair, the
+/// designed one, and in a sampled loop the one that was designed without samples.
 pub(crate) fn side_by_side(view: &ProjectDesign) -> Document {
     let sides = [
         ("given", view.published.as_ref()),
@@ -178,7 +181,7 @@ fn compared_cell(row: usize, text: &str) -> Cell {
     }
 }
 
-/// The first design, where the repair came to another one.
+/// The first design, if the repair found another one.
 fn before_repair(view: &ProjectDesign) -> Option<&ProjectDesign> {
     let repair = view.repair.as_ref().filter(|repair| repair.status == RepairStatus::Met)?;
     repair.other.as_deref()
@@ -230,7 +233,7 @@ fn seed_sentence(view: &ProjectDesign) -> String {
     format!("begun at random points of seed {}; a local optimum: other seeds {better}", view.options.seed)
 }
 
-/// How much the result owes to its starts: where the descents of the last search ended.
+/// How much the result depends on its starts: where the descents of the last search ended.
 fn starts_sentence(starts: &Starts) -> String {
     let mut sentence = format!("{} of {} starts stabilise every plant", starts.stabilised, starts.tried);
     let three = |[best, median, worst]: [String; 3]| {
@@ -247,7 +250,7 @@ fn starts_sentence(starts: &Starts) -> String {
     sentence
 }
 
-/// What was set on the command line is not in the file that a design writes.
+/// Settings of the command line are not in the file that a design writes.
 fn settings_sentence(loaded: &Loaded) -> String {
     let others: Vec<&str> = loaded
         .settings

@@ -35,7 +35,7 @@ pub fn files(loaded: &Loaded, view: &ProjectDesign) -> Vec<OutputFile> {
     named.into_iter().filter_map(file).chain(certificate).collect()
 }
 
-/// Every stage; a design that was stopped has no templates and bounds, which take their time.
+/// Every stage; a design that was stopped has no templates and bounds, which take long to compute.
 ///
 /// # Errors
 /// [`CommandError`] for a template that cannot be computed, or a watcher that stops.
@@ -95,8 +95,8 @@ fn nominal_loop(problem: &RobustProblem, found: &[DesignFrequency]) -> Result<Ou
     Ok(csv.file(LOOP))
 }
 
-/// Least and greatest |F T| of the members against the limits of tracking, and what is left on either side; `None` without tracking or
-/// prefilter.
+/// Least and greatest |F T| of the members against the limits of tracking, and the remaining
+/// distance on either side; `None` without tracking or prefilter.
 fn prefilter_band(side: &AuditedController) -> Result<Option<OutputFile>, LinearError> {
     let problem = &side.problem;
     let mut csv = Csv::new(

@@ -1,4 +1,4 @@
-//! What stands in a cell of a table, with its type.
+//! The content of a cell of a table, with its type.
 
 use phea_qft::verification::Verdict;
 
@@ -7,7 +7,8 @@ use crate::audit::{frequency_number, margin_words, verdict_words};
 use crate::quantity::DisplayUnit;
 use crate::trial::{Agreement, agreement_word};
 
-/// A verdict as a form and a colour beside its word, so that none of them is needed alone.
+/// A verdict as a form and a colour next to its word, so that no reader depends on a single one of
+/// them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum StatusMark {
     /// A circle with a tick.
@@ -49,11 +50,11 @@ impl From<Agreement> for StatusMark {
 pub(crate) enum Precision {
     /// So many significant digits.
     Significant(usize),
-    /// Four significant digits without zeros at the end, as of a frequency.
+    /// Four significant digits without trailing zeros, as for a frequency.
     Frequency,
-    /// With its sign, to a hundredth or a thousandth, as of a margin in dB.
+    /// With its sign, to a hundredth or a thousandth, as for a margin in dB.
     Margin,
-    /// To so many decimal places, a zero without sign.
+    /// To this number of decimal places; zero has no sign.
     Decimal(usize),
 }
 
@@ -64,7 +65,8 @@ pub(crate) enum Cell {
     Text(String),
     /// A path or a name of a file or of a program.
     Code(String),
-    /// What a number is called for programs, such as `line.a.wave_speed`; the page shows its symbol and says it in words.
+    /// The name of a number for programs, such as `line.a.wave_speed`; the page shows it in words
+    /// with its symbol.
     Name { name: String, symbol: String },
     /// An equation or one of its symbols.
     Equation(String),
@@ -85,7 +87,7 @@ impl Cell {
         Cell::Text(String::new())
     }
 
-    /// A number with so many significant digits.
+    /// A number with this number of significant digits.
     pub(crate) fn number(value: f64, digits: usize) -> Cell {
         Cell::Quantity { value, precision: Precision::Significant(digits), unit: "" }
     }
@@ -106,7 +108,7 @@ impl Cell {
         Cell::Quantity { value, precision: Precision::Margin, unit: "" }
     }
 
-    /// To so many decimal places; missing where it is no finite number.
+    /// To this number of decimal places; missing if it is not finite.
     pub(crate) fn decimal(value: f64, places: usize) -> Cell {
         match value.is_finite() {
             true => Cell::Quantity { value, precision: Precision::Decimal(places), unit: "" },
@@ -129,7 +131,7 @@ impl Cell {
         Cell::from(verdict_words(verdict)).marked(verdict)
     }
 
-    /// That of what the machine did with a verdict.
+    /// The mark for the trial of a verdict on the machine.
     pub(crate) fn agreement(agreement: Agreement) -> Cell {
         Cell::from(agreement_word(agreement)).marked(agreement)
     }
@@ -144,7 +146,7 @@ impl Cell {
         }
     }
 
-    /// As a text, in which symbols and numbers are not set.
+    /// As a text, in which symbols and numbers are not typeset.
     pub(crate) fn text(&self) -> String {
         match self {
             Cell::Text(text) | Cell::Code(text) | Cell::Name { name: text, .. } => text.clone(),

@@ -5,7 +5,7 @@ use super::Cell;
 /// A table.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Table {
-    /// What the groups are; where there is none, the rows stand by themselves.
+    /// The heading of the groups; without one, the rows form no groups.
     pub(super) grouped_by: Option<String>,
     pub(super) headings: Vec<String>,
     pub(super) groups: Vec<RowGroup>,
@@ -24,7 +24,8 @@ impl Table {
         Table { headings: headings.into_iter().map(Into::into).collect(), ..Table::default() }
     }
 
-    /// The same in groups, whose names have a heading too: a terminal shows it, and the name beside the first of the rows.
+    /// The same in groups, whose names also have a heading: a terminal shows it, and the name next
+    /// to the first row.
     pub(crate) fn grouped_by<Heading: Into<String>>(
         groups: &str,
         headings: impl IntoIterator<Item = Heading>,

@@ -44,7 +44,8 @@ pub fn typeset(equation: &str) -> Markup {
     html! { span.equation { (PreEscaped(inside)) } }
 }
 
-/// Sets a sentence: words such as `K_H` and numbers such as `2.2e6` as in an equation, the rest as it is.
+/// Sets a sentence: words such as `K_H` and numbers such as `2.2e6` as in an equation, the rest
+/// unchanged.
 ///
 /// # Example
 /// ```
@@ -73,7 +74,7 @@ pub fn prose(sentence: &str) -> Markup {
     html! { (PreEscaped(inside)) }
 }
 
-/// The same, what stands between back ticks as code.
+/// The same, with text between backticks as code.
 pub(crate) fn coded(sentence: &str) -> Markup {
     let parts = sentence.split('`').enumerate();
     html! {

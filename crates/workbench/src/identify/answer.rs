@@ -123,7 +123,7 @@ const HYSTERESIS: &str = "hysteresis";
 /// Correlations below this magnitude are not listed.
 const REMARKABLE: f64 = 0.9;
 
-/// The JSON object of `identify`, beside a project or not.
+/// The JSON object of `identify`, with or without a project.
 pub fn json(loaded: Option<&Loaded>, found: &Identification) -> String {
     let numbers = found.coefficients.to_array();
     let bootstrap = |index: usize| found.bootstrap.as_ref()?.intervals.get(index).copied();
@@ -181,7 +181,7 @@ pub fn json(loaded: Option<&Loaded>, found: &Identification) -> String {
     serde_json::to_string_pretty(&body).unwrap_or_default()
 }
 
-/// As the project file calls a model.
+/// The name of a model in the project file.
 pub(super) fn word(model: LeakageModel) -> &'static str {
     match model {
         LeakageModel::EachEdge => "each_edge",
@@ -268,7 +268,8 @@ fn simple(found: &SimpleCalculations) -> SimpleBody {
     }
 }
 
-/// The table `[valve]` of a project with what was identified: what the data do not tell is a comment.
+/// The table `[valve]` of a project with what was identified: values that the data do not determine
+/// are comments.
 pub fn files(found: &Identification) -> Vec<OutputFile> {
     let numbers = found.coefficients.to_array();
     let line = |index: usize| {

@@ -1,4 +1,4 @@
-//! What an identified valve says to people.
+//! An identified valve for people.
 
 use phea_hydraulics::servovalve::LeakageModel;
 
@@ -8,8 +8,8 @@ use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
 use crate::quantity::DisplayUnit;
 
-/// What the leakage is, the coefficients with their intervals, how well the signals are explained,
-/// and what the data do not determine.
+/// The model of the leakage, the coefficients with their intervals, how well the signals are
+/// explained, and what the data do not determine.
 pub fn text(found: &Identification) -> String {
     let mut out = Document::default();
     out.heading("Model of the leakage");
@@ -45,7 +45,7 @@ pub fn text(found: &Identification) -> String {
     out.text()
 }
 
-/// Which model the recordings speak for, and which the numbers are of.
+/// The model that the recordings support, and the model of the numbers.
 fn leakage(found: &Identification) -> Vec<String> {
     let (used, evidence) = (found.tested.leakage_model, &found.evidence);
     let [better, worse] = &evidence.models;
@@ -131,7 +131,7 @@ fn signal(found: &Identification, signal: &SignalFit) -> [Cell; 7] {
     ]
 }
 
-/// What a reader should know before the numbers are used.
+/// Remarks on the use of the numbers.
 fn remarks(found: &Identification) -> Vec<String> {
     let mut remarks = Vec::new();
     let [starts, agreeing] = found.starts;

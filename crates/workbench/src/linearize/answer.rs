@@ -13,7 +13,7 @@ pub fn json(loaded: &Loaded, linearization: &Linearization) -> String {
     answer::json("linearize", loaded, body(loaded, linearization))
 }
 
-/// The same with what a sweep found.
+/// The same with the results of a sweep.
 pub(crate) fn json_swept(loaded: &Loaded, linearization: &Linearization, sweep: &Sweep) -> String {
     let body = body(loaded, linearization).with("swept", head(sweep)).with("sweep", rows(sweep));
     answer::json("linearize", loaded, body)
@@ -78,7 +78,7 @@ fn factors(function: &TransferFunction) -> Object {
         .with("poles", function.poles())
 }
 
-/// Where a reduction is within 1 dB and 5 degrees of the plant.
+/// Bands where a reduction is within 1 dB and 5 degrees of the plant.
 fn agreement(agreement: &AgreementBand) -> Object {
     Object::new()
         .with("model", agreement.model)

@@ -34,7 +34,7 @@ pub fn text(loaded: &Loaded, linearization: &Linearization) -> String {
     out.text()
 }
 
-/// Poles of the models, how far they differ, and which modes rule; below the poles the figures.
+/// Poles of the models, their differences, and the dominant modes; the figures follow the poles.
 pub(crate) fn document(linearization: &Linearization, figures: Vec<Figure>) -> Document {
     let mut out = Document::default();
     let pole = |(model, equation, function): (&'static str, &'static str, &TransferFunction)| {
@@ -67,7 +67,7 @@ pub(crate) fn document(linearization: &Linearization, figures: Vec<Figure>) -> D
     out
 }
 
-/// A mode with its share and decay ratio; in place of a number that does not exist, why.
+/// A mode with its share and decay ratio, or the reason why a number does not exist.
 fn mode_cells(mode: &ModeShare) -> [Cell; 3] {
     let absence = mode.absence.map(|absence| absence.to_string()).unwrap_or_default();
     let or =
@@ -82,7 +82,8 @@ fn band_words(agreement: &AgreementBand) -> String {
     if bands.is_empty() { "nowhere".to_string() } else { bands.join(", ") }
 }
 
-/// Every model with its equation, the fullest first; with the values that hold where nothing else is said.
+/// Every model with its equation, the fullest first; with the values in use unless stated
+/// otherwise.
 pub(crate) fn models(linearization: &Linearization) -> [(&'static str, &'static str, &TransferFunction); 7] {
     [
         ("plant", "4.1 to 4.45", &linearization.plant.command),

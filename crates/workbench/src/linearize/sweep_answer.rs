@@ -1,4 +1,4 @@
-//! What a sweep says to people and to programs, and its figure.
+//! A sweep for people and for programs, and its figure.
 
 use super::root_list;
 use super::{Sweep, SweepPoint, Swept};
@@ -7,7 +7,7 @@ use crate::document::Table;
 use crate::figure::{Figure, PoleSweepInput, PoleSweepPoint, Words, pole_sweep};
 use crate::quantity::DisplayUnit;
 
-/// What was swept, in the JSON of `linearize`.
+/// The swept number, in the JSON of `linearize`.
 pub(super) fn head(sweep: &Sweep) -> Object {
     Object::new()
         .with("key", sweep.path.as_str())
@@ -95,7 +95,7 @@ pub(crate) fn sweep_text(sweep: &Sweep) -> String {
     out
 }
 
-/// What a reader must know of a key that the plant does not follow.
+/// A remark on a key on which the plant does not depend.
 fn unmoved(sweep: &Sweep) -> Option<String> {
     (!sweep.plant_follows).then(|| {
         format!(

@@ -1,4 +1,5 @@
-//! The chapter on the audit of the given controller: what an audit says, with the pictures of it, and what the machine did.
+//! The chapter on the audit of the given controller: the audit with its figures, and the trial on
+//! the machine.
 
 use super::chapter::Chapter;
 use super::{closed_loops, family_steps};

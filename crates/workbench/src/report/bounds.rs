@@ -1,5 +1,5 @@
-//! The chapter on templates and bounds: the plants at each design frequency, what the nominal loop may not do there, and
-//! whether the given loop keeps to it.
+//! The chapter on templates and bounds: the plants at each design frequency, where the nominal loop
+//! may not be, and whether the given loop satisfies this.
 
 use maud::{Markup, html};
 use phea_dynamics::linear::LinearError;
@@ -17,7 +17,7 @@ use crate::figure::{
 };
 use crate::robust::{DesignFrequency, RobustProblem};
 
-/// The chapter; `chart` is the Nichols chart of the given loop where that stands nowhere else.
+/// The chapter; `chart` is the Nichols chart of the given loop if it is shown nowhere else.
 pub(super) fn chapter(problem: &RobustProblem, found: &[DesignFrequency], chart: Option<Figure>) -> Chapter {
     let templates: Vec<Template> = found.iter().map(|one| one.template.template.clone()).collect();
     let mut figures = vec![template_figure(&templates)];
@@ -25,14 +25,14 @@ pub(super) fn chapter(problem: &RobustProblem, found: &[DesignFrequency], chart:
     figures.extend(chart);
     let given = problem.has_controller;
     let body = html! {
-        p { "What the robust method works with: the plants at each design frequency (templates), and the gains and phases that the nominal open loop must keep out of there (bounds), so that every plant keeps to the specifications. Bounds count the interior of a template as plants, where that is known to be filled." }
+        p { "What the robust method works with: the plants at each design frequency (templates), and the gains and phases that the nominal open loop must avoid there (bounds), so that every plant satisfies the specifications. Bounds count the interior of a template as plants, where that is known to be filled." }
         (place(&figures[0]))
         (table(&["rad/s", "plants", "closeness of neighbours"], 9, &found.iter().map(template_row).collect::<Vec<_>>()))
         @for figure in figures.iter().skip(1) { (place(figure)) }
         @if let Some(words) = unreached(problem, found) { p { (words) } }
         @if given {
             h3 { "The given loop among the bounds" }
-            p { "At the design frequencies alone: bounds say nothing of what lies between them, nor of stability." }
+            p { "At the design frequencies only: bounds state nothing about the frequencies between them, or about stability." }
             (placements(problem, found))
         }
         @for sentence in feasibility(problem, found) { div.callout.bad-edge { p { (sentence) } } }
@@ -76,7 +76,7 @@ fn specification_figures(problem: &RobustProblem, found: &[DesignFrequency]) -> 
         let name = format!("bounds_{}_{}", index + 1, kind_key(requirement));
         let title = format!("Bounds of specification {}, {}", index + 1, problem.name_of(index));
         let caption = format!(
-            "Where the nominal loop may not be, so that every plant keeps {} to its limit; ticks point to the forbidden side.",
+            "Where the nominal loop may not be, so that every plant satisfies the limit of {}; ticks point to the forbidden side.",
             closed_loop_symbol(requirement)
         );
         let input = NicholsInput {
@@ -89,7 +89,8 @@ fn specification_figures(problem: &RobustProblem, found: &[DesignFrequency]) -> 
     figures
 }
 
-/// L0 over the frequencies around those of the design; `None` without a controller or a nominal plant.
+/// L0 over the frequencies around those of the design; `None` without a controller or a nominal
+/// plant.
 pub(super) fn nominal_loop(problem: &RobustProblem) -> Result<Option<FrequencySeries>, LinearError> {
     if !problem.has_controller {
         return Ok(None);
@@ -130,7 +131,7 @@ pub(super) fn chart(
         violations: view.map_or_else(Vec::new, |view| violations(problem, view)),
         contours_db: vec![],
     };
-    let caption = "The bounds of all specifications together, the nominal loop with its design frequencies, and the plants that violate a specification most: a loop above a bound that is open upwards, and outside of closed ones, keeps to all of them at that frequency.";
+    let caption = "The bounds of all specifications together, the nominal loop with its design frequencies, and the plants that violate a specification most: a loop above a bound that is open upwards, and outside closed ones, satisfies all of them at that frequency.";
     Ok(nichols(Words::new("nichols", "Nichols chart of the loop", caption), &input))
 }
 
@@ -157,7 +158,8 @@ fn unreached(problem: &RobustProblem, found: &[DesignFrequency]) -> Option<Strin
     let missing: Vec<String> =
         problem.design_frequencies().into_iter().filter(|one| !is_found(one)).map(frequency_number).collect();
     let listed = missing.join(", ");
-    (!missing.is_empty()).then(|| format!("Not measured, and so without template and bound: {listed} rad/s."))
+    (!missing.is_empty())
+        .then(|| format!("Not measured, and therefore without template and bound: {listed} rad/s."))
 }
 
 fn placements(problem: &RobustProblem, found: &[DesignFrequency]) -> Markup {
@@ -197,7 +199,7 @@ fn named(problem: &RobustProblem, index: usize) -> String {
     format!("{} ({})", index + 1, problem.name_of(index))
 }
 
-/// Frequencies at which no loop at all can keep to the specifications, and which of them collide.
+/// Frequencies at which no loop can satisfy the specifications, and the conflicting ones.
 fn feasibility(problem: &RobustProblem, found: &[DesignFrequency]) -> Vec<String> {
     let sentence = |collision: &Collision| {
         let names: Vec<String> =

@@ -1,4 +1,5 @@
-//! The chapter on what the machine does when its numbers are not quite those of the project: bands over time, and the worst runs.
+//! The chapter on the machine with numbers that deviate from those of the project: bands over time,
+//! and the worst runs.
 
 use phea_engineering::error::ProcedureError;
 
@@ -15,7 +16,7 @@ use crate::project::{Distribution, Loaded};
 use crate::simulate::{Window, cause_words, metric_of};
 use crate::source::Source;
 
-/// Runs of the report's campaign, and where their numbers come from.
+/// Number of runs of the report's campaign, and their seed.
 const RUNS: u64 = 500;
 const SEED: u32 = 1;
 
@@ -25,7 +26,7 @@ const WORST: usize = 4;
 /// Significant digits of the numbers in the tables: an answer has all of them.
 const DIGITS: usize = 3;
 
-/// The chapter, and what it says in a few words.
+/// The chapter, and its summary in a few words.
 pub(super) struct CampaignChapter {
     pub(super) chapter: Chapter,
     pub(super) fact: Option<(&'static str, String)>,
@@ -70,10 +71,10 @@ pub(super) fn driven(
 /// Metrics of an event that a reader wants first, the best of those that it has.
 const TOLD_FIRST: [&str; 4] =
     ["disturbance_peak_n", "settling_time_s", "tracking_error_peak_n", "force_peak_n"];
-/// Events that are told in a few words.
+/// Number of events in the summary.
 const TOLD_EVENTS: usize = 2;
 
-/// How many ran to their end, and between what most of them lie in the first events.
+/// How many were completed, and the range of most of them in the first events.
 fn words(plan: &Plan, summary: &Summary) -> String {
     let mut told = vec![format!("{} of {RUNS} runs to their end", summary.statuses[0])];
     let windows = plan.windows().iter().zip(&summary.metrics);
@@ -93,9 +94,9 @@ fn document(plan: &Plan, summary: &Summary, figures: Vec<Figure>) -> Document {
     let completed = summary.statuses[0];
     let (scenario, seed) = (plan.scenario(), plan.seed());
     let mut out = Document::default();
-    out.explanation(format!("{RUNS} runs of the scenario `{scenario}`, seed {seed}, with the numbers below drawn anew for each, independently of each other: {completed} ran to their end."));
+    out.explanation(format!("{RUNS} runs of the scenario `{scenario}`, seed {seed}, with the numbers below drawn anew for each, independently of each other: {completed} were completed."));
     let refused = summary.refused.first().map(|(run, reason)| {
-        format!("{} draws are no machine, the first is run {run}: {reason}.", summary.refused.len())
+        format!("{} draws do not give a machine, the first is run {run}: {reason}.", summary.refused.len())
     });
     let ended = summary.ended.iter().take(WORST).map(|(run, word, time_s)| {
         format!("Run {run} ended at {} s: {}.", significant(*time_s, 4), word.replace('_', " "))
@@ -106,10 +107,10 @@ fn document(plan: &Plan, summary: &Summary, figures: Vec<Figure>) -> Document {
     out.explanations(refused.into_iter().chain(ended).chain(occurred));
     out.figures(figures);
     out.heading("Metrics over the runs");
-    out.explanation("That share of the runs that have such a number lies below each; the worst is that of largest magnitude. Runs that have none are counted beside the name.");
+    out.explanation("That share of the runs that have such a number lies below each; the worst is that of largest magnitude. Runs that have none are counted next to the name.");
     out.table(metrics(plan, summary));
     out.heading("Linear models that were visited");
-    out.explanation("Stiffness, flow gain and flow-pressure coefficient do not exist in the nonlinear machine: these are those of its linear model at the operating point, for each draw, beside the box for which the controller is judged.");
+    out.explanation("Stiffness, flow gain and flow-pressure coefficient do not exist in the nonlinear machine: these are those of its linear model at the operating point, for each draw, next to the box for which the controller is judged.");
     out.table(lumps(plan, summary));
     worst(&mut out, plan, summary);
     drawn(&mut out, plan, summary);
@@ -147,7 +148,7 @@ fn worst_in(plan: &Plan, worst: &WorstRun) -> String {
     plan.windows().iter().enumerate().filter_map(of_window).collect::<Vec<_>>().join("; ")
 }
 
-/// Every drawn number: where from, and what the worst runs drew.
+/// Every drawn number: its distribution, and the values of the worst runs.
 fn drawn(out: &mut Document, plan: &Plan, summary: &Summary) {
     let draws: Vec<_> = told(summary).iter().map(|worst| plan.draw(worst.run)).collect();
     let runs = draws.iter().map(|draw| format!("run {}", draw.run));

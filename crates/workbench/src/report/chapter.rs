@@ -33,7 +33,7 @@ fn table_class(headings: &[&str]) -> &'static str {
     if headings.len() >= WIDE { "table wide" } else { "table" }
 }
 
-/// What takes the whole width of the paper, however few its columns are.
+/// A table that takes the whole width of the paper, however few its columns are.
 pub(super) fn wide(content: &Markup) -> Markup {
     html! { div.wide { (content) } }
 }
@@ -49,7 +49,7 @@ pub(super) fn table(headings: &[&str], numbers_from: usize, rows: &[Vec<Markup>]
     }
 }
 
-/// The same in groups of rows, each below a line of its own.
+/// The same in groups of rows, each below its own heading line.
 pub(super) fn grouped(
     headings: &[&str],
     numbers_from: usize,
@@ -69,7 +69,7 @@ pub(super) fn grouped(
     }
 }
 
-/// What a chapter on the linear loop leaves out of it, if there is such a thing.
+/// The effects that a chapter on the linear loop does not include, if any.
 pub(super) fn without(project: &Project) -> Markup {
     html! { @for sentence in of_models(project) { div.callout { p { (sentence) "." } } } }
 }

@@ -12,7 +12,7 @@ use crate::audit::{closed_loop_symbol, frequency_words, kind_key};
 use crate::figure::{FamilyMagnitudeInput, Figure, MagnitudeCurve, MagnitudeMark, Words, family_magnitude};
 use crate::robust::RobustProblem;
 
-/// Members that are drawn, besides the worst.
+/// Number of members that are drawn, in addition to the worst.
 pub(super) const DRAWN_MEMBERS: usize = 40;
 
 /// How far beyond design frequencies and violations the figures reach.
@@ -29,7 +29,8 @@ pub(super) fn span(specification: &Specification, finding: &SpecificationFinding
     if ends.is_empty() { [0.01, 1000.0] } else { [low / MARGIN_OF_FREQUENCY, high * MARGIN_OF_FREQUENCY] }
 }
 
-/// One figure for each specification that has a margin; the magnitudes of an unstable loop are those of no response.
+/// One figure for each specification that has a margin; the magnitudes of an unstable loop do not
+/// describe a response.
 pub(super) fn figures(
     problem: &RobustProblem,
     findings: &[SpecificationFinding],
@@ -104,7 +105,7 @@ fn figure(
     Ok(family_magnitude(Words::new(name, title, caption), &input))
 }
 
-/// Tracking without a prefilter: how far the family spreads, against how far the limits let it.
+/// Tracking without a prefilter: the spread of the family against the allowed one.
 fn spread_figure(
     number: usize,
     specification: &Specification,
@@ -141,7 +142,7 @@ pub(super) fn quotient([low, high]: [MagnitudeCurve; 2]) -> MagnitudeCurve {
     }
 }
 
-/// Where the spread is worst against what is allowed.
+/// Where the spread is worst compared with the allowed one.
 pub(super) fn spread_mark(allowed: &MagnitudeCurve, finding: &SpecificationFinding) -> Option<MagnitudeMark> {
     let worst = finding.worst.as_ref()?;
     let place = worst.frequency_rad_per_s;
@@ -179,7 +180,8 @@ pub(super) fn limit_curve(limit: &Limit, band: [f64; 2], frequencies: &[f64]) ->
     MagnitudeCurve { frequencies_rad_per_s, magnitudes }
 }
 
-/// The extreme of all curves at the frequencies of the first; measured ones that reach less far are left out there.
+/// The extreme of all curves at the frequencies of the first; measured ones with a smaller range
+/// are left out there.
 pub(super) fn extreme(curves: &[MagnitudeCurve], choose: fn(f64, f64) -> f64) -> MagnitudeCurve {
     let mut extreme = curves.first().cloned().unwrap_or_default();
     let count = extreme.magnitudes.len();
@@ -221,7 +223,8 @@ pub(super) fn mark(
     Some(MagnitudeMark { frequency_rad_per_s: frequency, magnitude, text, is_violation })
 }
 
-/// `19.2 dB over at 1304 rad/s`; what a reader cannot tell from the limit is at it.
+/// `19.2 dB over at 1304 rad/s`; a value that cannot be distinguished from the limit is at the
+/// limit.
 fn distance_words(worst: &WorstCase, word: &str) -> String {
     const DISTINGUISHED_DB: f64 = 2e-3;
     let (size, place) = (worst.margin_db.abs(), frequency_words(worst.frequency_rad_per_s));

@@ -1,5 +1,5 @@
-//! The chapter on the design: the controller that was found beside the one that was given, in the figures of both, and what the
-//! specifications cost it.
+//! The chapter on the design: the designed controller compared with the given one, in figures of
+//! both, and what the specifications cost.
 
 mod loops;
 mod magnitudes;
@@ -24,20 +24,21 @@ use crate::setup::Setup;
 use crate::source::Source;
 use crate::trial::{self, Trial};
 
-/// Whether the report of a project looks for a controller: where it says how, or gives none.
+/// Whether the report of a project designs a controller: if it has `[design]`, or gives no
+/// controller.
 pub(super) fn is_asked_for(project: &Project) -> bool {
     let has_law = project.controller.as_ref().is_some_and(|controller| controller.has_law());
     !project.specifications.is_empty() && (project.design.is_some() || !has_law)
 }
 
-/// What came of looking for a controller.
+/// The result of the design.
 pub(super) enum Designed {
     Found(Box<FoundDesign>),
     /// Why there is none, in sentences.
     Nothing(Vec<String>),
 }
 
-/// A design with what the chapter compares it with.
+/// A design with the results that the chapter compares it with.
 pub(super) struct FoundDesign {
     view: ProjectDesign,
 }
@@ -45,7 +46,7 @@ pub(super) struct FoundDesign {
 /// Looks for a controller.
 ///
 /// # Errors
-/// Those that leave nothing to report; that no controller is found is not among them.
+/// Errors that leave nothing to report; that no controller is found is not one of them.
 pub(super) fn designed(
     source: &dyn Source,
     setup: &Setup<'_>,
@@ -104,7 +105,7 @@ impl Designed {
         }
     }
 
-    /// What the machine does under the designed controller.
+    /// The trial of the designed controller on the machine.
     pub(super) fn trial(&self) -> Option<&Trial> {
         match self {
             Designed::Found(found) => found.view.trial.as_ref(),
@@ -112,7 +113,7 @@ impl Designed {
         }
     }
 
-    /// The project with the designed laws in it.
+    /// The project with the designed controller and prefilter.
     pub(super) fn files(&self, loaded: &Loaded) -> Vec<OutputFile> {
         match self {
             Designed::Found(found) => files(loaded, &found.view),

@@ -1,4 +1,4 @@
-//! The scenarios of a project, driven under each controller that the report speaks of.
+//! The scenarios of a project, driven under each controller of the report.
 
 use crate::answer::significant;
 use crate::command::{CommandError, Watch};
@@ -18,11 +18,11 @@ pub(super) const GIVEN: &str = "given";
 /// Name of the one that was designed.
 pub(super) const DESIGNED: &str = "designed";
 
-/// What the machine does in every scenario.
+/// The runs of the machine in every scenario.
 pub(super) struct MachineChapter {
-    /// Given and designed, as far as there are any.
+    /// Given and designed controller, if they exist.
     pub(super) sides: Vec<DrivenSide>,
-    /// What was wished of a step in time.
+    /// The wish for a step in time.
     pub(super) wish: Option<TrackingWish>,
 }
 
@@ -34,10 +34,11 @@ pub(super) struct DrivenSide {
     pub(super) runs: Result<Vec<ScenarioRun>, SimulateError>,
 }
 
-/// Drives the scenarios under the given controller, and under the `designed` one where there is one; `None` without scenarios.
+/// Drives the scenarios under the given controller, and under the `designed` one where there is
+/// one; `None` without scenarios.
 ///
 /// # Errors
-/// [`ProcedureError::Stopped`] where the watch stops it, and a wish in time that is none.
+/// [`ProcedureError::Stopped`] where the watch stops it, or where a wish in time is invalid.
 pub(super) fn driven(
     source: &dyn Source,
     setup: &Setup<'_>,
@@ -63,7 +64,8 @@ pub(super) fn driven(
 }
 
 impl MachineChapter {
-    /// The runs of a scenario by its place in the file. Where a stated command drives the valve, no controller does: one run tells all.
+    /// The runs of a scenario by its index in the file. If a stated command drives the valve, no
+    /// controller acts, and there is a single run.
     pub(super) fn of_scenario<'a>(&'a self, index: usize) -> Vec<NamedRun<'a>> {
         let named = |side: &'a DrivenSide| Some(NamedRun { name: side.name, run: run_of(side, index)? });
         let mut named: Vec<NamedRun<'a>> = self.sides.iter().filter_map(named).collect();
@@ -73,7 +75,8 @@ impl MachineChapter {
         named
     }
 
-    /// The same in the order of the figures that compare both, whose first colour is the designed one's.
+    /// The same in the order of the figures that compare both, whose first colour is the designed
+    /// one's.
     pub(super) fn drawn(&self, index: usize) -> Vec<NamedRun<'_>> {
         let mut named = self.of_scenario(index);
         named.reverse();
@@ -86,8 +89,8 @@ impl MachineChapter {
         side.runs.as_deref().ok()
     }
 
-    /// The first reference step and the first motion of the load or force on it, in a few words each, of the controller that a reader
-    /// would take first.
+    /// The first reference step and the first motion of the load or force on it, in a few words
+    /// each, of the controller that a reader would take first.
     pub(super) fn facts(&self) -> Vec<(&'static str, String)> {
         let names = [(GIVEN, "Simulated, given controller"), (DESIGNED, "Simulated, designed controller")];
         let fact = |(side, name): (&str, &'static str)| Some((name, told(self.runs_of(side)?)?));

@@ -1,14 +1,14 @@
-//! What drives a scenario, in sentences.
+//! The inputs of a scenario, in sentences.
 
 use crate::project::{Amplitudes, Multisine, Scenario, Signal};
 use crate::quantity::{Dimension, DisplayUnit, FORCE, TIME, VOLTAGE, display};
 
 /// Digits of a number in a sentence.
 const DIGITS: usize = 4;
-/// Frequencies that are told one by one; of more, the first and the last.
+/// Number of frequencies that are listed; if there are more, only the first and the last.
 const TOLD: usize = 4;
 
-/// Where a scenario goes on from and what drives it, where that is more than steps of the reference.
+/// The initial state and the inputs of a scenario, if these are more than steps of the reference.
 pub(super) fn sentences(scenario: &Scenario) -> Vec<String> {
     let mut told = Vec::new();
     if let Some(file) = scenario.start.as_ref().and_then(|start| start.file.as_ref()) {
@@ -23,7 +23,7 @@ pub(super) fn sentences(scenario: &Scenario) -> Vec<String> {
     }
     if !scenario.external_force.is_empty() {
         told.push(format!(
-            "From outside the load is pushed with {}.",
+            "An external force acts on the load: {}.",
             parts(&scenario.external_force, &FORCE)
         ));
     }

@@ -24,7 +24,8 @@ const SAMPLES: usize = 600;
 /// Time constants of the slowest pole of the lower limit that are shown.
 const TIME_CONSTANTS: f64 = 8.0;
 
-/// The figure under a name and a title, or why there is none; `None` where no tracking is specified by transfer functions.
+/// The figure under a name and a title, or why there is none; `None` where no tracking is specified
+/// by transfer functions.
 pub(super) fn figure(
     problem: &RobustProblem,
     view: &ProjectAudit,
@@ -106,7 +107,7 @@ fn drawn(
 }
 
 fn words([name, title]: [&str; 2]) -> Words {
-    let caption = "Step responses of plants of the family (thin) and those of the tracking limits. A limit on magnitudes does not bound a response in time: the band is what the limits themselves do.";
+    let caption = "Step responses of plants of the family (thin) and those of the tracking limits. A limit on magnitudes does not bound a response in time: the band is the response of the limits themselves.";
     Words::new(name, title, caption)
 }
 
@@ -118,7 +119,8 @@ fn closed_loop(
     let compensation = &problem.compensation;
     let (plant, sensor) = match compensation.member(plant)? {
         Member::Sampled { command, .. } => {
-            // A sensor with dynamics is sampled together with the plant, of which no transfer function of it alone is left.
+            // A sensor with dynamics is sampled together with the plant, so that the transfer
+            // function of the plant alone is not available.
             if !(compensation.sensor().poles().is_empty() && compensation.sensor().dead_time_s() == 0.0) {
                 return Err(LinearError::WrongDomain {
                     operation: "a step response with sensor dynamics",
@@ -141,7 +143,7 @@ fn closed_loop(
     compensation.prefilter_of_step()?.series(&closed)
 }
 
-/// The same of a continuous loop with dead time, in time.
+/// The same for a continuous loop with dead time.
 fn delayed_step(
     problem: &RobustProblem,
     plant: PlantCoefficients<f64>,
@@ -157,7 +159,7 @@ fn delayed_step(
     delayed_loop_step(&forward, compensation.sensor(), compensation.prefilter(), duration, DELAYED_STEPS)
 }
 
-/// The same of a plant that is known by its response, its lines being in motion.
+/// The same for a plant with lines in motion, which is known by its response.
 fn step_in_motion(
     problem: &RobustProblem,
     plant: &Arc<dyn RespondingPlant>,

@@ -1,4 +1,5 @@
-//! The chapter on the driving-point impedance: what the load feels, its asymptotes, and passivity.
+//! The chapter on the driving-point impedance: the impedance at the load, its asymptotes, and
+//! passivity.
 
 use maud::{Markup, html};
 use phea_dynamics::linear::{LinearError, TransferFunction};
@@ -25,7 +26,7 @@ pub(super) fn chapter(
     let hidden = significant(linearization.compliance_hidden_above_rad_per_s, 4);
     let body = html! {
         p {
-            (typeset("Z = -F_e/(s X_L)")) " is what a load feels that moves the rod: a damper, spring or mass, depending on frequency. Above " (hidden)
+            (typeset("Z = -F_e/(s X_L)")) " is the resistance to a load that moves the rod: a damper, spring or mass, depending on frequency. Above " (hidden)
             " rad/s the piston's mass hides the hydraulic compliance, and the load meets the sensor's stiffness alone."
         }
         (without(project))
@@ -52,7 +53,7 @@ pub(super) fn chapter(
         h3 { "Asymptotes" }
         (asymptotes(linearization))
     };
-    Ok(Chapter { anchor: "impedance", title: "What the load feels", body, figures })
+    Ok(Chapter { anchor: "impedance", title: "The impedance at the load", body, figures })
 }
 
 fn peaks(forces: &[Moved]) -> String {

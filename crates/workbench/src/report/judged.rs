@@ -1,4 +1,5 @@
-//! The verdicts of a report: the audit of the given controller, the design, and what the machine did with both.
+//! The verdicts of a report: the audit of the given controller, the design, and the trials of both
+//! on the machine.
 
 use super::design::{self, Designed};
 use crate::audit::{ProjectAudit, audit_problem, try_to_prove};
@@ -9,7 +10,7 @@ use crate::setup::Setup;
 use crate::source::Source;
 use crate::trial::{Trial, tried};
 
-/// What the robust method says of a project with specifications.
+/// The results of the robust method for a project with specifications.
 pub(super) struct Judged {
     /// The family in the loop of the project.
     pub(super) problem: RobustProblem,
@@ -17,16 +18,17 @@ pub(super) struct Judged {
     pub(super) bounds: Vec<DesignFrequency>,
     /// The audit of the given controller; `None` without one.
     pub(super) given: Option<ProjectAudit>,
-    /// What the machine does under it.
+    /// The trial of it on the machine.
     pub(super) given_trial: Option<Trial>,
-    /// What came of looking for a controller; `None` where nobody asked for one.
+    /// The result of the design; `None` if no design was requested.
     pub(super) designed: Option<Designed>,
 }
 
 /// Judges a project; `None` without specifications.
 ///
 /// # Errors
-/// [`CommandError`] for a family or a law that cannot be computed with, and where the watch stops it.
+/// [`CommandError`] for a family or a controller that cannot be computed, and where the watch stops
+/// it.
 pub(super) fn judged(
     source: &dyn Source,
     setup: &Setup<'_>,

@@ -19,7 +19,8 @@ const MOTION_SAMPLES: u32 = 400;
 /// Samples of the drawn force, over ten times the motion's duration.
 const SAMPLES: usize = 2000;
 
-/// Distance in m and duration in s of the first smooth step of the load in the scenarios, or 1 mm in 0.1 s.
+/// Distance in m and duration in s of the first smooth step of the load in the scenarios, or 1 mm
+/// in 0.1 s.
 fn motion(project: &Project) -> (f64, f64) {
     let smooth = |motion: &LoadMotion| match motion.shape {
         MotionShape::SmoothStep { duration, distance } => Some((distance, duration)),
@@ -53,11 +54,11 @@ pub(super) struct Moved {
     pub(super) force: Option<MovedForce>,
 }
 
-/// How the force goes, where it does not grow without bound.
+/// The force over time, if it does not grow without bound.
 pub(super) struct MovedForce {
     /// Largest change with its sign, N.
     pub(super) peak_n: f64,
-    /// What remains in the end, N.
+    /// The remaining force, N.
     remains_n: f64,
     series: TimeSeries,
 }
@@ -65,7 +66,7 @@ pub(super) struct MovedForce {
 /// Load step that the final force of a port is stated for, m.
 const STATED_STEP: f64 = 1e-3;
 
-/// Final force below which nothing remains, N.
+/// Final force that counts as zero, N.
 const NOTHING: f64 = 1e-6;
 
 /// The force at each port while the load moves; an unstable port has none.
@@ -94,7 +95,7 @@ pub(super) fn forces(
     Ok(forces)
 }
 
-/// What remains of these forces in the end, in sentences.
+/// The remaining forces, in sentences.
 fn end(forces: &[Moved]) -> String {
     let known: Vec<(&str, f64)> =
         forces.iter().filter_map(|moved| Some((moved.name, moved.force.as_ref()?.remains_n))).collect();

@@ -1,4 +1,5 @@
-//! The chapter on linear models: poles, Bode diagram of the models with their difference, dominance.
+//! The chapter on linear models: poles, Bode diagram of the models with their difference,
+//! dominance.
 
 use super::chapter::Chapter;
 use crate::document::Document;
@@ -13,8 +14,8 @@ pub(super) fn chapter(linearization: &Linearization) -> Result<Chapter, LinearEr
     let figures = vec![poles(linearization), responses(linearization)?, reduction(linearization)?];
     let mut out = Document::default();
     out.explanation(
-        "The two-pressure model is the linearised truth of the rig as declared; the fifth-order model (6.7) takes one stiffness and one load pressure. \
-         What that leaves out is judged with derived parameters in both; everything else here uses the values that hold. \
+        "The two-pressure model is the exact linearisation of the rig as declared; the fifth-order model (6.7) takes one stiffness and one load pressure. \
+         The resulting error is judged with derived parameters in both; everything else here uses the values in use. \
          (6.12) splits it into hydraulic, mechanical and valve part; (6.13) keeps the hydraulic part alone.",
     );
     out.append(document(linearization, figures));
@@ -46,7 +47,7 @@ fn poles(linearization: &Linearization) -> Figure {
     pole_map(Words::new("poles", "Pole map", caption), &input)
 }
 
-/// The models with the values that hold, the plant first, which may be the fifth order.
+/// The models with the values in use, the plant first, which may be the fifth-order model.
 fn responses(linearization: &Linearization) -> Result<Figure, LinearError> {
     let mut models = vec![
         ("fifth order (6.7)", &linearization.full.command),
@@ -59,13 +60,13 @@ fn responses(linearization: &Linearization) -> Result<Figure, LinearError> {
         first = "the plant, which has load, leakage and both chambers";
     }
     let caption = format!(
-        "Force over command of the models with the values that hold, and how far each is from {first}."
+        "Force over command of the models with the values in use, and the difference of each from {first}."
     );
     let words = Words::new("bode", "Frequency response of the models", &caption);
     diagram(words, &models, &linearization.plant.command)
 }
 
-/// What one load pressure leaves out: both models with derived parameters.
+/// The error of the model with one load pressure: both models with derived parameters.
 fn reduction(linearization: &Linearization) -> Result<Figure, LinearError> {
     let caption = "The fifth-order model instead of the two-pressure model, both with derived parameters.";
     let words = Words::new("bode-reduction", "What one load pressure leaves out", caption);

@@ -1,5 +1,5 @@
-//! The page that decides: what was asked, what the given and the designed controller make of it, the numbers that matter, force over
-//! time, the loop in its Nichols chart, and what to do next.
+//! The first page: the specifications, how well the given and the designed controller satisfy them,
+//! the main numbers, force over time, the loop in its Nichols chart, and what to do next.
 
 mod next;
 mod side;
@@ -22,20 +22,20 @@ use crate::trial::agreement_word;
 use next::next_steps;
 use side::{Side, sides};
 
-/// What the page is made of.
+/// The content of the page.
 pub(super) struct Contents<'a> {
     pub(super) setup: &'a Setup<'a>,
     pub(super) judged: Option<&'a Judged>,
     pub(super) driven: Option<&'a MachineChapter>,
-    /// Of the rig and its load: shown as cards.
+    /// Facts on the rig and its load, shown as cards.
     pub(super) facts: &'a Facts,
-    /// Of what was driven, once and many times: shown as wider ones.
+    /// Facts on simulations and campaigns, shown as wider cards.
     pub(super) results: &'a Facts,
-    /// Whether the sizing asked for a hose and none fits.
+    /// Whether a hose was required and none fits.
     pub(super) no_hose_fits: bool,
 }
 
-/// What the page says, for programs.
+/// The content of the page for programs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Decision {
     /// The controller that the project gives; absent where it gives none.
@@ -46,18 +46,18 @@ pub struct Decision {
     pub next: Vec<String>,
 }
 
-/// What is known of one controller; absent is what nobody asked for.
+/// What is known about one controller; absent where it was not requested.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Decided {
     /// Of the family: `met`, `violated`, `not_proven`.
     pub verdict: Option<&'static str>,
-    /// The same of each specification, in file order.
+    /// The same for each specification, in file order.
     pub specifications: Vec<&'static str>,
     /// Whether all of that is proven for every plant and every frequency; absent where no proof was attempted.
     pub proven: Option<bool>,
-    /// What the machine did with the verdict: `agrees`, `differs`, `contradicts`.
+    /// The trial of the verdict on the machine: `agrees`, `differs`, `contradicts`.
     pub machine: Option<&'static str>,
-    /// Whether every step on the machine kept to what was wished in time.
+    /// Whether every step on the machine met the wish in time.
     pub wishes_kept: Option<bool>,
 }
 
@@ -83,7 +83,7 @@ impl Decided {
     }
 }
 
-/// The page as the first chapter, and what it says.
+/// The page as the first chapter, and its content for programs.
 pub(super) fn opening(contents: &Contents<'_>, nichols: Option<Figure>) -> (Chapter, Decision) {
     let sides = sides(contents.judged, contents.driven);
     let next = next_steps(contents, &sides);
@@ -106,7 +106,7 @@ pub(super) fn opening(contents: &Contents<'_>, nichols: Option<Figure>) -> (Chap
     let decided =
         |name: &str| sides.iter().find(|side| side.name == name).map(|side| decided(contents, side));
     let decision = Decision { given: decided(GIVEN), designed: decided(DESIGNED), next };
-    (Chapter { anchor: "decision", title: "What was asked, and what came of it", body, figures }, decision)
+    (Chapter { anchor: "decision", title: "What was required, and the result", body, figures }, decision)
 }
 
 /// What to do next.
@@ -139,7 +139,7 @@ fn decided(contents: &Contents<'_>, side: &Side<'_>) -> Decided {
     }
 }
 
-/// What stands in the way of any controller, told before anything else.
+/// What prevents any controller, stated first.
 fn hindrances(contents: &Contents<'_>) -> Markup {
     let Some(judged) = contents.judged else { return html! {} };
     let found = judged.found();

@@ -1,4 +1,4 @@
-//! The page: one HTML file that needs nothing else, on screen, in the dark and on paper.
+//! The page: one self-contained HTML file, for the screen (light or dark) and for paper.
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
@@ -9,7 +9,7 @@ use crate::figure::style_sheet;
 pub(super) struct Page<'a> {
     pub(super) title: &'a str,
     pub(super) subtitle: &'a str,
-    /// The first sheet of paper: what decides.
+    /// The first sheet of paper: the decision.
     pub(super) opening: &'a Chapter,
     pub(super) chapters: &'a [Chapter],
     pub(super) appendix: &'a [Chapter],

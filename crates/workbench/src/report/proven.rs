@@ -1,4 +1,4 @@
-//! The chapter on what is proven: of both controllers, and the model that it is proven of.
+//! The chapter on proofs: for both controllers, with the assumptions of the model.
 
 use super::chapter::Chapter;
 use super::judged::Judged;
@@ -8,7 +8,7 @@ use crate::design::DESIGNED_CERTIFICATE;
 use crate::document::Document;
 use crate::project::Project;
 
-/// `None` where there is no controller to prove anything of.
+/// `None` if there is no controller.
 pub(super) fn chapter(project: &Project, judged: &Judged) -> Option<Chapter> {
     let designed = judged.found().map(|found| &found.designed.view);
     let sides = [

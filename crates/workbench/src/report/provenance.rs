@@ -48,14 +48,14 @@ fn paths(loaded: &Loaded, keep: impl Fn(&Origin) -> bool) -> Vec<&str> {
     loaded.provenance.iter().filter(|entry| keep(&entry.origin)).map(|entry| entry.path.as_str()).collect()
 }
 
-/// What this report does not say.
+/// What this report does not cover.
 fn not_proven(project: &Project) -> &'static str {
     let law = project.controller.as_ref().is_some_and(|controller| controller.has_law());
     match (law && !project.specifications.is_empty(), project.actuator.is_some()) {
         (true, true) => {
-            "What is not proven of the linear models was searched for, and a search is no proof. What the nonlinear machine does is shown for the steps and scenarios that were driven, and for no others."
+            "What is not proven of the linear models was searched for, and a search is not a proof. What the nonlinear machine does is shown for the steps and scenarios that were driven, and for no others."
         }
-        (true, false) => "What is not proven was searched for, and a search is no proof.",
+        (true, false) => "What is not proven was searched for, and a search is not a proof.",
         (false, true) => {
             "This report computes nominal linear models and a sizing. It does not say that a controller holds for every plant of the declared uncertainty; what the nonlinear machine does is shown for the scenarios that were driven, and for no others."
         }
@@ -63,7 +63,7 @@ fn not_proven(project: &Project) -> &'static str {
     }
 }
 
-/// What the models take for granted.
+/// The assumptions of the models.
 pub(super) fn assumptions(project: &Project) -> Vec<String> {
     if project.actuator.is_none() {
         return vec![
@@ -72,8 +72,8 @@ pub(super) fn assumptions(project: &Project) -> Vec<String> {
         ];
     }
     let mut assumptions = vec![
-        "Pressures are gauge; the tank is at the declared pressure; the supply pressure is constant in every linear model, but in the plant of a pump that is limited.".to_string(),
-        "Volumetric expansion and wall modulus of a hose are taken at the supply pressure; between the catalogue's point and another pressure the expansion follows the catalogue's slope; a supply beyond the point is warned of.".to_string(),
+        "Pressures are gauge; the tank is at the declared pressure; the supply pressure is constant in every linear model, except in the plant of a limited pump.".to_string(),
+        "Volumetric expansion and wall modulus of a hose are taken at the supply pressure; between the catalogue's point and another pressure the expansion follows the catalogue's slope; a supply beyond the point causes a warning.".to_string(),
         "The hose wall has its dynamic modulus at every frequency; at rest it is softer by the stiffening ratio.".to_string(),
         "Friction enters the linear models by its viscous part alone.".to_string(),
         match project.actuator.as_ref().map(|actuator| &actuator.load) {

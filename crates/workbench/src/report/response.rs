@@ -27,7 +27,7 @@ pub(super) fn chapter(
     let figures: Vec<Figure> =
         linear_loop.step.iter().map(|view| figure(view, reference_n.unwrap_or(REFERENCE))).collect();
     let body = html! {
-        p { "The fifth-order model with its nominal values in a loop with the given controller and prefilter. One plant, linear: no proof of anything for the others, nor for the nonlinear machine." }
+        p { "The fifth-order model with its nominal values in a loop with the given controller and prefilter. One linear plant: this proves nothing for the others, or for the nonlinear machine." }
         (without(project))
         @match &linear_loop.step {
             Ok(view) => { (place(&figures[0])) (metrics(view)) }
@@ -103,7 +103,8 @@ fn margins(margins: &Margins) -> Markup {
         format!("{} dB {}", significant(margin.db(), 3), at(margin.frequency_rad_per_s))
     });
     let phase = margins.critical_phase().map_or("infinite".to_string(), |margin| {
-        // Beyond a resonance it can be lead that the loop does not stand; a bare minus would read as instability.
+        // Beyond a resonance it can be a phase lead that the loop does not tolerate; a bare minus
+        // sign would suggest instability.
         let direction = if margin.phase_deg < 0.0 { "lead" } else { "lag" };
         let size = significant(margin.phase_deg.abs(), 3);
         format!("{size}° of {direction} {}", at(margin.frequency_rad_per_s))

@@ -1,4 +1,4 @@
-//! The chapter on the rig: its circuit, drawn from the project, and what is declared.
+//! The chapter on the rig: its circuit, drawn from the project, and its declaration.
 
 use super::chapter::Chapter;
 use crate::document::{Document, Table};

@@ -1,4 +1,5 @@
-//! The appendix on what is not known well: the first scenario with the load cell and the friction multiplied.
+//! The appendix on uncertain quantities: the first scenario with multiples of the load cell's
+//! stiffness and of the friction.
 
 use phea_engineering::error::ProcedureError;
 
@@ -17,7 +18,8 @@ use crate::source::Source;
 const STIFFNESS_FACTORS: [f64; 4] = [0.1, 0.5, 1.0, 2.0];
 const FRICTION_FACTORS: [(f64, &str); 4] = [(0.0, "none"), (0.5, "half"), (1.0, "all of it"), (2.0, "twice")];
 
-/// The chapter, of the first controller that was driven, whose project this is; `None` where none was.
+/// The chapter, of the first controller that was driven, whose project this is; `None` where none
+/// was.
 ///
 /// # Errors
 /// [`ProcedureError::Stopped`] where the watch stops it.
@@ -33,7 +35,7 @@ pub(super) fn chapter(
         return Ok(None);
     }
     let mut out = Document::default();
-    out.explanation(format!("The first scenario again with one quantity changed: the stiffness K_S of load cell and environment, and all friction. Neither is known well of a real rig, and the overshoot follows both. The controller is the {} one.", side.name));
+    out.explanation(format!("The first scenario again with one quantity changed: the stiffness K_S of load cell and environment, and all friction. Neither is known accurately for a real rig, and the overshoot depends on both. The controller is the {} one.", side.name));
     let refused = varied.iter().filter_map(|varied| Some((varied, varied.run.as_ref().err()?)));
     out.explanations(
         refused.map(|(varied, reason)| format!("{}, {}: {reason}.", varied.quantity, varied.value)),
@@ -43,7 +45,7 @@ pub(super) fn chapter(
     Ok(Some(Chapter::of("sensitivity", "Sensitivity of the first scenario", out)))
 }
 
-/// A quantity multiplied by a factor, and what comes of the first scenario.
+/// A quantity multiplied by a factor, and the result of the first scenario.
 struct VariedQuantity {
     quantity: &'static str,
     factor: f64,
@@ -102,7 +104,7 @@ fn vary(
     Ok(VariedQuantity { quantity, factor, value, run })
 }
 
-/// What comes of one event, quantity by quantity.
+/// The results of one event, quantity by quantity.
 fn event_table(varied: &[VariedQuantity], event: usize) -> Option<Table> {
     let seen = |varied: &VariedQuantity| Some(*varied.run.as_ref().ok()?.windows.get(event)?);
     let windows: Vec<(Window, Metrics)> = varied.iter().filter_map(seen).collect();

@@ -1,5 +1,5 @@
-//! The chapter on the nonlinear machine: each scenario over time under each controller, and what is read off it beside what was wished,
-//! published and measured.
+//! The chapter on the nonlinear machine: each scenario over time under each controller, and its
+//! metrics compared with wishes, published values and measurements.
 
 use super::chapter::Chapter;
 use super::driven::MachineChapter;
@@ -39,7 +39,7 @@ pub(super) fn chapter(project: &Project, driven: &MachineChapter) -> Chapter {
     Chapter::of("simulation", "Simulation of the nonlinear machine", out)
 }
 
-/// The appendix: what happens inside the machine at each event, for each of several controllers.
+/// The appendix: the signals inside the machine at each event, for each of several controllers.
 pub(super) fn inside(project: &Project, driven: &MachineChapter) -> Option<Chapter> {
     let scenarios = 0..project.scenarios.len();
     let several =
@@ -56,7 +56,7 @@ pub(super) fn inside(project: &Project, driven: &MachineChapter) -> Option<Chapt
     Some(Chapter::of("inside", "Inside the machine at each event", out))
 }
 
-/// All controllers in one figure; of one alone, everything of it.
+/// All controllers in one figure; a single controller with all signals.
 fn drawn(runs: &[NamedRun<'_>], number: usize, wish: Option<&TrackingWish>) -> Vec<Figure> {
     match runs {
         [alone] => pictures(alone.run, number),
@@ -97,7 +97,7 @@ fn scenario(
     out
 }
 
-/// Whose run a sentence is about, where there are several.
+/// The controller of a sentence, if there are several.
 fn of(named: &NamedRun<'_>, runs: &[NamedRun<'_>]) -> String {
     if runs.len() > 1 { format!("{}: ", capital(named.name)) } else { String::new() }
 }
@@ -107,7 +107,7 @@ fn capital(word: &str) -> String {
     letters.next().map_or(String::new(), |first| format!("{}{}", first.to_uppercase(), letters.as_str()))
 }
 
-/// What is read off each event: a row of each controller, beside what was published of it.
+/// The metrics of each event: a row for each controller, compared with published values.
 fn metrics(runs: &[NamedRun<'_>], declared: &Scenario, wish: Option<&TrackingWish>) -> Document {
     let mut out = Document::default();
     let Some(first) = runs.first().map(|named| named.run).filter(|first| !first.windows.is_empty()) else {
@@ -157,7 +157,7 @@ pub(super) fn told<'a>(windows: impl Iterator<Item = &'a (Window, Metrics)>) -> 
     (0..METRICS.len()).filter(|place| cells.iter().any(|cells| cells[*place] != Cell::Missing)).collect()
 }
 
-/// The worst of all steps of some runs beside a wish: `None` where there is none to judge.
+/// The worst of all steps of some runs compared with a wish; `None` if there is none to judge.
 pub(super) fn worst(
     runs: &[ScenarioRun],
     reached: impl Fn(&Metrics) -> Option<(f64, HeldWish)>,

@@ -1,4 +1,4 @@
-//! The chapter on sizing: decisions, nomograph, candidates, what is uncertain.
+//! The chapter on sizing: decisions, nomograph, candidates, uncertainties.
 
 use super::chapter::Chapter;
 use crate::document::Document;
@@ -35,7 +35,7 @@ fn bores(problem: &SizingProblem, sizing: &Sizing) -> Figure {
     let [slowest, fastest] = problem.oil_velocity;
     let [smallest, largest] = sizing.bore_range_m.map(|bore| DisplayUnit::MILLIMETRE.number(bore, 3));
     let caption = format!(
-        "At {} L/min the recommended velocities of {slowest} to {fastest} m/s take a bore of {smallest} to {largest} mm. A faster bore is rejected, a slower one only warned of.",
+        "At {} L/min the recommended velocities of {slowest} to {fastest} m/s take a bore of {smallest} to {largest} mm. A faster bore is rejected, a slower one only causes a warning.",
         DisplayUnit::LITRE_PER_MINUTE.number(problem.maximum_flow, 3)
     );
     let input = NomographInput {

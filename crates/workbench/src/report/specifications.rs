@@ -1,5 +1,5 @@
-//! The chapter on what is demanded of the loop: the specifications in words and formulae, what the limits of tracking do in
-//! time, and which margins the limits guarantee.
+//! The chapter on the specifications of the loop, in words and formulae, with the response of the
+//! tracking limits in time and the margins that the limits guarantee.
 
 use maud::{Markup, html};
 use num_complex::Complex64;
@@ -26,7 +26,7 @@ pub(super) fn chapter(project: &Project, problem: &RobustProblem) -> Result<Chap
     let wishes = wishes(project)?;
     let margins = margins(specifications)?;
     let body = html! {
-        p { "What is demanded of the closed loop of every plant. L is the open loop; F, G and P are prefilter, controller and plant." }
+        p { "The requirements on the closed loop of every plant. L is the open loop; F, G and P are prefilter, controller and plant." }
         (table(&["", "specification", "demand", "where it must hold", "design frequencies (rad/s)"], 9, &rows))
         @for (number, specification) in (1..).zip(specifications) { (spread(number, specification)) }
         @if !wishes.is_empty() { h3 { "Tracking limits in time" } ul { @for wish in &wishes { li { (wish_item(wish)) } } } }
@@ -122,7 +122,7 @@ fn factors(roots: &[Complex64], variable: char) -> Vec<String> {
     roots.iter().filter(|root| root.im >= 0.0).map(factor).collect()
 }
 
-/// How far apart the limits of tracking are; nothing for other kinds.
+/// How far apart the limits of tracking are; empty for other kinds.
 fn spread(number: usize, specification: &Specification) -> Markup {
     let Requirement::Tracking { lower, upper } = &specification.requirement else { return html! {} };
     let decibels = |value: f64| if value.abs() < 5e-4 { "0".to_string() } else { significant(value, 3) };

@@ -17,7 +17,7 @@ pub(super) fn chapter(rig: &Rig, linearization: &Linearization) -> Chapter {
     let declared = model_name(rig.actuator.components().stiffness_model);
     let mut out = Document::default();
     out.explanation(stiffness_sentence(&linearization.stiffness_models));
-    out.explanation(format!("This project declares `{declared}`. The thesis' tables are made with `uniform`; a steel chamber does not become softer because a hose is screwed to it, and a hose swells as its sheet says, so `by_volume` is what a rig will show."));
+    out.explanation(format!("This project declares `{declared}`. The thesis' tables are made with `uniform`; a steel chamber does not become softer because a hose is screwed to it, and a hose swells as its data sheet states, so a rig will behave as in `by_volume`."));
     out.figures([figure(rig)]);
     Chapter::of("stiffness", "Stiffness over the stroke", out)
 }

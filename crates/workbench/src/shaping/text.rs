@@ -36,7 +36,7 @@ pub fn text(view: &ProjectShaping) -> String {
         out.table(margins(view));
         let unstable = view.stability.verdict == Verdict::Violated;
         out.sentences(unstable.then(|| {
-            "The loop is unstable: these magnitudes are of no response, they only show where it lies."
+            "The loop is unstable: these magnitudes do not describe a response, they only show where the loop lies."
                 .to_string()
         }));
         out.heading("The nominal loop at the design frequencies");
@@ -50,7 +50,7 @@ pub fn text(view: &ProjectShaping) -> String {
         let missing: Vec<String> = view.unreached_rad_per_s.iter().copied().map(frequency_number).collect();
         out.sentences([format!("Not measured at {} rad/s.", missing.join(", "))]);
     }
-    let between = "Nothing is said of what lies between these frequencies: `verify` looks there.";
+    let between = "Nothing is stated about the frequencies between these: `verify` examines them.";
     out.sentences(asked.then(|| between.to_string()));
     out.text()
 }

@@ -14,7 +14,7 @@ pub(crate) fn json(loaded: &Loaded, runs: &[ScenarioRun]) -> String {
     answer::json("simulate", loaded, body(loaded, runs))
 }
 
-/// The JSON object of `simulate` where a frequency response is asked for: no scenario is run.
+/// The JSON object of `simulate` if a frequency response is requested: no scenario is run.
 pub(crate) fn frequency_json(loaded: &Loaded, found: &MachineResponses) -> String {
     let response = Object::new().with("frequency_response", frequency::body(found));
     answer::json("simulate", loaded, response.and(body(loaded, &[])))

@@ -1,4 +1,4 @@
-//! What is told of `simulate::check`: text, JSON, files and figures.
+//! The output of `simulate --check`.
 
 mod answer;
 

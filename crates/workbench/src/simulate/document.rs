@@ -1,4 +1,4 @@
-//! What `simulate` and `compare` say to people.
+//! The output of `simulate` and `compare` for people.
 
 use super::check;
 use super::exceeded_words;
@@ -12,7 +12,7 @@ use crate::document::{Cell, Document, Table};
 use crate::project::{Loaded, Scenario, Signal};
 use crate::quantity::{DisplayUnit, FORCE, PRESSURE, TIME, VOLTAGE, display};
 
-/// Occurrences that are named one by one; more are counted.
+/// Number of occurrences that are listed one by one; more are counted.
 const TOLD: usize = 8;
 
 /// The tables and sentences of `simulate`.
@@ -36,7 +36,7 @@ fn not_run(loaded: &Loaded, runs: &[ScenarioRun]) -> String {
     }
 }
 
-/// Name and end of a run, and what it cost.
+/// Name and end of a run, and its effort.
 pub(crate) fn headline(run: &ScenarioRun) -> String {
     let work = format!("{} steps, {} rejected", run.work.steps, run.work.rejected);
     let loop_words = if run.open_loop { " open loop" } else { "" };
@@ -69,8 +69,8 @@ fn why(stopped: &StoppedRun) -> String {
 /// Metrics that have a column only where some window has them.
 const RARE: [&str; 2] = ["tracking error peak", "force peak"];
 
-/// What is read off each event of a run, judged by what was wished; beside what was published of it, where only metrics that some event has
-/// are shown.
+/// The metrics of each event of a run, judged by the wish. Next to published values only metrics
+/// that some event has are shown.
 pub(crate) fn windows(run: &ScenarioRun, wish: Option<&TrackingWish>, declared: Option<&Scenario>) -> Table {
     let cells: Vec<_> = run.windows.iter().map(|(_, metrics)| cells_of(metrics)).collect();
     let always = |name: &str| declared.is_none() && !run.open_loop && !RARE.contains(&name);
@@ -92,7 +92,7 @@ pub(crate) fn windows(run: &ScenarioRun, wish: Option<&TrackingWish>, declared: 
     rows
 }
 
-/// The metrics of one event, those that something was wished of with a mark.
+/// The metrics of one event, those with a wish marked.
 pub(crate) fn metrics_row(
     name: String,
     shown: &[usize],
@@ -111,14 +111,15 @@ pub(crate) fn metrics_row(
     std::iter::once(name.into()).chain(shown.iter().map(|place| std::mem::take(&mut cells[*place]))).collect()
 }
 
-/// What was published of an event.
+/// The published values of an event.
 pub(crate) fn published_row(source: &str, shown: &[usize], mut cells: [Cell; METRICS.len()]) -> Vec<Cell> {
     std::iter::once(source.into())
         .chain(shown.iter().map(|place| std::mem::take(&mut cells[*place])))
         .collect()
 }
 
-/// What was published of the step that begins this window, and where; `None` where that are no numbers.
+/// The published values of the step that begins this window, with their source; `None` if there are
+/// no numbers.
 pub(crate) fn published<'a>(
     declared: &'a Scenario,
     window: &Window,
@@ -135,7 +136,7 @@ pub(crate) fn published<'a>(
     any.then_some((published.source.as_deref().unwrap_or("published"), cells))
 }
 
-/// What was measured beside what the machine does, under each of several controllers.
+/// Measurements compared with the simulation, under each of several controllers.
 pub(crate) fn measured(runs: &[(Option<&'static str>, &ScenarioRun)]) -> Table {
     let several = runs.iter().any(|(name, _)| name.is_some());
     let mut heads = vec!["measured", "as column of", "NRMSE", "RMSE", "rows"];
@@ -185,15 +186,15 @@ pub(crate) fn cause_words(window: &Window) -> String {
     }
 }
 
-/// What the figures of a long scenario do not show.
+/// The resolution of the figures of a long scenario.
 pub(crate) fn coarse_sentence(run: &ScenarioRun) -> Option<String> {
     run.is_coarse().then(|| {
         let look = DisplayUnit::MILLISECOND.number(run.look_s, 3);
-        format!("so long a scenario is drawn from looks every {look} ms only; its numbers are those of the solution between them too")
+        format!("a scenario this long is drawn from samples every {look} ms only; its metrics are those of the solution in between too")
     })
 }
 
-/// What may depend on the tolerance.
+/// Results that may depend on the tolerance.
 fn amplified_sentence(run: &ScenarioRun) -> Option<String> {
     let grown = run.errors_amplified?;
     let [from, until] = [grown.from_s, grown.until_s].map(|time| DisplayUnit::SECOND.number(time, 4));
@@ -203,7 +204,7 @@ fn amplified_sentence(run: &ScenarioRun) -> Option<String> {
     ))
 }
 
-/// What happened on the way, a sentence each.
+/// The events of a run, a sentence each.
 pub(crate) fn occurrence_sentences(run: &ScenarioRun) -> Vec<String> {
     let found = &run.occurrences;
     let mut sentences: Vec<String> = found.iter().take(TOLD).map(occurrence_words).collect();
@@ -215,7 +216,7 @@ pub(crate) fn occurrence_sentences(run: &ScenarioRun) -> Vec<String> {
     sentences.extend(run.exceeded.iter().map(exceeded_words));
     sentences.extend(run.outside_model_s.map(|time_s| {
         let from = DisplayUnit::SECOND.number(time_s, 5);
-        format!("from {from} s on the equations do not hold: what follows is theirs, not that of a machine")
+        format!("from {from} s on the equations do not hold: what follows no longer describes a machine")
     }));
     sentences
 }
@@ -224,7 +225,7 @@ fn beyond_words(beyond: &BeyondExpansion) -> String {
     let [peak, stated] = [beyond.peak_pa, beyond.stated_pa].map(|pressure| display(pressure, &PRESSURE, 4));
     let chamber = beyond.chamber.to_ascii_uppercase();
     format!(
-        "chamber {chamber} comes to {peak}; the expansion of its hose is stated at {stated}, and carried on along its slope"
+        "chamber {chamber} comes to {peak}; the expansion of its hose is stated at {stated}, and extrapolated along its slope"
     )
 }
 

@@ -7,11 +7,12 @@ use crate::figure::{
     TimeSeries, Words, step_response, time_panels,
 };
 
-/// How much of a run is drawn before and after what begins a window, s.
+/// Time drawn before and after the start of a window, s.
 pub(super) const BEFORE_S: f64 = 0.02;
 pub(super) const AFTER_S: f64 = 0.5;
 
-/// Most events that are enlarged each; of more, all that is no step, and the greatest step.
+/// Largest number of events that are all enlarged; if there are more, all that are not steps, and
+/// the greatest step.
 const ENLARGED: usize = 3;
 
 /// The whole run, and each event enlarged.
@@ -41,7 +42,7 @@ pub(crate) fn pictures(run: &ScenarioRun, number: usize) -> Vec<Figure> {
     figures
 }
 
-/// What was measured on what was simulated, a panel for each signal.
+/// Measurement and simulation, a panel for each signal.
 fn overlaid(run: &ScenarioRun, number: usize, span_s: [f64; 2]) -> Option<Figure> {
     let height = if run.measured.len() > 3 { 100.0 } else { 150.0 };
     let panels = run.measured.iter().map(|overlay| {
@@ -79,7 +80,8 @@ fn overview(words: Words, run: &ScenarioRun, span_s: [f64; 2]) -> Figure {
     drawn(words, run, panels, legend, span_s)
 }
 
-/// What happens between command and force, in the order of Figure 6.17 of Ledezma (2019); with positions where the load moves.
+/// The signals between command and force, in the order of Figure 6.17 of Ledezma (2019); with
+/// positions where the load moves.
 pub(super) fn close_up(words: Words, run: &ScenarioRun, window: &Window, span_s: [f64; 2]) -> Figure {
     let record = &run.record;
     let forces = ["force_n", "hydraulic_force_n"].map(|name| over_time(record, record.signal(name)));
@@ -101,7 +103,7 @@ pub(super) fn close_up(words: Words, run: &ScenarioRun, window: &Window, span_s:
     drawn(words, run, panels, legend, span_s)
 }
 
-/// The measured force, what it should be, and what is commanded.
+/// The measured force, its reference, and the command.
 fn measured(record: &Record, height: f64) -> TimePanel {
     let series = [record.signal("force_n"), record.filtered_reference_n.clone()]
         .map(|values| over_time(record, values));
@@ -116,12 +118,12 @@ pub(super) fn asked_for(record: &Record) -> Option<TimeSeries> {
     (!record.reference_n.is_empty()).then(|| over_time(record, record.reference_n.clone()))
 }
 
-/// Whether what begins a window moves the load.
+/// Whether the event of a window moves the load.
 pub(super) fn moves_load(window: &Window) -> bool {
     matches!(window.cause, Cause::LoadMotion | Cause::ExternalForce)
 }
 
-/// The force on the load from outside, where there is one.
+/// The external force on the load, if there is one.
 fn from_outside(record: &Record) -> Option<TimePanel> {
     let series =
         (!record.external_force_n.is_empty()).then(|| over_time(record, record.external_force_n.clone()))?;
@@ -143,7 +145,7 @@ fn positions(record: &Record) -> TimePanel {
     panel("Position", DisplayUnit::MILLIMETRE, 90.0, series.into())
 }
 
-/// Panels of one run, with what begins its windows.
+/// Panels of one run, with its events.
 fn drawn(
     words: Words,
     run: &ScenarioRun,
@@ -161,7 +163,7 @@ fn drawn(
     time_panels(words, &input)
 }
 
-/// The events that are worth a figure of their own, with their places among all.
+/// The events that have a figure of their own, with their indices among all.
 pub(super) fn enlarged(windows: &[(Window, Metrics)], end_s: f64) -> Vec<(usize, &Window)> {
     let begun = windows.iter().map(|(window, _)| window).enumerate();
     let begun: Vec<(usize, &Window)> = begun.filter(|(_, window)| window.start_s < end_s).collect();
@@ -187,13 +189,13 @@ pub(super) fn enlarged(windows: &[(Window, Metrics)], end_s: f64) -> Vec<(usize,
         .collect()
 }
 
-/// What begins a window, where it is seen.
+/// The event of a window, if it is within the frame.
 pub(super) fn instant(window: &Window, [start, end]: [f64; 2]) -> Option<TimeEvent> {
     let seen = window.start_s >= start && window.start_s < end;
     seen.then(|| TimeEvent { time_s: window.start_s, label: window.cause.label().to_string() })
 }
 
-/// From a little before what begins a window to half a second later, within the run.
+/// From shortly before an event to half a second later, within the run.
 pub(super) fn around(window: &Window, end_s: f64) -> [f64; 2] {
     [(window.start_s - BEFORE_S).max(0.0), (window.start_s + AFTER_S).min(end_s)]
 }
@@ -217,7 +219,7 @@ pub(super) fn over_time(record: &Record, values: Vec<f64>) -> TimeSeries {
 /// Each scenario over time, its events enlarged, and its steps with their settling bands, as SVG and PNG.
 ///
 /// # Errors
-/// A figure that the rasteriser refuses.
+/// A figure that the rasteriser rejects.
 pub(crate) fn figure_files(runs: &[ScenarioRun]) -> Result<Vec<OutputFile>, FigureError> {
     let of_run = |(number, run): (usize, &ScenarioRun)| {
         let mut figures = pictures(run, number + 1);
@@ -227,7 +229,7 @@ pub(crate) fn figure_files(runs: &[ScenarioRun]) -> Result<Vec<OutputFile>, Figu
     picture_files(&runs.iter().enumerate().flat_map(of_run).collect::<Vec<_>>())
 }
 
-/// The steps of the reference that are worth a figure, each until the next event.
+/// The steps of the reference that have a figure, each until the next event.
 fn steps(run: &ScenarioRun, number: usize) -> Vec<Figure> {
     let end = run.record.times_s.last().copied().unwrap_or(0.0);
     let steps = enlarged(&run.windows, end);
@@ -238,7 +240,7 @@ fn step(run: &ScenarioRun, window: &Window, (number, event): (usize, usize)) -> 
     let Cause::ReferenceStep { to_n, .. } = window.cause else { return None };
     let (_, metrics) = run.windows.iter().find(|(one, _)| one == window)?;
     let settling = metrics.settling_time_s.ok();
-    // three settling times show what came of it; without one, the whole window
+    // three settling times show the result; without one, the whole window
     let until = settling.map_or(window.end_s, |time_s| window.end_s.min(window.start_s + 3.0 * time_s));
     let span = [(window.start_s - 0.05 * (until - window.start_s)).max(0.0), until];
     let record = &run.record;
@@ -274,7 +276,7 @@ fn step(run: &ScenarioRun, window: &Window, (number, event): (usize, usize)) -> 
 /// Each scenario of a comparison and each of its events, all projects in one figure, as SVG and PNG.
 ///
 /// # Errors
-/// A figure that the rasteriser refuses.
+/// A figure that the rasteriser rejects.
 pub(crate) fn comparison_files(comparison: &ScenarioComparison<'_>) -> Result<Vec<OutputFile>, FigureError> {
     let scenarios = comparison.scenarios().into_iter().enumerate();
     let figures = scenarios.flat_map(|(number, name)| compared(comparison, name, number + 1));

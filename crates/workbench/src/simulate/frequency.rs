@@ -1,4 +1,4 @@
-//! What is told of `simulate::frequency`: text, JSON, files and figures.
+//! The output of `simulate --frequency-response`: text, JSON, files and figures.
 
 mod answer;
 mod figures;

@@ -34,7 +34,7 @@ pub(crate) const METRICS: [Metric; 9] = [
     metric("control_rms_v", "control rms", "V", 3),
 ];
 
-/// Places of two metrics among all of them.
+/// Indices of two metrics.
 pub(crate) const OVERSHOOT: usize = 0;
 pub(crate) const SETTLING: usize = 2;
 
@@ -62,12 +62,12 @@ pub(crate) fn cells_of(metrics: &Metrics) -> [Cell; METRICS.len()] {
     })
 }
 
-/// A steady error below a millinewton is what the method leaves, not what the loop does.
+/// A steady-state error below a millinewton is due to the integration, not to the loop.
 fn small_as_zero(error_n: f64) -> f64 {
     if error_n.abs() < 1e-3 { 0.0 } else { error_n }
 }
 
-/// The metrics in an answer: of each its value, and the reason where there is none.
+/// The metrics in an answer: the value of each, or the reason why there is none.
 pub(crate) fn metrics_row(metrics: &Metrics) -> Object {
     let named = metrics.named().into_iter().enumerate();
     named.fold(Object::new(), |row, (place, (name, measured))| {

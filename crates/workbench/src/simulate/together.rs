@@ -53,7 +53,8 @@ pub(crate) fn at_a_glance(name: &str, runs: &[NamedRun<'_>], wish: Option<&Track
     Some(time_panels(Words::new(name, title, caption), &input))
 }
 
-/// What happens inside the machine at each event, of one controller: as Figure 6.17 of Ledezma (2019).
+/// The signals inside the machine at each event, for one controller: as Figure 6.17 of Ledezma
+/// (2019).
 pub(crate) fn close_ups(named: NamedRun<'_>, number: usize) -> Vec<Figure> {
     let NamedRun { name, run } = named;
     let end = end_of(&[named]);
@@ -69,7 +70,7 @@ pub(crate) fn close_ups(named: NamedRun<'_>, number: usize) -> Vec<Figure> {
     events.map(figure).collect()
 }
 
-/// What was measured, on what the machine does under each controller: a panel for each signal.
+/// Measurement and simulation under each controller: a panel for each signal.
 pub(crate) fn measured_together(runs: &[NamedRun<'_>], number: usize) -> Option<Figure> {
     let first = runs.first()?;
     let overlays = &first.run.measured;
@@ -127,7 +128,7 @@ fn drawn(
         let (one, other) = (record.signal("pressure_a_pa"), record.signal("pressure_b_pa"));
         one.iter().zip(&other).map(|(one, other)| one - other).collect()
     };
-    // a step is held against its wish; what moves the load, and the whole, show the piston
+    // a step is compared with its wish; motions of the load, and the whole run, show the piston
     let mut panels = match positions {
         true => vec![forces(runs, tall, span_s, wish)],
         false => forces_enlarged(runs, [tall, low], span_s, wish),
@@ -141,7 +142,7 @@ fn drawn(
     time_panels(words, &TimePanelsInput { panels, ..input(runs, span_s) })
 }
 
-/// Names, span and events; the panels are to follow.
+/// Names, span and events; the panels follow.
 fn input(runs: &[NamedRun<'_>], span_s: [f64; 2]) -> TimePanelsInput {
     let windows = runs.first().map(|named| named.run.windows.as_slice()).unwrap_or_default();
     let mut legend: Vec<String> = runs.iter().map(|named| named.name.to_string()).collect();
@@ -161,7 +162,7 @@ fn each(runs: &[NamedRun<'_>], values: impl Fn(&Record) -> Vec<f64>) -> Vec<Time
     runs.iter().map(|named| over_time(&named.run.record, values(&named.run.record))).collect()
 }
 
-/// The force as it was measured on the rig, where it was.
+/// The force as measured on the rig, if it was measured.
 fn force_measured(runs: &[NamedRun<'_>]) -> Option<TimeSeries> {
     let overlay = runs.first()?.run.measured.iter().find(|overlay| overlay.signal == "force_n")?;
     Some(curve(&overlay.times_s, &overlay.measured))
@@ -182,7 +183,8 @@ fn forces(runs: &[NamedRun<'_>], height: f64, span_s: [f64; 2], wish: Option<&Tr
     }
 }
 
-/// The force, and below it enlarged what lies around the reference of the one step that is seen, where something was wished of it.
+/// The force and, below it, an enlargement around the reference of the only step in the frame, if
+/// there is a wish for it.
 fn forces_enlarged(
     runs: &[NamedRun<'_>],
     [tall, low]: [f64; 2],
@@ -200,12 +202,14 @@ fn forces_enlarged(
     std::iter::once(whole).chain(enlarged).collect()
 }
 
-/// Parts of the step that are shown enlarged, below and above its reference; more where the force overshoots by more.
+/// Range around the reference that is shown enlarged, as shares of the step; more if the force
+/// overshoots by more.
 const BELOW: f64 = 0.06;
 const ABOVE: f64 = 0.04;
 const OVERSHOOTS: f64 = 1.2;
 
-/// Around the reference after the one step that begins in a span; `None` where none does, or several.
+/// The range around the reference after the only step that begins in a span; `None` if none or
+/// several do.
 fn near_reference(runs: &[NamedRun<'_>], span_s: [f64; 2]) -> Option<[f64; 2]> {
     let [start_s, end_s] = span_s;
     let seen = |window: &Window| (start_s..end_s).contains(&window.start_s);
@@ -223,7 +227,7 @@ fn near_reference(runs: &[NamedRun<'_>], span_s: [f64; 2]) -> Option<[f64; 2]> {
 }
 
 fn commands(runs: &[NamedRun<'_>], height: f64) -> TimePanel {
-    // the longer title does not fit beside a low frame
+    // the longer title does not fit next to a low frame
     let title = if height < 100.0 { "U_C" } else { "Command U_C" };
     panel(title, DisplayUnit::VOLT, height, each(runs, |record| record.control_v.clone()))
 }

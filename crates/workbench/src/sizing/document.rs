@@ -1,4 +1,4 @@
-//! What a sizing says to people.
+//! A sizing for people.
 
 use super::answer::branch_name;
 use super::{Candidate, Consequence, Influence, Sizing, model_name};
@@ -12,7 +12,8 @@ pub fn text(sizing: &Sizing) -> String {
     document(sizing, vec![]).text()
 }
 
-/// Every decision, the candidates with what speaks against them, the answer with its figures, and what is uncertain.
+/// Every decision, the candidates with the objections to them, the answer with its figures, and the
+/// uncertainties.
 pub(crate) fn document(sizing: &Sizing, figures: Vec<Figure>) -> Document {
     let mut out = Document::default();
     out.heading("Procedure (letters as in the flowchart of Ledezma 2019, section 6.3.2)");
@@ -45,7 +46,7 @@ pub(crate) fn document(sizing: &Sizing, figures: Vec<Figure>) -> Document {
 fn answer_sentence(best: Option<&Candidate>) -> String {
     match best {
         None => {
-            "no hose of the catalogue meets every demand; the reasons stand with the candidates.".to_string()
+            "no hose of the catalogue satisfies every requirement; the reasons are listed with the candidates.".to_string()
         }
         Some(candidate) => format!(
             "{} with {} m a line: K_H from {} to {} MN/m over the stroke, K_p = {} V/N.",
@@ -58,7 +59,8 @@ fn answer_sentence(best: Option<&Candidate>) -> String {
     }
 }
 
-/// Candidates of one hose with the same findings, so that these are said once; in the order of the first of each.
+/// Candidates of one hose with the same findings, so that these are stated once; in the order of
+/// the first of each.
 fn alike(candidates: &[Candidate]) -> Vec<Vec<&Candidate>> {
     let mut groups: Vec<Vec<&Candidate>> = Vec::new();
     for candidate in candidates {
@@ -75,7 +77,7 @@ fn alike(candidates: &[Candidate]) -> Vec<Vec<&Candidate>> {
     groups
 }
 
-/// What speaks against candidates that have it in common.
+/// The common objections to these candidates.
 fn findings(out: &mut Document, group: &[&Candidate]) {
     let Some(first) = group.first().filter(|first| !first.findings.is_empty()) else { return };
     let verdict = if first.accepted() { "accepted" } else { "rejected" };

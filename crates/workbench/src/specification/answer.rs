@@ -27,7 +27,7 @@ pub(crate) fn wish_row(wish: &CheckedWish) -> Object {
         .with("met", wish.is_met())
 }
 
-/// The section of `check` on wishes in time, with an empty line below; nothing where there is no wish.
+/// The section of `check` on wishes in time, with an empty line below; empty if there is no wish.
 pub(crate) fn text(wishes: &[CheckedWish]) -> String {
     if wishes.is_empty() {
         return String::new();

@@ -3,7 +3,7 @@
 use super::{Agreement, Trial, TrialRun, TrialStep, agreement_word};
 use crate::answer::Object;
 
-/// What a trial says in JSON.
+/// A trial in JSON.
 pub(crate) fn body(trial: &Trial) -> Object {
     Object::new()
         .with("verdict", agreement_word(trial.agreement()))

@@ -1,11 +1,11 @@
-//! What the machine did with a verdict, for people.
+//! The trial of a verdict on the machine, for people.
 
 use super::{Agreement, StepResponse, Trial, TrialRun, TrialStep, agreement_word, percent_words};
 use crate::document::{Cell, Document, Table};
 use crate::figure::{FamilyStepInput, Figure, TimeSeries, Words, family_step};
 use crate::quantity::DisplayUnit;
 
-/// What a trial says; with its figure where that has a name and a title.
+/// A trial, with its figure if that has a name and a title.
 pub(crate) fn document(trial: &Trial, figure_words: Option<[&str; 2]>) -> Document {
     let mut out = Document::default();
     let agreement = trial.agreement();
@@ -46,16 +46,16 @@ fn cells(run: &TrialRun) -> [Cell; 6] {
     ]
 }
 
-/// Why a machine does not do what the linear loop does, and which plants were not driven.
+/// Why a machine does not behave like the linear loop, and which plants were not driven.
 fn reasons(trial: &Trial) -> Vec<String> {
     let others = trial.runs.iter().filter(|run| run.agreement != Agreement::Agrees);
     let told = others.map(|run| format!("{}: {}", run.what, run.reason));
     told.chain(trial.not_driven.iter().map(|missing| format!("not driven: {missing}"))).collect()
 }
 
-/// Settling times of the linear loop that are drawn.
+/// Number of settling times of the linear loop that are drawn.
 const SETTLING_TIMES: f64 = 3.0;
-/// A response that leaves these parts of the step is drawn up to there.
+/// Range of the frame in shares of the step; a response that leaves it is drawn up to there.
 const SHOWN: std::ops::RangeInclusive<f64> = -0.4..=2.4;
 
 /// The steps of all machines that were driven, and that of the linear loop with the nominal plant.

@@ -113,7 +113,7 @@ fn of_the_plants(finding: &Finding, f: &mut Formatter<'_>) -> Result {
         Finding::OutOfReach { specification, frequency_rad_per_s, reach_rad_per_s: [from, to], plant } => {
             write!(
                 f,
-                "the design frequency {} rad/s of specification {} lies outside of {}, {} to {} rad/s: nothing can be said there",
+                "the design frequency {} rad/s of specification {} lies outside of {}, {} to {} rad/s: nothing is known there",
                 rounded(*frequency_rad_per_s),
                 number(*specification),
                 if plant.is_some() { "what was measured" } else { "the frequencies of a sampled loop" },
@@ -123,7 +123,7 @@ fn of_the_plants(finding: &Finding, f: &mut Formatter<'_>) -> Result {
         }
         Finding::StaticGain { specification, lower, upper } => write!(
             f,
-            "at rest specification {} wants {} to {} of the reference, which excludes 1: the output will not follow it",
+            "at zero frequency specification {} requires {} to {} of the reference, which excludes 1: the output will not follow it",
             number(*specification),
             rounded(*lower),
             rounded(*upper)
@@ -148,9 +148,9 @@ fn numbers(specifications: &[usize]) -> String {
 
 fn relaxed(relaxation_db: f64) -> String {
     if relaxation_db.is_finite() {
-        format!("nothing below {} dB more on every limit would do", rounded(relaxation_db))
+        format!("less than {} dB more on every limit would not suffice", rounded(relaxation_db))
     } else {
-        "no relaxation of the limits would do".to_string()
+        "no relaxation of the limits would suffice".to_string()
     }
 }
 

@@ -34,7 +34,7 @@ pub(super) fn sentences(
 fn whole(view: Option<&ProjectAudit>) -> String {
     let every = "with `line.model = \"transmission_line\"` waves are in every plant of the family";
     let told = match view {
-        None => return format!("taken in was the plant of the rig itself: {every}"),
+        None => return format!("the plant of the rig itself was added: {every}"),
         Some(view) if view.audit.verdict == Verdict::Met => {
             "the controller satisfies every specification with those too".to_string()
         }
@@ -43,20 +43,17 @@ fn whole(view: Option<&ProjectAudit>) -> String {
         }
         Some(view) => format!("every plant is stable, with {}", margins(view)),
     };
-    format!(
-        "taken in was the plant of the rig itself, and nothing is promised of the others; {every}: {told}"
-    )
+    format!("the plant of the rig itself was added, and nothing is claimed about the others; {every}: {told}")
 }
 
 /// The loop of the first design with the plant.
 fn before(view: &ProjectAudit) -> String {
     match view.audit.stability.verdict {
-        Verdict::Met => format!(
-            "the linear loop knows what the machine does once waves are in its plant: {}",
-            margins(view)
-        ),
+        Verdict::Met => {
+            format!("the linear loop reproduces the machine once its plant includes waves: {}", margins(view))
+        }
         _ => format!(
-            "the linear loop knows what the machine does once waves are in its plant: {}",
+            "the linear loop reproduces the machine once its plant includes waves: {}",
             stability_sentence(&view.audit.stability, &view.names)
         ),
     }
@@ -68,17 +65,17 @@ fn outcome(repair: &Repair, found: &ProjectDesign) -> String {
         RepairStatus::Met => {
             let crossover = crossover_of(found)
                 .map_or(String::new(), |crossover| format!(", and crosses over at {}", frequency(crossover)));
-            format!("that plant was taken in: the controller satisfies every specification {both}{crossover}")
+            format!("that plant was added: the controller satisfies every specification {both}{crossover}")
         }
         RepairStatus::Infeasible { relaxation_db } => format!(
-            "that plant was taken in: no controller that was tried satisfies every specification {both}; with every limit {} dB wider one does",
+            "that plant was added: none of the controllers tried satisfies every specification {both}; with every limit {} dB wider one does",
             significant(relaxation_db, 3)
         ),
         RepairStatus::NotStabilised => {
-            format!("that plant was taken in: no controller that was tried is stable {both}")
+            format!("that plant was added: none of the controllers tried is stable {both}")
         }
         RepairStatus::NotConverged | RepairStatus::Stopped | RepairStatus::NothingToTakeIn => format!(
-            "that plant was taken in: the search for a controller that satisfies every specification {both} has not converged; another `design.seed` may find one"
+            "that plant was added: the search for a controller that satisfies every specification {both} has not converged; another `design.seed` may find one"
         ),
     }
 }
@@ -181,7 +178,7 @@ pub(super) fn stable_with_waves(run: &TrialRun) -> String {
 
 /// No controller at all.
 pub(super) fn nothing_found() -> String {
-    "that plant was taken in, and the search ended without a controller that makes every plant stable"
+    "that plant was added, and the search ended without a controller that makes every plant stable"
         .to_string()
 }
 
@@ -198,7 +195,7 @@ fn advice(run: &TrialRun) -> String {
     let step = display((to - from).abs(), &FORCE, 3);
     let met = |names: &[&str]| run.met.iter().any(|one| names.iter().any(|name| one.starts_with(name)));
     if run.machine.is_none() {
-        return "no linear plant has this; the machine must find its rest first, at a reference and a position that it can hold".to_string();
+        return "no linear plant has this; the machine must first find an equilibrium, at a reference and a position that it can hold".to_string();
     }
     if met(&["cavitation", "empty", "supply_lost"]) {
         return format!(
@@ -213,6 +210,6 @@ fn advice(run: &TrialRun) -> String {
             "no linear plant has this: the command was at its limit; a smaller step than {step}, a larger valve or supply, `controller.anti_windup`, or a loop with less bandwidth"
         );
     }
-    "no linear plant has this: a cycle of friction and of the valve about null, as far as nothing was met on the way; or a loop with less gain"
+    "no linear plant has this: a limit cycle of friction and of the valve about null, since no limit was reached on the way; or a loop with less gain"
         .to_string()
 }

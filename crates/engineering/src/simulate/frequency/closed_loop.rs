@@ -52,7 +52,7 @@ pub(super) fn measured(
             shared.continuous((&bench.control, closed), frequencies, goes_on).map(Ok)
         }
         Control::Sampled(sampled) => shared.sampled(sampled, frequencies, goes_on).map(Ok),
-        Control::Open(_) => Ok(Err("nobody closes the loop".to_string())),
+        Control::Open(_) => Ok(Err("the loop is open".to_string())),
     }
 }
 

@@ -3,7 +3,7 @@ use phea_dynamics::scalar::Scalar;
 use super::super::laminar_friction::UNSTEADY_FRICTION;
 use super::{Creep, Segments};
 
-/// What a line holds, but for the capacity that its chamber takes.
+/// The content of a line, without the capacity that belongs to its chamber.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LineContent<T> {
     /// Volume that it has taken up since zero gauge pressure, in m3.
@@ -15,7 +15,7 @@ pub(crate) struct LineContent<T> {
 }
 
 impl<S: Scalar> Segments<S> {
-    /// What the line holds at a pressure of its chamber in Pa.
+    /// The content of the line at a pressure of its chamber in Pa.
     ///
     /// ```text
     /// capacity   C p             C p^2/2                                      each but that of the chamber

@@ -58,7 +58,7 @@ impl Segments {
         sum
     }
 
-    /// Flow that the creeping wall takes up, over the pressure.
+    /// Flow into the creeping wall, over the pressure.
     fn creep_admittance<A: Analytic>(&self, s: A) -> A {
         let Some(creep) = self.creep else { return A::from(0.0) };
         s.scaled(creep.compliance) / (A::from(1.0) + s.scaled(creep.retardation_time))
@@ -80,7 +80,7 @@ impl Segments {
         if self.count > 0 && product > 0.0 { 2.0 * self.count as f64 / product.sqrt() } else { 0.0 }
     }
 
-    /// What a creeping wall yields later, in m3/Pa.
+    /// The delayed compliance of a creeping wall, in m3/Pa.
     pub(in crate::line) fn creep_compliance(&self) -> f64 {
         self.creep.map_or(0.0, |creep| creep.compliance)
     }

@@ -4,7 +4,7 @@ use super::{TravellingWaves, Wave};
 use crate::line::TransferMatrix;
 use crate::line::attenuation::CORNERS;
 
-/// A wave at s: what its impedances in phase and in opposition consist of.
+/// A wave at s: the terms of its impedances in phase and in opposition.
 struct WaveResponse<A> {
     /// Z_i(s)
     impedance: A,

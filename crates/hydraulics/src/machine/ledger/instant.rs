@@ -33,11 +33,11 @@ pub(super) struct LineInstant<T> {
 /// The supply line and its accumulator. Flows in m3/s.
 pub(super) struct SupplyInstant<T> {
     pub(super) line: Volume<T>,
-    /// What the power unit feeds into both, the valve's tare flow taken off.
+    /// The flow from the power unit into both, without the valve's tare flow.
     pub(super) fed: T,
-    /// Of it, and of what the edges take, the share of the gas.
+    /// The share of the gas in it, and in the flow through the edges.
     pub(super) into_gas: T,
-    /// What the gas has let in, in m3, and what it holds, in J.
+    /// The volume that has entered against the gas, in m3, and the energy of the gas, in J.
     pub(super) gas_oil: T,
     pub(super) gas_energy: T,
     taken: T,
@@ -82,7 +82,7 @@ impl<T: Scalar> LineInstant<T> {
 }
 
 impl<T: Scalar> SupplyInstant<T> {
-    /// What the oil of the supply line itself takes up, in m3/s.
+    /// The flow into the compliance of the oil in the supply line, in m3/s.
     pub(super) fn line_flow(&self) -> T {
         self.fed - self.taken - self.into_gas
     }
@@ -143,7 +143,7 @@ impl<S: Scalar> Machine<S> {
         }
     }
 
-    /// The gas takes what flows in by its share of the compliance.
+    /// The gas receives the inflow in proportion to its share of the compliance.
     fn supply_instant<T: Scalar + From<S>>(
         &self,
         state: &MachineState<T>,

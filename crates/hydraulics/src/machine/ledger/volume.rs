@@ -4,7 +4,7 @@ use super::super::chambers::{AeratedChambers, AeratedSide};
 use super::Account;
 use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 
-/// Oil of one pressure in what encloses it.
+/// Oil at one pressure in its enclosure.
 ///
 /// ```text
 /// C dp/dt = q - dV/dt         C = V rho'/rho + W
@@ -36,7 +36,7 @@ pub(super) enum DensityLaw<T> {
     Mixture(Mixture<T>),
 }
 
-/// Fluid with air, and what of the wall grows with it.
+/// Fluid with air, and the part of the wall's compliance that grows with it.
 ///
 /// ```text
 /// 1/beta(p) = s/beta_mixture(P) + k        1/rho = v(P)^s exp(-k p)        v = (1 - a) exp(-p/beta_0) + a (p_atm/P)^(1/n)
@@ -74,8 +74,8 @@ impl<T: Scalar> Volume<T> {
     /// A side of a cylinder of this piston area in m2 whose fluid carries air, its piston `travel`
     /// in m away from the end.
     ///
-    /// Of the constant compliance V/beta_mixture + W, what grows with V like the chamber does, k V,
-    /// is part of its modulus.
+    /// Of the constant compliance V/beta_mixture + W, the part k V that grows with V like the
+    /// chamber belongs to its modulus.
     pub(super) fn aerated(
         chambers: &AeratedChambers<T>,
         side: &AeratedSide<T>,

@@ -1,4 +1,4 @@
-//! What robust design asks of a plant without polynomials.
+//! The interface of a plant without polynomials for robust design.
 
 use std::f64::consts::PI;
 
@@ -15,12 +15,12 @@ use super::{ChamberSide, Paths, PlantInMotion};
 const BELOW: f64 = 0.01;
 const ABOVE_SPOOL: f64 = 20.0;
 const ABOVE_QUARTER_WAVE: f64 = 40.0;
-/// How far beyond that a count of its own poles goes, and in what steps.
+/// How far beyond that a count of its own poles extends, and its steps.
 const FAR: f64 = 100.0;
 const STEPS_MAXIMUM: usize = 100_000;
 const SMALL_TURN: f64 = 0.5;
 const LARGE_STEP: f64 = 1.05;
-/// What is fed back and is less cannot reach one from a step to the next.
+/// A smaller feedback cannot reach one within a step.
 const SMALL_FED: f64 = 0.25;
 
 impl RespondingPlant for PlantInMotion {
@@ -85,14 +85,14 @@ impl RespondingPlant for PlantInMotion {
     /// |P(jw)| <= |v/U_sp| w_n^2/(w^2 - w_n^2) / (w/K_e - w/(M_L w^2 - K_L))       each factor falls from where it is positive
     /// ```
     ///
-    /// A supply that yields is a third port, `power_per_volt`. What a load that yields feeds
-    /// forward multiplies this by 1/(1 - K_x |P Y_L|) at most.
+    /// A limited supply is a third port, `power_per_volt`. The feed-forward of a load that can move
+    /// multiplies this by at most 1/(1 - K_x |P Y_L|).
     fn roll_off(&self, frequency_rad_per_s: f64) -> Option<f64> {
         let friction = self.plant.viscous_friction;
         let w = frequency_rad_per_s;
         let natural = self.plant.valve_natural_frequency;
         let spool = natural * natural / (w * w - natural * natural);
-        // what the load gives way, and how fast it goes, for a newton at this frequency
+        // displacement and velocity of the load per newton at this frequency
         let (yielding, speed) = match self.plant.load {
             LinearLoad::Yielding { mass, stiffness, .. } if mass > 0.0 => {
                 let yielding = w / (mass * w * w - stiffness);
@@ -117,7 +117,7 @@ impl RespondingPlant for PlantInMotion {
         if self.plant.load == LinearLoad::Prescribed || self.plant.load_velocity_feed_forward.is_none() {
             return Some(0);
         }
-        // 1 less what the load's velocity feeds back, of a plant that is stable without it: Nyquist
+        // 1 less the feedback of the load velocity, for a plant that is stable without it: Nyquist
         let difference = |frequency: f64| {
             let Paths { sensed, fed, .. } = self.paths(Complex64::new(0.0, frequency));
             (frequency, 1.0 - fed / sensed)
@@ -167,8 +167,8 @@ impl RespondingPlant for PlantInMotion {
 }
 
 impl PlantInMotion {
-    /// Whether 1 less what is fed back cannot have turned around zero from one of these points to
-    /// the other: a delay turns it as often as the frequency says, which counts where it is large.
+    /// Whether 1 less the feedback cannot have turned around zero between these two points: a delay
+    /// turns it in proportion to the frequency, which counts where the feedback is large.
     fn is_near(&self, [here, next]: [(f64, Complex64); 2]) -> bool {
         let turned = (next.0 - here.0) * self.lateness;
         let fed = [here, next].map(|(_, difference)| (difference - 1.0).norm_sqr());

@@ -1,4 +1,4 @@
-//! The layout of the file: what it holds, word by word, and the certificate that it means.
+//! The layout of the file: its content, word by word, and the certificate that it represents.
 
 mod claims;
 
@@ -34,7 +34,7 @@ pub(super) struct File {
     plant: CertificatePlant,
     #[serde(default, skip_serializing_if = "is_zero")]
     delay: f64,
-    /// Of the series that stands for dead time.
+    /// Of the series that replaces dead time.
     terms: usize,
     #[serde(default, skip_serializing_if = "is_none")]
     model_degree: usize,
@@ -46,7 +46,7 @@ pub(super) struct File {
     claims: Vec<StatedClaim>,
 }
 
-/// Low, high and the variable; a word where it moves by equal factors.
+/// Low, high and the variable; a word if it varies logarithmically.
 #[derive(Serialize, Deserialize)]
 #[serde(untagged)]
 enum StatedSegment {
@@ -172,7 +172,7 @@ struct StatedBound {
     panels: Vec<Cover>,
 }
 
-/// Why a file is no certificate.
+/// Why a file is not a certificate.
 #[derive(Debug, thiserror::Error)]
 pub enum CertificateError {
     /// No JSON of this layout.
@@ -186,7 +186,7 @@ pub enum CertificateError {
         /// Its version.
         version: u32,
     },
-    /// A word, a place or a number that means nothing.
+    /// A word, a position or a number without a meaning.
     #[error("{0}")]
     Meaning(String),
 }
@@ -207,7 +207,7 @@ fn vanishing(text: &str) -> Option<&str> {
     })
 }
 
-/// What stands outside of the strings of a JSON text.
+/// The parts of a JSON text outside its strings.
 fn outside_of_strings(text: &str) -> Vec<&str> {
     let mut out = vec![];
     let mut rest = text;

@@ -1,4 +1,4 @@
-//! What converters do to a designed loop, as JSON shows it.
+//! The effect of converters on a designed loop, in JSON.
 
 use phea_qft::design::quantisation::LimitCycle;
 

@@ -31,7 +31,7 @@ pub(super) fn figures(view: &ProjectDesign) -> Result<Vec<Figure>, LinearError> 
 }
 
 fn figure(drawn: &[Drawn<'_>], index: usize, specification: &Specification) -> Option<Figure> {
-    // the magnitudes of an unstable loop are those of no response
+    // the magnitudes of an unstable loop do not describe a response
     let judged = |one: &&Drawn<'_>| finding(one.side, index).is_some_and(|finding| finding.worst.is_some());
     let seen: Vec<&Drawn<'_>> = drawn.iter().filter(judged).collect();
     let (first, others) = seen.split_first()?;
@@ -86,7 +86,7 @@ fn words(
         Some(_) if !by_spread => "The greatest and the least",
         _ => "The greatest",
     };
-    let caption = format!("{extremes} {quantity} of the family in {whose}, against what is allowed.");
+    let caption = format!("{extremes} {quantity} of the family in {whose}, compared with what is allowed.");
     let title = format!("Specification {number}, {name}, of {whose}");
     Words::new(format!("design_{number}_{}", kind_key(requirement)), title, caption)
 }
@@ -95,7 +95,7 @@ fn finding(side: &AuditedController, index: usize) -> Option<&phea_qft::verifica
     side.view.audit.specifications.get(index)
 }
 
-/// Those that the figures of the loops by themselves have, and those that their audits looked at, rad/s.
+/// The frequencies of the figures of the single loops, and those that their audits examined, rad/s.
 fn frequencies(seen: &[&Drawn<'_>], index: usize, specification: &Specification) -> Vec<f64> {
     let spans = seen.iter().filter_map(|one| Some(span(specification, finding(one.side, index)?)));
     let [from, to] =

@@ -1,4 +1,4 @@
-//! What each loop leaves for its prefilter, and the prefilter in it (thesis 3.1.5).
+//! The band that each loop leaves for its prefilter, and the prefilter in it (thesis 3.1.5).
 
 use phea_dynamics::frequency::decibels;
 use phea_dynamics::linear::LinearError;
@@ -12,7 +12,7 @@ use crate::audit::frequency_words;
 use crate::design::{AuditedController, ProjectDesign};
 use crate::figure::{Figure, PrefilterPanel, PrefilterPoint, Words, prefilter_band};
 
-/// Limits of tracking that lie nearer to one another are not told apart in a figure, dB.
+/// Distance of tracking limits below which they are not distinguishable in a figure, dB.
 const DISTINGUISHED_DB: f64 = 0.01;
 /// How far the drawn frequencies reach below and above the design frequencies.
 const BEYOND: [f64; 2] = [0.1, 10.0];
@@ -56,7 +56,8 @@ fn figure(
     Ok(Some(prefilter_band(words, &panels)))
 }
 
-/// The band of one loop, with a sentence on where it is tightest; `None` of a loop that is not stable, or is not known.
+/// The band of one loop, with a sentence on where it is tightest; `None` for a loop that is not
+/// stable, or is not known.
 fn panel(
     name: &str,
     side: &AuditedController,
@@ -75,7 +76,8 @@ fn panel(
     let mut members = problem.members()?;
     members.extend(worst);
     let band = PrefilterBand::of_family(&problem.compensation, &members, &drawn, specification);
-    // a measurement that does not reach, or a band that no frequency is in, leaves nothing to draw
+    // if a measurement does not cover the range, or the band contains no frequency, there is
+    // nothing to draw
     let Ok(band) = band else { return Ok(None) };
     let size =
         |frequency: f64| decibels(portable::magnitude(problem.compensation.response(frequency).prefilter));
@@ -90,7 +92,7 @@ fn panel(
     Ok(Some((PrefilterPanel { name: name.to_string(), points: points.collect() }, sentence)))
 }
 
-/// The band at drawn frequencies, from where its limits can be told apart.
+/// The band at drawn frequencies, from where its limits can be distinguished.
 fn shown(band: &PrefilterBand, drawn: &[f64]) -> Vec<PrefilterBandPoint> {
     let ends = drawn.first().copied().unwrap_or_default()..=drawn.last().copied().unwrap_or_default();
     let inside = band.points().iter().filter(|point| ends.contains(&point.frequency_rad_per_s));

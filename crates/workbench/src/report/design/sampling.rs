@@ -1,11 +1,11 @@
-//! What sampling and delay make of a design that knows nothing of them.
+//! The effect of sampling and delay on a design that ignores them.
 
 use phea_qft::verification::{SpecificationFinding, Verdict};
 
 use crate::audit::margin_words;
 use crate::design::AuditedController;
 
-/// Where the design that was made without samples fares worst beside the one that was made with them.
+/// Where the continuous design is worst compared with the one that takes sampling into account.
 pub(super) fn sentence(sampled: &AuditedController, continuous: &AuditedController) -> String {
     let margin = |finding: &SpecificationFinding| finding.worst.as_ref().map(|worst| worst.margin_db);
     let pairs = sampled.view.audit.specifications.iter().zip(&continuous.view.audit.specifications);
@@ -17,7 +17,7 @@ pub(super) fn sentence(sampled: &AuditedController, continuous: &AuditedControll
     match (continuous.view.audit.verdict, most) {
         (Verdict::Met, _) => format!("{all} It holds here too."),
         (_, Some((name, here, there))) => format!(
-            "{all} It does not hold here: its margin of {name} is {}, where the design that knows of samples and delay has {}.",
+            "{all} It does not hold here: its margin of {name} is {}, where the design that takes samples and delay into account has {}.",
             margin_words(there),
             margin_words(here)
         ),

@@ -1,5 +1,6 @@
-//! What to do next, a sentence each, as it follows from the results: which controller to take, what the machine objects, what no verdict
-//! counts, what was wished and missed, and what nobody has declared yet.
+//! What to do next, a sentence each, as it follows from the results: which controller to take,
+//! contradictions by the machine, effects that no verdict includes, wishes that are not met, and
+//! missing declarations.
 
 use phea_qft::design::{DesignStatus, Relaxation};
 use phea_qft::verification::Verdict;
@@ -18,11 +19,12 @@ use crate::setup::Setup;
 use crate::simulate::TrackingWish;
 use crate::trial::{Agreement, TrialRun};
 
-/// Sentences that a reader still reads.
+/// Largest number of sentences.
 const MOST: usize = 6;
-/// A loop that tolerates less delay than a computer with a sample each millisecond brings must know of it, s.
+/// Delay of a computer with a sample time of one millisecond, s: a loop that tolerates less must
+/// take it into account.
 const SHORT_DELAY_S: f64 = 2e-3;
-/// Part of its range by which a simulated signal may miss the measured one and still be called near.
+/// Deviation of a simulated from a measured signal that counts as small, as a share of its range.
 const NEAR: f64 = 0.1;
 
 /// The sentences, what decides first.
@@ -39,7 +41,8 @@ pub(super) fn next_steps(contents: &Contents<'_>, sides: &[Side<'_>]) -> Vec<Str
     steps
 }
 
-/// The controller that the reader is told to take: the designed one, unless the given one alone is met or nothing was designed.
+/// The recommended controller: the designed one, unless only the given one satisfies everything or
+/// nothing was designed.
 fn taken<'a, 's>(sides: &'s [Side<'a>]) -> Option<&'s Side<'a>> {
     let of = |name: &str| sides.iter().find(|side| side.name == name);
     match (of(GIVEN), of(DESIGNED)) {
@@ -50,7 +53,7 @@ fn taken<'a, 's>(sides: &'s [Side<'a>]) -> Option<&'s Side<'a>> {
 
 fn controller(contents: &Contents<'_>, sides: &[Side<'_>]) -> Option<String> {
     let Some(judged) = contents.judged else {
-        let commands = "state what the loop has to do in `[[specification]]`: nothing was asked of it yet, and so nothing is judged";
+        let commands = "state what the loop has to do in `[[specification]]`: nothing is required of it yet, and so nothing is judged";
         return Some(capital(commands));
     };
     let given = sides.iter().find(|side| side.name == GIVEN);
@@ -66,10 +69,10 @@ fn controller(contents: &Contents<'_>, sides: &[Side<'_>]) -> Option<String> {
             "add `[design]` to the project, and `phea design` looks for one that holds".to_string()
         }
         _ if given.is_some_and(contradicted) => {
-            "do not rely on it before the machine agrees, which contradicts the verdict".to_string()
+            "do not rely on it before the machine, which contradicts the verdict, agrees".to_string()
         }
         _ if given.is_some_and(Side::is_met) => "keep it".to_string(),
-        _ => "remove what leaves the verdict open".to_string(),
+        _ => "remove the reason why the verdict is open".to_string(),
     };
     Some(match given_words {
         Some(given) => format!("{}: {designed}.", capital(&given)),
@@ -77,7 +80,7 @@ fn controller(contents: &Contents<'_>, sides: &[Side<'_>]) -> Option<String> {
     })
 }
 
-/// Whether the machine does not do what the verdict promises.
+/// Whether the machine contradicts the verdict.
 fn contradicted(side: &Side<'_>) -> bool {
     side.trial.is_some_and(|trial| trial.agreement() == Agreement::Contradicts)
 }
@@ -122,7 +125,7 @@ fn given_words(view: &ProjectAudit) -> String {
     )
 }
 
-/// The plant where it is told in a few words; of one with many parameters where it stands.
+/// The plant, if a few words suffice; otherwise where it is listed.
 fn plant_words(view: &ProjectAudit, plant: &phea_qft::verification::PlantPoint) -> String {
     match view.names.headings().len() {
         0 => String::new(),
@@ -134,13 +137,13 @@ fn plant_words(view: &ProjectAudit, plant: &phea_qft::verification::PlantPoint) 
 fn designed_words(view: &ProjectDesign, given_is_met: bool) -> String {
     match &view.design.status {
         DesignStatus::Met if view.agreement() == Agreement::Contradicts => format!(
-            "do not use the designed one (`{DESIGNED_PROJECT}`) before the machine agrees: it satisfies every specification over the family, and the machine contradicts it; `phea design` goes on from there with the plant that does, or says what cannot be had"
+            "do not use the designed one (`{DESIGNED_PROJECT}`) before the machine agrees: it satisfies every specification over the family, and the machine contradicts it; `phea design` goes on from there with the plant that does, or states what cannot be achieved"
         ),
         DesignStatus::Met if given_is_met => {
             format!("keep it, or take the designed one of `{DESIGNED_PROJECT}` where its numbers are better")
         }
         DesignStatus::Met if view.designed.view.audit.verdict == Verdict::NotProven => format!(
-            "the designed one of `{DESIGNED_PROJECT}` satisfies every specification over the family, but what is not counted leaves the verdict open"
+            "the designed one of `{DESIGNED_PROJECT}` satisfies every specification over the family, but effects that are not included leave the verdict open"
         ),
         DesignStatus::Met => {
             format!("use the designed one (`{DESIGNED_PROJECT}`), which satisfies every specification")
@@ -150,7 +153,7 @@ fn designed_words(view: &ProjectDesign, given_is_met: bool) -> String {
             "give the search more room (`design.maximum_order`) or another `design.seed`, it has not converged".to_string()
         }
         DesignStatus::NotStabilised => {
-            "raise `design.maximum_order` or shrink the family, no controller that was tried makes every plant stable".to_string()
+            "raise `design.maximum_order` or shrink the family, none of the controllers tried makes every plant stable".to_string()
         }
     }
 }
@@ -165,12 +168,13 @@ fn infeasible_words(view: &ProjectDesign, relaxation: &Relaxation) -> String {
     }
     let which = if names.is_empty() { "the specifications".to_string() } else { names.join(" or ") };
     format!(
-        "ease {which} by {} dB, or shrink the family: no controller that was tried satisfies all of them at once",
+        "ease {which} by {} dB, or shrink the family: none of the controllers tried satisfies all of them at once",
         significant(relaxation.relaxation_db, 3)
     )
 }
 
-/// What the machine objects to a controller: of each kind of machine one sentence, the worst first.
+/// Contradictions of a controller by the machine: one sentence for each kind of machine, the worst
+/// first.
 fn machine(side: &Side<'_>) -> Vec<String> {
     let Some(trial) = side.trial else { return vec![] };
     let mut others: Vec<&TrialRun> =
@@ -185,7 +189,7 @@ fn machine(side: &Side<'_>) -> Vec<String> {
 }
 
 fn machine_words(side: &Side<'_>, run: &TrialRun) -> String {
-    // the machine's chapter has the rest: where the force swings, and how long a wave takes
+    // the chapter on the machine has the rest: the range of the force, and the time of a wave
     let why = run.reason.split(". The lines are").next().unwrap_or_default();
     let why = why.split(": at the end it swings").next().unwrap_or_default();
     let verdict = match run.agreement {
@@ -209,7 +213,7 @@ fn machine_words(side: &Side<'_>, run: &TrialRun) -> String {
     }
 }
 
-/// A step of the machine that misses what was wished, and what the limits of tracking themselves do.
+/// A step of the machine that misses the wish, and the response of the tracking limits themselves.
 fn wishes(contents: &Contents<'_>, side: &Side<'_>) -> Option<String> {
     let wish: &TrackingWish = contents.driven?.wish.as_ref()?;
     let missed = |held: Option<(crate::simulate::HeldWish, usize)>| {
@@ -223,27 +227,30 @@ fn wishes(contents: &Contents<'_>, side: &Side<'_>) -> Option<String> {
     let told: Vec<String> = overshoot.into_iter().chain(settling).collect();
     (!told.is_empty()).then(|| {
         format!(
-            "Tighten the limits of tracking if the wish in time is meant to the letter: on the machine a step under the {} controller {}.",
+            "Tighten the limits of tracking if the wish in time must be met exactly: on the machine a step under the {} controller {}.",
             side.name,
             told.join(" and ")
         )
     })
 }
 
-/// What no verdict counts, and a rig outside of its own family.
+/// Effects that no verdict includes, and a rig outside its own family.
 fn uncounted(setup: &Setup<'_>) -> Vec<String> {
     let mut steps = Vec::new();
     if let Some((_, words)) = outside(setup).filter(|_| !setup.project.specifications.is_empty()) {
-        steps.push(format!("Widen `[uncertainty]` until it holds the rig as it is derived: {words}."));
+        steps.push(format!("Widen `[uncertainty]` until it contains the rig as it is derived: {words}."));
     }
     let open = caveats(setup).into_iter().filter(|caveat| caveat.unproven);
     steps.extend(open.map(|caveat| {
-        format!("Judge this by simulation, no verdict on the linear loop counts it: {}.", caveat.sentence)
+        format!(
+            "Judge this by simulation, since no verdict on the linear loop includes it: {}.",
+            caveat.sentence
+        )
     }));
     steps
 }
 
-/// A continuous loop that no computer can run as it is.
+/// A continuous loop that no computer can run unchanged.
 fn delay(project: &Project, side: &Side<'_>) -> Option<String> {
     let controller = project.controller.clone().unwrap_or_default();
     let margin_s = side.delay_margin_s().filter(|margin_s| *margin_s < SHORT_DELAY_S)?;
@@ -276,15 +283,18 @@ fn undeclared(contents: &Contents<'_>, taken: Option<&Side<'_>>) -> Vec<String> 
     let farthest = overlays.iter().filter_map(|overlay| Some((overlay.nrmse.ok()?, overlay)));
     match farthest.max_by(|one, other| one.0.total_cmp(&other.0)) {
         Some((nrmse, overlay)) if nrmse > NEAR => steps.push(format!(
-            "Bring the model nearer to the rig before its numbers are believed: {} lies {} % of its range from what was measured; friction, leakage and the stiffness of the load cell are the first to look at.",
+            "Bring the model nearer to the rig before relying on its numbers: {} lies {} % of its range from what was measured; friction, leakage and the stiffness of the load cell are the first to check.",
             overlay.quantity(),
             significant(100.0 * nrmse, 3)
         )),
         Some(_) => {}
-        None => steps.push("Lay a measurement over a scenario (`[[scenario.measured]]`): nothing here has been held against the rig.".to_string()),
+        None => steps.push("Compare a scenario with a measurement (`[[scenario.measured]]`): nothing here has been compared with the rig.".to_string()),
     }
     if project.campaign.is_none() {
-        steps.push("Add `[campaign]` with the numbers that are not known well: every run here has the declared ones.".to_string());
+        steps.push(
+            "Add `[campaign]` with the numbers that are uncertain: every run here has the declared ones."
+                .to_string(),
+        );
     }
     steps
 }

@@ -1,4 +1,4 @@
-//! One controller with all that is known of it.
+//! One controller with all its results.
 
 use phea_qft::proof::{Proof, Standing};
 use phea_qft::verification::Verdict;
@@ -17,15 +17,15 @@ pub(super) struct Side<'a> {
     pub(super) name: &'static str,
     /// The audit of its family.
     pub(super) view: Option<&'a ProjectAudit>,
-    /// The verdict tried on the machine.
+    /// The trial of the verdict on the machine.
     pub(super) trial: Option<&'a Trial>,
     /// The scenarios.
     pub(super) runs: Option<&'a [ScenarioRun]>,
-    /// What controllers are compared by, where both are known.
+    /// The comparison of the controllers, if both are known.
     pub(super) figures: Option<LoopFigures>,
 }
 
-/// Given and designed, as far as something is known of them.
+/// Given and designed controller, as far as they are known.
 pub(super) fn sides<'a>(judged: Option<&'a Judged>, driven: Option<&'a MachineChapter>) -> Vec<Side<'a>> {
     let found = judged.and_then(Judged::found);
     let given = Side {
@@ -46,12 +46,13 @@ pub(super) fn sides<'a>(judged: Option<&'a Judged>, driven: Option<&'a MachineCh
 }
 
 impl Side<'_> {
-    /// What was proven of it, where its proof was attempted.
+    /// Its proof, if one was attempted.
     pub(super) fn proof(&self) -> Option<&Proof> {
         self.view?.proof.as_ref()
     }
 
-    /// Whether every plant is proven to be stable and to satisfy every specification at every frequency; `None` where no proof was attempted.
+    /// Whether every plant is proven to be stable and to satisfy every specification at every
+    /// frequency; `None` where no proof was attempted.
     pub(super) fn is_proven(&self) -> Option<bool> {
         let proof = self.proof()?;
         let each = proof.specifications.iter().map(|own| &own.standing);
@@ -63,7 +64,7 @@ impl Side<'_> {
         self.view.is_some_and(|view| view.audit.verdict == Verdict::Met)
     }
 
-    /// The step that overshoots most, and of how many; `None` where nothing was wished or driven.
+    /// The step that overshoots most, and of how many; `None` if there is no wish or no run.
     pub(super) fn overshoot(&self, wish: &TrackingWish) -> Option<(HeldWish, usize)> {
         let reached = |metrics: &Metrics| Some((metrics.overshoot_percent.ok()?, wish.overshoot(metrics)?));
         worst(self.runs?, reached)
@@ -78,7 +79,7 @@ impl Side<'_> {
         worst(self.runs?, reached)
     }
 
-    /// Whether all steps keep to the wish; `None` where none can be judged.
+    /// Whether all steps meet the wish; `None` if none can be judged.
     pub(super) fn keeps(&self, wish: &TrackingWish) -> Option<bool> {
         let held = [self.overshoot(wish), self.settling(wish)].into_iter().flatten();
         held.filter_map(|(held, _)| held.kept).reduce(|one, other| one && other)

@@ -1,4 +1,4 @@
-//! The table of verdicts and numbers: a row for each thing that was asked, a column for each controller.
+//! The table of verdicts and numbers: a row for each requirement, a column for each controller.
 
 use maud::{Markup, html};
 use phea_qft::proof::Standing;
@@ -18,7 +18,7 @@ use crate::trial;
 
 type Rows = Vec<Vec<Markup>>;
 
-/// The table; nothing without a controller.
+/// The table; empty without a controller.
 pub(super) fn table(contents: &Contents<'_>, sides: &[Side<'_>]) -> Markup {
     if sides.is_empty() {
         return html! {};
@@ -79,18 +79,18 @@ fn of_family(contents: &Contents<'_>, sides: &[Side<'_>]) -> Rows {
     rows
 }
 
-/// What stands behind a verdict that holds for every plant and every frequency.
+/// The evidence for a verdict that holds for every plant and every frequency.
 fn proven(is_proven: bool) -> &'static str {
     if is_proven { ", proven" } else { "" }
 }
 
-/// The verdict, by how much, and where.
+/// The verdict, its margin, and where it occurs.
 fn finding(finding: &SpecificationFinding, is_proven: bool) -> Markup {
     let Some(worst) = &finding.worst else { return Cell::verdict(finding.verdict).markup() };
     let place = frequency_words(worst.frequency_rad_per_s);
     let size = significant(worst.margin_db.abs(), 3);
     let told = match finding.verdict {
-        Verdict::Met if worst.margin_db < 5e-4 => format!(", just so, {place}"),
+        Verdict::Met if worst.margin_db < 5e-4 => format!(", only just, {place}"),
         Verdict::Met if worst.margin_db == f64::INFINITY => String::new(),
         Verdict::Met => format!(", {size} dB to spare {place}"),
         Verdict::Violated => format!(" by {size} dB {place}"),
@@ -122,7 +122,7 @@ fn of_machine(contents: &Contents<'_>, sides: &[Side<'_>]) -> Rows {
     rows
 }
 
-/// The wish, and of how many steps the worst is told.
+/// The wish, and the number of steps of which the worst is shown.
 fn wished(words: &str, steps: Option<usize>) -> Markup {
     let steps =
         steps.filter(|steps| *steps > 1).map_or("the step".to_string(), |steps| format!("all {steps} steps"));
@@ -153,7 +153,7 @@ fn driven(runs: &[ScenarioRun]) -> Markup {
     }
 }
 
-/// What was measured, and what is read off the loop.
+/// The measurements, and the properties of the loop.
 fn numbers(sides: &[Side<'_>]) -> Rows {
     let mut rows = Vec::new();
     rows.extend(row(cell("measured less simulated, NRMSE"), sides, measured));
@@ -171,7 +171,7 @@ fn numbers(sides: &[Side<'_>]) -> Rows {
     rows
 }
 
-/// What was measured, each signal with its distance.
+/// The measured signals with their deviations.
 fn measured(side: &Side<'_>) -> Option<Markup> {
     let overlays = side.runs?.iter().flat_map(|run| &run.measured);
     let told: Vec<String> = overlays

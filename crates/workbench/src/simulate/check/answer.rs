@@ -1,11 +1,11 @@
-//! What a check says, in an answer and to people.
+//! A check, in an answer and for people.
 
 use super::{Difference, ToleranceCheck};
 use crate::answer::{Object, significant};
 
 /// The object `check` of a scenario.
 pub(crate) fn row(check: &ToleranceCheck) -> Object {
-    let force = check.force.as_ref().ok_or("the two runs have no look in common");
+    let force = check.force.as_ref().ok_or("the two runs have no sample in common");
     Object::new()
         .with("tolerance", check.tolerance)
         .with("status", check.stopped.map_or("completed", |stopped| stopped.word))
@@ -29,7 +29,7 @@ pub(crate) fn row(check: &ToleranceCheck) -> Object {
         })
 }
 
-/// What a check found, a sentence each.
+/// The findings of a check, a sentence each.
 pub(crate) fn sentences(check: &ToleranceCheck) -> Vec<String> {
     let tolerance = significant(check.tolerance, 3);
     let mut told = Vec::new();

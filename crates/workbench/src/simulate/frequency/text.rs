@@ -1,4 +1,4 @@
-//! What a frequency response says to people.
+//! A frequency response for people.
 
 use phea_dynamics::portable;
 
@@ -60,11 +60,12 @@ fn response(response: &MachineResponse, unit: &str) -> Table {
 pub(super) fn own(point: &ResponsePoint) -> [f64; 2] {
     let [_, degrees] = point.differs(point.linear_plant);
     let plant = portable::argument(point.linear_plant).to_degrees();
-    // what lies a whole turn below is told as such by the curves; here the principal value of the model leads
+    // a phase lower by a whole turn is visible in the curves; here the principal value of the model
+    // is used
     [20.0 * portable::log10(portable::magnitude(point.machine)), plant + degrees]
 }
 
-/// What a reader should know of a point.
+/// A remark on a point.
 fn remark(point: &ResponsePoint) -> Option<String> {
     let at = significant(point.frequency_rad_per_s, 4);
     if let Some(word) = point.ended {
