@@ -8,8 +8,8 @@
 use num_complex::Complex64;
 
 pub use libm::{
-    acos, asin, atan, atan2, cbrt, cos, cosh, exp, expm1, hypot, log as ln, log1p, log10, pow, sin, sinh,
-    tan, tanh,
+    acos, asin, atan, atan2, cbrt, cos, cosh, erfc, exp, expm1, hypot, log as ln, log1p, log10, pow, sin,
+    sinh, tan, tanh,
 };
 
 /// Magnitude |z|, free of overflow.

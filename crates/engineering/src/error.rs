@@ -61,6 +61,9 @@ pub enum ProcedureError {
     /// Templates or bounds cannot be computed.
     #[error(transparent)]
     Robust(#[from] crate::robust::RobustError),
+    /// The family cannot be compared with what it replaces.
+    #[error(transparent)]
+    Replaced(#[from] crate::replaced::ReplacedError),
     /// A controller cannot be shaped in this way.
     #[error(transparent)]
     Shaping(#[from] ShapingError),

@@ -1,9 +1,11 @@
 //! From a project to the family of plants that robust design works on.
 
 mod formula;
+mod gain_slopes;
 mod hydraulic;
 mod in_motion;
 pub mod measured;
+mod moved;
 mod region;
 mod uncertain;
 mod visited;
@@ -18,6 +20,7 @@ use crate::rig::RigError;
 use crate::setup::Setup;
 use crate::source::Source;
 
+pub(crate) use gain_slopes::gain_slopes;
 pub use visited_box::{Extreme, VisitedRange, visited_box};
 
 /// Why a project has no uncertain plant.

@@ -13,6 +13,7 @@ mod evidence;
 mod fit;
 mod guess;
 mod intervals;
+mod joint;
 mod reading;
 mod recording;
 mod told;
@@ -21,6 +22,7 @@ mod variables;
 pub use bootstrap::{Bootstrap, FEWEST_REPETITIONS};
 pub use evidence::{DECISIVE, ExplainedBy, ModelEvidence};
 pub use guess::SimpleCalculations;
+pub use joint::{COVERAGE, JointRegion, JointRegionError, SMALLEST_EFFECT, joint_region, with_valve};
 pub use reading::recordings;
 pub use recording::{RecordedSignal, Recording, SignalKind};
 pub use told::Untold;
@@ -107,6 +109,8 @@ pub struct Identification {
     pub coefficients: StaticCoefficients,
     /// 95 % confidence interval of each, linearised; `None` where the data do not determine it.
     pub intervals: [Option<[f64; 2]>; STATIC_COEFFICIENTS],
+    /// Standard deviation of each, in its own unit; infinite where nothing depends on it.
+    pub deviations: [f64; STATIC_COEFFICIENTS],
     /// Intervals by the bootstrap, if requested.
     pub bootstrap: Option<Bootstrap>,
     /// Correlation of each pair, row by row.
@@ -210,6 +214,10 @@ pub fn identify(
     let groups = found.together.groups();
     let told = intervals::told(&found.minimum.linearised, &groups, &variables, &coefficients);
     let intervals = intervals::intervals(&variables, &coefficients, &told.deviations);
+    let mut deviations = variables.scales(&coefficients);
+    for (scale, deviation) in deviations.iter_mut().zip(&told.deviations) {
+        *scale *= deviation;
+    }
     // a coefficient that is not determined may have ended anywhere: a further test is judged at its
     // usual value
     let mut usual = coefficients.to_array();
@@ -226,6 +234,7 @@ pub fn identify(
     Ok(Identification {
         coefficients,
         intervals,
+        deviations,
         bootstrap,
         untold: told::untold(&told, &usual, &variables.scales(&usual), (&recordings, &tested)),
         correlations: told.correlations,

@@ -25,6 +25,7 @@ pub mod identify;
 pub mod linear_loop;
 pub mod linearize;
 pub mod number_table;
+pub mod replaced;
 pub mod rig;
 pub mod robust;
 pub mod setup;

@@ -1,5 +1,6 @@
 //! `[family]`: which plants of the box are examined, or measured plants.
 
+use super::Uncertain;
 use super::key::{key, plain};
 use super::visitor::Visitor;
 use phea_quantity::{FORCE, LENGTH, RATIO, VELOCITY};
@@ -19,6 +20,8 @@ pub struct DeclaredFamily {
     pub correlation: Vec<Correlation>,
     /// The operating points that the rig visits, limited by the flow of the pump.
     pub operating_region: Option<OperatingRegion>,
+    /// Ranges of the linear model that region and directions replace, for comparison alone.
+    pub replaces: Vec<Uncertain>,
     /// Files with measured frequency responses, the nominal plant first; paths are relative to the
     /// project file.
     pub measured: Vec<String>,
@@ -74,6 +77,16 @@ impl DeclaredFamily {
         v.tables(k, &mut self.correlation, Correlation::visit);
         let k = plain("operating_region", "The operating points that the rig visits.");
         v.table(k, &mut self.operating_region, OperatingRegion::visit);
+        let k = plain("replaces", "Ranges that the region and the directions replace, to compare with them.");
+        v.dictionary(
+            k,
+            |u| &u.name,
+            &mut self.replaces,
+            |uncertain: &mut Uncertain, number, v| {
+                uncertain.name = number.name.to_string();
+                uncertain.visit(number.key, v);
+            },
+        );
         let k = plain("measured", "Files with measured frequency responses, the nominal plant first.");
         v.texts(k, &mut self.measured);
         let doc = "Open-loop poles of each measured plant in the right half plane.";
@@ -115,6 +128,7 @@ impl Correlation {
 
 impl Case {
     fn visit<V: Visitor>(&mut self, v: &mut V) {
-        v.numbers(key("parameter", &RATIO, "Value of an uncertain parameter."), &mut self.parameters);
+        let k = key("parameter", &RATIO, "Value of an uncertain parameter.");
+        v.numbers(k, |number| number, &mut self.parameters);
     }
 }

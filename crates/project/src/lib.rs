@@ -9,6 +9,7 @@ mod controller;
 mod cylinder;
 mod design;
 mod diagnostic;
+mod direction;
 mod environment;
 mod family;
 mod fluid;
@@ -49,6 +50,7 @@ pub use controller::*;
 pub use cylinder::*;
 pub use design::*;
 pub use diagnostic::*;
+pub use direction::*;
 pub use environment::*;
 pub use family::*;
 pub use fluid::*;
@@ -110,6 +112,8 @@ pub struct Project {
     pub linear: Linear,
     /// Uncertain numbers, in file order.
     pub uncertainty: Vec<Uncertain>,
+    /// Numbers that are uncertain together, in file order.
+    pub directions: Vec<UncertaintyDirection>,
     /// What the closed loop must meet, in file order.
     pub specifications: Vec<DeclaredSpecification>,
     /// Given, to be verified; absent or without a transfer function, to be designed.
@@ -233,6 +237,8 @@ impl Project {
                 uncertain.visit(number.key, v);
             },
         );
+        let k = plain("uncertainty_direction", "Numbers that are uncertain together.");
+        v.tables(k, &mut self.directions, UncertaintyDirection::visit);
         v.table(plain("family", "Which plants are examined."), &mut self.family, DeclaredFamily::visit);
         v.table(plain("sensor", "Dynamics of the sensor."), &mut self.sensor, Sensor::visit);
         let k = plain("specification", "What the closed loop must meet.");

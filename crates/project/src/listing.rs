@@ -252,7 +252,7 @@ impl Visitor for Listing {
         }
     }
 
-    fn numbers(&mut self, key: Key, _field: &mut Vec<(String, f64)>) {
+    fn numbers(&mut self, key: Key, _of: fn(Key) -> Key, _field: &mut Vec<(String, f64)>) {
         self.list(Key { name: "NAME", ..key }, "a number", false);
     }
 

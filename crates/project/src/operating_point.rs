@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::key::{Key, key, plain};
 use super::listing::Listing;
 use super::visitor::Visitor;
-use super::{DeclaredSpacing, OperatingRegion, Project, Uncertain};
+use super::{DeclaredSpacing, OperatingRegion, Project, Uncertain, UncertaintyDirection};
 use phea_quantity::{FORCE, LENGTH, PRESSURE, VELOCITY, VOLTAGE};
 
 /// Where the linear model is taken; absent parts are mid stroke and null.
@@ -98,8 +98,8 @@ impl Project {
         point
     }
 
-    /// The numbers of `[uncertainty]`, then those of `[family.operating_region]`, before the pump
-    /// limits them.
+    /// The numbers of `[uncertainty]`, then those of `[[uncertainty_direction]]`, then those of
+    /// `[family.operating_region]`, before the pump limits them.
     ///
     /// # Example
     /// ```
@@ -114,7 +114,8 @@ impl Project {
     pub fn uncertain_numbers(&self) -> Vec<Uncertain> {
         let region = self.family.as_ref().and_then(|family| family.operating_region.as_ref());
         let of_region = region.into_iter().flat_map(|region| self.of_region(region));
-        self.uncertainty.iter().cloned().chain(of_region).collect()
+        let directions = self.directions.iter().map(UncertaintyDirection::as_uncertain);
+        self.uncertainty.iter().cloned().chain(directions).chain(of_region).collect()
     }
 
     /// The nominal value is the declared one; otherwise mid stroke, no force and standstill, or the

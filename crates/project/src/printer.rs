@@ -308,7 +308,7 @@ impl Visitor for Printer {
         self.attach(key.name, false);
     }
 
-    fn numbers(&mut self, _key: Key, field: &mut Vec<(String, f64)>) {
+    fn numbers(&mut self, _key: Key, _of: fn(Key) -> Key, field: &mut Vec<(String, f64)>) {
         for (name, value) in field.iter() {
             self.line(name, quantity::print_bare(*value));
         }

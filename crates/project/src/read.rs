@@ -13,7 +13,7 @@ use super::printer::Printer;
 use super::reader::Reader;
 use super::text::{Findings, Place, RawFinding};
 use super::tree::{self, TreeNode};
-use super::{DeclaredActuator, Loaded, Project, setting, validate};
+use super::{DIRECTION, DeclaredActuator, Loaded, Project, UncertaintyDirection, setting, validate};
 use crate::catalogue::Catalogue;
 use crate::source::Source;
 use phea_quantity::{Dimension, RATIO, display};
@@ -96,6 +96,8 @@ fn project(reader: &mut Reader<'_>, root: &TreeNode) -> Project {
         let parameter = key("parameter", &RATIO, "A parameter of the plant.");
         reader.named = reader.parameters.iter().map(|name| (name.clone(), parameter)).collect();
     }
+    let directions = directions(root);
+    reader.named.extend(directions.map(|name| (name.to_string(), DIRECTION)));
     project.visit_wishes(reader);
     reader.close();
     validate::project(&project, reader);
@@ -119,6 +121,18 @@ fn parameters(root: &TreeNode) -> Vec<String> {
     parameters.sort();
     parameters.dedup();
     parameters
+}
+
+/// The names of `[[uncertainty_direction]]`, which other tables may call.
+fn directions(root: &TreeNode) -> impl Iterator<Item = &str> {
+    let tables = match root.get("uncertainty_direction").map(|entry| &entry.node.value) {
+        Some(tree::Value::List(tables)) => tables.as_slice(),
+        _ => &[],
+    };
+    tables.iter().filter_map(|table| match &table.get("name")?.node.value {
+        tree::Value::Text(name) => Some(name.as_str()),
+        _ => None,
+    })
 }
 
 /// Either a complete actuator, or a plant, or measured plants.
@@ -173,6 +187,7 @@ fn numbers(project: &mut Project) -> (BTreeMap<String, Key>, Vec<String>) {
         named.extend(super::scenario::start_numbers());
         named.extend(operating_numbers());
     }
+    named.extend(project.directions.iter().map(|direction| (direction.name.clone(), DIRECTION)));
     (named, listing.counts)
 }
 
@@ -258,7 +273,7 @@ impl Project {
     }
 
     /// The same project with other numbers at several paths; `None` if one of them leads to no
-    /// number.
+    /// number. The value of a direction moves the numbers of that direction from where they are.
     ///
     /// # Example
     /// ```
@@ -274,10 +289,19 @@ impl Project {
     pub fn with_numbers(&self, numbers: &[(&str, f64)]) -> Option<Project> {
         let mut project = self.clone();
         let mut assign: BTreeMap<String, f64> = BTreeMap::new();
+        let mut displaced: Vec<(&UncertaintyDirection, f64)> = Vec::new();
         for (path, value) in numbers {
-            match project.operating_point.at_path(path) {
-                Some(number) => *number = Some(*value),
-                None => drop(assign.insert((*path).to_string(), *value)),
+            let direction = self.directions.iter().find(|direction| direction.name == *path);
+            match (project.operating_point.at_path(path), direction) {
+                (Some(number), _) => *number = Some(*value),
+                (None, Some(direction)) => displaced.push((direction, *value)),
+                (None, None) => drop(assign.insert((*path).to_string(), *value)),
+            }
+        }
+        for (direction, deviations) in displaced {
+            for (path, change) in &direction.changes.numbers {
+                let before = assign.get(path).copied().or_else(|| self.number(path))?;
+                assign.insert(path.clone(), before + deviations * change);
             }
         }
         let wanted = assign.len();
@@ -286,6 +310,13 @@ impl Project {
             project.visit_system(&mut listing);
         }
         (listing.assigned == wanted).then_some(project)
+    }
+
+    /// The same project as if every number of it were known: without `[uncertainty]`, its directions
+    /// and `[family]`.
+    #[must_use]
+    pub fn without_uncertainty(&self) -> Project {
+        Project { uncertainty: Vec::new(), directions: Vec::new(), family: None, ..self.clone() }
     }
 
     /// The key of every number that a campaign may vary, and its value if one is stated; those of

@@ -1,6 +1,7 @@
 //! Conditions between the values of a project, in addition to the range of each.
 
 mod design;
+mod direction;
 mod family;
 mod line_motion;
 mod linear_loop;
@@ -30,6 +31,7 @@ pub(super) fn project(project: &Project, reader: &mut Reader<'_>) {
     }
     plausible::numbers(project, &mut check);
     wishes::uncertainty(project, &mut check);
+    direction::directions(project, &mut check);
     family::family(project, &mut check);
     linear_loop::sensor(project, &mut check);
     specification::specifications(project, &mut check);

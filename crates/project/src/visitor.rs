@@ -105,8 +105,9 @@ pub(crate) trait Visitor: Sized {
         field: &mut Vec<T>,
         visit: impl Fn(&mut T, NamedNumber<'_>, &mut Self),
     );
-    /// The present table as a list of names and numbers.
-    fn numbers(&mut self, key: Key, field: &mut Vec<(String, f64)>);
+    /// The present table as a list of names and numbers; `of` makes the key of an entry from the key
+    /// of the number that it names.
+    fn numbers(&mut self, key: Key, of: fn(Key) -> Key, field: &mut Vec<(String, f64)>);
     /// Two tables `a` and `b` that inherit what the present table says, unless they choose a kind
     /// of their own.
     fn sides<T: Default + Clone + PartialEq>(

@@ -15,6 +15,7 @@ mod witness;
 
 use num_complex::Complex64;
 use phea_dynamics::linear::LinearError;
+use phea_dynamics::portable;
 
 use crate::closed_loop::Compensation;
 use crate::family::Family;
@@ -218,6 +219,42 @@ pub struct Template {
     pub outlines: Vec<Vec<Complex64>>,
     /// How well the region is known.
     pub resolution: Resolution,
+}
+
+impl Template {
+    /// Area of the region that is known to be filled, in degrees times dB.
+    ///
+    /// # Example
+    /// The square between 0 and -90 degrees, and between 0 and 20 dB:
+    /// ```
+    /// # use num_complex::Complex64;
+    /// # use phea_qft::template::{Resolution, Template};
+    /// let corners = [(1.0, 0.0), (10.0, 0.0), (0.0, -10.0), (0.0, -1.0)];
+    /// let outline = corners.map(|(re, im)| Complex64::new(re, im)).to_vec();
+    /// let nominal = Complex64::new(1.0, 0.0);
+    /// let resolution = Resolution::Members;
+    /// let square = Template { frequency_rad_per_s: 1.0, nominal, points: vec![], outlines: vec![outline], resolution };
+    /// assert!((square.area_deg_db() - 90.0 * 20.0).abs() < 1e-9);
+    /// ```
+    pub fn area_deg_db(&self) -> f64 {
+        self.outlines.iter().map(|outline| area(outline)).sum()
+    }
+}
+
+/// Area within a closed polygon of responses, degrees times dB; its corners are less than half a turn
+/// apart.
+///
+/// ```text
+/// area = abs(sum of (phi_{k+1} - phi_k) (m_k + m_{k+1})/2)
+/// ```
+fn area(outline: &[Complex64]) -> f64 {
+    let decibel = |response: &Complex64| 20.0 * portable::log10(portable::magnitude(*response));
+    let next = outline.iter().cycle().skip(1);
+    let part = |(one, other): (&Complex64, &Complex64)| {
+        let turn = portable::argument(other / one).to_degrees();
+        turn * 0.5 * (decibel(one) + decibel(other))
+    };
+    outline.iter().zip(next).map(part).sum::<f64>().abs()
 }
 
 /// One plant of a template.

@@ -2,8 +2,11 @@
 
 mod answer;
 mod document;
+mod region;
 
 pub use phea_engineering::identify::*;
 
 pub use answer::{files, json};
 pub use document::text;
+pub use region::Region;
+pub(crate) use region::file;

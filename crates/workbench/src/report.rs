@@ -8,6 +8,7 @@ mod closed_loops;
 mod design;
 mod driven;
 mod driving;
+mod family_origin;
 mod family_steps;
 mod impedance;
 mod judged;
@@ -128,6 +129,7 @@ pub fn report(
     chapters.extend(campaign.map(|campaign| campaign.chapter));
     let mut tables = Vec::new();
     if let Some(judged) = &judged {
+        chapters.extend(family_origin::chapter(source, setup, judged, watch)?);
         chapters.extend(robust_chapters(project, judged)?);
         appendix.push(bounds::chapter(&judged.problem, &judged.bounds, charts.appendix));
         tables = robust_tables(loaded, judged);

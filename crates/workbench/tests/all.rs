@@ -47,6 +47,7 @@ mod specification;
 mod sweep;
 mod trial;
 mod trusted_data;
+mod uncertainty_directions;
 mod valve_coverage;
 mod valve_evidence;
 mod valve_identification;

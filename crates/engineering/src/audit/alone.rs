@@ -39,7 +39,7 @@ pub fn outside(setup: &Setup<'_>) -> Option<(Project, String)> {
         Some(words(&one.name, declared, [one.minimum, one.maximum]))
     }));
     let operating_point = project.resolved_operating_point();
-    let alone = || Project { uncertainty: Vec::new(), family: None, operating_point, ..project.clone() };
+    let alone = || Project { operating_point, ..project.without_uncertainty() };
     (!outside.is_empty()).then(|| (alone(), outside.join("; ")))
 }
 

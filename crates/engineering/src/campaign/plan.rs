@@ -189,8 +189,8 @@ impl Plan {
     pub fn settings(&self, draw: &Draw) -> Vec<String> {
         let drawn = self.drawn(draw);
         let mut settings: Vec<String> = Vec::new();
-        for (range, value) in self.ranges.iter().zip(&draw.values) {
-            let path = match (range.path.strip_prefix("start."), range.path.rsplit_once('.')) {
+        for (path, value) in self.ranges.iter().zip(&draw.values).flat_map(|one| self.stated(one, &drawn)) {
+            let path = match (path.strip_prefix("start."), path.rsplit_once('.')) {
                 (Some(state), _) => format!("scenario.{}.start.{state}", self.place),
                 // a table that may be written as an array: both are replaced by an array
                 (None, Some((table, _))) if EDGES.contains(&table) => {
@@ -205,15 +205,26 @@ impl Plan {
                     }
                     continue;
                 }
-                (None, _) => range.path.clone(),
+                (None, _) => path,
             };
-            settings.push(format!("{path}={value:e}"));
+            let setting = format!("{path}={value:e}");
+            if !settings.contains(&setting) {
+                settings.push(setting);
+            }
         }
         if let Some(seed) = draw.noise_seed {
             settings.push(format!("simulation.seed={seed}"));
         }
         settings.extend(self.feed_forward());
         settings
+    }
+
+    /// The numbers of the project that a drawn value means: its own, or all that its direction moves.
+    fn stated(&self, (range, value): (&VariedRange, &f64), drawn: &Option<Project>) -> Vec<(String, f64)> {
+        let direction = self.project.directions.iter().find(|direction| direction.name == range.path);
+        let Some(direction) = direction else { return vec![(range.path.clone(), *value)] };
+        let value = |path: &str| drawn.as_ref().and_then(|drawn| drawn.number(path)).unwrap_or(f64::NAN);
+        direction.changes.numbers.iter().map(|(path, _)| (path.clone(), value(path))).collect()
     }
 
     /// The gain of a feed-forward that the project does not state: it is fixed beforehand, so that

@@ -2,9 +2,10 @@
 
 use super::CampaignError;
 use super::range::VariedRange;
-use crate::project::{Campaign, Distribution, Project, Scenario, Varied};
+use crate::project::{Campaign, DIRECTION, Distribution, Project, Scenario, UncertaintyDirection, Varied};
 
-/// The ranges of everything a campaign varies, in file order.
+/// The ranges of everything a campaign varies, in file order: what it names, then the directions of
+/// the project, each standard normal.
 ///
 /// # Errors
 /// [`CampaignError`] where a spread has no declared number to spread around, or a logarithm does
@@ -14,10 +15,18 @@ pub(super) fn ranges(
     campaign: &Campaign,
     scenario: &Scenario,
 ) -> Result<Vec<VariedRange>, CampaignError> {
-    if campaign.parameters.is_empty() {
+    if campaign.parameters.is_empty() && project.directions.is_empty() {
         return Err(CampaignError::Nothing);
     }
     let known = project.listed_numbers();
+    let along = |direction: &UncertaintyDirection| VariedRange {
+        path: direction.name.clone(),
+        distribution: Distribution::Normal,
+        // two standard deviations from the middle
+        minimum: -2.0,
+        maximum: 2.0,
+        key: DIRECTION,
+    };
     let range = |varied: &Varied| {
         let path = varied.path.clone();
         let Some((key, stated)) = known.get(&path).copied() else {
@@ -44,5 +53,6 @@ pub(super) fn ranges(
         }
         Ok(VariedRange { path, distribution, minimum, maximum, key })
     };
-    campaign.parameters.iter().map(range).collect()
+    let own = campaign.parameters.iter().map(range);
+    own.chain(project.directions.iter().map(|direction| Ok(along(direction)))).collect()
 }

@@ -20,6 +20,7 @@ use phea_hydraulics::two_pressure::{
 };
 
 use super::ProjectFamilyError;
+use super::moved::{self, Moved};
 use super::visited::Visited;
 use crate::project::{DeclaredActuator, LINEAR_PARAMETERS, Project};
 use crate::rig::{
@@ -35,16 +36,17 @@ pub(super) fn uncertain_plant(
 ) -> Result<UncertainPlant, ProjectFamilyError> {
     let project = setup.project;
     let visited = Visited::new(setup, &parameters)?;
-    let Visited { rig, names, equal, .. } = &visited;
     let Some(declared) = &project.actuator else { return Err(crate::rig::RigError::NoActuator.into()) };
     let recorded = UncertainPlant::record(parameters, |values| {
-        let open = Open { project, declared, rig, names };
-        open.plant(values, visited.moved, *equal).1.coefficients()
+        visited.open(project, declared).plant(values, visited.moved, visited.equal).1.coefficients()
     })?;
     let expression = recorded.expression();
-    let idle = (0..names.len()).find(|index| expression.is_some_and(|one| !one.depends_on(*index)));
-    match idle.and_then(|index| names.get(index)) {
-        Some(path) => Err(ProjectFamilyError::Path { path: path.clone(), reason: reason(path) }),
+    let mut all = recorded.parameters().iter().enumerate();
+    let idle = all.find(|(index, _)| expression.is_some_and(|one| !one.depends_on(*index)));
+    match idle {
+        Some((_, UncertainParameter { name, .. })) => {
+            Err(ProjectFamilyError::Path { path: name.clone(), reason: reason(name) })
+        }
         None => Ok(recorded),
     }
 }
@@ -59,12 +61,11 @@ pub(super) fn in_motion(
     visited: &Visited,
     values: &[f64],
 ) -> Result<Option<PlantInMotion>, LineError> {
-    let Visited { rig, names, moved, equal, .. } = visited;
     let Some(declared) = &project.actuator else { return Ok(None) };
-    let open = Open { project, declared, rig, names };
-    let (place, plant) = open.plant(values, *moved, *equal);
+    let open = visited.open(project, declared);
+    let (place, plant) = open.plant(values, visited.moved, visited.equal);
     let moving = rig::in_motion(&declared.line, &place.components, &place.point, &place.chambers, &plant)?;
-    Ok(rig::as_response(rig.fed, moving, &plant))
+    Ok(rig::as_response(visited.rig.fed, moving, &plant))
 }
 
 /// A rig with some of its numbers open.
@@ -72,7 +73,9 @@ pub(super) struct Open<'a> {
     pub(super) project: &'a Project,
     pub(super) declared: &'a DeclaredActuator,
     pub(super) rig: &'a Rig,
+    /// Of the parameters, then of what their directions move.
     pub(super) names: &'a [String],
+    pub(super) moved: &'a [Moved],
 }
 
 /// A rig at its operating point.
@@ -101,8 +104,14 @@ pub(super) struct Equal {
 impl Open<'_> {
     /// What determines the pressures, with the settled supply.
     pub(super) fn balance<S: Scalar>(&self, values: &[S]) -> (S, Steady<S>, Balance<S>) {
-        let numbers = Numbers::open(self.names, values);
+        let all = self.all(values);
+        let numbers = Numbers::open(self.names, &all);
         self.settled(&numbers, self.idle(&components(self.declared, &numbers), &numbers))
+    }
+
+    /// The values of all open numbers.
+    pub(super) fn all<S: Scalar>(&self, parameters: &[S]) -> Vec<S> {
+        moved::values(parameters, self.moved)
     }
 
     fn settled<S: Scalar>(
@@ -129,7 +138,8 @@ impl Open<'_> {
     /// feed-forward is that of the declared rig.
     fn plant<S: Scalar>(&self, values: &[S], moved: bool, equal: Equal) -> (RigAtPoint<S>, LinearPlant<S>) {
         let place = self.place(values, moved);
-        let numbers = Numbers::open(self.names, values);
+        let all = self.all(values);
+        let numbers = Numbers::open(self.names, &all);
         let load = yielding_load(&self.declared.load, &numbers, place.point.hydraulic_force);
         let load = load.map_or(LinearLoad::Prescribed, |load| load.linear());
         let plant = plant(&place.chambers, &place.linear, equal.one_pressure, place.leakage, load);
@@ -147,7 +157,8 @@ impl Open<'_> {
     /// The rig with these values; its pressures are those of the declared rig if nothing changes
     /// them.
     pub(super) fn place<S: Scalar>(&self, values: &[S], moved: bool) -> RigAtPoint<S> {
-        let numbers = Numbers::open(self.names, values);
+        let all = self.all(values);
+        let numbers = Numbers::open(self.names, &all);
         let components = components(self.declared, &numbers);
         let (position, steady, idle) = self.idle(&components, &numbers);
         let known = &self.rig.point;
@@ -181,7 +192,7 @@ impl Open<'_> {
         let model = TwoPressureModel::of(&settled_components, pressures, StiffeningMember::Nominal, friction);
         let chambers = two_pressure_linear_parameters(&model, &point, SpoolDirection::Mean);
         let known = stated(&self.rig.parameters).map(|(name, value)| (name, S::from(value)));
-        let open = self.names.iter().map(String::as_str).zip(values.iter().copied());
+        let open = self.names.iter().map(String::as_str).zip(all.iter().copied());
         let linear = linear(&chambers, known.chain(open.filter(|(name, _)| is_linear(name))));
         let settled = SettledSupply { supply, settled: at, taken: none };
         let supply = yielding_supply(self.declared, &numbers, &idle, &settled);

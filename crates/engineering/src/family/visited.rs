@@ -12,7 +12,8 @@ use phea_qft::family::{Extent, UncertainFamily};
 
 use super::ProjectFamilyError;
 use super::hydraulic::{Equal, Open};
-use crate::project::Project;
+use super::moved::{self, Moved};
+use crate::project::{DeclaredActuator, Project};
 use crate::quantity::significant;
 use crate::rig::{Numbers, Rig, RigError, are_equal, components, sides, states_one_pressure};
 use crate::setup::Setup;
@@ -28,7 +29,10 @@ const WITHIN: usize = 64;
 #[derive(Debug)]
 pub(super) struct Visited {
     pub(super) rig: Rig,
-    pub(super) names: Vec<String>,
+    /// Of the parameters, then of what their directions move.
+    names: Vec<String>,
+    /// What directions move.
+    by_directions: Vec<Moved>,
     /// Whether the pressures depend on an uncertain number.
     pub(super) moved: bool,
     /// What is equal on both sides of every plant.
@@ -46,15 +50,17 @@ impl Visited {
     ) -> Result<Visited, ProjectFamilyError> {
         let (project, rig) = (setup.project, setup.rig()?.clone());
         let Some(declared) = &project.actuator else { return Err(RigError::NoActuator.into()) };
-        let names: Vec<String> = parameters.iter().map(|parameter| parameter.name.clone()).collect();
-        let open = Open { project, declared, rig: &rig, names: &names };
-        let all: Vec<&str> = names.iter().map(String::as_str).collect();
+        let own: Vec<String> = parameters.iter().map(|parameter| parameter.name.clone()).collect();
+        let by_directions = moved::moved(project, &own);
+        let names = moved::names(&own, &by_directions);
+        let open = Open { project, declared, rig: &rig, names: &names, moved: &by_directions };
+        let all: Vec<&str> = own.iter().map(String::as_str).collect();
         let settled = Expression::record(&all, |values| {
             let (_, steady, balance) = open.balance(values);
             let Settled { command, pressures: [a, b] } = balance.settle(steady);
             vec![command, a, b]
         });
-        let movers: Vec<usize> = (0..names.len()).filter(|index| settled.depends_on(*index)).collect();
+        let movers: Vec<usize> = (0..own.len()).filter(|index| settled.depends_on(*index)).collect();
         let moved = !movers.is_empty();
         let both = Expression::record(&all, |values| {
             let place = open.place(values, moved);
@@ -74,16 +80,24 @@ impl Visited {
         let edges = equal(0, 1);
         let chambers = are_equal(sides(&rig.two_pressure)) && equal(1, usize::MAX);
         let one_pressure = states_one_pressure(&rig.parameters, &names) || (chambers && edges);
-        Ok(Visited { rig, names, moved, equal: Equal { one_pressure, edges }, movers, settled })
+        let equal = Equal { one_pressure, edges };
+        Ok(Visited { rig, names, by_directions, moved, equal, movers, settled })
+    }
+
+    /// The rig with its uncertain numbers open.
+    pub(super) fn open<'a>(&'a self, project: &'a Project, declared: &'a DeclaredActuator) -> Open<'a> {
+        Open { project, declared, rig: &self.rig, names: &self.names, moved: &self.by_directions }
     }
 
     /// The error at a plant; `None` if its recorded pressures are those of its operating point.
-    fn problem(&self, open: &Open<'_>, values: &[f64]) -> Option<String> {
+    pub(super) fn problem(&self, open: &Open<'_>, values: &[f64]) -> Option<String> {
         let (position, steady, balance) = open.balance(values);
         let results = self.settled.evaluate(values);
         let &[command, pressure_a, pressure_b] = results.first_chunk()?;
         let settled = Settled { command, pressures: [pressure_a, pressure_b] };
-        let stroke = Numbers::open(open.names, values).at("cylinder.stroke", open.declared.cylinder.stroke);
+        let all = open.all(values);
+        let numbers = Numbers::open(open.names, &all);
+        let stroke = numbers.at("cylinder.stroke", open.declared.cylinder.stroke);
         let sound = balance.error(steady, &settled) <= EXACT
             && command.abs() <= balance.valve.nominal_voltage
             && pressure_a.min(pressure_b) > -ATMOSPHERIC_PRESSURE_ABSOLUTE
@@ -91,7 +105,7 @@ impl Visited {
         if sound && balance.is_unique(steady) {
             return None;
         }
-        let components = components(open.declared, &Numbers::open(open.names, values));
+        let components = components(open.declared, &numbers);
         let components = Components { supply: balance.supply, ..components };
         let afresh = Actuator::new(components).map_err(|error| error.to_string()).and_then(|actuator| {
             let point = operating_point(&actuator, position, steady.into());
@@ -112,7 +126,7 @@ impl Visited {
     }
 
     /// The parameters that determine the operating point, with their values.
-    fn member(&self, project: &Project, values: &[f64]) -> String {
+    pub(super) fn member(&self, project: &Project, values: &[f64]) -> String {
         let named =
             self.movers.iter().filter_map(|&index| Some((self.names.get(index)?, values.get(index)?)));
         let named: Vec<String> =
@@ -160,7 +174,7 @@ pub(super) fn check(setup: &Setup<'_>, family: &UncertainFamily) -> Result<(), P
     if !visited.moved {
         return Ok(());
     }
-    let open = Open { project, declared, rig: &visited.rig, names: &visited.names };
+    let open = visited.open(project, declared);
     for values in visited.places(family) {
         if let Some(reason) = visited.problem(&open, &values) {
             return Err(ProjectFamilyError::OperatingPoint {

@@ -5,7 +5,7 @@ use phea_dynamics::expression::Expression;
 use phea_dynamics::random;
 use phea_qft::family::{Coordinate, Extent, Family, UncertainFamily};
 
-use super::hydraulic::{Open, is_linear};
+use super::hydraulic::is_linear;
 use super::visited::Visited;
 use super::{ProjectFamilyError, family, uncertain};
 use crate::setup::Setup;
@@ -77,8 +77,8 @@ pub fn visited_box(setup: &Setup<'_>) -> Result<Option<Vec<VisitedRange>>, Proje
     }
     let Family::Uncertain(family) = family(setup, &Memory::default())? else { return Ok(None) };
     let visited = Visited::new(setup, &parameters)?;
-    let open = Open { project, declared, rig: &visited.rig, names: &visited.names };
-    let names: Vec<&str> = visited.names.iter().map(String::as_str).collect();
+    let open = visited.open(project, declared);
+    let names: Vec<&str> = parameters.iter().map(|parameter| parameter.name.as_str()).collect();
     let of = |result: usize| {
         Expression::record(&names, |values| {
             let linear = open.place(values, visited.moved).linear;

@@ -113,7 +113,7 @@ pub(crate) fn waves_alone(setup: &Setup<'_>) -> Option<Project> {
         fed.gain = Some(feed_forward(setup.project, &rig.linear));
     }
     let operating_point = setup.project.resolved_operating_point();
-    Some(Project { uncertainty: vec![], family: None, linear: Linear::default(), operating_point, ..alone })
+    Some(Project { linear: Linear::default(), operating_point, ..alone.without_uncertainty() })
 }
 
 /// Where the slower line is a quarter of a wave long, rad/s: pi/(2 T), T the time that a wave takes
@@ -134,8 +134,6 @@ fn made(setup: &Setup<'_>, declared: &Rig, names: &[&str], values: &[f64]) -> Re
     let project = setup.project;
     let is_linear = |name: &str| LINEAR_PARAMETERS.iter().any(|parameter| parameter.key.name == name);
     let mut rig = project.clone();
-    rig.uncertainty.clear();
-    rig.family = None;
     // what is fed forward is that of the declared rig
     let gain = feed_forward(project, &declared.linear);
     if let Some(given) = rig.controller.as_mut().and_then(|given| given.load_velocity_feed_forward.as_mut()) {
@@ -148,6 +146,7 @@ fn made(setup: &Setup<'_>, declared: &Rig, names: &[&str], values: &[f64]) -> Re
         }
         rig = rig.with_number(name, value).ok_or_else(|| format!("no rig is known with another `{name}`"))?;
     }
+    rig = rig.without_uncertainty();
     let wanted: Vec<(&str, f64)> =
         names.iter().copied().zip(values.iter().copied()).filter(|(name, _)| is_linear(name)).collect();
     let mut missed = Vec::new();

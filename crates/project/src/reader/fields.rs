@@ -356,16 +356,18 @@ impl Visitor for Reader<'_> {
         }
     }
 
-    fn numbers(&mut self, key: Key, field: &mut Vec<(String, f64)>) {
+    fn numbers(&mut self, key: Key, of: fn(Key) -> Key, field: &mut Vec<(String, f64)>) {
         let entries =
             self.frames.last().and_then(|frame| frame.layers.first()).map(|layer| layer.node.entries());
         for entry in entries.unwrap_or_default() {
             let Some(number) = self.named.get(&entry.key).copied() else {
-                let message = format!("`{}` is no uncertain {} of this project", entry.key, key.name);
-                self.findings.push(RawFinding::error(entry.key_place, message));
+                let near = nearest(&entry.key, self.named.keys().map(String::as_str));
+                let message = format!("`{}` is no {} of this project", entry.key, key.name);
+                let help = near.map(|name| format!("did you mean `{name}`?"));
+                self.findings.push(RawFinding::error(entry.key_place, message).maybe_help(help));
                 continue;
             };
-            if let Some(value) = self.number(number, &entry.node) {
+            if let Some(value) = self.number(of(number), &entry.node) {
                 field.push((entry.key.clone(), value));
             }
         }

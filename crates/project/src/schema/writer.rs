@@ -251,7 +251,7 @@ impl Visitor for SchemaWriter {
         self.property(key, json!({ "type": "object", "additionalProperties": object }), false);
     }
 
-    fn numbers(&mut self, key: Key, _field: &mut Vec<(String, f64)>) {
+    fn numbers(&mut self, key: Key, _of: fn(Key) -> Key, _field: &mut Vec<(String, f64)>) {
         let value = number(Key { dimension: &ANY, ..key });
         self.present(|table| table.others = value);
     }

@@ -1,7 +1,7 @@
 //! `[family]`.
 
 use super::Check;
-use crate::{Correlation, DeclaredFamily, OperatingRegion, Project, Uncertain};
+use crate::{Correlation, DeclaredFamily, DeclaredSpacing, OperatingRegion, Project, Uncertain};
 
 pub(super) fn family(project: &Project, check: &mut Check<'_, '_>) {
     let Some(family) = &project.family else { return };
@@ -17,6 +17,7 @@ pub(super) fn family(project: &Project, check: &mut Check<'_, '_>) {
     if let Some(region) = &family.operating_region {
         operating_region(project, region, check);
     }
+    replaces(project, family, check);
     cases(project, family, check);
     let mut seen = Vec::new();
     for (index, group) in family.correlation.iter().enumerate() {
@@ -45,6 +46,7 @@ fn measured(family: &DeclaredFamily, check: &mut Check<'_, '_>) {
         ("cases", !family.cases.is_empty() || check.declared("family.cases")),
         ("correlation", !family.correlation.is_empty()),
         ("operating_region", family.operating_region.is_some()),
+        ("replaces", !family.replaces.is_empty()),
     ];
     for (name, present) in others {
         if present {
@@ -94,6 +96,30 @@ fn operating_region(project: &Project, region: &OperatingRegion, check: &mut Che
     let stroke = actuator.cylinder.stroke;
     if region.position.is_some_and(|[_, high]| high > stroke && stroke > 0.0) {
         check.error(&format!("{path}.position"), "`position` goes beyond the stroke");
+    }
+}
+
+/// Parameters of the linear model that follow from what is uncertain, each with a range.
+fn replaces(project: &Project, family: &DeclaredFamily, check: &mut Check<'_, '_>) {
+    if !family.replaces.is_empty() && family.operating_region.is_none() && project.directions.is_empty() {
+        let message = "`replaces` has nothing to compare with: no `operating_region` and no direction";
+        check.error("family.replaces", message);
+    }
+    for one in &family.replaces {
+        let path = format!("family.replaces.{}", one.name);
+        check.bounds(&path, [one.minimum, one.nominal, one.maximum]);
+        if one.spacing == DeclaredSpacing::Logarithmic && one.minimum <= 0.0 {
+            check.error(&format!("{path}.minimum"), "logarithmic spacing needs a `minimum` above zero");
+        }
+        let compared = ["flow_gain", "flow_pressure_coefficient", "hydraulic_stiffness"];
+        if !compared.contains(&one.name.as_str()) {
+            let message = format!("`{}` is not among what a region or a direction moves", one.name);
+            check.error_with_help(&path, message, format!("there are: {}", compared.join(", ")));
+        }
+        if project.uncertainty.iter().any(|other| other.name == one.name) {
+            check
+                .error(&path, format!("[uncertainty] has a range of `{}` too: it is not replaced", one.name));
+        }
     }
 }
 

@@ -176,6 +176,10 @@ fn campaign(project: &Project, campaign: &Campaign, check: &mut Check<'_, '_>) {
             let message = format!("`{}` is of the linear model, and the machine finds its own", varied.path);
             check.error_with_help(&path, message, "vary `start.position` and its like");
         }
+        if project.directions.iter().any(|direction| direction.name == varied.path) {
+            let message = format!("a campaign draws the direction `{}` by itself", varied.path);
+            check.error_with_help(&path, message, "leave it out");
+        }
         if linear_parameter(&varied.path).is_some() {
             let message = format!("`{}` does not exist in the nonlinear machine", varied.path);
             check.error_with_help(&path, message, "vary the physical numbers it depends on");
@@ -249,6 +253,10 @@ pub(super) fn uncertainty(project: &Project, check: &mut Check<'_, '_>) {
     let numbers = project.system_numbers();
     for uncertain in &project.uncertainty {
         let path = format!("uncertainty.{}", uncertain.name);
+        if project.directions.iter().any(|direction| direction.name == uncertain.name) {
+            let message = format!("`{}` is a direction: its range is its `deviations`", uncertain.name);
+            check.error(&path, message);
+        }
         check.bounds(&path, [uncertain.minimum, uncertain.nominal, uncertain.maximum]);
         if uncertain.spacing == DeclaredSpacing::Logarithmic && uncertain.minimum <= 0.0 {
             check.error(&format!("{path}.minimum"), "logarithmic spacing needs a `minimum` above zero");

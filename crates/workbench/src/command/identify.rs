@@ -1,7 +1,9 @@
 //! `identify`: the valve that explains recorded tests.
 
 use crate::answer::Answer;
-use crate::identify::{self, IdentifyError, Known, Search, identify, recordings};
+use crate::identify::{
+    self, IdentifyError, Known, SMALLEST_EFFECT, Search, identify, joint_region, recordings,
+};
 use crate::project::Loaded;
 use crate::source::Source;
 use phea_hydraulics::servovalve::LeakageModel;
@@ -44,10 +46,14 @@ pub fn identify_watched(
         bootstrap: asked.bootstrap,
     };
     let found = identify(recorded, &known, search, watch)?;
+    let rig = loaded.filter(|loaded| loaded.project.actuator.is_some());
+    let region = rig.map(|rig| joint_region(&found, &rig.project, SMALLEST_EFFECT));
+    let mut files = identify::files(&found);
+    files.extend(region.iter().flatten().map(|region| identify::file(&found, region)));
     Ok(Answer {
-        text: identify::text(&found),
-        json: identify::json(loaded, &found),
-        files: identify::files(&found),
+        text: identify::text(&found, region.as_ref()),
+        json: identify::json(loaded, &found, region.as_ref()),
+        files,
         affirmative: found.has_converged() && found.untold.is_empty(),
     })
 }

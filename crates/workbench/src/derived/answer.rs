@@ -2,6 +2,7 @@ use super::Derived;
 use crate::answer::{self, Csv, Object, OutputFile, quoted};
 use crate::family::{Extreme, VisitedRange};
 use crate::project::Loaded;
+use crate::replaced::{ReplacedRange, replaced_ranges};
 use crate::specification::{CheckedWish, wish_row};
 
 /// The JSON object of `check`; `told` are warnings beside those of the reader.
@@ -16,9 +17,20 @@ pub fn json(
     let body = Object::new()
         .each("derived", derived, row)
         .maybe("visited_box", visited.map(|ranges| ranges.iter().map(range).collect::<Vec<_>>()))
+        .each("replaced", &replaced_ranges(&loaded.project, visited.unwrap_or_default()), replaced)
         .each("wishes", wishes, wish_row)
         .with("warnings", told.into_iter().chain(warnings).collect::<Vec<_>>());
     answer::json("check", loaded, body)
+}
+
+fn replaced(range: &ReplacedRange) -> Object {
+    Object::new()
+        .with("symbol", range.symbol)
+        .with("unit", range.unit)
+        .with("replaced", range.stated)
+        .with("visited", range.visited)
+        .with("share", range.share)
+        .with("beyond", range.beyond().to_vec())
 }
 
 fn row(quantity: &Derived) -> Object {

@@ -5,6 +5,7 @@ use crate::answer::significant;
 use crate::document::{Cell, Document, StatusMark, Table};
 use crate::family::{Extreme, VisitedRange};
 use crate::project::Project;
+use crate::replaced::{ReplacedRange, replaced_ranges};
 
 /// The tables of `check`, and a sentence for each contradiction.
 pub fn text(derived: &[Derived]) -> String {
@@ -61,7 +62,42 @@ pub(crate) fn visited_text(project: &Project, ranges: &[VisitedRange]) -> String
         [place("least", range.symbol, &range.minimum), place("most", range.symbol, &range.maximum)]
     });
     out.sentences(ends.flatten());
+    let replaced = replaced_ranges(project, ranges);
+    if !replaced.is_empty() {
+        out.section("The ranges that the family replaces", replaced_table(&replaced));
+        out.sentences(replaced_sentences(&replaced));
+    }
     out.text()
+}
+
+/// The ranges that a family replaces, beside what it visits.
+pub(crate) fn replaced_table(ranges: &[ReplacedRange]) -> Table {
+    let row = |range: &ReplacedRange| {
+        let ends = [range.stated[0], range.stated[1], range.visited[0], range.visited[1]];
+        let [least, most, low, high] = ends.map(|end| Cell::number(end, 3));
+        let share = Cell::from(format!("{} %", significant(100.0 * range.share, 2)));
+        [range.symbol.into(), least, most, low, high, Cell::Unit(range.unit), share]
+    };
+    let headings =
+        ["quantity", "replaced from", "to", "visited from", "to", "unit", "of the range is visited"];
+    Table::new(headings).with(ranges.iter().map(row))
+}
+
+/// Where the family goes beyond the ranges that it replaces.
+pub(crate) fn replaced_sentences(ranges: &[ReplacedRange]) -> Vec<String> {
+    let sentence = |range: &ReplacedRange| {
+        let side = match range.beyond() {
+            [false, false] => return None,
+            [true, false] => "below",
+            [false, true] => "above",
+            [true, true] => "on both sides of",
+        };
+        let symbol = range.symbol;
+        Some(format!(
+            "The rig reaches values of {symbol} {side} the range: a controller that serves the range alone is judged for fewer plants than there are."
+        ))
+    };
+    ranges.iter().filter_map(sentence).collect()
 }
 
 /// Difference in percent below which a stated value is unremarkable: it prints as zero.

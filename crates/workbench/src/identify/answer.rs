@@ -3,6 +3,7 @@ use std::collections::BTreeMap;
 use phea_hydraulics::servovalve::{LeakageModel, PortCircuit, StaticCoefficients};
 use serde::Serialize;
 
+use super::region::{Region, RegionBody, body};
 use super::{Bootstrap, COEFFICIENT_NAMES, ExplainedBy, Identification, SimpleCalculations, Untold};
 use crate::answer::{self, Number, OutputFile};
 use crate::project::Loaded;
@@ -33,6 +34,7 @@ struct IdentifyAnswer<'a> {
     signals: Vec<SignalBody>,
     correlations: Vec<CorrelationBody>,
     not_told: Vec<UntoldBody>,
+    joint_region: Option<RegionBody>,
     simple_calculations: SimpleBody,
     starts: usize,
     starts_that_agree: usize,
@@ -124,7 +126,7 @@ const HYSTERESIS: &str = "hysteresis";
 const REMARKABLE: f64 = 0.9;
 
 /// The JSON object of `identify`, with or without a project.
-pub fn json(loaded: Option<&Loaded>, found: &Identification) -> String {
+pub fn json(loaded: Option<&Loaded>, found: &Identification, region: Option<&Region>) -> String {
     let numbers = found.coefficients.to_array();
     let bootstrap = |index: usize| found.bootstrap.as_ref()?.intervals.get(index).copied();
     let all = numbers.into_iter().zip(found.intervals).enumerate();
@@ -171,6 +173,7 @@ pub fn json(loaded: Option<&Loaded>, found: &Identification) -> String {
             })
             .collect(),
         not_told: found.untold.iter().map(untold).collect(),
+        joint_region: region.map(body),
         simple_calculations: simple(&found.simple),
         starts: found.starts[0],
         starts_that_agree: found.starts[1],

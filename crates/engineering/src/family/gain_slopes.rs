@@ -1,0 +1,80 @@
+//! How much K_qU and K_c change with numbers of the project, at its operating points.
+
+use phea_dynamics::expression::Expression;
+use phea_dynamics::scalar::Dual;
+use phea_dynamics::uncertain_plant::UncertainParameter;
+
+use super::visited::Visited;
+use super::{ProjectFamilyError, uncertain};
+use crate::rig::RigError;
+use crate::setup::Setup;
+
+/// Beginning of the paths that a region of operating points ranges over.
+const OPERATING_POINT: &str = "operating_point.";
+
+/// Relative change of K_qU and of K_c for a change of each number by one, SI: a row for each of both
+/// at each operating point, which are the ends and the middle of every range of `[uncertainty]` and
+/// of `[family.operating_region]`.
+///
+/// ```text
+/// row = d ln K/d number
+/// ```
+///
+/// # Errors
+/// Those of a rig that cannot be computed with or does not rest at such a point.
+pub(crate) fn gain_slopes<const N: usize>(
+    setup: &Setup<'_>,
+    numbers: [&str; N],
+) -> Result<Vec<[f64; N]>, ProjectFamilyError> {
+    let project = setup.project;
+    let Some(declared) = &project.actuator else { return Err(RigError::NoActuator.into()) };
+    let points = uncertain::parameters(project)?;
+    let points: Vec<UncertainParameter> =
+        points.into_iter().filter(|one| one.name.starts_with(OPERATING_POINT)).collect();
+    let stated = |name: &str| {
+        let nominal = project.number(name).unwrap_or(0.0);
+        UncertainParameter { name: name.to_string(), nominal, minimum: nominal, maximum: nominal }
+    };
+    let parameters: Vec<UncertainParameter> = points.iter().cloned().chain(numbers.map(stated)).collect();
+    let visited = Visited::new(setup, &parameters)?;
+    let open = visited.open(project, declared);
+    let names: Vec<&str> = parameters.iter().map(|one| one.name.as_str()).collect();
+    let gains = Expression::record(&names, |values| {
+        let linear = open.place(values, visited.moved).linear;
+        vec![linear.flow_gain, linear.flow_pressure_coefficient]
+    });
+    let mut rows = Vec::new();
+    for values in combinations(&points) {
+        let numbers = parameters.iter().skip(points.len()).map(|one| one.nominal);
+        let values: Vec<f64> = values.into_iter().chain(numbers).collect();
+        if let Some(reason) = visited.problem(&open, &values) {
+            return Err(ProjectFamilyError::OperatingPoint {
+                member: visited.member(project, &values),
+                reason,
+            });
+        }
+        let dual = |(index, value): (usize, &f64)| match index.checked_sub(points.len()) {
+            Some(number) => Dual::<N>::variable(*value, number),
+            None => Dual::constant(*value),
+        };
+        let values: Vec<Dual<N>> = values.iter().enumerate().map(dual).collect();
+        let gains = gains.evaluate(&values);
+        rows.extend(gains.iter().map(|gain| gain.gradient().map(|slope| slope / gain.value())));
+    }
+    Ok(rows)
+}
+
+/// The ends and the middle of every range, in all combinations.
+fn combinations(points: &[UncertainParameter]) -> Vec<Vec<f64>> {
+    let mut all = vec![Vec::new()];
+    for UncertainParameter { nominal, minimum, maximum, .. } in points {
+        let mut places = vec![*minimum, *nominal, *maximum, 0.5 * (minimum + maximum)];
+        places.sort_by(f64::total_cmp);
+        places.dedup();
+        all = all
+            .iter()
+            .flat_map(|before: &Vec<f64>| places.iter().map(|place| [before.as_slice(), &[*place]].concat()))
+            .collect();
+    }
+    all
+}

@@ -1,0 +1,225 @@
+//! What recordings leave uncertain of a valve, as far as the plant sees it.
+
+use nalgebra::{DMatrix, SymmetricEigen};
+use phea_dynamics::portable::{erfc, pow};
+use phea_hydraulics::servovalve::{Edges, StaticCoefficients};
+
+use super::{COEFFICIENT_NAMES, Identification};
+use crate::family::{ProjectFamilyError, gain_slopes};
+use crate::project::{Changes, EdgeCoefficients, Project, UncertaintyDirection, ValveCoefficients};
+use crate::setup::Setup;
+
+/// Coefficients that the linear plant depends on: the first of all.
+const COUNT: usize = 9;
+
+/// Their paths.
+const PATHS: [&str; COUNT] = [
+    "valve.flow_coefficients.supply_to_a",
+    "valve.flow_coefficients.a_to_tank",
+    "valve.flow_coefficients.supply_to_b",
+    "valve.flow_coefficients.b_to_tank",
+    "valve.leakage_coefficients.supply_to_a",
+    "valve.leakage_coefficients.a_to_tank",
+    "valve.leakage_coefficients.supply_to_b",
+    "valve.leakage_coefficients.b_to_tank",
+    "valve.leakage_shape",
+];
+
+/// Probability that the true coefficients lie in the region.
+pub const COVERAGE: f64 = 0.95;
+
+/// Relative change of K_qU and K_c that the directions left out may make together, where nothing
+/// else is asked.
+pub const SMALLEST_EFFECT: f64 = 0.01;
+
+/// The joint 95 % region of the coefficients, as directions for a family.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JointRegion {
+    /// Independent directions, the one with the greatest effect first.
+    pub directions: Vec<UncertaintyDirection>,
+    /// Largest relative change of K_qU and K_c that each direction makes from its middle to an end.
+    pub effects: Vec<f64>,
+    /// Directions that were left out: their coefficients stay as identified.
+    pub left_out: usize,
+    /// Largest relative change of K_qU or K_c that those make together.
+    pub effect_left_out: f64,
+    /// Standard deviations to either side.
+    pub deviations: f64,
+}
+
+/// Why there is no such region.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum JointRegionError {
+    /// A coefficient without an interval.
+    #[error(
+        "the recordings do not determine `{0}`, so that nothing is known of the plants that are possible"
+    )]
+    NotTold(&'static str),
+    /// A coefficient whose region is not positive.
+    #[error("the region of `{0}` begins below zero: the recordings do not tell it from nothing")]
+    BelowZero(&'static str),
+    /// The rig with the identified valve has no operating point, or is none.
+    #[error(transparent)]
+    Family(#[from] ProjectFamilyError),
+    /// The project has no rig.
+    #[error("the effect on the plant is that on a rig, and this project describes none")]
+    NoRig,
+}
+
+/// The joint region of an identified valve for the rig of a project.
+///
+/// The estimates are normal with covariance C = D L L' D, D the standard deviations, L L' the
+/// correlations. With c = c0 + D L z the components of z are independent and standard normal, and
+/// remain so when z is turned. It is turned so that each component in its order has as great an effect
+/// on ln K_qU and ln K_c at the operating points of the rig as the earlier ones left: by the
+/// eigenvectors of M'M, M = J D L, J the derivatives.
+///
+/// ```text
+/// P(|z_i| <= r for all n) = erf(r/sqrt 2)^n = 0.95          n = 9: r = 2.77
+/// ```
+///
+/// so that the box of the directions, and not each interval on its own, has 95 %. (Nine intervals of
+/// 1.96 deviations have 63 % together; the ellipsoid of 95 % has the radius 4.11, and the box around
+/// it 99.96 %.) The components at the end are left out as long as they move no K_qU and no K_c by more
+/// than `smallest_effect` together, each at its end.
+///
+/// # Errors
+/// [`JointRegionError`] for coefficients that are not told, and a rig that has no plant.
+pub fn joint_region(
+    found: &Identification,
+    project: &Project,
+    smallest_effect: f64,
+) -> Result<JointRegion, JointRegionError> {
+    let mut project = with_valve(project, found).ok_or(JointRegionError::NoRig)?;
+    // ranges of what follows from the coefficients are what the region is to replace
+    project
+        .uncertainty
+        .retain(|one| !["flow_gain", "flow_pressure_coefficient"].contains(&one.name.as_str()));
+    for ((path, _), (interval, deviation)) in
+        COEFFICIENT_NAMES.iter().zip(found.intervals.iter().zip(found.deviations)).take(COUNT)
+    {
+        if interval.is_none() || !deviation.is_finite() {
+            return Err(JointRegionError::NotTold(path));
+        }
+    }
+    let setup = Setup::new(&project).map_err(|_| JointRegionError::NoRig)?;
+    let rows = gain_slopes(&setup, PATHS)?;
+    let slopes = DMatrix::from_fn(rows.len(), COUNT, |row, column| {
+        rows.get(row).map_or(0.0, |row: &[f64; COUNT]| row.get(column).copied().unwrap_or(0.0))
+    });
+    let spread = spread(found);
+    let effects = &slopes * &spread;
+    let turned = turned(&effects);
+    let (effects, changes) = (effects * &turned, spread * turned);
+    let deviations = deviations(COUNT);
+    let kept = kept(&effects, smallest_effect / deviations);
+    let left_out = |row: usize| (kept..COUNT).map(|column| effects[(row, column)].abs()).sum::<f64>();
+    let effect = |column: usize| effects.column(column).iter().map(|one| one.abs()).fold(0.0, f64::max);
+    let region = JointRegion {
+        directions: (0..kept).map(|column| direction(&changes, column, deviations)).collect(),
+        effects: (0..kept).map(|column| deviations * effect(column)).collect(),
+        left_out: COUNT - kept,
+        effect_left_out: deviations * (0..effects.nrows()).map(left_out).fold(0.0, f64::max),
+        deviations,
+    };
+    match below_zero(&region, &found.coefficients) {
+        Some(name) => Err(JointRegionError::BelowZero(name)),
+        None => Ok(region),
+    }
+}
+
+/// The project with the identified valve, its spool's dynamics as they are; `None` without a rig.
+pub fn with_valve(project: &Project, found: &Identification) -> Option<Project> {
+    let mut project = project.clone();
+    let valve = &mut project.actuator.as_mut()?.valve;
+    let all = found.coefficients;
+    let (flow, leakage) = (edges(all.flow_coefficients), edges(all.leakage_coefficients));
+    valve.flow = ValveCoefficients::Edges { edges: flow, rating: valve.flow.rating().copied() };
+    valve.leakage = ValveCoefficients::Edges { edges: leakage, rating: valve.leakage.rating().copied() };
+    valve.leakage_shape = all.leakage_shape;
+    valve.leakage_model = found.tested.leakage_model;
+    valve.transition_pressure = found.tested.transition_pressure;
+    valve.nominal_voltage = found.tested.nominal_voltage;
+    (valve.tare_flow, valve.tare_pressure) = (all.tare_flow, Some(found.tested.tare_reference_drop));
+    valve.null_bias = all.null_bias;
+    let may_vanish = found.intervals.last().copied().flatten().is_none_or(|[least, _]| least == 0.0);
+    valve.hysteresis = (!may_vanish).then_some(all.hysteresis_width);
+    Some(project)
+}
+
+fn edges(edges: Edges) -> EdgeCoefficients {
+    let Edges { supply_to_a, a_to_tank, supply_to_b, b_to_tank } = edges;
+    EdgeCoefficients { supply_to_a, a_to_tank, supply_to_b, b_to_tank }
+}
+
+/// D L: the change of each coefficient with independent standard normal numbers.
+fn spread(found: &Identification) -> DMatrix<f64> {
+    let all = COEFFICIENT_NAMES.len();
+    let correlation = |i: usize, j: usize| {
+        // a coefficient that is known exactly has no correlation
+        let stated = found.correlations.get(i * all + j).copied().filter(|one| one.is_finite());
+        stated.unwrap_or(f64::from(u8::from(i == j)))
+    };
+    let eigen = SymmetricEigen::new(DMatrix::from_fn(COUNT, COUNT, correlation));
+    DMatrix::from_fn(COUNT, COUNT, |i, j| {
+        let deviation = found.deviations.get(i).copied().unwrap_or(0.0);
+        deviation * eigen.eigenvectors[(i, j)] * eigen.eigenvalues[j].max(0.0).sqrt()
+    })
+}
+
+/// The turn after which each column of the effects has as much of them as the earlier ones left.
+fn turned(effects: &DMatrix<f64>) -> DMatrix<f64> {
+    let eigen = SymmetricEigen::new(effects.transpose() * effects);
+    let mut order: Vec<usize> = (0..COUNT).collect();
+    order.sort_by(|one, other| eigen.eigenvalues[*other].total_cmp(&eigen.eigenvalues[*one]));
+    DMatrix::from_fn(COUNT, COUNT, |row, column| {
+        order.get(column).map_or(0.0, |index| eigen.eigenvectors[(row, *index)])
+    })
+}
+
+/// How many of the first columns it takes so that the others together have less effect than this on
+/// every row.
+fn kept(effects: &DMatrix<f64>, smallest: f64) -> usize {
+    let others = |from: usize| {
+        let of_row = |row: usize| (from..COUNT).map(|column| effects[(row, column)].abs()).sum::<f64>();
+        (0..effects.nrows()).map(of_row).fold(0.0, f64::max)
+    };
+    (0..COUNT).find(|from| others(*from) <= smallest).unwrap_or(COUNT)
+}
+
+fn direction(changes: &DMatrix<f64>, column: usize, deviations: f64) -> UncertaintyDirection {
+    let changes = changes.column(column);
+    let numbers = PATHS.iter().zip(changes.iter()).map(|(path, change)| ((*path).to_string(), *change));
+    UncertaintyDirection {
+        name: format!("valve_{}", column + 1),
+        deviations,
+        points: 2,
+        changes: Changes { numbers: numbers.filter(|(_, change)| *change != 0.0).collect() },
+    }
+}
+
+/// A coefficient that is negative at the ends of the directions.
+fn below_zero(region: &JointRegion, coefficients: &StaticCoefficients) -> Option<&'static str> {
+    let reach = |path: &str| {
+        let changes = region.directions.iter().flat_map(|direction| &direction.changes.numbers);
+        changes.filter(|(name, _)| name == path).map(|(_, change)| change.abs()).sum::<f64>()
+    };
+    let mut all = PATHS.iter().zip(coefficients.to_array());
+    all.find(|(path, number)| *number < region.deviations * reach(path)).map(|(path, _)| *path)
+}
+
+/// Half width r of the box in which this many independent standard normal numbers lie together with
+/// 95 %.
+fn deviations(count: usize) -> f64 {
+    let outside = 1.0 - pow(COVERAGE, 1.0 / count as f64);
+    let [mut low, mut high] = [0.0_f64, 10.0];
+    while high - low > 1e-12 {
+        let middle = 0.5 * (low + high);
+        if erfc(middle / std::f64::consts::SQRT_2) > outside {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    0.5 * (low + high)
+}

@@ -1,0 +1,117 @@
+//! A family beside the box of ranges that it replaces.
+
+use phea_qft::family::Family;
+use phea_qft::template::{Template, TemplateError, TemplateOptions, Templates};
+
+use crate::family::{ProjectFamilyError, VisitedRange, family};
+use crate::project::{DeclaredFamily, DeclaredSpacing, Project};
+use crate::robust::RobustProblem;
+use crate::setup::Setup;
+use crate::source::Source;
+
+/// A range that the project says is replaced, and what its family visits instead.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReplacedRange {
+    /// The parameter's symbol, such as `K_c`.
+    pub symbol: &'static str,
+    /// SI unit.
+    pub unit: &'static str,
+    /// The range that is replaced.
+    pub stated: [f64; 2],
+    /// What the family visits.
+    pub visited: [f64; 2],
+    /// Share of the range that is visited: of its logarithm where it is spaced by equal factors.
+    pub share: f64,
+}
+
+impl ReplacedRange {
+    /// Whether the family goes below the range, and above it.
+    pub fn beyond(&self) -> [bool; 2] {
+        let ([least, most], [low, high]) = (self.stated, self.visited);
+        [low < least * (1.0 - ROUNDED), high > most * (1.0 + ROUNDED)]
+    }
+}
+
+/// Part by which ranges may differ that are printed to three digits.
+const ROUNDED: f64 = 0.01;
+
+/// Areas of both templates at a frequency, degrees times dB.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TemplateAreas {
+    /// rad/s
+    pub frequency_rad_per_s: f64,
+    /// Of the box.
+    pub replaced: f64,
+    /// Of the family.
+    pub visited: f64,
+}
+
+/// The ranges that a project says are replaced, beside what is visited.
+pub fn replaced_ranges(project: &Project, visited: &[VisitedRange]) -> Vec<ReplacedRange> {
+    let declared = project.family.iter().flat_map(|family| &family.replaces);
+    let range = |one: &crate::project::Uncertain| {
+        let visited = visited.iter().find(|visited| visited.name == one.name)?;
+        let scale = |value: f64| match one.spacing {
+            DeclaredSpacing::Logarithmic => phea_dynamics::portable::ln(value),
+            DeclaredSpacing::Linear => value,
+        };
+        let (low, high) = (visited.minimum.value, visited.maximum.value);
+        let both = (scale(high.min(one.maximum)) - scale(low.max(one.minimum))).max(0.0);
+        Some(ReplacedRange {
+            symbol: visited.symbol,
+            unit: visited.unit,
+            stated: [one.minimum, one.maximum],
+            visited: [low, high],
+            share: both / (scale(one.maximum) - scale(one.minimum)),
+        })
+    };
+    declared.filter_map(range).collect()
+}
+
+/// Areas of the templates at the design frequencies of a problem, beside those of the box that the
+/// project says it replaces; nothing where it says so of none. `own` are those of the problem's family.
+///
+/// # Errors
+/// Those of the family of the box and of its templates.
+pub fn template_areas(
+    source: &dyn Source,
+    project: &Project,
+    problem: &RobustProblem,
+    own: &[&Template],
+) -> Result<Vec<TemplateAreas>, ReplacedError> {
+    let Some(boxed) = boxed(project) else { return Ok(Vec::new()) };
+    let setup = Setup::new(&boxed)?;
+    let replaced: Family = family(&setup, source)?;
+    let frequencies: Vec<f64> = own.iter().map(|one| one.frequency_rad_per_s).collect();
+    let templates =
+        Templates::new(&replaced, &problem.compensation, &frequencies, TemplateOptions::default());
+    let areas = templates.zip(own).map(|(built, own)| {
+        let Template { frequency_rad_per_s, .. } = **own;
+        let replaced = built?.template.area_deg_db();
+        Ok(TemplateAreas { frequency_rad_per_s, replaced, visited: own.area_deg_db() })
+    });
+    areas.collect()
+}
+
+/// Why there is nothing to compare with.
+#[derive(Debug, thiserror::Error)]
+pub enum ReplacedError {
+    /// The box has no plants.
+    #[error("[family.replaces]: {0}")]
+    Family(#[from] ProjectFamilyError),
+    /// A template of it cannot be built.
+    #[error("[family.replaces]: {0}")]
+    Template(#[from] TemplateError),
+    /// The controller is no transfer function.
+    #[error(transparent)]
+    Control(#[from] crate::control::ControlError),
+}
+
+/// The project with the ranges that are replaced, and without what replaces them; `None` where it
+/// says so of none.
+pub fn boxed(project: &Project) -> Option<Project> {
+    let declared = project.family.as_ref().filter(|family| !family.replaces.is_empty())?;
+    let family = DeclaredFamily { operating_region: None, replaces: Vec::new(), ..declared.clone() };
+    let uncertainty = project.uncertainty.iter().chain(&declared.replaces).cloned().collect();
+    Some(Project { uncertainty, directions: Vec::new(), family: Some(family), ..project.clone() })
+}

@@ -1,0 +1,122 @@
+//! What the recordings leave uncertain of the plant: sentences, JSON, and a fragment of a project
+//! file.
+
+use serde::Serialize;
+
+use super::{COVERAGE, Identification, JointRegion, JointRegionError};
+use crate::answer::{Number, OutputFile, significant};
+use crate::document::{Cell, Document, Table};
+use crate::project::UncertaintyDirection;
+use crate::quantity::print_bare;
+
+/// The joint region of the coefficients, or why there is none.
+pub type Region = Result<JointRegion, JointRegionError>;
+
+/// The chapter on the plant.
+pub(crate) fn chapter(out: &mut Document, region: &Region) {
+    out.heading("What the recordings leave uncertain of the plant");
+    let region = match region {
+        Err(error) => return out.sentences([format!("No family is written: {error}.")]),
+        Ok(region) => region,
+    };
+    out.sentences(sentences(region));
+    if !region.directions.is_empty() {
+        let rows =
+            region.directions.iter().zip(&region.effects).map(|(direction, effect)| row(direction, *effect));
+        out.table(Table::new(["direction", "moves K_qU and K_c by up to", "unit"]).with(rows));
+    }
+}
+
+/// The sentences of the chapter.
+fn sentences(region: &JointRegion) -> Vec<String> {
+    let half_width = significant(region.deviations, 3);
+    let mut all = vec![format!(
+        "The nine coefficients that the plant depends on lie together in the family with {} %: each of their independent directions within {half_width} standard deviations.",
+        significant(100.0 * COVERAGE, 2)
+    )];
+    let effect = significant(100.0 * region.effect_left_out, 2);
+    all.push(match region.left_out {
+        0 => "Every direction matters for K_qU and K_c.".to_string(),
+        9 => format!(
+            "None of them matters: at their ends all of them together move K_qU and K_c by at most {effect} % at any operating point, so that the valve stays as identified."
+        ),
+        count => format!(
+            "{count} of the 9 directions are left out: at their ends they move K_qU and K_c by at most {effect} % together at any operating point."
+        ),
+    });
+    all.push("This is the noise of the recordings. What instruments measure wrongly all the time, and what the valve's model leaves out, is not in it.".to_string());
+    all
+}
+
+fn row(direction: &UncertaintyDirection, effect: f64) -> [Cell; 3] {
+    [Cell::Code(direction.name.clone()), Cell::number(100.0 * effect, 2), Cell::Unit("%")]
+}
+
+#[derive(Serialize)]
+pub(super) struct RegionBody {
+    coverage: f64,
+    deviations: Option<Number>,
+    directions: Vec<DirectionBody>,
+    left_out: Option<usize>,
+    effect_left_out: Option<Number>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    reason: Option<String>,
+}
+
+#[derive(Serialize)]
+struct DirectionBody {
+    name: String,
+    effect: Number,
+    changes: std::collections::BTreeMap<String, Number>,
+}
+
+pub(super) fn body(region: &Region) -> RegionBody {
+    let found = region.as_ref().ok();
+    let directions = found.iter().flat_map(|region| region.directions.iter().zip(&region.effects));
+    RegionBody {
+        coverage: COVERAGE,
+        deviations: found.map(|region| Number(region.deviations)),
+        directions: directions
+            .map(|(direction, effect)| DirectionBody {
+                name: direction.name.clone(),
+                effect: Number(*effect),
+                changes: direction
+                    .changes
+                    .numbers
+                    .iter()
+                    .map(|(path, one)| (path.clone(), Number(*one)))
+                    .collect(),
+            })
+            .collect(),
+        left_out: found.map(|region| region.left_out),
+        effect_left_out: found.map(|region| Number(region.effect_left_out)),
+        reason: region.as_ref().err().map(ToString::to_string),
+    }
+}
+
+/// The tables `[[uncertainty_direction]]` of a project.
+pub(crate) fn file(found: &Identification, region: &JointRegion) -> OutputFile {
+    let files: Vec<&str> = found.recordings.iter().map(|one| one.file.as_str()).collect();
+    let mut text =
+        format!("# What {} leave uncertain of the valve, for the table [valve] beside.\n", files.join(", "));
+    for sentence in sentences(region) {
+        text.push_str(&format!("# {sentence}\n"));
+    }
+    for (direction, effect) in region.directions.iter().zip(&region.effects) {
+        text.push_str(&format!(
+            "\n[[uncertainty_direction]]    # moves K_qU and K_c by up to {} %\nname = \"{}\"\ndeviations = {}\n\n[uncertainty_direction.changes]    # per standard deviation, SI\n",
+            significant(100.0 * effect, 2),
+            direction.name,
+            rounded(direction.deviations, 4),
+        ));
+        for (path, change) in &direction.changes.numbers {
+            text.push_str(&format!("\"{path}\" = {}\n", rounded(*change, 4)));
+        }
+    }
+    OutputFile { name: "uncertainty.toml".to_string(), bytes: text.into_bytes() }
+}
+
+/// A number with this many significant digits as TOML writes it.
+fn rounded(value: f64, digits: usize) -> String {
+    print_bare(format!("{value:.*e}", digits - 1).parse().unwrap_or(value))
+}

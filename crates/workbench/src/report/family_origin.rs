@@ -1,0 +1,86 @@
+//! The chapter on where the family comes from: how much of the ranges that it replaces the rig reaches, how much smaller its
+//! templates are, and what that gives the controller.
+
+use super::chapter::Chapter;
+use super::judged::Judged;
+use crate::answer::significant;
+use crate::audit::{ProjectAudit, audit_project, frequency_number};
+use crate::command::{CommandError, Watch};
+use crate::derived::{replaced_sentences, replaced_table};
+use crate::document::{Cell, Document, Table};
+use crate::family::visited_box;
+use crate::project::Project;
+use crate::replaced::{TemplateAreas, boxed, replaced_ranges, template_areas};
+use crate::setup::Setup;
+use crate::source::Source;
+
+/// `None` where the project says of no range that its family replaces it.
+pub(super) fn chapter(
+    source: &dyn Source,
+    setup: &Setup<'_>,
+    judged: &Judged,
+    watch: Watch<'_>,
+) -> Result<Option<Chapter>, CommandError> {
+    let project = setup.project;
+    let Some(boxed) = boxed(project) else { return Ok(None) };
+    let visited = visited_box(setup)?.unwrap_or_default();
+    let ranges = replaced_ranges(project, &visited);
+    let mut out = Document::default();
+    out.explanation(origin(project));
+    out.table(replaced_table(&ranges));
+    out.sentences(replaced_sentences(&ranges));
+    let own: Vec<_> = judged.bounds.iter().map(|one| &one.template.template).collect();
+    let areas = template_areas(source, project, &judged.problem, &own)?;
+    out.heading("Templates");
+    out.explanation("The area of a template is what the plants fill at one frequency, in degrees times dB: bounds leave the loop the more room, the smaller it is.");
+    out.table(Table::new(["rad/s", "over the box", "over the family", "share"]).with(areas.iter().map(area)));
+    if let Some(given) = &judged.given {
+        let over_box = audit_project(source, &Setup::new(&boxed)?, watch)?;
+        out.heading("What the family gives the given controller");
+        out.table(margins(&over_box, given));
+    }
+    Ok(Some(Chapter::of("family", "Where the family comes from", out)))
+}
+
+/// What the family is of.
+fn origin(project: &Project) -> String {
+    let region = project.family.as_ref().and_then(|family| family.operating_region.as_ref());
+    let mut parts = Vec::new();
+    if region.is_some() {
+        parts.push("the operating points that the rig visits, with what the pump gives".to_string());
+    }
+    match project.directions.len() {
+        0 => {}
+        1 => parts.push("one direction in which identified numbers are uncertain together".to_string()),
+        count => parts.push(format!("{count} directions in which identified numbers are uncertain together")),
+    }
+    format!(
+        "K_qU, K_c and K_H are not ranges of their own here: they follow from {}, and move together. The project names the independent ranges that this replaces.",
+        parts.join(", and from ")
+    )
+}
+
+fn area(areas: &TemplateAreas) -> [Cell; 4] {
+    let TemplateAreas { frequency_rad_per_s, replaced, visited } = *areas;
+    let share = match visited / replaced {
+        share if share.is_finite() => Cell::from(format!("{} %", significant(100.0 * share, 2))),
+        _ => Cell::Missing,
+    };
+    [
+        Cell::from(frequency_number(frequency_rad_per_s)),
+        Cell::number(replaced, 3),
+        Cell::number(visited, 3),
+        share,
+    ]
+}
+
+/// The worst margins of the same controller over both.
+fn margins(over_box: &ProjectAudit, own: &ProjectAudit) -> Table {
+    let rows = own.audit.specifications.iter().zip(&over_box.audit.specifications).enumerate();
+    let margin = |found: &phea_qft::verification::SpecificationFinding| match &found.worst {
+        Some(worst) => Cell::margin(worst.margin_db),
+        None => Cell::Missing,
+    };
+    let row = |(index, (found, boxed))| [Cell::from(own.numbered(index)), margin(boxed), margin(found)];
+    Table::new(["specification", "worst margin over the box", "over the family"]).with(rows.map(row))
+}
