@@ -22,12 +22,12 @@ pub struct UncertaintyDirection {
     /// Points of the grid over it.
     pub points: u32,
     /// The numbers by their paths, and the change of each per standard deviation, SI.
-    pub changes: Changes,
+    pub changes: NumberChanges,
 }
 
 /// The change of each number per standard deviation.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Changes {
+pub struct NumberChanges {
     /// Path and change in SI.
     pub numbers: Vec<(String, f64)>,
 }
@@ -42,7 +42,7 @@ impl UncertaintyDirection {
         let k = key("points", &RATIO, "Points of the grid over it.").at_least(2.0).at_most(1000.0).or(2.0);
         v.count(k, &mut self.points);
         let k = plain("changes", "Change of each number per standard deviation, by its path.");
-        v.needed_table(k, &mut self.changes, Changes::visit);
+        v.needed_table(k, &mut self.changes, NumberChanges::visit);
     }
 
     /// As an uncertain number of its own: z.
@@ -58,7 +58,7 @@ impl UncertaintyDirection {
     }
 }
 
-impl Changes {
+impl NumberChanges {
     fn visit<V: Visitor>(&mut self, v: &mut V) {
         // a change has either sign, whatever the number itself may be
         let change = |number: Key| Key { range: AcceptedRange::ANY, default: None, ..number };

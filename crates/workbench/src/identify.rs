@@ -8,5 +8,5 @@ pub use phea_engineering::identify::*;
 
 pub use answer::{files, json};
 pub use document::text;
-pub use region::Region;
+pub use region::FoundRegion;
 pub(crate) use region::file;

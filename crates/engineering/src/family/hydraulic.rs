@@ -20,7 +20,7 @@ use phea_hydraulics::two_pressure::{
 };
 
 use super::ProjectFamilyError;
-use super::moved::{self, Moved};
+use super::moved::{self, MovedNumber};
 use super::visited::Visited;
 use crate::project::{DeclaredActuator, LINEAR_PARAMETERS, Project};
 use crate::rig::{
@@ -75,7 +75,7 @@ pub(super) struct Open<'a> {
     pub(super) rig: &'a Rig,
     /// Of the parameters, then of what their directions move.
     pub(super) names: &'a [String],
-    pub(super) moved: &'a [Moved],
+    pub(super) moved: &'a [MovedNumber],
 }
 
 /// A rig at its operating point.

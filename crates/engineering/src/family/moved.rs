@@ -10,7 +10,7 @@ use crate::project::Project;
 /// number = stated + sum of change z
 /// ```
 #[derive(Clone, Debug)]
-pub(super) struct Moved {
+pub(super) struct MovedNumber {
     path: String,
     stated: f64,
     /// Index of the direction's z among the parameters, and the change per standard deviation.
@@ -18,8 +18,8 @@ pub(super) struct Moved {
 }
 
 /// What the directions of a project move, each number once; `parameters` are the uncertain ones.
-pub(super) fn moved(project: &Project, parameters: &[String]) -> Vec<Moved> {
-    let mut found: Vec<Moved> = Vec::new();
+pub(super) fn moved(project: &Project, parameters: &[String]) -> Vec<MovedNumber> {
+    let mut found: Vec<MovedNumber> = Vec::new();
     for direction in &project.directions {
         let Some(z) = parameters.iter().position(|name| *name == direction.name) else { continue };
         for (path, change) in &direction.changes.numbers {
@@ -27,7 +27,7 @@ pub(super) fn moved(project: &Project, parameters: &[String]) -> Vec<Moved> {
                 Some(one) => one.changes.push((z, *change)),
                 None => {
                     let Some(stated) = project.number(path) else { continue };
-                    found.push(Moved { path: path.clone(), stated, changes: vec![(z, *change)] });
+                    found.push(MovedNumber { path: path.clone(), stated, changes: vec![(z, *change)] });
                 }
             }
         }
@@ -36,13 +36,13 @@ pub(super) fn moved(project: &Project, parameters: &[String]) -> Vec<Moved> {
 }
 
 /// The names of the parameters, then those of the moved numbers.
-pub(super) fn names(parameters: &[String], moved: &[Moved]) -> Vec<String> {
+pub(super) fn names(parameters: &[String], moved: &[MovedNumber]) -> Vec<String> {
     parameters.iter().chain(moved.iter().map(|one| &one.path)).cloned().collect()
 }
 
 /// The values of the parameters, then those of the moved numbers.
-pub(super) fn values<S: Scalar>(parameters: &[S], moved: &[Moved]) -> Vec<S> {
-    let value = |one: &Moved| {
+pub(super) fn values<S: Scalar>(parameters: &[S], moved: &[MovedNumber]) -> Vec<S> {
+    let value = |one: &MovedNumber| {
         let changes = one.changes.iter().filter_map(|(z, change)| Some((*parameters.get(*z)?, *change)));
         changes.fold(S::from(one.stated), |sum, (z, change)| sum + z * S::from(change))
     };

@@ -12,7 +12,7 @@ use phea_qft::family::{Extent, UncertainFamily};
 
 use super::ProjectFamilyError;
 use super::hydraulic::{Equal, Open};
-use super::moved::{self, Moved};
+use super::moved::{self, MovedNumber};
 use crate::project::{DeclaredActuator, Project};
 use crate::quantity::significant;
 use crate::rig::{Numbers, Rig, RigError, are_equal, components, sides, states_one_pressure};
@@ -32,7 +32,7 @@ pub(super) struct Visited {
     /// Of the parameters, then of what their directions move.
     names: Vec<String>,
     /// What directions move.
-    by_directions: Vec<Moved>,
+    by_directions: Vec<MovedNumber>,
     /// Whether the pressures depend on an uncertain number.
     pub(super) moved: bool,
     /// What is equal on both sides of every plant.

@@ -6,7 +6,7 @@ use phea_hydraulics::servovalve::{Edges, StaticCoefficients};
 
 use super::{COEFFICIENT_NAMES, Identification};
 use crate::family::{ProjectFamilyError, gain_slopes};
-use crate::project::{Changes, EdgeCoefficients, Project, UncertaintyDirection, ValveCoefficients};
+use crate::project::{EdgeCoefficients, NumberChanges, Project, UncertaintyDirection, ValveCoefficients};
 use crate::setup::Setup;
 
 /// Coefficients that the linear plant depends on: the first of all.
@@ -194,7 +194,7 @@ fn direction(changes: &DMatrix<f64>, column: usize, deviations: f64) -> Uncertai
         name: format!("valve_{}", column + 1),
         deviations,
         points: 2,
-        changes: Changes { numbers: numbers.filter(|(_, change)| *change != 0.0).collect() },
+        changes: NumberChanges { numbers: numbers.filter(|(_, change)| *change != 0.0).collect() },
     }
 }
 

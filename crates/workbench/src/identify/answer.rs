@@ -3,7 +3,7 @@ use std::collections::BTreeMap;
 use phea_hydraulics::servovalve::{LeakageModel, PortCircuit, StaticCoefficients};
 use serde::Serialize;
 
-use super::region::{Region, RegionBody, body};
+use super::region::{FoundRegion, RegionBody, body};
 use super::{Bootstrap, COEFFICIENT_NAMES, ExplainedBy, Identification, SimpleCalculations, Untold};
 use crate::answer::{self, Number, OutputFile};
 use crate::project::Loaded;
@@ -126,7 +126,7 @@ const HYSTERESIS: &str = "hysteresis";
 const REMARKABLE: f64 = 0.9;
 
 /// The JSON object of `identify`, with or without a project.
-pub fn json(loaded: Option<&Loaded>, found: &Identification, region: Option<&Region>) -> String {
+pub fn json(loaded: Option<&Loaded>, found: &Identification, region: Option<&FoundRegion>) -> String {
     let numbers = found.coefficients.to_array();
     let bootstrap = |index: usize| found.bootstrap.as_ref()?.intervals.get(index).copied();
     let all = numbers.into_iter().zip(found.intervals).enumerate();

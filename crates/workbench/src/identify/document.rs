@@ -3,7 +3,7 @@
 use phea_hydraulics::servovalve::LeakageModel;
 
 use super::answer::{correlations, word};
-use super::region::{self, Region};
+use super::region::{self, FoundRegion};
 use super::{Bootstrap, COEFFICIENT_NAMES, DECISIVE, Identification, SignalFit, SimpleCalculations};
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
@@ -11,7 +11,7 @@ use crate::quantity::DisplayUnit;
 
 /// The model of the leakage, the coefficients with their intervals, how well the signals are
 /// explained, and what the data do not determine.
-pub fn text(found: &Identification, region: Option<&Region>) -> String {
+pub fn text(found: &Identification, region: Option<&FoundRegion>) -> String {
     let mut out = Document::default();
     out.heading("Model of the leakage");
     out.sentences(leakage(found));

@@ -10,10 +10,10 @@ use crate::project::UncertaintyDirection;
 use crate::quantity::print_bare;
 
 /// The joint region of the coefficients, or why there is none.
-pub type Region = Result<JointRegion, JointRegionError>;
+pub type FoundRegion = Result<JointRegion, JointRegionError>;
 
 /// The chapter on the plant.
-pub(crate) fn chapter(out: &mut Document, region: &Region) {
+pub(crate) fn chapter(out: &mut Document, region: &FoundRegion) {
     out.heading("What the recordings leave uncertain of the plant");
     let region = match region {
         Err(error) => return out.sentences([format!("No family is written: {error}.")]),
@@ -70,7 +70,7 @@ struct DirectionBody {
     changes: std::collections::BTreeMap<String, Number>,
 }
 
-pub(super) fn body(region: &Region) -> RegionBody {
+pub(super) fn body(region: &FoundRegion) -> RegionBody {
     let found = region.as_ref().ok();
     let directions = found.iter().flat_map(|region| region.directions.iter().zip(&region.effects));
     RegionBody {
