@@ -1,16 +1,16 @@
 //! The chapter on templates and bounds: the plants at each design frequency, where the nominal loop
 //! may not be, and whether the given loop satisfies this.
 
-use maud::{Markup, html};
 use phea_dynamics::linear::LinearError;
 use phea_qft::bound::{Bound, Collision, Feasibility, Placement};
 use phea_qft::template::{Resolution, Template};
 use phea_qft::verification::Verdict;
 
-use super::chapter::{Chapter, cell, place, table};
+use super::chapter::Chapter;
 use crate::answer::{Csv, OutputFile, significant};
 use crate::audit::{ProjectAudit, closed_loop_symbol, frequency_number, kind_key};
 use crate::command::CommandError;
+use crate::document::{Cell, Document, StatusMark, Table};
 use crate::figure::{
     BoundGroup, Figure, FrequencySeries, NicholsInput, OpenLoopViolation, USUAL_CONTOURS_DB, Words, nichols,
     templates,
@@ -20,27 +20,27 @@ use crate::robust::{DesignFrequency, RobustProblem};
 /// The chapter; `chart` is the Nichols chart of the given loop if it is shown nowhere else.
 pub(super) fn chapter(problem: &RobustProblem, found: &[DesignFrequency], chart: Option<Figure>) -> Chapter {
     let templates: Vec<Template> = found.iter().map(|one| one.template.template.clone()).collect();
-    let mut figures = vec![template_figure(&templates)];
-    figures.extend(specification_figures(problem, found));
-    figures.extend(chart);
-    let given = problem.has_controller;
-    let body = html! {
-        p { "What the robust method works with: the plants at each design frequency (templates), and the gains and phases that the nominal open loop must avoid there (bounds), so that every plant satisfies the specifications. Bounds count the interior of a template as plants, where that is known to be filled." }
-        (place(&figures[0]))
-        (table(&["rad/s", "plants", "closeness of neighbours"], 9, &found.iter().map(template_row).collect::<Vec<_>>()))
-        @for figure in figures.iter().skip(1) { (place(figure)) }
-        @if let Some(words) = unreached(problem, found) { p { (words) } }
-        @if given {
-            h3 { "The given loop among the bounds" }
-            p { "At the design frequencies only: bounds state nothing about the frequencies between them, or about stability." }
-            (placements(problem, found))
-        }
-        @for sentence in feasibility(problem, found) { div.callout.bad-edge { p { (sentence) } } }
-    };
-    Chapter { anchor: "bounds", title: "Templates and bounds", body, figures }
+    let mut out = Document::default();
+    out.explanation("What the robust method works with: the plants at each design frequency (templates), and the gains and phases that the nominal open loop must avoid there (bounds), so that every plant satisfies the specifications. Bounds count the interior of a template as plants, where that is known to be filled.");
+    out.figures([template_figure(&templates)]);
+    out.table(
+        Table::new(["rad/s", "plants", "closeness of neighbours"]).with(found.iter().map(template_row)),
+    );
+    out.figures(specification_figures(problem, found));
+    out.figures(chart);
+    out.explanations(unreached(problem, found));
+    if problem.has_controller {
+        out.heading("The given loop among the bounds");
+        out.explanation("At the design frequencies only: bounds state nothing about the frequencies between them, or about stability.");
+        out.table(placements(problem, found));
+    }
+    for sentence in feasibility(problem, found) {
+        out.verdict(StatusMark::Bad, sentence, vec![]);
+    }
+    Chapter::of("bounds", "Templates and bounds", out)
 }
 
-fn template_row(one: &DesignFrequency) -> Vec<Markup> {
+fn template_row(one: &DesignFrequency) -> [String; 3] {
     let closeness = match &one.template.template.resolution {
         Resolution::Members => "only these plants; nothing between them is known".to_string(),
         Resolution::Resolved { phase_deg, magnitude_db } => {
@@ -52,11 +52,8 @@ fn template_row(one: &DesignFrequency) -> Vec<Markup> {
             significant(*magnitude_db, 2)
         ),
     };
-    vec![
-        cell(frequency_number(one.frequency_rad_per_s)),
-        cell(one.template.template.points.len().to_string()),
-        cell(closeness),
-    ]
+    let plants = one.template.template.points.len().to_string();
+    [frequency_number(one.frequency_rad_per_s), plants, closeness]
 }
 
 fn template_figure(found: &[Template]) -> Figure {
@@ -162,35 +159,33 @@ fn unreached(problem: &RobustProblem, found: &[DesignFrequency]) -> Option<Strin
         .then(|| format!("Not measured, and therefore without template and bound: {listed} rad/s."))
 }
 
-fn placements(problem: &RobustProblem, found: &[DesignFrequency]) -> Markup {
+fn placements(problem: &RobustProblem, found: &[DesignFrequency]) -> Table {
     let row = |one: &DesignFrequency| {
-        vec![
-            cell(frequency_number(one.frequency_rad_per_s)),
+        [
+            Cell::frequency(one.frequency_rad_per_s),
             placement(problem, &one.placement),
             placement(problem, &one.filled_placement),
         ]
     };
-    let headings = ["rad/s", "counting the plants alone", "counting the interior of the template"];
-    table(&headings, 9, &found.iter().map(row).collect::<Vec<_>>())
+    Table::new(["rad/s", "counting the plants alone", "counting the interior of the template"])
+        .with(found.iter().map(row))
 }
 
-fn placement(problem: &RobustProblem, placement: &Placement) -> Markup {
+fn placement(problem: &RobustProblem, placement: &Placement) -> Cell {
     match placement {
         Placement::Allowed { slack_db } if slack_db.is_infinite() => {
-            html! { span.good { "allowed" } ", nothing is forbidden at this phase" }
+            Cell::from("allowed, nothing is forbidden at this phase").marked(true)
         }
         Placement::Allowed { slack_db } => {
-            html! { span.good { "allowed" } ", " (significant(*slack_db, 3)) " dB from a bound" }
+            Cell::from(format!("allowed, {} dB from a bound", significant(*slack_db, 3))).marked(true)
         }
         Placement::Forbidden { by, nearest_db } => {
             let names: Vec<String> = by.iter().map(|index| named(problem, *index)).collect();
-            html! {
-                span.bad { "forbidden" } " by " (names.join(", "))
-                @match nearest_db {
-                    Some(change) => { "; allowed with " (format!("{change:+.2}")) " dB" }
-                    None => { "; no gain is allowed at this phase" }
-                }
-            }
+            let change = match nearest_db {
+                Some(change) => format!("allowed with {change:+.2} dB"),
+                None => "no gain is allowed at this phase".to_string(),
+            };
+            Cell::from(format!("forbidden by {}; {change}", names.join(", "))).marked(false)
         }
     }
 }
@@ -210,7 +205,7 @@ fn feasibility(problem: &RobustProblem, found: &[DesignFrequency]) -> Vec<String
             _ => format!("{} leave no gain to each other", names.join(" and ")),
         };
         format!(
-            "At {} rad/s, phases {from}° to {to}°: {who}.",
+            "At {} rad/s, phases {from}° to {to}°: {who}",
             frequency_number(collision.frequency_rad_per_s)
         )
     };
@@ -219,7 +214,7 @@ fn feasibility(problem: &RobustProblem, found: &[DesignFrequency]) -> Vec<String
         if let Feasibility::Nowhere { collisions } = &one.bounds.feasibility {
             let frequency = frequency_number(one.frequency_rad_per_s);
             sentences.push(format!(
-                "No loop satisfies all specifications at {frequency} rad/s, whatever its controller."
+                "No loop satisfies all specifications at {frequency} rad/s, whatever its controller"
             ));
             sentences.extend(collisions.iter().map(sentence));
         }

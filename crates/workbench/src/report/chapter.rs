@@ -1,9 +1,9 @@
 use maud::{Markup, html};
 
 use crate::caveat::of_models;
-use crate::document::Document;
 pub(super) use crate::document::place;
 use crate::document::prose;
+use crate::document::{Document, StatusMark};
 use crate::figure::Figure;
 use crate::project::Project;
 
@@ -33,23 +33,7 @@ fn table_class(headings: &[&str]) -> &'static str {
     if headings.len() >= WIDE { "table wide" } else { "table" }
 }
 
-/// A table that takes the whole width of the paper, however few its columns are.
-pub(super) fn wide(content: &Markup) -> Markup {
-    html! { div.wide { (content) } }
-}
-
-/// A table with these headings; the columns from `numbers_from` on hold numbers.
-pub(super) fn table(headings: &[&str], numbers_from: usize, rows: &[Vec<Markup>]) -> Markup {
-    let class = |column: usize| if column >= numbers_from { "number" } else { "" };
-    html! {
-        div class=(table_class(headings)) { table {
-            thead { tr { @for (column, heading) in headings.iter().enumerate() { th class=(class(column)) { (prose(heading)) } } } }
-            tbody { @for row in rows { tr { @for (column, cell) in row.iter().enumerate() { td class=(class(column)) { (cell) } } } } }
-        } }
-    }
-}
-
-/// The same in groups of rows, each below its own heading line.
+/// A table in groups of rows, each below its own heading line; the columns from `numbers_from` on hold numbers.
 pub(super) fn grouped(
     headings: &[&str],
     numbers_from: usize,
@@ -69,9 +53,13 @@ pub(super) fn grouped(
     }
 }
 
-/// The effects that a chapter on the linear loop does not include, if any.
-pub(super) fn without(project: &Project) -> Markup {
-    html! { @for sentence in of_models(project) { div.callout { p { (sentence) "." } } } }
+impl Document {
+    /// The effects that a chapter on the linear loop does not include, if any.
+    pub(super) fn left_out(&mut self, project: &Project) {
+        for sentence in of_models(project) {
+            self.verdict(StatusMark::Note, sentence, vec![]);
+        }
+    }
 }
 
 /// A plain text as a cell.

@@ -1,15 +1,14 @@
 //! The chapter on the driving-point impedance: the impedance at the load, its asymptotes, and
 //! passivity.
 
-use maud::{Markup, html};
 use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_dynamics::time_response::TimeResponseError;
 use phea_hydraulics::impedance::AsymptoteKind;
 
-use super::chapter::{Chapter, cell, place, table, without};
+use super::chapter::Chapter;
 use super::load_motion::{self, Moved};
 use crate::answer::significant;
-use crate::document::{prose, typeset};
+use crate::document::{Document, Table};
 use crate::figure::{
     AsymptoteLine, Figure, FrequencyMark, FrequencySeries, ImpedanceInput, Words, impedance,
 };
@@ -22,38 +21,28 @@ pub(super) fn chapter(
     linearization: &Linearization,
 ) -> Result<Chapter, TimeResponseError> {
     let forces = load_motion::forces(project, &views(linearization))?;
-    let figures = vec![figure(linearization)?, load_motion::figure(project, &forces)];
     let hidden = significant(linearization.compliance_hidden_above_rad_per_s, 4);
-    let body = html! {
-        p {
-            (typeset("Z = -F_e/(s X_L)")) " is the resistance to a load that moves the rod: a damper, spring or mass, depending on frequency. Above " (hidden)
-            " rad/s the piston's mass hides the hydraulic compliance, and the load meets the sensor's stiffness alone."
-        }
-        (without(project))
-        (place(&figures[0]))
-        h3 { "Passivity" }
-        p { "A passive port stays stable against every passive load (poles not in the right half plane, simple ones with positive residue on the axis, Re Z not negative)." }
-        ul {
-            li { "open loop: " (verdict(&linearization.open_loop)) }
-            li { "closed loop: "
-                @match &linearization.closed_loop {
-                    Some(view) => (verdict(view)),
-                    None => (linearization.closed_loop_absent.clone().unwrap_or_default()),
-                }
-            }
-        }
-        h3 { "The load moves" }
-        (place(&figures[1]))
-        p { "Largest change of the force: " (peaks(&forces)) "." }
-        p { "Proposition 6.2: with leakage or feedback the zero at the origin makes the force return. After a load step of 1 mm there remains, "
-            "open loop " (remains(&linearization.open_loop))
-            @if let Some(view) = &linearization.closed_loop { ", closed loop " (remains(view)) }
-            "."
-        }
-        h3 { "Asymptotes" }
-        (asymptotes(linearization))
-    };
-    Ok(Chapter { anchor: "impedance", title: "The impedance at the load", body, figures })
+    let mut out = Document::default();
+    out.equations(vec!["Z = -F_e/(s X_L)".to_string()]);
+    out.explanation(format!("The driving-point impedance Z is the resistance to a load that moves the rod: a damper, spring or mass, depending on frequency. Above {hidden} rad/s the piston's mass hides the hydraulic compliance, and the load meets the sensor's stiffness alone."));
+    out.left_out(project);
+    out.figures([figure(linearization)?]);
+    out.heading("Passivity");
+    out.explanation("A passive port stays stable against every passive load (poles not in the right half plane, simple ones with positive residue on the axis, Re Z not negative).");
+    out.marked(views(linearization).into_iter().map(|(name, view)| {
+        let sentence = format!("{name}: {}", passivity_sentence(&view.passivity));
+        (Some(view.passivity.passive.into()), sentence)
+    }));
+    out.sentences(linearization.closed_loop_absent.iter().map(|reason| format!("closed loop: {reason}")));
+    out.heading("The load moves");
+    out.figures([load_motion::figure(project, &forces)]);
+    out.explanation(format!("Largest change of the force: {}.", peaks(&forces)));
+    let remaining: Vec<String> =
+        views(linearization).iter().map(|(name, view)| format!("{name} {}", remains(view))).collect();
+    out.explanation(format!("Proposition 6.2: with leakage or feedback the zero at the origin makes the force return. After a load step of 1 mm there remains, {}.", remaining.join(", ")));
+    out.heading("Asymptotes");
+    out.table(asymptotes(linearization));
+    Ok(Chapter::of("impedance", "The impedance at the load", out))
 }
 
 fn peaks(forces: &[Moved]) -> String {
@@ -62,11 +51,6 @@ fn peaks(forces: &[Moved]) -> String {
         None => format!("none {} (unstable)", moved.name),
     };
     forces.iter().map(one).collect::<Vec<_>>().join(", ")
-}
-
-fn verdict(view: &PortView) -> Markup {
-    let sentence = passivity_sentence(&view.passivity);
-    html! { span.good[view.passivity.passive].bad[!view.passivity.passive] { (sentence) } }
 }
 
 fn remains(view: &PortView) -> String {
@@ -91,8 +75,8 @@ fn behaviour(power: i32) -> &'static str {
     }
 }
 
-fn asymptotes(linearization: &Linearization) -> Markup {
-    let mut rows = Vec::new();
+fn asymptotes(linearization: &Linearization) -> Table {
+    let mut rows = Table::new(["loop", "regime", "behaves as", "size", "between, rad/s"]);
     for (name, view) in views(linearization) {
         for asymptote in &view.asymptotes {
             let regime = match asymptote.kind {
@@ -106,16 +90,16 @@ fn asymptotes(linearization: &Linearization) -> Markup {
                 1 => "kg",
                 _ => "SI",
             };
-            rows.push(vec![
-                cell(name),
-                prose(regime),
-                cell(behaviour(asymptote.power)),
-                prose(&format!("{} {}", significant(asymptote.coefficient, 4), unit.replace('.', "·"))),
-                cell(format!("{} to {}", significant(asymptote.from, 3), significant(asymptote.to, 3))),
+            rows.row([
+                name.to_string(),
+                regime.to_string(),
+                behaviour(asymptote.power).to_string(),
+                format!("{} {}", significant(asymptote.coefficient, 4), unit.replace('.', "·")),
+                format!("{} to {}", significant(asymptote.from, 3), significant(asymptote.to, 3)),
             ]);
         }
     }
-    table(&["loop", "regime", "behaves as", "size", "between, rad/s"], 3, &rows)
+    rows
 }
 
 fn figure(linearization: &Linearization) -> Result<Figure, LinearError> {

@@ -1,47 +1,39 @@
 //! The chapter on provenance: where each number comes from, what was assumed, what was not proven.
 
-use maud::{Markup, html};
-
-use super::chapter::{Chapter, cell, table, wide};
+use super::chapter::Chapter;
+use crate::document::{Cell, Document, StatusMark, Table};
 use crate::project::{Load, Loaded, Origin, Project};
 
 pub(super) fn chapter(loaded: &Loaded) -> Chapter {
-    let catalogue: Vec<Vec<Markup>> = loaded
-        .provenance
-        .iter()
-        .filter_map(|entry| match &entry.origin {
-            Origin::Catalogue { name, source } => {
-                Some(vec![html! { code { (entry.path) } }, cell(name), cell(source)])
-            }
-            _ => None,
-        })
-        .collect();
+    let catalogue = loaded.provenance.iter().filter_map(|entry| match &entry.origin {
+        Origin::Catalogue { name, source } => {
+            Some([Cell::Code(entry.path.clone()), name.as_str().into(), source.as_str().into()])
+        }
+        _ => None,
+    });
+    let coded = |words: &[&str]| words.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(" ");
+    let settings: Vec<&str> = loaded.settings.iter().map(String::as_str).collect();
+    let set = if settings.is_empty() { String::new() } else { format!(" Settings: {}.", coded(&settings)) };
     let defaults: Vec<&str> = paths(loaded, |origin| matches!(origin, Origin::Default));
-    let body = html! {
-        p {
-            "Project " b { (loaded.project.title) } ", SHA-256 " code { (loaded.sha256) } "."
-            @if !loaded.settings.is_empty() {
-                " Settings: " @for setting in &loaded.settings { code { (setting) } " " } "."
-            }
-        }
-        @if !loaded.warnings.is_empty() {
-            h3 { "Warnings" }
-            ul { @for warning in &loaded.warnings { li { span.note { (warning.message) } @if let Some(help) = &warning.help { " " (help) } } } }
-        }
-        @if !catalogue.is_empty() {
-            h3 { "From the catalogue" }
-            (wide(&table(&["value", "entry", "source"], 9, &catalogue)))
-        }
-        @if !defaults.is_empty() {
-            h3 { "Defaults" }
-            p { "Not stated by the project: " @for path in &defaults { code { (path) } " " } }
-        }
-        h3 { "Assumptions" }
-        ul { @for assumption in assumptions(&loaded.project) { li { (assumption) } } }
-        h3 { "Not proven here" }
-        p { (not_proven(&loaded.project)) }
-    };
-    Chapter { anchor: "provenance", title: "Provenance and assumptions", body, figures: vec![] }
+    let mut out = Document::default();
+    out.explanation(format!("Project {}, SHA-256 `{}`.{set}", loaded.project.title, loaded.sha256));
+    if !loaded.warnings.is_empty() {
+        out.heading("Warnings");
+        out.marked(loaded.warnings.iter().map(|warning| {
+            let help = warning.help.as_ref().map_or(String::new(), |help| format!(" {help}"));
+            (Some(StatusMark::Note), format!("{}{help}", warning.message))
+        }));
+    }
+    out.section("From the catalogue", Table::new(["value", "entry", "source"]).with(catalogue));
+    if !defaults.is_empty() {
+        out.heading("Defaults");
+        out.explanation(format!("Not stated by the project: {}", coded(&defaults)));
+    }
+    out.heading("Assumptions");
+    out.sentences(assumptions(&loaded.project));
+    out.heading("Not proven here");
+    out.explanation(not_proven(&loaded.project));
+    Chapter::of("provenance", "Provenance and assumptions", out)
 }
 
 fn paths(loaded: &Loaded, keep: impl Fn(&Origin) -> bool) -> Vec<&str> {

@@ -1,10 +1,10 @@
 //! The chapter on the linear loop with the given controller: step response, metrics, margins.
 
-use maud::{Markup, html};
 use phea_dynamics::frequency::Margins;
 
-use super::chapter::{Chapter, cell, place, table, without};
+use super::chapter::Chapter;
 use crate::answer::significant;
+use crate::document::{Document, StatusMark, Table};
 use crate::figure::{
     DisplayUnit, Figure, SettlingBand, StepResponseInput, TimeEvent, TimeSeries, Words, step_response,
 };
@@ -20,28 +20,30 @@ pub(super) fn chapter(
     reference_n: Option<f64>,
 ) -> Chapter {
     let (anchor, title) = ("response", "Step response of the linear loop");
+    let mut out = Document::default();
     let Some(linear_loop) = linear_loop else {
-        let body = html! { p { "The project gives no controller, so that there is no loop to close." } };
-        return Chapter { anchor, title, body, figures: vec![] };
+        out.explanation("The project gives no controller, so that there is no loop to close.");
+        return Chapter::of(anchor, title, out);
     };
-    let figures: Vec<Figure> =
-        linear_loop.step.iter().map(|view| figure(view, reference_n.unwrap_or(REFERENCE))).collect();
-    let body = html! {
-        p { "The fifth-order model with its nominal values in a loop with the given controller and prefilter. One linear plant: this proves nothing for the others, or for the nonlinear machine." }
-        (without(project))
-        @match &linear_loop.step {
-            Ok(view) => { (place(&figures[0])) (metrics(view)) }
-            Err(reason) => { div.callout.bad-edge { p { "No step response: " (reason) "." } } }
+    out.explanation("The fifth-order model with its nominal values in a loop with the given controller and prefilter. One linear plant: this proves nothing for the others, or for the nonlinear machine.");
+    out.left_out(project);
+    match &linear_loop.step {
+        Ok(view) => {
+            out.figures([figure(view, reference_n.unwrap_or(REFERENCE))]);
+            out.table(metrics(view));
         }
-        h3 { "Margins" }
-        p { "The closed loop is " @match &linear_loop.stability {
-            LoopStability::Stable => span.good { "stable" },
-            LoopStability::Unstable => span.bad { "unstable" },
-            LoopStability::Unknown(reason) => { "not judged here: " (reason) }
-        } ". Near a lightly damped resonance the loop crosses a gain of one several times: each margin is the smallest of all crossings, and a negative phase margin there is no instability by itself." }
-        (margins(&linear_loop.margins))
+        Err(reason) => out.verdict(StatusMark::Bad, format!("No step response: {reason}"), vec![]),
+    }
+    out.heading("Margins");
+    let (mark, stable) = match &linear_loop.stability {
+        LoopStability::Stable => (Some(StatusMark::Good), "stable".to_string()),
+        LoopStability::Unstable => (Some(StatusMark::Bad), "unstable".to_string()),
+        LoopStability::Unknown(reason) => (None, format!("not judged here: {reason}")),
     };
-    Chapter { anchor, title, body, figures }
+    out.marked([(mark, format!("The closed loop is {stable}."))]);
+    out.explanation("Near a lightly damped resonance the loop crosses a gain of one several times: each margin is the smallest of all crossings, and a negative phase margin there is no instability by itself.");
+    out.table(margins(&linear_loop.margins));
+    Chapter::of(anchor, title, out)
 }
 
 fn figure(view: &StepView, reference: f64) -> Figure {
@@ -76,28 +78,28 @@ fn figure(view: &StepView, reference: f64) -> Figure {
     step_response(Words::new("step", "Step response", caption), &input)
 }
 
-fn metrics(view: &StepView) -> Markup {
+fn metrics(view: &StepView) -> Table {
     let metrics = &view.metrics;
     let rise = metrics
         .rise_time_10_90_s
         .map_or("not reached".to_string(), |time| format!("{} s", significant(time, 3)));
-    let rows = vec![
-        vec![cell("overshoot"), cell(format!("{} %", significant(metrics.overshoot_percent, 3)))],
-        vec![cell("settling time"), cell(settling_words(metrics))],
-        vec![cell("rise time, 10 to 90 %"), cell(rise)],
-        vec![
-            cell("peak"),
-            cell(format!(
+    let rows = [
+        ["overshoot".to_string(), format!("{} %", significant(metrics.overshoot_percent, 3))],
+        ["settling time".to_string(), settling_words(metrics)],
+        ["rise time, 10 to 90 %".to_string(), rise],
+        [
+            "peak".to_string(),
+            format!(
                 "{} of the reference at {} s",
                 significant(metrics.peak_value, 4),
                 significant(metrics.peak_time_s, 3)
-            )),
+            ),
         ],
     ];
-    table(&["metric", "value"], 9, &rows)
+    Table::new(["metric", "value"]).with(rows)
 }
 
-fn margins(margins: &Margins) -> Markup {
+fn margins(margins: &Margins) -> Table {
     let at = |frequency: f64| format!("at {} rad/s", significant(frequency, 4));
     let gain = margins.gain_increase().map_or("infinite".to_string(), |margin| {
         format!("{} dB {}", significant(margin.db(), 3), at(margin.frequency_rad_per_s))
@@ -117,14 +119,14 @@ fn margins(margins: &Margins) -> Markup {
         )
     });
     let modulus = &margins.modulus_margin;
-    let rows = vec![
-        vec![cell("gain margin"), cell(gain)],
-        vec![cell("phase margin"), cell(phase)],
-        vec![
-            cell("modulus margin, least |1 + L|"),
-            cell(format!("{} {}", significant(modulus.distance, 3), at(modulus.frequency_rad_per_s))),
+    let rows = [
+        ["gain margin".to_string(), gain],
+        ["phase margin".to_string(), phase],
+        [
+            "modulus margin, least |1 + L|".to_string(),
+            format!("{} {}", significant(modulus.distance, 3), at(modulus.frequency_rad_per_s)),
         ],
-        vec![cell("delay margin"), cell(delay)],
+        ["delay margin".to_string(), delay],
     ];
-    table(&["margin", "value"], 9, &rows)
+    Table::new(["margin", "value"]).with(rows)
 }

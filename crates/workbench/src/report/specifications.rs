@@ -1,7 +1,6 @@
 //! The chapter on the specifications of the loop, in words and formulae, with the response of the
 //! tracking limits in time and the margins that the limits guarantee.
 
-use maud::{Markup, html};
 use num_complex::Complex64;
 use phea_dynamics::linear::{TimeDomain, TransferFunction};
 use phea_dynamics::portable;
@@ -9,33 +8,45 @@ use phea_qft::specification::{
     GuaranteedMargins, Limit, LimitOrder, Requirement, Specification, guaranteed_margins, tracking_spread,
 };
 
-use super::chapter::{Chapter, cell, table};
+use super::chapter::Chapter;
 use crate::answer::significant;
 use crate::audit::{closed_loop_symbol, frequency_number, frequency_words, meaning};
 use crate::command::CommandError;
-use crate::document::{prose, typeset};
+use crate::document::{Cell, Document, StatusMark, Table};
 use crate::project::Project;
 use crate::quantity::{RATIO, display};
 use crate::robust::RobustProblem;
-use crate::specification::{CheckedWish, SpecificationError, wishes};
+use crate::specification::{SpecificationError, wishes};
 
 pub(super) fn chapter(project: &Project, problem: &RobustProblem) -> Result<Chapter, CommandError> {
     let specifications = &problem.specifications;
     let row = |(index, one)| row(index, problem.name_of(index), one);
-    let rows: Vec<Vec<Markup>> = specifications.iter().enumerate().map(row).collect();
+    let heads = ["", "specification", "demand", "where it must hold", "design frequencies (rad/s)"];
     let wishes = wishes(project)?;
     let margins = margins(specifications)?;
-    let body = html! {
-        p { "The requirements on the closed loop of every plant. L is the open loop; F, G and P are prefilter, controller and plant." }
-        (table(&["", "specification", "demand", "where it must hold", "design frequencies (rad/s)"], 9, &rows))
-        @for (number, specification) in (1..).zip(specifications) { (spread(number, specification)) }
-        @if !wishes.is_empty() { h3 { "Tracking limits in time" } ul { @for wish in &wishes { li { (wish_item(wish)) } } } }
-        @if !margins.is_empty() { h3 { "Margins that the limits guarantee" } ul { @for sentence in margins { li { (prose(&sentence)) } } } }
-    };
-    Ok(Chapter { anchor: "specifications", title: "Specifications", body, figures: vec![] })
+    let mut out = Document::default();
+    out.explanation("The requirements on the closed loop of every plant. L is the open loop; F, G and P are prefilter, controller and plant.");
+    out.table(Table::new(heads).with(specifications.iter().enumerate().map(row)));
+    for (number, specification) in (1..).zip(specifications) {
+        spread(&mut out, number, specification);
+    }
+    if !wishes.is_empty() {
+        out.heading("Tracking limits in time");
+        out.marked(wishes.iter().map(|wish| {
+            let met = if wish.is_met() { "met" } else { "not met" };
+            let sentence =
+                format!("Specification {}, {} limit, {met}; {}.", wish.number, wish.key, wish.check);
+            (Some(wish.is_met().into()), sentence)
+        }));
+    }
+    if !margins.is_empty() {
+        out.heading("Margins that the limits guarantee");
+        out.sentences(margins);
+    }
+    Ok(Chapter::of("specifications", "Specifications", out))
 }
 
-fn row(index: usize, name: &str, specification: &Specification) -> Vec<Markup> {
+fn row(index: usize, name: &str, specification: &Specification) -> [Cell; 5] {
     let requirement = &specification.requirement;
     let band = match specification.band_rad_per_s {
         [0.0, f64::INFINITY] => "every frequency".to_string(),
@@ -43,12 +54,12 @@ fn row(index: usize, name: &str, specification: &Specification) -> Vec<Markup> {
     };
     let frequencies: Vec<String> =
         specification.frequencies_rad_per_s.iter().map(|frequency| frequency_number(*frequency)).collect();
-    vec![
-        cell((index + 1).to_string()),
-        cell(format!("{name}: {}", meaning(requirement))),
-        typeset(&demand(requirement)),
-        cell(band),
-        cell(frequencies.join(", ")),
+    [
+        Cell::count(index + 1),
+        format!("{name}: {}", meaning(requirement)).into(),
+        Cell::Equation(demand(requirement)),
+        band.into(),
+        frequencies.join(", ").into(),
     ]
 }
 
@@ -123,37 +134,30 @@ fn factors(roots: &[Complex64], variable: char) -> Vec<String> {
 }
 
 /// How far apart the limits of tracking are; empty for other kinds.
-fn spread(number: usize, specification: &Specification) -> Markup {
-    let Requirement::Tracking { lower, upper } = &specification.requirement else { return html! {} };
+fn spread(out: &mut Document, number: usize, specification: &Specification) {
+    let Requirement::Tracking { lower, upper } = &specification.requirement else { return };
     let decibels = |value: f64| if value.abs() < 5e-4 { "0".to_string() } else { significant(value, 3) };
     match tracking_spread(lower, upper, specification.band_rad_per_s) {
         Ok(spread) => match spread.order {
-            LimitOrder::Kept { least_db, frequency_rad_per_s } => html! {
-                p {
-                    "The limits of specification " (number) " are apart by at least " (decibels(least_db)) " dB, "
-                    (frequency_words(frequency_rad_per_s)) ", and by " (decibels(spread.at_end_db)) " dB at the end of the band."
-                }
-            },
-            LimitOrder::Crossed { from_rad_per_s, excess_db, frequency_rad_per_s } => html! {
-                div.callout.bad-edge { p {
-                    "No loop satisfies specification " (number) ": from " (frequency_number(from_rad_per_s))
-                    " rad/s on its lower limit is above its upper one, by " (decibels(excess_db)) " dB "
-                    (frequency_words(frequency_rad_per_s)) "."
-                } }
-            },
+            LimitOrder::Kept { least_db, frequency_rad_per_s } => out.explanation(format!(
+                "The limits of specification {number} are apart by at least {} dB, {}, and by {} dB at the end of the band.",
+                decibels(least_db),
+                frequency_words(frequency_rad_per_s),
+                decibels(spread.at_end_db)
+            )),
+            LimitOrder::Crossed { from_rad_per_s, excess_db, frequency_rad_per_s } => {
+                let sentence = format!(
+                    "No loop satisfies specification {number}: from {} rad/s on its lower limit is above its upper one, by {} dB {}",
+                    frequency_number(from_rad_per_s),
+                    decibels(excess_db),
+                    frequency_words(frequency_rad_per_s)
+                );
+                out.verdict(StatusMark::Bad, sentence, vec![]);
+            }
         },
         Err(reason) => {
-            html! { p { "The limits of specification " (number) " are not compared: " (reason) "." } }
+            out.explanation(format!("The limits of specification {number} are not compared: {reason}."))
         }
-    }
-}
-
-fn wish_item(wish: &CheckedWish) -> Markup {
-    let met = wish.is_met();
-    html! {
-        "Specification " (wish.number) ", " (wish.key) " limit, "
-        @if met { span.good { "met" } } @else { span.bad { "not met" } }
-        "; " (wish.check.to_string()) "."
     }
 }
 
