@@ -206,7 +206,7 @@ fn what_to_do_next_follows_from_the_results() {
 
     let wall = next(&undesigned, &["load.model=wall", "load.stiffness=1e6"]);
     assert!(
-        wall.iter().any(|step| step.contains("no verdict on the linear loop counts it: load.model")),
+        wall.iter().any(|step| step.contains("no verdict on the linear loop includes it: load.model")),
         "{wall:?}"
     );
 }
