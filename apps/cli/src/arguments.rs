@@ -220,8 +220,8 @@ pub(crate) struct Common {
 /// What `identify` takes.
 #[derive(Args, Debug)]
 pub(crate) struct IdentifyArguments {
-    /// Recorded tests, CSV files with units in the names of their columns
-    #[arg(required = true, num_args = 1..)]
+    /// Recorded tests, tables as text or Parquet; or the project whose [identify] names them
+    #[arg(required_unless_present = "project", num_args = 1.., value_name = "PROJECT.toml|TABLE")]
     pub(crate) files: Vec<String>,
     /// The project of the valve: nominal voltage, and pressures that the files lack
     #[arg(long, value_name = "PROJECT.toml")]
@@ -233,7 +233,7 @@ pub(crate) struct IdentifyArguments {
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Override a value of the project, e.g. --set "valve.nominal_voltage=5 V"; may be repeated
-    #[arg(long = "set", value_name = "PATH=VALUE", requires = "project")]
+    #[arg(long = "set", value_name = "PATH=VALUE")]
     pub(crate) settings: Vec<String>,
     /// Starting points of the search (6)
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]

@@ -184,7 +184,7 @@ fn on_projects(several: &Several) -> Result<u8, Failure> {
 fn compared(several: &Several) -> Result<(Answer, Vec<PathBuf>), Failure> {
     let request = Request::Compare;
     let paths = several.projects.iter().map(|path| path.to_string_lossy());
-    let loaded = paths.map(|path| load(&path, &several.settings, &several.catalogues, &request));
+    let loaded = paths.map(|path| load(&path, &several.settings, &several.catalogues, request.name()));
     let loaded = loaded.collect::<Result<Vec<_>, _>>()?;
     let mut line = ProgressLine::default();
     let interruption = Interruption::listen();
@@ -217,7 +217,7 @@ fn answered(
     save: Option<&Path>,
 ) -> Result<(Answer, Vec<PathBuf>), Failure> {
     let path = common.project.to_string_lossy();
-    let loaded = load(&path, &common.settings, &common.catalogues, request)?;
+    let loaded = load(&path, &common.settings, &common.catalogues, request.name())?;
     let mut line = ProgressLine::default();
     // commands that can return their best result so far are asked to stop; all others have nothing
     // to save
@@ -245,14 +245,9 @@ fn answered(
 }
 
 /// Reads a project and prints its warnings.
-fn load(
-    path: &str,
-    settings: &[String],
-    catalogues: &[String],
-    request: &Request,
-) -> Result<Loaded, Failure> {
+fn load(path: &str, settings: &[String], catalogues: &[String], command: &str) -> Result<Loaded, Failure> {
     let loaded = project::read(&FileSystem, path, settings, catalogues).map_err(|report| {
-        let json = command::refusal_json(&FileSystem, path, request, &report);
+        let json = command::refusal_json(&FileSystem, path, command, &report);
         Failure::wrong_input(report.render(styled())).with_json(json)
     })?;
     if !loaded.warnings.is_empty() {

@@ -13,50 +13,13 @@ mod instrument;
 use phea_dynamics::portable;
 use phea_dynamics::random::stream;
 use phea_dynamics::watch::{Stopped, Watch, tell};
-use phea_hydraulics::servovalve::{PortCircuit, SlowSpool, SpoolImperfection, TestStand};
+use phea_hydraulics::servovalve::{SlowSpool, SpoolImperfection, TestStand};
 
 use self::instrument::Instruments;
+pub use crate::project::StaticTest;
 use crate::project::{Bench, BenchWaveform, DeclaredActuator, SupplyModel};
 use crate::rig::RigError;
 use crate::setup::Setup;
-
-/// One of the static tests.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum StaticTest {
-    /// Ports blocked: leakage and port pressures over the command.
-    Leakage,
-    /// Ports joined through a meter: flow over the command.
-    Metering,
-    /// Ports blocked, a small command: port pressures around null.
-    PressureGain,
-}
-
-impl StaticTest {
-    /// All, in the order of ISO 10770-1.
-    pub const ALL: [StaticTest; 3] = [StaticTest::Leakage, StaticTest::Metering, StaticTest::PressureGain];
-
-    /// As files are called.
-    pub fn name(self) -> &'static str {
-        match self {
-            StaticTest::Leakage => "leakage",
-            StaticTest::Metering => "metering",
-            StaticTest::PressureGain => "pressure_gain",
-        }
-    }
-
-    /// How the ports are piped.
-    pub fn circuit(self) -> PortCircuit {
-        match self {
-            StaticTest::Leakage | StaticTest::PressureGain => PortCircuit::Blocked,
-            StaticTest::Metering => PortCircuit::Connected,
-        }
-    }
-
-    /// Whether it measures the leakage, and the flow between the ports.
-    pub fn measures_flow(self) -> [bool; 2] {
-        [self == StaticTest::Leakage, self == StaticTest::Metering]
-    }
-}
 
 /// The readings of the instruments at one time. Units: s, V, Pa, m3/s.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -9,6 +9,7 @@
 
 mod bootstrap;
 mod channels;
+mod contents;
 mod evidence;
 mod fit;
 mod guess;
@@ -20,6 +21,7 @@ mod told;
 mod variables;
 
 pub use bootstrap::{Bootstrap, FEWEST_REPETITIONS};
+pub use contents::{ColumnContents, FileContents, RecordedFiles};
 pub use evidence::{DECISIVE, ExplainedBy, ModelEvidence};
 pub use guess::SimpleCalculations;
 pub use joint::{COVERAGE, JointRegion, JointRegionError, SMALLEST_EFFECT, joint_region, with_valve};

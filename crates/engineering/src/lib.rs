@@ -33,6 +33,7 @@ pub mod shaping;
 pub mod simulate;
 pub mod sizing;
 pub mod specification;
+pub mod table;
 pub mod trial;
 
 pub(crate) use phea_project::{self as project, catalogue, source};

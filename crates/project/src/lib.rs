@@ -14,6 +14,7 @@ mod environment;
 mod family;
 mod fluid;
 mod formula;
+mod identify;
 mod interval;
 mod key;
 mod limit;
@@ -55,6 +56,7 @@ pub use environment::*;
 pub use family::*;
 pub use fluid::*;
 pub use formula::*;
+pub use identify::*;
 pub use interval::*;
 pub use key::{AcceptedRange, Key};
 pub use limit::*;
@@ -130,6 +132,8 @@ pub struct Project {
     pub campaign: Option<Campaign>,
     /// How the servovalve is tested; absent: by the defaults.
     pub bench: Bench,
+    /// What the servovalve is identified from.
+    pub identify: Option<Identify>,
 }
 
 /// The hydraulic actuator and what it works against.
@@ -254,6 +258,8 @@ impl Project {
         v.table(plain("campaign", "What a campaign varies."), &mut self.campaign, Campaign::visit);
         let k = plain("bench", "How the servovalve is tested.");
         table_or_default(k, &mut self.bench, Bench::visit, v);
+        let k = plain("identify", "What the servovalve is identified from.");
+        v.table(k, &mut self.identify, Identify::visit);
     }
 }
 

@@ -31,7 +31,6 @@ struct NamedText {
     content: String,
     /// Bytes of the file before the content, such as a byte order mark.
     skipped: usize,
-    line_starts: Vec<usize>,
 }
 
 /// A finding before its line and column are counted.
@@ -84,6 +83,12 @@ impl RawFinding {
         self
     }
 
+    /// The same of so many rows of a table, of which this is the first.
+    pub fn and_more(mut self, rows: usize) -> Self {
+        self.message = format!("{}; {rows} rows are like this", self.message);
+        self
+    }
+
     /// Something is missing, which a syntax error may be to blame for.
     pub fn consequence(mut self) -> Self {
         self.consequence = true;
@@ -105,16 +110,18 @@ const MAXIMUM_KEPT: usize = 400;
 
 impl Findings {
     /// Adds a text and returns its index.
-    pub fn add_text(&mut self, name: &str, content: &str, skipped: usize) -> usize {
-        let starts = content.bytes().enumerate().filter(|(_, byte)| *byte == b'\n').map(|(at, _)| at + 1);
-        let line_starts = std::iter::once(0).chain(starts).collect();
-        self.texts.push(NamedText {
-            name: name.to_string(),
-            content: content.to_string(),
-            skipped,
-            line_starts,
-        });
+    pub fn add_text(&mut self, name: &str, content: impl Into<String>, skipped: usize) -> usize {
+        self.texts.push(NamedText { name: name.to_string(), content: content.into(), skipped });
         self.texts.len() - 1
+    }
+
+    /// Gives back the memory of a text in which nothing was found and nothing will be.
+    pub fn release(&mut self, text: usize) {
+        if self.found.iter().all(|found| found.place.text != text)
+            && let Some(text) = self.texts.get_mut(text)
+        {
+            text.content = String::new();
+        }
     }
 
     /// Index of the text added last.
@@ -160,7 +167,11 @@ impl Findings {
     /// explains.
     pub fn report(self) -> Refusal {
         let Findings { texts, mut found, more, .. } = self;
-        let line = |place: &Place| texts.get(place.text).map_or(0, |text| text.line(place.start));
+        let is_named = |index: usize| found.iter().any(|f| f.place.text == index);
+        let starts =
+            |(index, text): (usize, &NamedText)| if is_named(index) { text.line_starts() } else { vec![] };
+        let lines: Vec<Vec<usize>> = texts.iter().enumerate().map(starts).collect();
+        let line = |place: &Place| lines.get(place.text).map_or(0, |starts| line_of(starts, place.start));
         let broken: Vec<(usize, usize)> =
             found.iter().filter(|f| f.syntax).map(|f| (f.place.text, line(&f.place))).collect();
         found.retain(|f| {
@@ -171,7 +182,9 @@ impl Findings {
         found.dedup_by(|a, b| a.place == b.place && a.message == b.message);
         let more = more + found.len().saturating_sub(MAXIMUM_LISTED);
         found.truncate(MAXIMUM_LISTED);
-        let diagnostics = found.iter().filter_map(|f| Some(texts.get(f.place.text)?.diagnostic(f))).collect();
+        let diagnostic =
+            |f: &RawFinding| Some(texts.get(f.place.text)?.diagnostic(f, lines.get(f.place.text)?));
+        let diagnostics = found.iter().filter_map(diagnostic).collect();
         Refusal {
             diagnostics,
             more,
@@ -181,17 +194,17 @@ impl Findings {
 }
 
 impl NamedText {
-    /// From 1.
-    fn line(&self, at: usize) -> usize {
-        self.line_starts.partition_point(|start| *start <= at)
+    /// Where each line begins.
+    fn line_starts(&self) -> Vec<usize> {
+        let ends = self.content.bytes().enumerate().filter(|(_, byte)| *byte == b'\n');
+        std::iter::once(0).chain(ends.map(|(at, _)| at + 1)).collect()
     }
 
-    fn diagnostic(&self, found: &RawFinding) -> Diagnostic {
+    fn diagnostic(&self, found: &RawFinding, line_starts: &[usize]) -> Diagnostic {
         let end = self.content.len();
         let (from, to) = (found.place.start.min(end), found.place.end.min(end));
-        let line = self.line(from);
-        let line_start =
-            line.checked_sub(1).and_then(|index| self.line_starts.get(index)).copied().unwrap_or(0);
+        let line = line_of(line_starts, from);
+        let line_start = line.checked_sub(1).and_then(|index| line_starts.get(index)).copied().unwrap_or(0);
         let whole_file = self.content.is_empty();
         let before = self.content.get(line_start..from).unwrap_or_default();
         Diagnostic {
@@ -205,4 +218,9 @@ impl NamedText {
             help: found.help.clone(),
         }
     }
+}
+
+/// The line of a byte, from 1.
+fn line_of(line_starts: &[usize], at: usize) -> usize {
+    line_starts.partition_point(|start| *start <= at)
 }

@@ -94,7 +94,7 @@ pub fn read(name: &str, bytes: &[u8], findings: &mut Findings) -> Option<TreeNod
         Err(error) => {
             let valid = error.valid_up_to();
             let shown = String::from_utf8_lossy(content);
-            let text = findings.add_text(name, &shown, skipped);
+            let text = findings.add_text(name, shown, skipped);
             let place = Place { text, start: valid, end: valid + '\u{fffd}'.len_utf8() };
             let message = format!("byte {} of the file is not valid UTF-8", valid + skipped + 1);
             findings.push(RawFinding::error(place, message).syntax().help("save the file as UTF-8"));

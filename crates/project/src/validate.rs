@@ -3,6 +3,7 @@
 mod design;
 mod direction;
 mod family;
+mod identify;
 mod line_motion;
 mod linear_loop;
 mod measured;
@@ -37,6 +38,9 @@ pub(super) fn project(project: &Project, reader: &mut Reader<'_>) {
     specification::specifications(project, &mut check);
     linear_loop::controllers(project, &mut check);
     design::design(project, &mut check);
+    if let Some(identified) = &project.identify {
+        identify::identify(identified, &mut check);
+    }
 }
 
 /// Reports contradictions within one element at `path`.

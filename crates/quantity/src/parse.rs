@@ -82,16 +82,40 @@ pub fn parse(text: &str, dimension: &Dimension) -> Result<f64, QuantityError> {
         return unitless(text, &number, dimension).map_err(with_expected);
     }
     if unit_text == "dB" && std::ptr::eq(dimension, &GAIN) {
-        let decibels = number.times(&UnitProduct::default(), text).map_err(with_expected)?;
-        return finite(phea_dynamics::scalar::Scalar::exp(decibels * LN_10 / 20.0), text);
+        let value = number.times(&UnitProduct::default(), text).map_err(with_expected)?;
+        return finite(decibels(value), text);
     }
-    let product =
-        UnitReader { text, at: unit_start, end: unit_range.end, factors: 0 }.unit().map_err(with_expected)?;
-    if !accepts(dimension, product.exponents) {
-        let message = format!("expected {}, found {}", dimension.name, name_of(product.exponents));
-        return Err(with_expected(QuantityError::new(message, unit_range)));
-    }
+    let product = product_of(text, unit_range, dimension).map_err(with_expected)?;
     number.times(&product, text).map_err(with_expected)
+}
+
+/// The unit in a part of a text.
+fn product_of(text: &str, range: Range<usize>, dimension: &Dimension) -> Result<UnitProduct, QuantityError> {
+    let product = UnitReader { text, at: range.start, end: range.end, factors: 0 }.unit()?;
+    if accepts(dimension, product.exponents) {
+        return Ok(product);
+    }
+    let message = format!("expected {}, found {}", dimension.name, name_of(product.exponents));
+    Err(QuantityError::new(message, range))
+}
+
+/// A unit, and whether its numbers are decibels; an empty text is the unit of a pure number.
+pub(crate) fn unit_of(unit: &str, dimension: &Dimension) -> Result<(UnitProduct, bool), QuantityError> {
+    let is_pure = dimension.exponents == Exponents::NONE;
+    if unit == "dB" && std::ptr::eq(dimension, &GAIN) {
+        return Ok((UnitProduct::default(), true));
+    }
+    match unit.trim() {
+        "" if is_pure => Ok((UnitProduct::default(), false)),
+        "" => Err(QuantityError::new("there is no unit", 0..unit.len())),
+        _ if unit.len() > MAXIMUM_LENGTH => Err(QuantityError::new("too long for a unit", 0..unit.len())),
+        trimmed => product_of(trimmed, 0..trimmed.len(), dimension).map(|product| (product, false)),
+    }
+}
+
+/// 10^(x/20).
+pub(crate) fn decibels(decibels: f64) -> f64 {
+    phea_dynamics::scalar::Scalar::exp(decibels * LN_10 / 20.0)
 }
 
 fn unitless(text: &str, number: &DecimalNumber, dimension: &Dimension) -> Result<f64, QuantityError> {
@@ -127,16 +151,21 @@ fn finite(value: f64, text: &str) -> Result<f64, QuantityError> {
 }
 
 /// A decimal number, as written.
-struct DecimalNumber {
+pub(crate) struct DecimalNumber {
     negative: bool,
     infinite: bool,
     digits: String,
     ten: i64,
-    end: usize,
+    /// First byte behind it.
+    pub(crate) end: usize,
 }
 
 impl DecimalNumber {
-    fn read(text: &str) -> Result<DecimalNumber, QuantityError> {
+    pub(crate) fn is_infinite(&self) -> bool {
+        self.infinite
+    }
+
+    pub(crate) fn read(text: &str) -> Result<DecimalNumber, QuantityError> {
         let start = text.len() - text.trim_start().len();
         let bytes = text.as_bytes();
         let mut at = start;
@@ -190,7 +219,7 @@ impl DecimalNumber {
         QuantityError::new(message, start..start + rest)
     }
 
-    fn times(&self, product: &UnitProduct, text: &str) -> Result<f64, QuantityError> {
+    pub(crate) fn times(&self, product: &UnitProduct, text: &str) -> Result<f64, QuantityError> {
         if self.infinite {
             return Ok(if self.negative { f64::NEG_INFINITY } else { f64::INFINITY });
         }
@@ -213,12 +242,12 @@ impl DecimalNumber {
 
 /// A product of units: `over / under · 10^ten · rounded`.
 #[derive(Clone, Debug)]
-struct UnitProduct {
+pub(crate) struct UnitProduct {
     exponents: Exponents,
-    over: Vec<u64>,
-    under: Vec<u64>,
-    ten: i64,
-    rounded: f64,
+    pub(crate) over: Vec<u64>,
+    pub(crate) under: Vec<u64>,
+    pub(crate) ten: i64,
+    pub(crate) rounded: f64,
 }
 
 impl Default for UnitProduct {

@@ -165,3 +165,76 @@ fn people_read_their_own_units() {
         assert_eq!(quantity::print(value, dimension), text);
     }
 }
+
+/// Units that tables are read in.
+static READ_IN: [(&str, &Dimension); 12] = [
+    ("Pa", &PRESSURE),
+    ("bar", &PRESSURE),
+    ("psi", &PRESSURE),
+    ("ksi", &PRESSURE),
+    ("L/min", &FLOW),
+    ("gpm", &FLOW),
+    ("ms", &TIME),
+    ("Hz", &ANGULAR_FREQUENCY),
+    ("deg", &ANGLE),
+    ("%", &RATIO),
+    ("", &RATIO),
+    ("dB", &GAIN),
+];
+
+/// A scale reads every number as [`parse`] does with the unit behind it, to the last bit.
+#[test]
+fn a_scale_is_a_quantity_without_its_unit() {
+    for (unit, dimension) in READ_IN {
+        let scale = UnitScale::new(unit, dimension).unwrap();
+        let check = |text: &str| {
+            let expected = parse(&format!("{text} {unit}"), dimension).ok().filter(|value| value.is_finite());
+            assert_eq!(scale.read(text).map(f64::to_bits), expected.map(f64::to_bits), "{text} {unit}");
+        };
+        for value in numbers(300) {
+            // every number of digits, in the decades of a test bench and in its own
+            let digits = (value.to_bits() % 18) as usize;
+            let text = format!("{value:.digits$e}");
+            let (mantissa, exponent) = text.split_once('e').unwrap();
+            check(mantissa);
+            check(&format!("{mantissa}e{}", exponent.parse::<i32>().unwrap() % 10));
+            check(&format!("{value:e}"));
+        }
+        for text in [
+            "0",
+            "-0",
+            "+7",
+            "0.000",
+            ".5",
+            "-.25",
+            "1e5",
+            "1E+05",
+            "1e-30",
+            "1e-300",
+            "1e300",
+            "1e999",
+            "inf",
+            "nan",
+            "",
+            "-",
+            ".",
+            "1e",
+            "1e+",
+            "1.2.3",
+            "1,5",
+            "9007199254740993",
+            "12345678901234567890",
+            "0.69976806640625",
+            "123456789012345678901234567890e-25",
+            "0x10",
+            "１",
+        ] {
+            check(text);
+        }
+        assert_eq!(["1 ", "1 bar", "1,5"].map(|text| scale.read(text)), [None; 3]);
+        assert_eq!(scale.read("5.").map(f64::to_bits), scale.read("5").map(f64::to_bits));
+    }
+    assert_eq!(UnitScale::new("mm", &PRESSURE).unwrap_err().message, "expected a pressure, found a length");
+    assert_eq!(UnitScale::new("", &PRESSURE).unwrap_err().message, "there is no unit");
+    assert_eq!(UnitScale::new("baar", &PRESSURE).unwrap_err().help.as_deref(), Some("did you mean `bar`?"));
+}

@@ -24,6 +24,7 @@ mod noise;
 mod number_table;
 mod operating_region;
 mod proof;
+mod recorded_tables;
 mod repair;
 mod report_design;
 mod report_opening;

@@ -294,7 +294,7 @@ fn a_refusal_is_an_object_too() {
     let report = project::read(&source, "rig.toml", &[], &[]).unwrap_err();
     for request in requests() {
         let object: Value =
-            serde_json::from_str(&refusal_json(&source, "rig.toml", &request, &report)).unwrap();
+            serde_json::from_str(&refusal_json(&source, "rig.toml", request.name(), &report)).unwrap();
         assert_eq!(object["schema"], 1);
         assert_eq!(object["command"], request.name());
         let rows = object["errors"].as_array().unwrap();

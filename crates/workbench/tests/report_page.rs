@@ -346,7 +346,11 @@ fn controllers_are_shown_on_the_machine() {
     let given = report.decision.given.as_ref().unwrap();
     assert_eq!((given.verdict, given.machine), (Some("met"), Some("contradicts")));
     let next = report.decision.next.join("\n");
-    assert!(report.decision.next[0].contains("do not rely on it before the machine, which contradicts the verdict, agrees"), "{next}");
+    assert!(
+        report.decision.next[0]
+            .contains("do not rely on it before the machine, which contradicts the verdict, agrees"),
+        "{next}"
+    );
     assert!(
         next.contains("Shorten the hose") && next.contains("the machine contradicts the verdict"),
         "{next}"

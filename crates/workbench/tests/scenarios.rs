@@ -143,7 +143,7 @@ fn a_recorded_reference_is_followed_like_what_was_recorded() {
         .unwrap_err()
         .to_string();
     assert!(
-        error.contains("unknown column `force_nm`") && error.contains("did you mean `force_n`?"),
+        error.contains("`nm` is no unit of a force") && error.contains("did you mean `force_n`?"),
         "{error}"
     );
 }

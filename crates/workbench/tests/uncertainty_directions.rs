@@ -54,8 +54,11 @@ fn identification() -> &'static Identification {
             files.iter().fold(Memory::default(), |source, (name, text)| source.with(name, text.as_str()));
         let names: Vec<String> = files.iter().map(|(name, _)| name.clone()).collect();
         let known = Known { supply_pressure: Some(70e5), tare_pressure: Some(70e5), ..Known::default() };
+        let files: Vec<_> =
+            names.iter().map(|name| phea_workbench::project::RecordedTest::of(name)).collect();
         let search = Search { starts: 1, ..Search::default() };
-        identify(recordings(&source, &names, &known).unwrap(), &known, search, &mut |_| true).unwrap()
+        identify(recordings(&source, &files, &known).unwrap().recordings, &known, search, &mut |_| true)
+            .unwrap()
     })
 }
 

@@ -48,7 +48,7 @@ pub(super) fn request(
 pub(super) fn answered(common: &Common, asked: &CampaignRequest) -> Result<(Answer, Vec<PathBuf>), Failure> {
     let request = Request::Campaign(*asked);
     let path = common.project.to_string_lossy();
-    let loaded = load(&path, &common.settings, &common.catalogues, &request)?;
+    let loaded = load(&path, &common.settings, &common.catalogues, request.name())?;
     let mut line = ProgressLine::default();
     let interruption = Interruption::listen();
     let mut table = match (&common.out, asked.asked) {

@@ -1,9 +1,9 @@
 //! `identify`: recorded tests with or without a project.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use phea_workbench::answer::Answer;
-use phea_workbench::command::{self, IdentifyError, IdentifyRequest, LeakageModel, Request};
+use phea_workbench::command::{self, IdentifyError, IdentifyRequest, LeakageModel};
 
 use super::{load, styled};
 use crate::arguments::{IdentifyArguments, LeakageWord};
@@ -13,12 +13,15 @@ use crate::interruption::Interruption;
 use crate::output::write;
 use crate::voice::ProgressLine;
 
+/// As it is called.
+const NAME: &str = "identify";
+
 /// The answer, and the files that were written.
 pub(super) fn answered(recorded: &IdentifyArguments) -> Result<(Answer, Vec<PathBuf>), Failure> {
-    let project = recorded.project.as_ref().map(|path| path.to_string_lossy());
-    let loaded = project.map(|path| load(&path, &recorded.settings, &[], &Request::Bench)).transpose()?;
+    let (project, files) = named(recorded)?;
+    let loaded = project.map(|path| load(&path, &recorded.settings, &[], NAME)).transpose()?;
     let asked = IdentifyRequest {
-        files: recorded.files.clone(),
+        files,
         starts: recorded.starts.map(usize::from),
         seed: recorded.seed,
         bootstrap: recorded.bootstrap.map_or(0, |count| count as usize),
@@ -35,14 +38,14 @@ pub(super) fn answered(recorded: &IdentifyArguments) -> Result<(Answer, Vec<Path
     });
     line.clear();
     let hash = loaded.as_ref().map(|loaded| loaded.sha256.as_str());
-    let explain = |message: &str| command::failure_json(Some("identify"), hash, message);
+    let explain = |message: &str| command::failure_json(Some(NAME), hash, message);
     let answer = answer.map_err(|error| {
         let text = match &error {
             IdentifyError::Files(report) => report.render(styled()),
             other => format!("error: {other}"),
         };
         let json = match &error {
-            IdentifyError::Files(report) => command::files_json("identify", hash, report),
+            IdentifyError::Files(report) => command::files_json(NAME, hash, report),
             other => explain(&other.to_string()),
         };
         Failure::wrong_input(text).with_json(json)
@@ -53,4 +56,24 @@ pub(super) fn answered(recorded: &IdentifyArguments) -> Result<(Answer, Vec<Path
         None => vec![],
     };
     Ok((answer, written))
+}
+
+/// The project, which may stand among the files by its ending, and the tables.
+fn named(recorded: &IdentifyArguments) -> Result<(Option<String>, Vec<String>), Failure> {
+    let is_project = |file: &&String| Path::new(file).extension().is_some_and(|ending| ending == "toml");
+    let (projects, files): (Vec<&String>, Vec<&String>) = recorded.files.iter().partition(is_project);
+    let option = recorded.project.as_ref().map(|path| path.to_string_lossy().into_owned());
+    let mut projects = option.into_iter().chain(projects.into_iter().cloned());
+    let project = projects.next();
+    let explain = |message: &str| {
+        let json = command::failure_json(Some(NAME), None, message);
+        Err(Failure::wrong_input(format!("error: {message}")).with_json(json))
+    };
+    if projects.next().is_some() {
+        return explain("one project describes one valve: several are named");
+    }
+    if project.is_none() && !recorded.settings.is_empty() {
+        return explain("`--set` changes a project, and none is named");
+    }
+    Ok((project, files.into_iter().cloned().collect()))
 }

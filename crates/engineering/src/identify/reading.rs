@@ -1,163 +1,262 @@
-//! Recorded tests from CSV files, as loggers and spreadsheets write them.
+//! Recorded tests from tables, as loggers and spreadsheets write them.
 //!
-//! Columns are known by their names; the unit belongs to the name (`supply_pressure_bar`, `pressure_a
-//! [bar]`) or stands in a row of units. Separators are commas, semicolons or tabs; with the last two
-//! a decimal sign may be a comma. Rows above the names, and empty ones, are left out.
+//! ```text
+//! table -> which column is what -> rows that are used -> numbers that a test has -> test
+//! ```
+//!
+//! A column is known by its name, with its unit (`supply_pressure_bar`, `p_S [bar]`), or by what a
+//! project says of it. What is harmless is dealt with and told; everything else refuses the file.
 
-mod column;
-mod sheet;
+mod assembled;
+mod plausible;
+mod rows;
 
-use phea_hydraulics::servovalve::{PortCircuit, Supply, TestInput};
+use phea_hydraulics::servovalve::PortCircuit;
 
-use self::column::{Quantity, columns};
-use self::sheet::Sheet;
 use super::Known;
-use super::recording::{RecordedSignal, Recording, SignalKind};
-use crate::project::{Findings, RawFinding, Refusal};
+use super::contents::{ColumnContents, FileContents, RecordedFiles};
+use super::recording::Recording;
+use crate::project::{Findings, RawFinding, RecordedTest, Refusal, StaticTest, TestSignal};
 use crate::source::Source;
+use crate::table::{Column, Measurand, MeasuredTable, Sought};
 
 /// Fewest rows of a test.
 const FEWEST_ROWS: usize = 20;
 
-/// The recordings of these files, in their order.
+/// What the columns of a test may hold, in the order of [`TestSignal::ALL`].
+static MEASURANDS: [Measurand; 8] = [
+    measurand(TestSignal::Time, None),
+    measurand(TestSignal::Command, None),
+    measurand(TestSignal::SupplyPressure, Some("p_S")),
+    measurand(TestSignal::TankPressure, Some("p_T")),
+    measurand(TestSignal::PressureA, Some("p_A")),
+    measurand(TestSignal::PressureB, Some("p_B")),
+    measurand(TestSignal::LeakFlow, None),
+    measurand(TestSignal::Flow, None),
+];
+
+const fn measurand(signal: TestSignal, symbol: Option<&'static str>) -> Measurand {
+    Measurand {
+        name: signal.name(),
+        symbol,
+        dimension: signal.dimension(),
+        may_be_share: matches!(signal, TestSignal::Command),
+    }
+}
+
+/// Which columns are used.
+struct Chosen {
+    columns: Vec<(TestSignal, Column)>,
+    /// Headings of the others.
+    unused: Vec<String>,
+}
+
+/// The columns that are used, over the rows that are used.
+struct Taken {
+    columns: Vec<(TestSignal, Vec<f64>)>,
+}
+
+impl Taken {
+    fn of(&self, signal: TestSignal) -> Option<&[f64]> {
+        self.columns.iter().find(|(one, _)| *one == signal).map(|(_, values)| values.as_slice())
+    }
+
+    fn rows(&self) -> usize {
+        self.columns.first().map_or(0, |(_, values)| values.len())
+    }
+}
+
+/// The tests of these files, in their order, with what the files hold and what was dealt with in
+/// them.
 ///
 /// # Errors
 /// Everything that is wrong in the files, with its places.
 pub fn recordings(
     source: &dyn Source,
-    paths: &[String],
+    files: &[RecordedTest],
     known: &Known,
-) -> Result<Vec<Recording>, Box<Refusal>> {
+) -> Result<RecordedFiles, Box<Refusal>> {
     let mut findings = Findings::default();
-    let mut found = Vec::with_capacity(paths.len());
-    for path in paths {
-        match source.read(path) {
-            Ok(bytes) => found.extend(recording(path, &bytes, known, &mut findings)),
-            Err(error) => findings.unreadable(path, &error.to_string()),
+    let mut recorded = RecordedFiles::default();
+    for declared in files {
+        match source.read(&declared.file) {
+            Ok(bytes) => {
+                if let Some((recording, contents)) = recording(declared, bytes, known, &mut findings) {
+                    recorded.recordings.push(recording);
+                    recorded.contents.push(contents);
+                }
+            }
+            Err(error) => findings.unreadable(&declared.file, &error.to_string()),
         }
     }
-    if findings.error_count() > 0 { Err(Box::new(findings.report())) } else { Ok(found) }
+    if findings.error_count() > 0 {
+        return Err(Box::new(findings.report()));
+    }
+    recorded.warnings = findings.report().diagnostics;
+    Ok(recorded)
 }
 
-fn recording(path: &str, bytes: &[u8], known: &Known, findings: &mut Findings) -> Option<Recording> {
-    let sheet = Sheet::read(path, bytes, findings)?;
-    let columns = columns(&sheet, findings)?;
+/// The test of one file.
+fn recording(
+    declared: &RecordedTest,
+    bytes: Vec<u8>,
+    known: &Known,
+    findings: &mut Findings,
+) -> Option<(Recording, FileContents)> {
+    let separator = declared.separator.as_ref().and_then(|text| text.chars().next());
+    let sought = TestSignal::ALL.iter().zip(&MEASURANDS).map(|(signal, measurand)| {
+        let column = declared.column(*signal);
+        Sought {
+            measurand,
+            heading: column.and_then(|column| column.column.as_deref()),
+            unit: column.and_then(|column| column.unit.as_deref()),
+        }
+    });
+    let sought: Vec<Sought<'_>> = sought.collect();
+    let table = MeasuredTable::read(&declared.file, bytes, &sought, separator, findings)?;
+    let Chosen { columns, unused } = columns(declared, &table, &sought, known, findings)?;
+    let circuit = circuit(declared, &columns);
     let before = findings.error_count();
-    let mut times: Vec<f64> = Vec::with_capacity(sheet.rows.len());
-    let mut values: Vec<Vec<f64>> = vec![Vec::with_capacity(sheet.rows.len()); columns.len()];
-    for row in &sheet.rows {
-        if !sheet.is_complete(row, findings) {
-            continue;
-        }
-        for (column, values) in columns.iter().zip(&mut values) {
-            let Some(value) = column.value(row, &sheet, known.nominal_voltage, findings) else { continue };
-            if column.quantity == Quantity::Time {
-                if let Some(last) = times.last().filter(|last| value <= **last) {
-                    let message = if value == *last {
-                        "the time of the row before"
-                    } else {
-                        "a time before that of the row before"
-                    };
-                    findings.push(
-                        RawFinding::error(column.place(row), message)
-                            .expected("times that increase from row to row"),
-                    );
-                }
-                times.push(value);
-            }
-            values.push(value);
-        }
+    let wanted: Vec<&Column> = columns.iter().map(|(_, column)| column).collect();
+    let mut numbers = table.numbers(&wanted, findings);
+    let shares = columns.iter().zip(&mut numbers.columns).filter(|((_, column), _)| column.is_share);
+    shares.for_each(|(_, values)| values.iter_mut().for_each(|value| *value *= known.nominal_voltage));
+    if findings.error_count() > before {
+        return None;
+    }
+    let is_used = rows::used(&table, &columns, &numbers, |signal| is_input(signal, circuit), findings);
+    let left_out = is_used.iter().filter(|used| !**used).count() + usize::from(numbers.cut_off.is_some());
+    let gaps: Vec<usize> = numbers.gaps.iter().map(Vec::len).collect();
+    let used: Vec<usize> =
+        is_used.iter().enumerate().filter(|(_, used)| **used).map(|(row, _)| row).collect();
+    let taken = rows::kept(&columns, numbers, &is_used);
+    if findings.error_count() == before {
+        plausible::check(&table, &columns, &taken, (&used, known), findings);
+        is_above_tank(&table, &columns, &taken, &used, known, findings);
+    }
+    let whole = table.header_place();
+    if taken.rows() < FEWEST_ROWS && findings.error_count() == before {
+        let found = RawFinding::error(whole, format!("{} rows are too few for a test", taken.rows()));
+        findings.push(found.expected(format!("at least {FEWEST_ROWS} rows below the names of the columns")));
     }
     if findings.error_count() > before {
         return None;
     }
-    let whole = sheet.header_place();
-    if sheet.rows.len() < FEWEST_ROWS {
-        let found = RawFinding::error(whole, format!("{} rows are too few for a test", sheet.rows.len()));
-        findings.push(found.expected(format!("at least {FEWEST_ROWS} rows below the names of the columns")));
-        return None;
-    }
-    let of = |quantity: Quantity| {
-        columns.iter().position(|column| column.quantity == quantity).and_then(|index| values.get(index))
+    let described = columns.iter().zip(gaps).map(|((signal, column), gaps)| ColumnContents {
+        heading: table.heading(column).to_string(),
+        signal: *signal,
+        unit: column.unit.clone(),
+        range: range(taken.of(*signal).unwrap_or_default()),
+        gaps,
+    });
+    let contents = FileContents {
+        file: declared.file.clone(),
+        test: declared.test,
+        rows: taken.rows(),
+        rows_left_out: left_out,
+        columns: described.collect(),
+        unused,
     };
-    let (supplies, has_supply) = match (of(Quantity::SupplyPressure), known.supply_pressure) {
-        (Some(values), _) => (values.clone(), true),
-        (None, Some(pressure)) => (vec![pressure; sheet.rows.len()], true),
-        (None, None) => (vec![], false),
-    };
-    if !has_supply {
-        let found = RawFinding::error(whole, "there is no supply pressure");
-        findings.push(found.expected("a column such as `supply_pressure_bar`, or a project that states it"));
-        return None;
-    }
-    let assembled = assembled(path, &of, &supplies, known);
-    checked(assembled, whole, findings)
+    let recording = assembled::assembled(&declared.file, &taken, circuit, known);
+    let is_test = assembled::is_test(&recording, whole, findings);
+    table.close(findings);
+    is_test.then_some((recording, contents))
 }
 
-/// The columns, as what acted on the valve and what was recorded of it.
-fn assembled<'v>(
-    path: &str,
-    of: &impl Fn(Quantity) -> Option<&'v Vec<f64>>,
-    supplies: &[f64],
+/// The columns that are used, and the headings of the others.
+fn columns(
+    declared: &RecordedTest,
+    table: &MeasuredTable,
+    sought: &[Sought<'_>],
     known: &Known,
-) -> Recording {
-    let [a, b] = [of(Quantity::PressureA), of(Quantity::PressureB)];
-    let flow = of(Quantity::Flow);
-    let circuit = if flow.is_some() { PortCircuit::Connected } else { PortCircuit::Blocked };
-    let at = |values: Option<&Vec<f64>>, row: usize| values.and_then(|values| values.get(row).copied());
-    let input = |(row, pressure): (usize, &f64)| {
-        let load = at(a, row).zip(at(b, row)).map_or(0.0, |(a, b)| a - b);
-        TestInput {
-            command: at(of(Quantity::Command), row).unwrap_or(0.0),
-            supply: Supply {
-                pressure: *pressure,
-                tank_pressure: at(of(Quantity::TankPressure), row).unwrap_or(known.tank_pressure),
-            },
-            load_pressure: if circuit == PortCircuit::Connected { load } else { 0.0 },
-        }
+    findings: &mut Findings,
+) -> Option<Chosen> {
+    let before = findings.error_count();
+    let (found, unused) = table.columns(sought, findings)?;
+    let [has_leakage, has_flow] = declared.test.map_or([true, true], StaticTest::measures_flow);
+    let is_of_test = |signal: TestSignal| match signal {
+        TestSignal::LeakFlow => has_leakage,
+        TestSignal::Flow => has_flow,
+        _ => true,
     };
-    let inputs: Vec<TestInput> = supplies.iter().enumerate().map(input).collect();
-    let shown = |kind, values: Option<&Vec<f64>>| {
-        values.map(|values| RecordedSignal { kind, values: values.iter().copied().map(Some).collect() })
-    };
-    let mut signals = Vec::new();
-    match circuit {
-        PortCircuit::Blocked => {
-            signals.extend(shown(SignalKind::PressureA, a));
-            signals.extend(shown(SignalKind::PressureB, b));
-            signals.extend(shown(SignalKind::LeakFlow, of(Quantity::LeakFlow)));
-        }
-        PortCircuit::Connected => {
-            let mean = a.zip(b).map(|(a, b)| a.iter().zip(b).map(|(a, b)| f64::midpoint(*a, *b)).collect());
-            signals.extend(shown(SignalKind::MeanPressure, mean.as_ref()));
-            signals.extend(flow.map(|flow| port_flow(flow)));
+    let mut columns = Vec::new();
+    let mut unused: Vec<usize> = unused;
+    for ((signal, sought), column) in TestSignal::ALL.into_iter().zip(sought).zip(found) {
+        let is_stated = declared.column(signal).is_some();
+        let is_needed = matches!(signal, TestSignal::Time | TestSignal::Command)
+            || (declared.test == Some(StaticTest::Leakage) && signal == TestSignal::LeakFlow)
+            || (declared.test == Some(StaticTest::Metering) && signal == TestSignal::Flow)
+            || (known.supply_pressure.is_none() && signal == TestSignal::SupplyPressure);
+        match column {
+            Some(column) if is_of_test(signal) => columns.push((signal, column)),
+            Some(column) => unused.push(column.index),
+            None if is_needed || is_stated => findings.push(table.missing(sought)),
+            None => {}
         }
     }
-    Recording { file: path.to_string(), circuit, inputs, signals }
+    let of = |signal: TestSignal| columns.iter().any(|(one, _)| *one == signal);
+    if declared.test.is_none() && of(TestSignal::LeakFlow) && of(TestSignal::Flow) {
+        let message = "`leak_flow` is of blocked ports, `flow` of joined ones: one file holds one test";
+        findings.push(
+            RawFinding::error(table.header_place(), message)
+                .help("`test` in `[[identify.recording]]` of a project says which it is"),
+        );
+    }
+    unused.sort_unstable();
+    let names = unused.iter().filter_map(|index| table.headings.get(*index));
+    let unused = names.map(|heading| heading.text.clone()).collect();
+    (findings.error_count() == before).then_some(Chosen { columns, unused })
 }
 
-/// A flow between the ports: by a meter that tells the direction if some of it is negative. What such
-/// a meter shows while it stands still is no reading.
-fn port_flow(values: &[f64]) -> RecordedSignal {
-    let signed = values.iter().any(|value| *value < 0.0);
-    let kind = if signed { SignalKind::PortFlow } else { SignalKind::PortFlowMagnitude };
-    RecordedSignal { kind, values: values.iter().map(|value| (*value != 0.0).then_some(*value)).collect() }
+/// How the ports were piped: as the test says, or the column of a flow.
+fn circuit(declared: &RecordedTest, columns: &[(TestSignal, Column)]) -> PortCircuit {
+    let has_flow = columns.iter().any(|(signal, _)| *signal == TestSignal::Flow);
+    let by_columns = if has_flow { PortCircuit::Connected } else { PortCircuit::Blocked };
+    declared.test.map_or(by_columns, StaticTest::circuit)
 }
 
-/// Whether a test is one.
-fn checked(recording: Recording, whole: crate::project::Place, findings: &mut Findings) -> Option<Recording> {
-    let commands = || recording.inputs.iter().map(|input| input.command);
-    let moves = commands().any(|command| commands().next() != Some(command));
-    let dry = recording.inputs.iter().any(|input| input.supply.pressure <= input.supply.tank_pressure);
-    let message = if !moves {
-        "the command never moves: this is no test of a valve"
-    } else if dry {
-        "the supply pressure is not above the tank pressure in every row"
-    } else if recording.signals.is_empty() {
-        "there is nothing but inputs: neither a flow nor the pressure of a port"
-    } else {
-        return Some(recording);
+/// Whether the model needs a signal in every row.
+fn is_input(signal: TestSignal, circuit: PortCircuit) -> bool {
+    match signal {
+        TestSignal::LeakFlow | TestSignal::Flow => false,
+        TestSignal::PressureA | TestSignal::PressureB => circuit == PortCircuit::Connected,
+        _ => true,
+    }
+}
+
+/// Reports rows whose supply pressure is not above the tank pressure.
+fn is_above_tank(
+    table: &MeasuredTable,
+    columns: &[(TestSignal, Column)],
+    taken: &Taken,
+    rows: &[usize],
+    known: &Known,
+    findings: &mut Findings,
+) {
+    let [supply, tank] =
+        [TestSignal::SupplyPressure, TestSignal::TankPressure].map(|signal| taken.of(signal));
+    let is_dry = |row: &usize| {
+        let at = |values: Option<&[f64]>| values.and_then(|values| values.get(*row).copied());
+        at(supply).or(known.supply_pressure) <= Some(at(tank).unwrap_or(known.tank_pressure))
     };
-    findings.push(RawFinding::error(whole, message));
-    None
+    let dry: Vec<usize> = (0..taken.rows()).filter(is_dry).collect();
+    let named = |signal| columns.iter().find(|(one, _)| *one == signal);
+    let column = named(TestSignal::TankPressure).or(named(TestSignal::SupplyPressure));
+    let (Some(first), Some((_, column))) = (dry.first(), column) else { return };
+    let message = format!(
+        "the tank pressure is not below the supply pressure in {} of {} rows",
+        dry.len(),
+        taken.rows()
+    );
+    let found = table.error(rows.get(*first).copied().unwrap_or(0), column, message, findings);
+    findings.push(match dry.len() == taken.rows() {
+        true => found.help("are the columns exchanged, or in other units than their headings say?"),
+        false => found,
+    });
+}
+
+/// Least and greatest of the values; NaN is none.
+fn range(values: &[f64]) -> [f64; 2] {
+    let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+    [least, values.iter().copied().fold(f64::NEG_INFINITY, f64::max)]
 }

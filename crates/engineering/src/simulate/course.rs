@@ -7,7 +7,7 @@ use phea_machine::{Control, HeldInputs, Rest, Waking};
 
 use super::bench::ControlledMachine;
 use super::equilibrium::{RestedLoop, rest};
-use super::motion_file::{self, MotionColumn};
+use super::motion_file::{self, FORCES, VOLTAGES};
 use super::saved::{self, SavedState};
 use super::signal::{self, SignalOnset as Begun};
 use super::{Cause, SimulateError, Window};
@@ -75,15 +75,13 @@ pub fn driven(
     scenario: &Scenario,
 ) -> Result<ScenarioDrive, SimulateError> {
     let named = |error: ProfileError| SimulateError::Profile { name: scenario.name.clone(), error };
-    let reference =
-        signal::profile(source, project, &scenario.name, &scenario.reference, MotionColumn::FORCE)?;
+    let reference = signal::profile(source, project, &scenario.name, &scenario.reference, &FORCES)?;
     let motion = match &scenario.load_motion {
         None => Profile::constant(0.0),
         Some(declared) => motion(source, project, declared).map_err(SimulateError::Motion)?.map_err(named)?,
     };
-    let command = signal::profile(source, project, &scenario.name, &scenario.command, MotionColumn::VOLTAGE)?;
-    let external_force =
-        signal::profile(source, project, &scenario.name, &scenario.external_force, MotionColumn::FORCE)?;
+    let command = signal::profile(source, project, &scenario.name, &scenario.command, &VOLTAGES)?;
+    let external_force = signal::profile(source, project, &scenario.name, &scenario.external_force, &FORCES)?;
     let windows = windows(scenario, [&reference, &command, &external_force]);
     let file = scenario.start.as_ref().and_then(|start| start.file.as_ref());
     let read = |file: &String| saved::read(source, project, file, bench).map_err(SimulateError::Motion);

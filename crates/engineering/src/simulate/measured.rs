@@ -10,14 +10,11 @@
 use super::Look;
 use super::columns::ColumnSource;
 use super::metrics::Measured;
-use crate::family::measured::table::{self, MeasuredCell, MeasuredTable};
-use crate::project::{Findings, MeasuredFile, Project, RawFinding, Refusal, Scenario};
-use crate::quantity::{self, Dimension, DisplayUnit, TIME};
+use super::motion_file::{TIMES, rising};
+use crate::project::{Findings, MeasuredFile, MeasuredSignal, Project, Refusal, Scenario};
+use crate::quantity::{DisplayUnit, TIME};
 use crate::source;
-use crate::spelling::nearest;
-
-/// Columns of time that are known by their name, with their unit.
-const TIMES: [(&str, &str); 2] = [("time_s", "s"), ("time_ms", "ms")];
+use crate::table::{Column, Measurand, MeasuredTable, Sought};
 
 /// A signal as it was measured.
 #[derive(Clone, Debug, PartialEq)]
@@ -95,9 +92,8 @@ pub(super) fn measurements(
         let path = project.path_of(&declared.file);
         match source.read(&path) {
             Ok(bytes) => {
-                if let Some(table) = table::read(&path, &bytes, &mut findings) {
-                    found.extend(of_table(declared, scenario.duration, &table, &mut findings));
-                }
+                let taken = of_file(declared, scenario.duration, (&path, bytes), &mut findings);
+                found.extend(taken.unwrap_or_default());
             }
             Err(error) => findings.unreadable(&path, &error.to_string()),
         }
@@ -105,136 +101,52 @@ pub(super) fn measurements(
     if findings.error_count() > 0 { Err(Box::new(findings.report())) } else { Ok(found) }
 }
 
-/// A column of the file.
-struct RecordingColumn<'u> {
-    index: usize,
-    unit: &'u str,
-    dimension: &'static Dimension,
-}
-
-fn of_table(
+fn of_file(
     declared: &MeasuredFile,
     duration_s: f64,
-    table: &MeasuredTable<'_>,
+    (path, bytes): (&str, Vec<u8>),
     findings: &mut Findings,
-) -> Vec<Measurement> {
-    let time = time_column(declared, table, findings);
-    let columns: Vec<Option<RecordingColumn<'_>>> = declared
+) -> Option<Vec<Measurement>> {
+    let measurands: Vec<Measurand> = declared
         .signals
         .iter()
-        .map(|signal| {
-            let index = named(signal.column(), table, findings)?;
-            Some(RecordingColumn { index, unit: signal.unit(), dimension: signal.dimension() })
+        .map(|one| Measurand {
+            name: one.signal,
+            symbol: None,
+            dimension: one.dimension(),
+            may_be_share: false,
         })
         .collect();
-    let (Some(time), Some(columns)) = (time, columns.into_iter().collect::<Option<Vec<_>>>()) else {
-        return Vec::new();
-    };
-    let mut times_s: Vec<f64> = Vec::with_capacity(table.rows.len());
-    let mut values: Vec<Vec<f64>> = vec![Vec::new(); columns.len()];
-    for row in &table.rows {
-        if !table.is_complete(row, findings) {
-            continue;
-        }
-        let Some(time_s) = time.value(row, findings).map(|time_s| time_s + declared.offset) else { continue };
-        if times_s.last().is_some_and(|last| *last >= time_s) {
-            let place = row.get(time.index).map(|cell| cell.place).unwrap_or_default();
-            findings.push(
-                RawFinding::error(place, "times must increase from row to row").expected("a later time"),
-            );
-            return Vec::new();
-        }
-        times_s.push(time_s);
-        for (column, values) in columns.iter().zip(&mut values) {
-            values.extend(column.value(row, findings));
-        }
+    let time_unit = declared.time_column.as_ref().map(|_| declared.time_unit.as_deref().unwrap_or(TIME.si));
+    let time = Sought { measurand: &TIMES, heading: declared.time_column.as_deref(), unit: time_unit };
+    let named = declared.signals.iter().zip(&measurands).map(|(one, measurand)| Sought {
+        measurand,
+        heading: Some(one.column()),
+        unit: Some(one.unit()),
+    });
+    let sought: Vec<Sought<'_>> = std::iter::once(time).chain(named).collect();
+    let table = MeasuredTable::read(path, bytes, &sought, None, findings)?;
+    let (columns, _) = table.columns(&sought, findings)?;
+    for (_, sought) in columns.iter().zip(&sought).filter(|(column, _)| column.is_none()) {
+        findings.push(table.missing(sought));
     }
+    let columns: Vec<&Column> = columns.iter().map(Option::as_ref).collect::<Option<_>>()?;
+    let mut numbers = table.all_numbers(&columns, findings).into_iter();
+    let (mut times_s, time) = (numbers.next()?, columns.first()?);
+    times_s.iter_mut().for_each(|time_s| *time_s += declared.offset);
+    rising(&table, time, &times_s, findings);
     if !times_s.iter().any(|time_s| (0.0..=duration_s).contains(time_s)) && findings.error_count() == 0 {
-        let place = table.rows.first().and_then(|row| row.get(time.index)).map(|cell| cell.place);
-        let found = RawFinding::error(place.unwrap_or_default(), "no row lies within the scenario");
+        let found = table.error(0, time, "no row lies within the scenario", findings);
         findings.push(found.help("`offset` is added to the times of the file"));
     }
-    let signals = declared.signals.iter().zip(values);
-    signals
-        .map(|(signal, values)| Measurement {
-            file: declared.file.clone(),
-            column: signal.column().to_string(),
-            signal: signal.signal,
-            times_s: times_s.clone(),
-            values,
-        })
-        .collect()
-}
-
-/// The column of times: the one that is named, or one with a known name.
-fn time_column<'u>(
-    declared: &'u MeasuredFile,
-    table: &MeasuredTable<'_>,
-    findings: &mut Findings,
-) -> Option<RecordingColumn<'u>> {
-    let unit = declared.time_unit.as_deref().unwrap_or(TIME.si);
-    if let Some(name) = &declared.time_column {
-        return Some(RecordingColumn { index: named(name, table, findings)?, unit, dimension: &TIME });
-    }
-    let known =
-        |cell: &MeasuredCell<'_>| TIMES.iter().find(|(name, _)| *name == cell.text).map(|(_, unit)| *unit);
-    let mut found = table.header.iter().enumerate().filter_map(|(index, cell)| Some((index, known(cell)?)));
-    let (first, second) = (found.next(), found.next());
-    let place = |index: usize| table.header.get(index).map(|cell| cell.place).unwrap_or_default();
-    if let Some((index, _)) = second {
-        findings.push(RawFinding::error(
-            place(index),
-            "this column is there twice, here in another unit or again",
-        ));
-        return None;
-    }
-    if first.is_none() {
-        let [(one, _), (other, _)] = TIMES;
-        let message = format!("the columns lack `{one}` or `{other}`, and no `time_column` is named");
-        findings.push(RawFinding::error(place(0), message));
-    }
-    first.map(|(index, unit)| RecordingColumn { index, unit, dimension: &TIME })
-}
-
-/// The index of the only column with this name.
-fn named(name: &str, table: &MeasuredTable<'_>, findings: &mut Findings) -> Option<usize> {
-    let mut found = table.header.iter().enumerate().filter(|(_, cell)| cell.text == name);
-    let (first, second) = (found.next(), found.next());
-    if let Some((_, cell)) = second {
-        findings.push(RawFinding::error(cell.place, format!("a second column `{name}`")));
-        return None;
-    }
-    if first.is_none() {
-        let place = table.header.first().map(|cell| cell.place).unwrap_or_default();
-        let names = || table.header.iter().map(|cell| cell.text);
-        let missing = RawFinding::error(place, format!("there is no column `{name}`"));
-        findings.push(match nearest(name, names()) {
-            Some(near) => missing.help(format!("did you mean `{near}`?")),
-            None => missing.help(format!("there are: {}", names().collect::<Vec<_>>().join(", "))),
-        });
-    }
-    first.map(|(index, _)| index)
-}
-
-impl RecordingColumn<'_> {
-    /// SI; a gap is reported like any other text that is not a number.
-    fn value(&self, row: &[MeasuredCell<'_>], findings: &mut Findings) -> Option<f64> {
-        let cell = row.get(self.index)?;
-        let bare = cell.text.parse::<f64>().is_ok_and(f64::is_finite);
-        let text = format!("{} {}", cell.text, self.unit);
-        let value = bare.then(|| quantity::parse(&text, self.dimension).ok()).flatten();
-        let value = value.filter(|value| value.is_finite());
-        if value.is_none() {
-            let message = if cell.text.is_empty() {
-                "there is no value".to_string()
-            } else {
-                format!("`{}` is no number", cell.text)
-            };
-            findings
-                .push(RawFinding::error(cell.place, message).expected(format!("a number in {}", self.unit)));
-        }
-        value
-    }
+    let measurement = |(signal, values): (&MeasuredSignal, Vec<f64>)| Measurement {
+        file: declared.file.clone(),
+        column: signal.column().to_string(),
+        signal: signal.signal,
+        times_s: times_s.clone(),
+        values,
+    };
+    Some(declared.signals.iter().zip(numbers).map(measurement).collect())
 }
 
 /// A measurement that is compared with a run while it is sampled.

@@ -3,9 +3,10 @@
 use phea_dynamics::simulation::{Harmonic, Profile, ProfileError, schroeder_phases};
 
 use super::SimulateError;
-use super::motion_file::{self, MotionColumn};
+use super::motion_file;
 use crate::project::{Multisine, Project, Signal};
 use crate::source::Source;
+use crate::table::Measurand;
 
 /// What begins in a signal.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,7 +35,7 @@ pub(super) fn profile(
     project: &Project,
     scenario: &str,
     signals: &[Signal],
-    column: MotionColumn,
+    values: &'static Measurand,
 ) -> Result<Profile, SimulateError> {
     let named = |error: ProfileError| SimulateError::Profile { name: scenario.to_string(), error };
     let (single, others): (Vec<&Signal>, Vec<&Signal>) =
@@ -42,7 +43,7 @@ pub(super) fn profile(
     let steps: Vec<(f64, f64)> = single.into_iter().flat_map(Signal::steps).collect();
     let mut parts = vec![Profile::steps(0.0, &steps).map_err(named)?];
     for signal in others {
-        parts.push(shape(source, project, signal, column)?.map_err(named)?);
+        parts.push(shape(source, project, signal, values)?.map_err(named)?);
     }
     Ok(Profile::sum(&parts))
 }
@@ -51,7 +52,7 @@ fn shape(
     source: &dyn Source,
     project: &Project,
     signal: &Signal,
-    column: MotionColumn,
+    values: &'static Measurand,
 ) -> Result<Result<Profile, ProfileError>, SimulateError> {
     let start_s = signal.begins_s();
     let ended = |profile: Profile| match signal.duration_s() {
@@ -69,7 +70,7 @@ fn shape(
         }
         Signal::Multisine(sines) => Profile::multisine(start_s, &harmonics(sines)).map(ended),
         Signal::File { file, .. } => {
-            motion_file::signal(source, project, file, start_s, column).map_err(SimulateError::Motion)?
+            motion_file::signal(source, project, file, start_s, values).map_err(SimulateError::Motion)?
         }
     })
 }

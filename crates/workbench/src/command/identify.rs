@@ -2,9 +2,10 @@
 
 use crate::answer::Answer;
 use crate::identify::{
-    self, IdentifyError, Known, SMALLEST_EFFECT, Search, identify, joint_region, recordings,
+    self, IdentifyError, Known, Read, RecordedFiles, SMALLEST_EFFECT, Search, identify, joint_region,
+    recordings,
 };
-use crate::project::Loaded;
+use crate::project::{Loaded, RecordedTest};
 use crate::source::Source;
 use phea_hydraulics::servovalve::LeakageModel;
 
@@ -13,7 +14,7 @@ use super::Watch;
 /// What a valve is identified from.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct IdentifyRequest {
-    /// Recorded tests, CSV files.
+    /// Recorded tests, as text or Parquet; none: those of the project's `[identify]`.
     pub files: Vec<String>,
     /// Starting points of the search; absent: 6.
     pub starts: Option<usize>,
@@ -37,7 +38,10 @@ pub fn identify_watched(
     watch: Watch<'_>,
 ) -> Result<Answer, IdentifyError> {
     let known = loaded.map_or(Known::default(), known);
-    let recorded = recordings(source, &asked.files, &known).map_err(IdentifyError::Files)?;
+    let files = files(loaded, asked)?;
+    let RecordedFiles { recordings, contents, warnings } =
+        recordings(source, &files, &known).map_err(IdentifyError::Files)?;
+    let read = Read { contents, warnings };
     let usual = Search::default();
     let search = Search {
         starts: asked.starts.unwrap_or(usual.starts),
@@ -45,15 +49,15 @@ pub fn identify_watched(
         leakage_model: asked.leakage_model,
         bootstrap: asked.bootstrap,
     };
-    let found = identify(recorded, &known, search, watch)?;
+    let found = identify(recordings, &known, search, watch)?;
     let rig = loaded.filter(|loaded| loaded.project.actuator.is_some());
     let region = rig.map(|rig| joint_region(&found, &rig.project, SMALLEST_EFFECT));
-    let mut files = identify::files(&found);
-    files.extend(region.iter().flatten().map(|region| identify::file(&found, region)));
+    let mut written = identify::files(&found);
+    written.extend(region.iter().flatten().map(|region| identify::file(&found, region)));
     Ok(Answer {
-        text: identify::text(&found, region.as_ref()),
-        json: identify::json(loaded, &found, region.as_ref()),
-        files,
+        text: identify::text(&found, &read, region.as_ref()),
+        json: identify::json(loaded, &found, &read, region.as_ref()),
+        files: written,
         affirmative: found.has_converged() && found.untold.is_empty(),
     })
 }
@@ -68,4 +72,23 @@ fn known(loaded: &Loaded) -> Known {
         tare_pressure: actuator.valve.tare_pressure,
         leakage_model: actuator.valve.leakage_model,
     }
+}
+
+/// The files that are asked for, or those of the project, each relative to it.
+fn files(loaded: Option<&Loaded>, asked: &IdentifyRequest) -> Result<Vec<RecordedTest>, IdentifyError> {
+    if !asked.files.is_empty() {
+        return Ok(asked.files.iter().map(|file| RecordedTest::of(file)).collect());
+    }
+    let project = loaded.map(|loaded| &loaded.project);
+    let declared = project.and_then(|project| Some((project, project.identify.as_ref()?)));
+    let files: Vec<RecordedTest> = declared.map_or(Vec::new(), |(project, identify)| {
+        let all = identify.recordings.iter();
+        all.map(|one| RecordedTest { file: project.path_of(&one.file), ..one.clone() }).collect()
+    });
+    if files.is_empty() {
+        let message =
+            "there is no recorded test: name files, or declare `[[identify.recording]]` in the project";
+        return Err(IdentifyError::Data(message.to_string()));
+    }
+    Ok(files)
 }

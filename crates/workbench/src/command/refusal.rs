@@ -6,9 +6,9 @@ use crate::project::{Diagnostic, Loaded, Refusal, Severity, sha256};
 use crate::source::Source;
 
 /// The JSON object of a command whose project, at `path`, was rejected.
-pub fn refusal_json(source: &dyn Source, path: &str, request: &Request, refusal: &Refusal) -> String {
+pub fn refusal_json(source: &dyn Source, path: &str, command: &str, refusal: &Refusal) -> String {
     let hash = source.read(path).ok().map(|bytes| sha256(&bytes));
-    refusal_body(Some(request.name()), hash.as_deref(), refusal_rows(refusal))
+    refusal_body(Some(command), hash.as_deref(), refusal_rows(refusal))
 }
 
 /// The JSON object of a command that has no answer on a valid project: a row for every finding in

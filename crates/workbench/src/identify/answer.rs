@@ -1,10 +1,11 @@
 use std::collections::BTreeMap;
 
-use phea_hydraulics::servovalve::{LeakageModel, PortCircuit, StaticCoefficients};
+use phea_hydraulics::servovalve::{LeakageModel, StaticCoefficients};
 use serde::Serialize;
 
+use super::files::{TestBody, WarningBody};
 use super::region::{FoundRegion, RegionBody, body};
-use super::{Bootstrap, COEFFICIENT_NAMES, ExplainedBy, Identification, SimpleCalculations, Untold};
+use super::{Bootstrap, COEFFICIENT_NAMES, ExplainedBy, Identification, Read, SimpleCalculations, Untold};
 use crate::answer::{self, Number, OutputFile};
 use crate::project::Loaded;
 use crate::quantity::print_bare;
@@ -16,6 +17,7 @@ struct IdentifyAnswer<'a> {
     command: &'static str,
     project_sha256: Option<&'a str>,
     tests: Vec<TestBody<'a>>,
+    warnings: Vec<WarningBody<'a>>,
     flow_coefficients: EdgesBody,
     leakage_coefficients: EdgesBody,
     leakage_shape: Estimate,
@@ -40,13 +42,6 @@ struct IdentifyAnswer<'a> {
     starts_that_agree: usize,
     converged: bool,
     at_bounds: &'a [&'static str],
-}
-
-#[derive(Serialize)]
-struct TestBody<'a> {
-    file: &'a str,
-    ports: &'static str,
-    rows: usize,
 }
 
 #[derive(Serialize)]
@@ -126,7 +121,12 @@ const HYSTERESIS: &str = "hysteresis";
 const REMARKABLE: f64 = 0.9;
 
 /// The JSON object of `identify`, with or without a project.
-pub fn json(loaded: Option<&Loaded>, found: &Identification, region: Option<&FoundRegion>) -> String {
+pub fn json(
+    loaded: Option<&Loaded>,
+    found: &Identification,
+    read: &Read,
+    region: Option<&FoundRegion>,
+) -> String {
     let numbers = found.coefficients.to_array();
     let bootstrap = |index: usize| found.bootstrap.as_ref()?.intervals.get(index).copied();
     let all = numbers.into_iter().zip(found.intervals).enumerate();
@@ -148,7 +148,8 @@ pub fn json(loaded: Option<&Loaded>, found: &Identification, region: Option<&Fou
         version: env!("CARGO_PKG_VERSION"),
         command: "identify",
         project_sha256: loaded.map(|loaded| loaded.sha256.as_str()),
-        tests: tests(found),
+        tests: read.tests(found),
+        warnings: read.warnings(),
         flow_coefficients,
         leakage_coefficients,
         leakage_shape: next(),
@@ -209,15 +210,6 @@ fn bootstrap_body(found: &Bootstrap) -> BootstrapBody {
     BootstrapBody { repetitions: found.repetitions, failed: found.failed, block_rows: found.block_rows }
 }
 
-fn tests(found: &Identification) -> Vec<TestBody<'_>> {
-    let test = |recording: &'_ super::Recording| match recording.circuit {
-        PortCircuit::Blocked => "blocked",
-        PortCircuit::Connected => "connected",
-    };
-    let all = found.recordings.iter();
-    all.map(|one| TestBody { file: &one.file, ports: test(one), rows: one.inputs.len() }).collect()
-}
-
 fn signals(found: &Identification) -> Vec<SignalBody> {
     let one = |signal: &super::SignalFit| SignalBody {
         file: found.recordings.get(signal.recording).map_or(String::new(), |one| one.file.clone()),
@@ -271,8 +263,8 @@ fn simple(found: &SimpleCalculations) -> SimpleBody {
     }
 }
 
-/// The table `[valve]` of a project with what was identified: values that the data do not determine
-/// are comments.
+/// The table `[valve]` of a project with what was identified: what the data do not tell is a
+/// comment.
 pub fn files(found: &Identification) -> Vec<OutputFile> {
     let numbers = found.coefficients.to_array();
     let line = |index: usize| {

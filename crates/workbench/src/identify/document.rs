@@ -4,14 +4,14 @@ use phea_hydraulics::servovalve::LeakageModel;
 
 use super::answer::{correlations, word};
 use super::region::{self, FoundRegion};
-use super::{Bootstrap, COEFFICIENT_NAMES, DECISIVE, Identification, SignalFit, SimpleCalculations};
+use super::{Bootstrap, COEFFICIENT_NAMES, DECISIVE, Identification, Read, SignalFit, SimpleCalculations};
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
 use crate::quantity::DisplayUnit;
 
-/// The model of the leakage, the coefficients with their intervals, how well the signals are
-/// explained, and what the data do not determine.
-pub fn text(found: &Identification, region: Option<&FoundRegion>) -> String {
+/// What the leakage is, the coefficients with their intervals, what the files hold, how well the
+/// signals are explained, and what the data do not determine.
+pub fn text(found: &Identification, read: &Read, region: Option<&FoundRegion>) -> String {
     let mut out = Document::default();
     out.heading("Model of the leakage");
     out.sentences(leakage(found));
@@ -26,6 +26,7 @@ pub fn text(found: &Identification, region: Option<&FoundRegion>) -> String {
             .to_string(),
     ]);
     out.sentences(found.bootstrap.as_ref().map(bootstrap));
+    read.tell(&mut out);
     let headings = ["file", "signal", "rows", "rms of residuals", "range", "unit", "neighbours correlate"];
     out.section(
         "How well the recordings are explained",

@@ -1,0 +1,47 @@
+//! What files hold, as it was read.
+
+use super::recording::Recording;
+use crate::project::{Diagnostic, StaticTest, TestSignal};
+
+/// The tests of some files, and what a reader should know of the files.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RecordedFiles {
+    /// The tests, in the order of the files.
+    pub recordings: Vec<Recording>,
+    /// What each file holds.
+    pub contents: Vec<FileContents>,
+    /// What was dealt with in the files without being refused.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// What a file holds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FileContents {
+    /// Path of the file.
+    pub file: String,
+    /// Which test it is, where the project says so.
+    pub test: Option<StaticTest>,
+    /// Rows that are used.
+    pub rows: usize,
+    /// Rows that are left out, each with a warning.
+    pub rows_left_out: usize,
+    /// Columns that are used.
+    pub columns: Vec<ColumnContents>,
+    /// Headings of columns that are not.
+    pub unused: Vec<String>,
+}
+
+/// A column that is used, and what it was taken for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ColumnContents {
+    /// Its heading.
+    pub heading: String,
+    /// What it holds.
+    pub signal: TestSignal,
+    /// The unit that it was read in.
+    pub unit: String,
+    /// Least and greatest value of the rows that are used, in SI.
+    pub range: [f64; 2],
+    /// Rows without a value.
+    pub gaps: usize,
+}

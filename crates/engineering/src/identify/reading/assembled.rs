@@ -1,0 +1,71 @@
+//! From columns to a test: what acted on the valve, and what was recorded of it.
+
+use phea_hydraulics::servovalve::{PortCircuit, Supply, TestInput};
+
+use super::{Known, Taken};
+use crate::identify::recording::{RecordedSignal, Recording, SignalKind};
+use crate::project::{Findings, Place, RawFinding, TestSignal};
+
+/// The columns as a test.
+pub(super) fn assembled(file: &str, taken: &Taken, circuit: PortCircuit, known: &Known) -> Recording {
+    let [a, b] = [TestSignal::PressureA, TestSignal::PressureB].map(|signal| taken.of(signal));
+    let flow = taken.of(TestSignal::Flow);
+    let [command, supply, tank] =
+        [TestSignal::Command, TestSignal::SupplyPressure, TestSignal::TankPressure].map(|one| taken.of(one));
+    let input = |row: usize| {
+        let at = |values: Option<&[f64]>| values.and_then(|values| values.get(row).copied());
+        TestInput {
+            command: at(command).unwrap_or(0.0),
+            supply: Supply {
+                pressure: at(supply).or(known.supply_pressure).unwrap_or(0.0),
+                tank_pressure: at(tank).unwrap_or(known.tank_pressure),
+            },
+            load_pressure: match circuit {
+                PortCircuit::Connected => at(a).zip(at(b)).map_or(0.0, |(a, b)| a - b),
+                PortCircuit::Blocked => 0.0,
+            },
+        }
+    };
+    let inputs: Vec<TestInput> = (0..taken.rows()).map(input).collect();
+    let shown = |kind, values: Option<&[f64]>| {
+        values.map(|values| RecordedSignal {
+            kind,
+            values: values.iter().map(|value| Some(*value).filter(|value| !value.is_nan())).collect(),
+        })
+    };
+    let mut signals = Vec::new();
+    match circuit {
+        PortCircuit::Blocked => {
+            signals.extend(shown(SignalKind::PressureA, a));
+            signals.extend(shown(SignalKind::PressureB, b));
+            signals.extend(shown(SignalKind::LeakFlow, taken.of(TestSignal::LeakFlow)));
+        }
+        PortCircuit::Connected => {
+            let mean = |(a, b): (&[f64], &[f64])| -> Vec<f64> {
+                a.iter().zip(b).map(|(a, b)| f64::midpoint(*a, *b)).collect()
+            };
+            let mean = a.zip(b).map(mean);
+            signals.extend(shown(SignalKind::MeanPressure, mean.as_deref()));
+            signals.extend(flow.map(port_flow));
+        }
+    }
+    Recording { file: file.to_string(), circuit, inputs, signals }
+}
+
+/// A flow between the ports: by a meter that tells the direction if some of it is negative. What
+/// such a meter shows while it stands still is no reading.
+fn port_flow(values: &[f64]) -> RecordedSignal {
+    let signed = values.iter().any(|value| *value < 0.0);
+    let kind = if signed { SignalKind::PortFlow } else { SignalKind::PortFlowMagnitude };
+    let reading = |value: &f64| Some(*value).filter(|value| *value != 0.0 && !value.is_nan());
+    RecordedSignal { kind, values: values.iter().map(reading).collect() }
+}
+
+/// Whether anything was recorded but inputs.
+pub(super) fn is_test(recording: &Recording, whole: Place, findings: &mut Findings) -> bool {
+    if recording.signals.is_empty() {
+        let message = "there is nothing but inputs: neither a flow nor the pressure of a port";
+        findings.push(RawFinding::error(whole, message));
+    }
+    !recording.signals.is_empty()
+}

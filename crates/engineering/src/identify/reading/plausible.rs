@@ -1,0 +1,167 @@
+//! Numbers that no test of a valve has: nearly always another unit than the one that is stated.
+
+use super::{Known, Taken};
+use crate::project::{Findings, RawFinding, TestSignal};
+use crate::quantity::{UnitScale, display};
+use crate::table::{Column, MeasuredTable};
+
+/// What the numbers of a column usually reach, in SI: least and most.
+fn usual(signal: TestSignal, nominal_voltage: f64) -> [f64; 2] {
+    match signal {
+        // the whole test lasts half a second to a day
+        TestSignal::Time => [0.5, 1e5],
+        TestSignal::Command => [1e-3 * nominal_voltage, BEYOND_NOMINAL * nominal_voltage],
+        TestSignal::SupplyPressure => [1e5, 7e7],
+        TestSignal::TankPressure => [0.0, 5e7],
+        TestSignal::PressureA | TestSignal::PressureB => [1e3, 7e7],
+        TestSignal::LeakFlow => [1e-9, 1e-2],
+        TestSignal::Flow => [1e-8, 0.1],
+    }
+}
+
+/// How far a command may go beyond the nominal one.
+const BEYOND_NOMINAL: f64 = 1.1;
+/// How far a port may be above the supply, of transducers that disagree.
+const BEYOND_SUPPLY: f64 = 1.25;
+/// The least that a port reaches of the supply in a test.
+const LEAST_OF_SUPPLY: f64 = 1e-3;
+
+/// The greatest magnitude of a single value, in SI.
+fn greatest(signal: TestSignal, nominal_voltage: f64) -> f64 {
+    match signal {
+        TestSignal::Time => 1e7,
+        TestSignal::Command => BEYOND_NOMINAL * nominal_voltage,
+        TestSignal::LeakFlow | TestSignal::Flow => 0.1,
+        _ => 2e8,
+    }
+}
+
+/// Refuses columns whose numbers reach what no test reaches, and single values that are none.
+pub(super) fn check(
+    table: &MeasuredTable,
+    columns: &[(TestSignal, Column)],
+    taken: &Taken,
+    (rows, known): (&[usize], &Known),
+    findings: &mut Findings,
+) {
+    let nominal_voltage = known.nominal_voltage;
+    let supply = taken.of(TestSignal::SupplyPressure).map(reached).or(known.supply_pressure);
+    for (signal, column) in columns {
+        let Some(values) = taken.of(*signal) else { continue };
+        if *signal == TestSignal::Command && values.iter().all(|value| Some(value) == values.first()) {
+            let place = table.headings.get(column.index).map(|heading| heading.place).unwrap_or_default();
+            findings.push(RawFinding::error(place, "the command never moves: this is no test of a valve"));
+            continue;
+        }
+        let level = if *signal == TestSignal::Time { duration(values) } else { reached(values) };
+        let mut limits = usual(*signal, nominal_voltage);
+        let is_port = matches!(signal, TestSignal::PressureA | TestSignal::PressureB);
+        let of_supply = supply.filter(|supply| is_port && (1e5..=7e7).contains(supply));
+        if let Some(supply) = of_supply {
+            limits = [LEAST_OF_SUPPLY * supply, BEYOND_SUPPLY * supply];
+        }
+        if !(limits[0]..=limits[1]).contains(&level) {
+            findings.push(implausible(table, (*signal, column), level, limits, of_supply));
+            continue;
+        }
+        let most = greatest(*signal, nominal_voltage);
+        for (row, value) in rows.iter().zip(values).filter(|(_, value)| value.abs() > most) {
+            let dimension = signal.dimension();
+            let written = match table.cell(*row, column, findings) {
+                "" => display(*value, dimension, 3),
+                text => format!("{text} {}", column.unit),
+            };
+            let message = format!("{written} is no {} of a valve test", words(*signal));
+            let found = table.error(*row, column, message, findings);
+            findings.push(found.expected(format!("at most {}", display(most, dimension, 3))));
+        }
+    }
+}
+
+/// The magnitude that a twentieth of the values is above; zero of none.
+fn reached(values: &[f64]) -> f64 {
+    let mut magnitudes: Vec<f64> =
+        values.iter().map(|value| value.abs()).filter(|value| !value.is_nan()).collect();
+    let index = magnitudes.len() * 19 / 20;
+    if index >= magnitudes.len() {
+        return 0.0;
+    }
+    *magnitudes.select_nth_unstable_by(index, f64::total_cmp).1
+}
+
+fn duration(times: &[f64]) -> f64 {
+    times.first().zip(times.last()).map_or(0.0, |(first, last)| last - first)
+}
+
+/// That a column reaches what no test reaches, and the units in which it would not.
+fn implausible(
+    table: &MeasuredTable,
+    (signal, column): (TestSignal, &Column),
+    level: f64,
+    limits: [f64; 2],
+    supply: Option<f64>,
+) -> RawFinding {
+    let shown = |value: f64| display(value, signal.dimension(), 3);
+    let heading = table.heading(column);
+    let name = words(signal);
+    let message = match (signal, supply) {
+        (TestSignal::Time, _) => format!("`{heading}` lasts {}: no test of a valve does", shown(level)),
+        (TestSignal::Command, _) => format!(
+            "`{heading}` reaches {}, the nominal voltage is {}",
+            shown(level),
+            shown(limits[1] / BEYOND_NOMINAL)
+        ),
+        (_, Some(supply)) => {
+            format!("`{heading}` reaches {}, the supply pressure {}", shown(level), shown(supply))
+        }
+        _ => format!("`{heading}` reaches {}: that is no {name} of a valve test", shown(level)),
+    };
+    let place = table.headings.get(column.index).map(|heading| heading.place).unwrap_or_default();
+    let expected = format!("{} to {}", shown(limits[0]), shown(limits[1]));
+    let found = RawFinding::error(place, message).expected(expected);
+    let units = other_units(signal, column, level, limits);
+    let project = "`[[identify.recording]]` of a project";
+    match units.as_slice() {
+        [] if signal == TestSignal::Command => {
+            found.help("state the `nominal_voltage` of the valve in a project")
+        }
+        [] => found.help(format!("is it the right column? {project} can name another")),
+        several => {
+            let units = match several {
+                [others @ .., last] if !others.is_empty() => format!("{} or {last}", others.join(", ")),
+                several => several.concat(),
+            };
+            let key = signal.name();
+            let first = several.first().copied().unwrap_or_default();
+            found.help(format!(
+                "these numbers would be plausible in {units}: correct the heading, or state the unit in {project}, such as `{key} = {{ column = \"{heading}\", unit = \"{first}\" }}`"
+            ))
+        }
+    }
+}
+
+/// What people call it.
+fn words(signal: TestSignal) -> String {
+    match signal {
+        TestSignal::PressureA => "pressure at port A".to_string(),
+        TestSignal::PressureB => "pressure at port B".to_string(),
+        TestSignal::Flow => "flow between the ports".to_string(),
+        signal => signal.name().replace('_', " "),
+    }
+}
+
+/// Units in which the numbers of a column would be those of a test.
+fn other_units(signal: TestSignal, column: &Column, level: f64, limits: [f64; 2]) -> Vec<&'static str> {
+    let units: &[&'static str] = match signal {
+        TestSignal::Time => &["s", "ms", "min", "us"],
+        TestSignal::Command => &["V", "mV"],
+        TestSignal::LeakFlow | TestSignal::Flow => &["L/min", "mL/min", "L/s", "cm3/s", "m3/s"],
+        _ => &["bar", "psi", "MPa", "kPa", "Pa"],
+    };
+    let in_si = |unit: &str| UnitScale::new(unit, signal.dimension()).ok()?.read("1");
+    let Some(stated) = in_si(&column.unit) else { return Vec::new() };
+    let would_do = |unit: &&&'static str| {
+        in_si(unit).is_some_and(|other| (limits[0]..=limits[1]).contains(&(level / stated * other)))
+    };
+    units.iter().filter(would_do).copied().collect()
+}

@@ -1,0 +1,113 @@
+//! Which rows of a file are used: gaps, duplicates, and the order in time.
+
+use super::Taken;
+use crate::project::{Findings, RawFinding, TestSignal};
+use crate::table::{Column, ColumnNumbers, MeasuredTable};
+
+/// A column with more gaps than this share of the rows is no record.
+const MOST_GAPS: f64 = 0.5;
+
+/// Says what is missing, and leaves out the rows that cannot be used: those without an input, and
+/// those that repeat the row before. Times that do not increase are errors.
+pub(super) fn used(
+    table: &MeasuredTable,
+    columns: &[(TestSignal, Column)],
+    numbers: &ColumnNumbers,
+    is_input: impl Fn(TestSignal) -> bool,
+    findings: &mut Findings,
+) -> Vec<bool> {
+    let rows = numbers.columns.first().map_or(0, Vec::len);
+    let mut is_used = vec![true; rows];
+    if let (Some(row), Some((_, first))) = (numbers.cut_off, columns.first()) {
+        let message = "the last row is not whole: it is left out";
+        findings.push(table.warning(&[row], first, message, findings));
+    }
+    for place in table.left_out() {
+        findings.push(RawFinding::warning(
+            *place,
+            "a row below the headings without numbers or units: it is left out",
+        ));
+    }
+    for ((signal, column), gaps) in columns.iter().zip(&numbers.gaps) {
+        if gaps.is_empty() {
+            continue;
+        }
+        if gaps.len() as f64 > MOST_GAPS * rows as f64 {
+            let message =
+                format!("`{}` has no value in {} of {rows} rows", table.heading(column), gaps.len());
+            let found = table.error(gaps.first().copied().unwrap_or(0), column, message, findings);
+            findings.push(found.help("leave the column out where nothing was recorded"));
+            continue;
+        }
+        let heading = table.heading(column);
+        let message = if is_input(*signal) {
+            gaps.iter().for_each(|row| is_used.get_mut(*row).into_iter().for_each(|used| *used = false));
+            format!("`{heading}` has gaps, and these rows are left out")
+        } else {
+            format!("`{heading}` has gaps, where it is taken as not read")
+        };
+        findings.push(table.warning(gaps, column, &message, findings));
+    }
+    leave_out_repeated(table, columns, numbers, &mut is_used, findings);
+    is_used
+}
+
+/// Leaves out rows that say what the row before says, and reports times that do not increase.
+fn leave_out_repeated(
+    table: &MeasuredTable,
+    columns: &[(TestSignal, Column)],
+    numbers: &ColumnNumbers,
+    is_used: &mut [bool],
+    findings: &mut Findings,
+) {
+    let named = columns.iter().zip(&numbers.columns);
+    let Some(((_, column), times)) = named.clone().find(|((signal, _), _)| *signal == TestSignal::Time)
+    else {
+        return;
+    };
+    let at = |row: usize| named.clone().map(move |(_, values)| values.get(row).map(|value| value.to_bits()));
+    let mut repeated = Vec::new();
+    let mut before: Option<(usize, f64)> = None;
+    for (row, used) in is_used.iter_mut().enumerate().filter(|(_, used)| **used) {
+        let time = times.get(row).copied().unwrap_or_default();
+        match before {
+            Some((last, at_last)) if time == at_last && at(row).eq(at(last)) => {
+                repeated.push(row);
+                *used = false;
+                continue;
+            }
+            Some((_, at_last)) if time <= at_last => {
+                let [message, cure] = if time == at_last {
+                    ["the time of the row before, with other values", "write times with all their digits"]
+                } else {
+                    [
+                        "a time before that of the row before",
+                        "sort the rows by time; where the clock started anew, write two files",
+                    ]
+                };
+                let found = table.error(row, column, message, findings);
+                findings.push(found.expected("times that increase from row to row").help(cure));
+            }
+            _ => {}
+        }
+        before = Some((row, time));
+    }
+    if !repeated.is_empty() {
+        let message = "rows that repeat the row before are left out";
+        findings.push(table.warning(&repeated, column, message, findings));
+    }
+}
+
+/// The columns over the rows that are used.
+pub(super) fn kept(columns: &[(TestSignal, Column)], numbers: ColumnNumbers, is_used: &[bool]) -> Taken {
+    let all_used = is_used.iter().all(|used| *used);
+    let kept = |mut values: Vec<f64>| {
+        if !all_used {
+            let mut used = is_used.iter();
+            values.retain(|_| used.next().copied().unwrap_or(false));
+        }
+        values
+    };
+    let signals = columns.iter().map(|(signal, _)| *signal);
+    Taken { columns: signals.zip(numbers.columns.into_iter().map(kept)).collect() }
+}

@@ -1,0 +1,238 @@
+//! Tables of recorded numbers: text as loggers and spreadsheets write it, and Apache Parquet.
+//!
+//! ```text
+//! bytes, what is sought -> MeasuredTable: headings, rows -> columns: which is what, in which unit -> numbers in SI
+//! ```
+//!
+//! One reader for everything that was measured: static tests of a valve, frequency responses,
+//! signals of a scenario. In text the separator is found, and the row that names the columns,
+//! wherever it is; a unit stands in a heading or below it; a decimal sign is a point or a comma,
+//! one of them in a whole file. Rows without any value and rows that begin with `#` are no rows.
+
+mod cell;
+mod column;
+mod decode;
+mod faults;
+mod heading;
+mod layout;
+mod parquet;
+mod text;
+
+pub use column::{Column, Measurand, Sought};
+
+use self::parquet::ParquetRows;
+use self::text::TextRows;
+use crate::project::{Findings, Place, RawFinding};
+
+/// Headings and the rows below them. Its text is held by the findings that it was read with.
+pub struct MeasuredTable {
+    /// What is above each column.
+    pub headings: Vec<Heading>,
+    rows: TableRows,
+    /// Rows below the headings that hold no number and no unit.
+    left_out: Vec<Place>,
+}
+
+enum TableRows {
+    Text(TextRows),
+    Parquet(ParquetRows),
+}
+
+/// What stands above a column.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Heading {
+    /// As written.
+    pub text: String,
+    /// Where.
+    pub place: Place,
+    /// What the row of units, or the type of the column, says.
+    unit: Option<String>,
+}
+
+/// The numbers of columns, row by row.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ColumnNumbers {
+    /// SI, for each column; NaN in a gap, and where an error was found.
+    pub columns: Vec<Vec<f64>>,
+    /// Rows without a value, for each column: empty, or a word such as `NaN`.
+    pub gaps: Vec<Vec<usize>>,
+    /// The last row, where it has fewer values than there are columns; it is in none of them.
+    pub cut_off: Option<usize>,
+}
+
+impl MeasuredTable {
+    /// Takes a file in. `separator` is that of a text; absent, it is found.
+    ///
+    /// # Errors
+    /// `None` for what is no table, with the reason among the findings.
+    pub fn read(
+        file: &str,
+        bytes: Vec<u8>,
+        sought: &[Sought<'_>],
+        separator: Option<char>,
+        findings: &mut Findings,
+    ) -> Option<MeasuredTable> {
+        if bytes.starts_with(parquet::MAGIC) {
+            let (headings, rows) = parquet::open(file, bytes, findings)?;
+            return Some(MeasuredTable { headings, rows: TableRows::Parquet(rows), left_out: Vec::new() });
+        }
+        let (content, skipped) = decode::text(file, bytes, findings)?;
+        let text = findings.add_text(file, content, skipped);
+        let (headings, rows, left_out) = match text::open(text, findings.content(text), sought, separator) {
+            Ok(table) => table,
+            Err(found) => {
+                findings.push(found);
+                return None;
+            }
+        };
+        Some(MeasuredTable { headings, rows: TableRows::Text(rows), left_out })
+    }
+
+    /// How many rows there are.
+    pub fn rows(&self) -> usize {
+        match &self.rows {
+            TableRows::Text(rows) => rows.count(),
+            TableRows::Parquet(rows) => rows.count,
+        }
+    }
+
+    /// Rows below the headings that hold neither numbers nor units.
+    pub fn left_out(&self) -> &[Place] {
+        &self.left_out
+    }
+
+    /// Where the columns are named.
+    pub fn header_place(&self) -> Place {
+        let ends = self.headings.first().zip(self.headings.last());
+        ends.map_or(Place::default(), |(first, last)| Place { end: last.place.end, ..first.place })
+    }
+
+    /// The numbers of these columns. What is no number is an error, and a row with more or fewer
+    /// values than there are columns; gaps and a last row that was cut off are told in the result.
+    pub fn numbers(&self, columns: &[&Column], findings: &mut Findings) -> ColumnNumbers {
+        match &self.rows {
+            TableRows::Text(rows) => {
+                let (numbers, found) =
+                    rows.numbers(findings.content(rows.text), self.headings.len(), columns);
+                found.into_iter().for_each(|found| findings.push(found));
+                numbers
+            }
+            TableRows::Parquet(rows) => rows.numbers(&self.headings, columns, findings),
+        }
+    }
+
+    /// The same where nothing may be missing: gaps, a last row that was cut off and rows that hold
+    /// no number are errors too, each with NaN among the numbers.
+    pub fn all_numbers(&self, columns: &[&Column], findings: &mut Findings) -> Vec<Vec<f64>> {
+        for place in &self.left_out {
+            findings.push(
+                RawFinding::error(*place, "there is no number in this row")
+                    .expected("a number in each column"),
+            );
+        }
+        let numbers = self.numbers(columns, findings);
+        if let Some(row) = numbers.cut_off {
+            findings.push(self.incomplete(row, findings));
+        }
+        for (column, gaps) in columns.iter().zip(&numbers.gaps) {
+            for row in gaps {
+                let message = match self.cell(*row, column, findings) {
+                    "" => "there is no value".to_string(),
+                    text => format!("`{text}` is no number"),
+                };
+                let found = self.error(*row, column, message, findings);
+                findings.push(found.expected(column.expected()));
+            }
+        }
+        numbers.columns
+    }
+
+    /// A finding at a value.
+    pub fn error(
+        &self,
+        row: usize,
+        column: &Column,
+        message: impl Into<String>,
+        findings: &Findings,
+    ) -> RawFinding {
+        let message = message.into();
+        match &self.rows {
+            TableRows::Text(rows) => {
+                RawFinding::error(rows.place(findings.content(rows.text), row, column.index), message)
+            }
+            TableRows::Parquet(rows) => {
+                let heading = self.heading(column);
+                RawFinding::error(rows.place(row), format!("row {}, column `{heading}`: {message}", row + 1))
+            }
+        }
+    }
+
+    /// A finding about several rows, at the first of them.
+    pub fn warning(&self, rows: &[usize], column: &Column, message: &str, findings: &Findings) -> RawFinding {
+        let place = match (&self.rows, rows.first()) {
+            (TableRows::Text(text), Some(row)) => text.place(findings.content(text.text), *row, column.index),
+            (TableRows::Parquet(parquet), Some(row)) => parquet.place(*row),
+            (_, None) => self.header_place(),
+        };
+        RawFinding::warning(place, format!("{message}: {}", self.names_of(rows, findings)))
+    }
+
+    /// What is written there; empty in Parquet.
+    pub fn cell<'f>(&self, row: usize, column: &Column, findings: &'f Findings) -> &'f str {
+        let TableRows::Text(rows) = &self.rows else { return "" };
+        let place = rows.place(findings.content(rows.text), row, column.index);
+        findings.content(rows.text).get(place.start..place.end).unwrap_or_default()
+    }
+
+    /// The heading of a column, as written.
+    pub fn heading(&self, column: &Column) -> &str {
+        self.headings.get(column.index).map_or("", |heading| &heading.text)
+    }
+
+    /// Gives the memory of the text back, unless something was found in it: nothing more will be.
+    pub fn close(self, findings: &mut Findings) {
+        if let TableRows::Text(rows) = &self.rows {
+            findings.release(rows.text);
+        }
+    }
+
+    fn incomplete(&self, row: usize, findings: &Findings) -> RawFinding {
+        match &self.rows {
+            TableRows::Text(rows) => rows.incomplete(findings.content(rows.text), row, self.headings.len()),
+            TableRows::Parquet(rows) => {
+                RawFinding::error(rows.place(row), format!("row {} is incomplete", row + 1))
+            }
+        }
+    }
+
+    /// The rows as an editor counts them, runs of them shortened.
+    fn names_of(&self, rows: &[usize], findings: &Findings) -> String {
+        let number = |row: usize| match &self.rows {
+            TableRows::Text(text) => text.line(findings.content(text.text), row),
+            TableRows::Parquet(_) => row + 1,
+        };
+        let word = if matches!(self.rows, TableRows::Text(_)) { "line" } else { "row" };
+        let mut runs: Vec<[usize; 2]> = Vec::new();
+        for row in rows {
+            match runs.last_mut() {
+                Some([_, last]) if *row == *last + 1 => *last = *row,
+                _ => runs.push([*row, *row]),
+            }
+        }
+        let named = |[first, last]: &[usize; 2]| match last - first {
+            0 => format!("{}", number(*first)),
+            1 => format!("{}, {}", number(*first), number(*last)),
+            _ => format!("{} to {}", number(*first), number(*last)),
+        };
+        let listed = runs.iter().take(MOST_LISTED).map(named).collect::<Vec<_>>().join(", ");
+        let rest: usize = runs.iter().skip(MOST_LISTED).map(|[first, last]| last - first + 1).sum();
+        let plural = if rows.len() == 1 { "" } else { "s" };
+        match rest {
+            0 => format!("{word}{plural} {listed}"),
+            rest => format!("{word}s {listed} and {rest} more"),
+        }
+    }
+}
+
+/// Runs of rows that a sentence names.
+const MOST_LISTED: usize = 8;

@@ -1,0 +1,225 @@
+//! Which column is what, in which unit.
+
+use super::heading::{bare, endings, unit_beside, unit_meant};
+use super::{Heading, MeasuredTable};
+use crate::project::{Findings, RawFinding};
+use crate::quantity::{Dimension, RATIO, UnitScale};
+use crate::spelling::nearest;
+
+/// What a column may hold, as its heading calls it.
+#[derive(Clone, Copy, Debug)]
+pub struct Measurand {
+    /// In words with underscores; a heading may have spaces, hyphens and capitals.
+    pub name: &'static str,
+    /// As formulae call it; known where a unit that fits stands beside it.
+    pub symbol: Option<&'static str>,
+    /// What its unit is of.
+    pub dimension: &'static Dimension,
+    /// Whether it may be a share, in percent, of something that the table does not say.
+    pub may_be_share: bool,
+}
+
+/// A signal that is looked for, by its own name or by the heading and unit that a project states.
+#[derive(Clone, Copy, Debug)]
+pub struct Sought<'a> {
+    /// What is looked for.
+    pub measurand: &'a Measurand,
+    /// Its heading; absent, its own name.
+    pub heading: Option<&'a str>,
+    /// Its unit; absent, that of the heading.
+    pub unit: Option<&'a str>,
+}
+
+/// A column that was found.
+#[derive(Clone, Debug)]
+pub struct Column {
+    /// From 0.
+    pub index: usize,
+    /// As quantities have it; empty for a pure number.
+    pub unit: String,
+    /// Whether its numbers are shares.
+    pub is_share: bool,
+    pub(super) scale: UnitScale,
+}
+
+impl Column {
+    /// What is expected in it.
+    pub fn expected(&self) -> String {
+        if self.unit.is_empty() { "a number".to_string() } else { format!("a number in {}", self.unit) }
+    }
+}
+
+/// Signs that enclose the unit behind a heading that a project states.
+const BRACKETS: [char; 5] = ['[', '(', '{', '<', '/'];
+
+impl<'a> Sought<'a> {
+    /// By its own name.
+    pub fn by_name(measurand: &'a Measurand) -> Sought<'a> {
+        Sought { measurand, heading: None, unit: None }
+    }
+
+    /// What the heading says of the unit, if it is that of the signal.
+    pub(super) fn unit_in<'h>(&self, heading: &'h str) -> Option<&'h str> {
+        match self.heading {
+            Some(stated) if stated == heading => {
+                let enclosed = heading.rfind(BRACKETS).and_then(|at| heading.get(at..));
+                enclosed.or_else(|| unit_beside(heading, self.measurand.name)).or(Some(""))
+            }
+            Some(stated) => {
+                heading.strip_prefix(stated).filter(|rest| rest.trim_start().starts_with(BRACKETS))
+            }
+            None => unit_beside(heading, self.measurand.name).or_else(|| {
+                let unit = unit_beside(heading, self.measurand.symbol?)?;
+                self.unit_of(unit).is_some().then_some(unit)
+            }),
+        }
+    }
+
+    /// Whether a heading names the signal, and whether it says nothing else but a unit of it.
+    pub(super) fn is_named_in(&self, heading: &str) -> Option<bool> {
+        let unit = bare(self.unit_in(heading)?);
+        Some(unit.is_empty() || self.unit.is_some() || self.unit_of(unit).is_some())
+    }
+
+    /// Unit and scale of what a heading says.
+    fn unit_of(&self, written: &str) -> Option<(String, UnitScale)> {
+        if self.measurand.may_be_share && ["%", "percent"].contains(&written) {
+            return Some(("%".to_string(), UnitScale::new("%", &RATIO).ok()?));
+        }
+        let dimension = self.measurand.dimension;
+        let unit = if written.is_empty() { String::new() } else { unit_meant(written, dimension)? };
+        let scale = UnitScale::new(&unit, dimension).ok()?;
+        Some((unit, scale))
+    }
+
+    /// What its heading may be, for who wrote another.
+    pub(super) fn usual_names(&self) -> Vec<String> {
+        let name = self.measurand.name;
+        if let Some(stated) = self.heading {
+            return vec![stated.to_string()];
+        }
+        let pure = UnitScale::new("", self.measurand.dimension).is_ok().then(|| name.to_string());
+        let share = self.measurand.may_be_share.then(|| format!("{name}_percent"));
+        let united = endings(self.measurand.dimension).map(|unit| format!("{name}_{unit}"));
+        united.chain(pure).chain(share).collect()
+    }
+}
+
+impl MeasuredTable {
+    /// The column of each signal, where there is one, and the columns of none. `None` where two are
+    /// of one signal, or a unit is missing.
+    pub fn columns(
+        &self,
+        sought: &[Sought<'_>],
+        findings: &mut Findings,
+    ) -> Option<(Vec<Option<Column>>, Vec<usize>)> {
+        let before = findings.error_count();
+        let found: Vec<Option<Column>> = sought.iter().map(|sought| self.column(sought, findings)).collect();
+        let taken = |index: usize| found.iter().flatten().filter(|column| column.index == index).count();
+        for (index, heading) in self.headings.iter().enumerate().filter(|(index, _)| taken(*index) > 1) {
+            let message = format!("`{}` is taken for {} signals", heading.text, taken(index));
+            findings.push(RawFinding::error(heading.place, message));
+        }
+        let has_name =
+            |index: &usize| self.headings.get(*index).is_some_and(|heading| !heading.text.is_empty());
+        let unused = (0..self.headings.len()).filter(|index| taken(*index) == 0).filter(has_name).collect();
+        (findings.error_count() == before).then_some((found, unused))
+    }
+
+    fn column(&self, sought: &Sought<'_>, findings: &mut Findings) -> Option<Column> {
+        let all = || self.headings.iter().enumerate();
+        let is_exact = |heading: &Heading| match sought.heading {
+            Some(stated) => stated == heading.text,
+            None => unit_beside(&heading.text, sought.measurand.name).is_some(),
+        };
+        let any_exact = all().any(|(_, heading)| is_exact(heading));
+        let mut matching = all().filter(|(_, heading)| !any_exact || is_exact(heading));
+        let mut matching = matching
+            .by_ref()
+            .filter_map(|(index, heading)| Some((index, heading, bare(sought.unit_in(&heading.text)?))));
+        let (index, heading, beside) = matching.next()?;
+        if let Some((_, second, _)) = matching.next() {
+            let message = match sought.heading {
+                Some(stated) => format!("a second column `{stated}`"),
+                None => format!("`{}` is a second column of `{}`", second.text, sought.measurand.name),
+            };
+            findings.push(RawFinding::error(second.place, message));
+            return None;
+        }
+        let said = if beside.is_empty() { heading.unit.as_deref().map_or("", bare) } else { beside };
+        let Some((unit, scale)) = sought.unit_of(sought.unit.unwrap_or(said)) else {
+            findings.push(self.without_unit(sought, heading, sought.unit.unwrap_or(said)));
+            return None;
+        };
+        if let Some((other, _)) = sought
+            .unit_of(said)
+            .filter(|(other, _)| sought.unit.is_some() && *other != unit && !other.is_empty())
+        {
+            let message =
+                format!("`{}` is read in {unit}, as the project says, and not in {other}", heading.text);
+            findings.push(RawFinding::warning(heading.place, message));
+        }
+        let is_share = sought.measurand.may_be_share && unit == "%";
+        Some(Column { index, unit, is_share, scale })
+    }
+
+    fn without_unit(&self, sought: &Sought<'_>, heading: &Heading, written: &str) -> RawFinding {
+        let message = match written {
+            "" => format!("`{}` has no unit", heading.text),
+            written => format!("`{written}` is no unit of {}", sought.measurand.dimension.name),
+        };
+        let names: Vec<String> = match sought.heading {
+            Some(stated) => {
+                endings(sought.measurand.dimension).map(|unit| format!("{stated} [{unit}]")).collect()
+            }
+            None => sought.usual_names(),
+        };
+        let quoted: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
+        let found =
+            RawFinding::error(heading.place, message).expected(format!("one of {}", quoted.join(", ")));
+        let is_absolute = ["bara", "psia"].contains(&written.to_lowercase().as_str());
+        let near = nearest(written, endings(sought.measurand.dimension));
+        found.maybe_help(match near {
+            _ if is_absolute => {
+                Some("pressures are gauge here: subtract the atmospheric pressure".to_string())
+            }
+            near => near.map(|near| match sought.heading {
+                Some(_) => format!("did you mean `{near}`?"),
+                None => format!("did you mean `{}_{near}`?", sought.measurand.name),
+            }),
+        })
+    }
+
+    /// That there is no column of a signal, with the heading that may have been meant.
+    pub fn missing(&self, sought: &Sought<'_>) -> RawFinding {
+        let headings = || self.headings.iter().map(|heading| heading.text.as_str());
+        let names = sought.usual_names();
+        let near = names.iter().find_map(|name| nearest(name, headings()));
+        let near = near.or_else(|| nearest(sought.measurand.name, headings()));
+        let found = match sought.heading {
+            Some(stated) => RawFinding::error(self.header_place(), format!("there is no column `{stated}`")),
+            None => {
+                let message = format!("there is no column `{}`", sought.measurand.name);
+                let shown: Vec<String> = names.iter().take(4).map(|name| format!("`{name}`")).collect();
+                RawFinding::error(self.header_place(), message)
+                    .expected(format!("one such as {}", shown.join(", ")))
+            }
+        };
+        match near {
+            Some(near) => found.help(format!("did you mean `{near}`?")),
+            None => found.help(format!("there are: {}", headings().collect::<Vec<_>>().join(", "))),
+        }
+    }
+
+    /// That a column is none of those that are looked for, with the name that may have been meant.
+    pub fn unknown(&self, index: usize, sought: &[Sought<'_>]) -> RawFinding {
+        let place = self.headings.get(index).map(|heading| heading.place).unwrap_or_default();
+        let text = self.headings.get(index).map_or("", |heading| &heading.text);
+        let names: Vec<String> = sought.iter().flat_map(Sought::usual_names).collect();
+        let found = RawFinding::error(place, format!("unknown column `{text}`"));
+        match nearest(text, names.iter().map(String::as_str)) {
+            Some(near) => found.help(format!("did you mean `{near}`?")),
+            None => found.help(format!("known here: {}", names.join(", "))),
+        }
+    }
+}

@@ -1,0 +1,61 @@
+//! From bytes to text.
+
+use crate::project::Findings;
+
+/// How files begin that are no tables of text, what they are, and what to do.
+const OTHERS: [(&[u8], &str); 7] = [
+    (b"PK\x03\x04", "a spreadsheet or an archive: save the sheet as CSV"),
+    (b"\xd0\xcf\x11\xe0", "a spreadsheet of an old kind: save the sheet as CSV"),
+    (b"\x1f\x8b", "compressed: unpack it first"),
+    (b"MATLAB 5.0", "a file of MATLAB: save the signals with `writetable` or `parquetwrite`"),
+    (b"\x89HDF", "a file of HDF5, as MATLAB too writes them: save the signals as CSV or Parquet"),
+    (b"TDSm", "a file of LabVIEW: save the signals as CSV or Parquet"),
+    (b"%PDF", "a document: save the table as CSV"),
+];
+
+/// The text of a file, and how many bytes of it come before. Other encodings than UTF-8 are those
+/// that spreadsheets write: UTF-16 with its mark, and one byte for each sign (ISO 8859-1).
+pub(super) fn text(file: &str, mut bytes: Vec<u8>, findings: &mut Findings) -> Option<(String, usize)> {
+    if let Some((_, what)) = OTHERS.iter().find(|(start, _)| bytes.starts_with(start)) {
+        findings.unreadable(file, &format!("the file is no text with a table but {what}"));
+        return None;
+    }
+    let (found, skipped) = if bytes.starts_with(b"\xff\xfe") {
+        (wide(&bytes, u16::from_le_bytes), 2)
+    } else if bytes.starts_with(b"\xfe\xff") {
+        (wide(&bytes, u16::from_be_bytes), 2)
+    } else if bytes.starts_with(b"\xef\xbb\xbf") {
+        bytes.drain(..3);
+        (Some(narrow(bytes)), 3)
+    } else {
+        (Some(narrow(bytes)), 0)
+    };
+    let is_text = |content: &String| !content.bytes().take(MOST_LOOKED_AT).any(is_control);
+    let Some(content) = found.filter(is_text) else {
+        findings.unreadable(file, "the file is no text");
+        return None;
+    };
+    // lines may end as they did on old systems
+    let is_old = content.contains('\r') && !content.contains('\n');
+    Some((if is_old { content.replace('\r', "\n") } else { content }, skipped))
+}
+
+/// UTF-16 behind its mark.
+fn wide(bytes: &[u8], order: fn([u8; 2]) -> u16) -> Option<String> {
+    let pairs = bytes.get(2..)?.chunks_exact(2);
+    let units: Vec<u16> = pairs.filter_map(|pair| pair.try_into().ok()).map(order).collect();
+    String::from_utf16(&units).ok()
+}
+
+/// How much of a text is looked at for signs that no text has.
+const MOST_LOOKED_AT: usize = 4096;
+
+fn is_control(byte: u8) -> bool {
+    byte < 0x20 && !matches!(byte, b'\t' | b'\n' | b'\r' | 0x0c | 0x1a)
+}
+
+/// UTF-8, or one byte for each sign.
+fn narrow(bytes: Vec<u8>) -> String {
+    String::from_utf8(bytes)
+        .unwrap_or_else(|error| error.as_bytes().iter().map(|byte| char::from(*byte)).collect())
+}

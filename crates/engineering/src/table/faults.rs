@@ -1,0 +1,34 @@
+//! The same fault in many rows.
+
+use crate::project::RawFinding;
+
+/// Up to so many rows with the same fault are told one by one.
+const FEW: usize = 5;
+/// The most that are kept of what is told one by one.
+const MOST_KEPT: usize = 400;
+
+/// Rows of one fault, in a column or in the whole table.
+#[derive(Clone, Default)]
+pub(super) struct Faults {
+    count: usize,
+    first: Vec<RawFinding>,
+}
+
+impl Faults {
+    /// Takes a row in; the finding is made only where it is kept.
+    pub(super) fn add(&mut self, found: impl FnOnce() -> RawFinding) {
+        self.count += 1;
+        if self.first.len() < MOST_KEPT {
+            self.first.push(found());
+        }
+    }
+
+    /// The findings: one where most rows have the fault.
+    pub(super) fn told(mut self, rows: usize) -> Vec<RawFinding> {
+        if self.count > FEW && 2 * self.count > rows {
+            self.first.truncate(1);
+            return self.first.into_iter().map(|first| first.and_more(self.count)).collect();
+        }
+        self.first
+    }
+}

@@ -1,0 +1,75 @@
+//! Where the names of the columns are, and what separates them.
+
+use super::cell::{Cells, Separator};
+use super::column::Sought;
+
+/// Where a table begins in a text.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct TextLayout {
+    pub(super) separator: Separator,
+    /// First byte of the row of names.
+    pub(super) header: usize,
+}
+
+/// What may separate values; of two that explain as much the first.
+const SEPARATORS: [Separator; 5] = [
+    Separator::Sign(b';'),
+    Separator::Sign(b'\t'),
+    Separator::Sign(b'|'),
+    Separator::Sign(b','),
+    Separator::Spaces,
+];
+
+/// Rows in which names are looked for.
+const MOST_ROWS: usize = 500;
+/// Rows below the best one in which a better one is looked for.
+const MOST_BELOW: usize = 20;
+
+/// The row with the most names that are looked for: the first of several, and one behind a `#` only
+/// where none is in the open.
+pub(super) fn find(content: &str, sought: &[Sought<'_>], separator: Option<Separator>) -> Option<TextLayout> {
+    let separators: Vec<Separator> = separator.map_or(SEPARATORS.to_vec(), |only| vec![only]);
+    let mut best: Option<([usize; 3], TextLayout)> = None;
+    let mut rows_below = 0;
+    for (line, start) in lines(content, 0).filter(|(line, _)| !line.trim().is_empty()).take(MOST_ROWS) {
+        rows_below += 1;
+        if best.is_some() && rows_below > MOST_BELOW {
+            break;
+        }
+        let trimmed = line.trim_start();
+        let open = trimmed.trim_start_matches(['#', '%']);
+        let header = start + line.len() - open.len();
+        for separator in &separators {
+            // whether a value is a name, and a name with a unit of it
+            let is_name = |text: &str| sought.iter().filter_map(|one| one.is_named_in(text)).max();
+            let cells = Cells::new(content, header, *separator);
+            let names: Vec<bool> = cells.filter_map(|cell| is_name(cell.text)).collect();
+            let whole = names.iter().filter(|is_whole| **is_whole).count();
+            let rank = [whole, names.len(), usize::from(open.len() == trimmed.len())];
+            if !names.is_empty() && best.is_none_or(|(least, _)| rank > least) {
+                best = Some((rank, TextLayout { separator: *separator, header }));
+                rows_below = 0;
+            }
+        }
+    }
+    best.map(|(_, layout)| layout)
+}
+
+/// Lines from a byte on, each with its first byte.
+pub(super) fn lines(content: &str, from: usize) -> impl Iterator<Item = (&str, usize)> {
+    let mut start = from;
+    content.get(from..).unwrap_or_default().split_inclusive('\n').map(move |line| {
+        let at = start;
+        start += line.len();
+        (line, at)
+    })
+}
+
+/// Whether a row has something in it but separators, and is no comment.
+pub(super) fn is_row(line: &str, separator: Separator) -> bool {
+    let nothing = |sign: char| {
+        sign.is_whitespace() || matches!(separator, Separator::Sign(byte) if sign == char::from(byte))
+    };
+    let rest = line.trim_start_matches(nothing);
+    !rest.is_empty() && !line.trim_start().starts_with('#')
+}

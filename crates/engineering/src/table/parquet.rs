@@ -1,0 +1,289 @@
+//! A table as Apache Parquet.
+
+use std::fmt::Write as _;
+
+use bytes::Bytes;
+use parquet::basic::{Compression, ConvertedType, LogicalType, TimeUnit};
+use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
+use parquet::data_type::DataType;
+use parquet::errors::ParquetError;
+use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::schema::types::ColumnDescriptor;
+
+use super::column::Column;
+use super::faults::Faults;
+use super::{ColumnNumbers, Heading};
+use crate::project::{Findings, Place, RawFinding};
+
+/// How a file begins, and ends.
+pub(super) const MAGIC: &[u8] = b"PAR1";
+
+/// The rows of a file.
+pub(super) struct ParquetRows {
+    /// Its index among the texts of the findings, an empty one.
+    text: usize,
+    file: SerializedFileReader<Bytes>,
+    pub(super) count: usize,
+}
+
+/// Values of one type that are decoded at once.
+const BATCH: usize = 8192;
+/// The most rows that room is made for before they are read: a file may state any number.
+const MOST_RESERVED: usize = 1 << 20;
+
+/// Takes a file in: names of its columns, and rows that are read when they are asked for.
+pub(super) fn open(
+    file: &str,
+    bytes: Vec<u8>,
+    findings: &mut Findings,
+) -> Option<(Vec<Heading>, ParquetRows)> {
+    let opened = SerializedFileReader::new(Bytes::from(bytes));
+    let opened = opened.map_err(|error| findings.unreadable(file, &format!("no table of Parquet: {error}")));
+    let opened = opened.ok()?;
+    let text = findings.add_text(file, "", 0);
+    let metadata = opened.metadata().file_metadata();
+    let count = usize::try_from(metadata.num_rows()).unwrap_or(0);
+    let headings = metadata.schema_descr().columns().iter().map(|column| Heading {
+        text: column.path().string(),
+        place: Place { text, start: 0, end: 0 },
+        unit: is_moment(column).then(|| "s".to_string()),
+    });
+    let headings = headings.collect();
+    let chunks = opened.metadata().row_groups().iter().flat_map(|group| group.columns());
+    let packed = chunks.map(|chunk| chunk.compression());
+    if let Some(codec) = packed.into_iter().find(|codec| !is_readable(*codec)) {
+        let (codec, place) = (codec.to_string(), Place { text, start: 0, end: 0 });
+        let name = codec.split('(').next().unwrap_or_default();
+        let found = RawFinding::error(place, format!("the file is compressed by {name}"));
+        findings.push(found.help("write it with Snappy (`compression=\"snappy\"`) or without a compression"));
+        return None;
+    }
+    if count == 0 {
+        findings.push(RawFinding::error(Place { text, start: 0, end: 0 }, "the file has no rows"));
+        return None;
+    }
+    Some((headings, ParquetRows { text, file: opened, count }))
+}
+
+fn is_readable(codec: Compression) -> bool {
+    matches!(codec, Compression::UNCOMPRESSED | Compression::SNAPPY)
+}
+
+/// Whether values are points in time.
+fn is_moment(column: &ColumnDescriptor) -> bool {
+    matches!(ParquetInteger::of(column), Some(ParquetInteger::Since(_)))
+}
+
+/// What the whole numbers of a column mean.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum ParquetInteger {
+    /// Themselves.
+    Number,
+    /// The same without a sign.
+    Unsigned,
+    /// Times ten to this power.
+    Power(i32),
+    /// Points in time, in seconds times ten to this power: counted from the first.
+    Since(i32),
+}
+
+impl ParquetInteger {
+    fn of(column: &ColumnDescriptor) -> Option<ParquetInteger> {
+        let second = |unit: &TimeUnit| match unit {
+            TimeUnit::MILLIS => -3,
+            TimeUnit::MICROS => -6,
+            TimeUnit::NANOS => -9,
+        };
+        match (column.logical_type_ref(), column.converted_type()) {
+            (Some(LogicalType::Timestamp(moment)), _) => Some(ParquetInteger::Since(second(&moment.unit))),
+            (Some(LogicalType::Time(moment)), _) => Some(ParquetInteger::Since(second(&moment.unit))),
+            (None, ConvertedType::TIMESTAMP_MILLIS | ConvertedType::TIME_MILLIS) => {
+                Some(ParquetInteger::Since(-3))
+            }
+            (None, ConvertedType::TIMESTAMP_MICROS | ConvertedType::TIME_MICROS) => {
+                Some(ParquetInteger::Since(-6))
+            }
+            (Some(LogicalType::Decimal(decimal)), _) => Some(ParquetInteger::Power(-decimal.scale)),
+            (None, ConvertedType::DECIMAL) => Some(ParquetInteger::Power(-column.type_scale())),
+            (Some(LogicalType::Integer(whole)), _) if !whole.is_signed => Some(ParquetInteger::Unsigned),
+            (
+                None,
+                ConvertedType::UINT_8
+                | ConvertedType::UINT_16
+                | ConvertedType::UINT_32
+                | ConvertedType::UINT_64,
+            ) => Some(ParquetInteger::Unsigned),
+            (None | Some(LogicalType::Integer(_)), _) => Some(ParquetInteger::Number),
+            _ => None,
+        }
+    }
+
+    /// A number as text; `first` is the first of its column.
+    fn write(self, value: i64, first: i64, mask: u64, text: &mut String) {
+        text.clear();
+        // a text takes all that is written to it
+        let _ = match self {
+            ParquetInteger::Number => write!(text, "{value}"),
+            ParquetInteger::Unsigned => write!(text, "{}", value.cast_unsigned() & mask),
+            ParquetInteger::Power(ten) => write!(text, "{value}e{ten}"),
+            ParquetInteger::Since(ten) => write!(text, "{}e{ten}", i128::from(value) - i128::from(first)),
+        };
+    }
+}
+
+/// The numbers of a column while they are read, each from the shortest text that means it: so that
+/// the same table as text gives the same numbers.
+struct ParquetReading<'c> {
+    rows: &'c ParquetRows,
+    column: &'c Column,
+    /// Heading of the column.
+    name: &'c str,
+    values: Vec<f64>,
+    gaps: Vec<usize>,
+    /// Rows with what is no number.
+    wrong: Faults,
+    text: String,
+    /// The first whole number.
+    first: Option<i64>,
+}
+
+impl ParquetReading<'_> {
+    fn gap(&mut self) {
+        self.gaps.push(self.values.len());
+        self.values.push(f64::NAN);
+    }
+
+    fn text(&mut self, text: &str) {
+        let value = self.column.scale.read(text);
+        if value.is_none() {
+            let row = self.values.len();
+            self.wrong.add(|| {
+                let message = format!("row {}, column `{}`: `{text}` is no number", row + 1, self.name);
+                RawFinding::error(self.rows.place(row), message).expected(self.column.expected())
+            });
+        }
+        self.values.push(value.unwrap_or(f64::NAN));
+    }
+
+    fn double(&mut self, value: Option<f64>) {
+        match value.filter(|value| !value.is_nan()) {
+            Some(value) => self.text(zmij::Buffer::new().format(value)),
+            None => self.gap(),
+        }
+    }
+
+    fn float(&mut self, value: Option<f32>) {
+        match value.filter(|value| !value.is_nan()) {
+            Some(value) => self.text(zmij::Buffer::new().format(value)),
+            None => self.gap(),
+        }
+    }
+
+    fn whole(&mut self, value: Option<i64>, whole: ParquetInteger, mask: u64) {
+        let Some(value) = value else { return self.gap() };
+        let first = *self.first.get_or_insert(value);
+        let mut text = std::mem::take(&mut self.text);
+        whole.write(value, first, mask, &mut text);
+        self.text(&text);
+        self.text = text;
+    }
+}
+
+impl ParquetRows {
+    /// A row has no place in a text; only the order of findings goes by it.
+    pub(super) fn place(&self, row: usize) -> Place {
+        Place { text: self.text, start: row + 1, end: row + 1 }
+    }
+
+    /// The numbers of columns; what cannot be read is reported.
+    pub(super) fn numbers(
+        &self,
+        headings: &[Heading],
+        columns: &[&Column],
+        findings: &mut Findings,
+    ) -> ColumnNumbers {
+        let mut numbers = ColumnNumbers::default();
+        for column in columns {
+            let name = headings.get(column.index).map_or("", |heading| &heading.text);
+            let mut reading = ParquetReading {
+                rows: self,
+                column,
+                name,
+                values: Vec::with_capacity(self.count.min(MOST_RESERVED)),
+                gaps: Vec::new(),
+                wrong: Faults::default(),
+                text: String::new(),
+                first: None,
+            };
+            if let Err(why) = self.column(column.index, &mut reading) {
+                let place = Place { text: self.text, start: 0, end: 0 };
+                findings.push(RawFinding::error(place, format!("column `{name}`: {why}")));
+            }
+            reading.wrong.told(self.count).into_iter().for_each(|found| findings.push(found));
+            numbers.columns.push(reading.values);
+            numbers.gaps.push(reading.gaps);
+        }
+        numbers
+    }
+
+    /// Reads a column; or why it cannot be read.
+    fn column(&self, index: usize, reading: &mut ParquetReading<'_>) -> Result<(), String> {
+        const NO_NUMBERS: &str = "its values are no numbers";
+        let description = self.file.metadata().file_metadata().schema_descr().column(index);
+        if description.max_rep_level() > 0 {
+            return Err("its values are lists".to_string());
+        }
+        let level = description.max_def_level();
+        let whole = ParquetInteger::of(&description).ok_or(NO_NUMBERS)?;
+        for group in 0..self.file.num_row_groups() {
+            let group = self.file.get_row_group(group).map_err(|error| readable(&error))?;
+            match group.get_column_reader(index).map_err(|error| readable(&error))? {
+                ColumnReader::DoubleColumnReader(reader) => {
+                    each(reader, level, |value| reading.double(value))?;
+                }
+                ColumnReader::FloatColumnReader(reader) => each(reader, level, |value| reading.float(value))?,
+                ColumnReader::Int64ColumnReader(reader) => {
+                    each(reader, level, |value| reading.whole(value, whole, u64::MAX))?;
+                }
+                ColumnReader::Int32ColumnReader(reader) => each(reader, level, |value| {
+                    reading.whole(value.map(i64::from), whole, u64::from(u32::MAX));
+                })?,
+                _ => return Err(NO_NUMBERS.to_string()),
+            }
+        }
+        match reading.values.len() == self.count {
+            true => Ok(()),
+            false => Err(format!("{} values for {} rows", reading.values.len(), self.count)),
+        }
+    }
+}
+
+/// Takes all values of a column in a group of rows; `None` is a gap.
+fn each<T: DataType>(
+    mut reader: ColumnReaderImpl<T>,
+    level: i16,
+    mut take: impl FnMut(Option<T::T>),
+) -> Result<(), String> {
+    let (mut found, mut levels) = (Vec::new(), Vec::new());
+    loop {
+        found.clear();
+        levels.clear();
+        let of_levels = (level > 0).then_some(&mut levels);
+        let read = reader.read_records(BATCH, of_levels, None, &mut found);
+        let (records, _, _) = read.map_err(|error| readable(&error))?;
+        if records == 0 {
+            return Ok(());
+        }
+        let mut found = found.drain(..);
+        if level == 0 {
+            found.for_each(|value| take(Some(value)));
+        } else {
+            levels.iter().for_each(|one| take(if *one == level { found.next() } else { None }));
+        }
+    }
+}
+
+/// What the library says.
+fn readable(error: &ParquetError) -> String {
+    error.to_string()
+}

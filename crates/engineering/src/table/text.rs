@@ -1,0 +1,311 @@
+//! A table as text.
+
+use super::cell::{Cells, Separator};
+use super::column::{Column, Sought};
+use super::faults::Faults;
+use super::heading::{bare, unit_meant};
+use super::layout::{self, is_row, lines};
+use super::{ColumnNumbers, Heading};
+use crate::project::{Place, RawFinding};
+use crate::spelling::nearest;
+
+/// The rows of a text.
+pub(super) struct TextRows {
+    /// Its index among the texts of the findings.
+    pub(super) text: usize,
+    separator: Separator,
+    /// First byte of each row.
+    starts: Vec<usize>,
+}
+
+/// Rows without a number that may stand between the names and the rows.
+const MOST_BELOW: usize = 20;
+
+/// Headings, rows, and rows that are neither.
+type Opened = (Vec<Heading>, TextRows, Vec<Place>);
+
+pub(super) fn open(
+    text: usize,
+    content: &str,
+    sought: &[Sought<'_>],
+    separator: Option<char>,
+) -> Result<Opened, RawFinding> {
+    let separator = separator.map(|sign| match sign {
+        ' ' => Separator::Spaces,
+        sign => Separator::Sign(u8::try_from(sign).unwrap_or(b',')),
+    });
+    let Some(layout) = layout::find(content, sought, separator) else {
+        return Err(unnamed(text, content, sought));
+    };
+    let separator = layout.separator;
+    let mut cells = Cells::new(content, layout.header, separator);
+    let mut headings: Vec<Heading> = cells
+        .by_ref()
+        .map(|cell| Heading {
+            text: cell.text.to_string(),
+            place: Place { text, start: cell.start, end: cell.start + cell.text.len() },
+            unit: None,
+        })
+        .collect();
+    let below = cells.at;
+    let mut starts = starts(content, below, separator);
+    let mut left_out = Vec::new();
+    let is_number =
+        |start: &usize| Cells::new(content, *start, separator).any(|cell| is_like_number(cell.text));
+    let first = starts.iter().take(MOST_BELOW).position(is_number).unwrap_or(0);
+    for start in starts.drain(..first) {
+        let row: Vec<_> = Cells::new(content, start, separator).collect();
+        let is_unit = |cell: &super::cell::TextCell<'_>| {
+            sought.iter().any(|one| unit_meant(bare(cell.text), one.measurand.dimension).is_some())
+        };
+        if headings.iter().all(|heading| heading.unit.is_none()) && row.iter().any(is_unit) {
+            headings
+                .iter_mut()
+                .zip(&row)
+                .for_each(|(heading, cell)| heading.unit = Some(cell.text.to_string()));
+        } else {
+            let end = row.last().map_or(start, |cell| cell.start + cell.text.len());
+            left_out.push(Place { text, start, end });
+        }
+    }
+    if starts.is_empty() {
+        let place = Place { text, start: 0, end: 0 };
+        return Err(RawFinding::error(place, "the file has no rows below the names of its columns"));
+    }
+    Ok((headings, TextRows { text, separator, starts }, left_out))
+}
+
+/// That no row names columns, with the spelling that may have been meant.
+fn unnamed(text: usize, content: &str, sought: &[Sought<'_>]) -> RawFinding {
+    let names: Vec<String> = sought.iter().flat_map(Sought::usual_names).collect();
+    let mut rows = lines(content, 0).filter(|(line, _)| is_row(line, Separator::Spaces));
+    let Some((first, start)) = rows.next() else {
+        let found = RawFinding::error(Place { text, start: 0, end: 0 }, "the file is empty");
+        return found.expected("a row with the names of the columns");
+    };
+    let words = first.split([',', ';', '\t', '|']).map(|word| word.trim().trim_matches('"'));
+    let near = words
+        .filter(|word| word.len() > 1)
+        .find_map(|word| Some((word, nearest(word, names.iter().map(String::as_str))?)));
+    let place = Place { text, start, end: start + first.trim_end().len() };
+    let example: Vec<&str> = sought.iter().filter_map(|one| names_first(one, &names)).take(3).collect();
+    let found = RawFinding::error(place, "no row has the names of columns")
+        .expected(format!("a row with names such as {}", example.join(", ")));
+    found.maybe_help(near.map(|(word, name)| format!("`{word}`: did you mean `{name}`?")))
+}
+
+/// One of the names of what is looked for.
+fn names_first<'n>(sought: &Sought<'_>, names: &'n [String]) -> Option<&'n str> {
+    let first = sought.usual_names().into_iter().next()?;
+    names.iter().find(|name| **name == first).map(String::as_str)
+}
+
+/// The first byte of each row from a byte on.
+fn starts(content: &str, below: usize, separator: Separator) -> Vec<usize> {
+    let has_quotes = content.get(below..).is_some_and(|rest| rest.contains('"'));
+    let mut starts = Vec::new();
+    let mut until = below;
+    for (line, start) in lines(content, below) {
+        // a value in quotes may go on in the next line
+        if start < until || !is_row(line, separator) {
+            continue;
+        }
+        starts.push(start);
+        if has_quotes && line.contains('"') {
+            until = Cells::new(content, start, separator).end();
+        }
+    }
+    starts
+}
+
+fn is_like_number(text: &str) -> bool {
+    !text.is_empty() && (text.replace(',', ".").parse::<f64>().is_ok() || is_gap(text))
+}
+
+/// What loggers and spreadsheets write where there is no value.
+fn is_gap(text: &str) -> bool {
+    let words = ["", "nan", "na", "n/a", "#n/a", "null", "none", "-", "--", "-nan", "1.#qnan", "-1.#ind"];
+    words.iter().any(|word| text.eq_ignore_ascii_case(word))
+}
+
+impl TextRows {
+    pub(super) fn count(&self) -> usize {
+        self.starts.len()
+    }
+
+    fn cells<'c>(&self, content: &'c str, row: usize) -> Cells<'c> {
+        Cells::new(content, self.starts.get(row).copied().unwrap_or(content.len()), self.separator)
+    }
+
+    /// Where a value is written; the end of the row where it has none.
+    pub(super) fn place(&self, content: &str, row: usize, index: usize) -> Place {
+        let mut cells = self.cells(content, row);
+        let found = cells.by_ref().nth(index);
+        let [start, end] =
+            found.map_or([cells.at, cells.at], |cell| [cell.start, cell.start + cell.text.len()]);
+        Place { text: self.text, start, end }
+    }
+
+    /// The line of a row, from 1.
+    pub(super) fn line(&self, content: &str, row: usize) -> usize {
+        let start = self.starts.get(row).copied().unwrap_or(content.len());
+        content.bytes().take(start).filter(|byte| *byte == b'\n').count() + 1
+    }
+
+    /// That a row has more or fewer values than there are columns.
+    pub(super) fn incomplete(&self, content: &str, row: usize, columns: usize) -> RawFinding {
+        let cells: Vec<_> = self.cells(content, row).collect();
+        let ends = cells.first().zip(cells.last());
+        let place = ends.map_or(Place::default(), |(first, last)| Place {
+            text: self.text,
+            start: first.start,
+            end: last.start + last.text.len(),
+        });
+        let count =
+            if cells.len() == 1 { "one value".to_string() } else { format!("{} values", cells.len()) };
+        let found = RawFinding::error(place, format!("{count} for {columns} columns"));
+        match self.separator {
+            Separator::Sign(b',') if cells.len() > columns => {
+                found.help("where the decimal sign is a comma, separate values with semicolons or tabs")
+            }
+            _ => found,
+        }
+    }
+
+    /// The numbers of columns, and what is wrong with them.
+    pub(super) fn numbers(
+        &self,
+        content: &str,
+        headings: usize,
+        columns: &[&Column],
+    ) -> (ColumnNumbers, Vec<RawFinding>) {
+        let mut slots = vec![None; headings];
+        for (slot, column) in columns.iter().enumerate() {
+            if let Some(place) = slots.get_mut(column.index) {
+                *place = Some((slot, *column));
+            }
+        }
+        let mut reading = TextReading {
+            text: self.text,
+            numbers: ColumnNumbers {
+                columns: vec![Vec::with_capacity(self.starts.len()); columns.len()],
+                gaps: vec![Vec::new(); columns.len()],
+                cut_off: None,
+            },
+            incomplete: Faults::default(),
+            wrong: vec![Faults::default(); columns.len()],
+            point: None,
+            comma: None,
+        };
+        for row in 0..self.starts.len() {
+            let mut count = 0;
+            for (index, cell) in self.cells(content, row).enumerate() {
+                match slots.get(index) {
+                    Some(Some((slot, column))) => reading.take(row, *slot, column, cell),
+                    Some(None) => {}
+                    // a separator at the end of a row is no value
+                    None if cell.text.is_empty() => continue,
+                    None => {}
+                }
+                count = index + 1;
+            }
+            if count < headings && row + 1 == self.starts.len() {
+                reading.cut(row);
+            } else if count != headings {
+                reading.incomplete.add(|| self.incomplete(content, row, headings));
+                reading.skip(row);
+            }
+        }
+        let TextReading { numbers, incomplete, wrong, point, comma, .. } = reading;
+        let mut found = incomplete.told(self.starts.len());
+        found.extend(wrong.into_iter().flat_map(|wrong| wrong.told(self.starts.len())));
+        found.extend(two_signs(content, point, comma));
+        (numbers, found)
+    }
+}
+
+/// That some numbers have a decimal point and some a decimal comma.
+fn two_signs(content: &str, point: Option<Place>, comma: Option<Place>) -> Option<RawFinding> {
+    let (point, comma) = (point?, comma?);
+    let text = |place: Place| content.get(place.start..place.end).unwrap_or_default();
+    let message = format!("`{}` has a comma where `{}` has a point", text(comma), text(point));
+    let found = RawFinding::error(comma, message).expected("one decimal sign in the whole file");
+    Some(found.help("write numbers without signs between thousands"))
+}
+
+/// That a text is no number.
+fn no_number(place: Place, text: &str) -> RawFinding {
+    let found = RawFinding::error(place, format!("`{text}` is no number"));
+    if text.contains('.') && text.contains(',') {
+        return found.help("write numbers without signs between thousands");
+    }
+    found.maybe_help(
+        text.contains(':').then(|| "write times as numbers, such as seconds from the start".into()),
+    )
+}
+
+/// Numbers while they are read.
+struct TextReading {
+    text: usize,
+    numbers: ColumnNumbers,
+    /// Rows with more or fewer values than there are columns.
+    incomplete: Faults,
+    /// What is no number, for each column.
+    wrong: Vec<Faults>,
+    /// The first number with a decimal point, and the first with a decimal comma.
+    point: Option<Place>,
+    comma: Option<Place>,
+}
+
+impl TextReading {
+    fn take(&mut self, row: usize, slot: usize, column: &Column, cell: super::cell::TextCell<'_>) {
+        let value = column.scale.read(cell.text);
+        if self.point.is_none() && value.is_some() && cell.text.contains('.') {
+            self.point = Some(self.place(cell));
+        }
+        let value = value.unwrap_or_else(|| self.other(row, slot, column, cell));
+        if let Some(values) = self.numbers.columns.get_mut(slot) {
+            values.push(value);
+        }
+    }
+
+    /// What is no number with a point: one with a comma, a gap, or wrong.
+    fn other(&mut self, row: usize, slot: usize, column: &Column, cell: super::cell::TextCell<'_>) -> f64 {
+        if is_gap(cell.text) {
+            self.numbers.gaps.get_mut(slot).into_iter().for_each(|gaps| gaps.push(row));
+            return f64::NAN;
+        }
+        let has_both = cell.text.contains('.') && cell.text.contains(',');
+        if !has_both && let Some(value) = column.scale.read(&cell.text.replace(',', ".")) {
+            self.comma.get_or_insert(Place {
+                text: self.text,
+                start: cell.start,
+                end: cell.start + cell.text.len(),
+            });
+            return value;
+        }
+        let place = self.place(cell);
+        let found = || no_number(place, cell.text).expected(column.expected());
+        self.wrong.get_mut(slot).into_iter().for_each(|wrong| wrong.add(found));
+        f64::NAN
+    }
+
+    fn place(&self, cell: super::cell::TextCell<'_>) -> Place {
+        Place { text: self.text, start: cell.start, end: cell.start + cell.text.len() }
+    }
+
+    /// Takes no number of a row that is not whole.
+    fn skip(&mut self, row: usize) {
+        for values in &mut self.numbers.columns {
+            values.truncate(row);
+            values.push(f64::NAN);
+        }
+    }
+
+    /// Takes the last row back, which is not whole.
+    fn cut(&mut self, row: usize) {
+        self.numbers.cut_off = Some(row);
+        self.numbers.columns.iter_mut().for_each(|values| values.truncate(row));
+        self.numbers.gaps.iter_mut().for_each(|gaps| gaps.retain(|gap| *gap < row));
+    }
+}

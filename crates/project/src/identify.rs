@@ -1,0 +1,189 @@
+//! `[identify]`: recorded static tests of the servovalve, and what their columns hold.
+
+use super::key::plain;
+use super::visitor::Visitor;
+use phea_hydraulics::servovalve::PortCircuit;
+use phea_quantity::{Dimension, FLOW, PRESSURE, TIME, VOLTAGE};
+
+/// One of the static tests of ISO 10770-1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StaticTest {
+    /// Ports blocked: leakage and port pressures over the command.
+    Leakage,
+    /// Ports joined through a meter: flow over the command.
+    Metering,
+    /// Ports blocked, a small command: port pressures around null.
+    PressureGain,
+}
+
+impl StaticTest {
+    /// All, in the order of ISO 10770-1.
+    pub const ALL: [StaticTest; 3] = [StaticTest::Leakage, StaticTest::Metering, StaticTest::PressureGain];
+
+    /// As files are called.
+    pub fn name(self) -> &'static str {
+        match self {
+            StaticTest::Leakage => "leakage",
+            StaticTest::Metering => "metering",
+            StaticTest::PressureGain => "pressure_gain",
+        }
+    }
+
+    /// How the ports are piped.
+    pub fn circuit(self) -> PortCircuit {
+        match self {
+            StaticTest::Leakage | StaticTest::PressureGain => PortCircuit::Blocked,
+            StaticTest::Metering => PortCircuit::Connected,
+        }
+    }
+
+    /// Whether the leakage is measured, and the flow between the ports.
+    pub fn measures_flow(self) -> [bool; 2] {
+        [self == StaticTest::Leakage, self == StaticTest::Metering]
+    }
+}
+
+/// What a column of a recorded test holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TestSignal {
+    /// s.
+    Time,
+    /// V.
+    Command,
+    /// Pa, p_S.
+    SupplyPressure,
+    /// Pa, p_T.
+    TankPressure,
+    /// Pa, p_A.
+    PressureA,
+    /// Pa, p_B.
+    PressureB,
+    /// m³/s, from the supply, ports blocked.
+    LeakFlow,
+    /// m³/s, from port A to port B.
+    Flow,
+}
+
+impl TestSignal {
+    /// All, in the order of columns.
+    pub const ALL: [TestSignal; 8] = [
+        TestSignal::Time,
+        TestSignal::Command,
+        TestSignal::SupplyPressure,
+        TestSignal::TankPressure,
+        TestSignal::PressureA,
+        TestSignal::PressureB,
+        TestSignal::LeakFlow,
+        TestSignal::Flow,
+    ];
+
+    /// As columns and keys call it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            TestSignal::Time => "time",
+            TestSignal::Command => "command",
+            TestSignal::SupplyPressure => "supply_pressure",
+            TestSignal::TankPressure => "tank_pressure",
+            TestSignal::PressureA => "pressure_a",
+            TestSignal::PressureB => "pressure_b",
+            TestSignal::LeakFlow => "leak_flow",
+            TestSignal::Flow => "flow",
+        }
+    }
+
+    /// What it measures.
+    pub const fn dimension(self) -> &'static Dimension {
+        match self {
+            TestSignal::Time => &TIME,
+            TestSignal::Command => &VOLTAGE,
+            TestSignal::LeakFlow | TestSignal::Flow => &FLOW,
+            _ => &PRESSURE,
+        }
+    }
+
+    const fn doc(self) -> &'static str {
+        match self {
+            TestSignal::Time => "Column of the time.",
+            TestSignal::Command => "Column of the command of the valve.",
+            TestSignal::SupplyPressure => "Column of the supply pressure.",
+            TestSignal::TankPressure => "Column of the tank pressure.",
+            TestSignal::PressureA => "Column of the pressure at port A.",
+            TestSignal::PressureB => "Column of the pressure at port B.",
+            TestSignal::LeakFlow => "Column of the flow from the supply while the ports are blocked.",
+            TestSignal::Flow => "Column of the flow from port A to port B.",
+        }
+    }
+}
+
+/// What a valve is identified from.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Identify {
+    /// Recorded tests, one in a file.
+    pub recordings: Vec<RecordedTest>,
+}
+
+/// A file with a recorded test.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RecordedTest {
+    /// A table as text or Parquet, relative to the project.
+    pub file: String,
+    /// Which test; absent: as the columns say.
+    pub test: Option<StaticTest>,
+    /// What separates the values of a text; absent: it is found.
+    pub separator: Option<String>,
+    /// What the headings do not say, in the order of [`TestSignal::ALL`].
+    pub columns: [Option<RecordedColumn>; 8],
+}
+
+/// A column of a file.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RecordedColumn {
+    /// Its heading; absent: the name of the signal.
+    pub column: Option<String>,
+    /// Its unit; absent: as the heading says.
+    pub unit: Option<String>,
+}
+
+impl Identify {
+    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let k = plain("recording", "Recorded static tests of the servovalve, one in a file.");
+        v.tables(k, &mut self.recordings, RecordedTest::visit);
+    }
+}
+
+impl RecordedTest {
+    /// A file whose headings say everything.
+    pub fn of(file: &str) -> RecordedTest {
+        RecordedTest { file: file.to_string(), ..RecordedTest::default() }
+    }
+
+    /// What the project says of a signal's column.
+    pub fn column(&self, signal: TestSignal) -> Option<&RecordedColumn> {
+        let all = TestSignal::ALL.iter().zip(&self.columns);
+        all.filter(|(one, _)| **one == signal).find_map(|(_, column)| column.as_ref())
+    }
+
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let mut file = Some(std::mem::take(&mut self.file));
+        v.text(plain("file", "A table as text or Parquet, relative to this file."), &mut file, true);
+        self.file = file.unwrap_or_default();
+        let words = &[
+            ("leakage", Some(StaticTest::Leakage)),
+            ("metering", Some(StaticTest::Metering)),
+            ("pressure_gain", Some(StaticTest::PressureGain)),
+        ];
+        v.choice(plain("test", "Which test; absent: as the columns say."), words, &mut self.test, false);
+        let k = plain("separator", "What separates the values of a text; absent: it is found.");
+        v.text(k, &mut self.separator, false);
+        for (signal, column) in TestSignal::ALL.into_iter().zip(&mut self.columns) {
+            v.table(plain(signal.name(), signal.doc()), column, RecordedColumn::visit);
+        }
+    }
+}
+
+impl RecordedColumn {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        v.text(plain("column", "Its heading; absent: the name of the signal."), &mut self.column, false);
+        v.text(plain("unit", "Its unit; absent: as the heading says."), &mut self.unit, false);
+    }
+}

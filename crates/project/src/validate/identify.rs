@@ -1,0 +1,48 @@
+//! `[[identify.recording]]`.
+
+use super::Check;
+use crate::{Identify, RecordedTest, StaticTest, TestSignal};
+use phea_quantity::{self as quantity, RATIO};
+
+/// Files that are there twice, units that are none, and signals that a test does not have.
+pub(super) fn identify(identify: &Identify, check: &mut Check<'_, '_>) {
+    for (index, recorded) in identify.recordings.iter().enumerate() {
+        let path = format!("identify.recording[{index}]");
+        let earlier = identify.recordings.iter().take(index);
+        if !recorded.file.is_empty() && earlier.into_iter().any(|earlier| earlier.file == recorded.file) {
+            check.error(&format!("{path}.file"), format!("`{}` is there twice", recorded.file));
+        }
+        let is_sign =
+            |text: &str| text.len() == 1 && text.is_ascii() && !text.contains(['"', '\n', '\r', '.']);
+        if let Some(sign) = recorded.separator.as_deref().filter(|sign| !is_sign(sign)) {
+            let message = format!("`{sign}` cannot separate values: a separator is one sign of ASCII");
+            check.error(&format!("{path}.separator"), message);
+        }
+        columns(recorded, &path, check);
+    }
+}
+
+fn columns(recorded: &RecordedTest, path: &str, check: &mut Check<'_, '_>) {
+    for signal in TestSignal::ALL {
+        let Some(column) = recorded.column(signal) else { continue };
+        let path = format!("{path}.{}", signal.name());
+        let is_foreign = match recorded.test {
+            Some(StaticTest::Metering) => signal == TestSignal::LeakFlow,
+            Some(StaticTest::Leakage) => signal == TestSignal::Flow,
+            Some(StaticTest::PressureGain) => matches!(signal, TestSignal::LeakFlow | TestSignal::Flow),
+            None => false,
+        };
+        if let Some(test) = recorded.test.filter(|_| is_foreign) {
+            check
+                .error(&path, format!("a {} test has no `{}`", test.name().replace('_', " "), signal.name()));
+        }
+        let Some(unit) = &column.unit else { continue };
+        let is_share = signal == TestSignal::Command && unit == "%";
+        let dimension = if is_share { &RATIO } else { signal.dimension() };
+        if let Err(error) = quantity::parse(&format!("1 {unit}"), dimension) {
+            let message = format!("`{unit}` is no unit of {}: {error}", dimension.name);
+            let units: &[&str] = if dimension.units.is_empty() { &["%"] } else { dimension.units };
+            check.error_with_help(&format!("{path}.unit"), message, format!("such as {}", units.join(", ")));
+        }
+    }
+}

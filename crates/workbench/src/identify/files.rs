@@ -1,0 +1,128 @@
+//! What the files hold, and what was dealt with in them.
+
+use phea_hydraulics::servovalve::PortCircuit;
+use serde::Serialize;
+
+use super::{ColumnContents, FileContents, Identification};
+use crate::answer::Number;
+use crate::document::{Cell, Document, Table};
+use crate::project::{Diagnostic, TestSignal};
+use crate::quantity::DisplayUnit;
+
+/// The files as they were read.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Read {
+    /// What each holds.
+    pub contents: Vec<FileContents>,
+    /// What was dealt with without being refused.
+    pub warnings: Vec<Diagnostic>,
+}
+
+#[derive(Serialize)]
+pub(super) struct TestBody<'a> {
+    file: &'a str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    test: Option<&'static str>,
+    ports: &'static str,
+    rows: usize,
+    rows_left_out: usize,
+    columns: Vec<ColumnBody<'a>>,
+    unused_columns: &'a [String],
+}
+
+#[derive(Serialize)]
+struct ColumnBody<'a> {
+    heading: &'a str,
+    signal: &'static str,
+    read_in: &'a str,
+    unit: &'static str,
+    range: [Number; 2],
+    gaps: usize,
+}
+
+#[derive(Serialize)]
+pub(super) struct WarningBody<'a> {
+    message: &'a str,
+    file: &'a str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    line: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    column: Option<usize>,
+}
+
+impl Read {
+    pub(super) fn tests<'a>(&'a self, found: &'a Identification) -> Vec<TestBody<'a>> {
+        let both = self.contents.iter().zip(&found.recordings);
+        both.map(|(contents, recording)| TestBody {
+            file: &contents.file,
+            test: contents.test.map(|test| test.name()),
+            ports: match recording.circuit {
+                PortCircuit::Blocked => "blocked",
+                PortCircuit::Connected => "connected",
+            },
+            rows: contents.rows,
+            rows_left_out: contents.rows_left_out,
+            columns: contents.columns.iter().map(column).collect(),
+            unused_columns: &contents.unused,
+        })
+        .collect()
+    }
+
+    pub(super) fn warnings(&self) -> Vec<WarningBody<'_>> {
+        let place = |number: usize| Some(number).filter(|number| *number > 0);
+        let all = self.warnings.iter();
+        all.map(|warning| WarningBody {
+            message: &warning.message,
+            file: &warning.file,
+            line: place(warning.line),
+            column: place(warning.column),
+        })
+        .collect()
+    }
+
+    /// A row for each column, and a sentence for what is not used and what was dealt with.
+    pub(super) fn tell(&self, out: &mut Document) {
+        let headings = ["file", "column", "holds", "from", "to", "unit", "gaps"];
+        let rows = self.contents.iter().flat_map(|file| file.columns.iter().map(|column| row(file, column)));
+        out.section("What the files hold", Table::new(headings).with(rows));
+        let unused = self.contents.iter().filter(|file| !file.unused.is_empty()).map(|file| {
+            let names: Vec<String> = file.unused.iter().map(|name| format!("`{name}`")).collect();
+            format!("Not used of {}: {}.", file.file, names.join(", "))
+        });
+        let warnings = self.warnings.iter().map(|warning| match warning.line {
+            0 => format!("{}: {}.", warning.file, warning.message),
+            line => format!("{}:{line}: {}.", warning.file, warning.message),
+        });
+        out.sentences(unused.chain(warnings));
+    }
+}
+
+fn column(column: &ColumnContents) -> ColumnBody<'_> {
+    ColumnBody {
+        heading: &column.heading,
+        signal: column.signal.name(),
+        read_in: &column.unit,
+        unit: column.signal.dimension().si,
+        range: column.range.map(Number),
+        gaps: column.gaps,
+    }
+}
+
+fn row(file: &FileContents, column: &ColumnContents) -> [Cell; 7] {
+    let unit = match column.signal {
+        TestSignal::Time => DisplayUnit::SECOND,
+        TestSignal::Command => DisplayUnit::VOLT,
+        TestSignal::LeakFlow | TestSignal::Flow => DisplayUnit::LITRE_PER_MINUTE,
+        _ => DisplayUnit::BAR,
+    };
+    let [least, greatest] = column.range.map(|value| Cell::number(unit.of(value), 4));
+    [
+        Cell::from(file.file.clone()),
+        Cell::Code(column.heading.clone()),
+        Cell::from(column.signal.name().replace('_', " ")),
+        least,
+        greatest,
+        Cell::from(unit.symbol),
+        Cell::count(column.gaps),
+    ]
+}
