@@ -42,6 +42,12 @@ fn page(answer: &Answer) -> &str {
     std::str::from_utf8(&file.bytes).unwrap()
 }
 
+/// The report of the hose without its sizing chapter and its pictures, made once.
+fn plain_hose() -> &'static Report {
+    static REPORT: OnceLock<Report> = OnceLock::new();
+    REPORT.get_or_init(|| plain_report(HOSE))
+}
+
 /// The report without its sizing chapter and its pictures, which is all that many questions need.
 fn plain_report(project: &str) -> Report {
     report_of(&without_design(project), &[])
@@ -283,7 +289,7 @@ fn the_same_project_gives_the_same_bytes() {
 
 #[test]
 fn it_is_made_for_light_and_dark_and_paper() {
-    let page = plain_report(HOSE).html;
+    let page = &plain_hose().html;
     for words in
         ["prefers-color-scheme: dark", "@media print", "color-scheme: light dark", "name=\"viewport\""]
     {
@@ -402,7 +408,7 @@ fn the_summary_is_what_the_commands_say() {
 
 #[test]
 fn only_models_of_the_same_parameters_are_drawn_against_each_other() {
-    let report = plain_report(HOSE);
+    let report = plain_hose();
     let drawing = |name: &str| {
         report.figures.iter().find(|figure| figure.name == name).unwrap().to_svg_standalone().to_string()
     };
@@ -446,8 +452,8 @@ fn an_unstable_loop_is_called_unstable_and_not_measured() {
             .contains("The closed loop is unstable: its force grows without bound and is not drawn.")
     );
     assert!(unstable.figures.iter().all(|figure| figure.name != "step"));
-    let step =
-        plain_report(HOSE).summary.into_iter().find(|(name, _)| *name == "Nominal linear loop").unwrap().1;
+    let (_, step) =
+        plain_hose().summary.iter().find(|(name, _)| *name == "Nominal linear loop").unwrap();
     assert!(step.contains("% overshoot, settles in "), "{step}");
     // A proportional loop ends beside its reference: it does not settle in the band.
     let beside = report_with(&["controller.numerator=\"0.0001\"", "controller.denominator=\"1\""]);
