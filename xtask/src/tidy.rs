@@ -3,6 +3,7 @@
 
 mod book;
 mod catalogue;
+mod circles;
 mod citation;
 mod dependencies;
 mod equations;
@@ -56,6 +57,7 @@ const CHECKS: &[(&str, Check)] = &[
     ("syntax", syntax),
     ("book", book::check),
     ("catalogue", catalogue::check),
+    ("circles", circles::check),
     ("dependencies", dependencies::check),
     ("equations", equations::check),
     ("golden", golden::check),

@@ -22,7 +22,6 @@ pub mod least_squares;
 pub mod linear;
 pub mod portable;
 pub mod random;
-pub mod responding;
 pub mod scalar;
 pub mod simulation;
 pub mod time_response;

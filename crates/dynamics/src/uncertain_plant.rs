@@ -6,14 +6,16 @@
 //! sees only this value: it can evaluate a plant at any point of the parameter box, over numbers,
 //! dual numbers or intervals, and so search and prove between the grid points.
 
+pub mod responding;
+
 use std::sync::Arc;
 
 use num_complex::Complex64;
 
 use crate::expression::{Expression, Recorded};
 use crate::portable;
-use crate::responding::{RespondingPlant, RespondingPlants};
 use crate::scalar::{Interval, Scalar};
+use crate::uncertain_plant::responding::{RespondingPlant, RespondingPlants};
 
 /// One uncertain parameter: `minimum <= nominal <= maximum`, in SI units.
 #[derive(Clone, Debug, PartialEq)]

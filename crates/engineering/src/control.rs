@@ -4,7 +4,7 @@
 use num_complex::Complex64;
 use phea_dynamics::controller::{AntiWindup, Compensator, Controller, Element, Stage, Timing};
 use phea_dynamics::linear::{Discretization, LinearError, Polynomial, TimeDomain, TransferFunction};
-use phea_qft::design::quantisation::{CoefficientFormat, Converter, Quantisation, QuantisationError};
+use phea_qft::design::quantization::{CoefficientFormat, Converter, Quantization, QuantizationError};
 
 use crate::project::{
     self, ElementKind, Formula, FormulaError, Project, Rational, RationalFunction, Transfer,
@@ -31,7 +31,7 @@ pub enum ControlError {
     },
     /// What is rounded cannot be.
     #[error("[controller.quantization]: {0}")]
-    Quantisation(#[from] QuantisationError),
+    Quantization(#[from] QuantizationError),
     /// Zeros and poles without the factor before them.
     #[error("{place}: `zeros` and `poles` need `gain`, the leading coefficient")]
     Gain {
@@ -98,14 +98,14 @@ pub fn timing(project: &Project) -> Timing {
 /// The rounding in the controller's computer: none where the project does not say.
 ///
 /// # Errors
-/// [`ControlError::Quantisation`] for an invalid converter.
-pub fn quantization(project: &Project) -> Result<Quantisation, ControlError> {
+/// [`ControlError::Quantization`] for an invalid converter.
+pub fn quantization(project: &Project) -> Result<Quantization, ControlError> {
     let declared = project.controller.as_ref().and_then(|controller| controller.quantization.clone());
-    let Some(declared) = declared else { return Ok(Quantisation::default()) };
-    let converter = |bits: u32, range: Option<[f64; 2]>| -> Result<_, QuantisationError> {
+    let Some(declared) = declared else { return Ok(Quantization::default()) };
+    let converter = |bits: u32, range: Option<[f64; 2]>| -> Result<_, QuantizationError> {
         Ok(range.filter(|_| bits > 0).map(|range| Converter::new(bits, range)).transpose()?)
     };
-    Ok(Quantisation {
+    Ok(Quantization {
         command: converter(declared.command_bits, declared.command_range)?,
         measurement: converter(declared.measurement_bits, declared.measurement_range)?,
         coefficients: match declared.coefficients {

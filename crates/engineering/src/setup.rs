@@ -8,7 +8,7 @@
 use phea_dynamics::controller::{Compensator, Controller, Timing};
 use phea_dynamics::linear::TransferFunction;
 use phea_qft::closed_loop::Compensation;
-use phea_qft::design::quantisation::{CoefficientFormat, Quantisation, rounded};
+use phea_qft::design::quantization::{CoefficientFormat, Quantization, rounded};
 
 use crate::control::{self, ControlError};
 use crate::project::Project;
@@ -31,7 +31,7 @@ pub struct Setup<'a> {
     /// delay where the project does not say.
     pub timing: Timing,
     /// The rounding in the controller's computer: none where the project does not say.
-    pub quantization: Quantisation,
+    pub quantization: Quantization,
     rig: Result<Rig, RigError>,
 }
 
@@ -97,7 +97,7 @@ impl<'a> Setup<'a> {
     /// where nothing is rounded.
     ///
     /// # Errors
-    /// [`ControlError::Quantisation`] for coefficients that cannot be stored.
+    /// [`ControlError::Quantization`] for coefficients that cannot be stored.
     pub fn deployed(&self, controller: &Controller) -> Result<Controller, ControlError> {
         match self.quantization.coefficients {
             CoefficientFormat::Double => Ok(controller.clone()),

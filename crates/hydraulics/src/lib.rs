@@ -28,6 +28,7 @@ pub mod operating_point;
 pub mod orifice;
 pub mod parameter;
 pub mod plant;
+pub mod power_unit;
 pub mod reference_rig;
 pub mod servovalve;
 pub mod stiffness;

@@ -25,16 +25,15 @@ mod equations;
 mod ledger;
 mod load;
 mod options;
-mod power_unit;
 mod signals;
 mod start;
 mod state;
 
+pub use crate::power_unit::{Accumulator, PowerUnit, PumpLimited};
 pub use chambers::{AeratedChambers, Chambers};
 pub use ledger::{Account, ENERGY_ACCOUNTS, Ledger, OIL_ACCOUNTS};
 pub use load::{LoadModel, Motion};
 pub use options::{MachineError, MachineOptions};
-pub use power_unit::{Accumulator, PowerUnit, PumpLimited};
 pub use signals::{INDICATORS, SIGNALS};
 pub use start::{InitialCondition, StartValues};
 pub use state::MachineState;

@@ -73,7 +73,7 @@ pub struct DeclaredController {
     /// How a continuous controller becomes a sampled one.
     pub discretization: DeclaredDiscretization,
     /// The rounding in its computer; absent: none.
-    pub quantization: Option<Quantization>,
+    pub quantization: Option<DeclaredQuantization>,
     /// The feed-forward of the load velocity; absent: none.
     pub load_velocity_feed_forward: Option<FeedForward>,
 }
@@ -99,7 +99,7 @@ impl FeedForward {
 
 /// What the computer of a sampled controller rounds.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Quantization {
+pub struct DeclaredQuantization {
     /// Bits of the converter of the command; 0: no rounding.
     pub command_bits: u32,
     /// V (or the plant's input unit), from and to.
@@ -127,7 +127,7 @@ pub enum Coefficients {
     Single,
 }
 
-impl Quantization {
+impl DeclaredQuantization {
     fn visit<V: Visitor>(&mut self, v: &mut V) {
         let bits = |name, doc| key(name, &RATIO, doc).not_negative().at_most(32.0).or(0.0);
         let k = bits("command_bits", "Bits of the command's converter; 0: it does not round.");
@@ -200,7 +200,7 @@ impl DeclaredController {
         let k = plain("discretization", "How a continuous controller becomes a sampled one.");
         v.choice(k, words, &mut self.discretization, false);
         let k = plain("quantization", "What the computer of a sampled controller rounds.");
-        v.table(k, &mut self.quantization, Quantization::visit);
+        v.table(k, &mut self.quantization, DeclaredQuantization::visit);
         let k = plain("load_velocity_feed_forward", "What is added to the command for a load that moves.");
         v.table(k, &mut self.load_velocity_feed_forward, FeedForward::visit);
     }

@@ -52,19 +52,6 @@ pub struct Start {
     pub file: Option<String>,
 }
 
-/// Published metrics of a step.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Published {
-    /// Overshoot in percent of the step.
-    pub overshoot_percent: Option<f64>,
-    /// Settling time in s.
-    pub settling_time: Option<f64>,
-    /// Where it is published.
-    pub source: Option<String>,
-    /// A remark for the reader.
-    pub remark: Option<String>,
-}
-
 /// What the load does.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LoadMotion {
@@ -247,17 +234,6 @@ impl Start {
         v.optional(key("spool", &VOLTAGE, "Spool position as equivalent command."), &mut self.spool);
         v.optional(key("force", &FORCE, "Force in the load cell."), &mut self.force);
         v.text(plain("file", "A saved state to go on from, instead of all these."), &mut self.file, false);
-    }
-}
-
-impl Published {
-    pub(super) fn visit<V: Visitor>(&mut self, v: &mut V) {
-        let k = key("overshoot_percent", &RATIO, "Overshoot, in percent of the step.").not_negative();
-        v.optional(k, &mut self.overshoot_percent);
-        let k = key("settling_time", &TIME, "Settling time.").positive();
-        v.optional(k, &mut self.settling_time);
-        v.text(plain("source", "Where it is published."), &mut self.source, true);
-        v.text(plain("remark", "A remark for the reader."), &mut self.remark, false);
     }
 }
 

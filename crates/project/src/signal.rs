@@ -1,7 +1,7 @@
 //! Functions of time in a scenario: a reference force, an open-loop command, an external force.
 
 use super::key::{Key, key, plain};
-use super::scenario::Published;
+use super::published::Published;
 use super::visitor::{Variants, Visitor};
 use phea_quantity::{ANGLE, ANGULAR_FREQUENCY, Dimension, FORCE, TIME, VOLTAGE};
 

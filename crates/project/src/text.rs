@@ -90,7 +90,7 @@ impl RawFinding {
     }
 
     /// Something is missing, which a syntax error may be to blame for.
-    pub fn consequence(mut self) -> Self {
+    pub(crate) fn consequence(mut self) -> Self {
         self.consequence = true;
         self
     }

@@ -13,8 +13,12 @@ mod signal;
 mod specification;
 mod wishes;
 
+use super::catalogue::Catalogue;
+use super::key::plain;
 use super::reader::Reader;
-use super::text::{Place, RawFinding};
+use super::text::{Findings, Place, RawFinding};
+use super::tree::{Entry, TreeNode, Value};
+use super::visitor::Visitor;
 use super::{DeclaredElement, LINEAR_PARAMETERS, Project};
 
 /// Reports all contradictions between values.
@@ -43,14 +47,28 @@ pub(super) fn project(project: &Project, reader: &mut Reader<'_>) {
     }
 }
 
-/// Reports contradictions within one element at `path`.
-pub(super) fn element(
-    element: &DeclaredElement,
-    path: &str,
-    sample_time: Option<f64>,
-    reader: &mut Reader<'_>,
-) {
-    linear_loop::one_element(element, path, sample_time, &mut Check { reader });
+impl DeclaredElement {
+    /// The element that a table describes; its errors go to the findings. `sample_time` in s is
+    /// that of the controller.
+    pub fn read(
+        node: &TreeNode,
+        sample_time: Option<f64>,
+        findings: &mut Findings,
+    ) -> Option<DeclaredElement> {
+        let errors = findings.error_count();
+        let place = node.place;
+        let entry = Entry { key: "elements".to_string(), key_place: place, node: node.clone() };
+        let root = TreeNode { place, value: Value::Table(vec![entry]) };
+        let catalogue = Catalogue::default();
+        let mut reader = Reader::new(&root, place.text, &catalogue, findings);
+        let mut element: Option<DeclaredElement> = None;
+        reader.table(plain("elements", "An element."), &mut element, DeclaredElement::visit);
+        if let Some(element) = &element {
+            let mut check = Check { reader: &mut reader };
+            linear_loop::one_element(element, "elements", sample_time, &mut check);
+        }
+        element.filter(|_| findings.error_count() == errors)
+    }
 }
 
 /// Reports findings at the places of values.

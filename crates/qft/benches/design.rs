@@ -17,7 +17,7 @@ use phea_dynamics::uncertain_plant::{
     PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant,
 };
 use phea_dynamics::watch::unwatched;
-use phea_qft::design::quantisation::CoefficientFormat;
+use phea_qft::design::quantization::CoefficientFormat;
 use phea_qft::design::{
     ControllerChoice, Design, DesignOptions, DesignProblem, DesignStatus, Objective, PrefilterChoice, design,
 };

@@ -13,7 +13,7 @@ use phea_dynamics::linear::{
     Discretization, LinearError, Polynomial, StateSpace, TimeDomain, TransferFunction,
 };
 use phea_dynamics::portable;
-use phea_dynamics::responding::RespondingPlant;
+use phea_dynamics::uncertain_plant::responding::RespondingPlant;
 use phea_dynamics::uncertain_plant::{PlantCoefficients, PlantMember, RationalCoefficients, UncertainPlant};
 
 use crate::family::MeasuredPlant;

@@ -8,7 +8,7 @@ mod counterexample;
 mod diagnosis;
 mod feedback_sign;
 mod problem;
-pub mod quantisation;
+pub mod quantization;
 mod result;
 mod run;
 mod stabilising;

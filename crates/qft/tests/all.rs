@@ -16,7 +16,7 @@ mod proof;
 mod proof_curved;
 mod proof_sampled;
 mod proof_trap;
-mod quantisation;
+mod quantization;
 mod responding;
 mod rig;
 mod sample_stability;

@@ -12,7 +12,7 @@ use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
 use phea_dynamics::linear::{LinearError, Polynomial, StateSpace, TimeDomain, TransferFunction};
 use phea_dynamics::portable::{exp, exp_complex, ln, magnitude};
 use phea_dynamics::random::share;
-use phea_dynamics::responding::RespondingPlant;
+use phea_dynamics::uncertain_plant::responding::RespondingPlant;
 use phea_dynamics::uncertain_plant::{
     PlantCoefficients, RateNumerators, RationalCoefficients, UncertainParameter, UncertainPlant,
 };

@@ -11,7 +11,7 @@ use phea_dynamics::frequency::logarithmic_grid;
 use phea_dynamics::linear::{Polynomial, TransferFunction};
 use phea_dynamics::portable::{exp, ln, magnitude};
 use phea_dynamics::random::share;
-use phea_dynamics::responding::{RespondingPlant, RespondingPlants};
+use phea_dynamics::uncertain_plant::responding::{RespondingPlant, RespondingPlants};
 use phea_dynamics::uncertain_plant::{
     PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant,
 };

@@ -7,6 +7,7 @@ mod refusal;
 mod schema;
 mod simulate;
 
+pub use crate::error::CommandError;
 pub use campaign::{CampaignRequest, CampaignRuns, campaign_watched};
 pub use identify::{IdentifyRequest, identify_watched};
 pub use phea_engineering::error::ProcedureError;
@@ -29,14 +30,14 @@ use crate::design::{self, design_and_repair, design_project};
 use crate::family::{family, visited_box};
 use crate::figure::FigureError;
 use crate::linearize::SweepRequest;
-use crate::project::{Loaded, Refusal};
+use crate::project::Loaded;
 use crate::quantity::{self, LENGTH, VOLTAGE_PER_FORCE};
 use crate::report::{Report, report};
 use crate::rig::{RigError, sizing_problem};
 use crate::robust::robust_problem;
 use crate::setup::Setup;
 use crate::shaping::{self, RequestedChange, Shaped, shape};
-use crate::simulate::{SimulateError, compare_projects};
+use crate::simulate::compare_projects;
 use crate::sizing::{self, Question, size};
 use crate::source::{Destination, HeldFiles, Source};
 use crate::specification::{self, specifications, wishes};
@@ -117,52 +118,6 @@ impl Request {
             Request::Bench => "bench",
             Request::Report | Request::Page => "report",
         }
-    }
-}
-
-/// Why a valid project has no answer.
-#[derive(Debug, thiserror::Error)]
-pub enum CommandError {
-    /// A procedure has no result.
-    #[error(transparent)]
-    Procedure(ProcedureError),
-    /// A figure cannot be drawn.
-    #[error("a figure: {0}")]
-    Figure(FigureError),
-    /// A plant that is not an actuator, without specifications.
-    #[error(
-        "a report on a [plant] needs at least one [[specification]]; one on a rig needs [valve], [cylinder] and [line]"
-    )]
-    NothingToReport,
-    /// The machine of one project among several cannot be simulated.
-    #[error("{path}: {error}")]
-    Compare {
-        /// Of the project.
-        path: String,
-        /// Why not.
-        error: SimulateError,
-    },
-}
-
-impl CommandError {
-    /// The findings, if files that the project names were rejected, with a place for each.
-    pub fn refusal(&self) -> Option<&Refusal> {
-        match self {
-            CommandError::Procedure(error) => error.refusal(),
-            CommandError::Compare { error, .. } => error.refusal(),
-            CommandError::Figure(_) | CommandError::NothingToReport => None,
-        }
-    }
-
-    /// Whether a file could not be written or read back, although the request was valid.
-    pub fn is_of_files(&self) -> bool {
-        matches!(self, CommandError::Procedure(error) if error.is_of_files())
-    }
-}
-
-impl<E: Into<ProcedureError>> From<E> for CommandError {
-    fn from(error: E) -> CommandError {
-        CommandError::Procedure(error.into())
     }
 }
 

@@ -9,4 +9,5 @@ pub use phea_engineering::design::*;
 pub use answer::json;
 pub use document::text;
 pub(crate) use document::{costs, explanation_words, laws, side_by_side, status};
+pub(crate) use stages::bound_files;
 pub use stages::{files, stage_files};

@@ -11,6 +11,7 @@ pub mod command;
 pub mod derived;
 pub mod design;
 pub mod document;
+pub(crate) mod error;
 pub mod identify;
 pub mod linearize;
 pub mod report;

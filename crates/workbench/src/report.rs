@@ -29,16 +29,16 @@ mod stiffness;
 use maud::{Markup, html};
 
 pub use crate::document::{prose, typeset};
-pub(crate) use bounds::files as bound_files;
 pub use chapter::Chapter;
 pub use opening::{Decided, Decision};
 
+use phea_dynamics::watch::Watch;
 use phea_qft::verification::{SpecificationFinding, Verdict};
 
 use crate::answer::{OutputFile, picture_files, significant};
 use crate::audit::{CERTIFICATE_FILE, ProjectAudit, certificate_of, verdict_words};
-use crate::command::{CommandError, Watch};
 use crate::derived::{self, derive};
+use crate::error::CommandError;
 use crate::figure::{Figure, FigureError};
 use crate::linear_loop::{LinearLoop, LoopStability, StepView, linear_loop_of, settling_words};
 use crate::linearize::{Linearization, linearize};
@@ -184,7 +184,7 @@ fn robust_chapters(project: &Project, judged: &Judged) -> Result<Vec<Chapter>, C
 
 /// Bounds, margins and the designed project as files.
 fn robust_tables(loaded: &Loaded, judged: &Judged) -> Vec<OutputFile> {
-    let mut tables = bounds::files(&judged.problem, &judged.bounds);
+    let mut tables = crate::design::bound_files(&judged.problem, &judged.bounds);
     tables.extend(judged.given.iter().flat_map(crate::audit::files));
     let certificate = |view| certificate_of(loaded, view, CERTIFICATE_FILE);
     tables.extend(judged.given.iter().filter_map(certificate));

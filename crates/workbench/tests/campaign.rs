@@ -238,13 +238,13 @@ fn the_force_is_as_exact_as_the_campaign_says() {
 #[test]
 fn impossible_draws_are_told_by_their_index() {
     let mass = "campaign.parameters.\"cylinder.moving_mass\"={ minimum = 1, maximum = 9, distribution = \"normal\" }";
-    let stiction = "campaign.parameters.\"cylinder.friction.static\"={ minimum = 70, maximum = 150 }";
-    let plan = plan(&[mass, stiction]);
+    let static_friction = "campaign.parameters.\"cylinder.friction.static\"={ minimum = 70, maximum = 150 }";
+    let plan = plan(&[mass, static_friction]);
     let rows = plan.rows(0..200, lanes(1)).unwrap();
     let place = |path: &str| plan.ranges().iter().position(|range| range.path == path).unwrap();
-    let [mass, stiction, coulomb] =
+    let [mass, static_friction, coulomb] =
         ["cylinder.moving_mass", "cylinder.friction.static", "cylinder.friction.coulomb"].map(place);
-    let impossible = |row: &Row| row.values[mass] <= 0.0 || row.values[stiction] < row.values[coulomb];
+    let impossible = |row: &Row| row.values[mass] <= 0.0 || row.values[static_friction] < row.values[coulomb];
     let mut refused = 0;
     for (index, row) in rows.iter().enumerate() {
         assert_eq!((row.run, &row.values), (index as u64, &plan.draw(index as u64).values));

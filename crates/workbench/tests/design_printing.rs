@@ -9,7 +9,7 @@ use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::watch::unwatched;
 use phea_qft::audit::audit;
 use phea_qft::closed_loop::Compensation;
-use phea_qft::design::quantisation::{CoefficientFormat, rounded};
+use phea_qft::design::quantization::{CoefficientFormat, rounded};
 use phea_qft::design::{
     BindingLimit, Conflict, ControllerChoice, Design, DesignProblem, DesignRound, DesignStatus,
     PrefilterChoice, Relaxation,
@@ -23,7 +23,7 @@ use phea_workbench::design::{
     stage_files, text,
 };
 use phea_workbench::project::{
-    self, FeedForward, Loaded, Prefilter, Quantization, RationalFunction, Transfer,
+    self, DeclaredQuantization, FeedForward, Loaded, Prefilter, RationalFunction, Transfer,
 };
 use phea_workbench::robust::robust_problem;
 use phea_workbench::setup::Setup;
@@ -312,7 +312,7 @@ fn what_a_setting_says_beside_the_law_is_written_with_it() {
     view.declared_controller = project::DeclaredController {
         transfer: transfer.clone(),
         sample_time: Some(1e-3),
-        quantization: Some(Quantization { command_bits: 12, ..Quantization::default() }),
+        quantization: Some(DeclaredQuantization { command_bits: 12, ..DeclaredQuantization::default() }),
         load_velocity_feed_forward: Some(FeedForward { gain: Some(3.0) }),
         ..project::DeclaredController::default()
     };

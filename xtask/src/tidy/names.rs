@@ -15,9 +15,7 @@ pub(super) fn check(repository: &Repository) -> Vec<Violation> {
         if !shipped || !file.path.contains("/src/") || file.is_test_file() {
             continue;
         }
-        let mut types = Types::default();
-        types.visit_file(&file.syntax);
-        for (name, span) in types.names {
+        for (name, span) in types(&file.syntax) {
             places.entry(name).or_default().push((&file.path, span.start().line));
         }
     }
@@ -30,8 +28,14 @@ pub(super) fn check(repository: &Repository) -> Vec<Violation> {
     repeated.collect()
 }
 
-/// Types that a file defines outside of its tests; those of implementations and traits belong to
-/// these.
+/// The types that a file defines, each with its place.
+pub(super) fn types(syntax: &syn::File) -> Vec<(String, Span)> {
+    let mut types = Types::default();
+    types.visit_file(syntax);
+    types.names
+}
+
+/// Types that a file defines outside of its tests; those of implementations and traits belong to these.
 #[derive(Default)]
 struct Types {
     names: Vec<(String, Span)>,

@@ -1,6 +1,6 @@
 //! The effect of the converters of the controller's computer on its loop.
 
-use phea_qft::design::quantisation::{LimitCycle, RoundingEffect, RoundingEffects, rounding_effects};
+use phea_qft::design::quantization::{LimitCycle, RoundingEffect, RoundingEffects, rounding_effects};
 use phea_qft::family::Family;
 use phea_qft::verification::PlantPoint;
 

@@ -7,7 +7,7 @@
 
 use std::sync::Arc;
 
-use phea_dynamics::responding::{RespondingPlant, RespondingPlants};
+use phea_dynamics::uncertain_plant::responding::{RespondingPlant, RespondingPlants};
 use phea_dynamics::uncertain_plant::{UncertainParameter, UncertainPlant};
 use phea_hydraulics::line::LineError;
 use phea_hydraulics::plant::PlantInMotion;

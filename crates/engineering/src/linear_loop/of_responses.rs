@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use num_complex::Complex64;
 use phea_dynamics::linear::{LinearError, TransferFunction};
-use phea_dynamics::responding::RespondingPlant;
+use phea_dynamics::uncertain_plant::responding::RespondingPlant;
 use phea_qft::closed_loop::{Compensation, Member};
 use phea_qft::family::{FINE, tabulated};
 

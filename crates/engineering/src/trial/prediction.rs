@@ -3,9 +3,9 @@
 
 use std::sync::Arc;
 
-use phea_dynamics::responding::RespondingPlant;
 use phea_dynamics::time_response::{StepBaseline, StepMetrics, step_metrics, step_of_frequency_response};
 use phea_dynamics::uncertain_plant::PlantMember;
+use phea_dynamics::uncertain_plant::responding::RespondingPlant;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::stability::{StabilityStatus, member_stability};
 

@@ -3,7 +3,7 @@
 use phea_dynamics::scalar::Scalar;
 
 use super::{Balance, Settled, Steady};
-use crate::machine::PumpLimited;
+use crate::power_unit::PumpLimited;
 use crate::servovalve::{Supply, edge_conductances, edge_flows, tare_flow};
 
 /// A supply, the valve and both chambers, settled. Units: Pa, m3/s, 1.

@@ -3,9 +3,9 @@ use phea_dynamics::scalar::Scalar;
 
 use super::ChamberPolynomials;
 use crate::linear::polynomial::{product, scaled, sum};
-use crate::machine::PumpLimited;
 use crate::operating_point::{Balance, SettledSupply};
 use crate::orifice::{regular_root, regular_root_slope};
+use crate::power_unit::PumpLimited;
 use crate::servovalve::{SpoolDirection, supply_coefficients};
 
 /// A supply whose pressure is a state, for small motions. Units: m3/Pa, m3/(s Pa), m3/(s V).

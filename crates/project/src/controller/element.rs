@@ -3,13 +3,8 @@
 use std::collections::BTreeMap;
 
 use super::RationalFunction;
-use crate::catalogue::Catalogue;
 use crate::key::{Key, key, plain};
 use crate::printer::Printer;
-use crate::reader::Reader;
-use crate::text::Findings;
-use crate::tree::{Entry, TreeNode, Value};
-use crate::validate;
 use crate::visitor::{Variants, Visitor};
 use phea_quantity::{ANGULAR_FREQUENCY, RATIO, TIME};
 
@@ -261,27 +256,6 @@ impl DeclaredElement {
         let mut printer = Printer::new(BTreeMap::new());
         self.clone().visit(&mut printer);
         printer.finish()
-    }
-
-    /// The element that a table describes; its errors go to the findings. `sample_time` in s is
-    /// that of the controller.
-    pub fn read(
-        node: &TreeNode,
-        sample_time: Option<f64>,
-        findings: &mut Findings,
-    ) -> Option<DeclaredElement> {
-        let errors = findings.error_count();
-        let place = node.place;
-        let entry = Entry { key: "elements".to_string(), key_place: place, node: node.clone() };
-        let root = TreeNode { place, value: Value::Table(vec![entry]) };
-        let catalogue = Catalogue::default();
-        let mut reader = Reader::new(&root, place.text, &catalogue, findings);
-        let mut element: Option<DeclaredElement> = None;
-        reader.table(plain("elements", "An element."), &mut element, DeclaredElement::visit);
-        if let Some(element) = &element {
-            validate::element(element, "elements", sample_time, &mut reader);
-        }
-        element.filter(|_| findings.error_count() == errors)
     }
 
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {

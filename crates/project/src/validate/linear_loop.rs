@@ -2,8 +2,8 @@
 
 use super::Check;
 use crate::{
-    DeclaredAntiWindup, DeclaredDiscretization, DeclaredElement, ElementKind, Formula, Prefilter, Project,
-    Quantization, RationalFunction, Transfer, Variable,
+    DeclaredAntiWindup, DeclaredDiscretization, DeclaredElement, DeclaredQuantization, ElementKind, Formula,
+    Prefilter, Project, RationalFunction, Transfer, Variable,
 };
 
 /// Most zeros, poles or elements of a transfer function.
@@ -49,7 +49,7 @@ fn continuous_prefilter(project: &Project, prefilter: &Prefilter, check: &mut Ch
     }
 }
 
-fn quantization(declared: &Quantization, sample_time: Option<f64>, check: &mut Check<'_, '_>) {
+fn quantization(declared: &DeclaredQuantization, sample_time: Option<f64>, check: &mut Check<'_, '_>) {
     let path = "controller.quantization";
     if sample_time.is_none() {
         check.error(path, "only a sampled controller rounds: [controller] gives no `sample_time`");

@@ -4,7 +4,7 @@
 use num_complex::Complex64;
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::portable;
-use phea_dynamics::responding::RespondingPlant;
+use phea_dynamics::uncertain_plant::responding::RespondingPlant;
 
 use super::{MemberResponse, turned};
 use crate::family::MeasuredPlant;

@@ -4,7 +4,7 @@ use phea_dynamics::controller::Timing;
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::uncertain_plant::UncertainPlant;
 
-use super::quantisation::CoefficientFormat;
+use super::quantization::CoefficientFormat;
 use crate::family::Family;
 use crate::loop_shaping::Structure;
 use crate::specification::Specification;

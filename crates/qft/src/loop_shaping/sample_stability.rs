@@ -17,7 +17,7 @@ use std::cell::OnceCell;
 use num_complex::Complex64;
 use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_dynamics::portable;
-use phea_dynamics::responding::RespondingPlant;
+use phea_dynamics::uncertain_plant::responding::RespondingPlant;
 
 use crate::closed_loop::{Compensation, Member};
 use crate::family::{COARSE, MeasuredPlant, points, table, tabulated};
@@ -227,7 +227,10 @@ impl SampleStability {
     /// # Ok(())
     /// # }
     /// ```
-    pub fn approximate_real_part(&self, feedback: &TransferFunction) -> Result<Option<f64>, LinearError> {
+    pub(crate) fn approximate_real_part(
+        &self,
+        feedback: &TransferFunction,
+    ) -> Result<Option<f64>, LinearError> {
         let question = self.question(feedback)?;
         let mut greatest = 0.0_f64;
         for plant in &self.plants {

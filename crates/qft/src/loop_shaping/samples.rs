@@ -11,7 +11,7 @@ use std::sync::Arc;
 use num_complex::Complex64;
 use phea_dynamics::controller::{Compensator, Controller};
 use phea_dynamics::linear::LinearError;
-use phea_dynamics::responding::RespondingPlant;
+use phea_dynamics::uncertain_plant::responding::RespondingPlant;
 use phea_dynamics::uncertain_plant::{PlantCoefficients, PlantMember, UncertainPlant};
 
 use super::margins::{Demand, Keeping, demands};
@@ -207,7 +207,7 @@ impl Samples {
 
     /// Tightens every limit by this much, dB; where two limits are less than 1 dB apart, by that
     /// share of it.
-    pub fn keep_in_reserve(&mut self, reserve_db: f64) {
+    pub(crate) fn keep_in_reserve(&mut self, reserve_db: f64) {
         self.keeping.reserve_db = reserve_db;
         self.demand_anew();
     }
@@ -215,7 +215,7 @@ impl Samples {
     /// Measures a margin by its share of the distance between two limits, where that is less than 1
     /// dB. Otherwise limits that meet, as those of tracking do at zero frequency, would leave no
     /// margin to be increased.
-    pub fn count_shares_of_room(&mut self, share_of_room: bool) {
+    pub(crate) fn count_shares_of_room(&mut self, share_of_room: bool) {
         self.keeping.share_of_room = share_of_room;
         self.demand_anew();
     }

@@ -200,12 +200,12 @@ impl Shaping {
 
     /// Counts margins by their share of the room between two limits; see
     /// [`Samples::count_shares_of_room`].
-    pub fn count_shares_of_room(&mut self) {
+    pub(crate) fn count_shares_of_room(&mut self) {
         self.samples.count_shares_of_room(true);
     }
 
     /// Tightens every limit by this much from now on; see [`Samples::keep_in_reserve`].
-    pub fn keep_in_reserve(&mut self, reserve_db: f64) {
+    pub(crate) fn keep_in_reserve(&mut self, reserve_db: f64) {
         self.samples.keep_in_reserve(reserve_db);
     }
 

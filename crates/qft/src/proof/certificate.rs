@@ -115,7 +115,7 @@ impl Quotient {
     }
 
     /// Whether it is the number one.
-    pub fn is_one(&self) -> bool {
+    pub(crate) fn is_one(&self) -> bool {
         *self == Quotient::constant(1.0)
     }
 }

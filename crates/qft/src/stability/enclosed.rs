@@ -13,7 +13,7 @@ use num_complex::Complex64;
 use phea_dynamics::analytic::{Analytic, Disc};
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::portable;
-use phea_dynamics::responding::RespondingPlant;
+use phea_dynamics::uncertain_plant::responding::RespondingPlant;
 
 use super::Irresolution;
 use super::measured::outside_of_stable_region;

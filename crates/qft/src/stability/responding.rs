@@ -3,7 +3,7 @@
 use num_complex::Complex64;
 use phea_dynamics::frequency::logarithmic_grid;
 use phea_dynamics::portable::{log10, magnitude};
-use phea_dynamics::responding::RespondingPlant;
+use phea_dynamics::uncertain_plant::responding::RespondingPlant;
 
 use super::enclosed::EnclosedLoop;
 use super::measured::{MeasuredLoop, OpenLoop};

@@ -2,8 +2,8 @@
 
 use phea_dynamics::linear::{TimeDomain, TransferFunction};
 use phea_dynamics::portable;
-use phea_dynamics::responding::RespondingPlant;
 use phea_dynamics::uncertain_plant::RationalCoefficients;
+use phea_dynamics::uncertain_plant::responding::RespondingPlant;
 
 use num_complex::Complex64;
 

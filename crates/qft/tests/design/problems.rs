@@ -9,7 +9,7 @@ use phea_dynamics::uncertain_plant::{
 use phea_dynamics::watch::unwatched;
 use phea_qft::audit::audit;
 use phea_qft::closed_loop::Compensation;
-use phea_qft::design::quantisation::CoefficientFormat;
+use phea_qft::design::quantization::CoefficientFormat;
 use phea_qft::design::{
     ControllerChoice, Design, DesignOptions, DesignProblem, DesignStatus, Objective, PrefilterChoice, design,
 };

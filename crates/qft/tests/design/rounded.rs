@@ -2,8 +2,8 @@
 
 use phea_dynamics::controller::{Controller, Element, Section, Timing};
 use phea_dynamics::watch::unwatched;
-use phea_qft::design::quantisation::{
-    CoefficientFormat, Converter, Quantisation, QuantisationError, rounded,
+use phea_qft::design::quantization::{
+    CoefficientFormat, Converter, Quantization, QuantizationError, rounded,
 };
 use phea_qft::design::{
     Design, DesignOptions, DesignProblem, DesignStatus, LoopDesignError, Objective, design,
@@ -100,7 +100,7 @@ fn a_format_that_holds_no_controller_is_told() {
     let options = least_gain(proportional_integral(), 1);
     let options = DesignOptions { coefficients: fixed(0, 12), ..options };
     let error = design(&regulation(), &options, &mut unwatched).unwrap_err();
-    assert!(matches!(error, LoopDesignError::Quantisation(QuantisationError::TooLarge { .. })), "{error}");
+    assert!(matches!(error, LoopDesignError::Quantization(QuantizationError::TooLarge { .. })), "{error}");
 }
 
 /// A continuous controller has no coefficients that could be rounded.
@@ -119,7 +119,7 @@ fn converter() -> Converter {
 
 /// Output and command of k/(s + 1) sample by sample under a reference that wanders, with and without the roundings of this computer: the rms of
 /// the differences.
-fn rms_of_rounding(controller: &Controller, k: f64, quantisation: &Quantisation) -> [f64; 2] {
+fn rms_of_rounding(controller: &Controller, k: f64, quantization: &Quantization) -> [f64; 2] {
     let sampled = controller.sampled(SAMPLE).unwrap();
     let decay = (-SAMPLE).exp();
     let mut seed = 7_u64;
@@ -136,9 +136,9 @@ fn rms_of_rounding(controller: &Controller, k: f64, quantisation: &Quantisation)
                 Some(converter) if rounds == 1 => converter.rounded(value),
                 _ => value,
             };
-            let measured = round(quantisation.measurement, output[rounds]);
+            let measured = round(quantization.measurement, output[rounds]);
             let command_of = sampled.step(state, reference, measured).command;
-            command[rounds] = round(quantisation.command, command_of);
+            command[rounds] = round(quantization.command, command_of);
             output[rounds] = decay * output[rounds] + (1.0 - decay) * k * command[rounds];
         }
         squares[0] += (output[1] - output[0]) * (output[1] - output[0]);
@@ -148,11 +148,11 @@ fn rms_of_rounding(controller: &Controller, k: f64, quantisation: &Quantisation)
 }
 
 /// The design with the greatest worst margin among those whose rounding does no more than this, rms.
-fn allowed(quantisation: &Quantisation, of_output: f64, of_command: f64) -> (DesignProblem, Design) {
+fn allowed(quantization: &Quantization, of_output: f64, of_command: f64) -> (DesignProblem, Design) {
     let mut problem = regulation();
     let frequencies = vec![0.1, 1.0, 10.0, 100.0];
-    problem.specifications.extend(quantisation.force_specification(of_output, frequencies.clone()));
-    problem.specifications.extend(quantisation.command_specification(of_command, frequencies));
+    problem.specifications.extend(quantization.force_specification(of_output, frequencies.clone()));
+    problem.specifications.extend(quantization.command_specification(of_command, frequencies));
     let objective = Objective::BestWorstMargin;
     let options = DesignOptions { objective, ..least_gain(proportional_integral(), 1) };
     let design = designed(&problem, options);
@@ -170,18 +170,18 @@ fn binds(design: &Design, specification: usize) -> bool {
 /// command of the loop that rounds keeps to it.
 #[test]
 fn an_allowed_error_of_the_command_binds_the_gain() {
-    let quantisation = Quantisation { measurement: Some(converter()), ..Quantisation::default() };
+    let quantization = Quantization { measurement: Some(converter()), ..Quantization::default() };
     let step = converter().step();
     let mut last = f64::INFINITY;
     for allowed_rms in [20.0 * step, 8.0 * step, 3.5 * step] {
-        let (_, design) = allowed(&quantisation, 1.0, allowed_rms);
+        let (_, design) = allowed(&quantization, 1.0, allowed_rms);
         let function = design.law.feedback.transfer_function().unwrap();
         let gain = function.gain().abs();
         assert!(gain < 0.9 * last, "{gain} after {last}");
         last = gain;
         assert!(allowed_rms > 10.0 * step || binds(&design, 2), "{allowed_rms}: {:?}", design.binding);
         for k in [1.0, 1.5, 2.0] {
-            let [_, rms] = rms_of_rounding(&design.controller, k, &quantisation);
+            let [_, rms] = rms_of_rounding(&design.controller, k, &quantization);
             assert!(rms < allowed_rms && rms > 0.02 * allowed_rms, "{rms} of {allowed_rms}");
         }
     }
@@ -191,16 +191,16 @@ fn an_allowed_error_of_the_command_binds_the_gain() {
 /// more gain it takes.
 #[test]
 fn an_allowed_error_of_the_output_binds_the_loop() {
-    let quantisation = Quantisation { command: Some(converter()), ..Quantisation::default() };
+    let quantization = Quantization { command: Some(converter()), ..Quantization::default() };
     let step = converter().step();
     let mut last = 0.0;
     for allowed_rms in [0.1 * step, 0.016 * step] {
-        let (_, design) = allowed(&quantisation, allowed_rms, 1.0);
+        let (_, design) = allowed(&quantization, allowed_rms, 1.0);
         let gain = design.law.feedback.transfer_function().unwrap().gain().abs();
         assert!(gain > 1.1 * last, "{gain} after {last}");
         last = gain;
         for k in [1.0, 1.5, 2.0] {
-            let [rms, _] = rms_of_rounding(&design.controller, k, &quantisation);
+            let [rms, _] = rms_of_rounding(&design.controller, k, &quantization);
             assert!(rms < allowed_rms && rms > 0.02 * allowed_rms, "{rms} of {allowed_rms}");
         }
     }

@@ -6,7 +6,7 @@ use phea_dynamics::expression::Recorded;
 use phea_dynamics::uncertain_plant::{
     PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant,
 };
-use phea_qft::design::quantisation::CoefficientFormat;
+use phea_qft::design::quantization::CoefficientFormat;
 use phea_qft::design::{ControllerChoice, DesignOptions, DesignProblem, Objective, PrefilterChoice};
 use phea_qft::family::Spacing;
 use phea_qft::specification::{Limit, Requirement, Specification};

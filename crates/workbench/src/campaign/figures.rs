@@ -125,10 +125,10 @@ pub(crate) fn files(
     plan: &Plan,
     (shard, rows): (&Shard, &[Row]),
     summary: &Summary,
-) -> Result<Vec<OutputFile>, crate::command::CommandError> {
+) -> Result<Vec<OutputFile>, crate::error::CommandError> {
     let rows = plan.parquet(rows).map_err(CampaignError::RowStore)?;
     let mut files = vec![OutputFile::new(format!("{}.parquet", shard.name()), rows)];
     let pictures = part_files(&pictures(plan, summary)?, &shard.part());
-    files.extend(pictures.map_err(crate::command::CommandError::Figure)?);
+    files.extend(pictures.map_err(crate::error::CommandError::Figure)?);
     Ok(files)
 }

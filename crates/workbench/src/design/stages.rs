@@ -3,6 +3,7 @@
 use phea_dynamics::frequency::decibels;
 use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_dynamics::portable;
+use phea_dynamics::watch::Watch;
 use phea_qft::bound::Placement;
 use phea_qft::specification::Requirement;
 
@@ -10,10 +11,9 @@ use super::answer::factors;
 use super::{AuditedController, ProjectDesign, Repair};
 use super::{DESIGNED_CERTIFICATE, DESIGNED_PROJECT, NEAREST_PROJECT, structure_words};
 use crate::answer::{Csv, OutputFile};
-use crate::audit::{self, certificate_of};
-use crate::command::{CommandError, Watch};
+use crate::audit::{self, certificate_of, kind_key};
+use crate::error::CommandError;
 use crate::project::{Loaded, with_laws};
-use crate::report::bound_files;
 use crate::robust::{DesignFrequency, RobustProblem};
 
 /// How far the drawn frequencies reach beyond the design frequencies.
@@ -147,4 +147,35 @@ fn rounds(view: &ProjectDesign) -> OutputFile {
         ]);
     }
     csv.file("rounds.csv")
+}
+
+/// Bounds and templates as tables for other programs.
+pub(crate) fn bound_files(problem: &RobustProblem, found: &[DesignFrequency]) -> Vec<OutputFile> {
+    let mut bounds =
+        Csv::new("specification,kind,frequency_rad_per_s,phase_deg,forbidden_from_gain,forbidden_to_gain");
+    let mut plants = Csv::new("frequency_rad_per_s,real,imaginary");
+    for one in found {
+        for part in &one.bounds.parts {
+            let Some(specification) = problem.specifications.get(part.specification) else { continue };
+            let kind = kind_key(&specification.requirement);
+            for (phase, forbidden) in part.bound.phases_rad.iter().zip(&part.bound.forbidden) {
+                for [low, high] in forbidden.intervals() {
+                    let phase_deg = phase.to_degrees();
+                    bounds.row(&[
+                        &part.specification,
+                        &kind,
+                        &one.frequency_rad_per_s,
+                        &phase_deg,
+                        &low,
+                        &high,
+                    ]);
+                }
+            }
+        }
+        for point in &one.template.template.points {
+            let response = point.response;
+            plants.row(&[&one.frequency_rad_per_s, &response.re, &response.im]);
+        }
+    }
+    vec![bounds.file("bounds.csv"), plants.file("templates.csv")]
 }

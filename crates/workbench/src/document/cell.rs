@@ -1,11 +1,11 @@
 //! The content of a cell of a table, with its type.
 
+use phea_engineering::audit::{frequency_number, margin_words, verdict_words};
+use phea_engineering::trial::{Agreement, agreement_word};
 use phea_qft::verification::Verdict;
 
 use crate::answer::significant;
-use crate::audit::{frequency_number, margin_words, verdict_words};
 use crate::quantity::DisplayUnit;
-use crate::trial::{Agreement, agreement_word};
 
 /// A verdict as a form and a colour next to its word, so that no reader depends on a single one of
 /// them.

@@ -4,7 +4,7 @@
 use super::chapter::Chapter;
 use super::{closed_loops, family_steps};
 use crate::audit::{ProjectAudit, document};
-use crate::command::CommandError;
+use crate::error::CommandError;
 use crate::robust::RobustProblem;
 use crate::trial::{self, Trial};
 

@@ -7,10 +7,10 @@ use phea_qft::template::{Resolution, Template};
 use phea_qft::verification::Verdict;
 
 use super::chapter::Chapter;
-use crate::answer::{Csv, OutputFile, significant};
+use crate::answer::significant;
 use crate::audit::{ProjectAudit, closed_loop_symbol, frequency_number, kind_key};
-use crate::command::CommandError;
 use crate::document::{Cell, Document, StatusMark, Table};
+use crate::error::CommandError;
 use crate::figure::{
     BoundGroup, Figure, FrequencySeries, NicholsInput, OpenLoopViolation, USUAL_CONTOURS_DB, Words, nichols,
     templates,
@@ -220,35 +220,4 @@ fn feasibility(problem: &RobustProblem, found: &[DesignFrequency]) -> Vec<String
         }
     }
     sentences
-}
-
-/// Bounds and templates as tables for other programs.
-pub(crate) fn files(problem: &RobustProblem, found: &[DesignFrequency]) -> Vec<OutputFile> {
-    let mut bounds =
-        Csv::new("specification,kind,frequency_rad_per_s,phase_deg,forbidden_from_gain,forbidden_to_gain");
-    let mut plants = Csv::new("frequency_rad_per_s,real,imaginary");
-    for one in found {
-        for part in &one.bounds.parts {
-            let Some(specification) = problem.specifications.get(part.specification) else { continue };
-            let kind = kind_key(&specification.requirement);
-            for (phase, forbidden) in part.bound.phases_rad.iter().zip(&part.bound.forbidden) {
-                for [low, high] in forbidden.intervals() {
-                    let phase_deg = phase.to_degrees();
-                    bounds.row(&[
-                        &part.specification,
-                        &kind,
-                        &one.frequency_rad_per_s,
-                        &phase_deg,
-                        &low,
-                        &high,
-                    ]);
-                }
-            }
-        }
-        for point in &one.template.template.points {
-            let response = point.response;
-            plants.row(&[&one.frequency_rad_per_s, &response.re, &response.im]);
-        }
-    }
-    vec![bounds.file("bounds.csv"), plants.file("templates.csv")]
 }

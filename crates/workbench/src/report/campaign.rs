@@ -1,6 +1,7 @@
 //! The chapter on the machine with numbers that deviate from those of the project: bands over time,
 //! and the worst runs.
 
+use phea_dynamics::watch::Watch;
 use phea_engineering::error::ProcedureError;
 
 use super::chapter::Chapter;
@@ -9,8 +10,8 @@ use crate::campaign::{
     CampaignError, METRIC_NAMES, Nowhere, Plan, QUANTILES, RequestedRuns, Shard, Spread, Summary,
     VariedRange, WorstRun, campaign, counted, lumps, metrics, pictures,
 };
-use crate::command::{CommandError, Watch};
 use crate::document::{Cell, Document, StatusMark, Table};
+use crate::error::CommandError;
 use crate::figure::Figure;
 use crate::project::{Distribution, Loaded};
 use crate::simulate::{Window, cause_words, metric_of};

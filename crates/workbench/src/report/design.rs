@@ -6,6 +6,7 @@ mod magnitudes;
 mod prefilter;
 mod sampling;
 
+use phea_dynamics::watch::Watch;
 use phea_engineering::error::ProcedureError;
 use phea_qft::design::DesignStatus;
 use phea_qft::verification::Verdict;
@@ -14,9 +15,9 @@ use super::chapter::Chapter;
 use super::family_steps;
 use crate::answer::{OutputFile, significant};
 use crate::audit::basis;
-use crate::command::{CommandError, Watch};
 use crate::design::{DesignError, ProjectDesign, costs, design_project, files, laws, side_by_side, status};
 use crate::document::{Document, StatusMark};
+use crate::error::CommandError;
 use crate::figure::Figure;
 use crate::project::{Loaded, Project};
 use crate::robust::DesignFrequency;

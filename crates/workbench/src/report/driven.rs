@@ -1,7 +1,7 @@
 //! The scenarios of a project, driven under each controller of the report.
 
 use crate::answer::significant;
-use crate::command::{CommandError, Watch};
+use crate::error::CommandError;
 use crate::project::Project;
 use crate::quantity::DisplayUnit;
 use crate::setup::Setup;
@@ -11,6 +11,7 @@ use crate::simulate::{
 };
 use crate::source::Source;
 use crate::specification::wishes;
+use phea_dynamics::watch::Watch;
 use phea_engineering::error::ProcedureError;
 
 /// Name of the controller that the project gives.

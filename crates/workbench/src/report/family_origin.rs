@@ -1,13 +1,15 @@
 //! The chapter on where the family comes from: how much of the ranges that it replaces the rig reaches, how much smaller its
 //! templates are, and what that gives the controller.
 
+use phea_dynamics::watch::Watch;
+
 use super::chapter::Chapter;
 use super::judged::Judged;
 use crate::answer::significant;
 use crate::audit::{ProjectAudit, audit_project, frequency_number};
-use crate::command::{CommandError, Watch};
 use crate::derived::{replaced_sentences, replaced_table};
 use crate::document::{Cell, Document, Table};
+use crate::error::CommandError;
 use crate::family::visited_box;
 use crate::project::Project;
 use crate::replaced::{TemplateAreas, boxed, replaced_ranges, template_areas};

@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use phea_dynamics::linear::{LinearError, Polynomial, TransferFunction};
-use phea_dynamics::responding::RespondingPlant;
 use phea_dynamics::time_response::{
     TimeResponseError, delayed_loop_step, step_of_frequency_response, step_response, uniform_times,
 };
+use phea_dynamics::uncertain_plant::responding::RespondingPlant;
 use phea_dynamics::uncertain_plant::{PlantCoefficients, PlantMember};
 use phea_qft::closed_loop::Member;
 use phea_qft::family::{Family, UncertainFamily};

@@ -1,10 +1,12 @@
 //! The verdicts of a report: the audit of the given controller, the design, and the trials of both
 //! on the machine.
 
+use phea_dynamics::watch::Watch;
+
 use super::design::{self, Designed};
 use crate::audit::{ProjectAudit, audit_problem, try_to_prove};
-use crate::command::{CommandError, Watch};
 use crate::design::ProjectDesign;
+use crate::error::CommandError;
 use crate::robust::{DesignFrequency, RobustProblem, robust_problem};
 use crate::setup::Setup;
 use crate::source::Source;

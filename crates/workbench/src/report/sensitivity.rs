@@ -1,13 +1,14 @@
 //! The appendix on uncertain quantities: the first scenario with multiples of the load cell's
 //! stiffness and of the friction.
 
+use phea_dynamics::watch::Watch;
 use phea_engineering::error::ProcedureError;
 
 use super::chapter::Chapter;
 use super::driven::MachineChapter;
 use super::simulation::told;
-use crate::command::{CommandError, Watch};
 use crate::document::{Document, Table};
+use crate::error::CommandError;
 use crate::figure::DisplayUnit;
 use crate::project::{FrictionLaw, Project};
 use crate::setup::Setup;

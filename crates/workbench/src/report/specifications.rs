@@ -11,8 +11,8 @@ use phea_qft::specification::{
 use super::chapter::Chapter;
 use crate::answer::significant;
 use crate::audit::{closed_loop_symbol, frequency_number, frequency_words, meaning};
-use crate::command::CommandError;
 use crate::document::{Cell, Document, StatusMark, Table};
+use crate::error::CommandError;
 use crate::project::Project;
 use crate::quantity::{RATIO, display};
 use crate::robust::RobustProblem;

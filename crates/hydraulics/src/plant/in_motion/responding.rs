@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 use num_complex::Complex64;
 use phea_dynamics::analytic::{Disc, Jet};
 use phea_dynamics::portable::argument;
-use phea_dynamics::responding::RespondingPlant;
 use phea_dynamics::uncertain_plant::PlantCoefficients;
+use phea_dynamics::uncertain_plant::responding::RespondingPlant;
 
 use super::super::{ChamberDynamics, LinearLoad, LinearPlant, YieldingSupply};
 use super::{ChamberSide, Paths, PlantInMotion};

@@ -11,7 +11,7 @@ use phea_dynamics::watch::Watch;
 
 use super::{Attempt, AttemptEnding, FEASIBLE_DB, Leave, LoopDesignError, RESERVE_DB};
 use crate::closed_loop::Compensation;
-use crate::design::quantisation::{CoefficientFormat, rounded};
+use crate::design::quantization::{CoefficientFormat, rounded};
 use crate::loop_shaping::{Aim, Judgement, SearchProblem};
 
 /// The limits of the search are tightened by this multiple of what is missing.

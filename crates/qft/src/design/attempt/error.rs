@@ -3,7 +3,7 @@
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::watch::Stopped;
 
-use crate::design::quantisation::QuantisationError;
+use crate::design::quantization::QuantizationError;
 use crate::loop_shaping::SamplesError;
 use crate::prefilter::PrefilterError;
 
@@ -21,7 +21,7 @@ pub enum LoopDesignError {
     Prefilter(PrefilterError),
     /// The coefficients of the controller cannot be represented in their format.
     #[error("{0}")]
-    Quantisation(#[from] QuantisationError),
+    Quantization(#[from] QuantizationError),
     /// The watch stopped the design.
     #[error(transparent)]
     Stopped(#[from] Stopped),

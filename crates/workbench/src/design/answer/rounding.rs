@@ -1,6 +1,6 @@
 //! The effect of converters on a designed loop, in JSON.
 
-use phea_qft::design::quantisation::LimitCycle;
+use phea_qft::design::quantization::LimitCycle;
 
 use crate::answer::Object;
 use crate::audit::PlantNames;

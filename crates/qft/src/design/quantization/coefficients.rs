@@ -5,7 +5,7 @@ use phea_dynamics::controller::{Compensator, Controller, Element, Section};
 use phea_dynamics::linear::{Polynomial, TimeDomain, TransferFunction};
 use phea_dynamics::portable;
 
-use super::QuantisationError;
+use super::QuantizationError;
 
 /// How a coefficient is kept.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -60,16 +60,16 @@ impl CoefficientFormat {
     /// point, and to even in floating point.
     ///
     /// # Errors
-    /// [`QuantisationError::TooLarge`].
+    /// [`QuantizationError::TooLarge`].
     ///
     /// # Example
     /// ```
-    /// use phea_qft::design::quantisation::CoefficientFormat;
+    /// use phea_qft::design::quantization::CoefficientFormat;
     /// let format = CoefficientFormat::Fixed { integer_bits: 1, fraction_bits: 3 };
     /// assert_eq!(format.rounded(-1.3), Ok(-1.25));
     /// assert!(format.rounded(1.95).is_err()); // 2 would be the nearest
     /// ```
-    pub fn rounded(self, value: f64) -> Result<f64, QuantisationError> {
+    pub fn rounded(self, value: f64) -> Result<f64, QuantizationError> {
         let (kept, largest) = match self {
             CoefficientFormat::Double => (value, f64::MAX),
             CoefficientFormat::Single => (f64::from(value as f32), f64::from(f32::MAX)),
@@ -79,7 +79,7 @@ impl CoefficientFormat {
             }
         };
         // also what is no number
-        if kept.abs() <= largest { Ok(kept) } else { Err(QuantisationError::TooLarge { value, largest }) }
+        if kept.abs() <= largest { Ok(kept) } else { Err(QuantizationError::TooLarge { value, largest }) }
     }
 }
 
@@ -90,16 +90,16 @@ impl CoefficientFormat {
 /// grows, is another controller.
 ///
 /// # Errors
-/// [`QuantisationError::Continuous`] for a controller without sample time,
-/// [`QuantisationError::TooLarge`], [`QuantisationError::Vanished`], and those of sampling.
+/// [`QuantizationError::Continuous`] for a controller without sample time,
+/// [`QuantizationError::TooLarge`], [`QuantizationError::Vanished`], and those of sampling.
 ///
 /// # Example
 /// A lag of 20 rad/s at 1 kHz: its gain at zero frequency is (b_0 + b_1)/(1 - p), where 1 - p =
 /// 0.02 has lost two digits.
 /// ```
 /// use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
-/// use phea_qft::design::quantisation::{CoefficientFormat, rounded};
-/// # fn main() -> Result<(), phea_qft::design::quantisation::QuantisationError> {
+/// use phea_qft::design::quantization::{CoefficientFormat, rounded};
+/// # fn main() -> Result<(), phea_qft::design::quantization::QuantizationError> {
 /// let timing = Timing { sample_time_s: Some(1e-3), ..Timing::default() };
 /// let prefilter = Compensator::new(vec![Element::RealPole { frequency: 20.0 }]);
 /// let controller = Controller { prefilter, timing, ..Controller::default() };
@@ -114,8 +114,8 @@ impl CoefficientFormat {
 pub fn rounded(
     controller: &Controller,
     format: CoefficientFormat,
-) -> Result<RoundedController, QuantisationError> {
-    let sample_time_s = controller.timing.sample_time_s.ok_or(QuantisationError::Continuous)?;
+) -> Result<RoundedController, QuantizationError> {
+    let sample_time_s = controller.timing.sample_time_s.ok_or(QuantizationError::Continuous)?;
     let sections = |compensator: &Compensator| {
         let function = compensator.transfer_function()?;
         let sampled = match function.domain() {
@@ -133,7 +133,7 @@ pub fn rounded(
             dc_gain_ratio: Some(function.dc_gain() / sampled.dc_gain()).filter(|ratio| ratio.is_finite()),
         };
         let function = Compensator::new(vec![Element::General(function)]);
-        Ok::<_, QuantisationError>((function, kept, effect))
+        Ok::<_, QuantizationError>((function, kept, effect))
     };
     let (feedback_function, feedback, feedback_effect) = sections(&controller.feedback)?;
     let (prefilter_function, prefilter, prefilter_effect) = match controller.timing.continuous_prefilter {
@@ -145,11 +145,11 @@ pub fn rounded(
     Ok(RoundedController { controller, feedback, prefilter, feedback_effect, prefilter_effect })
 }
 
-fn rounded_section(section: &Section, format: CoefficientFormat) -> Result<Section, QuantisationError> {
+fn rounded_section(section: &Section, format: CoefficientFormat) -> Result<Section, QuantizationError> {
     let [b0, b1, b2] = section.numerator;
     let numerator = [format.rounded(b0)?, format.rounded(b1)?, format.rounded(b2)?];
     if numerator == [0.0; 3] {
-        return Err(QuantisationError::Vanished(section.numerator));
+        return Err(QuantizationError::Vanished(section.numerator));
     }
     let [a1, a2] = section.denominator;
     let plain = [format.rounded(a1)?, format.rounded(a2)?];
@@ -165,14 +165,14 @@ fn rounded_section(section: &Section, format: CoefficientFormat) -> Result<Secti
     Ok(Section { numerator, denominator: kept.unwrap_or(plain) })
 }
 
-fn in_series(sections: &[Section], sample_time_s: f64) -> Result<TransferFunction, QuantisationError> {
+fn in_series(sections: &[Section], sample_time_s: f64) -> Result<TransferFunction, QuantizationError> {
     let unity = TransferFunction::gain_only(1.0).in_domain(TimeDomain::Discrete { sample_time_s })?;
     sections
         .iter()
         .try_fold(unity, |product, section| Ok(product.series(&section.transfer_function(sample_time_s)?)?))
 }
 
-fn largest_pole_shift(exact: &[Section], kept: &[Section]) -> Result<f64, QuantisationError> {
+fn largest_pole_shift(exact: &[Section], kept: &[Section]) -> Result<f64, QuantizationError> {
     let mut largest = 0.0_f64;
     for (before, after) in exact.iter().zip(kept) {
         let (before, after) = (poles(before)?, poles(after)?);
@@ -187,7 +187,7 @@ fn largest_pole_shift(exact: &[Section], kept: &[Section]) -> Result<f64, Quanti
 }
 
 /// Sorted by magnitude.
-fn poles(section: &Section) -> Result<Vec<Complex64>, QuantisationError> {
+fn poles(section: &Section) -> Result<Vec<Complex64>, QuantizationError> {
     let [a1, a2] = section.denominator;
     Ok(Polynomial::new(vec![1.0, a1, a2]).roots()?)
 }

@@ -11,7 +11,7 @@ use std::collections::VecDeque;
 use phea_dynamics::controller::Section;
 use phea_dynamics::linear::{LinearError, TimeDomain, TransferFunction};
 
-use super::{Quantisation, QuantisationError};
+use super::{Quantization, QuantizationError};
 use crate::closed_loop::{Compensation, Member};
 
 /// Least and greatest number of samples that are run.
@@ -90,8 +90,8 @@ pub struct RoundingEffects {
 /// valve cause limit cycles of their own, which a linear loop does not show.
 ///
 /// # Errors
-/// [`QuantisationError::Continuous`] for a continuous loop or a plant that was measured;
-/// [`QuantisationError::NotSettled`] for a loop that is not stable; [`QuantisationError::Linear`]
+/// [`QuantizationError::Continuous`] for a continuous loop or a plant that was measured;
+/// [`QuantizationError::NotSettled`] for a loop that is not stable; [`QuantizationError::Linear`]
 /// for a controller that cannot be run.
 ///
 /// # Example
@@ -102,7 +102,7 @@ pub struct RoundingEffects {
 /// use phea_dynamics::linear::TransferFunction;
 /// use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients};
 /// use phea_qft::closed_loop::Compensation;
-/// use phea_qft::design::quantisation::{Converter, Quantisation, rounding_effects};
+/// use phea_qft::design::quantization::{Converter, Quantization, rounding_effects};
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let timing = Timing { sample_time_s: Some(0.01), ..Timing::default() };
 /// let feedback = Compensator::new(vec![Element::Gain(5.0)]);
@@ -111,8 +111,8 @@ pub struct RoundingEffects {
 /// let command = RationalCoefficients { numerator: vec![2.0], denominator: vec![1.0, 0.0] };
 /// let plant = compensation.member(PlantCoefficients { command, disturbance: None, dead_time_s: 0.0, rate: None })?;
 /// let converter = Some(Converter::new(10, [-1.0, 1.0])?);
-/// let quantisation = Quantisation { command: converter, ..Quantisation::default() };
-/// let effect = rounding_effects(&compensation, &[plant], &quantisation)?.force_from_command.ok_or("no effect")?;
+/// let quantization = Quantization { command: converter, ..Quantization::default() };
+/// let effect = rounding_effects(&compensation, &[plant], &quantization)?.force_from_command.ok_or("no effect")?;
 /// assert!((effect.peak - 0.5 * 2.0 / 1024.0 / 5.0).abs() < 1e-9);
 /// # Ok(())
 /// # }
@@ -120,10 +120,10 @@ pub struct RoundingEffects {
 pub fn rounding_effects(
     compensation: &Compensation,
     members: &[Member],
-    quantisation: &Quantisation,
-) -> Result<RoundingEffects, QuantisationError> {
+    quantization: &Quantization,
+) -> Result<RoundingEffects, QuantizationError> {
     let (command, measurement) =
-        (quantisation.command.map(|found| found.step()), quantisation.measurement.map(|found| found.step()));
+        (quantization.command.map(|found| found.step()), quantization.measurement.map(|found| found.step()));
     let mut effects = RoundingEffects {
         force_from_command: None,
         force_from_measurement: None,
@@ -136,13 +136,13 @@ pub fn rounding_effects(
     let mut rest: Option<(f64, usize)> = None;
     for (plant, member) in members.iter().enumerate() {
         let Member::Sampled { command: output, with_sensor, .. } = member else {
-            return Err(QuantisationError::Continuous);
+            return Err(QuantizationError::Continuous);
         };
         let sampled_loop = SampledLoop::new(output, with_sensor, compensation.feedback())?;
         let settled = |error| {
             sampled_loop
                 .response(error)
-                .ok_or(QuantisationError::NotSettled { plant, samples: SAMPLES_MAXIMUM })
+                .ok_or(QuantizationError::NotSettled { plant, samples: SAMPLES_MAXIMUM })
         };
         if let Some(step) = command {
             take(&mut effects.force_from_command, settled([1.0, 0.0])?.0.effect(step, plant));
@@ -243,7 +243,7 @@ impl SampledLoop {
         output: &TransferFunction,
         measured: &TransferFunction,
         feedback: &TransferFunction,
-    ) -> Result<SampledLoop, QuantisationError> {
+    ) -> Result<SampledLoop, QuantizationError> {
         let [output, measured, feedback] =
             [DelayedSections::new(output)?, DelayedSections::new(measured)?, DelayedSections::new(feedback)?];
         Ok(SampledLoop { output, measured, feedback })

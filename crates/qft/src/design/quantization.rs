@@ -20,7 +20,7 @@ use crate::specification::{Limit, Requirement, Specification};
 /// The converters and the coefficients of the computer that runs a controller; a converter that is
 /// absent does not round.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Quantisation {
+pub struct Quantization {
     /// DA converter of the command, in the command's unit.
     pub command: Option<Converter>,
     /// AD converter of the measured output, in the output's unit.
@@ -31,7 +31,7 @@ pub struct Quantisation {
 
 /// Why the effect of rounding cannot be computed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum QuantisationError {
+pub enum QuantizationError {
     /// A converter is impossible.
     #[error(transparent)]
     Converter(#[from] ConverterError),
@@ -63,7 +63,7 @@ pub enum QuantisationError {
     Linear(#[from] LinearError),
 }
 
-impl Quantisation {
+impl Quantization {
     /// The specification that keeps the force error due to a rounded command below a given rms
     /// value: for a design that takes its converter into account from the start.
     ///
@@ -78,12 +78,12 @@ impl Quantisation {
     /// # Example
     /// 5 N allowed for 16 bits over 20 V
     /// ```
-    /// use phea_qft::design::quantisation::{Converter, Quantisation};
+    /// use phea_qft::design::quantization::{Converter, Quantization};
     /// use phea_qft::specification::{Limit, Requirement};
-    /// # fn main() -> Result<(), phea_qft::design::quantisation::QuantisationError> {
-    /// let quantisation =
-    ///     Quantisation { command: Some(Converter::new(16, [-10.0, 10.0])?), ..Quantisation::default() };
-    /// let specification = quantisation.force_specification(5.0, vec![1.0, 10.0]).map(|found| found.requirement);
+    /// # fn main() -> Result<(), phea_qft::design::quantization::QuantizationError> {
+    /// let quantization =
+    ///     Quantization { command: Some(Converter::new(16, [-10.0, 10.0])?), ..Quantization::default() };
+    /// let specification = quantization.force_specification(5.0, vec![1.0, 10.0]).map(|found| found.requirement);
     /// // ORIGIN: analytic, 5 N over half of 20 V/65536
     /// assert_eq!(specification, Some(Requirement::PlantInputDisturbance(Limit::Constant(32768.0))));
     /// # Ok(())

@@ -7,8 +7,8 @@ use phea_dynamics::linear::{Discretization, TransferFunction};
 use phea_dynamics::portable::{cos, exp, magnitude, sin};
 use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients};
 use phea_qft::closed_loop::{Compensation, Member};
-use phea_qft::design::quantisation::{
-    CoefficientFormat, Converter, LimitCycle, Quantisation, QuantisationError, rounded, rounding_effects,
+use phea_qft::design::quantization::{
+    CoefficientFormat, Converter, LimitCycle, Quantization, QuantizationError, rounded, rounding_effects,
 };
 
 const SAMPLE: f64 = 0.01;
@@ -29,12 +29,12 @@ fn member(compensation: &Compensation, numerator: &[f64], denominator: &[f64]) -
         .unwrap()
 }
 
-fn converters(command: f64, measurement: f64) -> Quantisation {
+fn converters(command: f64, measurement: f64) -> Quantization {
     let converter = |step: f64| Some(Converter::new(1, [-step, step]).unwrap());
-    Quantisation {
+    Quantization {
         command: converter(command),
         measurement: converter(measurement),
-        ..Quantisation::default()
+        ..Quantization::default()
     }
 }
 
@@ -106,7 +106,7 @@ fn sums_enclose_the_largest_magnitude() {
 }
 
 /// A lag a/(s + a) with one sample of delay under integral control, run with and without rounding: output and command of every sample.
-fn run(controller: &Controller, quantisation: Option<&Quantisation>, samples: usize) -> Vec<[f64; 2]> {
+fn run(controller: &Controller, quantization: Option<&Quantization>, samples: usize) -> Vec<[f64; 2]> {
     let sampled = controller.sampled(SAMPLE).unwrap();
     let mut state = sampled.at_rest();
     let decay = exp(-5.0 * SAMPLE);
@@ -114,8 +114,8 @@ fn run(controller: &Controller, quantisation: Option<&Quantisation>, samples: us
     let mut record = Vec::new();
     for sample in 0..samples {
         let reference = if sample < samples / 2 { 0.7 + 0.2 * sin(0.03 * sample as f64) } else { 0.618 };
-        let (measure, act) = match quantisation {
-            Some(quantisation) => (quantisation.measurement, quantisation.command),
+        let (measure, act) = match quantization {
+            Some(quantization) => (quantization.measurement, quantization.command),
             None => (None, None),
         };
         let measured = measure.map_or(output, |converter| converter.rounded(output));
@@ -143,17 +143,17 @@ fn a_loop_that_rounds_stays_within_the_peaks() {
     for (command, measurement) in [(Some(8), None), (None, Some(8)), (Some(8), Some(10)), (Some(12), Some(7))]
     {
         let converter = |bits: Option<u32>| bits.map(|bits| Converter::new(bits, range).unwrap());
-        let quantisation = Quantisation {
+        let quantization = Quantization {
             command: converter(command),
             measurement: converter(measurement),
-            ..Quantisation::default()
+            ..Quantization::default()
         };
-        let found = rounding_effects(&compensation, std::slice::from_ref(&member), &quantisation).unwrap();
+        let found = rounding_effects(&compensation, std::slice::from_ref(&member), &quantization).unwrap();
         let peak = [found.force_from_command, found.force_from_measurement]
             .iter()
             .map(|effect| effect.map_or(0.0, |effect| effect.peak))
             .sum::<f64>();
-        let (exact, rounds) = (run(&controller, None, 4000), run(&controller, Some(&quantisation), 4000));
+        let (exact, rounds) = (run(&controller, None, 4000), run(&controller, Some(&quantization), 4000));
         let off = exact.iter().zip(&rounds).map(|(one, other)| (one[0] - other[0]).abs()).fold(0.0, f64::max);
         assert!(
             off <= peak * (1.0 + 1e-6) && off > 0.05 * peak,
@@ -169,15 +169,15 @@ fn a_coarse_command_makes_a_limit_cycle() {
     let compensation = around(&controller);
     let member = member(&compensation, &[5.0], &[1.0, 5.0]);
     for (command, measurement, rests) in [(12, 10, true), (9, 12, false)] {
-        let quantisation = Quantisation {
+        let quantization = Quantization {
             command: Some(Converter::new(command, [-4.0, 4.0]).unwrap()),
             measurement: Some(Converter::new(measurement, [-4.0, 4.0]).unwrap()),
-            ..Quantisation::default()
+            ..Quantization::default()
         };
-        let found = rounding_effects(&compensation, std::slice::from_ref(&member), &quantisation)
+        let found = rounding_effects(&compensation, std::slice::from_ref(&member), &quantization)
             .unwrap()
             .limit_cycle;
-        let steps = [quantisation.command.unwrap().step(), quantisation.measurement.unwrap().step()];
+        let steps = [quantization.command.unwrap().step(), quantization.measurement.unwrap().step()];
         let (rest_step, measurement_step, can_rest) = match found.unwrap() {
             LimitCycle::CanRest { rest_step, measurement_step } => (rest_step, measurement_step, true),
             LimitCycle::Expected { plant: 0, rest_step, measurement_step } => {
@@ -188,18 +188,18 @@ fn a_coarse_command_makes_a_limit_cycle() {
         assert_eq!(can_rest, rests);
         close(rest_step, steps[0], 1e-12);
         close(measurement_step, steps[1], 1e-15);
-        let commands = settled_commands(&controller, &quantisation);
+        let commands = settled_commands(&controller, &quantization);
         assert_eq!(commands.windows(2).all(|pair| pair[0] == pair[1]), rests, "{command} {measurement}");
     }
 }
 
 /// The last commands of a loop whose reference is a level of the measurement, and between two of a coarse command.
-fn settled_commands(controller: &Controller, quantisation: &Quantisation) -> Vec<f64> {
+fn settled_commands(controller: &Controller, quantization: &Quantization) -> Vec<f64> {
     let sampled = controller.sampled(SAMPLE).unwrap();
     let mut state = sampled.at_rest();
     let decay = exp(-5.0 * SAMPLE);
     let (mut output, mut waiting) = (0.0, 0.0);
-    let (measure, act) = (quantisation.measurement.unwrap(), quantisation.command.unwrap());
+    let (measure, act) = (quantization.measurement.unwrap(), quantization.command.unwrap());
     let reference = measure.rounded(0.6155);
     let mut commands = Vec::new();
     for _ in 0..20_000 {
@@ -320,21 +320,21 @@ fn what_cannot_be_is_refused() {
     assert_eq!((full.step(), full.rounded(7.0)), (1.0 / 4_294_967_296.0, 1.0));
     let small = CoefficientFormat::Fixed { integer_bits: 0, fraction_bits: 8 };
     let gain = |gain| controller(vec![Element::Gain(gain)], 0.0);
-    assert_eq!(rounded(&gain(1e-3), small), Err(QuantisationError::Vanished([1e-3, 0.0, 0.0])));
+    assert_eq!(rounded(&gain(1e-3), small), Err(QuantizationError::Vanished([1e-3, 0.0, 0.0])));
     assert_eq!(
         rounded(&gain(2.0), small),
-        Err(QuantisationError::TooLarge { value: 2.0, largest: 1.0 - 1.0 / 256.0 })
+        Err(QuantizationError::TooLarge { value: 2.0, largest: 1.0 - 1.0 / 256.0 })
     );
     assert!(rounded(&gain(1e39), CoefficientFormat::Single).is_err());
     let continuous = Controller::default();
-    assert_eq!(rounded(&continuous, small), Err(QuantisationError::Continuous));
+    assert_eq!(rounded(&continuous, small), Err(QuantizationError::Continuous));
     let compensation = around(&continuous);
     let plant = member(&compensation, &[1.0], &[1.0, 1.0]);
     let found = rounding_effects(&compensation, &[plant], &converters(1.0, 1.0));
-    assert_eq!(found, Err(QuantisationError::Continuous));
+    assert_eq!(found, Err(QuantizationError::Continuous));
     // unstable: 1.1 of the limit
     let unstable = around(&gain(2.2 / SAMPLE));
     let plant = member(&unstable, &[1.0], &[1.0, 0.0]);
     let found = rounding_effects(&unstable, &[plant], &converters(1.0, 1.0));
-    assert!(matches!(found, Err(QuantisationError::NotSettled { plant: 0, .. })));
+    assert!(matches!(found, Err(QuantizationError::NotSettled { plant: 0, .. })));
 }

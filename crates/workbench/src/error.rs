@@ -1,0 +1,53 @@
+//! Why a command has no answer: the one error of everything that the workbench computes.
+
+use phea_engineering::error::ProcedureError;
+
+use crate::figure::FigureError;
+use crate::project::Refusal;
+use crate::simulate::SimulateError;
+
+/// Why a valid project has no answer.
+#[derive(Debug, thiserror::Error)]
+pub enum CommandError {
+    /// A procedure has no result.
+    #[error(transparent)]
+    Procedure(ProcedureError),
+    /// A figure cannot be drawn.
+    #[error("a figure: {0}")]
+    Figure(FigureError),
+    /// A plant that is not an actuator, without specifications.
+    #[error(
+        "a report on a [plant] needs at least one [[specification]]; one on a rig needs [valve], [cylinder] and [line]"
+    )]
+    NothingToReport,
+    /// The machine of one project among several cannot be simulated.
+    #[error("{path}: {error}")]
+    Compare {
+        /// Of the project.
+        path: String,
+        /// Why not.
+        error: SimulateError,
+    },
+}
+
+impl CommandError {
+    /// The findings, if files that the project names were rejected, with a place for each.
+    pub fn refusal(&self) -> Option<&Refusal> {
+        match self {
+            CommandError::Procedure(error) => error.refusal(),
+            CommandError::Compare { error, .. } => error.refusal(),
+            CommandError::Figure(_) | CommandError::NothingToReport => None,
+        }
+    }
+
+    /// Whether a file could not be written or read back, although the request was valid.
+    pub fn is_of_files(&self) -> bool {
+        matches!(self, CommandError::Procedure(error) if error.is_of_files())
+    }
+}
+
+impl<E: Into<ProcedureError>> From<E> for CommandError {
+    fn from(error: E) -> CommandError {
+        CommandError::Procedure(error.into())
+    }
+}
