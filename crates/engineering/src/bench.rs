@@ -8,16 +8,20 @@
 //! The spool is assumed to be at rest at each row: its lag of a few milliseconds is negligible
 //! compared with the hysteresis in a cycle of minutes.
 
+mod command_path;
 mod instrument;
+mod reversals;
 
-use phea_dynamics::portable;
+pub use reversals::ReversalReading;
+
 use phea_dynamics::random::stream;
 use phea_dynamics::watch::{Stopped, Watch, tell};
-use phea_hydraulics::servovalve::{SlowSpool, SpoolImperfection, TestStand};
+use phea_hydraulics::servovalve::{OilLaw, SlowSpool, SpoolImperfection, TestStand, WarmOil};
 
+use self::command_path::CommandPath;
 use self::instrument::Instruments;
 pub use crate::project::StaticTest;
-use crate::project::{Bench, BenchWaveform, DeclaredActuator, SupplyModel};
+use crate::project::{Bench, DeclaredActuator, FlowMeter, OilTemperature, SupplyModel};
 use crate::rig::RigError;
 use crate::setup::Setup;
 
@@ -38,17 +42,58 @@ pub struct BenchRow {
     pub leak_flow: f64,
     /// Flow between the ports in the metering test.
     pub flow: f64,
+    /// Temperature of the oil in degC, where it is stated.
+    pub oil_temperature: Option<f64>,
+}
+
+/// What is recorded in one go. Metering tests may be two, one for each meter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BenchSeries {
+    /// Internal leakage.
+    Leakage,
+    /// Metering.
+    Metering,
+    /// Pressure gain.
+    PressureGain,
+    /// Metering with the meter of small flows.
+    LowFlowMetering,
+    /// Hysteresis and threshold: metering over small reversals of the command.
+    Reversals,
+}
+
+impl BenchSeries {
+    /// As files are called.
+    pub fn name(self) -> &'static str {
+        match self {
+            BenchSeries::LowFlowMetering => "metering_low_flow",
+            BenchSeries::Reversals => "reversals",
+            series => series.test().name(),
+        }
+    }
+
+    /// The test it is, as ports and columns are concerned.
+    pub fn test(self) -> StaticTest {
+        match self {
+            BenchSeries::Leakage => StaticTest::Leakage,
+            BenchSeries::PressureGain => StaticTest::PressureGain,
+            BenchSeries::Metering | BenchSeries::LowFlowMetering | BenchSeries::Reversals => {
+                StaticTest::Metering
+            }
+        }
+    }
 }
 
 /// A test as it was recorded.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BenchRun {
     /// Which.
-    pub test: StaticTest,
+    pub series: BenchSeries,
     /// Rows in the order of time.
     pub rows: Vec<BenchRow>,
     /// Lowest supply pressure during the test, without noise, in Pa.
     pub lowest_supply_pressure: f64,
+    /// Hysteresis and threshold as its rows show them.
+    pub reversals: Option<ReversalReading>,
 }
 
 /// Why there are no tests.
@@ -92,17 +137,12 @@ pub fn bench(setup: &Setup<'_>, watch: Watch<'_>) -> Result<Vec<BenchRun>, Bench
     if rows > MOST_ROWS as f64 {
         return Err(BenchError::TooManyRows { rows, most: MOST_ROWS });
     }
-    let meter = settings.flow_meter;
     let stand = TestStand {
         valve: components.valve,
         supply: components.supply,
         tare_reference_drop: declared.valve.tare_drop(&declared.supply),
         pump: pump(declared, settings),
-        meter_coefficient: if meter.pressure_drop > 0.0 {
-            meter.range / meter.pressure_drop.sqrt()
-        } else {
-            f64::INFINITY
-        },
+        meter_coefficient: f64::INFINITY,
     };
     let spool = SpoolImperfection {
         null_bias: declared.valve.null_bias,
@@ -110,11 +150,40 @@ pub fn bench(setup: &Setup<'_>, watch: Watch<'_>) -> Result<Vec<BenchRun>, Bench
         threshold: declared.valve.threshold,
         rate_limit: None,
     };
-    let mut runs = Vec::with_capacity(StaticTest::ALL.len());
-    for test in StaticTest::ALL {
-        runs.push(record(test, (&stand, &spool), settings, rows as usize, watch)?);
+    let series = wanted(settings);
+    let mut runs = Vec::with_capacity(series.len());
+    for series in series {
+        runs.push(record(series, (&stand, &spool), settings, rows as usize, watch)?);
     }
     Ok(runs)
+}
+
+/// The usual three, and what else is declared.
+fn wanted(settings: &Bench) -> Vec<BenchSeries> {
+    let mut series = vec![BenchSeries::Leakage, BenchSeries::Metering, BenchSeries::PressureGain];
+    series.extend(settings.low_flow_meter.map(|_| BenchSeries::LowFlowMetering));
+    series.extend(settings.reversals.map(|_| BenchSeries::Reversals));
+    series
+}
+
+/// The meter between the ports: small flows and reversals are measured by the small one, where there
+/// is one.
+fn meter_of(series: BenchSeries, settings: &Bench) -> FlowMeter {
+    let small = matches!(series, BenchSeries::LowFlowMetering | BenchSeries::Reversals);
+    let small = settings.low_flow_meter.filter(|_| small);
+    small.map_or(settings.flow_meter, |small| small.meter)
+}
+
+/// Flow at a drop of 1 Pa.
+fn meter_coefficient(meter: &FlowMeter) -> f64 {
+    if meter.pressure_drop > 0.0 { meter.range / meter.pressure_drop.sqrt() } else { f64::INFINITY }
+}
+
+/// The oil after a share of the test, beside the one that the valve is stated at.
+fn oil_at(oil: &OilTemperature, share: f64) -> (f64, WarmOil) {
+    let law = OilLaw { viscosity_slope: oil.viscosity_slope, density_slope: oil.density_slope };
+    let temperature = oil.start + (oil.end - oil.start) * share;
+    (temperature, law.warmer(temperature - oil.reference.unwrap_or(oil.start)))
 }
 
 /// Flow of the pump and the override of its relief valve, where the supply is limited.
@@ -129,47 +198,59 @@ fn pump(declared: &DeclaredActuator, settings: &Bench) -> Option<[f64; 2]> {
 
 /// One test from its first row to its last; the spool starts without memory.
 fn record(
-    test: StaticTest,
+    series: BenchSeries,
     (stand, spool): (&TestStand, &SpoolImperfection),
     settings: &Bench,
     rows: usize,
     watch: Watch<'_>,
 ) -> Result<BenchRun, BenchError> {
-    let mut instruments = Instruments::new(settings, stand.valve.nominal_voltage);
-    let mut noise = stream(u64::from(settings.seed), test as u64);
+    let nominal_voltage = stand.valve.nominal_voltage;
+    let mut instruments = Instruments::new(settings, nominal_voltage);
+    let mut noise = stream(u64::from(settings.seed), series as u64);
     let mut memory = SlowSpool::at(0.0);
-    let mut run = BenchRun { test, rows: Vec::with_capacity(rows), lowest_supply_pressure: f64::INFINITY };
-    let share =
-        if test == StaticTest::PressureGain { settings.pressure_gain_amplitude } else { settings.amplitude };
+    let mut found =
+        BenchRun { series, rows: Vec::with_capacity(rows), lowest_supply_pressure: f64::INFINITY, reversals: None };
+    let path = CommandPath::of(series, settings);
+    let meter = meter_of(series, settings);
+    let circuit = series.test().circuit();
+    let stand = TestStand { meter_coefficient: meter_coefficient(&meter), ..*stand };
     for index in 0..rows {
         if index % 64 == 0 {
-            tell(watch, test.name(), index, rows)?;
+            tell(watch, series.name(), index, rows)?;
         }
         let time = index as f64 * settings.sample_time;
-        let cycles = time / settings.duration * f64::from(settings.cycles);
-        let wanted = share * stand.valve.nominal_voltage * wave(settings.waveform, cycles);
-        let command = instruments.command(wanted);
+        let command = instruments.command(nominal_voltage * path.at(time / settings.duration));
         let opening = spool.slow_opening(&mut memory, command);
-        let found = stand.settled(test.circuit(), opening);
-        run.lowest_supply_pressure = run.lowest_supply_pressure.min(found.supply_pressure);
+        let oil = settings.oil_temperature.map(|oil| oil_at(&oil, time / settings.duration));
+        let warm = oil.map_or(stand, |(_, oil)| TestStand {
+            valve: oil.valve(&stand.valve),
+            meter_coefficient: stand.meter_coefficient * oil.turbulent_ratio(),
+            ..stand
+        });
+        let viscosity_ratio = oil.map_or(1.0, |(_, oil)| oil.kinematic_viscosity_ratio());
+        let state = warm.settled(circuit, opening);
+        found.lowest_supply_pressure = found.lowest_supply_pressure.min(state.supply_pressure);
         let mut pressure = |value| instruments.pressure(value, &mut noise);
         let [supply_pressure, pressure_a, pressure_b] =
-            [found.supply_pressure, found.ports.pressure_a, found.ports.pressure_b].map(&mut pressure);
-        let leak_flow =
-            instruments.flow(&settings.leak_meter, found.ports.supply_flow + found.tare_flow, &mut noise);
-        let flow = instruments.flow(&settings.flow_meter, found.ports.port_flow, &mut noise);
-        run.rows.push(BenchRow { time, command, supply_pressure, pressure_a, pressure_b, leak_flow, flow });
+            [state.supply_pressure, state.ports.pressure_a, state.ports.pressure_b].map(&mut pressure);
+        let leakage = state.ports.supply_flow + state.tare_flow;
+        let leak_flow = instruments.flow(&settings.leak_meter, leakage, viscosity_ratio, &mut noise);
+        let flow = instruments.flow(&meter, state.ports.port_flow, viscosity_ratio, &mut noise);
+        let oil_temperature = oil.map(|(temperature, _)| temperature);
+        found.rows.push(BenchRow {
+            time,
+            command,
+            supply_pressure,
+            pressure_a,
+            pressure_b,
+            leak_flow,
+            flow,
+            oil_temperature,
+        });
     }
-    Ok(run)
-}
-
-/// The command over its amplitude after a number of cycles: first rising from zero.
-fn wave(waveform: BenchWaveform, cycles: f64) -> f64 {
-    let phase = cycles - cycles.floor();
-    match waveform {
-        BenchWaveform::Sine => portable::sin(2.0 * std::f64::consts::PI * phase),
-        BenchWaveform::Triangle if phase < 0.25 => 4.0 * phase,
-        BenchWaveform::Triangle if phase < 0.75 => 2.0 - 4.0 * phase,
-        BenchWaveform::Triangle => 4.0 * phase - 4.0,
+    if let Some(reversals) = settings.reversals.filter(|_| series == BenchSeries::Reversals) {
+        let commands = found.rows.iter().map(|row| (row.command, row.flow.abs()));
+        found.reversals = reversals::read(&commands.collect::<Vec<_>>(), &reversals, nominal_voltage, watch)?;
     }
+    Ok(found)
 }

@@ -2,7 +2,7 @@
 
 use super::key::{Key, key, plain};
 use super::visitor::Visitor;
-use phea_quantity::{FLOW, PRESSURE, RATIO, TIME};
+use phea_quantity::{FLOW, PRESSURE, RATIO, TEMPERATURE, TEMPERATURE_COEFFICIENT, TIME};
 
 /// The form of the command over a cycle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -36,6 +36,12 @@ pub struct Bench {
     pub leak_meter: FlowMeter,
     /// Meter between the ports.
     pub flow_meter: FlowMeter,
+    /// A second one for small flows, with a metering test of its own.
+    pub low_flow_meter: Option<LowFlowMeter>,
+    /// The test of hysteresis and threshold, where it is wanted.
+    pub reversals: Option<Reversals>,
+    /// How the oil warms during each test; absent: it does not.
+    pub oil_temperature: Option<OilTemperature>,
     /// Pa, root mean square of the noise of every pressure.
     pub pressure_noise: f64,
     /// Pa, range of every pressure transducer, from zero.
@@ -44,6 +50,39 @@ pub struct Bench {
     pub converter_bits: u32,
     /// Of the noise.
     pub seed: u32,
+}
+
+/// A meter for small flows, and how far the command goes with it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LowFlowMeter {
+    /// The meter.
+    pub meter: FlowMeter,
+    /// Amplitude of the command over the nominal voltage.
+    pub amplitude: f64,
+}
+
+/// The test of hysteresis and threshold: a cycle of the command with small reversals on its way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reversals {
+    /// Greatest command over the nominal voltage.
+    pub amplitude: f64,
+    /// How far the command goes back at each reversal, over the nominal voltage.
+    pub size: f64,
+}
+
+/// How the oil's temperature goes through a test, in a straight line. Units: degC, 1/degC.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OilTemperature {
+    /// At the beginning of each test.
+    pub start: f64,
+    /// At its end.
+    pub end: f64,
+    /// That `[valve]` and `[fluid]` are stated at; absent: that of the beginning.
+    pub reference: Option<f64>,
+    /// Share by which the dynamic viscosity falls with each degree.
+    pub viscosity_slope: f64,
+    /// Share by which the density falls with each degree.
+    pub density_slope: f64,
 }
 
 /// A flow meter.
@@ -82,6 +121,35 @@ const FLOW_METER: FlowMeter = FlowMeter {
     signed: false,
 };
 
+/// Meter of small flows where a project does not say.
+const SMALL_METER: FlowMeter = FlowMeter {
+    range: 5.0 * LITRE_PER_MINUTE,
+    minimum: 0.1 * LITRE_PER_MINUTE,
+    noise: 0.005 * LITRE_PER_MINUTE,
+    pressure_drop: 5e5,
+    signed: false,
+};
+
+impl Default for LowFlowMeter {
+    fn default() -> LowFlowMeter {
+        LowFlowMeter { meter: SMALL_METER, amplitude: 0.13 }
+    }
+}
+
+impl Default for Reversals {
+    fn default() -> Reversals {
+        Reversals { amplitude: 0.12, size: 0.02 }
+    }
+}
+
+impl Default for OilTemperature {
+    fn default() -> OilTemperature {
+        // the viscosity of an ISO VG 46 oil near 40 degC, and the density of mineral oil
+        let [viscosity_slope, density_slope] = [0.045, 7e-4];
+        OilTemperature { start: 37.0, end: 37.0, reference: None, viscosity_slope, density_slope }
+    }
+}
+
 impl Default for Bench {
     fn default() -> Bench {
         Bench {
@@ -94,6 +162,9 @@ impl Default for Bench {
             pump_flow: None,
             leak_meter: LEAK_METER,
             flow_meter: FLOW_METER,
+            low_flow_meter: None,
+            reversals: None,
+            oil_temperature: None,
             pressure_noise: 5e3,
             pressure_range: 100e5,
             converter_bits: 16,
@@ -124,6 +195,12 @@ impl Bench {
         meter(k, &mut self.leak_meter, LEAK_METER, v);
         let k = plain("flow_meter", "Meter between the ports.");
         meter(k, &mut self.flow_meter, FLOW_METER, v);
+        let k = plain("low_flow_meter", "A second one for small flows: a second metering test is made with it.");
+        v.table(k, &mut self.low_flow_meter, LowFlowMeter::visit);
+        let k = plain("reversals", "Test of hysteresis and threshold: a cycle with small reversals on its way.");
+        v.table(k, &mut self.reversals, Reversals::visit);
+        let k = plain("oil_temperature", "How the oil warms during each test; absent: it does not.");
+        v.table(k, &mut self.oil_temperature, OilTemperature::visit);
         let k = key("pressure_noise", &PRESSURE, "Root mean square of the noise of every pressure.");
         v.quantity(k.not_negative().or(5e3), &mut self.pressure_noise);
         let k = key("pressure_range", &PRESSURE, "Range of every pressure transducer, from zero.");
@@ -132,6 +209,41 @@ impl Bench {
         v.count(k.not_negative().at_most(32.0).or(16.0), &mut self.converter_bits);
         let k = key("seed", &RATIO, "Seed of the noise.").not_negative().at_most(4e9).or(1.0);
         v.count(k, &mut self.seed);
+    }
+}
+
+impl LowFlowMeter {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        self.meter.visit(SMALL_METER, v);
+        let k = key("amplitude", &RATIO, "Amplitude of the command over the nominal voltage, with this meter.");
+        v.quantity(k.positive().at_most(1.0).or(0.13), &mut self.amplitude);
+    }
+}
+
+impl Reversals {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let k = key("amplitude", &RATIO, "Greatest command over the nominal voltage.");
+        v.quantity(k.positive().at_most(1.0).or(0.12), &mut self.amplitude);
+        let k = key("size", &RATIO, "How far the command goes back at a reversal, over the nominal voltage.");
+        v.quantity(k.positive().at_most(0.5).or(0.02), &mut self.size);
+    }
+}
+
+impl OilTemperature {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let within = |k: Key| k.above(-50.0).at_most(150.0);
+        let k = key("start", &TEMPERATURE, "Temperature at the beginning of each test.");
+        v.quantity(within(k).or(37.0), &mut self.start);
+        let k = key("end", &TEMPERATURE, "Temperature at the end of each test.");
+        v.quantity(within(k).or(37.0), &mut self.end);
+        let k = key("reference", &TEMPERATURE, "Temperature that the valve is stated at; absent: that of the beginning.");
+        v.optional(within(k), &mut self.reference);
+        let doc = "Share by which the dynamic viscosity falls with each degree.";
+        let k = key("viscosity_slope", &TEMPERATURE_COEFFICIENT, doc).not_negative().at_most(0.2).or(0.045);
+        v.quantity(k, &mut self.viscosity_slope);
+        let doc = "Share by which the density falls with each degree.";
+        let k = key("density_slope", &TEMPERATURE_COEFFICIENT, doc).not_negative().at_most(0.004).or(7e-4);
+        v.quantity(k, &mut self.density_slope);
     }
 }
 

@@ -3,7 +3,7 @@
 use super::key::plain;
 use super::visitor::Visitor;
 use phea_hydraulics::servovalve::PortCircuit;
-use phea_quantity::{Dimension, FLOW, PRESSURE, TIME, VOLTAGE};
+use phea_quantity::{Dimension, FLOW, PRESSURE, TEMPERATURE, TIME, VOLTAGE};
 
 /// One of the static tests of ISO 10770-1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,11 +62,13 @@ pub enum TestSignal {
     LeakFlow,
     /// m³/s, from port A to port B.
     Flow,
+    /// degC, of the oil.
+    OilTemperature,
 }
 
 impl TestSignal {
     /// All, in the order of columns.
-    pub const ALL: [TestSignal; 8] = [
+    pub const ALL: [TestSignal; 9] = [
         TestSignal::Time,
         TestSignal::Command,
         TestSignal::SupplyPressure,
@@ -75,6 +77,7 @@ impl TestSignal {
         TestSignal::PressureB,
         TestSignal::LeakFlow,
         TestSignal::Flow,
+        TestSignal::OilTemperature,
     ];
 
     /// As columns and keys call it.
@@ -88,6 +91,7 @@ impl TestSignal {
             TestSignal::PressureB => "pressure_b",
             TestSignal::LeakFlow => "leak_flow",
             TestSignal::Flow => "flow",
+            TestSignal::OilTemperature => "oil_temperature",
         }
     }
 
@@ -97,6 +101,7 @@ impl TestSignal {
             TestSignal::Time => &TIME,
             TestSignal::Command => &VOLTAGE,
             TestSignal::LeakFlow | TestSignal::Flow => &FLOW,
+            TestSignal::OilTemperature => &TEMPERATURE,
             _ => &PRESSURE,
         }
     }
@@ -111,6 +116,7 @@ impl TestSignal {
             TestSignal::PressureB => "Column of the pressure at port B.",
             TestSignal::LeakFlow => "Column of the flow from the supply while the ports are blocked.",
             TestSignal::Flow => "Column of the flow from port A to port B.",
+            TestSignal::OilTemperature => "Column of the temperature of the oil, which is told and has no part in the fit.",
         }
     }
 }
@@ -132,7 +138,7 @@ pub struct RecordedTest {
     /// What separates the values of a text; absent: it is found.
     pub separator: Option<String>,
     /// What the headings do not say, in the order of [`TestSignal::ALL`].
-    pub columns: [Option<RecordedColumn>; 8],
+    pub columns: [Option<RecordedColumn>; 9],
 }
 
 /// A column of a file.

@@ -1,22 +1,27 @@
 //! Dimensions of physical quantities, and which units people expect to read for each.
 
-/// Exponents of (mass, length, time, voltage, angle), counted in halves so that m³/(s·√Pa) is
+/// Exponents of (mass, length, time, voltage, angle, temperature), counted in halves so that m³/(s·√Pa) is
 /// exact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Exponents(pub [i8; 5]);
+pub struct Exponents(pub [i8; 6]);
 
 impl Exponents {
     /// Whole exponents of kg, m, s, V and rad.
     pub const fn whole(mass: i8, length: i8, time: i8, voltage: i8, angle: i8) -> Self {
-        Exponents([2 * mass, 2 * length, 2 * time, 2 * voltage, 2 * angle])
+        Exponents([2 * mass, 2 * length, 2 * time, 2 * voltage, 2 * angle, 0])
+    }
+
+    /// A whole exponent of degrees Celsius.
+    pub const fn celsius(temperature: i8) -> Self {
+        Exponents([0, 0, 0, 0, 0, 2 * temperature])
     }
 
     /// The dimension of a pure number.
-    pub const NONE: Exponents = Exponents([0; 5]);
+    pub const NONE: Exponents = Exponents([0; 6]);
 
     /// Of the power `halves`/2; `None` where one of them would not be a multiple of one half.
     pub(crate) fn to_halves(self, halves: i8) -> Option<Exponents> {
-        let mut exponents = [0; 5];
+        let mut exponents = [0; 6];
         for (power, exponent) in exponents.iter_mut().zip(self.0) {
             let scaled = i32::from(exponent) * i32::from(halves);
             *power = if scaled % 2 == 0 { i8::try_from(scaled / 2).ok()? } else { return None };
@@ -26,7 +31,7 @@ impl Exponents {
 
     /// In SI base units, such as `kg/(m.s^2)`; `1` for a pure number.
     pub(crate) fn in_base_units(self) -> String {
-        let symbols = ["kg", "m", "s", "V", "rad"];
+        let symbols = ["kg", "m", "s", "V", "rad", "degC"];
         let side = |positive: bool| -> Vec<String> {
             let mut factors = Vec::new();
             for (symbol, &halves) in symbols.iter().zip(&self.0) {
@@ -101,7 +106,7 @@ dimensions! {
     /// A gain as a ratio; its text may be in dB.
     GAIN = "a gain", Exponents::NONE, [], "1", r#"1.3, "6 dB""#;
     /// m³/(s·√Pa).
-    FLOW_COEFFICIENT = "a flow coefficient", Exponents([-1, 7, 0, 0, 0]), [], "m3/(s.Pa^0.5)",
+    FLOW_COEFFICIENT = "a flow coefficient", Exponents([-1, 7, 0, 0, 0, 0]), [], "m3/(s.Pa^0.5)",
         r#"3.2e-7, "3.2e-7 m3/(s.Pa^0.5)", "6.07 L/(min.bar^0.5)""#;
     /// m³/(s·V).
     FLOW_GAIN = "a flow gain", whole(0, 3, -1, -1, 0), [], "m3/(s.V)", r#"5.6e-5, "5.6e-5 m3/(s.V)", "3.4 L/(min.V)""#;
@@ -149,4 +154,9 @@ dimensions! {
     STRAIN_PER_FORCE = "a strain per force", whole(-1, -1, 2, 0, 0), [], "1/N", r#"2e-5, "2e-5 1/N", "0.02 1/kN""#;
     /// rad.
     ANGLE = "an angle", whole(0, 0, 0, 0, 1), ["deg"], "rad", r#""30 deg", "0.5 rad""#;
+    /// degC: the Celsius temperature, the thermodynamic one less 273.15 K.
+    TEMPERATURE = "a temperature", Exponents::celsius(1), ["degC"], "degC", r#""37 degC""#;
+    /// 1/degC, the share by which something changes with each degree.
+    TEMPERATURE_COEFFICIENT = "a share for each degree", Exponents::celsius(-1), [], "1/degC",
+        r#"0.045, "4.5 %/degC""#;
 }

@@ -40,6 +40,8 @@ impl DisplayUnit {
     pub const KILONEWTON: Self = DisplayUnit { symbol: "kN", in_si: 1e3 };
     /// Pressure.
     pub const BAR: Self = DisplayUnit { symbol: "bar", in_si: 1e5 };
+    /// degC.
+    pub const DEGREE_CELSIUS: Self = DisplayUnit { symbol: "degC", in_si: 1.0 };
     /// Control signal.
     pub const VOLT: Self = DisplayUnit { symbol: "V", in_si: 1.0 };
     /// Voltage for a force.

@@ -81,6 +81,7 @@ static UNITS: &[Unit] = &[
     unit(&["rev"], ANGLE, 1, 0).turns(),
     unit(&["Hz"], ROTATION, 1, 0).turns().prefixed(),
     unit(&["rpm"], ROTATION, 1, 0).over(60).turns(),
+    unit(&["degC"], Exponents::celsius(1), 1, 0),
     unit(&["%"], Exponents::NONE, 1, -2),
     unit(&["1"], Exponents::NONE, 1, 0),
 ];

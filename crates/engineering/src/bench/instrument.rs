@@ -39,11 +39,11 @@ impl Instruments {
         self.pressure.as_ref().map_or(shown, |converter| converter.rounded(shown))
     }
 
-    /// The reading of a flow in m3/s: a turbine stands still below its smallest flow, and does not
-    /// show the direction unless it is signed.
-    pub(super) fn flow(&self, meter: &FlowMeter, value: f64, noise: &mut u64) -> f64 {
+    /// What is read of a flow in m3/s: a turbine stands still below its smallest flow, which goes with
+    /// the kinematic viscosity, and tells no direction unless it is signed.
+    pub(super) fn flow(&self, meter: &FlowMeter, value: f64, viscosity_ratio: f64, noise: &mut u64) -> f64 {
         let disturbed = value + meter.noise * normal(noise);
-        let turning = if value.abs() < meter.minimum { 0.0 } else { disturbed };
+        let turning = if value.abs() < meter.minimum * viscosity_ratio { 0.0 } else { disturbed };
         let shown = if meter.signed { turning } else { turning.abs() };
         let lowest = if meter.signed { -meter.range } else { 0.0 };
         match Converter::new(self.bits, [lowest, meter.range]) {

@@ -24,7 +24,7 @@ use crate::table::{Column, Measurand, MeasuredTable, Sought};
 const FEWEST_ROWS: usize = 20;
 
 /// What the columns of a test may hold, in the order of [`TestSignal::ALL`].
-static MEASURANDS: [Measurand; 8] = [
+static MEASURANDS: [Measurand; 9] = [
     measurand(TestSignal::Time, None),
     measurand(TestSignal::Command, None),
     measurand(TestSignal::SupplyPressure, Some("p_S")),
@@ -33,6 +33,7 @@ static MEASURANDS: [Measurand; 8] = [
     measurand(TestSignal::PressureB, Some("p_B")),
     measurand(TestSignal::LeakFlow, None),
     measurand(TestSignal::Flow, None),
+    measurand(TestSignal::OilTemperature, None),
 ];
 
 const fn measurand(signal: TestSignal, symbol: Option<&'static str>) -> Measurand {
@@ -218,7 +219,7 @@ fn circuit(declared: &RecordedTest, columns: &[(TestSignal, Column)]) -> PortCir
 /// Whether the model needs a signal in every row.
 fn is_input(signal: TestSignal, circuit: PortCircuit) -> bool {
     match signal {
-        TestSignal::LeakFlow | TestSignal::Flow => false,
+        TestSignal::LeakFlow | TestSignal::Flow | TestSignal::OilTemperature => false,
         TestSignal::PressureA | TestSignal::PressureB => circuit == PortCircuit::Connected,
         _ => true,
     }

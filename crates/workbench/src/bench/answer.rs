@@ -2,7 +2,7 @@ use std::io;
 
 use serde::Serialize;
 
-use super::{BenchRow, BenchRun};
+use super::{BenchRow, BenchRun, ReversalReading};
 use crate::answer::{self, NumberTable, OutputFile, TableFormat};
 use crate::project::Loaded;
 use crate::quantity::DisplayUnit;
@@ -21,6 +21,32 @@ struct BenchTestAnswer {
     /// Smallest and largest value of each signal, as recorded.
     signals: Vec<BenchSignalAnswer>,
     lowest_supply_pressure_pa: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    reversals: Option<ReversalsAnswer>,
+}
+
+#[derive(Serialize)]
+struct ReversalsAnswer {
+    hysteresis_v: BenchReadingAnswer,
+    threshold_v: BenchReadingAnswer,
+    hysteresis_share_of_nominal: f64,
+    threshold_share_of_nominal: f64,
+}
+
+#[derive(Serialize)]
+struct BenchReadingAnswer {
+    value: f64,
+    confidence_95: [f64; 2],
+}
+
+fn reversals(found: &ReversalReading) -> ReversalsAnswer {
+    let reading = |(value, confidence_95)| BenchReadingAnswer { value, confidence_95 };
+    ReversalsAnswer {
+        hysteresis_v: reading(found.hysteresis),
+        threshold_v: reading(found.threshold),
+        hysteresis_share_of_nominal: found.hysteresis.0 / found.nominal_voltage,
+        threshold_share_of_nominal: found.threshold.0 / found.nominal_voltage,
+    }
 }
 
 #[derive(Serialize)]
@@ -47,7 +73,7 @@ pub(super) struct TableSignal {
 pub(super) fn signals(run: &BenchRun) -> Vec<TableSignal> {
     let (volt, bar, litres) = (DisplayUnit::VOLT, DisplayUnit::BAR, DisplayUnit::LITRE_PER_MINUTE);
     let signal = |column, quantity, unit, si, of| TableSignal { column, quantity, unit, si, of };
-    let [leak, flow] = run.test.measures_flow();
+    let [leak, flow] = run.series.test().measures_flow();
     let mut signals: Vec<TableSignal> = vec![
         signal("command_v", "command", volt, "V", |row: &BenchRow| row.command),
         signal("supply_pressure_bar", "supply pressure", bar, "Pa", |row: &BenchRow| row.supply_pressure),
@@ -61,6 +87,11 @@ pub(super) fn signals(run: &BenchRun) -> Vec<TableSignal> {
     if flow {
         signals.push(signal("flow_l_per_min", "flow", litres, "m3/s", |row: &BenchRow| row.flow));
     }
+    if run.rows.iter().any(|row| row.oil_temperature.is_some()) {
+        let degrees = DisplayUnit::DEGREE_CELSIUS;
+        let of = |row: &BenchRow| row.oil_temperature.unwrap_or(f64::NAN);
+        signals.push(signal("oil_temperature_degC", "oil temperature", degrees, "degC", of));
+    }
     signals
 }
 
@@ -71,13 +102,13 @@ pub(super) fn range(run: &BenchRun, signal: &TableSignal) -> [f64; 2] {
 }
 
 fn file_name(run: &BenchRun) -> String {
-    format!("{}.csv", run.test.name())
+    format!("{}.csv", run.series.name())
 }
 
 /// The JSON object of `bench`.
 pub fn json(loaded: &Loaded, runs: &[BenchRun]) -> String {
-    let test = |run: &BenchRun| BenchTestAnswer {
-        name: run.test.name(),
+    let test = |run: &BenchRun| TestBody {
+        name: run.series.name(),
         file: file_name(run),
         rows: run.rows.len(),
         duration_s: run.rows.last().map_or(0.0, |row| row.time),
@@ -90,6 +121,7 @@ pub fn json(loaded: &Loaded, runs: &[BenchRun]) -> String {
             })
             .collect(),
         lowest_supply_pressure_pa: run.lowest_supply_pressure,
+        reversals: run.reversals.as_ref().map(reversals),
     };
     answer::json("bench", loaded, BenchAnswer { tests: runs.iter().map(test).collect() })
 }

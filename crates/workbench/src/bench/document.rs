@@ -1,7 +1,8 @@
 //! The static tests of a valve for people.
 
 use super::answer::{range, signals};
-use super::{BenchRun, StaticTest};
+use super::{BenchRun, BenchSeries, ReversalReading};
+use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
 use crate::project::Loaded;
 use crate::quantity::{PRESSURE, TIME, display};
@@ -19,19 +20,24 @@ pub fn text(loaded: &Loaded, runs: &[BenchRun]) -> String {
                 Cell::from(signal.unit.symbol),
             ]
         });
-        out.section(title(run.test), Table::new(["recorded", "least", "most", "unit"]).with(rows));
+        out.section(title(run.series), Table::new(["recorded", "least", "most", "unit"]).with(rows));
         let duration = run.rows.last().map_or(0.0, |row| row.time);
         out.sentences([format!("{} rows in {}.", run.rows.len(), display(duration, &TIME, 4))]);
         out.sentences(sag(loaded, run));
+        if run.series == BenchSeries::Reversals {
+            out.sentences(reversals(run.reversals.as_ref()));
+        }
     }
     out.text()
 }
 
-fn title(test: StaticTest) -> &'static str {
-    match test {
-        StaticTest::Leakage => "Internal leakage, ports blocked (ISO 10770-1, 8.1.3)",
-        StaticTest::Metering => "Metering, ports joined through a meter (ISO 10770-1, 8.1.4)",
-        StaticTest::PressureGain => "Pressure gain around null, ports blocked",
+fn title(series: BenchSeries) -> &'static str {
+    match series {
+        BenchSeries::Leakage => "Internal leakage, ports blocked (ISO 10770-1, 8.1.3)",
+        BenchSeries::Metering => "Metering, ports joined through a meter (ISO 10770-1, 8.1.4)",
+        BenchSeries::PressureGain => "Pressure gain around null, ports blocked",
+        BenchSeries::LowFlowMetering => "Metering with the meter of small flows (ISO 10770-1, 8.1.4)",
+        BenchSeries::Reversals => "Hysteresis and threshold, ports joined through a meter (ISO 10770-1)",
     }
 }
 
@@ -42,4 +48,25 @@ fn sag(loaded: &Loaded, run: &BenchRun) -> Option<String> {
     (least < 0.99 * stated).then(|| {
         format!("The pump does not keep {}: the supply pressure falls to {}.", at(stated), at(least))
     })
+}
+
+/// Hysteresis and threshold, as shares of the nominal voltage.
+fn reversals(found: Option<&ReversalReading>) -> Vec<String> {
+    let Some(found) = found else {
+        return vec!["The meter stands still in nearly all rows: neither hysteresis nor threshold can be read.".to_string()];
+    };
+    let share = |value: f64| significant(100.0 * value / found.nominal_voltage, 3);
+    let sentence = |name: &str, (value, [low, high]): (f64, [f64; 2])| {
+        format!(
+            "{name}: {} V, {} % of the nominal voltage (95 %: {} to {} %).",
+            significant(value, 3),
+            share(value),
+            share(low),
+            share(high)
+        )
+    };
+    vec![
+        sentence("Hysteresis, threshold included", found.hysteresis),
+        sentence("Threshold, what a reversal takes before the flow changes", found.threshold),
+    ]
 }

@@ -113,6 +113,7 @@ fn row(file: &FileContents, column: &ColumnContents) -> [Cell; 7] {
         TestSignal::Time => DisplayUnit::SECOND,
         TestSignal::Command => DisplayUnit::VOLT,
         TestSignal::LeakFlow | TestSignal::Flow => DisplayUnit::LITRE_PER_MINUTE,
+        TestSignal::OilTemperature => DisplayUnit::DEGREE_CELSIUS,
         _ => DisplayUnit::BAR,
     };
     let [least, greatest] = column.range.map(|value| Cell::number(unit.of(value), 4));

@@ -16,6 +16,7 @@ fn usual(signal: TestSignal, nominal_voltage: f64) -> [f64; 2] {
         TestSignal::PressureA | TestSignal::PressureB => [1e3, 7e7],
         TestSignal::LeakFlow => [1e-9, 1e-2],
         TestSignal::Flow => [1e-8, 0.1],
+        TestSignal::OilTemperature => [0.0, 150.0],
     }
 }
 
@@ -32,6 +33,7 @@ fn greatest(signal: TestSignal, nominal_voltage: f64) -> f64 {
         TestSignal::Time => 1e7,
         TestSignal::Command => BEYOND_NOMINAL * nominal_voltage,
         TestSignal::LeakFlow | TestSignal::Flow => 0.1,
+        TestSignal::OilTemperature => 200.0,
         _ => 2e8,
     }
 }
@@ -156,6 +158,7 @@ fn other_units(signal: TestSignal, column: &Column, level: f64, limits: [f64; 2]
         TestSignal::Time => &["s", "ms", "min", "us"],
         TestSignal::Command => &["V", "mV"],
         TestSignal::LeakFlow | TestSignal::Flow => &["L/min", "mL/min", "L/s", "cm3/s", "m3/s"],
+        TestSignal::OilTemperature => &["degC"],
         _ => &["bar", "psi", "MPa", "kPa", "Pa"],
     };
     let in_si = |unit: &str| UnitScale::new(unit, signal.dimension()).ok()?.read("1");

@@ -1,0 +1,84 @@
+//! The course of the command in a test.
+
+use phea_dynamics::portable;
+
+use super::BenchSeries;
+use crate::project::{Bench, BenchWaveform, Reversals};
+
+/// Greatest commands before a small reversal, over the amplitude.
+const LEVELS: [f64; 3] = [0.5, 0.7, 0.9];
+
+/// A command over the nominal voltage, over the share of a test that is done.
+pub(super) enum CommandPath {
+    /// Cycles around zero.
+    Cycles { waveform: BenchWaveform, cycles: f64, amplitude: f64 },
+    /// From corner to corner at one rate.
+    Straight(Vec<f64>),
+}
+
+impl CommandPath {
+    pub(super) fn of(series: BenchSeries, settings: &Bench) -> CommandPath {
+        let cycles = |amplitude: f64| CommandPath::Cycles {
+            waveform: settings.waveform,
+            cycles: f64::from(settings.cycles),
+            amplitude,
+        };
+        match (series, settings.reversals, settings.low_flow_meter) {
+            (BenchSeries::Reversals, Some(reversals), _) => CommandPath::Straight(corners(&reversals)),
+            (BenchSeries::PressureGain, _, _) => cycles(settings.pressure_gain_amplitude),
+            (BenchSeries::LowFlowMetering, _, Some(small)) => cycles(small.amplitude),
+            _ => cycles(settings.amplitude),
+        }
+    }
+
+    /// After a share of the test.
+    pub(super) fn at(&self, share: f64) -> f64 {
+        match self {
+            CommandPath::Cycles { waveform, cycles, amplitude } => amplitude * wave(*waveform, share * cycles),
+            CommandPath::Straight(corners) => along(corners, share),
+        }
+    }
+}
+
+/// From zero to the amplitude and back, with a small reversal at each level on either way.
+pub(super) fn corners(reversals: &Reversals) -> Vec<f64> {
+    let Reversals { amplitude, size } = *reversals;
+    let levels = LEVELS.map(|level| level * amplitude);
+    let mut corners = vec![0.0];
+    corners.extend(levels.iter().flat_map(|level| [*level, level - size]));
+    corners.push(amplitude);
+    corners.extend(levels.iter().rev().flat_map(|level| [level - size, *level]));
+    corners.push(0.0);
+    corners
+}
+
+/// Least command that the flow is judged at, over the nominal voltage: the lowest corner but zero.
+pub(super) fn least_judged(reversals: &Reversals) -> f64 {
+    LEVELS.map(|level| level * reversals.amplitude - reversals.size).into_iter().fold(f64::INFINITY, f64::min)
+}
+
+/// After a share of the way from corner to corner.
+fn along(corners: &[f64], share: f64) -> f64 {
+    let pieces = || corners.iter().zip(corners.iter().skip(1));
+    let whole: f64 = pieces().map(|(from, to)| (to - from).abs()).sum();
+    let mut left = share * whole;
+    for (from, to) in pieces() {
+        let length = (to - from).abs();
+        if left <= length {
+            return from + (to - from).signum() * left;
+        }
+        left -= length;
+    }
+    corners.last().copied().unwrap_or(0.0)
+}
+
+/// The command's course over its amplitude after a number of cycles: from zero up first.
+fn wave(waveform: BenchWaveform, cycles: f64) -> f64 {
+    let phase = cycles - cycles.floor();
+    match waveform {
+        BenchWaveform::Sine => portable::sin(2.0 * std::f64::consts::PI * phase),
+        BenchWaveform::Triangle if phase < 0.25 => 4.0 * phase,
+        BenchWaveform::Triangle if phase < 0.75 => 2.0 - 4.0 * phase,
+        BenchWaveform::Triangle => 4.0 * phase - 4.0,
+    }
+}
