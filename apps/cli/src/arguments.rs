@@ -229,7 +229,7 @@ pub(crate) struct IdentifyArguments {
     /// Print one JSON object on standard output and nothing else
     #[arg(long)]
     pub(crate) json: bool,
-    /// Write the identified table of the valve into this folder, as valve.toml
+    /// Write the identified table of the valve into this folder, as valve.toml, and the figures of the tests
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Override a value of the project, e.g. --set "valve.nominal_voltage=5 V"; may be repeated

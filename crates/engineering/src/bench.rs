@@ -208,8 +208,12 @@ fn record(
     let mut instruments = Instruments::new(settings, nominal_voltage);
     let mut noise = stream(u64::from(settings.seed), series as u64);
     let mut memory = SlowSpool::at(0.0);
-    let mut found =
-        BenchRun { series, rows: Vec::with_capacity(rows), lowest_supply_pressure: f64::INFINITY, reversals: None };
+    let mut found = BenchRun {
+        series,
+        rows: Vec::with_capacity(rows),
+        lowest_supply_pressure: f64::INFINITY,
+        reversals: None,
+    };
     let path = CommandPath::of(series, settings);
     let meter = meter_of(series, settings);
     let circuit = series.test().circuit();

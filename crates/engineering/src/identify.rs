@@ -17,16 +17,18 @@ mod intervals;
 mod joint;
 mod reading;
 mod recording;
+mod residuals;
+mod simple;
 mod told;
 mod variables;
 
 pub use bootstrap::{Bootstrap, FEWEST_REPETITIONS};
 pub use contents::{ColumnContents, FileContents, RecordedFiles};
 pub use evidence::{DECISIVE, ExplainedBy, ModelEvidence};
-pub use guess::SimpleCalculations;
 pub use joint::{COVERAGE, JointRegion, JointRegionError, SMALLEST_EFFECT, joint_region, with_valve};
 pub use reading::recordings;
 pub use recording::{RecordedSignal, Recording, SignalKind};
+pub use simple::{CurveReading, SimpleCalculations};
 pub use told::Untold;
 
 use phea_dynamics::least_squares::Ending;
@@ -67,6 +69,8 @@ pub struct Known {
     pub tare_pressure: Option<f64>,
     /// Model of the leakage where the recordings do not decide.
     pub leakage_model: LeakageModel,
+    /// Rated flow in m3/s and its drop in Pa, where a data sheet states them.
+    pub rated_flow: Option<[f64; 2]>,
 }
 
 impl Default for Known {
@@ -78,6 +82,7 @@ impl Default for Known {
             tank_pressure: 0.0,
             tare_pressure: None,
             leakage_model: LeakageModel::EachEdge,
+            rated_flow: None,
         }
     }
 }
@@ -203,7 +208,7 @@ pub fn identify(
         tare_reference_drop: known.tare_pressure.unwrap_or_else(|| recording::usual_drop(&recordings)),
         leakage_model: known.leakage_model,
     };
-    let simple = guess::simple_calculations(&recordings, &tested);
+    let simple = simple::simple_calculations(&recordings, &tested, known.rated_flow);
     let first_guess = guess::first_guess(&recordings, &tested, &simple);
     let variables = Variables::around(&first_guess, tested.nominal_voltage);
     let first = fit::fitted(&recordings, tested, &variables, search, watch)?;

@@ -19,6 +19,7 @@ pub mod axis;
 pub mod bode;
 pub mod clip;
 pub mod colour;
+pub mod curves;
 pub mod family_magnitude;
 pub mod family_step;
 pub mod impedance;
@@ -49,6 +50,7 @@ pub mod typeset;
 
 pub use bode::{BodeInput, FrequencySeries, bode};
 pub use colour::{Theme, style_sheet};
+pub use curves::{Curve, CurvePanel, CurveStyle, CurvesInput, curves};
 pub use family_magnitude::{
     FamilyEnvelope, FamilyMagnitudeInput, MagnitudeCurve, MagnitudeMark, family_magnitude,
 };
@@ -62,7 +64,8 @@ pub use pole_map::{PoleMapInput, PoleMapScale, PoleSeries, pole_map};
 pub use pole_sweep::{PoleSweepInput, PoleSweepPoint, pole_sweep};
 pub use prefilter_band::{PrefilterPanel, PrefilterPoint, prefilter_band};
 pub use schematic::{
-    ControllerSymbol, Environment, LineKind, LineSymbol, Rods, SchematicInput, SupplyKind, schematic,
+    ControllerSymbol, Environment, LineKind, LineSymbol, Rods, SchematicInput, SupplyKind, TestCircuitInput,
+    TestPorts, schematic, test_circuit,
 };
 pub use sizing_chart::{SizingCandidate, SizingChartInput, SizingCurve, sizing_chart};
 pub use step_response::{SettlingBand, StepResponseInput, TimeBounds, TimeEvent, TimeSeries, step_response};

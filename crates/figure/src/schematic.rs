@@ -8,6 +8,9 @@
 mod mechanics;
 mod pen;
 mod symbols;
+mod test_circuit;
+
+pub use test_circuit::{TestCircuitInput, TestPorts, test_circuit};
 
 use super::scene::Scene;
 use super::{Figure, WIDTH, Words};

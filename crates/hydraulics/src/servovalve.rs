@@ -4,8 +4,8 @@
 mod coefficients;
 mod flow;
 mod identification;
-mod ports;
 mod oil_temperature;
+mod ports;
 mod slow_motion;
 mod spool;
 mod tare;
@@ -23,8 +23,8 @@ pub use flow::{
 pub use identification::{
     PortCircuit, STATIC_COEFFICIENTS, Sensitive, StaticCoefficients, TestInput, TestOutput, TestedValve,
 };
-pub use ports::{PortState, blocked_ports, connected_ports};
 pub use oil_temperature::{OilLaw, WarmOil};
+pub use ports::{PortState, blocked_ports, connected_ports};
 pub use slow_motion::SlowSpool;
 pub use spool::{SpoolImperfection, SpoolState};
 pub use tare::tare_flow;

@@ -195,9 +195,11 @@ impl Bench {
         meter(k, &mut self.leak_meter, LEAK_METER, v);
         let k = plain("flow_meter", "Meter between the ports.");
         meter(k, &mut self.flow_meter, FLOW_METER, v);
-        let k = plain("low_flow_meter", "A second one for small flows: a second metering test is made with it.");
+        let k =
+            plain("low_flow_meter", "A second one for small flows: a second metering test is made with it.");
         v.table(k, &mut self.low_flow_meter, LowFlowMeter::visit);
-        let k = plain("reversals", "Test of hysteresis and threshold: a cycle with small reversals on its way.");
+        let k =
+            plain("reversals", "Test of hysteresis and threshold: a cycle with small reversals on its way.");
         v.table(k, &mut self.reversals, Reversals::visit);
         let k = plain("oil_temperature", "How the oil warms during each test; absent: it does not.");
         v.table(k, &mut self.oil_temperature, OilTemperature::visit);
@@ -215,7 +217,8 @@ impl Bench {
 impl LowFlowMeter {
     fn visit<V: Visitor>(&mut self, v: &mut V) {
         self.meter.visit(SMALL_METER, v);
-        let k = key("amplitude", &RATIO, "Amplitude of the command over the nominal voltage, with this meter.");
+        let k =
+            key("amplitude", &RATIO, "Amplitude of the command over the nominal voltage, with this meter.");
         v.quantity(k.positive().at_most(1.0).or(0.13), &mut self.amplitude);
     }
 }
@@ -236,7 +239,11 @@ impl OilTemperature {
         v.quantity(within(k).or(37.0), &mut self.start);
         let k = key("end", &TEMPERATURE, "Temperature at the end of each test.");
         v.quantity(within(k).or(37.0), &mut self.end);
-        let k = key("reference", &TEMPERATURE, "Temperature that the valve is stated at; absent: that of the beginning.");
+        let k = key(
+            "reference",
+            &TEMPERATURE,
+            "Temperature that the valve is stated at; absent: that of the beginning.",
+        );
         v.optional(within(k), &mut self.reference);
         let doc = "Share by which the dynamic viscosity falls with each degree.";
         let k = key("viscosity_slope", &TEMPERATURE_COEFFICIENT, doc).not_negative().at_most(0.2).or(0.045);

@@ -116,7 +116,9 @@ impl TestSignal {
             TestSignal::PressureB => "Column of the pressure at port B.",
             TestSignal::LeakFlow => "Column of the flow from the supply while the ports are blocked.",
             TestSignal::Flow => "Column of the flow from port A to port B.",
-            TestSignal::OilTemperature => "Column of the temperature of the oil, which is told and has no part in the fit.",
+            TestSignal::OilTemperature => {
+                "Column of the temperature of the oil, which is told and has no part in the fit."
+            }
         }
     }
 }

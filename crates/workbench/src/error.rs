@@ -1,6 +1,7 @@
 //! Why a command has no answer: the one error of everything that the workbench computes.
 
 use phea_engineering::error::ProcedureError;
+use phea_engineering::identify::IdentifyError;
 
 use crate::figure::FigureError;
 use crate::project::Refusal;
@@ -12,6 +13,9 @@ pub enum CommandError {
     /// A procedure has no result.
     #[error(transparent)]
     Procedure(ProcedureError),
+    /// The recordings of the project say nothing of its valve.
+    #[error("{0}")]
+    Identify(IdentifyError),
     /// A figure cannot be drawn.
     #[error("a figure: {0}")]
     Figure(FigureError),
@@ -36,7 +40,8 @@ impl CommandError {
         match self {
             CommandError::Procedure(error) => error.refusal(),
             CommandError::Compare { error, .. } => error.refusal(),
-            CommandError::Figure(_) | CommandError::NothingToReport => None,
+            CommandError::Identify(IdentifyError::Files(refusal)) => Some(refusal),
+            CommandError::Identify(_) | CommandError::Figure(_) | CommandError::NothingToReport => None,
         }
     }
 

@@ -2,13 +2,18 @@
 
 mod answer;
 mod document;
+mod figures;
 mod files;
+mod numbers;
 mod region;
 
 pub use phea_engineering::identify::*;
 
 pub use answer::{files, json};
 pub use document::text;
+pub(crate) use document::{tell_coefficients, tell_signals};
+pub(crate) use figures::ValveFigures;
 pub use files::Read;
+pub(crate) use numbers::tell as tell_numbers;
 pub use region::FoundRegion;
 pub(crate) use region::file;

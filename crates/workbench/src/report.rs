@@ -25,6 +25,7 @@ mod simulation;
 mod sizing;
 mod specifications;
 mod stiffness;
+mod test_bench;
 
 use maud::{Markup, html};
 
@@ -119,6 +120,7 @@ pub fn report(
     let mut chapters: Vec<Chapter> =
         rig.as_mut().map(|rig| std::mem::take(&mut rig.chapters)).unwrap_or_default();
     let mut appendix: Vec<Chapter> = rig.map(|rig| rig.appendix).unwrap_or_default();
+    chapters.extend(test_bench::chapter(source, loaded, watch)?);
     if let Some(driven) = &driven {
         chapters.push(simulation::chapter(project, driven));
         appendix.extend(simulation::inside(project, driven));

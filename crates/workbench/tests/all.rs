@@ -52,6 +52,7 @@ mod uncertainty_directions;
 mod valve_coverage;
 mod valve_evidence;
 mod valve_identification;
+mod valve_numbers;
 mod valve_reversals;
 mod valve_tests;
 mod verify_contract;

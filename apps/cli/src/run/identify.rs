@@ -25,6 +25,7 @@ pub(super) fn answered(recorded: &IdentifyArguments) -> Result<(Answer, Vec<Path
         starts: recorded.starts.map(usize::from),
         seed: recorded.seed,
         bootstrap: recorded.bootstrap.map_or(0, |count| count as usize),
+        figures: recorded.out.is_some(),
         leakage_model: recorded.leakage_model.map(|word| match word {
             LeakageWord::EachEdge => LeakageModel::EachEdge,
             LeakageWord::OneCurve => LeakageModel::OneCurve,

@@ -34,7 +34,9 @@ impl CommandPath {
     /// After a share of the test.
     pub(super) fn at(&self, share: f64) -> f64 {
         match self {
-            CommandPath::Cycles { waveform, cycles, amplitude } => amplitude * wave(*waveform, share * cycles),
+            CommandPath::Cycles { waveform, cycles, amplitude } => {
+                amplitude * wave(*waveform, share * cycles)
+            }
             CommandPath::Straight(corners) => along(corners, share),
         }
     }

@@ -70,12 +70,10 @@ pub(super) fn read(
     let deviation = |index: usize| told.deviations.get(index).copied().unwrap_or(f64::INFINITY);
     let correlation = told.correlations.get(1).copied().unwrap_or(0.0);
     let [of_threshold, of_rest] = [deviation(0), deviation(1)];
-    let together = of_threshold * of_threshold
-        + of_rest * of_rest
-        + 2.0 * correlation * of_threshold * of_rest;
-    let around = |value: f64, deviation: f64| {
-        (value, [(value - 1.96 * deviation).max(0.0), value + 1.96 * deviation])
-    };
+    let together =
+        of_threshold * of_threshold + of_rest * of_rest + 2.0 * correlation * of_threshold * of_rest;
+    let around =
+        |value: f64, deviation: f64| (value, [(value - 1.96 * deviation).max(0.0), value + 1.96 * deviation]);
     Ok(Some(ReversalReading {
         threshold: around(threshold, of_threshold),
         hysteresis: around(threshold + rest, together.max(0.0).sqrt()),
@@ -90,21 +88,21 @@ fn linearised(
     variables: &[f64],
     (amplitude, greatest): (f64, f64),
 ) -> Linearised {
-    type Open = Dual<VARIABLES>;
-    let at = |index: usize| Open::variable(variables.get(index).copied().unwrap_or(0.0), index);
+    type ReversalSensitive = Dual<VARIABLES>;
+    let at = |index: usize| ReversalSensitive::variable(variables.get(index).copied().unwrap_or(0.0), index);
     let [threshold, rest, c0, c1, c2, c3] = [at(0), at(1), at(2), at(3), at(4), at(5)];
     let spool = SpoolImperfection {
-        null_bias: Open::from(0.0),
+        null_bias: ReversalSensitive::from(0.0),
         hysteresis_width: Some(threshold + rest),
         threshold: Some(threshold),
         rate_limit: None,
     };
-    let mut memory = SlowSpool::at(Open::from(0.0));
+    let mut memory = SlowSpool::at(ReversalSensitive::from(0.0));
     let mut found = Linearised { residuals: Vec::new(), jacobian: Vec::new() };
     for ((command, flow), counts) in rows.iter().zip(counts) {
-        let y = spool.slow_opening(&mut memory, Open::from(*command)).times(1.0 / amplitude);
+        let y = spool.slow_opening(&mut memory, ReversalSensitive::from(*command)).times(1.0 / amplitude);
         if *counts {
-            let residual = c0 + y * (c1 + y * (c2 + y * c3)) - Open::from(flow / greatest);
+            let residual = c0 + y * (c1 + y * (c2 + y * c3)) - ReversalSensitive::from(flow / greatest);
             found.residuals.push(residual.value());
             found.jacobian.extend(residual.gradient());
         }

@@ -9,8 +9,12 @@ pub struct Recording {
     pub file: String,
     /// How the ports were piped.
     pub circuit: PortCircuit,
+    /// s, of each row.
+    pub times: Vec<f64>,
     /// What acted on the valve.
     pub inputs: Vec<TestInput>,
+    /// degC, of the oil in each row, where it was recorded; it has no part in the fit.
+    pub oil_temperature: Option<Vec<f64>>,
     /// What was recorded of it.
     pub signals: Vec<RecordedSignal>,
 }
@@ -84,7 +88,15 @@ impl Recording {
             kind: signal.kind,
             values: rows.iter().map(|row| signal.values.get(*row).copied().flatten()).collect(),
         });
-        Recording { inputs, signals: signals.collect(), file: self.file.clone(), ..*self }
+        let these = |values: &Vec<f64>| rows.iter().filter_map(|row| values.get(*row).copied()).collect();
+        Recording {
+            file: self.file.clone(),
+            circuit: self.circuit,
+            times: these(&self.times),
+            inputs,
+            oil_temperature: self.oil_temperature.as_ref().map(these),
+            signals: signals.collect(),
+        }
     }
 }
 

@@ -9,19 +9,24 @@ use super::pen::{
 use super::{ControllerSymbol, LineKind, SchematicInput, SupplyKind};
 
 /// Middle of the valve.
-const VALVE: (f64, f64) = (202.0, 232.0);
+pub(super) const VALVE: (f64, f64) = (202.0, 232.0);
 /// Side of one of its boxes.
 const SIDE: f64 = 46.0;
-const PORT: f64 = 12.0;
-const TOP: f64 = VALVE.1 - 0.5 * SIDE;
+pub(super) const PORT: f64 = 12.0;
+pub(super) const TOP: f64 = VALVE.1 - 0.5 * SIDE;
 const BOTTOM: f64 = VALVE.1 + 0.5 * SIDE;
 /// Top of the words of the controller, below those of the valve.
 pub(super) const CONTROLLER_ROWS: f64 = BOTTOM + 16.0 + 2.0 * ROW + 8.0;
 /// Right end of the valve with its torque motor.
-const VALVE_END: f64 = VALVE.0 + 1.5 * SIDE + 24.0;
+pub(super) const VALVE_END: f64 = VALVE.0 + 1.5 * SIDE + 24.0;
 
 /// Pressure source or pump, and the tank.
 pub(super) fn supply(scene: &mut Scene, input: &SchematicInput) {
+    feed(scene, input.supply, &input.supply_rows, &input.tank);
+}
+
+/// The same by its words.
+pub(super) fn feed(scene: &mut Scene, supply: SupplyKind, supply_rows: &[String], tank_word: &str) {
     let (pressure, tank) = (VALVE.0 - PORT, VALVE.0 + PORT);
     let source = (pressure - 60.0, 318.0);
     lines(
@@ -29,7 +34,7 @@ pub(super) fn supply(scene: &mut Scene, input: &SchematicInput) {
         &[(pressure, BOTTOM), (pressure, 284.0), (source.0, 284.0), (source.0, source.1 - 16.0)],
         PIPE,
     );
-    match input.supply {
+    match supply {
         SupplyKind::ConstantPressure => {
             let triangle = [
                 point(source.0, source.1 - 16.0),
@@ -50,10 +55,10 @@ pub(super) fn supply(scene: &mut Scene, input: &SchematicInput) {
             tank_symbol(scene, source.0, 350.0);
         }
     }
-    rows(scene, &input.supply_rows, (source.0 - 24.0, source.1 - 12.0), Anchor::End, 104.0, 2);
+    rows(scene, supply_rows, (source.0 - 24.0, source.1 - 12.0), Anchor::End, 104.0, 2);
     lines(scene, &[(tank, BOTTOM), (tank, 322.0)], PIPE);
     tank_symbol(scene, tank, 322.0);
-    rows(scene, std::slice::from_ref(&input.tank), (tank + 24.0, 316.0), Anchor::Start, 62.0, 1);
+    rows(scene, &[tank_word.to_string()], (tank + 24.0, 316.0), Anchor::Start, 62.0, 1);
     word(scene, "P", (pressure - 10.0, BOTTOM + 11.0), Role::Muted);
     word(scene, "T", (tank + 10.0, BOTTOM + 11.0), Role::Muted);
 }
@@ -102,6 +107,12 @@ pub(super) fn working_lines(scene: &mut Scene, input: &SchematicInput) {
 /// The 4/3 servovalve: three positions, continuous between them, spring on one side and torque
 /// motor on the other.
 pub(super) fn valve(scene: &mut Scene, input: &SchematicInput) {
+    let ports = if input.load_beside_b { ["A", "B"] } else { ["B", "A"] };
+    valve_with(scene, ports, &input.valve_rows);
+}
+
+/// The same by the names of its ports and its words.
+pub(super) fn valve_with(scene: &mut Scene, [a, b]: [&str; 2], valve_rows: &[String]) {
     let left = VALVE.0 - 1.5 * SIDE;
     for index in 0..3 {
         block(scene, left + SIDE * f64::from(index), TOP, SIDE, SIDE);
@@ -122,12 +133,11 @@ pub(super) fn valve(scene: &mut Scene, input: &SchematicInput) {
             lines(scene, &[(x - 5.0, inner), (x + 5.0, inner)], thin);
         }
     }
-    let (a, b) = if input.load_beside_b { ("A", "B") } else { ("B", "A") };
     word(scene, a, (VALVE.0 - PORT - 11.0, TOP - 13.0), Role::Muted);
     word(scene, b, (VALVE.0 + PORT + 11.0, TOP - 13.0), Role::Muted);
     spring(scene, left - 30.0, left, VALVE.1, 7.0, thin);
     torque_motor(scene, left + 3.0 * SIDE);
-    rows(scene, &input.valve_rows, (VALVE.0 + 40.0, BOTTOM + 16.0), Anchor::Start, 300.0, 2);
+    rows(scene, valve_rows, (VALVE.0 + 40.0, BOTTOM + 16.0), Anchor::Start, 300.0, 2);
 }
 
 /// A box with a diagonal and the arrow of proportional action.

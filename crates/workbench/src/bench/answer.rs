@@ -107,7 +107,7 @@ fn file_name(run: &BenchRun) -> String {
 
 /// The JSON object of `bench`.
 pub fn json(loaded: &Loaded, runs: &[BenchRun]) -> String {
-    let test = |run: &BenchRun| TestBody {
+    let test = |run: &BenchRun| BenchTestAnswer {
         name: run.series.name(),
         file: file_name(run),
         rows: run.rows.len(),

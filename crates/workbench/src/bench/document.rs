@@ -53,7 +53,10 @@ fn sag(loaded: &Loaded, run: &BenchRun) -> Option<String> {
 /// Hysteresis and threshold, as shares of the nominal voltage.
 fn reversals(found: Option<&ReversalReading>) -> Vec<String> {
     let Some(found) = found else {
-        return vec!["The meter stands still in nearly all rows: neither hysteresis nor threshold can be read.".to_string()];
+        return vec![
+            "The meter stands still in nearly all rows: neither hysteresis nor threshold can be read."
+                .to_string(),
+        ];
     };
     let share = |value: f64| significant(100.0 * value / found.nominal_voltage, 3);
     let sentence = |name: &str, (value, [low, high]): (f64, [f64; 2])| {

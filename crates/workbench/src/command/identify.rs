@@ -1,9 +1,10 @@
 //! `identify`: the valve that explains recorded tests.
 
-use crate::answer::Answer;
+use crate::answer::{Answer, picture_files};
+use crate::figure::FigureError;
 use crate::identify::{
-    self, IdentifyError, Known, Read, RecordedFiles, SMALLEST_EFFECT, Search, identify, joint_region,
-    recordings,
+    self, IdentifyError, Known, Read, RecordedFiles, SMALLEST_EFFECT, Search, ValveFigures, identify,
+    joint_region, recordings,
 };
 use crate::project::{Loaded, RecordedTest};
 use crate::source::Source;
@@ -24,6 +25,8 @@ pub struct IdentifyRequest {
     pub bootstrap: usize,
     /// The model of the leakage; absent: the one that the recordings support.
     pub leakage_model: Option<LeakageModel>,
+    /// Whether the figures are wanted as files.
+    pub figures: bool,
 }
 
 /// Identifies a valve from files, with what a project says of it: nominal voltage, supply pressure,
@@ -37,7 +40,7 @@ pub fn identify_watched(
     asked: &IdentifyRequest,
     watch: Watch<'_>,
 ) -> Result<Answer, IdentifyError> {
-    let known = loaded.map_or(Known::default(), known);
+    let known = loaded.map_or(Known::default(), known_of_valve);
     let files = files(loaded, asked)?;
     let RecordedFiles { recordings, contents, warnings } =
         recordings(source, &files, &known).map_err(IdentifyError::Files)?;
@@ -54,6 +57,10 @@ pub fn identify_watched(
     let region = rig.map(|rig| joint_region(&found, &rig.project, SMALLEST_EFFECT));
     let mut written = identify::files(&found);
     written.extend(region.iter().flatten().map(|region| identify::file(&found, region)));
+    if asked.figures {
+        let refused = |error: FigureError| IdentifyError::Data(error.to_string());
+        written.extend(picture_files(&ValveFigures::of(&found).all()).map_err(refused)?);
+    }
     Ok(Answer {
         text: identify::text(&found, &read, region.as_ref()),
         json: identify::json(loaded, &found, &read, region.as_ref()),
@@ -62,9 +69,12 @@ pub fn identify_watched(
     })
 }
 
-fn known(loaded: &Loaded) -> Known {
+/// What a project says of its valve.
+pub(crate) fn known_of_valve(loaded: &Loaded) -> Known {
     let Some(actuator) = &loaded.project.actuator else { return Known::default() };
+    let valve = &actuator.valve;
     Known {
+        rated_flow: valve.flow.rating().map(|rated| [rated.flow, rated.pressure_drop]),
         nominal_voltage: actuator.valve.nominal_voltage,
         transition_pressure: actuator.valve.transition_pressure,
         supply_pressure: Some(actuator.supply.pressure),

@@ -4,8 +4,9 @@ use phea_hydraulics::servovalve::{LeakageModel, StaticCoefficients};
 use serde::Serialize;
 
 use super::files::{TestBody, WarningBody};
+use super::numbers;
 use super::region::{FoundRegion, RegionBody, body};
-use super::{Bootstrap, COEFFICIENT_NAMES, ExplainedBy, Identification, Read, SimpleCalculations, Untold};
+use super::{Bootstrap, COEFFICIENT_NAMES, ExplainedBy, Identification, Read, Untold};
 use crate::answer::{self, Number, OutputFile};
 use crate::project::Loaded;
 use crate::quantity::print_bare;
@@ -37,7 +38,7 @@ struct IdentifyAnswer<'a> {
     correlations: Vec<CorrelationBody>,
     not_told: Vec<UntoldBody>,
     joint_region: Option<RegionBody>,
-    simple_calculations: SimpleBody,
+    simple_calculations: numbers::SimpleBody,
     starts: usize,
     starts_that_agree: usize,
     converged: bool,
@@ -103,17 +104,6 @@ struct UntoldBody {
     told_by: Vec<&'static str>,
 }
 
-#[derive(Serialize)]
-struct SimpleBody {
-    flow_coefficient_extending: Option<f64>,
-    flow_coefficient_retracting: Option<f64>,
-    leakage_coefficient: Option<f64>,
-    leakage_shape: Option<f64>,
-    tare_flow_m3_per_s: Option<f64>,
-    null_bias_v: Option<f64>,
-    hysteresis_v: Option<f64>,
-}
-
 /// The coefficient that a project leaves out where it may be zero.
 const HYSTERESIS: &str = "hysteresis";
 
@@ -175,7 +165,7 @@ pub fn json(
             .collect(),
         not_told: found.untold.iter().map(untold).collect(),
         joint_region: region.map(body),
-        simple_calculations: simple(&found.simple),
+        simple_calculations: numbers::simple_body(&found.simple),
         starts: found.starts[0],
         starts_that_agree: found.starts[1],
         converged: found.has_converged(),
@@ -247,19 +237,6 @@ fn untold(untold: &Untold) -> UntoldBody {
         shares: untold.shares.iter().map(|(_, share)| *share).collect(),
         standard_deviation: Number(untold.deviation),
         told_by: untold.told_by.iter().map(|test| test.name()).collect(),
-    }
-}
-
-fn simple(found: &SimpleCalculations) -> SimpleBody {
-    let [extending, retracting] = found.flow_coefficients;
-    SimpleBody {
-        flow_coefficient_extending: extending,
-        flow_coefficient_retracting: retracting,
-        leakage_coefficient: found.leakage_coefficient,
-        leakage_shape: found.leakage_shape,
-        tare_flow_m3_per_s: found.tare_flow,
-        null_bias_v: found.null_bias(),
-        hysteresis_v: found.hysteresis(),
     }
 }
 

@@ -3,6 +3,7 @@
 use phea_hydraulics::servovalve::LeakageModel;
 
 use super::answer::{correlations, word};
+use super::numbers;
 use super::region::{self, FoundRegion};
 use super::{Bootstrap, COEFFICIENT_NAMES, DECISIVE, Identification, Read, SignalFit, SimpleCalculations};
 use crate::answer::significant;
@@ -13,6 +14,18 @@ use crate::quantity::DisplayUnit;
 /// signals are explained, and what the data do not determine.
 pub fn text(found: &Identification, read: &Read, region: Option<&FoundRegion>) -> String {
     let mut out = Document::default();
+    tell_coefficients(found, &mut out);
+    numbers::tell(found, &mut out);
+    read.tell(&mut out);
+    tell_signals(found, &mut out);
+    if let Some(region) = region {
+        region::chapter(&mut out, region);
+    }
+    out.text()
+}
+
+/// What the leakage is, and the coefficients with their intervals beside those by hand.
+pub(crate) fn tell_coefficients(found: &Identification, out: &mut Document) {
     out.heading("Model of the leakage");
     out.sentences(leakage(found));
     let mut headings = vec!["coefficient", "identified", "95 % from", "to"];
@@ -26,8 +39,12 @@ pub fn text(found: &Identification, read: &Read, region: Option<&FoundRegion>) -
             .to_string(),
     ]);
     out.sentences(found.bootstrap.as_ref().map(bootstrap));
-    read.tell(&mut out);
-    let headings = ["file", "signal", "rows", "rms of residuals", "range", "unit", "neighbours correlate"];
+}
+
+/// How well the signals are explained, and what the data do not determine.
+pub(crate) fn tell_signals(found: &Identification, out: &mut Document) {
+    let headings =
+        ["file", "signal", "rows", "rms of residuals", "by hand", "range", "unit", "neighbours correlate"];
     out.section(
         "How well the recordings are explained",
         Table::new(headings).with(found.signals.iter().map(|one| signal(found, one))),
@@ -44,10 +61,6 @@ pub fn text(found: &Identification, read: &Read, region: Option<&FoundRegion>) -
         out.heading("What the data cannot tell apart");
         out.sentences(found.untold.iter().map(not_told));
     }
-    if let Some(region) = region {
-        region::chapter(&mut out, region);
-    }
-    out.text()
 }
 
 /// The model that the recordings support, and the model of the numbers.
@@ -115,14 +128,15 @@ fn coefficients(found: &Identification) -> Vec<Vec<Cell>> {
 
 /// The simple calculations in the order of the coefficients.
 fn by_hand(simple: &SimpleCalculations) -> [Option<f64>; 12] {
-    let [extending, retracting] = simple.flow_coefficients;
-    let leak = simple.leakage_coefficient;
-    let rest = [simple.leakage_shape, simple.tare_flow, simple.null_bias(), simple.hysteresis()];
+    let [extending, retracting] = simple.flow_coefficients.map(|one| one.map(|one| one.value));
+    let leak = simple.leakage_coefficient().map(|one| one.value);
+    let tare = simple.tare_flow.map(|one| one.value);
+    let rest = [simple.leakage_shape, tare, simple.null_bias(), simple.hysteresis()];
     let [shape, tare, bias, width] = rest;
     [extending, retracting, retracting, extending, leak, leak, leak, leak, shape, tare, bias, width]
 }
 
-fn signal(found: &Identification, signal: &SignalFit) -> [Cell; 7] {
+fn signal(found: &Identification, signal: &SignalFit) -> [Cell; 8] {
     let unit = if signal.kind.is_pressure() { DisplayUnit::BAR } else { DisplayUnit::LITRE_PER_MINUTE };
     let file = found.recordings.get(signal.recording).map_or(String::new(), |one| one.file.clone());
     [
@@ -130,6 +144,7 @@ fn signal(found: &Identification, signal: &SignalFit) -> [Cell; 7] {
         Cell::from(signal.kind.name().replace('_', " ")),
         Cell::count(signal.rows),
         Cell::number(unit.of(signal.rms), 3),
+        Cell::number(unit.of(found.residual_rms_of(signal, &found.first_guess)), 3),
         Cell::number(unit.of(signal.range), 4),
         Cell::from(unit.symbol),
         Cell::decimal(signal.correlation, 2),

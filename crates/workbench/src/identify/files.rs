@@ -81,7 +81,7 @@ impl Read {
     }
 
     /// A row for each column, and a sentence for what is not used and what was dealt with.
-    pub(super) fn tell(&self, out: &mut Document) {
+    pub(crate) fn tell(&self, out: &mut Document) {
         let headings = ["file", "column", "holds", "from", "to", "unit", "gaps"];
         let rows = self.contents.iter().flat_map(|file| file.columns.iter().map(|column| row(file, column)));
         out.section("What the files hold", Table::new(headings).with(rows));

@@ -49,7 +49,14 @@ pub(super) fn assembled(file: &str, taken: &Taken, circuit: PortCircuit, known: 
             signals.extend(flow.map(port_flow));
         }
     }
-    Recording { file: file.to_string(), circuit, inputs, signals }
+    Recording {
+        file: file.to_string(),
+        circuit,
+        times: taken.of(TestSignal::Time).unwrap_or_default().to_vec(),
+        inputs,
+        oil_temperature: taken.of(TestSignal::OilTemperature).map(<[f64]>::to_vec),
+        signals,
+    }
 }
 
 /// A flow between the ports: by a meter that tells the direction if some of it is negative. What

@@ -1,0 +1,34 @@
+//! What a valve shows in the recorded tests, and what it leaves of them.
+
+use phea_hydraulics::servovalve::{StaticCoefficients, TestOutput};
+
+use super::{Identification, SignalFit};
+
+impl Identification {
+    /// What a valve of these coefficients shows in a recorded test, row by row.
+    pub fn shown(&self, recording: usize, coefficients: &StaticCoefficients) -> Vec<TestOutput> {
+        let of = |one: &super::Recording| self.tested.outputs(coefficients, one.circuit, &one.inputs);
+        self.recordings.get(recording).map(of).unwrap_or_default()
+    }
+
+    /// What such a valve shows of a signal less what was recorded; `None` where nothing was. SI.
+    pub fn residuals(&self, signal: &SignalFit, coefficients: &StaticCoefficients) -> Vec<Option<f64>> {
+        let recorded = self.recordings.get(signal.recording).and_then(|one| one.signal(signal.kind));
+        let Some(recorded) = recorded else { return Vec::new() };
+        let shown = self.shown(signal.recording, coefficients);
+        let one = |(output, value): (&TestOutput, &Option<f64>)| {
+            let all = [output.pressure_a, output.pressure_b, output.leak_flow, output.port_flow];
+            let weighted =
+                all.iter().zip(signal.kind.weights(output)).map(|(signal, weight)| signal * weight);
+            Some(weighted.sum::<f64>() - (*value)?)
+        };
+        shown.iter().zip(&recorded.values).map(one).collect()
+    }
+
+    /// Root mean square of these residuals.
+    pub fn residual_rms_of(&self, signal: &SignalFit, coefficients: &StaticCoefficients) -> f64 {
+        let residuals: Vec<f64> = self.residuals(signal, coefficients).into_iter().flatten().collect();
+        let squares: f64 = residuals.iter().map(|residual| residual * residual).sum();
+        (squares / residuals.len().max(1) as f64).sqrt()
+    }
+}

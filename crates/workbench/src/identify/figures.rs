@@ -1,0 +1,413 @@
+//! The figures of chapter 5 of the thesis, from recordings and the valve that explains them.
+
+use phea_hydraulics::servovalve::{PortCircuit, TestOutput};
+
+use super::{Identification, Recording, SignalFit, SignalKind};
+use crate::figure::{
+    Curve, CurvePanel, CurveStyle, CurvesInput, Figure, TestCircuitInput, TestPorts, Words, curves,
+    test_circuit,
+};
+use crate::quantity::{DisplayUnit, PRESSURE, display};
+
+/// Commands around null that the leakage is drawn over, percent of the nominal voltage.
+const AROUND_NULL: f64 = 6.0;
+/// The same of the flow gain.
+const NEAR_NULL: f64 = 4.0;
+/// The same of the pressure sensitivity.
+const CLOSE_TO_NULL: f64 = 2.5;
+
+const COMMAND: &str = "Command U_C (% of nominal)";
+const WAYS: [(&str, bool); 2] = [("rising command", true), ("falling command", false)];
+
+/// The figures, section by section.
+pub(crate) struct ValveFigures {
+    /// How the tests are piped.
+    pub(crate) circuits: Vec<Figure>,
+    /// What was recorded over time.
+    pub(crate) series: Vec<Figure>,
+    /// What is read off the curves.
+    pub(crate) curves: Vec<Figure>,
+    /// Tests against the model.
+    pub(crate) comparison: Vec<Figure>,
+    /// What the model leaves.
+    pub(crate) residuals: Vec<Figure>,
+}
+
+impl ValveFigures {
+    pub(crate) fn of(found: &Identification) -> ValveFigures {
+        let all = || found.recordings.iter().enumerate();
+        let leaking = all().find(|(_, one)| one.signal(SignalKind::LeakFlow).is_some());
+        let mut read = Vec::new();
+        read.extend(leaking.map(|(_, one)| leakage(found, one)));
+        read.extend(flow_gain(found));
+        read.extend(pressure_sensitivity(found));
+        let comparison = leaking.map(|(index, _)| WAYS.map(|way| against_model(found, index, way)));
+        ValveFigures {
+            circuits: circuits(found),
+            series: all().map(|(index, one)| series(found, index, one)).collect(),
+            curves: read,
+            comparison: comparison.into_iter().flatten().collect(),
+            residuals: vec![residuals(found)],
+        }
+    }
+
+    pub(crate) fn all(self) -> Vec<Figure> {
+        let ValveFigures { circuits, series, curves, comparison, residuals } = self;
+        [circuits, series, curves, comparison, residuals].concat()
+    }
+}
+
+fn circuits(found: &Identification) -> Vec<Figure> {
+    let has = |circuit| found.recordings.iter().any(|one| one.circuit == circuit);
+    let mut figures = Vec::new();
+    let supply = vec![display(found.tested.tare_reference_drop, &PRESSURE, 3)];
+    let words = |rows: [&str; 4]| rows.map(str::to_string).to_vec();
+    if has(PortCircuit::Blocked) {
+        let input = TestCircuitInput {
+            ports: TestPorts::Blocked,
+            supply_rows: supply.clone(),
+            rows: words([
+                "ports blocked",
+                "recorded over U_C:",
+                "leakage with tare flow,",
+                "pressures at A and B",
+            ]),
+        };
+        let caption = "Circuit of the tests with blocked ports, internal leakage and pressure gain (Ledezma 2019, Figure 5.3).";
+        figures.push(test_circuit(Words::new("circuit_blocked", "Test with blocked ports", caption), &input));
+    }
+    if has(PortCircuit::Connected) {
+        let input = TestCircuitInput {
+            ports: TestPorts::Joined,
+            supply_rows: supply,
+            rows: words([
+                "ports joined",
+                "through the meter",
+                "recorded over U_C:",
+                "flow, pressures at A and B",
+            ]),
+        };
+        let caption = "Circuit of the metering test (Ledezma 2019, Figure 5.6).";
+        figures.push(test_circuit(Words::new("circuit_joined", "Metering test", caption), &input));
+    }
+    figures
+}
+
+/// A panel of curves.
+fn panel(title: impl Into<String>, height: f64, curves: Vec<Curve>) -> CurvePanel {
+    CurvePanel { title: title.into(), curves, marked: vec![], zero_line: false, height }
+}
+
+fn line(points: Vec<(f64, f64)>, series: usize) -> Curve {
+    Curve { points, style: CurveStyle::Line(series) }
+}
+
+fn dots(points: Vec<(f64, f64)>, series: usize) -> Curve {
+    Curve { points, style: CurveStyle::Dots(series) }
+}
+
+/// Name of the file without folder and ending.
+fn stem(recording: &Recording) -> &str {
+    let name = recording.file.rsplit(['/', '\\']).next().unwrap_or(&recording.file);
+    name.rsplit_once('.').map_or(name, |(stem, _)| stem)
+}
+
+fn percent(found: &Identification, command: f64) -> f64 {
+    100.0 * command / found.tested.nominal_voltage
+}
+
+/// p_A and p_B of a row in Pa; of joined ports from their mean and difference.
+fn port_pressures(recording: &Recording, row: usize) -> Option<[f64; 2]> {
+    let at = |kind| recording.signal(kind)?.values.get(row).copied()?;
+    let mean: Option<f64> = at(SignalKind::MeanPressure);
+    if let Some(mean) = mean {
+        let half = recording.inputs.get(row)?.load_pressure / 2.0;
+        return Some([mean + half, mean - half]);
+    }
+    Some([at(SignalKind::PressureA)?, at(SignalKind::PressureB)?])
+}
+
+/// The signal of a flow, and what it is called.
+fn flow_signal(recording: &Recording) -> Option<(SignalKind, &'static str)> {
+    let kinds = [
+        (SignalKind::LeakFlow, "Leakage (L/min)"),
+        (SignalKind::PortFlow, "Flow (L/min)"),
+        (SignalKind::PortFlowMagnitude, "Flow (L/min)"),
+    ];
+    kinds.into_iter().find(|(kind, _)| recording.signal(*kind).is_some())
+}
+
+/// Temperature, command, flow and pressures over time.
+fn series(found: &Identification, index: usize, recording: &Recording) -> Figure {
+    let (bar, litre) = (DisplayUnit::BAR, DisplayUnit::LITRE_PER_MINUTE);
+    let times = || recording.times.iter().copied();
+    let mut panels = Vec::new();
+    if let Some(temperature) = &recording.oil_temperature {
+        let points = times().zip(temperature.iter().copied()).collect();
+        panels.push(panel("Oil (degC)", 64.0, vec![line(points, 0)]));
+    }
+    let commands = recording.inputs.iter().map(|input| percent(found, input.command));
+    panels.push(panel("U_C (%)", 78.0, vec![line(times().zip(commands).collect(), 0)]));
+    if let Some((kind, title)) = flow_signal(recording) {
+        let values = recording.signal(kind).map(|signal| signal.values.clone()).unwrap_or_default();
+        let shown = values.iter().map(|value| litre.of(value.unwrap_or(0.0)));
+        panels.push(panel(title, 100.0, vec![line(times().zip(shown).collect(), 0)]));
+    }
+    let supply = recording.inputs.iter().map(|input| bar.of(input.supply.pressure));
+    let mut pressures = vec![line(times().zip(supply).collect(), 0)];
+    for port in 0..2 {
+        let of_row = |(row, time): (usize, f64)| {
+            Some((time, bar.of(port_pressures(recording, row)?.get(port).copied()?)))
+        };
+        pressures.push(line(times().enumerate().filter_map(of_row).collect(), port + 1));
+    }
+    panels.push(panel("Pressure (bar)", 120.0, pressures));
+    let ends = [recording.times.first(), recording.times.last()].map(|time| time.copied().unwrap_or(0.0));
+    let legend = ["p_S", "p_A", "p_B"].into_iter().enumerate();
+    let input = CurvesInput {
+        x_title: "Time (s)".to_string(),
+        x_range: ends,
+        panels,
+        legend: legend.map(|(series, name)| (name.to_string(), CurveStyle::Line(series))).collect(),
+    };
+    let name = stem(recording);
+    let caption = format!(
+        "What was recorded in {}, over time: command, flow and pressures (Ledezma 2019, Figures 5.4, 5.7 and 5.8).",
+        recording.file
+    );
+    let title = format!("Recorded: {}", name.replace('_', " "));
+    curves(Words::new(format!("series_{}_{name}", index + 1), title, caption), &input)
+}
+
+/// Rows of one way of the command; those before its first reversal only where there are no others.
+fn rows_of(recording: &Recording, rising: bool) -> Vec<usize> {
+    let commands = || recording.inputs.iter().map(|input| input.command);
+    let steps: Vec<f64> = commands().zip(commands().skip(1)).map(|(before, now)| now - before).collect();
+    let way = |row: &usize| row.checked_sub(1).and_then(|before| steps.get(before)).copied().unwrap_or(0.0);
+    let first = (0..recording.inputs.len()).map(|row| way(&row)).find(|step| *step != 0.0).unwrap_or(0.0);
+    let turned = (0..recording.inputs.len()).find(|row| way(row) * first < 0.0).unwrap_or(0);
+    let all = |from: usize| -> Vec<usize> {
+        (from..recording.inputs.len()).filter(|row| way(row) != 0.0 && (way(row) > 0.0) == rising).collect()
+    };
+    let later = all(turned);
+    if later.is_empty() { all(0) } else { later }
+}
+
+/// Command in percent, and what `of` says of a row.
+fn over_command(
+    found: &Identification,
+    recording: &Recording,
+    rising: bool,
+    of: impl Fn(usize) -> Option<f64>,
+) -> Vec<(f64, f64)> {
+    let point = |row: usize| Some((percent(found, recording.inputs.get(row)?.command), of(row)?));
+    let mut points: Vec<(f64, f64)> = rows_of(recording, rising).into_iter().filter_map(point).collect();
+    points.sort_by(|(first, _), (second, _)| first.total_cmp(second));
+    points
+}
+
+/// Both nulls as marks.
+fn null_marks(found: &Identification) -> Vec<(f64, String)> {
+    let nulls = found.simple.nulls.into_iter().zip(["rising", "falling"]);
+    nulls.filter_map(|(null, way)| Some((percent(found, null?), format!("null {way}")))).collect()
+}
+
+fn ways_legend(kind: impl Fn(usize) -> CurveStyle) -> Vec<(String, CurveStyle)> {
+    WAYS.into_iter().enumerate().map(|(index, (name, _))| (name.to_string(), kind(index))).collect()
+}
+
+fn leakage(found: &Identification, recording: &Recording) -> Figure {
+    let litre = DisplayUnit::LITRE_PER_MINUTE;
+    let value = |row: usize| {
+        let value = recording.signal(SignalKind::LeakFlow)?.values.get(row).copied()?;
+        value.map(|value| litre.of(value))
+    };
+    let shown = WAYS.into_iter().enumerate();
+    let lines = shown.map(|(index, (_, rising))| line(over_command(found, recording, rising, value), index));
+    let mut only = panel("Leakage with tare flow (L/min)", 250.0, lines.collect());
+    only.marked = null_marks(found);
+    let input = CurvesInput {
+        x_title: COMMAND.to_string(),
+        x_range: [-AROUND_NULL, AROUND_NULL],
+        panels: vec![only],
+        legend: ways_legend(CurveStyle::Line),
+    };
+    let caption = "Internal leakage around null with rising and with falling command; the base is the tare flow, and the centres of both curves lie a hysteresis apart (Ledezma 2019, Figure 5.5).";
+    curves(Words::new("leakage_both_ways", "Internal leakage both ways", caption), &input)
+}
+
+/// Flow with the direction that the model gives it where the meter tells none.
+fn signed_flow(recording: &Recording, outputs: &[TestOutput], row: usize) -> Option<f64> {
+    let (kind, _) = flow_signal(recording)?;
+    let value = recording.signal(kind)?.values.get(row).copied()??;
+    let direction = outputs.get(row)?.port_flow;
+    let signed = if kind == SignalKind::PortFlow { value } else { value.copysign(direction) };
+    Some(DisplayUnit::LITRE_PER_MINUTE.of(signed))
+}
+
+/// Flow over the command by each meter, and around null.
+fn flow_gain(found: &Identification) -> Vec<Figure> {
+    let metered: Vec<(usize, &Recording)> = found
+        .recordings
+        .iter()
+        .enumerate()
+        .filter(|(_, one)| one.circuit == PortCircuit::Connected)
+        .collect();
+    if metered.is_empty() {
+        return Vec::new();
+    }
+    let whole = metered.iter().enumerate().map(|(series, (index, one))| {
+        let outputs = found.shown(*index, &found.coefficients);
+        let both = WAYS
+            .into_iter()
+            .flat_map(|(_, rising)| over_command(found, one, rising, |row| signed_flow(one, &outputs, row)));
+        dots(both.collect(), series)
+    });
+    let names = metered.iter().enumerate();
+    let most = found.recordings.iter().flat_map(|one| &one.inputs).map(|input| input.command.abs());
+    let most = percent(found, most.fold(0.0, f64::max)).ceil();
+    let input = CurvesInput {
+        x_title: COMMAND.to_string(),
+        x_range: [-most, most],
+        panels: vec![panel("Flow from A to B (L/min)", 260.0, whole.collect())],
+        legend: names
+            .map(|(series, (_, one))| (stem(one).replace('_', " "), CurveStyle::Dots(series)))
+            .collect(),
+    };
+    let caption = "Flow over the command by each meter, with the direction of the model where the meter tells none; where the large meter stands still there are no readings (Ledezma 2019, Figure 5.9).";
+    let first = curves(Words::new("flow_gain", "Flow gain", caption), &input);
+    vec![first, flow_gain_at_null(found, &metered)]
+}
+
+fn flow_gain_at_null(found: &Identification, metered: &[(usize, &Recording)]) -> Figure {
+    let litre = DisplayUnit::LITRE_PER_MINUTE;
+    let mut shown = Vec::new();
+    let finest = metered.last();
+    for (series, (_, rising)) in WAYS.into_iter().enumerate() {
+        let read = metered.iter().flat_map(|(index, one)| {
+            let outputs = found.shown(*index, &found.coefficients);
+            over_command(found, one, rising, |row| signed_flow(one, &outputs, row))
+        });
+        shown.push(dots(read.collect(), series));
+        if let Some((index, one)) = finest {
+            let outputs = found.shown(*index, &found.coefficients);
+            let flow = |row: usize| outputs.get(row).map(|output| litre.of(output.port_flow));
+            shown.push(line(over_command(found, one, rising, flow), series));
+        }
+    }
+    let mut legend = ways_legend(CurveStyle::Dots);
+    legend.extend(
+        ways_legend(CurveStyle::Line).into_iter().map(|(name, style)| (format!("model, {name}"), style)),
+    );
+    let input = CurvesInput {
+        x_title: COMMAND.to_string(),
+        x_range: [-NEAR_NULL, NEAR_NULL],
+        panels: vec![panel("Flow from A to B (L/min)", 260.0, shown)],
+        legend,
+    };
+    let caption = "The same around null, both ways: between the curves lies the hysteresis (Ledezma 2019, Figure 5.10). Lines are the identified valve.";
+    curves(Words::new("flow_gain_at_null", "Flow gain around null", caption), &input)
+}
+
+fn pressure_sensitivity(found: &Identification) -> Option<Figure> {
+    let blocked = found.recordings.iter().filter(|one| one.circuit == PortCircuit::Blocked);
+    let near = |one: &&Recording| {
+        let inputs = one.inputs.iter();
+        inputs.filter(|input| percent(found, input.command).abs() < CLOSE_TO_NULL).count()
+    };
+    let recording = blocked.filter(|one| port_pressures(one, 0).is_some()).max_by_key(near)?;
+    let bar = DisplayUnit::BAR;
+    let load = |row: usize| port_pressures(recording, row).map(|[a, b]| bar.of(a - b));
+    let shown = WAYS.into_iter().enumerate();
+    let lines = shown.map(|(index, (_, rising))| line(over_command(found, recording, rising, load), index));
+    let only = CurvePanel { zero_line: true, ..panel("p_A - p_B (bar)", 250.0, lines.collect()) };
+    let input = CurvesInput {
+        x_title: COMMAND.to_string(),
+        x_range: [-CLOSE_TO_NULL, CLOSE_TO_NULL],
+        panels: vec![only],
+        legend: ways_legend(CurveStyle::Line),
+    };
+    let caption = "Load pressure over the command with blocked ports: its slope at zero is the pressure sensitivity (Ledezma 2019, section 5.3).";
+    Some(curves(Words::new("pressure_sensitivity", "Pressure sensitivity", caption), &input))
+}
+
+/// A leakage test against the model, one way, with residuals.
+fn against_model(found: &Identification, index: usize, (way, rising): (&str, bool)) -> Figure {
+    let (bar, litre) = (DisplayUnit::BAR, DisplayUnit::LITRE_PER_MINUTE);
+    let outputs = found.shown(index, &found.coefficients);
+    let recording = found.recordings.get(index);
+    let shown: [(SignalKind, DisplayUnit, fn(&TestOutput) -> f64); 3] = [
+        (SignalKind::LeakFlow, litre, |output| output.leak_flow),
+        (SignalKind::PressureA, bar, |output| output.pressure_a),
+        (SignalKind::PressureB, bar, |output| output.pressure_b),
+    ];
+    let titles = [("Leakage (L/min)", "\u{394}q (L/min)", 0..1), ("Pressure (bar)", "\u{394}p (bar)", 1..3)];
+    let mut panels = Vec::new();
+    for (title, residual, which) in titles {
+        let (mut both, mut left) = (Vec::new(), Vec::new());
+        for (series, (kind, unit, of)) in
+            shown.iter().enumerate().filter(|(series, _)| which.contains(series))
+        {
+            let Some(recording) = recording else { continue };
+            let Some(signal) = recording.signal(*kind) else { continue };
+            let measured = |row: usize| signal.values.get(row).copied().flatten().map(|value| unit.of(value));
+            let model = |row: usize| outputs.get(row).map(|output| unit.of(of(output)));
+            both.push(dots(over_command(found, recording, rising, measured), series));
+            both.push(line(over_command(found, recording, rising, model), series));
+            let rest = |row: usize| Some(model(row)? - measured(row)?);
+            left.push(dots(over_command(found, recording, rising, rest), series));
+        }
+        panels.push(panel(title, 130.0, both));
+        panels.push(CurvePanel { zero_line: true, ..panel(residual, 76.0, left) });
+    }
+    let names = ["leakage", "p_A", "p_B"].into_iter().enumerate();
+    let mut legend: Vec<(String, CurveStyle)> =
+        names.map(|(series, name)| (format!("{name}, test"), CurveStyle::Dots(series))).collect();
+    legend.extend(
+        ["leakage", "p_A", "p_B"]
+            .into_iter()
+            .enumerate()
+            .map(|(series, name)| (format!("{name}, model"), CurveStyle::Line(series))),
+    );
+    let input =
+        CurvesInput { x_title: COMMAND.to_string(), x_range: [-AROUND_NULL, AROUND_NULL], panels, legend };
+    let figure = if rising { "5.12" } else { "5.11" };
+    let caption = format!(
+        "Leakage test and identified valve with {way}: leakage, pressures at both ports, and what is left of each (Ledezma 2019, Figure {figure})."
+    );
+    let name = if rising { "test_and_model_rising" } else { "test_and_model_falling" };
+    curves(Words::new(name, format!("Test and model, {way}"), caption), &input)
+}
+
+/// What the model leaves of every signal, over the command.
+fn residuals(found: &Identification) -> Figure {
+    let most = found.recordings.iter().flat_map(|one| &one.inputs).map(|input| input.command.abs());
+    let most = percent(found, most.fold(0.0, f64::max)).ceil();
+    let one = |signal: &SignalFit| {
+        let recording = found.recordings.get(signal.recording)?;
+        let unit = if signal.kind.is_pressure() { DisplayUnit::BAR } else { DisplayUnit::LITRE_PER_MINUTE };
+        let residuals = found.residuals(signal, &found.coefficients);
+        let both = recording.inputs.iter().zip(residuals);
+        let points = both.filter_map(|(input, rest)| Some((percent(found, input.command), unit.of(rest?))));
+        let short = match signal.kind {
+            SignalKind::PressureA => "p_A",
+            SignalKind::PressureB => "p_B",
+            SignalKind::MeanPressure => "p",
+            _ => "q",
+        };
+        let title = format!("{short} ({})", unit.symbol);
+        let label = vec![(-most, stem(recording).replace('_', " "))];
+        let mut shown = panel(title, 62.0, vec![dots(points.collect(), 0)]);
+        shown.zero_line = true;
+        shown.marked = label;
+        Some(shown)
+    };
+    let input = CurvesInput {
+        x_title: COMMAND.to_string(),
+        x_range: [-most, most],
+        panels: found.signals.iter().filter_map(one).collect(),
+        legend: vec![],
+    };
+    let caption = "What the identified valve leaves of every recorded signal, over the command: noise alone where the model is right.";
+    curves(Words::new("residuals", "Residuals", caption), &input)
+}

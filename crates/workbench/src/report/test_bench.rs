@@ -1,0 +1,75 @@
+//! The chapter on the recorded tests of the valve, chapter 5 of the thesis.
+
+use super::chapter::Chapter;
+use crate::command::CommandError;
+use crate::document::Document;
+use crate::identify::{
+    Identification, IdentifyError, Read, RecordedFiles, Search, ValveFigures, identify, recordings,
+    tell_coefficients, tell_numbers, tell_signals,
+};
+use crate::project::{Loaded, RecordedTest};
+use crate::source::Source;
+use phea_dynamics::watch::Watch;
+use phea_engineering::error::ProcedureError;
+
+/// What the recordings of the project say of its valve; nothing where it declares none.
+pub(super) fn chapter(
+    source: &dyn Source,
+    loaded: &Loaded,
+    watch: Watch<'_>,
+) -> Result<Option<Chapter>, CommandError> {
+    let project = &loaded.project;
+    let declared =
+        project.identify.as_ref().map(|identify| identify.recordings.as_slice()).unwrap_or_default();
+    if declared.is_empty() {
+        return Ok(None);
+    }
+    let files: Vec<RecordedTest> =
+        declared.iter().map(|one| RecordedTest { file: project.path_of(&one.file), ..one.clone() }).collect();
+    let known = crate::command::known_of_valve(loaded);
+    let refused = |error| match error {
+        IdentifyError::Stopped => CommandError::Procedure(ProcedureError::Stopped),
+        error => CommandError::Identify(error),
+    };
+    let RecordedFiles { recordings, contents, warnings } = recordings(source, &files, &known)
+        .map_err(|report| CommandError::Identify(IdentifyError::Files(report)))?;
+    let found = identify(recordings, &known, Search::default(), watch).map_err(refused)?;
+    Ok(Some(Chapter::of(
+        "test_bench",
+        "From the test bench to the model",
+        document(&found, &Read { contents, warnings }),
+    )))
+}
+
+/// A function for each section, in the order of the thesis.
+fn document(found: &Identification, read: &Read) -> Document {
+    let ValveFigures { circuits, series, curves, comparison, residuals } = ValveFigures::of(found);
+    let mut out = Document::default();
+    out.explanation("The coefficients of the servovalve follow from slow tests after ISO 10770-1: the command goes through its range in minutes, so that nothing but the valve's own memory lags. Chapter 5 of the thesis measures and fits the valve of its rig in this way; this chapter does the same with the recordings that the project declares.");
+    out.figures(circuits);
+    read.tell(&mut out);
+    out.figures_below("What was recorded", series);
+    tell_numbers(found, &mut out);
+    out.figures(curves);
+    tell_coefficients(found, &mut out);
+    out.explanation(simple_against_identified(found));
+    tell_signals(found, &mut out);
+    out.figures_below("Test against model", comparison);
+    out.figures(residuals);
+    out
+}
+
+/// Table 5.1 has both columns, and says in words that one does not reproduce the tests.
+fn simple_against_identified(found: &Identification) -> String {
+    let squares = |coefficients| -> f64 {
+        let shares = found.signals.iter().map(|one| found.residual_rms_of(one, coefficients) / one.range);
+        let count = found.signals.len().max(1) as f64;
+        (shares.map(|share| share * share).sum::<f64>() / count).sqrt()
+    };
+    let percent = |share: f64| crate::answer::significant(100.0 * share, 3);
+    format!(
+        "With the coefficients by hand, the model differs from the recordings by {} % of the range of each signal (root mean square); with the identified ones by {} %. Table 5.1 of the thesis compares the same two columns: equal edges by hand, unequal ones by optimisation.",
+        percent(squares(&found.first_guess)),
+        percent(squares(&found.coefficients))
+    )
+}
