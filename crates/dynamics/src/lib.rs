@@ -9,6 +9,7 @@
 //! System + InputSchedule + SimulationSettings -> simulate -> Trajectory, Outcome
 //! Plant -> Sensed -> CommandedPlant -> System                                  the closed loop
 //! residuals, derivatives -> Minimum -> Uncertainty                             what data tell
+//! recorded signals -> Blocks -> ResponsePoint                                  measured frequency responses
 //! ```
 //!
 //! SI units inside, angles in radians, frequencies in rad/s, polynomials with the highest power
@@ -24,6 +25,7 @@ pub mod portable;
 pub mod random;
 pub mod scalar;
 pub mod simulation;
+pub mod spectrum;
 pub mod time_response;
 pub mod uncertain_plant;
 pub mod watch;

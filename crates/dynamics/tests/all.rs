@@ -9,4 +9,5 @@ mod linear_roots;
 mod linear_systems;
 mod simulation;
 mod simulation_profile;
+mod spectrum;
 mod time_response;

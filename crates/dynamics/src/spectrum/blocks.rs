@@ -1,0 +1,146 @@
+use std::f64::consts::PI;
+
+use num_complex::Complex64;
+
+use super::{ResponsePoint, Transform, disc_radius};
+use crate::portable::cos;
+
+/// Transforms of an input and of an output, block by block.
+#[derive(Clone, Debug)]
+pub struct Blocks {
+    /// rad/s between lines.
+    spacing: f64,
+    /// Of each block, input and output at all lines up to half of the sampling frequency.
+    lines: Vec<[Vec<Complex64>; 2]>,
+    /// As how many independent blocks they count.
+    independent: f64,
+    /// Whether all blocks are the response to the same input.
+    is_repeated: bool,
+}
+
+/// The last whole periods of two signals that are sampled in steps of `time_step` seconds, after
+/// the first `settling` samples. `None` where fewer than two are left.
+///
+/// Whole periods have no leakage: the lines are exact, and what differs from period to period is
+/// noise.
+pub fn periods(signals: [&[f64]; 2], time_step: f64, period: usize, settling: usize) -> Option<Blocks> {
+    let count = signals[0].len().min(signals[1].len());
+    let repeats = count.checked_sub(settling)?.checked_div(period)?;
+    if repeats < 2 || period < 4 {
+        return None;
+    }
+    let first = count - repeats * period;
+    let transform = Transform::new(period);
+    let of = |signal: &[f64], start: usize| -> Vec<Complex64> {
+        let block = signal.get(start..start + period).unwrap_or_default();
+        let mean = block.iter().sum::<f64>() / period as f64;
+        let centred: Vec<f64> = block.iter().map(|value| value - mean).collect();
+        let scale = 2.0 / period as f64;
+        transform.of_real(&centred).into_iter().take(period.div_ceil(2)).map(|line| line * scale).collect()
+    };
+    let lines = (0..repeats).map(|repeat| signals.map(|signal| of(signal, first + repeat * period)));
+    let spacing = 2.0 * PI / (period as f64 * time_step);
+    Some(Blocks { spacing, lines: lines.collect(), independent: repeats as f64, is_repeated: true })
+}
+
+/// Segments of two signals, each overlapping half of the one before, seen through a Hann window.
+/// `None` where fewer than two fit.
+///
+/// ```text
+/// w_n = (1 - cos(2 pi n/N))/2          n_d = K/(1 + 2 rho (1 - 1/K)),   rho = (sum w_n w_(n+N/2) / sum w_n^2)^2
+/// ```
+///
+/// K segments that overlap count as n_d independent ones: Welch (1967).
+pub fn segments(signals: [&[f64]; 2], time_step: f64, length: usize) -> Option<Blocks> {
+    let count = signals[0].len().min(signals[1].len());
+    let step = length / 2;
+    if length < 8 || count < length + step {
+        return None;
+    }
+    let segments = (count - length) / step + 1;
+    let window: Vec<f64> =
+        (0..length).map(|n| 0.5 - 0.5 * cos(2.0 * PI * n as f64 / length as f64)).collect();
+    let transform = Transform::new(length);
+    let means = signals.map(|signal| signal.iter().take(count).sum::<f64>() / count as f64);
+    let of = |signal: &[f64], mean: f64, start: usize| -> Vec<Complex64> {
+        let samples = signal.iter().skip(start).zip(&window);
+        let seen: Vec<f64> = samples.map(|(value, window)| (value - mean) * window).collect();
+        let scale = 4.0 / length as f64;
+        transform.of_real(&seen).into_iter().take(length.div_ceil(2)).map(|line| line * scale).collect()
+    };
+    let both = |start: usize| [of(signals[0], means[0], start), of(signals[1], means[1], start)];
+    let squares: f64 = window.iter().map(|w| w * w).sum();
+    let shared: f64 = window.iter().zip(window.iter().skip(step)).map(|(one, other)| one * other).sum();
+    let (all, rho) = (segments as f64, (shared / squares) * (shared / squares));
+    Some(Blocks {
+        spacing: 2.0 * PI / (length as f64 * time_step),
+        lines: (0..segments).map(|segment| both(segment * step)).collect(),
+        independent: all / (1.0 + 2.0 * rho * (1.0 - 1.0 / all)),
+        is_repeated: false,
+    })
+}
+
+impl Blocks {
+    /// As how many independent blocks they count.
+    pub fn independent(&self) -> f64 {
+        self.independent
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.lines.len()
+    }
+
+    /// rad/s between neighbouring lines.
+    pub fn spacing(&self) -> f64 {
+        self.spacing
+    }
+
+    /// The response at each line but that of the mean.
+    ///
+    /// ```text
+    /// same input in all blocks:  G = sum Y / sum U        otherwise:  G = sum U* Y / sum |U|^2   (H1)
+    /// sigma^2 = sum |Y - G U|^2/(n - 1) / sum |U|^2
+    /// gamma^2 = |sum U* Y|^2/(sum |U|^2 sum |Y|^2)
+    /// ```
+    ///
+    /// The first counts noise of the input as well (Pintelon and Schoukens 2012, section 2.4); for
+    /// the second, sigma^2 is that of Bendat and Piersol (2010), section 9.2: (1 - gamma^2)
+    /// S_yy/((n - 1) S_uu).
+    pub fn points(&self) -> Vec<ResponsePoint> {
+        let lines = self.lines.first().map_or(0, |[input, _]| input.len());
+        let mut points: Vec<ResponsePoint> = (1..lines).map(|line| self.point(line)).collect();
+        let strongest = points.iter().map(|point| point.excitation).fold(0.0, f64::max);
+        for point in &mut points {
+            point.excitation /= strongest;
+        }
+        points
+    }
+
+    fn point(&self, line: usize) -> ResponsePoint {
+        let pairs = || {
+            let at = |values: &[Complex64]| values.get(line).copied().unwrap_or_default();
+            self.lines.iter().map(move |[input, output]| (at(input), at(output)))
+        };
+        let input_power: f64 = pairs().map(|(input, _)| input.norm_sqr()).sum();
+        let output_power: f64 = pairs().map(|(_, output)| output.norm_sqr()).sum();
+        let cross: Complex64 = pairs().map(|(input, output)| input.conj() * output).sum();
+        let sums = pairs().fold([Complex64::ZERO; 2], |[inputs, outputs], (input, output)| {
+            [inputs + input, outputs + output]
+        });
+        let response = if self.is_repeated { sums[1] / sums[0] } else { cross / input_power };
+        let rest: f64 = pairs().map(|(input, output)| (output - response * input).norm_sqr()).sum();
+        let power = if self.is_repeated { sums[0].norm_sqr() / self.independent } else { input_power };
+        let variance = rest / (self.independent - 1.0) / power;
+        let coherence = cross.norm_sqr() / (input_power * output_power);
+        let deviation = variance.sqrt();
+        ResponsePoint {
+            frequency: line as f64 * self.spacing,
+            response,
+            coherence: if coherence.is_finite() { coherence.min(1.0) } else { 0.0 },
+            deviation,
+            radius: disc_radius(deviation, self.independent),
+            excitation: power,
+        }
+    }
+}
