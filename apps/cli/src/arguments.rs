@@ -220,7 +220,10 @@ pub(crate) struct Common {
 /// What `identify` takes.
 #[derive(Args, Debug)]
 pub(crate) struct IdentifyArguments {
-    /// Recorded tests, tables as text or Parquet; or the project whose [identify] names them
+    /// What is identified
+    #[arg(long, value_name = "WHAT", default_value = "valve")]
+    pub(crate) of: SubjectWord,
+    /// IdentifyArguments tests, tables as text or Parquet; or the project whose [identify] names them
     #[arg(required_unless_present = "project", num_args = 1.., value_name = "PROJECT.toml|TABLE")]
     pub(crate) files: Vec<String>,
     /// The project of the valve: nominal voltage, and pressures that the files lack
@@ -247,6 +250,27 @@ pub(crate) struct IdentifyArguments {
     /// The model of the leakage, if the recordings are not to decide
     #[arg(long, value_name = "MODEL")]
     pub(crate) leakage_model: Option<LeakageWord>,
+    /// Of a response: the period of the input ("2 s"), if it is not to be found
+    #[arg(long, value_name = "TIME")]
+    pub(crate) period: Option<String>,
+    /// Of a response: what is left out at the beginning ("1 s"); absent: one period of a periodic input
+    #[arg(long, value_name = "TIME")]
+    pub(crate) settling: Option<String>,
+    /// Of a response: length of a segment ("4 s"), of an input that is not periodic
+    #[arg(long, value_name = "TIME", conflicts_with = "period")]
+    pub(crate) segment: Option<String>,
+    /// Of a response: squared coherence below which a frequency is left out (0.8)
+    #[arg(long, value_name = "NUMBER")]
+    pub(crate) coherence: Option<f64>,
+}
+
+/// What recorded tests are of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum SubjectWord {
+    /// Coefficients of the servovalve, from static tests
+    Valve,
+    /// Frequency responses, from a command (or input) and a force (or output) over time
+    Response,
 }
 
 /// A model of the leakage, as the project file calls it.

@@ -9,7 +9,7 @@
 //! System + InputSchedule + SimulationSettings -> simulate -> Trajectory, Outcome
 //! Plant -> Sensed -> CommandedPlant -> System                                  the closed loop
 //! residuals, derivatives -> Minimum -> Uncertainty                             what data tell
-//! recorded signals -> Blocks -> ResponsePoint                                  measured frequency responses
+//! recorded signals -> Blocks -> SpectralPoint                                  measured frequency responses
 //! ```
 //!
 //! SI units inside, angles in radians, frequencies in rad/s, polynomials with the highest power

@@ -12,6 +12,6 @@ mod period;
 mod transform;
 
 pub use blocks::{Blocks, periods, segments};
-pub use estimate::{ResponsePoint, disc_radius, least_coherence};
+pub use estimate::{SpectralPoint, disc_radius, least_coherence};
 pub use period::period;
 pub use transform::Transform;

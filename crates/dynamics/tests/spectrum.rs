@@ -27,8 +27,11 @@ fn the_transform_is_the_sum_of_its_definition_for_every_length() {
         assert_eq!(lines.len(), length);
         for (k, line) in lines.iter().enumerate() {
             let angle = |n: usize| -2.0 * PI * ((k * n) % length) as f64 / length as f64;
-            let sum: Complex64 =
-                samples.iter().enumerate().map(|(n, x)| x * Complex64::new(cos(angle(n)), sin(angle(n)))).sum();
+            let sum: Complex64 = samples
+                .iter()
+                .enumerate()
+                .map(|(n, x)| x * Complex64::new(cos(angle(n)), sin(angle(n))))
+                .sum();
             assert!(magnitude(line - sum) < 1e-12 * length as f64, "line {k} of {length}");
         }
     }
@@ -48,7 +51,8 @@ fn the_transform_keeps_the_power() {
 
 /// 1/(0.02 s + 1).
 fn first_order() -> TransferFunction {
-    TransferFunction::from_polynomials(&Polynomial::new(vec![1.0]), &Polynomial::new(vec![0.02, 1.0])).unwrap()
+    TransferFunction::from_polynomials(&Polynomial::new(vec![1.0]), &Polynomial::new(vec![0.02, 1.0]))
+        .unwrap()
 }
 
 /// A multisine of lines 1, 3, 7, 15, 31 and what a system makes of it when it has come to rest.
@@ -91,7 +95,7 @@ fn a_decaying_transient_is_left_behind_with_the_periods_that_are_discarded() {
     }
     let worst = |settling: usize| -> f64 {
         let points = periods([&input, &output], STEP, PERIOD, settling).unwrap().points();
-        let error = |point: &phea_dynamics::spectrum::ResponsePoint| {
+        let error = |point: &phea_dynamics::spectrum::SpectralPoint| {
             magnitude(point.response - first_order().at_frequency(point.frequency))
         };
         points.iter().filter(|point| point.excitation > 1e-6).map(error).fold(0.0, f64::max)

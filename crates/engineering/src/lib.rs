@@ -8,6 +8,7 @@
 //! Setup   -> simulate::ControlledMachine -> simulate, campaign the nonlinear machine
 //! Setup   -> bench                                            static tests of the valve
 //! files   -> identify                                         the valve that explains recorded tests
+//! files   -> response                                         frequency responses from recorded signals
 //! ```
 //!
 //! Results are values; text, JSON and figures of them are made in the workbench.
@@ -26,6 +27,7 @@ pub mod linear_loop;
 pub mod linearize;
 pub mod number_table;
 pub mod replaced;
+pub mod response;
 pub mod rig;
 pub mod robust;
 pub mod setup;

@@ -20,6 +20,7 @@ pub mod bode;
 pub mod clip;
 pub mod colour;
 pub mod curves;
+pub mod estimated_response;
 pub mod family_magnitude;
 pub mod family_step;
 pub mod impedance;
@@ -51,6 +52,7 @@ pub mod typeset;
 pub use bode::{BodeInput, FrequencySeries, bode};
 pub use colour::{Theme, style_sheet};
 pub use curves::{Curve, CurvePanel, CurveStyle, CurvesInput, curves};
+pub use estimated_response::{EstimatedResponseInput, estimated_response};
 pub use family_magnitude::{
     FamilyEnvelope, FamilyMagnitudeInput, MagnitudeCurve, MagnitudeMark, family_magnitude,
 };

@@ -4,6 +4,7 @@ mod campaign;
 mod identify;
 mod linearize;
 mod refusal;
+mod response;
 mod schema;
 mod simulate;
 
@@ -13,8 +14,10 @@ pub(crate) use identify::known_of_valve;
 pub use identify::{IdentifyRequest, identify_watched};
 pub use phea_engineering::error::ProcedureError;
 pub use phea_engineering::identify::IdentifyError;
+pub use phea_engineering::response::ResponseSettings;
 pub use phea_hydraulics::servovalve::LeakageModel;
 pub use refusal::{error_json, failure_json, files_json, refusal_json};
+pub use response::{ResponseRequest, response_watched};
 pub use schema::{SCHEMA_FILE, schema};
 pub use simulate::{FrequencyOptions, SimulateRequest};
 

@@ -15,6 +15,7 @@ pub(crate) mod error;
 pub mod identify;
 pub mod linearize;
 pub mod report;
+pub mod response;
 pub mod shaping;
 pub mod simulate;
 pub mod sizing;

@@ -31,6 +31,7 @@ mod report_opening;
 mod report_page;
 mod report_simulation;
 mod report_typeset;
+mod response_identification;
 mod rest;
 mod scenarios;
 mod sensor;

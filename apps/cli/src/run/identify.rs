@@ -3,10 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use phea_workbench::answer::Answer;
-use phea_workbench::command::{self, IdentifyError, IdentifyRequest, LeakageModel};
+use phea_workbench::command::{
+    self, IdentifyError, IdentifyRequest, LeakageModel, ResponseRequest, ResponseSettings,
+};
+use phea_workbench::quantity::{self, TIME};
 
 use super::{load, styled};
-use crate::arguments::{IdentifyArguments, LeakageWord};
+use crate::arguments::{IdentifyArguments, LeakageWord, SubjectWord};
 use crate::failure::Failure;
 use crate::file_system::FileSystem;
 use crate::interruption::Interruption;
@@ -31,12 +34,20 @@ pub(super) fn answered(recorded: &IdentifyArguments) -> Result<(Answer, Vec<Path
             LeakageWord::OneCurve => LeakageModel::OneCurve,
         }),
     };
+    let settings = response_settings(recorded)?;
     let mut line = ProgressLine::default();
     let interruption = Interruption::listen();
-    let answer = command::identify_watched(&FileSystem, loaded.as_ref(), &asked, &mut |progress| {
+    let watch = &mut |progress| {
         line.show(progress);
         !interruption.is_asked()
-    });
+    };
+    let answer = match recorded.of {
+        SubjectWord::Valve => command::identify_watched(&FileSystem, loaded.as_ref(), &asked, watch),
+        SubjectWord::Response => {
+            let asked = ResponseRequest { files: asked.files, settings, figures: recorded.out.is_some() };
+            command::response_watched(&FileSystem, loaded.as_ref(), &asked, watch)
+        }
+    };
     line.clear();
     let hash = loaded.as_ref().map(|loaded| loaded.sha256.as_str());
     let explain = |message: &str| command::failure_json(Some(NAME), hash, message);
@@ -77,4 +88,39 @@ fn named(recorded: &IdentifyArguments) -> Result<(Option<String>, Vec<String>), 
         return explain("`--set` changes a project, and none is named");
     }
     Ok((project, files.into_iter().cloned().collect()))
+}
+
+/// What is stated of a frequency response; refused for a valve, and where it is no positive time.
+fn response_settings(recorded: &IdentifyArguments) -> Result<ResponseSettings, Failure> {
+    let refuse = |message: String| {
+        let json = command::failure_json(Some(NAME), None, &message);
+        Failure::wrong_input(format!("error: {message}")).with_json(json)
+    };
+    let times =
+        [("period", &recorded.period), ("settling", &recorded.settling), ("segment", &recorded.segment)];
+    let coherence = recorded.coherence;
+    let stated = times.iter().find(|(_, text)| text.is_some()).map(|(name, _)| *name);
+    let stated = stated.or(coherence.map(|_| "coherence"));
+    if let Some(name) = stated.filter(|_| recorded.of != SubjectWord::Response) {
+        return Err(refuse(format!("`--{name}` is of a frequency response: `--of response`")));
+    }
+    if let Some(value) = coherence.filter(|value| !(0.0..1.0).contains(value)) {
+        return Err(refuse(format!("`--coherence {value}` is not from 0 to below 1")));
+    }
+    let seconds = |(name, text): (&str, &Option<String>)| {
+        let Some(text) = text else { return Ok(None) };
+        match quantity::parse(text, &TIME) {
+            Ok(value) if value > 0.0 || (value == 0.0 && name == "settling") => Ok(Some(value)),
+            Ok(_) => Err(refuse(format!("`--{name} {text}` is no positive time"))),
+            Err(error) => Err(refuse(format!("`--{name} {text}`: {error}"))),
+        }
+    };
+    let [period, settling, segment] = times.map(seconds);
+    let usual = ResponseSettings::default();
+    Ok(ResponseSettings {
+        period: period?,
+        settling: settling?,
+        segment: segment?,
+        coherence: coherence.unwrap_or(usual.coherence),
+    })
 }

@@ -2,8 +2,12 @@ use std::f64::consts::PI;
 
 use num_complex::Complex64;
 
-use super::{ResponsePoint, Transform, disc_radius};
+use super::{SpectralPoint, Transform, disc_radius};
 use crate::portable::cos;
+
+/// Power of the mean over that of the differences, below which a line of the input is noise: with
+/// five periods, noise is above it once in a thousand lines.
+const NOISE: f64 = 20.0;
 
 /// Transforms of an input and of an output, block by block.
 #[derive(Clone, Debug)]
@@ -107,9 +111,9 @@ impl Blocks {
     /// The first counts noise of the input as well (Pintelon and Schoukens 2012, section 2.4); for
     /// the second, sigma^2 is that of Bendat and Piersol (2010), section 9.2: (1 - gamma^2)
     /// S_yy/((n - 1) S_uu).
-    pub fn points(&self) -> Vec<ResponsePoint> {
+    pub fn points(&self) -> Vec<SpectralPoint> {
         let lines = self.lines.first().map_or(0, |[input, _]| input.len());
-        let mut points: Vec<ResponsePoint> = (1..lines).map(|line| self.point(line)).collect();
+        let mut points: Vec<SpectralPoint> = (1..lines).map(|line| self.point(line)).collect();
         let strongest = points.iter().map(|point| point.excitation).fold(0.0, f64::max);
         for point in &mut points {
             point.excitation /= strongest;
@@ -117,7 +121,7 @@ impl Blocks {
         points
     }
 
-    fn point(&self, line: usize) -> ResponsePoint {
+    fn point(&self, line: usize) -> SpectralPoint {
         let pairs = || {
             let at = |values: &[Complex64]| values.get(line).copied().unwrap_or_default();
             self.lines.iter().map(move |[input, output]| (at(input), at(output)))
@@ -131,16 +135,19 @@ impl Blocks {
         let response = if self.is_repeated { sums[1] / sums[0] } else { cross / input_power };
         let rest: f64 = pairs().map(|(input, output)| (output - response * input).norm_sqr()).sum();
         let power = if self.is_repeated { sums[0].norm_sqr() / self.independent } else { input_power };
+        // a line of noise is as strong in the mean of the blocks as they differ from each other
+        let scatter = (input_power - power).max(0.0) / (self.independent - 1.0);
+        let is_noise = self.is_repeated && power < NOISE * scatter;
         let variance = rest / (self.independent - 1.0) / power;
         let coherence = cross.norm_sqr() / (input_power * output_power);
         let deviation = variance.sqrt();
-        ResponsePoint {
+        SpectralPoint {
             frequency: line as f64 * self.spacing,
             response,
             coherence: if coherence.is_finite() { coherence.min(1.0) } else { 0.0 },
             deviation,
             radius: disc_radius(deviation, self.independent),
-            excitation: power,
+            excitation: if is_noise { 0.0 } else { power },
         }
     }
 }

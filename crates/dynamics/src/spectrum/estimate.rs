@@ -4,7 +4,7 @@ use crate::portable::pow;
 
 /// The response at one frequency, and how well it is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ResponsePoint {
+pub struct SpectralPoint {
     /// rad/s.
     pub frequency: f64,
     /// Y/U.

@@ -126,8 +126,7 @@ impl Chirp {
         let whole = 2 * halving.rotations.len();
         // n^2 modulo 2 N: the angle stays exact however long the signal is
         let square = |n: usize| (n as u128 * n as u128 % (2 * length as u128)) as f64;
-        let values: Vec<Complex64> =
-            (0..length).map(|n| turned(-PI * square(n) / length as f64)).collect();
+        let values: Vec<Complex64> = (0..length).map(|n| turned(-PI * square(n) / length as f64)).collect();
         let mut spectrum = vec![Complex64::ZERO; whole];
         for (n, value) in values.iter().enumerate() {
             for index in [n, (whole - n) % whole] {

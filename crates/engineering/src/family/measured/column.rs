@@ -6,7 +6,7 @@ use crate::table::{Column, Measurand, MeasuredTable, Sought};
 
 /// What a column may hold. A pair of magnitude and phase, or of real and imaginary part, is a
 /// response.
-static MEASURANDS: [Measurand; 9] = [
+static MEASURANDS: [Measurand; 12] = [
     measurand("frequency", &ANGULAR_FREQUENCY),
     measurand("magnitude", &GAIN),
     measurand("phase", &ANGLE),
@@ -16,6 +16,9 @@ static MEASURANDS: [Measurand; 9] = [
     measurand("load_motion_phase", &ANGLE),
     measurand("load_motion_real", &RATIO),
     measurand("load_motion_imaginary", &RATIO),
+    measurand("coherence", &RATIO),
+    measurand("standard_deviation", &RATIO),
+    measurand("confidence_95", &RATIO),
 ];
 
 const fn measurand(name: &'static str, dimension: &'static Dimension) -> Measurand {
@@ -73,8 +76,10 @@ impl MeasurementColumns {
             findings.push(table.unknown(*index, &sought));
         }
         let (columns, _) = found.filter(|_| findings.error_count() == before)?;
-        let columns: [Option<Column>; 9] = columns.try_into().ok()?;
-        let [frequency, magnitude, phase, real, imaginary, load @ ..] = columns;
+        let columns: [Option<Column>; 12] = columns.try_into().ok()?;
+        // how well a response is known is for its reader: the plants are the responses as they are
+        let [frequency, magnitude, phase, real, imaginary, one, two, three, four, ..] = columns;
+        let load = [one, two, three, four];
         let has_load = load.iter().any(Option::is_some);
         let [command, load_motion] = [[magnitude, phase, real, imaginary], load].map(ResponseForm::of);
         let forms = "a magnitude and a phase (`magnitude_db` or `magnitude`, `phase_deg` or `phase_rad`), or `real` and `imaginary`";

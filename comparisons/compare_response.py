@@ -1,0 +1,78 @@
+"""Holds `phea identify --of response` against scipy.signal on the same records.
+
+    python comparisons/compare_response.py [PHEA]        # or the variable PHEA; without either, what cargo builds
+
+A filtered noise with noise in its output, and a multisine that repeats. For the first, SciPy's csd, welch and coherence
+give H1 and the coherence; for the second, NumPy's transform of the averaged periods gives the response.
+"""
+
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+from scipy import signal
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+PHEA = sys.argv[1] if len(sys.argv) > 1 else os.environ.get("PHEA", str(ROOT / "target/debug/phea"))
+STEP = 1e-3
+
+
+def identified(columns, *options):
+    with tempfile.TemporaryDirectory() as folder:
+        path = pathlib.Path(folder) / "record.csv"
+        np.savetxt(path, np.column_stack(columns), "%.17g", ",", header="time_s,input,output", comments="")
+        command = [PHEA, "identify", "--of", "response", str(path), "--json", *options]
+        done = subprocess.run(command, capture_output=True, text=True, check=True)
+    (member,) = json.loads(done.stdout)["response"]["members"]
+    rows = member["frequencies"]
+    of = {name: np.array([row[name] for row in rows]) for name in rows[0]}
+    response = 10 ** (of["magnitude_db"] / 20) * np.exp(1j * np.radians(of["phase_deg"]))
+    return member, of["frequency_rad_per_s"] / (2 * np.pi), response, of
+
+
+def noise():
+    random = np.random.default_rng(17)
+    time = np.arange(30_000) * STEP
+    given = random.normal(size=time.size)
+    shown = signal.lfilter([0.2], [1, -0.8], given) + 0.1 * random.normal(size=time.size)
+    member, frequency, response, of = identified((time, given, shown), "--segment", "1 s", "--coherence", "0.5")
+    assert member["method"] == "segments" and member["blocks"] == 59, member
+    # phea leaves out the mean of the whole record, SciPy none
+    how = dict(fs=1 / STEP, window=signal.get_window("hann", 1000), nperseg=1000, noverlap=500, detrend=False)
+    given, shown = given - given.mean(), shown - shown.mean()
+    at, cross = signal.csd(given, shown, **how)
+    _, power = signal.welch(given, **how)
+    _, coherent = signal.coherence(given, shown, **how)
+    index = np.rint(frequency / at[1]).astype(int)
+    assert np.allclose(at[index], frequency, rtol=1e-9) and index.size > 300
+    expected = cross[index] / power[index]
+    error = np.abs(response / expected - 1).max()
+    assert error < 1e-9, error
+    assert np.abs(of["coherence"] - coherent[index]).max() < 1e-9
+    return error
+
+
+def multisine():
+    random = np.random.default_rng(4)
+    period, repeats, lines = 700, 9, [1, 2, 5, 11, 23, 47]
+    turns = np.outer(np.arange(period), lines) % period / period
+    one = np.sin(2 * np.pi * (turns + np.arange(len(lines)) ** 2 / 7)).sum(axis=1)
+    given = np.tile(one, repeats)
+    shown = signal.lfilter([0.1], [1, -0.9], given) + 0.05 * random.normal(size=given.size)
+    time = np.arange(given.size) * STEP
+    member, frequency, response, _ = identified((time, given, shown))
+    assert member["method"] == "periods" and member["blocks"] == repeats - 1, member
+    averaged = [values.reshape(repeats, period)[1:].mean(axis=0) for values in (given, shown)]
+    spectra = [np.fft.rfft(values) for values in averaged]
+    index = np.rint(frequency * period * STEP).astype(int)
+    assert list(index) == lines, index
+    error = np.abs(response / (spectra[1][index] / spectra[0][index]) - 1).max()
+    assert error < 1e-9, error
+    return error
+
+
+print(f"H1 and coherence of noise: {noise():.1e}; multisine: {multisine():.1e} (relative difference from SciPy and NumPy)")

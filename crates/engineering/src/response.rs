@@ -1,0 +1,55 @@
+//! Frequency responses from recorded signals: members of a measured family.
+//!
+//! ```text
+//! file -> SampledPair -> whole periods | overlapping segments -> points -> those that are known well enough
+//! ```
+//!
+//! A periodic input (a multisine, a chirp that is repeated) is averaged over its periods; any other
+//! (noise, a single chirp) is cut into segments. One file is one member.
+
+mod member;
+mod reading;
+
+pub use member::{Averaging, LeftOut, ResponseMember, Unusable};
+pub use reading::{SampledPair, UNEVEN, sampled_pairs, time_step};
+
+use phea_dynamics::watch::{Watch, tell};
+
+use crate::identify::IdentifyError;
+
+/// How responses are estimated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ResponseSettings {
+    /// s, of a periodic input; absent: it is found.
+    pub period: Option<f64>,
+    /// s at the beginning that are left out; absent: one period of a periodic input, otherwise nothing.
+    pub settling: Option<f64>,
+    /// s, of a segment; absent: about an eighth of the record.
+    pub segment: Option<f64>,
+    /// Squared coherence below which a frequency is left out.
+    pub coherence: f64,
+}
+
+impl Default for ResponseSettings {
+    /// A squared coherence of 0.8 over ten blocks leaves a standard deviation of 17 % of the response.
+    fn default() -> ResponseSettings {
+        ResponseSettings { period: None, settling: None, segment: None, coherence: 0.8 }
+    }
+}
+
+/// The members of a family from records, one each.
+///
+/// # Errors
+/// [`IdentifyError`] where a record is too short or its input does not move, and when it is stopped.
+pub fn members(
+    records: &[SampledPair],
+    settings: &ResponseSettings,
+    watch: Watch<'_>,
+) -> Result<Vec<ResponseMember>, IdentifyError> {
+    let mut members = Vec::with_capacity(records.len());
+    for (index, record) in records.iter().enumerate() {
+        tell(watch, "frequency responses", index, records.len())?;
+        members.push(member::member(record, settings).map_err(IdentifyError::Data)?);
+    }
+    Ok(members)
+}

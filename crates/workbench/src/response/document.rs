@@ -1,0 +1,94 @@
+use phea_dynamics::portable::{argument, log10, magnitude};
+
+use super::{Averaging, Compared, LeftOut, ResponseMember, Unusable};
+use crate::answer::significant;
+use crate::document::{Cell, Document, Table};
+use crate::quantity::DisplayUnit;
+
+/// Rows of a table for people; all of them are in the files.
+const SHOWN: usize = 16;
+
+/// A section for each record: how it was taken apart, the response, and what was left out.
+pub fn text(found: &[Compared]) -> String {
+    let mut out = Document::default();
+    for compared in found {
+        let member = &compared.member;
+        let [input, output] = member.signals;
+        let [below, above] = member.units;
+        let every = member.points.len().div_ceil(SHOWN).max(1);
+        let shown = member.points.iter().step_by(every).map(|point| {
+            [
+                Cell::number(DisplayUnit::HERTZ.of(point.frequency), 4),
+                Cell::number(20.0 * log10(magnitude(point.response)), 4),
+                Cell::number(argument(point.response).to_degrees(), 4),
+                Cell::number(100.0 * point.radius / magnitude(point.response), 2),
+                Cell::number(point.coherence, 4),
+            ]
+        });
+        let decibels = format!("dB re 1 {above}/{below}");
+        let headings = ["frequency (Hz)", decibels.as_str(), "phase (deg)", "95 % within (%)", "coherence"];
+        out.section(format!("{}: {output} over {input}", member.file), Table::new(headings).with(shown));
+        out.sentences(blocks(member));
+        if every > 1 {
+            let all = member.points.len();
+            out.sentences([format!("One row in {every} is shown; there are {all} frequencies.")]);
+        }
+        out.sentences(left_out(member));
+        out.sentences(agreement(compared));
+    }
+    out.text()
+}
+
+/// How the record was taken apart.
+fn blocks(member: &ResponseMember) -> Vec<String> {
+    let seconds = |value: f64| significant(value, 4);
+    let rows = format!("{} rows, {} s apart", member.rows, seconds(member.time_step));
+    vec![match member.method {
+        Averaging::Periods { period, count } => {
+            format!(
+                "{rows}: the input repeats every {} s; the last {count} periods are averaged.",
+                seconds(period)
+            )
+        }
+        Averaging::Segments { length, count, independent } => format!(
+            "{rows}: the input does not repeat; {count} segments of {} s with a Hann window overlap by half and count as {} without overlap.",
+            seconds(length),
+            significant(independent, 3)
+        ),
+    }]
+}
+
+/// What was left out, and why.
+fn left_out(member: &ResponseMember) -> Vec<String> {
+    let of = |reason: Unusable| member.left_out.iter().filter(move |one| one.reason == reason);
+    let hertz = |one: &LeftOut| significant(DisplayUnit::HERTZ.of(one.frequency), 4);
+    let mut sentences = Vec::new();
+    let incoherent: Vec<String> = of(Unusable::Incoherent)
+        .take(SHOWN)
+        .map(|one| format!("{} Hz ({})", hertz(one), significant(one.coherence, 2)))
+        .collect();
+    if !incoherent.is_empty() {
+        let rest = of(Unusable::Incoherent).count() - incoherent.len();
+        let more = if rest > 0 { format!(" and {rest} more") } else { String::new() };
+        sentences.push(format!(
+            "Left out, because the squared coherence is below {}: {}{more}.",
+            significant(member.least_coherence, 2),
+            incoherent.join(", ")
+        ));
+    }
+    let silent = of(Unusable::NotExcited).count();
+    if silent > 0 {
+        sentences.push(format!("The input does not excite {silent} other frequencies."));
+    }
+    sentences
+}
+
+/// How the linear plant of the project compares.
+fn agreement(compared: &Compared) -> Option<String> {
+    let (held, apart) = compared.agreement()?;
+    let all = compared.member.points.len();
+    Some(format!(
+        "The linear plant of the project is within the 95 % confidence of {held} of {all} frequencies, and at most {} dB away.",
+        significant(apart, 3)
+    ))
+}

@@ -1,0 +1,252 @@
+//! From recorded signals to a measured family: the response of the nonlinear machine, shaken by a
+//! multisine and by noise, is its linear plant.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
+#![allow(clippy::disallowed_methods, reason = "the platform's functions are exact enough for a test")]
+
+use num_complex::Complex64;
+use phea_dynamics::portable::{exp_complex, magnitude};
+use phea_dynamics::random::{normal, stream};
+use phea_qft::family::Family;
+use phea_workbench::answer::Answer;
+use phea_workbench::command::{self, Request, ResponseRequest, ResponseSettings, response_watched};
+use phea_workbench::family::family;
+use phea_workbench::identify::IdentifyError;
+use phea_workbench::project::{self, Loaded};
+use phea_workbench::setup::Setup;
+use phea_workbench::source::Memory;
+use serde_json::Value;
+
+const BENCHMARK: &str = include_str!("../../../examples/benchmark/closed_loop.toml");
+
+/// Viscous friction and four equal edges: nothing has a kink, so that the plant is the machine's
+/// derivative at null; a laminar range that the small command stays in.
+const SMOOTH: [&str; 4] = [
+    "cylinder.friction={ model = \"viscous\", viscous = \"100 N.s/m\" }",
+    "valve.flow_coefficients=[3e-7, 3e-7, 3e-7, 3e-7]",
+    "valve.leakage_coefficients=[2.4e-9, 2.4e-9, 2.4e-9, 2.4e-9]",
+    "operating_point.position=\"250 mm\"",
+];
+
+/// 21 periods of 1.28 s of lines 1, 3, 8, 20, 45, 90. The pole at 0.5 rad/s has forgotten the
+/// beginning after 20 s.
+const MULTISINE: &str = "{ kind = \"multisine\", start = \"0 s\", duration = \"26.88 s\", amplitude = \"2 mV\", \
+frequencies = [\"0.78125 Hz\", \"2.34375 Hz\", \"6.25 Hz\", \"15.625 Hz\", \"35.15625 Hz\", \"70.3125 Hz\"] }";
+
+const SETTINGS: ResponseSettings =
+    ResponseSettings { period: None, settling: Some(20.48), segment: None, coherence: 0.8 };
+
+fn rig() -> Loaded {
+    let scenario = format!(
+        "scenario=[{{ name = \"shaken\", duration = \"26.88 s\", output_step = \"1 ms\", command = {MULTISINE} }}]"
+    );
+    let settings: Vec<String> = SMOOTH.iter().map(|text| (*text).to_string()).chain([scenario]).collect();
+    let source = Memory::default().with("rig.toml", BENCHMARK);
+    project::read(&source, "rig.toml", &settings, &[]).unwrap_or_else(|report| panic!("{report}"))
+}
+
+/// The table that `simulate` writes.
+fn simulated(loaded: &Loaded) -> String {
+    let source = Memory::default().with("rig.toml", BENCHMARK);
+    let answer = command::answer(&source, loaded, &[], &Request::Simulate);
+    let answer = answer.unwrap_or_else(|error| panic!("{error}"));
+    let file = answer.files.iter().find(|file| file.name.ends_with(".csv")).expect("a table");
+    String::from_utf8(file.bytes.clone()).unwrap()
+}
+
+/// The columns of a table by their names.
+fn columns(table: &str, names: [&str; 3]) -> [Vec<f64>; 3] {
+    let mut lines = table.lines();
+    let headings: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let index = names.map(|name| headings.iter().position(|heading| *heading == name).expect(name));
+    let rows: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
+    index.map(|index| rows.iter().map(|row| row[index].parse().unwrap()).collect())
+}
+
+fn table(names: &str, columns: [&[f64]; 3]) -> String {
+    let [times, inputs, outputs] = columns;
+    let rows = times.iter().zip(inputs).zip(outputs);
+    rows.fold(format!("{names}\n"), |text, ((time, input), output)| {
+        format!("{text}{time},{input},{output}\n")
+    })
+}
+
+fn identified(
+    table: &str,
+    loaded: Option<&Loaded>,
+    settings: &ResponseSettings,
+) -> Result<Answer, IdentifyError> {
+    let source = Memory::default().with("bench/shaken.csv", table);
+    let files = vec!["bench/shaken.csv".to_string()];
+    let asked = ResponseRequest { files, settings: *settings, figures: false };
+    response_watched(&source, loaded, &asked, &mut |_| true)
+}
+
+fn member(answer: &Answer) -> Value {
+    let json: Value = serde_json::from_str(&answer.json).unwrap();
+    json["response"]["members"][0].clone()
+}
+
+/// rad/s, response, radius.
+fn points(member: &Value) -> Vec<(f64, Complex64, f64)> {
+    let rows = member["frequencies"].as_array().unwrap();
+    let point = |row: &Value| {
+        let of = |name: &str| row[name].as_f64().unwrap();
+        let direction = exp_complex(Complex64::new(0.0, of("phase_deg").to_radians()));
+        (of("frequency_rad_per_s"), 10.0_f64.powf(of("magnitude_db") / 20.0) * direction, of("confidence_95"))
+    };
+    rows.iter().map(point).collect()
+}
+
+/// Two roads to one response: the nonlinear machine in time, and the linear plant of its project.
+/// Without noise they meet; with noise in the force, over 40 recordings, the discs hold the plant as
+/// often as they state.
+#[test]
+fn the_machine_shaken_by_a_multisine_shows_the_linear_plant() {
+    let loaded = rig();
+    let plant = Setup::rig_of(&loaded.project).unwrap();
+    let simulated = simulated(&loaded);
+    let clean = member(&identified(&simulated, Some(&loaded), &SETTINGS).unwrap());
+    assert_eq!((&clean["method"], &clean["blocks"]), (&Value::from("periods"), &Value::from(5)), "{clean}");
+    assert!((clean["block_s"].as_f64().unwrap() - 1.28).abs() < 1e-9);
+    assert_eq!(points(&clean).len(), 6);
+    for (frequency, response, _) in points(&clean) {
+        // the machine's curvature at 2 mV, most at the lowest frequency, where the force is largest
+        assert!(magnitude(response / plant.response(frequency) - 1.0) < 3e-3, "{frequency} {response}");
+    }
+    let [times, inputs, outputs] = columns(&simulated, ["time_s", "control_v", "force_n"]);
+    let (mut held, mut all) = (0, 0);
+    for repetition in 0..40 {
+        let mut state = stream(7, repetition);
+        let noisy: Vec<f64> = outputs.iter().map(|force| force + 2.0 * normal(&mut state)).collect();
+        // the last five periods and one that is left out
+        let last = times.len() - 6 * 1280..;
+        let table =
+            table("time_s,command_v,force_n", [&times[last.clone()], &inputs[last.clone()], &noisy[last]]);
+        let settings = ResponseSettings { coherence: 0.0, ..ResponseSettings::default() };
+        let found = points(&member(&identified(&table, None, &settings).unwrap()));
+        for (frequency, response, radius) in found {
+            held += usize::from(magnitude(response - plant.response(frequency)) <= radius);
+            all += 1;
+        }
+    }
+    // ORIGIN: analytic, 99.8 % of a binomial distribution of 240 with 0.95
+    assert!(all >= 200 && (held as f64 - 0.95 * all as f64).abs() < 10.5, "{held} of {all}");
+}
+
+/// The whole way: what is identified is a family that `verify` audits.
+#[test]
+fn what_is_identified_is_a_family_that_verify_audits() {
+    // ten periods of 0.2 s of lines 1, 2, 4, 9 through 5/(0.05 s + 1), and more of it
+    let times: Vec<f64> = (0..2000).map(|n| f64::from(n) * 1e-3).collect();
+    let plant = |w: f64, gain: f64| gain / Complex64::new(1.0, 0.05 * w);
+    let line = |k: f64| 2.0 * std::f64::consts::PI * k / 0.2;
+    let shaken = |gain: f64| -> String {
+        let sum = |time: f64, shown: bool| -> f64 {
+            let of = |k: &f64| {
+                let turned = exp_complex(Complex64::new(0.0, line(*k) * time + k * k));
+                (if shown { plant(line(*k), gain) * turned } else { turned }).re
+            };
+            [1.0, 2.0, 4.0, 9.0].iter().map(of).sum()
+        };
+        let [inputs, outputs] =
+            [false, true].map(|shown| times.iter().map(|t| sum(*t, shown)).collect::<Vec<_>>());
+        table("time_s,input,output", [&times, &inputs, &outputs])
+    };
+    let files = vec!["a/run.csv".to_string(), "b/run.csv".to_string()];
+    let asked = ResponseRequest { files, settings: ResponseSettings::default(), figures: true };
+    let source = Memory::default().with("a/run.csv", shaken(5.0)).with("b/run.csv", shaken(8.0));
+    let answer = response_watched(&source, None, &asked, &mut |_| true).unwrap();
+    let names: Vec<&str> = answer.files.iter().map(|file| file.name.as_str()).collect();
+    assert_eq!(names[..3], ["run.response.csv", "run-2.response.csv", "measured.toml"]);
+    assert_eq!(names.len(), 7, "two pictures of each: {names:?}");
+    let fragment = String::from_utf8(answer.files[2].bytes.clone()).unwrap();
+    let project = format!(
+        "schema = 1\n{fragment}\n[[specification]]\nkind = \"robust_stability\"\nlimit = 1.3\nfrequencies = [32, 60, 250]\n\n[controller]\nnumerator = \"0.5\"\ndenominator = \"s\"\n"
+    );
+    let source = answer.files.iter().fold(Memory::default().with("rig.toml", project), |source, file| {
+        source.with(&file.name, file.bytes.clone())
+    });
+    let loaded = project::read(&source, "rig.toml", &[], &[]).unwrap_or_else(|report| panic!("{report}"));
+    let Ok(Family::Measured(read)) = family(&Setup::new(&loaded.project).unwrap(), &source) else {
+        panic!("no measured family")
+    };
+    for (member, gain) in read.plants().iter().zip([5.0, 8.0]) {
+        assert_eq!(member.frequencies_rad_per_s.len(), 4);
+        for (w, response) in member.frequencies_rad_per_s.iter().zip(&member.command) {
+            assert!(magnitude(response / plant(*w, gain) - 1.0) < 1e-9, "{w} {response}");
+        }
+    }
+    let verdict =
+        command::answer(&source, &loaded, &[], &Request::Verify).unwrap_or_else(|error| panic!("{error}"));
+    let json: Value = serde_json::from_str(&verdict.json).unwrap();
+    assert_eq!(json["command"], "verify");
+    assert!(!json["specifications"].as_array().unwrap().is_empty(), "{json}");
+}
+
+/// A signal that starts with nothing but noise in its output has incoherent frequencies, which are
+/// listed with the reason.
+#[test]
+fn what_noise_hides_is_left_out_with_the_reason() {
+    let mut state = stream(3, 0);
+    let times: Vec<f64> = (0..4096).map(|n| f64::from(n) * 2e-3).collect();
+    let inputs: Vec<f64> = times.iter().map(|_| normal(&mut state)).collect();
+    // what follows the mean of two neighbours vanishes at half of the sampling frequency
+    let means = std::iter::once(0.0).chain(inputs.windows(2).map(|pair| (pair[0] + pair[1]) / 2.0));
+    let outputs: Vec<f64> = means.map(|mean| mean + 0.2 * normal(&mut state)).collect();
+    let text = table("time [s],input,output", [&times, &inputs, &outputs]);
+    let answer = identified(&text, None, &ResponseSettings::default()).unwrap();
+    let found = member(&answer);
+    assert_eq!(found["method"], "segments");
+    let left_out = found["rows_left_out"].as_array().unwrap();
+    assert!(!left_out.is_empty() && left_out.len() < points(&found).len());
+    for row in left_out {
+        assert_eq!(row["reason"], "the coherence is below the threshold");
+        assert!(row["frequency_rad_per_s"].as_f64().unwrap() > 800.0, "{row}");
+    }
+    assert!(answer.text.contains("Left out, because the squared coherence is below"), "{}", answer.text);
+}
+
+#[track_caller]
+fn refused(text: &str, settings: &ResponseSettings, expected: &[&str]) {
+    let message = match identified(text, None, settings) {
+        Err(IdentifyError::Files(report)) => report.render(false),
+        Err(other) => other.to_string(),
+        Ok(answer) => panic!("{}", answer.text),
+    };
+    for part in expected {
+        assert!(message.contains(part), "`{part}` is not in: {message}");
+    }
+}
+
+#[test]
+fn records_that_give_no_response_are_refused_with_the_place_and_the_reason() {
+    let usual = ResponseSettings::default();
+    let times: Vec<f64> = (0..400).map(|n| f64::from(n) * 0.01).collect();
+    let wave: Vec<f64> = times.iter().map(|t| (20.0 * t).sin() + (33.0 * t).sin()).collect();
+    let mut late = times.clone();
+    late[57] += 0.004;
+    let jittery = table("time_s,input,output", [&late, &wave, &wave]);
+    refused(&jittery, &usual, &["shaken.csv:59", "14 ms after the row before", "10 ms apart"]);
+    let gap: String = table("time_s,input,output", [&times, &wave, &wave])
+        .lines()
+        .enumerate()
+        .filter(|(line, _)| *line != 100)
+        .map(|(_, line)| format!("{line}\n"))
+        .collect();
+    refused(&gap, &usual, &["shaken.csv:101", "20 ms after the row before"]);
+    let flat = vec![1.0; times.len()];
+    refused(&table("time_s,input,output", [&times, &flat, &wave]), &usual, &["the input never moves"]);
+    refused(&table("time_s,input,force_kg", [&times, &wave, &wave]), &usual, &["`kg` is no unit of"]);
+    refused(
+        &table("time_s,command_v,angle", [&times, &wave, &wave]),
+        &usual,
+        &["there is no column `force`"],
+    );
+    let few = table("time_s,input,output", [&times[..20], &wave[..20], &wave[..20]]);
+    refused(&few, &usual, &["20 rows are too few"]);
+    let record = table("time_s,input,output", [&times, &wave, &wave]);
+    let period = |seconds: f64| ResponseSettings { period: Some(seconds), ..ResponseSettings::default() };
+    refused(&record, &period(0.314), &["31.4000 rows", "0.31 s or 0.32 s"]);
+    refused(&record, &period(2.0), &["too short", "at least two periods"]);
+}
