@@ -36,7 +36,7 @@ use phea_dynamics::watch::{Stopped, Watch};
 use phea_hydraulics::servovalve::{LeakageModel, STATIC_COEFFICIENTS, StaticCoefficients, TestedValve};
 
 use self::variables::Variables;
-use crate::project::Refusal;
+use crate::project::{Project, Refusal};
 
 /// Names of the coefficients, in order, and their units.
 pub const COEFFICIENT_NAMES: [(&str, &str); STATIC_COEFFICIENTS] = [
@@ -83,6 +83,23 @@ impl Default for Known {
             tare_pressure: None,
             leakage_model: LeakageModel::EachEdge,
             rated_flow: None,
+        }
+    }
+}
+
+impl Known {
+    /// What a project states of its valve and of its supply; the defaults where it has no actuator.
+    pub fn of(project: &Project) -> Known {
+        let Some(actuator) = &project.actuator else { return Known::default() };
+        let valve = &actuator.valve;
+        Known {
+            rated_flow: valve.flow.rating().map(|rated| [rated.flow, rated.pressure_drop]),
+            nominal_voltage: valve.nominal_voltage,
+            transition_pressure: valve.transition_pressure,
+            supply_pressure: Some(actuator.supply.pressure),
+            tank_pressure: actuator.supply.tank_pressure,
+            tare_pressure: valve.tare_pressure,
+            leakage_model: valve.leakage_model,
         }
     }
 }

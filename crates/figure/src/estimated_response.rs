@@ -92,24 +92,23 @@ pub fn estimated_response(words: Words, input: &EstimatedResponseInput) -> Figur
         let points = frequencies.iter().zip(values).map(|(at, value)| (*at, *value, String::new())).collect();
         panel.marks.push(Mark::Markers { points, style: POINTS });
     }
-    let stroke = Stroke::solid(Role::Muted, 1.2).dashed(Dash::Dotted);
-    let limit = Mark::Reference {
-        direction: AxisDirection::Y,
-        at: input.least_coherence,
-        stroke,
-        label: String::new(),
-    };
-    panels.last_mut().into_iter().for_each(|panel| panel.marks.push(limit.clone()));
-    let mut legend = vec![LegendEntry::marker(input.estimate.name.clone(), POINTS)];
-    legend.push(LegendEntry::area("95 % confidence", fill));
-    legend.extend(
-        input
-            .models
-            .iter()
-            .enumerate()
-            .map(|(index, model)| LegendEntry::line(model.name.clone(), series_stroke(index))),
-    );
+    panels.last_mut().into_iter().for_each(|panel| panel.marks.push(limit(input.least_coherence)));
+    let legend = legend(input, fill);
     words.with_scene(Plot { x, panels, legend, equal_aspect: false }.draw())
+}
+
+/// The line of the least squared coherence.
+fn limit(at: f64) -> Mark {
+    let stroke = Stroke::solid(Role::Muted, 1.2).dashed(Dash::Dotted);
+    Mark::Reference { direction: AxisDirection::Y, at, stroke, label: String::new() }
+}
+
+/// The estimate, its band, and each model.
+fn legend(input: &EstimatedResponseInput, fill: Fill) -> Vec<LegendEntry> {
+    let models = input.models.iter().enumerate();
+    let models = models.map(|(index, model)| LegendEntry::line(model.name.clone(), series_stroke(index)));
+    let estimate = LegendEntry::marker(input.estimate.name.clone(), POINTS);
+    [estimate, LegendEntry::area("95 % confidence", fill)].into_iter().chain(models).collect()
 }
 
 /// Decibels and degrees, the phase on the turn of the estimate.

@@ -10,7 +10,6 @@ mod simulate;
 
 pub use crate::error::CommandError;
 pub use campaign::{CampaignRequest, CampaignRuns, campaign_watched};
-pub(crate) use identify::known_of_valve;
 pub use identify::{IdentifyRequest, identify_watched};
 pub use phea_engineering::error::ProcedureError;
 pub use phea_engineering::identify::IdentifyError;

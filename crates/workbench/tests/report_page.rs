@@ -452,8 +452,7 @@ fn an_unstable_loop_is_called_unstable_and_not_measured() {
             .contains("The closed loop is unstable: its force grows without bound and is not drawn.")
     );
     assert!(unstable.figures.iter().all(|figure| figure.name != "step"));
-    let (_, step) =
-        plain_hose().summary.iter().find(|(name, _)| *name == "Nominal linear loop").unwrap();
+    let (_, step) = plain_hose().summary.iter().find(|(name, _)| *name == "Nominal linear loop").unwrap();
     assert!(step.contains("% overshoot, settles in "), "{step}");
     // A proportional loop ends beside its reference: it does not settle in the band.
     let beside = report_with(&["controller.numerator=\"0.0001\"", "controller.denominator=\"1\""]);

@@ -40,7 +40,7 @@ pub fn identify_watched(
     asked: &IdentifyRequest,
     watch: Watch<'_>,
 ) -> Result<Answer, IdentifyError> {
-    let known = loaded.map_or(Known::default(), known_of_valve);
+    let known = loaded.map_or(Known::default(), |loaded| Known::of(&loaded.project));
     let files = files(loaded, asked)?;
     let RecordedFiles { recordings, contents, warnings } =
         recordings(source, &files, &known).map_err(IdentifyError::Files)?;
@@ -67,21 +67,6 @@ pub fn identify_watched(
         files: written,
         affirmative: found.has_converged() && found.untold.is_empty(),
     })
-}
-
-/// What a project says of its valve.
-pub(crate) fn known_of_valve(loaded: &Loaded) -> Known {
-    let Some(actuator) = &loaded.project.actuator else { return Known::default() };
-    let valve = &actuator.valve;
-    Known {
-        rated_flow: valve.flow.rating().map(|rated| [rated.flow, rated.pressure_drop]),
-        nominal_voltage: actuator.valve.nominal_voltage,
-        transition_pressure: actuator.valve.transition_pressure,
-        supply_pressure: Some(actuator.supply.pressure),
-        tank_pressure: actuator.supply.tank_pressure,
-        tare_pressure: actuator.valve.tare_pressure,
-        leakage_model: actuator.valve.leakage_model,
-    }
 }
 
 /// The files that are asked for, or those of the project, each relative to it.

@@ -1,10 +1,10 @@
 //! The chapter on the recorded tests of the valve, chapter 5 of the thesis.
 
 use super::chapter::Chapter;
-use crate::command::CommandError;
 use crate::document::Document;
+use crate::error::CommandError;
 use crate::identify::{
-    Identification, IdentifyError, Read, RecordedFiles, Search, ValveFigures, identify, recordings,
+    Identification, IdentifyError, Known, Read, RecordedFiles, Search, ValveFigures, identify, recordings,
     tell_coefficients, tell_numbers, tell_signals,
 };
 use crate::project::{Loaded, RecordedTest};
@@ -26,7 +26,7 @@ pub(super) fn chapter(
     }
     let files: Vec<RecordedTest> =
         declared.iter().map(|one| RecordedTest { file: project.path_of(&one.file), ..one.clone() }).collect();
-    let known = crate::command::known_of_valve(loaded);
+    let known = Known::of(&loaded.project);
     let refused = |error| match error {
         IdentifyError::Stopped => CommandError::Procedure(ProcedureError::Stopped),
         error => CommandError::Identify(error),
