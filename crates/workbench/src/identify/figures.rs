@@ -144,7 +144,7 @@ fn series(found: &Identification, index: usize, recording: &Recording) -> Figure
     let mut panels = Vec::new();
     if let Some(temperature) = &recording.oil_temperature {
         let points = times().zip(temperature.iter().copied()).collect();
-        panels.push(panel("Oil (degC)", 64.0, vec![line(points, 0)]));
+        panels.push(panel("Oil (°C)", 64.0, vec![line(points, 0)]));
     }
     let commands = recording.inputs.iter().map(|input| percent(found, input.command));
     panels.push(panel("U_C (%)", 78.0, vec![line(times().zip(commands).collect(), 0)]));
