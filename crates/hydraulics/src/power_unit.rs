@@ -116,7 +116,7 @@ impl<S: Scalar> PumpLimited<S> {
     /// assert_eq!(unit.relief_flow(64e5, 70e5), 0.0);
     /// ```
     #[inline(always)]
-    pub(crate) fn relief_flow(&self, pressure: S, stated: S) -> S {
+    pub fn relief_flow(&self, pressure: S, stated: S) -> S {
         let above = pressure - (stated - self.relief_override);
         self.pump_flow * above.maximum(S::from(0.0)) / self.relief_override
     }

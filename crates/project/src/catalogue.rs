@@ -76,7 +76,7 @@ pub struct CatalogueEntry {
 
 impl CatalogueEntry {
     /// Author, title and table a number comes from.
-    pub(crate) fn source_of(&self, key: &str) -> String {
+    pub fn source_of(&self, key: &str) -> String {
         let own = self.sources.iter().find(|(name, _)| name == key).map(|(_, source)| source);
         own.or(self.source.as_ref()).cloned().unwrap_or_default()
     }

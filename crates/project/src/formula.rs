@@ -126,7 +126,7 @@ impl Formula {
     /// assert_eq!(formula.parameters(), [("z", 8..9)]);
     /// # Ok::<(), phea_project::FormulaError>(())
     /// ```
-    pub(crate) fn parse_continuous(text: &str) -> Result<Formula, FormulaError> {
+    pub fn parse_continuous(text: &str) -> Result<Formula, FormulaError> {
         parse::formula(text, false)
     }
 

@@ -61,7 +61,7 @@ impl<const N: usize, S: Scalar> Dual<N, S> {
     /// assert_eq!((x * x).gradient(), &[8.0]);
     /// ```
     #[inline(always)]
-    pub(crate) fn set_value(&mut self, value: S) {
+    pub fn set_value(&mut self, value: S) {
         self.value = value;
     }
 

@@ -67,7 +67,7 @@ impl<S: Scalar> Stribeck<S> {
     /// assert_eq!(curve.regular_force(StribeckShape::Power, 0.0, 1e-5), 0.0);
     /// ```
     #[inline(always)]
-    pub(crate) fn regular_force(&self, shape: StribeckShape, velocity: S, regular_velocity: S) -> S {
+    pub fn regular_force(&self, shape: StribeckShape, velocity: S, regular_velocity: S) -> S {
         let speed = (velocity.squared() + regular_velocity.squared()).sqrt();
         self.sliding_force_of(shape, velocity) * velocity / speed + self.viscous * velocity
     }
@@ -77,7 +77,7 @@ impl<S: Scalar> Stribeck<S> {
     /// ```text
     /// g(v) = F_C + (F_S - F_C) exp(-|v/v_S|^alpha)                         thesis (4.31), corrected
     /// ```
-    pub(crate) fn sliding_force(&self, velocity: S) -> S {
+    pub fn sliding_force(&self, velocity: S) -> S {
         // The least positive number stands for zero velocity, whose logarithm does not exist; its
         // power is zero.
         let least = S::from(f64::MIN_POSITIVE);

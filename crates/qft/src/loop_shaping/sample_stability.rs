@@ -227,10 +227,7 @@ impl SampleStability {
     /// # Ok(())
     /// # }
     /// ```
-    pub(crate) fn approximate_real_part(
-        &self,
-        feedback: &TransferFunction,
-    ) -> Result<Option<f64>, LinearError> {
+    pub fn approximate_real_part(&self, feedback: &TransferFunction) -> Result<Option<f64>, LinearError> {
         let question = self.question(feedback)?;
         let mut greatest = 0.0_f64;
         for plant in &self.plants {

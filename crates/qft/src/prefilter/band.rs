@@ -148,7 +148,7 @@ impl PrefilterBand {
     ///
     /// # Errors
     /// Those of [`tracking_extremes`].
-    pub(crate) fn with_ends(
+    pub fn with_ends(
         mut self,
         compensation: &Compensation,
         members: &[Member],
