@@ -331,12 +331,15 @@ fn pressure_sensitivity(found: &Identification) -> Option<Figure> {
     Some(curves(Words::new("pressure_sensitivity", "Pressure sensitivity", caption), &input))
 }
 
+/// A recorded signal, the unit it is shown in, and its value in the model.
+type ShownSignal = (SignalKind, DisplayUnit, fn(&TestOutput) -> f64);
+
 /// A leakage test against the model, one way, with residuals.
 fn against_model(found: &Identification, index: usize, (way, rising): (&str, bool)) -> Figure {
     let (bar, litre) = (DisplayUnit::BAR, DisplayUnit::LITRE_PER_MINUTE);
     let outputs = found.shown(index, &found.coefficients);
     let recording = found.recordings.get(index);
-    let shown: [(SignalKind, DisplayUnit, fn(&TestOutput) -> f64); 3] = [
+    let shown: [ShownSignal; 3] = [
         (SignalKind::LeakFlow, litre, |output| output.leak_flow),
         (SignalKind::PressureA, bar, |output| output.pressure_a),
         (SignalKind::PressureB, bar, |output| output.pressure_b),
