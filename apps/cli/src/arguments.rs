@@ -223,7 +223,7 @@ pub(crate) struct IdentifyArguments {
     /// What is identified
     #[arg(long, value_name = "WHAT", default_value = "valve")]
     pub(crate) of: SubjectWord,
-    /// IdentifyArguments tests, tables as text or Parquet; or the project whose [identify] names them
+    /// Recorded tests, tables as text or Parquet; or the project whose `[[identify.recording]]` names them
     #[arg(required_unless_present = "project", num_args = 1.., value_name = "PROJECT.toml|TABLE")]
     pub(crate) files: Vec<String>,
     /// The project of the valve: nominal voltage, and pressures that the files lack
