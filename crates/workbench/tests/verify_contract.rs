@@ -85,7 +85,8 @@ fn what_cannot_be_met_is_not_called_met() {
 fn the_text_says_the_verdict_first_and_what_it_rests_on() {
     let text = answer(HOSE, &[], &[], &Request::Verify).text;
     assert!(text.starts_with("Verdict: violated\n"));
-    for words in ["11.89", "at the design frequencies alone it would have passed", "a search is not a proof"] {
+    for words in ["11.89", "at the design frequencies alone it would have passed", "a search is not a proof"]
+    {
         assert!(text.contains(words), "{words} is missing in\n{text}");
     }
 }
