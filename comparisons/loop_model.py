@@ -240,6 +240,11 @@ class Project:
 
     def held_plant(self, values):
         """States of the plant between hold and sampler, with the part of a sample of its dead time."""
+        return self.held_behind(tuple(values), self.loop_delay)
+
+    @functools.lru_cache(maxsize=64)
+    def held_behind(self, values, _loop_delay):
+        """The same, kept: a search over the frequency asks for one plant again and again."""
         over, under = self.plant_polynomials(values)
         a, b, c, d = companion(over, under)
         fraction = self.delay(values) % self.sample_time

@@ -43,6 +43,9 @@ impl Outcome {
 /// What the names of the tests that run the stories begin with, in `apps/cli/tests/stories.rs`.
 const STORIES: &str = "stories::";
 
+/// The test that the repository is tidy, in `xtask/src/tidy.rs`.
+const REPOSITORY: &str = "tidy::tests::the_repository_is_tidy";
+
 type Stage = fn(&Path) -> Outcome;
 
 /// Cheap and informative stages first; those that need a network last.
@@ -147,10 +150,15 @@ fn built_tests(root: &Path, begun: Option<&mut comparisons::Begun>) -> Outcome {
     }
 }
 
-/// Builds all tests, and the programs and examples that the comparisons ask: those only where no
-/// kind of target is named.
+/// Builds all tests, and the examples that the comparisons ask: the others are read by clippy
+/// alone.
 fn build(root: &Path) -> Outcome {
-    for_all(root, &["test", "--workspace", "--no-run"], &[])
+    let asked = ["--example", "reference_systems", "--example", "schema_cases"];
+    for_all(
+        root,
+        &[&["test", "--workspace", "--no-run", "--lib", "--bins", "--tests"][..], &asked].concat(),
+        &[],
+    )
 }
 
 /// The arguments that leave out the package that links CVODE.
@@ -211,9 +219,11 @@ fn linted(root: &Path) -> Outcome {
     }
 }
 
-/// Unit and integration tests but for the stories, which are a stage of their own.
+/// Unit and integration tests but for the stories and for the check of the repository, which are
+/// stages of their own.
 fn tests(root: &Path) -> Outcome {
-    for_all(root, &["test", "--workspace", "--tests", "--no-fail-fast"], &["--", "--skip", STORIES])
+    let skipped = ["--", "--skip", STORIES, "--skip", REPOSITORY];
+    for_all(root, &["test", "--workspace", "--tests", "--no-fail-fast"], &skipped)
 }
 
 /// The example stories, by the whole workspace, so that what was built for the other tests serves
@@ -226,6 +236,10 @@ fn stories(root: &Path) -> Outcome {
 fn mutation(root: &Path) -> Outcome {
     execute(root, "cargo", &["test", "--workspace", "--test", "all", "--", "--ignored", "mutation::"])
 }
+
+/// Certificates of random problems against eleven million plants, and designs from other seeds.
+const LONG_ROBUST_TESTS: [&str; 8] =
+    ["test", "--release", "-p", "phea-qft", "--test", "all", "--", "--ignored"];
 
 /// Four hundred valves identified from recordings of one: how often their intervals cover the
 /// truth.
@@ -243,17 +257,33 @@ const IDENTIFIED_VALVES: [&str; 11] = [
     "valve_coverage::soak",
 ];
 
-/// A hundred kills of campaigns on one, two and four threads, two gigabytes of rows, and four
-/// hundred identified valves, in the release profile: what was lost, and how fast it was, is
-/// printed.
-fn soak(root: &Path) -> Outcome {
+/// A thousand rigs of each family that phea and CVODE solve both.
+const MANY_RIGS: [&str; 8] =
+    ["test", "--release", "--workspace", "--test", RIGS, "--", "1000", "--test-threads=1"];
+
+/// A hundred kills of campaigns on one, two and four threads, and two gigabytes of rows, in the
+/// release profile: what was lost, and how fast it was, is printed.
+fn killed_campaigns(root: &Path) -> Outcome {
     let tests =
         ["campaign_killed::", "streamed_rows::", "--include-ignored", "--nocapture", "--test-threads=1"];
     let arguments = [&["test", "--release", "-p", "phea-cli", "--test", "all", "--"][..], &tests].concat();
-    match execute_with(root, "cargo", &arguments, &[("PHEA_KILLS", "100")]) {
-        Outcome::Passed => execute(root, "cargo", &IDENTIFIED_VALVES),
-        other => other,
-    }
+    execute_with(root, "cargo", &arguments, &[("PHEA_KILLS", "100")])
+}
+
+/// What takes too long for every commit, before a release: all of it, so that one run shows
+/// everything that has to be mended.
+fn soak(root: &Path) -> Outcome {
+    let cargo = |arguments: &[&str]| execute(root, "cargo", arguments);
+    let ended = [
+        killed_campaigns(root),
+        cargo(&IDENTIFIED_VALVES),
+        cargo(&LONG_ROBUST_TESTS),
+        cargo(&MANY_RIGS),
+        comparisons::soak(root),
+    ];
+    let failed: Vec<&str> =
+        ended.iter().filter(|one| !matches!(one, Outcome::Passed)).map(Outcome::remark).collect();
+    if failed.is_empty() { Outcome::Passed } else { Outcome::Failed(failed.join("; ")) }
 }
 
 fn doctests(root: &Path) -> Outcome {
@@ -292,7 +322,7 @@ fn peers(root: &Path) -> Outcome {
         println!("\n**** SKIPPED: {missing}\n**** nothing was compared with CVODE in this run\n");
         return Outcome::Skipped(missing);
     }
-    execute(root, "cargo", &["test", "--workspace", "--test", RIGS])
+    execute(root, "cargo", &["test", "--workspace", "--test", RIGS, "--", "50"])
 }
 
 #[cfg(test)]

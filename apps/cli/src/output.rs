@@ -129,6 +129,16 @@ impl Unfinished for Pending {
     }
 }
 
+/// Refuses a folder that can neither be nor be created, before the work whose result it would not
+/// take.
+pub(crate) fn expect_folder(folder: &Path) -> Result<(), String> {
+    let existing = folder.ancestors().find_map(|part| fs::metadata(part).ok());
+    match existing {
+        Some(found) if !found.is_dir() => Err(unwritten(folder, &ErrorKind::NotADirectory.into())),
+        _ => Ok(()),
+    }
+}
+
 /// Writes files into a folder; gives their paths.
 pub(crate) fn write(folder: &Path, files: &[OutputFile]) -> Result<Vec<PathBuf>, String> {
     files.iter().map(|file| write_as(&folder.join(&file.name), file)).collect()

@@ -20,7 +20,7 @@ use crate::arguments::{Arguments, Command, Common, Several};
 use crate::failure::{DONE, Failure, NO, WRONG_INPUT};
 use crate::file_system::{FileSystem, reason};
 use crate::interruption::Interruption;
-use crate::output::{Folder, write, write_as};
+use crate::output::{Folder, expect_folder, write, write_as};
 use crate::voice::{ProgressLine, complain, say};
 
 pub(crate) fn run(arguments: Arguments) -> ExitCode {
@@ -186,6 +186,11 @@ fn compared(several: &Several) -> Result<(Answer, Vec<PathBuf>), Failure> {
     let paths = several.projects.iter().map(|path| path.to_string_lossy());
     let loaded = paths.map(|path| load(&path, &several.settings, &several.catalogues, request.name()));
     let loaded = loaded.collect::<Result<Vec<_>, _>>()?;
+    // the command line requires at least one project
+    let Some(first) = loaded.first() else {
+        return Err(Failure::wrong_input("error: no project"));
+    };
+    expect_folders([several.out.as_deref(), None]).map_err(|message| failed(&request, first, &message))?;
     let mut line = ProgressLine::default();
     let interruption = Interruption::listen();
     let figures = several.out.is_some();
@@ -194,10 +199,6 @@ fn compared(several: &Several) -> Result<(Answer, Vec<PathBuf>), Failure> {
         !interruption.is_asked()
     });
     line.clear();
-    // the command line requires at least one project
-    let Some(first) = loaded.first() else {
-        return Err(Failure::wrong_input("error: no project"));
-    };
     let answer = answer.map_err(|error| refused(first, &request, &error))?;
     let written = match &several.out {
         Some(folder) => write(folder, &answer.files).map_err(|message| failed(&request, first, &message))?,
@@ -218,6 +219,8 @@ fn answered(
 ) -> Result<(Answer, Vec<PathBuf>), Failure> {
     let path = common.project.to_string_lossy();
     let loaded = load(&path, &common.settings, &common.catalogues, request.name())?;
+    let explain = |message: String| failed(request, &loaded, &message);
+    expect_folders([common.out.as_deref(), save.and_then(Path::parent)]).map_err(explain)?;
     let mut line = ProgressLine::default();
     // commands that can return their best result so far are asked to stop; all others have nothing
     // to save
@@ -233,7 +236,6 @@ fn answered(
     let answer = command::answer_into(&FileSystem, &loaded, catalogues, request, destination, &mut watch);
     line.clear();
     let answer = answer.map_err(|error| refused(&loaded, request, &error))?;
-    let explain = |message: String| failed(request, &loaded, &message);
     let mut written = tables.map(Folder::into_begun).unwrap_or_default();
     written.extend(write_files(common, request, &answer).map_err(explain)?);
     let saved = [DESIGNED_PROJECT, SHAPED_PROJECT, CERTIFICATE_FILE];
@@ -242,6 +244,11 @@ fn answered(
         written.insert(0, write_as(path, saved).map_err(explain)?);
     }
     Ok((answer, written))
+}
+
+/// Refuses the folders of `--out` and `--save` that cannot be.
+fn expect_folders(folders: [Option<&Path>; 2]) -> Result<(), String> {
+    folders.into_iter().flatten().try_for_each(expect_folder)
 }
 
 /// Reads a project and prints its warnings.

@@ -58,8 +58,8 @@ fn enclosures_of_the_published_controller_hold_what_the_audit_finds() {
 /// Random plants, rates, delays and prefilters in z and in s.
 #[test]
 fn no_plant_contradicts_a_proof_of_a_sampled_loop() {
-    let [stable, _, limited] = sound(0..30, 500, true);
-    assert!(stable > 20 && limited > 120, "{stable} {limited}");
+    let [stable, _, limited] = sound(0..15, 500, true);
+    assert!(stable > 10 && limited > 60, "{stable} {limited}");
 }
 
 /// An integrator k/s under a gain of one: L = k T/(z - 1).

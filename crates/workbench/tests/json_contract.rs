@@ -57,7 +57,9 @@ fn answered() -> Vec<(String, Value)> {
     ];
     let mut answers = Vec::new();
     for (name, project) in [("hose", HOSE), ("pipe", PIPE)] {
-        for settings in odd {
+        // what is odd is so of both
+        let settings_of = if name == "hose" { &odd[..] } else { &odd[..1] };
+        for settings in settings_of {
             for request in &requests()[..7] {
                 let label = format!("{} {name} {settings:?} {request:?}", request.name());
                 answers.push((label, json(project, settings, &[FICTITIOUS], request)));
@@ -76,12 +78,14 @@ fn answered() -> Vec<(String, Value)> {
 
 #[test]
 fn every_object_says_what_it_is_and_of_which_file() {
+    // the report need not design a controller and simulate for this
+    let (project, _) = HOSE.split_once("[design]").unwrap();
     for request in requests() {
-        let object = json(HOSE, &[], &[], &request);
+        let object = json(project, &[], &[], &request);
         assert_eq!(object["schema"], 1);
         assert_eq!(object["version"], env!("CARGO_PKG_VERSION"));
         assert_eq!(object["command"], request.name());
-        let digest: String = Sha256::digest(HOSE).iter().map(|byte| format!("{byte:02x}")).collect();
+        let digest: String = Sha256::digest(project).iter().map(|byte| format!("{byte:02x}")).collect();
         assert_eq!(object["project_sha256"], digest.as_str());
     }
     // ORIGIN: other tool, sha256sum

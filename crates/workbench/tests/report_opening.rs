@@ -195,16 +195,16 @@ fn what_to_do_next_follows_from_the_results() {
     assert!(given.iter().any(|step| step.contains("flow_pressure_coefficient is 5.929e-13")), "{given:?}");
 
     let (still, _) = undesigned.split_once("[[scenario]]").unwrap();
-    let still = next(still, &[]);
-    assert!(still.iter().any(|step| step.starts_with("Add a `[[scenario]]`")), "{still:?}");
+    let undriven = next(still, &[]);
+    assert!(undriven.iter().any(|step| step.starts_with("Add a `[[scenario]]`")), "{undriven:?}");
 
-    let unasked = without(&undesigned, "[[specification]]", "[controller]");
+    let unasked = without(still, "[[specification]]", "[controller]");
     assert!(next(&unasked, &[])[0].contains("`[[specification]]`"));
 
     let contradictory = next(CONTRADICTORY, &[]);
     assert!(contradictory[0].starts_with("Ease ") && contradictory[0].contains(" dB"), "{contradictory:?}");
 
-    let wall = next(&undesigned, &["load.model=wall", "load.stiffness=1e6"]);
+    let wall = next(still, &["load.model=wall", "load.stiffness=1e6"]);
     assert!(
         wall.iter().any(|step| step.contains("no verdict on the linear loop includes it: load.model")),
         "{wall:?}"
@@ -214,8 +214,8 @@ fn what_to_do_next_follows_from_the_results() {
 /// A page of a rig without a controller has no columns and says so.
 #[test]
 fn cards_tell_load_lines_and_hose() {
-    let undesigned = without(HOSE, "[design] ", "[[scenario]]");
-    let page = plain(&opening(&report_of(&undesigned, &[])));
+    let (undesigned, _) = HOSE.split_once("[design] ").unwrap();
+    let page = plain(&opening(&report_of(undesigned, &[])));
     for words in [
         "Load",
         "moves as prescribed, behind 20 kN/mm",
@@ -230,7 +230,7 @@ fn cards_tell_load_lines_and_hose() {
         "load.stiffness=1 MN/m",
         "load.damping=100 N.s/m",
     ];
-    let page = plain(&opening(&report_of(&undesigned, &load)));
+    let page = plain(&opening(&report_of(undesigned, &load)));
     assert!(
         page.contains("spring, mass and damper: 20 kg, 1 kN/mm") || page.contains("20 kg, 1 MN/m"),
         "{page}"

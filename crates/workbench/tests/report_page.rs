@@ -26,6 +26,15 @@ fn without_design(project: &str) -> String {
     format!("{start}{end}")
 }
 
+/// The rig and its controller without specifications, design and scenarios: all that questions about the nominal
+/// loop need.
+fn nominal() -> String {
+    let (rig, rest) = HOSE.split_once("[[specification]]").unwrap();
+    let (_, rest) = rest.split_once("[controller]").unwrap();
+    let (controller, _) = rest.split_once("[design]").unwrap();
+    format!("{rig}[controller]{controller}")
+}
+
 /// The reports of both rigs as their command writes them, drawn once.
 fn hose() -> &'static Answer {
     static ANSWER: OnceLock<Answer> = OnceLock::new();
@@ -57,7 +66,8 @@ fn plain_report(project: &str) -> Report {
 #[test]
 fn a_family_with_lines_in_motion_has_its_steps_drawn() {
     let settings = ["line.model=segments", "line.segments=4", "line.relaxation_time=0.3 ms"];
-    let report = report_of(&without_design(HOSE), &settings);
+    let (project, _) = HOSE.split_once("[design]").unwrap();
+    let report = report_of(project, &settings);
     assert!(report.figures.iter().any(|found| found.name == "family_steps"));
 }
 
@@ -300,9 +310,10 @@ fn it_is_made_for_light_and_dark_and_paper() {
 #[test]
 fn a_hostile_title_stays_a_title() {
     let title = "<script>alert(1)</script> & \\\"quotes\\\" ]]> </svg>";
-    let project = HOSE.replace("title = \"Ybitu rig, 1.5 m of HVE hose\"", &format!("title = \"{title}\""));
-    assert_ne!(project, HOSE);
-    let report = plain_report(&project);
+    let project =
+        nominal().replace("title = \"Ybitu rig, 1.5 m of HVE hose\"", &format!("title = \"{title}\""));
+    assert_ne!(project, nominal());
+    let report = report_of(&project, &[]);
     assert!(!report.html.contains("<script"));
     let xml = as_xml(&report.html);
     let document = Document::parse(&xml).unwrap_or_else(|error| panic!("{error}"));
@@ -440,7 +451,7 @@ fn report_of(project: &str, settings: &[&str]) -> Report {
 
 #[test]
 fn an_unstable_loop_is_called_unstable_and_not_measured() {
-    let unstable = report_with(&["controller.numerator=\"s + 8\""]);
+    let unstable = report_of(&nominal(), &["controller.numerator=\"s + 8\""]);
     assert!(
         unstable.summary.contains(&("Nominal linear loop", "unstable".to_string())),
         "{:?}",
@@ -455,14 +466,14 @@ fn an_unstable_loop_is_called_unstable_and_not_measured() {
     let (_, step) = plain_hose().summary.iter().find(|(name, _)| *name == "Nominal linear loop").unwrap();
     assert!(step.contains("% overshoot, settles in "), "{step}");
     // A proportional loop ends beside its reference: it does not settle in the band.
-    let beside = report_with(&["controller.numerator=\"0.0001\"", "controller.denominator=\"1\""]);
+    let beside = report_of(&nominal(), &["controller.numerator=\"0.0001\"", "controller.denominator=\"1\""]);
     assert!(!beside.html.contains("settles in not"));
 }
 
 #[test]
 fn without_leakage_the_force_of_the_open_loop_remains() {
     let caption = |settings: &[&str]| {
-        let report = report_with(settings);
+        let report = report_of(&nominal(), settings);
         report.figures.iter().find(|figure| figure.name == "load-motion").unwrap().caption.clone()
     };
     assert!(caption(&[]).contains("In the end nothing remains."));
@@ -476,6 +487,6 @@ fn without_leakage_the_force_of_the_open_loop_remains() {
 
 #[test]
 fn a_loop_with_dead_time_is_not_judged_and_says_why() {
-    let html = report_with(&["controller.delay=\"1 ms\""]).html;
+    let html = report_of(&nominal(), &["controller.delay=\"1 ms\""]).html;
     assert!(html.contains("not judged here: with dead time it has no finite number of poles"));
 }

@@ -12,6 +12,10 @@ use crate::repository::Repository;
 /// What the scripts that ask phea begin with.
 const COMPARE: &str = "comparisons/compare_";
 
+/// Scripts that need nothing of phea, and take most of a minute to search anew what they found
+/// before: run by [`soak`].
+const SEARCHES: [&str; 1] = ["comparisons/recompute_design.py"];
+
 const REQUIREMENTS: &str = "comparisons/requirements.txt";
 
 /// Each script that failed, or why none could be run.
@@ -71,6 +75,17 @@ pub(super) fn end(root: &Path, mut begun: Begun) -> Outcome {
         (Outcome::Passed, Err(problem)) => Outcome::Failed(problem),
         (other, _) => other,
     }
+}
+
+/// Runs the scripts that are left out otherwise.
+pub(super) fn soak(root: &Path) -> Outcome {
+    let mut told = String::new();
+    let ran = environment(root, &mut told).and_then(|python| {
+        let python = python.to_string_lossy().into_owned();
+        SEARCHES.iter().try_for_each(|script| quietly(root, &mut told, &python, &[script]))
+    });
+    print!("{told}");
+    ran.map_or_else(Outcome::Failed, |()| Outcome::Passed)
 }
 
 fn target(root: &Path) -> PathBuf {
@@ -136,6 +151,7 @@ fn scripts(repository: &Repository) -> Vec<String> {
         scripts.extend(text.lines().filter_map(recomputed_by).map(str::to_string));
     }
     scripts.retain(|script| script.ends_with(".py") && repository.exists(script));
+    scripts.retain(|script| !SEARCHES.contains(&script.as_str()));
     scripts.sort();
     scripts.dedup();
     scripts

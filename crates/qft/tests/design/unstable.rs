@@ -170,26 +170,44 @@ fn with_prefilter(seed: u64) -> DesignOptions {
     growing(4, PrefilterChoice::Grow { maximum_order: 4 }, seed)
 }
 
+fn of_fifth_order(seed: u64) -> DesignOptions {
+    growing(5, PrefilterChoice::None, seed)
+}
+
+fn of_second_order(seed: u64) -> DesignOptions {
+    growing(2, PrefilterChoice::None, seed)
+}
+
 #[test]
 fn a_magnet_undamped_within_the_band_is_met() {
-    assert_met_from(&[1, 2], &repelled_magnet(), with_prefilter, TrackingJudgement::Magnitude);
+    assert_met_from(&[1], &repelled_magnet(), with_prefilter, TrackingJudgement::Magnitude);
 }
 
 #[test]
 fn a_magnet_unstable_without_demands_above_the_band_is_met() {
-    assert_met_from(&[1, 2], &attracted_magnet(), with_prefilter, TrackingJudgement::Magnitude);
+    assert_met_from(&[1], &attracted_magnet(), with_prefilter, TrackingJudgement::Magnitude);
 }
 
 #[test]
 fn a_pendulum_with_delay_is_met() {
-    let options = |seed| growing(5, PrefilterChoice::None, seed);
-    assert_met_from(&[1, 2], &pendulum(), options, TrackingJudgement::Spread);
+    assert_met_from(&[1], &pendulum(), of_fifth_order, TrackingJudgement::Spread);
 }
 
 #[test]
 fn an_unstable_resonance_with_delay_is_met_by_the_order_of_what_is_known() {
-    let options = |seed| growing(2, PrefilterChoice::None, seed);
-    assert_met_from(&[1, 2, 3], &unstable_resonance(), options, TrackingJudgement::Spread);
+    assert_met_from(&[1], &unstable_resonance(), of_second_order, TrackingJudgement::Spread);
+}
+
+/// None of them by luck: `cargo xtask ci soak`.
+#[test]
+#[ignore = "takes a minute; run before a release"]
+fn other_seeds_meet_them_too() {
+    let seeds = [2, 3, 4];
+    for plant in [repelled_magnet(), attracted_magnet(), missile()] {
+        assert_met_from(&seeds, &plant, with_prefilter, TrackingJudgement::Magnitude);
+    }
+    assert_met_from(&seeds, &pendulum(), of_fifth_order, TrackingJudgement::Spread);
+    assert_met_from(&seeds, &unstable_resonance(), of_second_order, TrackingJudgement::Spread);
 }
 
 #[test]

@@ -1,4 +1,5 @@
-//! Random rigs through phea and through CVODE: 100 of each family as a test, or as many as the first argument says.
+//! Random rigs through phea and through CVODE: 100 of each family, or as many as the first argument says (the test command asks for
+//! 50, the stage `soak` for 1000).
 //!
 //!     cargo test --release -p sundials --test random_rigs -- 1000 timed
 //!
