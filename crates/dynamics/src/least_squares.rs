@@ -6,12 +6,13 @@
 //!
 //! A damped Gauss-Newton method (Levenberg 1944, Marquardt 1963) on the normal equations, with psi
 //! = rho' (Huber 1964) for the residuals and psi' for their curvature. A variable at a bound that
-//! the step would leave is held for that step. The caller scales the variables to order one and the
+//! the step would leave is held for that step. Where it takes long, as in a curved valley, each step
+//! bends with the second derivative of the residuals along it (Transtrum and Sethna 2012). The caller scales the variables to order one and the
 //! residuals to their noise.
 
 mod uncertainty;
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 pub use uncertainty::{Direction, Uncertainty, uncertainty};
 
@@ -46,6 +47,15 @@ impl Default for Settings {
 
 /// Damping below which a step is as good as that of Gauss and Newton.
 const FULL_STEP: f64 = 1e-3;
+
+/// Evaluations after which steps bend: where few are enough, none is spent on it.
+const STRAIGHT: usize = 40;
+
+/// Share of a step at which the second derivative along it is taken.
+const PROBE: f64 = 0.1;
+
+/// Largest bend over a step: beyond it the series of which both are the first terms is no guide.
+const MOST_BEND: f64 = 0.375;
 
 /// How a search ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -130,11 +140,15 @@ pub fn minimise(
     // steps in a row that changed next to nothing
     let mut idle = 0;
     while evaluations < settings.maximum_evaluations && idle < 3 {
-        let Some(step) = step(&best, bounds, damping, (curvature, settings.robust_beyond)) else {
+        let Some(mut step) = step(&best, bounds, damping, (curvature, settings.robust_beyond)) else {
             idle = 3;
             continue;
         };
-        let moved = best.variables.iter().zip(&step).zip(bounds);
+        if evaluations > STRAIGHT {
+            evaluations += 1;
+            step.bend(&best, bounds, evaluate)?;
+        }
+        let moved = best.variables.iter().zip(step.along.iter()).zip(bounds);
         let tried: Vec<f64> = moved.map(|((x, step), bounds)| within(x + step, *bounds)).collect();
         evaluations += 1;
         let found = evaluate(&tried)?;
@@ -168,6 +182,67 @@ enum CurvatureWeight {
     Weighted,
 }
 
+impl CurvatureWeight {
+    fn of(self, residual: f64, beyond: f64) -> f64 {
+        let weight = weight(residual, beyond);
+        match self {
+            CurvatureWeight::Weighted => weight,
+            CurvatureWeight::OfLoss if weight < 1.0 => 0.0,
+            CurvatureWeight::OfLoss => 1.0,
+        }
+    }
+}
+
+/// A damped step, and the equations that it solves.
+struct DampedStep {
+    along: DVector<f64>,
+    normal: Cholesky<f64, Dyn>,
+    /// What each residual weighs in them, and which variables are held.
+    weights: Vec<f64>,
+    held: Vec<bool>,
+}
+
+impl DampedStep {
+    /// Adds half of the acceleration along the step, from the residuals after a part p of it; nothing
+    /// where that is no small share of the step, or beyond the bounds.
+    ///
+    /// ```text
+    /// step + a/2        (normal) a = -sum h j r'',    r'' = 2/p ((r(x + p step) - r)/p - j step)
+    /// ```
+    fn bend(&mut self, at: &Minimum, bounds: &[[f64; 2]], evaluate: Evaluate<'_>) -> Result<(), Stopped> {
+        let moved = at.variables.iter().zip(self.along.iter());
+        let probed: Vec<f64> = moved.map(|(x, step)| x + PROBE * step).collect();
+        let mut all = probed.iter().zip(bounds);
+        if !all.all(|(x, [lower, upper])| (lower..=upper).contains(&x)) {
+            return Ok(());
+        }
+        if let Some(found) = evaluate(&probed)? {
+            let half = self.acceleration(&at.linearised, &found.residuals) * 0.5;
+            if half.norm() <= MOST_BEND * self.along.norm() {
+                self.along += half;
+            }
+        }
+        Ok(())
+    }
+
+    fn acceleration(&self, at: &Linearised, probed: &[f64]) -> DVector<f64> {
+        let count = self.along.len();
+        let mut slope = DVector::zeros(count);
+        let rows = at.residuals.iter().zip(at.jacobian.chunks_exact(count));
+        for (((residual, row), probed), weight) in rows.zip(probed).zip(&self.weights) {
+            let linear: f64 = row.iter().zip(self.along.iter()).map(|(first, step)| first * step).sum();
+            let second = 2.0 / PROBE * ((probed - residual) / PROBE - linear);
+            for (sum, first) in slope.iter_mut().zip(row) {
+                *sum -= weight * first * second;
+            }
+        }
+        for (sum, held) in slope.iter_mut().zip(&self.held) {
+            *sum = if *held { 0.0 } else { *sum };
+        }
+        self.normal.solve(&slope)
+    }
+}
+
 /// The damped step, or none where every variable is held by its bound.
 ///
 /// ```text
@@ -178,10 +253,11 @@ fn step(
     bounds: &[[f64; 2]],
     damping: f64,
     (curvature, beyond): (CurvatureWeight, f64),
-) -> Option<Vec<f64>> {
+) -> Option<DampedStep> {
     let count = at.variables.len();
     let StepEquations { mut normal, mut weighted, mut slope } =
         equations(&at.linearised, count, curvature, beyond);
+    let mut held = vec![false; count];
     for (index, (x, [lower, upper])) in at.variables.iter().zip(bounds).enumerate() {
         let descent = -slope.get(index).copied().unwrap_or(0.0);
         if (x <= lower && descent < 0.0) || (x >= upper && descent > 0.0) {
@@ -189,6 +265,7 @@ fn step(
             normal.column_mut(index).fill(0.0);
             weighted[index] = 0.0;
             slope[index] = 0.0;
+            held.get_mut(index).into_iter().for_each(|held| *held = true);
         }
     }
     let largest = weighted.max();
@@ -199,8 +276,10 @@ fn step(
         // a variable on which nothing depends does not move
         normal[(index, index)] += damping * weighted[index] + 1e-14 * largest;
     }
-    let step = normal.cholesky()?.solve(&-slope);
-    Some(step.iter().copied().collect())
+    let normal = normal.cholesky()?;
+    let along = normal.solve(&-slope);
+    let weights = at.linearised.residuals.iter().map(|residual| curvature.of(*residual, beyond));
+    Some(DampedStep { along, normal, weights: weights.collect(), held })
 }
 
 /// What a step follows from.
@@ -223,11 +302,10 @@ fn equations(at: &Linearised, count: usize, curvature: CurvatureWeight, beyond: 
             slope[i] += weight * first * residual;
             weighted[i] += weight * first * first;
         }
-        let counts = match curvature {
-            CurvatureWeight::Weighted => weight,
-            CurvatureWeight::OfLoss if weight < 1.0 => continue,
-            CurvatureWeight::OfLoss => 1.0,
-        };
+        let counts = curvature.of(*residual, beyond);
+        if counts == 0.0 {
+            continue;
+        }
         for (i, first) in row.iter().enumerate() {
             for (j, second) in row.iter().enumerate().take(i + 1) {
                 normal[(i, j)] += counts * first * second;

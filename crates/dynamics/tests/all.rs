@@ -5,6 +5,7 @@ mod controller;
 mod discretization;
 mod frequency;
 mod held_plants;
+mod least_squares;
 mod linear_roots;
 mod linear_systems;
 mod simulation;

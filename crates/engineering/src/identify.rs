@@ -237,7 +237,9 @@ pub fn identify(
     let coefficients = found.coefficients();
     let groups = found.together.groups();
     let told = intervals::told(&found.minimum.linearised, &groups, &variables, &coefficients);
-    let intervals = intervals::intervals(&variables, &coefficients, &told.deviations);
+    let signals = found.signals();
+    let mut intervals = intervals::intervals(&variables, &coefficients, &told.deviations);
+    intervals::lowered_tare_flow(&mut intervals, &recordings, &signals);
     let mut deviations = variables.scales(&coefficients);
     for (scale, deviation) in deviations.iter_mut().zip(&told.deviations) {
         *scale *= deviation;
@@ -254,7 +256,6 @@ pub fn identify(
         repetitions => Some(bootstrap::bootstrap(&found, repetitions, search.seed, watch)?),
     };
     let tested = found.together.tested;
-    let signals = found.signals();
     Ok(Identification {
         coefficients,
         intervals,

@@ -88,6 +88,7 @@ fn what_may_be_zero_has_a_bound_from_above() {
         ("valve.hysteresis=\"1e-9 V\"", "/hysteresis_v", 0.0, 2e-3),
         ("valve.leakage_coefficients.supply_to_b=1e-15", "/leakage_coefficients/supply_to_b", 1e-15, 1e-10),
     ];
+    let cases = cases.into_iter().chain([("valve.tare_flow=\"0 m3/s\"", "/tare_flow_m3_per_s", 0.0, 3e-8)]);
     for (setting, path, truth, most) in cases {
         for seed in 1..=3 {
             let seed = format!("bench.seed={seed}");
@@ -97,6 +98,54 @@ fn what_may_be_zero_has_a_bound_from_above() {
             assert!(low == 0.0 && truth <= high && high < most, "{setting}: {low} {high}");
             assert_eq!(found["at_bounds"].as_array().unwrap().len(), 0);
         }
+    }
+}
+
+/// A valve without tare flow, as a direct-driven one, by meters that tell the direction, that show the magnitude of
+/// their own noise where nothing flows, and that stand still there: most rows of the leakage then say nothing, or
+/// nothing but noise. The tare flow has a bound from above, and the leakage is still found.
+#[test]
+fn a_valve_without_tare_flow_has_a_bound_from_above_by_every_meter() {
+    let cases = [
+        (vec!["bench.leak_meter.signed=true"], 3e-8),
+        // ORIGIN: analytic, the mean magnitude of noise of 0.005 L/min is 6.6e-8 m3/s
+        (vec![], 9e-8),
+        (vec!["bench.leak_meter.minimum=\"0.1 L/min\""], 3e-7),
+        (vec!["bench.leak_meter.minimum=\"0.1 L/min\"", "bench.leak_meter.signed=true"], 3e-7),
+    ];
+    for (meter, most) in cases {
+        let settings = [&meter[..], &["valve.tare_flow=\"0 m3/s\"", FEW_ROWS]].concat();
+        let files = recorded(&settings);
+        let answer = try_asked(&files, &files_of(&files)).unwrap();
+        let found: Value = serde_json::from_str(&answer.json).unwrap();
+        let [low, high] = interval(&found, "/tare_flow_m3_per_s").unwrap_or_else(|| panic!("{meter:?}"));
+        assert!(low == 0.0 && high < most, "{meter:?}: {low} {high}");
+        assert!(answer.text.contains("These may be zero: tare_flow, at most"), "{}", answer.text);
+        let fragment = String::from_utf8(answer.files[0].bytes.clone()).unwrap();
+        assert!(fragment.contains("# 95 %: at most"), "{fragment}");
+        assert_eq!(found["leakage_model"], "each_edge");
+        for (path, truth) in TRUTH.into_iter().filter(|(path, _)| path.starts_with("/leakage_c")) {
+            let value = value(&found, path);
+            assert!((value / truth - 1.0).abs() < 0.02, "{meter:?} {path}: {value}");
+        }
+    }
+}
+
+/// A converter of ten bits rounds most pressures to that of the supply: half of all residuals are zero, and say nothing
+/// of the noise of the others.
+#[test]
+fn coarse_converters_do_not_make_the_noise_vanish() {
+    let found =
+        identified(&recorded(&["bench.converter_bits=10", "bench.pressure_noise=\"0.01 bar\"", FEW_ROWS]));
+    // ORIGIN: analytic, 1.025 times 100 bar over 2^10 and over the root of twelve
+    let rounding = 2889.6;
+    for signal in found["signals"].as_array().unwrap() {
+        let scale = signal["scale"].as_f64().unwrap();
+        let name = signal["signal"].as_str().unwrap();
+        assert!(!name.starts_with("pressure") || scale > 0.99 * rounding, "{name}: {scale}");
+    }
+    for (path, truth) in TRUTH {
+        assert!((value(&found, path) / truth - 1.0).abs() < 0.1, "{path}");
     }
 }
 

@@ -16,6 +16,9 @@ const COMPARE: &str = "comparisons/compare_";
 /// before: run by [`soak`].
 const SEARCHES: [&str; 1] = ["comparisons/recompute_design.py"];
 
+/// Valves identified by phea and by SciPy: fifty of them before a release.
+const RANDOM_VALVES: &str = "comparisons/compare_identify.py";
+
 const REQUIREMENTS: &str = "comparisons/requirements.txt";
 
 /// Each script that failed, or why none could be run.
@@ -77,12 +80,14 @@ pub(super) fn end(root: &Path, mut begun: Begun) -> Outcome {
     }
 }
 
-/// Runs the scripts that are left out otherwise.
+/// Runs what is left out otherwise, by the phea of the release profile.
 pub(super) fn soak(root: &Path) -> Outcome {
+    let phea = target(root).join("release").join("phea").to_string_lossy().into_owned();
     let mut told = String::new();
     let ran = environment(root, &mut told).and_then(|python| {
         let python = python.to_string_lossy().into_owned();
-        SEARCHES.iter().try_for_each(|script| quietly(root, &mut told, &python, &[script]))
+        SEARCHES.iter().try_for_each(|script| quietly(root, &mut told, &python, &[script]))?;
+        quietly(root, &mut told, &python, &[RANDOM_VALVES, "--sets", "50", &phea])
     });
     print!("{told}");
     ran.map_or_else(Outcome::Failed, |()| Outcome::Passed)

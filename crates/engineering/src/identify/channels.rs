@@ -13,8 +13,12 @@ const FIRST_SCALE: f64 = 0.01;
 /// Least scale over the range, which no instrument resolves.
 const RESOLUTION: f64 = 1e-6;
 
-/// Evaluations of a search.
-const EVALUATIONS: usize = 60;
+/// Evaluations of a search whose end is the start of another.
+const FEW_EVALUATIONS: usize = 60;
+
+/// Evaluations of the last search. Where the recordings hardly tell coefficients apart, the sum has a
+/// long curved valley.
+const EVALUATIONS: usize = 1000;
 
 /// A signal and the scale of its residuals.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,12 +28,15 @@ pub(super) struct Channel {
     pub(super) scale: f64,
     /// Largest less smallest value.
     pub(super) range: f64,
+    /// Step of the converter that the values show.
+    pub(super) step: f64,
 }
 
 impl Channel {
-    /// What no instrument resolves.
+    /// What no instrument resolves, and the standard deviation of rounding to the converter's steps:
+    /// where most rows are rounded to one value, their residuals say nothing of the noise.
     pub(super) fn least_scale(&self) -> f64 {
-        RESOLUTION * self.range
+        (RESOLUTION * self.range).max(self.step / 12.0_f64.sqrt())
     }
 }
 
@@ -53,7 +60,8 @@ impl<'a> Together<'a> {
             one.signals.iter().enumerate().filter_map(move |(signal, values)| {
                 let [least, most] = values.range();
                 let range = most - least;
-                (range > 0.0).then_some(Channel { recording, signal, scale: FIRST_SCALE * range, range })
+                let scale = FIRST_SCALE * range;
+                (range > 0.0).then(|| Channel { recording, signal, scale, range, step: values.step() })
             })
         });
         Together { recordings, channels: channels.collect(), tested, variables }
@@ -104,18 +112,28 @@ impl<'a> Together<'a> {
         groups
     }
 
-    /// Where a search from here ends, at this relative decrease of the sum.
+    /// Where a search from here ends, at this relative decrease of the sum, or soon.
     pub(super) fn searched(
         &self,
         start: &[f64],
         tolerance: f64,
         watch: Watch<'_>,
     ) -> Result<Minimum, Stopped> {
-        let settings = Settings { maximum_evaluations: EVALUATIONS, tolerance, ..Settings::default() };
+        let few = Settings { maximum_evaluations: FEW_EVALUATIONS, tolerance, ..Settings::default() };
+        self.searched_with(start, few, watch)
+    }
+
+    /// The minimum that a search from here leads to.
+    pub(super) fn searched_to_the_end(&self, start: &[f64], watch: Watch<'_>) -> Result<Minimum, Stopped> {
+        let many = Settings { maximum_evaluations: EVALUATIONS, ..Settings::default() };
+        self.searched_with(start, many, watch)
+    }
+
+    fn searched_with(&self, start: &[f64], settings: Settings, watch: Watch<'_>) -> Result<Minimum, Stopped> {
         let mut done = 0;
         minimise(start, &self.variables.bounds(), settings, &mut |variables| {
             done += 1;
-            tell(watch, "fitting", done, EVALUATIONS)?;
+            tell(watch, "fitting", done, settings.maximum_evaluations)?;
             Ok(Some(self.linearised(variables)))
         })
     }
@@ -133,7 +151,7 @@ impl<'a> Together<'a> {
     }
 
     /// Takes the scale of each signal from its residuals: 1.4826 times their median magnitude,
-    /// which outliers do not move; at least what instruments resolve. Returns the largest relative
+    /// which outliers do not move; at least what the instrument resolves. Returns the largest relative
     /// change.
     pub(super) fn rescale(&mut self, residuals: &[f64]) -> f64 {
         let of = |own: &[f64]| median(own.iter().map(|residual| residual.abs()).collect());

@@ -1,6 +1,6 @@
 //! Least squares over all signals of all recordings, with one model of the leakage.
 
-use phea_dynamics::least_squares::{Ending, Minimum, Settings};
+use phea_dynamics::least_squares::{Ending, Minimum};
 use phea_dynamics::random::stream;
 use phea_dynamics::watch::{Stopped, Watch};
 use phea_hydraulics::servovalve::{LeakageModel, StaticCoefficients, TestedValve};
@@ -106,7 +106,7 @@ fn fitted_from<'a>(
             break;
         }
     }
-    minimum = together.searched(&minimum.variables, Settings::default().tolerance, watch)?;
+    minimum = together.searched_to_the_end(&minimum.variables, watch)?;
     if minimum.ending == Ending::NoStart || minimum.linearised.residuals.len() <= COUNT {
         return Err(IdentifyError::Data("the recordings have too few rows to fit a valve".to_string()));
     }

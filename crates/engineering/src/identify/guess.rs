@@ -30,10 +30,10 @@ pub(super) fn first_guess(
             .map(|one| one.value)
             .unwrap_or(0.8 * null_leakage)
             .max(0.1 * null_leakage),
-        null_bias: simple.null_bias().unwrap_or(0.0),
+        null_bias: simple.null_bias().map_or(0.0, |one| one.value),
         hysteresis_width: simple
             .hysteresis()
-            .unwrap_or(0.0)
+            .map_or(0.0, |one| one.value)
             .max(0.002 * tested.nominal_voltage)
             .min(largest / 2.0),
     }

@@ -4,7 +4,9 @@ use phea_dynamics::least_squares::{Linearised, Settings, Uncertainty, uncertaint
 use phea_dynamics::portable;
 use phea_hydraulics::servovalve::StaticCoefficients;
 
-use super::variables::{COUNT, Kind, Variables};
+use super::SignalFit;
+use super::recording::{Recording, SignalKind};
+use super::variables::{COUNT, Kind, TARE_FLOW, Variables};
 
 /// Half width of a 95 % interval of a normal distribution, in standard deviations.
 const NORMAL_95: f64 = 1.96;
@@ -34,6 +36,55 @@ pub(super) fn told(
         }
     }
     uncertainty(&at, groups, COUNT, Settings::default().robust_beyond)
+}
+
+/// 1.4826 times the median distance of the magnitude of normal noise from where it is fitted, over the
+/// deviation of the noise: 0.65 from the mean, 0.63 from the centre of the robust loss.
+const OF_MAGNITUDE: f64 = 0.62;
+
+/// Lowers the interval of the tare flow by what a meter without direction may have added to it.
+///
+/// Where nothing flows, such a meter shows the magnitude of its own noise; in the mean over rows
+///
+/// ```text
+/// E|q + n| = sigma sqrt(2/pi) exp(-q^2/(2 sigma^2)) + q erf(q/(sqrt 2 sigma))
+/// ```
+///
+/// The least tare flow is that of which the meter would show the interval's lower end. The noise is
+/// taken from the scale of the residuals as if all of them were magnitudes, which is the most it can
+/// be.
+pub(super) fn lowered_tare_flow(
+    intervals: &mut [Option<[f64; 2]>; COUNT],
+    recordings: &[Recording],
+    signals: &[SignalFit],
+) {
+    let is_unsigned = |fit: &&SignalFit| {
+        let signal = recordings.get(fit.recording).and_then(|one| one.signal(SignalKind::LeakFlow));
+        signal.is_some_and(|signal| signal.values.iter().flatten().all(|value| *value >= 0.0))
+    };
+    let of_leakage = signals.iter().filter(|fit| fit.kind == SignalKind::LeakFlow).filter(is_unsigned);
+    let noise = of_leakage.map(|fit| fit.scale / OF_MAGNITUDE).fold(0.0, f64::max);
+    if let Some(Some([low, _])) = intervals.get_mut(TARE_FLOW) {
+        *low = without_magnitude(*low, noise);
+    }
+}
+
+/// The flow of which a meter without direction shows this in the mean.
+fn without_magnitude(shown: f64, noise: f64) -> f64 {
+    let mean = |flow: f64| {
+        let relative = flow / noise;
+        let of_noise = (2.0 / std::f64::consts::PI).sqrt() * portable::exp(-0.5 * relative * relative);
+        noise * of_noise + flow * (1.0 - portable::erfc(relative / std::f64::consts::SQRT_2))
+    };
+    if noise <= 0.0 {
+        return shown;
+    }
+    let [mut low, mut high] = [0.0, shown];
+    while high - low > 1e-6 * noise {
+        let middle = f64::midpoint(low, high);
+        if mean(middle) < shown { low = middle } else { high = middle }
+    }
+    if low > 0.0 { high } else { 0.0 }
 }
 
 /// The interval of each coefficient, from its standard deviation over the change that matters.

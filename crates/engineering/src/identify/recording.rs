@@ -2,6 +2,12 @@
 
 use phea_hydraulics::servovalve::{PortCircuit, TestInput, TestOutput};
 
+/// Differences of values, over their range, that are the rounding of their digits.
+const ROUNDING: f64 = 1e-9;
+
+/// How far a value may lie from a multiple of the step, in steps.
+const OFF_STEP: f64 = 0.02;
+
 /// A recorded test, rows in the order of time. SI.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recording {
@@ -106,6 +112,19 @@ impl RecordedSignal {
         let values = self.despiked();
         let known = || values.iter().flatten().copied();
         [known().fold(f64::INFINITY, f64::min), known().fold(f64::NEG_INFINITY, f64::max)]
+    }
+
+    /// The step of the converter, or of the digits, that all values are multiples of from the least
+    /// one on; zero where they have none.
+    pub(super) fn step(&self) -> f64 {
+        let mut sorted: Vec<f64> = self.values.iter().flatten().copied().collect();
+        sorted.sort_by(f64::total_cmp);
+        let (Some(least), Some(most)) = (sorted.first().copied(), sorted.last().copied()) else { return 0.0 };
+        let gaps = sorted.windows(2).filter_map(|pair| Some(pair.last()? - pair.first()?));
+        let step = gaps.filter(|gap| *gap > ROUNDING * (most - least)).fold(f64::INFINITY, f64::min);
+        let off = |value: &f64| ((value - least) / step - ((value - least) / step).round()).abs();
+        let is_multiple = step.is_finite() && sorted.iter().all(|value| off(value) < OFF_STEP);
+        if is_multiple { step } else { 0.0 }
     }
 
     /// Each value, or its neighbour where that lies between it and its other neighbour: the median of

@@ -107,6 +107,9 @@ struct UntoldBody {
 /// The coefficient that a project leaves out where it may be zero.
 const HYSTERESIS: &str = "hysteresis";
 
+/// The coefficient of which zero is a value like any other.
+const NULL_BIAS: &str = "null_bias";
+
 /// Correlations below this magnitude are not listed.
 const REMARKABLE: f64 = 0.9;
 
@@ -255,6 +258,9 @@ pub fn files(found: &Identification) -> Vec<OutputFile> {
         match found.intervals.get(index).copied().flatten() {
             Some([low, high]) if low == 0.0 && name == HYSTERESIS => {
                 format!("# {key}: at most {} V\n", in_toml(high, 4))
+            }
+            Some([low, high]) if low == 0.0 && name != NULL_BIAS => {
+                format!("{key} = {text}    # 95 %: at most {}\n", in_toml(high, 4))
             }
             Some([low, high]) => {
                 let ends = [low, high].map(|end| in_toml(end, 4));

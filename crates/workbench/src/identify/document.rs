@@ -130,9 +130,9 @@ fn coefficients(found: &Identification) -> Vec<Vec<Cell>> {
 fn by_hand(simple: &SimpleCalculations) -> [Option<f64>; 12] {
     let [extending, retracting] = simple.flow_coefficients.map(|one| one.map(|one| one.value));
     let leak = simple.leakage_coefficient().map(|one| one.value);
-    let tare = simple.tare_flow.map(|one| one.value);
-    let rest = [simple.leakage_shape, tare, simple.null_bias(), simple.hysteresis()];
-    let [shape, tare, bias, width] = rest;
+    let shape = simple.leakage_shape;
+    let [tare, bias, width] =
+        [simple.tare_flow, simple.null_bias(), simple.hysteresis()].map(|one| one.map(|one| one.value));
     [extending, retracting, retracting, extending, leak, leak, leak, leak, shape, tare, bias, width]
 }
 
@@ -168,10 +168,13 @@ fn remarks(found: &Identification) -> Vec<String> {
         .iter()
         .zip(found.intervals)
         .filter(|((name, _), interval)| *name != "null_bias" && interval.is_some_and(|[low, _]| low == 0.0));
-    let zero: Vec<&str> = zero.map(|((name, _), _)| *name).collect();
+    let zero = zero.filter_map(|((name, unit), interval)| {
+        let [_, most] = interval?;
+        Some(format!("{name}, at most {} {unit}", significant(most, 3)))
+    });
+    let zero: Vec<String> = zero.collect();
     if !zero.is_empty() {
-        let names = zero.join(", ");
-        remarks.push(format!("These may be zero: {names}; their intervals are bounds from above."));
+        remarks.push(format!("These may be zero: {}; the bounds from above have 95 %.", zero.join("; ")));
     }
     let wrong: Vec<&str> =
         found.signals.iter().filter(|one| one.correlation > 0.5).map(|one| one.kind.name()).collect();

@@ -38,7 +38,7 @@ pub(super) fn simple_body(found: &SimpleCalculations) -> SimpleBody {
     };
     let [extending, retracting] = found.flow_coefficients;
     let [gain_extending, gain_retracting] = found.flow_gains;
-    let [null_rising_v, null_falling_v] = found.nulls;
+    let [rising, falling] = found.nulls;
     SimpleBody {
         flow_coefficient_extending: read("flow_coefficient_extending", extending),
         flow_coefficient_retracting: read("flow_coefficient_retracting", retracting),
@@ -47,11 +47,11 @@ pub(super) fn simple_body(found: &SimpleCalculations) -> SimpleBody {
         null_leakage_m3_per_s: read("null_leakage_m3_per_s", found.null_leakage),
         leakage_shape: found.leakage_shape,
         tare_flow_m3_per_s: read("tare_flow_m3_per_s", found.tare_flow),
-        tare_share: found.tare_share(),
-        null_bias_v: found.null_bias(),
-        null_rising_v,
-        null_falling_v,
-        hysteresis_v: found.hysteresis(),
+        tare_share: read("tare_share", found.tare_share()),
+        null_bias_v: read("null_bias_v", found.null_bias()),
+        null_rising_v: read("null_rising_v", rising),
+        null_falling_v: read("null_falling_v", falling),
+        hysteresis_v: read("hysteresis_v", found.hysteresis()),
         flow_gain_extending_m3_per_s_v: read("flow_gain_extending_m3_per_s_v", gain_extending),
         flow_gain_retracting_m3_per_s_v: read("flow_gain_retracting_m3_per_s_v", gain_retracting),
         pressure_sensitivity_pa_per_v: read("pressure_sensitivity_pa_per_v", found.pressure_sensitivity),
@@ -97,7 +97,6 @@ pub(crate) fn tell(found: &Identification, out: &mut Document) {
 fn lines(simple: &SimpleCalculations) -> Vec<(NumberLine, Option<CurveReading>)> {
     const COEFFICIENT: &str = "m3/(s.Pa^0.5)";
     let line = |name, equation, unit, thesis| NumberLine { name, equation, unit, thesis };
-    let plain = |value: Option<f64>| value.map(|value| CurveReading { value, interval: None });
     let percent = |reading: Option<CurveReading>| {
         reading.map(|one| CurveReading {
             value: 100.0 * one.value,
@@ -129,14 +128,14 @@ fn lines(simple: &SimpleCalculations) -> Vec<(NumberLine, Option<CurveReading>)>
     vec![
         (tare, simple.tare_flow),
         (leak, simple.null_leakage),
-        (share, percent(plain(simple.tare_share()))),
+        (share, percent(simple.tare_share())),
         (inner, simple.leakage_coefficient()),
         (ext, extending),
         (ret, retracting),
         (rated, percent(simple.share_of_nominal)),
-        (line("null, rising command", "centre of q_leak(U)", "V", Some("0.078")), plain(rising)),
-        (line("null, falling command", "centre of q_leak(U)", "V", Some("-0.05")), plain(falling)),
-        (width, plain(simple.hysteresis())),
+        (line("null, rising command", "centre of q_leak(U)", "V", Some("0.078")), rising),
+        (line("null, falling command", "centre of q_leak(U)", "V", Some("-0.05")), falling),
+        (width, simple.hysteresis()),
         (gain, gain_extending),
         (back, gain_retracting),
         (sensitivity, simple.pressure_sensitivity),

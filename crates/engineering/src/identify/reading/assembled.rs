@@ -38,7 +38,11 @@ pub(super) fn assembled(file: &str, taken: &Taken, circuit: PortCircuit, known: 
         PortCircuit::Blocked => {
             signals.extend(shown(SignalKind::PressureA, a));
             signals.extend(shown(SignalKind::PressureB, b));
-            signals.extend(shown(SignalKind::LeakFlow, taken.of(TestSignal::LeakFlow)));
+            signals.extend(
+                taken
+                    .of(TestSignal::LeakFlow)
+                    .map(|values| RecordedSignal { kind: SignalKind::LeakFlow, values: turning(values) }),
+            );
         }
         PortCircuit::Connected => {
             let mean = |(a, b): (&[f64], &[f64])| -> Vec<f64> {
@@ -59,13 +63,16 @@ pub(super) fn assembled(file: &str, taken: &Taken, circuit: PortCircuit, known: 
     }
 }
 
-/// A flow between the ports: by a meter that tells the direction if some of it is negative. What
-/// such a meter shows while it stands still is no reading.
+/// A flow between the ports: by a meter that tells the direction if some of it is negative.
 fn port_flow(values: &[f64]) -> RecordedSignal {
     let signed = values.iter().any(|value| *value < 0.0);
     let kind = if signed { SignalKind::PortFlow } else { SignalKind::PortFlowMagnitude };
-    let reading = |value: &f64| Some(*value).filter(|value| *value != 0.0 && !value.is_nan());
-    RecordedSignal { kind, values: values.iter().map(reading).collect() }
+    RecordedSignal { kind, values: turning(values) }
+}
+
+/// What a flow meter shows while it turns.
+fn turning(values: &[f64]) -> Vec<Option<f64>> {
+    values.iter().map(|value| Some(*value).filter(|value| *value != 0.0 && !value.is_nan())).collect()
 }
 
 /// Whether anything was recorded but inputs.

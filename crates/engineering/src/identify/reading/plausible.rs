@@ -55,7 +55,12 @@ pub(super) fn check(
             findings.push(RawFinding::error(place, "the command never moves: this is no test of a valve"));
             continue;
         }
-        let level = if *signal == TestSignal::Time { duration(values) } else { reached(values) };
+        let level = match signal {
+            TestSignal::Time => duration(values),
+            // a meter that stands still shows nothing
+            TestSignal::LeakFlow => reached(values.iter().filter(|value| **value != 0.0)),
+            _ => reached(values),
+        };
         let mut limits = usual(*signal, nominal_voltage);
         let is_port = matches!(signal, TestSignal::PressureA | TestSignal::PressureB);
         let of_supply = supply.filter(|supply| is_port && (1e5..=7e7).contains(supply));
@@ -81,9 +86,9 @@ pub(super) fn check(
 }
 
 /// The magnitude that a twentieth of the values is above; zero of none.
-fn reached(values: &[f64]) -> f64 {
-    let mut magnitudes: Vec<f64> =
-        values.iter().map(|value| value.abs()).filter(|value| !value.is_nan()).collect();
+fn reached<'a>(values: impl IntoIterator<Item = &'a f64>) -> f64 {
+    let magnitudes = values.into_iter().map(|value| value.abs());
+    let mut magnitudes: Vec<f64> = magnitudes.filter(|value| !value.is_nan()).collect();
     let index = magnitudes.len() * 19 / 20;
     if index >= magnitudes.len() {
         return 0.0;

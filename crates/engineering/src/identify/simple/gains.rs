@@ -3,7 +3,8 @@
 use phea_dynamics::least_squares::{Linearised, Settings, minimise, uncertainty};
 use phea_hydraulics::servovalve::{PortCircuit, TestedValve, flow_coefficient_from_rating};
 
-use super::{CurveReading, direction, largest_command, straight_line};
+use super::straight_line::straight_line;
+use super::{CurveReading, direction, largest_command};
 use crate::identify::recording::{Recording, SignalKind};
 
 /// Commands from null, over the nominal voltage, between which the flow gain is read: beyond the

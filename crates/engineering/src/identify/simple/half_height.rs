@@ -1,0 +1,55 @@
+//! The peak of the leakage, and where the curve is half as high.
+
+use super::CurveReading;
+
+/// The curve of the leakage: its base, its peak, and the noise of a row.
+pub(super) struct Flank {
+    pub(super) base: f64,
+    pub(super) peak: f64,
+    pub(super) noise: f64,
+}
+
+impl Flank {
+    /// At this share of the way from the base to the peak.
+    pub(super) fn height(&self, share: f64) -> f64 {
+        self.base + share * (self.peak - self.base)
+    }
+
+    /// Commands at which a branch, from below through its peak and below again, crosses half of its
+    /// height.
+    pub(super) fn half_height(&self, points: &[(f64, f64)]) -> Option<[CurveReading; 2]> {
+        let mut sorted = points.to_vec();
+        sorted.sort_by(|(first, _), (second, _)| first.total_cmp(second));
+        let ends = crossings(&sorted, self.height(0.5))?;
+        let quarters = [0.25, 0.75].map(|share| crossings(&sorted, self.height(share)));
+        let deviation = |side: usize| {
+            let at = |share: usize| quarters.get(share)?.as_ref()?.get(side).copied();
+            let run = at(0).zip(at(1)).map_or(f64::INFINITY, |(low, high)| (high - low).abs());
+            self.noise * run / (0.5 * (self.peak - self.base))
+        };
+        let [low, high] = ends;
+        Some([CurveReading::of(low, deviation(0)), CurveReading::of(high, deviation(1))])
+    }
+}
+
+/// Where a branch, its commands in order, first comes above a height and last falls below it.
+fn crossings(sorted: &[(f64, f64)], height: f64) -> Option<[f64; 2]> {
+    let is_above = |(_, leak): &(f64, f64)| *leak > height;
+    let [first, last] = [sorted.iter().position(is_above)?, sorted.iter().rposition(is_above)?];
+    let crossing = |outside: usize, inside: usize| {
+        let ((x, low), (to, high)) = (sorted.get(outside)?, sorted.get(inside)?);
+        Some(x + (height - low) / (high - low) * (to - x))
+    };
+    let ends = [crossing(first.checked_sub(1)?, first)?, crossing(last + 1, last)?];
+    (ends[1] > ends[0]).then_some(ends)
+}
+
+/// Highest mean of a twenty-fourth of these rows, neighbours over the command.
+pub(super) fn peak(points: &[(f64, f64)], noise: f64) -> Option<CurveReading> {
+    let mut sorted = points.to_vec();
+    sorted.sort_by(|(first, _), (second, _)| first.total_cmp(second));
+    let width = (sorted.len() / 24).max(1);
+    let means =
+        sorted.windows(width).map(|rows| rows.iter().map(|(_, leak)| leak).sum::<f64>() / width as f64);
+    means.reduce(f64::max).map(|peak| CurveReading::of(peak, noise / (width as f64).sqrt()))
+}
