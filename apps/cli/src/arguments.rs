@@ -271,6 +271,8 @@ pub(crate) enum SubjectWord {
     Valve,
     /// Frequency responses, from a command (or input) and a force (or output) over time
     Response,
+    /// Bulk modulus, stiffening and wave speed of a line, from its pressure while its far end is blocked
+    Line,
 }
 
 /// A model of the leakage, as the project file calls it.

@@ -19,7 +19,7 @@ use phea_dynamics::watch::{Stopped, Watch, tell};
 use phea_hydraulics::servovalve::{OilLaw, SlowSpool, SpoolImperfection, TestStand, WarmOil};
 
 use self::command_path::CommandPath;
-use self::instrument::Instruments;
+pub(crate) use self::instrument::Instruments;
 pub use crate::project::StaticTest;
 use crate::project::{Bench, DeclaredActuator, FlowMeter, OilTemperature, SupplyModel};
 use crate::rig::RigError;
@@ -110,6 +110,9 @@ pub enum BenchError {
         /// How many there may be.
         most: usize,
     },
+    /// The tests of a line cannot be made.
+    #[error("[bench.line]: {0}")]
+    Line(String),
     /// Stopped by the watch.
     #[error("stopped")]
     Stopped,
@@ -122,7 +125,7 @@ impl From<Stopped> for BenchError {
 }
 
 /// Most rows of a test.
-const MOST_ROWS: usize = 1_000_000;
+pub(crate) const MOST_ROWS: usize = 1_000_000;
 
 /// All static tests of the project's valve.
 ///

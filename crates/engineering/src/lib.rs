@@ -9,6 +9,7 @@
 //! Setup   -> bench                                            static tests of the valve
 //! files   -> identify                                         the valve that explains recorded tests
 //! files   -> response                                         frequency responses from recorded signals
+//! files   -> line_test                                        the bulk modulus of a blocked line from recordings
 //! ```
 //!
 //! Results are values; text, JSON and figures of them are made in the workbench.
@@ -23,6 +24,7 @@ pub mod design;
 pub mod error;
 pub mod family;
 pub mod identify;
+pub mod line_test;
 pub mod linear_loop;
 pub mod linearize;
 pub mod number_table;

@@ -31,7 +31,7 @@ pub use in_loop::FeedForwardPath;
 pub(crate) use in_loop::as_response;
 pub use in_loop::feed_forward;
 pub(crate) use in_loop::limits_load_motion;
-pub use lines::{in_motion, lines};
+pub use lines::{in_motion, line_model, lines};
 pub use numbers::Numbers;
 pub use parameters::{ParameterOrigin, ResolvedParameter};
 pub use place::place;

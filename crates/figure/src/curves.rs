@@ -59,6 +59,15 @@ const DOT: f64 = 1.5;
 /// Draws the figure.
 pub fn curves(words: Words, input: &CurvesInput) -> Figure {
     let [least, most] = input.x_range;
+    over(words, input, Axis::linear(&input.x_title, least, most))
+}
+
+/// Draws the figure over a logarithmic axis.
+pub fn curves_over_decades(words: Words, input: &CurvesInput) -> Figure {
+    over(words, input, Axis::fit_logarithmic(&input.x_title, input.x_range))
+}
+
+fn over(words: Words, input: &CurvesInput, x: Axis) -> Figure {
     let panels = input.panels.iter().map(|panel| drawn(panel, input.x_range)).collect();
     let entry = |(text, style): &(String, CurveStyle)| match style {
         CurveStyle::Line(series) => LegendEntry::line(text, series_stroke(*series)),
@@ -68,7 +77,6 @@ pub fn curves(words: Words, input: &CurvesInput) -> Figure {
         }
     };
     let legend = input.legend.iter().map(entry).collect();
-    let x = Axis::linear(&input.x_title, least, most);
     words.with_scene(Plot { x, panels, legend, equal_aspect: false }.draw())
 }
 

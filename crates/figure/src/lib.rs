@@ -51,7 +51,7 @@ pub mod typeset;
 
 pub use bode::{BodeInput, FrequencySeries, bode};
 pub use colour::{Theme, style_sheet};
-pub use curves::{Curve, CurvePanel, CurveStyle, CurvesInput, curves};
+pub use curves::{Curve, CurvePanel, CurveStyle, CurvesInput, curves, curves_over_decades};
 pub use estimated_response::{EstimatedResponseInput, estimated_response};
 pub use family_magnitude::{
     FamilyEnvelope, FamilyMagnitudeInput, MagnitudeCurve, MagnitudeMark, family_magnitude,

@@ -6,6 +6,7 @@
 //! ([`StandardLinearSolid`]), one wave ([`TransmissionLine`]) or two ([`TwoWaveHose`]).
 
 mod attenuation;
+mod blocked;
 mod braided_wall;
 mod conduit;
 mod dynamic_line;
@@ -21,6 +22,7 @@ mod transmission_line;
 mod travelling_waves;
 mod two_wave;
 
+pub use blocked::BlockedLine;
 pub use braided_wall::BraidedWall;
 pub use conduit::{Conduit, LineError};
 pub use dynamic_line::DynamicLine;

@@ -1,6 +1,8 @@
 //! Lines in motion: against the exact line, against each other, and against conservation.
 
 #[cfg(test)]
+mod blocked;
+#[cfg(test)]
 mod driven;
 #[cfg(test)]
 mod oracle;

@@ -1,5 +1,9 @@
 //! `[bench]`: the virtual tests of the servovalve.
 
+mod line;
+
+pub use line::{LineBench, LineSide};
+
 use super::key::{Key, key, plain};
 use super::visitor::Visitor;
 use phea_quantity::{FLOW, PRESSURE, RATIO, TEMPERATURE, TEMPERATURE_COEFFICIENT, TIME};
@@ -42,6 +46,8 @@ pub struct Bench {
     pub reversals: Option<Reversals>,
     /// How the oil warms during each test; absent: it does not.
     pub oil_temperature: Option<OilTemperature>,
+    /// The tests of a line, where they are wanted.
+    pub line: Option<LineBench>,
     /// Pa, root mean square of the noise of every pressure.
     pub pressure_noise: f64,
     /// Pa, range of every pressure transducer, from zero.
@@ -165,6 +171,7 @@ impl Default for Bench {
             low_flow_meter: None,
             reversals: None,
             oil_temperature: None,
+            line: None,
             pressure_noise: 5e3,
             pressure_range: 100e5,
             converter_bits: 16,
@@ -203,6 +210,8 @@ impl Bench {
         v.table(k, &mut self.reversals, Reversals::visit);
         let k = plain("oil_temperature", "How the oil warms during each test; absent: it does not.");
         v.table(k, &mut self.oil_temperature, OilTemperature::visit);
+        let k = plain("line", "Tests of a line whose far end is blocked.");
+        v.table(k, &mut self.line, LineBench::visit);
         let k = key("pressure_noise", &PRESSURE, "Root mean square of the noise of every pressure.");
         v.quantity(k.not_negative().or(5e3), &mut self.pressure_noise);
         let k = key("pressure_range", &PRESSURE, "Range of every pressure transducer, from zero.");

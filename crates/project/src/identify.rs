@@ -128,6 +128,8 @@ impl TestSignal {
 pub struct Identify {
     /// Recorded tests, one in a file.
     pub recordings: Vec<RecordedTest>,
+    /// Recordings of a blocked line, as paths relative to the project file.
+    pub line: Vec<String>,
 }
 
 /// A file with a recorded test.
@@ -156,6 +158,8 @@ impl Identify {
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
         let k = plain("recording", "Recorded static tests of the servovalve, one in a file.");
         v.tables(k, &mut self.recordings, RecordedTest::visit);
+        let k = plain("line", "Recordings of a line whose far end is blocked, for `--of line`.");
+        v.texts(k, &mut self.line);
     }
 }
 

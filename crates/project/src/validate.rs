@@ -42,6 +42,10 @@ pub(super) fn project(project: &Project, reader: &mut Reader<'_>) {
     specification::specifications(project, &mut check);
     linear_loop::controllers(project, &mut check);
     design::design(project, &mut check);
+    if let Some(line) = &project.bench.line {
+        check.increasing("bench.line.pressures", &line.pressures);
+        check.increasing("bench.line.frequencies", &line.frequencies);
+    }
     if let Some(identified) = &project.identify {
         identify::identify(identified, &mut check);
     }

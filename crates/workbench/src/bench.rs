@@ -2,8 +2,10 @@
 
 mod answer;
 mod document;
+mod line;
 
 pub use phea_engineering::bench::*;
 
 pub use answer::{files, json};
 pub use document::text;
+pub use line::{line_files, line_text};

@@ -2,6 +2,7 @@
 
 mod campaign;
 mod identify;
+mod line_test;
 mod linearize;
 mod refusal;
 mod response;
@@ -11,6 +12,7 @@ mod simulate;
 pub use crate::error::CommandError;
 pub use campaign::{CampaignRequest, CampaignRuns, campaign_watched};
 pub use identify::{IdentifyRequest, identify_watched};
+pub use line_test::{LineRequest, line_watched};
 pub use phea_engineering::error::ProcedureError;
 pub use phea_engineering::identify::IdentifyError;
 pub use phea_engineering::response::ResponseSettings;
@@ -32,6 +34,7 @@ use crate::derived::{self, derive};
 use crate::design::{self, design_and_repair, design_project};
 use crate::family::{family, visited_box};
 use crate::figure::FigureError;
+use crate::line_test::line_runs;
 use crate::linearize::SweepRequest;
 use crate::project::Loaded;
 use crate::quantity::{self, LENGTH, VOLTAGE_PER_FORCE};
@@ -320,8 +323,13 @@ fn verify_answer(
 
 fn bench_answer(loaded: &Loaded, watch: Watch<'_>) -> Result<Answer, CommandError> {
     let runs = bench::bench(&Setup::new(&loaded.project)?, watch)?;
-    let (text, json) = (bench::text(loaded, &runs), bench::json(loaded, &runs));
-    Ok(Answer { text, json, files: bench::files(&runs), affirmative: true })
+    let lines = line_runs(&Setup::new(&loaded.project)?, watch)?;
+    Ok(Answer {
+        text: bench::text(loaded, &runs) + &bench::line_text(&lines),
+        json: bench::json(loaded, &runs, &lines),
+        files: bench::files(&runs).into_iter().chain(bench::line_files(&lines)).collect(),
+        affirmative: true,
+    })
 }
 
 fn design_answer(

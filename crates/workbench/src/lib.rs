@@ -13,6 +13,7 @@ pub mod design;
 pub mod document;
 pub(crate) mod error;
 pub mod identify;
+pub mod line_test;
 pub mod linearize;
 pub mod report;
 pub mod response;

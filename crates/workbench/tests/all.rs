@@ -18,6 +18,8 @@ mod feed_forward;
 mod frequency_response;
 mod golden_ybitu;
 mod json_contract;
+mod line_coverage;
+mod line_identification;
 mod linearize_and_derived;
 mod lines_in_motion;
 mod noise;

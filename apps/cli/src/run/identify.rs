@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use phea_workbench::answer::Answer;
 use phea_workbench::command::{
-    self, IdentifyError, IdentifyRequest, LeakageModel, ResponseRequest, ResponseSettings,
+    self, IdentifyError, IdentifyRequest, LeakageModel, LineRequest, ResponseRequest, ResponseSettings,
 };
 use phea_workbench::quantity::{self, TIME};
 
@@ -46,6 +46,12 @@ pub(super) fn answered(recorded: &IdentifyArguments) -> Result<(Answer, Vec<Path
         SubjectWord::Response => {
             let asked = ResponseRequest { files: asked.files, settings, figures: recorded.out.is_some() };
             command::response_watched(&FileSystem, loaded.as_ref(), &asked, watch)
+        }
+        SubjectWord::Line => {
+            let settings = ResponseSettings { coherence: recorded.coherence.unwrap_or(0.0), ..settings };
+            let figures = recorded.out.is_some();
+            let asked = LineRequest { files: asked.files, side: None, settings, figures };
+            command::line_watched(&FileSystem, loaded.as_ref(), &asked, watch)
         }
     };
     line.clear();
@@ -101,7 +107,7 @@ fn response_settings(recorded: &IdentifyArguments) -> Result<ResponseSettings, F
     let coherence = recorded.coherence;
     let stated = times.iter().find(|(_, text)| text.is_some()).map(|(name, _)| *name);
     let stated = stated.or(coherence.map(|_| "coherence"));
-    if let Some(name) = stated.filter(|_| recorded.of != SubjectWord::Response) {
+    if let Some(name) = stated.filter(|_| recorded.of == SubjectWord::Valve) {
         return Err(refuse(format!("`--{name}` is of a frequency response: `--of response`")));
     }
     if let Some(value) = coherence.filter(|value| !(0.0..1.0).contains(value)) {

@@ -9,7 +9,7 @@ use crate::project::{Bench, FlowMeter};
 const LIVE_ZERO: f64 = 0.025;
 
 /// The instruments of a test, all with converters of the same number of bits.
-pub(super) struct Instruments {
+pub(crate) struct Instruments {
     command: Option<Converter>,
     pressure: Option<Converter>,
     pressure_noise: f64,
@@ -17,7 +17,7 @@ pub(super) struct Instruments {
 }
 
 impl Instruments {
-    pub(super) fn new(settings: &Bench, nominal_voltage: f64) -> Instruments {
+    pub(crate) fn new(settings: &Bench, nominal_voltage: f64) -> Instruments {
         let bits = settings.converter_bits;
         Instruments {
             command: Converter::new(bits, [-nominal_voltage, nominal_voltage]).ok(),
@@ -34,7 +34,7 @@ impl Instruments {
     }
 
     /// The reading of a pressure in Pa.
-    pub(super) fn pressure(&mut self, value: f64, noise: &mut u64) -> f64 {
+    pub(crate) fn pressure(&mut self, value: f64, noise: &mut u64) -> f64 {
         let shown = value + self.pressure_noise * normal(noise);
         self.pressure.as_ref().map_or(shown, |converter| converter.rounded(shown))
     }

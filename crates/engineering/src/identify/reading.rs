@@ -158,10 +158,10 @@ fn recording(
         columns: described.collect(),
         unused,
     };
-    let recording = assembled::assembled(&declared.file, &taken, circuit, known);
-    let is_test = assembled::is_test(&recording, whole, findings);
+    let is_test = assembled::is_test(&taken, circuit, whole, findings);
+    // a long text and the test made of it need not be held at once
     table.close(findings);
-    is_test.then_some((recording, contents))
+    is_test.then(|| (assembled::assembled(&declared.file, &taken, circuit, known), contents))
 }
 
 /// The columns that are used, and the headings of the others.

@@ -82,7 +82,8 @@ pub fn lines(
     Ok(Some([of(line_a, a)?, of(line_b, b)?]))
 }
 
-fn line_model(motion: &LineMotion, line: &Line) -> LineModel {
+/// The model of a line in motion as it is declared.
+pub fn line_model(motion: &LineMotion, line: &Line) -> LineModel {
     let share = |stated: &Option<f64>| stated.unwrap_or(END_SHARE);
     match motion {
         LineMotion::Lumped => LineModel::Lumped,

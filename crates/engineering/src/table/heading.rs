@@ -3,7 +3,7 @@
 use crate::quantity::{Dimension, UnitScale};
 
 /// Units as names of columns have them, and as quantities do.
-const UNITS: [(&str, &str); 28] = [
+const UNITS: [(&str, &str); 31] = [
     ("s", "s"),
     ("ms", "ms"),
     ("min", "min"),
@@ -29,6 +29,9 @@ const UNITS: [(&str, &str); 28] = [
     ("db", "dB"),
     ("deg", "deg"),
     ("rad", "rad"),
+    ("ml", "mL"),
+    ("cm3", "cm3"),
+    ("m3", "m3"),
     ("percent", "%"),
     ("sec", "s"),
     ("volt", "V"),

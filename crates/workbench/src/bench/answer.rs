@@ -2,14 +2,18 @@ use std::io;
 
 use serde::Serialize;
 
+use super::line::line_test;
 use super::{BenchRow, BenchRun, ReversalReading};
-use crate::answer::{self, NumberTable, OutputFile, TableFormat};
+use crate::answer::{self, Json, NumberTable, OutputFile, TableFormat};
+use crate::line_test::LineRun;
 use crate::project::Loaded;
 use crate::quantity::DisplayUnit;
 
 #[derive(Serialize)]
 struct BenchAnswer {
     tests: Vec<BenchTestAnswer>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    line_tests: Vec<Json>,
 }
 
 #[derive(Serialize)]
@@ -106,7 +110,7 @@ fn file_name(run: &BenchRun) -> String {
 }
 
 /// The JSON object of `bench`.
-pub fn json(loaded: &Loaded, runs: &[BenchRun]) -> String {
+pub fn json(loaded: &Loaded, runs: &[BenchRun], lines: &[LineRun]) -> String {
     let test = |run: &BenchRun| BenchTestAnswer {
         name: run.series.name(),
         file: file_name(run),
@@ -123,7 +127,9 @@ pub fn json(loaded: &Loaded, runs: &[BenchRun]) -> String {
         lowest_supply_pressure_pa: run.lowest_supply_pressure,
         reversals: run.reversals.as_ref().map(reversals),
     };
-    answer::json("bench", loaded, BenchAnswer { tests: runs.iter().map(test).collect() })
+    let tests = runs.iter().map(test).collect();
+    let line_tests = lines.iter().map(|run| Json::from(line_test(run))).collect();
+    answer::json("bench", loaded, BenchAnswer { tests, line_tests })
 }
 
 /// The tables, a file for each test.

@@ -76,10 +76,16 @@ fn turning(values: &[f64]) -> Vec<Option<f64>> {
 }
 
 /// Whether anything was recorded but inputs.
-pub(super) fn is_test(recording: &Recording, whole: Place, findings: &mut Findings) -> bool {
-    if recording.signals.is_empty() {
+pub(super) fn is_test(taken: &Taken, circuit: PortCircuit, whole: Place, findings: &mut Findings) -> bool {
+    let has = |signal: TestSignal| taken.of(signal).is_some();
+    let [a, b] = [TestSignal::PressureA, TestSignal::PressureB].map(has);
+    let is_test = match circuit {
+        PortCircuit::Blocked => a || b || has(TestSignal::LeakFlow),
+        PortCircuit::Connected => (a && b) || has(TestSignal::Flow),
+    };
+    if !is_test {
         let message = "there is nothing but inputs: neither a flow nor the pressure of a port";
         findings.push(RawFinding::error(whole, message));
     }
-    !recording.signals.is_empty()
+    is_test
 }

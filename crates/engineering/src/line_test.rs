@@ -1,0 +1,27 @@
+//! The effective bulk modulus of a line from recordings of it with its far end blocked.
+//!
+//! ```text
+//! volume or flow, pressure -> RiseFit: compliance at rest over the pressure ------+
+//! flow, pressure -> spectrum -> ResponseFit: compliance, creep, inertance ---------+-> moduli, r_beta, wave speed
+//! ```
+//!
+//! The virtual stand of `[bench.line]` makes such recordings of the project's own line.
+//!
+//! The oil, the length and the bore are known from a project. What the recordings do not tell is
+//! not determined, with the reason.
+
+mod found;
+mod known;
+mod reading;
+mod response_noise;
+mod rise;
+mod rise_noise;
+mod shaken;
+mod stand;
+
+pub use found::{LineIdentification, LineNumber, Undetermined, identify_line};
+pub use known::KnownLine;
+pub use reading::{LineRecord, line_records};
+pub use rise::{RiseFit, RiseRecord, VolumeSource};
+pub use shaken::{CompliancePoint, LineParameters, ResponseFit};
+pub use stand::{LineRun, LineSeries, clean_line_runs, line_runs, recorded};

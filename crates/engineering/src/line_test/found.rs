@@ -1,0 +1,360 @@
+use phea_dynamics::portable::{exp, ln, pow};
+use phea_dynamics::watch::Watch;
+use phea_hydraulics::line::{Line, LineModel};
+
+use super::rise::rise_fit;
+use super::shaken::response_fit;
+use super::{KnownLine, LineRecord, ResponseFit, RiseFit};
+use crate::identify::IdentifyError;
+use crate::response::{ResponseSettings, SampledPair, members};
+
+/// An estimate with its 95 % confidence interval. SI.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LineNumber {
+    /// The most likely value.
+    pub value: f64,
+    /// What holds the truth with 95 % confidence.
+    pub interval: [f64; 2],
+}
+
+/// Why the recordings do not tell a number.
+pub type Undetermined = String;
+
+/// A line as recordings tell it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LineIdentification {
+    /// What was known.
+    pub known: KnownLine,
+    /// Pa, at which everything is stated.
+    pub pressure: f64,
+    /// The slow test.
+    pub rise: Option<RiseFit>,
+    /// The fast one.
+    pub response: Option<ResponseFit>,
+    /// Pa, at rest.
+    pub effective_bulk_modulus: Result<LineNumber, Undetermined>,
+    /// Pa, between both ends of the slow test.
+    pub secant_bulk_modulus: Result<LineNumber, Undetermined>,
+    /// 1, by which the modulus at rest grows with the pressure: d beta/dp.
+    pub modulus_slope: Result<LineNumber, Undetermined>,
+    /// Pa, under fast changes.
+    pub dynamic_bulk_modulus: Result<LineNumber, Undetermined>,
+    /// r_beta, of the wall of a hose.
+    pub dynamic_stiffening: Result<LineNumber, Undetermined>,
+    /// s, in which pressure relaxes while the volume is held.
+    pub relaxation_time: Result<LineNumber, Undetermined>,
+    /// m/s, of a fast wave.
+    pub wave_speed: Result<LineNumber, Undetermined>,
+    /// kg/m3, of the oil, as its inertance shows it beside the declared length and bore.
+    pub density: Result<LineNumber, Undetermined>,
+}
+
+/// Normal quantile of 97.5 %.
+pub(super) const QUANTILE: f64 = 1.959_963_984_540_054;
+/// Standard deviation of a logarithm beyond which a number is not told: a factor of one and a half
+/// either way.
+const TOLD: f64 = 0.2;
+/// The same of a wave speed and of a relaxation time, which follow from what the response has beside
+/// a compliance: below five standard deviations it may be nothing.
+const SHOWN: f64 = 0.1;
+/// Share of the range of a pressure rise by which it may be extrapolated.
+const BEYOND: f64 = 0.1;
+
+impl LineNumber {
+    /// From the logarithm of a positive number and its standard deviation.
+    pub(super) fn of_logarithm(logarithm: f64, deviation: f64) -> LineNumber {
+        let edge = QUANTILE * deviation;
+        LineNumber { value: exp(logarithm), interval: [exp(logarithm - edge), exp(logarithm + edge)] }
+    }
+
+    /// Standard deviation of its logarithm.
+    fn deviation(&self) -> f64 {
+        let [low, high] = self.interval;
+        ln(high / low) / (2.0 * QUANTILE)
+    }
+
+    /// One over it, times a number.
+    fn under(&self, number: f64) -> LineNumber {
+        let [low, high] = self.interval;
+        LineNumber { value: number / self.value, interval: [number / high, number / low] }
+    }
+}
+
+/// Finds what recordings tell of a line: at most one slow test and one fast one.
+///
+/// ```text
+/// beta_e = V/(dV/dp)       r_beta = (C_rest - V/beta_0)/(C_fast - V/beta_0)       c = L/sqrt(I C_fast)
+/// ```
+///
+/// V is the oil that the line holds at the operating pressure, beta_0 the modulus of the declared
+/// fluid there, I the inertance of the fit. Units: Pa, m3, m3/Pa, m/s. Theory of the line: D'Souza and
+/// Oldenburger (1964).
+///
+/// # Errors
+/// [`IdentifyError`] for recordings that no line explains, several of one kind, and when it is
+/// stopped.
+///
+/// # Example
+/// A rigid volume of a litre filled by hand.
+/// ```
+/// use phea_engineering::line_test::{KnownLine, LineRecord, RiseRecord, VolumeSource, identify_line};
+/// use phea_hydraulics::fluid::Fluid;
+/// use phea_hydraulics::line::Line;
+/// # use phea_project::{LineMotion, LineSide};
+/// # let settings = phea_engineering::response::ResponseSettings::default();
+/// let known = KnownLine {
+///     side: LineSide::A,
+///     line: Line::Volume { volume: 1e-3, effective_bulk_modulus: 1e9 },
+///     fluid: Fluid { bulk_modulus: 1.45e9, density: 870.0, kinematic_viscosity: 46e-6, entrained_air: None },
+///     pressure: 35e5,
+///     motion: LineMotion::Lumped,
+///     piston_area: 0.0,
+/// };
+/// let pressures: Vec<f64> = (0..20).map(|row| 3e5 * f64::from(row)).collect();
+/// let volumes = pressures.iter().map(|pressure| 1e-3 * pressure / 1.2e9).collect();
+/// let record = RiseRecord { file: "hand.csv".to_string(), source: VolumeSource::Volume, times: vec![], volumes, pressures };
+/// let found = identify_line(vec![LineRecord::Rise(record)], known, &settings, &mut |_| true).unwrap();
+/// assert!((found.effective_bulk_modulus.unwrap().value / 1.2e9 - 1.0).abs() < 1e-9);
+/// assert!(found.wave_speed.unwrap_err().contains("no frequency response"));
+/// ```
+pub fn identify_line(
+    records: Vec<LineRecord>,
+    known: KnownLine,
+    settings: &ResponseSettings,
+    watch: Watch<'_>,
+) -> Result<LineIdentification, IdentifyError> {
+    let (mut rises, mut responses) = (Vec::new(), Vec::new());
+    for record in records {
+        match record {
+            LineRecord::Rise(rise) => rises.push(rise),
+            LineRecord::Response(response) => responses.push(response),
+        }
+    }
+    let several = |count: usize, kind: &str| {
+        let message = format!("{count} {kind} are named: one at most is explained at a time");
+        if count > 1 { Err(IdentifyError::Data(message)) } else { Ok(()) }
+    };
+    several(rises.len(), "pressure rises")?;
+    several(responses.len(), "frequency responses")?;
+    let rise = rises.pop().map(rise_fit).transpose().map_err(IdentifyError::Data)?;
+    let response = match responses.pop() {
+        None => None,
+        Some(record) => Some(shaken(&record, rise.as_ref(), (&known, settings), watch)?),
+    };
+    if rise.is_none() && response.is_none() {
+        return Err(IdentifyError::Data("there is no recording of a line".to_string()));
+    }
+    Ok(combined(known, rise, response))
+}
+
+/// The fit of a frequency response, the pressure rise beside it.
+fn shaken(
+    record: &SampledPair,
+    rise: Option<&RiseFit>,
+    (known, settings): (&KnownLine, &ResponseSettings),
+    watch: Watch<'_>,
+) -> Result<ResponseFit, IdentifyError> {
+    let pressure = record.output.iter().sum::<f64>() / record.output.len().max(1) as f64;
+    let member = members(std::slice::from_ref(record), settings, watch)?.pop();
+    let member = member.ok_or_else(|| IdentifyError::Data("there is no record".to_string()))?;
+    let slow = rise.filter(|rise| rise.reaches(pressure)).map(|rise| {
+        let [compliance, deviation] = rise.compliance(pressure);
+        [ln(compliance), deviation / compliance]
+    });
+    let slow = slow.filter(|[value, deviation]| value.is_finite() && *deviation > 0.0);
+    response_fit(member, pressure, known, slow, watch)
+}
+
+impl RiseFit {
+    /// Whether a pressure in Pa is among those that were recorded, or near them.
+    fn reaches(&self, pressure: f64) -> bool {
+        let [low, high] = self.pressures;
+        let beyond = BEYOND * (high - low);
+        (low - beyond..=high + beyond).contains(&pressure)
+    }
+}
+
+/// What both say together.
+fn combined(known: KnownLine, rise: Option<RiseFit>, response: Option<ResponseFit>) -> LineIdentification {
+    let volume = known.volume();
+    let pressure = match (&response, &rise) {
+        (Some(response), _) => response.pressure,
+        (None, Some(rise)) if rise.reaches(known.pressure) => known.pressure,
+        (None, Some(rise)) => f64::midpoint(rise.pressures[0], rise.pressures[1]),
+        (None, None) => known.pressure,
+    };
+    let at_rest = compliance_at_rest(&known, pressure, rise.as_ref(), response.as_ref());
+    let told = |number: LineNumber, what: &str| {
+        let wide = format!("{what} is known to no better than a factor of one and a half");
+        if number.deviation() < TOLD { Ok(number) } else { Err(wide) }
+    };
+    let fast = response.as_ref().ok_or_else(no_response);
+    let fast_compliance = fast.clone().map(|fit| fit.of(|line| line.compliance));
+    let secant = rise.as_ref().ok_or_else(no_rise).and_then(|rise| {
+        let [value, deviation] = rise.secant();
+        told(relative(value, deviation)?.under(volume), "the secant modulus")
+    });
+    LineIdentification {
+        effective_bulk_modulus: at_rest
+            .clone()
+            .and_then(|compliance| told(compliance.under(volume), "the modulus at rest")),
+        secant_bulk_modulus: secant,
+        modulus_slope: rise.as_ref().ok_or_else(no_rise).and_then(|rise| slope(rise, volume, pressure)),
+        dynamic_bulk_modulus: fast_compliance
+            .clone()
+            .and_then(|compliance| told(compliance.under(volume), "the dynamic modulus")),
+        dynamic_stiffening: stiffening(&known, pressure, at_rest.as_ref(), response.as_ref())
+            .and_then(|number| told(number, "the dynamic stiffening")),
+        relaxation_time: fast.clone().and_then(|fit| relaxation(&known, fit)),
+        density: fast.clone().and_then(|fit| density(&known, fit)),
+        wave_speed: fast.and_then(|fit| wave_speed(&known, fit)),
+        pressure,
+        known,
+        rise,
+        response,
+    }
+}
+
+fn no_response() -> Undetermined {
+    "there is no frequency response among the recordings".to_string()
+}
+
+fn no_rise() -> Undetermined {
+    "there is no slow pressure rise among the recordings".to_string()
+}
+
+/// A number of this standard deviation, by its logarithm.
+fn relative(value: f64, deviation: f64) -> Result<LineNumber, Undetermined> {
+    if value > 0.0 && deviation.is_finite() {
+        return Ok(LineNumber::of_logarithm(ln(value), deviation / value));
+    }
+    Err("the pressure does not rise with the volume".to_string())
+}
+
+/// m3/Pa: of a creeping wall, oil and wall after the creep. What is no hose yields at rest as it does
+/// in motion.
+fn compliance_at_rest(
+    known: &KnownLine,
+    pressure: f64,
+    rise: Option<&RiseFit>,
+    response: Option<&ResponseFit>,
+) -> Result<LineNumber, Undetermined> {
+    let from_rise = rise.filter(|rise| rise.reaches(pressure)).map(|rise| {
+        let [value, deviation] = rise.compliance(pressure);
+        relative(value, deviation)
+    });
+    let is_hose = matches!(known.line, Line::Hose { .. });
+    let in_motion = response.map(|fit| fit.of(|line| line.compliance));
+    match (from_rise, response, in_motion) {
+        (_, Some(fit), _) if fit.parameters.creep.is_some() => {
+            Ok(fit.of(|line| line.compliance + line.creep.map_or(0.0, |[creep, _]| creep)))
+        }
+        (Some(Ok(rise)), _, Some(moving)) if !is_hose => Ok(mean(rise, moving)),
+        (None | Some(Err(_)), _, Some(moving)) if !is_hose => Ok(moving),
+        (Some(rise), ..) => rise,
+        (None, Some(_), _) => {
+            Err(format!("{}; in motion the wall of a hose is stiffer than at rest", no_rise()))
+        }
+        (None, None, _) => Err(no_rise()),
+    }
+}
+
+/// Two estimates of one number, by the inverse of the variances of their logarithms.
+fn mean(one: LineNumber, other: LineNumber) -> LineNumber {
+    let [first, second] = [one, other].map(|number| 1.0 / (number.deviation() * number.deviation()));
+    let logarithm = (first * ln(one.value) + second * ln(other.value)) / (first + second);
+    LineNumber::of_logarithm(logarithm, pow(first + second, -0.5))
+}
+
+/// d beta/dp at a pressure, where the compliance changes.
+fn slope(rise: &RiseFit, volume: f64, pressure: f64) -> Result<LineNumber, Undetermined> {
+    if rise.terms() < 2 {
+        return Err("the compliance does not change with the pressure beyond its noise".to_string());
+    }
+    let [compliance, _] = rise.compliance(pressure);
+    let [slope, deviation] = rise.compliance_slope(pressure);
+    let factor = -volume / (compliance * compliance);
+    let (value, edge) = (factor * slope, QUANTILE * factor.abs() * deviation);
+    Ok(LineNumber { value, interval: [value - edge, value + edge] })
+}
+
+/// r_beta of a hose.
+fn stiffening(
+    known: &KnownLine,
+    pressure: f64,
+    at_rest: Result<&LineNumber, &Undetermined>,
+    response: Option<&ResponseFit>,
+) -> Result<LineNumber, Undetermined> {
+    if !matches!(known.line, Line::Hose { .. }) {
+        return Err("only the wall of a hose stiffens".to_string());
+    }
+    let fit = response.ok_or_else(no_response)?;
+    let rest = at_rest.map_err(Clone::clone)?;
+    let oil = known.fluid_compliance(pressure).unwrap_or(0.0);
+    let [fast, slow] = [fit.parameters.compliance - oil, rest.value - oil];
+    if fast <= 0.0 || slow <= 0.0 {
+        return Err(
+            "the line yields less than the declared oil alone: `fluid.bulk_modulus` is too low".to_string()
+        );
+    }
+    if fit.parameters.creep.is_some() {
+        return Ok(fit.of(|line| {
+            let fast = line.compliance - oil;
+            (fast + line.creep.map_or(0.0, |[creep, _]| creep)) / fast
+        }));
+    }
+    let of_fast = fit.of(|line| line.compliance - oil).deviation();
+    let of_slow = rest.deviation() * rest.value / slow;
+    Ok(LineNumber::of_logarithm(ln(slow / fast), pow(of_fast * of_fast + of_slow * of_slow, 0.5)))
+}
+
+/// tau of a creeping wall, beside the declared oil.
+fn relaxation(known: &KnownLine, fit: &ResponseFit) -> Result<LineNumber, Undetermined> {
+    if fit.parameters.creep.is_none() {
+        return Err("the declared model of the line has no creep (`line.relaxation_time`)".to_string());
+    }
+    let oil = known.fluid_compliance(fit.pressure).unwrap_or(0.0);
+    let of = |line: &super::LineParameters| {
+        let fast = line.compliance - oil;
+        line.creep.map_or(f64::NAN, |[creep, retardation]| retardation * fast / (fast + creep))
+    };
+    let found = fit.of(of);
+    if !found.value.is_finite() {
+        return Err("the line yields less than the declared oil alone".to_string());
+    }
+    if found.deviation() < SHOWN {
+        return Ok(found);
+    }
+    Err("the frequencies of the response are not around the corner of the creep".to_string())
+}
+
+/// I A/L.
+fn density(known: &KnownLine, fit: &ResponseFit) -> Result<LineNumber, Undetermined> {
+    wave_speed(known, fit)?;
+    let stated = known.inertance().unwrap_or(f64::NAN);
+    Ok(fit.of(|line| known.fluid.density * line.inertance.unwrap_or(f64::NAN) / stated))
+}
+
+/// c of a fast wave.
+fn wave_speed(known: &KnownLine, fit: &ResponseFit) -> Result<LineNumber, Undetermined> {
+    let Some([length, _]) = known.dimensions() else {
+        return Err("a plain volume has no length".to_string());
+    };
+    if matches!(known.declared_model(), LineModel::TwoWave { .. }) {
+        return Err("two waves travel in the declared model: `two_wave`".to_string());
+    }
+    let last = fit.member.points.last().map_or(0.0, |point| point.frequency);
+    let hertz = |value: f64| value / (2.0 * std::f64::consts::PI);
+    if fit.without_waves {
+        return Err(format!("the response shows no wave up to {:.3} Hz", hertz(last)));
+    }
+    let found = fit.of(|line| length / pow(line.inertance.unwrap_or(f64::NAN) * line.compliance, 0.5));
+    let quarter = found.value / (4.0 * length);
+    if found.deviation() < SHOWN {
+        return Ok(found);
+    }
+    Err(format!(
+        "the frequencies end at {:.3} Hz, too far below the quarter wave at about {quarter:.0} Hz",
+        hertz(last)
+    ))
+}

@@ -1,0 +1,140 @@
+use std::f64::consts::FRAC_PI_4;
+
+use phea_hydraulics::fluid::Fluid;
+use phea_hydraulics::line::{Conduit, END_SHARE, LaminarFriction, Line, LineModel};
+
+use crate::project::{LineMotion, LineSegments, LineSide};
+use crate::rig::line_model;
+use crate::setup::Setup;
+
+/// What a project says of a line, beside what is identified of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct KnownLine {
+    /// Which line.
+    pub side: LineSide,
+    /// As declared.
+    pub line: Line,
+    /// The oil in it.
+    pub fluid: Fluid,
+    /// Pa, midway between supply and tank, for which a hose's bore is stated.
+    pub pressure: f64,
+    /// The declared model of its motion.
+    pub motion: LineMotion,
+    /// m2, of the piston that displaces a recorded volume, where there is one.
+    pub piston_area: f64,
+}
+
+/// No liquid has a greater modulus, in Pa.
+const MOST_MODULUS: f64 = 1e11;
+/// Halvings of an interval, down to the last digit.
+const HALVINGS: usize = 60;
+
+impl KnownLine {
+    /// The line of a project.
+    ///
+    /// # Errors
+    /// Why there is none: no actuator, impossible parameters, a line without length.
+    pub fn of(setup: &Setup<'_>, side: LineSide) -> Result<KnownLine, String> {
+        let rig = setup.rig().map_err(|error| error.to_string())?;
+        let declared = setup.project.actuator.as_ref().ok_or("the project has no line")?;
+        let components = rig.actuator.components();
+        let (line, motion, piston_area) = match side {
+            LineSide::A => (components.line_a, &declared.line.a.motion, components.cylinder.area_a),
+            LineSide::B => (components.line_b, &declared.line.b.motion, components.cylinder.area_b),
+        };
+        let known = KnownLine {
+            side,
+            line,
+            fluid: components.fluid,
+            pressure: rig.actuator.mean_pressure(),
+            motion: motion.clone(),
+            piston_area,
+        };
+        if known.volume() > 0.0 { Ok(known) } else { Err("the line holds no oil".to_string()) }
+    }
+
+    /// m3, of the oil that it holds at the operating pressure: its moduli refer to it.
+    pub fn volume(&self) -> f64 {
+        self.line.filled().volume()
+    }
+
+    /// Length and bore in m, as filled; none for a plain volume.
+    pub fn dimensions(&self) -> Option<[f64; 2]> {
+        match self.line.filled() {
+            Line::Hose { hose, length } => Some([length, hose.bore]),
+            Line::Pipe { pipe, length } => Some([length, pipe.bore]),
+            Line::Volume { .. } => None,
+        }
+    }
+
+    /// m3/Pa, of the oil alone at a pressure in Pa; none for a plain volume, whose modulus has oil
+    /// and wall.
+    pub fn fluid_compliance(&self, pressure: f64) -> Option<f64> {
+        self.dimensions().map(|_| self.volume() / self.fluid.modulus_at(pressure))
+    }
+
+    /// Pa s2/m3, of the oil in it; none for a plain volume.
+    pub fn inertance(&self) -> Option<f64> {
+        let [length, bore] = self.dimensions()?;
+        Some(self.fluid.density * length / (FRAC_PI_4 * bore * bore))
+    }
+
+    /// Its motion as declared.
+    pub fn declared_model(&self) -> LineModel {
+        line_model(&self.motion, &self.line)
+    }
+
+    /// The model in which its response is sought: as declared, and where that has no waves, with
+    /// them, so that they are found if they are there.
+    pub fn sought_model(&self) -> LineModel {
+        let waves = LineModel::TransmissionLine { end_share: END_SHARE };
+        match (self.dimensions(), self.declared_model()) {
+            (None, _) => LineModel::Lumped,
+            (Some(_), LineModel::Lumped | LineModel::TwoWave { .. }) => waves,
+            (Some(_), LineModel::Creeping { relaxation_time }) => LineModel::Segments {
+                count: LineSegments::COUNT as usize,
+                friction: LaminarFriction::FrequencyDependent,
+                relaxation_time: Some(relaxation_time),
+            },
+            (Some(_), declared) => declared,
+        }
+    }
+
+    /// The modulus in Pa of the oil without its air that has a modulus with it, at a pressure; none
+    /// where the air alone is softer.
+    ///
+    /// # Example
+    /// See [`super::identify_line`]; without air it is the modulus itself.
+    pub fn liquid_modulus(&self, modulus: f64, pressure: f64) -> Option<f64> {
+        if self.fluid.entrained_air.is_none() {
+            return (modulus > 0.0).then_some(modulus);
+        }
+        let of = |liquid: f64| Fluid { bulk_modulus: liquid, ..self.fluid }.modulus_at(pressure);
+        let [mut low, mut high] = [modulus, MOST_MODULUS];
+        if !(modulus > 0.0 && of(high) > modulus) {
+            return None;
+        }
+        for _ in 0..HALVINGS {
+            let middle = f64::midpoint(low, high);
+            if of(middle) < modulus {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        Some(f64::midpoint(low, high))
+    }
+
+    /// The oil column of this compliance in m3/Pa and inertance in Pa s2/m3.
+    pub(super) fn conduit(&self, compliance: f64, inertance: f64) -> Option<Conduit> {
+        let [length, bore] = self.dimensions()?;
+        let area = FRAC_PI_4 * bore * bore;
+        Some(Conduit {
+            length,
+            bore,
+            density: inertance * area / length,
+            kinematic_viscosity: self.fluid.kinematic_viscosity,
+            effective_bulk_modulus: area * length / compliance,
+        })
+    }
+}

@@ -1,0 +1,164 @@
+//! Recordings of a blocked line from tables.
+
+use super::{RiseRecord, VolumeSource};
+use crate::identify::IdentifyError;
+use crate::project::{Findings, RawFinding};
+use crate::quantity::{FLOW, LENGTH, PRESSURE, TIME, VOLUME};
+use crate::response::{SampledPair, time_step};
+use crate::source::Source;
+use crate::table::{Column, Measurand, MeasuredTable, Sought};
+
+/// A recording of a blocked line.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LineRecord {
+    /// The pressure rises slowly, or falls.
+    Rise(RiseRecord),
+    /// The flow goes back and forth.
+    Response(SampledPair),
+}
+
+/// Fewest rows of a rise.
+const FEWEST_ROWS: usize = 10;
+/// Distance that a volume goes over its range, beyond which the flow goes back and forth.
+const SLOW: f64 = 6.0;
+/// Blocks over which a flow is averaged to see whether it does.
+const BLOCKS: usize = 200;
+
+const SIGNALS: [Measurand; 5] = [
+    measurand("time", None, &TIME),
+    measurand("pressure", Some("p"), &PRESSURE),
+    measurand("flow", Some("q"), &FLOW),
+    measurand("volume", Some("V"), &VOLUME),
+    measurand("position", Some("x"), &LENGTH),
+];
+
+const fn measurand(
+    name: &'static str,
+    symbol: Option<&'static str>,
+    dimension: &'static crate::quantity::Dimension,
+) -> Measurand {
+    Measurand { name, symbol, dimension, may_be_share: false }
+}
+
+/// The recordings of these files, one each. A position becomes a volume by the piston's area in m2.
+///
+/// # Errors
+/// Everything that is wrong in the files, with its places.
+pub fn line_records(
+    source: &dyn Source,
+    files: &[String],
+    piston_area: f64,
+) -> Result<Vec<LineRecord>, IdentifyError> {
+    let mut findings = Findings::default();
+    let mut records = Vec::new();
+    for file in files {
+        match source.read(file) {
+            Ok(bytes) => records.extend(record(file, bytes, piston_area, &mut findings)),
+            Err(error) => findings.unreadable(file, &error.to_string()),
+        }
+    }
+    if findings.error_count() > 0 {
+        return Err(IdentifyError::Files(Box::new(findings.report())));
+    }
+    Ok(records)
+}
+
+fn record(file: &str, bytes: Vec<u8>, piston_area: f64, findings: &mut Findings) -> Option<LineRecord> {
+    let sought: Vec<Sought<'_>> = SIGNALS.iter().map(Sought::by_name).collect();
+    let table = MeasuredTable::read(file, bytes, &sought, None, findings)?;
+    let (columns, _) = table.columns(&sought, findings)?;
+    let [time, pressure, flow, volume, position] = <[Option<Column>; 5]>::try_from(columns).ok()?;
+    let displaced = volume.map(|column| (column, VolumeSource::Volume));
+    let displaced = displaced.or(position.map(|column| (column, VolumeSource::Position)));
+    let displaced = displaced.or(flow.map(|column| (column, VolumeSource::Flow)));
+    let mut missing = |index: usize| {
+        sought.iter().skip(index).take(1).for_each(|sought| findings.push(table.missing(sought)));
+    };
+    let Some(pressure) = pressure else {
+        missing(1);
+        return None;
+    };
+    let Some((displaced, from)) = displaced else {
+        missing(2);
+        return None;
+    };
+    if from == VolumeSource::Flow && time.is_none() {
+        missing(0);
+        return None;
+    }
+    let before = findings.error_count();
+    let wanted: Vec<&Column> =
+        [Some(&pressure), Some(&displaced), time.as_ref()].into_iter().flatten().collect();
+    let mut numbers = table.all_numbers(&wanted, findings).into_iter();
+    let (pressures, values) = (numbers.next()?, numbers.next()?);
+    let times = numbers.next().unwrap_or_default();
+    if findings.error_count() > before || !are_enough(&table, &pressures, findings) {
+        return None;
+    }
+    if let Some(time) = &time {
+        increasing(&table, time, &times, findings);
+    }
+    if findings.error_count() > before {
+        return None;
+    }
+    let volumes = match from {
+        VolumeSource::Volume => values.clone(),
+        VolumeSource::Position => values.iter().map(|position| piston_area * position).collect(),
+        VolumeSource::Flow => integral(&times, &values),
+    };
+    if from == VolumeSource::Flow && goes_back_and_forth(&times, &values, &volumes) {
+        let time_step = time_step(&table, time.as_ref()?, &times, findings)?;
+        table.close(findings);
+        return Some(LineRecord::Response(SampledPair {
+            file: file.to_string(),
+            signals: ["flow", "pressure"],
+            units: ["m3/s", "Pa"],
+            time_step,
+            input: values,
+            output: pressures,
+        }));
+    }
+    table.close(findings);
+    Some(LineRecord::Rise(RiseRecord { file: file.to_string(), source: from, times, volumes, pressures }))
+}
+
+fn are_enough(table: &MeasuredTable, rows: &[f64], findings: &mut Findings) -> bool {
+    if rows.len() < FEWEST_ROWS {
+        let message = format!("{} rows are too few for a test of a line", rows.len());
+        let found = RawFinding::error(table.header_place(), message);
+        findings.push(found.expected(format!("at least {FEWEST_ROWS} rows")));
+    }
+    rows.len() >= FEWEST_ROWS
+}
+
+fn increasing(table: &MeasuredTable, column: &Column, times: &[f64], findings: &mut Findings) {
+    let falls = |pair: &[f64]| matches!(pair, [one, next] if next <= one);
+    if let Some(row) = times.windows(2).position(falls) {
+        let found = table.error(row + 1, column, "a time that is not after that of the row before", findings);
+        findings.push(found.expected("times that increase from row to row"));
+    }
+}
+
+/// The integral of a flow by the trapezoidal rule, zero at the first row.
+fn integral(times: &[f64], flows: &[f64]) -> Vec<f64> {
+    let mut sum = 0.0;
+    let mut volumes = vec![0.0];
+    for (times, flows) in times.windows(2).zip(flows.windows(2)) {
+        if let ([from, to], [first, second]) = (times, flows) {
+            sum += (to - from) * f64::midpoint(*first, *second);
+            volumes.push(sum);
+        }
+    }
+    volumes
+}
+
+/// Whether the volume goes much further than between its ends.
+fn goes_back_and_forth(times: &[f64], flows: &[f64], volumes: &[f64]) -> bool {
+    let length = flows.len().div_ceil(BLOCKS).max(1);
+    let ends = times.first().zip(times.last()).map_or(0.0, |(first, last)| last - first);
+    let step = ends / times.len().saturating_sub(1).max(1) as f64;
+    let distance: f64 = flows.chunks(length).map(|block| step * block.iter().sum::<f64>().abs()).sum();
+    let least = volumes.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = volumes.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    distance > SLOW * (most - least)
+}

@@ -1,0 +1,65 @@
+//! `identify --of line`: the effective bulk modulus of a line from recordings.
+
+use crate::answer::{Answer, picture_files};
+use crate::identify::IdentifyError;
+use crate::line_test::{self, KnownLine, identify_line, line_records};
+use crate::project::{LineSide, Loaded};
+use crate::response::ResponseSettings;
+use crate::setup::Setup;
+use crate::source::Source;
+
+use super::Watch;
+
+/// Which recordings tell of which line.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LineRequest {
+    /// Recordings, as text or Parquet; none: those of the project's `[identify] line`.
+    pub files: Vec<String>,
+    /// The line; absent: that of `[bench.line]`, or the line to chamber A.
+    pub side: Option<LineSide>,
+    /// How the frequency response is estimated.
+    pub settings: ResponseSettings,
+    /// Whether figures are among the files of the answer.
+    pub figures: bool,
+}
+
+/// Identifies a line of a project from recordings of it with its far end blocked.
+///
+/// # Errors
+/// [`IdentifyError`] without a project that describes the line, for files that are no recordings,
+/// and for those that no line explains.
+pub fn line_watched(
+    source: &dyn Source,
+    loaded: Option<&Loaded>,
+    asked: &LineRequest,
+    watch: Watch<'_>,
+) -> Result<Answer, IdentifyError> {
+    let refuse = |message: &str| IdentifyError::Data(message.to_string());
+    let loaded = loaded.ok_or_else(|| {
+        refuse("`--of line` needs the project of the line: its volume, its length and the oil in it")
+    })?;
+    let project = &loaded.project;
+    let setup = Setup::new(project).map_err(|error| refuse(&error.to_string()))?;
+    let side = asked.side.or(project.bench.line.map(|bench| bench.side)).unwrap_or_default();
+    let known = KnownLine::of(&setup, side).map_err(IdentifyError::Data)?;
+    let declared = project.identify.iter().flat_map(|identify| &identify.line);
+    let files: Vec<String> = match asked.files.is_empty() {
+        true => declared.map(|file| project.path_of(file)).collect(),
+        false => asked.files.clone(),
+    };
+    if files.is_empty() {
+        let message = "there is no recording: name files, or declare `line` in `[identify]` of the project";
+        return Err(refuse(message));
+    }
+    let records = line_records(source, &files, known.piston_area)?;
+    let found = identify_line(records, known, &asked.settings, watch)?;
+    let drawn = if asked.figures { line_test::pictures(&found) } else { Vec::new() };
+    let pictures = picture_files(&drawn).map_err(|error| refuse(&error.to_string()))?;
+    let affirmative = found.effective_bulk_modulus.is_ok() || found.dynamic_bulk_modulus.is_ok();
+    Ok(Answer {
+        text: line_test::text(&found),
+        json: line_test::json(loaded, &found),
+        files: line_test::files(&found).into_iter().chain(pictures).collect(),
+        affirmative,
+    })
+}

@@ -1,0 +1,29 @@
+//! What is told of a line from recordings of it: text, JSON, figures, and the fragment of a project.
+
+mod answer;
+mod document;
+mod figures;
+mod files;
+
+pub use phea_engineering::line_test::*;
+
+pub use answer::json;
+pub use document::text;
+pub(crate) use figures::pictures;
+pub use files::files;
+
+/// The numbers of a line in the order in which they are told: key, what it is, and the number.
+pub(crate) fn numbers(
+    found: &LineIdentification,
+) -> [(&'static str, &'static str, &Result<LineNumber, Undetermined>); 8] {
+    [
+        ("effective_bulk_modulus_pa", "effective bulk modulus at rest", &found.effective_bulk_modulus),
+        ("dynamic_stiffening", "dynamic stiffening of the wall", &found.dynamic_stiffening),
+        ("wave_speed_m_per_s", "wave speed", &found.wave_speed),
+        ("dynamic_bulk_modulus_pa", "effective bulk modulus in fast motion", &found.dynamic_bulk_modulus),
+        ("relaxation_time_s", "relaxation time of the wall", &found.relaxation_time),
+        ("secant_bulk_modulus_pa", "secant bulk modulus of the pressure rise", &found.secant_bulk_modulus),
+        ("density_kg_per_m3", "density of the oil, from its inertia", &found.density),
+        ("modulus_slope", "growth of the modulus at rest with the pressure", &found.modulus_slope),
+    ]
+}

@@ -1,0 +1,79 @@
+use super::{LineIdentification, LineNumber, ResponseFit, RiseFit, numbers};
+use crate::answer::significant;
+use crate::document::{Cell, Document, Table};
+use crate::quantity::{DisplayUnit, FLOW, PRESSURE, VOLUME, display};
+
+/// The numbers of the line, what the recordings do not tell, and how they were explained.
+pub fn text(found: &LineIdentification) -> String {
+    let mut out = Document::default();
+    let rows = numbers(found).into_iter().filter_map(|(key, what, number)| {
+        let LineNumber { value, interval: [low, high] } = *number.as_ref().ok()?;
+        let unit = unit(key);
+        let shown = |value: f64| Cell::number(unit.of(value), 4);
+        Some([Cell::from(what), shown(value), shown(low), shown(high), Cell::from(unit.symbol)])
+    });
+    let title = format!("The line at {}", display(found.pressure, &PRESSURE, 4));
+    out.section(title, Table::new(["quantity", "value", "95 % from", "to", "unit"]).with(rows));
+    let open = numbers(found).into_iter().filter_map(|(_, what, number)| {
+        let reason = number.as_ref().err()?;
+        Some(format!("Not determined: {what}: {reason}."))
+    });
+    out.sentences(open);
+    out.sentences(found.rise.iter().flat_map(rise));
+    out.sentences(found.response.iter().flat_map(response));
+    out.text()
+}
+
+/// For people.
+fn unit(key: &str) -> DisplayUnit {
+    match key {
+        "wave_speed_m_per_s" => DisplayUnit::METRE_PER_SECOND,
+        "relaxation_time_s" => DisplayUnit::SECOND,
+        "dynamic_stiffening" | "modulus_slope" => DisplayUnit::ONE,
+        "density_kg_per_m3" => DisplayUnit { symbol: "kg/m3", in_si: 1.0 },
+        _ => DisplayUnit::BAR,
+    }
+}
+
+fn rise(fit: &RiseFit) -> Vec<String> {
+    let [low, high] = fit.pressures.map(|pressure| display(pressure, &PRESSURE, 4));
+    let terms = match fit.terms() {
+        1 => "a compliance that does not change with the pressure".to_string(),
+        terms => format!("a compliance of {terms} terms in the pressure"),
+    };
+    let drift = match fit.drift {
+        Some(drift) => format!(
+            "what flows at standstill, a meter's zero error or leakage, is {}",
+            display(drift, &FLOW, 3)
+        ),
+        None => {
+            "the record has no standstill that would tell a meter's zero error or leakage: none is supposed"
+                .to_string()
+        }
+    };
+    let noise = display(fit.white_noise, &VOLUME, 2);
+    vec![
+        format!("{}: from {low} to {high}, explained by {terms}; {drift}.", fit.record.file),
+        format!("Volumes differ from the fit by {noise} from row to row."),
+    ]
+}
+
+fn response(fit: &ResponseFit) -> Vec<String> {
+    let [misfit, _] = fit.misfit;
+    let hertz = |frequency: Option<f64>| significant(DisplayUnit::HERTZ.of(frequency.unwrap_or(f64::NAN)), 4);
+    let points = &fit.member.points;
+    let [first, last] = [points.first(), points.last()].map(|point| hertz(point.map(|p| p.frequency)));
+    let mut sentences = vec![format!(
+        "{}: {} frequencies from {first} to {last} Hz; the squares of the residuals are {} times those of the noise.",
+        fit.member.file,
+        points.len(),
+        significant(misfit, 3)
+    )];
+    if !fit.is_explained() {
+        sentences.push(
+            "The declared model of the line does not explain this response: the intervals are widened by the root of that. A wall that creeps (`line.relaxation_time`) or waves (`line.model`) may be missing."
+                .to_string(),
+        );
+    }
+    sentences
+}

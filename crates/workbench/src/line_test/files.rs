@@ -1,0 +1,64 @@
+use phea_hydraulics::line::Line;
+
+use super::LineIdentification;
+use crate::answer::{OutputFile, significant};
+
+/// Digits of the numbers of a fragment.
+const DIGITS: usize = 6;
+
+/// The fragment of a project with the line as it was identified; none where nothing of it was.
+pub fn files(found: &LineIdentification) -> Vec<OutputFile> {
+    let Some(keys) = keys(found) else { return Vec::new() };
+    let head = "# The line, identified by phea from recordings with its far end blocked. Put these keys into the\n# project's own tables in place of those that are there.\n";
+    vec![OutputFile::new("line.toml", format!("{head}{keys}"))]
+}
+
+/// Tables with their keys.
+fn keys(found: &LineIdentification) -> Option<String> {
+    let number = |value: f64, unit: &str| format!("\"{} {unit}\"", significant(value, DIGITS));
+    let volume = found.known.volume();
+    let rest = found.effective_bulk_modulus.as_ref().ok().map(|number| volume / number.value);
+    let fast = found.dynamic_bulk_modulus.as_ref().ok().map(|number| volume / number.value);
+    match found.known.line {
+        Line::Volume { .. } => {
+            let modulus = volume / rest.or(fast)?;
+            let (volume, modulus) = (number(volume, "m3"), number(modulus, "Pa"));
+            Some(format!("[line]\nvolume = {volume}\neffective_bulk_modulus = {modulus}\n"))
+        }
+        Line::Pipe { pipe, .. } => {
+            let oil = 1.0 / (rest.or(fast)? / volume - pipe.wall_compliance());
+            let modulus = number(found.known.liquid_modulus(oil, found.pressure)?, "Pa");
+            Some(format!("[fluid]\nbulk_modulus = {modulus}\n"))
+        }
+        Line::Hose { hose, length } => {
+            let oil = found.known.fluid_compliance(found.pressure)?;
+            let slope = (rest.or(fast)? - oil) / length;
+            let stiffening = found.dynamic_stiffening.as_ref().ok();
+            let ratio = stiffening.map_or(1.0, |number| number.value);
+            if slope <= 0.0 {
+                return None;
+            }
+            let expansion = number(hose.operating_expansion, "m2");
+            let pressure = number(found.known.pressure, "Pa");
+            let mut keys = format!(
+                "[line]\nvolumetric_expansion = {expansion}   # as before, at the pressure below\nvolumetric_expansion_pressure = {pressure}\nvolumetric_expansion_slope = {}\n",
+                number(slope, "m2/Pa")
+            );
+            keys.push_str(&match stiffening {
+                Some(found) => {
+                    let [low, high] = found.interval.map(|end| significant(end.max(1.0), DIGITS));
+                    // an estimate below 1 is noise: the schema has no wall that softens
+                    let nominal = significant(ratio.max(1.0), DIGITS);
+                    format!(
+                        "dynamic_stiffening = {{ nominal = {nominal}, minimum = {low}, maximum = {high} }}\n"
+                    )
+                }
+                None => "dynamic_stiffening = 1                 # not determined\n".to_string(),
+            });
+            if let Ok(time) = &found.relaxation_time {
+                keys.push_str(&format!("relaxation_time = {}\n", number(time.value, "s")));
+            }
+            Some(keys)
+        }
+    }
+}
