@@ -112,9 +112,12 @@ def read_certificate(file):
     need(type(file.get("version")) is int and file["version"] == 1, "its version is unknown")
     people = ("phea", "title", "project_sha256", "settings")
     keys(file, ("format", "version", *people, "variables", "parameters", "boxes", "operations", "plant", "terms", *LAWS, "claims"),
-         ("delay", "model_degree", "sampling"), "the certificate")
+         ("recordings", "delay", "model_degree", "sampling"), "the certificate")
     need(all(type(file[key]) is str for key in people[:3]) and is_list(file["settings"], lambda x: type(x) is str),
          "its title, version, hash or settings are no text")
+    for recording in file.setdefault("recordings", []) if is_list(file.get("recordings", [])) else [None]:
+        keys(recording, ("file", "sha256"), (), "a recording")
+        need(type(recording["file"]) is str and type(recording["sha256"]) is str, "a recording is no text")
     models = "model_degree" in file
     need(not models or is_index(file["model_degree"], 9) and file["model_degree"] > 0, "`model_degree` is no number from 1 to 8")
     need(is_index(file["variables"], 13), "`variables` is no number from 0 to 12")

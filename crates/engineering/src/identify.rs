@@ -13,6 +13,7 @@ mod contents;
 mod evidence;
 mod fit;
 mod guess;
+mod in_use;
 mod intervals;
 mod joint;
 mod reading;
@@ -25,6 +26,7 @@ mod variables;
 pub use bootstrap::{Bootstrap, FEWEST_REPETITIONS};
 pub use contents::{ColumnContents, FileContents, RecordedFiles};
 pub use evidence::{DECISIVE, ExplainedBy, ModelEvidence};
+pub use in_use::{in_use, recorded_files};
 pub use joint::{COVERAGE, JointRegion, JointRegionError, SMALLEST_EFFECT, joint_region, with_valve};
 pub use reading::recordings;
 pub use recording::{RecordedSignal, Recording, SignalKind};
@@ -164,6 +166,11 @@ pub struct Identification {
 }
 
 impl Identification {
+    /// Pa, drop from supply to tank of most rows.
+    pub fn usual_drop(&self) -> f64 {
+        recording::usual_drop(&self.recordings)
+    }
+
     /// Whether no further step explains more.
     pub fn has_converged(&self) -> bool {
         self.ending == Ending::Converged

@@ -17,6 +17,9 @@ use crate::audit::{PlantNames, kind_words, names, outside};
 use crate::caveat::{Caveat, caveats};
 use crate::error::ProcedureError;
 use crate::family::family;
+use crate::family::measured::{WidestDisc, widest_disc};
+use crate::project::Project;
+use crate::quantity::significant;
 use crate::setup::Setup;
 use crate::source::Source;
 use crate::specification::{of_rounding, specifications};
@@ -115,7 +118,19 @@ pub fn robust_problem(source: &dyn Source, setup: &Setup<'_>) -> Result<RobustPr
             Some((alone, beyond)) => Some((self::family(&Setup::new(&alone)?, source)?, beyond)),
             None => None,
         },
-        caveats: caveats(setup),
+        caveats: caveats(setup).into_iter().chain(discs(setup.project, source)).collect(),
+    })
+}
+
+/// That the confidence of measured responses is not in their family.
+fn discs(project: &Project, source: &dyn Source) -> Option<Caveat> {
+    let WidestDisc { file, share, frequency } = widest_disc(project, source)?;
+    let (percent, at) = (significant(100.0 * share, 2), significant(frequency, 3));
+    Some(Caveat {
+        sentence: format!(
+            "the family is the responses as they were measured, and the 95 % discs around them (`confidence_95`) are not in it: the widest is {percent} % of its response, at {at} rad/s in {file}"
+        ),
+        unproven: false,
     })
 }
 

@@ -123,9 +123,23 @@ impl TestSignal {
     }
 }
 
+/// What of an identified valve every command takes in place of what the project declares.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum IdentifiedUse {
+    /// Nothing: the valve is as declared.
+    #[default]
+    Nothing,
+    /// Its coefficients.
+    Valve,
+    /// Its coefficients, and the family of what the recordings leave uncertain of them.
+    ValveAndUncertainty,
+}
+
 /// What a valve is identified from.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Identify {
+    /// What takes the place of what is declared.
+    pub takes: IdentifiedUse,
     /// Recorded tests, one in a file.
     pub recordings: Vec<RecordedTest>,
     /// Recordings of a blocked line, as paths relative to the project file.
@@ -156,6 +170,14 @@ pub struct RecordedColumn {
 
 impl Identify {
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let words = &[
+            ("nothing", IdentifiedUse::Nothing),
+            ("valve", IdentifiedUse::Valve),
+            ("valve_and_uncertainty", IdentifiedUse::ValveAndUncertainty),
+        ];
+        let doc =
+            "What every command takes from the recordings in place of what is declared; absent: nothing.";
+        v.choice(plain("use", doc), words, &mut self.takes, false);
         let k = plain("recording", "Recorded static tests of the servovalve, one in a file.");
         v.tables(k, &mut self.recordings, RecordedTest::visit);
         let k = plain("line", "Recordings of a line whose far end is blocked, for `--of line`.");

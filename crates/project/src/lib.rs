@@ -29,6 +29,7 @@ mod printer;
 mod published;
 mod read;
 mod reader;
+mod recorded;
 mod rewrite;
 mod scenario;
 mod schema;
@@ -71,6 +72,7 @@ pub use plant::*;
 pub use published::*;
 pub use read::sha256;
 pub use read::{keys, print, read};
+pub use recorded::*;
 pub use scenario::*;
 pub use schema::schema;
 pub use sensor::*;
@@ -173,7 +175,8 @@ pub struct Loaded {
     pub path: String,
     /// The file's bytes.
     pub bytes: Vec<u8>,
-    /// Of the file's bytes, in hexadecimal.
+    /// Of the file's bytes, in hexadecimal; with recordings in use, of those followed by the bytes
+    /// of each recording in order.
     pub sha256: String,
     /// The `path=value` texts that were applied, as given.
     pub settings: Vec<String>,
@@ -181,6 +184,19 @@ pub struct Loaded {
     pub catalogue_files: Vec<String>,
     /// Where every number that is not simply declared in the file came from, in path order.
     pub provenance: Vec<Provenance>,
+    /// The user's catalogue files and folders, as given.
+    pub catalogues: Vec<String>,
+    /// What recordings gave in place of what the project declares; absent: nothing did.
+    pub recorded: Option<FromRecordings>,
+}
+
+impl Loaded {
+    /// Every setting that makes this project of its file: those that follow from recordings, and
+    /// the user's.
+    pub fn all_settings(&self) -> Vec<String> {
+        let recorded = self.recorded.iter().flat_map(|recorded| &recorded.settings);
+        recorded.chain(&self.settings).cloned().collect()
+    }
 }
 
 /// Where a number came from.
@@ -208,6 +224,8 @@ pub enum Origin {
     },
     /// The default of the key.
     Default,
+    /// Recorded tests, by identification.
+    Recordings,
 }
 
 impl Project {

@@ -70,7 +70,20 @@ pub fn read(
     let warnings = report.diagnostics;
     let (settings, texts) = (settings.to_vec(), report.texts);
     let path = path.to_string();
-    Ok(Loaded { project, warnings, texts, path, bytes, sha256, settings, catalogue_files, provenance })
+    let catalogues = catalogues.to_vec();
+    Ok(Loaded {
+        project,
+        warnings,
+        texts,
+        path,
+        bytes,
+        sha256,
+        settings,
+        catalogue_files,
+        provenance,
+        catalogues,
+        recorded: None,
+    })
 }
 
 /// The hash by which answers name a project.

@@ -48,6 +48,7 @@ pub(super) fn project(project: &Project, reader: &mut Reader<'_>) {
     }
     if let Some(identified) = &project.identify {
         identify::identify(identified, &mut check);
+        identify::in_use(project, identified, &mut check);
     }
 }
 

@@ -7,6 +7,7 @@ mod csv;
 mod number;
 mod object;
 mod pictures;
+mod recorded;
 
 use serde::Serialize;
 
@@ -18,6 +19,7 @@ pub use phea_engineering::number_table::{NumberTable, TableFormat};
 
 pub use crate::source::OutputFile;
 pub(crate) use pictures::{part_files, picture_files};
+pub(crate) use recorded::body_in_use;
 
 use crate::project::Loaded;
 
@@ -47,6 +49,8 @@ struct Envelope<'a, Body> {
     project_sha256: &'a str,
     settings: &'a [String],
     catalogue_files: &'a [String],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    identified: Option<Object>,
     #[serde(flatten)]
     body: Body,
 }
@@ -61,6 +65,7 @@ pub fn json<Body: Serialize>(command: &'static str, loaded: &Loaded, body: Body)
         project_sha256: &loaded.sha256,
         settings: &loaded.settings,
         catalogue_files: &loaded.catalogue_files,
+        identified: loaded.recorded.as_ref().map(body_in_use),
         body,
     };
     // Every output type has string keys and finite numbers by construction, so that nothing can fail here.

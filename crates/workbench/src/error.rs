@@ -35,6 +35,14 @@ pub enum CommandError {
 }
 
 impl CommandError {
+    /// Why recordings give nothing that could take the place of what is declared.
+    pub(crate) fn of_recordings(error: IdentifyError) -> CommandError {
+        match error {
+            IdentifyError::Stopped => CommandError::Procedure(ProcedureError::Stopped),
+            error => CommandError::Identify(error),
+        }
+    }
+
     /// The findings, if files that the project names were rejected, with a place for each.
     pub fn refusal(&self) -> Option<&Refusal> {
         match self {

@@ -4,6 +4,7 @@ mod answer;
 mod document;
 mod figures;
 mod files;
+mod in_use;
 mod numbers;
 mod region;
 
@@ -14,6 +15,7 @@ pub use document::text;
 pub(crate) use document::{tell_coefficients, tell_signals};
 pub(crate) use figures::ValveFigures;
 pub use files::Read;
+pub(crate) use in_use::{heading_in_use, tell_in_use};
 pub(crate) use numbers::tell as tell_numbers;
 pub use region::FoundRegion;
 pub(crate) use region::file;

@@ -55,6 +55,7 @@ mod uncertainty_directions;
 mod valve_coverage;
 mod valve_evidence;
 mod valve_identification;
+mod valve_in_use;
 mod valve_numbers;
 mod valve_reversals;
 mod valve_tests;

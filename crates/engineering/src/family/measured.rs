@@ -83,6 +83,46 @@ fn plant(
     (findings.error_count() == before).then_some(plant)
 }
 
+/// How well the responses of a family are known, where that is worst.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct WidestDisc {
+    /// As the project names it.
+    pub(crate) file: String,
+    /// Radius of the 95 % disc over the magnitude of the response.
+    pub(crate) share: f64,
+    /// rad/s
+    pub(crate) frequency: f64,
+}
+
+/// The widest 95 % disc of the files; `None` where none states any.
+pub(crate) fn widest_disc(project: &Project, source: &dyn Source) -> Option<WidestDisc> {
+    let declared = project.family.iter().flat_map(|family| &family.measured);
+    let discs = declared.filter_map(|name| {
+        // errors of the file are those of its family
+        let mut findings = Findings::default();
+        let path = project.path_of(name);
+        let bytes = source.read(&path).ok()?;
+        let table = MeasuredTable::read(&path, bytes, &MeasurementColumns::sought(), None, &mut findings)?;
+        let columns = MeasurementColumns::find(&table, &mut findings)?;
+        let radius = columns.radius.as_ref()?;
+        let wanted: Vec<&Column> =
+            [&columns.frequency, radius].into_iter().chain(columns.command.parts()).collect();
+        let numbers = table.all_numbers(&wanted, &mut findings);
+        let [frequencies, radii, parts @ ..] = numbers.as_slice() else { return None };
+        let found = responses(&table, &columns.command, parts, &mut findings);
+        let shares = found.iter().zip(radii).zip(frequencies).map(|((response, radius), frequency)| {
+            let share = radius / portable::magnitude(*response);
+            WidestDisc { file: name.clone(), share, frequency: *frequency }
+        });
+        widest(shares)
+    });
+    widest(discs)
+}
+
+fn widest(discs: impl Iterator<Item = WidestDisc>) -> Option<WidestDisc> {
+    discs.filter(|one| !one.share.is_nan()).max_by(|one, other| one.share.total_cmp(&other.share))
+}
+
 /// Reports frequencies that are not above the greatest one before.
 fn rising(table: &MeasuredTable, column: &Column, frequencies: &[f64], findings: &mut Findings) {
     let mut greatest = 0.0;

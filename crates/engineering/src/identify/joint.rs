@@ -10,7 +10,7 @@ use crate::project::{EdgeCoefficients, NumberChanges, Project, UncertaintyDirect
 use crate::setup::Setup;
 
 /// Coefficients that the linear plant depends on: the first of all.
-const COUNT: usize = 9;
+pub(super) const COUNT: usize = 9;
 
 /// Their paths.
 const PATHS: [&str; COUNT] = [

@@ -104,7 +104,7 @@ pub fn sweep(
     };
     let mut found = Vec::new();
     for value in values(ends, count, by_ratio) {
-        let mut settings = loaded.settings.clone();
+        let mut settings = loaded.all_settings();
         settings.push(format!("{path}={value:e}"));
         let there =
             project::read(source, &loaded.path, &settings, catalogues).map_err(ProcedureError::Catalogue)?;

@@ -1,7 +1,9 @@
 //! `[family]`.
 
 use super::Check;
-use crate::{Correlation, DeclaredFamily, DeclaredSpacing, OperatingRegion, Project, Uncertain};
+use crate::{
+    Correlation, DeclaredFamily, DeclaredSpacing, IdentifiedUse, OperatingRegion, Project, Uncertain,
+};
 
 pub(super) fn family(project: &Project, check: &mut Check<'_, '_>) {
     let Some(family) = &project.family else { return };
@@ -101,7 +103,10 @@ fn operating_region(project: &Project, region: &OperatingRegion, check: &mut Che
 
 /// Parameters of the linear model that follow from what is uncertain, each with a range.
 fn replaces(project: &Project, family: &DeclaredFamily, check: &mut Check<'_, '_>) {
-    if !family.replaces.is_empty() && family.operating_region.is_none() && project.directions.is_empty() {
+    let identified = project.identify.as_ref().map(|identify| identify.takes);
+    let has_directions =
+        !project.directions.is_empty() || identified == Some(IdentifiedUse::ValveAndUncertainty);
+    if !family.replaces.is_empty() && family.operating_region.is_none() && !has_directions {
         let message = "`replaces` has nothing to compare with: no `operating_region` and no direction";
         check.error("family.replaces", message);
     }

@@ -1,7 +1,7 @@
 //! `[[identify.recording]]`.
 
 use super::Check;
-use crate::{Identify, RecordedTest, StaticTest, TestSignal};
+use crate::{IdentifiedUse, Identify, Project, RecordedTest, StaticTest, TestSignal};
 use phea_quantity::{self as quantity, RATIO};
 
 /// Files that are there twice, units that are none, and signals that a test does not have.
@@ -19,6 +19,22 @@ pub(super) fn identify(identify: &Identify, check: &mut Check<'_, '_>) {
             check.error(&format!("{path}.separator"), message);
         }
         columns(recorded, &path, check);
+    }
+}
+
+/// What is taken from recordings needs some, and a valve whose place it takes.
+pub(super) fn in_use(project: &Project, identify: &Identify, check: &mut Check<'_, '_>) {
+    let path = "identify.use";
+    if identify.takes == IdentifiedUse::Nothing || check.refused("identify.recording") {
+        return;
+    }
+    if identify.recordings.is_empty() {
+        let help = "declare each file in a table [[identify.recording]]";
+        check.error_with_help(path, "`use` takes from recordings, and there are none", help);
+    }
+    if project.actuator.is_none() && !check.has_table("valve") {
+        let message = "`use` takes the place of numbers of [valve], which this project has not";
+        check.error(path, message);
     }
 }
 

@@ -1,8 +1,9 @@
 //! Campaigns as a command: all runs with their rows stored, or one run again.
 
-use super::{CommandError, Watch};
+use super::{CommandError, Watch, with_recordings};
 use crate::answer::{Answer, TableFormat};
 use crate::campaign::{self, CampaignError, Plan, RequestedRuns, RowStore, Summary};
+use crate::identify::heading_in_use;
 use crate::project::{self, Loaded};
 use crate::setup::Setup;
 use crate::simulate::{self, simulate_into};
@@ -42,6 +43,8 @@ pub fn campaign_watched(
     (ledger, destination): (&mut dyn RowStore, Option<&dyn Destination>),
     watch: Watch<'_>,
 ) -> Result<Answer, CommandError> {
+    let identified = with_recordings(source, loaded, watch)?;
+    let loaded = identified.as_ref().unwrap_or(loaded);
     let plan = Plan::new(source, loaded, request.seed)?;
     let wanted = match request.asked {
         CampaignRuns::All(wanted) => wanted,
@@ -56,7 +59,7 @@ pub fn campaign_watched(
         false => vec![],
     };
     Ok(Answer {
-        text: campaign::text(&plan, (wanted, request.files), rows.len(), &summary),
+        text: heading_in_use(loaded) + &campaign::text(&plan, (wanted, request.files), rows.len(), &summary),
         json: campaign::json(loaded, &plan, wanted, rows.len(), &summary),
         files,
         affirmative: complete,
@@ -75,14 +78,14 @@ fn one(
 ) -> Result<Answer, CommandError> {
     let draw = plan.draw(run);
     let settings = plan.settings(&draw);
-    let all: Vec<String> = loaded.settings.iter().chain(&settings).cloned().collect();
+    let all: Vec<String> = loaded.all_settings().into_iter().chain(settings.iter().cloned()).collect();
     let mut drawn = project::read(source, &loaded.path, &all, catalogues)
         .map_err(|report| CampaignError::Settings(Box::new(report)))?;
     drawn.project.scenarios.retain(|scenario| scenario.name == plan.scenario());
     let table = destination.map(|destination| (destination, TableFormat::Csv));
     let runs = simulate_into(source, &Setup::new(&drawn.project)?, table, watch)?;
     Ok(Answer {
-        text: campaign::run_text(&draw, &settings, &drawn, &runs),
+        text: heading_in_use(loaded) + &campaign::run_text(&draw, &settings, &drawn, &runs),
         json: campaign::run_json(loaded, (plan, &draw), &settings, (&drawn, &runs)),
         files: simulate::files(&drawn, &runs),
         affirmative: runs.iter().all(|run| run.stopped().is_none()),

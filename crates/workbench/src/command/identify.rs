@@ -4,7 +4,7 @@ use crate::answer::{Answer, picture_files};
 use crate::figure::FigureError;
 use crate::identify::{
     self, IdentifyError, Known, Read, RecordedFiles, SMALLEST_EFFECT, Search, ValveFigures, identify,
-    joint_region, recordings,
+    joint_region, recorded_files, recordings,
 };
 use crate::project::{Loaded, RecordedTest};
 use crate::source::Source;
@@ -75,11 +75,7 @@ fn files(loaded: Option<&Loaded>, asked: &IdentifyRequest) -> Result<Vec<Recorde
         return Ok(asked.files.iter().map(|file| RecordedTest::of(file)).collect());
     }
     let project = loaded.map(|loaded| &loaded.project);
-    let declared = project.and_then(|project| Some((project, project.identify.as_ref()?)));
-    let files: Vec<RecordedTest> = declared.map_or(Vec::new(), |(project, identify)| {
-        let all = identify.recordings.iter();
-        all.map(|one| RecordedTest { file: project.path_of(&one.file), ..one.clone() }).collect()
-    });
+    let files = project.map(recorded_files).unwrap_or_default();
     if files.is_empty() {
         let message =
             "there is no recorded test: name files, or declare `[[identify.recording]]` in the project";

@@ -60,7 +60,7 @@ impl ValveFigures {
 fn circuits(found: &Identification) -> Vec<Figure> {
     let has = |circuit| found.recordings.iter().any(|one| one.circuit == circuit);
     let mut figures = Vec::new();
-    let supply = vec![display(found.tested.tare_reference_drop, &PRESSURE, 3)];
+    let supply = vec![display(found.usual_drop(), &PRESSURE, 3)];
     let words = |rows: [&str; 4]| rows.map(str::to_string).to_vec();
     if has(PortCircuit::Blocked) {
         let input = TestCircuitInput {

@@ -82,9 +82,12 @@ impl Read {
 
     /// A row for each column, and a sentence for what is not used and what was dealt with.
     pub(crate) fn tell(&self, out: &mut Document) {
-        let headings = ["file", "column", "holds", "from", "to", "unit", "gaps"];
-        let rows = self.contents.iter().flat_map(|file| file.columns.iter().map(|column| row(file, column)));
-        out.section("What the files hold", Table::new(headings).with(rows));
+        let mut table = Table::grouped_by("file", ["column", "holds", "from", "to", "unit", "gaps"]);
+        for file in &self.contents {
+            table.group(file.file.clone());
+            file.columns.iter().for_each(|column| table.row(row(column)));
+        }
+        out.section("What the files hold", table);
         let unused = self.contents.iter().filter(|file| !file.unused.is_empty()).map(|file| {
             let names: Vec<String> = file.unused.iter().map(|name| format!("`{name}`")).collect();
             format!("Not used of {}: {}.", file.file, names.join(", "))
@@ -108,7 +111,7 @@ fn column(column: &ColumnContents) -> ColumnBody<'_> {
     }
 }
 
-fn row(file: &FileContents, column: &ColumnContents) -> [Cell; 7] {
+fn row(column: &ColumnContents) -> [Cell; 6] {
     let unit = match column.signal {
         TestSignal::Time => DisplayUnit::SECOND,
         TestSignal::Command => DisplayUnit::VOLT,
@@ -118,7 +121,6 @@ fn row(file: &FileContents, column: &ColumnContents) -> [Cell; 7] {
     };
     let [least, greatest] = column.range.map(|value| Cell::number(unit.of(value), 4));
     [
-        Cell::from(file.file.clone()),
         Cell::Code(column.heading.clone()),
         Cell::from(column.signal.name().replace('_', " ")),
         least,

@@ -5,7 +5,6 @@ use phea_dynamics::watch::Watch;
 
 use super::chapter::Chapter;
 use super::judged::Judged;
-use crate::answer::significant;
 use crate::audit::{ProjectAudit, audit_project, frequency_number};
 use crate::derived::{replaced_sentences, replaced_table};
 use crate::document::{Cell, Document, Table};
@@ -35,7 +34,9 @@ pub(super) fn chapter(
     let areas = template_areas(source, project, &judged.problem, &own)?;
     out.heading("Templates");
     out.explanation("The area of a template is what the plants fill at one frequency, in degrees times dB: bounds leave the loop the more room, the smaller it is.");
-    out.table(Table::new(["rad/s", "over the box", "over the family", "share"]).with(areas.iter().map(area)));
+    out.table(
+        Table::new(["rad/s", "over the box", "over the family", "share, %"]).with(areas.iter().map(area)),
+    );
     if let Some(given) = &judged.given {
         let over_box = audit_project(source, &Setup::new(&boxed)?, watch)?;
         out.heading("What the family gives the given controller");
@@ -65,7 +66,7 @@ fn origin(project: &Project) -> String {
 fn area(areas: &TemplateAreas) -> [Cell; 4] {
     let TemplateAreas { frequency_rad_per_s, replaced, visited } = *areas;
     let share = match visited / replaced {
-        share if share.is_finite() => Cell::from(format!("{} %", significant(100.0 * share, 2))),
+        share if share.is_finite() => Cell::number(100.0 * share, 2),
         _ => Cell::Missing,
     };
     [

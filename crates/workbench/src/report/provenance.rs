@@ -2,6 +2,7 @@
 
 use super::chapter::Chapter;
 use crate::document::{Cell, Document, StatusMark, Table};
+use crate::identify::tell_in_use;
 use crate::project::{Load, Loaded, Origin, Project};
 
 pub(super) fn chapter(loaded: &Loaded) -> Chapter {
@@ -23,6 +24,11 @@ pub(super) fn chapter(loaded: &Loaded) -> Chapter {
             let help = warning.help.as_ref().map_or(String::new(), |help| format!(" {help}"));
             (Some(StatusMark::Note), format!("{}{help}", warning.message))
         }));
+    }
+    if let Some(recorded) = &loaded.recorded {
+        out.heading("From recordings");
+        out.explanation("These values are identified from the recordings that the project names, and take the place of the declared ones in every chapter. The SHA-256 of the project is that of its file followed by the recordings.");
+        tell_in_use(recorded, &mut out);
     }
     out.section("From the catalogue", Table::new(["value", "entry", "source"]).with(catalogue));
     if !defaults.is_empty() {

@@ -4,13 +4,12 @@ use super::chapter::Chapter;
 use crate::document::Document;
 use crate::error::CommandError;
 use crate::identify::{
-    Identification, IdentifyError, Known, Read, RecordedFiles, Search, ValveFigures, identify, recordings,
-    tell_coefficients, tell_numbers, tell_signals,
+    Identification, IdentifyError, Known, Read, RecordedFiles, Search, ValveFigures, identify,
+    recorded_files, recordings, tell_coefficients, tell_numbers, tell_signals,
 };
-use crate::project::{Loaded, RecordedTest};
+use crate::project::Loaded;
 use crate::source::Source;
 use phea_dynamics::watch::Watch;
-use phea_engineering::error::ProcedureError;
 
 /// What the recordings of the project say of its valve; nothing where it declares none.
 pub(super) fn chapter(
@@ -19,21 +18,15 @@ pub(super) fn chapter(
     watch: Watch<'_>,
 ) -> Result<Option<Chapter>, CommandError> {
     let project = &loaded.project;
-    let declared =
-        project.identify.as_ref().map(|identify| identify.recordings.as_slice()).unwrap_or_default();
-    if declared.is_empty() {
+    let files = recorded_files(project);
+    if files.is_empty() {
         return Ok(None);
     }
-    let files: Vec<RecordedTest> =
-        declared.iter().map(|one| RecordedTest { file: project.path_of(&one.file), ..one.clone() }).collect();
-    let known = Known::of(&loaded.project);
-    let refused = |error| match error {
-        IdentifyError::Stopped => CommandError::Procedure(ProcedureError::Stopped),
-        error => CommandError::Identify(error),
-    };
+    let known = Known::of(project);
     let RecordedFiles { recordings, contents, warnings } = recordings(source, &files, &known)
         .map_err(|report| CommandError::Identify(IdentifyError::Files(report)))?;
-    let found = identify(recordings, &known, Search::default(), watch).map_err(refused)?;
+    let found =
+        identify(recordings, &known, Search::default(), watch).map_err(CommandError::of_recordings)?;
     Ok(Some(Chapter::of(
         "test_bench",
         "From the test bench to the model",

@@ -6,7 +6,7 @@ use super::frequency;
 use super::metrics::metrics_row;
 use super::state_names;
 use super::{Cause, Metrics, ScenarioComparison, ScenarioRun, Window};
-use crate::answer::{self, Object};
+use crate::answer::{self, Object, body_in_use};
 use crate::project::Loaded;
 
 /// The JSON object of `simulate`.
@@ -30,6 +30,7 @@ pub(crate) fn compare_json(comparison: &ScenarioComparison<'_>) -> String {
             .with("project_sha256", loaded.sha256.as_str())
             .with("settings", loaded.settings.as_slice())
             .with("catalogue_files", loaded.catalogue_files.as_slice())
+            .maybe("identified", loaded.recorded.as_ref().map(body_in_use))
             .and(body(loaded, runs))
     });
     answer::json("compare", first, body)

@@ -42,6 +42,8 @@ pub(super) struct MeasurementColumns {
     pub(super) command: ResponseForm,
     /// Pd.
     pub(super) load_motion: Option<ResponseForm>,
+    /// Radius of the disc that holds the true response with 95 %, in the unit of the response.
+    pub(super) radius: Option<Column>,
 }
 
 impl ResponseForm {
@@ -77,8 +79,8 @@ impl MeasurementColumns {
         }
         let (columns, _) = found.filter(|_| findings.error_count() == before)?;
         let columns: [Option<Column>; 12] = columns.try_into().ok()?;
-        // how well a response is known is for its reader: the plants are the responses as they are
-        let [frequency, magnitude, phase, real, imaginary, one, two, three, four, ..] = columns;
+        // the plants are the responses as they are: how well they are known is told beside
+        let [frequency, magnitude, phase, real, imaginary, one, two, three, four, _, _, radius] = columns;
         let load = [one, two, three, four];
         let has_load = load.iter().any(Option::is_some);
         let [command, load_motion] = [[magnitude, phase, real, imaginary], load].map(ResponseForm::of);
@@ -96,7 +98,7 @@ impl MeasurementColumns {
                 ));
             }
             (Some(frequency), Some(command)) => {
-                return Some(MeasurementColumns { frequency, command, load_motion });
+                return Some(MeasurementColumns { frequency, command, load_motion, radius });
             }
         }
         None

@@ -26,6 +26,9 @@ pub(super) struct File {
     pub(super) title: String,
     pub(super) project_sha256: String,
     settings: Vec<String>,
+    /// The recordings that the plant is of, which `project_sha256` covers too.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    recordings: Vec<StatedRecording>,
     variables: usize,
     parameters: Vec<String>,
     /// For each box, for each parameter.
@@ -44,6 +47,14 @@ pub(super) struct File {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     sampling: Option<StatedSampling>,
     claims: Vec<StatedClaim>,
+}
+
+/// A recording that a value of the plant comes from.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct StatedRecording {
+    file: String,
+    sha256: String,
 }
 
 /// Low, high and the variable; a word if it varies logarithmically.
@@ -225,6 +236,11 @@ fn outside_of_strings(text: &str) -> Vec<&str> {
     out
 }
 
+fn recordings(loaded: &Loaded) -> Vec<StatedRecording> {
+    let files = loaded.recorded.iter().flat_map(|recorded| &recorded.files);
+    files.map(|one| StatedRecording { file: one.path.clone(), sha256: one.sha256.clone() }).collect()
+}
+
 impl File {
     pub(super) fn of(loaded: &Loaded, certificate: &Certificate) -> File {
         let plant = &certificate.plant;
@@ -238,6 +254,7 @@ impl File {
             title: loaded.project.title.clone(),
             project_sha256: loaded.sha256.clone(),
             settings: loaded.settings.clone(),
+            recordings: recordings(loaded),
             variables: plant.variables,
             parameters: plant.parameters.clone(),
             boxes: plant.boxes.iter().map(|one| one.iter().map(StatedSegment::from).collect()).collect(),

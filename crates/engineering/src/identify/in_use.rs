@@ -1,0 +1,209 @@
+//! The valve of a project as its recordings tell it, in place of the declared one.
+//!
+//! ```text
+//! project, recordings -> coefficients, family -> settings of the project -> the project, read again
+//! ```
+//!
+//! What was identified goes through the reader as any other number of the project does, so that
+//! every condition between values is checked, and nothing below sees two rigs.
+
+use phea_dynamics::watch::Watch;
+
+use super::joint::COUNT;
+use super::{
+    COEFFICIENT_NAMES, Identification, IdentifyError, JointRegion, Known, RecordedFiles, SMALLEST_EFFECT,
+    Search, identify, joint_region, recordings,
+};
+use crate::project::{
+    self, FromRecordings, HashedFile, IdentifiedFamily, IdentifiedNumber, IdentifiedUse, KeptNumber, Loaded,
+    Origin, Project, RecordedTest, UncertaintyDirection, sha256,
+};
+use crate::source::{Memory, Source};
+use phea_hydraulics::servovalve::LeakageModel;
+
+/// The recordings that a project declares, each with its path as a source takes it.
+pub fn recorded_files(project: &Project) -> Vec<RecordedTest> {
+    let declared = project.identify.iter().flat_map(|identify| &identify.recordings);
+    declared.map(|one| RecordedTest { file: project.path_of(&one.file), ..one.clone() }).collect()
+}
+
+/// The project with the valve that its recordings tell, where `identify.use` wants that; `None`
+/// where it does not, or where it was done already.
+///
+/// The hash is that of the bytes of the project followed by those of each recording, so that another
+/// recording is another project.
+///
+/// # Errors
+/// [`IdentifyError`] where files are refused, where the recordings do not determine a coefficient that
+/// the plant depends on, and where what they tell contradicts the project.
+pub fn in_use(
+    source: &dyn Source,
+    loaded: &Loaded,
+    watch: Watch<'_>,
+) -> Result<Option<Loaded>, IdentifyError> {
+    let takes = loaded.project.identify.as_ref().map(|identify| identify.takes).unwrap_or_default();
+    if takes == IdentifiedUse::Nothing || loaded.recorded.is_some() {
+        return Ok(None);
+    }
+    let files = recorded_files(&loaded.project);
+    let known = Known::of(&loaded.project);
+    let (held, hashes, sha256) = held(source, loaded, &files);
+    let read: &dyn Source = if hashes.len() == files.len() { &held } else { source };
+    let RecordedFiles { recordings, .. } = recordings(read, &files, &known).map_err(IdentifyError::Files)?;
+    let found = identify(recordings, &known, Search::default(), watch)?;
+    determined(&found)?;
+    let region = match takes {
+        IdentifiedUse::ValveAndUncertainty => Some(region(&found, &loaded.project)?),
+        IdentifiedUse::Valve | IdentifiedUse::Nothing => None,
+    };
+    let (numbers, kept) = numbers(&found, &loaded.project);
+    let settings = settings(&found, &numbers, region.as_ref());
+    let family = region.map(|region| IdentifiedFamily {
+        effects: region.effects,
+        left_out: region.left_out,
+        effect_left_out: region.effect_left_out,
+        deviations: region.deviations,
+    });
+    let project_sha256 = loaded.sha256.clone();
+    let recorded = FromRecordings { project_sha256, files: hashes, numbers, kept, family, settings };
+    Ok(Some(Loaded { sha256, ..read_again(source, loaded, recorded)? }))
+}
+
+/// The files in memory, so that what is hashed is what is read; the hash of each, and of all together
+/// after the project.
+fn held(source: &dyn Source, loaded: &Loaded, files: &[RecordedTest]) -> (Memory, Vec<HashedFile>, String) {
+    let mut memory = Memory::default();
+    let mut together = loaded.bytes.clone();
+    let mut hashes = Vec::new();
+    let named = loaded.project.identify.iter().flat_map(|identify| &identify.recordings);
+    for (RecordedTest { file, .. }, named) in files.iter().zip(named) {
+        // a file that cannot be read is reported by the reader of tables
+        let Ok(bytes) = source.read(file) else { continue };
+        hashes.push(HashedFile { path: named.file.clone(), sha256: sha256(&bytes) });
+        together.extend_from_slice(&bytes);
+        memory = memory.with(file, bytes);
+    }
+    (memory, hashes, sha256(&together))
+}
+
+/// A fit that did not end, or left a coefficient of the plant open, is no valve: the others were
+/// fitted together with it.
+fn determined(found: &Identification) -> Result<(), IdentifyError> {
+    let refused = |reason: String| {
+        Err(IdentifyError::Data(format!(
+            "{reason}, so that they cannot take the place of [valve]; `phea identify` tells more, and `--set identify.use=\"nothing\"` keeps the declared valve"
+        )))
+    };
+    if !found.has_converged() {
+        return refused("the recordings lead to no valve: the search did not converge".to_string());
+    }
+    let plant = COEFFICIENT_NAMES.iter().zip(found.intervals).take(COUNT);
+    let open: Vec<String> = plant
+        .filter(|((name, _), interval)| interval.is_none() || found.at_bounds.contains(name))
+        .map(|((name, _), _)| format!("`{name}`"))
+        .collect();
+    match open.as_slice() {
+        [] => Ok(()),
+        open => refused(format!("the recordings do not determine {}", open.join(", "))),
+    }
+}
+
+fn region(found: &Identification, project: &Project) -> Result<JointRegion, IdentifyError> {
+    if !project.directions.is_empty() {
+        let message = "`identify.use = \"valve_and_uncertainty\"` gives the directions of the family, and the project has tables [[uncertainty_direction]] too: remove one of the two";
+        return Err(IdentifyError::Data(message.to_string()));
+    }
+    joint_region(found, project, SMALLEST_EFFECT).map_err(|error| IdentifyError::Data(error.to_string()))
+}
+
+/// What takes the place of declared numbers, and what stays.
+fn numbers(found: &Identification, project: &Project) -> (Vec<IdentifiedNumber>, Vec<KeptNumber>) {
+    let (mut numbers, mut kept) = (Vec::new(), Vec::new());
+    let all = COEFFICIENT_NAMES.iter().zip(found.coefficients.to_array()).zip(found.intervals);
+    for (((name, unit), value), interval) in all {
+        let path = format!("valve.{name}");
+        match interval {
+            None => kept.push(KeptNumber { path, reason: "the recordings do not determine it" }),
+            Some([low, _]) if *name == "hysteresis" && low == 0.0 => {
+                kept.push(KeptNumber { path, reason: "the recordings do not tell it from zero" });
+            }
+            Some(interval) => {
+                let declared = project.number(&path);
+                numbers.push(IdentifiedNumber { path, unit, value, interval, declared });
+            }
+        }
+    }
+    (numbers, kept)
+}
+
+/// The same as `path=value`.
+fn settings(
+    found: &Identification,
+    numbers: &[IdentifiedNumber],
+    region: Option<&JointRegion>,
+) -> Vec<String> {
+    let model = match found.tested.leakage_model {
+        LeakageModel::EachEdge => "each_edge",
+        LeakageModel::OneCurve => "one_curve",
+    };
+    // edges may be declared as a list of four, inside which no name can be set
+    let tables = ["valve.flow_coefficients", "valve.leakage_coefficients"];
+    let edge = |one: &IdentifiedNumber, table: &str| {
+        let edge = one.path.strip_prefix(table)?.strip_prefix('.')?;
+        Some(format!("{edge} = {:e}", one.value))
+    };
+    let mut settings: Vec<String> = tables
+        .iter()
+        .map(|table| {
+            let edges: Vec<String> = numbers.iter().filter_map(|one| edge(one, table)).collect();
+            format!("{table}={{ {} }}", edges.join(", "))
+        })
+        .collect();
+    let others = numbers.iter().filter(|one| tables.iter().all(|table| edge(one, table).is_none()));
+    settings.extend(others.map(|one| format!("{}={:e}", one.path, one.value)));
+    settings.push(format!("valve.leakage_model={model}"));
+    settings.push(format!("valve.tare_pressure={:e}", found.tested.tare_reference_drop));
+    let directions: Vec<String> =
+        region.iter().flat_map(|region| &region.directions).map(direction).collect();
+    if !directions.is_empty() {
+        settings.push(format!("uncertainty_direction=[{}]", directions.join(", ")));
+    }
+    settings
+}
+
+/// A direction as an inline table.
+fn direction(direction: &UncertaintyDirection) -> String {
+    let UncertaintyDirection { name, deviations, points, changes } = direction;
+    let changes: Vec<String> =
+        changes.numbers.iter().map(|(path, change)| format!("\"{path}\" = {change:e}")).collect();
+    let changes = changes.join(", ");
+    format!(
+        "{{ name = \"{name}\", deviations = {deviations:e}, points = {points}, changes = {{ {changes} }} }}"
+    )
+}
+
+/// The project with what was identified; a setting of the user must not contradict it.
+fn read_again(
+    source: &dyn Source,
+    loaded: &Loaded,
+    recorded: FromRecordings,
+) -> Result<Loaded, IdentifyError> {
+    let all: Vec<String> = recorded.settings.iter().chain(&loaded.settings).cloned().collect();
+    let mut again = project::read(source, &loaded.path, &all, &loaded.catalogues)
+        .map_err(|report| IdentifyError::Files(Box::new(report)))?;
+    let other = recorded.numbers.iter().find(|one| again.project.number(&one.path) != Some(one.value));
+    if let Some(one) = other {
+        let message = format!(
+            "a setting states `{}`, which the recordings give: add `--set identify.use=\"nothing\"` to state it",
+            one.path
+        );
+        return Err(IdentifyError::Data(message));
+    }
+    for entry in &mut again.provenance {
+        if recorded.numbers.iter().any(|one| one.path == entry.path) {
+            entry.origin = Origin::Recordings;
+        }
+    }
+    let settings = loaded.settings.clone();
+    Ok(Loaded { settings, recorded: Some(recorded), ..again })
+}

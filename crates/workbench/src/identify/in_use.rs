@@ -1,0 +1,60 @@
+//! What recordings gave in place of what a project declares: for people.
+
+use super::COVERAGE;
+use crate::answer::significant;
+use crate::document::{Cell, Document, Table};
+use crate::project::{FromRecordings, IdentifiedFamily, Loaded};
+
+/// What stands before the answer of every command; nothing where recordings gave nothing.
+pub(crate) fn heading_in_use(loaded: &Loaded) -> String {
+    let Some(recorded) = &loaded.recorded else { return String::new() };
+    let mut out = Document::default();
+    out.heading("The valve as its recordings tell it");
+    tell_in_use(recorded, &mut out);
+    format!("{}\n", out.text())
+}
+
+/// The files, the numbers beside the declared ones, what stays as declared, and the family.
+pub(crate) fn tell_in_use(recorded: &FromRecordings, out: &mut Document) {
+    let files = recorded.files.iter().map(|file| format!("From {}, SHA-256 `{}`.", file.path, file.sha256));
+    out.sentences(files);
+    let headings = ["value", "from the recordings", "95 % from", "to", "declared", "unit"];
+    let rows = recorded.numbers.iter().map(|one| {
+        let [low, high] = one.interval;
+        let declared = one.declared.map_or(Cell::Missing, |value| Cell::number(value, 4));
+        [
+            Cell::Code(one.path.clone()),
+            Cell::number(one.value, 5),
+            Cell::number(low, 4),
+            Cell::number(high, 4),
+            declared,
+            Cell::Unit(one.unit),
+        ]
+    });
+    out.table(Table::new(headings).with(rows));
+    let kept = recorded.kept.iter().map(|one| format!("{} stays as declared: {}.", one.path, one.reason));
+    out.sentences(kept.chain(recorded.family.as_ref().map(family)));
+}
+
+/// What the recordings leave uncertain, in a sentence.
+fn family(family: &IdentifiedFamily) -> String {
+    let half_width = significant(family.deviations, 3);
+    let share = significant(100.0 * COVERAGE, 2);
+    let left_out = significant(100.0 * family.effect_left_out, 2);
+    let all = family.effects.len() + family.left_out;
+    let kept = match family.effects.as_slice() {
+        [] => "none of them matters, so that the valve is as identified".to_string(),
+        [first, ..] => format!(
+            "{} of them are in the family, the first of which moves K_qU and K_c by up to {} %",
+            family.effects.len(),
+            significant(100.0 * first, 2)
+        ),
+    };
+    let others = match family.left_out {
+        0 => String::new(),
+        _ => format!("; those left out move K_qU and K_c by at most {left_out} % together"),
+    };
+    format!(
+        "What the noise of the recordings leaves uncertain ({share} %) has {all} independent directions of {half_width} standard deviations to either side: {kept}{others}."
+    )
+}

@@ -1,0 +1,99 @@
+//! A project that takes its valve from its recordings: every command computes with what `identify` finds.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
+
+use phea_workbench::command::{self, Request};
+use phea_workbench::project::{self, Loaded, sha256};
+use phea_workbench::source::{Memory, Source as _};
+use serde_json::Value;
+
+const IDENTIFIED: &str = include_str!("../../../examples/ybitu/identified.toml");
+const RECORDED: [(&str, &str); 4] = [
+    ("recorded/leakage.csv", include_str!("../../../examples/ybitu/recorded/leakage.csv")),
+    ("recorded/metering.csv", include_str!("../../../examples/ybitu/recorded/metering.csv")),
+    (
+        "recorded/metering_low_flow.csv",
+        include_str!("../../../examples/ybitu/recorded/metering_low_flow.csv"),
+    ),
+    ("recorded/pressure_gain.csv", include_str!("../../../examples/ybitu/recorded/pressure_gain.csv")),
+];
+
+/// The project and as many of its recordings as this.
+fn source(text: &str, files: usize) -> Memory {
+    let all = RECORDED.iter().take(files);
+    all.fold(Memory::default().with("rig.toml", text), |source, (name, text)| source.with(name, *text))
+}
+
+fn read(source: &Memory, settings: &[&str]) -> Loaded {
+    let settings: Vec<String> = settings.iter().map(ToString::to_string).collect();
+    project::read(source, "rig.toml", &settings, &[]).unwrap_or_else(|report| panic!("{report}"))
+}
+
+fn refusal(source: &Memory, settings: &[&str]) -> String {
+    match command::answer(source, &read(source, settings), &[], &Request::Check) {
+        Ok(answer) => panic!("{}", answer.text),
+        Err(error) => error.to_string(),
+    }
+}
+
+/// What `check` computes with is the truth of the bench that made the files; the hash is that of the
+/// project followed by them.
+#[test]
+fn every_number_that_is_used_is_the_truth_of_the_bench() {
+    let source = source(IDENTIFIED, 4);
+    let loaded = read(&source, &[]);
+    let answer = command::answer(&source, &loaded, &[], &Request::Check).unwrap();
+    let json: Value = serde_json::from_str(&answer.json).unwrap();
+    // ORIGIN: examples/ybitu/bench.toml, the valve whose tests were recorded
+    let truth = [3.2e-7, 2.5e-7, 2.0e-7, 3.85e-7, 2.35e-9, 2.2e-9, 1.7e-9, 2.35e-9];
+    let values = json["identified"]["values"].as_array().unwrap();
+    assert_eq!(values.len(), 12, "{values:?}");
+    for (value, truth) in values.iter().zip(truth) {
+        let path = value["path"].as_str().unwrap();
+        // three half widths, 5.9 deviations: beyond it is one in 250 million
+        let ends = value["confidence_95"].as_array().unwrap();
+        let [low, high] = [0, 1].map(|index| ends[index].as_f64().unwrap());
+        let middle = 0.5 * (low + high);
+        assert!((truth - middle).abs() < 1.5 * (high - low), "{path}: {truth} and {low} to {high}");
+    }
+    assert!(answer.text.contains("The valve as its recordings tell it"), "{}", answer.text);
+    // cat rig.toml recorded/... | sha256sum
+    let together = RECORDED.iter().fold(IDENTIFIED.to_string(), |all, (_, text)| all + text);
+    assert_eq!(json["project_sha256"], sha256(together.as_bytes()).as_str());
+    assert_eq!(json["identified"]["project_file_sha256"], loaded.sha256.as_str());
+    let first = source.read("recorded/leakage.csv").unwrap();
+    assert_eq!(json["identified"]["files"][0]["sha256"], sha256(&first).as_str());
+}
+
+/// Without the other tests the leakage alone does not tell the flow coefficients: the command refuses.
+#[test]
+fn a_valve_that_the_recordings_do_not_determine_is_refused() {
+    let metering = "[[identify.recording]]\nfile = \"recorded/metering.csv\"";
+    let start = IDENTIFIED.split_once(metering).unwrap().0;
+    let end = IDENTIFIED.split_once("[cylinder] ").unwrap().1;
+    let alone = source(&format!("{start}[cylinder] {end}"), 1);
+    let message = refusal(&alone, &[]);
+    assert!(message.contains("do not determine `flow_coefficients.supply_to_a`"), "{message}");
+    assert!(message.contains("identify.use"), "{message}");
+}
+
+/// What contradicts the recordings, or the family that they leave, is refused; a file that is missing
+/// too.
+#[test]
+fn what_contradicts_the_recordings_is_refused() {
+    let all = source(IDENTIFIED, 4);
+    let message = refusal(&all, &["valve.leakage_shape=50"]);
+    assert!(message.contains("a setting states `valve.leakage_shape`"), "{message}");
+    assert!(refusal(&source(IDENTIFIED, 3), &[]).contains("pressure_gain.csv"));
+}
+
+/// As declared where nothing is taken: the answer is that of the project without its recordings.
+#[test]
+fn nothing_is_taken_where_nothing_is_wanted() {
+    let source = source(IDENTIFIED, 0);
+    let loaded = read(&source, &["identify.use=nothing"]);
+    let answer = command::answer(&source, &loaded, &[], &Request::Check).unwrap();
+    let json: Value = serde_json::from_str(&answer.json).unwrap();
+    assert!(json["identified"].is_null(), "{json}");
+    assert_eq!(json["project_sha256"], loaded.sha256.as_str());
+}
