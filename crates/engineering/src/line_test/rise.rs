@@ -277,7 +277,7 @@ impl RiseFit {
     /// Change of volume over change of pressure between the ends, in m3/Pa, and its standard
     /// deviation.
     pub fn secant(&self) -> [f64; 2] {
-        let odd = |term: usize| if term % 2 == 0 { 1.0 / (term + 1) as f64 } else { 0.0 };
+        let odd = |term: usize| if term.is_multiple_of(2) { 1.0 / (term + 1) as f64 } else { 0.0 };
         self.combined(|term| odd(term) / self.half())
     }
 
