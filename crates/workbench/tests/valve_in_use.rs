@@ -44,7 +44,7 @@ fn every_number_that_is_used_is_the_truth_of_the_bench() {
     let loaded = read(&source, &[]);
     let answer = command::answer(&source, &loaded, &[], &Request::Check).unwrap();
     let json: Value = serde_json::from_str(&answer.json).unwrap();
-    // ORIGIN: examples/ybitu/bench.toml, the valve whose tests were recorded
+    // ORIGIN: thesis, Table 5.1, which examples/ybitu/bench.toml has: the valve whose tests were recorded
     let truth = [3.2e-7, 2.5e-7, 2.0e-7, 3.85e-7, 2.35e-9, 2.2e-9, 1.7e-9, 2.35e-9];
     let values = json["identified"]["values"].as_array().unwrap();
     assert_eq!(values.len(), 12, "{values:?}");
@@ -65,15 +65,14 @@ fn every_number_that_is_used_is_the_truth_of_the_bench() {
     assert_eq!(json["identified"]["files"][0]["sha256"], sha256(&first).as_str());
 }
 
-/// Without the other tests the leakage alone does not tell the flow coefficients: the command refuses.
+/// Port pressures alone tell ratios of the coefficients: the command refuses and says which are open.
 #[test]
 fn a_valve_that_the_recordings_do_not_determine_is_refused() {
-    let metering = "[[identify.recording]]\nfile = \"recorded/metering.csv\"";
-    let start = IDENTIFIED.split_once(metering).unwrap().0;
-    let end = IDENTIFIED.split_once("[cylinder] ").unwrap().1;
-    let alone = source(&format!("{start}[cylinder] {end}"), 1);
-    let message = refusal(&alone, &[]);
-    assert!(message.contains("do not determine `flow_coefficients.supply_to_a`"), "{message}");
+    let [start, end] = ["[[identify.recording]]", "[cylinder] "].map(|at| IDENTIFIED.find(at).unwrap());
+    let pressures = "[[identify.recording]]\nfile = \"recorded/pressure_gain.csv\"\n\n";
+    let text = format!("{}{pressures}{}", &IDENTIFIED[..start], &IDENTIFIED[end..]);
+    let message = refusal(&source(&text, 4), &[]);
+    assert!(message.contains("cannot take the place of [valve]"), "{message}");
     assert!(message.contains("identify.use"), "{message}");
 }
 

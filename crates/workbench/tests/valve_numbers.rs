@@ -125,6 +125,7 @@ fn nulls_and_what_follows_from_them_have_intervals() {
         ("hysteresis_v", 0.128),
     ];
     const SEEDS: u32 = 8;
+    const ALL: [&str; 3] = ["leakage.csv", "metering.csv", "pressure_gain.csv"];
     let edges = equal_edges();
     let edges: Vec<&str> = edges.iter().map(String::as_str).collect();
     let model = ["valve.leakage_model=one_curve", "bench.sample_time=\"1 s\""];
@@ -132,7 +133,7 @@ fn nulls_and_what_follows_from_them_have_intervals() {
     let of = |found: &Value, name: &str| -> [f64; 2] {
         serde_json::from_value(found["confidence_95"][name].clone()).expect(name)
     };
-    let read: Vec<Value> = (1..=SEEDS).map(|seed| read_from("leakage.csv", &settings, seed)).collect();
+    let read: Vec<Value> = (1..=SEEDS).map(|seed| read_from(&ALL, &settings, seed)).collect();
     for (name, truth) in TRUTH {
         let all: Vec<[f64; 2]> = read.iter().map(|found| of(found, name)).collect();
         let held = all.iter().filter(|[low, high]| (*low..=*high).contains(&truth)).count();
@@ -145,24 +146,25 @@ fn nulls_and_what_follows_from_them_have_intervals() {
     let share = read[0]["tare_share"].as_f64().unwrap();
     assert!(low < share && share < high && high - low < 0.02 * share, "{low} {share} {high}");
     for file in ["metering.csv", "pressure_gain.csv"] {
-        let found = read_from(file, &settings, 1);
+        let found = read_from(&[file], &[&settings[..], &["bench.sample_time=\"2 s\""]].concat(), 1);
         for (name, _) in TRUTH {
             let [low, high] = of(&found, name);
             let value = found[name].as_f64().unwrap();
-            assert!(low < value && value < high && high - low < 0.05, "{file} {name}: {low} {value} {high}");
+            assert!(low < value && value < high && high - low < 0.15, "{file} {name}: {low} {value} {high}");
         }
     }
 }
 
-/// The numbers of section 5.2 from one file of the bench.
-fn read_from(file: &str, settings: &[&str], seed: u32) -> Value {
+/// The numbers of section 5.2 from some files of the bench.
+fn read_from(files: &[&str], settings: &[&str], seed: u32) -> Value {
     let seed = format!("bench.seed={seed}");
     let settings = [settings, &[&seed]].concat();
     let recorded = answer(HOSE, &settings, &[], &Request::Bench).files;
-    let recorded = recorded.into_iter().find(|one| one.name == file).unwrap();
-    let source = Memory::default().with(file, String::from_utf8(recorded.bytes).unwrap());
-    let asked =
-        IdentifyRequest { files: vec![file.to_string()], starts: Some(1), ..IdentifyRequest::default() };
+    let source = recorded.into_iter().fold(Memory::default(), |source, file| {
+        source.with(&file.name, String::from_utf8(file.bytes).unwrap())
+    });
+    let files: Vec<String> = files.iter().map(|file| (*file).to_string()).collect();
+    let asked = IdentifyRequest { files, starts: Some(1), ..IdentifyRequest::default() };
     let found = identify_watched(&source, Some(&load(HOSE, &settings, &[])), &asked, &mut |_| true).unwrap();
     let found: Value = serde_json::from_str(&found.json).unwrap();
     found["simple_calculations"].clone()

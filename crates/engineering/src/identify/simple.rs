@@ -213,6 +213,11 @@ fn crossing(recording: &Recording, rising: bool) -> Option<CurveReading> {
         direction(recording, *row) == Some(rising) && (before < 0.0) != (now < 0.0)
     });
     let at = |row: usize| recording.inputs.get(row).map(|input| input.command);
+    let crossed: Vec<usize> = crossed.collect();
+    // before its first reversal the spool does not have the memory of a full cycle
+    let first = first_reversal(recording);
+    let from = if crossed.iter().any(|row| *row >= first) { first } else { 0 };
+    let crossed = crossed.into_iter().filter(|row| *row >= from);
     let crossed: Vec<(f64, f64)> = crossed.filter_map(|row| at(row).zip(at(row - 1))).collect();
     let middle = median(crossed.iter().map(|(now, _)| *now).collect());
     // they lie apart where noise makes the pressures cross more than once
