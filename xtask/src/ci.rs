@@ -241,7 +241,7 @@ fn mutation(root: &Path) -> Outcome {
 const LONG_ROBUST_TESTS: [&str; 8] =
     ["test", "--release", "-p", "phea-qft", "--test", "all", "--", "--ignored"];
 
-/// Four hundred valves, and four hundred lines, identified from recordings of one: how often their
+/// Four hundred valves, lines and frictions, identified from recordings of one each: how often the
 /// intervals cover the truth.
 const IDENTIFIED_VALVES: [&str; 11] = [
     "test",

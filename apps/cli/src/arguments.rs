@@ -170,8 +170,8 @@ pub(crate) enum Command {
     /// Virtual tests of the servovalve, as instruments would record them: internal leakage,
     /// metering and pressure gain (ISO 10770-1)
     Bench(Common),
-    /// Coefficients of a servovalve from recorded static tests, with confidence intervals and what
-    /// the data do not tell
+    /// Coefficients of a servovalve (or frequency responses, or the friction of the cylinder) from
+    /// recorded tests, with confidence intervals and what the data do not tell
     Identify(IdentifyArguments),
     /// Everything above as one self-contained HTML page; a controller is designed where the project
     /// has a design section or gives no law
@@ -273,6 +273,8 @@ pub(crate) enum SubjectWord {
     Response,
     /// Bulk modulus, stiffening and wave speed of a line, from its pressure while its far end is blocked
     Line,
+    /// Friction of the cylinder, from runs at constant velocities and from breakaway
+    Friction,
 }
 
 /// A model of the leakage, as the project file calls it.

@@ -14,7 +14,7 @@ mod uncertainty;
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-pub use uncertainty::{Direction, Uncertainty, uncertainty};
+pub use uncertainty::{Direction, Uncertainty, uncertainty, uncertainty_by_scale};
 
 use crate::watch::Stopped;
 
@@ -298,7 +298,8 @@ fn equations(at: &Linearised, count: usize, curvature: CurvatureWeight, beyond: 
     let mut slope = DVector::zeros(count);
     for (residual, row) in at.residuals.iter().zip(at.jacobian.chunks_exact(count)) {
         let weight = weight(*residual, beyond);
-        for (i, first) in row.iter().enumerate() {
+        // most residuals of a large problem depend on few of its variables
+        for (i, first) in row.iter().enumerate().filter(|(_, first)| **first != 0.0) {
             slope[i] += weight * first * residual;
             weighted[i] += weight * first * first;
         }
@@ -306,7 +307,7 @@ fn equations(at: &Linearised, count: usize, curvature: CurvatureWeight, beyond: 
         if counts == 0.0 {
             continue;
         }
-        for (i, first) in row.iter().enumerate() {
+        for (i, first) in row.iter().enumerate().filter(|(_, first)| **first != 0.0) {
             for (j, second) in row.iter().enumerate().take(i + 1) {
                 normal[(i, j)] += counts * first * second;
             }

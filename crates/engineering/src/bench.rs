@@ -9,9 +9,11 @@
 //! compared with the hysteresis in a cycle of minutes.
 
 mod command_path;
+mod friction;
 mod instrument;
 mod reversals;
 
+pub use friction::{FrictionRow, FrictionRun, FrictionSeries, friction_runs};
 pub use reversals::ReversalReading;
 
 use phea_dynamics::random::stream;
@@ -113,6 +115,22 @@ pub enum BenchError {
     /// The tests of a line cannot be made.
     #[error("[bench.line]: {0}")]
     Line(String),
+    /// The friction has no bristles.
+    #[error(
+        "[bench.friction] needs `model = \"lugre\"` in [cylinder.friction]: no other friction breaks away"
+    )]
+    NoBristles,
+    /// A run would leave the cylinder.
+    #[error(
+        "[bench.friction]: {:.4} m at the fastest velocity are too far in a stroke of {stroke} m, from its middle",
+        travel
+    )]
+    BeyondStroke {
+        /// m, from one reversal to the next.
+        travel: f64,
+        /// m, of the cylinder.
+        stroke: f64,
+    },
     /// Stopped by the watch.
     #[error("stopped")]
     Stopped,

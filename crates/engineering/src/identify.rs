@@ -29,6 +29,7 @@ pub use evidence::{DECISIVE, ExplainedBy, ModelEvidence};
 pub use in_use::{in_use, recorded_files};
 pub use joint::{COVERAGE, JointRegion, JointRegionError, SMALLEST_EFFECT, joint_region, with_valve};
 pub use reading::recordings;
+pub(crate) use recording::median;
 pub use recording::{RecordedSignal, Recording, SignalKind};
 pub use simple::{CurveReading, SimpleCalculations};
 pub use told::Untold;

@@ -10,6 +10,7 @@
 //! files   -> identify                                         the valve that explains recorded tests
 //! files   -> response                                         frequency responses from recorded signals
 //! files   -> line_test                                        the bulk modulus of a blocked line from recordings
+//! files   -> friction                                         the friction that explains recorded runs
 //! ```
 //!
 //! Results are values; text, JSON and figures of them are made in the workbench.
@@ -23,6 +24,7 @@ pub mod derived;
 pub mod design;
 pub mod error;
 pub mod family;
+pub mod friction;
 pub mod identify;
 pub mod line_test;
 pub mod linear_loop;

@@ -4,10 +4,14 @@
 mod lugre;
 mod moving;
 mod stribeck;
+mod tested;
 
 pub use lugre::{LuGre, LuGrePassivity};
 pub use moving::{FrictionForce, MovingFriction};
 pub use stribeck::{Stribeck, StribeckShape};
+pub use tested::{
+    FRICTION_COEFFICIENTS, KnottedForce, PressedMass, SLIDING_VARIABLES, SensitiveDisplacement, SlidBlock,
+};
 
 use phea_dynamics::scalar::{Dual, Scalar};
 

@@ -3,6 +3,7 @@
 
 mod commanded;
 mod components;
+mod friction_on_test;
 mod impedance;
 mod line_models;
 mod linear_models;

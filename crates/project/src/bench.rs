@@ -1,4 +1,8 @@
-//! `[bench]`: the virtual tests of the servovalve.
+//! `[bench]`: the virtual tests of the servovalve, and of the cylinder's friction.
+
+mod friction;
+
+pub use friction::FrictionBench;
 
 mod line;
 
@@ -48,6 +52,8 @@ pub struct Bench {
     pub oil_temperature: Option<OilTemperature>,
     /// The tests of a line, where they are wanted.
     pub line: Option<LineBench>,
+    /// The runs of the cylinder for its friction, where they are wanted.
+    pub friction: Option<FrictionBench>,
     /// Pa, root mean square of the noise of every pressure.
     pub pressure_noise: f64,
     /// Pa, range of every pressure transducer, from zero.
@@ -172,6 +178,7 @@ impl Default for Bench {
             reversals: None,
             oil_temperature: None,
             line: None,
+            friction: None,
             pressure_noise: 5e3,
             pressure_range: 100e5,
             converter_bits: 16,
@@ -212,6 +219,8 @@ impl Bench {
         v.table(k, &mut self.oil_temperature, OilTemperature::visit);
         let k = plain("line", "Tests of a line whose far end is blocked.");
         v.table(k, &mut self.line, LineBench::visit);
+        let k = plain("friction", "Runs of the cylinder that its friction is identified from.");
+        v.table(k, &mut self.friction, FrictionBench::visit);
         let k = key("pressure_noise", &PRESSURE, "Root mean square of the noise of every pressure.");
         v.quantity(k.not_negative().or(5e3), &mut self.pressure_noise);
         let k = key("pressure_range", &PRESSURE, "Range of every pressure transducer, from zero.");

@@ -11,6 +11,7 @@ mod recorded;
 
 use serde::Serialize;
 
+use crate::quantity::print_bare;
 pub use crate::quantity::significant;
 pub(crate) use csv::{Csv, quoted};
 pub use number::Number;
@@ -70,4 +71,10 @@ pub fn json<Body: Serialize>(command: &'static str, loaded: &Loaded, body: Body)
     };
     // Every output type has string keys and finite numbers by construction, so that nothing can fail here.
     serde_json::to_string_pretty(&envelope).unwrap_or_else(|error| format!("{{\"error\": \"{error}\"}}"))
+}
+
+/// A number with this many significant digits as TOML writes it.
+pub(crate) fn in_toml(value: f64, digits: usize) -> String {
+    let rounded = format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value);
+    print_bare(rounded)
 }

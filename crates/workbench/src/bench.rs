@@ -2,6 +2,7 @@
 
 mod answer;
 mod document;
+mod friction;
 mod line;
 
 pub use phea_engineering::bench::*;

@@ -1,6 +1,7 @@
 //! The commands on a project: requests, and the answers that a shell prints and writes.
 
 mod campaign;
+mod friction;
 mod identify;
 mod line_test;
 mod linearize;
@@ -11,6 +12,7 @@ mod simulate;
 
 pub use crate::error::CommandError;
 pub use campaign::{CampaignRequest, CampaignRuns, campaign_watched};
+pub use friction::{FrictionRequest, friction_watched};
 pub use identify::{IdentifyRequest, identify_watched};
 pub use line_test::{LineRequest, line_watched};
 pub use phea_engineering::error::ProcedureError;
@@ -351,14 +353,14 @@ fn verify_answer(
 }
 
 fn bench_answer(loaded: &Loaded, watch: Watch<'_>) -> Result<Answer, CommandError> {
-    let runs = bench::bench(&Setup::new(&loaded.project)?, watch)?;
-    let lines = line_runs(&Setup::new(&loaded.project)?, watch)?;
-    Ok(Answer {
-        text: bench::text(loaded, &runs) + &bench::line_text(&lines),
-        json: bench::json(loaded, &runs, &lines),
-        files: bench::files(&runs).into_iter().chain(bench::line_files(&lines)).collect(),
-        affirmative: true,
-    })
+    let setup = Setup::new(&loaded.project)?;
+    let runs = bench::bench(&setup, watch)?;
+    let lines = line_runs(&setup, watch)?;
+    let of_friction = bench::friction_runs(&setup, watch)?;
+    let text = bench::text(loaded, &runs, &of_friction) + &bench::line_text(&lines);
+    let files = bench::files(&runs, &of_friction).into_iter().chain(bench::line_files(&lines)).collect();
+    let json = bench::json(loaded, &runs, &lines, &of_friction);
+    Ok(Answer { text, json, files, affirmative: true })
 }
 
 fn design_answer(

@@ -12,6 +12,7 @@ pub mod derived;
 pub mod design;
 pub mod document;
 pub(crate) mod error;
+pub mod friction;
 pub mod identify;
 pub mod line_test;
 pub mod linearize;

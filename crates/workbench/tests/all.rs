@@ -16,6 +16,8 @@ mod family_hydraulic;
 mod family_measured;
 mod feed_forward;
 mod frequency_response;
+mod friction_coverage;
+mod friction_identification;
 mod golden_ybitu;
 mod json_contract;
 mod line_coverage;

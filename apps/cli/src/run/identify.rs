@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use phea_workbench::answer::Answer;
 use phea_workbench::command::{
-    self, IdentifyError, IdentifyRequest, LeakageModel, LineRequest, ResponseRequest, ResponseSettings,
+    self, FrictionRequest, IdentifyError, IdentifyRequest, LeakageModel, LineRequest, ResponseRequest,
+    ResponseSettings,
 };
 use phea_workbench::quantity::{self, TIME};
 
@@ -52,6 +53,10 @@ pub(super) fn answered(recorded: &IdentifyArguments) -> Result<(Answer, Vec<Path
             let figures = recorded.out.is_some();
             let asked = LineRequest { files: asked.files, side: None, settings, figures };
             command::line_watched(&FileSystem, loaded.as_ref(), &asked, watch)
+        }
+        SubjectWord::Friction => {
+            let asked = FrictionRequest { files: asked.files, figures: recorded.out.is_some() };
+            command::friction_watched(&FileSystem, loaded.as_ref(), &asked, watch)
         }
     };
     line.clear();

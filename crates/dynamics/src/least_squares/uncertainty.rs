@@ -79,9 +79,40 @@ pub fn uncertainty(at: &Linearised, groups: &[usize], count: usize, robust_beyon
     sandwich(information, &(scatter * freedom))
 }
 
+/// Efficiency of the loss with the usual bend where the noise is normal (Huber 1981).
+const EFFICIENCY: f64 = 0.95;
+
+/// Covariance of the variables at a minimum where the residuals are known to be independent, normal
+/// and of standard deviation one, by the information in all of them.
+///
+/// ```text
+/// cov = (sum j j')^-1/0.95
+/// ```
+///
+/// A residual on which a variable of its own depends shows no noise: [`uncertainty`], which takes the
+/// noise from the residuals, would count it as exact. 0.95 is the efficiency of the usual robust
+/// loss.
+///
+/// # Example
+/// ```
+/// use phea_dynamics::least_squares::{Linearised, uncertainty_by_scale};
+/// let found = Linearised { residuals: vec![0.0; 100], jacobian: vec![1.0; 100] };
+/// let told = uncertainty_by_scale(&found, 1);
+/// assert!((told.deviations[0] - 0.1 / 0.95_f64.sqrt()).abs() < 1e-12);
+/// ```
+pub fn uncertainty_by_scale(at: &Linearised, count: usize) -> Uncertainty {
+    let mut information = DMatrix::<f64>::zeros(count, count);
+    for row in at.jacobian.chunks_exact(count) {
+        add_square(&mut information, row);
+    }
+    information.fill_upper_triangle_with_lower_triangle();
+    let scatter = &information / EFFICIENCY;
+    sandwich(information, &scatter)
+}
+
 /// Adds the lower triangle of a row's product with itself.
 fn add_square(matrix: &mut DMatrix<f64>, row: &[f64]) {
-    for (i, first) in row.iter().enumerate() {
+    for (i, first) in row.iter().enumerate().filter(|(_, first)| **first != 0.0) {
         for (j, second) in row.iter().enumerate().take(i + 1) {
             matrix[(i, j)] += first * second;
         }

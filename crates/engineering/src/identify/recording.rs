@@ -150,7 +150,7 @@ pub(super) fn usual_drop(recordings: &[Recording]) -> f64 {
 }
 
 /// Middle of some numbers; NaN of none.
-pub(super) fn median(mut values: Vec<f64>) -> f64 {
+pub(crate) fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
 }

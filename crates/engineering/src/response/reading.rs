@@ -79,7 +79,7 @@ fn pair(file: &str, bytes: Vec<u8>, findings: &mut Findings) -> Option<SampledPa
         return None;
     }
     let [times, inputs, outputs] = <[Vec<f64>; 3]>::try_from(numbers).ok()?;
-    let time_step = time_step(&table, &time, &times, findings)?;
+    let time_step = time_step(&table, &time, &times, "a frequency response", findings)?;
     let of = |index: usize| MEASURANDS.get(index).map_or(("", ""), |(one, unit)| (one.name, *unit));
     let named = [of(input), of(output)];
     table.close(findings);
@@ -94,16 +94,17 @@ fn pair(file: &str, bytes: Vec<u8>, findings: &mut Findings) -> Option<SampledPa
 }
 
 /// The time between rows, in s; rows that are early or late by more than [`UNEVEN`] of it are
-/// refused: a transform takes the samples as evenly spaced.
+/// refused: what is calculated takes the samples as evenly spaced. `purpose` says what that is.
 pub fn time_step(
     table: &MeasuredTable,
     column: &Column,
     times: &[f64],
+    purpose: &str,
     findings: &mut Findings,
 ) -> Option<f64> {
     let place = table.header_place();
     if times.len() < FEWEST_ROWS {
-        let message = format!("{} rows are too few for a frequency response", times.len());
+        let message = format!("{} rows are too few for {purpose}", times.len());
         findings.push(RawFinding::error(place, message).expected(format!("at least {FEWEST_ROWS} rows")));
         return None;
     }

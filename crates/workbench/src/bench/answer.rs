@@ -2,8 +2,9 @@ use std::io;
 
 use serde::Serialize;
 
+use super::friction::{self, FrictionRunAnswer};
 use super::line::line_test;
-use super::{BenchRow, BenchRun, ReversalReading};
+use super::{BenchRow, BenchRun, FrictionRun, ReversalReading};
 use crate::answer::{self, Json, NumberTable, OutputFile, TableFormat};
 use crate::line_test::LineRun;
 use crate::project::Loaded;
@@ -14,6 +15,8 @@ struct BenchAnswer {
     tests: Vec<BenchTestAnswer>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     line_tests: Vec<Json>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    friction_runs: Vec<FrictionRunAnswer>,
 }
 
 #[derive(Serialize)]
@@ -110,7 +113,7 @@ fn file_name(run: &BenchRun) -> String {
 }
 
 /// The JSON object of `bench`.
-pub fn json(loaded: &Loaded, runs: &[BenchRun], lines: &[LineRun]) -> String {
+pub fn json(loaded: &Loaded, runs: &[BenchRun], lines: &[LineRun], of_friction: &[FrictionRun]) -> String {
     let test = |run: &BenchRun| BenchTestAnswer {
         name: run.series.name(),
         file: file_name(run),
@@ -129,15 +132,15 @@ pub fn json(loaded: &Loaded, runs: &[BenchRun], lines: &[LineRun]) -> String {
     };
     let tests = runs.iter().map(test).collect();
     let line_tests = lines.iter().map(|run| Json::from(line_test(run))).collect();
-    answer::json("bench", loaded, BenchAnswer { tests, line_tests })
+    let friction_runs = friction::answers(of_friction);
+    answer::json("bench", loaded, BenchAnswer { tests, line_tests, friction_runs })
 }
 
 /// The tables, a file for each test.
-pub fn files(runs: &[BenchRun]) -> Vec<OutputFile> {
+pub fn files(runs: &[BenchRun], of_friction: &[FrictionRun]) -> Vec<OutputFile> {
     // nothing that is written to memory can fail
-    runs.iter()
-        .map(|run| OutputFile { name: file_name(run), bytes: table(run).unwrap_or_default() })
-        .collect()
+    let file = |run: &BenchRun| OutputFile { name: file_name(run), bytes: table(run).unwrap_or_default() };
+    runs.iter().map(file).chain(friction::files(of_friction)).collect()
 }
 
 fn table(run: &BenchRun) -> io::Result<Vec<u8>> {

@@ -1,14 +1,14 @@
-//! The static tests of a valve for people.
+//! The tests of the bench for people.
 
 use super::answer::{range, signals};
-use super::{BenchRun, BenchSeries, ReversalReading};
+use super::{BenchRun, BenchSeries, FrictionRun, ReversalReading, friction};
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
 use crate::project::Loaded;
 use crate::quantity::{PRESSURE, TIME, display};
 
 /// A table for each test.
-pub fn text(loaded: &Loaded, runs: &[BenchRun]) -> String {
+pub fn text(loaded: &Loaded, runs: &[BenchRun], of_friction: &[FrictionRun]) -> String {
     let mut out = Document::default();
     for run in runs {
         let rows = signals(run).into_iter().map(|signal| {
@@ -28,6 +28,7 @@ pub fn text(loaded: &Loaded, runs: &[BenchRun]) -> String {
             out.sentences(reversals(run.reversals.as_ref()));
         }
     }
+    friction::tell(of_friction, &mut out);
     out.text()
 }
 

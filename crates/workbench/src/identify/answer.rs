@@ -7,9 +7,8 @@ use super::files::{TestBody, WarningBody};
 use super::numbers;
 use super::region::{FoundRegion, RegionBody, body};
 use super::{Bootstrap, COEFFICIENT_NAMES, ExplainedBy, Identification, Read, Untold};
-use crate::answer::{self, Number, OutputFile};
+use crate::answer::{self, Number, OutputFile, in_toml};
 use crate::project::Loaded;
-use crate::quantity::print_bare;
 
 #[derive(Serialize)]
 struct IdentifyAnswer<'a> {
@@ -283,10 +282,4 @@ pub fn files(found: &Identification) -> Vec<OutputFile> {
         lines(4..8),
     );
     vec![OutputFile { name: "valve.toml".to_string(), bytes: text.into_bytes() }]
-}
-
-/// A number with this many significant digits as TOML writes it.
-fn in_toml(value: f64, digits: usize) -> String {
-    let rounded = format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value);
-    print_bare(rounded)
 }

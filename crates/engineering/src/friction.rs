@@ -1,0 +1,152 @@
+//! The friction of a cylinder from recorded runs.
+//!
+//! ```text
+//! files -> FrictionRecording -> constant velocities | pressed rows -> first guess -> least squares over all of them -> coefficients, intervals, what is open
+//! ```
+//!
+//! The model is [`LuGre`]: while the piston slides at a constant velocity, its equation has a
+//! solution in closed form, and the force is explained for the recorded velocity; while it is
+//! pressed and has not broken away, the mass on its bristles is simulated, and the position is
+//! explained for the recorded force, whose noise is explained with it. One set of coefficients
+//! explains all.
+
+mod guess;
+mod motion;
+mod pressing;
+mod problem;
+mod reading;
+mod shown;
+mod told;
+
+pub use motion::ConstantVelocity;
+pub use pressing::PressedRows;
+pub use reading::{FrictionRecording, KnownCylinder, friction_recordings};
+pub use shown::{PressedCurve, SteadyPoint};
+pub use told::{FrictionEstimate, UntoldFriction};
+
+use phea_dynamics::least_squares::Ending;
+use phea_dynamics::watch::Watch;
+use phea_hydraulics::friction::{FRICTION_COEFFICIENTS, LuGre};
+
+use self::problem::FrictionProblem;
+use crate::identify::IdentifyError;
+
+/// Names of the coefficients as `[cylinder.friction]` has them, and their units.
+pub const FRICTION_NAMES: [(&str, &str); FRICTION_COEFFICIENTS] = [
+    ("coulomb", "N"),
+    ("static", "N"),
+    ("stribeck_velocity", "m/s"),
+    ("stribeck_exponent", "1"),
+    ("viscous", "N.s/m"),
+    ("bristle_stiffness", "N/m"),
+    ("bristle_damping", "N.s/m"),
+];
+
+/// The friction that explains the recordings best.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FrictionIdentification {
+    /// What was recorded.
+    pub recordings: Vec<FrictionRecording>,
+    /// Where it slides at a constant velocity, in the order of the recordings.
+    pub slides: Vec<ConstantVelocity>,
+    /// Where it is pressed and does not slide.
+    pub presses: Vec<PressedRows>,
+    /// Each coefficient, in the order of [`FRICTION_NAMES`].
+    pub estimates: [FrictionEstimate; FRICTION_COEFFICIENTS],
+    /// The friction of the minimum, with numbers for what is open.
+    pub lugre: LuGre,
+    /// N, that the instruments show without friction; `None` where the recordings go one way.
+    pub zero: Option<FrictionEstimate>,
+    /// N, root mean square of what is left of the force, each block as one row; and m of the position
+    /// of what was pressed.
+    pub residual_rms: [Option<f64>; 2],
+    /// Share of the residuals that are independent, the least of all signals.
+    pub independent: f64,
+    /// kg.
+    pub moving_mass: f64,
+    /// How the search ended.
+    pub ending: Ending,
+    /// For each press, the force at its knots in N, and where the position began in m.
+    pressed: Vec<(Vec<f64>, f64)>,
+}
+
+impl FrictionIdentification {
+    /// Whether no further step explains more.
+    pub fn has_converged(&self) -> bool {
+        self.ending == Ending::Converged
+    }
+}
+
+/// Rounds in which the scale of each signal is computed from its residuals.
+const ROUNDS: usize = 3;
+
+/// Relative decrease of the sum at which an intermediate search ends.
+const ROUGH: f64 = 1e-4;
+
+/// The same of the last one: a thousandth of what one standard deviation changes.
+const FINE: f64 = 1e-7;
+
+/// Relative change of the scales below which no further round is made.
+const SAME_SCALE: f64 = 1e-2;
+
+/// Finds the friction that explains all recordings at once.
+///
+/// # Errors
+/// [`IdentifyError`] where nothing in the recordings is of a constant velocity and nothing is pressed
+/// from rest, and when it is stopped.
+pub fn identify_friction(
+    recordings: Vec<FrictionRecording>,
+    known: &KnownCylinder,
+    watch: Watch<'_>,
+) -> Result<FrictionIdentification, IdentifyError> {
+    let all = recordings.iter().enumerate();
+    let slides: Vec<ConstantVelocity> =
+        all.flat_map(|(index, recording)| motion::constant_velocities(recording, index)).collect();
+    let guess::Guess { around, presses } = guess::guess(&recordings, &slides, known.moving_mass)
+        .ok_or_else(|| IdentifyError::Data(NOTHING.to_string()))?;
+    let finds_zero = goes_both_ways(&slides, &presses);
+    let setting = (known.moving_mass, around);
+    let mut problem = FrictionProblem::new(&recordings, &slides, &presses, setting, finds_zero);
+    let mut minimum = problem.searched(&problem.start(), ROUGH, watch)?;
+    for _ in 0..ROUNDS {
+        let change = problem.rescale(&minimum.linearised.residuals);
+        minimum = problem.searched(&minimum.variables, ROUGH, watch)?;
+        if change < SAME_SCALE {
+            break;
+        }
+    }
+    minimum = problem.searched(&minimum.variables, FINE, watch)?;
+    if minimum.ending == Ending::NoStart || minimum.linearised.residuals.len() <= problem.count() {
+        return Err(IdentifyError::Data("the recordings have too few rows to fit a friction".to_string()));
+    }
+    let (lugre, _) = problem.friction(&minimum.variables);
+    let (estimates, zero) = told::estimates(&problem, &minimum);
+    let residual_rms = shown::residual_rms(&problem, &minimum);
+    let independent = problem.channels.iter().map(|channel| channel.independent).fold(1.0, f64::min);
+    let pressed = shown::pressed(&problem, &minimum);
+    let ending = minimum.ending;
+    Ok(FrictionIdentification {
+        estimates,
+        lugre,
+        zero,
+        residual_rms,
+        independent,
+        moving_mass: known.moving_mass,
+        ending,
+        pressed,
+        slides,
+        presses,
+        recordings,
+    })
+}
+
+const NOTHING: &str = "nothing is recorded that tells a friction: neither a constant velocity for 20 rows or more, nor a force that presses the piston from rest while its position is recorded";
+
+/// Whether friction acts both ways, so that it differs from a force that is always there.
+fn goes_both_ways(slides: &[ConstantVelocity], presses: &[PressedRows]) -> bool {
+    let ways: Vec<f64> = match slides {
+        [] => presses.iter().filter(|press| press.breaks_away).map(PressedRows::way).collect(),
+        slides => slides.iter().map(|slide| slide.velocity).collect(),
+    };
+    ways.iter().any(|way| *way > 0.0) && ways.iter().any(|way| *way < 0.0)
+}

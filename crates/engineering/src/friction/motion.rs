@@ -1,0 +1,227 @@
+//! Where a recorded run slides at a constant velocity.
+
+use std::ops::Range;
+
+use phea_hydraulics::friction::SlidBlock;
+
+use super::FrictionRecording;
+use crate::identify::median;
+
+/// Rows over which the piston slides at a constant velocity.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConstantVelocity {
+    /// Index of the recording.
+    pub recording: usize,
+    /// Rows that are used; those at both ends are left out.
+    pub rows: Range<usize>,
+    /// m/s, the slope of the line through the positions.
+    pub velocity: f64,
+    /// Blocks of rows, one after the other.
+    pub(super) blocks: Vec<ForceBlock>,
+}
+
+/// Neighbouring rows taken together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct ForceBlock {
+    pub(super) slid: SlidBlock,
+    /// N, mean of the rows.
+    pub(super) force: f64,
+    pub(super) rows: usize,
+}
+
+/// Fewest rows of a constant velocity.
+const FEWEST_ROWS: usize = 20;
+
+/// Most blocks of one.
+const BLOCKS: usize = 40;
+
+/// Share of the rows that is left out at either end, where the velocity may still change.
+const ENDS: f64 = 0.05;
+
+/// Share by which a constant velocity may change from its beginning to its end.
+const CHANGE: f64 = 0.02;
+
+/// The same, with twice its standard deviation.
+const CERTAIN_CHANGE: f64 = 0.05;
+
+/// Share by which the force may still change in the second half.
+const SETTLED: f64 = 0.05;
+
+/// Sum of the residuals of a line, over noise and the root of their number, beyond which it is none.
+/// The largest of white noise exceeds 0.9 in one case of twenty: a bend too many does no harm.
+const BENT: f64 = 1.0;
+
+/// Standard deviation of white noise on a smooth signal, from its third differences (their variance
+/// is 20 times that of the noise), by their median; at least what numbers resolve.
+pub(super) fn noise(values: &[f64]) -> f64 {
+    let third = values.windows(4).filter_map(|four| match four {
+        [a, b, c, d] => Some((d - 3.0 * c + 3.0 * b - a).abs()),
+        _ => None,
+    });
+    let differences: Vec<f64> = third.collect();
+    let largest = values.iter().map(|value| value.abs()).fold(0.0, f64::max);
+    let floor = 1e-12 * largest;
+    if differences.is_empty() { floor } else { (1.4826 * median(differences) / 20.0_f64.sqrt()).max(floor) }
+}
+
+/// The straight line through the values of some rows.
+#[derive(Clone, Copy, Debug)]
+struct RowLine {
+    middle: f64,
+    mean: f64,
+    /// For each row.
+    slope: f64,
+}
+
+impl RowLine {
+    fn through(values: &[f64], rows: &Range<usize>) -> RowLine {
+        let own = values.get(rows.clone()).unwrap_or_default();
+        let count = own.len().max(1) as f64;
+        let middle = rows.start as f64 + (count - 1.0) / 2.0;
+        let mean = own.iter().sum::<f64>() / count;
+        let square = count * (count * count - 1.0) / 12.0;
+        let from_middle = |row: usize| (rows.start + row) as f64 - middle;
+        let product: f64 = own.iter().enumerate().map(|(row, value)| from_middle(row) * (value - mean)).sum();
+        RowLine { middle, mean, slope: if square > 0.0 { product / square } else { 0.0 } }
+    }
+
+    fn at(&self, row: usize) -> f64 {
+        self.mean + self.slope * (row as f64 - self.middle)
+    }
+}
+
+/// Rows in pieces over each of which the values are straight, within noise or within a share of what
+/// they change by.
+fn straight_pieces(values: &[f64], noise: f64, share: f64) -> Vec<Range<usize>> {
+    let mut found = Vec::new();
+    let mut open = vec![Range { start: 0, end: values.len() }];
+    while let Some(rows) = open.pop() {
+        match bend(values, &rows, noise, share) {
+            Some(at) => {
+                open.push(at..rows.end);
+                open.push(rows.start..at);
+            }
+            None => found.push(rows),
+        }
+    }
+    joined(found, |rows| bend(values, rows, noise, share).is_none())
+}
+
+/// Neighbouring pieces joined where they are one: a search may have split one beside a jump.
+fn joined(pieces: Vec<Range<usize>>, is_straight: impl Fn(&Range<usize>) -> bool) -> Vec<Range<usize>> {
+    let mut found: Vec<Range<usize>> = Vec::with_capacity(pieces.len());
+    for piece in pieces {
+        let mut piece = piece;
+        while let Some(before) = found.pop() {
+            let both = before.start..piece.end;
+            if !is_straight(&both) {
+                found.push(before);
+                break;
+            }
+            piece = both;
+        }
+        found.push(piece);
+    }
+    found
+}
+
+/// Where these rows are bent most, if they are.
+fn bend(values: &[f64], rows: &Range<usize>, noise: f64, share: f64) -> Option<usize> {
+    const SHORTEST: usize = 3;
+    let count = rows.len();
+    if count < 2 * SHORTEST {
+        return None;
+    }
+    let line = RowLine::through(values, rows);
+    let own = values.get(rows.clone())?;
+    let residuals: Vec<f64> =
+        own.iter().enumerate().map(|(row, value)| value - line.at(rows.start + row)).collect();
+    let mut sum = 0.0;
+    let sums = residuals.iter().map(|residual| {
+        sum += residual;
+        sum
+    });
+    let largest = sums.map(f64::abs).fold(0.0, f64::max);
+    let single = residuals.iter().map(|residual| residual.abs()).fold(0.0, f64::max);
+    let root = (count as f64).sqrt();
+    if largest <= BENT * noise * root && single <= 6.0 * noise {
+        return None;
+    }
+    let width = (count / 16).max(1);
+    let mean = |(start, window): (usize, &[f64])| {
+        (start + width / 2, (window.iter().sum::<f64>() / width as f64).abs())
+    };
+    let means = residuals.windows(width).enumerate().map(mean);
+    let (at, most) = means.fold((0, 0.0), |best, one| if one.1 > best.1 { one } else { best });
+    let allowed = share / 12.0 * (line.slope * count as f64).abs();
+    (most > allowed).then(|| rows.start + at.clamp(SHORTEST, count - SHORTEST))
+}
+
+/// The constant velocities of a recording.
+pub(super) fn constant_velocities(recording: &FrictionRecording, index: usize) -> Vec<ConstantVelocity> {
+    let positions = &recording.positions;
+    let [position_noise, force_noise] = [positions, &recording.forces].map(|values| noise(values));
+    let pieces = straight_pieces(positions, position_noise, CHANGE);
+    let kept = pieces.into_iter().filter_map(|piece| {
+        let margin = ((piece.len() as f64 * ENDS).ceil() as usize).max(1);
+        let rows = piece.start + margin..piece.end.saturating_sub(margin);
+        let is_one = rows.len() >= FEWEST_ROWS
+            && is_constant(positions, &rows, position_noise)
+            && is_settled(&recording.forces, &rows, force_noise);
+        is_one.then(|| taken(recording, index, rows))
+    });
+    kept.collect()
+}
+
+/// Whether the piston certainly moves, and certainly at one velocity.
+fn is_constant(positions: &[f64], rows: &Range<usize>, noise: f64) -> bool {
+    let count = rows.len() as f64;
+    let line = RowLine::through(positions, rows);
+    // of the second-order Legendre polynomial, whose ends differ in slope by 12/count of its size
+    let middle = rows.start as f64 + (count - 1.0) / 2.0;
+    let second = |row: usize| {
+        let x = 2.0 * (row as f64 - middle) / count;
+        (3.0 * x * x - 1.0) / 2.0
+    };
+    let own = positions.get(rows.clone()).unwrap_or_default().iter().enumerate();
+    let product: f64 =
+        own.map(|(row, value)| second(rows.start + row) * (value - line.at(rows.start + row))).sum();
+    let size = product * 5.0 / count;
+    let deviation = noise * (5.0 / count).sqrt();
+    let change = 12.0 / count * (size.abs() + 2.0 * deviation);
+    change <= CERTAIN_CHANGE * line.slope.abs() && line.slope.abs() * count > 20.0 * noise
+}
+
+/// Whether the force no longer changes: while a seal is only deformed, it does.
+fn is_settled(forces: &[f64], rows: &Range<usize>, noise: f64) -> bool {
+    let quarter = rows.len() / 4;
+    let mean = |start: usize| {
+        let own = forces.get(start..start + quarter).unwrap_or_default();
+        own.iter().sum::<f64>() / quarter as f64
+    };
+    let [second, last] = [rows.start + quarter, rows.end - quarter].map(mean);
+    let by_noise = 6.0 * noise * (2.0 / quarter as f64).sqrt();
+    (last - second).abs() <= by_noise.max(SETTLED * last.abs())
+}
+
+fn taken(recording: &FrictionRecording, index: usize, rows: Range<usize>) -> ConstantVelocity {
+    let velocity = RowLine::through(&recording.positions, &rows).slope / recording.time_step;
+    let each = (velocity * recording.time_step).abs();
+    let width = rows.len().div_ceil(BLOCKS);
+    let own = recording.forces.get(rows.clone()).unwrap_or_default();
+    let block = |(number, forces): (usize, &[f64])| {
+        let count = forces.len() as f64;
+        let before = (number * width) as f64;
+        ForceBlock {
+            slid: SlidBlock {
+                velocity,
+                distance: (before + (count - 1.0) / 2.0) * each,
+                half_length: count / 2.0 * each,
+            },
+            force: forces.iter().sum::<f64>() / count,
+            rows: forces.len(),
+        }
+    };
+    let blocks = own.chunks(width).enumerate().map(block).collect();
+    ConstantVelocity { recording: index, rows, velocity, blocks }
+}

@@ -1,0 +1,187 @@
+//! The part of a recorded run in which the piston is pressed and has not yet broken away.
+
+use nalgebra::{DMatrix, DVector};
+use phea_dynamics::portable;
+use phea_hydraulics::friction::KnottedForce;
+
+use super::FrictionRecording;
+use super::motion::noise;
+
+/// The rows of a recording before the piston breaks away.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PressedRows {
+    /// Index of the recording.
+    pub recording: usize,
+    /// How many rows, from the first.
+    pub rows: usize,
+    /// Whether the piston breaks away then.
+    pub breaks_away: bool,
+    /// Whether the force changes within a few rows.
+    pub has_quick_force: bool,
+    /// The force as it is guessed, with a knot wherever it bends.
+    pub(super) force: KnottedForce,
+    /// N and m, noise of both signals.
+    pub(super) noise: [f64; 2],
+}
+
+/// Fewest rows that say anything.
+const FEWEST_ROWS: usize = 20;
+
+/// Rows that are taken as the beginning.
+const FIRST_ROWS: usize = 10;
+
+/// Displacement, over that of the bristles at breakaway, up to which the rows are explained: a slow
+/// force reaches 86 % of the static friction there. What comes later depends on the noise of the
+/// force more than on anything else.
+const EXPLAINED: f64 = 2.0;
+
+/// The same at which the piston has broken away.
+const BROKEN_AWAY: f64 = 8.0;
+
+/// Fewest rows from knot to knot, where the force is not bent.
+const SPACING: usize = 20;
+
+/// Most pieces of a force that is not bent.
+const PIECES: usize = 20;
+
+/// Knots beyond which no further ones are sought.
+const MOST_KNOTS: usize = 120;
+
+/// How often further knots are sought.
+const REFINEMENTS: usize = 40;
+
+/// Part of the static friction up to which the compliance is read.
+const ELASTIC: f64 = 0.5;
+
+/// Where a recording begins: mean position in m and force in N.
+fn beginning(recording: &FrictionRecording) -> [f64; 2] {
+    [&recording.positions, &recording.forces].map(|values| {
+        let first = values.get(..FIRST_ROWS.min(values.len())).unwrap_or_default();
+        first.iter().sum::<f64>() / first.len().max(1) as f64
+    })
+}
+
+/// Compliance of the bristles in m/N, from rest to a part of the static friction; at least what noise
+/// lets see. The force without its noise, which would make the slope less.
+///
+/// ```text
+/// x = -(F_S/sigma_0) ln(1 - F/F_S)                    LuGre friction under a force that rises slowly
+/// ```
+pub(super) fn compliance(recording: &FrictionRecording, static_friction: f64) -> f64 {
+    let position_noise = noise(&recording.positions);
+    let smooth = knotted(&recording.forces, noise(&recording.forces));
+    let knot = |index: usize| smooth.forces.get(index).copied().unwrap_or(0.0);
+    let shares = smooth.shares().into_iter();
+    let forces = shares.map(|(before, share)| knot(before) * (1.0 - share) + knot(before + 1) * share);
+    let [position, _] = beginning(recording);
+    let force = knot(0);
+    let both = recording.positions.iter().zip(forces);
+    let near = both.take_while(|(_, now)| (now - force).abs() <= ELASTIC * static_friction);
+    let (mut product, mut square, mut rows) = (0.0, 0.0, 0.0);
+    for (at, now) in near {
+        let share = (now - force) / static_friction;
+        let slipping = -static_friction * share.signum() * portable::log1p(-share.abs());
+        product += (at - position) * slipping;
+        square += slipping * slipping;
+        rows += 1.0;
+    }
+    let seen = position_noise / (static_friction * f64::sqrt(rows + 1.0));
+    if square > 0.0 { (product / square).max(seen) } else { seen }
+}
+
+/// What was recorded until the piston breaks away; `None` of too few rows.
+pub(super) fn pressed_rows(
+    recording: &FrictionRecording,
+    index: usize,
+    broken_by: f64,
+) -> Option<PressedRows> {
+    let noise = [&recording.forces, &recording.positions].map(|values| noise(values));
+    let [start, _] = beginning(recording);
+    let is_beyond = |length: f64| {
+        let limit = length * broken_by + 6.0 * noise[1];
+        recording.positions.iter().position(|position| (position - start).abs() > limit)
+    };
+    let rows = is_beyond(EXPLAINED).unwrap_or(recording.positions.len());
+    let forces = recording.forces.get(..rows)?;
+    let force = knotted(forces, noise[0]);
+    (rows >= FEWEST_ROWS).then(|| PressedRows {
+        recording: index,
+        rows,
+        has_quick_force: force.knots.windows(2).take(force.knots.len().saturating_sub(2)).any(is_quick),
+        breaks_away: is_beyond(BROKEN_AWAY).is_some(),
+        force,
+        noise,
+    })
+}
+
+/// A force that is straight between its knots, as close to the rows as their noise: knots at equal
+/// distances, and at each row where the force is bent more sharply.
+fn knotted(forces: &[f64], noise: f64) -> KnottedForce {
+    let last = forces.len().saturating_sub(1);
+    let spacing = (forces.len() / PIECES).max(SPACING);
+    let mut knots: Vec<usize> = (0..last).step_by(spacing).chain([last]).collect();
+    for _ in 0..REFINEMENTS {
+        let found = through(knots, forces);
+        let sharp = sharpest(&residuals(&found, forces), noise);
+        let before = found.knots.len();
+        if sharp.is_empty() || before > MOST_KNOTS {
+            return found;
+        }
+        knots = found.knots;
+        knots.extend(sharp);
+        knots.sort_unstable();
+        knots.dedup();
+        if knots.len() == before {
+            break;
+        }
+    }
+    through(knots, forces)
+}
+
+/// Whether two knots are those of neighbouring rows.
+fn is_quick(knots: &[usize]) -> bool {
+    matches!(knots, [one, next] if next - one == 1)
+}
+
+/// The force at these knots by least squares over all rows.
+fn through(knots: Vec<usize>, forces: &[f64]) -> KnottedForce {
+    let count = knots.len();
+    let found = KnottedForce { knots, forces: vec![0.0; count] };
+    let mut normal = DMatrix::<f64>::zeros(count, count);
+    let mut right = DVector::<f64>::zeros(count);
+    for ((knot, share), force) in found.shares().into_iter().zip(forces) {
+        let weights = [(knot, 1.0 - share), (knot + 1, share)];
+        for (i, first) in weights {
+            right[i] += first * force;
+            for (j, second) in weights {
+                normal[(i, j)] += first * second;
+            }
+        }
+    }
+    // each knot has a row of its own, so that there is a solution
+    let solved = normal.cholesky().map(|factor| factor.solve(&right));
+    KnottedForce { forces: solved.map_or(found.forces, |heights| heights.iter().copied().collect()), ..found }
+}
+
+fn residuals(found: &KnottedForce, forces: &[f64]) -> Vec<f64> {
+    let at = |knot: usize| found.forces.get(knot).copied().unwrap_or(0.0);
+    let shares = found.shares().into_iter().zip(forces);
+    shares.map(|((knot, share), force)| force - at(knot) * (1.0 - share) - at(knot + 1) * share).collect()
+}
+
+/// The rows around the neighbours whose residuals are most beyond noise, if any are.
+fn sharpest(residuals: &[f64], noise: f64) -> std::ops::Range<usize> {
+    const BEYOND_NOISE: f64 = 4.5;
+    const AROUND: usize = 2;
+    let (mut worst, mut rows) = (BEYOND_NOISE, 0..0);
+    for width in [1, 2, 4] {
+        for (start, window) in residuals.windows(width).enumerate() {
+            let size = window.iter().sum::<f64>().abs() / (noise * f64::sqrt(width as f64));
+            if size > worst {
+                let end = (start + width + AROUND).min(residuals.len());
+                (worst, rows) = (size, start.saturating_sub(AROUND)..end);
+            }
+        }
+    }
+    rows
+}

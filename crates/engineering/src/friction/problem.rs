@@ -1,0 +1,372 @@
+//! Everything that was recorded, explained by one friction: residuals with derivatives.
+
+use phea_dynamics::least_squares::{Linearised, Minimum, Settings, minimise};
+use phea_dynamics::portable;
+use phea_dynamics::watch::{Stopped, Watch, tell};
+use phea_hydraulics::friction::{FRICTION_COEFFICIENTS, KnottedForce, LuGre, PressedMass};
+
+use super::FrictionRecording;
+use super::motion::ConstantVelocity;
+use super::pressing::PressedRows;
+use crate::identify::median;
+
+/// The variables that are of no recording: the coefficients, and the zero of the force.
+pub(super) const SHARED: usize = FRICTION_COEFFICIENTS + 1;
+
+/// Index of the damping of the bristles.
+pub(super) const DAMPING: usize = 6;
+
+/// Index of the zero of the force.
+pub(super) const ZERO: usize = FRICTION_COEFFICIENTS;
+
+/// Evaluations of a search.
+const EVALUATIONS: usize = 60;
+
+/// Angle in rad by which the mass rings on its bristles in a step of the integration.
+const STEP_ANGLE: f64 = 0.3;
+
+/// Most steps between two rows.
+const MOST_STEPS: f64 = 20.0;
+
+/// The friction around which is searched, and the sizes of the variables.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Around {
+    /// With F_S at least F_C.
+    pub(super) lugre: LuGre,
+    /// N.
+    pub(super) force: f64,
+    /// N·s/m, of sigma_2 and of sigma_1.
+    pub(super) damping: [f64; 2],
+    /// m.
+    pub(super) length: f64,
+}
+
+/// A signal of one recording, and the scale of its residuals.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct FrictionChannel {
+    /// Of each row.
+    pub(super) scale: f64,
+    /// First residual, and the one after the last.
+    pub(super) residuals: [usize; 2],
+    /// Share of the residuals that are independent.
+    pub(super) independent: f64,
+    /// Noise of each row, by its differences.
+    pub(super) noise: f64,
+}
+
+/// What is explained, and how.
+#[derive(Clone, Debug)]
+pub(super) struct FrictionProblem<'a> {
+    pub(super) recordings: &'a [FrictionRecording],
+    pub(super) slides: &'a [ConstantVelocity],
+    pub(super) presses: &'a [PressedRows],
+    pub(super) mass: f64,
+    pub(super) around: Around,
+    /// Whether the zero of the force is searched for.
+    pub(super) finds_zero: bool,
+    /// One of each recording that slides; then force and position of each that is pressed.
+    pub(super) channels: Vec<FrictionChannel>,
+}
+
+impl<'a> FrictionProblem<'a> {
+    pub(super) fn new(
+        recordings: &'a [FrictionRecording],
+        slides: &'a [ConstantVelocity],
+        presses: &'a [PressedRows],
+        (mass, around): (f64, Around),
+        finds_zero: bool,
+    ) -> FrictionProblem<'a> {
+        let mut channels = Vec::new();
+        let mut first = 0;
+        let mut channel = |scale: f64, count: usize| {
+            let residuals = [first, first + count];
+            first += count;
+            channels.push(FrictionChannel { scale, residuals, independent: 1.0, noise: scale });
+        };
+        for group in slides.chunk_by(|one, next| one.recording == next.recording) {
+            let recording = group.first().and_then(|slide| recordings.get(slide.recording));
+            let noise = recording.map_or(1.0, |recording| super::motion::noise(&recording.forces));
+            let finest = 1e-9 * around.force;
+            channel(noise.max(finest), group.iter().map(|slide| slide.blocks.len()).sum());
+        }
+        for press in presses {
+            let least = [1e-9 * around.force, 1e-6 * around.length];
+            for (noise, least) in press.noise.iter().zip(least) {
+                channel(noise.max(least), press.rows);
+            }
+        }
+        FrictionProblem { recordings, slides, presses, mass, around, finds_zero, channels }
+    }
+
+    /// How many variables there are: those that are shared; of each constant velocity what the
+    /// bristles brought along; of each press where it began, and its force at each knot.
+    pub(super) fn count(&self) -> usize {
+        let pressed: usize = self.presses.iter().map(|press| 1 + press.force.knots.len()).sum();
+        SHARED + self.slides.len() + pressed
+    }
+
+    /// Force and position of each press.
+    pub(super) fn pressed_channels(&self) -> &[FrictionChannel] {
+        let slid = self.channels.len() - 2 * self.presses.len();
+        self.channels.get(slid..).unwrap_or_default()
+    }
+
+    /// The friction, and the zero of the force in N.
+    pub(super) fn friction(&self, variables: &[f64]) -> (LuGre, f64) {
+        let at = |index: usize| variables.get(index).copied().unwrap_or(0.0);
+        let Around { lugre, force, damping, .. } = self.around;
+        let by = |value: f64, index: usize| value * portable::exp(at(index));
+        let static_friction = at(0) * force;
+        let found = LuGre::from_array([
+            static_friction - at(1) * force,
+            static_friction,
+            by(lugre.curve.stribeck_velocity, 2),
+            by(lugre.curve.stribeck_exponent, 3),
+            at(4) * damping[0],
+            by(lugre.bristle_stiffness, 5),
+            at(6) * damping[1],
+        ]);
+        (found, at(ZERO) * force)
+    }
+
+    /// Derivatives over the shared variables from those over the coefficients.
+    pub(super) fn shared_slopes(&self, lugre: &LuGre, gradient: &[f64]) -> [f64; FRICTION_COEFFICIENTS] {
+        let of = |index: usize| gradient.get(index).copied().unwrap_or(0.0);
+        let Around { force, damping, .. } = self.around;
+        [
+            (of(0) + of(1)) * force,
+            -of(0) * force,
+            of(2) * lugre.curve.stribeck_velocity,
+            of(3) * lugre.curve.stribeck_exponent,
+            of(4) * damping[0],
+            of(5) * lugre.bristle_stiffness,
+            of(6) * damping[1],
+        ]
+    }
+
+    /// Where the search begins.
+    pub(super) fn start(&self) -> Vec<f64> {
+        let Around { lugre, force, damping, .. } = self.around;
+        let curve = lugre.curve;
+        let mut start = vec![
+            curve.static_friction / force,
+            (curve.static_friction - curve.coulomb) / force,
+            0.0,
+            0.0,
+            curve.viscous / damping[0],
+            0.0,
+            lugre.bristle_damping / damping[1],
+            0.0,
+        ];
+        start.extend(self.slides.iter().map(|_| 0.0));
+        for press in self.presses {
+            start.push(0.0);
+            start.extend(press.force.forces.iter().map(|value| value / force));
+        }
+        start
+    }
+
+    /// What a variable may be. The damping of the bristles stays: a slow force does not show it, and
+    /// what rings freely would follow the noise.
+    pub(super) fn bounds(&self) -> Vec<[f64; 2]> {
+        let zero = if self.finds_zero { [-100.0, 100.0] } else { [0.0, 0.0] };
+        let damping = [self.around.lugre.bristle_damping / self.around.damping[1]; 2];
+        let exponent = self.around.lugre.curve.stribeck_exponent;
+        let exponents = [0.2, 10.0].map(|end| portable::ln(end / exponent));
+        let mut bounds =
+            vec![[1e-4, 1e3], [0.0, 1e3], [-7.0, 7.0], exponents, [0.0, 1e4], [-9.0, 9.0], damping, zero];
+        // what bristles can hold is between -F_S and F_S
+        bounds.extend(self.slides.iter().map(|_| [-4.0, 4.0]));
+        for press in self.presses {
+            bounds.push([-1e6, 1e6]);
+            bounds.extend(press.force.forces.iter().map(|_| [-1e3, 1e3]));
+        }
+        bounds
+    }
+
+    /// Residuals over their scales, with derivatives; `None` where there is no such friction, or the
+    /// simulation has no end.
+    pub(super) fn linearised(&self, variables: &[f64]) -> Option<Linearised> {
+        let (lugre, zero) = self.friction(variables);
+        if lugre.curve.coulomb <= 0.0 {
+            return None;
+        }
+        let mut rows =
+            ResidualRows { count: self.count(), found: Linearised { residuals: vec![], jacobian: vec![] } };
+        let mut channels = self.channels.iter();
+        let mut recording = None;
+        let mut scale = 1.0;
+        for (index, slide) in self.slides.iter().enumerate() {
+            if recording != Some(slide.recording) {
+                recording = Some(slide.recording);
+                scale = channels.next()?.effective_scale();
+            }
+            let place = SHARED + index;
+            self.slide(slide, (&lugre, zero), (place, *variables.get(place)?), scale, &mut rows);
+        }
+        let mut first = SHARED + self.slides.len();
+        for press in self.presses {
+            let scales = [channels.next()?, channels.next()?].map(FrictionChannel::effective_scale);
+            let knots = press.force.knots.len();
+            let own = variables.get(first..=first + knots)?;
+            self.press(press, (&lugre, zero), (first, own), scales, &mut rows)?;
+            first += 1 + knots;
+        }
+        Some(rows.found)
+    }
+
+    fn slide(
+        &self,
+        slide: &ConstantVelocity,
+        (lugre, zero): (&LuGre, f64),
+        (place, left): (usize, f64),
+        scale: f64,
+        rows: &mut ResidualRows,
+    ) {
+        let force = self.around.force;
+        for block in &slide.blocks {
+            let (shown, gradient) = block.slid.sensitive_force(lugre, left * force);
+            let scale = scale / (block.rows as f64).sqrt();
+            let row = rows.next((shown + zero - block.force) / scale);
+            let slopes = self.shared_slopes(lugre, &gradient);
+            for (to, slope) in row.iter_mut().zip(slopes) {
+                *to = slope / scale;
+            }
+            let own = [(ZERO, 1.0), (place, gradient[FRICTION_COEFFICIENTS])];
+            for (index, slope) in own {
+                if let Some(to) = row.get_mut(index) {
+                    *to = slope * force / scale;
+                }
+            }
+        }
+    }
+
+    fn press(
+        &self,
+        press: &PressedRows,
+        (lugre, zero): (&LuGre, f64),
+        (first, own): (usize, &[f64]),
+        [force_scale, position_scale]: [f64; 2],
+        rows: &mut ResidualRows,
+    ) -> Option<()> {
+        let Around { force, length, .. } = self.around;
+        let recording = self.recordings.get(press.recording)?;
+        let (begins, knots) = own.split_first()?;
+        // what the pressures show is more than what acts, by the zero
+        let measured: Vec<f64> = knots.iter().map(|value| value * force).collect();
+        let acting = measured.iter().map(|value| value - zero).collect();
+        let acting = KnottedForce { knots: press.force.knots.clone(), forces: acting };
+        let shares = acting.shares();
+        for ((knot, share), shown) in shares.iter().zip(&recording.forces) {
+            let at = |index: usize| measured.get(index).copied().unwrap_or(0.0);
+            let modelled = at(*knot) * (1.0 - share) + at(knot + 1) * share;
+            let row = rows.next((modelled - shown) / force_scale);
+            for (index, weight) in [(*knot, 1.0 - share), (knot + 1, *share)] {
+                if let Some(to) = row.get_mut(first + 1 + index) {
+                    *to += weight * force / force_scale;
+                }
+            }
+        }
+        let moved =
+            pressed_mass(self.mass, lugre, recording.time_step).sensitive_displacements(lugre, &acting);
+        let start = *recording.positions.first()?;
+        let count = FRICTION_COEFFICIENTS + knots.len();
+        let both = moved.displacements.iter().zip(moved.gradients.chunks_exact(count));
+        for ((moved, gradient), shown) in both.zip(&recording.positions) {
+            if !moved.is_finite() {
+                return None;
+            }
+            let row = rows.next((start + begins * length + moved - shown) / position_scale);
+            let (coefficients, by_knot) = gradient.split_at(FRICTION_COEFFICIENTS);
+            for (to, slope) in row.iter_mut().zip(self.shared_slopes(lugre, coefficients)) {
+                *to = slope / position_scale;
+            }
+            let all: f64 = by_knot.iter().sum();
+            let own = [(ZERO, -all * force), (first, length)].into_iter();
+            let knots = by_knot.iter().enumerate().map(|(knot, slope)| (first + 1 + knot, slope * force));
+            for (index, slope) in own.chain(knots) {
+                if let Some(to) = row.get_mut(index) {
+                    *to = slope / position_scale;
+                }
+            }
+        }
+        Some(())
+    }
+
+    /// Where a search from here ends.
+    pub(super) fn searched(
+        &self,
+        start: &[f64],
+        tolerance: f64,
+        watch: Watch<'_>,
+    ) -> Result<Minimum, Stopped> {
+        let settings = Settings { maximum_evaluations: EVALUATIONS, tolerance, ..Settings::default() };
+        let mut done = 0;
+        minimise(start, &self.bounds(), settings, &mut |variables| {
+            done += 1;
+            tell(watch, "fitting", done, EVALUATIONS)?;
+            Ok(self.linearised(variables))
+        })
+    }
+
+    /// Takes the scale of each signal from its residuals: 1.4826 times their median magnitude; and
+    /// how many of them are independent from the correlation of neighbours (Bayley and Hammersley
+    /// 1946). Returns the largest relative change.
+    pub(super) fn rescale(&mut self, residuals: &[f64]) -> f64 {
+        let mut change = 0.0_f64;
+        let all = residuals.len() as f64;
+        let freedom = (all / (all - self.count() as f64).max(1.0)).sqrt();
+        let least = 1e-9;
+        for channel in &mut self.channels {
+            let [from, to] = channel.residuals;
+            let own = residuals.get(from..to).unwrap_or_default();
+            let typical = 1.4826 * median(own.iter().map(|residual| residual.abs()).collect());
+            let before = channel.effective_scale();
+            channel.independent = independent(own, typical);
+            channel.scale = (typical * freedom).max(least) * before;
+            change = change.max((channel.effective_scale() / before - 1.0).abs());
+        }
+        change
+    }
+}
+
+/// The mass of a press, in steps that its ringing on the bristles needs.
+pub(super) fn pressed_mass(mass: f64, lugre: &LuGre, time_step: f64) -> PressedMass {
+    let angle = (lugre.bristle_stiffness / mass).sqrt() * time_step;
+    let substeps = (angle / STEP_ANGLE).ceil().clamp(1.0, MOST_STEPS) as usize;
+    PressedMass { mass, time_step, substeps }
+}
+
+impl FrictionChannel {
+    /// The scale of residuals as if all of them were independent.
+    pub(super) fn effective_scale(&self) -> f64 {
+        self.scale / self.independent.sqrt()
+    }
+}
+
+/// Share of some residuals that are independent, where neighbours correlate by more than chance.
+fn independent(residuals: &[f64], scale: f64) -> f64 {
+    let inside = |residual: &f64| residual.clamp(-3.0 * scale, 3.0 * scale);
+    let squares: f64 = residuals.iter().map(|residual| inside(residual) * inside(residual)).sum();
+    let neighbours = residuals.iter().zip(residuals.iter().skip(1));
+    let products: f64 = neighbours.map(|(one, next)| inside(one) * inside(next)).sum();
+    let correlation = if squares > 0.0 { products / squares } else { 0.0 };
+    let chance = 3.0 / (residuals.len().max(1) as f64).sqrt();
+    if correlation <= chance { 1.0 } else { (1.0 - correlation.min(0.99)) / (1.0 + correlation.min(0.99)) }
+}
+
+/// Residuals and their derivatives, one row after the other.
+struct ResidualRows {
+    count: usize,
+    found: Linearised,
+}
+
+impl ResidualRows {
+    /// The derivatives of a further residual, all zero yet.
+    fn next(&mut self, residual: f64) -> &mut [f64] {
+        self.found.residuals.push(residual);
+        let from = self.found.jacobian.len();
+        self.found.jacobian.resize(from + self.count, 0.0);
+        self.found.jacobian.get_mut(from..).unwrap_or_default()
+    }
+}

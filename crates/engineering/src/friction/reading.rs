@@ -1,0 +1,135 @@
+use crate::identify::IdentifyError;
+use crate::project::Findings;
+use crate::quantity::{Dimension, FORCE, LENGTH, PRESSURE, TIME, VELOCITY};
+use crate::response::time_step;
+use crate::source::Source;
+use crate::table::{Column, Measurand, MeasuredTable, Sought};
+
+/// What is known of the cylinder in addition to the files.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct KnownCylinder {
+    /// m², A_A and A_B.
+    pub areas: [f64; 2],
+    /// kg, M.
+    pub moving_mass: f64,
+}
+
+/// A recorded run of the cylinder, rows at equal intervals. SI.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FrictionRecording {
+    /// Path of the file.
+    pub file: String,
+    /// s between rows.
+    pub time_step: f64,
+    /// m, of each row: recorded, or the integral of the recorded velocity.
+    pub positions: Vec<f64>,
+    /// Whether the position itself was recorded.
+    pub has_position: bool,
+    /// N, of each row: A_A p_A - A_B p_B - F_e, what drives the mass against its friction.
+    pub forces: Vec<f64>,
+}
+
+const MEASURANDS: [Measurand; 6] = [
+    measurand("time", None, &TIME),
+    measurand("position", None, &LENGTH),
+    measurand("velocity", None, &VELOCITY),
+    measurand("pressure_a", Some("p_A"), &PRESSURE),
+    measurand("pressure_b", Some("p_B"), &PRESSURE),
+    measurand("force", None, &FORCE),
+];
+
+const fn measurand(
+    name: &'static str,
+    symbol: Option<&'static str>,
+    dimension: &'static Dimension,
+) -> Measurand {
+    Measurand { name, symbol, dimension, may_be_share: false }
+}
+
+/// The runs in these files, one each.
+///
+/// # Errors
+/// Everything that is wrong in the files, with its places.
+pub fn friction_recordings(
+    source: &dyn Source,
+    files: &[String],
+    known: &KnownCylinder,
+) -> Result<Vec<FrictionRecording>, IdentifyError> {
+    let mut findings = Findings::default();
+    let mut recordings = Vec::new();
+    for file in files {
+        match source.read(file) {
+            Ok(bytes) => recordings.extend(recording(file, bytes, known, &mut findings)),
+            Err(error) => findings.unreadable(file, &error.to_string()),
+        }
+    }
+    if findings.error_count() > 0 {
+        return Err(IdentifyError::Files(Box::new(findings.report())));
+    }
+    Ok(recordings)
+}
+
+fn recording(
+    file: &str,
+    bytes: Vec<u8>,
+    known: &KnownCylinder,
+    findings: &mut Findings,
+) -> Option<FrictionRecording> {
+    let sought: Vec<Sought<'_>> = MEASURANDS.iter().map(Sought::by_name).collect();
+    let table = MeasuredTable::read(file, bytes, &sought, None, findings)?;
+    let (columns, _) = table.columns(&sought, findings)?;
+    let before = findings.error_count();
+    let of = |index: usize| columns.get(index).and_then(Option::as_ref);
+    let [time, position, velocity, pressure_a, pressure_b, force] = [0, 1, 2, 3, 4, 5].map(of);
+    let mut missing = |index: usize| {
+        sought.get(index).into_iter().for_each(|sought| findings.push(table.missing(sought)));
+    };
+    if time.is_none() {
+        missing(0);
+    }
+    if position.or(velocity).is_none() {
+        missing(1);
+    }
+    match (pressure_a, pressure_b, force) {
+        (Some(_), None, _) => missing(4),
+        (None, Some(_), _) => missing(3),
+        (None, None, None) => [3, 4].into_iter().for_each(missing),
+        _ => {}
+    }
+    if findings.error_count() > before {
+        return None;
+    }
+    let used: Vec<&Column> =
+        [time, position.or(velocity), pressure_a, pressure_b, force].into_iter().flatten().collect();
+    let mut numbers = table.all_numbers(&used, findings).into_iter();
+    if findings.error_count() > before {
+        return None;
+    }
+    let (times, motion) = (numbers.next()?, numbers.next()?);
+    let mut next = |column: Option<&Column>| column.and_then(|_| numbers.next()).unwrap_or_default();
+    let [pressures_a, pressures_b, loads] = [pressure_a, pressure_b, force].map(&mut next);
+    let time_step = time_step(&table, time?, &times, "a run of the cylinder", findings)?;
+    table.close(findings);
+    let at = |values: &[f64], row: usize| values.get(row).copied().unwrap_or(0.0);
+    let [a, b] = known.areas;
+    let drive = |row: usize| a * at(&pressures_a, row) - b * at(&pressures_b, row) - at(&loads, row);
+    Some(FrictionRecording {
+        file: file.to_string(),
+        time_step,
+        forces: (0..times.len()).map(drive).collect(),
+        has_position: position.is_some(),
+        positions: if position.is_some() { motion } else { integrated(&motion, time_step) },
+    })
+}
+
+/// By the trapezoidal rule, from zero.
+fn integrated(velocities: &[f64], time_step: f64) -> Vec<f64> {
+    let mut position = 0.0;
+    let mut before = velocities.first().copied().unwrap_or(0.0);
+    let mut next = |velocity: &f64| {
+        position += f64::midpoint(before, *velocity) * time_step;
+        before = *velocity;
+        position
+    };
+    velocities.iter().map(&mut next).collect()
+}

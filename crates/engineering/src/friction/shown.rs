@@ -1,0 +1,116 @@
+//! What the identified friction shows beside the recordings.
+
+use phea_dynamics::least_squares::Minimum;
+use phea_hydraulics::friction::KnottedForce;
+
+use super::FrictionIdentification;
+use super::motion::ConstantVelocity;
+use super::pressing::PressedRows;
+use super::problem::{FrictionProblem, SHARED};
+
+/// The friction force at a constant velocity. Units: m/s, N.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SteadyPoint {
+    /// Index of the recording.
+    pub recording: usize,
+    /// v.
+    pub velocity: f64,
+    /// As recorded, over the second half of the rows, less the zero of the force.
+    pub force: f64,
+    /// By the identified curve.
+    pub modelled: f64,
+}
+
+/// Position over force of a piston that is pressed. Units: N, m.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PressedCurve {
+    /// As recorded, less the zero of the force.
+    pub forces: Vec<f64>,
+    /// As recorded, from the beginning.
+    pub positions: Vec<f64>,
+    /// Force as it is explained.
+    pub modelled_forces: Vec<f64>,
+    /// Position as it is explained.
+    pub modelled_positions: Vec<f64>,
+}
+
+impl ConstantVelocity {
+    /// N, mean of the recorded force over the second half.
+    pub fn settled_force(&self) -> f64 {
+        let half = self.blocks.get(self.blocks.len() / 2..).unwrap_or_default();
+        let rows: f64 = half.iter().map(|block| block.rows as f64).sum();
+        half.iter().map(|block| block.rows as f64 * block.force).sum::<f64>() / rows.max(1.0)
+    }
+}
+
+impl PressedRows {
+    /// The sign of the greatest force, which is the last if the piston breaks away.
+    pub(super) fn way(&self) -> f64 {
+        self.force.forces.last().copied().unwrap_or(0.0)
+    }
+}
+
+impl FrictionIdentification {
+    /// The recorded friction map, and the curve at its velocities.
+    pub fn steady_points(&self) -> Vec<SteadyPoint> {
+        let zero = self.zero.map_or(0.0, |zero| zero.value);
+        let point = |slide: &ConstantVelocity| SteadyPoint {
+            recording: slide.recording,
+            velocity: slide.velocity,
+            force: slide.settled_force() - zero,
+            modelled: self.lugre.curve.steady_force(slide.velocity),
+        };
+        self.slides.iter().map(point).collect()
+    }
+
+    /// The recorded and the explained position of a press.
+    pub fn pressed_curve(&self, index: usize) -> Option<PressedCurve> {
+        let zero = self.zero.map_or(0.0, |zero| zero.value);
+        let press = self.presses.get(index)?;
+        let (knots, begins) = self.pressed.get(index)?;
+        let recording = self.recordings.get(press.recording)?;
+        let acting = knots.iter().map(|force| force - zero).collect();
+        let acting = KnottedForce { knots: press.force.knots.clone(), forces: acting };
+        let pressed = super::problem::pressed_mass(self.moving_mass, &self.lugre, recording.time_step);
+        let moved = pressed.sensitive_displacements(&self.lugre, &acting).displacements;
+        let start = recording.positions.first()? + begins;
+        let at = |index: usize| acting.forces.get(index).copied().unwrap_or(0.0);
+        let along = |(knot, share): (usize, f64)| at(knot) * (1.0 - share) + at(knot + 1) * share;
+        Some(PressedCurve {
+            forces: recording.forces.iter().take(press.rows).map(|force| force - zero).collect(),
+            positions: recording.positions.iter().take(press.rows).map(|at| at - start).collect(),
+            modelled_forces: acting.shares().into_iter().map(along).collect(),
+            modelled_positions: moved,
+        })
+    }
+}
+
+/// Root mean square of what is left of the forces in N and of the positions in m.
+pub(super) fn residual_rms(problem: &FrictionProblem<'_>, minimum: &Minimum) -> [Option<f64>; 2] {
+    let groups = problem.channels.len() - 2 * problem.presses.len();
+    let mut sums = [(0.0, 0.0); 2];
+    for (index, channel) in problem.channels.iter().enumerate() {
+        let is_position = index >= groups && (index - groups) % 2 == 1;
+        let [from, to] = channel.residuals;
+        let own = minimum.linearised.residuals.get(from..to).unwrap_or_default();
+        let scale = channel.effective_scale();
+        let (sum, count) = if is_position { &mut sums[1] } else { &mut sums[0] };
+        *sum += own.iter().map(|residual| residual * residual * scale * scale).sum::<f64>();
+        *count += own.len() as f64;
+    }
+    sums.map(|(sum, count)| (count > 0.0).then(|| f64::sqrt(sum / count)))
+}
+
+/// Of each press, the measured force at its knots in N, and where its position began in m.
+pub(super) fn pressed(problem: &FrictionProblem<'_>, minimum: &Minimum) -> Vec<(Vec<f64>, f64)> {
+    let mut first = SHARED + problem.slides.len();
+    let of = |press: &PressedRows| {
+        let knots = press.force.knots.len();
+        let own = minimum.variables.get(first..=first + knots).unwrap_or_default();
+        first += 1 + knots;
+        let (begins, forces) = own.split_first().unwrap_or((&0.0, &[]));
+        let forces = forces.iter().map(|value| value * problem.around.force).collect();
+        (forces, begins * problem.around.length)
+    };
+    problem.presses.iter().map(of).collect()
+}

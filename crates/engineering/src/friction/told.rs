@@ -1,0 +1,186 @@
+//! What the recordings tell of each coefficient, and why they do not.
+
+use phea_dynamics::least_squares::{Linearised, Minimum, Uncertainty, uncertainty_by_scale};
+use phea_dynamics::portable;
+use phea_hydraulics::friction::FRICTION_COEFFICIENTS;
+
+use super::problem::{DAMPING, FrictionProblem, ZERO};
+
+/// A coefficient as the recordings tell it. SI.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrictionEstimate {
+    /// Where the sum of squares has its minimum.
+    pub value: f64,
+    /// Ends of the 95 % interval; the upper one is infinite where nothing limits it.
+    pub interval: [f64; 2],
+    /// Why it is not determined; `None` where it is.
+    pub untold: Option<UntoldFriction>,
+}
+
+/// Why the recordings do not determine a coefficient.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum UntoldFriction {
+    /// Nothing slides at a constant velocity.
+    NothingSlides,
+    /// The force is the same at all slow velocities: no fall from static friction is seen.
+    NoFall,
+    /// Nothing is pressed from rest while its position is recorded.
+    NothingPressed,
+    /// Slow runs do not show it, and it is not looked for in quick ones.
+    NotSought,
+    /// The force changes within a few rows, or rises too quickly, while the piston is pressed.
+    QuickForce,
+    /// Noise hides it.
+    Hidden,
+    /// What is pressed is not explained.
+    NotExplained {
+        /// What is left, over the noise.
+        residual: f64,
+    },
+}
+
+/// Half width of a 95 % interval of a normal distribution, in standard deviations.
+const NORMAL_95: f64 = 1.96;
+
+/// Standard deviation over the value beyond which a coefficient is not determined, as for a valve.
+const UNTOLD: f64 = 0.5;
+
+/// Duration of a force that rises slowly, over the delay by the damping: twice its inverse is the
+/// error of the stiffness where the damping is not the one that is taken for granted.
+const SLOW: f64 = 250.0;
+
+/// Residual over noise beyond which recordings are not explained.
+const EXPLAINED: f64 = 1.5;
+
+/// How a coefficient follows from the variables.
+#[derive(Clone, Copy)]
+enum VariableForm {
+    /// In proportion to its variable, which is in this unit.
+    Linear(f64),
+    /// By the exponential of it.
+    Logarithmic,
+}
+
+/// Of each coefficient, and of the zero of the force.
+pub(super) fn estimates(
+    problem: &FrictionProblem<'_>,
+    minimum: &Minimum,
+) -> ([FrictionEstimate; FRICTION_COEFFICIENTS], Option<FrictionEstimate>) {
+    let (lugre, zero) = problem.friction(&minimum.variables);
+    let told = uncertainty_by_scale(&searched_only(problem, minimum), problem.count());
+    let around = problem.around;
+    let force = around.force;
+    let values = lugre.to_array();
+    let forms = [
+        VariableForm::Linear(force),
+        VariableForm::Linear(force),
+        VariableForm::Logarithmic,
+        VariableForm::Logarithmic,
+        VariableForm::Linear(around.damping[0]),
+        VariableForm::Logarithmic,
+        VariableForm::Linear(around.damping[1]),
+    ];
+    let alone = |index: usize| told.deviations.get(index).copied().unwrap_or(f64::INFINITY);
+    let mut index = 0;
+    let found = values.map(|value| {
+        // F_C is F_S, the first variable, less the fall, the second
+        let deviation = match index {
+            0 => difference(&told),
+            1 => alone(0),
+            other => alone(other),
+        };
+        index += 1;
+        let form = forms.get(index - 1).copied().unwrap_or(VariableForm::Logarithmic);
+        let interval = interval(value, form, deviation);
+        let relative = match form {
+            VariableForm::Linear(unit) => unit * deviation / value,
+            VariableForm::Logarithmic => deviation,
+        };
+        let is_told = relative <= UNTOLD;
+        FrictionEstimate { value, interval, untold: (!is_told).then_some(UntoldFriction::Hidden) }
+    });
+    let fall = [lugre.curve.static_friction - lugre.curve.coulomb, force * alone(1)];
+    let zero = problem.finds_zero.then(|| {
+        let half = NORMAL_95 * force * alone(ZERO);
+        FrictionEstimate { value: zero, interval: [zero - half, zero + half], untold: None }
+    });
+    (reasons(problem, found, fall), zero)
+}
+
+/// The minimum without what was not searched for.
+fn searched_only(problem: &FrictionProblem<'_>, minimum: &Minimum) -> Linearised {
+    let mut at = minimum.linearised.clone();
+    let known = if problem.finds_zero { &[DAMPING][..] } else { &[DAMPING, ZERO] };
+    for row in at.jacobian.chunks_exact_mut(problem.count()) {
+        for index in known {
+            row.iter_mut().skip(*index).take(1).for_each(|slope| *slope = 0.0);
+        }
+    }
+    at
+}
+
+/// Standard deviation of the first variable less the second.
+fn difference(told: &Uncertainty) -> f64 {
+    let [first, second] = [0, 1].map(|index| told.deviations.get(index).copied().unwrap_or(f64::INFINITY));
+    let correlation = told.correlations.get(1).copied().unwrap_or(0.0);
+    match first.is_finite() && second.is_finite() {
+        true => (first * first + second * second - 2.0 * correlation * first * second).max(0.0).sqrt(),
+        false => f64::INFINITY,
+    }
+}
+
+fn interval(value: f64, form: VariableForm, deviation: f64) -> [f64; 2] {
+    let half = NORMAL_95 * deviation;
+    match form {
+        _ if !half.is_finite() => [0.0, f64::INFINITY],
+        VariableForm::Linear(unit) => [(value - half * unit).max(0.0), value + half * unit],
+        VariableForm::Logarithmic => [-half, half].map(|by| value * portable::exp(by)),
+    }
+}
+
+/// Why each is open, as far as it is known.
+fn reasons(
+    problem: &FrictionProblem<'_>,
+    mut found: [FrictionEstimate; FRICTION_COEFFICIENTS],
+    [fall, fall_deviation]: [f64; 2],
+) -> [FrictionEstimate; FRICTION_COEFFICIENTS] {
+    let [coulomb, static_friction, velocity, exponent, viscous, stiffness, damping] = &mut found;
+    let falls = fall > 2.0 * fall_deviation;
+    if problem.slides.is_empty() {
+        for one in [&mut *coulomb, velocity, exponent, viscous] {
+            one.untold = Some(UntoldFriction::NothingSlides);
+        }
+    } else if !falls {
+        for one in [velocity, exponent] {
+            one.untold = Some(UntoldFriction::NoFall);
+        }
+    }
+    if problem.presses.is_empty() {
+        if stiffness.untold.is_some() {
+            stiffness.untold = Some(UntoldFriction::NothingPressed);
+        }
+        if problem.slides.is_empty() {
+            static_friction.untold = Some(UntoldFriction::NothingPressed);
+        }
+    }
+    let residual = problem.pressed_channels().iter().map(|channel| channel.scale / channel.noise);
+    let residual = residual.fold(0.0, f64::max);
+    if residual > EXPLAINED {
+        stiffness.untold = stiffness.untold.or(Some(UntoldFriction::NotExplained { residual }));
+    }
+    // the damping that is taken for granted delays the mass by this
+    let delay = damping.value / stiffness.value;
+    let is_quick = |press: &super::PressedRows| {
+        let time_step = problem.recordings.get(press.recording).map_or(0.0, |one| one.time_step);
+        press.has_quick_force || press.rows as f64 * time_step < SLOW * delay
+    };
+    if problem.presses.iter().any(is_quick) {
+        stiffness.untold = stiffness.untold.or(Some(UntoldFriction::QuickForce));
+    }
+    *damping = FrictionEstimate {
+        interval: [0.0, f64::INFINITY],
+        untold: Some(UntoldFriction::NotSought),
+        ..*damping
+    };
+    found
+}

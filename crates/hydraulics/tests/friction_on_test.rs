@@ -1,0 +1,151 @@
+//! Friction on test against the equations of LuGre, integrated by another method.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
+
+use phea_hydraulics::friction::{KnottedForce, LuGre, PressedMass, SlidBlock};
+
+const NUMBERS: [f64; 7] = [80.0, 120.0, 0.01, 2.0, 100.0, 1e7, 2e3];
+const MASS: f64 = 13.1;
+
+/// Displacement of a mass on bristles at rest at first, by the method of Runge and Kutta with so many
+/// steps between rows.
+fn runge_kutta(lugre: &LuGre, force: &[f64], time_step: f64, steps: usize) -> Vec<f64> {
+    let rates = |[_, velocity, deflection]: [f64; 3], force: f64| {
+        let bristle = lugre.bristle_rate(velocity, deflection);
+        [velocity, (force - lugre.force(velocity, deflection)) / MASS, bristle]
+    };
+    let mut state = [0.0, 0.0, force[0] / lugre.bristle_stiffness];
+    let mut moved = vec![0.0];
+    let h = time_step / steps as f64;
+    for ends in force.windows(2) {
+        for step in 0..steps {
+            let at = |share: f64| ends[0] + (ends[1] - ends[0]) * (step as f64 + share) / steps as f64;
+            let add = |rate: [f64; 3], by: f64| std::array::from_fn(|i| state[i] + by * rate[i]);
+            let first = rates(state, at(0.0));
+            let second = rates(add(first, h / 2.0), at(0.5));
+            let third = rates(add(second, h / 2.0), at(0.5));
+            let fourth = rates(add(third, h), at(1.0));
+            state = std::array::from_fn(|i| {
+                state[i] + h / 6.0 * (first[i] + 2.0 * second[i] + 2.0 * third[i] + fourth[i])
+            });
+        }
+        moved.push(state[0]);
+    }
+    moved
+}
+
+/// A force of 96 N put on slowly and let go within 3 ms: the mass rings on its bristles, and keeps a
+/// part of the displacement.
+fn released() -> KnottedForce {
+    KnottedForce { knots: vec![0, 60, 63, 120], forces: vec![0.0, 96.0, 0.0, 0.0] }
+}
+
+fn rows(force: &KnottedForce) -> Vec<f64> {
+    force
+        .shares()
+        .into_iter()
+        .map(|(knot, share)| force.forces[knot] * (1.0 - share) + force.forces[knot + 1] * share)
+        .collect()
+}
+
+#[test]
+fn a_pressed_mass_moves_as_the_equations_say() {
+    let lugre = LuGre::from_array(NUMBERS);
+    let force = rows(&released());
+    let exact = runge_kutta(&lugre, &force, 1e-3, 200);
+    let at = |substeps| {
+        let pressed = PressedMass { mass: MASS, time_step: 1e-3, substeps };
+        let moved = pressed.displacements(&lugre, &force);
+        moved.iter().zip(&exact).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max)
+    };
+    // 20 um of displacement; the error falls with the square of the step
+    assert!(exact.iter().copied().fold(0.0, f64::max) > 15e-6);
+    let [coarse, fine] = [4, 16].map(at);
+    assert!(coarse < 0.1e-6, "{coarse}");
+    assert!(fine < coarse / 8.0, "{coarse} {fine}");
+}
+
+#[test]
+fn a_mass_that_creeps_on_soft_bristles_moves_as_the_equations_say() {
+    let soft = LuGre::from_array([80.0, 120.0, 0.01, 1.5, 100.0, 2e4, 6e3]);
+    let force = rows(&released());
+    let exact = runge_kutta(&soft, &force, 1e-3, 200);
+    let pressed = PressedMass { mass: MASS, time_step: 1e-3, substeps: 2 };
+    let moved = pressed.displacements(&soft, &force);
+    let largest = exact.iter().copied().fold(0.0, f64::max);
+    for (one, other) in moved.iter().zip(&exact) {
+        assert!((one - other).abs() < 1e-4 * largest, "{one} {other}");
+    }
+}
+
+#[test]
+fn the_derivatives_are_those_of_the_displacement() {
+    let lugre = LuGre::from_array(NUMBERS);
+    let force = released();
+    let pressed = PressedMass { mass: MASS, time_step: 1e-3, substeps: 4 };
+    let found = pressed.sensitive_displacements(&lugre, &force);
+    let plain = pressed.displacements(&lugre, &rows(&force));
+    assert_eq!(found.displacements.len(), plain.len());
+    let count = NUMBERS.len() + force.forces.len();
+    for (one, other) in found.displacements.iter().zip(&plain) {
+        assert!((one - other).abs() < 1e-15);
+    }
+    let largest = 20e-6;
+    for index in 0..count {
+        let moved = |sign: f64| {
+            let (mut numbers, mut force) = (NUMBERS, force.clone());
+            let by = 1e-5 * sign;
+            match index.checked_sub(NUMBERS.len()) {
+                None => numbers[index] *= 1.0 + by,
+                Some(knot) => force.forces[knot] += 100.0 * by,
+            }
+            pressed.displacements(&LuGre::from_array(numbers), &rows(&force))
+        };
+        let unit = NUMBERS.get(index).copied().unwrap_or(100.0);
+        for (row, (more, less)) in moved(1.0).iter().zip(moved(-1.0)).enumerate() {
+            let slope = found.gradients[row * count + index] * unit;
+            let difference = (more - less) / 2e-5;
+            // the bristles' slip has a kink where the mass turns round
+            assert!((slope - difference).abs() < 3e-3 * largest, "{index} {row}: {slope} {difference}");
+        }
+    }
+}
+
+/// The mean over each block against the equation of the bristles, solved in short steps.
+#[test]
+fn the_force_after_a_reversal_is_that_of_the_bristles() {
+    let lugre = LuGre::from_array(NUMBERS);
+    let velocity = -0.002;
+    let (steps, h) = (4000, 5e-6);
+    let mut deflection = 9e-6;
+    let settled = -lugre.curve.sliding_force(velocity) / lugre.bristle_stiffness;
+    let mut forces = Vec::with_capacity(steps);
+    for _ in 0..steps {
+        // the middle of each step, by the rate there
+        let rate = lugre.bristle_rate(velocity, deflection);
+        let middle = deflection + h / 2.0 * lugre.bristle_rate(velocity, deflection + h / 2.0 * rate);
+        forces.push(lugre.force(velocity, middle));
+        deflection += h * lugre.bristle_rate(velocity, middle);
+    }
+    // what is left of the force at the beginning: of the spring and of the damper of the bristles
+    let share = 1.0 - lugre.bristle_damping * velocity.abs() / lugre.curve.sliding_force(velocity);
+    let left = lugre.bristle_stiffness * (9e-6 - settled) * share;
+    let length = velocity.abs() * h;
+    for block in 0..4 {
+        let (from, to) = (block * 1000, (block + 1) * 1000);
+        let mean = forces[from..to].iter().sum::<f64>() / 1000.0;
+        let slid =
+            SlidBlock { velocity, distance: (from + to) as f64 / 2.0 * length, half_length: 500.0 * length };
+        let (force, gradient) = slid.sensitive_force(&lugre, left);
+        assert!((force - mean).abs() < 1e-3, "{block}: {force} {mean}");
+        for (index, number) in NUMBERS.iter().enumerate() {
+            let changed = |by: f64| {
+                let mut numbers = NUMBERS;
+                numbers[index] = number * (1.0 + by);
+                slid.force(&LuGre::from_array(numbers), left)
+            };
+            let difference = (changed(1e-6) - changed(-1e-6)) / (2e-6 * number);
+            assert!((gradient[index] - difference).abs() <= 1e-6 * (difference.abs() + 1.0 / number));
+        }
+    }
+}

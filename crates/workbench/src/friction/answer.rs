@@ -1,0 +1,54 @@
+use super::{FRICTION_NAMES, FrictionEstimate, FrictionIdentification, because};
+use crate::answer::{self, Json, Object};
+use crate::project::Loaded;
+
+/// Keys of the answer, in the order of the coefficients: as the project has them, with SI units.
+const KEYS: [&str; FRICTION_NAMES.len()] = [
+    "coulomb_n",
+    "static_n",
+    "stribeck_velocity_m_per_s",
+    "stribeck_exponent",
+    "viscous_n_s_per_m",
+    "bristle_stiffness_n_per_m",
+    "bristle_damping_n_s_per_m",
+];
+
+/// The JSON object of `identify --of friction`.
+pub fn json(loaded: &Loaded, found: &FrictionIdentification) -> String {
+    let coefficients = KEYS.iter().zip(&found.estimates);
+    let friction = coefficients.fold(Object::new(), |object, (key, one)| object.with(*key, estimate(one)));
+    let body = Object::new()
+        .with("friction", friction)
+        .known("force_zero_n", found.zero.map(|zero| estimate(&zero)), "the recordings go one way")
+        .each("recordings", 0..found.recordings.len(), |index| recording(found, index))
+        .with("force_residual_rms_n", found.residual_rms[0])
+        .with("position_residual_rms_m", found.residual_rms[1])
+        .with("independent_share", found.independent)
+        .with("converged", found.has_converged());
+    answer::json("identify", loaded, body)
+}
+
+fn estimate(one: &FrictionEstimate) -> Object {
+    let reason = because(one);
+    let value = reason.is_none().then_some(one.value);
+    let ends = one.interval.map(Json::Number).to_vec();
+    Object::new().with("value", value).with("confidence_95", Json::List(ends)).with("reason", reason)
+}
+
+fn recording(found: &FrictionIdentification, index: usize) -> Object {
+    let slides = found.slides.iter().filter(|slide| slide.recording == index);
+    let press = found.presses.iter().find(|press| press.recording == index);
+    let own = found.recordings.get(index);
+    Object::new()
+        .with("file", own.map_or(String::new(), |one| one.file.clone()))
+        .with("rows", own.map_or(0, |one| one.forces.len()) as u64)
+        .with("time_step_s", own.map(|one| one.time_step))
+        .each("constant_velocities", slides, |slide| {
+            Object::new()
+                .with("velocity_m_per_s", slide.velocity)
+                .with("force_n", slide.settled_force() - found.zero.map_or(0.0, |zero| zero.value))
+                .with("rows", slide.rows.len() as u64)
+        })
+        .maybe("pressed_rows", press.map(|press| press.rows as u64))
+        .maybe("breaks_away", press.map(|press| press.breaks_away))
+}

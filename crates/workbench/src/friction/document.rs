@@ -1,0 +1,97 @@
+//! The friction of a cylinder for people.
+
+use super::{FRICTION_NAMES, FrictionIdentification, because};
+use crate::answer::significant;
+use crate::document::{Cell, Document, Table};
+use crate::quantity::DisplayUnit;
+
+/// Coefficients with their intervals and why some are open, the friction map, and how well all is
+/// explained.
+pub fn text(found: &FrictionIdentification) -> String {
+    let mut out = Document::default();
+    let headings = ["coefficient", "identified", "95 % from", "to", "unit"];
+    out.section("Friction of the cylinder", Table::new(headings).with(coefficients(found)));
+    out.sentences(remarks(found));
+    let points = found.steady_points();
+    if !points.is_empty() {
+        let headings = ["file", "velocity (mm/s)", "friction (N)", "by the curve (N)"];
+        let rows = points.iter().map(|point| {
+            [
+                Cell::from(file(found, point.recording)),
+                Cell::number(DisplayUnit::MILLIMETRE.of(point.velocity), 4),
+                Cell::number(point.force, 4),
+                Cell::number(point.modelled, 4),
+            ]
+        });
+        out.section("Friction at constant velocities", Table::new(headings).with(rows));
+    }
+    if !found.presses.is_empty() {
+        out.heading("Before the piston breaks away");
+        out.sentences(found.presses.iter().map(|press| {
+            let end =
+                if press.breaks_away { "then the piston breaks away" } else { "it does not break away" };
+            format!("{}: {} rows are explained; {end}.", file(found, press.recording), press.rows)
+        }));
+    }
+    out.heading("How well the recordings are explained");
+    out.sentences(explained(found));
+    out.text()
+}
+
+fn file(found: &FrictionIdentification, recording: usize) -> String {
+    found.recordings.get(recording).map_or(String::new(), |one| one.file.clone())
+}
+
+fn coefficients(found: &FrictionIdentification) -> Vec<[Cell; 5]> {
+    let all = FRICTION_NAMES.iter().zip(&found.estimates);
+    all.map(|((name, unit), one)| {
+        let value = if one.untold.is_none() { Cell::number(one.value, 4) } else { Cell::Missing };
+        let [low, high] = one.interval.map(|end| match end.is_finite() {
+            true => Cell::number(end, 4),
+            false => Cell::Missing,
+        });
+        [Cell::Code((*name).to_string()), value, low, high, Cell::from(*unit)]
+    })
+    .collect()
+}
+
+/// What is open, and the zero of the force.
+fn remarks(found: &FrictionIdentification) -> Vec<String> {
+    let all = FRICTION_NAMES.iter().zip(&found.estimates);
+    let open =
+        all.filter_map(|((name, _), one)| Some(format!("`{name}` is not determined: {}.", because(one)?)));
+    let zero = match &found.zero {
+        Some(zero) => {
+            let [value, low, high] =
+                [zero.value, zero.interval[0], zero.interval[1]].map(|value| significant(value, 3));
+            format!("Without friction the instruments show {value} N (95 %: {low} to {high} N).")
+        }
+        None => {
+            "The recordings go one way: that the instruments show no force without friction is taken for granted."
+                .to_string()
+        }
+    };
+    open.chain([zero]).collect()
+}
+
+fn explained(found: &FrictionIdentification) -> Vec<String> {
+    let [force, position] = found.residual_rms;
+    let mut sentences = Vec::new();
+    sentences.extend(force.map(|rms| {
+        format!("Root mean square of what is left of the force, in each row: {} N.", significant(rms, 3))
+    }));
+    sentences.extend(position.map(|rms| {
+        let micrometres = 1e3 * DisplayUnit::MILLIMETRE.of(rms);
+        format!("Root mean square of what is left of the position: {} um.", significant(micrometres, 3))
+    }));
+    if found.independent < 1.0 {
+        sentences.push(format!(
+            "Neighbouring residuals are alike: as few as {} % of them count as independent, and the intervals are wider for it.",
+            significant(100.0 * found.independent, 2)
+        ));
+    }
+    if !found.has_converged() {
+        sentences.push("The search has not converged.".to_string());
+    }
+    sentences
+}

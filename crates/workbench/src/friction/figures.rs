@@ -1,0 +1,106 @@
+use super::{FrictionIdentification, PressedCurve, PressedRows, SteadyPoint};
+use crate::figure::{Curve, CurvePanel, CurveStyle, CurvesInput, Figure, Words, curves};
+use crate::quantity::DisplayUnit;
+
+/// The friction map, and the position over the force of each press.
+pub(crate) fn pictures(found: &FrictionIdentification) -> Vec<Figure> {
+    let presses = found.presses.iter().enumerate();
+    let pressed = presses.filter_map(|(index, press)| pressed(found, index, press));
+    map(found).into_iter().chain(pressed).collect()
+}
+
+fn panel(title: &str, height: f64, curves: Vec<Curve>, zero_line: bool) -> CurvePanel {
+    CurvePanel { title: title.to_string(), curves, marked: vec![], zero_line, height }
+}
+
+const CURVE_POINTS: u32 = 400;
+
+/// Friction over velocity, measured and by the curve; and over slow velocities alone.
+fn map(found: &FrictionIdentification) -> Option<Figure> {
+    let points = found.steady_points();
+    let fastest = points.iter().map(|point| point.velocity.abs()).fold(0.0, f64::max);
+    if points.is_empty() {
+        return None;
+    }
+    let shown = DisplayUnit::MILLIMETRE;
+    let measured = points.iter().map(|point| (shown.of(point.velocity), point.force)).collect();
+    let left = |point: &SteadyPoint| (shown.of(point.velocity), point.modelled - point.force);
+    let both = panel(
+        "Friction (N)",
+        220.0,
+        vec![curve(found, fastest, 1.0), curve(found, fastest, -1.0), dots(measured, 1)],
+        true,
+    );
+    let rest = panel("\u{394}F (N)", 76.0, vec![dots(points.iter().map(left).collect(), 1)], true);
+    let end = 1.05 * shown.of(fastest);
+    let input = CurvesInput {
+        x_title: "Velocity (mm/s)".to_string(),
+        x_range: [-end, end],
+        panels: vec![both, rest],
+        legend: vec![
+            ("constant velocities, recorded".to_string(), CurveStyle::Dots(1)),
+            ("identified curve".to_string(), CurveStyle::Line(0)),
+        ],
+    };
+    let caption = "Friction over velocity: recorded at constant velocities, the identified steady curve, and what it leaves.";
+    Some(curves(Words::new("friction_map", "Friction map", caption), &input))
+}
+
+fn dots(points: Vec<(f64, f64)>, series: usize) -> Curve {
+    Curve { points, style: CurveStyle::Dots(series) }
+}
+
+/// The identified curve of one way: finer where it is steep.
+fn curve(found: &FrictionIdentification, fastest: f64, way: f64) -> Curve {
+    let point = |step: u32| {
+        let share = f64::from(step) / f64::from(CURVE_POINTS);
+        let velocity = way * fastest * share * share * share;
+        (DisplayUnit::MILLIMETRE.of(velocity), found.lugre.curve.steady_force(velocity))
+    };
+    Curve { points: (1..=CURVE_POINTS).map(point).collect(), style: CurveStyle::Line(0) }
+}
+
+/// Position over force until the piston breaks away, and what is left of both over time.
+fn pressed(found: &FrictionIdentification, index: usize, press: &PressedRows) -> Option<Figure> {
+    let PressedCurve { forces, positions, modelled_forces, modelled_positions } =
+        found.pressed_curve(index)?;
+    let recording = found.recordings.get(press.recording)?;
+    let micrometres = |value: &f64| 1e3 * DisplayUnit::MILLIMETRE.of(*value);
+    let time = |row: usize| DisplayUnit::MILLISECOND.of(row as f64 * recording.time_step);
+    let over_time = |values: Vec<f64>| -> Vec<(f64, f64)> {
+        values.into_iter().enumerate().map(|(row, value)| (time(row), value)).collect()
+    };
+    let line = |points: Vec<(f64, f64)>| Curve { points, style: CurveStyle::Line(0) };
+    let less = |model: &[f64], shown: &[f64]| -> Vec<f64> {
+        model.iter().zip(shown).map(|(model, shown)| model - shown).collect()
+    };
+    let moved: Vec<f64> = positions.iter().map(micrometres).collect();
+    let modelled: Vec<f64> = modelled_positions.iter().map(micrometres).collect();
+    let rest = over_time(less(&modelled, &moved));
+    let force_rest = over_time(less(&modelled_forces, &forces));
+    let panels = vec![
+        panel("Force (N)", 110.0, vec![dots(over_time(forces), 1), line(over_time(modelled_forces))], false),
+        panel("\u{394}F (N)", 62.0, vec![dots(force_rest, 1)], true),
+        panel(
+            "Displacement (\u{b5}m)",
+            130.0,
+            vec![dots(over_time(moved), 1), line(over_time(modelled))],
+            false,
+        ),
+        panel("\u{394}x (\u{b5}m)", 62.0, vec![dots(rest, 1)], true),
+    ];
+    let input = CurvesInput {
+        x_title: "Time (ms)".to_string(),
+        x_range: [0.0, time(press.rows)],
+        panels,
+        legend: vec![
+            ("recorded".to_string(), CurveStyle::Dots(1)),
+            ("identified friction".to_string(), CurveStyle::Line(0)),
+        ],
+    };
+    let name = recording.file.rsplit(['/', '\\']).next().unwrap_or(&recording.file);
+    let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
+    let caption = "The piston is pressed and does not yet slide: force and displacement as recorded, by the identified friction, and what is left of both.";
+    let title = format!("Before the piston breaks away, {stem}");
+    Some(curves(Words::new(format!("pressed_{stem}"), title, caption), &input))
+}
