@@ -7,6 +7,7 @@ mod circles;
 mod citation;
 mod dependencies;
 mod equations;
+mod examples;
 mod golden;
 mod invariants;
 mod keys;
@@ -60,6 +61,7 @@ const CHECKS: &[(&str, Check)] = &[
     ("circles", circles::check),
     ("dependencies", dependencies::check),
     ("equations", equations::check),
+    ("examples", examples::check),
     ("golden", golden::check),
     ("invariants", invariants::check),
     ("keys", keys::check),

@@ -19,6 +19,19 @@ use crate::linear::LinearModel;
 ///
 /// # Errors
 /// A load path without the zero at the origin that makes Z finite there.
+///
+/// # Example
+/// A slow load feels the damper A_u^2/K_c of the valve's leakage, and the viscous friction.
+/// ```
+/// use phea_hydraulics::impedance::open_loop_impedance;
+/// use phea_hydraulics::linear::linear_model;
+/// use phea_hydraulics::reference_rig::nominal_plant;
+/// let plant = nominal_plant();
+/// let impedance = open_loop_impedance(&linear_model(&plant)?)?;
+/// let damper = plant.useful_area.powi(2) / plant.flow_pressure_coefficient;
+/// assert!((impedance.dc_gain() / (damper + plant.viscous_friction) - 1.0).abs() < 1e-9);
+/// # Ok::<(), phea_dynamics::linear::LinearError>(())
+/// ```
 pub fn open_loop_impedance(model: &LinearModel) -> Result<TransferFunction, LinearError> {
     let origin = Complex64::new(0.0, 0.0);
     let motion = &model.load_position;
@@ -43,6 +56,21 @@ pub fn open_loop_impedance(model: &LinearModel) -> Result<TransferFunction, Line
 /// # Errors
 /// A controller that is sampled or has dead time: the impedance is then not a rational
 /// function.
+///
+/// # Example
+/// A gain G divides what a slow load feels by 1 + G P(0).
+/// ```
+/// use phea_dynamics::linear::TransferFunction;
+/// use phea_hydraulics::impedance::{closed_loop_impedance, open_loop_impedance};
+/// use phea_hydraulics::linear::linear_model;
+/// use phea_hydraulics::reference_rig::nominal_plant;
+/// let model = linear_model(&nominal_plant())?;
+/// let [open, closed] =
+///     [open_loop_impedance(&model)?, closed_loop_impedance(&model, &TransferFunction::gain_only(1e-4))?];
+/// let divided = open.dc_gain() / (1.0 + 1e-4 * model.command.dc_gain());
+/// assert!((closed.dc_gain() / divided - 1.0).abs() < 1e-9);
+/// # Ok::<(), phea_dynamics::linear::LinearError>(())
+/// ```
 pub fn closed_loop_impedance(
     model: &LinearModel,
     controller: &TransferFunction,
@@ -89,6 +117,17 @@ pub fn closed_loop_load_motion(
 /// `None` when the path is unstable and there is no final value. The proposition needs leakage or
 /// feedback: with K_c = 0 and the command held still the denominator vanishes at the origin as
 /// well, and K_eq x_L0 stays.
+///
+/// # Example
+/// The leakage of the valve lets go of the force, although its command is held still.
+/// ```
+/// use phea_hydraulics::impedance::final_force_after_load_step;
+/// use phea_hydraulics::linear::linear_model;
+/// use phea_hydraulics::reference_rig::nominal_plant;
+/// let model = linear_model(&nominal_plant())?;
+/// assert_eq!(final_force_after_load_step(&model.load_position, 1e-3), Some(0.0));
+/// # Ok::<(), phea_dynamics::linear::LinearError>(())
+/// ```
 pub fn final_force_after_load_step(load_path: &TransferFunction, step: f64) -> Option<f64> {
     let path = load_path.without_common_factors(0.0);
     path.is_stable().then(|| path.dc_gain() * step)

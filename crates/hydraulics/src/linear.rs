@@ -14,9 +14,7 @@ mod dominance;
 mod first_order;
 pub(crate) mod polynomial;
 
-pub use decomposed::{
-    Decomposition, DecompositionError, MechanicalDamping, decompose, decomposed_model, decomposition_error,
-};
+pub use decomposed::{Decomposition, MechanicalDamping, decompose, decomposed_model};
 pub use difference::{ResponseDifference, response_difference};
 pub use dominance::{ModeShare, ShareAbsence, dominance};
 pub use first_order::{

@@ -142,6 +142,17 @@ pub fn benchmark_components() -> Components {
 }
 
 /// Nominal plant of Table 6.3, with K_S = 2e7 N/m.
+///
+/// # Example
+/// The valve with equal edges at null has the K_c of the table, to a unit of its last digit.
+/// ```
+/// use phea_hydraulics::reference_rig::{components, hose_line, nominal_plant, valve_with_equal_edges};
+/// use phea_hydraulics::servovalve::{SpoolDirection, control_coefficients};
+/// use phea_hydraulics::stiffness::StiffnessModel;
+/// let supply = components(hose_line(), StiffnessModel::Uniform).supply;
+/// let null = control_coefficients(&valve_with_equal_edges(), &supply, 0.0, 0.0, SpoolDirection::Mean);
+/// assert!((null.flow_pressure_coefficient - nominal_plant().flow_pressure_coefficient).abs() < 1e-15);
+/// ```
 pub fn nominal_plant() -> LinearParameters {
     LinearParameters {
         useful_area: USEFUL_AREA,

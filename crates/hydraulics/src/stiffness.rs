@@ -19,7 +19,7 @@ pub use length::{
     LineLength, hose_length_by_volume, hose_length_uniform, line_length_for_stiffness,
     stiffness_from_hose_length,
 };
-pub use range::{ModelDifference, StiffeningRange, StrokeStiffness, model_difference, stiffening_range};
+pub use range::{ModelDifference, StrokeStiffness, model_difference};
 
 use phea_dynamics::scalar::Scalar;
 

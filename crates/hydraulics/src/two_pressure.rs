@@ -152,6 +152,25 @@ impl TwoPressureModel {
 }
 
 /// Rates of all states, per second: the equations at the top of this module.
+///
+/// # Example
+/// At an operating point it rests: what is left of its rates is rounding.
+/// ```
+/// use phea_hydraulics::actuator::Actuator;
+/// use phea_hydraulics::line::StiffeningMember;
+/// use phea_hydraulics::operating_point::{Condition, SteadyLoad, operating_point};
+/// use phea_hydraulics::reference_rig::{components, hose_line};
+/// use phea_hydraulics::stiffness::StiffnessModel;
+/// use phea_hydraulics::two_pressure::{TwoPressureModel, rates};
+/// let actuator = Actuator::new(components(hose_line(), StiffnessModel::ByVolume))?;
+/// let point = operating_point(&actuator, 0.2, Condition::Load(SteadyLoad::Force(3e3)))?;
+/// let pressures = [point.pressure_a, point.pressure_b];
+/// let model = TwoPressureModel::new(&actuator, pressures, StiffeningMember::Nominal, 100.0);
+/// let (state, input) = model.at(&point);
+/// let rest = rates(&model, &state, &input);
+/// assert!(rest.velocity.abs() < 1e-6 && rest.pressure_a.abs() < 10.0 && rest.pressure_b.abs() < 10.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn rates<S: Scalar>(
     model: &TwoPressureModel<S>,
     state: &TwoPressureState<S>,

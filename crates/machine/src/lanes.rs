@@ -34,6 +34,69 @@ pub trait Fleet<'a> {
 ///
 /// # Errors
 /// [`SimulationError`] when a task does not fit its machine.
+///
+/// # Example
+/// Two machines that begin at rest stay at rest under the command that holds them.
+/// ```
+/// # use phea_dynamics::linear::TransferFunction;
+/// use phea_dynamics::simulation::{
+///     CommandedPlant, Input, InputSchedule, Observer, Outcome, Profile, Sensed, SimulationSettings, Task,
+/// };
+/// # use phea_hydraulics::actuator::Actuator;
+/// # use phea_hydraulics::machine::{Machine, MachineOptions};
+/// # use phea_hydraulics::operating_point::{Condition, SteadyLoad, operating_point};
+/// # use phea_hydraulics::reference_rig::{components, hose_line};
+/// # use phea_hydraulics::stiffness::StiffnessModel;
+/// # use phea_hydraulics::machine::MachineError;
+/// use phea_machine::{Control, Fleet, Watcher, force, one_by_one};
+/// struct Blind;
+/// impl Observer for Blind {
+///     fn wanted(&self) -> &[usize] {
+///         &[]
+///     }
+///     fn observe(&mut self, _time_s: f64, _states: &[f64], _inputs: &[f64]) {}
+/// }
+/// struct Pair<'a> {
+///     machine: &'a Machine,
+///     start: &'a [f64],
+///     course: &'a InputSchedule,
+///     left: usize,
+///     ends: Vec<Vec<f64>>,
+/// }
+/// impl<'a> Fleet<'a> for Pair<'a> {
+///     fn next(
+///         &mut self,
+///         _lane: usize,
+///         put: &mut dyn FnMut(&Machine) -> Result<(), MachineError>,
+///     ) -> Option<Task<'a, Watcher<'a>>> {
+///         self.left = self.left.checked_sub(1)?;
+///         put(self.machine).ok()?;
+///         let observer: Watcher<'a> = Box::new(Blind);
+///         Some(Task { start: self.start.to_vec(), course: self.course, sampler: None, observer })
+///     }
+///     fn done(&mut self, _lane: usize, outcome: Outcome) {
+///         self.ends.push(outcome.end);
+///     }
+///     fn goes_on(&mut self) -> bool {
+///         true
+///     }
+/// }
+/// let actuator = Actuator::new(components(hose_line(), StiffnessModel::ByVolume))?;
+/// let machine = Machine::new(&actuator, &MachineOptions::default())?;
+/// let point = operating_point(&actuator, 0.2, Condition::Load(SteadyLoad::Force(3e3)))?;
+/// let beginning = machine.rest(&point)?;
+/// let direct = TransferFunction::gain_only(1.0);
+/// let held = CommandedPlant::on_hold(Sensed::new(machine.clone(), &direct)?, &direct)?;
+/// // command, reference, and position and velocity of the load
+/// let held_inputs = [beginning.command, 0.0].into_iter().chain(beginning.inputs);
+/// let inputs = held_inputs.map(|value| Input::Value(Profile::constant(value))).collect();
+/// let course = InputSchedule { duration_s: 0.5, output_step_s: 0.1, inputs };
+/// let mut pair = Pair { machine: &machine, start: &beginning.state, course: &course, left: 2, ends: vec![] };
+/// one_by_one(&Control::Open(Box::new(held)), &mut pair, &SimulationSettings::default())?;
+/// assert_eq!(pair.ends.len(), 2);
+/// assert!(pair.ends.iter().all(|end| (force(&machine, end) - 3e3).abs() < 1e-3));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn one_by_one<'a>(
     control: &Control,
     fleet: &mut dyn Fleet<'a>,

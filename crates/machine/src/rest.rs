@@ -35,6 +35,34 @@ pub struct Rest {
 ///
 /// # Errors
 /// [`EquilibriumError`] where none is found.
+///
+/// # Example
+/// A controller that integrates lets the loop rest where the force is its reference, 2 kN, beside the
+/// 3 kN of the guess.
+/// ```
+/// # use phea_dynamics::controller::{Compensator, Controller, Element};
+/// # use phea_dynamics::linear::TransferFunction;
+/// # use phea_dynamics::simulation::{CommandedPlant, Sensed};
+/// # use phea_hydraulics::actuator::Actuator;
+/// # use phea_hydraulics::machine::{Machine, MachineOptions};
+/// # use phea_hydraulics::operating_point::{Condition, SteadyLoad, operating_point};
+/// # use phea_hydraulics::reference_rig::{components, hose_line};
+/// # use phea_hydraulics::stiffness::StiffnessModel;
+/// use phea_machine::{Control, HeldInputs, at_rest, force};
+/// let actuator = Actuator::new(components(hose_line(), StiffnessModel::ByVolume))?;
+/// let machine = Machine::new(&actuator, &MachineOptions::default())?;
+/// let point = operating_point(&actuator, 0.2, Condition::Load(SteadyLoad::Force(3e3)))?;
+/// let beginning = machine.rest(&point)?;
+/// let law = Element::ProportionalIntegral { proportional_gain: 1e-4, integral_gain: 1e-3 };
+/// let controller = Controller { feedback: Compensator::new(vec![law]), ..Controller::default() };
+/// let sensed = Sensed::new(machine.clone(), &TransferFunction::gain_only(1.0))?;
+/// let closed = CommandedPlant::in_loop(sensed, &controller, 0.0)?;
+/// let guess = [beginning.state.clone(), closed.controller_at_rest(2e3, 3e3, beginning.command)].concat();
+/// let standing = HeldInputs { reference_n: 2e3, command_v: 0.0, external_n: 0.0 };
+/// let rest = at_rest(&Control::Continuous(Box::new(closed)), &guess, &beginning, standing)?;
+/// assert!((rest.measured_n - 2e3).abs() < 1e-3 && (force(&machine, &rest.start) - 2e3).abs() < 1e-3);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn at_rest(
     control: &Control,
     guess: &[f64],

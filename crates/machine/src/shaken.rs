@@ -50,6 +50,29 @@ impl Control {
 
 /// Force on the load at a state of a machine, or at the beginning of a longer vector; NaN for fewer
 /// states.
+///
+/// # Example
+/// At rest the machine pushes with the force of its operating point; an amplitude of its state j times
+/// as large pushes with j times that force.
+/// ```
+/// # use num_complex::Complex64;
+/// # use phea_dynamics::portable::magnitude;
+/// # use phea_hydraulics::actuator::Actuator;
+/// # use phea_hydraulics::machine::{Machine, MachineOptions};
+/// # use phea_hydraulics::operating_point::{Condition, SteadyLoad, operating_point};
+/// # use phea_hydraulics::reference_rig::{components, hose_line};
+/// # use phea_hydraulics::stiffness::StiffnessModel;
+/// use phea_machine::{force, force_amplitude};
+/// let actuator = Actuator::new(components(hose_line(), StiffnessModel::ByVolume))?;
+/// let machine = Machine::new(&actuator, &MachineOptions::default())?;
+/// let point = operating_point(&actuator, 0.2, Condition::Load(SteadyLoad::Force(3e3)))?;
+/// let beginning = machine.rest(&point)?;
+/// assert!((force(&machine, &beginning.state) - 3e3).abs() < 1e-6);
+/// let turned: Vec<Complex64> = beginning.state.iter().map(|state| Complex64::I * state).collect();
+/// assert!(magnitude(force_amplitude(&machine, &turned) - Complex64::I * 3e3) < 1e-6);
+/// assert!(force(&machine, &[]).is_nan());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn force(machine: &Machine, state: &[f64]) -> f64 {
     let own: usize = Plant::<f64>::states(machine);
     state.get(..own).map_or(f64::NAN, |state| Plant::<f64>::measurement(machine, state, &[]))

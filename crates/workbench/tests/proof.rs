@@ -7,7 +7,7 @@ use phea_workbench::answer::Answer;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use phea_workbench::audit::{CERTIFICATE_FILE, CertificateError, check_certificate, read_certificate};
+use phea_workbench::audit::{CERTIFICATE_FILE, CertificateError, check_certificate};
 use phea_workbench::command::Request;
 use serde_json::Value;
 
@@ -137,7 +137,8 @@ fn a_certificate_is_read_as_it_was_written_and_refused_where_it_is_none() {
     let (_, text) = proven(example!("servo"), &[]);
     let answer = check_certificate(&text).unwrap();
     assert!(answer.affirmative && answer.text.contains("Every claim holds"));
-    assert_eq!(read_certificate(&text).unwrap().claims.len(), 7);
+    let object: Value = serde_json::from_str(&answer.json).unwrap();
+    assert_eq!(object["claims"].as_array().map(Vec::len), Some(7));
     // a claim that is not true: the ratio that is not exceeded is lowered
     let lowered = text.replacen("\"ratio\":0.99", "\"ratio\":0.89", 2);
     assert_ne!(lowered, text);

@@ -1,4 +1,4 @@
-//! A file stays below 500 lines and a function fits on a screen.
+//! A file stays below 500 lines, a function fits on a screen, and the overview on a few pages.
 
 use syn::spanned::Spanned;
 use syn::visit::{self, Visit};
@@ -8,6 +8,8 @@ use crate::repository::Repository;
 
 const LARGEST_FILE: usize = 500;
 const LONGEST_FUNCTION: usize = 60;
+/// Documents that are read as a whole, with the lines that they may have.
+const DOCUMENTS: [(&str, usize); 1] = [("ARCHITECTURE.md", 120)];
 
 pub(super) fn check(repository: &Repository) -> Vec<Violation> {
     let mut found: Vec<Violation> = repository
@@ -22,7 +24,13 @@ pub(super) fn check(repository: &Repository) -> Vec<Violation> {
     for (path, text) in repository.texts(|path| path.ends_with(".py")) {
         found.extend(python_functions(text).iter().filter_map(|function| check_function(path, function)));
     }
+    found.extend(DOCUMENTS.iter().filter_map(|document| check_document(repository, *document)));
     found
+}
+
+fn check_document(repository: &Repository, (path, most): (&str, usize)) -> Option<Violation> {
+    let lines = repository.text(path)?.lines().count();
+    (lines > most).then(|| Violation::new(path, 0, format!("{lines} lines, {most} are allowed: shorten it")))
 }
 
 fn check_file(path: &str, text: &str) -> Option<Violation> {
@@ -120,6 +128,15 @@ mod tests {
         assert!(messages("a.rs", &"// a\n".repeat(500)).is_empty());
         assert_eq!(messages("a.rs", &"// a\n".repeat(501)).len(), 1);
         assert_eq!(messages("a.py", &"# a\n".repeat(501)).len(), 1);
+    }
+
+    #[test]
+    fn the_overview_has_at_most_120_lines_and_other_documents_any() {
+        assert!(messages("ARCHITECTURE.md", &"line\n".repeat(120)).is_empty());
+        let longer = "line\n".repeat(121);
+        let found = messages("ARCHITECTURE.md", &longer);
+        assert_eq!(found, ["ARCHITECTURE.md: 121 lines, 120 are allowed: shorten it"]);
+        assert!(messages("CONTRIBUTING.md", &longer).is_empty());
     }
 
     #[test]

@@ -1,7 +1,11 @@
 //! Drives systems through their courses, one in each lane.
 
 mod joined;
+mod queued;
 
+pub use queued::drive;
+
+use super::Lane;
 use super::course::{Attention, Event, Observer, Outcome, SimulationError, SimulationSettings, Status};
 use super::growth::GrowthWatch;
 use super::history::NODES;
@@ -10,12 +14,8 @@ use super::method::{Extension, LOOKED_AT, StepInputs, Stepper};
 use super::passage::Passage;
 use super::propagator::Propagator;
 use super::quartic::Quartic;
-use super::rosenbrock::DIRECTIONS;
 use super::slot::Slot;
-use super::task::{Queue, Task, check};
-use super::vector::can_drive;
-use super::{Lane, System};
-use crate::scalar::{Dependence, Dual};
+use super::task::{Task, check};
 
 /// All lanes and the method they share.
 struct Drive<'a, S, O> {
@@ -53,65 +53,6 @@ struct ErrorBetween<S> {
     /// Indicators at the end of the step.
     ends: Vec<S>,
     waves: Vec<S>,
-}
-
-/// Drives every machine of a queue to its end. A lane that is done takes the next machine; each has
-/// its own time, step and breaks, and its outcome does not depend on its neighbours.
-///
-/// # Errors
-/// [`SimulationError`] when a task does not fit the system.
-pub fn drive<'a, S, E, Q>(
-    system: &mut E,
-    queue: &mut Q,
-    settings: &SimulationSettings,
-) -> Result<(), SimulationError>
-where
-    S: Lane,
-    E: System<S>,
-    Q: Queue<'a, E>,
-    Dependence: From<S>,
-    Dual<DIRECTIONS, S>: From<f64> + From<S>,
-{
-    let tolerance = settings.tolerance;
-    if !(tolerance > 0.0 && tolerance < 1.0) {
-        let requirement = "above 0 and below 1";
-        return Err(SimulationError::Setting { what: "tolerance", value: tolerance, requirement });
-    }
-    if !can_drive::<S>() {
-        return Err(SimulationError::NoVectors);
-    }
-    let mut drive = Drive::new(&*system, settings)?;
-    let mut empty = false;
-    loop {
-        for lane in 0..S::COUNT {
-            if drive.slots[lane].is_none() && !empty {
-                match queue.next(system, lane) {
-                    Some(task) => drive.enter(&*system, lane, task)?,
-                    None => empty = true,
-                }
-            }
-        }
-        if drive.slots.iter().all(Option::is_none) {
-            return Ok(());
-        }
-        drive.step(&*system);
-        drive.limit_work();
-        let mut running = drive.slots.iter().enumerate().filter_map(|(lane, slot)| {
-            let passage = &slot.as_ref()?.passage;
-            passage.status.is_none().then_some((lane, passage.time_s))
-        });
-        if !running.all(|(lane, time_s)| queue.goes_on(lane, time_s)) {
-            empty = true;
-            for Slot { passage, .. } in drive.slots.iter_mut().flatten() {
-                passage.status.get_or_insert(Status::Cancelled { time_s: passage.time_s });
-            }
-        }
-        for lane in 0..S::COUNT {
-            if let Some((outcome, observer)) = drive.leave(lane) {
-                queue.done(lane, outcome, observer);
-            }
-        }
-    }
 }
 
 impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {

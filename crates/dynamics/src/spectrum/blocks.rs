@@ -27,6 +27,20 @@ pub struct Blocks {
 ///
 /// Whole periods have no leakage: the lines are exact, and what differs from period to period is
 /// noise.
+///
+/// # Example
+/// Three periods of a cosine of four samples, and an output of twice its size a sample later: a
+/// quarter of a turn behind, -2j.
+/// ```
+/// use phea_dynamics::spectrum::periods;
+/// let input = [1.0, 0.0, -1.0, 0.0].repeat(3);
+/// let output = [0.0, 2.0, 0.0, -2.0].repeat(3);
+/// let blocks = periods([&input, &output], 0.1, 4, 0).ok_or("too short")?;
+/// let [point] = blocks.points()[..] else { panic!("a line between the mean and half of the sampling frequency") };
+/// assert!((point.frequency - 2.0 * std::f64::consts::PI / 0.4).abs() < 1e-12);
+/// assert!(point.response.re.abs() < 1e-12 && (point.response.im + 2.0).abs() < 1e-12);
+/// # Ok::<(), &str>(())
+/// ```
 pub fn periods(signals: [&[f64]; 2], time_step: f64, period: usize, settling: usize) -> Option<Blocks> {
     let count = signals[0].len().min(signals[1].len());
     let repeats = count.checked_sub(settling)?.checked_div(period)?;
@@ -55,6 +69,24 @@ pub fn periods(signals: [&[f64]; 2], time_step: f64, period: usize, settling: us
 /// ```
 ///
 /// K segments that overlap count as n_d independent ones: Welch (1967).
+///
+/// # Example
+/// Whatever the input, an output of three times its size has the response 3 at every frequency, and
+/// nothing else is in it.
+/// ```
+/// use phea_dynamics::random::{normal, stream};
+/// use phea_dynamics::spectrum::segments;
+/// let mut state = stream(1, 0);
+/// let input: Vec<f64> = (0..256).map(|_| normal(&mut state)).collect();
+/// let output: Vec<f64> = input.iter().map(|value| 3.0 * value).collect();
+/// let blocks = segments([&input, &output], 0.01, 64).ok_or("too short")?;
+/// assert_eq!(blocks.count(), 7);
+/// for point in blocks.points() {
+///     assert!((point.response.re - 3.0).abs() < 1e-12 && point.response.im.abs() < 1e-12);
+///     assert!((point.coherence - 1.0).abs() < 1e-12);
+/// }
+/// # Ok::<(), &str>(())
+/// ```
 pub fn segments(signals: [&[f64]; 2], time_step: f64, length: usize) -> Option<Blocks> {
     let count = signals[0].len().min(signals[1].len());
     let step = length / 2;
@@ -93,11 +125,6 @@ impl Blocks {
     /// How many there are.
     pub fn count(&self) -> usize {
         self.lines.len()
-    }
-
-    /// rad/s between neighbouring lines.
-    pub fn spacing(&self) -> f64 {
-        self.spacing
     }
 
     /// The response at each line but that of the mean.

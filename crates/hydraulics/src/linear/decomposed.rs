@@ -3,7 +3,7 @@ use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_dynamics::portable;
 use phea_dynamics::scalar::Scalar;
 
-use super::{LinearParameters, ResponseDifference, linear_model, response_difference};
+use super::LinearParameters;
 
 /// Which damping the mechanical factor has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -117,40 +117,6 @@ pub fn decomposed_model(
     let factors = decompose(parameters, damping);
     let gain = factors.hydraulic_gain * factors.mechanical_square * factors.valve_square;
     TransferFunction::from_factors(gain, Vec::new(), factors.poles())
-}
-
-/// The error of the decomposition compared with the fifth-order model.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DecompositionError {
-    /// Largest differences over the frequencies asked for.
-    pub over_band: ResponseDifference,
-    /// Resonance of the piston between its springs, |p| of the decomposition's mechanical poles, in
-    /// rad/s.
-    pub resonance: f64,
-    /// Largest differences within five half-widths of the resonance.
-    pub at_resonance: ResponseDifference,
-}
-
-/// Largest differences of [`decomposed_model`] from the fifth-order model, over these frequencies
-/// in rad/s and around the piston's resonance (where a fixed grid would step over the peak).
-///
-/// # Errors
-/// As [`linear_model`].
-pub fn decomposition_error(
-    parameters: &LinearParameters,
-    damping: MechanicalDamping,
-    frequencies: &[f64],
-) -> Result<DecompositionError, LinearError> {
-    let full = linear_model(parameters)?.command;
-    let decomposed = decomposed_model(parameters, damping)?;
-    let compare = |frequencies: &[f64]| {
-        response_difference(frequencies, |w| full.at_frequency(w), |w| decomposed.at_frequency(w))
-    };
-    let factors = decompose(parameters, MechanicalDamping::Corrected);
-    let resonance = factors.mechanical_square.sqrt();
-    let width = (2.5 * factors.mechanical_damping).min(0.5 * resonance);
-    let around: Vec<f64> = (-200..=200).map(|step| resonance + width * f64::from(step) / 200.0).collect();
-    Ok(DecompositionError { over_band: compare(frequencies), resonance, at_resonance: compare(&around) })
 }
 
 /// Roots of s^2 + d s + c, without cancellation when they are real and far apart.

@@ -62,34 +62,6 @@ impl ChamberCompliance<f64> {
     }
 }
 
-/// Stiffness over the stroke for the softest, nominal and stiffest member of the hoses' stiffening
-/// interval.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StiffeningRange {
-    /// With the smallest r_beta.
-    pub minimum: StrokeStiffness,
-    /// With the nominal r_beta.
-    pub nominal: StrokeStiffness,
-    /// With the largest r_beta.
-    pub maximum: StrokeStiffness,
-}
-
-/// Stiffness over the stroke for each member of the hoses' stiffening interval; all equal for pipes
-/// and volumes.
-pub fn stiffening_range(
-    model: StiffnessModel,
-    fluid_modulus: f64,
-    cylinder: &Cylinder,
-    lines: [&Line; 2],
-) -> StiffeningRange {
-    let of = |member| chamber_compliance(model, [fluid_modulus; 2], cylinder, lines, member).over_stroke();
-    StiffeningRange {
-        minimum: of(StiffeningMember::Minimum),
-        nominal: of(StiffeningMember::Nominal),
-        maximum: of(StiffeningMember::Maximum),
-    }
-}
-
 /// The two stiffness models side by side: the numbers of one sentence. Units: N/m, 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ModelDifference {

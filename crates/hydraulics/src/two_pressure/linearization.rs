@@ -117,6 +117,37 @@ pub fn linearize(parameters: &TwoPressureLinearParameters) -> Result<StateSpace,
 /// From the equations at the top of [`crate::two_pressure`]; sixth order. At mid stroke of a
 /// symmetric cylinder with equal edges Y_A = Y_B is a common factor, and what is left is thesis
 /// (6.7).
+///
+/// # Example
+/// Against a load that stands still the flow of each chamber is zero, and its pressure K_q/K_c per
+/// volt: the force per volt is A_A K_qA/K_cA + A_B K_qB/K_cB.
+/// ```
+/// use phea_hydraulics::actuator::Actuator;
+/// use phea_hydraulics::line::StiffeningMember;
+/// use phea_hydraulics::linear::transfer_functions;
+/// use phea_hydraulics::operating_point::{Condition, SteadyLoad, operating_point};
+/// use phea_hydraulics::reference_rig::{components, hose_line};
+/// use phea_hydraulics::servovalve::SpoolDirection;
+/// use phea_hydraulics::stiffness::StiffnessModel;
+/// use phea_hydraulics::two_pressure::{
+///     TwoPressureModel, linearize, two_pressure_coefficients, two_pressure_linear_parameters,
+/// };
+/// let actuator = Actuator::new(components(hose_line(), StiffnessModel::ByVolume))?;
+/// let point = operating_point(&actuator, 0.2, Condition::Load(SteadyLoad::Force(3e3)))?;
+/// let pressures = [point.pressure_a, point.pressure_b];
+/// let model = TwoPressureModel::new(&actuator, pressures, StiffeningMember::Nominal, 100.0);
+/// let parameters = two_pressure_linear_parameters(&model, &point, SpoolDirection::Mean);
+/// let ([area_a, area_b], chambers) = (parameters.areas, parameters.chambers);
+/// let expected = area_a * chambers.flow_gain_a / chambers.flow_pressure_a
+///     + area_b * chambers.flow_gain_b / chambers.flow_pressure_b;
+/// let rational = transfer_functions(&two_pressure_coefficients(&parameters))?.command;
+/// assert!((rational.dc_gain() / expected - 1.0).abs() < 1e-9);
+/// // the matrices say the same
+/// let [command, force] = [0, 0];
+/// let matrices = linearize(&parameters)?.at_frequency(0.0, command, force)?;
+/// assert!((matrices.re / expected - 1.0).abs() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn two_pressure_coefficients<S: Scalar>(
     parameters: &TwoPressureLinearParameters<S>,
 ) -> PlantCoefficients<S> {

@@ -58,6 +58,28 @@ pub struct Reduction {
 ///
 /// # Errors
 /// Coefficients that are not finite, or without frequencies.
+///
+/// # Example
+/// Exact at mid stroke of the symmetric cylinder where the edges of the valve are equal.
+/// ```
+/// use phea_hydraulics::actuator::{Actuator, Components};
+/// use phea_hydraulics::line::StiffeningMember;
+/// use phea_hydraulics::operating_point::{Condition, SteadyLoad, operating_point};
+/// use phea_hydraulics::reference_rig::{components, hose_line, valve_with_equal_edges};
+/// use phea_hydraulics::servovalve::SpoolDirection;
+/// use phea_hydraulics::stiffness::StiffnessModel;
+/// use phea_hydraulics::two_pressure::{TwoPressureModel, reduction, two_pressure_linear_parameters};
+/// let rig = components(hose_line(), StiffnessModel::ByVolume);
+/// let actuator = Actuator::new(Components { valve: valve_with_equal_edges(), ..rig })?;
+/// let point = operating_point(&actuator, 0.25, Condition::Load(SteadyLoad::Force(0.0)))?;
+/// let pressures = [point.pressure_a, point.pressure_b];
+/// let model = TwoPressureModel::new(&actuator, pressures, StiffeningMember::Nominal, 100.0);
+/// let parameters = two_pressure_linear_parameters(&model, &point, SpoolDirection::Mean);
+/// let reduced = reduction(&parameters, &[1.0, 10.0, 100.0, 1000.0])?;
+/// assert!((reduced.static_gain_ratio - 1.0).abs() < 1e-6);
+/// assert!(reduced.command.magnitude_db < 1e-5 && reduced.load_motion.magnitude_db < 1e-5);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn reduction(
     parameters: &TwoPressureLinearParameters,
     frequencies: &[f64],

@@ -233,16 +233,6 @@ impl FrequencyBounds {
     }
 }
 
-impl CombinedBound {
-    /// The specifications that forbid a gain at a phase of the bound, given by its place there.
-    pub fn forbidding(&self, place: usize, gain: f64) -> Vec<usize> {
-        let forbids = |part: &&SpecificationBound| {
-            part.bound.forbidden.get(place).is_some_and(|forbidden| forbidden.contains(gain))
-        };
-        self.parts.iter().filter(forbids).map(|part| part.specification).collect()
-    }
-}
-
 fn union_of<'a>(parts: impl Iterator<Item = &'a GainIntervals>) -> GainIntervals {
     GainIntervals::union_of(parts.flat_map(GainIntervals::intervals).copied().collect())
 }

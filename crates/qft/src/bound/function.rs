@@ -122,11 +122,6 @@ impl BoundFunction {
         Ok(function)
     }
 
-    /// rad/s
-    pub fn frequency_rad_per_s(&self) -> f64 {
-        self.frequency_rad_per_s
-    }
-
     /// The gains |L0| that are forbidden at a phase of L0 in rad, as ratios.
     pub fn forbidden(&self, phase_rad: f64) -> GainIntervals {
         self.forbidden_towards(Complex64::new(portable::cos(phase_rad), portable::sin(phase_rad)))

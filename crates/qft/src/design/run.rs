@@ -78,6 +78,50 @@ struct LearntPlants {
 /// # Errors
 /// [`LoopDesignError`] where a part of the problem is no transfer function, or cannot be put into
 /// the loop. A watch that stops it is no error.
+///
+/// # Example
+/// 1/s and 4/s are to have |S| <= 1/2 at up to 1 rad/s. With a gain g that is g k >= sqrt(3)
+/// at the smallest k.
+/// ```
+/// # use phea_dynamics::controller::Timing;
+/// # use phea_dynamics::linear::TransferFunction;
+/// # use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant};
+/// # use phea_dynamics::watch::unwatched;
+/// use phea_qft::design::quantization::CoefficientFormat;
+/// use phea_qft::design::*;
+/// # use phea_qft::family::{Extent, Family, UncertainFamily};
+/// use phea_qft::loop_shaping::Structure;
+/// # use phea_qft::specification::{Limit, Requirement, Specification};
+/// # use phea_qft::verification::TOLERANCE_DB;
+/// # let gain = UncertainParameter { name: "k".into(), nominal: 1.0, minimum: 1.0, maximum: 4.0 };
+/// # let plant = UncertainPlant::record(vec![gain], |p| {
+/// #     let command = RationalCoefficients { numerator: vec![p[0]], denominator: vec![1.0.into(), 0.0.into()] };
+/// #     PlantCoefficients { command, disturbance: None, dead_time_s: 0.0.into(), rate: None }
+/// # })?;
+/// # let members = vec![vec![1.0], vec![4.0]];
+/// # let family = Family::Uncertain(UncertainFamily::new(plant, vec![], members, Extent::Members)?);
+/// let requirement = Requirement::Sensitivity(Limit::Constant(0.5));
+/// let problem = DesignProblem {
+///     family, // 1/s, 4/s
+///     beside: vec![],
+///     sensor: TransferFunction::gain_only(1.0),
+///     timing: Timing::default(),
+///     specifications: vec![Specification { requirement, frequencies_rad_per_s: vec![1.0], band_rad_per_s: [0.0, 1.0] }],
+///     minimum_delay_margin_s: 0.0,
+/// };
+/// let gain_alone = Structure { sign: 1.0, gain: [0.01, 100.0], parts: vec![] };
+/// let options = DesignOptions {
+///     objective: Objective::LeastHighFrequencyGain,
+///     controller: ControllerChoice::Given(gain_alone),
+///     prefilter: PrefilterChoice::None,
+///     seed: 1, tolerance_db: TOLERANCE_DB, coefficients: CoefficientFormat::Double,
+/// };
+/// let found = design(&problem, &options, &mut unwatched)?.design.ok_or("none was found")?;
+/// assert_eq!(found.status, DesignStatus::Met);
+/// let gain = found.controller.feedback.transfer_function()?.gain();
+/// assert!((gain / f64::sqrt(3.0) - 1.0).abs() < 1e-2);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn design(
     problem: &DesignProblem,
     options: &DesignOptions,

@@ -23,6 +23,49 @@ pub(crate) type TabulatedPoint = (f64, [Complex64; 2]);
 /// The response between two frequencies in rad/s, at points so dense that the value that
 /// [`MeasuredPlant::response`] interpolates halfway between any two of them has at most this
 /// relative error ([`FINE`] is 0.2 %), for searches that evaluate it thousands of times.
+///
+/// # Example
+/// exp(-s/10)/(s + 1), known by its response: the table is that response to 0.2 %, between its points
+/// too.
+/// ```
+/// use num_complex::Complex64;
+/// use phea_dynamics::analytic::Disc;
+/// use phea_dynamics::portable::{exp_complex, magnitude};
+/// use phea_dynamics::uncertain_plant::responding::RespondingPlant;
+/// use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients};
+/// use phea_qft::family::{FINE, tabulated};
+/// #[derive(Debug)]
+/// struct LateLag;
+/// impl RespondingPlant for LateLag {
+///     fn response(&self, w: f64) -> [Complex64; 2] {
+///         [exp_complex(Complex64::new(0.0, -0.1 * w)) / Complex64::new(1.0, w); 2]
+///     }
+///     fn unstable_poles(&self) -> Option<usize> {
+///         Some(0)
+///     }
+/// #     fn enclosure(&self, _: [f64; 2]) -> Disc {
+/// #         Disc::WHOLE
+/// #     }
+/// #     fn slow(&self) -> PlantCoefficients<f64> {
+/// #         let command = RationalCoefficients { numerator: vec![1.0], denominator: vec![1.0, 1.0] };
+/// #         PlantCoefficients { command, disturbance: None, dead_time_s: 0.1, rate: None }
+/// #     }
+/// #     fn roll_off(&self, _: f64) -> Option<f64> {
+/// #         None
+/// #     }
+/// #     fn range_rad_per_s(&self) -> [f64; 2] {
+/// #         [0.01, 100.0]
+/// #     }
+/// #     fn echo_s(&self) -> f64 {
+/// #         0.1
+/// #     }
+/// }
+/// let table = tabulated(&LateLag, [0.01, 100.0], FINE);
+/// let (told, _) = table.response(3.21).ok_or("within the table")?;
+/// let [truth, _] = LateLag.response(3.21);
+/// assert!(magnitude(told / truth - 1.0) < 2e-3);
+/// # Ok::<(), &str>(())
+/// ```
 pub fn tabulated(plant: &dyn RespondingPlant, range: [f64; 2], tolerance: f64) -> MeasuredPlant {
     let points = points(|frequency| Some(plant.response(frequency)), range, tolerance);
     let unstable_poles = plant.unstable_poles();

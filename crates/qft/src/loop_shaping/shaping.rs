@@ -87,7 +87,6 @@ pub struct Shaping {
     prefilter: Option<Structure>,
     objective: Objective,
     samples: Samples,
-    relaxation_db: f64,
     response: StructureResponse,
     prefilter_response: Option<StructureResponse>,
     bounds: Vec<[f64; 2]>,
@@ -148,15 +147,8 @@ impl Shaping {
             prefilter,
             objective,
             samples,
-            relaxation_db: 0.0,
             around: ColumnLoop::default(),
         })
-    }
-
-    /// Raises every upper limit by this much and lowers every lower one; a required delay is
-    /// reduced by as many dB.
-    pub fn relax(&mut self, relaxation_db: f64) {
-        self.relaxation_db = relaxation_db;
     }
 
     /// The structure.
@@ -343,7 +335,7 @@ impl Shaping {
         stable: bool,
         instability: f64,
     ) -> Judgement {
-        let worst_margin_db = self.look(forward).worst_db + self.relaxation_db;
+        let worst_margin_db = self.look(forward).worst_db;
         let (objective_db, _) = self.objective(x, forward, &[]);
         Judgement { objective_db, worst_margin_db, stable, instability }
     }
@@ -393,7 +385,7 @@ impl Shaping {
                 slopes.iter_mut().zip(of_prefilter).for_each(|(slope, more)| *slope += more);
                 rows.push(MarginRow {
                     sample: sample_number(index, number, plants, &found),
-                    margin_db: found.margin_db + demand.rate() * self.relaxation_db,
+                    margin_db: found.margin_db,
                     rate: demand.rate(),
                     slopes,
                 });
@@ -403,7 +395,7 @@ impl Shaping {
         let delays = delays.filter(|margin| margin.value_db.is_finite()).enumerate();
         rows.extend(delays.map(|(number, margin)| MarginRow {
             sample: usize::MAX - number,
-            margin_db: margin.value_db + self.relaxation_db,
+            margin_db: margin.value_db,
             rate: 1.0,
             slopes: along(&margin.terms, own, dimension),
         }));

@@ -193,25 +193,10 @@ impl PrefilterBand {
         self.relative_degree
     }
 
-    /// The point where the family uses the largest share of the allowed spread. (The width itself
-    /// vanishes wherever the limits meet, as they do at zero frequency.)
-    pub fn tightest(&self) -> Option<&PrefilterBandPoint> {
-        let share = |point: &PrefilterBandPoint| point.width_db() / point.allowed_db;
-        let resolved = self.points.iter().filter(|point| point.is_resolved());
-        resolved.min_by(|left, right| share(left).total_cmp(&share(right)))
-    }
-
     /// Where the band is narrowest, if it is so narrow that a margin of minus this many decibels at
     /// both edges is not enough.
     pub fn closed(&self, tolerance_db: f64) -> Option<&PrefilterBandPoint> {
         let narrowest = self.points.iter().min_by(|left, right| left.width_db().total_cmp(&right.width_db()));
         narrowest.filter(|point| point.width_db() < -2.0 * tolerance_db.max(RESOLVED_DB))
-    }
-}
-
-impl PrefilterBandPoint {
-    /// Whether the limits differ by more than rounding.
-    pub(super) fn is_resolved(&self) -> bool {
-        self.allowed_db > RESOLVED_DB || self.width_db() < -RESOLVED_DB
     }
 }

@@ -83,6 +83,61 @@ pub enum Rejection {
 ///
 /// # Errors
 /// [`Rejection`] with the number of the claim, from 1, that is not shown.
+///
+/// # Example
+/// The certificate that k/s with k from 1 to 4, closed with gain 1, keeps |T| to 1.2 is right; one that claims 0.9 is not,
+/// since |T| is 1 at zero frequency, and neither is one that claims nothing.
+/// ```
+/// # use phea_dynamics::controller::Controller;
+/// # use phea_dynamics::linear::TransferFunction;
+/// # use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant};
+/// # use phea_dynamics::watch::unwatched;
+/// # use phea_qft::audit::audit;
+/// # use phea_qft::closed_loop::Compensation;
+/// # use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, vertices};
+/// use phea_qft::proof::{Certificate, Claim, ProofOptions, Rejection, check, prove};
+/// # use phea_qft::specification::{Limit, Requirement, Specification};
+/// # use phea_qft::verification::{AuditProblem, TOLERANCE_DB, TrackingJudgement};
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// # let gain = UncertainParameter { name: "k".into(), nominal: 1.0, minimum: 1.0, maximum: 4.0 };
+/// # let plant = UncertainPlant::record(vec![gain], |p| PlantCoefficients {
+/// #     command: RationalCoefficients { numerator: vec![p[0]], denominator: vec![1.0.into(), 0.0.into()] },
+/// #     disturbance: None,
+/// #     dead_time_s: 0.0.into(),
+/// #     rate: None,
+/// # })?;
+/// # let coordinate = Coordinate { parameters: vec![0], opposed: vec![], spacing: vec![Spacing::Linear], points: 2 };
+/// # let members = vertices(&plant, &[coordinate.clone()])?;
+/// # let family = Family::Uncertain(UncertainFamily::new(plant, vec![coordinate], members, Extent::Box)?);
+/// # let compensation = Compensation::new(&Controller::default(), TransferFunction::gain_only(1.0))?;
+/// # let specifications = [Specification {
+/// #     requirement: Requirement::RobustStability(Limit::Constant(1.2)),
+/// #     frequencies_rad_per_s: vec![1.0],
+/// #     band_rad_per_s: [0.0, f64::INFINITY],
+/// # }];
+/// # let problem = AuditProblem {
+/// #     family: &family,
+/// #     compensation: &compensation,
+/// #     specifications: &specifications,
+/// #     tracking: TrackingJudgement::Magnitude,
+/// #     tolerance_db: TOLERANCE_DB,
+/// # };
+/// # let found = audit(&problem, &mut unwatched)?;
+/// let proof = prove(&problem, &found, ProofOptions::default(), &mut unwatched)?;
+/// let certificate = proof.certificate.ok_or("polynomial")?;
+/// assert_eq!(check(&certificate), Ok(()));
+/// let mut tampered = certificate.clone();
+/// for claim in &mut tampered.claims {
+///     if let Claim::Limited { ratio, .. } = claim {
+///         *ratio = 0.9 / 1.2;
+///     }
+/// }
+/// assert!(check(&tampered).is_err());
+/// let empty = Certificate { claims: vec![], ..certificate };
+/// assert_eq!(check(&empty), Err((1, Rejection::NoClaim)));
+/// # Ok(())
+/// # }
+/// ```
 pub fn check(certificate: &Certificate) -> Result<(), (usize, Rejection)> {
     if certificate.claims.is_empty() {
         return Err((1, Rejection::NoClaim));

@@ -54,6 +54,58 @@ const WHOLE: [f64; 2] = [0.0, f64::INFINITY];
 ///
 /// # Errors
 /// [`Stopped`] by the watch.
+///
+/// # Example
+/// k/s with k from 1 to 4, closed with gain 1, is stable; its |T| reaches 1 at zero frequency, which
+/// keeps to 1.2 for every plant.
+/// ```
+/// # use phea_dynamics::controller::Controller;
+/// # use phea_dynamics::linear::TransferFunction;
+/// # use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant};
+/// # use phea_dynamics::watch::unwatched;
+/// # use phea_qft::audit::audit;
+/// # use phea_qft::closed_loop::Compensation;
+/// # use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, vertices};
+/// use phea_qft::proof::{ProofOptions, Standing, check, prove};
+/// use phea_qft::specification::{Limit, Requirement, Specification};
+/// use phea_qft::verification::{AuditProblem, TOLERANCE_DB, TrackingJudgement};
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// # let gain = UncertainParameter { name: "k".into(), nominal: 1.0, minimum: 1.0, maximum: 4.0 };
+/// # let plant = UncertainPlant::record(vec![gain], |p| PlantCoefficients {
+/// #     command: RationalCoefficients { numerator: vec![p[0]], denominator: vec![1.0.into(), 0.0.into()] },
+/// #     disturbance: None,
+/// #     dead_time_s: 0.0.into(),
+/// #     rate: None,
+/// # })?;
+/// # let coordinate = Coordinate { parameters: vec![0], opposed: vec![], spacing: vec![Spacing::Linear], points: 2 };
+/// # let members = vertices(&plant, &[coordinate.clone()])?;
+/// # let family = Family::Uncertain(UncertainFamily::new(plant, vec![coordinate], members, Extent::Box)?);
+/// # let compensation = Compensation::new(&Controller::default(), TransferFunction::gain_only(1.0))?;
+/// let specifications = [Specification {
+///     requirement: Requirement::RobustStability(Limit::Constant(1.2)),
+///     frequencies_rad_per_s: vec![1.0],
+///     band_rad_per_s: [0.0, f64::INFINITY],
+/// }];
+/// let problem = AuditProblem {
+///     family: &family,
+///     compensation: &compensation,
+///     specifications: &specifications,
+///     tracking: TrackingJudgement::Magnitude,
+///     tolerance_db: TOLERANCE_DB,
+/// };
+/// let found = audit(&problem, &mut unwatched)?;
+/// let options = ProofOptions::default();
+/// let proof = prove(&problem, &found, options, &mut unwatched)?;
+/// assert_eq!([&proof.stability, &proof.specifications[0].standing], [&Standing::Proven; 2]);
+/// // the greatest ratio, 1/1.2, lies within the enclosure
+/// let (least_db, most_db) = (proof.specifications[0].least_db, proof.specifications[0].most_db);
+/// let (least_db, most_db) = (least_db.ok_or("reached")?, most_db.ok_or("bounded")?);
+/// let ratio_db = -20.0 * f64::log10(1.2);
+/// assert!(least_db <= ratio_db + 1e-9 && ratio_db - 1e-9 <= most_db && most_db - least_db < 0.1);
+/// assert_eq!(check(&proof.certificate.ok_or("polynomial")?), Ok(()));
+/// # Ok(())
+/// # }
+/// ```
 pub fn prove(
     problem: &AuditProblem<'_>,
     audit: &Audit,

@@ -27,6 +27,37 @@ use crate::family::{Extent, Family, MeasuredFamily};
 /// # Errors
 /// [`TemplateError`] for tolerances that cannot be met, plants that cannot be sampled, measurements
 /// that do not reach, and a nominal plant that is zero or infinite.
+///
+/// # Example
+/// Two measured plants, 1 and 2j at 1 rad/s: the template is these two points.
+/// ```
+/// use num_complex::Complex64;
+/// # use phea_dynamics::controller::Controller;
+/// # use phea_dynamics::linear::TransferFunction;
+/// use phea_dynamics::portable::magnitude;
+/// # use phea_qft::closed_loop::Compensation;
+/// use phea_qft::family::{Family, MeasuredFamily, MeasuredPlant};
+/// use phea_qft::template::{TemplateOptions, template};
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let measured = |name: &str, response: Complex64| MeasuredPlant {
+///     name: name.into(),
+///     frequencies_rad_per_s: vec![0.5, 1.0, 2.0],
+///     command: vec![response; 3],
+///     disturbance: None,
+///     unstable_poles: 0,
+///     is_resolved: true,
+/// };
+/// let plants = vec![measured("one", Complex64::new(1.0, 0.0)), measured("other", Complex64::new(0.0, 2.0))];
+/// let family = Family::Measured(MeasuredFamily::new(plants)?);
+/// let compensation = Compensation::new(&Controller::default(), TransferFunction::gain_only(1.0))?;
+/// let built = template(&family, &compensation, 1.0, &TemplateOptions::default())?;
+/// let [one, other] = &built.template.points[..] else { panic!("two members") };
+/// assert!(magnitude(one.response - 1.0) < 1e-12);
+/// assert!(magnitude(other.response - Complex64::new(0.0, 2.0)) < 1e-12);
+/// assert_eq!((built.template.nominal, built.evaluations), (one.response, 2));
+/// # Ok(())
+/// # }
+/// ```
 pub fn template(
     family: &Family,
     compensation: &Compensation,

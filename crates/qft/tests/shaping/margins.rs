@@ -90,8 +90,6 @@ fn check(problem: &DesignProblem, structure: &Structure, x: &[f64], prefilter: O
     assert!(count > 30, "{count}");
     let judged = shaping.judge(x).worst_margin_db;
     assert!((judged - worst).abs() < 1e-9, "{judged} is not {worst}");
-    shaping.relax(1.5);
-    assert!((shaping.judge(x).worst_margin_db - worst - 1.5).abs() < 1e-9);
 }
 
 #[test]

@@ -26,14 +26,6 @@ fn file(loaded: &Loaded, certificate: &Certificate) -> OutputFile {
     OutputFile { name: CERTIFICATE_FILE.to_string(), bytes: format!("{text}\n").into_bytes() }
 }
 
-/// Reads the file of a certificate.
-///
-/// # Errors
-/// [`CertificateError`].
-pub fn read_certificate(text: &str) -> Result<Certificate, CertificateError> {
-    File::read(text)?.certificate()
-}
-
 /// Checks the file of a certificate: the answer is yes where every claim holds.
 ///
 /// # Errors

@@ -35,6 +35,44 @@ const PEAKS_MAXIMUM: usize = 80;
 ///
 /// # Errors
 /// A point that is not a plant of the family; a loop that cannot be formed.
+///
+/// # Example
+/// The ends of the band, the design frequency, and the undamped pole of k/(s^2 + 4) are looked at.
+/// ```
+/// # use phea_dynamics::controller::Timing;
+/// # use phea_dynamics::linear::TransferFunction;
+/// # use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant};
+/// # use phea_qft::design::DesignProblem;
+/// # use phea_qft::family::{Extent, Family, UncertainFamily};
+/// use phea_qft::loop_shaping::search_frequencies;
+/// # use phea_qft::specification::{Limit, Requirement, Specification};
+/// use phea_qft::verification::PlantPoint;
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// # let gain = UncertainParameter { name: "k".into(), nominal: 1.0, minimum: 1.0, maximum: 4.0 };
+/// # let plant = UncertainPlant::record(vec![gain], |p| PlantCoefficients {
+/// #     command: RationalCoefficients { numerator: vec![p[0]], denominator: vec![1.0.into(), 0.0.into(), 4.0.into()] },
+/// #     disturbance: None,
+/// #     dead_time_s: 0.0.into(),
+/// #     rate: None,
+/// # })?;
+/// let problem = DesignProblem {
+///     family: Family::Uncertain(UncertainFamily::new(plant, vec![], vec![], Extent::Box)?),
+///     beside: vec![],
+///     sensor: TransferFunction::gain_only(1.0),
+///     timing: Timing::default(),
+///     specifications: vec![Specification {
+///         requirement: Requirement::RobustStability(Limit::Constant(1.2)),
+///         frequencies_rad_per_s: vec![1.0],
+///         band_rad_per_s: [0.5, 10.0],
+///     }],
+///     minimum_delay_margin_s: 0.0,
+/// };
+/// let grid = search_frequencies(&problem, &[PlantPoint::Parameters(vec![1.0])], 20.0)?;
+/// assert!(grid.is_sorted() && [0.5, 1.0, 10.0].iter().all(|frequency| grid.contains(frequency)));
+/// assert!(grid.iter().any(|frequency| (frequency - 2.0).abs() < 1e-9));
+/// # Ok(())
+/// # }
+/// ```
 pub fn search_frequencies(
     problem: &DesignProblem,
     plants: &[PlantPoint],
