@@ -107,7 +107,7 @@ fn record(file: &str, bytes: Vec<u8>, piston_area: f64, findings: &mut Findings)
         VolumeSource::Flow => integral(&times, &values),
     };
     if from == VolumeSource::Flow && goes_back_and_forth(&times, &values, &volumes) {
-        let time_step = time_step(&table, time.as_ref()?, &times, findings)?;
+        let time_step = time_step(&table, time.as_ref()?, &times, "a frequency response", findings)?;
         table.close(findings);
         return Some(LineRecord::Response(SampledPair {
             file: file.to_string(),
