@@ -140,7 +140,7 @@ fn air_shows_as_a_modulus_that_grows_with_the_pressure() {
     let truth = modulus(35e5);
     let [low, high] =
         [0, 1].map(|end| found["effective_bulk_modulus_pa"]["confidence_95"][end].as_f64().unwrap());
-    // the law is no polynomial: half a percent at most beside three terms between 25 and 45 bar
+    // ORIGIN: analytic, the modulus of oil with air in a pipe. The law is no polynomial: half a percent at most beside three terms between 25 and 45 bar
     assert!(0.995 * low < truth && truth < 1.005 * high, "{low} {truth} {high}");
     let slope = (modulus(36e5) - modulus(34e5)) / 2e5;
     near(value(&found, "modulus_slope"), slope, 0.1);
