@@ -12,6 +12,7 @@ from scipy.integrate import solve_ivp
 from closed_loop import DEFAULTS
 
 # Spool, its rate, pressures A and B, load cell deflection, velocity, bristle, integral part, filtered reference, its rate.
+ATMOSPHERE = 101_325.0
 MAGNITUDES = np.array([1.0, 1e3, 1e5, 1e5, 1e-4, 1e-2, 1e-5, 1.0, 1e3, 1e5])
 
 
@@ -40,6 +41,20 @@ def flows(rig, spool, pressure_a, pressure_b):
     return into_a, into_b
 
 
+def gas_compliance(rig, pressure):
+    """-dV/dp of the gas at a chamber, m3/Pa; none where the rig has none.
+
+    The bladder lifts between 0.99 and 1.01 times the precharge, absolute.
+    """
+    if not hasattr(rig, "gas_volume"):
+        return 0.0
+    precharge, index, above = rig.precharge + ATMOSPHERE, rig.polytropic_exponent, pressure - rig.precharge
+    band = 0.01 * precharge
+    lifted = min(max((above + band) / (2 * band), 0.0), 1.0)
+    absolute = precharge + (above if above > band else band * lifted**2)
+    return lifted * rig.gas_volume / (index * precharge) * (precharge / absolute) ** (1 + 1 / index)
+
+
 def rates(time, state, rig, reference):
     spool, spool_rate, pressure_a, pressure_b, deflection, v, z, integral, r, r_rate = (state * MAGNITUDES).tolist()
     load_position, load_velocity = load(rig, time)
@@ -56,8 +71,8 @@ def rates(time, state, rig, reference):
     rate = [
         spool_rate,
         rig.valve_frequency**2 * (command - spool) - 2 * rig.valve_damping * rig.valve_frequency * spool_rate,
-        rig.chamber_modulus / volume_a * (into_a - rig.area_a * v),
-        rig.chamber_modulus / volume_b * (into_b + rig.area_b * v),
+        (into_a - rig.area_a * v) / (volume_a / rig.chamber_modulus + gas_compliance(rig, pressure_a)),
+        (into_b + rig.area_b * v) / (volume_b / rig.chamber_modulus + gas_compliance(rig, pressure_b)),
         v - load_velocity,
         (pull - friction - force) / rig.moving_mass,
         z_rate,
@@ -68,9 +83,9 @@ def rates(time, state, rig, reference):
     return np.array(rate) / MAGNITUDES
 
 
-def force(tolerance):
-    """The force each millisecond of 5 s, for the default rig."""
-    rig = SimpleNamespace(**DEFAULTS)
+def force(tolerance, **changes):
+    """The force each millisecond of 5 s, for the default rig with these changes."""
+    rig = SimpleNamespace(**{**DEFAULTS, **changes})
     state = np.zeros(10)
     state[2:4] = rig.start_pressure_a, rig.start_pressure_b
     state, times, forces = state / MAGNITUDES, np.round(np.arange(5001) * 1e-3, 6), [np.zeros(1)]

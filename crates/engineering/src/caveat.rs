@@ -3,9 +3,11 @@
 //! A simulation includes the whole machine. What the linear plant cannot represent is stated before
 //! the verdict; where a specification depends on it, the verdict is not proven.
 
+use phea_hydraulics::operating_point::OperatingPoint;
+
 use crate::project::{LineMotion, Load, Project, Pump, SupplyModel};
 use crate::quantity::DisplayUnit;
-use crate::rig::limits_load_motion;
+use crate::rig::{ChargedRange, accumulator_place, charged_range, limits_load_motion};
 use crate::setup::Setup;
 
 /// A declared effect that the linear loop does not include.
@@ -19,7 +21,7 @@ pub struct Caveat {
 
 /// Declared effects that no linear loop includes.
 pub fn caveats(setup: &Setup<'_>) -> Vec<Caveat> {
-    apart_from_lines(setup.project).chain(supply(setup)).collect()
+    apart_from_lines(setup.project).chain(supply(setup)).chain(accumulator(setup)).collect()
 }
 
 /// Declared effects that no linear model includes, in sentences.
@@ -94,6 +96,31 @@ fn supply(setup: &Setup<'_>) -> Option<Caveat> {
         ),
     };
     Some(Caveat { sentence, unproven: !rests })
+}
+
+/// The gas of accumulators is counted at the pressures of the operating point; where a force empties
+/// one of them, the actuator becomes as stiff as without it.
+fn accumulator(setup: &Setup<'_>) -> Option<Caveat> {
+    if is_measured(setup.project) {
+        return None;
+    }
+    let declared = setup.project.actuator.as_ref()?;
+    let ChargedRange { least, greatest } = charged_range(setup.rig().ok()?)?;
+    let [of_a, of_b] = accumulator_place(declared);
+    let newton = |point: OperatingPoint| DisplayUnit::KILONEWTON.text(point.hydraulic_force, 3);
+    let (place, beyond) = match (least, greatest) {
+        (None, None) => return None,
+        (Some(least), None) => (of_a, format!("below {}", newton(least))),
+        (None, Some(greatest)) => (of_b, format!("above {}", newton(greatest))),
+        (Some(least), Some(greatest)) => {
+            (of_a, format!("below {} and above {}", newton(least), newton(greatest)))
+        }
+    };
+    let sentence = format!(
+        "{place} is counted for small motions, with its gas at the pressures of the operating point: at forces {beyond} a chamber \
+         falls below the precharge, its gas is shut off, and only a simulation shows how stiff the actuator is then"
+    );
+    Some(Caveat { sentence, unproven: false })
 }
 
 /// Effects of the supply that the models of a linearisation do not include.

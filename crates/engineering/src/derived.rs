@@ -1,6 +1,7 @@
 //! Every quantity that follows from what a project declares, with its equation, and any
 //! contradiction with a declared one.
 
+mod accumulator;
 mod list;
 mod rig;
 mod valve;

@@ -11,6 +11,7 @@ use phea_dynamics::controller::{Controller, Timing};
 use phea_dynamics::frequency::{PassivityReport, logarithmic_grid, passivity};
 use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_dynamics::portable;
+use phea_hydraulics::actuator::Components;
 use phea_hydraulics::impedance::{
     Asymptote, closed_loop_impedance, closed_loop_load_motion, compliance_hidden_above,
     final_force_after_load_step, impedance_asymptotes, open_loop_impedance,
@@ -22,7 +23,7 @@ use phea_hydraulics::linear::{
 };
 use phea_hydraulics::plant::{ChamberDynamics, LinearLoad, LinearPlant};
 use phea_hydraulics::stiffness::{
-    ModelDifference, StiffnessModel, StrokeStiffness, chamber_compliance, model_difference,
+    ModelDifference, StiffnessModel, StrokeStiffness, hydraulic_stiffness, model_difference,
 };
 use phea_hydraulics::two_pressure::two_pressure_coefficients;
 
@@ -228,17 +229,17 @@ pub fn stroke_stiffness(rig: &Rig, member: StiffeningMember) -> StrokeStiffness 
 
 /// Stiffness at a position by either model.
 pub fn stiffness_at(rig: &Rig, model: StiffnessModel, member: StiffeningMember, position: f64) -> f64 {
-    let components = rig.actuator.components();
-    let lines = [&components.line_a, &components.line_b];
-    let chambers = chamber_compliance(model, fluid_moduli(rig), &components.cylinder, lines, member);
-    phea_hydraulics::stiffness::hydraulic_stiffness(&chambers, position)
+    let components = Components { stiffness_model: model, ..*rig.actuator.components() };
+    let chambers = components.chamber_compliance([rig.point.pressure_a, rig.point.pressure_b], member);
+    hydraulic_stiffness(&chambers, position)
 }
 
 /// Both stiffness models of a rig, nominal.
 pub fn stiffness_models(rig: &Rig) -> ModelDifference {
     let components = rig.actuator.components();
     let lines = [&components.line_a, &components.line_b];
-    model_difference(fluid_moduli(rig), &components.cylinder, lines, StiffeningMember::Nominal)
+    let gas = components.gas_compliance([rig.point.pressure_a, rig.point.pressure_b]);
+    model_difference(fluid_moduli(rig), &components.cylinder, lines, gas, StiffeningMember::Nominal)
 }
 
 /// Bulk modulus of the fluid on either side at the operating point, Pa.
@@ -304,10 +305,14 @@ pub fn stiffness_sentence(difference: &ModelDifference) -> String {
     };
     let percent = |share: f64| crate::quantity::significant(100.0 * share, 2);
     let ratios = [difference.minimum_ratio, difference.maximum_ratio];
+    let gas = match difference.gas_compliance_share {
+        0.0 => String::new(),
+        share => format!(" The gas of accumulators provides {} % of the compliance.", percent(share)),
+    };
     if ratios.iter().all(|ratio| (ratio - 1.0).abs() < AGREEMENT) {
         return format!(
             "K_H is {} over the stroke, by either stiffness model (uniform, by_volume): the lines are hardly softer \
-             than the oil, and {} % of the oil is in the chambers.",
+             than the oil, and {} % of the oil is in the chambers.{gas}",
             range(&difference.by_volume),
             percent(difference.chamber_volume_share)
         );
@@ -315,7 +320,7 @@ pub fn stiffness_sentence(difference: &ModelDifference) -> String {
     format!(
         "With one modulus for line and chamber (uniform) K_H is {} over the stroke; with the chamber's oil keeping its \
          own (by_volume) it is {}, {} times as stiff at its least: {} % of the oil is in the chambers, and only {} % \
-         of the compliance is the lines'.",
+         of the compliance is the lines'.{gas}",
         range(&difference.uniform),
         range(&difference.by_volume),
         crate::quantity::significant(difference.minimum_ratio, 3),

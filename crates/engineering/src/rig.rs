@@ -1,6 +1,7 @@
 //! From the declaration to the values for computing: the actuator as physics, its operating point,
 //! and every parameter of the linear model with its origin.
 
+mod accumulator;
 mod assembly;
 mod in_loop;
 mod lines;
@@ -26,6 +27,7 @@ use phea_hydraulics::two_pressure::{
 
 use crate::project::{self, Project};
 
+pub use accumulator::{ChargedRange, EmptyAccumulator, accumulator_place, charged_range};
 pub use assembly::{actuator, components};
 pub use in_loop::FeedForwardPath;
 pub(crate) use in_loop::as_response;
@@ -95,6 +97,9 @@ pub enum RigError {
     /// A line that its model cannot describe.
     #[error("[line] model: {0}")]
     Line(#[from] LineError),
+    /// An accumulator whose gas is shut off at the operating point.
+    #[error(transparent)]
+    Accumulator(#[from] EmptyAccumulator),
 }
 
 impl Rig {
@@ -132,6 +137,7 @@ impl Rig {
         let settled = supply.map_or(components.supply, |found| found.supply);
         let at_valve = Actuator::new(Components { supply: settled, ..*components })?;
         let point = operating_point(&at_valve, position, condition)?;
+        accumulator::charged(declared, &components.accumulators, &point)?;
         let pressures = [point.pressure_a, point.pressure_b];
         let supply = supply
             .map(|found| SettledSupply { settled: Settled { command: point.command, pressures }, ..found });

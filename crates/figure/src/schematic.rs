@@ -38,6 +38,8 @@ pub enum LineKind {
 pub struct LineSymbol {
     /// Kind.
     pub kind: LineKind,
+    /// Whether an accumulator is connected at the chamber.
+    pub has_accumulator: bool,
     /// Words, one row each, such as `hose 12.7 mm` and `1.5 m`; three rows at most.
     pub rows: Vec<String>,
 }

@@ -283,10 +283,12 @@ fn circuits() {
     repeat(9, |r| {
         let line = |r: &mut Random| LineSymbol {
             kind: if r.unit() < 0.5 { LineKind::Hose } else { LineKind::Pipe },
+            has_accumulator: r.unit() < 0.5,
             rows: r.many(5, Random::name),
         };
         let controller = |r: &mut Random| ControllerSymbol {
             has_prefilter: r.unit() < 0.5,
+            has_accumulator: r.unit() < 0.5,
             rows: r.many(5, Random::name),
         };
         let input = SchematicInput {

@@ -3,6 +3,7 @@
 
 use phea_dynamics::scalar::Scalar;
 
+use crate::accumulator::Accumulator;
 use crate::cylinder::Cylinder;
 use crate::fluid::Fluid;
 use crate::force_sensor::ForceSensor;
@@ -26,6 +27,8 @@ pub struct Components<S = f64> {
     pub line_a: Line<S>,
     /// The line between port B and chamber B.
     pub line_b: Line<S>,
+    /// Accumulators at chambers A and B: each has the pressure of its chamber.
+    pub accumulators: [Option<Accumulator<S>>; 2],
     /// The cylinder.
     pub cylinder: Cylinder<S>,
     /// Its friction.
@@ -37,12 +40,20 @@ pub struct Components<S = f64> {
 }
 
 impl<S: Scalar> Components<S> {
-    /// Compliance of both chambers with their lines, at chamber pressures in Pa (they matter with
-    /// entrained air alone).
+    /// Compliance of both chambers with their lines and accumulators, at chamber pressures in Pa
+    /// (they matter with entrained air and with accumulators alone).
     pub fn chamber_compliance(&self, pressures: [S; 2], member: StiffeningMember) -> ChamberCompliance<S> {
         let Components { fluid, line_a, line_b, cylinder, stiffness_model, .. } = self;
         let moduli = pressures.map(|pressure| fluid.modulus_at(pressure));
-        chamber_compliance(*stiffness_model, moduli, cylinder, [line_a, line_b], member)
+        let oil = chamber_compliance(*stiffness_model, moduli, cylinder, [line_a, line_b], member);
+        oil.with_gas(self.gas_compliance(pressures))
+    }
+
+    /// Compliance of the gas at either chamber in m3/Pa, at chamber pressures in Pa; `None` where
+    /// there is no accumulator.
+    pub fn gas_compliance(&self, [pressure_a, pressure_b]: [S; 2]) -> [Option<S>; 2] {
+        let [gas_a, gas_b] = self.accumulators;
+        [gas_a.map(|gas| gas.compliance(pressure_a)), gas_b.map(|gas| gas.compliance(pressure_b))]
     }
 }
 
@@ -68,12 +79,16 @@ impl Actuator {
     pub fn new(components: Components) -> Result<Actuator, ActuatorError> {
         let Components { fluid, supply, valve, line_a, line_b, cylinder, friction, force_sensor, .. } =
             components;
+        let accumulators = components.accumulators;
         let mut problems = Problems::default();
         problems.component("fluid", fluid.problems());
         problems.component("supply", supply.problems());
         problems.component("valve", valve.problems());
         problems.component("line.a", line_a.problems());
         problems.component("line.b", line_b.problems());
+        for (gas, path) in accumulators.iter().zip(["line.a.accumulator", "line.b.accumulator"]) {
+            problems.component(path, gas.map_or(Vec::new(), |gas| gas.problems()));
+        }
         problems.component("cylinder", cylinder.problems());
         problems.component("cylinder.friction", friction.problems());
         problems.component("force_sensor", force_sensor.problems());
@@ -99,8 +114,8 @@ impl Actuator {
         0.5 * (self.0.supply.pressure + self.0.supply.tank_pressure)
     }
 
-    /// Compliance of both chambers with their lines, at chamber pressures in Pa (they matter with
-    /// entrained air alone).
+    /// Compliance of both chambers with their lines and accumulators, at chamber pressures in Pa
+    /// (they matter with entrained air and with accumulators alone).
     pub fn chamber_compliance(&self, pressures: [f64; 2], member: StiffeningMember) -> ChamberCompliance {
         self.0.chamber_compliance(pressures, member)
     }

@@ -14,6 +14,7 @@
 //! chamber, the force on the load is positive when the rod pushes, pressures are gauge unless a
 //! name says `absolute`.
 
+pub mod accumulator;
 pub mod actuator;
 pub mod contact;
 pub mod cylinder;

@@ -5,6 +5,7 @@
 //! spool          dU/dt, dr/dt, ...                              thesis (4.1) with saturation: SpoolImperfection
 //! chambers       C_A(x, p_A) dp_A/dt = q_A - q_i - A_A v        thesis (4.25)
 //!                C_B(x, p_B) dp_B/dt = q_B + q_i + A_B v        thesis (4.26), corrected
+//!                C of the oil and its enclosure, and of the gas of an Accumulator at that chamber
 //! leakage        q_i = G_i (p_A - p_B)                          laminar, across the piston
 //! piston         M dv/dt = A_A p_A - A_B p_B + F_stops - F_fr - F_e      thesis (4.29)
 //! sensor         d(x - x_L)/dt = v - v_L,   F_e = K_S (x - x_L)          thesis (4.45)
@@ -29,7 +30,8 @@ mod signals;
 mod start;
 mod state;
 
-pub use crate::power_unit::{Accumulator, PowerUnit, PumpLimited};
+pub use crate::accumulator::Accumulator;
+pub use crate::power_unit::{PowerUnit, PumpLimited};
 pub use chambers::{AeratedChambers, Chambers};
 pub use ledger::{Account, ENERGY_ACCOUNTS, Ledger, OIL_ACCOUNTS};
 pub use load::{LoadModel, Motion};
@@ -87,6 +89,7 @@ pub struct Machine<S = f64> {
     power_unit: PowerUnit<S>,
     cylinder: Cylinder<S>,
     chambers: Chambers<S>,
+    accumulators: [Option<Accumulator<S>>; 2],
     lines: [DynamicLine<S>; 2],
     friction: MovingFriction<S>,
     sensor_stiffness: S,
@@ -131,6 +134,7 @@ impl Machine {
                     Chambers::behind_lines(actuator, options.member, added)
                 }
             },
+            accumulators: components.accumulators,
             lines: options.lines.unwrap_or([none; 2]),
             friction,
             sensor_stiffness: components.force_sensor.stiffness,
@@ -166,7 +170,7 @@ impl Machine {
         // At the A end chamber B presses, and the other way round.
         for (end, away, pressing) in [(0.0, -1.0, area_b), (stroke, 1.0, area_a)] {
             let penetration = pressure * pressing / contact.stiffness;
-            let [compliance_a, compliance_b] = self.compliance(&state, end + away * penetration);
+            let [compliance_a, compliance_b] = self.oil_compliance(&state, end + away * penetration);
             let compliance = compliance_a.min(compliance_b);
             if compliance <= 0.0 {
                 return Err(MachineError::ChamberVanishes { penetration, compliance });
@@ -188,6 +192,7 @@ impl<S: Copy> Machine<S> {
             power_unit: self.power_unit.convert(of),
             cylinder: self.cylinder.convert(of),
             chambers: self.chambers.convert(of),
+            accumulators: self.accumulators.map(|gas| gas.map(|gas| gas.convert(of))),
             lines: self.lines.map(|line| line.convert(of)),
             friction: self.friction.convert(of),
             sensor_stiffness: of(self.sensor_stiffness),

@@ -2,7 +2,7 @@
 
 use phea_dynamics::scalar::Scalar;
 
-use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
+use crate::accumulator::Accumulator;
 use crate::parameter::{ParameterError, Problems};
 
 /// Where the supply pressure comes from. Units: m3/s, Pa, m3.
@@ -42,17 +42,6 @@ pub struct PumpLimited<S = f64> {
     pub accumulator: Option<Accumulator<S>>,
 }
 
-/// A gas-charged accumulator. Units: m3, Pa gauge, 1.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Accumulator<S = f64> {
-    /// Volume V_0 of the gas at its precharge, in m3.
-    pub gas_volume: S,
-    /// Precharge pressure p_0 in Pa gauge.
-    pub precharge_pressure: S,
-    /// Polytropic index n of the gas: 1 slow, 1.4 fast.
-    pub polytropic_exponent: S,
-}
-
 impl PumpLimited {
     /// Impossible parameters of this power unit; empty if there are none.
     pub fn problems(&self) -> Vec<ParameterError> {
@@ -61,16 +50,8 @@ impl PumpLimited {
         problems.positive("relief_override", self.relief_override);
         problems.positive("volume", self.volume);
         problems.positive("effective_bulk_modulus", self.effective_bulk_modulus);
-        if let Some(Accumulator { gas_volume, precharge_pressure, polytropic_exponent }) = self.accumulator {
-            problems.positive("accumulator.gas_volume", gas_volume);
-            problems.positive("accumulator.precharge_pressure", precharge_pressure);
-            let is_index = (1.0..=5.0 / 3.0).contains(&polytropic_exponent);
-            problems.require(
-                "accumulator.polytropic_exponent",
-                polytropic_exponent,
-                is_index,
-                "from 1 to 5/3",
-            );
+        if let Some(accumulator) = self.accumulator {
+            problems.component("accumulator", accumulator.problems());
         }
         problems.into_vec()
     }
@@ -92,11 +73,7 @@ impl<S: Copy> PowerUnit<S> {
                 relief_override: of(pump.relief_override),
                 volume: of(pump.volume),
                 effective_bulk_modulus: of(pump.effective_bulk_modulus),
-                accumulator: pump.accumulator.map(|accumulator| Accumulator {
-                    gas_volume: of(accumulator.gas_volume),
-                    precharge_pressure: of(accumulator.precharge_pressure),
-                    polytropic_exponent: of(accumulator.polytropic_exponent),
-                }),
+                accumulator: pump.accumulator.map(|accumulator| accumulator.convert(of)),
             }),
         }
     }
@@ -134,106 +111,5 @@ impl<S: Scalar> PumpLimited<S> {
     #[inline(always)]
     pub(crate) fn pressure_rate(&self, pressure: S, stated: S, taken: S) -> S {
         (self.pump_flow - self.relief_flow(pressure, stated) - taken) / self.compliance(pressure)
-    }
-}
-
-impl<S: Scalar> Accumulator<S> {
-    /// Compliance of the gas in m3/Pa at a pressure in Pa gauge; zero below the precharge, where
-    /// the bladder fills the shell.
-    fn compliance(&self, pressure: S) -> S {
-        let atmosphere = S::from(ATMOSPHERIC_PRESSURE_ABSOLUTE);
-        let precharge = self.precharge_pressure + atmosphere;
-        let absolute = (pressure + atmosphere).maximum(precharge);
-        let gas = self.gas_volume * ((precharge / absolute).ln() / self.polytropic_exponent).exp();
-        let charged = gas / (self.polytropic_exponent * absolute);
-        S::select(pressure.less_than(self.precharge_pressure), S::from(0.0), charged)
-    }
-
-    /// ln(P/P_0)/n, by which the logarithm of the gas volume has fallen; zero below the precharge.
-    fn squeeze(&self, pressure: S) -> S {
-        let atmosphere = S::from(ATMOSPHERIC_PRESSURE_ABSOLUTE);
-        let precharge = self.precharge_pressure + atmosphere;
-        ((pressure + atmosphere).maximum(precharge) / precharge).ln() / self.polytropic_exponent
-    }
-
-    /// Volume V_0 - V of the oil it holds, in m3.
-    ///
-    /// ```text
-    /// V = V_0 (P_0/P)^(1/n)
-    /// ```
-    pub(super) fn oil(&self, pressure: S) -> S {
-        self.gas_volume * (S::from(1.0) - (-self.squeeze(pressure)).exp())
-    }
-
-    /// Energy supplied to it at gauge pressure since the bladder filled the shell, in J.
-    ///
-    /// ```text
-    /// integral of p dV = P_0 V_0 ((P/P_0)^((n-1)/n) - 1)/(n - 1) - p_atm (V_0 - V)
-    /// ```
-    ///
-    /// For n = 1 the quotient is ln(P/P_0).
-    pub(super) fn energy(&self, pressure: S) -> S {
-        let atmosphere = S::from(ATMOSPHERIC_PRESSURE_ABSOLUTE);
-        let squeeze = self.squeeze(pressure);
-        let above_one = self.polytropic_exponent - S::from(1.0);
-        let quotient = squeeze * exponential_quotient(above_one * squeeze);
-        (self.precharge_pressure + atmosphere) * self.gas_volume * quotient - atmosphere * self.oil(pressure)
-    }
-}
-
-/// (exp(z) - 1)/z, from its series where the difference would lose digits.
-fn exponential_quotient<S: Scalar>(z: S) -> S {
-    let one = S::from(1.0);
-    let series = one
-        + z / S::from(2.0) * (one + z / S::from(3.0) * (one + z / S::from(4.0) * (one + z / S::from(5.0))));
-    S::select(z.abs().less_than(S::from(1e-2)), series, (z.exp() - one) / z)
-}
-
-#[cfg(test)]
-mod tests {
-    use phea_dynamics::portable::ln;
-    use phea_dynamics::scalar::Dual;
-
-    use super::*;
-
-    fn accumulator(polytropic_exponent: f64) -> Accumulator {
-        Accumulator { gas_volume: 1e-3, precharge_pressure: 40e5, polytropic_exponent }
-    }
-
-    /// Its oil grows by its compliance and its energy by the pressure times that, below the
-    /// precharge not at all; either side of where the quotient turns into its series.
-    #[test]
-    fn gas_takes_what_flows_in() {
-        for index in [1.0, 1.0 + 1e-9, 1.02, 1.03, 1.4] {
-            for pressure in [0.0, 39e5, 41e5, 70e5, 350e5] {
-                let gas = accumulator(index);
-                let constant = Accumulator {
-                    gas_volume: Dual::<1>::constant(gas.gas_volume),
-                    precharge_pressure: Dual::constant(gas.precharge_pressure),
-                    polytropic_exponent: Dual::constant(gas.polytropic_exponent),
-                };
-                let varied = Dual::variable(pressure, 0);
-                let compliance = gas.compliance(pressure);
-                let ([oil], [energy]) =
-                    (*constant.oil(varied).gradient(), *constant.energy(varied).gradient());
-                assert!((oil - compliance).abs() <= 1e-12 * compliance);
-                assert!(
-                    (energy - pressure * compliance).abs() <= 1e-10 * pressure * compliance,
-                    "{index} {pressure}"
-                );
-                assert_eq!(gas.energy(pressure) > 0.0, pressure > 40e5);
-            }
-        }
-    }
-
-    #[test]
-    fn slow_gas_takes_the_logarithm() {
-        let atmosphere = ATMOSPHERIC_PRESSURE_ABSOLUTE;
-        let (precharge, pressure) = (40e5 + atmosphere, 70e5 + atmosphere);
-        let oil = 1e-3 * (1.0 - precharge / pressure);
-        let energy = precharge * 1e-3 * ln(pressure / precharge) - atmosphere * oil;
-        let gas = accumulator(1.0);
-        assert!((gas.oil(70e5) / oil - 1.0).abs() < 1e-13 && (gas.energy(70e5) / energy - 1.0).abs() < 1e-13);
-        assert!((accumulator(1.0 + 1e-7).energy(70e5) / energy - 1.0).abs() < 1e-6);
     }
 }

@@ -112,6 +112,7 @@ pub fn components(line: Line, stiffness_model: StiffnessModel) -> Components {
         valve: valve(),
         line_a: line,
         line_b: line,
+        accumulators: [None; 2],
         cylinder: cylinder(),
         friction: Friction::Viscous { viscous: 100.0 },
         force_sensor: ForceSensor { stiffness: 2e7 },

@@ -140,6 +140,19 @@ pub fn hydraulic_stiffness<S: Scalar>(chambers: &ChamberCompliance<S>, x: S) -> 
     stiffness_a + stiffness_b
 }
 
+impl<S: Scalar> ChamberCompliance<S> {
+    /// The same with the gas of an accumulator at either chamber, in m3/Pa.
+    #[must_use]
+    pub fn with_gas(self, [gas_a, gas_b]: [Option<S>; 2]) -> ChamberCompliance<S> {
+        let with = |oil: S, gas: Option<S>| gas.map_or(oil, |gas| oil + gas);
+        ChamberCompliance {
+            constant_a: with(self.constant_a, gas_a),
+            constant_b: with(self.constant_b, gas_b),
+            ..self
+        }
+    }
+}
+
 impl<S: Copy> ChamberCompliance<S> {
     /// Every parameter replaced, in a fixed order.
     #[inline(always)]

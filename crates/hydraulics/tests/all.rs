@@ -1,6 +1,7 @@
 //! The components and machines from outside: closed forms, limits, conservation and published numbers.
 #![cfg(test)]
 
+mod accumulator;
 mod commanded;
 mod components;
 mod friction_on_test;

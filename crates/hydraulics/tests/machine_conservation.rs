@@ -195,7 +195,14 @@ fn rich_machines() -> Vec<(&'static str, Machine)> {
     let load = LoadModel::SpringMassDamper { mass: 20.0, stiffness: 3e5, damping: 200.0 };
     let everything =
         MachineOptions { load, ..with(charged_pump(40e5, 1.3), lines_of(&all, [FULL, SMEARED])) };
+    let gas = |gas_volume, precharge_pressure, polytropic_exponent| {
+        Some(Accumulator { gas_volume, precharge_pressure, polytropic_exponent })
+    };
+    let at_chambers = |rig| Components { accumulators: [gas(2e-5, 8e5, 1.4), gas(5e-6, 3e5, 1.0)], ..rig };
+    let at_one = |rig| Components { accumulators: [None, gas(1e-5, 5e5, 1.25)], ..rig };
     vec![
+        ("gas at the chambers", of(at_chambers(rig), with(charged_pump(40e5, 1.4), None))),
+        ("gas behind a line", of(at_one(by_volume), with(pump(), lines_of(&rig, [SMEARED, PLAIN])))),
         ("gas", of(rig, with(charged_pump(40e5, 1.4), None))),
         ("isothermal gas", of(rig, with(charged_pump(40e5, 1.0), None))),
         ("air", of(by_volume, with(pump(), None))),

@@ -6,6 +6,7 @@ use num_complex::Complex64;
 use phea_dynamics::portable::pow;
 use phea_dynamics::random::{share, stream};
 use phea_dynamics::simulation::small_signal;
+use phea_hydraulics::accumulator::Accumulator;
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::contact::Contact;
 use phea_hydraulics::cylinder::{Cylinder, areas_from_diameters};
@@ -35,6 +36,19 @@ struct Drawn {
     friction: f64,
     leakage: f64,
     load: LinearLoad,
+}
+
+/// Gas at one chamber, both or none, which most rests leave in use.
+fn accumulators(number: u64) -> [Option<Accumulator>; 2] {
+    let mut state = stream(12, number);
+    let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
+    [number % 8 < 3, (1..5).contains(&(number % 8))].map(|has_gas| {
+        has_gas.then(|| Accumulator {
+            gas_volume: spread(1e-6, 1e-4),
+            precharge_pressure: spread(2e5, 20e5),
+            polytropic_exponent: spread(1.0, 1.6),
+        })
+    })
 }
 
 fn drawn(number: u64) -> Drawn {
@@ -67,7 +81,7 @@ fn drawn(number: u64) -> Drawn {
         _ => LoadModel::Wall { mass, damping, gap: 1e-3, contact },
     };
     let parts = if leakage > 0.0 { leaking(parts, leakage) } else { parts };
-    let actuator = Actuator::new(parts).unwrap();
+    let actuator = Actuator::new(Components { accumulators: accumulators(number), ..parts }).unwrap();
     let unit = power_unit(number);
     let options = MachineOptions { load, power_unit: unit, ..MachineOptions::default() };
     let machine = Machine::new(&actuator, &options).unwrap();

@@ -10,6 +10,7 @@ use phea_dynamics::random::{share, stream};
 use phea_dynamics::simulation::small_signal;
 use phea_dynamics::uncertain_plant::RationalCoefficients;
 use phea_dynamics::uncertain_plant::responding::RespondingPlant;
+use phea_hydraulics::accumulator::Accumulator;
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::cylinder::{Cylinder, areas_from_diameters};
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
@@ -95,6 +96,19 @@ fn parameters_at(
     two_pressure_linear_parameters(&model, point, SpoolDirection::Extending)
 }
 
+/// Gas at one chamber, both or none, which most rests leave in use.
+fn accumulators(number: u64) -> [Option<Accumulator>; 2] {
+    let mut state = stream(24, number);
+    let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
+    [number % 8 < 3, (1..5).contains(&(number % 8))].map(|has_gas| {
+        has_gas.then(|| Accumulator {
+            gas_volume: spread(1e-6, 1e-4),
+            precharge_pressure: spread(2e5, 20e5),
+            polytropic_exponent: spread(1.0, 1.6),
+        })
+    })
+}
+
 fn drawn(number: u64) -> Drawn {
     let mut state = stream(23, number);
     let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
@@ -118,7 +132,8 @@ fn drawn(number: u64) -> Drawn {
         force_sensor: ForceSensor { stiffness: spread(1e6, 1e8) },
         ..reference
     };
-    let actuator = Actuator::new(leaking(parts, leakage)).unwrap();
+    let parts = Components { accumulators: accumulators(number), ..leaking(parts, leakage) };
+    let actuator = Actuator::new(parts).unwrap();
     let parts = actuator.components();
     let line = |line: &Line, model: &LineModel| {
         DynamicLine::new(line, &parts.fluid, actuator.mean_pressure(), StiffeningMember::Nominal, model)
@@ -139,8 +154,10 @@ fn drawn(number: u64) -> Drawn {
     let named = &rest.state[..6 + 2 * usize::from(moves) + usize::from(unit.yields())];
     let supplied = supply_pressure(&unit, parts.supply.pressure, named);
     let parameters = parameters_at(supplied, &actuator, &point, (pressures, friction));
-    let own = Chambers::behind_lines(&actuator, StiffeningMember::Nominal, [0.0; 2])
+    let [oil_a, oil_b] = Chambers::behind_lines(&actuator, StiffeningMember::Nominal, [0.0; 2])
         .compliance(position, pressures);
+    let [gas_a, gas_b] = parts.gas_compliance(pressures);
+    let own = [oil_a + gas_a.unwrap_or(0.0), oil_b + gas_b.unwrap_or(0.0)];
     let behind = BehindLines { lines, chambers: own, lumped: parameters.compliances };
     let supply = yielding(&actuator, &unit, point.command, [point.pressure_a, point.pressure_b], supplied);
     Drawn {

@@ -79,6 +79,7 @@ fn models_agree_when_the_line_is_as_stiff_as_the_fluid() {
         [FLUID_MODULUS; 2],
         &cylinder(),
         [&pipe_line(), &pipe_line()],
+        [None; 2],
         StiffeningMember::Nominal,
     );
     assert!((difference.minimum_ratio - 1.0).abs() < 1e-14);
@@ -87,6 +88,7 @@ fn models_agree_when_the_line_is_as_stiff_as_the_fluid() {
         [FLUID_MODULUS; 2],
         &cylinder(),
         [&hose_line(), &hose_line()],
+        [None; 2],
         StiffeningMember::Nominal,
     );
     assert!(hose.minimum_ratio > 2.0 && hose.maximum_ratio > 1.2 && hose.line_compliance_share > 0.7);

@@ -58,16 +58,20 @@ pub struct DeclaredAccumulator {
     pub precharge_pressure: f64,
     /// Polytropic exponent of the gas.
     pub polytropic_exponent: f64,
+    /// Highest permitted pressure over the precharge, both absolute, if stated.
+    pub maximum_pressure_ratio: Option<f64>,
 }
 
 impl DeclaredAccumulator {
-    fn visit<V: Visitor>(&mut self, v: &mut V) {
+    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
         let k = key("gas_volume", &VOLUME, "Volume of the gas at its precharge.").positive();
         v.quantity(k, &mut self.gas_volume);
         let k = key("precharge_pressure", &PRESSURE, "Pressure of the gas without oil, gauge.").positive();
         v.quantity(k, &mut self.precharge_pressure);
         let k = key("polytropic_exponent", &RATIO, "Of the gas: 1 is slow, 1.4 fast.");
         v.quantity(k.at_least(1.0).at_most(5.0 / 3.0).or(1.4), &mut self.polytropic_exponent);
+        let k = key("maximum_pressure_ratio", &RATIO, "Maker's limit of p_2/p_0, both absolute.");
+        v.optional(k.at_least(1.0), &mut self.maximum_pressure_ratio);
     }
 }
 

@@ -1,5 +1,6 @@
 //! `[line]`, `[line.a]` and `[line.b]`.
 
+use super::fluid::DeclaredAccumulator;
 use super::interval::BoundedNumber;
 use super::key::{key, plain};
 use super::line_motion::LineMotion;
@@ -37,6 +38,8 @@ pub struct DeclaredLine {
     pub dynamic_stiffening: Option<BoundedNumber>,
     /// How it moves.
     pub motion: LineMotion,
+    /// At its chamber's end.
+    pub accumulator: Option<DeclaredAccumulator>,
 }
 
 /// What a line is made of.
@@ -188,6 +191,8 @@ impl DeclaredLine {
         let k = key("dynamic_stiffening", &RATIO, "r_β, the hose's dynamic over its static modulus.");
         BoundedNumber::visit(v, k.at_least(1.0), &mut self.dynamic_stiffening);
         v.variant(plain("model", "What of the line moves."), &mut self.motion, false);
+        let k = plain("accumulator", "A gas-charged accumulator at the chamber's end of the line.");
+        v.table(k, &mut self.accumulator, DeclaredAccumulator::visit);
     }
 }
 

@@ -1,6 +1,7 @@
 //! The procedures from outside: what a project says, what is answered, and what is drawn.
 #![cfg(test)]
 
+mod accumulator;
 mod ask;
 mod benchmark;
 mod campaign;

@@ -14,6 +14,7 @@ use phea_workbench::sizing::{Question, size};
 use phea_workbench::source::Memory;
 
 const SIMULATION: &str = include_str!("../../project/tests/valid/simulation.toml");
+const ACCUMULATORS: &str = include_str!("../../project/tests/valid/accumulators.toml");
 const ASYMMETRIC: &str = include_str!("../../project/tests/valid/asymmetric.toml");
 const GUIDE: &str = include_str!("../../../book/src/guide/what_moves_what.md");
 /// Tables that declare the rig and its loop; the others state what is asked of it.
@@ -84,6 +85,7 @@ fn rigs() -> Vec<(String, Vec<&'static str>)> {
             vec!["line.compliance=by_volume", "operating_point.command=0.5", "fluid.entrained_air=0.01"],
         ),
         (SIMULATION.to_string(), vec![]),
+        (ACCUMULATORS.to_string(), vec![]),
         (SIMULATION.to_string(), vec!["operating_point.load_force=2 kN"]),
         (ASYMMETRIC.to_string(), vec!["cylinder.friction.regular_velocity=1 mm/s"]),
         (volumes.split("[uncertainty]").next().unwrap().to_string(), vec!["load.mass=10"]),

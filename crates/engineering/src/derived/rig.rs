@@ -4,6 +4,7 @@ use phea_hydraulics::linear::{MechanicalDamping, decompose};
 use phea_hydraulics::operating_point::Condition;
 
 use super::Derived;
+use super::accumulator::accumulators;
 use super::list::List;
 use super::valve::valve;
 use crate::linearize::{stiffness_models, stroke_stiffness};
@@ -16,6 +17,7 @@ pub fn derive(project: &Project, rig: &Rig) -> Vec<Derived> {
     cylinder(rig, &mut list);
     lines(rig, &mut list);
     stiffness(rig, &mut list);
+    accumulators(rig, &mut list);
     valve(project, rig, &mut list);
     equilibrium(rig, &mut list);
     linear_parameters(rig, &mut list);

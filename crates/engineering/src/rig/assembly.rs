@@ -1,4 +1,5 @@
 use phea_dynamics::scalar::Scalar;
+use phea_hydraulics::accumulator::Accumulator;
 use phea_hydraulics::actuator::{Actuator, ActuatorError, Components};
 use phea_hydraulics::contact::Contact;
 use phea_hydraulics::cylinder::{Cylinder, annulus_area};
@@ -13,8 +14,8 @@ use phea_hydraulics::stiffness::StiffnessModel;
 
 use super::numbers::Numbers;
 use crate::project::{
-    self, BoundedNumber, Compliance, Component, EdgeCoefficients, FrictionLaw, HoseExpansion, LineVolume,
-    NullLeakage, RatedFlow, StribeckCurve, ValveCoefficients,
+    self, BoundedNumber, Compliance, Component, DeclaredAccumulator, EdgeCoefficients, FrictionLaw,
+    HoseExpansion, LineVolume, NullLeakage, RatedFlow, StribeckCurve, ValveCoefficients,
 };
 
 /// Kinematic viscosity of ISO VG 46 oil at 40 degrees Celsius, m2/s: used where a project states
@@ -45,6 +46,8 @@ pub fn components<S: Scalar>(
         valve: valve(&declared.valve, numbers, pressure - tank_pressure),
         line_a: line("a", &declared.line.a),
         line_b: line("b", &declared.line.b),
+        accumulators: [("a", &declared.line.a), ("b", &declared.line.b)]
+            .map(|(side, line)| accumulator(line.accumulator.as_ref(), &numbers.of_line(side))),
         cylinder: cylinder(&declared.cylinder, numbers),
         friction: friction(declared.cylinder.friction.as_ref(), numbers),
         force_sensor: ForceSensor {
@@ -145,6 +148,19 @@ fn line<S: Scalar>(
             }
         }
     }
+}
+
+/// An accumulator declared in the table that `numbers` are within.
+pub(super) fn accumulator<S: Scalar>(
+    declared: Option<&DeclaredAccumulator>,
+    numbers: &Numbers<'_, S>,
+) -> Option<Accumulator<S>> {
+    let DeclaredAccumulator { gas_volume, precharge_pressure, polytropic_exponent, .. } = declared?;
+    Some(Accumulator {
+        gas_volume: numbers.at("accumulator.gas_volume", *gas_volume),
+        precharge_pressure: numbers.at("accumulator.precharge_pressure", *precharge_pressure),
+        polytropic_exponent: numbers.at("accumulator.polytropic_exponent", *polytropic_exponent),
+    })
 }
 
 /// Pressures in Pa at which the expansion of a hose is evaluated.

@@ -33,6 +33,11 @@ pub enum SizingError {
     /// No flow limits the bore.
     #[error("sizing needs the largest flow: `flow` in [supply], or `nominal_flow` in [valve]")]
     Flow,
+    /// The gas of an accumulator would share the work of the hose.
+    #[error(
+        "sizing finds the hose that is soft enough by itself and counts no gas: size without [line] `accumulator`"
+    )]
+    Accumulator,
     /// The catalogue contains nothing to choose from.
     #[error("no hose with bore and volumetric expansion in the catalogue or the project")]
     NoHose,
@@ -47,6 +52,9 @@ pub fn sizing_problem(setup: &Setup<'_>, catalogue: &Catalogue) -> Result<Sizing
     let wish = project.sizing.as_ref().ok_or(SizingError::Absent)?;
     let actuator = project.actuator.as_ref().ok_or(SizingError::NoHose)?;
     let components = rig.actuator.components();
+    if components.accumulators.iter().any(Option::is_some) {
+        return Err(SizingError::Accumulator);
+    }
     let (time_constant, time_constant_origin) = time_constant(wish.speed);
     let (maximum_flow, maximum_flow_origin) = maximum_flow(actuator)?;
     let hoses = hoses(actuator, catalogue);

@@ -1,11 +1,12 @@
 //! The declared supply of a rig, and its settled state, over any scalar.
 
 use phea_dynamics::scalar::Scalar;
-use phea_hydraulics::machine::{Accumulator, PowerUnit, PumpLimited};
+use phea_hydraulics::machine::{PowerUnit, PumpLimited};
 use phea_hydraulics::operating_point::{Balance, SettledSupply, Steady};
 use phea_hydraulics::plant::YieldingSupply;
 use phea_hydraulics::servovalve::SpoolDirection;
 
+use super::assembly::accumulator;
 use super::numbers::Numbers;
 use crate::project::{self, SupplyModel};
 
@@ -21,11 +22,7 @@ pub fn power_unit<S: Scalar>(declared: &project::DeclaredActuator, numbers: &Num
         relief_override: at("relief_override", pump.relief_override),
         volume: at("volume", pump.volume),
         effective_bulk_modulus: modulus.map_or_else(of_fluid, |value| at("effective_bulk_modulus", value)),
-        accumulator: pump.accumulator.map(|accumulator| Accumulator {
-            gas_volume: at("accumulator.gas_volume", accumulator.gas_volume),
-            precharge_pressure: at("accumulator.precharge_pressure", accumulator.precharge_pressure),
-            polytropic_exponent: at("accumulator.polytropic_exponent", accumulator.polytropic_exponent),
-        }),
+        accumulator: accumulator(pump.accumulator.as_ref(), &of_supply),
     })
 }
 

@@ -370,6 +370,7 @@ pub(crate) fn sensitivities() -> Figure {
 pub(crate) fn circuit() -> Figure {
     let hose = LineSymbol {
         kind: LineKind::Hose,
+        has_accumulator: false,
         rows: vec!["Synflex 3130-08".into(), "12.7 mm × 1.5 m".into(), "β_e 261 MPa".into()],
     };
     schematic(
@@ -397,7 +398,11 @@ pub(crate) fn circuit() -> Figure {
 }
 
 pub(crate) fn asymmetric_circuit() -> Figure {
-    let pipe = LineSymbol { kind: LineKind::Pipe, rows: vec!["pipe 10.5 mm".into(), "0.35 m".into()] };
+    let pipe = LineSymbol {
+        kind: LineKind::Pipe,
+        has_accumulator: true,
+        rows: vec!["pipe 10.5 mm".into(), "0.35 m".into(), "14.2 mL, 15 bar".into()],
+    };
     schematic(
         words("schematic-asymmetric", "An asymmetric cylinder on pipes"),
         &SchematicInput {

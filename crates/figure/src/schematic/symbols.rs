@@ -1,7 +1,7 @@
 //! Supply, tank, lines, servovalve and the blocks of the controller.
 
 use super::super::colour::Role;
-use super::super::scene::{Anchor, Fill, Scene, Stroke, point};
+use super::super::scene::{Anchor, Fill, Rectangle, Scene, Shape, Stroke, point};
 use super::mechanics::{CELL, CELL_BOTTOM, PORT_FAR, PORT_NEAR};
 use super::pen::{
     HOSE, MEASURED, OUTLINE, PIPE, ROW, SIGNAL, arrow, block, flexible, head, lines, rows, spring, word,
@@ -100,8 +100,24 @@ pub(super) fn working_lines(scene: &mut Scene, input: &SchematicInput) {
                 lines(scene, &[top, (top.0, bend), (bottom.0, bend), bottom], PIPE);
             }
         }
+        if line.has_accumulator {
+            let inwards = if port.0 < valve_x { 30.0 } else { -30.0 };
+            accumulator(scene, (port.0, port.1 + 6.0), port.0 + inwards);
+        }
         rows(scene, &line.rows, (text_x, 116.0), anchor, 112.0, 3);
     }
+}
+
+/// A gas-charged accumulator below its branch: the triangle of the gas, hollow, points to the oil.
+fn accumulator(scene: &mut Scene, branch: (f64, f64), x: f64) {
+    let (top, half, height) = (branch.1 + 6.0, 8.0, 32.0);
+    lines(scene, &[branch, (x, branch.1), (x, top)], PIPE);
+    let shell = Rectangle { left: x - half, top, right: x + half, bottom: top + height };
+    scene.shape(Shape::Rectangle(shell, half), Some(OUTLINE), Some(Fill::solid(Role::Surface)));
+    let middle = top + 0.5 * height;
+    lines(scene, &[(x - half, middle), (x + half, middle)], OUTLINE);
+    let gas = [point(x, middle + 2.5), point(x - 4.0, middle + 9.5), point(x + 4.0, middle + 9.5)];
+    scene.polygon(&gas, Some(OUTLINE), None);
 }
 
 /// The 4/3 servovalve: three positions, continuous between them, spring on one side and torque

@@ -1,7 +1,7 @@
 use phea_dynamics::scalar::{LocalFunction, Scalar};
 
 use super::signals::ground_of;
-use super::{Machine, MachineState, Motion, PowerUnit};
+use super::{Accumulator, Machine, MachineState, Motion, PowerUnit};
 use crate::force_sensor;
 use crate::friction::FrictionForce;
 use crate::operating_point::hydraulic_force;
@@ -100,9 +100,24 @@ impl<S: Scalar> Machine<S> {
         [line_a.port_pressure(state_a, chambers[0]), line_b.port_pressure(state_b, chambers[1])]
     }
 
-    /// Compliance of both chambers including their lines, in m3/Pa.
+    /// Compliance of both chambers including their lines and accumulators, in m3/Pa.
     #[inline(always)]
     pub(super) fn compliance<T: Scalar + From<S>>(&self, state: &MachineState<T>, position: T) -> [T; 2] {
+        let [oil_a, oil_b] = self.oil_compliance(state, position);
+        let [gas_a, gas_b] = &self.accumulators;
+        let with = |oil: T, gas: &Option<Accumulator<S>>, pressure: T| match gas {
+            None => oil,
+            Some(gas) => {
+                let [gas] = T::local(gas, [pressure]);
+                oil + gas
+            }
+        };
+        [with(oil_a, gas_a, state.pressure_a), with(oil_b, gas_b, state.pressure_b)]
+    }
+
+    /// The same without accumulators: it vanishes with the volume of a chamber.
+    #[inline(always)]
+    pub(super) fn oil_compliance<T: Scalar + From<S>>(&self, state: &MachineState<T>, position: T) -> [T; 2] {
         self.chambers.compliance(position, [state.pressure_a, state.pressure_b])
     }
 

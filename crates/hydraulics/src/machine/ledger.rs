@@ -9,16 +9,27 @@ use instant::Instant;
 
 /// Names of the accounts of oil, in the order of [`Ledger::oil`]. Accounts of parts that a machine
 /// lacks are zero.
-pub const OIL_ACCOUNTS: [&str; 7] =
-    ["chamber_a", "chamber_b", "line_a", "line_b", "supply", "accumulator", "rig"];
-
-/// Names of the accounts of energy, in the order of [`Ledger::energy`]. Accounts of parts that a
-/// machine lacks are zero.
-pub const ENERGY_ACCOUNTS: [&str; 14] = [
+pub const OIL_ACCOUNTS: [&str; 9] = [
     "chamber_a",
     "chamber_b",
     "line_a",
     "line_b",
+    "accumulator_a",
+    "accumulator_b",
+    "supply",
+    "accumulator",
+    "rig",
+];
+
+/// Names of the accounts of energy, in the order of [`Ledger::energy`]. Accounts of parts that a
+/// machine lacks are zero.
+pub const ENERGY_ACCOUNTS: [&str; 16] = [
+    "chamber_a",
+    "chamber_b",
+    "line_a",
+    "line_b",
+    "accumulator_a",
+    "accumulator_b",
     "supply",
     "accumulator",
     "valve",
@@ -105,15 +116,18 @@ impl<S: Scalar> Machine<S> {
         let dense_s = supply.line.density();
         let [into_a, into_b] = now.chamber_flows();
         let [side_a, side_b] = &now.sides;
+        let [gas_a, gas_b] = &now.gas;
         let accounts = [
             side_a.oil(into_a),
             side_b.oil(into_b),
             now.lines[0].oil(),
             now.lines[1].oil(),
+            gas_a.oil(),
+            gas_b.oil(),
             supply.line.oil(supply.line_flow()),
-            Account { stored: supply.gas_oil, inflow: supply.into_gas, lost: T::from(0.0) },
+            supply.gas.oil(),
         ];
-        let [a, b, c, d, e, f] = accounts;
+        let [a, b, c, d, e, f, g, h] = accounts;
         let rig = Account {
             stored: total(&accounts, |account| account.stored),
             inflow: dense_s * supply.fed - tank_a * edges.a_to_tank - tank_b * edges.b_to_tank,
@@ -124,9 +138,11 @@ impl<S: Scalar> Machine<S> {
                 + now.lines[0].into_chamber * (one - dense_a)
                 + now.lines[1].into_chamber * (one - dense_b)
                 + now.flows.internal * (dense_a - dense_b)
-                + supply.into_gas * (dense_s - one),
+                + gas_a.inflow * (dense_a - one)
+                + gas_b.inflow * (dense_b - one)
+                + supply.gas.inflow * (dense_s - one),
         };
-        [a, b, c, d, e, f, rig]
+        [a, b, c, d, e, f, g, h, rig]
     }
 
     fn energy<T: Scalar + From<S>>(&self, now: &Instant<T>) -> [Account<T>; ENERGY_ACCOUNTS.len()] {
@@ -147,8 +163,10 @@ impl<S: Scalar> Machine<S> {
             side_b.energy(into_b, -area_b * velocity),
             line_a.energy(),
             line_b.energy(),
+            now.gas[0].energy(side_a.pressure),
+            now.gas[1].energy(side_b.pressure),
             supply.line.energy(supply.line_flow(), zero),
-            Account { stored: supply.gas_energy, inflow: supply.line.pressure * supply.into_gas, lost: zero },
+            supply.gas.energy(supply.line.pressure),
             heat(throttled),
             heat(now.flows.internal * (side_a.pressure - side_b.pressure)),
             piston,
@@ -168,8 +186,8 @@ impl<S: Scalar> Machine<S> {
             inflow: oil + now.external_power - self.on_ground(now),
             lost: total(&accounts, |account| account.lost),
         };
-        let [a, b, c, d, e, f, g, h, i, j, k, l, m] = accounts;
-        [a, b, c, d, e, f, g, h, i, j, k, l, m, rig]
+        let [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o] = accounts;
+        [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, rig]
     }
 
     /// Piston, friction, sensor, end stops and load.

@@ -1,7 +1,7 @@
 use phea_dynamics::scalar::Scalar;
 
 use super::equations::constant;
-use super::{Machine, Motion};
+use super::{Accumulator, Machine, Motion};
 
 /// Names of the signals of a machine, with units, in the order of [`Machine::outputs`].
 pub const SIGNALS: [&str; 19] = [
@@ -30,9 +30,11 @@ pub const SIGNALS: [&str; 19] = [
 /// positive in ordinary operation and negative while the event lasts.
 ///
 /// `cavitation`: the chamber's pressure less vapour pressure in Pa. `end_stop`: the way left to
-/// that end in m. `empty`: the chamber's compliance in m3/Pa, which vanishes with its volume.
-/// `load_contact`: the way left to the wall in m. `supply_lost`: supply less tank pressure in Pa.
-pub const INDICATORS: [&str; 8] = [
+/// that end in m. `empty`: the chamber's compliance in m3/Pa without accumulators, which vanishes
+/// with its volume. `load_contact`: the way left to the wall in m. `supply_lost`: supply less tank
+/// pressure in Pa. `accumulator_empty`: the chamber's pressure less the precharge of its
+/// accumulator in Pa.
+pub const INDICATORS: [&str; 10] = [
     "cavitation_a",
     "cavitation_b",
     "end_stop_a",
@@ -41,6 +43,8 @@ pub const INDICATORS: [&str; 8] = [
     "empty_b",
     "load_contact",
     "supply_lost",
+    "accumulator_empty_a",
+    "accumulator_empty_b",
 ];
 
 impl<S: Scalar> Machine<S> {
@@ -107,8 +111,12 @@ impl<S: Scalar> Machine<S> {
         let load = self.load_of(&state, &ground);
         let position = load.position + state.deflection;
         let vapour: T = constant(self.vapour_pressure);
-        let [compliance_a, compliance_b] = self.compliance(&state, position);
+        let [compliance_a, compliance_b] = self.oil_compliance(&state, position);
         let supply = self.supply_of(&state);
+        let [gas_a, gas_b] = &self.accumulators;
+        let charged = |gas: &Option<Accumulator<S>>, pressure: T| {
+            gas.map_or(T::from(1.0), |gas| pressure - constant(gas.precharge_pressure))
+        };
         [
             state.pressure_a - vapour,
             state.pressure_b - vapour,
@@ -118,6 +126,8 @@ impl<S: Scalar> Machine<S> {
             compliance_b,
             self.load.convert(&mut constant::<S, T>).clearance(&load, &ground),
             supply.pressure - supply.tank_pressure,
+            charged(gas_a, state.pressure_a),
+            charged(gas_b, state.pressure_b),
         ]
     }
 }

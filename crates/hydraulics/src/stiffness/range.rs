@@ -79,10 +79,12 @@ pub struct ModelDifference {
     /// Share of the compliance, by volume, that the lines provide there: what sizing the lines can
     /// change.
     pub line_compliance_share: f64,
+    /// Share of the compliance, by volume, that the gas of accumulators provides there.
+    pub gas_compliance_share: f64,
 }
 
 /// Both stiffness models of the same cylinder and lines, and how far they are apart; the fluid's
-/// modulus on either side in Pa.
+/// modulus on either side in Pa, the compliance of an accumulator's gas there in m3/Pa.
 ///
 /// # Example
 /// For 1.5 m of the thesis' hose the thesis' model is less than half as stiff as the truth.
@@ -94,21 +96,23 @@ pub struct ModelDifference {
 /// # let hose = Hose { bore: 12.7e-3, volumetric_expansion: 1.56e-5, operating_expansion: 7.774e-6,
 /// #     expansion_slope: 2.236e-12, dynamic_stiffening };
 /// # let line = Line::Hose { hose, length: 1.5 };
-/// let difference = model_difference([1.45e9; 2], &cylinder, [&line, &line], StiffeningMember::Nominal);
+/// let difference = model_difference([1.45e9; 2], &cylinder, [&line, &line], [None; 2], StiffeningMember::Nominal);
 /// assert!((difference.minimum_ratio - 2.07).abs() < 0.005);
 /// ```
 pub fn model_difference(
     fluid_moduli: [f64; 2],
     cylinder: &Cylinder,
     lines: [&Line; 2],
+    gas: [Option<f64>; 2],
     member: StiffeningMember,
 ) -> ModelDifference {
-    let of = |model| chamber_compliance(model, fluid_moduli, cylinder, lines, member);
+    let of = |model| chamber_compliance(model, fluid_moduli, cylinder, lines, member).with_gas(gas);
     let (uniform, chambers) = (of(StiffnessModel::Uniform).over_stroke(), of(StiffnessModel::ByVolume));
     let by_volume = chambers.over_stroke();
     let total_compliance: f64 = compliance_at(&chambers, by_volume.minimum_position).iter().sum();
     let line_compliance: f64 =
         lines.iter().zip(fluid_moduli).map(|(line, modulus)| line.compliance(modulus, member)).sum();
+    let gas_compliance: f64 = gas.into_iter().flatten().sum();
     let line_volume: f64 = lines.iter().map(|line| line.volume()).sum();
     let chamber_volume: f64 =
         crate::cylinder::chamber_volumes(cylinder, by_volume.minimum_position).iter().sum();
@@ -119,5 +123,6 @@ pub fn model_difference(
         maximum_ratio: by_volume.maximum / uniform.maximum,
         chamber_volume_share: chamber_volume / (chamber_volume + line_volume),
         line_compliance_share: line_compliance / total_compliance,
+        gas_compliance_share: gas_compliance / total_compliance,
     }
 }

@@ -2,10 +2,14 @@
 
 use super::{Check, line_motion};
 use crate::{
-    BoundedNumber, Component, DeclaredActuator, DeclaredCylinder, DeclaredFriction, DeclaredLine,
-    DeclaredLines, DeclaredSupply, FrictionLaw, NullLeakage, StribeckCurve, Valve,
+    BoundedNumber, Component, DeclaredAccumulator, DeclaredActuator, DeclaredCylinder, DeclaredFriction,
+    DeclaredLine, DeclaredLines, DeclaredSupply, FrictionLaw, NullLeakage, Pump, StribeckCurve, SupplyModel,
+    Valve,
 };
 use phea_quantity::{self as quantity, PRESSURE};
+
+/// Pa, between absolute and gauge pressures.
+const ATMOSPHERE: f64 = 101_325.0;
 
 pub(super) fn actuator(actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
     supply(actuator, check);
@@ -21,6 +25,42 @@ fn supply(actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
             if check.declared("supply.tank_pressure") { "supply.tank_pressure" } else { "supply.pressure" };
         check.error(at, "`tank_pressure` must be below `pressure`");
     }
+    if let SupplyModel::PumpLimited(Pump { accumulator: Some(gas), .. }) = &supply.model {
+        pressure_ratio(gas, supply, "supply.accumulator", check);
+    }
+}
+
+/// The gas at a chamber: its precharge lies below what the supply can give.
+fn accumulator(gas: &DeclaredAccumulator, supply: &DeclaredSupply, path: &str, check: &mut Check<'_, '_>) {
+    if supply.pressure > 0.0 && gas.precharge_pressure >= supply.pressure {
+        let [precharge, pressure] = [gas.precharge_pressure, supply.pressure]
+            .map(|pressure| quantity::display(pressure, &PRESSURE, 4));
+        let message = format!(
+            "`precharge_pressure` is {precharge} and the supply has {pressure}: no chamber ever lets oil into this accumulator"
+        );
+        let help = "the gas is in use only above its precharge: state one below the lowest pressure at which it is to work";
+        return check.error_with_help(&format!("{path}.precharge_pressure"), message, help);
+    }
+    pressure_ratio(gas, supply, path, check);
+}
+
+/// The maker's limit of the compression of the gas, at the highest pressure that the supply gives.
+fn pressure_ratio(gas: &DeclaredAccumulator, supply: &DeclaredSupply, path: &str, check: &mut Check<'_, '_>) {
+    let Some(limit) = gas.maximum_pressure_ratio else { return };
+    let precharge = gas.precharge_pressure + ATMOSPHERE;
+    let pressure = supply.pressure + ATMOSPHERE;
+    if pressure <= limit * precharge {
+        return;
+    }
+    let ratio = quantity::significant(pressure / precharge, 3);
+    let supplied = quantity::display(supply.pressure, &PRESSURE, 4);
+    let needed = quantity::display(pressure / limit - ATMOSPHERE, &PRESSURE, 4);
+    let message = format!(
+        "at the supply pressure of {supplied} the gas has {ratio} times the absolute pressure of its precharge, and \
+         `maximum_pressure_ratio` permits {limit}"
+    );
+    let help = format!("raise `precharge_pressure` to {needed} or more, or lower the supply pressure");
+    check.error_with_help(&format!("{path}.maximum_pressure_ratio"), message, help);
 }
 
 fn imperfections(valve: &Valve, check: &mut Check<'_, '_>) {
@@ -111,6 +151,11 @@ fn lines(actuator: &DeclaredActuator, lines: &DeclaredLines, check: &mut Check<'
         line(side, &path, check);
         line_motion::motion(side, &path, check);
         expansion(side, actuator.supply.pressure, &path, check);
+        if let Some(gas) = &side.accumulator {
+            let own = format!("line.{name}.accumulator");
+            let path = if check.declared(&own) { own } else { "line.accumulator".to_string() };
+            accumulator(gas, &actuator.supply, &path, check);
+        }
         let working = side.hose().and_then(|hose| hose.working_pressure);
         if working.is_some_and(|working| working < actuator.supply.pressure) {
             let message = "the hose's `working_pressure` is below the supply pressure";

@@ -7,7 +7,7 @@ use crate::figure::{
     schematic,
 };
 use crate::project::{self, Component, LineVolume, Load, Project, RatedFlow, SupplyModel};
-use crate::quantity::{self, Dimension, FLOW, LENGTH, MASS, PRESSURE, STIFFNESS, VOLTAGE};
+use crate::quantity::{self, Dimension, FLOW, LENGTH, MASS, PRESSURE, STIFFNESS, VOLTAGE, VOLUME};
 use crate::rig::Rig;
 
 pub(super) fn chapter(project: &Project, actuator: &project::DeclaredActuator, rig: &Rig) -> Chapter {
@@ -86,18 +86,30 @@ fn cylinder_words(cylinder: &project::DeclaredCylinder) -> String {
 }
 
 fn line(declared: &project::DeclaredLine) -> LineSymbol {
+    let mut symbol = line_alone(declared);
+    symbol.has_accumulator = declared.accumulator.is_some();
+    symbol.rows.extend(declared.accumulator.as_ref().map(|gas| {
+        format!("{}, {}", shown(gas.gas_volume, &VOLUME), shown(gas.precharge_pressure, &PRESSURE))
+    }));
+    symbol
+}
+
+fn line_alone(declared: &project::DeclaredLine) -> LineSymbol {
     match &declared.component {
         Component::Pipe { pipe, length } => LineSymbol {
             kind: LineKind::Pipe,
+            has_accumulator: false,
             rows: vec![format!("pipe {}", shown(pipe.bore, &LENGTH)), shown(*length, &LENGTH)],
         },
         Component::Hose { properties, length, .. } => LineSymbol {
             kind: LineKind::Hose,
+            has_accumulator: false,
             rows: vec![format!("hose {}", shown(properties.bore, &LENGTH)), shown(*length, &LENGTH)],
         },
         Component::Volume(LineVolume { volume, effective_bulk_modulus }) => LineSymbol {
             kind: LineKind::Pipe,
-            rows: vec![shown(*volume, &quantity::VOLUME), shown(*effective_bulk_modulus, &PRESSURE)],
+            has_accumulator: false,
+            rows: vec![shown(*volume, &VOLUME), shown(*effective_bulk_modulus, &PRESSURE)],
         },
     }
 }
@@ -131,7 +143,8 @@ pub(super) fn load_words(actuator: &project::DeclaredActuator) -> String {
 pub(super) fn lines_words(actuator: &project::DeclaredActuator) -> String {
     let words = |line: &project::DeclaredLine| {
         let name = line.hose_name().map(|name| format!("{name}, "));
-        format!("{}{}", name.unwrap_or_default(), self::line(line).rows.join(", "))
+        let gas = if line.accumulator.is_some() { ", accumulator" } else { "" };
+        format!("{}{}{gas}", name.unwrap_or_default(), line_alone(line).rows.join(", "))
     };
     let (a, b) = (words(&actuator.line.a), words(&actuator.line.b));
     if a == b { format!("{a} each") } else { format!("A {a}; B {b}") }

@@ -238,6 +238,12 @@ fn occurrence_words(occurrence: &Occurrence) -> String {
         "empty_a" => ("chamber A has no volume left", "chamber A has volume again"),
         "empty_b" => ("chamber B has no volume left", "chamber B has volume again"),
         "load_contact" => ("the load touches the wall", "the load leaves the wall"),
+        "accumulator_empty_a" => {
+            ("the gas at chamber A is shut off: below the precharge", "the gas at chamber A is in use again")
+        }
+        "accumulator_empty_b" => {
+            ("the gas at chamber B is shut off: below the precharge", "the gas at chamber B is in use again")
+        }
         "supply_lost" => ("the supply falls below the tank", "the supply is above the tank again"),
         _ => ("the command reaches its limit", "the command leaves its limit"),
     };

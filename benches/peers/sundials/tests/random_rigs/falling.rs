@@ -100,6 +100,7 @@ fn components(chance: &mut Chance) -> Components {
         },
         line_a: line,
         line_b: line,
+        accumulators: [None; 2],
         cylinder: Cylinder {
             area_a,
             area_b,

@@ -221,6 +221,7 @@ fn components(chance: &mut Chance, like_benchmark: bool) -> Components {
         },
         line_a: line(chance),
         line_b: line(chance),
+        accumulators: [None; 2],
         cylinder: Cylinder {
             area_a,
             area_b,

@@ -2,7 +2,7 @@ use phea_dynamics::scalar::Scalar;
 
 use super::super::equations::{Flows, constant};
 use super::super::signals::ground_of;
-use super::super::{Chambers, Machine, MachineState, Motion, PowerUnit};
+use super::super::{Accumulator, Chambers, Machine, MachineState, Motion, PowerUnit};
 use super::Account;
 use super::volume::{DensityLaw, Volume};
 use crate::line::{DynamicLine, LineContent};
@@ -18,7 +18,18 @@ pub(super) struct Instant<T> {
     /// Chambers, with their lines where these are lumped.
     pub(super) sides: [Volume<T>; 2],
     pub(super) lines: [LineInstant<T>; 2],
+    /// Accumulators at the chambers; empty where there are none.
+    pub(super) gas: [GasInstant<T>; 2],
     pub(super) supply: SupplyInstant<T>,
+}
+
+/// The gas of an accumulator.
+pub(super) struct GasInstant<T> {
+    /// The flow against it, in m3/s.
+    pub(super) inflow: T,
+    /// The volume that has entered, in m3, and the energy of the gas, in J.
+    oil: T,
+    energy: T,
 }
 
 /// A line between the valve's port and the chamber; empty where it is lumped.
@@ -35,11 +46,8 @@ pub(super) struct SupplyInstant<T> {
     pub(super) line: Volume<T>,
     /// The flow from the power unit into both, without the valve's tare flow.
     pub(super) fed: T,
-    /// The share of the gas in it, and in the flow through the edges.
-    pub(super) into_gas: T,
-    /// The volume that has entered against the gas, in m3, and the energy of the gas, in J.
-    pub(super) gas_oil: T,
-    pub(super) gas_energy: T,
+    /// It receives the share of the gas in `fed` and in the flow through the edges.
+    pub(super) gas: GasInstant<T>,
     taken: T,
 }
 
@@ -47,7 +55,34 @@ impl<T: Scalar> Instant<T> {
     /// Into chambers A and B, in m3/s.
     pub(super) fn chamber_flows(&self) -> [T; 2] {
         let [line_a, line_b] = &self.lines;
-        [line_a.into_chamber - self.flows.internal, line_b.into_chamber + self.flows.internal]
+        let [gas_a, gas_b] = &self.gas;
+        [
+            line_a.into_chamber - self.flows.internal - gas_a.inflow,
+            line_b.into_chamber + self.flows.internal - gas_b.inflow,
+        ]
+    }
+}
+
+impl<T: Scalar> GasInstant<T> {
+    /// The gas at this pressure in Pa, which receives a flow in proportion to its share of the
+    /// compliance: the flow is `arriving` in m3/s, the compliance beside it `beside` in m3/Pa.
+    fn of(gas: Option<Accumulator<T>>, pressure: T, arriving: T, beside: T) -> GasInstant<T> {
+        let zero = T::from(0.0);
+        let Some(gas) = gas else { return GasInstant { inflow: zero, oil: zero, energy: zero } };
+        let compliance = gas.compliance(pressure);
+        GasInstant {
+            inflow: arriving * compliance / (compliance + beside),
+            oil: gas.oil(pressure),
+            energy: gas.energy(pressure),
+        }
+    }
+
+    pub(super) fn oil(&self) -> Account<T> {
+        Account { stored: self.oil, inflow: self.inflow, lost: T::from(0.0) }
+    }
+
+    pub(super) fn energy(&self, pressure: T) -> Account<T> {
+        Account { stored: self.energy, inflow: pressure * self.inflow, lost: T::from(0.0) }
     }
 }
 
@@ -84,7 +119,7 @@ impl<T: Scalar> LineInstant<T> {
 impl<T: Scalar> SupplyInstant<T> {
     /// The flow into the compliance of the oil in the supply line, in m3/s.
     pub(super) fn line_flow(&self) -> T {
-        self.fed - self.taken - self.into_gas
+        self.fed - self.taken - self.gas.inflow
     }
 }
 
@@ -99,12 +134,15 @@ impl<S: Scalar> Machine<S> {
         let flows = self.flows(&state, ports);
         let ([port_a, port_b], [from_a, from_b]) = (ports, flows.from_valve);
         let ([line_a, line_b], [vector_a, vector_b]) = (&self.lines, self.layout.lines(vector));
-        let sides = self.sides(&state, load.position + state.deflection);
+        let position = load.position + state.deflection;
+        let sides = self.sides(&state, position);
+        let lines = [
+            LineInstant::of(line_a, [port_a, state.pressure_a], from_a, vector_a)?,
+            LineInstant::of(line_b, [port_b, state.pressure_b], from_b, vector_b)?,
+        ];
         Some(Instant {
-            lines: [
-                LineInstant::of(line_a, [port_a, state.pressure_a], from_a, vector_a)?,
-                LineInstant::of(line_b, [port_b, state.pressure_b], from_b, vector_b)?,
-            ],
+            gas: self.gas_instants(&state, position, &flows, &lines),
+            lines,
             supply: self.supply_instant(&state, &flows, &sides),
             state,
             load,
@@ -120,7 +158,7 @@ impl<S: Scalar> Machine<S> {
         let [area_a, area_b] = [constant(self.cylinder.area_a), constant(self.cylinder.area_b)];
         match self.chambers.convert(&mut constant::<S, T>) {
             Chambers::Clean(clean) => {
-                let [compliance_a, compliance_b] = self.compliance(state, position);
+                let [compliance_a, compliance_b] = self.oil_compliance(state, position);
                 let side = |modulus: T, compliance: T, pressure: T| Volume {
                     fluid: compliance * modulus,
                     beside: T::from(0.0),
@@ -143,7 +181,25 @@ impl<S: Scalar> Machine<S> {
         }
     }
 
-    /// The gas receives the inflow in proportion to its share of the compliance.
+    /// What enters a chamber and not its growing volume divides between oil and gas.
+    fn gas_instants<T: Scalar + From<S>>(
+        &self,
+        state: &MachineState<T>,
+        position: T,
+        flows: &Flows<T>,
+        [line_a, line_b]: &[LineInstant<T>; 2],
+    ) -> [GasInstant<T>; 2] {
+        let [area_a, area_b]: [T; 2] = [constant(self.cylinder.area_a), constant(self.cylinder.area_b)];
+        let [oil_a, oil_b] = self.oil_compliance(state, position);
+        let [gas_a, gas_b] = self.accumulators.map(|gas| gas.map(|gas| gas.convert(&mut constant::<S, T>)));
+        let into_a = line_a.into_chamber - flows.internal - area_a * state.velocity;
+        let into_b = line_b.into_chamber + flows.internal + area_b * state.velocity;
+        [
+            GasInstant::of(gas_a, state.pressure_a, into_a, oil_a),
+            GasInstant::of(gas_b, state.pressure_b, into_b, oil_b),
+        ]
+    }
+
     fn supply_instant<T: Scalar + From<S>>(
         &self,
         state: &MachineState<T>,
@@ -156,9 +212,7 @@ impl<S: Scalar> Machine<S> {
         let mut supply = SupplyInstant {
             line: Volume { fluid: zero, beside: zero, pressure, law: side_a.law },
             fed: taken,
-            into_gas: zero,
-            gas_oil: zero,
-            gas_energy: zero,
+            gas: GasInstant::of(None, pressure, zero, zero),
             taken,
         };
         if let PowerUnit::PumpLimited(unit) = self.power_unit.convert(&mut constant::<S, T>) {
@@ -166,13 +220,8 @@ impl<S: Scalar> Machine<S> {
             supply.fed = unit.pump_flow - relief - self.tare_flow_of(state);
             supply.line.fluid = unit.volume;
             supply.line.law = DensityLaw::Constant(unit.effective_bulk_modulus);
-            if let Some(gas) = unit.accumulator {
-                let oil = unit.volume / unit.effective_bulk_modulus;
-                let share = T::from(1.0) - oil / unit.compliance(pressure);
-                supply.into_gas = share * (supply.fed - taken);
-                supply.gas_oil = gas.oil(pressure);
-                supply.gas_energy = gas.energy(pressure);
-            }
+            let oil = unit.volume / unit.effective_bulk_modulus;
+            supply.gas = GasInstant::of(unit.accumulator, pressure, supply.fed - taken, oil);
         }
         supply
     }

@@ -1,0 +1,51 @@
+use phea_hydraulics::actuator::Components;
+use phea_hydraulics::line::StiffeningMember;
+use phea_hydraulics::operating_point::OperatingPoint;
+use phea_hydraulics::stiffness::hydraulic_stiffness;
+
+use super::list::List;
+use crate::rig::{ChargedRange, Rig, charged_range};
+
+/// The gas at the chambers, and the stiffness of the actuator without it.
+pub(super) fn accumulators(rig: &Rig, list: &mut List) {
+    let components = rig.actuator.components();
+    let pressures = [rig.point.pressure_a, rig.point.pressure_b];
+    let [gas_a, gas_b] = components.accumulators;
+    if gas_a.or(gas_b).is_none() {
+        return;
+    }
+    list.group("Accumulators");
+    for (side, gas, pressure) in [("a", gas_a, pressures[0]), ("b", gas_b, pressures[1])] {
+        let Some(gas) = gas else { continue };
+        let compliance = "C_{acc} = (V_0/(n P)) (P_0/P)^(1/n)";
+        let name = |what: &str| format!("line.{side}.accumulator.{what}");
+        list.add(name("compliance"), "C_acc", gas.compliance(pressure), "m3/Pa", compliance);
+        let volume = gas.gas_volume - gas.oil(pressure);
+        list.add(name("gas_volume_at_point"), "V", volume, "m3", "V = V_0 (P_0/P)^(1/n)");
+    }
+    let bare = Components { accumulators: [None; 2], ..*components };
+    let at = |components: &Components, point: &OperatingPoint| {
+        let pressures = [point.pressure_a, point.pressure_b];
+        let chambers = components.chamber_compliance(pressures, StiffeningMember::Nominal);
+        hydraulic_stiffness(&chambers, point.position)
+    };
+    let with = "K_H = A_A^2/C_A + A_B^2/C_B, C_A and C_B with C_acc";
+    list.add("stiffness.with_accumulators", "K_H", at(components, &rig.point), "N/m", with);
+    let without = "K_H = A_A^2/C_A + A_B^2/C_B, C_A and C_B without C_acc";
+    list.add("stiffness.without_accumulators", "K_H", at(&bare, &rig.point), "N/m", without);
+    let Some(ChargedRange { least, greatest }) = charged_range(rig) else { return };
+    let ends = [
+        ("line.a.accumulator.least_force", "stiffness.at_least_force", "P_A = 1.01 P_0 at standstill", least),
+        (
+            "line.b.accumulator.greatest_force",
+            "stiffness.at_greatest_force",
+            "P_B = 1.01 P_0 at standstill",
+            greatest,
+        ),
+    ];
+    for (force, stiffness, equation, point) in ends {
+        let Some(point) = point else { continue };
+        list.add(force, "F_H", point.hydraulic_force, "N", equation);
+        list.add(stiffness, "K_H", at(components, &point), "N/m", "K_H = A_A^2/C_A + A_B^2/C_B there");
+    }
+}

@@ -1,0 +1,102 @@
+//! Accumulators at the chambers: whether their gas is in use at the operating point, and within
+//! which forces.
+
+use phea_hydraulics::accumulator::Accumulator;
+use phea_hydraulics::operating_point::{Condition, OperatingPoint, operating_point};
+
+use super::Rig;
+use crate::project::DeclaredActuator;
+use crate::quantity::DisplayUnit;
+
+/// An accumulator whose precharge is above the pressure of its chamber at the operating point: the
+/// bladder fills the shell, and the gas takes no part.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error(
+    "{place}.precharge_pressure: {} is above the {} at which chamber {side} stands at the operating point, so that the gas is \
+     shut off and changes nothing: lower the precharge, or move the [operating_point]",
+    DisplayUnit::BAR.text(*precharge_pressure, 4),
+    DisplayUnit::BAR.text(*pressure, 4)
+)]
+pub struct EmptyAccumulator {
+    /// The table of the project.
+    pub place: &'static str,
+    /// A or B.
+    pub side: char,
+    /// Pa gauge.
+    pub precharge_pressure: f64,
+    /// Of the chamber, Pa gauge.
+    pub pressure: f64,
+}
+
+/// The last operating points at standstill at which the gas is in use; `None` where it is up to the
+/// nominal voltage.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ChargedRange {
+    /// With less force the gas at chamber A is shut off.
+    pub least: Option<OperatingPoint>,
+    /// With more force the gas at chamber B is shut off.
+    pub greatest: Option<OperatingPoint>,
+}
+
+/// The tables that declare accumulators at chambers A and B: `line.accumulator` where both are the
+/// same.
+pub fn accumulator_place(declared: &DeclaredActuator) -> [&'static str; 2] {
+    let line = &declared.line;
+    match line.a.accumulator == line.b.accumulator {
+        true => ["line.accumulator"; 2],
+        false => ["line.a.accumulator", "line.b.accumulator"],
+    }
+}
+
+/// Refuses an accumulator whose gas is shut off at the operating point.
+pub(super) fn charged(
+    declared: &DeclaredActuator,
+    accumulators: &[Option<Accumulator>; 2],
+    point: &OperatingPoint,
+) -> Result<(), EmptyAccumulator> {
+    let sides = accumulators.iter().zip(accumulator_place(declared));
+    let chambers = [('A', point.pressure_a), ('B', point.pressure_b)];
+    for ((gas, place), (side, pressure)) in sides.zip(chambers) {
+        let Some(Accumulator { precharge_pressure, .. }) = *gas else { continue };
+        if pressure < precharge_pressure {
+            return Err(EmptyAccumulator { place, side, precharge_pressure, pressure });
+        }
+    }
+    Ok(())
+}
+
+/// Bisections of the command: the width of its interval then is rounding.
+const ROUNDS: usize = 60;
+
+/// Where the gas at one of the chambers is shut off as the rig holds more and more force at
+/// standstill; `None` without accumulators, and where the operating point does not stand still.
+///
+/// ```text
+/// P_A(U) = 1.01 P_0 of accumulator A,   P_B(U) = 1.01 P_0 of accumulator B             at q_A = q_B = 0, absolute
+/// ```
+pub fn charged_range(rig: &Rig) -> Option<ChargedRange> {
+    let components = rig.actuator.components();
+    let [gas_a, gas_b] = components.accumulators;
+    if gas_a.or(gas_b).is_none() || rig.point.velocity != 0.0 {
+        return None;
+    }
+    let nominal = components.valve.nominal_voltage;
+    let at = |command| operating_point(&rig.actuator, rig.point.position, Condition::Command(command)).ok();
+    let last = |gas: Option<Accumulator>, end: f64, pressure: fn(&OperatingPoint) -> f64| {
+        let least = gas?.least_pressure();
+        let is_shut = |command| at(command).is_some_and(|point| pressure(&point) < least);
+        if !is_shut(end) {
+            return None;
+        }
+        let (mut charged, mut shut) = (rig.point.command, end);
+        for _ in 0..ROUNDS {
+            let middle = 0.5 * (charged + shut);
+            if is_shut(middle) { shut = middle } else { charged = middle }
+        }
+        at(charged)
+    };
+    Some(ChargedRange {
+        least: last(gas_a, -nominal, |point| point.pressure_a),
+        greatest: last(gas_b, nominal, |point| point.pressure_b),
+    })
+}
