@@ -70,6 +70,10 @@ pub(crate) fn run(arguments: Arguments) -> ExitCode {
             on_project(&common, &request)
         }
         Command::Compare(several) => on_projects(&several),
+        Command::Alternatives(common) => {
+            let request = Request::Alternatives { files: common.out.is_some() };
+            on_project(&common, &request)
+        }
         Command::Campaign { common, runs, seed, shard, run, threads } => {
             match campaign::request(runs, seed, shard.as_deref(), run, (threads, common.out.is_some())) {
                 Ok(request) => on_campaign(&common, &request),
@@ -224,8 +228,11 @@ fn answered(
     let mut line = ProgressLine::default();
     // commands that can return their best result so far are asked to stop; all others have nothing
     // to save
-    let interruption = matches!(request, Request::Design { .. } | Request::Simulate | Request::SimulateAs(_))
-        .then(Interruption::listen);
+    let keeps = matches!(
+        request,
+        Request::Design { .. } | Request::Simulate | Request::SimulateAs(_) | Request::Alternatives { .. }
+    );
+    let interruption = keeps.then(Interruption::listen);
     let tables = common.out.as_deref().map(Folder::new);
     let destination = tables.as_ref().map(|tables| tables as &dyn Destination);
     let mut watch = |progress| {

@@ -77,6 +77,34 @@ const OUTCOMES: &[(&[&str], i32)] = &[
     (&["design", "plant.toml"], 2),
     (&["design", "loop.toml", "--seed", "-1"], 2),
     (&["design", "loop.toml", "--set", "design.seeed=2"], 2),
+    (&["alternatives", "hose.toml"], 2),
+    (
+        &[
+            "alternatives",
+            "loop.toml",
+            "--set",
+            "alternative=[{ name = \"b\", set = { \"plant.denominator\" = \"s + 2\" } }]",
+        ],
+        0,
+    ),
+    (
+        &[
+            "alternatives",
+            "loop.toml",
+            "--set",
+            "alternative=[{ name = \"b\", set = { \"plant.denominatr\" = \"s + 2\" } }]",
+        ],
+        2,
+    ),
+    (
+        &[
+            "check",
+            "loop.toml",
+            "--set",
+            "alternative=[{ name = \"b\", set = { \"plant.denominatr\" = \"s + 2\" } }]",
+        ],
+        2,
+    ),
     (&["size", "hose.toml", "--gain", "0.0005 V/N"], 1),
     (&["size", "hose.toml", "--length", "200 cm"], 1),
     (&["size", "hose.toml", "--set", "sizing.oil_velocity=[0.1, 0.2]"], 1),

@@ -2,6 +2,7 @@
 
 use phea_project::Refusal;
 
+use crate::alternatives::AlternativesError;
 use crate::audit::AuditError;
 use crate::bench::BenchError;
 use crate::campaign::CampaignError;
@@ -46,6 +47,9 @@ pub enum ProcedureError {
     /// The project does not say what to size for.
     #[error("{0}")]
     Sizing(#[from] crate::rig::SizingError),
+    /// There are no alternatives.
+    #[error(transparent)]
+    Alternatives(#[from] AlternativesError),
     /// There is nothing to audit.
     #[error(transparent)]
     Audit(#[from] AuditError),

@@ -7,6 +7,7 @@
 //! Setup   -> family -> robust::RobustProblem -> audit, shaping, design (-> trial on the machine -> repair)
 //! Setup   -> simulate::ControlledMachine -> simulate, campaign the nonlinear machine
 //! Setup   -> bench                                            static tests of the valve
+//! Project -> alternatives                                     the same project with other values, judged side by side
 //! files   -> identify                                         the valve that explains recorded tests
 //! files   -> response                                         frequency responses from recorded signals
 //! files   -> line_test                                        the bulk modulus of a blocked line from recordings
@@ -15,6 +16,7 @@
 //!
 //! Results are values; text, JSON and figures of them are made in the workbench.
 
+pub mod alternatives;
 pub mod audit;
 pub mod bench;
 pub mod campaign;

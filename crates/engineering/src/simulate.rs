@@ -25,7 +25,7 @@ mod sum;
 mod sums;
 mod tally;
 mod wish;
-pub use file_names::state_names;
+pub use file_names::{file_names, state_names};
 pub use metrics::NOT_SETTLED;
 
 pub use bench::ControlledMachine;

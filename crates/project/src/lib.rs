@@ -2,6 +2,7 @@
 //!
 //! Inside, everything is SI. Keys are a contract: other tools read them.
 
+mod alternative;
 mod bench;
 mod campaign;
 pub mod catalogue;
@@ -47,6 +48,7 @@ mod validate;
 mod valve;
 mod visitor;
 
+pub use alternative::*;
 pub use bench::*;
 pub use campaign::*;
 pub use controller::*;
@@ -71,7 +73,7 @@ pub use operating_point::*;
 pub use plant::*;
 pub use published::*;
 pub use read::sha256;
-pub use read::{keys, print, read};
+pub use read::{keys, print, read, read_alternative};
 pub use recorded::*;
 pub use scenario::*;
 pub use schema::schema;
@@ -138,6 +140,8 @@ pub struct Project {
     pub bench: Bench,
     /// What the servovalve is identified from.
     pub identify: Option<Identify>,
+    /// The same project with other values, to be judged beside it, in file order.
+    pub alternatives: Vec<Alternative>,
 }
 
 /// The hydraulic actuator and what it works against.
@@ -280,6 +284,8 @@ impl Project {
         table_or_default(k, &mut self.bench, Bench::visit, v);
         let k = plain("identify", "What the servovalve is identified from.");
         v.table(k, &mut self.identify, Identify::visit);
+        let k = plain("alternative", "The project with other values, for `phea alternatives`.");
+        v.tables(k, &mut self.alternatives, Alternative::visit);
     }
 }
 

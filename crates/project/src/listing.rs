@@ -256,6 +256,10 @@ impl Visitor for Listing {
         self.list(Key { name: "NAME", ..key }, "a number", false);
     }
 
+    fn overrides(&mut self, key: Key, _field: &mut Vec<(String, String)>) {
+        self.list(key, "a table of paths and values", true);
+    }
+
     fn sides<T: Default + Clone + PartialEq>(
         &mut self,
         keys: [Key; 2],

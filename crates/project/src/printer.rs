@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::formula::Formula;
 use super::key::Key;
+use super::tree::{Entry, TreeNode, Value as TreeValue};
 use super::visitor::{FormulaShape, Kinds, NamedNumber, ValueForm, Variants, Visitor};
 use crate::catalogue::CatalogueKind;
 use phea_quantity as quantity;
@@ -139,6 +140,25 @@ fn quoted(text: &str) -> String {
 
 fn list(items: impl Iterator<Item = String>) -> String {
     format!("[{}]", items.collect::<Vec<_>>().join(", "))
+}
+
+/// A value as TOML in one line; `None` for a date.
+pub(crate) fn in_toml(node: &TreeNode) -> Option<String> {
+    Some(match &node.value {
+        TreeValue::Text(text) => quoted(text),
+        TreeValue::Number(number) => quantity::print_bare(*number),
+        TreeValue::Flag(flag) => flag.to_string(),
+        TreeValue::Date => return None,
+        TreeValue::List(items) => list(items.iter().map(in_toml).collect::<Option<Vec<_>>>()?.into_iter()),
+        TreeValue::Table(entries) => {
+            let entry = |entry: &Entry| Some((bare_or_quoted(&entry.key), in_toml(&entry.node)?));
+            PrintedTable {
+                lines: entries.iter().map(entry).collect::<Option<_>>()?,
+                ..PrintedTable::default()
+            }
+            .inline()?
+        }
+    })
 }
 
 impl Visitor for Printer {
@@ -312,6 +332,14 @@ impl Visitor for Printer {
         for (name, value) in field.iter() {
             self.line(name, quantity::print_bare(*value));
         }
+    }
+
+    fn overrides(&mut self, key: Key, field: &mut Vec<(String, String)>) {
+        self.enter(format!("[{}]", self.path(key.name)));
+        for (path, value) in field.iter() {
+            self.line(path, value.clone());
+        }
+        self.attach(key.name, true);
     }
 
     fn sides<T: Default + Clone + PartialEq>(

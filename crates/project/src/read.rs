@@ -13,7 +13,9 @@ use super::printer::Printer;
 use super::reader::Reader;
 use super::text::{Findings, Place, RawFinding};
 use super::tree::{self, TreeNode};
-use super::{DIRECTION, DeclaredActuator, Loaded, Project, UncertaintyDirection, setting, validate};
+use super::{
+    Alternative, DIRECTION, DeclaredActuator, Loaded, Project, UncertaintyDirection, setting, validate,
+};
 use crate::catalogue::Catalogue;
 use crate::source::Source;
 use phea_quantity::{Dimension, RATIO, display};
@@ -41,12 +43,64 @@ pub fn read(
     settings: &[String],
     catalogues: &[String],
 ) -> Result<Loaded, Refusal> {
+    read_bytes(
+        (source, path),
+        source.read(path).map_err(|error| error.to_string()),
+        settings,
+        catalogues,
+        None,
+    )
+}
+
+/// The alternative of a project with this index: the same bytes with the same settings, and then
+/// those of the alternative. Its settings are listed as if they had been given to [`read`].
+///
+/// # Errors
+/// [`Refusal`] with all errors; those in a value of the alternative have its place.
+///
+/// # Example
+/// ```
+/// use phea_project::{self as project, STARTER};
+/// use phea_project::source::Memory;
+/// let text = format!("{STARTER}\n[[alternative]]\nname = \"80 bar\"\nset = {{ \"supply.pressure\" = \"80 bar\" }}\n");
+/// let source = Memory::default().with("rig.toml", text);
+/// let base = project::read(&source, "rig.toml", &[], &[])?;
+/// let other = project::read_alternative(&source, &base, &[], 0)?;
+/// assert_eq!(other.project.number("supply.pressure"), Some(80e5));
+/// assert_eq!(other.settings, ["supply.pressure=\"80 bar\""]);
+/// # Ok::<(), phea_project::Refusal>(())
+/// ```
+pub fn read_alternative(
+    source: &dyn Source,
+    base: &Loaded,
+    catalogues: &[String],
+    index: usize,
+) -> Result<Loaded, Refusal> {
+    let name = base.project.alternatives.get(index).map_or("", |one| one.name.as_str());
+    // what recordings gave holds for the alternatives, too
+    let settings = base.all_settings();
+    let read = read_bytes((source, &base.path), Ok(base.bytes.clone()), &settings, catalogues, Some(index));
+    read.map_err(|mut refusal| {
+        for found in &mut refusal.diagnostics {
+            found.message = format!("alternative `{name}`: {}", found.message);
+        }
+        refusal
+    })
+}
+
+fn read_bytes(
+    (source, path): (&dyn Source, &str),
+    bytes: Result<Vec<u8>, String>,
+    settings: &[String],
+    catalogues: &[String],
+    alternative: Option<usize>,
+) -> Result<Loaded, Refusal> {
     let mut findings = Findings::default();
     let catalogue = Catalogue::gather(source, catalogues, &mut findings);
-    let bytes = match source.read(path) {
+    let bytes = match bytes {
         Ok(bytes) => bytes,
         Err(error) => {
-            findings.unreadable(path, &error.to_string());
+            findings.unreadable(path, &error);
             return Err(findings.report());
         }
     };
@@ -55,6 +109,9 @@ pub fn read(
     root.place.text = project_text;
     for text in settings {
         setting::apply(&mut root, text, &mut findings);
+    }
+    if let Some(table) = alternative.and_then(|index| set_of(&root, index)) {
+        setting::apply_table(&mut root, &table, &mut findings);
     }
     let mut reader = Reader::new(&root, project_text, &catalogue, &mut findings);
     let folder = path.rfind(['/', '\\']).map_or(String::new(), |last| path[..=last].to_string());
@@ -68,7 +125,10 @@ pub fn read(
     }
     let sha256 = sha256(&bytes);
     let warnings = report.diagnostics;
-    let (settings, texts) = (settings.to_vec(), report.texts);
+    let texts = report.texts;
+    let own = alternative.and_then(|index| project.alternatives.get(index));
+    let own = own.into_iter().flat_map(Alternative::settings);
+    let settings = settings.iter().cloned().chain(own).collect();
     let path = path.to_string();
     let catalogues = catalogues.to_vec();
     Ok(Loaded {
@@ -84,6 +144,12 @@ pub fn read(
         catalogues,
         recorded: None,
     })
+}
+
+/// The table `set` of an alternative.
+fn set_of(root: &TreeNode, index: usize) -> Option<TreeNode> {
+    let tree::Value::List(alternatives) = &root.get("alternative")?.node.value else { return None };
+    Some(alternatives.get(index)?.get("set")?.node.clone())
 }
 
 /// The hash by which answers name a project.

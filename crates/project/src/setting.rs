@@ -47,6 +47,90 @@ fn parts(text: usize, path: &str) -> Result<Vec<PathPart>, RawFinding> {
     Ok(parts)
 }
 
+/// A setting that a table states.
+pub(crate) struct TableSetting<'t> {
+    parts: Vec<PathPart>,
+    /// What is set.
+    pub(crate) value: &'t TreeNode,
+}
+
+impl TableSetting<'_> {
+    /// Its path, parts with dots in them in quotes.
+    pub(crate) fn path(&self) -> String {
+        let quoted = |name: &String| if name.contains('.') { format!("\"{name}\"") } else { name.clone() };
+        self.parts.iter().map(|(name, _)| quoted(name)).collect::<Vec<_>>().join(".")
+    }
+}
+
+/// The settings of a table, in its order: a key is a path, as in a setting on the command line; keys
+/// with dots outside quotes and tables with a heading state paths part by part, and an inline table
+/// is a value.
+pub(crate) fn of_table<'t>(
+    table: &'t TreeNode,
+    findings: &Findings,
+    wrong: &mut Vec<RawFinding>,
+) -> Vec<TableSetting<'t>> {
+    let mut found = Vec::new();
+    gather(table, &[], findings, (&mut found, wrong));
+    found
+}
+
+fn gather<'t>(
+    table: &'t TreeNode,
+    before: &[PathPart],
+    findings: &Findings,
+    (found, wrong): (&mut Vec<TableSetting<'t>>, &mut Vec<RawFinding>),
+) {
+    for entry in table.entries() {
+        let parts = match key_parts(entry, findings) {
+            Ok(parts) => [before, parts.as_slice()].concat(),
+            Err(finding) => {
+                wrong.push(finding);
+                continue;
+            }
+        };
+        if parts.first().is_some_and(|(name, _)| name == "alternative") {
+            wrong.push(RawFinding::error(entry.key_place, "an alternative does not change alternatives"));
+            continue;
+        }
+        let Place { text, start, .. } = entry.node.place;
+        let is_inline = findings.content(text).get(start..).is_some_and(|rest| rest.starts_with('{'));
+        match &entry.node.value {
+            Value::Table(_) if !is_inline => gather(&entry.node, &parts, findings, (found, wrong)),
+            _ => found.push(TableSetting { parts, value: &entry.node }),
+        }
+    }
+}
+
+/// The parts of a key that is a path, each with its place inside the quotes.
+fn key_parts(entry: &Entry, findings: &Findings) -> Result<Vec<PathPart>, RawFinding> {
+    let Place { text, start, end } = entry.key_place;
+    let written = findings.content(text).get(start..end).unwrap_or_default();
+    let quotes = usize::from(written.starts_with(['"', '\'']));
+    let as_written = written.get(quotes..written.len().saturating_sub(quotes)) == Some(entry.key.as_str());
+    let place = |inner: Place| match as_written {
+        true => Place { text, start: inner.start + start + quotes, end: inner.end + start + quotes },
+        // a key with escapes
+        false => entry.key_place,
+    };
+    let moved = |(name, inner): PathPart| (name, place(inner));
+    match parts(text, &entry.key) {
+        Ok(parts) => Ok(parts.into_iter().map(moved).collect()),
+        Err(found) => Err(found.at(entry.key_place)),
+    }
+}
+
+/// Applies the settings of a table.
+pub(crate) fn apply_table(root: &mut TreeNode, table: &TreeNode, findings: &mut Findings) {
+    let mut wrong = Vec::new();
+    for setting in of_table(table, findings, &mut wrong) {
+        if let Err(found) = insert(root, &setting.parts, setting.value.clone()) {
+            wrong.push(found);
+        }
+    }
+    wrong.into_iter().for_each(|found| findings.push(found));
+}
+
 /// At the dots that are not inside quotes.
 fn split(path: &str) -> Vec<&str> {
     let mut inside = false;

@@ -59,6 +59,11 @@ impl RawFinding {
         RawFinding { severity: Severity::Warning, ..RawFinding::error(place, message) }
     }
 
+    /// The same at another place.
+    pub(crate) fn at(self, place: Place) -> Self {
+        RawFinding { place, ..self }
+    }
+
     /// The same with the expectation.
     pub fn expected(mut self, expected: impl Into<String>) -> Self {
         self.expected = Some(expected.into());

@@ -1,5 +1,6 @@
 //! Conditions between the values of a project, in addition to the range of each.
 
+mod alternative;
 mod design;
 mod direction;
 mod family;
@@ -50,6 +51,7 @@ pub(super) fn project(project: &Project, reader: &mut Reader<'_>) {
         identify::identify(identified, &mut check);
         identify::in_use(project, identified, &mut check);
     }
+    alternative::alternatives(&project.alternatives, &mut check);
 }
 
 impl DeclaredElement {

@@ -108,6 +108,8 @@ pub(crate) trait Visitor: Sized {
     /// The present table as a list of names and numbers; `of` makes the key of an entry from the key
     /// of the number that it names.
     fn numbers(&mut self, key: Key, of: fn(Key) -> Key, field: &mut Vec<(String, f64)>);
+    /// A table of settings: each a path, as `--set` takes it, and its value in TOML.
+    fn overrides(&mut self, key: Key, field: &mut Vec<(String, String)>);
     /// Two tables `a` and `b` that inherit what the present table says, unless they choose a kind
     /// of their own.
     fn sides<T: Default + Clone + PartialEq>(

@@ -1,6 +1,7 @@
 //! The language of a rig from outside: what is read, what is refused, and how.
 #![cfg(test)]
 
+mod alternative;
 mod formula;
 mod kernels;
 mod malformed;

@@ -1,5 +1,6 @@
 //! The commands on a project: requests, and the answers that a shell prints and writes.
 
+mod alternatives;
 mod campaign;
 mod friction;
 mod identify;
@@ -51,6 +52,7 @@ use crate::sizing::{self, Question, size};
 use crate::source::{Destination, HeldFiles, Source};
 use crate::specification::{self, specifications, wishes};
 use crate::trial::{Agreement, tried};
+use alternatives::{alternatives_answer, read_alternatives};
 use linearize::{linearize_answer, swept_answer};
 use simulate::simulate_answer;
 
@@ -101,6 +103,11 @@ pub enum Request {
     SimulateAs(SimulateRequest),
     /// The same scenarios of this project and others side by side.
     Compare,
+    /// The project and each of its alternatives: sized, designed, audited and driven.
+    Alternatives {
+        /// Whether files are wanted.
+        files: bool,
+    },
     /// The nonlinear machine with drawn numbers, many times.
     Campaign(CampaignRequest),
     /// Static tests of the servovalve.
@@ -123,6 +130,7 @@ impl Request {
             Request::Design { .. } => "design",
             Request::Simulate | Request::SimulateAs(_) => "simulate",
             Request::Compare => "compare",
+            Request::Alternatives { .. } => "alternatives",
             Request::Campaign(_) => "campaign",
             Request::Bench => "bench",
             Request::Report | Request::Page => "report",
@@ -205,7 +213,7 @@ fn answer_as_read(
     watch: Watch<'_>,
 ) -> Result<Answer, CommandError> {
     match request {
-        Request::Check => check(source, loaded),
+        Request::Check => check(source, loaded, catalogues),
         Request::Size { gain, length } => {
             let question = question(gain.as_deref(), length.as_deref())?;
             size_answer(source, loaded, catalogues, question)
@@ -226,6 +234,7 @@ fn answer_as_read(
         Request::Simulate => simulate_answer(source, loaded, &SimulateRequest::default(), destination, watch),
         Request::SimulateAs(asked) => simulate_answer(source, loaded, asked, destination, watch),
         Request::Compare => compare_watched(source, std::slice::from_ref(loaded), false, watch),
+        Request::Alternatives { files } => alternatives_answer(source, loaded, catalogues, *files, watch),
         Request::Campaign(asked) => {
             campaign_watched(source, loaded, catalogues, asked, (&mut Nowhere, destination), watch)
         }
@@ -237,7 +246,8 @@ fn answer_as_read(
     }
 }
 
-fn check(source: &dyn Source, loaded: &Loaded) -> Result<Answer, CommandError> {
+fn check(source: &dyn Source, loaded: &Loaded, catalogues: &[String]) -> Result<Answer, CommandError> {
+    read_alternatives(source, loaded, catalogues)?;
     let setup = Setup::new(&loaded.project)?;
     let derived = match setup.rig() {
         Ok(rig) => derive(&loaded.project, rig),

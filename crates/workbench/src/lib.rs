@@ -3,6 +3,7 @@
 //!
 //! A shell hands in text and bytes through [`source::Source`] and prints what an [`answer::Answer`] holds.
 
+pub mod alternatives;
 pub mod answer;
 pub mod audit;
 pub mod bench;

@@ -6,8 +6,8 @@ mod sweep_answer;
 
 pub use phea_engineering::linearize::*;
 
-pub(crate) use answer::json_swept;
 pub use answer::{files, json};
+pub(crate) use answer::{json_swept, passivity as passivity_body};
 pub use document::text;
 pub(crate) use document::{document, models, passivity_sentence, root_list};
 pub(crate) use sweep_answer::sweep_text;

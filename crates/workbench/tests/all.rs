@@ -2,6 +2,7 @@
 #![cfg(test)]
 
 mod accumulator;
+mod alternatives;
 mod ask;
 mod benchmark;
 mod campaign;

@@ -107,7 +107,7 @@ fn the_hash_is_of_the_bytes_and_settings_stand_beside_it() {
 }
 
 /// Nulls without a reason beside them. A reason stands under `reason` or under the key with `_reason`.
-fn unexplained(path: &str, value: &Value, found: &mut Vec<String>) {
+pub(crate) fn unexplained(path: &str, value: &Value, found: &mut Vec<String>) {
     match value {
         Value::Object(fields) => {
             for (key, field) in fields {

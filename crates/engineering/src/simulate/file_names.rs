@@ -2,17 +2,17 @@
 
 /// Names of the files with the states of these scenarios.
 pub fn state_names<'a>(scenarios: impl Iterator<Item = &'a str>) -> Vec<String> {
-    names(scenarios).into_iter().map(|name| format!("{name}.state.toml")).collect()
+    file_names(scenarios).into_iter().map(|name| format!("{name}.state.toml")).collect()
 }
 
 /// Names of the tables of these scenarios, each derived from the scenario's name, and all
 /// different.
 pub(crate) fn table_names<'a>(scenarios: impl Iterator<Item = &'a str>, ending: &str) -> Vec<String> {
-    names(scenarios).into_iter().map(|name| format!("{name}.{ending}")).collect()
+    file_names(scenarios).into_iter().map(|name| format!("{name}.{ending}")).collect()
 }
 
-/// Each derived from its name, and all different.
-fn names<'a>(scenarios: impl Iterator<Item = &'a str>) -> Vec<String> {
+/// Names of files without their ending, each derived from its name, and all different.
+pub fn file_names<'a>(scenarios: impl Iterator<Item = &'a str>) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for scenario in scenarios {
         let plain = file_name(scenario);

@@ -6,6 +6,8 @@ use crate::catalogue::CatalogueKind;
 use crate::formula::Formula;
 use crate::key::Key;
 use crate::listing::keys_of;
+use crate::printer;
+use crate::setting;
 use crate::text::RawFinding;
 use crate::tree::{TreeNode, Value};
 use crate::visitor::{FormulaShape, Kinds, NamedNumber, ValueForm, Variants, Visitor};
@@ -374,6 +376,25 @@ impl Visitor for Reader<'_> {
         if let Some(frame) = self.frames.last_mut() {
             frame.layers.clear();
         }
+    }
+
+    fn overrides(&mut self, key: Key, field: &mut Vec<(String, String)>) {
+        let Some(hit) = self.find(key) else { return self.missing(key) };
+        if !matches!(hit.node.value, Value::Table(_)) {
+            return self.wrong_kind(key, "a table", hit.node);
+        }
+        let mut wrong = Vec::new();
+        let settings = setting::of_table(hit.node, self.findings, &mut wrong);
+        if settings.is_empty() && wrong.is_empty() {
+            wrong.push(RawFinding::error(hit.node.place, format!("`{}` sets nothing", self.path(key.name))));
+        }
+        for setting in settings {
+            match printer::in_toml(setting.value) {
+                Some(value) => field.push((setting.path(), value)),
+                None => wrong.push(RawFinding::error(setting.value.place, "no key accepts a date")),
+            }
+        }
+        wrong.into_iter().for_each(|found| self.findings.push(found));
     }
 
     fn sides<T: Default + Clone + PartialEq>(

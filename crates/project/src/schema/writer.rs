@@ -256,6 +256,10 @@ impl Visitor for SchemaWriter {
         self.present(|table| table.others = value);
     }
 
+    fn overrides(&mut self, key: Key, _field: &mut Vec<(String, String)>) {
+        self.property(key, json!({ "type": "object", "minProperties": 1 }), true);
+    }
+
     /// Each side may have the keys that a table lacks, so that nothing is required where there is a
     /// side.
     fn sides<T: Default + Clone + PartialEq>(

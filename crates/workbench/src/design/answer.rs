@@ -17,6 +17,11 @@ use crate::trial::{self, Agreement};
 
 /// The JSON object of `design`.
 pub fn json(loaded: &Loaded, view: &ProjectDesign) -> Result<String, LinearError> {
+    Ok(answer::json("design", loaded, body(view)?))
+}
+
+/// A design in JSON, without the keys of every object.
+pub(crate) fn body(view: &ProjectDesign) -> Result<Object, LinearError> {
     let design = &view.design;
     let side = &view.designed;
     let prefilter = side.problem.has_prefilter.then(|| factors(side.problem.compensation.prefilter()));
@@ -46,7 +51,7 @@ pub fn json(loaded: &Loaded, view: &ProjectDesign) -> Result<String, LinearError
     };
     let published = view.published.as_ref().map(audited);
     let no_published = published.is_none().then_some("the project gives no controller");
-    let body = Object::new()
+    Ok(Object::new()
         .with("status", status_key(view))
         .with("objective", objective)
         .with("seed", view.options.seed)
@@ -74,8 +79,7 @@ pub fn json(loaded: &Loaded, view: &ProjectDesign) -> Result<String, LinearError
         .each("explanations", &view.explanations, |one| explanation(view, one))
         .maybe("rounding", view.rounding.as_ref().map(|rounding| rounding::row(rounding, &side.view.names)))
         .known("machine", view.trial.as_ref().map(trial::body), no_machine)
-        .known("repair", view.repair.as_ref().map(repair::row), no_repair);
-    Ok(answer::json("design", loaded, body))
+        .known("repair", view.repair.as_ref().map(repair::row), no_repair))
 }
 
 /// k Π(s - z)/Π(s - p), or the same in z.

@@ -137,7 +137,7 @@ fn asymptote(asymptote: &Asymptote) -> Object {
         .with("to_rad_per_s", asymptote.to)
 }
 
-fn passivity(report: &PassivityReport) -> Object {
+pub(crate) fn passivity(report: &PassivityReport) -> Object {
     Object::new()
         .with("passive", report.passive)
         .with("right_half_plane_poles", report.right_half_plane_poles.as_slice())

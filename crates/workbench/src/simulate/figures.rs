@@ -306,6 +306,12 @@ fn compared(comparison: &ScenarioComparison<'_>, name: &str, number: usize) -> V
     figures
 }
 
+/// One scenario of several rigs from beginning to end.
+pub(crate) fn laid_over(words: Words, titles: &[String], runs: &[&ScenarioRun]) -> Figure {
+    let ends = runs.iter().filter_map(|run| run.record.times_s.last().copied());
+    side_by_side(words, titles, runs, [0.0, ends.fold(0.0, f64::max)])
+}
+
 fn side_by_side(words: Words, titles: &[String], runs: &[&ScenarioRun], span_s: [f64; 2]) -> Figure {
     let each = |values: fn(&Record) -> Vec<f64>| -> Vec<TimeSeries> {
         runs.iter().map(|run| over_time(&run.record, values(&run.record))).collect()

@@ -1,0 +1,219 @@
+//! Alternatives of one project, each as that project with settings of its own: sized, designed for
+//! the same specifications, audited, tried on the machine and driven through every scenario.
+//!
+//! ```text
+//! [[alternative]] -> project -> sizing, design, audit, trial -> the designed loop, driven -> columns -> dominance
+//! ```
+
+mod columns;
+mod comparison;
+
+pub use columns::{AlternativeColumn, AlternativeColumns, ColumnPart};
+pub use comparison::{ComparedMeasures, MEASURES};
+
+use phea_dynamics::watch::{Progress, Watch};
+
+use crate::catalogue::{self, Catalogue};
+use crate::design::{DesignError, ProjectDesign, design_project};
+use crate::error::ProcedureError;
+use crate::linearize::{Linearization, linearize};
+use crate::project::{AS_DECLARED, Loaded, Project, read_alternative};
+use crate::rig::{RigError, sizing_problem};
+use crate::setup::Setup;
+use crate::simulate::{ScenarioRun, simulate_project};
+use crate::sizing::{Question, Sizing, size};
+use crate::source::Source;
+
+/// Why no alternatives are judged.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum AlternativesError {
+    /// There is only the project itself.
+    #[error(
+        "the project has no [[alternative]]: add one with `name` and `set = {{ \"line.length\" = \"3 m\" }}`"
+    )]
+    Absent,
+}
+
+/// The project as it is declared and its alternatives, judged.
+#[derive(Clone, Debug)]
+pub struct Alternatives {
+    /// The project itself first, then its alternatives in file order.
+    pub judged: Vec<JudgedAlternative>,
+    /// Names of those that were not finished when the watch stopped.
+    pub not_reached: Vec<String>,
+}
+
+/// An alternative with everything that was found about it; a text says why something was not.
+#[derive(Clone, Debug)]
+pub struct JudgedAlternative {
+    /// Its name.
+    pub name: String,
+    /// The project with its settings.
+    pub loaded: Loaded,
+    /// Hoses of the catalogue for its `[sizing]`.
+    pub sizing: Result<Sizing, String>,
+    /// The designed controller with its audit and its trial on the machine.
+    pub design: Result<ProjectDesign, String>,
+    /// The project with the designed laws in place of its own.
+    pub deployed: Result<Project, String>,
+    /// The linear models of its rig, the closed loop with the designed controller.
+    pub linearization: Result<Linearization, String>,
+    /// Every scenario under the designed controller and prefilter; empty where there is none, or no
+    /// machine.
+    pub runs: Result<Vec<ScenarioRun>, String>,
+}
+
+impl Alternatives {
+    /// Whether every alternative has a design, and every scenario ran to its end.
+    pub fn is_complete(&self) -> bool {
+        self.not_reached.is_empty() && self.judged.iter().all(JudgedAlternative::is_judged)
+    }
+}
+
+impl JudgedAlternative {
+    /// Whether it has a design that was driven.
+    pub fn is_judged(&self) -> bool {
+        let completed = |runs: &Vec<ScenarioRun>| runs.iter().all(|run| run.stopped().is_none());
+        self.design.is_ok() && self.runs.as_ref().is_ok_and(completed)
+    }
+
+    /// Whether the designed loop satisfies every specification; or why this is not known.
+    pub fn feasible(&self) -> Result<bool, String> {
+        use phea_qft::design::DesignStatus;
+        let view = self.design.as_ref().map_err(Clone::clone)?;
+        match view.design.status {
+            _ if view.is_met() => Ok(true),
+            DesignStatus::Infeasible(_) | DesignStatus::NotStabilised => Ok(false),
+            DesignStatus::Met if !view.bears_its_delay => Ok(false),
+            DesignStatus::Met | DesignStatus::NotConverged { .. } => {
+                Err(crate::design::status_sentence(view))
+            }
+        }
+    }
+}
+
+/// Judges the project as it is declared, and each of its alternatives, one after the other. If the
+/// watch answers `false`, the one at hand and all later ones are not reached.
+///
+/// # Errors
+/// [`AlternativesError`] for a project without alternatives, [`DesignError::NoSpecification`] for one
+/// without specifications, and [`ProcedureError::Catalogue`] for an alternative that is no valid
+/// project. What an alternative lacks otherwise is told of that alternative.
+///
+/// # Example
+/// ```
+/// use phea_engineering::alternatives::{AlternativesError, judge};
+/// use phea_engineering::error::ProcedureError;
+/// use phea_project::{self as project, source::Memory};
+/// let source = Memory::default().with("rig.toml", include_str!("../../../examples/ybitu/hose.toml"));
+/// let loaded = project::read(&source, "rig.toml", &[], &[])?;
+/// let none = judge(&source, &loaded, &[], &mut |_| true);
+/// assert!(matches!(none, Err(ProcedureError::Alternatives(AlternativesError::Absent))));
+/// # Ok::<(), phea_project::Refusal>(())
+/// ```
+pub fn judge(
+    source: &dyn Source,
+    loaded: &Loaded,
+    catalogues: &[String],
+    watch: Watch<'_>,
+) -> Result<Alternatives, ProcedureError> {
+    let alternatives = &loaded.project.alternatives;
+    if alternatives.is_empty() {
+        return Err(AlternativesError::Absent.into());
+    }
+    if loaded.project.specifications.is_empty() {
+        return Err(DesignError::NoSpecification.into());
+    }
+    let catalogue = catalogue::load(source, catalogues).map_err(ProcedureError::Catalogue)?;
+    let mut asked = vec![(AS_DECLARED.to_string(), loaded.clone())];
+    for (index, alternative) in alternatives.iter().enumerate() {
+        let other = read_alternative(source, loaded, catalogues, index);
+        asked.push((alternative.name.clone(), other.map_err(ProcedureError::Catalogue)?));
+    }
+    let count = asked.len() as f64;
+    let mut found = Alternatives { judged: Vec::new(), not_reached: Vec::new() };
+    for (index, (name, other)) in asked.into_iter().enumerate() {
+        let mut told = |progress: Progress| {
+            watch(Progress { share: (index as f64 + progress.share) / count, ..progress })
+        };
+        let reached = found.not_reached.is_empty();
+        let one = if reached { judged(source, &name, other, &catalogue, &mut told) } else { None };
+        match one {
+            Some(one) => found.judged.push(one),
+            None => found.not_reached.push(name),
+        }
+    }
+    Ok(found)
+}
+
+/// Share of the progress that the design is, the scenarios being the rest.
+const DESIGNING: f64 = 0.7;
+
+/// `None` where the watch stops it.
+fn judged(
+    source: &dyn Source,
+    name: &str,
+    loaded: Loaded,
+    catalogue: &Catalogue,
+    watch: Watch<'_>,
+) -> Option<JudgedAlternative> {
+    let mut designing =
+        |progress: Progress| watch(Progress { share: DESIGNING * progress.share, ..progress });
+    let design = match designed(source, &loaded.project, &mut designing) {
+        Err(ProcedureError::Stopped) => return None,
+        Ok(view) if view.stopped => return None,
+        design => design.map_err(|error| error.to_string()),
+    };
+    let deployed = match &design {
+        Ok(view) => Ok(view.deployed(&loaded.project)),
+        Err(_) => Err("no controller was designed".to_string()),
+    };
+    let mut driving = |progress: Progress| {
+        watch(Progress { share: DESIGNING + (1.0 - DESIGNING) * progress.share, ..progress })
+    };
+    let runs = deployed.as_ref().map_err(Clone::clone);
+    let runs = runs.and_then(|deployed| driven(source, deployed, &mut driving));
+    if runs.as_ref().is_ok_and(|runs| runs.iter().any(ScenarioRun::was_cancelled)) {
+        return None;
+    }
+    Some(JudgedAlternative {
+        name: name.to_string(),
+        sizing: sized(&loaded.project, catalogue).map_err(|error| error.to_string()),
+        linearization: linearized(deployed.as_ref().unwrap_or(&loaded.project))
+            .map_err(|error| error.to_string()),
+        design,
+        deployed,
+        runs,
+        loaded,
+    })
+}
+
+fn designed(
+    source: &dyn Source,
+    project: &Project,
+    watch: Watch<'_>,
+) -> Result<ProjectDesign, ProcedureError> {
+    design_project(source, &Setup::new(project)?, None, watch)
+}
+
+fn sized(project: &Project, catalogue: &Catalogue) -> Result<Sizing, ProcedureError> {
+    Ok(size(&sizing_problem(&Setup::new(project)?, catalogue)?, Question::Both))
+}
+
+fn linearized(project: &Project) -> Result<Linearization, ProcedureError> {
+    let setup = Setup::new(project)?;
+    Ok(linearize(setup.rig()?, setup.controller.as_ref(), &setup.sensor)?)
+}
+
+fn driven(source: &dyn Source, project: &Project, watch: Watch<'_>) -> Result<Vec<ScenarioRun>, String> {
+    if project.actuator.is_none() || project.scenarios.is_empty() {
+        return Ok(vec![]);
+    }
+    let setup = Setup::new(project).map_err(|error| error.to_string())?;
+    simulate_project(source, &setup, watch).map_err(|error| error.to_string())
+}
+
+/// Why there is nothing of a machine.
+fn no_rig() -> String {
+    RigError::NoActuator.to_string()
+}

@@ -1,0 +1,82 @@
+//! Alternatives: what they set, in which forms, and where their errors stand.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
+
+use phea_project::source::Memory;
+use phea_project::{Loaded, Refusal, STARTER, print, read, read_alternative};
+
+fn loaded(alternatives: &str, settings: &[&str]) -> Result<Loaded, Refusal> {
+    let source = Memory::default().with("rig.toml", format!("{STARTER}\n{alternatives}"));
+    let settings: Vec<String> = settings.iter().map(ToString::to_string).collect();
+    read(&source, "rig.toml", &settings, &[])
+}
+
+fn other(alternatives: &str, settings: &[&str]) -> Result<Loaded, Refusal> {
+    read_alternative(&Memory::default(), &loaded(alternatives, settings).unwrap(), &[], 0)
+}
+
+/// An alternative is the project with the same settings on the command line.
+#[test]
+fn an_alternative_is_what_set_makes_of_the_project() {
+    let forms = [
+        "set = { \"supply.pressure\" = \"80 bar\", \"line.length\" = \"2 m\" }",
+        "[alternative.set]\n\"supply.pressure\" = \"80 bar\"\n\"line.length\" = \"2 m\"",
+        "[alternative.set]\nsupply.pressure = \"80 bar\"\nline.length = \"2 m\"",
+        "[alternative.set]\n'supply.pressure' = \"80 bar\"\n[alternative.set.line]\nlength = \"2 m\"",
+    ];
+    for form in forms {
+        let text = format!("[[alternative]]\nname = \"other\"\n{form}\n");
+        let (found, expected) = (
+            other(&text, &["cylinder.moving_mass=\"20 kg\""]).unwrap(),
+            loaded(
+                &text,
+                &["cylinder.moving_mass=\"20 kg\"", "supply.pressure=\"80 bar\"", "line.length=\"2 m\""],
+            )
+            .unwrap(),
+        );
+        assert_eq!(found.project, expected.project, "{form}");
+        assert_eq!(found.settings, expected.settings, "{form}");
+    }
+}
+
+#[test]
+fn an_inline_table_replaces_a_whole_table() {
+    let text = "[[alternative]]\nname = \"pipe\"\n[alternative.set]\n\"line\" = { pipe = { bore = \"10 mm\" }, length = \"1 m\" }\n";
+    let pipe = other(text, &[]).unwrap();
+    let expected = loaded(text, &["line={ pipe = { bore = \"10 mm\" }, length = \"1 m\" }"]).unwrap();
+    assert_eq!(pipe.project, expected.project);
+    assert_ne!(pipe.project.actuator, loaded(text, &[]).unwrap().project.actuator);
+}
+
+/// What is printed is read back as an equal project, alternatives and all.
+#[test]
+fn alternatives_are_printed_as_they_are_read() {
+    let text = "[[alternative]]\nname = \"a \\\"b\\\"\"\n[alternative.set]\nline.length = \"2 m\"\n\
+                \"uncertainty.\\\"line.length\\\"\" = { minimum = 1, maximum = 2, points = 3, list = [1, inf, true, \"x\"] }\n";
+    let first = loaded(text, &[]).unwrap().project;
+    assert_eq!(first.alternatives[0].set[0], ("line.length".to_string(), "\"2 m\"".to_string()));
+    assert_eq!(first.alternatives[0].set[1].0, "uncertainty.\"line.length\"");
+    let source = Memory::default().with("rig.toml", print(&first));
+    assert_eq!(read(&source, "rig.toml", &[], &[]).unwrap().project.alternatives, first.alternatives);
+}
+
+/// An error in a value or key has its place in the table of the alternative.
+#[test]
+fn errors_stand_where_they_are_written() {
+    let first = STARTER.lines().count() + 2;
+    let text = "[[alternative]]\nname = \"wrong\"\n[alternative.set]\n\"line.lenght\" = \"2 m\"\nsupply.pressure = \"80 mm\"\n";
+    let refusal = other(text, &[]).unwrap_err();
+    let places: Vec<_> = refusal.diagnostics.iter().map(|found| (found.line, found.column)).collect();
+    let messages: Vec<_> = refusal.diagnostics.iter().map(|found| found.message.as_str()).collect();
+    assert_eq!(
+        messages,
+        [
+            "alternative `wrong`: unknown key `lenght` in [line]",
+            "alternative `wrong`: expected a pressure, found a length"
+        ]
+    );
+    assert_eq!(refusal.diagnostics[0].help.as_deref(), Some("did you mean `length`?"));
+    // the name behind `"line.`, and the unit of the value
+    assert_eq!(places, [(first + 3, 7), (first + 4, 23)]);
+    assert!(refusal.diagnostics.iter().all(|found| found.file == "rig.toml"));
+}

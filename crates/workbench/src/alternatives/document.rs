@@ -1,0 +1,125 @@
+//! Alternatives for people: one table, then what follows from it.
+
+use super::findings::findings;
+use super::{AlternativeColumn, AlternativeColumns, Alternatives, ColumnPart, JudgedAlternative};
+use crate::document::{Cell, Document, Table};
+use crate::linearize::PortView;
+use crate::quantity::DisplayUnit;
+use crate::trial::agreement_word;
+
+/// The table and the findings.
+pub(crate) fn text(found: &Alternatives) -> String {
+    let mut out = Document::default();
+    out.table(table(found));
+    out.heading_on_page("Findings");
+    out.sentences(findings(found));
+    out.text()
+}
+
+/// A row for each column, and a column for each alternative.
+fn table(found: &Alternatives) -> Table {
+    let names = found.judged.iter().map(|one| one.name.clone());
+    let mut rows = Table::grouped_by("", std::iter::once(String::new()).chain(names));
+    let all: Vec<AlternativeColumns> = found.judged.iter().map(JudgedAlternative::columns).collect();
+    for part in parts(&all) {
+        rows.group(group(&part));
+        if part == ColumnPart::Loop {
+            rows.row(words("feasible", found, feasible));
+            rows.row(words("on the machine", found, machine));
+        }
+        for (key, name) in keys(&all, &part) {
+            let cells = all.iter().map(|columns| cell(columns, &part, key));
+            rows.row(std::iter::once(Cell::from(name)).chain(cells));
+        }
+        if part == ColumnPart::Rig {
+            rows.row(words("passive, open loop", found, |one| port(one, false)));
+            rows.row(words("passive, closed loop", found, |one| port(one, true)));
+        }
+    }
+    rows
+}
+
+fn words(name: &str, found: &Alternatives, of: fn(&JudgedAlternative) -> Cell) -> Vec<Cell> {
+    std::iter::once(name.into()).chain(found.judged.iter().map(of)).collect()
+}
+
+fn feasible(one: &JudgedAlternative) -> Cell {
+    match one.feasible() {
+        Ok(true) => Cell::from("yes").marked(true),
+        Ok(false) => Cell::from("no").marked(false),
+        Err(_) => "not known".into(),
+    }
+}
+
+fn machine(one: &JudgedAlternative) -> Cell {
+    let trial = one.design.as_ref().ok().and_then(|view| view.trial.as_ref());
+    trial.map(|trial| Cell::from(agreement_word(trial.agreement())).marked(trial.agreement())).into()
+}
+
+/// Whether the impedance at the load is passive, or in how many bands it is not.
+fn port(one: &JudgedAlternative, closed: bool) -> Cell {
+    let Ok(found) = &one.linearization else { return Cell::Missing };
+    let view: Option<&PortView> = if closed { found.closed_loop.as_ref() } else { Some(&found.open_loop) };
+    let Some(report) = view.map(|view| &view.passivity) else { return Cell::Missing };
+    match (report.passive, report.bands.first(), report.bands.len()) {
+        (true, ..) => "yes".into(),
+        (false, Some(band), 1) => {
+            let [from, to] =
+                [band.from_rad_per_s, band.to_rad_per_s].map(|end| DisplayUnit::HERTZ.number(end, 3));
+            format!("not in {from} to {to} Hz").into()
+        }
+        (false, None, _) => "no".into(),
+        (false, Some(_), bands) => format!("not in {bands} bands").into(),
+    }
+}
+
+/// The parts of all alternatives, in the order in which they first come.
+pub(super) fn parts(all: &[AlternativeColumns]) -> Vec<ColumnPart> {
+    let mut parts = Vec::new();
+    for (part, _) in all.iter().flat_map(|columns| &columns.0) {
+        if !parts.contains(part) {
+            parts.push(part.clone());
+        }
+    }
+    parts
+}
+
+/// The keys of a part that has a value in some alternative, with their words.
+fn keys(all: &[AlternativeColumns], part: &ColumnPart) -> Vec<(&'static str, &'static str)> {
+    let mut keys = Vec::new();
+    let columns = all.iter().flat_map(|columns| &columns.0).filter(|(own, _)| own == part);
+    for (_, AlternativeColumn { key, words, .. }) in columns.filter(|(_, column)| column.value.is_ok()) {
+        if !keys.contains(&(*key, *words)) {
+            keys.push((*key, *words));
+        }
+    }
+    keys
+}
+
+/// A column of an alternative.
+pub(super) fn at<'c>(
+    columns: &'c AlternativeColumns,
+    part: &ColumnPart,
+    key: &str,
+) -> Option<&'c AlternativeColumn> {
+    columns.0.iter().find(|(own, column)| own == part && column.key == key).map(|(_, column)| column)
+}
+
+fn cell(columns: &AlternativeColumns, part: &ColumnPart, key: &str) -> Cell {
+    let Some(column) = at(columns, part, key) else { return Cell::Missing };
+    match &column.value {
+        Ok(value) if key == "worst_margin_db" => Cell::margin(*value),
+        Ok(value) if column.digits == 0 => value.to_string().into(),
+        Ok(value) => Cell::quantity(*value, column.digits, column.unit),
+        Err(_) => Cell::Missing,
+    }
+}
+
+fn group(part: &ColumnPart) -> String {
+    match part {
+        ColumnPart::Loop => "loop".to_string(),
+        ColumnPart::Rig => "rig".to_string(),
+        ColumnPart::Specification(index, name) => format!("{} {name}", index + 1),
+        ColumnPart::Scenario(name) => name.clone(),
+    }
+}
