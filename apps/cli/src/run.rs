@@ -34,11 +34,7 @@ pub(crate) fn run(arguments: Arguments) -> ExitCode {
             on_project(&common, &Request::LinearizeSwept(SweepRequest { range, points }))
         }
         Command::Verify { common, on_machine, prove, certificate } => {
-            let request = match (prove || certificate.is_some(), on_machine) {
-                (true, on_machine) => Request::VerifyProven { on_machine },
-                (false, true) => Request::VerifyOnMachine,
-                (false, false) => Request::Verify,
-            };
+            let request = verification(prove || certificate.is_some(), on_machine);
             on_project_saving(&common, &request, certificate.as_deref())
         }
         Command::CheckCertificate { file, json } => told(json, checked(&file)),
@@ -88,6 +84,14 @@ pub(crate) fn run(arguments: Arguments) -> ExitCode {
         }
     };
     ended(outcome)
+}
+
+fn verification(prove: bool, on_machine: bool) -> Request {
+    match (prove, on_machine) {
+        (true, on_machine) => Request::VerifyProven { on_machine },
+        (false, true) => Request::VerifyOnMachine,
+        (false, false) => Request::Verify,
+    }
 }
 
 /// An invalid command line, or one that requests help.

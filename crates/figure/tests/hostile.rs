@@ -288,7 +288,6 @@ fn circuits() {
         };
         let controller = |r: &mut Random| ControllerSymbol {
             has_prefilter: r.unit() < 0.5,
-            has_accumulator: r.unit() < 0.5,
             rows: r.many(5, Random::name),
         };
         let input = SchematicInput {
