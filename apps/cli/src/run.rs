@@ -66,10 +66,7 @@ pub(crate) fn run(arguments: Arguments) -> ExitCode {
             on_project(&common, &request)
         }
         Command::Compare(several) => on_projects(&several),
-        Command::Alternatives(common) => {
-            let request = Request::Alternatives { files: common.out.is_some() };
-            on_project(&common, &request)
-        }
+        Command::Alternatives(common) => on_project(&common, &alternatives_request(&common)),
         Command::Campaign { common, runs, seed, shard, run, threads } => {
             match campaign::request(runs, seed, shard.as_deref(), run, (threads, common.out.is_some())) {
                 Ok(request) => on_campaign(&common, &request),
@@ -78,10 +75,7 @@ pub(crate) fn run(arguments: Arguments) -> ExitCode {
         }
         Command::Bench(common) => on_project(&common, &Request::Bench),
         Command::Identify(recorded) => told(recorded.json, identify::answered(&recorded)),
-        Command::Report(common) => {
-            let request = if common.out.is_some() { Request::Report } else { Request::Page };
-            on_project(&common, &request)
-        }
+        Command::Report(common) => on_project(&common, &report_request(&common)),
     };
     ended(outcome)
 }
@@ -92,6 +86,14 @@ fn verification(prove: bool, on_machine: bool) -> Request {
         (false, true) => Request::VerifyOnMachine,
         (false, false) => Request::Verify,
     }
+}
+
+fn alternatives_request(common: &Common) -> Request {
+    Request::Alternatives { files: common.out.is_some() }
+}
+
+fn report_request(common: &Common) -> Request {
+    if common.out.is_some() { Request::Report } else { Request::Page }
 }
 
 /// An invalid command line, or one that requests help.

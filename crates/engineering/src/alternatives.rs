@@ -24,16 +24,6 @@ use crate::simulate::{ScenarioRun, simulate_project};
 use crate::sizing::{Question, Sizing, size};
 use crate::source::Source;
 
-/// Why no alternatives are judged.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum AlternativesError {
-    /// There is only the project itself.
-    #[error(
-        "the project has no [[alternative]]: add one with `name` and `set = {{ \"line.length\" = \"3 m\" }}`"
-    )]
-    Absent,
-}
-
 /// The project as it is declared and its alternatives, judged.
 #[derive(Clone, Debug)]
 pub struct Alternatives {
@@ -96,19 +86,19 @@ impl JudgedAlternative {
 /// watch answers `false`, the one at hand and all later ones are not reached.
 ///
 /// # Errors
-/// [`AlternativesError`] for a project without alternatives, [`DesignError::NoSpecification`] for one
+/// [`ProcedureError::NoAlternative`] for a project without alternatives, [`DesignError::NoSpecification`] for one
 /// without specifications, and [`ProcedureError::Catalogue`] for an alternative that is no valid
 /// project. What an alternative lacks otherwise is told of that alternative.
 ///
 /// # Example
 /// ```
-/// use phea_engineering::alternatives::{AlternativesError, judge};
+/// use phea_engineering::alternatives::judge;
 /// use phea_engineering::error::ProcedureError;
 /// use phea_project::{self as project, source::Memory};
 /// let source = Memory::default().with("rig.toml", include_str!("../../../examples/ybitu/hose.toml"));
 /// let loaded = project::read(&source, "rig.toml", &[], &[])?;
 /// let none = judge(&source, &loaded, &[], &mut |_| true);
-/// assert!(matches!(none, Err(ProcedureError::Alternatives(AlternativesError::Absent))));
+/// assert!(matches!(none, Err(ProcedureError::NoAlternative)));
 /// # Ok::<(), phea_project::Refusal>(())
 /// ```
 pub fn judge(
@@ -119,7 +109,7 @@ pub fn judge(
 ) -> Result<Alternatives, ProcedureError> {
     let alternatives = &loaded.project.alternatives;
     if alternatives.is_empty() {
-        return Err(AlternativesError::Absent.into());
+        return Err(ProcedureError::NoAlternative);
     }
     if loaded.project.specifications.is_empty() {
         return Err(DesignError::NoSpecification.into());

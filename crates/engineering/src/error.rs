@@ -2,7 +2,6 @@
 
 use phea_project::Refusal;
 
-use crate::alternatives::AlternativesError;
 use crate::audit::AuditError;
 use crate::bench::BenchError;
 use crate::campaign::CampaignError;
@@ -47,9 +46,11 @@ pub enum ProcedureError {
     /// The project does not say what to size for.
     #[error("{0}")]
     Sizing(#[from] crate::rig::SizingError),
-    /// There are no alternatives.
-    #[error(transparent)]
-    Alternatives(#[from] AlternativesError),
+    /// There is only the project itself.
+    #[error(
+        "the project has no [[alternative]]: add one with `name` and `set = {{ \"line.length\" = \"3 m\" }}`"
+    )]
+    NoAlternative,
     /// There is nothing to audit.
     #[error(transparent)]
     Audit(#[from] AuditError),

@@ -209,8 +209,10 @@ fn full_rates(state: &[f64], command: f64, inputs: &[f64]) -> [f64; 12] {
     let closing = v_l - inputs[1];
     let tare = 7.55e-6 * root(p_s) / root(70e5);
     let relief = if p_s > 65e5 { 1.633e-4 * (p_s - 65e5) / 5e5 } else { 0.0 };
-    let gas = 1e-3 * pow((40e5 + 101325.0) / (p_s + 101325.0), 1.0 / 1.3) / (1.3 * (p_s + 101325.0));
-    let stored = 5e-4 / 1e9 + if p_s > 40e5 { gas } else { 0.0 };
+    let (empty, lift) = (40e5 + 101325.0, 0.01 * (40e5 + 101325.0));
+    let lifted = ((p_s - 40e5 + lift) / (2.0 * lift)).clamp(0.0, 1.0);
+    let full = empty + if p_s > 40e5 + lift { p_s - 40e5 } else { lift * lifted * lifted };
+    let stored = 5e-4 / 1e9 + lifted * 1e-3 * pow(empty / full, 1.0 / 1.3) / (1.3 * full);
     [
         spool_rate,
         1099.0 * (1099.0 * (command.clamp(-10.0, 10.0) - u - f) - 1.8 * r),

@@ -42,6 +42,7 @@ mod sizing;
 pub mod source;
 mod specification;
 mod text;
+mod toml_text;
 mod tree;
 mod uncertainty;
 mod validate;

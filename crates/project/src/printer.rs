@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::formula::Formula;
 use super::key::Key;
-use super::tree::{Entry, TreeNode, Value as TreeValue};
+use super::toml_text::{bare_or_quoted, inline, list, quoted};
 use super::visitor::{FormulaShape, Kinds, NamedNumber, ValueForm, Variants, Visitor};
 use crate::catalogue::CatalogueKind;
 use phea_quantity as quantity;
@@ -34,8 +34,7 @@ impl PrintedTable {
         if !self.inner.is_empty() {
             return None;
         }
-        let parts: Vec<String> = self.lines.iter().map(|(key, value)| format!("{key} = {value}")).collect();
-        Some(if parts.is_empty() { "{}".to_string() } else { format!("{{ {} }}", parts.join(", ")) })
+        Some(inline(&self.lines))
     }
 
     fn write(&self, out: &mut String) {
@@ -116,49 +115,6 @@ impl Printer {
             }
         }
     }
-}
-
-fn bare_or_quoted(key: &str) -> String {
-    let bare = !key.is_empty() && key.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-');
-    if bare { key.to_string() } else { quoted(key) }
-}
-
-/// As a basic TOML string.
-fn quoted(text: &str) -> String {
-    let mut out = String::from("\"");
-    for c in text.chars() {
-        match c {
-            '"' => out.push_str("\\\""),
-            '\\' => out.push_str("\\\\"),
-            c if c.is_control() => out.push_str(&format!("\\u{:04X}", u32::from(c))),
-            c => out.push(c),
-        }
-    }
-    out.push('"');
-    out
-}
-
-fn list(items: impl Iterator<Item = String>) -> String {
-    format!("[{}]", items.collect::<Vec<_>>().join(", "))
-}
-
-/// A value as TOML in one line; `None` for a date.
-pub(crate) fn in_toml(node: &TreeNode) -> Option<String> {
-    Some(match &node.value {
-        TreeValue::Text(text) => quoted(text),
-        TreeValue::Number(number) => quantity::print_bare(*number),
-        TreeValue::Flag(flag) => flag.to_string(),
-        TreeValue::Date => return None,
-        TreeValue::List(items) => list(items.iter().map(in_toml).collect::<Option<Vec<_>>>()?.into_iter()),
-        TreeValue::Table(entries) => {
-            let entry = |entry: &Entry| Some((bare_or_quoted(&entry.key), in_toml(&entry.node)?));
-            PrintedTable {
-                lines: entries.iter().map(entry).collect::<Option<_>>()?,
-                ..PrintedTable::default()
-            }
-            .inline()?
-        }
-    })
 }
 
 impl Visitor for Printer {

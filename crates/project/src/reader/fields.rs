@@ -6,9 +6,9 @@ use crate::catalogue::CatalogueKind;
 use crate::formula::Formula;
 use crate::key::Key;
 use crate::listing::keys_of;
-use crate::printer;
 use crate::setting;
 use crate::text::RawFinding;
+use crate::toml_text::in_toml;
 use crate::tree::{TreeNode, Value};
 use crate::visitor::{FormulaShape, Kinds, NamedNumber, ValueForm, Variants, Visitor};
 use phea_quantity::spelling::nearest;
@@ -389,7 +389,7 @@ impl Visitor for Reader<'_> {
             wrong.push(RawFinding::error(hit.node.place, format!("`{}` sets nothing", self.path(key.name))));
         }
         for setting in settings {
-            match printer::in_toml(setting.value) {
+            match in_toml(setting.value) {
                 Some(value) => field.push((setting.path(), value)),
                 None => wrong.push(RawFinding::error(setting.value.place, "no key accepts a date")),
             }
