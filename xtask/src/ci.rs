@@ -150,15 +150,14 @@ fn built_tests(root: &Path, begun: Option<&mut comparisons::Begun>) -> Outcome {
     }
 }
 
-/// Builds all tests, and the examples that the comparisons ask: the others are read by clippy
-/// alone.
+/// Builds all tests, and the examples that the comparisons ask, which `cargo test` would build as
+/// tests; the other examples are read by clippy alone.
 fn build(root: &Path) -> Outcome {
     let asked = ["--example", "reference_systems", "--example", "schema_cases"];
-    for_all(
-        root,
-        &[&["test", "--workspace", "--no-run", "--lib", "--bins", "--tests"][..], &asked].concat(),
-        &[],
-    )
+    match for_all(root, &["test", "--workspace", "--no-run", "--lib", "--bins", "--tests"], &[]) {
+        Outcome::Passed => for_all(root, &[&["build", "--workspace"][..], &asked].concat(), &[]),
+        other => other,
+    }
 }
 
 /// The arguments that leave out the package that links CVODE.

@@ -145,7 +145,7 @@ pub(crate) enum Command {
     },
     /// The same scenarios of several projects side by side
     Compare(Several),
-    /// The project and each [[alternative]] of it: sized, designed, audited, driven and compared;
+    /// The project and each of its alternatives: sized, designed, audited, driven and compared;
     /// Ctrl-C keeps those that are finished
     Alternatives(Common),
     /// Monte Carlo: the nonlinear machine with drawn numbers, many times; Ctrl-C keeps what is
