@@ -190,7 +190,7 @@ fn a_bad_row_of_a_measurement_has_its_place() {
     assert_eq!(places, [csv(3, 3), csv(4, 1), ("absent.csv".into(), None, None)]);
     assert_eq!(
         (&rows[0]["message"], &rows[0]["expected"]),
-        (&"`loud` is no number".into(), &"a number in dB".into())
+        (&"`loud` is not a number".into(), &"a number in dB".into())
     );
     assert!(object["project_sha256"].is_string());
     let complaint = String::from_utf8_lossy(&output.stderr).into_owned();

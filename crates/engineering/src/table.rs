@@ -107,7 +107,7 @@ impl MeasuredTable {
         ends.map_or(Place::default(), |(first, last)| Place { end: last.place.end, ..first.place })
     }
 
-    /// The numbers of these columns. What is no number is an error, and a row with more or fewer
+    /// The numbers of these columns. What is not a number is an error, and a row with more or fewer
     /// values than there are columns; gaps and a last row that was cut off are told in the result.
     pub fn numbers(&self, columns: &[&Column], findings: &mut Findings) -> ColumnNumbers {
         match &self.rows {
@@ -138,7 +138,7 @@ impl MeasuredTable {
             for row in gaps {
                 let message = match self.cell(*row, column, findings) {
                     "" => "there is no value".to_string(),
-                    text => format!("`{text}` is no number"),
+                    text => format!("`{text}` is not a number"),
                 };
                 let found = self.error(*row, column, message, findings);
                 findings.push(found.expected(column.expected()));

@@ -7,6 +7,20 @@ mod line;
 
 pub use phea_engineering::bench::*;
 
+use crate::line_test::KnownLine;
+use crate::project::IdentifiedUse;
+use crate::setup::Setup;
+
 pub use answer::{files, json};
 pub use document::text;
 pub use line::{line_files, line_text};
+
+/// What the tests leave out of the project, in sentences; none where nothing is left out.
+pub(crate) fn remarks(setup: &Setup<'_>) -> Vec<&'static str> {
+    let takes = setup.project.identify.as_ref().map(|identify| identify.takes).unwrap_or_default();
+    let valve = (takes != IdentifiedUse::Nothing).then_some(
+        "The valve under test is the declared one: `identify.use` takes the recordings in every command but this.",
+    );
+    let line = setup.project.bench.line.and_then(|bench| KnownLine::of(setup, bench.side).ok()?.remark());
+    valve.into_iter().chain(line).collect()
+}

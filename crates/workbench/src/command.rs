@@ -367,9 +367,10 @@ fn bench_answer(loaded: &Loaded, watch: Watch<'_>) -> Result<Answer, CommandErro
     let runs = bench::bench(&setup, watch)?;
     let lines = line_runs(&setup, watch)?;
     let of_friction = bench::friction_runs(&setup, watch)?;
-    let text = bench::text(loaded, &runs, &of_friction) + &bench::line_text(&lines);
+    let remarks = bench::remarks(&setup);
+    let text = bench::text(loaded, &remarks, &runs, &of_friction) + &bench::line_text(&lines);
     let files = bench::files(&runs, &of_friction).into_iter().chain(bench::line_files(&lines)).collect();
-    let json = bench::json(loaded, &runs, &lines, &of_friction);
+    let json = bench::json(loaded, remarks, &runs, &lines, &of_friction);
     Ok(Answer { text, json, files, affirmative: true })
 }
 

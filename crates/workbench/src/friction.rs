@@ -25,9 +25,7 @@ pub(crate) fn because(estimate: &FrictionEstimate) -> Option<String> {
         UntoldFriction::NothingPressed => {
             "nothing is pressed from rest while its position is recorded".to_string()
         }
-        UntoldFriction::NotSought => {
-            "slow runs do not show it, and it is not yet looked for in quick ones".to_string()
-        }
+        UntoldFriction::NotSought => "slow runs do not show it, and quick ones are not evaluated".to_string(),
         UntoldFriction::QuickForce => {
             "the force changes too quickly: record one that rises slowly".to_string()
         }

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use phea_workbench::answer::Answer;
-use phea_workbench::command::{self, CommandError, Request};
+use phea_workbench::command::{self, CommandError, IdentifyError, Request};
 use phea_workbench::project::{self, Loaded};
 use phea_workbench::source::Memory;
 use serde_json::Value;
@@ -132,6 +132,19 @@ pub(crate) fn reasons(candidate: &Value) -> String {
     let lines: Vec<&str> =
         candidate["reasons"].as_array().unwrap().iter().map(|line| line.as_str().unwrap()).collect();
     lines.join("\n")
+}
+
+/// That an identification is refused with a message that has every part.
+#[track_caller]
+pub(crate) fn refused(outcome: Result<Answer, IdentifyError>, expected: &[&str]) {
+    let message = match outcome {
+        Err(IdentifyError::Files(report)) => report.render(false),
+        Err(other) => other.to_string(),
+        Ok(answer) => panic!("{}", answer.text),
+    };
+    for part in expected {
+        assert!(message.contains(part), "`{part}` is not in: {message}");
+    }
 }
 
 #[track_caller]

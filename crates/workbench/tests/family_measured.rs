@@ -142,13 +142,13 @@ fn every_unsound_row_is_named() {
     refuses(
         "# measured\nfrequency_hz,magnitude_db,phase_deg\n1,0,0\n2,abc,0\n3,0,1e999\n2.5,0,0\n4,0\n5,0,0,0\n-1,0,0\n6,nan,0\n",
         &[
-            "4:3 `abc` is no number; a number in dB",
-            "5:5 `1e999` is no number; a number in deg",
+            "4:3 `abc` is not a number; a number in dB",
+            "5:5 `1e999` is not a number; a number in deg",
             "6:1 frequencies must increase from row to row; a higher frequency in Hz",
             "7:1 2 values for 3 columns",
             "8:1 4 values for 3 columns; where the decimal sign is a comma, separate values with semicolons or tabs",
             "9:1 frequencies must be positive; a higher frequency in Hz",
-            "10:3 `nan` is no number; a number in dB",
+            "10:3 `nan` is not a number; a number in dB",
         ],
     );
     refuses(

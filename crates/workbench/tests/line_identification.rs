@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
-use crate::ask::{HOSE, PIPE, load, near, within};
+use crate::ask::{self, HOSE, PIPE, load, near, within};
 use crate::line_coverage::{CREEPING, WAVES, compliance, known, project};
 use phea_hydraulics::fluid::{ATMOSPHERIC_PRESSURE_ABSOLUTE, bulk_modulus_with_air};
 use phea_hydraulics::line::{Conduit, Line, StiffeningMember};
@@ -110,6 +110,22 @@ fn without_noise_the_waves_of_a_line_give_its_speed_and_the_density_of_its_oil()
     near(value(&found, "density_kg_per_m3"), known.fluid.density, 1e-5);
 }
 
+/// An accumulator stays at its chamber: test and result are those of the line alone, and say so.
+#[test]
+fn an_accumulator_is_said_to_be_left_out() {
+    let gas = "line.accumulator={ gas_volume = \"10 mL\", precharge_pressure = \"15 bar\" }";
+    let quick =
+        ["bench.line.pressures=[\"25 bar\", \"45 bar\"]", "bench.line.frequencies=[\"1 Hz\", \"40 Hz\"]"];
+    let with_gas = [&quick[..], &[gas]].concat();
+    let [plain, kept] = [&quick[..], &with_gas].map(|settings| benched(PIPE, settings));
+    assert!(plain == kept);
+    let [plain, kept] = [(&quick[..], plain), (&with_gas, kept)]
+        .map(|(settings, files)| line(&identified(PIPE, settings, &files).unwrap()));
+    assert_eq!(plain["effective_bulk_modulus_pa"], kept["effective_bulk_modulus_pa"]);
+    assert!(plain.get("remark").is_none());
+    assert!(kept["remark"].as_str().unwrap().contains("is not part of the blocked line"), "{kept}");
+}
+
 /// Air makes the modulus depend on the pressure, by a law in closed form.
 #[test]
 fn air_shows_as_a_modulus_that_grows_with_the_pressure() {
@@ -198,14 +214,7 @@ fn a_position_counts_by_the_area_of_the_piston() {
 
 #[track_caller]
 fn refused(text: &str, expected: &[&str]) {
-    let message = match identified(HOSE, &[], &[("stand.csv".to_string(), text.to_string())]) {
-        Err(IdentifyError::Files(report)) => report.render(false),
-        Err(other) => other.to_string(),
-        Ok(answer) => panic!("{}", answer.text),
-    };
-    for part in expected {
-        assert!(message.contains(part), "`{part}` is not in: {message}");
-    }
+    ask::refused(identified(HOSE, &[], &[("stand.csv".to_string(), text.to_string())]), expected);
 }
 
 #[test]
@@ -228,7 +237,7 @@ fn recordings_that_are_none_of_a_line_are_refused_with_the_place() {
     );
     refused("pressure_bar,volume_ml\n1,2\n2,4\n", &["2 rows are too few", "at least 10 rows"]);
     refused(&rows("pressure_bar,volume_ml", &|n| format!("7,{n}")), &["the pressure never moves"]);
-    refused(&rows("pressure_bar,volume_ml", &|n| format!("{},x{n}", n)), &["is no number"]);
+    refused(&rows("pressure_bar,volume_ml", &|n| format!("{},x{n}", n)), &["is not a number"]);
     let rise = || rows("pressure_bar,volume_ml", &|n| format!("{n},{n}"));
     let two = [("a.csv".to_string(), rise()), ("b.csv".to_string(), rise())];
     let twice = identified(HOSE, &[], &two).unwrap_err().to_string();

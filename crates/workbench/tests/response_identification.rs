@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "the platform's functions are exact enough for a test")]
 
+use crate::ask;
 use num_complex::Complex64;
 use phea_dynamics::portable::{exp_complex, magnitude};
 use phea_dynamics::random::{normal, stream};
@@ -255,14 +256,7 @@ fn what_noise_hides_is_left_out_with_the_reason() {
 
 #[track_caller]
 fn refused(text: &str, settings: &ResponseSettings, expected: &[&str]) {
-    let message = match identified(text, None, settings) {
-        Err(IdentifyError::Files(report)) => report.render(false),
-        Err(other) => other.to_string(),
-        Ok(answer) => panic!("{}", answer.text),
-    };
-    for part in expected {
-        assert!(message.contains(part), "`{part}` is not in: {message}");
-    }
+    ask::refused(identified(text, None, settings), expected);
 }
 
 #[test]

@@ -346,7 +346,7 @@ fn what_cannot_be_changed_is_refused_with_its_place() {
     check(Change::Pass, "leed through 3 dB at 2", "`leed` cannot be solved for", 1, "did you mean `lead`?");
     let coordinate = "write a magnitude in dB, a phase in deg, or both";
     check(Change::Pass, "pi through 3 dB, 4 at 2", "`4` is no coordinate of the chart", 18, coordinate);
-    check(Change::Pass, "pi through x dB at 2", "`x` is no number", 12, example);
+    check(Change::Pass, "pi through x dB at 2", "`x` is not a number", 12, example);
     let (message, column, _) = refusal(Change::Pass, "pi through 1 dB at 2 bar");
     assert_eq!((message.as_str(), column), ("expected an angular frequency, found a pressure", 22));
     let (message, ..) = refusal(Change::Pass, "lead through 0 dB, -170 deg at 10 rad/s");

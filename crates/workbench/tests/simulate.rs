@@ -270,7 +270,7 @@ fn a_measured_motion_is_that_motion() {
 fn a_motion_file_is_refused_with_its_place() {
     let cases = [
         ("time_s, position_m\n0, 0\n0, 1\n", "3:1", "times must increase from row to row"),
-        ("time_s, position_m\n0, 0\n1, 1;2\n", "3:4", "`1;2` is no number"),
+        ("time_s, position_m\n0, 0\n1, 1;2\n", "3:4", "`1;2` is not a number"),
         ("time_s, positon_mm\n0, 0\n1, 1\n", "1:9", "unknown column `positon_mm`"),
         ("time_s\n0\n1\n", "1:1", "there is no column `position`"),
         ("time_s, position_m\n0, 0\n", "1:1", "a motion needs two rows at least"),

@@ -100,7 +100,7 @@ fn a_measurement_that_cannot_be_taken_is_refused_with_its_place() {
         ("t,F,pressure_a_pa\n0,1,2\n0,1,2\n", "3:1 times must increase from row to row"),
         ("t,F,pressure_a_pa\n0,1,2\n1,,2\n", "3:3 there is no value"),
         ("t,F,pressure_a_pa\n0,1,2\n1,1\n", "3:1 2 values for 3 columns"),
-        ("t,F,pressure_a_pa\n0,1,NaN\n", "2:5 `NaN` is no number"),
+        ("t,F,pressure_a_pa\n0,1,NaN\n", "2:5 `NaN` is not a number"),
         ("t,force,pressure_a_pa\n0,1,2\n", "1:1 there is no column `F`"),
         ("t,F,pressure_a_pa,F\n0,1,2,3\n", "1:19 a second column `F`"),
         ("time,F,pressure_a_pa\n0,1,2\n", "1:1 there is no column `t`"),

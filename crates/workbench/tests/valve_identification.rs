@@ -206,7 +206,7 @@ fn cell(row: usize, column: usize, with: &'static str) -> impl Fn(usize, &str) -
 #[test]
 fn files_that_are_no_tests_are_refused_with_their_place() {
     let cases = [
-        (cell(3, 3, "over"), "`over` is no number", "leakage.csv:4:"),
+        (cell(3, 3, "over"), "`over` is not a number", "leakage.csv:4:"),
         (cell(4, 0, "1"), "the time of the row before", "leakage.csv:5:1"),
         (cell(4, 0, "0.2"), "a time before that of the row before", "leakage.csv:5:1"),
         (cell(9, 2, "7e6"), "7e6 bar is no supply pressure of a valve test", "leakage.csv:10:"),

@@ -36,6 +36,24 @@ fn refusal(source: &Memory, settings: &[&str]) -> String {
     }
 }
 
+/// The bench records the declared valve, and says so: its recordings may not be there yet.
+#[test]
+fn the_bench_says_that_its_valve_is_the_declared_one() {
+    let quick = "bench={ sample_time = \"10 s\" }";
+    let told = |settings: &[&str]| {
+        let source = source(IDENTIFIED, 0);
+        command::answer(&source, &read(&source, settings), &[], &Request::Bench).unwrap()
+    };
+    let answer = told(&[quick]);
+    assert!(
+        answer.text.trim_start().starts_with("The valve under test is the declared one"),
+        "{}",
+        answer.text
+    );
+    assert!(answer.json.contains("\"remarks\""), "{}", answer.json);
+    assert!(!told(&[quick, "identify.use=nothing"]).json.contains("\"remarks\""));
+}
+
 /// What `check` computes with is the truth of the bench that made the files; the hash is that of the
 /// project followed by them.
 #[test]

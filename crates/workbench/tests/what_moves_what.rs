@@ -105,7 +105,7 @@ fn without_family(text: &str) -> String {
     format!("{before}[[specification]]{after}")
 }
 
-/// Values of what may be absent, or is no number.
+/// Values of what may be absent, or is not a number.
 const STATED: [(&str, &str); 44] = [
     ("operating_point.position", "200 mm"),
     ("operating_point.command", "1 V"),

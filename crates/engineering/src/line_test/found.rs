@@ -1,6 +1,7 @@
 use phea_dynamics::portable::{exp, ln, pow};
 use phea_dynamics::watch::Watch;
 use phea_hydraulics::line::{Line, LineModel};
+use phea_quantity::significant;
 
 use super::rise::rise_fit;
 use super::shaken::response_fit;
@@ -109,6 +110,7 @@ impl LineNumber {
 ///     pressure: 35e5,
 ///     motion: LineMotion::Lumped,
 ///     piston_area: 0.0,
+///     leaves_accumulator: false,
 /// };
 /// let pressures: Vec<f64> = (0..20).map(|row| 3e5 * f64::from(row)).collect();
 /// let volumes = pressures.iter().map(|pressure| 1e-3 * pressure / 1.2e9).collect();
@@ -344,9 +346,9 @@ fn wave_speed(known: &KnownLine, fit: &ResponseFit) -> Result<LineNumber, Undete
         return Err("two waves travel in the declared model: `two_wave`".to_string());
     }
     let last = fit.member.points.last().map_or(0.0, |point| point.frequency);
-    let hertz = |value: f64| value / (2.0 * std::f64::consts::PI);
+    let hertz = |value: f64| significant(value / (2.0 * std::f64::consts::PI), 4);
     if fit.without_waves {
-        return Err(format!("the response shows no wave up to {:.3} Hz", hertz(last)));
+        return Err(format!("the response shows no wave up to {} Hz", hertz(last)));
     }
     let found = fit.of(|line| length / pow(line.inertance.unwrap_or(f64::NAN) * line.compliance, 0.5));
     let quarter = found.value / (4.0 * length);
@@ -354,7 +356,7 @@ fn wave_speed(known: &KnownLine, fit: &ResponseFit) -> Result<LineNumber, Undete
         return Ok(found);
     }
     Err(format!(
-        "the frequencies end at {:.3} Hz, too far below the quarter wave at about {quarter:.0} Hz",
+        "the frequencies end at {} Hz, too far below the quarter wave at about {quarter:.0} Hz",
         hertz(last)
     ))
 }

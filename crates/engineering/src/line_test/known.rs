@@ -22,6 +22,8 @@ pub struct KnownLine {
     pub motion: LineMotion,
     /// m2, of the piston that displaces a recorded volume, where there is one.
     pub piston_area: f64,
+    /// Whether it ends at an accumulator, which is no part of it while that end is blocked.
+    pub leaves_accumulator: bool,
 }
 
 /// No liquid has a greater modulus, in Pa.
@@ -38,19 +40,27 @@ impl KnownLine {
         let rig = setup.rig().map_err(|error| error.to_string())?;
         let declared = setup.project.actuator.as_ref().ok_or("the project has no line")?;
         let components = rig.actuator.components();
-        let (line, motion, piston_area) = match side {
-            LineSide::A => (components.line_a, &declared.line.a.motion, components.cylinder.area_a),
-            LineSide::B => (components.line_b, &declared.line.b.motion, components.cylinder.area_b),
+        let (line, declared, piston_area) = match side {
+            LineSide::A => (components.line_a, &declared.line.a, components.cylinder.area_a),
+            LineSide::B => (components.line_b, &declared.line.b, components.cylinder.area_b),
         };
         let known = KnownLine {
             side,
             line,
             fluid: components.fluid,
             pressure: rig.actuator.mean_pressure(),
-            motion: motion.clone(),
+            motion: declared.motion.clone(),
             piston_area,
+            leaves_accumulator: declared.accumulator.is_some(),
         };
         if known.volume() > 0.0 { Ok(known) } else { Err("the line holds no oil".to_string()) }
+    }
+
+    /// That its accumulator is left out, in a sentence, where it has one.
+    pub fn remark(&self) -> Option<&'static str> {
+        self.leaves_accumulator.then_some(
+            "The accumulator at the chamber is not part of the blocked line: neither test nor result includes it.",
+        )
     }
 
     /// m3, of the oil that it holds at the operating pressure: its moduli refer to it.

@@ -141,7 +141,7 @@ fn coordinates(point: &TextPiece<'_>, findings: &mut Findings) -> Option<[Option
 fn plain(piece: &TextPiece<'_>, findings: &mut Findings) -> Option<f64> {
     match piece.words.parse::<f64>() {
         Ok(value) if value.is_finite() => Some(value),
-        _ => piece.refuse(findings, format!("`{}` is no number", piece.words), EXAMPLE),
+        _ => piece.refuse(findings, format!("`{}` is not a number", piece.words), EXAMPLE),
     }
 }
 

@@ -140,7 +140,7 @@ struct ParquetReading<'c> {
     name: &'c str,
     values: Vec<f64>,
     gaps: Vec<usize>,
-    /// Rows with what is no number.
+    /// Rows with what is not a number.
     wrong: Faults,
     text: String,
     /// The first whole number.
@@ -158,7 +158,7 @@ impl ParquetReading<'_> {
         if value.is_none() {
             let row = self.values.len();
             self.wrong.add(|| {
-                let message = format!("row {}, column `{}`: `{text}` is no number", row + 1, self.name);
+                let message = format!("row {}, column `{}`: `{text}` is not a number", row + 1, self.name);
                 RawFinding::error(self.rows.place(row), message).expected(self.column.expected())
             });
         }

@@ -233,9 +233,9 @@ fn two_signs(content: &str, point: Option<Place>, comma: Option<Place>) -> Optio
     Some(found.help("write numbers without signs between thousands"))
 }
 
-/// That a text is no number.
+/// That a text is not a number.
 fn no_number(place: Place, text: &str) -> RawFinding {
-    let found = RawFinding::error(place, format!("`{text}` is no number"));
+    let found = RawFinding::error(place, format!("`{text}` is not a number"));
     if text.contains('.') && text.contains(',') {
         return found.help("write numbers without signs between thousands");
     }
@@ -250,7 +250,7 @@ struct TextReading {
     numbers: ColumnNumbers,
     /// Rows with more or fewer values than there are columns.
     incomplete: Faults,
-    /// What is no number, for each column.
+    /// What is not a number, for each column.
     wrong: Vec<Faults>,
     /// The first number with a decimal point, and the first with a decimal comma.
     point: Option<Place>,
@@ -269,7 +269,7 @@ impl TextReading {
         }
     }
 
-    /// What is no number with a point: one with a comma, a gap, or wrong.
+    /// What is not a number with a point: one with a comma, a gap, or wrong.
     fn other(&mut self, row: usize, slot: usize, column: &Column, cell: super::cell::TextCell<'_>) -> f64 {
         if is_gap(cell.text) {
             self.numbers.gaps.get_mut(slot).into_iter().for_each(|gaps| gaps.push(row));

@@ -53,11 +53,11 @@ pub fn test_circuit(words: Words, input: &TestCircuitInput) -> Figure {
             for x in SIDES {
                 lines(&mut scene, &[(x - 9.0, END), (x + 9.0, END)], PIPE);
             }
-            meter(&mut scene, (VALVE.0 - PORT - 30.0, FEED), "q_leak", -24.0);
+            meter(&mut scene, (VALVE.0 - PORT - 30.0, FEED), "q_leak", (16.0, 24.0));
         }
         TestPorts::Joined => {
             lines(&mut scene, &[(left, END), (right, END)], PIPE);
-            meter(&mut scene, (VALVE.0, END), "q", 26.0);
+            meter(&mut scene, (VALVE.0, END), "q", (0.0, -26.0));
         }
     }
     gauge(&mut scene, (VALVE.0 - PORT - 60.0, FEED), -1.0, "p_S");
@@ -69,11 +69,11 @@ pub fn test_circuit(words: Words, input: &TestCircuitInput) -> Figure {
 }
 
 /// A flow meter in a pipe from left to right.
-fn meter(scene: &mut Scene, at: (f64, f64), name: &str, above: f64) {
+fn meter(scene: &mut Scene, at: (f64, f64), name: &str, label: (f64, f64)) {
     scene.circle(point(at.0, at.1), 12.0, Some(OUTLINE), Some(Fill::solid(Role::Surface)));
     lines(scene, &[(at.0 - 7.0, at.1), (at.0 + 4.0, at.1)], SIGNAL);
     head(scene, (at.0 + 8.0, at.1), (1.0, 0.0), SIGNAL.role);
-    word(scene, name, (at.0, at.1 - above), Role::Text);
+    word(scene, name, (at.0 + label.0, at.1 + label.1), Role::Text);
 }
 
 /// A pressure transducer beside a pipe.

@@ -106,7 +106,7 @@ pub enum MachineError {
         /// The stroke, in m.
         stroke: f64,
     },
-    /// A starting value is no number, or below vacuum.
+    /// A starting value is not a number, or below vacuum.
     #[error("a start with {quantity} of {value} is impossible")]
     ImpossibleStart {
         /// Which quantity.

@@ -174,7 +174,7 @@ impl<'a> FormulaReader<'a> {
         let node = match value {
             Ok(value) if value.is_finite() => self.push(FormulaPart::Number(value), start),
             Ok(_) => return Err(FormulaError::new("the number is too large", start..end)),
-            Err(_) => return Err(FormulaError::new("this is no number", start..end)),
+            Err(_) => return Err(FormulaError::new("this is not a number", start..end)),
         };
         self.skip_spaces();
         Ok(node)

@@ -7,7 +7,7 @@ use super::document::{at, parts};
 use super::{AlternativeColumns, Alternatives, ColumnPart, JudgedAlternative};
 use crate::answer::{Csv, OutputFile, picture_files, quoted};
 use crate::figure::{FigureError, Words};
-use crate::project::{Project, print};
+use crate::project::{IdentifiedUse, Project, print};
 use crate::simulate::{ScenarioRun, laid_over};
 
 /// All of them.
@@ -19,7 +19,11 @@ pub(crate) fn files(found: &Alternatives) -> Result<Vec<OutputFile>, FigureError
     let names = file_names(found.judged.iter().map(|one| one.name.as_str()));
     for (one, name) in found.judged.iter().zip(names) {
         if let Ok(deployed) = &one.deployed {
-            let project = Project { alternatives: vec![], ..deployed.clone() };
+            let mut project = Project { alternatives: vec![], ..deployed.clone() };
+            // what the recordings gave stands in it as numbers: they need not lie beside it
+            if let Some(identify) = &mut project.identify {
+                identify.takes = IdentifiedUse::Nothing;
+            }
             files.push(OutputFile::new(format!("{name}.toml"), print(&project)));
         }
     }

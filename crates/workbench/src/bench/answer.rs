@@ -12,6 +12,9 @@ use crate::quantity::DisplayUnit;
 
 #[derive(Serialize)]
 struct BenchAnswer {
+    /// What the tests leave out of the project.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    remarks: Vec<&'static str>,
     tests: Vec<BenchTestAnswer>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     line_tests: Vec<Json>,
@@ -113,7 +116,13 @@ fn file_name(run: &BenchRun) -> String {
 }
 
 /// The JSON object of `bench`.
-pub fn json(loaded: &Loaded, runs: &[BenchRun], lines: &[LineRun], of_friction: &[FrictionRun]) -> String {
+pub fn json(
+    loaded: &Loaded,
+    remarks: Vec<&'static str>,
+    runs: &[BenchRun],
+    lines: &[LineRun],
+    of_friction: &[FrictionRun],
+) -> String {
     let test = |run: &BenchRun| BenchTestAnswer {
         name: run.series.name(),
         file: file_name(run),
@@ -133,7 +142,7 @@ pub fn json(loaded: &Loaded, runs: &[BenchRun], lines: &[LineRun], of_friction: 
     let tests = runs.iter().map(test).collect();
     let line_tests = lines.iter().map(|run| Json::from(line_test(run))).collect();
     let friction_runs = friction::answers(of_friction);
-    answer::json("bench", loaded, BenchAnswer { tests, line_tests, friction_runs })
+    answer::json("bench", loaded, BenchAnswer { remarks, tests, line_tests, friction_runs })
 }
 
 /// The tables, a file for each test.

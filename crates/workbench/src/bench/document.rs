@@ -8,8 +8,9 @@ use crate::project::Loaded;
 use crate::quantity::{PRESSURE, TIME, display};
 
 /// A table for each test.
-pub fn text(loaded: &Loaded, runs: &[BenchRun], of_friction: &[FrictionRun]) -> String {
+pub fn text(loaded: &Loaded, remarks: &[&str], runs: &[BenchRun], of_friction: &[FrictionRun]) -> String {
     let mut out = Document::default();
+    out.sentences(remarks.iter().map(|remark| remark.to_string()));
     for run in runs {
         let rows = signals(run).into_iter().map(|signal| {
             let [least, most] = range(run, &signal);

@@ -11,6 +11,7 @@ pub fn json(loaded: &Loaded, found: &LineIdentification) -> String {
     let line = line
         .with("pressure_pa", found.pressure)
         .with("volume_m3", found.known.volume())
+        .maybe("remark", found.known.remark())
         .with("pressure_rise", found.rise.as_ref().map(rise))
         .with("frequency_response", found.response.as_ref().map(|fit| response(found, fit)));
     Object::new()

@@ -19,6 +19,7 @@ pub fn text(found: &LineIdentification) -> String {
         Some(format!("Not determined: {what}: {reason}."))
     });
     out.sentences(open);
+    out.sentences(found.known.remark().map(str::to_string));
     out.sentences(found.rise.iter().flat_map(rise));
     out.sentences(found.response.iter().flat_map(response));
     out.text()

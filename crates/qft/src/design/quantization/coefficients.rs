@@ -78,7 +78,7 @@ impl CoefficientFormat {
                 ((value / unit).round() * unit, power_of_two(f64::from(integer_bits)) - unit)
             }
         };
-        // also what is no number
+        // also what is not a number
         if kept.abs() <= largest { Ok(kept) } else { Err(QuantizationError::TooLarge { value, largest }) }
     }
 }

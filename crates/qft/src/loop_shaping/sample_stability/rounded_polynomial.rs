@@ -103,7 +103,7 @@ impl RoundedPolynomial {
             if top < -top_error {
                 return Hurwitz::No;
             }
-            // also what is no number
+            // also what is not a number
             if !(top > top_error && top.is_finite()) {
                 return Hurwitz::Undecided;
             }
