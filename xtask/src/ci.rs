@@ -5,11 +5,13 @@
 //! mended.
 
 mod comparisons;
+mod linted;
 mod tools;
 
 pub(crate) use comparisons::recomputed_by;
+pub(crate) use linted::in_place_of_the_compiler;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::{Duration, Instant};
 
@@ -46,16 +48,21 @@ const STORIES: &str = "stories::";
 /// The test that the repository is tidy, in `xtask/src/tidy.rs`.
 const REPOSITORY: &str = "tidy::tests::the_repository_is_tidy";
 
-type Stage = fn(&Path) -> Outcome;
+/// The repository, and the variables with which cargo builds it in every stage.
+pub(crate) struct Built {
+    root: PathBuf,
+    variables: Vec<(&'static str, String)>,
+}
+
+type Stage = fn(&Built) -> Outcome;
 
 /// Cheap and informative stages first; those that need a network last.
 const STAGES: &[(&str, Stage)] = &[
     ("formatting", formatting),
-    ("clippy", clippy),
-    (TESTS, tests),
+    (BUILD, build),
+    ("tests", tests),
     ("doctests", doctests),
     ("stories", stories),
-    ("rustdoc", rustdoc),
     ("tidy", tidy),
     ("wasm32", wasm32),
     ("peers", peers),
@@ -68,7 +75,7 @@ const STAGES: &[(&str, Stage)] = &[
 const COMPARISONS: &str = "comparisons";
 
 /// The stage that builds the programs that the comparisons call.
-const TESTS: &str = "tests";
+const BUILD: &str = "build";
 
 /// The stages that run only where they are named.
 const MUTATION: &str = "mutation";
@@ -98,6 +105,14 @@ pub(crate) fn run(root: &Path, wanted: &[&str]) -> bool {
         [] => ![MUTATION, SOAK].contains(&name),
         _ => wanted.contains(&name),
     };
+    let variables = match linted::variables(&target(root)) {
+        Ok(variables) => variables,
+        Err(missing) => {
+            eprintln!("{missing}");
+            return false;
+        }
+    };
+    let built = Built { root: root.to_path_buf(), variables };
     // A build often waits for one crate: the second processor compares meanwhile.
     let mut begun = chosen(COMPARISONS).then(|| comparisons::begin(root));
     let mut results = Vec::new();
@@ -105,14 +120,21 @@ pub(crate) fn run(root: &Path, wanted: &[&str]) -> bool {
         println!("\n==== {name}");
         let start = Instant::now();
         let outcome = match begun.take_if(|_| *name == COMPARISONS) {
-            Some(begun) => comparisons::end(root, begun),
-            None if *name == TESTS => built_tests(root, begun.as_mut()),
-            None => stage(root),
+            Some(begun) => comparisons::end(&built, begun),
+            None => stage(&built),
         };
+        if let (BUILD, Outcome::Passed, Some(begun)) = (*name, &outcome, begun.as_mut()) {
+            begun.ask_phea();
+        }
         println!("==== {name}: {} {}", outcome.name(), outcome.remark());
         results.push((*name, outcome, start.elapsed()));
     }
     summary(&results, is_strict())
+}
+
+/// Where cargo builds.
+fn target(root: &Path) -> PathBuf {
+    std::env::var_os("CARGO_TARGET_DIR").map_or(root.join("target"), |folder| root.join(folder))
 }
 
 fn is_strict() -> bool {
@@ -138,24 +160,12 @@ fn summary(results: &[(&str, Outcome, Duration)], strict: bool) -> bool {
     failed == 0 && !(strict && skipped > 0)
 }
 
-/// The tests, and once they are built the comparisons that were begun.
-fn built_tests(root: &Path, begun: Option<&mut comparisons::Begun>) -> Outcome {
-    let built = build(root);
-    if let (Outcome::Passed, Some(begun)) = (&built, begun) {
-        begun.ask_phea();
-    }
-    match built {
-        Outcome::Passed => tests(root),
-        other => other,
-    }
-}
-
-/// Builds all tests, and the examples that the comparisons ask, which `cargo test` would build as
-/// tests; the other examples are read by clippy alone.
-fn build(root: &Path) -> Outcome {
+/// Builds all targets, with the lints of clippy and the documentation, and then the examples that
+/// the comparisons ask, which `cargo test` builds as tests.
+fn build(built: &Built) -> Outcome {
     let asked = ["--example", "reference_systems", "--example", "schema_cases"];
-    match for_all(root, &["test", "--workspace", "--no-run", "--lib", "--bins", "--tests"], &[]) {
-        Outcome::Passed => for_all(root, &[&["build", "--workspace"][..], &asked].concat(), &[]),
+    match for_all(built, &["test", "--workspace", "--no-run", "--all-targets"], &[]) {
+        Outcome::Passed => for_all(built, &[&["build", "--workspace"][..], &asked].concat(), &[]),
         other => other,
     }
 }
@@ -167,9 +177,11 @@ const WITHOUT_PEERS: [&str; 2] = ["--exclude", "sundials"];
 const RIGS: &str = "random_rigs";
 
 /// One command of cargo for all packages; without the one that links CVODE where CVODE is missing.
-fn for_all(root: &Path, arguments: &[&str], of_tests: &[&str]) -> Outcome {
+fn for_all(built: &Built, arguments: &[&str], of_tests: &[&str]) -> Outcome {
     let peers: &[&str] = if tools::sundials().is_ok() { &[] } else { &WITHOUT_PEERS };
-    execute(root, "cargo", &[arguments, peers, of_tests].concat())
+    let variables: Vec<(&str, &str)> =
+        built.variables.iter().map(|(name, value)| (*name, value.as_str())).collect();
+    execute_with(&built.root, "cargo", &[arguments, peers, of_tests].concat(), &variables)
 }
 
 /// Runs one command in the root, its output shown.
@@ -193,47 +205,29 @@ fn execute_with(root: &Path, program: &str, arguments: &[&str], variables: &[(&s
     }
 }
 
-fn formatting(root: &Path) -> Outcome {
+fn formatting(built: &Built) -> Outcome {
     match tools::component("rustfmt", "fmt") {
-        Ok(()) => execute(root, "cargo", &["fmt", "--all", "--check"]),
+        Ok(()) => execute(&built.root, "cargo", &["fmt", "--all", "--check"]),
         Err(missing) => Outcome::Failed(missing),
-    }
-}
-
-fn clippy(root: &Path) -> Outcome {
-    match tools::component("clippy", "clippy") {
-        Ok(()) => linted(root),
-        Err(missing) => Outcome::Failed(missing),
-    }
-}
-
-/// All targets, and the one that is no test for cargo.
-fn linted(root: &Path) -> Outcome {
-    let clippy = |targets: &[&str]| {
-        execute(root, "cargo", &[&["clippy"], targets, &["--", "-D", "warnings"]].concat())
-    };
-    match clippy(&["--workspace", "--all-targets"]) {
-        Outcome::Passed => clippy(&["--workspace", "--test", RIGS]),
-        other => other,
     }
 }
 
 /// Unit and integration tests but for the stories and for the check of the repository, which are
 /// stages of their own.
-fn tests(root: &Path) -> Outcome {
+fn tests(built: &Built) -> Outcome {
     let skipped = ["--", "--skip", STORIES, "--skip", REPOSITORY];
-    for_all(root, &["test", "--workspace", "--tests", "--no-fail-fast"], &skipped)
+    for_all(built, &["test", "--workspace", "--tests", "--no-fail-fast"], &skipped)
 }
 
 /// The example stories, by the whole workspace, so that what was built for the other tests serves
 /// again.
-fn stories(root: &Path) -> Outcome {
-    for_all(root, &["test", "--workspace", "--test", "all"], &["--", STORIES])
+fn stories(built: &Built) -> Outcome {
+    for_all(built, &["test", "--workspace", "--test", "all"], &["--", STORIES])
 }
 
 /// Twenty times as many mutated projects as the tests read.
-fn mutation(root: &Path) -> Outcome {
-    execute(root, "cargo", &["test", "--workspace", "--test", "all", "--", "--ignored", "mutation::"])
+fn mutation(built: &Built) -> Outcome {
+    for_all(built, &["test", "--workspace", "--test", "all"], &["--", "--ignored", "mutation::"])
 }
 
 /// Certificates of random problems against eleven million plants, and designs from other seeds.
@@ -271,7 +265,7 @@ fn killed_campaigns(root: &Path) -> Outcome {
 
 /// What takes too long for every commit, before a release: all of it, so that one run shows
 /// everything that has to be mended.
-fn soak(root: &Path) -> Outcome {
+fn soak(Built { root, .. }: &Built) -> Outcome {
     let cargo = |arguments: &[&str]| execute(root, "cargo", arguments);
     let ended = [
         killed_campaigns(root),
@@ -285,43 +279,33 @@ fn soak(root: &Path) -> Outcome {
     if failed.is_empty() { Outcome::Passed } else { Outcome::Failed(failed.join("; ")) }
 }
 
-fn doctests(root: &Path) -> Outcome {
-    for_all(root, &["test", "--workspace", "--doc", "--no-fail-fast"], &[])
+fn doctests(built: &Built) -> Outcome {
+    for_all(built, &["test", "--workspace", "--doc", "--no-fail-fast"], &[])
 }
 
-/// With the examples, whose dependencies switch on the features that clippy's did, and by clippy's
-/// compiler: what it read of all crates serves again.
-fn rustdoc(root: &Path) -> Outcome {
-    let arguments = ["doc", "--workspace", "--no-deps", "--lib", "--bins", "--examples"];
-    let of_clippy = tools::clippy_variables();
-    let mut variables = vec![("RUSTDOCFLAGS", "-D warnings")];
-    variables.extend(of_clippy.iter().map(|(name, value)| (*name, value.as_str())));
-    execute_with(root, "cargo", &arguments, &variables)
-}
-
-fn tidy(root: &Path) -> Outcome {
-    if crate::tidy::report(root) { Outcome::Passed } else { Outcome::Failed("see above".to_string()) }
+fn tidy(built: &Built) -> Outcome {
+    if crate::tidy::report(&built.root) { Outcome::Passed } else { Outcome::Failed("see above".to_string()) }
 }
 
 /// The crates that only compute build for the browser.
-fn wasm32(root: &Path) -> Outcome {
+fn wasm32(built: &Built) -> Outcome {
     const TARGET: &str = "wasm32-unknown-unknown";
     if let Err(missing) = tools::target(TARGET) {
         println!("\n**** SKIPPED: {missing}\n**** nothing is known about {TARGET} from this run\n");
         return Outcome::Skipped(missing);
     }
     let packages = ["-p", "phea-machine", "-p", "phea-qft", "-p", "phea-quantity"];
-    execute(root, "cargo", &[&["check", "--target", TARGET][..], &packages].concat())
+    execute(&built.root, "cargo", &[&["check", "--target", TARGET][..], &packages].concat())
 }
 
 /// Rigs that phea and CVODE solve both. The other tests of the package that links CVODE run with
 /// those of all packages.
-fn peers(root: &Path) -> Outcome {
+fn peers(built: &Built) -> Outcome {
     if let Err(missing) = tools::sundials() {
         println!("\n**** SKIPPED: {missing}\n**** nothing was compared with CVODE in this run\n");
         return Outcome::Skipped(missing);
     }
-    execute(root, "cargo", &["test", "--workspace", "--test", RIGS, "--", "50"])
+    for_all(built, &["test", "--workspace", "--test", RIGS], &["--", "50"])
 }
 
 #[cfg(test)]
@@ -340,6 +324,6 @@ mod tests {
 
     #[test]
     fn every_stage_that_is_special_is_one() {
-        assert!([COMPARISONS, TESTS, MUTATION, SOAK].iter().all(|name| STAGE_NAMES.contains(name)));
+        assert!([COMPARISONS, BUILD, MUTATION, SOAK].iter().all(|name| STAGE_NAMES.contains(name)));
     }
 }

@@ -6,7 +6,7 @@ use std::process::{Command, Stdio};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::JoinHandle;
 
-use super::{Outcome, build, tools};
+use super::{Built, Outcome, build, target, tools};
 use crate::repository::Repository;
 
 /// What the scripts that ask phea begin with.
@@ -44,8 +44,8 @@ impl Begun {
 
 /// Makes the environment, runs every comparison and every script that a golden number names as its
 /// origin.
-pub(super) fn run(root: &Path) -> Outcome {
-    end(root, begin(root))
+pub(super) fn run(built: &Built) -> Outcome {
+    end(built, begin(&built.root))
 }
 
 /// Begins with the scripts that do not call phea, and continues with the others once
@@ -62,8 +62,8 @@ pub(super) fn begin(root: &Path) -> Begun {
 }
 
 /// Waits for the running scripts; phea is built first if no other stage did so.
-pub(super) fn end(root: &Path, mut begun: Begun) -> Outcome {
-    let built = if begun.waiting.is_some() { build(root) } else { Outcome::Passed };
+pub(super) fn end(repository: &Built, mut begun: Begun) -> Outcome {
+    let built = if begun.waiting.is_some() { build(repository) } else { Outcome::Passed };
     if matches!(built, Outcome::Passed) {
         begun.ask_phea();
     }
@@ -91,10 +91,6 @@ pub(super) fn soak(root: &Path) -> Outcome {
     });
     print!("{told}");
     ran.map_or_else(Outcome::Failed, |()| Outcome::Passed)
-}
-
-fn target(root: &Path) -> PathBuf {
-    std::env::var_os("CARGO_TARGET_DIR").map_or(root.join("target"), |folder| root.join(folder))
 }
 
 fn asks_phea(script: &str) -> bool {

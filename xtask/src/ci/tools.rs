@@ -1,6 +1,6 @@
 //! Parts of the Rust toolchain that may have to be added first.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::{Mutex, PoisonError};
 
@@ -13,18 +13,13 @@ pub(super) fn component(name: &str, subcommand: &str) -> Result<(), String> {
     Err(format!("`cargo {subcommand}` is missing and `rustup component add {name}` did not bring it"))
 }
 
-/// With which other commands of cargo take what `cargo clippy -- -D warnings` read for their own,
-/// instead of reading all crates of the workspace once more; none where clippy's compiler does not
-/// lie beside the other.
-pub(super) fn clippy_variables() -> Vec<(&'static str, String)> {
+/// The compiler of clippy, which lies beside the other.
+pub(super) fn clippy_driver() -> Result<PathBuf, String> {
+    component("clippy", "clippy")?;
     let printed = Command::new("rustc").args(["--print", "sysroot"]).output();
-    let Ok(printed) = printed else { return Vec::new() };
+    let printed = printed.map_err(|error| format!("`rustc` is missing: {error}"))?;
     let driver = Path::new(String::from_utf8_lossy(&printed.stdout).trim()).join("bin").join("clippy-driver");
-    if !driver.is_file() {
-        return Vec::new();
-    }
-    let arguments = ["-D", "warnings", ""].join("__CLIPPY_HACKERY__");
-    vec![("RUSTC_WORKSPACE_WRAPPER", driver.to_string_lossy().into_owned()), ("CLIPPY_ARGS", arguments)]
+    if driver.is_file() { Ok(driver) } else { Err(format!("there is no {}", driver.display())) }
 }
 
 /// Ensures that the standard library for this target is installed; states what is missing if it
