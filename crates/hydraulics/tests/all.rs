@@ -11,8 +11,6 @@ mod linear_models;
 mod machine_components;
 mod machine_conservation;
 mod machine_equations;
-mod machine_lines;
-mod machine_robustness;
 mod operating_point;
 mod plant;
 mod plant_in_motion;

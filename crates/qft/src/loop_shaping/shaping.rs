@@ -414,8 +414,13 @@ fn near(looked: &Looked) -> Vec<(usize, usize)> {
         .map(|&(column, demand, margin_db)| (margin_db, column, demand))
         .filter(|(margin_db, ..)| *margin_db <= looked.worst_db + WINDOW_DB)
         .collect();
-    near.sort_by(|one, other| one.0.total_cmp(&other.0));
-    near.truncate(ROWS_MAXIMUM);
+    if near.len() > ROWS_MAXIMUM {
+        let in_order = |one: &(f64, usize, usize), other: &(f64, usize, usize)| {
+            one.0.total_cmp(&other.0).then((one.1, one.2).cmp(&(other.1, other.2)))
+        };
+        near.select_nth_unstable_by(ROWS_MAXIMUM, in_order);
+        near.truncate(ROWS_MAXIMUM);
+    }
     let mut places: Vec<(usize, usize)> =
         near.into_iter().map(|(_, column, demand)| (column, demand)).collect();
     places.sort_unstable();

@@ -82,23 +82,27 @@ pub(crate) fn candidates(
 /// The worst first; margins that are NaN are left out.
 fn prominent(mut all: Vec<MarginCandidate>) -> Vec<MarginCandidate> {
     all.retain(|candidate| candidate.margin_db.is_finite() && candidate.sensitivity.is_finite());
-    all.sort_by(|one, other| one.margin_db.total_cmp(&other.margin_db));
-    let Some(&worst) = all.first() else { return all };
+    let by_margin =
+        |one: &&MarginCandidate, other: &&MarginCandidate| one.margin_db.total_cmp(&other.margin_db);
+    let Some(&worst) = all.iter().min_by(by_margin) else { return all };
     let mut chosen = vec![worst];
+    // of each, the square of the distance from the nearest that is chosen
+    let mut distances = vec![f64::INFINITY; all.len()];
+    let mut newest = worst;
     while chosen.len() < PLANTS_MAXIMUM {
-        let squared = |candidate: &MarginCandidate, from: &MarginCandidate| {
-            (candidate.sensitivity - from.sensitivity).norm_sqr()
-        };
-        let threat = |candidate: &MarginCandidate| {
-            let nearest = chosen.iter().map(|from| squared(candidate, from)).fold(f64::INFINITY, f64::min);
-            DECIBELS_PER_NEPER * REACH * nearest.sqrt() - (candidate.margin_db - worst.margin_db)
-        };
-        let threats = all.iter().map(|candidate| (threat(candidate), candidate));
-        let next = threats.max_by(|one, other| one.0.total_cmp(&other.0));
+        for (distance, candidate) in distances.iter_mut().zip(&all) {
+            *distance = distance.min((candidate.sensitivity - newest.sensitivity).norm_sqr());
+        }
+        let threats = distances.iter().zip(&all).map(|(distance, candidate)| {
+            let reach = DECIBELS_PER_NEPER * REACH * distance.sqrt();
+            (reach - (candidate.margin_db - worst.margin_db), candidate)
+        });
+        let next = threats.max_by(|one, other| one.0.total_cmp(&other.0).then(by_margin(&one.1, &other.1)));
         match next {
-            Some((threat, candidate)) if threat > 0.0 => chosen.push(*candidate),
+            Some((threat, candidate)) if threat > 0.0 => newest = *candidate,
             _ => break,
         }
+        chosen.push(newest);
     }
     chosen
 }

@@ -3,10 +3,7 @@
 
 #![allow(clippy::unwrap_used)] // helpers of tests
 
-use phea_dynamics::scalar::Scalar;
-use phea_dynamics::simulation::{
-    Input, InputSchedule, Plant, Profile, SimulationSettings, Status, System, simulate,
-};
+use phea_dynamics::simulation::{Plant, Profile, SimulationSettings, Status};
 use phea_hydraulics::actuator::Actuator;
 use phea_hydraulics::line::{
     Conduit, DynamicLine, END_SHARE, LaminarFriction, Line, Segments, StiffeningMember, TransmissionLine,
@@ -17,42 +14,7 @@ use phea_hydraulics::operating_point::{Condition, SteadyLoad, operating_point};
 use phea_hydraulics::reference_rig::{components, hose, hose_line};
 use phea_hydraulics::stiffness::StiffnessModel;
 
-/// A machine at a command that is held, the position of its load's ground counted from where it began.
-#[derive(Clone)]
-struct Held {
-    machine: Machine,
-    command: f64,
-    ground: f64,
-}
-
-impl Held {
-    fn inputs_of<T: Scalar>(&self, inputs: &[T]) -> Vec<T> {
-        let mut inputs = inputs.to_vec();
-        inputs[0] = inputs[0] + T::from(self.ground);
-        inputs
-    }
-}
-
-impl System<f64> for Held {
-    fn states(&self) -> usize {
-        self.machine.states()
-    }
-    fn inputs(&self) -> usize {
-        self.machine.inputs()
-    }
-    fn scales(&self) -> Vec<f64> {
-        self.machine.scales()
-    }
-    fn rates<T: Scalar + From<f64>>(&self, state: &[T], inputs: &[T], rates: &mut [T]) {
-        self.machine.rates(state, <T as From<f64>>::from(self.command), &self.inputs_of(inputs), rates);
-    }
-    fn delays(&self) -> Vec<f64> {
-        self.machine.delays()
-    }
-    fn outgoing<T: Scalar + From<f64>>(&self, state: &[T], inputs: &[T], waves: &mut [T]) {
-        self.machine.outgoing(state, &self.inputs_of(inputs), waves);
-    }
-}
+use crate::driven::driven;
 
 fn actuator() -> Actuator {
     Actuator::new(components(hose_line(), StiffnessModel::ByVolume)).unwrap()
@@ -87,20 +49,13 @@ fn forces(line: Option<DynamicLine>, motion_s: f64, duration_s: f64) -> Vec<f64>
     let point = operating_point(&actuator(), 0.2, Condition::Load(SteadyLoad::Force(2e3))).unwrap();
     let rest = machine.rest(&point).unwrap();
     let motion = Profile::smooth_step(0.02, motion_s, 2e-3).unwrap();
-    let inputs = vec![Input::Value(motion.clone()), Input::Rate(motion)];
-    let course = InputSchedule { duration_s, output_step_s: 1e-3, inputs };
-    let held = Held { machine, command: rest.command, ground: rest.inputs[0] };
-    let result = simulate(
-        &held,
-        &[rest.state.clone(), rest.waves.clone()].concat(),
-        &course,
-        None,
-        &SimulationSettings::default(),
-        &mut |_| true,
-    )
-    .unwrap();
+    let start = [rest.state.clone(), rest.waves.clone()].concat();
+    let ground = motion.shifted(rest.inputs[0]);
+    let command = Profile::constant(rest.command);
+    let settings = SimulationSettings::default();
+    let result = driven(machine, start, [duration_s, 1e-3], command, ground, &settings);
     assert_eq!(result.outcome.status, Status::Completed);
-    let states = result.trajectory.states.iter();
+    let states = result.states.iter();
     states.map(|state| machine.measurement(state, &rest.all_inputs())).collect()
 }
 
@@ -153,29 +108,20 @@ fn nothing_is_felt_before_the_wave_arrives() {
     let machine = machine(Some(waves()));
     let point = operating_point(&actuator(), 0.2, Condition::Load(SteadyLoad::Force(0.0))).unwrap();
     let rest = machine.rest(&point).unwrap();
-    let ground = Profile::constant(0.0);
-    let inputs = vec![Input::Value(ground.clone()), Input::Rate(ground)];
-    let course = InputSchedule { duration_s: 0.008, output_step_s: 1e-4, inputs };
-    let held = Held { machine, command: rest.command + 5.0, ground: rest.inputs[0] };
+    let ground = Profile::constant(rest.inputs[0]);
     let settings = SimulationSettings { tolerance: 1e-8, ..SimulationSettings::default() };
-    let result = simulate(
-        &held,
-        &[rest.state.clone(), rest.waves.clone()].concat(),
-        &course,
-        None,
-        &settings,
-        &mut |_| true,
-    )
-    .unwrap();
+    let start = [rest.state.clone(), rest.waves.clone()].concat();
+    let command = Profile::constant(rest.command + 5.0);
+    let result = driven(machine, start, [0.008, 1e-4], command, ground, &settings);
     let delay = machine.delays()[0];
     assert!(delay > 2.6e-3 && delay < 2.80e-3);
-    for (time, state) in result.trajectory.times_s.iter().zip(&result.trajectory.states) {
+    for (time, state) in result.times_s.iter().zip(&result.states) {
         let force = machine.measurement(state, &rest.all_inputs());
         if *time < delay {
             assert!((force - 2e7 * rest.state[4]).abs() < 1e-3, "{force} at {time}");
         }
     }
-    let last = result.trajectory.states.last().unwrap();
+    let last = result.states.last().unwrap();
     assert!(machine.measurement(last, &rest.all_inputs()) > 10.0);
 }
 

@@ -2,10 +2,7 @@
 
 #![allow(clippy::unwrap_used)] // helpers of tests
 
-use phea_dynamics::scalar::Scalar;
-use phea_dynamics::simulation::{
-    Input, InputSchedule, Plant, Profile, Simulated, SimulationSettings, Status, System, simulate,
-};
+use phea_dynamics::simulation::{Profile, SimulationSettings, Status};
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::contact::Contact;
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
@@ -17,34 +14,7 @@ use phea_hydraulics::reference_rig::{benchmark_components, components, hose_line
 use phea_hydraulics::servovalve::{SpoolImperfection, Supply};
 use phea_hydraulics::stiffness::StiffnessModel;
 
-/// A machine whose command is its first input.
-#[derive(Clone)]
-struct Commanded(Machine);
-
-impl System<f64> for Commanded {
-    fn states(&self) -> usize {
-        self.0.states()
-    }
-    fn inputs(&self) -> usize {
-        1 + self.0.inputs()
-    }
-    fn scales(&self) -> Vec<f64> {
-        self.0.scales()
-    }
-    fn rates<T: Scalar + From<f64>>(&self, state: &[T], inputs: &[T], rates: &mut [T]) {
-        if let [command, inputs @ ..] = inputs {
-            self.0.rates(state, *command, inputs, rates);
-        }
-    }
-    fn indicators(&self) -> usize {
-        self.0.indicators()
-    }
-    fn indicate<T: Scalar + From<f64>>(&self, state: &[T], inputs: &[T], indicators: &mut [T]) {
-        if let [_, inputs @ ..] = inputs {
-            self.0.indicate(state, inputs, indicators);
-        }
-    }
-}
+use crate::driven::{Driven, driven};
 
 /// The machine over a course; its ground is to start where the start says that it lies.
 fn drive(
@@ -53,16 +23,13 @@ fn drive(
     duration_s: f64,
     command: &[(f64, f64)],
     ground: Profile,
-) -> (Simulated, Vec<[f64; SIGNALS.len()]>) {
-    let beginning = machine.start(start).unwrap();
+) -> (Driven, Vec<[f64; SIGNALS.len()]>) {
+    let beginning = machine.start(start).unwrap().state;
     let command = Profile::steps(0.0, command).unwrap();
-    let inputs = vec![Input::Value(command), Input::Value(ground.clone()), Input::Rate(ground)];
-    let course = InputSchedule { duration_s, output_step_s: duration_s / 1000.0, inputs };
     let settings = SimulationSettings { maximum_steps: 200_000, ..SimulationSettings::default() };
-    let result =
-        simulate(&Commanded(machine), &beginning.state, &course, None, &settings, &mut |_| true).unwrap();
-    let rows = result.trajectory.states.iter().zip(&result.trajectory.inputs);
-    let outputs: Vec<_> = rows.map(|(state, inputs)| machine.outputs(state, &inputs[1..])).collect();
+    let result = driven(machine, beginning, [duration_s, duration_s / 1000.0], command, ground, &settings);
+    let rows = result.states.iter().zip(&result.inputs);
+    let outputs: Vec<_> = rows.map(|(state, inputs)| machine.outputs(state, inputs)).collect();
     assert!(outputs.iter().flatten().all(|value| value.is_finite()));
     (result, outputs)
 }
@@ -76,7 +43,7 @@ fn column(outputs: &[[f64; SIGNALS.len()]], name: &str) -> Vec<f64> {
     outputs.iter().map(|row| row[index]).collect()
 }
 
-fn happened(result: &Simulated, name: &str) -> bool {
+fn happened(result: &Driven, name: &str) -> bool {
     result.outcome.events.iter().any(|event| INDICATORS[event.indicator] == name && !event.rising)
 }
 
