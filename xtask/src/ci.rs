@@ -235,8 +235,8 @@ const LONG_ROBUST_TESTS: [&str; 8] =
     ["test", "--release", "-p", "phea-qft", "--test", "all", "--", "--ignored"];
 
 /// Four hundred valves, lines and frictions, identified from recordings of one each: how often the
-/// intervals cover the truth.
-const IDENTIFIED_VALVES: [&str; 11] = [
+/// intervals cover the truth; and the alternatives of the book on loads that yield.
+const IDENTIFIED_VALVES: [&str; 12] = [
     "test",
     "--release",
     "-p",
@@ -248,6 +248,7 @@ const IDENTIFIED_VALVES: [&str; 11] = [
     "--nocapture",
     "--test-threads=1",
     "coverage::soak",
+    "alternatives::soak",
 ];
 
 /// A thousand rigs of each family that phea and CVODE solve both.

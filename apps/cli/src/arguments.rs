@@ -147,7 +147,24 @@ pub(crate) enum Command {
     Compare(Several),
     /// The project and each of its alternatives: sized, designed, audited, driven and compared;
     /// Ctrl-C keeps those that are finished
-    Alternatives(Common),
+    Alternatives {
+        #[command(flatten)]
+        common: Common,
+        /// Two or three columns of a front, separated by commas, such as
+        /// "disturbance_peak_n,swept"; `:less` or `:more` behind one says what is better
+        #[arg(long, value_name = "COLUMN,COLUMN", requires = "sweep")]
+        front: Option<String>,
+        /// The number over which the front is drawn, such as "line.length=0.5 m..3 m"; every value of
+        /// every alternative is a design
+        #[arg(long, value_name = "KEY=FROM..TO", requires = "front", allow_hyphen_values = true)]
+        sweep: Option<String>,
+        /// Values of the sweep, both ends among them (5)
+        #[arg(long, value_name = "N", requires = "sweep")]
+        points: Option<usize>,
+        /// Frequencies at which the impedance at the load is told ("1, 10, 100 rad/s")
+        #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+        frequencies: Option<String>,
+    },
     /// Monte Carlo: the nonlinear machine with drawn numbers, many times; Ctrl-C keeps what is
     /// done, and the same command goes on
     Campaign {
@@ -178,7 +195,13 @@ pub(crate) enum Command {
     Identify(IdentifyArguments),
     /// Everything above as one self-contained HTML page; a controller is designed where the project
     /// has a design section or gives no law
-    Report(Common),
+    Report {
+        #[command(flatten)]
+        common: Common,
+        /// With a chapter on the alternatives of the project: a controller is designed for each
+        #[arg(long)]
+        alternatives: bool,
+    },
 }
 
 /// What a command on several projects takes.

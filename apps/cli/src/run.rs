@@ -8,7 +8,7 @@ use std::process::ExitCode;
 use phea_workbench::answer::{Answer, OutputFile};
 use phea_workbench::audit::{CERTIFICATE_FILE, check_certificate};
 use phea_workbench::command::{
-    self, CampaignRequest, CommandError, FrequencyOptions, Request, SimulateRequest,
+    self, AlternativesRequest, CampaignRequest, CommandError, FrequencyOptions, Request, SimulateRequest,
 };
 use phea_workbench::design::DESIGNED_PROJECT;
 use phea_workbench::linearize::SweepRequest;
@@ -66,7 +66,11 @@ pub(crate) fn run(arguments: Arguments) -> ExitCode {
             on_project(&common, &request)
         }
         Command::Compare(several) => on_projects(&several),
-        Command::Alternatives(common) => on_project(&common, &alternatives_request(&common)),
+        Command::Alternatives { common, front, sweep, points, frequencies } => {
+            let files = common.out.is_some();
+            let request = AlternativesRequest { files, front, sweep, points, frequencies };
+            on_project(&common, &Request::Alternatives(request))
+        }
         Command::Campaign { common, runs, seed, shard, run, threads } => {
             match campaign::request(runs, seed, shard.as_deref(), run, (threads, common.out.is_some())) {
                 Ok(request) => on_campaign(&common, &request),
@@ -75,7 +79,9 @@ pub(crate) fn run(arguments: Arguments) -> ExitCode {
         }
         Command::Bench(common) => on_project(&common, &Request::Bench),
         Command::Identify(recorded) => told(recorded.json, identify::answered(&recorded)),
-        Command::Report(common) => on_project(&common, &report_request(&common)),
+        Command::Report { common, alternatives } => {
+            on_project(&common, &report_request(&common, alternatives))
+        }
     };
     ended(outcome)
 }
@@ -88,11 +94,10 @@ fn verification(prove: bool, on_machine: bool) -> Request {
     }
 }
 
-fn alternatives_request(common: &Common) -> Request {
-    Request::Alternatives { files: common.out.is_some() }
-}
-
-fn report_request(common: &Common) -> Request {
+fn report_request(common: &Common, alternatives: bool) -> Request {
+    if alternatives {
+        return Request::ReportOfAlternatives { files: common.out.is_some() };
+    }
     if common.out.is_some() { Request::Report } else { Request::Page }
 }
 
@@ -236,7 +241,7 @@ fn answered(
     // to save
     let keeps = matches!(
         request,
-        Request::Design { .. } | Request::Simulate | Request::SimulateAs(_) | Request::Alternatives { .. }
+        Request::Design { .. } | Request::Simulate | Request::SimulateAs(_) | Request::Alternatives(_)
     );
     let interruption = keeps.then(Interruption::listen);
     let tables = common.out.as_deref().map(Folder::new);
@@ -308,7 +313,7 @@ fn write_files(common: &Common, request: &Request, answer: &Answer) -> Result<Ve
     if let Some(folder) = &common.out {
         return write(folder, &answer.files);
     }
-    if *request != Request::Page {
+    if !matches!(request, Request::Page | Request::ReportOfAlternatives { .. }) {
         return Ok(vec![]);
     }
     let stem = common.project.file_stem().unwrap_or_default().to_string_lossy();

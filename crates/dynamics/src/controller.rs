@@ -6,6 +6,7 @@
 mod converter;
 mod element;
 mod integral;
+mod rate_sensor;
 mod sampled;
 mod section;
 
@@ -13,6 +14,7 @@ pub(crate) use integral::integral_row;
 
 pub use converter::{Converter, ConverterError};
 pub use element::{Compensator, Element, Stage};
+pub use rate_sensor::{RateFilter, RateSensor};
 pub use sampled::{ControllerOutput, ControllerState, SampledController};
 pub use section::Section;
 
@@ -30,8 +32,10 @@ pub struct Timing {
     /// Whether the prefilter acts on the reference before it is sampled, in continuous time.
     pub continuous_prefilter: bool,
     /// Gain of the feed-forward of a disturbance's rate, sampled and delayed as the command is: K
-    /// in U = G (F R - Y) + K s D. Zero without feed-forward.
+    /// in U = G (F R - Y) + K H_v s D. Zero without feed-forward.
     pub rate_feed_forward: f64,
+    /// H_v: filter and dead time of the sensor of that rate, before the samples.
+    pub rate_sensor: RateSensor,
 }
 
 impl Timing {

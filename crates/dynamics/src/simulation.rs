@@ -141,6 +141,11 @@ pub trait Plant<S: Scalar> {
         T::from(0.0)
     }
 
+    /// Typical magnitude of [`Plant::disturbance`], in its unit.
+    fn disturbance_scale(&self) -> S {
+        S::from(1.0)
+    }
+
     /// As [`System::delays`].
     fn delays(&self) -> Vec<S> {
         Vec::new()

@@ -5,11 +5,20 @@
 //! [[alternative]] -> project -> sizing, design, audit, trial -> the designed loop, driven -> columns -> dominance
 //! ```
 
+mod asked;
 mod columns;
 mod comparison;
+mod front;
+mod hardware;
+mod port;
+mod recentred;
 
+pub use asked::{AskedAlternative, asked};
 pub use columns::{AlternativeColumn, AlternativeColumns, ColumnPart};
-pub use comparison::{ComparedMeasures, MEASURES};
+pub use comparison::{COLUMN_SENSES, ColumnSense, ComparedMeasures, MEASURES, dominates};
+pub use front::{Front, FrontColumn, FrontPoint, FrontRequest, FrontValue};
+pub use port::IMPEDANCE_AT;
+pub use recentred::MovedRange;
 
 use phea_dynamics::watch::{Progress, Watch};
 
@@ -17,12 +26,14 @@ use crate::catalogue::{self, Catalogue};
 use crate::design::{DesignError, ProjectDesign, design_project};
 use crate::error::ProcedureError;
 use crate::linearize::{Linearization, linearize};
-use crate::project::{AS_DECLARED, Loaded, Project, read_alternative};
+use crate::project::{Loaded, Project};
 use crate::rig::{RigError, sizing_problem};
 use crate::setup::Setup;
 use crate::simulate::{ScenarioRun, simulate_project};
 use crate::sizing::{Question, Sizing, size};
 use crate::source::Source;
+use crate::trial::Agreement;
+use asked::ReadingAgain;
 
 /// The project as it is declared and its alternatives, judged.
 #[derive(Clone, Debug)]
@@ -31,6 +42,23 @@ pub struct Alternatives {
     pub judged: Vec<JudgedAlternative>,
     /// Names of those that were not finished when the watch stopped.
     pub not_reached: Vec<String>,
+    /// Fronts over a swept key, where they are asked for.
+    pub front: Option<Front>,
+}
+
+/// What is asked of the alternatives of a project.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AlternativesOptions {
+    /// Fronts over a swept key.
+    pub front: Option<FrontRequest>,
+    /// Frequencies in rad/s at which the impedance at the load is told.
+    pub impedance_at: Vec<f64>,
+}
+
+impl Default for AlternativesOptions {
+    fn default() -> AlternativesOptions {
+        AlternativesOptions { front: None, impedance_at: IMPEDANCE_AT.to_vec() }
+    }
 }
 
 /// An alternative with everything that was found about it; a text says why something was not.
@@ -40,6 +68,13 @@ pub struct JudgedAlternative {
     pub name: String,
     /// The project with its settings.
     pub loaded: Loaded,
+    /// The ranges of `[uncertainty]` that follow its rig.
+    pub moved: Vec<MovedRange>,
+    /// The parameters of its rig outside of their ranges in `[uncertainty]`, in words; `None` where
+    /// they are those of the project as it is declared.
+    pub outside: Option<String>,
+    /// Frequencies in rad/s at which its impedance is told.
+    pub impedance_at: Vec<f64>,
     /// Hoses of the catalogue for its `[sizing]`.
     pub sizing: Result<Sizing, String>,
     /// The designed controller with its audit and its trial on the machine.
@@ -56,7 +91,8 @@ pub struct JudgedAlternative {
 impl Alternatives {
     /// Whether every alternative has a design, and every scenario ran to its end.
     pub fn is_complete(&self) -> bool {
-        self.not_reached.is_empty() && self.judged.iter().all(JudgedAlternative::is_judged)
+        let front = self.front.as_ref().is_none_or(|front| front.not_reached == 0);
+        front && self.not_reached.is_empty() && self.judged.iter().all(JudgedAlternative::is_judged)
     }
 }
 
@@ -65,6 +101,18 @@ impl JudgedAlternative {
     pub fn is_judged(&self) -> bool {
         let completed = |runs: &Vec<ScenarioRun>| runs.iter().all(|run| run.stopped().is_none());
         self.design.is_ok() && self.runs.as_ref().is_ok_and(completed)
+    }
+
+    /// Whether the machine does something that the verdict excludes.
+    pub fn is_contradicted(&self) -> bool {
+        let trial = self.design.as_ref().ok().and_then(|view| view.trial.as_ref());
+        trial.is_some_and(|trial| trial.agreement() == Agreement::Contradicts)
+    }
+
+    /// Whether it may be said to dominate another: it satisfies every specification, was driven to
+    /// the end of its scenarios, and the machine does not contradict its verdict.
+    pub fn is_comparable(&self) -> bool {
+        self.feasible() == Ok(true) && self.is_judged() && !self.is_contradicted()
     }
 
     /// Whether the designed loop satisfies every specification; or why this is not known.
@@ -87,17 +135,17 @@ impl JudgedAlternative {
 ///
 /// # Errors
 /// [`ProcedureError::NoAlternative`] for a project without alternatives, [`DesignError::NoSpecification`] for one
-/// without specifications, and [`ProcedureError::Catalogue`] for an alternative that is no valid
-/// project. What an alternative lacks otherwise is told of that alternative.
+/// without specifications, those of [`asked()`], and [`ProcedureError::Option`] for a front that cannot be. What an
+/// alternative lacks otherwise is told of that alternative.
 ///
 /// # Example
 /// ```
-/// use phea_engineering::alternatives::judge;
+/// use phea_engineering::alternatives::{AlternativesOptions, judge};
 /// use phea_engineering::error::ProcedureError;
 /// use phea_project::{self as project, source::Memory};
 /// let source = Memory::default().with("rig.toml", include_str!("../../../examples/ybitu/hose.toml"));
 /// let loaded = project::read(&source, "rig.toml", &[], &[])?;
-/// let none = judge(&source, &loaded, &[], &mut |_| true);
+/// let none = judge(&source, &loaded, &[], &AlternativesOptions::default(), &mut |_| true);
 /// assert!(matches!(none, Err(ProcedureError::NoAlternative)));
 /// # Ok::<(), phea_project::Refusal>(())
 /// ```
@@ -105,33 +153,41 @@ pub fn judge(
     source: &dyn Source,
     loaded: &Loaded,
     catalogues: &[String],
+    request: &AlternativesOptions,
     watch: Watch<'_>,
 ) -> Result<Alternatives, ProcedureError> {
-    let alternatives = &loaded.project.alternatives;
-    if alternatives.is_empty() {
+    if loaded.project.alternatives.is_empty() {
         return Err(ProcedureError::NoAlternative);
     }
     if loaded.project.specifications.is_empty() {
         return Err(DesignError::NoSpecification.into());
     }
+    let planned = request.front.as_ref().map(front::plan).transpose()?;
+    let all = asked(source, loaded, catalogues)?;
     let catalogue = catalogue::load(source, catalogues).map_err(ProcedureError::Catalogue)?;
-    let mut asked = vec![(AS_DECLARED.to_string(), loaded.clone())];
-    for (index, alternative) in alternatives.iter().enumerate() {
-        let other = read_alternative(source, loaded, catalogues, index);
-        asked.push((alternative.name.clone(), other.map_err(ProcedureError::Catalogue)?));
-    }
-    let count = asked.len() as f64;
-    let mut found = Alternatives { judged: Vec::new(), not_reached: Vec::new() };
-    for (index, (name, other)) in asked.into_iter().enumerate() {
+    let judging =
+        Judging { source, catalogue: &catalogue, declared: loaded, impedance_at: &request.impedance_at };
+    let steps = planned.as_ref().map_or(1, |plan| 1 + plan.values.len());
+    let count = (all.len() * steps) as f64;
+    let mut found = Alternatives { judged: Vec::new(), not_reached: Vec::new(), front: None };
+    for (index, one) in all.iter().enumerate() {
         let mut told = |progress: Progress| {
             watch(Progress { share: (index as f64 + progress.share) / count, ..progress })
         };
         let reached = found.not_reached.is_empty();
-        let one = if reached { judged(source, &name, other, &catalogue, &mut told) } else { None };
-        match one {
-            Some(one) => found.judged.push(one),
-            None => found.not_reached.push(name),
+        let judged = if reached { judging.judged(one.clone(), &mut told) } else { None };
+        match judged {
+            Some(judged) => found.judged.push(judged),
+            None => found.not_reached.push(one.name.clone()),
         }
+    }
+    if let Some(plan) = planned {
+        let done = all.len() as f64 / count;
+        let mut told =
+            |progress: Progress| watch(Progress { share: done + (1.0 - done) * progress.share, ..progress });
+        let again = ReadingAgain { source, catalogues };
+        let goes_on = found.not_reached.is_empty();
+        found.front = Some(front::swept(&judging, (&again, &all), &plan, goes_on, &mut told));
     }
     Ok(found)
 }
@@ -139,43 +195,55 @@ pub fn judge(
 /// Share of the progress that the design is, the scenarios being the rest.
 const DESIGNING: f64 = 0.7;
 
-/// `None` where the watch stops it.
-fn judged(
-    source: &dyn Source,
-    name: &str,
-    loaded: Loaded,
-    catalogue: &Catalogue,
-    watch: Watch<'_>,
-) -> Option<JudgedAlternative> {
-    let mut designing =
-        |progress: Progress| watch(Progress { share: DESIGNING * progress.share, ..progress });
-    let design = match designed(source, &loaded.project, &mut designing) {
-        Err(ProcedureError::Stopped) => return None,
-        Ok(view) if view.stopped => return None,
-        design => design.map_err(|error| error.to_string()),
-    };
-    let deployed = match &design {
-        Ok(view) => Ok(view.deployed(&loaded.project)),
-        Err(_) => Err("no controller was designed".to_string()),
-    };
-    let mut driving = |progress: Progress| {
-        watch(Progress { share: DESIGNING + (1.0 - DESIGNING) * progress.share, ..progress })
-    };
-    let runs = deployed.as_ref().map_err(Clone::clone);
-    let runs = runs.and_then(|deployed| driven(source, deployed, &mut driving));
-    if runs.as_ref().is_ok_and(|runs| runs.iter().any(ScenarioRun::was_cancelled)) {
-        return None;
+/// What every alternative is judged with.
+pub(crate) struct Judging<'a> {
+    source: &'a dyn Source,
+    catalogue: &'a Catalogue,
+    declared: &'a Loaded,
+    impedance_at: &'a [f64],
+}
+
+impl Judging<'_> {
+    /// `None` where the watch stops it.
+    fn judged(&self, asked: AskedAlternative, watch: Watch<'_>) -> Option<JudgedAlternative> {
+        let outside = asked.outside(self.declared);
+        let AskedAlternative { name, loaded, no_hose, moved } = asked;
+        let mut designing =
+            |progress: Progress| watch(Progress { share: DESIGNING * progress.share, ..progress });
+        let design = match no_hose {
+            Some(reason) => Err(reason),
+            None => match designed(self.source, &loaded.project, &mut designing) {
+                Err(ProcedureError::Stopped) => return None,
+                Ok(view) if view.stopped => return None,
+                design => design.map_err(|error| error.to_string()),
+            },
+        };
+        let deployed = match &design {
+            Ok(view) => Ok(view.deployed(&loaded.project)),
+            Err(_) => Err("no controller was designed".to_string()),
+        };
+        let mut driving = |progress: Progress| {
+            watch(Progress { share: DESIGNING + (1.0 - DESIGNING) * progress.share, ..progress })
+        };
+        let runs = deployed.as_ref().map_err(Clone::clone);
+        let runs = runs.and_then(|deployed| driven(self.source, deployed, &mut driving));
+        if runs.as_ref().is_ok_and(|runs| runs.iter().any(ScenarioRun::was_cancelled)) {
+            return None;
+        }
+        Some(JudgedAlternative {
+            name,
+            moved,
+            outside,
+            impedance_at: self.impedance_at.to_vec(),
+            sizing: sized(&loaded.project, self.catalogue).map_err(|error| error.to_string()),
+            linearization: linearized(deployed.as_ref().unwrap_or(&loaded.project))
+                .map_err(|error| error.to_string()),
+            design,
+            deployed,
+            runs,
+            loaded,
+        })
     }
-    Some(JudgedAlternative {
-        name: name.to_string(),
-        sizing: sized(&loaded.project, catalogue).map_err(|error| error.to_string()),
-        linearization: linearized(deployed.as_ref().unwrap_or(&loaded.project))
-            .map_err(|error| error.to_string()),
-        design,
-        deployed,
-        runs,
-        loaded,
-    })
 }
 
 fn designed(

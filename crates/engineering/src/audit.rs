@@ -5,7 +5,10 @@ mod alone;
 mod plant;
 mod proven;
 mod remark;
+mod velocity_noise;
 mod words;
+pub(crate) use velocity_noise::declared as declared_velocity_noise;
+pub use velocity_noise::{VelocityNoise, VelocityNoiseEffect};
 pub(crate) use words::rounded;
 pub use words::{evidence_key, evidence_sentence, finding_sentence, place_words};
 
@@ -139,6 +142,8 @@ pub struct ProjectAudit {
     /// What the worst plant of each specification reaches, where that is a magnitude against a
     /// limit.
     pub reached: Vec<Option<ReachedLimit>>,
+    /// What the noise of a velocity that is fed forward does; `None` without one.
+    pub velocity_noise: Option<VelocityNoise>,
     /// What was proven about it, if a proof was requested.
     pub proof: Option<Proof>,
 }
@@ -207,6 +212,7 @@ impl ProjectAudit {
         if audit.verdict == Verdict::Met && caveats.iter().any(|caveat| caveat.unproven) {
             audit.verdict = Verdict::NotProven;
         }
+        let velocity_noise = VelocityNoise::of(problem, audit.stability.verdict);
         ProjectAudit {
             reached: audit.specifications.iter().map(|finding| reached(problem, finding)).collect(),
             audit,
@@ -221,6 +227,7 @@ impl ProjectAudit {
             sample_time_s: compensation.sample_time_s(),
             delay_s: compensation.delay_s(),
             caveats,
+            velocity_noise,
             proof: None,
         }
     }

@@ -2,7 +2,9 @@
 //! [`Setup`](crate::setup::Setup) holds them.
 
 use num_complex::Complex64;
-use phea_dynamics::controller::{AntiWindup, Compensator, Controller, Element, Stage, Timing};
+use phea_dynamics::controller::{
+    AntiWindup, Compensator, Controller, Element, RateFilter, RateSensor, Stage, Timing,
+};
 use phea_dynamics::linear::{Discretization, LinearError, Polynomial, TimeDomain, TransferFunction};
 use phea_qft::design::quantization::{CoefficientFormat, Converter, Quantization, QuantizationError};
 
@@ -92,7 +94,23 @@ pub fn timing(project: &Project) -> Timing {
         },
         continuous_prefilter: project.prefilter.as_ref().is_some_and(|prefilter| prefilter.continuous),
         rate_feed_forward: 0.0,
+        rate_sensor: RateSensor::default(),
     }
+}
+
+/// Filter and dead time of the sensor of the load's velocity; none where the project declares no
+/// sensor.
+pub fn velocity_sensor(project: &Project) -> RateSensor {
+    let declared = project.actuator.as_ref().and_then(|actuator| actuator.velocity_sensor.as_ref());
+    let Some(declared) = declared else { return RateSensor::default() };
+    let filter = match (declared.filter_frequency, declared.filter_damping_ratio) {
+        (None, _) => RateFilter::None,
+        (Some(frequency_rad_per_s), None) => RateFilter::FirstOrder { frequency_rad_per_s },
+        (Some(frequency_rad_per_s), Some(damping_ratio)) => {
+            RateFilter::SecondOrder { frequency_rad_per_s, damping_ratio }
+        }
+    };
+    RateSensor { filter, delay_s: declared.delay }
 }
 
 /// The rounding in the controller's computer: none where the project does not say.

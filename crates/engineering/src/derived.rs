@@ -2,8 +2,10 @@
 //! contradiction with a declared one.
 
 mod accumulator;
+mod cross_port;
 mod list;
 mod rig;
+mod series;
 mod valve;
 
 pub use rig::derive;

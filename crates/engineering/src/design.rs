@@ -22,7 +22,7 @@ pub use side::{AuditedController, LoopFigures, NominalMargins};
 pub use comparison::compared;
 pub use words::{status_sentence, structure_words};
 
-use phea_dynamics::controller::{Controller, Timing};
+use phea_dynamics::controller::{Controller, RateSensor, Timing};
 use phea_qft::closed_loop::Compensation;
 use phea_qft::design::{Design, DesignOptions, DesignOutcome, DesignProblem, PrefilterChoice};
 use phea_qft::verification::Verdict;
@@ -282,7 +282,11 @@ fn continuous_as_sampled(
     if timing.sample_time_s.is_none() {
         return Ok(None);
     }
-    let at_once = Timing { rate_feed_forward: timing.rate_feed_forward, ..Timing::default() };
+    let at_once = Timing {
+        rate_feed_forward: timing.rate_feed_forward,
+        rate_sensor: RateSensor { delay_s: 0.0, ..timing.rate_sensor },
+        ..Timing::default()
+    };
     let problem = DesignProblem { timing: at_once, ..sampled.clone() };
     let stage = "designing without samples";
     let outcome = phea_qft::design::design(&problem, &told.options, &mut part(watch, stage, [0.0, 1.0]));

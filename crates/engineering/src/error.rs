@@ -51,6 +51,14 @@ pub enum ProcedureError {
         "the project has no [[alternative]]: add one with `name` and `set = {{ \"line.length\" = \"3 m\" }}`"
     )]
     NoAlternative,
+    /// An alternative that cannot be prepared.
+    #[error("alternative `{name}`: {reason}")]
+    Alternative {
+        /// Its name.
+        name: String,
+        /// What is wrong, and what to do.
+        reason: String,
+    },
     /// There is nothing to audit.
     #[error(transparent)]
     Audit(#[from] AuditError),

@@ -13,15 +13,15 @@ use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_dynamics::portable;
 use phea_hydraulics::actuator::Components;
 use phea_hydraulics::impedance::{
-    Asymptote, closed_loop_impedance, closed_loop_load_motion, compliance_hidden_above,
-    final_force_after_load_step, impedance_asymptotes, open_loop_impedance,
+    Asymptote, closed_loop_port, compliance_hidden_above, final_force_after_load_step, impedance_asymptotes,
+    load_motion_of, open_loop_impedance, port,
 };
 use phea_hydraulics::line::StiffeningMember;
 use phea_hydraulics::linear::{
     LinearModel, MechanicalDamping, ModeShare, ResponseDifference, decomposed_model, dominance,
     first_order_model, linear_model, response_difference, transfer_functions,
 };
-use phea_hydraulics::plant::{ChamberDynamics, LinearLoad, LinearPlant};
+use phea_hydraulics::plant::ChamberDynamics;
 use phea_hydraulics::stiffness::{
     ModelDifference, StiffnessModel, StrokeStiffness, hydraulic_stiffness, model_difference,
 };
@@ -30,6 +30,7 @@ use phea_hydraulics::two_pressure::two_pressure_coefficients;
 pub use agreement::AgreementBand;
 pub use agreement::{WITHIN_DB, WITHIN_DEG};
 pub use sweep::{POINTS, Sweep, SweepPoint, SweepRequest, Swept, sweep};
+pub(crate) use sweep::{points, range, values};
 
 use crate::rig::Rig;
 
@@ -45,13 +46,13 @@ pub struct Linearization {
     pub stiffness_models: ModelDifference,
     /// The plant of every verdict: with its load, its leakage, and the parameters in use.
     pub plant: LinearModel,
-    /// Whether 6.7 is the plant: one load pressure, no leakage across the piston, a load whose
-    /// motion is prescribed.
+    /// Whether 6.7 is the plant: one load pressure, nothing that flows from chamber to chamber, a
+    /// load whose motion is prescribed.
     pub plant_is_fifth_order: bool,
     /// The linearised two-pressure model of the rig as declared, at its operating point.
     pub two_pressure: LinearModel,
-    /// The fifth-order model with the parameters in use, equation 6.7; K_c includes the leakage
-    /// across the piston.
+    /// The fifth-order model with the parameters in use, equation 6.7; K_c includes what leaks from
+    /// chamber to chamber.
     pub full: LinearModel,
     /// The same with the derived parameters: the two-pressure model is compared with this one.
     pub derived_full: LinearModel,
@@ -123,14 +124,14 @@ pub fn linearize(
     let plant = transfer_functions(&rig.plant.coefficients())?;
     let leaking = rig.leaking();
     let full = linear_model(&leaking)?;
-    let port = felt(&rig.plant)?;
-    let two_pressure = transfer_functions(&two_pressure_coefficients(&rig.two_pressure))?;
+    let port = port(&rig.plant)?;
+    let two_pressure = transfer_functions(&two_pressure_coefficients(&rig.softened_chambers()))?;
     let decomposed = [
         decomposed_model(&leaking, MechanicalDamping::Printed)?,
         decomposed_model(&leaking, MechanicalDamping::Corrected)?,
     ];
     let first_order = first_order_model(&leaking)?;
-    let derived_full = linear_model(&rig.derived)?;
+    let derived_full = linear_model(&rig.softened(&rig.derived))?;
     let grid = frequency_grid(&full.command)?;
     let against_full = |other: &TransferFunction| compare(&grid, &full.command, other);
     let rational = controller.is_some_and(|given| {
@@ -198,26 +199,22 @@ fn open_loop_view(rig: &Rig, port: &LinearModel) -> Result<PortView, LinearError
 }
 
 /// Whether the plant is thesis (6.7): one load pressure, a prescribed load, no leakage, and no
-/// effect of the supply.
+/// effect of the supply; a series spring alone makes the sensor softer.
 fn is_fifth_order(rig: &Rig) -> bool {
     matches!(rig.plant.chambers, ChamberDynamics::LoadPressure { .. })
         && rig.internal_leakage == 0.0
+        && rig.plant.dynamic_feedback.is_none()
         && rig.load.is_none()
         && rig.plant.supply.is_none()
-}
-
-/// The impedance at the load: the actuator without the load.
-fn felt(plant: &LinearPlant) -> Result<LinearModel, LinearError> {
-    transfer_functions(&LinearPlant { load: LinearLoad::Prescribed, ..*plant }.coefficients())
+        && rig.plant.series.is_none_or(|series| series.damping.is_none() && series.mass.is_none())
 }
 
 fn closed_loop_view(rig: &Rig, controller: &TransferFunction) -> Result<PortView, LinearError> {
-    let port = &felt(&rig.in_loop().plant)?;
-    let impedance = closed_loop_impedance(port, controller)?;
+    let impedance = closed_loop_port(&rig.in_loop().plant, controller)?;
     Ok(PortView {
         passivity: passivity(&impedance)?,
         asymptotes: impedance_asymptotes(&rig.leaking(), Some(controller)),
-        final_force_n: final_force_after_load_step(&closed_loop_load_motion(port, controller)?, 1e-3),
+        final_force_n: final_force_after_load_step(&load_motion_of(&impedance)?, 1e-3),
         impedance,
     })
 }

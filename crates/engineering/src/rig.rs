@@ -3,6 +3,7 @@
 
 mod accumulator;
 mod assembly;
+mod cross_port;
 mod in_loop;
 mod lines;
 mod numbers;
@@ -10,16 +11,18 @@ mod parameters;
 mod place;
 mod plant;
 mod sizing;
+mod spring;
 mod supply;
 
 use num_complex::Complex64;
 use phea_hydraulics::actuator::{Actuator, ActuatorError, Components};
+use phea_hydraulics::force_sensor::in_series;
 use phea_hydraulics::line::{LineError, StiffeningMember};
 use phea_hydraulics::linear::LinearParameters;
 use phea_hydraulics::operating_point::{
     Balance, Condition, OperatingPoint, OperatingPointError, Settled, SettledSupply, operating_point,
 };
-use phea_hydraulics::plant::{LinearLoad, LinearPlant, PlantInMotion};
+use phea_hydraulics::plant::{LinearLoad, LinearPlant, LinearSeries, PlantInMotion, VelocitySensor};
 use phea_hydraulics::servovalve::SpoolDirection;
 use phea_hydraulics::two_pressure::{
     TwoPressureLinearParameters, TwoPressureModel, reduce, two_pressure_linear_parameters,
@@ -29,10 +32,11 @@ use crate::project::{self, Project};
 
 pub use accumulator::{ChargedRange, EmptyAccumulator, accumulator_place, charged_range};
 pub use assembly::{actuator, components};
+pub use cross_port::{CrossPortAtPoint, cross_port_at_point};
 pub use in_loop::FeedForwardPath;
 pub(crate) use in_loop::as_response;
 pub use in_loop::feed_forward;
-pub(crate) use in_loop::limits_load_motion;
+pub(crate) use in_loop::{limits_load_motion, velocity_gain};
 pub use lines::{in_motion, line_model, lines};
 pub use numbers::Numbers;
 pub use parameters::{ParameterOrigin, ResolvedParameter};
@@ -43,8 +47,9 @@ pub(crate) use plant::with_supply;
 pub(crate) use plant::yielding_load;
 pub use plant::{YieldingLoad, linear, plant, sides, stated};
 pub use sizing::{SizingError, sizing_problem};
+pub(crate) use spring::{series_coil, stall_force};
 pub(crate) use supply::yielding_supply;
-pub use supply::{power_unit, settled_supply};
+pub use supply::{power_at_rest, power_unit, settled_supply};
 
 /// A rig with everything that procedures compute with.
 #[derive(Clone, Debug, PartialEq)]
@@ -69,7 +74,8 @@ pub struct Rig {
     pub parameters: Vec<ResolvedParameter>,
     /// The values that hold.
     pub linear: LinearParameters,
-    /// Leakage across the piston in m3/(s Pa).
+    /// Conductance from chamber to chamber at the operating point in m3/(s Pa): leakage across the
+    /// piston, and a valve between the chambers that no capacity closes.
     pub internal_leakage: f64,
     /// The load on the force sensor, if it can move under force.
     pub load: Option<YieldingLoad>,
@@ -111,11 +117,29 @@ impl Rig {
         }
     }
 
-    /// The linear parameters in use, with the leakage across the piston in parallel to K_c: with
-    /// one load pressure both have the same effect.
+    /// The linear parameters in use, with what leaks from chamber to chamber in parallel to K_c:
+    /// with one load pressure both have the same effect; and with the series spring in series with
+    /// the force sensor.
     pub fn leaking(&self) -> LinearParameters {
         let flow_pressure_coefficient = self.linear.flow_pressure_coefficient + self.internal_leakage;
-        LinearParameters { flow_pressure_coefficient, ..self.linear }
+        self.softened(&LinearParameters { flow_pressure_coefficient, ..self.linear })
+    }
+
+    /// These parameters with the series spring in series with the force sensor: the whole of its
+    /// effect where it has neither damper nor mass.
+    pub fn softened(&self, parameters: &LinearParameters) -> LinearParameters {
+        LinearParameters { sensor_stiffness: self.beyond_piston(parameters.sensor_stiffness), ..*parameters }
+    }
+
+    /// The linearised two-pressure model with the series spring in series with the force sensor.
+    pub fn softened_chambers(&self) -> TwoPressureLinearParameters {
+        let sensor_stiffness = self.beyond_piston(self.two_pressure.sensor_stiffness);
+        TwoPressureLinearParameters { sensor_stiffness, ..self.two_pressure }
+    }
+
+    /// The stiffness in N/m of a force sensor together with the series spring, where there is one.
+    pub fn beyond_piston(&self, sensor_stiffness: f64) -> f64 {
+        self.plant.series.map_or(sensor_stiffness, |series| in_series(sensor_stiffness, series.stiffness))
     }
 
     /// Assembles the rig of a project and linearises it: [`Setup`](crate::setup::Setup) holds it.
@@ -147,18 +171,22 @@ impl Rig {
         let derived = reduce(&two_pressure);
         let parameters = parameters::resolve(project, &derived);
         let linear = linear(&two_pressure, stated(&parameters));
-        let internal_leakage = components.cylinder.internal_leakage.unwrap_or(0.0);
+        let (internal_leakage, dynamic_feedback) = components.cross_admittance(pressures);
         let load = yielding_load(&declared.load, &numbers, point.hydraulic_force);
         let yielding = supply.and_then(|found| yielding_supply(declared, &numbers, &balance, &found));
         let unseen = yielding.is_none_or(|supply| are_equal([supply.edges]));
         let equal = are_equal(sides(&two_pressure)) && unseen;
         let one_pressure = states_one_pressure(&parameters, &[]) || equal;
         let pushed = load.map_or(LinearLoad::Prescribed, |load| load.linear());
+        let series = components.series.map(|series| LinearSeries::new(&series, point.hydraulic_force));
         let plant = plant(&two_pressure, &linear, one_pressure, internal_leakage, pushed);
+        let plant = LinearPlant { dynamic_feedback, series, ..plant };
         let plant = match yielding {
             Some(supply) if !(one_pressure && unseen) => with_supply(plant, supply, &two_pressure),
             _ => plant,
         };
+        let shown = VelocitySensor { gain: velocity_gain(declared, &numbers), ..plant.velocity_sensor };
+        let plant = LinearPlant { velocity_sensor: shown, ..plant };
         let in_motion = in_motion(&declared.line, components, &point, &two_pressure, &plant)?;
         Ok(Rig {
             actuator,

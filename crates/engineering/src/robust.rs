@@ -13,7 +13,7 @@ use phea_qft::specification::{LoopResponse, Specification};
 use phea_qft::template::{BuiltTemplate, TemplateError, TemplateOptions, Templates};
 use phea_qft::verification::PlantPoint;
 
-use crate::audit::{PlantNames, kind_words, names, outside};
+use crate::audit::{PlantNames, declared_velocity_noise, kind_words, names, outside};
 use crate::caveat::{Caveat, caveats};
 use crate::error::ProcedureError;
 use crate::family::family;
@@ -47,6 +47,8 @@ pub struct RobustProblem {
     pub rig_outside: Option<(Family, String)>,
     /// Why the plants of the family have no polynomials; `None` where they have them.
     pub without_polynomials: Option<&'static str>,
+    /// Noise of the velocity that a sampled controller feeds forward, m/s rms; zero without.
+    pub velocity_noise: f64,
     /// Declared effects that none of this includes.
     pub caveats: Vec<Caveat>,
 }
@@ -118,6 +120,7 @@ pub fn robust_problem(source: &dyn Source, setup: &Setup<'_>) -> Result<RobustPr
             Some((alone, beyond)) => Some((self::family(&Setup::new(&alone)?, source)?, beyond)),
             None => None,
         },
+        velocity_noise: declared_velocity_noise(setup.project),
         caveats: caveats(setup).into_iter().chain(discs(setup.project, source)).collect(),
     })
 }

@@ -56,7 +56,12 @@ impl<'a> Setup<'a> {
     pub fn new(project: &'a Project) -> Result<Setup<'a>, ControlError> {
         let rig = Setup::rig_of(project);
         let fed = rig.as_ref().ok().and_then(|rig| rig.fed?.in_loop());
-        let timing = Timing { rate_feed_forward: fed.unwrap_or(0.0), ..control::timing(project) };
+        let timing = match fed {
+            None => control::timing(project),
+            Some((rate_feed_forward, rate_sensor)) => {
+                Timing { rate_feed_forward, rate_sensor, ..control::timing(project) }
+            }
+        };
         let controller = control::controller(project)?;
         Ok(Setup {
             project,

@@ -29,6 +29,7 @@ pub mod measured_response;
 pub mod nichols;
 pub mod nomograph;
 mod open_loop;
+pub mod pareto_front;
 pub mod placement;
 pub mod plot;
 pub mod png;
@@ -61,13 +62,14 @@ pub use impedance::{AsymptoteLine, ImpedanceInput, impedance};
 pub use measured_response::{MeasuredResponseInput, ResponseCurve, measured_response};
 pub use nichols::{BoundGroup, NicholsInput, OpenLoopViolation, USUAL_CONTOURS_DB, nichols};
 pub use nomograph::{NomographBore, NomographInput, nomograph};
+pub use pareto_front::{FrontPlace, ParetoCurve, ParetoInput, ParetoPoint, pareto_front};
 pub use phea_quantity::DisplayUnit;
 pub use pole_map::{PoleMapInput, PoleMapScale, PoleSeries, pole_map};
 pub use pole_sweep::{PoleSweepInput, PoleSweepPoint, pole_sweep};
 pub use prefilter_band::{PrefilterPanel, PrefilterPoint, prefilter_band};
 pub use schematic::{
-    ControllerSymbol, Environment, LineKind, LineSymbol, Rods, SchematicInput, SupplyKind, TestCircuitInput,
-    TestPorts, schematic, test_circuit,
+    ControllerSymbol, Environment, LineKind, LineSymbol, Rods, SchematicInput, SeriesSymbol, SupplyKind,
+    TestCircuitInput, TestPorts, schematic, test_circuit,
 };
 pub use sizing_chart::{SizingCandidate, SizingChartInput, SizingCurve, sizing_chart};
 pub use step_response::{SettlingBand, StepResponseInput, TimeBounds, TimeEvent, TimeSeries, step_response};

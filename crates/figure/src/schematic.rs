@@ -64,6 +64,15 @@ pub enum Environment {
     SpringMassDamper,
 }
 
+/// The spring between load cell and environment.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SeriesSymbol {
+    /// Whether a damper lies beside it.
+    pub has_damper: bool,
+    /// Words below it, such as its stiffness.
+    pub words: String,
+}
+
 /// Blocks of the control loop.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ControllerSymbol {
@@ -99,6 +108,8 @@ pub struct SchematicInput {
     /// Words of the load cell, such as `20 MN/m`; two rows at most. Absent: the rod holds the
     /// environment itself.
     pub load_cell: Option<Vec<String>>,
+    /// A spring between load cell and environment, where there is one.
+    pub series: Option<SeriesSymbol>,
     /// Environment.
     pub environment: Environment,
     /// Words below the environment, such as its stiffness; two rows at most.

@@ -302,6 +302,7 @@ fn circuits() {
             cylinder: r.name(),
             mass: r.name(),
             load_cell: r.maybe(|r| r.many(4, Random::name)),
+            series: r.maybe(|r| SeriesSymbol { has_damper: r.unit() < 0.5, words: r.name() }),
             environment: [Environment::PrescribedMotion, Environment::Wall, Environment::SpringMassDamper]
                 [r.below(3)]
             .clone(),

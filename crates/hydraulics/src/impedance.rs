@@ -7,8 +7,10 @@
 //! ```
 
 mod asymptote;
+mod series;
 
 pub use asymptote::{Asymptote, AsymptoteKind, compliance_hidden_above, impedance_asymptotes};
+pub use series::{closed_loop_port, port};
 
 use num_complex::Complex64;
 use phea_dynamics::linear::{LinearError, TransferFunction};
@@ -102,7 +104,14 @@ pub fn closed_loop_load_motion(
     model: &LinearModel,
     controller: &TransferFunction,
 ) -> Result<TransferFunction, LinearError> {
-    let impedance = closed_loop_impedance(model, controller)?;
+    load_motion_of(&closed_loop_impedance(model, controller)?)
+}
+
+/// Force per load position in N/m of an impedance: -s Z.
+///
+/// # Errors
+/// Factors that are not finite.
+pub fn load_motion_of(impedance: &TransferFunction) -> Result<TransferFunction, LinearError> {
     let differentiator = TransferFunction::from_factors(-1.0, vec![Complex64::new(0.0, 0.0)], Vec::new())?;
     let product = impedance.series(&differentiator)?;
     Ok(product.without_common_factors(0.0))

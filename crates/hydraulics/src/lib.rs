@@ -17,6 +17,7 @@
 pub mod accumulator;
 pub mod actuator;
 pub mod contact;
+pub mod cross_port;
 pub mod cylinder;
 pub mod fluid;
 pub mod force_sensor;
@@ -31,6 +32,7 @@ pub mod parameter;
 pub mod plant;
 pub mod power_unit;
 pub mod reference_rig;
+pub mod series;
 pub mod servovalve;
 pub mod stiffness;
 pub mod two_pressure;

@@ -7,8 +7,10 @@
 //!                C_B(x, p_B) dp_B/dt = q_B + q_i + A_B v        thesis (4.26), corrected
 //!                C of the oil and its enclosure, and of the gas of an Accumulator at that chamber
 //! leakage        q_i = G_i (p_A - p_B)                          laminar, across the piston
+//! cross port     q_cp = restrictor(p_A - p_B - p_cp),   C_cp dp_cp/dt = q_cp      part of q_i: CrossPort
 //! piston         M dv/dt = A_A p_A - A_B p_B + F_stops - F_fr - F_e      thesis (4.29)
 //! sensor         d(x - x_L)/dt = v - v_L,   F_e = K_S (x - x_L)          thesis (4.45)
+//! series         between sensor and load, or absent                      SeriesElement
 //! bristles       dz/dt                                          thesis (4.30), corrected: LuGre
 //! load           prescribed, or d(x_L - x_0)/dt, dv_L/dt         LoadModel
 //! supply         constant, or dp_S/dt                           PowerUnit
@@ -26,6 +28,7 @@ mod equations;
 mod ledger;
 mod load;
 mod options;
+mod series;
 mod signals;
 mod start;
 mod state;
@@ -36,7 +39,7 @@ pub use chambers::{AeratedChambers, Chambers};
 pub use ledger::{Account, ENERGY_ACCOUNTS, Ledger, OIL_ACCOUNTS};
 pub use load::{LoadModel, Motion};
 pub use options::{MachineError, MachineOptions};
-pub use signals::{INDICATORS, SIGNALS};
+pub use signals::{INDICATORS, SERIES_SIGNALS, SIGNALS};
 pub use start::{InitialCondition, StartValues};
 pub use state::MachineState;
 
@@ -44,11 +47,12 @@ use phea_dynamics::scalar::{Lanes, Scalar};
 use phea_dynamics::simulation::{Lane, Plant, Sliding};
 
 use crate::actuator::Actuator;
+use crate::cross_port::CrossPort;
 use crate::cylinder::Cylinder;
 use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
-use crate::force_sensor;
 use crate::friction::MovingFriction;
 use crate::line::{DynamicLine, Segments};
+use crate::series::SeriesElement;
 use crate::servovalve::{Servovalve, SpoolImperfection, Supply};
 use equations::constant;
 use signals::ground_of;
@@ -90,10 +94,13 @@ pub struct Machine<S = f64> {
     cylinder: Cylinder<S>,
     chambers: Chambers<S>,
     accumulators: [Option<Accumulator<S>>; 2],
+    cross_port: Option<CrossPort<S>>,
     lines: [DynamicLine<S>; 2],
     friction: MovingFriction<S>,
     sensor_stiffness: S,
+    series: Option<SeriesElement<S>>,
     load: LoadModel<S>,
+    velocity_gain: S,
     external_force: bool,
     vapour_pressure: S,
     layout: Layout,
@@ -135,10 +142,13 @@ impl Machine {
                 }
             },
             accumulators: components.accumulators,
+            cross_port: components.cross_port,
             lines: options.lines.unwrap_or([none; 2]),
             friction,
             sensor_stiffness: components.force_sensor.stiffness,
+            series: components.series,
             load: options.load,
+            velocity_gain: options.velocity_gain,
             external_force: options.external_force,
             vapour_pressure: options.vapour_pressure_absolute - ATMOSPHERIC_PRESSURE_ABSOLUTE,
             layout: Layout::default(),
@@ -151,6 +161,11 @@ impl Machine {
     /// Whether its inputs hold a force from outside.
     pub fn has_external_force(&self) -> bool {
         self.external_force
+    }
+
+    /// Whether a spring lies between force sensor and load.
+    pub fn has_series_element(&self) -> bool {
+        self.series.is_some()
     }
 
     /// Whether anything stops the piston at the ends of its stroke.
@@ -193,10 +208,13 @@ impl<S: Copy> Machine<S> {
             cylinder: self.cylinder.convert(of),
             chambers: self.chambers.convert(of),
             accumulators: self.accumulators.map(|gas| gas.map(|gas| gas.convert(of))),
+            cross_port: self.cross_port.map(|port| port.convert(of)),
             lines: self.lines.map(|line| line.convert(of)),
             friction: self.friction.convert(of),
             sensor_stiffness: of(self.sensor_stiffness),
+            series: self.series.map(|series| series.convert(of)),
             load: self.load.convert(of),
+            velocity_gain: of(self.velocity_gain),
             external_force: self.external_force,
             vapour_pressure: of(self.vapour_pressure),
             layout: self.layout,
@@ -312,11 +330,16 @@ impl<S: Scalar> Plant<S> for Machine<S> {
 
     #[inline(always)]
     fn measurement<T: Scalar + From<S>>(&self, state: &[T], _inputs: &[T]) -> T {
-        force_sensor::force(constant(self.sensor_stiffness), self.layout.read(state).deflection)
+        self.measured_force(&self.layout.read(state))
     }
 
     fn disturbance<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T]) -> T {
-        self.load_of(&self.layout.read(state), &ground_of(inputs)).velocity
+        let velocity = self.load_of(&self.layout.read(state), &ground_of(inputs)).velocity;
+        constant::<S, T>(self.velocity_gain) * velocity
+    }
+
+    fn disturbance_scale(&self) -> S {
+        self.typical_state().velocity
     }
 
     fn delays(&self) -> Vec<S> {

@@ -5,23 +5,27 @@
 //! D F_h = N_u U_sp - N_v s X                                             chambers: ChamberDynamics
 //! (M s^2 + f_v s) X = F_h - F_e,       F_e = K_S (X - X_L)               piston and force sensor, thesis (6.6)
 //! X_L = X_0,   or   (m s^2 + c s + k) X_L = F_e + (c s + k) X_0          load: LinearLoad
-//! U_C -> U_C + K_x s X_L                                                 what is fed forward of the load's velocity
+//! U_C -> U_C + K_x (1 + e) H_v s X_L                                     what is fed forward of the load's velocity
 //! ```
 //!
 //! These are the equations of [`crate::machine`] differentiated, with friction as one slope f_v.
 //! The supply is at a constant pressure, or has one of its own: [`YieldingSupply`].
 
 mod in_motion;
+mod series;
 mod supply;
 
 pub use in_motion::{BehindLines, PlantInMotion};
+pub use series::{LinearSeries, SeriesOutput};
 pub use supply::YieldingSupply;
 
+use phea_dynamics::controller::RateFilter;
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::uncertain_plant::{PlantCoefficients, RateNumerators, RationalCoefficients};
 
 use supply::Coupled;
 
+use crate::cross_port::DynamicFeedback;
 use crate::linear::LinearParameters;
 use crate::linear::polynomial::{product, scaled, shifted, sum};
 use crate::two_pressure::TwoPressureLinearParameters;
@@ -35,14 +39,19 @@ pub struct LinearPlant<S = f64> {
     pub valve_damping_ratio: S,
     /// From spool position and piston velocity to the force of the pressures.
     pub chambers: ChamberDynamics<S>,
-    /// Leakage G across the piston in m3/(s Pa).
+    /// Conductance G from chamber to chamber in m3/(s Pa): leakage across the piston, and a valve
+    /// between the chambers.
     pub internal_leakage: S,
+    /// Dynamic pressure feedback between the chambers; `None` where there is none.
+    pub dynamic_feedback: Option<DynamicFeedback<S>>,
     /// Moving mass M in kg.
     pub moving_mass: S,
     /// Slope f_v of the friction in N s/m.
     pub viscous_friction: S,
     /// Stiffness K_S of the force sensor in N/m; with a prescribed load, of sensor and environment.
     pub sensor_stiffness: S,
+    /// A spring between force sensor and load; `None` where the sensor pushes on the load itself.
+    pub series: Option<LinearSeries<S>>,
     /// What the force sensor pushes on.
     pub load: LinearLoad<S>,
     /// A supply that yields; `None` where its pressure is constant.
@@ -50,6 +59,41 @@ pub struct LinearPlant<S = f64> {
     /// Gain K_x in V s/m from the velocity of the load to the command, at once; `None` where
     /// nothing is fed forward.
     pub load_velocity_feed_forward: Option<S>,
+    /// What that velocity is measured with.
+    pub velocity_sensor: VelocitySensor<S>,
+}
+
+/// The sensor of the load's velocity, without its dead time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct VelocitySensor<S = f64> {
+    /// Shown velocity over the true one, 1 + e; `None` where e is zero.
+    pub gain: Option<S>,
+    /// H_v of the velocity that is fed forward within the plant.
+    pub filter: RateFilter,
+}
+
+impl<S> Default for VelocitySensor<S> {
+    fn default() -> VelocitySensor<S> {
+        VelocitySensor { gain: None, filter: RateFilter::None }
+    }
+}
+
+impl<S: Scalar> VelocitySensor<S> {
+    /// A polynomial of the true velocity as one of the shown velocity, before its filter.
+    fn shown(&self, velocity: Vec<S>) -> Vec<S> {
+        self.gain.map_or(velocity.clone(), |gain| scaled(gain, &velocity))
+    }
+
+    /// A polynomial times the denominator of the filter.
+    fn filtered(&self, polynomial: Vec<S>) -> Vec<S> {
+        match self.filter {
+            RateFilter::None => polynomial,
+            filter => {
+                let denominator: Vec<S> = filter.denominator().into_iter().map(S::from).collect();
+                product(&polynomial, &denominator)
+            }
+        }
+    }
 }
 
 /// How pressures build up. Units: m2, m3/(s V), m3/(s Pa), N/m, m3/Pa.
@@ -62,7 +106,7 @@ pub struct LinearPlant<S = f64> {
 /// ```
 ///
 /// Both are the same where both chambers are: equal areas, compliances and flow-pressure
-/// coefficients.
+/// coefficients. Dynamic pressure feedback adds g C_cp s/(C_cp s + g) to G.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ChamberDynamics<S = f64> {
     /// One load pressure, of a cylinder whose chambers are equal.
@@ -113,30 +157,73 @@ struct ChamberPolynomials<T> {
     displaced: T,
 }
 
+/// Both chambers where nothing flows between them, and the same joined to one pressure: with an admittance Y
+/// between them, of which the determinant of their equations is linear,
+///
+/// ```text
+/// D = D_apart + Y D_joined,   N_u and N_v likewise
+/// ```
+struct ChamberPair<T> {
+    apart: ChamberPolynomials<T>,
+    joined: ChamberPolynomials<T>,
+}
+
+impl<T> ChamberPair<T> {
+    /// Each of D, N_u and N_v apart and joined, combined.
+    fn combined(&self, with: impl Fn(&T, &T) -> T) -> ChamberPolynomials<T> {
+        let ChamberPair { apart, joined } = self;
+        ChamberPolynomials {
+            own: with(&apart.own, &joined.own),
+            driven: with(&apart.driven, &joined.driven),
+            displaced: with(&apart.displaced, &joined.displaced),
+        }
+    }
+}
+
+/// Paths over their divisors: F_e (sensed - fed) = command U_C + ground X_0 and v_L (sensed - fed) =
+/// s (driven U_C + held R X_0), `fed` being the feedback through the velocity of a load that can
+/// move and R what ties this load to its ground.
+struct Paths<T> {
+    command: T,
+    ground: T,
+    sensed: T,
+    fed: Option<T>,
+    driven: T,
+    held: T,
+}
+
 impl<S: Scalar> ChamberDynamics<S> {
-    fn polynomials(&self, leakage: S) -> ChamberPolynomials<Vec<S>> {
+    fn chambers(&self) -> ChamberPair<Vec<S>> {
         match *self {
             ChamberDynamics::LoadPressure {
                 useful_area: area,
                 flow_gain,
                 flow_pressure_coefficient,
                 hydraulic_stiffness: stiffness,
-            } => ChamberPolynomials {
-                own: vec![area.squared(), (flow_pressure_coefficient + leakage) * stiffness],
-                driven: vec![area * stiffness * flow_gain],
-                displaced: vec![area.squared() * stiffness],
+            } => ChamberPair {
+                apart: ChamberPolynomials {
+                    own: vec![area.squared(), flow_pressure_coefficient * stiffness],
+                    driven: vec![area * stiffness * flow_gain],
+                    displaced: vec![area.squared() * stiffness],
+                },
+                joined: ChamberPolynomials { own: vec![stiffness], driven: vec![], displaced: vec![] },
             },
             ChamberDynamics::TwoPressures { areas, compliances, flow_gains, flow_pressures } => {
                 let [area_a, area_b] = areas;
                 let [gain_a, gain_b] = flow_gains;
                 let [a, b] = [0, 1].map(|side| [compliances[side], flow_pressures[side]]);
-                let across = |value: S| [leakage * value];
-                let both = sum(&scaled(area_a * gain_a, &b), &scaled(area_b * gain_b, &a));
-                let squares = sum(&scaled(area_a.squared(), &b), &scaled(area_b.squared(), &a));
-                ChamberPolynomials {
-                    own: sum(&product(&a, &b), &scaled(leakage, &sum(&a, &b))),
-                    driven: sum(&both, &across((area_a - area_b) * (gain_a - gain_b))),
-                    displaced: sum(&squares, &across((area_a - area_b).squared())),
+                let difference = area_a - area_b;
+                ChamberPair {
+                    apart: ChamberPolynomials {
+                        own: product(&a, &b),
+                        driven: sum(&scaled(area_a * gain_a, &b), &scaled(area_b * gain_b, &a)),
+                        displaced: sum(&scaled(area_a.squared(), &b), &scaled(area_b.squared(), &a)),
+                    },
+                    joined: ChamberPolynomials {
+                        own: sum(&a, &b),
+                        driven: vec![difference * (gain_a - gain_b)],
+                        displaced: vec![difference.squared()],
+                    },
                 }
             }
         }
@@ -145,16 +232,15 @@ impl<S: Scalar> ChamberDynamics<S> {
 
 impl<S: Scalar> ChamberDynamics<S> {
     /// The same with a supply that yields, of either form.
-    fn behind(&self, supply: &YieldingSupply<S>, leakage: S) -> ChamberPolynomials<Vec<S>> {
+    fn behind(&self, supply: &YieldingSupply<S>) -> ChamberPair<Vec<S>> {
         let [one, other] = [self.side(0), self.side(1)];
         let [of_a, of_b] = supply.edges;
         let coupled = Coupled {
             own: [
-                vec![one.compliance, one.flow_pressure + leakage],
-                vec![other.compliance, other.flow_pressure + leakage],
+                vec![one.compliance, one.flow_pressure],
+                vec![other.compliance, other.flow_pressure],
                 vec![supply.compliance, supply.conductance + of_a + of_b],
             ],
-            across: vec![leakage],
             edges: [vec![of_a], vec![of_b]],
             gains: [vec![one.flow_gain], vec![other.flow_gain], vec![supply.flow_gain]],
         };
@@ -215,12 +301,15 @@ impl<S: Scalar> LinearPlant<S> {
                 hydraulic_stiffness: parameters.hydraulic_stiffness,
             },
             internal_leakage: leakage,
+            dynamic_feedback: None,
             moving_mass: parameters.moving_mass,
             viscous_friction: parameters.viscous_friction,
             sensor_stiffness: parameters.sensor_stiffness,
+            series: None,
             load,
             supply: None,
             load_velocity_feed_forward: None,
+            velocity_sensor: VelocitySensor::default(),
         }
     }
 
@@ -242,12 +331,35 @@ impl<S: Scalar> LinearPlant<S> {
                 flow_pressures: [chambers.flow_pressure_a, chambers.flow_pressure_b],
             },
             internal_leakage: leakage,
+            dynamic_feedback: None,
             moving_mass: parameters.moving_mass,
             viscous_friction: parameters.viscous_friction,
             sensor_stiffness: parameters.sensor_stiffness,
+            series: None,
             load,
             supply: None,
             load_velocity_feed_forward: None,
+            velocity_sensor: VelocitySensor::default(),
+        }
+    }
+
+    /// D, N_u and N_v with what flows from chamber to chamber; dynamic pressure feedback multiplies
+    /// all three by C_cp s + g, the denominator of its admittance.
+    fn chamber_polynomials(&self) -> ChamberPolynomials<Vec<S>> {
+        let chambers = match &self.supply {
+            None => self.chambers.chambers(),
+            Some(supply) => self.chambers.behind(supply),
+        };
+        let leakage = self.internal_leakage;
+        match self.dynamic_feedback {
+            None => chambers.combined(|apart, joined| sum(apart, &scaled(leakage, joined))),
+            Some(DynamicFeedback { conductance, capacity }) => {
+                let denominator = [capacity, conductance];
+                let numerator = [(leakage + conductance) * capacity, leakage * conductance];
+                chambers.combined(|apart, joined| {
+                    sum(&product(&denominator, apart), &product(&numerator, joined))
+                })
+            }
         }
     }
 
@@ -261,8 +373,15 @@ impl<S: Scalar> LinearPlant<S> {
     /// ```
     ///
     /// The velocity of the load that is fed forward is a second path of a prescribed motion, and a
-    /// second loop of a load that yields: V Q is less by w^2 N_u K_x s in both numerators of X_0,
-    /// and in the denominator V (...) is less by K_S w^2 N_u K_x s of a load that yields.
+    /// second loop of a load that yields. With the sensor's gain 1 + e and its filter H_v = 1/d_v,
+    ///
+    /// ```text
+    /// prescribed    F_e = (N U_C - (d_v B - (1 + e) K_x s N) X_0/d_v)/D                    N, B, D of the equations above
+    /// yielding      F_e = (d_v N U_C - (c s + k) (d_v B - (1 + e) K_x s K_S w^2 N_u) X_0)/(d_v D - (1 + e) K_x s K_S w^2 N_u)
+    /// ```
+    ///
+    /// The `rate` is (1 + e) v_L, before its filter. With a spring between sensor and load see
+    /// [`LinearSeries`].
     ///
     /// # Example
     /// The effect of the load: with a mass as heavy as the earth it does not move.
@@ -286,38 +405,57 @@ impl<S: Scalar> LinearPlant<S> {
         let damping = S::from(2.0) * self.valve_damping_ratio * self.valve_natural_frequency;
         let spool = [one, damping, square];
         let sensor = self.sensor_stiffness;
-        let ChamberPolynomials { own, driven, displaced } = match &self.supply {
-            None => self.chambers.polynomials(self.internal_leakage),
-            Some(supply) => self.chambers.behind(supply, self.internal_leakage),
-        };
-        let fed =
-            self.load_velocity_feed_forward.map(|gain| shifted(&scaled(gain * sensor * square, &driven)));
-        let moved = shifted(&sum(&product(&[self.moving_mass, self.viscous_friction], &own), &displaced));
-        let by_load = scaled(-sensor, &product(&spool, &moved));
+        let chambers = self.chamber_polynomials();
+        let ChamberPolynomials { own, driven, displaced } = &chambers;
+        let moved = shifted(&sum(&product(&[self.moving_mass, self.viscous_friction], own), displaced));
+        if let Some(series) = &self.series {
+            let driven = scaled(sensor * square, driven);
+            return self.coefficients_through(series, &chambers, [moved, driven, spool.to_vec()]);
+        }
+        let ChamberPolynomials { own, driven, .. } = chambers;
+        let shows = &self.velocity_sensor;
+        let fed = self
+            .load_velocity_feed_forward
+            .map(|gain| shows.shown(shifted(&scaled(gain * sensor * square, &driven))));
+        // without a feed-forward there is no filter within the plant
+        let filtered = |path: Vec<S>| if fed.is_some() { shows.filtered(path) } else { path };
+        let by_load = filtered(scaled(-sensor, &product(&spool, &moved)));
         let by_load = fed.as_ref().map_or(by_load.clone(), |fed| sum(&by_load, fed));
         let held = product(&spool, &sum(&moved, &scaled(sensor, &own)));
-        let (driven, disturbance, denominator, rate) = match self.load {
-            LinearLoad::Prescribed => (driven, by_load, held, None),
+        let command = scaled(sensor * square, &driven);
+        match self.load {
+            LinearLoad::Prescribed => PlantCoefficients {
+                command: RationalCoefficients { numerator: command, denominator: held.clone() },
+                disturbance: Some(RationalCoefficients {
+                    numerator: by_load,
+                    denominator: filtered(held.clone()),
+                }),
+                dead_time_s: S::from(0.0),
+                // what is shown of the rate of X_0 itself
+                rate: shows.gain.map(|gain| RateNumerators {
+                    command: vec![S::from(0.0)],
+                    disturbance: shifted(&scaled(gain, &held)),
+                }),
+            },
             LinearLoad::Yielding { mass, damping, stiffness } => {
                 let load = [mass, damping, stiffness];
                 let before_sensor = product(&moved, &[mass, damping, stiffness + sensor]);
                 let sensed = sum(&before_sensor, &scaled(sensor, &product(&load, &own)));
-                let alone = product(&spool, &sensed);
-                let denominator = fed.map_or(alone.clone(), |fed| sum(&alone, &scaled(S::from(-1.0), &fed)));
-                let rate = RateNumerators {
-                    command: shifted(&scaled(sensor * square, &driven)),
-                    disturbance: shifted(&product(&held, &[damping, stiffness])),
-                };
+                let alone = filtered(product(&spool, &sensed));
+                let back = fed.as_ref().map(|fed| scaled(S::from(-1.0), fed));
+                let denominator = back.map_or(alone.clone(), |back| sum(&alone, &back));
+                let ground = shifted(&product(&held, &[damping, stiffness]));
+                let rate = [shifted(&command), ground].map(|path| shows.shown(filtered(path)));
+                let [of_command, of_ground] = rate;
+                let command = filtered(scaled(sensor * square, &product(&load, &driven)));
                 let disturbance = product(&by_load, &[damping, stiffness]);
-                (product(&load, &driven), disturbance, denominator, Some(rate))
+                PlantCoefficients {
+                    command: RationalCoefficients { numerator: command, denominator: denominator.clone() },
+                    disturbance: Some(RationalCoefficients { numerator: disturbance, denominator }),
+                    dead_time_s: S::from(0.0),
+                    rate: Some(RateNumerators { command: of_command, disturbance: of_ground }),
+                }
             }
-        };
-        let command = scaled(sensor * square, &driven);
-        PlantCoefficients {
-            command: RationalCoefficients { numerator: command, denominator: denominator.clone() },
-            disturbance: Some(RationalCoefficients { numerator: disturbance, denominator }),
-            dead_time_s: S::from(0.0),
-            rate,
         }
     }
 }

@@ -7,6 +7,7 @@ use phea_dynamics::scalar::Dual;
 use phea_dynamics::simulation::Plant;
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::contact::Contact;
+use phea_hydraulics::cross_port::{CrossPort, Restrictor};
 use phea_hydraulics::cylinder::{Cylinder, areas_from_diameters};
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::friction::{Friction, LuGre, LuGrePassivity};
@@ -22,7 +23,12 @@ use phea_hydraulics::servovalve::Servovalve;
 use phea_hydraulics::stiffness::StiffnessModel;
 
 /// Classical Runge-Kutta step of rates that depend on time.
-fn step(state: &mut [f64], time: f64, width: f64, rates: &mut impl FnMut(f64, &[f64]) -> Vec<f64>) {
+pub(super) fn step(
+    state: &mut [f64],
+    time: f64,
+    width: f64,
+    rates: &mut impl FnMut(f64, &[f64]) -> Vec<f64>,
+) {
     let along = |state: &[f64], slope: &[f64], share: f64| -> Vec<f64> {
         state.iter().zip(slope).map(|(value, slope)| value + share * width * slope).collect()
     };
@@ -43,11 +49,11 @@ fn accounts(machine: &Machine, state: &[f64], inputs: &[f64]) -> Vec<(String, Ac
 }
 
 /// How a machine is moved: command in V, ground of its load, force on the load from outside where it has that input.
-struct Motion {
-    amplitude: f64,
-    bias: f64,
-    ground: f64,
-    ground_amplitude: f64,
+pub(super) struct Motion {
+    pub(super) amplitude: f64,
+    pub(super) bias: f64,
+    pub(super) ground: f64,
+    pub(super) ground_amplitude: f64,
 }
 
 impl Motion {
@@ -111,7 +117,7 @@ fn run(machine: &Machine, motion: &Motion, start: &[f64], duration: f64, width: 
         .collect()
 }
 
-fn machine_of(components: Components, options: &MachineOptions) -> Machine {
+pub(super) fn machine_of(components: Components, options: &MachineOptions) -> Machine {
     Machine::new(&Actuator::new(components).unwrap(), options).unwrap()
 }
 
@@ -200,7 +206,18 @@ fn rich_machines() -> Vec<(&'static str, Machine)> {
     };
     let at_chambers = |rig| Components { accumulators: [gas(2e-5, 8e5, 1.4), gas(5e-6, 3e5, 1.0)], ..rig };
     let at_one = |rig| Components { accumulators: [None, gas(1e-5, 5e5, 1.25)], ..rig };
+    let port =
+        |restrictor, capacity| Components { cross_port: Some(CrossPort { restrictor, capacity }), ..rig };
+    let orifice = Restrictor::Orifice { flow_coefficient: 2e-9, transition_pressure: 1e4 };
+    let laminar = Restrictor::Laminar { conductance: 1e-11 };
     vec![
+        ("a laminar valve between the chambers", of(port(laminar, None), with(pump(), None))),
+        ("an orifice between them", of(port(orifice, None), with(PowerUnit::Constant, None))),
+        ("laminar feedback", of(port(laminar, Some(3e-13)), with(pump(), None))),
+        (
+            "feedback behind lines",
+            of(port(orifice, Some(3e-13)), with(pump(), lines_of(&rig, [SMEARED, PLAIN]))),
+        ),
         ("gas at the chambers", of(at_chambers(rig), with(charged_pump(40e5, 1.4), None))),
         ("gas behind a line", of(at_one(by_volume), with(pump(), lines_of(&rig, [SMEARED, PLAIN])))),
         ("gas", of(rig, with(charged_pump(40e5, 1.4), None))),
@@ -214,7 +231,7 @@ fn rich_machines() -> Vec<(&'static str, Machine)> {
 }
 
 /// Every account closes, and nothing that should take energy gives any.
-fn check(machine: &Machine, motion: &Motion, start: &StartValues, duration: f64, width: f64) {
+pub(super) fn check(machine: &Machine, motion: &Motion, start: &StartValues, duration: f64, width: f64) {
     let beginning = machine.start(start).unwrap();
     let motion = Motion { ground: beginning.inputs[0], ..*motion };
     for Closing { name, gap, throughput, lost, least_loss } in
@@ -327,14 +344,14 @@ fn ledgers_close_with_gas_air_and_lines() {
 }
 
 /// Next state of a generator of numbers from -1 to 1, and the number.
-fn random(state: &mut u64) -> f64 {
+pub(super) fn random(state: &mut u64) -> f64 {
     *state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
     (*state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
 }
 
 /// What is wrong with the accounts at this state: what is stored must change, along the rates of all states, by what enters and
 /// is lost; energy is never stored or lost below zero.
-fn check_instant(name: &str, machine: &Machine, state: &[f64], command: f64, inputs: [f64; 2]) {
+pub(super) fn check_instant(name: &str, machine: &Machine, state: &[f64], command: f64, inputs: [f64; 2]) {
     let mut rates = vec![0.0; state.len()];
     machine.rates(state, command, &inputs, &mut rates);
     let along = |value: f64, rate: f64| Dual::<1>::new(value, [rate]);

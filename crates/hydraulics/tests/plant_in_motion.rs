@@ -4,6 +4,7 @@
 
 use num_complex::Complex64;
 use phea_dynamics::analytic::Disc;
+use phea_dynamics::controller::RateFilter;
 use phea_dynamics::linear::Polynomial;
 use phea_dynamics::portable::{exp_complex, pow};
 use phea_dynamics::random::{share, stream};
@@ -12,6 +13,7 @@ use phea_dynamics::uncertain_plant::RationalCoefficients;
 use phea_dynamics::uncertain_plant::responding::RespondingPlant;
 use phea_hydraulics::accumulator::Accumulator;
 use phea_hydraulics::actuator::{Actuator, Components};
+use phea_hydraulics::cross_port::CrossFlow;
 use phea_hydraulics::cylinder::{Cylinder, areas_from_diameters};
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::force_sensor::ForceSensor;
@@ -29,7 +31,7 @@ use phea_hydraulics::two_pressure::{
     TwoPressureLinearParameters, TwoPressureModel, two_pressure_linear_parameters,
 };
 
-use super::commanded::{Commanded, power_unit, supply_pressure, yielding};
+use super::commanded::{Commanded, cross_port, power_unit, supply_pressure, yielding};
 
 fn model(number: u64, time: f64) -> LineModel {
     let friction =
@@ -45,14 +47,14 @@ fn model(number: u64, time: f64) -> LineModel {
 }
 
 /// LinearPlant and machine of a rig of its own for every number, with a model of its own for every line.
-struct Drawn {
+pub(crate) struct Drawn {
     machine: Machine,
     inputs: Vec<f64>,
     state: Vec<f64>,
     command: f64,
     sensor: f64,
-    plant: LinearPlant,
-    behind: BehindLines,
+    pub(crate) plant: LinearPlant,
+    pub(crate) behind: BehindLines,
 }
 
 /// Every third load is prescribed, the others are sprung.
@@ -66,8 +68,13 @@ fn loads(number: u64, mass: f64, stiffness: f64, damping: f64) -> (LoadModel, Li
 
 /// Where a machine rests, with the pressures at the valve's ports: the leakage flows through the lines, so that these are a little off
 /// the chambers.
-fn at_ports(state: &[f64], position: f64, lines: &[DynamicLine; 2], leakage: f64) -> OperatingPoint {
-    let leaking = leakage * (state[2] - state[3]);
+fn at_ports(
+    state: &[f64],
+    position: f64,
+    lines: &[DynamicLine; 2],
+    across: Option<CrossFlow>,
+) -> OperatingPoint {
+    let leaking = across.map_or(0.0, |across| across.flow(state[2] - state[3]));
     let drops = lines.map(|line| line.transfer_matrix(Complex64::new(0.0, 1e-6)).impedance.re * leaking);
     OperatingPoint {
         position,
@@ -109,9 +116,8 @@ fn accumulators(number: u64) -> [Option<Accumulator>; 2] {
     })
 }
 
-fn drawn(number: u64) -> Drawn {
-    let mut state = stream(23, number);
-    let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
+/// The parts of a rig for every number, the models of its lines and its friction, its numbers drawn by `spread`.
+fn parts(number: u64, spread: &mut impl FnMut(f64, f64) -> f64) -> (Components, [LineModel; 2], f64) {
     let (friction, leakage) = (spread(50.0, 2e4), spread(1e-14, 1e-10));
     let [area_a, area_b] = areas_from_diameters(0.05, [0.022, spread(0.01, 0.036)]).unwrap();
     let stiffness_model = if number % 5 < 2 { StiffnessModel::Uniform } else { StiffnessModel::ByVolume };
@@ -132,7 +138,18 @@ fn drawn(number: u64) -> Drawn {
         force_sensor: ForceSensor { stiffness: spread(1e6, 1e8) },
         ..reference
     };
-    let parts = Components { accumulators: accumulators(number), ..leaking(parts, leakage) };
+    let parts = Components {
+        accumulators: accumulators(number),
+        cross_port: cross_port(number),
+        ..leaking(parts, leakage)
+    };
+    (parts, models, friction)
+}
+
+pub(crate) fn drawn(number: u64) -> Drawn {
+    let mut state = stream(23, number);
+    let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
+    let (parts, models, friction) = parts(number, &mut spread);
     let actuator = Actuator::new(parts).unwrap();
     let parts = actuator.components();
     let line = |line: &Line, model: &LineModel| {
@@ -150,8 +167,10 @@ fn drawn(number: u64) -> Drawn {
     let moves = linear_load != LinearLoad::Prescribed;
     let position = rest.inputs[0] + if moves { rest.state[6] } else { 0.0 } + rest.state[4];
     let pressures = [rest.state[2], rest.state[3]];
-    let point = at_ports(&rest.state, position, &lines, leakage);
-    let named = &rest.state[..6 + 2 * usize::from(moves) + usize::from(unit.yields())];
+    let point = at_ports(&rest.state, position, &lines, parts.cross_flow());
+    let (across, dynamic_feedback) = parts.cross_admittance(pressures);
+    let present = usize::from(dynamic_feedback.is_some()) + usize::from(unit.yields());
+    let named = &rest.state[..6 + 2 * usize::from(moves) + present];
     let supplied = supply_pressure(&unit, parts.supply.pressure, named);
     let parameters = parameters_at(supplied, &actuator, &point, (pressures, friction));
     let [oil_a, oil_b] = Chambers::behind_lines(&actuator, StiffeningMember::Nominal, [0.0; 2])
@@ -166,14 +185,18 @@ fn drawn(number: u64) -> Drawn {
         state: rest.state,
         command: rest.command,
         sensor: parts.force_sensor.stiffness,
-        plant: LinearPlant { supply, ..LinearPlant::of_two_pressures(&parameters, leakage, linear_load) },
+        plant: LinearPlant {
+            supply,
+            dynamic_feedback,
+            ..LinearPlant::of_two_pressures(&parameters, across, linear_load)
+        },
         behind,
     }
 }
 
 impl Drawn {
     /// F_e and the velocity of the load, by the command and by the ground, where nothing is fed forward.
-    fn force_and_velocity(&self, frequency: f64) -> [[Complex64; 2]; 2] {
+    pub(crate) fn force_and_velocity(&self, frequency: f64) -> [[Complex64; 2]; 2] {
         let s = Complex64::new(0.0, frequency);
         let inputs = [&[self.command], &self.inputs[..]].concat();
         let (zero, one) = (Complex64::ZERO, Complex64::ONE);
@@ -299,7 +322,8 @@ fn a_late_feed_forward_is_enclosed() {
     for number in [1, 4, 8, 14] {
         let rig = drawn(number);
         let plant = PlantInMotion::lumped(&rig.plant).fed_forward(Some(10.0));
-        let late = plant.late(1e-3);
+        let filter = RateFilter::SecondOrder { frequency_rad_per_s: 400.0, damping_ratio: 0.5 };
+        let late = plant.filtered(filter).late(1e-3);
         for (start, width) in [(3.0, 1e-3), (80.0, 1e-4), (2000.0, 1e-5)] {
             let ends = [start, start * (1.0 + width)];
             let held: Disc = late.enclosure(ends);
@@ -327,6 +351,21 @@ fn poles_of_a_late_plant_are_counted() {
             .command
             .denominator;
         let back = Polynomial::new(fed).sum(&alone.scaled(-1.0));
+        // behind a filter the count is that of a longer product of polynomials
+        let filter = RateFilter::FirstOrder { frequency_rad_per_s: 30.0 };
+        let lag = Polynomial::new(filter.denominator());
+        for delay in [0.0, 1e-3, 1e-2, 4e-2] {
+            let part = delay / 6.0;
+            let quotient = |sign: f64| {
+                let one = Polynomial::new(vec![part * part / 12.0, sign * part / 2.0, 1.0]);
+                (0..6).fold(Polynomial::new(vec![1.0]), |product, _| product.product(&one))
+            };
+            let own = alone.product(&lag).product(&quotient(1.0));
+            let characteristic = own.sum(&back.product(&quotient(-1.0)));
+            let growing = characteristic.roots().unwrap().iter().filter(|root| root.re > 0.0).count();
+            let late = PlantInMotion::lumped(&plant).fed_forward(Some(gain)).filtered(filter).late(delay);
+            assert_eq!(late.unstable_poles(), Some(growing), "{gain} V s/m, {delay} s, filtered");
+        }
         for delay in [0.0, 1e-3, 3e-3, 1e-2, 2e-2, 3e-2, 4e-2] {
             let part = delay / 6.0;
             let quotient = |sign: f64| {
@@ -396,7 +435,7 @@ fn what_bounds_it_holds_it() {
     let mut state = 8;
     for number in 0..108 {
         let rig = drawn(number);
-        let moving = PlantInMotion::new(&rig.plant, &rig.behind);
+        let moving = sometimes_fed(PlantInMotion::new(&rig.plant, &rig.behind), number);
         let [from, to] = moving.range_rad_per_s();
         for _ in 0..30 {
             let low = from * pow(to / from, share(&mut state));
@@ -421,12 +460,21 @@ fn what_bounds_it_holds_it() {
     }
 }
 
+/// Every fourth plant with its load's velocity fed forward, late and behind a filter that resonates.
+fn sometimes_fed(plant: PlantInMotion, number: u64) -> PlantInMotion {
+    let filter = RateFilter::SecondOrder { frequency_rad_per_s: 700.0, damping_ratio: 0.3 };
+    match number % 4 {
+        1 => plant.fed_forward(Some(8.0)).filtered(filter).late(1e-3),
+        _ => plant,
+    }
+}
+
 /// Towards zero frequency both paths are those of the slow plant: lines are resistances there, and have crept all they ever do.
 #[test]
 fn slowly_it_is_a_quotient_of_polynomials() {
     for number in 0..108 {
         let rig = drawn(number);
-        let moving = PlantInMotion::new(&rig.plant, &rig.behind);
+        let moving = sometimes_fed(PlantInMotion::new(&rig.plant, &rig.behind), number);
         let (slow, [from, _]) = (moving.slow(), moving.range_rad_per_s());
         let frequency = 1e-4 * from;
         let [command, load] = RespondingPlant::response(&moving, frequency);

@@ -42,6 +42,10 @@ pub struct Sampled {
     pub measurement_converter: Option<Converter>,
     /// Root mean square of the noise, N.
     pub noise: f64,
+    /// Root mean square of the noise of the velocity that is fed forward, m/s.
+    pub velocity_noise: f64,
+    /// Step to which that velocity is rounded, m/s; zero: not at all.
+    pub velocity_resolution: f64,
     /// Seed of the random numbers of the noise.
     pub seed: u64,
 }

@@ -35,7 +35,8 @@ pub enum Waking {
 ///
 /// ```text
 /// m = AD(y + n)                                    y the sensor's, n white noise, AD rounds and ends at its range
-/// u = DA(limit(G (F r - m) + k v_L))               k v_L the feed-forward, DA rounds
+/// v = q round((v_m + n_v)/q)                       v_m the velocity sensor's, n_v white noise, q its resolution
+/// u = DA(limit(G (F r - m) + k v))                 k v the feed-forward, DA rounds
 /// ```
 pub struct Digital<'a> {
     sampled: &'a Sampled,
@@ -72,6 +73,22 @@ impl<'a> Digital<'a> {
     }
 }
 
+impl Digital<'_> {
+    /// The velocity of the load as it is fed forward, m/s.
+    fn velocity(&mut self, state: &[f64], inputs: &[f64]) -> f64 {
+        let Sampled { held, velocity_noise, velocity_resolution, .. } = self.sampled;
+        let states: usize = Plant::<f64>::states(held.plant());
+        let mut velocity = held.plant().disturbance(&state[..states], &inputs[2..]);
+        if *velocity_noise > 0.0 {
+            velocity += velocity_noise * random::normal(&mut self.random);
+        }
+        match *velocity_resolution > 0.0 {
+            true => velocity_resolution * (velocity / velocity_resolution).round(),
+            false => velocity,
+        }
+    }
+}
+
 impl Sampler for Digital<'_> {
     fn sample_time_s(&self) -> f64 {
         self.sampled.controller.sample_time_s()
@@ -97,8 +114,7 @@ impl Sampler for Digital<'_> {
         let output = controller.step(&mut self.state, reference, measurement);
         let mut forward = 0.0;
         if *feed_forward != 0.0 {
-            let states: usize = Plant::<f64>::states(held.plant());
-            forward = feed_forward * held.plant().disturbance(&state[..states], &inputs[2..]);
+            forward = feed_forward * self.velocity(state, inputs);
         }
         let wanted = output.command + forward;
         let within = wanted.clamp(-command_limit, *command_limit);

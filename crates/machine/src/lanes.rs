@@ -1,6 +1,6 @@
 //! Many machines, one after the other or a machine in each lane, each with its own time and step.
 
-use phea_dynamics::controller::Controller;
+use phea_dynamics::controller::{Controller, RateSensor};
 use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_dynamics::scalar::Lanes;
 use phea_dynamics::simulation::{
@@ -105,6 +105,15 @@ pub fn one_by_one<'a>(
     drive::<f64, _, _>(&mut control.commanded().clone(), &mut Queued(fleet), settings)
 }
 
+/// The feed-forward of the load velocity.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FedVelocity {
+    /// From the shown velocity to the command, V s/m; zero where nothing is fed forward.
+    pub gain: f64,
+    /// What shows the velocity.
+    pub sensor: RateSensor,
+}
+
 /// A machine in each lane, under one continuous controller or a stated command.
 pub struct Lanewise(Box<Commanded<Lanes<LANES>>>);
 
@@ -116,19 +125,24 @@ impl Lanewise {
     }
 
     /// Lanes of machines built like this one, with this sensor, under a controller with its
-    /// feed-forward of the load velocity in V s/m, or without one under a stated command.
+    /// feed-forward of the load velocity, or without one under a stated command.
     ///
     /// # Errors
     /// [`LinearError`] for a sensor or a controller that cannot be simulated.
     pub fn new(
         machine: &Machine,
         sensor: &TransferFunction,
-        controller: Option<(&Controller, f64)>,
+        controller: Option<(&Controller, FedVelocity)>,
     ) -> Result<Lanewise, LinearError> {
         let machine = machine.convert(&mut |value| Lanes([value; LANES]));
         let sensed = Sensed::new(machine, sensor)?;
         Ok(Lanewise(Box::new(match controller {
-            Some((controller, gain)) => CommandedPlant::in_loop(sensed, controller, gain)?,
+            Some((controller, FedVelocity { gain: 0.0, .. })) => {
+                CommandedPlant::in_loop(sensed, controller, 0.0)?
+            }
+            Some((controller, FedVelocity { gain, sensor })) => {
+                CommandedPlant::in_loop(sensed.with_rate_sensor(&sensor)?, controller, gain)?
+            }
             None => CommandedPlant::on_hold(sensed, &TransferFunction::gain_only(1.0))?,
         })))
     }

@@ -13,6 +13,11 @@ pub struct Alternative {
     pub name: String,
     /// What it sets, in file order: the path, as `--set` takes it, and the value in TOML.
     pub set: Vec<(String, String)>,
+    /// Whether its hose is sized by `[sizing]` before anything is designed.
+    pub size: bool,
+    /// Whether the ranges of `[uncertainty]` move with the parameters of the linear model that it
+    /// changes.
+    pub recentre: bool,
 }
 
 impl Alternative {
@@ -25,6 +30,16 @@ impl Alternative {
             "What it sets: quoted paths as `--set` takes them, such as \"line.length\" = \"3 m\"; an inline table replaces a whole table.",
         );
         v.overrides(k, &mut self.set);
+        let k = plain(
+            "size",
+            "Whether its hose and length are those that [sizing] finds, before anything is designed.",
+        );
+        v.flag(k, &mut self.size);
+        let k = plain(
+            "recentre",
+            "Whether the ranges of [uncertainty] move with the parameters of the linear model that it changes.",
+        );
+        v.flag(k, &mut self.recentre);
     }
 
     /// What it sets, as `--set` takes it.

@@ -26,6 +26,8 @@ pub struct DeclaredCylinder {
     pub stroke: f64,
     /// kg, piston, rod and what moves with them.
     pub moving_mass: f64,
+    /// m, what the retracted actuator measures from mount to mount besides its stroke.
+    pub dead_length: Option<f64>,
     /// m³, in each chamber in addition to the swept volume and the line; this or `dead_volumes`.
     pub dead_volume: Option<f64>,
     /// m³, in chamber A and in chamber B.
@@ -96,6 +98,12 @@ impl DeclaredCylinder {
         v.quantity(k, &mut self.stroke);
         let k = key("moving_mass", &MASS, "Mass of piston, rod and what moves with them.").positive();
         v.quantity(k, &mut self.moving_mass);
+        let k = key(
+            "dead_length",
+            &LENGTH,
+            "Length of the retracted actuator from mount to mount, less its stroke: covers, rod ends, force sensor.",
+        );
+        v.optional(k.not_negative(), &mut self.dead_length);
         let k = key("dead_volume", &VOLUME, "Volume of each chamber besides the swept volume and the line.");
         v.optional(k.not_negative(), &mut self.dead_volume);
         let k = key("dead_volumes", &VOLUME, "Dead volumes of chamber A and of chamber B.").not_negative();

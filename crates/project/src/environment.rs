@@ -1,8 +1,10 @@
-//! `[force_sensor]` and `[load]`.
+//! `[force_sensor]`, `[velocity_sensor]` and `[load]`.
 
 use super::key::{key, plain};
 use super::visitor::{Variants, Visitor};
-use phea_quantity::{DAMPING, FORCE, INVERSE_VELOCITY, LENGTH, MASS, STIFFNESS};
+use phea_quantity::{
+    ANGULAR_FREQUENCY, DAMPING, FORCE, INVERSE_VELOCITY, LENGTH, MASS, RATIO, STIFFNESS, TIME, VELOCITY,
+};
 
 /// The load cell.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -24,6 +26,40 @@ impl DeclaredForceSensor {
         v.quantity(k.not_negative().or(0.0), &mut self.noise);
         let k = key("capacity", &FORCE, "The force that it survives, in both directions.").positive();
         v.optional(k, &mut self.capacity);
+    }
+}
+
+/// What the velocity of the load is measured with, which a controller may feed forward.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct DeclaredVelocitySensor {
+    /// Shown velocity over the true one, less one.
+    pub gain_error: f64,
+    /// s, from the velocity until it is shown.
+    pub delay: f64,
+    /// rad/s, corner frequency of its filter; absent: it has none.
+    pub filter_frequency: Option<f64>,
+    /// Damping ratio of a filter of second order; absent: it is of first order.
+    pub filter_damping_ratio: Option<f64>,
+    /// m/s, root mean square of the white noise that a sampled controller sees.
+    pub noise: f64,
+    /// m/s, step to which a sampled controller sees it rounded; zero: not at all.
+    pub resolution: f64,
+}
+
+impl DeclaredVelocitySensor {
+    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let k = key("gain_error", &RATIO, "Shown velocity over the true one, less one.").above(-1.0);
+        v.quantity(k.or(0.0), &mut self.gain_error);
+        let k = key("delay", &TIME, "From the velocity until it is shown.").not_negative();
+        v.quantity(k.or(0.0), &mut self.delay);
+        let doc = "Corner frequency of its low-pass filter; absent: it has none.";
+        v.optional(key("filter_frequency", &ANGULAR_FREQUENCY, doc).positive(), &mut self.filter_frequency);
+        let doc = "Damping ratio of a filter of second order; absent: it is of first order.";
+        v.optional(key("filter_damping_ratio", &RATIO, doc).positive(), &mut self.filter_damping_ratio);
+        let doc = "Root mean square of the white noise in what a sampled controller sees.";
+        v.quantity(key("noise", &VELOCITY, doc).not_negative().or(0.0), &mut self.noise);
+        let doc = "Step to which a sampled controller sees it rounded; 0: not at all.";
+        v.quantity(key("resolution", &VELOCITY, doc).not_negative().or(0.0), &mut self.resolution);
     }
 }
 

@@ -7,6 +7,7 @@ mod bench;
 mod campaign;
 pub mod catalogue;
 mod controller;
+mod cross_port;
 mod cylinder;
 mod design;
 mod diagnostic;
@@ -35,6 +36,7 @@ mod rewrite;
 mod scenario;
 mod schema;
 mod sensor;
+mod series;
 mod setting;
 mod signal;
 mod simulation;
@@ -53,6 +55,7 @@ pub use alternative::*;
 pub use bench::*;
 pub use campaign::*;
 pub use controller::*;
+pub use cross_port::*;
 pub use cylinder::*;
 pub use design::*;
 pub use diagnostic::*;
@@ -79,6 +82,7 @@ pub use recorded::*;
 pub use scenario::*;
 pub use schema::schema;
 pub use sensor::*;
+pub use series::*;
 pub use signal::{Amplitudes, Multisine, Signal};
 pub use simulation::*;
 pub use sizing::*;
@@ -158,8 +162,14 @@ pub struct DeclaredActuator {
     pub cylinder: DeclaredCylinder,
     /// The lines between valve and cylinder.
     pub line: DeclaredLines,
+    /// A valve between the chambers, if there is one.
+    pub cross_port: Option<DeclaredCrossPort>,
     /// The load cell.
     pub force_sensor: DeclaredForceSensor,
+    /// What the velocity of the load is measured with; absent: the true one is known at once.
+    pub velocity_sensor: Option<DeclaredVelocitySensor>,
+    /// The spring between load cell and load; absent: the cell pushes on the load itself.
+    pub series: Option<DeclaredSeries>,
     /// What the force acts on.
     pub load: Load,
 }
@@ -304,8 +314,10 @@ fn table_or_default<T: Default + PartialEq, V: Visitor>(
 }
 
 impl DeclaredActuator {
-    /// The tables of an actuator, all of which are required except `[load]`.
+    /// The tables of an actuator that are required.
     const REQUIRED: [&'static str; 6] = ["fluid", "supply", "valve", "cylinder", "line", "force_sensor"];
+    /// Those that may be absent.
+    const OPTIONAL: [&'static str; 4] = ["cross_port", "velocity_sensor", "series", "load"];
 
     fn visit<V: Visitor>(&mut self, v: &mut V) {
         required(plain("fluid", "The oil."), &mut self.fluid, DeclaredFluid::visit, v);
@@ -313,12 +325,21 @@ impl DeclaredActuator {
         required(plain("valve", "The servovalve."), &mut self.valve, Valve::visit, v);
         required(plain("cylinder", "The cylinder."), &mut self.cylinder, DeclaredCylinder::visit, v);
         required(plain("line", "From the valve to each chamber."), &mut self.line, DeclaredLines::visit, v);
+        let k = plain("cross_port", "A valve between the chambers.");
+        v.table(k, &mut self.cross_port, DeclaredCrossPort::visit);
         required(
             plain("force_sensor", "The load cell."),
             &mut self.force_sensor,
             DeclaredForceSensor::visit,
             v,
         );
+        v.table(
+            plain("velocity_sensor", "What the velocity of the load is measured with."),
+            &mut self.velocity_sensor,
+            DeclaredVelocitySensor::visit,
+        );
+        let k = plain("series", "The spring between force sensor and load; absent: none.");
+        v.table(k, &mut self.series, DeclaredSeries::visit);
         table_or_default(plain("load", "What the force acts on."), &mut self.load, Load::visit, v);
     }
 }

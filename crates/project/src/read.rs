@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use sha2::{Digest, Sha256};
 
-use super::diagnostic::{Refusal, Severity};
+use super::diagnostic::{Diagnostic, Refusal, Severity};
 use super::key::{Key, key};
 use super::linear::LINEAR_PARAMETERS;
 use super::listing::{KeyEntry, Listing};
@@ -81,6 +81,12 @@ pub fn read_alternative(
     let settings = base.all_settings();
     let read = read_bytes((source, &base.path), Ok(base.bytes.clone()), &settings, catalogues, Some(index));
     read.map_err(|mut refusal| {
+        // a warning on the project itself is told with the project, and once
+        let known = |found: &Diagnostic| {
+            found.severity != Severity::Error
+                && base.warnings.iter().any(|warning| warning.message == found.message)
+        };
+        refusal.diagnostics.retain(|found| !known(found));
         for found in &mut refusal.diagnostics {
             found.message = format!("alternative `{name}`: {}", found.message);
         }
@@ -216,7 +222,7 @@ fn directions(root: &TreeNode) -> impl Iterator<Item = &str> {
 
 /// Either a complete actuator, or a plant, or measured plants.
 fn refuse_mixture(reader: &mut Reader<'_>, root: &TreeNode, is_plant: bool, is_measured: bool) {
-    let tables = DeclaredActuator::REQUIRED.iter().chain(&["load"]).copied();
+    let tables = DeclaredActuator::REQUIRED.iter().chain(&DeclaredActuator::OPTIONAL).copied();
     let present: Vec<_> = tables.clone().filter_map(|name| root.get(name)).collect();
     if is_measured {
         for entry in

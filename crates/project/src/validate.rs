@@ -1,6 +1,7 @@
 //! Conditions between the values of a project, in addition to the range of each.
 
 mod alternative;
+mod cross_port;
 mod design;
 mod direction;
 mod family;
@@ -10,6 +11,7 @@ mod linear_loop;
 mod measured;
 mod plausible;
 mod rig;
+mod series;
 mod signal;
 mod specification;
 mod wishes;
@@ -27,6 +29,7 @@ pub(super) fn project(project: &Project, reader: &mut Reader<'_>) {
     let mut check = Check { reader };
     if let Some(actuator) = &project.actuator {
         rig::actuator(actuator, &mut check);
+        series::series(project, actuator, &mut check);
         wishes::with_actuator(project, actuator, &mut check);
     }
     if let Some(plant) = &project.plant {

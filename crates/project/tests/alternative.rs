@@ -80,3 +80,15 @@ fn errors_stand_where_they_are_written() {
     assert_eq!(places, [(first + 3, 7), (first + 4, 23)]);
     assert!(refusal.diagnostics.iter().all(|found| found.file == "rig.toml"));
 }
+
+/// A warning on the project is told with the project: a refusal of its alternative does not repeat it.
+#[test]
+fn a_warning_of_the_project_is_not_repeated() {
+    let rig = include_str!("../../../examples/ybitu/hose.toml");
+    let text = format!("{rig}\n[[alternative]]\nname = \"wrong\"\nset = {{ \"line.lenght\" = \"2 m\" }}\n");
+    let source = Memory::default().with("rig.toml", text);
+    let base = read(&source, "rig.toml", &[], &[]).unwrap();
+    assert!(!base.warnings.is_empty());
+    let refusal = read_alternative(&source, &base, &[], 0).unwrap_err();
+    assert_eq!(refusal.diagnostics.len(), 1, "{refusal}");
+}

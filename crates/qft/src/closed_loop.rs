@@ -8,7 +8,7 @@ mod member;
 use std::sync::Arc;
 
 use num_complex::Complex64;
-use phea_dynamics::controller::{Controller, Timing};
+use phea_dynamics::controller::{Controller, RateSensor, Timing};
 use phea_dynamics::linear::{
     Discretization, LinearError, Polynomial, StateSpace, TimeDomain, TransferFunction,
 };
@@ -18,8 +18,8 @@ use phea_dynamics::uncertain_plant::{PlantCoefficients, PlantMember, RationalCoe
 
 use crate::family::MeasuredPlant;
 pub use fed_forward::FedForward;
-pub(crate) use fed_forward::closed;
 use fed_forward::{FedBack, rate_path};
+pub(crate) use fed_forward::{closed, moved_rate};
 use member::{continuous, load_motion};
 
 /// The part of the loop that is the same for every plant: G, F, H, the delay of the loop, and its
@@ -31,9 +31,11 @@ use member::{continuous, load_motion};
 /// ```
 ///
 /// ```text
-/// P/(1 - K P_v)        the plant that the loop sees where a rate v = P_v u + V_d d is fed forward that the command moves too
-/// Pd + K V_d P         the path of its disturbance, P with its hold and delay; V_d = s where v is the rate of d itself
+/// P/(1 - K H_v P_v)    the plant that the loop sees where a rate v = P_v u + V_d d is fed forward that the command moves too
+/// Pd + K H_v V_d P     the path of its disturbance, P with its hold and delay; V_d = s where v is the rate of d itself
 /// ```
+///
+/// H_v is the sensor of that rate: its filter and its dead time, before the samples.
 ///
 /// The samples of the output follow this exactly for a sine of the disturbance: P and P_v are those
 /// of the samples.
@@ -49,6 +51,7 @@ pub struct Compensation {
     sample_time_s: Option<f64>,
     delay_s: f64,
     rate_feed_forward: f64,
+    rate_sensor: RateSensor,
 }
 
 /// G, F at one frequency.
@@ -69,7 +72,7 @@ pub enum Member {
         plant: PlantCoefficients<f64>,
         /// H
         sensor: TransferFunction,
-        /// K V_d
+        /// K H_v V_d
         fed_forward: FedForward,
     },
     /// A plant held by a zero-order hold and sampled.
@@ -80,8 +83,10 @@ pub enum Member {
         with_sensor: TransferFunction,
         /// Pd, continuous: the motion acts on the plant itself.
         disturbance: Option<RationalCoefficients<f64>>,
-        /// K V_d; what it feeds back is within P.
+        /// K H_v V_d; what it feeds back is within P.
         fed_forward: FedForward,
+        /// H_v P_v/(1 - K H_v P_v) with hold and delay, in z; `None` where nothing is fed back.
+        rate: Option<TransferFunction>,
     },
     /// A plant without polynomials, with the delay of the loop; sampling adds the lag of its hold.
     Responding {
@@ -95,6 +100,8 @@ pub enum Member {
         sample_time_s: Option<f64>,
         /// K
         rate_feed_forward: f64,
+        /// H_v
+        rate_sensor: RateSensor,
     },
     /// A measured plant, with the delay of the loop; sampling adds the lag of its hold.
     Measured {
@@ -165,6 +172,7 @@ impl Compensation {
             sample_time_s: timing.sample_time_s,
             delay_s: timing.delay_s,
             rate_feed_forward: timing.rate_feed_forward,
+            rate_sensor: timing.rate_sensor,
         })
     }
 
@@ -228,6 +236,11 @@ impl Compensation {
         self.rate_feed_forward
     }
 
+    /// H_v: the sensor of that rate.
+    pub fn rate_sensor(&self) -> RateSensor {
+        self.rate_sensor
+    }
+
     /// The same loop with no rate fed forward.
     #[must_use]
     pub fn without_feed_forward(&self) -> Compensation {
@@ -273,13 +286,13 @@ impl Compensation {
     pub fn member(&self, mut plant: PlantCoefficients<f64>) -> Result<Member, LinearError> {
         check_dead_time(plant.dead_time_s)?;
         plant.dead_time_s += self.delay_s;
-        let gain = self.rate_feed_forward;
-        let fed_forward = FedForward::of(gain, &plant);
+        let (gain, rate_sensor) = (self.rate_feed_forward, self.rate_sensor);
+        let fed_forward = FedForward::of(gain, rate_sensor, &plant);
         let Some(sample_time_s) = self.sample_time_s else {
-            let plant = closed(gain, plant)?;
+            let plant = closed(gain, rate_sensor, plant)?;
             return Ok(Member::Continuous { plant, sensor: self.sensor.clone(), fed_forward });
         };
-        let rate = rate_path(gain, &plant)?;
+        let rate = rate_path(gain, rate_sensor, &plant)?;
         let rational = TransferFunction::from_polynomials(
             &Polynomial::new(plant.command.numerator),
             &Polynomial::new(plant.command.denominator),
@@ -290,7 +303,8 @@ impl Compensation {
             let dead_time_s = function.dead_time_s() + plant.dead_time_s;
             function.with_dead_time(dead_time_s)?.discretized(sample_time_s, Discretization::ZeroOrderHold)
         };
-        let back = rate.map(|rate| FedBack::new(gain, &held(rate)?)).transpose()?;
+        let rate = rate.map(held).transpose()?;
+        let back = rate.as_ref().map(|rate| FedBack::new(gain, rate)).transpose()?;
         let within = |function| match &back {
             Some(back) => back.around(&held(function)?),
             None => held(function),
@@ -301,7 +315,8 @@ impl Compensation {
         } else {
             within(rational.series(&self.sensor)?)?
         };
-        Ok(Member::Sampled { command, with_sensor, disturbance: plant.disturbance, fed_forward })
+        let rate = back.as_ref().zip(rate).map(|(back, rate)| back.around(&rate)).transpose()?;
+        Ok(Member::Sampled { command, with_sensor, disturbance: plant.disturbance, fed_forward, rate })
     }
 
     /// The plant of a family with these parameter values within this loop.
@@ -341,6 +356,7 @@ impl Compensation {
             delay_s: self.delay_s + self.sample_time_s.unwrap_or(0.0) / 2.0,
             sample_time_s: self.sample_time_s,
             rate_feed_forward: self.rate_feed_forward,
+            rate_sensor: self.rate_sensor,
         }
     }
 
@@ -376,12 +392,12 @@ impl Compensation {
         check_dead_time(plant.dead_time_s)?;
         plant.dead_time_s += self.delay_s;
         let (gain, dead_time_s) = (self.rate_feed_forward, plant.dead_time_s);
-        let fed = FedForward::of(gain, &plant).at(frequency_rad_per_s);
+        let fed = FedForward::of(gain, self.rate_sensor, &plant).at(frequency_rad_per_s);
         let Some(sample_time_s) = self.sample_time_s else {
-            let plant = closed(gain, plant)?;
+            let plant = closed(gain, self.rate_sensor, plant)?;
             return Ok(continuous(&plant, &self.sensor, frequency_rad_per_s).fed(fed));
         };
-        let rate = rate_path(gain, &plant)?;
+        let rate = rate_path(gain, self.rate_sensor, &plant)?;
         let load_motion = load_motion(plant.disturbance.as_ref(), frequency_rad_per_s);
         let rational = TransferFunction::from_polynomials(
             &Polynomial::new(plant.command.numerator),

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 use phea_dynamics::analytic::{Analytic, Disc, Jet};
-use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
+use phea_dynamics::controller::{Compensator, Controller, Element, RateFilter, RateSensor, Timing};
 use phea_dynamics::linear::{LinearError, Polynomial, StateSpace, TimeDomain, TransferFunction};
 use phea_dynamics::portable::{exp, exp_complex, ln, magnitude};
 use phea_dynamics::random::share;
@@ -110,6 +110,66 @@ fn it_is_the_closed_form_of_two_lags() {
     close(around.member(plant).unwrap().response(7.0).unwrap().plant, expected, 1e-13);
 }
 
+/// The same with a sensor of the rate: c s w/((s + a)(s + b)(s + w)) by partial fractions, behind a delay of its own. The zeros that P'
+/// has there, at z = exp(-w T) and for each sample of that delay, are those of the closed form.
+#[test]
+fn a_sensor_of_the_rate_is_a_path_of_its_own() {
+    let (a, b, c, w) = (4.0, 30.0, 3.0, 55.0);
+    let force = [(1.0 / (b - a), a), (-1.0 / (b - a), b)];
+    let shown = |p: f64, q: f64, r: f64| (-c * w * p / ((q - p) * (r - p)), p);
+    let rate = [shown(a, b, w), shown(b, a, w), shown(w, a, b)];
+    let denominator = vec![1.0, a + b, a * b];
+    let plant = PlantCoefficients {
+        command: RationalCoefficients { numerator: vec![1.0], denominator },
+        disturbance: Some(RationalCoefficients { numerator: vec![-3.0, 0.0], denominator: vec![1.0, 5.0] }),
+        dead_time_s: 0.0,
+        rate: Some(RateNumerators { command: vec![c, 0.0], disturbance: vec![1.0, 1.0, 0.0] }),
+    };
+    let filter = RateFilter::FirstOrder { frequency_rad_per_s: w };
+    for (gain, delay, later) in [
+        (5.0, 0.0, 0.0),
+        (5.0, 0.0237, 0.0),
+        (-8.0, 0.0037, 0.02),
+        (12.0, 0.01, 0.0037),
+        (5.0, 0.0037, 0.0063),
+    ] {
+        let rate_sensor = RateSensor { filter, delay_s: later };
+        let around = compensation(Timing { rate_sensor, ..fed(gain, delay) }, vec![], lagging(90.0, 0.0037));
+        let member = around.member(plant.clone()).unwrap();
+        let without = around.without_feed_forward().member(plant.clone()).unwrap();
+        for frequency in FREQUENCIES {
+            let (s, z) =
+                (Complex64::new(0.0, frequency), exp_complex(Complex64::new(0.0, frequency * SAMPLE_TIME)));
+            let back = 1.0 - gain * held(&rate, delay + later, z);
+            let expected = held(&force, delay, z) / back;
+            let from_disturbance =
+                s * (s + 1.0) / ((s + a) * (s + b)) * w / (s + w) * exp_complex(-s * later);
+            let alone = without.response(frequency).unwrap();
+            for found in [
+                member.response(frequency).unwrap(),
+                around.plant_response(plant.clone(), frequency).unwrap(),
+            ] {
+                close(found.plant, expected, 1e-11);
+                close(found.sensor, alone.sensor, 1e-11);
+                close(found.load_motion, -3.0 * s / (s + 5.0) + gain * from_disturbance * expected, 1e-11);
+            }
+        }
+    }
+    // at once it is a quotient in continuous time
+    let rate_sensor = RateSensor { filter, delay_s: 0.0 };
+    let at_once = |rate_sensor| Timing { rate_feed_forward: 2.0, rate_sensor, ..Timing::default() };
+    let around = |timing| compensation(timing, vec![], TransferFunction::gain_only(1.0));
+    let s = Complex64::new(0.0, 7.0);
+    let expected = 1.0 / ((s + a) * (s + b) - 2.0 * c * s * w / (s + w));
+    close(
+        around(at_once(rate_sensor)).member(plant.clone()).unwrap().response(7.0).unwrap().plant,
+        expected,
+        1e-13,
+    );
+    let late = around(at_once(RateSensor { delay_s: 1e-3, ..rate_sensor })).member(plant);
+    assert!(matches!(late, Err(LinearError::NotRational { .. })));
+}
+
 /// N/D, N_v/D and V_d with two modes; P and P_v have the states of one companion form.
 #[derive(Clone, Debug)]
 struct Drawn {
@@ -146,19 +206,30 @@ impl Drawn {
         }
     }
 
-    /// Both outputs from one input.
-    fn states(&self) -> StateSpace {
-        let mut a = DMatrix::zeros(4, 4);
+    /// Both outputs from one input, the rate behind a lag w/(s + w) where there is one.
+    fn states(&self, lag: Option<f64>) -> StateSpace {
+        let count = if lag.is_some() { 5 } else { 4 };
+        let mut a = DMatrix::zeros(count, count);
         for index in 0..4 {
             a[(0, index)] = -self.denominator[index];
             if index > 0 {
                 a[(index, index - 1)] = 1.0;
             }
         }
-        let mut b = DMatrix::zeros(4, 1);
+        let mut b = DMatrix::zeros(count, 1);
         b[(0, 0)] = 1.0;
-        let row = |n: &[f64; 3]| [0.0, n[0], n[1], n[2]];
-        let c = DMatrix::from_row_slice(2, 4, &[row(&self.numerator), row(&self.rate)].concat());
+        let mut c = DMatrix::zeros(2, count);
+        for (index, (force, rate)) in self.numerator.iter().zip(&self.rate).enumerate() {
+            c[(0, index + 1)] = *force;
+            match lag {
+                None => c[(1, index + 1)] = *rate,
+                Some(w) => a[(4, index + 1)] = w * rate,
+            }
+        }
+        if let Some(w) = lag {
+            a[(4, 4)] = -w;
+            c[(1, 4)] = 1.0;
+        }
         StateSpace::new(a, b, c, DMatrix::zeros(2, 1), TimeDomain::Continuous).unwrap()
     }
 
@@ -208,17 +279,34 @@ impl RespondingPlant for Drawn {
     }
 }
 
-/// The largest ln|z|/T of the loop in states: u = -G y + K v.
-fn in_states(plant: &Drawn, gain: f64, delay_s: f64, feedback: &TransferFunction) -> f64 {
-    let held = plant.states().held_with_dead_time(SAMPLE_TIME, delay_s).unwrap();
+/// The largest ln|z|/T of the loop in states: u = -G y + K v, v behind a lag and whole samples.
+fn in_states(
+    plant: &Drawn,
+    gain: f64,
+    delay_s: f64,
+    feedback: &TransferFunction,
+    (lag, samples): (Option<f64>, usize),
+) -> f64 {
+    let held = plant.states(lag).held_with_dead_time(SAMPLE_TIME, delay_s).unwrap();
     let controller = StateSpace::from_transfer_function(feedback).unwrap();
-    let (a, c) = (controller.a().clone(), controller.c().clone());
-    let b = DMatrix::from_fn(
-        a.nrows(),
-        2,
-        |row, column| if column == 0 { controller.b()[(row, 0)] } else { 0.0 },
-    );
-    let d = DMatrix::from_row_slice(1, 2, &[controller.d()[(0, 0)], -gain]);
+    let own = controller.order();
+    let mut a = DMatrix::zeros(own + samples, own + samples);
+    let (mut b, mut c) = (DMatrix::zeros(own + samples, 2), DMatrix::zeros(1, own + samples));
+    a.view_mut((0, 0), (own, own)).copy_from(controller.a());
+    b.view_mut((0, 0), (own, 1)).copy_from(controller.b());
+    c.view_mut((0, 0), (1, own)).copy_from(controller.c());
+    for sample in 0..samples {
+        match sample {
+            0 => b[(own, 1)] = 1.0,
+            _ => a[(own + sample, own + sample - 1)] = 1.0,
+        }
+    }
+    let mut at_once = 0.0;
+    match samples {
+        0 => at_once = -gain,
+        _ => c[(0, own + samples - 1)] = -gain,
+    }
+    let d = DMatrix::from_row_slice(1, 2, &[controller.d()[(0, 0)], at_once]);
     let back = StateSpace::new(a, b, c, d, held.domain()).unwrap();
     let poles = held.feedback(&back).unwrap().poles().unwrap();
     poles.iter().map(|pole| ln(magnitude(*pole)) / SAMPLE_TIME).fold(f64::NEG_INFINITY, f64::max)
@@ -239,8 +327,18 @@ fn its_poles_are_those_of_the_loop_in_states() {
             proportional_gain: 0.02 + 0.6 * share(&mut state),
             integral_gain: 1.0 + 5.0 * share(&mut state),
         };
-        let around = compensation(fed(gain, delay_s), vec![integral], TransferFunction::gain_only(1.0));
-        let expected = in_states(&plant, gain, delay_s, around.feedback());
+        // every other loop with a sensor of its rate
+        let sensed = (number % 2 == 1).then(|| (exp(2.0 + 4.0 * share(&mut state)), (number / 2) % 4));
+        let (lag, samples) = (sensed.map(|(w, _)| w), sensed.map_or(0, |(_, samples)| samples));
+        let rate_sensor = RateSensor {
+            filter: lag.map_or(RateFilter::None, |frequency_rad_per_s| RateFilter::FirstOrder {
+                frequency_rad_per_s,
+            }),
+            delay_s: samples as f64 * SAMPLE_TIME,
+        };
+        let timing = Timing { rate_sensor, ..fed(gain, delay_s) };
+        let around = compensation(timing, vec![integral], TransferFunction::gain_only(1.0));
+        let expected = in_states(&plant, gain, delay_s, around.feedback(), (lag, samples));
         let member = around.member(plant.shown()).unwrap();
         let found = member_stability(&member, &around);
         let slowest = found.largest_real_part.unwrap();
@@ -281,7 +379,13 @@ fn hidden_polynomials_fold_onto_the_same() {
     for number in 0..20 {
         let plant = Drawn::new(&mut state);
         let gain = 2.0 * share(&mut state) - 1.0;
-        let around = compensation(fed(gain, 0.0137), vec![], lagging(60.0, 0.002));
+        let filter = RateFilter::SecondOrder { frequency_rad_per_s: 70.0, damping_ratio: 0.4 };
+        let rate_sensor = match number % 2 {
+            0 => RateSensor::default(),
+            _ => RateSensor { filter, delay_s: 0.0043 },
+        };
+        let timing = Timing { rate_sensor, ..fed(gain, 0.0137) };
+        let around = compensation(timing, vec![], lagging(60.0, 0.002));
         let [shown, hidden]: [Member; 2] =
             [around.member(plant.shown()).unwrap(), around.responding(Arc::new(plant.clone()))];
         for frequency in FREQUENCIES {

@@ -42,6 +42,10 @@ impl DisplayUnit {
     pub const BAR: Self = DisplayUnit { symbol: "bar", in_si: 1e5 };
     /// degC.
     pub const DEGREE_CELSIUS: Self = DisplayUnit { symbol: "degC", in_si: 1.0 };
+    /// Energy.
+    pub const JOULE: Self = DisplayUnit { symbol: "J", in_si: 1.0 };
+    /// Power.
+    pub const WATT: Self = DisplayUnit { symbol: "W", in_si: 1.0 };
     /// Control signal.
     pub const VOLT: Self = DisplayUnit { symbol: "V", in_si: 1.0 };
     /// Voltage for a force.

@@ -1,12 +1,13 @@
-//! The output of `alternatives`: text, JSON, files and a figure.
+//! The output of `alternatives`: text, JSON, files and figures.
 
 mod answer;
 mod document;
 mod files;
 mod findings;
+mod front;
 
 pub use phea_engineering::alternatives::*;
 
 pub(crate) use answer::json;
-pub(crate) use document::text;
-pub(crate) use files::files;
+pub(crate) use document::{document, outside_words, text, told_first};
+pub(crate) use files::{figures, files};

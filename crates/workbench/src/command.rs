@@ -12,6 +12,7 @@ mod schema;
 mod simulate;
 
 pub use crate::error::CommandError;
+pub use alternatives::AlternativesRequest;
 pub use campaign::{CampaignRequest, CampaignRuns, campaign_watched};
 pub use friction::{FrictionRequest, friction_watched};
 pub use identify::{IdentifyRequest, identify_watched};
@@ -28,7 +29,8 @@ pub use simulate::{FrequencyOptions, SimulateRequest};
 use phea_qft::family::Family;
 use phea_qft::verification::Verdict;
 
-use crate::answer::{self, Answer, Object, OutputFile};
+use crate::alternatives::{AlternativesOptions as AskedOfAlternatives, judge};
+use crate::answer::{self, Answer, Object};
 use crate::audit::{self, CERTIFICATE_FILE, audit_project, certificate_of, outside, prove_audit};
 use crate::bench;
 use crate::campaign::Nowhere;
@@ -36,13 +38,12 @@ use crate::caveat::caveats;
 use crate::derived::{self, derive};
 use crate::design::{self, design_and_repair, design_project};
 use crate::family::{family, visited_box};
-use crate::figure::FigureError;
 use crate::identify::{heading_in_use, in_use};
 use crate::line_test::line_runs;
 use crate::linearize::SweepRequest;
 use crate::project::Loaded;
 use crate::quantity::{self, LENGTH, VOLTAGE_PER_FORCE};
-use crate::report::{Report, report};
+use crate::report::report_beside;
 use crate::rig::{RigError, sizing_problem};
 use crate::robust::robust_problem;
 use crate::setup::Setup;
@@ -104,10 +105,7 @@ pub enum Request {
     /// The same scenarios of this project and others side by side.
     Compare,
     /// The project and each of its alternatives: sized, designed, audited and driven.
-    Alternatives {
-        /// Whether files are wanted.
-        files: bool,
-    },
+    Alternatives(AlternativesRequest),
     /// The nonlinear machine with drawn numbers, many times.
     Campaign(CampaignRequest),
     /// Static tests of the servovalve.
@@ -116,6 +114,11 @@ pub enum Request {
     Report,
     /// The page alone.
     Page,
+    /// The report with a chapter on the alternatives of the project, each of which is designed for.
+    ReportOfAlternatives {
+        /// Whether every figure is wanted as a file.
+        files: bool,
+    },
 }
 
 impl Request {
@@ -130,10 +133,10 @@ impl Request {
             Request::Design { .. } => "design",
             Request::Simulate | Request::SimulateAs(_) => "simulate",
             Request::Compare => "compare",
-            Request::Alternatives { .. } => "alternatives",
+            Request::Alternatives(_) => "alternatives",
             Request::Campaign(_) => "campaign",
             Request::Bench => "bench",
-            Request::Report | Request::Page => "report",
+            Request::Report | Request::Page | Request::ReportOfAlternatives { .. } => "report",
         }
     }
 }
@@ -234,20 +237,21 @@ fn answer_as_read(
         Request::Simulate => simulate_answer(source, loaded, &SimulateRequest::default(), destination, watch),
         Request::SimulateAs(asked) => simulate_answer(source, loaded, asked, destination, watch),
         Request::Compare => compare_watched(source, std::slice::from_ref(loaded), false, watch),
-        Request::Alternatives { files } => alternatives_answer(source, loaded, catalogues, *files, watch),
+        Request::Alternatives(asked) => alternatives_answer(source, loaded, catalogues, asked, watch),
         Request::Campaign(asked) => {
             campaign_watched(source, loaded, catalogues, asked, (&mut Nowhere, destination), watch)
         }
         Request::Bench => bench_answer(loaded, watch),
-        Request::Report => report_answer(source, loaded, catalogues, watch, Report::files),
-        Request::Page => {
-            report_answer(source, loaded, catalogues, watch, |report| Ok(vec![report.page_file()]))
+        Request::Report => report_answer(source, loaded, catalogues, [false, true], watch),
+        Request::Page => report_answer(source, loaded, catalogues, [false, false], watch),
+        Request::ReportOfAlternatives { files } => {
+            report_answer(source, loaded, catalogues, [true, *files], watch)
         }
     }
 }
 
 fn check(source: &dyn Source, loaded: &Loaded, catalogues: &[String]) -> Result<Answer, CommandError> {
-    read_alternatives(source, loaded, catalogues)?;
+    let of_alternatives = read_alternatives(source, loaded, catalogues)?;
     let setup = Setup::new(&loaded.project)?;
     let derived = match setup.rig() {
         Ok(rig) => derive(&loaded.project, rig),
@@ -261,7 +265,7 @@ fn check(source: &dyn Source, loaded: &Loaded, catalogues: &[String]) -> Result<
     let visited = visited_box(&setup)?;
     let in_words = |ranges: &Vec<_>| format!("{}\n", derived::visited_text(&loaded.project, ranges));
     let boxed = visited.as_ref().map_or(String::new(), in_words);
-    let told = told_first(&setup);
+    let told: Vec<String> = told_first(&setup).into_iter().chain(of_alternatives).collect();
     let first: String = told.iter().map(|sentence| format!("warning: {sentence}\n")).collect();
     let text = match derived.as_slice() {
         [] => format!("{first}{in_time}The project is valid. {}\n", without_derived(source, &setup)?),
@@ -433,8 +437,8 @@ fn report_answer(
     source: &dyn Source,
     loaded: &Loaded,
     catalogues: &[String],
+    [alternatives, files]: [bool; 2],
     watch: Watch<'_>,
-    files: impl Fn(&Report) -> Result<Vec<OutputFile>, FigureError>,
 ) -> Result<Answer, CommandError> {
     let setup = Setup::new(&loaded.project)?;
     let problem = match loaded.project.sizing {
@@ -444,7 +448,15 @@ fn report_answer(
             Some(sizing_problem(&setup, &catalogue)?)
         }
     };
-    let report = report(source, loaded, &setup, problem.as_ref(), watch)?;
+    let judged = alternatives
+        .then(|| judge(source, loaded, catalogues, &AskedOfAlternatives::default(), watch))
+        .transpose()?;
+    if judged.as_ref().is_some_and(|judged| !judged.not_reached.is_empty()) {
+        return Err(ProcedureError::Stopped.into());
+    }
+    let report = report_beside(source, loaded, (&setup, problem.as_ref()), judged.as_ref(), watch)?;
+    let written =
+        if files { report.files().map_err(CommandError::Figure)? } else { vec![report.page_file()] };
     let text: String = report.summary.iter().map(|(name, value)| format!("{name}: {value}\n")).collect();
     let body = Object::new()
         .each("summary", &report.summary, |(name, text)| {
@@ -452,10 +464,5 @@ fn report_answer(
         })
         .each("figures", &report.figures, |figure| figure.name.as_str())
         .with("decision", report.decision.json());
-    Ok(Answer {
-        text,
-        json: answer::json("report", loaded, body),
-        files: files(&report).map_err(CommandError::Figure)?,
-        affirmative: true,
-    })
+    Ok(Answer { text, json: answer::json("report", loaded, body), files: written, affirmative: true })
 }

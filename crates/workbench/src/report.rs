@@ -1,5 +1,6 @@
 //! The report: all results for a rig, as one self-contained page.
 
+mod alternatives;
 mod audit;
 mod bounds;
 mod campaign;
@@ -36,6 +37,7 @@ pub use opening::{Decided, Decision};
 use phea_dynamics::watch::Watch;
 use phea_qft::verification::{SpecificationFinding, Verdict};
 
+use crate::alternatives::Alternatives;
 use crate::answer::{OutputFile, picture_files, significant};
 use crate::audit::{CERTIFICATE_FILE, ProjectAudit, certificate_of, verdict_words};
 use crate::derived::{self, derive};
@@ -91,6 +93,20 @@ pub fn report(
     problem: Option<&SizingProblem>,
     watch: Watch<'_>,
 ) -> Result<Report, CommandError> {
+    report_beside(source, loaded, (setup, problem), None, watch)
+}
+
+/// The same with the chapter on the alternatives of the project, if they were judged.
+///
+/// # Errors
+/// As [`report`].
+pub fn report_beside(
+    source: &dyn Source,
+    loaded: &Loaded,
+    (setup, problem): (&Setup<'_>, Option<&SizingProblem>),
+    alternatives: Option<&Alternatives>,
+    watch: Watch<'_>,
+) -> Result<Report, CommandError> {
     let project = &loaded.project;
     if project.actuator.is_none() && project.specifications.is_empty() {
         return Err(CommandError::NothingToReport);
@@ -129,6 +145,7 @@ pub fn report(
         appendix.extend(sensitivity::chapter(source, varied, driven, watch)?);
     }
     chapters.extend(campaign.map(|campaign| campaign.chapter));
+    chapters.extend(alternatives::chapter(project, alternatives));
     let mut tables = Vec::new();
     if let Some(judged) = &judged {
         chapters.extend(family_origin::chapter(source, setup, judged, watch)?);

@@ -30,6 +30,12 @@ const GENTLE: &str = "controller.numerator=0.0002*s + 0.0016";
 const SENSOR: &str = "sensor={ numerator = \"2000\", denominator = \"s + 2000\", delay = \"0.5 ms\" }";
 const SPRUNG: &str =
     "load={ model = \"spring_mass_damper\", mass = 100, stiffness = \"200 kN/m\", damping = \"500 N.s/m\" }";
+/// Of the velocity of the load: its errors in the gain, its delay, its filter.
+const SHOWN: [&str; 3] = [
+    "velocity_sensor={ gain_error = \"-20 %\", delay = \"0.7 ms\" }",
+    "velocity_sensor={ gain_error = \"10 %\", filter_frequency = \"60 Hz\" }",
+    "velocity_sensor={ filter_frequency = \"40 Hz\", filter_damping_ratio = 0.6, delay = \"3.2 ms\" }",
+];
 /// m/s
 const SPEED: f64 = 2e-5;
 /// What is looked at is the last second of these, s: periods and samples are whole in it.
@@ -90,6 +96,15 @@ fn apart(one: Complex64, other: Complex64) -> f64 {
     (one / other - 1.0).norm_sqr().sqrt()
 }
 
+/// The same with each sensor of the velocity, which changes the force as the linear loop says.
+fn check_shown(settings: &[&str], hertz: u32) {
+    for shown in SHOWN {
+        check(&[settings, &[shown]].concat(), &[hertz]);
+        let fed = [settings, &["controller.load_velocity_feed_forward.gain=20"]].concat();
+        assert!(apart(of_loop(&fed, hertz), of_loop(&[&fed[..], &[shown]].concat(), hertz)) > 0.01);
+    }
+}
+
 /// What is fed forward changes the force, and the linear loop says by how much.
 fn check(settings: &[&str], hertz: &[u32]) {
     for &hertz in hertz {
@@ -109,6 +124,21 @@ fn beside_a_prescribed_load_it_is_a_path_of_its_motion() {
     check(&["controller.sample_time=4 ms", "controller.delay=1 ms", WAVES, GENTLE], &[7, 40]);
     check(&["controller.delay=2 ms", GENTLE], &[7, 40]);
     check(&["controller.delay=2 ms", WAVES, GENTLE], &[7, 40]);
+}
+
+#[test]
+fn what_is_shown_of_a_prescribed_velocity_is_fed_forward() {
+    check_shown(&[GENTLE], 20);
+    check_shown(&["controller.delay=2 ms", WAVES, GENTLE], 20);
+    check_shown(&["controller.sample_time=2 ms", "controller.delay=1.4 ms", SENSOR, GENTLE], 20);
+}
+
+#[test]
+fn what_is_shown_of_a_yielding_velocity_is_fed_back() {
+    check_shown(&[SPRUNG, GENTLE], 20);
+    check_shown(&[SPRUNG, "controller.delay=2 ms", GENTLE], 20);
+    check_shown(&[SPRUNG, "controller.sample_time=2 ms", "controller.delay=1.4 ms", SENSOR, GENTLE], 20);
+    check_shown(&[SPRUNG, "controller.sample_time=1 ms", "controller.delay=2 ms", WAVES, GENTLE], 20);
 }
 
 #[test]

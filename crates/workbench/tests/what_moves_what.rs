@@ -15,17 +15,24 @@ use phea_workbench::source::Memory;
 
 const SIMULATION: &str = include_str!("../../project/tests/valid/simulation.toml");
 const ACCUMULATORS: &str = include_str!("../../project/tests/valid/accumulators.toml");
+const CROSS_PORT: &str = include_str!("../../project/tests/valid/cross_port.toml");
+const SERIES: &str = include_str!("../../project/tests/valid/series.toml");
+const SERIES_COIL: &str = include_str!("../../project/tests/valid/series_coil.toml");
+const VOLUMES: &str = include_str!("../../project/tests/valid/volumes.toml");
 const ASYMMETRIC: &str = include_str!("../../project/tests/valid/asymmetric.toml");
 const GUIDE: &str = include_str!("../../../book/src/guide/what_moves_what.md");
 /// Tables that declare the rig and its loop; the others state what is asked of it.
-const TABLES: [&str; 11] = [
+const TABLES: [&str; 14] = [
     "fluid",
     "supply",
     "valve",
     "cylinder",
     "line",
+    "cross_port",
     "load",
     "force_sensor",
+    "velocity_sensor",
+    "series",
     "operating_point",
     "linear",
     "controller",
@@ -34,18 +41,27 @@ const TABLES: [&str; 11] = [
 /// What a key may move, in the order of the columns.
 const PARTS: [&str; 5] = ["sizing", "plant", "loop", "sensor", "machine"];
 
+/// What rounds in the computer of a controller.
+const CONVERTERS: [&str; 2] = [
+    "controller.sample_time=1 ms",
+    "controller.quantization={ command_bits = 10, command_range = [\"-10 V\", \"10 V\"], measurement_bits = 10, measurement_range = [\"-10 kN\", \"10 kN\"] }",
+];
+
+/// Loads that move under force.
+const SPRUNG: [&str; 4] =
+    ["load.model=spring_mass_damper", "load.mass=100", "load.stiffness=2e5", "load.damping=500"];
+const WALL: [&str; 5] =
+    ["load.model=wall", "load.mass=10", "load.stiffness=1e6", "load.damping=10", "load.gap=0.001"];
+/// A sensor of the load's velocity.
+const SHOWN: &str = "velocity_sensor={ gain_error = \"2 %\", delay = \"1 ms\", filter_frequency = \"200 Hz\", filter_damping_ratio = 0.7, noise = \"1 mm/s\", resolution = \"0.1 mm/s\" }";
+
 /// Rigs that together have every key: examples, the projects of other tests, and the same with other words.
 fn rigs() -> Vec<(String, Vec<&'static str>)> {
     let hose = || without_family(include_str!("../../../examples/ybitu/hose.toml"));
     let pipe = || without_family(include_str!("../../../examples/ybitu/pipe.toml"));
-    let volumes = include_str!("../../project/tests/valid/volumes.toml");
     let two_wave = ["line.model=two_wave", "line.wall={ mass_per_length = 0.21, axial_compliance = 1e-5 }"];
     let wall_of_two =
         ["line.wall.coupling_compliance=-1e-5", "line.wall.pressure_compliance=3e-9", "line.end_share=0.02"];
-    let converters = [
-        "controller.sample_time=1 ms",
-        "controller.quantization={ command_bits = 10, command_range = [\"-10 V\", \"10 V\"], measurement_bits = 10, measurement_range = [\"-10 kN\", \"10 kN\"] }",
-    ];
     let factored = hose()
         .replace(
             "numerator = \"0.001*s + 0.008\"\ndenominator = \"s\"",
@@ -60,11 +76,9 @@ fn rigs() -> Vec<(String, Vec<&'static str>)> {
         "controller.delay=0.5 ms",
         "controller.load_velocity_feed_forward={ gain = 20 }",
     ];
-    let sprung = ["load.model=spring_mass_damper", "load.mass=100", "load.stiffness=2e5", "load.damping=500"];
-    let wall = ["load.model=wall", "load.mass=10", "load.stiffness=1e6", "load.damping=10", "load.gap=0.001"];
-    vec![
+    let mut rigs = vec![
         (hose(), vec![]),
-        (hose(), [&sprung[..], &["line.compliance=by_volume"]].concat()),
+        (hose(), [&SPRUNG[..], &["line.compliance=by_volume"]].concat()),
         (hose(), [&two_wave[..], &wall_of_two].concat()),
         (
             hose(),
@@ -77,22 +91,66 @@ fn rigs() -> Vec<(String, Vec<&'static str>)> {
         ),
         (hose(), sampled.to_vec()),
         (hose(), vec!["controller.load_velocity_feed_forward={ gain = 20 }"]),
-        (hose(), converters.to_vec()),
+        (hose(), [&sampled[..], &[SHOWN]].concat()),
+        (hose(), [&SPRUNG[..], &["controller.load_velocity_feed_forward={ gain = 20 }", SHOWN]].concat()),
+        (hose(), CONVERTERS.to_vec()),
         (factored, vec![]),
-        (pipe(), [&wall[..], &["load.relative_damping=0.1"]].concat()),
+        (pipe(), [&WALL[..], &["load.relative_damping=0.1"]].concat()),
         (
             pipe(),
             vec!["line.compliance=by_volume", "operating_point.command=0.5", "fluid.entrained_air=0.01"],
         ),
         (SIMULATION.to_string(), vec![]),
         (ACCUMULATORS.to_string(), vec![]),
+        (hose(), vec!["series={ stiffness = \"2 MN/m\", damping = 100 }"]),
         (SIMULATION.to_string(), vec!["operating_point.load_force=2 kN"]),
         (ASYMMETRIC.to_string(), vec!["cylinder.friction.regular_velocity=1 mm/s"]),
-        (volumes.split("[uncertainty]").next().unwrap().to_string(), vec!["load.mass=10"]),
+        (VOLUMES.split("[uncertainty]").next().unwrap().to_string(), vec!["load.mass=10"]),
         (
             pipe(),
             vec![
                 "line.pipe={ bore = \"10.5 mm\", wall_thickness = \"2.75 mm\", youngs_modulus = \"206 GPa\" }",
+            ],
+        ),
+    ];
+    rigs.extend(between_chambers(hose(), pipe()));
+    rigs.extend(on_springs());
+    rigs
+}
+
+/// Rigs with a spring on the rod.
+fn on_springs() -> Vec<(String, Vec<&'static str>)> {
+    vec![
+        (without_uncertainty(SERIES), vec!["operating_point.load_force=2 kN"]),
+        (without_uncertainty(SERIES_COIL), vec![]),
+        (ASYMMETRIC.to_string(), vec!["series={ stiffness = \"20 MN/m\" }"]),
+    ]
+}
+
+/// Rigs with a valve between the chambers.
+fn between_chambers(hose: String, pipe: String) -> Vec<(String, Vec<&'static str>)> {
+    vec![
+        (CROSS_PORT.to_string(), vec![]),
+        (
+            hose,
+            vec![
+                "cross_port={ kind = \"orifice\", flow = \"0.2 L/min\", pressure_drop = \"25 bar\" }",
+                "operating_point.load_force=2 kN",
+            ],
+        ),
+        (ASYMMETRIC.to_string(), vec!["cross_port={ kind = \"laminar\", conductance = 1e-12 }"]),
+        (
+            ASYMMETRIC.to_string(),
+            vec!["cross_port={ kind = \"orifice\", flow = \"0.2 L/min\", pressure_drop = \"25 bar\" }"],
+        ),
+        (
+            ASYMMETRIC.to_string(),
+            vec!["cross_port={ kind = \"orifice\", diameter = \"0.5 mm\", discharge_coefficient = 0.62 }"],
+        ),
+        (
+            pipe,
+            vec![
+                "cross_port={ kind = \"dynamic_pressure_feedback\", conductance = 1e-10, capacity = 1e-12 }",
             ],
         ),
     ]
@@ -105,8 +163,15 @@ fn without_family(text: &str) -> String {
     format!("{before}[[specification]]{after}")
 }
 
+/// The same without what is uncertain.
+fn without_uncertainty(text: &str) -> String {
+    let (before, rest) = text.split_once("[uncertainty]").unwrap();
+    let (_, after) = rest.split_once("[controller]").unwrap();
+    format!("{before}[controller]{after}")
+}
+
 /// Values of what may be absent, or is not a number.
-const STATED: [(&str, &str); 44] = [
+const STATED: [(&str, &str); 45] = [
     ("operating_point.position", "200 mm"),
     ("operating_point.command", "1 V"),
     ("operating_point.load_pressure", "10 bar"),
@@ -139,6 +204,7 @@ const STATED: [(&str, &str); 44] = [
     ("line.pipe.youngs_modulus", "190 GPa"),
     ("line.volume", "2e-4"),
     ("line.effective_bulk_modulus", "8e8"),
+    ("cylinder.dead_length", "300 mm"),
     ("line.minimum_bend_radius", "150 mm"),
     ("line.working_pressure", "260 bar"),
     ("line.burst_pressure", "1200 bar"),

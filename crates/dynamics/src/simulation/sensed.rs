@@ -2,6 +2,7 @@
 
 use super::realization::Realization;
 use super::{Plant, Sliding};
+use crate::controller::RateSensor;
 use crate::linear::{LinearError, TransferFunction};
 use crate::scalar::Scalar;
 
@@ -11,8 +12,9 @@ use crate::scalar::Scalar;
 /// dx/dt = A x + B y,    m(t) = C x(t - d) + D y(t - d)         y what the plant gives, m what the controller sees
 /// ```
 ///
-/// States are those of the plant and then those of the sensor. A sensor of one without dead time
-/// adds nothing.
+/// States are those of the plant, those of the sensor, and those of the sensor of the rate that a
+/// controller may feed forward: a [`RateSensor`] between the disturbance of the plant and that of
+/// this one. A sensor of one without dead time adds nothing.
 ///
 /// # Example
 /// ```
@@ -60,6 +62,15 @@ pub struct Sensed<P> {
     plant: P,
     sensor: Realization,
     delay_s: f64,
+    /// `None` where the disturbance itself is shown.
+    rate: Option<SensedRate>,
+}
+
+/// The sensor of a rate as states.
+#[derive(Clone, Debug, PartialEq)]
+struct SensedRate {
+    filter: Realization,
+    delay_s: f64,
 }
 
 impl<P> Sensed<P> {
@@ -70,7 +81,20 @@ impl<P> Sensed<P> {
     pub fn new(plant: P, sensor: &TransferFunction) -> Result<Self, LinearError> {
         let delay_s = sensor.dead_time_s();
         let sensor = Realization::new(&sensor.clone().with_dead_time(0.0)?)?;
-        Ok(Sensed { plant, sensor, delay_s })
+        Ok(Sensed { plant, sensor, delay_s, rate: None })
+    }
+
+    /// The same with its disturbance shown by this sensor.
+    ///
+    /// # Errors
+    /// [`LinearError`] for a sensor that has no transfer function.
+    pub fn with_rate_sensor(self, sensor: &RateSensor) -> Result<Self, LinearError> {
+        if sensor.is_direct() {
+            return Ok(Sensed { rate: None, ..self });
+        }
+        let filter = RateSensor { delay_s: 0.0, ..*sensor }.transfer_function()?;
+        let rate = SensedRate { filter: Realization::new(&filter)?, delay_s: sensor.delay_s };
+        Ok(Sensed { rate: Some(rate), ..self })
     }
 
     /// The plant.
@@ -83,9 +107,29 @@ impl<P> Sensed<P> {
         &mut self.plant
     }
 
-    /// States of the sensor at constant output of the plant.
+    /// States of the sensors at constant output of the plant, whose rate is zero.
     pub fn sensor_at_rest(&self, measured: f64) -> Vec<f64> {
-        self.sensor.at_rest(measured, None)
+        let mut states = self.sensor.at_rest(measured, None);
+        states.resize(states.len() + self.rate_states(), 0.0);
+        states
+    }
+
+    /// How many states the sensor of the rate has.
+    #[inline(always)]
+    pub fn rate_states(&self) -> usize {
+        self.rate.as_ref().map_or(0, |rate| rate.filter.states)
+    }
+
+    /// Whether the sensor has dead time.
+    #[inline(always)]
+    fn is_late(&self) -> bool {
+        self.delay_s > 0.0
+    }
+
+    /// Whether the sensor of the rate has dead time.
+    #[inline(always)]
+    fn is_rate_late(&self) -> bool {
+        self.rate.as_ref().is_some_and(|rate| rate.delay_s > 0.0)
     }
 
     /// States of the plant, and inputs of the plant.
@@ -107,24 +151,40 @@ impl<P> Sensed<P> {
         P: Plant<S>,
     {
         let (own_state, own_inputs) = self.of_plant::<S, T>(state, inputs);
-        self.sensor.output(&state[own_state.len()..], self.plant.measurement(own_state, own_inputs))
+        let of_sensor = &state[own_state.len()..own_state.len() + self.sensor.states];
+        self.sensor.output(of_sensor, self.plant.measurement(own_state, own_inputs))
+    }
+
+    /// The filtered rate before its dead time.
+    #[inline(always)]
+    fn shown_rate<S: Scalar, T: Scalar + From<S>>(&self, state: &[T], inputs: &[T]) -> T
+    where
+        P: Plant<S>,
+    {
+        let (own_state, own_inputs) = self.of_plant::<S, T>(state, inputs);
+        let given = self.plant.disturbance(own_state, own_inputs);
+        let Some(rate) = &self.rate else { return given };
+        rate.filter.output(&state[own_state.len() + self.sensor.states..], given)
     }
 }
 
 impl<S: Scalar, P: Plant<S>> Plant<S> for Sensed<P> {
     #[inline(always)]
     fn states(&self) -> usize {
-        self.plant.states() + self.sensor.states
+        self.plant.states() + self.sensor.states + self.rate_states()
     }
 
     #[inline(always)]
     fn inputs(&self) -> usize {
-        self.plant.inputs() + usize::from(self.delay_s > 0.0)
+        self.plant.inputs() + usize::from(self.is_late()) + usize::from(self.is_rate_late())
     }
 
     fn scales(&self) -> Vec<S> {
         let mut scales = self.plant.scales();
         scales.extend(self.sensor.scales(self.plant.measurement_scale()));
+        if let Some(rate) = &self.rate {
+            scales.extend(rate.filter.scales(self.plant.disturbance_scale()));
+        }
         scales
     }
 
@@ -142,31 +202,48 @@ impl<S: Scalar, P: Plant<S>> Plant<S> for Sensed<P> {
         let (plant_rates, sensor_rates) = rates.split_at_mut(own_state.len());
         self.plant.rates(own_state, command, own_inputs, plant_rates);
         let given = self.plant.measurement(own_state, own_inputs);
-        self.sensor.rates(&state[own_state.len()..], given, sensor_rates);
+        let (of_sensor, of_rate) = state[own_state.len()..].split_at(self.sensor.states);
+        let (sensor_rates, rate_rates) = sensor_rates.split_at_mut(self.sensor.states);
+        self.sensor.rates(of_sensor, given, sensor_rates);
+        if let Some(rate) = &self.rate {
+            let given = self.plant.disturbance(own_state, own_inputs);
+            rate.filter.rates(of_rate, given, rate_rates);
+        }
     }
 
     #[inline(always)]
     fn measurement<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T]) -> T {
-        if self.delay_s > 0.0 { inputs[self.plant.inputs()] } else { self.shown::<S, T>(state, inputs) }
+        if self.is_late() { inputs[self.plant.inputs()] } else { self.shown::<S, T>(state, inputs) }
     }
 
     fn disturbance<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T]) -> T {
-        let (state, inputs) = self.of_plant::<S, T>(state, inputs);
-        self.plant.disturbance(state, inputs)
+        match self.is_rate_late() {
+            true => inputs[self.plant.inputs() + usize::from(self.is_late())],
+            false => self.shown_rate::<S, T>(state, inputs),
+        }
+    }
+
+    fn disturbance_scale(&self) -> S {
+        self.plant.disturbance_scale()
     }
 
     fn delays(&self) -> Vec<S> {
-        let own = (self.delay_s > 0.0).then(|| S::from(self.delay_s));
-        self.plant.delays().into_iter().chain(own).collect()
+        let own = self.is_late().then(|| S::from(self.delay_s));
+        let of_rate = self.rate.iter().map(|rate| rate.delay_s).filter(|delay_s| *delay_s > 0.0);
+        self.plant.delays().into_iter().chain(own).chain(of_rate.map(S::from)).collect()
     }
 
     fn outgoing<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T], waves: &mut [T]) {
         let (own_state, own_inputs) = self.of_plant::<S, T>(state, inputs);
-        let of_plant = waves.len() - usize::from(self.delay_s > 0.0);
+        let of_plant = waves.len() - usize::from(self.is_late()) - usize::from(self.is_rate_late());
         let (plant_waves, own) = waves.split_at_mut(of_plant);
         self.plant.outgoing(own_state, own_inputs, plant_waves);
-        if let Some(wave) = own.first_mut() {
+        let (of_sensor, of_rate) = own.split_at_mut(usize::from(self.is_late()));
+        if let Some(wave) = of_sensor.first_mut() {
             *wave = self.shown::<S, T>(state, inputs);
+        }
+        if let Some(wave) = of_rate.first_mut() {
+            *wave = self.shown_rate::<S, T>(state, inputs);
         }
     }
 

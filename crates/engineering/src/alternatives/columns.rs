@@ -1,12 +1,11 @@
 //! The numbers by which alternatives are compared, each with the reason where it does not exist.
 
-use phea_hydraulics::line::Line;
 use phea_qft::design::DesignStatus;
 
+use super::comparison::{ColumnSense, sense_of};
 use super::{JudgedAlternative, no_rig};
 use crate::design::LoopFigures;
-use crate::quantity::{DisplayUnit, VOLUME, fitting};
-use crate::setup::Setup;
+use crate::quantity::DisplayUnit;
 use crate::simulate::{Metrics, NOT_SETTLED, ScenarioRun};
 
 /// A number of an alternative.
@@ -25,12 +24,14 @@ pub struct AlternativeColumn {
 }
 
 /// The part of an alternative that a column belongs to.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum ColumnPart {
     /// The designed loop.
     Loop,
     /// The rig.
     Rig,
+    /// The impedance at the load at a frequency in rad/s.
+    Impedance(f64),
     /// A specification, by its number from 0 and its name.
     Specification(usize, String),
     /// A scenario.
@@ -42,11 +43,24 @@ pub enum ColumnPart {
 pub struct AlternativeColumns(pub Vec<(ColumnPart, AlternativeColumn)>);
 
 impl AlternativeColumns {
-    /// The value of the column of that name, if it exists; of a specification or a scenario: the
-    /// greatest.
-    pub fn greatest(&self, key: &str) -> Option<f64> {
-        let values = self.0.iter().filter(|(_, column)| column.key == key);
-        values.filter_map(|(_, column)| column.value.clone().ok()).reduce(f64::max)
+    /// The worst value of the column of that name, of all specifications, scenarios or frequencies:
+    /// the least where more is better, otherwise the greatest. `None` if there is none, or the force
+    /// does not settle in one of them.
+    pub fn worst(&self, key: &str) -> Option<f64> {
+        let columns = || self.0.iter().filter(|(_, column)| column.key == key);
+        if columns().any(|(_, column)| column.value.as_ref().is_err_and(|reason| reason == NOT_SETTLED)) {
+            return None;
+        }
+        let worse = match sense_of(key) {
+            Some(ColumnSense::More) => f64::min,
+            _ => f64::max,
+        };
+        columns().filter_map(|(_, column)| column.value.clone().ok()).reduce(worse)
+    }
+
+    /// A column of that name.
+    pub fn first(&self, key: &str) -> Option<&AlternativeColumn> {
+        self.0.iter().map(|(_, column)| column).find(|column| column.key == key)
     }
 }
 
@@ -58,7 +72,7 @@ impl JudgedAlternative {
     pub fn columns(&self) -> AlternativeColumns {
         let of_loop = self.loop_columns().into_iter().map(|column| (ColumnPart::Loop, column));
         let of_rig = self.rig_columns().into_iter().map(|column| (ColumnPart::Rig, column));
-        let all = of_loop.chain(self.margins()).chain(of_rig);
+        let all = of_loop.chain(self.margins()).chain(of_rig).chain(self.impedances());
         AlternativeColumns(all.chain(self.scenarios()).collect())
     }
 
@@ -118,53 +132,6 @@ impl JudgedAlternative {
         each.collect()
     }
 
-    fn rig_columns(&self) -> Vec<AlternativeColumn> {
-        let stiffness = |end: usize| {
-            let found = self.linearization.as_ref().map_err(Clone::clone)?;
-            Ok([found.stiffness[0].minimum, found.stiffness[0].maximum][end])
-        };
-        let best = self.sizing.as_ref().map_err(Clone::clone).and_then(|sizing| {
-            sizing.best().ok_or_else(|| "no hose of the catalogue is accepted".to_string())
-        });
-        let lines = self.lines();
-        let volume = lines.clone().map(|lines| lines.iter().map(Line::volume).sum::<f64>());
-        let volume_unit = fitting(volume.clone().unwrap_or_default(), &VOLUME);
-        let length = lines.and_then(|lines| {
-            let lengths = lines.iter().map(length).collect::<Option<Vec<f64>>>();
-            let lengths =
-                lengths.ok_or_else(|| "a line that is stated as a volume has no length".to_string());
-            Ok(lengths?.into_iter().sum())
-        });
-        let stiff = DisplayUnit::MEGANEWTON_PER_METRE;
-        vec![
-            column("stiffness_minimum_n_per_m", "least K_H", stiff, 3, stiffness(0)),
-            column("stiffness_maximum_n_per_m", "greatest K_H", stiff, 3, stiffness(1)),
-            column("lines_length_m", "length of both lines", DisplayUnit::METRE, 3, length),
-            column("lines_volume_m3", "oil in both lines", volume_unit, 3, volume),
-            column(
-                "sized_length_m",
-                "length by [sizing]",
-                DisplayUnit::METRE,
-                3,
-                best.clone().map(|best| best.length_m()),
-            ),
-            column(
-                "sized_gain_v_per_n",
-                "gain by [sizing]",
-                DisplayUnit::MILLIVOLT_PER_NEWTON,
-                3,
-                best.map(|best| best.branch.gain_v_per_n),
-            ),
-        ]
-    }
-
-    fn lines(&self) -> Result<[Line; 2], String> {
-        let setup = Setup::new(&self.loaded.project).map_err(|error| error.to_string())?;
-        let rig = setup.rig().map_err(|error| error.to_string())?;
-        let components = rig.actuator.components();
-        Ok([components.line_a, components.line_b])
-    }
-
     fn scenarios(&self) -> Vec<(ColumnPart, AlternativeColumn)> {
         let declared = &self.loaded.project.scenarios;
         let columns = declared.iter().enumerate().flat_map(|(index, scenario)| {
@@ -179,7 +146,7 @@ impl JudgedAlternative {
     }
 }
 
-fn column(
+pub(super) fn column(
     key: &'static str,
     words: &'static str,
     unit: DisplayUnit,
@@ -189,20 +156,13 @@ fn column(
     AlternativeColumn { key, words, unit, digits, value }
 }
 
-/// Length of a line, m; a plain volume has none.
-fn length(line: &Line) -> Option<f64> {
-    match line {
-        Line::Hose { length, .. } | Line::Pipe { length, .. } => Some(*length),
-        Line::Volume { .. } => None,
-    }
-}
-
 /// The columns of a scenario: of each metric the greatest of all its events.
-fn driven(run: Result<&ScenarioRun, String>) -> [AlternativeColumn; 5] {
+fn driven(run: Result<&ScenarioRun, String>) -> [AlternativeColumn; 6] {
     let of = |metric: fn(&Metrics) -> crate::simulate::Measured| match &run {
         Ok(run) => greatest(run, metric),
         Err(reason) => Err(reason.clone()),
     };
+    let energy = run.as_ref().map_err(Clone::clone).and_then(|run| energy_from_supply(run));
     let (second, newton, volt) = (DisplayUnit::SECOND, DisplayUnit::NEWTON, DisplayUnit::VOLT);
     [
         column("overshoot_percent", "overshoot", PERCENT, 3, of(|metrics| metrics.overshoot_percent)),
@@ -210,7 +170,24 @@ fn driven(run: Result<&ScenarioRun, String>) -> [AlternativeColumn; 5] {
         column("disturbance_peak_n", "disturbance", newton, 4, of(|metrics| metrics.disturbance_peak_n)),
         column("control_peak_v", "control peak", volt, 3, of(|metrics| metrics.control_peak_v)),
         column("control_rms_v", "control rms", volt, 3, of(|metrics| metrics.control_rms_v)),
+        column("energy_from_supply_j", "energy from supply", DisplayUnit::JOULE, 3, energy),
     ]
+}
+
+/// Energy in J that the valve takes from the supply over a run, tare flow included.
+///
+/// ```text
+/// E = integral of p_S q_S dt                  by the trapezoidal rule over the samples of the record
+/// ```
+fn energy_from_supply(run: &ScenarioRun) -> Result<f64, String> {
+    if let Some(stopped) = run.stopped() {
+        return Err(format!("the run ended at {} s: {}", stopped.time_s, stopped.word));
+    }
+    let record = &run.record;
+    let [pressure, flow] = ["supply_pressure_pa", "supply_flow_m3_per_s"].map(|name| record.signal(name));
+    let power: Vec<f64> = pressure.iter().zip(&flow).map(|(pressure, flow)| pressure * flow).collect();
+    let steps = record.times_s.windows(2).zip(power.windows(2));
+    Ok(steps.map(|(times, powers)| 0.5 * (powers[0] + powers[1]) * (times[1] - times[0])).sum())
 }
 
 /// The greatest value over all events; none where the run ended early, or the force does not settle

@@ -2,13 +2,85 @@
 
 use super::AlternativeColumns;
 
-/// The measures of dominance: the key of the column, its name for people, and whether more of it is
-/// better.
-pub const MEASURES: [(&str, &str, bool); 4] = [
-    ("disturbance_peak_n", "disturbance", false),
-    ("control_rms_v", "control rms", false),
-    ("order", "order", false),
-    ("delay_margin_s", "delay tolerated", true),
+/// Which of two values of a column is the better one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ColumnSense {
+    /// The greater.
+    More,
+    /// The lesser.
+    Less,
+}
+
+/// Every column by which alternatives can be compared, with the sense that it has unless another is
+/// asked for.
+pub const COLUMN_SENSES: [(&str, ColumnSense); 30] = {
+    use ColumnSense::{Less, More};
+    [
+        ("relaxation_db", Less),
+        ("order", Less),
+        ("prefilter_order", Less),
+        ("relative_degree", More),
+        ("high_frequency_gain_db", Less),
+        ("modulus_margin", More),
+        ("delay_margin_s", More),
+        ("worst_margin_db", More),
+        ("stiffness_minimum_n_per_m", Less),
+        ("stiffness_maximum_n_per_m", Less),
+        ("equivalent_stiffness_n_per_m", Less),
+        ("actuator_length_m", Less),
+        ("lines_length_m", Less),
+        ("moving_mass_kg", Less),
+        ("lines_volume_m3", Less),
+        ("oil_volume_m3", Less),
+        ("oil_mass_kg", Less),
+        ("gas_volume_m3", Less),
+        ("power_at_rest_w", Less),
+        ("sized_length_m", Less),
+        ("sized_gain_v_per_n", More),
+        ("impedance_open_n_s_per_m", Less),
+        ("impedance_closed_n_s_per_m", Less),
+        ("overshoot_percent", Less),
+        ("settling_time_s", Less),
+        ("disturbance_peak_n", Less),
+        ("control_peak_v", Less),
+        ("control_rms_v", Less),
+        ("energy_from_supply_j", Less),
+        ("swept", Less),
+    ]
+};
+
+/// The sense of a column.
+pub(super) fn sense_of(key: &str) -> Option<ColumnSense> {
+    COLUMN_SENSES.iter().find(|(known, _)| *known == key).map(|(_, sense)| *sense)
+}
+
+/// Whether values are at least as good as others in every column, and better in one (Pareto
+/// dominance):
+///
+/// ```text
+/// a dominates b   <=>   a_i <= b_i for all i, and a_i < b_i for some i     (>= and > where more is better)
+/// ```
+///
+/// # Example
+/// ```
+/// use phea_engineering::alternatives::{ColumnSense::{Less, More}, dominates};
+/// assert!(dominates(&[1.0, 5.0], &[2.0, 5.0], &[Less, More]));
+/// assert!(!dominates(&[1.0, 4.0], &[2.0, 5.0], &[Less, More]));
+/// assert!(!dominates(&[1.0, 5.0], &[1.0, 5.0], &[Less, More]));
+/// ```
+pub fn dominates(own: &[f64], others: &[f64], senses: &[ColumnSense]) -> bool {
+    let cost = |value: f64, sense: ColumnSense| if sense == ColumnSense::More { -value } else { value };
+    let pairs = || own.iter().zip(others).zip(senses);
+    let costs = || pairs().map(|((own, other), sense)| (cost(*own, *sense), cost(*other, *sense)));
+    costs().all(|(own, other)| own <= other) && costs().any(|(own, other)| own < other)
+}
+
+/// The measures of dominance: the key of the column and its name for people.
+pub const MEASURES: [(&str, &str); 4] = [
+    ("disturbance_peak_n", "disturbance"),
+    ("control_rms_v", "control rms"),
+    ("order", "order"),
+    ("delay_margin_s", "delay tolerated"),
 ];
 
 /// An alternative by its measures: of all scenarios the greatest.
@@ -19,18 +91,13 @@ impl ComparedMeasures {
     /// Those of an alternative; `None` where one does not exist.
     pub fn of(columns: &AlternativeColumns) -> Option<ComparedMeasures> {
         let mut values = [0.0; MEASURES.len()];
-        for (value, (key, _, _)) in values.iter_mut().zip(MEASURES) {
-            *value = columns.greatest(key)?;
+        for (value, (key, _)) in values.iter_mut().zip(MEASURES) {
+            *value = columns.worst(key)?;
         }
         Some(ComparedMeasures(values))
     }
 
-    /// Whether it is at least as good as another in every measure, and better in one (Pareto
-    /// dominance):
-    ///
-    /// ```text
-    /// a dominates b   <=>   a_i <= b_i for all i, and a_i < b_i for some i     (>= and > where more is better)
-    /// ```
+    /// Whether it dominates another.
     ///
     /// # Example
     /// ```
@@ -40,15 +107,7 @@ impl ComparedMeasures {
     /// assert!(hose.dominates(&pipe) && !pipe.dominates(&hose) && !hose.dominates(&hose));
     /// ```
     pub fn dominates(&self, other: &ComparedMeasures) -> bool {
-        let costs = |measures: &ComparedMeasures| {
-            let mut costs = measures.0;
-            for (cost, (_, _, more_is_better)) in costs.iter_mut().zip(MEASURES) {
-                *cost = if more_is_better { -*cost } else { *cost };
-            }
-            costs
-        };
-        let (own, others) = (costs(self), costs(other));
-        let pairs = || own.iter().zip(&others);
-        pairs().all(|(own, other)| own <= other) && pairs().any(|(own, other)| own < other)
+        let senses = MEASURES.map(|(key, _)| sense_of(key).unwrap_or(ColumnSense::Less));
+        dominates(&self.0, &other.0, &senses)
     }
 }

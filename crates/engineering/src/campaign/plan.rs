@@ -178,7 +178,9 @@ impl Plan {
         let mut stream = random::stream(u64::from(self.seed), run);
         let values = self.ranges.iter().map(|range| range.draw(&mut stream)).collect();
         let noisy = match &self.bench.control {
-            Control::Sampled(sampled) => sampled.noise > 0.0,
+            Control::Sampled(sampled) => {
+                sampled.noise > 0.0 || (sampled.velocity_noise > 0.0 && sampled.feed_forward != 0.0)
+            }
             Control::Continuous(_) | Control::Open(_) => false,
         };
         let noise_seed = noisy.then(|| (random::share(&mut stream) * SEEDS) as u32);

@@ -8,12 +8,13 @@ use std::sync::{Mutex, PoisonError};
 
 use phea_dynamics::simulation::{Outcome, SimulationError, Status, Task};
 use phea_hydraulics::machine::{Machine, MachineError};
-use phea_machine::{Control, Fleet, Lanewise, Watcher};
+use phea_machine::{Control, FedVelocity, Fleet, Lanewise, Watcher};
 
 use super::plan::Plan;
 use super::prepared::{Prepared, Watched, prepared};
 use super::row::{Row, RowOutcome};
 use super::supply::RemainingRuns;
+use crate::control::velocity_sensor;
 use crate::setup::Setup;
 use crate::simulate::SimulateError;
 
@@ -103,7 +104,9 @@ pub(super) fn in_lanes(shared: &Shared<'_>, most: usize, give: Give<'_>) -> Resu
     let controller = match plan.is_open_loop() {
         true => None,
         false => {
-            Some((setup.controller.as_ref().ok_or(SimulateError::NoController)?, plan.bench.feed_forward))
+            let given = setup.controller.as_ref().ok_or(SimulateError::NoController)?;
+            let (gain, sensor) = (plan.bench.feed_forward, velocity_sensor(&plan.project));
+            Some((given, FedVelocity { gain, sensor }))
         }
     };
     let lanes = Lanewise::new(&plan.bench.machine, &setup.sensor, controller);

@@ -5,7 +5,9 @@ use phea_hydraulics::operating_point::Condition;
 
 use super::Derived;
 use super::accumulator::accumulators;
+use super::cross_port::cross_port;
 use super::list::List;
+use super::series::series;
 use super::valve::valve;
 use crate::linearize::{stiffness_models, stroke_stiffness};
 use crate::project::Project;
@@ -18,8 +20,10 @@ pub fn derive(project: &Project, rig: &Rig) -> Vec<Derived> {
     lines(rig, &mut list);
     stiffness(rig, &mut list);
     accumulators(rig, &mut list);
+    series(project, rig, &mut list);
     valve(project, rig, &mut list);
     equilibrium(rig, &mut list);
+    cross_port(project, rig, &mut list);
     linear_parameters(rig, &mut list);
     dynamics(rig, &mut list);
     friction(rig, &mut list);
@@ -221,7 +225,10 @@ fn dynamics(rig: &Rig, list: &mut List) {
         "K_eq",
         linear.equivalent_stiffness(),
         "N/m",
-        "K_{eq} = K_H K_S/(K_H + K_S)",
+        match rig.plant.series {
+            None => "K_{eq} = K_H K_S/(K_H + K_S)",
+            Some(_) => "1/K_{eq} = 1/K_H + 1/K_S + 1/k_t",
+        },
     );
     list.add(
         "dynamics.hydraulic_pole",
@@ -235,7 +242,10 @@ fn dynamics(rig: &Rig, list: &mut List) {
         "ω_m",
         factors.mechanical_square.sqrt(),
         "rad/s",
-        "ω_m = sqrt((K_H + K_S)/M)",
+        match rig.plant.series {
+            None => "ω_m = sqrt((K_H + K_S)/M)",
+            Some(_) => "ω_m = sqrt((K_H + K_S k_t/(K_S + k_t))/M)",
+        },
     );
     let damping_ratio = factors.mechanical_damping / (2.0 * factors.mechanical_square.sqrt());
     list.add(

@@ -8,12 +8,15 @@
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::uncertain_plant::{UncertainParameter, UncertainPlant};
 use phea_hydraulics::actuator::Components;
+use phea_hydraulics::cross_port::DynamicFeedback;
 use phea_hydraulics::line::{LineError, StiffeningMember};
 use phea_hydraulics::linear::LinearParameters;
 use phea_hydraulics::operating_point::{
     Balance, OperatingPoint, Settled, SettledSupply, Steady, hydraulic_force,
 };
-use phea_hydraulics::plant::{LinearLoad, LinearPlant, PlantInMotion, YieldingSupply};
+use phea_hydraulics::plant::{
+    LinearLoad, LinearPlant, LinearSeries, PlantInMotion, VelocitySensor, YieldingSupply,
+};
 use phea_hydraulics::servovalve::{SpoolDirection, Supply};
 use phea_hydraulics::two_pressure::{
     TwoPressureLinearParameters, TwoPressureModel, two_pressure_linear_parameters,
@@ -24,8 +27,8 @@ use super::moved::{self, MovedNumber};
 use super::visited::Visited;
 use crate::project::{DeclaredActuator, LINEAR_PARAMETERS, Project};
 use crate::rig::{
-    self, FeedForwardPath, Numbers, Rig, components, linear, place, plant, settled_supply, stated,
-    with_supply, yielding_load, yielding_supply,
+    self, Numbers, Rig, components, linear, place, plant, settled_supply, stated, velocity_gain, with_supply,
+    yielding_load, yielding_supply,
 };
 use crate::setup::Setup;
 
@@ -86,7 +89,9 @@ pub(super) struct RigAtPoint<S> {
     pub(super) chambers: TwoPressureLinearParameters<S>,
     /// With the parameters of the linear model that `[linear]` and `[uncertainty]` state.
     pub(super) linear: LinearParameters<S>,
+    /// From chamber to chamber.
     pub(super) leakage: S,
+    pub(super) dynamic_feedback: Option<DynamicFeedback<S>>,
     /// `None` where the supply has a constant pressure.
     pub(super) supply: Option<YieldingSupply<S>>,
 }
@@ -149,9 +154,13 @@ impl Open<'_> {
             }
             _ => plant,
         };
-        let load_velocity_feed_forward =
-            self.rig.fed.as_ref().and_then(FeedForwardPath::at_once).map(S::from);
-        (place, LinearPlant { load_velocity_feed_forward, ..plant })
+        let gain = velocity_gain(self.declared, &numbers);
+        let velocity_sensor = VelocitySensor { gain, ..plant.velocity_sensor };
+        let force = place.point.hydraulic_force;
+        let series = place.components.series.map(|series| LinearSeries::new(&series, force));
+        let dynamic_feedback = place.dynamic_feedback;
+        let plant = LinearPlant { series, velocity_sensor, dynamic_feedback, ..plant };
+        (place, self.rig.fed.map_or(plant, |fed| fed.at_once(plant)))
     }
 
     /// The rig with these values; its pressures are those of the declared rig if nothing changes
@@ -196,7 +205,8 @@ impl Open<'_> {
         let linear = linear(&chambers, known.chain(open.filter(|(name, _)| is_linear(name))));
         let settled = SettledSupply { supply, settled: at, taken: none };
         let supply = yielding_supply(self.declared, &numbers, &idle, &settled);
-        RigAtPoint { components, point, chambers, linear, leakage: balance.leakage.unwrap_or(none), supply }
+        let (leakage, dynamic_feedback) = components.cross_admittance(pressures);
+        RigAtPoint { components, point, chambers, linear, leakage, dynamic_feedback, supply }
     }
 }
 

@@ -96,12 +96,10 @@ pub fn sweep(
     catalogues: &[String],
     request: &SweepRequest,
 ) -> Result<Sweep, ProcedureError> {
-    let SweepRange { path, key, ends } = range(&request.range)?;
+    let asked = range(&request.range)?;
+    let by_ratio = asked.by_ratio();
+    let SweepRange { path, key, ends } = asked;
     let count = points(request.points)?;
-    let by_ratio = ends[0] * ends[1] > 0.0 && {
-        let ratio = (ends[1] / ends[0]).abs();
-        ratio.max(1.0 / ratio) > DECADES
-    };
     let mut found = Vec::new();
     for value in values(ends, count, by_ratio) {
         let mut settings = loaded.all_settings();
@@ -121,18 +119,27 @@ pub fn sweep(
 }
 
 /// A range, read.
-struct SweepRange {
-    path: String,
-    key: Key,
+pub(crate) struct SweepRange {
+    pub(crate) path: String,
+    pub(crate) key: Key,
     /// SI.
-    ends: [f64; 2],
+    pub(crate) ends: [f64; 2],
+}
+
+impl SweepRange {
+    /// Whether its values are evenly spaced by ratio.
+    pub(crate) fn by_ratio(&self) -> bool {
+        let [from, to] = self.ends;
+        let ratio = (to / from).abs();
+        from * to > 0.0 && ratio.max(1.0 / ratio) > DECADES
+    }
 }
 
 fn refused(text: &str, message: String) -> ProcedureError {
     ProcedureError::Option { option: "sweep", text: text.to_string(), message }
 }
 
-fn range(text: &str) -> Result<SweepRange, ProcedureError> {
+pub(crate) fn range(text: &str) -> Result<SweepRange, ProcedureError> {
     let form =
         || refused(text, "a sweep has the form KEY=FROM..TO, such as line.length=0.5 m..3 m".to_string());
     let (path, ends) = text.split_once('=').ok_or_else(form)?;
@@ -198,7 +205,7 @@ fn number(text: &str, part: &str, key: &Key) -> Result<f64, ProcedureError> {
     Err(refused(text, format!("{shown} is outside of what `{}` may be", key.name)))
 }
 
-fn points(asked: Option<usize>) -> Result<usize, ProcedureError> {
+pub(crate) fn points(asked: Option<usize>) -> Result<usize, ProcedureError> {
     match asked.unwrap_or(POINTS) {
         count @ 2..=MOST_POINTS => Ok(count),
         count => Err(ProcedureError::Option {
@@ -209,7 +216,7 @@ fn points(asked: Option<usize>) -> Result<usize, ProcedureError> {
     }
 }
 
-fn values([from, to]: [f64; 2], count: usize, by_ratio: bool) -> Vec<f64> {
+pub(crate) fn values([from, to]: [f64; 2], count: usize, by_ratio: bool) -> Vec<f64> {
     let last = count.saturating_sub(1).max(1) as f64;
     let at = |index: usize| {
         let share = index as f64 / last;

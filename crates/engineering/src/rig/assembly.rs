@@ -7,15 +7,17 @@ use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::force_sensor::ForceSensor;
 use phea_hydraulics::friction::{Friction, LuGre, Stribeck};
 use phea_hydraulics::line::{Anchoring, Hose, Line, Pipe, PipeWall, Stiffening};
+use phea_hydraulics::series::{SeriesElement, SeriesTravel};
 use phea_hydraulics::servovalve::{
     Edges, Servovalve, Supply, flow_coefficient_from_rating, leakage_coefficient_from_rating,
 };
 use phea_hydraulics::stiffness::StiffnessModel;
 
+use super::cross_port::cross_port;
 use super::numbers::Numbers;
 use crate::project::{
-    self, BoundedNumber, Compliance, Component, DeclaredAccumulator, EdgeCoefficients, FrictionLaw,
-    HoseExpansion, LineVolume, NullLeakage, RatedFlow, StribeckCurve, ValveCoefficients,
+    self, BoundedNumber, Compliance, Component, DeclaredAccumulator, DeclaredSeries, EdgeCoefficients,
+    FrictionLaw, HoseExpansion, LineVolume, NullLeakage, RatedFlow, StribeckCurve, ValveCoefficients,
 };
 
 /// Kinematic viscosity of ISO VG 46 oil at 40 degrees Celsius, m2/s: used where a project states
@@ -46,6 +48,11 @@ pub fn components<S: Scalar>(
         valve: valve(&declared.valve, numbers, pressure - tank_pressure),
         line_a: line("a", &declared.line.a),
         line_b: line("b", &declared.line.b),
+        cross_port: cross_port(
+            declared.cross_port.as_ref(),
+            numbers,
+            numbers.at("fluid.density", declared.fluid.density),
+        ),
         accumulators: [("a", &declared.line.a), ("b", &declared.line.b)]
             .map(|(side, line)| accumulator(line.accumulator.as_ref(), &numbers.of_line(side))),
         cylinder: cylinder(&declared.cylinder, numbers),
@@ -53,7 +60,29 @@ pub fn components<S: Scalar>(
         force_sensor: ForceSensor {
             stiffness: numbers.at("force_sensor.stiffness", declared.force_sensor.stiffness),
         },
+        series: declared.series.as_ref().map(|series| self::series(series, &numbers.within("series"))),
         stiffness_model: stiffness_model(declared.line.compliance),
+    }
+}
+
+/// The spring between force sensor and load; a damper, a mass and a progression of zero are none.
+fn series<S: Scalar>(declared: &DeclaredSeries, numbers: &Numbers<'_, S>) -> SeriesElement<S> {
+    let at = |key: &str, value: f64| numbers.at(key, value);
+    let where_any =
+        |key: &str, value: f64| (value > 0.0 || numbers.is_open(key)).then(|| numbers.at(key, value));
+    SeriesElement {
+        stiffness: at("stiffness", declared.stiffness),
+        damping: where_any("damping", declared.damping),
+        mass: where_any("mass", declared.mass),
+        travel: declared.travel.map(|travel| SeriesTravel {
+            travel: at("travel", travel),
+            progression: where_any("progression", declared.progression),
+            ends: declared.stop_stiffness.map(|stiffness| Contact {
+                stiffness: at("stop_stiffness", stiffness),
+                relative_damping: at("stop_damping", declared.stop_damping),
+            }),
+        }),
+        force_from: declared.force_from,
     }
 }
 

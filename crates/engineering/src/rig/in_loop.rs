@@ -1,10 +1,17 @@
 //! The plant as it appears to the loop: with the feed-forward of the load velocity.
 
+use phea_dynamics::controller::{RateFilter, RateSensor};
+use phea_dynamics::scalar::Scalar;
 use phea_hydraulics::linear::LinearParameters;
-use phea_hydraulics::plant::{LinearPlant, PlantInMotion};
+use phea_hydraulics::plant::{LinearPlant, PlantInMotion, VelocitySensor};
 
 use super::Rig;
-use crate::project::{Load, Project, SpecificationKind};
+use super::numbers::Numbers;
+use crate::control::velocity_sensor;
+use crate::project::{DeclaredActuator, Load, Project, SpecificationKind};
+
+/// The error of the velocity sensor's gain.
+const GAIN_ERROR: &str = "velocity_sensor.gain_error";
 
 impl Rig {
     /// The same rig with the velocity of its load fed forward. Without delay it is in `plant` and
@@ -30,9 +37,8 @@ impl Rig {
     /// ```
     #[must_use]
     pub fn in_loop(&self) -> Rig {
-        let gain = self.fed.as_ref().and_then(FeedForwardPath::at_once);
         Rig {
-            plant: LinearPlant { load_velocity_feed_forward: gain, ..self.plant },
+            plant: self.fed.map_or(self.plant, |fed| fed.at_once(self.plant)),
             in_motion: as_response(self.fed, self.in_motion, &self.plant),
             ..self.clone()
         }
@@ -46,7 +52,9 @@ pub enum FeedForwardPath {
     InPlant {
         /// V s/m
         gain: f64,
-        /// s
+        /// Of the sensor.
+        filter: RateFilter,
+        /// Of the sensor and of the loop, s.
         delay: f64,
     },
     /// In the loop around the plant, with the samples and the delay of the command: see
@@ -54,6 +62,8 @@ pub enum FeedForwardPath {
     InLoop {
         /// V s/m
         gain: f64,
+        /// Before the samples and the delay.
+        sensor: RateSensor,
     },
 }
 
@@ -62,27 +72,32 @@ impl FeedForwardPath {
     pub(super) fn of(project: &Project, linear: &LinearParameters) -> Option<FeedForwardPath> {
         let controller = project.controller.as_ref()?;
         let yields = project.actuator.as_ref()?.load != Load::Prescribed;
-        let (gain, delay) = (feed_forward(project, linear), controller.delay);
+        let (gain, sensor) = (feed_forward(project, linear), velocity_sensor(project));
+        let (filter, delay) = (sensor.filter, controller.delay + sensor.delay_s);
         match (yields, controller.sample_time) {
             _ if gain == 0.0 => None,
-            (true, None) => Some(FeedForwardPath::InPlant { gain, delay }),
-            (false, None) if delay == 0.0 => Some(FeedForwardPath::InPlant { gain, delay }),
-            (true, Some(_)) | (false, _) => Some(FeedForwardPath::InLoop { gain }),
+            (true, None) => Some(FeedForwardPath::InPlant { gain, filter, delay }),
+            (false, None) if delay == 0.0 => Some(FeedForwardPath::InPlant { gain, filter, delay }),
+            (true, Some(_)) | (false, _) => Some(FeedForwardPath::InLoop { gain, sensor }),
         }
     }
 
-    /// The gain, if it acts in the plant without delay.
-    pub fn at_once(&self) -> Option<f64> {
+    /// The plant with what acts in it without delay.
+    pub(crate) fn at_once<S: Scalar>(&self, plant: LinearPlant<S>) -> LinearPlant<S> {
         match *self {
-            FeedForwardPath::InPlant { gain, delay: 0.0 } => Some(gain),
-            FeedForwardPath::InPlant { .. } | FeedForwardPath::InLoop { .. } => None,
+            FeedForwardPath::InPlant { gain, filter, delay: 0.0 } => LinearPlant {
+                load_velocity_feed_forward: Some(S::from(gain)),
+                velocity_sensor: VelocitySensor { filter, ..plant.velocity_sensor },
+                ..plant
+            },
+            FeedForwardPath::InPlant { .. } | FeedForwardPath::InLoop { .. } => plant,
         }
     }
 
-    /// The gain, if it acts in the loop around the plant.
-    pub(crate) fn in_loop(&self) -> Option<f64> {
+    /// Gain and sensor, if it acts in the loop around the plant.
+    pub(crate) fn in_loop(&self) -> Option<(f64, RateSensor)> {
         match *self {
-            FeedForwardPath::InLoop { gain } => Some(gain),
+            FeedForwardPath::InLoop { gain, sensor } => Some((gain, sensor)),
             FeedForwardPath::InPlant { .. } => None,
         }
     }
@@ -96,9 +111,17 @@ pub(crate) fn as_response(
     moving: Option<PlantInMotion>,
     lumped: &LinearPlant,
 ) -> Option<PlantInMotion> {
-    let Some(FeedForwardPath::InPlant { gain, delay }) = fed else { return moving };
+    let Some(FeedForwardPath::InPlant { gain, filter, delay }) = fed else { return moving };
     let plant = moving.or_else(|| (delay > 0.0).then(|| PlantInMotion::lumped(lumped)))?;
-    Some(plant.fed_forward(Some(gain)).late(delay))
+    Some(plant.fed_forward(Some(gain)).filtered(filter).late(delay))
+}
+
+/// Shown velocity of the load over the true one; `None` where its gain has no error.
+pub(crate) fn velocity_gain<S: Scalar>(declared: &DeclaredActuator, numbers: &Numbers<'_, S>) -> Option<S> {
+    let sensor = declared.velocity_sensor.as_ref()?;
+    let open = numbers.get(GAIN_ERROR);
+    let stated = (sensor.gain_error != 0.0).then(|| S::from(sensor.gain_error));
+    open.or(stated).map(|error| S::from(1.0) + error)
 }
 
 /// Whether a specification limits the path that a prescribed load has into the loop.

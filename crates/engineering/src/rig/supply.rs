@@ -4,8 +4,9 @@ use phea_dynamics::scalar::Scalar;
 use phea_hydraulics::machine::{PowerUnit, PumpLimited};
 use phea_hydraulics::operating_point::{Balance, SettledSupply, Steady};
 use phea_hydraulics::plant::YieldingSupply;
-use phea_hydraulics::servovalve::SpoolDirection;
+use phea_hydraulics::servovalve::{SpoolDirection, edge_conductances, edge_flows, tare_flow};
 
+use super::Rig;
 use super::assembly::accumulator;
 use super::numbers::Numbers;
 use crate::project::{self, SupplyModel};
@@ -52,6 +53,31 @@ pub(crate) fn yielding_supply<S: Scalar>(
     let PowerUnit::PumpLimited(unit) = power_unit(declared, numbers) else { return None };
     let drops = [balance.supply.pressure, tare_drop(declared, numbers, balance)];
     Some(YieldingSupply::new(&unit, balance, drops, settled, SpoolDirection::Mean))
+}
+
+/// Power in W that the valve takes from the supply at the operating point: leakage and tare flow
+/// where the actuator rests.
+///
+/// ```text
+/// P = p_S (q_v3 + q_v5 + q_tare)
+/// ```
+///
+/// What a pump delivers beyond that, through its relief valve, is not in it.
+pub fn power_at_rest(declared: &project::DeclaredActuator, rig: &Rig) -> f64 {
+    if let Some(found) = rig.supply {
+        return found.taken * found.supply.pressure;
+    }
+    let components = rig.actuator.components();
+    let (valve, supply, point) = (&components.valve, &components.supply, &rig.point);
+    let drop = tare_drop(declared, &Numbers::declared(), &Balance::of(components));
+    let edges = edge_flows(
+        valve,
+        supply,
+        &edge_conductances(valve, point.command),
+        point.pressure_a,
+        point.pressure_b,
+    );
+    supply.pressure * (edges.supply_to_a + edges.supply_to_b + tare_flow(valve, supply, drop))
 }
 
 /// Drop in Pa at which the tare flow is stated: that of the stated supply where none is stated.

@@ -12,8 +12,9 @@ use phea_hydraulics::servovalve::SpoolImperfection;
 use phea_machine::{Control, Sampled};
 
 use super::SimulateError;
+use crate::control::velocity_sensor;
 use crate::project::{self, FrictionLaw, Project, Scenario, StepMethod};
-use crate::rig::{Numbers, Rig, feed_forward, lines, power_unit};
+use crate::rig::{Numbers, Rig, feed_forward, lines, power_unit, velocity_gain};
 use crate::setup::Setup;
 
 /// A machine with its controller.
@@ -63,6 +64,10 @@ impl ControlledMachine {
         let controller = setup.controller.clone().ok_or(SimulateError::NoController)?;
         let feed_forward = feed_forward(project, &rig.linear);
         let machine = *sensed.plant();
+        let sensed = match feed_forward == 0.0 {
+            true => sensed,
+            false => sensed.with_rate_sensor(&velocity_sensor(project))?,
+        };
         let control = match controller.timing.sample_time_s {
             None => {
                 Control::Continuous(Box::new(CommandedPlant::in_loop(sensed, &controller, feed_forward)?))
@@ -154,6 +159,7 @@ fn sampled(
     let between = between_samples(project, &mut controller)?;
     let controller = setup.deployed(&controller)?;
     let noise = project.actuator.as_ref().map_or(0.0, |actuator| actuator.force_sensor.noise);
+    let of_velocity = project.actuator.as_ref().and_then(|actuator| actuator.velocity_sensor.as_ref());
     Ok(Sampled {
         held: CommandedPlant::on_hold(sensed, &between)?,
         delay_s: controller.timing.delay_s,
@@ -163,6 +169,8 @@ fn sampled(
         command_converter: setup.quantization.command,
         measurement_converter: setup.quantization.measurement,
         noise,
+        velocity_noise: of_velocity.map_or(0.0, |sensor| sensor.noise),
+        velocity_resolution: of_velocity.map_or(0.0, |sensor| sensor.resolution),
         seed: u64::from(project.simulation.seed),
     })
 }
@@ -197,6 +205,7 @@ pub fn options(project: &Project, actuator: &Actuator) -> Result<MachineOptions,
         friction_regular_velocity,
         power_unit: power_unit(declared, &Numbers::declared()),
         load: load(&declared.load)?,
+        velocity_gain: velocity_gain(declared, &Numbers::declared()).unwrap_or(1.0),
         external_force: false,
         vapour_pressure_absolute: declared.fluid.vapour_pressure,
         member: StiffeningMember::Nominal,

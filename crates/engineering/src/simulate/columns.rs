@@ -1,6 +1,6 @@
 //! The columns of a scenario's table; the guide states their signs and units.
 
-use phea_hydraulics::machine::SIGNALS;
+use phea_hydraulics::machine::{SERIES_SIGNALS, SIGNALS};
 
 use super::record::{Look, Record};
 
@@ -60,9 +60,11 @@ const EXTERNAL_FORCE: &str = "external_force_n";
 pub(super) struct Columns(Vec<(&'static str, ColumnSource)>);
 
 impl Columns {
-    /// The fixed ones, then those added later, and last the external force if the load is `pushed`.
-    pub(super) fn new(pushed: bool) -> Columns {
-        let later = SIGNALS.iter().chain(&LOOP_SIGNALS).filter(|name| !FIRST.contains(name));
+    /// The fixed ones, then those added later, and last the external force if the load is `pushed`;
+    /// those of a series element only if the load is `sprung`.
+    pub(super) fn new(pushed: bool, sprung: bool) -> Columns {
+        let there = |name: &&&str| sprung || !SERIES_SIGNALS.contains(name);
+        let later = SIGNALS.iter().filter(there).chain(&LOOP_SIGNALS).filter(|name| !FIRST.contains(name));
         let pushed = pushed.then_some(&EXTERNAL_FORCE);
         let all = FIRST.iter().chain(later).chain(pushed);
         Columns(all.filter_map(|name| Some((*name, source(name)?))).collect())
@@ -133,7 +135,7 @@ mod tests {
     /// The columns that can be measured: all except time.
     #[test]
     fn every_column_can_be_measured() {
-        let mut columns = Columns::new(true).names();
+        let mut columns = Columns::new(true, true).names();
         columns.remove(0);
         let mut measurable: Vec<&str> = phea_project::MEASURABLE.iter().map(|(name, _)| *name).collect();
         columns.sort_unstable();
@@ -143,8 +145,8 @@ mod tests {
 
     #[test]
     fn every_signal_has_one_column() {
-        let names = Columns::new(true).names();
-        assert_eq!(names.len(), FIRST.len() + 1 + LOOP_SIGNALS.len() + 1);
+        let names = Columns::new(true, true).names();
+        assert_eq!(names.len(), FIRST.len() + 1 + SERIES_SIGNALS.len() + LOOP_SIGNALS.len() + 1);
         assert_eq!(names[..FIRST.len()], FIRST);
         for name in SIGNALS.iter().chain(&LOOP_SIGNALS) {
             assert_eq!(names.iter().filter(|known| known == &name).count(), 1, "{name}");

@@ -1,6 +1,8 @@
 //! Limits of the rig that a run exceeds. Nothing is clamped by them: the real rig has these limits,
 //! the simulated machine does not.
 
+use phea_hydraulics::series::ForceFrom;
+
 use super::{ControlledMachine, Record};
 use crate::quantity::{DisplayUnit, FORCE, VOLTAGE, display};
 
@@ -53,7 +55,14 @@ pub(super) fn exceeded(bench: &ControlledMachine, record: &Record) -> Vec<Exceed
     let extending = stalls_at(cylinder.area_a, cylinder.area_b);
     let retracting = -stalls_at(cylinder.area_b, cylinder.area_a);
     let voltage = components.valve.nominal_voltage;
-    let forces = record.signal("force_n");
+    // the force through the sensor, wherever the measured one is taken from
+    let deflections = record.signal("deflection_m");
+    let forces: Vec<f64> = match components.series.map(|series| series.force_from) {
+        Some(ForceFrom::Deflection) => {
+            deflections.into_iter().map(|deflection| components.force_sensor.stiffness * deflection).collect()
+        }
+        Some(ForceFrom::Sensor) | None => record.signal("force_n"),
+    };
     let sensor = bench.force_capacity_n.and_then(|capacity| {
         beyond(RigLimit::SensorCapacity, [-capacity, capacity], &record.times_s, &forces)
     });

@@ -1,5 +1,7 @@
 //! The files of `simulate`: a table for each scenario, and the state it ended in.
 
+use phea_hydraulics::machine::Machine;
+
 use super::columns::Columns;
 use super::file_names::state_names;
 use super::{Look, ScenarioRun};
@@ -30,13 +32,13 @@ pub struct RunTable<'a> {
 }
 
 impl<'a> RunTable<'a> {
-    /// A table with its headings, and a last column for the external force if the load is `pushed`.
+    /// A table with its headings; `machine` says which columns it has.
     pub(super) fn begin(
         (destination, name): (&'a dyn Destination, &str),
         format: TableFormat,
-        pushed: bool,
+        machine: &Machine,
     ) -> Result<RunTable<'a>, WriteError> {
-        let columns = Columns::new(pushed);
+        let columns = Columns::new(machine.has_external_force(), machine.has_series_element());
         let table = NumberTable::new(destination.begin(name)?, format, &columns.names());
         let table = table.map_err(|error| unwritten(name, &error))?;
         Ok(RunTable { name: name.to_string(), columns, table, values: Vec::new() })

@@ -47,7 +47,8 @@ fn state_names(bench: &ControlledMachine) -> Vec<String> {
     let states = |count: usize, of: &'static str| (1..=count).map(move |number| format!("{of}_{number}"));
     let mut names = bench.machine.state_names();
     let sensed = bench.control.sensed();
-    names.extend(states(sensed.sensor_at_rest(0.0).len(), "sensor"));
+    names.extend(states(sensed.sensor_at_rest(0.0).len() - sensed.rate_states(), "sensor"));
+    names.extend(states(sensed.rate_states(), "velocity_sensor"));
     match &bench.control {
         Control::Continuous(closed) => names.extend(states(closed.controller_states(), "controller")),
         Control::Sampled(sampled) => {

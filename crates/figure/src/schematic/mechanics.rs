@@ -5,7 +5,7 @@ use super::super::colour::Role;
 use super::super::scene::{Anchor, Baseline, Fill, Rectangle, Scene, Stroke, Text, point};
 use super::super::typeset;
 use super::pen::{MOTION, OUTLINE, ROW, arrow, block, ground, lines, rows, spring, word};
-use super::{Environment, Rods, SchematicInput};
+use super::{Environment, Rods, SchematicInput, SeriesSymbol};
 
 /// Height of the rod's axis.
 const AXIS: f64 = 74.0;
@@ -79,11 +79,29 @@ pub(super) fn load(scene: &mut Scene, input: &SchematicInput) {
         }
         None => lines(scene, &[(MASS + 20.0, AXIS), (CELL + 26.0, AXIS)], heavy),
     }
-    environment(scene, input);
+    let from = CELL + 26.0;
+    let from = input.series.as_ref().map_or(from, |series| between(scene, series, from));
+    environment(scene, input, from);
 }
 
-fn environment(scene: &mut Scene, input: &SchematicInput) {
-    let from = CELL + 26.0;
+/// The spring between load cell and environment; where it ends.
+fn between(scene: &mut Scene, series: &SeriesSymbol, from: f64) -> f64 {
+    let (to, half) = (from + 34.0, if series.has_damper { 14.0 } else { 9.0 });
+    for x in [from, to] {
+        lines(scene, &[(x, AXIS - half), (x, AXIS + half)], Stroke::solid(Role::Axis, 3.0));
+    }
+    if series.has_damper {
+        spring(scene, from, to, AXIS - 8.0, 5.0, OUTLINE);
+        damper(scene, from, to, AXIS + 8.0);
+    } else {
+        spring(scene, from, to, AXIS, 7.0, OUTLINE);
+    }
+    let words = [series.words.clone()];
+    rows(scene, &words, (0.5 * (from + to) + 6.0, AXIS + 20.0), Anchor::Middle, 84.0, 1);
+    to
+}
+
+fn environment(scene: &mut Scene, input: &SchematicInput, from: f64) {
     match input.environment {
         Environment::PrescribedMotion => {
             spring(scene, from, WALL - 6.0, AXIS, 9.0, OUTLINE);

@@ -3,8 +3,9 @@ mod volume;
 
 use phea_dynamics::scalar::Scalar;
 
-use super::Machine;
 use super::equations::constant;
+use super::series::Joint;
+use super::{Machine, Motion};
 use instant::Instant;
 
 /// Names of the accounts of oil, in the order of [`Ledger::oil`]. Accounts of parts that a machine
@@ -23,7 +24,7 @@ pub const OIL_ACCOUNTS: [&str; 9] = [
 
 /// Names of the accounts of energy, in the order of [`Ledger::energy`]. Accounts of parts that a
 /// machine lacks are zero.
-pub const ENERGY_ACCOUNTS: [&str; 16] = [
+pub const ENERGY_ACCOUNTS: [&str; 18] = [
     "chamber_a",
     "chamber_b",
     "line_a",
@@ -34,9 +35,11 @@ pub const ENERGY_ACCOUNTS: [&str; 16] = [
     "accumulator",
     "valve",
     "leakage",
+    "cross_port",
     "piston",
     "friction",
     "sensor",
+    "series",
     "end_stops",
     "load",
     "rig",
@@ -157,7 +160,7 @@ impl<S: Scalar> Machine<S> {
             + edges.a_to_tank * (line_a.port_pressure - tank)
             + edges.supply_to_b * (supply.line.pressure - line_b.port_pressure)
             + edges.b_to_tank * (line_b.port_pressure - tank);
-        let [piston, friction, sensor, end_stops, load] = self.moving(now);
+        let [piston, friction, sensor, series, end_stops, load] = self.moving(now);
         let accounts = [
             side_a.energy(into_a, area_a * velocity),
             side_b.energy(into_b, -area_b * velocity),
@@ -168,10 +171,12 @@ impl<S: Scalar> Machine<S> {
             supply.line.energy(supply.line_flow(), zero),
             supply.gas.energy(supply.line.pressure),
             heat(throttled),
-            heat(now.flows.internal * (side_a.pressure - side_b.pressure)),
+            heat((now.flows.internal - now.flows.cross_port) * (side_a.pressure - side_b.pressure)),
+            self.cross_port_account(now),
             piston,
             friction,
             sensor,
+            series,
             end_stops,
             load,
         ];
@@ -186,18 +191,32 @@ impl<S: Scalar> Machine<S> {
             inflow: oil + now.external_power - self.on_ground(now),
             lost: total(&accounts, |account| account.lost),
         };
-        let [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o] = accounts;
-        [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, rig]
+        let [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q] = accounts;
+        [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, rig]
     }
 
-    /// Piston, friction, sensor, end stops and load.
-    fn moving<T: Scalar + From<S>>(&self, now: &Instant<T>) -> [Account<T>; 5] {
+    /// A valve between the chambers: heat of its restrictor, and what its capacity holds.
+    fn cross_port_account<T: Scalar + From<S>>(&self, now: &Instant<T>) -> Account<T> {
+        let (flow, [side_a, side_b]) = (now.flows.cross_port, &now.sides);
+        let drop = side_a.pressure - side_b.pressure;
+        let Some(capacity) = self.cross_port.and_then(|port| port.capacity) else { return heat(flow * drop) };
+        let held = now.state.cross_port_pressure;
+        Account {
+            stored: T::from(0.5) * constant::<S, T>(capacity) * held.squared(),
+            inflow: flow * drop,
+            lost: flow * (drop - held),
+        }
+    }
+
+    /// Piston, friction, sensor, series element, end stops and load.
+    fn moving<T: Scalar + From<S>>(&self, now: &Instant<T>) -> [Account<T>; 6] {
         let (zero, half) = (T::from(0.0), T::from(0.5));
         let (state, load) = (&now.state, &now.load);
         let velocity = state.velocity;
-        let position = load.position + state.deflection;
+        let joint = &now.joint;
+        let position = joint.position;
         let forces = self.forces(state, position);
-        let pushing = forces.hydraulic + forces.end_stops - forces.friction.force - forces.sensed;
+        let pushing = forces.hydraulic + forces.end_stops - forces.friction.force - joint.sensed;
         let friction = self.friction.convert(&mut constant::<S, T>);
         let kinetic = half * constant::<S, T>(self.cylinder.moving_mass) * velocity.squared();
         let [held, _, damped] = self.load.convert(&mut constant::<S, T>).powers(load, &now.ground);
@@ -209,14 +228,15 @@ impl<S: Scalar> Machine<S> {
                 lost: friction.dissipated(velocity, state.bristle),
             },
             Account {
-                stored: half * forces.sensed * state.deflection,
-                inflow: forces.sensed * (velocity - load.velocity),
+                stored: half * joint.sensed * joint.sensor_deflection,
+                inflow: joint.sensed * (velocity - joint.behind_sensor),
                 lost: zero,
             },
+            self.series_account(joint, load.velocity),
             self.end_stop_account(position, velocity, forces.end_stops),
             Account {
                 stored: held,
-                inflow: forces.sensed * load.velocity + now.external_power - self.on_ground(now),
+                inflow: joint.on_load * load.velocity + now.external_power - self.on_ground(now),
                 lost: damped,
             },
         ]
@@ -228,8 +248,21 @@ impl<S: Scalar> Machine<S> {
             let [_, to_ground, _] = self.load.convert(&mut constant::<S, T>).powers(&now.load, &now.ground);
             return to_ground;
         }
-        let sensed = self.forces(&now.state, now.load.position + now.state.deflection).sensed;
-        sensed * now.load.velocity
+        now.joint.on_load * now.load.velocity
+    }
+
+    /// Spring, damper, ends and mass between the sensor and a load that moves at this velocity.
+    fn series_account<T: Scalar + From<S>>(&self, joint: &Joint<T>, load_velocity: T) -> Account<T> {
+        let zero = T::from(0.0);
+        let Some(series) = &self.series else { return Account { stored: zero, inflow: zero, lost: zero } };
+        let series = series.convert(&mut constant::<S, T>);
+        let Motion { position: deflection, velocity: rate } = joint.spring;
+        let kinetic = T::from(0.5) * series.mass.unwrap_or(zero) * joint.behind_sensor.squared();
+        Account {
+            stored: series.stored_energy(deflection) + kinetic,
+            inflow: joint.sensed * joint.behind_sensor - joint.on_load * load_velocity,
+            lost: series.dissipated(deflection, rate),
+        }
     }
 
     fn end_stop_account<T: Scalar + From<S>>(&self, position: T, velocity: T, force: T) -> Account<T> {

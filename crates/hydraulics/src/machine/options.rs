@@ -23,6 +23,9 @@ pub struct MachineOptions {
     pub power_unit: PowerUnit,
     /// What the force sensor pushes on.
     pub load: LoadModel,
+    /// Velocity of the load as its sensor shows it, over the true one: 1 + e, e the error of its
+    /// gain.
+    pub velocity_gain: f64,
     /// Whether a force from outside acts on the load, as an input of the machine; it needs a load
     /// that has a mass.
     pub external_force: bool,
@@ -45,6 +48,7 @@ impl Default for MachineOptions {
             friction_regular_velocity: None,
             power_unit: PowerUnit::Constant,
             load: LoadModel::Prescribed,
+            velocity_gain: 1.0,
             external_force: false,
             vapour_pressure_absolute: VAPOUR_PRESSURE_ABSOLUTE,
             member: StiffeningMember::Nominal,
@@ -68,6 +72,7 @@ impl MachineOptions {
             problems.component("supply", unit.problems());
         }
         problems.component("load", self.load.problems());
+        problems.positive("velocity_sensor.gain", self.velocity_gain);
         problems.not_negative("fluid.vapour_pressure_absolute", self.vapour_pressure_absolute);
         problems.into_vec()
     }

@@ -4,7 +4,7 @@ use super::equations::constant;
 use super::{Accumulator, Machine, Motion};
 
 /// Names of the signals of a machine, with units, in the order of [`Machine::outputs`].
-pub const SIGNALS: [&str; 19] = [
+pub const SIGNALS: [&str; 21] = [
     "force_n",
     "spool_v",
     "pressure_a_pa",
@@ -24,7 +24,13 @@ pub const SIGNALS: [&str; 19] = [
     "port_pressure_b_pa",
     "hydraulic_force_n",
     "opening_v",
+    "series_deflection_m",
+    "load_force_n",
 ];
+
+/// Those of [`SIGNALS`] that only a machine with a series element has: without one the force on the
+/// load is `force_n`, and nothing deflects beside the sensor.
+pub const SERIES_SIGNALS: [&str; 2] = ["series_deflection_m", "load_force_n"];
 
 /// Names of the state events of a machine, in the order of its indicators. Each indicator is
 /// positive in ordinary operation and negative while the event lasts.
@@ -33,8 +39,8 @@ pub const SIGNALS: [&str; 19] = [
 /// that end in m. `empty`: the chamber's compliance in m3/Pa without accumulators, which vanishes
 /// with its volume. `load_contact`: the way left to the wall in m. `supply_lost`: supply less tank
 /// pressure in Pa. `accumulator_empty`: the chamber's pressure less the precharge of its
-/// accumulator in Pa.
-pub const INDICATORS: [&str; 10] = [
+/// accumulator in Pa. `series_end`: the way left to the nearer end of a series spring's travel in m.
+pub const INDICATORS: [&str; 11] = [
     "cavitation_a",
     "cavitation_b",
     "end_stop_a",
@@ -45,6 +51,7 @@ pub const INDICATORS: [&str; 10] = [
     "supply_lost",
     "accumulator_empty_a",
     "accumulator_empty_b",
+    "series_end",
 ];
 
 impl<S: Scalar> Machine<S> {
@@ -54,7 +61,9 @@ impl<S: Scalar> Machine<S> {
     /// into the lines. `port_pressure` is that of a line's end at the valve, `pressure` that of its
     /// end at the chamber, which is the chamber's. `force_n` is what the rod pushes on the load
     /// with, `hydraulic_force_n` what the chambers push the piston with; between them lie its
-    /// friction, end stops and acceleration:
+    /// friction, end stops and acceleration. With a series element `force_n` is the force that its
+    /// [`ForceFrom`](crate::series::ForceFrom) measures, F_e that through the sensor,
+    /// `load_force_n` that on the load, and `series_deflection_m` how far the spring is compressed:
     ///
     /// ```text
     /// F_H = A_A p_A - A_B p_B = F_e + F_fr - F_stops + M dv/dt      all positive towards the B end but F_fr      thesis (4.29)
@@ -77,19 +86,20 @@ impl<S: Scalar> Machine<S> {
         let vector = state;
         let state = self.layout.read(vector);
         let load = self.load_of(&state, &ground_of(inputs));
-        let position = load.position + state.deflection;
+        let joint = self.joint(&state, &load);
+        let position = joint.position;
         let ports = self.ports(&state, vector);
         let flows = self.flows(&state, ports);
         let forces = self.forces(&state, position);
         [
-            forces.sensed,
+            self.measured_force(&state),
             state.spool.spool,
             state.pressure_a,
             state.pressure_b,
             self.supply_of(&state).pressure,
             position,
             state.velocity,
-            state.deflection,
+            joint.sensor_deflection,
             forces.friction.force,
             forces.end_stops,
             flows.from_valve[0],
@@ -101,6 +111,8 @@ impl<S: Scalar> Machine<S> {
             ports[1],
             forces.hydraulic,
             self.spool.convert(&mut constant::<S, T>).opening(&state.spool),
+            joint.spring.position,
+            joint.on_load,
         ]
     }
 
@@ -109,7 +121,8 @@ impl<S: Scalar> Machine<S> {
         let state = self.layout.read(state);
         let ground = ground_of(inputs);
         let load = self.load_of(&state, &ground);
-        let position = load.position + state.deflection;
+        let joint = self.joint(&state, &load);
+        let position = joint.position;
         let vapour: T = constant(self.vapour_pressure);
         let [compliance_a, compliance_b] = self.oil_compliance(&state, position);
         let supply = self.supply_of(&state);
@@ -128,6 +141,9 @@ impl<S: Scalar> Machine<S> {
             supply.pressure - supply.tank_pressure,
             charged(gas_a, state.pressure_a),
             charged(gas_b, state.pressure_b),
+            self.series.map_or(T::from(1.0), |series| {
+                series.convert(&mut constant::<S, T>).clearance(joint.spring.position)
+            }),
         ]
     }
 }

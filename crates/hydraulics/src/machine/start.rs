@@ -79,6 +79,7 @@ impl Machine {
         let mut state = MachineState::zero();
         state.spool.spool = start.spool;
         (state.pressure_a, state.pressure_b) = (start.pressure_a, start.pressure_b);
+        state.cross_port_pressure = start.pressure_a - start.pressure_b;
         state.supply_pressure = self.supply.pressure;
         state.velocity = start.velocity;
         state.bristle = self.settled_bristle(start.velocity);
@@ -138,6 +139,7 @@ impl Machine {
         let mut state = MachineState::zero();
         state.spool.spool = start.spool;
         (state.pressure_a, state.pressure_b) = (start.pressure_a, start.pressure_b);
+        state.cross_port_pressure = start.pressure_a - start.pressure_b;
         state.supply_pressure = self.supply.pressure;
         state.velocity = start.velocity;
         state.bristle = self.settled_bristle(start.velocity);
@@ -158,11 +160,11 @@ impl Machine {
         position: f64,
         force: f64,
     ) -> Result<(MachineState, f64), MachineError> {
-        let deflection = force / self.sensor_stiffness;
+        let (deflection, series, ahead) = self.held_joint(force, state.velocity);
         let held = self.load.held_at(force);
         let relative = held.ok_or(MachineError::ImpossibleStart { quantity: "force", value: force })?;
         let load = Motion { position: relative, velocity: state.velocity };
-        Ok((MachineState { deflection, load, ..*state }, position - deflection - relative))
+        Ok((MachineState { deflection, load, series, ..*state }, position - ahead - relative))
     }
 
     fn begin(&self, state: &MachineState, ground: f64) -> InitialCondition {

@@ -1,6 +1,7 @@
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::Sliding;
 
+use super::series::SeriesStates;
 use super::{Machine, Motion};
 use crate::servovalve::SpoolState;
 
@@ -8,8 +9,8 @@ use crate::servovalve::SpoolState;
 /// place in its vector.
 ///
 /// The order of the vector is that of the fields: spool voltage and rate, p_A, p_B, deflection,
-/// velocity, and then, if present, those of bristles, load, supply, spool friction, magnetic lag.
-/// The states of lines, which have no names, follow.
+/// velocity, and then, if present, those of bristles, load, capacity between the chambers, supply,
+/// spool friction, magnetic lag, series element. The states of lines, which have no names, follow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MachineState<T = f64> {
     /// Position of the spool in V and what moves it; its two memories stand last in the vector.
@@ -18,7 +19,8 @@ pub struct MachineState<T = f64> {
     pub pressure_a: T,
     /// Chamber pressure p_B in Pa.
     pub pressure_b: T,
-    /// Deflection of the force sensor x - x_L in m.
+    /// Deflection of the force sensor x - x_L in m; of a series spring that has neither damper nor
+    /// mass, where there is one.
     pub deflection: T,
     /// Piston velocity v in m/s.
     pub velocity: T,
@@ -28,8 +30,13 @@ pub struct MachineState<T = f64> {
     /// v_L in m/s. Errors are scaled by the deformation of its spring or wall, not by its distance
     /// from the end of the cylinder.
     pub load: Motion<T>,
+    /// Pressure difference p_cp in Pa over the capacity of a valve between the chambers.
+    pub cross_port_pressure: T,
     /// Supply pressure p_S in Pa, where a pump is limited.
     pub supply_pressure: T,
+    /// A series element with damper or mass: deflection of its spring in m, and velocity of the mass
+    /// between sensor and spring in m/s.
+    pub series: Motion<T>,
 }
 
 /// Which states beyond the first six a machine has.
@@ -40,6 +47,9 @@ pub(super) struct Layout {
     supply: bool,
     spool_friction: bool,
     magnetic_lag: bool,
+    /// A capacity between the chambers.
+    capacity: bool,
+    series: SeriesStates,
     /// Whether a force from outside is an input.
     external_force: bool,
     /// States of both lines, which follow all others, A first.
@@ -67,6 +77,8 @@ impl<T: Scalar> MachineState<T> {
             bristle: zero,
             load: Motion { position: zero, velocity: zero },
             supply_pressure: zero,
+            cross_port_pressure: zero,
+            series: Motion { position: zero, velocity: zero },
         }
     }
 }
@@ -79,6 +91,8 @@ impl Layout {
             supply: machine.power_unit.yields(),
             spool_friction: machine.spool.threshold.is_some(),
             magnetic_lag: machine.spool.hysteresis_width.is_some(),
+            capacity: machine.cross_port.is_some_and(|port| port.capacity.is_some()),
+            series: SeriesStates::of(machine.series.as_ref()),
             external_force: machine.external_force,
             lines: machine.lines.map(|line| line.states()),
             waves: machine.lines.map(|line| line.delays().len()),
@@ -88,6 +102,12 @@ impl Layout {
         layout.visit(&mut MachineState::<f64>::zero(), |_| named += 1);
         layout.named = named;
         layout
+    }
+
+    /// States of a series element.
+    #[inline(always)]
+    pub(super) fn series(&self) -> SeriesStates {
+        self.series
     }
 
     /// Number of states.
@@ -207,6 +227,9 @@ impl Layout {
             visit(&mut state.load.position);
             visit(&mut state.load.velocity);
         }
+        if self.capacity {
+            visit(&mut state.cross_port_pressure);
+        }
         if self.supply {
             visit(&mut state.supply_pressure);
         }
@@ -215,6 +238,12 @@ impl Layout {
         }
         if self.magnetic_lag {
             visit(&mut state.spool.magnetic_lag);
+        }
+        if matches!(self.series, SeriesStates::Damped | SeriesStates::Mass) {
+            visit(&mut state.series.position);
+        }
+        if self.series == SeriesStates::Mass {
+            visit(&mut state.series.velocity);
         }
     }
 }
@@ -246,7 +275,11 @@ impl Machine {
     /// ```
     pub fn state_names(&self) -> Vec<String> {
         let mut names: Vec<String> = Vec::new();
-        self.layout.visit(&mut NAMES.clone(), |name| names.push((*name).to_string()));
+        let mut own = NAMES;
+        if self.layout.series == SeriesStates::Spring {
+            own.deflection = own.series.position;
+        }
+        self.layout.visit(&mut own, |name| names.push((*name).to_string()));
         for (line, count) in ["line_a", "line_b"].into_iter().zip(self.layout.lines) {
             names.extend((1..=count).map(|number| format!("{line}_{number}")));
         }
@@ -269,6 +302,8 @@ const NAMES: MachineState<&str> = MachineState {
     bristle: "bristle_m",
     load: Motion { position: "load_displacement_m", velocity: "load_velocity_m_per_s" },
     supply_pressure: "supply_pressure_pa",
+    cross_port_pressure: "cross_port_pressure_pa",
+    series: Motion { position: "series_deflection_m", velocity: "series_velocity_m_per_s" },
 };
 
 impl<S: Scalar> Machine<S> {
@@ -289,12 +324,13 @@ impl<S: Scalar> Machine<S> {
 
     /// Typical magnitudes of the states, by which errors are scaled, from the typical force and
     /// command.
-    fn typical_state(&self) -> MachineState<S> {
+    pub(super) fn typical_state(&self) -> MachineState<S> {
         let (command, pressure, force) =
             (self.typical_command(), self.typical_pressure(), self.typical_force());
-        let deflection = force / self.sensor_stiffness;
         let swing = |mass: S| force / (self.sensor_stiffness * mass).sqrt();
         let velocity = swing(self.cylinder.moving_mass);
+        let (own, series) = self.typical_joint(force, swing);
+        let deflection = force / self.sensor_stiffness;
         let memory = command / S::from(100.0);
         MachineState {
             spool: SpoolState {
@@ -305,11 +341,13 @@ impl<S: Scalar> Machine<S> {
             },
             pressure_a: pressure,
             pressure_b: pressure,
-            deflection,
+            deflection: own,
             velocity,
             bristle: self.friction.bristle_stiffness().map_or(deflection, |stiffness| force / stiffness),
             load: Motion { position: deflection, velocity: self.load.mass().map_or(velocity, swing) },
             supply_pressure: pressure,
+            cross_port_pressure: pressure,
+            series,
         }
     }
 

@@ -2,9 +2,13 @@ mod responding;
 
 use num_complex::Complex64;
 use phea_dynamics::analytic::Analytic;
+use phea_dynamics::controller::RateFilter;
 
 use super::supply::{Coupled, Over};
-use super::{Chamber, ChamberPolynomials, LinearLoad, LinearPlant, YieldingSupply};
+use super::{
+    Chamber, ChamberPair, ChamberPolynomials, LinearLoad, LinearPlant, Paths, VelocitySensor, YieldingSupply,
+};
+use crate::cross_port::DynamicFeedback;
 use crate::line::{DynamicLine, Segments, TransferMatrix};
 
 /// The plant with lines that have dynamics of their own: it is not a quotient of polynomials, but
@@ -49,7 +53,7 @@ pub struct PlantInMotion {
     sides: [ChamberSide; 2],
     /// Whether both lines are the same.
     alike: bool,
-    /// Delay of the load's velocity that is fed forward, s.
+    /// Delay of the load's velocity that is fed forward, s: of its sensor and of the loop.
     lateness: f64,
 }
 
@@ -85,22 +89,18 @@ struct AtChamber<A> {
     impedance: A,
 }
 
-/// F_e (sensed - fed) = command U_C + ground X_0, `fed` being the feedback through the velocity of
-/// a load that can move.
-struct Paths<A> {
-    command: A,
-    ground: A,
-    sensed: A,
-    fed: A,
-    driven: A,
-    held: A,
-}
-
 impl PlantInMotion {
     /// The same with the velocity of the load fed forward, K_x in V s/m.
     #[must_use]
     pub fn fed_forward(self, load_velocity_feed_forward: Option<f64>) -> PlantInMotion {
         PlantInMotion { plant: LinearPlant { load_velocity_feed_forward, ..self.plant }, ..self }
+    }
+
+    /// The same with the velocity that is fed forward behind this filter.
+    #[must_use]
+    pub fn filtered(self, filter: RateFilter) -> PlantInMotion {
+        let velocity_sensor = VelocitySensor { filter, ..self.plant.velocity_sensor };
+        PlantInMotion { plant: LinearPlant { velocity_sensor, ..self.plant }, ..self }
     }
 
     /// The same with the feed-forward delayed by a time in s: K_x e^(-s tau) for K_x.
@@ -138,7 +138,7 @@ impl PlantInMotion {
     /// [`LinearPlant::coefficients`].
     pub fn response<A: Analytic>(&self, s: A) -> [A; 2] {
         let Paths { command, ground, sensed, fed, .. } = self.paths(s);
-        let divisor = sensed - fed;
+        let divisor = fed.map_or(sensed, |fed| sensed - fed);
         [command / divisor, ground / divisor]
     }
 
@@ -148,11 +148,23 @@ impl PlantInMotion {
             return [Complex64::ZERO, s];
         };
         let Paths { driven, held, sensed, fed, .. } = self.paths(s);
-        [driven, (s * damping + stiffness) * held].map(|path| s * path / (sensed - fed))
+        let divisor = fed.map_or(sensed, |fed| sensed - fed);
+        [driven, (s * damping + stiffness) * held].map(|path| s * path / divisor)
+    }
+
+    /// Shown velocity of the load over the true one.
+    fn velocity_gain(&self) -> f64 {
+        self.plant.velocity_sensor.gain.unwrap_or(1.0)
+    }
+
+    /// Gain in V s/m from the true velocity of the load to the command.
+    fn fed_gain(&self) -> Option<f64> {
+        self.plant.load_velocity_feed_forward.map(|gain| gain * self.velocity_gain())
     }
 
     fn paths<A: Analytic>(&self, s: A) -> Paths<A> {
-        let ChamberPolynomials { own, driven, displaced } = self.chambers(s);
+        let chambers = self.chambers(s);
+        let ChamberPolynomials { own, driven, displaced } = chambers;
         let sensor = self.plant.sensor_stiffness;
         let rubbed = s.scaled(self.plant.moving_mass) + A::from(self.plant.viscous_friction);
         let moved = s * (rubbed * own + displaced);
@@ -161,17 +173,26 @@ impl PlantInMotion {
         let turned = s.scaled(2.0 * self.plant.valve_damping_ratio * frequency);
         let spool = A::from(square) / (s * s + turned + A::from(square));
         let driven = (spool * driven).scaled(sensor);
-        let fed = match self.plant.load_velocity_feed_forward {
-            Some(gain) if self.lateness > 0.0 => {
-                s.scaled(-self.lateness).exponential() * s.scaled(gain) * driven
+        let fed = match self.fed_gain() {
+            Some(gain) => {
+                let late = match self.lateness > 0.0 {
+                    true => s.scaled(-self.lateness).exponential() * s.scaled(gain),
+                    false => s.scaled(gain),
+                };
+                match self.plant.velocity_sensor.filter {
+                    RateFilter::None => late * driven,
+                    filter => filter.response(s) * late * driven,
+                }
             }
-            Some(gain) => s.scaled(gain) * driven,
             None => A::from(0.0),
         };
+        if let Some(series) = &self.plant.series {
+            return series.responding(&self.plant, s, chambers, [moved, driven, fed]);
+        }
         let held = moved + own.scaled(sensor);
         match self.plant.load {
             LinearLoad::Prescribed => {
-                let (ground, fed) = (fed - moved.scaled(sensor), A::from(0.0));
+                let (ground, fed) = (fed - moved.scaled(sensor), Some(A::from(0.0)));
                 Paths { command: driven, ground, sensed: held, fed, driven, held }
             }
             LinearLoad::Yielding { mass, damping, stiffness } => {
@@ -179,7 +200,7 @@ impl PlantInMotion {
                 let load = (s * s).scaled(mass) + tied;
                 let sensed = moved * (load + A::from(sensor)) + (load * own).scaled(sensor);
                 let ground = tied * (fed - moved.scaled(sensor));
-                Paths { command: load * driven, ground, sensed, fed, driven, held }
+                Paths { command: load * driven, ground, sensed, fed: Some(fed), driven, held }
             }
         }
     }
@@ -193,25 +214,41 @@ impl PlantInMotion {
         let at = [one.at_chamber(line, s), other.at_chamber(across, s)];
         let [area_a, area_b] = self.sides.map(|side| side.area);
         let [gain_a, gain_b] = self.sides.map(|side| side.flow_gain);
-        let leakage = self.plant.internal_leakage;
+        let across = self.across(s);
         if let Some(supply) = &self.plant.supply {
-            let ChamberPolynomials { own, driven, displaced } =
-                self.behind(supply, &at, s).chambers([area_a, area_b]);
-            return ChamberPolynomials { own: own.0, driven: driven.0, displaced: displaced.0 };
+            let chambers = self.behind(supply, &at, s).chambers([area_a, area_b]);
+            return chambers.combined(|apart, joined| Over(apart.0 + across * joined.0)).unwrapped();
         }
         let [one, other] = at;
         let (a, b) = (one.admittance, other.admittance);
         let passed = one.passed * other.passed;
         let difference = area_a - area_b;
         let crossed = other.passed.scaled(gain_a) - one.passed.scaled(gain_b);
-        ChamberPolynomials {
-            own: a * b + (a * other.passed + b * one.passed).scaled(leakage),
-            driven: b.scaled(area_a * gain_a)
-                + a.scaled(area_b * gain_b)
-                + crossed.scaled(leakage * difference),
-            displaced: (b * one.passed).scaled(area_a * area_a)
-                + (a * other.passed).scaled(area_b * area_b)
-                + passed.scaled(leakage * difference * difference),
+        let chambers = ChamberPair {
+            apart: ChamberPolynomials {
+                own: a * b,
+                driven: b.scaled(area_a * gain_a) + a.scaled(area_b * gain_b),
+                displaced: (b * one.passed).scaled(area_a * area_a)
+                    + (a * other.passed).scaled(area_b * area_b),
+            },
+            joined: ChamberPolynomials {
+                own: a * other.passed + b * one.passed,
+                driven: crossed.scaled(difference),
+                displaced: passed.scaled(difference * difference),
+            },
+        };
+        chambers.combined(|apart, joined| *apart + across * *joined)
+    }
+
+    /// Admittance from chamber to chamber.
+    fn across<A: Analytic>(&self, s: A) -> A {
+        let leakage = A::from(self.plant.internal_leakage);
+        match self.plant.dynamic_feedback {
+            None => leakage,
+            Some(DynamicFeedback { conductance, capacity }) => {
+                let taken = s.scaled(capacity);
+                leakage + taken.scaled(conductance) / (taken + A::from(conductance))
+            }
         }
     }
 
@@ -222,7 +259,6 @@ impl PlantInMotion {
     /// p_port = (p + b K_q U + b s_i p_S)/(d + K_c b)
     /// ```
     fn behind<A: Analytic>(&self, supply: &YieldingSupply, at: &[AtChamber<A>; 2], s: A) -> Coupled<Over<A>> {
-        let leakage = A::from(self.plant.internal_leakage);
         let [of_a, of_b] = supply.edges;
         let [gain_a, gain_b] = self.sides.map(|side| side.flow_gain);
         let [one, other] = at;
@@ -231,11 +267,10 @@ impl PlantInMotion {
         let own = tied - returned(of_a, one).scaled(of_a) - returned(of_b, other).scaled(of_b);
         let taken = A::from(supply.flow_gain) - returned(of_a, one).scaled(gain_a)
             + returned(of_b, other).scaled(gain_b);
-        let admittance = |at: &AtChamber<A>| Over(at.admittance / at.passed + leakage);
+        let admittance = |at: &AtChamber<A>| Over(at.admittance / at.passed);
         let passing = |value: f64, at: &AtChamber<A>| Over(A::from(value) / at.passed);
         Coupled {
             own: [admittance(one), admittance(other), Over(own)],
-            across: Over(leakage),
             edges: [passing(of_a, one), passing(of_b, other)],
             gains: [passing(gain_a, one), passing(gain_b, other), Over(taken)],
         }
@@ -249,6 +284,10 @@ impl PlantInMotion {
             LinearLoad::Prescribed => [0.0; 3],
             LinearLoad::Yielding { mass, damping, stiffness } => [mass, damping, stiffness],
         };
+        let series =
+            self.plant.series.iter().flat_map(|series| {
+                [Some(series.stiffness), series.damping, series.mass].into_iter().flatten()
+            });
         let own = [
             self.plant.moving_mass,
             self.plant.viscous_friction,
@@ -260,7 +299,9 @@ impl PlantInMotion {
             let to_tank = [0, 1].map(|side| self.sides[side].flow_pressure - supply.edges[side]);
             [supply.edges, to_tank, [supply.compliance, supply.conductance]].concat()
         });
-        own.into_iter().chain(load).chain(of_sides).chain(of_supply).all(|value| value >= 0.0)
+        let feedback = self.plant.dynamic_feedback.iter().flat_map(|one| [one.conductance, one.capacity]);
+        let beyond = own.into_iter().chain(load).chain(series);
+        beyond.chain(of_sides).chain(of_supply).chain(feedback).all(|value| value >= 0.0)
     }
 
     /// Where the slower line is a quarter of a wave long, pi/(2 T) in rad/s; `None` where no wave
@@ -269,6 +310,12 @@ impl PlantInMotion {
         let delays = self.sides.iter().flat_map(|side| side.line.delays());
         let longest = delays.fold(0.0, f64::max);
         (longest > 0.0).then(|| std::f64::consts::FRAC_PI_2 / longest)
+    }
+}
+
+impl<A> ChamberPolynomials<Over<A>> {
+    fn unwrapped(self) -> ChamberPolynomials<A> {
+        ChamberPolynomials { own: self.own.0, driven: self.driven.0, displaced: self.displaced.0 }
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::wishes::of_one_sensor;
 use super::{Check, linear_parameter};
 use crate::{LINEAR_PARAMETERS, Project, UncertaintyDirection};
 use phea_quantity::display;
@@ -50,6 +51,7 @@ fn moved(
             let message = format!("the project states no `{number}`, from which a direction could move it");
             check.error(&path, message);
         }
+        of_one_sensor(number, &path, check);
         if project.uncertainty.iter().any(|uncertain| uncertain.name == *number) {
             let message = format!("[uncertainty] has a range of `{number}` too");
             check.error_with_help(&path, message, "list it in one of the two");

@@ -36,6 +36,31 @@ pub(super) fn controllers(project: &Project, check: &mut Check<'_, '_>) {
     if noise > 0.0 && project.controller.is_some() && sample_time.is_none() {
         check.warning("force_sensor.noise", "`noise` has no effect on a continuous controller");
     }
+    velocity_sensor(project, check);
+}
+
+fn velocity_sensor(project: &Project, check: &mut Check<'_, '_>) {
+    let Some(sensor) = project.actuator.as_ref().and_then(|actuator| actuator.velocity_sensor.as_ref())
+    else {
+        return;
+    };
+    let place = "velocity_sensor";
+    if sensor.filter_damping_ratio.is_some() && sensor.filter_frequency.is_none() {
+        let message = "`filter_damping_ratio` is that of a filter: state its `filter_frequency`";
+        check.error(&format!("{place}.filter_damping_ratio"), message);
+    }
+    let controller = project.controller.as_ref();
+    if controller.is_none_or(|controller| controller.load_velocity_feed_forward.is_none()) {
+        let message = "[velocity_sensor] has no effect: [controller] has no `load_velocity_feed_forward`";
+        check.warning(place, message);
+    } else if controller.is_some_and(|controller| controller.sample_time.is_none()) {
+        for (name, value) in [("noise", sensor.noise), ("resolution", sensor.resolution)] {
+            if value > 0.0 {
+                let message = format!("`{name}` has no effect on a continuous controller");
+                check.warning(&format!("{place}.{name}"), message);
+            }
+        }
+    }
 }
 
 fn continuous_prefilter(project: &Project, prefilter: &Prefilter, check: &mut Check<'_, '_>) {

@@ -6,7 +6,7 @@ use crate::listing::Listing;
 use phea_quantity::display;
 
 /// Usual ranges in SI: path, least, greatest, and the part.
-const USUAL: [(&str, f64, f64, &str); 17] = [
+const USUAL: [(&str, f64, f64, &str); 19] = [
     ("fluid.bulk_modulus", 1e9, 2.5e9, "fluids of hydraulics"),
     ("fluid.density", 700.0, 1300.0, "fluids of hydraulics"),
     ("fluid.kinematic_viscosity", 5e-6, 5e-4, "fluids of hydraulics"),
@@ -24,6 +24,8 @@ const USUAL: [(&str, f64, f64, &str); 17] = [
     ("line.bore", 0.003, 0.08, "hoses"),
     ("line.volume", 1e-6, 0.05, "lines"),
     ("force_sensor.stiffness", 1e6, 1e10, "load cells"),
+    ("series.stiffness", 1e4, 1e8, "series springs"),
+    ("series.travel", 1e-3, 0.1, "series springs"),
 ];
 /// Factor below or above the range at which a number is called implausible.
 const BEYOND: f64 = 10.0;

@@ -176,6 +176,7 @@ fn campaign(project: &Project, campaign: &Campaign, check: &mut Check<'_, '_>) {
             let message = format!("`{}` is of the linear model, and the machine finds its own", varied.path);
             check.error_with_help(&path, message, "vary `start.position` and its like");
         }
+        of_one_sensor(&varied.path, &path, check);
         if project.directions.iter().any(|direction| direction.name == varied.path) {
             let message = format!("a campaign draws the direction `{}` by itself", varied.path);
             check.error_with_help(&path, message, "leave it out");
@@ -274,6 +275,7 @@ pub(super) fn uncertainty(project: &Project, check: &mut Check<'_, '_>) {
             let message = "`z` is the variable of sampled transfer functions, and this loop samples: give the parameter another name";
             check.error(&path, message);
         }
+        of_one_sensor(&uncertain.name, &path, check);
         depends(uncertain, project, check);
         both_sides("uncertainty", "uncertain", &uncertain.name, &names, check);
         stated_elsewhere(uncertain, project.number_among(&uncertain.name, &numbers), check);
@@ -283,6 +285,15 @@ pub(super) fn uncertainty(project: &Project, check: &mut Check<'_, '_>) {
 fn is_sampled(project: &Project) -> bool {
     let controller = project.controller.as_ref().and_then(|controller| controller.sample_time);
     controller.or(project.prefilter.as_ref().and_then(|prefilter| prefilter.sample_time)).is_some()
+}
+
+/// Filter, delay and noise of the velocity sensor are those of one device: no family has several.
+pub(super) fn of_one_sensor(name: &str, path: &str, check: &mut Check<'_, '_>) {
+    if name.starts_with("velocity_sensor.") && name != "velocity_sensor.gain_error" {
+        let message =
+            format!("`{name}` cannot vary: one velocity sensor is the same for all plants and runs");
+        check.error_with_help(path, message, "its `gain_error` can vary");
+    }
 }
 
 /// A number for both lines together with the same number for one line would be set twice.

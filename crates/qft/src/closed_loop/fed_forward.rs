@@ -2,24 +2,35 @@
 //! the disturbance, and a loop where the command moves that rate too.
 //!
 //! ```text
-//! u = G (F r - y) + K v,     y = P u + Pd d,     v = P_v u + V_d d
-//! P' = P/(1 - K P_v),        Pd' = Pd + K V_d P'                    V_d = s and P_v = 0 where v is the rate of d itself
+//! u = G (F r - y) + K H_v v,     y = P u + Pd d,     v = P_v u + V_d d
+//! P' = P/(1 - K H_v P_v),        Pd' = Pd + K H_v V_d P'            V_d = s and P_v = 0 where v is the rate of d itself
 //! ```
 //!
+//! H_v is the sensor of the rate, before the samples: its filter has poles that P lacks, which are
+//! zeros of P'; its dead time is in P_v and V_d alone.
+//!
 //! In a sampled loop P and P_v are held and sampled, V_d is not: of a sine of d the samples of v
-//! are those of a sine. P and P_v have the same poles, and P' those of 1 - K P_v in their place.
+//! are those of a sine. H_v P_v has the poles of P, and P' those of 1 - K H_v P_v in their place.
 
 use num_complex::Complex64;
+use phea_dynamics::controller::RateSensor;
 use phea_dynamics::linear::{LinearError, Polynomial, TimeDomain, TransferFunction};
-use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients};
+use phea_dynamics::uncertain_plant::{PlantCoefficients, RateNumerators, RationalCoefficients};
 
-/// K V_d of one plant.
+/// K H_v V_d of one plant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FedForward {
     /// K
     pub gain: f64,
     /// V_d; `None` where it is s.
     pub path: Option<RationalCoefficients<f64>>,
+    /// H_v
+    pub sensor: RateSensor,
+}
+
+/// The rate of a plant, if the command moves it.
+pub(crate) fn moved_rate(plant: &PlantCoefficients<f64>) -> Option<&RateNumerators<f64>> {
+    plant.rate.as_ref().filter(|rate| rate.command.iter().any(|coefficient| *coefficient != 0.0))
 }
 
 /// What takes the poles of P for those of P'.
@@ -36,46 +47,56 @@ pub(super) struct FedBack {
 const DELAY_MAXIMUM: f64 = 200.0;
 
 impl FedForward {
-    pub(crate) fn of(gain: f64, plant: &PlantCoefficients<f64>) -> FedForward {
+    pub(crate) fn of(gain: f64, sensor: RateSensor, plant: &PlantCoefficients<f64>) -> FedForward {
         let path = plant.rate.as_ref().filter(|_| gain != 0.0).map(|rate| RationalCoefficients {
             numerator: rate.disturbance.clone(),
             denominator: plant.command.denominator.clone(),
         });
-        FedForward { gain, path }
+        FedForward { gain, path, sensor }
     }
 
-    /// K V_d(jw)
+    /// K H_v V_d(jw)
     pub(crate) fn at(&self, frequency_rad_per_s: f64) -> Complex64 {
-        match &self.path {
-            _ if self.gain == 0.0 => Complex64::ZERO,
+        let rate = match &self.path {
+            _ if self.gain == 0.0 => return Complex64::ZERO,
             None => Complex64::new(0.0, self.gain * frequency_rad_per_s),
             Some(path) => self.gain * path.at_frequency(frequency_rad_per_s),
-        }
+        };
+        if self.sensor.is_direct() { rate } else { rate * self.sensor.at_frequency(frequency_rad_per_s) }
     }
 }
 
-/// P_v before its dead time; `None` where nothing is fed back.
+/// H_v P_v before the dead time of the command; `None` where nothing is fed back.
 pub(super) fn rate_path(
     gain: f64,
+    sensor: RateSensor,
     plant: &PlantCoefficients<f64>,
 ) -> Result<Option<TransferFunction>, LinearError> {
-    let Some(rate) = plant.rate.as_ref().filter(|_| gain != 0.0) else { return Ok(None) };
+    let Some(rate) = moved_rate(plant).filter(|_| gain != 0.0) else { return Ok(None) };
     let denominator = Polynomial::new(plant.command.denominator.clone());
-    TransferFunction::from_polynomials(&Polynomial::new(rate.command.clone()), &denominator).map(Some)
+    let own = TransferFunction::from_polynomials(&Polynomial::new(rate.command.clone()), &denominator)?;
+    if sensor.is_direct() { Ok(Some(own)) } else { own.series(&sensor.transfer_function()?).map(Some) }
 }
 
 /// A plant of a continuous loop without dead time, including what is fed back within it: N/(D - K
-/// N_v).
+/// N_v), and d_v N/(d_v D - K N_v) behind the filter H_v = 1/d_v of a sensor.
 pub(crate) fn closed(
     gain: f64,
+    sensor: RateSensor,
     mut plant: PlantCoefficients<f64>,
 ) -> Result<PlantCoefficients<f64>, LinearError> {
-    let Some(rate) = plant.rate.as_ref().filter(|_| gain != 0.0) else { return Ok(plant) };
-    if plant.dead_time_s > 0.0 {
+    let Some(rate) = moved_rate(&plant).filter(|_| gain != 0.0) else { return Ok(plant) };
+    if plant.dead_time_s > 0.0 || sensor.delay_s > 0.0 {
         return Err(LinearError::NotRational { operation: "a rate that is fed back" });
     }
     let back = Polynomial::new(rate.command.clone()).scaled(-gain);
-    plant.command.denominator = Polynomial::new(plant.command.denominator).sum(&back).coefficients().to_vec();
+    let filter = Polynomial::new(sensor.filter.denominator());
+    let filtered = |coefficients: Vec<f64>| match sensor.is_direct() {
+        true => Polynomial::new(coefficients),
+        false => Polynomial::new(coefficients).product(&filter),
+    };
+    plant.command.denominator = filtered(plant.command.denominator).sum(&back).coefficients().to_vec();
+    plant.command.numerator = filtered(plant.command.numerator).coefficients().to_vec();
     Ok(plant)
 }
 
@@ -101,8 +122,8 @@ impl FedBack {
         })
     }
 
-    /// P/(1 - K P_v), and so with what stands behind P as a sensor does: it has the poles of P_v,
-    /// and its dead time at least.
+    /// P/(1 - K P_v), and so with what stands behind P as a sensor does: it has the poles of P_v but
+    /// those of the filter of the rate. Dead time that P_v has and P has not are zeros at z = 0.
     pub(super) fn around(&self, function: &TransferFunction) -> Result<TransferFunction, LinearError> {
         let (mut poles, mut zeros) = (function.poles().to_vec(), function.zeros().to_vec());
         let mut samples = (function.dead_time_s() / self.sample_time_s).round() - self.samples as f64;
@@ -114,6 +135,8 @@ impl FedBack {
                 None => zeros.push(*own),
             }
         }
+        let ahead = (-samples).max(0.0) as usize;
+        zeros.resize(zeros.len() + ahead, Complex64::ZERO);
         poles.extend(&self.closed);
         TransferFunction::from_factors(function.gain(), zeros, poles)?
             .in_domain(function.domain())?

@@ -2,6 +2,7 @@
 //! hold are folded onto one another.
 
 use num_complex::Complex64;
+use phea_dynamics::controller::RateSensor;
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::portable;
 use phea_dynamics::uncertain_plant::responding::RespondingPlant;
@@ -28,6 +29,8 @@ pub(super) struct SamplingImages<'a> {
     pub(super) sample_time_s: Option<f64>,
     /// K
     pub(super) rate_feed_forward: f64,
+    /// H_v
+    pub(super) rate_sensor: RateSensor,
 }
 
 impl SamplingImages<'_> {
@@ -46,7 +49,7 @@ impl SamplingImages<'_> {
         Some(closed.fed(self.rate_feed_forward * from_disturbance))
     }
 
-    /// K P_v
+    /// K H_v P_v
     pub(super) fn fed_back(
         &self,
         plant: &dyn RespondingPlant,
@@ -100,12 +103,17 @@ impl SamplingImages<'_> {
         None
     }
 
-    /// P_v and V_d where something is fed forward.
+    /// H_v P_v and H_v V_d where something is fed forward.
     fn rate(&self, plant: &dyn RespondingPlant, frequency: f64) -> [Complex64; 2] {
-        match self.rate_feed_forward == 0.0 {
-            true => [Complex64::ZERO; 2],
-            false => plant.rate(frequency),
+        if self.rate_feed_forward == 0.0 {
+            return [Complex64::ZERO; 2];
         }
+        let rate = plant.rate(frequency);
+        if self.rate_sensor.is_direct() {
+            return rate;
+        }
+        let shown = self.rate_sensor.at_frequency(frequency);
+        rate.map(|path| path * shown)
     }
 
     /// As far as the measurement reaches; `None` where the part beyond it could matter if it were

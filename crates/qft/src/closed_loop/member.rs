@@ -1,6 +1,7 @@
 //! Responses of a plant within its loop.
 
 use num_complex::Complex64;
+use phea_dynamics::controller::RateSensor;
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients};
 
@@ -27,7 +28,7 @@ impl Member {
                 let own = continuous(plant, sensor, frequency_rad_per_s);
                 Some(own.fed(fed_forward.at(frequency_rad_per_s)))
             }
-            Member::Sampled { command, with_sensor, disturbance, fed_forward } => {
+            Member::Sampled { command, with_sensor, disturbance, fed_forward, .. } => {
                 let plant = command.at_frequency(frequency_rad_per_s);
                 let own = MemberResponse {
                     plant,
@@ -41,7 +42,7 @@ impl Member {
         }
     }
 
-    /// K P_v(jw) of a plant without polynomials, with the delay of the loop and sampled where that
+    /// K H_v P_v(jw) of a plant without polynomials, with the delay of the loop and sampled where that
     /// samples; `None` of other plants, and where its images do not die out.
     pub(crate) fn fed_back(&self, frequency_rad_per_s: f64) -> Option<Complex64> {
         let Member::Responding { plant, .. } = self else { return None };
@@ -50,12 +51,13 @@ impl Member {
 
     fn images(&self) -> Option<SamplingImages<'_>> {
         match self {
-            Member::Responding { sensor, delay_s, sample_time_s, rate_feed_forward, .. } => {
+            Member::Responding { sensor, delay_s, sample_time_s, rate_feed_forward, rate_sensor, .. } => {
                 Some(SamplingImages {
                     sensor,
                     delay_s: *delay_s,
                     sample_time_s: *sample_time_s,
                     rate_feed_forward: *rate_feed_forward,
+                    rate_sensor: *rate_sensor,
                 })
             }
             Member::Measured { sensor, delay_s, sample_time_s, .. } => Some(SamplingImages {
@@ -63,6 +65,7 @@ impl Member {
                 delay_s: *delay_s,
                 sample_time_s: *sample_time_s,
                 rate_feed_forward: 0.0,
+                rate_sensor: RateSensor::default(),
             }),
             Member::Continuous { .. } | Member::Sampled { .. } => None,
         }

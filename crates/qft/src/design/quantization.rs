@@ -7,9 +7,11 @@
 //! ```
 
 mod coefficients;
+mod rate_noise;
 mod rounding_effect;
 
 pub use coefficients::{CoefficientEffect, CoefficientFormat, RoundedController, rounded};
+pub use rate_noise::{RateNoise, rate_noise};
 pub use rounding_effect::{LimitCycle, RoundingEffect, RoundingEffects, rounding_effects};
 
 pub use phea_dynamics::controller::{Converter, ConverterError};

@@ -125,7 +125,10 @@ impl PlantRoots {
             roots.poles.push(Complex64::new(-2.0 / delay_s, 0.0));
         }
         by_need(&mut roots.poles);
-        roots.zeros.sort_by(|one, other| one.norm_sqr().total_cmp(&other.norm_sqr()));
+        // of a pair the one above the axis first, as `simplified` takes it
+        roots.zeros.sort_by(|one, other| {
+            one.norm_sqr().total_cmp(&other.norm_sqr()).then(other.im.total_cmp(&one.im))
+        });
         let finite = roots.gain.is_finite() && roots.gain != 0.0;
         (finite && roots.poles.len() > roots.zeros.len()).then_some(roots)
     }
@@ -140,7 +143,7 @@ impl PlantRoots {
         let mut most = self.zeros.partition_point(|zero| zero.norm_sqr() < fastest);
         most = most.min(poles.len().saturating_sub(1));
         if self.zeros.get(most).is_some_and(|zero| zero.im < 0.0) {
-            most -= 1;
+            most = most.saturating_sub(1);
         }
         let (zeros, left_out) = self.zeros.split_at(most.min(self.zeros.len()));
         let at_rest = |roots: &[Complex64]| {

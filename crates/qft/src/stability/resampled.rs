@@ -12,7 +12,7 @@ use phea_dynamics::uncertain_plant::PlantCoefficients;
 
 use super::characteristic::FeedbackPath;
 use super::{CriticalDelay, StabilityStatus, of_member};
-use crate::closed_loop::Compensation;
+use crate::closed_loop::{Compensation, moved_rate};
 
 /// The remaining delay, as a share of the whole, at which the search stops.
 const TOLERANCE: f64 = 1e-9;
@@ -26,7 +26,7 @@ pub(super) fn critical_delay(
     compensation: &Compensation,
     path: &FeedbackPath,
 ) -> Option<CriticalDelay> {
-    if compensation.rate_feed_forward() != 0.0 && plant.rate.is_some() {
+    if compensation.rate_feed_forward() != 0.0 && moved_rate(plant).is_some() {
         return None;
     }
     let remaining = |delay_s: f64| {

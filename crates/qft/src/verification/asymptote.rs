@@ -1,5 +1,6 @@
 //! Limits at zero and infinite frequency, where every function behaves like one power of s.
 
+use phea_dynamics::controller::RateSensor;
 use phea_dynamics::linear::{TimeDomain, TransferFunction};
 use phea_dynamics::portable;
 use phea_dynamics::uncertain_plant::RationalCoefficients;
@@ -251,21 +252,24 @@ fn parts(
     let forward = |fed: &FedForward| {
         let gain = PowerTerm { coefficient: fed.gain, power: 0 };
         let path = fed.path.as_ref().map(|path| rational(&path.numerator, &path.denominator));
-        gain.times(path.unwrap_or(PowerTerm { coefficient: 1.0, power: 1 }))
+        let shown = rational(&[1.0], &fed.sensor.filter.denominator());
+        gain.times(path.unwrap_or(PowerTerm { coefficient: 1.0, power: 1 })).times(shown)
     };
     let (plant, load_motion, with_sensor, forward, turns) = match member {
         Member::Continuous { plant, sensor, fed_forward } => {
             let command = rational(&plant.command.numerator, &plant.command.denominator);
             let with_sensor = command.times(of(sensor)?);
-            (command, path(&plant.disturbance), with_sensor, forward(fed_forward), plant.dead_time_s > 0.0)
+            let turns = plant.dead_time_s > 0.0;
+            (command, path(&plant.disturbance), with_sensor, forward(fed_forward), turns)
         }
-        Member::Sampled { command, with_sensor, disturbance, fed_forward } => {
+        Member::Sampled { command, with_sensor, disturbance, fed_forward, .. } => {
             (of(command)?, path(disturbance), of(with_sensor)?, forward(fed_forward), false)
         }
-        Member::Responding { plant, sensor, rate_feed_forward, .. } => {
+        Member::Responding { plant, sensor, rate_feed_forward, rate_sensor, .. } => {
             // its load-motion path has the ends of the slow plant
-            let slow = closed(*rate_feed_forward, plant.slow()).ok()?;
-            let fed = FedForward::of(*rate_feed_forward, &plant.slow());
+            let at_once = RateSensor { delay_s: 0.0, ..*rate_sensor };
+            let slow = closed(*rate_feed_forward, at_once, plant.slow()).ok()?;
+            let fed = FedForward::of(*rate_feed_forward, *rate_sensor, &plant.slow());
             let command = match end {
                 AxisEnd::Zero => rational(&slow.command.numerator, &slow.command.denominator),
                 AxisEnd::Infinity => rolled_off(plant.as_ref())?,
@@ -274,7 +278,8 @@ fn parts(
         }
         Member::Measured { .. } => return None,
     };
-    let load_motion = load_motion.plus(plant.times(forward), turns && end == AxisEnd::Infinity, end);
+    let apart = (turns || fed_late(member)) && end == AxisEnd::Infinity;
+    let load_motion = load_motion.plus(plant.times(forward), apart, end);
     let feedback = of(compensation.feedback())?;
     Some(LoopAsymptotes {
         plant,
@@ -284,6 +289,16 @@ fn parts(
         open_loop: with_sensor.times(feedback),
         spun: turns && end == AxisEnd::Infinity,
     })
+}
+
+/// Whether the sensor of a rate that is fed forward turns it against the rest of the loop.
+fn fed_late(member: &Member) -> bool {
+    match member {
+        Member::Continuous { fed_forward, .. } | Member::Sampled { fed_forward, .. } => {
+            fed_forward.gain != 0.0 && fed_forward.sensor.delay_s > 0.0
+        }
+        Member::Responding { .. } | Member::Measured { .. } => false,
+    }
 }
 
 /// A bound of the gain of a plant without polynomials towards infinite frequency.

@@ -152,7 +152,7 @@ impl LoopAt {
                     ),
                 )
             }
-            Member::Sampled { command, with_sensor, disturbance, fed_forward } => {
+            Member::Sampled { command, with_sensor, disturbance, fed_forward, .. } => {
                 let around = Fraction::of_transfer_function(with_sensor, frequency);
                 let plant = Fraction::of_transfer_function(command, frequency);
                 let same = command.poles() == with_sensor.poles();

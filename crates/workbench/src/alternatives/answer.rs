@@ -1,7 +1,9 @@
 //! The JSON object of `alternatives`.
 
+use super::document::told_first;
 use super::findings::findings;
-use super::{AlternativeColumn, Alternatives, ColumnPart, JudgedAlternative};
+use super::front;
+use super::{AlternativeColumn, Alternatives, ColumnPart, JudgedAlternative, MovedRange};
 use crate::answer::{self, Json, Object};
 use crate::audit::verdict_key;
 use crate::design;
@@ -14,7 +16,9 @@ pub(crate) fn json(loaded: &Loaded, found: &Alternatives) -> String {
     let body = Object::new()
         .each("alternatives", &found.judged, row)
         .with("not_reached", found.not_reached.as_slice())
-        .with("findings", findings(found));
+        .with("warnings", told_first(found))
+        .with("findings", findings(found))
+        .maybe("front", found.front.as_ref().map(front::json));
     answer::json("alternatives", loaded, body)
 }
 
@@ -29,10 +33,21 @@ fn row(one: &JudgedAlternative) -> Object {
     Object::new()
         .with("name", one.name.as_str())
         .with("settings", one.loaded.settings.as_slice())
+        .each("moved_ranges", &one.moved, moved)
         .known("verdict", verdict, failed)
         .known("design", design, failed)
         .known("machine", machine, no_machine)
         .with("columns", columns(one))
+}
+
+fn moved(range: &MovedRange) -> Object {
+    let numbers = |[nominal, minimum, maximum]: [f64; 3]| {
+        Object::new().with("nominal", nominal).with("minimum", minimum).with("maximum", maximum)
+    };
+    Object::new()
+        .with("name", range.name.as_str())
+        .with("stated", numbers(range.stated))
+        .with("moved", numbers(range.moved))
 }
 
 fn columns(one: &JudgedAlternative) -> Object {
@@ -50,7 +65,13 @@ fn columns(one: &JudgedAlternative) -> Object {
     };
     let feasible = one.feasible();
     let reason = feasible.as_ref().err().map_or("", String::as_str).to_string();
-    let own = Object::new().known("feasible", feasible.ok(), &reason);
+    let stability = one.design.as_ref().map(|view| verdict_key(view.designed.view.audit.stability.verdict));
+    let failed = one.design.as_ref().err().map_or("", String::as_str);
+    let own = Object::new().known("feasible", feasible.ok(), &reason).known(
+        "stable_with_its_load",
+        stability.ok(),
+        failed,
+    );
     let own = told(own, of(&all, &ColumnPart::Loop).chain(of(&all, &ColumnPart::Rig)));
     own.with(
         "specifications",
@@ -66,7 +87,26 @@ fn columns(one: &JudgedAlternative) -> Object {
             _ => None,
         }),
     )
+    .with("impedance", impedances(&all))
     .with("passivity", passivity(one))
+}
+
+/// |Z| at each frequency.
+fn impedances(all: &[(ColumnPart, AlternativeColumn)]) -> Vec<Object> {
+    let mut frequencies: Vec<f64> = Vec::new();
+    for (part, _) in all {
+        match part {
+            ColumnPart::Impedance(frequency) if !frequencies.contains(frequency) => {
+                frequencies.push(*frequency);
+            }
+            _ => {}
+        }
+    }
+    let at = |frequency: &f64| {
+        let part = ColumnPart::Impedance(*frequency);
+        told(Object::new().with("frequency_rad_per_s", *frequency), of(all, &part))
+    };
+    frequencies.iter().map(at).collect()
 }
 
 /// A whole number is printed as one.

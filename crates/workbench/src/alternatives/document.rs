@@ -1,19 +1,45 @@
 //! Alternatives for people: one table, then what follows from it.
 
 use super::findings::findings;
+use super::front;
 use super::{AlternativeColumn, AlternativeColumns, Alternatives, ColumnPart, JudgedAlternative};
 use crate::document::{Cell, Document, Table};
 use crate::linearize::PortView;
-use crate::quantity::DisplayUnit;
+use crate::quantity::{DisplayUnit, significant};
 use crate::trial::agreement_word;
+use phea_qft::verification::Verdict;
 
 /// The table and the findings.
 pub(crate) fn text(found: &Alternatives) -> String {
+    let first: String = told_first(found).iter().map(|sentence| format!("warning: {sentence}\n")).collect();
+    format!("{first}{}", document(found).text())
+}
+
+/// The same as a document; its figures follow.
+pub(crate) fn document(found: &Alternatives) -> Document {
     let mut out = Document::default();
     out.table(table(found));
     out.heading_on_page("Findings");
     out.sentences(findings(found));
-    out.text()
+    if let Some(front) = &found.front {
+        out.heading_on_page("Front");
+        out.table(front::table(front));
+        out.sentences(front::findings(front));
+    }
+    out
+}
+
+/// The rigs that their families do not contain, and what to do.
+pub(crate) fn told_first(found: &Alternatives) -> Vec<String> {
+    let outside = found.judged.iter().filter_map(|one| Some(outside_words(&one.name, one.outside.as_ref()?)));
+    outside.collect()
+}
+
+/// A sentence on ranges that do not follow a rig.
+pub(crate) fn outside_words(name: &str, outside: &str) -> String {
+    format!(
+        "{name}: the ranges of [uncertainty] do not contain its rig ({outside}): state them in `set`, or let them follow by `recentre = true`"
+    )
 }
 
 /// A row for each column, and a column for each alternative.
@@ -25,6 +51,7 @@ fn table(found: &Alternatives) -> Table {
         rows.group(group(&part));
         if part == ColumnPart::Loop {
             rows.row(words("feasible", found, feasible));
+            rows.row(words("stable with its load", found, stable));
             rows.row(words("on the machine", found, machine));
         }
         for (key, name) in keys(&all, &part) {
@@ -48,6 +75,17 @@ fn feasible(one: &JudgedAlternative) -> Cell {
         Ok(true) => Cell::from("yes").marked(true),
         Ok(false) => Cell::from("no").marked(false),
         Err(_) => "not known".into(),
+    }
+}
+
+/// Whether every plant of its family, with the declared load on it, is stable in the designed loop.
+fn stable(one: &JudgedAlternative) -> Cell {
+    let view = one.design.as_ref().ok();
+    match view.map(|view| view.designed.view.audit.stability.verdict) {
+        Some(Verdict::Met) => Cell::from("yes").marked(true),
+        Some(Verdict::Violated) => Cell::from("no").marked(false),
+        Some(Verdict::NotProven) => "not proven".into(),
+        None => Cell::Missing,
     }
 }
 
@@ -84,17 +122,24 @@ pub(super) fn parts(all: &[AlternativeColumns]) -> Vec<ColumnPart> {
     parts
 }
 
-/// The keys of a part that has a value in some alternative, with their words.
+/// The keys of a part that some alternative has a value for, or should state one for, with their words.
 fn keys(all: &[AlternativeColumns], part: &ColumnPart) -> Vec<(&'static str, &'static str)> {
     let mut keys = Vec::new();
     let columns = all.iter().flat_map(|columns| &columns.0).filter(|(own, _)| own == part);
-    for (_, AlternativeColumn { key, words, .. }) in columns.filter(|(_, column)| column.value.is_ok()) {
+    for (_, AlternativeColumn { key, words, .. }) in columns.filter(|(_, column)| is_shown(column)) {
         if !keys.contains(&(*key, *words)) {
             keys.push((*key, *words));
         }
     }
     keys
 }
+
+fn is_shown(column: &AlternativeColumn) -> bool {
+    column.value.as_ref().map_or_else(|reason| reason.starts_with(NOT_STATED), |_| true)
+}
+
+/// What the reason for a number that nobody states begins with.
+const NOT_STATED: &str = "not stated";
 
 /// A column of an alternative.
 pub(super) fn at<'c>(
@@ -111,6 +156,7 @@ fn cell(columns: &AlternativeColumns, part: &ColumnPart, key: &str) -> Cell {
         Ok(value) if key == "worst_margin_db" => Cell::margin(*value),
         Ok(value) if column.digits == 0 => value.to_string().into(),
         Ok(value) => Cell::quantity(*value, column.digits, column.unit),
+        Err(reason) if reason.starts_with(NOT_STATED) => NOT_STATED.into(),
         Err(_) => Cell::Missing,
     }
 }
@@ -119,6 +165,7 @@ fn group(part: &ColumnPart) -> String {
     match part {
         ColumnPart::Loop => "loop".to_string(),
         ColumnPart::Rig => "rig".to_string(),
+        ColumnPart::Impedance(frequency) => format!("|Z| at {} rad/s", significant(*frequency, 4)),
         ColumnPart::Specification(index, name) => format!("{} {name}", index + 1),
         ColumnPart::Scenario(name) => name.clone(),
     }

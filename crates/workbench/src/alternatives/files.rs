@@ -4,9 +4,11 @@
 use phea_engineering::simulate::file_names;
 
 use super::document::{at, parts};
+use super::front;
 use super::{AlternativeColumns, Alternatives, ColumnPart, JudgedAlternative};
 use crate::answer::{Csv, OutputFile, picture_files, quoted};
-use crate::figure::{FigureError, Words};
+use crate::figure::{Figure, FigureError, FrequencySeries, ImpedanceInput, Words, impedance};
+use crate::linearize::frequency_grid;
 use crate::project::{IdentifiedUse, Project, print};
 use crate::simulate::{ScenarioRun, laid_over};
 
@@ -27,17 +29,47 @@ pub(crate) fn files(found: &Alternatives) -> Result<Vec<OutputFile>, FigureError
             files.push(OutputFile::new(format!("{name}.toml"), print(&project)));
         }
     }
+    files.extend(found.front.as_ref().map(front::csv));
+    files.extend(picture_files(&figures(found))?);
+    Ok(files)
+}
+
+/// The forces laid over each other, and the front.
+pub(crate) fn figures(found: &Alternatives) -> Vec<Figure> {
     let driven = |one: &JudgedAlternative| Some((one.name.clone(), one.runs.as_ref().ok()?.first()?.clone()));
     let (names, runs): (Vec<String>, Vec<ScenarioRun>) = found.judged.iter().filter_map(driven).unzip();
-    if let Some(first) = runs.first() {
+    let laid_over = runs.first().map(|first| {
         let words = Words::new(
             "alternatives",
             first.name.clone(),
             "Force, command and load pressure of each alternative under the controller designed for it.",
         );
-        files.extend(picture_files(&[laid_over(words, &names, &runs.iter().collect::<Vec<_>>())])?);
-    }
-    Ok(files)
+        laid_over(words, &names, &runs.iter().collect::<Vec<_>>())
+    });
+    let front = found.front.as_ref().and_then(front::figure);
+    laid_over.into_iter().chain(impedances(found)).chain(front).collect()
+}
+
+/// The impedance at the load of each alternative, under its controller where that is continuous.
+fn impedances(found: &Alternatives) -> Option<Figure> {
+    let series = found.judged.iter().filter_map(|one| {
+        let models = one.linearization.as_ref().ok()?;
+        let (port, words) = match models.closed_loop.as_ref().filter(|_| one.deployed.is_ok()) {
+            Some(closed) => (closed, one.name.clone()),
+            None => (&models.open_loop, format!("{}, open loop", one.name)),
+        };
+        let frequencies_rad_per_s = frequency_grid(&port.impedance).ok()?;
+        let response = frequencies_rad_per_s.iter().map(|frequency| port.impedance.at_frequency(*frequency));
+        let response = response.collect();
+        Some(FrequencySeries { name: words, frequencies_rad_per_s, response })
+    });
+    let input = ImpedanceInput { series: series.collect(), ..ImpedanceInput::default() };
+    let words = Words::new(
+        "alternatives-impedance",
+        "The impedance at the load",
+        "Z = -F_e/(s X_L) of the nominal rig of each alternative under the controller designed for it: how hard it resists a load that moves.",
+    );
+    (!input.series.is_empty()).then(|| impedance(words, &input))
 }
 
 /// A row for each alternative, in SI; a value that does not exist is empty.
@@ -69,6 +101,7 @@ fn table(found: &Alternatives) -> OutputFile {
 fn heading(part: &ColumnPart, key: &str) -> String {
     match part {
         ColumnPart::Loop | ColumnPart::Rig => key.to_string(),
+        ColumnPart::Impedance(frequency) => quoted(&format!("{frequency} rad/s: {key}")),
         ColumnPart::Specification(index, name) => quoted(&format!("{} {name}: {key}", index + 1)),
         ColumnPart::Scenario(name) => quoted(&format!("{name}: {key}")),
     }

@@ -1,6 +1,6 @@
 //! What follows from the columns, in sentences.
 
-use super::{Alternatives, ComparedMeasures, JudgedAlternative, MEASURES};
+use super::{Alternatives, ComparedMeasures, JudgedAlternative, MEASURES, MovedRange};
 use crate::design::status_sentence;
 use crate::project::AS_DECLARED;
 use crate::quantity::{DisplayUnit, significant};
@@ -10,10 +10,10 @@ use crate::trial::Agreement;
 pub(crate) fn findings(found: &Alternatives) -> Vec<String> {
     let mut sentences: Vec<String> = found.judged.iter().map(status).collect();
     sentences.extend(shared(found.judged.iter().flat_map(lacking)));
-    let feasible = |one: &&JudgedAlternative| one.feasible() == Ok(true);
+    let comparable = |one: &&JudgedAlternative| one.is_comparable();
     let measured = |one: &JudgedAlternative| Some((one.name.clone(), ComparedMeasures::of(&one.columns())?));
     sentences
-        .extend(dominance(&found.judged.iter().filter(feasible).filter_map(measured).collect::<Vec<_>>()));
+        .extend(dominance(&found.judged.iter().filter(comparable).filter_map(measured).collect::<Vec<_>>()));
     let all: Vec<_> = found.judged.iter().filter_map(measured).collect();
     sentences.extend(costs(&all));
     let not_reached = found.not_reached.iter().map(|name| format!("{name}: not reached"));
@@ -51,10 +51,29 @@ fn lacking(one: &JudgedAlternative) -> Vec<(&str, String)> {
     let caveats = view.map(|view| view.designed.view.caveats.as_slice()).unwrap_or_default();
     let caveats = caveats.iter().map(|caveat| caveat.sentence.clone());
     let not_driven = one.runs.as_ref().err().filter(|_| view.is_some()).cloned();
-    contradicts.chain(caveats).chain(not_driven).map(|sentence| (one.name.as_str(), sentence)).collect()
+    let moved = one.moved.iter().map(moved_words);
+    contradicts
+        .chain(caveats)
+        .chain(not_driven)
+        .chain(moved)
+        .map(|sentence| (one.name.as_str(), sentence))
+        .collect()
 }
 
-/// Among those that satisfy every specification, whatever the machine says of them.
+fn moved_words(range: &MovedRange) -> String {
+    let number = |value: f64| significant(value, 4);
+    let [[_, least, greatest], [_, less, more]] = [range.stated, range.moved];
+    format!(
+        "the range of {} follows the rig: {} to {} in place of {} to {}",
+        range.name,
+        number(less),
+        number(more),
+        number(least),
+        number(greatest)
+    )
+}
+
+/// Among those that satisfy every specification, on the machine too.
 fn dominance(feasible: &[(String, ComparedMeasures)]) -> Vec<String> {
     if feasible.len() < 2 {
         return vec![];
@@ -72,7 +91,7 @@ fn dominance(feasible: &[(String, ComparedMeasures)]) -> Vec<String> {
     }
     if sentences.is_empty() {
         sentences.push(
-            "of those that satisfy every specification none dominates another in disturbance, control effort, order and delay tolerated"
+            "of those that satisfy every specification and that the machine does not contradict none dominates another in disturbance, control effort, order and delay tolerated"
                 .to_string(),
         );
     }
@@ -86,7 +105,7 @@ fn costs(all: &[(String, ComparedMeasures)]) -> Vec<String> {
         return vec![];
     }
     let sentence = |(name, other): &(String, ComparedMeasures)| {
-        let parts = MEASURES.iter().enumerate().map(|(index, (key, words, _))| {
+        let parts = MEASURES.iter().enumerate().map(|(index, (key, words))| {
             let [own, given] = [other.0[index], measures.0[index]].map(|value| words_of(key, value));
             if own == given {
                 format!("{words} the same ({own})")

@@ -2,7 +2,7 @@ use phea_qft::proof::{Certificate, Proof, Standing};
 use phea_qft::verification::{SpecificationFinding, StabilityFinding, Verdict, WorstCase};
 
 use super::PlantNames;
-use super::{ProjectAudit, ReachedLimit};
+use super::{ProjectAudit, ReachedLimit, VelocityNoise};
 use super::{
     evidence_key, kind_key, kind_words, remark_sentences, stability_reason, verdict_key, why_not_proven,
 };
@@ -57,10 +57,23 @@ pub(crate) fn body(view: &ProjectAudit) -> Object {
         .with("members", view.members)
         .with("parameters", names.headings())
         .with("timing", timing)
+        .maybe("velocity_noise", view.velocity_noise.as_ref().map(|noise| velocity_noise(noise, names)))
         .each("specifications", audit.specifications.iter().enumerate(), |(index, finding)| {
             specification(view, index, finding)
         })
         .each("warnings", &view.caveats, |caveat| caveat.sentence.as_str())
+}
+
+/// The noise of the velocity that is fed forward, with its effects.
+fn velocity_noise(noise: &VelocityNoise, names: &PlantNames) -> Object {
+    let effect = noise.effect.as_ref();
+    let (of, reason) = (effect.ok(), effect.err().map_or("", String::as_str));
+    Object::new()
+        .with("rms_m_per_s", noise.rms_m_per_s)
+        .known("command_rms_v", of.map(|effect| effect.command_rms_v), reason)
+        .maybe("command_plant", of.map(|effect| names.named(&effect.command_plant)))
+        .known("force_rms_n", of.map(|effect| effect.force_rms_n), reason)
+        .maybe("force_plant", of.map(|effect| names.named(&effect.force_plant)))
 }
 
 /// Whether every plant is stable, as far as that is known.

@@ -52,6 +52,7 @@ pub(crate) fn summary(view: &ProjectAudit) -> Vec<String> {
     let mut sentences: Vec<String> = view.caveats.iter().map(|caveat| caveat.sentence.clone()).collect();
     sentences.push(stability_sentence(&view.audit.stability, &view.names));
     sentences.extend(delay_sentence(view));
+    sentences.extend(view.velocity_noise.iter().map(|noise| noise.sentence(&view.names)));
     let stable = view.audit.stability.verdict != Verdict::Violated;
     let findings = view.audit.specifications.iter().enumerate();
     sentences.extend(findings.map(|(index, finding)| {

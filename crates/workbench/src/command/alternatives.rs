@@ -1,21 +1,52 @@
 //! `alternatives`: one project with several sets of values, judged side by side.
 
-use super::{CommandError, Watch};
-use crate::alternatives::{self, judge};
+use super::simulate::frequencies;
+use super::{CommandError, ProcedureError, Watch};
+use crate::alternatives::{
+    self, AlternativesOptions as Asked, FrontRequest, IMPEDANCE_AT, asked, judge, outside_words,
+};
 use crate::answer::Answer;
-use crate::project::{Loaded, read_alternative};
+use crate::linearize::SweepRequest;
+use crate::project::{AS_DECLARED, Loaded};
+use crate::setup::Setup;
 use crate::source::Source;
-use phea_engineering::error::ProcedureError;
+
+/// What is asked of the alternatives of a project, as written.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct AlternativesRequest {
+    /// Whether files are wanted.
+    pub files: bool,
+    /// Columns of a front, separated by commas.
+    pub front: Option<String>,
+    /// What is swept for it, such as `line.length=0.5 m..3 m`.
+    pub sweep: Option<String>,
+    /// The number of its values.
+    pub points: Option<usize>,
+    /// Frequencies at which the impedance at the load is told, such as `1, 10 Hz`.
+    pub frequencies: Option<String>,
+}
+
+impl AlternativesRequest {
+    fn read(&self) -> Result<Asked, CommandError> {
+        let front = self.front.as_ref().zip(self.sweep.as_ref()).map(|(columns, range)| FrontRequest {
+            columns: columns.split(',').map(|column| column.trim().to_string()).collect(),
+            sweep: SweepRequest { range: range.clone(), points: self.points },
+        });
+        let at = self.frequencies.as_deref().map_or(Ok(IMPEDANCE_AT.to_vec()), frequencies)?;
+        Ok(Asked { front, impedance_at: at })
+    }
+}
 
 pub(super) fn alternatives_answer(
     source: &dyn Source,
     loaded: &Loaded,
     catalogues: &[String],
-    files: bool,
+    request: &AlternativesRequest,
     watch: Watch<'_>,
 ) -> Result<Answer, CommandError> {
-    let found = judge(source, loaded, catalogues, watch)?;
-    let written = files.then(|| alternatives::files(&found)).transpose().map_err(CommandError::Figure)?;
+    let found = judge(source, loaded, catalogues, &request.read()?, watch)?;
+    let written = request.files.then(|| alternatives::files(&found));
+    let written = written.transpose().map_err(CommandError::Figure)?;
     Ok(Answer {
         text: alternatives::text(&found),
         json: alternatives::json(loaded, &found),
@@ -24,14 +55,22 @@ pub(super) fn alternatives_answer(
     })
 }
 
-/// Reads every alternative, so that a wrong one is found before anything is designed.
+/// Reads every alternative and assembles its rig, so that a wrong one is found before anything is
+/// designed; tells whose rig is not in its family.
 pub(super) fn read_alternatives(
     source: &dyn Source,
     loaded: &Loaded,
     catalogues: &[String],
-) -> Result<(), CommandError> {
-    for index in 0..loaded.project.alternatives.len() {
-        read_alternative(source, loaded, catalogues, index).map_err(ProcedureError::Catalogue)?;
+) -> Result<Vec<String>, CommandError> {
+    if loaded.project.alternatives.is_empty() {
+        return Ok(vec![]);
     }
-    Ok(())
+    let all = asked(source, loaded, catalogues)?;
+    for one in all.iter().filter(|one| one.name != AS_DECLARED && one.loaded.project.actuator.is_some()) {
+        if let Err(error) = Setup::rig_of(&one.loaded.project) {
+            let name = one.name.clone();
+            return Err(ProcedureError::Alternative { name, reason: error.to_string() }.into());
+        }
+    }
+    Ok(all.iter().filter_map(|one| Some(outside_words(&one.name, &one.outside(loaded)?))).collect())
 }

@@ -113,7 +113,7 @@ fn frequency_answer(
 }
 
 /// `1, 10, 100 Hz`: the unit holds for the bare numbers before it; without any, rad/s.
-fn frequencies(text: &str) -> Result<Vec<f64>, CommandError> {
+pub(super) fn frequencies(text: &str) -> Result<Vec<f64>, CommandError> {
     let mut unit = "";
     let mut found = Vec::new();
     for part in text.rsplit(',').map(str::trim) {

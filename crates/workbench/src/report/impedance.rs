@@ -24,7 +24,13 @@ pub(super) fn chapter(
     let hidden = significant(linearization.compliance_hidden_above_rad_per_s, 4);
     let mut out = Document::default();
     out.equations(vec!["Z = -F_e/(s X_L)".to_string()]);
-    out.explanation(format!("The driving-point impedance Z is the resistance to a load that moves the rod: a damper, spring or mass, depending on frequency. Above {hidden} rad/s the piston's mass hides the hydraulic compliance, and the load meets the sensor's stiffness alone."));
+    let met = match project.actuator.as_ref().and_then(|actuator| actuator.series.as_ref()) {
+        None => "the sensor's stiffness alone",
+        Some(_) => {
+            "sensor and series spring alone, whose stiffnesses in series stand for K_S in the straight lines"
+        }
+    };
+    out.explanation(format!("The driving-point impedance Z is the resistance to a load that moves the rod: a damper, spring or mass, depending on frequency. Above {hidden} rad/s the piston's mass hides the hydraulic compliance, and the load meets {met}."));
     out.left_out(project);
     out.figures([figure(linearization)?]);
     out.heading("Passivity");

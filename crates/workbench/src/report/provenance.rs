@@ -84,5 +84,16 @@ pub(super) fn assumptions(project: &Project) -> Vec<String> {
     if air.is_none_or(|fraction| fraction == 0.0) {
         assumptions.push("The oil carries no free air.".to_string());
     }
+    assumptions.extend(velocity(project).map(str::to_string));
     assumptions
+}
+
+/// How the velocity of the load is known, where it is fed forward.
+fn velocity(project: &Project) -> Option<&'static str> {
+    let fed = project.controller.as_ref()?.load_velocity_feed_forward?;
+    let sensor = project.actuator.as_ref()?.velocity_sensor.as_ref();
+    (fed.gain != Some(0.0)).then_some(match sensor {
+        None => "The load velocity that is fed forward is known exactly and at once.",
+        Some(_) => "The load velocity that is fed forward is what its sensor shows, whose filter and delay are known exactly.",
+    })
 }

@@ -1,14 +1,17 @@
 //! The chapter on the rig: its circuit, drawn from the project, and its declaration.
 
+use phea_hydraulics::series::ForceFrom;
+
 use super::chapter::Chapter;
 use crate::document::{Document, Table};
 use crate::figure::{
-    ControllerSymbol, Environment, Figure, LineKind, LineSymbol, Rods, SchematicInput, SupplyKind, Words,
-    schematic,
+    ControllerSymbol, Environment, Figure, LineKind, LineSymbol, Rods, SchematicInput, SeriesSymbol,
+    SupplyKind, Words, schematic,
 };
 use crate::project::{self, Component, LineVolume, Load, Project, RatedFlow, SupplyModel};
 use crate::quantity::{self, Dimension, FLOW, LENGTH, MASS, PRESSURE, STIFFNESS, VOLTAGE, VOLUME};
-use crate::rig::Rig;
+use crate::rig::{CrossPortAtPoint, Rig, cross_port_at_point};
+use phea_hydraulics::cross_port::Restrictor;
 
 pub(super) fn chapter(project: &Project, actuator: &project::DeclaredActuator, rig: &Rig) -> Chapter {
     let mut out = Document::default();
@@ -45,6 +48,10 @@ fn circuit(project: &Project, actuator: &project::DeclaredActuator) -> Figure {
         cylinder: cylinder_words(cylinder),
         mass: shown(cylinder.moving_mass, &MASS),
         load_cell: Some(vec![shown(actuator.force_sensor.stiffness, &STIFFNESS)]),
+        series: actuator.series.as_ref().map(|series| SeriesSymbol {
+            has_damper: series.damping > 0.0,
+            words: shown(series.stiffness, &STIFFNESS),
+        }),
         environment: match actuator.load {
             Load::Prescribed => Environment::PrescribedMotion,
             Load::Wall { .. } => Environment::Wall,
@@ -126,7 +133,7 @@ pub(super) fn load_words(actuator: &project::DeclaredActuator) -> String {
         ];
         parts.into_iter().flatten().collect::<Vec<String>>().join(", ")
     };
-    match actuator.load {
+    let load = match actuator.load {
         Load::Prescribed => {
             format!("moves as prescribed, behind {}", shown(actuator.force_sensor.stiffness, &STIFFNESS))
         }
@@ -136,7 +143,27 @@ pub(super) fn load_words(actuator: &project::DeclaredActuator) -> String {
         Load::Wall { mass, damping, stiffness, gap, .. } => {
             format!("a wall: {}", words(mass, stiffness, damping, gap))
         }
+    };
+    match &actuator.series {
+        None => load,
+        Some(series) => format!("{load}; series spring {}", series_words(series)),
     }
+}
+
+/// The spring between force sensor and load in a few words.
+fn series_words(series: &project::DeclaredSeries) -> String {
+    let not_zero = |value: f64, dimension: &Dimension| Some(shown(value, dimension)).filter(|_| value > 0.0);
+    let measured = (series.force_from == ForceFrom::Deflection).then(|| "measures the force".to_string());
+    let grown = Some(format!("{} % progressive", quantity::significant(100.0 * series.progression, 3)));
+    let parts = [
+        Some(shown(series.stiffness, &STIFFNESS)),
+        not_zero(series.damping, &quantity::DAMPING),
+        not_zero(series.mass, &MASS),
+        series.travel.map(|travel| format!("±{}", shown(travel, &LENGTH))),
+        grown.filter(|_| series.progression > 0.0),
+        measured,
+    ];
+    parts.into_iter().flatten().collect::<Vec<String>>().join(", ")
 }
 
 /// The declared lines in a few words.
@@ -198,13 +225,36 @@ fn facts(actuator: &project::DeclaredActuator, rig: &Rig) -> Table {
         ("moving mass", shown(actuator.cylinder.moving_mass, &MASS)),
         ("force sensor", shown(actuator.force_sensor.stiffness, &STIFFNESS)),
     ];
+    rows.extend(actuator.series.as_ref().map(|series| ("series spring", series_words(series))));
     if components.line_a == components.line_b {
         rows.push(("each line", line(&actuator.line.a).rows.join(", ")));
     } else {
         rows.push(("line A", line(&actuator.line.a).rows.join(", ")));
         rows.push(("line B", line(&actuator.line.b).rows.join(", ")));
     }
+    rows.extend(cross_port_at_point(rig).map(|found| ("between the chambers", cross_port_words(&found))));
     Table::new(["component", "declared"]).with(rows.into_iter().map(|(name, text)| [name.to_string(), text]))
+}
+
+/// A valve between the chambers in a few words, with what it costs at rest.
+fn cross_port_words(found: &CrossPortAtPoint) -> String {
+    let conductance = quantity::significant(found.conductance, 3);
+    let kind = match (found.valve.restrictor, found.valve.capacity) {
+        (_, Some(_)) => "dynamic pressure feedback",
+        (Restrictor::Laminar { .. }, None) => "laminar valve",
+        (Restrictor::Orifice { .. }, None) => "orifice",
+    };
+    let cost = match found.valve.capacity {
+        Some(capacity) => {
+            format!("capacity {} m3/Pa, nothing flows at rest", quantity::significant(capacity, 3))
+        }
+        None => format!(
+            "passes {} and loses {} W at rest",
+            shown(found.flow, &FLOW),
+            quantity::significant(found.loss(), 3)
+        ),
+    };
+    format!("{kind}, conductance {conductance} m3/(s.Pa), {cost}")
 }
 
 fn valve_words(actuator: &project::DeclaredActuator) -> String {

@@ -244,6 +244,10 @@ fn occurrence_words(occurrence: &Occurrence) -> String {
         "accumulator_empty_b" => {
             ("the gas at chamber B is shut off: below the precharge", "the gas at chamber B is in use again")
         }
+        "series_end" => (
+            "the series spring reaches the end of its travel",
+            "the series spring is within its travel again",
+        ),
         "supply_lost" => ("the supply falls below the tank", "the supply is above the tank again"),
         _ => ("the command reaches its limit", "the command leaves its limit"),
     };

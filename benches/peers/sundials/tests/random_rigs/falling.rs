@@ -101,6 +101,8 @@ fn components(chance: &mut Chance) -> Components {
         line_a: line,
         line_b: line,
         accumulators: [None; 2],
+        cross_port: None,
+        series: None,
         cylinder: Cylinder {
             area_a,
             area_b,

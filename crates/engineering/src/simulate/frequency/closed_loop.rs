@@ -142,14 +142,14 @@ impl LoopParts<'_> {
     }
 
     /// At the nearest frequencies whose period is a whole number of samples, and without the noise
-    /// of the sensor.
+    /// of the sensors and the rounding of the velocity.
     fn sampled(
         &self,
         sampled: &Sampled,
         frequencies: &[f64],
         goes_on: &mut dyn FnMut(usize) -> bool,
     ) -> Result<MachineResponse, SimulateError> {
-        let quiet = Sampled { noise: 0.0, ..sampled.clone() };
+        let quiet = Sampled { noise: 0.0, velocity_noise: 0.0, velocity_resolution: 0.0, ..sampled.clone() };
         let (held, rest) = (&quiet.held, &self.rested.rest);
         let mut state = rest.state.clone();
         state.extend(held.plant().sensor_at_rest(self.rested.force_n));

@@ -1,6 +1,7 @@
 use phea_dynamics::scalar::Scalar;
 
 use super::super::equations::{Flows, constant};
+use super::super::series::Joint;
 use super::super::signals::ground_of;
 use super::super::{Accumulator, Chambers, Machine, MachineState, Motion, PowerUnit};
 use super::Account;
@@ -12,6 +13,7 @@ pub(super) struct Instant<T> {
     pub(super) state: MachineState<T>,
     pub(super) load: Motion<T>,
     pub(super) ground: Motion<T>,
+    pub(super) joint: Joint<T>,
     /// Of the force from outside on the load, in W.
     pub(super) external_power: T,
     pub(super) flows: Flows<T>,
@@ -134,7 +136,8 @@ impl<S: Scalar> Machine<S> {
         let flows = self.flows(&state, ports);
         let ([port_a, port_b], [from_a, from_b]) = (ports, flows.from_valve);
         let ([line_a, line_b], [vector_a, vector_b]) = (&self.lines, self.layout.lines(vector));
-        let position = load.position + state.deflection;
+        let joint = self.joint(&state, &load);
+        let position = joint.position;
         let sides = self.sides(&state, position);
         let lines = [
             LineInstant::of(line_a, [port_a, state.pressure_a], from_a, vector_a)?,
@@ -147,6 +150,7 @@ impl<S: Scalar> Machine<S> {
             state,
             load,
             ground,
+            joint,
             external_power: external.map_or(T::from(0.0), |force| force * load.velocity),
             flows,
             sides,

@@ -8,13 +8,15 @@ use phea_dynamics::portable::argument;
 use phea_dynamics::uncertain_plant::PlantCoefficients;
 use phea_dynamics::uncertain_plant::responding::RespondingPlant;
 
-use super::super::{ChamberDynamics, LinearLoad, LinearPlant, YieldingSupply};
-use super::{ChamberSide, Paths, PlantInMotion};
+use super::super::series::BeyondSensor;
+use super::super::{ChamberDynamics, LinearLoad, LinearPlant, Paths, YieldingSupply};
+use super::{ChamberSide, PlantInMotion};
 
 /// How far below the slowest and above the fastest thing of a plant its response is its own.
 const BELOW: f64 = 0.01;
 const ABOVE_SPOOL: f64 = 20.0;
 const ABOVE_QUARTER_WAVE: f64 = 40.0;
+const ABOVE_SERIES_MASS: f64 = 5.0;
 /// How far beyond that a count of its own poles extends, and its steps.
 const FAR: f64 = 100.0;
 const STEPS_MAXIMUM: usize = 100_000;
@@ -29,7 +31,7 @@ impl RespondingPlant for PlantInMotion {
     }
 
     fn rate(&self, frequency_rad_per_s: f64) -> [Complex64; 2] {
-        self.load_velocity(Complex64::new(0.0, frequency_rad_per_s))
+        self.load_velocity(Complex64::new(0.0, frequency_rad_per_s)).map(|path| path * self.velocity_gain())
     }
 
     fn enclosure(&self, frequencies_rad_per_s: [f64; 2]) -> Disc {
@@ -86,7 +88,8 @@ impl RespondingPlant for PlantInMotion {
     /// ```
     ///
     /// A limited supply is a third port, `power_per_volt`. The feed-forward of a load that can move
-    /// multiplies this by at most 1/(1 - K_x |P Y_L|).
+    /// multiplies this by at most 1/(1 - (1 + e) K_x |H_v| |P Y_L|). A series element stands between
+    /// K_e and Y_L: `LinearSeries::beyond_sensor`.
     fn roll_off(&self, frequency_rad_per_s: f64) -> Option<f64> {
         let friction = self.plant.viscous_friction;
         let w = frequency_rad_per_s;
@@ -102,11 +105,17 @@ impl RespondingPlant for PlantInMotion {
             LinearLoad::Yielding { stiffness, .. } => (0.0, w / stiffness),
             LinearLoad::Prescribed => (0.0, 0.0),
         };
+        let beyond = match &self.plant.series {
+            None => Some(BeyondSensor { yielding, passed: 1.0, output: 1.0 }),
+            Some(series) => series.beyond_sensor(w, [yielding, speed]),
+        };
+        let BeyondSensor { yielding, passed, output } = beyond?;
         let held = w / self.plant.sensor_stiffness - yielding;
         let bound = (self.power_per_volt() / friction).sqrt() * spool / held;
-        let fed = self.plant.load_velocity_feed_forward.map_or(0.0, |gain| gain.abs() * bound * speed);
+        let peak = self.plant.velocity_sensor.filter.peak();
+        let fed = self.fed_gain().map_or(0.0, |gain| gain.abs() * peak * bound * passed * speed);
         let falls = spool > 0.0 && held > 0.0 && yielding >= 0.0 && fed < 0.5;
-        let bound = bound / (1.0 - fed);
+        let bound = output * bound / (1.0 - fed);
         (self.is_passive() && falls && bound.is_finite()).then_some(bound)
     }
 
@@ -120,7 +129,7 @@ impl RespondingPlant for PlantInMotion {
         // 1 less the feedback of the load velocity, for a plant that is stable without it: Nyquist
         let difference = |frequency: f64| {
             let Paths { sensed, fed, .. } = self.paths(Complex64::new(0.0, frequency));
-            (frequency, 1.0 - fed / sensed)
+            (frequency, 1.0 - fed.map_or(Complex64::ZERO, |fed| fed / sensed))
         };
         let [from, to] = self.range_rad_per_s();
         let mut ahead: Vec<(f64, Complex64)> =
@@ -149,12 +158,21 @@ impl RespondingPlant for PlantInMotion {
             let line = side.line.static_compliance() - side.line.chamber_compliance();
             (side.flow_pressure + self.plant.internal_leakage) / (side.compliance + line)
         });
-        let slowest = slowest.fold(f64::INFINITY, f64::min).min(self.plant.valve_natural_frequency);
+        let [filled, passed] = self.feedback_rad_per_s();
+        let slowest = slowest.fold(filled, f64::min).min(self.plant.valve_natural_frequency);
         let quarter_wave = self.quarter_wave_rad_per_s().unwrap_or(0.0);
         let modes = self.sides.iter().map(|side| side.line.fastest_rad_per_s());
-        let fastest = modes.fold(ABOVE_QUARTER_WAVE * quarter_wave, f64::max);
+        let fastest = modes.fold(ABOVE_QUARTER_WAVE * quarter_wave, f64::max).max(passed);
         let fastest = fastest.max(ABOVE_SPOOL * self.plant.valve_natural_frequency);
+        let shaken = self.plant.series.and_then(|series| {
+            Some(((self.plant.sensor_stiffness + series.stiffness) / series.mass?).sqrt())
+        });
+        let fastest = fastest.max(ABOVE_SERIES_MASS * shaken.unwrap_or(0.0));
         let slowest = if slowest > 0.0 { slowest } else { self.plant.valve_natural_frequency };
+        let filter = self.plant.velocity_sensor.filter.frequency_rad_per_s();
+        let filter = filter.filter(|_| self.plant.load_velocity_feed_forward.is_some());
+        let slowest = filter.map_or(slowest, |filter| slowest.min(filter));
+        let fastest = filter.map_or(fastest, |filter| fastest.max(ABOVE_SPOOL * filter));
         [BELOW * slowest, fastest]
     }
 
@@ -174,6 +192,14 @@ impl PlantInMotion {
         let fed = [here, next].map(|(_, difference)| (difference - 1.0).norm_sqr());
         let is_small = fed.iter().all(|fed| *fed < SMALL_FED * SMALL_FED);
         next.0 < LARGE_STEP * here.0 && (turned < SMALL_TURN || is_small)
+    }
+
+    /// Where dynamic pressure feedback turns, from its capacity with those of the chambers beside it
+    /// to its restrictor between the chambers alone, in rad/s.
+    fn feedback_rad_per_s(&self) -> [f64; 2] {
+        let Some(feedback) = &self.plant.dynamic_feedback else { return [f64::INFINITY, 0.0] };
+        let chambers: f64 = self.sides.iter().map(|side| 1.0 / side.compliance).sum();
+        [feedback.corner(), feedback.corner() + feedback.conductance * chambers]
     }
 
     /// The most power in W that can leave valve and supply for the square of a volt: their sources

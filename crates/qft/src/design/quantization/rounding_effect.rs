@@ -16,7 +16,7 @@ use crate::closed_loop::{Compensation, Member};
 
 /// Least and greatest number of samples that are run.
 const SAMPLES_MINIMUM: usize = 4096;
-const SAMPLES_MAXIMUM: usize = 1 << 21;
+pub(super) const SAMPLES_MAXIMUM: usize = 1 << 21;
 /// The last half of the samples may add this share.
 const SETTLED: f64 = 1e-6;
 
@@ -197,9 +197,9 @@ fn take(worst: &mut Option<RoundingEffect>, found: RoundingEffect) {
 
 /// Sums of |h| and of h^2.
 #[derive(Clone, Copy, Debug, Default)]
-struct Sums {
+pub(super) struct Sums {
     magnitudes: f64,
-    squares: f64,
+    pub(super) squares: f64,
 }
 
 impl Sums {
@@ -217,6 +217,27 @@ impl Sums {
         }
     }
 
+    /// The sums of output and command over the samples of a loop; `None` if they do not settle.
+    pub(super) fn settled(step: &mut dyn FnMut() -> (f64, f64)) -> Option<(Sums, Sums)> {
+        let (mut output, mut command) = (Sums::default(), Sums::default());
+        let (mut samples, mut end) = (0, SAMPLES_MINIMUM);
+        while end <= SAMPLES_MAXIMUM {
+            let (output_before, command_before) = (output, command);
+            while samples < end {
+                let (y, u) = step();
+                output.add(y);
+                command.add(u);
+                samples += 1;
+            }
+            let first = end == SAMPLES_MINIMUM;
+            if !first && output.settled_since(&output_before) && command.settled_since(&command_before) {
+                return Some((output, command));
+            }
+            end *= 2;
+        }
+        None
+    }
+
     fn settled_since(&self, earlier: &Sums) -> bool {
         self.magnitudes - earlier.magnitudes <= SETTLED * self.magnitudes
     }
@@ -224,7 +245,7 @@ impl Sums {
 
 /// Sections in series behind whole samples of delay.
 #[derive(Clone, Debug)]
-struct DelayedSections {
+pub(super) struct DelayedSections {
     sections: Vec<Section>,
     states: Vec<[f64; 2]>,
     waiting: VecDeque<f64>,
@@ -232,14 +253,14 @@ struct DelayedSections {
 
 /// Output, measurement and controller at rest.
 #[derive(Clone, Debug)]
-struct SampledLoop {
+pub(super) struct SampledLoop {
     output: DelayedSections,
     measured: DelayedSections,
     feedback: DelayedSections,
 }
 
 impl SampledLoop {
-    fn new(
+    pub(super) fn new(
         output: &TransferFunction,
         measured: &TransferFunction,
         feedback: &TransferFunction,
@@ -252,26 +273,8 @@ impl SampledLoop {
     /// The sums of what output and command do after one error of command and measurement; `None` if
     /// they do not settle.
     fn response(&self, error: [f64; 2]) -> Option<(Sums, Sums)> {
-        let mut running = self.clone();
-        let (mut output, mut command) = (Sums::default(), Sums::default());
-        let mut error = error;
-        let (mut samples, mut end) = (0, SAMPLES_MINIMUM);
-        while end <= SAMPLES_MAXIMUM {
-            let (output_before, command_before) = (output, command);
-            while samples < end {
-                let (y, u) = running.step(error);
-                output.add(y);
-                command.add(u);
-                error = [0.0, 0.0];
-                samples += 1;
-            }
-            let first = end == SAMPLES_MINIMUM;
-            if !first && output.settled_since(&output_before) && command.settled_since(&command_before) {
-                return Some((output, command));
-            }
-            end *= 2;
-        }
-        None
+        let (mut running, mut error) = (self.clone(), error);
+        Sums::settled(&mut || running.step(std::mem::take(&mut error)))
     }
 
     /// One sample: output and command.
@@ -281,7 +284,7 @@ impl SampledLoop {
     /// ```
     ///
     /// Where both controller and plant have direct feedthrough, u is solved for.
-    fn step(&mut self, [command_error, measurement_error]: [f64; 2]) -> (f64, f64) {
+    pub(super) fn step(&mut self, [command_error, measurement_error]: [f64; 2]) -> (f64, f64) {
         let (plant, controller) = (self.measured.at_once(), self.feedback.at_once());
         let measured = self.measured.free() + plant * command_error + measurement_error;
         let command = (self.feedback.free() - controller * measured) / (1.0 + controller * plant);
@@ -295,7 +298,7 @@ impl SampledLoop {
 }
 
 impl DelayedSections {
-    fn new(function: &TransferFunction) -> Result<DelayedSections, LinearError> {
+    pub(super) fn new(function: &TransferFunction) -> Result<DelayedSections, LinearError> {
         let samples = match function.domain() {
             TimeDomain::Discrete { sample_time_s } => {
                 (function.dead_time_s() / sample_time_s).round() as usize
@@ -308,7 +311,7 @@ impl DelayedSections {
     }
 
     /// By how much an input of one changes the output at once.
-    fn at_once(&self) -> f64 {
+    pub(super) fn at_once(&self) -> f64 {
         if !self.waiting.is_empty() {
             return 0.0;
         }
@@ -316,7 +319,7 @@ impl DelayedSections {
     }
 
     /// The output without an input.
-    fn free(&self) -> f64 {
+    pub(super) fn free(&self) -> f64 {
         let first = self.waiting.front().copied().unwrap_or(0.0);
         self.sections
             .iter()
@@ -324,7 +327,7 @@ impl DelayedSections {
             .fold(first, |signal, (section, state)| section.output(*state, signal))
     }
 
-    fn advance(&mut self, input: f64) {
+    pub(super) fn advance(&mut self, input: f64) {
         self.waiting.push_back(input);
         let mut signal = self.waiting.pop_front().unwrap_or(input);
         for (section, state) in self.sections.iter().zip(&mut self.states) {

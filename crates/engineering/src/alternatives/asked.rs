@@ -1,0 +1,133 @@
+//! The alternatives of a project as projects, ready to be judged: with their settings, with the hose
+//! that `[sizing]` finds where one asks for it, and with the ranges that follow their rig.
+
+use phea_hydraulics::line::Line;
+
+use super::recentred::{self, MovedRange};
+use crate::audit::outside;
+use crate::catalogue::{self, Catalogue, CatalogueKind};
+use crate::error::ProcedureError;
+use crate::project::{self, AS_DECLARED, Alternative, Component, Loaded, read_alternative};
+use crate::rig::sizing_problem;
+use crate::setup::Setup;
+use crate::sizing::{Question, size};
+use crate::source::Source;
+
+/// An alternative, ready to be judged.
+#[derive(Clone, Debug)]
+pub struct AskedAlternative {
+    /// Its name.
+    pub name: String,
+    /// The project with its settings, and with what was found for it.
+    pub loaded: Loaded,
+    /// Why `[sizing]` finds no hose, where it asks for one.
+    pub no_hose: Option<String>,
+    /// The ranges of `[uncertainty]` that were moved.
+    pub moved: Vec<MovedRange>,
+}
+
+impl AskedAlternative {
+    /// The parameters of its rig that lie outside of their ranges in `[uncertainty]`, in words; `None`
+    /// where they are those of the project as it is declared.
+    pub fn outside(&self, declared: &Loaded) -> Option<String> {
+        let words = |loaded: &Loaded| {
+            let setup = Setup::new(&loaded.project).ok()?;
+            outside(&setup).map(|(_, words)| words)
+        };
+        words(&self.loaded).filter(|own| words(declared).as_ref() != Some(own))
+    }
+}
+
+/// Where a project is read again.
+#[derive(Clone, Copy)]
+pub(super) struct ReadingAgain<'a> {
+    pub(super) source: &'a dyn Source,
+    pub(super) catalogues: &'a [String],
+}
+
+impl ReadingAgain<'_> {
+    /// A project with further settings.
+    pub(super) fn with(&self, loaded: &Loaded, further: &[String]) -> Result<Loaded, ProcedureError> {
+        let settings = [loaded.all_settings().as_slice(), further].concat();
+        project::read(self.source, &loaded.path, &settings, self.catalogues)
+            .map_err(ProcedureError::Catalogue)
+    }
+}
+
+/// The project as it is declared, and its alternatives in file order.
+///
+/// # Errors
+/// [`ProcedureError::Catalogue`] for an alternative that is no valid project,
+/// [`ProcedureError::Alternative`] for one that cannot be sized or whose ranges cannot be moved.
+pub fn asked(
+    source: &dyn Source,
+    loaded: &Loaded,
+    catalogues: &[String],
+) -> Result<Vec<AskedAlternative>, ProcedureError> {
+    let catalogue = catalogue::load(source, catalogues).map_err(ProcedureError::Catalogue)?;
+    let again = ReadingAgain { source, catalogues };
+    let itself = AskedAlternative {
+        name: AS_DECLARED.to_string(),
+        loaded: loaded.clone(),
+        no_hose: None,
+        moved: vec![],
+    };
+    let mut found = vec![itself];
+    for (index, alternative) in loaded.project.alternatives.iter().enumerate() {
+        let other = read_alternative(source, loaded, catalogues, index).map_err(ProcedureError::Catalogue)?;
+        let wrong = |reason: String| ProcedureError::Alternative { name: alternative.name.clone(), reason };
+        let mut one = sized(&again, alternative, other, &catalogue)?;
+        if alternative.recentre {
+            one.moved = recentred::moved(&loaded.project, &one.loaded.project).map_err(wrong)?;
+            one.loaded = again.with(&one.loaded, &recentred::settings(&one.moved))?;
+        }
+        found.push(one);
+    }
+    Ok(found)
+}
+
+/// With the hose that `[sizing]` finds, where it asks for it.
+fn sized(
+    again: &ReadingAgain<'_>,
+    alternative: &Alternative,
+    other: Loaded,
+    catalogue: &Catalogue,
+) -> Result<AskedAlternative, ProcedureError> {
+    let name = alternative.name.clone();
+    let one = |loaded, no_hose| AskedAlternative { name: name.clone(), loaded, no_hose, moved: vec![] };
+    if !alternative.size {
+        return Ok(one(other, None));
+    }
+    let wrong = |reason: &str| ProcedureError::Alternative { name: name.clone(), reason: reason.to_string() };
+    let line = other.project.actuator.as_ref().map(|actuator| &actuator.line);
+    let Some(line) =
+        line.filter(|line| line.a == line.b && matches!(line.a.component, Component::Hose { .. }))
+    else {
+        return Err(wrong("`size` finds a hose, the same for both sides: its [line] must have one"));
+    };
+    let named = line.a.hose_name().map(str::to_string);
+    let problem = Setup::new(&other.project)
+        .map_err(ProcedureError::from)
+        .and_then(|setup| Ok(sizing_problem(&setup, catalogue)?))
+        .map_err(|error| wrong(&error.to_string()))?;
+    let sizing = size(&problem, Question::Both);
+    let Some(best) = sizing.best() else {
+        return Ok(one(other, Some("no hose of the catalogue is accepted by [sizing]".to_string())));
+    };
+    if best.length_m() == 0.0 {
+        return Ok(one(other, Some("[sizing] finds that no hose is needed".to_string())));
+    }
+    let mut settings = vec![format!("line.length={:e}", best.length_m())];
+    if catalogue.find(CatalogueKind::Hose, &best.option.name).is_some() {
+        settings.insert(0, format!("line.hose=\"{}\"", best.option.name));
+    }
+    let found = again.with(&other, &settings)?;
+    let has = Setup::rig_of(&found.project).map(|rig| rig.actuator.components().line_a);
+    let same = matches!(has, Ok(Line::Hose { hose, .. }) if hose == best.option.hose);
+    if !same && named.as_deref() != Some(best.option.name.as_str()) {
+        return Err(wrong(
+            "[line] states properties of its own hose, which the hose that [sizing] finds would take over: state them in a catalogue",
+        ));
+    }
+    Ok(one(found, None))
+}

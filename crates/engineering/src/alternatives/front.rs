@@ -1,0 +1,262 @@
+//! Fronts of Pareto: every alternative over a swept number of its project, by two or three columns.
+
+use phea_dynamics::watch::{Progress, Watch};
+
+use super::asked::ReadingAgain;
+use super::comparison::sense_of;
+use super::{AskedAlternative, COLUMN_SENSES, ColumnSense, JudgedAlternative, Judging, dominates, recentred};
+use crate::error::ProcedureError;
+use crate::linearize::{SweepRequest, points, range, values};
+use crate::project::Project;
+use crate::quantity::{self, DisplayUnit};
+use crate::spelling::nearest;
+
+/// The request, as written.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct FrontRequest {
+    /// Two or three columns by their names in an answer, or `swept` for the swept number; each may end
+    /// in `:less` or `:more`, which says what is better.
+    pub columns: Vec<String>,
+    /// What is swept.
+    pub sweep: SweepRequest,
+}
+
+/// Values of a sweep whose every point is a design, if none are requested.
+const POINTS: usize = 5;
+
+/// The swept number as a column.
+const SWEPT: &str = "swept";
+
+/// A column of a front.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrontColumn {
+    /// Its name for programs.
+    pub key: &'static str,
+    /// What is better.
+    pub sense: ColumnSense,
+}
+
+/// Alternatives over a swept number.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Front {
+    /// The swept key.
+    pub path: String,
+    /// What people read it in.
+    pub unit: DisplayUnit,
+    /// The unit of its values.
+    pub si: &'static str,
+    /// Two or three.
+    pub columns: Vec<FrontColumn>,
+    /// The points of each alternative, in the order of the answer.
+    pub points: Vec<FrontPoint>,
+    /// How many points were not reached when the watch stopped.
+    pub not_reached: usize,
+}
+
+/// An alternative at one value of the swept number.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FrontPoint {
+    /// The name of the alternative.
+    pub alternative: String,
+    /// The swept number, SI.
+    pub value: f64,
+    /// Whether every specification is satisfied there, or why this is not known.
+    pub feasible: Result<bool, String>,
+    /// Whether it satisfies them, is driven to its end, and is not contradicted by the machine: only
+    /// such points dominate others, or are on a front.
+    pub comparable: bool,
+    /// The columns, with their words and units, or why there are none.
+    pub values: Vec<Result<FrontValue, String>>,
+    /// The points that dominate it, by their place in the list.
+    pub dominated_by: Vec<usize>,
+}
+
+/// A value of a column.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrontValue {
+    /// SI.
+    pub value: f64,
+    /// For people.
+    pub words: &'static str,
+    /// For people.
+    pub unit: DisplayUnit,
+    /// Significant digits for people; 0 for a whole number.
+    pub digits: usize,
+}
+
+impl FrontPoint {
+    /// Whether no other point dominates it.
+    pub fn is_on_front(&self) -> bool {
+        self.comparable && self.dominated_by.is_empty() && self.numbers().is_some()
+    }
+
+    /// Its values in SI, if all exist.
+    pub fn numbers(&self) -> Option<Vec<f64>> {
+        self.values.iter().map(|value| Some(value.as_ref().ok()?.value)).collect()
+    }
+}
+
+/// A request that was read.
+pub(super) struct FrontPlan {
+    columns: Vec<FrontColumn>,
+    path: String,
+    unit: DisplayUnit,
+    si: &'static str,
+    pub(super) values: Vec<f64>,
+}
+
+/// Reads the request.
+///
+/// # Errors
+/// [`ProcedureError::Option`] for columns or a sweep that do not exist.
+pub(super) fn plan(request: &FrontRequest) -> Result<FrontPlan, ProcedureError> {
+    let text = request.columns.join(",");
+    let refused = |message: String| ProcedureError::Option { option: "front", text: text.clone(), message };
+    if !(2..=3).contains(&request.columns.len()) {
+        return Err(refused(
+            "a front has two or three columns, such as disturbance_peak_n,swept".to_string(),
+        ));
+    }
+    let columns = request.columns.iter().map(|column| column_of(column).map_err(refused));
+    let columns = columns.collect::<Result<Vec<_>, _>>()?;
+    let twice = |one: &FrontColumn| columns.iter().filter(|other| other.key == one.key).count() > 1;
+    if let Some(column) = columns.iter().find(|column| twice(column)) {
+        return Err(refused(format!("`{}` stands twice", column.key)));
+    }
+    let asked = range(&request.sweep.range)?;
+    let count = points(request.sweep.points.or(Some(POINTS)))?;
+    let values = values(asked.ends, count, asked.by_ratio());
+    let unit = quantity::fitting(asked.ends[0].abs().max(asked.ends[1].abs()), asked.key.dimension);
+    Ok(FrontPlan { columns, path: asked.path, unit, si: asked.key.dimension.si, values })
+}
+
+/// A column by its name, or the nearest spelling.
+fn column_of(text: &str) -> Result<FrontColumn, String> {
+    let (name, wanted) = match text.trim().split_once(':') {
+        None => (text.trim(), None),
+        Some((name, "less")) => (name, Some(ColumnSense::Less)),
+        Some((name, "more")) => (name, Some(ColumnSense::More)),
+        Some((_, other)) => return Err(format!("`{other}` is neither `less` nor `more`")),
+    };
+    let known = COLUMN_SENSES.iter().find(|(key, _)| *key == name);
+    let names = COLUMN_SENSES.iter().map(|(key, _)| *key);
+    let help = || nearest(name, names).map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+    let (key, _) = known.ok_or_else(|| format!("there is no column `{name}`{}", help()))?;
+    Ok(FrontColumn { key, sense: wanted.or(sense_of(key)).unwrap_or(ColumnSense::Less) })
+}
+
+/// Judges every alternative at every value. The ranges of `[uncertainty]` follow the rig of each.
+pub(super) fn swept(
+    judging: &Judging<'_>,
+    (again, all): (&ReadingAgain<'_>, &[AskedAlternative]),
+    plan: &FrontPlan,
+    goes_on: bool,
+    watch: Watch<'_>,
+) -> Front {
+    let count = (all.len() * plan.values.len()) as f64;
+    let mut found: Vec<FrontPoint> = Vec::new();
+    let (mut not_reached, mut done) = (0, 0.0);
+    for one in all {
+        for &value in &plan.values {
+            let mut told =
+                |progress: Progress| watch(Progress { share: (done + progress.share) / count, ..progress });
+            let point = match goes_on && not_reached == 0 {
+                true => point(judging, again, (one, plan), value, &mut told),
+                false => None,
+            };
+            done += 1.0;
+            match point {
+                Some(point) => found.push(point),
+                None => not_reached += 1,
+            }
+        }
+    }
+    compare(&mut found, &plan.columns);
+    Front {
+        path: plan.path.clone(),
+        unit: plan.unit,
+        si: plan.si,
+        columns: plan.columns.clone(),
+        points: found,
+        not_reached,
+    }
+}
+
+/// `None` where the watch stops it.
+fn point(
+    judging: &Judging<'_>,
+    again: &ReadingAgain<'_>,
+    (one, plan): (&AskedAlternative, &FrontPlan),
+    value: f64,
+    watch: Watch<'_>,
+) -> Option<FrontPoint> {
+    let found = match at(again, one, &plan.path, value) {
+        Ok(there) => Ok(judging.judged(there, watch)?),
+        Err(error) => Err(error.to_string()),
+    };
+    let alternative = one.name.clone();
+    Some(match found {
+        Ok(judged) => FrontPoint {
+            alternative,
+            value,
+            feasible: judged.feasible(),
+            comparable: judged.is_comparable(),
+            values: values_of(&judged, plan, value),
+            dominated_by: vec![],
+        },
+        Err(reason) => FrontPoint {
+            alternative,
+            value,
+            feasible: Err(reason.clone()),
+            comparable: false,
+            values: plan.columns.iter().map(|_| Err(reason.clone())).collect(),
+            dominated_by: vec![],
+        },
+    })
+}
+
+/// The alternative with the swept number, its ranges moved with it.
+fn at(
+    again: &ReadingAgain<'_>,
+    one: &AskedAlternative,
+    path: &str,
+    value: f64,
+) -> Result<AskedAlternative, ProcedureError> {
+    let mut loaded = again.with(&one.loaded, &[format!("{path}={value:e}")])?;
+    let wrong = |reason: String| ProcedureError::Alternative { name: one.name.clone(), reason };
+    let is_rig = |project: &Project| project.actuator.is_some();
+    let mut moved = vec![];
+    if is_rig(&loaded.project) {
+        moved = recentred::moved(&one.loaded.project, &loaded.project).map_err(wrong)?;
+        loaded = again.with(&loaded, &recentred::settings(&moved))?;
+    }
+    Ok(AskedAlternative { loaded, moved, ..one.clone() })
+}
+
+fn values_of(judged: &JudgedAlternative, plan: &FrontPlan, value: f64) -> Vec<Result<FrontValue, String>> {
+    let columns = judged.columns();
+    let of = |column: &FrontColumn| {
+        if column.key == SWEPT {
+            return Ok(FrontValue { value, words: SWEPT, unit: plan.unit, digits: 3 });
+        }
+        let found = columns.first(column.key).ok_or("there is no such column here")?;
+        let reason = || found.value.clone().err().unwrap_or_else(|| "not in every scenario".to_string());
+        let value = columns.worst(column.key).ok_or_else(reason)?;
+        Ok(FrontValue { value, words: found.words, unit: found.unit, digits: found.digits })
+    };
+    plan.columns.iter().map(of).collect()
+}
+
+/// Which point dominates which.
+fn compare(points: &mut [FrontPoint], columns: &[FrontColumn]) {
+    let senses: Vec<ColumnSense> = columns.iter().map(|column| column.sense).collect();
+    let numbers: Vec<Option<Vec<f64>>> =
+        points.iter().map(|point| point.numbers().filter(|_| point.comparable)).collect();
+    for (point, own) in points.iter_mut().zip(&numbers) {
+        let Some(own) = own else { continue };
+        let better =
+            |other: &Option<Vec<f64>>| other.as_ref().is_some_and(|other| dominates(other, own, &senses));
+        let places = numbers.iter().enumerate().filter(|(_, other)| better(other));
+        point.dominated_by = places.map(|(place, _)| place).collect();
+    }
+}

@@ -1,0 +1,127 @@
+//! What an alternative is made of: stiffness, lengths, masses, volumes, and what it takes at rest.
+
+use phea_hydraulics::line::Line;
+
+use super::JudgedAlternative;
+use super::columns::{AlternativeColumn, column};
+use crate::project::DeclaredActuator;
+use crate::quantity::{DisplayUnit, MASS, VOLUME, fitting};
+use crate::rig::{Rig, power_at_rest, series_coil};
+use crate::setup::Setup;
+
+impl JudgedAlternative {
+    pub(super) fn rig_columns(&self) -> Vec<AlternativeColumn> {
+        let stiffness = |end: usize| {
+            let found = self.linearization.as_ref().map_err(Clone::clone)?;
+            Ok([found.stiffness[0].minimum, found.stiffness[0].maximum][end])
+        };
+        let equivalent = Setup::rig_of(&self.loaded.project).map_err(|error| error.to_string());
+        let equivalent = equivalent.map(|rig| rig.leaking().equivalent_stiffness());
+        let stiff = DisplayUnit::MEGANEWTON_PER_METRE;
+        let mut columns = vec![
+            column("stiffness_minimum_n_per_m", "least K_H", stiff, 3, stiffness(0)),
+            column("stiffness_maximum_n_per_m", "greatest K_H", stiff, 3, stiffness(1)),
+            column("equivalent_stiffness_n_per_m", "K_eq at the point", stiff, 3, equivalent),
+        ];
+        columns.extend(self.made_of());
+        columns.extend(self.sized_columns());
+        columns
+    }
+
+    fn made_of(&self) -> [AlternativeColumn; 8] {
+        let rig = Setup::rig_of(&self.loaded.project).map_err(|error| error.to_string());
+        let declared = self.loaded.project.actuator.as_ref();
+        let of = |value: fn(&DeclaredActuator, &Rig) -> Result<f64, &'static str>| {
+            let rig = rig.as_ref().map_err(Clone::clone)?;
+            value(declared.ok_or("")?, rig).map_err(String::from)
+        };
+        let (metre, litre) = (DisplayUnit::METRE, |value: &Result<f64, String>| {
+            fitting(value.clone().unwrap_or_default(), &VOLUME)
+        });
+        let [in_lines, oil, gas] = [of(lines_volume), of(oil_volume), of(gas_volume)];
+        let oil_mass =
+            of(|declared, rig| Ok(oil_volume(declared, rig)? * rig.actuator.components().fluid.density));
+        let kilogram = fitting(1.0, &MASS);
+        let power = of(|declared, rig| Ok(power_at_rest(declared, rig)));
+        [
+            column("actuator_length_m", "length, retracted", metre, 3, of(actuator_length)),
+            column("lines_length_m", "length of both lines", metre, 3, of(lines_length)),
+            column("moving_mass_kg", "moving mass", kilogram, 3, of(moving_mass)),
+            column("lines_volume_m3", "oil in both lines", litre(&in_lines), 3, in_lines),
+            column("oil_volume_m3", "oil in all", litre(&oil), 3, oil),
+            column("oil_mass_kg", "mass of that oil", kilogram, 3, oil_mass),
+            column("gas_volume_m3", "gas", litre(&gas), 3, gas),
+            column("power_at_rest_w", "loss at rest", DisplayUnit::WATT, 3, power),
+        ]
+    }
+
+    /// What `[sizing]` finds for it, whether it is asked to take that or not.
+    fn sized_columns(&self) -> [AlternativeColumn; 2] {
+        let best = self.sizing.as_ref().map_err(Clone::clone).and_then(|sizing| {
+            sizing.best().ok_or_else(|| "no hose of the catalogue is accepted".to_string())
+        });
+        let length = best.clone().map(|best| best.length_m());
+        let gain = best.map(|best| best.branch.gain_v_per_n);
+        [
+            column("sized_length_m", "length by [sizing]", DisplayUnit::METRE, 3, length),
+            column("sized_gain_v_per_n", "gain by [sizing]", DisplayUnit::MILLIVOLT_PER_NEWTON, 3, gain),
+        ]
+    }
+}
+
+/// From mount to mount with the rod in: stroke, dead length and the springs on the rod.
+fn actuator_length(declared: &DeclaredActuator, rig: &Rig) -> Result<f64, &'static str> {
+    let cylinder = &declared.cylinder;
+    let dead = cylinder.dead_length.ok_or("not stated: cylinder.dead_length")?;
+    let spring = match (&declared.series, series_coil(declared, rig)) {
+        (None, _) => 0.0,
+        (Some(_), Some(pair)) => pair.installed_length,
+        (Some(_), None) => return Err("not stated: series.coil, which has a length"),
+    };
+    Ok(cylinder.stroke + dead + spring)
+}
+
+/// Of the rod, and of what moves between force sensor and spring.
+fn moving_mass(_: &DeclaredActuator, rig: &Rig) -> Result<f64, &'static str> {
+    let on_rod = rig.actuator.components().series.and_then(|series| series.mass).unwrap_or(0.0);
+    Ok(rig.linear.moving_mass + on_rod)
+}
+
+fn lines(rig: &Rig) -> [&Line; 2] {
+    let components = rig.actuator.components();
+    [&components.line_a, &components.line_b]
+}
+
+fn lines_length(_: &DeclaredActuator, rig: &Rig) -> Result<f64, &'static str> {
+    let length = |line: &Line| match line {
+        Line::Hose { length, .. } | Line::Pipe { length, .. } => Ok(*length),
+        Line::Volume { .. } => Err("a line that is stated as a volume has no length"),
+    };
+    let [a, b] = lines(rig);
+    Ok(length(a)? + length(b)?)
+}
+
+fn lines_volume(_: &DeclaredActuator, rig: &Rig) -> Result<f64, &'static str> {
+    Ok(lines(rig).into_iter().map(Line::volume).sum())
+}
+
+/// Lines, chambers at the operating point, dead volumes, and what the accumulators hold there.
+fn oil_volume(declared: &DeclaredActuator, rig: &Rig) -> Result<f64, &'static str> {
+    let components = rig.actuator.components();
+    let (cylinder, point) = (&components.cylinder, &rig.point);
+    let chamber_a = cylinder.area_a * point.position + cylinder.dead_volume_a;
+    let chamber_b = cylinder.area_b * (cylinder.stroke - point.position) + cylinder.dead_volume_b;
+    let pressures = [point.pressure_a, point.pressure_b];
+    let held = components.accumulators.iter().zip(pressures);
+    let held: f64 = held.filter_map(|(gas, pressure)| Some(gas.as_ref()?.oil(pressure))).sum();
+    Ok(lines_volume(declared, rig)? + chamber_a + chamber_b + held)
+}
+
+/// Of the accumulators at the chambers, at their precharge.
+fn gas_volume(_: &DeclaredActuator, rig: &Rig) -> Result<f64, &'static str> {
+    let gas = rig.actuator.components().accumulators;
+    if gas.iter().all(Option::is_none) {
+        return Err("there is no accumulator at the chambers");
+    }
+    Ok(gas.iter().flatten().map(|gas| gas.gas_volume).sum())
+}

@@ -1,0 +1,90 @@
+//! Ranges of `[uncertainty]` that follow a rig: those of parameters of the linear model, moved by the
+//! factor by which another rig changes the parameter.
+
+use phea_hydraulics::line::StiffeningMember;
+
+use crate::linearize::stroke_stiffness;
+use crate::project::{Project, Uncertain};
+use crate::rig::Rig;
+use crate::setup::Setup;
+
+/// A range that was moved.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MovedRange {
+    /// The parameter of the linear model.
+    pub name: String,
+    /// Nominal value, minimum and maximum as they were stated, SI.
+    pub stated: [f64; 3],
+    /// The same for the rig of the alternative.
+    pub moved: [f64; 3],
+}
+
+/// Relative change of a parameter below which it counts as the same.
+const SAME: f64 = 1e-9;
+
+/// The ranges that the rig of another project moves.
+///
+/// ```text
+/// least' = least k(least)       greatest' = greatest k(greatest)       nominal' = nominal k, within both
+/// ```
+///
+/// k is the quotient of the derived parameter of both rigs at their operating points. For K_H, whose
+/// range is that over the stroke, the ends have the quotients of the least and of the greatest
+/// stiffness over the stroke. A range that the other project states differently is its own and is
+/// left alone, as is a parameter that `[linear]` states.
+pub(super) fn moved(base: &Project, other: &Project) -> Result<Vec<MovedRange>, String> {
+    let rig = |project| Setup::rig_of(project).map_err(|error| error.to_string());
+    let rigs = [rig(base)?, rig(other)?];
+    let inherited = |range: &&Uncertain| base.uncertainty.contains(range);
+    let mut found = Vec::new();
+    for range in other.uncertainty.iter().filter(inherited) {
+        let Some([from, to]) = derived(&rigs, &range.name) else { continue };
+        if other.linear.get(&range.name).is_some() || same(&from, &to) {
+            continue;
+        }
+        if from.contains(&0.0) {
+            return Err(format!(
+                "`recentre` cannot move the range of {}, which is zero as it is declared: state it in `set`",
+                range.name
+            ));
+        }
+        let scaled = |stated: f64, end: usize| stated * to[end] / from[end];
+        let [least, greatest] = [scaled(range.minimum, 1), scaled(range.maximum, 2)];
+        found.push(MovedRange {
+            name: range.name.clone(),
+            stated: [range.nominal, range.minimum, range.maximum],
+            moved: [scaled(range.nominal, 0).max(least).min(greatest), least, greatest],
+        });
+    }
+    Ok(found)
+}
+
+/// The derived parameter of each rig: at the operating point, and what its least and its greatest
+/// value are measured by.
+fn derived(rigs: &[Rig; 2], name: &str) -> Option<[[f64; 3]; 2]> {
+    let of = |rig: &Rig| {
+        let found = rig.parameters.iter().find(|parameter| parameter.name == name)?;
+        let here = found.derived;
+        Some(match name {
+            "hydraulic_stiffness" => {
+                let stroke = stroke_stiffness(rig, StiffeningMember::Nominal);
+                [here, stroke.minimum, stroke.maximum]
+            }
+            _ => [here; 3],
+        })
+    };
+    Some([of(&rigs[0])?, of(&rigs[1])?])
+}
+
+fn same(from: &[f64; 3], to: &[f64; 3]) -> bool {
+    from.iter().zip(to).all(|(from, to)| (to - from).abs() <= SAME * from.abs())
+}
+
+/// What `--set` makes of the moved ranges.
+pub(super) fn settings(moved: &[MovedRange]) -> Vec<String> {
+    let each = moved.iter().flat_map(|range| {
+        let parts = ["nominal", "minimum", "maximum"].into_iter().zip(range.moved);
+        parts.map(|(part, value)| format!("uncertainty.{}.{part}={value:e}", range.name))
+    });
+    each.collect()
+}

@@ -1,0 +1,46 @@
+use phea_hydraulics::series::{CoilPair, LEAST_ACTIVE_COILS};
+
+use super::list::List;
+use crate::project::Project;
+use crate::rig::{Rig, series_coil, stall_force};
+
+const TOO_FEW_COILS: &str = "fewer than two active coils, whose ends would decide the stiffness: take a smaller index, a lower stress, or disc springs";
+
+/// The spring between force sensor and load, and how it is wound.
+pub(super) fn series(project: &Project, rig: &Rig, list: &mut List) {
+    let components = rig.actuator.components();
+    let Some(spring) = &components.series else { return };
+    list.group("Series spring");
+    let force = rig.point.hydraulic_force;
+    list.add(
+        "series.stiffness_at_point",
+        "k_t",
+        spring.stiffness_under(force),
+        "N/m",
+        "k_t = dF_f/dd at F_H",
+    );
+    let deflection = "F_f(d) = F_H";
+    list.add("series.deflection_at_point", "d", spring.deflection_under(force), "m", deflection);
+    let deflection = spring.deflection_under(stall_force(rig));
+    list.add("series.deflection_at_stall", "d", deflection, "m", "F_f(d) = max(F_{max}, -F_{min})");
+    if let Some(pair) = project.actuator.as_ref().and_then(|declared| series_coil(declared, rig)) {
+        wound(&pair, list);
+    }
+}
+
+/// The pair of coil springs that holds the stall force.
+fn wound(pair: &CoilPair, list: &mut List) {
+    let wahl = "K_w = (4 C - 1)/(4 C - 4) + 0.615/C";
+    list.add("series.coil.wahl_factor", "K_w", pair.wahl_factor, "1", wahl);
+    list.add("series.coil.wire_diameter", "d", pair.wire_diameter, "m", "d = sqrt(8 K_w F_{max} C/(π τ))");
+    list.add("series.coil.coil_diameter", "D", pair.coil_diameter, "m", "D = C d");
+    let coils = "n = G d/(4 C^3 k), either of two opposed springs";
+    if pair.active_coils < LEAST_ACTIVE_COILS {
+        return list.absent("series.coil.active_coils", "n", "1", coils, TOO_FEW_COILS);
+    }
+    list.add("series.coil.active_coils", "n", pair.active_coils, "1", coils);
+    list.add("series.coil.solid_length", "L_s", pair.solid_length, "m", "L_s = (n + 2) d");
+    let length = "L = 2 (L_s + 1.3 F_{max}/k), both at rest in their housing";
+    list.add("series.coil.installed_length", "L", pair.installed_length, "m", length);
+    list.add("series.coil.mass", "m", pair.mass, "kg", "m = 2 ρ (π d^2/4) π D (n + 2)");
+}

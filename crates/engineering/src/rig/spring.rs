@@ -1,0 +1,22 @@
+use phea_hydraulics::series::{CoilPair, CoilWire, coil_pair};
+
+use super::Rig;
+use crate::project::{DeclaredActuator, SpringCoil};
+
+/// The greatest force in N that the supply pressure gives the piston, in either direction.
+pub(crate) fn stall_force(rig: &Rig) -> f64 {
+    let components = rig.actuator.components();
+    let (cylinder, supply) = (&components.cylinder, &components.supply);
+    let stalls = |pushing: f64, against: f64| pushing * supply.pressure - against * supply.tank_pressure;
+    stalls(cylinder.area_a, cylinder.area_b).max(stalls(cylinder.area_b, cylinder.area_a))
+}
+
+/// The pair of coil springs that is the series spring and holds the stall force; `None` where none
+/// is declared.
+pub(crate) fn series_coil(declared: &DeclaredActuator, rig: &Rig) -> Option<CoilPair> {
+    let stiffness = rig.actuator.components().series.as_ref()?.stiffness;
+    let coil = declared.series.as_ref()?.coil?;
+    let SpringCoil { index, allowed_shear_stress, shear_modulus, density } = coil;
+    let wire = CoilWire { index, allowed_shear_stress, shear_modulus, density };
+    Some(coil_pair(stiffness, stall_force(rig), &wire))
+}

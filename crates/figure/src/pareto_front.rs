@@ -1,0 +1,115 @@
+//! Fronts of Pareto: alternatives over a swept number, by two or three of their columns.
+
+use super::axis::{Axis, extent};
+use super::colour::{Role, series_role, series_stroke};
+use super::legend::LegendEntry;
+use super::plot::{Mark, Marker, MarkerStyle, Panel, Plot};
+use super::{Figure, Words};
+use phea_quantity::DisplayUnit;
+
+/// Where a point stands among the others.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FrontPlace {
+    /// No other point is as good in everything and better in something.
+    OnFront,
+    /// Another one is.
+    Dominated,
+    /// It is not to be had: a specification is violated, or the machine contradicts the verdict.
+    NotToBeHad,
+}
+
+/// A point of an alternative.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ParetoPoint {
+    /// A value for each column, SI.
+    pub values: Vec<f64>,
+    /// The swept number, for its tooltip.
+    pub label: String,
+    /// Among the others.
+    pub place: FrontPlace,
+}
+
+/// An alternative.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ParetoCurve {
+    /// Its name.
+    pub name: String,
+    /// In the order of the swept number.
+    pub points: Vec<ParetoPoint>,
+}
+
+/// What the figure shows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ParetoInput {
+    /// Two or three columns: what is drawn, and its unit. The first lies along x.
+    pub columns: Vec<(String, DisplayUnit)>,
+    /// The alternatives.
+    pub curves: Vec<ParetoCurve>,
+}
+
+/// Room beyond the outermost points, as a share of what they span.
+const ROOM: f64 = 0.03;
+
+/// Draws the figure.
+pub fn pareto_front(words: Words, input: &ParetoInput) -> Figure {
+    let axis = |column: usize| {
+        let (title, unit) = input.columns.get(column).cloned().unwrap_or((String::new(), DisplayUnit::ONE));
+        let points = input.curves.iter().flat_map(|curve| &curve.points);
+        let values = points.filter_map(|point| Some(unit.of(*point.values.get(column)?)));
+        let (least, greatest) = extent(values);
+        // markers at both ends are not cut
+        let room = ROOM * (greatest - least);
+        (Axis::fit_linear(unit.title(&title), [least - room, greatest + room]), unit)
+    };
+    let (x, x_unit) = axis(0);
+    let panels = (1..input.columns.len()).map(|column| {
+        let (y, y_unit) = axis(column);
+        Panel { y, height: 260.0, marks: marks(input, column, [x_unit, y_unit]) }
+    });
+    let panels = panels.collect();
+    words.with_scene(Plot { x, panels, legend: legend(input), equal_aspect: false }.draw())
+}
+
+fn style(place: FrontPlace, role: Role) -> MarkerStyle {
+    match place {
+        FrontPlace::OnFront => MarkerStyle { marker: Marker::Circle, role, radius: 5.0 },
+        FrontPlace::Dominated => MarkerStyle { marker: Marker::Ring, role, radius: 4.5 },
+        FrontPlace::NotToBeHad => MarkerStyle { marker: Marker::Cross, role, radius: 4.5 },
+    }
+}
+
+fn marks(input: &ParetoInput, column: usize, [x_unit, y_unit]: [DisplayUnit; 2]) -> Vec<Mark> {
+    let mut marks = Vec::new();
+    let at = |point: &ParetoPoint| {
+        Some((x_unit.of(*point.values.first()?), y_unit.of(*point.values.get(column)?)))
+    };
+    for (index, curve) in input.curves.iter().enumerate() {
+        let points = curve.points.iter().filter_map(at).collect();
+        marks.push(Mark::Line { points, stroke: series_stroke(index) });
+    }
+    for (index, curve) in input.curves.iter().enumerate() {
+        for point in &curve.points {
+            let Some((x, y)) = at(point) else { continue };
+            let points = vec![(x, y, format!("{}, {}", curve.name, point.label))];
+            marks.push(Mark::Markers { points, style: style(point.place, series_role(index)) });
+        }
+    }
+    marks
+}
+
+fn legend(input: &ParetoInput) -> Vec<LegendEntry> {
+    let curves = input.curves.iter().enumerate();
+    let mut legend: Vec<LegendEntry> =
+        curves.map(|(index, curve)| LegendEntry::line(&curve.name, series_stroke(index))).collect();
+    let places = [
+        (FrontPlace::OnFront, "on the front"),
+        (FrontPlace::Dominated, "dominated"),
+        (FrontPlace::NotToBeHad, "not satisfied, or contradicted by the machine"),
+    ];
+    let used = |place: FrontPlace| {
+        input.curves.iter().flat_map(|curve| &curve.points).any(|point| point.place == place)
+    };
+    let places = places.into_iter().filter(|(place, _)| used(*place));
+    legend.extend(places.map(|(place, words)| LegendEntry::marker(words, style(place, Role::Axis))));
+    legend
+}

@@ -1,0 +1,70 @@
+//! A load velocity that is fed forward as its sensor shows it, against the machine's own derivatives.
+
+#![allow(clippy::unwrap_used)] // helpers of tests
+
+use num_complex::Complex64;
+use phea_dynamics::controller::RateFilter;
+use phea_dynamics::portable::{exp_complex, pow};
+use phea_hydraulics::plant::{LinearPlant, PlantInMotion, VelocitySensor};
+
+use super::plant_in_motion::drawn;
+
+/// A filter, an error of the gain and a delay of the measured velocity: the machine's own derivatives with K_x (1 + e) H_v e^(-s tau),
+/// behind lines in motion; with lumped lines and without delay the quotient of polynomials, which without error is that without sensor.
+#[test]
+fn a_measured_feed_forward_is_the_machine_with_what_its_sensor_shows() {
+    for number in 0..36 {
+        let rig = drawn(number);
+        let (fed, error) = (25.0, -0.3 + 0.6 * number as f64 / 35.0);
+        let frequency_rad_per_s = 10.0 * pow(300.0, number as f64 / 35.0);
+        let filter = match number % 3 {
+            0 => RateFilter::FirstOrder { frequency_rad_per_s },
+            _ => RateFilter::SecondOrder {
+                frequency_rad_per_s,
+                damping_ratio: 0.2 * (number % 7) as f64 + 0.1,
+            },
+        };
+        let delay = if number % 2 == 0 { 2e-3 } else { 0.0 };
+        let shown = VelocitySensor { gain: Some(1.0 + error), ..VelocitySensor::default() };
+        let plant = LinearPlant { velocity_sensor: shown, ..rig.plant };
+        let moving =
+            PlantInMotion::new(&plant, &rig.behind).fed_forward(Some(fed)).filtered(filter).late(delay);
+        let within = VelocitySensor { filter, ..shown };
+        let rational =
+            LinearPlant { velocity_sensor: within, load_velocity_feed_forward: Some(fed), ..plant };
+        let (rational, alone) = (rational.coefficients(), rig.plant.coefficients());
+        let lumped = PlantInMotion::lumped(&rig.plant);
+        for step in 0..14 {
+            let frequency = 0.01 * pow(1e6, f64::from(step) / 13.0);
+            let s = Complex64::new(0.0, frequency);
+            let at_once = fed * (1.0 + error) * filter.response(s);
+            let late = at_once * exp_complex(-s * delay);
+            let closed = |gain: Complex64,
+                          [force, ground]: [Complex64; 2],
+                          [by_command, by_ground]: [Complex64; 2]| {
+                let command = force / (1.0 - gain * by_command);
+                [command, ground + command * gain * by_ground]
+            };
+            let [[force, velocity], [ground_force, ground_velocity]] = rig.force_and_velocity(frequency);
+            let expected = closed(late, [force, ground_force], [velocity, ground_velocity]);
+            let quotients = [&alone.command, alone.disturbance.as_ref().unwrap()]
+                .map(|path| path.at_frequency(frequency));
+            let of_quotients = closed(at_once, quotients, lumped.load_velocity(s));
+            let told = [&rational.command, rational.disturbance.as_ref().unwrap()]
+                .map(|path| path.at_frequency(frequency));
+            let pairs =
+                moving.response(s).into_iter().zip(expected).chain(told.into_iter().zip(of_quotients));
+            for (told, expected) in pairs {
+                let error = (told / expected - 1.0).norm_sqr().sqrt();
+                assert!(error < 1e-7, "rig {number} at {frequency} rad/s: {error}");
+            }
+        }
+    }
+    let plant = LinearPlant { load_velocity_feed_forward: Some(20.0), ..drawn(1).plant };
+    let exact = VelocitySensor { gain: Some(1.0), ..VelocitySensor::default() };
+    let shown = LinearPlant { velocity_sensor: exact, ..plant }.coefficients();
+    assert_eq!(
+        (shown.command, shown.disturbance),
+        (plant.coefficients().command, plant.coefficients().disturbance)
+    );
+}

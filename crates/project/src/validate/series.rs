@@ -1,0 +1,114 @@
+//! The spring between force sensor and load: its keys together, and whether it holds the force of
+//! the cylinder.
+
+use super::Check;
+use crate::{DeclaredActuator, DeclaredSeries, Project, Uncertain};
+use phea_quantity::{self as quantity, FORCE, LENGTH, STIFFNESS};
+
+pub(super) fn series(project: &Project, actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
+    let Some(series) = &actuator.series else { return };
+    if series.travel.is_none() {
+        for (key, needs) in
+            [("progression", series.progression > 0.0), ("stop_stiffness", series.stop_stiffness.is_some())]
+        {
+            let path = format!("series.{key}");
+            if needs && !check.refused("series.travel") {
+                let message =
+                    format!("`{key}` says what happens over the `travel` of the spring, which is not stated");
+                check.error_with_help(&path, message, "state `travel`, to either side");
+            }
+        }
+    }
+    if series.coil.is_some() && series.progression > 0.0 {
+        let message = "a coil of constant pitch is linear: it has no `progression`";
+        check.error_with_help("series.coil", message, "take out one of the two");
+    }
+    damped_stops(series, check);
+    bottoms_out(actuator, series, ("series.travel", series.stiffness), check);
+    let is_soft = |one: &&Uncertain| one.name == "series.stiffness" && one.minimum < series.stiffness;
+    if let Some(softest) = project.uncertainty.iter().find(is_soft) {
+        bottoms_out(actuator, series, ("uncertainty.series.stiffness", softest.minimum), check);
+    }
+    vanishing(project, check);
+}
+
+/// Without a damper and a mass nothing but the force decides how fast the spring moves.
+fn damped_stops(series: &DeclaredSeries, check: &mut Check<'_, '_>) {
+    if series.stop_damping == 0.0 {
+        return;
+    }
+    if series.stop_stiffness.is_none() {
+        let message = "`stop_damping` damps stops that are not there";
+        return check.error_with_help("series.stop_damping", message, "state `stop_stiffness`");
+    }
+    if series.damping == 0.0 && series.mass == 0.0 {
+        let message = "`stop_damping` needs `damping` or `mass`: a massless spring without a damper jumps from any speed to any other";
+        let help = "state the `damping` of the spring, or the `mass` between sensor and spring";
+        check.error_with_help("series.stop_damping", message, help);
+    }
+}
+
+/// The force at which the cylinder stalls must lie within the travel.
+fn bottoms_out(
+    actuator: &DeclaredActuator,
+    series: &DeclaredSeries,
+    (place, stiffness): (&str, f64),
+    check: &mut Check<'_, '_>,
+) {
+    let Some(travel) = series.travel else { return };
+    let [area_a, area_b] = actuator.cylinder.effective_areas_m2();
+    let [supply, tank] = [actuator.supply.pressure, actuator.supply.tank_pressure];
+    let stall = (area_a * supply - area_b * tank).max(area_b * supply - area_a * tank);
+    let holds = stiffness * travel * (1.0 + series.progression);
+    if ["series.stiffness", "series.travel", "supply.pressure"].iter().any(|path| check.refused(path))
+        || !(stall > holds && holds > 0.0)
+    {
+        return;
+    }
+    let force = |value: f64| quantity::display(value, &FORCE, 4);
+    let message = format!(
+        "the spring reaches the end of its `travel` of {} at {}, and the cylinder pushes with up to {} (stall force): it would bottom out, \
+         and the rig become rigid",
+        quantity::display(travel, &LENGTH, 4),
+        force(holds),
+        force(stall)
+    );
+    let factor = 1.0 + series.progression;
+    let help = format!(
+        "give it a `travel` of at least {}, or a `stiffness` of at least {}, or lower the supply pressure",
+        quantity::display(round_up(stall / (stiffness * factor)), &LENGTH, 4),
+        quantity::display(round_up(stall / (travel * factor)), &STIFFNESS, 4)
+    );
+    check.error_with_help(place, message, help);
+}
+
+/// The next number above with three digits, so that what a message proposes is enough.
+fn round_up(value: f64) -> f64 {
+    let mut unit = 1.0;
+    while value / unit >= 1000.0 {
+        unit *= 10.0;
+    }
+    while value / unit < 100.0 {
+        unit /= 10.0;
+    }
+    (value / unit).ceil() * unit
+}
+
+/// A damper or a mass that may vanish would change the order of the plant within one family.
+fn vanishing(project: &Project, check: &mut Check<'_, '_>) {
+    for key in ["series.damping", "series.mass"] {
+        let in_range = project.uncertainty.iter().any(|one| one.name == key && one.minimum <= 0.0);
+        let cases = project.family.iter().flat_map(|family| &family.cases);
+        let in_case =
+            cases.flat_map(|case| &case.parameters).any(|(name, value)| name == key && *value <= 0.0);
+        for (place, vanishes) in
+            [(format!("uncertainty.{key}"), in_range), ("family.cases".to_string(), in_case)]
+        {
+            if vanishes {
+                let message = format!("`{key}` may vanish here, and a plant without it has another order");
+                let help = "let it begin above zero, or leave it at zero and certain";
+                check.error_with_help(&place, message, help);
+            }
+        }
+    }
+}

@@ -1,0 +1,184 @@
+//! Fronts of alternatives over a swept number: table, findings, JSON, CSV and figure.
+
+use super::{ColumnSense, Front, FrontPoint, FrontValue};
+use crate::answer::{Csv, Json, Object, OutputFile, quoted};
+use crate::document::{Cell, Table};
+use crate::figure::{Figure, FrontPlace, ParetoCurve, ParetoInput, ParetoPoint, Words, pareto_front};
+use crate::quantity::DisplayUnit;
+
+/// A row for each point.
+pub(super) fn table(front: &Front) -> Table {
+    let swept = match front.unit.symbol {
+        "1" | "" => front.path.clone(),
+        symbol => format!("{}, {symbol}", front.path),
+    };
+    let columns = (0..front.columns.len()).map(|index| column_words(front, index).to_string());
+    let headings = ["alternative".to_string(), swept, "feasible".to_string()].into_iter().chain(columns);
+    let mut rows = Table::new(headings.chain(["on the front".to_string()]));
+    for point in &front.points {
+        let feasible = match (&point.feasible, point.comparable) {
+            (Ok(true), false) => "contradicted".into(),
+            (Ok(feasible), _) => Cell::from(if *feasible { "yes" } else { "no" }).marked(*feasible),
+            (Err(_), _) => "not known".into(),
+        };
+        let value = |value: &Result<FrontValue, String>| match value {
+            Ok(found) if found.digits == 0 => found.value.to_string().into(),
+            Ok(found) => Cell::quantity(found.value, found.digits, found.unit),
+            Err(_) => Cell::Missing,
+        };
+        let place = match (point.is_on_front(), point.dominated_by.first()) {
+            (true, _) => "yes".to_string(),
+            (false, Some(first)) => format!("behind {}", named(front, *first)),
+            (false, None) => "-".to_string(),
+        };
+        let own = [point.alternative.clone().into(), front.unit.number(point.value, 4).into(), feasible];
+        rows.row(own.into_iter().chain(point.values.iter().map(value)).chain([place.into()]));
+    }
+    rows
+}
+
+/// What a column is called, as far as a point has it.
+fn column_words(front: &Front, index: usize) -> &str {
+    let known = front.points.iter().find_map(|point| point.values.get(index)?.as_ref().ok());
+    match known {
+        Some(found) if found.words == "swept" => &front.path,
+        Some(found) => found.words,
+        None => front.columns.get(index).map_or("", |column| column.key),
+    }
+}
+
+/// A point in words, by its place.
+fn named(front: &Front, place: usize) -> String {
+    front.points.get(place).map_or(String::new(), |point| name_of(front, point))
+}
+
+fn name_of(front: &Front, point: &FrontPoint) -> String {
+    format!("{} at {}", point.alternative, front.unit.text(point.value, 4))
+}
+
+/// The front from its best end in the first column to the other, each step with its price; why some
+/// points have no values; what was not reached.
+pub(super) fn findings(front: &Front) -> Vec<String> {
+    let mut on_front: Vec<&FrontPoint> = front.points.iter().filter(|point| point.is_on_front()).collect();
+    let first = |point: &FrontPoint| point.numbers().and_then(|numbers| numbers.first().copied());
+    on_front.sort_by(|one, other| {
+        let [one, other] = [one, other].map(|point| first(point).unwrap_or_default());
+        match front.columns.first().map(|column| column.sense) {
+            Some(ColumnSense::More) => other.total_cmp(&one),
+            _ => one.total_cmp(&other),
+        }
+    });
+    let mut sentences = match on_front.as_slice() {
+        [] => {
+            vec!["no point is on a front: none satisfies every specification, on the machine too".to_string()]
+        }
+        [only] => vec![format!("{} dominates every other point that is to be had", name_of(front, only))],
+        several => several.windows(2).map(|pair| step(front, pair[0], pair[1])).collect(),
+    };
+    for point in &front.points {
+        if let Some(reason) = point.values.iter().find_map(|value| value.as_ref().err()) {
+            sentences.push(format!("{}: {reason}", name_of(front, point)));
+        }
+    }
+    if front.not_reached > 0 {
+        sentences.push(format!("{} points were not reached", front.not_reached));
+    }
+    sentences
+}
+
+/// From one point of the front to the next: what is paid, and what is had for it.
+fn step(front: &Front, from: &FrontPoint, to: &FrontPoint) -> String {
+    let changes = from.values.iter().zip(&to.values).enumerate().filter_map(|(index, (from, to))| {
+        let (from, to) = (from.as_ref().ok()?, to.as_ref().ok()?);
+        let words = column_words(front, index);
+        (from.value != to.value).then(|| format!("{words} {} in place of {}", text(to), text(from)))
+    });
+    let changes: Vec<String> = changes.collect();
+    let changed = if changes.is_empty() { "no difference".to_string() } else { changes.join(", ") };
+    format!("{} instead of {}: {changed}", name_of(front, to), name_of(front, from))
+}
+
+fn text(found: &FrontValue) -> String {
+    match found.digits {
+        0 => found.value.to_string(),
+        digits => found.unit.text(found.value, digits),
+    }
+}
+
+pub(super) fn json(front: &Front) -> Object {
+    let column = |column: &super::FrontColumn| {
+        let better = if column.sense == ColumnSense::More { "more" } else { "less" };
+        Object::new().with("key", column.key).with("better", better)
+    };
+    Object::new()
+        .with("key", front.path.as_str())
+        .with("unit", front.si)
+        .each("columns", &front.columns, column)
+        .each("points", &front.points, |point| row(front, point))
+        .with("not_reached", front.not_reached)
+        .with("findings", findings(front))
+}
+
+fn row(front: &Front, point: &FrontPoint) -> Object {
+    let reason = point.feasible.as_ref().err().map_or("", String::as_str);
+    let mut object = Object::new()
+        .with("alternative", point.alternative.as_str())
+        .with("value", point.value)
+        .known("feasible", point.feasible.as_ref().ok().copied(), reason)
+        .with("comparable", point.comparable);
+    for (column, value) in front.columns.iter().zip(&point.values) {
+        let reason = value.as_ref().err().map_or("", String::as_str);
+        let number = value.as_ref().ok().map(|found| match found.digits {
+            0 => Json::Integer(found.value as i64),
+            _ => Json::Number(found.value),
+        });
+        object = object.known(column.key, number, reason);
+    }
+    object.with("on_front", point.is_on_front()).each("dominated_by", &point.dominated_by, |place| *place)
+}
+
+/// A row for each point, in SI; a value that does not exist is empty.
+pub(super) fn csv(front: &Front) -> OutputFile {
+    let keys: Vec<&str> = front.columns.iter().map(|column| column.key).collect();
+    let mut csv = Csv::new(&format!("name,value,feasible,comparable,{},on_front", keys.join(",")));
+    for point in &front.points {
+        let feasible = point.feasible.as_ref().map_or(String::new(), |feasible| feasible.to_string());
+        let value = |value: &Result<FrontValue, String>| {
+            value.as_ref().map_or(String::new(), |found| found.value.to_string())
+        };
+        let values = point.values.iter().map(value).collect::<Vec<_>>().join(",");
+        let name = quoted(&point.alternative);
+        csv.row(&[&name, &point.value, &feasible, &point.comparable, &values, &point.is_on_front()]);
+    }
+    csv.file("front.csv")
+}
+
+/// The points of every alternative; `None` where no point has all values.
+pub(super) fn figure(front: &Front) -> Option<Figure> {
+    let mut curves: Vec<ParetoCurve> = Vec::new();
+    for point in &front.points {
+        let Some(values) = point.numbers() else { continue };
+        let place = match (point.is_on_front(), point.comparable) {
+            (true, _) => FrontPlace::OnFront,
+            (false, true) => FrontPlace::Dominated,
+            (false, false) => FrontPlace::NotToBeHad,
+        };
+        let drawn = ParetoPoint { values, label: front.unit.text(point.value, 4), place };
+        match curves.last_mut().filter(|curve| curve.name == point.alternative) {
+            Some(curve) => curve.points.push(drawn),
+            None => curves.push(ParetoCurve { name: point.alternative.clone(), points: vec![drawn] }),
+        }
+    }
+    let unit = |index: usize| {
+        let known = front.points.iter().find_map(|point| point.values.get(index)?.as_ref().ok());
+        known.map_or(DisplayUnit::ONE, |found| found.unit)
+    };
+    let columns = (0..front.columns.len()).map(|index| (column_words(front, index).to_string(), unit(index)));
+    let input = ParetoInput { columns: columns.collect(), curves };
+    let caption = format!(
+        "Each alternative over {}, every point with a controller of its own. Points on the front are dominated by no other.",
+        front.path
+    );
+    let words = Words::new("front", format!("Front over {}", front.path), caption);
+    (!input.curves.is_empty()).then(|| pareto_front(words, &input))
+}

@@ -1,0 +1,214 @@
+//! A spring between force sensor and load, from the project's keys to verdict, machine, impedance and sizing.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
+
+use num_complex::Complex64;
+use phea_qft::family::Family;
+use phea_workbench::catalogue;
+use phea_workbench::command::Request;
+use phea_workbench::derived::derive;
+use phea_workbench::family::family;
+use phea_workbench::linearize::{Linearization, linearize};
+use phea_workbench::project::{self, Project};
+use phea_workbench::rig::sizing_problem;
+use phea_workbench::setup::Setup;
+use phea_workbench::source::Memory;
+use serde_json::Value;
+
+use super::ask::answer;
+
+const SERIES: &str = include_str!("../../../examples/ybitu/series.toml");
+const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");
+const SPRUNG: [&str; 4] =
+    ["load.model=spring_mass_damper", "load.mass=100", "load.stiffness=2e5", "load.damping=500"];
+
+fn loaded(text: &str, settings: &[&str]) -> Project {
+    let source = Memory::default().with("rig.toml", text);
+    let settings: Vec<String> = settings.iter().map(ToString::to_string).collect();
+    project::read(&source, "rig.toml", &settings, &[]).unwrap_or_else(|report| panic!("{report}")).project
+}
+
+fn linearized(project: &Project) -> Linearization {
+    let setup = Setup::new(project).unwrap();
+    linearize(setup.rig().unwrap(), setup.controller.as_ref(), &setup.sensor).unwrap()
+}
+
+/// The nominal member of the recorded family is the rig, polynomial by polynomial, for every kind of element and load.
+#[test]
+fn the_family_is_the_rig_at_its_nominal() {
+    let travel =
+        "series={ stiffness = \"2.24 MN/m\", mass = 1, damping = 500, travel = \"5 mm\", progression = 0.3 }";
+    let deflection = "series.force_from=deflection";
+    let force = "operating_point.load_force=2 kN";
+    for settings in [&[][..], &[travel, force], &[deflection], &["supply.model=pump_limited"]] {
+        for load in [&[][..], &SPRUNG] {
+            let project = loaded(SERIES, &[settings, load].concat());
+            let setup = Setup::new(&project).unwrap();
+            let rig = setup.rig().unwrap();
+            let Family::Uncertain(family) = family(&setup, &Memory::default()).unwrap() else {
+                panic!("a box")
+            };
+            let nominal: Vec<f64> = family.plant().parameters().iter().map(|one| one.nominal).collect();
+            let names: Vec<&str> = family.plant().parameters().iter().map(|one| one.name.as_str()).collect();
+            assert!(names.contains(&"series.stiffness"), "{names:?}");
+            let [own, told] = [rig.plant.coefficients(), family.plant().coefficients(&nominal).unwrap()];
+            for frequency in [0.1, 10.0, 400.0, 1300.0, 6000.0] {
+                let paths = [&own, &told].map(|paths| {
+                    let ground = paths.disturbance.as_ref().unwrap().at_frequency(frequency);
+                    [paths.command.at_frequency(frequency), ground]
+                });
+                for (own, told) in paths[0].into_iter().zip(paths[1]) {
+                    assert!((own / told - 1.0).norm_sqr() < 1e-20, "{settings:?} {load:?}: {own} {told}");
+                }
+            }
+        }
+    }
+}
+
+/// Every number of the element may be uncertain and moves the family: one that did not would be refused.
+#[test]
+fn its_numbers_may_be_uncertain() {
+    let more = "\"series.mass\" = { nominal = \"2 kg\", minimum = \"1 kg\", maximum = \"3 kg\", points = 2 }\n\
+                \"series.progression\" = { nominal = 0.2, minimum = 0, maximum = 0.4, points = 2 }\n\
+                \"series.travel\" = { nominal = \"5 mm\", minimum = \"4.8 mm\", maximum = \"5.2 mm\", points = 2 }\n\n[[specification]]";
+    let text = SERIES.replacen("[[specification]]", more, 1);
+    let spring =
+        "series={ stiffness = \"2.24 MN/m\", mass = 2, damping = 500, travel = \"5 mm\", progression = 0.2 }";
+    let project = loaded(&text, &[spring, "operating_point.load_force=3 kN"]);
+    let Family::Uncertain(family) = family(&Setup::new(&project).unwrap(), &Memory::default()).unwrap()
+    else {
+        panic!("a box")
+    };
+    let of_series = family.plant().parameters().iter().filter(|one| one.name.starts_with("series."));
+    assert_eq!(of_series.count(), 5);
+}
+
+/// Stiffness to infinity: verdict's plant, impedance and the reduced models are those of the rig without a spring.
+#[test]
+fn a_rigid_spring_is_none() {
+    let text = without_series();
+    let plain = linearized(&loaded(&text, &[]));
+    let rigid = linearized(&loaded(&text, &["series={ stiffness = 1e22 }"]));
+    for frequency in [0.01, 3.0, 200.0, 1300.0, 9000.0] {
+        let of = |models: &Linearization| {
+            let closed = models.closed_loop.as_ref().unwrap().impedance.at_frequency(frequency);
+            let open = models.open_loop.impedance.at_frequency(frequency);
+            let plants = [&models.plant, &models.two_pressure, &models.full]
+                .map(|model| model.command.at_frequency(frequency));
+            [&plants[..], &[open, closed]].concat()
+        };
+        for (one, other) in of(&plain).into_iter().zip(of(&rigid)) {
+            assert!((one / other - 1.0).norm_sqr() < 1e-18, "{frequency}: {one} {other}");
+        }
+    }
+}
+
+/// The example without its spring.
+fn without_series() -> String {
+    let (before, rest) = SERIES.split_once("[series]").unwrap();
+    let (_, after) = rest.split_once("[uncertainty]").unwrap();
+    let kept: Vec<&str> = after.lines().filter(|line| !line.starts_with("\"series.")).collect();
+    format!("{before}[uncertainty]{}", kept.join("\n"))
+}
+
+/// K_eq of oil, sensor and spring in series, where it is said and where it is used.
+#[test]
+fn the_spring_is_in_the_equivalent_stiffness_and_in_the_sizing() {
+    let project = loaded(SERIES, &[]);
+    let setup = Setup::new(&project).unwrap();
+    let rig = setup.rig().unwrap();
+    let list = derive(&project, rig);
+    let value = |name: &str| list.iter().find(|one| one.name == name).unwrap().value.unwrap();
+    let stiffness = rig.linear.hydraulic_stiffness;
+    let expected = 1.0 / (1.0 / stiffness + 1.0 / 20e6 + 1.0 / 2.24e6);
+    assert!((value("dynamics.equivalent_stiffness") / expected - 1.0).abs() < 1e-12);
+    assert!((value("series.deflection_at_stall") - value("cylinder.stall_force") / 2.24e6).abs() < 1e-12);
+    // the wire's formula by hand: C = 4, K_w = 15/12 + 0.615/4
+    let wahl = 1.25 + 0.153_75;
+    let wire = (8.0 * wahl * value("cylinder.stall_force") * 4.0 / (std::f64::consts::PI * 6e8)).sqrt();
+    assert!((value("series.coil.wire_diameter") / wire - 1.0).abs() < 1e-12);
+    assert!(value("series.coil.active_coils") > 2.0 && value("series.coil.mass") > 0.1);
+    let hose = loaded(HOSE, &["series={ stiffness = \"2.24 MN/m\" }"]);
+    let built_in = catalogue::load(&Memory::default(), &[]).unwrap();
+    let problem = sizing_problem(&Setup::new(&hose).unwrap(), &built_in).unwrap();
+    let in_series = 1.0 / (1.0 / 20e6 + 1.0 / 2.24e6);
+    assert!((problem.linear.sensor_stiffness / in_series - 1.0).abs() < 1e-12);
+}
+
+/// What the load meets at high frequencies is the spring and its damper, in open and closed loop; the impedance closes over what is
+/// measured, which is shown at single frequencies from the paths themselves.
+#[test]
+fn the_impedance_is_that_at_the_load() {
+    use phea_hydraulics::plant::{LinearPlant, LinearSeries, SeriesOutput};
+    for measured in ["sensor", "deflection"] {
+        let project = loaded(SERIES, &[&format!("series.force_from={measured}")]);
+        let setup = Setup::new(&project).unwrap();
+        let rig = setup.rig().unwrap();
+        let models = linearized(&project);
+        let given = setup.controller.as_ref().unwrap().feedback.transfer_function().unwrap();
+        let closed = &models.closed_loop.as_ref().unwrap().impedance;
+        let series = rig.plant.series.unwrap();
+        let on_load = LinearSeries { output: SeriesOutput::OnLoad, ..series };
+        let felt = LinearPlant { series: Some(on_load), ..rig.plant }.coefficients();
+        let seen = rig.plant.coefficients();
+        for frequency in [0.05, 2.0, 60.0, 800.0, 5000.0] {
+            let at = |paths: &phea_dynamics::uncertain_plant::PlantCoefficients<f64>| {
+                let moved = paths.disturbance.as_ref().unwrap().at_frequency(frequency);
+                (paths.command.at_frequency(frequency), moved)
+            };
+            let ((felt_command, felt_motion), (seen_command, seen_motion)) = (at(&felt), at(&seen));
+            let controller = given.at_frequency(frequency);
+            // U = -G (measured), measured = seen_command U + seen_motion X
+            let command = -controller * seen_motion / (1.0 + controller * seen_command);
+            let expected = -(felt_motion + felt_command * command) / Complex64::new(0.0, frequency);
+            let found = closed.at_frequency(frequency);
+            assert!(
+                (found / expected - 1.0).norm_sqr() < 1e-14,
+                "{measured} {frequency}: {found} {expected}"
+            );
+        }
+        let high = models.open_loop.impedance.at_frequency(1e6);
+        assert!((high.re / 500.0 - 1.0).abs() < 1e-2, "{high}");
+    }
+}
+
+/// Audit of the linear loop and the machine under the same controller: both stable, with the same overshoot of a small step.
+#[test]
+fn the_machine_follows_its_linear_loop() {
+    let viscous = "cylinder.friction={ model = \"viscous\", viscous = \"100 N.s/m\" }";
+    let small = "scenario=[{ name = \"small\", duration = \"1.5 s\", reference = [{ at = \"0.2 s\", force = \"50 N\" }] }]";
+    for settings in [&[][..], &["series.force_from=deflection"]] {
+        let settings = [settings, &[viscous, small]].concat();
+        let said = answer(SERIES, &settings, &[], &Request::VerifyOnMachine);
+        let object: Value = serde_json::from_str(&said.json).unwrap();
+        assert_eq!(object["stable"], Value::from(true), "{}", said.text);
+        let run = &object["machine"]["runs"][0];
+        assert_eq!(run["agrees"], Value::from(true), "{run}");
+    }
+}
+
+/// Lines in motion and the spring in one plant, and a family of them.
+#[test]
+fn lines_in_motion_and_the_spring_go_together() {
+    let moving = ["line.model=transmission_line"];
+    let project = loaded(SERIES, &moving);
+    let setup = Setup::new(&project).unwrap();
+    let rig = setup.rig().unwrap();
+    let [own, lumped] = [rig.response(2.0), rig.plant.coefficients().command.at_frequency(2.0)];
+    assert!((own / lumped - 1.0).norm_sqr() < 1e-5, "{own} {lumped}");
+    let Family::Uncertain(family) = family(&setup, &Memory::default()).unwrap() else { panic!("a box") };
+    let told = family.plant().response(&family.plant().nominal(), 800.0).unwrap();
+    let own = rig.response(800.0);
+    assert!((told / own - 1.0).norm_sqr() < 1e-18, "{told} {own}");
+}
+
+/// A progressive spring is told before the verdict; what the reduced models leave out is told with them.
+#[test]
+fn what_is_not_counted_is_told() {
+    let spring =
+        "series={ stiffness = \"2.24 MN/m\", damping = 500, travel = \"5.5 mm\", progression = 0.2 }";
+    let said = answer(SERIES, &[spring], &[], &Request::Verify);
+    assert!(said.text.contains("series.progression is counted for small motions"), "{}", said.text);
+    let said = answer(SERIES, &[], &[], &Request::Linearize);
+    assert!(said.text.contains("series.damping and series.mass are counted in the plant"), "{}", said.text);
+}
