@@ -4,6 +4,7 @@
 use phea_dynamics::scalar::Scalar;
 
 use crate::accumulator::Accumulator;
+use crate::cross_port::{CrossFlow, CrossPort, DynamicFeedback};
 use crate::cylinder::Cylinder;
 use crate::fluid::Fluid;
 use crate::force_sensor::ForceSensor;
@@ -29,6 +30,8 @@ pub struct Components<S = f64> {
     pub line_b: Line<S>,
     /// Accumulators at chambers A and B: each has the pressure of its chamber.
     pub accumulators: [Option<Accumulator<S>>; 2],
+    /// A valve between the chambers, at the cylinder.
+    pub cross_port: Option<CrossPort<S>>,
     /// The cylinder.
     pub cylinder: Cylinder<S>,
     /// Its friction.
@@ -54,6 +57,18 @@ impl<S: Scalar> Components<S> {
     pub fn gas_compliance(&self, [pressure_a, pressure_b]: [S; 2]) -> [Option<S>; 2] {
         let [gas_a, gas_b] = self.accumulators;
         [gas_a.map(|gas| gas.compliance(pressure_a)), gas_b.map(|gas| gas.compliance(pressure_b))]
+    }
+
+    /// What flows from chamber to chamber at rest; `None` where nothing does.
+    pub fn cross_flow(&self) -> Option<CrossFlow<S>> {
+        CrossFlow::of(self.cylinder.internal_leakage, self.cross_port.as_ref())
+    }
+
+    /// Its conductance in m3/(s Pa) at chamber pressures in Pa, and the dynamic pressure feedback
+    /// of a valve between the chambers.
+    pub fn cross_admittance(&self, [pressure_a, pressure_b]: [S; 2]) -> (S, Option<DynamicFeedback<S>>) {
+        let steady = self.cross_flow().map_or(S::from(0.0), |flow| flow.slope(pressure_a - pressure_b));
+        (steady, self.cross_port.as_ref().and_then(DynamicFeedback::of))
     }
 }
 
@@ -89,6 +104,7 @@ impl Actuator {
         for (gas, path) in accumulators.iter().zip(["line.a.accumulator", "line.b.accumulator"]) {
             problems.component(path, gas.map_or(Vec::new(), |gas| gas.problems()));
         }
+        problems.component("cross_port", components.cross_port.map_or(Vec::new(), |port| port.problems()));
         problems.component("cylinder", cylinder.problems());
         problems.component("cylinder.friction", friction.problems());
         problems.component("force_sensor", force_sensor.problems());

@@ -17,6 +17,7 @@
 pub mod accumulator;
 pub mod actuator;
 pub mod contact;
+pub mod cross_port;
 pub mod cylinder;
 pub mod fluid;
 pub mod force_sensor;

@@ -7,6 +7,7 @@
 //!                C_B(x, p_B) dp_B/dt = q_B + q_i + A_B v        thesis (4.26), corrected
 //!                C of the oil and its enclosure, and of the gas of an Accumulator at that chamber
 //! leakage        q_i = G_i (p_A - p_B)                          laminar, across the piston
+//! cross port     q_x = restrictor(p_A - p_B - p_x),   C_x dp_x/dt = q_x       part of q_i: CrossPort
 //! piston         M dv/dt = A_A p_A - A_B p_B + F_stops - F_fr - F_e      thesis (4.29)
 //! sensor         d(x - x_L)/dt = v - v_L,   F_e = K_S (x - x_L)          thesis (4.45)
 //! bristles       dz/dt                                          thesis (4.30), corrected: LuGre
@@ -44,6 +45,7 @@ use phea_dynamics::scalar::{Lanes, Scalar};
 use phea_dynamics::simulation::{Lane, Plant, Sliding};
 
 use crate::actuator::Actuator;
+use crate::cross_port::CrossPort;
 use crate::cylinder::Cylinder;
 use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 use crate::force_sensor;
@@ -90,6 +92,7 @@ pub struct Machine<S = f64> {
     cylinder: Cylinder<S>,
     chambers: Chambers<S>,
     accumulators: [Option<Accumulator<S>>; 2],
+    cross_port: Option<CrossPort<S>>,
     lines: [DynamicLine<S>; 2],
     friction: MovingFriction<S>,
     sensor_stiffness: S,
@@ -135,6 +138,7 @@ impl Machine {
                 }
             },
             accumulators: components.accumulators,
+            cross_port: components.cross_port,
             lines: options.lines.unwrap_or([none; 2]),
             friction,
             sensor_stiffness: components.force_sensor.stiffness,
@@ -193,6 +197,7 @@ impl<S: Copy> Machine<S> {
             cylinder: self.cylinder.convert(of),
             chambers: self.chambers.convert(of),
             accumulators: self.accumulators.map(|gas| gas.map(|gas| gas.convert(of))),
+            cross_port: self.cross_port.map(|port| port.convert(of)),
             lines: self.lines.map(|line| line.convert(of)),
             friction: self.friction.convert(of),
             sensor_stiffness: of(self.sensor_stiffness),

@@ -7,7 +7,8 @@
 //! q_A(U, p_A) = A_A v        q_B(U, p_B) = -A_B v        F = A_A p_A - A_B p_B
 //! ```
 //!
-//! Leakage across the piston, G (p_A - p_B), is taken from A and given to B. q_A falls strictly
+//! What flows from chamber to chamber ([`CrossFlow`](crate::cross_port::CrossFlow)) is taken from A
+//! and given to B. q_A falls strictly
 //! with p_A and q_B with p_B, so each pressure is unique. At standstill p_A rises and p_B falls
 //! with U, and in motion both move so that F falls with v: every unknown is found by bisection, to
 //! the last bit. The same balance over any scalar, recorded expressions among them, is
@@ -152,7 +153,7 @@ impl OperatingPoint {
 /// #         leakage_shape: 100.0, leakage_model: LeakageModel::EachEdge, tare_flow: 7.55e-6, nominal_voltage: 10.0,
 /// #         natural_frequency: 1099.0, damping_ratio: 0.9, transition_pressure: 1e3,
 /// #     },
-/// #     line_a: line, line_b: line, accumulators: [None; 2],
+/// #     line_a: line, line_b: line, accumulators: [None; 2], cross_port: None,
 /// #     cylinder: Cylinder { area_a: 1.58336e-3, area_b: 1.58336e-3, stroke: 0.5, moving_mass: 13.1,
 /// #         dead_volume_a: 0.0, dead_volume_b: 0.0, internal_leakage: None, end_stops: None },
 /// #     friction: Friction::Viscous { viscous: 100.0 }, force_sensor: ForceSensor { stiffness: 2e7 },

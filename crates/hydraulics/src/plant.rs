@@ -22,6 +22,7 @@ use phea_dynamics::uncertain_plant::{PlantCoefficients, RateNumerators, Rational
 
 use supply::Coupled;
 
+use crate::cross_port::DynamicFeedback;
 use crate::linear::LinearParameters;
 use crate::linear::polynomial::{product, scaled, shifted, sum};
 use crate::two_pressure::TwoPressureLinearParameters;
@@ -35,8 +36,11 @@ pub struct LinearPlant<S = f64> {
     pub valve_damping_ratio: S,
     /// From spool position and piston velocity to the force of the pressures.
     pub chambers: ChamberDynamics<S>,
-    /// Leakage G across the piston in m3/(s Pa).
+    /// Conductance G from chamber to chamber in m3/(s Pa): leakage across the piston, and a valve
+    /// between the chambers.
     pub internal_leakage: S,
+    /// Dynamic pressure feedback between the chambers; `None` where there is none.
+    pub dynamic_feedback: Option<DynamicFeedback<S>>,
     /// Moving mass M in kg.
     pub moving_mass: S,
     /// Slope f_v of the friction in N s/m.
@@ -62,7 +66,7 @@ pub struct LinearPlant<S = f64> {
 /// ```
 ///
 /// Both are the same where both chambers are: equal areas, compliances and flow-pressure
-/// coefficients.
+/// coefficients. Dynamic pressure feedback adds g C_x s/(C_x s + g) to G.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ChamberDynamics<S = f64> {
     /// One load pressure, of a cylinder whose chambers are equal.
@@ -113,30 +117,61 @@ struct ChamberPolynomials<T> {
     displaced: T,
 }
 
+/// Chambers between which nothing flows, and the same joined to one pressure: with an admittance Y
+/// between them, of which the determinant of their equations is linear,
+///
+/// ```text
+/// D = D_apart + Y D_joined,   N_u and N_v likewise
+/// ```
+struct Chambers<T> {
+    apart: ChamberPolynomials<T>,
+    joined: ChamberPolynomials<T>,
+}
+
+impl<T> Chambers<T> {
+    /// Each of D, N_u and N_v apart and joined, combined.
+    fn combined(&self, with: impl Fn(&T, &T) -> T) -> ChamberPolynomials<T> {
+        let Chambers { apart, joined } = self;
+        ChamberPolynomials {
+            own: with(&apart.own, &joined.own),
+            driven: with(&apart.driven, &joined.driven),
+            displaced: with(&apart.displaced, &joined.displaced),
+        }
+    }
+}
+
 impl<S: Scalar> ChamberDynamics<S> {
-    fn polynomials(&self, leakage: S) -> ChamberPolynomials<Vec<S>> {
+    fn chambers(&self) -> Chambers<Vec<S>> {
         match *self {
             ChamberDynamics::LoadPressure {
                 useful_area: area,
                 flow_gain,
                 flow_pressure_coefficient,
                 hydraulic_stiffness: stiffness,
-            } => ChamberPolynomials {
-                own: vec![area.squared(), (flow_pressure_coefficient + leakage) * stiffness],
-                driven: vec![area * stiffness * flow_gain],
-                displaced: vec![area.squared() * stiffness],
+            } => Chambers {
+                apart: ChamberPolynomials {
+                    own: vec![area.squared(), flow_pressure_coefficient * stiffness],
+                    driven: vec![area * stiffness * flow_gain],
+                    displaced: vec![area.squared() * stiffness],
+                },
+                joined: ChamberPolynomials { own: vec![stiffness], driven: vec![], displaced: vec![] },
             },
             ChamberDynamics::TwoPressures { areas, compliances, flow_gains, flow_pressures } => {
                 let [area_a, area_b] = areas;
                 let [gain_a, gain_b] = flow_gains;
                 let [a, b] = [0, 1].map(|side| [compliances[side], flow_pressures[side]]);
-                let across = |value: S| [leakage * value];
-                let both = sum(&scaled(area_a * gain_a, &b), &scaled(area_b * gain_b, &a));
-                let squares = sum(&scaled(area_a.squared(), &b), &scaled(area_b.squared(), &a));
-                ChamberPolynomials {
-                    own: sum(&product(&a, &b), &scaled(leakage, &sum(&a, &b))),
-                    driven: sum(&both, &across((area_a - area_b) * (gain_a - gain_b))),
-                    displaced: sum(&squares, &across((area_a - area_b).squared())),
+                let difference = area_a - area_b;
+                Chambers {
+                    apart: ChamberPolynomials {
+                        own: product(&a, &b),
+                        driven: sum(&scaled(area_a * gain_a, &b), &scaled(area_b * gain_b, &a)),
+                        displaced: sum(&scaled(area_a.squared(), &b), &scaled(area_b.squared(), &a)),
+                    },
+                    joined: ChamberPolynomials {
+                        own: sum(&a, &b),
+                        driven: vec![difference * (gain_a - gain_b)],
+                        displaced: vec![difference.squared()],
+                    },
                 }
             }
         }
@@ -145,16 +180,15 @@ impl<S: Scalar> ChamberDynamics<S> {
 
 impl<S: Scalar> ChamberDynamics<S> {
     /// The same with a supply that yields, of either form.
-    fn behind(&self, supply: &YieldingSupply<S>, leakage: S) -> ChamberPolynomials<Vec<S>> {
+    fn behind(&self, supply: &YieldingSupply<S>) -> Chambers<Vec<S>> {
         let [one, other] = [self.side(0), self.side(1)];
         let [of_a, of_b] = supply.edges;
         let coupled = Coupled {
             own: [
-                vec![one.compliance, one.flow_pressure + leakage],
-                vec![other.compliance, other.flow_pressure + leakage],
+                vec![one.compliance, one.flow_pressure],
+                vec![other.compliance, other.flow_pressure],
                 vec![supply.compliance, supply.conductance + of_a + of_b],
             ],
-            across: vec![leakage],
             edges: [vec![of_a], vec![of_b]],
             gains: [vec![one.flow_gain], vec![other.flow_gain], vec![supply.flow_gain]],
         };
@@ -215,6 +249,7 @@ impl<S: Scalar> LinearPlant<S> {
                 hydraulic_stiffness: parameters.hydraulic_stiffness,
             },
             internal_leakage: leakage,
+            dynamic_feedback: None,
             moving_mass: parameters.moving_mass,
             viscous_friction: parameters.viscous_friction,
             sensor_stiffness: parameters.sensor_stiffness,
@@ -242,12 +277,33 @@ impl<S: Scalar> LinearPlant<S> {
                 flow_pressures: [chambers.flow_pressure_a, chambers.flow_pressure_b],
             },
             internal_leakage: leakage,
+            dynamic_feedback: None,
             moving_mass: parameters.moving_mass,
             viscous_friction: parameters.viscous_friction,
             sensor_stiffness: parameters.sensor_stiffness,
             load,
             supply: None,
             load_velocity_feed_forward: None,
+        }
+    }
+
+    /// D, N_u and N_v with what flows from chamber to chamber; dynamic pressure feedback multiplies
+    /// all three by C_x s + g, the denominator of its admittance.
+    fn chamber_polynomials(&self) -> ChamberPolynomials<Vec<S>> {
+        let chambers = match &self.supply {
+            None => self.chambers.chambers(),
+            Some(supply) => self.chambers.behind(supply),
+        };
+        let leakage = self.internal_leakage;
+        match self.dynamic_feedback {
+            None => chambers.combined(|apart, joined| sum(apart, &scaled(leakage, joined))),
+            Some(DynamicFeedback { conductance, capacity }) => {
+                let denominator = [capacity, conductance];
+                let numerator = [(leakage + conductance) * capacity, leakage * conductance];
+                chambers.combined(|apart, joined| {
+                    sum(&product(&denominator, apart), &product(&numerator, joined))
+                })
+            }
         }
     }
 
@@ -286,10 +342,7 @@ impl<S: Scalar> LinearPlant<S> {
         let damping = S::from(2.0) * self.valve_damping_ratio * self.valve_natural_frequency;
         let spool = [one, damping, square];
         let sensor = self.sensor_stiffness;
-        let ChamberPolynomials { own, driven, displaced } = match &self.supply {
-            None => self.chambers.polynomials(self.internal_leakage),
-            Some(supply) => self.chambers.behind(supply, self.internal_leakage),
-        };
+        let ChamberPolynomials { own, driven, displaced } = self.chamber_polynomials();
         let fed =
             self.load_velocity_feed_forward.map(|gain| shifted(&scaled(gain * sensor * square, &driven)));
         let moved = shifted(&sum(&product(&[self.moving_mass, self.viscous_friction], &own), &displaced));

@@ -4,6 +4,7 @@
 mod accumulator;
 mod commanded;
 mod components;
+mod cross_port;
 mod friction_on_test;
 mod impedance;
 mod line_models;

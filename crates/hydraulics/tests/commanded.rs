@@ -5,6 +5,7 @@ use phea_dynamics::random::{share, stream};
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{Plant, System};
 use phea_hydraulics::actuator::Actuator;
+use phea_hydraulics::cross_port::{CrossPort, Restrictor};
 use phea_hydraulics::machine::{Accumulator, Machine, PowerUnit, PumpLimited};
 use phea_hydraulics::operating_point::{Balance, Settled, SettledSupply};
 use phea_hydraulics::plant::YieldingSupply;
@@ -26,6 +27,23 @@ pub(super) fn power_unit(number: u64) -> PowerUnit {
         effective_bulk_modulus: spread(1e8, 1.4e9),
         accumulator: number.is_multiple_of(2).then_some(accumulator),
     })
+}
+
+/// A valve between the chambers of every kind, or none.
+pub(super) fn cross_port(number: u64) -> Option<CrossPort> {
+    let mut state = stream(41, number);
+    let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
+    let laminar = Restrictor::Laminar { conductance: spread(1e-13, 1e-9) };
+    let orifice =
+        Restrictor::Orifice { flow_coefficient: spread(1e-10, 1e-7), transition_pressure: spread(1e2, 1e5) };
+    let capacity = Some(spread(1e-15, 1e-10));
+    match (spread(1.0, 2.0) * 500.0) as u64 % 5 {
+        0 => None,
+        1 => Some(CrossPort { restrictor: laminar, capacity: None }),
+        2 => Some(CrossPort { restrictor: orifice, capacity: None }),
+        3 => Some(CrossPort { restrictor: laminar, capacity }),
+        _ => Some(CrossPort { restrictor: orifice, capacity }),
+    }
 }
 
 /// The supply pressure of a machine at rest: the last of the states that have names.

@@ -7,6 +7,7 @@ use phea_dynamics::scalar::Dual;
 use phea_dynamics::simulation::Plant;
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::contact::Contact;
+use phea_hydraulics::cross_port::{CrossPort, Restrictor};
 use phea_hydraulics::cylinder::{Cylinder, areas_from_diameters};
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::friction::{Friction, LuGre, LuGrePassivity};
@@ -200,7 +201,18 @@ fn rich_machines() -> Vec<(&'static str, Machine)> {
     };
     let at_chambers = |rig| Components { accumulators: [gas(2e-5, 8e5, 1.4), gas(5e-6, 3e5, 1.0)], ..rig };
     let at_one = |rig| Components { accumulators: [None, gas(1e-5, 5e5, 1.25)], ..rig };
+    let port =
+        |restrictor, capacity| Components { cross_port: Some(CrossPort { restrictor, capacity }), ..rig };
+    let orifice = Restrictor::Orifice { flow_coefficient: 2e-9, transition_pressure: 1e4 };
+    let laminar = Restrictor::Laminar { conductance: 1e-11 };
     vec![
+        ("a laminar valve between the chambers", of(port(laminar, None), with(pump(), None))),
+        ("an orifice between them", of(port(orifice, None), with(PowerUnit::Constant, None))),
+        ("laminar feedback", of(port(laminar, Some(3e-13)), with(pump(), None))),
+        (
+            "feedback behind lines",
+            of(port(orifice, Some(3e-13)), with(pump(), lines_of(&rig, [SMEARED, PLAIN]))),
+        ),
         ("gas at the chambers", of(at_chambers(rig), with(charged_pump(40e5, 1.4), None))),
         ("gas behind a line", of(at_one(by_volume), with(pump(), lines_of(&rig, [SMEARED, PLAIN])))),
         ("gas", of(rig, with(charged_pump(40e5, 1.4), None))),

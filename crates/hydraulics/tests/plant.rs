@@ -25,7 +25,7 @@ use phea_hydraulics::two_pressure::{
     TwoPressureModel, two_pressure_coefficients, two_pressure_linear_parameters,
 };
 
-use super::commanded::{Commanded, power_unit, supply_pressure, yielding};
+use super::commanded::{Commanded, cross_port, power_unit, supply_pressure, yielding};
 
 /// A rig of its own for every number, with everything that lumped lines let the plant have.
 struct Drawn {
@@ -34,7 +34,6 @@ struct Drawn {
     unit: PowerUnit,
     rest: InitialCondition,
     friction: f64,
-    leakage: f64,
     load: LinearLoad,
 }
 
@@ -81,7 +80,8 @@ fn drawn(number: u64) -> Drawn {
         _ => LoadModel::Wall { mass, damping, gap: 1e-3, contact },
     };
     let parts = if leakage > 0.0 { leaking(parts, leakage) } else { parts };
-    let actuator = Actuator::new(Components { accumulators: accumulators(number), ..parts }).unwrap();
+    let parts = Components { accumulators: accumulators(number), cross_port: cross_port(number), ..parts };
+    let actuator = Actuator::new(parts).unwrap();
     let unit = power_unit(number);
     let options = MachineOptions { load, power_unit: unit, ..MachineOptions::default() };
     let machine = Machine::new(&actuator, &options).unwrap();
@@ -102,7 +102,7 @@ fn drawn(number: u64) -> Drawn {
             LinearLoad::Yielding { mass, damping, stiffness }
         }
     };
-    Drawn { actuator, machine, unit, rest, friction, leakage, load }
+    Drawn { actuator, machine, unit, rest, friction, load }
 }
 
 impl Drawn {
@@ -129,7 +129,9 @@ impl Drawn {
         };
         let parameters = two_pressure_linear_parameters(&model, &point, SpoolDirection::Extending);
         let supply = yielding(&self.actuator, &self.unit, state[0], pressures, supplied);
-        LinearPlant { supply, ..LinearPlant::of_two_pressures(&parameters, self.leakage, self.load) }
+        let (across, dynamic_feedback) = self.actuator.components().cross_admittance(pressures);
+        let plant = LinearPlant::of_two_pressures(&parameters, across, self.load);
+        LinearPlant { supply, dynamic_feedback, ..plant }
     }
 
     /// F_e/U_C and F_e/X_0 of the machine's own derivatives.

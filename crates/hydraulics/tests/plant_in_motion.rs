@@ -12,6 +12,7 @@ use phea_dynamics::uncertain_plant::RationalCoefficients;
 use phea_dynamics::uncertain_plant::responding::RespondingPlant;
 use phea_hydraulics::accumulator::Accumulator;
 use phea_hydraulics::actuator::{Actuator, Components};
+use phea_hydraulics::cross_port::CrossFlow;
 use phea_hydraulics::cylinder::{Cylinder, areas_from_diameters};
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::force_sensor::ForceSensor;
@@ -29,7 +30,7 @@ use phea_hydraulics::two_pressure::{
     TwoPressureLinearParameters, TwoPressureModel, two_pressure_linear_parameters,
 };
 
-use super::commanded::{Commanded, power_unit, supply_pressure, yielding};
+use super::commanded::{Commanded, cross_port, power_unit, supply_pressure, yielding};
 
 fn model(number: u64, time: f64) -> LineModel {
     let friction =
@@ -66,8 +67,13 @@ fn loads(number: u64, mass: f64, stiffness: f64, damping: f64) -> (LoadModel, Li
 
 /// Where a machine rests, with the pressures at the valve's ports: the leakage flows through the lines, so that these are a little off
 /// the chambers.
-fn at_ports(state: &[f64], position: f64, lines: &[DynamicLine; 2], leakage: f64) -> OperatingPoint {
-    let leaking = leakage * (state[2] - state[3]);
+fn at_ports(
+    state: &[f64],
+    position: f64,
+    lines: &[DynamicLine; 2],
+    across: Option<CrossFlow>,
+) -> OperatingPoint {
+    let leaking = across.map_or(0.0, |across| across.flow(state[2] - state[3]));
     let drops = lines.map(|line| line.transfer_matrix(Complex64::new(0.0, 1e-6)).impedance.re * leaking);
     OperatingPoint {
         position,
@@ -132,7 +138,11 @@ fn drawn(number: u64) -> Drawn {
         force_sensor: ForceSensor { stiffness: spread(1e6, 1e8) },
         ..reference
     };
-    let parts = Components { accumulators: accumulators(number), ..leaking(parts, leakage) };
+    let parts = Components {
+        accumulators: accumulators(number),
+        cross_port: cross_port(number),
+        ..leaking(parts, leakage)
+    };
     let actuator = Actuator::new(parts).unwrap();
     let parts = actuator.components();
     let line = |line: &Line, model: &LineModel| {
@@ -150,8 +160,10 @@ fn drawn(number: u64) -> Drawn {
     let moves = linear_load != LinearLoad::Prescribed;
     let position = rest.inputs[0] + if moves { rest.state[6] } else { 0.0 } + rest.state[4];
     let pressures = [rest.state[2], rest.state[3]];
-    let point = at_ports(&rest.state, position, &lines, leakage);
-    let named = &rest.state[..6 + 2 * usize::from(moves) + usize::from(unit.yields())];
+    let point = at_ports(&rest.state, position, &lines, parts.cross_flow());
+    let (across, dynamic_feedback) = parts.cross_admittance(pressures);
+    let present = usize::from(dynamic_feedback.is_some()) + usize::from(unit.yields());
+    let named = &rest.state[..6 + 2 * usize::from(moves) + present];
     let supplied = supply_pressure(&unit, parts.supply.pressure, named);
     let parameters = parameters_at(supplied, &actuator, &point, (pressures, friction));
     let [oil_a, oil_b] = Chambers::behind_lines(&actuator, StiffeningMember::Nominal, [0.0; 2])
@@ -166,7 +178,11 @@ fn drawn(number: u64) -> Drawn {
         state: rest.state,
         command: rest.command,
         sensor: parts.force_sensor.stiffness,
-        plant: LinearPlant { supply, ..LinearPlant::of_two_pressures(&parameters, leakage, linear_load) },
+        plant: LinearPlant {
+            supply,
+            dynamic_feedback,
+            ..LinearPlant::of_two_pressures(&parameters, across, linear_load)
+        },
         behind,
     }
 }

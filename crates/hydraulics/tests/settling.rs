@@ -6,6 +6,7 @@ use phea_dynamics::expression::Expression;
 use phea_dynamics::random::share;
 use phea_dynamics::scalar::Dual;
 use phea_hydraulics::actuator::{Actuator, Components};
+use phea_hydraulics::cross_port::CrossFlow;
 use phea_hydraulics::cylinder::{Cylinder, annulus_area};
 use phea_hydraulics::machine::{Machine, MachineOptions};
 use phea_hydraulics::operating_point::{
@@ -165,7 +166,7 @@ fn settle<S: phea_dynamics::scalar::Scalar>(p: &[S], leakage_model: LeakageModel
         },
         supply: Supply { pressure: p[8], tank_pressure: p[9] },
         areas: [p[10], p[11]],
-        leakage: Some(p[12]),
+        across: Some(CrossFlow { conductance: p[12], orifice: None }),
     };
     let settled = balance.settle(Steady::Moving { velocity: p[13], load: SteadyLoad::Force(p[14]) });
     vec![settled.command, settled.pressures[0], settled.pressures[1]]
@@ -229,17 +230,17 @@ fn check_recorded_point(leakage_model: LeakageModel) {
 /// The leakage that leaves the operating point is that of equal pressures: none.
 #[test]
 fn leakage_leaves_equal_pressures_alone() {
-    let balance = |leakage| Balance {
+    let balance = |leakage: f64| Balance {
         valve: phea_hydraulics::reference_rig::valve_with_equal_edges(),
         supply: Supply { pressure: 70e5, tank_pressure: 0.0 },
         areas: [1.58e-3; 2],
-        leakage,
+        across: Some(CrossFlow { conductance: leakage, orifice: None }),
     };
-    let settled = balance(Some(1e-11)).settle(Steady::Command(0.0));
+    let settled = balance(1e-11).settle(Steady::Command(0.0));
     assert_eq!(settled.pressures, [35e5; 2]);
     let moving = Steady::Moving { velocity: 0.0, load: SteadyLoad::Force(0.0) };
-    assert_eq!(balance(Some(1e-11)).settle(moving).command, 0.0);
+    assert_eq!(balance(1e-11).settle(moving).command, 0.0);
     // ORIGIN: analytic, all of the load pressure gone through a piston that leaks without end
-    let open = Balance { valve: valve(), ..balance(Some(1e-4)) }.settle(Steady::Command(0.0));
+    let open = Balance { valve: valve(), ..balance(1e-4) }.settle(Steady::Command(0.0));
     assert!((open.pressures[0] - open.pressures[1]).abs() < 1.0);
 }

@@ -55,7 +55,9 @@ impl Machine {
             }
         }
         let [pressure_a, pressure_b, supply_pressure, spool] = best.into();
-        let mut balanced = MachineState { pressure_a, pressure_b, supply_pressure, ..*state };
+        let cross_port_pressure = pressure_a - pressure_b;
+        let mut balanced =
+            MachineState { pressure_a, pressure_b, supply_pressure, cross_port_pressure, ..*state };
         balanced.spool.spool = spool;
         balanced
     }
@@ -95,13 +97,13 @@ impl Machine {
         (rows.map(|row| row.value()).into(), slopes)
     }
 
-    /// The flows into the chambers in steady motion, in m3/s: the piston's displacement and the
-    /// leakage across it.
+    /// The flows into the chambers in steady motion, in m3/s: the piston's displacement and what
+    /// flows from chamber to chamber.
     pub(super) fn steady_flows<T: Scalar + From<f64>>(&self, state: &MachineState<T>) -> [T; 2] {
-        let leakage = self.leakage(state);
+        let across = self.steady_cross_flow(state);
         [
-            T::from(self.cylinder.area_a) * state.velocity + leakage,
-            -T::from(self.cylinder.area_b) * state.velocity - leakage,
+            T::from(self.cylinder.area_a) * state.velocity + across,
+            -T::from(self.cylinder.area_b) * state.velocity - across,
         ]
     }
 

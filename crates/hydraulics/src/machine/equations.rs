@@ -2,6 +2,7 @@ use phea_dynamics::scalar::{LocalFunction, Scalar};
 
 use super::signals::ground_of;
 use super::{Accumulator, Machine, MachineState, Motion, PowerUnit};
+use crate::cross_port::CrossPort;
 use crate::force_sensor;
 use crate::friction::FrictionForce;
 use crate::operating_point::hydraulic_force;
@@ -12,8 +13,10 @@ use crate::servovalve::{EdgeFlows, Edges, Servovalve, Supply, edge_conductances,
 pub(super) struct Flows<T> {
     /// Through the four edges.
     pub(super) edges: EdgeFlows<T>,
-    /// Across the piston from A to B.
+    /// From chamber A to chamber B: across the piston and through a valve between them.
     pub(super) internal: T,
+    /// The share of that valve.
+    pub(super) cross_port: T,
     /// From the valve into line A and line B.
     pub(super) from_valve: [T; 2],
 }
@@ -135,7 +138,30 @@ impl<S: Scalar> Machine<S> {
             PowerUnit::PumpLimited(_) => T::local(&valve, [opening, port_a, port_b, state.supply_pressure]),
         });
         let from_valve = [edges.supply_to_a - edges.a_to_tank, edges.supply_to_b - edges.b_to_tank];
-        Flows { edges, internal: self.leakage(state), from_valve }
+        let leakage = self.leakage(state);
+        match &self.cross_port {
+            None => Flows { edges, internal: leakage, cross_port: T::from(0.0), from_valve },
+            Some(port) => {
+                let cross_port = self.through_cross_port(port, state);
+                Flows { edges, internal: leakage + cross_port, cross_port, from_valve }
+            }
+        }
+    }
+
+    /// Flow through a valve between the chambers from A to B, in m3/s. Apart, so that machines
+    /// without such a valve do not carry its code along.
+    #[inline(never)]
+    fn through_cross_port<T: Scalar + From<S>>(&self, port: &CrossPort<S>, state: &MachineState<T>) -> T {
+        let CrossPort { restrictor, capacity } = port.convert(&mut constant::<S, T>);
+        let drop = state.pressure_a - state.pressure_b;
+        restrictor.flow(if capacity.is_some() { drop - state.cross_port_pressure } else { drop })
+    }
+
+    /// What flows from chamber A to chamber B at rest, in m3/s.
+    pub(super) fn steady_cross_flow<T: Scalar + From<S>>(&self, state: &MachineState<T>) -> T {
+        let leakage = self.leakage(state);
+        let steady = self.cross_port.as_ref().filter(|port| port.capacity.is_none());
+        steady.map_or(leakage, |port| leakage + self.through_cross_port(port, state))
     }
 
     /// Flow across the piston from A to B, in m3/s.
@@ -220,6 +246,7 @@ impl<S: Scalar> Machine<S> {
                 velocity: self.load.convert(&mut constant::<S, T>).acceleration(on_load, &load, &ground),
             },
             supply_pressure: self.supply_rate(&state, &flows),
+            cross_port_pressure: self.cross_port_rate(&flows),
         };
         self.layout.write(&state_rates, rates);
     }
@@ -254,6 +281,15 @@ impl<S: Scalar> Machine<S> {
         let [line_a, line_b] = &self.lines;
         line_a.outgoing(state.pressure_a, state_a, arriving_a, waves_a);
         line_b.outgoing(state.pressure_b, state_b, arriving_b, waves_b);
+    }
+
+    /// Rate of the pressure difference over the capacity of a valve between the chambers, in Pa/s.
+    #[inline(always)]
+    fn cross_port_rate<T: Scalar + From<S>>(&self, flows: &Flows<T>) -> T {
+        match self.cross_port.and_then(|port| port.capacity) {
+            None => T::from(0.0),
+            Some(capacity) => flows.cross_port / constant(capacity),
+        }
     }
 
     /// Rate of the supply pressure in Pa/s.

@@ -23,7 +23,7 @@ pub const OIL_ACCOUNTS: [&str; 9] = [
 
 /// Names of the accounts of energy, in the order of [`Ledger::energy`]. Accounts of parts that a
 /// machine lacks are zero.
-pub const ENERGY_ACCOUNTS: [&str; 16] = [
+pub const ENERGY_ACCOUNTS: [&str; 17] = [
     "chamber_a",
     "chamber_b",
     "line_a",
@@ -34,6 +34,7 @@ pub const ENERGY_ACCOUNTS: [&str; 16] = [
     "accumulator",
     "valve",
     "leakage",
+    "cross_port",
     "piston",
     "friction",
     "sensor",
@@ -168,7 +169,8 @@ impl<S: Scalar> Machine<S> {
             supply.line.energy(supply.line_flow(), zero),
             supply.gas.energy(supply.line.pressure),
             heat(throttled),
-            heat(now.flows.internal * (side_a.pressure - side_b.pressure)),
+            heat((now.flows.internal - now.flows.cross_port) * (side_a.pressure - side_b.pressure)),
+            self.cross_port_account(now),
             piston,
             friction,
             sensor,
@@ -186,8 +188,21 @@ impl<S: Scalar> Machine<S> {
             inflow: oil + now.external_power - self.on_ground(now),
             lost: total(&accounts, |account| account.lost),
         };
-        let [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o] = accounts;
-        [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, rig]
+        let [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p] = accounts;
+        [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, rig]
+    }
+
+    /// A valve between the chambers: heat of its restrictor, and what its capacity holds.
+    fn cross_port_account<T: Scalar + From<S>>(&self, now: &Instant<T>) -> Account<T> {
+        let (flow, [side_a, side_b]) = (now.flows.cross_port, &now.sides);
+        let drop = side_a.pressure - side_b.pressure;
+        let Some(capacity) = self.cross_port.and_then(|port| port.capacity) else { return heat(flow * drop) };
+        let held = now.state.cross_port_pressure;
+        Account {
+            stored: T::from(0.5) * constant::<S, T>(capacity) * held.squared(),
+            inflow: flow * drop,
+            lost: flow * (drop - held),
+        }
     }
 
     /// Piston, friction, sensor, end stops and load.

@@ -79,6 +79,7 @@ impl Machine {
         let mut state = MachineState::zero();
         state.spool.spool = start.spool;
         (state.pressure_a, state.pressure_b) = (start.pressure_a, start.pressure_b);
+        state.cross_port_pressure = start.pressure_a - start.pressure_b;
         state.supply_pressure = self.supply.pressure;
         state.velocity = start.velocity;
         state.bristle = self.settled_bristle(start.velocity);
@@ -138,6 +139,7 @@ impl Machine {
         let mut state = MachineState::zero();
         state.spool.spool = start.spool;
         (state.pressure_a, state.pressure_b) = (start.pressure_a, start.pressure_b);
+        state.cross_port_pressure = start.pressure_a - start.pressure_b;
         state.supply_pressure = self.supply.pressure;
         state.velocity = start.velocity;
         state.bristle = self.settled_bristle(start.velocity);

@@ -8,8 +8,8 @@ use crate::servovalve::SpoolState;
 /// place in its vector.
 ///
 /// The order of the vector is that of the fields: spool voltage and rate, p_A, p_B, deflection,
-/// velocity, and then, if present, those of bristles, load, supply, spool friction, magnetic lag.
-/// The states of lines, which have no names, follow.
+/// velocity, and then, if present, those of bristles, load, capacity between the chambers, supply,
+/// spool friction, magnetic lag. The states of lines, which have no names, follow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MachineState<T = f64> {
     /// Position of the spool in V and what moves it; its two memories stand last in the vector.
@@ -28,6 +28,8 @@ pub struct MachineState<T = f64> {
     /// v_L in m/s. Errors are scaled by the deformation of its spring or wall, not by its distance
     /// from the end of the cylinder.
     pub load: Motion<T>,
+    /// Pressure difference p_x in Pa over the capacity of a valve between the chambers.
+    pub cross_port_pressure: T,
     /// Supply pressure p_S in Pa, where a pump is limited.
     pub supply_pressure: T,
 }
@@ -40,6 +42,8 @@ pub(super) struct Layout {
     supply: bool,
     spool_friction: bool,
     magnetic_lag: bool,
+    /// A capacity between the chambers.
+    capacity: bool,
     /// Whether a force from outside is an input.
     external_force: bool,
     /// States of both lines, which follow all others, A first.
@@ -67,6 +71,7 @@ impl<T: Scalar> MachineState<T> {
             bristle: zero,
             load: Motion { position: zero, velocity: zero },
             supply_pressure: zero,
+            cross_port_pressure: zero,
         }
     }
 }
@@ -79,6 +84,7 @@ impl Layout {
             supply: machine.power_unit.yields(),
             spool_friction: machine.spool.threshold.is_some(),
             magnetic_lag: machine.spool.hysteresis_width.is_some(),
+            capacity: machine.cross_port.is_some_and(|port| port.capacity.is_some()),
             external_force: machine.external_force,
             lines: machine.lines.map(|line| line.states()),
             waves: machine.lines.map(|line| line.delays().len()),
@@ -207,6 +213,9 @@ impl Layout {
             visit(&mut state.load.position);
             visit(&mut state.load.velocity);
         }
+        if self.capacity {
+            visit(&mut state.cross_port_pressure);
+        }
         if self.supply {
             visit(&mut state.supply_pressure);
         }
@@ -269,6 +278,7 @@ const NAMES: MachineState<&str> = MachineState {
     bristle: "bristle_m",
     load: Motion { position: "load_displacement_m", velocity: "load_velocity_m_per_s" },
     supply_pressure: "supply_pressure_pa",
+    cross_port_pressure: "cross_port_pressure_pa",
 };
 
 impl<S: Scalar> Machine<S> {
@@ -310,6 +320,7 @@ impl<S: Scalar> Machine<S> {
             bristle: self.friction.bristle_stiffness().map_or(deflection, |stiffness| force / stiffness),
             load: Motion { position: deflection, velocity: self.load.mass().map_or(velocity, swing) },
             supply_pressure: pressure,
+            cross_port_pressure: pressure,
         }
     }
 

@@ -4,10 +4,10 @@ use super::bisection::{falling_root, falling_root_within};
 use super::settling::AT_NULL;
 use super::{OperatingPoint, OperatingPointError, SteadyLoad, hydraulic_force};
 use crate::actuator::Components;
+use crate::cross_port::CrossFlow;
 use crate::servovalve::{ChamberFlows, Servovalve, Supply, chamber_flows};
 
-/// The parameters of the balance of flows and forces. Units: those of the components, m2, m3/(s
-/// Pa).
+/// The parameters of the balance of flows and forces. Units: those of the components, m2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Balance<S = f64> {
     /// The servovalve.
@@ -16,8 +16,8 @@ pub struct Balance<S = f64> {
     pub supply: Supply<S>,
     /// Piston areas A_A and A_B.
     pub areas: [S; 2],
-    /// Leakage G across the piston; `None` where nothing leaks.
-    pub leakage: Option<S>,
+    /// What flows from chamber A to chamber B; `None` where nothing does.
+    pub across: Option<CrossFlow<S>>,
 }
 
 impl<S: Scalar> Balance<S> {
@@ -28,7 +28,7 @@ impl<S: Scalar> Balance<S> {
             valve: components.valve,
             supply: components.supply,
             areas: [cylinder.area_a, cylinder.area_b],
-            leakage: components.cylinder.internal_leakage,
+            across: components.cross_flow(),
         }
     }
 }
@@ -41,7 +41,7 @@ const BALANCED: f64 = 1e-9;
 impl Balance {
     /// Pressures at which the chambers take the flow of a piston at this velocity.
     pub(super) fn pressures(&self, command: f64, velocity: f64) -> Result<[f64; 2], OperatingPointError> {
-        if self.leakage.is_some() {
+        if self.across.is_some() {
             return self.leaking_pressures(command, velocity);
         }
         let Supply { pressure, tank_pressure } = self.supply;
@@ -57,7 +57,8 @@ impl Balance {
         }
     }
 
-    /// The same with leakage across the piston, which makes either pressure depend on the other.
+    /// The same with a flow from chamber to chamber, which makes either pressure depend on the
+    /// other.
     fn leaking_pressures(&self, command: f64, velocity: f64) -> Result<[f64; 2], OperatingPointError> {
         let pressures = self.settle_at(command, velocity, ALL_HALVINGS);
         let drop = self.supply.pressure - self.supply.tank_pressure;
@@ -116,7 +117,7 @@ impl Balance {
         let [pressure_a, pressure_b] = pressures;
         let ChamberFlows { into_a, into_b } =
             chamber_flows(&self.valve, &self.supply, command, pressure_a, pressure_b);
-        let across = self.leakage.map_or(0.0, |leakage| leakage * (pressure_a - pressure_b));
+        let across = self.across.map_or(0.0, |across| across.flow(pressure_a - pressure_b));
         let [area_a, area_b] = self.areas;
         OperatingPoint {
             position,

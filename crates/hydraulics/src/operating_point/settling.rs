@@ -42,11 +42,13 @@ pub struct Settled<S = f64> {
 /// Halvings of the spool's travel: to 4e-6 of it, where the leakage of the edges takes a hundredth
 /// to fall.
 const HALVINGS_OF_TRAVEL: usize = 18;
-/// Number of halvings for the load pressure that remains with leakage across the piston.
+/// Number of halvings for the load pressure that remains with a flow from chamber to chamber: to
+/// less than the transition pressure of an orifice.
 const HALVINGS_OF_LEAKAGE: usize = 12;
+const HALVINGS_OF_ORIFICE: usize = 20;
 /// How often the load pressure of unequal areas is taken anew.
 const ROUNDS: usize = 3;
-/// Newton steps without and with leakage across the piston.
+/// Newton steps without and with a flow from chamber to chamber.
 const STEPS: [usize; 2] = [5, 9];
 /// Share of the nominal voltage within which a spool counts as at null: closer than rounding can
 /// distinguish.
@@ -73,7 +75,7 @@ impl<S: Scalar> Balance<S> {
     /// use phea_hydraulics::servovalve::Supply;
     /// let recorded = Expression::record(&["pressure", "force"], |p| {
     ///     let supply = Supply { pressure: p[0], tank_pressure: 0.0.into() };
-    ///     let balance = Balance { valve: valve().convert(&mut Into::into), supply, areas: [USEFUL_AREA.into(); 2], leakage: None };
+    ///     let balance = Balance { valve: valve().convert(&mut Into::into), supply, areas: [USEFUL_AREA.into(); 2], across: None };
     ///     let settled = balance.settle(Steady::Moving { velocity: 0.0.into(), load: SteadyLoad::Force(p[1]) });
     ///     vec![settled.command, settled.pressures[0], settled.pressures[1]]
     /// });
@@ -83,7 +85,8 @@ impl<S: Scalar> Balance<S> {
     pub fn settle(&self, steady: Steady<S>) -> Settled<S> {
         match steady {
             Steady::Command(command) => {
-                Settled { command, pressures: self.settle_at(command, S::from(0.0), HALVINGS_OF_LEAKAGE) }
+                let halvings = if self.has_orifice() { HALVINGS_OF_ORIFICE } else { HALVINGS_OF_LEAKAGE };
+                Settled { command, pressures: self.settle_at(command, S::from(0.0), halvings) }
             }
             Steady::Moving { velocity, load } => self.settle_moving(velocity, load),
             Steady::Matched(command, load_pressure) => {
@@ -94,25 +97,35 @@ impl<S: Scalar> Balance<S> {
         }
     }
 
+    fn has_orifice(&self) -> bool {
+        self.across.is_some_and(|across| across.orifice.is_some())
+    }
+
     /// The pressures at a spool position in V and a velocity in m/s.
     pub(super) fn settle_at(&self, command: S, velocity: S, halvings: usize) -> [S; 2] {
         let conductances = self.conductances(command);
         let at = |load_pressure: S| self.near(&conductances, velocity, load_pressure);
         let still = at(S::from(0.0));
-        let mut pressures = match self.leakage {
+        let mut pressures = match self.across {
             None => still,
             Some(_) => {
-                // leakage leaves a share of the load pressure: p_A falls with it and p_B rises
+                // the flow leaves a share of the load pressure: p_A falls with it and p_B rises
                 let [a, b] = still;
                 let whole = a - b;
                 let falls = |share: S| {
                     let [a, b] = at(share * whole);
                     (a - b - share * whole) * whole
                 };
-                at(halved([S::from(0.0), S::from(1.0)], halvings, falls) * whole)
+                let left = halved([S::from(0.0), S::from(1.0)], halvings, falls) * whole;
+                let ([a, b], half) = (at(left), S::from(0.5));
+                match self.has_orifice() {
+                    false => [a, b],
+                    // its flow without a drop makes too much of the difference's error
+                    true => [half * (a + b + left), half * (a + b - left)],
+                }
             }
         };
-        for _ in 0..STEPS[usize::from(self.leakage.is_some())] {
+        for _ in 0..STEPS[usize::from(self.across.is_some())] {
             let [step_a, step_b] = self.step_at(command, velocity, pressures);
             pressures = [pressures[0] + step_a, pressures[1] + step_b];
         }
@@ -123,7 +136,7 @@ impl<S: Scalar> Balance<S> {
         let hold = self.hold(velocity, load);
         let one = S::from(1.0);
         let [area_a, area_b] = self.areas;
-        let (mut load_pressure, rounds) = match (load, self.leakage) {
+        let (mut load_pressure, rounds) = match (load, self.across) {
             (SteadyLoad::Force(force), Some(_)) => (force * S::from(2.0) / (area_a + area_b), ROUNDS),
             (SteadyLoad::Force(_), None) => (S::from(0.0), 1),
             (SteadyLoad::Pressure(pressure), _) => (pressure, 1),
@@ -141,7 +154,7 @@ impl<S: Scalar> Balance<S> {
             let [a, b] = at(relative);
             (command, pressure_a, load_pressure) = (relative * full, a, a - b);
         }
-        for _ in 0..STEPS[usize::from(self.leakage.is_some())] {
+        for _ in 0..STEPS[usize::from(self.across.is_some())] {
             let [step, step_a] = self.step_moving(&hold, command, pressure_a);
             (command, pressure_a) = (command + step, pressure_a + step_a);
         }
@@ -165,10 +178,10 @@ impl<S: Scalar> Balance<S> {
         [[edges.supply_to_a, edges.a_to_tank], [edges.supply_to_b, edges.b_to_tank]]
     }
 
-    /// Both pressures by plain square roots, the leakage across the piston being that of a stated
-    /// load pressure.
+    /// Both pressures by plain square roots, the flow from chamber to chamber being that of a
+    /// stated load pressure.
     fn near(&self, [edges_a, edges_b]: &[[S; 2]; 2], velocity: S, load_pressure: S) -> [S; 2] {
-        let across = self.leakage.map_or(S::from(0.0), |leakage| leakage * load_pressure);
+        let across = self.across.map_or(S::from(0.0), |across| across.flow(load_pressure));
         let [area_a, area_b] = self.areas;
         [
             self.between(edges_a, area_a * velocity + across),
@@ -201,13 +214,14 @@ impl<S: Scalar> Balance<S> {
         S::select(is_above, self.supply.tank_pressure + above.squared(), not_above)
     }
 
-    /// The surplus flow into each chamber, after the piston and the leakage across it, and the
-    /// conductance of the leakage.
+    /// The surplus flow into each chamber, after the piston and the flow from chamber to chamber,
+    /// and the slope of that.
     fn surplus(&self, command: S, velocity: S, [pressure_a, pressure_b]: [S; 2]) -> ([S; 2], S) {
         let ChamberFlows { into_a, into_b } =
             chamber_flows(&self.valve, &self.supply, command, pressure_a, pressure_b);
-        let conductance = self.leakage.unwrap_or(S::from(0.0));
-        let across = conductance * (pressure_a - pressure_b);
+        let (none, drop) = (S::from(0.0), pressure_a - pressure_b);
+        let (across, conductance) =
+            self.across.map_or((none, none), |across| (across.flow(drop), across.slope(drop)));
         let [area_a, area_b] = self.areas;
         ([into_a - area_a * velocity - across, into_b + area_b * velocity + across], conductance)
     }
@@ -266,16 +280,16 @@ impl Balance {
 }
 
 impl Balance {
-    /// Whether the pressures are unique whatever is known: so they are without leakage across the
-    /// piston, with equal areas, at a stated command, and under a stated load pressure. Under a
-    /// force, leakage across unequal areas may leave several.
+    /// Whether the pressures are unique whatever is known: so they are without a flow from chamber
+    /// to chamber, with equal areas, at a stated command, and under a stated load pressure. Under a
+    /// force, such a flow beside unequal areas may leave several.
     ///
     /// ```text
     /// dF/dU ~ A_A K_qA K_cB + A_B K_qB K_cA + G (A_A - A_B) (K_qA - K_qB)              may change its sign with much leakage
     /// ```
     pub fn is_unique(&self, steady: Steady) -> bool {
         let by_force = matches!(steady, Steady::Moving { load: SteadyLoad::Force(_), .. });
-        !by_force || self.leakage.is_none() || self.areas[0] == self.areas[1]
+        !by_force || self.across.is_none() || self.areas[0] == self.areas[1]
     }
 }
 

@@ -4,7 +4,8 @@ use num_complex::Complex64;
 use phea_dynamics::analytic::Analytic;
 
 use super::supply::{Coupled, Over};
-use super::{Chamber, ChamberPolynomials, LinearLoad, LinearPlant, YieldingSupply};
+use super::{Chamber, ChamberPolynomials, Chambers, LinearLoad, LinearPlant, YieldingSupply};
+use crate::cross_port::DynamicFeedback;
 use crate::line::{DynamicLine, Segments, TransferMatrix};
 
 /// The plant with lines that have dynamics of their own: it is not a quotient of polynomials, but
@@ -193,25 +194,41 @@ impl PlantInMotion {
         let at = [one.at_chamber(line, s), other.at_chamber(across, s)];
         let [area_a, area_b] = self.sides.map(|side| side.area);
         let [gain_a, gain_b] = self.sides.map(|side| side.flow_gain);
-        let leakage = self.plant.internal_leakage;
+        let across = self.across(s);
         if let Some(supply) = &self.plant.supply {
-            let ChamberPolynomials { own, driven, displaced } =
-                self.behind(supply, &at, s).chambers([area_a, area_b]);
-            return ChamberPolynomials { own: own.0, driven: driven.0, displaced: displaced.0 };
+            let chambers = self.behind(supply, &at, s).chambers([area_a, area_b]);
+            return chambers.combined(|apart, joined| Over(apart.0 + across * joined.0)).unwrapped();
         }
         let [one, other] = at;
         let (a, b) = (one.admittance, other.admittance);
         let passed = one.passed * other.passed;
         let difference = area_a - area_b;
         let crossed = other.passed.scaled(gain_a) - one.passed.scaled(gain_b);
-        ChamberPolynomials {
-            own: a * b + (a * other.passed + b * one.passed).scaled(leakage),
-            driven: b.scaled(area_a * gain_a)
-                + a.scaled(area_b * gain_b)
-                + crossed.scaled(leakage * difference),
-            displaced: (b * one.passed).scaled(area_a * area_a)
-                + (a * other.passed).scaled(area_b * area_b)
-                + passed.scaled(leakage * difference * difference),
+        let chambers = Chambers {
+            apart: ChamberPolynomials {
+                own: a * b,
+                driven: b.scaled(area_a * gain_a) + a.scaled(area_b * gain_b),
+                displaced: (b * one.passed).scaled(area_a * area_a)
+                    + (a * other.passed).scaled(area_b * area_b),
+            },
+            joined: ChamberPolynomials {
+                own: a * other.passed + b * one.passed,
+                driven: crossed.scaled(difference),
+                displaced: passed.scaled(difference * difference),
+            },
+        };
+        chambers.combined(|apart, joined| *apart + across * *joined)
+    }
+
+    /// Admittance from chamber to chamber.
+    fn across<A: Analytic>(&self, s: A) -> A {
+        let leakage = A::from(self.plant.internal_leakage);
+        match self.plant.dynamic_feedback {
+            None => leakage,
+            Some(DynamicFeedback { conductance, capacity }) => {
+                let taken = s.scaled(capacity);
+                leakage + taken.scaled(conductance) / (taken + A::from(conductance))
+            }
         }
     }
 
@@ -222,7 +239,6 @@ impl PlantInMotion {
     /// p_port = (p + b K_q U + b s_i p_S)/(d + K_c b)
     /// ```
     fn behind<A: Analytic>(&self, supply: &YieldingSupply, at: &[AtChamber<A>; 2], s: A) -> Coupled<Over<A>> {
-        let leakage = A::from(self.plant.internal_leakage);
         let [of_a, of_b] = supply.edges;
         let [gain_a, gain_b] = self.sides.map(|side| side.flow_gain);
         let [one, other] = at;
@@ -231,11 +247,10 @@ impl PlantInMotion {
         let own = tied - returned(of_a, one).scaled(of_a) - returned(of_b, other).scaled(of_b);
         let taken = A::from(supply.flow_gain) - returned(of_a, one).scaled(gain_a)
             + returned(of_b, other).scaled(gain_b);
-        let admittance = |at: &AtChamber<A>| Over(at.admittance / at.passed + leakage);
+        let admittance = |at: &AtChamber<A>| Over(at.admittance / at.passed);
         let passing = |value: f64, at: &AtChamber<A>| Over(A::from(value) / at.passed);
         Coupled {
             own: [admittance(one), admittance(other), Over(own)],
-            across: Over(leakage),
             edges: [passing(of_a, one), passing(of_b, other)],
             gains: [passing(gain_a, one), passing(gain_b, other), Over(taken)],
         }
@@ -260,7 +275,8 @@ impl PlantInMotion {
             let to_tank = [0, 1].map(|side| self.sides[side].flow_pressure - supply.edges[side]);
             [supply.edges, to_tank, [supply.compliance, supply.conductance]].concat()
         });
-        own.into_iter().chain(load).chain(of_sides).chain(of_supply).all(|value| value >= 0.0)
+        let feedback = self.plant.dynamic_feedback.iter().flat_map(|one| [one.conductance, one.capacity]);
+        own.into_iter().chain(load).chain(of_sides).chain(of_supply).chain(feedback).all(|value| value >= 0.0)
     }
 
     /// Where the slower line is a quarter of a wave long, pi/(2 T) in rad/s; `None` where no wave
@@ -269,6 +285,12 @@ impl PlantInMotion {
         let delays = self.sides.iter().flat_map(|side| side.line.delays());
         let longest = delays.fold(0.0, f64::max);
         (longest > 0.0).then(|| std::f64::consts::FRAC_PI_2 / longest)
+    }
+}
+
+impl<A> ChamberPolynomials<Over<A>> {
+    fn unwrapped(self) -> ChamberPolynomials<A> {
+        ChamberPolynomials { own: self.own.0, driven: self.driven.0, displaced: self.displaced.0 }
     }
 }
 

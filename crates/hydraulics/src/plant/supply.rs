@@ -1,7 +1,7 @@
 use phea_dynamics::analytic::Analytic;
 use phea_dynamics::scalar::Scalar;
 
-use super::ChamberPolynomials;
+use super::{ChamberPolynomials, Chambers};
 use crate::linear::polynomial::{product, scaled, sum};
 use crate::operating_point::{Balance, SettledSupply};
 use crate::orifice::{regular_root, regular_root_slope};
@@ -62,10 +62,10 @@ impl<S: Scalar> YieldingSupply<S> {
 /// What the pressures are found from: admittances of both chambers and of the supply, and how they
 /// are coupled.
 pub(super) struct Coupled<T> {
-    /// Of chamber A, chamber B and the supply, everything that is tied to it.
+    /// Of chamber A, chamber B and the supply, everything that is tied to it but the flow from
+    /// chamber to chamber.
     pub(super) own: [T; 3],
-    /// Across the piston, and from the supply into each chamber.
-    pub(super) across: T,
+    /// From the supply into each chamber.
     pub(super) edges: [T; 2],
     /// What the spool gives to chamber A, takes from chamber B, and takes from the supply.
     pub(super) gains: [T; 3],
@@ -110,30 +110,40 @@ impl<T> Coupled<T> {
     /// D, N_u and N_v of these pressures by Cramer's rule, the areas in m2.
     ///
     /// ```text
-    /// [ a   -G   -s_A ] [p_A]   [ K_qA]       [-A_A]
-    /// [-G    b   -s_B ] [p_B] = [-K_qB] U  +  [ A_B] s X,        D = a b c - 2 G s_A s_B - a s_B^2 - b s_A^2 - c G^2
-    /// [-s_A -s_B  c   ] [p_S]   [-K_qS]       [  0 ]
+    /// [ a     0   -s_A ] [p_A]   [ K_qA]       [-A_A]
+    /// [ 0     b   -s_B ] [p_B] = [-K_qB] U  +  [ A_B] s X,        D = a b c - a s_B^2 - b s_A^2
+    /// [-s_A -s_B   c   ] [p_S]   [-K_qS]       [  0 ]
+    /// joined: p_A = p_B,   [a + b, -s; -s, c] with s = s_A + s_B,   D = (a + b) c - s^2
     /// ```
-    pub(super) fn chambers<S: Scalar>(&self, [area_a, area_b]: [S; 2]) -> ChamberPolynomials<T>
+    pub(super) fn chambers<S: Scalar>(&self, [area_a, area_b]: [S; 2]) -> Chambers<T>
     where
         T: Admittance<S>,
     {
-        let minus = |value: T| value.by(S::from(-1.0));
+        let minus = |value: &T| value.by(S::from(-1.0));
         let [a, b, c] = &self.own;
-        let ([of_a, of_b], across) = (&self.edges, &self.across);
-        let bc = b.times(c).plus(&minus(of_b.times(of_b)));
-        let ac = a.times(c).plus(&minus(of_a.times(of_a)));
-        let ab = across.times(c).plus(&of_a.times(of_b));
-        let from_a = across.times(of_b).plus(&b.times(of_a));
-        let from_b = a.times(of_b).plus(&across.times(of_a));
+        let [of_a, of_b] = &self.edges;
+        let bc = b.times(c).plus(&minus(&of_b.times(of_b)));
+        let ac = a.times(c).plus(&minus(&of_a.times(of_a)));
+        let ab = of_a.times(of_b);
+        let (from_a, from_b) = (b.times(of_a), a.times(of_b));
         let force = |a: &T, b: &T| a.by(area_a).plus(&b.by(-area_b));
         let [by_a, by_b, by_supply] = [force(&bc, &ab), force(&ab, &ac), force(&from_a, &from_b)];
         let [gain_a, gain_b, gain_supply] = &self.gains;
         let taken = by_b.times(gain_b).plus(&by_supply.times(gain_supply));
-        ChamberPolynomials {
-            own: a.times(&bc).plus(&minus(across.times(&ab).plus(&of_a.times(&from_a)))),
-            driven: by_a.times(gain_a).plus(&minus(taken)),
-            displaced: by_a.by(area_a).plus(&by_b.by(-area_b)),
+        let (both, of_both) = (a.plus(b), of_a.plus(of_b));
+        let given = gain_a.plus(&minus(gain_b)).times(c).plus(&minus(&of_both.times(gain_supply)));
+        let difference = area_a - area_b;
+        Chambers {
+            apart: ChamberPolynomials {
+                own: a.times(&bc).plus(&minus(&of_a.times(&from_a))),
+                driven: by_a.times(gain_a).plus(&minus(&taken)),
+                displaced: by_a.by(area_a).plus(&by_b.by(-area_b)),
+            },
+            joined: ChamberPolynomials {
+                own: both.times(c).plus(&minus(&of_both.times(&of_both))),
+                driven: given.by(difference),
+                displaced: c.by(difference * difference),
+            },
         }
     }
 }

@@ -149,10 +149,11 @@ impl RespondingPlant for PlantInMotion {
             let line = side.line.static_compliance() - side.line.chamber_compliance();
             (side.flow_pressure + self.plant.internal_leakage) / (side.compliance + line)
         });
-        let slowest = slowest.fold(f64::INFINITY, f64::min).min(self.plant.valve_natural_frequency);
+        let [filled, passed] = self.feedback_rad_per_s();
+        let slowest = slowest.fold(filled, f64::min).min(self.plant.valve_natural_frequency);
         let quarter_wave = self.quarter_wave_rad_per_s().unwrap_or(0.0);
         let modes = self.sides.iter().map(|side| side.line.fastest_rad_per_s());
-        let fastest = modes.fold(ABOVE_QUARTER_WAVE * quarter_wave, f64::max);
+        let fastest = modes.fold(ABOVE_QUARTER_WAVE * quarter_wave, f64::max).max(passed);
         let fastest = fastest.max(ABOVE_SPOOL * self.plant.valve_natural_frequency);
         let slowest = if slowest > 0.0 { slowest } else { self.plant.valve_natural_frequency };
         [BELOW * slowest, fastest]
@@ -174,6 +175,14 @@ impl PlantInMotion {
         let fed = [here, next].map(|(_, difference)| (difference - 1.0).norm_sqr());
         let is_small = fed.iter().all(|fed| *fed < SMALL_FED * SMALL_FED);
         next.0 < LARGE_STEP * here.0 && (turned < SMALL_TURN || is_small)
+    }
+
+    /// Where dynamic pressure feedback turns, from its capacity with those of the chambers beside it
+    /// to its restrictor between the chambers alone, in rad/s.
+    fn feedback_rad_per_s(&self) -> [f64; 2] {
+        let Some(feedback) = &self.plant.dynamic_feedback else { return [f64::INFINITY, 0.0] };
+        let chambers: f64 = self.sides.iter().map(|side| 1.0 / side.compliance).sum();
+        [feedback.corner(), feedback.corner() + feedback.conductance * chambers]
     }
 
     /// The most power in W that can leave valve and supply for the square of a volt: their sources
