@@ -29,7 +29,7 @@ UNSEEN = {
         uncertainty_log_zero uncertainty_order uncertainty_points uncertainty_reversed uncertainty_twice_counted valve_closed
         valve_hysteresis valve_leakage_below_tare plant_correlation family_opposed specification_load_motion plant_with_sizing
         line_model_pipe line_model_volume plant_case_incomplete family_measured_empty family_measured_and_grid
-        line_accumulator_pressures uncertainty_direction_ends
+        line_accumulator_pressures uncertainty_direction_ends cross_port_orifice_wide cross_port_flow_wide
     """.split(),
     "numbers that a double cannot hold, infinity, and none": """
         number_huge_hexadecimal number_too_large quantity_infinite quantity_nan quantity_too_large quantity_too_small
@@ -50,7 +50,7 @@ UNSEEN = {
         specification_limit_empty specification_limit_missing specification_margin_delay specification_margin_kind
         specification_margin_mixed specification_margin_numerator specification_response_given specification_response_kind
         specification_response_parts specification_tracking
-        identify_use_measured identify_use_without_recordings
+        identify_use_measured identify_use_without_recordings cross_port_half
     """.split(),
 }
 

@@ -3,11 +3,12 @@
 //! A simulation includes the whole machine. What the linear plant cannot represent is stated before
 //! the verdict; where a specification depends on it, the verdict is not proven.
 
+use phea_hydraulics::cross_port::Restrictor;
 use phea_hydraulics::operating_point::OperatingPoint;
 
-use crate::project::{LineMotion, Load, Project, Pump, SupplyModel};
-use crate::quantity::DisplayUnit;
-use crate::rig::{ChargedRange, accumulator_place, charged_range, limits_load_motion};
+use crate::project::{CrossPortKind, LineMotion, Load, Project, Pump, SupplyModel};
+use crate::quantity::{DisplayUnit, PRESSURE, display, significant};
+use crate::rig::{ChargedRange, accumulator_place, charged_range, cross_port_at_point, limits_load_motion};
 use crate::setup::Setup;
 
 /// A declared effect that the linear loop does not include.
@@ -21,7 +22,11 @@ pub struct Caveat {
 
 /// Declared effects that no linear loop includes.
 pub fn caveats(setup: &Setup<'_>) -> Vec<Caveat> {
-    apart_from_lines(setup.project).chain(supply(setup)).chain(accumulator(setup)).collect()
+    apart_from_lines(setup.project)
+        .chain(supply(setup))
+        .chain(accumulator(setup))
+        .chain(cross_port(setup))
+        .collect()
 }
 
 /// Declared effects that no linear model includes, in sentences.
@@ -31,6 +36,7 @@ pub fn of_models(project: &Project) -> Vec<String> {
         .into_iter()
         .chain(others)
         .chain(constant_supply(project))
+        .chain(fed_between_chambers(project))
         .chain(fed_in_loop(project))
         .collect()
 }
@@ -121,6 +127,53 @@ fn accumulator(setup: &Setup<'_>) -> Option<Caveat> {
          falls below the precharge, its gas is shut off, and only a simulation shows how stiff the actuator is then"
     );
     Some(Caveat { sentence, unproven: false })
+}
+
+/// Drops of an orifice in transition pressures below which its slope is that of the transition.
+const IN_TRANSITION: f64 = 10.0;
+
+/// An orifice between the chambers has the slope of its transition where it has no drop: the larger
+/// an oscillation, the less it damps.
+fn cross_port(setup: &Setup<'_>) -> Option<Caveat> {
+    let project = setup.project;
+    if is_measured(project) {
+        return None;
+    }
+    let found = cross_port_at_point(setup.rig().ok()?)?;
+    let Restrictor::Orifice { transition_pressure, .. } = found.valve.restrictor else { return None };
+    let drop = if found.valve.capacity.is_some() { 0.0 } else { found.drop };
+    if drop.abs() >= IN_TRANSITION * transition_pressure {
+        return None;
+    }
+    let path = "cross_port.transition_pressure";
+    let is_open = project.uncertainty.iter().any(|uncertain| uncertain.name == path);
+    let conductance = significant(found.conductance, 3);
+    let transition = display(transition_pressure, &PRESSURE, 3);
+    let at = match found.valve.capacity {
+        Some(_) => "no drop at rest".to_string(),
+        None => format!("a drop of {} at rest", display(drop, &PRESSURE, 3)),
+    };
+    let cure = match is_open {
+        true => format!("the range of {path} says up to which oscillation"),
+        false => format!(
+            "state a range of {path} in [uncertainty], up to 0.81 times the amplitude of the drop, or judge by a simulation"
+        ),
+    };
+    let sentence = format!(
+        "cross_port is counted for small motions: its orifice has {at}, and there the slope of its transition_pressure of {transition}, \
+         {conductance} m3/(s.Pa); an oscillation beyond that is damped less: {cure}"
+    );
+    Some(Caveat { sentence, unproven: !is_open })
+}
+
+/// Dynamic pressure feedback, which the models of a linearisation do not include.
+fn fed_between_chambers(project: &Project) -> Option<String> {
+    let port = project.actuator.as_ref()?.cross_port.as_ref()?;
+    matches!(port.kind, CrossPortKind::DynamicPressureFeedback { .. }).then(|| {
+        "cross_port.kind = \"dynamic_pressure_feedback\" is counted in the plant and the impedance at the load: the other models and the \
+         asymptotes of the impedance are without it"
+            .to_string()
+    })
 }
 
 /// Effects of the supply that the models of a linearisation do not include.

@@ -2,6 +2,7 @@
 //! contradiction with a declared one.
 
 mod accumulator;
+mod cross_port;
 mod list;
 mod rig;
 mod valve;

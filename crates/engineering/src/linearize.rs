@@ -45,13 +45,13 @@ pub struct Linearization {
     pub stiffness_models: ModelDifference,
     /// The plant of every verdict: with its load, its leakage, and the parameters in use.
     pub plant: LinearModel,
-    /// Whether 6.7 is the plant: one load pressure, no leakage across the piston, a load whose
-    /// motion is prescribed.
+    /// Whether 6.7 is the plant: one load pressure, nothing that flows from chamber to chamber, a
+    /// load whose motion is prescribed.
     pub plant_is_fifth_order: bool,
     /// The linearised two-pressure model of the rig as declared, at its operating point.
     pub two_pressure: LinearModel,
-    /// The fifth-order model with the parameters in use, equation 6.7; K_c includes the leakage
-    /// across the piston.
+    /// The fifth-order model with the parameters in use, equation 6.7; K_c includes what leaks from
+    /// chamber to chamber.
     pub full: LinearModel,
     /// The same with the derived parameters: the two-pressure model is compared with this one.
     pub derived_full: LinearModel,
@@ -202,6 +202,7 @@ fn open_loop_view(rig: &Rig, port: &LinearModel) -> Result<PortView, LinearError
 fn is_fifth_order(rig: &Rig) -> bool {
     matches!(rig.plant.chambers, ChamberDynamics::LoadPressure { .. })
         && rig.internal_leakage == 0.0
+        && rig.plant.dynamic_feedback.is_none()
         && rig.load.is_none()
         && rig.plant.supply.is_none()
 }

@@ -3,6 +3,7 @@
 
 mod accumulator;
 mod assembly;
+mod cross_port;
 mod in_loop;
 mod lines;
 mod numbers;
@@ -29,6 +30,7 @@ use crate::project::{self, Project};
 
 pub use accumulator::{ChargedRange, EmptyAccumulator, accumulator_place, charged_range};
 pub use assembly::{actuator, components};
+pub use cross_port::{CrossPortAtPoint, cross_port_at_point};
 pub use in_loop::FeedForwardPath;
 pub(crate) use in_loop::as_response;
 pub use in_loop::feed_forward;
@@ -69,7 +71,8 @@ pub struct Rig {
     pub parameters: Vec<ResolvedParameter>,
     /// The values that hold.
     pub linear: LinearParameters,
-    /// Leakage across the piston in m3/(s Pa).
+    /// Conductance from chamber to chamber at the operating point in m3/(s Pa): leakage across the
+    /// piston, and a valve between the chambers that no capacity closes.
     pub internal_leakage: f64,
     /// The load on the force sensor, if it can move under force.
     pub load: Option<YieldingLoad>,
@@ -111,8 +114,8 @@ impl Rig {
         }
     }
 
-    /// The linear parameters in use, with the leakage across the piston in parallel to K_c: with
-    /// one load pressure both have the same effect.
+    /// The linear parameters in use, with what leaks from chamber to chamber in parallel to K_c:
+    /// with one load pressure both have the same effect.
     pub fn leaking(&self) -> LinearParameters {
         let flow_pressure_coefficient = self.linear.flow_pressure_coefficient + self.internal_leakage;
         LinearParameters { flow_pressure_coefficient, ..self.linear }
@@ -147,7 +150,7 @@ impl Rig {
         let derived = reduce(&two_pressure);
         let parameters = parameters::resolve(project, &derived);
         let linear = linear(&two_pressure, stated(&parameters));
-        let internal_leakage = components.cylinder.internal_leakage.unwrap_or(0.0);
+        let (internal_leakage, dynamic_feedback) = components.cross_admittance(pressures);
         let load = yielding_load(&declared.load, &numbers, point.hydraulic_force);
         let yielding = supply.and_then(|found| yielding_supply(declared, &numbers, &balance, &found));
         let unseen = yielding.is_none_or(|supply| are_equal([supply.edges]));
@@ -155,6 +158,7 @@ impl Rig {
         let one_pressure = states_one_pressure(&parameters, &[]) || equal;
         let pushed = load.map_or(LinearLoad::Prescribed, |load| load.linear());
         let plant = plant(&two_pressure, &linear, one_pressure, internal_leakage, pushed);
+        let plant = LinearPlant { dynamic_feedback, ..plant };
         let plant = match yielding {
             Some(supply) if !(one_pressure && unseen) => with_supply(plant, supply, &two_pressure),
             _ => plant,

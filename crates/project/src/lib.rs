@@ -7,6 +7,7 @@ mod bench;
 mod campaign;
 pub mod catalogue;
 mod controller;
+mod cross_port;
 mod cylinder;
 mod design;
 mod diagnostic;
@@ -53,6 +54,7 @@ pub use alternative::*;
 pub use bench::*;
 pub use campaign::*;
 pub use controller::*;
+pub use cross_port::*;
 pub use cylinder::*;
 pub use design::*;
 pub use diagnostic::*;
@@ -158,6 +160,8 @@ pub struct DeclaredActuator {
     pub cylinder: DeclaredCylinder,
     /// The lines between valve and cylinder.
     pub line: DeclaredLines,
+    /// A valve between the chambers, if there is one.
+    pub cross_port: Option<DeclaredCrossPort>,
     /// The load cell.
     pub force_sensor: DeclaredForceSensor,
     /// What the force acts on.
@@ -304,8 +308,10 @@ fn table_or_default<T: Default + PartialEq, V: Visitor>(
 }
 
 impl DeclaredActuator {
-    /// The tables of an actuator, all of which are required except `[load]`.
+    /// The tables of an actuator that are required.
     const REQUIRED: [&'static str; 6] = ["fluid", "supply", "valve", "cylinder", "line", "force_sensor"];
+    /// Those that may be absent.
+    const OPTIONAL: [&'static str; 2] = ["cross_port", "load"];
 
     fn visit<V: Visitor>(&mut self, v: &mut V) {
         required(plain("fluid", "The oil."), &mut self.fluid, DeclaredFluid::visit, v);
@@ -313,6 +319,8 @@ impl DeclaredActuator {
         required(plain("valve", "The servovalve."), &mut self.valve, Valve::visit, v);
         required(plain("cylinder", "The cylinder."), &mut self.cylinder, DeclaredCylinder::visit, v);
         required(plain("line", "From the valve to each chamber."), &mut self.line, DeclaredLines::visit, v);
+        let k = plain("cross_port", "A valve between the chambers.");
+        v.table(k, &mut self.cross_port, DeclaredCrossPort::visit);
         required(
             plain("force_sensor", "The load cell."),
             &mut self.force_sensor,

@@ -216,7 +216,7 @@ fn directions(root: &TreeNode) -> impl Iterator<Item = &str> {
 
 /// Either a complete actuator, or a plant, or measured plants.
 fn refuse_mixture(reader: &mut Reader<'_>, root: &TreeNode, is_plant: bool, is_measured: bool) {
-    let tables = DeclaredActuator::REQUIRED.iter().chain(&["load"]).copied();
+    let tables = DeclaredActuator::REQUIRED.iter().chain(&DeclaredActuator::OPTIONAL).copied();
     let present: Vec<_> = tables.clone().filter_map(|name| root.get(name)).collect();
     if is_measured {
         for entry in

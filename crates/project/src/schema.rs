@@ -47,7 +47,8 @@ fn what_is_described(writer: &mut SchemaWriter) {
     let measured =
         json!({ "required": ["family"], "properties": { "family": { "required": ["measured"] } } });
     let plant = json!({ "required": ["plant"] });
-    let actuator: Vec<&str> = DeclaredActuator::REQUIRED.iter().chain(&["load"]).copied().collect();
+    let all = DeclaredActuator::REQUIRED.iter().chain(&DeclaredActuator::OPTIONAL);
+    let actuator: Vec<&str> = all.copied().collect();
     let other: Vec<&str> = actuator.iter().chain(&["plant", "uncertainty"]).copied().collect();
     writer.rule(json!({
         "if": measured,

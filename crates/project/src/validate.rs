@@ -1,6 +1,7 @@
 //! Conditions between the values of a project, in addition to the range of each.
 
 mod alternative;
+mod cross_port;
 mod design;
 mod direction;
 mod family;

@@ -125,6 +125,8 @@ dimensions! {
     /// m³/(m·Pa).
     EXPANSION_SLOPE = "a volumetric expansion slope", whole(-1, 3, 2, 0, 0), [], "m3/(m.Pa)",
         r#"2.236e-12, "0.0047 cc/(ft.psi)", "0.22 mL/(m.bar)""#;
+    /// m³/Pa.
+    CAPACITY = "a hydraulic capacity", whole(-1, 4, 2, 0, 0), [], "m3/Pa", r#"1e-12, "1e-12 m3/Pa", "0.1 mL/bar""#;
     /// kg.
     MASS = "a mass", whole(1, 0, 0, 0, 0), ["g", "kg", "t"], "kg", r#""13.1 kg", "200 g""#;
     /// N.

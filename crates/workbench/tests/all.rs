@@ -7,6 +7,7 @@ mod ask;
 mod benchmark;
 mod campaign;
 mod coupled_plant;
+mod cross_port;
 mod derived_statements;
 mod design_contract;
 mod design_explanation;

@@ -143,6 +143,44 @@ fn operating_points_are_those_of_the_declared_rig() {
     follows_the_rig(&loaded(&text(&ranges(&by_pressure), "", "internal_leakage = 1e-12")));
 }
 
+/// A valve between the chambers of every kind, and the numbers that it is made of.
+#[test]
+fn valves_between_the_chambers_follow() {
+    let region = [
+        ("operating_point.load_force", [-3000.0, 1000.0, 3500.0]),
+        ("supply.pressure", [65e5, 70e5, 80e5]),
+        ("fluid.density", [840.0, 870.0, 900.0]),
+    ];
+    let laminar = "[cross_port]\nkind = \"laminar\"\nconductance = 1e-12\n";
+    let conductance = ("cross_port.conductance", [1e-13, 1e-12, 2e-12]);
+    follows_the_rig(&loaded(&text(&ranges(&[region[0], region[1], conductance]), laminar, "")));
+    let orifice = "[cross_port]\nkind = \"orifice\"\ndiameter = \"0.2 mm\"\n";
+    let of_orifice = [
+        ("cross_port.diameter", [1e-4, 2e-4, 3e-4]),
+        ("cross_port.discharge_coefficient", [0.55, 0.6, 0.7]),
+        ("cross_port.transition_pressure", [1e3, 1e4, 1e5]),
+    ];
+    follows_the_rig(&loaded(&text(&ranges(&[&region[..], &of_orifice].concat()), orifice, "")));
+    let by_flow = "[cross_port]\nkind = \"orifice\"\nflow = \"0.2 L/min\"\npressure_drop = \"25 bar\"\n";
+    let of_flow =
+        [("cross_port.flow", [1e-6, 3.3e-6, 5e-6]), ("cross_port.pressure_drop", [20e5, 25e5, 30e5])];
+    follows_the_rig(&loaded(&text(&ranges(&[&region[..2], &of_flow].concat()), by_flow, "")));
+    let feedback = "[cross_port]\nkind = \"dynamic_pressure_feedback\"\ndiameter = \"0.5 mm\"\npiston_diameter = \"12 mm\"\nspring_stiffness = \"60 N/mm\"\n";
+    let of_feedback = [
+        of_orifice[1],
+        of_orifice[2],
+        ("cross_port.piston_diameter", [0.01, 0.012, 0.014]),
+        ("cross_port.spring_stiffness", [4e4, 6e4, 8e4]),
+    ];
+    follows_the_rig(&loaded(&text(&ranges(&[&region[..], &of_feedback].concat()), feedback, "")));
+    let stated =
+        "[cross_port]\nkind = \"dynamic_pressure_feedback\"\nconductance = 1e-10\ncapacity = 1e-12\n";
+    let of_stated =
+        [("cross_port.conductance", [1e-11, 1e-10, 1e-9]), ("cross_port.capacity", [1e-13, 1e-12, 1e-11])];
+    let equal = text(&ranges(&of_stated), stated, "");
+    follows_the_rig(&loaded(&equal));
+}
+
 /// One rod: unequal areas, which are uncertain too; and a wall whose contact depends on the force.
 #[test]
 fn unequal_areas_and_a_wall_follow() {

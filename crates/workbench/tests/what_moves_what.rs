@@ -15,15 +15,17 @@ use phea_workbench::source::Memory;
 
 const SIMULATION: &str = include_str!("../../project/tests/valid/simulation.toml");
 const ACCUMULATORS: &str = include_str!("../../project/tests/valid/accumulators.toml");
+const CROSS_PORT: &str = include_str!("../../project/tests/valid/cross_port.toml");
 const ASYMMETRIC: &str = include_str!("../../project/tests/valid/asymmetric.toml");
 const GUIDE: &str = include_str!("../../../book/src/guide/what_moves_what.md");
 /// Tables that declare the rig and its loop; the others state what is asked of it.
-const TABLES: [&str; 11] = [
+const TABLES: [&str; 12] = [
     "fluid",
     "supply",
     "valve",
     "cylinder",
     "line",
+    "cross_port",
     "load",
     "force_sensor",
     "operating_point",
@@ -86,6 +88,21 @@ fn rigs() -> Vec<(String, Vec<&'static str>)> {
         ),
         (SIMULATION.to_string(), vec![]),
         (ACCUMULATORS.to_string(), vec![]),
+        (CROSS_PORT.to_string(), vec![]),
+        (hose(), vec!["cross_port={ kind = \"laminar\", conductance = 1e-12 }"]),
+        (
+            hose(),
+            vec![
+                "cross_port={ kind = \"orifice\", flow = \"0.2 L/min\", pressure_drop = \"25 bar\" }",
+                "operating_point.load_force=2 kN",
+            ],
+        ),
+        (
+            pipe(),
+            vec![
+                "cross_port={ kind = \"dynamic_pressure_feedback\", conductance = 1e-10, capacity = 1e-12 }",
+            ],
+        ),
         (SIMULATION.to_string(), vec!["operating_point.load_force=2 kN"]),
         (ASYMMETRIC.to_string(), vec!["cylinder.friction.regular_velocity=1 mm/s"]),
         (volumes.split("[uncertainty]").next().unwrap().to_string(), vec!["load.mass=10"]),

@@ -5,6 +5,7 @@ use phea_hydraulics::operating_point::Condition;
 
 use super::Derived;
 use super::accumulator::accumulators;
+use super::cross_port::cross_port;
 use super::list::List;
 use super::valve::valve;
 use crate::linearize::{stiffness_models, stroke_stiffness};
@@ -20,6 +21,7 @@ pub fn derive(project: &Project, rig: &Rig) -> Vec<Derived> {
     accumulators(rig, &mut list);
     valve(project, rig, &mut list);
     equilibrium(rig, &mut list);
+    cross_port(project, rig, &mut list);
     linear_parameters(rig, &mut list);
     dynamics(rig, &mut list);
     friction(rig, &mut list);

@@ -8,6 +8,7 @@
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::uncertain_plant::{UncertainParameter, UncertainPlant};
 use phea_hydraulics::actuator::Components;
+use phea_hydraulics::cross_port::DynamicFeedback;
 use phea_hydraulics::line::{LineError, StiffeningMember};
 use phea_hydraulics::linear::LinearParameters;
 use phea_hydraulics::operating_point::{
@@ -86,7 +87,9 @@ pub(super) struct RigAtPoint<S> {
     pub(super) chambers: TwoPressureLinearParameters<S>,
     /// With the parameters of the linear model that `[linear]` and `[uncertainty]` state.
     pub(super) linear: LinearParameters<S>,
+    /// From chamber to chamber.
     pub(super) leakage: S,
+    pub(super) dynamic_feedback: Option<DynamicFeedback<S>>,
     /// `None` where the supply has a constant pressure.
     pub(super) supply: Option<YieldingSupply<S>>,
 }
@@ -151,7 +154,8 @@ impl Open<'_> {
         };
         let load_velocity_feed_forward =
             self.rig.fed.as_ref().and_then(FeedForwardPath::at_once).map(S::from);
-        (place, LinearPlant { load_velocity_feed_forward, ..plant })
+        let dynamic_feedback = place.dynamic_feedback;
+        (place, LinearPlant { load_velocity_feed_forward, dynamic_feedback, ..plant })
     }
 
     /// The rig with these values; its pressures are those of the declared rig if nothing changes
@@ -196,7 +200,8 @@ impl Open<'_> {
         let linear = linear(&chambers, known.chain(open.filter(|(name, _)| is_linear(name))));
         let settled = SettledSupply { supply, settled: at, taken: none };
         let supply = yielding_supply(self.declared, &numbers, &idle, &settled);
-        RigAtPoint { components, point, chambers, linear, leakage: balance.leakage.unwrap_or(none), supply }
+        let (leakage, dynamic_feedback) = components.cross_admittance(pressures);
+        RigAtPoint { components, point, chambers, linear, leakage, dynamic_feedback, supply }
     }
 }
 

@@ -12,6 +12,7 @@ use phea_hydraulics::servovalve::{
 };
 use phea_hydraulics::stiffness::StiffnessModel;
 
+use super::cross_port::cross_port;
 use super::numbers::Numbers;
 use crate::project::{
     self, BoundedNumber, Compliance, Component, DeclaredAccumulator, EdgeCoefficients, FrictionLaw,
@@ -46,6 +47,11 @@ pub fn components<S: Scalar>(
         valve: valve(&declared.valve, numbers, pressure - tank_pressure),
         line_a: line("a", &declared.line.a),
         line_b: line("b", &declared.line.b),
+        cross_port: cross_port(
+            declared.cross_port.as_ref(),
+            numbers,
+            numbers.at("fluid.density", declared.fluid.density),
+        ),
         accumulators: [("a", &declared.line.a), ("b", &declared.line.b)]
             .map(|(side, line)| accumulator(line.accumulator.as_ref(), &numbers.of_line(side))),
         cylinder: cylinder(&declared.cylinder, numbers),

@@ -38,6 +38,11 @@ pub enum SizingError {
         "sizing finds the hose that is soft enough by itself and counts no gas: size without [line] `accumulator`"
     )]
     Accumulator,
+    /// A capacity between the chambers would share the work of the hose.
+    #[error(
+        "sizing finds the hose that is soft enough by itself and counts no capacity between the chambers: size without [cross_port] `kind` = \"dynamic_pressure_feedback\""
+    )]
+    Capacity,
     /// The catalogue contains nothing to choose from.
     #[error("no hose with bore and volumetric expansion in the catalogue or the project")]
     NoHose,
@@ -54,6 +59,9 @@ pub fn sizing_problem(setup: &Setup<'_>, catalogue: &Catalogue) -> Result<Sizing
     let components = rig.actuator.components();
     if components.accumulators.iter().any(Option::is_some) {
         return Err(SizingError::Accumulator);
+    }
+    if components.cross_port.is_some_and(|port| port.capacity.is_some()) {
+        return Err(SizingError::Capacity);
     }
     let (time_constant, time_constant_origin) = time_constant(wish.speed);
     let (maximum_flow, maximum_flow_origin) = maximum_flow(actuator)?;

@@ -13,9 +13,9 @@ use crate::quantity::{DisplayUnit, significant};
 pub struct SizingProblem {
     /// The cylinder.
     pub cylinder: Cylinder,
-    /// Leakage across the piston, which K_c of the linear model includes, m3/(s Pa).
+    /// What leaks from chamber to chamber, which K_c of the linear model includes, m3/(s Pa).
     pub internal_leakage: f64,
-    /// Parameters of the linear model, K_c with the leakage across the piston; the hydraulic
+    /// Parameters of the linear model, K_c with what leaks from chamber to chamber; the hydraulic
     /// stiffness is to be found; its value is not used.
     pub linear: LinearParameters,
     /// Bulk modulus of the fluid beta_0, Pa.
@@ -127,7 +127,7 @@ impl SizingProblem {
                     number(self.linear.flow_pressure_coefficient),
                     match self.internal_leakage {
                         0.0 => String::new(),
-                        leakage => format!(" with {} m3/(s.Pa) across the piston", number(leakage)),
+                        leakage => format!(" with {} m3/(s.Pa) from chamber to chamber", number(leakage)),
                     }
                 ),
             },

@@ -1,6 +1,6 @@
 //! The actuator: conditions of geometry and physics.
 
-use super::{Check, line_motion};
+use super::{Check, cross_port, line_motion};
 use crate::{
     BoundedNumber, Component, DeclaredAccumulator, DeclaredActuator, DeclaredCylinder, DeclaredFriction,
     DeclaredLine, DeclaredLines, DeclaredSupply, FrictionLaw, NullLeakage, Pump, StribeckCurve, SupplyModel,
@@ -16,6 +16,7 @@ pub(super) fn actuator(actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
     valve(&actuator.valve, &actuator.supply, check);
     cylinder(&actuator.cylinder, check);
     lines(actuator, &actuator.line, check);
+    cross_port::cross_port(actuator, check);
 }
 
 fn supply(actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {

@@ -1,0 +1,61 @@
+use phea_hydraulics::cross_port::{DynamicFeedback, Restrictor};
+
+use super::list::List;
+use crate::control;
+use crate::project::Project;
+use crate::rig::{CrossPortAtPoint, Rig, cross_port_at_point};
+
+/// A valve between the chambers: what it passes and costs at rest, and what its feedback is made of.
+pub(super) fn cross_port(project: &Project, rig: &Rig, list: &mut List) {
+    let Some(found) = cross_port_at_point(rig) else { return };
+    list.group("Valve between the chambers");
+    if let Restrictor::Orifice { flow_coefficient, .. } = found.valve.restrictor {
+        let equation = "K_x = C_d π/4 d^2 sqrt(2/ρ), or q/sqrt(Δp) as stated";
+        list.add("cross_port.flow_coefficient", "K_x", flow_coefficient, "m3/(s.Pa^0.5)", equation);
+    }
+    let slope = match found.valve.capacity {
+        None => "G_x = dq_x/d(p_A - p_B) at the operating point",
+        Some(_) => "g = dq_x/dΔp without a drop",
+    };
+    list.add("cross_port.conductance", "G_x", found.conductance, "m3/(s.Pa)", slope);
+    let equation = match found.valve.capacity {
+        None => "q_x at p_A - p_B of the operating point, from A to B",
+        Some(_) => "0 at rest: the capacity holds p_A - p_B",
+    };
+    list.add("cross_port.flow", "q_x", found.flow, "m3/s", equation);
+    list.add("cross_port.loss", "P_x", found.loss(), "W", "P_x = q_x (p_A - p_B)");
+    match DynamicFeedback::of(&found.valve) {
+        Some(feedback) => {
+            list.add(
+                "cross_port.capacity",
+                "C_x",
+                feedback.capacity,
+                "m3/Pa",
+                "C_x = A_x^2/k_x, or as stated",
+            );
+            list.add("cross_port.corner_frequency", "ω_x", feedback.corner(), "rad/s", "ω_x = g/C_x");
+            let supply = &rig.actuator.components().supply;
+            let greatest = feedback.capacity * (supply.pressure - supply.tank_pressure);
+            let equation = "V_x = C_x (p_S - p_T), to either side";
+            list.add("cross_port.displaced_volume", "V_x", greatest, "m3", equation);
+        }
+        None => static_error(project, &found, list),
+    }
+}
+
+/// What a leak at rest costs in force: the gain of the plant at rest, and the static error of the
+/// given controller where it does not integrate.
+fn static_error(project: &Project, found: &CrossPortAtPoint, list: &mut List) {
+    let [with, without] = found.static_gains;
+    list.add("cross_port.static_gain", "P(0)", with, "N/V", "P(0) = F_e/U_C at rest");
+    list.add("cross_port.static_gain_without", "P(0)", without, "N/V", "P(0) with q_x = 0");
+    let given = control::controller(project).ok().flatten();
+    let feedback = given.and_then(|given| given.feedback.transfer_function().ok());
+    let Some((feedback, sensor)) = feedback.zip(control::sensor(project).ok()) else { return };
+    let origin = if feedback.domain() == phea_dynamics::linear::TimeDomain::Continuous { 0.0 } else { 1.0 };
+    let integrates = feedback.poles().iter().any(|pole| (pole.re - origin).abs() < 1e-12 && pole.im == 0.0);
+    let gain = feedback.dc_gain() * sensor.dc_gain();
+    let name = "cross_port.static_error";
+    let equation = "e = 1/(1 + G(0) P(0) H(0)), of the reference";
+    list.add(name, "e", if integrates { 0.0 } else { 1.0 / (1.0 + gain * with) }, "1", equation);
+}

@@ -1,0 +1,278 @@
+//! `[cross_port]`: a valve between the chambers.
+
+use super::key::{Key, key, plain};
+use super::visitor::{Variants, Visitor};
+use phea_quantity::{CAPACITY, FLOW, FLOW_PRESSURE_COEFFICIENT, LENGTH, PRESSURE, RATIO, STIFFNESS};
+
+/// A valve between the chambers, at the cylinder.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct DeclaredCrossPort {
+    /// What it is.
+    pub kind: CrossPortKind,
+}
+
+/// Kinds of valves between the chambers.
+#[derive(Clone, Debug, PartialEq)]
+pub enum CrossPortKind {
+    /// Flow in proportion to the pressure difference.
+    Laminar {
+        /// m³/(s·Pa).
+        conductance: f64,
+    },
+    /// A sharp edge.
+    Orifice(DeclaredOrifice),
+    /// A restrictor in series with a capacity.
+    DynamicPressureFeedback {
+        /// What the oil passes through.
+        restrictor: DeclaredRestrictor,
+        /// What takes it.
+        capacity: DeclaredCapacity,
+    },
+}
+
+/// A restrictor of dynamic pressure feedback.
+#[derive(Clone, Debug, PartialEq)]
+pub enum DeclaredRestrictor {
+    /// Flow in proportion to the drop.
+    Laminar {
+        /// m³/(s·Pa).
+        conductance: f64,
+    },
+    /// A sharp edge.
+    Orifice(DeclaredOrifice),
+}
+
+/// A sharp edge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DeclaredOrifice {
+    /// How large it is.
+    pub size: OrificeSize,
+    /// Pa, drop below which the square root is made regular.
+    pub transition_pressure: f64,
+}
+
+/// How large an orifice is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum OrificeSize {
+    /// By its diameter.
+    Diameter {
+        /// m.
+        diameter: f64,
+        /// C_d.
+        discharge_coefficient: f64,
+    },
+    /// By what it passes.
+    Flow {
+        /// m³/s.
+        flow: f64,
+        /// Pa, the drop at which it does.
+        pressure_drop: f64,
+    },
+}
+
+/// The capacity of dynamic pressure feedback.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum DeclaredCapacity {
+    /// m³/Pa.
+    Stated(f64),
+    /// A piston between springs.
+    Piston {
+        /// m.
+        diameter: f64,
+        /// N/m, of all its springs together.
+        stiffness: f64,
+    },
+}
+
+/// Discharge coefficient of a sharp edge.
+const DISCHARGE_COEFFICIENT: f64 = 0.6;
+/// Pa, the same as of the edges of a servovalve.
+const TRANSITION_PRESSURE: f64 = 1e3;
+
+impl Default for CrossPortKind {
+    fn default() -> Self {
+        CrossPortKind::Laminar { conductance: 0.0 }
+    }
+}
+
+impl Default for DeclaredOrifice {
+    fn default() -> Self {
+        let size = OrificeSize::Diameter { diameter: 0.0, discharge_coefficient: DISCHARGE_COEFFICIENT };
+        DeclaredOrifice { size, transition_pressure: TRANSITION_PRESSURE }
+    }
+}
+
+impl DeclaredCrossPort {
+    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+        v.variant(plain("kind", "What lies between the chambers."), &mut self.kind, true);
+    }
+
+    /// Its orifice, if it has one.
+    pub fn orifice(&self) -> Option<&DeclaredOrifice> {
+        match &self.kind {
+            CrossPortKind::Orifice(orifice)
+            | CrossPortKind::DynamicPressureFeedback {
+                restrictor: DeclaredRestrictor::Orifice(orifice),
+                ..
+            } => Some(orifice),
+            _ => None,
+        }
+    }
+}
+
+impl Variants for CrossPortKind {
+    fn all(&self) -> Vec<CrossPortKind> {
+        vec![
+            CrossPortKind::default(),
+            CrossPortKind::Orifice(DeclaredOrifice::default()),
+            CrossPortKind::DynamicPressureFeedback {
+                restrictor: DeclaredRestrictor::Laminar { conductance: 0.0 },
+                capacity: DeclaredCapacity::Stated(0.0),
+            },
+        ]
+    }
+
+    fn word(&self) -> &'static str {
+        match self {
+            CrossPortKind::Laminar { .. } => "laminar",
+            CrossPortKind::Orifice(_) => "orifice",
+            CrossPortKind::DynamicPressureFeedback { .. } => "dynamic_pressure_feedback",
+        }
+    }
+
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        match self {
+            CrossPortKind::Laminar { conductance } => v.quantity(conductance_key(), conductance),
+            CrossPortKind::Orifice(orifice) => {
+                v.one_of(&["diameter", "flow"], true);
+                let mut parts = OrificeParts::of(Some(orifice));
+                parts.visit(v);
+                *orifice = parts.orifice(v).unwrap_or_default();
+            }
+            CrossPortKind::DynamicPressureFeedback { restrictor, capacity } => {
+                v.one_of(&["conductance", "diameter", "flow"], true);
+                restrictor.visit(v);
+                v.one_of(&["piston_diameter", "capacity"], true);
+                capacity.visit(v);
+            }
+        }
+    }
+}
+
+fn conductance_key() -> Key {
+    key("conductance", &FLOW_PRESSURE_COEFFICIENT, "Of a laminar restrictor: flow over the drop.").positive()
+}
+
+impl DeclaredRestrictor {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        // a conductance is positive, except for one that is not read yet
+        let (mut conductance, orifice) = match self {
+            DeclaredRestrictor::Laminar { conductance } => {
+                (Some(*conductance).filter(|value| *value > 0.0), None)
+            }
+            DeclaredRestrictor::Orifice(orifice) => (None, Some(&*orifice)),
+        };
+        let mut parts = OrificeParts::of(orifice);
+        v.optional(conductance_key(), &mut conductance);
+        parts.visit(v);
+        *self = match (conductance, parts.orifice(v)) {
+            (None, Some(orifice)) => DeclaredRestrictor::Orifice(orifice),
+            (conductance, _) => DeclaredRestrictor::Laminar { conductance: conductance.unwrap_or_default() },
+        };
+    }
+}
+
+impl DeclaredCapacity {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let (mut capacity, mut diameter, mut stiffness) = match *self {
+            DeclaredCapacity::Stated(capacity) => (Some(capacity).filter(|value| *value > 0.0), None, None),
+            DeclaredCapacity::Piston { diameter, stiffness } => (None, Some(diameter), Some(stiffness)),
+        };
+        let k = key("piston_diameter", &LENGTH, "Of the piston between springs that takes the oil.");
+        v.optional(k.positive(), &mut diameter);
+        let k = key("spring_stiffness", &STIFFNESS, "Of all springs of that piston together.").positive();
+        v.optional(k, &mut stiffness);
+        let k = key("capacity", &CAPACITY, "Volume that it takes over its pressure difference.").positive();
+        v.optional(k, &mut capacity);
+        *self = match (capacity, diameter, stiffness) {
+            (None, Some(diameter), Some(stiffness)) => DeclaredCapacity::Piston { diameter, stiffness },
+            (None, Some(_), None) => {
+                let ways = [&["piston_diameter", "spring_stiffness"][..], &["capacity"]];
+                v.lacks(&ways, "`spring_stiffness`, which goes with `piston_diameter`,");
+                DeclaredCapacity::Stated(0.0)
+            }
+            (capacity, ..) => DeclaredCapacity::Stated(capacity.unwrap_or_default()),
+        };
+    }
+}
+
+/// The keys of an orifice.
+#[derive(Default)]
+struct OrificeParts {
+    diameter: Option<f64>,
+    discharge_coefficient: Option<f64>,
+    flow: Option<f64>,
+    pressure_drop: Option<f64>,
+    transition_pressure: Option<f64>,
+}
+
+impl OrificeParts {
+    fn of(orifice: Option<&DeclaredOrifice>) -> OrificeParts {
+        let Some(DeclaredOrifice { size, transition_pressure }) = orifice.copied() else {
+            return OrificeParts::default();
+        };
+        let parts =
+            OrificeParts { transition_pressure: Some(transition_pressure), ..OrificeParts::default() };
+        match size {
+            OrificeSize::Diameter { diameter: 0.0, .. } => OrificeParts::default(),
+            OrificeSize::Diameter { diameter, discharge_coefficient } => OrificeParts {
+                diameter: Some(diameter),
+                discharge_coefficient: Some(discharge_coefficient),
+                ..parts
+            },
+            OrificeSize::Flow { flow, pressure_drop } => {
+                OrificeParts { flow: Some(flow), pressure_drop: Some(pressure_drop), ..parts }
+            }
+        }
+    }
+
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let k = key("diameter", &LENGTH, "Diameter of the orifice.").positive();
+        v.optional(k, &mut self.diameter);
+        let k = key("discharge_coefficient", &RATIO, "C_d, with `diameter`; absent: 0.6, of a sharp edge.");
+        v.optional(k.positive().at_most(1.0), &mut self.discharge_coefficient);
+        let k = key("flow", &FLOW, "What the orifice passes at `pressure_drop`.").positive();
+        v.optional(k, &mut self.flow);
+        let k = key("pressure_drop", &PRESSURE, "Drop over the orifice at `flow`.").positive();
+        v.optional(k, &mut self.pressure_drop);
+        let k = key(
+            "transition_pressure",
+            &PRESSURE,
+            "Drop below which the orifice is laminar, which makes its root regular; absent: 1 kPa.",
+        );
+        v.optional(k.positive(), &mut self.transition_pressure);
+    }
+
+    /// `None` where nothing says how large it is.
+    fn orifice<V: Visitor>(&self, v: &mut V) -> Option<DeclaredOrifice> {
+        let size = match *self {
+            OrificeParts { diameter: Some(diameter), discharge_coefficient, .. } => OrificeSize::Diameter {
+                diameter,
+                discharge_coefficient: discharge_coefficient.unwrap_or(DISCHARGE_COEFFICIENT),
+            },
+            OrificeParts { flow: Some(flow), pressure_drop: Some(pressure_drop), .. } => {
+                OrificeSize::Flow { flow, pressure_drop }
+            }
+            OrificeParts { flow: Some(_), .. } => {
+                v.lacks(
+                    &[&["flow", "pressure_drop"], &["diameter"]],
+                    "`pressure_drop`, at which `flow` flows,",
+                );
+                return None;
+            }
+            _ => return None,
+        };
+        let transition_pressure = self.transition_pressure.unwrap_or(TRANSITION_PRESSURE);
+        Some(DeclaredOrifice { size, transition_pressure })
+    }
+}

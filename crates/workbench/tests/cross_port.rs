@@ -1,0 +1,160 @@
+//! A valve between the chambers as an engineer meets it: what `check` derives, what a verdict says first, how the linear plant and the
+//! machine agree, and what is refused.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
+#![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
+
+use phea_hydraulics::cross_port::Restrictor;
+use phea_workbench::command::Request;
+
+use crate::ask::{HOSE, PIPE, answer, check, derived, json, near, number, size_request, try_answer, within};
+
+const FEEDBACK: &str = include_str!("../../project/tests/valid/cross_port.toml");
+/// A laminar valve that damps the resonance on the load cell by a tenth, with pipes.
+const LAMINAR: &str = "cross_port={ kind = \"laminar\", conductance = 1.07644e-10 }";
+const VISCOUS: &str = "cylinder.friction={ model = \"viscous\", viscous = \"100 N.s/m\" }";
+
+/// Flow, loss and gain at rest of a laminar valve and of an orifice, under load.
+#[test]
+fn check_derives_what_a_valve_costs_at_rest() {
+    let loaded = "operating_point.load_force=2 kN";
+    let told = check(PIPE, &[LAMINAR, loaded]);
+    let drop = derived(&told, "operating_point.pressure_a") - derived(&told, "operating_point.pressure_b");
+    near(drop * derived(&told, "cylinder.area_a"), 2e3, 1e-6);
+    near(derived(&told, "cross_port.flow"), 1.07644e-10 * drop, 1e-9);
+    near(derived(&told, "cross_port.loss"), 1.07644e-10 * drop * drop, 1e-9);
+    let orifice = "cross_port={ kind = \"orifice\", diameter = \"1 mm\" }";
+    let told = check(PIPE, &[orifice, loaded]);
+    // ORIGIN: analytic, C_d pi/4 d^2 sqrt(2/rho) and half of its flow over the drop
+    let coefficient = 0.6 * std::f64::consts::FRAC_PI_4 * 1e-6 * (2.0_f64 / 870.0).sqrt();
+    near(derived(&told, "cross_port.flow_coefficient"), coefficient, 1e-12);
+    near(derived(&told, "cross_port.flow"), coefficient * drop.sqrt(), 1e-5);
+    near(derived(&told, "cross_port.conductance"), 0.5 * coefficient / drop.sqrt(), 1e-5);
+    let stated = format!("cross_port={{ kind = \"orifice\", flow = {}, pressure_drop = \"25 bar\" }}", coefficient * 25e5_f64.sqrt());
+    near(derived(&check(PIPE, &[&stated, loaded]), "cross_port.flow_coefficient"), coefficient, 1e-12);
+}
+
+/// The static error of a controller without integral action, and none of one that integrates.
+#[test]
+fn check_tells_the_static_error() {
+    let proportional = ["controller.numerator=0.0005", "controller.denominator=1"];
+    let told = check(PIPE, &[&[LAMINAR][..], &proportional].concat());
+    let [gain, without] = ["static_gain", "static_gain_without"].map(|name| derived(&told, &format!("cross_port.{name}")));
+    let linear = |name: &str| derived(&told, &format!("linear.{name}"));
+    let area = derived(&told, "cylinder.area_a");
+    assert!(gain < 0.05 * without);
+    let coefficient = linear("flow_pressure_coefficient");
+    near(without / gain, (coefficient + 1.07644e-10) / coefficient, 0.2);
+    near(derived(&told, "cross_port.static_error"), 1.0 / (1.0 + 5e-4 * gain), 1e-9);
+    assert!(area > 0.0);
+    assert_eq!(derived(&check(PIPE, &[LAMINAR]), "cross_port.static_error"), 0.0);
+}
+
+/// Feedback: capacity of a piston on its springs, corner, and nothing lost at rest, whatever the load.
+#[test]
+fn feedback_costs_nothing_at_rest() {
+    let told = check(FEEDBACK, &["operating_point.load_force=2 kN"]);
+    let area = std::f64::consts::FRAC_PI_4 * 0.012 * 0.012;
+    // ORIGIN: analytic
+    near(derived(&told, "cross_port.capacity"), area * area / 60e3, 1e-12);
+    let coefficient = 0.62 * std::f64::consts::FRAC_PI_4 * 0.25e-6 * (2.0_f64 / 870.0).sqrt();
+    near(derived(&told, "cross_port.conductance"), coefficient / 20e3_f64.sqrt(), 1e-12);
+    near(derived(&told, "cross_port.corner_frequency"), coefficient / 20e3_f64.sqrt() / (area * area / 60e3), 1e-12);
+    near(derived(&told, "cross_port.displaced_volume"), area * area / 60e3 * 70e5, 1e-12);
+    assert_eq!([derived(&told, "cross_port.flow"), derived(&told, "cross_port.loss")], [0.0, 0.0]);
+    let (before, rest) = FEEDBACK.split_once("[cross_port]").unwrap();
+    let bare = format!("{before}[force_sensor]{}", rest.split_once("[force_sensor]").unwrap().1);
+    let without = check(&bare, &["operating_point.load_force=2 kN"]);
+    for name in ["operating_point.command", "operating_point.pressure_a", "operating_point.pressure_b"] {
+        assert_eq!(derived(&told, name), derived(&without, name), "{name}");
+    }
+}
+
+/// An orifice without a drop is told first, and no verdict is met with it unless the range of its transition is stated.
+#[test]
+fn an_orifice_without_a_drop_is_told_first() {
+    let told = json(FEEDBACK, &[], &[], &Request::Verify);
+    assert_eq!(told["verdict"], "not_proven", "{told}");
+    assert!(told.to_string().contains("cross_port is counted for small motions: its orifice has no drop at rest"), "{told}");
+    let range = "uncertainty={ \"cross_port.transition_pressure\" = { nominal = \"20 kPa\", minimum = \"1 kPa\", maximum = \"20 bar\", points = 3, spacing = \"log\" } }";
+    let told = json(FEEDBACK, &[range], &[], &Request::Verify);
+    assert_eq!(told["verdict"], "met", "{told}");
+    let laminar = "cross_port={ kind = \"dynamic_pressure_feedback\", conductance = 1e-10, capacity = 1e-12 }";
+    let told = json(FEEDBACK, &[laminar], &[], &Request::Verify);
+    assert_eq!(told["verdict"], "met", "{told}");
+    assert!(!told.to_string().contains("cross_port is counted"), "{told}");
+    let told = json(PIPE, &["cross_port={ kind = \"orifice\", diameter = \"1 mm\" }", "operating_point.load_force=2 kN"], &[], &Request::Verify);
+    assert!(!told.to_string().contains("cross_port is counted"), "{told}");
+}
+
+/// What the caveat says of an oscillation: its mean slope is that of a transition pressure of 0.81 times its amplitude.
+#[test]
+fn an_oscillation_has_the_slope_of_a_transition_pressure() {
+    let orifice = Restrictor::Orifice { flow_coefficient: 1e-8, transition_pressure: 1.0 };
+    let amplitude = 3e5;
+    let points = 200_000;
+    let mean: f64 = (0..points)
+        .map(|index| {
+            let sine = (2.0 * std::f64::consts::PI * (f64::from(index) + 0.5) / f64::from(points)).sin();
+            2.0 * orifice.flow(amplitude * sine) * sine / (amplitude * f64::from(points))
+        })
+        .sum();
+    let alike = Restrictor::Orifice { flow_coefficient: 1e-8, transition_pressure: 0.8075 * amplitude };
+    near(mean, alike.conductance(0.0), 1e-4);
+}
+
+/// The step of the linear loop is that of the machine, with every kind of valve.
+#[test]
+fn the_machine_agrees_with_the_linear_loop() {
+    for port in [
+        LAMINAR,
+        "cross_port={ kind = \"orifice\", diameter = \"0.3 mm\", transition_pressure = \"5 bar\" }",
+        "cross_port={ kind = \"dynamic_pressure_feedback\", conductance = 1e-10, capacity = 1e-12 }",
+    ] {
+        let scenario = "scenario=[{ name = \"step\", duration = \"1 s\", reference = [{ at = \"0.1 s\", force = \"100 N\" }] }]";
+        let said = answer(PIPE, &[port, VISCOUS, scenario], &[], &Request::VerifyOnMachine);
+        let object: serde_json::Value = serde_json::from_str(&said.json).unwrap();
+        let run = &object["machine"]["runs"][0];
+        assert_eq!(run["agrees"], serde_json::Value::from(true), "{port}: {run}");
+    }
+}
+
+/// Ringing on the load cell after a step of the load: the valve damps it, and so does feedback, which leaks nothing.
+#[test]
+fn the_machine_rings_less() {
+    let scenario = "scenario=[{ name = \"jolt\", duration = \"0.3 s\", load_motion = { kind = \"smooth_step\", start = \"0.05 s\", duration = \"2 ms\", distance = \"0.05 mm\" } }]";
+    let peak = |more: &[&str]| {
+        let settings = [&[scenario, VISCOUS][..], more].concat();
+        let told = json(PIPE, &settings, &[], &Request::Simulate);
+        number(&told, "scenarios.0.events.0.metrics.disturbance_rms_n")
+    };
+    let bare = peak(&[]);
+    for port in [LAMINAR, "cross_port={ kind = \"dynamic_pressure_feedback\", conductance = 1.5e-10, capacity = 1e-12 }"] {
+        assert!(peak(&[port]) < 0.7 * bare, "{port} {} {bare}", peak(&[port]));
+    }
+}
+
+/// Sizing counts what leaks from chamber to chamber in K_c, and refuses a capacity that would share the work of the hose.
+#[test]
+fn sizing_counts_a_leak_and_refuses_a_capacity() {
+    let request = size_request(None, None);
+    let leak = |settings: &[&str]| answer(HOSE, settings, &[], &request).text;
+    let valve = leak(&["cross_port={ kind = \"laminar\", conductance = 2e-12 }"]);
+    assert!(valve.contains("with 2e-12 m3/(s.Pa) from chamber to chamber") || valve.contains("from chamber to chamber"), "{valve}");
+    assert_eq!(valve.lines().skip(1).collect::<Vec<_>>(), leak(&["cylinder.internal_leakage=2e-12"]).lines().skip(1).collect::<Vec<_>>());
+    let feedback = "cross_port={ kind = \"dynamic_pressure_feedback\", conductance = 1e-10, capacity = 1e-12 }";
+    let said = try_answer(HOSE, &[feedback], &[], &request).unwrap_err().to_string();
+    assert!(said.contains("counts no capacity between the chambers"), "{said}");
+}
+
+/// The models of a linearisation that leave feedback out say so; a laminar valve is in all of them.
+#[test]
+fn models_without_feedback_say_so() {
+    let text = |settings: &[&str]| answer(PIPE, settings, &[], &Request::Linearize).text;
+    let feedback = "cross_port={ kind = \"dynamic_pressure_feedback\", conductance = 1e-10, capacity = 1e-12 }";
+    assert!(text(&[feedback]).contains("is counted in the plant and the impedance at the load"));
+    assert!(!text(&[LAMINAR]).contains("is counted in the plant and the impedance"));
+    let object = json(PIPE, &[feedback], &[], &Request::Linearize);
+    assert_eq!(object["passivity"]["open_loop"]["passive"], true, "{object}");
+    within(number(&object, "stiffness.minimum_n_per_m"), number(&json(PIPE, &[], &[], &Request::Linearize), "stiffness.minimum_n_per_m"), 1.0);
+}
