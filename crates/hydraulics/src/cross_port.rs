@@ -2,14 +2,14 @@
 //! feedback).
 //!
 //! ```text
-//! laminar      q = G_x (p_A - p_B)
-//! orifice      q = K_x root(p_A - p_B)                                         orifice.rs
-//! feedback     q = restrictor(p_A - p_B - p_x),   C_x dp_x/dt = q              a piston on a spring, C_x = A_x^2/k_x
+//! laminar      q = G_cp (p_A - p_B)
+//! orifice      q = K_cp root(p_A - p_B)                                         orifice.rs
+//! feedback     q = restrictor(p_A - p_B - p_cp),   C_cp dp_x/dt = q              a piston on a spring, C_cp = A_cp^2/k_cp
 //! ```
 //!
 //! q is positive from chamber A to chamber B. The capacity is a piston between two springs, or any
 //! other part that takes oil on one side and gives as much on the other: at rest its pressure
-//! difference p_x is that of the chambers, and nothing flows. Source: Merritt, Hydraulic Control
+//! difference p_cp is that of the chambers, and nothing flows. Source: Merritt, Hydraulic Control
 //! Systems (1967), which damps a lightly damped load this way.
 
 use phea_dynamics::scalar::Scalar;
@@ -22,7 +22,7 @@ use crate::parameter::{ParameterError, Problems};
 pub struct CrossPort<S = f64> {
     /// What the oil passes through.
     pub restrictor: Restrictor<S>,
-    /// Capacity C_x in series with it, in m3/Pa; `None` where the restrictor joins the chambers by
+    /// Capacity C_cp in series with it, in m3/Pa; `None` where the restrictor joins the chambers by
     /// itself.
     pub capacity: Option<S>,
 }
@@ -32,12 +32,12 @@ pub struct CrossPort<S = f64> {
 pub enum Restrictor<S = f64> {
     /// In proportion to the drop.
     Laminar {
-        /// Conductance G_x in m3/(s Pa).
+        /// Conductance G_cp in m3/(s Pa).
         conductance: S,
     },
     /// A sharp edge, [`flow`].
     Orifice {
-        /// Flow coefficient K_x in m3/(s Pa^0.5).
+        /// Flow coefficient K_cp in m3/(s Pa^0.5).
         flow_coefficient: S,
         /// Drop in Pa below which the square root is made regular.
         transition_pressure: S,
@@ -105,7 +105,7 @@ impl<S: Scalar> Restrictor<S> {
     }
 
     /// Slope of the flow over the drop, in m3/(s Pa). Without a drop that of an orifice is
-    /// K_x/sqrt(dp_t): the transition pressure dp_t alone bounds it.
+    /// K_cp/sqrt(dp_t): the transition pressure dp_t alone bounds it.
     ///
     /// # Example
     /// ```
@@ -175,15 +175,15 @@ impl<S: Scalar> CrossFlow<S> {
 /// A restrictor in series with a capacity, for small motions: dynamic pressure feedback.
 ///
 /// ```text
-/// q = g C_x s/(C_x s + g) (p_A - p_B)
+/// q = g C_cp s/(C_cp s + g) (p_A - p_B)
 /// ```
 ///
-/// Slower than g/C_x it is the capacity between the chambers, faster the conductance.
+/// Slower than g/C_cp it is the capacity between the chambers, faster the conductance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DynamicFeedback<S = f64> {
     /// Conductance g of the restrictor without a drop, in m3/(s Pa).
     pub conductance: S,
-    /// Capacity C_x in m3/Pa.
+    /// Capacity C_cp in m3/Pa.
     pub capacity: S,
 }
 
@@ -201,7 +201,7 @@ impl<S: Scalar> DynamicFeedback<S> {
         Some(DynamicFeedback { conductance: port.restrictor.conductance(S::from(0.0)), capacity })
     }
 
-    /// Where it turns from the capacity into the conductance, g/C_x, in rad/s.
+    /// Where it turns from the capacity into the conductance, g/C_cp, in rad/s.
     pub fn corner(&self) -> S {
         self.conductance / self.capacity
     }

@@ -7,7 +7,7 @@
 //!                C_B(x, p_B) dp_B/dt = q_B + q_i + A_B v        thesis (4.26), corrected
 //!                C of the oil and its enclosure, and of the gas of an Accumulator at that chamber
 //! leakage        q_i = G_i (p_A - p_B)                          laminar, across the piston
-//! cross port     q_x = restrictor(p_A - p_B - p_x),   C_x dp_x/dt = q_x       part of q_i: CrossPort
+//! cross port     q_cp = restrictor(p_A - p_B - p_cp),   C_cp dp_cp/dt = q_cp      part of q_i: CrossPort
 //! piston         M dv/dt = A_A p_A - A_B p_B + F_stops - F_fr - F_e      thesis (4.29)
 //! sensor         d(x - x_L)/dt = v - v_L,   F_e = K_S (x - x_L)          thesis (4.45)
 //! bristles       dz/dt                                          thesis (4.30), corrected: LuGre

@@ -66,7 +66,7 @@ pub struct LinearPlant<S = f64> {
 /// ```
 ///
 /// Both are the same where both chambers are: equal areas, compliances and flow-pressure
-/// coefficients. Dynamic pressure feedback adds g C_x s/(C_x s + g) to G.
+/// coefficients. Dynamic pressure feedback adds g C_cp s/(C_cp s + g) to G.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ChamberDynamics<S = f64> {
     /// One load pressure, of a cylinder whose chambers are equal.
@@ -288,7 +288,7 @@ impl<S: Scalar> LinearPlant<S> {
     }
 
     /// D, N_u and N_v with what flows from chamber to chamber; dynamic pressure feedback multiplies
-    /// all three by C_x s + g, the denominator of its admittance.
+    /// all three by C_cp s + g, the denominator of its admittance.
     fn chamber_polynomials(&self) -> ChamberPolynomials<Vec<S>> {
         let chambers = match &self.supply {
             None => self.chambers.chambers(),

@@ -30,7 +30,10 @@ fn check_derives_what_a_valve_costs_at_rest() {
     near(derived(&told, "cross_port.flow_coefficient"), coefficient, 1e-12);
     near(derived(&told, "cross_port.flow"), coefficient * drop.sqrt(), 1e-5);
     near(derived(&told, "cross_port.conductance"), 0.5 * coefficient / drop.sqrt(), 1e-5);
-    let stated = format!("cross_port={{ kind = \"orifice\", flow = {}, pressure_drop = \"25 bar\" }}", coefficient * 25e5_f64.sqrt());
+    let stated = format!(
+        "cross_port={{ kind = \"orifice\", flow = {}, pressure_drop = \"25 bar\" }}",
+        coefficient * 25e5_f64.sqrt()
+    );
     near(derived(&check(PIPE, &[&stated, loaded]), "cross_port.flow_coefficient"), coefficient, 1e-12);
 }
 
@@ -39,14 +42,13 @@ fn check_derives_what_a_valve_costs_at_rest() {
 fn check_tells_the_static_error() {
     let proportional = ["controller.numerator=0.0005", "controller.denominator=1"];
     let told = check(PIPE, &[&[LAMINAR][..], &proportional].concat());
-    let [gain, without] = ["static_gain", "static_gain_without"].map(|name| derived(&told, &format!("cross_port.{name}")));
+    let [gain, without] =
+        ["static_gain", "static_gain_without"].map(|name| derived(&told, &format!("cross_port.{name}")));
     let linear = |name: &str| derived(&told, &format!("linear.{name}"));
-    let area = derived(&told, "cylinder.area_a");
     assert!(gain < 0.05 * without);
     let coefficient = linear("flow_pressure_coefficient");
     near(without / gain, (coefficient + 1.07644e-10) / coefficient, 0.2);
     near(derived(&told, "cross_port.static_error"), 1.0 / (1.0 + 5e-4 * gain), 1e-9);
-    assert!(area > 0.0);
     assert_eq!(derived(&check(PIPE, &[LAMINAR]), "cross_port.static_error"), 0.0);
 }
 
@@ -59,7 +61,11 @@ fn feedback_costs_nothing_at_rest() {
     near(derived(&told, "cross_port.capacity"), area * area / 60e3, 1e-12);
     let coefficient = 0.62 * std::f64::consts::FRAC_PI_4 * 0.25e-6 * (2.0_f64 / 870.0).sqrt();
     near(derived(&told, "cross_port.conductance"), coefficient / 20e3_f64.sqrt(), 1e-12);
-    near(derived(&told, "cross_port.corner_frequency"), coefficient / 20e3_f64.sqrt() / (area * area / 60e3), 1e-12);
+    near(
+        derived(&told, "cross_port.corner_frequency"),
+        coefficient / 20e3_f64.sqrt() / (area * area / 60e3),
+        1e-12,
+    );
     near(derived(&told, "cross_port.displaced_volume"), area * area / 60e3 * 70e5, 1e-12);
     assert_eq!([derived(&told, "cross_port.flow"), derived(&told, "cross_port.loss")], [0.0, 0.0]);
     let (before, rest) = FEEDBACK.split_once("[cross_port]").unwrap();
@@ -75,15 +81,24 @@ fn feedback_costs_nothing_at_rest() {
 fn an_orifice_without_a_drop_is_told_first() {
     let told = json(FEEDBACK, &[], &[], &Request::Verify);
     assert_eq!(told["verdict"], "not_proven", "{told}");
-    assert!(told.to_string().contains("cross_port is counted for small motions: its orifice has no drop at rest"), "{told}");
+    assert!(
+        told.to_string().contains("cross_port is counted for small motions: its orifice has no drop at rest"),
+        "{told}"
+    );
     let range = "uncertainty={ \"cross_port.transition_pressure\" = { nominal = \"20 kPa\", minimum = \"1 kPa\", maximum = \"20 bar\", points = 3, spacing = \"log\" } }";
     let told = json(FEEDBACK, &[range], &[], &Request::Verify);
     assert_eq!(told["verdict"], "met", "{told}");
-    let laminar = "cross_port={ kind = \"dynamic_pressure_feedback\", conductance = 1e-10, capacity = 1e-12 }";
+    let laminar =
+        "cross_port={ kind = \"dynamic_pressure_feedback\", conductance = 1e-10, capacity = 1e-12 }";
     let told = json(FEEDBACK, &[laminar], &[], &Request::Verify);
     assert_eq!(told["verdict"], "met", "{told}");
     assert!(!told.to_string().contains("cross_port is counted"), "{told}");
-    let told = json(PIPE, &["cross_port={ kind = \"orifice\", diameter = \"1 mm\" }", "operating_point.load_force=2 kN"], &[], &Request::Verify);
+    let told = json(
+        PIPE,
+        &["cross_port={ kind = \"orifice\", diameter = \"1 mm\" }", "operating_point.load_force=2 kN"],
+        &[],
+        &Request::Verify,
+    );
     assert!(!told.to_string().contains("cross_port is counted"), "{told}");
 }
 
@@ -119,30 +134,19 @@ fn the_machine_agrees_with_the_linear_loop() {
     }
 }
 
-/// Ringing on the load cell after a step of the load: the valve damps it, and so does feedback, which leaks nothing.
-#[test]
-fn the_machine_rings_less() {
-    let scenario = "scenario=[{ name = \"jolt\", duration = \"0.3 s\", load_motion = { kind = \"smooth_step\", start = \"0.05 s\", duration = \"2 ms\", distance = \"0.05 mm\" } }]";
-    let peak = |more: &[&str]| {
-        let settings = [&[scenario, VISCOUS][..], more].concat();
-        let told = json(PIPE, &settings, &[], &Request::Simulate);
-        number(&told, "scenarios.0.events.0.metrics.disturbance_rms_n")
-    };
-    let bare = peak(&[]);
-    for port in [LAMINAR, "cross_port={ kind = \"dynamic_pressure_feedback\", conductance = 1.5e-10, capacity = 1e-12 }"] {
-        assert!(peak(&[port]) < 0.7 * bare, "{port} {} {bare}", peak(&[port]));
-    }
-}
-
 /// Sizing counts what leaks from chamber to chamber in K_c, and refuses a capacity that would share the work of the hose.
 #[test]
 fn sizing_counts_a_leak_and_refuses_a_capacity() {
     let request = size_request(None, None);
     let leak = |settings: &[&str]| answer(HOSE, settings, &[], &request).text;
     let valve = leak(&["cross_port={ kind = \"laminar\", conductance = 2e-12 }"]);
-    assert!(valve.contains("with 2e-12 m3/(s.Pa) from chamber to chamber") || valve.contains("from chamber to chamber"), "{valve}");
-    assert_eq!(valve.lines().skip(1).collect::<Vec<_>>(), leak(&["cylinder.internal_leakage=2e-12"]).lines().skip(1).collect::<Vec<_>>());
-    let feedback = "cross_port={ kind = \"dynamic_pressure_feedback\", conductance = 1e-10, capacity = 1e-12 }";
+    assert!(valve.contains("with 2.000e-12 m3/(s.Pa) from chamber to chamber"), "{valve}");
+    assert_eq!(
+        valve.lines().skip(1).collect::<Vec<_>>(),
+        leak(&["cylinder.internal_leakage=2e-12"]).lines().skip(1).collect::<Vec<_>>()
+    );
+    let feedback =
+        "cross_port={ kind = \"dynamic_pressure_feedback\", conductance = 1e-10, capacity = 1e-12 }";
     let said = try_answer(HOSE, &[feedback], &[], &request).unwrap_err().to_string();
     assert!(said.contains("counts no capacity between the chambers"), "{said}");
 }
@@ -151,10 +155,15 @@ fn sizing_counts_a_leak_and_refuses_a_capacity() {
 #[test]
 fn models_without_feedback_say_so() {
     let text = |settings: &[&str]| answer(PIPE, settings, &[], &Request::Linearize).text;
-    let feedback = "cross_port={ kind = \"dynamic_pressure_feedback\", conductance = 1e-10, capacity = 1e-12 }";
+    let feedback =
+        "cross_port={ kind = \"dynamic_pressure_feedback\", conductance = 1e-10, capacity = 1e-12 }";
     assert!(text(&[feedback]).contains("is counted in the plant and the impedance at the load"));
     assert!(!text(&[LAMINAR]).contains("is counted in the plant and the impedance"));
     let object = json(PIPE, &[feedback], &[], &Request::Linearize);
     assert_eq!(object["passivity"]["open_loop"]["passive"], true, "{object}");
-    within(number(&object, "stiffness.minimum_n_per_m"), number(&json(PIPE, &[], &[], &Request::Linearize), "stiffness.minimum_n_per_m"), 1.0);
+    within(
+        number(&object, "stiffness.minimum_n_per_m"),
+        number(&json(PIPE, &[], &[], &Request::Linearize), "stiffness.minimum_n_per_m"),
+        1.0,
+    );
 }

@@ -89,13 +89,21 @@ fn rigs() -> Vec<(String, Vec<&'static str>)> {
         (SIMULATION.to_string(), vec![]),
         (ACCUMULATORS.to_string(), vec![]),
         (CROSS_PORT.to_string(), vec![]),
-        (hose(), vec!["cross_port={ kind = \"laminar\", conductance = 1e-12 }"]),
         (
             hose(),
             vec![
                 "cross_port={ kind = \"orifice\", flow = \"0.2 L/min\", pressure_drop = \"25 bar\" }",
                 "operating_point.load_force=2 kN",
             ],
+        ),
+        (ASYMMETRIC.to_string(), vec!["cross_port={ kind = \"laminar\", conductance = 1e-12 }"]),
+        (
+            ASYMMETRIC.to_string(),
+            vec!["cross_port={ kind = \"orifice\", flow = \"0.2 L/min\", pressure_drop = \"25 bar\" }"],
+        ),
+        (
+            ASYMMETRIC.to_string(),
+            vec!["cross_port={ kind = \"orifice\", diameter = \"0.5 mm\", discharge_coefficient = 0.62 }"],
         ),
         (
             pipe(),

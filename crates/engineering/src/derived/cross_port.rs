@@ -10,34 +10,34 @@ pub(super) fn cross_port(project: &Project, rig: &Rig, list: &mut List) {
     let Some(found) = cross_port_at_point(rig) else { return };
     list.group("Valve between the chambers");
     if let Restrictor::Orifice { flow_coefficient, .. } = found.valve.restrictor {
-        let equation = "K_x = C_d π/4 d^2 sqrt(2/ρ), or q/sqrt(Δp) as stated";
-        list.add("cross_port.flow_coefficient", "K_x", flow_coefficient, "m3/(s.Pa^0.5)", equation);
+        let equation = "K_{cp} = C_d π/4 d^2 sqrt(2/ρ), or q/sqrt(Δp) as stated";
+        list.add("cross_port.flow_coefficient", "K_cp", flow_coefficient, "m3/(s.Pa^0.5)", equation);
     }
     let slope = match found.valve.capacity {
-        None => "G_x = dq_x/d(p_A - p_B) at the operating point",
-        Some(_) => "g = dq_x/dΔp without a drop",
+        None => "G_{cp} = dq_{cp}/d(p_A - p_B) at the operating point",
+        Some(_) => "g = dq_{cp}/dΔp without a drop",
     };
-    list.add("cross_port.conductance", "G_x", found.conductance, "m3/(s.Pa)", slope);
+    list.add("cross_port.conductance", "G_cp", found.conductance, "m3/(s.Pa)", slope);
     let equation = match found.valve.capacity {
-        None => "q_x at p_A - p_B of the operating point, from A to B",
+        None => "q_{cp} at p_A - p_B of the operating point, from A to B",
         Some(_) => "0 at rest: the capacity holds p_A - p_B",
     };
-    list.add("cross_port.flow", "q_x", found.flow, "m3/s", equation);
-    list.add("cross_port.loss", "P_x", found.loss(), "W", "P_x = q_x (p_A - p_B)");
+    list.add("cross_port.flow", "q_cp", found.flow, "m3/s", equation);
+    list.add("cross_port.loss", "P_cp", found.loss(), "W", "P_{cp} = q_{cp} (p_A - p_B)");
     match DynamicFeedback::of(&found.valve) {
         Some(feedback) => {
             list.add(
                 "cross_port.capacity",
-                "C_x",
+                "C_cp",
                 feedback.capacity,
                 "m3/Pa",
-                "C_x = A_x^2/k_x, or as stated",
+                "C_{cp} = A_{cp}^2/k_{cp}, or as stated",
             );
-            list.add("cross_port.corner_frequency", "ω_x", feedback.corner(), "rad/s", "ω_x = g/C_x");
+            list.add("cross_port.corner_frequency", "ω_cp", feedback.corner(), "rad/s", "ω_{cp} = g/C_{cp}");
             let supply = &rig.actuator.components().supply;
             let greatest = feedback.capacity * (supply.pressure - supply.tank_pressure);
-            let equation = "V_x = C_x (p_S - p_T), to either side";
-            list.add("cross_port.displaced_volume", "V_x", greatest, "m3", equation);
+            let equation = "V_{cp} = C_{cp} (p_S - p_T), to either side";
+            list.add("cross_port.displaced_volume", "V_cp", greatest, "m3", equation);
         }
         None => static_error(project, &found, list),
     }
@@ -48,7 +48,7 @@ pub(super) fn cross_port(project: &Project, rig: &Rig, list: &mut List) {
 fn static_error(project: &Project, found: &CrossPortAtPoint, list: &mut List) {
     let [with, without] = found.static_gains;
     list.add("cross_port.static_gain", "P(0)", with, "N/V", "P(0) = F_e/U_C at rest");
-    list.add("cross_port.static_gain_without", "P(0)", without, "N/V", "P(0) with q_x = 0");
+    list.add("cross_port.static_gain_without", "P(0)", without, "N/V", "P(0) with q_{cp} = 0");
     let given = control::controller(project).ok().flatten();
     let feedback = given.and_then(|given| given.feedback.transfer_function().ok());
     let Some((feedback, sensor)) = feedback.zip(control::sensor(project).ok()) else { return };

@@ -49,7 +49,7 @@ fn orifice<S: Scalar>(declared: &DeclaredOrifice, numbers: &Numbers<'_, S>, dens
     Restrictor::Orifice { flow_coefficient, transition_pressure }
 }
 
-/// C_x = A_x^2/k_x of a piston between springs.
+/// C_cp = A_cp^2/k_cp of a piston between springs.
 fn capacity<S: Scalar>(declared: &DeclaredCapacity, numbers: &Numbers<'_, S>) -> S {
     match *declared {
         DeclaredCapacity::Stated(capacity) => numbers.at("capacity", capacity),

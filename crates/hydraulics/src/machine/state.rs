@@ -28,7 +28,7 @@ pub struct MachineState<T = f64> {
     /// v_L in m/s. Errors are scaled by the deformation of its spring or wall, not by its distance
     /// from the end of the cylinder.
     pub load: Motion<T>,
-    /// Pressure difference p_x in Pa over the capacity of a valve between the chambers.
+    /// Pressure difference p_cp in Pa over the capacity of a valve between the chambers.
     pub cross_port_pressure: T,
     /// Supply pressure p_S in Pa, where a pump is limited.
     pub supply_pressure: T,
