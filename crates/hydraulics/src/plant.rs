@@ -117,21 +117,21 @@ struct ChamberPolynomials<T> {
     displaced: T,
 }
 
-/// Chambers between which nothing flows, and the same joined to one pressure: with an admittance Y
+/// Both chambers where nothing flows between them, and the same joined to one pressure: with an admittance Y
 /// between them, of which the determinant of their equations is linear,
 ///
 /// ```text
 /// D = D_apart + Y D_joined,   N_u and N_v likewise
 /// ```
-struct Chambers<T> {
+struct ChamberPair<T> {
     apart: ChamberPolynomials<T>,
     joined: ChamberPolynomials<T>,
 }
 
-impl<T> Chambers<T> {
+impl<T> ChamberPair<T> {
     /// Each of D, N_u and N_v apart and joined, combined.
     fn combined(&self, with: impl Fn(&T, &T) -> T) -> ChamberPolynomials<T> {
-        let Chambers { apart, joined } = self;
+        let ChamberPair { apart, joined } = self;
         ChamberPolynomials {
             own: with(&apart.own, &joined.own),
             driven: with(&apart.driven, &joined.driven),
@@ -141,14 +141,14 @@ impl<T> Chambers<T> {
 }
 
 impl<S: Scalar> ChamberDynamics<S> {
-    fn chambers(&self) -> Chambers<Vec<S>> {
+    fn chambers(&self) -> ChamberPair<Vec<S>> {
         match *self {
             ChamberDynamics::LoadPressure {
                 useful_area: area,
                 flow_gain,
                 flow_pressure_coefficient,
                 hydraulic_stiffness: stiffness,
-            } => Chambers {
+            } => ChamberPair {
                 apart: ChamberPolynomials {
                     own: vec![area.squared(), flow_pressure_coefficient * stiffness],
                     driven: vec![area * stiffness * flow_gain],
@@ -161,7 +161,7 @@ impl<S: Scalar> ChamberDynamics<S> {
                 let [gain_a, gain_b] = flow_gains;
                 let [a, b] = [0, 1].map(|side| [compliances[side], flow_pressures[side]]);
                 let difference = area_a - area_b;
-                Chambers {
+                ChamberPair {
                     apart: ChamberPolynomials {
                         own: product(&a, &b),
                         driven: sum(&scaled(area_a * gain_a, &b), &scaled(area_b * gain_b, &a)),
@@ -180,7 +180,7 @@ impl<S: Scalar> ChamberDynamics<S> {
 
 impl<S: Scalar> ChamberDynamics<S> {
     /// The same with a supply that yields, of either form.
-    fn behind(&self, supply: &YieldingSupply<S>) -> Chambers<Vec<S>> {
+    fn behind(&self, supply: &YieldingSupply<S>) -> ChamberPair<Vec<S>> {
         let [one, other] = [self.side(0), self.side(1)];
         let [of_a, of_b] = supply.edges;
         let coupled = Coupled {

@@ -115,9 +115,8 @@ fn accumulators(number: u64) -> [Option<Accumulator>; 2] {
     })
 }
 
-fn drawn(number: u64) -> Drawn {
-    let mut state = stream(23, number);
-    let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
+/// The parts of a rig for every number, the models of its lines and its friction, its numbers drawn by `spread`.
+fn parts(number: u64, spread: &mut impl FnMut(f64, f64) -> f64) -> (Components, [LineModel; 2], f64) {
     let (friction, leakage) = (spread(50.0, 2e4), spread(1e-14, 1e-10));
     let [area_a, area_b] = areas_from_diameters(0.05, [0.022, spread(0.01, 0.036)]).unwrap();
     let stiffness_model = if number % 5 < 2 { StiffnessModel::Uniform } else { StiffnessModel::ByVolume };
@@ -143,6 +142,13 @@ fn drawn(number: u64) -> Drawn {
         cross_port: cross_port(number),
         ..leaking(parts, leakage)
     };
+    (parts, models, friction)
+}
+
+fn drawn(number: u64) -> Drawn {
+    let mut state = stream(23, number);
+    let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
+    let (parts, models, friction) = parts(number, &mut spread);
     let actuator = Actuator::new(parts).unwrap();
     let parts = actuator.components();
     let line = |line: &Line, model: &LineModel| {

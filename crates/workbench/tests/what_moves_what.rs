@@ -36,6 +36,12 @@ const TABLES: [&str; 12] = [
 /// What a key may move, in the order of the columns.
 const PARTS: [&str; 5] = ["sizing", "plant", "loop", "sensor", "machine"];
 
+/// What rounds in the computer of a controller.
+const CONVERTERS: [&str; 2] = [
+    "controller.sample_time=1 ms",
+    "controller.quantization={ command_bits = 10, command_range = [\"-10 V\", \"10 V\"], measurement_bits = 10, measurement_range = [\"-10 kN\", \"10 kN\"] }",
+];
+
 /// Rigs that together have every key: examples, the projects of other tests, and the same with other words.
 fn rigs() -> Vec<(String, Vec<&'static str>)> {
     let hose = || without_family(include_str!("../../../examples/ybitu/hose.toml"));
@@ -44,10 +50,6 @@ fn rigs() -> Vec<(String, Vec<&'static str>)> {
     let two_wave = ["line.model=two_wave", "line.wall={ mass_per_length = 0.21, axial_compliance = 1e-5 }"];
     let wall_of_two =
         ["line.wall.coupling_compliance=-1e-5", "line.wall.pressure_compliance=3e-9", "line.end_share=0.02"];
-    let converters = [
-        "controller.sample_time=1 ms",
-        "controller.quantization={ command_bits = 10, command_range = [\"-10 V\", \"10 V\"], measurement_bits = 10, measurement_range = [\"-10 kN\", \"10 kN\"] }",
-    ];
     let factored = hose()
         .replace(
             "numerator = \"0.001*s + 0.008\"\ndenominator = \"s\"",
@@ -64,7 +66,7 @@ fn rigs() -> Vec<(String, Vec<&'static str>)> {
     ];
     let sprung = ["load.model=spring_mass_damper", "load.mass=100", "load.stiffness=2e5", "load.damping=500"];
     let wall = ["load.model=wall", "load.mass=10", "load.stiffness=1e6", "load.damping=10", "load.gap=0.001"];
-    vec![
+    let mut rigs = vec![
         (hose(), vec![]),
         (hose(), [&sprung[..], &["line.compliance=by_volume"]].concat()),
         (hose(), [&two_wave[..], &wall_of_two].concat()),
@@ -79,7 +81,7 @@ fn rigs() -> Vec<(String, Vec<&'static str>)> {
         ),
         (hose(), sampled.to_vec()),
         (hose(), vec!["controller.load_velocity_feed_forward={ gain = 20 }"]),
-        (hose(), converters.to_vec()),
+        (hose(), CONVERTERS.to_vec()),
         (factored, vec![]),
         (pipe(), [&wall[..], &["load.relative_damping=0.1"]].concat()),
         (
@@ -88,9 +90,26 @@ fn rigs() -> Vec<(String, Vec<&'static str>)> {
         ),
         (SIMULATION.to_string(), vec![]),
         (ACCUMULATORS.to_string(), vec![]),
+        (SIMULATION.to_string(), vec!["operating_point.load_force=2 kN"]),
+        (ASYMMETRIC.to_string(), vec!["cylinder.friction.regular_velocity=1 mm/s"]),
+        (volumes.split("[uncertainty]").next().unwrap().to_string(), vec!["load.mass=10"]),
+        (
+            pipe(),
+            vec![
+                "line.pipe={ bore = \"10.5 mm\", wall_thickness = \"2.75 mm\", youngs_modulus = \"206 GPa\" }",
+            ],
+        ),
+    ];
+    rigs.extend(between_chambers(hose(), pipe()));
+    rigs
+}
+
+/// Rigs with a valve between the chambers.
+fn between_chambers(hose: String, pipe: String) -> Vec<(String, Vec<&'static str>)> {
+    vec![
         (CROSS_PORT.to_string(), vec![]),
         (
-            hose(),
+            hose,
             vec![
                 "cross_port={ kind = \"orifice\", flow = \"0.2 L/min\", pressure_drop = \"25 bar\" }",
                 "operating_point.load_force=2 kN",
@@ -106,18 +125,9 @@ fn rigs() -> Vec<(String, Vec<&'static str>)> {
             vec!["cross_port={ kind = \"orifice\", diameter = \"0.5 mm\", discharge_coefficient = 0.62 }"],
         ),
         (
-            pipe(),
+            pipe,
             vec![
                 "cross_port={ kind = \"dynamic_pressure_feedback\", conductance = 1e-10, capacity = 1e-12 }",
-            ],
-        ),
-        (SIMULATION.to_string(), vec!["operating_point.load_force=2 kN"]),
-        (ASYMMETRIC.to_string(), vec!["cylinder.friction.regular_velocity=1 mm/s"]),
-        (volumes.split("[uncertainty]").next().unwrap().to_string(), vec!["load.mass=10"]),
-        (
-            pipe(),
-            vec![
-                "line.pipe={ bore = \"10.5 mm\", wall_thickness = \"2.75 mm\", youngs_modulus = \"206 GPa\" }",
             ],
         ),
     ]

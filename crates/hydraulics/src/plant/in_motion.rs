@@ -4,7 +4,7 @@ use num_complex::Complex64;
 use phea_dynamics::analytic::Analytic;
 
 use super::supply::{Coupled, Over};
-use super::{Chamber, ChamberPolynomials, Chambers, LinearLoad, LinearPlant, YieldingSupply};
+use super::{Chamber, ChamberPair, ChamberPolynomials, LinearLoad, LinearPlant, YieldingSupply};
 use crate::cross_port::DynamicFeedback;
 use crate::line::{DynamicLine, Segments, TransferMatrix};
 
@@ -204,7 +204,7 @@ impl PlantInMotion {
         let passed = one.passed * other.passed;
         let difference = area_a - area_b;
         let crossed = other.passed.scaled(gain_a) - one.passed.scaled(gain_b);
-        let chambers = Chambers {
+        let chambers = ChamberPair {
             apart: ChamberPolynomials {
                 own: a * b,
                 driven: b.scaled(area_a * gain_a) + a.scaled(area_b * gain_b),

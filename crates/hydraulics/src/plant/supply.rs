@@ -1,7 +1,7 @@
 use phea_dynamics::analytic::Analytic;
 use phea_dynamics::scalar::Scalar;
 
-use super::{ChamberPolynomials, Chambers};
+use super::{ChamberPair, ChamberPolynomials};
 use crate::linear::polynomial::{product, scaled, sum};
 use crate::operating_point::{Balance, SettledSupply};
 use crate::orifice::{regular_root, regular_root_slope};
@@ -115,7 +115,7 @@ impl<T> Coupled<T> {
     /// [-s_A -s_B   c   ] [p_S]   [-K_qS]       [  0 ]
     /// joined: p_A = p_B,   [a + b, -s; -s, c] with s = s_A + s_B,   D = (a + b) c - s^2
     /// ```
-    pub(super) fn chambers<S: Scalar>(&self, [area_a, area_b]: [S; 2]) -> Chambers<T>
+    pub(super) fn chambers<S: Scalar>(&self, [area_a, area_b]: [S; 2]) -> ChamberPair<T>
     where
         T: Admittance<S>,
     {
@@ -133,7 +133,7 @@ impl<T> Coupled<T> {
         let (both, of_both) = (a.plus(b), of_a.plus(of_b));
         let given = gain_a.plus(&minus(gain_b)).times(c).plus(&minus(&of_both.times(gain_supply)));
         let difference = area_a - area_b;
-        Chambers {
+        ChamberPair {
             apart: ChamberPolynomials {
                 own: a.times(&bc).plus(&minus(&of_a.times(&from_a))),
                 driven: by_a.times(gain_a).plus(&minus(&taken)),
