@@ -54,11 +54,7 @@ fn lanes(threads: usize) -> Effort {
 #[test]
 fn rows_are_the_same_in_lanes_one_by_one_and_on_any_number_of_threads() {
     let sampled = ["controller.sample_time=1 ms", "force_sensor.noise=2 N"];
-    let fed = [
-        "cross_port={ kind = \"dynamic_pressure_feedback\", diameter = \"0.5 mm\", capacity = 1e-12 }",
-        "campaign.parameters.\"cross_port.diameter\"={ spread = \"20 %\" }",
-    ];
-    for more in [&[] as &[&str], &sampled, &["simulation.maximum_steps=120"], &fed] {
+    for more in [&[] as &[&str], &sampled, &["simulation.maximum_steps=120"]] {
         let plan = plan(more);
         let expected = plan.rows(0..45, SCALAR).unwrap();
         assert_eq!(expected.len(), 45);

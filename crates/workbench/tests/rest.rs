@@ -124,14 +124,11 @@ const CONTROLLERS: [&[&str]; 4] = [
     &["controller.anti_windup=back_calculation", "sensor={ numerator = \"600\", denominator = \"s + 600\" }"],
     &["controller.delay=0.2 ms", "controller.load_velocity_feed_forward={}"],
 ];
-const OTHERS: [&[&str]; 7] = [
+const OTHERS: [&[&str]; 4] = [
     &[],
     &["cylinder.internal_leakage=2e-13", "valve.null_bias=30 mV"],
     &["valve.hysteresis=0.1 V", "valve.threshold=20 mV"],
     &["cylinder.end_stops={ stiffness = \"100 MN/m\", relative_damping = \"0.5 s/m\" }"],
-    &["cross_port={ kind = \"laminar\", conductance = 3e-13 }", "cylinder.internal_leakage=2e-13"],
-    &["cross_port={ kind = \"orifice\", diameter = \"0.1 mm\" }"],
-    &["cross_port={ kind = \"dynamic_pressure_feedback\", diameter = \"0.5 mm\", capacity = 1e-13 }"],
 ];
 
 /// Lines, supplies, loads, sensors, controllers and friction of every kind, combined in a fixed pattern.
@@ -145,7 +142,7 @@ fn machines_of_all_components_rest() {
             SUPPLIES[number % 3],
             LOADS[(number / 2) % 3],
             CONTROLLERS[(number / 3) % 4],
-            OTHERS[(number / 5) % 7],
+            OTHERS[(number / 5) % 4],
         ];
         let force_n = if number % 2 == 0 { 0.0 } else { 1500.0 };
         let reference = format!("reference = [{{ at = 0, force = {force_n} }}]");
