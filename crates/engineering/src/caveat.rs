@@ -5,10 +5,11 @@
 
 use phea_hydraulics::cross_port::Restrictor;
 use phea_hydraulics::operating_point::OperatingPoint;
+use phea_hydraulics::plant::ChamberDynamics;
 
 use crate::project::{CrossPortKind, LineMotion, Load, Project, Pump, SupplyModel};
 use crate::quantity::{DisplayUnit, PRESSURE, display, significant};
-use crate::rig::{ChargedRange, accumulator_place, charged_range, cross_port_at_point, limits_load_motion};
+use crate::rig::{ChargedRange, accumulator_place, charged_range, cross_port_at_point, has_necks, limits_load_motion};
 use crate::setup::Setup;
 
 /// A declared effect that the linear loop does not include.
@@ -26,6 +27,7 @@ pub fn caveats(setup: &Setup<'_>) -> Vec<Caveat> {
         .chain(supply(setup))
         .chain(accumulator(setup))
         .chain(cross_port(setup))
+        .chain(neck(setup))
         .collect()
 }
 
@@ -37,6 +39,7 @@ pub fn of_models(project: &Project) -> Vec<String> {
         .chain(others)
         .chain(constant_supply(project))
         .chain(fed_between_chambers(project))
+        .chain(behind_necks(project))
         .chain(fed_in_loop(project))
         .collect()
 }
@@ -127,6 +130,29 @@ fn accumulator(setup: &Setup<'_>) -> Option<Caveat> {
          falls below the precharge, its gas is shut off, and only a simulation shows how stiff the actuator is then"
     );
     Some(Caveat { sentence, unproven: false })
+}
+
+/// A stated stiffness includes the gas, which then has no neck.
+fn neck(setup: &Setup<'_>) -> Option<Caveat> {
+    let declared = setup.project.actuator.as_ref()?;
+    if is_measured(setup.project) || !has_necks(declared) {
+        return None;
+    }
+    matches!(setup.rig().ok()?.plant.chambers, ChamberDynamics::LoadPressure { .. }).then(|| Caveat {
+        sentence: "the neck of line.accumulator is not counted, as [linear] or [uncertainty] states a parameter of one load pressure, \
+                   which includes the gas: state physical numbers in their place, or judge by a simulation"
+            .to_string(),
+        unproven: true,
+    })
+}
+
+/// Necks of accumulators, which the models of a linearisation do not include.
+fn behind_necks(project: &Project) -> Option<String> {
+    has_necks(project.actuator.as_ref()?).then(|| {
+        "the neck of line.accumulator is counted in the plant and the impedance at the load: the other models and the asymptotes of the \
+         impedance have its gas at the chamber"
+            .to_string()
+    })
 }
 
 /// Drops of an orifice in transition pressures below which its slope is that of the transition.

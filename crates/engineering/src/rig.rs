@@ -40,7 +40,9 @@ pub use numbers::Numbers;
 pub use parameters::{ParameterOrigin, ResolvedParameter};
 pub use place::place;
 pub(crate) use plant::are_equal;
+pub(crate) use plant::has_necks;
 pub(crate) use plant::states_one_pressure;
+pub(crate) use plant::with_necks;
 pub(crate) use plant::with_supply;
 pub(crate) use plant::yielding_load;
 pub use plant::{YieldingLoad, linear, plant, sides, stated};
@@ -154,7 +156,7 @@ impl Rig {
         let load = yielding_load(&declared.load, &numbers, point.hydraulic_force);
         let yielding = supply.and_then(|found| yielding_supply(declared, &numbers, &balance, &found));
         let unseen = yielding.is_none_or(|supply| are_equal([supply.edges]));
-        let equal = are_equal(sides(&two_pressure)) && unseen;
+        let equal = are_equal(sides(&two_pressure)) && unseen && !has_necks(declared);
         let one_pressure = states_one_pressure(&parameters, &[]) || equal;
         let pushed = load.map_or(LinearLoad::Prescribed, |load| load.linear());
         let plant = plant(&two_pressure, &linear, one_pressure, internal_leakage, pushed);
@@ -163,6 +165,7 @@ impl Rig {
             Some(supply) if !(one_pressure && unseen) => with_supply(plant, supply, &two_pressure),
             _ => plant,
         };
+        let plant = with_necks(plant, components, pressures);
         let in_motion = in_motion(&declared.line, components, &point, &two_pressure, &plant)?;
         Ok(Rig {
             actuator,

@@ -3,11 +3,12 @@
 #![allow(clippy::unwrap_used)] // helpers of tests
 
 use phea_dynamics::simulation::Plant;
-use phea_hydraulics::accumulator::Accumulator;
+use phea_hydraulics::accumulator::{Accumulator, Neck, NeckedGas};
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::line::{Line, StiffeningMember};
 use phea_hydraulics::machine::{INDICATORS, Machine, MachineOptions};
-use phea_hydraulics::reference_rig::{components, cylinder, hose_line, pipe_line};
+use phea_hydraulics::plant::{ChamberDynamics, LinearLoad, LinearPlant};
+use phea_hydraulics::reference_rig::{components, cylinder, hose_line, nominal_plant, pipe_line};
 use phea_hydraulics::stiffness::{StiffnessModel, hydraulic_stiffness};
 
 /// The rig of the thesis with lines of hardly any volume, and this gas at both chambers.
@@ -96,6 +97,40 @@ fn gas_is_shut_off_below_its_precharge() {
         assert_eq!(found[place("empty_a")], bare[place("empty_a")]);
         assert_eq!(rate(&with) == rate(&without), !in_use);
     }
+}
+
+/// A neck that becomes short is none, and one that becomes long shuts the gas off; between them it is a mass on a spring, at whose
+/// resonance alone the gas takes more than it yields.
+#[test]
+fn a_neck_has_two_limits() {
+    let gas = |length: f64| {
+        let neck = Neck::round([6e-3, length], [870.0, 46e-6, 1.45e9], 1.5);
+        NeckedGas::of(&neck, 3e-12)
+    };
+    let compliances = [8e-13, 8e-13];
+    let of = |necks: [Option<NeckedGas>; 2], compliances: [f64; 2]| {
+        let chambers = ChamberDynamics::TwoPressures {
+            areas: [1.5e-3, 1.2e-3],
+            compliances,
+            flow_gains: [5e-5, 4e-5],
+            flow_pressures: [2e-12, 3e-12],
+        };
+        let plant = LinearPlant::of_load_pressure(&nominal_plant(), 1e-12, LinearLoad::Prescribed);
+        LinearPlant { chambers, necks, ..plant }.coefficients()
+    };
+    let apart = |length: f64, compliances_alone: [f64; 2]| {
+        let (one, other) = (of([Some(gas(length)), None], compliances), of([None; 2], compliances_alone));
+        [1e-3, 1.0, 50.0, 700.0, 2e3].map(|w| {
+            (one.command.at_frequency(w) / other.command.at_frequency(w) - 1.0).norm_sqr().sqrt()
+        })
+    };
+    let lumped = [compliances[0] + 3e-12, compliances[1]];
+    assert!(apart(1e-12, lumped).iter().all(|gap| *gap < 1e-9), "{:?}", apart(1e-12, lumped));
+    assert!(apart(0.04, lumped)[4] > 0.1 && apart(0.04, lumped)[0] < 1e-3);
+    // ORIGIN: analytic, sqrt(A/(rho L C)) with the oil of the neck beside the gas
+    let area = std::f64::consts::FRAC_PI_4 * 36e-6;
+    let expected = (area / (870.0 * 0.04 * (3e-12 + area * 0.04 / 1.45e9))).sqrt();
+    assert!((gas(0.04).resonance() / expected - 1.0).abs() < 1e-12);
 }
 
 /// A gas without volume, without precharge, or with an index that no gas has, is refused by its path.

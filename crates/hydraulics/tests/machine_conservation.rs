@@ -5,6 +5,7 @@
 use phea_dynamics::portable::sin;
 use phea_dynamics::scalar::Dual;
 use phea_dynamics::simulation::Plant;
+use phea_hydraulics::accumulator::Neck;
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::contact::Contact;
 use phea_hydraulics::cross_port::{CrossPort, Restrictor};
@@ -200,6 +201,8 @@ fn rich_machines() -> Vec<(&'static str, Machine)> {
         Some(Accumulator { gas_volume, precharge_pressure, polytropic_exponent })
     };
     let at_chambers = |rig| Components { accumulators: [gas(2e-5, 8e5, 1.4), gas(5e-6, 3e5, 1.0)], ..rig };
+    let neck = |diameter| Some(Neck::round([diameter, 0.04], [870.0, 46e-6, 1.45e9], 1.5));
+    let necked = |rig| Components { necks: [neck(6e-3), neck(4e-3)], ..at_chambers(rig) };
     let at_one = |rig| Components { accumulators: [None, gas(1e-5, 5e5, 1.25)], ..rig };
     let port =
         |restrictor, capacity| Components { cross_port: Some(CrossPort { restrictor, capacity }), ..rig };
@@ -213,6 +216,11 @@ fn rich_machines() -> Vec<(&'static str, Machine)> {
             "feedback behind lines",
             of(port(orifice, Some(3e-13)), with(pump(), lines_of(&rig, [SMEARED, PLAIN]))),
         ),
+        ("gas behind necks", of(necked(rig), with(charged_pump(40e5, 1.4), None))),
+        ("gas behind a neck and a line", {
+            let half = Components { necks: [None, neck(6e-3)], ..at_chambers(by_volume) };
+            of(half, with(pump(), lines_of(&rig, [SMEARED, PLAIN])))
+        }),
         ("gas at the chambers", of(at_chambers(rig), with(charged_pump(40e5, 1.4), None))),
         ("gas behind a line", of(at_one(by_volume), with(pump(), lines_of(&rig, [SMEARED, PLAIN])))),
         ("gas", of(rig, with(charged_pump(40e5, 1.4), None))),

@@ -104,6 +104,29 @@ fn gas_that_is_shut_off_at_the_operating_point_is_refused() {
     }
 }
 
+/// A neck: its resonance is told, it is in the plant, and where a stated stiffness leaves no place for it a verdict says so first.
+#[test]
+fn a_neck_is_told_and_counted() {
+    const NECK: &str = include_str!("../../project/tests/valid/accumulator_neck.toml");
+    let told = check(NECK, &[]);
+    let area = std::f64::consts::FRAC_PI_4 * 36e-6;
+    for (side, gas) in [("a", "a"), ("b", "b")].into_iter().take(1) {
+        let compliance = derived(&told, &format!("line.{gas}.accumulator.compliance")) + area * 0.04 / 1.45e9;
+        // ORIGIN: analytic, sqrt(A/(rho L C))
+        let expected = (area / (870.0 * 0.04 * compliance)).sqrt();
+        near(derived(&told, &format!("line.{side}.accumulator.neck_resonance")), expected, 1e-9);
+    }
+    let stiffness = |text: &str| derived(&check(text, &[]), "linear.hydraulic_stiffness");
+    near(stiffness(NECK), stiffness(BOTH), 1e-12);
+    let said = answer(NECK, &[], &[], &Request::Linearize).text;
+    assert!(said.contains("the neck of line.accumulator is counted in the plant and the impedance"), "{said}");
+    let verdict = |settings: &[&str]| json(NECK, settings, &[], &Request::Verify).to_string();
+    let limit = "specification=[{ kind = \"robust_stability\", limit = 1000, frequencies = [1, 10, 100] }]";
+    assert!(!verdict(&[limit]).contains("the neck of line.accumulator is not counted"));
+    let stated = verdict(&[limit, "linear.hydraulic_stiffness=2e6"]);
+    assert!(stated.contains("the neck of line.accumulator is not counted") && stated.contains("not_proven"), "{stated}");
+}
+
 /// The sizing of a hose leaves gas out, and says so rather than answer.
 #[test]
 fn sizing_refuses_gas() {

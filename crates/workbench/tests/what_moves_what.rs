@@ -15,6 +15,7 @@ use phea_workbench::source::Memory;
 
 const SIMULATION: &str = include_str!("../../project/tests/valid/simulation.toml");
 const ACCUMULATORS: &str = include_str!("../../project/tests/valid/accumulators.toml");
+const NECK: &str = include_str!("../../project/tests/valid/accumulator_neck.toml");
 const CROSS_PORT: &str = include_str!("../../project/tests/valid/cross_port.toml");
 const ASYMMETRIC: &str = include_str!("../../project/tests/valid/asymmetric.toml");
 const GUIDE: &str = include_str!("../../../book/src/guide/what_moves_what.md");
@@ -66,7 +67,7 @@ fn rigs() -> Vec<(String, Vec<&'static str>)> {
     ];
     let sprung = ["load.model=spring_mass_damper", "load.mass=100", "load.stiffness=2e5", "load.damping=500"];
     let wall = ["load.model=wall", "load.mass=10", "load.stiffness=1e6", "load.damping=10", "load.gap=0.001"];
-    let mut rigs = vec![
+    let others = vec![
         (hose(), vec![]),
         (hose(), [&sprung[..], &["line.compliance=by_volume"]].concat()),
         (hose(), [&two_wave[..], &wall_of_two].concat()),
@@ -90,6 +91,7 @@ fn rigs() -> Vec<(String, Vec<&'static str>)> {
         ),
         (SIMULATION.to_string(), vec![]),
         (ACCUMULATORS.to_string(), vec![]),
+        (NECK.to_string(), vec![]),
         (SIMULATION.to_string(), vec!["operating_point.load_force=2 kN"]),
         (ASYMMETRIC.to_string(), vec!["cylinder.friction.regular_velocity=1 mm/s"]),
         (volumes.split("[uncertainty]").next().unwrap().to_string(), vec!["load.mass=10"]),
@@ -100,8 +102,7 @@ fn rigs() -> Vec<(String, Vec<&'static str>)> {
             ],
         ),
     ];
-    rigs.extend(between_chambers(hose(), pipe()));
-    rigs
+    others.into_iter().chain(between_chambers(hose(), pipe())).collect()
 }
 
 /// Rigs with a valve between the chambers.

@@ -26,7 +26,7 @@ use super::visited::Visited;
 use crate::project::{DeclaredActuator, LINEAR_PARAMETERS, Project};
 use crate::rig::{
     self, FeedForwardPath, Numbers, Rig, components, linear, place, plant, settled_supply, stated,
-    with_supply, yielding_load, yielding_supply,
+    with_necks, with_supply, yielding_load, yielding_supply,
 };
 use crate::setup::Setup;
 
@@ -152,6 +152,8 @@ impl Open<'_> {
             }
             _ => plant,
         };
+        let pressures = [place.point.pressure_a, place.point.pressure_b];
+        let plant = with_necks(plant, &place.components, pressures);
         let load_velocity_feed_forward =
             self.rig.fed.as_ref().and_then(FeedForwardPath::at_once).map(S::from);
         let dynamic_feedback = place.dynamic_feedback;

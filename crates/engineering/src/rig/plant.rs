@@ -2,6 +2,7 @@
 //! that the project states.
 
 use phea_dynamics::scalar::Scalar;
+use phea_hydraulics::actuator::Components;
 use phea_hydraulics::linear::LinearParameters;
 use phea_hydraulics::plant::{ChamberDynamics, LinearLoad, LinearPlant, YieldingSupply};
 use phea_hydraulics::servovalve::ChamberCoefficients;
@@ -150,6 +151,42 @@ pub(crate) fn with_supply<S: Scalar>(
         }
     };
     LinearPlant { supply: Some(supply), ..plant }
+}
+
+/// The same plant with the gas of accumulators behind their necks, where it has two pressures; one
+/// load pressure, whose stiffness includes the gas, has none.
+pub(crate) fn with_necks<S: Scalar>(
+    plant: LinearPlant<S>,
+    components: &Components<S>,
+    pressures: [S; 2],
+) -> LinearPlant<S> {
+    let necks = components.necked_gas(pressures);
+    match plant.chambers {
+        ChamberDynamics::TwoPressures { areas, compliances, flow_gains, flow_pressures } if necks != [None, None] => {
+            let compliances = without_necked(components, pressures, compliances);
+            let chambers = ChamberDynamics::TwoPressures { areas, compliances, flow_gains, flow_pressures };
+            LinearPlant { chambers, necks, ..plant }
+        }
+        _ => plant,
+    }
+}
+
+/// Compliances of both chambers in m3/Pa less that of the gas behind necks.
+pub(crate) fn without_necked<S: Scalar>(
+    components: &Components<S>,
+    pressures: [S; 2],
+    [a, b]: [S; 2],
+) -> [S; 2] {
+    let none = S::from(0.0);
+    let [gas_a, gas_b] = components.gas_compliance(pressures);
+    let behind = |side: usize, gas: Option<S>| components.necks[side].and(gas).unwrap_or(none);
+    [a - behind(0, gas_a), b - behind(1, gas_b)]
+}
+
+/// Whether gas lies behind a neck.
+pub(crate) fn has_necks(declared: &project::DeclaredActuator) -> bool {
+    let gas = [&declared.line.a, &declared.line.b].map(|line| line.accumulator.as_ref());
+    gas.into_iter().flatten().any(|gas| gas.neck.is_some())
 }
 
 /// The parameters of the linear model that the project states: name and value.

@@ -117,6 +117,7 @@ impl<S: Scalar> Machine<S> {
         let charged = |gas: &Option<Accumulator<S>>, pressure: T| {
             gas.map_or(T::from(1.0), |gas| pressure - constant(gas.precharge_pressure))
         };
+        let gas_pressures = self.gas_pressures(&state);
         [
             state.pressure_a - vapour,
             state.pressure_b - vapour,
@@ -126,8 +127,8 @@ impl<S: Scalar> Machine<S> {
             compliance_b,
             self.load.convert(&mut constant::<S, T>).clearance(&load, &ground),
             supply.pressure - supply.tank_pressure,
-            charged(gas_a, state.pressure_a),
-            charged(gas_b, state.pressure_b),
+            charged(gas_a, gas_pressures[0]),
+            charged(gas_b, gas_pressures[1]),
         ]
     }
 }

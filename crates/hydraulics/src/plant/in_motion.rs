@@ -5,6 +5,7 @@ use phea_dynamics::analytic::Analytic;
 
 use super::supply::{Coupled, Over};
 use super::{Chamber, ChamberPair, ChamberPolynomials, LinearLoad, LinearPlant, YieldingSupply};
+use crate::accumulator::NeckedGas;
 use crate::cross_port::DynamicFeedback;
 use crate::line::{DynamicLine, Segments, TransferMatrix};
 
@@ -74,6 +75,8 @@ struct ChamberSide {
     flow_gain: f64,
     flow_pressure: f64,
     line: DynamicLine,
+    /// Gas behind a neck.
+    neck: Option<NeckedGas>,
 }
 
 /// A chamber with its line at s, everything times what the line passes: `passed` is d + K_c b, by
@@ -128,7 +131,8 @@ impl PlantInMotion {
             let stiffer = behind.lumped[side] / compliance;
             let line = behind.lines[side].stiffened(stiffer);
             let compliance = behind.chambers[side] / stiffer + line.chamber_compliance();
-            ChamberSide { area, compliance, flow_gain, flow_pressure, line }
+            let neck = plant.necks[side];
+            ChamberSide { area, compliance, flow_gain, flow_pressure, line, neck }
         };
         let sides = [side(0), side(1)];
         let alike = sides[0].line == sides[1].line;
@@ -251,6 +255,7 @@ impl PlantInMotion {
         let passing = |value: f64, at: &AtChamber<A>| Over(A::from(value) / at.passed);
         Coupled {
             own: [admittance(one), admittance(other), Over(own)],
+            passed: None,
             edges: [passing(of_a, one), passing(of_b, other)],
             gains: [passing(gain_a, one), passing(gain_b, other), Over(taken)],
         }
@@ -276,6 +281,9 @@ impl PlantInMotion {
             [supply.edges, to_tank, [supply.compliance, supply.conductance]].concat()
         });
         let feedback = self.plant.dynamic_feedback.iter().flat_map(|one| [one.conductance, one.capacity]);
+        let necks = self.sides.iter().filter_map(|side| side.neck);
+        let of_necks = necks.flat_map(|neck| [neck.inertance, neck.resistance, neck.compliance]);
+        let feedback = feedback.chain(of_necks);
         own.into_iter().chain(load).chain(of_sides).chain(of_supply).chain(feedback).all(|value| value >= 0.0)
     }
 
@@ -298,7 +306,9 @@ impl ChamberSide {
     fn at_chamber<A: Analytic>(&self, line: TransferMatrix<A>, s: A) -> AtChamber<A> {
         let passed = line.flow + line.impedance.scaled(self.flow_pressure);
         let taken = line.admittance + line.pressure.scaled(self.flow_pressure);
-        let admittance = s.scaled(self.compliance) * passed + taken;
+        let own = s.scaled(self.compliance);
+        let own = self.neck.map_or(own, |neck| own + neck.admittance_at(s));
+        let admittance = own * passed + taken;
         AtChamber { admittance, passed, impedance: line.impedance }
     }
 }

@@ -153,7 +153,11 @@ impl RespondingPlant for PlantInMotion {
         let slowest = slowest.fold(filled, f64::min).min(self.plant.valve_natural_frequency);
         let quarter_wave = self.quarter_wave_rad_per_s().unwrap_or(0.0);
         let modes = self.sides.iter().map(|side| side.line.fastest_rad_per_s());
-        let fastest = modes.fold(ABOVE_QUARTER_WAVE * quarter_wave, f64::max).max(passed);
+        let necks = self.sides.iter().filter_map(|side| {
+            let neck = side.neck?;
+            Some((1.0 / neck.compliance + 1.0 / side.compliance) / neck.inertance).map(f64::sqrt)
+        });
+        let fastest = modes.chain(necks).fold(ABOVE_QUARTER_WAVE * quarter_wave, f64::max).max(passed);
         let fastest = fastest.max(ABOVE_SPOOL * self.plant.valve_natural_frequency);
         let slowest = if slowest > 0.0 { slowest } else { self.plant.valve_natural_frequency };
         [BELOW * slowest, fastest]
