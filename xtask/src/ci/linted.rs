@@ -68,13 +68,17 @@ fn succeeds(command: &mut Command) -> bool {
 fn documentation(arguments: &[OsString]) -> Option<Command> {
     let words: Vec<&str> = arguments.iter().map(|one| one.to_str()).collect::<Option<_>>()?;
     let is_of_package = std::env::var_os("CARGO_PRIMARY_PACKAGE").is_some();
-    let is_documented = words.contains(&"--crate-name")
-        && !words.contains(&"--test")
-        && !words.contains(&"build_script_build");
+    // what has no harness is a test by `--cfg test`
+    let is_test = words.contains(&"--test") || words.windows(2).any(|pair| pair == ["--cfg", "test"]);
+    let is_documented = words.contains(&"--crate-name") && !is_test && !words.contains(&"build_script_build");
     let (compiler, words) = words.split_first()?;
     (is_of_package && is_documented).then(|| {
         let mut rustdoc = Command::new(Path::new(compiler).with_file_name("rustdoc"));
         rustdoc.args(of_rustdoc(words)).args(["-D", "warnings"]);
+        // as `cargo doc` does: nothing of a program is public
+        if words.windows(2).any(|pair| pair == ["--crate-type", "bin"]) {
+            rustdoc.arg("--document-private-items");
+        }
         rustdoc
     })
 }
