@@ -3,7 +3,7 @@
     python comparisons/closed_loop_scipy.py      # poles of the loop at rest, and while sliding
 """
 
-from math import cosh, exp, sqrt
+from math import cosh, exp, pi, sqrt
 from types import SimpleNamespace
 
 import numpy as np
@@ -14,6 +14,9 @@ from closed_loop import DEFAULTS
 # Spool, its rate, pressures A and B, load cell deflection, velocity, bristle, integral part, filtered reference, its rate.
 ATMOSPHERE = 101_325.0
 MAGNITUDES = np.array([1.0, 1e3, 1e5, 1e5, 1e-4, 1e-2, 1e-5, 1.0, 1e3, 1e5])
+# Flow into the gas and its pressure, behind the necks at A and B.
+NECKS = np.array([1e-5, 1e5, 1e-5, 1e5])
+SCALES = np.concatenate((MAGNITUDES, NECKS))
 
 
 def root(drop, transition):
@@ -55,13 +58,31 @@ def gas_compliance(rig, pressure):
     return lifted * rig.gas_volume / (index * precharge) * (precharge / absolute) ** (1 + 1 / index)
 
 
+def neck(rig, pressure, flow, gas_pressure):
+    """Rates of the flow through the neck of an accumulator and of the pressure of its gas, which its own oil is beside."""
+    diameter, length, loss_coefficient = rig.neck
+    section = pi / 4 * diameter**2
+    resistance = 128 * rig.density * rig.viscosity * length / (pi * diameter**4)
+    lost = resistance * flow + loss_coefficient * rig.density / (2 * section**2) * flow * abs(flow)
+    soft = gas_compliance(rig, gas_pressure) + section * length / rig.fluid_modulus
+    return [(pressure - gas_pressure - lost) * section / (rig.density * length), flow / soft]
+
+
 def rates(time, state, rig, reference):
-    spool, spool_rate, pressure_a, pressure_b, deflection, v, z, integral, r, r_rate = (state * MAGNITUDES).tolist()
+    state = state * SCALES[: len(state)]
+    spool, spool_rate, pressure_a, pressure_b, deflection, v, z, integral, r, r_rate = state[:10].tolist()
+    necks, soft_a, soft_b = [], 0.0, 0.0
+    if len(state) == 10:
+        soft_a, soft_b = gas_compliance(rig, pressure_a), gas_compliance(rig, pressure_b)
     load_position, load_velocity = load(rig, time)
     position, force = load_position + deflection, rig.sensor_stiffness * deflection
     error = r - force
     command = min(max(rig.proportional_gain * error + integral, -rig.saturation), rig.saturation)
     into_a, into_b = flows(rig, spool, pressure_a, pressure_b)
+    if len(state) > 10:
+        flow_a, gas_a, flow_b, gas_b = state[10:].tolist()
+        into_a, into_b = into_a - flow_a, into_b - flow_b
+        necks = neck(rig, pressure_a, flow_a, gas_a) + neck(rig, pressure_b, flow_b, gas_b)
     volume_a = rig.line_volume_a + rig.area_a * position
     volume_b = rig.line_volume_b + rig.area_b * (rig.stroke - position)
     level = rig.coulomb + (rig.static_friction - rig.coulomb) * exp(-((v / rig.stribeck_velocity) ** 2))
@@ -71,8 +92,8 @@ def rates(time, state, rig, reference):
     rate = [
         spool_rate,
         rig.valve_frequency**2 * (command - spool) - 2 * rig.valve_damping * rig.valve_frequency * spool_rate,
-        (into_a - rig.area_a * v) / (volume_a / rig.chamber_modulus + gas_compliance(rig, pressure_a)),
-        (into_b + rig.area_b * v) / (volume_b / rig.chamber_modulus + gas_compliance(rig, pressure_b)),
+        (into_a - rig.area_a * v) / (volume_a / rig.chamber_modulus + soft_a),
+        (into_b + rig.area_b * v) / (volume_b / rig.chamber_modulus + soft_b),
         v - load_velocity,
         (pull - friction - force) / rig.moving_mass,
         z_rate,
@@ -80,15 +101,17 @@ def rates(time, state, rig, reference):
         r_rate,
         rig.prefilter_stiffness * (reference - r) - rig.prefilter_damping * r_rate,
     ]
-    return np.array(rate) / MAGNITUDES
+    return np.array(rate + necks) / SCALES[: len(state)]
 
 
 def force(tolerance, **changes):
     """The force each millisecond of 5 s, for the default rig with these changes."""
     rig = SimpleNamespace(**{**DEFAULTS, **changes})
-    state = np.zeros(10)
+    magnitudes = SCALES if hasattr(rig, "neck") else MAGNITUDES
+    state = np.zeros(len(magnitudes))
     state[2:4] = rig.start_pressure_a, rig.start_pressure_b
-    state, times, forces = state / MAGNITUDES, np.round(np.arange(5001) * 1e-3, 6), [np.zeros(1)]
+    state[11::2] = state[2:4] if hasattr(rig, "neck") else []
+    state, times, forces = state / magnitudes, np.round(np.arange(5001) * 1e-3, 6), [np.zeros(1)]
     ends = [rig.reference_time, rig.motion_start, rig.motion_start + rig.motion_duration, rig.duration]
     for start, end in zip([0.0, *ends], ends):
         wanted = np.unique([*times[(times > start + 1e-9) & (times < end + 1e-9)], end])

@@ -2,7 +2,8 @@
 
     python comparisons/compare_accumulator.py [PHEA]        # or the variable PHEA; without either, what cargo builds
 
-The closed loop of examples/benchmark, with gas that stays in use, and with gas that one chamber shuts off under load.
+The closed loop of examples/benchmark, with gas that stays in use, with gas that one chamber shuts off under load, and with gas
+behind a neck at each chamber.
 """
 
 import csv
@@ -19,16 +20,24 @@ import closed_loop_scipy
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PHEA = sys.argv[1] if len(sys.argv) > 1 else os.environ.get("PHEA", str(ROOT / "target/debug/phea"))
 PROJECT = ROOT / "examples" / "benchmark" / "closed_loop.toml"
-# gas volume in m3, precharge in Pa gauge, polytropic exponent; largest difference of the force in N
+# gas volume in m3, precharge in Pa gauge, polytropic exponent; largest difference of the force in N; diameter and length of the
+# neck in m, and its loss coefficient
 CASES = {
-    "in use": (5e-6, 10e5, 1.4, 1e-3),
-    "slow gas": (2e-5, 8e5, 1.0, 1e-3),
-    "shut off under load": (5e-6, 20e5, 1.4, 1e-3),
+    "in use": (5e-6, 10e5, 1.4, 1e-3, None),
+    "slow gas": (2e-5, 8e5, 1.0, 1e-3, None),
+    "shut off under load": (5e-6, 20e5, 1.4, 1e-3, None),
+    "behind a neck": (5e-6, 10e5, 1.4, 1e-3, (5e-3, 0.05, 1.5)),
+    "behind a long neck": (2e-5, 8e5, 1.0, 1e-3, (4e-3, 0.3, 3.0)),
 }
+# kg/m3, m2/s and Pa
+OIL = {"density": 870.0, "viscosity": 46e-6, "fluid_modulus": 1.45e9}
 
 
-def simulated(gas_volume, precharge, index):
-    gas = f'{{ gas_volume = "{gas_volume} m3", precharge_pressure = "{precharge} Pa", polytropic_exponent = {index} }}'
+def simulated(gas_volume, precharge, index, neck):
+    gas = f'gas_volume = "{gas_volume} m3", precharge_pressure = "{precharge} Pa", polytropic_exponent = {index}'
+    if neck is not None:
+        gas += ", neck_diameter = {}, neck_length = {}, neck_loss_coefficient = {}".format(*neck)
+    gas = f"{{ {gas} }}"
     with tempfile.TemporaryDirectory() as folder:
         command = [PHEA, "simulate", str(PROJECT), "--set", f"line.accumulator={gas}"]
         command += ["--set", "simulation.tolerance=1e-9", "--out", folder]
@@ -41,9 +50,10 @@ def simulated(gas_volume, precharge, index):
 
 def main():
     bare = closed_loop_scipy.force(1e-10)
-    for name, (gas_volume, precharge, index, largest) in CASES.items():
-        own, told = simulated(gas_volume, precharge, index)
+    for name, (gas_volume, precharge, index, largest, neck) in CASES.items():
+        own, told = simulated(gas_volume, precharge, index, neck)
         gas = {"gas_volume": gas_volume, "precharge": precharge, "polytropic_exponent": index}
+        gas |= {} if neck is None else {"neck": neck, **OIL}
         other = closed_loop_scipy.force(1e-10, **gas)
         apart, effect = np.abs(own - other).max(), np.abs(other - bare).max()
         print(f"{name:20s} largest difference {apart:.2e} N; the gas itself changes the force by {effect:.3g} N")

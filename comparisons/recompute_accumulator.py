@@ -53,6 +53,15 @@ def main():
     assert loaded[1] < 35e5
     # until chamber B has fallen to 15 bar
     assert round(2 * AREA * (35e5 - 15e5), -2) == 6300
+    # a neck of 6 mm and 40 mm before it, with oil of 870 kg/m3 and 46 cSt: resonance and damping ratio
+    diameter, length = 6e-3, 40e-3
+    section = pi / 4 * diameter**2
+    inertance = 870 * length / section
+    resistance = 128 * 870 * 46e-6 * length / (pi * diameter**4)
+    soft = compliance(9.9e-6, 35e5, 1.4, 35e5) + section * length / MODULUS
+    resonance, damping = (inertance * soft) ** -0.5, resistance / 2 * (soft / inertance) ** 0.5
+    assert isclose(damping, 16 * 46e-6 / (resonance * diameter**2), rel_tol=1e-12)
+    assert (round(resonance), round(damping, 3)) == (643, 0.032), (resonance, damping)
     print(f"K_H {idle:.6g} N/m idle, {stiffness((precharged, 15e5, 1.4), loaded) / idle:.5f} of it at 4 kN")
     print(f"V_0 {precharged * 1e6:.4f} mL at 15 bar; without gas K_H {stiffness(None, middle):.4g} N/m")
 

@@ -9,7 +9,9 @@ use phea_hydraulics::operating_point::OperatingPoint;
 use crate::control::velocity_sensor;
 use crate::project::{CrossPortKind, LineMotion, Load, Project, Pump, SupplyModel};
 use crate::quantity::{DisplayUnit, PRESSURE, display, significant};
-use crate::rig::{ChargedRange, accumulator_place, charged_range, cross_port_at_point, limits_load_motion};
+use crate::rig::{
+    ChargedRange, accumulator_place, charged_range, cross_port_at_point, has_necks, limits_load_motion,
+};
 use crate::setup::Setup;
 
 /// A declared effect that the linear loop does not include.
@@ -23,7 +25,8 @@ pub struct Caveat {
 
 /// Declared effects that no linear loop includes.
 pub fn caveats(setup: &Setup<'_>) -> Vec<Caveat> {
-    let of_rig = supply(setup).into_iter().chain(accumulator(setup)).chain(cross_port(setup));
+    let of_rig =
+        supply(setup).into_iter().chain(accumulator(setup)).chain(cross_port(setup)).chain(neck(setup));
     apart_from_lines(setup.project).chain(of_rig).chain(progression(setup)).collect()
 }
 
@@ -35,6 +38,7 @@ pub fn of_models(project: &Project) -> Vec<String> {
         .chain(others)
         .chain(constant_supply(project))
         .chain(fed_between_chambers(project))
+        .chain(behind_necks(project))
         .chain(fed_in_loop(project))
         .chain(beside_spring(project))
         .collect()
@@ -165,6 +169,31 @@ fn accumulator(setup: &Setup<'_>) -> Option<Caveat> {
          falls below the precharge, its gas is shut off, and only a simulation shows how stiff the actuator is then"
     );
     Some(Caveat { sentence, unproven: false })
+}
+
+/// The loss at the ends of a neck has no slope where nothing flows.
+fn neck(setup: &Setup<'_>) -> Option<Caveat> {
+    if is_measured(setup.project) {
+        return None;
+    }
+    let line = &setup.project.actuator.as_ref()?.line;
+    let gas = [&line.a, &line.b].into_iter().filter_map(|side| side.accumulator.as_ref());
+    let loses = gas.filter_map(|gas| gas.neck).any(|neck| neck.loss_coefficient > 0.0);
+    loses.then(|| Caveat {
+        sentence: "line.accumulator.neck_loss_coefficient is not counted for small motions, which the laminar resistance of the neck \
+                   alone damps: only a simulation shows what its ends lose of a large flow"
+            .to_string(),
+        unproven: false,
+    })
+}
+
+/// Necks of accumulators, which the models of a linearisation do not include.
+fn behind_necks(project: &Project) -> Option<String> {
+    has_necks(project.actuator.as_ref()?).then(|| {
+        "the neck of line.accumulator is counted in the plant and the impedance at the load: the other models and the asymptotes of the \
+         impedance have its gas at the chamber"
+            .to_string()
+    })
 }
 
 /// Drops of an orifice in transition pressures below which its slope is that of the transition.

@@ -1,5 +1,9 @@
 //! A gas-charged accumulator: at the supply, or at the line of a chamber.
 
+mod neck;
+
+pub use neck::{Neck, NeckedGas};
+
 use phea_dynamics::scalar::{LocalFunction, Scalar};
 
 use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;

@@ -3,7 +3,7 @@
 
 use phea_dynamics::scalar::Scalar;
 
-use crate::accumulator::Accumulator;
+use crate::accumulator::{Accumulator, Neck, NeckedGas};
 use crate::cross_port::{CrossFlow, CrossPort, DynamicFeedback};
 use crate::cylinder::Cylinder;
 use crate::fluid::Fluid;
@@ -31,6 +31,8 @@ pub struct Components<S = f64> {
     pub line_b: Line<S>,
     /// Accumulators at chambers A and B: each has the pressure of its chamber.
     pub accumulators: [Option<Accumulator<S>>; 2],
+    /// Necks of these accumulators; of a side without one they have no effect.
+    pub necks: [Option<Neck<S>>; 2],
     /// A valve between the chambers, at the cylinder.
     pub cross_port: Option<CrossPort<S>>,
     /// The cylinder.
@@ -60,6 +62,18 @@ impl<S: Scalar> Components<S> {
     pub fn gas_compliance(&self, [pressure_a, pressure_b]: [S; 2]) -> [Option<S>; 2] {
         let [gas_a, gas_b] = self.accumulators;
         [gas_a.map(|gas| gas.compliance(pressure_a)), gas_b.map(|gas| gas.compliance(pressure_b))]
+    }
+
+    /// The necks of accumulators that are there.
+    pub(crate) fn necks_in_use(&self) -> [Option<Neck<S>>; 2] {
+        [0, 1].map(|side| self.accumulators[side].and(self.necks[side]))
+    }
+
+    /// The gas that lies behind a neck at either chamber, at chamber pressures in Pa.
+    pub fn necked_gas(&self, pressures: [S; 2]) -> [Option<NeckedGas<S>>; 2] {
+        let [gas_a, gas_b] = self.gas_compliance(pressures);
+        let behind = |neck: Option<Neck<S>>, gas: Option<S>| Some(NeckedGas::of(&neck?, gas?));
+        [behind(self.necks[0], gas_a), behind(self.necks[1], gas_b)]
     }
 
     /// What flows from chamber to chamber at rest; `None` where nothing does.
@@ -106,6 +120,9 @@ impl Actuator {
         problems.component("line.b", line_b.problems());
         for (gas, path) in accumulators.iter().zip(["line.a.accumulator", "line.b.accumulator"]) {
             problems.component(path, gas.map_or(Vec::new(), |gas| gas.problems()));
+        }
+        for (neck, path) in components.necks.iter().zip(["line.a.accumulator", "line.b.accumulator"]) {
+            problems.component(path, neck.map_or(Vec::new(), |neck| neck.problems()));
         }
         problems.component("cross_port", components.cross_port.map_or(Vec::new(), |port| port.problems()));
         problems.component("cylinder", cylinder.problems());

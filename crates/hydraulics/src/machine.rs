@@ -7,6 +7,7 @@
 //!                C_B(x, p_B) dp_B/dt = q_B + q_i + A_B v        thesis (4.26), corrected
 //!                C of the oil and its enclosure, and of the gas of an Accumulator at that chamber
 //! leakage        q_i = G_i (p_A - p_B)                          laminar, across the piston
+//! neck           I dq_n/dt = p - p_g - R q_n - Z q_n |q_n|,   C_g dp_g/dt = q_n     of the gas at a chamber: Neck
 //! cross port     q_cp = restrictor(p_A - p_B - p_cp),   C_cp dp_cp/dt = q_cp      part of q_i: CrossPort
 //! piston         M dv/dt = A_A p_A - A_B p_B + F_stops - F_fr - F_e      thesis (4.29)
 //! sensor         d(x - x_L)/dt = v - v_L,   F_e = K_S (x - x_L)          thesis (4.45)
@@ -46,6 +47,7 @@ pub use state::MachineState;
 use phea_dynamics::scalar::{Lanes, Scalar};
 use phea_dynamics::simulation::{Lane, Plant, Sliding};
 
+use crate::accumulator::Neck;
 use crate::actuator::Actuator;
 use crate::cross_port::CrossPort;
 use crate::cylinder::Cylinder;
@@ -94,6 +96,7 @@ pub struct Machine<S = f64> {
     cylinder: Cylinder<S>,
     chambers: Chambers<S>,
     accumulators: [Option<Accumulator<S>>; 2],
+    necks: [Option<Neck<S>>; 2],
     cross_port: Option<CrossPort<S>>,
     lines: [DynamicLine<S>; 2],
     friction: MovingFriction<S>,
@@ -142,6 +145,7 @@ impl Machine {
                 }
             },
             accumulators: components.accumulators,
+            necks: components.necks_in_use(),
             cross_port: components.cross_port,
             lines: options.lines.unwrap_or([none; 2]),
             friction,
@@ -208,6 +212,7 @@ impl<S: Copy> Machine<S> {
             cylinder: self.cylinder.convert(of),
             chambers: self.chambers.convert(of),
             accumulators: self.accumulators.map(|gas| gas.map(|gas| gas.convert(of))),
+            necks: self.necks.map(|neck| neck.map(|neck| neck.convert(of))),
             cross_port: self.cross_port.map(|port| port.convert(of)),
             lines: self.lines.map(|line| line.convert(of)),
             friction: self.friction.convert(of),

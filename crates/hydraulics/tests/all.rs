@@ -13,6 +13,7 @@ mod machine_components;
 mod machine_conservation;
 mod machine_equations;
 mod measured_velocity;
+mod neck;
 mod operating_point;
 mod plant;
 mod plant_in_motion;

@@ -4,7 +4,8 @@ use phea_dynamics::portable::pow;
 use phea_dynamics::random::{share, stream};
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{Plant, System};
-use phea_hydraulics::actuator::Actuator;
+use phea_hydraulics::accumulator::Neck;
+use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::cross_port::{CrossPort, Restrictor};
 use phea_hydraulics::machine::{Accumulator, Machine, PowerUnit, PumpLimited};
 use phea_hydraulics::operating_point::{Balance, Settled, SettledSupply};
@@ -27,6 +28,27 @@ pub(super) fn power_unit(number: u64) -> PowerUnit {
         effective_bulk_modulus: spread(1e8, 1.4e9),
         accumulator: number.is_multiple_of(2).then_some(accumulator),
     })
+}
+
+/// Necks of the accumulators at the chambers, of two of three numbers.
+pub(super) fn necks(number: u64) -> [Option<Neck>; 2] {
+    let mut state = stream(43, number);
+    let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
+    [0.0, 0.0].map(|_| {
+        let neck =
+            Neck::round([spread(2e-3, 1e-2), spread(1e-2, 0.3)], [870.0, spread(1e-5, 1e-4), 1.45e9], 1.5);
+        (spread(1.0, 8.0) > 2.0).then_some(neck)
+    })
+}
+
+/// These compliances in m3/Pa less that of gas behind necks.
+pub(super) fn without_necked(
+    components: &Components,
+    pressures: [f64; 2],
+    compliances: [f64; 2],
+) -> [f64; 2] {
+    let gas = components.gas_compliance(pressures);
+    [0, 1].map(|side| compliances[side] - components.necks[side].and(gas[side]).unwrap_or(0.0))
 }
 
 /// A valve between the chambers of every kind, or none.

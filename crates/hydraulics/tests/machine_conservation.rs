@@ -5,6 +5,7 @@
 use phea_dynamics::portable::sin;
 use phea_dynamics::scalar::Dual;
 use phea_dynamics::simulation::Plant;
+use phea_hydraulics::accumulator::Neck;
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::contact::Contact;
 use phea_hydraulics::cross_port::{CrossPort, Restrictor};
@@ -201,11 +202,15 @@ fn rich_machines() -> Vec<(&'static str, Machine)> {
     let load = LoadModel::SpringMassDamper { mass: 20.0, stiffness: 3e5, damping: 200.0 };
     let everything =
         MachineOptions { load, ..with(charged_pump(40e5, 1.3), lines_of(&all, [FULL, SMEARED])) };
+    let segments = with(pump(), lines_of(&rig, [SMEARED, PLAIN]));
     let gas = |gas_volume, precharge_pressure, polytropic_exponent| {
         Some(Accumulator { gas_volume, precharge_pressure, polytropic_exponent })
     };
     let at_chambers = |rig| Components { accumulators: [gas(2e-5, 8e5, 1.4), gas(5e-6, 3e5, 1.0)], ..rig };
-    let at_one = |rig| Components { accumulators: [None, gas(1e-5, 5e5, 1.25)], ..rig };
+    let neck = |diameter| Some(Neck::round([diameter, 0.04], [870.0, 46e-6, 1.45e9], 1.5));
+    let necked = |rig| Components { necks: [neck(6e-3), neck(4e-3)], ..at_chambers(rig) };
+    let half_necked = Components { necks: [None, neck(6e-3)], ..at_chambers(by_volume) };
+    let at_one = Components { accumulators: [None, gas(1e-5, 5e5, 1.25)], ..by_volume };
     let port =
         |restrictor, capacity| Components { cross_port: Some(CrossPort { restrictor, capacity }), ..rig };
     let orifice = Restrictor::Orifice { flow_coefficient: 2e-9, transition_pressure: 1e4 };
@@ -214,12 +219,11 @@ fn rich_machines() -> Vec<(&'static str, Machine)> {
         ("a laminar valve between the chambers", of(port(laminar, None), with(pump(), None))),
         ("an orifice between them", of(port(orifice, None), with(PowerUnit::Constant, None))),
         ("laminar feedback", of(port(laminar, Some(3e-13)), with(pump(), None))),
-        (
-            "feedback behind lines",
-            of(port(orifice, Some(3e-13)), with(pump(), lines_of(&rig, [SMEARED, PLAIN]))),
-        ),
+        ("feedback behind lines", of(port(orifice, Some(3e-13)), segments)),
+        ("gas behind necks", of(necked(rig), with(charged_pump(40e5, 1.4), None))),
+        ("gas behind a neck and a line", of(half_necked, segments)),
         ("gas at the chambers", of(at_chambers(rig), with(charged_pump(40e5, 1.4), None))),
-        ("gas behind a line", of(at_one(by_volume), with(pump(), lines_of(&rig, [SMEARED, PLAIN])))),
+        ("gas behind a line", of(at_one, segments)),
         ("gas", of(rig, with(charged_pump(40e5, 1.4), None))),
         ("isothermal gas", of(rig, with(charged_pump(40e5, 1.0), None))),
         ("air", of(by_volume, with(pump(), None))),

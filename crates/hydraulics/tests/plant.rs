@@ -22,10 +22,10 @@ use phea_hydraulics::reference_rig::{components, cylinder, hose_line, leaking, n
 use phea_hydraulics::servovalve::{LeakageModel, Servovalve, SpoolDirection, Supply};
 use phea_hydraulics::stiffness::StiffnessModel;
 use phea_hydraulics::two_pressure::{
-    TwoPressureModel, two_pressure_coefficients, two_pressure_linear_parameters,
+    TwoPressureLinearParameters, TwoPressureModel, two_pressure_coefficients, two_pressure_linear_parameters,
 };
 
-use super::commanded::{Commanded, cross_port, power_unit, supply_pressure, yielding};
+use super::commanded::{Commanded, cross_port, necks, power_unit, supply_pressure, without_necked, yielding};
 
 /// A rig of its own for every number, with everything that lumped lines let the plant have.
 struct Drawn {
@@ -80,7 +80,12 @@ fn drawn(number: u64) -> Drawn {
         _ => LoadModel::Wall { mass, damping, gap: 1e-3, contact },
     };
     let parts = if leakage > 0.0 { leaking(parts, leakage) } else { parts };
-    let parts = Components { accumulators: accumulators(number), cross_port: cross_port(number), ..parts };
+    let parts = Components {
+        accumulators: accumulators(number),
+        cross_port: cross_port(number),
+        necks: necks(number),
+        ..parts
+    };
     let actuator = Actuator::new(parts).unwrap();
     let unit = power_unit(number);
     let options = MachineOptions { load, power_unit: unit, ..MachineOptions::default() };
@@ -129,9 +134,13 @@ impl Drawn {
         };
         let parameters = two_pressure_linear_parameters(&model, &point, SpoolDirection::Extending);
         let supply = yielding(&self.actuator, &self.unit, state[0], pressures, supplied);
-        let (across, dynamic_feedback) = self.actuator.components().cross_admittance(pressures);
+        let components = self.actuator.components();
+        let (across, dynamic_feedback) = components.cross_admittance(pressures);
+        let necks = components.necked_gas(pressures);
+        let compliances = without_necked(components, pressures, parameters.compliances);
+        let parameters = TwoPressureLinearParameters { compliances, ..parameters };
         let plant = LinearPlant::of_two_pressures(&parameters, across, self.load);
-        LinearPlant { supply, dynamic_feedback, ..plant }
+        LinearPlant { supply, dynamic_feedback, necks, ..plant }
     }
 
     /// F_e/U_C and F_e/X_0 of the machine's own derivatives.

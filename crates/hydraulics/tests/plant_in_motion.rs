@@ -31,7 +31,7 @@ use phea_hydraulics::two_pressure::{
     TwoPressureLinearParameters, TwoPressureModel, two_pressure_linear_parameters,
 };
 
-use super::commanded::{Commanded, cross_port, power_unit, supply_pressure, yielding};
+use super::commanded::{Commanded, cross_port, necks, power_unit, supply_pressure, without_necked, yielding};
 
 fn model(number: u64, time: f64) -> LineModel {
     let friction =
@@ -141,6 +141,7 @@ fn parts(number: u64, spread: &mut impl FnMut(f64, f64) -> f64) -> (Components, 
     let parts = Components {
         accumulators: accumulators(number),
         cross_port: cross_port(number),
+        necks: necks(number),
         ..leaking(parts, leakage)
     };
     (parts, models, friction)
@@ -169,7 +170,9 @@ pub(crate) fn drawn(number: u64) -> Drawn {
     let pressures = [rest.state[2], rest.state[3]];
     let point = at_ports(&rest.state, position, &lines, parts.cross_flow());
     let (across, dynamic_feedback) = parts.cross_admittance(pressures);
-    let present = usize::from(dynamic_feedback.is_some()) + usize::from(unit.yields());
+    let necks = parts.necked_gas(pressures);
+    let of_necks = 2 * necks.iter().flatten().count();
+    let present = usize::from(dynamic_feedback.is_some()) + of_necks + usize::from(unit.yields());
     let named = &rest.state[..6 + 2 * usize::from(moves) + present];
     let supplied = supply_pressure(&unit, parts.supply.pressure, named);
     let parameters = parameters_at(supplied, &actuator, &point, (pressures, friction));
@@ -177,7 +180,10 @@ pub(crate) fn drawn(number: u64) -> Drawn {
         .compliance(position, pressures);
     let [gas_a, gas_b] = parts.gas_compliance(pressures);
     let own = [oil_a + gas_a.unwrap_or(0.0), oil_b + gas_b.unwrap_or(0.0)];
-    let behind = BehindLines { lines, chambers: own, lumped: parameters.compliances };
+    let [own, compliances] =
+        [own, parameters.compliances].map(|whole| without_necked(parts, pressures, whole));
+    let parameters = TwoPressureLinearParameters { compliances, ..parameters };
+    let behind = BehindLines { lines, chambers: own, lumped: compliances };
     let supply = yielding(&actuator, &unit, point.command, [point.pressure_a, point.pressure_b], supplied);
     Drawn {
         machine,
@@ -188,6 +194,7 @@ pub(crate) fn drawn(number: u64) -> Drawn {
         plant: LinearPlant {
             supply,
             dynamic_feedback,
+            necks,
             ..LinearPlant::of_two_pressures(&parameters, across, linear_load)
         },
         behind,

@@ -2,7 +2,7 @@
 
 use super::key::{key, plain};
 use super::visitor::{Variants, Visitor};
-use phea_quantity::{DENSITY, FLOW, KINEMATIC_VISCOSITY, PRESSURE, RATIO, VOLUME};
+use phea_quantity::{DENSITY, FLOW, KINEMATIC_VISCOSITY, LENGTH, PRESSURE, RATIO, VOLUME};
 
 /// The oil.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -60,9 +60,42 @@ pub struct DeclaredAccumulator {
     pub polytropic_exponent: f64,
     /// Highest permitted pressure over the precharge, both absolute, if stated.
     pub maximum_pressure_ratio: Option<f64>,
+    /// Between a chamber and the gas; absent: the gas has the pressure of the chamber.
+    pub neck: Option<DeclaredNeck>,
+}
+
+/// The neck of an accumulator at a chamber.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct DeclaredNeck {
+    /// m.
+    pub diameter: f64,
+    /// m.
+    pub length: f64,
+    /// Of both its ends, over the velocity head.
+    pub loss_coefficient: f64,
+}
+
+impl DeclaredNeck {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let k = key("neck_diameter", &LENGTH, "Diameter of the neck to the gas; absent: no neck.").positive();
+        v.quantity(k, &mut self.diameter);
+        v.quantity(key("neck_length", &LENGTH, "Length of that neck.").positive(), &mut self.length);
+        let k = key(
+            "neck_loss_coefficient",
+            &RATIO,
+            "Head lost at both ends of the neck over its velocity head.",
+        );
+        v.quantity(k.not_negative().or(1.5), &mut self.loss_coefficient);
+    }
 }
 
 impl DeclaredAccumulator {
+    /// At a chamber, where it may have a neck.
+    pub(crate) fn visit_at_chamber<V: Visitor>(&mut self, v: &mut V) {
+        self.visit(v);
+        v.way(&["neck_diameter", "neck_length"], &mut self.neck, DeclaredNeck::visit);
+    }
+
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
         let k = key("gas_volume", &VOLUME, "Volume of the gas at its precharge.").positive();
         v.quantity(k, &mut self.gas_volume);

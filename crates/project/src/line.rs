@@ -192,7 +192,7 @@ impl DeclaredLine {
         BoundedNumber::visit(v, k.at_least(1.0), &mut self.dynamic_stiffening);
         v.variant(plain("model", "What of the line moves."), &mut self.motion, false);
         let k = plain("accumulator", "A gas-charged accumulator at the chamber's end of the line.");
-        v.table(k, &mut self.accumulator, DeclaredAccumulator::visit);
+        v.table(k, &mut self.accumulator, DeclaredAccumulator::visit_at_chamber);
     }
 }
 

@@ -27,6 +27,7 @@ mod line_coverage;
 mod line_identification;
 mod linearize_and_derived;
 mod lines_in_motion;
+mod neck;
 mod noise;
 mod number_table;
 mod operating_region;

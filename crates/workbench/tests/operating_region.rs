@@ -181,6 +181,20 @@ fn valves_between_the_chambers_follow() {
     follows_the_rig(&loaded(&equal));
 }
 
+/// Gas behind a neck, and the numbers of both.
+#[test]
+fn necks_follow() {
+    let gas = "[line.accumulator]\ngas_volume = \"14 mL\"\nprecharge_pressure = \"10 bar\"\nneck_diameter = \"6 mm\"\nneck_length = \"40 mm\"\n";
+    let region = [
+        ("operating_point.load_force", [-2000.0, 500.0, 2000.0]),
+        ("line.accumulator.neck_diameter", [4e-3, 6e-3, 8e-3]),
+        ("line.accumulator.neck_length", [0.02, 0.04, 0.06]),
+        ("line.accumulator.gas_volume", [1e-5, 1.4e-5, 2e-5]),
+        ("fluid.density", [840.0, 870.0, 900.0]),
+    ];
+    follows_the_rig(&loaded(&text(&ranges(&region), gas, "")));
+}
+
 /// One rod: unequal areas, which are uncertain too; and a wall whose contact depends on the force.
 #[test]
 fn unequal_areas_and_a_wall_follow() {

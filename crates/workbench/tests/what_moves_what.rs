@@ -15,6 +15,7 @@ use phea_workbench::source::Memory;
 
 const SIMULATION: &str = include_str!("../../project/tests/valid/simulation.toml");
 const ACCUMULATORS: &str = include_str!("../../project/tests/valid/accumulators.toml");
+const NECK: &str = include_str!("../../project/tests/valid/accumulator_neck.toml");
 const CROSS_PORT: &str = include_str!("../../project/tests/valid/cross_port.toml");
 const SERIES: &str = include_str!("../../project/tests/valid/series.toml");
 const SERIES_COIL: &str = include_str!("../../project/tests/valid/series_coil.toml");
@@ -76,7 +77,7 @@ fn rigs() -> Vec<(String, Vec<&'static str>)> {
         "controller.delay=0.5 ms",
         "controller.load_velocity_feed_forward={ gain = 20 }",
     ];
-    let mut rigs = vec![
+    let others = vec![
         (hose(), vec![]),
         (hose(), [&SPRUNG[..], &["line.compliance=by_volume"]].concat()),
         (hose(), [&two_wave[..], &wall_of_two].concat()),
@@ -102,6 +103,7 @@ fn rigs() -> Vec<(String, Vec<&'static str>)> {
         ),
         (SIMULATION.to_string(), vec![]),
         (ACCUMULATORS.to_string(), vec![]),
+        (NECK.to_string(), vec![]),
         (hose(), vec!["series={ stiffness = \"2 MN/m\", damping = 100 }"]),
         (SIMULATION.to_string(), vec!["operating_point.load_force=2 kN"]),
         (ASYMMETRIC.to_string(), vec!["cylinder.friction.regular_velocity=1 mm/s"]),
@@ -113,9 +115,7 @@ fn rigs() -> Vec<(String, Vec<&'static str>)> {
             ],
         ),
     ];
-    rigs.extend(between_chambers(hose(), pipe()));
-    rigs.extend(on_springs());
-    rigs
+    others.into_iter().chain(between_chambers(hose(), pipe())).chain(on_springs()).collect()
 }
 
 /// Rigs with a spring on the rod.

@@ -20,6 +20,12 @@ pub(super) fn accumulators(rig: &Rig, list: &mut List) {
         let compliance = "C_{acc} = (V_0/(n P)) (P_0/P)^(1/n)";
         let name = |what: &str| format!("line.{side}.accumulator.{what}");
         list.add(name("compliance"), "C_acc", gas.compliance(pressure), "m3/Pa", compliance);
+        if let Some(neck) = components.necked_gas(pressures)[usize::from(side == "b")] {
+            let resonance = "ω_n = 1/sqrt(I (C_{acc} + C_n)), Helmholtz";
+            list.add(name("neck_resonance"), "ω_n", neck.resonance(), "rad/s", resonance);
+            let damping = "ξ_n = R/2 sqrt((C_{acc} + C_n)/I), laminar";
+            list.add(name("neck_damping_ratio"), "ξ_n", neck.damping_ratio(), "1", damping);
+        }
         let volume = gas.gas_volume - gas.oil(pressure);
         list.add(name("gas_volume_at_point"), "V", volume, "m3", "V = V_0 (P_0/P)^(1/n)");
     }

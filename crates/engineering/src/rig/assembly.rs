@@ -1,5 +1,5 @@
 use phea_dynamics::scalar::Scalar;
-use phea_hydraulics::accumulator::Accumulator;
+use phea_hydraulics::accumulator::{Accumulator, Neck};
 use phea_hydraulics::actuator::{Actuator, ActuatorError, Components};
 use phea_hydraulics::contact::Contact;
 use phea_hydraulics::cylinder::{Cylinder, annulus_area};
@@ -16,8 +16,9 @@ use phea_hydraulics::stiffness::StiffnessModel;
 use super::cross_port::cross_port;
 use super::numbers::Numbers;
 use crate::project::{
-    self, BoundedNumber, Compliance, Component, DeclaredAccumulator, DeclaredSeries, EdgeCoefficients,
-    FrictionLaw, HoseExpansion, LineVolume, NullLeakage, RatedFlow, StribeckCurve, ValveCoefficients,
+    self, BoundedNumber, Compliance, Component, DeclaredAccumulator, DeclaredNeck, DeclaredSeries,
+    EdgeCoefficients, FrictionLaw, HoseExpansion, LineVolume, NullLeakage, RatedFlow, StribeckCurve,
+    ValveCoefficients,
 };
 
 /// Kinematic viscosity of ISO VG 46 oil at 40 degrees Celsius, m2/s: used where a project states
@@ -42,17 +43,22 @@ pub fn components<S: Scalar>(
     let tank_pressure = numbers.at("supply.tank_pressure", declared.supply.tank_pressure);
     let pressures = ExpansionPressures::of(pressure, tank_pressure);
     let line = |side, declared: &project::DeclaredLine| line(declared, &numbers.of_line(side), pressures);
+    let fluid = fluid(&declared.fluid, numbers);
+    let neck = |side, line: &project::DeclaredLine| {
+        neck(
+            line.accumulator.as_ref(),
+            &numbers.of_line(side),
+            [fluid.density, fluid.kinematic_viscosity, fluid.bulk_modulus],
+        )
+    };
     Components {
-        fluid: fluid(&declared.fluid, numbers),
+        necks: [neck("a", &declared.line.a), neck("b", &declared.line.b)],
+        fluid,
         supply: Supply { pressure, tank_pressure },
         valve: valve(&declared.valve, numbers, pressure - tank_pressure),
         line_a: line("a", &declared.line.a),
         line_b: line("b", &declared.line.b),
-        cross_port: cross_port(
-            declared.cross_port.as_ref(),
-            numbers,
-            numbers.at("fluid.density", declared.fluid.density),
-        ),
+        cross_port: cross_port(declared.cross_port.as_ref(), numbers, fluid.density),
         accumulators: [("a", &declared.line.a), ("b", &declared.line.b)]
             .map(|(side, line)| accumulator(line.accumulator.as_ref(), &numbers.of_line(side))),
         cylinder: cylinder(&declared.cylinder, numbers),
@@ -190,6 +196,19 @@ pub(super) fn accumulator<S: Scalar>(
         precharge_pressure: numbers.at("accumulator.precharge_pressure", *precharge_pressure),
         polytropic_exponent: numbers.at("accumulator.polytropic_exponent", *polytropic_exponent),
     })
+}
+
+/// The neck of an accumulator declared in the line that `numbers` are of; density, kinematic
+/// viscosity and bulk modulus are those of the oil in it.
+fn neck<S: Scalar>(
+    declared: Option<&DeclaredAccumulator>,
+    numbers: &Numbers<'_, S>,
+    oil: [S; 3],
+) -> Option<Neck<S>> {
+    let DeclaredNeck { diameter, length, loss_coefficient } = declared?.neck?;
+    let at = |key: &str, value: f64| numbers.at(key, value);
+    let size = [at("accumulator.neck_diameter", diameter), at("accumulator.neck_length", length)];
+    Some(Neck::round(size, oil, at("accumulator.neck_loss_coefficient", loss_coefficient)))
 }
 
 /// Pressures in Pa at which the expansion of a hose is evaluated.

@@ -12,6 +12,7 @@ use phea_hydraulics::servovalve::Supply;
 use phea_hydraulics::stiffness::compliance_at;
 use phea_hydraulics::two_pressure::TwoPressureLinearParameters;
 
+use super::plant::without_necked;
 use crate::project::{self, LineFriction, LineMotion, LineSegments, LineWall};
 
 /// The plant with lines in motion in place of its lumped ones; `None` where both are lumped.
@@ -31,9 +32,14 @@ pub fn in_motion(
     let [line_a, line_b] = [line_a, line_b].map(without_volume);
     let bare = Components { line_a, line_b, ..*components };
     let bare = bare.chamber_compliance([point.pressure_a, point.pressure_b], StiffeningMember::Nominal);
-    let chambers_alone = compliance_at(&bare, point.position);
+    let pressures = [point.pressure_a, point.pressure_b];
+    let own = |compliances| match plant.necks {
+        [None, None] => compliances,
+        _ => without_necked(components, pressures, compliances),
+    };
+    let chambers_alone = own(compliance_at(&bare, point.position));
     Ok(moving.map(|lines| {
-        let behind = BehindLines { lines, chambers: chambers_alone, lumped: chambers.compliances };
+        let behind = BehindLines { lines, chambers: chambers_alone, lumped: own(chambers.compliances) };
         PlantInMotion::new(plant, &behind)
     }))
 }

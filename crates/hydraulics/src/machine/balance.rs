@@ -55,9 +55,14 @@ impl Machine {
             }
         }
         let [pressure_a, pressure_b, supply_pressure, spool] = best.into();
-        let cross_port_pressure = pressure_a - pressure_b;
-        let mut balanced =
-            MachineState { pressure_a, pressure_b, supply_pressure, cross_port_pressure, ..*state };
+        let mut balanced = MachineState {
+            pressure_a,
+            pressure_b,
+            supply_pressure,
+            cross_port_pressure: pressure_a - pressure_b,
+            gas_pressures: [pressure_a, pressure_b],
+            ..*state
+        };
         balanced.spool.spool = spool;
         balanced
     }

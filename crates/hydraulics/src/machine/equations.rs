@@ -2,6 +2,7 @@ use phea_dynamics::scalar::{LocalFunction, Scalar};
 
 use super::signals::ground_of;
 use super::{Accumulator, Machine, MachineState, Motion, PowerUnit};
+use crate::accumulator::Neck;
 use crate::cross_port::CrossPort;
 use crate::friction::FrictionForce;
 use crate::operating_point::hydraulic_force;
@@ -105,14 +106,25 @@ impl<S: Scalar> Machine<S> {
     pub(super) fn compliance<T: Scalar + From<S>>(&self, state: &MachineState<T>, position: T) -> [T; 2] {
         let [oil_a, oil_b] = self.oil_compliance(state, position);
         let [gas_a, gas_b] = &self.accumulators;
-        let with = |oil: T, gas: &Option<Accumulator<S>>, pressure: T| match gas {
-            None => oil,
-            Some(gas) => {
+        let [neck_a, neck_b] = &self.necks;
+        // gas behind a neck has a pressure of its own
+        let with = |oil: T, gas: &Option<Accumulator<S>>, neck: &Option<Neck<S>>, pressure: T| match gas {
+            Some(gas) if neck.is_none() => {
                 let [gas] = T::local(gas, [pressure]);
                 oil + gas
             }
+            _ => oil,
         };
-        [with(oil_a, gas_a, state.pressure_a), with(oil_b, gas_b, state.pressure_b)]
+        [with(oil_a, gas_a, neck_a, state.pressure_a), with(oil_b, gas_b, neck_b, state.pressure_b)]
+    }
+
+    /// Pressures of the gas at either chamber, in Pa.
+    pub(super) fn gas_pressures<T: Scalar + From<S>>(&self, state: &MachineState<T>) -> [T; 2] {
+        let [neck_a, neck_b] = &self.necks;
+        [
+            if neck_a.is_some() { state.gas_pressures[0] } else { state.pressure_a },
+            if neck_b.is_some() { state.gas_pressures[1] } else { state.pressure_b },
+        ]
     }
 
     /// The same without accumulators: it vanishes with the volume of a chamber.
@@ -231,7 +243,16 @@ impl<S: Scalar> Machine<S> {
         } else {
             flows.from_valve
         };
+        let necks = self.layout.has_necks().then(|| self.through_necks(&state));
+        let (into_a, into_b) = match &necks {
+            None => (into_a, into_b),
+            Some(_) => (into_a - state.neck_flows[0], into_b - state.neck_flows[1]),
+        };
+        let zero = [T::from(0.0); 2];
+        let [neck_flows, gas_pressures] = necks.unwrap_or([zero; 2]);
         let state_rates = MachineState {
+            neck_flows,
+            gas_pressures,
             spool: self.spool.convert(&mut constant::<S, T>).rates(&valve, &state.spool, command),
             pressure_a: (into_a - flows.internal - area_a * velocity) / compliance_a,
             pressure_b: (into_b + flows.internal + area_b * velocity) / compliance_b,
@@ -247,6 +268,24 @@ impl<S: Scalar> Machine<S> {
             series: joint.series_rates,
         };
         self.layout.write(&state_rates, rates);
+    }
+
+    /// Rates of the flows through the necks in m3/s2 and of the pressures behind them in Pa/s. Apart,
+    /// so that machines without necks do not carry its code along.
+    #[inline(never)]
+    fn through_necks<T: Scalar + From<S>>(&self, state: &MachineState<T>) -> [[T; 2]; 2] {
+        let chambers = [state.pressure_a, state.pressure_b];
+        let [side_a, side_b] = [0, 1].map(|side| {
+            let parts = self.necks[side].zip(self.accumulators[side]);
+            parts.map_or([T::from(0.0); 2], |(neck, gas)| {
+                let (flow, pressure) = (state.neck_flows[side], state.gas_pressures[side]);
+                let neck = neck.convert(&mut constant::<S, T>);
+                let compliance = gas.convert(&mut constant::<S, T>).compliance(pressure) + neck.compliance;
+                let pushing = chambers[side] - pressure - neck.drop(flow);
+                [pushing / neck.inertance, flow / compliance]
+            })
+        });
+        [[side_a[0], side_b[0]], [side_a[1], side_b[1]]]
     }
 
     /// Flows that leave the lines into the chambers, in m3/s; writes the rates of the lines'

@@ -10,13 +10,15 @@ use instant::Instant;
 
 /// Names of the accounts of oil, in the order of [`Ledger::oil`]. Accounts of parts that a machine
 /// lacks are zero.
-pub const OIL_ACCOUNTS: [&str; 9] = [
+pub const OIL_ACCOUNTS: [&str; 11] = [
     "chamber_a",
     "chamber_b",
     "line_a",
     "line_b",
     "accumulator_a",
     "accumulator_b",
+    "neck_a",
+    "neck_b",
     "supply",
     "accumulator",
     "rig",
@@ -24,13 +26,15 @@ pub const OIL_ACCOUNTS: [&str; 9] = [
 
 /// Names of the accounts of energy, in the order of [`Ledger::energy`]. Accounts of parts that a
 /// machine lacks are zero.
-pub const ENERGY_ACCOUNTS: [&str; 18] = [
+pub const ENERGY_ACCOUNTS: [&str; 20] = [
     "chamber_a",
     "chamber_b",
     "line_a",
     "line_b",
     "accumulator_a",
     "accumulator_b",
+    "neck_a",
+    "neck_b",
     "supply",
     "accumulator",
     "valve",
@@ -91,6 +95,7 @@ impl<S: Scalar> Machine<S> {
     /// side          V rho                      V w                          enters as q rho and q (p + w)
     /// line          sum C p                    sum C p^2/2 + I q^2/2        enters as q and q p
     /// accumulator   V_0 - V_gas                gas at gauge pressure        enters as q and q p
+    /// neck          C p                        I q^2/2 + C p^2/2            enters as q and q p
     /// ```
     ///
     /// rho is the density over that at zero gauge pressure and w the energy of compression per
@@ -127,10 +132,12 @@ impl<S: Scalar> Machine<S> {
             now.lines[1].oil(),
             gas_a.oil(),
             gas_b.oil(),
+            now.necks[0].oil,
+            now.necks[1].oil,
             supply.line.oil(supply.line_flow()),
             supply.gas.oil(),
         ];
-        let [a, b, c, d, e, f, g, h] = accounts;
+        let [a, b, c, d, e, f, g, h, i, j] = accounts;
         let rig = Account {
             stored: total(&accounts, |account| account.stored),
             inflow: dense_s * supply.fed - tank_a * edges.a_to_tank - tank_b * edges.b_to_tank,
@@ -141,11 +148,11 @@ impl<S: Scalar> Machine<S> {
                 + now.lines[0].into_chamber * (one - dense_a)
                 + now.lines[1].into_chamber * (one - dense_b)
                 + now.flows.internal * (dense_a - dense_b)
-                + gas_a.inflow * (dense_a - one)
-                + gas_b.inflow * (dense_b - one)
+                + gas_a.taken * (dense_a - one)
+                + gas_b.taken * (dense_b - one)
                 + supply.gas.inflow * (dense_s - one),
         };
-        [a, b, c, d, e, f, g, h, rig]
+        [a, b, c, d, e, f, g, h, i, j, rig]
     }
 
     fn energy<T: Scalar + From<S>>(&self, now: &Instant<T>) -> [Account<T>; ENERGY_ACCOUNTS.len()] {
@@ -166,10 +173,12 @@ impl<S: Scalar> Machine<S> {
             side_b.energy(into_b, -area_b * velocity),
             line_a.energy(),
             line_b.energy(),
-            now.gas[0].energy(side_a.pressure),
-            now.gas[1].energy(side_b.pressure),
+            now.gas[0].energy(),
+            now.gas[1].energy(),
+            now.necks[0].energy,
+            now.necks[1].energy,
             supply.line.energy(supply.line_flow(), zero),
-            supply.gas.energy(supply.line.pressure),
+            supply.gas.energy(),
             heat(throttled),
             heat((now.flows.internal - now.flows.cross_port) * (side_a.pressure - side_b.pressure)),
             self.cross_port_account(now),
@@ -191,8 +200,8 @@ impl<S: Scalar> Machine<S> {
             inflow: oil + now.external_power - self.on_ground(now),
             lost: total(&accounts, |account| account.lost),
         };
-        let [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q] = accounts;
-        [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, rig]
+        let [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s] = accounts;
+        [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, rig]
     }
 
     /// A valve between the chambers: heat of its restrictor, and what its capacity holds.

@@ -35,11 +35,13 @@ pub const SERIES_SIGNALS: [&str; 2] = ["series_deflection_m", "load_force_n"];
 /// Names of the state events of a machine, in the order of its indicators. Each indicator is
 /// positive in ordinary operation and negative while the event lasts.
 ///
-/// `cavitation`: the chamber's pressure less vapour pressure in Pa. `end_stop`: the way left to
-/// that end in m. `empty`: the chamber's compliance in m3/Pa without accumulators, which vanishes
-/// with its volume. `load_contact`: the way left to the wall in m. `supply_lost`: supply less tank
-/// pressure in Pa. `accumulator_empty`: the chamber's pressure less the precharge of its
-/// accumulator in Pa. `series_end`: the way left to the nearer end of a series spring's travel in m.
+/// `cavitation`: the chamber's pressure, or that behind the neck of its accumulator where it is
+/// lower, less vapour pressure in Pa. `end_stop`: the way left to that end in m. `empty`: the
+/// chamber's compliance in m3/Pa without accumulators, which vanishes with its volume.
+/// `load_contact`: the way left to the wall in m. `supply_lost`: supply less tank pressure in Pa.
+/// `accumulator_empty`: the chamber's pressure, or that behind the neck where there is one, less the
+/// precharge of its accumulator in Pa. `series_end`: the way left to the nearer end of a series
+/// spring's travel in m.
 pub const INDICATORS: [&str; 11] = [
     "cavitation_a",
     "cavitation_b",
@@ -130,17 +132,18 @@ impl<S: Scalar> Machine<S> {
         let charged = |gas: &Option<Accumulator<S>>, pressure: T| {
             gas.map_or(T::from(1.0), |gas| pressure - constant(gas.precharge_pressure))
         };
+        let [behind_a, behind_b] = self.gas_pressures(&state);
         [
-            state.pressure_a - vapour,
-            state.pressure_b - vapour,
+            state.pressure_a.minimum(behind_a) - vapour,
+            state.pressure_b.minimum(behind_b) - vapour,
             position,
             constant::<S, T>(self.cylinder.stroke) - position,
             compliance_a,
             compliance_b,
             self.load.convert(&mut constant::<S, T>).clearance(&load, &ground),
             supply.pressure - supply.tank_pressure,
-            charged(gas_a, state.pressure_a),
-            charged(gas_b, state.pressure_b),
+            charged(gas_a, behind_a),
+            charged(gas_b, behind_b),
             self.series.map_or(T::from(1.0), |series| {
                 series.convert(&mut constant::<S, T>).clearance(joint.spring.position)
             }),

@@ -80,6 +80,7 @@ impl Machine {
         state.spool.spool = start.spool;
         (state.pressure_a, state.pressure_b) = (start.pressure_a, start.pressure_b);
         state.cross_port_pressure = start.pressure_a - start.pressure_b;
+        state.gas_pressures = [start.pressure_a, start.pressure_b];
         state.supply_pressure = self.supply.pressure;
         state.velocity = start.velocity;
         state.bristle = self.settled_bristle(start.velocity);
@@ -140,6 +141,7 @@ impl Machine {
         state.spool.spool = start.spool;
         (state.pressure_a, state.pressure_b) = (start.pressure_a, start.pressure_b);
         state.cross_port_pressure = start.pressure_a - start.pressure_b;
+        state.gas_pressures = [start.pressure_a, start.pressure_b];
         state.supply_pressure = self.supply.pressure;
         state.velocity = start.velocity;
         state.bristle = self.settled_bristle(start.velocity);

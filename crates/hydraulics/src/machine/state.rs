@@ -9,8 +9,9 @@ use crate::servovalve::SpoolState;
 /// place in its vector.
 ///
 /// The order of the vector is that of the fields: spool voltage and rate, p_A, p_B, deflection,
-/// velocity, and then, if present, those of bristles, load, capacity between the chambers, supply,
-/// spool friction, magnetic lag, series element. The states of lines, which have no names, follow.
+/// velocity, and then, if present, those of bristles, load, capacity between the chambers, necks,
+/// supply, spool friction, magnetic lag, series element. The states of lines, which have no names,
+/// follow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MachineState<T = f64> {
     /// Position of the spool in V and what moves it; its two memories stand last in the vector.
@@ -32,6 +33,10 @@ pub struct MachineState<T = f64> {
     pub load: Motion<T>,
     /// Pressure difference p_cp in Pa over the capacity of a valve between the chambers.
     pub cross_port_pressure: T,
+    /// Flow q_n in m3/s through the neck of the accumulator at each chamber, into its gas.
+    pub neck_flows: [T; 2],
+    /// Pressure p_g in Pa of the gas behind each neck.
+    pub gas_pressures: [T; 2],
     /// Supply pressure p_S in Pa, where a pump is limited.
     pub supply_pressure: T,
     /// A series element with damper or mass: deflection of its spring in m, and velocity of the mass
@@ -50,6 +55,8 @@ pub(super) struct Layout {
     /// A capacity between the chambers.
     capacity: bool,
     series: SeriesStates,
+    /// Necks of accumulators at the chambers.
+    necks: [bool; 2],
     /// Whether a force from outside is an input.
     external_force: bool,
     /// States of both lines, which follow all others, A first.
@@ -79,6 +86,8 @@ impl<T: Scalar> MachineState<T> {
             supply_pressure: zero,
             cross_port_pressure: zero,
             series: Motion { position: zero, velocity: zero },
+            neck_flows: [zero; 2],
+            gas_pressures: [zero; 2],
         }
     }
 }
@@ -91,6 +100,7 @@ impl Layout {
             supply: machine.power_unit.yields(),
             spool_friction: machine.spool.threshold.is_some(),
             magnetic_lag: machine.spool.hysteresis_width.is_some(),
+            necks: machine.necks.map(|neck| neck.is_some()),
             capacity: machine.cross_port.is_some_and(|port| port.capacity.is_some()),
             series: SeriesStates::of(machine.series.as_ref()),
             external_force: machine.external_force,
@@ -141,6 +151,12 @@ impl Layout {
     pub(super) fn external_force<T: Scalar>(&self, inputs: &[T]) -> Option<T> {
         let missing = T::from(f64::NAN);
         self.external_force.then(|| inputs.get(GROUND_INPUTS).copied().unwrap_or(missing))
+    }
+
+    /// Whether an accumulator at a chamber has a neck.
+    #[inline(always)]
+    pub(super) fn has_necks(&self) -> bool {
+        self.necks != [false; 2]
     }
 
     /// Whether lines have states of their own.
@@ -230,6 +246,9 @@ impl Layout {
         if self.capacity {
             visit(&mut state.cross_port_pressure);
         }
+        if self.has_necks() {
+            self.visit_necks(state, &mut visit);
+        }
         if self.supply {
             visit(&mut state.supply_pressure);
         }
@@ -244,6 +263,18 @@ impl Layout {
         }
         if self.series == SeriesStates::Mass {
             visit(&mut state.series.velocity);
+        }
+    }
+}
+
+impl Layout {
+    /// Apart, so that machines without necks do not carry its code along.
+    #[inline(never)]
+    fn visit_necks<T>(&self, state: &mut MachineState<T>, visit: &mut impl FnMut(&mut T)) {
+        let parts = state.neck_flows.iter_mut().zip(&mut state.gas_pressures);
+        for ((flow, pressure), _) in parts.zip(self.necks).filter(|(_, has_neck)| *has_neck) {
+            visit(flow);
+            visit(pressure);
         }
     }
 }
@@ -304,6 +335,8 @@ const NAMES: MachineState<&str> = MachineState {
     supply_pressure: "supply_pressure_pa",
     cross_port_pressure: "cross_port_pressure_pa",
     series: Motion { position: "series_deflection_m", velocity: "series_velocity_m_per_s" },
+    neck_flows: ["neck_flow_a_m3_per_s", "neck_flow_b_m3_per_s"],
+    gas_pressures: ["gas_pressure_a_pa", "gas_pressure_b_pa"],
 };
 
 impl<S: Scalar> Machine<S> {
@@ -348,6 +381,8 @@ impl<S: Scalar> Machine<S> {
             supply_pressure: pressure,
             cross_port_pressure: pressure,
             series,
+            neck_flows: [velocity * self.cylinder.area_a; 2],
+            gas_pressures: [pressure; 2],
         }
     }
 

@@ -8,6 +8,7 @@ use super::supply::{Coupled, Over};
 use super::{
     Chamber, ChamberPair, ChamberPolynomials, LinearLoad, LinearPlant, Paths, VelocitySensor, YieldingSupply,
 };
+use crate::accumulator::NeckedGas;
 use crate::cross_port::DynamicFeedback;
 use crate::line::{DynamicLine, Segments, TransferMatrix};
 
@@ -77,6 +78,8 @@ struct ChamberSide {
     flow_gain: f64,
     flow_pressure: f64,
     line: DynamicLine,
+    /// Gas behind a neck.
+    neck: Option<NeckedGas>,
 }
 
 /// A chamber with its line at s, everything times what the line passes: `passed` is d + K_c b, by
@@ -127,7 +130,8 @@ impl PlantInMotion {
             let stiffer = behind.lumped[side] / compliance;
             let line = behind.lines[side].stiffened(stiffer);
             let compliance = behind.chambers[side] / stiffer + line.chamber_compliance();
-            ChamberSide { area, compliance, flow_gain, flow_pressure, line }
+            let neck = plant.necks[side];
+            ChamberSide { area, compliance, flow_gain, flow_pressure, line, neck }
         };
         let sides = [side(0), side(1)];
         let alike = sides[0].line == sides[1].line;
@@ -271,6 +275,7 @@ impl PlantInMotion {
         let passing = |value: f64, at: &AtChamber<A>| Over(A::from(value) / at.passed);
         Coupled {
             own: [admittance(one), admittance(other), Over(own)],
+            passed: None,
             edges: [passing(of_a, one), passing(of_b, other)],
             gains: [passing(gain_a, one), passing(gain_b, other), Over(taken)],
         }
@@ -300,7 +305,9 @@ impl PlantInMotion {
             [supply.edges, to_tank, [supply.compliance, supply.conductance]].concat()
         });
         let feedback = self.plant.dynamic_feedback.iter().flat_map(|one| [one.conductance, one.capacity]);
-        let beyond = own.into_iter().chain(load).chain(series);
+        let necks = self.sides.iter().filter_map(|side| side.neck);
+        let of_necks = necks.flat_map(|neck| [neck.inertance, neck.resistance, neck.compliance]);
+        let beyond = own.into_iter().chain(load).chain(series).chain(of_necks);
         beyond.chain(of_sides).chain(of_supply).chain(feedback).all(|value| value >= 0.0)
     }
 
@@ -323,7 +330,9 @@ impl ChamberSide {
     fn at_chamber<A: Analytic>(&self, line: TransferMatrix<A>, s: A) -> AtChamber<A> {
         let passed = line.flow + line.impedance.scaled(self.flow_pressure);
         let taken = line.admittance + line.pressure.scaled(self.flow_pressure);
-        let admittance = s.scaled(self.compliance) * passed + taken;
+        let own = s.scaled(self.compliance);
+        let own = self.neck.map_or(own, |neck| own + neck.admittance_at(s));
+        let admittance = own * passed + taken;
         AtChamber { admittance, passed, impedance: line.impedance }
     }
 }

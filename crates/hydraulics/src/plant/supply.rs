@@ -65,6 +65,8 @@ pub(super) struct Coupled<T> {
     /// Of chamber A, chamber B and the supply, everything that is tied to it but the flow from
     /// chamber to chamber.
     pub(super) own: [T; 3],
+    /// By which the first two are multiplied, and by whose product the result is; `None` for one.
+    pub(super) passed: Option<[T; 2]>,
     /// From the supply into each chamber.
     pub(super) edges: [T; 2],
     /// What the spool gives to chamber A, takes from chamber B, and takes from the supply.
@@ -107,6 +109,18 @@ impl<A: Analytic> Admittance<f64> for Over<A> {
 }
 
 impl<T> Coupled<T> {
+    /// The admittance of both chambers as one.
+    fn together<S: Scalar>(&self) -> T
+    where
+        T: Admittance<S>,
+    {
+        let [a, b, _] = &self.own;
+        match &self.passed {
+            None => a.plus(b),
+            Some([passed_a, passed_b]) => a.times(passed_b).plus(&b.times(passed_a)),
+        }
+    }
+
     /// D, N_u and N_v of these pressures by Cramer's rule, the areas in m2.
     ///
     /// ```text
@@ -120,29 +134,37 @@ impl<T> Coupled<T> {
         T: Admittance<S>,
     {
         let minus = |value: &T| value.by(S::from(-1.0));
+        let times = |side: usize, value: T| match &self.passed {
+            None => value,
+            Some(passed) => passed[side].times(&value),
+        };
+        let both = |value: T| times(0, times(1, value));
         let [a, b, c] = &self.own;
         let [of_a, of_b] = &self.edges;
-        let bc = b.times(c).plus(&minus(&of_b.times(of_b)));
-        let ac = a.times(c).plus(&minus(&of_a.times(of_a)));
-        let ab = of_a.times(of_b);
-        let (from_a, from_b) = (b.times(of_a), a.times(of_b));
+        let bc = b.times(c).plus(&minus(&times(1, of_b.times(of_b))));
+        let ac = a.times(c).plus(&minus(&times(0, of_a.times(of_a))));
+        let ab = both(of_a.times(of_b));
+        let (from_a, from_b) = (times(0, b.times(of_a)), times(1, a.times(of_b)));
+        let own = a.times(&bc).plus(&minus(&of_a.times(&from_a)));
+        let (bc, ac) = (times(0, bc), times(1, ac));
         let force = |a: &T, b: &T| a.by(area_a).plus(&b.by(-area_b));
         let [by_a, by_b, by_supply] = [force(&bc, &ab), force(&ab, &ac), force(&from_a, &from_b)];
         let [gain_a, gain_b, gain_supply] = &self.gains;
         let taken = by_b.times(gain_b).plus(&by_supply.times(gain_supply));
-        let (both, of_both) = (a.plus(b), of_a.plus(of_b));
+        let of_both = of_a.plus(of_b);
         let given = gain_a.plus(&minus(gain_b)).times(c).plus(&minus(&of_both.times(gain_supply)));
         let difference = area_a - area_b;
+        let together = self.together::<S>();
         ChamberPair {
             apart: ChamberPolynomials {
-                own: a.times(&bc).plus(&minus(&of_a.times(&from_a))),
+                own,
                 driven: by_a.times(gain_a).plus(&minus(&taken)),
                 displaced: by_a.by(area_a).plus(&by_b.by(-area_b)),
             },
             joined: ChamberPolynomials {
-                own: both.times(c).plus(&minus(&of_both.times(&of_both))),
-                driven: given.by(difference),
-                displaced: c.by(difference * difference),
+                own: together.times(c).plus(&minus(&both(of_both.times(&of_both)))),
+                driven: both(given).by(difference),
+                displaced: both(c.by(difference * difference)),
             },
         }
     }

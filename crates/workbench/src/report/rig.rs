@@ -98,6 +98,10 @@ fn line(declared: &project::DeclaredLine) -> LineSymbol {
     symbol.rows.extend(declared.accumulator.as_ref().map(|gas| {
         format!("{}, {}", shown(gas.gas_volume, &VOLUME), shown(gas.precharge_pressure, &PRESSURE))
     }));
+    let neck = declared.accumulator.as_ref().and_then(|gas| gas.neck);
+    symbol.rows.extend(
+        neck.map(|neck| format!("neck {}, {}", shown(neck.diameter, &LENGTH), shown(neck.length, &LENGTH))),
+    );
     symbol
 }
 

@@ -101,6 +101,7 @@ fn components(chance: &mut Chance) -> Components {
         line_a: line,
         line_b: line,
         accumulators: [None; 2],
+        necks: [None; 2],
         cross_port: None,
         series: None,
         cylinder: Cylinder {

@@ -222,6 +222,7 @@ fn components(chance: &mut Chance, like_benchmark: bool) -> Components {
         line_a: line(chance),
         line_b: line(chance),
         accumulators: [None; 2],
+        necks: [None; 2],
         cross_port: None,
         series: None,
         cylinder: Cylinder {

@@ -22,6 +22,8 @@ pub(super) struct Instant<T> {
     pub(super) lines: [LineInstant<T>; 2],
     /// Accumulators at the chambers; empty where there are none.
     pub(super) gas: [GasInstant<T>; 2],
+    /// Their necks; empty where there are none.
+    pub(super) necks: [NeckInstant<T>; 2],
     pub(super) supply: SupplyInstant<T>,
 }
 
@@ -29,9 +31,19 @@ pub(super) struct Instant<T> {
 pub(super) struct GasInstant<T> {
     /// The flow against it, in m3/s.
     pub(super) inflow: T,
+    /// The flow that the chamber gives for it, in m3/s: that through the neck, where there is one.
+    pub(super) taken: T,
+    /// Its pressure in Pa.
+    pressure: T,
     /// The volume that has entered, in m3, and the energy of the gas, in J.
     oil: T,
     energy: T,
+}
+
+/// A neck between a chamber and its gas.
+pub(super) struct NeckInstant<T> {
+    pub(super) oil: Account<T>,
+    pub(super) energy: Account<T>,
 }
 
 /// A line between the valve's port and the chamber; empty where it is lumped.
@@ -59,8 +71,8 @@ impl<T: Scalar> Instant<T> {
         let [line_a, line_b] = &self.lines;
         let [gas_a, gas_b] = &self.gas;
         [
-            line_a.into_chamber - self.flows.internal - gas_a.inflow,
-            line_b.into_chamber + self.flows.internal - gas_b.inflow,
+            line_a.into_chamber - self.flows.internal - gas_a.taken,
+            line_b.into_chamber + self.flows.internal - gas_b.taken,
         ]
     }
 }
@@ -70,21 +82,20 @@ impl<T: Scalar> GasInstant<T> {
     /// compliance: the flow is `arriving` in m3/s, the compliance beside it `beside` in m3/Pa.
     fn of(gas: Option<Accumulator<T>>, pressure: T, arriving: T, beside: T) -> GasInstant<T> {
         let zero = T::from(0.0);
-        let Some(gas) = gas else { return GasInstant { inflow: zero, oil: zero, energy: zero } };
+        let Some(gas) = gas else {
+            return GasInstant { inflow: zero, taken: zero, pressure, oil: zero, energy: zero };
+        };
         let compliance = gas.compliance(pressure);
-        GasInstant {
-            inflow: arriving * compliance / (compliance + beside),
-            oil: gas.oil(pressure),
-            energy: gas.energy(pressure),
-        }
+        let inflow = arriving * compliance / (compliance + beside);
+        GasInstant { inflow, taken: inflow, pressure, oil: gas.oil(pressure), energy: gas.energy(pressure) }
     }
 
     pub(super) fn oil(&self) -> Account<T> {
         Account { stored: self.oil, inflow: self.inflow, lost: T::from(0.0) }
     }
 
-    pub(super) fn energy(&self, pressure: T) -> Account<T> {
-        Account { stored: self.energy, inflow: pressure * self.inflow, lost: T::from(0.0) }
+    pub(super) fn energy(&self) -> Account<T> {
+        Account { stored: self.energy, inflow: self.pressure * self.inflow, lost: T::from(0.0) }
     }
 }
 
@@ -143,8 +154,10 @@ impl<S: Scalar> Machine<S> {
             LineInstant::of(line_a, [port_a, state.pressure_a], from_a, vector_a)?,
             LineInstant::of(line_b, [port_b, state.pressure_b], from_b, vector_b)?,
         ];
+        let gas = self.gas_instants(&state, position, &flows, &lines);
         Some(Instant {
-            gas: self.gas_instants(&state, position, &flows, &lines),
+            necks: self.neck_instants(&state, &gas),
+            gas,
             lines,
             supply: self.supply_instant(&state, &flows, &sides),
             state,
@@ -198,10 +211,41 @@ impl<S: Scalar> Machine<S> {
         let [gas_a, gas_b] = self.accumulators.map(|gas| gas.map(|gas| gas.convert(&mut constant::<S, T>)));
         let into_a = line_a.into_chamber - flows.internal - area_a * state.velocity;
         let into_b = line_b.into_chamber + flows.internal + area_b * state.velocity;
-        [
-            GasInstant::of(gas_a, state.pressure_a, into_a, oil_a),
-            GasInstant::of(gas_b, state.pressure_b, into_b, oil_b),
-        ]
+        let of = |side: usize, gas: Option<Accumulator<T>>, into: T, oil: T| match &self.necks[side] {
+            None => GasInstant::of(gas, [state.pressure_a, state.pressure_b][side], into, oil),
+            Some(neck) => {
+                let taken = state.neck_flows[side];
+                let own = GasInstant::of(gas, state.gas_pressures[side], taken, constant(neck.compliance));
+                GasInstant { taken, ..own }
+            }
+        };
+        [of(0, gas_a, into_a, oil_a), of(1, gas_b, into_b, oil_b)]
+    }
+
+    /// Necks with the oil in them, which shares their flow with the gas.
+    fn neck_instants<T: Scalar + From<S>>(
+        &self,
+        state: &MachineState<T>,
+        gas: &[GasInstant<T>; 2],
+    ) -> [NeckInstant<T>; 2] {
+        let (zero, half) = (T::from(0.0), T::from(0.5));
+        [0, 1].map(|side| {
+            let Some(neck) = self.necks[side].map(|neck| neck.convert(&mut constant::<S, T>)) else {
+                let none = Account { stored: zero, inflow: zero, lost: zero };
+                return NeckInstant { oil: none, energy: none };
+            };
+            let (flow, behind) = (state.neck_flows[side], state.gas_pressures[side]);
+            let before = [state.pressure_a, state.pressure_b][side];
+            let into_gas = gas[side].inflow;
+            NeckInstant {
+                oil: Account { stored: neck.compliance * behind, inflow: flow - into_gas, lost: zero },
+                energy: Account {
+                    stored: half * (neck.inertance * flow.squared() + neck.compliance * behind.squared()),
+                    inflow: before * flow - behind * into_gas,
+                    lost: neck.drop(flow) * flow,
+                },
+            }
+        })
     }
 
     fn supply_instant<T: Scalar + From<S>>(

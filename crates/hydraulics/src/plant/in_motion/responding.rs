@@ -156,13 +156,18 @@ impl RespondingPlant for PlantInMotion {
     fn range_rad_per_s(&self) -> [f64; 2] {
         let slowest = self.sides.iter().map(|side| {
             let line = side.line.static_compliance() - side.line.chamber_compliance();
-            (side.flow_pressure + self.plant.internal_leakage) / (side.compliance + line)
+            let gas = side.neck.map_or(0.0, |neck| neck.compliance);
+            (side.flow_pressure + self.plant.internal_leakage) / (side.compliance + line + gas)
         });
         let [filled, passed] = self.feedback_rad_per_s();
         let slowest = slowest.fold(filled, f64::min).min(self.plant.valve_natural_frequency);
         let quarter_wave = self.quarter_wave_rad_per_s().unwrap_or(0.0);
         let modes = self.sides.iter().map(|side| side.line.fastest_rad_per_s());
-        let fastest = modes.fold(ABOVE_QUARTER_WAVE * quarter_wave, f64::max).max(passed);
+        let necks = self.sides.iter().filter_map(|side| {
+            let neck = side.neck?;
+            Some(((1.0 / neck.compliance + 1.0 / side.compliance) / neck.inertance).sqrt())
+        });
+        let fastest = modes.chain(necks).fold(ABOVE_QUARTER_WAVE * quarter_wave, f64::max).max(passed);
         let fastest = fastest.max(ABOVE_SPOOL * self.plant.valve_natural_frequency);
         let shaken = self.plant.series.and_then(|series| {
             Some(((self.plant.sensor_stiffness + series.stiffness) / series.mass?).sqrt())

@@ -1,0 +1,149 @@
+//! The neck between a chamber and the gas of its accumulator.
+
+use std::f64::consts::{FRAC_PI_4, PI};
+
+use phea_dynamics::analytic::Analytic;
+use phea_dynamics::scalar::Scalar;
+
+use crate::parameter::{ParameterError, Problems};
+
+/// A neck with the flow q into the gas, for which it takes a pressure drop.
+///
+/// ```text
+/// p - p_g = I dq/dt + R q + Z q |q|
+/// ```
+///
+/// Units: kg/m4, Pa s/m3, Pa s2/m6, m3/Pa.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Neck<S = f64> {
+    /// Inertance I of its oil.
+    pub inertance: S,
+    /// Laminar resistance R.
+    pub resistance: S,
+    /// Loss Z at its ends, over the square of the flow.
+    pub loss: S,
+    /// What its own oil yields, in m3/Pa: it remains where the gas is shut off.
+    pub compliance: S,
+}
+
+impl Neck {
+    /// Impossible parameters of this neck; empty if there are none.
+    pub fn problems(&self) -> Vec<ParameterError> {
+        let mut problems = Problems::default();
+        problems.positive("neck_inertance", self.inertance);
+        problems.not_negative("neck_resistance", self.resistance);
+        problems.not_negative("neck_loss", self.loss);
+        problems.positive("neck_compliance", self.compliance);
+        problems.into_vec()
+    }
+}
+
+impl<S: Copy> Neck<S> {
+    /// Every parameter replaced, in a fixed order.
+    #[inline(always)]
+    pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> Neck<T> {
+        Neck {
+            inertance: of(self.inertance),
+            resistance: of(self.resistance),
+            loss: of(self.loss),
+            compliance: of(self.compliance),
+        }
+    }
+}
+
+impl<S: Scalar> Neck<S> {
+    /// A round neck of a diameter and a length in m, filled with oil of a density in kg/m3, a
+    /// kinematic viscosity in m2/s and a bulk modulus in Pa; `loss_coefficient` is that of its ends
+    /// over the velocity head.
+    ///
+    /// ```text
+    /// I = rho L/A,   R = 128 rho nu L/(pi d^4),   Z = zeta rho/(2 A^2),   C = A L/beta,   A = pi d^2/4
+    /// ```
+    ///
+    /// Source: Merritt (1967), laminar flow in a pipe, and the head lost at its ends.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_hydraulics::accumulator::Neck;
+    /// let neck = Neck::round([6e-3, 40e-3], [870.0, 46e-6, 1.45e9], 1.5);
+    /// assert!((neck.inertance / 1.2308e6 - 1.0_f64).abs() < 1e-4);
+    /// assert!((neck.drop(1e-4) / (neck.resistance * 1e-4 + neck.loss * 1e-8) - 1.0).abs() < 1e-15);
+    /// ```
+    pub fn round(
+        [diameter, length]: [S; 2],
+        [density, viscosity, modulus]: [S; 3],
+        loss_coefficient: S,
+    ) -> Neck<S> {
+        let area = S::from(FRAC_PI_4) * diameter.squared();
+        let fourth = diameter.squared().squared();
+        Neck {
+            inertance: density * length / area,
+            resistance: S::from(128.0 / PI) * density * viscosity * length / fourth,
+            loss: S::from(0.5) * loss_coefficient * density / area.squared(),
+            compliance: area * length / modulus,
+        }
+    }
+
+    /// What a steady flow in m3/s loses, in Pa.
+    #[inline(always)]
+    pub fn drop(&self, flow: S) -> S {
+        (self.resistance + self.loss * flow.abs()) * flow
+    }
+}
+
+/// Gas behind a neck for small motions, without a flow at rest.
+///
+/// ```text
+/// Y = C s/(I C s^2 + R C s + 1)
+/// ```
+///
+/// Slower than its resonance 1/sqrt(I C) it is the gas, faster an inertance, which shuts the gas
+/// off.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NeckedGas<S = f64> {
+    /// Inertance I of the neck in kg/m4.
+    pub inertance: S,
+    /// Resistance R of the neck in Pa s/m3.
+    pub resistance: S,
+    /// Compliance C of the gas in m3/Pa.
+    pub compliance: S,
+}
+
+impl<S: Scalar> NeckedGas<S> {
+    /// Gas of this compliance in m3/Pa behind a neck, whose own oil is beside it.
+    pub fn of(neck: &Neck<S>, compliance: S) -> NeckedGas<S> {
+        let compliance = compliance + neck.compliance;
+        NeckedGas { inertance: neck.inertance, resistance: neck.resistance, compliance }
+    }
+
+    /// Helmholtz resonance 1/sqrt(I C) in rad/s.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_hydraulics::accumulator::NeckedGas;
+    /// let gas = NeckedGas { inertance: 1e6, resistance: 1e8, compliance: 1e-12 };
+    /// assert!((gas.resonance() - 1e3_f64).abs() < 1e-9 && (gas.damping_ratio() - 0.05).abs() < 1e-12);
+    /// ```
+    pub fn resonance(&self) -> S {
+        S::from(1.0) / (self.inertance * self.compliance).sqrt()
+    }
+
+    /// Damping ratio of that resonance, R/2 sqrt(C/I).
+    pub fn damping_ratio(&self) -> S {
+        S::from(0.5) * self.resistance * (self.compliance / self.inertance).sqrt()
+    }
+
+    /// Numerator and denominator of Y, highest power of s first.
+    pub(crate) fn admittance(&self) -> [Vec<S>; 2] {
+        let NeckedGas { inertance, resistance, compliance } = *self;
+        [vec![compliance, S::from(0.0)], vec![inertance * compliance, resistance * compliance, S::from(1.0)]]
+    }
+}
+
+impl NeckedGas {
+    /// Y at s, or over a set of such.
+    pub(crate) fn admittance_at<A: Analytic>(&self, s: A) -> A {
+        let taken = s.scaled(self.compliance);
+        taken / (taken * (s.scaled(self.inertance) + A::from(self.resistance)) + A::from(1.0))
+    }
+}

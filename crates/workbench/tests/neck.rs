@@ -1,0 +1,143 @@
+//! The neck of an accumulator from the project's keys to plant, family, verdict and what is told of it.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
+
+use num_complex::Complex64;
+use phea_qft::family::Family;
+use phea_workbench::command::Request;
+use phea_workbench::family::family;
+use phea_workbench::project::{self, Project};
+use phea_workbench::setup::Setup;
+use phea_workbench::source::Memory;
+
+use super::ask::{answer, check, derived, json, near};
+
+const GAS: &str = include_str!("../../../examples/ybitu/accumulator.toml");
+const NECK: &str = include_str!("../../project/tests/valid/accumulator_neck.toml");
+const BOTH: &str = include_str!("../../project/tests/valid/accumulators.toml");
+const LIMIT: &str =
+    "specification=[{ kind = \"robust_stability\", limit = 1000, frequencies = [1, 10, 100] }]";
+const NECKS: [&str; 2] =
+    ["line.accumulator.neck_diameter=\"6 mm\"", "line.accumulator.neck_length=\"40 mm\""];
+const SHORT: [&str; 2] =
+    ["line.accumulator.neck_diameter=\"6 mm\"", "line.accumulator.neck_length=\"1e-9 mm\""];
+
+fn loaded(text: &str, settings: &[&str]) -> Project {
+    let source = Memory::default().with("rig.toml", text);
+    let settings: Vec<String> = settings.iter().map(ToString::to_string).collect();
+    project::read(&source, "rig.toml", &settings, &[]).unwrap_or_else(|report| panic!("{report}")).project
+}
+
+/// F_e/U_C and F_e/X_0 of the plant of every verdict.
+fn responses(project: &Project, frequency: f64) -> [Complex64; 2] {
+    let setup = Setup::new(project).unwrap();
+    let rig = setup.rig().unwrap();
+    if let Some(moving) = &rig.in_motion {
+        return moving.response(Complex64::new(0.0, frequency));
+    }
+    let coefficients = rig.plant.coefficients();
+    [Some(coefficients.command), coefficients.disturbance].map(|path| path.unwrap().at_frequency(frequency))
+}
+
+/// What the plants are compared with: two pressures, one that is stated, both with a limited pump, and lines with waves.
+const RIGS: [&[&str]; 6] = [
+    &[],
+    &["linear.hydraulic_stiffness=2e6"],
+    &["supply.model=pump_limited"],
+    &["supply.model=pump_limited", "linear.hydraulic_stiffness=2e6", "operating_point.load_force=2 kN"],
+    &["line.model=transmission_line"],
+    &["line.model=transmission_line", "linear.hydraulic_stiffness=2e6"],
+];
+
+/// The example without what it leaves open.
+fn without_uncertainty() -> String {
+    let before = GAS.split("[uncertainty]").next().unwrap();
+    let after = GAS.split_once("[[specification]]").unwrap().1;
+    format!("{before}[[specification]]{after}")
+}
+
+/// A neck that becomes short is none, in every form of the plant; the one of an example is not short.
+#[test]
+fn a_short_neck_is_none() {
+    let text = without_uncertainty();
+    for settings in RIGS {
+        let [none, short, own] =
+            [&[][..], &SHORT, &NECKS].map(|neck| loaded(&text, &[settings, neck].concat()));
+        let mut widest = 0.0_f64;
+        for frequency in [1e-3, 1.0, 30.0, 300.0, 600.0, 900.0, 2e3] {
+            let of = [&none, &short, &own].map(|project| responses(project, frequency));
+            for path in [0, 1] {
+                let gap = (of[1][path] / of[0][path] - 1.0).norm_sqr().sqrt();
+                assert!(gap < 1e-9, "{settings:?} at {frequency}: {gap}");
+                widest = widest.max((of[2][path] / of[0][path] - 1.0).norm_sqr());
+            }
+        }
+        assert!(widest > 0.1, "{settings:?}: {widest}");
+    }
+}
+
+/// The nominal member of the recorded family is the rig, with stated linear parameters and without.
+#[test]
+fn the_family_is_the_rig_at_its_nominal() {
+    let opened = "uncertainty={ \"line.accumulator.neck_length\" = { nominal = \"40 mm\", minimum = \"30 mm\", maximum = \"60 mm\", points = 2 }, \
+                  \"line.accumulator.neck_diameter\" = { nominal = \"6 mm\", minimum = \"5 mm\", maximum = \"8 mm\", points = 2 } }";
+    for settings in &RIGS[..4] {
+        let project = loaded(&without_uncertainty(), &[settings, &NECKS[..], &[opened]].concat());
+        let setup = Setup::new(&project).unwrap();
+        let Family::Uncertain(family) = family(&setup, &Memory::default()).unwrap() else { panic!("a box") };
+        let nominal: Vec<f64> = family.plant().parameters().iter().map(|one| one.nominal).collect();
+        let told = family.plant().coefficients(&nominal).unwrap();
+        for frequency in [0.1, 10.0, 400.0, 640.0, 1300.0] {
+            let [command, ground] = responses(&project, frequency);
+            let of_family = [Some(&told.command), told.disturbance.as_ref()]
+                .map(|path| path.unwrap().at_frequency(frequency));
+            for (own, told) in [command, ground].into_iter().zip(of_family) {
+                assert!((own / told - 1.0).norm_sqr() < 1e-20, "{settings:?}: {own} {told}");
+            }
+        }
+    }
+}
+
+/// Its resonance and damping ratio are told, and nothing at rest changes.
+#[test]
+fn check_derives_the_resonance_of_a_neck() {
+    let own = ["line.b.accumulator.neck_diameter=\"4 mm\"", "line.b.accumulator.neck_length=\"20 mm\""];
+    let told = check(NECK, &own);
+    for (side, diameter, length) in [("a", 6e-3, 0.04), ("b", 4e-3, 0.02)] {
+        let area = std::f64::consts::FRAC_PI_4 * diameter * diameter;
+        let of_gas = derived(&told, &format!("line.{side}.accumulator.compliance"));
+        // ORIGIN: analytic, sqrt(A/(rho L C)) and 16 nu/(w d^2), with the oil of the neck beside the gas
+        let resonance = (area / (870.0 * length * (of_gas + area * length / 1.45e9))).sqrt();
+        near(derived(&told, &format!("line.{side}.accumulator.neck_resonance")), resonance, 1e-9);
+        let damping = 16.0 * 46e-6 / (resonance * diameter * diameter);
+        near(derived(&told, &format!("line.{side}.accumulator.neck_damping_ratio")), damping, 1e-9);
+    }
+    let plain = check(BOTH, &[]);
+    for key in ["linear.hydraulic_stiffness", "operating_point.pressure_a", "stiffness.with_accumulators"] {
+        near(derived(&told, key), derived(&plain, key), 1e-12);
+    }
+}
+
+/// What a verdict and the reduced models leave out is said, and nothing where nothing is.
+#[test]
+fn what_does_not_count_it_is_told() {
+    let lossless = "line.accumulator.neck_loss_coefficient=0";
+    for (text, necks, told) in [(NECK, &[][..], true), (NECK, &[lossless], false), (BOTH, &[], false)] {
+        let verdict = json(text, &[&[LIMIT][..], necks].concat(), &[], &Request::Verify).to_string();
+        assert_eq!(
+            verdict.contains("neck_loss_coefficient is not counted for small motions"),
+            told,
+            "{verdict}"
+        );
+        let models = answer(text, necks, &[], &Request::Linearize).text;
+        let said = "the neck of line.accumulator is counted in the plant and the impedance";
+        assert_eq!(models.contains(said), text == NECK, "{models}");
+    }
+}
+
+/// The controller of the example stabilises every plant of its family with the gas at the chamber, and not with a neck before it.
+#[test]
+fn a_verdict_sees_the_resonance() {
+    let stable = |necks: &[&str]| json(GAS, necks, &[], &Request::Verify)["stable"].as_bool().unwrap();
+    assert_eq!([&[][..], &SHORT, &NECKS].map(stable), [true, true, false]);
+}
