@@ -24,6 +24,7 @@ use self::command_path::CommandPath;
 pub(crate) use self::instrument::Instruments;
 pub use crate::project::StaticTest;
 use crate::project::{Bench, DeclaredActuator, FlowMeter, OilTemperature, SupplyModel};
+use crate::quantity::{DisplayUnit, TIME, display};
 use crate::rig::RigError;
 use crate::setup::Setup;
 
@@ -131,9 +132,39 @@ pub enum BenchError {
         /// m, of the cylinder.
         stroke: f64,
     },
+    /// A piston is shaken too quickly for its rows.
+    #[error(
+        "[bench.friction.shaken]: {} is too fast for its `sample_time`: a period needs four rows or more, so at most {}",
+        hertz(highest),
+        display(*sample_time, &TIME, 3)
+    )]
+    ShakenTooFast {
+        /// rad/s.
+        highest: f64,
+        /// s, the longest.
+        sample_time: f64,
+    },
+    /// No frequency is left to shake a piston with.
+    #[error(
+        "[bench.friction.shaken]: no multiple of {} lies from {} to {}: choose a longer `period` or other `frequencies`",
+        hertz(spacing),
+        hertz(&frequencies[0]),
+        hertz(&frequencies[1])
+    )]
+    NothingShaken {
+        /// rad/s, the ends.
+        frequencies: [f64; 2],
+        /// rad/s, of the period.
+        spacing: f64,
+    },
     /// Stopped by the watch.
     #[error("stopped")]
     Stopped,
+}
+
+/// A frequency in rad/s for people.
+fn hertz(frequency: &f64) -> String {
+    DisplayUnit::HERTZ.text(*frequency, 4)
 }
 
 impl From<Stopped> for BenchError {

@@ -1,28 +1,30 @@
 //! The friction of a cylinder from recorded runs.
 //!
 //! ```text
-//! files -> FrictionRecording -> constant velocities | pressed rows -> first guess -> least squares over all of them -> coefficients, intervals, what is open
+//! files -> FrictionRecording -> constant velocities | pressed rows | shaken rows -> first guess -> least squares over all of them -> coefficients, intervals, what is open
 //! ```
 //!
 //! The model is [`LuGre`]: while the piston slides at a constant velocity, its equation has a
 //! solution in closed form, and the force is explained for the recorded velocity; while it is
-//! pressed and has not broken away, the mass on its bristles is simulated, and the position is
-//! explained for the recorded force, whose noise is explained with it. One set of coefficients
-//! explains all.
+//! pressed or shaken and has not broken away, the mass on its bristles is simulated, and the position
+//! is explained for the recorded force, whose noise is explained with it: a force that presses is
+//! straight between knots, one that shakes is a sum of sines. One set of coefficients explains all.
 
 mod guess;
 mod motion;
 mod pressing;
 mod problem;
 mod reading;
+mod shaking;
 mod shown;
 mod told;
 
 pub use motion::ConstantVelocity;
 pub use pressing::PressedRows;
-pub use reading::{FrictionRecording, KnownCylinder, friction_recordings};
+pub use reading::{FrictionRecording, KnownCylinder, friction_recordings, recorded_runs};
+pub use shaking::ShakenRows;
 pub use shown::{PressedCurve, SteadyPoint};
-pub use told::{FrictionEstimate, UntoldFriction};
+pub use told::{FrictionEstimate, ROWS_OF_RINGING, UntoldFriction};
 
 use phea_dynamics::least_squares::Ending;
 use phea_dynamics::watch::Watch;
@@ -51,6 +53,8 @@ pub struct FrictionIdentification {
     pub slides: Vec<ConstantVelocity>,
     /// Where it is pressed and does not slide.
     pub presses: Vec<PressedRows>,
+    /// Where it is shaken.
+    pub shakes: Vec<ShakenRows>,
     /// Each coefficient, in the order of [`FRICTION_NAMES`].
     pub estimates: [FrictionEstimate; FRICTION_COEFFICIENTS],
     /// The friction of the minimum, with numbers for what is open.
@@ -68,6 +72,8 @@ pub struct FrictionIdentification {
     pub ending: Ending,
     /// For each press, the force at its knots in N, and where the position began in m.
     pressed: Vec<(Vec<f64>, f64)>,
+    /// For each shake, what is explained of force and position.
+    shaken: Vec<PressedCurve>,
 }
 
 impl FrictionIdentification {
@@ -102,11 +108,11 @@ pub fn identify_friction(
     let all = recordings.iter().enumerate();
     let slides: Vec<ConstantVelocity> =
         all.flat_map(|(index, recording)| motion::constant_velocities(recording, index)).collect();
-    let guess::Guess { around, presses } = guess::guess(&recordings, &slides, known.moving_mass)
+    let guess::Guess { around, presses, shakes } = guess::guess(&recordings, &slides, known.moving_mass)
         .ok_or_else(|| IdentifyError::Data(NOTHING.to_string()))?;
     let finds_zero = goes_both_ways(&slides, &presses);
     let setting = (known.moving_mass, around);
-    let mut problem = FrictionProblem::new(&recordings, &slides, &presses, setting, finds_zero);
+    let mut problem = FrictionProblem::new(&recordings, &slides, (&presses, &shakes), setting, finds_zero);
     let mut minimum = problem.searched(&problem.start(), ROUGH, watch)?;
     for _ in 0..ROUNDS {
         let change = problem.rescale(&minimum.linearised.residuals);
@@ -124,6 +130,7 @@ pub fn identify_friction(
     let residual_rms = shown::residual_rms(&problem, &minimum);
     let independent = problem.channels.iter().map(|channel| channel.independent).fold(1.0, f64::min);
     let pressed = shown::pressed(&problem, &minimum);
+    let shaken = shown::shaken(&problem, &minimum);
     let ending = minimum.ending;
     Ok(FrictionIdentification {
         estimates,
@@ -134,13 +141,15 @@ pub fn identify_friction(
         moving_mass: known.moving_mass,
         ending,
         pressed,
+        shaken,
         slides,
         presses,
+        shakes,
         recordings,
     })
 }
 
-const NOTHING: &str = "nothing is recorded that tells a friction: neither a constant velocity for 20 rows or more, nor a force that presses the piston from rest while its position is recorded";
+const NOTHING: &str = "nothing is recorded that tells a friction: neither a constant velocity for 20 rows or more, nor a force that presses the piston from rest or shakes it while its position is recorded";
 
 /// Whether friction acts both ways, so that it differs from a force that is always there.
 fn goes_both_ways(slides: &[ConstantVelocity], presses: &[PressedRows]) -> bool {

@@ -3,7 +3,7 @@
 use phea_dynamics::scalar::{Dual, Scalar};
 use phea_hydraulics::cylinder::areas_from_diameters;
 use phea_hydraulics::fluid::{ATMOSPHERIC_PRESSURE_ABSOLUTE, EntrainedAir, Fluid, bulk_modulus_with_air};
-use phea_hydraulics::friction::{Friction, LuGre, LuGrePassivity, Stribeck, ViscousSlope};
+use phea_hydraulics::friction::{Friction, LuGre, LuGrePassivity, Stribeck};
 use phea_hydraulics::line::{
     Anchoring, Hose, Line, Pipe, PipeWall, Stiffening, StiffeningMember, pipe_wall_compliance,
 };
@@ -145,19 +145,14 @@ fn curve() -> Stribeck {
 }
 
 #[test]
-fn friction_slopes_of_every_choice() {
-    let lugre = Friction::LuGre(LuGre { curve: curve(), bristle_stiffness: 1e7, bristle_damping: 2e3 });
-    let viscous = Friction::Viscous { viscous: 55.0 };
-    assert_eq!(lugre.viscous_slope(ViscousSlope::Viscous), Some(100.0));
-    assert_eq!(lugre.viscous_slope(ViscousSlope::Sticking), Some(2100.0));
-    assert_eq!(lugre.viscous_slope(ViscousSlope::Secant(0.0)), None);
-    for choice in [ViscousSlope::Viscous, ViscousSlope::Secant(0.2), ViscousSlope::Tangent(0.0)] {
-        assert!((viscous.viscous_slope(choice).unwrap() - 55.0).abs() < 1e-12);
-    }
+fn the_slope_of_the_steady_curve_is_the_closed_form() {
+    use phea_dynamics::scalar::Dual;
     // ORIGIN: analytic, dF/dv = sigma_2 - 2 (F_S - F_C) v/v_S^2 exp(-(v/v_S)^2)
     let expected = 100.0 - 2.0 * 40.0 * 0.005 / 1e-4 * phea_dynamics::portable::exp(-0.25);
-    let tangent = lugre.viscous_slope(ViscousSlope::Tangent(0.005)).unwrap();
-    assert!((tangent / expected - 1.0).abs() < 1e-12);
+    let along = curve().convert(&mut Dual::<1>::from).steady_force(Dual::<1>::variable(0.005, 0));
+    assert!((along.gradient()[0] / expected - 1.0).abs() < 1e-12);
+    let lugre = Friction::LuGre(LuGre { curve: curve(), bristle_stiffness: 1e7, bristle_damping: 2e3 });
+    assert_eq!((lugre.viscous(), Friction::Viscous { viscous: 55.0 }.viscous()), (100.0, 55.0));
 }
 
 #[test]

@@ -2,19 +2,25 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
 
-use phea_hydraulics::friction::{KnottedForce, LuGre, PressedMass, SlidBlock};
+use phea_hydraulics::friction::{KnottedForce, LuGre, MultisineForce, PressedMass, SlidBlock};
 
 const NUMBERS: [f64; 7] = [80.0, 120.0, 0.01, 2.0, 100.0, 1e7, 2e3];
 const MASS: f64 = 13.1;
 
-/// Displacement of a mass on bristles at rest at first, by the method of Runge and Kutta with so many
-/// steps between rows.
-fn runge_kutta(lugre: &LuGre, force: &[f64], time_step: f64, steps: usize) -> Vec<f64> {
+/// Displacement of a mass on bristles that begins at this velocity and deflection, by the method of
+/// Runge and Kutta with so many steps between rows.
+fn runge_kutta(
+    lugre: &LuGre,
+    [velocity, deflection]: [f64; 2],
+    force: &[f64],
+    time_step: f64,
+    steps: usize,
+) -> Vec<f64> {
     let rates = |[_, velocity, deflection]: [f64; 3], force: f64| {
         let bristle = lugre.bristle_rate(velocity, deflection);
         [velocity, (force - lugre.force(velocity, deflection)) / MASS, bristle]
     };
-    let mut state = [0.0, 0.0, force[0] / lugre.bristle_stiffness];
+    let mut state = [0.0, velocity, deflection];
     let mut moved = vec![0.0];
     let h = time_step / steps as f64;
     for ends in force.windows(2) {
@@ -52,7 +58,7 @@ fn rows(force: &KnottedForce) -> Vec<f64> {
 fn a_pressed_mass_moves_as_the_equations_say() {
     let lugre = LuGre::from_array(NUMBERS);
     let force = rows(&released());
-    let exact = runge_kutta(&lugre, &force, 1e-3, 200);
+    let exact = runge_kutta(&lugre, [0.0; 2], &force, 1e-3, 200);
     let at = |substeps| {
         let pressed = PressedMass { mass: MASS, time_step: 1e-3, substeps };
         let moved = pressed.displacements(&lugre, &force);
@@ -69,7 +75,7 @@ fn a_pressed_mass_moves_as_the_equations_say() {
 fn a_mass_that_creeps_on_soft_bristles_moves_as_the_equations_say() {
     let soft = LuGre::from_array([80.0, 120.0, 0.01, 1.5, 100.0, 2e4, 6e3]);
     let force = rows(&released());
-    let exact = runge_kutta(&soft, &force, 1e-3, 200);
+    let exact = runge_kutta(&soft, [0.0; 2], &force, 1e-3, 200);
     let pressed = PressedMass { mass: MASS, time_step: 1e-3, substeps: 2 };
     let moved = pressed.displacements(&soft, &force);
     let largest = exact.iter().copied().fold(0.0, f64::max);
@@ -107,6 +113,65 @@ fn the_derivatives_are_those_of_the_displacement() {
             let difference = (more - less) / 2e-5;
             // the bristles' slip has a kink where the mass turns round
             assert!((slope - difference).abs() < 3e-3 * largest, "{index} {row}: {slope} {difference}");
+        }
+    }
+}
+
+/// Three sines that make the bristles slip, and a mean that drifts.
+fn shaking() -> MultisineForce {
+    MultisineForce {
+        rows: 600,
+        frequencies: vec![500.0, 830.0, 1210.0],
+        duration: 599.0 * 2e-4,
+        sizes: vec![3.0, -1.0, 0.5, 10.0, -5.0, 8.0, 2.0, -6.0, 9.0],
+    }
+}
+
+/// Velocity and deflection at the first row.
+const BEGINNING: [f64; 2] = [-1e-3, 2e-6];
+
+#[test]
+fn a_shaken_mass_moves_as_the_equations_say() {
+    let lugre = LuGre::from_array(NUMBERS);
+    let force = shaking();
+    let fine = force.along(599 * 20 + 1, 1e-5);
+    let exact = runge_kutta(&lugre, BEGINNING, &fine, 1e-5, 4);
+    let at = |substeps| {
+        let pressed = PressedMass { mass: MASS, time_step: 2e-4, substeps };
+        let moved = pressed.shaken(&lugre, BEGINNING, &force).displacements;
+        assert_eq!(moved.len(), 600);
+        moved.iter().zip(exact.iter().step_by(20)).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max)
+    };
+    assert!(exact.iter().copied().fold(0.0, f64::max) > 5e-6);
+    let [coarse, fine] = [3, 12].map(at);
+    assert!(coarse < 0.02e-6, "{coarse}");
+    assert!(fine < coarse / 8.0, "{coarse} {fine}");
+}
+
+#[test]
+fn the_derivatives_of_a_shaken_mass_are_those_of_the_displacement() {
+    let lugre = LuGre::from_array(NUMBERS);
+    let force = shaking();
+    let pressed = PressedMass { mass: MASS, time_step: 2e-4, substeps: 8 };
+    let found = pressed.shaken(&lugre, BEGINNING, &force);
+    let units: Vec<f64> =
+        NUMBERS.iter().chain(&[1e-3, 1e-6]).copied().chain(force.sizes.iter().map(|_| 10.0)).collect();
+    let count = units.len();
+    assert_eq!(found.gradients.len(), 600 * count);
+    for (index, unit) in units.iter().enumerate() {
+        let moved = |sign: f64| {
+            let mut all: Vec<f64> = NUMBERS.iter().chain(&BEGINNING).chain(&force.sizes).copied().collect();
+            all[index] += 1e-4 * sign * unit;
+            let numbers = std::array::from_fn(|place| all[place]);
+            let changed = MultisineForce { sizes: all[9..].to_vec(), ..force.clone() };
+            pressed.shaken(&LuGre::from_array(numbers), [all[7], all[8]], &changed).displacements
+        };
+        let both: Vec<(f64, f64)> = moved(1.0).into_iter().zip(moved(-1.0)).collect();
+        let differences: Vec<f64> = both.iter().map(|(more, less)| (more - less) / 2e-4).collect();
+        let largest = differences.iter().fold(0.0_f64, |most, at| most.max(at.abs()));
+        for (row, difference) in differences.iter().enumerate() {
+            let slope = found.gradients[row * count + index] * unit;
+            assert!((slope - difference).abs() < 1e-2 * largest, "{index} {row}: {slope} {difference}");
         }
     }
 }

@@ -2,7 +2,7 @@
 
 mod friction;
 
-pub use friction::FrictionBench;
+pub use friction::{FrictionBench, ShakenFriction};
 
 mod line;
 

@@ -1,4 +1,5 @@
-//! `[identify]`: recorded static tests of the servovalve, and what their columns hold.
+//! `[identify]`: recorded static tests of the servovalve and what their columns hold; recordings of a
+//! line and of the cylinder.
 
 use super::key::plain;
 use super::visitor::Visitor;
@@ -144,6 +145,8 @@ pub struct Identify {
     pub recordings: Vec<RecordedTest>,
     /// Recordings of a blocked line, as paths relative to the project file.
     pub line: Vec<String>,
+    /// Recorded runs of the cylinder, as paths relative to the project file.
+    pub friction: Vec<String>,
 }
 
 /// A file with a recorded test.
@@ -182,6 +185,8 @@ impl Identify {
         v.tables(k, &mut self.recordings, RecordedTest::visit);
         let k = plain("line", "Recordings of a line whose far end is blocked, for `--of line`.");
         v.texts(k, &mut self.line);
+        let k = plain("friction", "Recorded runs of the cylinder, for `--of friction`.");
+        v.texts(k, &mut self.friction);
     }
 }
 

@@ -9,11 +9,13 @@ mod files;
 pub use phea_engineering::friction::*;
 
 pub use answer::json;
+pub(crate) use document::tell;
 pub use document::text;
 pub(crate) use figures::pictures;
 pub use files::files;
 
 use crate::answer::significant;
+use crate::quantity::{DisplayUnit, TIME, display};
 
 /// Why a coefficient is not determined, in words.
 pub(crate) fn because(estimate: &FrictionEstimate) -> Option<String> {
@@ -25,7 +27,16 @@ pub(crate) fn because(estimate: &FrictionEstimate) -> Option<String> {
         UntoldFriction::NothingPressed => {
             "nothing is pressed from rest while its position is recorded".to_string()
         }
-        UntoldFriction::NotSought => "slow runs do not show it, and quick ones are not evaluated".to_string(),
+        UntoldFriction::NothingShaken { ringing, breaking } => not_shaken(ringing, breaking),
+        UntoldFriction::TooFewRows { time_step } => format!(
+            "the shaken piston has too few rows in a period of its ringing: record one every {} or oftener",
+            display(time_step, &TIME, 2)
+        ),
+        UntoldFriction::ShakenTooLittle { factor } => format!(
+            "noise hides it: a force {} times as great around the frequency of the ringing, below the static friction, or a recording {} times as long, would show it",
+            significant(factor, 2),
+            significant(factor * factor, 2)
+        ),
         UntoldFriction::QuickForce => {
             "the force changes too quickly: record one that rises slowly".to_string()
         }
@@ -36,4 +47,21 @@ pub(crate) fn because(estimate: &FrictionEstimate) -> Option<String> {
         UntoldFriction::Hidden => "noise hides its effect in these recordings".to_string(),
     };
     Some(reason)
+}
+
+/// What would show the damping of the bristles.
+fn not_shaken(ringing: Option<f64>, breaking: Option<f64>) -> String {
+    let below = breaking.map_or("below the static friction".to_string(), |force| {
+        format!("below the static friction of {} N", significant(force, 3))
+    });
+    let around = ringing.map_or("around which the mass rings on its bristles".to_string(), |ringing| {
+        let rows = DisplayUnit::HERTZ.of(ROWS_OF_RINGING * ringing);
+        let ringing = DisplayUnit::HERTZ.of(ringing);
+        format!(
+            "around {} Hz, where the mass rings on its bristles, with {} rows a second or more",
+            significant(ringing, 3),
+            significant(rows, 2)
+        )
+    });
+    format!("slow runs do not show it: shake the piston {below} at frequencies {around}")
 }

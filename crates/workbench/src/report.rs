@@ -19,6 +19,7 @@ mod opening;
 mod page;
 mod proven;
 mod provenance;
+mod recorded_friction;
 mod response;
 mod rig;
 mod sensitivity;
@@ -137,6 +138,7 @@ pub fn report_beside(
         rig.as_mut().map(|rig| std::mem::take(&mut rig.chapters)).unwrap_or_default();
     let mut appendix: Vec<Chapter> = rig.map(|rig| rig.appendix).unwrap_or_default();
     chapters.extend(test_bench::chapter(source, loaded, watch)?);
+    chapters.extend(recorded_friction::chapter(source, loaded, watch)?);
     if let Some(driven) = &driven {
         chapters.push(simulation::chapter(project, driven));
         appendix.extend(simulation::inside(project, driven));

@@ -21,6 +21,7 @@ mod feed_forward;
 mod frequency_response;
 mod friction_coverage;
 mod friction_identification;
+mod friction_shaken;
 mod golden_ybitu;
 mod json_contract;
 mod line_coverage;

@@ -1,9 +1,11 @@
-//! Runs of the cylinder for its friction: sliding at constant velocities, and pressed until it breaks
-//! away, as instruments would record them.
+//! Runs of the cylinder for its friction: sliding at constant velocities, pressed until it breaks away,
+//! and shaken on its bristles, as instruments would record them.
 //!
 //! ```text
 //! velocity | force over time -> LuGre friction, moving mass -> pressures in the chambers -> instruments -> rows
 //! ```
+
+mod shaken;
 
 use phea_dynamics::random::{normal, stream};
 use phea_dynamics::watch::{Watch, tell};
@@ -46,11 +48,17 @@ pub enum FrictionSeries {
     Breakaway,
     /// The same from B to A.
     BreakawayBack,
+    /// Shaken by a force of several frequencies that does not break it away.
+    Shaken,
 }
 
 impl FrictionSeries {
-    const ALL: [FrictionSeries; 3] =
-        [FrictionSeries::Sliding, FrictionSeries::Breakaway, FrictionSeries::BreakawayBack];
+    const ALL: [FrictionSeries; 4] = [
+        FrictionSeries::Sliding,
+        FrictionSeries::Breakaway,
+        FrictionSeries::BreakawayBack,
+        FrictionSeries::Shaken,
+    ];
 
     /// As files are called.
     pub fn name(self) -> &'static str {
@@ -58,6 +66,7 @@ impl FrictionSeries {
             FrictionSeries::Sliding => "sliding",
             FrictionSeries::Breakaway => "breakaway",
             FrictionSeries::BreakawayBack => "breakaway_back",
+            FrictionSeries::Shaken => "shaken",
         }
     }
 }
@@ -95,13 +104,18 @@ pub fn friction_runs(setup: &Setup<'_>, watch: Watch<'_>) -> Result<Vec<Friction
             FrictionSeries::Sliding => sliding(&lugre, &components.cylinder, &settings)?,
             FrictionSeries::Breakaway => breakaway(&lugre, &components.cylinder, &settings, 1.0)?,
             FrictionSeries::BreakawayBack => breakaway(&lugre, &components.cylinder, &settings, -1.0)?,
+            FrictionSeries::Shaken => shaken::shaken(&lugre, &components.cylinder, &settings.shaken)?,
+        };
+        let sample_time = match series {
+            FrictionSeries::Shaken => settings.shaken.sample_time,
+            _ => settings.sample_time,
         };
         let mut noise = stream(u64::from(bench.seed), FIRST_STREAM + series as u64);
         let instruments = Instruments::new(bench, nominal_voltage);
         let chambers = EvenChambers { cylinder: &components.cylinder, mean };
         runs.push(FrictionRun {
             series,
-            rows: recorded(&moments, (&chambers, &settings), instruments, &mut noise),
+            rows: recorded((&moments, sample_time), (&chambers, &settings), instruments, &mut noise),
         });
     }
     Ok(runs)
@@ -126,16 +140,18 @@ impl EvenChambers<'_> {
 }
 
 fn recorded(
-    moments: &[CylinderMoment],
+    (moments, sample_time): (&[CylinderMoment], f64),
     (chambers, settings): (&EvenChambers<'_>, &FrictionBench),
     mut instruments: Instruments,
     noise: &mut u64,
 ) -> Vec<FrictionRow> {
+    let step = settings.position_resolution;
+    let read = |position: f64| if step > 0.0 { (position / step).round() * step } else { position };
     let row = |(index, moment): (usize, &CylinderMoment)| {
-        let position = moment.position + settings.position_noise * normal(noise);
+        let position = read(moment.position + settings.position_noise * normal(noise));
         let [pressure_a, pressure_b] =
             chambers.pressures(moment.force).map(|value| instruments.pressure(value, noise));
-        FrictionRow { time: index as f64 * settings.sample_time, position, pressure_a, pressure_b }
+        FrictionRow { time: index as f64 * sample_time, position, pressure_a, pressure_b }
     };
     moments.iter().enumerate().map(row).collect()
 }
@@ -229,8 +245,7 @@ fn breakaway(
     let rows = counted(duration / settings.sample_time)?;
     let length = breaking / lugre.bristle_stiffness;
     let fastest = (2.0 * peak * BROKEN_AWAY * length / cylinder.moving_mass).sqrt();
-    let slip_rate = lugre.bristle_stiffness * fastest / lugre.curve.coulomb;
-    let steps = counted((settings.sample_time * slip_rate / LONGEST_SLIP).ceil())?.max(1);
+    let steps = counted((settings.sample_time / longest_step(lugre, fastest)).ceil())?.max(1);
     counted(rows as f64 * steps as f64 / 100.0)?;
     let time_step = settings.sample_time / steps as f64;
     let mut piece = 0;
@@ -247,6 +262,11 @@ fn breakaway(
 
 /// How far the bristles slip in a step, over their deflection.
 const LONGEST_SLIP: f64 = 0.1;
+
+/// Longest step of the integration in s up to this velocity.
+fn longest_step(lugre: &LuGre, fastest: f64) -> f64 {
+    LONGEST_SLIP * lugre.curve.coulomb / (lugre.bristle_stiffness * fastest)
+}
 
 /// Times and forces between which the force is straight.
 fn forces(settings: &FrictionBench, peak: f64, part: f64) -> Vec<(f64, f64)> {

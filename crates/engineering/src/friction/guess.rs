@@ -8,11 +8,13 @@ use super::FrictionRecording;
 use super::motion::{ConstantVelocity, noise};
 use super::pressing::{PressedRows, compliance, pressed_rows};
 use super::problem::Around;
+use super::shaking::{ShakenRows, shaken_rows};
 
-/// A friction near that of the recordings, and what is pressed in them.
+/// A friction near that of the recordings, and what is pressed and shaken in them.
 pub(super) struct Guess {
     pub(super) around: Around,
     pub(super) presses: Vec<PressedRows>,
+    pub(super) shakes: Vec<ShakenRows>,
 }
 
 /// Damping ratio of the mass on its bristles that is taken for granted: under a slow force it does
@@ -36,30 +38,44 @@ pub(super) fn guess(
     let curve = steady_guess(slides).or_else(|| (greatest > 0.0).then(|| without_sliding(greatest)))?;
     let mut compliances = Vec::new();
     let mut presses = Vec::new();
+    let mut shakes = Vec::new();
     for index in pressed {
         let Some(recording) = recordings.get(index) else { continue };
+        if let Some(shake) = shaken_rows(recording, index) {
+            shakes.push(shake);
+            continue;
+        }
         let compliance = compliance(recording, curve.static_friction);
         let press = pressed_rows(recording, index, compliance * curve.static_friction);
         compliances.extend(press.is_some().then_some(compliance));
         presses.extend(press);
     }
-    if presses.is_empty() && slides.is_empty() {
+    if presses.is_empty() && slides.is_empty() && shakes.is_empty() {
         return None;
     }
+    // springs and dampers that answer as the shaken piston did
+    let alike: Vec<[f64; 2]> = shakes.iter().map(|shake| shake.spring_and_damper(mass)).collect();
+    let mean = |place: usize| alike.iter().map(|one| one[place]).sum::<f64>() / alike.len().max(1) as f64;
     let bristle_stiffness = match compliances.is_empty() {
+        _ if mean(0) > 0.0 => mean(0),
         false => compliances.len() as f64 / compliances.iter().sum::<f64>(),
         true => curve.static_friction / (SETTLED * shortest_way(slides, recordings)),
     };
     let damping = (bristle_stiffness * mass).sqrt();
+    // the slip of the bristles damps too, so that there is more than theirs
+    let bristle_damping = match mean(1) > 0.0 {
+        true => (mean(1) - curve.viscous).max(0.1 * mean(1)),
+        false => 2.0 * DAMPING_RATIO * damping,
+    };
     let fastest = slides.iter().map(|slide| slide.velocity.abs()).fold(0.0, f64::max);
     let usual = curve.stribeck_velocity;
     let around = Around {
-        lugre: LuGre { curve, bristle_stiffness, bristle_damping: 2.0 * DAMPING_RATIO * damping },
+        lugre: LuGre { curve, bristle_stiffness, bristle_damping },
         force: curve.static_friction,
         damping: [curve.static_friction / if fastest > 0.0 { fastest } else { usual }, damping],
         length: curve.static_friction / bristle_stiffness,
     };
-    Some(Guess { around, presses })
+    Some(Guess { around, presses, shakes })
 }
 
 fn slides_in(slides: &[ConstantVelocity], recording: usize) -> bool {

@@ -1,5 +1,7 @@
 //! Everything that was recorded, explained by one friction: residuals with derivatives.
 
+mod shake;
+
 use phea_dynamics::least_squares::{Linearised, Minimum, Settings, minimise};
 use phea_dynamics::portable;
 use phea_dynamics::watch::{Stopped, Watch, tell};
@@ -8,6 +10,7 @@ use phea_hydraulics::friction::{FRICTION_COEFFICIENTS, KnottedForce, LuGre, Pres
 use super::FrictionRecording;
 use super::motion::ConstantVelocity;
 use super::pressing::PressedRows;
+use super::shaking::ShakenRows;
 use crate::identify::median;
 
 /// The variables that are of no recording: the coefficients, and the zero of the force.
@@ -27,6 +30,18 @@ const STEP_ANGLE: f64 = 0.3;
 
 /// Most steps between two rows.
 const MOST_STEPS: f64 = 20.0;
+
+/// Least scale of the force while the piston slides, over the force at breakaway.
+const FINEST_SLIDING: f64 = 1e-9;
+
+/// Least scale of a force that presses or shakes, and of the position, over force and deflection at
+/// breakaway: finer than instruments are. The sizes of the force are variables too, and a force
+/// without noise would outweigh the position by more than rounding leaves of it.
+const FINEST: f64 = 1e-5;
+
+/// First scale of the position of a shaken piston, over its swing: from a guess that leaves much more
+/// than the noise, a search that is robust against outliers takes all rows for such.
+const FIRST_SCALE: f64 = 0.1;
 
 /// The friction around which is searched, and the sizes of the variables.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,6 +67,8 @@ pub(super) struct FrictionChannel {
     pub(super) independent: f64,
     /// Noise of each row, by its differences.
     pub(super) noise: f64,
+    /// The scale of each row is at least this: finer weights would hide all others in rounding.
+    finest: f64,
 }
 
 /// What is explained, and how.
@@ -60,11 +77,13 @@ pub(super) struct FrictionProblem<'a> {
     pub(super) recordings: &'a [FrictionRecording],
     pub(super) slides: &'a [ConstantVelocity],
     pub(super) presses: &'a [PressedRows],
+    pub(super) shakes: &'a [ShakenRows],
     pub(super) mass: f64,
     pub(super) around: Around,
     /// Whether the zero of the force is searched for.
     pub(super) finds_zero: bool,
-    /// One of each recording that slides; then force and position of each that is pressed.
+    /// One of each recording that slides; then force and position of each that is pressed, and of each
+    /// that is shaken.
     pub(super) channels: Vec<FrictionChannel>,
 }
 
@@ -72,43 +91,53 @@ impl<'a> FrictionProblem<'a> {
     pub(super) fn new(
         recordings: &'a [FrictionRecording],
         slides: &'a [ConstantVelocity],
-        presses: &'a [PressedRows],
+        (presses, shakes): (&'a [PressedRows], &'a [ShakenRows]),
         (mass, around): (f64, Around),
         finds_zero: bool,
     ) -> FrictionProblem<'a> {
         let mut channels = Vec::new();
         let mut first = 0;
-        let mut channel = |scale: f64, count: usize| {
+        let mut channel = |noise: f64, finest: f64, count: usize| {
             let residuals = [first, first + count];
             first += count;
-            channels.push(FrictionChannel { scale, residuals, independent: 1.0, noise: scale });
+            let scale = noise.max(finest);
+            channels.push(FrictionChannel { scale, residuals, independent: 1.0, noise: scale, finest });
         };
         for group in slides.chunk_by(|one, next| one.recording == next.recording) {
             let recording = group.first().and_then(|slide| recordings.get(slide.recording));
             let noise = recording.map_or(1.0, |recording| super::motion::noise(&recording.forces));
-            let finest = 1e-9 * around.force;
-            channel(noise.max(finest), group.iter().map(|slide| slide.blocks.len()).sum());
+            channel(noise, FINEST_SLIDING * around.force, group.iter().map(|slide| slide.blocks.len()).sum());
         }
-        for press in presses {
-            let least = [1e-9 * around.force, 1e-6 * around.length];
-            for (noise, least) in press.noise.iter().zip(least) {
-                channel(noise.max(least), press.rows);
+        let pressed = presses.iter().map(|press| (press.noise, press.rows));
+        for (noise, rows) in pressed.chain(shakes.iter().map(|shake| (shake.noise, shake.force.rows))) {
+            for (noise, size) in noise.iter().zip([around.force, around.length]) {
+                channel(*noise, FINEST * size, rows);
             }
         }
-        FrictionProblem { recordings, slides, presses, mass, around, finds_zero, channels }
+        let positions = channels.iter_mut().rev().step_by(2);
+        for (position, shake) in positions.zip(shakes.iter().rev()) {
+            position.scale = position.scale.max(FIRST_SCALE * shake.swing());
+        }
+        FrictionProblem { recordings, slides, presses, shakes, mass, around, finds_zero, channels }
     }
 
     /// How many variables there are: those that are shared; of each constant velocity what the
-    /// bristles brought along; of each press where it began, and its force at each knot.
+    /// bristles brought along; of each press where it began, and its force at each knot; of each shake
+    /// how it began, and the sizes of its force.
     pub(super) fn count(&self) -> usize {
+        let shaken: usize = self.shakes.iter().map(ShakenRows::variable_count).sum();
+        self.first_of_shakes() + shaken
+    }
+
+    /// Index of the first variable of a shake.
+    pub(super) fn first_of_shakes(&self) -> usize {
         let pressed: usize = self.presses.iter().map(|press| 1 + press.force.knots.len()).sum();
         SHARED + self.slides.len() + pressed
     }
 
-    /// Force and position of each press.
-    pub(super) fn pressed_channels(&self) -> &[FrictionChannel] {
-        let slid = self.channels.len() - 2 * self.presses.len();
-        self.channels.get(slid..).unwrap_or_default()
+    /// How many channels belong to what slides; force and position of each press and shake follow.
+    pub(super) fn sliding_channels(&self) -> usize {
+        self.channels.len() - 2 * (self.presses.len() + self.shakes.len())
     }
 
     /// The friction, and the zero of the force in N.
@@ -163,14 +192,18 @@ impl<'a> FrictionProblem<'a> {
             start.push(0.0);
             start.extend(press.force.forces.iter().map(|value| value / force));
         }
+        start.extend(self.shakes.iter().flat_map(|shake| self.shake_start(shake)));
         start
     }
 
-    /// What a variable may be. The damping of the bristles stays: a slow force does not show it, and
-    /// what rings freely would follow the noise.
+    /// What a variable may be. Where nothing is shaken the damping of the bristles stays: a slow force
+    /// does not show it, and what rings freely would follow the noise.
     pub(super) fn bounds(&self) -> Vec<[f64; 2]> {
         let zero = if self.finds_zero { [-100.0, 100.0] } else { [0.0, 0.0] };
-        let damping = [self.around.lugre.bristle_damping / self.around.damping[1]; 2];
+        let damping = match self.shakes {
+            [] => [self.around.lugre.bristle_damping / self.around.damping[1]; 2],
+            _ => [0.0, 1e3],
+        };
         let exponent = self.around.lugre.curve.stribeck_exponent;
         let exponents = [0.2, 10.0].map(|end| portable::ln(end / exponent));
         let mut bounds =
@@ -181,6 +214,7 @@ impl<'a> FrictionProblem<'a> {
             bounds.push([-1e6, 1e6]);
             bounds.extend(press.force.forces.iter().map(|_| [-1e3, 1e3]));
         }
+        bounds.extend(self.shakes.iter().flat_map(Self::shake_bounds));
         bounds
     }
 
@@ -211,6 +245,13 @@ impl<'a> FrictionProblem<'a> {
             let own = variables.get(first..=first + knots)?;
             self.press(press, (&lugre, zero), (first, own), scales, &mut rows)?;
             first += 1 + knots;
+        }
+        for shake in self.shakes {
+            let scales = [channels.next()?, channels.next()?].map(FrictionChannel::effective_scale);
+            let count = shake.variable_count();
+            let own = variables.get(first..first + count)?;
+            self.shake(shake, (&lugre, zero), (first, own), scales, &mut rows)?;
+            first += count;
         }
         Some(rows.found)
     }
@@ -316,14 +357,13 @@ impl<'a> FrictionProblem<'a> {
         let mut change = 0.0_f64;
         let all = residuals.len() as f64;
         let freedom = (all / (all - self.count() as f64).max(1.0)).sqrt();
-        let least = 1e-9;
         for channel in &mut self.channels {
             let [from, to] = channel.residuals;
             let own = residuals.get(from..to).unwrap_or_default();
             let typical = 1.4826 * median(own.iter().map(|residual| residual.abs()).collect());
             let before = channel.effective_scale();
             channel.independent = independent(own, typical);
-            channel.scale = (typical * freedom).max(least) * before;
+            channel.scale = (typical * freedom * before).max(channel.finest);
             change = change.max((channel.effective_scale() / before - 1.0).abs());
         }
         change

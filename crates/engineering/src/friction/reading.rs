@@ -1,7 +1,8 @@
 use crate::identify::IdentifyError;
-use crate::project::Findings;
+use crate::project::{Findings, Project};
 use crate::quantity::{Dimension, FORCE, LENGTH, PRESSURE, TIME, VELOCITY};
 use crate::response::time_step;
+use crate::setup::Setup;
 use crate::source::Source;
 use crate::table::{Column, Measurand, MeasuredTable, Sought};
 
@@ -12,6 +13,24 @@ pub struct KnownCylinder {
     pub areas: [f64; 2],
     /// kg, M.
     pub moving_mass: f64,
+}
+
+impl KnownCylinder {
+    /// As the project states it.
+    ///
+    /// # Errors
+    /// [`IdentifyError`] for a project without a cylinder.
+    pub fn of(project: &Project) -> Result<KnownCylinder, IdentifyError> {
+        let rig = Setup::rig_of(project).map_err(|error| IdentifyError::Data(error.to_string()))?;
+        let cylinder = rig.actuator.components().cylinder;
+        Ok(KnownCylinder { areas: [cylinder.area_a, cylinder.area_b], moving_mass: cylinder.moving_mass })
+    }
+}
+
+/// The files with runs of the cylinder that a project declares in `[identify]`.
+pub fn recorded_runs(project: &Project) -> Vec<String> {
+    let files = project.identify.iter().flat_map(|identify| &identify.friction);
+    files.map(|file| project.path_of(file)).collect()
 }
 
 /// A recorded run of the cylinder, rows at equal intervals. SI.

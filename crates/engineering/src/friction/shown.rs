@@ -7,6 +7,7 @@ use super::FrictionIdentification;
 use super::motion::ConstantVelocity;
 use super::pressing::PressedRows;
 use super::problem::{FrictionProblem, SHARED};
+use super::shaking::ShakenRows;
 
 /// The friction force at a constant velocity. Units: m/s, N.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,7 +22,7 @@ pub struct SteadyPoint {
     pub modelled: f64,
 }
 
-/// Position over force of a piston that is pressed. Units: N, m.
+/// Position over force of a piston that is pressed or shaken. Units: N, m.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PressedCurve {
     /// As recorded, less the zero of the force.
@@ -63,6 +64,11 @@ impl FrictionIdentification {
         self.slides.iter().map(point).collect()
     }
 
+    /// What is recorded and explained of a shake.
+    pub fn shaken_curve(&self, index: usize) -> Option<&PressedCurve> {
+        self.shaken.get(index)
+    }
+
     /// The recorded and the explained position of a press.
     pub fn pressed_curve(&self, index: usize) -> Option<PressedCurve> {
         let zero = self.zero.map_or(0.0, |zero| zero.value);
@@ -85,9 +91,30 @@ impl FrictionIdentification {
     }
 }
 
+/// Force and position of each shake.
+pub(super) fn shaken(problem: &FrictionProblem<'_>, minimum: &Minimum) -> Vec<PressedCurve> {
+    let (lugre, zero) = problem.friction(&minimum.variables);
+    let mut first = problem.first_of_shakes();
+    let of = |shake: &ShakenRows| {
+        let own = minimum.variables.get(first..first + shake.variable_count())?;
+        first += shake.variable_count();
+        let recording = problem.recordings.get(shake.recording)?;
+        let found = problem.shake_of(shake, own)?;
+        let start = recording.positions.first()? + found.begins;
+        let modelled = found.measured.along(shake.force.rows, recording.time_step);
+        Some(PressedCurve {
+            forces: recording.forces.iter().map(|force| force - zero).collect(),
+            positions: recording.positions.iter().map(|at| at - start).collect(),
+            modelled_forces: modelled.into_iter().map(|force| force - zero).collect(),
+            modelled_positions: found.moved(problem.mass, &lugre, zero, recording.time_step).displacements,
+        })
+    };
+    problem.shakes.iter().filter_map(of).collect()
+}
+
 /// Root mean square of what is left of the forces in N and of the positions in m.
 pub(super) fn residual_rms(problem: &FrictionProblem<'_>, minimum: &Minimum) -> [Option<f64>; 2] {
-    let groups = problem.channels.len() - 2 * problem.presses.len();
+    let groups = problem.sliding_channels();
     let mut sums = [(0.0, 0.0); 2];
     for (index, channel) in problem.channels.iter().enumerate() {
         let is_position = index >= groups && (index - groups) % 2 == 1;

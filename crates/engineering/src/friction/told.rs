@@ -1,5 +1,7 @@
 //! What the recordings tell of each coefficient, and why they do not.
 
+use std::f64::consts::PI;
+
 use phea_dynamics::least_squares::{Linearised, Minimum, Uncertainty, uncertainty_by_scale};
 use phea_dynamics::portable;
 use phea_hydraulics::friction::FRICTION_COEFFICIENTS;
@@ -26,8 +28,23 @@ pub enum UntoldFriction {
     NoFall,
     /// Nothing is pressed from rest while its position is recorded.
     NothingPressed,
-    /// Slow runs do not show it, and it is not looked for in quick ones.
-    NotSought,
+    /// Nothing shakes the piston on its bristles while its position is recorded.
+    NothingShaken {
+        /// rad/s, at which the mass rings on the bristles, where their stiffness is determined.
+        ringing: Option<f64>,
+        /// N, static friction, where it is determined.
+        breaking: Option<f64>,
+    },
+    /// The piston is shaken, and there are too few rows in a period of its ringing.
+    TooFewRows {
+        /// s between rows, the longest that would do.
+        time_step: f64,
+    },
+    /// The piston is shaken too little, or away from where it rings.
+    ShakenTooLittle {
+        /// Standard deviation over the largest at which it is determined.
+        factor: f64,
+    },
     /// The force changes within a few rows, or rises too quickly, while the piston is pressed.
     QuickForce,
     /// Noise hides it.
@@ -48,6 +65,9 @@ const UNTOLD: f64 = 0.5;
 /// Duration of a force that rises slowly, over the delay by the damping: twice its inverse is the
 /// error of the stiffness where the damping is not the one that is taken for granted.
 const SLOW: f64 = 250.0;
+
+/// Fewest rows in a period of the ringing.
+pub const ROWS_OF_RINGING: f64 = 8.0;
 
 /// Residual over noise beyond which recordings are not explained.
 const EXPLAINED: f64 = 1.5;
@@ -96,8 +116,14 @@ pub(super) fn estimates(
             VariableForm::Linear(unit) => unit * deviation / value,
             VariableForm::Logarithmic => deviation,
         };
-        let is_told = relative <= UNTOLD;
-        FrictionEstimate { value, interval, untold: (!is_told).then_some(UntoldFriction::Hidden) }
+        let untold = match relative {
+            relative if relative <= UNTOLD => None,
+            relative if index == DAMPING + 1 && relative.is_finite() => {
+                Some(UntoldFriction::ShakenTooLittle { factor: relative / UNTOLD })
+            }
+            _ => Some(UntoldFriction::Hidden),
+        };
+        FrictionEstimate { value, interval, untold }
     });
     let fall = [lugre.curve.static_friction - lugre.curve.coulomb, force * alone(1)];
     let zero = problem.finds_zero.then(|| {
@@ -110,9 +136,9 @@ pub(super) fn estimates(
 /// The minimum without what was not searched for.
 fn searched_only(problem: &FrictionProblem<'_>, minimum: &Minimum) -> Linearised {
     let mut at = minimum.linearised.clone();
-    let known = if problem.finds_zero { &[DAMPING][..] } else { &[DAMPING, ZERO] };
+    let known = [(DAMPING, problem.shakes.is_empty()), (ZERO, !problem.finds_zero)];
     for row in at.jacobian.chunks_exact_mut(problem.count()) {
-        for index in known {
+        for (index, _) in known.iter().filter(|(_, is_known)| *is_known) {
             row.iter_mut().skip(*index).take(1).for_each(|slope| *slope = 0.0);
         }
     }
@@ -156,31 +182,55 @@ fn reasons(
         }
     }
     if problem.presses.is_empty() {
-        if stiffness.untold.is_some() {
+        if stiffness.untold.is_some() && problem.shakes.is_empty() {
             stiffness.untold = Some(UntoldFriction::NothingPressed);
         }
         if problem.slides.is_empty() {
             static_friction.untold = Some(UntoldFriction::NothingPressed);
         }
     }
-    let residual = problem.pressed_channels().iter().map(|channel| channel.scale / channel.noise);
-    let residual = residual.fold(0.0, f64::max);
+    let explained = problem.channels.get(problem.sliding_channels()..).unwrap_or_default();
+    let residual = explained.iter().map(|channel| channel.scale / channel.noise).fold(0.0, f64::max);
     if residual > EXPLAINED {
-        stiffness.untold = stiffness.untold.or(Some(UntoldFriction::NotExplained { residual }));
+        for one in [&mut *stiffness, damping] {
+            one.untold = one.untold.or(Some(UntoldFriction::NotExplained { residual }));
+        }
     }
-    // the damping that is taken for granted delays the mass by this
-    let delay = damping.value / stiffness.value;
-    let is_quick = |press: &super::PressedRows| {
+    let ringing = (stiffness.value / problem.mass).sqrt();
+    if problem.shakes.is_empty() {
+        let ringing = stiffness.untold.is_none().then_some(ringing);
+        let breaking = static_friction.untold.is_none().then_some(static_friction.value);
+        let untold = Some(UntoldFriction::NothingShaken { ringing, breaking });
+        *damping = FrictionEstimate { interval: [0.0, f64::INFINITY], untold, ..*damping };
+    }
+    let longest = 2.0 * PI / (ROWS_OF_RINGING * ringing);
+    if shaken_time_step(problem).is_some_and(|time_step| time_step > longest) {
+        damping.untold = Some(UntoldFriction::TooFewRows { time_step: longest });
+    }
+    if presses_quickly(problem, stiffness, damping) {
+        for one in [stiffness, damping] {
+            one.untold = one.untold.or(Some(UntoldFriction::QuickForce));
+        }
+    }
+    found
+}
+
+/// s between the rows of what is shaken, the longest.
+fn shaken_time_step(problem: &FrictionProblem<'_>) -> Option<f64> {
+    let recordings = problem.shakes.iter().filter_map(|shake| problem.recordings.get(shake.recording));
+    recordings.map(|one| one.time_step).reduce(f64::max)
+}
+
+/// Whether a force that presses is not known between its rows, or is too quick for a damping that is
+/// taken for granted, which delays the mass.
+fn presses_quickly(
+    problem: &FrictionProblem<'_>,
+    stiffness: &FrictionEstimate,
+    damping: &FrictionEstimate,
+) -> bool {
+    let delay = if damping.untold.is_none() { 0.0 } else { damping.value / stiffness.value };
+    problem.presses.iter().any(|press| {
         let time_step = problem.recordings.get(press.recording).map_or(0.0, |one| one.time_step);
         press.has_quick_force || press.rows as f64 * time_step < SLOW * delay
-    };
-    if problem.presses.iter().any(is_quick) {
-        stiffness.untold = stiffness.untold.or(Some(UntoldFriction::QuickForce));
-    }
-    *damping = FrictionEstimate {
-        interval: [0.0, f64::INFINITY],
-        untold: Some(UntoldFriction::NotSought),
-        ..*damping
-    };
-    found
+    })
 }

@@ -1,9 +1,11 @@
 //! Friction as tests on a rig show it: while the piston slides at a constant velocity, and while a
 //! force presses it that does not yet break it away.
 
+mod multisine;
 mod pressed;
 mod sliding;
 
+pub use multisine::{MultisineForce, TRENDS, trends};
 pub use pressed::{KnottedForce, PressedMass, SensitiveDisplacement};
 pub use sliding::{SLIDING_VARIABLES, SlidBlock};
 

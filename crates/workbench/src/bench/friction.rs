@@ -102,6 +102,7 @@ fn title(series: FrictionSeries) -> &'static str {
         FrictionSeries::Sliding => "Cylinder at constant velocities, both ways",
         FrictionSeries::Breakaway => "Cylinder pressed from A to B until it breaks away",
         FrictionSeries::BreakawayBack => "Cylinder pressed from B to A until it breaks away",
+        FrictionSeries::Shaken => "Cylinder shaken before it breaks away",
     }
 }
 

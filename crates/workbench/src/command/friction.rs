@@ -1,10 +1,9 @@
 //! `identify --of friction`: the friction that explains recorded runs of the cylinder.
 
 use crate::answer::{Answer, picture_files};
-use crate::friction::{self, KnownCylinder, friction_recordings, identify_friction};
+use crate::friction::{self, KnownCylinder, friction_recordings, identify_friction, recorded_runs};
 use crate::identify::IdentifyError;
 use crate::project::Loaded;
-use crate::setup::Setup;
 use crate::source::Source;
 
 use super::Watch;
@@ -12,7 +11,7 @@ use super::Watch;
 /// From which files, and what is wanted.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FrictionRequest {
-    /// Recorded runs.
+    /// Recorded runs; none: those of the project's `[identify]`.
     pub files: Vec<String>,
     /// Whether figures are among the files of the answer.
     pub figures: bool,
@@ -33,15 +32,15 @@ pub fn friction_watched(
     let loaded = loaded.ok_or_else(|| {
         refused("friction needs the project of the cylinder, for its areas and its moving mass: name it")
     })?;
-    if asked.files.is_empty() {
-        return Err(refused("there is no recorded run: name the files"));
+    let project = &loaded.project;
+    let files = if asked.files.is_empty() { recorded_runs(project) } else { asked.files.clone() };
+    if files.is_empty() {
+        let message =
+            "there is no recorded run: name files, or declare `friction` in `[identify]` of the project";
+        return Err(refused(message));
     }
-    let rig = Setup::rig_of(&loaded.project).map_err(|error| refused(&error.to_string()))?;
-    let cylinder = rig.actuator.components().cylinder;
-    let known =
-        KnownCylinder { areas: [cylinder.area_a, cylinder.area_b], moving_mass: cylinder.moving_mass };
-    let recordings = friction_recordings(source, &asked.files, &known)?;
-    let found = identify_friction(recordings, &known, watch)?;
+    let known = KnownCylinder::of(project)?;
+    let found = identify_friction(friction_recordings(source, &files, &known)?, &known, watch)?;
     let mut files = friction::files(&found);
     if asked.figures {
         let pictures = picture_files(&friction::pictures(&found));

@@ -1,6 +1,7 @@
-use super::{FRICTION_NAMES, FrictionEstimate, FrictionIdentification, because};
+use super::{FRICTION_NAMES, FrictionEstimate, FrictionIdentification, ShakenRows, because};
 use crate::answer::{self, Json, Object};
 use crate::project::Loaded;
+use crate::quantity::DisplayUnit;
 
 /// Keys of the answer, in the order of the coefficients: as the project has them, with SI units.
 const KEYS: [&str; FRICTION_NAMES.len()] = [
@@ -38,6 +39,7 @@ fn estimate(one: &FrictionEstimate) -> Object {
 fn recording(found: &FrictionIdentification, index: usize) -> Object {
     let slides = found.slides.iter().filter(|slide| slide.recording == index);
     let press = found.presses.iter().find(|press| press.recording == index);
+    let shake = found.shakes.iter().find(|shake| shake.recording == index);
     let own = found.recordings.get(index);
     Object::new()
         .with("file", own.map_or(String::new(), |one| one.file.clone()))
@@ -51,4 +53,10 @@ fn recording(found: &FrictionIdentification, index: usize) -> Object {
         })
         .maybe("pressed_rows", press.map(|press| press.rows as u64))
         .maybe("breaks_away", press.map(|press| press.breaks_away))
+        .maybe("shaken_hz", shake.map(frequencies))
+}
+
+/// Of the sines of its force.
+fn frequencies(shake: &ShakenRows) -> Json {
+    Json::List(shake.force.frequencies.iter().map(|one| Json::Number(DisplayUnit::HERTZ.of(*one))).collect())
 }

@@ -1,6 +1,6 @@
 //! The friction of a cylinder for people.
 
-use super::{FRICTION_NAMES, FrictionIdentification, because};
+use super::{FRICTION_NAMES, FrictionIdentification, ShakenRows, because};
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
 use crate::quantity::DisplayUnit;
@@ -9,6 +9,12 @@ use crate::quantity::DisplayUnit;
 /// explained.
 pub fn text(found: &FrictionIdentification) -> String {
     let mut out = Document::default();
+    tell(found, &mut out);
+    out.text()
+}
+
+/// The same for a chapter of the report.
+pub(crate) fn tell(found: &FrictionIdentification, out: &mut Document) {
     let headings = ["coefficient", "identified", "95 % from", "to", "unit"];
     out.section("Friction of the cylinder", Table::new(headings).with(coefficients(found)));
     out.sentences(remarks(found));
@@ -33,9 +39,30 @@ pub fn text(found: &FrictionIdentification) -> String {
             format!("{}: {} rows are explained; {end}.", file(found, press.recording), press.rows)
         }));
     }
+    if !found.shakes.is_empty() {
+        out.heading("Shaken on the bristles");
+        out.sentences(found.shakes.iter().map(|shake| shaken(found, shake)));
+    }
     out.heading("How well the recordings are explained");
     out.sentences(explained(found));
-    out.text()
+}
+
+fn shaken(found: &FrictionIdentification, shake: &ShakenRows) -> String {
+    let all = || shake.force.frequencies.iter().map(|one| DisplayUnit::HERTZ.of(*one));
+    let [low, high] = [all().fold(f64::INFINITY, f64::min), all().fold(0.0, f64::max)];
+    let ringing = (found.lugre.bristle_stiffness / found.moving_mass).sqrt();
+    let damping = found.lugre.bristle_damping + found.lugre.curve.viscous;
+    let ratio = damping / (2.0 * ringing * found.moving_mass);
+    format!(
+        "{}: {} rows of {} sines from {} to {} Hz are explained. The mass rings on its bristles at {} Hz, with a damping ratio (sigma_1 + sigma_2)/(2 (sigma_0 M)^0.5) of {}.",
+        file(found, shake.recording),
+        shake.force.rows,
+        shake.force.frequencies.len(),
+        significant(low, 3),
+        significant(high, 3),
+        significant(DisplayUnit::HERTZ.of(ringing), 3),
+        significant(ratio, 2)
+    )
 }
 
 fn file(found: &FrictionIdentification, recording: usize) -> String {

@@ -1,12 +1,14 @@
-use super::{FrictionIdentification, PressedCurve, PressedRows, SteadyPoint};
+use super::{FrictionIdentification, PressedCurve, PressedRows, ShakenRows, SteadyPoint};
 use crate::figure::{Curve, CurvePanel, CurveStyle, CurvesInput, Figure, Words, curves};
 use crate::quantity::DisplayUnit;
 
-/// The friction map, and the position over the force of each press.
+/// The friction map; force and position of each press and each shake.
 pub(crate) fn pictures(found: &FrictionIdentification) -> Vec<Figure> {
     let presses = found.presses.iter().enumerate();
     let pressed = presses.filter_map(|(index, press)| pressed(found, index, press));
-    map(found).into_iter().chain(pressed).collect()
+    let shakes = found.shakes.iter().enumerate();
+    let shaken = shakes.filter_map(|(index, shake)| shaken(found, index, shake));
+    map(found).into_iter().chain(pressed).chain(shaken).collect()
 }
 
 fn panel(title: &str, height: f64, curves: Vec<Curve>, zero_line: bool) -> CurvePanel {
@@ -60,26 +62,53 @@ fn curve(found: &FrictionIdentification, fastest: f64, way: f64) -> Curve {
     Curve { points: (1..=CURVE_POINTS).map(point).collect(), style: CurveStyle::Line(0) }
 }
 
-/// Position over force until the piston breaks away, and what is left of both over time.
+/// Force and position until the piston breaks away, and what is left of both over time.
 fn pressed(found: &FrictionIdentification, index: usize, press: &PressedRows) -> Option<Figure> {
-    let PressedCurve { forces, positions, modelled_forces, modelled_positions } =
-        found.pressed_curve(index)?;
     let recording = found.recordings.get(press.recording)?;
+    let stem = stem(&recording.file);
+    let caption = "The piston is pressed and does not yet slide: force and displacement as recorded, by the identified friction, and what is left of both.";
+    let title = format!("Before the piston breaks away, {stem}");
+    let words = Words::new(format!("pressed_{stem}"), title, caption);
+    let curve = found.pressed_curve(index)?;
+    Some(over_time(words, &curve, recording.time_step, press.rows))
+}
+
+/// Rows of a shaken piston that are drawn, so that each period can be seen.
+const SHAKEN_ROWS: usize = 500;
+
+/// The same of the first rows of a piston that is shaken.
+fn shaken(found: &FrictionIdentification, index: usize, shake: &ShakenRows) -> Option<Figure> {
+    let recording = found.recordings.get(shake.recording)?;
+    let stem = stem(&recording.file);
+    let caption = "The piston is shaken on its bristles: force and displacement as recorded, by the identified friction, and what is left of both; the first rows.";
+    let words = Words::new(format!("shaken_{stem}"), format!("The shaken piston, {stem}"), caption);
+    let rows = shake.force.rows.min(SHAKEN_ROWS);
+    Some(over_time(words, found.shaken_curve(index)?, recording.time_step, rows))
+}
+
+fn stem(file: &str) -> &str {
+    let name = file.rsplit(['/', '\\']).next().unwrap_or(file);
+    name.rsplit_once('.').map_or(name, |(stem, _)| stem)
+}
+
+fn over_time(words: Words, curve: &PressedCurve, time_step: f64, rows: usize) -> Figure {
     let micrometres = |value: &f64| 1e3 * DisplayUnit::MILLIMETRE.of(*value);
-    let time = |row: usize| DisplayUnit::MILLISECOND.of(row as f64 * recording.time_step);
+    let time = |row: usize| DisplayUnit::MILLISECOND.of(row as f64 * time_step);
     let over_time = |values: Vec<f64>| -> Vec<(f64, f64)> {
-        values.into_iter().enumerate().map(|(row, value)| (time(row), value)).collect()
+        values.into_iter().take(rows).enumerate().map(|(row, value)| (time(row), value)).collect()
     };
     let line = |points: Vec<(f64, f64)>| Curve { points, style: CurveStyle::Line(0) };
     let less = |model: &[f64], shown: &[f64]| -> Vec<f64> {
         model.iter().zip(shown).map(|(model, shown)| model - shown).collect()
     };
+    let PressedCurve { forces, positions, modelled_forces, modelled_positions } = curve;
     let moved: Vec<f64> = positions.iter().map(micrometres).collect();
     let modelled: Vec<f64> = modelled_positions.iter().map(micrometres).collect();
     let rest = over_time(less(&modelled, &moved));
-    let force_rest = over_time(less(&modelled_forces, &forces));
+    let force_rest = over_time(less(modelled_forces, forces));
+    let [shown, explained] = [forces, modelled_forces].map(|forces| over_time(forces.clone()));
     let panels = vec![
-        panel("Force (N)", 110.0, vec![dots(over_time(forces), 1), line(over_time(modelled_forces))], false),
+        panel("Force (N)", 110.0, vec![dots(shown, 1), line(explained)], false),
         panel("\u{394}F (N)", 62.0, vec![dots(force_rest, 1)], true),
         panel(
             "Displacement (\u{b5}m)",
@@ -91,16 +120,12 @@ fn pressed(found: &FrictionIdentification, index: usize, press: &PressedRows) ->
     ];
     let input = CurvesInput {
         x_title: "Time (ms)".to_string(),
-        x_range: [0.0, time(press.rows)],
+        x_range: [0.0, time(rows)],
         panels,
         legend: vec![
             ("recorded".to_string(), CurveStyle::Dots(1)),
             ("identified friction".to_string(), CurveStyle::Line(0)),
         ],
     };
-    let name = recording.file.rsplit(['/', '\\']).next().unwrap_or(&recording.file);
-    let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
-    let caption = "The piston is pressed and does not yet slide: force and displacement as recorded, by the identified friction, and what is left of both.";
-    let title = format!("Before the piston breaks away, {stem}");
-    Some(curves(Words::new(format!("pressed_{stem}"), title, caption), &input))
+    curves(words, &input)
 }

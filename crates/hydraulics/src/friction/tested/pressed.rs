@@ -1,6 +1,6 @@
 use phea_dynamics::scalar::{Dual, Scalar};
 
-use super::FRICTION_COEFFICIENTS;
+use super::{FRICTION_COEFFICIENTS, MultisineForce};
 use crate::friction::LuGre;
 
 /// A mass on bristles that a force presses, at rest at first. Units: kg, s.
@@ -24,12 +24,13 @@ pub struct KnottedForce {
 }
 
 /// Displacements, and their derivatives over the coefficients of the friction, in the order of
-/// [`LuGre::to_array`], and over the force at each knot, row by row.
+/// [`LuGre::to_array`], and over what else they depend on (the force at each knot; or the start and the
+/// sizes of the sines), row by row.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SensitiveDisplacement {
     /// m, of each row from the first.
     pub displacements: Vec<f64>,
-    /// For each row as many as there are coefficients and knots.
+    /// For each row as many as there are coefficients and further variables.
     pub gradients: Vec<f64>,
 }
 
@@ -63,6 +64,42 @@ impl KnottedForce {
 /// Derivatives that are carried along at once.
 const AT_ONCE: usize = 8;
 
+type PressedSlope = Dual<AT_ONCE>;
+
+/// A value that is the variable of this index.
+type AsVariable<'a> = &'a dyn Fn(f64, usize) -> PressedSlope;
+
+/// Displacements with as many derivatives, some at once.
+fn carried(
+    (rows, count): (usize, usize),
+    moved: &dyn Fn(AsVariable<'_>) -> Vec<PressedSlope>,
+) -> SensitiveDisplacement {
+    let mut found = SensitiveDisplacement { displacements: Vec::new(), gradients: vec![0.0; rows * count] };
+    for first in (0..count).step_by(AT_ONCE) {
+        // an index beyond those that are carried along belongs to no variable
+        let place = |index: usize| index.checked_sub(first).unwrap_or(AT_ONCE);
+        let moved = moved(&|value, index| PressedSlope::variable(value, place(index)));
+        for (row, slopes) in moved.iter().zip(found.gradients.chunks_exact_mut(count)) {
+            for (to, slope) in slopes.iter_mut().skip(first).zip(row.gradient()) {
+                *to = *slope;
+            }
+        }
+        if first == 0 {
+            found.displacements = moved.iter().map(PressedSlope::value).collect();
+        }
+    }
+    found
+}
+
+/// The coefficients as the first variables.
+fn open(lugre: &LuGre, variable: AsVariable<'_>) -> LuGre<PressedSlope> {
+    let mut index = 0;
+    lugre.convert(&mut |value| {
+        index += 1;
+        variable(value, index - 1)
+    })
+}
+
 impl PressedMass {
     /// Displacement in m from the first row, for a force in N at each row.
     ///
@@ -90,40 +127,75 @@ impl PressedMass {
     /// ```
     pub fn displacements(&self, lugre: &LuGre, force: &[f64]) -> Vec<f64> {
         let doublings = self.doublings(lugre);
-        self.moved(lugre, force, doublings)
+        self.moved(lugre, self.at_rest(lugre, force), force, doublings)
+    }
+
+    /// Velocity and deflection of a mass at rest under the first force.
+    fn at_rest<S: Scalar>(&self, lugre: &LuGre<S>, force: &[S]) -> [S; 2] {
+        let first = force.first().copied().unwrap_or(S::from(0.0));
+        [S::from(0.0), first / lugre.bristle_stiffness]
     }
 
     /// The same for a force with knots, with derivatives.
     pub fn sensitive_displacements(&self, lugre: &LuGre, force: &KnottedForce) -> SensitiveDisplacement {
-        type PressedSlope = Dual<AT_ONCE>;
         let doublings = self.doublings(lugre);
-        let count = FRICTION_COEFFICIENTS + force.forces.len();
-        let rows = force.rows();
-        let mut found =
-            SensitiveDisplacement { displacements: Vec::new(), gradients: vec![0.0; rows * count] };
-        for first in (0..count).step_by(AT_ONCE) {
-            // an index beyond those that are carried along belongs to no variable
-            let place = |index: usize| index.checked_sub(first).unwrap_or(AT_ONCE);
-            let mut index = 0;
-            let open = lugre.convert(&mut |value| {
-                index += 1;
-                PressedSlope::variable(value, place(index - 1))
-            });
+        let shape = (force.rows(), FRICTION_COEFFICIENTS + force.forces.len());
+        carried(shape, &|variable| {
+            let open = open(lugre, variable);
             let own = force.forces.iter().enumerate();
-            let own =
-                own.map(|(knot, value)| PressedSlope::variable(*value, place(FRICTION_COEFFICIENTS + knot)));
+            let own = own.map(|(knot, value)| variable(*value, FRICTION_COEFFICIENTS + knot));
             let along = force.along(&own.collect::<Vec<PressedSlope>>());
-            let moved = self.moved(&open, &along, doublings);
-            for (row, slopes) in moved.iter().zip(found.gradients.chunks_exact_mut(count)) {
-                for (to, slope) in slopes.iter_mut().skip(first).zip(row.gradient()) {
-                    *to = *slope;
-                }
-            }
-            if first == 0 {
-                found.displacements = moved.iter().map(PressedSlope::value).collect();
-            }
-        }
-        found
+            self.moved(&open, self.at_rest(&open, &along), &along, doublings)
+        })
+    }
+
+    /// Displacement in m from the first row, in motion at first, with derivatives over the
+    /// coefficients, the velocity and the deflection at the first row, and the sizes of the force.
+    ///
+    /// As [`PressedMass::displacements`], but that the velocity and the deflection of the bristles at
+    /// the first row are given, in m/s and m, and that the force is a sum of sines: it is evaluated
+    /// at each step of the integration, not only at the rows, and is straight within a step.
+    ///
+    /// # Example
+    /// A small force shakes the mass as it would on a spring and a damper:
+    /// X = F/(sigma_0 - M omega^2 + j omega (sigma_1 + sigma_2)).
+    /// ```
+    /// use phea_hydraulics::friction::{LuGre, MultisineForce, PressedMass};
+    /// let lugre = LuGre::from_array([80.0, 120.0, 0.01, 2.0, 100.0, 1e7, 2e3]);
+    /// // 0.01 N where the spring and the mass cancel
+    /// let omega = (1e7_f64 / 13.1).sqrt();
+    /// let sizes = vec![0.0, 0.0, 0.0, 0.01, 0.0];
+    /// let force = MultisineForce { rows: 2000, frequencies: vec![omega], duration: 0.2, sizes };
+    /// let pressed = PressedMass { mass: 13.1, time_step: 1e-4, substeps: 2 };
+    /// let moved = pressed.shaken(&lugre, [0.0, 0.0], &force).displacements;
+    /// let swing = moved[1500..].iter().fold(0.0_f64, |most, at| most.max(at.abs()));
+    /// assert!((swing / (0.01 / (2100.0 * omega)) - 1.0).abs() < 0.01);
+    /// ```
+    pub fn shaken(
+        &self,
+        lugre: &LuGre,
+        [velocity, deflection]: [f64; 2],
+        force: &MultisineForce,
+    ) -> SensitiveDisplacement {
+        let substeps = self.substeps.max(1);
+        let steps = PressedMass { time_step: self.time_step / substeps as f64, substeps: 1, ..*self };
+        let doublings = steps.doublings(lugre);
+        let shapes = force.shapes(force.rows.saturating_sub(1) * substeps + 1, steps.time_step);
+        let first = FRICTION_COEFFICIENTS + 2;
+        carried((force.rows, first + force.sizes.len()), &|variable| {
+            let start =
+                [variable(velocity, FRICTION_COEFFICIENTS), variable(deflection, FRICTION_COEFFICIENTS + 1)];
+            let sizes = force.sizes.iter().enumerate();
+            let sizes: Vec<PressedSlope> =
+                sizes.map(|(index, size)| variable(*size, first + index)).collect();
+            let sum = |shapes: &[f64]| {
+                let parts = sizes.iter().zip(shapes);
+                parts.fold(PressedSlope::from(0.0), |sum, (size, shape)| sum + size.times(*shape))
+            };
+            let along: Vec<PressedSlope> = shapes.chunks_exact(sizes.len().max(1)).map(sum).collect();
+            let moved = steps.moved(&open(lugre, variable), start, &along, doublings);
+            moved.into_iter().step_by(substeps).collect()
+        })
     }
 
     /// How often the argument of the series is halved.
@@ -140,7 +212,7 @@ impl PressedMass {
         doublings
     }
 
-    fn moved<S: Scalar>(&self, lugre: &LuGre<S>, force: &[S], doublings: u32) -> Vec<S> {
+    fn moved<S: Scalar>(&self, lugre: &LuGre<S>, start: [S; 2], force: &[S], doublings: u32) -> Vec<S> {
         let substeps = self.substeps.max(1);
         let step = self.time_step / substeps as f64;
         let stick = StickStep::over(lugre, self.mass, step, doublings);
@@ -148,9 +220,10 @@ impl PressedMass {
             lugre.bristle_stiffness * velocity.abs() * deflection / lugre.curve.sliding_force(velocity)
         };
         let mut moved = Vec::with_capacity(force.len());
-        let Some(first) = force.first() else { return moved };
-        let start = *first / lugre.bristle_stiffness;
-        let mut state = [S::from(0.0), start];
+        if force.is_empty() {
+            return moved;
+        }
+        let mut state = start;
         let mut slipped = S::from(0.0);
         moved.push(S::from(0.0));
         for (from, to) in force.iter().zip(force.iter().skip(1)) {
@@ -164,7 +237,7 @@ impl PressedMass {
                 slipped = slipped + (before + change.times(0.5)).times(step);
                 force = force + rise;
             }
-            moved.push(state[1] - start + slipped);
+            moved.push(state[1] - start[1] + slipped);
         }
         moved
     }

@@ -1,0 +1,137 @@
+//! The residuals of a piston that is shaken.
+
+use phea_hydraulics::friction::{FRICTION_COEFFICIENTS, LuGre, MultisineForce, PressedMass};
+
+use super::{FrictionProblem, ResidualRows, ZERO};
+use crate::friction::shaking::ShakenRows;
+
+/// Variables of a shake that are no sizes of its force: where the position, the velocity and the
+/// deflection of the bristles begin.
+const BEGINNINGS: usize = 3;
+
+/// Angle in rad by which the fastest sine, and the ringing, turn in a step of the integration: a
+/// straight line within it is 1e-3 too weak.
+const STEP_ANGLE: f64 = 0.1;
+
+/// Most steps between two rows.
+const MOST_STEPS: f64 = 40.0;
+
+/// How a piston is shaken by these variables.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::friction) struct Shake {
+    /// m, where the position is at the first row, over the first that is recorded.
+    pub(in crate::friction) begins: f64,
+    /// m/s and m, velocity and deflection then.
+    start: [f64; 2],
+    /// As the instruments show it.
+    pub(in crate::friction) measured: MultisineForce,
+}
+
+impl ShakenRows {
+    /// How many variables it has of its own.
+    pub(in crate::friction) fn variable_count(&self) -> usize {
+        BEGINNINGS + self.force.sizes.len()
+    }
+}
+
+impl FrictionProblem<'_> {
+    /// N·s/m: of a mass that rings, where its velocity is that of its force.
+    fn ringing_damping(&self) -> f64 {
+        self.around.damping[1]
+    }
+
+    /// m/s, of a mass that rings with the deflection at breakaway.
+    fn ringing_velocity(&self) -> f64 {
+        self.around.force / self.ringing_damping()
+    }
+
+    pub(super) fn shake_start(&self, shake: &ShakenRows) -> Vec<f64> {
+        let sizes = shake.force.sizes.iter().map(|size| size / self.around.force);
+        let [velocity, deflection] = shake.beginning();
+        let start = [0.0, velocity / self.ringing_velocity(), deflection / self.around.length];
+        start.into_iter().chain(sizes).collect()
+    }
+
+    pub(super) fn shake_bounds(shake: &ShakenRows) -> Vec<[f64; 2]> {
+        let beginnings = [[-1e6, 1e6], [-1e3, 1e3], [-1e3, 1e3]].into_iter();
+        beginnings.chain(shake.force.sizes.iter().map(|_| [-1e3, 1e3])).collect()
+    }
+
+    /// By the variables of its own.
+    pub(in crate::friction) fn shake_of(&self, shake: &ShakenRows, own: &[f64]) -> Option<Shake> {
+        let (beginnings, sizes) = own.split_at_checked(BEGINNINGS)?;
+        let [begins, velocity, deflection] = *beginnings else { return None };
+        let length = self.around.length;
+        let sizes = sizes.iter().map(|size| size * self.around.force).collect();
+        Some(Shake {
+            begins: begins * length,
+            start: [velocity * self.ringing_velocity(), deflection * length],
+            measured: MultisineForce { sizes, ..shake.force.clone() },
+        })
+    }
+
+    pub(super) fn shake(
+        &self,
+        shake: &ShakenRows,
+        (lugre, zero): (&LuGre, f64),
+        (first, own): (usize, &[f64]),
+        [force_scale, position_scale]: [f64; 2],
+        rows: &mut ResidualRows,
+    ) -> Option<()> {
+        let force = self.around.force;
+        let recording = self.recordings.get(shake.recording)?;
+        let found = self.shake_of(shake, own)?;
+        let count = shake.force.sizes.len();
+        let sizes_from = first + BEGINNINGS;
+        let shapes = shake.force.shapes(shake.force.rows, recording.time_step);
+        for (shapes, shown) in shapes.chunks_exact(count).zip(&recording.forces) {
+            let modelled: f64 = shapes.iter().zip(&found.measured.sizes).map(|(one, size)| one * size).sum();
+            let row = rows.next((modelled - shown) / force_scale);
+            for (to, shape) in row.iter_mut().skip(sizes_from).zip(shapes) {
+                *to = shape * force / force_scale;
+            }
+        }
+        let moved = found.moved(self.mass, lugre, zero, recording.time_step);
+        let start = recording.positions.first()? + found.begins;
+        let slopes = moved.gradients.chunks_exact(FRICTION_COEFFICIENTS + 2 + count);
+        for ((moved, gradient), shown) in moved.displacements.iter().zip(slopes).zip(&recording.positions) {
+            if !moved.is_finite() {
+                return None;
+            }
+            let row = rows.next((start + moved - shown) / position_scale);
+            let (coefficients, own) = gradient.split_at(FRICTION_COEFFICIENTS);
+            for (to, slope) in row.iter_mut().zip(self.shared_slopes(lugre, coefficients)) {
+                *to = slope / position_scale;
+            }
+            let (state, by_size) = own.split_at(2);
+            let length = self.around.length;
+            let mean = by_size.first().copied().unwrap_or(0.0);
+            let beginnings = [length, state[0] * self.ringing_velocity(), state[1] * length];
+            let sizes = by_size.iter().map(|slope| slope * force);
+            let values = beginnings.into_iter().chain(sizes);
+            for (to, slope) in row.iter_mut().skip(first).zip(values) {
+                *to = slope / position_scale;
+            }
+            row.iter_mut().skip(ZERO).take(1).for_each(|to| *to = -mean * force / position_scale);
+        }
+        Some(())
+    }
+}
+
+impl Shake {
+    /// The displacement from the first row, where the instruments show so much force without any.
+    pub(in crate::friction) fn moved(
+        &self,
+        mass: f64,
+        lugre: &LuGre,
+        zero: f64,
+        time_step: f64,
+    ) -> phea_hydraulics::friction::SensitiveDisplacement {
+        let mut acting = self.measured.clone();
+        acting.sizes.iter_mut().take(1).for_each(|mean| *mean -= zero);
+        let ringing = (lugre.bristle_stiffness / mass).sqrt();
+        let fastest = acting.frequencies.iter().copied().fold(ringing, f64::max);
+        let substeps = (fastest * time_step / STEP_ANGLE).ceil().clamp(1.0, MOST_STEPS) as usize;
+        PressedMass { mass, time_step, substeps }.shaken(lugre, self.start, &acting)
+    }
+}

@@ -1,0 +1,219 @@
+//! The sines that a force is made of, found in the force and in what it moves.
+
+use std::f64::consts::{LN_2, PI};
+
+use nalgebra::{DMatrix, DVector};
+use phea_dynamics::portable;
+use phea_dynamics::spectrum::Transform;
+use phea_hydraulics::friction::{TRENDS, trends};
+
+use crate::identify::median;
+
+/// Power of a line in both signals together over that of the noise of both from which it is one:
+/// white noise reaches it once in twenty thousand.
+const BEYOND_NOISE: f64 = 12.0;
+
+/// The same over the strongest line: what is below, less than a hundredth of its size, moves little.
+const FAINT: f64 = 1e-4;
+
+/// Power over that of the strongest line of a round from which another is taken with it: beyond what
+/// one line spreads over its neighbours.
+const NO_LEAKAGE: f64 = 0.1;
+
+/// Share of the variance of a force that its sines may leave unexplained, beyond the noise.
+const NOT_EXPLAINED: f64 = 0.05;
+
+/// Most sines.
+const MOST_SINES: usize = 40;
+
+/// Rounds in which further sines are looked for.
+const ROUNDS: usize = 12;
+
+/// Steps to better frequencies in each round.
+const STEPS: usize = 3;
+
+/// Fewest periods of a sine; what is slower belongs to the drift of the mean, or to the noise.
+const FEWEST_PERIODS: f64 = 3.0;
+
+/// How many times longer the transformed signal is, by zeros.
+const FILLED_UP: usize = 4;
+
+/// Distance of two sines, over a line of the rows, from which they can be told from each other.
+const APART: f64 = 1.5;
+
+/// The sines that a force is made of, as angles in rad from row to row, rising; `None` where sines do
+/// not explain it. Force and position are given over the standard deviation of their noise.
+///
+/// A sine that is small in the force may move the piston much where it rings on its bristles, so that
+/// both signals are searched. What is left may hold sines too close to one of these for the duration
+/// of the recording, as where the size of a sine changes a little: they stay with the noise, up to a
+/// small part of the force.
+pub(super) fn sines(signals: [&Vec<f64>; 2]) -> Option<Vec<f64>> {
+    let [forces, _] = signals;
+    let length = (FILLED_UP * forces.len()).next_power_of_two();
+    let line = 2.0 * PI / forces.len() as f64;
+    let mut angles: Vec<f64> = Vec::new();
+    let mut strongest = 0.0_f64;
+    for _ in 0..ROUNDS {
+        let power = power_left(signals, &angles, length)?;
+        let most = power.iter().copied().fold(0.0, f64::max);
+        strongest = strongest.max(most);
+        let least = (BEYOND_NOISE * level(&power)).max(FAINT * strongest);
+        if most <= least {
+            break;
+        }
+        let mut more = angles.clone();
+        for angle in peaks(&power, least.max(NO_LEAKAGE * most)) {
+            let is_apart = more.iter().all(|known| (known - angle).abs() > APART * line);
+            more.extend((is_apart && angle > FEWEST_PERIODS * line).then_some(angle));
+        }
+        more.sort_by(f64::total_cmp);
+        if more.len() == angles.len() || more.len() > MOST_SINES {
+            break;
+        }
+        for _ in 0..STEPS {
+            more = improved(signals, &more)?;
+        }
+        if more.windows(2).any(|two| two[1] - two[0] < line) || more.first().is_some_and(|low| *low < line) {
+            break;
+        }
+        angles = more;
+    }
+    // both in squares of the standard deviation of the noise
+    let squares = |angles: &[f64]| Some(left(forces, angles)?.iter().map(|one| one * one).sum::<f64>());
+    let (all, left) = (squares(&[])?, squares(&angles)?);
+    let beyond_noise = left - forces.len() as f64;
+    // noise alone explains 2 of each sine
+    let is_seen = all - left > BEYOND_NOISE * 2.0 * angles.len() as f64;
+    (is_seen && beyond_noise <= NOT_EXPLAINED * (all - left)).then_some(angles)
+}
+
+/// Power that sines of these angles leave of both signals together.
+fn power_left(signals: [&Vec<f64>; 2], angles: &[f64], length: usize) -> Option<Vec<f64>> {
+    let [force, position] = signals.map(|values| left(values, angles));
+    let [force, position] = [power(&force?, length), power(&position?, length)];
+    Some(force.iter().zip(&position).map(|(one, other)| one + other).collect())
+}
+
+/// Angles of the local maxima beyond this power, the strongest first.
+fn peaks(power: &[f64], enough: f64) -> Vec<f64> {
+    let mut peaks: Vec<(f64, usize)> = power
+        .windows(3)
+        .enumerate()
+        .filter(|(_, three)| three[1] > enough && three[1] >= three[0] && three[1] > three[2])
+        .map(|(before, three)| (three[1], before + 1))
+        .collect();
+    peaks.sort_by(|one, other| other.0.total_cmp(&one.0));
+    peaks.into_iter().map(|(_, line)| PI * line as f64 / power.len() as f64).collect()
+}
+
+/// Standard deviation of white noise on a signal that is smooth enough to have little in the upper
+/// half of the frequencies; at least what numbers resolve.
+pub(super) fn white_noise(values: &[f64]) -> f64 {
+    let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
+    let centred: Vec<f64> = values.iter().map(|value| value - mean).collect();
+    let power = power(&centred, values.len());
+    let upper = power.get(power.len() / 2..).unwrap_or_default();
+    let largest = values.iter().map(|value| value.abs()).fold(0.0, f64::max);
+    // power of white noise is distributed exponentially, with this median
+    (typical(upper) / LN_2).sqrt().max(1e-12 * largest).max(f64::MIN_POSITIVE)
+}
+
+fn typical(power: &[f64]) -> f64 {
+    if power.is_empty() { 0.0 } else { median(power.to_vec()) }
+}
+
+/// Power of the noise of one signal, by the median of the sum of two: 1.678 of that of one.
+fn level(power: &[f64]) -> f64 {
+    typical(power) / 1.678
+}
+
+/// Power at equal distances of the frequency, up to half of that of the rows: for white noise, its
+/// variance on average.
+fn power(values: &[f64], length: usize) -> Vec<f64> {
+    let lines = Transform::new(length).of_real(values);
+    let count = values.len().max(1) as f64;
+    lines.iter().take(length / 2).map(|line| line.norm_sqr() / count).collect()
+}
+
+/// A mean that drifts, then cosine and sine of each angle, column after column.
+fn columns(rows: usize, angles: &[f64]) -> Vec<f64> {
+    let places = (0..rows).map(|row| trends(2.0 * row as f64 / (rows as f64 - 1.0) - 1.0));
+    let drift: Vec<[f64; TRENDS]> = places.collect();
+    let mut columns = Vec::with_capacity(rows * (TRENDS + 3 * angles.len()));
+    for index in 0..TRENDS {
+        columns.extend(drift.iter().map(|row| row[index]));
+    }
+    for angle in angles {
+        columns.extend((0..rows).map(|row| portable::cos(angle * row as f64)));
+        columns.extend((0..rows).map(|row| portable::sin(angle * row as f64)));
+    }
+    columns
+}
+
+fn matrix(rows: usize, columns: Vec<f64>) -> DMatrix<f64> {
+    DMatrix::from_vec(rows, columns.len() / rows.max(1), columns)
+}
+
+/// The solution of the normal equations: the sines are nearly orthogonal.
+fn solved(matrix: &DMatrix<f64>, values: &[f64]) -> Option<DVector<f64>> {
+    let transposed = matrix.transpose();
+    let right = &transposed * DVector::from_column_slice(values);
+    Some((transposed * matrix).cholesky()?.solve(&right))
+}
+
+/// Sizes of the mean that drifts, and of cosine and sine of each angle, by least squares.
+pub(super) fn fitted(values: &[f64], angles: &[f64]) -> Option<Vec<f64>> {
+    let found = solved(&matrix(values.len(), columns(values.len(), angles)), values)?;
+    Some(found.iter().copied().collect())
+}
+
+/// What sines of these angles and a mean that drifts leave.
+fn left(values: &[f64], angles: &[f64]) -> Option<Vec<f64>> {
+    let matrix = matrix(values.len(), columns(values.len(), angles));
+    let found = solved(&matrix, values)?;
+    Some((DVector::from_column_slice(values) - matrix * found).iter().copied().collect())
+}
+
+/// The angles after a step of Gauss and Newton over sizes and angles: the mean of the steps for both
+/// signals, by the squares of the sizes.
+fn improved(signals: [&Vec<f64>; 2], angles: &[f64]) -> Option<Vec<f64>> {
+    let [force, position] = signals.map(|values| steps(values, angles));
+    let both = force?.into_iter().zip(position?).zip(angles);
+    Some(
+        both.map(|(([one, by_one], [other, by_other]), angle)| {
+            let all = (by_one + by_other).max(f64::MIN_POSITIVE);
+            angle + (one * by_one + other * by_other) / all
+        })
+        .collect(),
+    )
+}
+
+/// For each angle its step, and the square of the size of its sine.
+fn steps(values: &[f64], angles: &[f64]) -> Option<Vec<[f64; 2]>> {
+    let rows = values.len();
+    let mut columns = columns(rows, angles);
+    let sines = matrix(rows, columns.clone());
+    let sizes = solved(&sines, values)?;
+    let left = DVector::from_column_slice(values) - sines * &sizes;
+    let middle = (rows as f64 - 1.0) / 2.0;
+    let size = |index: usize| {
+        let [a, b] = [0, 1].map(|part| sizes[TRENDS + 2 * index + part]);
+        (a, b, (a * a + b * b).max(f64::MIN_POSITIVE))
+    };
+    for index in 0..angles.len() {
+        let (a, b, square) = size(index);
+        let scale = square.sqrt() * middle;
+        let first = (TRENDS + 2 * index) * rows;
+        let of =
+            |row: usize| (row as f64 - middle) * (b * columns[first + row] - a * columns[first + rows + row]);
+        let slopes: Vec<f64> = (0..rows).map(|row| of(row) / scale).collect();
+        columns.extend(slopes);
+    }
+    let step = solved(&matrix(rows, columns), left.as_slice())?;
+    let of = |index: usize| {
+        let (_, _, square) = size(index);
+        [step[TRENDS + 2 * angles.len() + index] / (square.sqrt() * middle), square]
+    };
+    Some((0..angles.len()).map(of).collect())
+}

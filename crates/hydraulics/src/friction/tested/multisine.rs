@@ -1,0 +1,59 @@
+use phea_dynamics::portable;
+
+/// A force over the rows of a recording that is a sum of sines, on a mean that drifts slowly. Units:
+/// N, rad/s, s.
+///
+/// ```text
+/// F(t) = F_0 + F_1 tau + F_2 (3 tau^2 - 1)/2 + sum over k of (a_k cos(omega_k t) + b_k sin(omega_k t))
+/// tau = 2 t/T - 1                                                             t = 0 at the first row
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct MultisineForce {
+    /// How many rows there are.
+    pub rows: usize,
+    /// omega of each sine.
+    pub frequencies: Vec<f64>,
+    /// T, from the first row to the last.
+    pub duration: f64,
+    /// F_0, F_1 and F_2; then a and b of each sine.
+    pub sizes: Vec<f64>,
+}
+
+/// How many sizes a mean that drifts has.
+pub const TRENDS: usize = 3;
+
+/// What they are multiplied by, at a place between -1 and 1: the polynomials of Legendre.
+pub fn trends(place: f64) -> [f64; TRENDS] {
+    [1.0, place, 1.5 * place * place - 0.5]
+}
+
+impl MultisineForce {
+    /// The force at equal distances in s from the first row.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_hydraulics::friction::MultisineForce;
+    /// let half_turn = std::f64::consts::PI;
+    /// let sizes = vec![10.0, 2.0, 0.0, 3.0, 0.0];
+    /// let force = MultisineForce { rows: 2, frequencies: vec![half_turn], duration: 1.0, sizes };
+    /// let along = force.along(2, 1.0);
+    /// assert!((along[0] - 11.0).abs() < 1e-12 && (along[1] - 9.0).abs() < 1e-12);
+    /// ```
+    pub fn along(&self, count: usize, distance: f64) -> Vec<f64> {
+        let shapes = self.shapes(count, distance);
+        let sum = |shapes: &[f64]| shapes.iter().zip(&self.sizes).map(|(shape, size)| shape * size).sum();
+        shapes.chunks_exact(TRENDS + 2 * self.frequencies.len()).map(sum).collect()
+    }
+
+    /// What each size is multiplied by, time after time.
+    pub fn shapes(&self, count: usize, distance: f64) -> Vec<f64> {
+        let of = |time: f64| {
+            let sines = self.frequencies.iter().flat_map(move |frequency| {
+                let angle = frequency * time;
+                [portable::cos(angle), portable::sin(angle)]
+            });
+            trends(2.0 * time / self.duration - 1.0).into_iter().chain(sines)
+        };
+        (0..count).flat_map(|index| of(index as f64 * distance)).collect()
+    }
+}
