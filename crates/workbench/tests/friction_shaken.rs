@@ -7,6 +7,7 @@ use crate::ask::{HOSE, answer, load};
 use crate::friction_identification::{
     SHAKEN, SLIDING, TRUTH, found, identified, interval, is_open, recorded,
 };
+use phea_dynamics::portable;
 use phea_dynamics::random::{normal, stream};
 use phea_workbench::command::{FrictionRequest, Request, friction_watched};
 use phea_workbench::source::{Memory, Source};
@@ -72,14 +73,15 @@ const SINES: [(f64, f64, f64); 6] = [
 
 fn shaking_force(time: f64) -> f64 {
     let sine = |(hertz, size, phase): &(f64, f64, f64)| {
-        size * (2.0 * std::f64::consts::PI * hertz * time + phase).sin()
+        size * portable::sin(2.0 * std::f64::consts::PI * hertz * time + phase)
     };
     3.0 + SINES.iter().map(sine).sum::<f64>()
 }
 
 /// Rates of velocity, deflection and position: LuGre as it is printed, for the rig's coefficients.
 fn rates([velocity, deflection, _]: [f64; 3], force: f64) -> [f64; 3] {
-    let curve = 80.0 + 40.0 * (-(velocity / 0.01).powi(2)).exp();
+    let over = velocity / 0.01;
+    let curve = 80.0 + 40.0 * portable::exp(-over * over);
     let bristle = velocity - 1e7 * velocity.abs() / curve * deflection;
     let friction = 1e7 * deflection + 2e3 * bristle + 100.0 * velocity;
     [(force - friction) / 13.1, bristle, velocity]
