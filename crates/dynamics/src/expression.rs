@@ -95,6 +95,38 @@ impl Expression {
         Expression { parameters: self.parameters.clone(), nodes, results }
     }
 
+    /// The same over these parameters alone, all others having the values given: what depends on
+    /// none of them is computed once. Evaluated for numbers it gives the same bits.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_dynamics::expression::Expression;
+    /// # use phea_dynamics::scalar::Scalar;
+    /// let root = Expression::record(&["a", "x"], |p| vec![p[0].exp().sqrt() * p[1]]);
+    /// let along = root.over(&[1], &[2.0, 3.0]);
+    /// assert_eq!(along.nodes().len(), 3);
+    /// assert_eq!(along.evaluate(&[2.0, 5.0]), root.evaluate(&[2.0, 5.0]));
+    /// ```
+    pub fn over(&self, free: &[usize], values: &[f64]) -> Expression {
+        let mut nodes: Vec<Node> = Vec::with_capacity(self.nodes.len());
+        let mut places: Vec<NodeIndex> = Vec::with_capacity(self.nodes.len());
+        for node in &self.nodes {
+            let moved = node.moved(&places);
+            let constant = |index: NodeIndex| match nodes.get(index) {
+                Some(Node::Constant(value)) => Some(*value),
+                _ => None,
+            };
+            let folded = moved.folded(free, values, constant);
+            places.push(folded.unwrap_or_else(|kept| {
+                nodes.push(kept);
+                nodes.len() - 1
+            }));
+        }
+        let results = self.results.iter().map(|&result| places[result]).collect();
+        let (nodes, results) = recording::needed(&nodes, results);
+        Expression { parameters: self.parameters.clone(), nodes, results }
+    }
+
     /// Whether any result is computed from the parameter with this index.
     ///
     /// # Example
@@ -182,6 +214,21 @@ mod tests {
         // a, 2, a*2, (a*2)+(a*2)
         assert_eq!(expression.nodes().len(), 4);
         assert_eq!(expression.evaluate(&[3.0]), vec![12.0]);
+    }
+
+    #[test]
+    fn with_fixed_parameters_the_bits_are_the_same() {
+        let expression = Expression::record(&["a", "b"], |p| equations(p));
+        for values in [[0.5, 2.0], [2.0, 0.5], [1.0, 1.0], [-0.0, 0.0], [f64::NAN, 1.0], [1.0, f64::NAN]] {
+            for free in [&[][..], &[0], &[1], &[0, 1]] {
+                let bits = |expression: &Expression| -> Vec<u64> {
+                    expression.evaluate(&values).into_iter().map(f64::to_bits).collect()
+                };
+                let over = expression.over(free, &values);
+                assert_eq!(bits(&over), bits(&expression), "{free:?} {values:?}");
+                assert!((0..2).all(|index| free.contains(&index) || !over.depends_on(index)));
+            }
+        }
     }
 
     #[test]

@@ -1,6 +1,8 @@
 //! Asks a command about a project held in memory and reads its JSON, as another program would.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
+use std::sync::OnceLock;
+
 use phea_workbench::answer::Answer;
 use phea_workbench::command::{self, CommandError, IdentifyError, Request};
 use phea_workbench::project::{self, Loaded};
@@ -62,6 +64,13 @@ pub(crate) fn answer(project: &str, settings: &[&str], catalogues: &[&str], requ
 pub(crate) fn json(project: &str, settings: &[&str], catalogues: &[&str], request: &Request) -> Value {
     let text = answer(project, settings, catalogues, request).json;
     serde_json::from_str(&text).unwrap_or_else(|error| panic!("{error}: {text}"))
+}
+
+/// What a design of the hose answers, without a repair: made once for all tests that ask for it.
+pub(crate) fn designed_hose() -> &'static Answer {
+    static ANSWER: OnceLock<Answer> = OnceLock::new();
+    let request = Request::Design { seed: None, stages: false, repair: false };
+    ANSWER.get_or_init(|| answer(HOSE, &[], &[], &request))
 }
 
 #[track_caller]

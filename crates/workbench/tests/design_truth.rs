@@ -4,7 +4,8 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
-use crate::ask::{HOSE, PIPE, answer, json, number, within};
+use crate::ask::{PIPE, answer, designed_hose, json, number, within};
+use phea_workbench::answer::Answer;
 use phea_workbench::command::Request;
 use phea_workbench::design::DESIGNED_PROJECT;
 use serde_json::Value;
@@ -16,7 +17,10 @@ const DESIGN: Request = Request::Design { seed: None, stages: false, repair: fal
 
 /// The design, and what `verify` says of the project that it writes.
 fn designed_and_verified(project: &str, settings: &[&str]) -> (Value, Value) {
-    let answer = answer(project, settings, &[], &DESIGN);
+    with_verified(&answer(project, settings, &[], &DESIGN))
+}
+
+fn with_verified(answer: &Answer) -> (Value, Value) {
     let file = answer.files.iter().find(|file| file.name == DESIGNED_PROJECT).unwrap();
     let written = String::from_utf8(file.bytes.clone()).unwrap();
     (serde_json::from_str(&answer.json).unwrap(), json(&written, &[], &[], &Request::Verify))
@@ -49,7 +53,7 @@ fn assert_met(design: &Value, verified: &Value, orders: [f64; 2]) {
 // ORIGIN: recomputed by comparisons/recompute_design.py
 #[test]
 fn the_rig_with_hoses_is_met() {
-    let (design, verified) = designed_and_verified(HOSE, &[]);
+    let (design, verified) = with_verified(designed_hose());
     assert_met(&design, &verified, [4.0, 3.0]);
     assert_eq!(design["published"]["verification"]["verdict"], "violated");
     assert_eq!(number(&design, "figures.order"), 3.0);

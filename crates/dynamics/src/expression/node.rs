@@ -47,6 +47,8 @@ pub enum Node {
 }
 
 impl Node {
+    // in line where little is optimised too: most of the time of a search is spent here
+    #[inline(always)]
     pub(super) fn evaluate<S: Scalar>(&self, parameters: &[S], earlier: &[S]) -> S {
         match *self {
             Node::Parameter(index) => parameters.get(index).copied().unwrap_or(S::from(f64::NAN)),
@@ -71,6 +73,32 @@ impl Node {
         }
     }
 
+    /// Where the parameters but those that are free have these values, and the earlier nodes are
+    /// constants as far as `constant` says so: the earlier node that this one equals, or a node in
+    /// its place.
+    pub(super) fn folded(
+        &self,
+        free: &[usize],
+        values: &[f64],
+        constant: impl Fn(NodeIndex) -> Option<f64>,
+    ) -> Result<NodeIndex, Node> {
+        let value = match *self {
+            Node::Parameter(index) if !free.contains(&index) => {
+                Some(values.get(index).copied().unwrap_or(f64::NAN))
+            }
+            Node::Parameter(_) | Node::Constant(_) => None,
+            Node::Unary(operation, x) => constant(x).map(|x| operation.apply(x)),
+            Node::Binary(operation, x, y) => constant(x).zip(constant(y)).map(|(x, y)| operation.apply(x, y)),
+            Node::Select(x, y, if_less, otherwise) => {
+                if let Some((x, y)) = constant(x).zip(constant(y)) {
+                    return Ok(if x < y { if_less } else { otherwise });
+                }
+                None
+            }
+        };
+        Err(value.map_or(*self, Node::Constant))
+    }
+
     /// The same operation, its operands being where `places` says.
     pub(super) fn moved(&self, places: &[NodeIndex]) -> Node {
         match *self {
@@ -85,6 +113,7 @@ impl Node {
 }
 
 impl Unary {
+    #[inline(always)]
     pub(super) fn apply<S: Scalar>(self, x: S) -> S {
         match self {
             Unary::Negate => -x,
@@ -107,6 +136,7 @@ impl Unary {
 }
 
 impl Binary {
+    #[inline(always)]
     pub(super) fn apply<S: Scalar>(self, x: S, y: S) -> S {
         match self {
             Binary::Add => x + y,

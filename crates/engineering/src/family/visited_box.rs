@@ -1,6 +1,8 @@
 //! The box of linear parameters that a family visits: a table such as Table 6.3 of the thesis
 //! states it without its origin.
 
+use std::collections::BTreeMap;
+
 use phea_dynamics::expression::Expression;
 use phea_dynamics::random;
 use phea_qft::family::{Coordinate, Extent, Family, UncertainFamily};
@@ -132,8 +134,8 @@ fn extreme(family: &UncertainFamily, expression: &Expression, sign: f64) -> Extr
     starts.truncate(if family.extent() == Extent::Box { STARTS } else { 1 });
     let climbed = starts.into_iter().map(|(_, values)| match family.extent() {
         Extent::Box => {
-            let height = |shares: &[f64]| value(&family.values(shares));
-            family.values(&climb(family.shares(values), along, height))
+            let hill = Hill { family, expression, sign, along };
+            family.values(&hill.climb(family.shares(values)))
         }
         Extent::Members => values.clone(),
     });
@@ -164,74 +166,112 @@ fn drawn(family: &UncertainFamily) -> Vec<Vec<f64>> {
     (0..DRAWN).map(&mut point).collect()
 }
 
-/// Steps along each coordinate, and along all of them together, while they increase the value, with
-/// decreasing length. After each step the coordinate `along` moves to the best place nearby: a
-/// coefficient has a crest where the spool is at null, and steps away from it decrease the value.
-fn climb(shares: Vec<f64>, along: Option<usize>, height: impl Fn(&[f64]) -> f64) -> Vec<f64> {
-    let [mut step, least] = STEPS;
-    let at_crest = |shares: Vec<f64>, step: f64| match along {
-        None => shares,
-        Some(axis) => crest(shares, axis, step.max(NEAR), &height),
-    };
-    let mut shares = at_crest(shares, 1.0);
-    let mut best = height(&shares);
-    let mut state = random::stream(SEED, 1);
-    while step > least {
-        let mut higher = false;
-        let axes = shares.len();
-        for direction in 0..2 * axes {
-            let course: Vec<f64> = (0..axes)
-                .map(|axis| match direction < axes {
-                    true => f64::from(u8::from(axis == direction)),
-                    false => 2.0 * random::share(&mut state) - 1.0,
-                })
-                .collect();
-            for side in [-step, step] {
-                let moved = shares.iter().zip(&course);
-                let next = moved.map(|(share, course)| (share + side * course).clamp(0.0, 1.0)).collect();
-                let next = at_crest(next, step);
-                let found = height(&next);
-                if found > best + SAME * best.abs() {
-                    (best, shares, higher) = (found, next, true);
-                }
-            }
-        }
-        if !higher {
-            step *= 0.5;
-        }
-    }
-    shares
+/// A result over the box, as high as it is with this sign.
+struct Hill<'f> {
+    family: &'f UncertainFamily,
+    expression: &'f Expression,
+    sign: f64,
+    /// The coordinate that has a crest.
+    along: Option<usize>,
 }
 
-/// The best place along one coordinate within a distance: by a scan, then by ternary search around
-/// the best.
-fn crest(mut shares: Vec<f64>, axis: usize, within: f64, height: &impl Fn(&[f64]) -> f64) -> Vec<f64> {
-    let Some(middle) = shares.get(axis).copied() else { return shares };
-    let mut at = |share: f64| {
-        shares[axis] = share.clamp(0.0, 1.0);
-        height(&shares)
-    };
-    let mut best = (at(middle), middle);
-    let spacing = within / SCANNED;
-    let mut place = middle - within;
-    while place <= middle + within {
-        let found = at(place);
-        if found > best.0 {
-            best = (found, place);
-        }
-        place += spacing;
+/// What a search along the crest begins with, and the share and the height that it ended with.
+type Crests = BTreeMap<Vec<u64>, (f64, f64)>;
+
+impl Hill<'_> {
+    fn height(&self, shares: &[f64]) -> f64 {
+        self.height_of(self.expression, shares)
     }
-    let [mut low, mut high] = [best.1 - spacing, best.1 + spacing];
-    for _ in 0..THIRDS {
-        let (first, second) = (low + (high - low) / 3.0, high - (high - low) / 3.0);
-        if at(first) < at(second) {
-            low = first;
-        } else {
-            high = second;
-        }
+
+    fn height_of(&self, expression: &Expression, shares: &[f64]) -> f64 {
+        self.sign * expression.evaluate(&self.family.values(shares)).first().copied().unwrap_or(f64::NAN)
     }
-    let found = 0.5 * (low + high);
-    let found = if at(found) > best.0 { found } else { best.1 };
-    shares[axis] = found.clamp(0.0, 1.0);
-    shares
+
+    /// Steps along each coordinate, and along all of them together, while they increase the value,
+    /// with decreasing length. After each step the coordinate `along` moves to the best place
+    /// nearby: a coefficient has a crest where the spool is at null, and steps away from it decrease
+    /// the value.
+    fn climb(&self, shares: Vec<f64>) -> Vec<f64> {
+        let [mut step, least] = STEPS;
+        let mut crests = Crests::new();
+        let (mut shares, mut best) = self.at_crest(shares, 1.0, &mut crests);
+        let mut state = random::stream(SEED, 1);
+        while step > least {
+            let mut higher = false;
+            let axes = shares.len();
+            for direction in 0..2 * axes {
+                let course: Vec<f64> = (0..axes)
+                    .map(|axis| match direction < axes {
+                        true => f64::from(u8::from(axis == direction)),
+                        false => 2.0 * random::share(&mut state) - 1.0,
+                    })
+                    .collect();
+                for side in [-step, step] {
+                    let moved = shares.iter().zip(&course);
+                    let next = moved.map(|(share, course)| (share + side * course).clamp(0.0, 1.0)).collect();
+                    let (next, found) = self.at_crest(next, step, &mut crests);
+                    if found > best + SAME * best.abs() {
+                        (best, shares, higher) = (found, next, true);
+                    }
+                }
+            }
+            if !higher {
+                step *= 0.5;
+            }
+        }
+        shares
+    }
+
+    /// These shares with the coordinate `along` at the best place nearby, and the height there. Many steps end at a corner
+    /// of the box, or move what the result does not depend on: they are searched once.
+    fn at_crest(&self, mut shares: Vec<f64>, step: f64, crests: &mut Crests) -> (Vec<f64>, f64) {
+        let start = self.along.and_then(|axis| Some((axis, *shares.get(axis)?)));
+        let Some((axis, middle)) = start else {
+            let height = self.height(&shares);
+            return (shares, height);
+        };
+        let within = step.max(NEAR);
+        let values = self.family.values(&shares);
+        let felt = values.iter().enumerate().filter(|(index, _)| self.expression.depends_on(*index));
+        let key = felt.map(|(_, value)| *value).chain([middle, within]).map(f64::to_bits).collect();
+        let (share, height) =
+            *crests.entry(key).or_insert_with(|| self.crest(shares.clone(), axis, &values, within));
+        shares[axis] = share;
+        (shares, height)
+    }
+
+    /// The best share along one coordinate within a distance, and the height there: by a scan, then
+    /// by ternary search around the best. `values` are those of the parameters where it begins.
+    fn crest(&self, mut shares: Vec<f64>, axis: usize, values: &[f64], within: f64) -> (f64, f64) {
+        let moved = self.family.coordinates().get(axis).map_or(&[][..], |one| &one.parameters);
+        let section = self.expression.over(moved, values);
+        let middle = shares[axis];
+        let mut at = |share: f64| {
+            shares[axis] = share.clamp(0.0, 1.0);
+            self.height_of(&section, &shares)
+        };
+        let mut best = (at(middle), middle);
+        let spacing = within / SCANNED;
+        let mut place = middle - within;
+        while place <= middle + within {
+            let found = at(place);
+            if found > best.0 {
+                best = (found, place);
+            }
+            place += spacing;
+        }
+        let [mut low, mut high] = [best.1 - spacing, best.1 + spacing];
+        for _ in 0..THIRDS {
+            let (first, second) = (low + (high - low) / 3.0, high - (high - low) / 3.0);
+            if at(first) < at(second) {
+                low = first;
+            } else {
+                high = second;
+            }
+        }
+        let found = 0.5 * (low + high);
+        let found = if at(found) > best.0 { found } else { best.1 };
+        let found = found.clamp(0.0, 1.0);
+        (found, at(found))
+    }
 }
