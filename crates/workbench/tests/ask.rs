@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 
 use phea_workbench::answer::Answer;
 use phea_workbench::command::{self, CommandError, IdentifyError, Request};
-use phea_workbench::project::{self, Loaded};
+use phea_workbench::project::{self, Loaded, Project};
 use phea_workbench::source::Memory;
 use serde_json::Value;
 
@@ -42,6 +42,11 @@ fn owned(texts: &[&str]) -> Vec<String> {
 pub(crate) fn load(project: &str, settings: &[&str], catalogues: &[&str]) -> Loaded {
     project::read(&source(project), "rig.toml", &owned(settings), &owned(catalogues))
         .unwrap_or_else(|report| panic!("{report}"))
+}
+
+#[track_caller]
+pub(crate) fn project_of(text: &str, settings: &[&str]) -> Project {
+    load(text, settings, &[]).project
 }
 
 #[track_caller]

@@ -17,18 +17,12 @@ use phea_workbench::simulate::simulate_project;
 use phea_workbench::source::Memory;
 use serde_json::Value;
 
-use super::ask::answer;
+use super::ask::{answer, project_of};
 
 const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");
 /// 100 kg between the load cell and a spring of 200 kN/m.
 const SPRUNG: [&str; 4] =
     ["load.model=spring_mass_damper", "load.mass=100", "load.stiffness=2e5", "load.damping=500"];
-
-fn loaded(text: &str, settings: &[&str]) -> Project {
-    let source = Memory::default().with("rig.toml", text);
-    let settings: Vec<String> = settings.iter().map(ToString::to_string).collect();
-    project::read(&source, "rig.toml", &settings, &[]).unwrap_or_else(|report| panic!("{report}")).project
-}
 
 fn linearized(project: &Project) -> Linearization {
     linearize(&Setup::rig_of(project).unwrap(), None, &Setup::new(project).unwrap().sensor).unwrap()
@@ -46,7 +40,7 @@ fn overshoot(project: &Project) -> f64 {
 /// friction, overshoots a little less.
 #[test]
 fn a_load_that_yields_is_in_the_loop() {
-    let [prescribed, sprung] = [loaded(HOSE, &[]), loaded(HOSE, &SPRUNG)];
+    let [prescribed, sprung] = [project_of(HOSE, &[]), project_of(HOSE, &SPRUNG)];
     // ORIGIN: recomputed by comparisons/recompute_plant.py
     let expected = [0.41, 27.98];
     for (project, expected) in [&prescribed, &sprung].into_iter().zip(expected) {
@@ -61,7 +55,7 @@ fn a_load_that_yields_is_in_the_loop() {
 #[test]
 fn leakage_across_the_piston_moves_the_slow_pole() {
     let slowest = |settings: &[&str]| {
-        let plant = linearized(&loaded(HOSE, settings)).plant.command;
+        let plant = linearized(&project_of(HOSE, settings)).plant.command;
         plant.poles().iter().map(|pole| pole.norm_sqr()).fold(f64::INFINITY, f64::min).sqrt()
     };
     // ORIGIN: recomputed by comparisons/recompute_plant.py
@@ -73,7 +67,7 @@ fn leakage_across_the_piston_moves_the_slow_pole() {
 #[test]
 fn the_load_feels_the_leakage_and_not_itself() {
     let damper = |settings: &[&str]| {
-        let view = linearized(&loaded(HOSE, settings)).open_loop;
+        let view = linearized(&project_of(HOSE, settings)).open_loop;
         assert!((view.asymptotes[0].coefficient / view.impedance.dc_gain() - 1.0).abs() < 1e-9);
         view.impedance.dc_gain()
     };
@@ -90,7 +84,7 @@ fn the_load_feels_the_leakage_and_not_itself() {
 
 /// The hose with this specification alone, which the given controller satisfies over its family.
 fn satisfied(settings: &[&str]) -> Project {
-    let mut project = loaded(HOSE, settings);
+    let mut project = project_of(HOSE, settings);
     project.specifications.truncate(1);
     project.specifications[0].limit = Some(project::DeclaredLimit::Constant(1000.0));
     project
@@ -133,7 +127,7 @@ fn what_is_not_counted_is_told_first() {
 /// A prefilter before the samples: a step of 910/(s^2 + 83 s + 910), as it is between any two samples, reaches the loop.
 #[test]
 fn a_prefilter_before_the_samples_acts_in_continuous_time() {
-    let project = loaded(HOSE, &["controller.sample_time=5 ms", "prefilter.continuous=true"]);
+    let project = project_of(HOSE, &["controller.sample_time=5 ms", "prefilter.continuous=true"]);
     let plant = linearized(&project).plant.command;
     let given = Setup::new(&project).unwrap().controller.unwrap();
     let step = linear_loop(&plant, &given, &Setup::new(&project).unwrap().sensor, 1.0).unwrap().step.unwrap();
@@ -157,7 +151,7 @@ fn a_limited_pump_is_counted() {
     assert_eq!(view.audit.verdict, Verdict::Met);
     let told = view.caveats.iter().find(|caveat| caveat.sentence.contains("supply.model")).unwrap();
     assert!(told.sentence.contains("is included for small motions") && !told.unproven, "{told:?}");
-    let rig = Setup::rig_of(&loaded(HOSE, &["supply.model=pump_limited"])).unwrap();
+    let rig = Setup::rig_of(&project_of(HOSE, &["supply.model=pump_limited"])).unwrap();
     let found = rig.supply.unwrap();
     // what the pump gives above what is taken goes through a relief valve that opens over 5 bar
     let falls = 5e5 * found.taken / (9.8e-3 / 60.0);
@@ -184,7 +178,7 @@ fn a_load_velocity_that_is_fed_forward_is_in_the_loop() {
             let gain = format!("controller.load_velocity_feed_forward.gain={}", share * area_over_gain);
             let settings = [&SPRUNG[..], line, &[&gain]].concat();
             let problem =
-                robust_problem(&Memory::default(), &Setup::new(&loaded(&certain, &settings)).unwrap())
+                robust_problem(&Memory::default(), &Setup::new(&project_of(&certain, &settings)).unwrap())
                     .unwrap();
             let member = problem.nominal().unwrap().unwrap();
             let found = member_stability(&member, &problem.compensation).status;
@@ -256,7 +250,7 @@ fn a_late_feed_forward_of_a_prescribed_load_is_a_path_of_its_motion() {
     let limit = "[[specification]]\nkind = \"load_motion\"\nlimit = 1e6\nfrequencies = [1, 10, 100]\n\n[[specification]]";
     let text = without_uncertainty().replacen("[[specification]]", limit, 1);
     let problem = |settings: &[&str]| {
-        robust_problem(&Memory::default(), &Setup::new(&loaded(&text, settings)).unwrap()).unwrap()
+        robust_problem(&Memory::default(), &Setup::new(&project_of(&text, settings)).unwrap()).unwrap()
     };
     for settings in
         [&["controller.delay=1 ms"][..], &["controller.delay=1.4 ms", "controller.sample_time=1 ms"]]

@@ -9,24 +9,18 @@ use phea_workbench::command::Request;
 use phea_workbench::derived::derive;
 use phea_workbench::family::family;
 use phea_workbench::linearize::{Linearization, linearize};
-use phea_workbench::project::{self, Project};
+use phea_workbench::project::Project;
 use phea_workbench::rig::sizing_problem;
 use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 use serde_json::Value;
 
-use super::ask::answer;
+use super::ask::{answer, project_of};
 
 const SERIES: &str = include_str!("../../../examples/ybitu/series.toml");
 const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");
 const SPRUNG: [&str; 4] =
     ["load.model=spring_mass_damper", "load.mass=100", "load.stiffness=2e5", "load.damping=500"];
-
-fn loaded(text: &str, settings: &[&str]) -> Project {
-    let source = Memory::default().with("rig.toml", text);
-    let settings: Vec<String> = settings.iter().map(ToString::to_string).collect();
-    project::read(&source, "rig.toml", &settings, &[]).unwrap_or_else(|report| panic!("{report}")).project
-}
 
 fn linearized(project: &Project) -> Linearization {
     let setup = Setup::new(project).unwrap();
@@ -42,7 +36,7 @@ fn the_family_is_the_rig_at_its_nominal() {
     let force = "operating_point.load_force=2 kN";
     for settings in [&[][..], &[travel, force], &[deflection], &["supply.model=pump_limited"]] {
         for load in [&[][..], &SPRUNG] {
-            let project = loaded(SERIES, &[settings, load].concat());
+            let project = project_of(SERIES, &[settings, load].concat());
             let setup = Setup::new(&project).unwrap();
             let rig = setup.rig().unwrap();
             let Family::Uncertain(family) = family(&setup, &Memory::default()).unwrap() else {
@@ -74,7 +68,7 @@ fn its_numbers_may_be_uncertain() {
     let text = SERIES.replacen("[[specification]]", more, 1);
     let spring =
         "series={ stiffness = \"2.24 MN/m\", mass = 2, damping = 500, travel = \"5 mm\", progression = 0.2 }";
-    let project = loaded(&text, &[spring, "operating_point.load_force=3 kN"]);
+    let project = project_of(&text, &[spring, "operating_point.load_force=3 kN"]);
     let Family::Uncertain(family) = family(&Setup::new(&project).unwrap(), &Memory::default()).unwrap()
     else {
         panic!("a box")
@@ -87,8 +81,8 @@ fn its_numbers_may_be_uncertain() {
 #[test]
 fn a_rigid_spring_is_none() {
     let text = without_series();
-    let plain = linearized(&loaded(&text, &[]));
-    let rigid = linearized(&loaded(&text, &["series={ stiffness = 1e22 }"]));
+    let plain = linearized(&project_of(&text, &[]));
+    let rigid = linearized(&project_of(&text, &["series={ stiffness = 1e22 }"]));
     for frequency in [0.01, 3.0, 200.0, 1300.0, 9000.0] {
         let of = |models: &Linearization| {
             let closed = models.closed_loop.as_ref().unwrap().impedance.at_frequency(frequency);
@@ -114,7 +108,7 @@ fn without_series() -> String {
 /// K_eq of oil, sensor and spring in series, where it is said and where it is used.
 #[test]
 fn the_spring_is_in_the_equivalent_stiffness_and_in_the_sizing() {
-    let project = loaded(SERIES, &[]);
+    let project = project_of(SERIES, &[]);
     let setup = Setup::new(&project).unwrap();
     let rig = setup.rig().unwrap();
     let list = derive(&project, rig);
@@ -128,7 +122,7 @@ fn the_spring_is_in_the_equivalent_stiffness_and_in_the_sizing() {
     let wire = (8.0 * wahl * value("cylinder.stall_force") * 4.0 / (std::f64::consts::PI * 6e8)).sqrt();
     assert!((value("series.coil.wire_diameter") / wire - 1.0).abs() < 1e-12);
     assert!(value("series.coil.active_coils") > 2.0 && value("series.coil.mass") > 0.1);
-    let hose = loaded(HOSE, &["series={ stiffness = \"2.24 MN/m\" }"]);
+    let hose = project_of(HOSE, &["series={ stiffness = \"2.24 MN/m\" }"]);
     let built_in = catalogue::load(&Memory::default(), &[]).unwrap();
     let problem = sizing_problem(&Setup::new(&hose).unwrap(), &built_in).unwrap();
     let in_series = 1.0 / (1.0 / 20e6 + 1.0 / 2.24e6);
@@ -141,7 +135,7 @@ fn the_spring_is_in_the_equivalent_stiffness_and_in_the_sizing() {
 fn the_impedance_is_that_at_the_load() {
     use phea_hydraulics::plant::{LinearPlant, LinearSeries, SeriesOutput};
     for measured in ["sensor", "deflection"] {
-        let project = loaded(SERIES, &[&format!("series.force_from={measured}")]);
+        let project = project_of(SERIES, &[&format!("series.force_from={measured}")]);
         let setup = Setup::new(&project).unwrap();
         let rig = setup.rig().unwrap();
         let models = linearized(&project);
@@ -191,7 +185,7 @@ fn the_machine_follows_its_linear_loop() {
 #[test]
 fn lines_in_motion_and_the_spring_go_together() {
     let moving = ["line.model=transmission_line"];
-    let project = loaded(SERIES, &moving);
+    let project = project_of(SERIES, &moving);
     let setup = Setup::new(&project).unwrap();
     let rig = setup.rig().unwrap();
     let [own, lumped] = [rig.response(2.0), rig.plant.coefficients().command.at_frequency(2.0)];
