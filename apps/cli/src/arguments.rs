@@ -267,9 +267,9 @@ pub(crate) struct IdentifyArguments {
     /// Starting points of the search (6)
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub(crate) starts: Option<u16>,
-    /// Seed of the starting points and of the bootstrap
-    #[arg(long, value_name = "N", default_value_t = 1)]
-    pub(crate) seed: u32,
+    /// Seed of the starting points and of the bootstrap (1)
+    #[arg(long, value_name = "N")]
+    pub(crate) seed: Option<u32>,
     /// Intervals by a bootstrap of this many repetitions too, 50 or more
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(50..=1_000_000))]
     pub(crate) bootstrap: Option<u32>,
@@ -288,6 +288,18 @@ pub(crate) struct IdentifyArguments {
     /// Of a response: squared coherence below which a frequency is left out (0.8)
     #[arg(long, value_name = "NUMBER")]
     pub(crate) coherence: Option<f64>,
+    /// Of a line: the one to chamber A or to chamber B; absent: `bench.line.side` of the project, or A
+    #[arg(long, value_name = "CHAMBER", ignore_case = true)]
+    pub(crate) side: Option<ChamberWord>,
+}
+
+/// A chamber of the cylinder.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+pub(crate) enum ChamberWord {
+    /// On the side of the piston without a rod
+    A,
+    /// On the side of the rod
+    B,
 }
 
 /// What recorded tests are of.
@@ -301,6 +313,18 @@ pub(crate) enum SubjectWord {
     Line,
     /// Friction of the cylinder, from runs at constant velocities and from breakaway
     Friction,
+}
+
+impl SubjectWord {
+    /// As it is written on the command line.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            SubjectWord::Valve => "valve",
+            SubjectWord::Response => "response",
+            SubjectWord::Line => "line",
+            SubjectWord::Friction => "friction",
+        }
+    }
 }
 
 /// A model of the leakage, as the project file calls it.

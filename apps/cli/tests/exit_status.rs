@@ -129,6 +129,12 @@ const OUTCOMES: &[(&[&str], i32)] = &[
     (&["check", "hose.toml", "--catalogue", "hose.toml"], 2),
     (&["check", "hose.toml", "--out", "empty.toml"], 3),
     (&["report", "hose.toml", "--out", "empty.toml/sub"], 3),
+    // options of another subject, and a line that is not there
+    (&["identify", "--of", "friction", "hose.toml", "drive.csv", "--starts", "3"], 2),
+    (&["identify", "--of", "line", "hose.toml", "drive.csv", "--leakage-model", "one_curve"], 2),
+    (&["identify", "--of", "response", "drive.csv", "--side", "B"], 2),
+    (&["identify", "drive.csv", "--period", "2 s"], 2),
+    (&["identify", "--of", "line", "hose.toml", "drive.csv", "--side", "C"], 2),
     (&["check", "hose.toml", "--frobnicate"], 2),
     (&["check"], 2),
     (&["chek", "hose.toml"], 2),

@@ -15,9 +15,14 @@ use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 use serde_json::Value;
 
-/// What `bench` writes of the line of a project.
+/// What `bench` writes of the line of a project to chamber A.
 fn benched(project: &str, settings: &[&str]) -> Vec<(String, String)> {
-    let loaded = load(project, &[settings, &["bench.line.side=\"a\"", "bench.sample_time=10"]].concat(), &[]);
+    benched_side(project, settings, "a")
+}
+
+fn benched_side(project: &str, settings: &[&str], side: &str) -> Vec<(String, String)> {
+    let side = format!("bench.line.side=\"{side}\"");
+    let loaded = load(project, &[settings, &[&side, "bench.sample_time=10"]].concat(), &[]);
     let source = Memory::default().with("rig.toml", project);
     let answer = command::answer(&source, &loaded, &[], &Request::Bench).unwrap();
     let lines = answer.files.into_iter().filter(|file| file.name.starts_with("line_"));
@@ -25,11 +30,20 @@ fn benched(project: &str, settings: &[&str]) -> Vec<(String, String)> {
 }
 
 fn identified(project: &str, settings: &[&str], files: &[(String, String)]) -> Result<Answer, IdentifyError> {
+    identified_side(project, settings, files, LineSide::A)
+}
+
+fn identified_side(
+    project: &str,
+    settings: &[&str],
+    files: &[(String, String)],
+    side: LineSide,
+) -> Result<Answer, IdentifyError> {
     let source =
         files.iter().fold(Memory::default(), |source, (name, text)| source.with(name, text.as_str()));
     let asked = LineRequest {
         files: files.iter().map(|(name, _)| name.clone()).collect(),
-        side: Some(LineSide::A),
+        side: Some(side),
         ..LineRequest::default()
     };
     line_watched(&source, Some(&load(project, settings, &[])), &asked, &mut |_| true)
@@ -108,6 +122,26 @@ fn without_noise_the_waves_of_a_line_give_its_speed_and_the_density_of_its_oil()
     near(value(&found, "wave_speed_m_per_s"), conduit.speed(), 1e-5);
     near(value(&found, "dynamic_bulk_modulus_pa"), conduit.effective_bulk_modulus, 1e-5);
     near(value(&found, "density_kg_per_m3"), known.fluid.density, 1e-5);
+}
+
+/// A rig whose line to chamber B has a wall of its own: the answer and the keys are of that line.
+#[test]
+fn one_of_two_unequal_lines_is_identified_and_written_for_its_side() {
+    let unequal = [&CREEPING[..], &["line.b={ dynamic_stiffening = 3 }"]].concat();
+    let answer = identified_side(HOSE, &unequal, &benched_side(HOSE, &unequal, "b"), LineSide::B).unwrap();
+    let found = line(&answer);
+    assert_eq!(found["chamber"], "b");
+    within(value(&found, "dynamic_stiffening"), 3.0, 0.2);
+    assert!(answer.text.contains("The line to chamber B at "), "{}", answer.text);
+    let fragment = answer.files.iter().find(|file| file.name == "line.toml").expect("a fragment");
+    let fragment = String::from_utf8(fragment.bytes.clone()).unwrap();
+    // how the wall creeps is declared of both lines
+    let (both, own) = fragment.split_once("\n[line.b]\n").expect("a table of the side");
+    assert!(both.contains("\n[line]\nrelaxation_time = ") && !own.contains("relaxation_time"), "{fragment}");
+    assert!(
+        own.contains("dynamic_stiffening = { nominal = 3.0") || own.contains("{ nominal = 2.9"),
+        "{fragment}"
+    );
 }
 
 /// An accumulator stays at its chamber: test and result are those of the line alone, and say so.

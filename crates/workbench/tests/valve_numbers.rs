@@ -145,8 +145,10 @@ fn nulls_and_what_follows_from_them_have_intervals() {
     let [low, high] = of(&read[0], "tare_share");
     let share = read[0]["tare_share"].as_f64().unwrap();
     assert!(low < share && share < high && high - low < 0.02 * share, "{low} {share} {high}");
-    for file in ["metering.csv", "pressure_gain.csv"] {
+    assert_eq!(read[0]["null_methods"], serde_json::json!(["leakage_centre", "leakage_centre"]));
+    for (file, method) in [("metering.csv", "flow_lines"), ("pressure_gain.csv", "equal_pressures")] {
         let found = read_from(&[file], &[&settings[..], &["bench.sample_time=\"2 s\""]].concat(), 1);
+        assert_eq!(found["null_methods"], serde_json::json!([method, method]));
         for (name, _) in TRUTH {
             let [low, high] = of(&found, name);
             let value = found[name].as_f64().unwrap();

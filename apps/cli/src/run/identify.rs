@@ -7,10 +7,11 @@ use phea_workbench::command::{
     self, FrictionRequest, IdentifyError, IdentifyRequest, LeakageModel, LineRequest, ResponseRequest,
     ResponseSettings,
 };
+use phea_workbench::project::LineSide;
 use phea_workbench::quantity::{self, TIME};
 
 use super::{load, styled};
-use crate::arguments::{IdentifyArguments, LeakageWord, SubjectWord};
+use crate::arguments::{ChamberWord, IdentifyArguments, LeakageWord, SubjectWord};
 use crate::failure::Failure;
 use crate::file_system::FileSystem;
 use crate::interruption::Interruption;
@@ -22,12 +23,13 @@ const NAME: &str = "identify";
 
 /// The answer, and the files that were written.
 pub(super) fn answered(recorded: &IdentifyArguments) -> Result<(Answer, Vec<PathBuf>), Failure> {
+    check_subject(recorded)?;
     let (project, files) = named(recorded)?;
     let loaded = project.map(|path| load(&path, &recorded.settings, &[], NAME)).transpose()?;
     let asked = IdentifyRequest {
         files,
         starts: recorded.starts.map(usize::from),
-        seed: recorded.seed,
+        seed: recorded.seed.unwrap_or(1),
         bootstrap: recorded.bootstrap.map_or(0, |count| count as usize),
         figures: recorded.out.is_some(),
         leakage_model: recorded.leakage_model.map(|word| match word {
@@ -51,7 +53,11 @@ pub(super) fn answered(recorded: &IdentifyArguments) -> Result<(Answer, Vec<Path
         SubjectWord::Line => {
             let settings = ResponseSettings { coherence: recorded.coherence.unwrap_or(0.0), ..settings };
             let figures = recorded.out.is_some();
-            let asked = LineRequest { files: asked.files, side: None, settings, figures };
+            let side = recorded.side.map(|word| match word {
+                ChamberWord::A => LineSide::A,
+                ChamberWord::B => LineSide::B,
+            });
+            let asked = LineRequest { files: asked.files, side, settings, figures };
             command::line_watched(&FileSystem, loaded.as_ref(), &asked, watch)
         }
         SubjectWord::Friction => {
@@ -88,42 +94,61 @@ fn named(recorded: &IdentifyArguments) -> Result<(Option<String>, Vec<String>), 
     let option = recorded.project.as_ref().map(|path| path.to_string_lossy().into_owned());
     let mut projects = option.into_iter().chain(projects.into_iter().cloned());
     let project = projects.next();
-    let explain = |message: &str| {
-        let json = command::failure_json(Some(NAME), None, message);
-        Err(Failure::wrong_input(format!("error: {message}")).with_json(json))
-    };
     if projects.next().is_some() {
-        return explain("one project describes one valve: several are named");
+        return Err(refused("one project describes one rig: several are named"));
     }
     if project.is_none() && !recorded.settings.is_empty() {
-        return explain("`--set` changes a project, and none is named");
+        return Err(refused("`--set` changes a project, and none is named"));
     }
     Ok((project, files.into_iter().cloned().collect()))
 }
 
-/// What is stated of a frequency response; refused for a valve, and where it is no positive time.
+/// Refuses what the identification of the named subject does not take.
+fn check_subject(recorded: &IdentifyArguments) -> Result<(), Failure> {
+    const VALVE: &[SubjectWord] = &[SubjectWord::Valve];
+    const RESPONSES: &[SubjectWord] = &[SubjectWord::Response, SubjectWord::Line];
+    let options = [
+        ("starts", recorded.starts.is_some(), VALVE),
+        ("seed", recorded.seed.is_some(), VALVE),
+        ("bootstrap", recorded.bootstrap.is_some(), VALVE),
+        ("leakage-model", recorded.leakage_model.is_some(), VALVE),
+        ("period", recorded.period.is_some(), RESPONSES),
+        ("settling", recorded.settling.is_some(), RESPONSES),
+        ("segment", recorded.segment.is_some(), RESPONSES),
+        ("coherence", recorded.coherence.is_some(), RESPONSES),
+        ("side", recorded.side.is_some(), &[SubjectWord::Line]),
+    ];
+    let unfit = options.iter().find(|(_, stated, subjects)| *stated && !subjects.contains(&recorded.of));
+    let Some((name, _, subjects)) = unfit else { return Ok(()) };
+    let takes: Vec<String> = subjects.iter().map(|subject| format!("`--of {}`", subject.name())).collect();
+    let message = format!(
+        "`--{name}` has no effect on `--of {}`: it belongs to {}",
+        recorded.of.name(),
+        takes.join(" and ")
+    );
+    Err(refused(&message))
+}
+
+/// A command line that cannot be followed.
+fn refused(message: &str) -> Failure {
+    let json = command::failure_json(Some(NAME), None, message);
+    Failure::wrong_input(format!("error: {message}")).with_json(json)
+}
+
+/// What is stated of a frequency response; refused where a time is not positive.
 fn response_settings(recorded: &IdentifyArguments) -> Result<ResponseSettings, Failure> {
-    let refuse = |message: String| {
-        let json = command::failure_json(Some(NAME), None, &message);
-        Failure::wrong_input(format!("error: {message}")).with_json(json)
-    };
     let times =
         [("period", &recorded.period), ("settling", &recorded.settling), ("segment", &recorded.segment)];
     let coherence = recorded.coherence;
-    let stated = times.iter().find(|(_, text)| text.is_some()).map(|(name, _)| *name);
-    let stated = stated.or(coherence.map(|_| "coherence"));
-    if let Some(name) = stated.filter(|_| recorded.of == SubjectWord::Valve) {
-        return Err(refuse(format!("`--{name}` is of a frequency response: `--of response`")));
-    }
     if let Some(value) = coherence.filter(|value| !(0.0..1.0).contains(value)) {
-        return Err(refuse(format!("`--coherence {value}` is not from 0 to below 1")));
+        return Err(refused(&format!("`--coherence {value}` is not from 0 to below 1")));
     }
     let seconds = |(name, text): (&str, &Option<String>)| {
         let Some(text) = text else { return Ok(None) };
         match quantity::parse(text, &TIME) {
             Ok(value) if value > 0.0 || (value == 0.0 && name == "settling") => Ok(Some(value)),
-            Ok(_) => Err(refuse(format!("`--{name} {text}` is no positive time"))),
-            Err(error) => Err(refuse(format!("`--{name} {text}`: {error}"))),
+            Ok(_) => Err(refused(&format!("`--{name} {text}` is not a positive time"))),
+            Err(error) => Err(refused(&format!("`--{name} {text}`: {error}"))),
         }
     };
     let [period, settling, segment] = times.map(seconds);

@@ -13,6 +13,17 @@ use self::half_height::{Flank, peak};
 use self::straight_line::straight_line;
 use super::recording::{Recording, SignalKind, median, usual_drop};
 
+/// What shows where null is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NullMethod {
+    /// The middle of the leakage curve at half of its height. Of unequal edges it is not quite null.
+    LeakageCentre,
+    /// The middle between the zeros of straight lines through both branches of the flow.
+    FlowLines,
+    /// Where both ports have the same pressure.
+    EqualPressures,
+}
+
 /// What the calculations of the thesis, section 5.2, give; `None` where the test for it is missing.
 /// SI.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -31,6 +42,8 @@ pub struct SimpleCalculations {
     pub leakage_shape: Option<f64>,
     /// Command of null with a rising and a falling command, in V.
     pub nulls: [Option<CurveReading>; 2],
+    /// How each of them was found.
+    pub null_methods: [Option<NullMethod>; 2],
     /// dq/dU near null at the usual supply pressure, for positive and negative commands, in m3/(s V).
     pub flow_gains: [Option<CurveReading>; 2],
     /// d(p_A - p_B)/dU at null with blocked ports, in Pa/V.
@@ -42,6 +55,15 @@ impl SimpleCalculations {
     pub fn null_bias(&self) -> Option<CurveReading> {
         let [rising, falling] = self.nulls;
         CurveReading::mean(&[rising?, falling?])
+    }
+
+    /// Takes a null where nothing better showed it before.
+    fn add_null(&mut self, rising: bool, method: NullMethod, read: impl FnOnce() -> Option<CurveReading>) {
+        let place = usize::from(!rising);
+        if self.nulls[place].is_none() {
+            self.nulls[place] = read();
+            self.null_methods[place] = self.nulls[place].is_some().then_some(method);
+        }
     }
 
     /// Their difference.
@@ -111,8 +133,8 @@ pub(super) fn simple_calculations(
     }
     let pressures = recordings.iter().filter(|one| one.circuit == PortCircuit::Blocked);
     for recording in pressures {
-        for (index, null) in found.nulls.iter_mut().enumerate() {
-            *null = null.or_else(|| crossing(recording, index == 0));
+        for rising in [true, false] {
+            found.add_null(rising, NullMethod::EqualPressures, || crossing(recording, rising));
         }
     }
     let usual_drop = usual_drop(recordings);
@@ -173,9 +195,10 @@ fn leakage(recording: &Recording, tested: &TestedValve, found: &mut SimpleCalcul
     let peaks: Vec<CurveReading> = peaks.into_iter().flatten().collect();
     found.null_leakage = CurveReading::mean(&peaks).map(|peak| peak.plus(-tare));
     let mut widths = Vec::new();
-    for (null, rising) in found.nulls.iter_mut().zip([true, false]) {
+    for (place, rising) in [true, false].into_iter().enumerate() {
         if let Some([low, high]) = edges(rising) {
-            *null = CurveReading::mean(&[low, high]);
+            found.nulls[place] = CurveReading::mean(&[low, high]);
+            found.null_methods[place] = Some(NullMethod::LeakageCentre);
             widths.push((high.value - low.value) / 2.0);
         }
     }
@@ -247,14 +270,15 @@ fn flow(recording: &Recording, tested: &TestedValve, found: &mut SimpleCalculati
         straight_line(&values.iter().enumerate().filter_map(of_row).collect::<Vec<_>>())
     };
     let mut slopes = [vec![], vec![]];
-    for (null, rising) in found.nulls.iter_mut().zip([true, false]) {
+    for rising in [true, false] {
         let mut zeros = vec![];
         for (slopes, sign) in slopes.iter_mut().zip([1.0, -1.0]) {
             let line = branch(sign, rising).filter(|line| sign * line.slope.value > 0.0);
             slopes.extend(line.map(|line| line.slope.times(sign * tested.nominal_voltage)));
             zeros.extend(line.map(|line| line.zero));
         }
-        *null = null.or(CurveReading::mean(&zeros).filter(|_| zeros.len() == 2));
+        let middle = CurveReading::mean(&zeros).filter(|_| zeros.len() == 2);
+        found.add_null(rising, NullMethod::FlowLines, || middle);
     }
     for (coefficient, slopes) in found.flow_coefficients.iter_mut().zip(slopes) {
         *coefficient = coefficient.or(CurveReading::mean(&slopes));

@@ -105,6 +105,7 @@ impl LineNumber {
 /// # let settings = phea_engineering::response::ResponseSettings::default();
 /// let known = KnownLine {
 ///     side: LineSide::A,
+///     differs_from_other: false,
 ///     line: Line::Volume { volume: 1e-3, effective_bulk_modulus: 1e9 },
 ///     fluid: Fluid { bulk_modulus: 1.45e9, density: 870.0, kinematic_viscosity: 46e-6, entrained_air: None },
 ///     pressure: 35e5,

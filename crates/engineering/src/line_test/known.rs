@@ -12,6 +12,8 @@ use crate::setup::Setup;
 pub struct KnownLine {
     /// Which line.
     pub side: LineSide,
+    /// Whether the project declares the line to the other chamber differently.
+    pub differs_from_other: bool,
     /// As declared.
     pub line: Line,
     /// The oil in it.
@@ -40,12 +42,14 @@ impl KnownLine {
         let rig = setup.rig().map_err(|error| error.to_string())?;
         let declared = setup.project.actuator.as_ref().ok_or("the project has no line")?;
         let components = rig.actuator.components();
+        let lines = &declared.line;
         let (line, declared, piston_area) = match side {
-            LineSide::A => (components.line_a, &declared.line.a, components.cylinder.area_a),
-            LineSide::B => (components.line_b, &declared.line.b, components.cylinder.area_b),
+            LineSide::A => (components.line_a, &lines.a, components.cylinder.area_a),
+            LineSide::B => (components.line_b, &lines.b, components.cylinder.area_b),
         };
         let known = KnownLine {
             side,
+            differs_from_other: lines.a != lines.b,
             line,
             fluid: components.fluid,
             pressure: rig.actuator.mean_pressure(),

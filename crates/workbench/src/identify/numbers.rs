@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::{CurveReading, Identification, SimpleCalculations};
+use super::{COEFFICIENT_NAMES, CurveReading, Identification, NullMethod, SimpleCalculations};
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
 
@@ -21,6 +21,8 @@ pub(super) struct SimpleBody {
     null_bias_v: Option<f64>,
     null_rising_v: Option<f64>,
     null_falling_v: Option<f64>,
+    /// What the nulls were read from, rising and falling.
+    null_methods: [Option<&'static str>; 2],
     hysteresis_v: Option<f64>,
     flow_gain_extending_m3_per_s_v: Option<f64>,
     flow_gain_retracting_m3_per_s_v: Option<f64>,
@@ -51,6 +53,7 @@ pub(super) fn simple_body(found: &SimpleCalculations) -> SimpleBody {
         null_bias_v: read("null_bias_v", found.null_bias()),
         null_rising_v: read("null_rising_v", rising),
         null_falling_v: read("null_falling_v", falling),
+        null_methods: found.null_methods.map(|method| method.map(null_method)),
         hysteresis_v: read("hysteresis_v", found.hysteresis()),
         flow_gain_extending_m3_per_s_v: read("flow_gain_extending_m3_per_s_v", gain_extending),
         flow_gain_retracting_m3_per_s_v: read("flow_gain_retracting_m3_per_s_v", gain_retracting),
@@ -92,6 +95,47 @@ pub(crate) fn tell(found: &Identification, out: &mut Document) {
     }
     out.section("Numbers of section 5.2", table);
     out.sentences(["The last column is what the thesis prints of the valve of its rig, a Moog 760 C263-A at 70 bar. Equation 4.12 is corrected: each of two edges takes half the drop. The peak that it states as 1.67 % is of the measured 88 % of the rated flow. The data sheet of that valve allows a tare flow of 42.6 to 65.0 % of the leakage at null.".to_string()]);
+    out.sentences(null_offset(found));
+}
+
+/// What a null was read from, in JSON.
+fn null_method(method: NullMethod) -> &'static str {
+    match method {
+        NullMethod::LeakageCentre => "leakage_centre",
+        NullMethod::FlowLines => "flow_lines",
+        NullMethod::EqualPressures => "equal_pressures",
+    }
+}
+
+/// By which a null was found.
+fn null_equation(method: Option<NullMethod>) -> &'static str {
+    match method {
+        Some(NullMethod::FlowLines) => "between zeros of q(U)",
+        Some(NullMethod::EqualPressures) => "p_A = p_B",
+        Some(NullMethod::LeakageCentre) | None => "centre of q_leak(U)",
+    }
+}
+
+/// How far the null that was read lies from the one that was identified, where that is more than its
+/// interval, in a sentence with the reason.
+fn null_offset(found: &Identification) -> Option<String> {
+    let read = found.simple.null_bias()?;
+    let null_bias = COEFFICIENT_NAMES.iter().position(|(name, _)| *name == "null_bias")?;
+    found.intervals.get(null_bias)?.as_ref()?;
+    let offset = read.value - found.coefficients.null_bias;
+    let reason = match found.simple.null_methods[0]? {
+        NullMethod::LeakageCentre => "the leakage curve of unequal edges is not even about null",
+        NullMethod::FlowLines => "where the straight lines begin the spool still remembers its last reversal",
+        NullMethod::EqualPressures => "unequal edges balance the ports beside null",
+    };
+    let [low, high] = read.interval?;
+    (!(low..=high).contains(&found.coefficients.null_bias)).then(|| {
+        format!(
+            "Null as read lies {} mV {} the identified null bias: {reason}.",
+            significant(1e3 * offset.abs(), 2),
+            if offset > 0.0 { "above" } else { "below" },
+        )
+    })
 }
 
 fn lines(simple: &SimpleCalculations) -> Vec<(NumberLine, Option<CurveReading>)> {
@@ -106,6 +150,7 @@ fn lines(simple: &SimpleCalculations) -> Vec<(NumberLine, Option<CurveReading>)>
     let [extending, retracting] = simple.flow_coefficients;
     let [gain_extending, gain_retracting] = simple.flow_gains;
     let [rising, falling] = simple.nulls;
+    let [by_rising, by_falling] = simple.null_methods;
     let tare = line("tare flow q_tare", "base of q_leak(U)", "m3/s", Some("7.55e-6"));
     let leak = line("leakage at null q_vin", "peak of q_leak(U) - q_tare", "m3/s", Some("9.31e-6"));
     let share = line("tare flow in the leakage at null", "q_tare/(q_tare + q_vin)", "%", Some("44.77"));
@@ -133,8 +178,8 @@ fn lines(simple: &SimpleCalculations) -> Vec<(NumberLine, Option<CurveReading>)>
         (ext, extending),
         (ret, retracting),
         (rated, percent(simple.share_of_nominal)),
-        (line("null, rising command", "centre of q_leak(U)", "V", Some("0.078")), rising),
-        (line("null, falling command", "centre of q_leak(U)", "V", Some("-0.05")), falling),
+        (line("null, rising command", null_equation(by_rising), "V", Some("0.078")), rising),
+        (line("null, falling command", null_equation(by_falling), "V", Some("-0.05")), falling),
         (width, simple.hysteresis()),
         (gain, gain_extending),
         (back, gain_retracting),

@@ -1,6 +1,6 @@
 use super::{LineIdentification, LineNumber, ResponseFit, RiseFit, Undetermined, VolumeSource, numbers};
 use crate::answer::{self, Object};
-use crate::project::Loaded;
+use crate::project::{LineSide, Loaded};
 
 /// The JSON object of `identify --of line`.
 pub fn json(loaded: &Loaded, found: &LineIdentification) -> String {
@@ -8,7 +8,12 @@ pub fn json(loaded: &Loaded, found: &LineIdentification) -> String {
     for (key, _, number) in numbers(found) {
         line = line.with(key, told(number));
     }
+    let chamber = match found.known.side {
+        LineSide::A => "a",
+        LineSide::B => "b",
+    };
     let line = line
+        .with("chamber", chamber)
         .with("pressure_pa", found.pressure)
         .with("volume_m3", found.known.volume())
         .maybe("remark", found.known.remark())

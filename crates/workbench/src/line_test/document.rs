@@ -1,6 +1,7 @@
 use super::{LineIdentification, LineNumber, ResponseFit, RiseFit, numbers};
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
+use crate::project::LineSide;
 use crate::quantity::{DisplayUnit, FLOW, PRESSURE, VOLUME, display};
 
 /// The numbers of the line, what the recordings do not tell, and how they were explained.
@@ -12,7 +13,8 @@ pub fn text(found: &LineIdentification) -> String {
         let shown = |value: f64| Cell::number(unit.of(value), 4);
         Some([Cell::from(what), shown(value), shown(low), shown(high), Cell::from(unit.symbol)])
     });
-    let title = format!("The line at {}", display(found.pressure, &PRESSURE, 4));
+    let pressure = display(found.pressure, &PRESSURE, 4);
+    let title = format!("The line to chamber {} at {pressure}", chamber(found.known.side));
     out.section(title, Table::new(["quantity", "value", "95 % from", "to", "unit"]).with(rows));
     let open = numbers(found).into_iter().filter_map(|(_, what, number)| {
         let reason = number.as_ref().err()?;
@@ -23,6 +25,14 @@ pub fn text(found: &LineIdentification) -> String {
     out.sentences(found.rise.iter().flat_map(rise));
     out.sentences(found.response.iter().flat_map(response));
     out.text()
+}
+
+/// Of a line.
+fn chamber(side: LineSide) -> &'static str {
+    match side {
+        LineSide::A => "A",
+        LineSide::B => "B",
+    }
 }
 
 /// For people.

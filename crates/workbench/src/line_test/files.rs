@@ -1,7 +1,8 @@
 use phea_hydraulics::line::Line;
 
-use super::LineIdentification;
+use super::{KnownLine, LineIdentification};
 use crate::answer::{OutputFile, significant};
+use crate::project::LineSide;
 
 /// Digits of the numbers of a fragment.
 const DIGITS: usize = 6;
@@ -17,13 +18,14 @@ pub fn files(found: &LineIdentification) -> Vec<OutputFile> {
 fn keys(found: &LineIdentification) -> Option<String> {
     let number = |value: f64, unit: &str| format!("\"{} {unit}\"", significant(value, DIGITS));
     let volume = found.known.volume();
+    let table = table(&found.known);
     let rest = found.effective_bulk_modulus.as_ref().ok().map(|number| volume / number.value);
     let fast = found.dynamic_bulk_modulus.as_ref().ok().map(|number| volume / number.value);
     match found.known.line {
         Line::Volume { .. } => {
             let modulus = volume / rest.or(fast)?;
             let (volume, modulus) = (number(volume, "m3"), number(modulus, "Pa"));
-            Some(format!("[line]\nvolume = {volume}\neffective_bulk_modulus = {modulus}\n"))
+            Some(format!("{table}\nvolume = {volume}\neffective_bulk_modulus = {modulus}\n"))
         }
         Line::Pipe { pipe, .. } => {
             let oil = 1.0 / (rest.or(fast)? / volume - pipe.wall_compliance());
@@ -41,7 +43,7 @@ fn keys(found: &LineIdentification) -> Option<String> {
             let expansion = number(hose.operating_expansion, "m2");
             let pressure = number(found.known.pressure, "Pa");
             let mut keys = format!(
-                "[line]\nvolumetric_expansion = {expansion}   # as before, at the pressure below\nvolumetric_expansion_pressure = {pressure}\nvolumetric_expansion_slope = {}\n",
+                "{table}\nvolumetric_expansion = {expansion}   # as before, at the pressure below\nvolumetric_expansion_pressure = {pressure}\nvolumetric_expansion_slope = {}\n",
                 number(slope, "m2/Pa")
             );
             keys.push_str(&match stiffening {
@@ -56,9 +58,23 @@ fn keys(found: &LineIdentification) -> Option<String> {
                 None => "dynamic_stiffening = 1                 # not determined\n".to_string(),
             });
             if let Ok(time) = &found.relaxation_time {
-                keys.push_str(&format!("relaxation_time = {}\n", number(time.value, "s")));
+                let time = format!("relaxation_time = {}\n", number(time.value, "s"));
+                keys = if found.known.differs_from_other {
+                    format!("[line]\n{time}\n{keys}")
+                } else {
+                    keys + &time
+                };
             }
             Some(keys)
         }
+    }
+}
+
+/// The table of the keys: that of both lines where the project declares them alike.
+fn table(known: &KnownLine) -> &'static str {
+    match known.side {
+        _ if !known.differs_from_other => "[line]",
+        LineSide::A => "[line.a]",
+        LineSide::B => "[line.b]",
     }
 }

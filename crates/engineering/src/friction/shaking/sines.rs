@@ -65,10 +65,11 @@ pub(super) fn sines(signals: [&Vec<f64>; 2]) -> Option<Vec<f64>> {
         let mut more = angles.clone();
         for angle in peaks(&power, least.max(NO_LEAKAGE * most)) {
             let is_apart = more.iter().all(|known| (known - angle).abs() > APART * line);
-            more.extend((is_apart && angle > FEWEST_PERIODS * line).then_some(angle));
+            let is_one = is_apart && angle > FEWEST_PERIODS * line && more.len() < MOST_SINES;
+            more.extend(is_one.then_some(angle));
         }
         more.sort_by(f64::total_cmp);
-        if more.len() == angles.len() || more.len() > MOST_SINES {
+        if more.len() == angles.len() {
             break;
         }
         for _ in 0..STEPS {
