@@ -30,6 +30,8 @@ UNSEEN = {
         valve_hysteresis valve_leakage_below_tare plant_correlation family_opposed specification_load_motion plant_with_sizing
         line_model_pipe line_model_volume plant_case_incomplete family_measured_empty family_measured_and_grid
         line_accumulator_pressures uncertainty_direction_ends velocity_sensor_alone cross_port_orifice_wide cross_port_flow_wide series_travel_short series_without_travel series_stop_damping series_stop_missing series_coil_progressive series_vanishing
+        impedance_of_nothing impedance_of_position impedance_too_fast impedance_without_load
+        motor_stops_without_stroke motor_unserved motor_file
     """.split(),
     "numbers that a double cannot hold, infinity, and none": """
         number_huge_hexadecimal number_too_large quantity_infinite quantity_nan quantity_too_large quantity_too_small

@@ -235,7 +235,7 @@ const LONG_ROBUST_TESTS: [&str; 8] =
     ["test", "--release", "-p", "phea-qft", "--test", "all", "--", "--ignored"];
 
 /// Four hundred valves, lines and frictions, identified from recordings of one each: how often the
-/// intervals cover the truth; and the alternatives of the book on loads that yield.
+/// intervals cover the truth; and the alternatives of the book under each of its loads.
 const IDENTIFIED_VALVES: [&str; 12] = [
     "test",
     "--release",

@@ -285,7 +285,7 @@ fn refused(loaded: &Loaded, request: &Request, error: &CommandError) -> Failure 
     let failure = match error.refusal() {
         _ if error.is_of_files() => Failure::not_written(&error.to_string()),
         Some(report) => Failure::wrong_input(report.render(styled())),
-        None => Failure::wrong_input(format!("error: {error}")),
+        None => Failure::wrong_input(format!("error: {}", command::error_text(loaded, error))),
     };
     failure.with_json(command::error_json(loaded, request, error))
 }

@@ -9,6 +9,7 @@ mod integral;
 mod rate_sensor;
 mod sampled;
 mod section;
+mod virtual_impedance;
 
 pub(crate) use integral::integral_row;
 
@@ -17,6 +18,7 @@ pub use element::{Compensator, Element, Stage};
 pub use rate_sensor::{RateFilter, RateSensor};
 pub use sampled::{ControllerOutput, ControllerState, SampledController};
 pub use section::Section;
+pub use virtual_impedance::VirtualImpedance;
 
 use crate::linear::Discretization;
 

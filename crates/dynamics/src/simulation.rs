@@ -146,6 +146,16 @@ pub trait Plant<S: Scalar> {
         S::from(1.0)
     }
 
+    /// What a virtual impedance acts on: the position of a load, in m.
+    fn position<T: Scalar + From<S>>(&self, _state: &[T], _inputs: &[T]) -> T {
+        T::from(0.0)
+    }
+
+    /// Typical magnitude of [`Plant::position`], in its unit.
+    fn position_scale(&self) -> S {
+        S::from(1.0)
+    }
+
     /// As [`System::delays`].
     fn delays(&self) -> Vec<S> {
         Vec::new()

@@ -6,6 +6,7 @@
 //! ```
 
 mod asked;
+mod cases;
 mod columns;
 mod comparison;
 mod front;
@@ -14,9 +15,13 @@ mod port;
 mod recentred;
 
 pub use asked::{AskedAlternative, asked};
+pub use cases::{AskedCase, JudgedCase, asked_cases};
 pub use columns::{AlternativeColumn, AlternativeColumns, ColumnPart};
-pub use comparison::{COLUMN_SENSES, ColumnSense, ComparedMeasures, MEASURES, dominates};
+pub use comparison::{
+    COLUMN_SENSES, COMPARED_AT_A_GLANCE, ColumnSense, ComparedMeasures, MEASURES, dominates,
+};
 pub use front::{Front, FrontColumn, FrontPoint, FrontRequest, FrontValue};
+pub use hardware::retracted_length;
 pub use port::IMPEDANCE_AT;
 pub use recentred::MovedRange;
 
@@ -42,6 +47,8 @@ pub struct Alternatives {
     pub judged: Vec<JudgedAlternative>,
     /// Names of those that were not finished when the watch stopped.
     pub not_reached: Vec<String>,
+    /// The same under each load case.
+    pub cases: Vec<JudgedCase>,
     /// Fronts over a swept key, where they are asked for.
     pub front: Option<Front>,
 }
@@ -92,7 +99,11 @@ impl Alternatives {
     /// Whether every alternative has a design, and every scenario ran to its end.
     pub fn is_complete(&self) -> bool {
         let front = self.front.as_ref().is_none_or(|front| front.not_reached == 0);
-        front && self.not_reached.is_empty() && self.judged.iter().all(JudgedAlternative::is_judged)
+        let all = |judged: &[JudgedAlternative], not_reached: &[String]| {
+            not_reached.is_empty() && judged.iter().all(JudgedAlternative::is_judged)
+        };
+        let cases = self.cases.iter().all(|case| all(&case.judged, &case.not_reached));
+        front && cases && all(&self.judged, &self.not_reached)
     }
 }
 
@@ -130,8 +141,9 @@ impl JudgedAlternative {
     }
 }
 
-/// Judges the project as it is declared, and each of its alternatives, one after the other. If the
-/// watch answers `false`, the one at hand and all later ones are not reached.
+/// Judges the project as it is declared, and each of its alternatives, one after the other; then all of
+/// them again under each load case. If the watch answers `false`, the one at hand and all later ones are
+/// not reached.
 ///
 /// # Errors
 /// [`ProcedureError::NoAlternative`] for a project without alternatives, [`DesignError::NoSpecification`] for one
@@ -164,29 +176,27 @@ pub fn judge(
     }
     let planned = request.front.as_ref().map(front::plan).transpose()?;
     let all = asked(source, loaded, catalogues)?;
+    let cases = asked_cases(source, loaded, catalogues)?;
     let catalogue = catalogue::load(source, catalogues).map_err(ProcedureError::Catalogue)?;
-    let judging =
-        Judging { source, catalogue: &catalogue, declared: loaded, impedance_at: &request.impedance_at };
-    let steps = planned.as_ref().map_or(1, |plan| 1 + plan.values.len());
-    let count = (all.len() * steps) as f64;
-    let mut found = Alternatives { judged: Vec::new(), not_reached: Vec::new(), front: None };
-    for (index, one) in all.iter().enumerate() {
-        let mut told = |progress: Progress| {
-            watch(Progress { share: (index as f64 + progress.share) / count, ..progress })
-        };
-        let reached = found.not_reached.is_empty();
-        let judged = if reached { judging.judged(one.clone(), &mut told) } else { None };
-        match judged {
-            Some(judged) => found.judged.push(judged),
-            None => found.not_reached.push(one.name.clone()),
-        }
-    }
+    let impedance_at = request.impedance_at.as_slice();
+    let judging = Judging { source, catalogue: &catalogue, declared: loaded, impedance_at };
+    let swept = planned.as_ref().map_or(0, |plan| plan.values.len());
+    let rounds = (1 + cases.len() + swept) as f64;
+    let round = |watch: Watch<'_>, [first, last]: [f64; 2], progress: Progress| {
+        watch(Progress { share: (first + (last - first) * progress.share) / rounds, ..progress })
+    };
+    let (judged, not_reached) =
+        cases::judged(&judging, &all, true, &mut |progress| round(watch, [0.0, 1.0], progress));
+    let goes_on = not_reached.is_empty();
+    let until = 1.0 + cases.len() as f64;
+    let cases = cases::judged_cases((source, &catalogue, impedance_at), cases, goes_on, &mut |progress| {
+        round(watch, [1.0, until], progress)
+    });
+    let mut found = Alternatives { judged, not_reached, cases, front: None };
     if let Some(plan) = planned {
-        let done = all.len() as f64 / count;
-        let mut told =
-            |progress: Progress| watch(Progress { share: done + (1.0 - done) * progress.share, ..progress });
+        let goes_on = goes_on && found.cases.iter().all(|case| case.not_reached.is_empty());
         let again = ReadingAgain { source, catalogues };
-        let goes_on = found.not_reached.is_empty();
+        let mut told = |progress: Progress| round(watch, [until, rounds], progress);
         found.front = Some(front::swept(&judging, (&again, &all), &plan, goes_on, &mut told));
     }
     Ok(found)

@@ -6,7 +6,7 @@
 use phea_hydraulics::cross_port::Restrictor;
 use phea_hydraulics::operating_point::OperatingPoint;
 
-use crate::control::velocity_sensor;
+use crate::control::{velocity_sensor, virtual_impedance};
 use crate::project::{CrossPortKind, LineMotion, Load, Project, Pump, SupplyModel};
 use crate::quantity::{DisplayUnit, PRESSURE, display, significant};
 use crate::rig::{
@@ -85,7 +85,7 @@ fn beside_spring(project: &Project) -> Option<String> {
 
 /// What no linear model counts.
 fn apart_from_lines(project: &Project) -> impl Iterator<Item = Caveat> {
-    [load(project), feed_forward(project)].into_iter().flatten()
+    [load(project), feed_forward(project), impedance(project)].into_iter().flatten()
 }
 
 /// A wall without a stated mass of the load.
@@ -155,7 +155,8 @@ fn accumulator(setup: &Setup<'_>) -> Option<Caveat> {
     let declared = setup.project.actuator.as_ref()?;
     let ChargedRange { least, greatest } = charged_range(setup.rig().ok()?)?;
     let [of_a, of_b] = accumulator_place(declared);
-    let newton = |point: OperatingPoint| DisplayUnit::KILONEWTON.text(point.hydraulic_force, 3);
+    let unit = setup.project.motion().unit(DisplayUnit::KILONEWTON);
+    let newton = |point: OperatingPoint| unit.text(point.hydraulic_force, 3);
     let (place, beyond) = match (least, greatest) {
         (None, None) => return None,
         (Some(least), None) => (of_a, format!("below {}", newton(least))),
@@ -280,6 +281,34 @@ fn feed_forward(project: &Project) -> Option<Caveat> {
         ),
         unproven: yields || limits_load_motion(project),
     })
+}
+
+/// A virtual impedance: what the specifications of its loop speak of, or that measured plants lack it.
+fn impedance(project: &Project) -> Option<Caveat> {
+    virtual_impedance(project)?;
+    let yields = project.actuator.as_ref().is_some_and(|actuator| actuator.load != Load::Prescribed);
+    if is_measured(project) {
+        let what = match yields {
+            true => "this is the loop without it, and only a simulation is of the loop with it",
+            false => "of all specifications load_motion alone depends on it, and only a simulation has it",
+        };
+        let sentence = format!(
+            "controller.impedance is not counted, as the plants of the family were measured without the position of the load: {what}"
+        );
+        return Some(Caveat { sentence, unproven: yields || limits_load_motion(project) });
+    }
+    let sentence = match yields {
+        true => {
+            "controller.impedance is counted, and the load can move under force: loop and specifications are of y = F_e + Z_v (x_L - x_0), \
+             which the loop makes follow the reference; load_motion limits by how much y misses it, and the force by itself is told by a \
+             simulation"
+        }
+        false => {
+            "controller.impedance is counted: load_motion limits y = F_e + Z_v (x_L - x_0) per motion, by which the force misses the impedance \
+             that is asked for; all other specifications are those of the force"
+        }
+    };
+    Some(Caveat { sentence: sentence.to_string(), unproven: false })
 }
 
 /// The feed-forward of the load velocity, which the models of a linearisation do not include

@@ -3,13 +3,13 @@
 
 use num_complex::Complex64;
 use phea_dynamics::controller::{
-    AntiWindup, Compensator, Controller, Element, RateFilter, RateSensor, Stage, Timing,
+    AntiWindup, Compensator, Controller, Element, RateFilter, RateSensor, Stage, Timing, VirtualImpedance,
 };
 use phea_dynamics::linear::{Discretization, LinearError, Polynomial, TimeDomain, TransferFunction};
 use phea_qft::design::quantization::{CoefficientFormat, Converter, Quantization, QuantizationError};
 
 use crate::project::{
-    self, ElementKind, Formula, FormulaError, Project, Rational, RationalFunction, Transfer,
+    self, ElementKind, Formula, FormulaError, ImpedanceForm, Project, Rational, RationalFunction, Transfer,
 };
 
 /// Why a declared controller or prefilter is not a transfer function.
@@ -57,8 +57,10 @@ pub fn controller(project: &Project) -> Result<Option<Controller>, ControlError>
     let Some(declared) = project.controller.as_ref().filter(|controller| controller.has_law()) else {
         return Ok(None);
     };
+    let mut feedback = compensator("[controller]", &declared.transfer, declared.sample_time)?;
+    feedback.stages.extend(admittance(declared)?);
     Ok(Some(Controller {
-        feedback: compensator("[controller]", &declared.transfer, declared.sample_time)?,
+        feedback,
         prefilter: prefilter(project)?.unwrap_or_default(),
         timing: timing(project),
         command_limit: declared.saturation,
@@ -95,6 +97,38 @@ pub fn timing(project: &Project) -> Timing {
         continuous_prefilter: project.prefilter.as_ref().is_some_and(|prefilter| prefilter.continuous),
         rate_feed_forward: 0.0,
         rate_sensor: RateSensor::default(),
+    }
+}
+
+/// What makes the controller of a position one of the force: 1/(M_v s^2 + B_v s + K_v); none where
+/// the declared controller is that of the force.
+fn admittance(declared: &project::DeclaredController) -> Result<Option<Stage>, ControlError> {
+    let place = "[controller.impedance]";
+    let inner = declared.impedance.filter(|impedance| impedance.form == ImpedanceForm::Admittance);
+    let Some(impedance) = inner else { return Ok(None) };
+    let function = lowered(&impedance).admittance();
+    let function = function.map_err(|error| ControlError::Linear { place, error })?;
+    Ok(Some(Stage { element: Element::General(function), enabled: true }))
+}
+
+/// Whether the declared controller is that of the position in an inner loop.
+pub fn is_of_position(project: &Project) -> bool {
+    let impedance = project.controller.as_ref().and_then(|controller| controller.impedance);
+    impedance.is_some_and(|impedance| impedance.form == ImpedanceForm::Admittance)
+}
+
+/// The virtual impedance of the loop; `None` where there is none, or one of zero.
+pub fn virtual_impedance(project: &Project) -> Option<VirtualImpedance> {
+    let declared = project.controller.as_ref()?.impedance?;
+    Some(lowered(&declared)).filter(|impedance| !impedance.is_zero())
+}
+
+fn lowered(declared: &project::DeclaredImpedance) -> VirtualImpedance {
+    VirtualImpedance {
+        mass: declared.mass,
+        damping: declared.damping,
+        stiffness: declared.stiffness,
+        filter_time_s: declared.filter_time.unwrap_or(0.0),
     }
 }
 

@@ -3,6 +3,7 @@
 
 mod accumulator;
 mod cross_port;
+mod impedance;
 mod list;
 mod rig;
 mod series;

@@ -28,6 +28,7 @@ use phea_qft::design::{Design, DesignOptions, DesignOutcome, DesignProblem, Pref
 use phea_qft::verification::Verdict;
 
 use crate::audit::{ProjectAudit, audit_problem, caveat_of_rig, unexamined_rig};
+use crate::control::is_of_position;
 use crate::error::ProcedureError;
 use crate::project::{self, Project};
 use crate::quantity;
@@ -53,6 +54,12 @@ pub enum DesignError {
     /// There is no specification for a controller.
     #[error("the project states no [[specification]] to design a controller for")]
     NoSpecification,
+    /// The given controller is that of a position.
+    #[error(
+        "a design finds the controller G of the force, and controller.impedance.form = \"admittance\" states that of the position: design with \
+         form = \"impedance\", which is the same loop, and take C_x = G (M_v s^2 + B_v s + K_v)"
+    )]
+    Admittance,
     /// The search found no controller at all; with what was known about the problem before.
     #[error("the search ended without a controller{}", .0.iter().map(|one| format!("; {one}")).collect::<String>())]
     NoController(Vec<String>),
@@ -222,6 +229,9 @@ fn designed(
     let project = setup.project;
     if project.specifications.is_empty() {
         return Err(DesignError::NoSpecification.into());
+    }
+    if is_of_position(project) {
+        return Err(DesignError::Admittance.into());
     }
     let given = robust_problem(source, setup)?;
     let published = match &setup.controller {

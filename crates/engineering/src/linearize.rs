@@ -2,6 +2,7 @@
 //! first order (6.13); their omissions, the impedance at the load, and whether it is passive.
 
 mod agreement;
+mod port;
 mod sweep;
 
 use std::f64::consts::FRAC_PI_2;
@@ -29,9 +30,11 @@ use phea_hydraulics::two_pressure::two_pressure_coefficients;
 
 pub use agreement::AgreementBand;
 pub use agreement::{WITHIN_DB, WITHIN_DEG};
+pub use port::{AskedAt, AskedImpedance, SHOWN_AT, WITHIN_PERCENT};
 pub use sweep::{POINTS, Sweep, SweepPoint, SweepRequest, Swept, sweep};
 pub(crate) use sweep::{points, range, values};
 
+use crate::quantity::{DisplayUnit, MotionKind, TORSIONAL_STIFFNESS, fitting};
 use crate::rig::Rig;
 
 /// Frequency up to which the thesis compares its models, rad/s.
@@ -40,6 +43,8 @@ const COMPARISON_END: f64 = 1000.0;
 /// All linear models and properties of a rig.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Linearization {
+    /// How the rig moves.
+    pub motion: MotionKind,
     /// Stiffness over the stroke by the project's model: nominal, softest and stiffest wall.
     pub stiffness: [StrokeStiffness; 3],
     /// Both stiffness models side by side, nominal.
@@ -79,6 +84,9 @@ pub struct Linearization {
     pub closed_loop: Option<PortView>,
     /// Why there is no closed loop.
     pub closed_loop_absent: Option<String>,
+    /// What a virtual impedance asks of the port, and what the loop shows there; `None` without one,
+    /// or without a controller.
+    pub asked: Option<AskedImpedance>,
     /// Above this frequency the piston's mass hides the compliance, rad/s.
     pub compliance_hidden_above_rad_per_s: f64,
 }
@@ -143,6 +151,7 @@ pub fn linearize(
     let reductions = [&two_pressure.command, &full.command, &decomposed[1], &first_order];
     let agreement = agreement::agreement(rig, &frequency_grid(&plant.command)?, &plant.command, reductions);
     Ok(Linearization {
+        motion: rig.motion,
         plant_is_fifth_order: is_fifth_order(rig),
         agreement,
         stiffness: [StiffeningMember::Nominal, StiffeningMember::Minimum, StiffeningMember::Maximum]
@@ -160,6 +169,7 @@ pub fn linearize(
         open_loop: open_loop_view(rig, &port)?,
         closed_loop_absent: absence(feedback.as_ref(), closed_loop.as_ref()),
         closed_loop,
+        asked: controller.map(|given| port::asked(rig, given, sensor)).transpose()?.flatten(),
         compliance_hidden_above_rad_per_s: compliance_hidden_above(
             rig.linear.hydraulic_stiffness,
             rig.linear.moving_mass,
@@ -213,7 +223,7 @@ fn closed_loop_view(rig: &Rig, controller: &TransferFunction) -> Result<PortView
     let impedance = closed_loop_port(&rig.in_loop().plant, controller)?;
     Ok(PortView {
         passivity: passivity(&impedance)?,
-        asymptotes: impedance_asymptotes(&rig.leaking(), Some(controller)),
+        asymptotes: port::asymptotes(rig, controller),
         final_force_n: final_force_after_load_step(&load_motion_of(&impedance)?, 1e-3),
         impedance,
     })
@@ -294,12 +304,29 @@ fn compare(grid: &[f64], reference: &TransferFunction, other: &TransferFunction)
 /// Share by which the two stiffness models may differ and still be said to agree.
 const AGREEMENT: f64 = 0.005;
 
-/// One sentence on the two stiffness models.
-pub fn stiffness_sentence(difference: &ModelDifference) -> String {
-    let number = |value: f64| crate::quantity::DisplayUnit::MEGANEWTON_PER_METRE.number(value, 3);
-    let range = |stiffness: &StrokeStiffness| {
-        format!("{} to {} MN/m", number(stiffness.minimum), number(stiffness.maximum))
+/// The least and the greatest stiffness, or the one that it has everywhere, with the place.
+///
+/// A motor's is shown in the unit that fits it: motors are of very different sizes.
+pub fn stiffness_words(motion: MotionKind, stiffness: &StrokeStiffness) -> [String; 2] {
+    let unit = match motion {
+        MotionKind::Linear => DisplayUnit::MEGANEWTON_PER_METRE,
+        MotionKind::Rotary => fitting(stiffness.minimum, &TORSIONAL_STIFFNESS),
     };
+    let [least, greatest] = [stiffness.minimum, stiffness.maximum];
+    match motion.is_rotary() && least == greatest {
+        true => [unit.text(least, 3), "at every angle".to_string()],
+        false => {
+            let range = format!("{} to {}", unit.number(least, 3), unit.text(greatest, 3));
+            [range, "over the stroke".to_string()]
+        }
+    }
+}
+
+/// One sentence on the two stiffness models.
+pub fn stiffness_sentence(linearization: &Linearization) -> String {
+    let Linearization { motion, stiffness_models: difference, .. } = linearization;
+    let range = |stiffness: &StrokeStiffness| stiffness_words(*motion, stiffness)[0].clone();
+    let [_, place] = stiffness_words(*motion, &difference.by_volume);
     let percent = |share: f64| crate::quantity::significant(100.0 * share, 2);
     let ratios = [difference.minimum_ratio, difference.maximum_ratio];
     let gas = match difference.gas_compliance_share {
@@ -308,14 +335,14 @@ pub fn stiffness_sentence(difference: &ModelDifference) -> String {
     };
     if ratios.iter().all(|ratio| (ratio - 1.0).abs() < AGREEMENT) {
         return format!(
-            "K_H is {} over the stroke, by either stiffness model (uniform, by_volume): the lines are hardly softer \
+            "K_H is {} {place}, by either stiffness model (uniform, by_volume): the lines are hardly softer \
              than the oil, and {} % of the oil is in the chambers.{gas}",
             range(&difference.by_volume),
             percent(difference.chamber_volume_share)
         );
     }
     format!(
-        "With one modulus for line and chamber (uniform) K_H is {} over the stroke; with the chamber's oil keeping its \
+        "With one modulus for line and chamber (uniform) K_H is {} {place}; with the chamber's oil keeping its \
          own (by_volume) it is {}, {} times as stiff at its least: {} % of the oil is in the chambers, and only {} % \
          of the compliance is the lines'.{gas}",
         range(&difference.uniform),

@@ -15,6 +15,7 @@ mod spring;
 mod supply;
 
 use num_complex::Complex64;
+use phea_dynamics::controller::VirtualImpedance;
 use phea_hydraulics::actuator::{Actuator, ActuatorError, Components};
 use phea_hydraulics::force_sensor::in_series;
 use phea_hydraulics::line::{LineError, StiffeningMember};
@@ -28,7 +29,9 @@ use phea_hydraulics::two_pressure::{
     TwoPressureLinearParameters, TwoPressureModel, reduce, two_pressure_linear_parameters,
 };
 
+use crate::control::virtual_impedance;
 use crate::project::{self, Project};
+use crate::quantity::MotionKind;
 
 pub use accumulator::{ChargedRange, EmptyAccumulator, accumulator_place, charged_range};
 pub use assembly::{actuator, components};
@@ -56,6 +59,8 @@ pub use supply::{power_at_rest, power_unit, settled_supply};
 /// A rig with everything that procedures compute with.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rig {
+    /// How it moves: of a rig that turns, every position is in rad and every force in N m.
+    pub motion: MotionKind,
     /// The actuator as physics.
     pub actuator: Actuator,
     /// The point about which the linear models are taken.
@@ -88,6 +93,8 @@ pub struct Rig {
     pub in_motion: Option<PlantInMotion>,
     /// The feed-forward of the load velocity in the linear loop, which [`Rig::in_loop`] includes.
     pub fed: Option<FeedForwardPath>,
+    /// The virtual impedance of the loop, which [`Rig::in_loop`] includes.
+    pub virtual_impedance: Option<VirtualImpedance>,
 }
 
 /// Why a project has no rig.
@@ -156,10 +163,9 @@ impl Rig {
         let (position, steady) = place(project, components.cylinder.stroke, &numbers);
         let condition = Condition::from(steady);
         let balance = Balance::of(components);
-        let supply = settled_supply(declared, &numbers, &balance, steady);
-        let supply = supply.filter(|found| found.supply.pressure.is_finite());
-        // the valve at the pressure that the pump maintains there, lines and stall forces at the
-        // stated one
+        let supply = settled_supply(declared, &numbers, &balance, steady)
+            .filter(|found| found.supply.pressure.is_finite());
+        // the valve at the pressure that the pump maintains, lines and stall forces at the stated one
         let settled = supply.map_or(components.supply, |found| found.supply);
         let at_valve = Actuator::new(Components { supply: settled, ..*components })?;
         let point = operating_point(&at_valve, position, condition)?;
@@ -194,6 +200,7 @@ impl Rig {
         let plant = LinearPlant { velocity_sensor: shown, ..plant };
         let in_motion = in_motion(&declared.line, components, &point, &two_pressure, &plant)?;
         Ok(Rig {
+            motion: declared.motion(),
             actuator,
             point,
             supply,
@@ -208,6 +215,7 @@ impl Rig {
             plant,
             in_motion,
             fed: FeedForwardPath::of(project, &linear),
+            virtual_impedance: virtual_impedance(project),
         })
     }
 }

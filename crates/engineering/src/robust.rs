@@ -19,6 +19,7 @@ use crate::error::ProcedureError;
 use crate::family::family;
 use crate::family::measured::{WidestDisc, widest_disc};
 use crate::project::Project;
+use crate::quantity::MotionKind;
 use crate::quantity::significant;
 use crate::setup::Setup;
 use crate::source::Source;
@@ -49,6 +50,8 @@ pub struct RobustProblem {
     pub without_polynomials: Option<&'static str>,
     /// Noise of the velocity that a sampled controller feeds forward, m/s rms; zero without.
     pub velocity_noise: f64,
+    /// How the rig moves.
+    pub motion: MotionKind,
     /// Declared effects that none of this includes.
     pub caveats: Vec<Caveat>,
 }
@@ -121,6 +124,7 @@ pub fn robust_problem(source: &dyn Source, setup: &Setup<'_>) -> Result<RobustPr
             None => None,
         },
         velocity_noise: declared_velocity_noise(setup.project),
+        motion: setup.project.motion(),
         caveats: caveats(setup).into_iter().chain(discs(setup.project, source)).collect(),
     })
 }

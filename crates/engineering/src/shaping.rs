@@ -17,6 +17,7 @@ use phea_qft::template::{TemplateError, TemplateOptions, Templates};
 use phea_qft::verification::{StabilityFinding, TrackingJudgement};
 
 use crate::audit::PlantNames;
+use crate::control::is_of_position;
 use crate::error::ProcedureError;
 use crate::project::{self, DeclaredElement, Findings, Loaded, Refusal};
 use crate::robust::{RobustError, RobustProblem, robust_problem};
@@ -54,6 +55,12 @@ pub enum ShapingError {
     /// A prefilter without a loop.
     #[error("the project gives no [controller]: shape it first, the prefilter stands in front of its loop")]
     NoController,
+    /// The controller is that of a position.
+    #[error(
+        "the elements of the controller of the force are shaped, and controller.impedance.form = \"admittance\" states that of the position: \
+         shape with form = \"impedance\", which is the same loop with G = C_x/(M_v s^2 + B_v s + K_v)"
+    )]
+    Admittance,
     /// Elements in tables with others between them.
     #[error("the elements of [{table}] stand in tables with others between them: bring them together first")]
     Scattered {
@@ -108,6 +115,9 @@ pub fn shape(
     let has_law = loaded.project.controller.as_ref().is_some_and(project::DeclaredController::has_law);
     if shaped == Shaped::Prefilter && !has_law {
         return Err(ShapingError::NoController.into());
+    }
+    if shaped == Shaped::Controller && is_of_position(&loaded.project) {
+        return Err(ShapingError::Admittance.into());
     }
     let mut workpiece = Workpiece::new(&loaded.project, shaped)?;
     // without the elements, since the original ones may be such that they cannot be sampled

@@ -236,7 +236,7 @@ pub fn simulate_into(
     let ending = destination.map_or("csv", |(_, format)| format.ending());
     let names = table_names(project.scenarios.iter().map(|scenario| scenario.name.as_str()), ending);
     for ((scenario, (bench, course, measured)), name) in project.scenarios.iter().zip(&prepared).zip(&names) {
-        let begin = |(destination, format)| RunTable::begin((destination, name), format, &bench.machine);
+        let begin = |(destination, format)| RunTable::begin((destination, name), format, bench);
         let table = destination.map(begin).transpose()?;
         let mut told =
             |time_s: f64| watch(Progress { stage: "simulating", share: (before + time_s) / whole });

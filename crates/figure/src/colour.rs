@@ -174,14 +174,22 @@ impl Role {
     }
 }
 
-/// Line of the series with this index: colour and dash pattern together.
+/// Line of the series with this index: colour and dash pattern together. Where the colours are used up
+/// they come again with other patterns, so that the first 64 lines differ.
+///
+/// # Example
+/// ```
+/// use phea_figure::colour::series_stroke;
+/// let strokes: Vec<_> = (0..64).map(series_stroke).collect();
+/// assert!((0..64).all(|one| (0..one).all(|other| strokes[one] != strokes[other])));
+/// ```
 pub const fn series_stroke(index: usize) -> Stroke {
     Stroke { role: series_role(index), width: 2.0, dash: series_dash(index) }
 }
 
 /// Dash pattern of the series with this index.
 pub(crate) const fn series_dash(index: usize) -> Dash {
-    match index % 8 {
+    match (index + 7 * (index / SERIES_COUNT as usize)) % 8 {
         0 => Dash::Solid,
         1 => Dash::Dashed,
         2 => Dash::DashDot,

@@ -6,6 +6,7 @@
 //! comes from the caller and is cut to its place.
 
 mod mechanics;
+mod motor;
 mod pen;
 mod symbols;
 mod test_circuit;
@@ -97,6 +98,8 @@ pub struct SchematicInput {
     pub line_a: LineSymbol,
     /// Line of chamber B.
     pub line_b: LineSymbol,
+    /// A motor in place of the cylinder.
+    pub rotary: bool,
     /// Rods.
     pub rods: Rods,
     /// Whether chamber B faces the load; otherwise chamber A does.
@@ -135,7 +138,11 @@ pub fn schematic(words: Words, input: &SchematicInput) -> Figure {
     symbols::supply(&mut scene, input);
     symbols::working_lines(&mut scene, input);
     symbols::valve(&mut scene, input);
-    mechanics::cylinder(&mut scene, input);
+    if input.rotary {
+        motor::motor(&mut scene, input);
+    } else {
+        mechanics::cylinder(&mut scene, input);
+    }
     mechanics::load(&mut scene, input);
     if let Some(controller) = &input.controller {
         symbols::controller(&mut scene, controller, input.load_cell.is_some());

@@ -8,7 +8,7 @@ use super::plot::{AxisDirection, Mark, Marker, MarkerStyle, Panel, Plot, PointSi
 use super::scene::{Dash, Fill, Stroke};
 use super::ticks::plain;
 use super::{Figure, Words};
-use phea_quantity::DisplayUnit;
+use phea_quantity::{DisplayUnit, MotionKind};
 
 /// A curve of stiffness; all vectors have one value for each position.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -34,12 +34,14 @@ pub struct StiffnessInput {
     pub operating_position_m: Option<f64>,
     /// What the bands mean, such as `stiffening 4 to 5`.
     pub band_label: String,
+    /// How the rig moves: of one that turns, positions are in rad and stiffnesses in N m/rad.
+    pub motion: MotionKind,
 }
 
 /// Draws the figure: linear from zero, or logarithmic when the curves lie more than a factor of
 /// twelve apart.
 pub fn stiffness_over_stroke(words: Words, input: &StiffnessInput) -> Figure {
-    let (length, stiffness) = (DisplayUnit::MILLIMETRE, DisplayUnit::MEGANEWTON_PER_METRE);
+    let (length, stiffness) = units(input.motion);
     let values = || {
         input.curves.iter().flat_map(move |curve| {
             [&curve.stiffness_n_per_m, &curve.minimum_n_per_m, &curve.maximum_n_per_m]
@@ -61,7 +63,7 @@ pub fn stiffness_over_stroke(words: Words, input: &StiffnessInput) -> Figure {
     let mut marks = Vec::new();
     let mut legend = Vec::new();
     for (index, curve) in input.curves.iter().enumerate() {
-        curve_marks(&mut marks, index, curve);
+        curve_marks(&mut marks, index, curve, units(input.motion));
         legend.push(LegendEntry::line(&curve.name, series_stroke(index)));
         if !curve.minimum_n_per_m.is_empty() && !input.band_label.is_empty() && index == 0 {
             legend.push(LegendEntry::area(&input.band_label, band_fill(index)));
@@ -83,8 +85,17 @@ fn band_fill(index: usize) -> Fill {
     Fill { role: series_role(index), opacity: 0.18 }
 }
 
-fn curve_marks(marks: &mut Vec<Mark>, index: usize, curve: &StiffnessCurve) {
-    let (length, stiffness) = (DisplayUnit::MILLIMETRE, DisplayUnit::MEGANEWTON_PER_METRE);
+/// Those of position and stiffness.
+fn units(motion: MotionKind) -> (DisplayUnit, DisplayUnit) {
+    (motion.unit(DisplayUnit::MILLIMETRE), motion.unit(DisplayUnit::MEGANEWTON_PER_METRE))
+}
+
+fn curve_marks(
+    marks: &mut Vec<Mark>,
+    index: usize,
+    curve: &StiffnessCurve,
+    (length, stiffness): (DisplayUnit, DisplayUnit),
+) {
     let points = |values: &[f64]| -> Vec<(f64, f64)> {
         curve.positions_m.iter().zip(values).map(|(x, y)| (length.of(*x), stiffness.of(*y))).collect()
     };

@@ -160,6 +160,7 @@ fn stiffness_curves() {
             curves: r.many(9, curve),
             operating_position_m: r.maybe(Random::number),
             band_label: r.name(),
+            ..StiffnessInput::default()
         };
         stiffness_over_stroke(r.words(), &input)
     });
@@ -291,6 +292,7 @@ fn circuits() {
             rows: r.many(5, Random::name),
         };
         let input = SchematicInput {
+            rotary: r.unit() < 0.5,
             supply: if r.unit() < 0.5 { SupplyKind::Pump } else { SupplyKind::ConstantPressure },
             supply_rows: r.many(4, Random::name),
             tank: r.name(),

@@ -1,22 +1,28 @@
-//! The cylinder: areas, stroke, moving mass and chamber volumes, symmetric or not.
+//! The cylinder, or the motor in its place: areas, stroke, moving mass and chamber volumes, symmetric
+//! or not.
 
 use phea_dynamics::scalar::Scalar;
 
 use crate::contact::Contact;
 use crate::parameter::{ParameterError, Problems};
+use crate::stroke::ActuatorStroke;
 
 /// A double-acting cylinder. Units: m2, m, kg, m3.
 ///
 /// The piston position x runs from 0 at the A end to the stroke at the B end, so chamber A grows
 /// with x.
+///
+/// A hydraulic motor has the same equations: both areas are its displacement in m3/rad, x is its
+/// angle in rad, the mass its inertia in kg m2, every force a torque in N m and every stiffness one
+/// in N m/rad. A vane actuator has a stroke in rad; a motor that turns on has none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cylinder<S = f64> {
     /// Piston area on the A side, A_A, in m2.
     pub area_a: S,
     /// Piston area on the B side, A_B, in m2.
     pub area_b: S,
-    /// Stroke L in m.
-    pub stroke: S,
+    /// ActuatorStroke L in m, or none.
+    pub stroke: ActuatorStroke<S>,
     /// Mass of piston, rods and everything fixed to them up to the force sensor, M, in kg.
     pub moving_mass: S,
     /// Volume of chamber A that the piston never sweeps, without the line, in m3.
@@ -26,6 +32,9 @@ pub struct Cylinder<S = f64> {
     /// Laminar leakage across the piston per pressure difference, in m3/(s Pa); if absent, the
     /// piston does not leak.
     pub internal_leakage: Option<S>,
+    /// Laminar leakage of each chamber to the tank per pressure above it, in m3/(s Pa), as of a
+    /// motor through its case; if absent, nothing leaks outwards.
+    pub external_leakage: Option<S>,
     /// Contact at both ends of the stroke. If absent, reaching an end is reported, but nothing
     /// stops the piston.
     pub end_stops: Option<Contact<S>>,
@@ -37,12 +46,17 @@ impl Cylinder {
         let mut problems = Problems::default();
         problems.positive("area_a", self.area_a);
         problems.positive("area_b", self.area_b);
-        problems.positive("stroke", self.stroke);
+        if let ActuatorStroke::Limited(stroke) = self.stroke {
+            problems.positive("stroke", stroke);
+        }
         problems.positive("moving_mass", self.moving_mass);
         problems.not_negative("dead_volume_a", self.dead_volume_a);
         problems.not_negative("dead_volume_b", self.dead_volume_b);
         if let Some(leakage) = self.internal_leakage {
             problems.positive("internal_leakage", leakage);
+        }
+        if let Some(leakage) = self.external_leakage {
+            problems.positive("external_leakage", leakage);
         }
         if let Some(contact) = self.end_stops {
             problems.component("end_stops", contact.problems());
@@ -58,11 +72,12 @@ impl<S: Copy> Cylinder<S> {
         Cylinder {
             area_a: of(self.area_a),
             area_b: of(self.area_b),
-            stroke: of(self.stroke),
+            stroke: self.stroke.convert(of),
             moving_mass: of(self.moving_mass),
             dead_volume_a: of(self.dead_volume_a),
             dead_volume_b: of(self.dead_volume_b),
             internal_leakage: self.internal_leakage.map(&mut *of),
+            external_leakage: self.external_leakage.map(&mut *of),
             end_stops: self.end_stops.map(|contact| contact.convert(of)),
         }
     }
@@ -121,18 +136,21 @@ pub fn annulus_area<S: Scalar>(piston: S, rod: S) -> S {
 /// V_A = V_A0 + A_A x        V_B = V_B0 + A_B (L - x)                  thesis (4.27), (4.28)
 /// ```
 ///
+/// Without a stroke both are the dead volumes alone.
+///
 /// # Example
 /// ```
 /// use phea_hydraulics::cylinder::{Cylinder, chamber_volumes};
+/// use phea_hydraulics::stroke::ActuatorStroke;
 /// let cylinder = Cylinder {
-///     area_a: 2e-3, area_b: 1e-3, stroke: 0.5, moving_mass: 10.0, dead_volume_a: 1e-5, dead_volume_b: 0.0,
-///     internal_leakage: None, end_stops: None,
+///     area_a: 2e-3, area_b: 1e-3, stroke: ActuatorStroke::Limited(0.5), moving_mass: 10.0, dead_volume_a: 1e-5,
+///     dead_volume_b: 0.0, internal_leakage: None, external_leakage: None, end_stops: None,
 /// };
 /// assert_eq!(chamber_volumes(&cylinder, 0.25), [5.1e-4, 2.5e-4]);
 /// ```
 pub fn chamber_volumes<S: Scalar>(cylinder: &Cylinder, x: S) -> [S; 2] {
-    let volume_a = S::from(cylinder.dead_volume_a) + S::from(cylinder.area_a) * x;
-    let volume_b =
-        S::from(cylinder.dead_volume_b) + S::from(cylinder.area_b) * (S::from(cylinder.stroke) - x);
+    let [from_a, to_b] = cylinder.stroke.convert(&mut S::from).travels(x);
+    let volume_a = S::from(cylinder.dead_volume_a) + S::from(cylinder.area_a) * from_a;
+    let volume_b = S::from(cylinder.dead_volume_b) + S::from(cylinder.area_b) * to_b;
     [volume_a, volume_b]
 }

@@ -35,4 +35,5 @@ pub mod reference_rig;
 pub mod series;
 pub mod servovalve;
 pub mod stiffness;
+pub mod stroke;
 pub mod two_pressure;

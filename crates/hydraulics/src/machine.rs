@@ -7,6 +7,7 @@
 //!                C_B(x, p_B) dp_B/dt = q_B + q_i + A_B v        thesis (4.26), corrected
 //!                C of the oil and its enclosure, and of the gas of an Accumulator at that chamber
 //! leakage        q_i = G_i (p_A - p_B)                          laminar, across the piston
+//!                q_e = G_e (p - p_T)                            laminar, from each chamber to the tank
 //! neck           I dq_n/dt = p - p_g - R q_n - Z q_n |q_n|,   C_g dp_g/dt = q_n     of the gas at a chamber: Neck
 //! cross port     q_cp = restrictor(p_A - p_B - p_cp),   C_cp dp_cp/dt = q_cp      part of q_i: CrossPort
 //! piston         M dv/dt = A_A p_A - A_B p_B + F_stops - F_fr - F_e      thesis (4.29)
@@ -56,6 +57,7 @@ use crate::friction::MovingFriction;
 use crate::line::{DynamicLine, Segments};
 use crate::series::SeriesElement;
 use crate::servovalve::{Servovalve, SpoolImperfection, Supply};
+use crate::stroke::ActuatorStroke;
 use equations::constant;
 use signals::ground_of;
 use state::Layout;
@@ -184,7 +186,9 @@ impl Machine {
             return Ok(());
         };
         let pressure = self.supply.pressure.max(0.0);
-        let Cylinder { area_a, area_b, stroke, .. } = self.cylinder;
+        let Cylinder { area_a, area_b, stroke: ActuatorStroke::Limited(stroke), .. } = self.cylinder else {
+            return Ok(());
+        };
         let state = MachineState { pressure_a: pressure, pressure_b: pressure, ..MachineState::zero() };
         // At the A end chamber B presses, and the other way round.
         for (end, away, pressing) in [(0.0, -1.0, area_b), (stroke, 1.0, area_a)] {
@@ -345,6 +349,15 @@ impl<S: Scalar> Plant<S> for Machine<S> {
 
     fn disturbance_scale(&self) -> S {
         self.typical_state().velocity
+    }
+
+    #[inline(always)]
+    fn position<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T]) -> T {
+        self.load_of(&self.layout.read(state), &ground_of(inputs)).position
+    }
+
+    fn position_scale(&self) -> S {
+        self.typical_state().load.position
     }
 
     fn delays(&self) -> Vec<S> {

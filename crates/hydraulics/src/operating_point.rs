@@ -79,7 +79,7 @@ pub struct OperatingPoint<S = f64> {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum OperatingPointError {
     /// The position lies outside the stroke.
-    #[error("position {position} m is outside the stroke of {stroke} m")]
+    #[error("position {position} is outside the stroke of {stroke} (m, or rad of a motor)")]
     PositionOutsideStroke {
         /// The position asked for, in m.
         position: f64,
@@ -142,7 +142,7 @@ impl OperatingPoint {
 /// Unequal edges at null do not settle at half the supply pressure, and push:
 /// ```
 /// # use phea_hydraulics::{actuator::*, cylinder::*, fluid::*, force_sensor::*, friction::*, line::*};
-/// # use phea_hydraulics::{operating_point::*, servovalve::*, stiffness::*};
+/// # use phea_hydraulics::{operating_point::*, servovalve::*, stiffness::*, stroke::ActuatorStroke};
 /// # let line = Line::Volume { volume: 1.9e-4, effective_bulk_modulus: 2.6e8 };
 /// # let actuator = Actuator::new(Components {
 /// #     fluid: Fluid { bulk_modulus: 1.45e9, density: 870.0, kinematic_viscosity: 46e-6, entrained_air: None },
@@ -154,8 +154,8 @@ impl OperatingPoint {
 /// #         natural_frequency: 1099.0, damping_ratio: 0.9, transition_pressure: 1e3,
 /// #     },
 /// #     line_a: line, line_b: line, accumulators: [None; 2], necks: [None; 2], cross_port: None, series: None,
-/// #     cylinder: Cylinder { area_a: 1.58336e-3, area_b: 1.58336e-3, stroke: 0.5, moving_mass: 13.1,
-/// #         dead_volume_a: 0.0, dead_volume_b: 0.0, internal_leakage: None, end_stops: None },
+/// #     cylinder: Cylinder { area_a: 1.58336e-3, area_b: 1.58336e-3, stroke: ActuatorStroke::Limited(0.5), moving_mass: 13.1,
+/// #         dead_volume_a: 0.0, dead_volume_b: 0.0, internal_leakage: None, external_leakage: None, end_stops: None },
 /// #     friction: Friction::Viscous { viscous: 100.0 }, force_sensor: ForceSensor { stiffness: 2e7 },
 /// #     stiffness_model: StiffnessModel::Uniform,
 /// # })?;
@@ -172,7 +172,8 @@ pub fn operating_point(
 ) -> Result<OperatingPoint, OperatingPointError> {
     let balance = Balance::of(actuator.components());
     let stroke = actuator.components().cylinder.stroke;
-    if !(0.0..=stroke).contains(&position) {
+    if !stroke.contains(position) {
+        let stroke = stroke.length().unwrap_or(f64::INFINITY);
         return Err(OperatingPointError::PositionOutsideStroke { position, stroke });
     }
     if let Condition::Command(command) | Condition::Motion(command, _) | Condition::Matched(command, _) =

@@ -6,6 +6,7 @@
 //! (M s^2 + f_v s) X = F_h - F_e,       F_e = K_S (X - X_L)               piston and force sensor, thesis (6.6)
 //! X_L = X_0,   or   (m s^2 + c s + k) X_L = F_e + (c s + k) X_0          load: LinearLoad
 //! U_C -> U_C + K_x (1 + e) H_v s X_L                                     what is fed forward of the load's velocity
+//! F_e -> F_e + Z_v X_L                                                   what a virtual impedance adds to the output
 //! ```
 //!
 //! These are the equations of [`crate::machine`] differentiated, with friction as one slope f_v.
@@ -14,12 +15,13 @@
 mod in_motion;
 mod series;
 mod supply;
+mod virtual_impedance;
 
 pub use in_motion::{BehindLines, PlantInMotion};
 pub use series::{LinearSeries, SeriesOutput};
 pub use supply::YieldingSupply;
 
-use phea_dynamics::controller::RateFilter;
+use phea_dynamics::controller::{RateFilter, VirtualImpedance};
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::uncertain_plant::{PlantCoefficients, RateNumerators, RationalCoefficients};
 
@@ -64,6 +66,8 @@ pub struct LinearPlant<S = f64> {
     pub load_velocity_feed_forward: Option<S>,
     /// What that velocity is measured with.
     pub velocity_sensor: VelocitySensor<S>,
+    /// Z_v of an outer loop, with which the output is y = F_e + Z_v X_L; `None` for the force.
+    pub virtual_impedance: Option<VirtualImpedance>,
 }
 
 /// The sensor of the load's velocity, without its dead time.
@@ -347,6 +351,7 @@ impl<S: Scalar> LinearPlant<S> {
             supply: None,
             load_velocity_feed_forward: None,
             velocity_sensor: VelocitySensor::default(),
+            virtual_impedance: None,
         }
     }
 
@@ -378,6 +383,7 @@ impl<S: Scalar> LinearPlant<S> {
             supply: None,
             load_velocity_feed_forward: None,
             velocity_sensor: VelocitySensor::default(),
+            virtual_impedance: None,
         }
     }
 
@@ -420,7 +426,11 @@ impl<S: Scalar> LinearPlant<S> {
     /// ```
     ///
     /// The `rate` is (1 + e) v_L, before its filter. With a spring between sensor and load see
-    /// [`LinearSeries`].
+    /// [`LinearSeries`]. With a virtual impedance the output is y:
+    ///
+    /// ```text
+    /// y/U_C = F_e/U_C + Z_v X_L/U_C,     y/X_0 = F_e/X_0 + Z_v X_L/X_0         X_L = X_0 where its motion is prescribed
+    /// ```
     ///
     /// # Example
     /// The effect of the load: with a mass as heavy as the earth it does not move.
@@ -465,10 +475,7 @@ impl<S: Scalar> LinearPlant<S> {
         match self.load {
             LinearLoad::Prescribed => PlantCoefficients {
                 command: RationalCoefficients { numerator: command, denominator: held.clone() },
-                disturbance: Some(RationalCoefficients {
-                    numerator: by_load,
-                    denominator: filtered(held.clone()),
-                }),
+                disturbance: Some(self.beside_motion(by_load, filtered(held.clone()))),
                 dead_time_s: S::from(0.0),
                 // what is shown of the rate of X_0 itself
                 rate: shows.gain.map(|gain| RateNumerators {
@@ -483,17 +490,10 @@ impl<S: Scalar> LinearPlant<S> {
                 let alone = filtered(product(&spool, &sensed));
                 let back = fed.as_ref().map(|fed| scaled(S::from(-1.0), fed));
                 let denominator = back.map_or(alone.clone(), |back| sum(&alone, &back));
-                let ground = shifted(&product(&held, &[damping, stiffness]));
-                let rate = [shifted(&command), ground].map(|path| shows.shown(filtered(path)));
-                let [of_command, of_ground] = rate;
+                let moved = [command, product(&held, &[damping, stiffness])].map(filtered);
                 let command = filtered(scaled(sensor * square, &product(&load, &driven)));
                 let disturbance = product(&by_load, &[damping, stiffness]);
-                PlantCoefficients {
-                    command: RationalCoefficients { numerator: command, denominator: denominator.clone() },
-                    disturbance: Some(RationalCoefficients { numerator: disturbance, denominator }),
-                    dead_time_s: S::from(0.0),
-                    rate: Some(RateNumerators { command: of_command, disturbance: of_ground }),
-                }
+                self.of_yielding_load([command, disturbance], moved, denominator)
             }
         }
     }

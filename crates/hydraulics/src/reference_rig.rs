@@ -15,6 +15,7 @@ use crate::line::{Hose, Line, Pipe, PipeWall, Stiffening};
 use crate::linear::LinearParameters;
 use crate::servovalve::{Edges, LeakageModel, Servovalve, SpoolImperfection, Supply};
 use crate::stiffness::StiffnessModel;
+use crate::stroke::ActuatorStroke;
 
 /// Useful piston area of a 50 mm piston with 22 mm rods, in m2.
 pub const USEFUL_AREA: f64 = std::f64::consts::FRAC_PI_4 * (0.05 * 0.05 - 0.022 * 0.022);
@@ -58,11 +59,12 @@ pub fn cylinder() -> Cylinder {
     Cylinder {
         area_a: USEFUL_AREA,
         area_b: USEFUL_AREA,
-        stroke: 0.5,
+        stroke: ActuatorStroke::Limited(0.5),
         moving_mass: 13.1,
         dead_volume_a: 0.0,
         dead_volume_b: 0.0,
         internal_leakage: None,
+        external_leakage: None,
         end_stops: None,
     }
 }

@@ -25,6 +25,7 @@ use phea_dynamics::scalar::Scalar;
 
 use crate::cylinder::Cylinder;
 use crate::line::{Line, StiffeningMember};
+use crate::stroke::ActuatorStroke;
 
 /// Which modulus the fluid in the cylinder's chambers has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,8 +48,8 @@ pub struct ChamberCompliance<S = f64> {
     pub area_a: S,
     /// Piston area A_B in m2.
     pub area_b: S,
-    /// Stroke L in m.
-    pub stroke: S,
+    /// ActuatorStroke L in m.
+    pub stroke: ActuatorStroke<S>,
     /// C_A with the piston at the A end, in m3/Pa.
     pub constant_a: S,
     /// Growth of C_A with x, in m2/Pa.
@@ -65,10 +66,10 @@ pub struct ChamberCompliance<S = f64> {
 /// # Example
 /// The thesis' hose, both models, piston at mid stroke
 /// ```
-/// # use phea_hydraulics::{cylinder::*, line::*, stiffness::*};
+/// # use phea_hydraulics::{cylinder::*, line::*, stiffness::*, stroke::ActuatorStroke};
 /// # let areas = areas_from_diameters(0.05, [0.022, 0.022])?;
-/// # let cylinder = Cylinder { area_a: areas[0], area_b: areas[1], stroke: 0.5, moving_mass: 13.1,
-/// #     dead_volume_a: 0.0, dead_volume_b: 0.0, internal_leakage: None, end_stops: None };
+/// # let cylinder = Cylinder { area_a: areas[0], area_b: areas[1], stroke: ActuatorStroke::Limited(0.5), moving_mass: 13.1,
+/// #     dead_volume_a: 0.0, dead_volume_b: 0.0, internal_leakage: None, external_leakage: None, end_stops: None };
 /// # let dynamic_stiffening = Stiffening { nominal: 5.0, minimum: 4.0, maximum: 5.0 };
 /// # let hose = Hose { bore: 12.7e-3, volumetric_expansion: 1.56e-5, operating_expansion: 7.774e-6,
 /// #     expansion_slope: 2.236e-12, dynamic_stiffening };
@@ -113,10 +114,8 @@ pub fn chamber_compliance<S: Scalar>(
 /// C_A and C_B at piston position x, in m3/Pa.
 #[inline]
 pub fn compliance_at<S: Scalar>(chambers: &ChamberCompliance<S>, x: S) -> [S; 2] {
-    [
-        chambers.constant_a + chambers.slope_a * x,
-        chambers.constant_b + chambers.slope_b * (chambers.stroke - x),
-    ]
+    let [from_a, to_b] = chambers.stroke.travels(x);
+    [chambers.constant_a + chambers.slope_a * from_a, chambers.constant_b + chambers.slope_b * to_b]
 }
 
 /// Stiffness of the two shut chambers at piston position x, in N/m.
@@ -160,7 +159,7 @@ impl<S: Copy> ChamberCompliance<S> {
         ChamberCompliance {
             area_a: of(self.area_a),
             area_b: of(self.area_b),
-            stroke: of(self.stroke),
+            stroke: self.stroke.convert(of),
             constant_a: of(self.constant_a),
             slope_a: of(self.slope_a),
             constant_b: of(self.constant_b),

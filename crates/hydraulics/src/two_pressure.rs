@@ -45,6 +45,8 @@ pub struct TwoPressureModel<S = f64> {
     pub viscous_friction: S,
     /// Sensor stiffness K_S in N/m.
     pub sensor_stiffness: S,
+    /// Conductance from each chamber to the tank in m3/(s Pa); `None` where nothing leaks outwards.
+    pub external_leakage: Option<S>,
 }
 
 /// States of the model. Units: V, V/s, Pa, m, m/s.
@@ -97,6 +99,7 @@ impl<S: Copy> TwoPressureModel<S> {
             moving_mass: of(self.moving_mass),
             viscous_friction: of(self.viscous_friction),
             sensor_stiffness: of(self.sensor_stiffness),
+            external_leakage: self.external_leakage.map(of),
         }
     }
 }
@@ -116,6 +119,7 @@ impl<S: Scalar> TwoPressureModel<S> {
             moving_mass: components.cylinder.moving_mass,
             viscous_friction,
             sensor_stiffness: components.force_sensor.stiffness,
+            external_leakage: components.cylinder.external_leakage,
         }
     }
 }
@@ -182,6 +186,11 @@ pub fn rates<S: Scalar>(
     let [compliance_a, compliance_b] = compliance_at(chambers, position);
     let ChamberFlows { into_a, into_b } =
         chamber_flows(&model.valve, &model.supply, spool, pressure_a, pressure_b);
+    let leaving = |pressure: S| {
+        let above_tank = pressure - model.supply.tank_pressure;
+        model.external_leakage.map_or(S::from(0.0), |conductance| conductance * above_tank)
+    };
+    let [out_of_a, out_of_b] = [leaving(pressure_a), leaving(pressure_b)];
     let natural_frequency = model.valve.natural_frequency;
     let pushing = hydraulic_force([chambers.area_a, chambers.area_b], [pressure_a, pressure_b]);
     let sensed = force_sensor::force(model.sensor_stiffness, deflection);
@@ -189,8 +198,8 @@ pub fn rates<S: Scalar>(
         spool: spool_rate,
         spool_rate: natural_frequency.squared() * (input.command - spool)
             - S::from(2.0) * model.valve.damping_ratio * natural_frequency * spool_rate,
-        pressure_a: (into_a - chambers.area_a * velocity) / compliance_a,
-        pressure_b: (into_b + chambers.area_b * velocity) / compliance_b,
+        pressure_a: (into_a - out_of_a - chambers.area_a * velocity) / compliance_a,
+        pressure_b: (into_b - out_of_b + chambers.area_b * velocity) / compliance_b,
         deflection: velocity - input.load_velocity,
         velocity: (pushing - model.viscous_friction * velocity - sensed) / model.moving_mass,
     }

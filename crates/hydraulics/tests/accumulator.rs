@@ -18,7 +18,7 @@ fn rig(gas: Option<Accumulator>) -> Components {
 
 fn stiffness(components: &Components, pressures: [f64; 2]) -> f64 {
     let chambers = components.chamber_compliance(pressures, StiffeningMember::Nominal);
-    hydraulic_stiffness(&chambers, 0.5 * cylinder().stroke)
+    hydraulic_stiffness(&chambers, cylinder().stroke.middle())
 }
 
 /// The gas that softens the actuator as much as metres of hose: at rest, and hardly harder at 4 kN.

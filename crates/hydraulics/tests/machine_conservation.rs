@@ -130,7 +130,7 @@ fn passive_friction() -> Friction {
     Friction::LuGre(passive)
 }
 
-fn asymmetric() -> Components {
+pub(super) fn asymmetric() -> Components {
     let [area_a, area_b] = areas_from_diameters(0.05, [0.0, 0.022]).unwrap();
     let hose = components(hose_line(), StiffnessModel::ByVolume);
     Components {
@@ -151,7 +151,7 @@ fn pump_with(accumulator: Option<Accumulator>) -> PowerUnit {
     })
 }
 
-fn pump() -> PowerUnit {
+pub(super) fn pump() -> PowerUnit {
     pump_with(None)
 }
 

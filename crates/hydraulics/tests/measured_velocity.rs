@@ -4,8 +4,12 @@
 
 use num_complex::Complex64;
 use phea_dynamics::controller::RateFilter;
+use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::portable::{exp_complex, pow};
-use phea_hydraulics::plant::{LinearPlant, PlantInMotion, VelocitySensor};
+use phea_hydraulics::impedance::closed_loop_port;
+use phea_hydraulics::plant::{
+    LinearLoad, LinearPlant, LinearSeries, PlantInMotion, SeriesOutput, VelocitySensor,
+};
 
 use super::plant_in_motion::drawn;
 
@@ -67,4 +71,37 @@ fn a_measured_feed_forward_is_the_machine_with_what_its_sensor_shows() {
         (shown.command, shown.disturbance),
         (plant.coefficients().command, plant.coefficients().disturbance)
     );
+}
+
+/// Closed over the force, the impedance at the load is the quotient of its own paths, with the filter of
+/// the velocity that is fed forward, with and without a spring and a mass on the rod.
+#[test]
+fn the_closed_impedance_has_the_filter_once() {
+    let zero = Complex64::new(0.0, 0.0);
+    let law = TransferFunction::from_factors(1e-4, vec![Complex64::new(-8.0, 0.0)], vec![zero]).unwrap();
+    let filter = RateFilter::SecondOrder { frequency_rad_per_s: 800.0, damping_ratio: 0.7 };
+    let spring = |output| LinearSeries { stiffness: 2e6, damping: Some(500.0), mass: Some(2.0), output };
+    for number in 0..12 {
+        let plant = LinearPlant {
+            load: LinearLoad::Prescribed,
+            series: (number % 2 == 0).then(|| spring(SeriesOutput::Sensor)),
+            velocity_sensor: VelocitySensor { gain: Some(0.9), filter },
+            load_velocity_feed_forward: Some(25.0),
+            ..drawn(number).plant
+        };
+        let found = closed_loop_port(&plant, &law).unwrap();
+        let on_load = LinearPlant { series: plant.series.map(|_| spring(SeriesOutput::OnLoad)), ..plant };
+        let (measured, felt) = (plant.coefficients(), on_load.coefficients());
+        for step in 0..14 {
+            let frequency = 0.1 * pow(1e4, f64::from(step) / 13.0);
+            let (s, law) = (Complex64::new(0.0, frequency), law.at_frequency(frequency));
+            let by_command = felt.command.at_frequency(frequency);
+            let by_motion = felt.disturbance.as_ref().unwrap().at_frequency(frequency);
+            let shaken = plant.series.map_or(zero, |_| law * 2.0 * s * s * by_command);
+            let loop_gain = law * measured.command.at_frequency(frequency);
+            let expected = -(by_motion - shaken) / (s * (1.0 + loop_gain));
+            let error = (found.at_frequency(frequency) / expected - 1.0).norm_sqr();
+            assert!(error < 1e-12, "{number} at {frequency}: {error}");
+        }
+    }
 }

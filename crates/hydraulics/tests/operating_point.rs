@@ -143,7 +143,11 @@ fn what_cannot_be_is_refused_with_numbers() {
 #[test]
 fn an_actuator_reports_all_impossible_parameters_at_once() {
     let broken = Components {
-        cylinder: Cylinder { stroke: -0.5, moving_mass: 0.0, ..cylinder() },
+        cylinder: Cylinder {
+            stroke: phea_hydraulics::stroke::ActuatorStroke::Limited(-0.5),
+            moving_mass: 0.0,
+            ..cylinder()
+        },
         valve: Servovalve { natural_frequency: f64::INFINITY, ..rig().valve },
         ..rig()
     };

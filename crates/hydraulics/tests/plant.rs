@@ -21,6 +21,7 @@ use phea_hydraulics::plant::{LinearLoad, LinearPlant};
 use phea_hydraulics::reference_rig::{components, cylinder, hose_line, leaking, nominal_plant, pipe_line};
 use phea_hydraulics::servovalve::{LeakageModel, Servovalve, SpoolDirection, Supply};
 use phea_hydraulics::stiffness::StiffnessModel;
+use phea_hydraulics::stroke::ActuatorStroke;
 use phea_hydraulics::two_pressure::{
     TwoPressureLinearParameters, TwoPressureModel, two_pressure_coefficients, two_pressure_linear_parameters,
 };
@@ -50,6 +51,13 @@ fn accumulators(number: u64) -> [Option<Accumulator>; 2] {
     })
 }
 
+/// Some leak to the tank, and some turn on without a stroke.
+fn turning(cylinder: Cylinder, number: u64) -> Cylinder {
+    let external_leakage = (number % 5 == 3).then_some(1e-14 * pow(1e3, number as f64 / 300.0));
+    let stroke = if number % 9 == 4 { ActuatorStroke::Unlimited } else { cylinder.stroke };
+    Cylinder { external_leakage, stroke, ..cylinder }
+}
+
 fn drawn(number: u64) -> Drawn {
     let mut state = stream(11, number);
     let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
@@ -71,6 +79,7 @@ fn drawn(number: u64) -> Drawn {
         force_sensor: ForceSensor { stiffness: spread(1e6, 1e8) },
         ..reference
     };
+    let parts = Components { cylinder: turning(parts.cylinder, number), ..parts };
     let (mass, stiffness, damping) = (spread(1.0, 500.0), spread(1e4, 1e8), spread(10.0, 1e4));
     let leakage = if number % 4 == 1 { 0.0 } else { spread(1e-14, 1e-10) };
     let contact = Contact { stiffness, relative_damping: spread(0.01, 1.0) };

@@ -167,6 +167,7 @@ fn settle<S: phea_dynamics::scalar::Scalar>(p: &[S], leakage_model: LeakageModel
         supply: Supply { pressure: p[8], tank_pressure: p[9] },
         areas: [p[10], p[11]],
         across: Some(CrossFlow { conductance: p[12], orifice: None }),
+        outward: None,
     };
     let settled = balance.settle(Steady::Moving { velocity: p[13], load: SteadyLoad::Force(p[14]) });
     vec![settled.command, settled.pressures[0], settled.pressures[1]]
@@ -235,6 +236,7 @@ fn leakage_leaves_equal_pressures_alone() {
         supply: Supply { pressure: 70e5, tank_pressure: 0.0 },
         areas: [1.58e-3; 2],
         across: Some(CrossFlow { conductance: leakage, orifice: None }),
+        outward: None,
     };
     let settled = balance(1e-11).settle(Steady::Command(0.0));
     assert_eq!(settled.pressures, [35e5; 2]);

@@ -1,8 +1,11 @@
 //! A machine under its controller.
 
+use std::ops::Range;
+
 use phea_dynamics::controller::{Converter, SampledController};
 use phea_dynamics::simulation::{
-    CommandedPlant, Observer, Outcome, Sensed, SimulationError, SimulationSettings, System, Task, drive_one,
+    CommandedPlant, Observer, Outcome, Plant, Sensed, SimulationError, SimulationSettings, System, Task,
+    drive_one,
 };
 use phea_hydraulics::machine::{InitialCondition, Machine};
 
@@ -69,6 +72,32 @@ impl Control {
     /// The plant as it appears to the controller.
     pub fn sensed(&self) -> &Sensed<Machine> {
         self.commanded().plant()
+    }
+
+    /// The same loop without its virtual impedance, whose states it then lacks.
+    #[must_use]
+    pub fn without_impedance(mut self) -> Control {
+        let sensed = self.commanded_mut().plant_mut();
+        *sensed = sensed.clone().without_impedance();
+        self
+    }
+
+    /// The states of its virtual impedance among those of the loop; none without one.
+    pub fn impedance_states(&self) -> Range<usize> {
+        let sensed = self.sensed();
+        let end = Plant::<f64>::states(sensed);
+        end - sensed.impedance_states()..end
+    }
+
+    /// Makes the position of the load in a state of the loop the rest position of its virtual
+    /// impedance, with the load's ground there, in m.
+    pub fn rest_at(&self, state: &mut [f64], ground_m: f64) {
+        let sensed = self.sensed();
+        let mut inputs = vec![0.0; Plant::<f64>::inputs(sensed)];
+        if let Some(ground) = inputs.first_mut() {
+            *ground = ground_m;
+        }
+        sensed.rest_at(state, &inputs);
     }
 
     /// The same around another machine.

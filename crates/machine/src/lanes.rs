@@ -1,6 +1,6 @@
 //! Many machines, one after the other or a machine in each lane, each with its own time and step.
 
-use phea_dynamics::controller::{Controller, RateSensor};
+use phea_dynamics::controller::{Controller, RateSensor, VirtualImpedance};
 use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_dynamics::scalar::Lanes;
 use phea_dynamics::simulation::{
@@ -105,13 +105,15 @@ pub fn one_by_one<'a>(
     drive::<f64, _, _>(&mut control.commanded().clone(), &mut Queued(fleet), settings)
 }
 
-/// The feed-forward of the load velocity.
+/// The motion of the load in a loop of its force.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct FedVelocity {
+pub struct FedMotion {
     /// From the shown velocity to the command, V s/m; zero where nothing is fed forward.
     pub gain: f64,
     /// What shows the velocity.
     pub sensor: RateSensor,
+    /// What the position adds to the measured force.
+    pub impedance: VirtualImpedance,
 }
 
 /// A machine in each lane, under one continuous controller or a stated command.
@@ -125,23 +127,22 @@ impl Lanewise {
     }
 
     /// Lanes of machines built like this one, with this sensor, under a controller with its
-    /// feed-forward of the load velocity, or without one under a stated command.
+    /// feed-forward of the load velocity and its virtual impedance, or without one under a stated
+    /// command.
     ///
     /// # Errors
     /// [`LinearError`] for a sensor or a controller that cannot be simulated.
     pub fn new(
         machine: &Machine,
         sensor: &TransferFunction,
-        controller: Option<(&Controller, FedVelocity)>,
+        controller: Option<(&Controller, FedMotion)>,
     ) -> Result<Lanewise, LinearError> {
         let machine = machine.convert(&mut |value| Lanes([value; LANES]));
         let sensed = Sensed::new(machine, sensor)?;
         Ok(Lanewise(Box::new(match controller {
-            Some((controller, FedVelocity { gain: 0.0, .. })) => {
-                CommandedPlant::in_loop(sensed, controller, 0.0)?
-            }
-            Some((controller, FedVelocity { gain, sensor })) => {
-                CommandedPlant::in_loop(sensed.with_rate_sensor(&sensor)?, controller, gain)?
+            Some((controller, FedMotion { gain, sensor, impedance })) => {
+                let sensed = if gain == 0.0 { sensed } else { sensed.with_rate_sensor(&sensor)? };
+                CommandedPlant::in_loop(sensed.with_impedance(&impedance)?, controller, gain)?
             }
             None => CommandedPlant::on_hold(sensed, &TransferFunction::gain_only(1.0))?,
         })))

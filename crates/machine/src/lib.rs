@@ -20,7 +20,7 @@ mod shaken;
 
 pub use control::{Commanded, Control, Sampled, Watcher};
 pub use digital::{Digital, DigitalMemory, Waking};
-pub use lanes::{FedVelocity, Fleet, Lanewise, one_by_one};
+pub use lanes::{FedMotion, Fleet, Lanewise, one_by_one};
 pub use rest::{HeldInputs, Rest, at_rest};
 pub use samples::{ControllerSample, ControllerSamples};
 pub use shaken::{Shaken, force, force_amplitude};

@@ -31,7 +31,8 @@ pub struct Rest {
 }
 
 /// The equilibrium of a loop under constant inputs, near a guess of its states; `beginning` is the
-/// state of its machine there.
+/// state of its machine there. The load is then where its virtual impedance rests, if there is one,
+/// which [`Control::rest_at`] states.
 ///
 /// # Errors
 /// [`EquilibriumError`] where none is found.
@@ -69,6 +70,13 @@ pub fn at_rest(
     beginning: &InitialCondition,
     standing: HeldInputs,
 ) -> Result<Rest, EquilibriumError> {
+    let beside = control.impedance_states();
+    if !beside.is_empty() {
+        let other = [&guess[..beside.start], &guess[beside.end..]].concat();
+        let mut rest = at_rest(&control.clone().without_impedance(), &other, beginning, standing)?;
+        rest.start.splice(beside.start..beside.start, vec![0.0; beside.len()]);
+        return Ok(rest);
+    }
     let machine = control.sensed().plant();
     let [ground, _] = beginning.inputs;
     let kept = machine.memories();

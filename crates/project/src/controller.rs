@@ -1,9 +1,11 @@
 //! `[controller]` and `[prefilter]`.
 
 mod element;
+mod impedance;
 mod rational_function;
 
 pub use element::{DeclaredElement, ElementKind};
+pub use impedance::{DeclaredImpedance, ImpedanceForm};
 pub use rational_function::RationalFunction;
 
 use super::key::{key, plain};
@@ -76,6 +78,8 @@ pub struct DeclaredController {
     pub quantization: Option<DeclaredQuantization>,
     /// The feed-forward of the load velocity; absent: none.
     pub load_velocity_feed_forward: Option<FeedForward>,
+    /// The impedance that it gives the load; absent: none.
+    pub impedance: Option<DeclaredImpedance>,
 }
 
 /// What the controller adds to its command for a measured velocity of the load.
@@ -92,7 +96,8 @@ impl FeedForward {
             "gain",
             &VOLTAGE_PER_VELOCITY,
             "Command per velocity of the load; absent: area over flow gain.",
-        );
+        )
+        .of_motion();
         v.optional(k, &mut self.gain);
     }
 }
@@ -135,12 +140,15 @@ impl DeclaredQuantization {
         v.pair(key("command_range", &VOLTAGE, "From and to."), &mut self.command_range);
         let k = bits("measurement_bits", "Bits of the measurement's converter; 0: it does not round.");
         v.count(k, &mut self.measurement_bits);
-        v.pair(key("measurement_range", &FORCE, "From and to."), &mut self.measurement_range);
+        v.pair(key("measurement_range", &FORCE, "From and to.").of_motion(), &mut self.measurement_range);
         let words = &[("f64", Coefficients::Double), ("f32", Coefficients::Single)];
         let k = plain("coefficients", "How the coefficients are kept.");
         v.choice(k, words, &mut self.coefficients, false);
         let doc = "What the rounded command may do to the force, rms: a specification.";
-        v.optional(key("allowed_force_error", &FORCE, doc).positive(), &mut self.allowed_force_error);
+        v.optional(
+            key("allowed_force_error", &FORCE, doc).of_motion().positive(),
+            &mut self.allowed_force_error,
+        );
         let doc = "What the rounded measurement may do to the command, rms: a specification.";
         v.optional(key("allowed_command_error", &VOLTAGE, doc).positive(), &mut self.allowed_command_error);
     }
@@ -203,6 +211,8 @@ impl DeclaredController {
         v.table(k, &mut self.quantization, DeclaredQuantization::visit);
         let k = plain("load_velocity_feed_forward", "What is added to the command for a load that moves.");
         v.table(k, &mut self.load_velocity_feed_forward, FeedForward::visit);
+        let k = plain("impedance", "The impedance that the loop gives the load.");
+        v.table(k, &mut self.impedance, DeclaredImpedance::visit);
     }
 }
 

@@ -50,9 +50,10 @@ pub struct EndStops {
 }
 
 impl EndStops {
-    fn visit<V: Visitor>(&mut self, v: &mut V) {
-        v.quantity(key("stiffness", &STIFFNESS, "Of each stop.").positive(), &mut self.stiffness);
-        let k = key("relative_damping", &INVERSE_VELOCITY, "Damping relative to the elastic force.");
+    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+        v.quantity(key("stiffness", &STIFFNESS, "Of each stop.").of_motion().positive(), &mut self.stiffness);
+        let k =
+            key("relative_damping", &INVERSE_VELOCITY, "Damping relative to the elastic force.").of_motion();
         v.quantity(k.not_negative().or(0.0), &mut self.relative_damping);
     }
 }
@@ -166,10 +167,14 @@ pub struct StribeckCurve {
 
 impl StribeckCurve {
     fn visit<V: Visitor>(&mut self, v: &mut V) {
-        let k = key("coulomb", &FORCE, "Sliding friction F_C.").positive();
+        let k = key("coulomb", &FORCE, "Sliding friction F_C.").of_motion().positive();
         v.quantity(k, &mut self.coulomb);
-        v.quantity(key("static", &FORCE, "Breakaway friction F_S.").positive(), &mut self.static_friction);
-        let k = key("stribeck_velocity", &VELOCITY, "Velocity at which friction has fallen from F_S.");
+        v.quantity(
+            key("static", &FORCE, "Breakaway friction F_S.").of_motion().positive(),
+            &mut self.static_friction,
+        );
+        let k = key("stribeck_velocity", &VELOCITY, "Velocity at which friction has fallen from F_S.")
+            .of_motion();
         v.quantity(k.positive(), &mut self.stribeck_velocity);
         let k = key("stribeck_exponent", &RATIO, "Exponent of the Stribeck curve.").positive().or(2.0);
         v.quantity(k.at_most(10.0).above(0.0), &mut self.stribeck_exponent);
@@ -203,14 +208,15 @@ impl Variants for FrictionLaw {
                     "regular_velocity",
                     &VELOCITY,
                     "Smooths the jump of a Stribeck curve, to simulate it.",
-                );
+                )
+                .of_motion();
                 v.optional(k.positive(), regular_velocity);
             }
             FrictionLaw::LuGre { curve, bristle_stiffness, bristle_damping } => {
                 curve.visit(v);
-                let k = key("bristle_stiffness", &STIFFNESS, "σ₀ of LuGre.").positive();
+                let k = key("bristle_stiffness", &STIFFNESS, "σ₀ of LuGre.").of_motion().positive();
                 v.quantity(k, bristle_stiffness);
-                let k = key("bristle_damping", &DAMPING, "σ₁ of LuGre.").not_negative();
+                let k = key("bristle_damping", &DAMPING, "σ₁ of LuGre.").of_motion().not_negative();
                 v.quantity(k, bristle_damping);
             }
         }
@@ -220,7 +226,9 @@ impl Variants for FrictionLaw {
 impl DeclaredFriction {
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
         v.variant(plain("model", "Which friction law."), &mut self.law, true);
-        let k = key("viscous", &DAMPING, "Slope of friction over velocity, σ₂ of LuGre.").not_negative();
+        let k = key("viscous", &DAMPING, "Slope of friction over velocity, σ₂ of LuGre.")
+            .of_motion()
+            .not_negative();
         v.quantity(k.or(0.0), &mut self.viscous);
     }
 }

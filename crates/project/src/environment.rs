@@ -19,12 +19,15 @@ pub struct DeclaredForceSensor {
 
 impl DeclaredForceSensor {
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
-        let k = key("stiffness", &STIFFNESS, "K_S: with a prescribed load motion, of cell and environment.");
+        let k = key("stiffness", &STIFFNESS, "K_S: with a prescribed load motion, of cell and environment.")
+            .of_motion();
         v.quantity(k.positive(), &mut self.stiffness);
         let k =
-            key("noise", &FORCE, "Root mean square of the white noise in what a sampled controller sees.");
+            key("noise", &FORCE, "Root mean square of the white noise in what a sampled controller sees.")
+                .of_motion();
         v.quantity(k.not_negative().or(0.0), &mut self.noise);
-        let k = key("capacity", &FORCE, "The force that it survives, in both directions.").positive();
+        let k =
+            key("capacity", &FORCE, "The force that it survives, in both directions.").of_motion().positive();
         v.optional(k, &mut self.capacity);
     }
 }
@@ -57,9 +60,12 @@ impl DeclaredVelocitySensor {
         let doc = "Damping ratio of a filter of second order; absent: it is of first order.";
         v.optional(key("filter_damping_ratio", &RATIO, doc).positive(), &mut self.filter_damping_ratio);
         let doc = "Root mean square of the white noise in what a sampled controller sees.";
-        v.quantity(key("noise", &VELOCITY, doc).not_negative().or(0.0), &mut self.noise);
+        v.quantity(key("noise", &VELOCITY, doc).of_motion().not_negative().or(0.0), &mut self.noise);
         let doc = "Step to which a sampled controller sees it rounded; 0: not at all.";
-        v.quantity(key("resolution", &VELOCITY, doc).not_negative().or(0.0), &mut self.resolution);
+        v.quantity(
+            key("resolution", &VELOCITY, doc).of_motion().not_negative().or(0.0),
+            &mut self.resolution,
+        );
     }
 }
 
@@ -118,9 +124,13 @@ impl Variants for Load {
     }
 
     fn visit<V: Visitor>(&mut self, v: &mut V) {
-        let kilograms = key("mass", &MASS, "Mass of the load.").positive();
-        let spring = key("stiffness", &STIFFNESS, "Stiffness of the load or of the wall.").positive();
-        let damper = key("damping", &DAMPING, "Damping of the load or of its guide.").not_negative().or(0.0);
+        let kilograms = key("mass", &MASS, "Mass of the load.").of_motion().positive();
+        let spring =
+            key("stiffness", &STIFFNESS, "Stiffness of the load or of the wall.").of_motion().positive();
+        let damper = key("damping", &DAMPING, "Damping of the load or of its guide.")
+            .of_motion()
+            .not_negative()
+            .or(0.0);
         match self {
             Load::Prescribed => {}
             Load::SpringMassDamper { mass, stiffness, damping } => {
@@ -132,13 +142,15 @@ impl Variants for Load {
                 v.optional(kilograms, mass);
                 v.quantity(spring, stiffness);
                 v.quantity(damper, damping);
-                let k = key("gap", &LENGTH, "Free play before the wall is touched.").not_negative();
+                let k =
+                    key("gap", &LENGTH, "Free play before the wall is touched.").of_motion().not_negative();
                 v.quantity(k.or(0.0), gap);
                 let k = key(
                     "relative_damping",
                     &INVERSE_VELOCITY,
                     "Damping of the wall relative to its elastic force.",
-                );
+                )
+                .of_motion();
                 v.quantity(k.not_negative().or(0.0), relative_damping);
             }
         }

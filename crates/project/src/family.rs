@@ -99,13 +99,15 @@ impl DeclaredFamily {
 
 impl OperatingRegion {
     fn visit<V: Visitor>(&mut self, v: &mut V) {
-        let k = key("position", &LENGTH, "Least and greatest position of the piston.").not_negative();
+        let k =
+            key("position", &LENGTH, "Least and greatest position of the piston.").of_motion().not_negative();
         v.pair(k, &mut self.position);
         v.pair(
-            key("load_force", &FORCE, "Least and greatest force that the pressures hold."),
+            key("load_force", &FORCE, "Least and greatest force that the pressures hold.").of_motion(),
             &mut self.load_force,
         );
-        let k = key("velocity", &VELOCITY, "Least and greatest velocity, before `supply.flow` limits them.");
+        let k = key("velocity", &VELOCITY, "Least and greatest velocity, before `supply.flow` limits them.")
+            .of_motion();
         v.pair(k, &mut self.velocity);
         let k = key("points", &RATIO, "Points of the grid over each of them.").at_least(2.0).at_most(1000.0);
         v.count(k.or(3.0), &mut self.points);

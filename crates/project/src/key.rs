@@ -1,6 +1,6 @@
 //! A key of the project file: its name, dimension, range, default and meaning, written once.
 
-use phea_quantity::{Dimension, RATIO};
+use phea_quantity::{Dimension, MotionKind, RATIO};
 
 /// One key of the project file. Built at the place where its field is described, in the `visit`
 /// function of its table.
@@ -15,6 +15,9 @@ pub struct Key {
     /// The value of an absent key; `None` where the key is required or its absence has a meaning of
     /// its own.
     pub default: Option<f64>,
+    /// Whether its numbers measure the motion of the rig or what drives it, so that a motor has
+    /// another dimension in its place: a torque for a force, an angle for a length.
+    pub of_motion: bool,
     /// What it means, in one sentence.
     pub doc: &'static str,
 }
@@ -57,7 +60,7 @@ impl AcceptedRange {
 
 /// A key whose numbers have a dimension.
 pub(crate) const fn key(name: &'static str, dimension: &'static Dimension, doc: &'static str) -> Key {
-    Key { name, dimension, range: AcceptedRange::ANY, default: None, doc }
+    Key { name, dimension, range: AcceptedRange::ANY, default: None, of_motion: false, doc }
 }
 
 /// A key without a dimension: a table, a list, a text or a choice.
@@ -66,6 +69,20 @@ pub(crate) const fn plain(name: &'static str, doc: &'static str) -> Key {
 }
 
 impl Key {
+    /// Its numbers measure the motion of the rig: `dimension` is that of a cylinder.
+    pub(crate) const fn of_motion(mut self) -> Key {
+        self.of_motion = true;
+        self
+    }
+
+    /// The key in a rig of this motion.
+    pub(crate) fn in_motion(mut self, motion: MotionKind) -> Key {
+        if self.of_motion {
+            self.dimension = motion.dimension(self.dimension);
+        }
+        self
+    }
+
     /// Accepts numbers above zero.
     pub(crate) const fn positive(self) -> Key {
         self.above(0.0)

@@ -24,7 +24,9 @@ mod line;
 mod line_motion;
 mod linear;
 mod listing;
+mod load_case;
 mod measured;
+mod motor;
 mod operating_point;
 mod plant;
 mod printer;
@@ -72,12 +74,14 @@ pub use line::*;
 pub use line_motion::*;
 pub use linear::*;
 pub use listing::KeyEntry;
+pub use load_case::*;
 pub use measured::*;
+pub use motor::*;
 pub use operating_point::*;
 pub use plant::*;
 pub use published::*;
 pub use read::sha256;
-pub use read::{keys, print, read, read_alternative};
+pub use read::{keys, print, read, read_alternative, read_load_case};
 pub use recorded::*;
 pub use scenario::*;
 pub use schema::schema;
@@ -98,7 +102,7 @@ pub use text::{Findings, Place, RawFinding};
 pub use tree::{Entry, TreeNode, Value as TreeValue, read as read_tree, value_or_finding};
 pub(crate) use visitor::Visitor;
 
-use phea_quantity::RATIO;
+use phea_quantity::{MotionKind, RATIO};
 
 /// A project as it was declared. It has exactly one of `actuator`, `plant` and measured plants in
 /// `family`.
@@ -147,6 +151,8 @@ pub struct Project {
     pub identify: Option<Identify>,
     /// The same project with other values, to be judged beside it, in file order.
     pub alternatives: Vec<Alternative>,
+    /// Other values under which it and its alternatives are judged again, in file order.
+    pub load_cases: Vec<LoadCase>,
 }
 
 /// The hydraulic actuator and what it works against.
@@ -158,8 +164,10 @@ pub struct DeclaredActuator {
     pub supply: DeclaredSupply,
     /// The servovalve.
     pub valve: Valve,
-    /// The cylinder.
+    /// The cylinder; of a rig with a motor it is that of nothing.
     pub cylinder: DeclaredCylinder,
+    /// The motor in its place.
+    pub motor: Option<DeclaredMotor>,
     /// The lines between valve and cylinder.
     pub line: DeclaredLines,
     /// A valve between the chambers, if there is one.
@@ -297,6 +305,8 @@ impl Project {
         v.table(k, &mut self.identify, Identify::visit);
         let k = plain("alternative", "The project with other values, for `phea alternatives`.");
         v.tables(k, &mut self.alternatives, Alternative::visit);
+        let k = plain("load_case", "Other values under which all alternatives are judged again.");
+        v.tables(k, &mut self.load_cases, LoadCase::visit);
     }
 }
 
@@ -314,8 +324,10 @@ fn table_or_default<T: Default + PartialEq, V: Visitor>(
 }
 
 impl DeclaredActuator {
-    /// The tables of an actuator that are required.
-    const REQUIRED: [&'static str; 6] = ["fluid", "supply", "valve", "cylinder", "line", "force_sensor"];
+    /// The tables of an actuator that are required, and one of [`DeclaredActuator::MOVING`].
+    const REQUIRED: [&'static str; 5] = ["fluid", "supply", "valve", "line", "force_sensor"];
+    /// Tables of which exactly one describes what moves.
+    const MOVING: [&'static str; 2] = ["cylinder", "motor"];
     /// Those that may be absent.
     const OPTIONAL: [&'static str; 4] = ["cross_port", "velocity_sensor", "series", "load"];
 
@@ -323,7 +335,7 @@ impl DeclaredActuator {
         required(plain("fluid", "The oil."), &mut self.fluid, DeclaredFluid::visit, v);
         required(plain("supply", "The pressure supply."), &mut self.supply, DeclaredSupply::visit, v);
         required(plain("valve", "The servovalve."), &mut self.valve, Valve::visit, v);
-        required(plain("cylinder", "The cylinder."), &mut self.cylinder, DeclaredCylinder::visit, v);
+        self.visit_moving(v);
         required(plain("line", "From the valve to each chamber."), &mut self.line, DeclaredLines::visit, v);
         let k = plain("cross_port", "A valve between the chambers.");
         v.table(k, &mut self.cross_port, DeclaredCrossPort::visit);
@@ -341,6 +353,24 @@ impl DeclaredActuator {
         let k = plain("series", "The spring between force sensor and load; absent: none.");
         v.table(k, &mut self.series, DeclaredSeries::visit);
         table_or_default(plain("load", "What the force acts on."), &mut self.load, Load::visit, v);
+    }
+}
+
+impl DeclaredActuator {
+    /// Every table with its name.
+    fn tables() -> impl Iterator<Item = &'static str> + Clone {
+        Self::REQUIRED.into_iter().chain(Self::MOVING).chain(Self::OPTIONAL)
+    }
+
+    /// What moves: a motor, or otherwise a cylinder. The keys of all other tables measure its motion.
+    fn visit_moving<V: Visitor>(&mut self, v: &mut V) {
+        let k = plain("motor", "A rotary actuator in place of the cylinder.");
+        v.table(k, &mut self.motor, DeclaredMotor::visit);
+        v.moves(Some(MotionKind::Linear));
+        if self.motor.is_none() || v.names_everything() {
+            required(plain("cylinder", "The cylinder."), &mut self.cylinder, DeclaredCylinder::visit, v);
+        }
+        v.moves((!v.names_everything()).then(|| self.motion()));
     }
 }
 

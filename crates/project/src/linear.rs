@@ -68,6 +68,7 @@ const VALVE: &[&str] = &[
     "operating_point.load_force",
     "operating_point.velocity",
     "operating_point.command",
+    "motor.case_leakage",
 ];
 
 /// Paths the hydraulic stiffness depends on.
@@ -83,18 +84,27 @@ const STIFFNESS_PATHS: &[&str] = &[
     "cylinder.stroke",
     "cylinder.dead_volume",
     "cylinder.dead_volumes",
+    "motor.displacement",
+    "motor.stroke",
+    "motor.dead_volume",
+    "motor.dead_volumes",
     "line",
     "operating_point.position",
 ];
 
-const AREA_PATHS: &[&str] =
-    &["cylinder.piston_diameter", "cylinder.piston_area", "cylinder.rod_diameter", "cylinder.rod_diameters"];
+const AREA_PATHS: &[&str] = &[
+    "cylinder.piston_diameter",
+    "cylinder.piston_area",
+    "cylinder.rod_diameter",
+    "cylinder.rod_diameters",
+    "motor.displacement",
+];
 
 /// The parameters of the linear model, in the order of `[linear]`.
 pub static LINEAR_PARAMETERS: [LinearParameter; 9] = [
     LinearParameter {
-        key: key("viscous_friction", &DAMPING, "f_v.").not_negative(),
-        depends_on: &["cylinder.friction"],
+        key: key("viscous_friction", &DAMPING, "f_v.").of_motion().not_negative(),
+        depends_on: &["cylinder.friction", "motor.friction"],
     },
     LinearParameter { key: key("flow_gain", &FLOW_GAIN, "K_qU.").positive(), depends_on: VALVE },
     LinearParameter {
@@ -102,7 +112,7 @@ pub static LINEAR_PARAMETERS: [LinearParameter; 9] = [
         depends_on: VALVE,
     },
     LinearParameter {
-        key: key("hydraulic_stiffness", &STIFFNESS, "K_H.").positive(),
+        key: key("hydraulic_stiffness", &STIFFNESS, "K_H.").of_motion().positive(),
         depends_on: STIFFNESS_PATHS,
     },
     LinearParameter {
@@ -114,12 +124,12 @@ pub static LINEAR_PARAMETERS: [LinearParameter; 9] = [
         depends_on: &["valve.damping_ratio"],
     },
     LinearParameter {
-        key: key("moving_mass", &MASS, "M.").positive(),
-        depends_on: &["cylinder.moving_mass"],
+        key: key("moving_mass", &MASS, "M.").of_motion().positive(),
+        depends_on: &["cylinder.moving_mass", "motor.inertia"],
     },
-    LinearParameter { key: key("piston_area", &AREA, "A_u.").positive(), depends_on: AREA_PATHS },
+    LinearParameter { key: key("piston_area", &AREA, "A_u.").of_motion().positive(), depends_on: AREA_PATHS },
     LinearParameter {
-        key: key("sensor_stiffness", &STIFFNESS, "K_S.").positive(),
+        key: key("sensor_stiffness", &STIFFNESS, "K_S.").of_motion().positive(),
         depends_on: &["force_sensor.stiffness"],
     },
 ];

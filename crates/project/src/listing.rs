@@ -6,12 +6,15 @@ use super::formula::Formula;
 use super::key::Key;
 use super::visitor::{FormulaShape, Kinds, NamedNumber, ValueForm, Variants, Visitor};
 use crate::catalogue::CatalogueKind;
+use phea_quantity::MotionKind;
 
 /// Walks a project without changing it, except for the numbers to be set.
 #[derive(Default)]
 pub(crate) struct Listing {
     /// Tables that are absent are listed too.
     everything: bool,
+    /// How the rig moves.
+    motion: MotionKind,
     path: String,
     /// Every key with a value of its own, by its path.
     pub(crate) keys: Vec<KeyEntry>,
@@ -79,7 +82,7 @@ impl Listing {
     fn number(&mut self, key: Key, field: &mut f64) {
         let path = self.path_of(key.name);
         if self.assign.is_empty() {
-            self.numbers.insert(path, (key, *field));
+            self.numbers.insert(path, (key.in_motion(self.motion), *field));
         } else if let Some(value) = self.assign.get(&path) {
             *field = *value;
             self.assigned += 1;
@@ -106,12 +109,18 @@ impl Visitor for Listing {
         self.everything
     }
 
+    fn moves(&mut self, motion: Option<MotionKind>) {
+        self.motion = motion.unwrap_or_default();
+    }
+
     fn quantity(&mut self, key: Key, field: &mut f64) {
+        let key = key.in_motion(self.motion);
         self.list(key, key.dimension.name, key.default.is_none());
         self.number(key, field);
     }
 
     fn optional(&mut self, key: Key, field: &mut Option<f64>) {
+        let key = key.in_motion(self.motion);
         self.list(key, key.dimension.name, false);
         if let Some(value) = field {
             self.number(key, value);

@@ -37,7 +37,7 @@ const fn signal(name: &'static str) -> (&'static str, &'static str) {
 
 /// The signals that can be measured, each as a project names it and as the column of a simulation's
 /// table is called: every column but time.
-pub static MEASURABLE: [(&str, &str); 29] = [
+pub static MEASURABLE: [(&str, &str); 30] = [
     signal("force_n"),
     signal("reference_n"),
     signal("control_v"),
@@ -64,6 +64,7 @@ pub static MEASURABLE: [(&str, &str); 29] = [
     signal("unlimited_control_v"),
     signal("integral_v"),
     signal("measurement_n"),
+    signal("virtual_force_n"),
     signal("external_force_n"),
     signal("series_deflection_m"),
     signal("load_force_n"),

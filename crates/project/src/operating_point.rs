@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::key::{Key, key, plain};
 use super::listing::Listing;
 use super::visitor::Visitor;
-use super::{DeclaredSpacing, OperatingRegion, Project, Uncertain, UncertaintyDirection};
+use super::{DeclaredActuator, DeclaredSpacing, OperatingRegion, Project, Uncertain, UncertaintyDirection};
 use phea_quantity::{FORCE, LENGTH, PRESSURE, VELOCITY, VOLTAGE};
 
 /// Where the linear model is taken; absent parts are mid stroke and null.
@@ -28,7 +28,9 @@ const TABLE: &str = "operating_point";
 
 impl DeclaredOperatingPoint {
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
-        let k = key("position", &LENGTH, "Position of the piston; absent: mid stroke.").not_negative();
+        let k = key("position", &LENGTH, "Position of the piston; absent: mid stroke.")
+            .not_negative()
+            .of_motion();
         v.optional(k, &mut self.position);
         let k = key(
             "load_pressure",
@@ -40,9 +42,11 @@ impl DeclaredOperatingPoint {
             "load_force",
             &FORCE,
             "Force that the pressures hold, A_A p_A - A_B p_B, friction left aside.",
-        );
+        )
+        .of_motion();
         v.optional(k, &mut self.load_force);
-        let k = key("velocity", &VELOCITY, "Steady velocity of the piston and its load; absent: standstill.");
+        let k = key("velocity", &VELOCITY, "Steady velocity of the piston and its load; absent: standstill.")
+            .of_motion();
         v.optional(k, &mut self.velocity);
         v.optional(
             key(
@@ -121,7 +125,8 @@ impl Project {
     /// The nominal value is the declared one; otherwise mid stroke, no force and standstill, or the
     /// nearest value in the region.
     fn of_region(&self, region: &OperatingRegion) -> Vec<Uncertain> {
-        let middle = self.actuator.as_ref().map_or(0.0, |actuator| actuator.cylinder.stroke / 2.0);
+        let stroke = self.actuator.as_ref().and_then(DeclaredActuator::stroke);
+        let middle = stroke.map_or(0.0, |stroke| stroke / 2.0);
         let point = &self.operating_point;
         let numbers = [
             ("position", region.position, point.position, middle),

@@ -7,13 +7,15 @@ use super::key::Key;
 use super::toml_text::{bare_or_quoted, inline, list, quoted};
 use super::visitor::{FormulaShape, Kinds, NamedNumber, ValueForm, Variants, Visitor};
 use crate::catalogue::CatalogueKind;
-use phea_quantity as quantity;
+use phea_quantity::{self as quantity, MotionKind};
 
 /// Writes tables; the innermost is the last of `open`.
 pub(crate) struct Printer {
     open: Vec<PrintedTable>,
     /// Dimension and range of numbers that are named by their path.
     named: BTreeMap<String, Key>,
+    /// How the rig moves.
+    motion: MotionKind,
 }
 
 /// A table: its lines, then the tables in it.
@@ -52,7 +54,7 @@ impl PrintedTable {
 
 impl Printer {
     pub(crate) fn new(named: BTreeMap<String, Key>) -> Self {
-        Printer { open: vec![PrintedTable::default()], named }
+        Printer { open: vec![PrintedTable::default()], named, motion: MotionKind::Linear }
     }
 
     /// What was written since the beginning as one inline table.
@@ -118,7 +120,12 @@ impl Printer {
 }
 
 impl Visitor for Printer {
+    fn moves(&mut self, motion: Option<MotionKind>) {
+        self.motion = motion.unwrap_or_default();
+    }
+
     fn quantity(&mut self, key: Key, field: &mut f64) {
+        let key = key.in_motion(self.motion);
         self.line(key.name, quantity::print(*field, key.dimension));
     }
 
@@ -129,6 +136,7 @@ impl Visitor for Printer {
     }
 
     fn pair(&mut self, key: Key, field: &mut Option<[f64; 2]>) {
+        let key = key.in_motion(self.motion);
         if let Some(values) = field {
             self.line(key.name, list(values.iter().map(|value| quantity::print(*value, key.dimension))));
         }

@@ -13,12 +13,10 @@ use super::printer::Printer;
 use super::reader::Reader;
 use super::text::{Findings, Place, RawFinding};
 use super::tree::{self, TreeNode};
-use super::{
-    Alternative, DIRECTION, DeclaredActuator, Loaded, Project, UncertaintyDirection, setting, validate,
-};
+use super::{DIRECTION, DeclaredActuator, Loaded, Project, UncertaintyDirection, setting, validate};
 use crate::catalogue::Catalogue;
 use crate::source::Source;
-use phea_quantity::{Dimension, RATIO, display};
+use phea_quantity::{Dimension, MotionKind, RATIO, display};
 
 /// Reads a project file, applies `path=value` settings, and looks names up in the catalogue, to
 /// which the given files and folders are added.
@@ -77,9 +75,69 @@ pub fn read_alternative(
     index: usize,
 ) -> Result<Loaded, Refusal> {
     let name = base.project.alternatives.get(index).map_or("", |one| one.name.as_str());
-    // what recordings gave holds for the alternatives, too
+    read_again(source, base, catalogues, (OwnSettings::Alternative(index), name))
+}
+
+/// The load case of a project with this index, read as an alternative is: its settings are listed as
+/// if they had been given to [`read`], so that alternatives of it can be read.
+///
+/// # Errors
+/// [`Refusal`] with all errors; those in a value of the load case have its place.
+pub fn read_load_case(
+    source: &dyn Source,
+    base: &Loaded,
+    catalogues: &[String],
+    index: usize,
+) -> Result<Loaded, Refusal> {
+    let name = base.project.load_cases.get(index).map_or("", |one| one.name.as_str());
+    read_again(source, base, catalogues, (OwnSettings::LoadCase(index), name))
+}
+
+/// Whose settings a project is read again with, by its index.
+#[derive(Clone, Copy)]
+enum OwnSettings {
+    Alternative(usize),
+    LoadCase(usize),
+}
+
+impl OwnSettings {
+    /// The table that lists it, and the words for it.
+    fn table(self) -> (&'static str, &'static str, usize) {
+        match self {
+            OwnSettings::Alternative(index) => ("alternative", "alternative", index),
+            OwnSettings::LoadCase(index) => ("load_case", "load case", index),
+        }
+    }
+
+    /// The table `set`.
+    fn set_of(self, root: &TreeNode) -> Option<TreeNode> {
+        let (table, _, index) = self.table();
+        let tree::Value::List(listed) = &root.get(table)?.node.value else { return None };
+        Some(listed.get(index)?.get("set")?.node.clone())
+    }
+
+    fn settings(self, project: &Project) -> Vec<String> {
+        match self {
+            OwnSettings::Alternative(index) => {
+                project.alternatives.get(index).map_or(vec![], |one| one.settings().collect())
+            }
+            OwnSettings::LoadCase(index) => {
+                project.load_cases.get(index).map_or(vec![], |one| one.settings().collect())
+            }
+        }
+    }
+}
+
+/// The bytes of a project with its settings, and then with those of a part of it of that name.
+fn read_again(
+    source: &dyn Source,
+    base: &Loaded,
+    catalogues: &[String],
+    (own, name): (OwnSettings, &str),
+) -> Result<Loaded, Refusal> {
+    // what recordings gave holds here, too
     let settings = base.all_settings();
-    let read = read_bytes((source, &base.path), Ok(base.bytes.clone()), &settings, catalogues, Some(index));
+    let read = read_bytes((source, &base.path), Ok(base.bytes.clone()), &settings, catalogues, Some(own));
     read.map_err(|mut refusal| {
         // a warning on the project itself is told with the project, and once
         let known = |found: &Diagnostic| {
@@ -88,7 +146,7 @@ pub fn read_alternative(
         };
         refusal.diagnostics.retain(|found| !known(found));
         for found in &mut refusal.diagnostics {
-            found.message = format!("alternative `{name}`: {}", found.message);
+            found.message = format!("{} `{name}`: {}", own.table().1, found.message);
         }
         refusal
     })
@@ -99,7 +157,7 @@ fn read_bytes(
     bytes: Result<Vec<u8>, String>,
     settings: &[String],
     catalogues: &[String],
-    alternative: Option<usize>,
+    own: Option<OwnSettings>,
 ) -> Result<Loaded, Refusal> {
     let mut findings = Findings::default();
     let catalogue = Catalogue::gather(source, catalogues, &mut findings);
@@ -116,7 +174,7 @@ fn read_bytes(
     for text in settings {
         setting::apply(&mut root, text, &mut findings);
     }
-    if let Some(table) = alternative.and_then(|index| set_of(&root, index)) {
+    if let Some(table) = own.and_then(|own| own.set_of(&root)) {
         setting::apply_table(&mut root, &table, &mut findings);
     }
     let mut reader = Reader::new(&root, project_text, &catalogue, &mut findings);
@@ -132,8 +190,7 @@ fn read_bytes(
     let sha256 = sha256(&bytes);
     let warnings = report.diagnostics;
     let texts = report.texts;
-    let own = alternative.and_then(|index| project.alternatives.get(index));
-    let own = own.into_iter().flat_map(Alternative::settings);
+    let own = own.map_or(vec![], |own| own.settings(&project));
     let settings = settings.iter().cloned().chain(own).collect();
     let path = path.to_string();
     let catalogues = catalogues.to_vec();
@@ -150,12 +207,6 @@ fn read_bytes(
         catalogues,
         recorded: None,
     })
-}
-
-/// The table `set` of an alternative.
-fn set_of(root: &TreeNode, index: usize) -> Option<TreeNode> {
-    let tree::Value::List(alternatives) = &root.get("alternative")?.node.value else { return None };
-    Some(alternatives.get(index)?.get("set")?.node.clone())
 }
 
 /// The hash by which answers name a project.
@@ -222,7 +273,7 @@ fn directions(root: &TreeNode) -> impl Iterator<Item = &str> {
 
 /// Either a complete actuator, or a plant, or measured plants.
 fn refuse_mixture(reader: &mut Reader<'_>, root: &TreeNode, is_plant: bool, is_measured: bool) {
-    let tables = DeclaredActuator::REQUIRED.iter().chain(&DeclaredActuator::OPTIONAL).copied();
+    let tables = DeclaredActuator::tables();
     let present: Vec<_> = tables.clone().filter_map(|name| root.get(name)).collect();
     if is_measured {
         for entry in
@@ -255,6 +306,19 @@ fn refuse_mixture(reader: &mut Reader<'_>, root: &TreeNode, is_plant: bool, is_m
     for name in DeclaredActuator::REQUIRED.iter().filter(|name| root.get(name).is_none()) {
         reader.findings.push(RawFinding::error(root.place, format!("missing table [{name}]")).consequence());
     }
+    match (root.get("cylinder"), root.get("motor")) {
+        (None, None) => {
+            let found = RawFinding::error(root.place, "missing table [cylinder]").consequence();
+            reader.findings.push(found.help("or [motor], for a rotary actuator"));
+        }
+        (Some(cylinder), Some(_)) => {
+            reader.know("cylinder");
+            let message = "[cylinder] describes what moves, and [motor] does so too";
+            let found = RawFinding::error(cylinder.key_place, message);
+            reader.findings.push(found.help("remove one of the two"));
+        }
+        _ => {}
+    }
 }
 
 /// Every number of the project that can be named, and the parameters of its linear model; and its
@@ -265,12 +329,11 @@ fn numbers(project: &mut Project) -> (BTreeMap<String, Key>, Vec<String>) {
     let mut named: BTreeMap<String, Key> =
         listing.numbers.into_iter().map(|(path, (key, _))| (path, key)).collect();
     named.remove("schema");
-    if project.actuator.is_some() {
-        named.extend(
-            LINEAR_PARAMETERS.iter().map(|parameter| (parameter.key.name.to_string(), parameter.key)),
-        );
-        named.extend(super::scenario::start_numbers());
-        named.extend(operating_numbers());
+    if let Some(actuator) = &project.actuator {
+        let linear =
+            LINEAR_PARAMETERS.iter().map(|parameter| (parameter.key.name.to_string(), parameter.key));
+        let others = linear.chain(super::scenario::start_numbers()).chain(operating_numbers());
+        named.extend(others.map(|(path, key)| (path, key.in_motion(actuator.motion()))));
     }
     named.extend(project.directions.iter().map(|direction| (direction.name.clone(), DIRECTION)));
     (named, listing.counts)
@@ -316,6 +379,11 @@ impl Project {
         } else {
             format!("{}{name}", self.folder)
         }
+    }
+
+    /// How the rig moves; a project without one moves along a line.
+    pub fn motion(&self) -> MotionKind {
+        self.actuator.as_ref().map_or(MotionKind::Linear, DeclaredActuator::motion)
     }
 
     /// The number at a dotted path such as `supply.pressure`, in SI.
@@ -410,7 +478,9 @@ impl Project {
         let mut listing = Listing::default();
         self.clone().visit_system(&mut listing);
         let numbers = listing.numbers.into_iter().map(|(path, (key, value))| (path, (key, Some(value))));
-        let start = super::scenario::start_numbers().into_iter().map(|(path, key)| (path, (key, None)));
+        let motion = self.motion();
+        let start = super::scenario::start_numbers().into_iter();
+        let start = start.map(|(path, key)| (path, (key.in_motion(motion), None)));
         numbers.chain(start).collect()
     }
 }

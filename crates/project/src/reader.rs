@@ -11,6 +11,7 @@ use super::text::{Findings, Place, RawFinding};
 use super::tree::{Entry, TreeNode, Value};
 use super::{Origin, Provenance};
 use crate::catalogue::Catalogue;
+use phea_quantity::MotionKind;
 use phea_quantity::spelling::nearest;
 
 /// Reads the tables of one file.
@@ -27,6 +28,8 @@ pub(crate) struct Reader<'a> {
     pub(crate) incomplete: bool,
     /// Whether the parts of an actuator are read.
     pub(crate) parts: bool,
+    /// How the rig moves.
+    motion: MotionKind,
     /// Numbers of the project that can be named, with their keys.
     pub(crate) named: BTreeMap<String, Key>,
     /// Its whole numbers, which have no range to vary in.
@@ -94,6 +97,7 @@ impl<'a> Reader<'a> {
             partial: false,
             incomplete: false,
             parts: true,
+            motion: MotionKind::Linear,
             named: BTreeMap::new(),
             counts: Vec::new(),
             parameters: Vec::new(),
@@ -104,6 +108,11 @@ impl<'a> Reader<'a> {
         };
         reader.open(String::new(), root.place, vec![Layer { node: root, hidden: Vec::new(), entry: None }]);
         reader
+    }
+
+    /// How the rig moves whose keys are read.
+    pub(crate) fn motion(&self) -> MotionKind {
+        self.motion
     }
 
     /// Accepts absent keys.
@@ -233,6 +242,7 @@ impl<'a> Reader<'a> {
     }
 
     fn missing(&mut self, key: Key) {
+        let key = key.in_motion(self.motion);
         if self.takes_absent() {
             return;
         }

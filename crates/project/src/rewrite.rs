@@ -16,7 +16,7 @@ use super::printer::Printer;
 use super::{DeclaredController, Prefilter, Transfer};
 
 /// Keys of [controller] other than its transfer function.
-const BESIDE: [&str; 7] = [
+const BESIDE: [&str; 8] = [
     "saturation",
     "anti_windup",
     "sample_time",
@@ -24,6 +24,7 @@ const BESIDE: [&str; 7] = [
     "discretization",
     "quantization",
     "load_velocity_feed_forward",
+    "impedance",
 ];
 
 /// The bytes of a project file with this controller, and with this prefilter if there is one, in

@@ -135,8 +135,8 @@ impl Variants for MotionShape {
 
     fn visit<V: Visitor>(&mut self, v: &mut V) {
         let how_long = key("duration", &TIME, "Of a smooth step or a chirp.").positive();
-        let how_far = key("distance", &LENGTH, "Of a smooth or first-order step.");
-        let size = key("amplitude", &LENGTH, "Of a sine or chirp.").positive();
+        let how_far = key("distance", &LENGTH, "Of a smooth or first-order step.").of_motion();
+        let size = key("amplitude", &LENGTH, "Of a sine or chirp.").of_motion().positive();
         let first = key("frequency", &ANGULAR_FREQUENCY, "Of a sine, or where a chirp begins.").positive();
         match self {
             MotionShape::SmoothStep { duration, distance } => {
@@ -224,15 +224,15 @@ impl Start {
     }
 
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
-        let k = key("position", &LENGTH, "Position of the piston.").not_negative();
+        let k = key("position", &LENGTH, "Position of the piston.").of_motion().not_negative();
         v.optional(k, &mut self.position);
-        v.optional(key("velocity", &VELOCITY, "Velocity of the piston."), &mut self.velocity);
+        v.optional(key("velocity", &VELOCITY, "Velocity of the piston.").of_motion(), &mut self.velocity);
         let k = key("pressure_a", &PRESSURE, "Pressure in chamber A, gauge.").above(-101_325.0);
         v.optional(k, &mut self.pressure_a);
         let k = key("pressure_b", &PRESSURE, "Pressure in chamber B, gauge.").above(-101_325.0);
         v.optional(k, &mut self.pressure_b);
         v.optional(key("spool", &VOLTAGE, "Spool position as equivalent command."), &mut self.spool);
-        v.optional(key("force", &FORCE, "Force in the load cell."), &mut self.force);
+        v.optional(key("force", &FORCE, "Force in the load cell.").of_motion(), &mut self.force);
         v.text(plain("file", "A saved state to go on from, instead of all these."), &mut self.file, false);
     }
 }
@@ -247,8 +247,8 @@ impl LoadMotion {
 /// The numbers of the start as a campaign names them: `start.position` and so on.
 pub(crate) fn start_numbers() -> Vec<(String, Key)> {
     let keys = [
-        key("start.position", &LENGTH, "Position of the piston at the start.").not_negative(),
-        key("start.velocity", &VELOCITY, "Velocity of the piston at the start."),
+        key("start.position", &LENGTH, "Position of the piston at the start.").of_motion().not_negative(),
+        key("start.velocity", &VELOCITY, "Velocity of the piston at the start.").of_motion(),
         key("start.pressure_a", &PRESSURE, "Pressure in chamber A at the start.").above(-101_325.0),
         key("start.pressure_b", &PRESSURE, "Pressure in chamber B at the start.").above(-101_325.0),
     ];

@@ -47,13 +47,13 @@ fn what_is_described(writer: &mut SchemaWriter) {
     let measured =
         json!({ "required": ["family"], "properties": { "family": { "required": ["measured"] } } });
     let plant = json!({ "required": ["plant"] });
-    let all = DeclaredActuator::REQUIRED.iter().chain(&DeclaredActuator::OPTIONAL);
-    let actuator: Vec<&str> = all.copied().collect();
+    let moving = DeclaredActuator::MOVING.map(|name| json!({ "required": [name] }));
+    let actuator: Vec<&str> = DeclaredActuator::tables().collect();
     let other: Vec<&str> = actuator.iter().chain(&["plant", "uncertainty"]).copied().collect();
     writer.rule(json!({
         "if": measured,
         "then": without(&other),
-        "else": { "if": plant, "then": without(&actuator), "else": { "required": DeclaredActuator::REQUIRED } },
+        "else": { "if": plant, "then": without(&actuator), "else": { "required": DeclaredActuator::REQUIRED, "oneOf": moving } },
     }));
 }
 

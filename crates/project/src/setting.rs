@@ -89,8 +89,13 @@ fn gather<'t>(
                 continue;
             }
         };
-        if parts.first().is_some_and(|(name, _)| name == "alternative") {
-            wrong.push(RawFinding::error(entry.key_place, "an alternative does not change alternatives"));
+        let refused = match parts.first().map(|(name, _)| name.as_str()) {
+            Some("alternative") => Some("an alternative or a load case does not change alternatives"),
+            Some("load_case") => Some("an alternative or a load case does not change load cases"),
+            _ => None,
+        };
+        if let Some(refused) = refused {
+            wrong.push(RawFinding::error(entry.key_place, refused));
             continue;
         }
         let Place { text, start, .. } = entry.node.place;

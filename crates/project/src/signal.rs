@@ -164,11 +164,12 @@ impl Variants for WrittenSignal {
 
     fn visit<V: Visitor>(&mut self, v: &mut V) {
         let of = self.unit.dimension;
-        let level = key(self.unit.value, of, "Of a step, until the next; how far a ramp goes.");
+        let level = key(self.unit.value, of, "Of a step, until the next; how far a ramp goes.").of_motion();
         let begins = key("start", &TIME, "When it begins; absent: at once.").not_negative();
         let how_long =
             key("duration", &TIME, "How long it moves; it holds the value it ends with.").positive();
-        let size = key("amplitude", of, "Of a sine, a chirp, or each sine of a multisine.").positive();
+        let size =
+            key("amplitude", of, "Of a sine, a chirp, or each sine of a multisine.").of_motion().positive();
         let first = key("frequency", &ANGULAR_FREQUENCY, "Of a sine, or where a chirp begins.").positive();
         match &mut self.signal {
             Signal::Step { at, value, published } => {
@@ -183,7 +184,7 @@ impl Variants for WrittenSignal {
             Signal::Steps { times, values } => {
                 let k = key("times", &TIME, "When each of several steps comes.").not_negative();
                 v.quantities(k, times, true);
-                let k = key(self.unit.values, of, "Of several steps, each until the next.");
+                let k = key(self.unit.values, of, "Of several steps, each until the next.").of_motion();
                 v.quantities(k, values, true);
             }
             Signal::Ramp { value, start, duration } => {
@@ -239,7 +240,7 @@ impl Amplitudes {
             Amplitudes::Each(amplitudes) => (None, amplitudes),
         };
         v.optional(size, &mut equal);
-        let k = key("amplitudes", size.dimension, "Of each sine of a multisine.").positive();
+        let k = key("amplitudes", size.dimension, "Of each sine of a multisine.").of_motion().positive();
         v.quantities(k, &mut each, false);
         v.one_of(&["amplitude", "amplitudes"], true);
         *self = equal.map_or(Amplitudes::Each(each), Amplitudes::Equal);

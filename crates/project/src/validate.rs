@@ -6,9 +6,11 @@ mod design;
 mod direction;
 mod family;
 mod identify;
+mod impedance;
 mod line_motion;
 mod linear_loop;
 mod measured;
+mod motor;
 mod plausible;
 mod rig;
 mod series;
@@ -29,7 +31,10 @@ pub(super) fn project(project: &Project, reader: &mut Reader<'_>) {
     let mut check = Check { reader };
     if let Some(actuator) = &project.actuator {
         rig::actuator(actuator, &mut check);
-        series::series(project, actuator, &mut check);
+        match actuator.motor {
+            Some(_) => motor::motor(project, actuator, &mut check),
+            None => series::series(project, actuator, &mut check),
+        }
         wishes::with_actuator(project, actuator, &mut check);
     }
     if let Some(plant) = &project.plant {
@@ -45,6 +50,7 @@ pub(super) fn project(project: &Project, reader: &mut Reader<'_>) {
     linear_loop::sensor(project, &mut check);
     specification::specifications(project, &mut check);
     linear_loop::controllers(project, &mut check);
+    impedance::impedance(project, &mut check);
     design::design(project, &mut check);
     if let Some(line) = &project.bench.line {
         check.increasing("bench.line.pressures", &line.pressures);
@@ -55,6 +61,7 @@ pub(super) fn project(project: &Project, reader: &mut Reader<'_>) {
         identify::in_use(project, identified, &mut check);
     }
     alternative::alternatives(&project.alternatives, &mut check);
+    alternative::load_cases(&project.load_cases, &mut check);
 }
 
 impl DeclaredElement {
@@ -87,6 +94,11 @@ struct Check<'r, 'a> {
 }
 
 impl Check<'_, '_> {
+    /// How the rig moves.
+    fn motion(&self) -> phea_quantity::MotionKind {
+        self.reader.motion()
+    }
+
     /// Where the value of a path is written, or the nearest table around it.
     fn place(&self, path: &str) -> Place {
         let mut path = path;

@@ -7,6 +7,7 @@
 use super::formula::Formula;
 use super::key::Key;
 use crate::catalogue::CatalogueKind;
+use phea_quantity::MotionKind;
 
 /// A choice with keys of its own for each of its variants.
 pub(crate) trait Variants: Clone {
@@ -30,6 +31,9 @@ pub(crate) trait Visitor: Sized {
     fn names_everything(&self) -> bool {
         false
     }
+    /// How the rig moves of which the keys that follow are; `None` where this is open, in a description
+    /// of every key.
+    fn moves(&mut self, _motion: Option<MotionKind>) {}
     /// A number; required unless the key has a default.
     fn quantity(&mut self, key: Key, field: &mut f64);
     /// A number that may be absent.

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
 use phea_project::source::Memory;
-use phea_project::{Loaded, Refusal, STARTER, print, read, read_alternative};
+use phea_project::{Loaded, Refusal, STARTER, print, read, read_alternative, read_load_case};
 
 fn loaded(alternatives: &str, settings: &[&str]) -> Result<Loaded, Refusal> {
     let source = Memory::default().with("rig.toml", format!("{STARTER}\n{alternatives}"));
@@ -91,4 +91,20 @@ fn a_warning_of_the_project_is_not_repeated() {
     assert!(!base.warnings.is_empty());
     let refusal = read_alternative(&source, &base, &[], 0).unwrap_err();
     assert_eq!(refusal.diagnostics.len(), 1, "{refusal}");
+}
+
+/// A load case is set before the alternative sets its own values, and is listed like them.
+#[test]
+fn an_alternative_has_the_last_word_in_a_load_case() {
+    let text = "[[load_case]]\nname = \"other\"\nset = { \"supply.pressure\" = \"80 bar\", \"line.length\" = \"3 m\" }\n\
+                [[alternative]]\nname = \"long\"\nset = { \"line.length\" = \"2 m\" }\n";
+    let source = Memory::default();
+    let case = read_load_case(&source, &loaded(text, &[]).unwrap(), &[], 0).unwrap();
+    let found = read_alternative(&source, &case, &[], 0).unwrap();
+    let settings = ["supply.pressure=\"80 bar\"", "line.length=\"3 m\"", "line.length=\"2 m\""];
+    assert_eq!(found.settings, settings);
+    assert_eq!(found.project, loaded(text, &settings).unwrap().project);
+    let wrong = text.replace("80 bar", "80 mm");
+    let refusal = read_load_case(&source, &loaded(&wrong, &[]).unwrap(), &[], 0).unwrap_err();
+    assert_eq!(refusal.diagnostics[0].message, "load case `other`: expected a pressure, found a length");
 }

@@ -156,6 +156,29 @@ dimensions! {
     STRAIN_PER_FORCE = "a strain per force", whole(-1, -1, 2, 0, 0), [], "1/N", r#"2e-5, "2e-5 1/N", "0.02 1/kN""#;
     /// rad.
     ANGLE = "an angle", whole(0, 0, 0, 0, 1), ["deg"], "rad", r#""30 deg", "0.5 rad""#;
+    /// N·m.
+    TORQUE = "a torque", whole(1, 2, -2, 0, 0), ["N.m", "kN.m", "MN.m"], "N.m", r#""40 N.m", "1.2 kN.m""#;
+    /// rad/s, how fast a shaft turns.
+    ANGULAR_VELOCITY = "an angular velocity", whole(0, 0, -1, 0, 1), ["rad/s"], "rad/s",
+        r#""2 rad/s", "30 rpm", "10 deg/s""#;
+    /// kg·m².
+    INERTIA = "an inertia", whole(1, 2, 0, 0, 0), ["kg.m2"], "kg.m2", r#""0.02 kg.m2", "200 kg.cm2""#;
+    /// N·m/rad.
+    TORSIONAL_STIFFNESS = "a torsional stiffness", whole(1, 2, -2, 0, -1), ["N.m/rad", "kN.m/rad", "MN.m/rad"],
+        "N.m/rad", r#""20 kN.m/rad", "350 N.m/deg""#;
+    /// N·m·s/rad.
+    TORSIONAL_DAMPING = "a torsional friction", whole(1, 2, -1, 0, -1), ["N.m.s/rad"], "N.m.s/rad",
+        r#""1.5 N.m.s/rad", "0.16 N.m/rpm""#;
+    /// m³/rad, what a motor takes for an angle.
+    DISPLACEMENT = "a displacement", whole(0, 3, 0, 0, -1), ["cc/rev"], "m3/rad", r#""100 cc/rev", "16 mL/rad""#;
+    /// s/rad, damping of a contact relative to its elastic torque.
+    INVERSE_ANGULAR_VELOCITY = "an inverse angular velocity", whole(0, 0, 1, 0, -1), [], "s/rad",
+        r#"0.5, "0.5 s/rad""#;
+    /// V/(N·m), the gain of a torque controller.
+    VOLTAGE_PER_TORQUE = "a gain in V/(N.m)", whole(-1, -2, 2, 1, 0), [], "V/(N.m)", r#"0.05, "0.05 V/(N.m)""#;
+    /// V·s/rad, from an angular velocity to a command.
+    VOLTAGE_PER_ANGULAR_VELOCITY = "a gain in V.s/rad", whole(0, 0, 1, 1, -1), [], "V.s/rad",
+        r#"0.8, "0.8 V.s/rad", "0.8 V/(rad/s)""#;
     /// degC: the Celsius temperature, the thermodynamic one less 273.15 K.
     TEMPERATURE = "a temperature", Exponents::celsius(1), ["degC"], "degC", r#""37 degC""#;
     /// 1/degC, the share by which something changes with each degree.

@@ -38,6 +38,16 @@ impl DisplayUnit {
     pub const NEWTON: Self = DisplayUnit { symbol: "N", in_si: 1.0 };
     /// Force.
     pub const KILONEWTON: Self = DisplayUnit { symbol: "kN", in_si: 1e3 };
+    /// Torque.
+    pub const NEWTON_METRE: Self = DisplayUnit { symbol: "N.m", in_si: 1.0 };
+    /// Angle.
+    pub const DEGREE: Self = DisplayUnit { symbol: "deg", in_si: std::f64::consts::PI / 180.0 };
+    /// Angular velocity.
+    pub const RADIAN_PER_SECOND: Self = DisplayUnit { symbol: "rad/s", in_si: 1.0 };
+    /// Torsional stiffness.
+    pub const KILONEWTON_METRE_PER_RADIAN: Self = DisplayUnit { symbol: "kN.m/rad", in_si: 1e3 };
+    /// Voltage for a torque.
+    pub const MILLIVOLT_PER_NEWTON_METRE: Self = DisplayUnit { symbol: "mV/(N.m)", in_si: 1e-3 };
     /// Pressure.
     pub const BAR: Self = DisplayUnit { symbol: "bar", in_si: 1e5 };
     /// degC.

@@ -6,6 +6,7 @@
 mod dimension;
 mod display_unit;
 mod exact;
+mod motion;
 mod parse;
 mod pattern;
 mod print;
@@ -16,6 +17,7 @@ mod unit;
 
 pub use dimension::*;
 pub use display_unit::DisplayUnit;
+pub use motion::{MotionKind, Vocabulary};
 pub use parse::{QuantityError, parse};
 pub use pattern::{any_quantity_pattern, compound_unit_pattern, single_unit_pattern};
 pub use print::print_bare;

@@ -5,6 +5,7 @@ mod document;
 mod files;
 mod findings;
 mod front;
+mod summary;
 
 pub use phea_engineering::alternatives::*;
 

@@ -19,7 +19,7 @@ pub(crate) use object::{Json, Object};
 pub use phea_engineering::number_table::{NumberTable, TableFormat};
 
 pub use crate::source::OutputFile;
-pub(crate) use pictures::{part_files, picture_files};
+pub(crate) use pictures::{PNG_SCALE, part_files, picture_files};
 pub(crate) use recorded::body_in_use;
 
 use crate::project::Loaded;
@@ -50,6 +50,9 @@ struct Envelope<'a, Body> {
     project_sha256: &'a str,
     settings: &'a [String],
     catalogue_files: &'a [String],
+    /// Of a rig that turns: its torques are in N m and its angles in rad.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    motion: Option<&'static str>,
     #[serde(skip_serializing_if = "Option::is_none")]
     identified: Option<Object>,
     #[serde(flatten)]
@@ -66,6 +69,7 @@ pub fn json<Body: Serialize>(command: &'static str, loaded: &Loaded, body: Body)
         project_sha256: &loaded.sha256,
         settings: &loaded.settings,
         catalogue_files: &loaded.catalogue_files,
+        motion: loaded.project.motion().is_rotary().then_some("rotary"),
         identified: loaded.recorded.as_ref().map(body_in_use),
         body,
     };

@@ -6,6 +6,7 @@ mod friction;
 mod identify;
 mod line_test;
 mod linearize;
+mod motor;
 mod refusal;
 mod response;
 mod schema;
@@ -21,7 +22,7 @@ pub use phea_engineering::error::ProcedureError;
 pub use phea_engineering::identify::IdentifyError;
 pub use phea_engineering::response::ResponseSettings;
 pub use phea_hydraulics::servovalve::LeakageModel;
-pub use refusal::{error_json, failure_json, files_json, refusal_json};
+pub use refusal::{error_json, error_text, failure_json, files_json, refusal_json};
 pub use response::{ResponseRequest, response_watched};
 pub use schema::{SCHEMA_FILE, schema};
 pub use simulate::{FrequencyOptions, SimulateRequest};
@@ -41,6 +42,7 @@ use crate::family::{family, visited_box};
 use crate::identify::{heading_in_use, in_use};
 use crate::line_test::line_runs;
 use crate::linearize::SweepRequest;
+use crate::motion;
 use crate::project::Loaded;
 use crate::quantity::{self, LENGTH, VOLTAGE_PER_FORCE};
 use crate::report::report_beside;
@@ -187,6 +189,7 @@ pub fn answer_into(
     destination: Option<&dyn Destination>,
     watch: Watch<'_>,
 ) -> Result<Answer, CommandError> {
+    motor::refuse(loaded, request)?;
     // these three know their own way: the bench tests the declared valve, whose recordings may not be
     // there yet
     if matches!(request, Request::Bench | Request::Compare | Request::Campaign(_)) {
@@ -195,7 +198,8 @@ pub fn answer_into(
     let identified = with_recordings(source, loaded, watch)?;
     let loaded = identified.as_ref().unwrap_or(loaded);
     let answer = answer_as_read(source, loaded, catalogues, request, destination, watch)?;
-    Ok(Answer { text: format!("{}{}", heading_in_use(loaded), answer.text), ..answer })
+    let text = format!("{}{}", heading_in_use(loaded), answer.text);
+    Ok(motion::said(Answer { text, ..answer }, loaded))
 }
 
 /// The project as its recordings tell it, where it wants that.
@@ -410,7 +414,10 @@ pub fn compare_watched(
 ) -> Result<Answer, CommandError> {
     let identified = projects
         .iter()
-        .map(|loaded| Ok(with_recordings(source, loaded, watch)?.unwrap_or_else(|| loaded.clone())))
+        .map(|loaded| {
+            motor::refuse(loaded, &Request::Compare)?;
+            Ok(with_recordings(source, loaded, watch)?.unwrap_or_else(|| loaded.clone()))
+        })
         .collect::<Result<Vec<Loaded>, CommandError>>()?;
     let projects = identified.as_slice();
     let comparison = compare_projects(source, projects, watch).map_err(|(index, error)| {

@@ -24,6 +24,14 @@ pub enum CommandError {
         "a report on a [plant] needs at least one [[specification]]; one on a rig needs [valve], [cylinder] and [line]"
     )]
     NothingToReport,
+    /// A command that does nothing with a motor.
+    #[error(
+        "`phea {command}` is for a [cylinder], and this project has a [motor]: check, linearize, verify, design, simulate and report treat one"
+    )]
+    OfCylinders {
+        /// As it is called.
+        command: &'static str,
+    },
     /// The machine of one project among several cannot be simulated.
     #[error("{path}: {error}")]
     Compare {
@@ -49,7 +57,10 @@ impl CommandError {
             CommandError::Procedure(error) => error.refusal(),
             CommandError::Compare { error, .. } => error.refusal(),
             CommandError::Identify(IdentifyError::Files(refusal)) => Some(refusal),
-            CommandError::Identify(_) | CommandError::Figure(_) | CommandError::NothingToReport => None,
+            CommandError::Identify(_)
+            | CommandError::Figure(_)
+            | CommandError::OfCylinders { .. }
+            | CommandError::NothingToReport => None,
         }
     }
 

@@ -17,6 +17,7 @@ pub mod friction;
 pub mod identify;
 pub mod line_test;
 pub mod linearize;
+pub(crate) mod motion;
 pub mod report;
 pub mod response;
 pub mod shaping;

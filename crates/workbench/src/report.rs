@@ -45,9 +45,9 @@ use crate::derived::{self, derive};
 use crate::error::CommandError;
 use crate::figure::{Figure, FigureError};
 use crate::linear_loop::{LinearLoop, LoopStability, StepView, linear_loop_of, settling_words};
-use crate::linearize::{Linearization, linearize};
+use crate::linearize::{Linearization, linearize, stiffness_words};
 use crate::project::{DeclaredActuator, Loaded, Project, Signal};
-use crate::quantity::DisplayUnit;
+use crate::quantity::MotionKind;
 use crate::setup::Setup;
 use crate::sizing::{Question, Sizing, SizingProblem, size};
 use crate::source::Source;
@@ -317,11 +317,8 @@ fn summary(
     given: Option<&LinearLoop>,
 ) -> Vec<(&'static str, String)> {
     let stiffness = linearization.stiffness[0];
-    let mega = |value: f64| DisplayUnit::MEGANEWTON_PER_METRE.number(value, 3);
-    let mut facts = vec![(
-        "Hydraulic stiffness",
-        format!("{} to {} MN/m", mega(stiffness.minimum), mega(stiffness.maximum)),
-    )];
+    let [words, _] = stiffness_words(linearization.motion, &stiffness);
+    let mut facts = vec![("Hydraulic stiffness", words)];
     let best = sizing.zip(problem).and_then(|(sizing, problem)| {
         sizing.candidates.iter().find(|c| c.accepted() && c.branch.model == problem.model)
     });
@@ -357,8 +354,13 @@ fn loop_words(given: &LinearLoop) -> String {
 }
 
 fn subtitle(project: &Project) -> &'static str {
-    match project.actuator {
-        Some(_) => "Hydraulic force control through added compliance: sizing, linear models, robust control",
+    match project.actuator.as_ref().map(DeclaredActuator::motion) {
+        Some(MotionKind::Linear) => {
+            "Hydraulic force control through added compliance: sizing, linear models, robust control"
+        }
+        Some(MotionKind::Rotary) => {
+            "Hydraulic torque control through added compliance: linear models, robust control"
+        }
         None => "Robust control of an uncertain plant",
     }
 }

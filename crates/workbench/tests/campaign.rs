@@ -54,7 +54,9 @@ fn lanes(threads: usize) -> Effort {
 #[test]
 fn rows_are_the_same_in_lanes_one_by_one_and_on_any_number_of_threads() {
     let sampled = ["controller.sample_time=1 ms", "force_sensor.noise=2 N"];
-    for more in [&[] as &[&str], &sampled, &["simulation.maximum_steps=120"]] {
+    let impedance =
+        ["controller.impedance={ stiffness = 1e5, damping = 2e3, mass = 10, filter_time = 2e-3 }"];
+    for more in [&[] as &[&str], &sampled, &["simulation.maximum_steps=120"], &impedance] {
         let plan = plan(more);
         let expected = plan.rows(0..45, SCALAR).unwrap();
         assert_eq!(expected.len(), 45);

@@ -20,14 +20,17 @@ const CROSS_PORT: &str = include_str!("../../project/tests/valid/cross_port.toml
 const SERIES: &str = include_str!("../../project/tests/valid/series.toml");
 const SERIES_COIL: &str = include_str!("../../project/tests/valid/series_coil.toml");
 const VOLUMES: &str = include_str!("../../project/tests/valid/volumes.toml");
+const MOTOR: &str = include_str!("../../project/tests/valid/motor.toml");
+const TURNING: &str = include_str!("../../project/tests/valid/motor_turning.toml");
 const ASYMMETRIC: &str = include_str!("../../project/tests/valid/asymmetric.toml");
 const GUIDE: &str = include_str!("../../../book/src/guide/what_moves_what.md");
 /// Tables that declare the rig and its loop; the others state what is asked of it.
-const TABLES: [&str; 14] = [
+const TABLES: [&str; 15] = [
     "fluid",
     "supply",
     "valve",
     "cylinder",
+    "motor",
     "line",
     "cross_port",
     "load",
@@ -55,6 +58,9 @@ const WALL: [&str; 5] =
     ["load.model=wall", "load.mass=10", "load.stiffness=1e6", "load.damping=10", "load.gap=0.001"];
 /// A sensor of the load's velocity.
 const SHOWN: &str = "velocity_sensor={ gain_error = \"2 %\", delay = \"1 ms\", filter_frequency = \"200 Hz\", filter_damping_ratio = 0.7, noise = \"1 mm/s\", resolution = \"0.1 mm/s\" }";
+
+/// A virtual impedance.
+const IMPEDANCE: &str = "controller.impedance={ stiffness = \"100 kN/m\", damping = \"2 kN.s/m\", mass = \"20 kg\", filter_time = \"2 ms\" }";
 
 /// Rigs that together have every key: examples, the projects of other tests, and the same with other words.
 fn rigs() -> Vec<(String, Vec<&'static str>)> {
@@ -94,6 +100,7 @@ fn rigs() -> Vec<(String, Vec<&'static str>)> {
         (hose(), vec!["controller.load_velocity_feed_forward={ gain = 20 }"]),
         (hose(), [&sampled[..], &[SHOWN]].concat()),
         (hose(), [&SPRUNG[..], &["controller.load_velocity_feed_forward={ gain = 20 }", SHOWN]].concat()),
+        (hose(), vec![IMPEDANCE]),
         (hose(), CONVERTERS.to_vec()),
         (factored, vec![]),
         (pipe(), [&WALL[..], &["load.relative_damping=0.1"]].concat()),
@@ -118,13 +125,20 @@ fn rigs() -> Vec<(String, Vec<&'static str>)> {
     others.into_iter().chain(between_chambers(hose(), pipe())).chain(on_springs()).collect()
 }
 
-/// Rigs with a spring on the rod.
+/// Rigs with a spring on the rod, and with a motor in place of the cylinder.
 fn on_springs() -> Vec<(String, Vec<&'static str>)> {
-    vec![
+    let springs = [
         (without_uncertainty(SERIES), vec!["operating_point.load_force=2 kN"]),
         (without_uncertainty(SERIES_COIL), vec![]),
         (ASYMMETRIC.to_string(), vec!["series={ stiffness = \"20 MN/m\" }"]),
-    ]
+    ];
+    springs.into_iter().chain(with_motors()).collect()
+}
+
+/// Rigs with a motor in place of the cylinder.
+fn with_motors() -> Vec<(String, Vec<&'static str>)> {
+    let vane = without_uncertainty(&MOTOR.replace("moving_mass = \"0.03 kg.m2\"", ""));
+    vec![(vane, vec![]), (TURNING.to_string(), vec![])]
 }
 
 /// Rigs with a valve between the chambers.
@@ -171,7 +185,7 @@ fn without_uncertainty(text: &str) -> String {
 }
 
 /// Values of what may be absent, or is not a number.
-const STATED: [(&str, &str); 45] = [
+const STATED: [(&str, &str); 49] = [
     ("operating_point.position", "200 mm"),
     ("operating_point.command", "1 V"),
     ("operating_point.load_pressure", "10 bar"),
@@ -186,6 +200,10 @@ const STATED: [(&str, &str); 45] = [
     ("controller.sample_time", "2 ms"),
     ("controller.delay", "1 ms"),
     ("controller.load_velocity_feed_forward.gain", "21"),
+    ("controller.impedance.stiffness", "101 kN/m"),
+    ("controller.impedance.damping", "2.1 kN.s/m"),
+    ("controller.impedance.mass", "21 kg"),
+    ("controller.impedance.filter_time", "2.1 ms"),
     ("controller.quantization.command_bits", "9"),
     ("controller.quantization.command_range", "[\"-9 V\", \"9 V\"]"),
     ("controller.quantization.measurement_bits", "9"),

@@ -53,10 +53,7 @@ pub(super) fn answered(recorded: &IdentifyArguments) -> Result<(Answer, Vec<Path
         SubjectWord::Line => {
             let settings = ResponseSettings { coherence: recorded.coherence.unwrap_or(0.0), ..settings };
             let figures = recorded.out.is_some();
-            let side = recorded.side.map(|word| match word {
-                ChamberWord::A => LineSide::A,
-                ChamberWord::B => LineSide::B,
-            });
+            let side = recorded.side.map(side_of);
             let asked = LineRequest { files: asked.files, side, settings, figures };
             command::line_watched(&FileSystem, loaded.as_ref(), &asked, watch)
         }
@@ -101,6 +98,14 @@ fn named(recorded: &IdentifyArguments) -> Result<(Option<String>, Vec<String>), 
         return Err(refused("`--set` changes a project, and none is named"));
     }
     Ok((project, files.into_iter().cloned().collect()))
+}
+
+/// The line to a chamber.
+fn side_of(chamber: ChamberWord) -> LineSide {
+    match chamber {
+        ChamberWord::A => LineSide::A,
+        ChamberWord::B => LineSide::B,
+    }
 }
 
 /// Refuses what the identification of the named subject does not take.

@@ -2,7 +2,7 @@
 
 use super::realization::Realization;
 use super::{Plant, Sliding};
-use crate::controller::RateSensor;
+use crate::controller::{RateSensor, VirtualImpedance};
 use crate::linear::{LinearError, TransferFunction};
 use crate::scalar::Scalar;
 
@@ -10,11 +10,13 @@ use crate::scalar::Scalar;
 ///
 /// ```text
 /// dx/dt = A x + B y,    m(t) = C x(t - d) + D y(t - d)         y what the plant gives, m what the controller sees
+/// y = F + Z_v (x_L - x_0)                                       with a virtual impedance: F what the plant measures
 /// ```
 ///
-/// States are those of the plant, those of the sensor, and those of the sensor of the rate that a
-/// controller may feed forward: a [`RateSensor`] between the disturbance of the plant and that of
-/// this one. A sensor of one without dead time adds nothing.
+/// States are those of the plant, those of the sensor, those of the sensor of the rate that a
+/// controller may feed forward (a [`RateSensor`] between the disturbance of the plant and that of
+/// this one), and those of a [`VirtualImpedance`]: its filter, and the rest position x_0, which
+/// does not change. A sensor of one without dead time adds nothing.
 ///
 /// # Example
 /// ```
@@ -64,6 +66,8 @@ pub struct Sensed<P> {
     delay_s: f64,
     /// `None` where the disturbance itself is shown.
     rate: Option<SensedRate>,
+    /// Z_v of a virtual impedance; `None` without one.
+    impedance: Option<Realization>,
 }
 
 /// The sensor of a rate as states.
@@ -81,7 +85,7 @@ impl<P> Sensed<P> {
     pub fn new(plant: P, sensor: &TransferFunction) -> Result<Self, LinearError> {
         let delay_s = sensor.dead_time_s();
         let sensor = Realization::new(&sensor.clone().with_dead_time(0.0)?)?;
-        Ok(Sensed { plant, sensor, delay_s, rate: None })
+        Ok(Sensed { plant, sensor, delay_s, rate: None, impedance: None })
     }
 
     /// The same with its disturbance shown by this sensor.
@@ -97,6 +101,23 @@ impl<P> Sensed<P> {
         Ok(Sensed { rate: Some(rate), ..self })
     }
 
+    /// The same with what a virtual impedance adds to its measurement; one of zero adds nothing.
+    ///
+    /// # Errors
+    /// [`LinearError`] for a damper or a mass without a filter.
+    pub fn with_impedance(self, impedance: &VirtualImpedance) -> Result<Self, LinearError> {
+        if impedance.is_zero() {
+            return Ok(Sensed { impedance: None, ..self });
+        }
+        Ok(Sensed { impedance: Some(Realization::new(&impedance.transfer_function()?)?), ..self })
+    }
+
+    /// The same without a virtual impedance.
+    #[must_use]
+    pub fn without_impedance(self) -> Self {
+        Sensed { impedance: None, ..self }
+    }
+
     /// The plant.
     pub fn plant(&self) -> &P {
         &self.plant
@@ -107,11 +128,73 @@ impl<P> Sensed<P> {
         &mut self.plant
     }
 
-    /// States of the sensors at constant output of the plant, whose rate is zero.
+    /// States of the sensors at constant output of the plant, whose rate is zero, with the load at
+    /// its rest position, which is zero: see [`Sensed::rest_at`].
     pub fn sensor_at_rest(&self, measured: f64) -> Vec<f64> {
         let mut states = self.sensor.at_rest(measured, None);
-        states.resize(states.len() + self.rate_states(), 0.0);
+        states.resize(states.len() + self.rate_states() + self.impedance_states(), 0.0);
         states
+    }
+
+    /// How many states a virtual impedance has: the last ones, with the rest position.
+    #[inline(always)]
+    pub fn impedance_states(&self) -> usize {
+        self.impedance.as_ref().map_or(0, |impedance| impedance.states + 1)
+    }
+
+    /// Makes the position of the load in a state the rest position of a virtual impedance, whose
+    /// filter rests.
+    pub fn rest_at(&self, state: &mut [f64], inputs: &[f64])
+    where
+        P: Plant<f64>,
+    {
+        if self.impedance.is_none() {
+            return;
+        }
+        let (own_state, own_inputs) = self.of_plant::<f64, f64>(state, inputs);
+        let position = self.plant.position(own_state, own_inputs);
+        let end = Plant::<f64>::states(self);
+        let virtual_states = &mut state[end - self.impedance_states()..end];
+        virtual_states.fill(0.0);
+        if let Some(rest) = virtual_states.last_mut() {
+            *rest = position;
+        }
+    }
+
+    /// What a virtual impedance makes of the position of the load, in the unit of the measurement:
+    /// the force that the reference gives way by. Zero without one.
+    #[inline(always)]
+    pub fn given_way<S: Scalar, T: Scalar + From<S>>(&self, state: &[T], inputs: &[T]) -> T
+    where
+        P: Plant<S>,
+    {
+        let Some(impedance) = &self.impedance else { return T::from(0.0) };
+        let (own_state, own_inputs) = self.of_plant::<S, T>(state, inputs);
+        let own = self.virtual_states(state);
+        impedance.output(own, self.plant.position(own_state, own_inputs) - own[impedance.states])
+    }
+
+    #[inline(always)]
+    fn virtual_states<'t, S: Scalar, T: Scalar + From<S>>(&self, state: &'t [T]) -> &'t [T]
+    where
+        P: Plant<S>,
+    {
+        let from = self.plant.states() + self.sensor.states + self.rate_states();
+        &state[from..from + self.impedance_states()]
+    }
+
+    /// What the plant measures, with what a virtual impedance adds.
+    #[inline(always)]
+    fn given<S: Scalar, T: Scalar + From<S>>(&self, state: &[T], inputs: &[T]) -> T
+    where
+        P: Plant<S>,
+    {
+        let (own_state, own_inputs) = self.of_plant::<S, T>(state, inputs);
+        let measured = self.plant.measurement(own_state, own_inputs);
+        match self.impedance.is_some() {
+            true => measured + self.given_way::<S, T>(state, inputs),
+            false => measured,
+        }
     }
 
     /// How many states the sensor of the rate has.
@@ -150,9 +233,9 @@ impl<P> Sensed<P> {
     where
         P: Plant<S>,
     {
-        let (own_state, own_inputs) = self.of_plant::<S, T>(state, inputs);
-        let of_sensor = &state[own_state.len()..own_state.len() + self.sensor.states];
-        self.sensor.output(of_sensor, self.plant.measurement(own_state, own_inputs))
+        let from = self.plant.states();
+        let of_sensor = &state[from..from + self.sensor.states];
+        self.sensor.output(of_sensor, self.given::<S, T>(state, inputs))
     }
 
     /// The filtered rate before its dead time.
@@ -171,7 +254,7 @@ impl<P> Sensed<P> {
 impl<S: Scalar, P: Plant<S>> Plant<S> for Sensed<P> {
     #[inline(always)]
     fn states(&self) -> usize {
-        self.plant.states() + self.sensor.states + self.rate_states()
+        self.plant.states() + self.sensor.states + self.rate_states() + self.impedance_states()
     }
 
     #[inline(always)]
@@ -184,6 +267,10 @@ impl<S: Scalar, P: Plant<S>> Plant<S> for Sensed<P> {
         scales.extend(self.sensor.scales(self.plant.measurement_scale()));
         if let Some(rate) = &self.rate {
             scales.extend(rate.filter.scales(self.plant.disturbance_scale()));
+        }
+        if let Some(impedance) = &self.impedance {
+            scales.extend(impedance.scales(self.plant.measurement_scale()));
+            scales.push(self.plant.position_scale());
         }
         scales
     }
@@ -201,13 +288,20 @@ impl<S: Scalar, P: Plant<S>> Plant<S> for Sensed<P> {
         let (own_state, own_inputs) = self.of_plant::<S, T>(state, inputs);
         let (plant_rates, sensor_rates) = rates.split_at_mut(own_state.len());
         self.plant.rates(own_state, command, own_inputs, plant_rates);
-        let given = self.plant.measurement(own_state, own_inputs);
+        let given = self.given::<S, T>(state, inputs);
         let (of_sensor, of_rate) = state[own_state.len()..].split_at(self.sensor.states);
         let (sensor_rates, rate_rates) = sensor_rates.split_at_mut(self.sensor.states);
+        let (rate_rates, virtual_rates) = rate_rates.split_at_mut(self.rate_states());
         self.sensor.rates(of_sensor, given, sensor_rates);
         if let Some(rate) = &self.rate {
             let given = self.plant.disturbance(own_state, own_inputs);
             rate.filter.rates(of_rate, given, rate_rates);
+        }
+        if let Some(impedance) = &self.impedance {
+            let own = self.virtual_states::<S, T>(state);
+            let away = self.plant.position(own_state, own_inputs) - own[impedance.states];
+            virtual_rates.fill(T::from(0.0));
+            impedance.rates(own, away, virtual_rates);
         }
     }
 

@@ -13,7 +13,7 @@ pub enum ColumnSense {
 
 /// Every column by which alternatives can be compared, with the sense that it has unless another is
 /// asked for.
-pub const COLUMN_SENSES: [(&str, ColumnSense); 30] = {
+pub const COLUMN_SENSES: [(&str, ColumnSense); 31] = {
     use ColumnSense::{Less, More};
     [
         ("relaxation_db", Less),
@@ -39,6 +39,7 @@ pub const COLUMN_SENSES: [(&str, ColumnSense); 30] = {
         ("sized_gain_v_per_n", More),
         ("impedance_open_n_s_per_m", Less),
         ("impedance_closed_n_s_per_m", Less),
+        ("impedance_asked_n_s_per_m", Less),
         ("overshoot_percent", Less),
         ("settling_time_s", Less),
         ("disturbance_peak_n", Less),
@@ -81,6 +82,18 @@ pub const MEASURES: [(&str, &str); 4] = [
     ("control_rms_v", "control rms"),
     ("order", "order"),
     ("delay_margin_s", "delay tolerated"),
+];
+
+/// What a decision needs at a glance: the key of the column and its name for people. Of columns that
+/// exist for several scenarios, the worst value counts.
+pub const COMPARED_AT_A_GLANCE: [(&str, &str); 7] = [
+    ("order", "order of G"),
+    ("delay_margin_s", "delay tolerated"),
+    ("settling_time_s", "settling"),
+    ("disturbance_peak_n", "disturbance"),
+    ("control_rms_v", "control rms"),
+    ("control_peak_v", "control peak"),
+    ("actuator_length_m", "length"),
 ];
 
 /// An alternative by its measures: of all scenarios the greatest.

@@ -1,10 +1,12 @@
 //! What an alternative is made of: stiffness, lengths, masses, volumes, and what it takes at rest.
 
+use phea_hydraulics::cylinder::chamber_volumes;
 use phea_hydraulics::line::Line;
+use phea_hydraulics::series::LEAST_ACTIVE_COILS;
 
-use super::JudgedAlternative;
 use super::columns::{AlternativeColumn, column};
-use crate::project::DeclaredActuator;
+use super::{JudgedAlternative, no_rig};
+use crate::project::{DeclaredActuator, Project};
 use crate::quantity::{DisplayUnit, MASS, VOLUME, fitting};
 use crate::rig::{Rig, power_at_rest, series_coil};
 use crate::setup::Setup;
@@ -44,7 +46,13 @@ impl JudgedAlternative {
         let kilogram = fitting(1.0, &MASS);
         let power = of(|declared, rig| Ok(power_at_rest(declared, rig)));
         [
-            column("actuator_length_m", "length, retracted", metre, 3, of(actuator_length)),
+            column(
+                "actuator_length_m",
+                "length, retracted",
+                metre,
+                3,
+                retracted_length(&self.loaded.project),
+            ),
             column("lines_length_m", "length of both lines", metre, 3, of(lines_length)),
             column("moving_mass_kg", "moving mass", kilogram, 3, of(moving_mass)),
             column("lines_volume_m3", "oil in both lines", litre(&in_lines), 3, in_lines),
@@ -69,12 +77,29 @@ impl JudgedAlternative {
     }
 }
 
-/// From mount to mount with the rod in: stroke, dead length and the springs on the rod.
+/// The length in m of the actuator of a project from mount to mount with the rod in.
+///
+/// ```text
+/// stroke + cylinder.dead_length + installed length of the coil springs on the rod
+/// ```
+///
+/// # Errors
+/// What the project does not state, or why the spring has no length.
+pub fn retracted_length(project: &Project) -> Result<f64, String> {
+    let rig = Setup::rig_of(project).map_err(|error| error.to_string())?;
+    let declared = project.actuator.as_ref().ok_or_else(no_rig)?;
+    actuator_length(declared, &rig).map_err(String::from)
+}
+
+/// Stroke, dead length and the springs on the rod.
 fn actuator_length(declared: &DeclaredActuator, rig: &Rig) -> Result<f64, &'static str> {
     let cylinder = &declared.cylinder;
     let dead = cylinder.dead_length.ok_or("not stated: cylinder.dead_length")?;
     let spring = match (&declared.series, series_coil(declared, rig)) {
         (None, _) => 0.0,
+        (Some(_), Some(pair)) if pair.active_coils < LEAST_ACTIVE_COILS => {
+            return Err("the coils of the series spring are too few to be wound");
+        }
         (Some(_), Some(pair)) => pair.installed_length,
         (Some(_), None) => return Err("not stated: series.coil, which has a length"),
     };
@@ -109,8 +134,7 @@ fn lines_volume(_: &DeclaredActuator, rig: &Rig) -> Result<f64, &'static str> {
 fn oil_volume(declared: &DeclaredActuator, rig: &Rig) -> Result<f64, &'static str> {
     let components = rig.actuator.components();
     let (cylinder, point) = (&components.cylinder, &rig.point);
-    let chamber_a = cylinder.area_a * point.position + cylinder.dead_volume_a;
-    let chamber_b = cylinder.area_b * (cylinder.stroke - point.position) + cylinder.dead_volume_b;
+    let [chamber_a, chamber_b] = chamber_volumes(cylinder, point.position);
     let pressures = [point.pressure_a, point.pressure_b];
     let held = components.accumulators.iter().zip(pressures);
     let held: f64 = held.filter_map(|(gas, pressure)| Some(gas.as_ref()?.oil(pressure))).sum();

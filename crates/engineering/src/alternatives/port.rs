@@ -1,5 +1,6 @@
 //! The impedance at the load, by which an alternative resists a load that moves it.
 
+use num_complex::Complex64;
 use phea_dynamics::portable;
 
 use super::JudgedAlternative;
@@ -10,7 +11,8 @@ use crate::quantity::{DAMPING, fitting};
 pub const IMPEDANCE_AT: [f64; 3] = [1.0, 10.0, 100.0];
 
 impl JudgedAlternative {
-    /// |Z(jw)| at each frequency, with the command held and under the designed controller.
+    /// |Z(jw)| at each frequency, with the command held, under the designed controller, and as a
+    /// virtual impedance asks for it.
     pub(super) fn impedances(&self) -> Vec<(ColumnPart, AlternativeColumn)> {
         let each = self.impedance_at.iter().flat_map(|frequency| {
             let part = ColumnPart::Impedance(*frequency);
@@ -19,19 +21,26 @@ impl JudgedAlternative {
         each.collect()
     }
 
-    fn impedance(&self, frequency: f64) -> [AlternativeColumn; 2] {
+    fn impedance(&self, frequency: f64) -> Vec<AlternativeColumn> {
         let linearization = self.linearization.as_ref().map_err(Clone::clone);
         let open = linearization.clone().map(|found| &found.open_loop);
-        let closed = linearization.and_then(|found| {
+        let closed = linearization.clone().and_then(|found| {
             let reason = || found.closed_loop_absent.clone().unwrap_or_default();
             found.closed_loop.as_ref().filter(|_| self.deployed.is_ok()).ok_or_else(reason)
+        });
+        let asked = linearization.as_ref().ok().and_then(|found| found.asked.as_ref());
+        let asked = asked.map(|asked| {
+            let s = Complex64::new(0.0, frequency);
+            let asked = portable::magnitude(asked.unfiltered().response(s) / s);
+            column("impedance_asked_n_s_per_m", "asked", fitting(asked, &DAMPING), 3, Ok(asked))
         });
         let [open, closed] = [open, closed]
             .map(|view| view.map(|view| portable::magnitude(view.impedance.at_frequency(frequency))));
         let unit = |value: &Result<f64, String>| fitting(value.clone().unwrap_or_default(), &DAMPING);
-        [
+        let found = [
             column("impedance_open_n_s_per_m", "open loop", unit(&open), 3, open),
             column("impedance_closed_n_s_per_m", "closed loop", unit(&closed), 3, closed),
-        ]
+        ];
+        found.into_iter().chain(asked).collect()
     }
 }

@@ -6,7 +6,7 @@ use phea_qft::verification::{PlantPoint, Verdict};
 
 use super::plant::PlantNames;
 use crate::project::Project;
-use crate::quantity::{VELOCITY, display, significant};
+use crate::quantity::{MotionKind, VELOCITY, display, significant};
 use crate::robust::RobustProblem;
 
 /// The noise of the measured velocity of the load with the effects that it has in a sampled loop.
@@ -14,6 +14,8 @@ use crate::robust::RobustProblem;
 pub struct VelocityNoise {
     /// Of the noise and of the rounding together, m/s rms.
     pub rms_m_per_s: f64,
+    /// How the rig moves.
+    pub motion: MotionKind,
     /// The largest effects in the family, or why they are not known.
     pub effect: Result<VelocityNoiseEffect, String>,
 }
@@ -61,12 +63,12 @@ impl VelocityNoise {
                 found.map(|found| named(&found, problem)).map_err(|error| words(&error))
             }),
         };
-        Some(VelocityNoise { rms_m_per_s, effect })
+        Some(VelocityNoise { rms_m_per_s, motion: problem.motion, effect })
     }
 
     /// In a sentence.
     pub fn sentence(&self, names: &PlantNames) -> String {
-        let rms = display(self.rms_m_per_s, &VELOCITY, 3);
+        let rms = display(self.rms_m_per_s, self.motion.dimension(&VELOCITY), 3);
         match &self.effect {
             Ok(effect) => {
                 let of = |plant: &PlantPoint| match names.headings().is_empty() {

@@ -170,7 +170,7 @@ fn sliding(
     let duration = corners.last().map_or(0.0, |(time, _)| *time);
     let rows = counted(duration / settings.sample_time)?;
     let step = settings.sample_time / STEPS as f64;
-    let (mut position, mut deflection) = (cylinder.stroke / 2.0, 0.0);
+    let (mut position, mut deflection) = (cylinder.stroke.middle(), 0.0);
     let mut moments = Vec::with_capacity(rows);
     let mut piece = 0;
     for row in 0..rows {
@@ -187,9 +187,12 @@ fn sliding(
             let settled = velocity.signum() * carried / lugre.bristle_stiffness;
             deflection = settled + (deflection - settled) * phea_dynamics::portable::exp(-rate * step);
         }
-        if !(0.0..=cylinder.stroke).contains(&position) {
+        if !cylinder.stroke.contains(position) {
             let travel = settings.fastest * (settings.run_time + settings.change_time);
-            return Err(BenchError::BeyondStroke { travel, stroke: cylinder.stroke });
+            return Err(BenchError::BeyondStroke {
+                travel,
+                stroke: cylinder.stroke.length().unwrap_or(f64::INFINITY),
+            });
         }
     }
     Ok(moments)
@@ -256,7 +259,7 @@ fn breakaway(
     let moved = pressed.displacements(lugre, &force);
     let both = moved.iter().zip(&force).step_by(steps);
     let before = both.take_while(|(moved, _)| moved.abs() <= BROKEN_AWAY * length);
-    let middle = cylinder.stroke / 2.0;
+    let middle = cylinder.stroke.middle();
     Ok(before.map(|(moved, force)| CylinderMoment { position: middle + moved, force: *force }).collect())
 }
 

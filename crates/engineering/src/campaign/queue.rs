@@ -8,13 +8,13 @@ use std::sync::{Mutex, PoisonError};
 
 use phea_dynamics::simulation::{Outcome, SimulationError, Status, Task};
 use phea_hydraulics::machine::{Machine, MachineError};
-use phea_machine::{Control, FedVelocity, Fleet, Lanewise, Watcher};
+use phea_machine::{Control, FedMotion, Fleet, Lanewise, Watcher};
 
 use super::plan::Plan;
 use super::prepared::{Prepared, Watched, prepared};
 use super::row::{Row, RowOutcome};
 use super::supply::RemainingRuns;
-use crate::control::velocity_sensor;
+use crate::control::{velocity_sensor, virtual_impedance};
 use crate::setup::Setup;
 use crate::simulate::SimulateError;
 
@@ -106,7 +106,8 @@ pub(super) fn in_lanes(shared: &Shared<'_>, most: usize, give: Give<'_>) -> Resu
         false => {
             let given = setup.controller.as_ref().ok_or(SimulateError::NoController)?;
             let (gain, sensor) = (plan.bench.feed_forward, velocity_sensor(&plan.project));
-            Some((given, FedVelocity { gain, sensor }))
+            let impedance = virtual_impedance(&plan.project).unwrap_or_default();
+            Some((given, FedMotion { gain, sensor, impedance }))
         }
     };
     let lanes = Lanewise::new(&plan.bench.machine, &setup.sensor, controller);

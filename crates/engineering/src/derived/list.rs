@@ -1,14 +1,17 @@
 use super::{Derived, Stated};
+use crate::quantity::MotionKind;
 
 /// A growing list of derived quantities; each chapter names its group once.
 pub(super) struct List {
     entries: Vec<Derived>,
     group: &'static str,
+    /// How the rig moves.
+    pub(super) motion: MotionKind,
 }
 
 impl List {
-    pub(super) fn new() -> List {
-        List { entries: Vec::new(), group: "" }
+    pub(super) fn new(motion: MotionKind) -> List {
+        List { entries: Vec::new(), group: "", motion }
     }
 
     pub(super) fn group(&mut self, group: &'static str) {
@@ -34,6 +37,9 @@ impl List {
         unit: &'static str,
         equation: &'static str,
     ) {
+        // a length, a speed, an area or a mass may be that of oil and hoses: who adds it knows
+        let unit = if unit.contains('N') { self.motion.symbol(unit) } else { unit };
+        let name = if self.motion.is_rotary() { renamed(name) } else { name };
         self.entries.push(Derived { group: self.group, name, symbol, value, unit, equation, stated: None });
     }
 
@@ -59,4 +65,17 @@ impl List {
     pub(super) fn into_entries(self) -> Vec<Derived> {
         self.entries
     }
+}
+
+/// Names of quantities of linear motion that are no keys of the project file, and those of a motor.
+const OF_A_MOTOR: [(&str, &str); 4] = [
+    ("stiffness.minimum_position", "stiffness.minimum_angle"),
+    ("operating_point.hydraulic_force", "operating_point.hydraulic_torque"),
+    ("dynamics.force_rate_gain", "dynamics.torque_rate_gain"),
+    ("supply.piston_speed", "supply.shaft_speed"),
+];
+
+fn renamed(name: String) -> String {
+    let other = OF_A_MOTOR.iter().find(|(linear, _)| *linear == name);
+    other.map_or(name, |(_, rotary)| (*rotary).to_string())
 }

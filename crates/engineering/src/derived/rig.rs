@@ -1,22 +1,26 @@
+use phea_hydraulics::cylinder::Cylinder;
 use phea_hydraulics::friction::Friction;
 use phea_hydraulics::line::{Hose, Line, StiffeningMember};
 use phea_hydraulics::linear::{MechanicalDamping, decompose};
 use phea_hydraulics::operating_point::Condition;
+use phea_hydraulics::stroke::ActuatorStroke;
 
 use super::Derived;
 use super::accumulator::accumulators;
 use super::cross_port::cross_port;
+use super::impedance::impedance;
 use super::list::List;
 use super::series::series;
 use super::valve::valve;
 use crate::linearize::{stiffness_models, stroke_stiffness};
 use crate::project::Project;
+use crate::quantity::MotionKind;
 use crate::rig::{ParameterOrigin, Rig};
 
 /// Every derived quantity of a rig, in the order in which they follow from each other.
 pub fn derive(project: &Project, rig: &Rig) -> Vec<Derived> {
-    let mut list = List::new();
-    cylinder(rig, &mut list);
+    let mut list = List::new(project.motion());
+    moving(rig, &mut list);
     lines(rig, &mut list);
     stiffness(rig, &mut list);
     accumulators(rig, &mut list);
@@ -26,20 +30,41 @@ pub fn derive(project: &Project, rig: &Rig) -> Vec<Derived> {
     cross_port(project, rig, &mut list);
     linear_parameters(rig, &mut list);
     dynamics(rig, &mut list);
+    impedance(rig, &mut list);
     friction(rig, &mut list);
     flow(project, rig, &mut list);
     sizing(project, rig, &mut list);
     list.into_entries()
 }
 
-fn cylinder(rig: &Rig, list: &mut List) {
+/// What moves: cylinder or motor.
+fn moving(rig: &Rig, list: &mut List) {
     let cylinder = &rig.actuator.components().cylinder;
+    match list.motion {
+        MotionKind::Linear => self::cylinder(rig, cylinder, list),
+        MotionKind::Rotary => motor(rig, cylinder, list),
+    }
+}
+
+fn motor(rig: &Rig, motor: &Cylinder, list: &mut List) {
+    list.group("Motor");
+    list.add("motor.displacement", "D", motor.area_a, "m3/rad", "declared");
+    if let ActuatorStroke::Limited(stroke) = motor.stroke {
+        list.add("motor.swept_volume", "V", motor.area_a * stroke, "m3", "V = D Δθ, of each chamber");
+    }
+    let supply = &rig.actuator.components().supply;
+    let stall = motor.area_a * (supply.pressure - supply.tank_pressure);
+    list.add("motor.stall_torque", "T_max", stall, "N", "T_{max} = D (p_S - p_T)");
+}
+
+fn cylinder(rig: &Rig, cylinder: &Cylinder, list: &mut List) {
     list.group("Cylinder");
     list.add("cylinder.area_a", "A_A", cylinder.area_a, "m2", "A_A = π/4 (D_p^2 - D_{rA}^2)");
     list.add("cylinder.area_b", "A_B", cylinder.area_b, "m2", "A_B = π/4 (D_p^2 - D_{rB}^2)");
-    let swept = cylinder.area_a * cylinder.stroke;
-    list.add("cylinder.swept_volume_a", "V_A", swept, "m3", "V_A = A_A L");
-    list.add("cylinder.swept_volume_b", "V_B", cylinder.area_b * cylinder.stroke, "m3", "V_B = A_B L");
+    if let ActuatorStroke::Limited(stroke) = cylinder.stroke {
+        list.add("cylinder.swept_volume_a", "V_A", cylinder.area_a * stroke, "m3", "V_A = A_A L");
+        list.add("cylinder.swept_volume_b", "V_B", cylinder.area_b * stroke, "m3", "V_B = A_B L");
+    }
     let supply = &rig.actuator.components().supply;
     let stall = cylinder.area_a * supply.pressure - cylinder.area_b * supply.tank_pressure;
     list.add("cylinder.stall_force", "F_max", stall, "N", "F_{max} = A_A p_S - A_B p_T");
@@ -137,7 +162,10 @@ fn stiffness(rig: &Rig, list: &mut List) {
     let least = "K_H = min over x of A_A^2/C_A + A_B^2/C_B";
     let greatest = "K_H = max over x of A_A^2/C_A + A_B^2/C_B";
     list.add("stiffness.minimum", "K_H", declared.minimum, "N/m", least);
-    list.add("stiffness.minimum_position", "x_p", declared.minimum_position, "m", "dK_H/dx = 0");
+    if let ActuatorStroke::Limited(_) = components.cylinder.stroke {
+        let angle = list.motion.symbol("m");
+        list.add("stiffness.minimum_position", "x_p", declared.minimum_position, angle, "dK_H/dx = 0");
+    }
     list.add("stiffness.maximum", "K_H", declared.maximum, "N/m", greatest);
     let models = stiffness_models(rig);
     let uniform = "C_A = (V_{ho} + V_{A0} + A_A x)/β_e";
@@ -184,8 +212,13 @@ fn equilibrium(rig: &Rig, list: &mut List) {
         Condition::Matched(..) => ["declared", "p_A = (p_S + p_T + p_L)/2", "p_B = (p_S + p_T - p_L)/2"],
     };
     list.group("Operating point");
-    list.add("operating_point.position", "x_p", point.position, "m", "declared, or mid stroke");
-    list.add("operating_point.velocity", "v", point.velocity, "m/s", "declared, or standstill");
+    let [place, speed] = ["m", "m/s"].map(|unit| list.motion.symbol(unit));
+    let position = match rig.actuator.components().cylinder.stroke {
+        ActuatorStroke::Limited(_) => "declared, or mid stroke",
+        ActuatorStroke::Unlimited => "declared, or zero",
+    };
+    list.add("operating_point.position", "x_p", point.position, place, position);
+    list.add("operating_point.velocity", "v", point.velocity, speed, "declared, or standstill");
     list.add("operating_point.command", "U_C", point.command, "V", command);
     list.add("operating_point.pressure_a", "p_A", point.pressure_a, "Pa", pressure_a);
     list.add("operating_point.pressure_b", "p_B", point.pressure_b, "Pa", pressure_b);
@@ -203,7 +236,8 @@ fn linear_parameters(rig: &Rig, list: &mut List) {
             "hydraulic_stiffness" => ("K_H", "N/m", "K_H = A_A^2/C_A + A_B^2/C_B at the operating point"),
             "valve_natural_frequency" => ("ω_nv", "rad/s", "declared for the valve"),
             "valve_damping_ratio" => ("ξ_v", "1", "declared for the valve"),
-            "moving_mass" => ("M", "kg", "declared for the cylinder"),
+            "moving_mass" => ("M", list.motion.symbol("kg"), "declared for the cylinder"),
+            "piston_area" if list.motion.is_rotary() => ("D", "m3/rad", "declared for the motor"),
             "piston_area" => ("A_u", "m2", "A_u = (A_A + A_B)/2"),
             _ => ("K_S", "N/m", "declared for the force sensor"),
         };
@@ -285,7 +319,8 @@ fn flow(project: &Project, rig: &Rig, list: &mut List) {
     let cylinder = &rig.actuator.components().cylinder;
     list.group("Flow");
     let speed = flow / cylinder.area_a.max(cylinder.area_b);
-    list.add("supply.piston_speed", "v_max", speed, "m/s", "v_{max} = q_{pump}/A");
+    let equation = if list.motion.is_rotary() { "v_{max} = q_{pump}/D" } else { "v_{max} = q_{pump}/A" };
+    list.add("supply.piston_speed", "v_max", speed, list.motion.symbol("m/s"), equation);
     let (a, b) = (rig.actuator.components().line_a, rig.actuator.components().line_b);
     let lines = if a == b { vec![("line", a)] } else { vec![("line.a", a), ("line.b", b)] };
     for (name, line) in lines {

@@ -139,8 +139,8 @@ impl Open<'_> {
         (position, steady, Balance::of(components))
     }
 
-    /// The rig with these values, and its plant with lumped lines as the loop sees it. The
-    /// feed-forward is that of the declared rig.
+    /// The rig with these values, and its plant with lumped lines as the loop sees it. Feed-forward
+    /// and virtual impedance are those of the declared rig.
     fn plant<S: Scalar>(&self, values: &[S], moved: bool, equal: Equal) -> (RigAtPoint<S>, LinearPlant<S>) {
         let place = self.place(values, moved);
         let all = self.all(values);
@@ -161,7 +161,8 @@ impl Open<'_> {
         let force = place.point.hydraulic_force;
         let series = place.components.series.map(|series| LinearSeries::new(&series, force));
         let dynamic_feedback = place.dynamic_feedback;
-        let plant = LinearPlant { series, velocity_sensor, dynamic_feedback, ..plant };
+        let virtual_impedance = self.rig.virtual_impedance;
+        let plant = LinearPlant { series, velocity_sensor, dynamic_feedback, virtual_impedance, ..plant };
         (place, self.rig.fed.map_or(plant, |fed| fed.at_once(plant)))
     }
 

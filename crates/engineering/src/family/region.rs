@@ -33,8 +33,8 @@ pub(super) fn within_reach(project: &Project) -> Result<Vec<Uncertain>, ProjectF
     velocity.maximum = velocity.maximum.min(most);
     let within = velocity.minimum..=velocity.maximum;
     if !within.contains(&velocity.nominal) {
-        let [nominal, least, most] =
-            [velocity.nominal, least, most].map(|value| display(value, &VELOCITY, 4));
+        let [nominal, least, most] = [velocity.nominal, least, most]
+            .map(|value| display(value, project.motion().dimension(&VELOCITY), 4));
         let message = format!("the pump gives {least} to {most}, and the nominal velocity is {nominal}");
         return Err(ProjectFamilyError::Region(message));
     }

@@ -98,15 +98,14 @@ impl Visited {
         let settled = Settled { command, pressures: [pressure_a, pressure_b] };
         let all = open.all(values);
         let numbers = Numbers::open(open.names, &all);
-        let stroke = numbers.at("cylinder.stroke", open.declared.cylinder.stroke);
+        let components = components(open.declared, &numbers);
         let sound = balance.error(steady, &settled) <= EXACT
             && command.abs() <= balance.valve.nominal_voltage
             && pressure_a.min(pressure_b) > -ATMOSPHERIC_PRESSURE_ABSOLUTE
-            && (0.0..=stroke).contains(&position);
+            && components.cylinder.stroke.contains(position);
         if sound && balance.is_unique(steady) {
             return None;
         }
-        let components = components(open.declared, &numbers);
         let components = Components { supply: balance.supply, ..components };
         let afresh = Actuator::new(components).map_err(|error| error.to_string()).and_then(|actuator| {
             let point = operating_point(&actuator, position, steady.into());

@@ -21,6 +21,10 @@ impl KnownCylinder {
     /// # Errors
     /// [`IdentifyError`] for a project without a cylinder.
     pub fn of(project: &Project) -> Result<KnownCylinder, IdentifyError> {
+        if project.motion().is_rotary() {
+            let message = "friction is identified for a [cylinder]: recordings of a [motor] are not read yet";
+            return Err(IdentifyError::Data(message.to_string()));
+        }
         let rig = Setup::rig_of(project).map_err(|error| IdentifyError::Data(error.to_string()))?;
         let cylinder = rig.actuator.components().cylinder;
         Ok(KnownCylinder { areas: [cylinder.area_a, cylinder.area_b], moving_mass: cylinder.moving_mass })

@@ -12,6 +12,7 @@ use phea_hydraulics::servovalve::{
     Edges, Servovalve, Supply, flow_coefficient_from_rating, leakage_coefficient_from_rating,
 };
 use phea_hydraulics::stiffness::StiffnessModel;
+use phea_hydraulics::stroke::ActuatorStroke;
 
 use super::cross_port::cross_port;
 use super::numbers::Numbers;
@@ -61,8 +62,11 @@ pub fn components<S: Scalar>(
         cross_port: cross_port(declared.cross_port.as_ref(), numbers, fluid.density),
         accumulators: [("a", &declared.line.a), ("b", &declared.line.b)]
             .map(|(side, line)| accumulator(line.accumulator.as_ref(), &numbers.of_line(side))),
-        cylinder: cylinder(&declared.cylinder, numbers),
-        friction: friction(declared.cylinder.friction.as_ref(), numbers),
+        cylinder: match &declared.motor {
+            None => cylinder(&declared.cylinder, numbers),
+            Some(motor) => motor_as_cylinder(motor, numbers),
+        },
+        friction: friction(declared.friction(), &numbers.within(declared.moving_part())),
         force_sensor: ForceSensor {
             stiffness: numbers.at("force_sensor.stiffness", declared.force_sensor.stiffness),
         },
@@ -306,11 +310,7 @@ fn pipe<S: Scalar>(declared: &project::DeclaredPipe, numbers: &Numbers<'_, S>) -
 fn cylinder<S: Scalar>(declared: &project::DeclaredCylinder, numbers: &Numbers<'_, S>) -> Cylinder<S> {
     let numbers = numbers.within("cylinder");
     let at = |key: &str, value: f64| numbers.at(key, value);
-    // two numbers in one key are never uncertain; one number for both sides can be
-    let both = |pair: Option<[f64; 2]>, key: &str, single: Option<f64>| match pair {
-        Some(pair) => pair.map(S::from),
-        None => [at(key, single.unwrap_or(0.0)); 2],
-    };
+    let both = |pair, key: &str, single| on_both_sides(pair, key, single, &numbers);
     let [area_a, area_b] = match (declared.piston_areas, declared.piston_area) {
         (None, None) => {
             let piston = at("piston_diameter", declared.piston_diameter.unwrap_or(0.0));
@@ -323,16 +323,56 @@ fn cylinder<S: Scalar>(declared: &project::DeclaredCylinder, numbers: &Numbers<'
     Cylinder {
         area_a,
         area_b,
-        stroke: at("stroke", declared.stroke),
+        stroke: ActuatorStroke::Limited(at("stroke", declared.stroke)),
         moving_mass: at("moving_mass", declared.moving_mass),
         dead_volume_a,
         dead_volume_b,
         internal_leakage: declared.internal_leakage.map(|value| at("internal_leakage", value)),
-        end_stops: declared.end_stops.map(|stops| Contact {
-            stiffness: at("end_stops.stiffness", stops.stiffness),
-            relative_damping: at("end_stops.relative_damping", stops.relative_damping),
-        }),
+        external_leakage: None,
+        end_stops: end_stops(declared.end_stops, &numbers),
     }
+}
+
+/// A motor in the equations of a cylinder: its displacement is the area of both chambers.
+fn motor_as_cylinder<S: Scalar>(declared: &project::DeclaredMotor, numbers: &Numbers<'_, S>) -> Cylinder<S> {
+    let numbers = numbers.within("motor");
+    let at = |key: &str, value: f64| numbers.at(key, value);
+    let displacement = at("displacement", declared.displacement);
+    let [dead_volume_a, dead_volume_b] =
+        on_both_sides(declared.dead_volumes, "dead_volume", declared.dead_volume, &numbers);
+    Cylinder {
+        area_a: displacement,
+        area_b: displacement,
+        stroke: declared
+            .stroke
+            .map_or(ActuatorStroke::Unlimited, |stroke| ActuatorStroke::Limited(at("stroke", stroke))),
+        moving_mass: at("inertia", declared.inertia),
+        dead_volume_a,
+        dead_volume_b,
+        internal_leakage: declared.internal_leakage.map(|value| at("internal_leakage", value)),
+        external_leakage: declared.case_leakage.map(|value| at("case_leakage", value)),
+        end_stops: end_stops(declared.end_stops, &numbers),
+    }
+}
+
+/// Two numbers in one key are never uncertain; one number for both sides can be.
+fn on_both_sides<S: Scalar>(
+    pair: Option<[f64; 2]>,
+    key: &str,
+    single: Option<f64>,
+    numbers: &Numbers<'_, S>,
+) -> [S; 2] {
+    match pair {
+        Some(pair) => pair.map(S::from),
+        None => [numbers.at(key, single.unwrap_or(0.0)); 2],
+    }
+}
+
+fn end_stops<S: Scalar>(declared: Option<project::EndStops>, numbers: &Numbers<'_, S>) -> Option<Contact<S>> {
+    declared.map(|stops| Contact {
+        stiffness: numbers.at("end_stops.stiffness", stops.stiffness),
+        relative_damping: numbers.at("end_stops.relative_damping", stops.relative_damping),
+    })
 }
 
 fn friction<S: Scalar>(
@@ -340,7 +380,7 @@ fn friction<S: Scalar>(
     numbers: &Numbers<'_, S>,
 ) -> Friction<S> {
     let Some(declared) = declared else { return Friction::Viscous { viscous: S::from(0.0) } };
-    let numbers = numbers.within("cylinder.friction");
+    let numbers = numbers.within("friction");
     let at = |key: &str, value: f64| numbers.at(key, value);
     let viscous = at("viscous", declared.viscous);
     let stribeck = |curve: &StribeckCurve| Stribeck {

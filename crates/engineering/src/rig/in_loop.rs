@@ -1,4 +1,5 @@
-//! The plant as it appears to the loop: with the feed-forward of the load velocity.
+//! The plant as it appears to the loop: with the feed-forward of the load velocity, and with what a
+//! virtual impedance adds to its output.
 
 use phea_dynamics::controller::{RateFilter, RateSensor};
 use phea_dynamics::scalar::Scalar;
@@ -14,7 +15,8 @@ use crate::project::{DeclaredActuator, Load, Project, SpecificationKind};
 const GAIN_ERROR: &str = "velocity_sensor.gain_error";
 
 impl Rig {
-    /// The same rig with the velocity of its load fed forward. Without delay it is in `plant` and
+    /// The same rig with its virtual impedance, whose plant gives out y = F_e + Z_v X_L, and with
+    /// the velocity of its load fed forward. Without delay it is in `plant` and
     /// `in_motion`. With delay and a load that can move it has no polynomials and is in `in_motion`
     /// alone, which then exists for lumped lines too. A sampled feed-forward is not part of the
     /// plant, nor a delayed one on the path of a prescribed motion: the loop includes them.
@@ -37,11 +39,19 @@ impl Rig {
     /// ```
     #[must_use]
     pub fn in_loop(&self) -> Rig {
+        let plant = LinearPlant { virtual_impedance: self.virtual_impedance, ..self.plant };
+        let moving = self.in_motion.map(|moving| moving.beside(self.virtual_impedance));
         Rig {
-            plant: self.fed.map_or(self.plant, |fed| fed.at_once(self.plant)),
-            in_motion: as_response(self.fed, self.in_motion, &self.plant),
+            plant: self.fed.map_or(plant, |fed| fed.at_once(plant)),
+            in_motion: as_response(self.fed, moving, &plant),
             ..self.clone()
         }
+    }
+
+    /// The same rig in a loop without its virtual impedance: the output of its plant is the force.
+    #[must_use]
+    pub fn without_impedance(&self) -> Rig {
+        Rig { virtual_impedance: None, ..self.clone() }
     }
 }
 

@@ -3,18 +3,23 @@
 
 use phea_dynamics::scalar::Scalar;
 use phea_hydraulics::operating_point::{Steady, SteadyLoad};
+use phea_hydraulics::stroke::ActuatorStroke;
 
 use super::numbers::Numbers;
 use crate::project::{self, Project};
 
-/// The position in m and the condition for the pressures. At null the piston is blocked; with a
+/// The position in m (in rad, of a motor) and the condition for the pressures. At null the piston is blocked; with a
 /// command it moves, without load pressure unless one is declared, thesis (4.18); with a velocity
 /// there is no load unless one is declared.
-pub fn place<S: Scalar>(project: &Project, stroke: S, numbers: &Numbers<'_, S>) -> (S, Steady<S>) {
+pub fn place<S: Scalar>(
+    project: &Project,
+    stroke: ActuatorStroke<S>,
+    numbers: &Numbers<'_, S>,
+) -> (S, Steady<S>) {
     let declared = project.resolved_operating_point();
     let numbers = numbers.within("operating_point");
     let at = |name: &str, value: Option<f64>| value.map(|value| numbers.at(name, value));
-    let position = at("position", declared.position).unwrap_or(stroke / S::from(2.0));
+    let position = at("position", declared.position).unwrap_or(stroke.middle());
     let project::DeclaredOperatingPoint { load_pressure, load_force, velocity, command, .. } = declared;
     let pressure = at("load_pressure", load_pressure);
     let force = at("load_force", load_force);

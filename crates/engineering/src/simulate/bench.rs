@@ -12,8 +12,9 @@ use phea_hydraulics::servovalve::SpoolImperfection;
 use phea_machine::{Control, Sampled};
 
 use super::SimulateError;
-use crate::control::velocity_sensor;
+use crate::control::{velocity_sensor, virtual_impedance};
 use crate::project::{self, FrictionLaw, Project, Scenario, StepMethod};
+use crate::quantity::MotionKind;
 use crate::rig::{Numbers, Rig, feed_forward, lines, power_unit, velocity_gain};
 use crate::setup::Setup;
 
@@ -34,6 +35,8 @@ pub struct ControlledMachine {
     pub expansion_stated_at: [Option<f64>; 2],
     /// The capacity of the force sensor, N, if stated.
     pub force_capacity_n: Option<f64>,
+    /// How the rig moves.
+    pub motion: MotionKind,
 }
 
 impl ControlledMachine {
@@ -68,6 +71,7 @@ impl ControlledMachine {
             true => sensed,
             false => sensed.with_rate_sensor(&velocity_sensor(project))?,
         };
+        let sensed = sensed.with_impedance(&virtual_impedance(project).unwrap_or_default())?;
         let control = match controller.timing.sample_time_s {
             None => {
                 Control::Continuous(Box::new(CommandedPlant::in_loop(sensed, &controller, feed_forward)?))
@@ -85,6 +89,7 @@ impl ControlledMachine {
             feed_forward,
             expansion_stated_at,
             force_capacity_n: capacity(project),
+            motion: project.motion(),
         })
     }
 
@@ -105,6 +110,7 @@ impl ControlledMachine {
             feed_forward: 0.0,
             expansion_stated_at,
             force_capacity_n: capacity(project),
+            motion: project.motion(),
         })
     }
 
@@ -190,7 +196,7 @@ fn between_samples(
 /// The parts of the machine other than its actuator, whatever acts on it.
 pub fn options(project: &Project, actuator: &Actuator) -> Result<MachineOptions, SimulateError> {
     let Some(declared) = &project.actuator else { return Ok(MachineOptions::default()) };
-    let friction_regular_velocity = match declared.cylinder.friction.as_ref().map(|friction| &friction.law) {
+    let friction_regular_velocity = match declared.friction().map(|friction| &friction.law) {
         Some(FrictionLaw::Stribeck { regular_velocity, .. }) => *regular_velocity,
         Some(FrictionLaw::Viscous | FrictionLaw::LuGre { .. }) | None => None,
     };

@@ -10,8 +10,13 @@ use super::record::{Look, Record};
 /// `command_v` is the command as it reaches the valve, after the delay of the loop;
 /// `unlimited_control_v` what the controller would give out without its limit; `integral_v` the
 /// part of the command that the controller's integral part holds; `measurement_n` the force as the
-/// controller measures it, after the sensor.
-pub const LOOP_SIGNALS: [&str; 4] = ["command_v", "unlimited_control_v", "integral_v", "measurement_n"];
+/// controller measures it, after the sensor, with what a virtual impedance adds; `virtual_force_n`
+/// that part before the sensor, by which the reference gives way.
+pub const LOOP_SIGNALS: [&str; 5] =
+    ["command_v", "unlimited_control_v", "integral_v", "measurement_n", VIRTUAL_FORCE];
+
+/// What a virtual impedance makes of the position of the load.
+const VIRTUAL_FORCE: &str = "virtual_force_n";
 
 /// The source of the numbers of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,10 +66,13 @@ pub(super) struct Columns(Vec<(&'static str, ColumnSource)>);
 
 impl Columns {
     /// The fixed ones, then those added later, and last the external force if the load is `pushed`;
-    /// those of a series element only if the load is `sprung`.
-    pub(super) fn new(pushed: bool, sprung: bool) -> Columns {
-        let there = |name: &&&str| sprung || !SERIES_SIGNALS.contains(name);
-        let later = SIGNALS.iter().filter(there).chain(&LOOP_SIGNALS).filter(|name| !FIRST.contains(name));
+    /// those of a series element only if the load is `sprung`, and that of a virtual impedance only
+    /// if the reference `gives_way`.
+    pub(super) fn new(pushed: bool, sprung: bool, gives_way: bool) -> Columns {
+        let there = |name: &&&str| {
+            (sprung || !SERIES_SIGNALS.contains(name)) && (gives_way || **name != VIRTUAL_FORCE)
+        };
+        let later = SIGNALS.iter().chain(&LOOP_SIGNALS).filter(there).filter(|name| !FIRST.contains(name));
         let pushed = pushed.then_some(&EXTERNAL_FORCE);
         let all = FIRST.iter().chain(later).chain(pushed);
         Columns(all.filter_map(|name| Some((*name, source(name)?))).collect())
@@ -135,7 +143,7 @@ mod tests {
     /// The columns that can be measured: all except time.
     #[test]
     fn every_column_can_be_measured() {
-        let mut columns = Columns::new(true, true).names();
+        let mut columns = Columns::new(true, true, true).names();
         columns.remove(0);
         let mut measurable: Vec<&str> = phea_project::MEASURABLE.iter().map(|(name, _)| *name).collect();
         columns.sort_unstable();
@@ -145,7 +153,7 @@ mod tests {
 
     #[test]
     fn every_signal_has_one_column() {
-        let names = Columns::new(true, true).names();
+        let names = Columns::new(true, true, true).names();
         assert_eq!(names.len(), FIRST.len() + 1 + SERIES_SIGNALS.len() + LOOP_SIGNALS.len() + 1);
         assert_eq!(names[..FIRST.len()], FIRST);
         for name in SIGNALS.iter().chain(&LOOP_SIGNALS) {

@@ -125,14 +125,18 @@ impl ScenarioDrive {
         }
     }
 
-    /// From a state, with the position of the load's ground in m.
+    /// From a state, with the position of the load's ground in m. The load is where a virtual
+    /// impedance rests, unless another run goes on.
     fn course(
         &self,
         bench: &ControlledMachine,
         ground: f64,
-        start: Vec<f64>,
+        mut start: Vec<f64>,
         waking: Waking,
     ) -> PreparedScenario {
+        if self.saved.is_none() {
+            bench.control.rest_at(&mut start, ground + self.motion.value(0.0));
+        }
         PreparedScenario {
             reference: self.reference.clone(),
             command: self.command.clone(),

@@ -1,10 +1,8 @@
 //! The files of `simulate`: a table for each scenario, and the state it ended in.
 
-use phea_hydraulics::machine::Machine;
-
 use super::columns::Columns;
 use super::file_names::state_names;
-use super::{Look, ScenarioRun};
+use super::{ControlledMachine, Look, ScenarioRun};
 use crate::project::Loaded;
 use crate::source::{Destination, Unfinished, WriteError};
 use crate::{
@@ -32,14 +30,18 @@ pub struct RunTable<'a> {
 }
 
 impl<'a> RunTable<'a> {
-    /// A table with its headings; `machine` says which columns it has.
+    /// A table with its headings; `bench` says which columns it has.
     pub(super) fn begin(
         (destination, name): (&'a dyn Destination, &str),
         format: TableFormat,
-        machine: &Machine,
+        bench: &ControlledMachine,
     ) -> Result<RunTable<'a>, WriteError> {
-        let columns = Columns::new(machine.has_external_force(), machine.has_series_element());
-        let table = NumberTable::new(destination.begin(name)?, format, &columns.names());
+        let machine = &bench.machine;
+        let gives_way = !bench.control.impedance_states().is_empty();
+        let columns = Columns::new(machine.has_external_force(), machine.has_series_element(), gives_way);
+        let names: Vec<_> = columns.names().into_iter().map(|name| bench.motion.name(name)).collect();
+        let names: Vec<&str> = names.iter().map(AsRef::as_ref).collect();
+        let table = NumberTable::new(destination.begin(name)?, format, &names);
         let table = table.map_err(|error| unwritten(name, &error))?;
         Ok(RunTable { name: name.to_string(), columns, table, values: Vec::new() })
     }

@@ -103,12 +103,12 @@ impl<'a> Looking<'a> {
     }
 
     fn look(&self, time_s: f64, states: &[f64], inputs: &[f64]) -> Look {
-        let (asked_for, control_v, of_loop, others) = match &self.bench.control {
+        let (asked_for, control_v, mut of_loop, others) = match &self.bench.control {
             Control::Continuous(closed) => {
                 let signals = closed.signals::<f64, f64>(states, inputs);
                 let (arriving, integral) =
                     (closed.arriving_command(states, inputs), closed.integral_part(states));
-                let of_loop = [arriving, signals.wanted, integral, signals.measurement];
+                let of_loop = [arriving, signals.wanted, integral, signals.measurement, 0.0];
                 (Some([inputs[0], signals.filtered_reference]), signals.command, of_loop, &inputs[1..])
             }
             Control::Sampled(_) => {
@@ -119,16 +119,19 @@ impl<'a> Looking<'a> {
                     of_sample(|sample| sample.unlimited_v),
                     of_sample(|sample| sample.integral_v),
                     of_sample(|sample| sample.measurement_n),
+                    0.0,
                 ];
                 let filtered = of_sample(|sample| sample.filtered_reference_n);
                 (Some([inputs[1], filtered]), of_sample(|sample| sample.command_v), of_loop, &inputs[2..])
             }
             Control::Open(held) => {
                 let [_, measured] = held.sampled::<f64, f64>(states, inputs);
-                (None, inputs[0], [inputs[0], inputs[0], 0.0, measured], &inputs[2..])
+                (None, inputs[0], [inputs[0], inputs[0], 0.0, measured, 0.0], &inputs[2..])
             }
         };
         let machine = &self.bench.machine;
+        let [.., virtual_force] = &mut of_loop;
+        *virtual_force = self.bench.control.sensed().given_way::<f64, f64>(states, others);
         Look {
             time_s,
             reference_n: asked_for.map(|[reference, _]| reference),

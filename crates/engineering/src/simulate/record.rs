@@ -3,6 +3,7 @@
 use phea_hydraulics::machine::SIGNALS;
 
 use super::columns::{self, LOOP_SIGNALS};
+use phea_quantity::MotionKind;
 
 /// Largest number of samples of a run that its record keeps.
 const MOST_KEPT: usize = 100_000;
@@ -47,6 +48,8 @@ pub struct Record {
     pub of_loop: Vec<[f64; LOOP_SIGNALS.len()]>,
     /// Number of samples from one of these to the next.
     pub looks_apart: u64,
+    /// How the rig moves: of one that turns, positions are in rad and forces in N m.
+    pub motion: MotionKind,
 }
 
 impl Default for Record {
@@ -60,6 +63,7 @@ impl Default for Record {
             signals: vec![],
             of_loop: vec![],
             looks_apart: 1,
+            motion: MotionKind::Linear,
         }
     }
 }

@@ -192,6 +192,7 @@ pub(super) fn run(
     let memory = memory.into_inner();
     let memory = matches!(bench.control, Control::Sampled(_)).then_some(&memory);
     let end = saved::of_end(bench, course, (outcome.status, &outcome.end, scenario.duration), memory);
+    let record = Record { motion: bench.motion, ..record };
     let exceeded = exceeded(bench, &record);
     Ok(ScenarioRun {
         name: scenario.name.clone(),

@@ -47,8 +47,11 @@ fn state_names(bench: &ControlledMachine) -> Vec<String> {
     let states = |count: usize, of: &'static str| (1..=count).map(move |number| format!("{of}_{number}"));
     let mut names = bench.machine.state_names();
     let sensed = bench.control.sensed();
-    names.extend(states(sensed.sensor_at_rest(0.0).len() - sensed.rate_states(), "sensor"));
-    names.extend(states(sensed.rate_states(), "velocity_sensor"));
+    let beside = [sensed.rate_states(), sensed.impedance_states()];
+    names.extend(states(sensed.sensor_at_rest(0.0).len() - beside[0] - beside[1], "sensor"));
+    names.extend(states(beside[0], "velocity_sensor"));
+    names.extend(states(beside[1].saturating_sub(1), "virtual_impedance"));
+    names.extend((beside[1] > 0).then(|| "rest_position_m".to_string()));
     match &bench.control {
         Control::Continuous(closed) => names.extend(states(closed.controller_states(), "controller")),
         Control::Sampled(sampled) => {
@@ -78,6 +81,9 @@ pub(super) fn of_end(
 ) -> Result<SavedState, &'static str> {
     if status != Status::Completed {
         return Err("it was not completed");
+    }
+    if bench.motion.is_rotary() {
+        return Err("the states of a motor are not saved yet");
     }
     if !bench.control.delays().is_empty() {
         return Err("what is in transit in a delay or along a line is not a state");

@@ -120,7 +120,7 @@ impl SizingProblem {
                 text: format!(
                     "System data: A_u = {} cm2, stroke {} mm, β_0 = {} GPa, K_S = {} MN/m, K_qU = {} m3/(s.V), K_c0 = {} m3/(s.Pa){}; both lines alike.",
                     DisplayUnit::SQUARE_CENTIMETRE.number(self.linear.useful_area, 4),
-                    DisplayUnit::MILLIMETRE.number(self.cylinder.stroke, 4),
+                    DisplayUnit::MILLIMETRE.number(2.0 * self.cylinder.stroke.middle(), 4),
                     DisplayUnit::GIGAPASCAL.number(self.fluid_modulus, 4),
                     DisplayUnit::MEGANEWTON_PER_METRE.number(self.linear.sensor_stiffness, 4),
                     number(self.linear.flow_gain),

@@ -203,7 +203,7 @@ fn scaled(project: &Project, name: &str, factor: f64) -> Result<Project, String>
 fn behind<'a>(actuator: &'a mut DeclaredActuator, name: &str) -> Vec<&'a mut f64> {
     match name {
         "viscous_friction" => {
-            actuator.cylinder.friction.iter_mut().map(|friction| &mut friction.viscous).collect()
+            actuator.friction_mut().map(|friction| &mut friction.viscous).into_iter().collect()
         }
         "flow_gain" => match &mut actuator.valve.flow {
             ValveCoefficients::Edges { edges, .. } => edges.each_mut().into(),
@@ -220,7 +220,7 @@ fn behind<'a>(actuator: &'a mut DeclaredActuator, name: &str) -> Vec<&'a mut f64
         }
         "valve_natural_frequency" => vec![&mut actuator.valve.natural_frequency],
         "valve_damping_ratio" => vec![&mut actuator.valve.damping_ratio],
-        "moving_mass" => vec![&mut actuator.cylinder.moving_mass],
+        "moving_mass" => vec![actuator.moving_mass_mut()],
         "sensor_stiffness" => vec![&mut actuator.force_sensor.stiffness],
         _ => Vec::new(),
     }

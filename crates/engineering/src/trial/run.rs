@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use phea_dynamics::portable::exp;
+use phea_dynamics::time_response::{StepBaseline, step_metrics};
 use phea_qft::specification::Requirement;
 use phea_qft::verification::Verdict;
 
@@ -142,7 +143,7 @@ pub(super) fn run(
     match simulate_project(source, &Setup::new(&project)?, watch) {
         Ok(runs) => {
             let Some(driven) = runs.first().filter(|driven| !driven.was_cancelled()) else { return Ok(None) };
-            let machine = step_of(driven);
+            let machine = step_of(driven, reference_n);
             let mut judged = judge((driven, reference_n), (linear.as_ref(), grows), &machine, problem, view);
             if let (Some(quarter), true) = (tried.quarter_wave_rad_per_s, judged.0 != Agreement::Agrees) {
                 judged.1.push_str(&format!(
@@ -187,7 +188,17 @@ fn stepped(project: &Project, [from, to]: [f64; 2], duration: f64) -> Project {
     Project { scenarios: vec![scenario], ..project.clone() }
 }
 
-fn step_of(driven: &ScenarioRun) -> TrialStep {
+/// Properties of the response of what the loop controls: of the force, or with a virtual impedance
+/// and a load that yields of the force together with what the impedance makes of the motion.
+fn step_of(driven: &ScenarioRun, reference_n: [f64; 2]) -> TrialStep {
+    if driven.record.signal("virtual_force_n").iter().any(|force| *force != 0.0) {
+        let StepResponse { times_s, values } = response_of(driven, reference_n);
+        let metrics = step_metrics(&times_s, &values, StepBaseline::to_value(1.0), BAND_PERCENT).ok();
+        return TrialStep {
+            overshoot_percent: metrics.as_ref().map(|metrics| metrics.overshoot_percent),
+            settling_time_s: metrics.and_then(|metrics| metrics.settling.time_s()),
+        };
+    }
     let metrics = driven.windows.last().map(|(_, metrics)| metrics);
     TrialStep {
         overshoot_percent: metrics.and_then(|metrics| metrics.overshoot_percent.ok()),
@@ -195,9 +206,18 @@ fn step_of(driven: &ScenarioRun) -> TrialStep {
     }
 }
 
-/// The force from the step on, as a share of it.
+/// What the loop controls, N.
+fn controlled(driven: &ScenarioRun) -> Vec<f64> {
+    let forces = driven.record.signal("force_n").into_iter();
+    forces
+        .zip(driven.record.signal("virtual_force_n"))
+        .map(|(force, virtual_force)| force + virtual_force)
+        .collect()
+}
+
+/// The controlled force from the step on, as a share of it.
 fn response_of(driven: &ScenarioRun, [from, to]: [f64; 2]) -> StepResponse {
-    let rows = driven.record.times_s.iter().zip(driven.record.signal("force_n"));
+    let rows = driven.record.times_s.iter().zip(controlled(driven));
     let after = rows.filter(|(time_s, _)| **time_s >= BEFORE_S);
     let (times_s, values) =
         after.map(|(time_s, force)| (time_s - BEFORE_S, (force - from) / (to - from))).unzip();
@@ -272,7 +292,7 @@ pub fn percent_words(percent: f64) -> String {
 
 /// The range of the force over the last fifth of the run, N.
 fn swing(driven: &ScenarioRun) -> Option<[f64; 2]> {
-    let force = driven.record.signal("force_n");
+    let force = controlled(driven);
     let last = force.get(force.len() - force.len() / 5..)?;
     let widest = |[low, high]: [f64; 2], force: &f64| [low.min(*force), high.max(*force)];
     (!last.is_empty()).then(|| last.iter().fold([f64::INFINITY, f64::NEG_INFINITY], widest))

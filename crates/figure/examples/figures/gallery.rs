@@ -121,6 +121,7 @@ pub(crate) fn stiffness() -> Figure {
             ],
             operating_position_m: Some(0.25),
             band_label: "stiffening 4 to 6".to_string(),
+            ..StiffnessInput::default()
         },
     )
 }
@@ -144,6 +145,7 @@ pub(crate) fn stiffness_against_pipe() -> Figure {
             ],
             operating_position_m: None,
             band_label: String::new(),
+            ..StiffnessInput::default()
         },
     )
 }
@@ -376,6 +378,7 @@ pub(crate) fn circuit() -> Figure {
     schematic(
         words("schematic", "The rig"),
         &SchematicInput {
+            rotary: false,
             supply: SupplyKind::ConstantPressure,
             supply_rows: vec!["70 bar".into(), "9.8 L/min".into()],
             tank: "0 bar".into(),
@@ -407,6 +410,7 @@ pub(crate) fn asymmetric_circuit() -> Figure {
     schematic(
         words("schematic-asymmetric", "An asymmetric cylinder on pipes"),
         &SchematicInput {
+            rotary: false,
             supply: SupplyKind::Pump,
             supply_rows: vec!["210 bar".into(), "38 L/min".into()],
             tank: "0 bar".into(),

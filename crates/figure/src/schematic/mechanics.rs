@@ -8,13 +8,13 @@ use super::pen::{MOTION, OUTLINE, ROW, arrow, block, ground, lines, rows, spring
 use super::{Environment, Rods, SchematicInput, SeriesSymbol};
 
 /// Height of the rod's axis.
-const AXIS: f64 = 74.0;
+pub(super) const AXIS: f64 = 74.0;
 const LEFT: f64 = 104.0;
 const RIGHT: f64 = 300.0;
-const HALF: f64 = 26.0;
-const PISTON: f64 = 196.0;
-const ROD: f64 = 5.0;
-const MASS: f64 = 342.0;
+pub(super) const HALF: f64 = 26.0;
+pub(super) const PISTON: f64 = 196.0;
+pub(super) const ROD: f64 = 5.0;
+pub(super) const MASS: f64 = 342.0;
 /// Centre of the load cell: its signal starts below it.
 pub(super) const CELL: f64 = 412.0;
 /// Lower edge of the load cell.
@@ -67,7 +67,9 @@ pub(super) fn load(scene: &mut Scene, input: &SchematicInput) {
     block(scene, MASS - 20.0, AXIS - 22.0, 40.0, 44.0);
     word(scene, "M", (MASS, AXIS), Role::Text);
     let mass = [input.mass.clone()];
-    rows(scene, &mass, (MASS, AXIS - 41.0), Anchor::Middle, 56.0, 1);
+    // an inertia takes more room than a mass: above what the sensor has
+    let (top, wide) = if input.rotary { (AXIS - 41.0 - 2.0 * ROW, 100.0) } else { (AXIS - 41.0, 56.0) };
+    rows(scene, &mass, (MASS, top), Anchor::Middle, wide, 1);
     match &input.load_cell {
         Some(words) => {
             lines(scene, &[(MASS + 20.0, AXIS), (CELL - 17.0, AXIS)], heavy);

@@ -1,3 +1,5 @@
+use num_complex::Complex64;
+use phea_dynamics::controller::VirtualImpedance;
 use phea_dynamics::linear::{LinearError, Polynomial, TransferFunction};
 use phea_dynamics::uncertain_plant::RationalCoefficients;
 
@@ -27,10 +29,35 @@ use crate::plant::{LinearLoad, LinearPlant, LinearSeries, SeriesOutput};
 pub fn port(plant: &LinearPlant) -> Result<LinearModel, LinearError> {
     let alone = LinearPlant { load: LinearLoad::Prescribed, ..*plant };
     let measured = transfer_functions(&alone.coefficients())?;
-    let Some(series) = alone.series else { return Ok(measured) };
+    let Some(series) = alone.series else { return sharing_poles(&alone, measured) };
     let on_load = LinearSeries { output: SeriesOutput::OnLoad, ..series };
     let felt = transfer_functions(&LinearPlant { series: Some(on_load), ..alone }.coefficients())?;
-    Ok(LinearModel { command: measured.command, load_position: felt.load_position })
+    let both = LinearModel { command: measured.command, load_position: felt.load_position };
+    sharing_poles(&alone, both)
+}
+
+/// Coefficients of 1/H_v of a velocity that is fed forward within the plant, 1 where none is: the
+/// denominator of the path of the load's motion has it beside that of the command's path.
+fn fed_forward_filter(plant: &LinearPlant) -> Vec<f64> {
+    match plant.load_velocity_feed_forward {
+        Some(_) => plant.velocity_sensor.filter.denominator(),
+        None => vec![1.0],
+    }
+}
+
+/// The path of the load's motion with the poles of the command's path, digit by digit, beside those
+/// of the filter of a velocity that is fed forward: a loop around them cancels the shared ones.
+fn sharing_poles(plant: &LinearPlant, model: LinearModel) -> Result<LinearModel, LinearError> {
+    let filter = fed_forward_filter(plant);
+    if filter.len() == 1 {
+        return Ok(model);
+    }
+    let of_filter =
+        TransferFunction::from_polynomials(&Polynomial::new(vec![1.0]), &Polynomial::new(filter))?;
+    let path = &model.load_position;
+    let poles = [model.command.poles(), of_filter.poles()].concat();
+    let load_position = TransferFunction::from_factors(path.gain(), path.zeros().to_vec(), poles)?;
+    Ok(LinearModel { load_position, ..model })
 }
 
 /// Driving-point impedance in N s/m with the measured force fed back through a controller G in V/N.
@@ -41,7 +68,11 @@ pub fn port(plant: &LinearPlant) -> Result<LinearModel, LinearError> {
 /// ```
 ///
 /// The second is the general one: what the sensor measures and the load does not feel is the
-/// acceleration of the mass.
+/// acceleration of the mass. A virtual impedance Z_v adds what the loop makes of the motion:
+///
+/// ```text
+/// Z -> Z + (Z_v/s) G F_L/U_C/(1 + G F_s/U_C)                  about Z_v/s where the loop has much gain
+/// ```
 ///
 /// # Errors
 /// As [`closed_loop_impedance`].
@@ -49,6 +80,10 @@ pub fn closed_loop_port(
     plant: &LinearPlant,
     controller: &TransferFunction,
 ) -> Result<TransferFunction, LinearError> {
+    if let Some(impedance) = plant.virtual_impedance {
+        let alone = LinearPlant { virtual_impedance: None, ..*plant };
+        return closed_loop_port(&alone, controller)?.parallel(&beside(&impedance, &alone, controller)?);
+    }
     let shaken = plant.series.filter(|series| series.output == SeriesOutput::Sensor);
     let Some((series, mass)) = shaken.and_then(|series| Some((series, series.mass?))) else {
         return closed_loop_impedance(&port(plant)?, controller);
@@ -60,12 +95,39 @@ pub fn closed_loop_port(
         return open_loop_impedance(&port(plant)?);
     };
     let of = |coefficients: Vec<f64>| Polynomial::new(coefficients);
+    // the path of the motion has the filter of a velocity that is fed forward, that of the command has not
+    let filter = of(fed_forward_filter(plant));
     let [over, under] = [controller.numerator(), controller.denominator()];
     let accelerated = of(vec![-mass, 0.0, 0.0]).product(&of(felt.command.numerator));
     let measured = of(alone.coefficients().command.numerator);
-    let moved = of(moved).product(&under).sum(&accelerated.product(&over));
-    let closed = of(denominator).product(&under).sum(&measured.product(&over));
+    let moved = of(moved).product(&under).sum(&accelerated.product(&over).product(&filter));
+    let closed = of(denominator).product(&under).sum(&measured.product(&over).product(&filter));
     // at rest no motion is felt: the factor s
     let without_origin = moved.coefficients().split_last().map_or(Vec::new(), |(_, rest)| rest.to_vec());
     TransferFunction::from_polynomials(&of(without_origin).scaled(-1.0), &closed)
+}
+
+/// What a loop makes of a virtual impedance at its port, in N s/m.
+fn beside(
+    impedance: &VirtualImpedance,
+    plant: &LinearPlant,
+    controller: &TransferFunction,
+) -> Result<TransferFunction, LinearError> {
+    let LinearModel { command: measured, .. } = port(plant)?;
+    let followed = controller.series(&measured)?.feedback(&TransferFunction::gain_only(1.0))?;
+    let shaken = plant.series.filter(|series| series.output == SeriesOutput::Sensor && series.mass.is_some());
+    let followed = match shaken {
+        None => followed,
+        Some(series) => {
+            // F_L in place of F_s, which have their denominators in common
+            let on_load = LinearSeries { output: SeriesOutput::OnLoad, ..series };
+            let alone = LinearPlant { load: LinearLoad::Prescribed, series: Some(on_load), ..*plant };
+            let felt = transfer_functions(&alone.coefficients())?.command;
+            let zeros = [felt.zeros(), controller.zeros()].concat();
+            let gain = followed.gain() * felt.gain() / measured.gain();
+            TransferFunction::from_factors(gain, zeros, followed.poles().to_vec())?
+        }
+    };
+    let integrated = TransferFunction::from_factors(1.0, vec![], vec![Complex64::new(0.0, 0.0)])?;
+    impedance.transfer_function()?.series(&integrated)?.series(&followed)
 }

@@ -102,13 +102,14 @@ impl Machine {
         (rows.map(|row| row.value()).into(), slopes)
     }
 
-    /// The flows into the chambers in steady motion, in m3/s: the piston's displacement and what
-    /// flows from chamber to chamber.
+    /// The flows into the chambers in steady motion, in m3/s: the piston's displacement, what flows
+    /// from chamber to chamber, and what leaks outwards.
     pub(super) fn steady_flows<T: Scalar + From<f64>>(&self, state: &MachineState<T>) -> [T; 2] {
         let across = self.steady_cross_flow(state);
+        let [out_of_a, out_of_b] = self.outward_leakage(state);
         [
-            T::from(self.cylinder.area_a) * state.velocity + across,
-            -T::from(self.cylinder.area_b) * state.velocity - across,
+            T::from(self.cylinder.area_a) * state.velocity + across + out_of_a,
+            -T::from(self.cylinder.area_b) * state.velocity - across + out_of_b,
         ]
     }
 

@@ -4,6 +4,7 @@ use crate::actuator::{Actuator, Components};
 use crate::fluid::{ATMOSPHERIC_PRESSURE_ABSOLUTE, bulk_modulus_with_air};
 use crate::line::{Line, StiffeningMember};
 use crate::stiffness::{ChamberCompliance, StiffnessModel, chamber_compliance, compliance_at};
+use crate::stroke::ActuatorStroke;
 
 /// Absolute pressure in Pa below which the modulus of fluid with air is that at this pressure. Far
 /// below any vapour pressure that is reported, it only keeps a trial step of an integrator a
@@ -32,7 +33,7 @@ pub struct AeratedChambers<S = f64> {
     pub(super) bulk_modulus: S,
     pub(super) volume_fraction: S,
     pub(super) polytropic_exponent: S,
-    pub(super) stroke: S,
+    pub(super) stroke: ActuatorStroke<S>,
     pub(super) side_a: AeratedSide<S>,
     pub(super) side_b: AeratedSide<S>,
 }
@@ -153,7 +154,7 @@ impl<S: Copy> AeratedChambers<S> {
             bulk_modulus: of(self.bulk_modulus),
             volume_fraction: of(self.volume_fraction),
             polytropic_exponent: of(self.polytropic_exponent),
-            stroke: of(self.stroke),
+            stroke: self.stroke.convert(of),
             side_a: self.side_a.convert(of),
             side_b: self.side_b.convert(of),
         }
@@ -202,7 +203,8 @@ impl<S: Scalar> AeratedChambers<S> {
             let fluid = side.fluid_constant + side.fluid_slope * travel;
             fluid / self.modulus(pressure) + side.wall_constant + side.wall_slope * travel
         };
-        [side(&self.side_a, x, pressure_a), side(&self.side_b, self.stroke - x, pressure_b)]
+        let [from_a, to_b] = self.stroke.travels(x);
+        [side(&self.side_a, from_a, pressure_a), side(&self.side_b, to_b, pressure_b)]
     }
 
     fn modulus(&self, pressure: S) -> S {

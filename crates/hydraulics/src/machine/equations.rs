@@ -15,6 +15,8 @@ pub(super) struct Flows<T> {
     pub(super) edges: EdgeFlows<T>,
     /// From chamber A to chamber B: across the piston and through a valve between them.
     pub(super) internal: T,
+    /// From each chamber to the tank, as through the case of a motor.
+    pub(super) outward: [T; 2],
     /// The share of that valve.
     pub(super) cross_port: T,
     /// From the valve into line A and line B.
@@ -147,12 +149,12 @@ impl<S: Scalar> Machine<S> {
             PowerUnit::PumpLimited(_) => T::local(&valve, [opening, port_a, port_b, state.supply_pressure]),
         });
         let from_valve = [edges.supply_to_a - edges.a_to_tank, edges.supply_to_b - edges.b_to_tank];
-        let leakage = self.leakage(state);
+        let (leakage, outward) = (self.leakage(state), self.outward_leakage(state));
         match &self.cross_port {
-            None => Flows { edges, internal: leakage, cross_port: T::from(0.0), from_valve },
+            None => Flows { edges, internal: leakage, outward, cross_port: T::from(0.0), from_valve },
             Some(port) => {
                 let cross_port = self.through_cross_port(port, state);
-                Flows { edges, internal: leakage + cross_port, cross_port, from_valve }
+                Flows { edges, internal: leakage + cross_port, outward, cross_port, from_valve }
             }
         }
     }
@@ -181,6 +183,19 @@ impl<S: Scalar> Machine<S> {
         })
     }
 
+    /// Flows out of both chambers to the tank, in m3/s.
+    #[inline(always)]
+    pub(super) fn outward_leakage<T: Scalar + From<S>>(&self, state: &MachineState<T>) -> [T; 2] {
+        match self.cylinder.external_leakage {
+            None => [T::from(0.0); 2],
+            Some(conductance) => {
+                let conductance: T = constant(conductance);
+                let tank: T = constant(self.supply.tank_pressure);
+                [conductance * (state.pressure_a - tank), conductance * (state.pressure_b - tank)]
+            }
+        }
+    }
+
     /// Oil that the valve takes from the supply, tare flow included, in m3/s.
     #[inline(always)]
     pub(super) fn supply_flow<T: Scalar + From<S>>(
@@ -204,8 +219,8 @@ impl<S: Scalar> Machine<S> {
             None => T::from(0.0),
             Some(contact) => {
                 let contact = contact.convert(&mut constant::<S, T>);
-                let beyond = position - constant(self.cylinder.stroke);
-                contact.force(-position, -state.velocity) - contact.force(beyond, state.velocity)
+                let [from_a, to_b] = self.cylinder.stroke.convert(&mut constant::<S, T>).travels(position);
+                contact.force(-from_a, -state.velocity) - contact.force(-to_b, state.velocity)
             }
         };
         Forces {
@@ -254,8 +269,8 @@ impl<S: Scalar> Machine<S> {
             neck_flows,
             gas_pressures,
             spool: self.spool.convert(&mut constant::<S, T>).rates(&valve, &state.spool, command),
-            pressure_a: (into_a - flows.internal - area_a * velocity) / compliance_a,
-            pressure_b: (into_b + flows.internal + area_b * velocity) / compliance_b,
+            pressure_a: (into_a - flows.internal - flows.outward[0] - area_a * velocity) / compliance_a,
+            pressure_b: (into_b + flows.internal - flows.outward[1] + area_b * velocity) / compliance_b,
             deflection: joint.deflection_rate,
             velocity: pushing / constant(self.cylinder.moving_mass),
             bristle: forces.friction.bristle_rate,

@@ -125,6 +125,7 @@ impl<S: Scalar> Machine<S> {
         let [into_a, into_b] = now.chamber_flows();
         let [side_a, side_b] = &now.sides;
         let [gas_a, gas_b] = &now.gas;
+        let [out_of_a, out_of_b] = now.flows.outward;
         let accounts = [
             side_a.oil(into_a),
             side_b.oil(into_b),
@@ -140,14 +141,18 @@ impl<S: Scalar> Machine<S> {
         let [a, b, c, d, e, f, g, h, i, j] = accounts;
         let rig = Account {
             stored: total(&accounts, |account| account.stored),
-            inflow: dense_s * supply.fed - tank_a * edges.a_to_tank - tank_b * edges.b_to_tank,
+            inflow: dense_s * supply.fed
+                - tank_a * (edges.a_to_tank + out_of_a)
+                - tank_b * (edges.b_to_tank + out_of_b),
             lost: edges.supply_to_a * (dense_s - one)
                 + edges.a_to_tank * (one - tank_a)
                 + edges.supply_to_b * (dense_s - one)
                 + edges.b_to_tank * (one - tank_b)
                 + now.lines[0].into_chamber * (one - dense_a)
                 + now.lines[1].into_chamber * (one - dense_b)
-                + now.flows.internal * (dense_a - dense_b)
+                + (now.flows.internal + now.turned) * (dense_a - dense_b)
+                + out_of_a * (dense_a - tank_a)
+                + out_of_b * (dense_b - tank_b)
                 + gas_a.taken * (dense_a - one)
                 + gas_b.taken * (dense_b - one)
                 + supply.gas.inflow * (dense_s - one),
@@ -168,9 +173,13 @@ impl<S: Scalar> Machine<S> {
             + edges.supply_to_b * (supply.line.pressure - line_b.port_pressure)
             + edges.b_to_tank * (line_b.port_pressure - tank);
         let [piston, friction, sensor, series, end_stops, load] = self.moving(now);
+        let [out_of_a, out_of_b] = now.flows.outward;
+        let leaked = (now.flows.internal - now.flows.cross_port) * (side_a.pressure - side_b.pressure)
+            + out_of_a * (side_a.pressure - tank)
+            + out_of_b * (side_b.pressure - tank);
         let accounts = [
-            side_a.energy(into_a, area_a * velocity),
-            side_b.energy(into_b, -area_b * velocity),
+            side_a.energy(into_a, area_a * velocity - now.turned),
+            side_b.energy(into_b, now.turned - area_b * velocity),
             line_a.energy(),
             line_b.energy(),
             now.gas[0].energy(),
@@ -180,7 +189,7 @@ impl<S: Scalar> Machine<S> {
             supply.line.energy(supply.line_flow(), zero),
             supply.gas.energy(),
             heat(throttled),
-            heat((now.flows.internal - now.flows.cross_port) * (side_a.pressure - side_b.pressure)),
+            heat(leaked),
             self.cross_port_account(now),
             piston,
             friction,
@@ -194,7 +203,8 @@ impl<S: Scalar> Machine<S> {
         let carried = side_a.compression() * into_a
             + side_b.compression() * into_b
             + supply.line.compression() * supply.line_flow();
-        let oil = supply.line.pressure * supply.fed - tank * (edges.a_to_tank + edges.b_to_tank) + carried;
+        let drained = edges.a_to_tank + edges.b_to_tank + out_of_a + out_of_b;
+        let oil = supply.line.pressure * supply.fed - tank * drained + carried;
         let rig = Account {
             stored: total(&accounts, |account| account.stored),
             inflow: oil + now.external_power - self.on_ground(now),
@@ -280,11 +290,12 @@ impl<S: Scalar> Machine<S> {
             return Account { stored: zero, inflow: zero, lost: zero };
         };
         let contact = contact.convert(&mut constant::<S, T>);
-        let beyond = position - constant(self.cylinder.stroke);
+        let [from_a, to_b] = self.cylinder.stroke.convert(&mut constant::<S, T>).travels(position);
+        let (before, beyond) = (-from_a, -to_b);
         Account {
-            stored: contact.stored_energy(-position) + contact.stored_energy(beyond),
+            stored: contact.stored_energy(before) + contact.stored_energy(beyond),
             inflow: -force * velocity,
-            lost: contact.dissipated(-position, -velocity) + contact.dissipated(beyond, velocity),
+            lost: contact.dissipated(before, -velocity) + contact.dissipated(beyond, velocity),
         }
     }
 }

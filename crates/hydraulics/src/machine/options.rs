@@ -96,7 +96,9 @@ pub enum MachineError {
     UnyieldingLoad,
     /// Pressed into its end stop by the whole supply pressure, the piston would leave no fluid in
     /// the chamber.
-    #[error("pressed {penetration} m into its end stop, the piston leaves no fluid ({compliance} m3/Pa)")]
+    #[error(
+        "pressed {penetration} (m, or rad of a motor) into its end stop, the piston leaves no fluid ({compliance} m3/Pa)"
+    )]
     ChamberVanishes {
         /// How far into the stop, in m.
         penetration: f64,
@@ -104,7 +106,7 @@ pub enum MachineError {
         compliance: f64,
     },
     /// The start lies outside the stroke.
-    #[error("a start at {position} m is outside the stroke of {stroke} m")]
+    #[error("a start at {position} is outside the stroke of {stroke} (m, or rad of a motor)")]
     StartOutsideStroke {
         /// Position asked for, in m.
         position: f64,

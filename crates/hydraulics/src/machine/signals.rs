@@ -2,6 +2,7 @@ use phea_dynamics::scalar::Scalar;
 
 use super::equations::constant;
 use super::{Accumulator, Machine, Motion};
+use crate::stroke::ActuatorStroke;
 
 /// Names of the signals of a machine, with units, in the order of [`Machine::outputs`].
 pub const SIGNALS: [&str; 21] = [
@@ -126,6 +127,10 @@ impl<S: Scalar> Machine<S> {
         let joint = self.joint(&state, &load);
         let position = joint.position;
         let vapour: T = constant(self.vapour_pressure);
+        let [to_end_a, to_end_b] = match self.cylinder.stroke {
+            ActuatorStroke::Unlimited => [T::from(1.0); 2],
+            ActuatorStroke::Limited(stroke) => [position, constant::<S, T>(stroke) - position],
+        };
         let [compliance_a, compliance_b] = self.oil_compliance(&state, position);
         let supply = self.supply_of(&state);
         let [gas_a, gas_b] = &self.accumulators;
@@ -136,8 +141,8 @@ impl<S: Scalar> Machine<S> {
         [
             state.pressure_a.minimum(behind_a) - vapour,
             state.pressure_b.minimum(behind_b) - vapour,
-            position,
-            constant::<S, T>(self.cylinder.stroke) - position,
+            to_end_a,
+            to_end_b,
             compliance_a,
             compliance_b,
             self.load.convert(&mut constant::<S, T>).clearance(&load, &ground),

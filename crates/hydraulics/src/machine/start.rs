@@ -5,6 +5,7 @@ use super::{LoadModel, Machine, MachineError, MachineState, Motion};
 use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 use crate::friction::MovingFriction;
 use crate::operating_point::OperatingPoint;
+use crate::stroke::ActuatorStroke;
 
 /// Initial values of a run; values that are not stated are zero, and the supply pressure is that of
 /// its power unit.
@@ -225,9 +226,10 @@ impl LoadModel {
     }
 }
 
-fn check(start: &StartValues, stroke: f64) -> Result<(), MachineError> {
+fn check(start: &StartValues, stroke: ActuatorStroke) -> Result<(), MachineError> {
     let StartValues { position, velocity, pressure_a, pressure_b, force, spool } = *start;
-    if !(0.0..=stroke).contains(&position) {
+    if !stroke.contains(position) {
+        let stroke = stroke.length().unwrap_or(f64::INFINITY);
         return Err(MachineError::StartOutsideStroke { position, stroke });
     }
     let vacuum = -ATMOSPHERIC_PRESSURE_ABSOLUTE;

@@ -18,6 +18,8 @@ pub struct Balance<S = f64> {
     pub areas: [S; 2],
     /// What flows from chamber A to chamber B; `None` where nothing does.
     pub across: Option<CrossFlow<S>>,
+    /// Conductance from each chamber to the tank in m3/(s Pa); `None` where nothing leaks outwards.
+    pub outward: Option<S>,
 }
 
 impl<S: Scalar> Balance<S> {
@@ -29,7 +31,13 @@ impl<S: Scalar> Balance<S> {
             supply: components.supply,
             areas: [cylinder.area_a, cylinder.area_b],
             across: components.cross_flow(),
+            outward: cylinder.external_leakage,
         }
+    }
+
+    /// What leaks from a chamber of this pressure to the tank, in m3/s.
+    pub(super) fn leaving(&self, pressure: S) -> S {
+        self.outward.map_or(S::from(0.0), |conductance| conductance * (pressure - self.supply.tank_pressure))
     }
 }
 
@@ -47,8 +55,8 @@ impl Balance {
         let Supply { pressure, tank_pressure } = self.supply;
         let [area_a, area_b] = self.areas;
         let into = |p: f64| chamber_flows(&self.valve, &self.supply, command, p, p);
-        let surplus_a = |p: f64| into(p).into_a - area_a * velocity;
-        let surplus_b = |p: f64| into(p).into_b + area_b * velocity;
+        let surplus_a = |p: f64| into(p).into_a - area_a * velocity - self.leaving(p);
+        let surplus_b = |p: f64| into(p).into_b + area_b * velocity - self.leaving(p);
         let pressure_a = falling_root(surplus_a, tank_pressure, pressure);
         let pressure_b = falling_root(surplus_b, tank_pressure, pressure);
         match (pressure_a, pressure_b) {
@@ -126,8 +134,8 @@ impl Balance {
             pressure_b,
             velocity,
             hydraulic_force: hydraulic_force(self.areas, pressures),
-            net_flow_a: into_a - area_a * velocity - across,
-            net_flow_b: into_b + area_b * velocity + across,
+            net_flow_a: into_a - area_a * velocity - across - self.leaving(pressure_a),
+            net_flow_b: into_b + area_b * velocity + across - self.leaving(pressure_b),
         }
     }
 }

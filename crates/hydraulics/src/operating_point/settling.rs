@@ -42,13 +42,13 @@ pub struct Settled<S = f64> {
 /// Halvings of the spool's travel: to 4e-6 of it, where the leakage of the edges takes a hundredth
 /// to fall.
 const HALVINGS_OF_TRAVEL: usize = 18;
-/// Number of halvings for the load pressure that remains with a flow from chamber to chamber: to
-/// less than the transition pressure of an orifice.
+/// Number of halvings for the load pressure that remains with a flow from chamber to chamber, and to
+/// less than the transition pressure of an orifice: beside one, and for leakage to the tank.
 const HALVINGS_OF_LEAKAGE: usize = 12;
 const HALVINGS_OF_ORIFICE: usize = 20;
 /// How often the load pressure of unequal areas is taken anew.
 const ROUNDS: usize = 3;
-/// Newton steps without and with a flow from chamber to chamber.
+/// Newton steps without and with leakage.
 const STEPS: [usize; 2] = [5, 9];
 /// Share of the nominal voltage within which a spool counts as at null: closer than rounding can
 /// distinguish.
@@ -75,7 +75,7 @@ impl<S: Scalar> Balance<S> {
     /// use phea_hydraulics::servovalve::Supply;
     /// let recorded = Expression::record(&["pressure", "force"], |p| {
     ///     let supply = Supply { pressure: p[0], tank_pressure: 0.0.into() };
-    ///     let balance = Balance { valve: valve().convert(&mut Into::into), supply, areas: [USEFUL_AREA.into(); 2], across: None };
+    ///     let balance = Balance { valve: valve().convert(&mut Into::into), supply, areas: [USEFUL_AREA.into(); 2], across: None, outward: None };
     ///     let settled = balance.settle(Steady::Moving { velocity: 0.0.into(), load: SteadyLoad::Force(p[1]) });
     ///     vec![settled.command, settled.pressures[0], settled.pressures[1]]
     /// });
@@ -95,6 +95,16 @@ impl<S: Scalar> Balance<S> {
                 Settled { command, pressures: [half * (mean + load_pressure), half * (mean - load_pressure)] }
             }
         }
+    }
+
+    /// Newton steps after the first guess.
+    fn steps(&self) -> usize {
+        STEPS[usize::from(self.leaks())]
+    }
+
+    /// Whether anything flows from chamber to chamber or to the tank.
+    pub(super) fn leaks(&self) -> bool {
+        self.across.is_some() || self.outward.is_some()
     }
 
     fn has_orifice(&self) -> bool {
@@ -125,7 +135,7 @@ impl<S: Scalar> Balance<S> {
                 }
             }
         };
-        for _ in 0..STEPS[usize::from(self.across.is_some())] {
+        for _ in 0..self.steps() {
             let [step_a, step_b] = self.step_at(command, velocity, pressures);
             pressures = [pressures[0] + step_a, pressures[1] + step_b];
         }
@@ -154,7 +164,7 @@ impl<S: Scalar> Balance<S> {
             let [a, b] = at(relative);
             (command, pressure_a, load_pressure) = (relative * full, a, a - b);
         }
-        for _ in 0..STEPS[usize::from(self.across.is_some())] {
+        for _ in 0..self.steps() {
             let [step, step_a] = self.step_moving(&hold, command, pressure_a);
             (command, pressure_a) = (command + step, pressure_a + step_a);
         }
@@ -184,9 +194,22 @@ impl<S: Scalar> Balance<S> {
         let across = self.across.map_or(S::from(0.0), |across| across.flow(load_pressure));
         let [area_a, area_b] = self.areas;
         [
-            self.between(edges_a, area_a * velocity + across),
-            self.between(edges_b, -area_b * velocity - across),
+            self.leaking(edges_a, area_a * velocity + across),
+            self.leaking(edges_b, -area_b * velocity - across),
         ]
+    }
+
+    /// [`Balance::between`] with what leaks outwards at the pressure that is found, by bisection: the
+    /// more leaks, the lower is the pressure.
+    fn leaking(&self, edges: &[S; 2], flow: S) -> S {
+        if self.outward.is_none() {
+            return self.between(edges, flow);
+        }
+        let tank = self.supply.tank_pressure;
+        let drop = self.supply.pressure - tank;
+        let at = |share: S| self.between(edges, flow + self.leaving(tank + share * drop));
+        let falls = |share: S| (at(share) - tank) / drop - share;
+        tank + halved([S::from(0.0), S::from(1.0)], HALVINGS_OF_ORIFICE, falls) * drop
     }
 
     /// The pressure between an edge from supply and one to tank, of conductances a and b, that
@@ -223,11 +246,16 @@ impl<S: Scalar> Balance<S> {
         let (across, conductance) =
             self.across.map_or((none, none), |across| (across.flow(drop), across.slope(drop)));
         let [area_a, area_b] = self.areas;
-        ([into_a - area_a * velocity - across, into_b + area_b * velocity + across], conductance)
+        let [out_of_a, out_of_b] = [pressure_a, pressure_b].map(|pressure| self.leaving(pressure));
+        (
+            [into_a - area_a * velocity - across - out_of_a, into_b + area_b * velocity + across - out_of_b],
+            conductance,
+        )
     }
 
     fn slopes(&self, command: S, [pressure_a, pressure_b]: [S; 2]) -> ChamberCoefficients<S> {
         chamber_coefficients(&self.valve, &self.supply, command, pressure_a, pressure_b, SpoolDirection::Mean)
+            .leaking(self.outward)
     }
 
     /// The Newton step of both pressures at a fixed spool.

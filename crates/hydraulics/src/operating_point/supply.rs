@@ -18,7 +18,7 @@ pub struct SettledSupply<S = f64> {
 }
 
 /// Newton steps, with the slope of a flow that goes with the root of the pressure: without and with
-/// a flow from chamber to chamber, which goes with the pressure itself.
+/// leakage, which goes with the pressure itself.
 const ROUNDS: [usize; 2] = [6, 9];
 
 impl<S: Scalar> Balance<S> {
@@ -50,7 +50,7 @@ impl<S: Scalar> Balance<S> {
     pub fn settled_supply(&self, unit: &PumpLimited<S>, tare_drop: S, steady: Steady<S>) -> SettledSupply<S> {
         let mut pressure = self.supply.pressure;
         let mut found = self.taking(pressure, tare_drop, steady);
-        for _ in 0..ROUNDS[usize::from(self.across.is_some())] {
+        for _ in 0..ROUNDS[usize::from(self.leaks())] {
             let falls = unit.relief_override * (found.taken / unit.pump_flow).minimum(S::from(1.0));
             let slope = falls / (S::from(2.0) * (pressure - self.supply.tank_pressure));
             let slope = S::select(found.taken.less_than(unit.pump_flow), slope, S::from(0.0));

@@ -2,7 +2,7 @@ mod responding;
 
 use num_complex::Complex64;
 use phea_dynamics::analytic::Analytic;
-use phea_dynamics::controller::RateFilter;
+use phea_dynamics::controller::{RateFilter, VirtualImpedance};
 
 use super::supply::{Coupled, Over};
 use super::{
@@ -106,6 +106,18 @@ impl PlantInMotion {
         PlantInMotion { plant: LinearPlant { velocity_sensor, ..self.plant }, ..self }
     }
 
+    /// The same on another load.
+    #[must_use]
+    pub fn of_load(self, load: LinearLoad) -> PlantInMotion {
+        PlantInMotion { plant: LinearPlant { load, ..self.plant }, ..self }
+    }
+
+    /// The same with a virtual impedance beside its force.
+    #[must_use]
+    pub fn beside(self, virtual_impedance: Option<VirtualImpedance>) -> PlantInMotion {
+        PlantInMotion { plant: LinearPlant { virtual_impedance, ..self.plant }, ..self }
+    }
+
     /// The same with the feed-forward delayed by a time in s: K_x e^(-s tau) for K_x.
     #[must_use]
     pub fn late(self, lateness: f64) -> PlantInMotion {
@@ -167,6 +179,14 @@ impl PlantInMotion {
     }
 
     fn paths<A: Analytic>(&self, s: A) -> Paths<A> {
+        let tied = match self.plant.load {
+            LinearLoad::Prescribed => None,
+            LinearLoad::Yielding { damping, stiffness, .. } => Some(s.scaled(damping) + A::from(stiffness)),
+        };
+        self.paths_of_force(s).beside(self.plant.virtual_impedance.as_ref(), s, tied)
+    }
+
+    fn paths_of_force<A: Analytic>(&self, s: A) -> Paths<A> {
         let chambers = self.chambers(s);
         let ChamberPolynomials { own, driven, displaced } = chambers;
         let sensor = self.plant.sensor_stiffness;

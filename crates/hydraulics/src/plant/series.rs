@@ -255,7 +255,7 @@ impl<S: Scalar> LinearPlant<S> {
                 let disturbance = shows.gain.map(|gain| shifted(&scaled(gain, &held)));
                 PlantCoefficients {
                     command: RationalCoefficients { numerator: command, denominator: held },
-                    disturbance: Some(RationalCoefficients { numerator: ground, denominator }),
+                    disturbance: Some(self.beside_motion(ground, denominator)),
                     dead_time_s: S::from(0.0),
                     // what is shown of the rate of X_0 itself
                     rate: disturbance
@@ -268,14 +268,8 @@ impl<S: Scalar> LinearPlant<S> {
                 let Paths { command, ground, sensed, fed, driven, held } = paths(behind_filter, load);
                 let denominator =
                     fed.map_or(sensed.clone(), |fed| sum(&sensed, &scaled(S::from(-1.0), &fed)));
-                let rate = [driven, product(&held, &of_ground)].map(|path| shows.shown(shifted(&path)));
-                let [of_command, disturbance] = rate;
-                PlantCoefficients {
-                    command: RationalCoefficients { numerator: command, denominator: denominator.clone() },
-                    disturbance: Some(RationalCoefficients { numerator: ground, denominator }),
-                    dead_time_s: S::from(0.0),
-                    rate: Some(RateNumerators { command: of_command, disturbance }),
-                }
+                let moved = [driven, product(&held, &of_ground)];
+                self.of_yielding_load([command, ground], moved, denominator)
             }
         }
     }

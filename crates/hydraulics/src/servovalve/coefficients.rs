@@ -34,6 +34,20 @@ pub struct ChamberCoefficients<S = f64> {
     pub flow_pressure_b: S,
 }
 
+impl<S: Scalar> ChamberCoefficients<S> {
+    /// The same of chambers that also leak to the tank, by this conductance in m3/(s Pa): what leaks
+    /// falls with the pressure as the flow of the valve does.
+    #[must_use]
+    pub fn leaking(self, outward: Option<S>) -> ChamberCoefficients<S> {
+        let Some(conductance) = outward else { return self };
+        ChamberCoefficients {
+            flow_pressure_a: self.flow_pressure_a + conductance,
+            flow_pressure_b: self.flow_pressure_b + conductance,
+            ..self
+        }
+    }
+}
+
 /// Derivatives of [`super::chamber_flows`] at any spool position and chamber pressures, for any
 /// edges.
 ///

@@ -1,6 +1,7 @@
 use super::{ChamberCompliance, StiffnessModel, chamber_compliance, compliance_at, hydraulic_stiffness};
 use crate::cylinder::Cylinder;
 use crate::line::{Line, StiffeningMember};
+use crate::stroke::ActuatorStroke;
 
 /// Least and greatest hydraulic stiffness over the stroke. Units: N/m, m.
 ///
@@ -37,10 +38,10 @@ impl ChamberCompliance<f64> {
     /// The big side is the softer: an asymmetric cylinder is softest on the rod's side of mid
     /// stroke.
     /// ```
-    /// use phea_hydraulics::stiffness::ChamberCompliance;
+    /// use phea_hydraulics::{stiffness::ChamberCompliance, stroke::ActuatorStroke};
     /// let steel = 1.0 / 1.45e9;
     /// let range = ChamberCompliance {
-    ///     area_a: 2e-3, area_b: 1.5e-3, stroke: 0.5,
+    ///     area_a: 2e-3, area_b: 1.5e-3, stroke: ActuatorStroke::Limited(0.5),
     ///     constant_a: 1e-5 * steel, slope_a: 2e-3 * steel, constant_b: 1e-5 * steel, slope_b: 1.5e-3 * steel,
     /// }.over_stroke();
     /// assert!(range.minimum_position > 0.25 && range.minimum_position < 0.5);
@@ -48,11 +49,20 @@ impl ChamberCompliance<f64> {
     pub fn over_stroke(&self) -> StrokeStiffness {
         let (weight_a, weight_b) = (self.area_a * self.slope_a.sqrt(), self.area_b * self.slope_b.sqrt());
         let [start_a, start_b] = compliance_at(self, 0.0);
+        let ActuatorStroke::Limited(stroke) = self.stroke else {
+            let everywhere = hydraulic_stiffness(self, 0.0);
+            return StrokeStiffness {
+                minimum: everywhere,
+                minimum_position: 0.0,
+                maximum: everywhere,
+                maximum_position: 0.0,
+            };
+        };
         let root =
             (weight_a * start_b - weight_b * start_a) / (weight_a * self.slope_b + weight_b * self.slope_a);
-        let minimum_position = if root.is_finite() { root.max(0.0).min(self.stroke) } else { 0.0 };
-        let (start, end) = (hydraulic_stiffness(self, 0.0), hydraulic_stiffness(self, self.stroke));
-        let (maximum, maximum_position) = if start >= end { (start, 0.0) } else { (end, self.stroke) };
+        let minimum_position = if root.is_finite() { root.max(0.0).min(stroke) } else { 0.0 };
+        let (start, end) = (hydraulic_stiffness(self, 0.0), hydraulic_stiffness(self, stroke));
+        let (maximum, maximum_position) = if start >= end { (start, 0.0) } else { (end, stroke) };
         StrokeStiffness {
             minimum: hydraulic_stiffness(self, minimum_position),
             minimum_position,
@@ -89,9 +99,9 @@ pub struct ModelDifference {
 /// # Example
 /// For 1.5 m of the thesis' hose the thesis' model is less than half as stiff as the truth.
 /// ```
-/// # use phea_hydraulics::{cylinder::*, line::*, stiffness::*};
-/// # let cylinder = Cylinder { area_a: 1.58336e-3, area_b: 1.58336e-3, stroke: 0.5, moving_mass: 13.1,
-/// #     dead_volume_a: 0.0, dead_volume_b: 0.0, internal_leakage: None, end_stops: None };
+/// # use phea_hydraulics::{cylinder::*, line::*, stiffness::*, stroke::ActuatorStroke};
+/// # let cylinder = Cylinder { area_a: 1.58336e-3, area_b: 1.58336e-3, stroke: ActuatorStroke::Limited(0.5), moving_mass: 13.1,
+/// #     dead_volume_a: 0.0, dead_volume_b: 0.0, internal_leakage: None, external_leakage: None, end_stops: None };
 /// # let dynamic_stiffening = Stiffening::certain(5.0);
 /// # let hose = Hose { bore: 12.7e-3, volumetric_expansion: 1.56e-5, operating_expansion: 7.774e-6,
 /// #     expansion_slope: 2.236e-12, dynamic_stiffening };

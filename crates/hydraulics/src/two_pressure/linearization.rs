@@ -52,7 +52,8 @@ pub fn two_pressure_linear_parameters<S: Scalar>(
             pressure_a,
             pressure_b,
             direction,
-        ),
+        )
+        .leaking(model.external_leakage),
         moving_mass: model.moving_mass,
         viscous_friction: model.viscous_friction,
         sensor_stiffness: model.sensor_stiffness,

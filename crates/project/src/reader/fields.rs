@@ -11,9 +11,14 @@ use crate::text::RawFinding;
 use crate::toml_text::in_toml;
 use crate::tree::{TreeNode, Value};
 use crate::visitor::{FormulaShape, Kinds, NamedNumber, ValueForm, Variants, Visitor};
+use phea_quantity::MotionKind;
 use phea_quantity::spelling::nearest;
 
 impl Visitor for Reader<'_> {
+    fn moves(&mut self, motion: Option<MotionKind>) {
+        self.motion = motion.unwrap_or_default();
+    }
+
     fn quantity(&mut self, key: Key, field: &mut f64) {
         if let Some(hit) = self.find(key) {
             let origin = self.origin(key, hit);

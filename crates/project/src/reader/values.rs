@@ -12,6 +12,7 @@ use phea_quantity::spelling::nearest;
 impl Reader<'_> {
     /// The SI value of a number or a quantity in text, within the key's range.
     pub(super) fn number(&mut self, key: Key, node: &TreeNode) -> Option<f64> {
+        let key = key.in_motion(self.motion);
         let value = match &node.value {
             Value::Number(value) => *value,
             Value::Text(text) => match quantity::parse(text, key.dimension) {
@@ -115,6 +116,7 @@ impl Reader<'_> {
 
     /// Whether a text is meant as a formula rather than as a number with a unit.
     pub(super) fn reads_as_formula(&self, key: Key, text: &str) -> bool {
+        let key = key.in_motion(self.motion);
         if quantity::parse(text, key.dimension).is_ok() {
             return false;
         }

@@ -10,6 +10,7 @@ use crate::key::Key;
 use crate::listing::{Listing, keys_of};
 use crate::visitor::{FormulaShape, Kinds, NamedNumber, ValueForm, Variants, Visitor};
 use crate::{HoseProperties, Valve};
+use phea_quantity::MotionKind;
 
 /// Puts the schema together, table by table.
 #[derive(Default)]
@@ -20,6 +21,8 @@ pub(super) struct SchemaWriter {
     form: Option<ValueForm>,
     /// Whether the present table has such a value.
     has_forms: bool,
+    /// How the rig moves, where the keys that are described belong to one motion.
+    motion: Option<MotionKind>,
 }
 
 const FORMS: [ValueForm; 3] = [ValueForm::Number, ValueForm::Text, ValueForm::Table];
@@ -52,6 +55,19 @@ impl SchemaWriter {
 
     pub(super) fn rule(&mut self, rule: Value) {
         self.present(|table| table.rule(rule));
+    }
+
+    /// The key of a number in the motion that it belongs to, and the form of a motor beside that of a
+    /// cylinder where it is of either.
+    fn numbered(&mut self, key: Key, required: bool, schema: impl Fn(Key) -> Value) {
+        let forms = match self.motion {
+            Some(motion) => vec![key.in_motion(motion)],
+            None if key.of_motion => vec![key, key.in_motion(MotionKind::Rotary)],
+            None => vec![key],
+        };
+        for form in forms {
+            self.property(form, described(form, schema(form)), required);
+        }
     }
 
     /// A key whose value is described in full by `schema`.
@@ -92,20 +108,24 @@ impl Visitor for SchemaWriter {
         true
     }
 
+    fn moves(&mut self, motion: Option<MotionKind>) {
+        self.motion = motion;
+    }
+
     fn quantity(&mut self, key: Key, _field: &mut f64) {
-        self.property(key, described(key, number(key)), key.default.is_none());
+        self.numbered(key, key.default.is_none(), number);
     }
 
     fn optional(&mut self, key: Key, _field: &mut Option<f64>) {
-        self.property(key, described(key, number(key)), false);
+        self.numbered(key, false, number);
     }
 
     fn pair(&mut self, key: Key, _field: &mut Option<[f64; 2]>) {
-        self.property(key, described(key, list_of_two(&number(key))), false);
+        self.numbered(key, false, |key| list_of_two(&number(key)));
     }
 
     fn quantities(&mut self, key: Key, _field: &mut Vec<f64>, required: bool) {
-        self.property(key, described(key, list(&number(key))), required);
+        self.numbered(key, required, |key| list(&number(key)));
     }
 
     fn complexes(&mut self, key: Key, _field: &mut Vec<[f64; 2]>) {

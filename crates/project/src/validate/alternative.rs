@@ -1,22 +1,36 @@
-//! The names of alternatives, and what they may set.
+//! The names of alternatives and of load cases.
 
 use super::Check;
-use crate::{AS_DECLARED, Alternative};
+use crate::{AS_DECLARED, Alternative, LoadCase};
 
 /// Names must differ, as names of files do: without regard to capitals.
 pub(super) fn alternatives(alternatives: &[Alternative], check: &mut Check<'_, '_>) {
-    for (index, one) in alternatives.iter().enumerate() {
-        let path = format!("alternative[{index}].name");
-        let is_same = |other: &&Alternative| other.name.eq_ignore_ascii_case(&one.name);
+    let names: Vec<&str> = alternatives.iter().map(|one| one.name.as_str()).collect();
+    names_differ(&names, ("alternative", "an alternative"), check);
+    for (index, name) in names.into_iter().enumerate() {
+        if name.eq_ignore_ascii_case(AS_DECLARED) {
+            let message = format!("`{AS_DECLARED}` is the name of the project itself");
+            check.error(&format!("alternative[{index}].name"), message);
+        }
+    }
+}
+
+/// Likewise.
+pub(super) fn load_cases(load_cases: &[LoadCase], check: &mut Check<'_, '_>) {
+    let names: Vec<&str> = load_cases.iter().map(|one| one.name.as_str()).collect();
+    names_differ(&names, ("load_case", "a load case"), check);
+}
+
+fn names_differ(names: &[&str], (table, words): (&str, &str), check: &mut Check<'_, '_>) {
+    for (index, name) in names.iter().enumerate() {
+        let path = format!("{table}[{index}].name");
         if !check.declared(&path) || check.refused(&path) {
             continue;
         }
-        if one.name.trim().is_empty() {
-            check.error(&path, "an alternative needs a name");
-        } else if one.name.eq_ignore_ascii_case(AS_DECLARED) {
-            check.error(&path, format!("`{AS_DECLARED}` is the name of the project itself"));
-        } else if let Some(first) = alternatives.iter().take(index).find(is_same) {
-            let message = format!("there already is an alternative `{}`", first.name);
+        if name.trim().is_empty() {
+            check.error(&path, format!("{words} needs a name"));
+        } else if let Some(first) = names.iter().take(index).find(|other| other.eq_ignore_ascii_case(name)) {
+            let message = format!("there already is {words} `{first}`");
             check.error_with_help(&path, message, "give each a name of its own");
         }
     }

@@ -44,6 +44,8 @@ fn orifice_within_port(orifice: &DeclaredOrifice, actuator: &DeclaredActuator, c
     let bores = [&actuator.line.a, &actuator.line.b].into_iter().filter_map(bore);
     let (port, what) = match bores.reduce(f64::min) {
         Some(bore) => (bore, "the bore of the line"),
+        // nothing is known of the ports of a motor
+        None if actuator.motor.is_some() => return,
         None => (actuator.cylinder.piston_diameter_m(), "the piston"),
     };
     if !(port > 0.0 && diameter >= port) {

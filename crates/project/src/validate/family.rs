@@ -95,8 +95,7 @@ fn operating_region(project: &Project, region: &OperatingRegion, check: &mut Che
             check.error_with_help(&key, message, "list one of the two");
         }
     }
-    let stroke = actuator.cylinder.stroke;
-    if region.position.is_some_and(|[_, high]| high > stroke && stroke > 0.0) {
+    if region.position.is_some_and(|[_, high]| actuator.is_beyond(high)) {
         check.error(&format!("{path}.position"), "`position` goes beyond the stroke");
     }
 }

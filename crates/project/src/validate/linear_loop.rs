@@ -11,7 +11,7 @@ const MAXIMUM_ORDER: usize = 50;
 
 pub(super) fn controllers(project: &Project, check: &mut Check<'_, '_>) {
     if let Some(controller) = &project.controller {
-        let timing = ["sample_time", "delay", "discretization", "saturation", "anti_windup"];
+        let timing = ["sample_time", "delay", "discretization", "saturation", "anti_windup", "impedance"];
         let only_timing = timing.iter().any(|name| check.declared(&format!("controller.{name}")));
         transfer(&controller.transfer, "controller", controller.sample_time, only_timing, check);
         if controller.anti_windup != DeclaredAntiWindup::None && controller.saturation.is_none() {
@@ -122,7 +122,7 @@ pub(super) fn sensor(project: &Project, check: &mut Check<'_, '_>) {
     }
 }
 
-fn is_discrete(transfer: &Transfer) -> bool {
+pub(super) fn is_discrete(transfer: &Transfer) -> bool {
     transfer.ratio.is_sampled()
         || transfer.elements.iter().any(|element| element.enabled && element.is_sampled())
 }

@@ -6,7 +6,7 @@ use crate::listing::Listing;
 use phea_quantity::display;
 
 /// Usual ranges in SI: path, least, greatest, and the part.
-const USUAL: [(&str, f64, f64, &str); 19] = [
+const USUAL: [(&str, f64, f64, &str); 22] = [
     ("fluid.bulk_modulus", 1e9, 2.5e9, "fluids of hydraulics"),
     ("fluid.density", 700.0, 1300.0, "fluids of hydraulics"),
     ("fluid.kinematic_viscosity", 5e-6, 5e-4, "fluids of hydraulics"),
@@ -20,6 +20,9 @@ const USUAL: [(&str, f64, f64, &str); 19] = [
     ("cylinder.piston_area", 5e-5, 0.2, "pistons"),
     ("cylinder.stroke", 0.01, 6.0, "cylinders"),
     ("cylinder.moving_mass", 0.1, 1e4, "pistons with what is fixed to them"),
+    ("motor.displacement", 1e-7, 1e-3, "motors"),
+    ("motor.inertia", 1e-4, 10.0, "shafts with what is fixed to them"),
+    ("motor.stroke", 0.5, 6.3, "vane actuators"),
     ("line.length", 0.05, 30.0, "lines"),
     ("line.bore", 0.003, 0.08, "hoses"),
     ("line.volume", 1e-6, 0.05, "lines"),
@@ -41,6 +44,9 @@ pub(super) fn numbers(project: &Project, check: &mut Check<'_, '_>) {
     for (path, (key, value)) in &listing.numbers {
         let of_both = ["line.a.", "line.b."].iter().find_map(|side| path.strip_prefix(side));
         let plain = of_both.map_or_else(|| path.clone(), |rest| format!("line.{rest}"));
+        if path == "force_sensor.stiffness" && project.motion().is_rotary() {
+            continue;
+        }
         let usual = USUAL.iter().find(|(name, ..)| *name == plain);
         let Some((_, least, most, of)) = usual.filter(|_| *value != 0.0 && check.declared(path)) else {
             continue;

@@ -6,7 +6,7 @@ use crate::{
     DeclaredLine, DeclaredLines, DeclaredSupply, FrictionLaw, NullLeakage, Pump, StribeckCurve, SupplyModel,
     Valve,
 };
-use phea_quantity::{self as quantity, PRESSURE};
+use phea_quantity::{self as quantity, DAMPING, PRESSURE};
 
 /// Pa, between absolute and gauge pressures.
 const ATMOSPHERE: f64 = 101_325.0;
@@ -14,7 +14,12 @@ const ATMOSPHERE: f64 = 101_325.0;
 pub(super) fn actuator(actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
     supply(actuator, check);
     valve(&actuator.valve, &actuator.supply, check);
-    cylinder(&actuator.cylinder, check);
+    if actuator.motor.is_none() {
+        cylinder(&actuator.cylinder, check);
+    }
+    if let Some(law) = actuator.friction() {
+        friction(law, actuator.moving_part(), check);
+    }
     lines(actuator, &actuator.line, check);
     cross_port::cross_port(actuator, check);
 }
@@ -107,9 +112,6 @@ fn cylinder(cylinder: &DeclaredCylinder, check: &mut Check<'_, '_>) {
             if cylinder.rod_diameters.is_some() { "cylinder.rod_diameters" } else { "cylinder.rod_diameter" };
         check.error(at, "the rod is as thick as the piston or thicker: no area is left for the oil");
     }
-    if let Some(law) = &cylinder.friction {
-        friction(law, check);
-    }
 }
 
 /// A single area suffices only for a rod through both chambers.
@@ -121,26 +123,28 @@ fn piston(cylinder: &DeclaredCylinder, check: &mut Check<'_, '_>) {
     }
 }
 
-fn friction(friction: &DeclaredFriction, check: &mut Check<'_, '_>) {
+fn friction(friction: &DeclaredFriction, part: &str, check: &mut Check<'_, '_>) {
+    let at = |key: &str| format!("{part}.friction.{key}");
     let (FrictionLaw::Stribeck { curve, .. } | FrictionLaw::LuGre { curve, .. }) = &friction.law else {
         return;
     };
     let StribeckCurve { coulomb, static_friction: breakaway, .. } = *curve;
-    if !check.declared("cylinder.friction.static") || !check.declared("cylinder.friction.coulomb") {
+    if !check.declared(&at("static")) || !check.declared(&at("coulomb")) {
         return;
     }
     if breakaway < coulomb {
-        check.error("cylinder.friction.static", "`static` friction is below `coulomb` friction");
+        check.error(&at("static"), "`static` friction is below `coulomb` friction");
         return;
     }
     let FrictionLaw::LuGre { bristle_damping, .. } = friction.law else { return };
     let least = bristle_damping * (breakaway - coulomb) / coulomb;
     if friction.viscous < least {
+        let unit = check.motion().dimension(&DAMPING).si;
         let message = format!(
-            "this LuGre friction can give out energy: it is passive for `viscous` of at least {least} N.s/m \
+            "this LuGre friction can give out energy: it is passive for `viscous` of at least {least} {unit} \
              (bristle_damping (static - coulomb)/coulomb; Barabanov and Ortega, 2000)"
         );
-        check.warning("cylinder.friction.viscous", message);
+        check.warning(&at("viscous"), message);
     }
 }
 

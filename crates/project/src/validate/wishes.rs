@@ -65,8 +65,7 @@ fn operating_point(project: &Project, actuator: &DeclaredActuator, check: &mut C
         let message = "both `load_pressure` and `load_force`: one says it all";
         check.error("operating_point.load_pressure", message);
     }
-    let stroke = actuator.cylinder.stroke;
-    if point.position.is_some_and(|position| position > stroke && stroke > 0.0) {
+    if point.position.is_some_and(|position| actuator.is_beyond(position)) {
         check.error("operating_point.position", "`position` is beyond the stroke");
     }
     let available = actuator.supply.pressure - actuator.supply.tank_pressure;
@@ -98,7 +97,6 @@ fn rows(scenarios: &[Scenario], check: &mut Check<'_, '_>) {
 }
 
 fn one_scenario(scenario: &Scenario, actuator: &DeclaredActuator, path: &str, check: &mut Check<'_, '_>) {
-    let stroke = actuator.cylinder.stroke;
     if scenario.output_step > scenario.duration && scenario.duration > 0.0 {
         check.error(&format!("{path}.output_step"), "`output_step` is longer than `duration`");
     }
@@ -110,7 +108,7 @@ fn one_scenario(scenario: &Scenario, actuator: &DeclaredActuator, path: &str, ch
         }
     }
     let position = scenario.start.as_ref().and_then(|start| start.position);
-    if position.is_some_and(|position| position > stroke && stroke > 0.0) {
+    if position.is_some_and(|position| actuator.is_beyond(position)) {
         check.error(&format!("{path}.start.position"), "`position` is beyond the stroke");
     }
     signals(&scenario.reference, SignalUnit::REFERENCE, [path, "reference"], scenario.duration, check);

@@ -1,9 +1,9 @@
 //! The JSON object of `alternatives`.
 
 use super::document::told_first;
-use super::findings::findings;
+use super::findings::{findings, of_case};
 use super::front;
-use super::{AlternativeColumn, Alternatives, ColumnPart, JudgedAlternative, MovedRange};
+use super::{AlternativeColumn, Alternatives, ColumnPart, JudgedAlternative, JudgedCase, MovedRange};
 use crate::answer::{self, Json, Object};
 use crate::audit::verdict_key;
 use crate::design;
@@ -18,8 +18,19 @@ pub(crate) fn json(loaded: &Loaded, found: &Alternatives) -> String {
         .with("not_reached", found.not_reached.as_slice())
         .with("warnings", told_first(found))
         .with("findings", findings(found))
+        .each("load_cases", &found.cases, case)
         .maybe("front", found.front.as_ref().map(front::json));
     answer::json("alternatives", loaded, body)
+}
+
+/// The same under a load case.
+fn case(one: &JudgedCase) -> Object {
+    Object::new()
+        .with("name", one.name.as_str())
+        .with("settings", one.settings.as_slice())
+        .each("alternatives", &one.judged, row)
+        .with("not_reached", one.not_reached.as_slice())
+        .with("findings", of_case(one))
 }
 
 fn row(one: &JudgedAlternative) -> Object {

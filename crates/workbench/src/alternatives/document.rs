@@ -1,12 +1,12 @@
-//! Alternatives for people: one table, then what follows from it.
+//! Alternatives for people: a summary, what follows from it, then the table of all numbers.
 
 use super::findings::findings;
 use super::front;
+use super::summary::{self, machine};
 use super::{AlternativeColumn, AlternativeColumns, Alternatives, ColumnPart, JudgedAlternative};
 use crate::document::{Cell, Document, Table};
 use crate::linearize::PortView;
 use crate::quantity::{DisplayUnit, significant};
-use crate::trial::agreement_word;
 use phea_qft::verification::Verdict;
 
 /// The table and the findings.
@@ -18,7 +18,7 @@ pub(crate) fn text(found: &Alternatives) -> String {
 /// The same as a document; its figures follow.
 pub(crate) fn document(found: &Alternatives) -> Document {
     let mut out = Document::default();
-    out.table(table(found));
+    out.table(summary::table(found));
     out.heading_on_page("Findings");
     out.sentences(findings(found));
     if let Some(front) = &found.front {
@@ -26,13 +26,21 @@ pub(crate) fn document(found: &Alternatives) -> Document {
         out.table(front::table(front));
         out.sentences(front::findings(front));
     }
+    out.heading_on_page("All numbers");
+    out.table(table(found));
     out
 }
 
 /// The rigs that their families do not contain, and what to do.
 pub(crate) fn told_first(found: &Alternatives) -> Vec<String> {
-    let outside = found.judged.iter().filter_map(|one| Some(outside_words(&one.name, one.outside.as_ref()?)));
-    outside.collect()
+    let all = summary::groups(found).into_iter().flat_map(|(_, judged)| judged);
+    let mut told: Vec<String> = Vec::new();
+    for sentence in all.filter_map(|one| Some(outside_words(&one.name, one.outside.as_ref()?))) {
+        if !told.contains(&sentence) {
+            told.push(sentence);
+        }
+    }
+    told
 }
 
 /// A sentence on ranges that do not follow a rig.
@@ -47,18 +55,24 @@ fn table(found: &Alternatives) -> Table {
     let names = found.judged.iter().map(|one| one.name.clone());
     let mut rows = Table::grouped_by("", std::iter::once(String::new()).chain(names));
     let all: Vec<AlternativeColumns> = found.judged.iter().map(JudgedAlternative::columns).collect();
+    let has_rig = found.judged.iter().any(|one| one.linearization.is_ok());
     for part in parts(&all) {
+        let keys = keys(&all, &part);
+        let always = part == ColumnPart::Loop || (part == ColumnPart::Rig && has_rig);
+        if keys.is_empty() && !always {
+            continue;
+        }
         rows.group(group(&part));
         if part == ColumnPart::Loop {
             rows.row(words("feasible", found, feasible));
             rows.row(words("stable with its load", found, stable));
             rows.row(words("on the machine", found, machine));
         }
-        for (key, name) in keys(&all, &part) {
+        for (key, name) in keys {
             let cells = all.iter().map(|columns| cell(columns, &part, key));
             rows.row(std::iter::once(Cell::from(name)).chain(cells));
         }
-        if part == ColumnPart::Rig {
+        if part == ColumnPart::Rig && has_rig {
             rows.row(words("passive, open loop", found, |one| port(one, false)));
             rows.row(words("passive, closed loop", found, |one| port(one, true)));
         }
@@ -87,11 +101,6 @@ fn stable(one: &JudgedAlternative) -> Cell {
         Some(Verdict::NotProven) => "not proven".into(),
         None => Cell::Missing,
     }
-}
-
-fn machine(one: &JudgedAlternative) -> Cell {
-    let trial = one.design.as_ref().ok().and_then(|view| view.trial.as_ref());
-    trial.map(|trial| Cell::from(agreement_word(trial.agreement())).marked(trial.agreement())).into()
 }
 
 /// Whether the impedance at the load is passive, or in how many bands it is not.

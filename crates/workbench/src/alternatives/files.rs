@@ -5,6 +5,7 @@ use phea_engineering::simulate::file_names;
 
 use super::document::{at, parts};
 use super::front;
+use super::summary::groups;
 use super::{AlternativeColumns, Alternatives, ColumnPart, JudgedAlternative};
 use crate::answer::{Csv, OutputFile, picture_files, quoted};
 use crate::figure::{Figure, FigureError, FrequencySeries, ImpedanceInput, Words, impedance};
@@ -17,11 +18,21 @@ use crate::simulate::{ScenarioRun, laid_over};
 /// # Errors
 /// A figure that the rasteriser rejects.
 pub(crate) fn files(found: &Alternatives) -> Result<Vec<OutputFile>, FigureError> {
-    let mut files = vec![table(found)];
-    let names = file_names(found.judged.iter().map(|one| one.name.as_str()));
-    for (one, name) in found.judged.iter().zip(names) {
+    let mut files = vec![table("alternatives.csv", &[("", &found.judged)])];
+    if !found.cases.is_empty() {
+        files.push(table("load_cases.csv", &groups(found)));
+    }
+    let all = groups(found).into_iter().enumerate().flat_map(|(place, (case, judged))| {
+        judged.iter().map(move |one| match place {
+            0 => (one.name.clone(), one),
+            _ => (format!("{}, {case}", one.name), one),
+        })
+    });
+    let all: Vec<(String, &JudgedAlternative)> = all.collect();
+    let names = file_names(all.iter().map(|(name, _)| name.as_str()));
+    for ((_, one), name) in all.iter().zip(names) {
         if let Ok(deployed) = &one.deployed {
-            let mut project = Project { alternatives: vec![], ..deployed.clone() };
+            let mut project = Project { alternatives: vec![], load_cases: vec![], ..deployed.clone() };
             // what the recordings gave stands in it as numbers: they need not lie beside it
             if let Some(identify) = &mut project.identify {
                 identify.takes = IdentifiedUse::Nothing;
@@ -36,18 +47,24 @@ pub(crate) fn files(found: &Alternatives) -> Result<Vec<OutputFile>, FigureError
 
 /// The forces laid over each other, and the front.
 pub(crate) fn figures(found: &Alternatives) -> Vec<Figure> {
-    let driven = |one: &JudgedAlternative| Some((one.name.clone(), one.runs.as_ref().ok()?.first()?.clone()));
-    let (names, runs): (Vec<String>, Vec<ScenarioRun>) = found.judged.iter().filter_map(driven).unzip();
-    let laid_over = runs.first().map(|first| {
-        let words = Words::new(
-            "alternatives",
-            first.name.clone(),
-            "Force, command and load pressure of each alternative under the controller designed for it.",
-        );
-        laid_over(words, &names, &runs.iter().collect::<Vec<_>>())
+    let cases = file_names(found.cases.iter().map(|case| case.name.as_str()));
+    let of_cases = found.cases.iter().zip(cases).flat_map(|(case, name)| {
+        forces(&format!("alternatives-{name}"), &format!(", {}", case.name), &case.judged)
     });
+    let forces = forces("alternatives", "", &found.judged).into_iter().chain(of_cases);
     let front = found.front.as_ref().and_then(front::figure);
-    laid_over.into_iter().chain(impedances(found)).chain(front).collect()
+    forces.chain(impedances(found)).chain(front).collect()
+}
+
+/// The forces of the first scenario: the whole, and each of its events enlarged.
+fn forces(file: &str, case: &str, judged: &[JudgedAlternative]) -> Vec<Figure> {
+    let driven = |one: &JudgedAlternative| Some((one.name.clone(), one.runs.as_ref().ok()?.first()?.clone()));
+    let (names, runs): (Vec<String>, Vec<ScenarioRun>) = judged.iter().filter_map(driven).unzip();
+    let Some(first) = runs.first() else { return vec![] };
+    let caption =
+        "Force, command and load pressure of each alternative under the controller designed for it.";
+    let title = format!("{}{case}", first.name);
+    laid_over((file, &title, caption), &names, &runs.iter().collect::<Vec<_>>())
 }
 
 /// The impedance at the load of each alternative, under its controller where that is continuous.
@@ -72,9 +89,11 @@ fn impedances(found: &Alternatives) -> Option<Figure> {
     (!input.series.is_empty()).then(|| impedance(words, &input))
 }
 
-/// A row for each alternative, in SI; a value that does not exist is empty.
-fn table(found: &Alternatives) -> OutputFile {
-    let all: Vec<AlternativeColumns> = found.judged.iter().map(JudgedAlternative::columns).collect();
+/// A row for each alternative, in SI, behind the name of its load case where there are several; a value
+/// that does not exist is empty.
+fn table(file: &str, groups: &[(&str, &[JudgedAlternative])]) -> OutputFile {
+    let all: Vec<AlternativeColumns> =
+        groups.iter().flat_map(|(_, judged)| judged.iter().map(JudgedAlternative::columns)).collect();
     let mut named: Vec<(ColumnPart, &str)> = Vec::new();
     for part in parts(&all) {
         for (own, column) in all.iter().flat_map(|columns| &columns.0) {
@@ -85,17 +104,22 @@ fn table(found: &Alternatives) -> OutputFile {
         }
     }
     let headings: Vec<String> = named.iter().map(|(part, key)| heading(part, key)).collect();
-    let mut csv = Csv::new(&format!("name,feasible,{}", headings.join(",")));
-    for (one, columns) in found.judged.iter().zip(&all) {
+    let case = if groups.len() > 1 { "load_case," } else { "" };
+    let mut csv = Csv::new(&format!("{case}name,feasible,{}", headings.join(",")));
+    let rows = groups.iter().flat_map(|(case, judged)| judged.iter().map(move |one| (*case, one)));
+    for ((case, one), columns) in rows.zip(&all) {
         let feasible = one.feasible().map_or(String::new(), |feasible| feasible.to_string());
         let value = |(part, key): &(ColumnPart, &str)| {
             let value = at(columns, part, key).and_then(|column| column.value.clone().ok());
             value.map_or(String::new(), |value| value.to_string())
         };
         let values = named.iter().map(value).collect::<Vec<_>>().join(",");
-        csv.row(&[&quoted(&one.name), &feasible, &values]);
+        match groups.len() {
+            1 => csv.row(&[&quoted(&one.name), &feasible, &values]),
+            _ => csv.row(&[&quoted(case), &quoted(&one.name), &feasible, &values]),
+        }
     }
-    csv.file("alternatives.csv")
+    csv.file(file)
 }
 
 fn heading(part: &ColumnPart, key: &str) -> String {

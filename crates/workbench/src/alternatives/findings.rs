@@ -1,35 +1,100 @@
-//! What follows from the columns, in sentences.
+//! What follows from the columns, in sentences that are read in a minute: what is met, what the
+//! machine contradicts, what is best, who dominates whom, and what each costs.
 
-use super::{Alternatives, ComparedMeasures, JudgedAlternative, MEASURES, MovedRange};
+use phea_qft::design::ControllerChoice;
+use phea_qft::design::DesignStatus;
+
+use super::{Alternatives, COLUMN_SENSES, ColumnSense, ComparedMeasures, JudgedAlternative, JudgedCase};
+use super::{MEASURES, MovedRange};
 use crate::design::status_sentence;
-use crate::project::AS_DECLARED;
-use crate::quantity::{DisplayUnit, significant};
+use crate::project::{AS_DECLARED, LINEAR_PARAMETERS};
+use crate::quantity::{DisplayUnit, fitting, significant};
 use crate::trial::Agreement;
 
-/// Feasibility of each, dominance, costs against the project as declared, and what was not reached.
+/// Of the declared load, and then of each load case.
 pub(crate) fn findings(found: &Alternatives) -> Vec<String> {
-    let mut sentences: Vec<String> = found.judged.iter().map(status).collect();
-    sentences.extend(shared(found.judged.iter().flat_map(lacking)));
-    let comparable = |one: &&JudgedAlternative| one.is_comparable();
-    let measured = |one: &JudgedAlternative| Some((one.name.clone(), ComparedMeasures::of(&one.columns())?));
-    sentences
-        .extend(dominance(&found.judged.iter().filter(comparable).filter_map(measured).collect::<Vec<_>>()));
-    let all: Vec<_> = found.judged.iter().filter_map(measured).collect();
-    sentences.extend(costs(&all));
-    let not_reached = found.not_reached.iter().map(|name| format!("{name}: not reached"));
-    sentences.extend(not_reached);
+    let mut sentences = of_judged(&found.judged);
+    sentences.extend(ranges(&found.judged));
+    let measured: Vec<_> = found.judged.iter().filter_map(measured).collect();
+    sentences.extend(costs(&measured));
+    sentences.extend(found.not_reached.iter().map(|name| format!("{name}: not reached")));
+    for case in &found.cases {
+        sentences.extend(of_case(case).into_iter().map(|sentence| format!("{}: {sentence}", case.name)));
+    }
     sentences
 }
 
-fn status(one: &JudgedAlternative) -> String {
-    match &one.design {
-        Ok(view) => format!("{}: {}", one.name, status_sentence(view)),
-        Err(reason) => format!("{}: not judged: {reason}", one.name),
+/// Of a load case.
+pub(super) fn of_case(case: &JudgedCase) -> Vec<String> {
+    let not_reached = case.not_reached.iter().map(|name| format!("{name}: not reached"));
+    of_judged(&case.judged).into_iter().chain(not_reached).collect()
+}
+
+fn of_judged(judged: &[JudgedAlternative]) -> Vec<String> {
+    let mut sentences = specifications(judged);
+    sentences.extend(shared(judged, judged.iter().flat_map(lacking)));
+    let comparable: Vec<_> = judged.iter().filter(|one| one.is_comparable()).filter_map(measured).collect();
+    sentences.extend(best(&comparable));
+    sentences.extend(dominance(&comparable));
+    sentences
+}
+
+type NamedMeasures = (String, ComparedMeasures);
+
+fn measured(one: &JudgedAlternative) -> Option<NamedMeasures> {
+    Some((one.name.clone(), ComparedMeasures::of(&one.columns())?))
+}
+
+/// Who meets every specification, who misses them by how much, and what else became of a design.
+fn specifications(judged: &[JudgedAlternative]) -> Vec<String> {
+    let named = |which: &dyn Fn(&JudgedAlternative) -> Option<String>| {
+        judged.iter().filter_map(which).collect::<Vec<_>>()
+    };
+    let met = named(&|one| (one.feasible() == Ok(true)).then(|| one.name.clone()));
+    let missed = named(&|one| {
+        let status = &one.design.as_ref().ok()?.design.status;
+        let DesignStatus::Infeasible(relaxation) = status else { return None };
+        Some(format!("{} ({} dB)", one.name, significant(relaxation.relaxation_db, 2)))
+    });
+    let mut sentences = vec![];
+    match (met.as_slice(), judged.len()) {
+        ([], _) => {}
+        (met, all) if met.len() == all => sentences.push("all satisfy every specification".to_string()),
+        (met, _) => sentences.push(format!("every specification is satisfied by: {}", met.join(", "))),
+    }
+    if !missed.is_empty() {
+        sentences.push(format!(
+            "no controller tried{} does, unless every limit is wider by what stands in brackets: {}",
+            tried(judged),
+            missed.join(", ")
+        ));
+    }
+    let otherwise = named(&|one| match &one.design {
+        Err(reason) => Some(format!("{}: not judged: {reason}", one.name)),
+        Ok(view) if matches!(view.design.status, DesignStatus::Infeasible(_)) => None,
+        Ok(_) if one.feasible() == Ok(true) => None,
+        Ok(view) => Some(format!("{}: {}", one.name, status_sentence(view))),
+    });
+    sentences.extend(otherwise);
+    sentences
+}
+
+/// The greatest order, where the orders were free and the same for all.
+fn tried(judged: &[JudgedAlternative]) -> String {
+    let orders = judged.iter().filter_map(|one| match one.design.as_ref().ok()?.options.controller {
+        ControllerChoice::Grow { maximum_order } => Some(maximum_order),
+        ControllerChoice::Given(_) => None,
+    });
+    let orders: Vec<usize> = orders.collect();
+    match orders.first() {
+        Some(first) if orders.iter().all(|order| order == first) => format!(" of order {first} at most"),
+        _ => String::new(),
     }
 }
 
-/// Each sentence once, behind the names of all that it holds for.
-fn shared<'a>(told: impl Iterator<Item = (&'a str, String)>) -> Vec<String> {
+/// Each sentence once, behind the names of all that it holds for; of most of them, of those that it does
+/// not hold for.
+fn shared<'a>(judged: &'a [JudgedAlternative], told: impl Iterator<Item = (&'a str, String)>) -> Vec<String> {
     let mut sentences: Vec<(Vec<&str>, String)> = Vec::new();
     for (name, sentence) in told {
         match sentences.iter_mut().find(|(_, known)| *known == sentence) {
@@ -37,7 +102,18 @@ fn shared<'a>(told: impl Iterator<Item = (&'a str, String)>) -> Vec<String> {
             None => sentences.push((vec![name], sentence)),
         }
     }
-    sentences.into_iter().map(|(names, sentence)| format!("{}: {sentence}", names.join(", "))).collect()
+    let others = |names: &[&str]| {
+        let others = judged.iter().map(|one| one.name.as_str()).filter(|name| !names.contains(name));
+        others.collect::<Vec<_>>()
+    };
+    let words = |(names, sentence): (Vec<&str>, String)| match others(&names).as_slice() {
+        [] if names.len() > 1 => format!("all: {sentence}"),
+        others if names.len() > 3 * others.len() && names.len() > 3 => {
+            format!("all but {}: {sentence}", others.join(", "))
+        }
+        _ => format!("{}: {sentence}", names.join(", ")),
+    };
+    sentences.into_iter().map(words).collect()
 }
 
 /// What the machine contradicts, what the verdict leaves out, and why nothing was driven.
@@ -45,77 +121,117 @@ fn lacking(one: &JudgedAlternative) -> Vec<(&str, String)> {
     let view = one.design.as_ref().ok();
     let runs =
         view.and_then(|view| view.trial.as_ref()).map(|trial| trial.runs.as_slice()).unwrap_or_default();
-    let contradicts = runs.iter().filter(|run| run.agreement == Agreement::Contradicts);
-    let contradicts =
-        contradicts.map(|run| format!("the machine contradicts the verdict: {}: {}", run.what, run.reason));
+    let contradicts: Vec<_> = runs.iter().filter(|run| run.agreement == Agreement::Contradicts).collect();
+    let contradicts = contradicts.split_first().map(|(first, further)| {
+        // what could be done about it stands in the reason after the first sentence, and with `design`
+        let reason = first.reason.split(". ").next().unwrap_or_default();
+        let further = match further.len() {
+            0 => String::new(),
+            1 => ", and in another run".to_string(),
+            count => format!(", and in {count} further runs"),
+        };
+        format!("the machine contradicts the verdict: {}: {reason}{further}", first.what)
+    });
     let caveats = view.map(|view| view.designed.view.caveats.as_slice()).unwrap_or_default();
     let caveats = caveats.iter().map(|caveat| caveat.sentence.clone());
     let not_driven = one.runs.as_ref().err().filter(|_| view.is_some()).cloned();
-    let moved = one.moved.iter().map(moved_words);
     contradicts
+        .into_iter()
         .chain(caveats)
         .chain(not_driven)
-        .chain(moved)
         .map(|sentence| (one.name.as_str(), sentence))
         .collect()
 }
 
-fn moved_words(range: &MovedRange) -> String {
-    let number = |value: f64| significant(value, 4);
+/// The ranges that follow a rig, in one sentence.
+fn ranges(judged: &[JudgedAlternative]) -> Option<String> {
+    let each = judged.iter().flat_map(|one| one.moved.iter().map(|range| moved_words(&one.name, range)));
+    let each: Vec<String> = each.collect();
+    (!each.is_empty()).then(|| format!("ranges that follow the rig: {}", each.join("; ")))
+}
+
+fn moved_words(name: &str, range: &MovedRange) -> String {
     let [[_, least, greatest], [_, less, more]] = [range.stated, range.moved];
-    format!(
-        "the range of {} follows the rig: {} to {} in place of {} to {}",
-        range.name,
-        number(less),
-        number(more),
-        number(least),
-        number(greatest)
-    )
+    let known = LINEAR_PARAMETERS.iter().find(|parameter| parameter.key.name == range.name);
+    let unit = known.map_or(DisplayUnit::ONE, |known| match known.key.dimension.si {
+        "N/m" => DisplayUnit::MEGANEWTON_PER_METRE,
+        _ => fitting(more.abs(), known.key.dimension),
+    });
+    let number = |value: f64| unit.number(value, 3);
+    let moved = unit.with_symbol(format!("{} to {}", number(less), number(more)));
+    let stated = unit.with_symbol(format!("{} to {}", number(least), number(greatest)));
+    format!("{name}, {} {moved} in place of {stated}", range.name)
+}
+
+/// What is best in each measure, of those that may be compared.
+fn best(comparable: &[NamedMeasures]) -> Option<String> {
+    if comparable.len() < 2 {
+        return None;
+    }
+    let each = MEASURES.iter().enumerate().map(|(index, (key, words))| {
+        let is_more = COLUMN_SENSES.contains(&(key, ColumnSense::More));
+        let values = comparable.iter().map(|(_, measures)| measures.0[index]);
+        let best = values.reduce(if is_more { f64::max } else { f64::min }).unwrap_or_default();
+        let names = comparable.iter().filter(|(_, measures)| measures.0[index] == best);
+        let names: Vec<&str> = names.map(|(name, _)| name.as_str()).collect();
+        let most = if is_more { "most" } else { "least" };
+        format!("{most} {words} {} ({})", words_of(key, best), names.join(", "))
+    });
+    let each: Vec<String> = each.collect();
+    Some(format!(
+        "best of those that satisfy every specification and that the machine does not contradict: {}",
+        each.join("; ")
+    ))
 }
 
 /// Among those that satisfy every specification, on the machine too.
-fn dominance(feasible: &[(String, ComparedMeasures)]) -> Vec<String> {
-    if feasible.len() < 2 {
+fn dominance(comparable: &[NamedMeasures]) -> Vec<String> {
+    if comparable.len() < 2 {
         return vec![];
     }
-    let mut sentences = Vec::new();
-    for (name, measures) in feasible {
-        let dominated = feasible.iter().filter(|(_, other)| measures.dominates(other));
+    let each = comparable.iter().filter_map(|(name, measures)| {
+        let dominated = comparable.iter().filter(|(_, other)| measures.dominates(other));
         let dominated: Vec<&str> = dominated.map(|(other, _)| other.as_str()).collect();
-        if !dominated.is_empty() {
-            let others = dominated.join(", ");
-            sentences.push(format!(
-                "{name} dominates {others}: no worse in disturbance, control effort, order and delay tolerated, and better in one of them"
-            ));
-        }
-    }
-    if sentences.is_empty() {
-        sentences.push(
-            "of those that satisfy every specification and that the machine does not contradict none dominates another in disturbance, control effort, order and delay tolerated"
-                .to_string(),
-        );
-    }
-    sentences
+        (!dominated.is_empty()).then(|| format!("{name} dominates {}", dominated.join(", ")))
+    });
+    let each: Vec<String> = each.collect();
+    vec![match each.as_slice() {
+        [] => format!("none of these dominates another in {FOUR}"),
+        each => format!("no worse in {FOUR}, and better in one: {}", each.join("; ")),
+    }]
 }
 
-/// Each against the project as it is declared.
-fn costs(all: &[(String, ComparedMeasures)]) -> Vec<String> {
+/// The measures of dominance in words.
+const FOUR: &str = "disturbance, control effort, order and delay tolerated";
+
+/// Each against the project as it is declared: what it gains, and what it costs.
+fn costs(all: &[NamedMeasures]) -> Vec<String> {
     let Some(((base, measures), others)) = all.split_first() else { return vec![] };
     if base != AS_DECLARED {
         return vec![];
     }
-    let sentence = |(name, other): &(String, ComparedMeasures)| {
-        let parts = MEASURES.iter().enumerate().map(|(index, (key, words))| {
-            let [own, given] = [other.0[index], measures.0[index]].map(|value| words_of(key, value));
-            if own == given {
-                format!("{words} the same ({own})")
-            } else {
-                format!("{words} {own} for {given}")
-            }
-        });
-        format!("{name} against {base}: {}", parts.collect::<Vec<_>>().join(", "))
-    };
-    others.iter().map(sentence).collect()
+    others.iter().map(|(name, other)| cost(name, other, measures)).collect()
+}
+
+fn cost(name: &str, other: &ComparedMeasures, base: &ComparedMeasures) -> String {
+    let (mut better, mut worse) = (Vec::new(), Vec::new());
+    for (index, (key, words)) in MEASURES.iter().enumerate() {
+        let [own, given] = [other.0[index], base.0[index]];
+        let [shown, instead] = [own, given].map(|value| words_of(key, value));
+        if shown == instead {
+            continue;
+        }
+        let is_more = COLUMN_SENSES.contains(&(key, ColumnSense::More));
+        let side = if (own > given) == is_more { &mut better } else { &mut worse };
+        side.push(format!("{words} {shown} for {instead}"));
+    }
+    let side =
+        |word: &str, parts: &[String]| (!parts.is_empty()).then(|| format!("{word} in {}", parts.join(", ")));
+    let sides: Vec<String> = [side("better", &better), side("worse", &worse)].into_iter().flatten().collect();
+    match sides.as_slice() {
+        [] => format!("{name} against {AS_DECLARED}: the same in all four"),
+        sides => format!("{name} against {AS_DECLARED}: {}", sides.join("; ")),
+    }
 }
 
 fn words_of(key: &str, value: f64) -> String {

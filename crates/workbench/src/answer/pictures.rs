@@ -2,7 +2,7 @@ use super::OutputFile;
 use crate::figure::{Figure, FigureError};
 
 /// Pixels of a PNG per unit of the drawing.
-const PNG_SCALE: f64 = 2.0;
+pub(crate) const PNG_SCALE: f64 = 2.0;
 
 /// Figures as SVG and PNG.
 ///

@@ -3,7 +3,8 @@
 use super::simulate::frequencies;
 use super::{CommandError, ProcedureError, Watch};
 use crate::alternatives::{
-    self, AlternativesOptions as Asked, FrontRequest, IMPEDANCE_AT, asked, judge, outside_words,
+    self, AlternativesOptions as Asked, AskedAlternative, FrontRequest, IMPEDANCE_AT, asked, asked_cases,
+    judge, outside_words,
 };
 use crate::answer::Answer;
 use crate::linearize::SweepRequest;
@@ -65,12 +66,22 @@ pub(super) fn read_alternatives(
     if loaded.project.alternatives.is_empty() {
         return Ok(vec![]);
     }
-    let all = asked(source, loaded, catalogues)?;
-    for one in all.iter().filter(|one| one.name != AS_DECLARED && one.loaded.project.actuator.is_some()) {
+    let mut told = rigs(&asked(source, loaded, catalogues)?, loaded, "")?;
+    for case in asked_cases(source, loaded, catalogues)? {
+        let further = rigs(&case.all, &case.loaded, &format!(", {}", case.name))?;
+        told.extend(further.into_iter().filter(|sentence| !told.contains(sentence)).collect::<Vec<_>>());
+    }
+    Ok(told)
+}
+
+/// Assembles the rig of each; the sentences on those that their families do not contain.
+fn rigs(all: &[AskedAlternative], base: &Loaded, case: &str) -> Result<Vec<String>, CommandError> {
+    let own = |one: &&AskedAlternative| !case.is_empty() || one.name != AS_DECLARED;
+    for one in all.iter().filter(own).filter(|one| one.loaded.project.actuator.is_some()) {
         if let Err(error) = Setup::rig_of(&one.loaded.project) {
-            let name = one.name.clone();
+            let name = format!("{}{case}", one.name);
             return Err(ProcedureError::Alternative { name, reason: error.to_string() }.into());
         }
     }
-    Ok(all.iter().filter_map(|one| Some(outside_words(&one.name, &one.outside(loaded)?))).collect())
+    Ok(all.iter().filter_map(|one| Some(outside_words(&one.name, &one.outside(base)?))).collect())
 }

@@ -3,7 +3,10 @@ use phea_dynamics::linear::TransferFunction;
 use phea_hydraulics::impedance::{Asymptote, AsymptoteKind};
 
 use super::sweep_answer::{head, rows};
-use super::{AgreementBand, Linearization, PortView, ReductionDifference, Sweep, models, stiffness_sentence};
+use super::{
+    AgreementBand, AskedImpedance, Linearization, PortView, ReductionDifference, Sweep, WITHIN_PERCENT,
+    models, stiffness_sentence,
+};
 use crate::answer::{self, Csv, Json, Object, OutputFile, quoted};
 use crate::caveat::of_models;
 use crate::project::Loaded;
@@ -51,6 +54,7 @@ fn body(loaded: &Loaded, linearization: &Linearization) -> Object {
         })
         .with("impedance", ports(linearization, impedance))
         .with("passivity", ports(linearization, |view| passivity(&view.passivity)))
+        .maybe("virtual_impedance", linearization.asked.as_ref().map(asked))
         .with("compliance_hidden_above_rad_per_s", linearization.compliance_hidden_above_rad_per_s)
         .with("load_step_final_force_n", final_force(linearization))
         .with("warnings", of_models(&loaded.project))
@@ -67,7 +71,7 @@ fn stiffness(linearization: &Linearization) -> Object {
         .with("maximum_stiffest_wall_n_per_m", stiffest.maximum)
         .with("uniform", [models.uniform.minimum, models.uniform.maximum])
         .with("by_volume", [models.by_volume.minimum, models.by_volume.maximum])
-        .with("sentence", stiffness_sentence(models))
+        .with("sentence", stiffness_sentence(linearization))
 }
 
 /// gain (s - zero).../((s - pole)...)
@@ -105,6 +109,26 @@ fn ports(linearization: &Linearization, of: impl Fn(&PortView) -> Object) -> Obj
         .with("open_loop", of(&linearization.open_loop))
         .with("closed_loop", linearization.closed_loop.as_ref().map(&of))
         .maybe("closed_loop_reason", linearization.closed_loop_absent.as_deref())
+}
+
+/// A virtual impedance, and what the port shows of it.
+fn asked(asked: &AskedImpedance) -> Object {
+    let magnitude = phea_dynamics::portable::magnitude;
+    Object::new()
+        .with("stiffness_n_per_m", asked.impedance.stiffness)
+        .with("damping_n_s_per_m", asked.impedance.damping)
+        .with("mass_kg", asked.impedance.mass)
+        .with("filter_time_s", asked.impedance.filter_time_s)
+        .with("within_percent", WITHIN_PERCENT)
+        .known("follows_rad_per_s", asked.follows_rad_per_s.map(|band| band.to_vec()), "nowhere within that")
+        .each("points", &asked.points, |point| {
+            Object::new()
+                .with("frequency_rad_per_s", point.frequency_rad_per_s)
+                .with("asked_n_s_per_m", magnitude(point.asked))
+                .with("shown_n_s_per_m", magnitude(point.shown))
+                .with("asked", point.asked)
+                .with("shown", point.shown)
+        })
 }
 
 fn final_force(linearization: &Linearization) -> Object {

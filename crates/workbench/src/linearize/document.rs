@@ -3,9 +3,13 @@
 use num_complex::Complex64;
 use phea_dynamics::frequency::PassivityReport;
 use phea_dynamics::linear::TransferFunction;
+use phea_dynamics::portable;
 use phea_hydraulics::linear::{ModeShare, ResponseDifference};
 
-use super::{AgreementBand, Linearization, ReductionDifference, WITHIN_DB, WITHIN_DEG, stiffness_sentence};
+use super::{
+    AgreementBand, AskedAt, AskedImpedance, Linearization, ReductionDifference, WITHIN_DB, WITHIN_DEG,
+    WITHIN_PERCENT, stiffness_sentence,
+};
 use crate::answer::significant;
 use crate::caveat::of_models;
 use crate::document::{Cell, Document, Table};
@@ -18,7 +22,7 @@ pub fn text(loaded: &Loaded, linearization: &Linearization) -> String {
     for sentence in of_models(&loaded.project) {
         out.preformatted(format!("warning: {sentence}\n"));
     }
-    out.preformatted(format!("Stiffness\n  {}\n", stiffness_sentence(&linearization.stiffness_models)));
+    out.preformatted(format!("Stiffness\n  {}\n", stiffness_sentence(linearization)));
     out.append(document(linearization, vec![]));
     out.heading("Driving-point impedance Z = -F_e/(s X_L)");
     let closed = match (&linearization.closed_loop, &linearization.closed_loop_absent) {
@@ -31,6 +35,10 @@ pub fn text(loaded: &Loaded, linearization: &Linearization) -> String {
         format!("closed loop: {closed}"),
         format!("above {hidden} rad/s the piston's mass hides the compliance"),
     ]);
+    if let Some(asked) = &linearization.asked {
+        out.section("Impedance asked and shown", asked_table(asked));
+        out.sentences([asked_sentence(asked)]);
+    }
     out.text()
 }
 
@@ -65,6 +73,35 @@ pub(crate) fn document(linearization: &Linearization, figures: Vec<Figure>) -> D
             .with(linearization.modes.iter().map(mode_cells)),
     );
     out
+}
+
+/// A virtual impedance and what the port shows, at a few frequencies.
+pub(crate) fn asked_table(asked: &AskedImpedance) -> Table {
+    let row = |point: &AskedAt| {
+        let size = |value: Complex64| Cell::number(portable::magnitude(value), 3);
+        let turned = portable::argument(point.shown / point.asked).to_degrees();
+        [
+            Cell::number(point.frequency_rad_per_s, 3),
+            size(point.asked),
+            size(point.shown),
+            Cell::number(turned, 2),
+        ]
+    };
+    let headings = ["frequency, rad/s", "asked, N·s/m", "shown, N·s/m", "turned by, °"];
+    Table::new(headings).with(asked.points.iter().map(row))
+}
+
+/// Where the port shows what is asked of it.
+pub(crate) fn asked_sentence(asked: &AskedImpedance) -> String {
+    let within = significant(WITHIN_PERCENT, 3);
+    match asked.follows_rad_per_s {
+        Some([from, to]) => format!(
+            "the port shows the virtual impedance within {within} % from {} to {} rad/s",
+            significant(from, 3),
+            significant(to, 3)
+        ),
+        None => format!("the port shows the virtual impedance nowhere within {within} %"),
+    }
 }
 
 /// A mode with its share and decay ratio, or the reason why a number does not exist.

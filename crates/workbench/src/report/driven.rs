@@ -121,7 +121,8 @@ fn told(runs: &[ScenarioRun]) -> Option<String> {
         )
     });
     let disturbed = windows().find_map(|(window, metrics)| {
-        let peak = DisplayUnit::KILONEWTON.text(metrics.disturbance_peak_n.ok()?, 3);
+        let motion = runs.first().map(|run| run.record.motion).unwrap_or_default();
+        let peak = motion.unit(DisplayUnit::KILONEWTON).text(metrics.disturbance_peak_n.ok()?, 3);
         Some(format!("{}: {peak} of disturbance", cause_words(window)))
     });
     let told: Vec<String> = step.into_iter().chain(disturbed).collect();

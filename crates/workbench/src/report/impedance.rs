@@ -12,7 +12,9 @@ use crate::document::{Document, Table};
 use crate::figure::{
     AsymptoteLine, Figure, FrequencyMark, FrequencySeries, ImpedanceInput, Words, impedance,
 };
-use crate::linearize::{Linearization, PortView, frequency_grid, passivity_sentence};
+use crate::linearize::{
+    Linearization, PortView, asked_sentence, asked_table, frequency_grid, passivity_sentence,
+};
 use crate::project::Project;
 use crate::quantity::DisplayUnit;
 
@@ -22,6 +24,7 @@ pub(super) fn chapter(
 ) -> Result<Chapter, TimeResponseError> {
     let forces = load_motion::forces(project, &views(linearization))?;
     let hidden = significant(linearization.compliance_hidden_above_rad_per_s, 4);
+    let motion = project.motion();
     let mut out = Document::default();
     out.equations(vec!["Z = -F_e/(s X_L)".to_string()]);
     let met = match project.actuator.as_ref().and_then(|actuator| actuator.series.as_ref()) {
@@ -40,20 +43,34 @@ pub(super) fn chapter(
         (Some(view.passivity.passive.into()), sentence)
     }));
     out.sentences(linearization.closed_loop_absent.iter().map(|reason| format!("closed loop: {reason}")));
+    if let Some(asked) = &linearization.asked {
+        out.heading("The virtual impedance");
+        out.equations(vec![
+            "U_C = G (F F_{ref} - y)".to_string(),
+            "y = F_e + (M_v s^2 + B_v s + K_v)/(τ s + 1)^n (X_L - X_0)".to_string(),
+        ]);
+        out.explanation("What the loop is asked to show to a load that moves its port, beside what it shows: Z = M_v s + B_v + K_v/s against -F_e/(s X_L) of the nominal plant, waves, samples and delay included.");
+        out.table(asked_table(asked));
+        out.sentences([format!("closed loop: {}", asked_sentence(asked))]);
+    }
     out.heading("The load moves");
     out.figures([load_motion::figure(project, &forces)]);
-    out.explanation(format!("Largest change of the force: {}.", peaks(&forces)));
+    out.explanation(format!(
+        "Largest change of the force: {}.",
+        peaks(&forces, motion.unit(DisplayUnit::KILONEWTON))
+    ));
+    let step = if motion.is_rotary() { "1 mrad" } else { "1 mm" };
     let remaining: Vec<String> =
         views(linearization).iter().map(|(name, view)| format!("{name} {}", remains(view))).collect();
-    out.explanation(format!("Proposition 6.2: with leakage or feedback the zero at the origin makes the force return. After a load step of 1 mm there remains, {}.", remaining.join(", ")));
+    out.explanation(format!("Proposition 6.2: with leakage or feedback the zero at the origin makes the force return. After a load step of {step} there remains, {}.", remaining.join(", ")));
     out.heading("Asymptotes");
     out.table(asymptotes(linearization));
     Ok(Chapter::of("impedance", "The impedance at the load", out))
 }
 
-fn peaks(forces: &[Moved]) -> String {
+fn peaks(forces: &[Moved], unit: DisplayUnit) -> String {
     let one = |moved: &Moved| match &moved.force {
-        Some(force) => format!("{} kN {}", DisplayUnit::KILONEWTON.number(force.peak_n, 3), moved.name),
+        Some(force) => format!("{} {}", unit.text(force.peak_n, 3), moved.name),
         None => format!("none {} (unstable)", moved.name),
     };
     forces.iter().map(one).collect::<Vec<_>>().join(", ")
@@ -93,7 +110,7 @@ fn asymptotes(linearization: &Linearization) -> Table {
             let unit = match asymptote.power {
                 -1 => "N/m",
                 0 => "N.s/m",
-                1 => "kg",
+                1 => linearization.motion.symbol("kg"),
                 _ => "SI",
             };
             rows.row([

@@ -96,7 +96,7 @@ pub(super) fn forces(
 }
 
 /// The remaining forces, in sentences.
-fn end(forces: &[Moved]) -> String {
+fn end(forces: &[Moved], unit: DisplayUnit) -> String {
     let known: Vec<(&str, f64)> =
         forces.iter().filter_map(|moved| Some((moved.name, moved.force.as_ref()?.remains_n))).collect();
     let unstable = forces.iter().filter(|moved| moved.force.is_none()).map(|moved| moved.name);
@@ -104,9 +104,7 @@ fn end(forces: &[Moved]) -> String {
         true if known.is_empty() => vec![],
         true => vec!["In the end nothing remains.".to_string()],
         false => {
-            let one = |(name, remains): &(&str, f64)| {
-                format!("{} kN {name}", DisplayUnit::KILONEWTON.number(*remains, 3))
-            };
+            let one = |(name, remains): &(&str, f64)| format!("{} {name}", unit.text(*remains, 3));
             vec![format!(
                 "In the end there remains {}.",
                 known.iter().map(one).collect::<Vec<_>>().join(", ")
@@ -123,15 +121,16 @@ fn end(forces: &[Moved]) -> String {
 /// The figure of these forces.
 pub(super) fn figure(project: &Project, forces: &[Moved]) -> Figure {
     let (distance, duration) = motion(project);
+    let unit = project.motion().unit(DisplayUnit::KILONEWTON);
     let caption = format!(
-        "Change of the force while the load moves {} mm in {} s (a smooth step of fifth order), linear and with no limit on the command. {}",
-        DisplayUnit::MILLIMETRE.number(distance, 3),
+        "Change of the force while the load moves {} in {} s (a smooth step of fifth order), linear and with no limit on the command. {}",
+        project.motion().unit(DisplayUnit::MILLIMETRE).text(distance, 3),
         significant(duration, 3),
-        end(forces)
+        end(forces, unit)
     );
     let input = StepResponseInput {
         quantity: "Force F_e".to_string(),
-        unit: DisplayUnit::KILONEWTON,
+        unit,
         reference: None,
         responses: forces.iter().filter_map(|moved| Some(moved.force.as_ref()?.series.clone())).collect(),
         settling_band: None,

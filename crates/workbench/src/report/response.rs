@@ -10,6 +10,7 @@ use crate::figure::{
 };
 use crate::linear_loop::{LinearLoop, LoopStability, StepView, settling_words};
 use crate::project::Project;
+use crate::quantity::MotionKind;
 
 /// Height of the drawn step where the project's scenarios give none, N.
 const REFERENCE: f64 = 1000.0;
@@ -29,7 +30,7 @@ pub(super) fn chapter(
     out.left_out(project);
     match &linear_loop.step {
         Ok(view) => {
-            out.figures([figure(view, reference_n.unwrap_or(REFERENCE))]);
+            out.figures([figure(view, reference_n.unwrap_or(REFERENCE), project.motion())]);
             out.table(metrics(view));
         }
         Err(reason) => out.verdict(StatusMark::Bad, format!("No step response: {reason}"), vec![]),
@@ -46,7 +47,8 @@ pub(super) fn chapter(
     Chapter::of(anchor, title, out)
 }
 
-fn figure(view: &StepView, reference: f64) -> Figure {
+fn figure(view: &StepView, reference: f64, motion: MotionKind) -> Figure {
+    let unit = motion.unit(DisplayUnit::KILONEWTON);
     let series = |name: &str, values: &[f64]| TimeSeries {
         name: name.to_string(),
         times_s: view.times_s.clone(),
@@ -60,7 +62,7 @@ fn figure(view: &StepView, reference: f64) -> Figure {
     let ones = vec![1.0; view.times_s.len()];
     let input = StepResponseInput {
         quantity: "Force F_e".to_string(),
-        unit: DisplayUnit::KILONEWTON,
+        unit,
         reference: Some(series("reference", &ones)),
         responses: vec![
             series("force", &view.response),
@@ -71,10 +73,7 @@ fn figure(view: &StepView, reference: f64) -> Figure {
         events: settled.into_iter().collect(),
         controls: vec![series("command U_C", &view.command_v_per_n)],
     };
-    let caption = format!(
-        "A step of {} kN: force, prefiltered reference and command.",
-        DisplayUnit::KILONEWTON.number(reference, 3)
-    );
+    let caption = format!("A step of {}: force, prefiltered reference and command.", unit.text(reference, 3));
     step_response(Words::new("step", "Step response", caption), &input)
 }
 

@@ -25,8 +25,8 @@ fn shown(value: f64, dimension: &Dimension) -> String {
 }
 
 fn circuit(project: &Project, actuator: &project::DeclaredActuator) -> Figure {
-    let cylinder = &actuator.cylinder;
-    let [rod_a, rod_b] = cylinder.rod_diameters_m();
+    let [rod_a, rod_b] = actuator.cylinder.rod_diameters_m();
+    let moving = |value, dimension| shown(value, actuator.motion().dimension(dimension));
     let mut supply_rows = vec![shown(actuator.supply.pressure, &PRESSURE)];
     supply_rows.extend(actuator.supply.flow().map(|flow| shown(flow, &FLOW)));
     let symmetric = rod_a > 0.0 && rod_b > 0.0;
@@ -44,10 +44,11 @@ fn circuit(project: &Project, actuator: &project::DeclaredActuator) -> Figure {
         line_a: line(&actuator.line.a),
         line_b: line(&actuator.line.b),
         rods: if symmetric { Rods::Both } else { Rods::TowardsLoad },
-        load_beside_b: symmetric || rod_b > 0.0,
-        cylinder: cylinder_words(cylinder),
-        mass: shown(cylinder.moving_mass, &MASS),
-        load_cell: Some(vec![shown(actuator.force_sensor.stiffness, &STIFFNESS)]),
+        load_beside_b: symmetric || rod_b > 0.0 || actuator.motor.is_some(),
+        rotary: actuator.motion().is_rotary(),
+        cylinder: moving_words(actuator),
+        mass: moving(moving_mass(actuator), &MASS),
+        load_cell: Some(vec![moving(actuator.force_sensor.stiffness, &STIFFNESS)]),
         series: actuator.series.as_ref().map(|series| SeriesSymbol {
             has_damper: series.damping > 0.0,
             words: shown(series.stiffness, &STIFFNESS),
@@ -61,7 +62,7 @@ fn circuit(project: &Project, actuator: &project::DeclaredActuator) -> Figure {
             Load::Prescribed => None,
             Load::SpringMassDamper { stiffness, .. } | Load::Wall { stiffness, .. } => Some(stiffness),
         }
-        .map(|stiffness| shown(stiffness, &STIFFNESS))
+        .map(|stiffness| moving(stiffness, &STIFFNESS))
         .into_iter()
         .collect(),
         controller: project.controller.as_ref().map(|controller| ControllerSymbol {
@@ -71,6 +72,21 @@ fn circuit(project: &Project, actuator: &project::DeclaredActuator) -> Figure {
     };
     let caption = "The circuit as the project describes it: supply, servovalve, lines, cylinder, load cell, load, and the loop that closes over the force.";
     schematic(Words::new("circuit", "The rig", caption), &input)
+}
+
+/// The cylinder or the motor in a few words.
+fn moving_words(actuator: &project::DeclaredActuator) -> String {
+    let Some(motor) = &actuator.motor else { return cylinder_words(&actuator.cylinder) };
+    let displacement = shown(motor.displacement, &quantity::DISPLACEMENT);
+    match motor.stroke {
+        Some(stroke) => format!("{displacement}, stroke {}", shown(stroke, &quantity::ANGLE)),
+        None => format!("{displacement}, turns on"),
+    }
+}
+
+/// kg or kg m2.
+fn moving_mass(actuator: &project::DeclaredActuator) -> f64 {
+    actuator.motor.as_ref().map_or(actuator.cylinder.moving_mass, |motor| motor.inertia)
 }
 
 fn shown_in_millimetres(length: f64) -> String {
@@ -128,6 +144,7 @@ fn line_alone(declared: &project::DeclaredLine) -> LineSymbol {
 /// The load in a few words.
 pub(super) fn load_words(actuator: &project::DeclaredActuator) -> String {
     let not_zero = |value: f64| Some(value).filter(|value| *value != 0.0);
+    let shown = |value, dimension| shown(value, actuator.motion().dimension(dimension));
     let words = |mass: Option<f64>, stiffness: f64, damping: f64, gap: f64| {
         let parts = [
             mass.map(|mass| shown(mass, &MASS)),
@@ -156,7 +173,8 @@ pub(super) fn load_words(actuator: &project::DeclaredActuator) -> String {
 
 /// The spring between force sensor and load in a few words.
 fn series_words(series: &project::DeclaredSeries) -> String {
-    let not_zero = |value: f64, dimension: &Dimension| Some(shown(value, dimension)).filter(|_| value > 0.0);
+    let not_zero =
+        |value: f64, dimension: &'static Dimension| Some(shown(value, dimension)).filter(|_| value > 0.0);
     let measured = (series.force_from == ForceFrom::Deflection).then(|| "measures the force".to_string());
     let grown = Some(format!("{} % progressive", quantity::significant(100.0 * series.progression, 3)));
     let parts = [
@@ -207,6 +225,7 @@ fn polynomial(text: &str) -> String {
 
 fn facts(actuator: &project::DeclaredActuator, rig: &Rig) -> Table {
     let components = rig.actuator.components();
+    let moving = |value, dimension| shown(value, actuator.motion().dimension(dimension));
     let mut rows = vec![
         (
             "supply",
@@ -225,9 +244,9 @@ fn facts(actuator: &project::DeclaredActuator, rig: &Rig) -> Table {
             ),
         ),
         ("servovalve", valve_words(actuator)),
-        ("cylinder", cylinder_words(&actuator.cylinder)),
-        ("moving mass", shown(actuator.cylinder.moving_mass, &MASS)),
-        ("force sensor", shown(actuator.force_sensor.stiffness, &STIFFNESS)),
+        ("cylinder", moving_words(actuator)),
+        ("moving mass", moving(moving_mass(actuator), &MASS)),
+        ("force sensor", moving(actuator.force_sensor.stiffness, &STIFFNESS)),
     ];
     rows.extend(actuator.series.as_ref().map(|series| ("series spring", series_words(series))));
     if components.line_a == components.line_b {

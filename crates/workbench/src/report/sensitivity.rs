@@ -10,7 +10,7 @@ use super::simulation::told;
 use crate::document::{Document, Table};
 use crate::error::CommandError;
 use crate::figure::DisplayUnit;
-use crate::project::{FrictionLaw, Project};
+use crate::project::{DeclaredActuator, FrictionLaw, Project};
 use crate::setup::Setup;
 use crate::simulate::{METRICS, Metrics, ScenarioRun, Window, cause_words, metrics_row, simulate_project};
 use crate::source::Source;
@@ -67,15 +67,14 @@ fn sensitivity(
         let mut project = first.clone();
         if let Some(actuator) = &mut project.actuator {
             actuator.force_sensor.stiffness *= factor;
-            let shown = DisplayUnit::MEGANEWTON_PER_METRE.text(actuator.force_sensor.stiffness, 3);
+            let unit = actuator.motion().unit(DisplayUnit::MEGANEWTON_PER_METRE);
+            let shown = unit.text(actuator.force_sensor.stiffness, 3);
             varied.push(vary(source, &project, ("Load stiffness K_S", factor, shown), watch)?);
         }
     }
     for (factor, word) in FRICTION_FACTORS {
         let mut project = first.clone();
-        let Some(friction) =
-            project.actuator.as_mut().and_then(|actuator| actuator.cylinder.friction.as_mut())
-        else {
+        let Some(friction) = project.actuator.as_mut().and_then(DeclaredActuator::friction_mut) else {
             break;
         };
         friction.viscous *= factor;

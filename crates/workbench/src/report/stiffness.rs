@@ -16,29 +16,29 @@ const POSITIONS: u32 = 120;
 pub(super) fn chapter(rig: &Rig, linearization: &Linearization) -> Chapter {
     let declared = model_name(rig.actuator.components().stiffness_model);
     let mut out = Document::default();
-    out.explanation(stiffness_sentence(&linearization.stiffness_models));
+    out.explanation(stiffness_sentence(linearization));
     out.explanation(format!("This project declares `{declared}`. The thesis' tables are made with `uniform`; a steel chamber does not become softer because a hose is screwed to it, and a hose swells as its data sheet states, so a rig will behave as in `by_volume`."));
-    out.figures([figure(rig)]);
+    out.figures(rig.actuator.components().cylinder.stroke.length().map(|stroke| figure(rig, stroke)));
     Chapter::of("stiffness", "Stiffness over the stroke", out)
 }
 
-fn figure(rig: &Rig) -> Figure {
+fn figure(rig: &Rig, stroke: f64) -> Figure {
     let declared = rig.actuator.components().stiffness_model;
     let other = match declared {
         StiffnessModel::Uniform => StiffnessModel::ByVolume,
         StiffnessModel::ByVolume => StiffnessModel::Uniform,
     };
     let input = StiffnessInput {
-        curves: vec![curve(rig, declared), curve(rig, other)],
+        curves: vec![curve(rig, declared, stroke), curve(rig, other, stroke)],
         operating_position_m: Some(rig.point.position),
         band_label: "dynamic stiffening from least to greatest".to_string(),
+        motion: rig.motion,
     };
     let caption = "Hydraulic stiffness against piston position: the declared model with its band of dynamic stiffening, and the other model.";
     stiffness_over_stroke(Words::new("stiffness", "Hydraulic stiffness over the stroke", caption), &input)
 }
 
-fn curve(rig: &Rig, model: StiffnessModel) -> StiffnessCurve {
-    let stroke = rig.actuator.components().cylinder.stroke;
+fn curve(rig: &Rig, model: StiffnessModel, stroke: f64) -> StiffnessCurve {
     let positions_m: Vec<f64> =
         (0..=POSITIONS).map(|step| stroke * f64::from(step) / f64::from(POSITIONS)).collect();
     let at = |member| positions_m.iter().map(|x| stiffness_at(rig, model, member, *x)).collect::<Vec<f64>>();

@@ -85,7 +85,7 @@ fn overview(words: Words, run: &ScenarioRun, span_s: [f64; 2]) -> Figure {
 pub(super) fn close_up(words: Words, run: &ScenarioRun, window: &Window, span_s: [f64; 2]) -> Figure {
     let record = &run.record;
     let forces = ["force_n", "hydraulic_force_n"].map(|name| over_time(record, record.signal(name)));
-    let forces = panel("Forces F_e, F_H", DisplayUnit::KILONEWTON, 150.0, forces.into());
+    let forces = panel("Forces F_e, F_H", record.motion.unit(DisplayUnit::KILONEWTON), 150.0, forces.into());
     let mut panels = vec![voltages(record), pressures(record), forces, measured(record, 150.0)];
     let second = match run.open_loop {
         false => "spool, p_B, hydraulic force, prefiltered reference",
@@ -109,7 +109,7 @@ fn measured(record: &Record, height: f64) -> TimePanel {
         .map(|values| over_time(record, values));
     TimePanel {
         reference: asked_for(record),
-        ..panel("Force F_e", DisplayUnit::KILONEWTON, height, series.into())
+        ..panel("Force F_e", record.motion.unit(DisplayUnit::KILONEWTON), height, series.into())
     }
 }
 
@@ -127,7 +127,7 @@ pub(super) fn moves_load(window: &Window) -> bool {
 fn from_outside(record: &Record) -> Option<TimePanel> {
     let series =
         (!record.external_force_n.is_empty()).then(|| over_time(record, record.external_force_n.clone()))?;
-    Some(panel("Force F_x", DisplayUnit::KILONEWTON, 90.0, vec![series]))
+    Some(panel("Force F_x", record.motion.unit(DisplayUnit::KILONEWTON), 90.0, vec![series]))
 }
 
 fn voltages(record: &Record) -> TimePanel {
@@ -142,7 +142,7 @@ fn pressures(record: &Record) -> TimePanel {
 
 fn positions(record: &Record) -> TimePanel {
     let series = ["position_m", "load_position_m"].map(|name| over_time(record, record.signal(name)));
-    panel("Position", DisplayUnit::MILLIMETRE, 90.0, series.into())
+    panel("Position", record.motion.unit(DisplayUnit::MILLIMETRE), 90.0, series.into())
 }
 
 /// Panels of one run, with its events.
@@ -257,7 +257,7 @@ fn step(run: &ScenarioRun, window: &Window, (number, event): (usize, usize)) -> 
     let percent = run.settling_band_percent;
     let input = StepResponseInput {
         quantity: "Force F_e".to_string(),
-        unit: DisplayUnit::KILONEWTON,
+        unit: record.motion.unit(DisplayUnit::KILONEWTON),
         reference: Some(of("reference", &record.reference_n)),
         responses: vec![
             of("force", &record.signal("force_n")),
@@ -288,28 +288,26 @@ fn compared(comparison: &ScenarioComparison<'_>, name: &str, number: usize) -> V
     let titles = comparison.projects.iter().map(|(loaded, _)| loaded.project.title.clone());
     let (titles, runs): (Vec<String>, Vec<&ScenarioRun>) =
         titles.zip(comparison.runs_of(name)).filter_map(|(title, run)| Some((title, run?))).unzip();
+    let caption = "Force, command and load pressure of each project.";
+    laid_over((&format!("compare-{number}"), name, caption), &titles, &runs)
+}
+
+/// One scenario of several rigs: the whole, and each event of the first of them enlarged.
+pub(crate) fn laid_over(
+    (file, title, caption): (&str, &str, &str),
+    titles: &[String],
+    runs: &[&ScenarioRun],
+) -> Vec<Figure> {
     let ends = runs.iter().filter_map(|run| run.record.times_s.last().copied());
     let end = ends.fold(0.0, f64::max);
-    let words = |suffix: String, title: String| {
-        Words::new(
-            format!("compare-{number}{suffix}"),
-            title,
-            "Force, command and load pressure of each project.",
-        )
-    };
-    let mut figures = vec![side_by_side(words(String::new(), name.to_string()), &titles, &runs, [0.0, end])];
+    let words = |suffix: String, title: String| Words::new(format!("{file}{suffix}"), title, caption);
+    let mut figures = vec![side_by_side(words(String::new(), title.to_string()), titles, runs, [0.0, end])];
     let windows = runs.first().map(|run| run.windows.as_slice()).unwrap_or_default();
     for (index, window) in enlarged(windows, end) {
         let words = words(format!("-event-{}", index + 1), format!("Enlarged: {}", cause_words(window)));
-        figures.push(side_by_side(words, &titles, &runs, around(window, end)));
+        figures.push(side_by_side(words, titles, runs, around(window, end)));
     }
     figures
-}
-
-/// One scenario of several rigs from beginning to end.
-pub(crate) fn laid_over(words: Words, titles: &[String], runs: &[&ScenarioRun]) -> Figure {
-    let ends = runs.iter().filter_map(|run| run.record.times_s.last().copied());
-    side_by_side(words, titles, runs, [0.0, ends.fold(0.0, f64::max)])
 }
 
 fn side_by_side(words: Words, titles: &[String], runs: &[&ScenarioRun], span_s: [f64; 2]) -> Figure {

@@ -5,6 +5,7 @@ use super::figures::{
 };
 use super::{Cause, Record, ScenarioRun, TrackingWish, Window, cause_words};
 use crate::figure::{DisplayUnit, Figure, TimePanel, TimePanelsInput, TimeSeries, Words, time_panels};
+use crate::quantity::MotionKind;
 
 /// A run with the name of its controller.
 #[derive(Clone, Copy, Debug)]
@@ -137,7 +138,7 @@ fn drawn(
     panels.push(panel("p_A - p_B", DisplayUnit::BAR, low, each(runs, load_pressure)));
     if positions {
         let piston = each(runs, |record| record.signal("position_m"));
-        panels.push(panel("Piston", DisplayUnit::MILLIMETRE, 90.0, piston));
+        panels.push(panel("Piston", motion(runs).unit(DisplayUnit::MILLIMETRE), 90.0, piston));
     }
     time_panels(words, &TimePanelsInput { panels, ..input(runs, span_s) })
 }
@@ -162,6 +163,11 @@ fn each(runs: &[NamedRun<'_>], values: impl Fn(&Record) -> Vec<f64>) -> Vec<Time
     runs.iter().map(|named| over_time(&named.run.record, values(&named.run.record))).collect()
 }
 
+/// How the rigs of these runs move.
+fn motion(runs: &[NamedRun<'_>]) -> MotionKind {
+    runs.first().map_or(MotionKind::Linear, |named| named.run.record.motion)
+}
+
 /// The force as measured on the rig, if it was measured.
 fn force_measured(runs: &[NamedRun<'_>]) -> Option<TimeSeries> {
     let overlay = runs.first()?.run.measured.iter().find(|overlay| overlay.signal == "force_n")?;
@@ -179,7 +185,7 @@ fn forces(runs: &[NamedRun<'_>], height: f64, span_s: [f64; 2], wish: Option<&Tr
     TimePanel {
         reference: first.and_then(|run| asked_for(&run.record)),
         wished: lines.unwrap_or_default(),
-        ..panel("Force F_e", DisplayUnit::KILONEWTON, height, curves)
+        ..panel("Force F_e", motion(runs).unit(DisplayUnit::KILONEWTON), height, curves)
     }
 }
 

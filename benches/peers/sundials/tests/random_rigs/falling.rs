@@ -17,6 +17,7 @@ use phea_hydraulics::line::Line;
 use phea_hydraulics::machine::{Machine, MachineOptions, StartValues};
 use phea_hydraulics::servovalve::{LeakageModel, Servovalve, Supply};
 use phea_hydraulics::stiffness::StiffnessModel;
+use phea_hydraulics::stroke::ActuatorStroke;
 
 use crate::rig::{Chance, Control, Refusal, Rig};
 
@@ -38,7 +39,7 @@ pub(crate) fn rig(number: u64) -> Result<Rig, Refusal> {
     let machine = Machine::new(&actuator, &options).map_err(Refusal::Machine)?;
 
     let pressure = 0.5 * components.supply.pressure;
-    let position = 0.5 * components.cylinder.stroke;
+    let position = components.cylinder.stroke.middle();
     let start =
         StartValues { position, pressure_a: pressure, pressure_b: pressure, ..StartValues::default() };
     let beginning = machine.start(&start).map_err(Refusal::Machine)?;
@@ -107,11 +108,12 @@ fn components(chance: &mut Chance) -> Components {
         cylinder: Cylinder {
             area_a,
             area_b,
-            stroke,
+            stroke: ActuatorStroke::Limited(stroke),
             moving_mass,
             dead_volume_a: area_a * stroke * 0.02,
             dead_volume_b: area_b * stroke * 0.02,
             internal_leakage: None,
+            external_leakage: None,
             end_stops: None,
         },
         friction: friction(chance, most_force, moving_mass),
@@ -145,7 +147,7 @@ fn friction(chance: &mut Chance, most_force: f64, mass: f64) -> Friction {
 /// Gains for a crossover that does not ring by itself.
 fn control(chance: &mut Chance, components: &Components) -> Control {
     let Components { valve, cylinder, supply, force_sensor, line_a, .. } = components;
-    let volume = 0.5 * cylinder.area_a * cylinder.stroke + line_a.volume();
+    let volume = cylinder.area_a * cylinder.stroke.middle() + line_a.volume();
     let hydraulic = 2.0 * cylinder.area_a.powi(2) * 5e8 / volume;
     let stiffness = 1.0 / (1.0 / hydraulic + 1.0 / force_sensor.stiffness);
     let flow_gain =

@@ -84,7 +84,7 @@ pub(crate) fn enrich(chance: &mut Chance, components: &mut Components, options: 
         options.load = LoadModel::Wall {
             mass: cylinder.moving_mass * chance.decades(0.1, 10.0),
             damping: most_force * chance.decades(1e-3, 0.3),
-            gap: cylinder.stroke * chance.decades(1e-4, 1e-2),
+            gap: 2.0 * cylinder.stroke.middle() * chance.decades(1e-4, 1e-2),
             contact: Contact {
                 stiffness: force_sensor.stiffness * chance.decades(0.1, 10.0),
                 relative_damping: chance.decades(0.1, 10.0),

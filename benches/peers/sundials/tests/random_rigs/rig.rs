@@ -15,6 +15,7 @@ use phea_hydraulics::machine::{
 };
 use phea_hydraulics::servovalve::{Edges, LeakageModel, Servovalve, SpoolImperfection, Supply};
 use phea_hydraulics::stiffness::StiffnessModel;
+use phea_hydraulics::stroke::ActuatorStroke;
 
 use crate::rich;
 
@@ -131,12 +132,12 @@ pub(crate) fn rig(number: u64) -> Result<Rig, Refusal> {
         let left = chance.decades(1e-4, 1e-2);
         share = if pulls { left } else { 1.0 - left };
     }
-    let position = components.cylinder.stroke * share;
+    let position = 2.0 * components.cylinder.stroke.middle() * share;
     let start =
         StartValues { position, pressure_a: pressure, pressure_b: pressure, ..StartValues::default() };
     let beginning = machine.start(&start).map_err(Refusal::Machine)?;
     let reference = Profile::steps(0.0, &[(REFERENCE_S, sign * size)]).expect("times ascend");
-    let distance = sign * components.cylinder.stroke * chance.decades(1e-4, 0.05);
+    let distance = sign * 2.0 * components.cylinder.stroke.middle() * chance.decades(1e-4, 0.05);
     let (duration, quintic) = (chance.decades(5e-3, 0.3), chance.happens(0.5));
     let motion = if quintic {
         Profile::smooth_step(MOTION_S, duration, distance)
@@ -228,11 +229,12 @@ fn components(chance: &mut Chance, like_benchmark: bool) -> Components {
         cylinder: Cylinder {
             area_a,
             area_b,
-            stroke,
+            stroke: ActuatorStroke::Limited(stroke),
             moving_mass,
             dead_volume_a: area_a * stroke * chance.decades(1e-3, 0.1),
             dead_volume_b: area_b * stroke * chance.decades(1e-3, 0.1),
             internal_leakage: None,
+            external_leakage: None,
             end_stops: None,
         },
         friction: friction(chance, most_force, moving_mass, like_benchmark),
@@ -286,7 +288,7 @@ fn options(chance: &mut Chance, components: &mut Components) -> MachineOptions {
     let pump = PumpLimited {
         pump_flow: 20.0 * flow * chance.decades(0.02, 1.0),
         relief_override: 0.05 * supply.pressure,
-        volume: cylinder.area_a * cylinder.stroke * chance.decades(0.1, 10.0),
+        volume: cylinder.area_a * 2.0 * cylinder.stroke.middle() * chance.decades(0.1, 10.0),
         effective_bulk_modulus: 1e9,
         accumulator: None,
     };
@@ -308,7 +310,7 @@ fn options(chance: &mut Chance, components: &mut Components) -> MachineOptions {
 /// Gains for a crossover over decades, if the piston were without mass and friction: slow ones, and ones that hunt.
 fn control(chance: &mut Chance, components: &Components, like_benchmark: bool) -> Control {
     let Components { valve, cylinder, supply, force_sensor, fluid, .. } = components;
-    let volume = 0.5 * cylinder.area_a * cylinder.stroke + components.line_a.volume();
+    let volume = cylinder.area_a * cylinder.stroke.middle() + components.line_a.volume();
     let hydraulic = 2.0 * cylinder.area_a.powi(2) * fluid.bulk_modulus.min(1e9) / volume;
     let stiffness = 1.0 / (1.0 / hydraulic + 1.0 / force_sensor.stiffness);
     let flow_gain =
@@ -399,7 +401,7 @@ fn of_cylinder(components: &Components) -> Vec<(&'static str, f64)> {
     let mut values = vec![
         ("area_a", cylinder.area_a),
         ("area_b", cylinder.area_b),
-        ("stroke", cylinder.stroke),
+        ("stroke", 2.0 * cylinder.stroke.middle()),
         ("chamber_modulus", fluid.bulk_modulus),
         ("line_volume_a", line_a.volume()),
         ("line_volume_b", line_b.volume()),

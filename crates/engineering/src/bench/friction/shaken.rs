@@ -53,7 +53,7 @@ pub(super) fn shaken(
     let moved = pressed.displacements(lugre, &force);
     let both = moved.iter().zip(&force).step_by(steps).skip(before);
     let stays = both.take_while(|(moved, _)| moved.abs() <= FARTHEST * length);
-    let middle = cylinder.stroke / 2.0;
+    let middle = cylinder.stroke.middle();
     Ok(stays.map(|(moved, force)| CylinderMoment { position: middle + moved, force: *force }).collect())
 }
 

@@ -113,6 +113,7 @@ impl LoopParts<'_> {
         let mut state = rest.state.clone();
         state.extend(closed.plant().sensor_at_rest(self.rested.force_n));
         state.extend(closed.controller_at_rest(self.reference_n, self.rested.force_n, rest.command));
+        control.rest_at(&mut state, rest.inputs[0]);
         let waves = control.under_way(&state, &[self.reference_n], rest);
         let inputs = [&[self.reference_n], &rest.inputs[..], &waves].concat();
         let orbit = |frequency: f64| control.orbit(&state, &inputs, frequency);
@@ -155,6 +156,7 @@ impl LoopParts<'_> {
         state.extend(held.plant().sensor_at_rest(self.rested.force_n));
         state.extend(held.controller_at_rest(self.reference_n, self.rested.force_n, rest.command));
         let control = Control::Sampled(Box::new(quiet.clone()));
+        control.rest_at(&mut state, rest.inputs[0]);
         let waves = control.under_way(&state, &[rest.command, self.reference_n], rest);
         let start = [state.as_slice(), &waves].concat();
         let filtered = held.sampled::<f64, f64>(
@@ -206,7 +208,8 @@ fn whole(frequency: f64, sample_time_s: f64) -> Option<f64> {
 /// ```
 ///
 /// If the velocity of a load that can move is fed forward at the samples, the command grows by the
-/// factor P_z'/P_z, where these are the plants in z with and without it.
+/// factor P_z'/P_z, where these are the plants in z with and without it. Beside a virtual impedance
+/// L is that of y = F_e + Z_v X_L, and P between reference and force that of the force.
 struct LinearizedLoop {
     /// As the loop sees it.
     rig: Rig,
@@ -215,6 +218,8 @@ struct LinearizedLoop {
     member: Member,
     /// The same without the feed-forward, if the loop includes one.
     alone: Option<Member>,
+    /// The rig whose output is the force, in the same loop, where there is a virtual impedance.
+    force: Option<Member>,
 }
 
 impl LinearizedLoop {
@@ -223,26 +228,32 @@ impl LinearizedLoop {
         rested: &RestedMachine,
         given: &Controller,
     ) -> Result<LinearizedLoop, SimulateError> {
-        let rig = rested.rig.in_loop();
+        let seen = rested.rig.in_loop();
+        let rig = rested.rig.without_impedance().in_loop();
         let compensation = match given.timing.sample_time_s {
             None => Compensation::new(given, setup.sensor.clone())?,
             Some(_) => setup.compensation(given)?,
         };
-        let within = |compensation: &Compensation| match rig.in_motion {
+        let of = |rig: &Rig, compensation: &Compensation| match rig.in_motion {
             Some(moving) => Ok(compensation.responding(Arc::new(moving))),
             None => compensation.member(rig.plant.coefficients()).map_err(SimulateError::Plant),
         };
+        let within = |compensation: &Compensation| of(&seen, compensation);
         let is_fed = given.timing.sample_time_s.is_some() && given.timing.rate_feed_forward != 0.0;
         let alone = is_fed.then(|| within(&compensation.without_feed_forward())).transpose()?;
         let member = within(&compensation)?;
-        Ok(LinearizedLoop { rig, compensation, member, alone })
+        let force = seen.virtual_impedance.is_some().then(|| of(&rig, &compensation)).transpose()?;
+        Ok(LinearizedLoop { rig, compensation, member, alone, force })
     }
 
     fn at(&self, frequency: f64) -> Result<Complex64, SimulateError> {
         let plant = self.member.response(frequency).ok_or(SimulateError::Plant(LinearError::NoPlant))?;
         let feedback = self.compensation.feedback().at_frequency(frequency);
         let between = match self.compensation.sample_time_s() {
-            None => plant.plant,
+            None => {
+                let force = self.force.as_ref().and_then(|force| force.response(frequency));
+                force.map_or(plant.plant, |force| force.plant)
+            }
             Some(sample_time_s) => {
                 let late = Complex64::new(0.0, -frequency * self.compensation.delay_s());
                 let turn = Complex64::new(0.0, frequency * sample_time_s);

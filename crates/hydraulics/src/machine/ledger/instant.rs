@@ -7,6 +7,7 @@ use super::super::{Accumulator, Chambers, Machine, MachineState, Motion, PowerUn
 use super::Account;
 use super::volume::{DensityLaw, Volume};
 use crate::line::{DynamicLine, LineContent};
+use crate::stroke::ActuatorStroke;
 
 /// Everything that the accounts of a rig are made of, at one instant.
 pub(super) struct Instant<T> {
@@ -17,6 +18,9 @@ pub(super) struct Instant<T> {
     /// Of the force from outside on the load, in W.
     pub(super) external_power: T,
     pub(super) flows: Flows<T>,
+    /// What a motor that turns on passes from side A to side B, in m3/s; zero with a stroke, where a
+    /// chamber grows instead.
+    pub(super) turned: T,
     /// Chambers, with their lines where these are lumped.
     pub(super) sides: [Volume<T>; 2],
     pub(super) lines: [LineInstant<T>; 2],
@@ -66,13 +70,13 @@ pub(super) struct SupplyInstant<T> {
 }
 
 impl<T: Scalar> Instant<T> {
-    /// Into chambers A and B, in m3/s.
+    /// Into chambers A and B, less what leaves them other than by their growth, in m3/s.
     pub(super) fn chamber_flows(&self) -> [T; 2] {
         let [line_a, line_b] = &self.lines;
         let [gas_a, gas_b] = &self.gas;
         [
-            line_a.into_chamber - self.flows.internal - gas_a.taken,
-            line_b.into_chamber + self.flows.internal - gas_b.taken,
+            line_a.into_chamber - self.flows.internal - self.flows.outward[0] - gas_a.taken - self.turned,
+            line_b.into_chamber + self.flows.internal - self.flows.outward[1] - gas_b.taken + self.turned,
         ]
     }
 }
@@ -148,7 +152,7 @@ impl<S: Scalar> Machine<S> {
         let ([port_a, port_b], [from_a, from_b]) = (ports, flows.from_valve);
         let ([line_a, line_b], [vector_a, vector_b]) = (&self.lines, self.layout.lines(vector));
         let joint = self.joint(&state, &load);
-        let position = joint.position;
+        let (position, velocity) = (joint.position, state.velocity);
         let sides = self.sides(&state, position);
         let lines = [
             LineInstant::of(line_a, [port_a, state.pressure_a], from_a, vector_a)?,
@@ -165,6 +169,10 @@ impl<S: Scalar> Machine<S> {
             ground,
             joint,
             external_power: external.map_or(T::from(0.0), |force| force * load.velocity),
+            turned: match self.cylinder.stroke {
+                ActuatorStroke::Limited(_) => T::from(0.0),
+                ActuatorStroke::Unlimited => constant::<S, T>(self.cylinder.area_a) * velocity,
+            },
             flows,
             sides,
         })
@@ -189,9 +197,9 @@ impl<S: Scalar> Machine<S> {
             }
             Chambers::Aerated(aerated) => {
                 let (side_a, side_b) = (&aerated.side_a, &aerated.side_b);
-                let to_b = aerated.stroke - position;
+                let [from_a, to_b] = aerated.stroke.travels(position);
                 [
-                    Volume::aerated(&aerated, side_a, area_a, position, state.pressure_a),
+                    Volume::aerated(&aerated, side_a, area_a, from_a, state.pressure_a),
                     Volume::aerated(&aerated, side_b, area_b, to_b, state.pressure_b),
                 ]
             }
@@ -209,8 +217,9 @@ impl<S: Scalar> Machine<S> {
         let [area_a, area_b]: [T; 2] = [constant(self.cylinder.area_a), constant(self.cylinder.area_b)];
         let [oil_a, oil_b] = self.oil_compliance(state, position);
         let [gas_a, gas_b] = self.accumulators.map(|gas| gas.map(|gas| gas.convert(&mut constant::<S, T>)));
-        let into_a = line_a.into_chamber - flows.internal - area_a * state.velocity;
-        let into_b = line_b.into_chamber + flows.internal + area_b * state.velocity;
+        let [out_of_a, out_of_b] = flows.outward;
+        let into_a = line_a.into_chamber - flows.internal - out_of_a - area_a * state.velocity;
+        let into_b = line_b.into_chamber + flows.internal - out_of_b + area_b * state.velocity;
         let of = |side: usize, gas: Option<Accumulator<T>>, into: T, oil: T| match &self.necks[side] {
             None => GasInstant::of(gas, [state.pressure_a, state.pressure_b][side], into, oil),
             Some(neck) => {

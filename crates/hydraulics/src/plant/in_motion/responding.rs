@@ -115,7 +115,12 @@ impl RespondingPlant for PlantInMotion {
         let peak = self.plant.velocity_sensor.filter.peak();
         let fed = self.fed_gain().map_or(0.0, |gain| gain.abs() * peak * bound * passed * speed);
         let falls = spool > 0.0 && held > 0.0 && yielding >= 0.0 && fed < 0.5;
-        let bound = output * bound / (1.0 - fed);
+        // y = F_e + Z_v X_L, and |X_L| of what reaches the load
+        let beside = self.plant.virtual_impedance.map_or(0.0, |impedance| {
+            let yields = self.plant.load != LinearLoad::Prescribed;
+            if yields { impedance.bound() * passed * speed / w } else { 0.0 }
+        });
+        let bound = (output + beside) * bound / (1.0 - fed);
         (self.is_passive() && falls && bound.is_finite()).then_some(bound)
     }
 
@@ -176,8 +181,10 @@ impl RespondingPlant for PlantInMotion {
         let slowest = if slowest > 0.0 { slowest } else { self.plant.valve_natural_frequency };
         let filter = self.plant.velocity_sensor.filter.frequency_rad_per_s();
         let filter = filter.filter(|_| self.plant.load_velocity_feed_forward.is_some());
-        let slowest = filter.map_or(slowest, |filter| slowest.min(filter));
-        let fastest = filter.map_or(fastest, |filter| fastest.max(ABOVE_SPOOL * filter));
+        let lag = self.plant.virtual_impedance.and_then(|impedance| impedance.corner_rad_per_s());
+        let lags = || filter.into_iter().chain(lag);
+        let slowest = lags().fold(slowest, f64::min);
+        let fastest = lags().fold(fastest, |fastest, lag| fastest.max(ABOVE_SPOOL * lag));
         [BELOW * slowest, fastest]
     }
 

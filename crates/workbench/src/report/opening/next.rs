@@ -278,6 +278,13 @@ fn undeclared(contents: &Contents<'_>, taken: Option<&Side<'_>>) -> Vec<String> 
         steps.push("Add a `[[scenario]]` with the steps and the motions of the load that the rig will meet: none was driven.".to_string());
         return steps;
     }
+    // neither measurements nor campaigns of a motor are there yet
+    if project.motion().is_rotary() {
+        steps.push(
+            "Measure on the rig what was simulated: nothing here has been compared with it.".to_string(),
+        );
+        return steps;
+    }
     let runs = taken.and_then(|side| side.runs).unwrap_or_default();
     let overlays: Vec<_> = runs.iter().flat_map(|run| &run.measured).collect();
     let farthest = overlays.iter().filter_map(|overlay| Some((overlay.nrmse.ok()?, overlay)));

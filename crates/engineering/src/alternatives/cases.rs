@@ -1,0 +1,103 @@
+//! The project and its alternatives under each of its load cases.
+
+use phea_dynamics::watch::{Progress, Watch};
+
+use super::asked::asked;
+use super::{AskedAlternative, JudgedAlternative, Judging};
+use crate::catalogue::Catalogue;
+use crate::error::ProcedureError;
+use crate::project::{Loaded, read_load_case};
+use crate::source::Source;
+
+/// The project and its alternatives under a load case.
+#[derive(Clone, Debug)]
+pub struct JudgedCase {
+    /// Its name.
+    pub name: String,
+    /// What it sets.
+    pub settings: Vec<String>,
+    /// The project itself first, then its alternatives in file order.
+    pub judged: Vec<JudgedAlternative>,
+    /// Names of those that were not finished when the watch stopped.
+    pub not_reached: Vec<String>,
+}
+
+/// The project under a load case with its alternatives, ready to be judged.
+#[derive(Clone, Debug)]
+pub struct AskedCase {
+    /// Its name.
+    pub name: String,
+    /// What it sets.
+    pub settings: Vec<String>,
+    /// The project with these settings.
+    pub loaded: Loaded,
+    /// The project itself first, then its alternatives in file order.
+    pub all: Vec<AskedAlternative>,
+}
+
+/// The load cases of a project in file order.
+///
+/// # Errors
+/// Those of [`asked()`], with the name of the load case.
+pub fn asked_cases(
+    source: &dyn Source,
+    loaded: &Loaded,
+    catalogues: &[String],
+) -> Result<Vec<AskedCase>, ProcedureError> {
+    let each = loaded.project.load_cases.iter().enumerate().map(|(index, case)| {
+        let there = read_load_case(source, loaded, catalogues, index).map_err(ProcedureError::Catalogue)?;
+        let named = |error: ProcedureError| match error {
+            ProcedureError::Alternative { name, reason } => {
+                ProcedureError::Alternative { name: format!("{name}, {}", case.name), reason }
+            }
+            other => other,
+        };
+        let all = asked(source, &there, catalogues).map_err(named)?;
+        Ok(AskedCase { name: case.name.clone(), settings: case.settings().collect(), loaded: there, all })
+    });
+    each.collect()
+}
+
+/// Judges one after the other; from the first that the watch stops on, none is reached.
+pub(super) fn judged(
+    judging: &Judging<'_>,
+    all: &[AskedAlternative],
+    goes_on: bool,
+    watch: Watch<'_>,
+) -> (Vec<JudgedAlternative>, Vec<String>) {
+    let (mut found, mut not_reached) = (Vec::new(), Vec::new());
+    let count = all.len() as f64;
+    for (index, one) in all.iter().enumerate() {
+        let mut told = |progress: Progress| {
+            watch(Progress { share: (index as f64 + progress.share) / count, ..progress })
+        };
+        let reached = goes_on && not_reached.is_empty();
+        let judged = if reached { judging.judged(one.clone(), &mut told) } else { None };
+        match judged {
+            Some(judged) => found.push(judged),
+            None => not_reached.push(one.name.clone()),
+        }
+    }
+    (found, not_reached)
+}
+
+/// Every load case, as far as the watch lets it.
+pub(super) fn judged_cases(
+    (source, catalogue, impedance_at): (&dyn Source, &Catalogue, &[f64]),
+    cases: Vec<AskedCase>,
+    goes_on: bool,
+    watch: Watch<'_>,
+) -> Vec<JudgedCase> {
+    let count = cases.len() as f64;
+    let mut goes_on = goes_on;
+    let judged = cases.into_iter().enumerate().map(|(index, case)| {
+        let judging = Judging { source, catalogue, declared: &case.loaded, impedance_at };
+        let mut told = |progress: Progress| {
+            watch(Progress { share: (index as f64 + progress.share) / count, ..progress })
+        };
+        let (judged, not_reached) = judged(&judging, &case.all, goes_on, &mut told);
+        goes_on = goes_on && not_reached.is_empty();
+        JudgedCase { name: case.name, settings: case.settings, judged, not_reached }
+    });
+    judged.collect()
+}

@@ -1,0 +1,149 @@
+//! The impedance that a loop shows at its port beside the virtual one that is asked of it.
+
+use std::sync::Arc;
+
+use num_complex::Complex64;
+use phea_dynamics::controller::{Controller, VirtualImpedance};
+use phea_dynamics::frequency::logarithmic_grid;
+use phea_dynamics::linear::{LinearError, TransferFunction};
+use phea_dynamics::portable;
+use phea_hydraulics::impedance::{Asymptote, AsymptoteKind, impedance_asymptotes};
+use phea_hydraulics::plant::{LinearLoad, LinearPlant};
+use phea_qft::closed_loop::Compensation;
+
+use crate::rig::Rig;
+
+/// Frequencies at which both impedances are stated, rad/s.
+pub const SHOWN_AT: [f64; 5] = [0.1, 1.0, 10.0, 100.0, 1000.0];
+/// Share of the asked impedance, in percent, by which the shown one may differ and still follow it.
+pub const WITHIN_PERCENT: f64 = 10.0;
+/// Where it is looked for, rad/s, and at how many frequencies.
+const LOOKED_AT: [f64; 2] = [1e-2, 1e4];
+const COUNT: usize = 1201;
+
+/// The impedance that is asked of a port, and what the port shows, with the load at its port moved as
+/// if by a hand.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AskedImpedance {
+    /// What is asked: Z_v/s at the port.
+    pub impedance: VirtualImpedance,
+    /// Both at [`SHOWN_AT`].
+    pub points: Vec<AskedAt>,
+    /// The widest band in rad/s where they differ by no more than [`WITHIN_PERCENT`]; `None` where
+    /// there is none.
+    pub follows_rad_per_s: Option<[f64; 2]>,
+}
+
+/// Both impedances at one frequency, N s/m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AskedAt {
+    /// rad/s
+    pub frequency_rad_per_s: f64,
+    /// M_v s + B_v + K_v/s, without the filter.
+    pub asked: Complex64,
+    /// -F_e/(s X_L) of the loop: at its samples, where it samples.
+    pub shown: Complex64,
+}
+
+impl AskedImpedance {
+    /// What is asked, without the filter of the measured position: M_v s^2 + B_v s + K_v.
+    pub fn unfiltered(&self) -> VirtualImpedance {
+        VirtualImpedance { filter_time_s: 0.0, ..self.impedance }
+    }
+}
+
+impl AskedAt {
+    /// How far the shown impedance is from the asked one, as a share of that.
+    pub fn difference(&self) -> f64 {
+        portable::magnitude(self.shown / self.asked - 1.0)
+    }
+}
+
+/// Both impedances of a rig with this controller, which sees the force through the sensor H; `None`
+/// without a virtual impedance.
+///
+/// ```text
+/// F_e/X_L = y/X_L - Z_v,     y/X_L = (F_e/X_L + Z_v)/(1 + L)                  with L of a load that does not yield
+/// ```
+///
+/// # Errors
+/// A loop that cannot be closed.
+pub(super) fn asked(
+    rig: &Rig,
+    controller: &Controller,
+    sensor: &TransferFunction,
+) -> Result<Option<AskedImpedance>, LinearError> {
+    let Some(impedance) = rig.virtual_impedance else { return Ok(None) };
+    let compensation = Compensation::new(controller, sensor.clone())?;
+    let held = Rig {
+        plant: LinearPlant { load: LinearLoad::Prescribed, ..rig.plant },
+        in_motion: rig.in_motion.map(|moving| moving.of_load(LinearLoad::Prescribed)),
+        ..rig.clone()
+    }
+    .in_loop();
+    let member = match held.in_motion {
+        Some(moving) => compensation.responding(Arc::new(moving)),
+        None => compensation.member(held.plant.coefficients())?,
+    };
+    let at = |frequency: f64| {
+        let response = member.response(frequency)?;
+        let around = response.plant * response.sensor * compensation.feedback().at_frequency(frequency);
+        let s = Complex64::new(0.0, frequency);
+        let force = response.load_motion / (1.0 + around) - impedance.response(s);
+        let unfiltered = VirtualImpedance { filter_time_s: 0.0, ..impedance };
+        let asked = unfiltered.response(s) / s;
+        Some(AskedAt { frequency_rad_per_s: frequency, asked, shown: -force / s })
+    };
+    let highest = compensation.highest_frequency_rad_per_s();
+    let [from, to] = LOOKED_AT;
+    let all: Vec<AskedAt> =
+        logarithmic_grid(from, to.min(highest), COUNT)?.into_iter().filter_map(at).collect();
+    let points = SHOWN_AT.into_iter().filter(|frequency| *frequency < highest).filter_map(at).collect();
+    Ok(Some(AskedImpedance { impedance, points, follows_rad_per_s: widest(&all) }))
+}
+
+/// The widest band, in the logarithm, where the shown impedance follows.
+fn widest(all: &[AskedAt]) -> Option<[f64; 2]> {
+    let follows = |point: &AskedAt| point.difference() <= WITHIN_PERCENT / 100.0;
+    let bands = all.chunk_by(|one, other| follows(one) == follows(other));
+    let bands = bands.filter(|band| band.iter().all(follows));
+    bands
+        .max_by_key(|band| band.len())
+        .and_then(|band| Some([band.first()?.frequency_rad_per_s, band.last()?.frequency_rad_per_s]))
+}
+
+/// Straight lines of the impedance of a closed loop. That of a virtual impedance takes the place of what
+/// the loop gives way to, as far as its term of lowest order lasts and the loop acts.
+pub(super) fn asymptotes(rig: &Rig, controller: &TransferFunction) -> Vec<Asymptote> {
+    let mut lines = impedance_asymptotes(&rig.leaking(), Some(controller));
+    let Some(VirtualImpedance { mass, damping, stiffness, .. }) = rig.virtual_impedance else {
+        return lines;
+    };
+    let acts = lines.iter().find(|line| line.kind == AsymptoteKind::LowFrequency).map(|line| line.to);
+    let gain = followed_at_rest(rig, controller);
+    let (power, coefficient, to) = match (stiffness > 0.0, damping > 0.0) {
+        (true, damped) => {
+            let by_mass = if mass > 0.0 { (stiffness / mass).sqrt() } else { f64::INFINITY };
+            let by_damper = if damped { stiffness / damping } else { f64::INFINITY };
+            (-1, stiffness, by_mass.min(by_damper))
+        }
+        (false, true) => (0, damping, if mass > 0.0 { damping / mass } else { f64::INFINITY }),
+        (false, false) => (1, mass, f64::INFINITY),
+    };
+    lines.retain(|line| line.kind != AsymptoteKind::LowFrequency);
+    if let (Some(acts), Some(gain)) = (acts, gain) {
+        let (kind, coefficient, to) = (AsymptoteKind::LowFrequency, gain * coefficient, to.min(acts));
+        lines.insert(0, Asymptote { kind, power, coefficient, from: 0.0, to });
+    }
+    lines
+}
+
+/// L/(1 + L) at zero frequency: 1 where the controller integrates.
+fn followed_at_rest(rig: &Rig, controller: &TransferFunction) -> Option<f64> {
+    if controller.poles().contains(&Complex64::ZERO) {
+        return Some(1.0);
+    }
+    let around = rig.plant.coefficients().command.at_frequency(0.0) * controller.dc_gain();
+    let followed = (around / (1.0 + around)).re;
+    followed.is_finite().then_some(followed)
+}

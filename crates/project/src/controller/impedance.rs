@@ -1,0 +1,51 @@
+//! `[controller.impedance]`.
+
+use crate::key::{key, plain};
+use crate::visitor::Visitor;
+use phea_quantity::{DAMPING, MASS, STIFFNESS, TIME};
+
+/// The impedance that the loop gives the load: mass, damper and spring between the load and where
+/// it is when the loop begins.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct DeclaredImpedance {
+    /// K_v in N/m.
+    pub stiffness: f64,
+    /// B_v in N s/m.
+    pub damping: f64,
+    /// M_v in kg.
+    pub mass: f64,
+    /// s; needed for a damper or a mass.
+    pub filter_time: Option<f64>,
+    /// What the transfer function of `[controller]` is.
+    pub form: ImpedanceForm,
+}
+
+/// What the transfer function of a controller with an impedance is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ImpedanceForm {
+    /// G, of the force.
+    #[default]
+    Impedance,
+    /// C_x, of the position in an inner loop: G = C_x/(M_v s^2 + B_v s + K_v).
+    Admittance,
+}
+
+impl DeclaredImpedance {
+    /// Whether the load feels nothing of it.
+    pub fn is_zero(&self) -> bool {
+        self.stiffness == 0.0 && self.damping == 0.0 && self.mass == 0.0
+    }
+
+    pub(super) fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let number = |name, dimension, doc| key(name, dimension, doc).of_motion().not_negative().or(0.0);
+        let doc = "Force per distance of the load from its rest position.";
+        v.quantity(number("stiffness", &STIFFNESS, doc), &mut self.stiffness);
+        v.quantity(number("damping", &DAMPING, "Force per velocity of the load."), &mut self.damping);
+        v.quantity(number("mass", &MASS, "Force per acceleration of the load."), &mut self.mass);
+        let doc = "Time constant of the filter of the measured position; for a damper or a mass.";
+        v.optional(key("filter_time", &TIME, doc).positive(), &mut self.filter_time);
+        let words = &[("impedance", ImpedanceForm::Impedance), ("admittance", ImpedanceForm::Admittance)];
+        let k = plain("form", "Whether the transfer function is of the force or of an inner position loop.");
+        v.choice(k, words, &mut self.form, false);
+    }
+}

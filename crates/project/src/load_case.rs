@@ -1,0 +1,32 @@
+//! `[[load_case]]`: other values under which the project and its alternatives are judged again, such
+//! as another load.
+
+use super::key::plain;
+use super::visitor::Visitor;
+
+/// Settings of the project and of every alternative, under a name.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LoadCase {
+    /// Its name; those of one project differ.
+    pub name: String,
+    /// What it sets, in file order: the path, as `--set` takes it, and the value in TOML.
+    pub set: Vec<(String, String)>,
+}
+
+impl LoadCase {
+    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let mut name = (!self.name.is_empty()).then(|| std::mem::take(&mut self.name));
+        v.text(plain("name", "What it is called, such as `on a spring`."), &mut name, true);
+        self.name = name.unwrap_or_default();
+        let k = plain(
+            "set",
+            "What it sets before an alternative sets its own values: quoted paths as `--set` takes them, such as \"load\" = { model = \"wall\", ... }; an inline table replaces a whole table.",
+        );
+        v.overrides(k, &mut self.set);
+    }
+
+    /// What it sets, as `--set` takes it.
+    pub fn settings(&self) -> impl Iterator<Item = String> {
+        self.set.iter().map(|(path, value)| format!("{path}={value}"))
+    }
+}

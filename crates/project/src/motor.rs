@@ -1,0 +1,113 @@
+//! `[motor]`, in place of `[cylinder]`: a rotary actuator.
+
+use phea_quantity::{ANGLE, DISPLACEMENT, FLOW_PRESSURE_COEFFICIENT, INERTIA, MotionKind, VOLUME};
+
+use super::key::{key, plain};
+use super::visitor::Visitor;
+use super::{DeclaredActuator, DeclaredFriction, EndStops};
+
+/// A hydraulic motor or a vane actuator; its angle grows while oil enters chamber A.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct DeclaredMotor {
+    /// m³/rad, that a chamber takes for an angle.
+    pub displacement: f64,
+    /// rad, from end to end; absent: it turns on without end, and its chambers keep their volumes.
+    pub stroke: Option<f64>,
+    /// kg·m², shaft, rotor and what turns with them.
+    pub inertia: f64,
+    /// m³, in each chamber in addition to the swept volume and the line; this or `dead_volumes`.
+    pub dead_volume: Option<f64>,
+    /// m³, in chamber A and in chamber B.
+    pub dead_volumes: Option<[f64; 2]>,
+    /// m³/(s·Pa), laminar leakage from chamber to chamber.
+    pub internal_leakage: Option<f64>,
+    /// m³/(s·Pa), laminar leakage of each chamber through the case to the tank.
+    pub case_leakage: Option<f64>,
+    /// End stops; absent: the ends are reported, and nothing stops the shaft.
+    pub end_stops: Option<EndStops>,
+    /// Friction of seals and bearings.
+    pub friction: Option<DeclaredFriction>,
+}
+
+impl DeclaredMotor {
+    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+        v.moves(Some(MotionKind::Rotary));
+        let k = key("displacement", &DISPLACEMENT, "What a chamber takes for an angle; torque per pressure.");
+        v.quantity(k.positive(), &mut self.displacement);
+        let k = key("stroke", &ANGLE, "From end to end, 0 at the end of chamber A; absent: it turns on.");
+        v.optional(k.positive(), &mut self.stroke);
+        let k = key("inertia", &INERTIA, "Inertia of shaft, rotor and what turns with them.").positive();
+        v.quantity(k, &mut self.inertia);
+        let k = key("dead_volume", &VOLUME, "Volume of each chamber besides the swept volume and the line.");
+        v.optional(k.not_negative(), &mut self.dead_volume);
+        let k = key("dead_volumes", &VOLUME, "Dead volumes of chamber A and of chamber B.").not_negative();
+        v.pair(k, &mut self.dead_volumes);
+        v.one_of(&["dead_volume", "dead_volumes"], false);
+        let k =
+            key("internal_leakage", &FLOW_PRESSURE_COEFFICIENT, "Laminar leakage from chamber to chamber.");
+        v.optional(k.positive(), &mut self.internal_leakage);
+        let k = key(
+            "case_leakage",
+            &FLOW_PRESSURE_COEFFICIENT,
+            "Laminar leakage of each chamber through the case to the tank.",
+        );
+        v.optional(k.positive(), &mut self.case_leakage);
+        let k = plain("end_stops", "End stops at both ends of the stroke; absent: none.");
+        v.table(k, &mut self.end_stops, EndStops::visit);
+        let k = plain("friction", "Friction of seals and bearings; absent: none.");
+        v.table(k, &mut self.friction, DeclaredFriction::visit);
+    }
+}
+
+impl DeclaredActuator {
+    /// How it moves.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_project::{DeclaredActuator, DeclaredMotor};
+    /// use phea_quantity::MotionKind;
+    /// let cylinder = DeclaredActuator::default();
+    /// assert_eq!(cylinder.motion(), MotionKind::Linear);
+    /// let motor = DeclaredActuator { motor: Some(DeclaredMotor::default()), ..cylinder };
+    /// assert_eq!((motor.motion(), motor.stroke()), (MotionKind::Rotary, None));
+    /// ```
+    pub fn motion(&self) -> MotionKind {
+        if self.motor.is_some() { MotionKind::Rotary } else { MotionKind::Linear }
+    }
+
+    /// m or rad; `None` for a motor that turns on.
+    pub fn stroke(&self) -> Option<f64> {
+        self.motor.as_ref().map_or(Some(self.cylinder.stroke), |motor| motor.stroke)
+    }
+
+    /// Whether a position in m or rad lies beyond the end of the stroke.
+    pub(crate) fn is_beyond(&self, position: f64) -> bool {
+        self.stroke().is_some_and(|stroke| stroke > 0.0 && position > stroke)
+    }
+
+    /// Friction of seals and bearings.
+    pub fn friction(&self) -> Option<&DeclaredFriction> {
+        self.motor.as_ref().map_or(self.cylinder.friction.as_ref(), |motor| motor.friction.as_ref())
+    }
+
+    /// The same, to be changed.
+    pub fn friction_mut(&mut self) -> Option<&mut DeclaredFriction> {
+        match &mut self.motor {
+            Some(motor) => motor.friction.as_mut(),
+            None => self.cylinder.friction.as_mut(),
+        }
+    }
+
+    /// kg or kg·m², what moves, to be changed.
+    pub fn moving_mass_mut(&mut self) -> &mut f64 {
+        match &mut self.motor {
+            Some(motor) => &mut motor.inertia,
+            None => &mut self.cylinder.moving_mass,
+        }
+    }
+
+    /// The table that describes what moves.
+    pub fn moving_part(&self) -> &'static str {
+        if self.motor.is_some() { "motor" } else { "cylinder" }
+    }
+}

@@ -1,0 +1,77 @@
+//! A row for each alternative, under the declared load and under each load case: what a decision
+//! needs, before the table of all numbers.
+
+use super::{AlternativeColumns, Alternatives, COMPARED_AT_A_GLANCE, JudgedAlternative};
+use crate::document::{Cell, Table};
+use crate::quantity::significant;
+use crate::trial::agreement_word;
+
+/// What the group of the project's own load is called, where there are load cases too.
+pub(super) const DECLARED_LOAD: &str = "declared load";
+
+/// The table.
+pub(super) fn table(found: &Alternatives) -> Table {
+    let groups = groups(found);
+    let all: Vec<Vec<AlternativeColumns>> =
+        groups.iter().map(|(_, judged)| judged.iter().map(JudgedAlternative::columns).collect()).collect();
+    let shown = shown(all.iter().flatten());
+    let words = shown.iter().map(|(_, words)| (*words).to_string());
+    let headings = ["alternative", "specifications", "on the machine"].map(String::from);
+    let headings = headings.into_iter().chain(words);
+    let mut rows = match groups.len() {
+        1 => Table::new(headings),
+        _ => Table::grouped_by("load", headings),
+    };
+    for ((name, judged), columns) in groups.iter().zip(&all) {
+        if groups.len() > 1 {
+            rows.group(*name);
+        }
+        for (one, columns) in judged.iter().zip(columns) {
+            let numbers = shown.iter().map(|(key, _)| number(columns, key));
+            let own = [one.name.clone().into(), specifications(one), machine(one)];
+            rows.row(own.into_iter().chain(numbers));
+        }
+    }
+    rows
+}
+
+/// The declared load and the load cases, each with its alternatives.
+pub(super) fn groups(found: &Alternatives) -> Vec<(&str, &[JudgedAlternative])> {
+    let cases = found.cases.iter().map(|case| (case.name.as_str(), case.judged.as_slice()));
+    std::iter::once((DECLARED_LOAD, found.judged.as_slice())).chain(cases).collect()
+}
+
+/// The columns that some alternative has a value for.
+fn shown<'c>(all: impl Iterator<Item = &'c AlternativeColumns> + Clone) -> Vec<(&'static str, &'static str)> {
+    let has = |key: &str| all.clone().any(|columns| columns.worst(key).is_some());
+    COMPARED_AT_A_GLANCE.into_iter().filter(|(key, _)| has(key)).collect()
+}
+
+/// The worst value of a column, as the table of all numbers prints it.
+fn number(columns: &AlternativeColumns, key: &str) -> Cell {
+    let (Some(value), Some(column)) = (columns.worst(key), columns.first(key)) else { return Cell::Missing };
+    match column.digits {
+        0 => value.to_string().into(),
+        digits => Cell::quantity(value, digits, column.unit),
+    }
+}
+
+/// Whether they are met, or by how much they are missed.
+fn specifications(one: &JudgedAlternative) -> Cell {
+    let columns = one.columns();
+    let relaxation = columns.first("relaxation_db").and_then(|column| column.value.clone().ok());
+    match (one.feasible(), relaxation) {
+        (Ok(true), _) => Cell::from("met").marked(true),
+        (Ok(false), Some(relaxation)) => {
+            Cell::from(format!("missed by {} dB", significant(relaxation, 2))).marked(false)
+        }
+        (Ok(false), None) => Cell::from("missed").marked(false),
+        (Err(_), _) => "not known".into(),
+    }
+}
+
+/// Whether the machine behaves as the verdict says.
+pub(super) fn machine(one: &JudgedAlternative) -> Cell {
+    let trial = one.design.as_ref().ok().and_then(|view| view.trial.as_ref());
+    trial.map(|trial| Cell::from(agreement_word(trial.agreement())).marked(trial.agreement())).into()
+}

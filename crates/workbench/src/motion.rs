@@ -1,0 +1,85 @@
+//! What an answer says of a rig that turns: the border where torques, angles and inertias get their
+//! names, units and words. Procedures compute and write in the names of linear motion.
+
+mod json;
+mod lines;
+mod markup;
+
+use crate::answer::Answer;
+use crate::figure::png;
+use crate::project::{Loaded, Project};
+use crate::quantity::{MotionKind, Vocabulary};
+use crate::source::OutputFile;
+
+/// The words for a project, in which the texts of its user stay as they are.
+pub(crate) fn vocabulary(loaded: &Loaded) -> Vocabulary {
+    let project = &loaded.project;
+    match project.motion() {
+        MotionKind::Linear => Vocabulary::default(),
+        MotionKind::Rotary => Vocabulary::rotary(texts_of_user(loaded, project)),
+    }
+}
+
+fn texts_of_user(loaded: &Loaded, project: &Project) -> Vec<String> {
+    let scenarios = project.scenarios.iter().map(|scenario| scenario.name.clone());
+    let lines = project.actuator.iter().flat_map(|actuator| [&actuator.line.a, &actuator.line.b]);
+    let hoses = lines.filter_map(|line| line.hose_name().map(str::to_string));
+    let valve = project.actuator.as_ref().and_then(|actuator| actuator.valve.model.clone());
+    let texts = [project.title.clone(), loaded.path.clone()];
+    texts.into_iter().chain(scenarios).chain(hoses).chain(valve).chain(loaded.settings.clone()).collect()
+}
+
+/// An answer about this project, as its motion has it.
+pub(crate) fn said(answer: Answer, loaded: &Loaded) -> Answer {
+    let words = vocabulary(loaded);
+    if words.is_plain() {
+        return answer;
+    }
+    let mut files: Vec<OutputFile> = answer.files.into_iter().map(|file| said_in(file, &words)).collect();
+    redraw(&mut files);
+    Answer {
+        text: lines::said(&answer.text, &words),
+        json: json::said(&answer.json, &words),
+        files,
+        affirmative: answer.affirmative,
+    }
+}
+
+fn said_in(file: OutputFile, words: &Vocabulary) -> OutputFile {
+    let OutputFile { name, bytes } = file;
+    let Ok(text) = String::from_utf8(bytes.clone()) else { return OutputFile { name, bytes } };
+    let said = match name.rsplit('.').next() {
+        Some("html" | "svg") => markup::said(&text, words),
+        Some("csv") => headings(&text),
+        _ => return OutputFile { name, bytes },
+    };
+    OutputFile::new(name, said)
+}
+
+/// A table whose columns are called as the motion has it.
+fn headings(table: &str) -> String {
+    let (first, rest) = table.split_once('\n').unwrap_or((table, ""));
+    let names: Vec<_> = first.split(',').map(|name| MotionKind::Rotary.name(name)).collect();
+    format!("{}\n{rest}", names.join(","))
+}
+
+/// Pictures of drawings whose words have changed.
+fn redraw(files: &mut [OutputFile]) {
+    let drawings: Vec<(String, String)> = files
+        .iter()
+        .filter_map(|file| {
+            let stem = file.name.strip_suffix(".svg")?;
+            Some((format!("{stem}.png"), String::from_utf8(file.bytes.clone()).ok()?))
+        })
+        .collect();
+    for file in files.iter_mut() {
+        let drawing = drawings.iter().find(|(name, _)| *name == file.name);
+        let drawn = drawing.and_then(|(_, svg)| {
+            let [width, height] = markup::view_box(svg)?;
+            png::render(svg, width, height, crate::answer::PNG_SCALE).ok()
+        });
+        if let Some(bytes) = drawn {
+            file.bytes = bytes;
+        }
+    }
+}

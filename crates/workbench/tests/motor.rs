@@ -1,0 +1,220 @@
+//! A motor in place of the cylinder: its verdict is that of a cylinder on a lever, and nothing that is said of it is in newtons
+//! or millimetres.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
+
+use phea_workbench::answer::Answer;
+use phea_workbench::command::{CommandError, Request, SimulateRequest};
+use serde_json::Value;
+
+use super::ask::{load, try_answer};
+
+const VANE: &str = include_str!("../../../examples/rotary/vane.toml");
+const TURNING: &str = include_str!("../../project/tests/valid/motor_turning.toml");
+
+fn answered(project: &str, request: &Request) -> Answer {
+    try_answer(project, &[], &[], request).unwrap()
+}
+
+/// A rig in the words of a cylinder (arm 1) or of the motor that it is on a lever of this arm.
+fn rig(arm: Option<f64>) -> String {
+    let r = arm.unwrap_or(1.0);
+    let (square, area) = (r * r, 1.6e-3);
+    let friction = format!("model = \"viscous\"\nviscous = {}", 400.0 * square);
+    let moving = match arm {
+        None => format!(
+            "[cylinder]\npiston_area = {area}\nstroke = 0.2\nmoving_mass = 13\ndead_volume = 2e-5\ninternal_leakage = 2e-13\n\
+             [cylinder.friction]\n{friction}"
+        ),
+        Some(_) => format!(
+            "[motor]\ndisplacement = {}\nstroke = {}\ninertia = {}\ndead_volume = 2e-5\ninternal_leakage = 2e-13\n\
+             [motor.friction]\n{friction}",
+            area * r,
+            0.2 / r,
+            13.0 * square
+        ),
+    };
+    let (sensor, gain, step, turn) = (2e7 * square, 0.0005 / r, 1000.0 * r, 1e-3 / r);
+    let (nominal, least, most) = (400.0 * square, 300.0 * square, 2000.0 * square);
+    format!(
+        r#"schema = 1
+title = "arm"
+[fluid]
+bulk_modulus = "1.45 GPa"
+density = 870
+[supply]
+pressure = "70 bar"
+[valve]
+model = "moog_760_c263a"
+leakage_shape = 100
+{moving}
+[line]
+pipe = {{ bore = "10 mm" }}
+length = "1 m"
+[force_sensor]
+stiffness = {sensor}
+[uncertainty]
+viscous_friction = {{ nominal = {nominal}, minimum = {least}, maximum = {most} }}
+[[specification]]
+kind = "robust_stability"
+limit = 1.4
+frequencies = [1, 10, 100]
+band = [0, inf]
+[controller]
+numerator = "{gain}*(s + 5)"
+denominator = "s"
+[[scenario]]
+name = "step"
+duration = "0.5 s"
+reference = [{{ at = "0.1 s", force = {step} }}]
+load_motion = {{ kind = "smooth_step", start = "0.3 s", duration = "0.1 s", distance = {turn} }}
+"#
+    )
+}
+
+fn close(one: f64, other: f64, what: &str) {
+    assert!((one - other).abs() <= 1e-9 * one.abs().max(other.abs()), "{what}: {one} and {other}");
+}
+
+/// The same verdict, margin and frequency; and the same numbers of the linear models.
+#[test]
+fn the_verdict_is_that_of_the_cylinder_on_its_lever() {
+    let arm = 0.04;
+    let json = |project: &str, request: &Request| -> Value {
+        serde_json::from_str(&answered(project, request).json).unwrap()
+    };
+    let [linear, rotary] = [rig(None), rig(Some(arm))];
+    let [one, other] = [&linear, &rotary].map(|project| json(project, &Request::Verify));
+    assert_eq!(one["verdict"], other["verdict"]);
+    let of = |audit: &Value, key: &str| audit["specifications"][0][key].as_f64().unwrap();
+    assert!((of(&one, "worst_margin_db") - of(&other, "worst_margin_db")).abs() < 1e-7);
+    let (one, other) = (json(&linear, &Request::Linearize), json(&rotary, &Request::Linearize));
+    let stiffness = |found: &Value, key: &str| found["stiffness"][key].as_f64().unwrap();
+    close(
+        stiffness(&one, "minimum_n_per_m") * arm * arm,
+        stiffness(&other, "minimum_n_m_per_rad"),
+        "least stiffness",
+    );
+    let (one, other) = (json(&linear, &Request::Simulate), json(&rotary, &Request::Simulate));
+    let metric = |run: &Value, event: usize, key: &str| {
+        run["scenarios"][0]["events"][event]["metrics"][key].as_f64().unwrap()
+    };
+    let [peak, turned] = [metric(&one, 1, "disturbance_peak_n"), metric(&other, 1, "disturbance_peak_n_m")];
+    assert!((peak * arm / turned - 1.0).abs() < 1e-4, "{peak} {turned}");
+    let [rise, turned] = [metric(&one, 0, "rise_time_s"), metric(&other, 0, "rise_time_s")];
+    assert!((rise / turned - 1.0).abs() < 1e-4, "{rise} {turned}");
+}
+
+/// What no sentence, axis or heading of a rotary rig may have: units and words of linear motion.
+fn of_linear_motion(text: &str) -> Vec<String> {
+    let units =
+        ["kN", "MN", "N", "N/m", "MN/m", "kN/mm", "N/mm", "N.s/m", "N·s/m", "V/N", "N/V", "mm/s", "kg"];
+    let words =
+        ["force", "forces", "piston", "pistons", "cylinder", "rod", "newton", "newtons", "mass", "cell"];
+    let separators = |c: char| c.is_whitespace() || matches!(c, '(' | ')' | ',' | ';' | ':' | '"' | '|');
+    let mut found = Vec::new();
+    for word in text.split(separators).map(|word| word.trim_end_matches(['.', '?'])) {
+        if units.contains(&word) || words.contains(&word.to_lowercase().trim_end_matches("'s")) {
+            found.push(word.to_string());
+        }
+    }
+    found
+}
+
+/// The text of a page or drawing, its code and styles left out.
+fn text_of(markup: &str) -> String {
+    let mut text = String::new();
+    let mut rest = markup;
+    while let Some(start) = rest.find('<') {
+        text.push_str(&rest[..start]);
+        text.push(' ');
+        let skipped = ["<style", "<code", "<script"].iter().find(|tag| rest[start..].starts_with(**tag));
+        let end = match skipped {
+            Some(tag) => rest[start..].find(&tag.replace('<', "</")).unwrap_or(1),
+            None => 0,
+        };
+        let after = &rest[start + end..];
+        rest = after.find('>').map_or("", |end| &after[end + 1..]);
+    }
+    text + rest
+}
+
+/// Keys of JSON that say a unit of linear motion.
+fn keys_of_linear_motion(value: &Value) -> Vec<String> {
+    match value {
+        Value::Object(members) => members
+            .iter()
+            .flat_map(|(key, value)| {
+                let bare = key.strip_suffix("_reason").unwrap_or(key);
+                let is_linear = ["_n", "_n_per_m", "_v_per_n", "_m_per_s", "_m", "_kg"]
+                    .iter()
+                    .any(|end| bare.ends_with(end))
+                    && !bare.ends_with("_n_m");
+                is_linear
+                    .then(|| key.clone())
+                    .into_iter()
+                    .chain(keys_of_linear_motion(value))
+                    .collect::<Vec<_>>()
+            })
+            .collect(),
+        Value::Array(items) => items.iter().flat_map(keys_of_linear_motion).collect(),
+        _ => vec![],
+    }
+}
+
+fn check(project: &str, request: &Request) {
+    let answer = answered(project, request);
+    let name = request.name();
+    assert_eq!(of_linear_motion(&answer.text), [""; 0], "{name}: {}", answer.text);
+    let json: Value = serde_json::from_str(&answer.json).unwrap();
+    assert_eq!(json["motion"], "rotary", "{name}");
+    assert_eq!(keys_of_linear_motion(&json), [""; 0], "{name}");
+    for file in &answer.files {
+        let Ok(text) = std::str::from_utf8(&file.bytes) else { continue };
+        let found = match file.name.rsplit('.').next() {
+            Some("html" | "svg") => of_linear_motion(&text_of(text)),
+            Some("csv") => {
+                let linear = |name: &&str| {
+                    ["_n", "_m", "_m_per_s"].iter().any(|end| name.ends_with(end)) && !name.ends_with("_n_m")
+                };
+                text.lines().next().unwrap().split(',').filter(linear).map(str::to_string).collect()
+            }
+            _ => vec![],
+        };
+        assert_eq!(found, [""; 0], "{name}: {}", file.name);
+    }
+}
+
+#[test]
+fn nothing_is_said_in_newtons_or_millimetres() {
+    let with_figures = SimulateRequest { figures: true, ..SimulateRequest::default() };
+    for request in [
+        Request::Check,
+        Request::Linearize,
+        Request::VerifyOnMachine,
+        Request::VerifyProven { on_machine: false },
+        Request::SimulateAs(with_figures.clone()),
+        Request::Report,
+    ] {
+        check(VANE, &request);
+    }
+    for request in [Request::Check, Request::Linearize, Request::SimulateAs(with_figures), Request::Report] {
+        check(TURNING, &request);
+    }
+}
+
+#[test]
+fn what_does_not_treat_a_motor_refuses_it() {
+    let requests = [
+        Request::Size { gain: None, length: None },
+        Request::Compare,
+        Request::Bench,
+        Request::Alternatives(Default::default()),
+        Request::ReportOfAlternatives { files: false },
+    ];
+    for request in requests {
+        let refused = try_answer(VANE, &[], &[], &request);
+        assert!(matches!(refused, Err(CommandError::OfCylinders { .. })), "{}", request.name());
+    }
+    assert!(load(VANE, &[], &[]).project.motion().is_rotary());
+}
