@@ -203,10 +203,7 @@ fn components(chance: &mut Chance, like_benchmark: bool) -> Components {
             bulk_modulus: chance.decades(2e8, 2e9),
             density: 870.0,
             kinematic_viscosity: 46e-6,
-            entrained_air: air.then(|| EntrainedAir {
-                volume_fraction: chance.decades(1e-4, 3e-2),
-                polytropic_exponent: 1.2,
-            }),
+            entrained_air: air.then(|| bubbles(chance)),
         },
         supply: Supply { pressure, tank_pressure: chance.between(0.0, 0.05) * pressure },
         valve: Servovalve {
@@ -245,6 +242,10 @@ fn components(chance: &mut Chance, like_benchmark: bool) -> Components {
             StiffnessModel::Uniform
         },
     }
+}
+
+fn bubbles(chance: &mut Chance) -> EntrainedAir {
+    EntrainedAir { volume_fraction: chance.decades(1e-4, 3e-2), polytropic_exponent: 1.2 }
 }
 
 fn friction(chance: &mut Chance, most_force: f64, mass: f64, bristles: bool) -> Friction {
