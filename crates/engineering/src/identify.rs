@@ -31,7 +31,7 @@ pub use joint::{COVERAGE, JointRegion, JointRegionError, SMALLEST_EFFECT, joint_
 pub use reading::recordings;
 pub(crate) use recording::median;
 pub use recording::{RecordedSignal, Recording, SignalKind};
-pub use simple::{CurveReading, NullMethod, SimpleCalculations};
+pub use simple::{CurveReading, NullMethod, NullReading, SimpleCalculations};
 pub use told::Untold;
 
 use phea_dynamics::least_squares::Ending;

@@ -61,7 +61,7 @@ pub(super) fn project(project: &Project, reader: &mut Reader<'_>) {
         identify::in_use(project, identified, &mut check);
     }
     alternative::alternatives(&project.alternatives, &mut check);
-    alternative::load_cases(&project.load_cases, &mut check);
+    alternative::load_cases(project, &mut check);
 }
 
 impl DeclaredElement {

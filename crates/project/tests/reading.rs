@@ -236,6 +236,11 @@ fn what_has_no_effect_is_told() {
         &rig.replace("\n[linear]", stiffness),
         "`line.b.volume` does not reach the linear model: [linear] sets what it changes",
     );
+    let case = "[[load_case]]\nname = \"on a wall\"\nset = { \"load.model\" = \"wall\" }\n";
+    warns(
+        &format!("{HOSE}\n{case}"),
+        "[[load_case]] has no effect, and its values are not read: there is no [[alternative]] to judge under it",
+    );
     warns(&format!("{HOSE}\n[load]\nmass = 2\n"), "`mass` has no effect with model \"prescribed\"");
     warns(
         &HOSE.replace("anti_windup = \"none\"", "discretization = \"matched\""),

@@ -49,6 +49,7 @@ mod sensor;
 mod series;
 mod shaken_feed_forward;
 mod shaken_impedance;
+mod shaken_load;
 mod shaping;
 mod simulate;
 mod simulation_check;

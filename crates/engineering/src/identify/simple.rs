@@ -24,6 +24,15 @@ pub enum NullMethod {
     EqualPressures,
 }
 
+/// Null, and what shows it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NullReading {
+    /// V.
+    pub command: CurveReading,
+    /// What shows it.
+    pub method: NullMethod,
+}
+
 /// What the calculations of the thesis, section 5.2, give; `None` where the test for it is missing.
 /// SI.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -41,9 +50,7 @@ pub struct SimpleCalculations {
     /// lambda of (4.14), by the width of the curve at half its height.
     pub leakage_shape: Option<f64>,
     /// Command of null with a rising and a falling command, in V.
-    pub nulls: [Option<CurveReading>; 2],
-    /// How each of them was found.
-    pub null_methods: [Option<NullMethod>; 2],
+    pub nulls: [Option<NullReading>; 2],
     /// dq/dU near null at the usual supply pressure, for positive and negative commands, in m3/(s V).
     pub flow_gains: [Option<CurveReading>; 2],
     /// d(p_A - p_B)/dU at null with blocked ports, in Pa/V.
@@ -54,22 +61,19 @@ impl SimpleCalculations {
     /// Mean of both nulls.
     pub fn null_bias(&self) -> Option<CurveReading> {
         let [rising, falling] = self.nulls;
-        CurveReading::mean(&[rising?, falling?])
+        CurveReading::mean(&[rising?.command, falling?.command])
     }
 
     /// Takes a null where nothing better showed it before.
     fn add_null(&mut self, rising: bool, method: NullMethod, read: impl FnOnce() -> Option<CurveReading>) {
-        let place = usize::from(!rising);
-        if self.nulls[place].is_none() {
-            self.nulls[place] = read();
-            self.null_methods[place] = self.nulls[place].is_some().then_some(method);
-        }
+        let null = &mut self.nulls[usize::from(!rising)];
+        *null = null.or_else(|| read().map(|command| NullReading { command, method }));
     }
 
     /// Their difference.
     pub fn hysteresis(&self) -> Option<CurveReading> {
         let [rising, falling] = self.nulls;
-        Some(rising?.minus(&falling?))
+        Some(rising?.command.minus(&falling?.command))
     }
 
     /// K_vinp by (4.13).
@@ -195,10 +199,10 @@ fn leakage(recording: &Recording, tested: &TestedValve, found: &mut SimpleCalcul
     let peaks: Vec<CurveReading> = peaks.into_iter().flatten().collect();
     found.null_leakage = CurveReading::mean(&peaks).map(|peak| peak.plus(-tare));
     let mut widths = Vec::new();
-    for (place, rising) in [true, false].into_iter().enumerate() {
+    for (null, rising) in found.nulls.iter_mut().zip([true, false]) {
         if let Some([low, high]) = edges(rising) {
-            found.nulls[place] = CurveReading::mean(&[low, high]);
-            found.null_methods[place] = Some(NullMethod::LeakageCentre);
+            let centre = CurveReading::mean(&[low, high]);
+            *null = centre.map(|command| NullReading { command, method: NullMethod::LeakageCentre });
             widths.push((high.value - low.value) / 2.0);
         }
     }

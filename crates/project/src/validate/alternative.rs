@@ -1,7 +1,7 @@
 //! The names of alternatives and of load cases.
 
 use super::Check;
-use crate::{AS_DECLARED, Alternative, LoadCase};
+use crate::{AS_DECLARED, Alternative, Project};
 
 /// Names must differ, as names of files do: without regard to capitals.
 pub(super) fn alternatives(alternatives: &[Alternative], check: &mut Check<'_, '_>) {
@@ -15,10 +15,14 @@ pub(super) fn alternatives(alternatives: &[Alternative], check: &mut Check<'_, '
     }
 }
 
-/// Likewise.
-pub(super) fn load_cases(load_cases: &[LoadCase], check: &mut Check<'_, '_>) {
-    let names: Vec<&str> = load_cases.iter().map(|one| one.name.as_str()).collect();
+/// Likewise; what only alternatives are judged under is nothing without them.
+pub(super) fn load_cases(project: &Project, check: &mut Check<'_, '_>) {
+    let names: Vec<&str> = project.load_cases.iter().map(|one| one.name.as_str()).collect();
     names_differ(&names, ("load_case", "a load case"), check);
+    if !names.is_empty() && project.alternatives.is_empty() {
+        let message = "[[load_case]] has no effect, and its values are not read: there is no [[alternative]] to judge under it";
+        check.warning("load_case", message);
+    }
 }
 
 fn names_differ(names: &[&str], (table, words): (&str, &str), check: &mut Check<'_, '_>) {

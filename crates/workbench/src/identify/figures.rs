@@ -209,7 +209,9 @@ fn over_command(
 /// Both nulls as marks.
 fn null_marks(found: &Identification) -> Vec<(f64, String)> {
     let nulls = found.simple.nulls.into_iter().zip(["rising", "falling"]);
-    nulls.filter_map(|(null, way)| Some((percent(found, null?.value), format!("null {way}")))).collect()
+    nulls
+        .filter_map(|(null, way)| Some((percent(found, null?.command.value), format!("null {way}"))))
+        .collect()
 }
 
 fn ways_legend(kind: impl Fn(usize) -> CurveStyle) -> Vec<(String, CurveStyle)> {

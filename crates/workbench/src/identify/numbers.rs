@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::{COEFFICIENT_NAMES, CurveReading, Identification, NullMethod, SimpleCalculations};
+use super::{COEFFICIENT_NAMES, CurveReading, Identification, NullMethod, NullReading, SimpleCalculations};
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
 
@@ -51,9 +51,9 @@ pub(super) fn simple_body(found: &SimpleCalculations) -> SimpleBody {
         tare_flow_m3_per_s: read("tare_flow_m3_per_s", found.tare_flow),
         tare_share: read("tare_share", found.tare_share()),
         null_bias_v: read("null_bias_v", found.null_bias()),
-        null_rising_v: read("null_rising_v", rising),
-        null_falling_v: read("null_falling_v", falling),
-        null_methods: found.null_methods.map(|method| method.map(null_method)),
+        null_rising_v: read("null_rising_v", rising.map(|null| null.command)),
+        null_falling_v: read("null_falling_v", falling.map(|null| null.command)),
+        null_methods: found.nulls.map(|null| null.map(|null| null_method(null.method))),
         hysteresis_v: read("hysteresis_v", found.hysteresis()),
         flow_gain_extending_m3_per_s_v: read("flow_gain_extending_m3_per_s_v", gain_extending),
         flow_gain_retracting_m3_per_s_v: read("flow_gain_retracting_m3_per_s_v", gain_retracting),
@@ -108,8 +108,8 @@ fn null_method(method: NullMethod) -> &'static str {
 }
 
 /// By which a null was found.
-fn null_equation(method: Option<NullMethod>) -> &'static str {
-    match method {
+fn null_equation(null: Option<NullReading>) -> &'static str {
+    match null.map(|null| null.method) {
         Some(NullMethod::FlowLines) => "between zeros of q(U)",
         Some(NullMethod::EqualPressures) => "p_A = p_B",
         Some(NullMethod::LeakageCentre) | None => "centre of q_leak(U)",
@@ -123,7 +123,7 @@ fn null_offset(found: &Identification) -> Option<String> {
     let null_bias = COEFFICIENT_NAMES.iter().position(|(name, _)| *name == "null_bias")?;
     found.intervals.get(null_bias)?.as_ref()?;
     let offset = read.value - found.coefficients.null_bias;
-    let reason = match found.simple.null_methods[0]? {
+    let reason = match found.simple.nulls[0]?.method {
         NullMethod::LeakageCentre => "the leakage curve of unequal edges is not even about null",
         NullMethod::FlowLines => "where the straight lines begin the spool still remembers its last reversal",
         NullMethod::EqualPressures => "unequal edges balance the ports beside null",
@@ -150,7 +150,6 @@ fn lines(simple: &SimpleCalculations) -> Vec<(NumberLine, Option<CurveReading>)>
     let [extending, retracting] = simple.flow_coefficients;
     let [gain_extending, gain_retracting] = simple.flow_gains;
     let [rising, falling] = simple.nulls;
-    let [by_rising, by_falling] = simple.null_methods;
     let tare = line("tare flow q_tare", "base of q_leak(U)", "m3/s", Some("7.55e-6"));
     let leak = line("leakage at null q_vin", "peak of q_leak(U) - q_tare", "m3/s", Some("9.31e-6"));
     let share = line("tare flow in the leakage at null", "q_tare/(q_tare + q_vin)", "%", Some("44.77"));
@@ -178,8 +177,14 @@ fn lines(simple: &SimpleCalculations) -> Vec<(NumberLine, Option<CurveReading>)>
         (ext, extending),
         (ret, retracting),
         (rated, percent(simple.share_of_nominal)),
-        (line("null, rising command", null_equation(by_rising), "V", Some("0.078")), rising),
-        (line("null, falling command", null_equation(by_falling), "V", Some("-0.05")), falling),
+        (
+            line("null, rising command", null_equation(rising), "V", Some("0.078")),
+            rising.map(|null| null.command),
+        ),
+        (
+            line("null, falling command", null_equation(falling), "V", Some("-0.05")),
+            falling.map(|null| null.command),
+        ),
         (width, simple.hysteresis()),
         (gain, gain_extending),
         (back, gain_retracting),
