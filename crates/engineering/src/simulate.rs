@@ -206,18 +206,28 @@ pub fn simulate_project(
     setup: &Setup<'_>,
     watch: Watch<'_>,
 ) -> Result<Vec<ScenarioRun>, SimulateError> {
-    simulate_into(source, setup, None, watch)
+    simulate_into(source, setup, RunOutput { samples: true, table: None }, watch)
 }
 
-/// The same, with a table of each scenario, `SCENARIO.csv` or `SCENARIO.parquet`, its rows written
-/// as they are computed: no row is kept in memory, however many there are.
+/// What runs leave in addition to their metrics and events.
+#[derive(Clone, Copy)]
+pub struct RunOutput<'a> {
+    /// Whether each keeps its samples in memory, for figures; without them its record is empty.
+    pub samples: bool,
+    /// A table of each scenario, `SCENARIO.csv` or `SCENARIO.parquet`, its rows written as they are
+    /// computed: none is kept in memory, however many there are.
+    pub table: Option<(&'a dyn Destination, TableFormat)>,
+}
+
+/// The same, with the output that is asked for: samples cost more than the solution of the
+/// equations.
 ///
 /// # Errors
 /// As [`simulate_project`], and [`SimulateError::Write`].
 pub fn simulate_into(
     source: &dyn Source,
     setup: &Setup<'_>,
-    destination: Option<(&dyn Destination, TableFormat)>,
+    output: RunOutput<'_>,
     watch: Watch<'_>,
 ) -> Result<Vec<ScenarioRun>, SimulateError> {
     let project = setup.project;
@@ -233,14 +243,14 @@ pub fn simulate_into(
     }
     let whole: f64 = project.scenarios.iter().map(|scenario| scenario.duration).sum();
     let (mut before, mut runs) = (0.0, Vec::new());
-    let ending = destination.map_or("csv", |(_, format)| format.ending());
+    let ending = output.table.map_or("csv", |(_, format)| format.ending());
     let names = table_names(project.scenarios.iter().map(|scenario| scenario.name.as_str()), ending);
     for ((scenario, (bench, course, measured)), name) in project.scenarios.iter().zip(&prepared).zip(&names) {
         let begin = |(destination, format)| RunTable::begin((destination, name), format, bench);
-        let table = destination.map(begin).transpose()?;
+        let table = output.table.map(begin).transpose()?;
         let mut told =
             |time_s: f64| watch(Progress { stage: "simulating", share: (before + time_s) / whole });
-        let run = run::run(bench, scenario, (course, measured), table, &mut told)?;
+        let run = run::run(bench, scenario, (course, measured), (table, output.samples), &mut told)?;
         let stopped = run.was_cancelled();
         runs.push(run);
         before += scenario.duration;

@@ -5,7 +5,8 @@ use phea_hydraulics::machine::{SERIES_SIGNALS, SIGNALS};
 
 use super::metrics::Measured;
 use super::{
-    Metrics, Record, ScenarioRun, SimulateError, StoppedRun, Window, simulate_into, simulate_project,
+    Metrics, Record, RunOutput, ScenarioRun, SimulateError, StoppedRun, Window, simulate_into,
+    simulate_project,
 };
 use crate::number_table::TableFormat;
 use crate::setup::Setup;
@@ -84,7 +85,7 @@ impl ToleranceCheck {
     }
 }
 
-/// As [`simulate_into`], and each scenario a second time at a tenth of the tolerance, which fills
+/// As [`simulate_into`] with samples, and each scenario a second time at a tenth of the tolerance, which fills
 /// [`ScenarioRun::check`].
 ///
 /// # Errors
@@ -92,11 +93,12 @@ impl ToleranceCheck {
 pub fn simulate_checked(
     source: &dyn Source,
     setup: &Setup<'_>,
-    destination: Option<(&dyn Destination, TableFormat)>,
+    table: Option<(&dyn Destination, TableFormat)>,
     watch: Watch<'_>,
 ) -> Result<Vec<ScenarioRun>, SimulateError> {
     let half = |progress: Progress| Progress { share: 0.5 * progress.share, ..progress };
-    let mut runs = simulate_into(source, setup, destination, &mut |progress| watch(half(progress)))?;
+    let output = RunOutput { samples: true, table };
+    let mut runs = simulate_into(source, setup, output, &mut |progress| watch(half(progress)))?;
     if runs.iter().any(ScenarioRun::was_cancelled) {
         return Ok(runs);
     }

@@ -1,9 +1,10 @@
 //! Limits of the rig that a run exceeds. Nothing is clamped by them: the real rig has these limits,
 //! the simulated machine does not.
 
+use phea_hydraulics::machine::SIGNALS;
 use phea_hydraulics::series::ForceFrom;
 
-use super::{ControlledMachine, Record};
+use super::ControlledMachine;
 use crate::quantity::{DisplayUnit, FORCE, VOLTAGE, display};
 
 /// A limit of the rig, and how far a run exceeds it.
@@ -47,36 +48,99 @@ impl RigLimit {
 /// Exceeding a limit by less than this share of it counts as rounding.
 const ROUNDING: f64 = 1e-6;
 
-/// The limits that a run exceeds, by its samples.
-pub(super) fn exceeded(bench: &ControlledMachine, record: &Record) -> Vec<Exceeded> {
-    let components = bench.rig.actuator.components();
-    let (cylinder, supply) = (&components.cylinder, &components.supply);
-    let stalls_at = |pushed: f64, pulled: f64| pushed * supply.pressure - pulled * supply.tank_pressure;
-    let extending = stalls_at(cylinder.area_a, cylinder.area_b);
-    let retracting = -stalls_at(cylinder.area_b, cylinder.area_a);
-    let voltage = components.valve.nominal_voltage;
-    // the force through the sensor, wherever the measured one is taken from
-    let deflections = record.signal("deflection_m");
-    let forces: Vec<f64> = match components.series.map(|series| series.force_from) {
-        Some(ForceFrom::Deflection) => {
-            deflections.into_iter().map(|deflection| components.force_sensor.stiffness * deflection).collect()
-        }
-        Some(ForceFrom::Sensor) | None => record.signal("force_n"),
-    };
-    let sensor = bench.force_capacity_n.and_then(|capacity| {
-        beyond(RigLimit::SensorCapacity, [-capacity, capacity], &record.times_s, &forces)
-    });
-    let stall = beyond(RigLimit::StallForce, [retracting, extending], &record.times_s, &record.reference_n);
-    let command = beyond(RigLimit::NominalVoltage, [-voltage, voltage], &record.times_s, &record.control_v);
-    [sensor, stall, command].into_iter().flatten().collect()
+/// Watches for the limits that a run exceeds, sample by sample.
+pub(super) struct LimitWatch {
+    /// Of the force sensor, and the force through it from the signals of the machine.
+    sensor: Option<(WatchedLimit, SensedForce)>,
+    stall: WatchedLimit,
+    command: WatchedLimit,
 }
 
-fn beyond(limit: RigLimit, [low, high]: [f64; 2], times_s: &[f64], values: &[f64]) -> Option<Exceeded> {
-    let excess = |value: f64| (value - high).max(low - value);
-    let mut found: Option<Exceeded> = None;
-    for (&time_s, &value) in times_s.iter().zip(values) {
+/// The force through the sensor, wherever the measured one is taken from.
+#[derive(Clone, Copy)]
+enum SensedForce {
+    /// The measured force.
+    Measured,
+    /// From the deflection of the sensor, whose stiffness in N/m this is.
+    Deflection(f64),
+}
+
+/// A limit in both directions.
+struct WatchedLimit {
+    limit: RigLimit,
+    low: f64,
+    high: f64,
+    found: Option<Exceeded>,
+}
+
+impl LimitWatch {
+    pub(super) fn of(bench: &ControlledMachine) -> LimitWatch {
+        let components = bench.rig.actuator.components();
+        let (cylinder, supply) = (&components.cylinder, &components.supply);
+        let stalls_at = |pushed: f64, pulled: f64| pushed * supply.pressure - pulled * supply.tank_pressure;
+        let extending = stalls_at(cylinder.area_a, cylinder.area_b);
+        let retracting = -stalls_at(cylinder.area_b, cylinder.area_a);
+        let voltage = components.valve.nominal_voltage;
+        let sensed = match components.series.map(|series| series.force_from) {
+            Some(ForceFrom::Deflection) => SensedForce::Deflection(components.force_sensor.stiffness),
+            Some(ForceFrom::Sensor) | None => SensedForce::Measured,
+        };
+        let of_sensor = |capacity: f64| WatchedLimit::new(RigLimit::SensorCapacity, [-capacity, capacity]);
+        LimitWatch {
+            sensor: bench.force_capacity_n.map(|capacity| (of_sensor(capacity), sensed)),
+            stall: WatchedLimit::new(RigLimit::StallForce, [retracting, extending]),
+            command: WatchedLimit::new(RigLimit::NominalVoltage, [-voltage, voltage]),
+        }
+    }
+
+    /// Whether it needs the signals of the machine.
+    pub(super) fn wants_signals(&self) -> bool {
+        self.sensor.is_some()
+    }
+
+    /// Takes what the loop asks for and gives out at a time: reference in N, if there is one, and
+    /// command in V.
+    pub(super) fn take_loop(&mut self, time_s: f64, reference_n: Option<f64>, control_v: f64) {
+        if let Some(reference_n) = reference_n {
+            self.stall.take(time_s, reference_n);
+        }
+        self.command.take(time_s, control_v);
+    }
+
+    /// Takes the signals of the machine at a time.
+    pub(super) fn take_signals(&mut self, time_s: f64, signals: &[f64; SIGNALS.len()]) {
+        if let Some((limit, sensed)) = &mut self.sensor {
+            let through = match sensed {
+                SensedForce::Measured => signals[FORCE_PLACE],
+                SensedForce::Deflection(stiffness) => *stiffness * signals[DEFLECTION_PLACE],
+            };
+            limit.take(time_s, through);
+        }
+    }
+
+    /// The limits that were exceeded.
+    pub(super) fn finish(self) -> Vec<Exceeded> {
+        let sensor = self.sensor.and_then(|(limit, _)| limit.found);
+        [sensor, self.stall.found, self.command.found].into_iter().flatten().collect()
+    }
+}
+
+/// Places of the measured force and of the sensor's deflection in [`SIGNALS`].
+const FORCE_PLACE: usize = 0;
+const DEFLECTION_PLACE: usize = 7;
+const _: () = assert!(matches!(SIGNALS[FORCE_PLACE].as_bytes(), b"force_n"));
+const _: () = assert!(matches!(SIGNALS[DEFLECTION_PLACE].as_bytes(), b"deflection_m"));
+
+impl WatchedLimit {
+    fn new(limit: RigLimit, [low, high]: [f64; 2]) -> WatchedLimit {
+        WatchedLimit { limit, low, high, found: None }
+    }
+
+    fn take(&mut self, time_s: f64, value: f64) {
+        let WatchedLimit { limit, low, high, ref mut found } = *self;
+        let excess = |value: f64| (value - high).max(low - value);
         if excess(value) <= ROUNDING * (high - low) {
-            continue;
+            return;
         }
         let limit_value = if value > high { high } else { low };
         let first = Exceeded { limit, limit_value, peak: value, peak_time_s: time_s, first_time_s: time_s };
@@ -85,7 +149,6 @@ fn beyond(limit: RigLimit, [low, high]: [f64; 2], times_s: &[f64], values: &[f64
             (found.peak, found.peak_time_s) = (value, time_s);
         }
     }
-    found
 }
 
 /// In a sentence.

@@ -7,7 +7,9 @@ use phea_dynamics::simulation::{Attention, Observer, Stretch};
 use phea_machine::{Control, ControllerSample, ControllerSamples};
 
 use super::bench::ControlledMachine;
+use super::columns::LOOP_SIGNALS;
 use super::course::PreparedScenario;
+use super::exceeded::{Exceeded, LimitWatch};
 use super::files::RunTable;
 use super::follower::Follower;
 use super::measured::{Measurement, Overlay, Overlaying};
@@ -25,6 +27,18 @@ pub(super) struct Sighted {
     /// Highest pressures of chambers A and B, Pa.
     pub(super) peak_pressures_pa: [f64; 2],
     pub(super) measured: Vec<Overlay>,
+    /// The limits of the rig that it exceeds.
+    pub(super) exceeded: Vec<Exceeded>,
+}
+
+/// The controller at one time.
+struct LoopLook {
+    /// Reference and filtered reference in N; `None` in an open loop.
+    asked_for: Option<[f64; 2]>,
+    /// V, output of the controller.
+    control_v: f64,
+    /// In the order of [`LOOP_SIGNALS`].
+    of_loop: [f64; LOOP_SIGNALS.len()],
 }
 
 /// Observes a machine and its controller.
@@ -39,6 +53,11 @@ pub(super) struct Looking<'a> {
     looks_per_row: u64,
     table: Option<RunTable<'a>>,
     record: Record,
+    /// Whether the record takes samples.
+    samples_kept: bool,
+    /// Whether anything takes the signals of the machine.
+    needs_signals: bool,
+    limits: LimitWatch,
     follower: Follower<'a>,
     /// Of chambers A and B, and the highest so far, Pa.
     pressures: [WeightedSum; 2],
@@ -63,6 +82,8 @@ impl<'a> Looking<'a> {
         let windows = (course.windows.as_slice(), band);
         let follower = Follower::of(bench, &wanted, samples, &course.reference, windows);
         let pressures = sums::pressures(bench, &wanted);
+        let limits = LimitWatch::of(bench);
+        let needs_signals = table.is_some() || !measurements.is_empty() || limits.wants_signals();
         Looking {
             bench,
             samples,
@@ -71,6 +92,9 @@ impl<'a> Looking<'a> {
             looks_per_row: looks_per_row as u64,
             table,
             record: Record::default(),
+            samples_kept: false,
+            needs_signals,
+            limits,
             follower,
             pressures,
             peak_pressures_pa: [f64::NEG_INFINITY; 2],
@@ -80,9 +104,10 @@ impl<'a> Looking<'a> {
         }
     }
 
-    /// Allocates memory for this many samples at once.
-    pub(super) fn expecting(mut self, looks: f64) -> Looking<'a> {
+    /// The same, with a record of its samples, about as many as this.
+    pub(super) fn keeping(mut self, looks: f64) -> Looking<'a> {
         self.record.reserve(looks as usize);
+        (self.samples_kept, self.needs_signals) = (true, true);
         self
     }
 
@@ -99,10 +124,17 @@ impl<'a> Looking<'a> {
         }
         let measured = self.overlays.into_iter().map(Overlaying::finish).collect();
         let metrics = self.follower.metrics();
-        Ok(Sighted { record: self.record, metrics, peak_pressures_pa: self.peak_pressures_pa, measured })
+        Ok(Sighted {
+            record: self.record,
+            metrics,
+            peak_pressures_pa: self.peak_pressures_pa,
+            measured,
+            exceeded: self.limits.finish(),
+        })
     }
 
-    fn look(&self, time_s: f64, states: &[f64], inputs: &[f64]) -> Look {
+    /// What the controller sees and gives out, and the inputs of the machine alone.
+    fn loop_look<'i>(&self, states: &[f64], inputs: &'i [f64]) -> (LoopLook, &'i [f64]) {
         let (asked_for, control_v, mut of_loop, others) = match &self.bench.control {
             Control::Continuous(closed) => {
                 let signals = closed.signals::<f64, f64>(states, inputs);
@@ -129,9 +161,14 @@ impl<'a> Looking<'a> {
                 (None, inputs[0], [inputs[0], inputs[0], 0.0, measured, 0.0], &inputs[2..])
             }
         };
-        let machine = &self.bench.machine;
         let [.., virtual_force] = &mut of_loop;
         *virtual_force = self.bench.control.sensed().given_way::<f64, f64>(states, others);
+        (LoopLook { asked_for, control_v, of_loop }, others)
+    }
+
+    fn look(&self, time_s: f64, of_loop: LoopLook, states: &[f64], others: &[f64]) -> Look {
+        let LoopLook { asked_for, control_v, of_loop } = of_loop;
+        let machine = &self.bench.machine;
         Look {
             time_s,
             reference_n: asked_for.map(|[reference, _]| reference),
@@ -153,14 +190,23 @@ impl Observer for Looking<'_> {
         if self.fault.is_some() {
             return;
         }
-        let look = self.look(time_s, states, inputs);
+        let (of_loop, others) = self.loop_look(states, inputs);
+        self.limits.take_loop(time_s, of_loop.asked_for.map(|[reference, _]| reference), of_loop.control_v);
+        if !self.needs_signals {
+            self.count += 1;
+            return;
+        }
+        let look = self.look(time_s, of_loop, states, others);
+        self.limits.take_signals(time_s, &look.signals);
         if let Some(table) = self.table.as_mut().filter(|_| self.count.is_multiple_of(self.looks_per_row))
             && let Err(fault) = table.row(&look)
         {
             self.fault = Some(fault);
             self.full.set(true);
         }
-        self.record.take(self.count, &look);
+        if self.samples_kept {
+            self.record.take(self.count, &look);
+        }
         for overlay in &mut self.overlays {
             overlay.take(&look);
         }

@@ -10,7 +10,7 @@ use phea_machine::{Control, ControllerSamples, Digital, DigitalMemory, Watcher};
 
 use super::bench::ControlledMachine;
 use super::course::PreparedScenario;
-use super::exceeded::{Exceeded, exceeded};
+use super::exceeded::Exceeded;
 use super::look::{Looking, Sighted};
 use super::measured::{Measurement, Overlay};
 use super::metrics::Metrics;
@@ -36,7 +36,8 @@ pub struct ScenarioRun {
     pub status: Status,
     /// What it cost.
     pub work: StepCounts,
-    /// The record, every [`ScenarioRun::look_s`], or less often in a long run.
+    /// The record, every [`ScenarioRun::look_s`], or less often in a long run; empty where it was not
+    /// asked for.
     pub record: Record,
     /// Number of samples between two rows of the result.
     pub looks_per_row: usize,
@@ -145,13 +146,13 @@ impl StoppedRun {
     }
 }
 
-/// Runs a scenario and writes its rows into a table, if one is given; `watch` is called with the
-/// simulated time at intervals.
+/// Runs a scenario, writes its rows into a table, if one is given, and keeps its samples, if they
+/// are asked for; `watch` is called with the simulated time at intervals.
 pub(super) fn run(
     bench: &ControlledMachine,
     scenario: &Scenario,
     (course, measurements): (&PreparedScenario, &[Measurement]),
-    table: Option<RunTable<'_>>,
+    (table, samples_kept): (Option<RunTable<'_>>, bool),
     watch: &mut dyn FnMut(f64) -> bool,
 ) -> Result<ScenarioRun, SimulateError> {
     let looks_per_row = looks_per_row(scenario);
@@ -173,7 +174,7 @@ pub(super) fn run(
     let drive = InputSchedule { duration_s: scenario.duration, output_step_s: look_s, inputs };
     let band = scenario.settling_band_percent;
     let looking = Looking::new(bench, &samples, (table, looks_per_row), measurements, &full, (course, band));
-    let mut looking = looking.expecting(scenario.duration / look_s + 2.0);
+    let mut looking = if samples_kept { looking.keeping(scenario.duration / look_s + 2.0) } else { looking };
     let sampler = match &bench.control {
         Control::Continuous(_) | Control::Open(_) => None,
         Control::Sampled(sampled) => {
@@ -185,7 +186,7 @@ pub(super) fn run(
     let task = Task { start: course.start.clone(), course: &drive, sampler, observer };
     let named = |error| SimulateError::Simulation { name: scenario.name.clone(), error };
     let outcome = bench.control.drive(task, &bench.settings, &mut watch).map_err(named)?;
-    let Sighted { record, metrics, peak_pressures_pa, measured } = looking.finish()?;
+    let Sighted { record, metrics, peak_pressures_pa, measured, exceeded } = looking.finish()?;
     let occurrences = found(bench, course, &outcome, &samples.borrow());
     let windows = course.windows.iter().copied().zip(metrics).collect();
     let outside_model_s = outside_model_s(&occurrences, bench.machine.has_end_stops());
@@ -193,7 +194,6 @@ pub(super) fn run(
     let memory = matches!(bench.control, Control::Sampled(_)).then_some(&memory);
     let end = saved::of_end(bench, course, (outcome.status, &outcome.end, scenario.duration), memory);
     let record = Record { motion: bench.motion, ..record };
-    let exceeded = exceeded(bench, &record);
     Ok(ScenarioRun {
         name: scenario.name.clone(),
         status: outcome.status,

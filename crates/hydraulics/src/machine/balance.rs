@@ -106,7 +106,7 @@ impl Machine {
     /// from chamber to chamber, and what leaks outwards.
     pub(super) fn steady_flows<T: Scalar + From<f64>>(&self, state: &MachineState<T>) -> [T; 2] {
         let across = self.steady_cross_flow(state);
-        let [out_of_a, out_of_b] = self.outward_leakage(state);
+        let [out_of_a, out_of_b] = self.outward_leakage(state).unwrap_or([T::from(0.0); 2]);
         [
             T::from(self.cylinder.area_a) * state.velocity + across + out_of_a,
             -T::from(self.cylinder.area_b) * state.velocity - across + out_of_b,

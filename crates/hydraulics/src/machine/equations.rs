@@ -15,12 +15,20 @@ pub(super) struct Flows<T> {
     pub(super) edges: EdgeFlows<T>,
     /// From chamber A to chamber B: across the piston and through a valve between them.
     pub(super) internal: T,
-    /// From each chamber to the tank, as through the case of a motor.
-    pub(super) outward: [T; 2],
+    /// From each chamber to the tank, as through the case of a motor; `None` where nothing leaks
+    /// outwards.
+    pub(super) outward: Option<[T; 2]>,
     /// The share of that valve.
     pub(super) cross_port: T,
     /// From the valve into line A and line B.
     pub(super) from_valve: [T; 2],
+}
+
+impl<T: Scalar> Flows<T> {
+    /// From each chamber to the tank, in m3/s.
+    pub(super) fn out_of_chambers(&self) -> [T; 2] {
+        self.outward.unwrap_or([T::from(0.0); 2])
+    }
 }
 
 /// Every force at one instant, in N.
@@ -89,16 +97,16 @@ impl<S: Scalar> Machine<S> {
     #[inline(always)]
     pub(super) fn ports<T: Scalar + From<S>>(&self, state: &MachineState<T>, vector: &[T]) -> [T; 2] {
         if self.layout.has_lines() {
-            self.ports_of_lines(state, self.layout.lines(vector))
+            self.ports_of_lines([state.pressure_a, state.pressure_b], self.layout.lines(vector))
         } else {
             [state.pressure_a, state.pressure_b]
         }
     }
 
-    /// Apart, so that machines without such lines do not carry their code along.
+    /// Apart, so that machines without such lines do not carry their code along; and of the pressures
+    /// alone, as no function apart is given the whole state: it would be copied for it in every machine.
     #[inline(never)]
-    fn ports_of_lines<T: Scalar + From<S>>(&self, state: &MachineState<T>, lines: [&[T]; 2]) -> [T; 2] {
-        let chambers = [state.pressure_a, state.pressure_b];
+    fn ports_of_lines<T: Scalar + From<S>>(&self, chambers: [T; 2], lines: [&[T]; 2]) -> [T; 2] {
         let ([line_a, line_b], [state_a, state_b]) = (&self.lines, lines);
         [line_a.port_pressure(state_a, chambers[0]), line_b.port_pressure(state_b, chambers[1])]
     }
@@ -153,26 +161,28 @@ impl<S: Scalar> Machine<S> {
         match &self.cross_port {
             None => Flows { edges, internal: leakage, outward, cross_port: T::from(0.0), from_valve },
             Some(port) => {
-                let cross_port = self.through_cross_port(port, state);
+                let drop = state.pressure_a - state.pressure_b;
+                let cross_port = self.through_cross_port(port, drop, state.cross_port_pressure);
                 Flows { edges, internal: leakage + cross_port, outward, cross_port, from_valve }
             }
         }
     }
 
-    /// Flow through a valve between the chambers from A to B, in m3/s. Apart, so that machines
+    /// Flow through a valve between the chambers from A to B, in m3/s, at the drop p_A - p_B and the
+    /// pressure difference over its capacity, both in Pa. Apart, so that machines
     /// without such a valve do not carry its code along.
     #[inline(never)]
-    fn through_cross_port<T: Scalar + From<S>>(&self, port: &CrossPort<S>, state: &MachineState<T>) -> T {
+    fn through_cross_port<T: Scalar + From<S>>(&self, port: &CrossPort<S>, drop: T, over_capacity: T) -> T {
         let CrossPort { restrictor, capacity } = port.convert(&mut constant::<S, T>);
-        let drop = state.pressure_a - state.pressure_b;
-        restrictor.flow(if capacity.is_some() { drop - state.cross_port_pressure } else { drop })
+        restrictor.flow(if capacity.is_some() { drop - over_capacity } else { drop })
     }
 
     /// What flows from chamber A to chamber B at rest, in m3/s.
     pub(super) fn steady_cross_flow<T: Scalar + From<S>>(&self, state: &MachineState<T>) -> T {
         let leakage = self.leakage(state);
         let steady = self.cross_port.as_ref().filter(|port| port.capacity.is_none());
-        steady.map_or(leakage, |port| leakage + self.through_cross_port(port, state))
+        let drop = state.pressure_a - state.pressure_b;
+        steady.map_or(leakage, |port| leakage + self.through_cross_port(port, drop, T::from(0.0)))
     }
 
     /// Flow across the piston from A to B, in m3/s.
@@ -185,15 +195,10 @@ impl<S: Scalar> Machine<S> {
 
     /// Flows out of both chambers to the tank, in m3/s.
     #[inline(always)]
-    pub(super) fn outward_leakage<T: Scalar + From<S>>(&self, state: &MachineState<T>) -> [T; 2] {
-        match self.cylinder.external_leakage {
-            None => [T::from(0.0); 2],
-            Some(conductance) => {
-                let conductance: T = constant(conductance);
-                let tank: T = constant(self.supply.tank_pressure);
-                [conductance * (state.pressure_a - tank), conductance * (state.pressure_b - tank)]
-            }
-        }
+    pub(super) fn outward_leakage<T: Scalar + From<S>>(&self, state: &MachineState<T>) -> Option<[T; 2]> {
+        let conductance: T = constant(self.cylinder.external_leakage?);
+        let tank: T = constant(self.supply.tank_pressure);
+        Some([conductance * (state.pressure_a - tank), conductance * (state.pressure_b - tank)])
     }
 
     /// Oil that the valve takes from the supply, tare flow included, in m3/s.
@@ -253,24 +258,31 @@ impl<S: Scalar> Machine<S> {
         let external = self.layout.external_force(inputs);
         let on_load = external.map_or(joint.on_load, |external| joint.on_load + external);
         let valve = self.valve.convert(&mut constant::<S, T>);
+        let chambers = [state.pressure_a, state.pressure_b];
         let [into_a, into_b] = if self.layout.has_lines() {
-            self.through_lines(&state, &flows, self.layout.lines(vector), inputs, rates)
+            self.through_lines(chambers, flows.from_valve, self.layout.lines(vector), inputs, rates)
         } else {
             flows.from_valve
         };
-        let necks = self.layout.has_necks().then(|| self.through_necks(&state));
-        let (into_a, into_b) = match &necks {
-            None => (into_a, into_b),
-            Some(_) => (into_a - state.neck_flows[0], into_b - state.neck_flows[1]),
+        let zero = T::from(0.0);
+        let (into_a, into_b, [neck_flows, gas_pressures]) = if self.layout.has_necks() {
+            let [into_neck_a, into_neck_b] = state.neck_flows;
+            let rates = self.through_necks(chambers, state.neck_flows, state.gas_pressures);
+            (into_a - into_neck_a, into_b - into_neck_b, rates)
+        } else {
+            (into_a, into_b, [[zero; 2]; 2])
         };
-        let zero = [T::from(0.0); 2];
-        let [neck_flows, gas_pressures] = necks.unwrap_or([zero; 2]);
+        let (stays_in_a, stays_in_b) = (into_a - flows.internal, into_b + flows.internal);
+        let (stays_in_a, stays_in_b) = match flows.outward {
+            None => (stays_in_a, stays_in_b),
+            Some([out_of_a, out_of_b]) => (stays_in_a - out_of_a, stays_in_b - out_of_b),
+        };
         let state_rates = MachineState {
             neck_flows,
             gas_pressures,
             spool: self.spool.convert(&mut constant::<S, T>).rates(&valve, &state.spool, command),
-            pressure_a: (into_a - flows.internal - flows.outward[0] - area_a * velocity) / compliance_a,
-            pressure_b: (into_b + flows.internal - flows.outward[1] + area_b * velocity) / compliance_b,
+            pressure_a: (stays_in_a - area_a * velocity) / compliance_a,
+            pressure_b: (stays_in_b + area_b * velocity) / compliance_b,
             deflection: joint.deflection_rate,
             velocity: pushing / constant(self.cylinder.moving_mass),
             bristle: forces.friction.bristle_rate,
@@ -282,18 +294,22 @@ impl<S: Scalar> Machine<S> {
             cross_port_pressure: self.cross_port_rate(&flows),
             series: joint.series_rates,
         };
-        self.layout.write(&state_rates, rates);
+        self.layout.write(state_rates, rates);
     }
 
     /// Rates of the flows through the necks in m3/s2 and of the pressures behind them in Pa/s. Apart,
     /// so that machines without necks do not carry its code along.
     #[inline(never)]
-    fn through_necks<T: Scalar + From<S>>(&self, state: &MachineState<T>) -> [[T; 2]; 2] {
-        let chambers = [state.pressure_a, state.pressure_b];
+    fn through_necks<T: Scalar + From<S>>(
+        &self,
+        chambers: [T; 2],
+        neck_flows: [T; 2],
+        gas_pressures: [T; 2],
+    ) -> [[T; 2]; 2] {
         let [side_a, side_b] = [0, 1].map(|side| {
             let parts = self.necks[side].zip(self.accumulators[side]);
             parts.map_or([T::from(0.0); 2], |(neck, gas)| {
-                let (flow, pressure) = (state.neck_flows[side], state.gas_pressures[side]);
+                let (flow, pressure) = (neck_flows[side], gas_pressures[side]);
                 let neck = neck.convert(&mut constant::<S, T>);
                 let compliance = gas.convert(&mut constant::<S, T>).compliance(pressure) + neck.compliance;
                 let pushing = chambers[side] - pressure - neck.drop(flow);
@@ -308,19 +324,18 @@ impl<S: Scalar> Machine<S> {
     #[inline(never)]
     fn through_lines<T: Scalar + From<S>>(
         &self,
-        state: &MachineState<T>,
-        flows: &Flows<T>,
+        chambers: [T; 2],
+        [from_a, from_b]: [T; 2],
         [state_a, state_b]: [&[T]; 2],
         inputs: &[T],
         rates: &mut [T],
     ) -> [T; 2] {
-        let [from_a, from_b] = flows.from_valve;
         let [arriving_a, arriving_b] = self.layout.arriving(inputs);
         let [rates_a, rates_b] = self.layout.lines_mut(rates);
         let [line_a, line_b] = &self.lines;
         [
-            line_a.rates(from_a, state.pressure_a, state_a, arriving_a, rates_a),
-            line_b.rates(from_b, state.pressure_b, state_b, arriving_b, rates_b),
+            line_a.rates(from_a, chambers[0], state_a, arriving_a, rates_a),
+            line_b.rates(from_b, chambers[1], state_b, arriving_b, rates_b),
         ]
     }
 

@@ -125,7 +125,7 @@ impl<S: Scalar> Machine<S> {
         let [into_a, into_b] = now.chamber_flows();
         let [side_a, side_b] = &now.sides;
         let [gas_a, gas_b] = &now.gas;
-        let [out_of_a, out_of_b] = now.flows.outward;
+        let [out_of_a, out_of_b] = now.flows.out_of_chambers();
         let accounts = [
             side_a.oil(into_a),
             side_b.oil(into_b),
@@ -173,7 +173,7 @@ impl<S: Scalar> Machine<S> {
             + edges.supply_to_b * (supply.line.pressure - line_b.port_pressure)
             + edges.b_to_tank * (line_b.port_pressure - tank);
         let [piston, friction, sensor, series, end_stops, load] = self.moving(now);
-        let [out_of_a, out_of_b] = now.flows.outward;
+        let [out_of_a, out_of_b] = now.flows.out_of_chambers();
         let leaked = (now.flows.internal - now.flows.cross_port) * (side_a.pressure - side_b.pressure)
             + out_of_a * (side_a.pressure - tank)
             + out_of_b * (side_b.pressure - tank);

@@ -58,7 +58,7 @@ impl<S: Scalar> Machine<S> {
     #[inline(always)]
     pub(super) fn joint<T: Scalar + From<S>>(&self, state: &MachineState<T>, load: &Motion<T>) -> Joint<T> {
         if let Some(series) = &self.series {
-            return self.joint_through(series, state, load);
+            return self.joint_through(series, [state.deflection, state.velocity], &state.series, load);
         }
         let sensed = force_sensor::force(constant(self.sensor_stiffness), state.deflection);
         let zero = T::from(0.0);
@@ -85,15 +85,16 @@ impl<S: Scalar> Machine<S> {
     fn joint_through<T: Scalar + From<S>>(
         &self,
         series: &SeriesElement<S>,
-        state: &MachineState<T>,
+        [own_deflection, velocity]: [T; 2],
+        element: &Motion<T>,
         load: &Motion<T>,
     ) -> Joint<T> {
         let series = series.convert(&mut constant::<S, T>);
         let sensor: T = constant(self.sensor_stiffness);
         let (zero, one) = (T::from(0.0), T::from(1.0));
-        let closing = state.velocity - load.velocity;
+        let closing = velocity - load.velocity;
         if self.layout.series() == SeriesStates::Spring {
-            let deflection = state.deflection;
+            let deflection = own_deflection;
             let sensed = series.elastic_force(deflection);
             let rate = closing / (one + series.elastic_slope(deflection) / sensor);
             return Joint {
@@ -107,21 +108,21 @@ impl<S: Scalar> Machine<S> {
                 series_rates: Motion { position: zero, velocity: zero },
             };
         }
-        let deflection = state.series.position;
-        let sensed = force_sensor::force(sensor, state.deflection);
+        let deflection = element.position;
+        let sensed = force_sensor::force(sensor, own_deflection);
         let damping = series.damping.unwrap_or(zero);
         let (rate, on_load, acceleration) = match series.mass {
             None => (series.rate_under(damping, sensed, deflection), sensed, zero),
             Some(mass) => {
-                let rate = state.series.velocity - load.velocity;
+                let rate = element.velocity - load.velocity;
                 let damped = series.spring_force(deflection) + damping * rate;
                 let on_load = damped + series.ends_force(deflection, rate);
                 (rate, on_load, (sensed - on_load) / mass)
             }
         };
         Joint {
-            position: load.position + deflection + state.deflection,
-            sensor_deflection: state.deflection,
+            position: load.position + deflection + own_deflection,
+            sensor_deflection: own_deflection,
             sensed,
             on_load,
             behind_sensor: load.velocity + rate,
@@ -136,19 +137,24 @@ impl<S: Scalar> Machine<S> {
     pub(super) fn measured_force<T: Scalar + From<S>>(&self, state: &MachineState<T>) -> T {
         match &self.series {
             None => force_sensor::force(constant(self.sensor_stiffness), state.deflection),
-            Some(series) => self.measured_through(series, state),
+            Some(series) => self.measured_through(series, state.deflection, state.series.position),
         }
     }
 
     #[inline(never)]
-    fn measured_through<T: Scalar + From<S>>(&self, series: &SeriesElement<S>, state: &MachineState<T>) -> T {
+    fn measured_through<T: Scalar + From<S>>(
+        &self,
+        series: &SeriesElement<S>,
+        own_deflection: T,
+        of_element: T,
+    ) -> T {
         let series = series.convert(&mut constant::<S, T>);
         let alone = self.layout.series() == SeriesStates::Spring;
-        let deflection = if alone { state.deflection } else { state.series.position };
+        let deflection = if alone { own_deflection } else { of_element };
         match series.force_from {
             ForceFrom::Deflection => series.spring_force(deflection),
             ForceFrom::Sensor if alone => series.elastic_force(deflection),
-            ForceFrom::Sensor => force_sensor::force(constant(self.sensor_stiffness), state.deflection),
+            ForceFrom::Sensor => force_sensor::force(constant(self.sensor_stiffness), own_deflection),
         }
     }
 

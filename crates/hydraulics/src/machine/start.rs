@@ -172,7 +172,7 @@ impl Machine {
 
     fn begin(&self, state: &MachineState, ground: f64) -> InitialCondition {
         let mut vector = vec![0.0; self.layout.count()];
-        self.layout.write(state, &mut vector);
+        self.layout.write(*state, &mut vector);
         let pressures = [state.pressure_a, state.pressure_b];
         let flows = self.steady_flows(state);
         let mut waves = Vec::new();

@@ -171,7 +171,7 @@ impl Layout {
         let mut state = MachineState::<f64>::zero();
         (state.bristle, state.spool.spool_friction, state.spool.magnetic_lag) = (1.0, 1.0, 1.0);
         let mut vector = vec![0.0; self.count()];
-        self.write(&state, &mut vector);
+        self.write(state, &mut vector);
         vector.iter().enumerate().filter(|(_, value)| **value != 0.0).map(|(index, _)| index).collect()
     }
 
@@ -217,8 +217,7 @@ impl Layout {
 
     /// The states in the order of the vector.
     #[inline(always)]
-    pub(super) fn write<T: Scalar>(&self, state: &MachineState<T>, vector: &mut [T]) {
-        let mut state = *state;
+    pub(super) fn write<T: Scalar>(&self, mut state: MachineState<T>, vector: &mut [T]) {
         let mut entries = vector.iter_mut();
         self.visit(&mut state, |slot| {
             if let Some(entry) = entries.next() {
@@ -246,8 +245,15 @@ impl Layout {
         if self.capacity {
             visit(&mut state.cross_port_pressure);
         }
-        if self.has_necks() {
-            self.visit_necks(state, &mut visit);
+        let [neck_a, neck_b] = self.necks;
+        let ([flow_a, flow_b], [gas_a, gas_b]) = (&mut state.neck_flows, &mut state.gas_pressures);
+        if neck_a {
+            visit(flow_a);
+            visit(gas_a);
+        }
+        if neck_b {
+            visit(flow_b);
+            visit(gas_b);
         }
         if self.supply {
             visit(&mut state.supply_pressure);
@@ -263,18 +269,6 @@ impl Layout {
         }
         if self.series == SeriesStates::Mass {
             visit(&mut state.series.velocity);
-        }
-    }
-}
-
-impl Layout {
-    /// Apart, so that machines without necks do not carry its code along.
-    #[inline(never)]
-    fn visit_necks<T>(&self, state: &mut MachineState<T>, visit: &mut impl FnMut(&mut T)) {
-        let parts = state.neck_flows.iter_mut().zip(&mut state.gas_pressures);
-        for ((flow, pressure), _) in parts.zip(self.necks).filter(|(_, has_neck)| *has_neck) {
-            visit(flow);
-            visit(pressure);
         }
     }
 }
@@ -391,7 +385,7 @@ impl<S: Scalar> Machine<S> {
         let typical = self.typical_state();
         let flow = typical.velocity * self.cylinder.area_a;
         let mut vector = vec![S::from(0.0); self.layout.count()];
-        self.layout.write(&typical, &mut vector);
+        self.layout.write(typical, &mut vector);
         for (places, line) in self.layout.lines_mut(&mut vector).into_iter().zip(&self.lines) {
             let (pressures, flows) = (line.scales(1.0, 0.0), line.scales(0.0, 1.0));
             for (place, (of_pressure, of_flow)) in places.iter_mut().zip(pressures.into_iter().zip(flows)) {

@@ -6,7 +6,7 @@ use crate::campaign::{self, CampaignError, Plan, RequestedRuns, RowStore, Summar
 use crate::identify::heading_in_use;
 use crate::project::{self, Loaded};
 use crate::setup::Setup;
-use crate::simulate::{self, simulate_into};
+use crate::simulate::{self, RunOutput, simulate_into};
 use crate::source::{Destination, Source};
 
 /// A request on the campaign that a project declares.
@@ -83,7 +83,8 @@ fn one(
         .map_err(|report| CampaignError::Settings(Box::new(report)))?;
     drawn.project.scenarios.retain(|scenario| scenario.name == plan.scenario());
     let table = destination.map(|destination| (destination, TableFormat::Csv));
-    let runs = simulate_into(source, &Setup::new(&drawn.project)?, table, watch)?;
+    let output = RunOutput { samples: false, table };
+    let runs = simulate_into(source, &Setup::new(&drawn.project)?, output, watch)?;
     Ok(Answer {
         text: heading_in_use(loaded) + &campaign::run_text(&draw, &settings, &drawn, &runs),
         json: campaign::run_json(loaded, (plan, &draw), &settings, (&drawn, &runs)),

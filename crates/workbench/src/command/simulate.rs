@@ -6,8 +6,8 @@ use crate::project::Loaded;
 use crate::quantity::{self, ANGULAR_FREQUENCY, Dimension, FORCE, VOLTAGE};
 use crate::setup::Setup;
 use crate::simulate::{
-    FrequencyRequest, ScenarioRun, figure_files, files, frequency_files, frequency_json, frequency_pictures,
-    frequency_response, frequency_text, json, simulate_checked, simulate_into, text,
+    FrequencyRequest, RunOutput, ScenarioRun, figure_files, files, frequency_files, frequency_json,
+    frequency_pictures, frequency_response, frequency_text, json, simulate_checked, simulate_into, text,
 };
 use crate::source::{Destination, Source};
 use phea_engineering::error::ProcedureError;
@@ -72,12 +72,12 @@ pub(super) fn simulate_answer(
     if let Some(options) = &asked.frequency_response {
         return frequency_answer(loaded, asked, &options.request()?, watch);
     }
-    let tables = destination.map(|destination| (destination, asked.table));
+    let table = destination.map(|destination| (destination, asked.table));
     let setup = Setup::new(&loaded.project)?;
     let runs = if asked.check {
-        simulate_checked(source, &setup, tables, watch)?
+        simulate_checked(source, &setup, table, watch)?
     } else {
-        simulate_into(source, &setup, tables, watch)?
+        simulate_into(source, &setup, RunOutput { samples: asked.figures, table }, watch)?
     };
     let mut written = files(loaded, &runs);
     if asked.figures {

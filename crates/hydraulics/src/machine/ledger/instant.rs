@@ -74,9 +74,10 @@ impl<T: Scalar> Instant<T> {
     pub(super) fn chamber_flows(&self) -> [T; 2] {
         let [line_a, line_b] = &self.lines;
         let [gas_a, gas_b] = &self.gas;
+        let [out_of_a, out_of_b] = self.flows.out_of_chambers();
         [
-            line_a.into_chamber - self.flows.internal - self.flows.outward[0] - gas_a.taken - self.turned,
-            line_b.into_chamber + self.flows.internal - self.flows.outward[1] - gas_b.taken + self.turned,
+            line_a.into_chamber - self.flows.internal - out_of_a - gas_a.taken - self.turned,
+            line_b.into_chamber + self.flows.internal - out_of_b - gas_b.taken + self.turned,
         ]
     }
 }
@@ -217,7 +218,7 @@ impl<S: Scalar> Machine<S> {
         let [area_a, area_b]: [T; 2] = [constant(self.cylinder.area_a), constant(self.cylinder.area_b)];
         let [oil_a, oil_b] = self.oil_compliance(state, position);
         let [gas_a, gas_b] = self.accumulators.map(|gas| gas.map(|gas| gas.convert(&mut constant::<S, T>)));
-        let [out_of_a, out_of_b] = flows.outward;
+        let [out_of_a, out_of_b] = flows.out_of_chambers();
         let into_a = line_a.into_chamber - flows.internal - out_of_a - area_a * state.velocity;
         let into_b = line_b.into_chamber + flows.internal - out_of_b + area_b * state.velocity;
         let of = |side: usize, gas: Option<Accumulator<T>>, into: T, oil: T| match &self.necks[side] {
