@@ -30,6 +30,8 @@ pub struct PoleSweepInput {
     pub quantity: String,
     /// Its unit.
     pub unit: DisplayUnit,
+    /// The unit of K_H.
+    pub stiffness_unit: DisplayUnit,
     /// Whether its axis is logarithmic.
     pub by_ratio: bool,
     /// In order.
@@ -101,7 +103,7 @@ fn damping(input: &PoleSweepInput) -> Panel {
 }
 
 fn stiffness(input: &PoleSweepInput) -> Panel {
-    let unit = DisplayUnit::MEGANEWTON_PER_METRE;
+    let unit = input.stiffness_unit;
     let line = |end: usize, index: usize| {
         let points = input.points.iter();
         let points: Vec<(f64, f64)> =

@@ -76,7 +76,7 @@ impl Key {
     }
 
     /// The key in a rig of this motion.
-    pub(crate) fn in_motion(mut self, motion: MotionKind) -> Key {
+    pub fn in_motion(mut self, motion: MotionKind) -> Key {
         if self.of_motion {
             self.dimension = motion.dimension(self.dimension);
         }

@@ -412,19 +412,17 @@ pub fn compare_watched(
     figures: bool,
     watch: Watch<'_>,
 ) -> Result<Answer, CommandError> {
+    motor::refuse_mixture(projects)?;
     let identified = projects
         .iter()
-        .map(|loaded| {
-            motor::refuse(loaded, &Request::Compare)?;
-            Ok(with_recordings(source, loaded, watch)?.unwrap_or_else(|| loaded.clone()))
-        })
+        .map(|loaded| Ok(with_recordings(source, loaded, watch)?.unwrap_or_else(|| loaded.clone())))
         .collect::<Result<Vec<Loaded>, CommandError>>()?;
     let projects = identified.as_slice();
     let comparison = compare_projects(source, projects, watch).map_err(|(index, error)| {
         let path = projects.get(index).map(|loaded| loaded.path.clone()).unwrap_or_default();
         CommandError::Compare { path, error }
     })?;
-    Ok(Answer {
+    let answer = Answer {
         text: format!(
             "{}{}",
             projects.iter().map(heading_in_use).collect::<String>(),
@@ -437,7 +435,8 @@ pub fn compare_watched(
             vec![]
         },
         affirmative: comparison.projects.len() == projects.len() && comparison.is_complete(),
-    })
+    };
+    Ok(motion::said_of(answer, projects))
 }
 
 fn report_answer(

@@ -26,11 +26,19 @@ pub enum CommandError {
     NothingToReport,
     /// A command that does nothing with a motor.
     #[error(
-        "`phea {command}` is for a [cylinder], and this project has a [motor]: check, linearize, verify, design, simulate and report treat one"
+        "`phea {command}` is for a [cylinder], and this project has a [motor]: check, linearize, verify, design, simulate, compare, campaign, alternatives and report treat one"
     )]
     OfCylinders {
         /// As it is called.
         command: &'static str,
+    },
+    /// Projects side by side of which some move along a line and others turn.
+    #[error("{path} has a [motor] and {other} a [cylinder]: torques cannot be compared with forces")]
+    MixedMotion {
+        /// Of the project with a motor.
+        path: String,
+        /// Of the other.
+        other: String,
     },
     /// The machine of one project among several cannot be simulated.
     #[error("{path}: {error}")]
@@ -60,6 +68,7 @@ impl CommandError {
             CommandError::Identify(_)
             | CommandError::Figure(_)
             | CommandError::OfCylinders { .. }
+            | CommandError::MixedMotion { .. }
             | CommandError::NothingToReport => None,
         }
     }

@@ -13,25 +13,44 @@ use crate::source::OutputFile;
 
 /// The words for a project, in which the texts of its user stay as they are.
 pub(crate) fn vocabulary(loaded: &Loaded) -> Vocabulary {
-    let project = &loaded.project;
-    match project.motion() {
-        MotionKind::Linear => Vocabulary::default(),
-        MotionKind::Rotary => Vocabulary::rotary(texts_of_user(loaded, project)),
+    vocabulary_of(std::slice::from_ref(loaded))
+}
+
+/// The words for projects of one motion.
+fn vocabulary_of(projects: &[Loaded]) -> Vocabulary {
+    if !projects.iter().any(|loaded| loaded.project.motion().is_rotary()) {
+        return Vocabulary::default();
     }
+    Vocabulary::rotary(projects.iter().flat_map(|loaded| texts_of_user(loaded, &loaded.project)).collect())
 }
 
 fn texts_of_user(loaded: &Loaded, project: &Project) -> Vec<String> {
     let scenarios = project.scenarios.iter().map(|scenario| scenario.name.clone());
     let lines = project.actuator.iter().flat_map(|actuator| [&actuator.line.a, &actuator.line.b]);
     let hoses = lines.filter_map(|line| line.hose_name().map(str::to_string));
+    let alternatives = project.alternatives.iter().map(|one| one.name.clone());
+    let cases = project.load_cases.iter().map(|case| case.name.clone());
     let valve = project.actuator.as_ref().and_then(|actuator| actuator.valve.model.clone());
     let texts = [project.title.clone(), loaded.path.clone()];
-    texts.into_iter().chain(scenarios).chain(hoses).chain(valve).chain(loaded.settings.clone()).collect()
+    texts
+        .into_iter()
+        .chain(scenarios)
+        .chain(hoses)
+        .chain(valve)
+        .chain(alternatives)
+        .chain(cases)
+        .chain(loaded.settings.clone())
+        .collect()
 }
 
 /// An answer about this project, as its motion has it.
 pub(crate) fn said(answer: Answer, loaded: &Loaded) -> Answer {
-    let words = vocabulary(loaded);
+    said_of(answer, std::slice::from_ref(loaded))
+}
+
+/// An answer about projects of one motion.
+pub(crate) fn said_of(answer: Answer, projects: &[Loaded]) -> Answer {
+    let words = vocabulary_of(projects);
     if words.is_plain() {
         return answer;
     }

@@ -8,7 +8,7 @@ use super::{AskedAlternative, COLUMN_SENSES, ColumnSense, JudgedAlternative, Jud
 use crate::error::ProcedureError;
 use crate::linearize::{SweepRequest, points, range, values};
 use crate::project::Project;
-use crate::quantity::{self, DisplayUnit};
+use crate::quantity::{self, DisplayUnit, MotionKind};
 use crate::spelling::nearest;
 
 /// The request, as written.
@@ -109,7 +109,7 @@ pub(super) struct FrontPlan {
 ///
 /// # Errors
 /// [`ProcedureError::Option`] for columns or a sweep that do not exist.
-pub(super) fn plan(request: &FrontRequest) -> Result<FrontPlan, ProcedureError> {
+pub(super) fn plan(request: &FrontRequest, motion: MotionKind) -> Result<FrontPlan, ProcedureError> {
     let text = request.columns.join(",");
     let refused = |message: String| ProcedureError::Option { option: "front", text: text.clone(), message };
     if !(2..=3).contains(&request.columns.len()) {
@@ -117,29 +117,30 @@ pub(super) fn plan(request: &FrontRequest) -> Result<FrontPlan, ProcedureError> 
             "a front has two or three columns, such as disturbance_peak_n,swept".to_string(),
         ));
     }
-    let columns = request.columns.iter().map(|column| column_of(column).map_err(refused));
+    let columns = request.columns.iter().map(|column| column_of(column, motion).map_err(refused));
     let columns = columns.collect::<Result<Vec<_>, _>>()?;
     let twice = |one: &FrontColumn| columns.iter().filter(|other| other.key == one.key).count() > 1;
     if let Some(column) = columns.iter().find(|column| twice(column)) {
         return Err(refused(format!("`{}` stands twice", column.key)));
     }
-    let asked = range(&request.sweep.range)?;
+    let asked = range(&request.sweep.range, motion)?;
     let count = points(request.sweep.points.or(Some(POINTS)))?;
     let values = values(asked.ends, count, asked.by_ratio());
     let unit = quantity::fitting(asked.ends[0].abs().max(asked.ends[1].abs()), asked.key.dimension);
     Ok(FrontPlan { columns, path: asked.path, unit, si: asked.key.dimension.si, values })
 }
 
-/// A column by its name, or the nearest spelling.
-fn column_of(text: &str) -> Result<FrontColumn, String> {
+/// A column by its name in a rig of this motion, or the nearest spelling.
+fn column_of(text: &str, motion: MotionKind) -> Result<FrontColumn, String> {
     let (name, wanted) = match text.trim().split_once(':') {
         None => (text.trim(), None),
         Some((name, "less")) => (name, Some(ColumnSense::Less)),
         Some((name, "more")) => (name, Some(ColumnSense::More)),
         Some((_, other)) => return Err(format!("`{other}` is neither `less` nor `more`")),
     };
-    let known = COLUMN_SENSES.iter().find(|(key, _)| *key == name);
-    let names = COLUMN_SENSES.iter().map(|(key, _)| *key);
+    let known = COLUMN_SENSES.iter().find(|(key, _)| motion.name(key) == name);
+    let names: Vec<_> = COLUMN_SENSES.iter().map(|(key, _)| motion.name(key)).collect();
+    let names = names.iter().map(|name| name.as_ref());
     let help = || nearest(name, names).map_or(String::new(), |near| format!("; did you mean `{near}`?"));
     let (key, _) = known.ok_or_else(|| format!("there is no column `{name}`{}", help()))?;
     Ok(FrontColumn { key, sense: wanted.or(sense_of(key)).unwrap_or(ColumnSense::Less) })

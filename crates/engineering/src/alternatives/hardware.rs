@@ -19,7 +19,8 @@ impl JudgedAlternative {
         };
         let equivalent = Setup::rig_of(&self.loaded.project).map_err(|error| error.to_string());
         let equivalent = equivalent.map(|rig| rig.leaking().equivalent_stiffness());
-        let stiff = DisplayUnit::MEGANEWTON_PER_METRE;
+        let motion = self.loaded.project.motion();
+        let stiff = motion.unit(DisplayUnit::MEGANEWTON_PER_METRE);
         let mut columns = vec![
             column("stiffness_minimum_n_per_m", "least K_H", stiff, 3, stiffness(0)),
             column("stiffness_maximum_n_per_m", "greatest K_H", stiff, 3, stiffness(1)),
@@ -44,6 +45,7 @@ impl JudgedAlternative {
         let oil_mass =
             of(|declared, rig| Ok(oil_volume(declared, rig)? * rig.actuator.components().fluid.density));
         let kilogram = fitting(1.0, &MASS);
+        let inertia = fitting(1.0, self.loaded.project.motion().dimension(&MASS));
         let power = of(|declared, rig| Ok(power_at_rest(declared, rig)));
         [
             column(
@@ -54,7 +56,7 @@ impl JudgedAlternative {
                 retracted_length(&self.loaded.project),
             ),
             column("lines_length_m", "length of both lines", metre, 3, of(lines_length)),
-            column("moving_mass_kg", "moving mass", kilogram, 3, of(moving_mass)),
+            column("moving_mass_kg", "moving mass", inertia, 3, of(moving_mass)),
             column("lines_volume_m3", "oil in both lines", litre(&in_lines), 3, in_lines),
             column("oil_volume_m3", "oil in all", litre(&oil), 3, oil),
             column("oil_mass_kg", "mass of that oil", kilogram, 3, oil_mass),

@@ -11,6 +11,7 @@ use super::range::VariedRange;
 use super::row::CampaignColumns;
 use super::varied::ranges;
 use crate::project::{Loaded, MotionShape, Project, Scenario, Signal, print};
+use crate::quantity::MotionKind;
 use crate::setup::Setup;
 use crate::simulate::{ControlledMachine, ScenarioDrive, SimulateError, Window, driven};
 use crate::source::Source;
@@ -124,6 +125,7 @@ impl Plan {
                 .collect(),
             windows,
             open_loop: scenario.is_open_loop(),
+            motion: project.motion(),
         };
         let look = look(&bench.control);
         Ok(Plan {
@@ -160,6 +162,11 @@ impl Plan {
     /// Whether a stated command drives the valve, and no controller.
     pub fn is_open_loop(&self) -> bool {
         self.columns.open_loop
+    }
+
+    /// How the rig moves.
+    pub fn motion(&self) -> MotionKind {
+        self.columns.motion
     }
 
     /// Where the random numbers come from.

@@ -5,6 +5,8 @@ use std::fmt::Write as _;
 use phea_hydraulics::machine::INDICATORS;
 use sha2::{Digest, Sha256};
 
+use crate::quantity::MotionKind;
+
 use super::simulate::{COMMAND_LIMIT, Cause, ERRORS_AMPLIFIED, Metrics, Window};
 
 /// Names of the metrics, in the order of a row.
@@ -155,6 +157,8 @@ pub(super) struct CampaignColumns {
     pub(super) open_loop: bool,
     /// Of the bands, s.
     pub(super) times_s: Vec<f64>,
+    /// By which columns of forces and positions, or of torques and angles, are called.
+    pub(super) motion: MotionKind,
 }
 
 impl CampaignColumns {
@@ -163,15 +167,16 @@ impl CampaignColumns {
         let mut text = "run,campaign,status,reason,ended_s,steps,occurrences".to_string();
         let paths = self.paths.iter().map(String::as_str);
         for name in paths.chain(LUMP_COLUMNS) {
-            let _ = write!(text, ",{name}");
+            let _ = write!(text, ",{}", self.motion.name(name));
         }
         for (number, window) in self.windows.iter().enumerate() {
             for metric in meaningful(window, self.open_loop) {
-                let _ = write!(text, ",event{}_{}", number + 1, METRIC_NAMES[metric]);
+                let name = self.motion.name(METRIC_NAMES[metric]);
+                let _ = write!(text, ",event{}_{name}", number + 1);
             }
         }
         for time_s in &self.times_s {
-            let _ = write!(text, ",force_n_at_{time_s}_s");
+            let _ = write!(text, ",{}_at_{time_s}_s", self.motion.name("force_n"));
         }
         text.push_str(",check\n");
         text
@@ -354,6 +359,7 @@ mod tests {
             ],
             open_loop: false,
             times_s: vec![0.0, 1.5, 3.0],
+            motion: MotionKind::Linear,
         }
     }
 

@@ -15,7 +15,7 @@ use crate::caveat::{Caveat, caveats};
 use crate::error::ProcedureError;
 use crate::linear_loop::{LinearLoop, LoopStability, linear_loop, linear_loop_of};
 use crate::project::{self, Key, KeyEntry, Loaded};
-use crate::quantity::{self, DisplayUnit, display};
+use crate::quantity::{self, DisplayUnit, MotionKind, display};
 use crate::setup::Setup;
 use crate::source::Source;
 use crate::spelling::nearest;
@@ -49,6 +49,8 @@ pub struct Sweep {
     pub unit: DisplayUnit,
     /// The unit of its values.
     pub si: &'static str,
+    /// How the rig moves.
+    pub motion: MotionKind,
     /// Whether the values are evenly spaced by ratio.
     pub by_ratio: bool,
     /// Whether the plant of every verdict depends on the key. It may not where the project states
@@ -96,7 +98,8 @@ pub fn sweep(
     catalogues: &[String],
     request: &SweepRequest,
 ) -> Result<Sweep, ProcedureError> {
-    let asked = range(&request.range)?;
+    let motion = loaded.project.motion();
+    let asked = range(&request.range, motion)?;
     let by_ratio = asked.by_ratio();
     let SweepRange { path, key, ends } = asked;
     let count = points(request.points)?;
@@ -115,7 +118,7 @@ pub fn sweep(
         .collect();
     let unit = quantity::fitting(ends[0].abs().max(ends[1].abs()), key.dimension);
     let caveats = caveats(&Setup::new(&loaded.project)?);
-    Ok(Sweep { path, unit, si: key.dimension.si, by_ratio, plant_follows, caveats, points })
+    Ok(Sweep { path, unit, si: key.dimension.si, motion, by_ratio, plant_follows, caveats, points })
 }
 
 /// A range, read.
@@ -139,7 +142,8 @@ fn refused(text: &str, message: String) -> ProcedureError {
     ProcedureError::Option { option: "sweep", text: text.to_string(), message }
 }
 
-pub(crate) fn range(text: &str) -> Result<SweepRange, ProcedureError> {
+/// The range that a text states, in the units of the rig's motion.
+pub(crate) fn range(text: &str, motion: MotionKind) -> Result<SweepRange, ProcedureError> {
     let form =
         || refused(text, "a sweep has the form KEY=FROM..TO, such as line.length=0.5 m..3 m".to_string());
     let (path, ends) = text.split_once('=').ok_or_else(form)?;
@@ -148,7 +152,7 @@ pub(crate) fn range(text: &str) -> Result<SweepRange, ProcedureError> {
     if from.is_empty() || to.is_empty() {
         return Err(form());
     }
-    let key = key(text, path)?;
+    let key = key(text, path)?.in_motion(motion);
     // the unit of the end holds for a bare start, as in a list
     let from = if bare(from).is_some() && bare(to).is_none() {
         format!("{from} {}", unit_of(to))

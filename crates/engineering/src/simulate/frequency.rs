@@ -13,6 +13,7 @@ use phea_hydraulics::machine::{InitialCondition, Machine};
 
 use super::SimulateError;
 use super::bench::{options, settings};
+use crate::quantity::MotionKind;
 use crate::rig::Rig;
 use crate::setup::Setup;
 use phea_dynamics::watch::{Progress, Watch};
@@ -43,6 +44,8 @@ pub struct FrequencyRequest {
 /// Responses of a machine at its operating point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MachineResponses {
+    /// How the rig moves.
+    pub motion: MotionKind,
     /// Equilibrium position of the piston, m.
     pub position_m: f64,
     /// Force on the load, N.
@@ -122,7 +125,8 @@ pub fn frequency_response(
     };
     let position_m = rested.rig.point.position;
     let (force_n, command_v) = (rested.force_n, rested.rest.command);
-    Ok(MachineResponses { position_m, force_n, command_v, open_loop, closed_loop, stopped })
+    let motion = setup.project.motion();
+    Ok(MachineResponses { motion, position_m, force_n, command_v, open_loop, closed_loop, stopped })
 }
 
 fn rested(setup: &Setup<'_>) -> Result<RestedMachine, SimulateError> {

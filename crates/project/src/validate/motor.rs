@@ -13,16 +13,11 @@ pub(super) fn motor(project: &Project, actuator: &DeclaredActuator, check: &mut 
         (actuator.series.is_some(), "series", "a spring between force sensor and load"),
         (project.sizing.is_some(), "sizing", "the sizing of a hose"),
         (project.bench.friction.is_some(), "bench.friction", "a test of friction"),
-        (project.campaign.is_some(), "campaign", "a campaign"),
-        (!project.alternatives.is_empty(), "alternative", "a comparison of alternatives"),
-        (!project.load_cases.is_empty(), "load_case", "a comparison under other loads"),
     ];
     for (is_there, path, what) in absent {
         if is_there {
             let message = format!("{what} is for a [cylinder]: there is none for a [motor] yet");
-            let is_list = ["alternative", "load_case"].contains(&path);
-            let table = if is_list { format!("[[{path}]]") } else { format!("[{path}]") };
-            check.error_with_help(path, message, format!("remove {table}"));
+            check.error_with_help(path, message, format!("remove [{path}]"));
         }
     }
     for (index, scenario) in project.scenarios.iter().enumerate() {

@@ -32,10 +32,21 @@ static ENDINGS: [(&str, &str); 8] = [
 static WORDS: [(&str, &str); 4] =
     [("force", "torque"), ("position", "angle"), ("distance", "angle"), ("mass", "inertia")];
 
-/// Beginnings of the names of lengths, speeds and masses that are those of oil, hoses and pipes,
-/// whatever the rig does.
-static OF_OIL: [&str; 10] =
-    ["bore", "length", "hose", "line_", "lines_", "oil", "wave_", "sized_", "diameter", "wall_"];
+/// Beginnings of the names of lengths, speeds and masses that are those of oil, hoses, pipes and
+/// housings, whatever the rig does.
+static OF_OIL: [&str; 11] = [
+    "actuator_length",
+    "bore",
+    "length",
+    "hose",
+    "line_",
+    "lines_",
+    "oil",
+    "wave_",
+    "sized_length",
+    "diameter",
+    "wall_",
+];
 
 pub(super) fn symbol(of: &'static str) -> &'static str {
     SYMBOLS.iter().find(|(linear, _)| *linear == of).map_or(of, |(_, rotary)| rotary)

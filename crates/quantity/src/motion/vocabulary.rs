@@ -47,6 +47,10 @@ static ROTARY: &[(&str, &str)] = &[
     ("moving mass", "inertia"),
     ("Moving mass", "Inertia"),
     ("the piston on the torque sensor", "the shaft on the torque sensor"),
+    ("mass of that oil", "mass of that oil"),
+    // what a wrong unit measures
+    ("found a force", "found a force"),
+    ("found a mass", "found a mass"),
     ("spool position", "spool position"),
     ("position of the spool", "position of the spool"),
     ("forces", "torques"),

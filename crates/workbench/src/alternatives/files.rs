@@ -94,6 +94,9 @@ fn impedances(found: &Alternatives) -> Option<Figure> {
 fn table(file: &str, groups: &[(&str, &[JudgedAlternative])]) -> OutputFile {
     let all: Vec<AlternativeColumns> =
         groups.iter().flat_map(|(_, judged)| judged.iter().map(JudgedAlternative::columns)).collect();
+    // all alternatives of a project move alike: none replaces its cylinder by a motor
+    let mut judged = groups.iter().flat_map(|(_, judged)| judged.iter());
+    let motion = judged.next().map(|one| one.loaded.project.motion()).unwrap_or_default();
     let mut named: Vec<(ColumnPart, &str)> = Vec::new();
     for part in parts(&all) {
         for (own, column) in all.iter().flat_map(|columns| &columns.0) {
@@ -103,7 +106,7 @@ fn table(file: &str, groups: &[(&str, &[JudgedAlternative])]) -> OutputFile {
             }
         }
     }
-    let headings: Vec<String> = named.iter().map(|(part, key)| heading(part, key)).collect();
+    let headings: Vec<String> = named.iter().map(|(part, key)| heading(part, &motion.name(key))).collect();
     let case = if groups.len() > 1 { "load_case," } else { "" };
     let mut csv = Csv::new(&format!("{case}name,feasible,{}", headings.join(",")));
     let rows = groups.iter().flat_map(|(case, judged)| judged.iter().map(move |one| (*case, one)));

@@ -8,7 +8,7 @@ use super::{Alternatives, COLUMN_SENSES, ColumnSense, ComparedMeasures, JudgedAl
 use super::{MEASURES, MovedRange};
 use crate::design::status_sentence;
 use crate::project::{AS_DECLARED, LINEAR_PARAMETERS};
-use crate::quantity::{DisplayUnit, fitting, significant};
+use crate::quantity::{DisplayUnit, MotionKind, fitting, significant};
 use crate::trial::Agreement;
 
 /// Of the declared load, and then of each load case.
@@ -145,17 +145,20 @@ fn lacking(one: &JudgedAlternative) -> Vec<(&str, String)> {
 
 /// The ranges that follow a rig, in one sentence.
 fn ranges(judged: &[JudgedAlternative]) -> Option<String> {
-    let each = judged.iter().flat_map(|one| one.moved.iter().map(|range| moved_words(&one.name, range)));
+    let each = judged.iter().flat_map(|one| {
+        let motion = one.loaded.project.motion();
+        one.moved.iter().map(move |range| moved_words(&one.name, range, motion))
+    });
     let each: Vec<String> = each.collect();
     (!each.is_empty()).then(|| format!("ranges that follow the rig: {}", each.join("; ")))
 }
 
-fn moved_words(name: &str, range: &MovedRange) -> String {
+fn moved_words(name: &str, range: &MovedRange, motion: MotionKind) -> String {
     let [[_, least, greatest], [_, less, more]] = [range.stated, range.moved];
     let known = LINEAR_PARAMETERS.iter().find(|parameter| parameter.key.name == range.name);
     let unit = known.map_or(DisplayUnit::ONE, |known| match known.key.dimension.si {
-        "N/m" => DisplayUnit::MEGANEWTON_PER_METRE,
-        _ => fitting(more.abs(), known.key.dimension),
+        "N/m" => motion.unit(DisplayUnit::MEGANEWTON_PER_METRE),
+        _ => fitting(more.abs(), motion.dimension(known.key.dimension)),
     });
     let number = |value: f64| unit.number(value, 3);
     let moved = unit.with_symbol(format!("{} to {}", number(less), number(more)));

@@ -85,7 +85,7 @@ fn events(plan: &Plan, summary: &Summary) -> Vec<Object> {
             .with("time_s", window.start_s)
             .with("until_s", window.end_s)
             .each("metrics", meaningful(window, plan.is_open_loop()), |metric| {
-                let name = Object::new().with("name", METRIC_NAMES[metric]);
+                let name = Object::new().with("name", plan.motion().name(METRIC_NAMES[metric]).into_owned());
                 name.and(spread_row(spreads[metric], summary.driven()))
             })
     };
@@ -121,6 +121,8 @@ fn lumps(plan: &Plan, summary: &Summary) -> Vec<Object> {
 fn worst_run(plan: &Plan, worst: &WorstRun) -> Object {
     Object::new()
         .with("run", worst.run)
-        .each("of", &worst.of, |(window, metric)| format!("event {} {}", window + 1, METRIC_NAMES[*metric]))
+        .each("of", &worst.of, |(window, metric)| {
+            format!("event {} {}", window + 1, plan.motion().name(METRIC_NAMES[*metric]))
+        })
         .with("settings", plan.settings(&plan.draw(worst.run)))
 }

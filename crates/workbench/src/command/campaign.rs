@@ -4,6 +4,7 @@ use super::{CommandError, Watch, with_recordings};
 use crate::answer::{Answer, TableFormat};
 use crate::campaign::{self, CampaignError, Plan, RequestedRuns, RowStore, Summary};
 use crate::identify::heading_in_use;
+use crate::motion;
 use crate::project::{self, Loaded};
 use crate::setup::Setup;
 use crate::simulate::{self, RunOutput, simulate_into};
@@ -48,7 +49,10 @@ pub fn campaign_watched(
     let plan = Plan::new(source, loaded, request.seed)?;
     let wanted = match request.asked {
         CampaignRuns::All(wanted) => wanted,
-        CampaignRuns::One(run) => return one(source, loaded, catalogues, (&plan, run), destination, watch),
+        CampaignRuns::One(run) => {
+            let answer = one(source, loaded, catalogues, (&plan, run), destination, watch)?;
+            return Ok(motion::said(answer, loaded));
+        }
     };
     let rows = campaign::campaign(&plan, wanted, ledger, watch)?;
     let summary = Summary::of(&plan, &rows);
@@ -58,12 +62,13 @@ pub fn campaign_watched(
         true => campaign::files(&plan, (&wanted.shard, &rows), &summary)?,
         false => vec![],
     };
-    Ok(Answer {
+    let answer = Answer {
         text: heading_in_use(loaded) + &campaign::text(&plan, (wanted, request.files), rows.len(), &summary),
         json: campaign::json(loaded, &plan, wanted, rows.len(), &summary),
         files,
         affirmative: complete,
-    })
+    };
+    Ok(motion::said(answer, loaded))
 }
 
 /// One run: its numbers as settings of the project, and the complete output of `simulate` with

@@ -19,13 +19,29 @@ pub(super) fn refuse(loaded: &Loaded, request: &Request) -> Result<(), CommandEr
         | Request::VerifyProven { .. }
         | Request::Design { .. }
         | Request::Simulate
+        | Request::SimulateAs(_)
+        | Request::LinearizeSwept(_)
+        | Request::Alternatives(_)
+        | Request::ReportOfAlternatives { .. }
+        | Request::Campaign(_)
+        | Request::Compare
         | Request::Report
         | Request::Page => return Ok(()),
-        Request::SimulateAs(asked) if asked.frequency_response.is_none() => return Ok(()),
-        Request::SimulateAs(_) => "simulate --frequency-response",
-        Request::LinearizeSwept(_) => "linearize --sweep",
-        Request::ReportOfAlternatives { .. } => "report --alternatives",
         other => other.name(),
     };
     Err(CommandError::OfCylinders { command })
+}
+
+/// Refuses projects side by side of which some turn and others do not.
+///
+/// # Errors
+/// [`CommandError::MixedMotion`].
+pub(super) fn refuse_mixture(projects: &[Loaded]) -> Result<(), CommandError> {
+    let find = |rotary: bool| projects.iter().find(|loaded| loaded.project.motion().is_rotary() == rotary);
+    match (find(true), find(false)) {
+        (Some(turning), Some(other)) => {
+            Err(CommandError::MixedMotion { path: turning.path.clone(), other: other.path.clone() })
+        }
+        _ => Ok(()),
+    }
 }

@@ -73,9 +73,10 @@ pub(crate) fn sweep_text(sweep: &Sweep) -> String {
         "1" | "" => sweep.path.clone(),
         symbol => format!("{}, {symbol}", sweep.path),
     };
+    let stiffness = format!("K_H over the stroke, {}", stiffness_unit(sweep).symbol);
     let heads = [
         key.as_str(),
-        "K_H over the stroke, MN/m",
+        stiffness.as_str(),
         "poles, rad/s",
         "resonance, rad/s",
         "damping",
@@ -105,6 +106,10 @@ fn unmoved(sweep: &Sweep) -> Option<String> {
     })
 }
 
+fn stiffness_unit(sweep: &Sweep) -> DisplayUnit {
+    sweep.motion.unit(DisplayUnit::MEGANEWTON_PER_METRE)
+}
+
 fn cells(sweep: &Sweep, point: &SweepPoint) -> [String; 7] {
     let value = sweep.unit.number(point.value, 4);
     let Ok(found) = &point.found else {
@@ -112,7 +117,7 @@ fn cells(sweep: &Sweep, point: &SweepPoint) -> [String; 7] {
         return [value, a, b, c, d, e, f];
     };
     let stiffness = found.linearization.stiffness[0];
-    let mega = |value: f64| DisplayUnit::MEGANEWTON_PER_METRE.number(value, 3);
+    let mega = |value: f64| stiffness_unit(sweep).number(value, 3);
     let [frequency, damping] = resonance(found)
         .map_or(["-".to_string(), "-".to_string()], |[frequency, ratio]| {
             [significant(frequency, 4), significant(ratio, 3)]
@@ -150,6 +155,7 @@ pub(crate) fn sweep_figure(sweep: &Sweep) -> Figure {
     let input = PoleSweepInput {
         quantity: sweep.path.clone(),
         unit: sweep.unit,
+        stiffness_unit: stiffness_unit(sweep),
         by_ratio: sweep.by_ratio,
         points: points.collect(),
     };

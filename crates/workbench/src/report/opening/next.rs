@@ -278,16 +278,11 @@ fn undeclared(contents: &Contents<'_>, taken: Option<&Side<'_>>) -> Vec<String> 
         steps.push("Add a `[[scenario]]` with the steps and the motions of the load that the rig will meet: none was driven.".to_string());
         return steps;
     }
-    // neither measurements nor campaigns of a motor are there yet
-    if project.motion().is_rotary() {
-        steps.push(
-            "Measure on the rig what was simulated: nothing here has been compared with it.".to_string(),
-        );
-        return steps;
-    }
     let runs = taken.and_then(|side| side.runs).unwrap_or_default();
     let overlays: Vec<_> = runs.iter().flat_map(|run| &run.measured).collect();
     let farthest = overlays.iter().filter_map(|overlay| Some((overlay.nrmse.ok()?, overlay)));
+    // measurements of a motor are not read yet
+    let comparable = !project.motion().is_rotary();
     match farthest.max_by(|one, other| one.0.total_cmp(&other.0)) {
         Some((nrmse, overlay)) if nrmse > NEAR => steps.push(format!(
             "Bring the model nearer to the rig before relying on its numbers: {} lies {} % of its range from what was measured; friction, leakage and the stiffness of the load cell are the first to check.",
@@ -295,6 +290,7 @@ fn undeclared(contents: &Contents<'_>, taken: Option<&Side<'_>>) -> Vec<String> 
             significant(100.0 * nrmse, 3)
         )),
         Some(_) => {}
+        None if !comparable => steps.push("Measure on the rig what was simulated: nothing here has been compared with it.".to_string()),
         None => steps.push("Compare a scenario with a measurement (`[[scenario.measured]]`): nothing here has been compared with the rig.".to_string()),
     }
     if project.campaign.is_none() {

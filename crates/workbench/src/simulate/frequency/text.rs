@@ -9,8 +9,9 @@ use crate::quantity::{FORCE, LENGTH, VOLTAGE, display};
 
 /// The tables and sentences of a frequency response.
 pub(crate) fn text(found: &MachineResponses) -> String {
-    let position = display(found.position_m, &LENGTH, 4);
-    let (force, command) = (display(found.force_n, &FORCE, 4), display(found.command_v, &VOLTAGE, 4));
+    let position = display(found.position_m, found.motion.dimension(&LENGTH), 4);
+    let (force, command) =
+        (display(found.force_n, found.motion.dimension(&FORCE), 4), display(found.command_v, &VOLTAGE, 4));
     let mut out = Document::default();
     out.preformatted(format!("Around rest at {position}, {force} on the load, a command of {command}.\n"));
     let mut section = |title: &str, found: &MachineResponse, unit: &str| {
