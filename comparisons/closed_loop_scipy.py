@@ -16,7 +16,13 @@ ATMOSPHERE = 101_325.0
 MAGNITUDES = np.array([1.0, 1e3, 1e5, 1e5, 1e-4, 1e-2, 1e-5, 1.0, 1e3, 1e5])
 # Flow into the gas and its pressure, behind the necks at A and B.
 NECKS = np.array([1e-5, 1e5, 1e-5, 1e5])
-SCALES = np.concatenate((MAGNITUDES, NECKS))
+# Absolute temperature of the gas at A and B over that of its wall.
+HEAT = np.array([1.0, 1.0])
+
+
+def magnitudes_of(rig):
+    parts = [NECKS] * hasattr(rig, "neck") + [HEAT] * hasattr(rig, "time_constant")
+    return np.concatenate((MAGNITUDES, *parts))
 
 
 def root(drop, transition):
@@ -58,42 +64,69 @@ def gas_compliance(rig, pressure):
     return lifted * rig.gas_volume / (index * precharge) * (precharge / absolute) ** (1 + 1 / index)
 
 
-def neck(rig, pressure, flow, gas_pressure):
+def heated(rig, pressure, theta, arriving, beside):
+    """Rates of pressure and temperature of gas that receives a flow together with a compliance beside it.
+
+    P V = P_0 V_0 theta, with its heat capacity P_0 V_0/0.4 over the temperature of the wall; the gas stays in use.
+    """
+    absolute, charge = pressure + ATMOSPHERE, (rig.precharge + ATMOSPHERE) * rig.gas_volume
+    volume = charge * theta / absolute
+    lost = (theta - 1) / rig.time_constant
+    # 1.4 q = (V/P) dP/dt + (V/theta) lost, and what the flow does not give to the gas raises the pressure beside it
+    pressure_rate = (1.4 * arriving - volume / theta * lost) / (volume / absolute + 1.4 * beside)
+    entering = arriving - beside * pressure_rate
+    return pressure_rate, 0.4 * absolute * entering / charge - lost
+
+
+def neck(rig, pressure, flow, gas_pressure, theta):
     """Rates of the flow through the neck of an accumulator and of the pressure of its gas, which its own oil is beside."""
     diameter, length, loss_coefficient = rig.neck
     section = pi / 4 * diameter**2
     resistance = 128 * rig.density * rig.viscosity * length / (pi * diameter**4)
     lost = resistance * flow + loss_coefficient * rig.density / (2 * section**2) * flow * abs(flow)
-    soft = gas_compliance(rig, gas_pressure) + section * length / rig.fluid_modulus
-    return [(pressure - gas_pressure - lost) * section / (rig.density * length), flow / soft]
+    flow_rate, own = (pressure - gas_pressure - lost) * section / (rig.density * length), section * length / rig.fluid_modulus
+    if theta is None:
+        return [flow_rate, flow / (gas_compliance(rig, gas_pressure) + own)], None
+    pressure_rate, theta_rate = heated(rig, gas_pressure, theta, flow, own)
+    return [flow_rate, pressure_rate], theta_rate
 
 
 def rates(time, state, rig, reference):
-    state = state * SCALES[: len(state)]
+    scales = magnitudes_of(rig)
+    state = state * scales
     spool, spool_rate, pressure_a, pressure_b, deflection, v, z, integral, r, r_rate = state[:10].tolist()
+    has_neck, has_heat = hasattr(rig, "neck"), hasattr(rig, "time_constant")
     necks, soft_a, soft_b = [], 0.0, 0.0
-    if len(state) == 10:
+    if not has_neck and not has_heat:
         soft_a, soft_b = gas_compliance(rig, pressure_a), gas_compliance(rig, pressure_b)
+    theta_a, theta_b = state[-2:].tolist() if has_heat else (None, None)
     load_position, load_velocity = load(rig, time)
     position, force = load_position + deflection, rig.sensor_stiffness * deflection
     error = r - force
     command = min(max(rig.proportional_gain * error + integral, -rig.saturation), rig.saturation)
     into_a, into_b = flows(rig, spool, pressure_a, pressure_b)
-    if len(state) > 10:
-        flow_a, gas_a, flow_b, gas_b = state[10:].tolist()
+    if has_neck:
+        flow_a, gas_a, flow_b, gas_b = state[10:14].tolist()
         into_a, into_b = into_a - flow_a, into_b - flow_b
-        necks = neck(rig, pressure_a, flow_a, gas_a) + neck(rig, pressure_b, flow_b, gas_b)
+        of_a, warming_a = neck(rig, pressure_a, flow_a, gas_a, theta_a)
+        of_b, warming_b = neck(rig, pressure_b, flow_b, gas_b, theta_b)
+        necks = of_a + of_b
     volume_a = rig.line_volume_a + rig.area_a * position
     volume_b = rig.line_volume_b + rig.area_b * (rig.stroke - position)
     level = rig.coulomb + (rig.static_friction - rig.coulomb) * exp(-((v / rig.stribeck_velocity) ** 2))
     z_rate = v - rig.bristle_stiffness * abs(v) / level * z
     friction = rig.bristle_stiffness * z + rig.bristle_damping * z_rate + rig.viscous * v
+    oil_a, oil_b = volume_a / rig.chamber_modulus, volume_b / rig.chamber_modulus
+    rate_a, rate_b = (into_a - rig.area_a * v) / (oil_a + soft_a), (into_b + rig.area_b * v) / (oil_b + soft_b)
+    if has_heat and not has_neck:
+        rate_a, warming_a = heated(rig, pressure_a, theta_a, into_a - rig.area_a * v, oil_a)
+        rate_b, warming_b = heated(rig, pressure_b, theta_b, into_b + rig.area_b * v, oil_b)
     pull = rig.area_a * pressure_a - rig.area_b * pressure_b
     rate = [
         spool_rate,
         rig.valve_frequency**2 * (command - spool) - 2 * rig.valve_damping * rig.valve_frequency * spool_rate,
-        (into_a - rig.area_a * v) / (volume_a / rig.chamber_modulus + soft_a),
-        (into_b + rig.area_b * v) / (volume_b / rig.chamber_modulus + soft_b),
+        rate_a,
+        rate_b,
         v - load_velocity,
         (pull - friction - force) / rig.moving_mass,
         z_rate,
@@ -101,16 +134,19 @@ def rates(time, state, rig, reference):
         r_rate,
         rig.prefilter_stiffness * (reference - r) - rig.prefilter_damping * r_rate,
     ]
-    return np.array(rate + necks) / SCALES[: len(state)]
+    return np.array(rate + necks + ([warming_a, warming_b] if has_heat else [])) / scales
 
 
 def force(tolerance, **changes):
     """The force each millisecond of 5 s, for the default rig with these changes."""
     rig = SimpleNamespace(**{**DEFAULTS, **changes})
-    magnitudes = SCALES if hasattr(rig, "neck") else MAGNITUDES
+    magnitudes = magnitudes_of(rig)
     state = np.zeros(len(magnitudes))
     state[2:4] = rig.start_pressure_a, rig.start_pressure_b
-    state[11::2] = state[2:4] if hasattr(rig, "neck") else []
+    if hasattr(rig, "neck"):
+        state[[11, 13]] = state[2:4]
+    if hasattr(rig, "time_constant"):
+        state[-2:] = 1.0
     state, times, forces = state / magnitudes, np.round(np.arange(5001) * 1e-3, 6), [np.zeros(1)]
     ends = [rig.reference_time, rig.motion_start, rig.motion_start + rig.motion_duration, rig.duration]
     for start, end in zip([0.0, *ends], ends):

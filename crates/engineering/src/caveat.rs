@@ -9,9 +9,7 @@ use phea_hydraulics::operating_point::OperatingPoint;
 use crate::control::{velocity_sensor, virtual_impedance};
 use crate::project::{CrossPortKind, LineMotion, Load, Project, Pump, SupplyModel};
 use crate::quantity::{DisplayUnit, PRESSURE, display, significant};
-use crate::rig::{
-    ChargedRange, accumulator_place, charged_range, cross_port_at_point, has_necks, limits_load_motion,
-};
+use crate::rig::{ChargedRange, accumulator_place, charged_range, cross_port_at_point, limits_load_motion};
 use crate::setup::Setup;
 
 /// A declared effect that the linear loop does not include.
@@ -38,7 +36,7 @@ pub fn of_models(project: &Project) -> Vec<String> {
         .chain(others)
         .chain(constant_supply(project))
         .chain(fed_between_chambers(project))
-        .chain(behind_necks(project))
+        .chain(of_gas(project))
         .chain(fed_in_loop(project))
         .chain(beside_spring(project))
         .collect()
@@ -188,13 +186,26 @@ fn neck(setup: &Setup<'_>) -> Option<Caveat> {
     })
 }
 
-/// Necks of accumulators, which the models of a linearisation do not include.
-fn behind_necks(project: &Project) -> Option<String> {
-    has_necks(project.actuator.as_ref()?).then(|| {
-        "the neck of line.accumulator is counted in the plant and the impedance at the load: the other models and the asymptotes of the \
-         impedance have its gas at the chamber"
-            .to_string()
-    })
+/// Necks and heat of accumulators, which the models of a linearisation do not include.
+fn of_gas(project: &Project) -> Option<String> {
+    let line = &project.actuator.as_ref()?.line;
+    let gas = [&line.a, &line.b].into_iter().filter_map(|side| side.accumulator.as_ref());
+    let (necks, heat) = gas.fold((false, false), |(necks, heat), gas| {
+        (necks || gas.neck.is_some(), heat || gas.thermal_time_constant.is_some())
+    });
+    let (what, verb, without) = match (necks, heat) {
+        (false, false) => return None,
+        (true, false) => ("the neck of line.accumulator", "is", "have its gas at the chamber"),
+        (false, true) => ("line.accumulator.thermal_time_constant", "is", "have the isothermal gas of rest"),
+        (true, true) => (
+            "the neck of line.accumulator and its thermal_time_constant",
+            "are",
+            "have the isothermal gas of rest at the chamber",
+        ),
+    };
+    Some(format!(
+        "{what} {verb} counted in the plant and the impedance at the load: the other models and the asymptotes of the impedance {without}"
+    ))
 }
 
 /// Drops of an orifice in transition pressures below which its slope is that of the transition.

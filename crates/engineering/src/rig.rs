@@ -45,9 +45,9 @@ pub use numbers::Numbers;
 pub use parameters::{ParameterOrigin, ResolvedParameter};
 pub use place::place;
 pub(crate) use plant::are_equal;
-pub(crate) use plant::has_necks;
+pub(crate) use plant::has_gas_states;
 pub(crate) use plant::states_one_pressure;
-pub(crate) use plant::with_necks;
+pub(crate) use plant::with_gas;
 pub(crate) use plant::with_supply;
 pub(crate) use plant::yielding_load;
 pub use plant::{YieldingLoad, linear, plant, sides, stated};
@@ -183,19 +183,19 @@ impl Rig {
         let load = yielding_load(&declared.load, &numbers, point.hydraulic_force);
         let yielding = supply.and_then(|found| yielding_supply(declared, &numbers, &balance, &found));
         let unseen = yielding.is_none_or(|supply| are_equal([supply.edges]));
-        let equal = are_equal(sides(&two_pressure)) && unseen && !has_necks(declared);
+        let equal = are_equal(sides(&two_pressure)) && unseen && !has_gas_states(declared);
         let one_pressure = states_one_pressure(&parameters, &[]) || equal;
         let pushed = load.map_or(LinearLoad::Prescribed, |load| load.linear());
         let series = components.series.map(|series| LinearSeries::new(&series, point.hydraulic_force));
         let plant = plant(&two_pressure, &linear, one_pressure, internal_leakage, pushed);
         let plant = LinearPlant { dynamic_feedback, series, ..plant };
         let plant = match yielding {
-            Some(supply) if !(one_pressure && unseen) || has_necks(declared) => {
+            Some(supply) if !(one_pressure && unseen) || has_gas_states(declared) => {
                 with_supply(plant, supply, &two_pressure)
             }
             _ => plant,
         };
-        let plant = with_necks(plant, components, &two_pressure, pressures);
+        let plant = with_gas(plant, components, &two_pressure, pressures);
         let shown = VelocitySensor { gain: velocity_gain(declared, &numbers), ..plant.velocity_sensor };
         let plant = LinearPlant { velocity_sensor: shown, ..plant };
         let in_motion = in_motion(&declared.line, components, &point, &two_pressure, &plant)?;

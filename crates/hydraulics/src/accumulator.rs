@@ -1,8 +1,12 @@
 //! A gas-charged accumulator: at the supply, or at the line of a chamber.
 
+mod branch;
+mod heat;
 mod neck;
 
-pub use neck::{Neck, NeckedGas};
+pub use branch::{GasBranch, NeckImpedance};
+pub use heat::{GasRelaxation, HEAT_CAPACITY_RATIO, HeatedGas, RelaxingGas};
+pub use neck::Neck;
 
 use phea_dynamics::scalar::{LocalFunction, Scalar};
 
@@ -96,6 +100,27 @@ impl<S: Scalar> Accumulator<S> {
         let Lifted { share, absolute, .. } = self.lifted(pressure);
         let gas = self.gas_volume * (-self.squeeze(pressure)).exp();
         share * gas / (self.polytropic_exponent * absolute)
+    }
+
+    /// The same gas at another temperature: its precharge is that in the unchanged volume. Absolute
+    /// temperatures in K, at which the precharge is stated and at which it works.
+    ///
+    /// ```text
+    /// P_0 = P_c T/T_c,     absolute
+    /// ```
+    ///
+    /// # Example
+    /// ```
+    /// use phea_hydraulics::accumulator::Accumulator;
+    /// let cold = Accumulator { gas_volume: 1e-5, precharge_pressure: 29e5, polytropic_exponent: 1.0 };
+    /// let warm = cold.at_temperature([300.0, 330.0]);
+    /// assert!((warm.precharge_pressure + 101_325.0 - 1.1 * (29e5 + 101_325.0_f64)).abs() < 1e-6);
+    /// ```
+    #[must_use]
+    pub fn at_temperature(&self, [stated, working]: [S; 2]) -> Accumulator<S> {
+        let atmosphere = S::from(ATMOSPHERIC_PRESSURE_ABSOLUTE);
+        let absolute = (self.precharge_pressure + atmosphere) * working / stated;
+        Accumulator { precharge_pressure: absolute - atmosphere, ..*self }
     }
 
     /// The lowest pressure in Pa gauge at which the bladder is off the shell, 1.01 P_0.

@@ -3,7 +3,7 @@
 
 use phea_dynamics::scalar::Scalar;
 
-use crate::accumulator::{Accumulator, Neck, NeckedGas};
+use crate::accumulator::{Accumulator, GasBranch, Neck, RelaxingGas};
 use crate::cross_port::{CrossFlow, CrossPort, DynamicFeedback};
 use crate::cylinder::Cylinder;
 use crate::fluid::Fluid;
@@ -33,6 +33,9 @@ pub struct Components<S = f64> {
     pub accumulators: [Option<Accumulator<S>>; 2],
     /// Necks of these accumulators; of a side without one they have no effect.
     pub necks: [Option<Neck<S>>; 2],
+    /// Thermal time constants in s of their gas, which then has a polytropic exponent of 1; of a side
+    /// without an accumulator they have no effect.
+    pub thermal_time_constants: [Option<S>; 2],
     /// A valve between the chambers, at the cylinder.
     pub cross_port: Option<CrossPort<S>>,
     /// The cylinder.
@@ -69,11 +72,32 @@ impl<S: Scalar> Components<S> {
         [0, 1].map(|side| self.accumulators[side].and(self.necks[side]))
     }
 
-    /// The gas that lies behind a neck at either chamber, at chamber pressures in Pa.
-    pub fn necked_gas(&self, pressures: [S; 2]) -> [Option<NeckedGas<S>>; 2] {
-        let [gas_a, gas_b] = self.gas_compliance(pressures);
-        let behind = |neck: Option<Neck<S>>, gas: Option<S>| Some(NeckedGas::of(&neck?, gas?));
-        [behind(self.necks[0], gas_a), behind(self.necks[1], gas_b)]
+    /// The thermal time constants of accumulators that are there.
+    pub(crate) fn thermal_time_constants_in_use(&self) -> [Option<S>; 2] {
+        [0, 1].map(|side| self.accumulators[side].and(self.thermal_time_constants[side]))
+    }
+
+    /// The gas at either chamber that lies behind a neck or exchanges heat, at chamber pressures in
+    /// Pa.
+    pub fn gas_branches(&self, pressures: [S; 2]) -> [Option<GasBranch<S>>; 2] {
+        [0, 1].map(|side| {
+            let (gas, pressure) = (self.accumulators[side]?, pressures[side]);
+            let (neck, time_constant) = (&self.necks[side], self.thermal_time_constants[side]);
+            let relaxing = time_constant.map(|time_constant| RelaxingGas { gas, time_constant });
+            let later = relaxing.map(|gas| gas.relaxation(pressure));
+            let is_branch = neck.is_some() || later.is_some();
+            is_branch.then(|| GasBranch::of(gas.compliance(pressure), later, neck.as_ref()))
+        })
+    }
+
+    /// Compliance in m3/Pa of the gas of these branches at rest, without the oil of their necks; zero
+    /// where there is none.
+    pub fn branch_compliance(&self, pressures: [S; 2]) -> [S; 2] {
+        let gas = self.gas_compliance(pressures);
+        [0, 1].map(|side| {
+            let is_branch = self.necks[side].is_some() || self.thermal_time_constants[side].is_some();
+            gas[side].filter(|_| is_branch).unwrap_or(S::from(0.0))
+        })
     }
 
     /// What flows from chamber to chamber at rest; `None` where nothing does.
@@ -87,6 +111,16 @@ impl<S: Scalar> Components<S> {
         let steady = self.cross_flow().map_or(S::from(0.0), |flow| flow.slope(pressure_a - pressure_b));
         (steady, self.cross_port.as_ref().and_then(DynamicFeedback::of))
     }
+}
+
+/// Impossible parameters of gas that exchanges heat.
+fn heat_problems(gas: &Accumulator, time_constant: f64) -> Vec<ParameterError> {
+    let mut problems = Problems::default();
+    problems.positive("thermal_time_constant", time_constant);
+    let index = gas.polytropic_exponent;
+    let one = "1 together with a thermal time constant";
+    problems.require("polytropic_exponent", index, index == 1.0, one);
+    problems.into_vec()
 }
 
 /// Why components do not make an actuator: every impossible parameter.
@@ -120,6 +154,10 @@ impl Actuator {
         problems.component("line.b", line_b.problems());
         for (gas, path) in accumulators.iter().zip(["line.a.accumulator", "line.b.accumulator"]) {
             problems.component(path, gas.map_or(Vec::new(), |gas| gas.problems()));
+        }
+        for (side, path) in ["line.a.accumulator", "line.b.accumulator"].into_iter().enumerate() {
+            let gas = accumulators[side].zip(components.thermal_time_constants[side]);
+            problems.component(path, gas.map_or(Vec::new(), |(gas, time)| heat_problems(&gas, time)));
         }
         for (neck, path) in components.necks.iter().zip(["line.a.accumulator", "line.b.accumulator"]) {
             problems.component(path, neck.map_or(Vec::new(), |neck| neck.problems()));

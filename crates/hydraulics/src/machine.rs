@@ -8,6 +8,7 @@
 //!                C of the oil and its enclosure, and of the gas of an Accumulator at that chamber
 //! leakage        q_i = G_i (p_A - p_B)                          laminar, across the piston
 //!                q_e = G_e (p - p_T)                            laminar, from each chamber to the tank
+//! heat           dtheta/dt = (gamma - 1) P q/(P_0 V_0) - (theta - 1)/tau         of the gas at a chamber: RelaxingGas
 //! neck           I dq_n/dt = p - p_g - R q_n - Z q_n |q_n|,   C_g dp_g/dt = q_n     of the gas at a chamber: Neck
 //! cross port     q_cp = restrictor(p_A - p_B - p_cp),   C_cp dp_cp/dt = q_cp      part of q_i: CrossPort
 //! piston         M dv/dt = A_A p_A - A_B p_B + F_stops - F_fr - F_e      thesis (4.29)
@@ -27,6 +28,7 @@
 mod balance;
 mod chambers;
 mod equations;
+mod gas;
 mod ledger;
 mod load;
 mod options;
@@ -99,6 +101,8 @@ pub struct Machine<S = f64> {
     chambers: Chambers<S>,
     accumulators: [Option<Accumulator<S>>; 2],
     necks: [Option<Neck<S>>; 2],
+    thermal_time_constants: [Option<S>; 2],
+    gas_pressure_limits: [Option<S>; 2],
     cross_port: Option<CrossPort<S>>,
     lines: [DynamicLine<S>; 2],
     friction: MovingFriction<S>,
@@ -148,6 +152,8 @@ impl Machine {
             },
             accumulators: components.accumulators,
             necks: components.necks_in_use(),
+            thermal_time_constants: components.thermal_time_constants_in_use(),
+            gas_pressure_limits: options.gas_pressure_limits,
             cross_port: components.cross_port,
             lines: options.lines.unwrap_or([none; 2]),
             friction,
@@ -217,6 +223,8 @@ impl<S: Copy> Machine<S> {
             chambers: self.chambers.convert(of),
             accumulators: self.accumulators.map(|gas| gas.map(|gas| gas.convert(of))),
             necks: self.necks.map(|neck| neck.map(|neck| neck.convert(of))),
+            thermal_time_constants: self.thermal_time_constants.map(|time| time.map(&mut *of)),
+            gas_pressure_limits: self.gas_pressure_limits.map(|limit| limit.map(&mut *of)),
             cross_port: self.cross_port.map(|port| port.convert(of)),
             lines: self.lines.map(|line| line.convert(of)),
             friction: self.friction.convert(of),

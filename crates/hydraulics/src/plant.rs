@@ -27,7 +27,7 @@ use phea_dynamics::uncertain_plant::{PlantCoefficients, RateNumerators, Rational
 
 use supply::Coupled;
 
-use crate::accumulator::NeckedGas;
+use crate::accumulator::GasBranch;
 use crate::cross_port::DynamicFeedback;
 use crate::linear::LinearParameters;
 use crate::linear::polynomial::{product, scaled, shifted, sum};
@@ -47,8 +47,8 @@ pub struct LinearPlant<S = f64> {
     pub internal_leakage: S,
     /// Dynamic pressure feedback between the chambers; `None` where there is none.
     pub dynamic_feedback: Option<DynamicFeedback<S>>,
-    /// Gas behind a neck at either chamber, which the compliances of the chambers leave out.
-    pub necks: [Option<NeckedGas<S>>; 2],
+    /// Gas behind a neck, or with heat, at either chamber: the chambers' compliances leave it out.
+    pub gas: [Option<GasBranch<S>>; 2],
     /// Moving mass M in kg.
     pub moving_mass: S,
     /// Slope f_v of the friction in N s/m.
@@ -238,11 +238,11 @@ impl<S: Scalar> ChamberDynamics<S> {
 }
 
 impl<S: Scalar> ChamberDynamics<S> {
-    /// The same beside gas behind necks, of either form, each chamber multiplied by the denominator
-    /// of its neck.
-    fn beside(&self, necks: [Option<NeckedGas<S>>; 2]) -> ChamberPair<Vec<S>> {
+    /// The same beside gas of its own dynamics, of either form, each chamber multiplied by the
+    /// denominator of its gas.
+    fn beside(&self, gas: [Option<GasBranch<S>>; 2]) -> ChamberPair<Vec<S>> {
         let [one, other] = [self.side(0), self.side(1)];
-        let [(a, passed_a), (b, passed_b)] = [one.beside(necks[0]), other.beside(necks[1])];
+        let [(a, passed_a), (b, passed_b)] = [one.beside(gas[0]), other.beside(gas[1])];
         let [squared_a, squared_b] = [one.area.squared(), other.area.squared()];
         let [driven_a, driven_b] = [one.area * one.flow_gain, other.area * other.flow_gain];
         let (by_a, by_b) = (product(&a, &passed_b), product(&b, &passed_a));
@@ -263,13 +263,13 @@ impl<S: Scalar> ChamberDynamics<S> {
     }
 
     /// The same with a supply that yields, of either form.
-    fn behind(&self, supply: &YieldingSupply<S>, necks: [Option<NeckedGas<S>>; 2]) -> ChamberPair<Vec<S>> {
+    fn behind(&self, supply: &YieldingSupply<S>, gas: [Option<GasBranch<S>>; 2]) -> ChamberPair<Vec<S>> {
         let [one, other] = [self.side(0), self.side(1)];
-        let [(a, passed_a), (b, passed_b)] = [one.beside(necks[0]), other.beside(necks[1])];
+        let [(a, passed_a), (b, passed_b)] = [one.beside(gas[0]), other.beside(gas[1])];
         let [of_a, of_b] = supply.edges;
         let coupled = Coupled {
             own: [a, b, vec![supply.compliance, supply.conductance + of_a + of_b]],
-            passed: necks.iter().any(Option::is_some).then_some([passed_a, passed_b]),
+            passed: gas.iter().any(Option::is_some).then_some([passed_a, passed_b]),
             edges: [vec![of_a], vec![of_b]],
             gains: [vec![one.flow_gain], vec![other.flow_gain], vec![supply.flow_gain]],
         };
@@ -313,12 +313,12 @@ struct Chamber<S> {
 }
 
 impl<S: Scalar> Chamber<S> {
-    /// Its admittance C s + K_c with that of gas behind a neck, times the denominator of that, and
-    /// this denominator.
-    fn beside(&self, neck: Option<NeckedGas<S>>) -> (Vec<S>, Vec<S>) {
+    /// Its admittance C s + K_c with that of the gas, times the denominator of that, and this
+    /// denominator.
+    fn beside(&self, gas: Option<GasBranch<S>>) -> (Vec<S>, Vec<S>) {
         let own = vec![self.compliance, self.flow_pressure];
-        let Some(neck) = neck else { return (own, vec![S::from(1.0)]) };
-        let [numerator, denominator] = neck.admittance();
+        let Some(gas) = gas else { return (own, vec![S::from(1.0)]) };
+        let [numerator, denominator] = gas.admittance();
         (sum(&product(&own, &denominator), &numerator), denominator)
     }
 }
@@ -342,7 +342,7 @@ impl<S: Scalar> LinearPlant<S> {
             },
             internal_leakage: leakage,
             dynamic_feedback: None,
-            necks: [None; 2],
+            gas: [None; 2],
             moving_mass: parameters.moving_mass,
             viscous_friction: parameters.viscous_friction,
             sensor_stiffness: parameters.sensor_stiffness,
@@ -374,7 +374,7 @@ impl<S: Scalar> LinearPlant<S> {
             },
             internal_leakage: leakage,
             dynamic_feedback: None,
-            necks: [None; 2],
+            gas: [None; 2],
             moving_mass: parameters.moving_mass,
             viscous_friction: parameters.viscous_friction,
             sensor_stiffness: parameters.sensor_stiffness,
@@ -388,12 +388,12 @@ impl<S: Scalar> LinearPlant<S> {
     }
 
     /// D, N_u and N_v with what flows from chamber to chamber; dynamic pressure feedback multiplies
-    /// all three by C_cp s + g, the denominator of its admittance, and a neck by that of its own.
+    /// all three by C_cp s + g, the denominator of its admittance, and gas by that of its own.
     fn chamber_polynomials(&self) -> ChamberPolynomials<Vec<S>> {
-        let chambers = match (&self.supply, self.necks) {
+        let chambers = match (&self.supply, self.gas) {
             (None, [None, None]) => self.chambers.chambers(),
-            (None, necks) => self.chambers.beside(necks),
-            (Some(supply), necks) => self.chambers.behind(supply, necks),
+            (None, gas) => self.chambers.beside(gas),
+            (Some(supply), gas) => self.chambers.behind(supply, gas),
         };
         let leakage = self.internal_leakage;
         match self.dynamic_feedback {

@@ -41,14 +41,21 @@ pub(super) fn necks(number: u64) -> [Option<Neck>; 2] {
     })
 }
 
-/// These compliances in m3/Pa less that of gas behind necks.
-pub(super) fn without_necked(
+/// Thermal time constants of the gas at the chambers, of half of the numbers.
+pub(super) fn thermal_time_constants(number: u64) -> [Option<f64>; 2] {
+    let mut state = stream(47, number);
+    let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
+    [0, 1].map(|_| (spread(1.0, 4.0) > 2.0).then_some(spread(1e-3, 1e2)))
+}
+
+/// These compliances in m3/Pa less that of gas behind necks and with heat.
+pub(super) fn without_branches(
     components: &Components,
     pressures: [f64; 2],
     compliances: [f64; 2],
 ) -> [f64; 2] {
-    let gas = components.gas_compliance(pressures);
-    [0, 1].map(|side| compliances[side] - components.necks[side].and(gas[side]).unwrap_or(0.0))
+    let gas = components.branch_compliance(pressures);
+    [compliances[0] - gas[0], compliances[1] - gas[1]]
 }
 
 /// A valve between the chambers of every kind, or none.

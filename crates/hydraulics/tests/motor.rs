@@ -20,7 +20,8 @@ use phea_hydraulics::stiffness::{StiffnessModel, chamber_compliance, hydraulic_s
 use phea_hydraulics::stroke::ActuatorStroke;
 use phea_hydraulics::two_pressure::{TwoPressureModel, reduce, two_pressure_linear_parameters};
 
-use super::machine_conservation::{Motion, asymmetric, check, check_instant, machine_of, pump, random, step};
+use super::machine_conservation::{Motion, check, check_instant, machine_of, random, step};
+use super::rich_machines::{asymmetric, pump};
 
 /// Lever arm in m.
 const ARM: f64 = 0.04;

@@ -26,7 +26,10 @@ use phea_hydraulics::two_pressure::{
     TwoPressureLinearParameters, TwoPressureModel, two_pressure_coefficients, two_pressure_linear_parameters,
 };
 
-use super::commanded::{Commanded, cross_port, necks, power_unit, supply_pressure, without_necked, yielding};
+use super::commanded::{
+    Commanded, cross_port, necks, power_unit, supply_pressure, thermal_time_constants, without_branches,
+    yielding,
+};
 
 /// A rig of its own for every number, with everything that lumped lines let the plant have.
 struct Drawn {
@@ -42,11 +45,12 @@ struct Drawn {
 fn accumulators(number: u64) -> [Option<Accumulator>; 2] {
     let mut state = stream(12, number);
     let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
-    [number % 8 < 3, (1..5).contains(&(number % 8))].map(|has_gas| {
+    let heat = thermal_time_constants(number);
+    [(number % 8 < 3, heat[0]), ((1..5).contains(&(number % 8)), heat[1])].map(|(has_gas, heat)| {
         has_gas.then(|| Accumulator {
             gas_volume: spread(1e-6, 1e-4),
             precharge_pressure: spread(2e5, 20e5),
-            polytropic_exponent: spread(1.0, 1.6),
+            polytropic_exponent: heat.map_or_else(|| spread(1.0, 1.6), |_| 1.0),
         })
     })
 }
@@ -93,6 +97,7 @@ fn drawn(number: u64) -> Drawn {
         accumulators: accumulators(number),
         cross_port: cross_port(number),
         necks: necks(number),
+        thermal_time_constants: thermal_time_constants(number),
         ..parts
     };
     let actuator = Actuator::new(parts).unwrap();
@@ -145,11 +150,11 @@ impl Drawn {
         let supply = yielding(&self.actuator, &self.unit, state[0], pressures, supplied);
         let components = self.actuator.components();
         let (across, dynamic_feedback) = components.cross_admittance(pressures);
-        let necks = components.necked_gas(pressures);
-        let compliances = without_necked(components, pressures, parameters.compliances);
+        let gas = components.gas_branches(pressures);
+        let compliances = without_branches(components, pressures, parameters.compliances);
         let parameters = TwoPressureLinearParameters { compliances, ..parameters };
         let plant = LinearPlant::of_two_pressures(&parameters, across, self.load);
-        LinearPlant { supply, dynamic_feedback, necks, ..plant }
+        LinearPlant { supply, dynamic_feedback, gas, ..plant }
     }
 
     /// F_e/U_C and F_e/X_0 of the machine's own derivatives.

@@ -11,7 +11,7 @@ use phea_dynamics::random::{share, stream};
 use phea_dynamics::simulation::small_signal;
 use phea_dynamics::uncertain_plant::RationalCoefficients;
 use phea_dynamics::uncertain_plant::responding::RespondingPlant;
-use phea_hydraulics::accumulator::Accumulator;
+use phea_hydraulics::accumulator::{Accumulator, GasBranch};
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::cross_port::CrossFlow;
 use phea_hydraulics::cylinder::{Cylinder, areas_from_diameters};
@@ -31,7 +31,10 @@ use phea_hydraulics::two_pressure::{
     TwoPressureLinearParameters, TwoPressureModel, two_pressure_linear_parameters,
 };
 
-use super::commanded::{Commanded, cross_port, necks, power_unit, supply_pressure, without_necked, yielding};
+use super::commanded::{
+    Commanded, cross_port, necks, power_unit, supply_pressure, thermal_time_constants, without_branches,
+    yielding,
+};
 
 fn model(number: u64, time: f64) -> LineModel {
     let friction =
@@ -107,11 +110,12 @@ fn parameters_at(
 fn accumulators(number: u64) -> [Option<Accumulator>; 2] {
     let mut state = stream(24, number);
     let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
-    [number % 8 < 3, (1..5).contains(&(number % 8))].map(|has_gas| {
+    let heat = thermal_time_constants(number);
+    [(number % 8 < 3, heat[0]), ((1..5).contains(&(number % 8)), heat[1])].map(|(has_gas, heat)| {
         has_gas.then(|| Accumulator {
             gas_volume: spread(1e-6, 1e-4),
             precharge_pressure: spread(2e5, 20e5),
-            polytropic_exponent: spread(1.0, 1.6),
+            polytropic_exponent: heat.map_or_else(|| spread(1.0, 1.6), |_| 1.0),
         })
     })
 }
@@ -142,6 +146,7 @@ fn parts(number: u64, spread: &mut impl FnMut(f64, f64) -> f64) -> (Components, 
         accumulators: accumulators(number),
         cross_port: cross_port(number),
         necks: necks(number),
+        thermal_time_constants: thermal_time_constants(number),
         ..leaking(parts, leakage)
     };
     (parts, models, friction)
@@ -170,18 +175,19 @@ pub(crate) fn drawn(number: u64) -> Drawn {
     let pressures = [rest.state[2], rest.state[3]];
     let point = at_ports(&rest.state, position, &lines, parts.cross_flow());
     let (across, dynamic_feedback) = parts.cross_admittance(pressures);
-    let necks = parts.necked_gas(pressures);
-    let of_necks = 2 * necks.iter().flatten().count();
-    let present = usize::from(dynamic_feedback.is_some()) + of_necks + usize::from(unit.yields());
-    let named = &rest.state[..6 + 2 * usize::from(moves) + present];
-    let supplied = supply_pressure(&unit, parts.supply.pressure, named);
+    let gas = parts.gas_branches(pressures);
+    let of = |is_there: bool| usize::from(is_there);
+    let states = |gas: &GasBranch| 2 * of(gas.neck.is_some()) + of(gas.relaxation.is_some());
+    let of_gas: usize = gas.iter().flatten().map(states).sum();
+    let named = 6 + of_gas + of(dynamic_feedback.is_some()) + of(unit.yields()) + 2 * of(moves);
+    let supplied = supply_pressure(&unit, parts.supply.pressure, &rest.state[..named]);
     let parameters = parameters_at(supplied, &actuator, &point, (pressures, friction));
     let [oil_a, oil_b] = Chambers::behind_lines(&actuator, StiffeningMember::Nominal, [0.0; 2])
         .compliance(position, pressures);
     let [gas_a, gas_b] = parts.gas_compliance(pressures);
     let own = [oil_a + gas_a.unwrap_or(0.0), oil_b + gas_b.unwrap_or(0.0)];
     let [own, compliances] =
-        [own, parameters.compliances].map(|whole| without_necked(parts, pressures, whole));
+        [own, parameters.compliances].map(|whole| without_branches(parts, pressures, whole));
     let parameters = TwoPressureLinearParameters { compliances, ..parameters };
     let behind = BehindLines { lines, chambers: own, lumped: compliances };
     let supply = yielding(&actuator, &unit, point.command, [point.pressure_a, point.pressure_b], supplied);
@@ -194,7 +200,7 @@ pub(crate) fn drawn(number: u64) -> Drawn {
         plant: LinearPlant {
             supply,
             dynamic_feedback,
-            necks,
+            gas,
             ..LinearPlant::of_two_pressures(&parameters, across, linear_load)
         },
         behind,

@@ -2,7 +2,9 @@
 
 use super::key::{key, plain};
 use super::visitor::{Variants, Visitor};
-use phea_quantity::{DENSITY, FLOW, KINEMATIC_VISCOSITY, LENGTH, PRESSURE, RATIO, VOLUME};
+use phea_quantity::{
+    DENSITY, FLOW, KINEMATIC_VISCOSITY, LENGTH, PRESSURE, RATIO, TEMPERATURE, TIME, VOLUME, ZERO_CELSIUS,
+};
 
 /// The oil.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -56,12 +58,39 @@ pub struct DeclaredAccumulator {
     pub gas_volume: f64,
     /// Pa, gauge.
     pub precharge_pressure: f64,
-    /// Polytropic exponent of the gas.
+    /// Polytropic exponent of the gas; without effect where it has a thermal time constant.
     pub polytropic_exponent: f64,
+    /// s, at a chamber: of the heat between gas and wall. `None` for polytropic gas.
+    pub thermal_time_constant: Option<f64>,
+    /// At which the precharge is stated, and at which the gas works; `None` where they are the same.
+    pub temperatures: Option<GasTemperatures>,
     /// Highest permitted pressure over the precharge, both absolute, if stated.
     pub maximum_pressure_ratio: Option<f64>,
     /// Between a chamber and the gas; absent: the gas has the pressure of the chamber.
     pub neck: Option<DeclaredNeck>,
+}
+
+/// Temperatures of the gas of an accumulator, in degC.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct GasTemperatures {
+    /// At which the precharge is stated.
+    pub precharge: f64,
+    /// Of the gas at its wall in operation.
+    pub working: f64,
+}
+
+impl GasTemperatures {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let doc = "At which `precharge_pressure` was measured; absent: at that in operation.";
+        v.quantity(key("precharge_temperature", &TEMPERATURE, doc).above(-ZERO_CELSIUS), &mut self.precharge);
+        let doc = "Of the gas in operation, which changes its precharge in proportion, both absolute.";
+        v.quantity(key("working_temperature", &TEMPERATURE, doc).above(-ZERO_CELSIUS), &mut self.working);
+    }
+
+    /// Both in K.
+    pub fn absolute(&self) -> [f64; 2] {
+        [self.precharge, self.working].map(|celsius| celsius + ZERO_CELSIUS)
+    }
 }
 
 /// The neck of an accumulator at a chamber.
@@ -90,8 +119,19 @@ impl DeclaredNeck {
 }
 
 impl DeclaredAccumulator {
-    /// At a chamber, where it may have a neck.
+    /// Pa, gauge: the precharge at the temperature in operation, given the atmosphere in Pa.
+    pub fn working_precharge(&self, atmosphere: f64) -> f64 {
+        let ratio = self.temperatures.map_or(1.0, |temperatures| {
+            let [stated, working] = temperatures.absolute();
+            working / stated
+        });
+        (self.precharge_pressure + atmosphere) * ratio - atmosphere
+    }
+
+    /// At a chamber, where it may have a neck and exchange heat.
     pub(crate) fn visit_at_chamber<V: Visitor>(&mut self, v: &mut V) {
+        let doc = "Of the heat between gas and wall, in place of `polytropic_exponent`: slow isothermal, fast adiabatic.";
+        v.optional(key("thermal_time_constant", &TIME, doc).positive(), &mut self.thermal_time_constant);
         self.visit(v);
         v.way(&["neck_diameter", "neck_length"], &mut self.neck, DeclaredNeck::visit);
     }
@@ -102,7 +142,17 @@ impl DeclaredAccumulator {
         let k = key("precharge_pressure", &PRESSURE, "Pressure of the gas without oil, gauge.").positive();
         v.quantity(k, &mut self.precharge_pressure);
         let k = key("polytropic_exponent", &RATIO, "Of the gas: 1 is slow, 1.4 fast.");
-        v.quantity(k.at_least(1.0).at_most(5.0 / 3.0).or(1.4), &mut self.polytropic_exponent);
+        let k = k.at_least(1.0).at_most(5.0 / 3.0);
+        match self.thermal_time_constant {
+            None => v.quantity(k.or(1.4), &mut self.polytropic_exponent),
+            // it would contradict, and is refused where it is written
+            Some(_) => v.optional(k, &mut None),
+        }
+        v.way(
+            &["precharge_temperature", "working_temperature"],
+            &mut self.temperatures,
+            GasTemperatures::visit,
+        );
         let k = key("maximum_pressure_ratio", &RATIO, "Maker's limit of p_2/p_0, both absolute.");
         v.optional(k.at_least(1.0), &mut self.maximum_pressure_ratio);
     }

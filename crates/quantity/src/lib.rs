@@ -3,6 +3,7 @@
 //! The only place of the workspace with factors between units. Inside, every number is SI.
 //! Pressures are gauge unless the name of their key says `absolute`.
 
+mod celsius;
 mod dimension;
 mod display_unit;
 mod exact;
@@ -15,6 +16,7 @@ mod significant;
 pub mod spelling;
 mod unit;
 
+pub use celsius::ZERO_CELSIUS;
 pub use dimension::*;
 pub use display_unit::DisplayUnit;
 pub use motion::{MotionKind, Vocabulary};

@@ -22,6 +22,7 @@ mod frequency_response;
 mod friction_coverage;
 mod friction_identification;
 mod friction_shaken;
+mod gas_heat;
 mod golden_ybitu;
 mod impedance;
 mod json_contract;

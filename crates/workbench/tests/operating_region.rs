@@ -195,6 +195,24 @@ fn necks_follow() {
     follows_the_rig(&loaded(&text(&ranges(&region), gas, "")));
 }
 
+/// Gas that exchanges heat, at temperatures that are uncertain too.
+#[test]
+fn heat_follows() {
+    let gas = "[line.accumulator]\ngas_volume = \"14 mL\"\nprecharge_pressure = \"10 bar\"\nthermal_time_constant = \"2 s\"\n\
+               precharge_temperature = \"20 degC\"\nworking_temperature = \"45 degC\"\n";
+    let region = [
+        ("operating_point.load_force", [-2000.0, 500.0, 2000.0]),
+        ("line.accumulator.thermal_time_constant", [0.3, 2.0, 9.0]),
+        ("line.accumulator.working_temperature", [10.0, 45.0, 70.0]),
+        ("line.accumulator.precharge_temperature", [15.0, 20.0, 25.0]),
+        ("line.accumulator.gas_volume", [1e-5, 1.4e-5, 2e-5]),
+    ];
+    follows_the_rig(&loaded(&text(&ranges(&region), gas, "")));
+    let polytropic = [("line.accumulator.polytropic_exponent", [1.0, 1.2, 1.4])];
+    let without = gas.replace("thermal_time_constant = \"2 s\"\n", "polytropic_exponent = 1.2\n");
+    follows_the_rig(&loaded(&text(&ranges(&polytropic), &without, "")));
+}
+
 /// One rod: unequal areas, which are uncertain too; and a wall whose contact depends on the force.
 #[test]
 fn unequal_areas_and_a_wall_follow() {

@@ -16,6 +16,7 @@ use phea_workbench::source::Memory;
 const SIMULATION: &str = include_str!("../../project/tests/valid/simulation.toml");
 const ACCUMULATORS: &str = include_str!("../../project/tests/valid/accumulators.toml");
 const NECK: &str = include_str!("../../project/tests/valid/accumulator_neck.toml");
+const HEAT: &str = include_str!("../../project/tests/valid/accumulator_heat.toml");
 const CROSS_PORT: &str = include_str!("../../project/tests/valid/cross_port.toml");
 const SERIES: &str = include_str!("../../project/tests/valid/series.toml");
 const SERIES_COIL: &str = include_str!("../../project/tests/valid/series_coil.toml");
@@ -108,11 +109,7 @@ fn rigs() -> Vec<(String, Vec<&'static str>)> {
             pipe(),
             vec!["line.compliance=by_volume", "operating_point.command=0.5", "fluid.entrained_air=0.01"],
         ),
-        (SIMULATION.to_string(), vec![]),
-        (ACCUMULATORS.to_string(), vec![]),
-        (NECK.to_string(), vec![]),
         (hose(), vec!["series={ stiffness = \"2 MN/m\", damping = 100 }"]),
-        (SIMULATION.to_string(), vec!["operating_point.load_force=2 kN"]),
         (ASYMMETRIC.to_string(), vec!["cylinder.friction.regular_velocity=1 mm/s"]),
         (VOLUMES.split("[uncertainty]").next().unwrap().to_string(), vec!["load.mass=10"]),
         (
@@ -122,7 +119,30 @@ fn rigs() -> Vec<(String, Vec<&'static str>)> {
             ],
         ),
     ];
-    others.into_iter().chain(between_chambers(hose(), pipe())).chain(on_springs()).collect()
+    others
+        .into_iter()
+        .chain(with_accumulators())
+        .chain(between_chambers(hose(), pipe()))
+        .chain(on_springs())
+        .collect()
+}
+
+/// Rigs with accumulators, and the same machine without.
+fn with_accumulators() -> Vec<(String, Vec<&'static str>)> {
+    vec![
+        (SIMULATION.to_string(), vec![]),
+        (ACCUMULATORS.to_string(), vec![]),
+        (NECK.to_string(), vec![]),
+        (SIMULATION.to_string(), vec!["operating_point.load_force=2 kN"]),
+        (HEAT.to_string(), vec![]),
+        (
+            HEAT.to_string(),
+            vec![
+                "line.accumulator.precharge_temperature=20 degC",
+                "line.accumulator.working_temperature=45 degC",
+            ],
+        ),
+    ]
 }
 
 /// Rigs with a spring on the rod, and with a motor in place of the cylinder.

@@ -1,13 +1,41 @@
+use phea_hydraulics::accumulator::{Accumulator, GasBranch};
 use phea_hydraulics::actuator::Components;
 use phea_hydraulics::line::StiffeningMember;
 use phea_hydraulics::operating_point::OperatingPoint;
 use phea_hydraulics::stiffness::hydraulic_stiffness;
 
 use super::list::List;
+use crate::project::{DeclaredAccumulator, Project};
 use crate::rig::{ChargedRange, Rig, charged_range};
 
+/// The precharge at the temperature in operation, beside the one that is stated.
+fn precharge(declared: &DeclaredAccumulator, gas: &Accumulator, name: String, list: &mut List) {
+    let Some(temperatures) = declared.temperatures else { return };
+    let equation = "P_0 = P_{stated} T/T_{stated}, absolute";
+    list.add(name, "p_0", gas.precharge_pressure, "Pa", equation);
+    let [stated, working] = temperatures.absolute();
+    if stated != working {
+        list.stated(declared.precharge_pressure, "precharge_pressure, at precharge_temperature", None);
+    }
+}
+
+/// What a neck and heat add to the gas.
+fn of_branch(branch: &GasBranch, name: &impl Fn(&str) -> String, list: &mut List) {
+    if let Some(later) = branch.relaxation {
+        let equation = "C_{acc}/γ, too fast for heat, with the oil of a neck";
+        list.add(name("fast_compliance"), "C_fast", branch.compliance, "m3/Pa", equation);
+        list.add(name("isothermal_below"), "ω_T", 1.0 / later.time, "rad/s", "ω_T = 1/(γ τ), γ = 1.4");
+    }
+    if let Some((resonance, damping_ratio)) = branch.resonance().zip(branch.damping_ratio()) {
+        let equation = "ω_n = 1/sqrt(I (C_{acc} + C_n)), Helmholtz";
+        list.add(name("neck_resonance"), "ω_n", resonance, "rad/s", equation);
+        let equation = "ξ_n = R/2 sqrt((C_{acc} + C_n)/I), laminar";
+        list.add(name("neck_damping_ratio"), "ξ_n", damping_ratio, "1", equation);
+    }
+}
+
 /// The gas at the chambers, and the stiffness of the actuator without it.
-pub(super) fn accumulators(rig: &Rig, list: &mut List) {
+pub(super) fn accumulators(project: &Project, rig: &Rig, list: &mut List) {
     let components = rig.actuator.components();
     let pressures = [rig.point.pressure_a, rig.point.pressure_b];
     let [gas_a, gas_b] = components.accumulators;
@@ -15,16 +43,19 @@ pub(super) fn accumulators(rig: &Rig, list: &mut List) {
         return;
     }
     list.group("Accumulators");
-    for (side, gas, pressure) in [("a", gas_a, pressures[0]), ("b", gas_b, pressures[1])] {
+    let lines = project.actuator.as_ref().map(|actuator| [&actuator.line.a, &actuator.line.b]);
+    let declared = lines.map_or([None; 2], |lines| lines.map(|line| line.accumulator.as_ref()));
+    for (side, gas, place) in [("a", gas_a, 0), ("b", gas_b, 1)] {
         let Some(gas) = gas else { continue };
+        let pressure = pressures[place];
         let compliance = "C_{acc} = (V_0/(n P)) (P_0/P)^(1/n)";
         let name = |what: &str| format!("line.{side}.accumulator.{what}");
+        if let Some(declared) = declared[place] {
+            precharge(declared, &gas, name("working_precharge"), list);
+        }
         list.add(name("compliance"), "C_acc", gas.compliance(pressure), "m3/Pa", compliance);
-        if let Some(neck) = components.necked_gas(pressures)[usize::from(side == "b")] {
-            let resonance = "ω_n = 1/sqrt(I (C_{acc} + C_n)), Helmholtz";
-            list.add(name("neck_resonance"), "ω_n", neck.resonance(), "rad/s", resonance);
-            let damping = "ξ_n = R/2 sqrt((C_{acc} + C_n)/I), laminar";
-            list.add(name("neck_damping_ratio"), "ξ_n", neck.damping_ratio(), "1", damping);
+        if let Some(branch) = components.gas_branches(pressures)[place] {
+            of_branch(&branch, &name, list);
         }
         let volume = gas.gas_volume - gas.oil(pressure);
         list.add(name("gas_volume_at_point"), "V", volume, "m3", "V = V_0 (P_0/P)^(1/n)");

@@ -23,7 +23,7 @@ pub fn derive(project: &Project, rig: &Rig) -> Vec<Derived> {
     moving(rig, &mut list);
     lines(rig, &mut list);
     stiffness(rig, &mut list);
-    accumulators(rig, &mut list);
+    accumulators(project, rig, &mut list);
     series(project, rig, &mut list);
     valve(project, rig, &mut list);
     equilibrium(rig, &mut list);

@@ -27,8 +27,8 @@ use super::moved::{self, MovedNumber};
 use super::visited::Visited;
 use crate::project::{DeclaredActuator, LINEAR_PARAMETERS, Project};
 use crate::rig::{
-    self, Numbers, Rig, components, has_necks, linear, place, plant, settled_supply, stated, velocity_gain,
-    with_necks, with_supply, yielding_load, yielding_supply,
+    self, Numbers, Rig, components, has_gas_states, linear, place, plant, settled_supply, stated,
+    velocity_gain, with_gas, with_supply, yielding_load, yielding_supply,
 };
 use crate::setup::Setup;
 
@@ -149,13 +149,13 @@ impl Open<'_> {
         let load = load.map_or(LinearLoad::Prescribed, |load| load.linear());
         let plant = plant(&place.chambers, &place.linear, equal.one_pressure, place.leakage, load);
         let plant = match place.supply {
-            Some(supply) if !(equal.one_pressure && equal.edges) || has_necks(self.declared) => {
+            Some(supply) if !(equal.one_pressure && equal.edges) || has_gas_states(self.declared) => {
                 with_supply(plant, supply, &place.chambers)
             }
             _ => plant,
         };
         let pressures = [place.point.pressure_a, place.point.pressure_b];
-        let plant = with_necks(plant, &place.components, &place.chambers, pressures);
+        let plant = with_gas(plant, &place.components, &place.chambers, pressures);
         let gain = velocity_gain(self.declared, &numbers);
         let velocity_sensor = VelocitySensor { gain, ..plant.velocity_sensor };
         let force = place.point.hydraulic_force;

@@ -15,7 +15,7 @@ use super::hydraulic::{Equal, Open};
 use super::moved::{self, MovedNumber};
 use crate::project::{DeclaredActuator, Project};
 use crate::quantity::significant;
-use crate::rig::{Numbers, Rig, RigError, are_equal, components, has_necks, sides, states_one_pressure};
+use crate::rig::{Numbers, Rig, RigError, are_equal, components, has_gas_states, sides, states_one_pressure};
 use crate::setup::Setup;
 
 /// Relative error of a pressure that is negligible.
@@ -79,7 +79,7 @@ impl Visited {
         };
         let edges = equal(0, 1);
         let chambers = are_equal(sides(&rig.two_pressure)) && equal(1, usize::MAX);
-        let equal_sides = chambers && edges && !has_necks(declared);
+        let equal_sides = chambers && edges && !has_gas_states(declared);
         let one_pressure = states_one_pressure(&rig.parameters, &names) || equal_sides;
         let equal = Equal { one_pressure, edges };
         Ok(Visited { rig, names, by_directions, moved, equal, movers, settled })

@@ -12,9 +12,12 @@ use crate::quantity::DisplayUnit;
 /// bladder fills the shell, and the gas takes no part.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "{place}.precharge_pressure: {} is above the {} at which chamber {side} stands at the operating point, so that the gas is \
+    "{place}.precharge_pressure: {}{} is above the {} at which chamber {side} stands at the operating point, so that the gas is \
      shut off and changes nothing: lower the precharge, or move the [operating_point]",
     DisplayUnit::BAR.text(*precharge_pressure, 4),
+    stated.map_or(String::new(), |stated| {
+        format!(" at `working_temperature`, from {} at `precharge_temperature`,", DisplayUnit::BAR.text(stated, 4))
+    }),
     DisplayUnit::BAR.text(*pressure, 4)
 )]
 pub struct EmptyAccumulator {
@@ -22,8 +25,10 @@ pub struct EmptyAccumulator {
     pub place: &'static str,
     /// A or B.
     pub side: char,
-    /// Pa gauge.
+    /// Pa gauge, at the temperature in operation.
     pub precharge_pressure: f64,
+    /// Pa gauge, as it is stated for another temperature.
+    pub stated: Option<f64>,
     /// Of the chamber, Pa gauge.
     pub pressure: f64,
 }
@@ -55,11 +60,14 @@ pub(super) fn charged(
     point: &OperatingPoint,
 ) -> Result<(), EmptyAccumulator> {
     let sides = accumulators.iter().zip(accumulator_place(declared));
-    let chambers = [('A', point.pressure_a), ('B', point.pressure_b)];
-    for ((gas, place), (side, pressure)) in sides.zip(chambers) {
+    let line = &declared.line;
+    let chambers = [('A', point.pressure_a, &line.a), ('B', point.pressure_b, &line.b)];
+    for ((gas, place), (side, pressure, line)) in sides.zip(chambers) {
         let Some(Accumulator { precharge_pressure, .. }) = *gas else { continue };
         if pressure < precharge_pressure {
-            return Err(EmptyAccumulator { place, side, precharge_pressure, pressure });
+            let other = line.accumulator.as_ref().filter(|gas| gas.temperatures.is_some());
+            let stated = other.map(|gas| gas.precharge_pressure);
+            return Err(EmptyAccumulator { place, side, precharge_pressure, stated, pressure });
         }
     }
     Ok(())

@@ -12,7 +12,7 @@ use phea_hydraulics::servovalve::Supply;
 use phea_hydraulics::stiffness::compliance_at;
 use phea_hydraulics::two_pressure::TwoPressureLinearParameters;
 
-use super::plant::without_necked;
+use super::plant::without_branches;
 use crate::project::{self, LineFriction, LineMotion, LineSegments, LineWall};
 
 /// The plant with lines in motion in place of its lumped ones; `None` where both are lumped.
@@ -33,9 +33,9 @@ pub fn in_motion(
     let bare = Components { line_a, line_b, ..*components };
     let bare = bare.chamber_compliance([point.pressure_a, point.pressure_b], StiffeningMember::Nominal);
     let pressures = [point.pressure_a, point.pressure_b];
-    let own = |compliances| match plant.necks {
+    let own = |compliances| match plant.gas {
         [None, None] => compliances,
-        _ => without_necked(components, pressures, compliances),
+        _ => without_branches(components, pressures, compliances),
     };
     let chambers_alone = own(compliance_at(&bare, point.position));
     Ok(moving.map(|lines| {

@@ -2,7 +2,6 @@
 //! that the project states.
 
 use phea_dynamics::scalar::Scalar;
-use phea_hydraulics::accumulator::NeckedGas;
 use phea_hydraulics::actuator::Components;
 use phea_hydraulics::linear::LinearParameters;
 use phea_hydraulics::plant::{ChamberDynamics, LinearLoad, LinearPlant, YieldingSupply};
@@ -154,25 +153,25 @@ pub(crate) fn with_supply<S: Scalar>(
     LinearPlant { supply: Some(supply), ..plant }
 }
 
-/// The same plant with the gas of accumulators behind their necks, and with a pressure a chamber.
-/// Where a stated number makes these chambers stiffer than their parts are, the gas is stiffened
-/// alike.
-pub(crate) fn with_necks<S: Scalar>(
+/// The same plant with the gas of accumulators that lies behind a neck or exchanges heat, and with a
+/// pressure a chamber. Where a stated number makes these chambers stiffer than their parts are, the
+/// gas is stiffened alike.
+pub(crate) fn with_gas<S: Scalar>(
     plant: LinearPlant<S>,
     components: &Components<S>,
     chambers: &TwoPressureLinearParameters<S>,
     pressures: [S; 2],
 ) -> LinearPlant<S> {
-    let necks = components.necked_gas(pressures);
-    if necks.iter().all(Option::is_none) {
+    let gas = components.gas_branches(pressures);
+    if gas.iter().all(Option::is_none) {
         return plant;
     }
-    let alone = without_necked(components, pressures, chambers.compliances);
+    let alone = without_branches(components, pressures, chambers.compliances);
     match plant.chambers {
         ChamberDynamics::TwoPressures { areas, flow_gains, flow_pressures, .. } => {
             let chambers =
                 ChamberDynamics::TwoPressures { areas, compliances: alone, flow_gains, flow_pressures };
-            LinearPlant { chambers, necks, ..plant }
+            LinearPlant { chambers, gas, ..plant }
         }
         ChamberDynamics::LoadPressure {
             useful_area,
@@ -183,37 +182,33 @@ pub(crate) fn with_necks<S: Scalar>(
             let two = S::from(2.0);
             let stated = two * useful_area.squared() / hydraulic_stiffness;
             let [share_a, share_b] = chambers.compliances.map(|own| stated / own);
-            let softened =
-                |gas: NeckedGas<S>, share: S| NeckedGas { compliance: gas.compliance * share, ..gas };
-            let [neck_a, neck_b] = necks;
+            let [gas_a, gas_b] = gas;
             let chambers = ChamberDynamics::TwoPressures {
                 areas: [useful_area; 2],
                 compliances: [alone[0] * share_a, alone[1] * share_b],
                 flow_gains: [flow_gain; 2],
                 flow_pressures: [two * flow_pressure_coefficient; 2],
             };
-            let necks = [neck_a.map(|gas| softened(gas, share_a)), neck_b.map(|gas| softened(gas, share_b))];
-            LinearPlant { chambers, necks, ..plant }
+            let gas = [gas_a.map(|gas| gas.softened(share_a)), gas_b.map(|gas| gas.softened(share_b))];
+            LinearPlant { chambers, gas, ..plant }
         }
     }
 }
 
-/// Compliances of both chambers in m3/Pa less that of the gas behind necks.
-pub(crate) fn without_necked<S: Scalar>(
+/// Compliances of both chambers in m3/Pa less that of the gas behind necks and with heat.
+pub(crate) fn without_branches<S: Scalar>(
     components: &Components<S>,
     pressures: [S; 2],
     [a, b]: [S; 2],
 ) -> [S; 2] {
-    let none = S::from(0.0);
-    let [gas_a, gas_b] = components.gas_compliance(pressures);
-    let behind = |side: usize, gas: Option<S>| components.necks[side].and(gas).unwrap_or(none);
-    [a - behind(0, gas_a), b - behind(1, gas_b)]
+    let [gas_a, gas_b] = components.branch_compliance(pressures);
+    [a - gas_a, b - gas_b]
 }
 
-/// Whether gas lies behind a neck.
-pub(crate) fn has_necks(declared: &project::DeclaredActuator) -> bool {
+/// Whether gas lies behind a neck or exchanges heat.
+pub(crate) fn has_gas_states(declared: &project::DeclaredActuator) -> bool {
     let gas = [&declared.line.a, &declared.line.b].map(|line| line.accumulator.as_ref());
-    gas.into_iter().flatten().any(|gas| gas.neck.is_some())
+    gas.into_iter().flatten().any(|gas| gas.neck.is_some() || gas.thermal_time_constant.is_some())
 }
 
 /// The parameters of the linear model that the project states: name and value.

@@ -6,6 +6,7 @@ use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::simulation::{CommandedPlant, Method, Sensed, SimulationSettings};
 use phea_hydraulics::actuator::Actuator;
 use phea_hydraulics::contact::Contact;
+use phea_hydraulics::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 use phea_hydraulics::line::StiffeningMember;
 use phea_hydraulics::machine::{LoadModel, Machine, MachineOptions};
 use phea_hydraulics::servovalve::SpoolImperfection;
@@ -215,12 +216,28 @@ pub fn options(project: &Project, actuator: &Actuator) -> Result<MachineOptions,
         external_force: false,
         vapour_pressure_absolute: declared.fluid.vapour_pressure,
         member: StiffeningMember::Nominal,
+        gas_pressure_limits: gas_pressure_limits(declared, actuator),
         lines: lines(
             &declared.line,
             [&actuator.components().line_a, &actuator.components().line_b],
             &actuator.components().fluid,
             actuator.mean_pressure(),
         )?,
+    })
+}
+
+/// What the makers permit for the accumulators at the chambers, in Pa gauge.
+///
+/// ```text
+/// P_2 = (p_2/p_0) P_0,     absolute, P_0 at the working temperature
+/// ```
+fn gas_pressure_limits(declared: &project::DeclaredActuator, actuator: &Actuator) -> [Option<f64>; 2] {
+    let declared = [&declared.line.a, &declared.line.b].map(|line| line.accumulator.as_ref());
+    [0, 1].map(|side| {
+        let ratio = declared[side]?.maximum_pressure_ratio?;
+        let gas = actuator.components().accumulators[side]?;
+        let atmosphere = ATMOSPHERIC_PRESSURE_ABSOLUTE;
+        Some(ratio * (gas.precharge_pressure + atmosphere) - atmosphere)
     })
 }
 

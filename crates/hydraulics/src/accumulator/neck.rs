@@ -2,7 +2,6 @@
 
 use std::f64::consts::{FRAC_PI_4, PI};
 
-use phea_dynamics::analytic::Analytic;
 use phea_dynamics::scalar::Scalar;
 
 use crate::parameter::{ParameterError, Problems};
@@ -88,62 +87,5 @@ impl<S: Scalar> Neck<S> {
     #[inline(always)]
     pub fn drop(&self, flow: S) -> S {
         (self.resistance + self.loss * flow.abs()) * flow
-    }
-}
-
-/// Gas behind a neck for small motions, without a flow at rest.
-///
-/// ```text
-/// Y = C s/(I C s^2 + R C s + 1)
-/// ```
-///
-/// Slower than its resonance 1/sqrt(I C) it is the gas, faster an inertance, which shuts the gas
-/// off.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NeckedGas<S = f64> {
-    /// Inertance I of the neck in kg/m4.
-    pub inertance: S,
-    /// Resistance R of the neck in Pa s/m3.
-    pub resistance: S,
-    /// Compliance C of the gas in m3/Pa.
-    pub compliance: S,
-}
-
-impl<S: Scalar> NeckedGas<S> {
-    /// Gas of this compliance in m3/Pa behind a neck, whose own oil is beside it.
-    pub fn of(neck: &Neck<S>, compliance: S) -> NeckedGas<S> {
-        let compliance = compliance + neck.compliance;
-        NeckedGas { inertance: neck.inertance, resistance: neck.resistance, compliance }
-    }
-
-    /// Helmholtz resonance 1/sqrt(I C) in rad/s.
-    ///
-    /// # Example
-    /// ```
-    /// use phea_hydraulics::accumulator::NeckedGas;
-    /// let gas = NeckedGas { inertance: 1e6, resistance: 1e8, compliance: 1e-12 };
-    /// assert!((gas.resonance() - 1e3_f64).abs() < 1e-9 && (gas.damping_ratio() - 0.05).abs() < 1e-12);
-    /// ```
-    pub fn resonance(&self) -> S {
-        S::from(1.0) / (self.inertance * self.compliance).sqrt()
-    }
-
-    /// Damping ratio of that resonance, R/2 sqrt(C/I).
-    pub fn damping_ratio(&self) -> S {
-        S::from(0.5) * self.resistance * (self.compliance / self.inertance).sqrt()
-    }
-
-    /// Numerator and denominator of Y, highest power of s first.
-    pub(crate) fn admittance(&self) -> [Vec<S>; 2] {
-        let NeckedGas { inertance, resistance, compliance } = *self;
-        [vec![compliance, S::from(0.0)], vec![inertance * compliance, resistance * compliance, S::from(1.0)]]
-    }
-}
-
-impl NeckedGas {
-    /// Y at s, or over a set of such.
-    pub(crate) fn admittance_at<A: Analytic>(&self, s: A) -> A {
-        let taken = s.scaled(self.compliance);
-        taken / (taken * (s.scaled(self.inertance) + A::from(self.resistance)) + A::from(1.0))
     }
 }

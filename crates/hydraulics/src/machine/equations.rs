@@ -2,7 +2,6 @@ use phea_dynamics::scalar::{LocalFunction, Scalar};
 
 use super::signals::ground_of;
 use super::{Accumulator, Machine, MachineState, Motion, PowerUnit};
-use crate::accumulator::Neck;
 use crate::cross_port::CrossPort;
 use crate::friction::FrictionForce;
 use crate::operating_point::hydraulic_force;
@@ -111,30 +110,21 @@ impl<S: Scalar> Machine<S> {
         [line_a.port_pressure(state_a, chambers[0]), line_b.port_pressure(state_b, chambers[1])]
     }
 
-    /// Compliance of both chambers including their lines and accumulators, in m3/Pa.
+    /// Compliance of both chambers including their lines and accumulators, in m3/Pa, without gas that
+    /// is behind a neck or exchanges heat.
     #[inline(always)]
     pub(super) fn compliance<T: Scalar + From<S>>(&self, state: &MachineState<T>, position: T) -> [T; 2] {
         let [oil_a, oil_b] = self.oil_compliance(state, position);
         let [gas_a, gas_b] = &self.accumulators;
-        let [neck_a, neck_b] = &self.necks;
-        // gas behind a neck has a pressure of its own
-        let with = |oil: T, gas: &Option<Accumulator<S>>, neck: &Option<Neck<S>>, pressure: T| match gas {
-            Some(gas) if neck.is_none() => {
+        let [apart_a, apart_b] = self.layout.gas_states();
+        let with = |oil: T, gas: &Option<Accumulator<S>>, apart: bool, pressure: T| match gas {
+            Some(gas) if !apart => {
                 let [gas] = T::local(gas, [pressure]);
                 oil + gas
             }
             _ => oil,
         };
-        [with(oil_a, gas_a, neck_a, state.pressure_a), with(oil_b, gas_b, neck_b, state.pressure_b)]
-    }
-
-    /// Pressures of the gas at either chamber, in Pa.
-    pub(super) fn gas_pressures<T: Scalar + From<S>>(&self, state: &MachineState<T>) -> [T; 2] {
-        let [neck_a, neck_b] = &self.necks;
-        [
-            if neck_a.is_some() { state.gas_pressures[0] } else { state.pressure_a },
-            if neck_b.is_some() { state.gas_pressures[1] } else { state.pressure_b },
-        ]
+        [with(oil_a, gas_a, apart_a, state.pressure_a), with(oil_b, gas_b, apart_b, state.pressure_b)]
     }
 
     /// The same without accumulators: it vanishes with the volume of a chamber.
@@ -252,7 +242,7 @@ impl<S: Scalar> Machine<S> {
         let velocity = state.velocity;
         let flows = self.flows(&state, self.ports(&state, vector));
         let forces = self.forces(&state, position);
-        let [compliance_a, compliance_b] = self.compliance(&state, position);
+        let compliances = self.compliance(&state, position);
         let [area_a, area_b]: [T; 2] = [constant(self.cylinder.area_a), constant(self.cylinder.area_b)];
         let pushing = forces.hydraulic + forces.end_stops - forces.friction.force - joint.sensed;
         let external = self.layout.external_force(inputs);
@@ -264,25 +254,41 @@ impl<S: Scalar> Machine<S> {
         } else {
             flows.from_valve
         };
-        let zero = T::from(0.0);
+        let heated =
+            self.layout.has_heat().then(|| self.heated(self.gas_pressures(&state), state.gas_warmings));
+        let zero = [T::from(0.0); 2];
         let (into_a, into_b, [neck_flows, gas_pressures]) = if self.layout.has_necks() {
             let [into_neck_a, into_neck_b] = state.neck_flows;
-            let rates = self.through_necks(chambers, state.neck_flows, state.gas_pressures);
+            let rates = self.through_necks(chambers, state.neck_flows, state.gas_pressures, heated.as_ref());
             (into_a - into_neck_a, into_b - into_neck_b, rates)
         } else {
-            (into_a, into_b, [[zero; 2]; 2])
+            (into_a, into_b, [zero; 2])
         };
         let (stays_in_a, stays_in_b) = (into_a - flows.internal, into_b + flows.internal);
         let (stays_in_a, stays_in_b) = match flows.outward {
             None => (stays_in_a, stays_in_b),
             Some([out_of_a, out_of_b]) => (stays_in_a - out_of_a, stays_in_b - out_of_b),
         };
+        let into = [stays_in_a - area_a * velocity, stays_in_b + area_b * velocity];
+        let [pressure_a, pressure_b] = match &heated {
+            None => [into[0] / compliances[0], into[1] / compliances[1]],
+            Some(heated) => self.beside_heated(heated, into, compliances),
+        };
+        let gas_warmings = match &heated {
+            None => zero,
+            Some(heated) => {
+                let behind =
+                    |side: usize, own: T| if self.necks[side].is_some() { gas_pressures[side] } else { own };
+                self.warming_rates(heated, [behind(0, pressure_a), behind(1, pressure_b)])
+            }
+        };
         let state_rates = MachineState {
             neck_flows,
             gas_pressures,
+            gas_warmings,
             spool: self.spool.convert(&mut constant::<S, T>).rates(&valve, &state.spool, command),
-            pressure_a: (stays_in_a - area_a * velocity) / compliance_a,
-            pressure_b: (stays_in_b + area_b * velocity) / compliance_b,
+            pressure_a,
+            pressure_b,
             deflection: joint.deflection_rate,
             velocity: pushing / constant(self.cylinder.moving_mass),
             bristle: forces.friction.bristle_rate,
@@ -295,28 +301,6 @@ impl<S: Scalar> Machine<S> {
             series: joint.series_rates,
         };
         self.layout.write(state_rates, rates);
-    }
-
-    /// Rates of the flows through the necks in m3/s2 and of the pressures behind them in Pa/s. Apart,
-    /// so that machines without necks do not carry its code along.
-    #[inline(never)]
-    fn through_necks<T: Scalar + From<S>>(
-        &self,
-        chambers: [T; 2],
-        neck_flows: [T; 2],
-        gas_pressures: [T; 2],
-    ) -> [[T; 2]; 2] {
-        let [side_a, side_b] = [0, 1].map(|side| {
-            let parts = self.necks[side].zip(self.accumulators[side]);
-            parts.map_or([T::from(0.0); 2], |(neck, gas)| {
-                let (flow, pressure) = (neck_flows[side], gas_pressures[side]);
-                let neck = neck.convert(&mut constant::<S, T>);
-                let compliance = gas.convert(&mut constant::<S, T>).compliance(pressure) + neck.compliance;
-                let pushing = chambers[side] - pressure - neck.drop(flow);
-                [pushing / neck.inertance, flow / compliance]
-            })
-        });
-        [[side_a[0], side_b[0]], [side_a[1], side_b[1]]]
     }
 
     /// Flows that leave the lines into the chambers, in m3/s; writes the rates of the lines'

@@ -26,7 +26,7 @@ pub const OIL_ACCOUNTS: [&str; 11] = [
 
 /// Names of the accounts of energy, in the order of [`Ledger::energy`]. Accounts of parts that a
 /// machine lacks are zero.
-pub const ENERGY_ACCOUNTS: [&str; 20] = [
+pub const ENERGY_ACCOUNTS: [&str; 22] = [
     "chamber_a",
     "chamber_b",
     "line_a",
@@ -35,6 +35,8 @@ pub const ENERGY_ACCOUNTS: [&str; 20] = [
     "accumulator_b",
     "neck_a",
     "neck_b",
+    "gas_heat_a",
+    "gas_heat_b",
     "supply",
     "accumulator",
     "valve",
@@ -95,6 +97,7 @@ impl<S: Scalar> Machine<S> {
     /// side          V rho                      V w                          enters as q rho and q (p + w)
     /// line          sum C p                    sum C p^2/2 + I q^2/2        enters as q and q p
     /// accumulator   V_0 - V_gas                gas at gauge pressure        enters as q and q p
+    ///   with heat   V_0 - V_gas                internal energy less p_atm V   enters as q and q p, leaves as heat to the wall
     /// neck          C p                        I q^2/2 + C p^2/2            enters as q and q p
     /// ```
     ///
@@ -186,6 +189,8 @@ impl<S: Scalar> Machine<S> {
             now.gas[1].energy(),
             now.necks[0].energy,
             now.necks[1].energy,
+            heat(now.gas[0].heat),
+            heat(now.gas[1].heat),
             supply.line.energy(supply.line_flow(), zero),
             supply.gas.energy(),
             heat(throttled),
@@ -210,8 +215,8 @@ impl<S: Scalar> Machine<S> {
             inflow: oil + now.external_power - self.on_ground(now),
             lost: total(&accounts, |account| account.lost),
         };
-        let [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s] = accounts;
-        [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, rig]
+        let [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u] = accounts;
+        [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, rig]
     }
 
     /// A valve between the chambers: heat of its restrictor, and what its capacity holds.

@@ -35,6 +35,9 @@ pub struct MachineOptions {
     pub vapour_pressure_absolute: f64,
     /// Which member of the hoses' stiffening interval.
     pub member: StiffeningMember,
+    /// Pressures in Pa gauge that the gas of the accumulators at A and B must not exceed: beyond them
+    /// a run reports it.
+    pub gas_pressure_limits: [Option<f64>; 2],
     /// Lines between valve and chambers with dynamics of their own, A first; absent, one pressure
     /// for a chamber with its line.
     pub lines: Option<[DynamicLine; 2]>,
@@ -52,6 +55,7 @@ impl Default for MachineOptions {
             external_force: false,
             vapour_pressure_absolute: VAPOUR_PRESSURE_ABSOLUTE,
             member: StiffeningMember::Nominal,
+            gas_pressure_limits: [None; 2],
             lines: None,
         }
     }
@@ -70,6 +74,10 @@ impl MachineOptions {
         }
         if let PowerUnit::PumpLimited(unit) = self.power_unit {
             problems.component("supply", unit.problems());
+        }
+        let limits = self.gas_pressure_limits.iter().zip(["line.a", "line.b"]);
+        for (limit, line) in limits.filter_map(|(limit, line)| Some(((*limit)?, line))) {
+            problems.positive(&format!("{line}.accumulator.maximum_pressure"), limit);
         }
         problems.component("load", self.load.problems());
         problems.positive("velocity_sensor.gain", self.velocity_gain);

@@ -1,7 +1,7 @@
 use phea_dynamics::scalar::Scalar;
 
 use super::equations::constant;
-use super::{Accumulator, Machine, Motion};
+use super::{Machine, Motion};
 use crate::stroke::ActuatorStroke;
 
 /// Names of the signals of a machine, with units, in the order of [`Machine::outputs`].
@@ -41,9 +41,9 @@ pub const SERIES_SIGNALS: [&str; 2] = ["series_deflection_m", "load_force_n"];
 /// chamber's compliance in m3/Pa without accumulators, which vanishes with its volume.
 /// `load_contact`: the way left to the wall in m. `supply_lost`: supply less tank pressure in Pa.
 /// `accumulator_empty`: the chamber's pressure, or that behind the neck where there is one, less the
-/// precharge of its accumulator in Pa. `series_end`: the way left to the nearer end of a series
-/// spring's travel in m.
-pub const INDICATORS: [&str; 11] = [
+/// precharge of its accumulator in Pa. `accumulator_overpressure`: what is left to the pressure limit of
+/// that gas in Pa. `series_end`: the way left to the nearer end of a series spring's travel in m.
+pub const INDICATORS: [&str; 13] = [
     "cavitation_a",
     "cavitation_b",
     "end_stop_a",
@@ -54,6 +54,8 @@ pub const INDICATORS: [&str; 11] = [
     "supply_lost",
     "accumulator_empty_a",
     "accumulator_empty_b",
+    "accumulator_overpressure_a",
+    "accumulator_overpressure_b",
     "series_end",
 ];
 
@@ -133,11 +135,15 @@ impl<S: Scalar> Machine<S> {
         };
         let [compliance_a, compliance_b] = self.oil_compliance(&state, position);
         let supply = self.supply_of(&state);
-        let [gas_a, gas_b] = &self.accumulators;
-        let charged = |gas: &Option<Accumulator<S>>, pressure: T| {
-            gas.map_or(T::from(1.0), |gas| pressure - constant(gas.precharge_pressure))
+        let [precharge_a, precharge_b] = self.precharges(&state);
+        let charged = |precharge: Option<T>, pressure: T| {
+            precharge.map_or(T::from(1.0), |precharge| pressure - precharge)
+        };
+        let below = |limit: Option<S>, pressure: T| {
+            limit.map_or(T::from(1.0), |limit| constant::<S, T>(limit) - pressure)
         };
         let [behind_a, behind_b] = self.gas_pressures(&state);
+        let [limit_a, limit_b] = self.gas_pressure_limits;
         [
             state.pressure_a.minimum(behind_a) - vapour,
             state.pressure_b.minimum(behind_b) - vapour,
@@ -147,8 +153,10 @@ impl<S: Scalar> Machine<S> {
             compliance_b,
             self.load.convert(&mut constant::<S, T>).clearance(&load, &ground),
             supply.pressure - supply.tank_pressure,
-            charged(gas_a, behind_a),
-            charged(gas_b, behind_b),
+            charged(precharge_a, behind_a),
+            charged(precharge_b, behind_b),
+            below(limit_a, behind_a),
+            below(limit_b, behind_b),
             self.series.map_or(T::from(1.0), |series| {
                 series.convert(&mut constant::<S, T>).clearance(joint.spring.position)
             }),

@@ -37,6 +37,9 @@ pub struct MachineState<T = f64> {
     pub neck_flows: [T; 2],
     /// Pressure p_g in Pa of the gas behind each neck.
     pub gas_pressures: [T; 2],
+    /// theta - 1 of the gas at each chamber, by which its absolute temperature is above that of its
+    /// wall, where it exchanges heat.
+    pub gas_warmings: [T; 2],
     /// Supply pressure p_S in Pa, where a pump is limited.
     pub supply_pressure: T,
     /// A series element with damper or mass: deflection of its spring in m, and velocity of the mass
@@ -57,6 +60,8 @@ pub(super) struct Layout {
     series: SeriesStates,
     /// Necks of accumulators at the chambers.
     necks: [bool; 2],
+    /// Accumulators at the chambers whose gas exchanges heat.
+    heat: [bool; 2],
     /// Whether a force from outside is an input.
     external_force: bool,
     /// States of both lines, which follow all others, A first.
@@ -88,6 +93,7 @@ impl<T: Scalar> MachineState<T> {
             series: Motion { position: zero, velocity: zero },
             neck_flows: [zero; 2],
             gas_pressures: [zero; 2],
+            gas_warmings: [zero; 2],
         }
     }
 }
@@ -101,6 +107,7 @@ impl Layout {
             spool_friction: machine.spool.threshold.is_some(),
             magnetic_lag: machine.spool.hysteresis_width.is_some(),
             necks: machine.necks.map(|neck| neck.is_some()),
+            heat: machine.thermal_time_constants.map(|time| time.is_some()),
             capacity: machine.cross_port.is_some_and(|port| port.capacity.is_some()),
             series: SeriesStates::of(machine.series.as_ref()),
             external_force: machine.external_force,
@@ -157,6 +164,18 @@ impl Layout {
     #[inline(always)]
     pub(super) fn has_necks(&self) -> bool {
         self.necks != [false; 2]
+    }
+
+    /// Whether gas at a chamber exchanges heat.
+    #[inline(always)]
+    pub(super) fn has_heat(&self) -> bool {
+        self.heat != [false; 2]
+    }
+
+    /// Whether the gas at each chamber has states of its own.
+    #[inline(always)]
+    pub(super) fn gas_states(&self) -> [bool; 2] {
+        [self.necks[0] || self.heat[0], self.necks[1] || self.heat[1]]
     }
 
     /// Whether lines have states of their own.
@@ -255,6 +274,13 @@ impl Layout {
             visit(flow_b);
             visit(gas_b);
         }
+        let ([heat_a, heat_b], [warming_a, warming_b]) = (self.heat, &mut state.gas_warmings);
+        if heat_a {
+            visit(warming_a);
+        }
+        if heat_b {
+            visit(warming_b);
+        }
         if self.supply {
             visit(&mut state.supply_pressure);
         }
@@ -331,6 +357,7 @@ const NAMES: MachineState<&str> = MachineState {
     series: Motion { position: "series_deflection_m", velocity: "series_velocity_m_per_s" },
     neck_flows: ["neck_flow_a_m3_per_s", "neck_flow_b_m3_per_s"],
     gas_pressures: ["gas_pressure_a_pa", "gas_pressure_b_pa"],
+    gas_warmings: ["gas_warming_a", "gas_warming_b"],
 };
 
 impl<S: Scalar> Machine<S> {
@@ -377,6 +404,8 @@ impl<S: Scalar> Machine<S> {
             series,
             neck_flows: [velocity * self.cylinder.area_a; 2],
             gas_pressures: [pressure; 2],
+            // thirty degrees
+            gas_warmings: [S::from(0.1); 2],
         }
     }
 

@@ -8,7 +8,7 @@ use super::supply::{Coupled, Over};
 use super::{
     Chamber, ChamberPair, ChamberPolynomials, LinearLoad, LinearPlant, Paths, VelocitySensor, YieldingSupply,
 };
-use crate::accumulator::NeckedGas;
+use crate::accumulator::GasBranch;
 use crate::cross_port::DynamicFeedback;
 use crate::line::{DynamicLine, Segments, TransferMatrix};
 
@@ -78,8 +78,8 @@ struct ChamberSide {
     flow_gain: f64,
     flow_pressure: f64,
     line: DynamicLine,
-    /// Gas behind a neck.
-    neck: Option<NeckedGas>,
+    /// Gas behind a neck, or with heat.
+    gas: Option<GasBranch>,
 }
 
 /// A chamber with its line at s, everything times what the line passes: `passed` is d + K_c b, by
@@ -142,8 +142,8 @@ impl PlantInMotion {
             let stiffer = behind.lumped[side] / compliance;
             let line = behind.lines[side].stiffened(stiffer);
             let compliance = behind.chambers[side] / stiffer + line.chamber_compliance();
-            let neck = plant.necks[side];
-            ChamberSide { area, compliance, flow_gain, flow_pressure, line, neck }
+            let gas = plant.gas[side];
+            ChamberSide { area, compliance, flow_gain, flow_pressure, line, gas }
         };
         let sides = [side(0), side(1)];
         let alike = sides[0].line == sides[1].line;
@@ -325,9 +325,8 @@ impl PlantInMotion {
             [supply.edges, to_tank, [supply.compliance, supply.conductance]].concat()
         });
         let feedback = self.plant.dynamic_feedback.iter().flat_map(|one| [one.conductance, one.capacity]);
-        let necks = self.sides.iter().filter_map(|side| side.neck);
-        let of_necks = necks.flat_map(|neck| [neck.inertance, neck.resistance, neck.compliance]);
-        let beyond = own.into_iter().chain(load).chain(series).chain(of_necks);
+        let of_gas = self.sides.iter().filter_map(|side| side.gas).flat_map(|gas| gas.numbers());
+        let beyond = own.into_iter().chain(load).chain(series).chain(of_gas);
         beyond.chain(of_sides).chain(of_supply).chain(feedback).all(|value| value >= 0.0)
     }
 
@@ -351,7 +350,7 @@ impl ChamberSide {
         let passed = line.flow + line.impedance.scaled(self.flow_pressure);
         let taken = line.admittance + line.pressure.scaled(self.flow_pressure);
         let own = s.scaled(self.compliance);
-        let own = self.neck.map_or(own, |neck| own + neck.admittance_at(s));
+        let own = self.gas.map_or(own, |gas| own + gas.admittance_at(s));
         let admittance = own * passed + taken;
         AtChamber { admittance, passed, impedance: line.impedance }
     }

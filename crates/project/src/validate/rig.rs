@@ -38,11 +38,17 @@ fn supply(actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
 
 /// The gas at a chamber: its precharge lies below what the supply can give.
 fn accumulator(gas: &DeclaredAccumulator, supply: &DeclaredSupply, path: &str, check: &mut Check<'_, '_>) {
-    if supply.pressure > 0.0 && gas.precharge_pressure >= supply.pressure {
-        let [precharge, pressure] = [gas.precharge_pressure, supply.pressure]
-            .map(|pressure| quantity::display(pressure, &PRESSURE, 4));
+    if gas.thermal_time_constant.is_some() && check.declared(&format!("{path}.polytropic_exponent")) {
+        let message = "`polytropic_exponent` and `thermal_time_constant` both describe the heat between gas and wall: state one of them";
+        check.error(&format!("{path}.polytropic_exponent"), message);
+    }
+    let working = gas.working_precharge(ATMOSPHERE);
+    if supply.pressure > 0.0 && working >= supply.pressure {
+        let [precharge, pressure] =
+            [working, supply.pressure].map(|pressure| quantity::display(pressure, &PRESSURE, 4));
+        let at = if gas.temperatures.is_some() { " at `working_temperature`" } else { "" };
         let message = format!(
-            "`precharge_pressure` is {precharge} and the supply has {pressure}: no chamber ever lets oil into this accumulator"
+            "`precharge_pressure` is {precharge}{at} and the supply has {pressure}: no chamber ever lets oil into this accumulator"
         );
         let help = "the gas is in use only above its precharge: state one below the lowest pressure at which it is to work";
         return check.error_with_help(&format!("{path}.precharge_pressure"), message, help);
@@ -53,16 +59,18 @@ fn accumulator(gas: &DeclaredAccumulator, supply: &DeclaredSupply, path: &str, c
 /// The maker's limit of the compression of the gas, at the highest pressure that the supply gives.
 fn pressure_ratio(gas: &DeclaredAccumulator, supply: &DeclaredSupply, path: &str, check: &mut Check<'_, '_>) {
     let Some(limit) = gas.maximum_pressure_ratio else { return };
-    let precharge = gas.precharge_pressure + ATMOSPHERE;
+    let precharge = gas.working_precharge(ATMOSPHERE) + ATMOSPHERE;
+    let stated = (gas.precharge_pressure + ATMOSPHERE) / precharge;
     let pressure = supply.pressure + ATMOSPHERE;
     if pressure <= limit * precharge {
         return;
     }
     let ratio = quantity::significant(pressure / precharge, 3);
     let supplied = quantity::display(supply.pressure, &PRESSURE, 4);
-    let needed = quantity::display(pressure / limit - ATMOSPHERE, &PRESSURE, 4);
+    let needed = quantity::display(stated * pressure / limit - ATMOSPHERE, &PRESSURE, 4);
+    let at = if gas.temperatures.is_some() { " at `working_temperature`" } else { "" };
     let message = format!(
-        "at the supply pressure of {supplied} the gas has {ratio} times the absolute pressure of its precharge, and \
+        "at the supply pressure of {supplied} the gas has {ratio} times the absolute pressure of its precharge{at}, and \
          `maximum_pressure_ratio` permits {limit}"
     );
     let help = format!("raise `precharge_pressure` to {needed} or more, or lower the supply pressure");

@@ -114,6 +114,17 @@ fn line(declared: &project::DeclaredLine) -> LineSymbol {
     symbol.rows.extend(declared.accumulator.as_ref().map(|gas| {
         format!("{}, {}", shown(gas.gas_volume, &VOLUME), shown(gas.precharge_pressure, &PRESSURE))
     }));
+    let gas = declared.accumulator.as_ref();
+    symbol.rows.extend(gas.and_then(|gas| gas.temperatures).map(|temperatures| {
+        let [stated, working] = [temperatures.precharge, temperatures.working];
+        format!(
+            "at {}, works at {}",
+            shown(stated, &quantity::TEMPERATURE),
+            shown(working, &quantity::TEMPERATURE)
+        )
+    }));
+    let time_constant = gas.and_then(|gas| gas.thermal_time_constant);
+    symbol.rows.extend(time_constant.map(|time| format!("heat {}", shown(time, &quantity::TIME))));
     let neck = declared.accumulator.as_ref().and_then(|gas| gas.neck);
     symbol.rows.extend(
         neck.map(|neck| format!("neck {}, {}", shown(neck.diameter, &LENGTH), shown(neck.length, &LENGTH))),

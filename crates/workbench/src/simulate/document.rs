@@ -244,6 +244,14 @@ fn occurrence_words(occurrence: &Occurrence) -> String {
         "accumulator_empty_b" => {
             ("the gas at chamber B is shut off: below the precharge", "the gas at chamber B is in use again")
         }
+        "accumulator_overpressure_a" => (
+            "the gas at chamber A is above its maximum_pressure_ratio",
+            "the gas at chamber A is within its maximum_pressure_ratio again",
+        ),
+        "accumulator_overpressure_b" => (
+            "the gas at chamber B is above its maximum_pressure_ratio",
+            "the gas at chamber B is within its maximum_pressure_ratio again",
+        ),
         "series_end" => (
             "the series spring reaches the end of its travel",
             "the series spring is within its travel again",

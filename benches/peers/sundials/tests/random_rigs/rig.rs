@@ -221,6 +221,7 @@ fn components(chance: &mut Chance, like_benchmark: bool) -> Components {
         line_b: line(chance),
         accumulators: [None; 2],
         necks: [None; 2],
+        thermal_time_constants: [None; 2],
         cross_port: None,
         series: None,
         cylinder: Cylinder {

@@ -6,6 +6,7 @@ use super::super::signals::ground_of;
 use super::super::{Accumulator, Chambers, Machine, MachineState, Motion, PowerUnit};
 use super::Account;
 use super::volume::{DensityLaw, Volume};
+use crate::accumulator::HeatedGas;
 use crate::line::{DynamicLine, LineContent};
 use crate::stroke::ActuatorStroke;
 
@@ -42,6 +43,8 @@ pub(super) struct GasInstant<T> {
     /// The volume that has entered, in m3, and the energy of the gas, in J.
     oil: T,
     energy: T,
+    /// What it gives to its wall, in W.
+    pub(super) heat: T,
 }
 
 /// A neck between a chamber and its gas.
@@ -88,11 +91,20 @@ impl<T: Scalar> GasInstant<T> {
     fn of(gas: Option<Accumulator<T>>, pressure: T, arriving: T, beside: T) -> GasInstant<T> {
         let zero = T::from(0.0);
         let Some(gas) = gas else {
-            return GasInstant { inflow: zero, taken: zero, pressure, oil: zero, energy: zero };
+            return GasInstant { inflow: zero, taken: zero, pressure, oil: zero, energy: zero, heat: zero };
         };
         let compliance = gas.compliance(pressure);
         let inflow = arriving * compliance / (compliance + beside);
-        GasInstant { inflow, taken: inflow, pressure, oil: gas.oil(pressure), energy: gas.energy(pressure) }
+        let (oil, energy) = (gas.oil(pressure), gas.energy(pressure));
+        GasInstant { inflow, taken: inflow, pressure, oil, energy, heat: zero }
+    }
+
+    /// The same of gas that exchanges heat.
+    fn heated(gas: &HeatedGas<T>, pressure: T, arriving: T, beside: T) -> GasInstant<T> {
+        let rate = (arriving - gas.compliance * gas.cooling) / (gas.compliance + beside);
+        let inflow = gas.flow(rate);
+        let HeatedGas { oil, energy, heat, .. } = *gas;
+        GasInstant { inflow, taken: inflow, pressure, oil, energy, heat }
     }
 
     pub(super) fn oil(&self) -> Account<T> {
@@ -100,7 +112,8 @@ impl<T: Scalar> GasInstant<T> {
     }
 
     pub(super) fn energy(&self) -> Account<T> {
-        Account { stored: self.energy, inflow: self.pressure * self.inflow, lost: T::from(0.0) }
+        let inflow = self.pressure * self.inflow - self.heat;
+        Account { stored: self.energy, inflow, lost: T::from(0.0) }
     }
 }
 
@@ -221,11 +234,16 @@ impl<S: Scalar> Machine<S> {
         let [out_of_a, out_of_b] = flows.out_of_chambers();
         let into_a = line_a.into_chamber - flows.internal - out_of_a - area_a * state.velocity;
         let into_b = line_b.into_chamber + flows.internal - out_of_b + area_b * state.velocity;
+        let heated = self.heated(self.gas_pressures(state), state.gas_warmings);
+        let own = |side: usize, gas, pressure, arriving, beside| match &heated[side] {
+            None => GasInstant::of(gas, pressure, arriving, beside),
+            Some(gas) => GasInstant::heated(gas, pressure, arriving, beside),
+        };
         let of = |side: usize, gas: Option<Accumulator<T>>, into: T, oil: T| match &self.necks[side] {
-            None => GasInstant::of(gas, [state.pressure_a, state.pressure_b][side], into, oil),
+            None => own(side, gas, [state.pressure_a, state.pressure_b][side], into, oil),
             Some(neck) => {
                 let taken = state.neck_flows[side];
-                let own = GasInstant::of(gas, state.gas_pressures[side], taken, constant(neck.compliance));
+                let own = own(side, gas, state.gas_pressures[side], taken, constant(neck.compliance));
                 GasInstant { taken, ..own }
             }
         };

@@ -161,7 +161,7 @@ impl RespondingPlant for PlantInMotion {
     fn range_rad_per_s(&self) -> [f64; 2] {
         let slowest = self.sides.iter().map(|side| {
             let line = side.line.static_compliance() - side.line.chamber_compliance();
-            let gas = side.neck.map_or(0.0, |neck| neck.compliance);
+            let gas = side.gas.map_or(0.0, |gas| gas.at_rest());
             (side.flow_pressure + self.plant.internal_leakage) / (side.compliance + line + gas)
         });
         let [filled, passed] = self.feedback_rad_per_s();
@@ -169,8 +169,8 @@ impl RespondingPlant for PlantInMotion {
         let quarter_wave = self.quarter_wave_rad_per_s().unwrap_or(0.0);
         let modes = self.sides.iter().map(|side| side.line.fastest_rad_per_s());
         let necks = self.sides.iter().filter_map(|side| {
-            let neck = side.neck?;
-            Some(((1.0 / neck.compliance + 1.0 / side.compliance) / neck.inertance).sqrt())
+            let gas = side.gas?;
+            Some(((1.0 / gas.compliance + 1.0 / side.compliance) / gas.neck?.inertance).sqrt())
         });
         let fastest = modes.chain(necks).fold(ABOVE_QUARTER_WAVE * quarter_wave, f64::max).max(passed);
         let fastest = fastest.max(ABOVE_SPOOL * self.plant.valve_natural_frequency);
@@ -182,7 +182,8 @@ impl RespondingPlant for PlantInMotion {
         let filter = self.plant.velocity_sensor.filter.frequency_rad_per_s();
         let filter = filter.filter(|_| self.plant.load_velocity_feed_forward.is_some());
         let lag = self.plant.virtual_impedance.and_then(|impedance| impedance.corner_rad_per_s());
-        let lags = || filter.into_iter().chain(lag);
+        let heat = self.sides.iter().filter_map(|side| Some(1.0 / side.gas?.relaxation?.time));
+        let lags = || filter.into_iter().chain(lag).chain(heat.clone());
         let slowest = lags().fold(slowest, f64::min);
         let fastest = lags().fold(fastest, |fastest, lag| fastest.max(ABOVE_SPOOL * lag));
         [BELOW * slowest, fastest]

@@ -1,0 +1,128 @@
+//! The gas of an accumulator for small motions, where it is more than a compliance of its chamber.
+
+use phea_dynamics::analytic::Analytic;
+use phea_dynamics::scalar::Scalar;
+
+use super::{GasRelaxation, Neck};
+use crate::linear::polynomial::{product, shifted, sum};
+
+/// Gas behind a neck, gas that exchanges heat, or both, without a flow at rest.
+///
+/// ```text
+/// Y = C(s) s/(I C(s) s^2 + R C(s) s + 1),     C(s) = C + C_r/(1 + T s)
+/// ```
+///
+/// Slower than its resonance 1/sqrt(I C) it is the gas, faster an inertance, which shuts the gas
+/// off. Slower than 1/T the gas is isothermal, faster adiabatic.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GasBranch<S = f64> {
+    /// Compliance C in m3/Pa, at once.
+    pub compliance: S,
+    /// What it yields later; `None` where it exchanges no heat, or as much as keeps it polytropic.
+    pub relaxation: Option<GasRelaxation<S>>,
+    /// The neck before it; `None` where the gas has the pressure of the chamber.
+    pub neck: Option<NeckImpedance<S>>,
+}
+
+/// Drop of pressure over the flow through a neck, I s + R.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NeckImpedance<S = f64> {
+    /// Inertance I in kg/m4.
+    pub inertance: S,
+    /// Resistance R in Pa s/m3.
+    pub resistance: S,
+}
+
+impl<S: Scalar> GasBranch<S> {
+    /// Gas of this compliance at rest in m3/Pa; that of the oil in its neck is added.
+    pub fn of(at_rest: S, relaxation: Option<GasRelaxation<S>>, neck: Option<&Neck<S>>) -> GasBranch<S> {
+        let at_once = relaxation.map_or(at_rest, |later| at_rest - later.compliance);
+        GasBranch {
+            compliance: neck.map_or(at_once, |neck| at_once + neck.compliance),
+            relaxation,
+            neck: neck.map(|neck| NeckImpedance { inertance: neck.inertance, resistance: neck.resistance }),
+        }
+    }
+
+    /// The same with this share of all that yields.
+    #[must_use]
+    pub fn softened(&self, share: S) -> GasBranch<S> {
+        GasBranch {
+            compliance: self.compliance * share,
+            relaxation: self.relaxation.map(|GasRelaxation { compliance, time }| GasRelaxation {
+                compliance: compliance * share,
+                time,
+            }),
+            ..*self
+        }
+    }
+
+    /// Compliance at rest in m3/Pa, with the oil of a neck.
+    pub fn at_rest(&self) -> S {
+        self.relaxation.map_or(self.compliance, |later| self.compliance + later.compliance)
+    }
+
+    /// Helmholtz resonance 1/sqrt(I C) in rad/s; `None` without a neck.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_hydraulics::accumulator::{GasBranch, NeckImpedance};
+    /// let neck = Some(NeckImpedance { inertance: 1e6, resistance: 1e8 });
+    /// let gas = GasBranch { compliance: 1e-12, relaxation: None, neck };
+    /// assert!((gas.resonance().unwrap() - 1e3_f64).abs() < 1e-9);
+    /// assert!((gas.damping_ratio().unwrap() - 0.05_f64).abs() < 1e-12);
+    /// ```
+    pub fn resonance(&self) -> Option<S> {
+        self.neck.map(|neck| S::from(1.0) / (neck.inertance * self.compliance).sqrt())
+    }
+
+    /// Damping ratio of that resonance by the neck, R/2 sqrt(C/I).
+    pub fn damping_ratio(&self) -> Option<S> {
+        self.neck.map(|neck| S::from(0.5) * neck.resistance * (self.compliance / neck.inertance).sqrt())
+    }
+
+    /// Numerator and denominator of Y, highest power of s first.
+    pub(crate) fn admittance(&self) -> [Vec<S>; 2] {
+        let one = S::from(1.0);
+        let [yields, lag] = match self.relaxation {
+            None => [vec![self.compliance], vec![one]],
+            Some(GasRelaxation { compliance, time }) => {
+                [vec![self.compliance * time, self.compliance + compliance], vec![time, one]]
+            }
+        };
+        let taken = shifted(&yields);
+        match self.neck {
+            None => [taken, lag],
+            Some(NeckImpedance { inertance, resistance }) => {
+                let drop = product(&taken, &[inertance, resistance]);
+                [taken, sum(&drop, &lag)]
+            }
+        }
+    }
+}
+
+impl GasBranch {
+    /// Y at s, or over a set of such.
+    pub(crate) fn admittance_at<A: Analytic>(&self, s: A) -> A {
+        let at_once = s.scaled(self.compliance);
+        let taken = match self.relaxation {
+            None => at_once,
+            Some(GasRelaxation { compliance, time }) => {
+                at_once + s.scaled(compliance) / (s.scaled(time) + A::from(1.0))
+            }
+        };
+        match self.neck {
+            None => taken,
+            Some(NeckImpedance { inertance, resistance }) => {
+                taken / (taken * (s.scaled(inertance) + A::from(resistance)) + A::from(1.0))
+            }
+        }
+    }
+
+    /// Its numbers, none of which is negative where it is passive.
+    pub(crate) fn numbers(&self) -> Vec<f64> {
+        let later = self.relaxation.into_iter().flat_map(|later| [later.compliance, later.time]);
+        let neck = self.neck.into_iter().flat_map(|neck| [neck.inertance, neck.resistance]);
+        later.chain(neck).chain([self.compliance]).collect()
+    }
+}

@@ -1,0 +1,132 @@
+//! The gas of an accumulator that exchanges heat with its wall.
+
+use phea_dynamics::scalar::Scalar;
+
+use super::{Accumulator, LIFTING};
+use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
+
+/// Ratio gamma of the specific heats of a diatomic ideal gas, which nitrogen nearly is up to 200 bar.
+pub const HEAT_CAPACITY_RATIO: f64 = 1.4;
+
+/// An ideal gas whose temperature T approaches that of its wall, T_w, with a time constant.
+///
+/// ```text
+/// P V = P_0 V_0 theta,    theta = T/T_w
+/// P_0 V_0/(gamma - 1) dtheta/dt = P q - P_0 V_0/(gamma - 1) (theta - 1)/tau,     q = -dV/dt
+/// ```
+///
+/// Source: Otis and Pourmovahed (1985), with an ideal gas and a wall that keeps its temperature.
+/// Slow it is isothermal, fast adiabatic. The bladder lifts from its shell as that of an
+/// [`Accumulator`], about P_0 theta.
+///
+/// # Example
+/// Nothing changes at the temperature of the wall, and fast the gas is gamma times as stiff.
+/// ```
+/// use phea_hydraulics::accumulator::{Accumulator, RelaxingGas};
+/// let gas = Accumulator { gas_volume: 1e-5, precharge_pressure: 15e5, polytropic_exponent: 1.0 };
+/// let relaxing = RelaxingGas { gas, time_constant: 2.0 };
+/// let heated = relaxing.at(35e5, 0.0);
+/// assert!((1.4 * heated.compliance / gas.compliance(35e5) - 1.0_f64).abs() < 1e-14);
+/// assert_eq!(heated.heat, 0.0);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RelaxingGas<S = f64> {
+    /// The gas at the temperature of its wall, with a polytropic exponent of 1.
+    pub gas: Accumulator<S>,
+    /// Thermal time constant tau in s.
+    pub time_constant: S,
+}
+
+/// Such gas at one instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeatedGas<S = f64> {
+    /// Compliance in m3/Pa for what no heat can follow.
+    pub compliance: S,
+    /// Rate in Pa/s at which its pressure falls while it cools in a volume that is held.
+    pub cooling: S,
+    /// Volume of the oil in m3.
+    pub oil: S,
+    /// Internal energy of the gas less the work done by the atmosphere, in J; zero at absolute zero
+    /// without oil.
+    pub energy: S,
+    /// Heat that it gives to the wall, in W.
+    pub heat: S,
+    /// Rise of theta for the volume of oil that enters, in 1/m3.
+    warming: S,
+    /// Rate of theta in 1/s that heat alone causes.
+    relaxing: S,
+}
+
+impl<S: Scalar> RelaxingGas<S> {
+    /// At a pressure in Pa gauge and theta - 1.
+    ///
+    /// ```text
+    /// V = V_0/g(r),   r = P/(P_0 theta);   g(r) = r,   or 1 + d w^2 while the bladder lifts,   d = 1/100
+    /// C = C_T/(1 + (gamma - 1) k),   C_T = V_0 w/(P_0 theta g^2),   k = w r^2/g^2;   w and k are 1 where it has lifted
+    /// q = C (dp/dt + P (theta - 1)/(theta tau))
+    /// ```
+    pub fn at(&self, pressure: S, warming: S) -> HeatedGas<S> {
+        let (one, zero, band) = (S::from(1.0), S::from(0.0), S::from(LIFTING));
+        let above_one = S::from(HEAT_CAPACITY_RATIO - 1.0);
+        let atmosphere = S::from(ATMOSPHERIC_PRESSURE_ABSOLUTE);
+        let precharge = self.gas.precharge_pressure + atmosphere;
+        let (temperature, absolute) = (one + warming, pressure + atmosphere);
+        let lifting = precharge * temperature;
+        let ratio = absolute / lifting;
+        let above = ratio - one;
+        let share = ((above + band) / (band + band)).maximum(zero).minimum(one);
+        let squeezed = one + S::select(above.less_than(band), band * share.squared(), above);
+        let isothermal = self.gas.gas_volume * share / (lifting * squeezed.squared());
+        let steeper = one + above_one * share * (ratio / squeezed).squared();
+        let capacity = precharge * self.gas.gas_volume / above_one;
+        let oil = self.gas.gas_volume * (one - one / squeezed);
+        let relaxing = warming / self.time_constant;
+        HeatedGas {
+            compliance: isothermal / steeper,
+            cooling: absolute * relaxing / temperature,
+            oil,
+            energy: capacity * temperature - atmosphere * oil,
+            heat: capacity * relaxing,
+            warming: absolute / capacity,
+            relaxing: -relaxing,
+        }
+    }
+
+    /// For small motions at a pressure in Pa gauge, at the temperature of the wall.
+    ///
+    /// ```text
+    /// q/p = s C_T (1 + tau s)/(1 + G tau s),    G = 1 + (gamma - 1) k: gamma where the bladder has lifted
+    /// ```
+    pub fn relaxation(&self, pressure: S) -> GasRelaxation<S> {
+        let at_rest = self.gas.compliance(pressure);
+        let HeatedGas { compliance, .. } = self.at(pressure, S::from(0.0));
+        let above_one = S::from(HEAT_CAPACITY_RATIO - 1.0);
+        let precharge = self.gas.precharge_pressure + S::from(ATMOSPHERIC_PRESSURE_ABSOLUTE);
+        // k = C_T P^2/(P_0 V_0)
+        let absolute = pressure + S::from(ATMOSPHERIC_PRESSURE_ABSOLUTE);
+        let steeper =
+            S::from(1.0) + above_one * at_rest * absolute.squared() / (precharge * self.gas.gas_volume);
+        GasRelaxation { compliance: at_rest - compliance, time: steeper * self.time_constant }
+    }
+}
+
+impl<S: Scalar> HeatedGas<S> {
+    /// Flow into it in m3/s, while its pressure rises at this rate in Pa/s.
+    pub fn flow(&self, pressure_rate: S) -> S {
+        self.compliance * (pressure_rate + self.cooling)
+    }
+
+    /// Rate of theta in 1/s with this flow in m3/s.
+    pub fn warming_rate(&self, flow: S) -> S {
+        self.warming * flow + self.relaxing
+    }
+}
+
+/// What gas yields later, for small motions: C_r/(1 + T s) of its compliance. Units: m3/Pa, s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GasRelaxation<S = f64> {
+    /// C_r, by which its compliance at rest is larger than at once.
+    pub compliance: S,
+    /// T, after which it yields at a pressure that is held: gamma tau.
+    pub time: S,
+}

@@ -1,0 +1,183 @@
+//! Heat and temperature of accumulators from the project's keys to plant, family, verdict, runs and what is told of them.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
+
+use num_complex::Complex64;
+use phea_qft::family::Family;
+use phea_workbench::command::Request;
+use phea_workbench::family::family;
+use phea_workbench::project::Project;
+use phea_workbench::report::report;
+use phea_workbench::setup::Setup;
+use phea_workbench::source::Memory;
+
+use super::ask::{answer, check, derived, json, load, near, project_of, source, try_answer};
+
+const GAS: &str = include_str!("../../../examples/ybitu/accumulator.toml");
+const HEAT: &str = include_str!("../../project/tests/valid/accumulator_heat.toml");
+const LIMIT: &str =
+    "specification=[{ kind = \"robust_stability\", limit = 1000, frequencies = [1, 10, 100] }]";
+const ATMOSPHERE: f64 = 101_325.0;
+
+/// What the plants are compared with: two pressures, one that is stated, a limited pump, a neck, and lines with waves.
+const RIGS: [&[&str]; 6] = [
+    &[],
+    &["linear.hydraulic_stiffness=2e6"],
+    &["supply.model=pump_limited"],
+    &["line.accumulator.neck_diameter=\"6 mm\"", "line.accumulator.neck_length=\"40 mm\""],
+    &["line.model=transmission_line"],
+    &["line.model=transmission_line", "linear.hydraulic_stiffness=2e6"],
+];
+
+/// The example without what it leaves open, and with gas of this exponent or time constant.
+fn with_gas(own: &str) -> String {
+    let before = GAS.split("[uncertainty]").next().unwrap();
+    let after = GAS.split_once("[[specification]]").unwrap().1;
+    let text = format!("{before}[[specification]]{after}");
+    let lines = text.lines().map(|line| if line.starts_with("polytropic_exponent") { own } else { line });
+    let text = lines.collect::<Vec<_>>().join("\n");
+    assert!(text.contains(own));
+    text
+}
+
+/// F_e/U_C and F_e/X_0 of the plant of every verdict.
+fn responses(project: &Project, frequency: f64) -> [Complex64; 2] {
+    let setup = Setup::new(project).unwrap();
+    let rig = setup.rig().unwrap();
+    if let Some(moving) = &rig.in_motion {
+        return moving.response(Complex64::new(0.0, frequency));
+    }
+    let coefficients = rig.plant.coefficients();
+    [Some(coefficients.command), coefficients.disturbance].map(|path| path.unwrap().at_frequency(frequency))
+}
+
+/// Gas that keeps its temperature is that of the exponent 1, in every form of the plant; at a time constant of seconds it is not.
+#[test]
+fn heat_without_delay_is_isothermal() {
+    let [isothermal, quick, slow] =
+        ["polytropic_exponent = 1", "thermal_time_constant = \"1e-12 s\"", "thermal_time_constant = \"2 s\""]
+            .map(with_gas);
+    for settings in RIGS {
+        let of = [&isothermal, &quick, &slow].map(|text| project_of(text, settings));
+        let mut widest = 0.0_f64;
+        for frequency in [1e-3, 1.0, 30.0, 300.0, 900.0, 2e3] {
+            let of = of.each_ref().map(|project| responses(project, frequency));
+            for path in [0, 1] {
+                let gap = (of[1][path] / of[0][path] - 1.0).norm_sqr().sqrt();
+                assert!(gap < 1e-8, "{settings:?} at {frequency}: {gap}");
+                widest = widest.max((of[2][path] / of[0][path] - 1.0).norm_sqr().sqrt());
+            }
+        }
+        assert!(widest > 0.05, "{settings:?}: {widest}");
+    }
+}
+
+/// The nominal member of the recorded family is the rig, with stated linear parameters and without.
+#[test]
+fn the_family_is_the_rig_at_its_nominal() {
+    let opened = "uncertainty={ \"line.accumulator.thermal_time_constant\" = { nominal = \"2 s\", minimum = \"1 s\", maximum = \"6 s\", points = 2 } }";
+    let text = with_gas("thermal_time_constant = \"2 s\"");
+    for settings in &RIGS[..4] {
+        let project = project_of(&text, &[settings, &[opened][..]].concat());
+        let setup = Setup::new(&project).unwrap();
+        let Family::Uncertain(family) = family(&setup, &Memory::default()).unwrap() else { panic!("a box") };
+        let nominal: Vec<f64> = family.plant().parameters().iter().map(|one| one.nominal).collect();
+        let told = family.plant().coefficients(&nominal).unwrap();
+        for frequency in [0.1, 10.0, 400.0, 640.0, 1300.0] {
+            let [command, ground] = responses(&project, frequency);
+            let of_family = [Some(&told.command), told.disturbance.as_ref()]
+                .map(|path| path.unwrap().at_frequency(frequency));
+            for (own, told) in [command, ground].into_iter().zip(of_family) {
+                assert!((own / told - 1.0).norm_sqr() < 1e-20, "{settings:?}: {own} {told}");
+            }
+        }
+    }
+}
+
+/// Compliance at rest, that without time for heat, and where one becomes the other; the precharge at both temperatures.
+#[test]
+fn check_derives_both_compliances_and_both_precharges() {
+    let told = check(HEAT, &["line.b.accumulator.thermal_time_constant=0.6"]);
+    // ORIGIN: analytic, 10 bar at 20 degC become this at 45 degC in the same volume, absolute
+    let warm = (10e5 + ATMOSPHERE) * 318.15 / 293.15;
+    near(derived(&told, "line.b.accumulator.working_precharge"), warm - ATMOSPHERE, 1e-12);
+    let absolute = derived(&told, "operating_point.pressure_b") + ATMOSPHERE;
+    near(derived(&told, "line.b.accumulator.compliance"), warm * 6e-6 / (absolute * absolute), 1e-12);
+    let fast = derived(&told, "line.b.accumulator.compliance") / 1.4;
+    near(derived(&told, "line.b.accumulator.fast_compliance"), fast, 1e-12);
+    near(derived(&told, "line.b.accumulator.isothermal_below"), 1.0 / (1.4 * 0.6), 1e-12);
+    let text = answer(HEAT, &[], &[], &Request::Check).text;
+    for part in ["line.b.accumulator.working_precharge", "precharge_temperature"] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+}
+
+/// The same gas, stated at one temperature or at the other, is the same machine and the same plant.
+#[test]
+fn a_precharge_may_be_stated_at_either_temperature() {
+    let cold = "line.b.accumulator={ gas_volume = \"6 mL\", precharge_pressure = \"10 bar\", precharge_temperature = \"20 degC\", working_temperature = \"45 degC\" }";
+    let working = (10e5 + ATMOSPHERE) * 318.15 / 293.15 - ATMOSPHERE;
+    let warm =
+        format!("line.b.accumulator={{ gas_volume = \"6 mL\", precharge_pressure = \"{working:?} Pa\" }}");
+    let [cold, warm] = [cold, &warm].map(|gas| project_of(HEAT, &[gas]));
+    for frequency in [1.0, 300.0] {
+        for (one, other) in responses(&cold, frequency).into_iter().zip(responses(&warm, frequency)) {
+            assert!((one / other - 1.0).norm_sqr() < 1e-24);
+        }
+    }
+}
+
+/// Warm gas that is shut off at the operating point is refused, with both of its precharges.
+#[test]
+fn a_precharge_that_is_too_high_when_warm_is_refused() {
+    let gas = "line.b.accumulator={ gas_volume = \"6 mL\", precharge_pressure = \"30 bar\", precharge_temperature = \"0 degC\", working_temperature = \"80 degC\" }";
+    let cold = "line.b.accumulator={ gas_volume = \"6 mL\", precharge_pressure = \"30 bar\" }";
+    let told = check(HEAT, &["line.b.accumulator.precharge_pressure=10 bar"]);
+    let pressure = derived(&told, "operating_point.pressure_b");
+    assert!(pressure > 30e5 && pressure < 39e5, "{pressure}");
+    check(HEAT, &[cold]);
+    let said = try_answer(HEAT, &[gas], &[], &Request::Check).unwrap_err().to_string();
+    for part in ["line.b.accumulator.precharge_pressure", "at `working_temperature`, from 30.00 bar"] {
+        assert!(said.contains(part), "{part}: {said}");
+    }
+}
+
+/// What the reduced models leave out is said.
+#[test]
+fn what_does_not_count_it_is_told() {
+    let text = with_gas("thermal_time_constant = \"2 s\"");
+    let models = answer(&text, &[], &[], &Request::Linearize).text;
+    assert!(models.contains("line.accumulator.thermal_time_constant is counted in the plant"), "{models}");
+    let both = answer(&text, RIGS[3], &[], &Request::Linearize).text;
+    assert!(
+        both.contains("the neck of line.accumulator and its thermal_time_constant are counted"),
+        "{both}"
+    );
+}
+
+/// Every frequency of every plant of the box is proven or refuted with it as without.
+#[test]
+fn verify_answers_with_heat() {
+    let opened = "uncertainty={ \"line.accumulator.thermal_time_constant\" = { nominal = \"2 s\", minimum = \"1 s\", maximum = \"6 s\", points = 2 } }";
+    let text = with_gas("thermal_time_constant = \"2 s\"");
+    let told = json(&text, &[LIMIT, opened], &[], &Request::Verify);
+    assert_eq!(told["stable"].as_bool(), Some(true), "{told}");
+}
+
+/// Pressed beyond what the maker permits, which the supply alone does not do, a run says when.
+#[test]
+fn a_run_tells_where_the_limit_of_the_maker_is_passed() {
+    let scenario = "scenario=[{ name = \"pressed\", duration = \"0.6 s\", load_motion = { kind = \"smooth_step\", start = \"0.1 s\", duration = \"20 ms\", distance = \"-20 mm\" } }]";
+    let ask = |ratio: &str| {
+        let limit = format!("line.accumulator.maximum_pressure_ratio={ratio}");
+        answer(GAS, &[scenario, &limit], &[], &Request::Simulate).text
+    };
+    let told = ask("4.44");
+    assert!(told.contains("is above its maximum_pressure_ratio"), "{told}");
+    assert!(told.contains("is within its maximum_pressure_ratio again"), "{told}");
+    assert!(!ask("20").contains("maximum_pressure_ratio"));
+    let loaded = load(HEAT, &[scenario, "line.accumulator.maximum_pressure_ratio=4.44"], &[]);
+    let setup = Setup::new(&loaded.project).unwrap();
+    let page = report(&source(HEAT), &loaded, &setup, None, &mut |_| true).unwrap().html;
+    assert!(page.contains("the gas at chamber A is above its maximum_pressure_ratio"));
+}
