@@ -32,6 +32,8 @@ UNSEEN = {
         line_accumulator_pressures line_accumulator_temperature uncertainty_direction_ends velocity_sensor_alone cross_port_orifice_wide cross_port_flow_wide series_travel_short series_without_travel series_stop_damping series_stop_missing series_coil_progressive series_vanishing
         impedance_of_nothing impedance_of_position impedance_too_fast impedance_without_load
         motor_stops_without_stroke motor_unserved motor_file
+        linkage_open linkage_four_bar_open linkage_dead_point linkage_table_rough linkage_table_short linkage_table_falling
+        linkage_table_counts linkage_motor linkage_unserved linkage_units
     """.split(),
     "numbers that a double cannot hold, infinity, and none": """
         number_huge_hexadecimal number_too_large quantity_infinite quantity_nan quantity_too_large quantity_too_small

@@ -174,8 +174,8 @@ pub fn judge(
     if loaded.project.specifications.is_empty() {
         return Err(DesignError::NoSpecification.into());
     }
-    let motion = loaded.project.motion();
-    let planned = request.front.as_ref().map(|asked| front::plan(asked, motion)).transpose()?;
+    let motions = loaded.project.motions();
+    let planned = request.front.as_ref().map(|asked| front::plan(asked, motions)).transpose()?;
     let all = asked(source, loaded, catalogues)?;
     let cases = asked_cases(source, loaded, catalogues)?;
     let catalogue = catalogue::load(source, catalogues).map_err(ProcedureError::Catalogue)?;

@@ -4,6 +4,7 @@
 mod accumulator;
 mod cross_port;
 mod impedance;
+mod linkage;
 mod list;
 mod rig;
 mod series;

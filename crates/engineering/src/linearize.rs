@@ -2,6 +2,7 @@
 //! first order (6.13); their omissions, the impedance at the load, and whether it is passive.
 
 mod agreement;
+mod linkage;
 mod port;
 mod sweep;
 
@@ -30,6 +31,7 @@ use phea_hydraulics::two_pressure::two_pressure_coefficients;
 
 pub use agreement::AgreementBand;
 pub use agreement::{WITHIN_DB, WITHIN_DEG};
+pub use linkage::{LinkagePlace, linkage_places};
 pub use port::{AskedAt, AskedImpedance, SHOWN_AT, WITHIN_PERCENT};
 pub use sweep::{POINTS, Sweep, SweepPoint, SweepRequest, Swept, sweep};
 pub(crate) use sweep::{points, range, values};
@@ -87,6 +89,8 @@ pub struct Linearization {
     /// What a virtual impedance asks of the port, and what the loop shows there; `None` without one,
     /// or without a controller.
     pub asked: Option<AskedImpedance>,
+    /// The linkage over the stroke; empty without one.
+    pub linkage: Vec<LinkagePlace>,
     /// Above this frequency the piston's mass hides the compliance, rad/s.
     pub compliance_hidden_above_rad_per_s: f64,
 }
@@ -170,6 +174,7 @@ pub fn linearize(
         closed_loop_absent: absence(feedback.as_ref(), closed_loop.as_ref()),
         closed_loop,
         asked: controller.map(|given| port::asked(rig, given, sensor)).transpose()?.flatten(),
+        linkage: linkage_places(rig),
         compliance_hidden_above_rad_per_s: compliance_hidden_above(
             rig.linear.hydraulic_stiffness,
             rig.linear.moving_mass,

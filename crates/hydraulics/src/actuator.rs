@@ -10,6 +10,7 @@ use crate::fluid::Fluid;
 use crate::force_sensor::ForceSensor;
 use crate::friction::Friction;
 use crate::line::{Line, StiffeningMember};
+use crate::linkage::Linkage;
 use crate::parameter::{ParameterError, Problems};
 use crate::series::SeriesElement;
 use crate::servovalve::{Servovalve, Supply};
@@ -46,6 +47,8 @@ pub struct Components<S = f64> {
     pub force_sensor: ForceSensor<S>,
     /// The spring between sensor and load; `None` where the sensor pushes on the load itself.
     pub series: Option<SeriesElement<S>>,
+    /// The linkage between rod and a load that turns; `None` where the load moves with the rod.
+    pub linkage: Option<Linkage<S>>,
     /// Which modulus the chambers have.
     pub stiffness_model: StiffnessModel,
 }
@@ -167,6 +170,7 @@ impl Actuator {
         problems.component("cylinder.friction", friction.problems());
         problems.component("force_sensor", force_sensor.problems());
         problems.component("series", components.series.map_or(Vec::new(), |series| series.problems()));
+        problems.component("linkage", components.linkage.map_or(Vec::new(), |linkage| linkage.problems()));
         let not_empty = "positive together with the line's volume: an empty chamber has no pressure";
         let volume_a = cylinder.dead_volume_a + line_a.volume();
         let volume_b = cylinder.dead_volume_b + line_b.volume();

@@ -25,6 +25,7 @@ pub mod friction;
 pub mod impedance;
 pub mod line;
 pub mod linear;
+pub mod linkage;
 pub mod machine;
 pub mod operating_point;
 pub mod orifice;

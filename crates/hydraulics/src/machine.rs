@@ -15,7 +15,7 @@
 //! sensor         d(x - x_L)/dt = v - v_L,   F_e = K_S (x - x_L)          thesis (4.45)
 //! series         between sensor and load, or absent                      SeriesElement
 //! bristles       dz/dt                                          thesis (4.30), corrected: LuGre
-//! load           prescribed, or d(x_L - x_0)/dt, dv_L/dt         LoadModel
+//! load           prescribed, or d(x_L - x_0)/dt, dv_L/dt         LoadModel; behind a Linkage theta for x
 //! supply         constant, or dp_S/dt                           PowerUnit
 //! lines          lumped, or states and waves of their own       DynamicLine
 //! ```
@@ -27,6 +27,7 @@
 
 mod balance;
 mod chambers;
+mod end;
 mod equations;
 mod gas;
 mod ledger;
@@ -43,7 +44,7 @@ pub use chambers::{AeratedChambers, Chambers};
 pub use ledger::{Account, ENERGY_ACCOUNTS, Ledger, OIL_ACCOUNTS};
 pub use load::{LoadModel, Motion};
 pub use options::{MachineError, MachineOptions};
-pub use signals::{INDICATORS, SERIES_SIGNALS, SIGNALS};
+pub use signals::{INDICATORS, LINKAGE_SIGNALS, SERIES_SIGNALS, SIGNALS};
 pub use start::{InitialCondition, StartValues};
 pub use state::MachineState;
 
@@ -57,6 +58,7 @@ use crate::cylinder::Cylinder;
 use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 use crate::friction::MovingFriction;
 use crate::line::{DynamicLine, Segments};
+use crate::linkage::Linkage;
 use crate::series::SeriesElement;
 use crate::servovalve::{Servovalve, SpoolImperfection, Supply};
 use crate::stroke::ActuatorStroke;
@@ -67,8 +69,8 @@ use state::Layout;
 /// An actuator with its load and its power unit, in motion. Parameters are numbers, or lanes of
 /// them.
 ///
-/// Its inputs are the position in m and the velocity in m/s of the load's ground ([`LoadModel`]),
-/// the force from outside in N where it has one ([`MachineOptions::external_force`]), and then the
+/// Its inputs are the position in m and the velocity in m/s of the load's ground ([`LoadModel`]; in
+/// rad and rad/s behind a linkage), the force from outside in N (N m) where it has one ([`MachineOptions::external_force`]), and then the
 /// waves that arrive from line A and line B; its states are named by [`MachineState`].
 ///
 /// # Example
@@ -108,6 +110,7 @@ pub struct Machine<S = f64> {
     friction: MovingFriction<S>,
     sensor_stiffness: S,
     series: Option<SeriesElement<S>>,
+    linkage: Option<Linkage<S>>,
     load: LoadModel<S>,
     velocity_gain: S,
     external_force: bool,
@@ -159,6 +162,7 @@ impl Machine {
             friction,
             sensor_stiffness: components.force_sensor.stiffness,
             series: components.series,
+            linkage: components.linkage,
             load: options.load,
             velocity_gain: options.velocity_gain,
             external_force: options.external_force,
@@ -178,6 +182,11 @@ impl Machine {
     /// Whether a spring lies between force sensor and load.
     pub fn has_series_element(&self) -> bool {
         self.series.is_some()
+    }
+
+    /// Whether the load turns behind a linkage.
+    pub fn has_linkage(&self) -> bool {
+        self.linkage.is_some()
     }
 
     /// Whether anything stops the piston at the ends of its stroke.
@@ -230,6 +239,7 @@ impl<S: Copy> Machine<S> {
             friction: self.friction.convert(of),
             sensor_stiffness: of(self.sensor_stiffness),
             series: self.series.map(|series| series.convert(of)),
+            linkage: self.linkage.map(|linkage| linkage.convert(of)),
             load: self.load.convert(of),
             velocity_gain: of(self.velocity_gain),
             external_force: self.external_force,
@@ -351,7 +361,8 @@ impl<S: Scalar> Plant<S> for Machine<S> {
     }
 
     fn disturbance<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T]) -> T {
-        let velocity = self.load_of(&self.layout.read(state), &ground_of(inputs)).velocity;
+        let velocity =
+            self.end_of(&self.load_of(&self.layout.read(state), &ground_of(inputs))).motion.velocity;
         constant::<S, T>(self.velocity_gain) * velocity
     }
 
@@ -361,11 +372,12 @@ impl<S: Scalar> Plant<S> for Machine<S> {
 
     #[inline(always)]
     fn position<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T]) -> T {
-        self.load_of(&self.layout.read(state), &ground_of(inputs)).position
+        self.end_of(&self.load_of(&self.layout.read(state), &ground_of(inputs))).motion.position
     }
 
     fn position_scale(&self) -> S {
-        self.typical_state().load.position
+        let own = self.typical_state().load.position;
+        self.linkage.map_or(own, |linkage| own * linkage.typical_arm())
     }
 
     fn delays(&self) -> Vec<S> {

@@ -13,11 +13,13 @@
 //! The supply is at a constant pressure, or has one of its own: [`YieldingSupply`].
 
 mod in_motion;
+mod load;
 mod series;
 mod supply;
 mod virtual_impedance;
 
 pub use in_motion::{BehindLines, PlantInMotion};
+pub use load::LinearLoad;
 pub use series::{LinearSeries, SeriesOutput};
 pub use supply::YieldingSupply;
 
@@ -137,23 +139,6 @@ pub enum ChamberDynamics<S = f64> {
         flow_gains: [S; 2],
         /// Flow-pressure coefficients K_cA and K_cB.
         flow_pressures: [S; 2],
-    },
-}
-
-/// The load on the force sensor, linearised at the operating point.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum LinearLoad<S = f64> {
-    /// Its motion is prescribed, whatever the force.
-    Prescribed,
-    /// A mass that yields, held to its ground by a spring and a damper; a wall that is touched is
-    /// the spring.
-    Yielding {
-        /// Mass m in kg.
-        mass: S,
-        /// Damping c in N s/m.
-        damping: S,
-        /// Stiffness k in N/m; zero for a free mass.
-        stiffness: S,
     },
 }
 
@@ -417,7 +402,8 @@ impl<S: Scalar> LinearPlant<S> {
     ///               v_L = s (K_S w^2 N_u U_C + (c s + k) V (Q + K_S D) X_0)/(V (Q (Z + K_S) + K_S Z D))
     /// ```
     ///
-    /// The velocity of the load that is fed forward is a second path of a prescribed motion, and a
+    /// Behind a linkage Z has k_g beside k, and r^2 K_S w^2 N_u and r^2 K_S stand for what the force does
+    /// to the load: [`LinearLoad::Linked`]. The velocity of the load that is fed forward is a second path of a prescribed motion, and a
     /// second loop of a load that yields. With the sensor's gain 1 + e and its filter H_v = 1/d_v,
     ///
     /// ```text
@@ -472,8 +458,8 @@ impl<S: Scalar> LinearPlant<S> {
         let by_load = fed.as_ref().map_or(by_load.clone(), |fed| sum(&by_load, fed));
         let held = product(&spool, &sum(&moved, &scaled(sensor, &own)));
         let command = scaled(sensor * square, &driven);
-        match self.load {
-            LinearLoad::Prescribed => PlantCoefficients {
+        match self.load.terms() {
+            None => PlantCoefficients {
                 command: RationalCoefficients { numerator: command, denominator: held.clone() },
                 disturbance: Some(self.beside_motion(by_load, filtered(held.clone()))),
                 dead_time_s: S::from(0.0),
@@ -483,16 +469,17 @@ impl<S: Scalar> LinearPlant<S> {
                     disturbance: shifted(&scaled(gain, &held)),
                 }),
             },
-            LinearLoad::Yielding { mass, damping, stiffness } => {
-                let load = [mass, damping, stiffness];
-                let before_sensor = product(&moved, &[mass, damping, stiffness + sensor]);
+            Some(terms) => {
+                let (load, tied) = (terms.own(), terms.ground);
+                let [inertia, damping, stiffness] = load;
+                let before_sensor = product(&moved, &[inertia, damping, stiffness + terms.moved_by(sensor)]);
                 let sensed = sum(&before_sensor, &scaled(sensor, &product(&load, &own)));
                 let alone = filtered(product(&spool, &sensed));
-                let back = fed.as_ref().map(|fed| scaled(S::from(-1.0), fed));
+                let back = fed.as_ref().map(|fed| terms.moved(scaled(S::from(-1.0), fed)));
                 let denominator = back.map_or(alone.clone(), |back| sum(&alone, &back));
-                let moved = [command, product(&held, &[damping, stiffness])].map(filtered);
+                let moved = [terms.moved(command), product(&held, &tied)].map(filtered);
                 let command = filtered(scaled(sensor * square, &product(&load, &driven)));
-                let disturbance = product(&by_load, &[damping, stiffness]);
+                let disturbance = product(&by_load, &tied);
                 self.of_yielding_load([command, disturbance], moved, denominator)
             }
         }

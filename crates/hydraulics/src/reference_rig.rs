@@ -122,6 +122,7 @@ pub fn components(line: Line, stiffness_model: StiffnessModel) -> Components {
         friction: Friction::Viscous { viscous: 100.0 },
         force_sensor: ForceSensor { stiffness: 2e7 },
         series: None,
+        linkage: None,
         stiffness_model,
     }
 }

@@ -10,6 +10,7 @@ mod gas_heat;
 mod impedance;
 mod line_models;
 mod linear_models;
+mod linkage;
 mod machine_components;
 mod machine_conservation;
 mod machine_equations;

@@ -124,13 +124,11 @@ impl Variants for Load {
     }
 
     fn visit<V: Visitor>(&mut self, v: &mut V) {
-        let kilograms = key("mass", &MASS, "Mass of the load.").of_motion().positive();
+        let kilograms = key("mass", &MASS, "Mass of the load.").of_load().positive();
         let spring =
-            key("stiffness", &STIFFNESS, "Stiffness of the load or of the wall.").of_motion().positive();
-        let damper = key("damping", &DAMPING, "Damping of the load or of its guide.")
-            .of_motion()
-            .not_negative()
-            .or(0.0);
+            key("stiffness", &STIFFNESS, "Stiffness of the load or of the wall.").of_load().positive();
+        let damper =
+            key("damping", &DAMPING, "Damping of the load or of its guide.").of_load().not_negative().or(0.0);
         match self {
             Load::Prescribed => {}
             Load::SpringMassDamper { mass, stiffness, damping } => {
@@ -142,15 +140,14 @@ impl Variants for Load {
                 v.optional(kilograms, mass);
                 v.quantity(spring, stiffness);
                 v.quantity(damper, damping);
-                let k =
-                    key("gap", &LENGTH, "Free play before the wall is touched.").of_motion().not_negative();
+                let k = key("gap", &LENGTH, "Free play before the wall is touched.").of_load().not_negative();
                 v.quantity(k.or(0.0), gap);
                 let k = key(
                     "relative_damping",
                     &INVERSE_VELOCITY,
                     "Damping of the wall relative to its elastic force.",
                 )
-                .of_motion();
+                .of_load();
                 v.quantity(k.not_negative().or(0.0), relative_damping);
             }
         }

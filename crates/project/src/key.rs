@@ -18,8 +18,27 @@ pub struct Key {
     /// Whether its numbers measure the motion of the rig or what drives it, so that a motor has
     /// another dimension in its place: a torque for a force, an angle for a length.
     pub of_motion: bool,
+    /// Whether they measure the motion of the load or what drives it, which may turn where the rig
+    /// does not: behind a linkage.
+    pub of_load: bool,
     /// What it means, in one sentence.
     pub doc: &'static str,
+}
+
+/// How a rig moves, and how its load does.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Motions {
+    /// Of the rod or the shaft.
+    pub rig: MotionKind,
+    /// Of what it drives.
+    pub load: MotionKind,
+}
+
+impl Motions {
+    /// A load that moves with its rig.
+    pub(crate) const fn both(motion: MotionKind) -> Motions {
+        Motions { rig: motion, load: motion }
+    }
 }
 
 /// Which numbers are accepted, in SI.
@@ -60,7 +79,7 @@ impl AcceptedRange {
 
 /// A key whose numbers have a dimension.
 pub(crate) const fn key(name: &'static str, dimension: &'static Dimension, doc: &'static str) -> Key {
-    Key { name, dimension, range: AcceptedRange::ANY, default: None, of_motion: false, doc }
+    Key { name, dimension, range: AcceptedRange::ANY, default: None, of_motion: false, of_load: false, doc }
 }
 
 /// A key without a dimension: a table, a list, a text or a choice.
@@ -75,10 +94,20 @@ impl Key {
         self
     }
 
-    /// The key in a rig of this motion.
-    pub fn in_motion(mut self, motion: MotionKind) -> Key {
+    /// Its numbers measure the motion of the load: `dimension` is that of a cylinder without a
+    /// linkage.
+    pub(crate) const fn of_load(mut self) -> Key {
+        self.of_load = true;
+        self
+    }
+
+    /// The key in a rig of these motions.
+    pub fn in_motion(mut self, Motions { rig, load }: Motions) -> Key {
         if self.of_motion {
-            self.dimension = motion.dimension(self.dimension);
+            self.dimension = rig.dimension(self.dimension);
+        }
+        if self.of_load {
+            self.dimension = load.dimension(self.dimension);
         }
         self
     }

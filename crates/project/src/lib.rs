@@ -23,6 +23,7 @@ mod limit;
 mod line;
 mod line_motion;
 mod linear;
+mod linkage;
 mod listing;
 mod load_case;
 mod measured;
@@ -68,11 +69,12 @@ pub use fluid::*;
 pub use formula::*;
 pub use identify::*;
 pub use interval::*;
-pub use key::{AcceptedRange, Key};
+pub use key::{AcceptedRange, Key, Motions};
 pub use limit::*;
 pub use line::*;
 pub use line_motion::*;
 pub use linear::*;
+pub use linkage::*;
 pub use listing::KeyEntry;
 pub use load_case::*;
 pub use measured::*;
@@ -178,6 +180,8 @@ pub struct DeclaredActuator {
     pub velocity_sensor: Option<DeclaredVelocitySensor>,
     /// The spring between load cell and load; absent: the cell pushes on the load itself.
     pub series: Option<DeclaredSeries>,
+    /// The linkage between rod and load; absent: the load moves with the rod.
+    pub linkage: Option<DeclaredLinkage>,
     /// What the force acts on.
     pub load: Load,
 }
@@ -329,7 +333,7 @@ impl DeclaredActuator {
     /// Tables of which exactly one describes what moves.
     const MOVING: [&'static str; 2] = ["cylinder", "motor"];
     /// Those that may be absent.
-    const OPTIONAL: [&'static str; 4] = ["cross_port", "velocity_sensor", "series", "load"];
+    const OPTIONAL: [&'static str; 5] = ["cross_port", "velocity_sensor", "series", "linkage", "load"];
 
     fn visit<V: Visitor>(&mut self, v: &mut V) {
         required(plain("fluid", "The oil."), &mut self.fluid, DeclaredFluid::visit, v);
@@ -352,6 +356,9 @@ impl DeclaredActuator {
         );
         let k = plain("series", "The spring between force sensor and load; absent: none.");
         v.table(k, &mut self.series, DeclaredSeries::visit);
+        let k = plain("linkage", "What lies between the rod and a load that turns; absent: nothing.");
+        v.table(k, &mut self.linkage, DeclaredLinkage::visit);
+        v.load_moves((!v.names_everything()).then(|| self.load_motion()));
         table_or_default(plain("load", "What the force acts on."), &mut self.load, Load::visit, v);
     }
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::formula::Formula;
-use super::key::Key;
+use super::key::{Key, Motions};
 use super::visitor::{FormulaShape, Kinds, NamedNumber, ValueForm, Variants, Visitor};
 use crate::catalogue::CatalogueKind;
 use phea_quantity::MotionKind;
@@ -14,7 +14,7 @@ pub(crate) struct Listing {
     /// Tables that are absent are listed too.
     everything: bool,
     /// How the rig moves.
-    motion: MotionKind,
+    motion: Motions,
     path: String,
     /// Every key with a value of its own, by its path.
     pub(crate) keys: Vec<KeyEntry>,
@@ -110,7 +110,11 @@ impl Visitor for Listing {
     }
 
     fn moves(&mut self, motion: Option<MotionKind>) {
-        self.motion = motion.unwrap_or_default();
+        self.motion = Motions::both(motion.unwrap_or_default());
+    }
+
+    fn load_moves(&mut self, motion: Option<MotionKind>) {
+        self.motion.load = motion.unwrap_or_default();
     }
 
     fn quantity(&mut self, key: Key, field: &mut f64) {

@@ -2,7 +2,9 @@
 
 use super::key::{key, plain};
 use super::visitor::Visitor;
-use phea_quantity::{Dimension, FLOW, FORCE, LENGTH, PRESSURE, TIME, VELOCITY, VOLTAGE};
+use phea_quantity::{
+    ANGLE, ANGULAR_VELOCITY, Dimension, FLOW, FORCE, LENGTH, PRESSURE, TIME, TORQUE, VELOCITY, VOLTAGE,
+};
 
 /// A file with measured signals.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -37,7 +39,7 @@ const fn signal(name: &'static str) -> (&'static str, &'static str) {
 
 /// The signals that can be measured, each as a project names it and as the column of a simulation's
 /// table is called: every column but time.
-pub static MEASURABLE: [(&str, &str); 30] = [
+pub static MEASURABLE: [(&str, &str); 34] = [
     signal("force_n"),
     signal("reference_n"),
     signal("control_v"),
@@ -68,6 +70,10 @@ pub static MEASURABLE: [(&str, &str); 30] = [
     signal("external_force_n"),
     signal("series_deflection_m"),
     signal("load_force_n"),
+    signal("joint_angle_rad"),
+    signal("joint_velocity_rad_per_s"),
+    signal("joint_torque_n_m"),
+    signal("external_torque_n_m"),
 ];
 
 impl MeasuredFile {
@@ -108,7 +114,10 @@ impl MeasuredSignal {
 
     /// The dimension of the signal, by the unit in its name.
     pub fn dimension(&self) -> &'static Dimension {
-        let by_ending: [(&str, &'static Dimension); 6] = [
+        let by_ending: [(&str, &'static Dimension); 9] = [
+            ("_n_m", &TORQUE),
+            ("_rad_per_s", &ANGULAR_VELOCITY),
+            ("_rad", &ANGLE),
             ("_m3_per_s", &FLOW),
             ("_m_per_s", &VELOCITY),
             ("_pa", &PRESSURE),

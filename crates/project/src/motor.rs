@@ -2,7 +2,7 @@
 
 use phea_quantity::{ANGLE, DISPLACEMENT, FLOW_PRESSURE_COEFFICIENT, INERTIA, MotionKind, VOLUME};
 
-use super::key::{key, plain};
+use super::key::{Motions, key, plain};
 use super::visitor::Visitor;
 use super::{DeclaredActuator, DeclaredFriction, EndStops};
 
@@ -73,6 +73,16 @@ impl DeclaredActuator {
     /// ```
     pub fn motion(&self) -> MotionKind {
         if self.motor.is_some() { MotionKind::Rotary } else { MotionKind::Linear }
+    }
+
+    /// How its load moves: it turns behind a linkage too.
+    pub fn load_motion(&self) -> MotionKind {
+        if self.linkage.is_some() { MotionKind::Rotary } else { self.motion() }
+    }
+
+    /// Both.
+    pub fn motions(&self) -> Motions {
+        Motions { rig: self.motion(), load: self.load_motion() }
     }
 
     /// m or rad; `None` for a motor that turns on.

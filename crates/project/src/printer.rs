@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::formula::Formula;
-use super::key::Key;
+use super::key::{Key, Motions};
 use super::toml_text::{bare_or_quoted, inline, list, quoted};
 use super::visitor::{FormulaShape, Kinds, NamedNumber, ValueForm, Variants, Visitor};
 use crate::catalogue::CatalogueKind;
@@ -15,7 +15,7 @@ pub(crate) struct Printer {
     /// Dimension and range of numbers that are named by their path.
     named: BTreeMap<String, Key>,
     /// How the rig moves.
-    motion: MotionKind,
+    motion: Motions,
 }
 
 /// A table: its lines, then the tables in it.
@@ -54,7 +54,7 @@ impl PrintedTable {
 
 impl Printer {
     pub(crate) fn new(named: BTreeMap<String, Key>) -> Self {
-        Printer { open: vec![PrintedTable::default()], named, motion: MotionKind::Linear }
+        Printer { open: vec![PrintedTable::default()], named, motion: Motions::default() }
     }
 
     /// What was written since the beginning as one inline table.
@@ -121,7 +121,11 @@ impl Printer {
 
 impl Visitor for Printer {
     fn moves(&mut self, motion: Option<MotionKind>) {
-        self.motion = motion.unwrap_or_default();
+        self.motion = Motions::both(motion.unwrap_or_default());
+    }
+
+    fn load_moves(&mut self, motion: Option<MotionKind>) {
+        self.motion.load = motion.unwrap_or_default();
     }
 
     fn quantity(&mut self, key: Key, field: &mut f64) {

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use sha2::{Digest, Sha256};
 
 use super::diagnostic::{Diagnostic, Refusal, Severity};
-use super::key::{Key, key};
+use super::key::{Key, Motions, key};
 use super::linear::LINEAR_PARAMETERS;
 use super::listing::{KeyEntry, Listing};
 use super::operating_point::operating_numbers;
@@ -333,7 +333,7 @@ fn numbers(project: &mut Project) -> (BTreeMap<String, Key>, Vec<String>) {
         let linear =
             LINEAR_PARAMETERS.iter().map(|parameter| (parameter.key.name.to_string(), parameter.key));
         let others = linear.chain(super::scenario::start_numbers()).chain(operating_numbers());
-        named.extend(others.map(|(path, key)| (path, key.in_motion(actuator.motion()))));
+        named.extend(others.map(|(path, key)| (path, key.in_motion(actuator.motions()))));
     }
     named.extend(project.directions.iter().map(|direction| (direction.name.clone(), DIRECTION)));
     (named, listing.counts)
@@ -384,6 +384,11 @@ impl Project {
     /// How the rig moves; a project without one moves along a line.
     pub fn motion(&self) -> MotionKind {
         self.actuator.as_ref().map_or(MotionKind::Linear, DeclaredActuator::motion)
+    }
+
+    /// How rig and load move.
+    pub fn motions(&self) -> Motions {
+        self.actuator.as_ref().map(DeclaredActuator::motions).unwrap_or_default()
     }
 
     /// The number at a dotted path such as `supply.pressure`, in SI.
@@ -478,7 +483,7 @@ impl Project {
         let mut listing = Listing::default();
         self.clone().visit_system(&mut listing);
         let numbers = listing.numbers.into_iter().map(|(path, (key, value))| (path, (key, Some(value))));
-        let motion = self.motion();
+        let motion = self.actuator.as_ref().map_or_else(Motions::default, DeclaredActuator::motions);
         let start = super::scenario::start_numbers().into_iter();
         let start = start.map(|(path, key)| (path, (key.in_motion(motion), None)));
         numbers.chain(start).collect()

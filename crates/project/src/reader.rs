@@ -6,7 +6,7 @@ mod values;
 
 use std::collections::BTreeMap;
 
-use super::key::Key;
+use super::key::{Key, Motions};
 use super::text::{Findings, Place, RawFinding};
 use super::tree::{Entry, TreeNode, Value};
 use super::{Origin, Provenance};
@@ -29,7 +29,7 @@ pub(crate) struct Reader<'a> {
     /// Whether the parts of an actuator are read.
     pub(crate) parts: bool,
     /// How the rig moves.
-    motion: MotionKind,
+    motion: Motions,
     /// Numbers of the project that can be named, with their keys.
     pub(crate) named: BTreeMap<String, Key>,
     /// Its whole numbers, which have no range to vary in.
@@ -97,7 +97,7 @@ impl<'a> Reader<'a> {
             partial: false,
             incomplete: false,
             parts: true,
-            motion: MotionKind::Linear,
+            motion: Motions::default(),
             named: BTreeMap::new(),
             counts: Vec::new(),
             parameters: Vec::new(),
@@ -112,7 +112,7 @@ impl<'a> Reader<'a> {
 
     /// How the rig moves whose keys are read.
     pub(crate) fn motion(&self) -> MotionKind {
-        self.motion
+        self.motion.rig
     }
 
     /// Accepts absent keys.

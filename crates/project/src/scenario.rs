@@ -135,8 +135,8 @@ impl Variants for MotionShape {
 
     fn visit<V: Visitor>(&mut self, v: &mut V) {
         let how_long = key("duration", &TIME, "Of a smooth step or a chirp.").positive();
-        let how_far = key("distance", &LENGTH, "Of a smooth or first-order step.").of_motion();
-        let size = key("amplitude", &LENGTH, "Of a sine or chirp.").of_motion().positive();
+        let how_far = key("distance", &LENGTH, "Of a smooth or first-order step.").of_load();
+        let size = key("amplitude", &LENGTH, "Of a sine or chirp.").of_load().positive();
         let first = key("frequency", &ANGULAR_FREQUENCY, "Of a sine, or where a chirp begins.").positive();
         match self {
             MotionShape::SmoothStep { duration, distance } => {

@@ -116,18 +116,25 @@ pub(crate) struct SignalUnit {
     pub(crate) dimension: &'static Dimension,
     /// Whether a step may have published values.
     published: bool,
+    /// Whether it acts on the load.
+    on_load: bool,
 }
 
 impl SignalUnit {
     /// Of a reference.
     pub(crate) const REFERENCE: SignalUnit =
-        SignalUnit { value: "force", values: "forces", dimension: &FORCE, published: true };
+        SignalUnit { value: "force", values: "forces", dimension: &FORCE, published: true, on_load: false };
     /// Of an external force on the load.
     pub(crate) const EXTERNAL_FORCE: SignalUnit =
-        SignalUnit { value: "force", values: "forces", dimension: &FORCE, published: false };
+        SignalUnit { value: "force", values: "forces", dimension: &FORCE, published: false, on_load: true };
     /// Of an open-loop command.
-    pub(crate) const COMMAND: SignalUnit =
-        SignalUnit { value: "voltage", values: "voltages", dimension: &VOLTAGE, published: false };
+    pub(crate) const COMMAND: SignalUnit = SignalUnit {
+        value: "voltage",
+        values: "voltages",
+        dimension: &VOLTAGE,
+        published: false,
+        on_load: false,
+    };
 }
 
 /// A signal as it is written, which depends on its quantity.
@@ -164,12 +171,13 @@ impl Variants for WrittenSignal {
 
     fn visit<V: Visitor>(&mut self, v: &mut V) {
         let of = self.unit.dimension;
-        let level = key(self.unit.value, of, "Of a step, until the next; how far a ramp goes.").of_motion();
+        let moving = |key: Key| if self.unit.on_load { key.of_load() } else { key.of_motion() };
+        let level = moving(key(self.unit.value, of, "Of a step, until the next; how far a ramp goes."));
         let begins = key("start", &TIME, "When it begins; absent: at once.").not_negative();
         let how_long =
             key("duration", &TIME, "How long it moves; it holds the value it ends with.").positive();
         let size =
-            key("amplitude", of, "Of a sine, a chirp, or each sine of a multisine.").of_motion().positive();
+            moving(key("amplitude", of, "Of a sine, a chirp, or each sine of a multisine.").positive());
         let first = key("frequency", &ANGULAR_FREQUENCY, "Of a sine, or where a chirp begins.").positive();
         match &mut self.signal {
             Signal::Step { at, value, published } => {
@@ -184,7 +192,7 @@ impl Variants for WrittenSignal {
             Signal::Steps { times, values } => {
                 let k = key("times", &TIME, "When each of several steps comes.").not_negative();
                 v.quantities(k, times, true);
-                let k = key(self.unit.values, of, "Of several steps, each until the next.").of_motion();
+                let k = moving(key(self.unit.values, of, "Of several steps, each until the next."));
                 v.quantities(k, values, true);
             }
             Signal::Ramp { value, start, duration } => {
@@ -240,7 +248,7 @@ impl Amplitudes {
             Amplitudes::Each(amplitudes) => (None, amplitudes),
         };
         v.optional(size, &mut equal);
-        let k = key("amplitudes", size.dimension, "Of each sine of a multisine.").of_motion().positive();
+        let k = Key { name: "amplitudes", doc: "Of each sine of a multisine.", ..size };
         v.quantities(k, &mut each, false);
         v.one_of(&["amplitude", "amplitudes"], true);
         *self = equal.map_or(Amplitudes::Each(each), Amplitudes::Equal);

@@ -9,6 +9,7 @@ mod identify;
 mod impedance;
 mod line_motion;
 mod linear_loop;
+mod linkage;
 mod measured;
 mod motor;
 mod plausible;
@@ -35,6 +36,7 @@ pub(super) fn project(project: &Project, reader: &mut Reader<'_>) {
             Some(_) => motor::motor(project, actuator, &mut check),
             None => series::series(project, actuator, &mut check),
         }
+        linkage::linkage(project, actuator, &mut check);
         wishes::with_actuator(project, actuator, &mut check);
     }
     if let Some(plant) = &project.plant {

@@ -34,6 +34,8 @@ pub(crate) trait Visitor: Sized {
     /// How the rig moves of which the keys that follow are; `None` where this is open, in a description
     /// of every key.
     fn moves(&mut self, _motion: Option<MotionKind>) {}
+    /// How its load moves, where that is not as the rig does.
+    fn load_moves(&mut self, _motion: Option<MotionKind>) {}
     /// A number; required unless the key has a default.
     fn quantity(&mut self, key: Key, field: &mut f64);
     /// A number that may be absent.

@@ -9,6 +9,8 @@ pub use phea_engineering::linearize::*;
 pub use answer::{files, json};
 pub(crate) use answer::{json_swept, passivity as passivity_body};
 pub use document::text;
-pub(crate) use document::{asked_sentence, asked_table, document, models, passivity_sentence, root_list};
+pub(crate) use document::{
+    asked_sentence, asked_table, document, linkage_table, models, passivity_sentence, root_list,
+};
 pub(crate) use sweep_answer::sweep_text;
 pub(crate) use sweep_answer::{sweep_figure, sweep_files};

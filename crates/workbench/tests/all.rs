@@ -30,6 +30,7 @@ mod line_coverage;
 mod line_identification;
 mod linearize_and_derived;
 mod lines_in_motion;
+mod linkage;
 mod motor;
 mod neck;
 mod noise;

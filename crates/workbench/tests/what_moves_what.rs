@@ -21,12 +21,15 @@ const CROSS_PORT: &str = include_str!("../../project/tests/valid/cross_port.toml
 const SERIES: &str = include_str!("../../project/tests/valid/series.toml");
 const SERIES_COIL: &str = include_str!("../../project/tests/valid/series_coil.toml");
 const VOLUMES: &str = include_str!("../../project/tests/valid/volumes.toml");
+const LINKAGE: &str = include_str!("../../project/tests/valid/linkage.toml");
+const FOUR_BAR: &str = include_str!("../../project/tests/valid/linkage_four_bar.toml");
+const ANGLES: &str = include_str!("../../project/tests/valid/linkage_table.toml");
 const MOTOR: &str = include_str!("../../project/tests/valid/motor.toml");
 const TURNING: &str = include_str!("../../project/tests/valid/motor_turning.toml");
 const ASYMMETRIC: &str = include_str!("../../project/tests/valid/asymmetric.toml");
 const GUIDE: &str = include_str!("../../../book/src/guide/what_moves_what.md");
 /// Tables that declare the rig and its loop; the others state what is asked of it.
-const TABLES: [&str; 15] = [
+const TABLES: [&str; 16] = [
     "fluid",
     "supply",
     "valve",
@@ -38,6 +41,7 @@ const TABLES: [&str; 15] = [
     "force_sensor",
     "velocity_sensor",
     "series",
+    "linkage",
     "operating_point",
     "linear",
     "controller",
@@ -152,7 +156,23 @@ fn on_springs() -> Vec<(String, Vec<&'static str>)> {
         (without_uncertainty(SERIES_COIL), vec![]),
         (ASYMMETRIC.to_string(), vec!["series={ stiffness = \"20 MN/m\" }"]),
     ];
-    springs.into_iter().chain(with_motors()).collect()
+    springs.into_iter().chain(with_motors()).chain(with_linkages()).collect()
+}
+
+/// Rigs with a linkage between rod and load.
+fn with_linkages() -> Vec<(String, Vec<&'static str>)> {
+    vec![
+        (without_uncertainty(LINKAGE), vec![]),
+        (FOUR_BAR.to_string(), vec!["operating_point.load_force=2 kN"]),
+        (ANGLES.to_string(), vec![]),
+        (
+            ANGLES.to_string(),
+            vec![
+                "load={ model = \"spring_mass_damper\", mass = 0.6, stiffness = 900, damping = 8 }",
+                "operating_point.load_force=2 kN",
+            ],
+        ),
+    ]
 }
 
 /// Rigs with a motor in place of the cylinder.
@@ -205,7 +225,9 @@ fn without_uncertainty(text: &str) -> String {
 }
 
 /// Values of what may be absent, or is not a number.
-const STATED: [(&str, &str); 49] = [
+const STATED: [(&str, &str); 51] = [
+    ("linkage.extensions", "[0, 0.0205, 0.04, 0.06, 0.08]"),
+    ("linkage.angles", "[0.08, 0.5, 0.95, 1.4, 1.9]"),
     ("operating_point.position", "200 mm"),
     ("operating_point.command", "1 V"),
     ("operating_point.load_pressure", "10 bar"),

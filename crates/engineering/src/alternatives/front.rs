@@ -7,7 +7,7 @@ use super::comparison::sense_of;
 use super::{AskedAlternative, COLUMN_SENSES, ColumnSense, JudgedAlternative, Judging, dominates, recentred};
 use crate::error::ProcedureError;
 use crate::linearize::{SweepRequest, points, range, values};
-use crate::project::Project;
+use crate::project::{Motions, Project};
 use crate::quantity::{self, DisplayUnit, MotionKind};
 use crate::spelling::nearest;
 
@@ -109,7 +109,7 @@ pub(super) struct FrontPlan {
 ///
 /// # Errors
 /// [`ProcedureError::Option`] for columns or a sweep that do not exist.
-pub(super) fn plan(request: &FrontRequest, motion: MotionKind) -> Result<FrontPlan, ProcedureError> {
+pub(super) fn plan(request: &FrontRequest, motions: Motions) -> Result<FrontPlan, ProcedureError> {
     let text = request.columns.join(",");
     let refused = |message: String| ProcedureError::Option { option: "front", text: text.clone(), message };
     if !(2..=3).contains(&request.columns.len()) {
@@ -117,13 +117,13 @@ pub(super) fn plan(request: &FrontRequest, motion: MotionKind) -> Result<FrontPl
             "a front has two or three columns, such as disturbance_peak_n,swept".to_string(),
         ));
     }
-    let columns = request.columns.iter().map(|column| column_of(column, motion).map_err(refused));
+    let columns = request.columns.iter().map(|column| column_of(column, motions.rig).map_err(refused));
     let columns = columns.collect::<Result<Vec<_>, _>>()?;
     let twice = |one: &FrontColumn| columns.iter().filter(|other| other.key == one.key).count() > 1;
     if let Some(column) = columns.iter().find(|column| twice(column)) {
         return Err(refused(format!("`{}` stands twice", column.key)));
     }
-    let asked = range(&request.sweep.range, motion)?;
+    let asked = range(&request.sweep.range, motions)?;
     let count = points(request.sweep.points.or(Some(POINTS)))?;
     let values = values(asked.ends, count, asked.by_ratio());
     let unit = quantity::fitting(asked.ends[0].abs().max(asked.ends[1].abs()), asked.key.dimension);

@@ -9,6 +9,7 @@ use super::Derived;
 use super::accumulator::accumulators;
 use super::cross_port::cross_port;
 use super::impedance::impedance;
+use super::linkage::linkage;
 use super::list::List;
 use super::series::series;
 use super::valve::valve;
@@ -25,6 +26,7 @@ pub fn derive(project: &Project, rig: &Rig) -> Vec<Derived> {
     stiffness(rig, &mut list);
     accumulators(project, rig, &mut list);
     series(project, rig, &mut list);
+    linkage(project, rig, &mut list);
     valve(project, rig, &mut list);
     equilibrium(rig, &mut list);
     cross_port(project, rig, &mut list);

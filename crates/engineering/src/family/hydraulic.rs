@@ -27,8 +27,8 @@ use super::moved::{self, MovedNumber};
 use super::visited::Visited;
 use crate::project::{DeclaredActuator, LINEAR_PARAMETERS, Project};
 use crate::rig::{
-    self, Numbers, Rig, components, has_gas_states, linear, place, plant, settled_supply, stated,
-    velocity_gain, with_gas, with_supply, yielding_load, yielding_supply,
+    self, Numbers, Rig, components, has_gas_states, linear, load_at, place, plant, settled_supply, stated,
+    velocity_gain, with_gas, with_supply, yielding_supply,
 };
 use crate::setup::Setup;
 
@@ -145,7 +145,7 @@ impl Open<'_> {
         let place = self.place(values, moved);
         let all = self.all(values);
         let numbers = Numbers::open(self.names, &all);
-        let load = yielding_load(&self.declared.load, &numbers, place.point.hydraulic_force);
+        let load = load_at(&self.declared.load, &numbers, &place.components, &place.point);
         let load = load.map_or(LinearLoad::Prescribed, |load| load.linear());
         let plant = plant(&place.chambers, &place.linear, equal.one_pressure, place.leakage, load);
         let plant = match place.supply {

@@ -14,7 +14,7 @@ use super::{Linearization, linearize, resonance};
 use crate::caveat::{Caveat, caveats};
 use crate::error::ProcedureError;
 use crate::linear_loop::{LinearLoop, LoopStability, linear_loop, linear_loop_of};
-use crate::project::{self, Key, KeyEntry, Loaded};
+use crate::project::{self, Key, KeyEntry, Loaded, Motions};
 use crate::quantity::{self, DisplayUnit, MotionKind, display};
 use crate::setup::Setup;
 use crate::source::Source;
@@ -99,7 +99,7 @@ pub fn sweep(
     request: &SweepRequest,
 ) -> Result<Sweep, ProcedureError> {
     let motion = loaded.project.motion();
-    let asked = range(&request.range, motion)?;
+    let asked = range(&request.range, loaded.project.motions())?;
     let by_ratio = asked.by_ratio();
     let SweepRange { path, key, ends } = asked;
     let count = points(request.points)?;
@@ -142,8 +142,8 @@ fn refused(text: &str, message: String) -> ProcedureError {
     ProcedureError::Option { option: "sweep", text: text.to_string(), message }
 }
 
-/// The range that a text states, in the units of the rig's motion.
-pub(crate) fn range(text: &str, motion: MotionKind) -> Result<SweepRange, ProcedureError> {
+/// The range that a text states, in the units of the motions of rig and load.
+pub(crate) fn range(text: &str, motions: Motions) -> Result<SweepRange, ProcedureError> {
     let form =
         || refused(text, "a sweep has the form KEY=FROM..TO, such as line.length=0.5 m..3 m".to_string());
     let (path, ends) = text.split_once('=').ok_or_else(form)?;
@@ -152,7 +152,7 @@ pub(crate) fn range(text: &str, motion: MotionKind) -> Result<SweepRange, Proced
     if from.is_empty() || to.is_empty() {
         return Err(form());
     }
-    let key = key(text, path)?.in_motion(motion);
+    let key = key(text, path)?.in_motion(motions);
     // the unit of the end holds for a bare start, as in a list
     let from = if bare(from).is_some() && bare(to).is_none() {
         format!("{from} {}", unit_of(to))

@@ -7,6 +7,7 @@ use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::force_sensor::ForceSensor;
 use phea_hydraulics::friction::{Friction, LuGre, Stribeck};
 use phea_hydraulics::line::{Anchoring, Hose, Line, Pipe, PipeWall, Stiffening};
+use phea_hydraulics::linkage::Linkage;
 use phea_hydraulics::series::{SeriesElement, SeriesTravel};
 use phea_hydraulics::servovalve::{
     Edges, Servovalve, Supply, flow_coefficient_from_rating, leakage_coefficient_from_rating,
@@ -76,7 +77,16 @@ pub fn components<S: Scalar>(
             stiffness: numbers.at("force_sensor.stiffness", declared.force_sensor.stiffness),
         },
         series: declared.series.as_ref().map(|series| self::series(series, &numbers.within("series"))),
+        linkage: declared.linkage.as_ref().map(|linkage| self::linkage(linkage, declared.cylinder.stroke)),
         stiffness_model: stiffness_model(declared.line.compliance),
+    }
+}
+
+/// The linkage over the declared stroke; [`Actuator::new`] refuses one that does not exist.
+fn linkage<S: Scalar>(declared: &project::DeclaredLinkage, stroke: f64) -> Linkage<S> {
+    match declared.reduced(stroke) {
+        Ok(reduced) => reduced.linkage.convert(&mut S::from),
+        Err(_) => Linkage::impossible(),
     }
 }
 

@@ -4,6 +4,8 @@
 use phea_dynamics::scalar::Scalar;
 use phea_hydraulics::actuator::Components;
 use phea_hydraulics::linear::LinearParameters;
+use phea_hydraulics::linkage::RodEnd;
+use phea_hydraulics::operating_point::OperatingPoint;
 use phea_hydraulics::plant::{ChamberDynamics, LinearLoad, LinearPlant, YieldingSupply};
 use phea_hydraulics::servovalve::ChamberCoefficients;
 use phea_hydraulics::two_pressure::{TwoPressureLinearParameters, reduce};
@@ -18,7 +20,7 @@ const OF_LOAD_PRESSURE: [&str; 4] =
 /// Chambers whose numbers differ by less, relative to them, are equal.
 const EQUAL: f64 = 1e-9;
 
-/// The load in the plant. Units: kg, N s/m, N/m.
+/// The load in the plant. Units: kg, N s/m, N/m; behind a linkage kg m2, N m s/rad, N m/rad.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct YieldingLoad<S = f64> {
     /// Moving mass.
@@ -29,23 +31,63 @@ pub struct YieldingLoad<S = f64> {
     pub stiffness: S,
     /// Damping of the contact with a wall.
     pub contact_damping: S,
+    /// `None` without a linkage.
+    pub lever: Option<LoadLever<S>>,
+}
+
+/// The lever arm of a linkage at a force. Units: m, N m/rad.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LoadLever<S = f64> {
+    /// r = g'
+    pub arm: S,
+    /// -F g'': by the change of the arm under the force.
+    pub geometric_stiffness: S,
 }
 
 impl<S: Scalar> YieldingLoad<S> {
     /// The load in the linear plant, its damping and that of the contact in one.
     pub fn linear(&self) -> LinearLoad<S> {
-        LinearLoad::Yielding {
-            mass: self.mass,
-            damping: self.damping + self.contact_damping,
-            stiffness: self.stiffness,
+        let (mass, stiffness) = (self.mass, self.stiffness);
+        let damping = self.damping + self.contact_damping;
+        match self.lever {
+            None => LinearLoad::Yielding { mass, damping, stiffness },
+            Some(LoadLever { arm, geometric_stiffness }) => {
+                LinearLoad::Linked { inertia: mass, damping, stiffness, geometric_stiffness, lever_arm: arm }
+            }
         }
     }
 }
 
-/// The load at a force on it in N; `None` where its motion is prescribed. The load is in contact
+/// The load's end of the rod at an operating point; `None` without a linkage. The force sensor is
+/// compressed by the force there.
+pub(crate) fn rod_end<S: Scalar>(components: &Components<S>, point: &OperatingPoint<S>) -> Option<RodEnd<S>> {
+    let linkage = components.linkage.as_ref()?;
+    let position = point.position - point.hydraulic_force / components.force_sensor.stiffness;
+    Some(linkage.end(linkage.angle(position)))
+}
+
+/// The load at an operating point; `None` where its motion is prescribed.
+pub(crate) fn load_at<S: Scalar>(
+    declared: &project::Load,
+    numbers: &Numbers<'_, S>,
+    components: &Components<S>,
+    point: &OperatingPoint<S>,
+) -> Option<YieldingLoad<S>> {
+    let force = point.hydraulic_force;
+    match rod_end(components, point) {
+        None => yielding_load(declared, numbers, force),
+        Some(end) => {
+            let turned = yielding_load(declared, numbers, force * end.lever_arm)?;
+            let lever = LoadLever { arm: end.lever_arm, geometric_stiffness: -(force * end.lever_slope) };
+            Some(YieldingLoad { lever: Some(lever), ..turned })
+        }
+    }
+}
+
+/// The load itself at a force on it in N, or a torque in N m; `None` where its motion is prescribed. The load is in contact
 /// with a wall where the force presses on it, or where there is no gap. Hunt and Crossley's damping
 /// K c d of a wall pressed by d = F/K is c F.
-pub(crate) fn yielding_load<S: Scalar>(
+fn yielding_load<S: Scalar>(
     declared: &project::Load,
     numbers: &Numbers<'_, S>,
     force: S,
@@ -60,6 +102,7 @@ pub(crate) fn yielding_load<S: Scalar>(
             damping: at("damping", damping),
             stiffness: at("stiffness", stiffness),
             contact_damping: none,
+            lever: None,
         }),
         project::Load::Wall { mass, damping, stiffness, gap, relative_damping } => {
             let wall = at("stiffness", stiffness);
@@ -69,6 +112,7 @@ pub(crate) fn yielding_load<S: Scalar>(
                 damping: at("damping", damping),
                 stiffness: if gap == 0.0 { wall } else { touched },
                 contact_damping: at("relative_damping", relative_damping) * force.maximum(none),
+                lever: None,
             })
         }
     }

@@ -1,6 +1,6 @@
 //! The columns of a scenario's table; the guide states their signs and units.
 
-use phea_hydraulics::machine::{SERIES_SIGNALS, SIGNALS};
+use phea_hydraulics::machine::{LINKAGE_SIGNALS, SERIES_SIGNALS, SIGNALS};
 
 use super::record::{Look, Record};
 
@@ -58,22 +58,25 @@ const FIRST: [&str; 22] = [
     "filtered_reference_n",
 ];
 
-/// The force on the load from outside.
+/// The force on the load from outside, and the torque on one that turns behind a linkage.
 const EXTERNAL_FORCE: &str = "external_force_n";
+const EXTERNAL_TORQUE: &str = "external_torque_n_m";
 
 /// The columns of a table and the sources of their numbers.
 pub(super) struct Columns(Vec<(&'static str, ColumnSource)>);
 
 impl Columns {
     /// The fixed ones, then those added later, and last the external force if the load is `pushed`;
-    /// those of a series element only if the load is `sprung`, and that of a virtual impedance only
-    /// if the reference `gives_way`.
-    pub(super) fn new(pushed: bool, sprung: bool, gives_way: bool) -> Columns {
+    /// those of a series element only if the load is `sprung`, those of a linkage only if it `turns`,
+    /// and that of a virtual impedance only if the reference `gives_way`.
+    pub(super) fn new(pushed: bool, [sprung, turns]: [bool; 2], gives_way: bool) -> Columns {
         let there = |name: &&&str| {
-            (sprung || !SERIES_SIGNALS.contains(name)) && (gives_way || **name != VIRTUAL_FORCE)
+            (sprung || !SERIES_SIGNALS.contains(name))
+                && (turns || !LINKAGE_SIGNALS.contains(name))
+                && (gives_way || **name != VIRTUAL_FORCE)
         };
         let later = SIGNALS.iter().chain(&LOOP_SIGNALS).filter(there).filter(|name| !FIRST.contains(name));
-        let pushed = pushed.then_some(&EXTERNAL_FORCE);
+        let pushed = pushed.then_some(if turns { &EXTERNAL_TORQUE } else { &EXTERNAL_FORCE });
         let all = FIRST.iter().chain(later).chain(pushed);
         Columns(all.filter_map(|name| Some((*name, source(name)?))).collect())
     }
@@ -129,7 +132,7 @@ fn source(name: &str) -> Option<ColumnSource> {
         "reference_n" => Some(ColumnSource::Reference),
         "control_v" => Some(ColumnSource::Control),
         "filtered_reference_n" => Some(ColumnSource::FilteredReference),
-        EXTERNAL_FORCE => Some(ColumnSource::ExternalForce),
+        EXTERNAL_FORCE | EXTERNAL_TORQUE => Some(ColumnSource::ExternalForce),
         _ => place(&SIGNALS)
             .map(ColumnSource::Machine)
             .or_else(|| place(&LOOP_SIGNALS).map(ColumnSource::Loop)),
@@ -143,8 +146,10 @@ mod tests {
     /// The columns that can be measured: all except time.
     #[test]
     fn every_column_can_be_measured() {
-        let mut columns = Columns::new(true, true, true).names();
+        let mut columns = Columns::new(true, [true, false], true).names();
         columns.remove(0);
+        columns.extend(LINKAGE_SIGNALS);
+        columns.push(EXTERNAL_TORQUE);
         let mut measurable: Vec<&str> = phea_project::MEASURABLE.iter().map(|(name, _)| *name).collect();
         columns.sort_unstable();
         measurable.sort_unstable();
@@ -153,8 +158,9 @@ mod tests {
 
     #[test]
     fn every_signal_has_one_column() {
-        let names = Columns::new(true, true, true).names();
-        assert_eq!(names.len(), FIRST.len() + 1 + SERIES_SIGNALS.len() + LOOP_SIGNALS.len() + 1);
+        let names = Columns::new(true, [true; 2], true).names();
+        let later = SERIES_SIGNALS.len() + LINKAGE_SIGNALS.len() + LOOP_SIGNALS.len();
+        assert_eq!(names.len(), FIRST.len() + 1 + later + 1);
         assert_eq!(names[..FIRST.len()], FIRST);
         for name in SIGNALS.iter().chain(&LOOP_SIGNALS) {
             assert_eq!(names.iter().filter(|known| known == &name).count(), 1, "{name}");

@@ -10,7 +10,7 @@ use super::bench::ControlledMachine;
 /// A loop in equilibrium.
 pub(super) struct RestedLoop {
     pub(super) rest: Rest,
-    /// Position of the load's ground, m.
+    /// Position of the load's ground, m; rad behind a linkage.
     pub(super) ground_m: f64,
 }
 
@@ -30,21 +30,43 @@ pub(super) fn rest(
         }
         error => SimulateError::Rest { name: name.to_string(), error },
     };
-    let rest = at_rest(&bench.control, guess, beginning, standing).map_err(named)?;
+    let rest = at_rest(&bench.control, guess, beginning, standing).map_err(&named)?;
     let (command_v, limit_v) = (rest.command_v, rest.limit_v);
     if command_v.abs() > limit_v {
         let name = name.to_string();
         return Err(SimulateError::RestBeyondLimit { name, reference_n, command_v, limit_v });
     }
-    // only its position depends on that of the ground
-    let place = SIGNALS.iter().position(|signal| *signal == "position_m");
+    let signal = |name: &str, start: &[f64], inputs: &[f64]| {
+        let place = SIGNALS.iter().position(|signal| *signal == name);
+        place.map_or(0.0, |place| bench.machine.outputs::<f64>(start, inputs)[place])
+    };
     let own = beginning.all_inputs();
-    let position =
-        |start: &[f64]| place.map_or(0.0, |place| bench.machine.outputs::<f64>(start, &own)[place]);
-    let [ground_m, _] = beginning.inputs;
-    let ground_m = ground_m - (position(&rest.start) - position(&beginning.state));
-    Ok(RestedLoop { rest, ground_m })
+    let wanted_m = signal("position_m", &beginning.state, &own);
+    let [mut ground_m, _] = beginning.inputs;
+    if !bench.machine.has_linkage() {
+        // only its position depends on that of the ground
+        ground_m -= signal("position_m", &rest.start, &own) - wanted_m;
+        return Ok(RestedLoop { rest, ground_m });
+    }
+    // behind a linkage the torque depends on it too
+    let (mut rest, mut from) = (rest, beginning.clone());
+    for _ in 0..GROUNDS {
+        let inputs = from.all_inputs();
+        let ahead_m = signal("position_m", &rest.start, &inputs) - wanted_m;
+        if ahead_m.abs() <= AT_POSITION_M {
+            return Ok(RestedLoop { rest, ground_m });
+        }
+        ground_m -= bench.machine.turn_of(signal("joint_angle_rad", &rest.start, &inputs), ahead_m);
+        from.inputs[0] = ground_m;
+        rest = at_rest(&bench.control, &rest.start, &from, standing).map_err(&named)?;
+    }
+    Err(SimulateError::NoRest { name: name.to_string(), reference_n, what: "the joint", rate: f64::NAN })
 }
+
+/// How near the piston rests to where it is wanted behind a linkage, m, and how often its ground is
+/// moved for that.
+const AT_POSITION_M: f64 = 1e-9;
+const GROUNDS: usize = 60;
 
 /// A state in words, by its index: [`phea_hydraulics::machine::MachineState`].
 fn what(state: usize) -> &'static str {

@@ -38,7 +38,11 @@ impl<'a> RunTable<'a> {
     ) -> Result<RunTable<'a>, WriteError> {
         let machine = &bench.machine;
         let gives_way = !bench.control.impedance_states().is_empty();
-        let columns = Columns::new(machine.has_external_force(), machine.has_series_element(), gives_way);
+        let columns = Columns::new(
+            machine.has_external_force(),
+            [machine.has_series_element(), machine.has_linkage()],
+            gives_way,
+        );
         let names: Vec<_> = columns.names().into_iter().map(|name| bench.motion.name(name)).collect();
         let names: Vec<&str> = names.iter().map(AsRef::as_ref).collect();
         let table = NumberTable::new(destination.begin(name)?, format, &names);

@@ -237,7 +237,8 @@ impl<S: Scalar> Machine<S> {
         let state = self.layout.read(vector);
         let ground = ground_of(inputs);
         let load = self.load_of(&state, &ground);
-        let joint = self.joint(&state, &load);
+        let end = self.end_of(&load);
+        let joint = self.joint(&state, &end.motion);
         let position = joint.position;
         let velocity = state.velocity;
         let flows = self.flows(&state, self.ports(&state, vector));
@@ -246,7 +247,8 @@ impl<S: Scalar> Machine<S> {
         let [area_a, area_b]: [T; 2] = [constant(self.cylinder.area_a), constant(self.cylinder.area_b)];
         let pushing = forces.hydraulic + forces.end_stops - forces.friction.force - joint.sensed;
         let external = self.layout.external_force(inputs);
-        let on_load = external.map_or(joint.on_load, |external| joint.on_load + external);
+        let on_load = end.on_load(joint.on_load);
+        let on_load = external.map_or(on_load, |external| on_load + external);
         let valve = self.valve.convert(&mut constant::<S, T>);
         let chambers = [state.pressure_a, state.pressure_b];
         let [into_a, into_b] = if self.layout.has_lines() {

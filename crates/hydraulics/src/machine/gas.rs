@@ -11,6 +11,7 @@ pub(super) type HeatedSides<T> = [Option<HeatedGas<T>>; 2];
 
 impl<S: Scalar> Machine<S> {
     /// Pressures of the gas at either chamber, in Pa.
+    #[inline(always)]
     pub(super) fn gas_pressures<T: Scalar + From<S>>(&self, state: &MachineState<T>) -> [T; 2] {
         let [neck_a, neck_b] = &self.necks;
         [
@@ -21,6 +22,7 @@ impl<S: Scalar> Machine<S> {
 
     /// Pressures in Pa gauge at which the gas at either chamber has its precharge, P_0 theta; `None`
     /// without gas.
+    #[inline(always)]
     pub(super) fn precharges<T: Scalar + From<S>>(&self, state: &MachineState<T>) -> [Option<T>; 2] {
         [0, 1].map(|side| {
             let precharge: T = constant(self.accumulators[side]?.precharge_pressure);

@@ -256,11 +256,11 @@ impl<S: Scalar> Machine<S> {
                 inflow: joint.sensed * (velocity - joint.behind_sensor),
                 lost: zero,
             },
-            self.series_account(joint, load.velocity),
+            self.series_account(joint, now.end.velocity),
             self.end_stop_account(position, velocity, forces.end_stops),
             Account {
                 stored: held,
-                inflow: joint.on_load * load.velocity + now.external_power - self.on_ground(now),
+                inflow: joint.on_load * now.end.velocity + now.external_power - self.on_ground(now),
                 lost: damped,
             },
         ]
@@ -272,7 +272,7 @@ impl<S: Scalar> Machine<S> {
             let [_, to_ground, _] = self.load.convert(&mut constant::<S, T>).powers(&now.load, &now.ground);
             return to_ground;
         }
-        now.joint.on_load * now.load.velocity
+        now.joint.on_load * now.end.velocity
     }
 
     /// Spring, damper, ends and mass between the sensor and a load that moves at this velocity.

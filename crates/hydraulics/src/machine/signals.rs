@@ -5,7 +5,7 @@ use super::{Machine, Motion};
 use crate::stroke::ActuatorStroke;
 
 /// Names of the signals of a machine, with units, in the order of [`Machine::outputs`].
-pub const SIGNALS: [&str; 21] = [
+pub const SIGNALS: [&str; 24] = [
     "force_n",
     "spool_v",
     "pressure_a_pa",
@@ -27,11 +27,17 @@ pub const SIGNALS: [&str; 21] = [
     "opening_v",
     "series_deflection_m",
     "load_force_n",
+    "joint_angle_rad",
+    "joint_velocity_rad_per_s",
+    "joint_torque_n_m",
 ];
 
 /// Those of [`SIGNALS`] that only a machine with a series element has: without one the force on the
 /// load is `force_n`, and nothing deflects beside the sensor.
 pub const SERIES_SIGNALS: [&str; 2] = ["series_deflection_m", "load_force_n"];
+
+/// Those of [`SIGNALS`] that only a machine with a linkage has: its load turns.
+pub const LINKAGE_SIGNALS: [&str; 3] = ["joint_angle_rad", "joint_velocity_rad_per_s", "joint_torque_n_m"];
 
 /// Names of the state events of a machine, in the order of its indicators. Each indicator is
 /// positive in ordinary operation and negative while the event lasts.
@@ -68,7 +74,9 @@ impl<S: Scalar> Machine<S> {
     /// with, `hydraulic_force_n` what the chambers push the piston with; between them lie its
     /// friction, end stops and acceleration. With a series element `force_n` is the force that its
     /// [`ForceFrom`](crate::series::ForceFrom) measures, F_e that through the sensor,
-    /// `load_force_n` that on the load, and `series_deflection_m` how far the spring is compressed:
+    /// `load_force_n` that on the load, and `series_deflection_m` how far the spring is compressed.
+    /// Behind a linkage `load_position_m` is that of the rod's end, and `joint_torque_n_m` what the
+    /// rod turns the joint with:
     ///
     /// ```text
     /// F_H = A_A p_A - A_B p_B = F_e + F_fr - F_stops + M dv/dt      all positive towards the B end but F_fr      thesis (4.29)
@@ -91,11 +99,16 @@ impl<S: Scalar> Machine<S> {
         let vector = state;
         let state = self.layout.read(vector);
         let load = self.load_of(&state, &ground_of(inputs));
-        let joint = self.joint(&state, &load);
+        let end = self.end_of(&load);
+        let joint = self.joint(&state, &end.motion);
         let position = joint.position;
         let ports = self.ports(&state, vector);
         let flows = self.flows(&state, ports);
         let forces = self.forces(&state, position);
+        let still = Motion { position: T::from(0.0), velocity: T::from(0.0) };
+        let zero = T::from(0.0);
+        let (turning, torque) =
+            if self.linkage.is_some() { (load, end.on_load(joint.on_load)) } else { (still, zero) };
         [
             self.measured_force(&state),
             state.spool.spool,
@@ -110,14 +123,17 @@ impl<S: Scalar> Machine<S> {
             flows.from_valve[0],
             flows.from_valve[1],
             self.supply_flow(&state, &flows.edges),
-            load.position,
-            load.velocity,
+            end.motion.position,
+            end.motion.velocity,
             ports[0],
             ports[1],
             forces.hydraulic,
             self.spool.convert(&mut constant::<S, T>).opening(&state.spool),
             joint.spring.position,
             joint.on_load,
+            turning.position,
+            turning.velocity,
+            torque,
         ]
     }
 
@@ -126,7 +142,7 @@ impl<S: Scalar> Machine<S> {
         let state = self.layout.read(state);
         let ground = ground_of(inputs);
         let load = self.load_of(&state, &ground);
-        let joint = self.joint(&state, &load);
+        let joint = self.joint(&state, &self.end_of(&load).motion);
         let position = joint.position;
         let vapour: T = constant(self.vapour_pressure);
         let [to_end_a, to_end_b] = match self.cylinder.stroke {

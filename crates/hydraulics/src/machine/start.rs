@@ -1,7 +1,7 @@
 use phea_dynamics::simulation::Plant;
 
 use super::balance::Kept;
-use super::{LoadModel, Machine, MachineError, MachineState, Motion};
+use super::{LoadModel, Machine, MachineError, MachineState};
 use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 use crate::friction::MovingFriction;
 use crate::operating_point::OperatingPoint;
@@ -32,7 +32,8 @@ pub struct InitialCondition {
     pub state: Vec<f64>,
     /// The command in V that holds the spool there.
     pub command: f64,
-    /// Position in m and velocity in m/s of the load's ground: where a prescribed motion starts.
+    /// Position in m and velocity in m/s of the load's ground, in rad and rad/s behind a linkage:
+    /// where a prescribed motion starts.
     pub inputs: [f64; 2],
     /// The force on the load from outside in N, zero until then; `None` for a machine without that
     /// input.
@@ -164,10 +165,9 @@ impl Machine {
         force: f64,
     ) -> Result<(MachineState, f64), MachineError> {
         let (deflection, series, ahead) = self.held_joint(force, state.velocity);
-        let held = self.load.held_at(force);
-        let relative = held.ok_or(MachineError::ImpossibleStart { quantity: "force", value: force })?;
-        let load = Motion { position: relative, velocity: state.velocity };
-        Ok((MachineState { deflection, load, series, ..*state }, position - ahead - relative))
+        let held = self.held_load(position - ahead, force, state.velocity);
+        let (load, ground) = held.ok_or(MachineError::ImpossibleStart { quantity: "force", value: force })?;
+        Ok((MachineState { deflection, load, series, ..*state }, ground))
     }
 
     fn begin(&self, state: &MachineState, ground: f64) -> InitialCondition {
@@ -185,7 +185,7 @@ impl Machine {
         InitialCondition {
             state: vector,
             command: state.spool.spool,
-            inputs: [ground, state.velocity],
+            inputs: [ground, state.load.velocity],
             external_force: self.external_force.then_some(0.0),
             waves,
         }
@@ -215,7 +215,7 @@ impl Machine {
 
 impl LoadModel {
     /// x_L - x_0 in m at which the load is held with this force in N; `None` where none does.
-    fn held_at(&self, force: f64) -> Option<f64> {
+    pub(super) fn held_at(&self, force: f64) -> Option<f64> {
         match *self {
             LoadModel::Prescribed => Some(0.0),
             LoadModel::SpringMassDamper { stiffness, .. } if stiffness > 0.0 => Some(force / stiffness),

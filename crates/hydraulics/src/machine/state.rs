@@ -28,7 +28,7 @@ pub struct MachineState<T = f64> {
     /// Deflection z of the bristles in m.
     pub bristle: T,
     /// A load that moves by itself: its position from its ground, x_L - x_0, in m, and its velocity
-    /// v_L in m/s. Errors are scaled by the deformation of its spring or wall, not by its distance
+    /// v_L in m/s; behind a linkage its angle in rad and angular velocity in rad/s. Errors are scaled by the deformation of its spring or wall, not by its distance
     /// from the end of the cylinder.
     pub load: Motion<T>,
     /// Pressure difference p_cp in Pa over the capacity of a valve between the chambers.
@@ -330,6 +330,9 @@ impl Machine {
         if self.layout.series == SeriesStates::Spring {
             own.deflection = own.series.position;
         }
+        if self.linkage.is_some() {
+            own.load = Motion { position: "joint_displacement_rad", velocity: "joint_velocity_rad_per_s" };
+        }
         self.layout.visit(&mut own, |name| names.push((*name).to_string()));
         for (line, count) in ["line_a", "line_b"].into_iter().zip(self.layout.lines) {
             names.extend((1..=count).map(|number| format!("{line}_{number}")));
@@ -398,7 +401,7 @@ impl<S: Scalar> Machine<S> {
             deflection: own,
             velocity,
             bristle: self.friction.bristle_stiffness().map_or(deflection, |stiffness| force / stiffness),
-            load: Motion { position: deflection, velocity: self.load.mass().map_or(velocity, swing) },
+            load: self.typical_load(deflection, velocity, swing),
             supply_pressure: pressure,
             cross_port_pressure: pressure,
             series,

@@ -160,12 +160,11 @@ impl PlantInMotion {
 
     /// v_L/U_C in m/(s V) and v_L/X_0 in 1/s, the velocity of the load, at s in rad/s.
     pub fn load_velocity(&self, s: Complex64) -> [Complex64; 2] {
-        let LinearLoad::Yielding { damping, stiffness, .. } = self.plant.load else {
-            return [Complex64::ZERO, s];
-        };
+        let Some(load) = self.plant.load.terms() else { return [Complex64::ZERO, s] };
+        let [_, tied] = load.at(s);
         let Paths { driven, held, sensed, fed, .. } = self.paths(s);
         let divisor = fed.map_or(sensed, |fed| sensed - fed);
-        [driven, (s * damping + stiffness) * held].map(|path| s * path / divisor)
+        [driven, tied * held].map(|path| s * path / divisor)
     }
 
     /// Shown velocity of the load over the true one.
@@ -179,10 +178,10 @@ impl PlantInMotion {
     }
 
     fn paths<A: Analytic>(&self, s: A) -> Paths<A> {
-        let tied = match self.plant.load {
-            LinearLoad::Prescribed => None,
-            LinearLoad::Yielding { damping, stiffness, .. } => Some(s.scaled(damping) + A::from(stiffness)),
-        };
+        let tied = self.plant.load.terms().map(|load| {
+            let [_, tied] = load.at(s);
+            tied
+        });
         self.paths_of_force(s).beside(self.plant.virtual_impedance.as_ref(), s, tied)
     }
 
@@ -214,17 +213,18 @@ impl PlantInMotion {
             return series.responding(&self.plant, s, chambers, [moved, driven, fed]);
         }
         let held = moved + own.scaled(sensor);
-        match self.plant.load {
-            LinearLoad::Prescribed => {
+        match self.plant.load.terms() {
+            None => {
                 let (ground, fed) = (fed - moved.scaled(sensor), Some(A::from(0.0)));
                 Paths { command: driven, ground, sensed: held, fed, driven, held }
             }
-            LinearLoad::Yielding { mass, damping, stiffness } => {
-                let tied = s.scaled(damping) + A::from(stiffness);
-                let load = (s * s).scaled(mass) + tied;
-                let sensed = moved * (load + A::from(sensor)) + (load * own).scaled(sensor);
+            Some(terms) => {
+                let [load, tied] = terms.at(s);
+                let sensed = moved * (load + A::from(terms.moved_by(sensor))) + (load * own).scaled(sensor);
                 let ground = tied * (fed - moved.scaled(sensor));
-                Paths { command: load * driven, ground, sensed, fed: Some(fed), driven, held }
+                let command = load * driven;
+                let [fed, driven] = [fed, driven].map(|path| terms.moved_at(path));
+                Paths { command, ground, sensed, fed: Some(fed), driven, held }
             }
         }
     }
@@ -305,10 +305,7 @@ impl PlantInMotion {
     /// its poles lies in the right half plane: its lines are passive, and so are valve, leakage,
     /// friction and load where none of their coefficients is negative.
     pub fn is_passive(&self) -> bool {
-        let load = match self.plant.load {
-            LinearLoad::Prescribed => [0.0; 3],
-            LinearLoad::Yielding { mass, damping, stiffness } => [mass, damping, stiffness],
-        };
+        let load = self.plant.load.terms().map_or([0.0; 3], |load| load.own());
         let series =
             self.plant.series.iter().flat_map(|series| {
                 [Some(series.stiffness), series.damping, series.mass].into_iter().flatten()

@@ -5,7 +5,7 @@ use phea_dynamics::scalar::Scalar;
 use phea_dynamics::uncertain_plant::{PlantCoefficients, RateNumerators, RationalCoefficients};
 
 use super::supply::{Admittance, Over};
-use super::{ChamberPolynomials, LinearLoad, LinearPlant, Paths};
+use super::{ChamberPolynomials, LinearPlant, Paths};
 use crate::linear::polynomial::{product, scaled, shifted, sum};
 use crate::series::{ForceFrom, SeriesElement};
 
@@ -76,6 +76,8 @@ struct Between<'a, S, T> {
     fed: Option<&'a T>,
     sensor: S,
     load: Option<[T; 2]>,
+    /// Of a linkage, r^2 by which the force on the load counts there; `None` for one.
+    share: Option<S>,
 }
 
 impl<S: Scalar> LinearSeries<S> {
@@ -107,7 +109,11 @@ impl<S: Scalar> LinearSeries<S> {
             SeriesOutput::Deflection => with(by_motion, fed_as(None)),
             SeriesOutput::OnLoad => with(by_motion, fed_as(None)).times(tied),
         };
-        let through = driven.times(tied);
+        let shared = |path: T| match between.share {
+            Some(share) => path.by(share),
+            None => path,
+        };
+        let through = shared(driven.times(tied));
         let Some([load, ground_of_load]) = &between.load else {
             let command = match self.output {
                 SeriesOutput::Sensor => driven.times(&free),
@@ -119,19 +125,20 @@ impl<S: Scalar> LinearSeries<S> {
         let command = match self.output {
             SeriesOutput::Sensor => {
                 let resisted = free.times(load);
-                let resisted =
-                    inertia.as_ref().map_or(resisted.clone(), |[mu, _]| resisted.plus(&tied.times(mu)));
+                let resisted = inertia
+                    .as_ref()
+                    .map_or(resisted.clone(), |[mu, _]| resisted.plus(&shared(tied.times(mu))));
                 driven.times(&resisted)
             }
             SeriesOutput::Deflection => driven.times(load),
-            SeriesOutput::OnLoad => through.times(load),
+            SeriesOutput::OnLoad => driven.times(tied).times(load),
         };
-        let reached = spool.times(&pushed).times(tied).by(sensor);
+        let reached = shared(spool.times(&pushed).times(tied).by(sensor));
         Paths {
             command,
             ground: ground.times(ground_of_load),
             sensed: held.times(load).plus(&reached),
-            fed: fed_as(Some(tied)),
+            fed: fed_as(Some(tied)).map(shared),
             driven: through,
             held,
         }
@@ -199,13 +206,8 @@ impl LinearSeries {
         let ChamberPolynomials { own, driven: by_spool, displaced } = chambers;
         let chambers =
             ChamberPolynomials { own: Over(own), driven: Over(by_spool), displaced: Over(displaced) };
-        let load = match plant.load {
-            LinearLoad::Prescribed => None,
-            LinearLoad::Yielding { mass, damping, stiffness } => {
-                let tied = s.scaled(damping) + A::from(stiffness);
-                Some([Over((s * s).scaled(mass) + tied), Over(tied)])
-            }
-        };
+        let terms = plant.load.terms();
+        let load = terms.map(|terms| terms.at(s).map(Over));
         let fed = plant.load_velocity_feed_forward.map(|_| Over(fed));
         let between = Between {
             chambers: &chambers,
@@ -215,6 +217,7 @@ impl LinearSeries {
             fed: fed.as_ref(),
             sensor: plant.sensor_stiffness,
             load,
+            share: terms.and_then(|terms| terms.share),
         };
         let Paths { command, ground, sensed, fed, driven, held } = self.paths(&self.values(s), &between);
         Paths {
@@ -244,12 +247,13 @@ impl<S: Scalar> LinearPlant<S> {
         let terms = series.polynomials();
         let paths = |[driven, spool]: [&Vec<S>; 2], load: Option<[Vec<S>; 2]>| {
             let (moved, fed, sensor) = (&moved, fed.as_ref(), self.sensor_stiffness);
-            series.paths(&terms, &Between { chambers, moved, driven, spool, fed, sensor, load })
+            let share = self.load.terms().and_then(|terms| terms.share);
+            series.paths(&terms, &Between { chambers, moved, driven, spool, fed, sensor, load, share })
         };
         let behind_filter = [filtered(&driven), filtered(&spool)];
         let behind_filter = [&behind_filter[0], &behind_filter[1]];
-        match self.load {
-            LinearLoad::Prescribed => {
+        match self.load.terms() {
+            None => {
                 let Paths { command, held, .. } = paths([&driven, &spool], None);
                 let Paths { ground, held: denominator, .. } = paths(behind_filter, None);
                 let disturbance = shows.gain.map(|gain| shifted(&scaled(gain, &held)));
@@ -262,9 +266,9 @@ impl<S: Scalar> LinearPlant<S> {
                         .map(|disturbance| RateNumerators { command: vec![S::from(0.0)], disturbance }),
                 }
             }
-            LinearLoad::Yielding { mass, damping, stiffness } => {
-                let of_ground = vec![damping, stiffness];
-                let load = Some([vec![mass, damping, stiffness], of_ground.clone()]);
+            Some(terms) => {
+                let of_ground = terms.ground.to_vec();
+                let load = Some([terms.own().to_vec(), of_ground.clone()]);
                 let Paths { command, ground, sensed, fed, driven, held } = paths(behind_filter, load);
                 let denominator =
                     fed.map_or(sensed.clone(), |fed| sum(&sensed, &scaled(S::from(-1.0), &fed)));

@@ -4,7 +4,7 @@ use super::{Hit, Layer, Reader};
 use crate::Origin;
 use crate::catalogue::CatalogueKind;
 use crate::formula::Formula;
-use crate::key::Key;
+use crate::key::{Key, Motions};
 use crate::listing::keys_of;
 use crate::setting;
 use crate::text::RawFinding;
@@ -16,7 +16,11 @@ use phea_quantity::spelling::nearest;
 
 impl Visitor for Reader<'_> {
     fn moves(&mut self, motion: Option<MotionKind>) {
-        self.motion = motion.unwrap_or_default();
+        self.motion = Motions::both(motion.unwrap_or_default());
+    }
+
+    fn load_moves(&mut self, motion: Option<MotionKind>) {
+        self.motion.load = motion.unwrap_or_default();
     }
 
     fn quantity(&mut self, key: Key, field: &mut f64) {

@@ -6,7 +6,7 @@ use super::quantity::{ANY, described, number, whole};
 use super::table::{SchemaTable, any_of};
 use crate::catalogue::CatalogueKind;
 use crate::formula::Formula;
-use crate::key::Key;
+use crate::key::{Key, Motions};
 use crate::listing::{Listing, keys_of};
 use crate::visitor::{FormulaShape, Kinds, NamedNumber, ValueForm, Variants, Visitor};
 use crate::{HoseProperties, Valve};
@@ -23,6 +23,8 @@ pub(super) struct SchemaWriter {
     has_forms: bool,
     /// How the rig moves, where the keys that are described belong to one motion.
     motion: Option<MotionKind>,
+    /// How the load of that rig moves.
+    load_motion: Option<MotionKind>,
 }
 
 const FORMS: [ValueForm; 3] = [ValueForm::Number, ValueForm::Text, ValueForm::Table];
@@ -60,9 +62,12 @@ impl SchemaWriter {
     /// The key of a number in the motion that it belongs to, and the form of a motor beside that of a
     /// cylinder where it is of either.
     fn numbered(&mut self, key: Key, required: bool, schema: impl Fn(Key) -> Value) {
-        let forms = match self.motion {
-            Some(motion) => vec![key.in_motion(motion)],
-            None if key.of_motion => vec![key, key.in_motion(MotionKind::Rotary)],
+        let motion = if key.of_load { self.load_motion } else { self.motion };
+        let forms = match motion {
+            Some(motion) => vec![key.in_motion(Motions::both(motion))],
+            None if key.of_motion || key.of_load => {
+                vec![key, key.in_motion(Motions::both(MotionKind::Rotary))]
+            }
             None => vec![key],
         };
         for form in forms {
@@ -109,7 +114,11 @@ impl Visitor for SchemaWriter {
     }
 
     fn moves(&mut self, motion: Option<MotionKind>) {
-        self.motion = motion;
+        (self.motion, self.load_motion) = (motion, motion);
+    }
+
+    fn load_moves(&mut self, motion: Option<MotionKind>) {
+        self.load_motion = motion;
     }
 
     fn quantity(&mut self, key: Key, _field: &mut f64) {

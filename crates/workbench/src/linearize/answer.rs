@@ -4,8 +4,8 @@ use phea_hydraulics::impedance::{Asymptote, AsymptoteKind};
 
 use super::sweep_answer::{head, rows};
 use super::{
-    AgreementBand, AskedImpedance, Linearization, PortView, ReductionDifference, Sweep, WITHIN_PERCENT,
-    models, stiffness_sentence,
+    AgreementBand, AskedImpedance, Linearization, LinkagePlace, PortView, ReductionDifference, Sweep,
+    WITHIN_PERCENT, models, stiffness_sentence,
 };
 use crate::answer::{self, Csv, Json, Object, OutputFile, quoted};
 use crate::caveat::of_models;
@@ -41,6 +41,7 @@ fn body(loaded: &Loaded, linearization: &Linearization) -> Object {
                 .with("command", factors(&plant.command))
                 .with("load_position", factors(&plant.load_position)),
         )
+        .maybe("linkage", linkages(&linearization.linkage))
         .each("agreement", &linearization.agreement, agreement)
         .with("decomposition_error", decomposition)
         .with("reduction_error", difference(&linearization.reduction))
@@ -72,6 +73,20 @@ fn stiffness(linearization: &Linearization) -> Object {
         .with("uniform", [models.uniform.minimum, models.uniform.maximum])
         .with("by_volume", [models.by_volume.minimum, models.by_volume.maximum])
         .with("sentence", stiffness_sentence(linearization))
+}
+
+fn linkages(places: &[LinkagePlace]) -> Option<Vec<Object>> {
+    (!places.is_empty()).then(|| places.iter().map(linkage).collect())
+}
+
+/// A linkage at one position.
+fn linkage(place: &LinkagePlace) -> Object {
+    Object::new()
+        .with("at", place.what)
+        .with("position_m", place.position_m)
+        .with("angle_rad", place.angle_rad)
+        .with("lever_arm_m", place.lever_arm_m)
+        .maybe("reflected_mass_kg", place.reflected_mass_kg)
 }
 
 /// gain (s - zero).../((s - pole)...)

@@ -7,8 +7,8 @@ use phea_dynamics::portable;
 use phea_hydraulics::linear::{ModeShare, ResponseDifference};
 
 use super::{
-    AgreementBand, AskedAt, AskedImpedance, Linearization, ReductionDifference, WITHIN_DB, WITHIN_DEG,
-    WITHIN_PERCENT, stiffness_sentence,
+    AgreementBand, AskedAt, AskedImpedance, Linearization, LinkagePlace, ReductionDifference, WITHIN_DB,
+    WITHIN_DEG, WITHIN_PERCENT, stiffness_sentence,
 };
 use crate::answer::significant;
 use crate::caveat::of_models;
@@ -23,6 +23,9 @@ pub fn text(loaded: &Loaded, linearization: &Linearization) -> String {
         out.preformatted(format!("warning: {sentence}\n"));
     }
     out.preformatted(format!("Stiffness\n  {}\n", stiffness_sentence(linearization)));
+    if !linearization.linkage.is_empty() {
+        out.section("Linkage", linkage_table(&linearization.linkage));
+    }
     out.append(document(linearization, vec![]));
     out.heading("Driving-point impedance Z = -F_e/(s X_L)");
     let closed = match (&linearization.closed_loop, &linearization.closed_loop_absent) {
@@ -73,6 +76,21 @@ pub(crate) fn document(linearization: &Linearization, figures: Vec<Figure>) -> D
             .with(linearization.modes.iter().map(mode_cells)),
     );
     out
+}
+
+/// A linkage over the stroke.
+pub(crate) fn linkage_table(places: &[LinkagePlace]) -> Table {
+    let row = |place: &LinkagePlace| {
+        [
+            place.what.into(),
+            Cell::number(1e3 * place.position_m, 4),
+            Cell::number(place.angle_rad.to_degrees(), 4),
+            Cell::number(1e3 * place.lever_arm_m, 4),
+            place.reflected_mass_kg.map_or(Cell::Missing, |mass| Cell::number(mass, 4)),
+        ]
+    };
+    let headings = ["position", "rod's end, mm", "joint, deg", "lever arm, mm", "reflected inertia, kg"];
+    Table::new(headings).with(places.iter().map(row))
 }
 
 /// A virtual impedance and what the port shows, at a few frequencies.

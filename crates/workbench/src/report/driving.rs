@@ -1,15 +1,16 @@
 //! The inputs of a scenario, in sentences.
 
 use crate::project::{Amplitudes, Multisine, Scenario, Signal};
-use crate::quantity::{Dimension, DisplayUnit, FORCE, TIME, VOLTAGE, display};
+use crate::quantity::{Dimension, DisplayUnit, FORCE, TIME, TORQUE, VOLTAGE, display};
 
 /// Digits of a number in a sentence.
 const DIGITS: usize = 4;
 /// Number of frequencies that are listed; if there are more, only the first and the last.
 const TOLD: usize = 4;
 
-/// The initial state and the inputs of a scenario, if these are more than steps of the reference.
-pub(super) fn sentences(scenario: &Scenario) -> Vec<String> {
+/// The initial state and the inputs of a scenario, if these are more than steps of the reference;
+/// the load turns behind a linkage, or moves with the rod.
+pub(super) fn sentences(scenario: &Scenario, turns: bool) -> Vec<String> {
     let mut told = Vec::new();
     if let Some(file) = scenario.start.as_ref().and_then(|start| start.file.as_ref()) {
         told.push(format!("It goes on from the state in {file}."));
@@ -22,10 +23,11 @@ pub(super) fn sentences(scenario: &Scenario) -> Vec<String> {
         told.push(format!("It runs open loop: no controller acts, and the command is {command}."));
     }
     if !scenario.external_force.is_empty() {
-        told.push(format!(
-            "An external force acts on the load: {}.",
-            parts(&scenario.external_force, &FORCE)
-        ));
+        let external = &scenario.external_force;
+        told.push(match turns {
+            false => format!("An external force acts on the load: {}.", parts(external, &FORCE)),
+            true => format!("An external torque acts on the joint: {}.", parts(external, &TORQUE)),
+        });
     }
     told
 }

@@ -26,9 +26,12 @@ fn motion(project: &Project) -> (f64, f64) {
         MotionShape::SmoothStep { duration, distance } => Some((distance, duration)),
         _ => None,
     };
+    // behind a linkage a scenario turns the joint
+    let turns = project.actuator.as_ref().is_some_and(|actuator| actuator.linkage.is_some());
     project
         .scenarios
         .iter()
+        .filter(|_| !turns)
         .filter_map(|scenario| scenario.load_motion.as_ref())
         .find_map(smooth)
         .unwrap_or(MOTION)

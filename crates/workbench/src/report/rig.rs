@@ -8,7 +8,10 @@ use crate::figure::{
     ControllerSymbol, Environment, Figure, LineKind, LineSymbol, Rods, SchematicInput, SeriesSymbol,
     SupplyKind, Words, schematic,
 };
-use crate::project::{self, Component, LineVolume, Load, Project, RatedFlow, SupplyModel};
+use crate::linearize::{linkage_places, linkage_table};
+use crate::project::{
+    self, Component, CylinderTriangle, LineVolume, LinkageKind, Load, Project, RatedFlow, SupplyModel,
+};
 use crate::quantity::{self, Dimension, FLOW, LENGTH, MASS, PRESSURE, STIFFNESS, VOLTAGE, VOLUME};
 use crate::rig::{CrossPortAtPoint, Rig, cross_port_at_point};
 use phea_hydraulics::cross_port::Restrictor;
@@ -17,6 +20,11 @@ pub(super) fn chapter(project: &Project, actuator: &project::DeclaredActuator, r
     let mut out = Document::default();
     out.figures([circuit(project, actuator)]);
     out.table(facts(actuator, rig));
+    let places = linkage_places(rig);
+    if !places.is_empty() {
+        out.section("The linkage over the stroke", linkage_table(&places));
+        out.explanation("The load turns about a joint: with the lever arm r its torque is F r, and an inertia J acts on the rod as J/r².");
+    }
     Chapter::of("rig", "The rig", out)
 }
 
@@ -62,8 +70,9 @@ fn circuit(project: &Project, actuator: &project::DeclaredActuator) -> Figure {
             Load::Prescribed => None,
             Load::SpringMassDamper { stiffness, .. } | Load::Wall { stiffness, .. } => Some(stiffness),
         }
-        .map(|stiffness| moving(stiffness, &STIFFNESS))
+        .map(|stiffness| shown(stiffness, actuator.load_motion().dimension(&STIFFNESS)))
         .into_iter()
+        .chain(actuator.linkage.as_ref().map(|_| "turns behind a linkage".to_string()))
         .collect(),
         controller: project.controller.as_ref().map(|controller| ControllerSymbol {
             has_prefilter: project.prefilter.is_some(),
@@ -155,7 +164,8 @@ fn line_alone(declared: &project::DeclaredLine) -> LineSymbol {
 /// The load in a few words.
 pub(super) fn load_words(actuator: &project::DeclaredActuator) -> String {
     let not_zero = |value: f64| Some(value).filter(|value| *value != 0.0);
-    let shown = |value, dimension| shown(value, actuator.motion().dimension(dimension));
+    let cell = shown(actuator.force_sensor.stiffness, actuator.motion().dimension(&STIFFNESS));
+    let shown = |value, dimension| shown(value, actuator.load_motion().dimension(dimension));
     let words = |mass: Option<f64>, stiffness: f64, damping: f64, gap: f64| {
         let parts = [
             mass.map(|mass| shown(mass, &MASS)),
@@ -167,7 +177,7 @@ pub(super) fn load_words(actuator: &project::DeclaredActuator) -> String {
     };
     let load = match actuator.load {
         Load::Prescribed => {
-            format!("moves as prescribed, behind {}", shown(actuator.force_sensor.stiffness, &STIFFNESS))
+            format!("moves as prescribed, behind {cell}")
         }
         Load::SpringMassDamper { mass, stiffness, damping } => {
             format!("spring, mass and damper: {}", words(Some(mass), stiffness, damping, 0.0))
@@ -176,9 +186,34 @@ pub(super) fn load_words(actuator: &project::DeclaredActuator) -> String {
             format!("a wall: {}", words(mass, stiffness, damping, gap))
         }
     };
+    let load = match &actuator.linkage {
+        None => load,
+        Some(linkage) => format!("{load}; turns behind {}", linkage_words(linkage)),
+    };
     match &actuator.series {
         None => load,
         Some(series) => format!("{load}; series spring {}", series_words(series)),
+    }
+}
+
+/// What lies between rod and joint in a few words.
+fn linkage_words(linkage: &project::DeclaredLinkage) -> String {
+    let mm = |length: f64| shown(length, &LENGTH);
+    let between = |triangle: &CylinderTriangle| {
+        format!(
+            "pivots {} and {} from its joint, {} apart when retracted",
+            mm(triangle.cylinder_pivot),
+            mm(triangle.rod_pivot),
+            mm(triangle.retracted_length)
+        )
+    };
+    match &linkage.kind {
+        LinkageKind::Triangle(triangle) => format!("a triangle: {}", between(triangle)),
+        LinkageKind::FourBar { triangle, links } => {
+            let sides = [links.fixed_link, links.input_link, links.coupler, links.output_link].map(mm);
+            format!("a four-bar of {}, turned by a triangle: {}", sides.join(", "), between(triangle))
+        }
+        LinkageKind::Table { angles, .. } => format!("a linkage by a table of {} rows", angles.len()),
     }
 }
 
@@ -260,6 +295,7 @@ fn facts(actuator: &project::DeclaredActuator, rig: &Rig) -> Table {
         ("force sensor", moving(actuator.force_sensor.stiffness, &STIFFNESS)),
     ];
     rows.extend(actuator.series.as_ref().map(|series| ("series spring", series_words(series))));
+    rows.extend(actuator.linkage.as_ref().map(|linkage| ("linkage", linkage_words(linkage))));
     if components.line_a == components.line_b {
         rows.push(("each line", line(&actuator.line.a).rows.join(", ")));
     } else {

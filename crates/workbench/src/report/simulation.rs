@@ -10,7 +10,7 @@ use crate::project::{Project, Scenario};
 use crate::simulate::{
     HeldWish, METRICS, Metrics, NamedRun, ScenarioRun, TrackingWish, Window, cause_words, cells_of,
     close_ups, coarse_sentence, headline, measured, measured_together, metrics_row, occurrence_sentences,
-    pictures, published, published_row, together, windows,
+    pictures, published, published_row, together, turns, windows,
 };
 
 /// The chapter.
@@ -77,7 +77,7 @@ fn scenario(
     let mut out = Document::default();
     out.heading(runs.first().map(|named| named.run.name.as_str()).unwrap_or_default());
     out.explanations(runs.iter().map(|named| format!("{}{}.", of(named, runs), headline(named.run))));
-    out.explanations(driving::sentences(declared));
+    out.explanations(driving::sentences(declared, runs.iter().any(|named| turns(&named.run.record))));
     out.figures(figures);
     out.append(metrics(runs, declared, wish));
     let names = runs.iter().map(|named| (Some(named.name).filter(|_| runs.len() > 1), named.run));

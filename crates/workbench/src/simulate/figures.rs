@@ -6,6 +6,7 @@ use crate::figure::{
     DisplayUnit, Figure, FigureError, SettlingBand, StepResponseInput, TimeEvent, TimePanel, TimePanelsInput,
     TimeSeries, Words, step_response, time_panels,
 };
+use phea_hydraulics::machine::LINKAGE_SIGNALS;
 
 /// Time drawn before and after the start of a window, s.
 pub(super) const BEFORE_S: f64 = 0.02;
@@ -68,6 +69,7 @@ fn overlaid(run: &ScenarioRun, number: usize, span_s: [f64; 2]) -> Option<Figure
 fn overview(words: Words, run: &ScenarioRun, span_s: [f64; 2]) -> Figure {
     let record = &run.record;
     let mut panels = vec![measured(record, 190.0), voltages(record), pressures(record), positions(record)];
+    panels.extend(joint(record));
     panels.extend(from_outside(record));
     let legend = match run.open_loop {
         false => ["force, command, p_A, piston", "prefiltered reference, spool, p_B, load"],
@@ -94,6 +96,7 @@ pub(super) fn close_up(words: Words, run: &ScenarioRun, window: &Window, span_s:
     let mut legend = ["command, p_A, force", second].map(String::from);
     if moves_load(window) {
         panels.push(positions(record));
+        panels.extend(joint(record));
         legend = [format!("{}, piston", legend[0]), format!("{}, load", legend[1])];
     }
     if window.cause == Cause::ExternalForce {
@@ -127,7 +130,21 @@ pub(super) fn moves_load(window: &Window) -> bool {
 fn from_outside(record: &Record) -> Option<TimePanel> {
     let series =
         (!record.external_force_n.is_empty()).then(|| over_time(record, record.external_force_n.clone()))?;
-    Some(panel("Force F_x", record.motion.unit(DisplayUnit::KILONEWTON), 90.0, vec![series]))
+    Some(match turns(record) {
+        false => panel("Force F_x", record.motion.unit(DisplayUnit::KILONEWTON), 90.0, vec![series]),
+        true => panel("Torque τ_x", DisplayUnit::NEWTON_METRE, 90.0, vec![series]),
+    })
+}
+
+/// Whether the load turns behind a linkage.
+pub(crate) fn turns(record: &Record) -> bool {
+    LINKAGE_SIGNALS.iter().any(|name| record.signal(name).iter().any(|value| *value != 0.0))
+}
+
+/// The angle of the joint behind a linkage, if there is one.
+fn joint(record: &Record) -> Option<TimePanel> {
+    let series = turns(record).then(|| over_time(record, record.signal("joint_angle_rad")))?;
+    Some(panel("Joint θ", DisplayUnit::DEGREE, 90.0, vec![series]))
 }
 
 fn voltages(record: &Record) -> TimePanel {

@@ -224,6 +224,7 @@ fn components(chance: &mut Chance, like_benchmark: bool) -> Components {
         thermal_time_constants: [None; 2],
         cross_port: None,
         series: None,
+        linkage: None,
         cylinder: Cylinder {
             area_a,
             area_b,

@@ -14,6 +14,8 @@ use crate::stroke::ActuatorStroke;
 pub(super) struct Instant<T> {
     pub(super) state: MachineState<T>,
     pub(super) load: Motion<T>,
+    /// The end of the rod that the load moves with.
+    pub(super) end: Motion<T>,
     pub(super) ground: Motion<T>,
     pub(super) joint: Joint<T>,
     /// Of the force from outside on the load, in W.
@@ -165,7 +167,8 @@ impl<S: Scalar> Machine<S> {
         let flows = self.flows(&state, ports);
         let ([port_a, port_b], [from_a, from_b]) = (ports, flows.from_valve);
         let ([line_a, line_b], [vector_a, vector_b]) = (&self.lines, self.layout.lines(vector));
-        let joint = self.joint(&state, &load);
+        let end = self.end_of(&load).motion;
+        let joint = self.joint(&state, &end);
         let (position, velocity) = (joint.position, state.velocity);
         let sides = self.sides(&state, position);
         let lines = [
@@ -180,6 +183,7 @@ impl<S: Scalar> Machine<S> {
             supply: self.supply_instant(&state, &flows, &sides),
             state,
             load,
+            end,
             ground,
             joint,
             external_power: external.map_or(T::from(0.0), |force| force * load.velocity),

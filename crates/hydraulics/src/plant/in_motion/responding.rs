@@ -96,14 +96,14 @@ impl RespondingPlant for PlantInMotion {
         let natural = self.plant.valve_natural_frequency;
         let spool = natural * natural / (w * w - natural * natural);
         // displacement and velocity of the load per newton at this frequency
-        let (yielding, speed) = match self.plant.load {
-            LinearLoad::Yielding { mass, stiffness, .. } if mass > 0.0 => {
+        let (yielding, speed) = match self.plant.load.terms().map(|load| load.reflected()) {
+            Some([mass, _, stiffness]) if mass > 0.0 => {
                 let yielding = w / (mass * w * w - stiffness);
                 (yielding, yielding)
             }
-            LinearLoad::Yielding { damping, .. } if damping > 0.0 => (0.0, 1.0 / damping),
-            LinearLoad::Yielding { stiffness, .. } => (0.0, w / stiffness),
-            LinearLoad::Prescribed => (0.0, 0.0),
+            Some([_, damping, _]) if damping > 0.0 => (0.0, 1.0 / damping),
+            Some([_, _, stiffness]) => (0.0, w / stiffness),
+            None => (0.0, 0.0),
         };
         let beyond = match &self.plant.series {
             None => Some(BeyondSensor { yielding, passed: 1.0, output: 1.0 }),

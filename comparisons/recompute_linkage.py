@@ -1,0 +1,118 @@
+"""Recomputes the motion of a knee behind its linkage from a Lagrangian in the coordinates of the rod.
+
+x is the piston's position and y that of the rod's end behind the force sensor. The joint's angle follows from the
+positions of both pivots; mass matrix and forces follow from the energies by complex steps, so that the lever arm
+appears nowhere:
+
+    L = M x'^2/2 + J (d theta/dy y')^2/2 - K_S (x - y)^2/2 - k (theta - theta_0)^2/2
+    d/dt dL/dq' - dL/dq = Q,      Q = (F - f x', -c (d theta/dy)^2 y')
+
+A four-bar is closed by a root finder on the distance between the ends of its links.
+
+    python comparisons/recompute_linkage.py
+"""
+
+import numpy as np
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+
+MASS, SENSOR, FRICTION, FORCE = 0.6, 1e6, 50.0, 600.0
+INERTIA, STIFFNESS, DAMPING, RELAXED = 0.2, 60.0, 0.8, 0.8
+A, B, RETRACTED, OFFSET = 0.30, 0.05, 0.26, 0.4
+START = 0.02
+H = 1e-30
+
+
+def opening(length):
+    """Angle between the arms of a triangle, for real and complex lengths: the rod's pivot is this far along the other arm."""
+    along = (A * A + B * B - length * length) / (2 * A)
+    return np.arccos(along / B + 0j)
+
+
+def theta(y):
+    return opening(RETRACTED + y) - OFFSET
+
+
+def slope(y):
+    return theta(y + 1j * H).imag / H
+
+
+def lagrangian(q, v):
+    x, y = q
+    step = 3e-5
+    # slope of theta at a complex y: a central difference of fourth order
+    rate = (8 * (theta(y + step) - theta(y - step)) - (theta(y + 2 * step) - theta(y - 2 * step))) / (12 * step)
+    kinetic = MASS * v[0] ** 2 / 2 + INERTIA * (rate * v[1]) ** 2 / 2
+    return kinetic - SENSOR * (x - y) ** 2 / 2 - STIFFNESS * (theta(y) - RELAXED) ** 2 / 2
+
+
+def accelerations(q, v):
+    def gradient(of, at):
+        return np.array([of([value + (1j * H if i == j else 0) for j, value in enumerate(at)]).imag / H for i in range(2)])
+
+    by_position = gradient(lambda q: lagrangian(q, v), q)
+    # the kinetic energy is quadratic in the velocities: the mass matrix by its values for unit velocities
+    kinetic = lambda q, v: lagrangian(q, v) - lagrangian(q, [0, 0])
+    unit = np.eye(2)
+    matrix = np.array([[kinetic(q, unit[i] + unit[j]) - kinetic(q, unit[i]) - kinetic(q, unit[j]) for j in range(2)] for i in range(2)]).real
+    # d/dt of the momenta less the mass matrix times the accelerations, by the change of the matrix along the motion
+    along = lambda shift: [q[i] + shift * v[i] for i in range(2)]
+    momenta = lambda q: np.array([kinetic(q, v + unit[i]) - kinetic(q, v) - kinetic(q, unit[i]) for i in range(2)])
+    changing = momenta(along(1j * H)).imag / H
+    forces = np.array([FORCE - FRICTION * v[0], -DAMPING * slope(q[1]) ** 2 * v[1]])
+    return np.linalg.solve(matrix, by_position + forces - changing)
+
+
+def swing():
+    def rates(_, state):
+        q, v = state[:2], state[2:]
+        return np.concatenate([v, accelerations(q, v)])
+
+    start = [START, START, 0.0, 0.0]
+    found = solve_ivp(rates, (0, 0.3), start, method="DOP853", rtol=1e-10, atol=1e-12, t_eval=[0.1, 0.2, 0.3])
+    return [(theta(y).real, slope(y) * vy, x) for x, y, _, vy in found.y.T]
+
+
+def four_bar(position, crossed):
+    """psi of the output link, its end found where it is as far from the input link's end as the coupler is long."""
+    fixed, link, coupler, output, ahead = 0.20, 0.06, 0.19, 0.08, 0.2
+    alpha = opening(RETRACTED + position).real + ahead
+    end = link * np.exp(1j * alpha)
+    missing = lambda psi: abs(fixed + output * np.exp(1j * psi) - end) - coupler
+    towards = np.angle(end - fixed)
+    # open: clockwise from the direction of the input link's end, crossed: the other way
+    way = 1 if crossed else -1
+    return brentq(lambda turn: missing(towards + way * turn), 0, np.pi, xtol=1e-15)*way + towards
+
+
+def check(name, value, expected, tolerance):
+    print(f"{name:60s} {value:.12g}")
+    assert abs(value - expected) <= tolerance, f"{name}: {value} is not {expected}"
+
+
+EXPECTED = [
+    (1.2900616606, 8.4089047904, 0.050539821926),
+    (1.6246320573, -2.9160959637, 0.065651126943),
+    (1.1146757781, -4.0519756022, 0.041966993124),
+]
+LINKS = {
+    (0.00, False): 1.193122678410,
+    (0.04, False): 1.796072303383,
+    (0.08, False): 2.496345463151,
+    (0.00, True): 4.561749849302,
+    (0.04, True): 3.926441197654,
+    (0.08, True): 3.563629475758,
+}
+
+
+def main():
+    for time, found, expected in zip((0.1, 0.2, 0.3), swing(), EXPECTED):
+        for name, value, told in zip(("theta, rad", "omega, rad/s", "x, m"), found, expected):
+            check(f"{name} at {time} s", value, told, 1e-8 * max(1, abs(told)))
+    for (position, crossed), told in LINKS.items():
+        turned = (four_bar(position, crossed) - told + np.pi) % (2 * np.pi) - np.pi + told
+        check(f"psi at {position} m, {'crossed' if crossed else 'open'}", turned, told, 1e-11)
+
+
+if __name__ == "__main__":
+    main()

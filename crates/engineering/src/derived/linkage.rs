@@ -1,0 +1,37 @@
+use super::list::List;
+use crate::linearize::linkage_places;
+use crate::project::Project;
+use crate::rig::{Rig, rod_end};
+
+/// The linkage at the operating point, and over the stroke.
+pub(super) fn linkage(project: &Project, rig: &Rig, list: &mut List) {
+    let components = rig.actuator.components();
+    let Some(end) = rod_end(components, &rig.point) else { return };
+    list.group("Linkage");
+    let declared = project.actuator.as_ref().and_then(|declared| declared.linkage.as_ref());
+    let stroke = components.cylinder.stroke.length();
+    if let Some(Ok(reduced)) = declared.zip(stroke).map(|(declared, stroke)| declared.reduced(stroke)) {
+        let equation = "max |g(θ) - x| over the linkage or its table";
+        list.add("linkage.polynomial_error", "δ", reduced.residual, "m", equation);
+    }
+    for place in linkage_places(rig) {
+        let (angle, arm, mass) = match place.what {
+            "retracted" => ("angle_retracted", "lever_arm_retracted", "reflected_mass_retracted"),
+            "extended" => ("angle_extended", "lever_arm_extended", "reflected_mass_extended"),
+            "operating point" => ("angle_at_point", "lever_arm_at_point", "reflected_mass_at_point"),
+            "least lever arm" => ("angle_of_least_arm", "lever_arm_least", "reflected_mass_greatest"),
+            _ => ("angle_of_greatest_arm", "lever_arm_greatest", "reflected_mass_least"),
+        };
+        list.add(format!("linkage.{angle}"), "θ", place.angle_rad, "rad", "x = g(θ)");
+        list.add(format!("linkage.{arm}"), "r", place.lever_arm_m, "m", "r = g'(θ) = τ/F = v/ω");
+        if let Some(reflected) = place.reflected_mass_kg {
+            list.add(format!("linkage.{mass}"), "m", reflected, "kg", "m = J/r^2");
+        }
+    }
+    let force = rig.point.hydraulic_force;
+    list.add("linkage.torque_at_point", "τ", force * end.lever_arm, "N.m", "τ = F_H r");
+    if let Some(lever) = rig.load.and_then(|load| load.lever) {
+        let stiffness = lever.geometric_stiffness / (lever.arm * lever.arm);
+        list.add("linkage.geometric_stiffness", "k_g", stiffness, "N/m", "k_g = -F_H g''(θ)/r^2");
+    }
+}

@@ -1,0 +1,48 @@
+//! A linkage over the stroke: lever arm, and the inertia of the load as the rod sees it.
+
+use crate::rig::{Rig, rod_end};
+
+/// Positions at which the lever arm is looked at for its least and greatest.
+const LOOKED_AT: usize = 201;
+
+/// A linkage at one position.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinkagePlace {
+    /// Which position.
+    pub what: &'static str,
+    /// m, of the rod's end on the load's side.
+    pub position_m: f64,
+    /// rad, of the joint.
+    pub angle_rad: f64,
+    /// m: torque over force, and velocity over angular velocity.
+    pub lever_arm_m: f64,
+    /// kg, J/r^2; `None` where the motion of the load is prescribed.
+    pub reflected_mass_kg: Option<f64>,
+}
+
+/// The linkage of a rig at both ends of the stroke, at the operating point, and where its lever arm
+/// is least and greatest; empty without one.
+pub fn linkage_places(rig: &Rig) -> Vec<LinkagePlace> {
+    let components = rig.actuator.components();
+    let (Some(linkage), Some(stroke)) = (&components.linkage, components.cylinder.stroke.length()) else {
+        return vec![];
+    };
+    let here = rod_end(components, &rig.point);
+    let inertia = rig.load.map(|load| load.mass);
+    let at = |what: &'static str, position_m: f64| {
+        let angle_rad = linkage.angle(position_m);
+        let lever_arm_m = linkage.end(angle_rad).lever_arm;
+        let reflected_mass_kg = inertia.map(|inertia| inertia / (lever_arm_m * lever_arm_m));
+        LinkagePlace { what, position_m, angle_rad, lever_arm_m, reflected_mass_kg }
+    };
+    let all: Vec<LinkagePlace> = (0..LOOKED_AT)
+        .map(|place| at("least lever arm", stroke * place as f64 / (LOOKED_AT - 1) as f64))
+        .collect();
+    let by_arm = |one: &&LinkagePlace, other: &&LinkagePlace| one.lever_arm_m.total_cmp(&other.lever_arm_m);
+    let least = all.iter().min_by(by_arm).copied();
+    let greatest =
+        all.iter().max_by(by_arm).map(|place| LinkagePlace { what: "greatest lever arm", ..*place });
+    let ends = [("retracted", 0.0), ("extended", stroke)].map(|(what, position)| at(what, position));
+    let point = here.map(|end| at("operating point", end.position));
+    ends.into_iter().chain(point).chain(least).chain(greatest).collect()
+}

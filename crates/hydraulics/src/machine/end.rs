@@ -1,0 +1,75 @@
+use phea_dynamics::scalar::Scalar;
+
+use super::{Machine, Motion};
+
+/// The end of the rod on the load's side. Without a linkage it is the load.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LoadEnd<T> {
+    /// x_L and v_L.
+    pub(super) motion: Motion<T>,
+    /// g' of a linkage, in m; `None` without one.
+    pub(super) lever_arm: Option<T>,
+}
+
+impl<T: Scalar> LoadEnd<T> {
+    /// What a force on this end in N is to the load: itself, or a torque in N m.
+    #[inline(always)]
+    pub(super) fn on_load(&self, force: T) -> T {
+        self.lever_arm.map_or(force, |arm| arm * force)
+    }
+}
+
+impl<S: Scalar> Machine<S> {
+    /// Where the motion of the load takes the end of the rod.
+    ///
+    /// ```text
+    /// x_L = g(theta),   v_L = g'(theta) omega
+    /// ```
+    #[inline(always)]
+    pub(super) fn end_of<T: Scalar + From<S>>(&self, load: &Motion<T>) -> LoadEnd<T> {
+        match &self.linkage {
+            None => LoadEnd { motion: *load, lever_arm: None },
+            Some(linkage) => {
+                let end = linkage.end_of(load.position);
+                let motion = Motion { position: end.position, velocity: end.lever_arm * load.velocity };
+                LoadEnd { motion, lever_arm: Some(end.lever_arm) }
+            }
+        }
+    }
+
+    /// Typical magnitudes of the states of a load, from those of force, deflection and velocity of
+    /// the rod; `swing` is the velocity of a mass in kg on the sensor.
+    pub(super) fn typical_load(&self, deflection: S, velocity: S, swing: impl Fn(S) -> S) -> Motion<S> {
+        let mass = self.load.mass();
+        match &self.linkage {
+            None => Motion { position: deflection, velocity: mass.map_or(velocity, swing) },
+            Some(linkage) => {
+                let arm = linkage.typical_arm();
+                let reflected = mass.map(|inertia| inertia / arm.squared());
+                Motion { position: deflection / arm, velocity: reflected.map_or(velocity, swing) / arm }
+            }
+        }
+    }
+}
+
+impl Machine {
+    /// The load where the end of the rod is at a position in m and its force in N is held: its
+    /// motion from its ground, and where that is.
+    pub(super) fn held_load(&self, end: f64, force: f64, velocity: f64) -> Option<(Motion, f64)> {
+        let (position, arm) = match &self.linkage {
+            None => (end, 1.0),
+            Some(linkage) => {
+                let angle = linkage.angle(end);
+                (angle, linkage.end(angle).lever_arm)
+            }
+        };
+        let relative = self.load.held_at(force * arm)?;
+        Some((Motion { position: relative, velocity: velocity / arm }, position - relative))
+    }
+
+    /// How far the load turns in rad, at this angle of its joint, while its end of the rod moves this
+    /// far in m, by the lever arm there; the same way without a linkage.
+    pub fn turn_of(&self, angle: f64, way: f64) -> f64 {
+        self.linkage.map_or(way, |linkage| way / linkage.end(angle).lever_arm)
+    }
+}

@@ -1,0 +1,121 @@
+use phea_dynamics::analytic::Analytic;
+use phea_dynamics::scalar::Scalar;
+
+use crate::linear::polynomial::scaled;
+
+/// The load on the force sensor, linearised at the operating point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LinearLoad<S = f64> {
+    /// Its motion is prescribed, whatever the force.
+    Prescribed,
+    /// A mass that yields, held to its ground by a spring and a damper; a wall that is touched is
+    /// the spring.
+    Yielding {
+        /// Mass m in kg.
+        mass: S,
+        /// Damping c in N s/m.
+        damping: S,
+        /// Stiffness k in N/m; zero for a free mass.
+        stiffness: S,
+    },
+    /// A load that turns behind a linkage, with X_0 = r Theta_0 the way of the rod that follows from
+    /// the angle of its ground.
+    ///
+    /// ```text
+    /// (J s^2 + c s + k + k_g) X_L = r^2 F_L + (c s + k) X_0,     k_g = -F g''(theta) at a force F
+    /// ```
+    ///
+    /// Nothing is divided by r, so that an interval of positions keeps the sign of J.
+    Linked {
+        /// Inertia J in kg m2.
+        inertia: S,
+        /// Damping c in N m s/rad.
+        damping: S,
+        /// Stiffness k in N m/rad of what holds it to its ground.
+        stiffness: S,
+        /// Stiffness k_g in N m/rad by the change of the lever arm under the force there; may be
+        /// negative.
+        geometric_stiffness: S,
+        /// Lever arm r = g' in m.
+        lever_arm: S,
+    },
+}
+
+/// The polynomials of a load that yields, the highest power first.
+///
+/// ```text
+/// Z X_L = share F_L + T X_0
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct LoadTerms<S> {
+    /// m or J.
+    mass: S,
+    /// T: c and k, which tie it to its ground.
+    pub(super) ground: [S; 2],
+    /// k_g
+    geometric: Option<S>,
+    /// r^2 of a linkage; `None` for one.
+    pub(super) share: Option<S>,
+}
+
+impl<S: Scalar> LinearLoad<S> {
+    /// Its polynomials; `None` where its motion is prescribed.
+    pub(super) fn terms(&self) -> Option<LoadTerms<S>> {
+        match *self {
+            LinearLoad::Prescribed => None,
+            LinearLoad::Yielding { mass, damping, stiffness } => {
+                Some(LoadTerms { mass, ground: [damping, stiffness], geometric: None, share: None })
+            }
+            LinearLoad::Linked { inertia, damping, stiffness, geometric_stiffness, lever_arm } => {
+                Some(LoadTerms {
+                    mass: inertia,
+                    ground: [damping, stiffness],
+                    geometric: Some(geometric_stiffness),
+                    share: Some(lever_arm.squared()),
+                })
+            }
+        }
+    }
+}
+
+impl<S: Scalar> LoadTerms<S> {
+    /// Z: m, c and k with k_g.
+    pub(super) fn own(&self) -> [S; 3] {
+        let [damping, stiffness] = self.ground;
+        [self.mass, damping, self.geometric.map_or(stiffness, |geometric| stiffness + geometric)]
+    }
+
+    /// A number of the rod's force times the share with which this load is moved by it.
+    pub(super) fn moved_by(&self, number: S) -> S {
+        self.share.map_or(number, |share| number * share)
+    }
+
+    /// A polynomial likewise.
+    pub(super) fn moved(&self, polynomial: Vec<S>) -> Vec<S> {
+        match self.share {
+            None => polynomial,
+            Some(share) => scaled(share, &polynomial),
+        }
+    }
+}
+
+impl LoadTerms<f64> {
+    /// Z over the share with which the rod's force moves it.
+    pub(super) fn reflected(&self) -> [f64; 3] {
+        let own = self.own();
+        self.share.map_or(own, |share| own.map(|number| number / share))
+    }
+
+    /// A value times that share.
+    pub(super) fn moved_at<A: Analytic>(&self, value: A) -> A {
+        self.share.map_or(value, |share| value.scaled(share))
+    }
+
+    /// Z and what ties it to its ground, at s.
+    pub(super) fn at<A: Analytic>(&self, s: A) -> [A; 2] {
+        let [damping, stiffness] = self.ground;
+        let tied = s.scaled(damping) + A::from(stiffness);
+        let own = (s * s).scaled(self.mass) + tied;
+        [self.geometric.map_or(own, |geometric| own + A::from(geometric)), tied]
+    }
+}

@@ -1,0 +1,202 @@
+//! `[linkage]`: what lies between the rod and a load that turns about a joint.
+
+use super::key::{key, plain};
+use super::visitor::{Variants, Visitor};
+use phea_hydraulics::linkage::{
+    FourBar, LinkageError, LinkageGeometry, LinkageTable, PivotTriangle, ReducedLinkage,
+};
+use phea_quantity::{ANGLE, LENGTH};
+
+/// A linkage: the angle of the joint grows while the rod extends.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct DeclaredLinkage {
+    /// What it is made of.
+    pub kind: LinkageKind,
+}
+
+/// Kinds of linkages.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LinkageKind {
+    /// The cylinder between two pivots at either side of the joint.
+    Triangle(CylinderTriangle),
+    /// The cylinder turns the input link of a four-bar.
+    FourBar {
+        /// About the joint of the input link.
+        triangle: CylinderTriangle,
+        /// Fixed, input and output link, and coupler.
+        links: DeclaredLinks,
+    },
+    /// Measured.
+    Table {
+        /// m, of the piston.
+        extensions: Vec<f64>,
+        /// rad, of the joint.
+        angles: Vec<f64>,
+        /// m, by which the polynomial may pass a row.
+        tolerance: f64,
+    },
+}
+
+/// The triangle of a joint and both pivots of a cylinder.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CylinderTriangle {
+    /// m, from the joint to the pivot of the cylinder's body.
+    pub cylinder_pivot: f64,
+    /// m, from the joint to the pivot of the rod.
+    pub rod_pivot: f64,
+    /// m, from pivot to pivot at position zero.
+    pub retracted_length: f64,
+    /// rad, what the angle of the joint is less than that of the geometry.
+    pub angle_offset: f64,
+}
+
+/// The links of a four-bar.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct DeclaredLinks {
+    /// rad, by which the input link is ahead of the triangle's angle.
+    pub input_angle: f64,
+    /// m, from joint to joint.
+    pub fixed_link: f64,
+    /// m.
+    pub input_link: f64,
+    /// m.
+    pub coupler: f64,
+    /// m, that the load turns with.
+    pub output_link: f64,
+    /// Which of the two ways in which the links can be joined.
+    pub branch: FourBarBranch,
+}
+
+/// Ways in which a coupler joins two links.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum FourBarBranch {
+    /// Coupler and fixed link do not cross.
+    #[default]
+    Open,
+    /// They do.
+    Crossed,
+}
+
+/// m.
+const TOLERANCE: f64 = 1e-4;
+
+impl Default for LinkageKind {
+    fn default() -> Self {
+        LinkageKind::Triangle(CylinderTriangle::default())
+    }
+}
+
+impl DeclaredLinkage {
+    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+        v.variant(plain("kind", "What the linkage is made of."), &mut self.kind, true);
+    }
+
+    /// As the equations have it, over a stroke in m.
+    ///
+    /// # Errors
+    /// A linkage that does not close over the stroke, comes to a dead point in it, or is too rough.
+    pub fn reduced(&self, stroke: f64) -> Result<ReducedLinkage, LinkageError> {
+        let (geometry, angle_offset) = match &self.kind {
+            LinkageKind::Triangle(triangle) => {
+                (LinkageGeometry::Triangle(triangle.geometry()), triangle.angle_offset)
+            }
+            LinkageKind::FourBar { triangle, links } => {
+                let four_bar = FourBar {
+                    triangle: triangle.geometry(),
+                    input_angle: links.input_angle,
+                    fixed_link: links.fixed_link,
+                    input_link: links.input_link,
+                    coupler: links.coupler,
+                    output_link: links.output_link,
+                    crossed: links.branch == FourBarBranch::Crossed,
+                };
+                (LinkageGeometry::FourBar(four_bar), triangle.angle_offset)
+            }
+            LinkageKind::Table { extensions, angles, tolerance } => {
+                let table = LinkageTable {
+                    extensions: extensions.clone(),
+                    angles: angles.clone(),
+                    tolerance: *tolerance,
+                };
+                (LinkageGeometry::Table(table), 0.0)
+            }
+        };
+        geometry.reduced(stroke, angle_offset)
+    }
+}
+
+impl CylinderTriangle {
+    fn geometry(&self) -> PivotTriangle {
+        PivotTriangle {
+            cylinder_pivot: self.cylinder_pivot,
+            rod_pivot: self.rod_pivot,
+            retracted_length: self.retracted_length,
+        }
+    }
+
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let k = key("cylinder_pivot", &LENGTH, "From the joint to the pivot of the cylinder's body.");
+        v.quantity(k.positive(), &mut self.cylinder_pivot);
+        let k = key("rod_pivot", &LENGTH, "From the joint to the pivot of the rod.");
+        v.quantity(k.positive(), &mut self.rod_pivot);
+        let k = key("retracted_length", &LENGTH, "From pivot to pivot at position zero.").positive();
+        v.quantity(k, &mut self.retracted_length);
+        let doc = "What the angle of the joint is less than that of the geometry; it shifts its zero.";
+        v.quantity(key("angle_offset", &ANGLE, doc).or(0.0), &mut self.angle_offset);
+    }
+}
+
+impl DeclaredLinks {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let doc =
+            "By which the input link, seen from the fixed link, is ahead of the angle between both pivots.";
+        v.quantity(key("input_angle", &ANGLE, doc).or(0.0), &mut self.input_angle);
+        let k = key("fixed_link", &LENGTH, "From the joint of the input link to that of the output link.");
+        v.quantity(k.positive(), &mut self.fixed_link);
+        let k = key("input_link", &LENGTH, "Of the link that the cylinder turns.").positive();
+        v.quantity(k, &mut self.input_link);
+        v.quantity(key("coupler", &LENGTH, "From link to link.").positive(), &mut self.coupler);
+        let k = key("output_link", &LENGTH, "Of the link that turns with the load.").positive();
+        v.quantity(k, &mut self.output_link);
+        let words = &[("open", FourBarBranch::Open), ("crossed", FourBarBranch::Crossed)];
+        let k = plain("branch", "Whether coupler and fixed link cross.");
+        v.choice(k, words, &mut self.branch, false);
+    }
+}
+
+impl Variants for LinkageKind {
+    const STRICT: bool = true;
+
+    fn all(&self) -> Vec<LinkageKind> {
+        vec![
+            LinkageKind::default(),
+            LinkageKind::FourBar { triangle: CylinderTriangle::default(), links: DeclaredLinks::default() },
+            LinkageKind::Table { extensions: Vec::new(), angles: Vec::new(), tolerance: TOLERANCE },
+        ]
+    }
+
+    fn word(&self) -> &'static str {
+        match self {
+            LinkageKind::Triangle(_) => "triangle",
+            LinkageKind::FourBar { .. } => "four_bar",
+            LinkageKind::Table { .. } => "table",
+        }
+    }
+
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        match self {
+            LinkageKind::Triangle(triangle) => triangle.visit(v),
+            LinkageKind::FourBar { triangle, links } => {
+                triangle.visit(v);
+                links.visit(v);
+            }
+            LinkageKind::Table { extensions, angles, tolerance } => {
+                let k = key("extensions", &LENGTH, "Positions of the piston, from 0 to the stroke.");
+                v.quantities(k, extensions, true);
+                v.quantities(key("angles", &ANGLE, "Of the joint at each, increasing."), angles, true);
+                let doc = "How far the polynomial through the table may be from a row.";
+                v.quantity(key("tolerance", &LENGTH, doc).positive().or(TOLERANCE), tolerance);
+            }
+        }
+    }
+}

@@ -1,0 +1,137 @@
+//! A linkage from the project's keys to the family that follows the position, to the machine and to what is written.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
+
+use phea_dynamics::random::{share, stream};
+use phea_dynamics::uncertain_plant::PlantCoefficients;
+use phea_hydraulics::machine::SIGNALS;
+use phea_qft::family::Family;
+use phea_workbench::family::family;
+use phea_workbench::linearize::linkage_places;
+use phea_workbench::project::Project;
+use phea_workbench::setup::Setup;
+use phea_workbench::simulate::{ControlledMachine, ScenarioRun, simulate_project};
+use phea_workbench::source::Memory;
+
+use super::ask::project_of;
+
+const KNEE: &str = include_str!("../../../examples/leg/knee.toml");
+const FREQUENCIES: [f64; 6] = [0.1, 3.0, 30.0, 300.0, 2000.0, 9000.0];
+
+/// Largest relative difference of both paths.
+fn difference(one: &PlantCoefficients<f64>, other: &PlantCoefficients<f64>) -> f64 {
+    let paths = |plant: &PlantCoefficients<f64>, w: f64| {
+        [plant.command.at_frequency(w), plant.disturbance.as_ref().unwrap().at_frequency(w)]
+    };
+    let at = |w: f64| {
+        let pairs = paths(one, w).into_iter().zip(paths(other, w));
+        pairs.map(|(one, other)| (one / other - 1.0).norm_sqr().sqrt()).fold(0.0, f64::max)
+    };
+    FREQUENCIES.into_iter().map(at).fold(0.0, f64::max)
+}
+
+/// Everywhere in its box of positions and forces the family is the rig that declares them, lever arm and geometric stiffness included.
+#[test]
+fn the_family_follows_the_position() {
+    let uncertain = "\"load.mass\" = { nominal = \"0.6 kg.m2\", minimum = \"0.3 kg.m2\", maximum = \"0.8 kg.m2\", points = 2 }";
+    let project = project_of(&KNEE.replace("[uncertainty]\n", &format!("[uncertainty]\n{uncertain}\n")), &[]);
+    let setup = Setup::new(&project).unwrap();
+    let Family::Uncertain(family) = family(&setup, &Memory::default()).unwrap() else { panic!("a box") };
+    let plant = family.plant();
+    let names: Vec<&str> = plant.parameters().iter().map(|one| one.name.as_str()).collect();
+    assert!(names.contains(&"operating_point.position") && names.contains(&"load.mass"), "{names:?}");
+    let mut state = stream(9, 1);
+    let mut arms = [f64::INFINITY, 0.0_f64];
+    for _ in 0..30 {
+        let of = |one: &phea_dynamics::uncertain_plant::UncertainParameter, share: f64| {
+            one.minimum + (one.maximum - one.minimum) * share
+        };
+        let values: Vec<f64> = plant.parameters().iter().map(|one| of(one, share(&mut state))).collect();
+        let mut stated = project.without_uncertainty();
+        for (name, value) in names.iter().zip(&values) {
+            stated = match *name {
+                "viscous_friction" => stated.with_number("cylinder.friction.viscous", *value).unwrap(),
+                "valve_natural_frequency" => stated.with_number("valve.natural_frequency", *value).unwrap(),
+                path => stated.with_number(path, *value).unwrap(),
+            };
+        }
+        let rig = Setup::rig_of(&stated).unwrap();
+        let arm =
+            linkage_places(&rig).iter().find(|place| place.what == "operating point").unwrap().lever_arm_m;
+        arms = [arms[0].min(arm), arms[1].max(arm)];
+        let apart = difference(&rig.plant.coefficients(), &plant.coefficients(&values).unwrap());
+        assert!(apart < 1e-8, "{values:?}: {apart}");
+    }
+    assert!(arms[0] < 0.04 && arms[1] > 0.0499, "{arms:?}");
+}
+
+/// The machine rests at the operating point with the lever arm that the plant has.
+#[test]
+fn the_machine_rests_where_the_plant_is() {
+    for settings in
+        [&[][..], &["operating_point.position=\"12 mm\"", "operating_point.load_force=\"1.1 kN\""]]
+    {
+        let project = project_of(KNEE, settings);
+        let bench = ControlledMachine::new(&Setup::new(&project).unwrap()).unwrap();
+        let rest = bench.machine.rest_under_load(&bench.rig.point).unwrap();
+        let outputs = bench.machine.outputs::<f64>(&rest.state, &rest.all_inputs());
+        let signal = |name: &str| outputs[SIGNALS.iter().position(|known| *known == name).unwrap()];
+        let places = linkage_places(&bench.rig);
+        let place = places.iter().find(|place| place.what == "operating point").unwrap();
+        assert!((signal("joint_angle_rad") - place.angle_rad).abs() < 1e-9, "{settings:?}");
+        let arm = signal("joint_torque_n_m") / signal("force_n");
+        assert!((arm / place.lever_arm_m - 1.0).abs() < 1e-9, "{settings:?}: {arm} {}", place.lever_arm_m);
+        let inertia = place.reflected_mass_kg.unwrap() * arm * arm;
+        assert!((inertia - 0.6).abs() < 1e-9);
+    }
+}
+
+fn run(project: &Project) -> ScenarioRun {
+    simulate_project(&Memory::default(), &Setup::new(project).unwrap(), &mut |_| true).unwrap().remove(0)
+}
+
+/// Behind a linkage a run starts at rest where the operating point is, and not beside it.
+#[test]
+fn a_run_starts_at_the_operating_point() {
+    for settings in [&[][..], &["operating_point.position=\"15 mm\"", "load.stiffness=400"]] {
+        let project = project_of(KNEE, settings);
+        let run = run(&project);
+        let at_start = |name: &str| run.record.signal(name)[0];
+        let wanted = project.operating_point.position.unwrap();
+        assert!((at_start("position_m") - wanted).abs() < 1e-8, "{settings:?}: {}", at_start("position_m"));
+        assert!((at_start("force_n") - 600.0).abs() < 1e-3);
+        assert!(at_start("joint_velocity_rad_per_s").abs() < 1e-9);
+    }
+}
+
+/// A table that is a straight line: the same plant and the same run as a load in linear quantities.
+#[test]
+fn a_straight_table_is_a_load_in_other_units() {
+    let (before, rest) = KNEE.split_once("[linkage]").unwrap();
+    let (_, after) = rest.split_once("[operating_point]").unwrap();
+    let after = after.split("[[alternative]]").next().unwrap();
+    let straight = format!(
+        "{before}[linkage]\nkind = \"table\"\nextensions = [0, 0.08]\nangles = [0.3, 1.9]\n\n[load]\n\
+         model = \"spring_mass_damper\"\nmass = 0.6\nstiffness = 900\ndamping = 8\n\n[operating_point]{after}"
+    );
+    // the arm is 50 mm
+    let plain = format!(
+        "{before}[load]\nmodel = \"spring_mass_damper\"\nmass = 240\nstiffness = 360e3\ndamping = 3200\n\n[operating_point]{}",
+        after.replace("\"-10 deg\"", &format!("{:?}", -10.0_f64.to_radians() * 0.05))
+    );
+    let [turned, plain] = [straight, plain].map(|text| project_of(&text, &[]));
+    let [one, other] = [&turned, &plain].map(|project| Setup::rig_of(project).unwrap().plant.coefficients());
+    assert!(difference(&one, &other) < 1e-9);
+    let [one, other] = [&turned, &plain].map(run);
+    for ((_, one), (_, other)) in one.windows.iter().zip(&other.windows) {
+        for ((name, one), (_, other)) in one.named().into_iter().zip(other.named()) {
+            let (Ok(one), Ok(other)) = (one, other) else { continue };
+            assert!((one - other).abs() <= 2e-4 * other.abs() + 1e-3, "{name}: {one} {other}");
+        }
+    }
+    let end = |run: &ScenarioRun, name: &str| *run.record.signal(name).last().unwrap();
+    for name in ["force_n", "position_m", "load_position_m", "pressure_a_pa"] {
+        let (one, other) = (end(&one, name), end(&other, name));
+        assert!((one / other - 1.0).abs() < 1e-5, "{name}: {one} {other}");
+    }
+}
