@@ -366,7 +366,9 @@ impl<S: Scalar> Linkage<S> {
     }
 
     /// The same as a part of a machine of many states.
-    #[inline(always)]
+    ///
+    /// Apart, so that machines without a linkage do not carry its code along.
+    #[inline(never)]
     pub(crate) fn end_of<T: Scalar + From<S>>(&self, angle: T) -> RodEnd<T> {
         let [position, lever_arm, lever_slope] = T::local(&self.extension, [angle]);
         RodEnd { position, lever_arm, lever_slope }

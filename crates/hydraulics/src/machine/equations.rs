@@ -41,6 +41,14 @@ pub(super) struct Forces<T> {
     pub(super) end_stops: T,
 }
 
+/// Rates of the oil and the gas. Units: Pa/s, m3/s2, 1/s.
+struct PressureRates<T> {
+    chambers: [T; 2],
+    neck_flows: [T; 2],
+    gas_pressures: [T; 2],
+    gas_warmings: [T; 2],
+}
+
 /// A parameter as a constant of the equations.
 #[inline(always)]
 pub(super) fn constant<S, T: From<S>>(parameter: S) -> T {
@@ -240,11 +248,8 @@ impl<S: Scalar> Machine<S> {
         let end = self.end_of(&load);
         let joint = self.joint(&state, &end.motion);
         let position = joint.position;
-        let velocity = state.velocity;
         let flows = self.flows(&state, self.ports(&state, vector));
         let forces = self.forces(&state, position);
-        let compliances = self.compliance(&state, position);
-        let [area_a, area_b]: [T; 2] = [constant(self.cylinder.area_a), constant(self.cylinder.area_b)];
         let pushing = forces.hydraulic + forces.end_stops - forces.friction.force - joint.sensed;
         let external = self.layout.external_force(inputs);
         let on_load = end.on_load(joint.on_load);
@@ -256,8 +261,44 @@ impl<S: Scalar> Machine<S> {
         } else {
             flows.from_valve
         };
+        let PressureRates { chambers: [pressure_a, pressure_b], neck_flows, gas_pressures, gas_warmings } =
+            self.pressure_rates(&state, &flows, position, [into_a, into_b]);
+        let state_rates = MachineState {
+            neck_flows,
+            gas_pressures,
+            gas_warmings,
+            spool: self.spool.convert(&mut constant::<S, T>).rates(&valve, &state.spool, command),
+            pressure_a,
+            pressure_b,
+            deflection: joint.deflection_rate,
+            velocity: pushing / constant(self.cylinder.moving_mass),
+            bristle: forces.friction.bristle_rate,
+            load: Motion {
+                position: load.velocity - ground.velocity,
+                velocity: self.load.convert(&mut constant::<S, T>).acceleration(on_load, &load, &ground),
+            },
+            supply_pressure: self.supply_rate(&state, &flows),
+            cross_port_pressure: self.cross_port_rate(&flows),
+            series: joint.series_rates,
+        };
+        self.layout.write(state_rates, rates);
+    }
+
+    /// Rates of the pressures of chambers and gas, of the flows through necks and of the warming of
+    /// the gas, with these flows in m3/s from the lines.
+    #[inline(always)]
+    fn pressure_rates<T: Scalar + From<S>>(
+        &self,
+        state: &MachineState<T>,
+        flows: &Flows<T>,
+        position: T,
+        [into_a, into_b]: [T; 2],
+    ) -> PressureRates<T> {
+        let compliances = self.compliance(state, position);
+        let [area_a, area_b]: [T; 2] = [constant(self.cylinder.area_a), constant(self.cylinder.area_b)];
+        let (chambers, velocity) = ([state.pressure_a, state.pressure_b], state.velocity);
         let heated =
-            self.layout.has_heat().then(|| self.heated(self.gas_pressures(&state), state.gas_warmings));
+            self.layout.has_heat().then(|| self.heated(self.gas_pressures(state), state.gas_warmings));
         let zero = [T::from(0.0); 2];
         let (into_a, into_b, [neck_flows, gas_pressures]) = if self.layout.has_necks() {
             let [into_neck_a, into_neck_b] = state.neck_flows;
@@ -284,25 +325,7 @@ impl<S: Scalar> Machine<S> {
                 self.warming_rates(heated, [behind(0, pressure_a), behind(1, pressure_b)])
             }
         };
-        let state_rates = MachineState {
-            neck_flows,
-            gas_pressures,
-            gas_warmings,
-            spool: self.spool.convert(&mut constant::<S, T>).rates(&valve, &state.spool, command),
-            pressure_a,
-            pressure_b,
-            deflection: joint.deflection_rate,
-            velocity: pushing / constant(self.cylinder.moving_mass),
-            bristle: forces.friction.bristle_rate,
-            load: Motion {
-                position: load.velocity - ground.velocity,
-                velocity: self.load.convert(&mut constant::<S, T>).acceleration(on_load, &load, &ground),
-            },
-            supply_pressure: self.supply_rate(&state, &flows),
-            cross_port_pressure: self.cross_port_rate(&flows),
-            series: joint.series_rates,
-        };
-        self.layout.write(state_rates, rates);
+        PressureRates { chambers: [pressure_a, pressure_b], neck_flows, gas_pressures, gas_warmings }
     }
 
     /// Flows that leave the lines into the chambers, in m3/s; writes the rates of the lines'
