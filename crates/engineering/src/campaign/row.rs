@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use phea_hydraulics::machine::INDICATORS;
 use sha2::{Digest, Sha256};
 
-use crate::quantity::MotionKind;
+use phea_quantity::MotionKind;
 
 use super::simulate::{COMMAND_LIMIT, Cause, ERRORS_AMPLIFIED, Metrics, Window};
 
