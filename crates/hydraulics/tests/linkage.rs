@@ -26,7 +26,8 @@ use phea_hydraulics::stroke::ActuatorStroke;
 use phea_hydraulics::two_pressure::{TwoPressureModel, two_pressure_linear_parameters};
 
 use super::commanded::Commanded;
-use super::machine_conservation::{Motion, asymmetric, check, machine_of, pump, step};
+use super::machine_conservation::{Motion, check, machine_of, step};
+use super::rich_machines::{asymmetric, pump};
 
 const STROKE: f64 = 0.08;
 /// The zero of the joint's angle, rad.

@@ -28,8 +28,8 @@ pub struct MachineState<T = f64> {
     /// Deflection z of the bristles in m.
     pub bristle: T,
     /// A load that moves by itself: its position from its ground, x_L - x_0, in m, and its velocity
-    /// v_L in m/s; behind a linkage its angle in rad and angular velocity in rad/s. Errors are scaled by the deformation of its spring or wall, not by its distance
-    /// from the end of the cylinder.
+    /// v_L in m/s; behind a linkage its angle in rad and angular velocity in rad/s. Errors are scaled
+    /// by the deformation of its spring or wall, not by its distance from the end of the cylinder.
     pub load: Motion<T>,
     /// Pressure difference p_cp in Pa over the capacity of a valve between the chambers.
     pub cross_port_pressure: T,

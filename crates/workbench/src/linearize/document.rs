@@ -89,7 +89,7 @@ pub(crate) fn linkage_table(places: &[LinkagePlace]) -> Table {
             place.reflected_mass_kg.map_or(Cell::Missing, |mass| Cell::number(mass, 4)),
         ]
     };
-    let headings = ["position", "rod's end, mm", "joint, deg", "lever arm, mm", "reflected inertia, kg"];
+    let headings = ["position", "rod's end, mm", "joint, deg", "lever arm, mm", "reflected mass, kg"];
     Table::new(headings).with(places.iter().map(row))
 }
 

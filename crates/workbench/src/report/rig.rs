@@ -72,7 +72,7 @@ fn circuit(project: &Project, actuator: &project::DeclaredActuator) -> Figure {
         }
         .map(|stiffness| shown(stiffness, actuator.load_motion().dimension(&STIFFNESS)))
         .into_iter()
-        .chain(actuator.linkage.as_ref().map(|_| "turns behind a linkage".to_string()))
+        .chain(actuator.linkage.as_ref().map(|_| "on a linkage".to_string()))
         .collect(),
         controller: project.controller.as_ref().map(|controller| ControllerSymbol {
             has_prefilter: project.prefilter.is_some(),
@@ -156,7 +156,7 @@ fn line_alone(declared: &project::DeclaredLine) -> LineSymbol {
         Component::Volume(LineVolume { volume, effective_bulk_modulus }) => LineSymbol {
             kind: LineKind::Pipe,
             has_accumulator: false,
-            rows: vec![shown(*volume, &VOLUME), shown(*effective_bulk_modulus, &PRESSURE)],
+            rows: vec![shown(*volume, &VOLUME), format!("β {}", shown(*effective_bulk_modulus, &PRESSURE))],
         },
     }
 }
