@@ -31,7 +31,7 @@ use phea_hydraulics::two_pressure::two_pressure_coefficients;
 
 pub use agreement::AgreementBand;
 pub use agreement::{WITHIN_DB, WITHIN_DEG};
-pub use linkage::{LinkagePlace, linkage_places};
+pub use linkage::{LinkagePlace, LinkagePosition, linkage_places};
 pub use port::{AskedAt, AskedImpedance, SHOWN_AT, WITHIN_PERCENT};
 pub use sweep::{POINTS, Sweep, SweepPoint, SweepRequest, Swept, sweep};
 pub(crate) use sweep::{points, range, values};

@@ -60,7 +60,7 @@ use crate::control::ControlError;
 use crate::linear_loop::LoopError;
 use crate::number_table::TableFormat;
 use crate::project::Refusal;
-use crate::quantity::{FORCE, VOLTAGE, display};
+use crate::quantity::{FORCE, LENGTH, VOLTAGE, display};
 use crate::rig::RigError;
 use crate::setup::Setup;
 use crate::source::{Destination, Source, WriteError};
@@ -136,6 +136,20 @@ pub enum SimulateError {
         what: &'static str,
         /// 1/s.
         rate: f64,
+    },
+    /// There is an equilibrium, but none with the piston where it is wanted behind a linkage.
+    #[error(
+        "scenario \"{name}\" states no `start`, and no position of the joint was found at which the closed loop rests at its reference \
+         of {} with the piston at {}: state the `start`",
+        display(*reference_n, &FORCE, 6), display(*position_m, &LENGTH, 4)
+    )]
+    NoRestThere {
+        /// Of the scenario.
+        name: String,
+        /// At time zero, N.
+        reference_n: f64,
+        /// Of the piston, m.
+        position_m: f64,
     },
     /// The equilibrium needs a command beyond its limit.
     #[error(

@@ -17,7 +17,7 @@ use phea_hydraulics::linkage::{
     FourBar, Linkage, LinkageError, LinkageGeometry, LinkageTable, PivotTriangle, RodEnd,
 };
 use phea_hydraulics::machine::{InitialCondition, LoadModel, Machine, MachineOptions, SIGNALS, StartValues};
-use phea_hydraulics::operating_point::{Condition, OperatingPoint, operating_point};
+use phea_hydraulics::operating_point::{Condition, operating_point};
 use phea_hydraulics::plant::{LinearLoad, LinearPlant, PlantInMotion};
 use phea_hydraulics::reference_rig::{components, cylinder, hose_line, nominal_plant};
 use phea_hydraulics::servovalve::SpoolDirection;
@@ -27,6 +27,7 @@ use phea_hydraulics::two_pressure::{TwoPressureModel, two_pressure_linear_parame
 
 use super::commanded::Commanded;
 use super::machine_conservation::{Motion, check, machine_of, step};
+use super::plant::point_at;
 use super::rich_machines::{asymmetric, pump};
 
 const STROKE: f64 = 0.08;
@@ -380,16 +381,7 @@ fn plant_at(actuator: &Actuator, position: f64, rest: &InitialCondition, load: L
     let pressures = [rest.state[2], rest.state[3]];
     let friction = actuator.components().friction.viscous();
     let model = TwoPressureModel::new(actuator, pressures, StiffeningMember::Nominal, friction);
-    let point = OperatingPoint {
-        position,
-        command: rest.state[0],
-        pressure_a: pressures[0],
-        pressure_b: pressures[1],
-        velocity: 0.0,
-        hydraulic_force: 0.0,
-        net_flow_a: 0.0,
-        net_flow_b: 0.0,
-    };
+    let point = point_at(position, &rest.state);
     let parameters = two_pressure_linear_parameters(&model, &point, SpoolDirection::Extending);
     LinearPlant::of_two_pressures(&parameters, 0.0, load)
 }

@@ -124,6 +124,20 @@ fn drawn(number: u64) -> Drawn {
     Drawn { actuator, machine, unit, rest, friction, load }
 }
 
+/// The operating point of a machine that rests in this state, its piston at a position in m.
+pub(super) fn point_at(position: f64, state: &[f64]) -> OperatingPoint {
+    OperatingPoint {
+        position,
+        command: state[0],
+        pressure_a: state[2],
+        pressure_b: state[3],
+        velocity: 0.0,
+        hydraulic_force: 0.0,
+        net_flow_a: 0.0,
+        net_flow_b: 0.0,
+    }
+}
+
 impl Drawn {
     /// The plant where the machine rests.
     fn plant(&self) -> LinearPlant {
@@ -136,16 +150,7 @@ impl Drawn {
             ..TwoPressureModel::new(&self.actuator, pressures, StiffeningMember::Nominal, self.friction)
         };
         let moved = if self.load == LinearLoad::Prescribed { 0.0 } else { state[6] };
-        let point = OperatingPoint {
-            position: self.rest.inputs[0] + moved + state[4],
-            command: state[0],
-            pressure_a: pressures[0],
-            pressure_b: pressures[1],
-            velocity: 0.0,
-            hydraulic_force: 0.0,
-            net_flow_a: 0.0,
-            net_flow_b: 0.0,
-        };
+        let point = point_at(self.rest.inputs[0] + moved + state[4], state);
         let parameters = two_pressure_linear_parameters(&model, &point, SpoolDirection::Extending);
         let supply = yielding(&self.actuator, &self.unit, state[0], pressures, supplied);
         let components = self.actuator.components();

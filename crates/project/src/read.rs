@@ -483,7 +483,7 @@ impl Project {
         let mut listing = Listing::default();
         self.clone().visit_system(&mut listing);
         let numbers = listing.numbers.into_iter().map(|(path, (key, value))| (path, (key, Some(value))));
-        let motion = self.actuator.as_ref().map_or_else(Motions::default, DeclaredActuator::motions);
+        let motion = self.motions();
         let start = super::scenario::start_numbers().into_iter();
         let start = start.map(|(path, key)| (path, (key.in_motion(motion), None)));
         numbers.chain(start).collect()

@@ -33,7 +33,9 @@ pub enum CommandError {
         command: &'static str,
     },
     /// Projects side by side of which some move along a line and others turn.
-    #[error("{path} has a [motor] and {other} a [cylinder]: torques cannot be compared with forces")]
+    #[error(
+        "{path} has a [motor] and {other} a [cylinder]: their numbers have different units, and cannot stand side by side"
+    )]
     MixedMotion {
         /// Of the project with a motor.
         path: String,

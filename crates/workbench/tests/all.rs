@@ -36,6 +36,7 @@ mod neck;
 mod noise;
 mod number_table;
 mod operating_region;
+mod plant_of_verdicts;
 mod proof;
 mod recorded_tables;
 mod repair;

@@ -2,16 +2,12 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
-use num_complex::Complex64;
-use phea_qft::family::Family;
 use phea_workbench::command::Request;
-use phea_workbench::family::family;
-use phea_workbench::project::Project;
 use phea_workbench::report::report;
 use phea_workbench::setup::Setup;
-use phea_workbench::source::Memory;
 
 use super::ask::{answer, check, derived, json, load, near, project_of, source, try_answer};
+use super::plant_of_verdicts::{assert_nominal_is_the_rig, responses, without_uncertainty};
 
 const GAS: &str = include_str!("../../../examples/ybitu/accumulator.toml");
 const HEAT: &str = include_str!("../../project/tests/valid/accumulator_heat.toml");
@@ -31,24 +27,11 @@ const RIGS: [&[&str]; 6] = [
 
 /// The example without what it leaves open, and with gas of this exponent or time constant.
 fn with_gas(own: &str) -> String {
-    let before = GAS.split("[uncertainty]").next().unwrap();
-    let after = GAS.split_once("[[specification]]").unwrap().1;
-    let text = format!("{before}[[specification]]{after}");
+    let text = without_uncertainty(GAS);
     let lines = text.lines().map(|line| if line.starts_with("polytropic_exponent") { own } else { line });
     let text = lines.collect::<Vec<_>>().join("\n");
     assert!(text.contains(own));
     text
-}
-
-/// F_e/U_C and F_e/X_0 of the plant of every verdict.
-fn responses(project: &Project, frequency: f64) -> [Complex64; 2] {
-    let setup = Setup::new(project).unwrap();
-    let rig = setup.rig().unwrap();
-    if let Some(moving) = &rig.in_motion {
-        return moving.response(Complex64::new(0.0, frequency));
-    }
-    let coefficients = rig.plant.coefficients();
-    [Some(coefficients.command), coefficients.disturbance].map(|path| path.unwrap().at_frequency(frequency))
 }
 
 /// Gas that keeps its temperature is that of the exponent 1, in every form of the plant; at a time constant of seconds it is not.
@@ -79,18 +62,7 @@ fn the_family_is_the_rig_at_its_nominal() {
     let text = with_gas("thermal_time_constant = \"2 s\"");
     for settings in &RIGS[..4] {
         let project = project_of(&text, &[settings, &[opened][..]].concat());
-        let setup = Setup::new(&project).unwrap();
-        let Family::Uncertain(family) = family(&setup, &Memory::default()).unwrap() else { panic!("a box") };
-        let nominal: Vec<f64> = family.plant().parameters().iter().map(|one| one.nominal).collect();
-        let told = family.plant().coefficients(&nominal).unwrap();
-        for frequency in [0.1, 10.0, 400.0, 640.0, 1300.0] {
-            let [command, ground] = responses(&project, frequency);
-            let of_family = [Some(&told.command), told.disturbance.as_ref()]
-                .map(|path| path.unwrap().at_frequency(frequency));
-            for (own, told) in [command, ground].into_iter().zip(of_family) {
-                assert!((own / told - 1.0).norm_sqr() < 1e-20, "{settings:?}: {own} {told}");
-            }
-        }
+        assert_nominal_is_the_rig(&project, settings);
     }
 }
 

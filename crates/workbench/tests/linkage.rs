@@ -7,7 +7,7 @@ use phea_dynamics::uncertain_plant::PlantCoefficients;
 use phea_hydraulics::machine::SIGNALS;
 use phea_qft::family::Family;
 use phea_workbench::family::family;
-use phea_workbench::linearize::linkage_places;
+use phea_workbench::linearize::{LinkagePosition, linkage_places};
 use phea_workbench::project::Project;
 use phea_workbench::setup::Setup;
 use phea_workbench::simulate::{ControlledMachine, ScenarioRun, simulate_project};
@@ -56,8 +56,11 @@ fn the_family_follows_the_position() {
             };
         }
         let rig = Setup::rig_of(&stated).unwrap();
-        let arm =
-            linkage_places(&rig).iter().find(|place| place.what == "operating point").unwrap().lever_arm_m;
+        let arm = linkage_places(&rig)
+            .iter()
+            .find(|place| place.at == LinkagePosition::OperatingPoint)
+            .unwrap()
+            .lever_arm_m;
         arms = [arms[0].min(arm), arms[1].max(arm)];
         let apart = difference(&rig.plant.coefficients(), &plant.coefficients(&values).unwrap());
         assert!(apart < 1e-8, "{values:?}: {apart}");
@@ -77,7 +80,7 @@ fn the_machine_rests_where_the_plant_is() {
         let outputs = bench.machine.outputs::<f64>(&rest.state, &rest.all_inputs());
         let signal = |name: &str| outputs[SIGNALS.iter().position(|known| *known == name).unwrap()];
         let places = linkage_places(&bench.rig);
-        let place = places.iter().find(|place| place.what == "operating point").unwrap();
+        let place = places.iter().find(|place| place.at == LinkagePosition::OperatingPoint).unwrap();
         assert!((signal("joint_angle_rad") - place.angle_rad).abs() < 1e-9, "{settings:?}");
         let arm = signal("joint_torque_n_m") / signal("force_n");
         assert!((arm / place.lever_arm_m - 1.0).abs() < 1e-9, "{settings:?}: {arm} {}", place.lever_arm_m);

@@ -2,15 +2,10 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
-use num_complex::Complex64;
-use phea_qft::family::Family;
 use phea_workbench::command::Request;
-use phea_workbench::family::family;
-use phea_workbench::project::{self, Project};
-use phea_workbench::setup::Setup;
-use phea_workbench::source::Memory;
 
-use super::ask::{answer, check, derived, json, near};
+use super::ask::{answer, check, derived, json, near, project_of};
+use super::plant_of_verdicts::{assert_nominal_is_the_rig, responses, without_uncertainty};
 
 const GAS: &str = include_str!("../../../examples/ybitu/accumulator.toml");
 const NECK: &str = include_str!("../../project/tests/valid/accumulator_neck.toml");
@@ -22,23 +17,6 @@ const NECKS: [&str; 2] =
 const SHORT: [&str; 2] =
     ["line.accumulator.neck_diameter=\"6 mm\"", "line.accumulator.neck_length=\"1e-9 mm\""];
 
-fn loaded(text: &str, settings: &[&str]) -> Project {
-    let source = Memory::default().with("rig.toml", text);
-    let settings: Vec<String> = settings.iter().map(ToString::to_string).collect();
-    project::read(&source, "rig.toml", &settings, &[]).unwrap_or_else(|report| panic!("{report}")).project
-}
-
-/// F_e/U_C and F_e/X_0 of the plant of every verdict.
-fn responses(project: &Project, frequency: f64) -> [Complex64; 2] {
-    let setup = Setup::new(project).unwrap();
-    let rig = setup.rig().unwrap();
-    if let Some(moving) = &rig.in_motion {
-        return moving.response(Complex64::new(0.0, frequency));
-    }
-    let coefficients = rig.plant.coefficients();
-    [Some(coefficients.command), coefficients.disturbance].map(|path| path.unwrap().at_frequency(frequency))
-}
-
 /// What the plants are compared with: two pressures, one that is stated, both with a limited pump, and lines with waves.
 const RIGS: [&[&str]; 6] = [
     &[],
@@ -49,20 +27,13 @@ const RIGS: [&[&str]; 6] = [
     &["line.model=transmission_line", "linear.hydraulic_stiffness=2e6"],
 ];
 
-/// The example without what it leaves open.
-fn without_uncertainty() -> String {
-    let before = GAS.split("[uncertainty]").next().unwrap();
-    let after = GAS.split_once("[[specification]]").unwrap().1;
-    format!("{before}[[specification]]{after}")
-}
-
 /// A neck that becomes short is none, in every form of the plant; the one of an example is not short.
 #[test]
 fn a_short_neck_is_none() {
-    let text = without_uncertainty();
+    let text = without_uncertainty(GAS);
     for settings in RIGS {
         let [none, short, own] =
-            [&[][..], &SHORT, &NECKS].map(|neck| loaded(&text, &[settings, neck].concat()));
+            [&[][..], &SHORT, &NECKS].map(|neck| project_of(&text, &[settings, neck].concat()));
         let mut widest = 0.0_f64;
         for frequency in [1e-3, 1.0, 30.0, 300.0, 600.0, 900.0, 2e3] {
             let of = [&none, &short, &own].map(|project| responses(project, frequency));
@@ -82,19 +53,8 @@ fn the_family_is_the_rig_at_its_nominal() {
     let opened = "uncertainty={ \"line.accumulator.neck_length\" = { nominal = \"40 mm\", minimum = \"30 mm\", maximum = \"60 mm\", points = 2 }, \
                   \"line.accumulator.neck_diameter\" = { nominal = \"6 mm\", minimum = \"5 mm\", maximum = \"8 mm\", points = 2 } }";
     for settings in &RIGS[..4] {
-        let project = loaded(&without_uncertainty(), &[settings, &NECKS[..], &[opened]].concat());
-        let setup = Setup::new(&project).unwrap();
-        let Family::Uncertain(family) = family(&setup, &Memory::default()).unwrap() else { panic!("a box") };
-        let nominal: Vec<f64> = family.plant().parameters().iter().map(|one| one.nominal).collect();
-        let told = family.plant().coefficients(&nominal).unwrap();
-        for frequency in [0.1, 10.0, 400.0, 640.0, 1300.0] {
-            let [command, ground] = responses(&project, frequency);
-            let of_family = [Some(&told.command), told.disturbance.as_ref()]
-                .map(|path| path.unwrap().at_frequency(frequency));
-            for (own, told) in [command, ground].into_iter().zip(of_family) {
-                assert!((own / told - 1.0).norm_sqr() < 1e-20, "{settings:?}: {own} {told}");
-            }
-        }
+        let project = project_of(&without_uncertainty(GAS), &[settings, &NECKS[..], &[opened]].concat());
+        assert_nominal_is_the_rig(&project, settings);
     }
 }
 

@@ -7,7 +7,7 @@ use phea_hydraulics::series::LEAST_ACTIVE_COILS;
 use super::columns::{AlternativeColumn, column};
 use super::{JudgedAlternative, no_rig};
 use crate::project::{DeclaredActuator, Project};
-use crate::quantity::{DisplayUnit, MASS, VOLUME, fitting};
+use crate::quantity::{DisplayUnit, MASS, MotionKind, VOLUME, fitting};
 use crate::rig::{Rig, power_at_rest, series_coil};
 use crate::setup::Setup;
 
@@ -26,12 +26,12 @@ impl JudgedAlternative {
             column("stiffness_maximum_n_per_m", "greatest K_H", stiff, 3, stiffness(1)),
             column("equivalent_stiffness_n_per_m", "K_eq at the point", stiff, 3, equivalent),
         ];
-        columns.extend(self.made_of());
+        columns.extend(self.made_of(motion));
         columns.extend(self.sized_columns());
         columns
     }
 
-    fn made_of(&self) -> [AlternativeColumn; 8] {
+    fn made_of(&self, motion: MotionKind) -> [AlternativeColumn; 8] {
         let rig = Setup::rig_of(&self.loaded.project).map_err(|error| error.to_string());
         let declared = self.loaded.project.actuator.as_ref();
         let of = |value: fn(&DeclaredActuator, &Rig) -> Result<f64, &'static str>| {
@@ -45,7 +45,7 @@ impl JudgedAlternative {
         let oil_mass =
             of(|declared, rig| Ok(oil_volume(declared, rig)? * rig.actuator.components().fluid.density));
         let kilogram = fitting(1.0, &MASS);
-        let inertia = fitting(1.0, self.loaded.project.motion().dimension(&MASS));
+        let inertia = fitting(1.0, motion.dimension(&MASS));
         let power = of(|declared, rig| Ok(power_at_rest(declared, rig)));
         [
             column(

@@ -1,5 +1,5 @@
 use super::list::List;
-use crate::linearize::linkage_places;
+use crate::linearize::{LinkagePosition, linkage_places};
 use crate::project::Project;
 use crate::rig::{Rig, rod_end};
 
@@ -15,12 +15,18 @@ pub(super) fn linkage(project: &Project, rig: &Rig, list: &mut List) {
         list.add("linkage.polynomial_error", "δ", reduced.residual, "m", equation);
     }
     for place in linkage_places(rig) {
-        let (angle, arm, mass) = match place.what {
-            "retracted" => ("angle_retracted", "lever_arm_retracted", "reflected_mass_retracted"),
-            "extended" => ("angle_extended", "lever_arm_extended", "reflected_mass_extended"),
-            "operating point" => ("angle_at_point", "lever_arm_at_point", "reflected_mass_at_point"),
-            "least lever arm" => ("angle_of_least_arm", "lever_arm_least", "reflected_mass_greatest"),
-            _ => ("angle_of_greatest_arm", "lever_arm_greatest", "reflected_mass_least"),
+        let (angle, arm, mass) = match place.at {
+            LinkagePosition::Retracted => {
+                ("angle_retracted", "lever_arm_retracted", "reflected_mass_retracted")
+            }
+            LinkagePosition::Extended => ("angle_extended", "lever_arm_extended", "reflected_mass_extended"),
+            LinkagePosition::OperatingPoint => {
+                ("angle_at_point", "lever_arm_at_point", "reflected_mass_at_point")
+            }
+            LinkagePosition::LeastArm => ("angle_of_least_arm", "lever_arm_least", "reflected_mass_greatest"),
+            LinkagePosition::GreatestArm => {
+                ("angle_of_greatest_arm", "lever_arm_greatest", "reflected_mass_least")
+            }
         };
         list.add(format!("linkage.{angle}"), "θ", place.angle_rad, "rad", "x = g(θ)");
         list.add(format!("linkage.{arm}"), "r", place.lever_arm_m, "m", "r = g'(θ) = τ/F = v/ω");

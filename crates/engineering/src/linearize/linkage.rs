@@ -5,11 +5,39 @@ use crate::rig::{Rig, rod_end};
 /// Positions at which the lever arm is looked at for its least and greatest.
 const LOOKED_AT: usize = 201;
 
+/// Which position of a linkage.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LinkagePosition {
+    /// Of the rod, at the start of the stroke.
+    Retracted,
+    /// At its end.
+    Extended,
+    /// That of the operating point.
+    OperatingPoint,
+    /// Where the lever arm is shortest.
+    LeastArm,
+    /// Where it is longest.
+    GreatestArm,
+}
+
+impl LinkagePosition {
+    /// In words, as tables and answers have it.
+    pub fn words(self) -> &'static str {
+        match self {
+            LinkagePosition::Retracted => "retracted",
+            LinkagePosition::Extended => "extended",
+            LinkagePosition::OperatingPoint => "operating point",
+            LinkagePosition::LeastArm => "least lever arm",
+            LinkagePosition::GreatestArm => "greatest lever arm",
+        }
+    }
+}
+
 /// A linkage at one position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinkagePlace {
     /// Which position.
-    pub what: &'static str,
+    pub at: LinkagePosition,
     /// m, of the rod's end on the load's side.
     pub position_m: f64,
     /// rad, of the joint.
@@ -29,20 +57,21 @@ pub fn linkage_places(rig: &Rig) -> Vec<LinkagePlace> {
     };
     let here = rod_end(components, &rig.point);
     let inertia = rig.load.map(|load| load.mass);
-    let at = |what: &'static str, position_m: f64| {
+    let place = |at: LinkagePosition, position_m: f64| {
         let angle_rad = linkage.angle(position_m);
         let lever_arm_m = linkage.end(angle_rad).lever_arm;
         let reflected_mass_kg = inertia.map(|inertia| inertia / (lever_arm_m * lever_arm_m));
-        LinkagePlace { what, position_m, angle_rad, lever_arm_m, reflected_mass_kg }
+        LinkagePlace { at, position_m, angle_rad, lever_arm_m, reflected_mass_kg }
     };
-    let all: Vec<LinkagePlace> = (0..LOOKED_AT)
-        .map(|place| at("least lever arm", stroke * place as f64 / (LOOKED_AT - 1) as f64))
-        .collect();
+    let share = |number: usize| number as f64 / (LOOKED_AT - 1) as f64;
+    let all: Vec<LinkagePlace> =
+        (0..LOOKED_AT).map(|number| place(LinkagePosition::LeastArm, stroke * share(number))).collect();
     let by_arm = |one: &&LinkagePlace, other: &&LinkagePlace| one.lever_arm_m.total_cmp(&other.lever_arm_m);
     let least = all.iter().min_by(by_arm).copied();
-    let greatest =
-        all.iter().max_by(by_arm).map(|place| LinkagePlace { what: "greatest lever arm", ..*place });
-    let ends = [("retracted", 0.0), ("extended", stroke)].map(|(what, position)| at(what, position));
-    let point = here.map(|end| at("operating point", end.position));
+    let greatest = all.iter().max_by(by_arm);
+    let greatest = greatest.map(|place| LinkagePlace { at: LinkagePosition::GreatestArm, ..*place });
+    let ends = [(LinkagePosition::Retracted, 0.0), (LinkagePosition::Extended, stroke)];
+    let ends = ends.map(|(at, position)| place(at, position));
+    let point = here.map(|end| place(LinkagePosition::OperatingPoint, end.position));
     ends.into_iter().chain(point).chain(least).chain(greatest).collect()
 }

@@ -60,7 +60,7 @@ pub(super) fn rest(
         from.inputs[0] = ground_m;
         rest = at_rest(&bench.control, &rest.start, &from, standing).map_err(&named)?;
     }
-    Err(SimulateError::NoRest { name: name.to_string(), reference_n, what: "the joint", rate: f64::NAN })
+    Err(SimulateError::NoRestThere { name: name.to_string(), reference_n, position_m: wanted_m })
 }
 
 /// How near the piston rests to where it is wanted behind a linkage, m, and how often its ground is

@@ -52,11 +52,8 @@ pub(super) struct Looking<'a> {
     count: u64,
     looks_per_row: u64,
     table: Option<RunTable<'a>>,
-    record: Record,
-    /// Whether the record takes samples.
-    samples_kept: bool,
-    /// Whether anything takes the signals of the machine.
-    needs_signals: bool,
+    /// `None` where no samples are kept.
+    record: Option<Record>,
     limits: LimitWatch,
     follower: Follower<'a>,
     /// Of chambers A and B, and the highest so far, Pa.
@@ -83,7 +80,6 @@ impl<'a> Looking<'a> {
         let follower = Follower::of(bench, &wanted, samples, &course.reference, windows);
         let pressures = sums::pressures(bench, &wanted);
         let limits = LimitWatch::of(bench);
-        let needs_signals = table.is_some() || !measurements.is_empty() || limits.wants_signals();
         Looking {
             bench,
             samples,
@@ -91,9 +87,7 @@ impl<'a> Looking<'a> {
             count: 0,
             looks_per_row: looks_per_row as u64,
             table,
-            record: Record::default(),
-            samples_kept: false,
-            needs_signals,
+            record: None,
             limits,
             follower,
             pressures,
@@ -106,8 +100,7 @@ impl<'a> Looking<'a> {
 
     /// The same, with a record of its samples, about as many as this.
     pub(super) fn keeping(mut self, looks: f64) -> Looking<'a> {
-        self.record.reserve(looks as usize);
-        (self.samples_kept, self.needs_signals) = (true, true);
+        self.record.get_or_insert_default().reserve(looks as usize);
         self
     }
 
@@ -125,12 +118,20 @@ impl<'a> Looking<'a> {
         let measured = self.overlays.into_iter().map(Overlaying::finish).collect();
         let metrics = self.follower.metrics();
         Ok(Sighted {
-            record: self.record,
+            record: self.record.unwrap_or_default(),
             metrics,
             peak_pressures_pa: self.peak_pressures_pa,
             measured,
             exceeded: self.limits.finish(),
         })
+    }
+
+    /// Whether anything takes the signals of the machine.
+    fn needs_signals(&self) -> bool {
+        self.table.is_some()
+            || self.record.is_some()
+            || !self.overlays.is_empty()
+            || self.limits.wants_signals()
     }
 
     /// What the controller sees and gives out, and the inputs of the machine alone.
@@ -192,7 +193,7 @@ impl Observer for Looking<'_> {
         }
         let (of_loop, others) = self.loop_look(states, inputs);
         self.limits.take_loop(time_s, of_loop.asked_for.map(|[reference, _]| reference), of_loop.control_v);
-        if !self.needs_signals {
+        if !self.needs_signals() {
             self.count += 1;
             return;
         }
@@ -204,8 +205,8 @@ impl Observer for Looking<'_> {
             self.fault = Some(fault);
             self.full.set(true);
         }
-        if self.samples_kept {
-            self.record.take(self.count, &look);
+        if let Some(record) = &mut self.record {
+            record.take(self.count, &look);
         }
         for overlay in &mut self.overlays {
             overlay.take(&look);

@@ -36,7 +36,8 @@ impl<S: Scalar> Machine<S> {
         })
     }
 
-    /// The gas that exchanges heat, at its pressures in Pa and temperatures theta - 1. Apart, so that machines without it do not carry its code along.
+    /// The gas that exchanges heat, at its pressures in Pa and temperatures theta - 1. Apart, so that
+    /// machines without it do not carry its code along.
     #[inline(never)]
     pub(super) fn heated<T: Scalar + From<S>>(&self, pressures: [T; 2], warmings: [T; 2]) -> HeatedSides<T> {
         [0, 1].map(|side| {
@@ -48,7 +49,7 @@ impl<S: Scalar> Machine<S> {
     }
 
     /// Rates of the pressures of both chambers in Pa/s, with these flows into them in m3/s and these
-    /// compliances in m3/Pa, each without the gas that exchanges heat; and the flows into that gas.
+    /// compliances in m3/Pa, each without the gas that exchanges heat.
     ///
     /// ```text
     /// (C_oil + C) dp/dt = into - C P (theta - 1)/(theta tau)

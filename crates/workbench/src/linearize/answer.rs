@@ -82,7 +82,7 @@ fn linkages(places: &[LinkagePlace]) -> Option<Vec<Object>> {
 /// A linkage at one position.
 fn linkage(place: &LinkagePlace) -> Object {
     Object::new()
-        .with("at", place.what)
+        .with("at", place.at.words())
         .with("position_m", place.position_m)
         .with("angle_rad", place.angle_rad)
         .with("lever_arm_m", place.lever_arm_m)

@@ -82,7 +82,7 @@ pub(crate) fn document(linearization: &Linearization, figures: Vec<Figure>) -> D
 pub(crate) fn linkage_table(places: &[LinkagePlace]) -> Table {
     let row = |place: &LinkagePlace| {
         [
-            place.what.into(),
+            place.at.words().into(),
             Cell::number(1e3 * place.position_m, 4),
             Cell::number(place.angle_rad.to_degrees(), 4),
             Cell::number(1e3 * place.lever_arm_m, 4),
