@@ -75,9 +75,10 @@ pub(super) fn cross_port(number: u64) -> Option<CrossPort> {
     }
 }
 
-/// The supply pressure of a machine at rest: the last of the states that have names.
-pub(super) fn supply_pressure(unit: &PowerUnit, stated: f64, named: &[f64]) -> f64 {
-    if unit.yields() { named.last().copied().unwrap_or(f64::NAN) } else { stated }
+/// The supply pressure of a machine in this state, or the stated one where it does not yield.
+pub(super) fn supply_pressure(machine: &Machine, stated: f64, state: &[f64]) -> f64 {
+    let place = machine.state_names().iter().position(|name| name == "supply_pressure_pa");
+    place.map_or(stated, |place| state[place])
 }
 
 /// The supply where it rests, for small motions, with this command in V and these pressures at the valve's ports and of the supply in Pa.

@@ -144,7 +144,7 @@ impl Drawn {
         let state = &self.rest.state;
         let pressures = [state[2], state[3]];
         let stated = self.actuator.components().supply;
-        let supplied = supply_pressure(&self.unit, stated.pressure, state);
+        let supplied = supply_pressure(&self.machine, stated.pressure, state);
         let model = TwoPressureModel {
             supply: Supply { pressure: supplied, ..stated },
             ..TwoPressureModel::new(&self.actuator, pressures, StiffeningMember::Nominal, self.friction)
@@ -208,7 +208,7 @@ fn a_limited_pump_settles_where_the_machine_rests() {
         let idle = components.supply.pressure;
         let balance = Balance::of(components);
         let found = balance.settled_supply(&unit, idle, Steady::Command(rig.rest.state[0]));
-        let rests = *rig.rest.state.last().unwrap();
+        let rests = supply_pressure(&rig.machine, f64::NAN, &rig.rest.state);
         if found.taken < unit.pump_flow {
             assert!((found.supply.pressure / rests - 1.0).abs() < 1e-9, "rig {number}: {found:?} {rests}");
             for (own, rests) in found.settled.pressures.into_iter().zip(&rig.rest.state[2..4]) {

@@ -11,7 +11,7 @@ use phea_dynamics::random::{share, stream};
 use phea_dynamics::simulation::small_signal;
 use phea_dynamics::uncertain_plant::RationalCoefficients;
 use phea_dynamics::uncertain_plant::responding::RespondingPlant;
-use phea_hydraulics::accumulator::{Accumulator, GasBranch};
+use phea_hydraulics::accumulator::Accumulator;
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::cross_port::CrossFlow;
 use phea_hydraulics::cylinder::{Cylinder, areas_from_diameters};
@@ -176,11 +176,7 @@ pub(crate) fn drawn(number: u64) -> Drawn {
     let point = at_ports(&rest.state, position, &lines, parts.cross_flow());
     let (across, dynamic_feedback) = parts.cross_admittance(pressures);
     let gas = parts.gas_branches(pressures);
-    let of = |is_there: bool| usize::from(is_there);
-    let states = |gas: &GasBranch| 2 * of(gas.neck.is_some()) + of(gas.relaxation.is_some());
-    let of_gas: usize = gas.iter().flatten().map(states).sum();
-    let named = 6 + of_gas + of(dynamic_feedback.is_some()) + of(unit.yields()) + 2 * of(moves);
-    let supplied = supply_pressure(&unit, parts.supply.pressure, &rest.state[..named]);
+    let supplied = supply_pressure(&machine, parts.supply.pressure, &rest.state);
     let parameters = parameters_at(supplied, &actuator, &point, (pressures, friction));
     let [oil_a, oil_b] = Chambers::behind_lines(&actuator, StiffeningMember::Nominal, [0.0; 2])
         .compliance(position, pressures);

@@ -60,7 +60,6 @@ impl Machine {
             pressure_b,
             supply_pressure,
             cross_port_pressure: pressure_a - pressure_b,
-            gas_pressures: [pressure_a, pressure_b],
             ..*state
         };
         balanced.spool.spool = spool;

@@ -41,14 +41,6 @@ pub(super) struct Forces<T> {
     pub(super) end_stops: T,
 }
 
-/// Rates of the oil and the gas. Units: Pa/s, m3/s2, 1/s.
-struct PressureRates<T> {
-    chambers: [T; 2],
-    neck_flows: [T; 2],
-    gas_pressures: [T; 2],
-    gas_warmings: [T; 2],
-}
-
 /// A parameter as a constant of the equations.
 #[inline(always)]
 pub(super) fn constant<S, T: From<S>>(parameter: S) -> T {
@@ -124,7 +116,7 @@ impl<S: Scalar> Machine<S> {
     pub(super) fn compliance<T: Scalar + From<S>>(&self, state: &MachineState<T>, position: T) -> [T; 2] {
         let [oil_a, oil_b] = self.oil_compliance(state, position);
         let [gas_a, gas_b] = &self.accumulators;
-        let [apart_a, apart_b] = self.layout.gas_states();
+        let [apart_a, apart_b] = self.layout.gas_at();
         let with = |oil: T, gas: &Option<Accumulator<S>>, apart: bool, pressure: T| match gas {
             Some(gas) if !apart => {
                 let [gas] = T::local(gas, [pressure]);
@@ -256,17 +248,19 @@ impl<S: Scalar> Machine<S> {
         let on_load = external.map_or(on_load, |external| on_load + external);
         let valve = self.valve.convert(&mut constant::<S, T>);
         let chambers = [state.pressure_a, state.pressure_b];
-        let [into_a, into_b] = if self.layout.has_lines() {
+        let from_lines = if self.layout.has_lines() {
             self.through_lines(chambers, flows.from_valve, self.layout.lines(vector), inputs, rates)
         } else {
             flows.from_valve
         };
-        let PressureRates { chambers: [pressure_a, pressure_b], neck_flows, gas_pressures, gas_warmings } =
-            self.pressure_rates(&state, &flows, position, [into_a, into_b]);
+        let (into, compliances) =
+            (self.into_chambers(&state, &flows, from_lines), self.compliance(&state, position));
+        let [pressure_a, pressure_b] = if self.layout.has_gas() {
+            self.beside_gas(vector, chambers, into, compliances, rates)
+        } else {
+            [into[0] / compliances[0], into[1] / compliances[1]]
+        };
         let state_rates = MachineState {
-            neck_flows,
-            gas_pressures,
-            gas_warmings,
             spool: self.spool.convert(&mut constant::<S, T>).rates(&valve, &state.spool, command),
             pressure_a,
             pressure_b,
@@ -284,48 +278,22 @@ impl<S: Scalar> Machine<S> {
         self.layout.write(state_rates, rates);
     }
 
-    /// Rates of the pressures of chambers and gas, of the flows through necks and of the warming of
-    /// the gas, with these flows in m3/s from the lines.
+    /// What enters both chambers and not their growing volumes, in m3/s, with these flows from the
+    /// lines.
     #[inline(always)]
-    fn pressure_rates<T: Scalar + From<S>>(
+    pub(super) fn into_chambers<T: Scalar + From<S>>(
         &self,
         state: &MachineState<T>,
         flows: &Flows<T>,
-        position: T,
-        [into_a, into_b]: [T; 2],
-    ) -> PressureRates<T> {
-        let compliances = self.compliance(state, position);
+        [from_a, from_b]: [T; 2],
+    ) -> [T; 2] {
         let [area_a, area_b]: [T; 2] = [constant(self.cylinder.area_a), constant(self.cylinder.area_b)];
-        let (chambers, velocity) = ([state.pressure_a, state.pressure_b], state.velocity);
-        let heated =
-            self.layout.has_heat().then(|| self.heated(self.gas_pressures(state), state.gas_warmings));
-        let zero = [T::from(0.0); 2];
-        let (into_a, into_b, [neck_flows, gas_pressures]) = if self.layout.has_necks() {
-            let [into_neck_a, into_neck_b] = state.neck_flows;
-            let rates = self.through_necks(chambers, state.neck_flows, state.gas_pressures, heated.as_ref());
-            (into_a - into_neck_a, into_b - into_neck_b, rates)
-        } else {
-            (into_a, into_b, [zero; 2])
-        };
-        let (stays_in_a, stays_in_b) = (into_a - flows.internal, into_b + flows.internal);
+        let (stays_in_a, stays_in_b) = (from_a - flows.internal, from_b + flows.internal);
         let (stays_in_a, stays_in_b) = match flows.outward {
             None => (stays_in_a, stays_in_b),
             Some([out_of_a, out_of_b]) => (stays_in_a - out_of_a, stays_in_b - out_of_b),
         };
-        let into = [stays_in_a - area_a * velocity, stays_in_b + area_b * velocity];
-        let [pressure_a, pressure_b] = match &heated {
-            None => [into[0] / compliances[0], into[1] / compliances[1]],
-            Some(heated) => self.beside_heated(heated, into, compliances),
-        };
-        let gas_warmings = match &heated {
-            None => zero,
-            Some(heated) => {
-                let behind =
-                    |side: usize, own: T| if self.necks[side].is_some() { gas_pressures[side] } else { own };
-                self.warming_rates(heated, [behind(0, pressure_a), behind(1, pressure_b)])
-            }
-        };
-        PressureRates { chambers: [pressure_a, pressure_b], neck_flows, gas_pressures, gas_warmings }
+        [stays_in_a - area_a * state.velocity, stays_in_b + area_b * state.velocity]
     }
 
     /// Flows that leave the lines into the chambers, in m3/s; writes the rates of the lines'

@@ -2,9 +2,29 @@
 
 use phea_dynamics::scalar::Scalar;
 
+use super::Machine;
 use super::equations::constant;
-use super::{Machine, MachineState};
 use crate::accumulator::{HeatedGas, RelaxingGas};
+
+/// States of the gas at both chambers, or their rates; those that a machine lacks are zero.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct GasStates<T> {
+    /// Flow q_n in m3/s through the neck of the accumulator at each chamber, into its gas.
+    pub(super) neck_flows: [T; 2],
+    /// Pressure p_g in Pa of the gas behind each neck.
+    pub(super) pressures: [T; 2],
+    /// theta - 1 of the gas at each chamber, by which its absolute temperature is above that of its
+    /// wall, where it exchanges heat.
+    pub(super) warmings: [T; 2],
+}
+
+impl<T: Scalar> GasStates<T> {
+    /// Everything zero.
+    pub(super) fn zero() -> GasStates<T> {
+        let zero = [T::from(0.0); 2];
+        GasStates { neck_flows: zero, pressures: zero, warmings: zero }
+    }
+}
 
 /// Gas of both chambers that exchanges heat; `None` of a chamber without such gas.
 pub(super) type HeatedSides<T> = [Option<HeatedGas<T>>; 2];
@@ -12,34 +32,33 @@ pub(super) type HeatedSides<T> = [Option<HeatedGas<T>>; 2];
 impl<S: Scalar> Machine<S> {
     /// Pressures of the gas at either chamber, in Pa.
     #[inline(always)]
-    pub(super) fn gas_pressures<T: Scalar + From<S>>(&self, state: &MachineState<T>) -> [T; 2] {
-        let [neck_a, neck_b] = &self.necks;
-        [
-            if neck_a.is_some() { state.gas_pressures[0] } else { state.pressure_a },
-            if neck_b.is_some() { state.gas_pressures[1] } else { state.pressure_b },
-        ]
+    pub(super) fn gas_pressures<T: Scalar>(&self, chambers: [T; 2], gas: &GasStates<T>) -> [T; 2] {
+        [0, 1].map(|side| if self.necks[side].is_some() { gas.pressures[side] } else { chambers[side] })
     }
 
     /// Pressures in Pa gauge at which the gas at either chamber has its precharge, P_0 theta; `None`
     /// without gas.
     #[inline(always)]
-    pub(super) fn precharges<T: Scalar + From<S>>(&self, state: &MachineState<T>) -> [Option<T>; 2] {
+    pub(super) fn precharges<T: Scalar + From<S>>(&self, gas: &GasStates<T>) -> [Option<T>; 2] {
         [0, 1].map(|side| {
             let precharge: T = constant(self.accumulators[side]?.precharge_pressure);
             Some(match self.thermal_time_constants[side] {
                 None => precharge,
                 Some(_) => {
                     let atmosphere = T::from(crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE);
-                    precharge + (precharge + atmosphere) * state.gas_warmings[side]
+                    precharge + (precharge + atmosphere) * gas.warmings[side]
                 }
             })
         })
     }
 
-    /// The gas that exchanges heat, at its pressures in Pa and temperatures theta - 1. Apart, so that
-    /// machines without it do not carry its code along.
-    #[inline(never)]
-    pub(super) fn heated<T: Scalar + From<S>>(&self, pressures: [T; 2], warmings: [T; 2]) -> HeatedSides<T> {
+    /// The gas that exchanges heat, at these pressures of the chambers in Pa.
+    pub(super) fn heated<T: Scalar + From<S>>(
+        &self,
+        chambers: [T; 2],
+        states: &GasStates<T>,
+    ) -> HeatedSides<T> {
+        let (pressures, warmings) = (self.gas_pressures(chambers, states), states.warmings);
         [0, 1].map(|side| {
             let (gas, time_constant) = self.accumulators[side].zip(self.thermal_time_constants[side])?;
             let gas = gas.convert(&mut constant::<S, T>);
@@ -48,14 +67,36 @@ impl<S: Scalar> Machine<S> {
         })
     }
 
+    /// Rates of the pressures of both chambers in Pa/s beside gas that has states of its own, with
+    /// these flows into them in m3/s and these compliances in m3/Pa; writes the rates of those states.
+    /// Apart, so that machines without such gas do not carry its code along.
+    #[inline(never)]
+    pub(super) fn beside_gas<T: Scalar + From<S>>(
+        &self,
+        vector: &[T],
+        chambers: [T; 2],
+        into: [T; 2],
+        compliances: [T; 2],
+        rates: &mut [T],
+    ) -> [T; 2] {
+        let gas = self.layout.read_gas(vector);
+        let heated = self.heated(chambers, &gas);
+        let into = [0, 1].map(|side| into[side] - gas.neck_flows[side]);
+        let own = self.beside_heated(&heated, into, compliances);
+        let [neck_flows, pressures] = self.through_necks(chambers, &gas, &heated);
+        let behind = GasStates { pressures, ..gas };
+        let warmings = self.warming_rates(&heated, self.gas_pressures(own, &behind));
+        self.layout.write_gas(GasStates { neck_flows, pressures, warmings }, rates);
+        own
+    }
+
     /// Rates of the pressures of both chambers in Pa/s, with these flows into them in m3/s and these
     /// compliances in m3/Pa, each without the gas that exchanges heat.
     ///
     /// ```text
     /// (C_oil + C) dp/dt = into - C P (theta - 1)/(theta tau)
     /// ```
-    #[inline(never)]
-    pub(super) fn beside_heated<T: Scalar + From<S>>(
+    fn beside_heated<T: Scalar + From<S>>(
         &self,
         heated: &HeatedSides<T>,
         into: [T; 2],
@@ -71,33 +112,26 @@ impl<S: Scalar> Machine<S> {
 
     /// Rates of theta in 1/s while the pressures of the gas rise at these rates in Pa/s.
     #[inline(never)]
-    pub(super) fn warming_rates<T: Scalar + From<S>>(
-        &self,
-        heated: &HeatedSides<T>,
-        pressure_rates: [T; 2],
-    ) -> [T; 2] {
+    fn warming_rates<T: Scalar + From<S>>(&self, heated: &HeatedSides<T>, pressure_rates: [T; 2]) -> [T; 2] {
         [0, 1].map(|side| {
             heated[side].map_or(T::from(0.0), |gas| gas.warming_rate(gas.flow(pressure_rates[side])))
         })
     }
 
-    /// Rates of the flows through the necks in m3/s2 and of the pressures behind them in Pa/s. Apart,
-    /// so that machines without necks do not carry its code along.
-    #[inline(never)]
-    pub(super) fn through_necks<T: Scalar + From<S>>(
+    /// Rates of the flows through the necks in m3/s2 and of the pressures behind them in Pa/s.
+    fn through_necks<T: Scalar + From<S>>(
         &self,
         chambers: [T; 2],
-        neck_flows: [T; 2],
-        gas_pressures: [T; 2],
-        heated: Option<&HeatedSides<T>>,
+        states: &GasStates<T>,
+        heated: &HeatedSides<T>,
     ) -> [[T; 2]; 2] {
         let [side_a, side_b] = [0, 1].map(|side| {
             let parts = self.necks[side].zip(self.accumulators[side]);
             parts.map_or([T::from(0.0); 2], |(neck, gas)| {
-                let (flow, pressure) = (neck_flows[side], gas_pressures[side]);
+                let (flow, pressure) = (states.neck_flows[side], states.pressures[side]);
                 let neck = neck.convert(&mut constant::<S, T>);
                 let pushing = chambers[side] - pressure - neck.drop(flow);
-                let rate = match heated.and_then(|sides| sides[side].as_ref()) {
+                let rate = match &heated[side] {
                     None => {
                         let gas = gas.convert(&mut constant::<S, T>).compliance(pressure);
                         flow / (gas + neck.compliance)

@@ -138,8 +138,9 @@ impl<S: Scalar> Machine<S> {
     }
 
     /// The [`INDICATORS`] at a state and inputs.
-    pub(super) fn indicated<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T]) -> [T; INDICATORS.len()] {
-        let state = self.layout.read(state);
+    pub(super) fn indicated<T: Scalar + From<S>>(&self, vector: &[T], inputs: &[T]) -> [T; INDICATORS.len()] {
+        let state = self.layout.read(vector);
+        let gas = self.layout.read_gas(vector);
         let ground = ground_of(inputs);
         let load = self.load_of(&state, &ground);
         let joint = self.joint(&state, &self.end_of(&load).motion);
@@ -151,14 +152,14 @@ impl<S: Scalar> Machine<S> {
         };
         let [compliance_a, compliance_b] = self.oil_compliance(&state, position);
         let supply = self.supply_of(&state);
-        let [precharge_a, precharge_b] = self.precharges(&state);
+        let [precharge_a, precharge_b] = self.precharges(&gas);
         let charged = |precharge: Option<T>, pressure: T| {
             precharge.map_or(T::from(1.0), |precharge| pressure - precharge)
         };
         let below = |limit: Option<S>, pressure: T| {
             limit.map_or(T::from(1.0), |limit| constant::<S, T>(limit) - pressure)
         };
-        let [behind_a, behind_b] = self.gas_pressures(&state);
+        let [behind_a, behind_b] = self.gas_pressures([state.pressure_a, state.pressure_b], &gas);
         let [limit_a, limit_b] = self.gas_pressure_limits;
         [
             state.pressure_a.minimum(behind_a) - vapour,

@@ -1,6 +1,7 @@
 use phea_dynamics::simulation::Plant;
 
 use super::balance::Kept;
+use super::gas::GasStates;
 use super::{LoadModel, Machine, MachineError, MachineState};
 use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 use crate::friction::MovingFriction;
@@ -82,7 +83,6 @@ impl Machine {
         state.spool.spool = start.spool;
         (state.pressure_a, state.pressure_b) = (start.pressure_a, start.pressure_b);
         state.cross_port_pressure = start.pressure_a - start.pressure_b;
-        state.gas_pressures = [start.pressure_a, start.pressure_b];
         state.supply_pressure = self.supply.pressure;
         state.velocity = start.velocity;
         state.bristle = self.settled_bristle(start.velocity);
@@ -143,7 +143,6 @@ impl Machine {
         state.spool.spool = start.spool;
         (state.pressure_a, state.pressure_b) = (start.pressure_a, start.pressure_b);
         state.cross_port_pressure = start.pressure_a - start.pressure_b;
-        state.gas_pressures = [start.pressure_a, start.pressure_b];
         state.supply_pressure = self.supply.pressure;
         state.velocity = start.velocity;
         state.bristle = self.settled_bristle(start.velocity);
@@ -174,6 +173,7 @@ impl Machine {
         let mut vector = vec![0.0; self.layout.count()];
         self.layout.write(*state, &mut vector);
         let pressures = [state.pressure_a, state.pressure_b];
+        self.layout.write_gas(GasStates { pressures, ..GasStates::zero() }, &mut vector);
         let flows = self.steady_flows(state);
         let mut waves = Vec::new();
         let places = self.layout.lines_mut(&mut vector).into_iter().zip(&self.lines);

@@ -1,6 +1,7 @@
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::Sliding;
 
+use super::gas::GasStates;
 use super::series::SeriesStates;
 use super::{Machine, Motion};
 use crate::servovalve::SpoolState;
@@ -9,9 +10,10 @@ use crate::servovalve::SpoolState;
 /// place in its vector.
 ///
 /// The order of the vector is that of the fields: spool voltage and rate, p_A, p_B, deflection,
-/// velocity, and then, if present, those of bristles, load, capacity between the chambers, necks,
-/// supply, spool friction, magnetic lag, series element. The states of lines, which have no names,
-/// follow.
+/// velocity, and then, if present, those of bristles, load, capacity between the chambers, supply,
+/// spool friction, magnetic lag, series element. The states of gas ([`Machine::state_names`] names
+/// them too) and those of lines follow; they are read by what is made of them alone, so that machines
+/// without them do not carry zeros along.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MachineState<T = f64> {
     /// Position of the spool in V and what moves it; its two memories stand last in the vector.
@@ -33,13 +35,6 @@ pub struct MachineState<T = f64> {
     pub load: Motion<T>,
     /// Pressure difference p_cp in Pa over the capacity of a valve between the chambers.
     pub cross_port_pressure: T,
-    /// Flow q_n in m3/s through the neck of the accumulator at each chamber, into its gas.
-    pub neck_flows: [T; 2],
-    /// Pressure p_g in Pa of the gas behind each neck.
-    pub gas_pressures: [T; 2],
-    /// theta - 1 of the gas at each chamber, by which its absolute temperature is above that of its
-    /// wall, where it exchanges heat.
-    pub gas_warmings: [T; 2],
     /// Supply pressure p_S in Pa, where a pump is limited.
     pub supply_pressure: T,
     /// A series element with damper or mass: deflection of its spring in m, and velocity of the mass
@@ -64,12 +59,14 @@ pub(super) struct Layout {
     heat: [bool; 2],
     /// Whether a force from outside is an input.
     external_force: bool,
+    /// States of the gas, which follow those of [`MachineState`].
+    gas: usize,
     /// States of both lines, which follow all others, A first.
     lines: [usize; 2],
     /// Waves that arrive from both lines, the last inputs, A first.
     waves: [usize; 2],
-    /// States that have names: all but the lines'.
-    named: usize,
+    /// States of [`MachineState`].
+    own: usize,
 }
 
 /// Position and velocity of the ground come first.
@@ -91,9 +88,6 @@ impl<T: Scalar> MachineState<T> {
             supply_pressure: zero,
             cross_port_pressure: zero,
             series: Motion { position: zero, velocity: zero },
-            neck_flows: [zero; 2],
-            gas_pressures: [zero; 2],
-            gas_warmings: [zero; 2],
         }
     }
 }
@@ -113,11 +107,13 @@ impl Layout {
             external_force: machine.external_force,
             lines: machine.lines.map(|line| line.states()),
             waves: machine.lines.map(|line| line.delays().len()),
-            named: 0,
+            gas: 0,
+            own: 0,
         };
-        let mut named = 0;
-        layout.visit(&mut MachineState::<f64>::zero(), |_| named += 1);
-        layout.named = named;
+        let (mut own, mut gas) = (0, 0);
+        layout.visit(&mut MachineState::<f64>::zero(), |_| own += 1);
+        layout.visit_gas(&mut GasStates::<f64>::zero(), |_| gas += 1);
+        (layout.own, layout.gas) = (own, gas);
         layout
     }
 
@@ -131,7 +127,13 @@ impl Layout {
     #[inline(always)]
     pub(super) fn count(&self) -> usize {
         let [a, b] = self.lines;
-        self.named + a + b
+        self.before_lines() + a + b
+    }
+
+    /// Number of states before those of the lines.
+    #[inline(always)]
+    fn before_lines(&self) -> usize {
+        self.own + self.gas
     }
 
     /// Where friction acts: on the velocity, the sixth of the states that all machines have, and on
@@ -160,21 +162,15 @@ impl Layout {
         self.external_force.then(|| inputs.get(GROUND_INPUTS).copied().unwrap_or(missing))
     }
 
-    /// Whether an accumulator at a chamber has a neck.
+    /// Whether gas at a chamber has states of its own.
     #[inline(always)]
-    pub(super) fn has_necks(&self) -> bool {
-        self.necks != [false; 2]
-    }
-
-    /// Whether gas at a chamber exchanges heat.
-    #[inline(always)]
-    pub(super) fn has_heat(&self) -> bool {
-        self.heat != [false; 2]
+    pub(super) fn has_gas(&self) -> bool {
+        self.gas != 0
     }
 
     /// Whether the gas at each chamber has states of its own.
     #[inline(always)]
-    pub(super) fn gas_states(&self) -> [bool; 2] {
+    pub(super) fn gas_at(&self) -> [bool; 2] {
         [self.necks[0] || self.heat[0], self.necks[1] || self.heat[1]]
     }
 
@@ -197,15 +193,15 @@ impl Layout {
     /// States of both lines.
     #[inline(always)]
     pub(super) fn lines<'a, T>(&self, vector: &'a [T]) -> [&'a [T]; 2] {
-        two_parts(vector, self.named, self.lines)
+        two_parts(vector, self.before_lines(), self.lines)
     }
 
     /// States of both lines, to be written.
     #[inline(always)]
     pub(super) fn lines_mut<'a, T>(&self, vector: &'a mut [T]) -> [&'a mut [T]; 2] {
         let [count_a, count_b] = self.lines;
-        let after_named = vector.get_mut(self.named..).unwrap_or_default();
-        match after_named.split_at_mut_checked(count_a) {
+        let lines = vector.get_mut(self.before_lines()..).unwrap_or_default();
+        match lines.split_at_mut_checked(count_a) {
             Some((line_a, rest)) => [line_a, rest.get_mut(..count_b).unwrap_or_default()],
             None => [&mut [], &mut []],
         }
@@ -264,23 +260,6 @@ impl Layout {
         if self.capacity {
             visit(&mut state.cross_port_pressure);
         }
-        let [neck_a, neck_b] = self.necks;
-        let ([flow_a, flow_b], [gas_a, gas_b]) = (&mut state.neck_flows, &mut state.gas_pressures);
-        if neck_a {
-            visit(flow_a);
-            visit(gas_a);
-        }
-        if neck_b {
-            visit(flow_b);
-            visit(gas_b);
-        }
-        let ([heat_a, heat_b], [warming_a, warming_b]) = (self.heat, &mut state.gas_warmings);
-        if heat_a {
-            visit(warming_a);
-        }
-        if heat_b {
-            visit(warming_b);
-        }
         if self.supply {
             visit(&mut state.supply_pressure);
         }
@@ -295,6 +274,41 @@ impl Layout {
         }
         if self.series == SeriesStates::Mass {
             visit(&mut state.series.velocity);
+        }
+    }
+
+    /// The states of the gas by name; states that the vector lacks are NaN, those that the machine
+    /// lacks zero.
+    pub(super) fn read_gas<T: Scalar>(&self, vector: &[T]) -> GasStates<T> {
+        let mut gas = GasStates::zero();
+        let mut entries = vector.iter().skip(self.own);
+        self.visit_gas(&mut gas, |slot| *slot = entries.next().copied().unwrap_or(T::from(f64::NAN)));
+        gas
+    }
+
+    /// The states of the gas, or their rates, at their places in the vector.
+    pub(super) fn write_gas<T: Copy>(&self, mut gas: GasStates<T>, vector: &mut [T]) {
+        let mut entries = vector.iter_mut().skip(self.own);
+        self.visit_gas(&mut gas, |slot| {
+            if let Some(entry) = entries.next() {
+                *entry = *slot;
+            }
+        });
+    }
+
+    /// Visits the states of the gas in the order of the vector.
+    #[inline(always)]
+    fn visit_gas<T>(&self, gas: &mut GasStates<T>, mut visit: impl FnMut(&mut T)) {
+        for side in 0..2 {
+            if self.necks[side] {
+                visit(&mut gas.neck_flows[side]);
+                visit(&mut gas.pressures[side]);
+            }
+        }
+        for side in 0..2 {
+            if self.heat[side] {
+                visit(&mut gas.warmings[side]);
+            }
         }
     }
 }
@@ -334,6 +348,7 @@ impl Machine {
             own.load = Motion { position: "joint_displacement_rad", velocity: "joint_velocity_rad_per_s" };
         }
         self.layout.visit(&mut own, |name| names.push((*name).to_string()));
+        self.layout.visit_gas(&mut GAS_NAMES.clone(), |name| names.push((*name).to_string()));
         for (line, count) in ["line_a", "line_b"].into_iter().zip(self.layout.lines) {
             names.extend((1..=count).map(|number| format!("{line}_{number}")));
         }
@@ -358,9 +373,12 @@ const NAMES: MachineState<&str> = MachineState {
     supply_pressure: "supply_pressure_pa",
     cross_port_pressure: "cross_port_pressure_pa",
     series: Motion { position: "series_deflection_m", velocity: "series_velocity_m_per_s" },
+};
+
+const GAS_NAMES: GasStates<&str> = GasStates {
     neck_flows: ["neck_flow_a_m3_per_s", "neck_flow_b_m3_per_s"],
-    gas_pressures: ["gas_pressure_a_pa", "gas_pressure_b_pa"],
-    gas_warmings: ["gas_warming_a", "gas_warming_b"],
+    pressures: ["gas_pressure_a_pa", "gas_pressure_b_pa"],
+    warmings: ["gas_warming_a", "gas_warming_b"],
 };
 
 impl<S: Scalar> Machine<S> {
@@ -405,19 +423,22 @@ impl<S: Scalar> Machine<S> {
             supply_pressure: pressure,
             cross_port_pressure: pressure,
             series,
-            neck_flows: [velocity * self.cylinder.area_a; 2],
-            gas_pressures: [pressure; 2],
-            // thirty degrees
-            gas_warmings: [S::from(0.1); 2],
         }
     }
 
-    /// The same in the order of the vector, the states of lines included.
+    /// The same in the order of the vector, the states of gas and lines included.
     pub(super) fn typical_vector(&self) -> Vec<S> {
         let typical = self.typical_state();
         let flow = typical.velocity * self.cylinder.area_a;
         let mut vector = vec![S::from(0.0); self.layout.count()];
         self.layout.write(typical, &mut vector);
+        let gas = GasStates {
+            neck_flows: [flow; 2],
+            pressures: [typical.pressure_a; 2],
+            // thirty degrees
+            warmings: [S::from(0.1); 2],
+        };
+        self.layout.write_gas(gas, &mut vector);
         for (places, line) in self.layout.lines_mut(&mut vector).into_iter().zip(&self.lines) {
             let (pressures, flows) = (line.scales(1.0, 0.0), line.scales(0.0, 1.0));
             for (place, (of_pressure, of_flow)) in places.iter_mut().zip(pressures.into_iter().zip(flows)) {

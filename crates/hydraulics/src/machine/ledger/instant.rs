@@ -1,6 +1,7 @@
 use phea_dynamics::scalar::Scalar;
 
 use super::super::equations::{Flows, constant};
+use super::super::gas::GasStates;
 use super::super::series::Joint;
 use super::super::signals::ground_of;
 use super::super::{Accumulator, Chambers, Machine, MachineState, Motion, PowerUnit};
@@ -159,7 +160,7 @@ impl<T: Scalar> SupplyInstant<T> {
 impl<S: Scalar> Machine<S> {
     /// `None` where waves travel along a line.
     pub(super) fn instant<T: Scalar + From<S>>(&self, vector: &[T], inputs: &[T]) -> Option<Instant<T>> {
-        let state = self.layout.read(vector);
+        let (state, states) = (self.layout.read(vector), self.layout.read_gas(vector));
         let ground = ground_of(inputs);
         let load = self.load_of(&state, &ground);
         let external = self.layout.external_force(inputs);
@@ -175,9 +176,9 @@ impl<S: Scalar> Machine<S> {
             LineInstant::of(line_a, [port_a, state.pressure_a], from_a, vector_a)?,
             LineInstant::of(line_b, [port_b, state.pressure_b], from_b, vector_b)?,
         ];
-        let gas = self.gas_instants(&state, position, &flows, &lines);
+        let gas = self.gas_instants(&state, &states, position, &flows, &lines);
         Some(Instant {
-            necks: self.neck_instants(&state, &gas),
+            necks: self.neck_instants(&state, &states, &gas),
             gas,
             lines,
             supply: self.supply_instant(&state, &flows, &sides),
@@ -228,17 +229,15 @@ impl<S: Scalar> Machine<S> {
     fn gas_instants<T: Scalar + From<S>>(
         &self,
         state: &MachineState<T>,
+        states: &GasStates<T>,
         position: T,
         flows: &Flows<T>,
         [line_a, line_b]: &[LineInstant<T>; 2],
     ) -> [GasInstant<T>; 2] {
-        let [area_a, area_b]: [T; 2] = [constant(self.cylinder.area_a), constant(self.cylinder.area_b)];
         let [oil_a, oil_b] = self.oil_compliance(state, position);
         let [gas_a, gas_b] = self.accumulators.map(|gas| gas.map(|gas| gas.convert(&mut constant::<S, T>)));
-        let [out_of_a, out_of_b] = flows.out_of_chambers();
-        let into_a = line_a.into_chamber - flows.internal - out_of_a - area_a * state.velocity;
-        let into_b = line_b.into_chamber + flows.internal - out_of_b + area_b * state.velocity;
-        let heated = self.heated(self.gas_pressures(state), state.gas_warmings);
+        let [into_a, into_b] = self.into_chambers(state, flows, [line_a.into_chamber, line_b.into_chamber]);
+        let heated = self.heated([state.pressure_a, state.pressure_b], states);
         let own = |side: usize, gas, pressure, arriving, beside| match &heated[side] {
             None => GasInstant::of(gas, pressure, arriving, beside),
             Some(gas) => GasInstant::heated(gas, pressure, arriving, beside),
@@ -246,8 +245,8 @@ impl<S: Scalar> Machine<S> {
         let of = |side: usize, gas: Option<Accumulator<T>>, into: T, oil: T| match &self.necks[side] {
             None => own(side, gas, [state.pressure_a, state.pressure_b][side], into, oil),
             Some(neck) => {
-                let taken = state.neck_flows[side];
-                let own = own(side, gas, state.gas_pressures[side], taken, constant(neck.compliance));
+                let taken = states.neck_flows[side];
+                let own = own(side, gas, states.pressures[side], taken, constant(neck.compliance));
                 GasInstant { taken, ..own }
             }
         };
@@ -258,6 +257,7 @@ impl<S: Scalar> Machine<S> {
     fn neck_instants<T: Scalar + From<S>>(
         &self,
         state: &MachineState<T>,
+        states: &GasStates<T>,
         gas: &[GasInstant<T>; 2],
     ) -> [NeckInstant<T>; 2] {
         let (zero, half) = (T::from(0.0), T::from(0.5));
@@ -266,7 +266,7 @@ impl<S: Scalar> Machine<S> {
                 let none = Account { stored: zero, inflow: zero, lost: zero };
                 return NeckInstant { oil: none, energy: none };
             };
-            let (flow, behind) = (state.neck_flows[side], state.gas_pressures[side]);
+            let (flow, behind) = (states.neck_flows[side], states.pressures[side]);
             let before = [state.pressure_a, state.pressure_b][side];
             let into_gas = gas[side].inflow;
             NeckInstant {
