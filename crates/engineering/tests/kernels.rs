@@ -12,6 +12,8 @@ mod file_names;
 mod follower;
 #[path = "../src/simulate/metrics.rs"]
 mod metrics;
+#[path = "../src/simulate/parts.rs"]
+mod parts;
 #[path = "../src/campaign/range.rs"]
 mod range;
 #[path = "../src/simulate/record.rs"]
@@ -31,5 +33,6 @@ mod tally;
 
 use metrics::{Cause, Metrics, Window};
 use phea_engineering::simulate;
+use phea_engineering::simulate::ControlledMachine;
 use phea_project as project;
 use phea_quantity as quantity;

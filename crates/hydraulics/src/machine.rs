@@ -44,7 +44,7 @@ pub use chambers::{AeratedChambers, Chambers};
 pub use ledger::{Account, ENERGY_ACCOUNTS, Ledger, OIL_ACCOUNTS};
 pub use load::{LoadModel, Motion};
 pub use options::{MachineError, MachineOptions};
-pub use signals::{INDICATORS, LINKAGE_SIGNALS, SERIES_SIGNALS, SIGNALS};
+pub use signals::{HEAT_SIGNALS, INDICATORS, LINKAGE_SIGNALS, NECK_SIGNALS, SERIES_SIGNALS, SIGNALS};
 pub use start::{InitialCondition, StartValues};
 pub use state::MachineState;
 
@@ -187,6 +187,16 @@ impl Machine {
     /// Whether the load turns behind a linkage.
     pub fn has_linkage(&self) -> bool {
         self.linkage.is_some()
+    }
+
+    /// Whether a neck leads to the gas at chambers A and B.
+    pub fn has_necks(&self) -> [bool; 2] {
+        self.necks.map(|neck| neck.is_some())
+    }
+
+    /// Whether the gas at chambers A and B exchanges heat.
+    pub fn has_heated_gas(&self) -> [bool; 2] {
+        self.thermal_time_constants.map(|time| time.is_some())
     }
 
     /// Whether anything stops the piston at the ends of its stroke.

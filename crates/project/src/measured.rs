@@ -3,7 +3,8 @@
 use super::key::{key, plain};
 use super::visitor::Visitor;
 use phea_quantity::{
-    ANGLE, ANGULAR_VELOCITY, Dimension, FLOW, FORCE, LENGTH, PRESSURE, TIME, TORQUE, VELOCITY, VOLTAGE,
+    ANGLE, ANGULAR_VELOCITY, Dimension, FLOW, FORCE, LENGTH, PRESSURE, RATIO, TEMPERATURE, TIME, TORQUE,
+    VELOCITY, VOLTAGE,
 };
 
 /// A file with measured signals.
@@ -39,7 +40,7 @@ const fn signal(name: &'static str) -> (&'static str, &'static str) {
 
 /// The signals that can be measured, each as a project names it and as the column of a simulation's
 /// table is called: every column but time.
-pub static MEASURABLE: [(&str, &str); 34] = [
+pub static MEASURABLE: [(&str, &str); 40] = [
     signal("force_n"),
     signal("reference_n"),
     signal("control_v"),
@@ -74,6 +75,12 @@ pub static MEASURABLE: [(&str, &str); 34] = [
     signal("joint_velocity_rad_per_s"),
     signal("joint_torque_n_m"),
     signal("external_torque_n_m"),
+    signal("gas_pressure_a_pa"),
+    signal("gas_pressure_b_pa"),
+    signal("gas_temperature_ratio_a"),
+    signal("gas_temperature_ratio_b"),
+    signal("gas_temperature_a_degC"),
+    signal("gas_temperature_b_degC"),
 ];
 
 impl MeasuredFile {
@@ -114,7 +121,10 @@ impl MeasuredSignal {
 
     /// The dimension of the signal, by the unit in its name.
     pub fn dimension(&self) -> &'static Dimension {
-        let by_ending: [(&str, &'static Dimension); 9] = [
+        let by_ending: [(&str, &'static Dimension); 12] = [
+            ("_degC", &TEMPERATURE),
+            ("_ratio_a", &RATIO),
+            ("_ratio_b", &RATIO),
             ("_n_m", &TORQUE),
             ("_rad_per_s", &ANGULAR_VELOCITY),
             ("_rad", &ANGLE),

@@ -304,12 +304,13 @@ fn refuse_mixture(reader: &mut Reader<'_>, root: &TreeNode, is_plant: bool, is_m
         return reader.findings.push(found.expected(expected));
     }
     for name in DeclaredActuator::REQUIRED.iter().filter(|name| root.get(name).is_none()) {
-        reader.findings.push(RawFinding::error(root.place, format!("missing table [{name}]")).consequence());
+        let message = format!("missing table [{name}]");
+        reader.lack(name, RawFinding::error(root.place, message).consequence());
     }
     match (root.get("cylinder"), root.get("motor")) {
         (None, None) => {
             let found = RawFinding::error(root.place, "missing table [cylinder]").consequence();
-            reader.findings.push(found.help("or [motor], for a rotary actuator"));
+            reader.lack("cylinder", found.help("or [motor], for a rotary actuator"));
         }
         (Some(cylinder), Some(_)) => {
             reader.know("cylinder");

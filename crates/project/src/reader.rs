@@ -52,6 +52,9 @@ struct Frame<'a> {
     layers: Vec<Layer<'a>>,
     /// Keys asked for so far.
     asked: Vec<&'static str>,
+    /// Those that are needed and not there, with what is said of each at the end of the table: a key
+    /// that is misspelt explains one.
+    lacking: Vec<(&'static str, RawFinding)>,
     /// The choice of the variant being read, in words.
     chosen: Option<String>,
     /// Whether it names an entry that the catalogue does not have, so that keys that seem to be
@@ -127,6 +130,7 @@ impl<'a> Reader<'a> {
             place,
             layers,
             asked: Vec::new(),
+            lacking: Vec::new(),
             chosen: None,
             lost: false,
             passed_over: None,
@@ -136,13 +140,14 @@ impl<'a> Reader<'a> {
 
     /// Ends a table: keys that were not read are unknown. Returns the keys that were read.
     pub(crate) fn close(&mut self) -> Vec<&'static str> {
-        let Some(frame) = self.frames.pop() else { return Vec::new() };
+        let Some(mut frame) = self.frames.pop() else { return Vec::new() };
         let Some(own) = frame.layers.first() else { return frame.asked };
         for entry in own.node.entries() {
             if !frame.asked.contains(&entry.key.as_str()) {
-                self.findings.push(unknown(entry, &frame));
+                self.findings.push(unknown(entry, &mut frame));
             }
         }
+        frame.lacking.drain(..).for_each(|(_, found)| self.findings.push(found));
         if let Some(extra) = frame.in_order.and_then(|mut rest| rest.next()) {
             let message = format!("too many values: `{}` has {}", frame.path, frame.asked.len());
             self.findings.push(RawFinding::error(extra.place, message));
@@ -150,9 +155,11 @@ impl<'a> Reader<'a> {
         frame.asked
     }
 
-    /// Ends a table whose unknown keys are reported elsewhere. Returns the keys that were read.
+    /// Ends a table whose unknown keys are reported in the table around it. Returns the keys that were read.
     fn leave(&mut self) -> Vec<&'static str> {
-        self.frames.pop().map(|frame| frame.asked).unwrap_or_default()
+        let Some(frame) = self.frames.pop() else { return Vec::new() };
+        frame.lacking.into_iter().for_each(|(name, found)| self.lack(name, found));
+        frame.asked
     }
 
     /// Where the file begins.
@@ -253,7 +260,16 @@ impl<'a> Reader<'a> {
         if !std::ptr::eq(key.dimension, &phea_quantity::RATIO) {
             found = found.expected(format!("{}, such as {}", key.dimension.name, key.dimension.examples));
         }
-        self.findings.push(found);
+        self.lack(key.name, found);
+    }
+
+    /// What is said of a key of the present table that is needed and not there, unless a key that is
+    /// misspelt explains it.
+    pub(crate) fn lack(&mut self, name: &'static str, found: RawFinding) {
+        match self.frames.last_mut() {
+            Some(frame) => frame.lacking.push((name, found)),
+            None => self.findings.push(found),
+        }
     }
 
     /// Whether absent keys are accepted, which is remembered.
@@ -284,11 +300,20 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// A key nobody asked for.
-fn unknown(entry: &Entry, frame: &Frame<'_>) -> RawFinding {
+/// A key nobody asked for. Where it resembles one that is missing, this says both, and nothing else
+/// says that it is missing.
+fn unknown(entry: &Entry, frame: &mut Frame<'_>) -> RawFinding {
     let place = if frame.path.is_empty() { String::new() } else { format!(" in [{}]", frame.path) };
-    let found = RawFinding::error(entry.key_place, format!("unknown key `{}`{place}", entry.key));
-    match nearest(&entry.key, frame.asked.iter().copied()) {
+    let near = nearest(&entry.key, frame.asked.iter().copied());
+    let missing = near.and_then(|name| {
+        let before = frame.lacking.len();
+        frame.lacking.retain(|(lacking, _)| *lacking != name);
+        (frame.lacking.len() < before).then_some(name)
+    });
+    let missing = missing.map_or(String::new(), |name| format!(", and `{name}` is missing"));
+    let message = format!("unknown key `{}`{place}{missing}", entry.key);
+    let found = RawFinding::error(entry.key_place, message);
+    match near {
         Some(name) => found.help(format!("did you mean `{name}`?")),
         None if frame.asked.len() <= 12 => found.help(format!("known here: {}", frame.asked.join(", "))),
         None => found,

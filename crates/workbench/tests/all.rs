@@ -3,6 +3,7 @@
 
 mod accumulator;
 mod alternatives;
+mod alternatives_front;
 mod ask;
 mod benchmark;
 mod campaign;

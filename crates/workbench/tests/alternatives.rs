@@ -76,7 +76,7 @@ name = "pipe"
     )
 }
 
-fn parsed(answer: &Answer) -> Value {
+pub(super) fn parsed(answer: &Answer) -> Value {
     serde_json::from_str(&answer.json).unwrap()
 }
 
@@ -445,17 +445,17 @@ fn the_report_names_or_judges_the_alternatives() {
     assert!(!judged.contains("phea report --alternatives"));
 }
 
-const BOOK: &str = include_str!("../../../book/src/theory/compliance_compared.md");
+pub(super) const BOOK: &str = include_str!("../../../book/src/theory/compliance_compared.md");
 
 /// The rows of the book's tables of that many columns, each as its words in a line.
-fn rows_of_the_book(columns: usize) -> Vec<String> {
+pub(super) fn rows_of_the_book(columns: usize) -> Vec<String> {
     let rows = BOOK.lines().filter(|line| line.starts_with("| ") && line.split(" | ").count() == columns);
     let rows = rows.map(|row| row.trim_matches(['|', ' ']).replace(" | ", " "));
     rows.filter(|row| !row.contains("specifications")).collect()
 }
 
 /// A row of the book stands in a line of an output, its numbers and words in their order.
-fn stands_in(row: &str, output: &str) -> bool {
+pub(super) fn stands_in(row: &str, output: &str) -> bool {
     let lines = output.lines().map(|line| line.split_whitespace().collect::<Vec<_>>().join(" "));
     lines.map(|line| format!("{line} ")).any(|line| line.contains(&format!("{row} ")))
 }

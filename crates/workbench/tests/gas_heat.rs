@@ -2,9 +2,11 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
-use phea_workbench::command::Request;
+use phea_dynamics::portable::pow;
+use phea_workbench::command::{Request, SimulateRequest};
 use phea_workbench::report::report;
 use phea_workbench::setup::Setup;
+use phea_workbench::simulate::{ScenarioRun, simulate_project};
 
 use super::ask::{answer, check, derived, json, load, near, project_of, source, try_answer};
 use super::plant_of_verdicts::{assert_nominal_is_the_rig, responses, without_uncertainty};
@@ -152,4 +154,65 @@ fn a_run_tells_where_the_limit_of_the_maker_is_passed() {
     let setup = Setup::new(&loaded.project).unwrap();
     let page = report(&source(HEAT), &loaded, &setup, None, &mut |_| true).unwrap().html;
     assert!(page.contains("the gas at chamber A is above its maximum_pressure_ratio"));
+}
+
+/// What a run of the rig with this gas at chamber A behind its neck and at B shows.
+fn run_of(settings: &[&str]) -> ScenarioRun {
+    let loaded = load(HEAT, settings, &[]);
+    let setup = Setup::new(&loaded.project).unwrap();
+    simulate_project(&source(HEAT), &setup, &mut |_| true).unwrap().remove(0)
+}
+
+/// A load that is moved, without a chamber falling below its precharge.
+const PRESSED: &str = "scenario=[{ name = \"pressed\", duration = \"0.4 s\", load_motion = { kind = \"smooth_step\", start = \"0.1 s\", duration = \"20 ms\", distance = \"-0.7 mm\" } }]";
+
+/// Gas without time for heat is as warm as its pressure says, behind a neck and without; at rest it has the pressure of its
+/// chamber and the temperature of its wall.
+#[test]
+fn the_gas_of_a_run_is_adiabatic_where_it_has_no_time_for_heat() {
+    let slow = ["line.accumulator.thermal_time_constant=1e9", "line.b.accumulator.thermal_time_constant=1e9"];
+    let record = run_of(&[&slow[..], &[PRESSED]].concat()).record;
+    let [behind_a, chamber_a, chamber_b, ratio_a, ratio_b, celsius_b] = [
+        "gas_pressure_a_pa",
+        "pressure_a_pa",
+        "pressure_b_pa",
+        "gas_temperature_ratio_a",
+        "gas_temperature_ratio_b",
+        "gas_temperature_b_degC",
+    ]
+    .map(|name| record.signal(name));
+    assert!((behind_a[0] - chamber_a[0]).abs() < 1.0, "{} {}", behind_a[0], chamber_a[0]);
+    assert!(ratio_a[0] == 1.0 && ratio_b[0] == 1.0 && celsius_b[0] == 45.0);
+    let mut widest = [0.0_f64; 2];
+    for (side, pressures, ratios) in [(0, &behind_a, &ratio_a), (1, &chamber_b, &ratio_b)] {
+        for (pressure, ratio) in pressures.iter().zip(ratios) {
+            // ORIGIN: analytic, T_2/T_1 = (P_2/P_1)^((gamma - 1)/gamma), absolute, with gamma = 1.4
+            let expected = pow((pressure + ATMOSPHERE) / (pressures[0] + ATMOSPHERE), 0.4 / 1.4);
+            assert!((ratio - expected).abs() < 2e-4, "{side}: {ratio} {expected}");
+            widest[side] = widest[side].max((ratio - 1.0).abs());
+        }
+    }
+    assert!(widest.iter().all(|width| *width > 0.02), "{widest:?}");
+    for (celsius, ratio) in celsius_b.iter().zip(&ratio_b) {
+        assert!((celsius + 273.15 - 318.15 * ratio).abs() < 1e-9);
+    }
+    // chamber B has no neck, and the project does not state how warm the gas at A is
+    for name in ["gas_pressure_b_pa", "gas_temperature_a_degC"] {
+        assert!(record.signal(name).is_empty(), "{name}");
+    }
+}
+
+/// Figures have the gas of a rig that has such gas, side by side, and of no other.
+#[test]
+fn figures_have_the_gas_that_is_there() {
+    let request = Request::SimulateAs(SimulateRequest { figures: true, ..SimulateRequest::default() });
+    let drawn = |text: &str| {
+        let files = answer(text, &[PRESSED], &[], &request).files;
+        let figure = files.iter().find(|file| file.name == "simulation-1.svg").unwrap();
+        String::from_utf8(figure.bytes.clone()).unwrap()
+    };
+    let (with, without) = (drawn(HEAT), drawn(GAS));
+    for part in ["gas A", "gas B"] {
+        assert!(with.contains(part) && !without.contains(part), "{part}");
+    }
 }

@@ -36,6 +36,8 @@ pub struct ControlledMachine {
     pub expansion_stated_at: [Option<f64>; 2],
     /// The capacity of the force sensor, N, if stated.
     pub force_capacity_n: Option<f64>,
+    /// Working temperatures of the gas at chambers A and B in degC, if stated.
+    pub gas_wall_celsius: [Option<f64>; 2],
     /// How the rig moves.
     pub motion: MotionKind,
 }
@@ -90,6 +92,7 @@ impl ControlledMachine {
             feed_forward,
             expansion_stated_at,
             force_capacity_n: capacity(project),
+            gas_wall_celsius: gas_wall_celsius(project),
             motion: project.motion(),
         })
     }
@@ -111,6 +114,7 @@ impl ControlledMachine {
             feed_forward: 0.0,
             expansion_stated_at,
             force_capacity_n: capacity(project),
+            gas_wall_celsius: gas_wall_celsius(project),
             motion: project.motion(),
         })
     }
@@ -135,6 +139,12 @@ fn rig_and_machine(setup: &Setup<'_>, external_force: bool) -> Result<(Rig, Sens
 
 fn capacity(project: &Project) -> Option<f64> {
     project.actuator.as_ref().and_then(|actuator| actuator.force_sensor.capacity)
+}
+
+fn gas_wall_celsius(project: &Project) -> [Option<f64>; 2] {
+    let lines = project.actuator.as_ref().map(|actuator| &actuator.line);
+    let working = |line: &project::DeclaredLine| Some(line.accumulator.as_ref()?.temperatures?.working);
+    lines.map_or([None; 2], |lines| [&lines.a, &lines.b].map(working))
 }
 
 fn expansion_stated_at(project: &Project) -> [Option<f64>; 2] {

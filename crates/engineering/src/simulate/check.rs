@@ -1,7 +1,7 @@
 //! A second run at a tenth of the tolerance: how far it differs from the first is an estimate of
 //! the first one's error.
 
-use phea_hydraulics::machine::{LINKAGE_SIGNALS, SERIES_SIGNALS, SIGNALS};
+use phea_hydraulics::machine::SIGNALS;
 
 use super::metrics::Measured;
 use super::{
@@ -131,16 +131,7 @@ fn check(run: &ScenarioRun, other: &ScenarioRun, tolerance: f64) -> ToleranceChe
 fn differences(one: &Record, other: &Record) -> Vec<Difference> {
     let rows = common_rows(one, other);
     let reference = one.reference_n.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
-    let moves = |of: &str| {
-        let place = SIGNALS.iter().position(|name| *name == of);
-        let all = one.signals.iter().chain(&other.signals);
-        place.is_some_and(|place| all.into_iter().any(|signals| signals[place] != 0.0))
-    };
-    let sprung = SERIES_SIGNALS.first().is_some_and(|of| moves(of));
-    let turns = LINKAGE_SIGNALS.iter().any(|of| moves(of));
-    let there = |(_, name): &(usize, &&str)| {
-        (sprung || !SERIES_SIGNALS.contains(name)) && (turns || !LINKAGE_SIGNALS.contains(name))
-    };
+    let there = |(_, name): &(usize, &&str)| one.parts.have(name);
     let of_machine = SIGNALS.iter().enumerate().filter(there).map(|(index, name)| {
         let values = |row: &(usize, usize)| [one.signals[row.0][index], other.signals[row.1][index]];
         difference(name, &rows, &one.times_s, values)

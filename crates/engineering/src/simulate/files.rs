@@ -2,6 +2,7 @@
 
 use super::columns::Columns;
 use super::file_names::state_names;
+use super::parts::SignalParts;
 use super::{ControlledMachine, Look, ScenarioRun};
 use crate::project::Loaded;
 use crate::source::{Destination, Unfinished, WriteError};
@@ -36,13 +37,7 @@ impl<'a> RunTable<'a> {
         format: TableFormat,
         bench: &ControlledMachine,
     ) -> Result<RunTable<'a>, WriteError> {
-        let machine = &bench.machine;
-        let gives_way = !bench.control.impedance_states().is_empty();
-        let columns = Columns::new(
-            machine.has_external_force(),
-            [machine.has_series_element(), machine.has_linkage()],
-            gives_way,
-        );
+        let columns = Columns::new(&SignalParts::of(bench));
         let names: Vec<_> = columns.names().into_iter().map(|name| bench.motion.name(name)).collect();
         let names: Vec<&str> = names.iter().map(AsRef::as_ref).collect();
         let table = NumberTable::new(destination.begin(name)?, format, &names);

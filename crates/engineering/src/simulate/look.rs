@@ -13,6 +13,7 @@ use super::exceeded::{Exceeded, LimitWatch};
 use super::files::RunTable;
 use super::follower::Follower;
 use super::measured::{Measurement, Overlay, Overlaying};
+use super::parts::SignalParts;
 use super::record::{Look, Record};
 use super::sum::WeightedSum;
 use super::sums;
@@ -80,6 +81,7 @@ impl<'a> Looking<'a> {
         let follower = Follower::of(bench, &wanted, samples, &course.reference, windows);
         let pressures = sums::pressures(bench, &wanted);
         let limits = LimitWatch::of(bench);
+        let parts = SignalParts::of(bench);
         Looking {
             bench,
             samples,
@@ -92,7 +94,7 @@ impl<'a> Looking<'a> {
             follower,
             pressures,
             peak_pressures_pa: [f64::NEG_INFINITY; 2],
-            overlays: measurements.iter().map(Overlaying::new).collect(),
+            overlays: measurements.iter().map(|one| Overlaying::new(one, &parts)).collect(),
             full,
             fault: None,
         }

@@ -11,6 +11,7 @@ use super::Look;
 use super::columns::ColumnSource;
 use super::metrics::Measured;
 use super::motion_file::{TIMES, rising};
+use super::parts::SignalParts;
 use crate::project::{Findings, MeasuredFile, MeasuredSignal, Project, Refusal, Scenario};
 use crate::quantity::{DisplayUnit, TIME};
 use crate::source;
@@ -56,6 +57,12 @@ impl Overlay {
     pub fn display_unit(&self) -> DisplayUnit {
         let by_ending = [
             ("_m3_per_s", DisplayUnit::LITRE_PER_MINUTE),
+            ("_rad_per_s", DisplayUnit::RADIAN_PER_SECOND),
+            ("_rad", DisplayUnit::DEGREE),
+            ("_n_m", DisplayUnit::NEWTON_METRE),
+            ("_degC", DisplayUnit::DEGREE_CELSIUS),
+            ("_ratio_a", DisplayUnit::ONE),
+            ("_ratio_b", DisplayUnit::ONE),
             ("_m_per_s", DisplayUnit::METRE_PER_SECOND),
             ("_pa", DisplayUnit::BAR),
             ("_n", DisplayUnit::NEWTON),
@@ -67,7 +74,8 @@ impl Overlay {
 
     /// The signal without its unit, in words.
     pub fn quantity(&self) -> String {
-        let endings = ["_m3_per_s", "_m_per_s", "_pa", "_n", "_m", "_v"];
+        let endings =
+            ["_m3_per_s", "_rad_per_s", "_rad", "_n_m", "_degC", "_m_per_s", "_pa", "_n", "_m", "_v"];
         let name = endings.iter().find_map(|ending| self.signal.strip_suffix(ending)).unwrap_or(self.signal);
         name.replace('_', " ")
     }
@@ -161,7 +169,7 @@ pub(super) struct Overlaying<'a> {
 }
 
 impl<'a> Overlaying<'a> {
-    pub(super) fn new(measurement: &'a Measurement) -> Overlaying<'a> {
+    pub(super) fn new(measurement: &'a Measurement, parts: &SignalParts) -> Overlaying<'a> {
         let overlay = Overlay {
             file: measurement.file.clone(),
             column: measurement.column.clone(),
@@ -173,7 +181,11 @@ impl<'a> Overlaying<'a> {
             rmse: Err(NO_ROW),
             nrmse: Err(NO_ROW),
         };
-        let source = ColumnSource::named(measurement.signal);
+        let source = ColumnSource::named(measurement.signal, parts);
+        let overlay = match source {
+            Some(_) => overlay,
+            None => Overlay { rmse: Err(NO_SIGNAL), nrmse: Err(NO_SIGNAL), ..overlay },
+        };
         Overlaying { measurement, source, before: None, next: 0, overlay }
     }
 
@@ -205,7 +217,9 @@ impl<'a> Overlaying<'a> {
 
     pub(super) fn finish(self) -> Overlay {
         let mut overlay = self.overlay;
-        overlay.rows_outside += self.measurement.times_s.len() - self.next;
+        if self.source.is_some() {
+            overlay.rows_outside += self.measurement.times_s.len() - self.next;
+        }
         if !overlay.measured.is_empty() {
             let pairs = overlay.measured.iter().zip(&overlay.simulated);
             let squares: f64 =

@@ -3,6 +3,7 @@
 use phea_hydraulics::machine::SIGNALS;
 
 use super::columns::{self, LOOP_SIGNALS};
+use super::parts::SignalParts;
 use phea_quantity::MotionKind;
 
 /// Largest number of samples of a run that its record keeps.
@@ -50,6 +51,8 @@ pub struct Record {
     pub looks_apart: u64,
     /// How the rig moves: of one that turns, positions are in rad and forces in N m.
     pub motion: MotionKind,
+    /// Which parts the rig has.
+    pub parts: SignalParts,
 }
 
 impl Default for Record {
@@ -64,12 +67,14 @@ impl Default for Record {
             of_loop: vec![],
             looks_apart: 1,
             motion: MotionKind::Linear,
+            parts: SignalParts::default(),
         }
     }
 }
 
 impl Record {
-    /// A column of the table over time; empty for an unknown name.
+    /// A column of the table over time; empty for an unknown name, and for one of a part that the rig
+    /// lacks.
     pub fn signal(&self, name: &str) -> Vec<f64> {
         columns::signal(self, name)
     }
@@ -131,7 +136,8 @@ mod tests {
     /// However long a run is, its record is short, evenly spaced, and begins with the first sample.
     #[test]
     fn a_record_is_even_and_never_long() {
-        let mut record = Record::default();
+        let parts = SignalParts { external_force: true, ..SignalParts::default() };
+        let mut record = Record { parts, ..Record::default() };
         let looks = 7 * MOST_KEPT as u64 / 2;
         for number in 0..looks {
             let time_s = number as f64;

@@ -14,6 +14,7 @@ use super::exceeded::Exceeded;
 use super::look::{Looking, Sighted};
 use super::measured::{Measurement, Overlay};
 use super::metrics::Metrics;
+use super::parts::SignalParts;
 use super::record::Record;
 use super::saved::{self, SavedState};
 use super::{RunTable, SimulateError, ToleranceCheck, Window};
@@ -193,7 +194,7 @@ pub(super) fn run(
     let memory = memory.into_inner();
     let memory = matches!(bench.control, Control::Sampled(_)).then_some(&memory);
     let end = saved::of_end(bench, course, (outcome.status, &outcome.end, scenario.duration), memory);
-    let record = Record { motion: bench.motion, ..record };
+    let record = Record { motion: bench.motion, parts: SignalParts::of(bench), ..record };
     Ok(ScenarioRun {
         name: scenario.name.clone(),
         status: outcome.status,

@@ -208,11 +208,13 @@ fn step_of(driven: &ScenarioRun, reference_n: [f64; 2]) -> TrialStep {
 
 /// What the loop controls, N.
 fn controlled(driven: &ScenarioRun) -> Vec<f64> {
-    let forces = driven.record.signal("force_n").into_iter();
-    forces
-        .zip(driven.record.signal("virtual_force_n"))
-        .map(|(force, virtual_force)| force + virtual_force)
-        .collect()
+    let record = &driven.record;
+    let forces = record.signal("force_n");
+    if !record.parts.impedance {
+        return forces;
+    }
+    let virtual_forces = record.signal("virtual_force_n");
+    forces.into_iter().zip(virtual_forces).map(|(force, virtual_force)| force + virtual_force).collect()
 }
 
 /// The controlled force from the step on, as a share of it.

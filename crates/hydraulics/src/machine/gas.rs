@@ -52,6 +52,18 @@ impl<S: Scalar> Machine<S> {
         })
     }
 
+    /// Pressures in Pa of the gas behind the necks, and theta of the gas that exchanges heat; zero at
+    /// a chamber without.
+    pub(super) fn told_of_gas<T: Scalar>(&self, vector: &[T]) -> [[T; 2]; 2] {
+        let gas = self.layout.read_gas(vector);
+        let zero = T::from(0.0);
+        let ratios = [0, 1].map(|side| match self.thermal_time_constants[side] {
+            Some(_) => T::from(1.0) + gas.warmings[side],
+            None => zero,
+        });
+        [gas.pressures, ratios]
+    }
+
     /// The gas that exchanges heat, at these pressures of the chambers in Pa.
     pub(super) fn heated<T: Scalar + From<S>>(
         &self,

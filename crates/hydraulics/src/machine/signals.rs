@@ -5,7 +5,7 @@ use super::{Machine, Motion};
 use crate::stroke::ActuatorStroke;
 
 /// Names of the signals of a machine, with units, in the order of [`Machine::outputs`].
-pub const SIGNALS: [&str; 24] = [
+pub const SIGNALS: [&str; 28] = [
     "force_n",
     "spool_v",
     "pressure_a_pa",
@@ -30,6 +30,10 @@ pub const SIGNALS: [&str; 24] = [
     "joint_angle_rad",
     "joint_velocity_rad_per_s",
     "joint_torque_n_m",
+    "gas_pressure_a_pa",
+    "gas_pressure_b_pa",
+    "gas_temperature_ratio_a",
+    "gas_temperature_ratio_b",
 ];
 
 /// Those of [`SIGNALS`] that only a machine with a series element has: without one the force on the
@@ -38,6 +42,13 @@ pub const SERIES_SIGNALS: [&str; 2] = ["series_deflection_m", "load_force_n"];
 
 /// Those of [`SIGNALS`] that only a machine with a linkage has: its load turns.
 pub const LINKAGE_SIGNALS: [&str; 3] = ["joint_angle_rad", "joint_velocity_rad_per_s", "joint_torque_n_m"];
+
+/// Those of [`SIGNALS`] that only a machine with a neck at chamber A or B has: without one the gas has
+/// the pressure of its chamber.
+pub const NECK_SIGNALS: [&str; 2] = ["gas_pressure_a_pa", "gas_pressure_b_pa"];
+
+/// Those of [`SIGNALS`] that only a machine with gas that exchanges heat at chamber A or B has.
+pub const HEAT_SIGNALS: [&str; 2] = ["gas_temperature_ratio_a", "gas_temperature_ratio_b"];
 
 /// Names of the state events of a machine, in the order of its indicators. Each indicator is
 /// positive in ordinary operation and negative while the event lasts.
@@ -76,7 +87,9 @@ impl<S: Scalar> Machine<S> {
     /// [`ForceFrom`](crate::series::ForceFrom) measures, F_e that through the sensor,
     /// `load_force_n` that on the load, and `series_deflection_m` how far the spring is compressed.
     /// Behind a linkage `load_position_m` is that of the rod's end, and `joint_torque_n_m` what the
-    /// rod turns the joint with:
+    /// rod turns the joint with. `gas_pressure` is that of the gas behind a neck, gauge, and
+    /// `gas_temperature_ratio` the absolute temperature of gas that exchanges heat over that of its
+    /// wall, theta. Signals of parts that the machine lacks are zero:
     ///
     /// ```text
     /// F_H = A_A p_A - A_B p_B = F_e + F_fr - F_stops + M dv/dt      all positive towards the B end but F_fr      thesis (4.29)
@@ -109,6 +122,8 @@ impl<S: Scalar> Machine<S> {
         let zero = T::from(0.0);
         let (turning, torque) =
             if self.linkage.is_some() { (load, end.on_load(joint.on_load)) } else { (still, zero) };
+        let [gas_pressures, ratios] =
+            if self.layout.has_gas() { self.told_of_gas(vector) } else { [[zero; 2]; 2] };
         [
             self.measured_force(&state),
             state.spool.spool,
@@ -134,6 +149,10 @@ impl<S: Scalar> Machine<S> {
             turning.position,
             turning.velocity,
             torque,
+            gas_pressures[0],
+            gas_pressures[1],
+            ratios[0],
+            ratios[1],
         ]
     }
 

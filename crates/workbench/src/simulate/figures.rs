@@ -1,12 +1,12 @@
 //! Figures of runs over time.
 
-use super::{Cause, Metrics, Record, ScenarioComparison, ScenarioRun, Window, cause_words};
+use super::{Cause, GAS_TEMPERATURES, Metrics, Record, ScenarioComparison, ScenarioRun, Window, cause_words};
 use crate::answer::{OutputFile, picture_files, significant};
 use crate::figure::{
     DisplayUnit, Figure, FigureError, SettlingBand, StepResponseInput, TimeEvent, TimePanel, TimePanelsInput,
     TimeSeries, Words, step_response, time_panels,
 };
-use phea_hydraulics::machine::LINKAGE_SIGNALS;
+use phea_hydraulics::machine::{HEAT_SIGNALS, NECK_SIGNALS};
 
 /// Time drawn before and after the start of a window, s.
 pub(super) const BEFORE_S: f64 = 0.02;
@@ -70,6 +70,7 @@ fn overview(words: Words, run: &ScenarioRun, span_s: [f64; 2]) -> Figure {
     let record = &run.record;
     let mut panels = vec![measured(record, 190.0), voltages(record), pressures(record), positions(record)];
     panels.extend(joint(record));
+    panels.extend(gas(record));
     panels.extend(from_outside(record));
     let legend = match run.open_loop {
         false => ["force, command, p_A, piston", "prefiltered reference, spool, p_B, load"],
@@ -79,7 +80,7 @@ fn overview(words: Words, run: &ScenarioRun, span_s: [f64; 2]) -> Figure {
     if !record.external_force_n.is_empty() {
         legend[0] = format!("{}, force from outside", legend[0]);
     }
-    drawn(words, run, panels, legend, span_s)
+    drawn(words, run, panels, with_gas(legend, record), span_s)
 }
 
 /// The signals between command and force, in the order of Figure 6.17 of Ledezma (2019); with
@@ -99,11 +100,12 @@ pub(super) fn close_up(words: Words, run: &ScenarioRun, window: &Window, span_s:
         panels.extend(joint(record));
         legend = [format!("{}, piston", legend[0]), format!("{}, load", legend[1])];
     }
+    panels.extend(gas(record));
     if window.cause == Cause::ExternalForce {
         panels.extend(from_outside(record));
         legend[0] = format!("{}, force from outside", legend[0]);
     }
-    drawn(words, run, panels, legend, span_s)
+    drawn(words, run, panels, with_gas(legend, record), span_s)
 }
 
 /// The measured force, its reference, and the command.
@@ -138,13 +140,43 @@ fn from_outside(record: &Record) -> Option<TimePanel> {
 
 /// Whether the load turns behind a linkage.
 pub(crate) fn turns(record: &Record) -> bool {
-    LINKAGE_SIGNALS.iter().any(|name| record.signal(name).iter().any(|value| *value != 0.0))
+    record.parts.linkage
 }
 
 /// The angle of the joint behind a linkage, if there is one.
 fn joint(record: &Record) -> Option<TimePanel> {
     let series = turns(record).then(|| over_time(record, record.signal("joint_angle_rad")))?;
     Some(panel("Joint θ", DisplayUnit::DEGREE, 90.0, vec![series]))
+}
+
+/// The pressures of gas behind necks and the temperatures of gas that exchanges heat, where there are
+/// any: over that of the wall where the working temperature is not stated.
+fn gas(record: &Record) -> Vec<TimePanel> {
+    let unstated = [0, 1].map(|side| match record.parts.gas_wall_celsius[side] {
+        None => record.signal(HEAT_SIGNALS[side]),
+        Some(_) => vec![],
+    });
+    let panels = [
+        ("Gas p_g", DisplayUnit::BAR, NECK_SIGNALS.map(|name| record.signal(name))),
+        ("Gas T", DisplayUnit::DEGREE_CELSIUS, GAS_TEMPERATURES.map(|name| record.signal(name))),
+        ("Gas T/T_w", DisplayUnit::ONE, unstated),
+    ];
+    let there = panels.into_iter().filter(|(_, _, sides)| sides.iter().any(|side| !side.is_empty()));
+    let drawn = there.map(|(quantity, unit, sides)| {
+        // a side without such gas keeps its place among the colours: no point of it is drawn
+        panel(quantity, unit, 90.0, sides.map(|values| over_time(record, values)).into())
+    });
+    drawn.collect()
+}
+
+/// A legend with the gas of both sides, where it is drawn.
+fn with_gas(legend: [String; 2], record: &Record) -> [String; 2] {
+    let parts = &record.parts;
+    let mut sides = ["gas A", "gas B"].into_iter().zip(parts.necks).zip(parts.heated_gas);
+    legend.map(|words| match sides.next() {
+        Some(((gas, necks), heated)) if necks || heated => format!("{words}, {gas}"),
+        _ => words,
+    })
 }
 
 fn voltages(record: &Record) -> TimePanel {

@@ -1,0 +1,69 @@
+//! The parts of a rig that some signals are of: a table has a column only for a part that is there.
+
+use phea_hydraulics::machine::{HEAT_SIGNALS, LINKAGE_SIGNALS, NECK_SIGNALS, SERIES_SIGNALS};
+
+use super::ControlledMachine;
+use super::columns::{EXTERNAL_FORCE, EXTERNAL_TORQUE, GAS_TEMPERATURES, VIRTUAL_FORCE};
+
+/// Which parts a rig has beside those that every rig has.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SignalParts {
+    /// A force from outside, or a torque behind a linkage.
+    pub external_force: bool,
+    /// A series element.
+    pub series: bool,
+    /// A linkage.
+    pub linkage: bool,
+    /// A virtual impedance.
+    pub impedance: bool,
+    /// Necks to the gas at chambers A and B.
+    pub necks: [bool; 2],
+    /// Gas at chambers A and B that exchanges heat.
+    pub heated_gas: [bool; 2],
+    /// degC, of the wall of that gas, where the project states its working temperature.
+    pub gas_wall_celsius: [Option<f64>; 2],
+}
+
+impl SignalParts {
+    /// Of a machine with its controller.
+    pub(super) fn of(bench: &ControlledMachine) -> SignalParts {
+        let machine = &bench.machine;
+        let heated_gas = machine.has_heated_gas();
+        let wall = |side: usize| bench.gas_wall_celsius[side].filter(|_| heated_gas[side]);
+        SignalParts {
+            external_force: machine.has_external_force(),
+            series: machine.has_series_element(),
+            linkage: machine.has_linkage(),
+            impedance: !bench.control.impedance_states().is_empty(),
+            necks: machine.has_necks(),
+            heated_gas,
+            gas_wall_celsius: [wall(0), wall(1)],
+        }
+    }
+
+    /// Whether a rig with these parts has the signal of this name.
+    pub fn have(&self, name: &str) -> bool {
+        let side = |names: &[&str; 2]| names.iter().position(|of| *of == name);
+        if SERIES_SIGNALS.contains(&name) {
+            return self.series;
+        }
+        if LINKAGE_SIGNALS.contains(&name) {
+            return self.linkage;
+        }
+        if let Some(side) = side(&NECK_SIGNALS) {
+            return self.necks[side];
+        }
+        if let Some(side) = side(&HEAT_SIGNALS) {
+            return self.heated_gas[side];
+        }
+        if let Some(side) = side(&GAS_TEMPERATURES) {
+            return self.gas_wall_celsius[side].is_some();
+        }
+        match name {
+            VIRTUAL_FORCE => self.impedance,
+            EXTERNAL_FORCE => self.external_force && !self.linkage,
+            EXTERNAL_TORQUE => self.external_force && self.linkage,
+            _ => true,
+        }
+    }
+}
