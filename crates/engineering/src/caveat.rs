@@ -25,6 +25,7 @@ pub struct Caveat {
 pub fn caveats(setup: &Setup<'_>) -> Vec<Caveat> {
     let of_rig =
         supply(setup).into_iter().chain(accumulator(setup)).chain(cross_port(setup)).chain(neck(setup));
+    let of_rig = of_rig.chain(adjustment(setup)).chain(gas_valve(setup));
     apart_from_lines(setup.project).chain(of_rig).chain(progression(setup)).collect()
 }
 
@@ -186,6 +187,62 @@ fn neck(setup: &Setup<'_>) -> Option<Caveat> {
     })
 }
 
+/// A verdict is of settings that stand.
+fn adjustment(setup: &Setup<'_>) -> Option<Caveat> {
+    if is_measured(setup.project) {
+        return None;
+    }
+    let adjusted = setup.project.actuator.as_ref()?.adjustments();
+    let first = adjusted.into_iter().flatten().next()?;
+    let mut ranges = setup.project.uncertainty.iter();
+    let range = ranges.find(|uncertain| uncertain.name.ends_with(SETTING_PATH));
+    let at = |value: f64| significant(value, 3);
+    let counted = match (range, adjusted) {
+        (Some(range), _) => {
+            format!("at every setting from {} to {} that stands", at(range.minimum), at(range.maximum))
+        }
+        (None, [Some(a), Some(b)]) if a.setting != b.setting => {
+            format!("at its settings of rest, {} at A and {} at B", at(a.setting), at(b.setting))
+        }
+        (None, _) => format!("at its setting of rest, {}", at(first.setting)),
+    };
+    Some(Caveat {
+        sentence: format!(
+            "line.accumulator.adjustment is counted {counted}: one that moves brings energy in and makes the loop vary with time, which only \
+             a simulation shows (`setting_change`)"
+        ),
+        unproven: false,
+    })
+}
+
+/// End of the path of a setting.
+const SETTING_PATH: &str = "accumulator.adjustment.setting";
+const TRANSITION_PATH: &str = "accumulator.adjustment.transition_pressure";
+
+/// A valve between chamber and gas has no drop at rest, and there the slope of its transition.
+fn gas_valve(setup: &Setup<'_>) -> Option<Caveat> {
+    if is_measured(setup.project) {
+        return None;
+    }
+    let components = *setup.rig().ok()?.actuator.components();
+    let valves = [0, 1].map(|side| components.gas_valve(side).filter(|valve| !valve.shut));
+    let valve = valves.into_iter().flatten().next()?;
+    let covers = |name: &String| name.ends_with(SETTING_PATH) || name.ends_with(TRANSITION_PATH);
+    let is_open = setup.project.uncertainty.iter().any(|uncertain| covers(&uncertain.name));
+    let cure = match is_open {
+        true => "the ranges of setting and transition_pressure say up to which oscillation",
+        false => {
+            "state a range of line.accumulator.adjustment.setting or transition_pressure in [uncertainty], or judge by a simulation"
+        }
+    };
+    let sentence = format!(
+        "the valve of line.accumulator.adjustment has no drop at rest, and is counted with the slope of its transition_pressure of {}: an \
+         oscillation beyond that finds it narrower: {cure}",
+        display(valve.transition_pressure, &PRESSURE, 3)
+    );
+    Some(Caveat { sentence, unproven: !is_open })
+}
+
 /// Necks and heat of accumulators, which the models of a linearisation do not include.
 fn of_gas(project: &Project) -> Option<String> {
     let line = &project.actuator.as_ref()?.line;
@@ -193,7 +250,11 @@ fn of_gas(project: &Project) -> Option<String> {
     let (necks, heat) = gas.fold((false, false), |(necks, heat), gas| {
         (necks || gas.neck.is_some(), heat || gas.thermal_time_constant.is_some())
     });
+    let valve = project.actuator.as_ref()?.adjustments().into_iter().flatten().any(|of| of.valve().is_some());
     let (what, verb, without) = match (necks, heat) {
+        (false, false) if valve => {
+            ("the valve of line.accumulator.adjustment", "is", "have its gas at the chamber")
+        }
         (false, false) => return None,
         (true, false) => ("the neck of line.accumulator", "is", "have its gas at the chamber"),
         (false, true) => ("line.accumulator.thermal_time_constant", "is", "have the isothermal gas of rest"),

@@ -4,6 +4,7 @@
 mod accumulator;
 mod assembly;
 mod cross_port;
+mod gas;
 mod in_loop;
 mod lines;
 mod numbers;

@@ -1,5 +1,6 @@
 //! The nonlinear machine under its controller, driven through the scenarios of a project.
 
+mod adjusted;
 mod bench;
 mod check;
 mod columns;
@@ -29,6 +30,7 @@ mod wish;
 pub use file_names::{file_names, state_names};
 pub use metrics::NOT_SETTLED;
 
+pub use adjusted::AdjustmentWork;
 pub use bench::ControlledMachine;
 pub use check::{Difference, MetricDifferences, ToleranceCheck, simulate_checked};
 pub use columns::{GAS_TEMPERATURES, LOOP_SIGNALS};
@@ -62,7 +64,7 @@ use crate::control::ControlError;
 use crate::linear_loop::LoopError;
 use crate::number_table::TableFormat;
 use crate::project::Refusal;
-use crate::quantity::{FORCE, LENGTH, VOLTAGE, display};
+use crate::quantity::{FORCE, LENGTH, RATIO, TIME, VOLTAGE, display};
 use crate::rig::RigError;
 use crate::setup::Setup;
 use crate::source::{Destination, Source, WriteError};
@@ -187,6 +189,20 @@ pub enum SimulateError {
     /// A file with a motion, a signal, a state or a measurement was rejected.
     #[error("{0}")]
     Motion(Box<Refusal>),
+    /// The setting of an accumulator leaves its way.
+    #[error(
+        "scenario \"{name}\": its `setting_change` brings the setting of an accumulator to {} at {}: it is from 0 to 1, the sum of \
+         adjustment.setting and of what has begun",
+        display(*setting, &RATIO, 4), display(*time_s, &TIME, 4)
+    )]
+    Setting {
+        /// Of the scenario.
+        name: String,
+        /// Beyond 0 or 1.
+        setting: f64,
+        /// When, s.
+        time_s: f64,
+    },
     /// Start, input schedule or settings do not fit the machine.
     #[error("scenario \"{name}\": {error}")]
     Simulation {

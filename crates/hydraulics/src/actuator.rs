@@ -3,7 +3,7 @@
 
 use phea_dynamics::scalar::Scalar;
 
-use crate::accumulator::{Accumulator, GasBranch, Neck, RelaxingGas};
+use crate::accumulator::{Accumulator, Adjustment, GasBranch, GasValve, Neck, RelaxingGas};
 use crate::cross_port::{CrossFlow, CrossPort, DynamicFeedback};
 use crate::cylinder::Cylinder;
 use crate::fluid::Fluid;
@@ -37,6 +37,9 @@ pub struct Components<S = f64> {
     /// Thermal time constants in s of their gas, which then has a polytropic exponent of 1; of a side
     /// without an accumulator they have no effect.
     pub thermal_time_constants: [Option<S>; 2],
+    /// What of these accumulators is adjusted in operation, about the gas above, which is that at
+    /// rest; of a side without an accumulator it has no effect.
+    pub adjustments: [Option<Adjustment<S>>; 2],
     /// A valve between the chambers, at the cylinder.
     pub cross_port: Option<CrossPort<S>>,
     /// The cylinder.
@@ -64,10 +67,24 @@ impl<S: Scalar> Components<S> {
     }
 
     /// Compliance of the gas at either chamber in m3/Pa, at chamber pressures in Pa; `None` where
-    /// there is no accumulator.
-    pub fn gas_compliance(&self, [pressure_a, pressure_b]: [S; 2]) -> [Option<S>; 2] {
-        let [gas_a, gas_b] = self.accumulators;
-        [gas_a.map(|gas| gas.compliance(pressure_a)), gas_b.map(|gas| gas.compliance(pressure_b))]
+    /// there is no accumulator, or none that a valve lets take part.
+    pub fn gas_compliance(&self, pressures: [S; 2]) -> [Option<S>; 2] {
+        [0, 1].map(|side| Some(self.gas_in_use(side)?.compliance(pressures[side])))
+    }
+
+    /// The gas at a chamber, unless a valve is shut before it at rest.
+    fn gas_in_use(&self, side: usize) -> Option<&Accumulator<S>> {
+        self.accumulators[side].as_ref().filter(|_| !self.gas_valve(side).is_some_and(|valve| valve.shut))
+    }
+
+    /// The valve between a chamber and its gas.
+    pub fn gas_valve(&self, side: usize) -> Option<&GasValve<S>> {
+        self.adjustments[side].as_ref()?.valve()
+    }
+
+    /// The adjustments of accumulators that are there.
+    pub(crate) fn adjustments_in_use(&self) -> [Option<Adjustment<S>>; 2] {
+        [0, 1].map(|side| self.accumulators[side].and(self.adjustments[side]))
     }
 
     /// The necks of accumulators that are there.
@@ -80,16 +97,21 @@ impl<S: Scalar> Components<S> {
         [0, 1].map(|side| self.accumulators[side].and(self.thermal_time_constants[side]))
     }
 
-    /// The gas at either chamber that lies behind a neck or exchanges heat, at chamber pressures in
-    /// Pa.
+    /// The gas at either chamber that lies behind a neck or a valve or exchanges heat, at chamber
+    /// pressures in Pa; behind a valve that is shut there is none.
     pub fn gas_branches(&self, pressures: [S; 2]) -> [Option<GasBranch<S>>; 2] {
         [0, 1].map(|side| {
-            let (gas, pressure) = (self.accumulators[side]?, pressures[side]);
+            let (gas, pressure) = (*self.gas_in_use(side)?, pressures[side]);
             let (neck, time_constant) = (&self.necks[side], self.thermal_time_constants[side]);
             let relaxing = time_constant.map(|time_constant| RelaxingGas { gas, time_constant });
             let later = relaxing.map(|gas| gas.relaxation(pressure));
-            let is_branch = neck.is_some() || later.is_some();
-            is_branch.then(|| GasBranch::of(gas.compliance(pressure), later, neck.as_ref()))
+            let branch = GasBranch::of(gas.compliance(pressure), later, neck.as_ref());
+            match self.adjustments[side].as_ref().and_then(|of| Some((of.setting, of.valve()?))) {
+                Some((opening, valve)) => {
+                    Some(branch.behind_valve(valve.conductance(opening), valve.compliance))
+                }
+                None => (neck.is_some() || later.is_some()).then_some(branch),
+            }
         })
     }
 
@@ -98,7 +120,9 @@ impl<S: Scalar> Components<S> {
     pub fn branch_compliance(&self, pressures: [S; 2]) -> [S; 2] {
         let gas = self.gas_compliance(pressures);
         [0, 1].map(|side| {
-            let is_branch = self.necks[side].is_some() || self.thermal_time_constants[side].is_some();
+            let is_branch = self.necks[side].is_some()
+                || self.thermal_time_constants[side].is_some()
+                || self.gas_valve(side).is_some();
             gas[side].filter(|_| is_branch).unwrap_or(S::from(0.0))
         })
     }
@@ -123,6 +147,29 @@ fn heat_problems(gas: &Accumulator, time_constant: f64) -> Vec<ParameterError> {
     let index = gas.polytropic_exponent;
     let one = "1 together with a thermal time constant";
     problems.require("polytropic_exponent", index, index == 1.0, one);
+    problems.into_vec()
+}
+
+/// Impossible parameters of an accumulator that is adjusted.
+fn adjustment_problems(
+    gas: &Accumulator,
+    adjustment: &Adjustment,
+    (neck, time_constant): (Option<Neck>, Option<f64>),
+) -> Vec<ParameterError> {
+    let mut problems = Problems::default();
+    problems.all(adjustment.problems(gas));
+    match adjustment.valve() {
+        Some(_) => {
+            let alone = "absent where a valve lies between chamber and gas";
+            let diameter = neck.map_or(0.0, |neck| neck.inertance);
+            problems.require("neck_inertance", diameter, neck.is_none(), alone);
+        }
+        None => {
+            let alone = "absent where gas is added and taken";
+            let time = time_constant.unwrap_or(0.0);
+            problems.require("thermal_time_constant", time, time_constant.is_none(), alone);
+        }
+    }
     problems.into_vec()
 }
 
@@ -164,6 +211,16 @@ impl Actuator {
         }
         for (neck, path) in components.necks.iter().zip(["line.a.accumulator", "line.b.accumulator"]) {
             problems.component(path, neck.map_or(Vec::new(), |neck| neck.problems()));
+        }
+        for (side, path) in ["line.a.accumulator", "line.b.accumulator"].into_iter().enumerate() {
+            let adjusted = accumulators[side].zip(components.adjustments[side]);
+            problems.component(
+                path,
+                adjusted.map_or(Vec::new(), |(gas, adjustment)| {
+                    let beside = (components.necks[side], components.thermal_time_constants[side]);
+                    adjustment_problems(&gas, &adjustment, beside)
+                }),
+            );
         }
         problems.component("cross_port", components.cross_port.map_or(Vec::new(), |port| port.problems()));
         problems.component("cylinder", cylinder.problems());

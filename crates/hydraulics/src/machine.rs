@@ -9,6 +9,7 @@
 //! leakage        q_i = G_i (p_A - p_B)                          laminar, across the piston
 //!                q_e = G_e (p - p_T)                            laminar, from each chamber to the tank
 //! heat           dtheta/dt = (gamma - 1) P q/(P_0 V_0) - (theta - 1)/tau         of the gas at a chamber: RelaxingGas
+//! adjustment     C dp/dt = q - (dV_oil/du) du/dt,   q = (s + u) K root(p - p_g)          of the gas at a chamber: Adjustment
 //! neck           I dq_n/dt = p - p_g - R q_n - Z q_n |q_n|,   C_g dp_g/dt = q_n     of the gas at a chamber: Neck
 //! cross port     q_cp = restrictor(p_A - p_B - p_cp),   C_cp dp_cp/dt = q_cp      part of q_i: CrossPort
 //! piston         M dv/dt = A_A p_A - A_B p_B + F_stops - F_fr - F_e      thesis (4.29)
@@ -25,6 +26,7 @@
 //! stroke or in its stop, a load at its wall are indicators whose change of sign an integrator
 //! reports.
 
+mod adjusted;
 mod balance;
 mod chambers;
 mod end;
@@ -44,14 +46,17 @@ pub use chambers::{AeratedChambers, Chambers};
 pub use ledger::{Account, ENERGY_ACCOUNTS, Ledger, OIL_ACCOUNTS};
 pub use load::{LoadModel, Motion};
 pub use options::{MachineError, MachineOptions};
-pub use signals::{HEAT_SIGNALS, INDICATORS, LINKAGE_SIGNALS, NECK_SIGNALS, SERIES_SIGNALS, SIGNALS};
+pub use signals::{
+    ADJUSTMENT_SIGNALS, GAS_PRESSURE_SIGNALS, HEAT_SIGNALS, INDICATORS, LINKAGE_SIGNALS, SERIES_SIGNALS,
+    SIGNALS,
+};
 pub use start::{InitialCondition, StartValues};
 pub use state::MachineState;
 
 use phea_dynamics::scalar::{Lanes, Scalar};
 use phea_dynamics::simulation::{Lane, Plant, Sliding};
 
-use crate::accumulator::Neck;
+use crate::accumulator::{Adjustment, Neck};
 use crate::actuator::Actuator;
 use crate::cross_port::CrossPort;
 use crate::cylinder::Cylinder;
@@ -70,7 +75,8 @@ use state::Layout;
 /// them.
 ///
 /// Its inputs are the position in m and the velocity in m/s of the load's ground ([`LoadModel`]; in
-/// rad and rad/s behind a linkage), the force from outside in N (N m) where it has one ([`MachineOptions::external_force`]), and then the
+/// rad and rad/s behind a linkage), the force from outside in N (N m) where it has one ([`MachineOptions::external_force`]), by how much
+/// the setting of its accumulators has moved and its rate in 1/s where it moves ([`MachineOptions::moving_setting`]), and then the
 /// waves that arrive from line A and line B; its states are named by [`MachineState`].
 ///
 /// # Example
@@ -105,6 +111,9 @@ pub struct Machine<S = f64> {
     necks: [Option<Neck<S>>; 2],
     thermal_time_constants: [Option<S>; 2],
     gas_pressure_limits: [Option<S>; 2],
+    /// Of gas that is added and taken only where its setting moves.
+    adjustments: [Option<Adjustment<S>>; 2],
+    moving_setting: bool,
     cross_port: Option<CrossPort<S>>,
     lines: [DynamicLine<S>; 2],
     friction: MovingFriction<S>,
@@ -157,6 +166,8 @@ impl Machine {
             necks: components.necks_in_use(),
             thermal_time_constants: components.thermal_time_constants_in_use(),
             gas_pressure_limits: options.gas_pressure_limits,
+            adjustments: components.adjustments_in_use().map(|of| of?.of_machine(options.moving_setting)),
+            moving_setting: options.moving_setting,
             cross_port: components.cross_port,
             lines: options.lines.unwrap_or([none; 2]),
             friction,
@@ -179,6 +190,27 @@ impl Machine {
         self.external_force
     }
 
+    /// Whether accumulators at its chambers are adjusted: by a valve, or by gas that is added and taken
+    /// as it runs.
+    pub fn has_adjustment(&self) -> bool {
+        self.layout.is_adjusted()
+    }
+
+    /// Places of the pressures of gas behind valves that are shut, after their setting has moved by
+    /// `change`: they stand still at any value.
+    pub fn shut_gas(&self, change: f64) -> Vec<usize> {
+        let settings: [f64; 2] = self.settings([change, 0.0]);
+        let shut = [0, 1].map(|side| {
+            self.adjustments[side].is_some_and(|of| of.valve().is_some()) && settings[side] == 0.0
+        });
+        self.layout.gas_places(shut)
+    }
+
+    /// Whether its inputs hold the setting of its accumulators.
+    pub fn has_moving_setting(&self) -> bool {
+        self.moving_setting
+    }
+
     /// Whether a spring lies between force sensor and load.
     pub fn has_series_element(&self) -> bool {
         self.series.is_some()
@@ -189,9 +221,9 @@ impl Machine {
         self.linkage.is_some()
     }
 
-    /// Whether a neck leads to the gas at chambers A and B.
-    pub fn has_necks(&self) -> [bool; 2] {
-        self.necks.map(|neck| neck.is_some())
+    /// Whether the gas at chambers A and B has a pressure of its own, behind a neck or a valve.
+    pub fn has_gas_pressure(&self) -> [bool; 2] {
+        self.layout.behind()
     }
 
     /// Whether the gas at chambers A and B exchanges heat.
@@ -244,6 +276,8 @@ impl<S: Copy> Machine<S> {
             necks: self.necks.map(|neck| neck.map(|neck| neck.convert(of))),
             thermal_time_constants: self.thermal_time_constants.map(|time| time.map(&mut *of)),
             gas_pressure_limits: self.gas_pressure_limits.map(|limit| limit.map(&mut *of)),
+            adjustments: self.adjustments.map(|of_gas| of_gas.map(|adjustment| adjustment.convert(of))),
+            moving_setting: self.moving_setting,
             cross_port: self.cross_port.map(|port| port.convert(of)),
             lines: self.lines.map(|line| line.convert(of)),
             friction: self.friction.convert(of),

@@ -53,6 +53,10 @@ impl Problems {
         self.0.extend(problems.into_iter().map(|problem| problem.within(owner)));
     }
 
+    pub(crate) fn all(&mut self, problems: Vec<ParameterError>) {
+        self.0.extend(problems);
+    }
+
     pub(crate) fn into_vec(self) -> Vec<ParameterError> {
         self.0
     }

@@ -116,6 +116,7 @@ pub fn components(line: Line, stiffness_model: StiffnessModel) -> Components {
         line_b: line,
         accumulators: [None; 2],
         necks: [None; 2],
+        adjustments: [None; 2],
         thermal_time_constants: [None; 2],
         cross_port: None,
         cylinder: cylinder(),

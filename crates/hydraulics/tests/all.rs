@@ -2,6 +2,7 @@
 #![cfg(test)]
 
 mod accumulator;
+mod adjustment;
 mod commanded;
 mod components;
 mod cross_port;

@@ -4,7 +4,7 @@ use phea_dynamics::portable::pow;
 use phea_dynamics::random::{share, stream};
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{Plant, System};
-use phea_hydraulics::accumulator::Neck;
+use phea_hydraulics::accumulator::{AdjustedPart, Adjustment, GasValve, Neck};
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::cross_port::{CrossPort, Restrictor};
 use phea_hydraulics::machine::{Accumulator, Machine, PowerUnit, PumpLimited};
@@ -46,6 +46,22 @@ pub(super) fn thermal_time_constants(number: u64) -> [Option<f64>; 2] {
     let mut state = stream(47, number);
     let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
     [0, 1].map(|_| (spread(1.0, 4.0) > 2.0).then_some(spread(1e-3, 1e2)))
+}
+
+/// Valves between chambers and gas, of half of the chambers whose gas has no neck.
+pub(super) fn gas_valves(number: u64) -> [Option<Adjustment>; 2] {
+    let mut state = stream(59, number);
+    let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
+    necks(number).map(|neck| {
+        let valve = GasValve {
+            flow_coefficient: spread(1e-9, 1e-7),
+            transition_pressure: spread(1e3, 1e5),
+            compliance: spread(1e-16, 1e-13),
+            shut: false,
+        };
+        let of = Adjustment { setting: spread(1e-2, 1.0), part: AdjustedPart::Valve(valve) };
+        (neck.is_none() && spread(1.0, 4.0) > 2.0).then_some(of)
+    })
 }
 
 /// These compliances in m3/Pa less that of gas behind necks and with heat.

@@ -45,7 +45,8 @@ fn accounts(machine: &Machine, state: &[f64], inputs: &[f64]) -> Vec<(String, Ac
     oil.chain(ENERGY_ACCOUNTS.iter().map(|name| format!("energy of {name}")).zip(ledger.energy)).collect()
 }
 
-/// How a machine is moved: command in V, ground of its load, force on the load from outside where it has that input.
+/// How a machine is moved: command in V, ground of its load, force on the load from outside and setting of its accumulators where
+/// it has these inputs.
 pub(super) struct Motion {
     pub(super) amplitude: f64,
     pub(super) bias: f64,
@@ -58,13 +59,15 @@ impl Motion {
         self.bias + self.amplitude * (sin(40.0 * time) + 0.5 * sin(113.0 * time))
     }
 
-    fn inputs(&self, time: f64) -> [f64; 3] {
-        let frequency = 25.0;
-        let cosine = sin(frequency * time + std::f64::consts::FRAC_PI_2);
+    fn inputs(&self, time: f64) -> [f64; 5] {
+        let (frequency, quarter) = (25.0, std::f64::consts::FRAC_PI_2);
+        let cosine = sin(frequency * time + quarter);
         [
             self.ground + self.ground_amplitude * (1.0 - cosine),
             self.ground_amplitude * frequency * sin(frequency * time),
             300.0 * sin(60.0 * time),
+            0.3 * sin(70.0 * time),
+            21.0 * sin(70.0 * time + quarter),
         ]
     }
 }
@@ -243,11 +246,16 @@ pub(super) fn random(state: &mut u64) -> f64 {
 /// What is wrong with the accounts at this state: what is stored must change, along the rates of all states, by what enters and
 /// is lost; energy is never stored or lost below zero.
 pub(super) fn check_instant(name: &str, machine: &Machine, state: &[f64], command: f64, inputs: [f64; 2]) {
+    let along = |value: f64, rate: f64| Dual::<1>::new(value, [rate]);
+    let mut moved = vec![along(inputs[0], inputs[1]), along(inputs[1], 0.0)];
+    moved.extend(machine.has_external_force().then_some(along(150.0, 0.0)));
+    // a setting that moves
+    moved.extend([along(0.2, 1.5), along(1.5, 0.0)]);
+    let inputs: Vec<f64> = moved.iter().map(|input| input.value()).collect();
     let mut rates = vec![0.0; state.len()];
     machine.rates(state, command, &inputs, &mut rates);
-    let along = |value: f64, rate: f64| Dual::<1>::new(value, [rate]);
     let moving: Vec<_> = state.iter().zip(&rates).map(|(value, rate)| along(*value, *rate)).collect();
-    let ledger = machine.ledger(&moving, &[along(inputs[0], inputs[1]), along(inputs[1], 0.0)]).unwrap();
+    let ledger = machine.ledger(&moving, &moved).unwrap();
     let names = OIL_ACCOUNTS.iter().chain(&ENERGY_ACCOUNTS);
     let accounts = names.zip(ledger.oil.iter().chain(&ledger.energy));
     for (index, (account, Account { stored, inflow, lost })) in accounts.enumerate() {

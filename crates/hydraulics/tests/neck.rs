@@ -80,7 +80,7 @@ fn a_neck_has_two_limits() {
 #[test]
 fn without_inertance_and_resistance_there_is_none() {
     let neck = Some(NeckImpedance { inertance: 0.0, resistance: 0.0 });
-    let gas = GasBranch { compliance: 3e-12, relaxation: None, neck };
+    let gas = GasBranch { compliance: 3e-12, relaxation: None, neck, valve: None };
     for frequency in [1e-3, 1.0, 50.0, 700.0, 2e3] {
         let with = responses([8e-13, 9e-13], [Some(gas); 2], frequency);
         for (with, lumped) in with.iter().zip(responses([3.8e-12, 3.9e-12], [None; 2], frequency)) {

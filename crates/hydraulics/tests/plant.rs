@@ -27,8 +27,8 @@ use phea_hydraulics::two_pressure::{
 };
 
 use super::commanded::{
-    Commanded, cross_port, necks, power_unit, supply_pressure, thermal_time_constants, without_branches,
-    yielding,
+    Commanded, cross_port, gas_valves, necks, power_unit, supply_pressure, thermal_time_constants,
+    without_branches, yielding,
 };
 
 /// A rig of its own for every number, with everything that lumped lines let the plant have.
@@ -98,6 +98,7 @@ fn drawn(number: u64) -> Drawn {
         cross_port: cross_port(number),
         necks: necks(number),
         thermal_time_constants: thermal_time_constants(number),
+        adjustments: gas_valves(number),
         ..parts
     };
     let actuator = Actuator::new(parts).unwrap();

@@ -32,8 +32,8 @@ use phea_hydraulics::two_pressure::{
 };
 
 use super::commanded::{
-    Commanded, cross_port, necks, power_unit, supply_pressure, thermal_time_constants, without_branches,
-    yielding,
+    Commanded, cross_port, gas_valves, necks, power_unit, supply_pressure, thermal_time_constants,
+    without_branches, yielding,
 };
 
 fn model(number: u64, time: f64) -> LineModel {
@@ -147,6 +147,7 @@ fn parts(number: u64, spread: &mut impl FnMut(f64, f64) -> f64) -> (Components, 
         cross_port: cross_port(number),
         necks: necks(number),
         thermal_time_constants: thermal_time_constants(number),
+        adjustments: gas_valves(number),
         ..leaking(parts, leakage)
     };
     (parts, models, friction)

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used)] // helpers of tests
 
-use phea_hydraulics::accumulator::Neck;
+use phea_hydraulics::accumulator::{AdjustedPart, Adjustment, GasValve, Neck};
 use phea_hydraulics::actuator::Components;
 use phea_hydraulics::cross_port::{CrossPort, Restrictor};
 use phea_hydraulics::cylinder::{Cylinder, areas_from_diameters};
@@ -119,7 +119,7 @@ pub(super) fn rich_machines() -> Vec<(&'static str, Machine)> {
         |restrictor, capacity| Components { cross_port: Some(CrossPort { restrictor, capacity }), ..rig };
     let orifice = Restrictor::Orifice { flow_coefficient: 2e-9, transition_pressure: 1e4 };
     let laminar = Restrictor::Laminar { conductance: 1e-11 };
-    vec![
+    let mut machines = vec![
         ("a laminar valve between the chambers", of(port(laminar, None), with(pump(), None))),
         ("an orifice between them", of(port(orifice, None), with(PowerUnit::Constant, None))),
         ("laminar feedback", of(port(laminar, Some(3e-13)), with(pump(), None))),
@@ -138,5 +138,51 @@ pub(super) fn rich_machines() -> Vec<(&'static str, Machine)> {
         ("segments", of(rig, with(PowerUnit::Constant, lines_of(&rig, [SMEARED, PLAIN])))),
         ("creep", of(hoses, with(pump(), lines_of(&hoses, [FULL, CREEPING])))),
         ("all", of(all, everything)),
+    ];
+    machines.extend(adjusted_machines());
+    machines
+}
+
+/// Rigs whose accumulators are adjusted while a force from outside acts on their load.
+fn adjusted_machines() -> [(&'static str, Machine); 3] {
+    let rig = asymmetric();
+    let by_volume = foamy(rig, StiffnessModel::ByVolume, 1.4);
+    let gas = |gas_volume, precharge_pressure, polytropic_exponent| {
+        Some(Accumulator { gas_volume, precharge_pressure, polytropic_exponent })
+    };
+    let at_chambers = |rig| Components { accumulators: [gas(2e-5, 8e5, 1.4), gas(5e-6, 3e5, 1.0)], ..rig };
+    let isothermal = Components { accumulators: [gas(2e-5, 8e5, 1.0), gas(5e-6, 3e5, 1.0)], ..by_volume };
+    let neck = Some(Neck::round([6e-3, 0.04], [870.0, 46e-6, 1.45e9], 1.5));
+    // gas that is moved, at one chamber behind a neck, and gas behind valves, at one chamber with heat
+    let adjustment = |part| Some(Adjustment { setting: 0.5, part });
+    let more = AdjustedPart::Gas { gas_volume: 8e-6, precharge_pressure: -2e5 };
+    let less = AdjustedPart::Gas { gas_volume: -3e-6, precharge_pressure: 1e5 };
+    let valve = |flow_coefficient| {
+        let (transition_pressure, compliance) = (1e4, 3e-15);
+        AdjustedPart::Valve(GasValve { flow_coefficient, transition_pressure, compliance, shut: false })
+    };
+    let of_gas = Components {
+        adjustments: [adjustment(more), adjustment(less)],
+        necks: [None, neck],
+        ..at_chambers(rig)
+    };
+    let valves = [adjustment(valve(3e-8)), adjustment(valve(1e-8))];
+    let of_valves =
+        Components { adjustments: valves, thermal_time_constants: [None, Some(0.05)], ..isothermal };
+    let valve_and_gas = Components { adjustments: [valves[0], adjustment(less)], ..at_chambers(rig) };
+    let moving = |power_unit, lines| MachineOptions {
+        load: LoadModel::SpringMassDamper { mass: 20.0, stiffness: 3e5, damping: 200.0 },
+        external_force: true,
+        moving_setting: true,
+        power_unit,
+        lines,
+        ..MachineOptions::default()
+    };
+    let of = |rig, options: MachineOptions| machine_of(leaking(rig, 2e-12), &options);
+    let lines = lines_of(&rig, [SMEARED, PLAIN]);
+    [
+        ("gas that is moved", of(of_gas, moving(charged_pump(40e5, 1.4), None))),
+        ("gas with heat behind valves that move", of(of_valves, moving(pump(), lines))),
+        ("gas behind a valve, and moved", of(valve_and_gas, moving(PowerUnit::Constant, None))),
     ]
 }

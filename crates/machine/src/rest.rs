@@ -15,6 +15,8 @@ pub struct HeldInputs {
     pub command_v: f64,
     /// External force on the load, N, if the machine has that input.
     pub external_n: f64,
+    /// By how much the setting of accumulators has moved, if the machine has that input.
+    pub setting_change: f64,
 }
 
 /// A loop in equilibrium.
@@ -59,7 +61,7 @@ pub struct Rest {
 /// let sensed = Sensed::new(machine.clone(), &TransferFunction::gain_only(1.0))?;
 /// let closed = CommandedPlant::in_loop(sensed, &controller, 0.0)?;
 /// let guess = [beginning.state.clone(), closed.controller_at_rest(2e3, 3e3, beginning.command)].concat();
-/// let standing = HeldInputs { reference_n: 2e3, command_v: 0.0, external_n: 0.0 };
+/// let standing = HeldInputs { reference_n: 2e3, command_v: 0.0, external_n: 0.0, setting_change: 0.0 };
 /// let rest = at_rest(&Control::Continuous(Box::new(closed)), &guess, &beginning, standing)?;
 /// assert!((rest.measured_n - 2e3).abs() < 1e-3 && (force(&machine, &rest.start) - 2e3).abs() < 1e-3);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -79,9 +81,12 @@ pub fn at_rest(
     }
     let machine = control.sensed().plant();
     let [ground, _] = beginning.inputs;
-    let kept = machine.memories();
+    let mut kept = machine.memories();
+    kept.extend(machine.shut_gas(standing.setting_change));
     let mut inputs = vec![standing.reference_n, ground, 0.0];
     inputs.extend(machine.has_external_force().then_some(standing.external_n));
+    inputs
+        .extend(machine.has_moving_setting().then_some([standing.setting_change, 0.0]).into_iter().flatten());
     Ok(match control {
         Control::Open(commanded) | Control::Continuous(commanded) => {
             if let Control::Open(_) = control {

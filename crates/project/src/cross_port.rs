@@ -102,6 +102,15 @@ impl Default for DeclaredOrifice {
     }
 }
 
+impl DeclaredOrifice {
+    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+        v.one_of(&["diameter", "flow"], true);
+        let mut parts = OrificeParts::of(Some(self));
+        parts.visit(v);
+        *self = parts.orifice(v).unwrap_or_default();
+    }
+}
+
 impl DeclaredCrossPort {
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
         v.variant(plain("kind", "What lies between the chambers."), &mut self.kind, true);
@@ -144,10 +153,7 @@ impl Variants for CrossPortKind {
         match self {
             CrossPortKind::Laminar { conductance } => v.quantity(conductance_key(), conductance),
             CrossPortKind::Orifice(orifice) => {
-                v.one_of(&["diameter", "flow"], true);
-                let mut parts = OrificeParts::of(Some(orifice));
-                parts.visit(v);
-                *orifice = parts.orifice(v).unwrap_or_default();
+                orifice.visit(v);
             }
             CrossPortKind::DynamicPressureFeedback { restrictor, capacity } => {
                 v.one_of(&["conductance", "diameter", "flow"], true);

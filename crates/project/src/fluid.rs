@@ -1,5 +1,6 @@
 //! `[fluid]` and `[supply]`.
 
+use super::adjustment::{AdjustmentKind, DeclaredAdjustment};
 use super::key::{key, plain};
 use super::visitor::{Variants, Visitor};
 use phea_quantity::{
@@ -68,6 +69,8 @@ pub struct DeclaredAccumulator {
     pub maximum_pressure_ratio: Option<f64>,
     /// Between a chamber and the gas; absent: the gas has the pressure of the chamber.
     pub neck: Option<DeclaredNeck>,
+    /// What of it is adjusted in operation, at a chamber.
+    pub adjustment: Option<DeclaredAdjustment>,
 }
 
 /// Temperatures of the gas of an accumulator, in degC.
@@ -128,12 +131,24 @@ impl DeclaredAccumulator {
         (self.precharge_pressure + atmosphere) * ratio - atmosphere
     }
 
-    /// At a chamber, where it may have a neck and exchange heat.
+    /// The same at setting 0 of its adjustment and at setting 1.
+    pub fn ends(&self) -> [DeclaredAccumulator; 2] {
+        let Some(DeclaredAdjustment { kind: AdjustmentKind::Gas(last), .. }) = self.adjustment else {
+            return [*self; 2];
+        };
+        let gas_volume = last.gas_volume.unwrap_or(self.gas_volume);
+        let precharge_pressure = last.precharge_pressure.unwrap_or(self.precharge_pressure);
+        [*self, DeclaredAccumulator { gas_volume, precharge_pressure, ..*self }]
+    }
+
+    /// At a chamber, where it may have a neck, exchange heat and be adjusted.
     pub(crate) fn visit_at_chamber<V: Visitor>(&mut self, v: &mut V) {
         let doc = "Of the heat between gas and wall, in place of `polytropic_exponent`: slow isothermal, fast adiabatic.";
         v.optional(key("thermal_time_constant", &TIME, doc).positive(), &mut self.thermal_time_constant);
         self.visit(v);
         v.way(&["neck_diameter", "neck_length"], &mut self.neck, DeclaredNeck::visit);
+        let k = plain("adjustment", "What of it is adjusted in operation, by a setting from 0 to 1.");
+        v.table(k, &mut self.adjustment, DeclaredAdjustment::visit);
     }
 
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {

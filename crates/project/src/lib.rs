@@ -2,6 +2,7 @@
 //!
 //! Inside, everything is SI. Keys are a contract: other tools read them.
 
+mod adjustment;
 mod alternative;
 mod bench;
 mod campaign;
@@ -54,6 +55,7 @@ mod validate;
 mod valve;
 mod visitor;
 
+pub use adjustment::*;
 pub use alternative::*;
 pub use bench::*;
 pub use campaign::*;

@@ -3,8 +3,8 @@
 use super::key::{key, plain};
 use super::visitor::Visitor;
 use phea_quantity::{
-    ANGLE, ANGULAR_VELOCITY, Dimension, FLOW, FORCE, LENGTH, PRESSURE, RATIO, TEMPERATURE, TIME, TORQUE,
-    VELOCITY, VOLTAGE,
+    ANGLE, ANGULAR_VELOCITY, Dimension, FLOW, FORCE, LENGTH, POWER, PRESSURE, RATIO, TEMPERATURE, TIME,
+    TORQUE, VELOCITY, VOLTAGE,
 };
 
 /// A file with measured signals.
@@ -40,7 +40,7 @@ const fn signal(name: &'static str) -> (&'static str, &'static str) {
 
 /// The signals that can be measured, each as a project names it and as the column of a simulation's
 /// table is called: every column but time.
-pub static MEASURABLE: [(&str, &str); 40] = [
+pub static MEASURABLE: [(&str, &str); 43] = [
     signal("force_n"),
     signal("reference_n"),
     signal("control_v"),
@@ -77,10 +77,13 @@ pub static MEASURABLE: [(&str, &str); 40] = [
     signal("external_torque_n_m"),
     signal("gas_pressure_a_pa"),
     signal("gas_pressure_b_pa"),
-    signal("gas_temperature_ratio_a"),
-    signal("gas_temperature_ratio_b"),
+    signal("gas_temperature_a_ratio"),
+    signal("gas_temperature_b_ratio"),
     signal("gas_temperature_a_degC"),
     signal("gas_temperature_b_degC"),
+    signal("setting_a_ratio"),
+    signal("setting_b_ratio"),
+    signal("adjustment_power_w"),
 ];
 
 impl MeasuredFile {
@@ -123,8 +126,8 @@ impl MeasuredSignal {
     pub fn dimension(&self) -> &'static Dimension {
         let by_ending: [(&str, &'static Dimension); 12] = [
             ("_degC", &TEMPERATURE),
-            ("_ratio_a", &RATIO),
-            ("_ratio_b", &RATIO),
+            ("_ratio", &RATIO),
+            ("_w", &POWER),
             ("_n_m", &TORQUE),
             ("_rad_per_s", &ANGULAR_VELOCITY),
             ("_rad", &ANGLE),

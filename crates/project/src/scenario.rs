@@ -27,6 +27,8 @@ pub struct Scenario {
     /// An external force on the load, the sum of these; positive in the direction of positive
     /// position.
     pub external_force: Vec<Signal>,
+    /// By how much the setting of accumulators has moved from rest, the sum of these.
+    pub setting_change: Vec<Signal>,
     /// Percent, of every settling time.
     pub settling_band_percent: f64,
     /// Measurements on the rig.
@@ -193,6 +195,8 @@ impl Scenario {
         v.table(plain("load_motion", "What the load does."), &mut self.load_motion, LoadMotion::visit);
         let k = plain("external_force", "A force on the load from outside, towards positive positions.");
         v.one_or_more(k, &mut self.external_force, Signal::visitor(SignalUnit::EXTERNAL_FORCE));
+        let k = plain("setting_change", "By how much the setting of accumulators moves from rest.");
+        v.one_or_more(k, &mut self.setting_change, Signal::visitor(SignalUnit::SETTING_CHANGE));
         let k = key("settling_band_percent", &RATIO, "Band of every settling time, in percent.");
         v.quantity(k.positive().below(100.0).or(1.0), &mut self.settling_band_percent);
         let k = plain("measured", "What was measured on the rig, laid over the simulation.");

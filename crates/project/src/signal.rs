@@ -1,9 +1,10 @@
-//! Functions of time in a scenario: a reference force, an open-loop command, an external force.
+//! Functions of time in a scenario: a reference force, an open-loop command, an external force, the
+//! setting of accumulators.
 
 use super::key::{Key, key, plain};
 use super::published::Published;
 use super::visitor::{Variants, Visitor};
-use phea_quantity::{ANGLE, ANGULAR_FREQUENCY, Dimension, FORCE, TIME, VOLTAGE};
+use phea_quantity::{ANGLE, ANGULAR_FREQUENCY, Dimension, FORCE, RATIO, TIME, VOLTAGE};
 
 /// One part of a function of time; the parts add up, each zero before it begins. Values and
 /// amplitudes are in the unit of the signal, times in s, frequencies in rad/s. Without a start it
@@ -132,6 +133,14 @@ impl SignalUnit {
         value: "voltage",
         values: "voltages",
         dimension: &VOLTAGE,
+        published: false,
+        on_load: false,
+    };
+    /// Of the setting of accumulators.
+    pub(crate) const SETTING_CHANGE: SignalUnit = SignalUnit {
+        value: "change",
+        values: "changes",
+        dimension: &RATIO,
         published: false,
         on_load: false,
     };

@@ -1,5 +1,6 @@
 //! Conditions between the values of a project, in addition to the range of each.
 
+mod adjustment;
 mod alternative;
 mod cross_port;
 mod design;

@@ -101,6 +101,8 @@ dimensions! {
     /// rad/s; a text in Hz is a number of cycles and is multiplied by 2π.
     ANGULAR_FREQUENCY = "an angular frequency", whole(0, 0, -1, 0, 1), ["rad/s"], "rad/s",
         r#""1099 rad/s", "175 Hz""#;
+    /// W.
+    POWER = "a power", whole(1, 2, -3, 0, 0), ["W"], "W", r#""50 W", "1.2 kW""#;
     /// A pure number.
     RATIO = "a pure number", Exponents::NONE, [], "1", r#"0.9, "20 %""#;
     /// A gain as a ratio; its text may be in dB.

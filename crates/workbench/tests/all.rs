@@ -2,6 +2,7 @@
 #![cfg(test)]
 
 mod accumulator;
+mod adjustment;
 mod alternatives;
 mod alternatives_front;
 mod ask;

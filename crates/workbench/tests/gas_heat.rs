@@ -176,8 +176,8 @@ fn the_gas_of_a_run_is_adiabatic_where_it_has_no_time_for_heat() {
         "gas_pressure_a_pa",
         "pressure_a_pa",
         "pressure_b_pa",
-        "gas_temperature_ratio_a",
-        "gas_temperature_ratio_b",
+        "gas_temperature_a_ratio",
+        "gas_temperature_b_ratio",
         "gas_temperature_b_degC",
     ]
     .map(|name| record.signal(name));

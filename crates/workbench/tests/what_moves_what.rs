@@ -137,6 +137,24 @@ fn with_accumulators() -> Vec<(String, Vec<&'static str>)> {
         (SIMULATION.to_string(), vec![]),
         (ACCUMULATORS.to_string(), vec![]),
         (NECK.to_string(), vec![]),
+        (
+            NECK.to_string(),
+            vec![
+                "line.accumulator={ gas_volume = \"14 mL\", precharge_pressure = \"15 bar\", adjustment = { kind = \"gas\", gas_volume = \"20 mL\", precharge_pressure = \"12 bar\", setting = 0.25 } }",
+            ],
+        ),
+        (
+            NECK.to_string(),
+            vec![
+                "line.accumulator={ gas_volume = \"14 mL\", precharge_pressure = \"15 bar\", adjustment = { kind = \"valve\", diameter = \"3 mm\", discharge_coefficient = 0.7, setting = 0.5 } }",
+            ],
+        ),
+        (
+            NECK.to_string(),
+            vec![
+                "line.accumulator={ gas_volume = \"14 mL\", precharge_pressure = \"15 bar\", adjustment = { kind = \"valve\", flow = \"20 L/min\", pressure_drop = \"5 bar\", transition_pressure = \"0.1 bar\", dead_volume = \"0.2 mL\", setting = 0.5 } }",
+            ],
+        ),
         (SIMULATION.to_string(), vec!["operating_point.load_force=2 kN"]),
         (HEAT.to_string(), vec![]),
         (

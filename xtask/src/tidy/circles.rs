@@ -16,7 +16,19 @@ const KNOWN: &[(&str, &[&str])] = &[
     // the catalogue is read as a project is, by the visitors of the tables that its entries fill in
     (
         "crates/project",
-        &["catalogue", "fluid", "interval", "line", "line_motion", "listing", "reader", "valve", "visitor"],
+        &[
+            "adjustment",
+            "catalogue",
+            "cross_port",
+            "fluid",
+            "interval",
+            "line",
+            "line_motion",
+            "listing",
+            "reader",
+            "valve",
+            "visitor",
+        ],
     ),
     // a search is given the problem of a design
     ("crates/qft", &["design", "loop_shaping", "prefilter"]),

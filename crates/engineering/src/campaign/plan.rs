@@ -307,6 +307,7 @@ fn mark(source: &dyn Source, project: &Project, scenario: &Scenario, seed: u32) 
         _ => None,
     });
     let signals = scenario.reference.iter().chain(&scenario.command).chain(&scenario.external_force);
+    let signals = signals.chain(&scenario.setting_change);
     let signals = signals.filter_map(|signal| match signal {
         Signal::File { file, .. } => Some(file),
         _ => None,

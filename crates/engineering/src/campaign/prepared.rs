@@ -51,7 +51,8 @@ pub(super) fn prepared(plan: &Plan, draw: Draw) -> Result<Prepared, Box<Row>> {
         let declared = project.actuator.as_ref().ok_or(RigError::NoActuator)?;
         let actuator = actuator(declared).map_err(RigError::from)?;
         let external_force = plan.bench.machine.has_external_force();
-        let options = MachineOptions { external_force, ..options(&project, &actuator)? };
+        let moving_setting = plan.bench.machine.has_moving_setting();
+        let options = MachineOptions { external_force, moving_setting, ..options(&project, &actuator)? };
         let machine = Machine::new(&actuator, &options).map_err(SimulateError::Machine)?;
         let mut bench = plan.bench.around(machine, actuator);
         if let (Control::Sampled(sampled), Some(seed)) = (&mut bench.control, draw.noise_seed) {

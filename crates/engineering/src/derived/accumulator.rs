@@ -26,11 +26,41 @@ fn of_branch(branch: &GasBranch, name: &impl Fn(&str) -> String, list: &mut List
         list.add(name("fast_compliance"), "C_fast", branch.compliance, "m3/Pa", equation);
         list.add(name("isothermal_below"), "ω_T", 1.0 / later.time, "rad/s", "ω_T = 1/(γ τ), γ = 1.4");
     }
+    if let Some(conductance) = branch.valve {
+        let equation = "ω_v = g/(C_{acc} + C_v), g = s K/sqrt(dp_t): slower oil reaches the gas";
+        list.add(name("valve_corner"), "ω_v", conductance / branch.compliance, "rad/s", equation);
+    }
     if let Some((resonance, damping_ratio)) = branch.resonance().zip(branch.damping_ratio()) {
         let equation = "ω_n = 1/sqrt(I (C_{acc} + C_n)), Helmholtz";
         list.add(name("neck_resonance"), "ω_n", resonance, "rad/s", equation);
         let equation = "ξ_n = R/2 sqrt((C_{acc} + C_n)/I), laminar";
         list.add(name("neck_damping_ratio"), "ξ_n", damping_ratio, "1", equation);
+    }
+}
+
+/// The stiffness where the setting of accumulators that are adjusted stands elsewhere: shut, or without what is added, at 0.
+fn at_settings(
+    components: &Components,
+    stiffness: &impl Fn(&Components, &OperatingPoint) -> f64,
+    point: &OperatingPoint,
+    list: &mut List,
+) {
+    if components.adjustments.iter().all(Option::is_none) {
+        return;
+    }
+    for (name, setting) in
+        [("stiffness.at_setting_0", 0.0), ("stiffness.at_setting_half", 0.5), ("stiffness.at_setting_1", 1.0)]
+    {
+        let accumulators = [0, 1].map(|side| {
+            let gas = components.accumulators[side]?;
+            let Some(of) = components.adjustments[side] else { return Some(gas) };
+            let shut = of.valve().is_some() && setting == 0.0;
+            (!shut).then(|| of.moved(&gas, setting - of.setting, 0.0).gas)
+        });
+        // an open valve is the gas at its chamber at rest
+        let there = Components { accumulators, adjustments: [None; 2], ..*components };
+        let equation = "K_H = A_A^2/C_A + A_B^2/C_B, slow, at this setting";
+        list.add(name, "K_H", stiffness(&there, point), "N/m", equation);
     }
 }
 
@@ -57,6 +87,10 @@ pub(super) fn accumulators(project: &Project, rig: &Rig, list: &mut List) {
         if let Some(branch) = components.gas_branches(pressures)[place] {
             of_branch(&branch, &name, list);
         }
+        if let Some(adjustment) = components.adjustments[place] {
+            let equation = "s of the adjustment, at rest";
+            list.add(name("setting"), "s", adjustment.setting, "1", equation);
+        }
         let volume = gas.gas_volume - gas.oil(pressure);
         list.add(name("gas_volume_at_point"), "V", volume, "m3", "V = V_0 (P_0/P)^(1/n)");
     }
@@ -70,6 +104,7 @@ pub(super) fn accumulators(project: &Project, rig: &Rig, list: &mut List) {
     list.add("stiffness.with_accumulators", "K_H", at(components, &rig.point), "N/m", with);
     let without = "K_H = A_A^2/C_A + A_B^2/C_B, C_A and C_B without C_acc";
     list.add("stiffness.without_accumulators", "K_H", at(&bare, &rig.point), "N/m", without);
+    at_settings(components, &at, &rig.point, list);
     let Some(ChargedRange { least, greatest }) = charged_range(rig) else { return };
     let ends = [
         ("line.a.accumulator.least_force", "stiffness.at_least_force", "P_A = 1.01 P_0 at standstill", least),

@@ -2,10 +2,12 @@
 //! which forces.
 
 use phea_hydraulics::accumulator::Accumulator;
+use phea_hydraulics::actuator::Components;
+use phea_hydraulics::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 use phea_hydraulics::operating_point::{Condition, OperatingPoint, operating_point};
 
 use super::Rig;
-use crate::project::DeclaredActuator;
+use crate::project::{DeclaredActuator, DeclaredLine};
 use crate::quantity::DisplayUnit;
 
 /// An accumulator whose precharge is above the pressure of its chamber at the operating point: the
@@ -64,6 +66,16 @@ pub(super) fn charged(
     let chambers = [('A', point.pressure_a, &line.a), ('B', point.pressure_b, &line.b)];
     for ((gas, place), (side, pressure, line)) in sides.zip(chambers) {
         let Some(Accumulator { precharge_pressure, .. }) = *gas else { continue };
+        if let Some(precharge_pressure) = highest_precharge(line).filter(|highest| pressure < *highest) {
+            let place = if place == "line.accumulator" {
+                "line.accumulator.adjustment"
+            } else if side == 'A' {
+                "line.a.accumulator.adjustment"
+            } else {
+                "line.b.accumulator.adjustment"
+            };
+            return Err(EmptyAccumulator { place, side, precharge_pressure, stated: None, pressure });
+        }
         if pressure < precharge_pressure {
             let other = line.accumulator.as_ref().filter(|gas| gas.temperatures.is_some());
             let stated = other.map(|gas| gas.precharge_pressure);
@@ -73,8 +85,20 @@ pub(super) fn charged(
     Ok(())
 }
 
+/// The precharge in Pa at setting 1 of an accumulator whose precharge its setting raises.
+fn highest_precharge(line: &DeclaredLine) -> Option<f64> {
+    let [first, last] = line.accumulator.as_ref()?.ends();
+    let rises = last.precharge_pressure > first.precharge_pressure;
+    rises.then(|| last.working_precharge(ATMOSPHERIC_PRESSURE_ABSOLUTE))
+}
+
 /// Bisections of the command: the width of its interval then is rounding.
 const ROUNDS: usize = 60;
+
+/// Whether a valve is shut before the gas at a chamber at rest.
+fn shut(components: &Components, side: usize) -> bool {
+    components.gas_valve(side).is_some_and(|valve| valve.shut)
+}
 
 /// Where the gas at one of the chambers is shut off as the rig holds more and more force at
 /// standstill; `None` without accumulators, and where the operating point does not stand still.
@@ -84,7 +108,7 @@ const ROUNDS: usize = 60;
 /// ```
 pub fn charged_range(rig: &Rig) -> Option<ChargedRange> {
     let components = rig.actuator.components();
-    let [gas_a, gas_b] = components.accumulators;
+    let [gas_a, gas_b] = [0, 1].map(|side| components.accumulators[side].filter(|_| !shut(components, side)));
     if gas_a.or(gas_b).is_none() || rig.point.velocity != 0.0 {
         return None;
     }

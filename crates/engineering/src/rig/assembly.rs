@@ -1,5 +1,5 @@
 use phea_dynamics::scalar::Scalar;
-use phea_hydraulics::accumulator::{Accumulator, Neck};
+use phea_hydraulics::accumulator::Neck;
 use phea_hydraulics::actuator::{Actuator, ActuatorError, Components};
 use phea_hydraulics::contact::Contact;
 use phea_hydraulics::cylinder::{Cylinder, annulus_area};
@@ -16,13 +16,13 @@ use phea_hydraulics::stiffness::StiffnessModel;
 use phea_hydraulics::stroke::ActuatorStroke;
 
 use super::cross_port::cross_port;
+use super::gas::{accumulator, adjustment};
 use super::numbers::Numbers;
 use crate::project::{
     self, BoundedNumber, Compliance, Component, DeclaredAccumulator, DeclaredNeck, DeclaredSeries,
-    EdgeCoefficients, FrictionLaw, GasTemperatures, HoseExpansion, LineVolume, NullLeakage, RatedFlow,
-    StribeckCurve, ValveCoefficients,
+    EdgeCoefficients, FrictionLaw, HoseExpansion, LineVolume, NullLeakage, RatedFlow, StribeckCurve,
+    ValveCoefficients,
 };
-use crate::quantity::ZERO_CELSIUS;
 
 /// Kinematic viscosity of ISO VG 46 oil at 40 degrees Celsius, m2/s: used where a project states
 /// none.
@@ -60,6 +60,8 @@ pub fn components<S: Scalar>(
             let declared = line.accumulator.as_ref()?.thermal_time_constant?;
             Some(numbers.of_line(side).at("accumulator.thermal_time_constant", declared))
         }),
+        adjustments: [("a", &declared.line.a), ("b", &declared.line.b)]
+            .map(|(side, line)| adjustment(line.accumulator.as_ref()?, &numbers.of_line(side), &fluid)),
         fluid,
         supply: Supply { pressure, tank_pressure },
         valve: valve(&declared.valve, numbers, pressure - tank_pressure),
@@ -202,25 +204,6 @@ fn line<S: Scalar>(
             }
         }
     }
-}
-
-/// An accumulator declared in the table that `numbers` are within, at its working temperature; with a
-/// thermal time constant it is isothermal at rest.
-pub(super) fn accumulator<S: Scalar>(
-    declared: Option<&DeclaredAccumulator>,
-    numbers: &Numbers<'_, S>,
-) -> Option<Accumulator<S>> {
-    let declared = declared?;
-    let polytropic = || numbers.at("accumulator.polytropic_exponent", declared.polytropic_exponent);
-    let stated = Accumulator {
-        gas_volume: numbers.at("accumulator.gas_volume", declared.gas_volume),
-        precharge_pressure: numbers.at("accumulator.precharge_pressure", declared.precharge_pressure),
-        polytropic_exponent: declared.thermal_time_constant.map_or_else(polytropic, |_| S::from(1.0)),
-    };
-    let Some(GasTemperatures { precharge, working }) = declared.temperatures else { return Some(stated) };
-    let absolute = |path: &str, celsius: f64| numbers.at(path, celsius) + S::from(ZERO_CELSIUS);
-    let precharge = absolute("accumulator.precharge_temperature", precharge);
-    Some(stated.at_temperature([precharge, absolute("accumulator.working_temperature", working)]))
 }
 
 /// The neck of an accumulator declared in the line that `numbers` are of; density, kinematic

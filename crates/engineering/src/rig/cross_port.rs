@@ -18,7 +18,10 @@ pub(super) fn cross_port<S: Scalar>(
     let numbers = numbers.within("cross_port");
     let laminar =
         |conductance: f64| Restrictor::Laminar { conductance: numbers.at("conductance", conductance) };
-    let edge = |declared: &DeclaredOrifice| orifice(declared, &numbers, density);
+    let edge = |declared: &DeclaredOrifice| {
+        let [flow_coefficient, transition_pressure] = edge(declared, &numbers, density);
+        Restrictor::Orifice { flow_coefficient, transition_pressure }
+    };
     Some(match &declared?.kind {
         CrossPortKind::Laminar { conductance } => {
             CrossPort { restrictor: laminar(*conductance), capacity: None }
@@ -34,7 +37,9 @@ pub(super) fn cross_port<S: Scalar>(
     })
 }
 
-fn orifice<S: Scalar>(declared: &DeclaredOrifice, numbers: &Numbers<'_, S>, density: S) -> Restrictor<S> {
+/// Flow coefficient in m3/(s Pa^0.5) and transition pressure in Pa of an orifice in a fluid of this
+/// density in kg/m3.
+pub(super) fn edge<S: Scalar>(declared: &DeclaredOrifice, numbers: &Numbers<'_, S>, density: S) -> [S; 2] {
     let flow_coefficient = match declared.size {
         OrificeSize::Diameter { diameter, discharge_coefficient } => orifice_coefficient(
             numbers.at("discharge_coefficient", discharge_coefficient),
@@ -45,8 +50,7 @@ fn orifice<S: Scalar>(declared: &DeclaredOrifice, numbers: &Numbers<'_, S>, dens
             numbers.at("flow", flow) / numbers.at("pressure_drop", pressure_drop).sqrt()
         }
     };
-    let transition_pressure = numbers.at("transition_pressure", declared.transition_pressure);
-    Restrictor::Orifice { flow_coefficient, transition_pressure }
+    [flow_coefficient, numbers.at("transition_pressure", declared.transition_pressure)]
 }
 
 /// C_cp = A_cp^2/k_cp of a piston between springs.

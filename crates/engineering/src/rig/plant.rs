@@ -12,7 +12,7 @@ use phea_hydraulics::two_pressure::{TwoPressureLinearParameters, reduce};
 
 use super::numbers::Numbers;
 use super::parameters::{ParameterOrigin, ResolvedParameter, parameter_field};
-use crate::project;
+use crate::project::{self, DeclaredAdjustment};
 
 /// Parameters of the linear model that presuppose one load pressure.
 const OF_LOAD_PRESSURE: [&str; 4] =
@@ -197,7 +197,7 @@ pub(crate) fn with_supply<S: Scalar>(
     LinearPlant { supply: Some(supply), ..plant }
 }
 
-/// The same plant with the gas of accumulators that lies behind a neck or exchanges heat, and with a
+/// The same plant with the gas of accumulators that lies behind a neck or a valve or exchanges heat, and with a
 /// pressure a chamber. Where a stated number makes these chambers stiffer than their parts are, the
 /// gas is stiffened alike.
 pub(crate) fn with_gas<S: Scalar>(
@@ -249,10 +249,13 @@ pub(crate) fn without_branches<S: Scalar>(
     [a - gas_a, b - gas_b]
 }
 
-/// Whether gas lies behind a neck or exchanges heat.
+/// Whether gas lies behind a neck or a valve or exchanges heat.
 pub(crate) fn has_gas_states(declared: &project::DeclaredActuator) -> bool {
     let gas = [&declared.line.a, &declared.line.b].map(|line| line.accumulator.as_ref());
-    gas.into_iter().flatten().any(|gas| gas.neck.is_some() || gas.thermal_time_constant.is_some())
+    gas.into_iter().flatten().any(|gas| {
+        let valve = gas.adjustment.as_ref().and_then(DeclaredAdjustment::valve);
+        gas.neck.is_some() || gas.thermal_time_constant.is_some() || valve.is_some()
+    })
 }
 
 /// The parameters of the linear model that the project states: name and value.

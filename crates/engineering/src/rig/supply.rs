@@ -7,7 +7,7 @@ use phea_hydraulics::plant::YieldingSupply;
 use phea_hydraulics::servovalve::{SpoolDirection, edge_conductances, edge_flows, tare_flow};
 
 use super::Rig;
-use super::assembly::accumulator;
+use super::gas::accumulator;
 use super::numbers::Numbers;
 use crate::project::{self, SupplyModel};
 

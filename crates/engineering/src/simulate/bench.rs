@@ -48,7 +48,7 @@ impl ControlledMachine {
     /// # Errors
     /// [`SimulateError`] where one of them is missing or impossible.
     pub fn new(setup: &Setup<'_>) -> Result<ControlledMachine, SimulateError> {
-        ControlledMachine::closed(setup, false)
+        ControlledMachine::closed(setup, &MachineOptions::default())
     }
 
     /// The machine for a scenario of the project: in open loop if it states a command, with an
@@ -57,16 +57,20 @@ impl ControlledMachine {
     /// # Errors
     /// As [`ControlledMachine::new`]; an open loop needs no controller.
     pub fn of_scenario(setup: &Setup<'_>, scenario: &Scenario) -> Result<ControlledMachine, SimulateError> {
-        let external_force = !scenario.external_force.is_empty();
+        let driven = MachineOptions {
+            external_force: !scenario.external_force.is_empty(),
+            moving_setting: !scenario.setting_change.is_empty(),
+            ..MachineOptions::default()
+        };
         match scenario.is_open_loop() {
-            false => ControlledMachine::closed(setup, external_force),
-            true => ControlledMachine::open(setup, external_force),
+            false => ControlledMachine::closed(setup, &driven),
+            true => ControlledMachine::open(setup, &driven),
         }
     }
 
-    fn closed(setup: &Setup<'_>, external_force: bool) -> Result<ControlledMachine, SimulateError> {
+    fn closed(setup: &Setup<'_>, driven: &MachineOptions) -> Result<ControlledMachine, SimulateError> {
         let project = setup.project;
-        let (rig, sensed) = rig_and_machine(setup, external_force)?;
+        let (rig, sensed) = rig_and_machine(setup, driven)?;
         let controller = setup.controller.clone().ok_or(SimulateError::NoController)?;
         let feed_forward = feed_forward(project, &rig.linear);
         let machine = *sensed.plant();
@@ -99,9 +103,9 @@ impl ControlledMachine {
 
     /// The machine alone, for a stated command, which is not subject to limits, samples and delays
     /// of a controller.
-    fn open(setup: &Setup<'_>, external_force: bool) -> Result<ControlledMachine, SimulateError> {
+    fn open(setup: &Setup<'_>, driven: &MachineOptions) -> Result<ControlledMachine, SimulateError> {
         let project = setup.project;
-        let (rig, sensed) = rig_and_machine(setup, external_force)?;
+        let (rig, sensed) = rig_and_machine(setup, driven)?;
         let machine = *sensed.plant();
         let control =
             Control::Open(Box::new(CommandedPlant::on_hold(sensed, &TransferFunction::gain_only(1.0))?));
@@ -129,10 +133,14 @@ impl ControlledMachine {
     }
 }
 
-/// The rig, and its machine with its sensor.
-fn rig_and_machine(setup: &Setup<'_>, external_force: bool) -> Result<(Rig, Sensed<Machine>), SimulateError> {
+/// The rig, and its machine with its sensor and the inputs that `driven` has.
+fn rig_and_machine(
+    setup: &Setup<'_>,
+    driven: &MachineOptions,
+) -> Result<(Rig, Sensed<Machine>), SimulateError> {
     let rig = setup.rig()?;
-    let options = MachineOptions { external_force, ..options(setup.project, &rig.actuator)? };
+    let MachineOptions { external_force, moving_setting, .. } = *driven;
+    let options = MachineOptions { external_force, moving_setting, ..options(setup.project, &rig.actuator)? };
     let machine = Machine::new(&rig.actuator, &options).map_err(SimulateError::Machine)?;
     Ok((rig.clone(), Sensed::new(machine, &setup.sensor)?))
 }
@@ -224,6 +232,7 @@ pub fn options(project: &Project, actuator: &Actuator) -> Result<MachineOptions,
         load: load(&declared.load)?,
         velocity_gain: velocity_gain(declared, &Numbers::declared()).unwrap_or(1.0),
         external_force: false,
+        moving_setting: false,
         vapour_pressure_absolute: declared.fluid.vapour_pressure,
         member: StiffeningMember::Nominal,
         gas_pressure_limits: gas_pressure_limits(declared, actuator),
@@ -244,10 +253,12 @@ pub fn options(project: &Project, actuator: &Actuator) -> Result<MachineOptions,
 fn gas_pressure_limits(declared: &project::DeclaredActuator, actuator: &Actuator) -> [Option<f64>; 2] {
     let declared = [&declared.line.a, &declared.line.b].map(|line| line.accumulator.as_ref());
     [0, 1].map(|side| {
-        let ratio = declared[side]?.maximum_pressure_ratio?;
-        let gas = actuator.components().accumulators[side]?;
-        let atmosphere = ATMOSPHERIC_PRESSURE_ABSOLUTE;
-        Some(ratio * (gas.precharge_pressure + atmosphere) - atmosphere)
+        let (ratio, atmosphere) = (declared[side]?.maximum_pressure_ratio?, ATMOSPHERIC_PRESSURE_ABSOLUTE);
+        let at_rest = actuator.components().accumulators[side]?.precharge_pressure;
+        // of a precharge that is adjusted the least
+        let ends = declared[side]?.ends().map(|end| end.working_precharge(atmosphere));
+        let least = if ends[0] == ends[1] { at_rest } else { ends[0].min(ends[1]) };
+        Some(ratio * (least + atmosphere) - atmosphere)
     })
 }
 

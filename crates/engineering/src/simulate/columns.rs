@@ -172,7 +172,8 @@ mod tests {
             series: true,
             linkage: true,
             impedance: true,
-            necks: [true; 2],
+            adjustment: true,
+            gas_pressure: [true; 2],
             heated_gas: [true; 2],
             gas_wall_celsius: [Some(40.0); 2],
         }
@@ -204,15 +205,15 @@ mod tests {
     #[test]
     fn a_part_that_is_missing_has_no_column() {
         let plain = Columns::new(&SignalParts::default()).names();
-        let necked = SignalParts {
-            necks: [false, true],
+        let gas_at_b = SignalParts {
+            gas_pressure: [false, true],
             heated_gas: [false, true],
             gas_wall_celsius: [None, Some(40.0)],
             ..SignalParts::default()
         };
-        let more = Columns::new(&necked).names();
+        let more = Columns::new(&gas_at_b).names();
         let added: Vec<&str> = more.into_iter().filter(|name| !plain.contains(name)).collect();
-        assert_eq!(added, ["gas_pressure_b_pa", "gas_temperature_ratio_b", "gas_temperature_b_degC"]);
+        assert_eq!(added, ["gas_pressure_b_pa", "gas_temperature_b_ratio", "gas_temperature_b_degC"]);
     }
 
     /// Ten percent above an absolute 300 K is 330 K; gas as warm as its wall has its temperature.

@@ -7,7 +7,7 @@ use phea_machine::{Control, HeldInputs, Rest, Waking};
 
 use super::bench::ControlledMachine;
 use super::equilibrium::{RestedLoop, rest};
-use super::motion_file::{self, FORCES, VOLTAGES};
+use super::motion_file::{self, CHANGES, FORCES, VOLTAGES};
 use super::saved::{self, SavedState};
 use super::signal::{self, SignalOnset as Begun};
 use super::{Cause, SimulateError, Window};
@@ -24,6 +24,8 @@ pub(crate) struct PreparedScenario {
     pub ground: Profile,
     /// External force on the load in N, if the machine has that input.
     pub external_force: Option<Profile>,
+    /// By how much the setting of accumulators has moved, if the machine has that input.
+    pub setting_change: Option<Profile>,
     /// States of the machine, of its sensor and of the continuous part of its controller, and the
     /// waves in transit.
     pub start: Vec<f64>,
@@ -41,6 +43,8 @@ pub struct ScenarioDrive {
     command: Profile,
     /// External force on the load in N.
     external_force: Profile,
+    /// By how much the setting of accumulators has moved.
+    setting_change: Profile,
     /// Position of the load or of its ground in m, relative to its start.
     pub motion: Profile,
     /// The windows that are evaluated.
@@ -53,7 +57,10 @@ impl PreparedScenario {
     /// The inputs of the machine other than its command.
     pub(crate) fn machine_inputs(&self) -> Vec<Input> {
         let ground = [Input::Value(self.ground.clone()), Input::Rate(self.ground.clone())];
-        ground.into_iter().chain(self.external_force.clone().map(Input::Value)).collect()
+        let setting = self.setting_change.clone();
+        let setting = setting.map(|setting| [Input::Value(setting.clone()), Input::Rate(setting)]);
+        let external = self.external_force.clone().map(Input::Value);
+        ground.into_iter().chain(external).chain(setting.into_iter().flatten()).collect()
     }
 }
 
@@ -82,11 +89,14 @@ pub fn driven(
     };
     let command = signal::profile(source, project, &scenario.name, &scenario.command, &VOLTAGES)?;
     let external_force = signal::profile(source, project, &scenario.name, &scenario.external_force, &FORCES)?;
-    let windows = windows(scenario, [&reference, &command, &external_force]);
+    let setting_change =
+        signal::profile(source, project, &scenario.name, &scenario.setting_change, &CHANGES)?;
+    within_its_way(project, scenario, &setting_change)?;
+    let windows = windows(scenario, [&reference, &command, &external_force, &setting_change]);
     let file = scenario.start.as_ref().and_then(|start| start.file.as_ref());
     let read = |file: &String| saved::read(source, project, file, bench).map_err(SimulateError::Motion);
     let saved = file.map(read).transpose()?;
-    Ok(ScenarioDrive { reference, command, external_force, motion, windows, saved })
+    Ok(ScenarioDrive { reference, command, external_force, setting_change, motion, windows, saved })
 }
 
 /// The scenario for the machine of a bench.
@@ -122,6 +132,7 @@ impl ScenarioDrive {
             reference_n: self.reference.value(0.0),
             command_v: self.command.value(0.0),
             external_n: self.external_force.value(0.0),
+            setting_change: self.setting_change.value(0.0),
         }
     }
 
@@ -142,9 +153,44 @@ impl ScenarioDrive {
             command: self.command.clone(),
             ground: self.motion.clone().shifted(ground),
             external_force: bench.machine.has_external_force().then(|| self.external_force.clone()),
+            setting_change: bench.machine.has_moving_setting().then(|| self.setting_change.clone()),
             start,
             waking,
             windows: self.windows.clone(),
+        }
+    }
+}
+
+/// Instants at which a setting is looked at beside its breaks.
+const LOOKS: u32 = 20_000;
+/// By how much rounding may move it beyond its ends.
+const BEYOND: f64 = 1e-9;
+
+/// Refuses a setting that leaves 0 to 1.
+fn within_its_way(project: &Project, scenario: &Scenario, change: &Profile) -> Result<(), SimulateError> {
+    let adjusted = project.actuator.as_ref().map_or([None; 2], project::DeclaredActuator::adjustments);
+    if scenario.setting_change.is_empty() {
+        return Ok(());
+    }
+    let end_s = scenario.duration;
+    let evenly = (0..=LOOKS).map(|look| end_s * f64::from(look) / f64::from(LOOKS));
+    let breaks = change.breaks().into_iter().filter(|time| *time <= end_s);
+    let beyond = |setting: f64| (setting - 1.0).max(-setting);
+    let mut farthest: Option<(f64, f64)> = None;
+    for time_s in evenly.chain(breaks) {
+        for one in adjusted.into_iter().flatten() {
+            let setting = one.setting + change.value(time_s);
+            let before = farthest.map_or(BEYOND, |(setting, _)| beyond(setting));
+            if beyond(setting) > before || setting.is_nan() {
+                farthest = Some((setting, time_s));
+            }
+        }
+    }
+    match farthest {
+        None => Ok(()),
+        Some((setting, time_s)) => {
+            let name = scenario.name.clone();
+            Err(SimulateError::Setting { name, setting, time_s })
         }
     }
 }
@@ -228,9 +274,9 @@ fn loop_start(bench: &ControlledMachine, beginning: &InitialCondition, held_at: 
     start
 }
 
-/// One window for each event in reference, command and external force, and for the motion of the
+/// One window for each event in reference, command, external force and setting, and for the motion of the
 /// load, each lasting until the next.
-fn windows(scenario: &Scenario, [reference, command, external]: [&Profile; 3]) -> Vec<Window> {
+fn windows(scenario: &Scenario, [reference, command, external, setting]: [&Profile; 4]) -> Vec<Window> {
     let end_s = scenario.duration;
     let window = |cause: Cause, start_s: f64| Window { cause, start_s, end_s };
     let referred = |begun: Begun| match begun {
@@ -245,12 +291,17 @@ fn windows(scenario: &Scenario, [reference, command, external]: [&Profile; 3]) -
     let of_command = signal::beginnings(&scenario.command, command, end_s).into_iter().map(commanded);
     let outside = signal::beginnings(&scenario.external_force, external, end_s).into_iter();
     let outside = outside.map(|begun| window(Cause::ExternalForce, begun.time_s()));
+    let adjusted = signal::beginnings(&scenario.setting_change, setting, end_s).into_iter();
+    let adjusted = adjusted.map(|begun| window(Cause::SettingChange, begun.time_s()));
     // a loop that starts in equilibrium starts with the inputs at time zero
     let stands = |window: &Window| {
-        let steps = matches!(window.cause, Cause::ReferenceStep { .. } | Cause::CommandStep { .. });
+        let steps = matches!(
+            window.cause,
+            Cause::ReferenceStep { .. } | Cause::CommandStep { .. } | Cause::SettingChange
+        );
         scenario.start.is_none() && steps && window.start_s <= 0.0
     };
-    let begun = begun.chain(of_command).chain(outside);
+    let begun = begun.chain(of_command).chain(outside).chain(adjusted);
     let mut windows: Vec<Window> = begun.filter(|window| !stands(window)).collect();
     if let Some(motion) = scenario.load_motion.as_ref().filter(|motion| motion.start < end_s) {
         windows.push(window(Cause::LoadMotion, motion.start));

@@ -6,6 +6,7 @@ use std::cell::{Cell, RefCell};
 use phea_dynamics::simulation::{Attention, Observer, Stretch};
 use phea_machine::{Control, ControllerSample, ControllerSamples};
 
+use super::adjusted::{AdjustmentWatch, AdjustmentWork};
 use super::bench::ControlledMachine;
 use super::columns::LOOP_SIGNALS;
 use super::course::PreparedScenario;
@@ -30,6 +31,7 @@ pub(super) struct Sighted {
     pub(super) measured: Vec<Overlay>,
     /// The limits of the rig that it exceeds.
     pub(super) exceeded: Vec<Exceeded>,
+    pub(super) adjustment: Option<AdjustmentWork>,
 }
 
 /// The controller at one time.
@@ -56,6 +58,8 @@ pub(super) struct Looking<'a> {
     /// `None` where no samples are kept.
     record: Option<Record>,
     limits: LimitWatch,
+    /// Of machines whose setting moves.
+    adjustment: Option<AdjustmentWatch>,
     follower: Follower<'a>,
     /// Of chambers A and B, and the highest so far, Pa.
     pressures: [WeightedSum; 2],
@@ -91,6 +95,7 @@ impl<'a> Looking<'a> {
             table,
             record: None,
             limits,
+            adjustment: bench.machine.has_moving_setting().then(AdjustmentWatch::default),
             follower,
             pressures,
             peak_pressures_pa: [f64::NEG_INFINITY; 2],
@@ -125,6 +130,7 @@ impl<'a> Looking<'a> {
             peak_pressures_pa: self.peak_pressures_pa,
             measured,
             exceeded: self.limits.finish(),
+            adjustment: self.adjustment.map(AdjustmentWatch::finish),
         })
     }
 
@@ -134,6 +140,7 @@ impl<'a> Looking<'a> {
             || self.record.is_some()
             || !self.overlays.is_empty()
             || self.limits.wants_signals()
+            || self.adjustment.is_some()
     }
 
     /// What the controller sees and gives out, and the inputs of the machine alone.
@@ -201,6 +208,9 @@ impl Observer for Looking<'_> {
         }
         let look = self.look(time_s, of_loop, states, others);
         self.limits.take_signals(time_s, &look.signals);
+        if let Some(adjustment) = &mut self.adjustment {
+            adjustment.take(time_s, &look.signals);
+        }
         if let Some(table) = self.table.as_mut().filter(|_| self.count.is_multiple_of(self.looks_per_row))
             && let Err(fault) = table.row(&look)
         {

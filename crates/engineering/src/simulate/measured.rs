@@ -61,8 +61,8 @@ impl Overlay {
             ("_rad", DisplayUnit::DEGREE),
             ("_n_m", DisplayUnit::NEWTON_METRE),
             ("_degC", DisplayUnit::DEGREE_CELSIUS),
-            ("_ratio_a", DisplayUnit::ONE),
-            ("_ratio_b", DisplayUnit::ONE),
+            ("_ratio", DisplayUnit::ONE),
+            ("_w", DisplayUnit::WATT),
             ("_m_per_s", DisplayUnit::METRE_PER_SECOND),
             ("_pa", DisplayUnit::BAR),
             ("_n", DisplayUnit::NEWTON),
@@ -74,8 +74,20 @@ impl Overlay {
 
     /// The signal without its unit, in words.
     pub fn quantity(&self) -> String {
-        let endings =
-            ["_m3_per_s", "_rad_per_s", "_rad", "_n_m", "_degC", "_m_per_s", "_pa", "_n", "_m", "_v"];
+        let endings = [
+            "_m3_per_s",
+            "_rad_per_s",
+            "_rad",
+            "_n_m",
+            "_degC",
+            "_ratio",
+            "_w",
+            "_m_per_s",
+            "_pa",
+            "_n",
+            "_m",
+            "_v",
+        ];
         let name = endings.iter().find_map(|ending| self.signal.strip_suffix(ending)).unwrap_or(self.signal);
         name.replace('_', " ")
     }

@@ -42,6 +42,8 @@ pub enum Cause {
     LoadMotion,
     /// An external force on the load begins or changes.
     ExternalForce,
+    /// The setting of accumulators begins to move, or steps.
+    SettingChange,
 }
 
 impl Cause {
@@ -54,6 +56,7 @@ impl Cause {
             Cause::CommandMotion { .. } => "command_motion",
             Cause::LoadMotion => "load_motion",
             Cause::ExternalForce => "external_force",
+            Cause::SettingChange => "setting_change",
         }
     }
 
@@ -64,6 +67,7 @@ impl Cause {
             Cause::ReferenceMotion { kind } | Cause::CommandMotion { kind } => kind,
             Cause::LoadMotion => "load moves",
             Cause::ExternalForce => "force from outside",
+            Cause::SettingChange => "setting",
         }
     }
 }

@@ -11,7 +11,7 @@
 use phea_dynamics::simulation::{Profile, ProfileError};
 
 use crate::project::{Findings, Project, RawFinding, Refusal};
-use crate::quantity::{Dimension, FORCE, LENGTH, TIME, VOLTAGE};
+use crate::quantity::{Dimension, FORCE, LENGTH, RATIO, TIME, VOLTAGE};
 use crate::source::Source;
 use crate::table::{Column, Measurand, MeasuredTable, Sought};
 
@@ -26,6 +26,8 @@ static POSITION: Measurand = measurand("position", &LENGTH);
 pub(super) static FORCES: Measurand = measurand("force", &FORCE);
 /// A command over time.
 pub(super) static VOLTAGES: Measurand = measurand("voltage", &VOLTAGE);
+/// By how much a setting has moved, over time.
+pub(super) static CHANGES: Measurand = measurand("change", &RATIO);
 
 /// The motion as a function of time, beginning at `start_s`, or the errors of the file.
 pub(super) fn motion(

@@ -1,6 +1,8 @@
 //! The parts of a rig that some signals are of: a table has a column only for a part that is there.
 
-use phea_hydraulics::machine::{HEAT_SIGNALS, LINKAGE_SIGNALS, NECK_SIGNALS, SERIES_SIGNALS};
+use phea_hydraulics::machine::{
+    ADJUSTMENT_SIGNALS, GAS_PRESSURE_SIGNALS, HEAT_SIGNALS, LINKAGE_SIGNALS, SERIES_SIGNALS,
+};
 
 use super::ControlledMachine;
 use super::columns::{EXTERNAL_FORCE, EXTERNAL_TORQUE, GAS_TEMPERATURES, VIRTUAL_FORCE};
@@ -16,8 +18,10 @@ pub struct SignalParts {
     pub linkage: bool,
     /// A virtual impedance.
     pub impedance: bool,
-    /// Necks to the gas at chambers A and B.
-    pub necks: [bool; 2],
+    /// Accumulators that are adjusted.
+    pub adjustment: bool,
+    /// Gas behind a neck or a valve at chambers A and B.
+    pub gas_pressure: [bool; 2],
     /// Gas at chambers A and B that exchanges heat.
     pub heated_gas: [bool; 2],
     /// degC, of the wall of that gas, where the project states its working temperature.
@@ -35,7 +39,8 @@ impl SignalParts {
             series: machine.has_series_element(),
             linkage: machine.has_linkage(),
             impedance: !bench.control.impedance_states().is_empty(),
-            necks: machine.has_necks(),
+            adjustment: machine.has_adjustment(),
+            gas_pressure: machine.has_gas_pressure(),
             heated_gas,
             gas_wall_celsius: [wall(0), wall(1)],
         }
@@ -50,8 +55,11 @@ impl SignalParts {
         if LINKAGE_SIGNALS.contains(&name) {
             return self.linkage;
         }
-        if let Some(side) = side(&NECK_SIGNALS) {
-            return self.necks[side];
+        if ADJUSTMENT_SIGNALS.contains(&name) {
+            return self.adjustment;
+        }
+        if let Some(side) = side(&GAS_PRESSURE_SIGNALS) {
+            return self.gas_pressure[side];
         }
         if let Some(side) = side(&HEAT_SIGNALS) {
             return self.heated_gas[side];

@@ -8,6 +8,7 @@ use phea_dynamics::simulation::{
 use phea_hydraulics::machine::INDICATORS;
 use phea_machine::{Control, ControllerSamples, Digital, DigitalMemory, Watcher};
 
+use super::adjusted::AdjustmentWork;
 use super::bench::ControlledMachine;
 use super::course::PreparedScenario;
 use super::exceeded::Exceeded;
@@ -65,6 +66,8 @@ pub struct ScenarioRun {
     pub beyond_expansion: Vec<BeyondExpansion>,
     /// Limits of the rig that it exceeds.
     pub exceeded: Vec<Exceeded>,
+    /// Of accumulators whose gas is adjusted as it runs; `None` where there is none.
+    pub adjustment: Option<AdjustmentWork>,
     /// Its final state, from which another run can continue, or why it is not saved.
     pub end: Result<SavedState, &'static str>,
 }
@@ -187,7 +190,7 @@ pub(super) fn run(
     let task = Task { start: course.start.clone(), course: &drive, sampler, observer };
     let named = |error| SimulateError::Simulation { name: scenario.name.clone(), error };
     let outcome = bench.control.drive(task, &bench.settings, &mut watch).map_err(named)?;
-    let Sighted { record, metrics, peak_pressures_pa, measured, exceeded } = looking.finish()?;
+    let Sighted { record, metrics, peak_pressures_pa, measured, exceeded, adjustment } = looking.finish()?;
     let occurrences = found(bench, course, &outcome, &samples.borrow());
     let windows = course.windows.iter().copied().zip(metrics).collect();
     let outside_model_s = outside_model_s(&occurrences, bench.machine.has_end_stops());
@@ -211,6 +214,7 @@ pub(super) fn run(
         open_loop: scenario.is_open_loop(),
         beyond_expansion: beyond_expansion(bench, peak_pressures_pa),
         exceeded,
+        adjustment,
         end,
         check: None,
     })
@@ -277,11 +281,13 @@ pub fn errors_amplified(bench: &ControlledMachine, outcome: &Outcome) -> Option<
     outcome.amplification.filter(|grown| grown.may_show_errors(bench.settings.tolerance))
 }
 
-/// Inputs at time zero: those of the loop, the ground, the external force, and the waves in
-/// transit.
+/// Inputs at time zero: those of the loop, the ground, the external force, the setting, and the waves
+/// in transit.
 fn inputs_at_start(course: &PreparedScenario, mut first: Vec<f64>, control: &Control) -> Vec<f64> {
     first.extend([course.ground.value(0.0), course.ground.rate(0.0)]);
     first.extend(course.external_force.as_ref().map(|force| force.value(0.0)));
+    let setting = course.setting_change.iter();
+    first.extend(setting.flat_map(|setting| [setting.value(0.0), setting.rate(0.0)]));
     let [states, _] = control.size();
     first.extend(course.start.iter().skip(states));
     first

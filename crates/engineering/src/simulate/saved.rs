@@ -88,6 +88,9 @@ pub(super) fn of_end(
     if bench.machine.has_linkage() {
         return Err("the states of a rig with a linkage are not saved yet");
     }
+    if bench.machine.has_moving_setting() {
+        return Err("where the setting of its accumulators has moved to is not saved yet");
+    }
     if !bench.control.delays().is_empty() {
         return Err("what is in transit in a delay or along a line is not a state");
     }

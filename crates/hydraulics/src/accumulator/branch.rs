@@ -4,12 +4,13 @@ use phea_dynamics::analytic::Analytic;
 use phea_dynamics::scalar::Scalar;
 
 use super::{GasRelaxation, Neck};
-use crate::linear::polynomial::{product, shifted, sum};
+use crate::linear::polynomial::{product, scaled, shifted, sum};
 
-/// Gas behind a neck, gas that exchanges heat, or both, without a flow at rest.
+/// Gas behind a neck or a valve, gas that exchanges heat, or both, without a flow at rest.
 ///
 /// ```text
 /// Y = C(s) s/(I C(s) s^2 + R C(s) s + 1),     C(s) = C + C_r/(1 + T s)
+/// Y = g C(s) s/(C(s) s + g)                   behind a valve of conductance g
 /// ```
 ///
 /// Slower than its resonance 1/sqrt(I C) it is the gas, faster an inertance, which shuts the gas
@@ -20,8 +21,11 @@ pub struct GasBranch<S = f64> {
     pub compliance: S,
     /// What it yields later; `None` where it exchanges no heat, or as much as keeps it polytropic.
     pub relaxation: Option<GasRelaxation<S>>,
-    /// The neck before it; `None` where the gas has the pressure of the chamber.
+    /// The neck before it; `None` where there is none.
     pub neck: Option<NeckImpedance<S>>,
+    /// Conductance g in m3/(s Pa) of a valve before it, which then has no neck; `None` where there is
+    /// none.
+    pub valve: Option<S>,
 }
 
 /// Drop of pressure over the flow through a neck, I s + R.
@@ -41,7 +45,15 @@ impl<S: Scalar> GasBranch<S> {
             compliance: neck.map_or(at_once, |neck| at_once + neck.compliance),
             relaxation,
             neck: neck.map(|neck| NeckImpedance { inertance: neck.inertance, resistance: neck.resistance }),
+            valve: None,
         }
+    }
+
+    /// Without a neck, the same behind a valve of a conductance in m3/(s Pa) with oil of a compliance
+    /// in m3/Pa behind it.
+    #[must_use]
+    pub fn behind_valve(&self, conductance: S, of_oil: S) -> GasBranch<S> {
+        GasBranch { compliance: self.compliance + of_oil, valve: Some(conductance), ..*self }
     }
 
     /// The same with this share of all that yields.
@@ -68,7 +80,7 @@ impl<S: Scalar> GasBranch<S> {
     /// ```
     /// use phea_hydraulics::accumulator::{GasBranch, NeckImpedance};
     /// let neck = Some(NeckImpedance { inertance: 1e6, resistance: 1e8 });
-    /// let gas = GasBranch { compliance: 1e-12, relaxation: None, neck };
+    /// let gas = GasBranch { compliance: 1e-12, relaxation: None, neck, valve: None };
     /// assert!((gas.resonance().unwrap() - 1e3_f64).abs() < 1e-9);
     /// assert!((gas.damping_ratio().unwrap() - 0.05_f64).abs() < 1e-12);
     /// ```
@@ -91,9 +103,12 @@ impl<S: Scalar> GasBranch<S> {
             }
         };
         let taken = shifted(&yields);
-        match self.neck {
-            None => [taken, lag],
-            Some(NeckImpedance { inertance, resistance }) => {
+        match (self.neck, self.valve) {
+            (None, None) => [taken, lag],
+            (None, Some(conductance)) => {
+                [scaled(conductance, &taken), sum(&taken, &scaled(conductance, &lag))]
+            }
+            (Some(NeckImpedance { inertance, resistance }), _) => {
                 let drop = product(&taken, &[inertance, resistance]);
                 [taken, sum(&drop, &lag)]
             }
@@ -111,9 +126,12 @@ impl GasBranch {
                 at_once + s.scaled(compliance) / (s.scaled(time) + A::from(1.0))
             }
         };
-        match self.neck {
-            None => taken,
-            Some(NeckImpedance { inertance, resistance }) => {
+        match (self.neck, self.valve) {
+            (None, None) => taken,
+            (None, Some(conductance)) => {
+                taken.scaled(conductance) / (taken + A::from(1.0).scaled(conductance))
+            }
+            (Some(NeckImpedance { inertance, resistance }), _) => {
                 taken / (taken * (s.scaled(inertance) + A::from(resistance)) + A::from(1.0))
             }
         }
@@ -123,6 +141,6 @@ impl GasBranch {
     pub(crate) fn numbers(&self) -> Vec<f64> {
         let later = self.relaxation.into_iter().flat_map(|later| [later.compliance, later.time]);
         let neck = self.neck.into_iter().flat_map(|neck| [neck.inertance, neck.resistance]);
-        later.chain(neck).chain([self.compliance]).collect()
+        later.chain(neck).chain(self.valve).chain([self.compliance]).collect()
     }
 }

@@ -111,7 +111,7 @@ impl<S: Scalar> Machine<S> {
     }
 
     /// Compliance of both chambers including their lines and accumulators, in m3/Pa, without gas that
-    /// is behind a neck or exchanges heat.
+    /// is behind a neck or a valve, exchanges heat or is adjusted.
     #[inline(always)]
     pub(super) fn compliance<T: Scalar + From<S>>(&self, state: &MachineState<T>, position: T) -> [T; 2] {
         let [oil_a, oil_b] = self.oil_compliance(state, position);
@@ -256,7 +256,7 @@ impl<S: Scalar> Machine<S> {
         let (into, compliances) =
             (self.into_chambers(&state, &flows, from_lines), self.compliance(&state, position));
         let [pressure_a, pressure_b] = if self.layout.has_gas() {
-            self.beside_gas(vector, chambers, into, compliances, rates)
+            self.beside_gas((vector, inputs), chambers, into, compliances, rates)
         } else {
             [into[0] / compliances[0], into[1] / compliances[1]]
         };

@@ -11,7 +11,7 @@ use crate::accumulator::{HeatedGas, RelaxingGas};
 pub(super) struct GasStates<T> {
     /// Flow q_n in m3/s through the neck of the accumulator at each chamber, into its gas.
     pub(super) neck_flows: [T; 2],
-    /// Pressure p_g in Pa of the gas behind each neck.
+    /// Pressure p_g in Pa of the gas behind each neck or valve.
     pub(super) pressures: [T; 2],
     /// theta - 1 of the gas at each chamber, by which its absolute temperature is above that of its
     /// wall, where it exchanges heat.
@@ -33,15 +33,21 @@ impl<S: Scalar> Machine<S> {
     /// Pressures of the gas at either chamber, in Pa.
     #[inline(always)]
     pub(super) fn gas_pressures<T: Scalar>(&self, chambers: [T; 2], gas: &GasStates<T>) -> [T; 2] {
-        [0, 1].map(|side| if self.necks[side].is_some() { gas.pressures[side] } else { chambers[side] })
+        let behind = self.layout.behind();
+        [0, 1].map(|side| if behind[side] { gas.pressures[side] } else { chambers[side] })
     }
 
     /// Pressures in Pa gauge at which the gas at either chamber has its precharge, P_0 theta; `None`
     /// without gas.
     #[inline(always)]
-    pub(super) fn precharges<T: Scalar + From<S>>(&self, gas: &GasStates<T>) -> [Option<T>; 2] {
+    pub(super) fn precharges<T: Scalar + From<S>>(
+        &self,
+        gas: &GasStates<T>,
+        [change, _]: [T; 2],
+    ) -> [Option<T>; 2] {
         [0, 1].map(|side| {
-            let precharge: T = constant(self.accumulators[side]?.precharge_pressure);
+            let stated: T = constant(self.accumulators[side]?.precharge_pressure);
+            let precharge = self.adjustments[side].map_or(stated, |of| stated + of.precharge_rise(change));
             Some(match self.thermal_time_constants[side] {
                 None => precharge,
                 Some(_) => {
@@ -85,7 +91,7 @@ impl<S: Scalar> Machine<S> {
     #[inline(never)]
     pub(super) fn beside_gas<T: Scalar + From<S>>(
         &self,
-        vector: &[T],
+        (vector, inputs): (&[T], &[T]),
         chambers: [T; 2],
         into: [T; 2],
         compliances: [T; 2],
@@ -93,6 +99,12 @@ impl<S: Scalar> Machine<S> {
     ) -> [T; 2] {
         let gas = self.layout.read_gas(vector);
         let heated = self.heated(chambers, &gas);
+        if self.layout.is_adjusted() {
+            let setting = self.layout.setting(inputs);
+            let (own, gas) = self.adjusted_rates((&gas, setting), &heated, [chambers, into, compliances]);
+            self.layout.write_gas(gas, rates);
+            return own;
+        }
         let into = [0, 1].map(|side| into[side] - gas.neck_flows[side]);
         let own = self.beside_heated(&heated, into, compliances);
         let [neck_flows, pressures] = self.through_necks(chambers, &gas, &heated);

@@ -98,6 +98,7 @@ impl<S: Scalar> Machine<S> {
     /// line          sum C p                    sum C p^2/2 + I q^2/2        enters as q and q p
     /// accumulator   V_0 - V_gas                gas at gauge pressure        enters as q and q p
     ///   with heat   V_0 - V_gas                internal energy less p_atm V   enters as q and q p, leaves as heat to the wall
+    ///   adjusted    V_0 - V_gas                what the oil can get back    enters as q and q p, and by the power of its adjustment
     /// neck          C p                        I q^2/2 + C p^2/2            enters as q and q p
     /// ```
     ///
@@ -212,7 +213,7 @@ impl<S: Scalar> Machine<S> {
         let oil = supply.line.pressure * supply.fed - tank * drained + carried;
         let rig = Account {
             stored: total(&accounts, |account| account.stored),
-            inflow: oil + now.external_power - self.on_ground(now),
+            inflow: oil + now.external_power - self.on_ground(now) + now.gas[0].work + now.gas[1].work,
             lost: total(&accounts, |account| account.lost),
         };
         let [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u] = accounts;

@@ -29,6 +29,9 @@ pub struct MachineOptions {
     /// Whether a force from outside acts on the load, as an input of the machine; it needs a load
     /// that has a mass.
     pub external_force: bool,
+    /// Whether the setting of accumulators that are adjusted moves, as an input of the machine: by how
+    /// much it has moved from rest, and at which rate. Without it they stand at their setting at rest.
+    pub moving_setting: bool,
     /// Pressure in Pa absolute below which a chamber is reported to cavitate. Fluid with entrained
     /// air expands before it boils and comes to no vacuum: for it, state the pressure at which
     /// dissolved air comes out.
@@ -53,6 +56,7 @@ impl Default for MachineOptions {
             load: LoadModel::Prescribed,
             velocity_gain: 1.0,
             external_force: false,
+            moving_setting: false,
             vapour_pressure_absolute: VAPOUR_PRESSURE_ABSOLUTE,
             member: StiffeningMember::Nominal,
             gas_pressure_limits: [None; 2],

@@ -5,7 +5,7 @@ use super::{Machine, Motion};
 use crate::stroke::ActuatorStroke;
 
 /// Names of the signals of a machine, with units, in the order of [`Machine::outputs`].
-pub const SIGNALS: [&str; 28] = [
+pub const SIGNALS: [&str; 31] = [
     "force_n",
     "spool_v",
     "pressure_a_pa",
@@ -32,8 +32,11 @@ pub const SIGNALS: [&str; 28] = [
     "joint_torque_n_m",
     "gas_pressure_a_pa",
     "gas_pressure_b_pa",
-    "gas_temperature_ratio_a",
-    "gas_temperature_ratio_b",
+    "gas_temperature_a_ratio",
+    "gas_temperature_b_ratio",
+    "setting_a_ratio",
+    "setting_b_ratio",
+    "adjustment_power_w",
 ];
 
 /// Those of [`SIGNALS`] that only a machine with a series element has: without one the force on the
@@ -45,10 +48,14 @@ pub const LINKAGE_SIGNALS: [&str; 3] = ["joint_angle_rad", "joint_velocity_rad_p
 
 /// Those of [`SIGNALS`] that only a machine with a neck at chamber A or B has: without one the gas has
 /// the pressure of its chamber.
-pub const NECK_SIGNALS: [&str; 2] = ["gas_pressure_a_pa", "gas_pressure_b_pa"];
+pub const GAS_PRESSURE_SIGNALS: [&str; 2] = ["gas_pressure_a_pa", "gas_pressure_b_pa"];
 
 /// Those of [`SIGNALS`] that only a machine with gas that exchanges heat at chamber A or B has.
-pub const HEAT_SIGNALS: [&str; 2] = ["gas_temperature_ratio_a", "gas_temperature_ratio_b"];
+pub const HEAT_SIGNALS: [&str; 2] = ["gas_temperature_a_ratio", "gas_temperature_b_ratio"];
+
+/// Those of [`SIGNALS`] that only a machine has whose accumulators are adjusted: their settings, and
+/// the power of the adjustment, [`MovedGas::power`](crate::accumulator::MovedGas::power).
+pub const ADJUSTMENT_SIGNALS: [&str; 3] = ["setting_a_ratio", "setting_b_ratio", "adjustment_power_w"];
 
 /// Names of the state events of a machine, in the order of its indicators. Each indicator is
 /// positive in ordinary operation and negative while the event lasts.
@@ -120,6 +127,14 @@ impl<S: Scalar> Machine<S> {
         let forces = self.forces(&state, position);
         let still = Motion { position: T::from(0.0), velocity: T::from(0.0) };
         let zero = T::from(0.0);
+        let (settings, power) = if self.layout.is_adjusted() {
+            let setting = self.layout.setting(inputs);
+            let pressures = [state.pressure_a, state.pressure_b];
+            let pressures = self.gas_pressures(pressures, &self.layout.read_gas(vector));
+            (self.settings(setting), self.adjustment_power(pressures, setting))
+        } else {
+            ([zero; 2], zero)
+        };
         let (turning, torque) =
             if self.linkage.is_some() { (load, end.on_load(joint.on_load)) } else { (still, zero) };
         let [gas_pressures, ratios] =
@@ -153,6 +168,9 @@ impl<S: Scalar> Machine<S> {
             gas_pressures[1],
             ratios[0],
             ratios[1],
+            settings[0],
+            settings[1],
+            power,
         ]
     }
 
@@ -171,7 +189,7 @@ impl<S: Scalar> Machine<S> {
         };
         let [compliance_a, compliance_b] = self.oil_compliance(&state, position);
         let supply = self.supply_of(&state);
-        let [precharge_a, precharge_b] = self.precharges(&gas);
+        let [precharge_a, precharge_b] = self.precharges(&gas, self.layout.setting(inputs));
         let charged = |precharge: Option<T>, pressure: T| {
             precharge.map_or(T::from(1.0), |precharge| pressure - precharge)
         };

@@ -55,6 +55,12 @@ pub(super) struct Layout {
     series: SeriesStates,
     /// Necks of accumulators at the chambers.
     necks: [bool; 2],
+    /// Valves between chambers and gas.
+    valves: [bool; 2],
+    /// Accumulators at the chambers whose gas is added and taken.
+    moved: [bool; 2],
+    /// Whether the setting of accumulators is an input.
+    setting: bool,
     /// Accumulators at the chambers whose gas exchanges heat.
     heat: [bool; 2],
     /// Whether a force from outside is an input.
@@ -71,6 +77,8 @@ pub(super) struct Layout {
 
 /// Position and velocity of the ground come first.
 const GROUND_INPUTS: usize = 2;
+/// By how much the setting of accumulators has moved, and its rate in 1/s.
+const SETTING_INPUTS: usize = 2;
 
 impl<T: Scalar> MachineState<T> {
     /// Everything zero.
@@ -101,6 +109,9 @@ impl Layout {
             spool_friction: machine.spool.threshold.is_some(),
             magnetic_lag: machine.spool.hysteresis_width.is_some(),
             necks: machine.necks.map(|neck| neck.is_some()),
+            valves: machine.adjustments.map(|of| of.is_some_and(|of| of.valve().is_some())),
+            moved: machine.adjustments.map(|of| of.is_some_and(|of| of.valve().is_none())),
+            setting: machine.moving_setting,
             heat: machine.thermal_time_constants.map(|time| time.is_some()),
             capacity: machine.cross_port.is_some_and(|port| port.capacity.is_some()),
             series: SeriesStates::of(machine.series.as_ref()),
@@ -152,7 +163,8 @@ impl Layout {
     /// Number of inputs before the waves.
     #[inline(always)]
     fn before_waves(&self) -> usize {
-        GROUND_INPUTS + usize::from(self.external_force)
+        let setting = if self.setting { SETTING_INPUTS } else { 0 };
+        GROUND_INPUTS + usize::from(self.external_force) + setting
     }
 
     /// The external force in N, an input; `None` if the machine does not have this input.
@@ -162,16 +174,40 @@ impl Layout {
         self.external_force.then(|| inputs.get(GROUND_INPUTS).copied().unwrap_or(missing))
     }
 
-    /// Whether gas at a chamber has states of its own.
+    /// By how much the setting of accumulators has moved from rest and its rate in 1/s, inputs; zero
+    /// where they are none.
     #[inline(always)]
-    pub(super) fn has_gas(&self) -> bool {
-        self.gas != 0
+    pub(super) fn setting<T: Scalar>(&self, inputs: &[T]) -> [T; 2] {
+        if !self.setting {
+            return [T::from(0.0); 2];
+        }
+        let first = GROUND_INPUTS + usize::from(self.external_force);
+        [0, 1].map(|place| inputs.get(first + place).copied().unwrap_or(T::from(f64::NAN)))
     }
 
-    /// Whether the gas at each chamber has states of its own.
+    /// Whether accumulators at the chambers are adjusted.
+    #[inline(always)]
+    pub(super) fn is_adjusted(&self) -> bool {
+        self.valves != [false; 2] || self.moved != [false; 2]
+    }
+
+    /// Whether the gas at each chamber has a pressure of its own.
+    #[inline(always)]
+    pub(super) fn behind(&self) -> [bool; 2] {
+        [self.necks[0] || self.valves[0], self.necks[1] || self.valves[1]]
+    }
+
+    /// Whether gas at a chamber has states of its own, or is adjusted.
+    #[inline(always)]
+    pub(super) fn has_gas(&self) -> bool {
+        self.gas != 0 || self.moved != [false; 2]
+    }
+
+    /// Whether the gas at each chamber has states of its own, or is adjusted.
     #[inline(always)]
     pub(super) fn gas_at(&self) -> [bool; 2] {
-        [self.necks[0] || self.heat[0], self.necks[1] || self.heat[1]]
+        let [behind_a, behind_b] = self.behind();
+        [behind_a || self.heat[0] || self.moved[0], behind_b || self.heat[1] || self.moved[1]]
     }
 
     /// Whether lines have states of their own.
@@ -187,6 +223,14 @@ impl Layout {
         (state.bristle, state.spool.spool_friction, state.spool.magnetic_lag) = (1.0, 1.0, 1.0);
         let mut vector = vec![0.0; self.count()];
         self.write(state, &mut vector);
+        vector.iter().enumerate().filter(|(_, value)| **value != 0.0).map(|(index, _)| index).collect()
+    }
+
+    /// Places of the pressures of the gas at these chambers.
+    pub(super) fn gas_places(&self, sides: [bool; 2]) -> Vec<usize> {
+        let pressures = sides.map(|is_meant| if is_meant { 1.0 } else { 0.0 });
+        let mut vector = vec![0.0; self.count()];
+        self.write_gas(GasStates { pressures, ..GasStates::zero() }, &mut vector);
         vector.iter().enumerate().filter(|(_, value)| **value != 0.0).map(|(index, _)| index).collect()
     }
 
@@ -302,6 +346,8 @@ impl Layout {
         for side in 0..2 {
             if self.necks[side] {
                 visit(&mut gas.neck_flows[side]);
+            }
+            if self.behind()[side] {
                 visit(&mut gas.pressures[side]);
             }
         }

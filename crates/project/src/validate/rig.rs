@@ -1,6 +1,6 @@
 //! The actuator: conditions of geometry and physics.
 
-use super::{Check, cross_port, line_motion};
+use super::{Check, adjustment, cross_port, line_motion};
 use crate::{
     BoundedNumber, Component, DeclaredAccumulator, DeclaredActuator, DeclaredCylinder, DeclaredFriction,
     DeclaredLine, DeclaredLines, DeclaredSupply, FrictionLaw, NullLeakage, Pump, StribeckCurve, SupplyModel,
@@ -53,7 +53,11 @@ fn accumulator(gas: &DeclaredAccumulator, supply: &DeclaredSupply, path: &str, c
         let help = "the gas is in use only above its precharge: state one below the lowest pressure at which it is to work";
         return check.error_with_help(&format!("{path}.precharge_pressure"), message, help);
     }
-    pressure_ratio(gas, supply, path, check);
+    adjustment::adjustment(gas, supply, path, check);
+    // compressed most where its precharge is least
+    let [first, last] = gas.ends();
+    let most = if last.precharge_pressure < first.precharge_pressure { last } else { first };
+    pressure_ratio(&most, supply, path, check);
 }
 
 /// The maker's limit of the compression of the gas, at the highest pressure that the supply gives.

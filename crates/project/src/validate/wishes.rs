@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use super::measured::measured;
 use super::signal::signals;
-use super::{Check, linear_parameter};
+use super::{Check, adjustment, linear_parameter};
 use crate::{
     Campaign, DELAY_PATH, DeclaredActuator, DeclaredPlant, DeclaredSizing, DeclaredSpacing, Distribution,
     Formula, LINEAR_PARAMETERS, LinearParameter, Load, Project, Scenario, SignalUnit, Start, Uncertain,
@@ -124,6 +124,7 @@ fn one_scenario(scenario: &Scenario, actuator: &DeclaredActuator, path: &str, ch
         let help = "give [load] a model with a mass: \"spring_mass_damper\" or \"wall\"";
         check.error_with_help(&format!("{path}.external_force"), message, help);
     }
+    adjustment::course(scenario, actuator, path, check);
     measured(&scenario.measured, path, check);
     let begins = scenario.load_motion.as_ref().map_or(0.0, |motion| motion.start);
     if scenario.duration > 0.0 && begins > scenario.duration {
@@ -274,6 +275,7 @@ pub(super) fn uncertainty(project: &Project, check: &mut Check<'_, '_>) {
             check.error(&path, message);
         }
         of_one_sensor(&uncertain.name, &path, check);
+        adjustment::uncertain(uncertain, project.actuator.as_ref(), check);
         depends(uncertain, project, check);
         both_sides("uncertainty", "uncertain", &uncertain.name, &names, check);
         stated_elsewhere(uncertain, project.number_among(&uncertain.name, &numbers), check);

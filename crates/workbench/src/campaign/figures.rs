@@ -53,7 +53,7 @@ fn worst_metric(window: &Window, open_loop: bool) -> &'static str {
         Cause::ReferenceStep { .. } => "overshoot_percent",
         Cause::ReferenceMotion { .. } => "tracking_error_peak_n",
         Cause::CommandStep { .. } | Cause::CommandMotion { .. } => "force_peak_n",
-        Cause::LoadMotion | Cause::ExternalForce => "disturbance_peak_n",
+        Cause::LoadMotion | Cause::ExternalForce | Cause::SettingChange => "disturbance_peak_n",
     }
 }
 
@@ -63,7 +63,7 @@ fn worst_words(window: &Window, open_loop: bool) -> &'static str {
         Cause::ReferenceStep { .. } => "overshoot",
         Cause::ReferenceMotion { .. } => "tracking error",
         Cause::CommandStep { .. } | Cause::CommandMotion { .. } => "force",
-        Cause::LoadMotion | Cause::ExternalForce => "disturbance",
+        Cause::LoadMotion | Cause::ExternalForce | Cause::SettingChange => "disturbance",
     }
 }
 

@@ -1,7 +1,7 @@
 //! The inputs of a scenario, in sentences.
 
 use crate::project::{Amplitudes, Multisine, Scenario, Signal};
-use crate::quantity::{Dimension, DisplayUnit, FORCE, TIME, TORQUE, VOLTAGE, display};
+use crate::quantity::{Dimension, DisplayUnit, FORCE, RATIO, TIME, TORQUE, VOLTAGE, display};
 
 /// Digits of a number in a sentence.
 const DIGITS: usize = 4;
@@ -28,6 +28,10 @@ pub(super) fn sentences(scenario: &Scenario, turns: bool) -> Vec<String> {
             false => format!("An external force acts on the load: {}.", parts(external, &FORCE)),
             true => format!("An external torque acts on the joint: {}.", parts(external, &TORQUE)),
         });
+    }
+    if !scenario.setting_change.is_empty() {
+        let change = parts(&scenario.setting_change, &RATIO);
+        told.push(format!("The setting of the accumulators moves from where it rests: {change}."));
     }
     told
 }

@@ -10,7 +10,8 @@ use crate::figure::{
 };
 use crate::linearize::{linkage_places, linkage_table};
 use crate::project::{
-    self, Component, CylinderTriangle, LineVolume, LinkageKind, Load, Project, RatedFlow, SupplyModel,
+    self, AdjustmentKind, Component, CylinderTriangle, DeclaredAdjustment, GasAtOne, LineVolume, LinkageKind,
+    Load, Project, RatedFlow, SupplyModel,
 };
 use crate::quantity::{self, Dimension, FLOW, LENGTH, MASS, PRESSURE, STIFFNESS, VOLTAGE, VOLUME};
 use crate::rig::{CrossPortAtPoint, Rig, cross_port_at_point};
@@ -138,7 +139,22 @@ fn line(declared: &project::DeclaredLine) -> LineSymbol {
     symbol.rows.extend(
         neck.map(|neck| format!("neck {}, {}", shown(neck.diameter, &LENGTH), shown(neck.length, &LENGTH))),
     );
+    symbol.rows.extend(gas.and_then(|gas| gas.adjustment).map(adjustment_words));
     symbol
+}
+
+/// What of an accumulator is adjusted, in a few words.
+fn adjustment_words(declared: DeclaredAdjustment) -> String {
+    let setting = quantity::significant(declared.setting, 3);
+    match declared.kind {
+        AdjustmentKind::Valve(_) => format!("behind a valve, setting {setting}"),
+        AdjustmentKind::Gas(GasAtOne { gas_volume, precharge_pressure }) => {
+            let volume = gas_volume.map(|volume| shown(volume, &VOLUME));
+            let precharge = precharge_pressure.map(|pressure| shown(pressure, &PRESSURE));
+            let ends: Vec<String> = volume.into_iter().chain(precharge).collect();
+            format!("to {}, setting {setting}", ends.join(", "))
+        }
+    }
 }
 
 fn line_alone(declared: &project::DeclaredLine) -> LineSymbol {

@@ -47,6 +47,16 @@ pub(crate) fn body(loaded: &Loaded, runs: &[ScenarioRun]) -> Object {
     )
 }
 
+fn adjustment(run: &ScenarioRun) -> Object {
+    Object::new()
+        .told("adjustment_brought_j", run.adjustment.map(|of| of.brought_j).ok_or(NOT_ADJUSTED))
+        .told("adjustment_taken_j", run.adjustment.map(|of| of.taken_j).ok_or(NOT_ADJUSTED))
+}
+
+/// Why there is no work of an adjustment.
+const NOT_AMPLIFIED: &str = "no oscillation grew so much that errors within the tolerance may be visible";
+const NOT_ADJUSTED: &str = "no setting of an accumulator moves";
+
 fn scenario(run: &ScenarioRun, state_file: String) -> Object {
     let stopped = run.stopped();
     let mode = stopped.and_then(|stopped| stopped.mode).map(|mode| {
@@ -64,7 +74,6 @@ fn scenario(run: &ScenarioRun, state_file: String) -> Object {
             .with("until_s", grown.until_s)
             .with("frequency_rad_per_s", grown.frequency_rad_per_s)
     });
-    let not_amplified = "no oscillation grew so much that errors within the tolerance may be visible";
     Object::new()
         .with("name", run.name.as_str())
         .with("status", stopped.map_or("completed", |stopped| stopped.word))
@@ -92,7 +101,7 @@ fn scenario(run: &ScenarioRun, state_file: String) -> Object {
                 .told("rmse", overlay.rmse)
                 .told("nrmse", overlay.nrmse)
         })
-        .told("errors_amplified", amplified.ok_or(not_amplified))
+        .told("errors_amplified", amplified.ok_or(NOT_AMPLIFIED))
         .told("check", run.check.as_ref().map(check::row).ok_or("it was not checked"))
         .each("beyond_expansion", &run.beyond_expansion, |beyond| {
             Object::new()
@@ -100,6 +109,7 @@ fn scenario(run: &ScenarioRun, state_file: String) -> Object {
                 .with("peak_pressure_pa", beyond.peak_pa)
                 .with("stated_pressure_pa", beyond.stated_pa)
         })
+        .and(adjustment(run))
         .each("exceeded", &run.exceeded, |exceeded| {
             Object::new()
                 .with("what", exceeded.limit.word())

@@ -4,8 +4,8 @@ use super::check;
 use super::exceeded_words;
 use super::metrics::{METRICS, OVERSHOOT, SETTLING, cells_of};
 use super::{
-    BeyondExpansion, Cause, Metrics, Occurrence, Overlay, ScenarioComparison, ScenarioRun, StoppedRun,
-    TrackingWish, Window,
+    AdjustmentWork, BeyondExpansion, Cause, Metrics, Occurrence, Overlay, ScenarioComparison, ScenarioRun,
+    StoppedRun, TrackingWish, Window,
 };
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
@@ -22,7 +22,9 @@ pub(crate) fn text(loaded: &Loaded, runs: &[ScenarioRun]) -> String {
         out.heading(headline(run));
         out.tables([windows(run, None, None), measured(&[(None, run)])]);
         let checked = run.check.iter().flat_map(check::sentences);
-        out.sentences(coarse_sentence(run).into_iter().chain(checked).chain(occurrence_sentences(run)));
+        let adjusted = adjustment_sentence(run);
+        let told = coarse_sentence(run).into_iter().chain(checked).chain(adjusted);
+        out.sentences(told.chain(occurrence_sentences(run)));
     }
     let below = if runs.is_empty() { "" } else { "\n" };
     format!("{}{below}{}", out.text(), not_run(loaded, runs))
@@ -183,6 +185,7 @@ pub(crate) fn cause_words(window: &Window) -> String {
         Cause::CommandMotion { kind } => format!("{kind} of the command at {at}"),
         Cause::LoadMotion => format!("load motion at {at}"),
         Cause::ExternalForce => format!("force from outside at {at}"),
+        Cause::SettingChange => format!("setting of the accumulators at {at}"),
     }
 }
 
@@ -202,6 +205,24 @@ fn amplified_sentence(run: &ScenarioRun) -> Option<String> {
         "from {from} to {until} s an oscillation of {} rad/s grows so much that errors within the tolerance may become visible: `--check` estimates how far the result depends on them",
         significant(grown.frequency_rad_per_s, 3),
     ))
+}
+
+/// The work of accumulators that are adjusted.
+pub(crate) fn adjustment_sentence(run: &ScenarioRun) -> Option<String> {
+    let AdjustmentWork { brought_j, taken_j } = run.adjustment?;
+    let joule = |work: f64| DisplayUnit::JOULE.text(work, 3);
+    Some(match (brought_j, taken_j) {
+        (0.0, 0.0) => {
+            "the adjustment of the accumulators does no work: a valve between chamber and gas throttles alone"
+                .to_string()
+        }
+        _ => format!(
+            "the adjustment of the accumulators brings {} into the oil and takes {} out of it, the work of 1/2 dK/dt x^2: a setting that \
+             moves is not passive",
+            joule(brought_j),
+            joule(taken_j)
+        ),
+    })
 }
 
 /// The events of a run, a sentence each.

@@ -6,7 +6,7 @@ use crate::figure::{
     DisplayUnit, Figure, FigureError, SettlingBand, StepResponseInput, TimeEvent, TimePanel, TimePanelsInput,
     TimeSeries, Words, step_response, time_panels,
 };
-use phea_hydraulics::machine::{HEAT_SIGNALS, NECK_SIGNALS};
+use phea_hydraulics::machine::{GAS_PRESSURE_SIGNALS, HEAT_SIGNALS};
 
 /// Time drawn before and after the start of a window, s.
 pub(super) const BEFORE_S: f64 = 0.02;
@@ -72,6 +72,7 @@ fn overview(words: Words, run: &ScenarioRun, span_s: [f64; 2]) -> Figure {
     panels.extend(joint(record));
     panels.extend(gas(record));
     panels.extend(from_outside(record));
+    panels.extend(settings(record));
     let legend = match run.open_loop {
         false => ["force, command, p_A, piston", "prefiltered reference, spool, p_B, load"],
         true => ["force, command, p_A, piston", "spool, p_B, load"],
@@ -101,6 +102,9 @@ pub(super) fn close_up(words: Words, run: &ScenarioRun, window: &Window, span_s:
         legend = [format!("{}, piston", legend[0]), format!("{}, load", legend[1])];
     }
     panels.extend(gas(record));
+    if window.cause == Cause::SettingChange {
+        panels.extend(settings(record));
+    }
     if window.cause == Cause::ExternalForce {
         panels.extend(from_outside(record));
         legend[0] = format!("{}, force from outside", legend[0]);
@@ -138,6 +142,15 @@ fn from_outside(record: &Record) -> Option<TimePanel> {
     })
 }
 
+/// The settings of accumulators that are adjusted, if there are any.
+fn settings(record: &Record) -> Option<TimePanel> {
+    if !record.parts.adjustment {
+        return None;
+    }
+    let series = ["setting_a_ratio", "setting_b_ratio"].map(|name| over_time(record, record.signal(name)));
+    Some(panel("Settings s_A, s_B", DisplayUnit::ONE, 90.0, series.into()))
+}
+
 /// Whether the load turns behind a linkage.
 pub(crate) fn turns(record: &Record) -> bool {
     record.parts.linkage
@@ -157,7 +170,7 @@ fn gas(record: &Record) -> Vec<TimePanel> {
         Some(_) => vec![],
     });
     let panels = [
-        ("Gas p_g", DisplayUnit::BAR, NECK_SIGNALS.map(|name| record.signal(name))),
+        ("Gas p_g", DisplayUnit::BAR, GAS_PRESSURE_SIGNALS.map(|name| record.signal(name))),
         ("Gas T", DisplayUnit::DEGREE_CELSIUS, GAS_TEMPERATURES.map(|name| record.signal(name))),
         ("Gas T/T_w", DisplayUnit::ONE, unstated),
     ];
@@ -172,9 +185,9 @@ fn gas(record: &Record) -> Vec<TimePanel> {
 /// A legend with the gas of both sides, where it is drawn.
 fn with_gas(legend: [String; 2], record: &Record) -> [String; 2] {
     let parts = &record.parts;
-    let mut sides = ["gas A", "gas B"].into_iter().zip(parts.necks).zip(parts.heated_gas);
+    let mut sides = ["gas A", "gas B"].into_iter().zip(parts.gas_pressure).zip(parts.heated_gas);
     legend.map(|words| match sides.next() {
-        Some(((gas, necks), heated)) if necks || heated => format!("{words}, {gas}"),
+        Some(((gas, own), heated)) if own || heated || parts.adjustment => format!("{words}, {gas}"),
         _ => words,
     })
 }

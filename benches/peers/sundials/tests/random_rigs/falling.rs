@@ -103,6 +103,7 @@ fn components(chance: &mut Chance) -> Components {
         line_b: line,
         accumulators: [None; 2],
         necks: [None; 2],
+        adjustments: [None; 2],
         thermal_time_constants: [None; 2],
         cross_port: None,
         series: None,

@@ -193,10 +193,6 @@ fn components(chance: &mut Chance, like_benchmark: bool) -> Components {
     let flow_coefficient = chance.decades(0.05, 3.0) * area_a / (0.5 * pressure).sqrt();
     let leakage = flow_coefficient * chance.decades(1e-3, 3e-2);
     let stroke = chance.decades(0.05, 1.0);
-    let line = |chance: &mut Chance| Line::Volume {
-        volume: area_a * stroke * chance.decades(1e-2, 3.0),
-        effective_bulk_modulus: chance.decades(1e8, 1.5e9),
-    };
     let air = !like_benchmark && chance.happens(0.3);
     Components {
         fluid: Fluid {
@@ -217,10 +213,11 @@ fn components(chance: &mut Chance, like_benchmark: bool) -> Components {
             damping_ratio: chance.between(0.4, 1.3),
             transition_pressure: chance.decades(1e2, 1e5),
         },
-        line_a: line(chance),
-        line_b: line(chance),
+        line_a: line(chance, area_a * stroke),
+        line_b: line(chance, area_a * stroke),
         accumulators: [None; 2],
         necks: [None; 2],
+        adjustments: [None; 2],
         thermal_time_constants: [None; 2],
         cross_port: None,
         series: None,
@@ -243,6 +240,14 @@ fn components(chance: &mut Chance, like_benchmark: bool) -> Components {
         } else {
             StiffnessModel::Uniform
         },
+    }
+}
+
+/// A line that holds some of what the chamber does.
+fn line(chance: &mut Chance, chamber: f64) -> Line {
+    Line::Volume {
+        volume: chamber * chance.decades(1e-2, 3.0),
+        effective_bulk_modulus: chance.decades(1e8, 1.5e9),
     }
 }
 

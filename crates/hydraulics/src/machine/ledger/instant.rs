@@ -7,7 +7,7 @@ use super::super::signals::ground_of;
 use super::super::{Accumulator, Chambers, Machine, MachineState, Motion, PowerUnit};
 use super::Account;
 use super::volume::{DensityLaw, Volume};
-use crate::accumulator::HeatedGas;
+use crate::accumulator::{HeatedGas, MovedGas};
 use crate::line::{DynamicLine, LineContent};
 use crate::stroke::ActuatorStroke;
 
@@ -48,6 +48,8 @@ pub(super) struct GasInstant<T> {
     energy: T,
     /// What it gives to its wall, in W.
     pub(super) heat: T,
+    /// Of its adjustment, in W.
+    pub(super) work: T,
 }
 
 /// A neck between a chamber and its gas.
@@ -94,12 +96,29 @@ impl<T: Scalar> GasInstant<T> {
     fn of(gas: Option<Accumulator<T>>, pressure: T, arriving: T, beside: T) -> GasInstant<T> {
         let zero = T::from(0.0);
         let Some(gas) = gas else {
-            return GasInstant { inflow: zero, taken: zero, pressure, oil: zero, energy: zero, heat: zero };
+            return GasInstant {
+                inflow: zero,
+                taken: zero,
+                pressure,
+                oil: zero,
+                energy: zero,
+                heat: zero,
+                work: zero,
+            };
         };
         let compliance = gas.compliance(pressure);
         let inflow = arriving * compliance / (compliance + beside);
         let (oil, energy) = (gas.oil(pressure), gas.energy(pressure));
-        GasInstant { inflow, taken: inflow, pressure, oil, energy, heat: zero }
+        GasInstant { inflow, taken: inflow, pressure, oil, energy, heat: zero, work: zero }
+    }
+
+    /// The same of gas that is adjusted.
+    fn moved(moved: &MovedGas<T>, pressure: T, arriving: T, beside: T) -> GasInstant<T> {
+        let (compliance, held) = (moved.gas.compliance(pressure), moved.oil_rate(pressure));
+        let inflow = compliance * (arriving - held) / (compliance + beside) + held;
+        let (oil, energy) = (moved.gas.oil(pressure), moved.gas.energy(pressure));
+        let work = moved.power(pressure);
+        GasInstant { inflow, taken: inflow, pressure, oil, energy, heat: T::from(0.0), work }
     }
 
     /// The same of gas that exchanges heat.
@@ -107,7 +126,7 @@ impl<T: Scalar> GasInstant<T> {
         let rate = (arriving - gas.compliance * gas.cooling) / (gas.compliance + beside);
         let inflow = gas.flow(rate);
         let HeatedGas { oil, energy, heat, .. } = *gas;
-        GasInstant { inflow, taken: inflow, pressure, oil, energy, heat }
+        GasInstant { inflow, taken: inflow, pressure, oil, energy, heat, work: T::from(0.0) }
     }
 
     pub(super) fn oil(&self) -> Account<T> {
@@ -115,7 +134,7 @@ impl<T: Scalar> GasInstant<T> {
     }
 
     pub(super) fn energy(&self) -> Account<T> {
-        let inflow = self.pressure * self.inflow - self.heat;
+        let inflow = self.pressure * self.inflow - self.heat + self.work;
         Account { stored: self.energy, inflow, lost: T::from(0.0) }
     }
 }
@@ -176,7 +195,8 @@ impl<S: Scalar> Machine<S> {
             LineInstant::of(line_a, [port_a, state.pressure_a], from_a, vector_a)?,
             LineInstant::of(line_b, [port_b, state.pressure_b], from_b, vector_b)?,
         ];
-        let gas = self.gas_instants(&state, &states, position, &flows, &lines);
+        let setting = self.layout.setting(inputs);
+        let gas = self.gas_instants((&state, &states, setting), position, &flows, &lines);
         Some(Instant {
             necks: self.neck_instants(&state, &states, &gas),
             gas,
@@ -228,32 +248,35 @@ impl<S: Scalar> Machine<S> {
     /// What enters a chamber and not its growing volume divides between oil and gas.
     fn gas_instants<T: Scalar + From<S>>(
         &self,
-        state: &MachineState<T>,
-        states: &GasStates<T>,
+        (state, states, setting): (&MachineState<T>, &GasStates<T>, [T; 2]),
         position: T,
         flows: &Flows<T>,
         [line_a, line_b]: &[LineInstant<T>; 2],
     ) -> [GasInstant<T>; 2] {
         let [oil_a, oil_b] = self.oil_compliance(state, position);
-        let [gas_a, gas_b] = self.accumulators.map(|gas| gas.map(|gas| gas.convert(&mut constant::<S, T>)));
         let [into_a, into_b] = self.into_chambers(state, flows, [line_a.into_chamber, line_b.into_chamber]);
-        let heated = self.heated([state.pressure_a, state.pressure_b], states);
-        let own = |side: usize, gas, pressure, arriving, beside| match &heated[side] {
-            None => GasInstant::of(gas, pressure, arriving, beside),
-            Some(gas) => GasInstant::heated(gas, pressure, arriving, beside),
-        };
-        let of = |side: usize, gas: Option<Accumulator<T>>, into: T, oil: T| match &self.necks[side] {
-            None => own(side, gas, [state.pressure_a, state.pressure_b][side], into, oil),
-            Some(neck) => {
-                let taken = states.neck_flows[side];
-                let own = own(side, gas, states.pressures[side], taken, constant(neck.compliance));
-                GasInstant { taken, ..own }
+        let chambers = [state.pressure_a, state.pressure_b];
+        let (heated, pressures) = (self.heated(chambers, states), self.gas_pressures(chambers, states));
+        let own = |side: usize, arriving, beside| {
+            let pressure = pressures[side];
+            match (&heated[side], self.moved_gas(side, setting)) {
+                (Some(gas), _) => GasInstant::heated(gas, pressure, arriving, beside),
+                (None, Some(gas)) => GasInstant::moved(&gas, pressure, arriving, beside),
+                (None, None) => GasInstant::of(None, pressure, arriving, beside),
             }
         };
-        [of(0, gas_a, into_a, oil_a), of(1, gas_b, into_b, oil_b)]
+        let of = |side: usize, into: T, oil: T| {
+            let neck = self.necks[side].map(|_| states.neck_flows[side]);
+            let drop = chambers[side] - pressures[side];
+            match neck.or_else(|| self.through_gas_valve(side, setting, drop)) {
+                None => own(side, into, oil),
+                Some(taken) => GasInstant { taken, ..own(side, taken, self.before_gas(side)) },
+            }
+        };
+        [of(0, into_a, oil_a), of(1, into_b, oil_b)]
     }
 
-    /// Necks with the oil in them, which shares their flow with the gas.
+    /// Necks and valves with the oil in them, which shares their flow with the gas.
     fn neck_instants<T: Scalar + From<S>>(
         &self,
         state: &MachineState<T>,
@@ -262,19 +285,24 @@ impl<S: Scalar> Machine<S> {
     ) -> [NeckInstant<T>; 2] {
         let (zero, half) = (T::from(0.0), T::from(0.5));
         [0, 1].map(|side| {
-            let Some(neck) = self.necks[side].map(|neck| neck.convert(&mut constant::<S, T>)) else {
+            let neck = self.necks[side].map(|neck| neck.convert(&mut constant::<S, T>));
+            if !self.layout.behind()[side] {
                 let none = Account { stored: zero, inflow: zero, lost: zero };
                 return NeckInstant { oil: none, energy: none };
-            };
-            let (flow, behind) = (states.neck_flows[side], states.pressures[side]);
+            }
+            let (flow, behind) = (gas[side].taken, states.pressures[side]);
             let before = [state.pressure_a, state.pressure_b][side];
-            let into_gas = gas[side].inflow;
+            let (into_gas, compliance) = (gas[side].inflow, self.before_gas::<T>(side));
+            let [inertance, drop] = match neck {
+                Some(neck) => [neck.inertance, neck.drop(flow)],
+                None => [zero, before - behind],
+            };
             NeckInstant {
-                oil: Account { stored: neck.compliance * behind, inflow: flow - into_gas, lost: zero },
+                oil: Account { stored: compliance * behind, inflow: flow - into_gas, lost: zero },
                 energy: Account {
-                    stored: half * (neck.inertance * flow.squared() + neck.compliance * behind.squared()),
+                    stored: half * (inertance * flow.squared() + compliance * behind.squared()),
                     inflow: before * flow - behind * into_gas,
-                    lost: neck.drop(flow) * flow,
+                    lost: drop * flow,
                 },
             }
         })

@@ -183,7 +183,12 @@ impl RespondingPlant for PlantInMotion {
         let filter = filter.filter(|_| self.plant.load_velocity_feed_forward.is_some());
         let lag = self.plant.virtual_impedance.and_then(|impedance| impedance.corner_rad_per_s());
         let heat = self.sides.iter().filter_map(|side| Some(1.0 / side.gas?.relaxation?.time));
-        let lags = || filter.into_iter().chain(lag).chain(heat.clone());
+        let valves = self.sides.iter().filter_map(|side| {
+            let (gas, own) = (side.gas?, 1.0 / side.compliance);
+            Some([1.0 / gas.compliance, own + 1.0 / gas.compliance].map(|per| per * gas.valve.unwrap_or(0.0)))
+        });
+        let valves = valves.flatten().filter(|corner| *corner > 0.0);
+        let lags = || filter.into_iter().chain(lag).chain(heat.clone()).chain(valves.clone());
         let slowest = lags().fold(slowest, f64::min);
         let fastest = lags().fold(fastest, |fastest, lag| fastest.max(ABOVE_SPOOL * lag));
         [BELOW * slowest, fastest]

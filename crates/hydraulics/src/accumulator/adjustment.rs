@@ -1,0 +1,248 @@
+//! An accumulator at a chamber that is adjusted in operation: gas is added and taken, or a valve
+//! opens between chamber and gas.
+//!
+//! ```text
+//! V_0(u) = V_0 + V_1 u,   p_0(u) = p_0 + p_1 u             u: by how much the setting has moved from rest
+//! q = dV_oil/dt = C dp/dt + (dV_oil/du) du/dt               at a pressure that is held, V_oil grows with the setting
+//! q = (s + u) K root(p - p_g)                               the valve, s: its opening at rest, from 0 to 1
+//! ```
+
+use phea_dynamics::scalar::Scalar;
+
+use super::Accumulator;
+use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
+use crate::orifice::{flow, regular_root_slope};
+use crate::parameter::{ParameterError, Problems};
+
+/// What of an accumulator its setting moves, and where the setting is at rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Adjustment<S = f64> {
+    /// The setting at rest, from 0 to 1.
+    pub setting: S,
+    /// What it moves.
+    pub part: AdjustedPart<S>,
+}
+
+/// What a setting moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum AdjustedPart<S = f64> {
+    /// The gas, by this much from setting 0 to 1.
+    Gas {
+        /// V_1 in m3.
+        gas_volume: S,
+        /// p_1 in Pa.
+        precharge_pressure: S,
+    },
+    /// The opening of a valve between chamber and gas: shut at 0, wide open at 1.
+    Valve(GasValve<S>),
+}
+
+/// A valve between a chamber and the gas of its accumulator. Units: m3/(s Pa^0.5), Pa, m3/Pa.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GasValve<S = f64> {
+    /// Flow coefficient K wide open.
+    pub flow_coefficient: S,
+    /// Drop below which the square root is made regular.
+    pub transition_pressure: S,
+    /// What the oil between valve and gas yields: it remains where the gas fills its shell.
+    pub compliance: S,
+    /// Whether it is shut at rest, so that the gas takes no part in small motions.
+    pub shut: bool,
+}
+
+/// The gas of an accumulator while it is adjusted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MovedGas<S = f64> {
+    /// As it is at this setting.
+    pub gas: Accumulator<S>,
+    /// Rate of V_0 in m3/s.
+    pub volume_rate: S,
+    /// Rate of p_0 in Pa/s.
+    pub precharge_rate: S,
+}
+
+impl Adjustment {
+    /// Impossible parameters of this adjustment of the gas as it is at rest; empty if there are none.
+    pub fn problems(&self, at_rest: &Accumulator) -> Vec<ParameterError> {
+        let mut problems = Problems::default();
+        let is_share = (0.0..=1.0).contains(&self.setting);
+        problems.require("adjustment.setting", self.setting, is_share, "from 0 to 1");
+        match self.part {
+            AdjustedPart::Gas { .. } => {
+                let ends = [-self.setting, 1.0 - self.setting];
+                for moved in ends.map(|change| self.moved(at_rest, change, 0.0).gas) {
+                    problems.component("adjustment", moved.problems());
+                }
+            }
+            AdjustedPart::Valve(valve) => {
+                problems.positive("adjustment.flow_coefficient", valve.flow_coefficient);
+                problems.positive("adjustment.transition_pressure", valve.transition_pressure);
+                problems.positive("adjustment.compliance", valve.compliance);
+            }
+        }
+        problems.into_vec()
+    }
+}
+
+impl<S: Copy> Adjustment<S> {
+    /// Every parameter replaced, in a fixed order.
+    #[inline(always)]
+    pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> Adjustment<T> {
+        Adjustment {
+            setting: of(self.setting),
+            part: match &self.part {
+                AdjustedPart::Gas { gas_volume, precharge_pressure } => AdjustedPart::Gas {
+                    gas_volume: of(*gas_volume),
+                    precharge_pressure: of(*precharge_pressure),
+                },
+                AdjustedPart::Valve(valve) => AdjustedPart::Valve(GasValve {
+                    flow_coefficient: of(valve.flow_coefficient),
+                    transition_pressure: of(valve.transition_pressure),
+                    compliance: of(valve.compliance),
+                    shut: valve.shut,
+                }),
+            },
+        }
+    }
+
+    /// As a machine has it: `None` of gas whose setting does not move. Whether its valve is shut at
+    /// rest is told by its setting there.
+    pub(crate) fn of_machine(self, moves: bool) -> Option<Adjustment<S>> {
+        let part = match self.part {
+            AdjustedPart::Valve(valve) => AdjustedPart::Valve(GasValve { shut: false, ..valve }),
+            gas @ AdjustedPart::Gas { .. } => moves.then_some(gas)?,
+        };
+        Some(Adjustment { part, ..self })
+    }
+
+    /// Its valve, if it is one.
+    pub fn valve(&self) -> Option<&GasValve<S>> {
+        match &self.part {
+            AdjustedPart::Valve(valve) => Some(valve),
+            AdjustedPart::Gas { .. } => None,
+        }
+    }
+}
+
+impl<S: Scalar> Adjustment<S> {
+    /// Rise of the precharge in Pa after the setting has moved by `change`.
+    pub(crate) fn precharge_rise<T: Scalar + From<S>>(&self, change: T) -> T {
+        match self.part {
+            AdjustedPart::Gas { precharge_pressure, .. } => T::from(precharge_pressure) * change,
+            AdjustedPart::Valve(_) => T::from(0.0),
+        }
+    }
+
+    /// The gas that is `at_rest` at rest, after the setting has moved by `change`, which moves on at
+    /// `rate` in 1/s.
+    pub fn moved(&self, at_rest: &Accumulator<S>, change: S, rate: S) -> MovedGas<S> {
+        match self.part {
+            AdjustedPart::Valve(_) => {
+                MovedGas { gas: *at_rest, volume_rate: S::from(0.0), precharge_rate: S::from(0.0) }
+            }
+            AdjustedPart::Gas { gas_volume, precharge_pressure } => MovedGas {
+                gas: Accumulator {
+                    gas_volume: at_rest.gas_volume + gas_volume * change,
+                    precharge_pressure: at_rest.precharge_pressure + precharge_pressure * change,
+                    ..*at_rest
+                },
+                volume_rate: gas_volume * rate,
+                precharge_rate: precharge_pressure * rate,
+            },
+        }
+    }
+}
+
+impl<S: Scalar> GasValve<S> {
+    /// Flow into the gas in m3/s along a drop p - p_g in Pa, at an opening from 0 to 1.
+    pub fn flow(&self, opening: S, drop: S) -> S {
+        flow(opening * self.flow_coefficient, drop, self.transition_pressure)
+    }
+
+    /// Its conductance in m3/(s Pa) without a drop, where it is that of its transition.
+    pub fn conductance(&self, opening: S) -> S {
+        opening * self.flow_coefficient * regular_root_slope(S::from(0.0), self.transition_pressure)
+    }
+}
+
+impl<S: Scalar> MovedGas<S> {
+    /// Rate in m3/s at which the volume of its oil grows at a pressure in Pa that is held.
+    ///
+    /// ```text
+    /// dV_oil/dt = V_oil/V_0 dV_0/dt - P/P_0 C dp_0/dt         V_oil is V_0 times a function of P/P_0
+    /// ```
+    ///
+    /// # Example
+    /// Twice the gas at a pressure holds twice the oil.
+    /// ```
+    /// use phea_hydraulics::accumulator::{Accumulator, MovedGas};
+    /// let gas = Accumulator { gas_volume: 1e-5, precharge_pressure: 15e5, polytropic_exponent: 1.2 };
+    /// let moved = MovedGas { gas, volume_rate: 1e-5, precharge_rate: 0.0 };
+    /// assert!((moved.oil_rate(35e5) / gas.oil(35e5) - 1.0_f64).abs() < 1e-14);
+    /// ```
+    pub fn oil_rate(&self, pressure: S) -> S {
+        let gas = &self.gas;
+        let ratio = absolute(pressure) / absolute(gas.precharge_pressure);
+        gas.oil(pressure) / gas.gas_volume * self.volume_rate
+            - ratio * gas.compliance(pressure) * self.precharge_rate
+    }
+
+    /// Power in W of the adjustment: by how much what the oil can get back from the gas grows while
+    /// no oil moves.
+    ///
+    /// ```text
+    /// W(V_oil, V_0, p_0): integral of p dV_oil, from the bladder on its shell on
+    /// dW/dt = p q + (W - p V_oil)/V_0 dV_0/dt + (W + p_atm V_oil)/P_0 dp_0/dt
+    /// ```
+    ///
+    /// It is what a spring of stiffness K gains by 1/2 dK/dt x^2. What it costs to press gas to its
+    /// precharge outside is not in it.
+    pub fn power(&self, pressure: S) -> S {
+        let gas = &self.gas;
+        let (held, oil) = (gas.energy(pressure), gas.oil(pressure));
+        let atmosphere = S::from(ATMOSPHERIC_PRESSURE_ABSOLUTE);
+        (held - pressure * oil) / gas.gas_volume * self.volume_rate
+            + (held + atmosphere * oil) / absolute(gas.precharge_pressure) * self.precharge_rate
+    }
+}
+
+fn absolute<S: Scalar>(pressure: S) -> S {
+    pressure + S::from(ATMOSPHERIC_PRESSURE_ABSOLUTE)
+}
+
+#[cfg(test)]
+mod tests {
+    use phea_dynamics::scalar::Dual;
+
+    use super::*;
+
+    /// Rates of oil and energy are those of V_oil(p, V_0, p_0) and W(p, V_0, p_0), while the bladder lifts too.
+    #[test]
+    fn oil_and_energy_follow_the_setting() {
+        for exponent in [1.0, 1.02, 1.4] {
+            for pressure in [38e5, 39.8e5, 40.2e5, 45e5, 120e5] {
+                let gas = Accumulator {
+                    gas_volume: Dual::<3>::variable(1e-3, 0),
+                    precharge_pressure: Dual::variable(40e5, 1),
+                    polytropic_exponent: Dual::constant(exponent),
+                };
+                let varied = Dual::variable(pressure, 2);
+                let (oil, energy) = (*gas.oil(varied).gradient(), *gas.energy(varied).gradient());
+                let own =
+                    Accumulator { gas_volume: 1e-3, precharge_pressure: 40e5, polytropic_exponent: exponent };
+                for (place, rates) in [[2e-4, 0.0], [0.0, 3e5]].into_iter().enumerate() {
+                    let moved = MovedGas { gas: own, volume_rate: rates[0], precharge_rate: rates[1] };
+                    let rate = rates[place];
+                    let expected = oil[place] * rate;
+                    assert!((moved.oil_rate(pressure) - expected).abs() <= 1e-11 * expected.abs().max(1e-9));
+                    let expected = (energy[place] - pressure * oil[place]) * rate;
+                    let size = own.energy(pressure).max(1e-3);
+                    assert!(
+                        (moved.power(pressure) - expected).abs() <= 1e-10 * size,
+                        "{exponent} {pressure}"
+                    );
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,118 @@
+//! `[line.accumulator.adjustment]`: an accumulator that is adjusted in operation.
+
+use super::DeclaredActuator;
+use super::cross_port::DeclaredOrifice;
+use super::key::{key, plain};
+use super::visitor::{Variants, Visitor};
+use phea_quantity::{PRESSURE, RATIO, VOLUME};
+
+/// What of an accumulator is adjusted, by a setting from 0 to 1.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct DeclaredAdjustment {
+    /// What the setting moves.
+    pub kind: AdjustmentKind,
+    /// Where it stands at rest.
+    pub setting: f64,
+}
+
+/// What a setting moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum AdjustmentKind {
+    /// Gas is added and taken: the declared accumulator is that at setting 0.
+    Gas(GasAtOne),
+    /// A valve between chamber and gas: shut at setting 0.
+    Valve(DeclaredGasValve),
+}
+
+/// The gas at setting 1, where it is not that of setting 0.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct GasAtOne {
+    /// m³, at its precharge.
+    pub gas_volume: Option<f64>,
+    /// Pa, gauge.
+    pub precharge_pressure: Option<f64>,
+}
+
+/// A valve between chamber and gas.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct DeclaredGasValve {
+    /// Wide open.
+    pub orifice: DeclaredOrifice,
+    /// m³, of the oil between valve and gas; absent: a hundredth of the gas volume.
+    pub dead_volume: Option<f64>,
+}
+
+/// Share of the gas volume that the oil between valve and gas has where it is not stated.
+const DEAD_SHARE: f64 = 0.01;
+
+impl Default for AdjustmentKind {
+    fn default() -> Self {
+        AdjustmentKind::Gas(GasAtOne::default())
+    }
+}
+
+impl Variants for AdjustmentKind {
+    const STRICT: bool = true;
+
+    fn all(&self) -> Vec<AdjustmentKind> {
+        vec![AdjustmentKind::default(), AdjustmentKind::Valve(DeclaredGasValve::default())]
+    }
+
+    fn word(&self) -> &'static str {
+        match self {
+            AdjustmentKind::Gas(_) => "gas",
+            AdjustmentKind::Valve(_) => "valve",
+        }
+    }
+
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        match self {
+            AdjustmentKind::Gas(gas) => {
+                let k = key("gas_volume", &VOLUME, "At setting 1; absent: that of the accumulator.");
+                v.optional(k.positive(), &mut gas.gas_volume);
+                let k =
+                    key("precharge_pressure", &PRESSURE, "At setting 1; absent: that of the accumulator.");
+                v.optional(k.positive(), &mut gas.precharge_pressure);
+                if *gas == GasAtOne::default() {
+                    let what = "`gas_volume` or `precharge_pressure`, which the setting moves,";
+                    v.lacks(&[&["gas_volume"], &["precharge_pressure"]], what);
+                }
+            }
+            AdjustmentKind::Valve(valve) => {
+                valve.orifice.visit(v);
+                let doc = "Oil between valve and gas; absent: a hundredth of the gas volume.";
+                v.optional(key("dead_volume", &VOLUME, doc).positive(), &mut valve.dead_volume);
+            }
+        }
+    }
+}
+
+impl DeclaredAdjustment {
+    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+        v.variant(plain("kind", "What the setting moves."), &mut self.kind, true);
+        let k = key("setting", &RATIO, "Where it stands at rest, from 0, as declared or shut, to 1.");
+        v.quantity(k.at_least(0.0).at_most(1.0).or(0.0), &mut self.setting);
+    }
+
+    /// Its valve, if it is one.
+    pub fn valve(&self) -> Option<&DeclaredGasValve> {
+        match &self.kind {
+            AdjustmentKind::Valve(valve) => Some(valve),
+            AdjustmentKind::Gas(_) => None,
+        }
+    }
+}
+
+impl DeclaredGasValve {
+    /// m³, of the oil between the valve and this gas.
+    pub fn dead_volume(&self, gas_volume: f64) -> f64 {
+        self.dead_volume.unwrap_or(DEAD_SHARE * gas_volume)
+    }
+}
+
+impl DeclaredActuator {
+    /// The adjustments of the accumulators at chambers A and B.
+    pub fn adjustments(&self) -> [Option<DeclaredAdjustment>; 2] {
+        [&self.line.a, &self.line.b].map(|line| line.accumulator.as_ref()?.adjustment)
+    }
+}

@@ -1,0 +1,146 @@
+//! An accumulator that is adjusted, from the project's keys to plant, family, verdict, simulation and what is told of it.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
+
+use phea_workbench::command::Request;
+
+use super::ask::{answer, check, derived, json, near, project_of, try_answer};
+use super::plant_of_verdicts::{assert_nominal_is_the_rig, responses, without_uncertainty};
+
+const GAS: &str = include_str!("../../../examples/ybitu/accumulator.toml");
+const LIMIT: &str =
+    "specification=[{ kind = \"robust_stability\", limit = 1000, frequencies = [1, 10, 100] }]";
+
+fn accumulator(gas_volume: &str, precharge: &str, more: &str) -> String {
+    format!(
+        "line.accumulator={{ gas_volume = \"{gas_volume}\", precharge_pressure = \"{precharge}\", polytropic_exponent = 1.2{more} }}"
+    )
+}
+
+const MOVED: &str = ", adjustment = { kind = \"gas\", gas_volume = \"14 mL\", precharge_pressure = \"11 bar\", setting = SETTING }";
+const VALVE: &str = ", adjustment = { kind = \"valve\", flow = \"20 L/min\", pressure_drop = \"5 bar\", transition_pressure = \"0.5 bar\", setting = SETTING }";
+
+fn at(adjustment: &str, setting: f64) -> String {
+    accumulator("6 mL", "15 bar", &adjustment.replace("SETTING", &setting.to_string()))
+}
+
+/// What the plants are compared with: two pressures, one that is stated, a limited pump, and lines with waves.
+const RIGS: [&[&str]; 4] = [
+    &[],
+    &["linear.hydraulic_stiffness=2e6"],
+    &["supply.model=pump_limited"],
+    &["line.model=transmission_line"],
+];
+
+fn widest(one: &phea_workbench::project::Project, other: &phea_workbench::project::Project) -> f64 {
+    let gaps = [1e-3, 1.0, 30.0, 300.0, 900.0].into_iter().flat_map(|frequency| {
+        let [one, other] = [one, other].map(|project| responses(project, frequency));
+        [0, 1].map(|path| (other[path] / one[path] - 1.0).norm_sqr().sqrt())
+    });
+    gaps.fold(0.0, f64::max)
+}
+
+/// A setting that stands is the accumulator declared with what it stands for, in every form of the plant.
+#[test]
+fn a_setting_is_the_declared_accumulator() {
+    let text = without_uncertainty(GAS);
+    for settings in RIGS {
+        for (setting, volume, precharge) in
+            [(0.0, "6 mL", "15 bar"), (0.25, "8 mL", "14 bar"), (1.0, "14 mL", "11 bar")]
+        {
+            let of = |one: &str| project_of(&text, &[settings, &[one]].concat());
+            let (adjusted, declared) = (of(&at(MOVED, setting)), of(&accumulator(volume, precharge, "")));
+            assert!(widest(&adjusted, &declared) < 1e-9, "{settings:?} at {setting}");
+        }
+    }
+}
+
+/// A valve that is shut leaves the rig without an accumulator; one that opens does not.
+#[test]
+fn a_shut_valve_is_no_accumulator() {
+    let text = without_uncertainty(GAS);
+    let (before, after) = text.split_once("[line.accumulator]").unwrap();
+    let (_, after) = after.split_once("\n[").unwrap();
+    let bare = format!("{before}[{after}");
+    for settings in RIGS {
+        let of = |text: &str, more: &[&str]| project_of(text, &[settings, more].concat());
+        let none = of(&bare, &[]);
+        assert!(widest(&of(&text, &[&at(VALVE, 0.0)]), &none) < 1e-9, "{settings:?}");
+        assert!(widest(&of(&text, &[&at(VALVE, 0.5)]), &none) > 1e-2, "{settings:?}");
+    }
+}
+
+/// The nominal member of the recorded family is the rig, the setting open.
+#[test]
+fn the_family_is_the_rig_at_its_nominal() {
+    for adjustment in [MOVED, VALVE] {
+        let opened = "uncertainty={ \"line.accumulator.adjustment.setting\" = { nominal = 0.5, minimum = 0.1, maximum = 1, points = 3 } }";
+        for settings in &RIGS[..3] {
+            let own = at(adjustment, 0.5);
+            let project =
+                project_of(&without_uncertainty(GAS), &[settings, &[own.as_str(), opened][..]].concat());
+            assert_nominal_is_the_rig(&project, settings);
+        }
+    }
+}
+
+/// Stiffness at both ends of the setting and between them: those of the accumulators declared so.
+#[test]
+fn check_derives_the_stiffness_of_each_setting() {
+    let text = without_uncertainty(GAS);
+    let told = check(&text, &[&at(MOVED, 0.25)]);
+    for (name, volume, precharge) in
+        [("0", "6 mL", "15 bar"), ("half", "10 mL", "13 bar"), ("1", "14 mL", "11 bar")]
+    {
+        let declared = check(&text, &[&accumulator(volume, precharge, "")]);
+        let found = derived(&told, &format!("stiffness.at_setting_{name}"));
+        near(found, derived(&declared, "stiffness.with_accumulators"), 1e-9);
+    }
+    let valve = check(&text, &[&at(VALVE, 0.5)]);
+    near(derived(&valve, "stiffness.at_setting_0"), derived(&valve, "stiffness.without_accumulators"), 1e-12);
+    near(derived(&valve, "stiffness.at_setting_1"), derived(&valve, "stiffness.with_accumulators"), 1e-12);
+}
+
+/// What a verdict does not cover is said.
+#[test]
+fn a_verdict_says_that_settings_stand() {
+    let text = without_uncertainty(GAS);
+    let said = |more: &[&str]| json(&text, &[&[LIMIT], more].concat(), &[], &Request::Verify).to_string();
+    let moved = said(&[&at(MOVED, 0.25)]);
+    assert!(moved.contains("line.accumulator.adjustment is counted at its setting of rest, 0.25"), "{moved}");
+    let valve = said(&[&at(VALVE, 0.5)]);
+    assert!(valve.contains("has no drop at rest"), "{valve}");
+    assert!(!said(&[&accumulator("6 mL", "15 bar", "")]).contains("adjustment"));
+    let models = answer(&text, &[&at(VALVE, 0.5)], &[], &Request::Linearize).text;
+    assert!(models.contains("the valve of line.accumulator.adjustment is counted in the plant"), "{models}");
+}
+
+/// A simulation of a setting that moves tells its work; one of a setting that leaves its way is refused.
+#[test]
+fn a_simulation_tells_the_work_of_a_setting() {
+    let text = without_uncertainty(GAS);
+    let scenario = |change: &str| {
+        format!(
+            "scenario=[{{ name = \"moves\", duration = \"0.3 s\", reference = {{ at = 0, force = \"1 kN\" }}, setting_change = {change} }}]"
+        )
+    };
+    let ramp = scenario("{ kind = \"ramp\", change = 0.75, start = \"0.05 s\", duration = \"0.1 s\" }");
+    let run = |adjustment: &str, scenario: &str| {
+        json(&text, &[&at(adjustment, 0.25), scenario], &[], &Request::Simulate)
+    };
+    let found = run(MOVED, &ramp);
+    let scenario_of = &found["scenarios"][0];
+    assert_eq!(scenario_of["status"], "completed", "{found}");
+    assert_eq!(scenario_of["events"][0]["kind"], "setting_change", "{found}");
+    let work = |name: &str| scenario_of[name].as_f64().unwrap();
+    assert!(work("adjustment_brought_j") + work("adjustment_taken_j") > 1e-3, "{found}");
+    let steps = scenario("[{ at = \"0.05 s\", change = 0.75 }, { at = \"0.2 s\", change = -0.25 }]");
+    let switched = run(VALVE, &steps);
+    assert_eq!(switched["scenarios"][0]["status"], "completed", "{switched}");
+    assert_eq!(switched["scenarios"][0]["adjustment_brought_j"], 0.0);
+    let beyond = scenario("{ kind = \"ramp\", change = 0.8, duration = \"0.1 s\" }");
+    let asked = [at(MOVED, 0.25), beyond];
+    let refused =
+        try_answer(&text, &[&asked[0], &asked[1]], &[], &Request::Simulate).unwrap_err().to_string();
+    assert!(refused.contains("it is from 0 to 1"), "{refused}");
+}
