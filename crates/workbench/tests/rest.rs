@@ -40,7 +40,7 @@ fn run(text: &str, settings: &[String]) -> Result<ScenarioRun, SimulateError> {
 /// What no signal may move by in a second, as its name ends: a part in a hundred thousand of what a run moves it by.
 fn allowed(name: &str) -> f64 {
     let of_a_joint = [("_rad_per_s", 1e-6), ("_rad", 1e-8), ("_n_m", 1e-3)];
-    let of_gas = [("_ratio_a", 1e-6), ("_ratio_b", 1e-6)];
+    let of_gas = [("_ratio", 1e-6), ("_w", 1e-6)];
     let parts =
         [("_pa", 10.0), ("_m_per_s", 1e-7), ("_m3_per_s", 1e-10), ("_n", 1e-2), ("_v", 1e-5), ("_m", 1e-9)];
     of_a_joint.into_iter().chain(of_gas).chain(parts).find(|(end, _)| name.ends_with(end)).unwrap().1

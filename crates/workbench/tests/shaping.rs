@@ -324,8 +324,8 @@ fn what_cannot_be_changed_is_refused_with_its_place() {
     let lag = "{ kind = \"lag\", zero_frequency = 5, pole_frequency = 50 }";
     check(Change::Add, lag, "a lag has its zero above its pole", 34, "write kind = \"lead\"");
     let zero = "{ kind = \"lead\", zero_freqency = 5, pole_frequency = 50 }";
-    let needs = "missing `zero_frequency` in [elements]: kind \"lead\" needs it";
-    check(Change::Add, zero, needs, 1, "Corner of the numerator of a lead or lag.");
+    let unknown = "unknown key `zero_freqency` in [elements], and `zero_frequency` is missing";
+    check(Change::Add, zero, unknown, 18, "did you mean `zero_frequency`?");
     check(Change::Add, "{ kind = lead }", "string values must be quoted, expected literal string", 10, "");
     check(
         Change::Add,
