@@ -254,7 +254,7 @@ impl<S: Scalar> Machine<S> {
             flows.from_valve
         };
         let (into, compliances) =
-            (self.into_chambers(&state, &flows, from_lines), self.compliance(&state, position));
+            (self.entering_chambers(&state, &flows, from_lines), self.compliance(&state, position));
         let [pressure_a, pressure_b] = if self.layout.has_gas() {
             self.beside_gas((vector, inputs), chambers, into, compliances, rates)
         } else {
@@ -281,7 +281,7 @@ impl<S: Scalar> Machine<S> {
     /// What enters both chambers and not their growing volumes, in m3/s, with these flows from the
     /// lines.
     #[inline(always)]
-    pub(super) fn into_chambers<T: Scalar + From<S>>(
+    pub(super) fn entering_chambers<T: Scalar + From<S>>(
         &self,
         state: &MachineState<T>,
         flows: &Flows<T>,

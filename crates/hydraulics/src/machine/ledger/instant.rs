@@ -254,7 +254,8 @@ impl<S: Scalar> Machine<S> {
         [line_a, line_b]: &[LineInstant<T>; 2],
     ) -> [GasInstant<T>; 2] {
         let [oil_a, oil_b] = self.oil_compliance(state, position);
-        let [into_a, into_b] = self.into_chambers(state, flows, [line_a.into_chamber, line_b.into_chamber]);
+        let [into_a, into_b] =
+            self.entering_chambers(state, flows, [line_a.into_chamber, line_b.into_chamber]);
         let chambers = [state.pressure_a, state.pressure_b];
         let (heated, pressures) = (self.heated(chambers, states), self.gas_pressures(chambers, states));
         let own = |side: usize, arriving, beside| {
