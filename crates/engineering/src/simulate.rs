@@ -191,8 +191,8 @@ pub enum SimulateError {
     Motion(Box<Refusal>),
     /// The setting of an accumulator leaves its way.
     #[error(
-        "scenario \"{name}\": its `setting_change` brings the setting of an accumulator to {} at {}: it is from 0 to 1, the sum of \
-         adjustment.setting and of what has begun",
+        "scenario \"{name}\": its `setting_change` brings the setting of an accumulator to {} at {}, and a setting stays from 0 to \
+         1: it is `adjustment.setting` and the `change` of every signal that has begun, one of which must be smaller",
         display(*setting, &RATIO, 4), display(*time_s, &TIME, 4)
     )]
     Setting {

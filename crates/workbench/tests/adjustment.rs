@@ -142,5 +142,5 @@ fn a_simulation_tells_the_work_of_a_setting() {
     let asked = [at(MOVED, 0.25), beyond];
     let refused =
         try_answer(&text, &[&asked[0], &asked[1]], &[], &Request::Simulate).unwrap_err().to_string();
-    assert!(refused.contains("it is from 0 to 1"), "{refused}");
+    assert!(refused.contains("a setting stays from 0 to 1"), "{refused}");
 }

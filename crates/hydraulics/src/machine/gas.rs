@@ -1,4 +1,4 @@
-//! The gas of accumulators at the chambers: behind necks, and where it exchanges heat.
+//! The gas of accumulators at the chambers: at its chamber, behind necks and valves, and where it exchanges heat.
 
 use phea_dynamics::scalar::Scalar;
 
@@ -28,6 +28,14 @@ impl<T: Scalar> GasStates<T> {
 
 /// Gas of both chambers that exchanges heat; `None` of a chamber without such gas.
 pub(super) type HeatedSides<T> = [Option<HeatedGas<T>>; 2];
+
+/// Gas at a pressure: while this changes, C dp/dt + q flows into it.
+struct Content<T> {
+    /// C in m3/Pa.
+    compliance: T,
+    /// q in m3/s at a pressure that is held.
+    held: T,
+}
 
 impl<S: Scalar> Machine<S> {
     /// Pressures of the gas at either chamber, in Pa.
@@ -99,72 +107,73 @@ impl<S: Scalar> Machine<S> {
     ) -> [T; 2] {
         let gas = self.layout.read_gas(vector);
         let heated = self.heated(chambers, &gas);
-        if self.layout.is_adjusted() {
-            let setting = self.layout.setting(inputs);
-            let (own, gas) = self.adjusted_rates((&gas, setting), &heated, [chambers, into, compliances]);
-            self.layout.write_gas(gas, rates);
-            return own;
-        }
-        let into = [0, 1].map(|side| into[side] - gas.neck_flows[side]);
-        let own = self.beside_heated(&heated, into, compliances);
-        let [neck_flows, pressures] = self.through_necks(chambers, &gas, &heated);
-        let behind = GasStates { pressures, ..gas };
-        let warmings = self.warming_rates(&heated, self.gas_pressures(own, &behind));
-        self.layout.write_gas(GasStates { neck_flows, pressures, warmings }, rates);
+        let setting = self.layout.setting(inputs);
+        let (own, gas) = self.gas_rates((&gas, setting), &heated, [chambers, into, compliances]);
+        self.layout.write_gas(gas, rates);
         own
     }
 
-    /// Rates of the pressures of both chambers in Pa/s, with these flows into them in m3/s and these
-    /// compliances in m3/Pa, each without the gas that exchanges heat.
+    /// The gas at a chamber at its pressure in Pa.
+    fn content<T: Scalar + From<S>>(
+        &self,
+        side: usize,
+        (pressure, setting): (T, [T; 2]),
+        heated: &HeatedSides<T>,
+    ) -> Option<Content<T>> {
+        let moved = self.moved_gas(side, setting)?;
+        Some(match &heated[side] {
+            Some(gas) => Content { compliance: gas.compliance, held: gas.compliance * gas.cooling },
+            None => Content { compliance: moved.gas.compliance(pressure), held: moved.oil_rate(pressure) },
+        })
+    }
+
+    /// Rates in Pa/s of the pressures of both chambers, and of the states of the gas, with these flows
+    /// in m3/s into chambers and gas, and compliances in m3/Pa without gas that has states of its own
+    /// or is adjusted.
     ///
     /// ```text
-    /// (C_oil + C) dp/dt = into - C P (theta - 1)/(theta tau)
+    /// (C_oil + C) dp/dt = into - q                     gas at its chamber; q: at a pressure that is held
+    /// C_oil dp/dt = into - q_n                         gas behind a neck or a valve
+    /// (C + C_n) dp_g/dt = q_n - q
+    /// I dq_n/dt = p - p_g - drop(q_n)                  of a neck
     /// ```
-    fn beside_heated<T: Scalar + From<S>>(
+    fn gas_rates<T: Scalar + From<S>>(
         &self,
+        (gas, setting): (&GasStates<T>, [T; 2]),
         heated: &HeatedSides<T>,
-        into: [T; 2],
-        compliances: [T; 2],
-    ) -> [T; 2] {
-        [0, 1].map(|side| match &heated[side] {
-            Some(gas) if self.necks[side].is_none() => {
-                (into[side] - gas.compliance * gas.cooling) / (compliances[side] + gas.compliance)
+        [chambers, into, compliances]: [[T; 2]; 3],
+    ) -> ([T; 2], GasStates<T>) {
+        let mut own = [T::from(0.0); 2];
+        let mut rates = GasStates::zero();
+        let (apart, pressures) = (self.layout.gas_at(), self.gas_pressures(chambers, gas));
+        for side in [0, 1] {
+            let (pressure, oil) = (pressures[side], compliances[side]);
+            let content = self.content(side, (pressure, setting), heated).filter(|_| apart[side]);
+            let Some(Content { compliance, held }) = content else {
+                own[side] = into[side] / oil;
+                continue;
+            };
+            let neck = self.necks[side].map(|neck| neck.convert(&mut T::from));
+            let drop = chambers[side] - pressure;
+            let through = neck.map(|_| gas.neck_flows[side]).or(self.through_gas_valve(side, setting, drop));
+            let of_gas = match through {
+                None => {
+                    own[side] = (into[side] - held) / (oil + compliance);
+                    own[side]
+                }
+                Some(flow) => {
+                    own[side] = (into[side] - flow) / oil;
+                    rates.pressures[side] = (flow - held) / (compliance + self.before_gas(side));
+                    rates.pressures[side]
+                }
+            };
+            if let Some(neck) = neck {
+                rates.neck_flows[side] = (drop - neck.drop(gas.neck_flows[side])) / neck.inertance;
             }
-            _ => into[side] / compliances[side],
-        })
-    }
-
-    /// Rates of theta in 1/s while the pressures of the gas rise at these rates in Pa/s.
-    #[inline(never)]
-    fn warming_rates<T: Scalar + From<S>>(&self, heated: &HeatedSides<T>, pressure_rates: [T; 2]) -> [T; 2] {
-        [0, 1].map(|side| {
-            heated[side].map_or(T::from(0.0), |gas| gas.warming_rate(gas.flow(pressure_rates[side])))
-        })
-    }
-
-    /// Rates of the flows through the necks in m3/s2 and of the pressures behind them in Pa/s.
-    fn through_necks<T: Scalar + From<S>>(
-        &self,
-        chambers: [T; 2],
-        states: &GasStates<T>,
-        heated: &HeatedSides<T>,
-    ) -> [[T; 2]; 2] {
-        let [side_a, side_b] = [0, 1].map(|side| {
-            let parts = self.necks[side].zip(self.accumulators[side]);
-            parts.map_or([T::from(0.0); 2], |(neck, gas)| {
-                let (flow, pressure) = (states.neck_flows[side], states.pressures[side]);
-                let neck = neck.convert(&mut constant::<S, T>);
-                let pushing = chambers[side] - pressure - neck.drop(flow);
-                let rate = match &heated[side] {
-                    None => {
-                        let gas = gas.convert(&mut constant::<S, T>).compliance(pressure);
-                        flow / (gas + neck.compliance)
-                    }
-                    Some(gas) => (flow - gas.compliance * gas.cooling) / (gas.compliance + neck.compliance),
-                };
-                [pushing / neck.inertance, rate]
-            })
-        });
-        [[side_a[0], side_b[0]], [side_a[1], side_b[1]]]
+            if let Some(gas) = &heated[side] {
+                rates.warmings[side] = gas.warming_rate(gas.flow(of_gas));
+            }
+        }
+        (own, rates)
     }
 }

@@ -185,10 +185,12 @@ fn gas(record: &Record) -> Vec<TimePanel> {
 /// A legend with the gas of both sides, where it is drawn.
 fn with_gas(legend: [String; 2], record: &Record) -> [String; 2] {
     let parts = &record.parts;
-    let mut sides = ["gas A", "gas B"].into_iter().zip(parts.gas_pressure).zip(parts.heated_gas);
-    legend.map(|words| match sides.next() {
-        Some(((gas, own), heated)) if own || heated || parts.adjustment => format!("{words}, {gas}"),
-        _ => words,
+    let mut sides = ["A", "B"].into_iter().zip(parts.gas_pressure).zip(parts.heated_gas);
+    legend.map(|words| {
+        let Some(((side, own), heated)) = sides.next() else { return words };
+        let gas = if own || heated { format!(", gas {side}") } else { String::new() };
+        let setting = if parts.adjustment { format!(", s_{side}") } else { String::new() };
+        format!("{words}{gas}{setting}")
     })
 }
 
