@@ -235,8 +235,9 @@ const LONG_ROBUST_TESTS: [&str; 8] =
     ["test", "--release", "-p", "phea-qft", "--test", "all", "--", "--ignored"];
 
 /// Four hundred valves, lines and frictions, identified from recordings of one each: how often the
-/// intervals cover the truth; and the alternatives of the book under each of its loads.
-const IDENTIFIED_VALVES: [&str; 12] = [
+/// intervals cover the truth; and the alternatives of the book under each of its loads, and over the length of its
+/// hose.
+const IDENTIFIED_VALVES: [&str; 13] = [
     "test",
     "--release",
     "-p",
@@ -249,6 +250,7 @@ const IDENTIFIED_VALVES: [&str; 12] = [
     "--test-threads=1",
     "coverage::soak",
     "alternatives::soak",
+    "alternatives_front::soak",
 ];
 
 /// A thousand rigs of each family that phea and CVODE solve both.
