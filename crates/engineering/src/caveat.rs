@@ -206,10 +206,12 @@ fn adjustment(setup: &Setup<'_>) -> Option<Caveat> {
         }
         (None, _) => format!("at its setting of rest, {}", at(first.setting)),
     };
+    let moves_gas = adjusted.into_iter().flatten().any(|one| one.valve().is_none());
+    let brings = if moves_gas { "brings energy in and " } else { "" };
     Some(Caveat {
         sentence: format!(
-            "line.accumulator.adjustment is counted {counted}: one that moves brings energy in and makes the loop vary with time, which only \
-             a simulation shows (`setting_change`)"
+            "line.accumulator.adjustment is counted {counted}: one that moves {brings}makes the loop vary with time, which only a simulation \
+             shows (`setting_change`)"
         ),
         unproven: false,
     })
