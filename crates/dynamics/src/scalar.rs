@@ -33,7 +33,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 pub use dependence::Dependence;
 pub use dual::Dual;
 pub use interval::Interval;
-pub use lanes::Lanes;
+pub use lanes::{LANES, Lanes};
 
 use crate::portable;
 

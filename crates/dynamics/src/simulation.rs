@@ -51,7 +51,7 @@ pub use task::{Queue, Task};
 pub use trajectory::{Simulated, Trajectory, drive_one, simulate};
 pub use vector::{Vectorized, can_drive};
 
-use crate::scalar::{Lanes, Scalar};
+use crate::scalar::{LANES, Lanes, Scalar};
 
 /// A system of ordinary differential equations.
 ///
@@ -185,9 +185,9 @@ pub trait Plant<S: Scalar> {
 /// use phea_dynamics::scalar::Lanes;
 /// use phea_dynamics::simulation::Lane;
 /// assert_eq!(2.5_f64.lane(0), 2.5);
-/// let mut lanes = Lanes([1.0, 2.0]);
+/// let mut lanes = Lanes([1.0, 2.0, 3.0, 4.0]);
 /// lanes.set_lane(1, 5.0);
-/// assert_eq!(lanes, Lanes([1.0, 5.0]));
+/// assert_eq!(lanes, Lanes([1.0, 5.0, 3.0, 4.0]));
 /// ```
 pub trait Lane: Scalar + Vectorized {
     /// How many numbers.
@@ -213,15 +213,15 @@ impl Lane for f64 {
     }
 }
 
-impl<const L: usize> Lane for Lanes<L> {
-    const COUNT: usize = L;
+impl Lane for Lanes {
+    const COUNT: usize = LANES;
 
     #[inline]
     fn lane(&self, index: usize) -> f64 {
-        self.0[index.min(L - 1)]
+        self.0[index.min(LANES - 1)]
     }
     #[inline]
     fn set_lane(&mut self, index: usize, value: f64) {
-        self.0[index.min(L - 1)] = value;
+        self.0[index.min(LANES - 1)] = value;
     }
 }

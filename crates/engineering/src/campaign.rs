@@ -22,7 +22,7 @@ mod supply;
 mod varied;
 mod workers;
 
-pub use ledger::{Nowhere, RequestedRuns, RowStore, Shard};
+pub use ledger::{RequestedRuns, RowStore, Shard};
 pub use plan::{Draw, Plan};
 pub use range::VariedRange;
 pub use row::{LUMP_NAMES, METRIC_NAMES, Ran, Row, RowOutcome, STATUS_WORDS};

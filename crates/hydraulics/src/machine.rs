@@ -53,7 +53,7 @@ pub use signals::{
 pub use start::{InitialCondition, StartValues};
 pub use state::MachineState;
 
-use phea_dynamics::scalar::{Lanes, Scalar};
+use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{Lane, Plant, Sliding};
 
 use crate::accumulator::{Adjustment, Neck};
@@ -293,47 +293,6 @@ impl<S: Copy> Machine<S> {
     }
 }
 
-impl<const L: usize> Machine<Lanes<L>> {
-    /// L machines side by side, one a lane.
-    ///
-    /// # Errors
-    /// A machine that does not have the components of the first.
-    ///
-    /// # Example
-    /// ```
-    /// # use phea_hydraulics::{actuator::Actuator, stiffness::StiffnessModel};
-    /// # use phea_hydraulics::reference_rig::{components, hose_line, leaking, pipe_line};
-    /// # use phea_hydraulics::machine::{Machine, MachineError, MachineOptions};
-    /// let of = |line| Actuator::new(components(line, StiffnessModel::ByVolume));
-    /// let machines = [of(hose_line())?, of(pipe_line())?].map(|a| Machine::new(&a, &MachineOptions::default()));
-    /// let [hose, pipe] = machines;
-    /// assert!(Machine::gather(&[hose.clone()?, pipe?]).is_ok());
-    /// let leaking = leaking(components(hose_line(), StiffnessModel::ByVolume), 1e-13);
-    /// let other = Machine::new(&Actuator::new(leaking)?, &MachineOptions::default())?;
-    /// assert_eq!(Machine::gather(&[hose?, other]), Err(MachineError::DifferentStructure { index: 1 }));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    pub fn gather(machines: &[Machine; L]) -> Result<Machine<Lanes<L>>, MachineError> {
-        let structure = |machine: &Machine| machine.convert(&mut |_| 0.0);
-        let parameters = machines.each_ref().map(|machine| {
-            let mut values = Vec::new();
-            machine.convert(&mut |value: f64| values.push(value));
-            values.into_iter()
-        });
-        let first = machines.first().map(structure);
-        let other = machines.iter().position(|machine| Some(structure(machine)) != first);
-        match (other, first) {
-            (None, Some(first)) => {
-                let mut parameters = parameters;
-                Ok(first.convert(&mut |_| {
-                    Lanes(parameters.each_mut().map(|values| values.next().unwrap_or(f64::NAN)))
-                }))
-            }
-            (index, _) => Err(MachineError::DifferentStructure { index: index.unwrap_or_default() }),
-        }
-    }
-}
-
 impl<S: Lane> Machine<S> {
     /// Puts another machine into one lane.
     ///
@@ -345,12 +304,16 @@ impl<S: Lane> Machine<S> {
     /// # use phea_hydraulics::{actuator::Actuator, stiffness::StiffnessModel};
     /// # use phea_hydraulics::reference_rig::{components, hose_line, leaking, pipe_line};
     /// # use phea_hydraulics::machine::{Machine, MachineError, MachineOptions};
+    /// use phea_dynamics::scalar::Lanes;
     /// let of = |line| Actuator::new(components(line, StiffnessModel::ByVolume));
     /// let [hose, pipe] = [of(hose_line())?, of(pipe_line())?].map(|a| Machine::new(&a, &MachineOptions::default()));
     /// let (hose, pipe) = (hose?, pipe?);
-    /// let mut lanes = Machine::gather(&[hose, hose])?;
+    /// let hoses: Machine<Lanes> = hose.convert(&mut |value: f64| Lanes::from(value));
+    /// let mut lanes = hoses;
     /// lanes.put(1, &pipe)?;
-    /// assert_eq!(lanes, Machine::gather(&[hose, pipe])?);
+    /// assert_ne!(lanes, hoses);
+    /// lanes.put(1, &hose)?;
+    /// assert_eq!(lanes, hoses);
     /// let leaking = leaking(components(hose_line(), StiffnessModel::ByVolume), 1e-13);
     /// let other = Machine::new(&Actuator::new(leaking)?, &MachineOptions::default())?;
     /// assert_eq!(lanes.put(0, &other), Err(MachineError::DifferentStructure { index: 0 }));

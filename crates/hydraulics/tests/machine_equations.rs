@@ -4,7 +4,7 @@
 
 use phea_dynamics::linear::StateSpace;
 use phea_dynamics::portable::{cosh, expm1, pow};
-use phea_dynamics::scalar::{Dependence, Dual, Lanes};
+use phea_dynamics::scalar::{Dependence, Dual, LANES, Lanes};
 use phea_dynamics::simulation::Plant;
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::contact::Contact;
@@ -448,18 +448,21 @@ fn static_friction() -> Friction {
 #[test]
 fn lanes_are_machines_side_by_side() {
     for machine in machines() {
-        let stronger = machine.convert(&mut |value| 1.01 * value);
-        let both = Machine::gather(&[machine, stronger]).unwrap();
+        let machines = [1.0, 1.01, 0.99, 1.02].map(|factor| machine.convert(&mut |value| factor * value));
+        let mut all = machine.convert(&mut |value: f64| Lanes::from(value));
+        for (lane, one) in machines.iter().enumerate() {
+            all.put(lane, one).unwrap();
+        }
         let mut noise = Noise(3);
-        let starts = [some_state(&machine, &mut noise), some_state(&machine, &mut noise)];
-        let side_by_side = |of: &dyn Fn(&Instant) -> f64| Lanes([of(&starts[0]), of(&starts[1])]);
+        let starts = [(); LANES].map(|()| some_state(&machine, &mut noise));
+        let side_by_side = |of: &dyn Fn(&Instant) -> f64| Lanes(starts.each_ref().map(of));
         let count = machine.states();
-        let state: Vec<Lanes<2>> = (0..count).map(|index| side_by_side(&|start| start.0[index])).collect();
-        let inputs: Vec<Lanes<2>> =
+        let state: Vec<Lanes> = (0..count).map(|index| side_by_side(&|start| start.0[index])).collect();
+        let inputs: Vec<Lanes> =
             (0..machine.inputs()).map(|index| side_by_side(&|start| start.2[index])).collect();
-        let mut rates = vec![Lanes([f64::NAN; 2]); count];
-        both.rates(&state, side_by_side(&|start| start.1), &inputs, &mut rates);
-        for (lane, alone) in [machine, stronger].iter().enumerate() {
+        let mut rates = vec![Lanes::from(f64::NAN); count];
+        all.rates(&state, side_by_side(&|start| start.1), &inputs, &mut rates);
+        for (lane, alone) in machines.iter().enumerate() {
             let (state, command, inputs) = &starts[lane];
             for (found, expected) in rates.iter().zip(rates_of(alone, state, *command, inputs)) {
                 assert_eq!(found.0[lane].to_bits(), expected.to_bits());

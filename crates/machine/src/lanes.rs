@@ -10,10 +10,6 @@ use phea_hydraulics::machine::{Machine, MachineError};
 
 use super::control::{Commanded, Control, Watcher};
 
-/// Lanes of a vector: two registers of the widest kind that is common, which hide the time that
-/// divisions and roots take.
-const LANES: usize = 4;
-
 /// The source of machines, and the destination of their outcomes.
 pub trait Fleet<'a> {
     /// The next machine, put into its lane, with its task; `None` when there are no more.
@@ -117,13 +113,13 @@ pub struct FedMotion {
 }
 
 /// A machine in each lane, under one continuous controller or a stated command.
-pub struct Lanewise(Box<Commanded<Lanes<LANES>>>);
+pub struct Lanewise(Box<Commanded<Lanes>>);
 
 impl Lanewise {
     /// Whether this processor has the vector instructions that lanes need; [`one_by_one`] gives the
     /// same bits without them.
     pub fn is_available() -> bool {
-        can_drive::<Lanes<LANES>>()
+        can_drive::<Lanes>()
     }
 
     /// Lanes of machines built like this one, with this sensor, under a controller with its
@@ -137,7 +133,7 @@ impl Lanewise {
         sensor: &TransferFunction,
         controller: Option<(&Controller, FedMotion)>,
     ) -> Result<Lanewise, LinearError> {
-        let machine = machine.convert(&mut |value| Lanes([value; LANES]));
+        let machine = machine.convert(&mut |value: f64| Lanes::from(value));
         let sensed = Sensed::new(machine, sensor)?;
         Ok(Lanewise(Box::new(match controller {
             Some((controller, FedMotion { gain, sensor, impedance })) => {

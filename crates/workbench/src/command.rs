@@ -34,7 +34,6 @@ use crate::alternatives::{AlternativesOptions as AskedOfAlternatives, judge};
 use crate::answer::{self, Answer, Object};
 use crate::audit::{self, CERTIFICATE_FILE, audit_project, certificate_of, outside, prove_audit};
 use crate::bench;
-use crate::campaign::Nowhere;
 use crate::caveat::caveats;
 use crate::derived::{self, derive};
 use crate::design::{self, design_and_repair, design_project};
@@ -243,7 +242,7 @@ fn answer_as_read(
         Request::Compare => compare_watched(source, std::slice::from_ref(loaded), false, watch),
         Request::Alternatives(asked) => alternatives_answer(source, loaded, catalogues, asked, watch),
         Request::Campaign(asked) => {
-            campaign_watched(source, loaded, catalogues, asked, (&mut Nowhere, destination), watch)
+            campaign_watched(source, loaded, catalogues, asked, (None, destination), watch)
         }
         Request::Bench => bench_answer(loaded, watch),
         Request::Report => report_answer(source, loaded, catalogues, [false, true], watch),

@@ -213,7 +213,7 @@ fn request(runs: u64, shard: Shard) -> CampaignRequest {
 }
 
 fn kept(loaded: &Loaded, request: &CampaignRequest, page: &mut Page) -> Result<String, CommandError> {
-    command::campaign_watched(&source(), loaded, &[], request, (page, None), &mut |_| true)
+    command::campaign_watched(&source(), loaded, &[], request, (Some(page), None), &mut |_| true)
         .map(|answer| answer.json)
 }
 /// Over 200 runs half of all stay within 0.02 N of the same at a tolerance of 1e-10, and all but two within 0.2 N.
@@ -342,7 +342,8 @@ fn the_parquet_table_says_what_the_text_says() {
     let mut page = Page::default();
     let mut go_on = |_| true;
     let answer =
-        command::campaign_watched(&source(), &loaded, &[], &asked, (&mut page, None), &mut go_on).unwrap();
+        command::campaign_watched(&source(), &loaded, &[], &asked, (Some(&mut page), None), &mut go_on)
+            .unwrap();
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("campaign.parquet");
     fs::write(&path, &answer.files.iter().find(|file| file.name == "runs.parquet").unwrap().bytes).unwrap();
     let reader = SerializedFileReader::new(fs::File::open(&path).unwrap()).unwrap();

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use phea_workbench::answer::Answer;
-use phea_workbench::campaign::{Effort, Nowhere, RequestedRuns, RowStore, Shard};
+use phea_workbench::campaign::{Effort, RequestedRuns, RowStore, Shard};
 use phea_workbench::command::{self, CampaignRequest, CampaignRuns, Request};
 use phea_workbench::source::Destination;
 
@@ -60,10 +60,7 @@ pub(super) fn answered(common: &Common, asked: &CampaignRequest) -> Result<(Answ
     };
     let tables = common.out.as_deref().map(Folder::new);
     let destination = tables.as_ref().map(|tables| tables as &dyn Destination);
-    let ledger: &mut dyn RowStore = match &mut table {
-        Some(table) => table,
-        None => &mut Nowhere,
-    };
+    let ledger = table.as_mut().map(|table| table as &mut dyn RowStore);
     let mut watch = |progress| {
         line.show_evenly(progress);
         !interruption.is_asked()

@@ -52,8 +52,8 @@ impl From<f64> for Dependence {
     }
 }
 
-impl<const L: usize> From<Lanes<L>> for Dependence {
-    fn from(_: Lanes<L>) -> Self {
+impl From<Lanes> for Dependence {
+    fn from(_: Lanes) -> Self {
         Dependence([0; 4])
     }
 }

@@ -60,7 +60,7 @@ impl<const N: usize, S: Scalar> Dual<N, S> {
     /// x.set_value(4.0);
     /// assert_eq!((x * x).gradient(), &[8.0]);
     /// ```
-    #[inline(always)]
+    #[inline]
     pub fn set_value(&mut self, value: S) {
         self.value = value;
     }
@@ -71,7 +71,7 @@ impl<const N: usize, S: Scalar> Dual<N, S> {
     }
 
     /// f(u), given f(u) and f'(u) as numbers.
-    #[inline(always)]
+    #[inline]
     fn chain(self, value: S, slope: S) -> Self {
         let mut gradient = self.gradient;
         for g in &mut gradient {
@@ -81,7 +81,7 @@ impl<const N: usize, S: Scalar> Dual<N, S> {
     }
 
     /// f(u, v), given its value and its two partial derivatives.
-    #[inline(always)]
+    #[inline]
     fn chain_two(self, other: Self, value: S, slope: S, other_slope: S) -> Self {
         let mut gradient = self.gradient;
         for (g, b) in gradient.iter_mut().zip(other.gradient) {
@@ -92,22 +92,22 @@ impl<const N: usize, S: Scalar> Dual<N, S> {
 }
 
 impl<const N: usize, S: Scalar> From<f64> for Dual<N, S> {
-    #[inline(always)]
+    #[inline]
     fn from(value: f64) -> Self {
         Dual::constant(S::from(value))
     }
 }
 
-impl<const N: usize, const L: usize> From<Lanes<L>> for Dual<N, Lanes<L>> {
-    #[inline(always)]
-    fn from(value: Lanes<L>) -> Self {
+impl<const N: usize> From<Lanes> for Dual<N, Lanes> {
+    #[inline]
+    fn from(value: Lanes) -> Self {
         Dual::constant(value)
     }
 }
 
 impl<const N: usize, S: Scalar> Add for Dual<N, S> {
     type Output = Self;
-    #[inline(always)]
+    #[inline]
     fn add(self, other: Self) -> Self {
         let mut gradient = self.gradient;
         for (g, b) in gradient.iter_mut().zip(other.gradient) {
@@ -119,7 +119,7 @@ impl<const N: usize, S: Scalar> Add for Dual<N, S> {
 
 impl<const N: usize, S: Scalar> Sub for Dual<N, S> {
     type Output = Self;
-    #[inline(always)]
+    #[inline]
     fn sub(self, other: Self) -> Self {
         let mut gradient = self.gradient;
         for (g, b) in gradient.iter_mut().zip(other.gradient) {
@@ -131,7 +131,7 @@ impl<const N: usize, S: Scalar> Sub for Dual<N, S> {
 
 impl<const N: usize, S: Scalar> Mul for Dual<N, S> {
     type Output = Self;
-    #[inline(always)]
+    #[inline]
     fn mul(self, other: Self) -> Self {
         self.chain_two(other, self.value * other.value, other.value, self.value)
     }
@@ -139,7 +139,7 @@ impl<const N: usize, S: Scalar> Mul for Dual<N, S> {
 
 impl<const N: usize, S: Scalar> Div for Dual<N, S> {
     type Output = Self;
-    #[inline(always)]
+    #[inline]
     fn div(self, other: Self) -> Self {
         let quotient = self.value / other.value;
         let slope = S::from(1.0) / other.value;
@@ -149,7 +149,7 @@ impl<const N: usize, S: Scalar> Div for Dual<N, S> {
 
 impl<const N: usize, S: Scalar> Neg for Dual<N, S> {
     type Output = Self;
-    #[inline(always)]
+    #[inline]
     fn neg(self) -> Self {
         let mut gradient = self.gradient;
         for g in &mut gradient {
@@ -162,7 +162,7 @@ impl<const N: usize, S: Scalar> Neg for Dual<N, S> {
 impl<const N: usize, S: Scalar> Scalar for Dual<N, S> {
     type Mask = S::Mask;
 
-    #[inline(always)]
+    #[inline]
     fn times(self, factor: f64) -> Self {
         let mut gradient = self.gradient;
         for g in &mut gradient {
@@ -170,32 +170,32 @@ impl<const N: usize, S: Scalar> Scalar for Dual<N, S> {
         }
         Dual { value: self.value.times(factor), gradient }
     }
-    #[inline(always)]
+    #[inline]
     fn sqrt(self) -> Self {
         let root = self.value.sqrt();
         self.chain(root, S::from(0.5) / root)
     }
-    #[inline(always)]
+    #[inline]
     fn exp(self) -> Self {
         let value = self.value.exp();
         self.chain(value, value)
     }
-    #[inline(always)]
+    #[inline]
     fn ln(self) -> Self {
         self.chain(self.value.ln(), S::from(1.0) / self.value)
     }
-    #[inline(always)]
+    #[inline]
     fn abs(self) -> Self {
         let zero = S::from(0.0);
         let negative = S::select(self.value.less_than(zero), S::from(-1.0), zero);
         let slope = S::select(zero.less_than(self.value), S::from(1.0), negative);
         self.chain(self.value.abs(), slope)
     }
-    #[inline(always)]
+    #[inline]
     fn less_than(self, other: Self) -> S::Mask {
         self.value.less_than(other.value)
     }
-    #[inline(always)]
+    #[inline]
     fn select(mask: S::Mask, if_true: Self, if_false: Self) -> Self {
         let mut gradient = if_true.gradient;
         for (g, b) in gradient.iter_mut().zip(if_false.gradient) {
@@ -203,7 +203,7 @@ impl<const N: usize, S: Scalar> Scalar for Dual<N, S> {
         }
         Dual { value: S::select(mask, if_true.value, if_false.value), gradient }
     }
-    #[inline(always)]
+    #[inline]
     fn local<P: Copy, const K: usize, const M: usize>(
         function: &impl LocalFunction<P, K, M>,
         variables: [Self; K],

@@ -80,21 +80,25 @@ struct Rounded {
 }
 
 impl Rounded {
+    #[inline]
     fn down(self) -> f64 {
         if self.error >= 0.0 { self.value } else { self.value.next_down() }
     }
 
+    #[inline]
     fn up(self) -> f64 {
         if self.error <= 0.0 { self.value } else { self.value.next_up() }
     }
 }
 
+#[inline]
 fn sum(a: f64, b: f64) -> Rounded {
     let value = a + b;
     let part = value - a;
     Rounded { value, error: (a - (value - part)) + (b - part) }
 }
 
+#[inline]
 fn product(a: f64, b: f64) -> [Rounded; 2] {
     if a == 0.0 || b == 0.0 {
         return [Rounded { value: 0.0, error: 0.0 }; 2];
@@ -108,7 +112,27 @@ fn product(a: f64, b: f64) -> [Rounded; 2] {
     [Rounded { value, error }; 2]
 }
 
+/// On which side of zero an interval lies.
+#[derive(Clone, Copy)]
+enum Sign {
+    Positive,
+    Negative,
+    Both,
+}
+
+impl Sign {
+    #[inline]
+    fn of(interval: Interval) -> Sign {
+        match (interval.low >= 0.0, interval.high <= 0.0) {
+            (true, _) => Sign::Positive,
+            (_, true) => Sign::Negative,
+            _ => Sign::Both,
+        }
+    }
+}
+
 impl From<f64> for Interval {
+    #[inline]
     fn from(value: f64) -> Self {
         Interval::new(value, value)
     }
@@ -116,13 +140,16 @@ impl From<f64> for Interval {
 
 impl Add for Interval {
     type Output = Self;
+    #[inline]
     fn add(self, other: Self) -> Self {
-        Interval::new(sum(self.low, other.low).down(), sum(self.high, other.high).up())
+        let (low, high) = (sum(self.low, other.low).down(), sum(self.high, other.high).up());
+        if low.is_nan() || high.is_nan() { Interval::WHOLE } else { Interval { low, high } }
     }
 }
 
 impl Neg for Interval {
     type Output = Self;
+    #[inline]
     fn neg(self) -> Self {
         Interval { low: -self.high, high: -self.low }
     }
@@ -130,6 +157,7 @@ impl Neg for Interval {
 
 impl Sub for Interval {
     type Output = Self;
+    #[inline]
     fn sub(self, other: Self) -> Self {
         self + (-other)
     }
@@ -137,16 +165,28 @@ impl Sub for Interval {
 
 impl Mul for Interval {
     type Output = Self;
+    /// The ends of a product are products of ends; where a factor has one sign, it is known of which.
+    #[inline]
     fn mul(self, other: Self) -> Self {
-        let ends =
-            [(self.low, other.low), (self.low, other.high), (self.high, other.low), (self.high, other.high)];
-        let products = ends.map(|(a, b)| product(a, b));
-        if products.iter().any(|[product, _]| product.value.is_nan()) {
-            return Interval::WHOLE;
+        let of = |(low, high): ((f64, f64), (f64, f64))| Interval {
+            low: product(low.0, low.1)[0].down(),
+            high: product(high.0, high.1)[1].up(),
+        };
+        let (a, b, c, d) = (self.low, self.high, other.low, other.high);
+        match (Sign::of(self), Sign::of(other)) {
+            (Sign::Positive, Sign::Positive) => of(((a, c), (b, d))),
+            (Sign::Positive, Sign::Negative) => of(((b, c), (a, d))),
+            (Sign::Positive, Sign::Both) => of(((b, c), (b, d))),
+            (Sign::Negative, Sign::Positive) => of(((a, d), (b, c))),
+            (Sign::Negative, Sign::Negative) => of(((b, d), (a, c))),
+            (Sign::Negative, Sign::Both) => of(((a, d), (a, c))),
+            (Sign::Both, Sign::Positive) => of(((a, d), (b, d))),
+            (Sign::Both, Sign::Negative) => of(((b, c), (a, c))),
+            (Sign::Both, Sign::Both) => {
+                let (one, other) = (of(((a, d), (a, c))), of(((b, c), (b, d))));
+                Interval { low: one.low.min(other.low), high: one.high.max(other.high) }
+            }
         }
-        let low = products.iter().map(|[product, _]| product.down()).fold(f64::INFINITY, f64::min);
-        let high = products.iter().map(|[_, product]| product.up()).fold(f64::NEG_INFINITY, f64::max);
-        Interval::new(low, high)
     }
 }
 
@@ -180,6 +220,7 @@ impl Scalar for Interval {
     /// `None` where it holds for some of the numbers only.
     type Mask = Option<bool>;
 
+    #[inline]
     fn times(self, factor: f64) -> Self {
         let ends = [product(self.low, factor), product(self.high, factor)];
         if ends.iter().flatten().any(|end| end.value.is_nan()) {
@@ -248,6 +289,35 @@ mod tests {
                     assert!(enclosed.low() <= value && value <= enclosed.high(), "{low} {width}");
                 }
                 assert!(width > 0.0 || enclosed.high() - enclosed.low() < 1e-14);
+            }
+        }
+    }
+
+    /// The least and the greatest of the four products of ends, whatever their signs.
+    fn product_of_all_ends(one: Interval, other: Interval) -> Interval {
+        let products = [one.low, one.high].map(|a| [other.low, other.high].map(|b| product(a, b)));
+        let products = products.as_flattened();
+        let low = products.iter().map(|[product, _]| product.down()).fold(f64::INFINITY, f64::min);
+        let high = products.iter().map(|[_, product]| product.up()).fold(f64::NEG_INFINITY, f64::max);
+        Interval { low, high }
+    }
+
+    #[test]
+    fn a_product_has_the_ends_of_all_products_of_ends() {
+        let tiny = f64::MIN_POSITIVE;
+        let sizes = [0.0, 5e-324, tiny, 1e-160, 0.1, 1.0 / 3.0, 7.0, 1e160, f64::MAX, f64::INFINITY];
+        let ends: Vec<f64> = sizes.iter().flat_map(|size| [-size, *size]).collect();
+        let pairs = || ends.iter().flat_map(|low| ends.iter().map(|high| Interval::new(*low, *high)));
+        for one in pairs() {
+            for other in pairs() {
+                let (product, reference) = (one * other, product_of_all_ends(one, other));
+                let same = (product.low, product.high) == (reference.low, reference.high);
+                // a product that underflows is rounded towards both sides: what has zero as an end keeps it
+                let underflows = [reference.low, reference.high]
+                    .iter()
+                    .any(|end| (f64::from_bits(1)..1e-290).contains(&end.abs()));
+                let inside = product.low >= reference.low && product.high <= reference.high;
+                assert!(same || underflows && inside, "{one:?} {other:?}: {product:?} {reference:?}");
             }
         }
     }

@@ -4,84 +4,82 @@ use super::Scalar;
 use super::exponential::exponential;
 use crate::portable;
 
-/// L numbers side by side, every operation on all of them at once: the same equation for L
-/// machines.
+/// Lanes of a vector: two registers of the widest kind that is common, which hide the time that
+/// divisions and roots take.
+pub const LANES: usize = 4;
+
+/// Numbers side by side, every operation on all of them at once: the same equation for as many
+/// machines as there are lanes.
 ///
 /// A lane's result has the same bits as the plain number's: each operation is the plain one, lane
-/// by lane, and the compiler makes vector instructions of it.
+/// by lane, and the compiler makes vector instructions of it. The lanes are written out: an
+/// operation that is a loop, in equations of thousands of operations, takes the compiler several
+/// times as long.
 ///
 /// # Example
 /// ```
 /// use phea_dynamics::scalar::{Lanes, Scalar};
-/// let drops = Lanes([4.0, 9.0]);
-/// assert_eq!(drops.sqrt(), Lanes([2.0, 3.0]));
+/// let drops = Lanes([4.0, 9.0, 16.0, 25.0]);
+/// assert_eq!(drops.sqrt(), Lanes([2.0, 3.0, 4.0, 5.0]));
 /// let limited = Scalar::select(drops.less_than(Lanes::from(5.0)), drops, Lanes::from(5.0));
-/// assert_eq!(limited, Lanes([4.0, 5.0]));
+/// assert_eq!(limited, Lanes([4.0, 5.0, 5.0, 5.0]));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(align(32))]
-pub struct Lanes<const L: usize>(pub [f64; L]);
+pub struct Lanes(pub [f64; LANES]);
 
-impl<const L: usize> From<f64> for Lanes<L> {
+impl From<f64> for Lanes {
     #[inline(always)]
     fn from(value: f64) -> Self {
-        Lanes([value; L])
+        Lanes([value; LANES])
     }
 }
 
-impl<const L: usize> Lanes<L> {
+impl Lanes {
     #[inline(always)]
-    fn each(self, function: impl Fn(f64) -> f64) -> Self {
-        let mut lanes = self.0;
-        for lane in &mut lanes {
-            *lane = function(*lane);
-        }
-        Lanes(lanes)
-    }
-
-    #[inline(always)]
-    fn pairs(self, other: Self, function: impl Fn(f64, f64) -> f64) -> Self {
-        let mut lanes = self.0;
-        for (lane, with) in lanes.iter_mut().zip(other.0) {
-            *lane = function(*lane, with);
-        }
-        Lanes(lanes)
+    fn each(self, of: impl Fn(f64) -> f64) -> Self {
+        let [a, b, c, d] = self.0;
+        Lanes([of(a), of(b), of(c), of(d)])
     }
 }
 
-impl<const L: usize> Add for Lanes<L> {
+impl Add for Lanes {
     type Output = Self;
     #[inline(always)]
     fn add(self, other: Self) -> Self {
-        self.pairs(other, |a, b| a + b)
+        let ([a, b, c, d], [e, f, g, h]) = (self.0, other.0);
+        Lanes([a + e, b + f, c + g, d + h])
     }
 }
 
-impl<const L: usize> Sub for Lanes<L> {
+impl Sub for Lanes {
     type Output = Self;
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
-        self.pairs(other, |a, b| a - b)
+        let ([a, b, c, d], [e, f, g, h]) = (self.0, other.0);
+        Lanes([a - e, b - f, c - g, d - h])
     }
 }
 
-impl<const L: usize> Mul for Lanes<L> {
+impl Mul for Lanes {
     type Output = Self;
     #[inline(always)]
     fn mul(self, other: Self) -> Self {
-        self.pairs(other, |a, b| a * b)
+        let ([a, b, c, d], [e, f, g, h]) = (self.0, other.0);
+        Lanes([a * e, b * f, c * g, d * h])
     }
 }
 
-impl<const L: usize> Div for Lanes<L> {
+impl Div for Lanes {
     type Output = Self;
     #[inline(always)]
     fn div(self, other: Self) -> Self {
-        self.pairs(other, |a, b| a / b)
+        let ([a, b, c, d], [e, f, g, h]) = (self.0, other.0);
+        Lanes([a / e, b / f, c / g, d / h])
     }
 }
 
-impl<const L: usize> Neg for Lanes<L> {
+impl Neg for Lanes {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
@@ -89,8 +87,8 @@ impl<const L: usize> Neg for Lanes<L> {
     }
 }
 
-impl<const L: usize> Scalar for Lanes<L> {
-    type Mask = [bool; L];
+impl Scalar for Lanes {
+    type Mask = [bool; LANES];
 
     #[inline(always)]
     fn sqrt(self) -> Self {
@@ -109,19 +107,13 @@ impl<const L: usize> Scalar for Lanes<L> {
         self.each(f64::abs)
     }
     #[inline(always)]
-    fn less_than(self, other: Self) -> [bool; L] {
-        let mut mask = [false; L];
-        for ((flag, a), b) in mask.iter_mut().zip(self.0).zip(other.0) {
-            *flag = a < b;
-        }
-        mask
+    fn less_than(self, other: Self) -> [bool; LANES] {
+        let ([a, b, c, d], [e, f, g, h]) = (self.0, other.0);
+        [a < e, b < f, c < g, d < h]
     }
     #[inline(always)]
-    fn select(mask: [bool; L], if_true: Self, if_false: Self) -> Self {
-        let mut lanes = if_false.0;
-        for ((lane, flag), value) in lanes.iter_mut().zip(mask).zip(if_true.0) {
-            *lane = if flag { value } else { *lane };
-        }
-        Lanes(lanes)
+    fn select(mask: [bool; LANES], if_true: Self, if_false: Self) -> Self {
+        let one = |lane: usize| if mask[lane] { if_true.0[lane] } else { if_false.0[lane] };
+        Lanes([one(0), one(1), one(2), one(3)])
     }
 }

@@ -413,25 +413,27 @@ mod tests {
                 (0..count).filter(|&c| c == 0 || row == 0 || row.abs_diff(c) == 1 || c + 4 == row).collect()
             })
             .collect();
-        let mut matrix = StepMatrix::<Lanes<2>>::new(&rows);
+        let mut matrix = StepMatrix::<Lanes>::new(&rows);
         let mut dense =
-            [DMatrix::<f64>::identity(count, count) * 40.0, DMatrix::identity(count, count) * -30.0];
-        matrix.reset(Lanes([40.0, -30.0]));
+            [40.0, -30.0, 50.0, 25.0].map(|diagonal| DMatrix::<f64>::identity(count, count) * diagonal);
+        matrix.reset(Lanes([40.0, -30.0, 50.0, 25.0]));
         let mut number = 0.4;
         for (row, columns) in rows.iter().enumerate() {
             for (place, &column) in columns.iter().enumerate() {
                 number = 3.9 * number * (1.0 - number);
                 let entry = matrix.entry(row, place);
-                matrix.subtract(entry, Lanes([10.0 * number, -7.0 * number]));
-                dense[0][(row, column)] -= 10.0 * number;
-                dense[1][(row, column)] += 7.0 * number;
+                let parts = [10.0, -7.0, 3.0, 5.0].map(|factor| factor * number);
+                matrix.subtract(entry, Lanes(parts));
+                for (dense, part) in dense.iter_mut().zip(parts) {
+                    dense[(row, column)] -= part;
+                }
             }
         }
         assert!(matrix.factor().0.iter().all(|&kept| kept > 0.0));
         let right = DVector::from_fn(count, |row, _| row as f64 - 3.5);
-        let mut solution = [Lanes([0.0; 2]); COLUMN];
+        let mut solution = [Lanes::from(0.0); COLUMN];
         for (place, &value) in solution.iter_mut().zip(right.iter()) {
-            *place = Lanes([value; 2]);
+            *place = Lanes::from(value);
         }
         matrix.solve(&mut solution);
         for (lane, dense) in dense.into_iter().enumerate() {

@@ -21,7 +21,7 @@ impl Vectorized for f64 {
     }
 }
 
-impl<const L: usize> Vectorized for Lanes<L> {
+impl Vectorized for Lanes {
     #[cfg(target_arch = "x86_64")]
     #[inline]
     fn vectorized<W: WithSimd>(work: W) -> Option<W::Output> {
@@ -53,7 +53,7 @@ impl WithSimd for Nothing {
 /// use phea_dynamics::scalar::Lanes;
 /// use phea_dynamics::simulation::can_drive;
 /// assert!(can_drive::<f64>()); // on every processor
-/// let lanes_are_worth_it = can_drive::<Lanes<4>>();
+/// let lanes_are_worth_it = can_drive::<Lanes>();
 /// # let _ = lanes_are_worth_it;
 /// ```
 pub fn can_drive<S: Vectorized>() -> bool {

@@ -1,6 +1,6 @@
 //! Machines side by side: each as if it were alone, to the last bit.
 
-use phea_dynamics::scalar::{Dependence, Dual, Lanes, Scalar};
+use phea_dynamics::scalar::{Dependence, Dual, LANES, Lanes, Scalar};
 use phea_dynamics::simulation::{
     Event, Input, InputSchedule, Lane, Method, Observer, Outcome, Profile, Queue, Sampler, SimulationError,
     SimulationSettings, Sliding, Status, System, Task, drive,
@@ -243,13 +243,11 @@ fn neighbours(cases: &[Case], waves: usize) {
         for order in [order.clone(), other.clone()] {
             let together = [
                 driven::<f64>(cases, waves, order.clone(), &settings),
-                driven::<Lanes<2>>(cases, waves, order.clone(), &settings),
-                driven::<Lanes<4>>(cases, waves, order.clone(), &settings),
-                driven::<Lanes<8>>(cases, waves, order, &settings),
+                driven::<Lanes>(cases, waves, order, &settings),
             ];
-            for (lanes, results) in together.iter().enumerate() {
+            for (results, lanes) in together.iter().zip([1, LANES]) {
                 for (index, (seen, alone)) in results.iter().zip(&alone).enumerate() {
-                    assert!(seen == alone, "{method:?}, lanes 2^{lanes}, case {index}");
+                    assert!(seen == alone, "{method:?}, {lanes} lanes, case {index}");
                 }
             }
         }
@@ -266,7 +264,7 @@ fn a_neighbour_that_fails_fails_alone() {
     }
     let order: Vec<usize> = (0..cases.len()).collect();
     let settings = SimulationSettings { maximum_steps: 5_000, ..SimulationSettings::default() };
-    let mixed = driven::<Lanes<4>>(&cases, 1, order.clone(), &settings);
+    let mixed = driven::<Lanes>(&cases, 1, order.clone(), &settings);
     let alone = driven::<f64>(&good, 1, order, &settings);
     for (index, (seen, alone)) in mixed.iter().zip(&alone).enumerate() {
         let status = seen.outcome.as_ref().unwrap().0;
@@ -322,7 +320,7 @@ fn who_stands_still_is_not_moved_by_a_neighbour() {
     let (still, moving) =
         (course(Profile::constant(0.0)), course(Profile::table(&[0.0, 1.0], &[1.0, 4.0]).unwrap()));
     let mut ends = Ends(vec![&still, &moving], Vec::new(), &[0]);
-    drive::<Lanes<2>, _, _>(&mut Root, &mut ends, &SimulationSettings::default()).unwrap();
+    drive::<Lanes, _, _>(&mut Root, &mut ends, &SimulationSettings::default()).unwrap();
     assert_eq!(ends.1, [Status::Completed; 2]);
 }
 
@@ -342,13 +340,13 @@ fn a_state_that_is_not_there_is_not_looked_at() {
 #[test]
 fn stopping_stops_all() {
     struct Stopped<'a>(Line<'a>, usize);
-    impl<'a> Queue<'a, Machine<Lanes<4>>> for Stopped<'a> {
+    impl<'a> Queue<'a, Machine<Lanes>> for Stopped<'a> {
         type Observer = Notes;
-        fn next(&mut self, machine: &mut Machine<Lanes<4>>, lane: usize) -> Option<Task<'a, Notes>> {
+        fn next(&mut self, machine: &mut Machine<Lanes>, lane: usize) -> Option<Task<'a, Notes>> {
             self.0.next(machine, lane)
         }
         fn done(&mut self, lane: usize, outcome: Outcome, observer: Notes) {
-            Queue::<Machine<Lanes<4>>>::done(&mut self.0, lane, outcome, observer);
+            Queue::<Machine<Lanes>>::done(&mut self.0, lane, outcome, observer);
         }
         fn goes_on(&mut self, _: usize, _: f64) -> bool {
             self.1 += 1;
@@ -358,14 +356,14 @@ fn stopping_stops_all() {
     let cases = cases();
     let order = (0..cases.len()).collect();
     let line =
-        Line { cases: &cases, order, in_lane: vec![0; 4], results: vec![Seen::default(); cases.len()] };
-    let one = Lanes([1.0; 4]);
+        Line { cases: &cases, order, in_lane: vec![0; LANES], results: vec![Seen::default(); cases.len()] };
+    let one = Lanes::from(1.0);
     let mut machine = Machine { stiffness: one, rate: one, delay_s: one, feeding: one, waves: 1 };
     let mut queue = Stopped(line, 0);
     drive(&mut machine, &mut queue, &SimulationSettings::default()).unwrap();
     let statuses: Vec<Status> =
         queue.0.results.iter().filter_map(|seen| seen.outcome.as_ref()).map(|outcome| outcome.0).collect();
-    assert_eq!(statuses.len(), 4);
+    assert_eq!(statuses.len(), LANES);
     assert!(statuses.iter().all(|status| matches!(status, Status::Cancelled { time_s } if *time_s < 1.0)));
     assert_eq!(queue.0.order.len(), 7);
 }

@@ -132,33 +132,15 @@ pub trait RowStore {
     }
 }
 
-/// A ledger that keeps nothing.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Nowhere;
-
-impl RowStore for Nowhere {
-    fn kept(&mut self) -> Result<String, String> {
-        Ok(String::new())
-    }
-
-    fn cut(&mut self, _bytes: usize) -> Result<(), String> {
-        Ok(())
-    }
-
-    fn append(&mut self, _text: &str) -> Result<(), String> {
-        Ok(())
-    }
-}
-
-/// Drives the missing runs of a campaign, and returns all rows: fewer than requested if it was
-/// stopped.
+/// Drives the missing runs of a campaign, each row stored in the ledger if there is one, and returns
+/// all rows: fewer than requested if it was stopped.
 ///
 /// # Errors
 /// [`CampaignError`] where the ledger holds another campaign or cannot be written.
 pub fn campaign(
     plan: &Plan,
     wanted: RequestedRuns,
-    ledger: &mut dyn RowStore,
+    mut ledger: Option<&mut dyn RowStore>,
     watch: Watch<'_>,
 ) -> Result<Vec<Row>, CampaignError> {
     let runs = wanted.shard.runs_of(wanted.runs);
@@ -166,9 +148,15 @@ pub fn campaign(
     if asked > MOST_RUNS {
         return Err(CampaignError::TooMany { runs: asked });
     }
-    let mut rows = resumed(plan, wanted, ledger)?;
+    let mut rows = match ledger.as_deref_mut() {
+        Some(ledger) => resumed(plan, wanted, ledger)?,
+        None => vec![],
+    };
     let missing = runs.start + rows.len() as u64..runs.end;
-    let known = ahead(plan, &missing, ledger)?;
+    let known = match ledger.as_deref_mut() {
+        Some(ledger) => ahead(plan, &missing, ledger)?,
+        None => BTreeMap::new(),
+    };
     let before = (rows.len() + known.len()) as u64;
     let mut tell = |news: News| match news {
         News::Done(done) => {
@@ -176,19 +164,25 @@ pub fn campaign(
             Ok(watch(Progress { stage: "driving", share }))
         }
         News::Rows(more) => {
-            let text: String = more.iter().map(|one| plan.columns.line(&one.row)).collect();
-            ledger.append(&text).map_err(CampaignError::RowStore)?;
+            if let Some(ledger) = ledger.as_deref_mut() {
+                let text: String = more.iter().map(|one| plan.columns.line(&one.row)).collect();
+                ledger.append(&text).map_err(CampaignError::RowStore)?;
+            }
             rows.extend(more.into_iter().map(|one| one.row));
             Ok(true)
         }
         News::Ahead(more) => {
-            let text: String = more.iter().map(|row| plan.columns.line(row)).collect();
-            ledger.keep_ahead(&text).map_err(CampaignError::RowStore)?;
+            if let Some(ledger) = ledger.as_deref_mut() {
+                let text: String = more.iter().map(|row| plan.columns.line(row)).collect();
+                ledger.keep_ahead(&text).map_err(CampaignError::RowStore)?;
+            }
             Ok(true)
         }
     };
     run(plan, Asked { runs: missing, known, forces: false }, wanted.effort, &mut tell)?;
-    if rows.len() as u64 == asked {
+    if rows.len() as u64 == asked
+        && let Some(ledger) = ledger
+    {
         ledger.forget_ahead().map_err(CampaignError::RowStore)?;
     }
     Ok(rows)

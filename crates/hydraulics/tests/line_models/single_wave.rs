@@ -232,15 +232,21 @@ fn lanes_and_the_plain_number_agree_to_the_bit() {
     let pipe = Conduit::of_line(&pipe_line(), &fluid(), 35e5, StiffeningMember::Nominal).unwrap();
     for line in [transmission_line(&pipe, END_SHARE), segments(&pipe, 3, LaminarFriction::FrequencyDependent)]
     {
-        let wide: DynamicLine<Lanes<2>> = line.convert(&mut |value: f64| Lanes([value, value]));
+        let wide: DynamicLine<Lanes> = line.convert(&mut |value: f64| Lanes::from(value));
         let state: Vec<f64> = (0..line.states()).map(|index| 1e5 + 37.0 * index as f64).collect();
         let arriving: Vec<f64> = line.delays().iter().map(|delay| 1e9 * delay).collect();
-        let widened = |values: &[f64]| values.iter().map(|value| Lanes([*value, 0.0])).collect::<Vec<_>>();
-        let (mut rates, mut wide_rates) = (vec![0.0; line.states()], vec![Lanes([0.0; 2]); line.states()]);
+        let widened =
+            |values: &[f64]| values.iter().map(|value| Lanes([*value, 0.0, 0.0, 0.0])).collect::<Vec<_>>();
+        let (mut rates, mut wide_rates) = (vec![0.0; line.states()], vec![Lanes::from(0.0); line.states()]);
         let flow = line.rates(1e-4, 3e5, &state, &arriving, &mut rates);
-        let pressure = Lanes([3e5, 0.0]);
-        let wide_flow =
-            wide.rates(Lanes([1e-4, 0.0]), pressure, &widened(&state), &widened(&arriving), &mut wide_rates);
+        let pressure = Lanes([3e5, 0.0, 0.0, 0.0]);
+        let wide_flow = wide.rates(
+            Lanes([1e-4, 0.0, 0.0, 0.0]),
+            pressure,
+            &widened(&state),
+            &widened(&arriving),
+            &mut wide_rates,
+        );
         assert_eq!(flow, wide_flow.0[0]);
         assert!(rates.iter().zip(&wide_rates).all(|(rate, wide)| *rate == wide.0[0]));
     }

@@ -30,9 +30,9 @@ pub enum CampaignRuns {
     One(u64),
 }
 
-/// Answers a campaign, its rows stored in a ledger, from which an interrupted one continues. The
-/// answer is yes if every run has its row, however it ended. The table over time of a single run
-/// goes to the destination, if there is one.
+/// Answers a campaign, its rows stored in the ledger, if there is one, from which an interrupted
+/// campaign continues. The answer is yes if every run has its row, however it ended. The table over
+/// time of a single run goes to the destination, if there is one.
 ///
 /// # Errors
 /// [`CommandError`] if the project declares no campaign, or the ledger fails.
@@ -41,7 +41,7 @@ pub fn campaign_watched(
     loaded: &Loaded,
     catalogues: &[String],
     request: &CampaignRequest,
-    (ledger, destination): (&mut dyn RowStore, Option<&dyn Destination>),
+    (ledger, destination): (Option<&mut dyn RowStore>, Option<&dyn Destination>),
     watch: Watch<'_>,
 ) -> Result<Answer, CommandError> {
     let identified = with_recordings(source, loaded, watch)?;

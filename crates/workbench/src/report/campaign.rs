@@ -7,8 +7,8 @@ use phea_engineering::error::ProcedureError;
 use super::chapter::Chapter;
 use crate::answer::significant;
 use crate::campaign::{
-    CampaignError, METRIC_NAMES, Nowhere, Plan, QUANTILES, RequestedRuns, Shard, Spread, Summary,
-    VariedRange, WorstRun, campaign, counted, lumps, metrics, pictures,
+    CampaignError, METRIC_NAMES, Plan, QUANTILES, RequestedRuns, Shard, Spread, Summary, VariedRange,
+    WorstRun, campaign, counted, lumps, metrics, pictures,
 };
 use crate::document::{Cell, Document, StatusMark, Table};
 use crate::error::CommandError;
@@ -49,7 +49,7 @@ pub(super) fn driven(
     let wanted = RequestedRuns { runs: RUNS, shard: Shard::default(), effort: Default::default() };
     let mut told = || -> Result<_, CampaignError> {
         let plan = Plan::new(source, loaded, SEED)?;
-        let rows = campaign(&plan, wanted, &mut Nowhere, watch)?;
+        let rows = campaign(&plan, wanted, None, watch)?;
         let summary = Summary::of(&plan, &rows);
         let figures = pictures(&plan, &summary)?;
         Ok((plan, rows.len() as u64, summary, figures))

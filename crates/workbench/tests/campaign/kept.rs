@@ -95,7 +95,7 @@ fn rows_that_waited_are_not_driven_again() {
         shares.push(progress.share);
         true
     };
-    command::campaign_watched(&source(), &loaded, &[], &asked, (&mut pages, None), &mut watch).unwrap();
+    command::campaign_watched(&source(), &loaded, &[], &asked, (Some(&mut pages), None), &mut watch).unwrap();
     assert_eq!(shares.first().copied(), Some(7.0 / 30.0));
     assert!(pages.table.text == whole.text && pages.ahead.is_empty());
 }
@@ -106,11 +106,12 @@ fn stopping_leaves_whole_rows() {
     let loaded = load(&SHORT);
     let asked = request(600, Shard::default());
     let (mut page, mut asks) = (Page::default(), 0);
-    let answer = command::campaign_watched(&source(), &loaded, &[], &asked, (&mut page, None), &mut |_| {
-        asks += 1;
-        asks < 3
-    })
-    .unwrap();
+    let answer =
+        command::campaign_watched(&source(), &loaded, &[], &asked, (Some(&mut page), None), &mut |_| {
+            asks += 1;
+            asks < 3
+        })
+        .unwrap();
     let rows = page.text.lines().count() - 1;
     assert!(!answer.affirmative && rows < 600 && page.text.ends_with('\n'));
     let told: Value = serde_json::from_str(&answer.json).unwrap();
