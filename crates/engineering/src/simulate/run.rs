@@ -12,6 +12,7 @@ use super::adjusted::AdjustmentWork;
 use super::bench::ControlledMachine;
 use super::course::PreparedScenario;
 use super::exceeded::Exceeded;
+use super::gas::GasRange;
 use super::look::{Looking, Sighted};
 use super::measured::{Measurement, Overlay};
 use super::metrics::Metrics;
@@ -66,8 +67,10 @@ pub struct ScenarioRun {
     pub beyond_expansion: Vec<BeyondExpansion>,
     /// Limits of the rig that it exceeds.
     pub exceeded: Vec<Exceeded>,
-    /// Of accumulators whose gas is adjusted as it runs; `None` where there is none.
+    /// Of accumulators that are adjusted by a valve, or as it runs; `None` where there is none.
     pub adjustment: Option<AdjustmentWork>,
+    /// The gas at each chamber that has some.
+    pub gas: Vec<GasRange>,
     /// Its final state, from which another run can continue, or why it is not saved.
     pub end: Result<SavedState, &'static str>,
 }
@@ -190,7 +193,8 @@ pub(super) fn run(
     let task = Task { start: course.start.clone(), course: &drive, sampler, observer };
     let named = |error| SimulateError::Simulation { name: scenario.name.clone(), error };
     let outcome = bench.control.drive(task, &bench.settings, &mut watch).map_err(named)?;
-    let Sighted { record, metrics, peak_pressures_pa, measured, exceeded, adjustment } = looking.finish()?;
+    let Sighted { record, metrics, peak_pressures_pa, measured, exceeded, adjustment, gas } =
+        looking.finish()?;
     let occurrences = found(bench, course, &outcome, &samples.borrow());
     let windows = course.windows.iter().copied().zip(metrics).collect();
     let outside_model_s = outside_model_s(&occurrences, bench.machine.has_end_stops());
@@ -215,6 +219,7 @@ pub(super) fn run(
         beyond_expansion: beyond_expansion(bench, peak_pressures_pa),
         exceeded,
         adjustment,
+        gas,
         end,
         check: None,
     })
