@@ -120,14 +120,20 @@ fn told(runs: &[ScenarioRun]) -> Option<String> {
             cells[SETTLING].text()
         )
     });
-    let disturbances =
-        windows().filter_map(|(window, metrics)| Some((window, metrics.disturbance_peak_n.ok()?)));
-    let disturbed =
-        disturbances.max_by(|(_, one), (_, other)| one.total_cmp(other)).map(|(window, peak_n)| {
-            let motion = runs.first().map(|run| run.record.motion).unwrap_or_default();
-            let peak = motion.unit(DisplayUnit::KILONEWTON).text(peak_n, 3);
-            format!("{}: {peak} of disturbance", cause_words(window))
-        });
+    let greatest = runs.iter().flat_map(disturbances).max_by(|one, other| one.2.total_cmp(&other.2));
+    let disturbed = greatest.map(|(run, window, peak_n)| {
+        let peak = run.record.motion.unit(DisplayUnit::KILONEWTON).text(peak_n, 3);
+        let is_first = runs.first().is_some_and(|first| first.name == run.name);
+        let scenario = if is_first { String::new() } else { format!("{}, ", run.name) };
+        format!("{scenario}{}: {peak} of disturbance", cause_words(&window))
+    });
     let told: Vec<String> = step.into_iter().chain(disturbed).collect();
     (!told.is_empty()).then(|| told.join("; "))
+}
+
+/// The disturbances of a run, in N, with their windows.
+fn disturbances(run: &ScenarioRun) -> impl Iterator<Item = (&ScenarioRun, Window, f64)> {
+    run.windows
+        .iter()
+        .filter_map(move |(window, metrics)| Some((run, *window, metrics.disturbance_peak_n.ok()?)))
 }
