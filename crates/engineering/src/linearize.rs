@@ -37,7 +37,7 @@ pub use sweep::{POINTS, Sweep, SweepPoint, SweepRequest, Swept, sweep};
 pub(crate) use sweep::{points, range, values};
 
 use crate::quantity::{DisplayUnit, MotionKind, TORSIONAL_STIFFNESS, fitting};
-use crate::rig::Rig;
+use crate::rig::{Rig, components_at_setting};
 
 /// Frequency up to which the thesis compares its models, rad/s.
 const COMPARISON_END: f64 = 1000.0;
@@ -237,6 +237,26 @@ fn closed_loop_view(rig: &Rig, controller: &TransferFunction) -> Result<PortView
 /// Stiffness over the stroke by the project's model, for one member of the stiffening interval.
 pub fn stroke_stiffness(rig: &Rig, member: StiffeningMember) -> StrokeStiffness {
     rig.actuator.chamber_compliance([rig.point.pressure_a, rig.point.pressure_b], member).over_stroke()
+}
+
+/// The settings that accumulators can be adjusted to besides that of rest, 0 and 1, with the stiffness
+/// over the stroke there; empty where nothing is adjusted.
+pub fn stiffness_at_settings(rig: &Rig) -> Vec<(f64, StrokeStiffness)> {
+    let components = rig.actuator.components();
+    let pressures = [rig.point.pressure_a, rig.point.pressure_b];
+    let rests = |setting: f64| components.adjustments.iter().flatten().all(|of| of.setting == setting);
+    let of = |setting: f64| {
+        let there = components_at_setting(components, setting);
+        (setting, there.chamber_compliance(pressures, StiffeningMember::Nominal).over_stroke())
+    };
+    [0.0, 1.0].into_iter().filter(|setting| !rests(*setting)).map(of).collect()
+}
+
+/// Stiffness at a position by the project's model, with the accumulators adjusted to a setting.
+pub fn stiffness_at_setting(rig: &Rig, setting: f64, position: f64) -> f64 {
+    let there = components_at_setting(rig.actuator.components(), setting);
+    let pressures = [rig.point.pressure_a, rig.point.pressure_b];
+    hydraulic_stiffness(&there.chamber_compliance(pressures, StiffeningMember::Nominal), position)
 }
 
 /// Stiffness at a position by either model.

@@ -37,6 +37,7 @@ use crate::quantity::MotionKind;
 pub use accumulator::{ChargedRange, EmptyAccumulator, accumulator_place, charged_range};
 pub use assembly::{actuator, components};
 pub use cross_port::{CrossPortAtPoint, cross_port_at_point};
+pub use gas::components_at_setting;
 pub use in_loop::FeedForwardPath;
 pub(crate) use in_loop::as_response;
 pub use in_loop::feed_forward;

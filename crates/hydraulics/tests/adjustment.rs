@@ -10,7 +10,7 @@ use phea_hydraulics::accumulator::{
     Accumulator, AdjustedPart, Adjustment, GasBranch, GasValve, MovedGas, Neck,
 };
 use phea_hydraulics::actuator::{Actuator, Components};
-use phea_hydraulics::machine::{INDICATORS, Machine, MachineOptions, SIGNALS, StartValues};
+use phea_hydraulics::machine::{ENERGY_ACCOUNTS, INDICATORS, Machine, MachineOptions, SIGNALS, StartValues};
 use phea_hydraulics::reference_rig::{components, pipe_line};
 use phea_hydraulics::stiffness::StiffnessModel;
 
@@ -374,4 +374,56 @@ fn a_small_drop_decays_exponentially() {
         switched([35e5 + 10.0, 35e5], compliance, |_| opening, |_| 0.0, (time, 2000), |_| ());
     let expected = 10.0 * exp(-time * conductance * (1.0 / compliance + 1.0 / gas));
     assert!(((chamber - behind) / expected - 1.0).abs() < 1e-5, "{} {expected}", chamber - behind);
+}
+
+/// A limit is a multiple of the precharge: the setting moves both alike.
+#[test]
+fn a_limit_follows_the_precharge() {
+    let limit = 4.0 * (GAS.precharge_pressure + ATMOSPHERE) - ATMOSPHERE;
+    let options = MachineOptions { gas_pressure_limits: [Some(limit), None], ..moving() };
+    let part = AdjustedPart::Gas { gas_volume: 1e-5, precharge_pressure: -6e5 };
+    let machine = machine_of(adjusted(part, 0.25, None), &options);
+    let place = INDICATORS.iter().position(|known| *known == "accumulator_overpressure_a").unwrap();
+    for change in [-0.25, 0.0, 0.3, 0.75] {
+        // ORIGIN: analytic, P_2 = 4 P_0(u), absolute
+        let passed = 4.0 * (GAS.precharge_pressure - 6e5 * change + ATMOSPHERE) - ATMOSPHERE;
+        for (pressure, within) in [(passed - 10.0, true), (passed + 10.0, false)] {
+            let mut indicators = vec![0.0; machine.indicators()];
+            let state = [0.0, 0.0, pressure, 30e5, 0.0, 0.0];
+            machine.indicate(&state, &[0.25, 0.0, change, 0.1], &mut indicators);
+            assert_eq!(indicators[place] > 0.0, within, "{change}");
+        }
+    }
+}
+
+/// What a valve throttles is what the account of the neck in its place loses.
+#[test]
+fn what_a_valve_throttles_is_lost_in_its_account() {
+    let machine = machine_of(adjusted(AdjustedPart::Valve(VALVE), 0.5, None), &moving());
+    let mut seed = 7;
+    for change in [-0.5, -0.2, 0.0, 0.5] {
+        for _ in 0..20 {
+            let mut of = |middle: f64, scale: f64| middle + scale * random(&mut seed);
+            let state = [
+                of(0.0, 5.0),
+                of(0.0, 10.0),
+                of(35e5, 15e5),
+                of(30e5, 20e5),
+                of(0.0, 1e-4),
+                of(0.0, 0.1),
+                of(35e5, 15e5),
+            ];
+            let inputs = [0.25, 0.0, change, 0.0];
+            let energy = machine.ledger(&state, &inputs).unwrap().energy;
+            let lost: f64 = ENERGY_ACCOUNTS
+                .iter()
+                .zip(&energy)
+                .filter(|(name, _)| name.starts_with("neck_"))
+                .map(|(_, account)| account.lost)
+                .sum();
+            let told = machine.throttled_at_gas(&state, &inputs);
+            assert!(told >= 0.0 && (told - lost).abs() <= 1e-12 * lost, "{told} {lost}");
+            assert_eq!(told == 0.0, change == -0.5);
+        }
+    }
 }

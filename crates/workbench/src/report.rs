@@ -45,9 +45,10 @@ use crate::derived::{self, derive};
 use crate::error::CommandError;
 use crate::figure::{Figure, FigureError};
 use crate::linear_loop::{LinearLoop, LoopStability, StepView, linear_loop_of, settling_words};
-use crate::linearize::{Linearization, linearize, stiffness_words};
+use crate::linearize::{Linearization, linearize, stiffness_at_settings, stiffness_words};
 use crate::project::{DeclaredActuator, Loaded, Project, Signal};
 use crate::quantity::MotionKind;
+use crate::rig::Rig;
 use crate::setup::Setup;
 use crate::sizing::{Question, Sizing, SizingProblem, size};
 use crate::source::Source;
@@ -263,7 +264,7 @@ fn rig_part(
         response::chapter(project, given.as_ref(), reference(project)),
     ];
     let mut facts = vec![("Load", rig::load_words(actuator)), ("Lines", rig::lines_words(actuator))];
-    facts.extend(summary(&linearization, sizing.as_ref(), problem, given.as_ref()));
+    facts.extend(summary((&linearization, rig), sizing.as_ref(), problem, given.as_ref()));
     let no_hose_fits = sizing.is_some_and(|sizing| sizing.best().is_none());
     Ok(RigPart { chapters, appendix, facts, no_hose_fits })
 }
@@ -311,14 +312,18 @@ fn reference(project: &Project) -> Option<f64> {
 }
 
 fn summary(
-    linearization: &Linearization,
+    (linearization, rig): (&Linearization, &Rig),
     sizing: Option<&Sizing>,
     problem: Option<&SizingProblem>,
     given: Option<&LinearLoop>,
 ) -> Vec<(&'static str, String)> {
     let stiffness = linearization.stiffness[0];
     let [words, _] = stiffness_words(linearization.motion, &stiffness);
-    let mut facts = vec![("Hydraulic stiffness", words)];
+    let elsewhere = stiffness_at_settings(rig).into_iter().map(|(setting, stiffness)| {
+        let [words, _] = stiffness_words(linearization.motion, &stiffness);
+        format!("; at setting {setting} {words}")
+    });
+    let mut facts = vec![("Hydraulic stiffness", words + &elsewhere.collect::<String>())];
     let best = sizing.zip(problem).and_then(|(sizing, problem)| {
         sizing.candidates.iter().find(|c| c.accepted() && c.branch.model == problem.model)
     });

@@ -12,8 +12,8 @@ pub use phea_engineering::simulate::*;
 
 pub(crate) use answer::{body, compare_json, frequency_json, json};
 pub(crate) use document::{
-    adjustment_sentence, cause_words, coarse_sentence, compare_text, headline, measured, metrics_row,
-    occurrence_sentences, published, published_row, text, windows,
+    adjustment_sentence, cause_words, coarse_sentence, compare_text, gas_sentence, headline, measured,
+    metrics_row, occurrence_sentences, published, published_row, text, windows,
 };
 pub(crate) use figures::{comparison_files, figure_files, laid_over, pictures, turns};
 pub(crate) use frequency::{

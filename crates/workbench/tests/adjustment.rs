@@ -144,3 +144,74 @@ fn a_simulation_tells_the_work_of_a_setting() {
         try_answer(&text, &[&asked[0], &asked[1]], &[], &Request::Simulate).unwrap_err().to_string();
     assert!(refused.contains("a setting stays from 0 to 1"), "{refused}");
 }
+
+/// A run of the rig with this accumulator and scenario: its answer and its rows.
+fn rows_of(settings: &[&str]) -> (serde_json::Value, Vec<std::collections::BTreeMap<String, f64>>) {
+    let found = answer(&without_uncertainty(GAS), settings, &[], &Request::Simulate);
+    let file = found.files.iter().find(|file| file.name == "moves.csv").unwrap();
+    let text = String::from_utf8(file.bytes.clone()).unwrap();
+    let mut lines = text.lines();
+    let heads: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let row = |line: &str| {
+        let cells = line.split(',').zip(&heads);
+        cells.map(|(cell, head)| ((*head).to_string(), cell.parse().unwrap_or(f64::NAN))).collect()
+    };
+    (serde_json::from_str(&found.json).unwrap(), lines.map(row).collect())
+}
+
+/// What the valves throttle is the integral of their drops times their flows, which the rows give too.
+#[test]
+fn the_loss_of_switching_is_told() {
+    let scenario = "scenario=[{ name = \"moves\", duration = \"0.3 s\", output_step = \"0.02 ms\", reference = [{ at = 0, force = \"1 kN\" }, \
+         { at = \"0.05 s\", force = \"3 kN\" }], setting_change = [{ at = \"0.15 s\", change = 0.5 }] }]";
+    let (found, rows) = rows_of(&[&at(VALVE, 0.0), scenario]);
+    let told = found["scenarios"][0]["gas_valve_throttled_j"].as_f64().unwrap();
+    // ORIGIN: analytic, q = s K dp/(dp^2 + dp_t^2)^(1/4) with the flow of 20 L/min at 5 bar wide open
+    let coefficient = 20e-3 / 60.0 / 5e5_f64.sqrt();
+    let mut expected = 0.0;
+    for two in rows.windows(2) {
+        let length = two[1]["time_s"] - two[0]["time_s"];
+        // the setting steps between two rows
+        let opening = two[1]["setting_a_ratio"].min(two[0]["setting_a_ratio"]);
+        for side in ["a", "b"] {
+            let power = |row: &std::collections::BTreeMap<String, f64>| {
+                let drop =
+                    (row[&format!("pressure_{side}_pa")] - row[&format!("gas_pressure_{side}_pa")]).abs();
+                drop * opening * coefficient * drop / (drop * drop + 0.5e5 * 0.5e5).sqrt().sqrt()
+            };
+            expected += 0.5 * length * (power(&two[0]) + power(&two[1]));
+        }
+    }
+    assert!(told > 0.05 && (told / expected - 1.0).abs() < 1e-3, "{told} {expected}");
+    let text = answer(&without_uncertainty(GAS), &[&at(VALVE, 0.0), scenario], &[], &Request::Simulate).text;
+    assert!(text.contains("the valves between chambers and gas throttle"), "{text}");
+}
+
+/// Peaks of gas are those of the solution; of gas too fast for heat its temperature follows the adiabate.
+#[test]
+fn peaks_of_gas_are_told() {
+    let scenario = "scenario=[{ name = \"moves\", duration = \"0.5 s\", output_step = \"0.1 ms\", reference = [{ at = 0, force = \"1 kN\" }, \
+         { at = \"0.1 s\", force = \"3 kN\" }] }]";
+    let gas = "line.accumulator={ gas_volume = \"14 mL\", precharge_pressure = \"15 bar\", thermal_time_constant = \"1e7 s\" }";
+    let (found, rows) = rows_of(&[gas, scenario]);
+    let told = found["scenarios"][0]["gas"].as_array().unwrap();
+    assert_eq!(told.len(), 2);
+    for (of_gas, side) in told.iter().zip(["a", "b"]) {
+        assert_eq!(of_gas["chamber"], side);
+        let number = |name: &str| of_gas[name].as_f64().unwrap();
+        let pressures: Vec<f64> = rows.iter().map(|row| row[&format!("pressure_{side}_pa")]).collect();
+        let [least, most] = [f64::min, f64::max].map(|of| pressures.iter().copied().reduce(of).unwrap());
+        let peak = number("peak_pressure_pa");
+        assert!(peak >= most && peak < most * (1.0 + 1e-6), "{peak} {most}");
+        // ORIGIN: analytic, theta = (P/P_rest)^(2/7)
+        let theta = |pressure: f64| {
+            let ratio: f64 = (pressure + 101_325.0) / (pressures[0] + 101_325.0);
+            phea_dynamics::portable::pow(ratio, 2.0 / 7.0)
+        };
+        near(number("temperature_peak_ratio"), theta(peak), 1e-5);
+        near(number("temperature_least_ratio"), theta(least), 1e-5);
+    }
+    // an exponent says nothing of temperatures, and no gas nothing at all
+    let (found, _) = rows_of(&[&accumulator("14 mL", "15 bar", ""), scenario]);
+    assert!(found["scenarios"][0]["gas"][0]["temperature_peak_ratio"].is_null());
+}

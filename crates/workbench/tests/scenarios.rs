@@ -304,6 +304,58 @@ fn a_saved_state_goes_on_as_if_nothing_had_been() {
     halves_are_the_whole(tight, 0.02);
 }
 
+/// A setting that moves across the end of a run goes on from where it was, and is refused elsewhere.
+#[test]
+fn a_setting_goes_on_from_where_it_was() {
+    for part in [
+        "kind = \"gas\", gas_volume = \"6 mL\"",
+        "kind = \"valve\", flow = \"20 L/min\", pressure_drop = \"5 bar\", transition_pressure = \"0.5 bar\"",
+    ] {
+        let adjusted = |text: String| {
+            let gas = format!(
+                "[line.accumulator]\ngas_volume = \"12 mL\"\nprecharge_pressure = \"15 bar\"\nadjustment = {{ {part}, setting = 0.1 }}\n\n[force_sensor]"
+            );
+            text.replace("[force_sensor]", &gas).replace("tolerance = 1e-6", "tolerance = 1e-8")
+        };
+        let common =
+            format!("output_step = \"1 ms\"\n{START}\nreference = {{ at = \"0.1 s\", force = \"2 kN\" }}");
+        let ramp =
+            "setting_change = { kind = \"ramp\", change = 0.8, start = \"0.2 s\", duration = \"0.4 s\" }";
+        let whole =
+            run_with(&adjusted(rig(&format!("duration = \"1 s\"\n{common}\n{ramp}"))), &Memory::default());
+        let second = |change: &str| {
+            format!(
+                "duration = \"0.6 s\"\noutput_step = \"1 ms\"\nstart = {{ file = \"one.state.toml\" }}\nreference = {{ at = 0, force = \"2 kN\" }}\n{change}"
+            )
+        };
+        let first = format!("duration = \"0.4 s\"\n{common}\n{ramp}");
+        let goes_on = "setting_change = [{ at = 0, change = 0.4 }, { kind = \"ramp\", change = 0.4, duration = \"0.2 s\" }]";
+        let [_, other] = continued(&first, &second(goes_on), adjusted);
+        let half = row(&whole, 0.4);
+        for (name, tolerance) in [("force_n", 0.05), ("pressure_a_pa", 50.0), ("setting_a_ratio", 1e-9)] {
+            let (whole, other) = (whole.record.signal(name), other.record.signal(name));
+            assert_eq!(whole.len(), half + other.len());
+            let apart =
+                whole[half..].iter().zip(&other).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max);
+            assert!(apart < tolerance, "{part} {name}: {apart}");
+        }
+        let text = adjusted(rig(&first));
+        let answer =
+            command::answer(&Memory::default(), &load(&text, &Memory::default()), &[], &Request::Simulate)
+                .unwrap();
+        let state = answer.files.iter().find(|file| file.name == "one.state.toml").unwrap().bytes.clone();
+        let source = Memory::default().with("one.state.toml", state);
+        for elsewhere in ["", "setting_change = { kind = \"ramp\", change = 0.4, duration = \"0.2 s\" }"] {
+            let text = adjusted(rig(&second(elsewhere)));
+            let refused =
+                simulate_project(&source, &Setup::new(&load(&text, &source).project).unwrap(), &mut |_| true)
+                    .unwrap_err()
+                    .to_string();
+            assert!(refused.contains("has moved by 0.400000 at the end of that run, and by 0"), "{refused}");
+        }
+    }
+}
+
 #[test]
 fn a_sampled_controller_goes_on_with_what_it_knows() {
     let sampled = |text: String| {

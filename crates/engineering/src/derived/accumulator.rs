@@ -6,7 +6,7 @@ use phea_hydraulics::stiffness::hydraulic_stiffness;
 
 use super::list::List;
 use crate::project::{DeclaredAccumulator, Project};
-use crate::rig::{ChargedRange, Rig, charged_range};
+use crate::rig::{ChargedRange, Rig, charged_range, components_at_setting};
 
 /// The precharge at the temperature in operation, beside the one that is stated.
 fn precharge(declared: &DeclaredAccumulator, gas: &Accumulator, name: String, list: &mut List) {
@@ -51,14 +51,7 @@ fn at_settings(
     for (name, setting) in
         [("stiffness.at_setting_0", 0.0), ("stiffness.at_setting_half", 0.5), ("stiffness.at_setting_1", 1.0)]
     {
-        let accumulators = [0, 1].map(|side| {
-            let gas = components.accumulators[side]?;
-            let Some(of) = components.adjustments[side] else { return Some(gas) };
-            let shut = of.valve().is_some() && setting == 0.0;
-            (!shut).then(|| of.moved(&gas, setting - of.setting, 0.0).gas)
-        });
-        // an open valve is the gas at its chamber at rest
-        let there = Components { accumulators, adjustments: [None; 2], ..*components };
+        let there = components_at_setting(components, setting);
         let equation = "K_H = A_A^2/C_A + A_B^2/C_B, slow, at this setting";
         list.add(name, "K_H", stiffness(&there, point), "N/m", equation);
     }

@@ -2,6 +2,7 @@
 
 use phea_dynamics::scalar::Scalar;
 use phea_hydraulics::accumulator::{Accumulator, AdjustedPart, Adjustment, GasValve};
+use phea_hydraulics::actuator::Components;
 use phea_hydraulics::fluid::{ATMOSPHERIC_PRESSURE_ABSOLUTE, Fluid};
 
 use super::cross_port::edge;
@@ -95,6 +96,18 @@ pub(super) fn adjustment<S: Scalar>(
         AdjustmentKind::Valve(valve) => AdjustedPart::Valve(gas_valve(declared, valve, numbers, fluid)),
     };
     Some(Adjustment { setting: setting(declared, numbers), part })
+}
+
+/// A rig with the setting of every adjustment there, for slow motions: an open valve is the gas at its
+/// chamber, a shut one no gas.
+pub fn components_at_setting(components: &Components, setting: f64) -> Components {
+    let accumulators = [0, 1].map(|side| {
+        let gas = components.accumulators[side]?;
+        let Some(of) = components.adjustments[side] else { return Some(gas) };
+        let shut = of.valve().is_some() && setting == 0.0;
+        (!shut).then(|| of.moved(&gas, setting - of.setting, 0.0).gas)
+    });
+    Components { accumulators, adjustments: [None; 2], ..*components }
 }
 
 fn gas_valve<S: Scalar>(

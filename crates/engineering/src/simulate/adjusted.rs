@@ -1,11 +1,15 @@
-//! The work of accumulators that are adjusted in a run.
+//! The work of accumulators that are adjusted in a run, and what their valves throttle.
 
+use phea_dynamics::simulation::Stretch;
 use phea_hydraulics::machine::SIGNALS;
+
+use super::bench::ControlledMachine;
 
 /// What the adjustment of accumulators does over a run, in J.
 ///
 /// ```text
 /// work: integral of the power of the adjustment, of what the oil can get back from the gas: 1/2 dK/dt x^2 of a spring
+/// throttled: integral of the drop times the flow of the valves between chambers and gas
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct AdjustmentWork {
@@ -13,31 +17,58 @@ pub struct AdjustmentWork {
     pub brought_j: f64,
     /// While it is negative.
     pub taken_j: f64,
+    /// Lost in the valves between chambers and gas; `None` without such a valve.
+    pub throttled_j: Option<f64>,
 }
 
-/// Sums the power over the samples, by the trapezoidal rule.
-#[derive(Debug, Default)]
+/// Sums the power over each step of the integration.
+#[derive(Debug)]
 pub(super) struct AdjustmentWatch {
-    last: Option<[f64; 2]>,
     work: AdjustmentWork,
+    /// Room for states and inputs.
+    states: Vec<f64>,
+    inputs: Vec<f64>,
 }
 
 /// Place of the power in [`SIGNALS`], the last.
 const POWER_PLACE: usize = SIGNALS.len() - 1;
 const _: () = assert!(matches!(SIGNALS[POWER_PLACE].as_bytes(), b"adjustment_power_w"));
 
+/// Places within a step and their weights: the rule of Gauss and Legendre with three points, exact
+/// up to degree five.
+const RULE: [[f64; 2]; 3] =
+    [[0.112_701_665_379_258_3, 5.0 / 18.0], [0.5, 4.0 / 9.0], [0.887_298_334_620_741_7, 5.0 / 18.0]];
+
 impl AdjustmentWatch {
-    /// Takes the signals of the machine at a time.
-    pub(super) fn take(&mut self, time_s: f64, signals: &[f64; SIGNALS.len()]) {
-        let power_w = signals[POWER_PLACE];
-        if let Some([before_s, before_w]) = self.last {
-            let half_s = 0.5 * (time_s - before_s);
-            for power_w in [before_w, power_w] {
-                self.work.brought_j += half_s * power_w.max(0.0);
-                self.work.taken_j -= half_s * power_w.min(0.0);
+    /// Of a machine that has an adjustment.
+    pub(super) fn of(bench: &ControlledMachine) -> Option<AdjustmentWatch> {
+        let machine = &bench.machine;
+        let has_valve =
+            bench.rig.actuator.components().adjustments.iter().flatten().any(|of| of.valve().is_some());
+        let [states, inputs] = bench.control.size();
+        machine.has_adjustment().then(|| AdjustmentWatch {
+            work: AdjustmentWork { throttled_j: has_valve.then_some(0.0), ..AdjustmentWork::default() },
+            states: vec![0.0; states],
+            inputs: vec![0.0; inputs],
+        })
+    }
+
+    /// Takes a step, all of whose states are wanted.
+    pub(super) fn follow(&mut self, bench: &ControlledMachine, stretch: &Stretch<'_>) {
+        let AdjustmentWatch { work, states, inputs } = self;
+        let length_s = stretch.end_s() - stretch.start_s();
+        let leading = bench.control.leading_inputs();
+        for [part, weight] in RULE {
+            states.iter_mut().zip(stretch.states).for_each(|(state, over)| *state = over.at(part));
+            stretch.inputs_at(part, inputs);
+            let own = inputs.get(leading..).unwrap_or_default();
+            let power_w = bench.machine.outputs(states, own)[POWER_PLACE];
+            work.brought_j += weight * length_s * power_w.max(0.0);
+            work.taken_j -= weight * length_s * power_w.min(0.0);
+            if let Some(throttled_j) = &mut work.throttled_j {
+                *throttled_j += weight * length_s * bench.machine.throttled_at_gas(states, own);
             }
         }
-        self.last = Some([time_s, power_w]);
     }
 
     pub(super) fn finish(self) -> AdjustmentWork {

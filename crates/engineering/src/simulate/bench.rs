@@ -248,17 +248,14 @@ pub fn options(project: &Project, actuator: &Actuator) -> Result<MachineOptions,
 /// What the makers permit for the accumulators at the chambers, in Pa gauge.
 ///
 /// ```text
-/// P_2 = (p_2/p_0) P_0,     absolute, P_0 at the working temperature
+/// P_2 = (p_2/p_0) P_0,     absolute, P_0 at the working temperature and the setting at rest
 /// ```
 fn gas_pressure_limits(declared: &project::DeclaredActuator, actuator: &Actuator) -> [Option<f64>; 2] {
     let declared = [&declared.line.a, &declared.line.b].map(|line| line.accumulator.as_ref());
     [0, 1].map(|side| {
         let (ratio, atmosphere) = (declared[side]?.maximum_pressure_ratio?, ATMOSPHERIC_PRESSURE_ABSOLUTE);
         let at_rest = actuator.components().accumulators[side]?.precharge_pressure;
-        // of a precharge that is adjusted the least
-        let ends = declared[side]?.ends().map(|end| end.working_precharge(atmosphere));
-        let least = if ends[0] == ends[1] { at_rest } else { ends[0].min(ends[1]) };
-        Some(ratio * (least + atmosphere) - atmosphere)
+        Some(ratio * (at_rest + atmosphere) - atmosphere)
     })
 }
 

@@ -94,7 +94,9 @@ pub fn driven(
     within_its_way(project, scenario, &setting_change)?;
     let windows = windows(scenario, [&reference, &command, &external_force, &setting_change]);
     let file = scenario.start.as_ref().and_then(|start| start.file.as_ref());
-    let read = |file: &String| saved::read(source, project, file, bench).map_err(SimulateError::Motion);
+    let begins = setting_change.value(0.0);
+    let read =
+        |file: &String| saved::read(source, project, file, (bench, begins)).map_err(SimulateError::Motion);
     let saved = file.map(read).transpose()?;
     Ok(ScenarioDrive { reference, command, external_force, setting_change, motion, windows, saved })
 }

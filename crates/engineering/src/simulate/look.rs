@@ -13,6 +13,7 @@ use super::course::PreparedScenario;
 use super::exceeded::{Exceeded, LimitWatch};
 use super::files::RunTable;
 use super::follower::Follower;
+use super::gas::{GasRange, GasWatch};
 use super::measured::{Measurement, Overlay, Overlaying};
 use super::parts::SignalParts;
 use super::record::{Look, Record};
@@ -32,6 +33,8 @@ pub(super) struct Sighted {
     /// The limits of the rig that it exceeds.
     pub(super) exceeded: Vec<Exceeded>,
     pub(super) adjustment: Option<AdjustmentWork>,
+    /// Of chambers with gas.
+    pub(super) gas: Vec<GasRange>,
 }
 
 /// The controller at one time.
@@ -58,8 +61,8 @@ pub(super) struct Looking<'a> {
     /// `None` where no samples are kept.
     record: Option<Record>,
     limits: LimitWatch,
-    /// Of machines whose setting moves.
     adjustment: Option<AdjustmentWatch>,
+    gas: Vec<GasWatch>,
     follower: Follower<'a>,
     /// Of chambers A and B, and the highest so far, Pa.
     pressures: [WeightedSum; 2],
@@ -84,6 +87,7 @@ impl<'a> Looking<'a> {
         let windows = (course.windows.as_slice(), band);
         let follower = Follower::of(bench, &wanted, samples, &course.reference, windows);
         let pressures = sums::pressures(bench, &wanted);
+        let gas = GasWatch::of(bench, &wanted);
         let limits = LimitWatch::of(bench);
         let parts = SignalParts::of(bench);
         Looking {
@@ -95,7 +99,8 @@ impl<'a> Looking<'a> {
             table,
             record: None,
             limits,
-            adjustment: bench.machine.has_moving_setting().then(AdjustmentWatch::default),
+            adjustment: AdjustmentWatch::of(bench),
+            gas,
             follower,
             pressures,
             peak_pressures_pa: [f64::NEG_INFINITY; 2],
@@ -131,6 +136,7 @@ impl<'a> Looking<'a> {
             measured,
             exceeded: self.limits.finish(),
             adjustment: self.adjustment.map(AdjustmentWatch::finish),
+            gas: self.gas.into_iter().filter_map(GasWatch::finish).collect(),
         })
     }
 
@@ -140,7 +146,6 @@ impl<'a> Looking<'a> {
             || self.record.is_some()
             || !self.overlays.is_empty()
             || self.limits.wants_signals()
-            || self.adjustment.is_some()
     }
 
     /// What the controller sees and gives out, and the inputs of the machine alone.
@@ -208,9 +213,6 @@ impl Observer for Looking<'_> {
         }
         let look = self.look(time_s, of_loop, states, others);
         self.limits.take_signals(time_s, &look.signals);
-        if let Some(adjustment) = &mut self.adjustment {
-            adjustment.take(time_s, &look.signals);
-        }
         if let Some(table) = self.table.as_mut().filter(|_| self.count.is_multiple_of(self.looks_per_row))
             && let Err(fault) = table.row(&look)
         {
@@ -232,6 +234,10 @@ impl Observer for Looking<'_> {
 
     fn follow(&mut self, stretch: &Stretch<'_>) {
         self.follower.follow(stretch);
+        self.gas.iter_mut().for_each(|gas| gas.follow(stretch));
+        if let Some(adjustment) = &mut self.adjustment {
+            adjustment.follow(self.bench, stretch);
+        }
         for (sum, peak) in self.pressures.iter().zip(&mut self.peak_pressures_pa) {
             let pressure = sum.over(stretch.states);
             if pressure.bounds()[1] > *peak {

@@ -12,7 +12,8 @@ use super::adjusted::AdjustmentWork;
 use super::bench::ControlledMachine;
 use super::course::PreparedScenario;
 use super::exceeded::Exceeded;
-use super::look::{Looking, Sighted};
+use super::gas::GasRange;
+use super::look::Looking;
 use super::measured::{Measurement, Overlay};
 use super::metrics::Metrics;
 use super::parts::SignalParts;
@@ -66,8 +67,10 @@ pub struct ScenarioRun {
     pub beyond_expansion: Vec<BeyondExpansion>,
     /// Limits of the rig that it exceeds.
     pub exceeded: Vec<Exceeded>,
-    /// Of accumulators whose gas is adjusted as it runs; `None` where there is none.
+    /// Of accumulators that are adjusted by a valve, or as it runs; `None` where there is none.
     pub adjustment: Option<AdjustmentWork>,
+    /// The gas at each chamber that has some.
+    pub gas: Vec<GasRange>,
     /// Its final state, from which another run can continue, or why it is not saved.
     pub end: Result<SavedState, &'static str>,
 }
@@ -190,14 +193,14 @@ pub(super) fn run(
     let task = Task { start: course.start.clone(), course: &drive, sampler, observer };
     let named = |error| SimulateError::Simulation { name: scenario.name.clone(), error };
     let outcome = bench.control.drive(task, &bench.settings, &mut watch).map_err(named)?;
-    let Sighted { record, metrics, peak_pressures_pa, measured, exceeded, adjustment } = looking.finish()?;
+    let seen = looking.finish()?;
     let occurrences = found(bench, course, &outcome, &samples.borrow());
-    let windows = course.windows.iter().copied().zip(metrics).collect();
+    let windows = course.windows.iter().copied().zip(seen.metrics).collect();
     let outside_model_s = outside_model_s(&occurrences, bench.machine.has_end_stops());
     let memory = memory.into_inner();
     let memory = matches!(bench.control, Control::Sampled(_)).then_some(&memory);
     let end = saved::of_end(bench, course, (outcome.status, &outcome.end, scenario.duration), memory);
-    let record = Record { motion: bench.motion, parts: SignalParts::of(bench), ..record };
+    let record = Record { motion: bench.motion, parts: SignalParts::of(bench), ..seen.record };
     Ok(ScenarioRun {
         name: scenario.name.clone(),
         status: outcome.status,
@@ -209,12 +212,13 @@ pub(super) fn run(
         occurrences,
         outside_model_s,
         settling_band_percent: band,
-        measured,
+        measured: seen.measured,
         errors_amplified: errors_amplified(bench, &outcome),
         open_loop: scenario.is_open_loop(),
-        beyond_expansion: beyond_expansion(bench, peak_pressures_pa),
-        exceeded,
-        adjustment,
+        beyond_expansion: beyond_expansion(bench, seen.peak_pressures_pa),
+        exceeded: seen.exceeded,
+        adjustment: seen.adjustment,
+        gas: seen.gas,
         end,
         check: None,
     })

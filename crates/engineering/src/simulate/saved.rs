@@ -10,8 +10,8 @@
 //! spool_v = 0.125
 //! ```
 //!
-//! It contains every state of machine, sensor, controller and prefilter by its name, and the
-//! position of the load's ground; for a sampled controller also its memories, the held command and
+//! It contains every state of machine, sensor, controller and prefilter by its name, the position of
+//! the load's ground, and by how much the setting of accumulators has moved where it does; for a sampled controller also its memories, the held command and
 //! the position in its random numbers. The content of a delay cannot be stored as numbers: such an
 //! end is not saved.
 
@@ -23,7 +23,8 @@ use phea_machine::{Control, DigitalMemory};
 use super::bench::ControlledMachine;
 use super::course::PreparedScenario;
 use super::shortest_number::number;
-use crate::project::{Findings, Project, RawFinding, Refusal, TreeNode, TreeValue, read_tree};
+use crate::project::{Findings, Place, Project, RawFinding, Refusal, TreeNode, TreeValue, read_tree};
+use crate::quantity::significant;
 use crate::source::Source;
 
 /// Part of a sample time within which an end is at a sample.
@@ -38,6 +39,8 @@ pub struct SavedState {
     pub states: Vec<(String, f64)>,
     /// m, position of the load's ground.
     pub ground_m: f64,
+    /// By how much the setting of accumulators has moved from rest; `None` where it is no input.
+    pub setting_change: Option<f64>,
     /// What a sampled controller remembers.
     pub(crate) memory: Option<DigitalMemory>,
 }
@@ -62,6 +65,10 @@ fn state_names(bench: &ControlledMachine) -> Vec<String> {
     names
 }
 
+/// By how much a setting has moved.
+const SETTING_CHANGE: &str = "setting_change";
+/// Differences of a setting that are rounding.
+const SAME_SETTING: f64 = 1e-9;
 /// Where the load's ground stands.
 const GROUND: &str = "ground_position_m";
 /// What a sampled controller holds.
@@ -88,9 +95,6 @@ pub(super) fn of_end(
     if bench.machine.has_linkage() {
         return Err("the states of a rig with a linkage are not saved yet");
     }
-    if bench.machine.has_moving_setting() {
-        return Err("where the setting of its accumulators has moved to is not saved yet");
-    }
     if !bench.control.delays().is_empty() {
         return Err("what is in transit in a delay or along a line is not a state");
     }
@@ -108,6 +112,7 @@ pub(super) fn of_end(
         time_s: end_s,
         states: state_names(bench).into_iter().zip(end.iter().copied()).collect(),
         ground_m: course.ground.value(end_s),
+        setting_change: course.setting_change.as_ref().map(|change| change.value(end_s)),
         memory: memory.cloned(),
     })
 }
@@ -134,6 +139,7 @@ impl SavedState {
         };
         self.states.iter().for_each(|(name, value)| line(name, *value));
         line(GROUND, self.ground_m);
+        self.setting_change.iter().for_each(|change| line(SETTING_CHANGE, *change));
         if let Some(memory) = &self.memory {
             line(HELD, memory.command_v);
             for (index, value) in memory.memories.iter().enumerate() {
@@ -144,12 +150,13 @@ impl SavedState {
     }
 }
 
-/// The state in a file for this bench, or the errors of the file.
+/// The state in a file for this bench, whose setting begins moved by `setting_change`, or the errors
+/// of the file.
 pub(super) fn read(
     source: &dyn Source,
     project: &Project,
     file: &str,
-    bench: &ControlledMachine,
+    (bench, setting_change): (&ControlledMachine, f64),
 ) -> Result<SavedState, Box<Refusal>> {
     let mut findings = Findings::default();
     let path = project.path_of(file);
@@ -160,10 +167,35 @@ pub(super) fn read(
             None
         }
     };
-    let found = root.filter(|_| !findings.has_errors()).map(|root| taken(&root, bench, &mut findings));
+    let found = root.filter(|_| !findings.has_errors()).map(|root| {
+        goes_on(&root, setting_change, &mut findings);
+        taken(&root, bench, &mut findings)
+    });
     match found {
         Some(state) if !findings.has_errors() => Ok(state),
         _ => Err(Box::new(findings.report())),
+    }
+}
+
+/// A number below [`SETTING_CHANGE`] and its place; zero where the run before moved no setting.
+fn moved_before(root: &TreeNode) -> Option<(f64, Place)> {
+    let node = &root.get("state")?.node.get(SETTING_CHANGE)?.node;
+    match node.value {
+        TreeValue::Number(value) => Some((value, node.place)),
+        _ => None,
+    }
+}
+
+/// Refuses a setting that would jump from where the run before left it.
+fn goes_on(root: &TreeNode, setting_change: f64, findings: &mut Findings) {
+    let (before, place) = moved_before(root).unwrap_or((0.0, root.place));
+    if (before - setting_change).abs() > SAME_SETTING {
+        let [before, begins] = [before, setting_change].map(|change| significant(change, 6));
+        let message = format!(
+            "the setting of the accumulators has moved by {before} at the end of that run, and by {begins} at the beginning of this one: \
+             let `setting_change` begin there, with `{{ at = \"0 s\", change = {before} }}`"
+        );
+        findings.push(RawFinding::error(place, message));
     }
 }
 
@@ -213,6 +245,7 @@ fn taken(root: &TreeNode, bench: &ControlledMachine, findings: &mut Findings) ->
         time_s: 0.0,
         states: state_names(bench).into_iter().map(&mut number).collect(),
         ground_m: number(GROUND.to_string()).1,
+        setting_change: moved_before(root).map(|_| number(SETTING_CHANGE.to_string()).1),
         memory: memories.map(|count| DigitalMemory {
             command_v: number(HELD.to_string()).1,
             memories: (1..=count).map(|index| number(remembered(index)).1).collect(),

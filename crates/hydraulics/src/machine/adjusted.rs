@@ -4,6 +4,7 @@ use phea_dynamics::scalar::Scalar;
 
 use super::Machine;
 use crate::accumulator::{Adjustment, MovedGas};
+use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 
 impl<S: Scalar> Machine<S> {
     /// The adjustment of the gas at a chamber.
@@ -50,6 +51,43 @@ impl<S: Scalar> Machine<S> {
     ) -> Option<T> {
         let of = self.adjustment(side)?;
         Some(of.valve()?.flow(of.setting + change, drop))
+    }
+
+    /// Pressures in Pa up to which the gas at either chamber may be compressed: the limit at rest is a
+    /// multiple of the precharge, which the setting moves.
+    ///
+    /// ```text
+    /// P_2(u) = (P_2/P_0) P_0(u),     absolute
+    /// ```
+    pub(super) fn gas_limits<T: Scalar + From<S>>(&self, [change, _]: [T; 2]) -> [Option<T>; 2] {
+        [0, 1].map(|side| {
+            let limit = T::from(self.gas_pressure_limits[side]?);
+            let Some((gas, of)) = self.accumulators[side].zip(self.adjustments[side]) else {
+                return Some(limit);
+            };
+            let atmosphere = T::from(ATMOSPHERIC_PRESSURE_ABSOLUTE);
+            let ratio = (limit + atmosphere) / (T::from(gas.precharge_pressure) + atmosphere);
+            Some(limit + ratio * of.precharge_rise(change))
+        })
+    }
+
+    /// What the valves between the chambers and their gas throttle, in W: `lost` of the necks in the
+    /// [`Ledger`](super::Ledger) of a machine that has valves in their place.
+    ///
+    /// ```text
+    /// (p_A - p_gA) q_A + (p_B - p_gB) q_B
+    /// ```
+    pub fn throttled_at_gas(&self, state: &[S], inputs: &[S]) -> S {
+        let setting = self.layout.setting(inputs);
+        let own = self.layout.read(state);
+        let chambers = [own.pressure_a, own.pressure_b];
+        let behind = self.gas_pressures(chambers, &self.layout.read_gas(state));
+        let of = |side: usize| {
+            let drop = chambers[side] - behind[side];
+            let flow: Option<S> = self.through_gas_valve(side, setting, drop);
+            flow.map_or(S::from(0.0), |flow| drop * flow)
+        };
+        of(0) + of(1)
     }
 
     /// What the oil between the chamber and its gas yields, in m3/Pa: in a neck, or behind a valve.

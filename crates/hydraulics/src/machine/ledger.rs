@@ -100,6 +100,7 @@ impl<S: Scalar> Machine<S> {
     ///   with heat   V_0 - V_gas                internal energy less p_atm V   enters as q and q p, leaves as heat to the wall
     ///   adjusted    V_0 - V_gas                what the oil can get back    enters as q and q p, and by the power of its adjustment
     /// neck          C p                        I q^2/2 + C p^2/2            enters as q and q p
+    ///   a valve     C p                        C p^2/2                      likewise: what it throttles is lost there
     /// ```
     ///
     /// rho is the density over that at zero gauge pressure and w the energy of compression per

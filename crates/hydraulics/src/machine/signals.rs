@@ -66,7 +66,7 @@ pub const ADJUSTMENT_SIGNALS: [&str; 3] = ["setting_a_ratio", "setting_b_ratio",
 /// `load_contact`: the way left to the wall in m. `supply_lost`: supply less tank pressure in Pa.
 /// `accumulator_empty`: the chamber's pressure, or that behind the neck where there is one, less the
 /// precharge of its accumulator in Pa. `accumulator_overpressure`: what is left to the pressure limit of
-/// that gas in Pa. `series_end`: the way left to the nearer end of a series spring's travel in m.
+/// that gas in Pa, which moves with a precharge that is adjusted. `series_end`: the way left to the nearer end of a series spring's travel in m.
 pub const INDICATORS: [&str; 13] = [
     "cavitation_a",
     "cavitation_b",
@@ -193,11 +193,9 @@ impl<S: Scalar> Machine<S> {
         let charged = |precharge: Option<T>, pressure: T| {
             precharge.map_or(T::from(1.0), |precharge| pressure - precharge)
         };
-        let below = |limit: Option<S>, pressure: T| {
-            limit.map_or(T::from(1.0), |limit| constant::<S, T>(limit) - pressure)
-        };
+        let below = |limit: Option<T>, pressure: T| limit.map_or(T::from(1.0), |limit| limit - pressure);
         let [behind_a, behind_b] = self.gas_pressures([state.pressure_a, state.pressure_b], &gas);
-        let [limit_a, limit_b] = self.gas_pressure_limits;
+        let [limit_a, limit_b] = self.gas_limits(self.layout.setting(inputs));
         [
             state.pressure_a.minimum(behind_a) - vapour,
             state.pressure_b.minimum(behind_b) - vapour,

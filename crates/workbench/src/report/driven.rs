@@ -90,7 +90,7 @@ impl MachineChapter {
         side.runs.as_deref().ok()
     }
 
-    /// The first reference step and the first motion of the load or force on it, in a few words
+    /// The first reference step and the greatest disturbance by load, force or setting, in a few words
     /// each, of the controller that a reader would take first.
     pub(super) fn facts(&self) -> Vec<(&'static str, String)> {
         let names = [(GIVEN, "Simulated, given controller"), (DESIGNED, "Simulated, designed controller")];
@@ -103,7 +103,7 @@ fn run_of(side: &DrivenSide, index: usize) -> Option<&ScenarioRun> {
     side.runs.as_ref().ok()?.get(index)
 }
 
-/// The first step and the first disturbance of these runs.
+/// The first step and the greatest disturbance of these runs.
 fn told(runs: &[ScenarioRun]) -> Option<String> {
     if let Some((run, stopped)) = runs.iter().find_map(|run| Some((run, run.stopped()?))) {
         let word = stopped.word.replace('_', " ");
@@ -120,11 +120,20 @@ fn told(runs: &[ScenarioRun]) -> Option<String> {
             cells[SETTLING].text()
         )
     });
-    let disturbed = windows().find_map(|(window, metrics)| {
-        let motion = runs.first().map(|run| run.record.motion).unwrap_or_default();
-        let peak = motion.unit(DisplayUnit::KILONEWTON).text(metrics.disturbance_peak_n.ok()?, 3);
-        Some(format!("{}: {peak} of disturbance", cause_words(window)))
+    let greatest = runs.iter().flat_map(disturbances).max_by(|one, other| one.2.total_cmp(&other.2));
+    let disturbed = greatest.map(|(run, window, peak_n)| {
+        let peak = run.record.motion.unit(DisplayUnit::KILONEWTON).text(peak_n, 3);
+        let is_first = runs.first().is_some_and(|first| first.name == run.name);
+        let scenario = if is_first { String::new() } else { format!("{}, ", run.name) };
+        format!("{scenario}{}: {peak} of disturbance", cause_words(&window))
     });
     let told: Vec<String> = step.into_iter().chain(disturbed).collect();
     (!told.is_empty()).then(|| told.join("; "))
+}
+
+/// The disturbances of a run, in N, with their windows.
+fn disturbances(run: &ScenarioRun) -> impl Iterator<Item = (&ScenarioRun, Window, f64)> {
+    run.windows
+        .iter()
+        .filter_map(move |(window, metrics)| Some((run, *window, metrics.disturbance_peak_n.ok()?)))
 }

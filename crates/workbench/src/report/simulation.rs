@@ -9,8 +9,8 @@ use crate::figure::Figure;
 use crate::project::{Project, Scenario};
 use crate::simulate::{
     HeldWish, METRICS, Metrics, NamedRun, ScenarioRun, TrackingWish, Window, adjustment_sentence,
-    cause_words, cells_of, close_ups, coarse_sentence, headline, measured, measured_together, metrics_row,
-    occurrence_sentences, pictures, published, published_row, together, turns, windows,
+    cause_words, cells_of, close_ups, coarse_sentence, gas_sentence, headline, measured, measured_together,
+    metrics_row, occurrence_sentences, pictures, published, published_row, together, turns, windows,
 };
 
 /// The chapter.
@@ -90,10 +90,13 @@ fn scenario(
     }
     let remarks = declared.reference.iter().filter_map(|step| step.published()?.remark.clone());
     let told = runs.iter().flat_map(|named| {
-        let adjusted = adjustment_sentence(named.run);
+        let adjusted = adjustment_sentence(named.run).into_iter().chain(gas_sentence(named.run));
         let sentences = coarse_sentence(named.run).into_iter().chain(adjusted);
         let sentences = sentences.chain(occurrence_sentences(named.run));
-        sentences.map(|sentence| format!("{}{sentence}.", of(named, runs)))
+        sentences.map(|sentence| match runs.len() {
+            0 | 1 => format!("{}.", capital(&sentence)),
+            _ => format!("{}{sentence}.", of(named, runs)),
+        })
     });
     out.explanations(remarks.chain(told));
     out

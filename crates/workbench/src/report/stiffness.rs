@@ -6,7 +6,9 @@ use phea_hydraulics::stiffness::StiffnessModel;
 use super::chapter::Chapter;
 use crate::document::Document;
 use crate::figure::{Figure, StiffnessCurve, StiffnessInput, Words, stiffness_over_stroke};
-use crate::linearize::{Linearization, stiffness_at, stiffness_sentence};
+use crate::linearize::{
+    Linearization, stiffness_at, stiffness_at_setting, stiffness_at_settings, stiffness_sentence,
+};
 use crate::rig::Rig;
 use crate::sizing::model_name;
 
@@ -28,19 +30,44 @@ fn figure(rig: &Rig, stroke: f64) -> Figure {
         StiffnessModel::Uniform => StiffnessModel::ByVolume,
         StiffnessModel::ByVolume => StiffnessModel::Uniform,
     };
+    let mut curves = vec![curve(rig, declared, stroke), curve(rig, other, stroke)];
+    curves.extend(settings(rig, stroke));
     let input = StiffnessInput {
-        curves: vec![curve(rig, declared, stroke), curve(rig, other, stroke)],
+        curves,
         operating_position_m: Some(rig.point.position),
         band_label: "dynamic stiffening from least to greatest".to_string(),
         motion: rig.motion,
     };
-    let caption = "Hydraulic stiffness against piston position: the declared model with its band of dynamic stiffening, and the other model.";
+    let told = "Hydraulic stiffness against piston position: the declared model with its band of dynamic stiffening, and the other model";
+    let caption = match rig.actuator.components().adjustments {
+        [None, None] => format!("{told}."),
+        _ => format!(
+            "{told}, both at the setting of rest, and the declared model at other settings of the accumulators, for slow motions."
+        ),
+    };
     stiffness_over_stroke(Words::new("stiffness", "Hydraulic stiffness over the stroke", caption), &input)
 }
 
+fn positions(stroke: f64) -> Vec<f64> {
+    (0..=POSITIONS).map(|step| stroke * f64::from(step) / f64::from(POSITIONS)).collect()
+}
+
+/// The declared model where accumulators can be adjusted to.
+fn settings(rig: &Rig, stroke: f64) -> Vec<StiffnessCurve> {
+    let of = |setting: f64| {
+        let positions_m = positions(stroke);
+        StiffnessCurve {
+            name: format!("at setting {setting}"),
+            stiffness_n_per_m: positions_m.iter().map(|x| stiffness_at_setting(rig, setting, *x)).collect(),
+            positions_m,
+            ..StiffnessCurve::default()
+        }
+    };
+    stiffness_at_settings(rig).into_iter().map(|(setting, _)| of(setting)).collect()
+}
+
 fn curve(rig: &Rig, model: StiffnessModel, stroke: f64) -> StiffnessCurve {
-    let positions_m: Vec<f64> =
-        (0..=POSITIONS).map(|step| stroke * f64::from(step) / f64::from(POSITIONS)).collect();
+    let positions_m = positions(stroke);
     let at = |member| positions_m.iter().map(|x| stiffness_at(rig, model, member, *x)).collect::<Vec<f64>>();
     let (minimum, maximum) = (at(StiffeningMember::Minimum), at(StiffeningMember::Maximum));
     let uncertain = minimum != maximum;

@@ -51,11 +51,21 @@ fn adjustment(run: &ScenarioRun) -> Object {
     Object::new()
         .told("adjustment_brought_j", run.adjustment.map(|of| of.brought_j).ok_or(NOT_ADJUSTED))
         .told("adjustment_taken_j", run.adjustment.map(|of| of.taken_j).ok_or(NOT_ADJUSTED))
+        .told("gas_valve_throttled_j", run.adjustment.and_then(|of| of.throttled_j).ok_or(NO_GAS_VALVE))
+        .each("gas", &run.gas, |gas| {
+            Object::new()
+                .with("chamber", gas.chamber)
+                .with("peak_pressure_pa", gas.peak_pa)
+                .told("temperature_least_ratio", gas.temperature_ratios.map(|[low, _]| low).ok_or(NO_HEAT))
+                .told("temperature_peak_ratio", gas.temperature_ratios.map(|[_, high]| high).ok_or(NO_HEAT))
+        })
 }
 
-/// Why there is no work of an adjustment.
 const NOT_AMPLIFIED: &str = "no oscillation grew so much that errors within the tolerance may be visible";
-const NOT_ADJUSTED: &str = "no setting of an accumulator moves";
+/// Why there is no work of an adjustment, or no temperature.
+const NOT_ADJUSTED: &str = "no setting of an accumulator moves, and no valve leads to its gas";
+const NO_GAS_VALVE: &str = "no valve lies between a chamber and its gas";
+const NO_HEAT: &str = "an exponent says nothing of temperatures: state a thermal_time_constant";
 
 fn scenario(run: &ScenarioRun, state_file: String) -> Object {
     let stopped = run.stopped();

@@ -4,13 +4,13 @@ use super::check;
 use super::exceeded_words;
 use super::metrics::{METRICS, OVERSHOOT, SETTLING, cells_of};
 use super::{
-    AdjustmentWork, BeyondExpansion, Cause, Metrics, Occurrence, Overlay, ScenarioComparison, ScenarioRun,
-    StoppedRun, TrackingWish, Window,
+    AdjustmentWork, BeyondExpansion, Cause, GasRange, Metrics, Occurrence, Overlay, ScenarioComparison,
+    ScenarioRun, StoppedRun, TrackingWish, Window,
 };
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
 use crate::project::{Loaded, Scenario, Signal};
-use crate::quantity::{DisplayUnit, FORCE, PRESSURE, TIME, VOLTAGE, display};
+use crate::quantity::{DisplayUnit, FORCE, PRESSURE, TIME, VOLTAGE, ZERO_CELSIUS, display};
 
 /// Number of occurrences that are listed one by one; more are counted.
 const TOLD: usize = 8;
@@ -23,7 +23,7 @@ pub(crate) fn text(loaded: &Loaded, runs: &[ScenarioRun]) -> String {
         out.tables([windows(run, None, None), measured(&[(None, run)])]);
         let checked = run.check.iter().flat_map(check::sentences);
         let adjusted = adjustment_sentence(run);
-        let told = coarse_sentence(run).into_iter().chain(checked).chain(adjusted);
+        let told = coarse_sentence(run).into_iter().chain(checked).chain(adjusted).chain(gas_sentence(run));
         out.sentences(told.chain(occurrence_sentences(run)));
     }
     let below = if runs.is_empty() { "" } else { "\n" };
@@ -209,20 +209,48 @@ fn amplified_sentence(run: &ScenarioRun) -> Option<String> {
 
 /// The work of accumulators that are adjusted.
 pub(crate) fn adjustment_sentence(run: &ScenarioRun) -> Option<String> {
-    let AdjustmentWork { brought_j, taken_j } = run.adjustment?;
+    let AdjustmentWork { brought_j, taken_j, throttled_j } = run.adjustment?;
     let joule = |work: f64| DisplayUnit::JOULE.text(work, 3);
-    Some(match (brought_j, taken_j) {
-        (0.0, 0.0) => {
-            "the adjustment of the accumulators does no work: a valve between chamber and gas throttles alone"
-                .to_string()
-        }
-        _ => format!(
+    let works = (brought_j, taken_j) != (0.0, 0.0);
+    let moved = works.then(|| {
+        format!(
             "the adjustment of the accumulators brings {} into the oil and takes {} out of it, the work of 1/2 dK/dt x^2: a setting that \
              moves is not passive",
             joule(brought_j),
             joule(taken_j)
-        ),
-    })
+        )
+    });
+    let throttled = throttled_j.map(|throttled_j| {
+        format!(
+            "the valves between chambers and gas throttle {}, which is lost: one that opens at a drop dp between two compliances loses \
+             1/2 C_1 C_2/(C_1 + C_2) dp^2, at equal pressures nothing",
+            joule(throttled_j)
+        )
+    });
+    let sentences: Vec<String> = moved.into_iter().chain(throttled).collect();
+    (!sentences.is_empty()).then(|| sentences.join("; "))
+}
+
+/// How far the gas at the chambers is compressed and heated.
+pub(crate) fn gas_sentence(run: &ScenarioRun) -> Option<String> {
+    let of = |gas: &GasRange| {
+        let pressure = display(gas.peak_pa, &PRESSURE, 4);
+        let heat = match (gas.temperature_ratios, gas.wall_celsius) {
+            (None, _) => String::new(),
+            (Some(ratios), Some(wall)) => {
+                let [low, high] =
+                    ratios.map(|ratio| significant(ratio * (wall + ZERO_CELSIUS) - ZERO_CELSIUS, 3));
+                format!(" and is between {low} and {high} degC warm")
+            }
+            (Some(ratios), None) => {
+                let [low, high] = ratios.map(|ratio| significant(ratio, 4));
+                format!(" and has between {low} and {high} times the absolute temperature of its wall")
+            }
+        };
+        format!("the gas at chamber {} comes to {pressure}{heat}", gas.chamber.to_ascii_uppercase())
+    };
+    let told: Vec<String> = run.gas.iter().map(of).collect();
+    (!told.is_empty()).then(|| told.join(", "))
 }
 
 /// The events of a run, a sentence each.

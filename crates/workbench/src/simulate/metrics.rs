@@ -46,7 +46,7 @@ pub(crate) fn metric_of(key: &str) -> Option<&'static Metric> {
 impl Metric {
     /// A value of it.
     pub(crate) fn cell(&self, value: f64) -> Cell {
-        let small = self.key == "steady_state_error_n";
+        let small = ["steady_state_error_n", "disturbance_peak_n"].contains(&self.key);
         let unit = DisplayUnit { symbol: self.unit, in_si: 1.0 };
         Cell::quantity(if small { small_as_zero(value) } else { value }, self.digits, unit)
     }
@@ -62,7 +62,7 @@ pub(crate) fn cells_of(metrics: &Metrics) -> [Cell; METRICS.len()] {
     })
 }
 
-/// A steady-state error below a millinewton is due to the integration, not to the loop.
+/// An error of the force below a millinewton is due to the integration, not to the loop.
 fn small_as_zero(error_n: f64) -> f64 {
     if error_n.abs() < 1e-3 { 0.0 } else { error_n }
 }
