@@ -52,6 +52,7 @@ pub(crate) use plant::with_gas;
 pub(crate) use plant::with_supply;
 pub use plant::{LoadLever, YieldingLoad, linear, plant, sides, stated};
 pub(crate) use plant::{load_at, rod_end};
+pub(crate) use sizing::own_hoses;
 pub use sizing::{SizingError, sizing_problem};
 pub(crate) use spring::{series_coil, stall_force};
 pub(crate) use supply::yielding_supply;
