@@ -12,6 +12,7 @@ use phea_hydraulics::stiffness::{
     hose_length_uniform, hydraulic_stiffness, line_length_for_stiffness, line_share_for_stiffness,
     model_difference, stiffness_from_hose_length,
 };
+use phea_hydraulics::stroke::ActuatorStroke;
 
 const FLUID_MODULUS: f64 = 1.45e9;
 

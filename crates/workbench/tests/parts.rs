@@ -3,7 +3,8 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
-use crate::ask::{HOSE, answer};
+use crate::alternatives::{judged, rig};
+use crate::ask::{HOSE, answer, try_answer};
 use phea_workbench::command::Request;
 use serde_json::Value;
 
@@ -62,4 +63,28 @@ fn a_part_that_is_missing_is_named() {
     }
     let none = derived(HOSE, &[]);
     assert!(!none.iter().any(|one| one["name"].as_str().unwrap().starts_with("parts.")));
+}
+
+/// Two currencies are not added, within a project and between alternatives.
+#[test]
+fn prices_in_two_currencies_are_refused() {
+    let text = rig().replace("price = \"12 EUR\"", "price = \"12 USD\"");
+    let refused = try_answer(&text, &[], &[], &Request::Check).unwrap_err().to_string();
+    assert!(refused.contains("pipe") && refused.contains("USD where others are in EUR"), "{refused}");
+}
+
+/// Both lines with their ends and metres, the oil in them, and what is to be said of it.
+#[test]
+fn parts_cost_and_weigh_what_they_state() {
+    let columns = |index: usize| &judged().1["alternatives"][index]["columns"];
+    let number = |index: usize, key: &str| columns(index)[key].as_f64().unwrap();
+    let oil = |index: usize| number(index, "lines_volume_m3") * 870.0;
+    // ORIGIN: analytic, 2 (25 + 40 1.5) EUR and 2 (12) EUR; 2 (0.3 1.5) kg and 2 (0.5 0.35) kg, and the oil
+    for (index, price, mass) in [(0, 170.0, 0.9), (1, 24.0, 0.35)] {
+        assert!((number(index, "parts_price") - price).abs() < 1e-9);
+        assert!((number(index, "parts_mass_kg") - (mass + oil(index))).abs() < 1e-12);
+        assert_eq!(columns(index)["parts_currency"], "EUR");
+    }
+    let text = &judged().0.text;
+    assert!(text.contains("170.0 EUR") && text.contains("price 24.00 EUR for 170.0 EUR"), "{text}");
 }

@@ -22,6 +22,7 @@ const SERIES: &str = include_str!("../../project/tests/valid/series.toml");
 const SERIES_COIL: &str = include_str!("../../project/tests/valid/series_coil.toml");
 const VOLUMES: &str = include_str!("../../project/tests/valid/volumes.toml");
 const LINKAGE: &str = include_str!("../../project/tests/valid/linkage.toml");
+const WEIGHT: &str = include_str!("../../project/tests/valid/linkage_weight.toml");
 const FOUR_BAR: &str = include_str!("../../project/tests/valid/linkage_four_bar.toml");
 const ANGLES: &str = include_str!("../../project/tests/valid/linkage_table.toml");
 const MOTOR: &str = include_str!("../../project/tests/valid/motor.toml");
@@ -183,6 +184,7 @@ fn with_linkages() -> Vec<(String, Vec<&'static str>)> {
         (without_uncertainty(LINKAGE), vec![]),
         (FOUR_BAR.to_string(), vec!["operating_point.load_force=2 kN"]),
         (ANGLES.to_string(), vec![]),
+        (without_uncertainty(WEIGHT), vec![]),
         (
             ANGLES.to_string(),
             vec![

@@ -13,33 +13,40 @@ pub(super) fn costs(project: &Project, rig: &Rig, list: &mut List) {
     let all = parts(declared, rig);
     list.group("Parts");
     if let Some(currency) = counted.currency {
-        let line = "declared; of a line its ends and P_L L_{ho}";
         let each = |part: &Part| part.price;
-        one_by_one(&all, (each, counted.servovalve[0]), ("price", "P", currency.code(), line), list);
+        one_by_one(&all, (each, counted.servovalve[0]), ("price", "P", currency.code()), list);
         let sum = parts::price(&all, counted).map_err(|_| NOT_ALL);
         add("parts.price", ("P", currency.code(), "Σ P of these parts"), sum, list);
     }
     if counted.masses {
-        let line = "declared; of a line its ends and m_L L_{ho}, of a tube m_L = π (D + t) t ρ_w";
         let each = |part: &Part| part.mass;
-        one_by_one(&all, (each, counted.servovalve[1]), ("mass", "m", "kg", line), list);
+        one_by_one(&all, (each, counted.servovalve[1]), ("mass", "m", "kg"), list);
         list.add("parts.oil_in_lines.mass", "m", parts::oil_in_lines(rig), "kg", "ρ (V_{ho,A} + V_{ho,B})");
         let sum = parts::mass(&all, rig, counted).map_err(|_| NOT_ALL);
         add("parts.mass", ("m", "kg", "Σ m of these parts, with the oil in both lines"), sum, list);
     }
 }
 
-type Words = (&'static str, &'static str, &'static str, &'static str);
-
 fn one_by_one(
     all: &[Part],
     (of, servovalve): (fn(&Part) -> Option<f64>, bool),
-    (quantity, symbol, unit, equation): Words,
+    (quantity, symbol, unit): (&'static str, &'static str, &'static str),
     list: &mut List,
 ) {
     for part in all.iter().filter(|part| part.kind != PartKind::Servovalve || servovalve) {
         let name = format!("parts.{}.{quantity}", part.name());
+        let equation = equation(part.kind, quantity == "price");
         add(name, (symbol, unit, equation), of(part).ok_or(NOT_STATED), list);
+    }
+}
+
+fn equation(kind: PartKind, is_price: bool) -> &'static str {
+    match (kind, is_price) {
+        (PartKind::Hose | PartKind::Pipe, true) => "P + P_L L_{ho}, of its ends and of its length",
+        (PartKind::Hose, false) => "m + m_L L_{ho}, of its ends and of its length",
+        (PartKind::Pipe, false) => "m + m_L L_{ho}, or m_L = π (D + t) t ρ_w",
+        (PartKind::SeriesSpring, false) => "declared, or that of its coils",
+        _ => "declared",
     }
 }
 
