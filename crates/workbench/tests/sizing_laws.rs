@@ -84,6 +84,28 @@ fn unequal_lines_are_sized_each_for_its_side() {
     assert!(sized >= 3, "{sized}");
 }
 
+/// An alternative with unequal hoses takes the length that `size` finds for each side.
+#[test]
+fn a_sized_alternative_keeps_its_unequal_hoses() {
+    let other = "line.b={ bore = \"11 mm\", dynamic_stiffening = 4 }";
+    let text =
+        format!("{HOSE}\n[[alternative]]\nname = \"sized\"\nsize = true\nset = {{ \"title\" = \"x\" }}\n");
+    let settings = [other, "sizing.length_increment=\"1 mm\""];
+    let asked =
+        phea_workbench::alternatives::asked(&ask::source(&text), &ask::load(&text, &settings, &[]), &[]);
+    let line = asked.unwrap().remove(1).loaded.project.actuator.unwrap().line;
+    let size = ask::size(&text, &settings);
+    let name = format!("{EATON} in line A, {EATON} in line B");
+    let rows = size["candidates"].as_array().unwrap();
+    let best =
+        rows.iter().find(|row| row["hose"] == name.as_str() && row["compliance"] == "uniform").unwrap();
+    assert_eq!(best["accepted"], true, "{best}");
+    let [length_a, length_b] = [&line.a, &line.b].map(|line| line.length().unwrap());
+    near(length_a, number(best, "length_m"), 1e-12);
+    near(length_b, number(best, "length_b_m"), 1e-12);
+    assert!(length_a != length_b && length_a + length_b <= 3.0 + 1e-9);
+}
+
 #[test]
 fn the_search_ends_at_the_length_there_is() {
     // The largest gain takes the longest hose that can be had: half the stock, or the longest acceptable line.

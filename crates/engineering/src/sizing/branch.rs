@@ -195,9 +195,10 @@ impl Branch {
         let Some((end, trials)) = self.steps.split_last() else { return };
         if let (Some(first), Some(last)) = (trials.first(), trials.last()) {
             let text = format!(
-                "K_p = {} V/N asks for {} m of hose per line (6.16, 6.25), too long{}.",
+                "K_p = {} V/N asks for {} m of hose {} (6.16, 6.25), too long{}.",
                 number(first.gain_v_per_n),
                 number(first.length_m),
+                if self.is_alike() { "per line" } else { "in line A" },
                 if trials.len() > 1 {
                     format!(
                         "; so does every half of it down to {} V/N with {} m, {} trials",
