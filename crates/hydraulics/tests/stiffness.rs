@@ -186,6 +186,7 @@ fn lengths_undo_stiffnesses_in_both_models() {
 fn unequal_lines_share_the_compliance() {
     let narrow = Hose { bore: 9.5e-3, expansion_slope: 1.1e-12, operating_expansion: 5e-6, ..hose() };
     let (cylinder, member) = (asymmetric(), StiffeningMember::Nominal);
+    let mut within = 0;
     for model in [StiffnessModel::Uniform, StiffnessModel::ByVolume] {
         let of = |hose| {
             let line = Line::Hose { hose, length: 1.0 };
@@ -203,8 +204,14 @@ fn unequal_lines_share_the_compliance() {
         let q = area_a / slope_a.sqrt() + area_b / slope_b.sqrt();
         let ActuatorStroke::Limited(stroke) = cylinder.stroke else { panic!() };
         let dead = (cylinder.dead_volume_a / area_a, cylinder.dead_volume_b / area_b);
-        for stiffness in [0.5e6, 1.5e6, 2.5e6] {
+        for stiffness in [0.5e6, 1.5e6, 2.5e6, 4e6, 6e6, 9e6] {
             let common = (q * q / stiffness - stroke - dead.0 - dead.1) / (1.0 / slope_a + 1.0 / slope_b);
+            // softest within the stroke
+            let from_a = (q / stiffness * area_a * slope_a.sqrt() - common) / slope_a - dead.0;
+            if common <= 0.0 || !(0.0..=stroke).contains(&from_a) {
+                continue;
+            }
+            within += 1;
             let lines = [
                 Line::Hose { hose: hose(), length: 1.0 },
                 Line::Hose { hose: narrow, length: metre_a / metre_b },
@@ -222,6 +229,7 @@ fn unequal_lines_share_the_compliance() {
             assert!((share * metre_a / common - 1.0).abs() < 1e-11, "{model:?} {stiffness}: {share}");
         }
     }
+    assert!(within > 2, "{within}");
 }
 
 /// ORIGIN: analytic, thesis (6.25) and (6.26) exactly as printed, with E, epsilon and r_beta.

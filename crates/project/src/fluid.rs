@@ -179,6 +179,7 @@ impl DeclaredAccumulator {
 
 /// How the supply pressure behaves under load.
 #[derive(Clone, Debug, PartialEq)]
+#[allow(clippy::large_enum_variant, reason = "a project has one supply")]
 pub enum SupplyModel {
     /// It stays as declared.
     Constant {

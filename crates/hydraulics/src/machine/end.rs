@@ -77,7 +77,9 @@ impl Machine {
                 (angle, linkage.end(angle).lever_arm, weight)
             }
         };
-        let relative = self.load.held_at(force * arm + weight)?;
+        // what nothing holds begins to fall from where it stands
+        let torque = force * arm;
+        let relative = self.load.held_at(torque + weight).or_else(|| self.load.held_at(torque))?;
         Some((Motion { position: relative, velocity: velocity / arm }, position - relative))
     }
 
