@@ -13,7 +13,7 @@ use crate::rig::{Rig, series_coil};
 
 /// A part with what it costs and weighs, as far as this is stated.
 #[derive(Clone, Debug, PartialEq)]
-pub struct RigPart {
+pub struct CostedPart {
     /// What it is.
     pub kind: PartKind,
     /// The chamber whose line or accumulator it is.
@@ -55,7 +55,7 @@ impl PartKind {
     }
 }
 
-impl RigPart {
+impl CostedPart {
     /// Its name in a list of quantities, such as `hose.a`.
     pub fn name(&self) -> String {
         let [_, _, name] = self.kind.words();
@@ -124,10 +124,10 @@ fn stated(declared: &DeclaredActuator) -> Vec<PartCost> {
 }
 
 /// The parts of a rig. A line that is stated as a volume is drilled or cast, and no part.
-pub fn parts(declared: &DeclaredActuator, rig: &Rig) -> Vec<RigPart> {
+pub fn parts(declared: &DeclaredActuator, rig: &Rig) -> Vec<CostedPart> {
     let sides = [("A", &declared.line.a), ("B", &declared.line.b)];
-    let mut found: Vec<RigPart> = sides.iter().filter_map(|(side, line)| line_part(side, line)).collect();
-    let whole = |kind, side, PartCost { price, mass }: PartCost| RigPart {
+    let mut found: Vec<CostedPart> = sides.iter().filter_map(|(side, line)| line_part(side, line)).collect();
+    let whole = |kind, side, PartCost { price, mass }: PartCost| CostedPart {
         kind,
         side,
         price: price.map(|price| price.amount),
@@ -152,7 +152,7 @@ pub fn parts(declared: &DeclaredActuator, rig: &Rig) -> Vec<RigPart> {
 /// price    ends + price_per_length L
 /// mass     ends + mass_per_length L       mass_per_length = pi (D + t) t rho of a wall with a density
 /// ```
-fn line_part(side: &'static str, line: &DeclaredLine) -> Option<RigPart> {
+fn line_part(side: &'static str, line: &DeclaredLine) -> Option<CostedPart> {
     let (kind, cost, by_wall) = match &line.component {
         Component::Hose { properties, .. } => (PartKind::Hose, properties.cost, moving_wall(line)),
         Component::Pipe { pipe, .. } => (PartKind::Pipe, pipe.cost, tube(pipe)),
@@ -164,7 +164,7 @@ fn line_part(side: &'static str, line: &DeclaredLine) -> Option<RigPart> {
         cost.price_per_length.map(|price| price.amount * length),
     );
     let by_length = cost.mass_per_length.or(by_wall.filter(|_| cost.ends.mass.is_none()));
-    Some(RigPart {
+    Some(CostedPart {
         kind,
         side: Some(side),
         price,
@@ -198,7 +198,7 @@ fn tube(pipe: &DeclaredPipe) -> Option<f64> {
 ///
 /// # Errors
 /// The parts that state no price; that none does.
-pub fn price(parts: &[RigPart], counted: PartsCounted) -> Result<f64, String> {
+pub fn price(parts: &[CostedPart], counted: PartsCounted) -> Result<f64, String> {
     if counted.currency.is_none() {
         return Err("no part states a price".to_string());
     }
@@ -210,7 +210,7 @@ pub fn price(parts: &[RigPart], counted: PartsCounted) -> Result<f64, String> {
 ///
 /// # Errors
 /// The parts that state no mass; that none does.
-pub fn mass(parts: &[RigPart], rig: &Rig, counted: PartsCounted) -> Result<f64, String> {
+pub fn mass(parts: &[CostedPart], rig: &Rig, counted: PartsCounted) -> Result<f64, String> {
     if !counted.masses {
         return Err("no part states a mass".to_string());
     }
@@ -226,10 +226,10 @@ pub(crate) fn oil_in_lines(rig: &Rig) -> f64 {
 }
 
 fn total<'p>(
-    parts: impl Iterator<Item = &'p RigPart> + Clone,
-    of: fn(&RigPart) -> Option<f64>,
+    parts: impl Iterator<Item = &'p CostedPart> + Clone,
+    of: fn(&CostedPart) -> Option<f64>,
 ) -> Result<f64, String> {
-    let lacking: Vec<&RigPart> = parts.clone().filter(|part| of(part).is_none()).collect();
+    let lacking: Vec<&CostedPart> = parts.clone().filter(|part| of(part).is_none()).collect();
     if lacking.is_empty() {
         return Ok(parts.filter_map(of).sum());
     }

@@ -1,5 +1,5 @@
 use super::list::List;
-use crate::parts::{self, PartKind, PartsCounted, RigPart, parts};
+use crate::parts::{self, CostedPart, PartKind, PartsCounted, parts};
 use crate::project::Project;
 use crate::rig::Rig;
 
@@ -13,13 +13,13 @@ pub(super) fn costs(project: &Project, rig: &Rig, list: &mut List) {
     let all = parts(declared, rig);
     list.group("Parts");
     if let Some(currency) = counted.currency {
-        let each = |part: &RigPart| part.price;
+        let each = |part: &CostedPart| part.price;
         one_by_one(&all, (each, counted.servovalve[0]), ("price", "P", currency.code()), list);
         let sum = parts::price(&all, counted).map_err(|_| NOT_ALL);
         add("parts.price", ("P", currency.code(), "Σ P of these parts"), sum, list);
     }
     if counted.masses {
-        let each = |part: &RigPart| part.mass;
+        let each = |part: &CostedPart| part.mass;
         one_by_one(&all, (each, counted.servovalve[1]), ("mass", "m", "kg"), list);
         list.add("parts.oil_in_lines.mass", "m", parts::oil_in_lines(rig), "kg", "ρ (V_{ho,A} + V_{ho,B})");
         let sum = parts::mass(&all, rig, counted).map_err(|_| NOT_ALL);
@@ -28,8 +28,8 @@ pub(super) fn costs(project: &Project, rig: &Rig, list: &mut List) {
 }
 
 fn one_by_one(
-    all: &[RigPart],
-    (of, servovalve): (fn(&RigPart) -> Option<f64>, bool),
+    all: &[CostedPart],
+    (of, servovalve): (fn(&CostedPart) -> Option<f64>, bool),
     (quantity, symbol, unit): (&'static str, &'static str, &'static str),
     list: &mut List,
 ) {
