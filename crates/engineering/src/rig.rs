@@ -162,7 +162,7 @@ impl Rig {
         let actuator = assembly::actuator(declared)?;
         let components = actuator.components();
         let numbers = Numbers::declared();
-        let (position, steady) = place(project, &components, &numbers);
+        let (position, steady) = place(project, components, &numbers);
         let condition = Condition::from(steady);
         let balance = Balance::of(components);
         let supply = settled_supply(declared, &numbers, &balance, steady)

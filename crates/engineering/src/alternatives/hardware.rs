@@ -6,7 +6,7 @@ use phea_hydraulics::series::LEAST_ACTIVE_COILS;
 
 use super::columns::{AlternativeColumn, column};
 use super::{JudgedAlternative, no_rig};
-use crate::parts::{self, CostedPart, parts};
+use crate::parts::{self, parts};
 use crate::project::{DeclaredActuator, Project};
 use crate::quantity::{DisplayUnit, MASS, MotionKind, VOLUME, fitting};
 use crate::rig::{Rig, power_at_rest, series_coil};
@@ -72,12 +72,9 @@ impl JudgedAlternative {
         let counted = self.counted;
         let rig = Setup::rig_of(&self.loaded.project).map_err(|error| error.to_string());
         let declared = self.loaded.project.actuator.as_ref().ok_or_else(no_rig);
-        let of = |total: &dyn Fn(&[CostedPart], &Rig) -> Result<f64, String>| {
-            let rig = rig.as_ref().map_err(Clone::clone)?;
-            total(&parts(declared.clone()?, rig), rig)
-        };
-        let price = of(&|all, _| parts::price(all, counted));
-        let mass = of(&|all, rig| parts::mass(all, rig, counted));
+        let all = rig.as_ref().map_err(Clone::clone).and_then(|rig| Ok((parts(declared?, rig), rig)));
+        let price = all.clone().and_then(|(all, _)| parts::price(&all, counted));
+        let mass = all.and_then(|(all, rig)| parts::mass(&all, rig, counted));
         let currency = counted
             .currency
             .map_or(DisplayUnit::ONE, |currency| DisplayUnit { symbol: currency.code(), in_si: 1.0 });
