@@ -4,7 +4,7 @@ x is the piston's position and y that of the rod's end behind the force sensor. 
 positions of both pivots; mass matrix and forces follow from the energies by complex steps, so that the lever arm
 appears nowhere:
 
-    L = M x'^2/2 + J (d theta/dy y')^2/2 - K_S (x - y)^2/2 - k (theta - theta_0)^2/2
+    L = M x'^2/2 + J (d theta/dy y')^2/2 - K_S (x - y)^2/2 - k (theta - theta_0)^2/2 - m g d sin(theta - theta_l)
     d/dt dL/dq' - dL/dq = Q,      Q = (F - f x', -c (d theta/dy)^2 y')
 
 A four-bar is closed by a root finder on the distance between the ends of its links.
@@ -19,6 +19,8 @@ from scipy.optimize import brentq
 MASS, SENSOR, FRICTION, FORCE = 0.6, 1e6, 50.0, 600.0
 INERTIA, STIFFNESS, DAMPING, RELAXED = 0.2, 60.0, 0.8, 0.8
 A, B, RETRACTED, OFFSET = 0.30, 0.05, 0.26, 0.4
+# m g d of a load of 3 kg, 0.4 m from the joint, and the angle at which it is level
+WEIGHT, LEVEL = 3.0 * 0.4 * 9.80665, 0.9
 START = 0.02
 H = 1e-30
 
@@ -37,22 +39,23 @@ def slope(y):
     return theta(y + 1j * H).imag / H
 
 
-def lagrangian(q, v):
+def lagrangian(q, v, weight):
     x, y = q
     step = 3e-5
     # slope of theta at a complex y: a central difference of fourth order
     rate = (8 * (theta(y + step) - theta(y - step)) - (theta(y + 2 * step) - theta(y - 2 * step))) / (12 * step)
     kinetic = MASS * v[0] ** 2 / 2 + INERTIA * (rate * v[1]) ** 2 / 2
-    return kinetic - SENSOR * (x - y) ** 2 / 2 - STIFFNESS * (theta(y) - RELAXED) ** 2 / 2
+    held = SENSOR * (x - y) ** 2 / 2 + STIFFNESS * (theta(y) - RELAXED) ** 2 / 2
+    return kinetic - held - weight * np.sin(theta(y) - LEVEL)
 
 
-def accelerations(q, v):
+def accelerations(q, v, weight):
     def gradient(of, at):
         return np.array([of([value + (1j * H if i == j else 0) for j, value in enumerate(at)]).imag / H for i in range(2)])
 
-    by_position = gradient(lambda q: lagrangian(q, v), q)
+    by_position = gradient(lambda q: lagrangian(q, v, weight), q)
     # the kinetic energy is quadratic in the velocities: the mass matrix by its values for unit velocities
-    kinetic = lambda q, v: lagrangian(q, v) - lagrangian(q, [0, 0])
+    kinetic = lambda q, v: lagrangian(q, v, weight) - lagrangian(q, [0, 0], weight)
     unit = np.eye(2)
     matrix = np.array([[kinetic(q, unit[i] + unit[j]) - kinetic(q, unit[i]) - kinetic(q, unit[j]) for j in range(2)] for i in range(2)]).real
     # d/dt of the momenta less the mass matrix times the accelerations, by the change of the matrix along the motion
@@ -63,10 +66,10 @@ def accelerations(q, v):
     return np.linalg.solve(matrix, by_position + forces - changing)
 
 
-def swing():
+def swing(weight=0.0):
     def rates(_, state):
         q, v = state[:2], state[2:]
-        return np.concatenate([v, accelerations(q, v)])
+        return np.concatenate([v, accelerations(q, v, weight)])
 
     start = [START, START, 0.0, 0.0]
     found = solve_ivp(rates, (0, 0.3), start, method="DOP853", rtol=1e-10, atol=1e-12, t_eval=[0.1, 0.2, 0.3])
@@ -95,6 +98,11 @@ EXPECTED = [
     (1.6246320573, -2.9160959637, 0.065651126943),
     (1.1146757781, -4.0519756022, 0.041966993124),
 ]
+HEAVY = [
+    (1.0930858959, 5.7610605227, 0.040878876723),
+    (1.3652031094, -1.2226167775, 0.054126149024),
+    (1.0418365702, -3.3127000226, 0.038335202248),
+]
 LINKS = {
     (0.00, False): 1.193122678410,
     (0.04, False): 1.796072303383,
@@ -109,6 +117,9 @@ def main():
     for time, found, expected in zip((0.1, 0.2, 0.3), swing(), EXPECTED):
         for name, value, told in zip(("theta, rad", "omega, rad/s", "x, m"), found, expected):
             check(f"{name} at {time} s", value, told, 1e-8 * max(1, abs(told)))
+    for time, found, expected in zip((0.1, 0.2, 0.3), swing(WEIGHT), HEAVY):
+        for name, value, told in zip(("theta, rad", "omega, rad/s", "x, m"), found, expected):
+            check(f"{name} at {time} s, with its weight", value, told, 1e-8 * max(1, abs(told)))
     for (position, crossed), told in LINKS.items():
         turned = (four_bar(position, crossed) - told + np.pi) % (2 * np.pi) - np.pi + told
         check(f"psi at {position} m, {'crossed' if crossed else 'open'}", turned, told, 1e-11)

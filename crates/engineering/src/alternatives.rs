@@ -18,7 +18,8 @@ pub use asked::{AskedAlternative, asked};
 pub use cases::{AskedCase, JudgedCase, asked_cases};
 pub use columns::{AlternativeColumn, AlternativeColumns, ColumnPart};
 pub use comparison::{
-    COLUMN_SENSES, COMPARED_AT_A_GLANCE, ColumnSense, ComparedMeasures, MEASURES, dominates,
+    COLUMN_SENSES, COMPARED_AT_A_GLANCE, ColumnSense, ComparedMeasure, ComparedMeasures, MEASURES,
+    MEASURES_IF_STATED, dominates,
 };
 pub use front::{Front, FrontColumn, FrontPoint, FrontRequest, FrontValue};
 pub use hardware::retracted_length;
@@ -31,6 +32,7 @@ use crate::catalogue::{self, Catalogue};
 use crate::design::{DesignError, ProjectDesign, design_project};
 use crate::error::ProcedureError;
 use crate::linearize::{Linearization, linearize};
+use crate::parts::PartsCounted;
 use crate::project::{Loaded, Project};
 use crate::rig::{RigError, sizing_problem};
 use crate::setup::Setup;
@@ -82,6 +84,8 @@ pub struct JudgedAlternative {
     pub outside: Option<String>,
     /// Frequencies in rad/s at which its impedance is told.
     pub impedance_at: Vec<f64>,
+    /// What is counted of the parts of all that are compared.
+    pub counted: PartsCounted,
     /// Hoses of the catalogue for its `[sizing]`.
     pub sizing: Result<Sizing, String>,
     /// The designed controller with its audit and its trial on the machine.
@@ -180,7 +184,8 @@ pub fn judge(
     let cases = asked_cases(source, loaded, catalogues)?;
     let catalogue = catalogue::load(source, catalogues).map_err(ProcedureError::Catalogue)?;
     let impedance_at = request.impedance_at.as_slice();
-    let judging = Judging { source, catalogue: &catalogue, declared: loaded, impedance_at };
+    let counted = asked::counted(&all)?;
+    let judging = Judging { source, catalogue: &catalogue, declared: loaded, impedance_at, counted };
     let swept = planned.as_ref().map_or(0, |plan| plan.values.len());
     let rounds = (1 + cases.len() + swept) as f64;
     let round = |watch: Watch<'_>, [first, last]: [f64; 2], progress: Progress| {
@@ -212,6 +217,7 @@ pub(crate) struct Judging<'a> {
     catalogue: &'a Catalogue,
     declared: &'a Loaded,
     impedance_at: &'a [f64],
+    counted: PartsCounted,
 }
 
 impl Judging<'_> {
@@ -246,6 +252,7 @@ impl Judging<'_> {
             moved,
             outside,
             impedance_at: self.impedance_at.to_vec(),
+            counted: self.counted,
             sizing: sized(&loaded.project, self.catalogue).map_err(|error| error.to_string()),
             linearization: linearized(deployed.as_ref().unwrap_or(&loaded.project))
                 .map_err(|error| error.to_string()),

@@ -6,6 +6,7 @@ mod cross_port;
 mod impedance;
 mod linkage;
 mod list;
+mod parts;
 mod rig;
 mod series;
 mod valve;

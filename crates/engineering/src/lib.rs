@@ -32,6 +32,7 @@ pub mod line_test;
 pub mod linear_loop;
 pub mod linearize;
 pub mod number_table;
+pub mod parts;
 pub mod replaced;
 pub mod response;
 pub mod rig;

@@ -53,6 +53,7 @@ pub(crate) use plant::with_gas;
 pub(crate) use plant::with_supply;
 pub use plant::{LoadLever, YieldingLoad, linear, plant, sides, stated};
 pub(crate) use plant::{load_at, rod_end};
+pub(crate) use sizing::own_hoses;
 pub use sizing::{SizingError, sizing_problem};
 pub(crate) use spring::{series_coil, stall_force};
 pub(crate) use supply::yielding_supply;
@@ -162,7 +163,7 @@ impl Rig {
         let actuator = assembly::actuator(declared)?;
         let components = actuator.components();
         let numbers = Numbers::declared();
-        let (position, steady) = place(project, components.cylinder.stroke, &numbers);
+        let (position, steady) = place(project, components, &numbers);
         let condition = Condition::from(steady);
         let balance = Balance::of(components);
         let supply = settled_supply(declared, &numbers, &balance, steady)

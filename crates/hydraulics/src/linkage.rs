@@ -11,6 +11,9 @@
 
 mod chebyshev;
 mod geometry;
+mod weight;
+
+pub use weight::{LinkedWeight, STANDARD_GRAVITY, WeightAt};
 
 use phea_dynamics::scalar::Scalar;
 
@@ -103,6 +106,8 @@ pub struct Linkage<S = f64> {
     extension: ChebyshevSeries<S>,
     /// theta(x) in rad, near enough for Newton's steps.
     guess: ChebyshevSeries<S>,
+    /// Of the load; `None` for one that gravity does not turn.
+    weight: Option<LinkedWeight<S>>,
 }
 
 /// The load's end of the rod at one angle. Units: m, m/rad, m/rad2.
@@ -248,7 +253,7 @@ impl LinkageGeometry {
                 rising_root(ahead, range).ok_or(LinkageError::DeadPoint { position: range[0] })
             })?,
         };
-        let linkage = Linkage { extension, guess };
+        let linkage = Linkage { extension, guess, weight: None };
         let error = linkage.examined(&positions, angle)?;
         match error <= LARGEST_ERROR * stroke {
             true => Ok(ReducedLinkage { linkage, residual: table.map_or(error, |(_, residual)| residual) }),
@@ -344,7 +349,7 @@ impl<S: Scalar> Linkage<S> {
         let none = S::from(f64::NAN);
         let series =
             ChebyshevSeries { coefficients: [none; chebyshev::TERMS], middle: none, half_width: none };
-        Linkage { extension: series, guess: series }
+        Linkage { extension: series, guess: series, weight: None }
     }
 
     /// Where the load's end of the rod is at an angle in rad, and the lever arm there.
@@ -399,6 +404,10 @@ impl<S: Copy> Linkage<S> {
     /// Every parameter replaced, in a fixed order.
     #[inline(always)]
     pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> Linkage<T> {
-        Linkage { extension: self.extension.convert(of), guess: self.guess.convert(of) }
+        Linkage {
+            extension: self.extension.convert(of),
+            guess: self.guess.convert(of),
+            weight: self.weight.map(|weight| weight.convert(of)),
+        }
     }
 }

@@ -14,7 +14,7 @@ use phea_hydraulics::force_sensor::ForceSensor;
 use phea_hydraulics::friction::Friction;
 use phea_hydraulics::line::{Line, StiffeningMember};
 use phea_hydraulics::linkage::{
-    FourBar, Linkage, LinkageError, LinkageGeometry, LinkageTable, PivotTriangle, RodEnd,
+    FourBar, Linkage, LinkageError, LinkageGeometry, LinkageTable, PivotTriangle, RodEnd, STANDARD_GRAVITY,
 };
 use phea_hydraulics::machine::{InitialCondition, LoadModel, Machine, MachineOptions, SIGNALS, StartValues};
 use phea_hydraulics::operating_point::{Condition, operating_point};
@@ -197,13 +197,30 @@ fn open_ended() -> Components {
 /// A knee swings as a Lagrangian in the coordinates of the rod says, in which no lever arm occurs.
 #[test]
 fn a_knee_swings_by_its_lagrangian() {
+    // ORIGIN: recomputed by comparisons/recompute_linkage.py
+    let plain = [
+        [1.290_061_660_6, 8.408_904_790_4, 0.050_539_821_926],
+        [1.624_632_057_3, -2.916_095_963_7, 0.065_651_126_943],
+        [1.114_675_778_1, -4.051_975_602_2, 0.041_966_993_124],
+    ];
+    swings(open_ended(), plain);
+    // ORIGIN: recomputed by comparisons/recompute_linkage.py
+    let heavy = [
+        [1.093_085_895_9, 5.761_060_522_7, 0.040_878_876_723],
+        [1.365_203_109_4, -1.222_616_777_5, 0.054_126_149_024],
+        [1.041_836_570_2, -3.312_700_022_6, 0.038_335_202_248],
+    ];
+    let weighed = |linkage: Linkage| linkage.level_at(0.9).with_moment(3.0 * 0.4 * STANDARD_GRAVITY);
+    swings(Components { linkage: open_ended().linkage.map(weighed), ..open_ended() }, heavy);
+}
+
+fn swings(rig: Components, expected: [[f64; 3]; 3]) {
     let load = LoadModel::SpringMassDamper { mass: 0.2, stiffness: 60.0, damping: 0.8 };
-    let rig = open_ended();
     let machine = machine_of(rig, &MachineOptions { load, ..MachineOptions::default() });
     let start = StartValues { position: 0.02, pressure_a: 30e5, pressure_b: 15e5, ..StartValues::default() };
     let beginning = machine.start(&start).unwrap();
     let mut state = beginning.state.clone();
-    // without force at first, behind a spring that is relaxed at 0.8 rad
+    // behind a spring that is relaxed at 0.8 rad
     let relaxed = 0.8;
     state[6] += beginning.inputs[0] - relaxed;
     let signal = |name: &str, state: &[f64]| {
@@ -211,12 +228,6 @@ fn a_knee_swings_by_its_lagrangian() {
         machine.outputs::<f64>(state, &[relaxed, 0.0])[place]
     };
     assert!((signal("position_m", &state) - 0.02).abs() < 1e-12);
-    // ORIGIN: recomputed by comparisons/recompute_linkage.py
-    let expected = [
-        [1.290_061_660_6, 8.408_904_790_4, 0.050_539_821_926],
-        [1.624_632_057_3, -2.916_095_963_7, 0.065_651_126_943],
-        [1.114_675_778_1, -4.051_975_602_2, 0.041_966_993_124],
-    ];
     let width = 2e-5;
     let mut rates = |_: f64, state: &[f64]| {
         let mut rates = vec![0.0; state.len()];
@@ -340,6 +351,10 @@ fn drawn(number: u64) -> Drawn {
         linkage: Some(linkage),
         ..components(hose_line(), StiffnessModel::ByVolume)
     };
+    // every second one with a weight that is level anywhere over the stroke
+    let weighed = linkage.level_at(spread(0.1, 6.0)).with_moment(spread(0.1, 30.0));
+    let linkage = if number % 2 == 1 { weighed } else { linkage };
+    let rig = Components { linkage: Some(linkage), ..rig };
     let (mass, stiffness, damping) = (spread(0.05, 5.0), spread(1e2, 1e5), spread(0.1, 30.0));
     let contact = Contact { stiffness, relative_damping: spread(0.01, 1.0) };
     let load = match number % 3 {
@@ -358,16 +373,19 @@ fn drawn(number: u64) -> Drawn {
     });
     let rest = rests.flatten().next().unwrap();
     let force = sensor * rest.state[4];
-    let end = linkage.end(rest.inputs[0] + if load.moves() { rest.state[6] } else { 0.0 });
+    let angle = rest.inputs[0] + if load.moves() { rest.state[6] } else { 0.0 };
+    let (end, weight) = (linkage.end(angle), linkage.weight_at(angle));
+    let [gravity, falling] = weight.map_or([0.0; 2], |weight| [weight.torque, weight.stiffness]);
     assert!((end.position + rest.state[4] - position).abs() < 1e-11, "{number}");
-    let pressed = if number % 3 == 2 { contact.relative_damping * force * end.lever_arm } else { 0.0 };
+    let pressed =
+        if number % 3 == 2 { contact.relative_damping * (force * end.lever_arm + gravity) } else { 0.0 };
     let own = match load {
         LoadModel::Prescribed => LinearLoad::Prescribed,
         _ => LinearLoad::Linked {
             inertia: mass,
             damping: damping + pressed,
             stiffness,
-            geometric_stiffness: -force * end.lever_slope,
+            geometric_stiffness: falling - force * end.lever_slope,
             lever_arm: end.lever_arm,
         },
     };
@@ -435,7 +453,7 @@ fn ledgers_close_with_a_linkage() {
         let rig = asymmetric();
         let rig = Components {
             cylinder: Cylinder { stroke: ActuatorStroke::Limited(STROKE), ..rig.cylinder },
-            linkage: Some(linkage),
+            linkage: Some(linkage.level_at(1.2).with_moment(15.0)),
             ..rig
         };
         let external_force = load.moves();

@@ -5,13 +5,14 @@
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::cylinder::{Cylinder, areas_from_diameters};
 use phea_hydraulics::fluid::EntrainedAir;
-use phea_hydraulics::line::{Line, StiffeningMember};
+use phea_hydraulics::line::{Hose, Line, StiffeningMember};
 use phea_hydraulics::reference_rig::{USEFUL_AREA, components, cylinder, hose, hose_line, pipe_line};
 use phea_hydraulics::stiffness::{
     LineLength, StiffnessModel, StrokeStiffness, chamber_compliance, hose_length_by_volume,
-    hose_length_uniform, hydraulic_stiffness, line_length_for_stiffness, model_difference,
-    stiffness_from_hose_length,
+    hose_length_uniform, hydraulic_stiffness, line_length_for_stiffness, line_share_for_stiffness,
+    model_difference, stiffness_from_hose_length,
 };
+use phea_hydraulics::stroke::ActuatorStroke;
 
 const FLUID_MODULUS: f64 = 1.45e9;
 
@@ -176,6 +177,59 @@ fn lengths_undo_stiffnesses_in_both_models() {
     // ORIGIN: recomputed by comparisons/recompute_rig.py
     let length = hose_length_by_volume(2.24e6, USEFUL_AREA, stroke, metre, FLUID_MODULUS);
     check("by volume, 2.24e6 N/m", length, 3.64, 0.01);
+}
+
+/// Unequal hoses of one compliance at unequal areas.
+///
+/// ORIGIN: analytic, the least of A_A^2/C_A + A_B^2/C_B over the stroke
+#[test]
+fn unequal_lines_share_the_compliance() {
+    let narrow = Hose { bore: 9.5e-3, expansion_slope: 1.1e-12, operating_expansion: 5e-6, ..hose() };
+    let (cylinder, member) = (asymmetric(), StiffeningMember::Nominal);
+    let mut within = 0;
+    for model in [StiffnessModel::Uniform, StiffnessModel::ByVolume] {
+        let of = |hose| {
+            let line = Line::Hose { hose, length: 1.0 };
+            match model {
+                StiffnessModel::Uniform => (
+                    line.compliance_of_unexpanded(FLUID_MODULUS, member),
+                    line.effective_modulus(FLUID_MODULUS, member),
+                ),
+                StiffnessModel::ByVolume => (line.compliance(FLUID_MODULUS, member), FLUID_MODULUS),
+            }
+        };
+        let [(metre_a, modulus_a), (metre_b, modulus_b)] = [of(hose()), of(narrow)];
+        let (area_a, area_b) = (cylinder.area_a, cylinder.area_b);
+        let [slope_a, slope_b] = [area_a / modulus_a, area_b / modulus_b];
+        let q = area_a / slope_a.sqrt() + area_b / slope_b.sqrt();
+        let ActuatorStroke::Limited(stroke) = cylinder.stroke else { panic!() };
+        let dead = (cylinder.dead_volume_a / area_a, cylinder.dead_volume_b / area_b);
+        for stiffness in [0.5e6, 1.5e6, 2.5e6, 4e6, 6e6, 9e6] {
+            let common = (q * q / stiffness - stroke - dead.0 - dead.1) / (1.0 / slope_a + 1.0 / slope_b);
+            // softest within the stroke
+            let from_a = (q / stiffness * area_a * slope_a.sqrt() - common) / slope_a - dead.0;
+            if common <= 0.0 || !(0.0..=stroke).contains(&from_a) {
+                continue;
+            }
+            within += 1;
+            let lines = [
+                Line::Hose { hose: hose(), length: 1.0 },
+                Line::Hose { hose: narrow, length: metre_a / metre_b },
+            ];
+            let [line_a, line_b] = &lines;
+            let found = line_share_for_stiffness(
+                model,
+                FLUID_MODULUS,
+                &cylinder,
+                [line_a, line_b],
+                member,
+                stiffness,
+            );
+            let LineLength::Length(share) = found else { panic!("{found:?}") };
+            assert!((share * metre_a / common - 1.0).abs() < 1e-11, "{model:?} {stiffness}: {share}");
+        }
+    }
+    assert!(within > 2, "{within}");
 }
 
 /// ORIGIN: analytic, thesis (6.25) and (6.26) exactly as printed, with E, epsilon and r_beta.

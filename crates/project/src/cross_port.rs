@@ -1,5 +1,6 @@
 //! `[cross_port]`: a valve between the chambers.
 
+use super::cost::PartCost;
 use super::key::{Key, key, plain};
 use super::visitor::{Variants, Visitor};
 use phea_quantity::{CAPACITY, FLOW, FLOW_PRESSURE_COEFFICIENT, LENGTH, PRESSURE, RATIO, STIFFNESS};
@@ -9,6 +10,8 @@ use phea_quantity::{CAPACITY, FLOW, FLOW_PRESSURE_COEFFICIENT, LENGTH, PRESSURE,
 pub struct DeclaredCrossPort {
     /// What it is.
     pub kind: CrossPortKind,
+    /// What it costs and weighs.
+    pub cost: PartCost,
 }
 
 /// Kinds of valves between the chambers.
@@ -114,6 +117,7 @@ impl DeclaredOrifice {
 impl DeclaredCrossPort {
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
         v.variant(plain("kind", "What lies between the chambers."), &mut self.kind, true);
+        self.cost.visit(v);
     }
 
     /// Its orifice, if it has one.

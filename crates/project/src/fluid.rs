@@ -1,6 +1,7 @@
 //! `[fluid]` and `[supply]`.
 
 use super::adjustment::{AdjustmentKind, DeclaredAdjustment};
+use super::cost::PartCost;
 use super::key::{key, plain};
 use super::visitor::{Variants, Visitor};
 use phea_quantity::{
@@ -71,6 +72,8 @@ pub struct DeclaredAccumulator {
     pub neck: Option<DeclaredNeck>,
     /// What of it is adjusted in operation, at a chamber.
     pub adjustment: Option<DeclaredAdjustment>,
+    /// What it costs and weighs, at a chamber.
+    pub cost: PartCost,
 }
 
 /// Temperatures of the gas of an accumulator, in degC.
@@ -149,6 +152,7 @@ impl DeclaredAccumulator {
         v.way(&["neck_diameter", "neck_length"], &mut self.neck, DeclaredNeck::visit);
         let k = plain("adjustment", "What of it is adjusted in operation, by a setting from 0 to 1.");
         v.table(k, &mut self.adjustment, DeclaredAdjustment::visit);
+        self.cost.visit(v);
     }
 
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
@@ -175,6 +179,7 @@ impl DeclaredAccumulator {
 
 /// How the supply pressure behaves under load.
 #[derive(Clone, Debug, PartialEq)]
+#[allow(clippy::large_enum_variant, reason = "a project has one supply")]
 pub enum SupplyModel {
     /// It stays as declared.
     Constant {

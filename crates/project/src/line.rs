@@ -1,12 +1,13 @@
 //! `[line]`, `[line.a]` and `[line.b]`.
 
+use super::cost::LineCost;
 use super::fluid::DeclaredAccumulator;
 use super::interval::BoundedNumber;
 use super::key::{key, plain};
 use super::line_motion::LineMotion;
 use super::visitor::{Kinds, Visitor};
 use crate::catalogue::CatalogueKind;
-use phea_quantity::{EXPANSION_SLOPE, LENGTH, PRESSURE, RATIO, VOLUME, VOLUME_PER_LENGTH};
+use phea_quantity::{DENSITY, EXPANSION_SLOPE, LENGTH, PRESSURE, RATIO, VOLUME, VOLUME_PER_LENGTH};
 
 /// The lines between the valve and the chambers.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -87,6 +88,8 @@ pub struct HoseProperties {
     pub working_pressure: Option<f64>,
     /// Pa.
     pub burst_pressure: Option<f64>,
+    /// What it costs and weighs.
+    pub cost: LineCost,
 }
 
 /// Volumetric expansion of a hose under pressure.
@@ -119,6 +122,8 @@ pub struct DeclaredPipe {
     pub wall: Option<ElasticWall>,
     /// Of the wall.
     pub poisson_ratio: f64,
+    /// What it costs and weighs.
+    pub cost: LineCost,
 }
 
 /// An elastic wall of a pipe.
@@ -128,6 +133,8 @@ pub struct ElasticWall {
     pub thickness: f64,
     /// Pa.
     pub youngs_modulus: f64,
+    /// kg/m³, from which its mass follows.
+    pub density: Option<f64>,
 }
 
 impl Default for Component {
@@ -155,6 +162,10 @@ impl DeclaredLine {
             "minimum_bend_radius",
             "working_pressure",
             "burst_pressure",
+            "price",
+            "price_per_length",
+            "mass",
+            "mass_per_length",
             "pipe",
             "volume",
             "effective_bulk_modulus",
@@ -306,6 +317,7 @@ impl HoseProperties {
         v.optional(k, &mut self.working_pressure);
         let k = key("burst_pressure", &PRESSURE, "Pressure at which it may burst.").positive();
         v.optional(k, &mut self.burst_pressure);
+        self.cost.visit(v);
     }
 }
 
@@ -316,6 +328,7 @@ impl DeclaredPipe {
         let k =
             key("poisson_ratio", &RATIO, "Poisson's ratio of the wall.").not_negative().below(0.5).or(0.3);
         v.quantity(k, &mut self.poisson_ratio);
+        self.cost.visit(v);
     }
 }
 
@@ -325,6 +338,8 @@ impl ElasticWall {
         v.quantity(k.positive(), &mut self.thickness);
         let k = key("youngs_modulus", &PRESSURE, "Young's modulus of the wall.").positive();
         v.quantity(k, &mut self.youngs_modulus);
+        let k = key("wall_density", &DENSITY, "Density of the wall, from which its mass follows.").positive();
+        v.optional(k, &mut self.density);
     }
 }
 

@@ -3,15 +3,28 @@
 use super::key::{key, plain};
 use super::visitor::{Variants, Visitor};
 use phea_hydraulics::linkage::{
-    FourBar, LinkageError, LinkageGeometry, LinkageTable, PivotTriangle, ReducedLinkage,
+    FourBar, LinkageError, LinkageGeometry, LinkageTable, PivotTriangle, ReducedLinkage, STANDARD_GRAVITY,
 };
-use phea_quantity::{ANGLE, LENGTH};
+use phea_quantity::{ANGLE, LENGTH, MASS};
 
 /// A linkage: the angle of the joint grows while the rod extends.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DeclaredLinkage {
     /// What it is made of.
     pub kind: LinkageKind,
+    /// That gravity turns the load by; absent: by none.
+    pub weight: Option<DeclaredWeight>,
+}
+
+/// The weight of a load that turns.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct DeclaredWeight {
+    /// kg, of all that turns with the joint.
+    pub mass: f64,
+    /// m, from the joint to the centre of mass.
+    pub centre_distance: f64,
+    /// rad, of the joint: where the centre is level with it and rises.
+    pub level_angle: f64,
 }
 
 /// Kinds of linkages.
@@ -89,6 +102,8 @@ impl Default for LinkageKind {
 impl DeclaredLinkage {
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
         v.variant(plain("kind", "What the linkage is made of."), &mut self.kind, true);
+        let k = plain("weight", "The weight of the load, which gravity turns about the joint; absent: none.");
+        v.table(k, &mut self.weight, DeclaredWeight::visit);
     }
 
     /// As the equations have it, over a stroke in m.
@@ -121,7 +136,29 @@ impl DeclaredLinkage {
                 (LinkageGeometry::Table(table), 0.0)
             }
         };
-        geometry.reduced(stroke, angle_offset)
+        let reduced = geometry.reduced(stroke, angle_offset)?;
+        let linkage = match self.weight {
+            None => reduced.linkage,
+            Some(weight) => reduced.linkage.level_at(weight.level_angle).with_moment(weight.moment()),
+        };
+        Ok(ReducedLinkage { linkage, ..reduced })
+    }
+}
+
+impl DeclaredWeight {
+    /// N m, that gravity turns it with where its centre is level with the joint.
+    pub fn moment(&self) -> f64 {
+        self.mass * self.centre_distance * STANDARD_GRAVITY
+    }
+
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let k = key("mass", &MASS, "Mass of all that turns with the joint.").not_negative();
+        v.quantity(k, &mut self.mass);
+        let k = key("centre_distance", &LENGTH, "From the joint to the centre of that mass.");
+        v.quantity(k.not_negative(), &mut self.centre_distance);
+        let doc =
+            "Angle of the joint at which the centre of mass is level with it and rises as the rod extends.";
+        v.quantity(key("level_angle", &ANGLE, doc), &mut self.level_angle);
     }
 }
 

@@ -6,7 +6,7 @@ use super::formula::Formula;
 use super::key::{Key, Motions};
 use super::visitor::{FormulaShape, Kinds, NamedNumber, ValueForm, Variants, Visitor};
 use crate::catalogue::CatalogueKind;
-use phea_quantity::MotionKind;
+use phea_quantity::{MotionKind, Price, PricedBy};
 
 /// Walks a project without changing it, except for the numbers to be set.
 #[derive(Default)]
@@ -163,6 +163,14 @@ impl Visitor for Listing {
 
     fn text(&mut self, key: Key, _field: &mut Option<String>, required: bool) {
         self.list(key, "a text", required);
+    }
+
+    fn price(&mut self, key: Key, by: PricedBy, _field: &mut Option<Price>) {
+        let takes = match by {
+            PricedBy::Piece => "a price, such as \"180 EUR\"",
+            PricedBy::Length => "a price for a length, such as \"40 EUR/m\"",
+        };
+        self.list(key, takes, false);
     }
 
     fn texts(&mut self, key: Key, _field: &mut Vec<String>) {

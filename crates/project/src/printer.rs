@@ -7,7 +7,7 @@ use super::key::{Key, Motions};
 use super::toml_text::{bare_or_quoted, inline, list, quoted};
 use super::visitor::{FormulaShape, Kinds, NamedNumber, ValueForm, Variants, Visitor};
 use crate::catalogue::CatalogueKind;
-use phea_quantity::{self as quantity, MotionKind};
+use phea_quantity::{self as quantity, MotionKind, Price, PricedBy};
 
 /// Writes tables; the innermost is the last of `open`.
 pub(crate) struct Printer {
@@ -187,6 +187,12 @@ impl Visitor for Printer {
     fn text(&mut self, key: Key, field: &mut Option<String>, _required: bool) {
         if let Some(text) = field {
             self.line(key.name, quoted(text));
+        }
+    }
+
+    fn price(&mut self, key: Key, by: PricedBy, field: &mut Option<Price>) {
+        if let Some(price) = field {
+            self.line(key.name, quantity::print_price(*price, by));
         }
     }
 

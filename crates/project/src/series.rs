@@ -2,9 +2,10 @@
 
 use phea_hydraulics::series::ForceFrom;
 
+use super::cost::PartCost;
 use super::key::{key, plain};
 use super::visitor::Visitor;
-use phea_quantity::{DAMPING, DENSITY, INVERSE_VELOCITY, LENGTH, MASS, PRESSURE, RATIO, STIFFNESS};
+use phea_quantity::{DAMPING, DENSITY, INVERSE_VELOCITY, LENGTH, MASS, PRESSURE, PricedBy, RATIO, STIFFNESS};
 
 /// The spring between force sensor and load, with its damper, the mass before it and the ends of
 /// its travel.
@@ -29,6 +30,8 @@ pub struct DeclaredSeries {
     pub force_from: ForceFrom,
     /// How it is wound.
     pub coil: Option<SpringCoil>,
+    /// What the spring costs and weighs, with its housing; without a mass that of its coils.
+    pub cost: PartCost,
 }
 
 /// What a coil spring is wound from.
@@ -84,6 +87,9 @@ impl DeclaredSeries {
         v.choice(k, words, &mut self.force_from, false);
         let k = plain("coil", "How a coil spring is wound for it; absent: it is not sized.");
         v.table(k, &mut self.coil, SpringCoil::visit);
+        v.price(plain("price", "What the spring costs."), PricedBy::Piece, &mut self.cost.price);
+        let k = key("spring_mass", &MASS, "Mass of the spring as a part; absent: that of its `coil`.");
+        v.optional(k.not_negative(), &mut self.cost.mass);
     }
 }
 

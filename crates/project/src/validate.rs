@@ -2,6 +2,7 @@
 
 mod adjustment;
 mod alternative;
+mod cost;
 mod cross_port;
 mod design;
 mod direction;
@@ -38,6 +39,7 @@ pub(super) fn project(project: &Project, reader: &mut Reader<'_>) {
             None => series::series(project, actuator, &mut check),
         }
         linkage::linkage(project, actuator, &mut check);
+        cost::prices(actuator, &mut check);
         wishes::with_actuator(project, actuator, &mut check);
     }
     if let Some(plant) = &project.plant {

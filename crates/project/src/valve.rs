@@ -1,8 +1,8 @@
 //! `[valve]`.
 
-use super::DeclaredSupply;
 use super::key::{key, plain};
 use super::visitor::Visitor;
+use super::{DeclaredSupply, PartCost};
 use crate::catalogue::CatalogueKind;
 use phea_hydraulics::servovalve::LeakageModel;
 use phea_quantity::{
@@ -44,6 +44,8 @@ pub struct Valve {
     pub leakage: ValveCoefficients<NullLeakage>,
     /// s, step response time of the data sheet; for information.
     pub response_time: Option<f64>,
+    /// What it costs and weighs.
+    pub cost: PartCost,
 }
 
 /// Coefficients of the edges as declared, or the data sheet values from which they follow, equal
@@ -202,6 +204,7 @@ impl Valve {
         self.visit_coefficients(v);
         let k = key("response_time", &TIME, "Step response time of the data sheet; for information.");
         v.optional(k.positive(), &mut self.response_time);
+        self.cost.visit(v);
     }
 
     fn visit_coefficients<V: Visitor>(&mut self, v: &mut V) {

@@ -7,7 +7,7 @@
 use super::formula::Formula;
 use super::key::Key;
 use crate::catalogue::CatalogueKind;
-use phea_quantity::MotionKind;
+use phea_quantity::{MotionKind, Price, PricedBy};
 
 /// A choice with keys of its own for each of its variants.
 pub(crate) trait Variants: Clone {
@@ -56,6 +56,8 @@ pub(crate) trait Visitor: Sized {
     fn switch(&mut self, key: Key, field: &mut bool);
     /// A text; required if `required`.
     fn text(&mut self, key: Key, field: &mut Option<String>, required: bool);
+    /// A price that may be absent.
+    fn price(&mut self, key: Key, by: PricedBy, field: &mut Option<Price>);
     /// A list of texts.
     fn texts(&mut self, key: Key, field: &mut Vec<String>);
     /// One of several words; absent, the field keeps its value unless `required`.

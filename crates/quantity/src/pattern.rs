@@ -1,12 +1,14 @@
 //! Quantities as regular expressions, for schemas with which editors check a file while it is
 //! edited.
 
-use super::dimension::{Dimension, Exponents, GAIN};
+use super::dimension::{Dimension, Exponents, GAIN, LENGTH};
 use super::parse::accepts;
 use super::unit::{self, Unit};
 
 /// A decimal number, as [`parse`](super::parse()) reads it.
 const NUMBER: &str = r"[+-]?(?:[0-9]+(?:\.[0-9]+)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?";
+/// The same without a sign.
+pub(crate) const UNSIGNED: &str = r"(?:[0-9]+(?:\.[0-9]+)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?";
 /// An exponent of any size.
 const EXPONENT: &str = r"(?:\^?-?[0-9]*\.?[0-9]+|[²³])?";
 
@@ -49,6 +51,12 @@ pub fn compound_unit_pattern() -> String {
 /// Matches every text that begins with a number, and infinity.
 pub fn any_quantity_pattern() -> String {
     format!(r"^\s*(?:{NUMBER}|[+-]?inf\s*$)")
+}
+
+/// Every unit of a length.
+pub(crate) fn length_units() -> String {
+    let units: Vec<String> = unit::all().filter_map(|unit| power_of(unit, &LENGTH)).collect();
+    units.join("|")
 }
 
 /// The names of a unit with the exponent that makes it one of the dimension; `None` where no

@@ -329,8 +329,8 @@ fn summary(
     });
     if let Some(best) = best {
         let gain = significant(best.branch.gain_v_per_n, 3);
-        let length = significant(best.length_m(), 3);
-        facts.push(("Hose", format!("{}, {length} m a line at K_p = {gain} V/N", best.option.name)));
+        let length = best.branch.length_words(3);
+        facts.push(("Hose", format!("{}, {length} at K_p = {gain} V/N", best.option.name)));
     } else if sizing.is_some() {
         facts.push(("Hose", "none of the catalogue fits".to_string()));
     }

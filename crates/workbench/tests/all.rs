@@ -38,6 +38,7 @@ mod neck;
 mod noise;
 mod number_table;
 mod operating_region;
+mod parts;
 mod plant_of_verdicts;
 mod proof;
 mod recorded_tables;

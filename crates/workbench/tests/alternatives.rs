@@ -38,13 +38,18 @@ set = { "plant.delay" = "10 ms" }
 "#;
 
 /// A rig with one plant, driven for half a second.
-fn rig() -> String {
+pub(super) fn rig() -> String {
     let (head, _) = HOSE.split_once("[uncertainty]").unwrap();
     // equal edges: at rest without force the command is zero, as at the operating point
     let (before, rest) = head.split_once("[valve.flow_coefficients]").unwrap();
     let (_, after) = rest.split_once("[cylinder]").unwrap();
     format!(
-        "{before}flow_coefficients = [3e-7, 3e-7, 3e-7, 3e-7]\nleakage_coefficients = [2.2e-9, 2.2e-9, 2.2e-9, 2.2e-9]\n[cylinder]{after}{}",
+        "{}flow_coefficients = [3e-7, 3e-7, 3e-7, 3e-7]\nleakage_coefficients = [2.2e-9, 2.2e-9, 2.2e-9, 2.2e-9]\n[cylinder]{}{}",
+        before,
+        after.replace(
+            "[line]\n",
+            "[line]\nprice = \"25 EUR\"\nprice_per_length = \"40 EUR/m\"\nmass_per_length = \"0.3 kg/m\"\n"
+        ),
         r#"
 [[specification]]
 kind = "robust_stability"
@@ -70,7 +75,7 @@ duration = "0.2 s"
 [[alternative]]
 name = "pipe"
 [alternative.set]
-"line" = { pipe = { bore = "10.5 mm" }, length = "0.35 m", compliance = "uniform" }
+"line" = { pipe = { bore = "10.5 mm", price = "12 EUR", mass_per_length = "0.5 kg/m" }, length = "0.35 m", compliance = "uniform" }
 "cylinder.dead_length" = "0.3 m"
 "#
     )
@@ -81,7 +86,7 @@ pub(super) fn parsed(answer: &Answer) -> Value {
 }
 
 /// The rig with its files, once for all tests.
-fn judged() -> &'static (Answer, Value) {
+pub(super) fn judged() -> &'static (Answer, Value) {
     static JUDGED: OnceLock<(Answer, Value)> = OnceLock::new();
     JUDGED.get_or_init(|| {
         let found = answer(&rig(), &[], &[], &asked(true));
@@ -294,10 +299,7 @@ fn a_sized_alternative_has_the_hose_of_size() {
         crate::ask::PIPE
     );
     let refused = asked_of(&source(&pipe), &load(&pipe, &[], &[]), &[]).unwrap_err().to_string();
-    assert_eq!(
-        refused,
-        "alternative `p`: `size` finds a hose, the same for both sides: its [line] must have one"
-    );
+    assert_eq!(refused, "alternative `p`: `size` finds the hoses of both sides: its [line] must have them");
 }
 
 fn front(columns: &str, sweep: &str) -> Request {

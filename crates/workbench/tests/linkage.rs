@@ -33,8 +33,23 @@ fn difference(one: &PlantCoefficients<f64>, other: &PlantCoefficients<f64>) -> f
 /// Everywhere in its box of positions and forces the family is the rig that declares them, lever arm and geometric stiffness included.
 #[test]
 fn the_family_follows_the_position() {
+    follows_the_position(KNEE);
+}
+
+/// With a payload that is uncertain, too.
+#[test]
+fn the_family_follows_a_payload() {
+    let weight =
+        "[linkage.weight]\nmass = \"4 kg\"\ncentre_distance = \"0.3 m\"\nlevel_angle = \"40 deg\"\n\n[load]";
+    let payload = "\"linkage.weight.mass\" = { nominal = \"4 kg\", minimum = \"1 kg\", maximum = \"9 kg\", points = 2 }";
+    let text =
+        KNEE.replacen("[load]", weight, 1).replace("[uncertainty]\n", &format!("[uncertainty]\n{payload}\n"));
+    follows_the_position(&text);
+}
+
+fn follows_the_position(text: &str) {
     let uncertain = "\"load.mass\" = { nominal = \"0.6 kg.m2\", minimum = \"0.3 kg.m2\", maximum = \"0.8 kg.m2\", points = 2 }";
-    let project = project_of(&KNEE.replace("[uncertainty]\n", &format!("[uncertainty]\n{uncertain}\n")), &[]);
+    let project = project_of(&text.replace("[uncertainty]\n", &format!("[uncertainty]\n{uncertain}\n")), &[]);
     let setup = Setup::new(&project).unwrap();
     let Family::Uncertain(family) = family(&setup, &Memory::default()).unwrap() else { panic!("a box") };
     let plant = family.plant();
@@ -86,6 +101,28 @@ fn the_machine_rests_where_the_plant_is() {
         assert!((arm / place.lever_arm_m - 1.0).abs() < 1e-9, "{settings:?}: {arm} {}", place.lever_arm_m);
         let inertia = place.reflected_mass_kg.unwrap() * arm * arm;
         assert!((inertia - 0.6).abs() < 1e-9);
+    }
+}
+
+/// Without a stated load, a load that yields rests against its weight.
+#[test]
+fn a_weight_is_held_at_rest() {
+    let weight =
+        "[linkage.weight]\nmass = \"4 kg\"\ncentre_distance = \"0.3 m\"\nlevel_angle = \"40 deg\"\n\n[load]";
+    let text = KNEE.replacen("[load]", weight, 1).replacen("load_force = \"600 N\"\n", "", 1);
+    for settings in
+        [&["family={}"][..], &["family={}", "load.stiffness=3", "operating_point.position=\"15 mm\""]]
+    {
+        let project = project_of(&text, settings);
+        let bench = ControlledMachine::new(&Setup::new(&project).unwrap()).unwrap();
+        let rest = bench.machine.rest_under_load(&bench.rig.point).unwrap();
+        let outputs = bench.machine.outputs::<f64>(&rest.state, &rest.all_inputs());
+        let signal = |name: &str| outputs[SIGNALS.iter().position(|known| *known == name).unwrap()];
+        // ORIGIN: analytic, 4 kg 9.80665 m/s2 0.3 m cos(theta - 40 deg)
+        let level = signal("joint_angle_rad") - 40_f64.to_radians();
+        let torque = 4.0 * 9.80665 * 0.3 * phea_dynamics::portable::cos(level);
+        let held = signal("joint_torque_n_m");
+        assert!((held / torque - 1.0).abs() < 1e-9, "{settings:?}: {held} {torque}");
     }
 }
 

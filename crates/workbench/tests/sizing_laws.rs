@@ -7,6 +7,7 @@ use crate::ask::{
     self, FICTITIOUS, HOSE, candidate, json, near, number, size_for_gain, size_for_length, size_request,
     within,
 };
+use phea_workbench::command::Request;
 use serde_json::Value;
 
 const EATON: &str = "eaton_synflex_3130_08";
@@ -39,6 +40,70 @@ fn the_length_found_for_a_gain_needs_that_gain() {
             near(number(back, "stiffness_n_per_m"), number(row, "iterations.0.stiffness_n_per_m"), 1e-9);
         }
     }
+}
+
+/// Hoses that differ between the sides, at unequal rods: the rig that has both lengths has the stiffness
+/// that was asked for, and both lines have one compliance.
+#[test]
+fn unequal_lines_are_sized_each_for_its_side() {
+    let text = HOSE.replace("rod_diameter = \"22 mm\"", "rod_diameters = [\"22 mm\", \"34 mm\"]");
+    let other = "line.b={ bore = \"9.5 mm\", volumetric_expansion = \"2.4 cc/ft\", volumetric_expansion_pressure = \"1000 psi\", volumetric_expansion_slope = 1.1e-12, dynamic_stiffening = 3 }";
+    let mut sized = 0;
+    for gain in ["2e-4", "4e-4"] {
+        let by_gain = json(&text, &[other], &[], &size_request(Some(gain), None));
+        assert!(by_gain["decisions"][0]["text"].as_str().unwrap().contains("the lines differ"));
+        for model in MODELS {
+            let row = candidate(&by_gain, &format!("{EATON} in line A, {EATON} in line B"), model);
+            let [length_a, length_b] = ["length_m", "length_b_m"].map(|key| number(row, key));
+            if length_a == 0.0 {
+                continue;
+            }
+            sized += 1;
+            let settings = [
+                other.to_string(),
+                format!("line.a.length={length_a:e}"),
+                format!("line.b.length={length_b:e}"),
+                format!("line.compliance={model}"),
+            ];
+            let settings: Vec<&str> = settings.iter().map(String::as_str).collect();
+            let check = json(&text, &settings, &[], &Request::Check);
+            let derived = |name: &str| {
+                let all = check["derived"].as_array().unwrap();
+                all.iter().find(|one| one["name"] == name).unwrap()["value"].as_f64().unwrap()
+            };
+            near(derived("stiffness.minimum"), number(row, "iterations.0.stiffness_n_per_m"), 1e-9);
+            near(number(row, "stiffness_n_per_m"), number(row, "iterations.0.stiffness_n_per_m"), 1e-9);
+            if model == "by_volume" {
+                near(derived("line.a.compliance"), derived("line.b.compliance"), 1e-9);
+            }
+            let length = json(&text, &[other], &[], &size_request(None, Some("1.2 m")));
+            let row = candidate(&length, &format!("{EATON} in line A, {EATON} in line B"), model);
+            assert_eq!([number(row, "length_m"), number(row, "length_b_m")], [1.2; 2]);
+        }
+    }
+    assert!(sized >= 3, "{sized}");
+}
+
+/// An alternative with unequal hoses takes the length that `size` finds for each side.
+#[test]
+fn a_sized_alternative_keeps_its_unequal_hoses() {
+    let other = "line.b={ bore = \"11 mm\", dynamic_stiffening = 4 }";
+    let text =
+        format!("{HOSE}\n[[alternative]]\nname = \"sized\"\nsize = true\nset = {{ \"title\" = \"x\" }}\n");
+    let settings = [other, "sizing.length_increment=\"1 mm\""];
+    let asked =
+        phea_workbench::alternatives::asked(&ask::source(&text), &ask::load(&text, &settings, &[]), &[]);
+    let line = asked.unwrap().remove(1).loaded.project.actuator.unwrap().line;
+    let size = ask::size(&text, &settings);
+    let name = format!("{EATON} in line A, {EATON} in line B");
+    let rows = size["candidates"].as_array().unwrap();
+    let best =
+        rows.iter().find(|row| row["hose"] == name.as_str() && row["compliance"] == "uniform").unwrap();
+    assert_eq!(best["accepted"], true, "{best}");
+    let [length_a, length_b] = [&line.a, &line.b].map(|line| line.length().unwrap());
+    near(length_a, number(best, "length_m"), 1e-12);
+    near(length_b, number(best, "length_b_m"), 1e-12);
+    assert!(length_a != length_b && length_a + length_b <= 3.0 + 1e-9);
 }
 
 #[test]

@@ -22,6 +22,7 @@ const SERIES: &str = include_str!("../../project/tests/valid/series.toml");
 const SERIES_COIL: &str = include_str!("../../project/tests/valid/series_coil.toml");
 const VOLUMES: &str = include_str!("../../project/tests/valid/volumes.toml");
 const LINKAGE: &str = include_str!("../../project/tests/valid/linkage.toml");
+const WEIGHT: &str = include_str!("../../project/tests/valid/linkage_weight.toml");
 const FOUR_BAR: &str = include_str!("../../project/tests/valid/linkage_four_bar.toml");
 const ANGLES: &str = include_str!("../../project/tests/valid/linkage_table.toml");
 const MOTOR: &str = include_str!("../../project/tests/valid/motor.toml");
@@ -183,6 +184,7 @@ fn with_linkages() -> Vec<(String, Vec<&'static str>)> {
         (without_uncertainty(LINKAGE), vec![]),
         (FOUR_BAR.to_string(), vec!["operating_point.load_force=2 kN"]),
         (ANGLES.to_string(), vec![]),
+        (without_uncertainty(WEIGHT), vec![]),
         (
             ANGLES.to_string(),
             vec![
@@ -243,7 +245,24 @@ fn without_uncertainty(text: &str) -> String {
 }
 
 /// Values of what may be absent, or is not a number.
-const STATED: [(&str, &str); 51] = [
+const STATED: [(&str, &str); 68] = [
+    ("cross_port.mass", "1 kg"),
+    ("cross_port.price", "100 EUR"),
+    ("line.accumulator.mass", "1 kg"),
+    ("line.accumulator.price", "100 EUR"),
+    ("line.mass", "1 kg"),
+    ("line.mass_per_length", "1 kg/m"),
+    ("line.price", "100 EUR"),
+    ("line.price_per_length", "100 EUR/m"),
+    ("line.pipe.mass", "1 kg"),
+    ("line.pipe.mass_per_length", "1 kg/m"),
+    ("line.pipe.price", "100 EUR"),
+    ("line.pipe.price_per_length", "100 EUR/m"),
+    ("line.pipe.wall_density", "7850 kg/m3"),
+    ("series.price", "100 EUR"),
+    ("series.spring_mass", "1 kg"),
+    ("valve.mass", "1 kg"),
+    ("valve.price", "100 EUR"),
     ("linkage.extensions", "[0, 0.0205, 0.04, 0.06, 0.08]"),
     ("linkage.angles", "[0.08, 0.5, 0.95, 1.4, 1.9]"),
     ("operating_point.position", "200 mm"),

@@ -19,6 +19,7 @@ const KNOWN: &[(&str, &[&str])] = &[
         &[
             "adjustment",
             "catalogue",
+            "cost",
             "cross_port",
             "fluid",
             "interval",

@@ -1,16 +1,15 @@
 //! The alternatives of a project as projects, ready to be judged: with their settings, with the hose
 //! that `[sizing]` finds where one asks for it, and with the ranges that follow their rig.
 
-use phea_hydraulics::line::Line;
-
 use super::recentred::{self, MovedRange};
 use crate::audit::outside;
 use crate::catalogue::{self, Catalogue, CatalogueKind};
 use crate::error::ProcedureError;
-use crate::project::{self, AS_DECLARED, Alternative, Component, Loaded, read_alternative};
-use crate::rig::sizing_problem;
+use crate::parts::PartsCounted;
+use crate::project::{self, AS_DECLARED, Alternative, Component, DeclaredLine, Loaded, read_alternative};
+use crate::rig::{own_hoses, sizing_problem};
 use crate::setup::Setup;
-use crate::sizing::{Question, size};
+use crate::sizing::{Candidate, Question, size};
 use crate::source::Source;
 
 /// An alternative, ready to be judged.
@@ -83,7 +82,26 @@ pub fn asked(
         }
         found.push(one);
     }
+    counted(&found)?;
     Ok(found)
+}
+
+/// What is counted of the parts of all of them.
+///
+/// # Errors
+/// [`ProcedureError::Alternative`] for one whose prices are in another currency than those before it.
+pub(super) fn counted(all: &[AskedAlternative]) -> Result<PartsCounted, ProcedureError> {
+    let projects = |count: usize| all.iter().take(count).map(|one| &one.loaded.project);
+    for (index, one) in all.iter().enumerate() {
+        if let Err([first, other]) = PartsCounted::of(projects(index + 1)) {
+            let [first, other] = [first.code(), other.code()];
+            let reason = format!(
+                "it states a price in {other} where others are in {first}, and no rate is known: state all in one currency"
+            );
+            return Err(ProcedureError::Alternative { name: one.name.clone(), reason });
+        }
+    }
+    Ok(PartsCounted::of(projects(all.len())).unwrap_or_default())
 }
 
 /// With the hose that `[sizing]` finds, where it asks for it.
@@ -99,32 +117,45 @@ fn sized(
         return Ok(one(other, None));
     }
     let wrong = |reason: &str| ProcedureError::Alternative { name: name.clone(), reason: reason.to_string() };
-    let line = other.project.actuator.as_ref().map(|actuator| &actuator.line);
-    let Some(line) =
-        line.filter(|line| line.a == line.b && matches!(line.a.component, Component::Hose { .. }))
-    else {
-        return Err(wrong("`size` finds a hose, the same for both sides: its [line] must have one"));
+    let is_hose = |line: &DeclaredLine| matches!(line.component, Component::Hose { .. });
+    let lines = other.project.actuator.as_ref().map(|actuator| [&actuator.line.a, &actuator.line.b]);
+    let Some(lines) = lines.filter(|lines| lines.iter().all(|line| is_hose(line))) else {
+        return Err(wrong("`size` finds the hoses of both sides: its [line] must have them"));
     };
-    let named = line.a.hose_name().map(str::to_string);
+    let alike = lines[0] == lines[1];
+    let named = lines[0].hose_name().map(str::to_string);
     let problem = Setup::new(&other.project)
         .map_err(ProcedureError::from)
         .and_then(|setup| Ok(sizing_problem(&setup, catalogue)?))
         .map_err(|error| wrong(&error.to_string()))?;
     let sizing = size(&problem, Question::Both);
-    let Some(best) = sizing.best() else {
+    // of unequal lines the lengths of their own hoses
+    let own = other.project.actuator.as_ref().filter(|_| !alike).and_then(own_hoses);
+    let of_own = |candidate: &&Candidate| {
+        let accepted = candidate.accepted() && candidate.branch.model == sizing.model;
+        accepted && own.as_ref().is_none_or(|own| candidate.option.name == *own)
+    };
+    let Some(best) = sizing.candidates.iter().find(of_own) else {
         return Ok(one(other, Some("no hose of the catalogue is accepted by [sizing]".to_string())));
     };
     if best.length_m() == 0.0 {
         return Ok(one(other, Some("[sizing] finds that no hose is needed".to_string())));
     }
-    let mut settings = vec![format!("line.length={:e}", best.length_m())];
-    if catalogue.find(CatalogueKind::Hose, &best.option.name).is_some() {
+    let [length_a, length_b] = best.branch.lengths_m;
+    let mut settings = match alike {
+        true => vec![format!("line.length={length_a:e}")],
+        false => vec![format!("line.a.length={length_a:e}"), format!("line.b.length={length_b:e}")],
+    };
+    if alike && catalogue.find(CatalogueKind::Hose, &best.option.name).is_some() {
         settings.insert(0, format!("line.hose=\"{}\"", best.option.name));
     }
     let found = again.with(&other, &settings)?;
-    let has = Setup::rig_of(&found.project).map(|rig| rig.actuator.components().line_a);
-    let same = matches!(has, Ok(Line::Hose { hose, .. }) if hose == best.option.hose);
-    if !same && named.as_deref() != Some(best.option.name.as_str()) {
+    let has = Setup::rig_of(&found.project).map(|rig| {
+        let components = rig.actuator.components();
+        [components.line_a, components.line_b]
+    });
+    let same = has.is_ok_and(|lines| lines == best.option.lines(best.branch.lengths_m));
+    if !same && (!alike || named.as_deref() != Some(best.option.name.as_str())) {
         return Err(wrong(
             "[line] states properties of its own hose, which the hose that [sizing] finds would take over: state them in a catalogue",
         ));

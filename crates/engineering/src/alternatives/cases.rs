@@ -2,10 +2,11 @@
 
 use phea_dynamics::watch::{Progress, Watch};
 
-use super::asked::asked;
+use super::asked::{asked, counted};
 use super::{AskedAlternative, JudgedAlternative, Judging};
 use crate::catalogue::Catalogue;
 use crate::error::ProcedureError;
+use crate::parts::PartsCounted;
 use crate::project::{Loaded, read_load_case};
 use crate::source::Source;
 
@@ -33,6 +34,8 @@ pub struct AskedCase {
     pub loaded: Loaded,
     /// The project itself first, then its alternatives in file order.
     pub all: Vec<AskedAlternative>,
+    /// What is counted of their parts.
+    pub counted: PartsCounted,
 }
 
 /// The load cases of a project in file order.
@@ -53,7 +56,9 @@ pub fn asked_cases(
             other => other,
         };
         let all = asked(source, &there, catalogues).map_err(named)?;
-        Ok(AskedCase { name: case.name.clone(), settings: case.settings().collect(), loaded: there, all })
+        let counted = counted(&all).map_err(named)?;
+        let settings = case.settings().collect();
+        Ok(AskedCase { name: case.name.clone(), settings, loaded: there, all, counted })
     });
     each.collect()
 }
@@ -91,7 +96,8 @@ pub(super) fn judged_cases(
     let count = cases.len() as f64;
     let mut goes_on = goes_on;
     let judged = cases.into_iter().enumerate().map(|(index, case)| {
-        let judging = Judging { source, catalogue, declared: &case.loaded, impedance_at };
+        let judging =
+            Judging { source, catalogue, declared: &case.loaded, impedance_at, counted: case.counted };
         let mut told = |progress: Progress| {
             watch(Progress { share: (index as f64 + progress.share) / count, ..progress })
         };

@@ -1,6 +1,7 @@
 //! Which alternative is at least as good as another in everything that is compared.
 
 use super::AlternativeColumns;
+use crate::quantity::DisplayUnit;
 
 /// Which of two values of a column is the better one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -13,7 +14,7 @@ pub enum ColumnSense {
 
 /// Every column by which alternatives can be compared, with the sense that it has unless another is
 /// asked for.
-pub const COLUMN_SENSES: [(&str, ColumnSense); 31] = {
+pub const COLUMN_SENSES: [(&str, ColumnSense); 33] = {
     use ColumnSense::{Less, More};
     [
         ("relaxation_db", Less),
@@ -35,6 +36,8 @@ pub const COLUMN_SENSES: [(&str, ColumnSense); 31] = {
         ("oil_mass_kg", Less),
         ("gas_volume_m3", Less),
         ("power_at_rest_w", Less),
+        ("parts_price", Less),
+        ("parts_mass_kg", Less),
         ("sized_length_m", Less),
         ("sized_gain_v_per_n", More),
         ("impedance_open_n_s_per_m", Less),
@@ -84,9 +87,12 @@ pub const MEASURES: [(&str, &str); 4] = [
     ("delay_margin_s", "delay tolerated"),
 ];
 
+/// Measures of dominance that count where all that are compared state them.
+pub const MEASURES_IF_STATED: [(&str, &str); 2] = [("parts_price", "price"), ("parts_mass_kg", "mass")];
+
 /// What a decision needs at a glance: the key of the column and its name for people. Of columns that
 /// exist for several scenarios, the worst value counts.
-pub const COMPARED_AT_A_GLANCE: [(&str, &str); 7] = [
+pub const COMPARED_AT_A_GLANCE: [(&str, &str); 9] = [
     ("order", "order of G"),
     ("delay_margin_s", "delay tolerated"),
     ("settling_time_s", "settling"),
@@ -94,33 +100,64 @@ pub const COMPARED_AT_A_GLANCE: [(&str, &str); 7] = [
     ("control_rms_v", "control rms"),
     ("control_peak_v", "control peak"),
     ("actuator_length_m", "length"),
+    ("parts_price", "price"),
+    ("parts_mass_kg", "mass"),
 ];
 
-/// An alternative by its measures: of all scenarios the greatest.
+/// A measure by which alternatives dominate each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ComparedMeasures(pub [f64; MEASURES.len()]);
+pub struct ComparedMeasure {
+    /// Of the column.
+    pub key: &'static str,
+    /// For people.
+    pub words: &'static str,
+    /// For people.
+    pub unit: DisplayUnit,
+}
+
+impl ComparedMeasure {
+    /// Those by which alternatives can be compared: the four, and what all of them state.
+    pub fn of_all(all: &[AlternativeColumns]) -> Vec<ComparedMeasure> {
+        let stated = |key: &str| !all.is_empty() && all.iter().all(|columns| columns.worst(key).is_some());
+        let if_stated = MEASURES_IF_STATED.into_iter().filter(|(key, _)| stated(key));
+        let unit = |key: &str| all.iter().find_map(|columns| Some(columns.first(key)?.unit));
+        let measure = |(key, words): (&'static str, &'static str)| ComparedMeasure {
+            key,
+            words,
+            unit: unit(key).unwrap_or(DisplayUnit::ONE),
+        };
+        MEASURES.into_iter().chain(if_stated).map(measure).collect()
+    }
+
+    /// Whether the greater value is the better one.
+    pub fn is_more(&self) -> bool {
+        sense_of(self.key) == Some(ColumnSense::More)
+    }
+}
+
+/// An alternative by its measures: of all scenarios the greatest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ComparedMeasures(pub Vec<f64>);
 
 impl ComparedMeasures {
     /// Those of an alternative; `None` where one does not exist.
-    pub fn of(columns: &AlternativeColumns) -> Option<ComparedMeasures> {
-        let mut values = [0.0; MEASURES.len()];
-        for (value, (key, _)) in values.iter_mut().zip(MEASURES) {
-            *value = columns.worst(key)?;
-        }
-        Some(ComparedMeasures(values))
+    pub fn of(columns: &AlternativeColumns, measures: &[ComparedMeasure]) -> Option<ComparedMeasures> {
+        measures.iter().map(|measure| columns.worst(measure.key)).collect::<Option<_>>().map(ComparedMeasures)
     }
 
-    /// Whether it dominates another.
+    /// Whether it dominates another of the same measures.
     ///
     /// # Example
     /// ```
-    /// use phea_engineering::alternatives::ComparedMeasures;
-    /// let hose = ComparedMeasures([400.0, 0.1, 3.0, 2e-3]);
-    /// let pipe = ComparedMeasures([2400.0, 0.1, 3.0, 1e-3]);
-    /// assert!(hose.dominates(&pipe) && !pipe.dominates(&hose) && !hose.dominates(&hose));
+    /// use phea_engineering::alternatives::{ComparedMeasure, ComparedMeasures};
+    /// let hose = ComparedMeasures(vec![400.0, 0.1, 3.0, 2e-3]);
+    /// let pipe = ComparedMeasures(vec![2400.0, 0.1, 3.0, 1e-3]);
+    /// let measures = ComparedMeasure::of_all(&[]);
+    /// assert!(hose.dominates(&pipe, &measures) && !pipe.dominates(&hose, &measures));
+    /// assert!(!hose.dominates(&hose, &measures));
     /// ```
-    pub fn dominates(&self, other: &ComparedMeasures) -> bool {
-        let senses = MEASURES.map(|(key, _)| sense_of(key).unwrap_or(ColumnSense::Less));
-        dominates(&self.0, &other.0, &senses)
+    pub fn dominates(&self, other: &ComparedMeasures, measures: &[ComparedMeasure]) -> bool {
+        let sense = |measure: &ComparedMeasure| sense_of(measure.key).unwrap_or(ColumnSense::Less);
+        dominates(&self.0, &other.0, &measures.iter().map(sense).collect::<Vec<_>>())
     }
 }

@@ -6,6 +6,7 @@ use phea_hydraulics::series::LEAST_ACTIVE_COILS;
 
 use super::columns::{AlternativeColumn, column};
 use super::{JudgedAlternative, no_rig};
+use crate::parts::{self, parts};
 use crate::project::{DeclaredActuator, Project};
 use crate::quantity::{DisplayUnit, MASS, MotionKind, VOLUME, fitting};
 use crate::rig::{Rig, power_at_rest, series_coil};
@@ -27,6 +28,7 @@ impl JudgedAlternative {
             column("equivalent_stiffness_n_per_m", "K_eq at the point", stiff, 3, equivalent),
         ];
         columns.extend(self.made_of(motion));
+        columns.extend(self.parts());
         columns.extend(self.sized_columns());
         columns
     }
@@ -62,6 +64,24 @@ impl JudgedAlternative {
             column("oil_mass_kg", "mass of that oil", kilogram, 3, oil_mass),
             column("gas_volume_m3", "gas", litre(&gas), 3, gas),
             column("power_at_rest_w", "loss at rest", DisplayUnit::WATT, 3, power),
+        ]
+    }
+
+    /// What its parts cost and weigh.
+    fn parts(&self) -> [AlternativeColumn; 2] {
+        let counted = self.counted;
+        let rig = Setup::rig_of(&self.loaded.project).map_err(|error| error.to_string());
+        let declared = self.loaded.project.actuator.as_ref().ok_or_else(no_rig);
+        let all = rig.as_ref().map_err(Clone::clone).and_then(|rig| Ok((parts(declared?, rig), rig)));
+        let price = all.clone().and_then(|(all, _)| parts::price(&all, counted));
+        let mass = all.and_then(|(all, rig)| parts::mass(&all, rig, counted));
+        let currency = counted
+            .currency
+            .map_or(DisplayUnit::ONE, |currency| DisplayUnit { symbol: currency.code(), in_si: 1.0 });
+        let kilogram = fitting(1.0, &MASS);
+        [
+            column("parts_price", "price of its parts", currency, 4, price),
+            column("parts_mass_kg", "mass of its parts and of the oil in lines", kilogram, 3, mass),
         ]
     }
 

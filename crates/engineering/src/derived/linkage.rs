@@ -6,7 +6,7 @@ use crate::rig::{Rig, rod_end};
 /// The linkage at the operating point, and over the stroke.
 pub(super) fn linkage(project: &Project, rig: &Rig, list: &mut List) {
     let components = rig.actuator.components();
-    let Some(end) = rod_end(components, &rig.point) else { return };
+    let Some((end, weight)) = rod_end(components, &rig.point) else { return };
     list.group("Linkage");
     let declared = project.actuator.as_ref().and_then(|declared| declared.linkage.as_ref());
     let stroke = components.cylinder.stroke.length();
@@ -39,5 +39,18 @@ pub(super) fn linkage(project: &Project, rig: &Rig, list: &mut List) {
     if let Some(lever) = rig.load.and_then(|load| load.lever) {
         let stiffness = lever.geometric_stiffness / (lever.arm * lever.arm);
         list.add("linkage.geometric_stiffness", "k_g", stiffness, "N/m", "k_g = -F_H g''(θ)/r^2");
+    }
+    if let Some(weight) = weight {
+        let arm = end.lever_arm;
+        list.add("linkage.weight_torque", "τ_g", weight.torque, "N.m", "τ_g = -m g d cos(θ - θ_l)");
+        list.add(
+            "linkage.weight_held",
+            "F_w",
+            -weight.torque / arm,
+            "N",
+            "F_w = -τ_g/r, which holds it here",
+        );
+        let equation = "k_w = -m g d sin(θ - θ_l)/r^2";
+        list.add("linkage.weight_stiffness", "k_w", weight.stiffness / (arm * arm), "N/m", equation);
     }
 }

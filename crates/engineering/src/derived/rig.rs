@@ -11,6 +11,7 @@ use super::cross_port::cross_port;
 use super::impedance::impedance;
 use super::linkage::linkage;
 use super::list::List;
+use super::parts::costs;
 use super::series::series;
 use super::valve::valve;
 use crate::linearize::{stiffness_models, stroke_stiffness};
@@ -26,6 +27,7 @@ pub fn derive(project: &Project, rig: &Rig) -> Vec<Derived> {
     stiffness(rig, &mut list);
     accumulators(project, rig, &mut list);
     series(project, rig, &mut list);
+    costs(project, rig, &mut list);
     linkage(project, rig, &mut list);
     valve(project, rig, &mut list);
     equilibrium(rig, &mut list);

@@ -135,7 +135,7 @@ impl Open<'_> {
         components: &Components<S>,
         numbers: &Numbers<'_, S>,
     ) -> (S, Steady<S>, Balance<S>) {
-        let (position, steady) = place(self.project, components.cylinder.stroke, numbers);
+        let (position, steady) = place(self.project, components, numbers);
         (position, steady, Balance::of(components))
     }
 

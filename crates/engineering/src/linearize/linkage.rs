@@ -72,6 +72,6 @@ pub fn linkage_places(rig: &Rig) -> Vec<LinkagePlace> {
     let greatest = greatest.map(|place| LinkagePlace { at: LinkagePosition::GreatestArm, ..*place });
     let ends = [(LinkagePosition::Retracted, 0.0), (LinkagePosition::Extended, stroke)];
     let ends = ends.map(|(at, position)| place(at, position));
-    let point = here.map(|end| place(LinkagePosition::OperatingPoint, end.position));
+    let point = here.map(|(end, _)| place(LinkagePosition::OperatingPoint, end.position));
     ends.into_iter().chain(point).chain(least).chain(greatest).collect()
 }

@@ -7,7 +7,7 @@ use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::force_sensor::ForceSensor;
 use phea_hydraulics::friction::{Friction, LuGre, Stribeck};
 use phea_hydraulics::line::{Anchoring, Hose, Line, Pipe, PipeWall, Stiffening};
-use phea_hydraulics::linkage::Linkage;
+use phea_hydraulics::linkage::{Linkage, STANDARD_GRAVITY};
 use phea_hydraulics::series::{SeriesElement, SeriesTravel};
 use phea_hydraulics::servovalve::{
     Edges, Servovalve, Supply, flow_coefficient_from_rating, leakage_coefficient_from_rating,
@@ -20,8 +20,8 @@ use super::gas::{accumulator, adjustment};
 use super::numbers::Numbers;
 use crate::project::{
     self, BoundedNumber, Compliance, Component, DeclaredAccumulator, DeclaredNeck, DeclaredSeries,
-    EdgeCoefficients, FrictionLaw, HoseExpansion, LineVolume, NullLeakage, RatedFlow, StribeckCurve,
-    ValveCoefficients,
+    DeclaredWeight, EdgeCoefficients, FrictionLaw, HoseExpansion, LineVolume, NullLeakage, RatedFlow,
+    StribeckCurve, ValveCoefficients,
 };
 
 /// Kinematic viscosity of ISO VG 46 oil at 40 degrees Celsius, m2/s: used where a project states
@@ -79,17 +79,25 @@ pub fn components<S: Scalar>(
             stiffness: numbers.at("force_sensor.stiffness", declared.force_sensor.stiffness),
         },
         series: declared.series.as_ref().map(|series| self::series(series, &numbers.within("series"))),
-        linkage: declared.linkage.as_ref().map(|linkage| self::linkage(linkage, declared.cylinder.stroke)),
+        linkage: declared.linkage.as_ref().map(|linkage| {
+            self::linkage(linkage, declared.cylinder.stroke, &numbers.within("linkage.weight"))
+        }),
         stiffness_model: stiffness_model(declared.line.compliance),
     }
 }
 
 /// The linkage over the declared stroke; [`Actuator::new`] refuses one that does not exist.
-fn linkage<S: Scalar>(declared: &project::DeclaredLinkage, stroke: f64) -> Linkage<S> {
-    match declared.reduced(stroke) {
-        Ok(reduced) => reduced.linkage.convert(&mut S::from),
-        Err(_) => Linkage::impossible(),
-    }
+fn linkage<S: Scalar>(
+    declared: &project::DeclaredLinkage,
+    stroke: f64,
+    numbers: &Numbers<'_, S>,
+) -> Linkage<S> {
+    let Ok(reduced) = declared.reduced(stroke) else { return Linkage::impossible() };
+    let Some(DeclaredWeight { mass, centre_distance, .. }) = declared.weight else {
+        return reduced.linkage.convert(&mut S::from);
+    };
+    let moment = numbers.at("mass", mass) * numbers.at("centre_distance", centre_distance);
+    reduced.linkage.convert(&mut S::from).with_moment(moment * S::from(STANDARD_GRAVITY))
 }
 
 /// The spring between force sensor and load; a damper, a mass and a progression of zero are none.

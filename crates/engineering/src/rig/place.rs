@@ -2,28 +2,30 @@
 //! scalar.
 
 use phea_dynamics::scalar::Scalar;
+use phea_hydraulics::actuator::Components;
 use phea_hydraulics::operating_point::{Steady, SteadyLoad};
-use phea_hydraulics::stroke::ActuatorStroke;
 
 use super::numbers::Numbers;
 use crate::project::{self, Project};
 
 /// The position in m (in rad, of a motor) and the condition for the pressures. At null the piston is blocked; with a
 /// command it moves, without load pressure unless one is declared, thesis (4.18); with a velocity
-/// there is no load unless one is declared.
+/// there is no load unless one is declared. A load that yields and has a
+/// weight is held, unless a load or a command is declared.
 pub fn place<S: Scalar>(
     project: &Project,
-    stroke: ActuatorStroke<S>,
+    components: &Components<S>,
     numbers: &Numbers<'_, S>,
 ) -> (S, Steady<S>) {
     let declared = project.resolved_operating_point();
     let numbers = numbers.within("operating_point");
     let at = |name: &str, value: Option<f64>| value.map(|value| numbers.at(name, value));
-    let position = at("position", declared.position).unwrap_or(stroke.middle());
+    let position = at("position", declared.position).unwrap_or(components.cylinder.stroke.middle());
     let project::DeclaredOperatingPoint { load_pressure, load_force, velocity, command, .. } = declared;
     let pressure = at("load_pressure", load_pressure);
     let force = at("load_force", load_force);
     let none = S::from(0.0);
+    let force = force.or_else(|| weight_held(project, components, position).filter(|_| command.is_none()));
     let load = pressure.map(SteadyLoad::Pressure).or(force.map(SteadyLoad::Force));
     let steady = match (command, pressure) {
         (Some(command), Some(pressure)) => Steady::Matched(S::from(command), pressure),
@@ -35,4 +37,10 @@ pub fn place<S: Scalar>(
         },
     };
     (position, steady)
+}
+
+/// The force that holds the weight of a load that yields; `None` where there is none.
+fn weight_held<S: Scalar>(project: &Project, components: &Components<S>, position: S) -> Option<S> {
+    let declared = project.actuator.as_ref().filter(|declared| declared.load != project::Load::Prescribed);
+    declared.and(components.linkage.as_ref())?.holding_force(position, components.force_sensor.stiffness)
 }

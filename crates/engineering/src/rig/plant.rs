@@ -4,7 +4,7 @@
 use phea_dynamics::scalar::Scalar;
 use phea_hydraulics::actuator::Components;
 use phea_hydraulics::linear::LinearParameters;
-use phea_hydraulics::linkage::RodEnd;
+use phea_hydraulics::linkage::{RodEnd, WeightAt};
 use phea_hydraulics::operating_point::OperatingPoint;
 use phea_hydraulics::plant::{ChamberDynamics, LinearLoad, LinearPlant, YieldingSupply};
 use phea_hydraulics::servovalve::ChamberCoefficients;
@@ -42,6 +42,8 @@ pub struct LoadLever<S = f64> {
     pub arm: S,
     /// -F g'': by the change of the arm under the force.
     pub geometric_stiffness: S,
+    /// k_w: by the change of the torque of its weight; `None` without one.
+    pub weight_stiffness: Option<S>,
 }
 
 impl<S: Scalar> YieldingLoad<S> {
@@ -51,19 +53,25 @@ impl<S: Scalar> YieldingLoad<S> {
         let damping = self.damping + self.contact_damping;
         match self.lever {
             None => LinearLoad::Yielding { mass, damping, stiffness },
-            Some(LoadLever { arm, geometric_stiffness }) => {
+            Some(LoadLever { arm, geometric_stiffness, weight_stiffness }) => {
+                let geometric_stiffness =
+                    weight_stiffness.map_or(geometric_stiffness, |weight| geometric_stiffness + weight);
                 LinearLoad::Linked { inertia: mass, damping, stiffness, geometric_stiffness, lever_arm: arm }
             }
         }
     }
 }
 
-/// The load's end of the rod at an operating point; `None` without a linkage. The force sensor is
-/// compressed by the force there.
-pub(crate) fn rod_end<S: Scalar>(components: &Components<S>, point: &OperatingPoint<S>) -> Option<RodEnd<S>> {
+/// The load's end of the rod at an operating point, and the weight of the load there; `None` without a
+/// linkage. The force sensor is compressed by the force there.
+pub(crate) fn rod_end<S: Scalar>(
+    components: &Components<S>,
+    point: &OperatingPoint<S>,
+) -> Option<(RodEnd<S>, Option<WeightAt<S>>)> {
     let linkage = components.linkage.as_ref()?;
     let position = point.position - point.hydraulic_force / components.force_sensor.stiffness;
-    Some(linkage.end(linkage.angle(position)))
+    let angle = linkage.angle(position);
+    Some((linkage.end(angle), linkage.weight_at(angle)))
 }
 
 /// The load at an operating point; `None` where its motion is prescribed.
@@ -76,9 +84,15 @@ pub(crate) fn load_at<S: Scalar>(
     let force = point.hydraulic_force;
     match rod_end(components, point) {
         None => yielding_load(declared, numbers, force),
-        Some(end) => {
-            let turned = yielding_load(declared, numbers, force * end.lever_arm)?;
-            let lever = LoadLever { arm: end.lever_arm, geometric_stiffness: -(force * end.lever_slope) };
+        Some((end, weight)) => {
+            let torque = force * end.lever_arm;
+            let torque = weight.map_or(torque, |weight| torque + weight.torque);
+            let turned = yielding_load(declared, numbers, torque)?;
+            let lever = LoadLever {
+                arm: end.lever_arm,
+                geometric_stiffness: -(force * end.lever_slope),
+                weight_stiffness: weight.map(|weight| weight.stiffness),
+            };
             Some(YieldingLoad { lever: Some(lever), ..turned })
         }
     }

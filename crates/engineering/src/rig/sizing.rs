@@ -101,6 +101,7 @@ pub fn sizing_problem(setup: &Setup<'_>, catalogue: &Catalogue) -> Result<Sizing
         hose_length: wish.hose_length.unwrap_or(HOSE_LENGTH),
         supply_pressure: actuator.supply.pressure,
         model: components.stiffness_model,
+        unlike: unlike(actuator),
         hoses,
         market_bores: DASH_SIZES.iter().map(|(name, bore)| (name.to_string(), *bore)).collect(),
     })
@@ -135,30 +136,82 @@ fn maximum_flow(actuator: &project::DeclaredActuator) -> Result<(f64, String), S
     }
 }
 
-/// The hoses of the catalogue, with the values that the project states for one of the same name;
-/// its own hose if it has no name.
+/// The hoses of the catalogue, with the values that the project states for one of the same name, on
+/// both sides; its own that have no name, or differ between its sides.
 fn hoses(actuator: &project::DeclaredActuator, catalogue: &Catalogue) -> Vec<HoseOption> {
-    let line = &actuator.line.a;
+    let lines = [&actuator.line.a, &actuator.line.b];
+    let own = lines.map(|line| line.hose());
+    // a side without a hose takes after the other
+    let stiffenings = [0, 1].map(|side: usize| match (own[side], own[1 - side]) {
+        (None, Some(_)) => lines[1 - side].dynamic_stiffening,
+        _ => lines[side].dynamic_stiffening,
+    });
     let pressures = ExpansionPressures::of(actuator.supply.pressure, actuator.supply.tank_pressure);
-    let option = |name: &str, properties: &HoseProperties| {
-        let expansion = VolumetricExpansion::of(&properties.expansion, &Numbers::declared());
-        let stiffening = stiffening(line.dynamic_stiffening, &Numbers::declared());
+    let option = |name: &str, properties: [&HoseProperties; 2]| {
+        let hoses = [0, 1].map(|side: usize| {
+            let expansion = VolumetricExpansion::of(&properties[side].expansion, &Numbers::declared());
+            let stiffening = stiffening(stiffenings[side], &Numbers::declared());
+            hose(properties[side].bore, expansion, pressures, stiffening)
+        });
+        let [working_a, working_b] = properties.map(|hose| hose.working_pressure);
+        let [radius_a, radius_b] = properties.map(|hose| hose.minimum_bend_radius);
         HoseOption {
             name: name.to_string(),
-            hose: hose(properties.bore, expansion, pressures, stiffening),
-            working_pressure: properties.working_pressure,
-            minimum_bend_radius: properties.minimum_bend_radius,
+            hoses,
+            working_pressure: working_a.zip(working_b).map(|(one, other)| one.min(other)),
+            minimum_bend_radius: [radius_a, radius_b].into_iter().flatten().reduce(f64::max),
         }
     };
-    let own = line.hose();
-    let mut hoses: Vec<HoseOption> = catalogue
-        .entries(CatalogueKind::Hose)
-        .filter_map(|entry| {
-            let own = own.filter(|_| line.hose_name() == Some(entry.name.as_str()));
-            Some(option(&entry.name, own.or(entry.hose.as_ref())?))
-        })
-        .collect();
-    let unnamed = own.filter(|_| line.hose_name().is_none());
-    hoses.extend(unnamed.map(|own| option("the project's hose", own)));
+    let declared = match own {
+        [None, None] => None,
+        [Some(a), Some(b)] => Some([a, b]),
+        [Some(only), None] | [None, Some(only)] => Some([only; 2]),
+    };
+    let name = own_hoses(actuator);
+    let mut declared = declared.zip(name.as_deref());
+    let mut hoses: Vec<HoseOption> = Vec::new();
+    for entry in catalogue.entries(CatalogueKind::Hose) {
+        match declared.filter(|(_, name)| *name == entry.name) {
+            Some((own, name)) => {
+                hoses.push(option(name, own));
+                declared = None;
+            }
+            None => hoses.extend(entry.hose.as_ref().map(|hose| option(&entry.name, [hose; 2]))),
+        }
+    }
+    // a name of the catalogue is none of the project's own
+    let of_catalogue = |name: &str| lines.iter().any(|line| line.hose_name() == Some(name));
+    hoses.extend(declared.filter(|(_, name)| !of_catalogue(name)).map(|(own, name)| option(name, own)));
     hoses
+}
+
+/// What the hoses of a project are called among those to choose from; `None` where it has none.
+pub(crate) fn own_hoses(actuator: &project::DeclaredActuator) -> Option<String> {
+    let lines = [&actuator.line.a, &actuator.line.b];
+    let named = |line: &project::DeclaredLine| line.hose_name().unwrap_or("the project's hose").to_string();
+    match lines.map(|line| line.hose()) {
+        [None, None] => None,
+        [Some(_), None] => Some(named(lines[0])),
+        [None, Some(_)] => Some(named(lines[1])),
+        [Some(a), Some(b)] if a == b && lines[0].hose_name() == lines[1].hose_name() => Some(named(lines[0])),
+        [Some(_), Some(_)] => Some(format!("{} in line A, {} in line B", named(lines[0]), named(lines[1]))),
+    }
+}
+
+/// What differs between the declared lines, and what is made of it.
+fn unlike(actuator: &project::DeclaredActuator) -> Option<String> {
+    let [line_a, line_b] = [&actuator.line.a, &actuator.line.b];
+    match (line_a.hose(), line_b.hose()) {
+        (Some(a), Some(b)) if a == b && line_a.dynamic_stiffening == line_b.dynamic_stiffening => None,
+        (Some(_), Some(_)) => {
+            Some("the lines differ: each is sized so that both have the same compliance".to_string())
+        }
+        (None, None) => None,
+        (Some(_), None) => {
+            Some("line B is no hose as it is declared: hoses are sized for both lines".to_string())
+        }
+        (None, Some(_)) => {
+            Some("line A is no hose as it is declared: hoses are sized for both lines".to_string())
+        }
+    }
 }

@@ -86,7 +86,7 @@ fn low_pressure_lines(problem: &SizingProblem) -> SizingStep {
 
 /// Every bore of market and catalogue, smallest first, and the record of steps c.2 to c.4.
 pub(super) fn assess(problem: &SizingProblem, decisions: &mut Vec<SizingStep>) -> Vec<CommercialBore> {
-    let offered = problem.hoses.iter().map(|option| (option.name.clone(), option.hose.bore));
+    let offered = problem.hoses.iter().map(|option| (option.name.clone(), option.bore()));
     let mut bores: Vec<CommercialBore> = problem
         .market_bores
         .iter()

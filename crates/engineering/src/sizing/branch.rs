@@ -1,5 +1,5 @@
-use phea_hydraulics::line::{Line, StiffeningMember};
-use phea_hydraulics::stiffness::{LineLength, StiffnessModel, StrokeStiffness, line_length_for_stiffness};
+use phea_hydraulics::line::StiffeningMember;
+use phea_hydraulics::stiffness::{LineLength, StiffnessModel, StrokeStiffness, line_share_for_stiffness};
 
 use super::{HoseOption, Question, SizingProblem, SizingStep};
 use crate::quantity::significant;
@@ -11,7 +11,7 @@ pub struct GainStep {
     pub gain_v_per_n: f64,
     /// K_H of equation 6.16, N/m; infinite at or below the pole.
     pub stiffness_n_per_m: f64,
-    /// L_ho for it, m: zero where no hose is needed.
+    /// L_ho of line A for it, m: zero where no hose is needed.
     pub length_m: f64,
 }
 
@@ -24,8 +24,8 @@ pub struct Branch {
     pub model: StiffnessModel,
     /// The trials of the left branch.
     pub steps: Vec<GainStep>,
-    /// Length of each line, m; zero where no hose is needed.
-    pub length_m: f64,
+    /// Length of line A and of line B, m; zero where no hose is needed.
+    pub lengths_m: [f64; 2],
     /// Stiffness over the stroke at that length.
     pub stiffness: StrokeStiffness,
     /// Gain for the desired time constant at the least stiffness, V/N.
@@ -41,21 +41,28 @@ pub(super) fn branches(
 ) -> Vec<Branch> {
     match question {
         Question::Gain(gain) => vec![at_gain(problem, option, model, vec![], gain)],
-        Question::Length(length) => vec![at_length(problem, option, model, length)],
+        Question::Length(length) => vec![at_lengths(problem, option, model, [length; 2])],
         Question::Both => {
+            let proportion = option.proportion(model, problem.fluid_modulus);
+            let available = problem.available_length(proportion);
             vec![
                 search(problem, option, model),
-                at_length(problem, option, model, problem.available_length()),
+                at_lengths(problem, option, model, proportion.map(|share| share * available)),
             ]
         }
     }
 }
 
-/// Steps k and l: the stiffness of this length, and the gain it needs.
-fn at_length(problem: &SizingProblem, option: &HoseOption, model: StiffnessModel, length: f64) -> Branch {
-    let stiffness = problem.stroke_stiffness(option.hose, length, model);
+/// Steps k and l: the stiffness of these lengths, and the gain it needs.
+fn at_lengths(
+    problem: &SizingProblem,
+    option: &HoseOption,
+    model: StiffnessModel,
+    lengths_m: [f64; 2],
+) -> Branch {
+    let stiffness = problem.stroke_stiffness(option, lengths_m, model);
     let gain_v_per_n = problem.gain_for_stiffness(stiffness.minimum);
-    Branch { by_gain: false, model, steps: vec![], length_m: length, stiffness, gain_v_per_n }
+    Branch { by_gain: false, model, steps: vec![], lengths_m, stiffness, gain_v_per_n }
 }
 
 /// Steps g and h at one gain.
@@ -68,8 +75,10 @@ fn at_gain(
 ) -> Branch {
     let step = gain_step(problem, option, model, gain);
     steps.push(step);
-    let stiffness = problem.stroke_stiffness(option.hose, step.length_m, model);
-    Branch { by_gain: true, model, steps, length_m: step.length_m, stiffness, gain_v_per_n: gain }
+    let proportion = option.proportion(model, problem.fluid_modulus);
+    let lengths_m = proportion.map(|share| if step.length_m == 0.0 { 0.0 } else { share * step.length_m });
+    let stiffness = problem.stroke_stiffness(option, lengths_m, model);
+    Branch { by_gain: true, model, steps, lengths_m, stiffness, gain_v_per_n: gain }
 }
 
 /// Steps f to j: the gain starts at the largest and is halved until the hose is acceptably short or
@@ -77,7 +86,8 @@ fn at_gain(
 /// trials and is found by bisection.
 fn search(problem: &SizingProblem, option: &HoseOption, model: StiffnessModel) -> Branch {
     let trial = |gain| gain_step(problem, option, model, gain);
-    let fits = |step: &GainStep| step.length_m <= problem.available_length();
+    let available = problem.available_length(option.proportion(model, problem.fluid_modulus));
+    let fits = |step: &GainStep| step.length_m <= available;
     let floor = problem.minimum_gain.min(problem.maximum_gain);
     let mut steps = Vec::new();
     let mut last = trial(problem.maximum_gain);
@@ -111,26 +121,29 @@ fn largest_gain(mut fitting: f64, mut too_large: f64, fits: impl Fn(f64) -> bool
 /// The same hose cut to the next multiple of the increment that is still acceptable, with the gain
 /// for that length.
 fn commercial(problem: &SizingProblem, option: &HoseOption, exact: Branch) -> Branch {
-    let sound = exact.length_m > 0.0 && exact.length_m <= problem.available_length();
+    let proportion = option.proportion(exact.model, problem.fluid_modulus);
+    let available = problem.available_length(proportion);
+    let [length_a, _] = exact.lengths_m;
+    let sound = length_a > 0.0 && length_a <= available;
     let Some(increment) = problem.length_increment.filter(|_| sound) else { return exact };
     let tolerance = 1e-9;
-    let up = (exact.length_m / increment - tolerance).ceil() * increment;
-    let down = (problem.available_length() / increment + tolerance).floor() * increment;
-    if down <= 0.0 {
+    let up = exact.lengths_m.map(|length| (length / increment - tolerance).ceil() * increment);
+    let down = proportion.map(|share| (share * available / increment + tolerance).floor() * increment);
+    if down.iter().any(|length| *length <= 0.0) {
         return exact;
     }
-    let cut = at_length(problem, option, exact.model, up.min(down));
+    let cut = at_lengths(problem, option, exact.model, [up[0].min(down[0]), up[1].min(down[1])]);
     Branch { by_gain: true, steps: exact.steps, ..cut }
 }
 
 fn gain_step(problem: &SizingProblem, option: &HoseOption, model: StiffnessModel, gain: f64) -> GainStep {
     let stiffness_n_per_m = problem.stiffness_for_gain(gain);
-    let line = Line::Hose { hose: option.hose, length: 1.0 };
-    let length = line_length_for_stiffness(
+    let [line_a, line_b] = option.lines(option.proportion(model, problem.fluid_modulus));
+    let length = line_share_for_stiffness(
         model,
         problem.fluid_modulus,
         &problem.cylinder,
-        &line,
+        [&line_a, &line_b],
         StiffeningMember::Nominal,
         stiffness_n_per_m,
     );
@@ -151,6 +164,20 @@ pub fn model_name(model: StiffnessModel) -> &'static str {
 }
 
 impl Branch {
+    /// Whether both lines have the same length.
+    pub fn is_alike(&self) -> bool {
+        self.lengths_m[0] == self.lengths_m[1]
+    }
+
+    /// The length of each line with these significant digits.
+    pub fn length_words(&self, digits: usize) -> String {
+        let [length_a, length_b] = self.lengths_m.map(|length| significant(length, digits));
+        match self.is_alike() {
+            true => format!("{length_a} m a line"),
+            false => format!("{length_a} m in line A and {length_b} m in line B"),
+        }
+    }
+
     /// The decisions of steps f to l; the single trials stay in `steps`.
     pub(super) fn record(&self, option: &HoseOption, decisions: &mut Vec<SizingStep>) {
         let name = format!("{}, {}", option.name, model_name(self.model));
@@ -158,19 +185,20 @@ impl Branch {
         let mut decide =
             |step, text: String| decisions.push(SizingStep { step, text: format!("{name}: {text}") });
         if !self.by_gain {
-            let (length, stiffness) = (number(self.length_m), number(self.stiffness.minimum));
+            let (length, stiffness) = (self.length_words(4), number(self.stiffness.minimum));
             let gain = number(self.gain_v_per_n);
             let text = format!(
-                "{length} m a line gives K_H = {stiffness} N/m at its least (6.26), which needs K_p = {gain} V/N (6.27)."
+                "{length} gives K_H = {stiffness} N/m at its least (6.26), which needs K_p = {gain} V/N (6.27)."
             );
             return decide("k, l", text);
         }
         let Some((end, trials)) = self.steps.split_last() else { return };
         if let (Some(first), Some(last)) = (trials.first(), trials.last()) {
             let text = format!(
-                "K_p = {} V/N asks for {} m of hose per line (6.16, 6.25), too long{}.",
+                "K_p = {} V/N asks for {} m of hose {} (6.16, 6.25), too long{}.",
                 number(first.gain_v_per_n),
                 number(first.length_m),
+                if self.is_alike() { "per line" } else { "in line A" },
                 if trials.len() > 1 {
                     format!(
                         "; so does every half of it down to {} V/N with {} m, {} trials",
@@ -193,16 +221,16 @@ impl Branch {
         }
         let length = match end.length_m {
             0.0 => "for which no hose is needed".to_string(),
-            length => format!("which {} m of hose per line gives (6.25)", number(length)),
+            length if self.is_alike() => format!("which {} m of hose per line gives (6.25)", number(length)),
+            _ => format!("which {} gives, both lines of the same compliance", self.length_words(4)),
         };
         decide("i, j", format!("K_p = {gain} V/N requires K_H = {stiffness} N/m (6.16), {length}."));
         // Lengths that differ by the search's rounding are one length.
-        if (self.length_m - end.length_m).abs() > 1e-6 {
-            let (length, gain) = (number(self.length_m), number(self.gain_v_per_n));
+        if (self.lengths_m[0] - end.length_m).abs() > 1e-6 {
+            let (length, gain) = (self.length_words(4), number(self.gain_v_per_n));
             let stiffness = number(self.stiffness.minimum);
-            let text = format!(
-                "cut to {length} m a line, which gives K_H = {stiffness} N/m and needs K_p = {gain} V/N."
-            );
+            let text =
+                format!("cut to {length}, which gives K_H = {stiffness} N/m and needs K_p = {gain} V/N.");
             decide("i", text);
         }
     }

@@ -51,16 +51,16 @@ impl Candidate {
         self.findings.iter().all(|finding| finding.severity != Consequence::Rejects)
     }
 
-    /// Length of each line, m.
+    /// Length of line A, and of each line where they are alike, m.
     pub fn length_m(&self) -> f64 {
-        self.branch.length_m
+        self.branch.lengths_m[0]
     }
 }
 
 /// Step i or m and the further checks that a hose must pass: velocity, stock, pressure with surge,
 /// bending, settling.
 pub(super) fn assess(problem: &SizingProblem, option: &HoseOption, branch: Branch) -> Candidate {
-    let oil_velocity_m_per_s = bore::oil_velocity(problem, option.hose.bore);
+    let oil_velocity_m_per_s = bore::oil_velocity(problem, option.bore());
     let surge_pressure_pa = surge_pressure(problem, option, oil_velocity_m_per_s);
     let largest_loss =
         problem.flow_pressure_coefficient_maximum.unwrap_or(problem.linear.flow_pressure_coefficient);
@@ -96,9 +96,13 @@ pub(super) fn assess(problem: &SizingProblem, option: &HoseOption, branch: Branc
 
 /// Pressure surge of a flow stopped at once, Pa: rho c v = v sqrt(rho beta_e), Joukowsky (1898).
 fn surge_pressure(problem: &SizingProblem, option: &HoseOption, velocity: f64) -> f64 {
-    let wall = option.hose.filled().wall_modulus(StiffeningMember::Maximum);
-    let modulus = series_modulus(problem.fluid_modulus, wall);
-    velocity * (problem.density * modulus).sqrt()
+    let surges = option.hoses.map(|hose| {
+        let wall = hose.filled().wall_modulus(StiffeningMember::Maximum);
+        let modulus = series_modulus(problem.fluid_modulus, wall);
+        let share = (option.bore() / hose.bore) * (option.bore() / hose.bore);
+        share * velocity * (problem.density * modulus).sqrt()
+    });
+    surges[0].max(surges[1])
 }
 
 fn rejects(findings: &mut Vec<SizingReason>, text: String) {
@@ -112,7 +116,7 @@ fn warns(findings: &mut Vec<SizingReason>, text: String) {
 fn velocity(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<SizingReason>) {
     let velocity = significant(candidate.oil_velocity_m_per_s, 3);
     let [slowest, fastest] = problem.oil_velocity;
-    match bore::verdict(problem, candidate.option.hose.bore) {
+    match bore::verdict(problem, candidate.option.bore()) {
         BoreVerdict::TooFast => rejects(findings, format!("oil runs at {velocity} m/s, above {fastest} m/s")),
         BoreVerdict::Slow => {
             warns(
@@ -128,7 +132,8 @@ fn velocity(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<S
 
 fn length(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<SizingReason>) {
     let [shortest, longest] = problem.hose_length;
-    let length = candidate.length_m();
+    let [length_a, length_b] = candidate.branch.lengths_m;
+    let (length, least, greatest) = (length_a, length_a.min(length_b), length_a.max(length_b));
     if length == 0.0 && candidate.branch.gain_v_per_n <= problem.pole_gain() {
         // No stiffness would suffice; the finding on the gain says so.
     } else if length == 0.0 {
@@ -139,22 +144,20 @@ fn length(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<Siz
             StiffnessModel::ByVolume => "with rigid lines the actuator",
         };
         rejects(findings, format!("no hose is needed: {why} is already as compliant as this asks for"));
-    } else if length < shortest {
+    } else if least < shortest {
         rejects(
             findings,
-            format!("{} m a line is shorter than the acceptable {shortest} m", significant(length, 3)),
+            format!("{} m a line is shorter than the acceptable {shortest} m", significant(least, 3)),
         );
-    } else if length > longest * (1.0 + 1e-9) {
+    } else if greatest > longest * (1.0 + 1e-9) {
         rejects(
             findings,
-            format!("{} m a line is longer than the acceptable {longest} m", significant(length, 3)),
+            format!("{} m a line is longer than the acceptable {longest} m", significant(greatest, 3)),
         );
     }
-    if let Some(stock) = problem.stock_length.filter(|stock| 2.0 * length > stock * (1.0 + 1e-9)) {
-        rejects(
-            findings,
-            format!("both lines take {} m, the stock is {stock} m", significant(2.0 * length, 3)),
-        );
+    let both = length_a + length_b;
+    if let Some(stock) = problem.stock_length.filter(|stock| both > stock * (1.0 + 1e-9)) {
+        rejects(findings, format!("both lines take {} m, the stock is {stock} m", significant(both, 3)));
     }
 }
 
@@ -216,7 +219,8 @@ fn pressure(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<S
 fn bending(candidate: &Candidate, findings: &mut Vec<SizingReason>) {
     let Some(radius) = candidate.option.minimum_bend_radius else { return };
     let quarter_turn = std::f64::consts::FRAC_PI_2 * radius;
-    if candidate.length_m() > 0.0 && candidate.length_m() < quarter_turn {
+    let [length_a, length_b] = candidate.branch.lengths_m;
+    if candidate.length_m() > 0.0 && length_a.min(length_b) < quarter_turn {
         warns(
             findings,
             format!(
@@ -230,7 +234,7 @@ fn bending(candidate: &Candidate, findings: &mut Vec<SizingReason>) {
 
 /// A wall with its static modulus is softer than measured dynamic values of braided hoses.
 fn stiffening(option: &HoseOption, findings: &mut Vec<SizingReason>) {
-    if option.hose.dynamic_stiffening.maximum <= 1.0 {
+    if option.hoses.iter().any(|hose| hose.dynamic_stiffening.maximum <= 1.0) {
         let text = "[line] declares no `dynamic_stiffening`: the wall has its static modulus, and a stiffer one takes more hose";
         warns(findings, text.to_string());
     }

@@ -48,6 +48,9 @@ pub struct SizingProblem {
     pub supply_pressure: f64,
     /// The stiffness model the project declares.
     pub model: StiffnessModel,
+    /// What differs between the lines as they are declared, in words, and what is made of it; `None`
+    /// where they are hoses alike.
+    pub unlike: Option<String>,
     /// The hoses to choose from.
     pub hoses: Vec<HoseOption>,
     /// Bores on the market other than those of the hoses, with their names, m.
@@ -59,12 +62,51 @@ pub struct SizingProblem {
 pub struct HoseOption {
     /// Name in the catalogue.
     pub name: String,
-    /// Its bore, expansion and stiffening.
-    pub hose: Hose,
-    /// Working pressure, Pa, where known.
+    /// Bore, expansion and stiffening of that of line A and that of line B.
+    pub hoses: [Hose; 2],
+    /// Working pressure, Pa, where known: of two the lower.
     pub working_pressure: Option<f64>,
-    /// Minimum bend radius, m, where known.
+    /// Minimum bend radius, m, where known: of two the greater.
     pub minimum_bend_radius: Option<f64>,
+}
+
+impl HoseOption {
+    /// Whether both lines have the same hose.
+    pub fn is_alike(&self) -> bool {
+        self.hoses[0] == self.hoses[1]
+    }
+
+    /// m, of the narrower, whose oil is the faster.
+    pub fn bore(&self) -> f64 {
+        self.hoses[0].bore.min(self.hoses[1].bore)
+    }
+
+    /// Lengths of both lines in m for a metre of line A, so that each has the same compliance.
+    ///
+    /// ```text
+    /// L_B/L_A = kappa_A/kappa_B
+    /// ```
+    pub fn proportion(&self, model: StiffnessModel, fluid_modulus: f64) -> [f64; 2] {
+        if self.is_alike() {
+            return [1.0; 2];
+        }
+        let [metre_a, metre_b] = self.hoses.map(|hose| {
+            let line = Line::Hose { hose, length: 1.0 };
+            match model {
+                StiffnessModel::Uniform => {
+                    line.compliance_of_unexpanded(fluid_modulus, StiffeningMember::Nominal)
+                }
+                StiffnessModel::ByVolume => line.compliance(fluid_modulus, StiffeningMember::Nominal),
+            }
+        });
+        [1.0, metre_a / metre_b]
+    }
+
+    /// Both lines at these lengths in m.
+    pub fn lines(&self, lengths: [f64; 2]) -> [Line; 2] {
+        let [hose_a, hose_b] = self.hoses;
+        [Line::Hose { hose: hose_a, length: lengths[0] }, Line::Hose { hose: hose_b, length: lengths[1] }]
+    }
 }
 
 impl SizingProblem {
@@ -92,24 +134,32 @@ impl SizingProblem {
         LinearParameters { hydraulic_stiffness, ..self.linear }
     }
 
-    /// Stiffness over the stroke with a hose of this length on each side.
-    pub fn stroke_stiffness(&self, hose: Hose, length: f64, model: StiffnessModel) -> StrokeStiffness {
-        let line = Line::Hose { hose, length };
-        chamber_compliance(
-            model,
-            [self.fluid_modulus; 2],
-            &self.cylinder,
-            [&line, &line],
-            StiffeningMember::Nominal,
-        )
-        .over_stroke()
+    /// Stiffness over the stroke with hoses of these lengths in m on side A and on side B.
+    pub fn stroke_stiffness(
+        &self,
+        option: &HoseOption,
+        lengths: [f64; 2],
+        model: StiffnessModel,
+    ) -> StrokeStiffness {
+        let [line_a, line_b] = option.lines(lengths);
+        let (moduli, lines) = ([self.fluid_modulus; 2], [&line_a, &line_b]);
+        chamber_compliance(model, moduli, &self.cylinder, lines, StiffeningMember::Nominal).over_stroke()
     }
 
-    /// Length of each line when the stock is shared, or the longest acceptable one, whichever is
-    /// shorter, m.
-    pub(crate) fn available_length(&self) -> f64 {
-        let longest = self.hose_length[1];
-        self.stock_length.map_or(longest, |stock| longest.min(stock / 2.0))
+    /// Length of line A when the stock is shared in this proportion, or the longest acceptable one,
+    /// whichever is shorter, m.
+    pub(crate) fn available_length(&self, proportion: [f64; 2]) -> f64 {
+        let [own, other] = proportion;
+        let longest = self.hose_length[1] / own.max(other);
+        self.stock_length.map_or(longest, |stock| longest.min(stock / (own + other)))
+    }
+
+    /// What the words of the procedure say about the lines.
+    fn lines_words(&self) -> String {
+        match &self.unlike {
+            None => "both lines alike".to_string(),
+            Some(words) => words.clone(),
+        }
     }
 
     pub(super) fn decisions(&self) -> Vec<SizingStep> {
@@ -118,7 +168,7 @@ impl SizingProblem {
             SizingStep {
                 step: "a",
                 text: format!(
-                    "System data: A_u = {} cm2, stroke {} mm, β_0 = {} GPa, K_S = {} MN/m, K_qU = {} m3/(s.V), K_c0 = {} m3/(s.Pa){}; both lines alike.",
+                    "System data: A_u = {} cm2, stroke {} mm, β_0 = {} GPa, K_S = {} MN/m, K_qU = {} m3/(s.V), K_c0 = {} m3/(s.Pa){}; {}.",
                     DisplayUnit::SQUARE_CENTIMETRE.number(self.linear.useful_area, 4),
                     DisplayUnit::MILLIMETRE.number(2.0 * self.cylinder.stroke.middle(), 4),
                     DisplayUnit::GIGAPASCAL.number(self.fluid_modulus, 4),
@@ -128,7 +178,8 @@ impl SizingProblem {
                     match self.internal_leakage {
                         0.0 => String::new(),
                         leakage => format!(" with {} m3/(s.Pa) from chamber to chamber", number(leakage)),
-                    }
+                    },
+                    self.lines_words()
                 ),
             },
             SizingStep {
@@ -147,7 +198,7 @@ impl SizingProblem {
         let text = format!(
             "K_p starts at {} V/N and is halved while the hose is longer than {} m, but not below {} V/N; at {} V/N even a rigid transmission would be too slow (K_H infinite).",
             significant(self.maximum_gain, 3),
-            significant(self.available_length(), 4),
+            significant(self.available_length([1.0; 2]), 4),
             significant(self.minimum_gain, 3),
             significant(self.pole_gain(), 3)
         );

@@ -1,7 +1,7 @@
-use phea_hydraulics::line::{Hose, Line, Stiffening, StiffeningMember};
-use phea_hydraulics::stiffness::{LineLength, line_length_for_stiffness};
+use phea_hydraulics::line::{Hose, Stiffening, StiffeningMember};
+use phea_hydraulics::stiffness::{LineLength, line_share_for_stiffness};
 
-use super::{Candidate, SizingProblem};
+use super::{Candidate, HoseOption, SizingProblem};
 use crate::quantity::DisplayUnit;
 
 /// The effect of one uncertain number on stiffness and length as it goes from low to high,
@@ -16,8 +16,8 @@ pub struct Influence {
     pub values: [f64; 3],
     /// Least stiffness over the stroke of the chosen length, N/m, at low, nominal and high.
     pub stiffness_n_per_m: [f64; 3],
-    /// Length that keeps the nominal stiffness, m, at low, nominal and high; zero where none is
-    /// needed.
+    /// Length of line A that keeps the nominal stiffness, m, at low, nominal and high; zero where none
+    /// is needed.
     pub length_m: [f64; 3],
 }
 
@@ -32,18 +32,20 @@ impl Influence {
 const ASSUMED_SPREAD: f64 = 0.1;
 
 /// Influence of dynamic stiffening (its interval), fluid bulk modulus and volumetric expansion
-/// (plus and minus 10 %).
+/// (plus and minus 10 %), of both hoses where they differ; the values are those of line A.
 pub fn sensitivity(problem: &SizingProblem, candidate: &Candidate) -> Vec<Influence> {
-    let hose = candidate.option.hose;
+    let option = &candidate.option;
+    let hose = option.hoses[0];
     let Stiffening { nominal, minimum, maximum } = hose.dynamic_stiffening;
-    let around = |value: f64| [value * (1.0 - ASSUMED_SPREAD), value, value * (1.0 + ASSUMED_SPREAD)];
+    let shares = [1.0 - ASSUMED_SPREAD, 1.0, 1.0 + ASSUMED_SPREAD];
+    let with = |vary: &dyn Fn(Hose) -> Hose| HoseOption { hoses: option.hoses.map(vary), ..option.clone() };
     let influence = |quantity: &'static str,
                      unit: DisplayUnit,
                      values: [f64; 3],
-                     vary: &dyn Fn(f64) -> (SizingProblem, Hose)| {
-        let outcomes = values.map(|value| {
-            let (varied, hose) = vary(value);
-            outcome(&varied, hose, candidate)
+                     vary: &dyn Fn(usize) -> (SizingProblem, HoseOption)| {
+        let outcomes = [0, 1, 2].map(|index| {
+            let (varied, option) = vary(index);
+            outcome(&varied, &option, candidate)
         });
         Influence {
             quantity,
@@ -54,40 +56,53 @@ pub fn sensitivity(problem: &SizingProblem, candidate: &Candidate) -> Vec<Influe
         }
     };
     vec![
-        influence("dynamic stiffening r_β", DisplayUnit::ONE, [minimum, nominal, maximum], &|value| {
-            (problem.clone(), Hose { dynamic_stiffening: Stiffening::certain(value), ..hose })
+        influence("dynamic stiffening r_β", DisplayUnit::ONE, [minimum, nominal, maximum], &|index| {
+            let vary = |hose: Hose| {
+                let Stiffening { nominal, minimum, maximum } = hose.dynamic_stiffening;
+                let value = [minimum, nominal, maximum][index];
+                Hose { dynamic_stiffening: Stiffening::certain(value), ..hose }
+            };
+            (problem.clone(), with(&vary))
         }),
         influence(
             "fluid bulk modulus β_0",
             DisplayUnit::GIGAPASCAL,
-            around(problem.fluid_modulus),
-            &|value| (SizingProblem { fluid_modulus: value, ..problem.clone() }, hose),
+            shares.map(|share| problem.fluid_modulus * share),
+            &|index| {
+                let fluid_modulus = problem.fluid_modulus * shares[index];
+                (SizingProblem { fluid_modulus, ..problem.clone() }, option.clone())
+            },
         ),
         // The slope goes with the expansion: a hose that expands more does so at every pressure.
         influence(
             "volumetric expansion E",
             DisplayUnit::CUBIC_CENTIMETRE_PER_METRE,
-            around(hose.volumetric_expansion),
-            &|value| {
-                let share = value / hose.volumetric_expansion;
-                let [operating_expansion, expansion_slope] =
-                    [hose.operating_expansion, hose.expansion_slope].map(|number| number * share);
-                let volumetric_expansion = value;
-                let hose = Hose { volumetric_expansion, operating_expansion, expansion_slope, ..hose };
-                (problem.clone(), hose)
-            },
+            shares.map(|share| hose.volumetric_expansion * share),
+            &|index| (problem.clone(), with(&|hose| expanding(hose, shares[index]))),
         ),
     ]
 }
 
-fn outcome(problem: &SizingProblem, hose: Hose, candidate: &Candidate) -> (f64, f64) {
-    let model = candidate.branch.model;
-    let stiffness = problem.stroke_stiffness(hose, candidate.length_m(), model).minimum;
-    let length = line_length_for_stiffness(
+fn expanding(hose: Hose, share: f64) -> Hose {
+    let [volumetric_expansion, operating_expansion, expansion_slope] =
+        [hose.volumetric_expansion, hose.operating_expansion, hose.expansion_slope].map(|each| each * share);
+    Hose { volumetric_expansion, operating_expansion, expansion_slope, ..hose }
+}
+
+/// Least stiffness at the candidate's lengths, and the length of line A that keeps its own.
+fn outcome(problem: &SizingProblem, option: &HoseOption, candidate: &Candidate) -> (f64, f64) {
+    let (model, lengths) = (candidate.branch.model, candidate.branch.lengths_m);
+    let stiffness = problem.stroke_stiffness(option, lengths, model).minimum;
+    let proportion = match candidate.branch.is_alike() {
+        true => [1.0; 2],
+        false => [1.0, lengths[1] / lengths[0]],
+    };
+    let [line_a, line_b] = option.lines(proportion);
+    let length = line_share_for_stiffness(
         model,
         problem.fluid_modulus,
         &problem.cylinder,
-        &Line::Hose { hose, length: 1.0 },
+        [&line_a, &line_b],
         StiffeningMember::Nominal,
         candidate.branch.stiffness.minimum,
     );

@@ -37,6 +37,19 @@ impl<S: Scalar> Machine<S> {
         }
     }
 
+    /// The torque of the load's weight in N m; `None` without one.
+    #[inline(always)]
+    pub(super) fn weight_on<T: Scalar + From<S>>(&self, load: &Motion<T>) -> Option<T> {
+        Some(self.linkage.as_ref()?.weight_of(load.position)?.torque)
+    }
+
+    /// The potential energy of the load's weight in J; zero without one, and where the load does not yield.
+    pub(super) fn weight_energy<T: Scalar + From<S>>(&self, load: &Motion<T>) -> T {
+        let weight = self.linkage.as_ref().filter(|_| self.load.moves());
+        let weight = weight.and_then(|linkage| linkage.weight_of(load.position));
+        weight.map_or(T::from(0.0), |weight| weight.energy)
+    }
+
     /// Typical magnitudes of the states of a load, from those of force, deflection and velocity of
     /// the rod; `swing` is the velocity of a mass in kg on the sensor.
     pub(super) fn typical_load(&self, deflection: S, velocity: S, swing: impl Fn(S) -> S) -> Motion<S> {
@@ -56,14 +69,17 @@ impl Machine {
     /// The load where the end of the rod is at a position in m and its force in N is held: its
     /// motion from its ground, and where that is.
     pub(super) fn held_load(&self, end: f64, force: f64, velocity: f64) -> Option<(Motion, f64)> {
-        let (position, arm) = match &self.linkage {
-            None => (end, 1.0),
+        let (position, arm, weight) = match &self.linkage {
+            None => (end, 1.0, 0.0),
             Some(linkage) => {
                 let angle = linkage.angle(end);
-                (angle, linkage.end(angle).lever_arm)
+                let weight = linkage.weight_at(angle).map_or(0.0, |weight| weight.torque);
+                (angle, linkage.end(angle).lever_arm, weight)
             }
         };
-        let relative = self.load.held_at(force * arm)?;
+        // what nothing holds begins to fall from where it stands
+        let torque = force * arm;
+        let relative = self.load.held_at(torque + weight).or_else(|| self.load.held_at(torque))?;
         Some((Motion { position: relative, velocity: velocity / arm }, position - relative))
     }
 

@@ -246,6 +246,7 @@ impl<S: Scalar> Machine<S> {
         let external = self.layout.external_force(inputs);
         let on_load = end.on_load(joint.on_load);
         let on_load = external.map_or(on_load, |external| on_load + external);
+        let on_load = self.weight_on(&load).map_or(on_load, |weight| on_load + weight);
         let valve = self.valve.convert(&mut constant::<S, T>);
         let chambers = [state.pressure_a, state.pressure_b];
         let from_lines = if self.layout.has_lines() {

@@ -261,7 +261,7 @@ impl<S: Scalar> Machine<S> {
             self.series_account(joint, now.end.velocity),
             self.end_stop_account(position, velocity, forces.end_stops),
             Account {
-                stored: held,
+                stored: held + self.weight_energy(load),
                 inflow: joint.on_load * now.end.velocity + now.external_power - self.on_ground(now),
                 lost: damped,
             },

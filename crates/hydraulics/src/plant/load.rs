@@ -22,7 +22,7 @@ pub enum LinearLoad<S = f64> {
     /// the angle of its ground.
     ///
     /// ```text
-    /// (J s^2 + c s + k + k_g) X_L = r^2 F_L + (c s + k) X_0,     k_g = -F g''(theta) at a force F
+    /// (J s^2 + c s + k + k_g + k_w) X_L = r^2 F_L + (c s + k) X_0,     k_g = -F g''(theta) at a force F
     /// ```
     ///
     /// Nothing is divided by r, so that an interval of positions keeps the sign of J.
@@ -33,8 +33,8 @@ pub enum LinearLoad<S = f64> {
         damping: S,
         /// Stiffness k in N m/rad of what holds it to its ground.
         stiffness: S,
-        /// Stiffness k_g in N m/rad by the change of the lever arm under the force there; may be
-        /// negative.
+        /// Stiffness k_g in N m/rad by the change of the lever arm under the force there, and k_w by
+        /// that of the load's weight; may be negative.
         geometric_stiffness: S,
         /// Lever arm r = g' in m.
         lever_arm: S,

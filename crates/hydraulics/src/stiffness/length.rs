@@ -98,12 +98,36 @@ pub fn line_length_for_stiffness(
     member: StiffeningMember,
     stiffness: f64,
 ) -> LineLength {
+    let unit = with_length(line, 1.0);
+    line_share_for_stiffness(model, fluid_modulus, cylinder, [&unit; 2], member, stiffness)
+}
+
+/// The factor of the lengths of two lines that brings the least stiffness over the stroke to `stiffness`
+/// in N/m: lines of this proportion, each of its own hose.
+///
+/// Where the softest position lies within the stroke and both have the same compliance c:
+///
+/// ```text
+/// c = (Q^2/K_H - L - k_0A/s_A - k_0B/s_B) / (1/s_A + 1/s_B),    Q = A_A/sqrt(s_A) + A_B/sqrt(s_B)
+/// ```
+///
+/// for C_A(x) = k_0A + s_A x + c and C_B(x) = k_0B + s_B (L - x) + c.
+pub fn line_share_for_stiffness(
+    model: StiffnessModel,
+    fluid_modulus: f64,
+    cylinder: &Cylinder,
+    lines: [&Line; 2],
+    member: StiffeningMember,
+    stiffness: f64,
+) -> LineLength {
     if stiffness.is_nan() || stiffness <= 0.0 {
         return LineLength::OutOfReach;
     }
-    let minimum_at = |length: f64| {
-        let line = with_length(line, length);
-        chamber_compliance(model, [fluid_modulus; 2], cylinder, [&line, &line], member).over_stroke().minimum
+    let minimum_at = |share: f64| {
+        let [line_a, line_b] = lines.map(|line| scaled(line, share));
+        chamber_compliance(model, [fluid_modulus; 2], cylinder, [&line_a, &line_b], member)
+            .over_stroke()
+            .minimum
     };
     let stiffness_without_line = minimum_at(0.0);
     if stiffness_without_line <= stiffness {
@@ -127,6 +151,13 @@ pub fn line_length_for_stiffness(
         } else {
             longer = middle;
         }
+    }
+}
+
+fn scaled(line: &Line, share: f64) -> Line {
+    match *line {
+        Line::Hose { length, .. } | Line::Pipe { length, .. } => with_length(line, length * share),
+        Line::Volume { .. } => with_length(line, share),
     }
 }
 

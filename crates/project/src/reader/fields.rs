@@ -11,8 +11,8 @@ use crate::text::RawFinding;
 use crate::toml_text::in_toml;
 use crate::tree::{TreeNode, Value};
 use crate::visitor::{FormulaShape, Kinds, NamedNumber, ValueForm, Variants, Visitor};
-use phea_quantity::MotionKind;
 use phea_quantity::spelling::nearest;
+use phea_quantity::{MotionKind, Price, PricedBy};
 
 impl Visitor for Reader<'_> {
     fn moves(&mut self, motion: Option<MotionKind>) {
@@ -115,6 +115,12 @@ impl Visitor for Reader<'_> {
             },
             None if required => self.missing(key),
             None => {}
+        }
+    }
+
+    fn price(&mut self, key: Key, by: PricedBy, field: &mut Option<Price>) {
+        if let Some(hit) = self.find(key) {
+            *field = self.read_price(key, by, hit.node);
         }
     }
 

@@ -6,8 +6,8 @@ use crate::key::Key;
 use crate::text::{Place, RawFinding};
 use crate::tree::{TreeNode, Value};
 use crate::visitor::FormulaShape;
-use phea_quantity as quantity;
 use phea_quantity::spelling::nearest;
+use phea_quantity::{self as quantity, Price, PricedBy};
 
 impl Reader<'_> {
     /// The SI value of a number or a quantity in text, within the key's range.
@@ -39,6 +39,26 @@ impl Reader<'_> {
             self.findings.push(RawFinding::error(node.place, objection(key, value)));
         }
         None
+    }
+
+    /// A price, with its currency in text.
+    pub(super) fn read_price(&mut self, key: Key, by: PricedBy, node: &TreeNode) -> Option<Price> {
+        let Value::Text(text) = &node.value else {
+            let message = format!("`{}` must be a price in text, not {}", key.name, node.kind());
+            let over = if by == PricedBy::Length { "/m" } else { "" };
+            let help = format!("write it with its currency, such as \"40 EUR{over}\"");
+            self.findings.push(RawFinding::error(node.place, message).help(help));
+            return None;
+        };
+        match quantity::parse_price(text, by) {
+            Ok(price) => Some(price),
+            Err(error) => {
+                let place = self.inside(node, text, error.range);
+                let found = RawFinding::error(place, error.message).maybe_help(error.help);
+                self.findings.push(found.maybe_expected(error.expected));
+                None
+            }
+        }
     }
 
     /// A whole number within the key's range.

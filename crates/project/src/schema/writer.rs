@@ -10,7 +10,7 @@ use crate::key::{Key, Motions};
 use crate::listing::{Listing, keys_of};
 use crate::visitor::{FormulaShape, Kinds, NamedNumber, ValueForm, Variants, Visitor};
 use crate::{HoseProperties, Valve};
-use phea_quantity::MotionKind;
+use phea_quantity::{MotionKind, Price, PricedBy, price_pattern};
 
 /// Puts the schema together, table by table.
 #[derive(Default)]
@@ -160,6 +160,10 @@ impl Visitor for SchemaWriter {
 
     fn text(&mut self, key: Key, _field: &mut Option<String>, required: bool) {
         self.property(key, json!({ "type": "string" }), required);
+    }
+
+    fn price(&mut self, key: Key, by: PricedBy, _field: &mut Option<Price>) {
+        self.property(key, json!({ "type": "string", "pattern": price_pattern(by) }), false);
     }
 
     fn texts(&mut self, key: Key, _field: &mut Vec<String>) {

@@ -16,6 +16,10 @@ pub(super) fn linkage(project: &Project, actuator: &DeclaredActuator, check: &mu
         let message = "[linkage] without a [load]: its joint moves as [[scenario]] `load_motion` says, in degrees, and stands still otherwise";
         check.warning("linkage", message);
     }
+    if linkage.weight.is_some() && actuator.load == Load::Prescribed {
+        let message = "a load whose motion is prescribed moves so whatever it weighs: `weight` has no effect";
+        check.warning("linkage.weight", message);
+    }
     closes(linkage, actuator.cylinder.stroke, check);
     not_yet(project, actuator, check);
     for (index, scenario) in project.scenarios.iter().enumerate() {
@@ -166,7 +170,9 @@ fn files(scenario: &Scenario, path: &str, check: &mut Check<'_, '_>) {
 
 /// The polynomial of a linkage is found before any number of a family is.
 fn certain(project: &Project, check: &mut Check<'_, '_>) {
-    let is_of_linkage = |name: &str| name.starts_with("linkage.") || name == "cylinder.stroke";
+    let is_weight = |name: &str| ["linkage.weight.mass", "linkage.weight.centre_distance"].contains(&name);
+    let is_of_linkage =
+        |name: &str| name.starts_with("linkage.") && !is_weight(name) || name == "cylinder.stroke";
     let mut refuse = |place: String, name: &str| {
         let message = format!(
             "`{name}` cannot be uncertain with a [linkage]: what its lengths make of the stroke is found once, for all plants"

@@ -34,7 +34,7 @@ static WORDS: [(&str, &str); 4] =
 
 /// Beginnings of the names of lengths, speeds and masses that are those of oil, hoses, pipes and
 /// housings, whatever the rig does.
-static OF_OIL: [&str; 11] = [
+static OF_OIL: [&str; 12] = [
     "actuator_length",
     "bore",
     "length",
@@ -46,6 +46,7 @@ static OF_OIL: [&str; 11] = [
     "sized_length",
     "diameter",
     "wall_",
+    "parts_",
 ];
 
 pub(super) fn symbol(of: &'static str) -> &'static str {

@@ -84,6 +84,8 @@ fn columns(one: &JudgedAlternative) -> Object {
         failed,
     );
     let own = told(own, of(&all, &ColumnPart::Loop).chain(of(&all, &ColumnPart::Rig)));
+    let currency = one.counted.currency.map(|currency| currency.code());
+    let own = own.maybe("parts_currency", currency);
     own.with(
         "specifications",
         named(|part| match part {

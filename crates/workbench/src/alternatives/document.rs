@@ -165,6 +165,8 @@ fn cell(columns: &AlternativeColumns, part: &ColumnPart, key: &str) -> Cell {
         Ok(value) if key == "worst_margin_db" => Cell::margin(*value),
         Ok(value) if column.digits == 0 => value.to_string().into(),
         Ok(value) => Cell::quantity(*value, column.digits, column.unit),
+        // what of it is missing is found in the table of its part
+        Err(reason) if key.starts_with("parts_") && reason.starts_with(NOT_STATED) => reason.clone().into(),
         Err(reason) if reason.starts_with(NOT_STATED) => NOT_STATED.into(),
         Err(_) => Cell::Missing,
     }

@@ -4,8 +4,10 @@
 use phea_qft::design::ControllerChoice;
 use phea_qft::design::DesignStatus;
 
-use super::{Alternatives, COLUMN_SENSES, ColumnSense, ComparedMeasures, JudgedAlternative, JudgedCase};
-use super::{MEASURES, MovedRange};
+use super::{
+    AlternativeColumns, Alternatives, ComparedMeasure, ComparedMeasures, JudgedAlternative, JudgedCase,
+    MovedRange,
+};
 use crate::design::status_sentence;
 use crate::project::{AS_DECLARED, LINEAR_PARAMETERS};
 use crate::quantity::{DisplayUnit, MotionKind, fitting, significant};
@@ -15,8 +17,7 @@ use crate::trial::Agreement;
 pub(crate) fn findings(found: &Alternatives) -> Vec<String> {
     let mut sentences = of_judged(&found.judged);
     sentences.extend(ranges(&found.judged));
-    let measured: Vec<_> = found.judged.iter().filter_map(measured).collect();
-    sentences.extend(costs(&measured));
+    sentences.extend(costs(&MeasuredAlternatives::of(found.judged.iter())));
     sentences.extend(found.not_reached.iter().map(|name| format!("{name}: not reached")));
     for case in &found.cases {
         sentences.extend(of_case(case).into_iter().map(|sentence| format!("{}: {sentence}", case.name)));
@@ -33,17 +34,44 @@ pub(super) fn of_case(case: &JudgedCase) -> Vec<String> {
 fn of_judged(judged: &[JudgedAlternative]) -> Vec<String> {
     let mut sentences = specifications(judged);
     sentences.extend(shared(judged, judged.iter().flat_map(lacking)));
-    let comparable: Vec<_> = judged.iter().filter(|one| one.is_comparable()).filter_map(measured).collect();
+    let comparable = MeasuredAlternatives::of(judged.iter().filter(|one| one.is_comparable()));
     sentences.extend(best(&comparable));
     sentences.extend(dominance(&comparable));
     sentences
 }
 
-type NamedMeasures = (String, ComparedMeasures);
-
-fn measured(one: &JudgedAlternative) -> Option<NamedMeasures> {
-    Some((one.name.clone(), ComparedMeasures::of(&one.columns())?))
+/// Alternatives by what can be compared of all of them.
+struct MeasuredAlternatives {
+    measures: Vec<ComparedMeasure>,
+    all: Vec<(String, ComparedMeasures)>,
 }
+
+impl MeasuredAlternatives {
+    /// Those that have the four measures.
+    fn of<'j>(judged: impl Iterator<Item = &'j JudgedAlternative>) -> MeasuredAlternatives {
+        let columns: Vec<_> = judged.map(|one| (one.name.clone(), one.columns())).collect();
+        let four = ComparedMeasure::of_all(&[]);
+        let has_four = |columns: &AlternativeColumns| ComparedMeasures::of(columns, &four).is_some();
+        let columns: Vec<_> = columns.into_iter().filter(|(_, columns)| has_four(columns)).collect();
+        let (names, columns): (Vec<_>, Vec<_>) = columns.into_iter().unzip();
+        let measures = ComparedMeasure::of_all(&columns);
+        let measured = columns.iter().filter_map(|columns| ComparedMeasures::of(columns, &measures));
+        MeasuredAlternatives { all: names.into_iter().zip(measured).collect(), measures }
+    }
+
+    /// The measures in words.
+    fn words(&self) -> String {
+        let further = self.measures.iter().skip(FOUR.len()).map(|measure| measure.words);
+        let all: Vec<&str> = FOUR.into_iter().chain(further).collect();
+        match all.split_last() {
+            Some((last, others)) => format!("{} and {last}", others.join(", ")),
+            None => String::new(),
+        }
+    }
+}
+
+/// The measures of dominance in words.
+const FOUR: [&str; 4] = ["disturbance", "control effort", "order", "delay tolerated"];
 
 /// Who meets every specification, who misses them by how much, and what else became of a design.
 fn specifications(judged: &[JudgedAlternative]) -> Vec<String> {
@@ -167,18 +195,18 @@ fn moved_words(name: &str, range: &MovedRange, motion: MotionKind) -> String {
 }
 
 /// What is best in each measure, of those that may be compared.
-fn best(comparable: &[NamedMeasures]) -> Option<String> {
-    if comparable.len() < 2 {
+fn best(comparable: &MeasuredAlternatives) -> Option<String> {
+    let MeasuredAlternatives { measures, all } = comparable;
+    if all.len() < 2 {
         return None;
     }
-    let each = MEASURES.iter().enumerate().map(|(index, (key, words))| {
-        let is_more = COLUMN_SENSES.contains(&(key, ColumnSense::More));
-        let values = comparable.iter().map(|(_, measures)| measures.0[index]);
-        let best = values.reduce(if is_more { f64::max } else { f64::min }).unwrap_or_default();
-        let names = comparable.iter().filter(|(_, measures)| measures.0[index] == best);
+    let each = measures.iter().enumerate().map(|(index, measure)| {
+        let values = all.iter().map(|(_, measures)| measures.0[index]);
+        let best = values.reduce(if measure.is_more() { f64::max } else { f64::min }).unwrap_or_default();
+        let names = all.iter().filter(|(_, measures)| measures.0[index] == best);
         let names: Vec<&str> = names.map(|(name, _)| name.as_str()).collect();
-        let most = if is_more { "most" } else { "least" };
-        format!("{most} {words} {} ({})", words_of(key, best), names.join(", "))
+        let most = if measure.is_more() { "most" } else { "least" };
+        format!("{most} {} {} ({})", measure.words, words_of(measure, best), names.join(", "))
     });
     let each: Vec<String> = each.collect();
     Some(format!(
@@ -188,60 +216,71 @@ fn best(comparable: &[NamedMeasures]) -> Option<String> {
 }
 
 /// Among those that satisfy every specification, on the machine too.
-fn dominance(comparable: &[NamedMeasures]) -> Vec<String> {
-    if comparable.len() < 2 {
+fn dominance(comparable: &MeasuredAlternatives) -> Vec<String> {
+    let MeasuredAlternatives { measures, all } = comparable;
+    if all.len() < 2 {
         return vec![];
     }
-    let each = comparable.iter().filter_map(|(name, measures)| {
-        let dominated = comparable.iter().filter(|(_, other)| measures.dominates(other));
+    let each = all.iter().filter_map(|(name, own)| {
+        let dominated = all.iter().filter(|(_, other)| own.dominates(other, measures));
         let dominated: Vec<&str> = dominated.map(|(other, _)| other.as_str()).collect();
         (!dominated.is_empty()).then(|| format!("{name} dominates {}", dominated.join(", ")))
     });
     let each: Vec<String> = each.collect();
+    let words = comparable.words();
     vec![match each.as_slice() {
-        [] => format!("none of these dominates another in {FOUR}"),
-        each => format!("no worse in {FOUR}, and better in one: {}", each.join("; ")),
+        [] => format!("none of these dominates another in {words}"),
+        each => format!("no worse in {words}, and better in one: {}", each.join("; ")),
     }]
 }
 
-/// The measures of dominance in words.
-const FOUR: &str = "disturbance, control effort, order and delay tolerated";
-
 /// Each against the project as it is declared: what it gains, and what it costs.
-fn costs(all: &[NamedMeasures]) -> Vec<String> {
-    let Some(((base, measures), others)) = all.split_first() else { return vec![] };
+fn costs(found: &MeasuredAlternatives) -> Vec<String> {
+    let Some(((base, given), others)) = found.all.split_first() else { return vec![] };
     if base != AS_DECLARED {
         return vec![];
     }
-    others.iter().map(|(name, other)| cost(name, other, measures)).collect()
+    others.iter().map(|(name, other)| cost(name, (other, given), &found.measures)).collect()
 }
 
-fn cost(name: &str, other: &ComparedMeasures, base: &ComparedMeasures) -> String {
+fn cost(
+    name: &str,
+    (other, base): (&ComparedMeasures, &ComparedMeasures),
+    measures: &[ComparedMeasure],
+) -> String {
     let (mut better, mut worse) = (Vec::new(), Vec::new());
-    for (index, (key, words)) in MEASURES.iter().enumerate() {
+    for (index, measure) in measures.iter().enumerate() {
         let [own, given] = [other.0[index], base.0[index]];
-        let [shown, instead] = [own, given].map(|value| words_of(key, value));
+        let [shown, instead] = [own, given].map(|value| words_of(measure, value));
         if shown == instead {
             continue;
         }
-        let is_more = COLUMN_SENSES.contains(&(key, ColumnSense::More));
-        let side = if (own > given) == is_more { &mut better } else { &mut worse };
-        side.push(format!("{words} {shown} for {instead}"));
+        let side = if (own > given) == measure.is_more() { &mut better } else { &mut worse };
+        side.push(format!("{} {shown} for {instead}", measure.words));
     }
     let side =
         |word: &str, parts: &[String]| (!parts.is_empty()).then(|| format!("{word} in {}", parts.join(", ")));
     let sides: Vec<String> = [side("better", &better), side("worse", &worse)].into_iter().flatten().collect();
     match sides.as_slice() {
-        [] => format!("{name} against {AS_DECLARED}: the same in all four"),
+        [] => {
+            let count = match measures.len() {
+                4 => "four",
+                5 => "five",
+                _ => "six",
+            };
+            format!("{name} against {AS_DECLARED}: the same in all {count}")
+        }
         sides => format!("{name} against {AS_DECLARED}: {}", sides.join("; ")),
     }
 }
 
-fn words_of(key: &str, value: f64) -> String {
-    match key {
+fn words_of(measure: &ComparedMeasure, value: f64) -> String {
+    match measure.key {
         "disturbance_peak_n" => DisplayUnit::NEWTON.text(value, 3),
         "control_rms_v" => DisplayUnit::VOLT.text(value, 3),
         "delay_margin_s" => DisplayUnit::MILLISECOND.text(value, 3),
+        "parts_price" => measure.unit.text(value, 4),
+        "parts_mass_kg" => measure.unit.text(value, 3),
         _ => significant(value, 1),
     }
 }

@@ -204,7 +204,13 @@ pub(super) fn load_words(actuator: &project::DeclaredActuator) -> String {
     };
     let load = match &actuator.linkage {
         None => load,
-        Some(linkage) => format!("{load}; turns behind {}", linkage_words(linkage)),
+        Some(linkage) => {
+            let weight = linkage.weight.map_or(String::new(), |weight| {
+                let [mass, distance] = [shown(weight.mass, &MASS), shown(weight.centre_distance, &LENGTH)];
+                format!("; weighs {mass}, {distance} from its joint")
+            });
+            format!("{load}; turns behind {}{weight}", linkage_words(linkage))
+        }
     };
     match &actuator.series {
         None => load,

@@ -60,7 +60,10 @@ fn lengths(problem: &SizingProblem, sizing: &Sizing) -> Figure {
         for model in [StiffnessModel::Uniform, StiffnessModel::ByVolume] {
             let stiffness: Vec<f64> = lengths
                 .iter()
-                .map(|length| problem.stroke_stiffness(option.hose, *length, model).minimum)
+                .map(|length| {
+                    let proportion = option.proportion(model, problem.fluid_modulus);
+                    problem.stroke_stiffness(option, proportion.map(|share| share * length), model).minimum
+                })
                 .collect();
             curves.push(SizingCurve {
                 name: format!("{}, {}", option.name, model_name(model)),

@@ -40,8 +40,10 @@ fn candidate(candidate: &Candidate) -> Object {
         .with("hose", candidate.option.name.as_str())
         .with("compliance", model_name(branch.model))
         .with("branch", branch_name(branch.by_gain))
-        .with("bore_m", candidate.option.hose.bore)
-        .with("length_m", branch.length_m)
+        .with("bore_m", candidate.option.hoses[0].bore)
+        .with("length_m", candidate.length_m())
+        .with("bore_b_m", candidate.option.hoses[1].bore)
+        .with("length_b_m", branch.lengths_m[1])
         .with("stiffness_n_per_m", branch.stiffness.minimum)
         .with("stiffness_maximum_n_per_m", branch.stiffness.maximum)
         .with("proportional_gain_v_per_n", branch.gain_v_per_n)
@@ -76,7 +78,7 @@ pub(crate) fn branch_name(by_gain: bool) -> &'static str {
 /// The candidates as a table for other programs.
 pub fn files(sizing: &Sizing) -> Vec<OutputFile> {
     let mut csv = Csv::new(
-        "accepted,hose,compliance,branch,bore_m,length_m,stiffness_minimum_n_per_m,stiffness_maximum_n_per_m,proportional_gain_v_per_n,reasons",
+        "accepted,hose,compliance,branch,bore_m,length_m,bore_b_m,length_b_m,stiffness_minimum_n_per_m,stiffness_maximum_n_per_m,proportional_gain_v_per_n,reasons",
     );
     for candidate in &sizing.candidates {
         let branch = &candidate.branch;
@@ -86,8 +88,10 @@ pub fn files(sizing: &Sizing) -> Vec<OutputFile> {
             &quoted(&candidate.option.name),
             &model_name(branch.model),
             &branch_name(branch.by_gain),
-            &candidate.option.hose.bore,
-            &branch.length_m,
+            &candidate.option.hoses[0].bore,
+            &branch.lengths_m[0],
+            &candidate.option.hoses[1].bore,
+            &branch.lengths_m[1],
             &branch.stiffness.minimum,
             &branch.stiffness.maximum,
             &branch.gain_v_per_n,

@@ -49,9 +49,9 @@ fn answer_sentence(best: Option<&Candidate>) -> String {
             "no hose of the catalogue satisfies every requirement; the reasons are listed with the candidates.".to_string()
         }
         Some(candidate) => format!(
-            "{} with {} m a line: K_H from {} to {} MN/m over the stroke, K_p = {} V/N.",
+            "{} with {}: K_H from {} to {} MN/m over the stroke, K_p = {} V/N.",
             candidate.option.name,
-            significant(candidate.length_m(), 3),
+            candidate.branch.length_words(3),
             DisplayUnit::MEGANEWTON_PER_METRE.number(candidate.branch.stiffness.minimum, 3),
             DisplayUnit::MEGANEWTON_PER_METRE.number(candidate.branch.stiffness.maximum, 3),
             significant(candidate.branch.gain_v_per_n, 3)
@@ -102,7 +102,10 @@ fn candidate_cells(candidate: &Candidate) -> [Cell; 8] {
         Cell::Code(candidate.option.name.clone()),
         Cell::Code(model_name(branch.model).to_string()),
         Cell::Code(branch_name(branch.by_gain).to_string()),
-        format!("{} m", significant(branch.length_m, 4)).into(),
+        match branch.is_alike() {
+            true => format!("{} m", significant(candidate.length_m(), 4)).into(),
+            false => branch.lengths_m.map(|length| format!("{} m", significant(length, 4))).join(", ").into(),
+        },
         format!("{} to {} N/m", significant(stiffness.minimum, 4), significant(stiffness.maximum, 4)).into(),
         format!("{} V/N", significant(branch.gain_v_per_n, 3)).into(),
         format!("{fastest} to {slowest} ms").into(),

@@ -1,0 +1,246 @@
+//! What the parts that make a rig yield cost and weigh: lines, accumulators, the spring and the valve
+//! between the chambers. Nothing is known of them but what the project or a catalogue states.
+
+use std::f64::consts::PI;
+
+use phea_hydraulics::line::Line;
+
+use crate::project::{
+    Component, DeclaredActuator, DeclaredLine, DeclaredPipe, ElasticWall, LineCost, PartCost, Project,
+};
+use crate::quantity::{Currency, Price};
+use crate::rig::{Rig, series_coil};
+
+/// A part with what it costs and weighs, as far as this is stated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CostedPart {
+    /// What it is.
+    pub kind: PartKind,
+    /// The chamber whose line or accumulator it is.
+    pub side: Option<&'static str>,
+    /// In the currency of the project.
+    pub price: Option<f64>,
+    /// kg.
+    pub mass: Option<f64>,
+}
+
+/// Kinds of parts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PartKind {
+    /// Of a line.
+    Hose,
+    /// Of a line.
+    Pipe,
+    /// At a chamber.
+    Accumulator,
+    /// Between the chambers.
+    CrossPort,
+    /// Between force sensor and load.
+    SeriesSpring,
+    /// Counted only where it is stated: mostly it is the same in all that is compared.
+    Servovalve,
+}
+
+impl PartKind {
+    /// One of it, several, and the name of a quantity.
+    fn words(self) -> [&'static str; 3] {
+        match self {
+            PartKind::Hose => ["hose", "hoses", "hose"],
+            PartKind::Pipe => ["pipe", "pipes", "pipe"],
+            PartKind::Accumulator => ["accumulator", "accumulators", "accumulator"],
+            PartKind::CrossPort => ["cross-port valve", "cross-port valves", "cross_port"],
+            PartKind::SeriesSpring => ["series spring", "series springs", "series"],
+            PartKind::Servovalve => ["servovalve", "servovalves", "valve"],
+        }
+    }
+}
+
+impl CostedPart {
+    /// Its name in a list of quantities, such as `hose.a`.
+    pub fn name(&self) -> String {
+        let [_, _, name] = self.kind.words();
+        self.side.map_or(name.to_string(), |side| format!("{name}.{}", side.to_lowercase()))
+    }
+
+    fn words(&self) -> String {
+        let [one, ..] = self.kind.words();
+        self.side.map_or(one.to_string(), |side| format!("{one} {side}"))
+    }
+}
+
+/// What is counted of the parts of several rigs that are compared.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PartsCounted {
+    /// Of the prices; `None` where none is stated.
+    pub currency: Option<Currency>,
+    /// Whether a mass is stated.
+    pub masses: bool,
+    /// Whether the price of a servovalve is stated, and the mass of one.
+    pub servovalve: [bool; 2],
+}
+
+impl PartsCounted {
+    /// What one or another of these projects states.
+    ///
+    /// # Errors
+    /// Two currencies.
+    pub fn of<'p>(projects: impl Iterator<Item = &'p Project>) -> Result<PartsCounted, [Currency; 2]> {
+        let mut counted = PartsCounted::default();
+        for declared in projects.filter_map(|project| project.actuator.as_ref()) {
+            let valve = declared.valve.cost;
+            counted.servovalve[0] |= valve.price.is_some();
+            counted.servovalve[1] |= valve.mass.is_some();
+            let costs = stated(declared);
+            counted.masses |= costs.iter().any(|cost| cost.mass.is_some());
+            for Price { currency, .. } in costs.into_iter().filter_map(|cost| cost.price) {
+                match counted.currency {
+                    Some(first) if first != currency => return Err([first, currency]),
+                    _ => counted.currency = Some(currency),
+                }
+            }
+        }
+        Ok(counted)
+    }
+}
+
+/// Every statement of a price or a mass.
+fn stated(declared: &DeclaredActuator) -> Vec<PartCost> {
+    let lines = [&declared.line.a, &declared.line.b];
+    let of_lines = lines.into_iter().flat_map(|line| {
+        let (cost, density) = match &line.component {
+            Component::Hose { properties, .. } => (properties.cost, None),
+            Component::Pipe { pipe, .. } => (pipe.cost, pipe.wall.and_then(|wall| wall.density)),
+            Component::Volume(_) => (LineCost::default(), None),
+        };
+        let metre = PartCost { price: cost.price_per_length, mass: cost.mass_per_length.or(density) };
+        [Some(cost.ends), Some(metre), line.accumulator.map(|gas| gas.cost)]
+    });
+    let others = [
+        declared.cross_port.as_ref().map(|port| port.cost),
+        declared.series.as_ref().map(|series| series.cost),
+        Some(declared.valve.cost),
+    ];
+    of_lines.chain(others).flatten().collect()
+}
+
+/// The parts of a rig. A line that is stated as a volume is drilled or cast, and no part.
+pub fn parts(declared: &DeclaredActuator, rig: &Rig) -> Vec<CostedPart> {
+    let sides = [("A", &declared.line.a), ("B", &declared.line.b)];
+    let mut found: Vec<CostedPart> = sides.iter().filter_map(|(side, line)| line_part(side, line)).collect();
+    let whole = |kind, side, PartCost { price, mass }: PartCost| CostedPart {
+        kind,
+        side,
+        price: price.map(|price| price.amount),
+        mass,
+    };
+    found.extend(sides.iter().filter_map(|(side, line)| {
+        Some(whole(PartKind::Accumulator, Some(*side), line.accumulator.as_ref()?.cost))
+    }));
+    found.extend(declared.cross_port.iter().map(|port| whole(PartKind::CrossPort, None, port.cost)));
+    found.extend(declared.series.iter().map(|series| {
+        let coils = series_coil(declared, rig).map(|pair| pair.mass);
+        let cost = PartCost { mass: series.cost.mass.or(coils), ..series.cost };
+        whole(PartKind::SeriesSpring, None, cost)
+    }));
+    found.push(whole(PartKind::Servovalve, None, declared.valve.cost));
+    found
+}
+
+/// A hose or a pipe.
+///
+/// ```text
+/// price    ends + price_per_length L
+/// mass     ends + mass_per_length L       mass_per_length = pi (D + t) t rho of a wall with a density
+/// ```
+fn line_part(side: &'static str, line: &DeclaredLine) -> Option<CostedPart> {
+    let (kind, cost, by_wall) = match &line.component {
+        Component::Hose { properties, .. } => (PartKind::Hose, properties.cost, moving_wall(line)),
+        Component::Pipe { pipe, .. } => (PartKind::Pipe, pipe.cost, tube(pipe)),
+        Component::Volume(_) => return None,
+    };
+    let length = line.length().unwrap_or_default();
+    let price = sum(
+        cost.ends.price.map(|price| price.amount),
+        cost.price_per_length.map(|price| price.amount * length),
+    );
+    let by_length = cost.mass_per_length.or(by_wall.filter(|_| cost.ends.mass.is_none()));
+    Some(CostedPart {
+        kind,
+        side: Some(side),
+        price,
+        mass: sum(cost.ends.mass, by_length.map(|each| each * length)),
+    })
+}
+
+/// What is stated of both; `None` where neither is.
+fn sum(one: Option<f64>, other: Option<f64>) -> Option<f64> {
+    match (one, other) {
+        (None, None) => None,
+        (one, other) => Some(one.unwrap_or(0.0) + other.unwrap_or(0.0)),
+    }
+}
+
+/// kg/m, of a hose whose wall moves.
+fn moving_wall(line: &DeclaredLine) -> Option<f64> {
+    match &line.motion {
+        crate::project::LineMotion::TwoWave { wall, .. } => wall.as_ref()?.mass_per_length,
+        _ => None,
+    }
+}
+
+/// kg/m, of a pipe whose wall has a density.
+fn tube(pipe: &DeclaredPipe) -> Option<f64> {
+    let ElasticWall { thickness, density, .. } = pipe.wall?;
+    Some(PI * (pipe.bore + thickness) * thickness * density?)
+}
+
+/// What all parts cost together, in the currency that is counted.
+///
+/// # Errors
+/// The parts that state no price; that none does.
+pub fn price(parts: &[CostedPart], counted: PartsCounted) -> Result<f64, String> {
+    if counted.currency.is_none() {
+        return Err("no part states a price".to_string());
+    }
+    let wanted = parts.iter().filter(|part| part.kind != PartKind::Servovalve || counted.servovalve[0]);
+    total(wanted, |part| part.price)
+}
+
+/// What all parts weigh together in kg, with the oil in both lines.
+///
+/// # Errors
+/// The parts that state no mass; that none does.
+pub fn mass(parts: &[CostedPart], rig: &Rig, counted: PartsCounted) -> Result<f64, String> {
+    if !counted.masses {
+        return Err("no part states a mass".to_string());
+    }
+    let wanted = parts.iter().filter(|part| part.kind != PartKind::Servovalve || counted.servovalve[1]);
+    Ok(total(wanted, |part| part.mass)? + oil_in_lines(rig))
+}
+
+/// kg, of the oil in both lines.
+pub(crate) fn oil_in_lines(rig: &Rig) -> f64 {
+    let components = rig.actuator.components();
+    let volume: f64 = [&components.line_a, &components.line_b].map(Line::volume).iter().sum();
+    volume * components.fluid.density
+}
+
+fn total<'p>(
+    parts: impl Iterator<Item = &'p CostedPart> + Clone,
+    of: fn(&CostedPart) -> Option<f64>,
+) -> Result<f64, String> {
+    let lacking: Vec<&CostedPart> = parts.clone().filter(|part| of(part).is_none()).collect();
+    if lacking.is_empty() {
+        return Ok(parts.filter_map(of).sum());
+    }
+    let mut names: Vec<String> = Vec::new();
+    for part in &lacking {
+        let pair = lacking.iter().filter(|other| other.kind == part.kind).count() == 2;
+        let [_, several, _] = part.kind.words();
+        let name = if pair { several.to_string() } else { part.words() };
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    Err(format!("not stated: {}", names.join(", ")))
+}

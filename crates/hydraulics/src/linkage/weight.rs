@@ -1,0 +1,123 @@
+use phea_dynamics::portable;
+use phea_dynamics::scalar::Scalar;
+
+use super::Linkage;
+use super::chebyshev::ChebyshevSeries;
+
+/// Standard acceleration of free fall in m/s2.
+pub const STANDARD_GRAVITY: f64 = 9.80665;
+
+/// The weight of a load that turns about a joint.
+///
+/// ```text
+/// U = m g d h(theta),   h = sin(theta - theta_l)          d from the joint to the centre of mass
+/// tau_g = -m g d h'(theta),   k_w = -d tau_g/d theta = m g d h''(theta)
+/// ```
+///
+/// At theta_l the centre of mass is level with the joint and rises while the angle grows. h is a
+/// polynomial over the angles of the linkage, as the linkage itself is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinkedWeight<S = f64> {
+    /// m g d in N m.
+    moment: S,
+    /// h(theta)
+    height: ChebyshevSeries<S>,
+}
+
+/// A weight at one angle. Units: J, N m, N m/rad.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WeightAt<S = f64> {
+    /// U, zero where the centre of mass is level with the joint.
+    pub energy: S,
+    /// tau_g, positive where it helps the rod to extend.
+    pub torque: S,
+    /// k_w: positive where the load hangs, negative where it stands above its joint.
+    pub stiffness: S,
+}
+
+impl Linkage {
+    /// The same with a load whose centre of mass is level with the joint at this angle in rad; its moment
+    /// is 1 N m until [`Linkage::with_moment`] states it.
+    ///
+    /// # Example
+    /// A load of 2 kg at half a metre, level at the angle zero: there its weight has the whole lever arm.
+    /// ```
+    /// use phea_hydraulics::linkage::{LinkageGeometry, LinkageTable, STANDARD_GRAVITY};
+    /// let table = LinkageTable { extensions: vec![0.0, 0.1], angles: vec![-1.0, 1.0], tolerance: 1e-6 };
+    /// let linkage = LinkageGeometry::Table(table).reduced(0.1, 0.0)?.linkage;
+    /// let linkage = linkage.level_at(0.0).with_moment(2.0 * 0.5 * STANDARD_GRAVITY);
+    /// let [level, above] = [0.0_f64, 0.6].map(|angle| linkage.weight_at(angle).unwrap());
+    /// assert!((level.torque + 9.80665).abs() < 1e-12 && level.energy.abs() < 1e-12);
+    /// assert!((above.energy - 9.80665 * 0.6_f64.sin()).abs() < 1e-12);
+    /// assert!((above.stiffness + 9.80665 * 0.6_f64.sin()).abs() < 1e-9);
+    /// # Ok::<(), phea_hydraulics::linkage::LinkageError>(())
+    /// ```
+    #[must_use]
+    pub fn level_at(&self, level_angle: f64) -> Linkage {
+        let ChebyshevSeries { middle, half_width, .. } = self.extension;
+        let height = ChebyshevSeries::through([middle - half_width, middle + half_width], |angle| {
+            Ok::<f64, std::convert::Infallible>(portable::sin(angle - level_angle))
+        });
+        let weight = height.ok().map(|height| LinkedWeight { moment: 1.0, height });
+        Linkage { weight, ..*self }
+    }
+}
+
+impl<S: Scalar> Linkage<S> {
+    /// The same with this moment m g d in N m of its weight, if it has one.
+    #[must_use]
+    pub fn with_moment(&self, moment: S) -> Linkage<S> {
+        Linkage { weight: self.weight.map(|weight| LinkedWeight { moment, ..weight }), ..*self }
+    }
+
+    /// The weight of the load at an angle in rad; `None` for one without.
+    pub fn weight_at(&self, angle: S) -> Option<WeightAt<S>> {
+        let weight = self.weight.as_ref()?;
+        Some(weight.seen(weight.height.at(angle)))
+    }
+
+    /// The same as a part of a machine of many states.
+    ///
+    /// Apart, so that machines without a weight do not carry its code along.
+    #[inline(never)]
+    pub(crate) fn weight_of<T: Scalar + From<S>>(&self, angle: T) -> Option<WeightAt<T>> {
+        let weight = self.weight.as_ref()?;
+        let [height, slope, curvature] = T::local(&weight.height, [angle]);
+        let moment = T::from(weight.moment);
+        Some(WeightAt { energy: moment * height, torque: -(moment * slope), stiffness: moment * curvature })
+    }
+
+    /// The force of the rod in N that holds the weight where the piston is at a position in m and the
+    /// sensor between them has a stiffness in N/m; `None` without a weight.
+    ///
+    /// ```text
+    /// F = -tau_g(theta)/g'(theta),   g(theta) = x - F/K_S            by repetition, since K_S is great
+    /// ```
+    pub fn holding_force(&self, position: S, sensor_stiffness: S) -> Option<S> {
+        self.weight.as_ref()?;
+        let mut force = S::from(0.0);
+        for _ in 0..HOLDING_STEPS {
+            let angle = self.angle(position - force / sensor_stiffness);
+            force = -(self.weight_at(angle)?.torque / self.end(angle).lever_arm);
+        }
+        Some(force)
+    }
+}
+
+/// Repetitions: each divides the error by K_S over the stiffness of weight and lever arm.
+const HOLDING_STEPS: usize = 6;
+
+impl<S: Scalar> LinkedWeight<S> {
+    fn seen(&self, [height, slope, curvature]: [S; 3]) -> WeightAt<S> {
+        let moment = self.moment;
+        WeightAt { energy: moment * height, torque: -(moment * slope), stiffness: moment * curvature }
+    }
+}
+
+impl<S: Copy> LinkedWeight<S> {
+    /// Every parameter replaced, in a fixed order.
+    #[inline(always)]
+    pub(super) fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> LinkedWeight<T> {
+        LinkedWeight { moment: of(self.moment), height: self.height.convert(of) }
+    }
+}

@@ -1,0 +1,46 @@
+//! What parts cost and weigh: `price` and `mass` where a part is declared, for a line also for its
+//! length.
+
+use super::key::{key, plain};
+use super::visitor::Visitor;
+use phea_quantity::{MASS, MASS_PER_LENGTH, Price, PricedBy};
+
+/// What a part costs and weighs, as far as it is stated.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PartCost {
+    /// Of the part.
+    pub price: Option<Price>,
+    /// kg, of the part.
+    pub mass: Option<f64>,
+}
+
+/// The same of a hose or a pipe: what both its ends add, and each metre.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LineCost {
+    /// Of one line, beside that of its length.
+    pub ends: PartCost,
+    /// Of a metre.
+    pub price_per_length: Option<Price>,
+    /// kg/m, without the oil in it.
+    pub mass_per_length: Option<f64>,
+}
+
+impl PartCost {
+    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+        v.price(plain("price", "What the part costs."), PricedBy::Piece, &mut self.price);
+        v.optional(key("mass", &MASS, "Mass of the part.").not_negative(), &mut self.mass);
+    }
+}
+
+impl LineCost {
+    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let k = plain("price", "Of one line, beside `price_per_length`: its fittings, or all of it.");
+        v.price(k, PricedBy::Piece, &mut self.ends.price);
+        let k = plain("price_per_length", "Of a metre of it.");
+        v.price(k, PricedBy::Length, &mut self.price_per_length);
+        let k = key("mass", &MASS, "Of one line, beside `mass_per_length`: its fittings, or all of it.");
+        v.optional(k.not_negative(), &mut self.ends.mass);
+        let k = key("mass_per_length", &MASS_PER_LENGTH, "Mass of a metre of it, without oil.");
+        v.optional(k.not_negative(), &mut self.mass_per_length);
+    }
+}

@@ -1,0 +1,149 @@
+//! Prices in text: `"180 EUR"` for a piece, `"40 EUR/m"` for a length.
+
+use super::dimension::LENGTH;
+use super::parse::{DecimalNumber, QuantityError, parse};
+use super::pattern::{UNSIGNED, length_units};
+use super::print::print_bare;
+use crate::spelling::nearest;
+
+/// A currency, by its code of ISO 4217.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Currency(&'static str);
+
+impl Currency {
+    /// Its three letters.
+    pub fn code(self) -> &'static str {
+        self.0
+    }
+}
+
+/// What a price is paid for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PricedBy {
+    /// A piece.
+    Piece,
+    /// A metre.
+    Length,
+}
+
+/// What a piece or a metre costs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Price {
+    /// In the currency, for a piece or a metre.
+    pub amount: f64,
+    /// Of the amount.
+    pub currency: Currency,
+}
+
+/// Reads a price.
+///
+/// # Errors
+/// [`QuantityError`] for a text that is no price, a negative one, an unknown currency, and one for a
+/// length where one for a piece is wanted, or the other way round.
+///
+/// # Example
+/// ```
+/// use phea_quantity::{PricedBy, parse_price};
+/// let hose = parse_price("12.192 EUR/ft", PricedBy::Length)?;
+/// assert!((hose.amount - 40.0).abs() < 1e-12 && hose.currency.code() == "EUR");
+/// assert_eq!(parse_price("180 EURO", PricedBy::Piece).unwrap_err().help.as_deref(), Some("did you mean EUR?"));
+/// # Ok::<(), phea_quantity::QuantityError>(())
+/// ```
+pub fn parse_price(text: &str, by: PricedBy) -> Result<Price, QuantityError> {
+    let examples = match by {
+        PricedBy::Piece => "a price such as \"180 EUR\"",
+        PricedBy::Length => "a price for a length, such as \"40 EUR/m\"",
+    };
+    let error = |message: &str, start: usize, help: Option<String>| QuantityError {
+        message: message.to_string(),
+        range: start..text.len(),
+        expected: Some(examples.to_string()),
+        help,
+    };
+    let number = DecimalNumber::read(text).map_err(|mut found| {
+        found.expected = Some(examples.to_string());
+        found
+    })?;
+    let amount: f64 = text.get(..number.end).unwrap_or_default().trim().parse().unwrap_or(f64::INFINITY);
+    if !amount.is_finite() || amount < 0.0 {
+        return Err(error("a price is a number that is not negative", 0, None));
+    }
+    let rest = text.get(number.end..).unwrap_or_default();
+    let (code, unit) = match rest.split_once('/') {
+        Some((code, unit)) => (code.trim(), Some(unit.trim())),
+        None => (rest.trim(), None),
+    };
+    let Some(currency) = CURRENCIES.iter().find(|known| **known == code).map(|code| Currency(code)) else {
+        let upper = code.to_uppercase();
+        let help = nearest(&upper, CURRENCIES.iter().copied()).map(|near| format!("did you mean {near}?"));
+        let help = help.unwrap_or_else(|| "write its code of three letters, such as EUR or USD".to_string());
+        let message =
+            if code.is_empty() { "this price has no currency" } else { "there is no such currency" };
+        return Err(error(message, number.end, Some(help)));
+    };
+    let metres = match (by, unit) {
+        (PricedBy::Piece, None) => 1.0,
+        (PricedBy::Length, Some(unit)) => parse(&format!("1 {unit}"), &LENGTH)
+            .map_err(|found| error(&found.message, number.end, found.help))?,
+        (PricedBy::Piece, Some(_)) => {
+            return Err(error(
+                "this is a price for a length, and one for a piece is wanted",
+                number.end,
+                None,
+            ));
+        }
+        (PricedBy::Length, None) => {
+            return Err(error(
+                "this is a price for a piece, and one for a length is wanted",
+                number.end,
+                None,
+            ));
+        }
+    };
+    Ok(Price { amount: amount / metres, currency })
+}
+
+/// A price in TOML, with its quotes, that reads back as the same.
+///
+/// # Example
+/// ```
+/// use phea_quantity::{PricedBy, parse_price, print_price};
+/// let price = parse_price("40 EUR/m", PricedBy::Length)?;
+/// assert_eq!(print_price(price, PricedBy::Length), "\"40 EUR/m\"");
+/// # Ok::<(), phea_quantity::QuantityError>(())
+/// ```
+pub fn print_price(price: Price, by: PricedBy) -> String {
+    let over = if by == PricedBy::Length { "/m" } else { "" };
+    format!("\"{} {}{over}\"", print_bare(price.amount), price.currency.code())
+}
+
+/// Matches every text that [`parse_price`] accepts.
+///
+/// # Example
+/// ```
+/// use phea_quantity::{PricedBy, price_pattern};
+/// assert!(price_pattern(PricedBy::Piece).contains("EUR"));
+/// ```
+pub fn price_pattern(by: PricedBy) -> String {
+    let currencies = CURRENCIES.join("|");
+    let over = match by {
+        PricedBy::Piece => String::new(),
+        PricedBy::Length => format!(r"\s*/\s*(?:{})", length_units()),
+    };
+    format!(r"^\s*\+?{UNSIGNED}\s*(?:{currencies}){over}\s*$")
+}
+
+/// ISO 4217, the currencies of countries.
+static CURRENCIES: [&str; 154] = [
+    "AED", "AFN", "ALL", "AMD", "ANG", "AOA", "ARS", "AUD", "AWG", "AZN", "BAM", "BBD", "BDT", "BGN", "BHD",
+    "BIF", "BMD", "BND", "BOB", "BRL", "BSD", "BTN", "BWP", "BYN", "BZD", "CAD", "CDF", "CHF", "CLP", "CNY",
+    "COP", "CRC", "CUP", "CVE", "CZK", "DJF", "DKK", "DOP", "DZD", "EGP", "ERN", "ETB", "EUR", "FJD", "FKP",
+    "GBP", "GEL", "GHS", "GIP", "GMD", "GNF", "GTQ", "GYD", "HKD", "HNL", "HTG", "HUF", "IDR", "ILS", "INR",
+    "IQD", "IRR", "ISK", "JMD", "JOD", "JPY", "KES", "KGS", "KHR", "KMF", "KPW", "KRW", "KWD", "KYD", "KZT",
+    "LAK", "LBP", "LKR", "LRD", "LSL", "LYD", "MAD", "MDL", "MGA", "MKD", "MMK", "MNT", "MOP", "MRU", "MUR",
+    "MVR", "MWK", "MXN", "MYR", "MZN", "NAD", "NGN", "NIO", "NOK", "NPR", "NZD", "OMR", "PAB", "PEN", "PGK",
+    "PHP", "PKR", "PLN", "PYG", "QAR", "RON", "RSD", "RUB", "RWF", "SAR", "SBD", "SCR", "SDG", "SEK", "SGD",
+    "SHP", "SLE", "SOS", "SRD", "SSP", "STN", "SVC", "SYP", "SZL", "THB", "TJS", "TMT", "TND", "TOP", "TRY",
+    "TTD", "TWD", "TZS", "UAH", "UGX", "USD", "UYU", "UZS", "VES", "VND", "VUV", "WST", "XAF", "XCD", "XOF",
+    "XPF", "YER", "ZAR", "ZMW",
+];
