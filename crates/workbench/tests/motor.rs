@@ -158,8 +158,9 @@ fn of_linear_motion(text: &str) -> Vec<String> {
         ["force", "forces", "piston", "pistons", "cylinder", "rod", "newton", "newtons", "mass", "cell"];
     let separators = |c: char| c.is_whitespace() || matches!(c, '(' | ')' | ',' | ';' | ':' | '"' | '|');
     let mut found = Vec::new();
-    // oil has a mass, whatever the rig does
-    let lines = text.lines().filter(|line| !line.contains("mass of that oil")).collect::<Vec<_>>().join("\n");
+    // oil and parts have a mass, whatever the rig does
+    let of_matter = |line: &&str| line.contains("mass of that oil") || line.contains("mass of its parts");
+    let lines = text.lines().filter(|line| !of_matter(line)).collect::<Vec<_>>().join("\n");
     for word in lines.split(separators).map(|word| word.trim_end_matches(['.', '?'])) {
         if units.contains(&word) || words.contains(&word.to_lowercase().trim_end_matches("'s")) {
             found.push(word.to_string());
@@ -187,7 +188,8 @@ fn text_of(markup: &str) -> String {
 }
 
 /// Names of lengths and masses, whatever the rig does.
-const OF_ALL_RIGS: [&str; 4] = ["lines_length_m", "sized_length_m", "actuator_length_m", "oil_mass_kg"];
+const OF_ALL_RIGS: [&str; 5] =
+    ["lines_length_m", "sized_length_m", "actuator_length_m", "oil_mass_kg", "parts_mass_kg"];
 
 /// Keys of JSON that say a unit of linear motion.
 fn keys_of_linear_motion(value: &Value) -> Vec<String> {
@@ -200,8 +202,7 @@ fn keys_of_linear_motion(value: &Value) -> Vec<String> {
                     .iter()
                     .any(|end| bare.ends_with(end))
                     && !bare.ends_with("_n_m")
-                    && !["lines_length_m", "sized_length_m", "actuator_length_m", "oil_mass_kg"]
-                        .contains(&bare);
+                    && !OF_ALL_RIGS.contains(&bare);
                 is_linear
                     .then(|| key.clone())
                     .into_iter()
