@@ -114,19 +114,19 @@ fn product(a: f64, b: f64) -> [Rounded; 2] {
 
 /// On which side of zero an interval lies.
 #[derive(Clone, Copy)]
-enum Sign {
+enum SideOfZero {
     Positive,
     Negative,
     Both,
 }
 
-impl Sign {
+impl SideOfZero {
     #[inline]
-    fn of(interval: Interval) -> Sign {
+    fn of(interval: Interval) -> SideOfZero {
         match (interval.low >= 0.0, interval.high <= 0.0) {
-            (true, _) => Sign::Positive,
-            (_, true) => Sign::Negative,
-            _ => Sign::Both,
+            (true, _) => SideOfZero::Positive,
+            (_, true) => SideOfZero::Negative,
+            _ => SideOfZero::Both,
         }
     }
 }
@@ -173,16 +173,16 @@ impl Mul for Interval {
             high: product(high.0, high.1)[1].up(),
         };
         let (a, b, c, d) = (self.low, self.high, other.low, other.high);
-        match (Sign::of(self), Sign::of(other)) {
-            (Sign::Positive, Sign::Positive) => of(((a, c), (b, d))),
-            (Sign::Positive, Sign::Negative) => of(((b, c), (a, d))),
-            (Sign::Positive, Sign::Both) => of(((b, c), (b, d))),
-            (Sign::Negative, Sign::Positive) => of(((a, d), (b, c))),
-            (Sign::Negative, Sign::Negative) => of(((b, d), (a, c))),
-            (Sign::Negative, Sign::Both) => of(((a, d), (a, c))),
-            (Sign::Both, Sign::Positive) => of(((a, d), (b, d))),
-            (Sign::Both, Sign::Negative) => of(((b, c), (a, c))),
-            (Sign::Both, Sign::Both) => {
+        match (SideOfZero::of(self), SideOfZero::of(other)) {
+            (SideOfZero::Positive, SideOfZero::Positive) => of(((a, c), (b, d))),
+            (SideOfZero::Positive, SideOfZero::Negative) => of(((b, c), (a, d))),
+            (SideOfZero::Positive, SideOfZero::Both) => of(((b, c), (b, d))),
+            (SideOfZero::Negative, SideOfZero::Positive) => of(((a, d), (b, c))),
+            (SideOfZero::Negative, SideOfZero::Negative) => of(((b, d), (a, c))),
+            (SideOfZero::Negative, SideOfZero::Both) => of(((a, d), (a, c))),
+            (SideOfZero::Both, SideOfZero::Positive) => of(((a, d), (b, d))),
+            (SideOfZero::Both, SideOfZero::Negative) => of(((b, c), (a, c))),
+            (SideOfZero::Both, SideOfZero::Both) => {
                 let (one, other) = (of(((a, d), (a, c))), of(((b, c), (b, d))));
                 Interval { low: one.low.min(other.low), high: one.high.max(other.high) }
             }
