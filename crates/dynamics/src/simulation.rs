@@ -42,7 +42,7 @@ pub use equilibrium::{EquilibriumError, equilibrium};
 pub use growth::Sliding;
 pub use method::Method;
 pub use profile::{Harmonic, Moment, Profile, ProfileError, ProfilePiece, schroeder_phases};
-pub use quartic::Quartic;
+pub use quartic::{Quartic, gauss_points};
 pub use sensed::Sensed;
 pub use sine_response::{SinePlan, SineResponse, sine_response};
 pub use small_signal::small_signal;

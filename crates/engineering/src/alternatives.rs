@@ -180,11 +180,10 @@ pub fn judge(
     }
     let motions = loaded.project.motions();
     let planned = request.front.as_ref().map(|asked| front::plan(asked, motions)).transpose()?;
-    let all = asked(source, loaded, catalogues)?;
+    let (all, counted) = asked(source, loaded, catalogues)?;
     let cases = asked_cases(source, loaded, catalogues)?;
     let catalogue = catalogue::load(source, catalogues).map_err(ProcedureError::Catalogue)?;
     let impedance_at = request.impedance_at.as_slice();
-    let counted = asked::counted(&all)?;
     let judging = Judging { source, catalogue: &catalogue, declared: loaded, impedance_at, counted };
     let swept = planned.as_ref().map_or(0, |plan| plan.values.len());
     let rounds = (1 + cases.len() + swept) as f64;

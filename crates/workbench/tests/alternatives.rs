@@ -266,7 +266,7 @@ fn ranges_follow_the_rig_where_that_is_asked() {
                 \"line\" = { pipe = { bore = \"10.5 mm\" }, length = \"0.35 m\", compliance = \"uniform\" }\n";
     let text = |recentre: &str| format!("{HOSE}{}", pipe.replace("RECENTRE", recentre));
     let declared = load(&text("recentre = true"), &[], &[]);
-    let following = asked_of(&source(&text("recentre = true")), &declared, &[]).unwrap();
+    let following = asked_of(&source(&text("recentre = true")), &declared, &[]).unwrap().0;
     let moved: Vec<&str> = following[1].moved.iter().map(|range| range.name.as_str()).collect();
     assert_eq!(moved, ["hydraulic_stiffness"]);
     let [nominal, least, greatest] = following[1].moved[0].moved;
@@ -285,7 +285,7 @@ fn a_sized_alternative_has_the_hose_of_size() {
     let text = format!(
         "{HOSE}\n[[alternative]]\nname = \"sized\"\nsize = true\nset = {{ \"line.length\" = \"1 m\" }}\n"
     );
-    let all = asked_of(&source(&text), &load(&text, &[], &[]), &[]).unwrap();
+    let all = asked_of(&source(&text), &load(&text, &[], &[]), &[]).unwrap().0;
     let size = Request::Size { gain: None, length: None };
     let sized = parsed(&answer(&text, &["line.length=1 m"], &[], &size));
     let best = &sized["candidates"][0];

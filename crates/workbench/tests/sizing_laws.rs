@@ -93,7 +93,7 @@ fn a_sized_alternative_keeps_its_unequal_hoses() {
     let settings = [other, "sizing.length_increment=\"1 mm\""];
     let asked =
         phea_workbench::alternatives::asked(&ask::source(&text), &ask::load(&text, &settings, &[]), &[]);
-    let line = asked.unwrap().remove(1).loaded.project.actuator.unwrap().line;
+    let line = asked.unwrap().0.remove(1).loaded.project.actuator.unwrap().line;
     let size = ask::size(&text, &settings);
     let name = format!("{EATON} in line A, {EATON} in line B");
     let rows = size["candidates"].as_array().unwrap();

@@ -165,7 +165,7 @@ impl Sub for Interval {
 
 impl Mul for Interval {
     type Output = Self;
-    /// The ends of a product are products of ends; where a factor has one sign, it is known of which.
+    /// Each end is a product of two ends; the signs of both factors say of which.
     #[inline]
     fn mul(self, other: Self) -> Self {
         let of = |(low, high): ((f64, f64), (f64, f64))| Interval {
@@ -312,7 +312,7 @@ mod tests {
             for other in pairs() {
                 let (product, reference) = (one * other, product_of_all_ends(one, other));
                 let same = (product.low, product.high) == (reference.low, reference.high);
-                // a product that underflows is rounded towards both sides: what has zero as an end keeps it
+                // a product that underflows is rounded both ways; zero as an end stays one
                 let underflows = [reference.low, reference.high]
                     .iter()
                     .any(|end| (f64::from_bits(1)..1e-290).contains(&end.abs()));

@@ -246,16 +246,39 @@ fn roots_within([c0, c1, c2]: [f64; 3]) -> Vec<f64> {
     roots
 }
 
-/// The mean over a span by the rule of Gauss with five points, exact to degree nine.
+/// Places from the middle in half spans, and weights: the rule of Gauss with five points, exact to
+/// degree nine.
+// ORIGIN: analytic, roots of Legendre's polynomial of degree five
+const POINTS: [(f64, f64); 2] =
+    [(0.538_469_310_105_683_1, 0.239_314_335_249_683_24), (0.906_179_845_938_664, 0.118_463_442_528_094_54)];
+
+/// Weight of the place in the middle.
+const MIDDLE: f64 = 64.0 / 225.0;
+
+/// Places between 0 and 1 and their weights in a mean: the rule of Gauss with five points, exact to
+/// degree nine.
+///
+/// # Example
+/// The mean of x^9 over the unit span is a tenth.
+/// ```
+/// let mean: f64 = phea_dynamics::simulation::gauss_points().map(|(x, weight)| weight * x.powi(9)).iter().sum();
+/// assert!((mean - 0.1).abs() < 1e-15);
+/// ```
+pub fn gauss_points() -> [(f64, f64); 5] {
+    let [(inner, inner_weight), (outer, outer_weight)] = POINTS;
+    let at = |place: f64, weight: f64| (0.5 + 0.5 * place, weight);
+    [
+        at(-outer, outer_weight),
+        at(-inner, inner_weight),
+        at(0.0, MIDDLE),
+        at(inner, inner_weight),
+        at(outer, outer_weight),
+    ]
+}
+
+/// The mean over a span, by that rule.
 #[inline]
 fn gauss([from, until]: [f64; 2], value: impl Fn(f64) -> f64) -> f64 {
-    /// Places from the middle in half spans, and weights.
-    // ORIGIN: analytic, roots of Legendre's polynomial of degree five
-    const POINTS: [(f64, f64); 2] = [
-        (0.538_469_310_105_683_1, 0.239_314_335_249_683_24),
-        (0.906_179_845_938_664, 0.118_463_442_528_094_54),
-    ];
-    const MIDDLE: f64 = 64.0 / 225.0;
     let (middle, half) = (0.5 * (from + until), 0.5 * (until - from));
     POINTS.iter().fold(MIDDLE * value(middle), |sum, (place, weight)| {
         sum + weight * (value(middle - half * place) + value(middle + half * place))

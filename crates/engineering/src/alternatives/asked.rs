@@ -62,7 +62,7 @@ pub fn asked(
     source: &dyn Source,
     loaded: &Loaded,
     catalogues: &[String],
-) -> Result<Vec<AskedAlternative>, ProcedureError> {
+) -> Result<(Vec<AskedAlternative>, PartsCounted), ProcedureError> {
     let catalogue = catalogue::load(source, catalogues).map_err(ProcedureError::Catalogue)?;
     let again = ReadingAgain { source, catalogues };
     let itself = AskedAlternative {
@@ -82,15 +82,15 @@ pub fn asked(
         }
         found.push(one);
     }
-    counted(&found)?;
-    Ok(found)
+    let counted = counted(&found)?;
+    Ok((found, counted))
 }
 
 /// What is counted of the parts of all of them.
 ///
 /// # Errors
 /// [`ProcedureError::Alternative`] for one whose prices are in another currency than those before it.
-pub(super) fn counted(all: &[AskedAlternative]) -> Result<PartsCounted, ProcedureError> {
+fn counted(all: &[AskedAlternative]) -> Result<PartsCounted, ProcedureError> {
     let projects = |count: usize| all.iter().take(count).map(|one| &one.loaded.project);
     for (index, one) in all.iter().enumerate() {
         if let Err([first, other]) = PartsCounted::of(projects(index + 1)) {

@@ -2,7 +2,7 @@
 
 use phea_dynamics::watch::{Progress, Watch};
 
-use super::asked::{asked, counted};
+use super::asked::asked;
 use super::{AskedAlternative, JudgedAlternative, Judging};
 use crate::catalogue::Catalogue;
 use crate::error::ProcedureError;
@@ -55,8 +55,7 @@ pub fn asked_cases(
             }
             other => other,
         };
-        let all = asked(source, &there, catalogues).map_err(named)?;
-        let counted = counted(&all).map_err(named)?;
+        let (all, counted) = asked(source, &there, catalogues).map_err(named)?;
         let settings = case.settings().collect();
         Ok(AskedCase { name: case.name.clone(), settings, loaded: there, all, counted })
     });

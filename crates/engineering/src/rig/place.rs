@@ -8,10 +8,10 @@ use phea_hydraulics::operating_point::{Steady, SteadyLoad};
 use super::numbers::Numbers;
 use crate::project::{self, Project};
 
-/// The position in m (in rad, of a motor) and the condition for the pressures. At null the piston is blocked; with a
-/// command it moves, without load pressure unless one is declared, thesis (4.18); with a velocity
-/// there is no load unless one is declared. A load that yields and has a
-/// weight is held, unless a load or a command is declared.
+/// The position in m (in rad, of a motor) and the condition for the pressures. At null the piston is
+/// blocked; with a command it moves, without load pressure unless one is declared, thesis (4.18);
+/// with a velocity there is no load unless one is declared. A load that yields and has a weight is
+/// held, unless a load or a command is declared.
 pub fn place<S: Scalar>(
     project: &Project,
     components: &Components<S>,

@@ -141,7 +141,7 @@ fn maximum_flow(actuator: &project::DeclaredActuator) -> Result<(f64, String), S
 fn hoses(actuator: &project::DeclaredActuator, catalogue: &Catalogue) -> Vec<HoseOption> {
     let lines = [&actuator.line.a, &actuator.line.b];
     let own = lines.map(|line| line.hose());
-    // a side without a hose takes after the other
+    // a side without a hose takes the stiffening of the other
     let stiffenings = [0, 1].map(|side: usize| match (own[side], own[1 - side]) {
         (None, Some(_)) => lines[1 - side].dynamic_stiffening,
         _ => lines[side].dynamic_stiffening,
@@ -208,10 +208,10 @@ fn unlike(actuator: &project::DeclaredActuator) -> Option<String> {
         }
         (None, None) => None,
         (Some(_), None) => {
-            Some("line B is no hose as it is declared: hoses are sized for both lines".to_string())
+            Some("line B is not declared as a hose: hoses are sized for both lines".to_string())
         }
         (None, Some(_)) => {
-            Some("line A is no hose as it is declared: hoses are sized for both lines".to_string())
+            Some("line A is not declared as a hose: hoses are sized for both lines".to_string())
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The work of accumulators that are adjusted in a run, and what their valves throttle.
 
-use phea_dynamics::simulation::Stretch;
+use phea_dynamics::simulation::{Stretch, gauss_points};
 use phea_hydraulics::machine::SIGNALS;
 
 use super::bench::ControlledMachine;
@@ -34,11 +34,6 @@ pub(super) struct AdjustmentWatch {
 const POWER_PLACE: usize = SIGNALS.len() - 1;
 const _: () = assert!(matches!(SIGNALS[POWER_PLACE].as_bytes(), b"adjustment_power_w"));
 
-/// Places within a step and their weights: the rule of Gauss and Legendre with three points, exact
-/// up to degree five.
-const RULE: [[f64; 2]; 3] =
-    [[0.112_701_665_379_258_3, 5.0 / 18.0], [0.5, 4.0 / 9.0], [0.887_298_334_620_741_7, 5.0 / 18.0]];
-
 impl AdjustmentWatch {
     /// Of a machine that has an adjustment.
     pub(super) fn of(bench: &ControlledMachine) -> Option<AdjustmentWatch> {
@@ -58,7 +53,7 @@ impl AdjustmentWatch {
         let AdjustmentWatch { work, states, inputs } = self;
         let length_s = stretch.end_s() - stretch.start_s();
         let leading = bench.control.leading_inputs();
-        for [part, weight] in RULE {
+        for (part, weight) in gauss_points() {
             states.iter_mut().zip(stretch.states).for_each(|(state, over)| *state = over.at(part));
             stretch.inputs_at(part, inputs);
             let own = inputs.get(leading..).unwrap_or_default();

@@ -11,9 +11,9 @@
 //! ```
 //!
 //! It contains every state of machine, sensor, controller and prefilter by its name, the position of
-//! the load's ground, and by how much the setting of accumulators has moved where it does; for a sampled controller also its memories, the held command and
-//! the position in its random numbers. The content of a delay cannot be stored as numbers: such an
-//! end is not saved.
+//! the load's ground, and by how much the setting of accumulators has moved where it does; for a
+//! sampled controller also its memories, the held command and the position in its random numbers. The
+//! content of a delay cannot be stored as numbers: such an end is not saved.
 
 use std::fmt::Write as _;
 

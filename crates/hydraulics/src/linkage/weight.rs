@@ -73,7 +73,7 @@ impl<S: Scalar> Linkage<S> {
     /// The weight of the load at an angle in rad; `None` for one without.
     pub fn weight_at(&self, angle: S) -> Option<WeightAt<S>> {
         let weight = self.weight.as_ref()?;
-        Some(weight.seen(weight.height.at(angle)))
+        Some(WeightAt::of(weight.moment, weight.height.at(angle)))
     }
 
     /// The same as a part of a machine of many states.
@@ -82,9 +82,7 @@ impl<S: Scalar> Linkage<S> {
     #[inline(never)]
     pub(crate) fn weight_of<T: Scalar + From<S>>(&self, angle: T) -> Option<WeightAt<T>> {
         let weight = self.weight.as_ref()?;
-        let [height, slope, curvature] = T::local(&weight.height, [angle]);
-        let moment = T::from(weight.moment);
-        Some(WeightAt { energy: moment * height, torque: -(moment * slope), stiffness: moment * curvature })
+        Some(WeightAt::of(T::from(weight.moment), T::local(&weight.height, [angle])))
     }
 
     /// The force of the rod in N that holds the weight where the piston is at a position in m and the
@@ -107,9 +105,9 @@ impl<S: Scalar> Linkage<S> {
 /// Repetitions: each divides the error by K_S over the stiffness of weight and lever arm.
 const HOLDING_STEPS: usize = 6;
 
-impl<S: Scalar> LinkedWeight<S> {
-    fn seen(&self, [height, slope, curvature]: [S; 3]) -> WeightAt<S> {
-        let moment = self.moment;
+impl<S: Scalar> WeightAt<S> {
+    /// Of this moment m g d in N m, with h and its two derivatives by the angle.
+    fn of(moment: S, [height, slope, curvature]: [S; 3]) -> WeightAt<S> {
         WeightAt { energy: moment * height, torque: -(moment * slope), stiffness: moment * curvature }
     }
 }

@@ -66,7 +66,8 @@ pub const ADJUSTMENT_SIGNALS: [&str; 3] = ["setting_a_ratio", "setting_b_ratio",
 /// `load_contact`: the way left to the wall in m. `supply_lost`: supply less tank pressure in Pa.
 /// `accumulator_empty`: the chamber's pressure, or that behind the neck where there is one, less the
 /// precharge of its accumulator in Pa. `accumulator_overpressure`: what is left to the pressure limit of
-/// that gas in Pa, which moves with a precharge that is adjusted. `series_end`: the way left to the nearer end of a series spring's travel in m.
+/// that gas in Pa, which moves with a precharge that is adjusted. `series_end`: the way left to the
+/// nearer end of a series spring's travel in m.
 pub const INDICATORS: [&str; 13] = [
     "cavitation_a",
     "cavitation_b",

@@ -17,7 +17,8 @@ pub(super) fn linkage(project: &Project, actuator: &DeclaredActuator, check: &mu
         check.warning("linkage", message);
     }
     if linkage.weight.is_some() && actuator.load == Load::Prescribed {
-        let message = "a load whose motion is prescribed moves so whatever it weighs: `weight` has no effect";
+        let message =
+            "a load with a prescribed motion follows it whatever its weight: `weight` has no effect";
         check.warning("linkage.weight", message);
     }
     closes(linkage, actuator.cylinder.stroke, check);

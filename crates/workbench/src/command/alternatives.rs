@@ -66,7 +66,7 @@ pub(super) fn read_alternatives(
     if loaded.project.alternatives.is_empty() {
         return Ok(vec![]);
     }
-    let mut told = rigs(&asked(source, loaded, catalogues)?, loaded, "")?;
+    let mut told = rigs(&asked(source, loaded, catalogues)?.0, loaded, "")?;
     for case in asked_cases(source, loaded, catalogues)? {
         let further = rigs(&case.all, &case.loaded, &format!(", {}", case.name))?;
         told.extend(further.into_iter().filter(|sentence| !told.contains(sentence)).collect::<Vec<_>>());

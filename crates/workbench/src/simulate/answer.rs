@@ -65,7 +65,7 @@ const NOT_AMPLIFIED: &str = "no oscillation grew so much that errors within the 
 /// Why there is no work of an adjustment, or no temperature.
 const NOT_ADJUSTED: &str = "no setting of an accumulator moves, and no valve leads to its gas";
 const NO_GAS_VALVE: &str = "no valve lies between a chamber and its gas";
-const NO_HEAT: &str = "an exponent says nothing of temperatures: state a thermal_time_constant";
+const NO_HEAT: &str = "a polytropic exponent gives no temperature: state `thermal_time_constant`";
 
 fn scenario(run: &ScenarioRun, state_file: String) -> Object {
     let stopped = run.stopped();

@@ -240,17 +240,17 @@ pub(crate) fn gas_sentence(run: &ScenarioRun) -> Option<String> {
             (Some(ratios), Some(wall)) => {
                 let [low, high] =
                     ratios.map(|ratio| significant(ratio * (wall + ZERO_CELSIUS) - ZERO_CELSIUS, 3));
-                format!(" and is between {low} and {high} degC warm")
+                format!(", at {low} to {high} degC")
             }
             (Some(ratios), None) => {
                 let [low, high] = ratios.map(|ratio| significant(ratio, 4));
-                format!(" and has between {low} and {high} times the absolute temperature of its wall")
+                format!(", at {low} to {high} times the absolute temperature of its wall")
             }
         };
-        format!("the gas at chamber {} comes to {pressure}{heat}", gas.chamber.to_ascii_uppercase())
+        format!("the gas at chamber {} reaches {pressure}{heat}", gas.chamber.to_ascii_uppercase())
     };
     let told: Vec<String> = run.gas.iter().map(of).collect();
-    (!told.is_empty()).then(|| told.join(", "))
+    (!told.is_empty()).then(|| told.join("; "))
 }
 
 /// The events of a run, a sentence each.
