@@ -3,6 +3,8 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
+use std::sync::LazyLock;
+
 use crate::ask::{HOSE, answer, load};
 use phea_workbench::answer::Answer;
 use phea_workbench::command::{FrictionRequest, IdentifyError, Request, friction_watched};
@@ -30,6 +32,24 @@ pub(crate) const SHORT: &str = "bench.duration=1 s";
 
 /// No noise, and converters that convert nothing.
 const EXACT: [&str; 2] = ["bench.pressure_noise=0", "bench.converter_bits=0"];
+
+/// Eight velocities, and all else as the bench has it.
+const NOISY: &str = "bench.friction={ velocities = 8 }";
+
+/// The friction of that bench from all four recordings, and from those without the shaken piston: each
+/// identified once for all tests.
+fn from_all() -> &'static Answer {
+    static ANSWER: LazyLock<Answer> = LazyLock::new(|| {
+        identified(&recorded(&[NOISY]), &[SLIDING, PRESSED[0], PRESSED[1], SHAKEN]).unwrap()
+    });
+    &ANSWER
+}
+
+fn without_the_shaken() -> &'static Answer {
+    static ANSWER: LazyLock<Answer> =
+        LazyLock::new(|| identified(&recorded(&[NOISY]), &[SLIDING, PRESSED[0], PRESSED[1]]).unwrap());
+    &ANSWER
+}
 
 /// The files of a bench with these settings, and one whose text is given besides.
 pub(crate) fn recorded(settings: &[&str]) -> Memory {
@@ -78,7 +98,7 @@ fn the_steady_curve_comes_back_without_noise() {
 /// intervals hold the truth: three standard deviations here, as six are looked at.
 #[test]
 fn a_noisy_bench_tells_all_but_the_damper() {
-    let found = found(&["bench.friction={ velocities = 8 }"], &[SLIDING, PRESSED[0], PRESSED[1]]);
+    let found: Value = serde_json::from_str(&without_the_shaken().json).unwrap();
     is_open(&found, "bristle_damping_n_s_per_m", "slow runs do not show it");
     holds_the_truth(&found, &TRUTH[..6]);
 }
@@ -86,8 +106,7 @@ fn a_noisy_bench_tells_all_but_the_damper() {
 /// With all four recordings all is determined.
 #[test]
 fn a_noisy_bench_tells_all_of_the_friction() {
-    let source = recorded(&["bench.friction={ velocities = 8 }"]);
-    let answer = identified(&source, &[SLIDING, PRESSED[0], PRESSED[1], SHAKEN]).unwrap();
+    let answer = from_all();
     assert!(answer.affirmative, "{}", answer.text);
     holds_the_truth(&serde_json::from_str(&answer.json).unwrap(), &TRUTH);
 }
@@ -152,12 +171,10 @@ fn an_error_of_the_zero_is_no_friction() {
 /// The fragment is a table of a project, but for what is open.
 #[test]
 fn the_fragment_is_a_table_of_a_project() {
-    let source = recorded(&["bench.friction={ velocities = 8 }"]);
-    let without = identified(&source, &[SLIDING, PRESSED[0], PRESSED[1]]).unwrap();
     let open = "# bristle_damping: not determined, slow runs do not show it";
-    let said = String::from_utf8(without.files[0].bytes.clone()).unwrap();
+    let said = String::from_utf8(without_the_shaken().files[0].bytes.clone()).unwrap();
     assert!(said.contains(open), "{said}");
-    let answer = identified(&source, &[SLIDING, PRESSED[0], PRESSED[1], SHAKEN]).unwrap();
+    let answer = from_all();
     let fragment = answer.files.iter().find(|file| file.name == "friction.toml").unwrap();
     let fragment = String::from_utf8(fragment.bytes.clone()).unwrap();
     let (before, rest) = HOSE.split_once("[cylinder.friction]").unwrap();
