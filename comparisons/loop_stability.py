@@ -4,6 +4,8 @@ import numpy as np
 
 from worst_case import polish, scaled_roots
 
+HALVINGS = 24  # of an interval of the grid in which |L| passes one: to 1e-8 of its frequency
+
 
 def abscissa(project, values):
     """Largest real part of the closed loop's poles, 1/s; of a sampled loop by the logarithm of its poles."""
@@ -94,7 +96,7 @@ def member_delay_margin(project, values, frequencies):
     if len(crossing) == 0:
         return np.inf
     low, high, below = frequencies[crossing], frequencies[crossing + 1], level[crossing]
-    for _ in range(60):
+    for _ in range(HALVINGS):
         middle = np.sqrt(low * high)
         same = np.sign(np.log(np.abs(loop(middle)))) == np.sign(below)
         low, high = np.where(same, middle, low), np.where(same, high, middle)
