@@ -84,7 +84,18 @@ fn beside_spring(project: &Project) -> Option<String> {
 
 /// What no linear model counts.
 fn apart_from_lines(project: &Project) -> impl Iterator<Item = Caveat> {
-    [load(project), feed_forward(project), impedance(project)].into_iter().flatten()
+    [load(project), stages(project), feed_forward(project), impedance(project)].into_iter().flatten()
+}
+
+/// A telescopic piston is that of each operating point.
+fn stages(project: &Project) -> Option<Caveat> {
+    let declared = project.actuator.as_ref()?;
+    (declared.motor.is_none() && !declared.cylinder.stages.is_empty()).then(|| Caveat {
+        sentence: "cylinder.stage is counted with the areas at each operating point: only a simulation shows a motion from one stage to \
+                   the next"
+            .to_string(),
+        unproven: false,
+    })
 }
 
 /// A wall without a stated mass of the load.

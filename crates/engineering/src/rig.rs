@@ -164,14 +164,13 @@ impl Rig {
         let components = actuator.components();
         let numbers = Numbers::declared();
         let (position, steady) = place(project, components, &numbers);
-        let condition = Condition::from(steady);
-        let balance = Balance::of(components);
+        let balance = Balance::at(components, position);
         let supply = settled_supply(declared, &numbers, &balance, steady)
             .filter(|found| found.supply.pressure.is_finite());
         // the valve at the pressure that the pump maintains, lines and stall forces at the stated one
         let settled = supply.map_or(components.supply, |found| found.supply);
         let at_valve = Actuator::new(Components { supply: settled, ..*components })?;
-        let point = operating_point(&at_valve, position, condition)?;
+        let point = operating_point(&at_valve, position, steady.into())?;
         accumulator::charged(declared, &components.accumulators, &point)?;
         let pressures = [point.pressure_a, point.pressure_b];
         let supply = supply
@@ -191,7 +190,8 @@ impl Rig {
         let pushed = load.map_or(LinearLoad::Prescribed, |load| load.linear());
         let series = components.series.map(|series| LinearSeries::new(&series, point.hydraulic_force));
         let plant = plant(&two_pressure, &linear, one_pressure, internal_leakage, pushed);
-        let plant = LinearPlant { dynamic_feedback, series, ..plant };
+        let area_stiffness = components.cylinder.area_stiffness(point.position, pressures);
+        let plant = LinearPlant { dynamic_feedback, series, area_stiffness, ..plant };
         let plant = match yielding {
             Some(supply) if !(one_pressure && unseen) || has_gas_states(declared) => {
                 with_supply(plant, supply, &two_pressure)
@@ -207,7 +207,7 @@ impl Rig {
             actuator,
             point,
             supply,
-            condition,
+            condition: Condition::from(steady),
             model,
             two_pressure,
             derived,

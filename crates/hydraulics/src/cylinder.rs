@@ -5,6 +5,7 @@ use phea_dynamics::scalar::Scalar;
 
 use crate::contact::Contact;
 use crate::parameter::{ParameterError, Problems};
+use crate::servovalve::Supply;
 use crate::stroke::ActuatorStroke;
 
 /// A double-acting cylinder. Units: m2, m, kg, m3.
@@ -17,9 +18,9 @@ use crate::stroke::ActuatorStroke;
 /// in N m/rad. A vane actuator has a stroke in rad; a motor that turns on has none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cylinder<S = f64> {
-    /// Piston area on the A side, A_A, in m2.
+    /// Piston area on the A side, A_A, in m2; of a telescopic piston that of its first stage.
     pub area_a: S,
-    /// Piston area on the B side, A_B, in m2.
+    /// Piston area on the B side, A_B, in m2; likewise.
     pub area_b: S,
     /// ActuatorStroke L in m, or none.
     pub stroke: ActuatorStroke<S>,
@@ -41,13 +42,41 @@ pub struct Cylinder<S = f64> {
 }
 
 impl Cylinder {
+    /// A_A and A_B of every stage in m2, the first one first; one pair of a piston that is not
+    /// telescopic.
+    pub fn areas_of_stages(&self) -> impl Iterator<Item = [f64; 2]> {
+        let further = self.stroke.telescope().into_iter().flat_map(|telescope| telescope.stages);
+        let of = |[a, b]: [f64; 2]| [self.area_a * a, self.area_b * b];
+        std::iter::once([1.0; 2]).chain(further.flatten().map(|stage| stage.ratios)).map(of)
+    }
+
+    /// The forces in N that the supply gives the piston as it retracts and as it extends, the greatest of
+    /// all stages:
+    ///
+    /// ```text
+    /// F_min = A_A p_T - A_B p_S          F_max = A_A p_S - A_B p_T
+    /// ```
+    pub fn stall_forces(&self, supply: &Supply) -> [f64; 2] {
+        let Supply { pressure, tank_pressure } = *supply;
+        self.areas_of_stages().fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], [a, b]| {
+            [least.min(a * tank_pressure - b * pressure), most.max(a * pressure - b * tank_pressure)]
+        })
+    }
+
+    /// The greatest A_A and the greatest A_B of all stages, in m2.
+    pub fn greatest_areas(&self) -> [f64; 2] {
+        self.areas_of_stages().fold([0.0; 2], |[a, b], [own_a, own_b]| [own_a.max(a), own_b.max(b)])
+    }
+
     /// The invalid parameters of this cylinder; empty if all are valid.
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
         problems.positive("area_a", self.area_a);
         problems.positive("area_b", self.area_b);
-        if let ActuatorStroke::Limited(stroke) = self.stroke {
-            problems.positive("stroke", stroke);
+        match self.stroke {
+            ActuatorStroke::Limited(stroke) => problems.positive("stroke", stroke),
+            ActuatorStroke::Telescopic(telescope) => problems.all(telescope.problems()),
+            ActuatorStroke::Unlimited => {}
         }
         problems.positive("moving_mass", self.moving_mass);
         problems.not_negative("dead_volume_a", self.dead_volume_a);
@@ -62,6 +91,25 @@ impl Cylinder {
             problems.component("end_stops", contact.problems());
         }
         problems.into_vec()
+    }
+}
+
+impl<S: Scalar> Cylinder<S> {
+    /// A_A and A_B in m2 at a position in m.
+    #[inline(always)]
+    pub fn areas_at(&self, x: S) -> [S; 2] {
+        self.stroke.areas([self.area_a, self.area_b], x)
+    }
+
+    /// What the slopes of the areas of a telescopic piston make of two pressures in Pa: a stiffness of
+    /// the piston in N/m, which is negative where a growing area pushes it on; `None` for any other.
+    ///
+    /// ```text
+    /// k_A = p_B dA_B/dx - p_A dA_A/dx
+    /// ```
+    pub fn area_stiffness(&self, x: S, [pressure_a, pressure_b]: [S; 2]) -> Option<S> {
+        let [slope_a, slope_b] = self.stroke.telescope()?.slopes(x);
+        Some(self.area_b * slope_b * pressure_b - self.area_a * slope_a * pressure_a)
     }
 }
 
@@ -136,7 +184,7 @@ pub fn annulus_area<S: Scalar>(piston: S, rod: S) -> S {
 /// V_A = V_A0 + A_A x        V_B = V_B0 + A_B (L - x)                  thesis (4.27), (4.28)
 /// ```
 ///
-/// Without a stroke both are the dead volumes alone.
+/// A telescopic piston sweeps the integral of its areas. Without a stroke both are the dead volumes alone.
 ///
 /// # Example
 /// ```

@@ -66,7 +66,6 @@ use crate::line::{DynamicLine, Segments};
 use crate::linkage::Linkage;
 use crate::series::SeriesElement;
 use crate::servovalve::{Servovalve, SpoolImperfection, Supply};
-use crate::stroke::ActuatorStroke;
 use equations::constant;
 use signals::ground_of;
 use state::Layout;
@@ -243,9 +242,8 @@ impl Machine {
             return Ok(());
         };
         let pressure = self.supply.pressure.max(0.0);
-        let Cylinder { area_a, area_b, stroke: ActuatorStroke::Limited(stroke), .. } = self.cylinder else {
-            return Ok(());
-        };
+        let Some(stroke) = self.cylinder.stroke.length() else { return Ok(()) };
+        let ([_, area_b], [area_a, _]) = (self.cylinder.areas_at(0.0), self.cylinder.areas_at(stroke));
         let state = MachineState { pressure_a: pressure, pressure_b: pressure, ..MachineState::zero() };
         // At the A end chamber B presses, and the other way round.
         for (end, away, pressing) in [(0.0, -1.0, area_b), (stroke, 1.0, area_a)] {

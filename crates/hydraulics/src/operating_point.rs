@@ -170,7 +170,7 @@ pub fn operating_point(
     position: f64,
     condition: Condition,
 ) -> Result<OperatingPoint, OperatingPointError> {
-    let balance = Balance::of(actuator.components());
+    let balance = Balance::at(actuator.components(), position);
     let stroke = actuator.components().cylinder.stroke;
     if !stroke.contains(position) {
         let stroke = stroke.length().unwrap_or(f64::INFINITY);

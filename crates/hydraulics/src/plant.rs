@@ -3,7 +3,7 @@
 //! ```text
 //! U_sp = w^2/(s^2 + 2 xi w s + w^2) U_C                                  spool, thesis (4.1)
 //! D F_h = N_u U_sp - N_v s X                                             chambers: ChamberDynamics
-//! (M s^2 + f_v s) X = F_h - F_e,       F_e = K_S (X - X_L)               piston and force sensor, thesis (6.6)
+//! (M s^2 + f_v s + k_A) X = F_h - F_e, F_e = K_S (X - X_L)               piston and force sensor, thesis (6.6)
 //! X_L = X_0,   or   (m s^2 + c s + k) X_L = F_e + (c s + k) X_0          load: LinearLoad
 //! U_C -> U_C + K_x (1 + e) H_v s X_L                                     what is fed forward of the load's velocity
 //! F_e -> F_e + Z_v X_L                                                   what a virtual impedance adds to the output
@@ -55,6 +55,9 @@ pub struct LinearPlant<S = f64> {
     pub moving_mass: S,
     /// Slope f_v of the friction in N s/m.
     pub viscous_friction: S,
+    /// Stiffness k_A in N/m that the slope of the areas of a telescopic piston gives it; `None` where they
+    /// have none.
+    pub area_stiffness: Option<S>,
     /// Stiffness K_S of the force sensor in N/m; with a prescribed load, of sensor and environment.
     pub sensor_stiffness: S,
     /// A spring between force sensor and load; `None` where the sensor pushes on the load itself.
@@ -330,6 +333,7 @@ impl<S: Scalar> LinearPlant<S> {
             gas: [None; 2],
             moving_mass: parameters.moving_mass,
             viscous_friction: parameters.viscous_friction,
+            area_stiffness: None,
             sensor_stiffness: parameters.sensor_stiffness,
             series: None,
             load,
@@ -362,6 +366,7 @@ impl<S: Scalar> LinearPlant<S> {
             gas: [None; 2],
             moving_mass: parameters.moving_mass,
             viscous_friction: parameters.viscous_friction,
+            area_stiffness: None,
             sensor_stiffness: parameters.sensor_stiffness,
             series: None,
             load,
@@ -396,7 +401,7 @@ impl<S: Scalar> LinearPlant<S> {
     /// F_e/U_C in N/V and F_e/X_0 in N/m, X_0 the motion of the load or of its ground.
     ///
     /// ```text
-    /// Q = (M s^2 + f_v s) D + N_v s,     Z = m s^2 + c s + k,     V = s^2 + 2 xi w s + w^2
+    /// Q = (M s^2 + f_v s + k_A) D + N_v s,     Z = m s^2 + c s + k,     V = s^2 + 2 xi w s + w^2
     /// prescribed    F_e = K_S (w^2 N_u U_C - V Q X_0)/(V (Q + K_S D))
     /// yielding      F_e = K_S (Z w^2 N_u U_C - (c s + k) V Q X_0)/(V (Q (Z + K_S) + K_S Z D))
     ///               v_L = s (K_S w^2 N_u U_C + (c s + k) V (Q + K_S D) X_0)/(V (Q (Z + K_S) + K_S Z D))
@@ -443,6 +448,10 @@ impl<S: Scalar> LinearPlant<S> {
         let chambers = self.chamber_polynomials();
         let ChamberPolynomials { own, driven, displaced } = &chambers;
         let moved = shifted(&sum(&product(&[self.moving_mass, self.viscous_friction], own), displaced));
+        let moved = match self.area_stiffness {
+            Some(stiffness) => sum(&moved, &scaled(stiffness, own)),
+            None => moved,
+        };
         if let Some(series) = &self.series {
             let driven = scaled(sensor * square, driven);
             return self.coefficients_through(series, &chambers, [moved, driven, spool.to_vec()]);

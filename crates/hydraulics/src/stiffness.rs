@@ -42,11 +42,13 @@ pub enum StiffnessModel {
 /// ```text
 /// C_A(x) = constant_a + slope_a x        C_B(x) = constant_b + slope_b (L - x)
 /// ```
+///
+/// x and L - x are ways of the first stage of a telescopic piston: [`ActuatorStroke::travels`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChamberCompliance<S = f64> {
-    /// Piston area A_A in m2.
+    /// Piston area A_A in m2; of a telescopic piston that of its first stage.
     pub area_a: S,
-    /// Piston area A_B in m2.
+    /// Piston area A_B in m2; likewise.
     pub area_b: S,
     /// ActuatorStroke L in m.
     pub stroke: ActuatorStroke<S>,
@@ -123,9 +125,12 @@ pub fn compliance_at<S: Scalar>(chambers: &ChamberCompliance<S>, x: S) -> [S; 2]
 /// ```text
 /// K_HA = A_A^2/C_A(x)        K_HB = A_B^2/C_B(x)                       thesis (6.1)
 /// ```
+///
+/// The areas are those at x, which matters for a telescopic piston alone.
 pub fn chamber_stiffness<S: Scalar>(chambers: &ChamberCompliance<S>, x: S) -> [S; 2] {
     let [compliance_a, compliance_b] = compliance_at(chambers, x);
-    [chambers.area_a.squared() / compliance_a, chambers.area_b.squared() / compliance_b]
+    let [area_a, area_b] = chambers.areas_at(x);
+    [area_a.squared() / compliance_a, area_b.squared() / compliance_b]
 }
 
 /// Hydraulic stiffness at piston position x, in N/m.
@@ -140,6 +145,12 @@ pub fn hydraulic_stiffness<S: Scalar>(chambers: &ChamberCompliance<S>, x: S) -> 
 }
 
 impl<S: Scalar> ChamberCompliance<S> {
+    /// A_A and A_B in m2 at piston position x.
+    #[inline(always)]
+    pub fn areas_at(&self, x: S) -> [S; 2] {
+        self.stroke.areas([self.area_a, self.area_b], x)
+    }
+
     /// The same with the gas of an accumulator at either chamber, in m3/Pa.
     #[must_use]
     pub fn with_gas(self, [gas_a, gas_b]: [Option<S>; 2]) -> ChamberCompliance<S> {

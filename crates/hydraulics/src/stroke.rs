@@ -1,5 +1,9 @@
 //! How far a cylinder or motor moves, and what that does to its chambers.
 
+mod telescope;
+
+pub use telescope::{FURTHER_STAGES, PistonStage, Telescope};
+
 use phea_dynamics::scalar::Scalar;
 
 /// The stroke, in m or rad.
@@ -7,6 +11,8 @@ use phea_dynamics::scalar::Scalar;
 pub enum ActuatorStroke<S = f64> {
     /// From zero at the A end to this at the B end: chamber A grows by what chamber B loses.
     Limited(S),
+    /// The same of a telescopic piston, whose areas change from stage to stage.
+    Telescopic(Telescope<S>),
     /// None: a motor that turns on. What enters one of its ports leaves the other, and its chambers
     /// keep their volumes.
     Unlimited,
@@ -18,6 +24,7 @@ impl<S: Copy> ActuatorStroke<S> {
     pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> ActuatorStroke<T> {
         match self {
             ActuatorStroke::Limited(stroke) => ActuatorStroke::Limited(of(*stroke)),
+            ActuatorStroke::Telescopic(telescope) => ActuatorStroke::Telescopic(telescope.convert(of)),
             ActuatorStroke::Unlimited => ActuatorStroke::Unlimited,
         }
     }
@@ -26,16 +33,26 @@ impl<S: Copy> ActuatorStroke<S> {
     pub fn length(&self) -> Option<S> {
         match self {
             ActuatorStroke::Limited(stroke) => Some(*stroke),
+            ActuatorStroke::Telescopic(telescope) => Some(telescope.stroke),
             ActuatorStroke::Unlimited => None,
+        }
+    }
+
+    /// The stages of a telescopic piston; `None` for any other.
+    pub fn telescope(&self) -> Option<&Telescope<S>> {
+        match self {
+            ActuatorStroke::Telescopic(telescope) => Some(telescope),
+            ActuatorStroke::Limited(_) | ActuatorStroke::Unlimited => None,
         }
     }
 }
 
 impl<S: Scalar> ActuatorStroke<S> {
-    /// What the position adds to each chamber: the way from the A end and the way to the B end.
+    /// What the position adds to each chamber, as a way of the piston's areas: the way from the A end
+    /// and the way to the B end.
     ///
     /// ```text
-    /// x and L - x, or zero and zero without a stroke
+    /// x and L - x;   l_A(x) and l_B(L) - l_B(x) of a telescopic piston;   zero and zero without a stroke
     /// ```
     ///
     /// # Example
@@ -48,7 +65,29 @@ impl<S: Scalar> ActuatorStroke<S> {
     pub fn travels(&self, position: S) -> [S; 2] {
         match self {
             ActuatorStroke::Limited(stroke) => [position, *stroke - position],
+            ActuatorStroke::Telescopic(telescope) => telescope.travels(position),
             ActuatorStroke::Unlimited => [S::from(0.0); 2],
+        }
+    }
+
+    /// The distances from the A end and to the B end, in m or rad; zero and zero without a stroke.
+    #[inline(always)]
+    pub fn distances(&self, position: S) -> [S; 2] {
+        match self {
+            ActuatorStroke::Telescopic(telescope) => [position, telescope.stroke - position],
+            other => other.travels(position),
+        }
+    }
+
+    /// The areas of a piston at a position, from those of its first stage.
+    #[inline(always)]
+    pub fn areas(&self, first: [S; 2], position: S) -> [S; 2] {
+        match self {
+            ActuatorStroke::Telescopic(telescope) => {
+                let [ratio_a, ratio_b] = telescope.ratios(position);
+                [first[0] * ratio_a, first[1] * ratio_b]
+            }
+            ActuatorStroke::Limited(_) | ActuatorStroke::Unlimited => first,
         }
     }
 
@@ -56,6 +95,7 @@ impl<S: Scalar> ActuatorStroke<S> {
     pub fn middle(&self) -> S {
         match self {
             ActuatorStroke::Limited(stroke) => *stroke / S::from(2.0),
+            ActuatorStroke::Telescopic(telescope) => telescope.stroke / S::from(2.0),
             ActuatorStroke::Unlimited => S::from(0.0),
         }
     }
@@ -66,6 +106,7 @@ impl ActuatorStroke {
     pub fn contains(&self, position: f64) -> bool {
         match self {
             ActuatorStroke::Limited(stroke) => (0.0..=*stroke).contains(&position),
+            ActuatorStroke::Telescopic(telescope) => (0.0..=telescope.stroke).contains(&position),
             ActuatorStroke::Unlimited => position.is_finite(),
         }
     }

@@ -192,14 +192,15 @@ pub fn rates<S: Scalar>(
     };
     let [out_of_a, out_of_b] = [leaving(pressure_a), leaving(pressure_b)];
     let natural_frequency = model.valve.natural_frequency;
-    let pushing = hydraulic_force([chambers.area_a, chambers.area_b], [pressure_a, pressure_b]);
+    let [area_a, area_b] = chambers.areas_at(position);
+    let pushing = hydraulic_force([area_a, area_b], [pressure_a, pressure_b]);
     let sensed = force_sensor::force(model.sensor_stiffness, deflection);
     TwoPressureState {
         spool: spool_rate,
         spool_rate: natural_frequency.squared() * (input.command - spool)
             - S::from(2.0) * model.valve.damping_ratio * natural_frequency * spool_rate,
-        pressure_a: (into_a - out_of_a - chambers.area_a * velocity) / compliance_a,
-        pressure_b: (into_b - out_of_b + chambers.area_b * velocity) / compliance_b,
+        pressure_a: (into_a - out_of_a - area_a * velocity) / compliance_a,
+        pressure_b: (into_b - out_of_b + area_b * velocity) / compliance_b,
         deflection: velocity - input.load_velocity,
         velocity: (pushing - model.viscous_friction * velocity - sensed) / model.moving_mass,
     }

@@ -26,6 +26,7 @@ mod series;
 mod servovalve;
 mod settling;
 mod stiffness;
+mod telescope;
 mod two_pressure;
 mod valve_on_test;
 mod virtual_impedance;

@@ -111,7 +111,8 @@ pub(super) fn yielding(
     let settled = SettledSupply { supply, settled: Settled { command, pressures: ports }, taken: f64::NAN };
     let idle = components.supply.pressure;
     let drops = [idle, idle - components.supply.tank_pressure];
-    let balance = Balance::of(components);
+    // at standstill no area matters
+    let balance = Balance::at(components, 0.25);
     Some(YieldingSupply::new(unit, &balance, drops, &settled, SpoolDirection::Extending))
 }
 

@@ -208,7 +208,7 @@ fn an_orifice_settles_where_the_machine_rests() {
             Components { cylinder: Cylinder { area_a, area_b, ..cylinder() }, cross_port: Some(port), ..rig };
         let rig = Actuator::new(rig).unwrap();
         let steady = Steady::Command(spread(1e-3, 3.0) * if number % 2 == 0 { 1.0 } else { -1.0 });
-        let balance = Balance::of(rig.components());
+        let balance = Balance::at(rig.components(), 0.25);
         let settled = balance.settle(steady);
         assert!(balance.error(steady, &settled) < 1e-12, "{number} {settled:?}");
         let point = operating_point(&rig, 0.25, steady.into()).unwrap();

@@ -21,7 +21,7 @@ use phea_hydraulics::plant::{LinearLoad, LinearPlant};
 use phea_hydraulics::reference_rig::{components, cylinder, hose_line, leaking, nominal_plant, pipe_line};
 use phea_hydraulics::servovalve::{LeakageModel, Servovalve, SpoolDirection, Supply};
 use phea_hydraulics::stiffness::StiffnessModel;
-use phea_hydraulics::stroke::ActuatorStroke;
+use phea_hydraulics::stroke::{ActuatorStroke, PistonStage, Telescope};
 use phea_hydraulics::two_pressure::{
     TwoPressureLinearParameters, TwoPressureModel, two_pressure_coefficients, two_pressure_linear_parameters,
 };
@@ -55,11 +55,24 @@ fn accumulators(number: u64) -> [Option<Accumulator>; 2] {
     })
 }
 
-/// Some leak to the tank, and some turn on without a stroke.
+/// Some leak to the tank, some turn on without a stroke, and some are telescopic, mostly within a
+/// transition.
 fn turning(cylinder: Cylinder, number: u64) -> Cylinder {
     let external_leakage = (number % 5 == 3).then_some(1e-14 * pow(1e3, number as f64 / 300.0));
-    let stroke = if number % 9 == 4 { ActuatorStroke::Unlimited } else { cylinder.stroke };
+    let stroke = match number % 9 {
+        4 => ActuatorStroke::Unlimited,
+        2 | 7 => ActuatorStroke::Telescopic(telescope(number)),
+        _ => cylinder.stroke,
+    };
     Cylinder { external_leakage, stroke, ..cylinder }
+}
+
+/// Three stages with long transitions.
+fn telescope(number: u64) -> Telescope {
+    let mut state = stream(13, number);
+    let mut ratio = || 0.4 + 0.9 * share(&mut state);
+    let mut stage = |from: f64| Some(PistonStage { from, ratios: [ratio(), ratio()] });
+    Telescope { stroke: 0.5, stages: [stage(0.15), stage(0.35), None], transition: 0.18 }
 }
 
 fn drawn(number: u64) -> Drawn {
@@ -160,7 +173,8 @@ impl Drawn {
         let compliances = without_branches(components, pressures, parameters.compliances);
         let parameters = TwoPressureLinearParameters { compliances, ..parameters };
         let plant = LinearPlant::of_two_pressures(&parameters, across, self.load);
-        LinearPlant { supply, dynamic_feedback, gas, ..plant }
+        let area_stiffness = components.cylinder.area_stiffness(point.position, pressures);
+        LinearPlant { supply, dynamic_feedback, gas, area_stiffness, ..plant }
     }
 
     /// F_e/U_C and F_e/X_0 of the machine's own derivatives.
@@ -207,7 +221,8 @@ fn a_limited_pump_settles_where_the_machine_rests() {
         let PowerUnit::PumpLimited(unit) = rig.unit else { continue };
         let components = rig.actuator.components();
         let idle = components.supply.pressure;
-        let balance = Balance::of(components);
+        // at standstill no area matters
+        let balance = Balance::at(components, 0.25);
         let found = balance.settled_supply(&unit, idle, Steady::Command(rig.rest.state[0]));
         let rests = supply_pressure(&rig.machine, f64::NAN, &rig.rest.state);
         if found.taken < unit.pump_flow {

@@ -92,7 +92,7 @@ fn settled_points_are_those_of_bisection() {
         let actuator = draw.rig();
         let steady = draw.steady(&actuator);
         let Ok(point) = operating_point(&actuator, 0.25, steady.into()) else { continue };
-        let balance = Balance::of(actuator.components());
+        let balance = Balance::at(actuator.components(), 0.25);
         let settled = balance.settle(steady);
         assert!(error(&actuator, &settled, &point) < 1e-13, "{steady:?} {actuator:?} {settled:?} {point:?}");
         assert!(balance.error(steady, &settled) < 1e-13, "{steady:?}");
@@ -104,7 +104,7 @@ fn settled_points_are_those_of_bisection() {
 /// Whether the force at standstill rises with the command all over its range: with unequal areas and edges much leakage undoes that, and
 /// one load has several commands.
 fn rises(actuator: &Actuator) -> bool {
-    let balance = Balance::of(actuator.components());
+    let balance = Balance::at(actuator.components(), 0.25);
     let force = |command: f64| {
         let [a, b] = balance.settle(Steady::Command(command)).pressures;
         balance.areas[0] * a - balance.areas[1] * b
@@ -142,7 +142,7 @@ fn leaking_points_are_where_the_machine_rests() {
             continue; // a chamber without oil
         }
         let rested = OperatingPoint { command, pressure_a, pressure_b, ..tight };
-        let balance = Balance::of(leaky.components());
+        let balance = Balance::at(leaky.components(), 0.25);
         let settled = balance.settle(steady);
         assert!(error(&actuator, &settled, &rested) < 1e-9, "{steady:?} {leakage} {settled:?} {rested:?}");
         assert!(balance.error(steady, &settled) < 1e-12, "{steady:?}");

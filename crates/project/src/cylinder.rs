@@ -24,6 +24,10 @@ pub struct DeclaredCylinder {
     pub rod_diameters: Option<[f64; 2]>,
     /// m.
     pub stroke: f64,
+    /// Of a telescopic piston: the stages that follow the first.
+    pub stages: Vec<DeclaredStage>,
+    /// m, over which the areas of one stage blend into those of the next.
+    pub stage_transition: f64,
     /// kg, piston, rod and what moves with them.
     pub moving_mass: f64,
     /// m, what the retracted actuator measures from mount to mount besides its stroke.
@@ -38,6 +42,35 @@ pub struct DeclaredCylinder {
     pub end_stops: Option<EndStops>,
     /// Friction of seals and bearings.
     pub friction: Option<DeclaredFriction>,
+}
+
+/// A further stage of a telescopic piston.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct DeclaredStage {
+    /// m, position of the piston from which this stage moves.
+    pub from: f64,
+    /// m², on which the pressure acts, the same in both chambers; this or `piston_areas`.
+    pub piston_area: Option<f64>,
+    /// m², on which the pressure acts in chamber A and in chamber B.
+    pub piston_areas: Option<[f64; 2]>,
+}
+
+impl DeclaredStage {
+    /// m², in chamber A and B.
+    pub fn areas_m2(&self) -> [f64; 2] {
+        let area = self.piston_area.unwrap_or(0.0);
+        self.piston_areas.unwrap_or([area, area])
+    }
+
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let k = key("from", &LENGTH, "Position of the piston from which this stage moves.").positive();
+        v.quantity(k, &mut self.from);
+        let k = key("piston_area", &AREA, "Area the pressure acts on in each chamber; or `piston_areas`.");
+        v.optional(k.positive(), &mut self.piston_area);
+        let k = key("piston_areas", &AREA, "Areas the pressure acts on in chamber A and in chamber B.");
+        v.pair(k.positive(), &mut self.piston_areas);
+        v.one_of(&["piston_areas", "piston_area"], true);
+    }
 }
 
 /// The end stops at both ends of the stroke.
@@ -79,6 +112,13 @@ impl DeclaredCylinder {
         declared.unwrap_or(self.rod_diameters_m().map(|rod| FRAC_PI_4 * (piston - rod) * (piston + rod)))
     }
 
+    /// m, of the longest stage: what the retracted actuator needs of its stroke.
+    pub fn longest_stage_m(&self) -> f64 {
+        let ends = self.stages.iter().map(|stage| stage.from).chain([self.stroke]);
+        let lengths = ends.scan(0.0, |before, end| Some(end - std::mem::replace(before, end)));
+        lengths.fold(0.0, f64::max)
+    }
+
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
         let k =
             key("piston_diameter", &LENGTH, "Diameter of the piston; or `piston_area` or `piston_areas`.")
@@ -97,6 +137,14 @@ impl DeclaredCylinder {
         v.one_of(&["rod_diameter", "rod_diameters"], false);
         let k = key("stroke", &LENGTH, "Stroke; x = 0 is the end of chamber A.").positive();
         v.quantity(k, &mut self.stroke);
+        let k = plain("stage", "A stage of a telescopic piston that follows those before it; at most three.");
+        v.tables(k, &mut self.stages, DeclaredStage::visit);
+        let k = key(
+            "stage_transition",
+            &LENGTH,
+            "Width over which the areas of a stage blend into those of the next, about `from`.",
+        );
+        v.quantity(k.positive().or(5e-3), &mut self.stage_transition);
         let k = key("moving_mass", &MASS, "Mass of piston, rod and what moves with them.").positive();
         v.quantity(k, &mut self.moving_mass);
         let k = key(

@@ -14,7 +14,7 @@ use phea_dynamics::watch::unwatched;
 use phea_qft::audit::audit;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, vertices};
-use phea_qft::proof::{Certificate, Proof, ProofOptions, Standing, check, prove};
+use phea_qft::proof::{Certificate, ParameterSegment, Proof, ProofOptions, Standing, check, prove};
 use phea_qft::specification::{Limit, LoopResponse, Requirement, Specification};
 use phea_qft::verification::{AuditProblem, TOLERANCE_DB, TrackingJudgement};
 
@@ -42,10 +42,35 @@ fn curved<'t>(p: &[Recorded<'t>]) -> PlantCoefficients<Recorded<'t>> {
     }
 }
 
+/// A stiffness that climbs over a step whose ends lie within the box.
+fn stepped<'t>(p: &[Recorded<'t>]) -> PlantCoefficients<Recorded<'t>> {
+    let (length, heat) = (p[1], p[2]);
+    let (zero, one) = (Recorded::from(0.0), Recorded::from(1.0));
+    let within = ((heat - 0.43.into()) / 0.06.into()).maximum(zero).minimum(one);
+    let stiffness =
+        Recorded::from(6.0) / length + within.squared() * (Recorded::from(3.0) - within.times(2.0));
+    PlantCoefficients {
+        command: RationalCoefficients {
+            numerator: vec![p[0] * stiffness],
+            denominator: vec![1.0.into(), 2.0.into(), stiffness],
+        },
+        disturbance: None,
+        dead_time_s: 0.0.into(),
+        rate: None,
+    }
+}
+
 fn family(together: bool) -> Family {
+    family_of(curved, together)
+}
+
+fn family_of(
+    equations: impl for<'t> FnOnce(&[Recorded<'t>]) -> PlantCoefficients<Recorded<'t>>,
+    together: bool,
+) -> Family {
     let parameters =
         vec![parameter("pressure", 2.0, 3.0), parameter("length", 1.0, 1.5), parameter("heat", 0.1, 0.9)];
-    let plant = UncertainPlant::record(parameters, curved).unwrap();
+    let plant = UncertainPlant::record(parameters, equations).unwrap();
     let alone = |index| Coordinate {
         parameters: vec![index],
         opposed: vec![],
@@ -128,6 +153,26 @@ fn enclosures_hold_for_coefficients_that_are_no_polynomials() {
             }
         }
     }
+}
+
+/// Boxes end where a choice turns: on either side of it the coefficients are smooth.
+#[test]
+fn a_step_within_the_box_is_divided_at_its_ends() {
+    let proof = proven(&family_of(stepped, false), &around(None));
+    let certificate = proof.certificate.unwrap();
+    assert_eq!(check(&certificate), Ok(()));
+    for end in [0.43, 0.49] {
+        let ends = |one: &&Vec<ParameterSegment>| (one[2].high - end).abs() < 1e-12;
+        assert!(certificate.plant.boxes.iter().any(|one| ends(&one)), "{end}");
+    }
+    // the boxes fill the family
+    let volume = |one: &Vec<ParameterSegment>| one.iter().map(|one| one.high - one.low).product::<f64>();
+    let filled: f64 = certificate.plant.boxes.iter().map(volume).sum();
+    assert!((filled - 0.5 * 0.8).abs() < 1e-12, "{filled}");
+    // and none of them straddles an end
+    let straddles =
+        |one: &Vec<ParameterSegment>, end: f64| one[2].low < end - 1e-12 && one[2].high > end + 1e-12;
+    assert!(!certificate.plant.boxes.iter().any(|one| straddles(one, 0.43) || straddles(one, 0.49)));
 }
 
 /// A certificate of such a plant that says more is rejected.

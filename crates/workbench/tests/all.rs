@@ -67,6 +67,7 @@ mod sizing_catalogue;
 mod sizing_laws;
 mod specification;
 mod sweep;
+mod telescopic;
 mod trial;
 mod trusted_data;
 mod uncertainty_directions;

@@ -27,6 +27,7 @@ const FOUR_BAR: &str = include_str!("../../project/tests/valid/linkage_four_bar.
 const ANGLES: &str = include_str!("../../project/tests/valid/linkage_table.toml");
 const MOTOR: &str = include_str!("../../project/tests/valid/motor.toml");
 const TURNING: &str = include_str!("../../project/tests/valid/motor_turning.toml");
+const TELESCOPIC: &str = include_str!("../../project/tests/valid/telescopic.toml");
 const ASYMMETRIC: &str = include_str!("../../project/tests/valid/asymmetric.toml");
 const GUIDE: &str = include_str!("../../../book/src/guide/what_moves_what.md");
 /// Tables that declare the rig and its loop; the others state what is asked of it.
@@ -132,9 +133,10 @@ fn rigs() -> Vec<(String, Vec<&'static str>)> {
         .collect()
 }
 
-/// Rigs with accumulators, and the same machine without.
+/// Rigs with accumulators, the same machine without, and a telescopic one.
 fn with_accumulators() -> Vec<(String, Vec<&'static str>)> {
     vec![
+        (TELESCOPIC.to_string(), vec![]),
         (SIMULATION.to_string(), vec![]),
         (ACCUMULATORS.to_string(), vec![]),
         (NECK.to_string(), vec![]),

@@ -113,7 +113,7 @@ pub fn retracted_length(project: &Project) -> Result<f64, String> {
     actuator_length(declared, &rig).map_err(String::from)
 }
 
-/// Stroke, dead length and the springs on the rod.
+/// Stroke (of a telescopic piston its longest stage), dead length and the springs on the rod.
 fn actuator_length(declared: &DeclaredActuator, rig: &Rig) -> Result<f64, &'static str> {
     let cylinder = &declared.cylinder;
     let dead = cylinder.dead_length.ok_or("not stated: cylinder.dead_length")?;
@@ -125,7 +125,7 @@ fn actuator_length(declared: &DeclaredActuator, rig: &Rig) -> Result<f64, &'stat
         (Some(_), Some(pair)) => pair.installed_length,
         (Some(_), None) => return Err("not stated: series.coil, which has a length"),
     };
-    Ok(cylinder.stroke + dead + spring)
+    Ok(cylinder.longest_stage_m() + dead + spring)
 }
 
 /// Of the rod, and of what moves between force sensor and spring.

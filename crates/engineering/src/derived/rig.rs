@@ -1,9 +1,8 @@
-use phea_hydraulics::cylinder::Cylinder;
+use phea_hydraulics::cylinder::{Cylinder, chamber_volumes};
 use phea_hydraulics::friction::Friction;
 use phea_hydraulics::line::{Hose, Line, StiffeningMember};
 use phea_hydraulics::linear::{MechanicalDamping, decompose};
 use phea_hydraulics::operating_point::Condition;
-use phea_hydraulics::stroke::ActuatorStroke;
 
 use super::Derived;
 use super::accumulator::accumulators;
@@ -53,7 +52,7 @@ fn moving(rig: &Rig, list: &mut List) {
 fn motor(rig: &Rig, motor: &Cylinder, list: &mut List) {
     list.group("Motor");
     list.add("motor.displacement", "D", motor.area_a, "m3/rad", "declared");
-    if let ActuatorStroke::Limited(stroke) = motor.stroke {
+    if let Some(stroke) = motor.stroke.length() {
         list.add("motor.swept_volume", "V", motor.area_a * stroke, "m3", "V = D Δθ, of each chamber");
     }
     let supply = &rig.actuator.components().supply;
@@ -65,14 +64,25 @@ fn cylinder(rig: &Rig, cylinder: &Cylinder, list: &mut List) {
     list.group("Cylinder");
     list.add("cylinder.area_a", "A_A", cylinder.area_a, "m2", "A_A = π/4 (D_p^2 - D_{rA}^2)");
     list.add("cylinder.area_b", "A_B", cylinder.area_b, "m2", "A_B = π/4 (D_p^2 - D_{rB}^2)");
-    if let ActuatorStroke::Limited(stroke) = cylinder.stroke {
-        list.add("cylinder.swept_volume_a", "V_A", cylinder.area_a * stroke, "m3", "V_A = A_A L");
-        list.add("cylinder.swept_volume_b", "V_B", cylinder.area_b * stroke, "m3", "V_B = A_B L");
+    for (index, [area_a, area_b]) in cylinder.areas_of_stages().enumerate().skip(1) {
+        let name = |side: &str| format!("cylinder.stage_{}.area_{side}", index + 1);
+        list.add(name("a"), "A_A", area_a, "m2", "declared, of this stage");
+        list.add(name("b"), "A_B", area_b, "m2", "declared, of this stage");
     }
-    let supply = &rig.actuator.components().supply;
-    let stall = cylinder.area_a * supply.pressure - cylinder.area_b * supply.tank_pressure;
+    if let Some(stroke) = cylinder.stroke.length() {
+        let swept =
+            chamber_volumes(&Cylinder { dead_volume_a: 0.0, dead_volume_b: 0.0, ..*cylinder }, stroke)[0];
+        let emptied =
+            chamber_volumes(&Cylinder { dead_volume_a: 0.0, dead_volume_b: 0.0, ..*cylinder }, 0.0)[1];
+        let equations = match cylinder.stroke.telescope() {
+            Some(_) => ["V_A = integral of A_A over the stroke", "V_B = integral of A_B over the stroke"],
+            None => ["V_A = A_A L", "V_B = A_B L"],
+        };
+        list.add("cylinder.swept_volume_a", "V_A", swept, "m3", equations[0]);
+        list.add("cylinder.swept_volume_b", "V_B", emptied, "m3", equations[1]);
+    }
+    let [pull, stall] = cylinder.stall_forces(&rig.actuator.components().supply);
     list.add("cylinder.stall_force", "F_max", stall, "N", "F_{max} = A_A p_S - A_B p_T");
-    let pull = cylinder.area_a * supply.tank_pressure - cylinder.area_b * supply.pressure;
     list.add("cylinder.stall_force_retracting", "F_min", pull, "N", "F_{min} = A_A p_T - A_B p_S");
 }
 
@@ -166,7 +176,7 @@ fn stiffness(rig: &Rig, list: &mut List) {
     let least = "K_H = min over x of A_A^2/C_A + A_B^2/C_B";
     let greatest = "K_H = max over x of A_A^2/C_A + A_B^2/C_B";
     list.add("stiffness.minimum", "K_H", declared.minimum, "N/m", least);
-    if let ActuatorStroke::Limited(_) = components.cylinder.stroke {
+    if components.cylinder.stroke.length().is_some() {
         let angle = list.motion.symbol("m");
         list.add("stiffness.minimum_position", "x_p", declared.minimum_position, angle, "dK_H/dx = 0");
     }
@@ -217,9 +227,9 @@ fn equilibrium(rig: &Rig, list: &mut List) {
     };
     list.group("Operating point");
     let [place, speed] = ["m", "m/s"].map(|unit| list.motion.symbol(unit));
-    let position = match rig.actuator.components().cylinder.stroke {
-        ActuatorStroke::Limited(_) => "declared, or mid stroke",
-        ActuatorStroke::Unlimited => "declared, or zero",
+    let position = match rig.actuator.components().cylinder.stroke.length() {
+        Some(_) => "declared, or mid stroke",
+        None => "declared, or zero",
     };
     list.add("operating_point.position", "x_p", point.position, place, position);
     list.add("operating_point.velocity", "v", point.velocity, speed, "declared, or standstill");
@@ -322,7 +332,8 @@ fn flow(project: &Project, rig: &Rig, list: &mut List) {
     let Some(flow) = project.actuator.as_ref().and_then(|actuator| actuator.supply.flow()) else { return };
     let cylinder = &rig.actuator.components().cylinder;
     list.group("Flow");
-    let speed = flow / cylinder.area_a.max(cylinder.area_b);
+    let [area_a, area_b] = cylinder.greatest_areas();
+    let speed = flow / area_a.max(area_b);
     let equation = if list.motion.is_rotary() { "v_{max} = q_{pump}/D" } else { "v_{max} = q_{pump}/A" };
     list.add("supply.piston_speed", "v_max", speed, list.motion.symbol("m/s"), equation);
     let (a, b) = (rig.actuator.components().line_a, rig.actuator.components().line_b);

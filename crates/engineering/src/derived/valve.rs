@@ -29,7 +29,7 @@ const FROM_LEAKAGE: &str = "K_{vinp} = (q_0 - q_{tare} sqrt(p_{in}/p_{tare}))/sq
 pub(super) fn valve(project: &Project, rig: &Rig, list: &mut List) {
     let components = rig.actuator.components();
     let (valve, supply, cylinder) = (&components.valve, &components.supply, &components.cylinder);
-    let areas = [cylinder.area_a, cylinder.area_b];
+    let areas = cylinder.areas_at(rig.point.position);
     list.group("Servovalve");
     if let Some(actuator) = &project.actuator {
         edges(&actuator.valve, &actuator.supply, rig, list);
@@ -38,13 +38,13 @@ pub(super) fn valve(project: &Project, rig: &Rig, list: &mut List) {
         (
             "extending",
             SpoolDirection::Extending,
-            cylinder.area_a,
+            areas[0],
             "K_{qU} = A_A v/U unloaded, edges 3 and 6 carrying one flow",
         ),
         (
             "retracting",
             SpoolDirection::Retracting,
-            cylinder.area_b,
+            areas[1],
             "K_{qU} = A_B v/U unloaded, edges 5 and 4 carrying one flow",
         ),
     ] {

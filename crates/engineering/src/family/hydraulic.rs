@@ -136,7 +136,7 @@ impl Open<'_> {
         numbers: &Numbers<'_, S>,
     ) -> (S, Steady<S>, Balance<S>) {
         let (position, steady) = place(self.project, components, numbers);
-        (position, steady, Balance::of(components))
+        (position, steady, Balance::at(components, position))
     }
 
     /// The rig with these values, and its plant with lumped lines as the loop sees it. Feed-forward
@@ -162,7 +162,16 @@ impl Open<'_> {
         let series = place.components.series.map(|series| LinearSeries::new(&series, force));
         let dynamic_feedback = place.dynamic_feedback;
         let virtual_impedance = self.rig.virtual_impedance;
-        let plant = LinearPlant { series, velocity_sensor, dynamic_feedback, virtual_impedance, ..plant };
+        let cylinder = &place.components.cylinder;
+        let area_stiffness = cylinder.area_stiffness(place.point.position, pressures);
+        let plant = LinearPlant {
+            series,
+            velocity_sensor,
+            dynamic_feedback,
+            virtual_impedance,
+            area_stiffness,
+            ..plant
+        };
         (place, self.rig.fed.map_or(plant, |fed| fed.at_once(plant)))
     }
 

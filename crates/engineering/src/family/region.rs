@@ -50,5 +50,6 @@ pub(super) fn limits(project: &Project) -> Option<[f64; 2]> {
     let reference = declared.valve.tare_pressure.unwrap_or(drop);
     let left =
         (declared.supply.flow()? - tare_flow(&components.valve, &components.supply, reference)).max(0.0);
-    Some([-left / components.cylinder.area_b, left / components.cylinder.area_a])
+    let [area_a, area_b] = components.cylinder.greatest_areas();
+    Some([-left / area_b, left / area_a])
 }

@@ -27,6 +27,11 @@ impl KnownCylinder {
         }
         let rig = Setup::rig_of(project).map_err(|error| IdentifyError::Data(error.to_string()))?;
         let cylinder = rig.actuator.components().cylinder;
+        if cylinder.stroke.telescope().is_some() {
+            let message = "friction is identified for one pair of areas, and those of a telescopic piston change: identify each stage by \
+                           itself, without [[cylinder.stage]]";
+            return Err(IdentifyError::Data(message.to_string()));
+        }
         Ok(KnownCylinder { areas: [cylinder.area_a, cylinder.area_b], moving_mass: cylinder.moving_mass })
     }
 }

@@ -42,6 +42,11 @@ impl KnownLine {
         let rig = setup.rig().map_err(|error| error.to_string())?;
         let declared = setup.project.actuator.as_ref().ok_or("the project has no line")?;
         let components = rig.actuator.components();
+        if components.cylinder.stroke.telescope().is_some() {
+            let message = "lines are identified with a piston of one pair of areas, and those of a telescopic piston change: \
+                           identify them without [[cylinder.stage]]";
+            return Err(message.to_string());
+        }
         let lines = &declared.line;
         let (line, declared, piston_area) = match side {
             LineSide::A => (components.line_a, &lines.a, components.cylinder.area_a),

@@ -13,7 +13,7 @@ use phea_hydraulics::servovalve::{
     Edges, Servovalve, Supply, flow_coefficient_from_rating, leakage_coefficient_from_rating,
 };
 use phea_hydraulics::stiffness::StiffnessModel;
-use phea_hydraulics::stroke::ActuatorStroke;
+use phea_hydraulics::stroke::{ActuatorStroke, FURTHER_STAGES, PistonStage, Telescope};
 
 use super::cross_port::cross_port;
 use super::gas::{accumulator, adjustment};
@@ -335,7 +335,7 @@ fn cylinder<S: Scalar>(declared: &project::DeclaredCylinder, numbers: &Numbers<'
     Cylinder {
         area_a,
         area_b,
-        stroke: ActuatorStroke::Limited(at("stroke", declared.stroke)),
+        stroke: stroke(declared, at("stroke", declared.stroke)),
         moving_mass: at("moving_mass", declared.moving_mass),
         dead_volume_a,
         dead_volume_b,
@@ -343,6 +343,21 @@ fn cylinder<S: Scalar>(declared: &project::DeclaredCylinder, numbers: &Numbers<'
         external_leakage: None,
         end_stops: end_stops(declared.end_stops, &numbers),
     }
+}
+
+/// The stroke with the stages of a telescopic piston. Their areas keep their ratio to those of the first,
+/// also where these are uncertain.
+fn stroke<S: Scalar>(declared: &project::DeclaredCylinder, stroke: S) -> ActuatorStroke<S> {
+    if declared.stages.is_empty() {
+        return ActuatorStroke::Limited(stroke);
+    }
+    let [first_a, first_b] = declared.effective_areas_m2();
+    let ratios = |[area_a, area_b]: [f64; 2]| [S::from(area_a / first_a), S::from(area_b / first_b)];
+    let mut stages = [None; FURTHER_STAGES];
+    for (place, stage) in stages.iter_mut().zip(&declared.stages) {
+        *place = Some(PistonStage { from: S::from(stage.from), ratios: ratios(stage.areas_m2()) });
+    }
+    ActuatorStroke::Telescopic(Telescope { stroke, stages, transition: S::from(declared.stage_transition) })
 }
 
 /// A motor in the equations of a cylinder: its displacement is the area of both chambers.

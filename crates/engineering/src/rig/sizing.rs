@@ -43,6 +43,11 @@ pub enum SizingError {
         "sizing finds the hose that is soft enough by itself and counts no capacity between the chambers: size without [cross_port] `kind` = \"dynamic_pressure_feedback\""
     )]
     Capacity,
+    /// The procedure has one area.
+    #[error(
+        "sizing has one area over the stroke, and the stages of a telescopic piston have several: size for one of them, without [[cylinder.stage]], with its areas and its share of the stroke"
+    )]
+    Stages,
     /// The catalogue contains nothing to choose from.
     #[error("no hose with bore and volumetric expansion in the catalogue or the project")]
     NoHose,
@@ -62,6 +67,9 @@ pub fn sizing_problem(setup: &Setup<'_>, catalogue: &Catalogue) -> Result<Sizing
     }
     if components.cross_port.is_some_and(|port| port.capacity.is_some()) {
         return Err(SizingError::Capacity);
+    }
+    if components.cylinder.stroke.telescope().is_some() {
+        return Err(SizingError::Stages);
     }
     let (time_constant, time_constant_origin) = time_constant(wish.speed);
     let (maximum_flow, maximum_flow_origin) = maximum_flow(actuator)?;

@@ -7,8 +7,8 @@ use crate::project::{DeclaredActuator, SpringCoil};
 pub(crate) fn stall_force(rig: &Rig) -> f64 {
     let components = rig.actuator.components();
     let (cylinder, supply) = (&components.cylinder, &components.supply);
-    let stalls = |pushing: f64, against: f64| pushing * supply.pressure - against * supply.tank_pressure;
-    stalls(cylinder.area_a, cylinder.area_b).max(stalls(cylinder.area_b, cylinder.area_a))
+    let [retracting, extending] = cylinder.stall_forces(supply);
+    extending.max(-retracting)
 }
 
 /// The pair of coil springs that is the series spring and holds the stall force; `None` where none

@@ -69,7 +69,7 @@ pub fn power_at_rest(declared: &project::DeclaredActuator, rig: &Rig) -> f64 {
     }
     let components = rig.actuator.components();
     let (valve, supply, point) = (&components.valve, &components.supply, &rig.point);
-    let drop = tare_drop(declared, &Numbers::declared(), &Balance::of(components));
+    let drop = tare_drop(declared, &Numbers::declared(), &Balance::at(components, rig.point.position));
     let edges = edge_flows(
         valve,
         supply,

@@ -77,9 +77,6 @@ impl LimitWatch {
     pub(super) fn of(bench: &ControlledMachine) -> LimitWatch {
         let components = bench.rig.actuator.components();
         let (cylinder, supply) = (&components.cylinder, &components.supply);
-        let stalls_at = |pushed: f64, pulled: f64| pushed * supply.pressure - pulled * supply.tank_pressure;
-        let extending = stalls_at(cylinder.area_a, cylinder.area_b);
-        let retracting = -stalls_at(cylinder.area_b, cylinder.area_a);
         let voltage = components.valve.nominal_voltage;
         let sensed = match components.series.map(|series| series.force_from) {
             Some(ForceFrom::Deflection) => SensedForce::Deflection(components.force_sensor.stiffness),
@@ -88,7 +85,7 @@ impl LimitWatch {
         let of_sensor = |capacity: f64| WatchedLimit::new(RigLimit::SensorCapacity, [-capacity, capacity]);
         LimitWatch {
             sensor: bench.force_capacity_n.map(|capacity| (of_sensor(capacity), sensed)),
-            stall: WatchedLimit::new(RigLimit::StallForce, [retracting, extending]),
+            stall: WatchedLimit::new(RigLimit::StallForce, cylinder.stall_forces(supply)),
             command: WatchedLimit::new(RigLimit::NominalVoltage, [-voltage, voltage]),
         }
     }

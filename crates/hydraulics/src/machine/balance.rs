@@ -27,7 +27,8 @@ const STEPS: usize = 60;
 type Unknowns = Vector4<f64>;
 
 impl Machine {
-    /// The state with those pressures, and that spool position, at which nothing flows that the
+    /// The state with those pressures, and that spool position, with the piston at a position in m, at
+    /// which nothing flows that the
     /// piston does not take: by damped Newton steps from where it is.
     ///
     /// ```text
@@ -36,17 +37,18 @@ impl Machine {
     /// ```
     ///
     /// R is the steady resistance of a line.
-    pub(super) fn balanced(&self, state: &MachineState, kept: Kept) -> MachineState {
+    pub(super) fn balanced(&self, state: &MachineState, position: f64, kept: Kept) -> MachineState {
+        let areas = self.areas_at(position);
         let mut best: Unknowns =
             [state.pressure_a, state.pressure_b, state.supply_pressure, state.spool.spool].into();
-        let (mut surplus, mut slopes) = self.surplus(state, best, kept);
+        let (mut surplus, mut slopes) = self.surplus(state, areas, best, kept);
         for _ in 0..STEPS {
             let Some(step) = slopes.lu().solve(&surplus) else { break };
             let mut share = 1.0;
             let found = (0..STEPS).find_map(|_| {
                 let next = best - step * share;
                 share *= 0.5;
-                let (left, slopes) = self.surplus(state, next, kept);
+                let (left, slopes) = self.surplus(state, areas, next, kept);
                 (left.norm() < surplus.norm()).then_some((next, left, slopes))
             });
             match found {
@@ -67,13 +69,19 @@ impl Machine {
     }
 
     /// The residuals of the four equations, and their derivatives with respect to the unknowns.
-    fn surplus(&self, state: &MachineState, unknowns: Unknowns, kept: Kept) -> (Unknowns, Matrix4<f64>) {
+    fn surplus(
+        &self,
+        state: &MachineState,
+        areas: [f64; 2],
+        unknowns: Unknowns,
+        kept: Kept,
+    ) -> (Unknowns, Matrix4<f64>) {
         let variable = |index: usize| Dual::<4>::variable(unknowns[index], index);
         let mut dual = MachineState::<Dual<4>>::zero();
         dual.velocity = Dual::constant(state.velocity);
         (dual.pressure_a, dual.pressure_b) = (variable(0), variable(1));
         (dual.supply_pressure, dual.spool.spool) = (variable(2), variable(3));
-        let [taken_a, taken_b] = self.steady_flows(&dual);
+        let [taken_a, taken_b] = self.steady_flows(&dual, areas);
         let [resistance_a, resistance_b] = self.line_resistances().map(Dual::constant);
         let ports = [dual.pressure_a + resistance_a * taken_a, dual.pressure_b + resistance_b * taken_b];
         let flows = self.flows(&dual, ports);
@@ -90,7 +98,7 @@ impl Machine {
         let held = match kept {
             Kept::Spool => dual.spool.spool - Dual::constant(state.spool.spool),
             Kept::Force(force) => {
-                let areas = [self.cylinder.area_a, self.cylinder.area_b].map(Dual::constant);
+                let areas = areas.map(Dual::constant);
                 let found = hydraulic_force(areas, [dual.pressure_a, dual.pressure_b]);
                 (found - Dual::constant(force)) / Dual::constant(FORCE_SCALE)
             }
@@ -103,12 +111,16 @@ impl Machine {
 
     /// The flows into the chambers in steady motion, in m3/s: the piston's displacement, what flows
     /// from chamber to chamber, and what leaks outwards.
-    pub(super) fn steady_flows<T: Scalar + From<f64>>(&self, state: &MachineState<T>) -> [T; 2] {
+    pub(super) fn steady_flows<T: Scalar + From<f64>>(
+        &self,
+        state: &MachineState<T>,
+        [area_a, area_b]: [f64; 2],
+    ) -> [T; 2] {
         let across = self.steady_cross_flow(state);
         let [out_of_a, out_of_b] = self.outward_leakage(state).unwrap_or([T::from(0.0); 2]);
         [
-            T::from(self.cylinder.area_a) * state.velocity + across + out_of_a,
-            -T::from(self.cylinder.area_b) * state.velocity - across + out_of_b,
+            T::from(area_a) * state.velocity + across + out_of_a,
+            -T::from(area_b) * state.velocity - across + out_of_b,
         ]
     }
 

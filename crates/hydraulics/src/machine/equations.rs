@@ -6,6 +6,7 @@ use crate::cross_port::CrossPort;
 use crate::friction::FrictionForce;
 use crate::operating_point::hydraulic_force;
 use crate::servovalve::{EdgeFlows, Edges, Servovalve, Supply, edge_conductances, edge_flows, tare_flow};
+use crate::stroke::{ActuatorStroke, Telescope};
 
 /// Every flow at one instant, in m3/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -206,15 +207,33 @@ impl<S: Scalar> Machine<S> {
         tare_flow(&valve, &self.supply_of(state), constant(self.tare_reference_drop))
     }
 
+    /// A_A and A_B in m2 at a position of the piston in m.
+    #[inline(always)]
+    pub(super) fn areas_at<T: Scalar + From<S>>(&self, position: T) -> [T; 2] {
+        match &self.cylinder.stroke {
+            ActuatorStroke::Telescopic(telescope) => self.areas_of_stages(telescope, position),
+            ActuatorStroke::Limited(_) | ActuatorStroke::Unlimited => {
+                [constant(self.cylinder.area_a), constant(self.cylinder.area_b)]
+            }
+        }
+    }
+
+    /// Apart, so that machines with a single stage do not carry its code along.
+    #[inline(never)]
+    fn areas_of_stages<T: Scalar + From<S>>(&self, telescope: &Telescope<S>, position: T) -> [T; 2] {
+        let [ratio_a, ratio_b] = telescope.convert(&mut constant::<S, T>).ratios(position);
+        [constant::<S, T>(self.cylinder.area_a) * ratio_a, constant::<S, T>(self.cylinder.area_b) * ratio_b]
+    }
+
     #[inline(always)]
     pub(super) fn forces<T: Scalar + From<S>>(&self, state: &MachineState<T>, position: T) -> Forces<T> {
-        let areas = [constant(self.cylinder.area_a), constant(self.cylinder.area_b)];
+        let areas = self.areas_at(position);
         let [force, bristle_rate] = T::local(&self.friction, [state.velocity, state.bristle]);
         let end_stops = match self.cylinder.end_stops {
             None => T::from(0.0),
             Some(contact) => {
                 let contact = contact.convert(&mut constant::<S, T>);
-                let [from_a, to_b] = self.cylinder.stroke.convert(&mut constant::<S, T>).travels(position);
+                let [from_a, to_b] = self.cylinder.stroke.convert(&mut constant::<S, T>).distances(position);
                 contact.force(-from_a, -state.velocity) - contact.force(-to_b, state.velocity)
             }
         };
@@ -255,7 +274,7 @@ impl<S: Scalar> Machine<S> {
             flows.from_valve
         };
         let (into, compliances) =
-            (self.entering_chambers(&state, &flows, from_lines), self.compliance(&state, position));
+            (self.entering_chambers(&state, position, &flows, from_lines), self.compliance(&state, position));
         let [pressure_a, pressure_b] = if self.layout.has_gas() {
             self.beside_gas((vector, inputs), chambers, into, compliances, rates)
         } else {
@@ -285,10 +304,11 @@ impl<S: Scalar> Machine<S> {
     pub(super) fn entering_chambers<T: Scalar + From<S>>(
         &self,
         state: &MachineState<T>,
+        position: T,
         flows: &Flows<T>,
         [from_a, from_b]: [T; 2],
     ) -> [T; 2] {
-        let [area_a, area_b]: [T; 2] = [constant(self.cylinder.area_a), constant(self.cylinder.area_b)];
+        let [area_a, area_b] = self.areas_at(position);
         let (stays_in_a, stays_in_b) = (from_a - flows.internal, from_b + flows.internal);
         let (stays_in_a, stays_in_b) = match flows.outward {
             None => (stays_in_a, stays_in_b),

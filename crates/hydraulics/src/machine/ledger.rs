@@ -170,7 +170,7 @@ impl<S: Scalar> Machine<S> {
         let (state, supply, edges) = (&now.state, &now.supply, &now.flows.edges);
         let ([side_a, side_b], [line_a, line_b]) = (&now.sides, &now.lines);
         let velocity = state.velocity;
-        let [area_a, area_b]: [T; 2] = [constant(self.cylinder.area_a), constant(self.cylinder.area_b)];
+        let [area_a, area_b] = self.areas_at(now.joint.position);
         let [into_a, into_b] = now.chamber_flows();
         let tank: T = constant(self.supply.tank_pressure);
         let throttled = edges.supply_to_a * (supply.line.pressure - line_a.port_pressure)
@@ -297,7 +297,7 @@ impl<S: Scalar> Machine<S> {
             return Account { stored: zero, inflow: zero, lost: zero };
         };
         let contact = contact.convert(&mut constant::<S, T>);
-        let [from_a, to_b] = self.cylinder.stroke.convert(&mut constant::<S, T>).travels(position);
+        let [from_a, to_b] = self.cylinder.stroke.convert(&mut constant::<S, T>).distances(position);
         let (before, beyond) = (-from_a, -to_b);
         Account {
             stored: contact.stored_energy(before) + contact.stored_energy(beyond),

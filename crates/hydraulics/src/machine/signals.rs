@@ -2,7 +2,6 @@ use phea_dynamics::scalar::Scalar;
 
 use super::equations::constant;
 use super::{Machine, Motion};
-use crate::stroke::ActuatorStroke;
 
 /// Names of the signals of a machine, with units, in the order of [`Machine::outputs`].
 pub const SIGNALS: [&str; 31] = [
@@ -184,9 +183,9 @@ impl<S: Scalar> Machine<S> {
         let joint = self.joint(&state, &self.end_of(&load).motion);
         let position = joint.position;
         let vapour: T = constant(self.vapour_pressure);
-        let [to_end_a, to_end_b] = match self.cylinder.stroke {
-            ActuatorStroke::Unlimited => [T::from(1.0); 2],
-            ActuatorStroke::Limited(stroke) => [position, constant::<S, T>(stroke) - position],
+        let [to_end_a, to_end_b] = match self.cylinder.stroke.length() {
+            None => [T::from(1.0); 2],
+            Some(stroke) => [position, constant::<S, T>(stroke) - position],
         };
         let [compliance_a, compliance_b] = self.oil_compliance(&state, position);
         let supply = self.supply_of(&state);

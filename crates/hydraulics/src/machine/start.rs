@@ -92,7 +92,7 @@ impl Machine {
         state.velocity = start.velocity;
         state.bristle = self.settled_bristle(start.velocity);
         let (state, ground) = self.held(&state, start.position, start.force)?;
-        Ok(self.begin(&state, ground))
+        Ok(self.begin(&state, start.position, ground))
     }
 
     /// The machine at rest, or in steady motion with its load, at an operating point of its
@@ -151,11 +151,11 @@ impl Machine {
         state.supply_pressure = self.supply.pressure;
         state.velocity = start.velocity;
         state.bristle = self.settled_bristle(start.velocity);
-        let balanced = self.balanced(&state, kept);
+        let balanced = self.balanced(&state, start.position, kept);
         let forces = self.forces(&balanced, start.position);
         let force = forces.hydraulic + forces.end_stops - forces.friction.force;
         let (state, ground) = self.held(&balanced, start.position, force)?;
-        let beginning = self.begin(&state, ground);
+        let beginning = self.begin(&state, start.position, ground);
         let residual = self.residual(&beginning);
         if residual <= REST_TOLERANCE { Ok(beginning) } else { Err(MachineError::NoRest { residual }) }
     }
@@ -174,12 +174,12 @@ impl Machine {
         Ok((MachineState { deflection, load, series, ..*state }, ground))
     }
 
-    fn begin(&self, state: &MachineState, ground: f64) -> InitialCondition {
+    fn begin(&self, state: &MachineState, position: f64, ground: f64) -> InitialCondition {
         let mut vector = vec![0.0; self.layout.count()];
         self.layout.write(*state, &mut vector);
         let pressures = [state.pressure_a, state.pressure_b];
         self.layout.write_gas(GasStates { pressures, ..GasStates::zero() }, &mut vector);
-        let flows = self.steady_flows(state);
+        let flows = self.steady_flows(state, self.areas_at(position));
         let mut waves = Vec::new();
         let places = self.layout.lines_mut(&mut vector).into_iter().zip(&self.lines);
         for ((place, line), (pressure, flow)) in places.zip(pressures.into_iter().zip(flows)) {

@@ -14,7 +14,7 @@ pub struct Balance<S = f64> {
     pub valve: Servovalve<S>,
     /// Supply and tank pressures.
     pub supply: Supply<S>,
-    /// Piston areas A_A and A_B.
+    /// Piston areas A_A and A_B at the position.
     pub areas: [S; 2],
     /// What flows from chamber A to chamber B; `None` where nothing does.
     pub across: Option<CrossFlow<S>>,
@@ -23,13 +23,13 @@ pub struct Balance<S = f64> {
 }
 
 impl<S: Scalar> Balance<S> {
-    /// Of these components.
-    pub fn of(components: &Components<S>) -> Balance<S> {
+    /// Of these components with the piston at a position in m.
+    pub fn at(components: &Components<S>, position: S) -> Balance<S> {
         let cylinder = &components.cylinder;
         Balance {
             valve: components.valve,
             supply: components.supply,
-            areas: [cylinder.area_a, cylinder.area_b],
+            areas: cylinder.areas_at(position),
             across: components.cross_flow(),
             outward: cylinder.external_leakage,
         }

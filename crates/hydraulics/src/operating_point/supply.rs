@@ -39,7 +39,7 @@ impl<S: Scalar> Balance<S> {
     /// # use phea_hydraulics::{reference_rig::{components, hose_line}, stiffness::StiffnessModel};
     /// use phea_hydraulics::machine::PumpLimited;
     /// use phea_hydraulics::operating_point::{Balance, Steady};
-    /// let balance = Balance::of(&components(hose_line(), StiffnessModel::Uniform));
+    /// let balance = Balance::at(&components(hose_line(), StiffnessModel::Uniform), 0.25);
     /// let unit = PumpLimited {
     ///     pump_flow: 1.67e-4, relief_override: 5e5, volume: 1e-3, effective_bulk_modulus: 1e9, accumulator: None,
     /// };

@@ -191,6 +191,7 @@ impl PlantInMotion {
         let sensor = self.plant.sensor_stiffness;
         let rubbed = s.scaled(self.plant.moving_mass) + A::from(self.plant.viscous_friction);
         let moved = s * (rubbed * own + displaced);
+        let moved = self.plant.area_stiffness.map_or(moved, |stiffness| moved + own.scaled(stiffness));
         let frequency = self.plant.valve_natural_frequency;
         let square = frequency * frequency;
         let turned = s.scaled(2.0 * self.plant.valve_damping_ratio * frequency);
@@ -323,7 +324,8 @@ impl PlantInMotion {
         });
         let feedback = self.plant.dynamic_feedback.iter().flat_map(|one| [one.conductance, one.capacity]);
         let of_gas = self.sides.iter().filter_map(|side| side.gas).flat_map(|gas| gas.numbers());
-        let beyond = own.into_iter().chain(load).chain(series).chain(of_gas);
+        let own = own.into_iter().chain(self.plant.area_stiffness);
+        let beyond = own.chain(load).chain(series).chain(of_gas);
         beyond.chain(of_sides).chain(of_supply).chain(feedback).all(|value| value >= 0.0)
     }
 

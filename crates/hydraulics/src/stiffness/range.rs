@@ -1,7 +1,7 @@
 use super::{ChamberCompliance, StiffnessModel, chamber_compliance, compliance_at, hydraulic_stiffness};
 use crate::cylinder::Cylinder;
 use crate::line::{Line, StiffeningMember};
-use crate::stroke::ActuatorStroke;
+use crate::stroke::{ActuatorStroke, Telescope};
 
 /// Least and greatest hydraulic stiffness over the stroke. Units: N/m, m.
 ///
@@ -31,7 +31,7 @@ impl ChamberCompliance<f64> {
     /// ```
     ///
     /// K_H is convex in x, so the greatest is at an end, and the least at the root if it lies
-    /// inside the stroke and at an end otherwise. With neither dead volume nor line the stiffness
+    /// inside the stroke and at an end otherwise. A telescopic piston is searched on a grid. With neither dead volume nor line the stiffness
     /// at the ends is infinite.
     ///
     /// # Example
@@ -49,14 +49,18 @@ impl ChamberCompliance<f64> {
     pub fn over_stroke(&self) -> StrokeStiffness {
         let (weight_a, weight_b) = (self.area_a * self.slope_a.sqrt(), self.area_b * self.slope_b.sqrt());
         let [start_a, start_b] = compliance_at(self, 0.0);
-        let ActuatorStroke::Limited(stroke) = self.stroke else {
-            let everywhere = hydraulic_stiffness(self, 0.0);
-            return StrokeStiffness {
-                minimum: everywhere,
-                minimum_position: 0.0,
-                maximum: everywhere,
-                maximum_position: 0.0,
-            };
+        let stroke = match self.stroke {
+            ActuatorStroke::Limited(stroke) => stroke,
+            ActuatorStroke::Telescopic(telescope) => return self.over_stages(&telescope),
+            ActuatorStroke::Unlimited => {
+                let everywhere = hydraulic_stiffness(self, 0.0);
+                return StrokeStiffness {
+                    minimum: everywhere,
+                    minimum_position: 0.0,
+                    maximum: everywhere,
+                    maximum_position: 0.0,
+                };
+            }
         };
         let root =
             (weight_a * start_b - weight_b * start_a) / (weight_a * self.slope_b + weight_b * self.slope_a);
@@ -70,7 +74,32 @@ impl ChamberCompliance<f64> {
             maximum_position,
         }
     }
+
+    /// The same of a telescopic piston: of a grid over the stroke and over its transitions, where K_H
+    /// changes most.
+    fn over_stages(&self, telescope: &Telescope) -> StrokeStiffness {
+        let over = |from: f64, width: f64| {
+            (0..=STEPS_OVER_STAGES).map(move |step| from + width * step as f64 / STEPS_OVER_STAGES as f64)
+        };
+        let width = telescope.transition;
+        let transitions = telescope.stages.iter().flatten();
+        let within = transitions.flat_map(|stage| over(stage.from - 0.5 * width, width));
+        let positions = over(0.0, telescope.stroke).chain(within);
+        let found = positions.map(|x| (x, hydraulic_stiffness(self, x)));
+        let start = hydraulic_stiffness(self, 0.0);
+        let begun =
+            StrokeStiffness { minimum: start, minimum_position: 0.0, maximum: start, maximum_position: 0.0 };
+        found.fold(begun, |known, (x, stiffness)| StrokeStiffness {
+            minimum: known.minimum.min(stiffness),
+            minimum_position: if stiffness < known.minimum { x } else { known.minimum_position },
+            maximum: known.maximum.max(stiffness),
+            maximum_position: if stiffness > known.maximum { x } else { known.maximum_position },
+        })
+    }
 }
+
+/// Steps of the grid over a stroke of several stages, and over each transition.
+const STEPS_OVER_STAGES: usize = 2000;
 
 /// The two stiffness models side by side: the numbers of one sentence. Units: N/m, 1.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -34,8 +34,9 @@ pub struct TwoPressureLinearParameters<S = f64> {
 /// Coefficients of the linearised model at an operating point; `direction` decides which edges open
 /// at null.
 ///
-/// The compliances are those of the position, held there: what else depends on the position is the
-/// net flow into the chambers, which vanishes at an equilibrium.
+/// Areas and compliances are those of the position, held there: what else depends on the position is
+/// the net flow into the chambers, which vanishes at an equilibrium, and within a transition of a
+/// telescopic piston [`Cylinder::area_stiffness`](crate::cylinder::Cylinder::area_stiffness).
 pub fn two_pressure_linear_parameters<S: Scalar>(
     model: &TwoPressureModel<S>,
     point: &OperatingPoint<S>,
@@ -43,7 +44,7 @@ pub fn two_pressure_linear_parameters<S: Scalar>(
 ) -> TwoPressureLinearParameters<S> {
     let OperatingPoint { position, command, pressure_a, pressure_b, .. } = *point;
     TwoPressureLinearParameters {
-        areas: [model.chambers.area_a, model.chambers.area_b],
+        areas: model.chambers.areas_at(position),
         compliances: compliance_at(&model.chambers, position),
         chambers: chamber_coefficients(
             &model.valve,

@@ -6,7 +6,8 @@ use crate::{
     DeclaredLine, DeclaredLines, DeclaredSupply, FrictionLaw, NullLeakage, Pump, StribeckCurve, SupplyModel,
     Valve,
 };
-use phea_quantity::{self as quantity, DAMPING, PRESSURE};
+use phea_hydraulics::stroke::FURTHER_STAGES;
+use phea_quantity::{self as quantity, DAMPING, LENGTH, PRESSURE, display};
 
 /// Pa, between absolute and gauge pressures.
 const ATMOSPHERE: f64 = 101_325.0;
@@ -123,6 +124,56 @@ fn cylinder(cylinder: &DeclaredCylinder, check: &mut Check<'_, '_>) {
         let at =
             if cylinder.rod_diameters.is_some() { "cylinder.rod_diameters" } else { "cylinder.rod_diameter" };
         check.error(at, "the rod is as thick as the piston or thicker: no area is left for the oil");
+    }
+    stages(cylinder, check);
+}
+
+/// The stages of a telescopic piston follow each other within the stroke.
+fn stages(cylinder: &DeclaredCylinder, check: &mut Check<'_, '_>) {
+    if cylinder.stages.is_empty() && check.declared("cylinder.stage_transition") {
+        check.warning(
+            "cylinder.stage_transition",
+            "`stage_transition` has no effect without [[cylinder.stage]]",
+        );
+    }
+    if cylinder.stages.len() > FURTHER_STAGES {
+        let message = format!(
+            "{} stages follow the first, and a telescopic piston has at most {FURTHER_STAGES} of them",
+            cylinder.stages.len()
+        );
+        check.error(&format!("cylinder.stage[{FURTHER_STAGES}]"), message);
+    }
+    for test in ["bench.friction", "bench.line"] {
+        if !cylinder.stages.is_empty() && check.declared(test) {
+            let message = "tests with the piston are made with one pair of areas, and those of a telescopic piston change";
+            check.error_with_help(
+                test,
+                message,
+                format!("remove [{test}], or [[cylinder.stage]] to test one stage"),
+            );
+        }
+    }
+    let half = 0.5 * cylinder.stage_transition;
+    let in_words = |value: f64| display(value, &LENGTH, 4);
+    let mut before = 0.0;
+    for (index, stage) in cylinder.stages.iter().enumerate() {
+        let at = format!("cylinder.stage[{index}].from");
+        if stage.from - half < before {
+            let least = in_words(before + half);
+            let message = format!(
+                "this stage begins within the transition before it, which ends at {}: `from` must be at least {least}",
+                in_words(before)
+            );
+            check.error_with_help(&at, message, "let it begin later, or reduce `stage_transition`");
+        } else if stage.from + half > cylinder.stroke {
+            let most = in_words(cylinder.stroke - half);
+            let message = format!(
+                "the transition to this stage ends beyond the stroke of {}: `from` must be at most {most}",
+                in_words(cylinder.stroke)
+            );
+            check.error_with_help(&at, message, "let it begin earlier, or state the stroke of all stages");
+        }
+        before = stage.from + half;
     }
 }
 

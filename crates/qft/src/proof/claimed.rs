@@ -31,7 +31,7 @@ use super::certificate::{
 };
 use super::dead_time::{DeadTime, ends};
 use super::images::{PlantImages, Which};
-use super::model::{by_factors, modelled};
+use super::model::{modelled, parameters_over};
 use super::over_panel::{Complex, product, sum};
 use super::part::{OfFrequency, PolynomialProduct, Straight, law, number, quotient};
 use super::polynomial::{BoxPolynomial, Decimal, InS, expanded};
@@ -251,23 +251,7 @@ fn added<S: Decimal>(mut sum: PartSum<S>, other: PartSum<S>) -> PartSum<S> {
 impl<S: Decimal> Loop<S> {
     /// Over a whole box; `None` where the plant is not polynomial, or there is no such box.
     pub(crate) fn over_box(certificate: &Certificate, of_box: usize) -> Option<Loop<S>> {
-        let segments = certificate.plant.boxes.get(of_box)?.iter();
-        let degree = certificate.plant.model_degree;
-        let values = segments.map(|one| match (degree, one.variable) {
-            (0, variable) => Some(BoxPolynomial::between(one.low, one.high, variable)),
-            (_, None) => Some(BoxPolynomial::number(one.low)),
-            (_, Some(variable)) => {
-                let [low, high] = [one.low, one.high].map(S::decimal);
-                match one.by_factors {
-                    true => by_factors([low, high], variable, degree),
-                    false => {
-                        let (middle, half) = ((low + high).times(0.5), (high - low).times(0.5));
-                        Some(BoxPolynomial::about(middle, half, variable))
-                    }
-                }
-            }
-        });
-        Loop::of(certificate, of_box, &values.collect::<Option<Vec<_>>>()?)
+        Loop::of(certificate, of_box, &parameters_over(certificate, of_box)?)
     }
 
     /// With one plant.

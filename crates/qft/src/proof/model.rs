@@ -15,7 +15,33 @@
 
 use phea_dynamics::expression::{Binary, Expression, Node, Unary};
 
+use super::certificate::Certificate;
 use super::polynomial::{BoxPolynomial, Decimal};
+
+/// The parameters over a whole box, as polynomials in t, or in x where coefficients are modelled; `None`
+/// where there is no such box.
+pub(super) fn parameters_over<S: Decimal>(
+    certificate: &Certificate,
+    of_box: usize,
+) -> Option<Vec<BoxPolynomial<S>>> {
+    let segments = certificate.plant.boxes.get(of_box)?.iter();
+    let degree = certificate.plant.model_degree;
+    let values = segments.map(|one| match (degree, one.variable) {
+        (0, variable) => Some(BoxPolynomial::between(one.low, one.high, variable)),
+        (_, None) => Some(BoxPolynomial::number(one.low)),
+        (_, Some(variable)) => {
+            let [low, high] = [one.low, one.high].map(S::decimal);
+            match one.by_factors {
+                true => by_factors([low, high], variable, degree),
+                false => {
+                    let (middle, half) = ((low + high).times(0.5), (high - low).times(0.5));
+                    Some(BoxPolynomial::about(middle, half, variable))
+                }
+            }
+        }
+    });
+    values.collect()
+}
 
 /// The results of an expression as polynomials in t of at most this degree with remainders, the
 /// parameters being such in x; `None` where an operation is not defined on the whole box.
@@ -24,16 +50,30 @@ pub(super) fn modelled<S: Decimal>(
     parameters: &[BoxPolynomial<S>],
     degree: usize,
 ) -> Option<Vec<BoxPolynomial<S>>> {
-    let model = Model { degree };
-    // a choice must not take an operation that is not defined
-    let mut values: Vec<Option<BoxPolynomial<S>>> = Vec::with_capacity(expression.nodes().len());
-    for node in expression.nodes() {
-        let value = model.value(*node, &values, parameters);
-        values.push(value);
-    }
+    let values = Model { degree }.values(expression, parameters);
     let results = expression.results().iter().map(|&index| values.get(index)?.as_ref());
     results.map(|value| Some(value?.with_shares())).collect()
 }
+
+/// Where a choice of an expression turns across a single variable: this variable and its value t in (0, 1)
+/// of the first choice that is not decided on the box, and whose condition is a straight line of it.
+pub(super) fn turn(
+    expression: &Expression,
+    parameters: &[BoxPolynomial<f64>],
+    degree: usize,
+) -> Option<(usize, f64)> {
+    let model = Model { degree };
+    let values = model.values(expression, parameters);
+    let of = |index: usize| values.get(index)?.as_ref();
+    expression.nodes().iter().find_map(|node| {
+        let Node::Select(y, z, ..) = *node else { return None };
+        let (variable, share) = difference(of(y)?, of(z)?).root()?;
+        (NO_EDGE..=1.0 - NO_EDGE).contains(&share).then_some((variable, share))
+    })
+}
+
+/// Nearer to the end of a variable no choice turns that is worth a box of its own.
+const NO_EDGE: f64 = 1e-9;
 
 /// A parameter that varies logarithmically from low to high with t: root(low high) exp(x
 /// ln(high/low)/2).
@@ -69,6 +109,26 @@ fn either<S: Decimal>(one: &BoxPolynomial<S>, other: &BoxPolynomial<S>) -> BoxPo
     one.plus(other).scaled(S::from(0.5)).with_rest(half)
 }
 
+fn difference<S: Decimal>(one: &BoxPolynomial<S>, other: &BoxPolynomial<S>) -> BoxPolynomial<S> {
+    one.plus(&other.scaled(S::from(-1.0)))
+}
+
+/// The greater of two polynomials, or the lesser one, undecided: one of them or their mean, whichever is
+/// never far from it. `least` and `most` bound the first less the second.
+fn extremum<S: Decimal>(
+    [one, other]: [&BoxPolynomial<S>; 2],
+    [least, most]: [S; 2],
+    is_greater: bool,
+) -> BoxPolynomial<S> {
+    // how far the first one may be from it, and the second one
+    let beyond = if is_greater { [-least, most] } else { [most, -least] };
+    let mean = either(one, other);
+    let taken = |of: &BoxPolynomial<S>, beyond: S| of.clone().with_rest(beyond);
+    let [one, other] = [taken(one, beyond[0]), taken(other, beyond[1])];
+    let all = [other, mean];
+    all.into_iter().fold(one, |best, next| if next.rest().most() < best.rest().most() { next } else { best })
+}
+
 /// The range of a polynomial in x, its remainder included.
 fn range<S: Decimal>(of: &BoxPolynomial<S>) -> [S; 2] {
     let (center, reach) = parted(of);
@@ -89,6 +149,20 @@ fn parted<S: Decimal>(of: &BoxPolynomial<S>) -> (S, S) {
 }
 
 impl Model {
+    /// Every operation; `None` where it is not defined on the whole box, which a choice must not take.
+    fn values<S: Decimal>(
+        &self,
+        expression: &Expression,
+        parameters: &[BoxPolynomial<S>],
+    ) -> Vec<Option<BoxPolynomial<S>>> {
+        let mut values: Vec<Option<BoxPolynomial<S>>> = Vec::with_capacity(expression.nodes().len());
+        for node in expression.nodes() {
+            let value = self.value(*node, &values, parameters);
+            values.push(value);
+        }
+        values
+    }
+
     fn value<S: Decimal>(
         &self,
         node: Node,
@@ -120,10 +194,16 @@ impl Model {
                 Some(self.product(of(y)?, &self.applied(of(z)?, Function::Inverse)?))
             }
             Node::Select(y, z, if_less, otherwise) => {
-                let [least, most] = range(&of(y)?.plus(&minus(of(z)?)));
+                let [least, most] = range(&difference(of(y)?, of(z)?));
                 match (most.most() < 0.0, least.least() >= 0.0) {
                     (true, _) => of(if_less).cloned(),
                     (_, true) => of(otherwise).cloned(),
+                    _ if [if_less, otherwise] == [z, y] => {
+                        Some(extremum([of(y)?, of(z)?], [least, most], true))
+                    }
+                    _ if [if_less, otherwise] == [y, z] => {
+                        Some(extremum([of(y)?, of(z)?], [least, most], false))
+                    }
                     _ => Some(either(of(if_less)?, of(otherwise)?)),
                 }
             }

@@ -4,6 +4,7 @@
 use super::NotProven;
 use super::certificate::{Certificate, ParameterSegment};
 use super::claimed::Loop;
+use super::model::{parameters_over, turn};
 
 /// Degrees of the polynomials that replace such coefficients: the first with a small remainder is
 /// used, otherwise the last.
@@ -16,6 +17,8 @@ const MANY_VARIABLES_DEGREE: usize = 4;
 const SMALL: f64 = 1e-6;
 /// A box is halved if this reduces its remainder below this share.
 const WORTH: f64 = 0.5;
+/// A box is halved this often across one variable to see whether a part of it has polynomials.
+const HALVINGS_MAXIMUM: usize = 6;
 /// Boxes at most.
 const BOXES_MAXIMUM: usize = 64;
 
@@ -39,26 +42,37 @@ pub(super) fn with_model(certificate: &mut Certificate) -> Result<(), NotProven>
             return Ok(());
         }
     }
-    let mut place = 0;
-    while place < shares.len() && shares.len() < BOXES_MAXIMUM {
-        let (of_box, own) = (place, shares[place]);
-        let worth = |(_, of_halves): &(Halves, [f64; 2])| {
-            // any is better than none
-            own.is_infinite() || of_halves.iter().all(|half| *half <= WORTH * own)
+    divide(certificate, shares);
+    if of_all(certificate).is_some() { Ok(()) } else { Err(NotProven::NotPolynomial) }
+}
+
+/// Divides the box whose remainder, a share of its coefficients, is the greatest, again and again, as long
+/// as it is worth it.
+fn divide(certificate: &mut Certificate, shares: Vec<f64>) {
+    let mut left: Vec<(f64, bool)> = shares.into_iter().map(|share| (share, share > SMALL)).collect();
+    while left.len() < BOXES_MAXIMUM {
+        let worst = left.iter().enumerate().filter(|(_, (_, is_open))| *is_open);
+        let Some((of_box, &(own, _))) = worst.max_by(|(_, (one, _)), (_, (other, _))| one.total_cmp(other))
+        else {
+            break;
         };
-        let halves = if own > SMALL { halved(certificate, of_box).filter(worth) } else { None };
-        let Some((halves, of_halves)) = halves else {
-            place += 1;
+        let worth = |(_, of_parts): &(Halves, [f64; 2])| {
+            // any is better than none
+            own.is_infinite() || of_parts.iter().all(|part| *part <= WORTH * own)
+        };
+        // where a choice turns, both sides are smooth
+        let divided = cut(certificate, of_box).or_else(|| halved(certificate, of_box).filter(worth));
+        let Some((parts, of_parts)) = divided else {
+            left[of_box].1 = false;
             continue;
         };
-        certificate.plant.boxes.splice(of_box..=of_box, halves);
-        shares.splice(of_box..=of_box, of_halves);
+        certificate.plant.boxes.splice(of_box..=of_box, parts);
+        left.splice(of_box..=of_box, of_parts.map(|share| (share, share > SMALL)));
         if let Some(sampling) = &mut certificate.sampling {
             let bounds = sampling.bounds[of_box].clone();
             sampling.bounds.insert(of_box, bounds);
         }
     }
-    if of_all(certificate).is_some() { Ok(()) } else { Err(NotProven::NotPolynomial) }
 }
 
 /// The greatest remainder of a coefficient of the plant over a box, relative to its size; `None`
@@ -70,31 +84,79 @@ fn share(certificate: &Certificate, of_box: usize) -> Option<f64> {
 /// Both halves of a box.
 type Halves = [Vec<ParameterSegment>; 2];
 
+/// Both parts of a box where a choice turns between them, with their remainders.
+fn cut(certificate: &Certificate, of_box: usize) -> Option<(Halves, [f64; 2])> {
+    let parameters = parameters_over(certificate, of_box)?;
+    let (variable, share) =
+        turn(&certificate.plant.coefficients, &parameters, certificate.plant.model_degree)?;
+    let parts = parts(certificate.plant.boxes.get(of_box)?, variable, share)?;
+    let mut alone = certificate.clone();
+    let shares = parts.each_ref().map(|part| {
+        alone.plant.boxes = vec![part.clone()];
+        self::share(&alone, 0).unwrap_or(f64::INFINITY)
+    });
+    Some((parts, shares))
+}
+
 /// Both halves of a box across the variable that makes the remainders smallest, with these
-/// remainders.
+/// remainders; where no halves have polynomials, across the variable that alone needs the fewest
+/// halvings until a part has.
 fn halved(certificate: &Certificate, of_box: usize) -> Option<(Halves, [f64; 2])> {
     let own = certificate.plant.boxes.get(of_box)?;
     let mut alone = certificate.clone();
+    let mut share_of = |part: &Vec<ParameterSegment>| {
+        alone.plant.boxes = vec![part.clone()];
+        share(&alone, 0).unwrap_or(f64::INFINITY)
+    };
     let candidates = (0..certificate.plant.variables).filter_map(|variable| {
         let halves = halves(own, variable)?;
-        let shares = halves.each_ref().map(|half| {
-            alone.plant.boxes = vec![half.clone()];
-            share(&alone, 0).unwrap_or(f64::INFINITY)
-        });
-        Some((halves, shares))
+        let shares = halves.each_ref().map(&mut share_of);
+        Some((variable, halves, shares))
     });
-    let greatest = |shares: &[f64; 2]| shares[0].max(shares[1]);
-    candidates.min_by(|(_, one), (_, other)| greatest(one).total_cmp(&greatest(other)))
+    let mut candidates: Vec<(usize, Halves, [f64; 2])> = candidates.collect();
+    if candidates.iter().all(|(_, _, shares)| greatest(shares).is_infinite()) {
+        candidates.sort_by_key(|(variable, halves, _)| halvings(halves, *variable, &mut share_of));
+    } else {
+        candidates.sort_by(|(.., one), (.., other)| greatest(one).total_cmp(&greatest(other)));
+    }
+    candidates.into_iter().next().map(|(_, halves, shares)| (halves, shares))
+}
+
+fn greatest(shares: &[f64; 2]) -> f64 {
+    shares[0].max(shares[1])
+}
+
+/// How many more times the lower of these halves must be halved across a variable until its upper part
+/// has polynomials; [`HALVINGS_MAXIMUM`] where this is not enough.
+fn halvings(
+    [lower, _]: &Halves,
+    variable: usize,
+    share_of: &mut impl FnMut(&Vec<ParameterSegment>) -> f64,
+) -> usize {
+    let mut part = lower.clone();
+    for count in 0..HALVINGS_MAXIMUM {
+        if share_of(&part).is_finite() {
+            return count;
+        }
+        let Some([_, upper]) = halves(&part, variable) else { break };
+        part = upper;
+    }
+    HALVINGS_MAXIMUM
 }
 
 /// Both halves of a box across a variable; `None` where it changes nothing.
 fn halves(whole: &[ParameterSegment], variable: usize) -> Option<Halves> {
+    parts(whole, variable, 0.5)
+}
+
+/// Both parts of a box that meet at this value of a variable in t; `None` where it changes nothing.
+fn parts(whole: &[ParameterSegment], variable: usize, share: f64) -> Option<Halves> {
     let moved = |one: &ParameterSegment| one.variable == Some(variable);
     let half = |lower: bool| {
         let each = whole.iter().map(|one| match (moved(one), lower) {
             (false, _) => *one,
-            (true, true) => ParameterSegment { high: one.value(0.5), ..*one },
-            (true, false) => ParameterSegment { low: one.value(0.5), ..*one },
+            (true, true) => ParameterSegment { high: one.value(share), ..*one },
+            (true, false) => ParameterSegment { low: one.value(share), ..*one },
         });
         each.collect()
     };

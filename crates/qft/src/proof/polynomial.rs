@@ -158,6 +158,25 @@ impl<S: Decimal> BoxPolynomial<S> {
         self.rest
     }
 
+    /// The variable of a straight line in one variable alone, and where this line is zero, in t; `None` for
+    /// any other polynomial, and where it is zero nowhere.
+    pub(super) fn root(&self) -> Option<(usize, S)> {
+        let mut constant = S::from(0.0);
+        let mut straight = None;
+        for (exponents, value) in &self.terms {
+            let moved: Vec<usize> = (0..exponents.len()).filter(|&one| exponents[one] > 0).collect();
+            match moved[..] {
+                [] => constant = *value,
+                [variable] if exponents[variable] == 1 && straight.is_none() => {
+                    straight = Some((variable, *value));
+                }
+                _ => return None,
+            }
+        }
+        let (variable, slope) = straight?;
+        Some((variable, (S::from(1.0) - constant / slope).times(0.5)))
+    }
+
     /// The same with an increased remainder.
     pub(super) fn with_rest(mut self, more: S) -> BoxPolynomial<S> {
         self.rest = self.rest + more;

@@ -115,7 +115,12 @@ fn cylinder_words(cylinder: &project::DeclaredCylinder) -> String {
         [a, 0.0] => format!("/{} mm, rod through A", millimetres(a)),
         [a, b] => format!("/{} (A)/{} (B) mm", millimetres(a), millimetres(b)),
     };
-    format!("{}{rods}, stroke {}", millimetres(piston), shown(cylinder.stroke, &LENGTH))
+    let stroke = shown(cylinder.stroke, &LENGTH);
+    let stroke = match cylinder.stages.len() {
+        0 => format!("stroke {stroke}"),
+        further => format!("{stroke} in {} stages", further + 1),
+    };
+    format!("{}{rods}, {stroke}", millimetres(piston))
 }
 
 fn line(declared: &project::DeclaredLine) -> LineSymbol {

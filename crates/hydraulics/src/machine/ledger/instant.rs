@@ -209,7 +209,7 @@ impl<S: Scalar> Machine<S> {
             joint,
             external_power: external.map_or(T::from(0.0), |force| force * load.velocity),
             turned: match self.cylinder.stroke {
-                ActuatorStroke::Limited(_) => T::from(0.0),
+                ActuatorStroke::Limited(_) | ActuatorStroke::Telescopic(_) => T::from(0.0),
                 ActuatorStroke::Unlimited => constant::<S, T>(self.cylinder.area_a) * velocity,
             },
             flows,
@@ -255,7 +255,7 @@ impl<S: Scalar> Machine<S> {
     ) -> [GasInstant<T>; 2] {
         let [oil_a, oil_b] = self.oil_compliance(state, position);
         let [into_a, into_b] =
-            self.entering_chambers(state, flows, [line_a.into_chamber, line_b.into_chamber]);
+            self.entering_chambers(state, position, flows, [line_a.into_chamber, line_b.into_chamber]);
         let chambers = [state.pressure_a, state.pressure_b];
         let (heated, pressures) = (self.heated(chambers, states), self.gas_pressures(chambers, states));
         let own = |side: usize, arriving, beside| {

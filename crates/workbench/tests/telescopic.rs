@@ -1,0 +1,82 @@
+//! A telescopic piston as an engineer meets it: what `check` derives, one controller for all its stages, the machine within a
+//! transition, and what is refused.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
+#![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
+
+use phea_workbench::alternatives::retracted_length;
+use phea_workbench::audit::{CERTIFICATE_FILE, check_certificate};
+use phea_workbench::command::{FrictionRequest, Request, friction_watched};
+use phea_workbench::source::Memory;
+
+use crate::ask::{HOSE, answer, check, derived, load, near, size_request, try_answer};
+
+const TELESCOPIC: &str = include_str!("../../../examples/ybitu/telescopic.toml");
+const VISCOUS: &str = "cylinder.friction={ model = \"viscous\", viscous = \"1 kN.s/m\" }";
+/// A second stage for a rig that has none.
+const STAGE: &str = "cylinder.stage=[{ from = \"300 mm\", piston_area = \"10 cm2\" }]";
+
+/// Areas, swept volumes, greatest forces and length of both stages.
+#[test]
+fn check_derives_its_stages() {
+    let told = check(TELESCOPIC, &[]);
+    let first = std::f64::consts::FRAC_PI_4 * (0.05 * 0.05 - 0.022 * 0.022);
+    near(derived(&told, "cylinder.stage_2.area_a"), 10e-4, 1e-12);
+    // ORIGIN: analytic, 300 mm of the first stage and 200 mm of the second: the transition is even about its middle
+    near(derived(&told, "cylinder.swept_volume_a"), 0.3 * first + 0.2 * 10e-4, 1e-12);
+    near(derived(&told, "cylinder.stall_force"), 70e5 * first, 1e-12);
+    let softer = check(TELESCOPIC, &["operating_point.position=400 mm"]);
+    let [stiff, soft] = [&told, &softer].map(|told| derived(told, "linear.hydraulic_stiffness"));
+    // ORIGIN: thesis (6.3), one modulus of 2.609e8 Pa and both lines of 0.19002 L: areas and volumes at 250 mm and at 400 mm
+    let by_hand = |area: f64, from_a: f64, to_b: f64| {
+        area * area * 2.609e8 * (1.0 / (0.19002e-3 + from_a) + 1.0 / (0.19002e-3 + to_b))
+    };
+    near(stiff, by_hand(first, first * 0.25, first * 0.05 + 10e-4 * 0.2), 1e-3);
+    near(soft, by_hand(10e-4, first * 0.3 + 10e-4 * 0.1, 10e-4 * 0.1), 1e-3);
+    let project = load(TELESCOPIC, &["cylinder.dead_length=0.2 m"], &[]).project;
+    // ORIGIN: analytic, the longer stage of 300 mm and 200 mm
+    near(retracted_length(&project).unwrap(), 0.5, 1e-12);
+}
+
+/// The controller of the example is proven to stabilise every position, and its certificate holds.
+#[test]
+fn every_position_is_proven_to_be_stable() {
+    let said = answer(TELESCOPIC, &[], &[], &Request::VerifyProven { on_machine: false });
+    let object: serde_json::Value = serde_json::from_str(&said.json).unwrap();
+    assert_eq!(object["proof"]["stable"]["proven"], true, "{}", object["proof"]);
+    for index in [0, 1] {
+        assert_eq!(object["specifications"][index]["proven"], true, "{}", object["specifications"]);
+    }
+    let file = said.files.iter().find(|file| file.name == CERTIFICATE_FILE).unwrap();
+    assert!(check_certificate(&String::from_utf8(file.bytes.clone()).unwrap()).unwrap().affirmative);
+    assert!(
+        said.text.contains("only a simulation shows a motion from one stage to the next"),
+        "{}",
+        said.text
+    );
+}
+
+/// Small steps at either stage and in the middle of the transition are those of the linear loop.
+#[test]
+fn the_machine_agrees_with_the_linear_loop() {
+    for position in ["100 mm", "300 mm", "400 mm"] {
+        let place = format!("operating_point.position={position}");
+        let scenario = "scenario=[{ name = \"step\", duration = \"1 s\", reference = [{ at = \"0.1 s\", force = \"100 N\" }] }]";
+        let said = answer(TELESCOPIC, &[VISCOUS, &place, scenario], &[], &Request::VerifyOnMachine);
+        let object: serde_json::Value = serde_json::from_str(&said.json).unwrap();
+        let run = &object["machine"]["runs"][0];
+        assert_eq!(run["agrees"], serde_json::Value::from(true), "{position}: {run}");
+    }
+}
+
+/// What has one pair of areas refuses several.
+#[test]
+fn one_pair_of_areas_is_told_apart_from_several() {
+    let said = try_answer(HOSE, &[STAGE], &[], &size_request(None, None)).unwrap_err().to_string();
+    assert!(said.contains("sizing has one area over the stroke"), "{said}");
+    let source = Memory::default().with("run.csv", "time_s,position_mm,force_n\n0,1,2\n");
+    let asked = FrictionRequest { files: vec!["run.csv".to_string()], figures: false };
+    let rig = load(HOSE, &[STAGE], &[]);
+    let said = friction_watched(&source, Some(&rig), &asked, &mut |_| true).unwrap_err().to_string();
+    assert!(said.contains("those of a telescopic piston change"), "{said}");
+}
