@@ -90,12 +90,23 @@ fn apart_from_lines(project: &Project) -> impl Iterator<Item = Caveat> {
 /// A telescopic piston is that of each operating point.
 fn stages(project: &Project) -> Option<Caveat> {
     let declared = project.actuator.as_ref()?;
-    (declared.motor.is_none() && !declared.cylinder.stages.is_empty()).then(|| Caveat {
-        sentence: "cylinder.stage is counted with the areas at each operating point: only a simulation shows a motion from one stage to \
-                   the next"
-            .to_string(),
-        unproven: false,
-    })
+    if declared.motor.is_some() || declared.cylinder.stages.is_empty() {
+        return None;
+    }
+    let region = project.family.as_ref().and_then(|family| family.operating_region.as_ref());
+    let in_region = region.is_some_and(|region| region.velocity.is_some());
+    let moves =
+        in_region || project.resolved_operating_point().velocity.is_some_and(|velocity| velocity != 0.0);
+    let sentence = match moves {
+        false => {
+            "cylinder.stage is counted with the areas at each operating point: only a simulation shows a motion from one stage to the next"
+        }
+        true => {
+            "cylinder.stage is counted with the areas at each operating point, and not with their change at a steady velocity through a \
+                 transition: only a simulation shows it"
+        }
+    };
+    Some(Caveat { sentence: sentence.to_string(), unproven: moves })
 }
 
 /// A wall without a stated mass of the load.

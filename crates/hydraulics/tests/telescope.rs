@@ -5,9 +5,11 @@
 use phea_dynamics::random::{share, stream};
 use phea_dynamics::scalar::{Dual, Interval};
 use phea_dynamics::simulation::Plant;
+use phea_hydraulics::accumulator::Accumulator;
 use phea_hydraulics::actuator::{Actuator, ActuatorError, Components};
 use phea_hydraulics::contact::Contact;
 use phea_hydraulics::cylinder::{Cylinder, chamber_volumes};
+use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::line::StiffeningMember;
 use phea_hydraulics::machine::{LoadModel, MachineOptions, StartValues};
 use phea_hydraulics::operating_point::{Condition, SteadyLoad, operating_point};
@@ -176,6 +178,15 @@ fn ledgers_close_through_the_stages() {
             MachineOptions { load, external_force, power_unit: pump(), ..MachineOptions::default() };
         check(&machine_of(with(telescope, asymmetric()), &options), &motion, &start, 0.2, 1e-5);
     }
+    let air = Some(EntrainedAir { volume_fraction: 5e-3, polytropic_exponent: 1.2 });
+    let gas = Accumulator { gas_volume: 2e-5, precharge_pressure: 15e5, polytropic_exponent: 1.2 };
+    let rig = with(telescope, asymmetric());
+    let rig = Components {
+        fluid: Fluid { entrained_air: air, ..rig.fluid },
+        accumulators: [Some(gas), None],
+        ..rig
+    };
+    check(&machine_of(rig, &MachineOptions::default()), &motion, &start, 0.2, 1e-5);
 }
 
 /// Stages that do not follow each other within the stroke, and areas that are none.

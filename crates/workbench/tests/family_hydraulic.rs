@@ -255,3 +255,22 @@ fn every_parameter_of_the_project_has_its_field() {
     found.sort_by(f64::total_cmp);
     assert_eq!(found, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0]);
 }
+
+/// Areas, volumes and pressures of a telescopic piston follow its position through a transition, and an uncertain first stage
+/// leaves the areas of the others as they are stated.
+#[test]
+fn stages_are_those_of_the_position() {
+    follows_the_rig_within(
+        1e-8,
+        concat!(include_str!("../../project/tests/valid/telescopic.toml"), "\n[uncertainty]\n"),
+        // ORIGIN: written by hand, around those of the file
+        &[
+            ("cylinder.piston_diameter", [0.049, 0.05, 0.051]),
+            ("cylinder.stroke", [0.45, 0.5, 0.55]),
+            ("cylinder.stage_transition", [0.01, 0.02, 0.03]),
+            ("cylinder.stage[0].from", [0.19, 0.2, 0.21]),
+            ("cylinder.stage[0].piston_area", [1.1e-3, 1.2e-3, 1.3e-3]),
+            ("operating_point.position", [0.15, 0.195, 0.4]),
+        ],
+    );
+}

@@ -69,6 +69,36 @@ fn the_machine_agrees_with_the_linear_loop() {
     }
 }
 
+/// Likewise behind a linkage.
+#[test]
+fn behind_a_linkage_the_machine_agrees_too() {
+    let rig = include_str!("../../project/tests/valid/linkage.toml");
+    let stage = "cylinder.stage=[{ from = \"30 mm\", piston_area = \"10 cm2\" }]";
+    for position in ["20 mm", "30 mm", "45 mm"] {
+        let place = format!("operating_point.position={position}");
+        let limit = "specification=[{ kind = \"robust_stability\", limit = 3, frequencies = [1, 10, 100] }]";
+        let said = answer(rig, &[stage, &place, limit], &[], &Request::VerifyOnMachine);
+        let object: serde_json::Value = serde_json::from_str(&said.json).unwrap();
+        for run in object["machine"]["runs"].as_array().unwrap() {
+            assert_eq!(run["agrees"], serde_json::Value::from(true), "{position}: {run}");
+        }
+    }
+}
+
+/// A steady motion through a transition is in no linear plant, and no specification is proven then.
+#[test]
+fn a_steady_motion_through_a_transition_is_not_proven() {
+    let verdict = |settings: &[&str]| {
+        let said = answer(TELESCOPIC, settings, &[], &Request::Verify);
+        let object: serde_json::Value = serde_json::from_str(&said.json).unwrap();
+        (object["verdict"].clone(), said.text)
+    };
+    assert_eq!(verdict(&[]).0, "met");
+    let (moving, text) = verdict(&["operating_point.velocity=10 mm/s"]);
+    assert_ne!(moving, "met", "{text}");
+    assert!(text.contains("their change at a steady velocity"), "{text}");
+}
+
 /// What has one pair of areas refuses several.
 #[test]
 fn one_pair_of_areas_is_told_apart_from_several() {

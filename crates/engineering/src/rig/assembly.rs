@@ -335,7 +335,7 @@ fn cylinder<S: Scalar>(declared: &project::DeclaredCylinder, numbers: &Numbers<'
     Cylinder {
         area_a,
         area_b,
-        stroke: stroke(declared, at("stroke", declared.stroke)),
+        stroke: stroke(declared, [area_a, area_b], &at),
         moving_mass: at("moving_mass", declared.moving_mass),
         dead_volume_a,
         dead_volume_b,
@@ -345,19 +345,32 @@ fn cylinder<S: Scalar>(declared: &project::DeclaredCylinder, numbers: &Numbers<'
     }
 }
 
-/// The stroke with the stages of a telescopic piston. Their areas keep their ratio to those of the first,
-/// also where these are uncertain.
-fn stroke<S: Scalar>(declared: &project::DeclaredCylinder, stroke: S) -> ActuatorStroke<S> {
+/// The stroke with the stages of a telescopic piston, whose areas are those declared, also where those
+/// of the first stage are uncertain.
+fn stroke<S: Scalar>(
+    declared: &project::DeclaredCylinder,
+    [first_a, first_b]: [S; 2],
+    at: &impl Fn(&str, f64) -> S,
+) -> ActuatorStroke<S> {
+    let stroke = at("stroke", declared.stroke);
     if declared.stages.is_empty() {
         return ActuatorStroke::Limited(stroke);
     }
-    let [first_a, first_b] = declared.effective_areas_m2();
-    let ratios = |[area_a, area_b]: [f64; 2]| [S::from(area_a / first_a), S::from(area_b / first_b)];
     let mut stages = [None; FURTHER_STAGES];
-    for (place, stage) in stages.iter_mut().zip(&declared.stages) {
-        *place = Some(PistonStage { from: S::from(stage.from), ratios: ratios(stage.areas_m2()) });
+    for (index, (place, stage)) in stages.iter_mut().zip(&declared.stages).enumerate() {
+        let at = |key: &str, value: f64| at(&format!("stage[{index}].{key}"), value);
+        let [area_a, area_b] = match stage.piston_areas {
+            Some(areas) => areas.map(S::from),
+            None => [at("piston_area", stage.areas_m2()[0]); 2],
+        };
+        *place =
+            Some(PistonStage { from: at("from", stage.from), ratios: [area_a / first_a, area_b / first_b] });
     }
-    ActuatorStroke::Telescopic(Telescope { stroke, stages, transition: S::from(declared.stage_transition) })
+    ActuatorStroke::Telescopic(Telescope {
+        stroke,
+        stages,
+        transition: at("stage_transition", declared.stage_transition),
+    })
 }
 
 /// A motor in the equations of a cylinder: its displacement is the area of both chambers.

@@ -136,7 +136,8 @@ fn rested(setup: &Setup<'_>) -> Result<RestedMachine, SimulateError> {
     let rest = machine.rest(&rig.point).map_err(SimulateError::Machine)?;
     let force_n = phea_machine::force(&machine, &rest.state);
     let components = rig.actuator.components();
-    let area = 0.5 * (components.cylinder.area_a + components.cylinder.area_b);
+    let [area_a, area_b] = components.cylinder.areas_at(rig.point.position);
+    let area = 0.5 * (area_a + area_b);
     let push_n = area * (components.supply.pressure - components.supply.tank_pressure);
     Ok(RestedMachine { machine, rest, force_n, push_n, settings: settings(project), rig })
 }

@@ -166,7 +166,8 @@ pub(super) fn run(
 fn reference(project: &Project) -> Result<[f64; 2], ProcedureError> {
     let rig = Setup::rig_of(project)?;
     let components = rig.actuator.components();
-    let area = 0.5 * (components.cylinder.area_a + components.cylinder.area_b);
+    let [area_a, area_b] = components.cylinder.areas_at(rig.point.position);
+    let area = 0.5 * (area_a + area_b);
     let push = area * (components.supply.pressure - components.supply.tank_pressure);
     let from = rig.point.hydraulic_force;
     let step = STEP_SHARE * push;

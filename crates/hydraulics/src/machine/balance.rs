@@ -27,8 +27,7 @@ const STEPS: usize = 60;
 type Unknowns = Vector4<f64>;
 
 impl Machine {
-    /// The state with those pressures, and that spool position, with the piston at a position in m, at
-    /// which nothing flows that the
+    /// The state with those pressures, and that spool position, at which nothing flows that the
     /// piston does not take: by damped Newton steps from where it is.
     ///
     /// ```text
@@ -36,7 +35,7 @@ impl Machine {
     /// p_S as stated, or q_pump - q_relief = q_supply        U as it is, or A_A p_A - A_B p_B = F
     /// ```
     ///
-    /// R is the steady resistance of a line.
+    /// R is the steady resistance of a line, and the areas are those at a position in m.
     pub(super) fn balanced(&self, state: &MachineState, position: f64, kept: Kept) -> MachineState {
         let areas = self.areas_at(position);
         let mut best: Unknowns =

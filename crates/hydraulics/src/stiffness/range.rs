@@ -31,7 +31,8 @@ impl ChamberCompliance<f64> {
     /// ```
     ///
     /// K_H is convex in x, so the greatest is at an end, and the least at the root if it lies
-    /// inside the stroke and at an end otherwise. A telescopic piston is searched on a grid. With neither dead volume nor line the stiffness
+    /// inside the stroke and at an end otherwise. A telescopic piston is searched on a grid, which finds
+    /// the least and the greatest to a hundred thousandth. With neither dead volume nor line the stiffness
     /// at the ends is infinite.
     ///
     /// # Example

@@ -17,12 +17,14 @@ pub struct PistonStage<S = f64> {
 /// A piston whose stages follow each other along the stroke, each with areas of its own.
 ///
 /// ```text
-/// r(x) = 1 + sum over k of (r_k - r_k-1) b(t_k),     t_k = (x - x_k)/w + 1/2 between 0 and 1,     b(t) = t^2 (3 - 2 t)
-/// A(x) = r(x) A_1,     l(x) = integral of r from 0 to x,     V_A = V_A0 + A_A1 l_A(x),     V_B = V_B0 + A_B1 (l_B(L) - l_B(x))
+/// r(x) = 1 + sum over k of (r_k - r_k-1) b(t_k)
+/// t_k  = (x - x_k)/w + 1/2 between 0 and 1,     b(t) = t^2 (3 - 2 t)
+/// A(x) = r(x) A_1,     l(x) = integral of r from 0 to x
+/// V_A  = V_A0 + A_A1 l_A(x),     V_B = V_B0 + A_B1 (l_B(L) - l_B(x))
 /// ```
 ///
-/// r is the ratio of an area to that of the first stage, of either side. Over the transition w the areas blend into
-/// each other, so that dV/dx = A everywhere and the areas have a slope. Units: m.
+/// r is the ratio of an area to that of the first stage, of either side. Over the transition w the
+/// areas blend into each other, so that dV/dx = A everywhere and the areas have a slope. Units: m.
 ///
 /// # Example
 /// The volume that a piston sweeps over a stage of half the area is half as large.
