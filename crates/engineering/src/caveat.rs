@@ -7,7 +7,7 @@ use phea_hydraulics::cross_port::Restrictor;
 use phea_hydraulics::operating_point::OperatingPoint;
 
 use crate::control::{velocity_sensor, virtual_impedance};
-use crate::project::{CrossPortKind, LineMotion, Load, Project, Pump, SupplyModel};
+use crate::project::{CrossPortKind, DeclaredSeries, LineMotion, Load, Project, Pump, SupplyModel};
 use crate::quantity::{DisplayUnit, PRESSURE, display, significant};
 use crate::rig::{ChargedRange, accumulator_place, charged_range, cross_port_at_point, limits_load_motion};
 use crate::setup::Setup;
@@ -48,12 +48,12 @@ fn progression(setup: &Setup<'_>) -> Option<Caveat> {
     if is_measured(setup.project) {
         return None;
     }
-    let declared = setup.project.actuator.as_ref()?.series.as_ref()?;
+    let declared = setup.project.actuator.as_ref()?.series.as_ref()?.spring()?;
     if declared.progression == 0.0 {
         return None;
     }
     let stiffness = |value: f64| DisplayUnit::MEGANEWTON_PER_METRE.text(value, 3);
-    let here = setup.rig().ok()?.plant.series?.stiffness;
+    let here = setup.rig().ok()?.plant.series?.stiffness();
     let stiffest = declared.stiffness * (1.0 + 3.0 * declared.progression);
     Some(Caveat {
         sentence: format!(
@@ -69,7 +69,16 @@ fn progression(setup: &Setup<'_>) -> Option<Caveat> {
 
 /// Effects of a series element that the models with one load pressure do not include.
 fn beside_spring(project: &Project) -> Option<String> {
-    let series = project.actuator.as_ref()?.series.as_ref()?;
+    let series = match project.actuator.as_ref()?.series.as_ref()? {
+        DeclaredSeries::Spring(spring) => spring,
+        DeclaredSeries::Transmission(_) => {
+            return Some(
+                "inertia and resistance of the transmission are counted in the plant and its impedance alone: the other models have \
+                 its oil as a spring in series with the force sensor"
+                    .to_string(),
+            );
+        }
+    };
     let keys = [("series.damping", series.damping), ("series.mass", series.mass)];
     let beside: Vec<&str> = keys.iter().filter(|(_, value)| *value > 0.0).map(|(key, _)| *key).collect();
     let verb = if beside.len() > 1 { "are" } else { "is" };

@@ -221,7 +221,7 @@ fn is_fifth_order(rig: &Rig) -> bool {
         && rig.plant.dynamic_feedback.is_none()
         && rig.load.is_none()
         && rig.plant.supply.is_none()
-        && rig.plant.series.is_none_or(|series| series.damping.is_none() && series.mass.is_none())
+        && rig.plant.series.is_none_or(|series| series.is_spring_alone())
 }
 
 fn closed_loop_view(rig: &Rig, controller: &TransferFunction) -> Result<PortView, LinearError> {

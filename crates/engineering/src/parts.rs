@@ -1,12 +1,14 @@
-//! What the parts that make a rig yield cost and weigh: lines, accumulators, the spring and the valve
-//! between the chambers. Nothing is known of them but what the project or a catalogue states.
+//! What the parts that make a rig yield cost and weigh: lines, accumulators, the spring or transmission
+//! and the valve between the chambers. Nothing is known of them but what the project or a catalogue states.
 
 use std::f64::consts::PI;
 
 use phea_hydraulics::line::Line;
+use phea_hydraulics::series::{SeriesElement, Transmission};
 
 use crate::project::{
-    Component, DeclaredActuator, DeclaredLine, DeclaredPipe, ElasticWall, LineCost, PartCost, Project,
+    Component, DeclaredActuator, DeclaredLine, DeclaredPipe, DeclaredSeries, ElasticWall, LineCost, PartCost,
+    Project,
 };
 use crate::quantity::{Currency, Price};
 use crate::rig::{Rig, series_coil};
@@ -37,6 +39,10 @@ pub enum PartKind {
     CrossPort,
     /// Between force sensor and load.
     SeriesSpring,
+    /// Both cylinders of a transmission there.
+    TransmissionCylinders,
+    /// The hose or pipe between them.
+    TransmissionLine,
     /// Counted only where it is stated: mostly it is the same in all that is compared.
     Servovalve,
 }
@@ -50,6 +56,12 @@ impl PartKind {
             PartKind::Accumulator => ["accumulator", "accumulators", "accumulator"],
             PartKind::CrossPort => ["cross-port valve", "cross-port valves", "cross_port"],
             PartKind::SeriesSpring => ["series spring", "series springs", "series"],
+            PartKind::TransmissionCylinders => {
+                ["cylinders of the transmission", "cylinders of transmissions", "series"]
+            }
+            PartKind::TransmissionLine => {
+                ["line of the transmission", "lines of transmissions", "series.line"]
+            }
             PartKind::Servovalve => ["servovalve", "servovalves", "valve"],
         }
     }
@@ -105,7 +117,16 @@ impl PartsCounted {
 
 /// Every statement of a price or a mass.
 fn stated(declared: &DeclaredActuator) -> Vec<PartCost> {
-    let lines = [&declared.line.a, &declared.line.b];
+    let (mut lines, mut others) = (vec![&declared.line.a, &declared.line.b], vec![declared.valve.cost]);
+    others.extend(declared.cross_port.as_ref().map(|port| port.cost));
+    match &declared.series {
+        Some(DeclaredSeries::Spring(spring)) => others.push(spring.cost),
+        Some(DeclaredSeries::Transmission(transmission)) => {
+            others.push(transmission.cylinders);
+            lines.push(&transmission.line);
+        }
+        None => {}
+    }
     let of_lines = lines.into_iter().flat_map(|line| {
         let (cost, density) = match &line.component {
             Component::Hose { properties, .. } => (properties.cost, None),
@@ -115,18 +136,14 @@ fn stated(declared: &DeclaredActuator) -> Vec<PartCost> {
         let metre = PartCost { price: cost.price_per_length, mass: cost.mass_per_length.or(density) };
         [Some(cost.ends), Some(metre), line.accumulator.map(|gas| gas.cost)]
     });
-    let others = [
-        declared.cross_port.as_ref().map(|port| port.cost),
-        declared.series.as_ref().map(|series| series.cost),
-        Some(declared.valve.cost),
-    ];
-    of_lines.chain(others).flatten().collect()
+    of_lines.flatten().chain(others).collect()
 }
 
 /// The parts of a rig. A line that is stated as a volume is drilled or cast, and no part.
 pub fn parts(declared: &DeclaredActuator, rig: &Rig) -> Vec<CostedPart> {
     let sides = [("A", &declared.line.a), ("B", &declared.line.b)];
-    let mut found: Vec<CostedPart> = sides.iter().filter_map(|(side, line)| line_part(side, line)).collect();
+    let mut found: Vec<CostedPart> =
+        sides.iter().filter_map(|(side, line)| line_part(Some(side), line)).collect();
     let whole = |kind, side, PartCost { price, mass }: PartCost| CostedPart {
         kind,
         side,
@@ -137,11 +154,19 @@ pub fn parts(declared: &DeclaredActuator, rig: &Rig) -> Vec<CostedPart> {
         Some(whole(PartKind::Accumulator, Some(*side), line.accumulator.as_ref()?.cost))
     }));
     found.extend(declared.cross_port.iter().map(|port| whole(PartKind::CrossPort, None, port.cost)));
-    found.extend(declared.series.iter().map(|series| {
-        let coils = series_coil(declared, rig).map(|pair| pair.mass);
-        let cost = PartCost { mass: series.cost.mass.or(coils), ..series.cost };
-        whole(PartKind::SeriesSpring, None, cost)
-    }));
+    match &declared.series {
+        Some(DeclaredSeries::Spring(spring)) => {
+            let coils = series_coil(declared, rig).map(|pair| pair.mass);
+            let cost = PartCost { mass: spring.cost.mass.or(coils), ..spring.cost };
+            found.push(whole(PartKind::SeriesSpring, None, cost));
+        }
+        Some(DeclaredSeries::Transmission(transmission)) => {
+            found.push(whole(PartKind::TransmissionCylinders, None, transmission.cylinders));
+            let line = line_part(None, &transmission.line);
+            found.extend(line.map(|line| CostedPart { kind: PartKind::TransmissionLine, ..line }));
+        }
+        None => {}
+    }
     found.push(whole(PartKind::Servovalve, None, declared.valve.cost));
     found
 }
@@ -152,7 +177,7 @@ pub fn parts(declared: &DeclaredActuator, rig: &Rig) -> Vec<CostedPart> {
 /// price    ends + price_per_length L
 /// mass     ends + mass_per_length L       mass_per_length = pi (D + t) t rho of a wall with a density
 /// ```
-fn line_part(side: &'static str, line: &DeclaredLine) -> Option<CostedPart> {
+fn line_part(side: Option<&'static str>, line: &DeclaredLine) -> Option<CostedPart> {
     let (kind, cost, by_wall) = match &line.component {
         Component::Hose { properties, .. } => (PartKind::Hose, properties.cost, moving_wall(line)),
         Component::Pipe { pipe, .. } => (PartKind::Pipe, pipe.cost, tube(pipe)),
@@ -164,12 +189,7 @@ fn line_part(side: &'static str, line: &DeclaredLine) -> Option<CostedPart> {
         cost.price_per_length.map(|price| price.amount * length),
     );
     let by_length = cost.mass_per_length.or(by_wall.filter(|_| cost.ends.mass.is_none()));
-    Some(CostedPart {
-        kind,
-        side: Some(side),
-        price,
-        mass: sum(cost.ends.mass, by_length.map(|each| each * length)),
-    })
+    Some(CostedPart { kind, side, price, mass: sum(cost.ends.mass, by_length.map(|each| each * length)) })
 }
 
 /// What is stated of both; `None` where neither is.
@@ -206,7 +226,7 @@ pub fn price(parts: &[CostedPart], counted: PartsCounted) -> Result<f64, String>
     total(wanted, |part| part.price)
 }
 
-/// What all parts weigh together in kg, with the oil in both lines.
+/// What all parts weigh together in kg, with the oil in both lines and in a transmission.
 ///
 /// # Errors
 /// The parts that state no mass; that none does.
@@ -218,11 +238,20 @@ pub fn mass(parts: &[CostedPart], rig: &Rig, counted: PartsCounted) -> Result<f6
     Ok(total(wanted, |part| part.mass)? + oil_in_lines(rig))
 }
 
-/// kg, of the oil in both lines.
+/// The transmission between force sensor and load, where there is one.
+pub(crate) fn transmission(rig: &Rig) -> Option<&Transmission> {
+    match rig.actuator.components().series.as_ref()? {
+        SeriesElement::Transmission(transmission) => Some(transmission),
+        SeriesElement::Spring(_) => None,
+    }
+}
+
+/// kg, of the oil in both lines, and in a transmission.
 pub(crate) fn oil_in_lines(rig: &Rig) -> f64 {
     let components = rig.actuator.components();
     let volume: f64 = [&components.line_a, &components.line_b].map(Line::volume).iter().sum();
-    volume * components.fluid.density
+    let closed = transmission(rig).map_or(0.0, |transmission| transmission.oil_volume());
+    (volume + closed) * components.fluid.density
 }
 
 fn total<'p>(

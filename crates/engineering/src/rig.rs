@@ -130,28 +130,29 @@ impl Rig {
     }
 
     /// The linear parameters in use, with what leaks from chamber to chamber in parallel to K_c:
-    /// with one load pressure both have the same effect; and with the series spring in series with
-    /// the force sensor.
+    /// with one load pressure both have the same effect; and with the stiffness of a series element in
+    /// series with the force sensor.
     pub fn leaking(&self) -> LinearParameters {
         let flow_pressure_coefficient = self.linear.flow_pressure_coefficient + self.internal_leakage;
         self.softened(&LinearParameters { flow_pressure_coefficient, ..self.linear })
     }
 
-    /// These parameters with the series spring in series with the force sensor: the whole of its
-    /// effect where it has neither damper nor mass.
+    /// These parameters with the stiffness of a series element in series with the force sensor: the
+    /// whole of the effect of a spring that has neither damper nor mass.
     pub fn softened(&self, parameters: &LinearParameters) -> LinearParameters {
         LinearParameters { sensor_stiffness: self.beyond_piston(parameters.sensor_stiffness), ..*parameters }
     }
 
-    /// The linearised two-pressure model with the series spring in series with the force sensor.
+    /// The linearised two-pressure model with the stiffness of a series element in series with the force
+    /// sensor.
     pub fn softened_chambers(&self) -> TwoPressureLinearParameters {
         let sensor_stiffness = self.beyond_piston(self.two_pressure.sensor_stiffness);
         TwoPressureLinearParameters { sensor_stiffness, ..self.two_pressure }
     }
 
-    /// The stiffness in N/m of a force sensor together with the series spring, where there is one.
+    /// The stiffness in N/m of a force sensor together with a series element, where there is one.
     pub fn beyond_piston(&self, sensor_stiffness: f64) -> f64 {
-        self.plant.series.map_or(sensor_stiffness, |series| in_series(sensor_stiffness, series.stiffness))
+        self.plant.series.map_or(sensor_stiffness, |series| in_series(sensor_stiffness, series.stiffness()))
     }
 
     /// Assembles the rig of a project and linearises it: [`Setup`](crate::setup::Setup) holds it.
@@ -188,7 +189,7 @@ impl Rig {
         let equal = are_equal(sides(&two_pressure)) && unseen && !has_gas_states(declared);
         let one_pressure = states_one_pressure(&parameters, &[]) || equal;
         let pushed = load.map_or(LinearLoad::Prescribed, |load| load.linear());
-        let series = components.series.map(|series| LinearSeries::new(&series, point.hydraulic_force));
+        let series = LinearSeries::of_components(components, point.hydraulic_force);
         let plant = plant(&two_pressure, &linear, one_pressure, internal_leakage, pushed);
         let area_stiffness = components.cylinder.area_stiffness(point.position, pressures);
         let plant = LinearPlant { dynamic_feedback, series, area_stiffness, ..plant };

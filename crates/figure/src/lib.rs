@@ -68,8 +68,8 @@ pub use pole_map::{PoleMapInput, PoleMapScale, PoleSeries, pole_map};
 pub use pole_sweep::{PoleSweepInput, PoleSweepPoint, pole_sweep};
 pub use prefilter_band::{PrefilterPanel, PrefilterPoint, prefilter_band};
 pub use schematic::{
-    ControllerSymbol, Environment, LineKind, LineSymbol, Rods, SchematicInput, SeriesSymbol, SupplyKind,
-    TestCircuitInput, TestPorts, schematic, test_circuit,
+    ControllerSymbol, Environment, LineKind, LineSymbol, Rods, SchematicInput, SeriesKind, SeriesSymbol,
+    SupplyKind, TestCircuitInput, TestPorts, schematic, test_circuit,
 };
 pub use sizing_chart::{SizingCandidate, SizingChartInput, SizingCurve, sizing_chart};
 pub use step_response::{SettlingBand, StepResponseInput, TimeBounds, TimeEvent, TimeSeries, step_response};

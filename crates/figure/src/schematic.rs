@@ -65,13 +65,24 @@ pub enum Environment {
     SpringMassDamper,
 }
 
-/// The spring between load cell and environment.
+/// What lies between load cell and environment.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SeriesSymbol {
-    /// Whether a damper lies beside it.
-    pub has_damper: bool,
+    /// What it is.
+    pub kind: SeriesKind,
     /// Words below it, such as its stiffness.
     pub words: String,
+}
+
+/// Kinds of what lies between load cell and environment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SeriesKind {
+    /// A spring.
+    Spring,
+    /// A spring with a damper beside it.
+    DampedSpring,
+    /// Two pistons with a line between them.
+    Transmission,
 }
 
 /// Blocks of the control loop.

@@ -291,6 +291,7 @@ fn circuits() {
             has_prefilter: r.unit() < 0.5,
             rows: r.many(5, Random::name),
         };
+        let series = [SeriesKind::Spring, SeriesKind::DampedSpring, SeriesKind::Transmission];
         let input = SchematicInput {
             rotary: r.unit() < 0.5,
             supply: if r.unit() < 0.5 { SupplyKind::Pump } else { SupplyKind::ConstantPressure },
@@ -304,7 +305,7 @@ fn circuits() {
             cylinder: r.name(),
             mass: r.name(),
             load_cell: r.maybe(|r| r.many(4, Random::name)),
-            series: r.maybe(|r| SeriesSymbol { has_damper: r.unit() < 0.5, words: r.name() }),
+            series: r.maybe(|r| SeriesSymbol { kind: series[r.below(3)], words: r.name() }),
             environment: [Environment::PrescribedMotion, Environment::Wall, Environment::SpringMassDamper]
                 [r.below(3)]
             .clone(),

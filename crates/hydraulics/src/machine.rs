@@ -14,7 +14,7 @@
 //! cross port     q_cp = restrictor(p_A - p_B - p_cp),   C_cp dp_cp/dt = q_cp      part of q_i: CrossPort
 //! piston         M dv/dt = A_A p_A - A_B p_B + F_stops - F_fr - F_e      thesis (4.29)
 //! sensor         d(x - x_L)/dt = v - v_L,   F_e = K_S (x - x_L)          thesis (4.45)
-//! series         between sensor and load, or absent                      SeriesElement
+//! series         spring or oil between sensor and load, or absent         SeriesElement
 //! bristles       dz/dt                                          thesis (4.30), corrected: LuGre
 //! load           prescribed, or d(x_L - x_0)/dt, dv_L/dt         LoadModel; behind a Linkage theta for x
 //! supply         constant, or dp_S/dt                           PowerUnit
@@ -35,6 +35,7 @@ mod gas;
 mod ledger;
 mod load;
 mod options;
+mod scales;
 mod series;
 mod signals;
 mod start;
@@ -48,7 +49,7 @@ pub use load::{LoadModel, Motion};
 pub use options::{MachineError, MachineOptions};
 pub use signals::{
     ADJUSTMENT_SIGNALS, GAS_PRESSURE_SIGNALS, HEAT_SIGNALS, INDICATORS, LINKAGE_SIGNALS, SERIES_SIGNALS,
-    SIGNALS,
+    SIGNALS, TRANSMISSION_SIGNALS,
 };
 pub use start::{InitialCondition, StartValues};
 pub use state::MachineState;
@@ -64,7 +65,7 @@ use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 use crate::friction::MovingFriction;
 use crate::line::{DynamicLine, Segments};
 use crate::linkage::Linkage;
-use crate::series::SeriesElement;
+use crate::series::MovingSeries;
 use crate::servovalve::{Servovalve, SpoolImperfection, Supply};
 use equations::constant;
 use signals::ground_of;
@@ -117,7 +118,7 @@ pub struct Machine<S = f64> {
     lines: [DynamicLine<S>; 2],
     friction: MovingFriction<S>,
     sensor_stiffness: S,
-    series: Option<SeriesElement<S>>,
+    series: Option<MovingSeries<S>>,
     linkage: Option<Linkage<S>>,
     load: LoadModel<S>,
     velocity_gain: S,
@@ -171,7 +172,7 @@ impl Machine {
             lines: options.lines.unwrap_or([none; 2]),
             friction,
             sensor_stiffness: components.force_sensor.stiffness,
-            series: components.series,
+            series: components.series.map(|series| series.in_motion(&components.fluid, options.member)),
             linkage: components.linkage,
             load: options.load,
             velocity_gain: options.velocity_gain,
@@ -210,9 +211,14 @@ impl Machine {
         self.moving_setting
     }
 
-    /// Whether a spring lies between force sensor and load.
+    /// Whether a spring or a transmission lies between force sensor and load.
     pub fn has_series_element(&self) -> bool {
         self.series.is_some()
+    }
+
+    /// Whether it is a transmission.
+    pub fn has_transmission(&self) -> bool {
+        matches!(self.series, Some(MovingSeries::Oil(_)))
     }
 
     /// Whether the load turns behind a linkage.

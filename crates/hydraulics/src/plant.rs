@@ -20,7 +20,7 @@ mod virtual_impedance;
 
 pub use in_motion::{BehindLines, PlantInMotion};
 pub use load::LinearLoad;
-pub use series::{LinearSeries, SeriesOutput};
+pub use series::{LinearElement, LinearSeries, LinearSpring, SeriesOutput};
 pub use supply::YieldingSupply;
 
 use phea_dynamics::controller::{RateFilter, VirtualImpedance};
@@ -60,7 +60,7 @@ pub struct LinearPlant<S = f64> {
     pub area_stiffness: Option<S>,
     /// Stiffness K_S of the force sensor in N/m; with a prescribed load, of sensor and environment.
     pub sensor_stiffness: S,
-    /// A spring between force sensor and load; `None` where the sensor pushes on the load itself.
+    /// What lies between force sensor and load; `None` where the sensor pushes on the load itself.
     pub series: Option<LinearSeries<S>>,
     /// What the force sensor pushes on.
     pub load: LinearLoad<S>,
@@ -416,7 +416,7 @@ impl<S: Scalar> LinearPlant<S> {
     /// yielding      F_e = (d_v N U_C - (c s + k) (d_v B - (1 + e) K_x s K_S w^2 N_u) X_0)/(d_v D - (1 + e) K_x s K_S w^2 N_u)
     /// ```
     ///
-    /// The `rate` is (1 + e) v_L, before its filter. With a spring between sensor and load see
+    /// The `rate` is (1 + e) v_L, before its filter. With a series element between sensor and load see
     /// [`LinearSeries`]. With a virtual impedance the output is y:
     ///
     /// ```text

@@ -27,6 +27,7 @@ mod servovalve;
 mod settling;
 mod stiffness;
 mod telescope;
+mod transmission;
 mod two_pressure;
 mod valve_on_test;
 mod virtual_impedance;

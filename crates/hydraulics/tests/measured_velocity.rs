@@ -8,7 +8,8 @@ use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::portable::{exp_complex, pow};
 use phea_hydraulics::impedance::closed_loop_port;
 use phea_hydraulics::plant::{
-    LinearLoad, LinearPlant, LinearSeries, PlantInMotion, SeriesOutput, VelocitySensor,
+    LinearElement, LinearLoad, LinearPlant, LinearSeries, LinearSpring, PlantInMotion, SeriesOutput,
+    VelocitySensor,
 };
 
 use super::plant_in_motion::drawn;
@@ -80,7 +81,8 @@ fn the_closed_impedance_has_the_filter_once() {
     let zero = Complex64::new(0.0, 0.0);
     let law = TransferFunction::from_factors(1e-4, vec![Complex64::new(-8.0, 0.0)], vec![zero]).unwrap();
     let filter = RateFilter::SecondOrder { frequency_rad_per_s: 800.0, damping_ratio: 0.7 };
-    let spring = |output| LinearSeries { stiffness: 2e6, damping: Some(500.0), mass: Some(2.0), output };
+    let spring = LinearSpring { stiffness: 2e6, damping: Some(500.0), mass: Some(2.0) };
+    let spring = |output| LinearSeries { element: LinearElement::Spring(spring), output };
     for number in 0..12 {
         let plant = LinearPlant {
             load: LinearLoad::Prescribed,

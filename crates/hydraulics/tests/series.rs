@@ -21,7 +21,7 @@ use phea_hydraulics::plant::{
     BehindLines, LinearLoad, LinearPlant, LinearSeries, PlantInMotion, SeriesOutput, VelocitySensor,
 };
 use phea_hydraulics::reference_rig::{components, hose_line, nominal_plant};
-use phea_hydraulics::series::{ForceFrom, SeriesElement, SeriesTravel};
+use phea_hydraulics::series::{ForceFrom, SeriesElement, SeriesSpring, SeriesTravel};
 use phea_hydraulics::servovalve::{Servovalve, SpoolDirection};
 use phea_hydraulics::stiffness::StiffnessModel;
 use phea_hydraulics::two_pressure::{TwoPressureModel, two_pressure_linear_parameters};
@@ -29,12 +29,15 @@ use phea_hydraulics::two_pressure::{TwoPressureModel, two_pressure_linear_parame
 use super::commanded::Commanded;
 use super::machine_conservation::{Motion, check, check_instant, machine_of, random, step};
 
-fn rig(series: SeriesElement) -> Components {
-    Components { series: Some(series), ..components(hose_line(), StiffnessModel::ByVolume) }
+fn rig(spring: SeriesSpring) -> Components {
+    Components {
+        series: Some(SeriesElement::Spring(spring)),
+        ..components(hose_line(), StiffnessModel::ByVolume)
+    }
 }
 
 /// Spring alone, with a damper, with a mass, with both; every other one progressive with ends.
-fn element(number: u64) -> SeriesElement {
+fn element(number: u64) -> SeriesSpring {
     let mut state = stream(41, number);
     let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
     let free = number.is_multiple_of(4);
@@ -47,7 +50,7 @@ fn element(number: u64) -> SeriesElement {
         progression: Some(spread(0.1, 3.0)),
         ends: Some(ends),
     };
-    SeriesElement {
+    SeriesSpring {
         stiffness,
         damping: (number % 4 == 1 || number % 4 == 3).then(|| spread(20.0, 2e4)),
         mass: (number % 4 > 1).then(|| spread(0.2, 30.0)),
@@ -56,21 +59,25 @@ fn element(number: u64) -> SeriesElement {
     }
 }
 
-struct Drawn {
+pub(super) struct Drawn {
     machine: Machine,
     rest: InitialCondition,
-    plant: LinearPlant,
+    pub(super) plant: LinearPlant,
 }
 
 fn drawn(number: u64) -> Drawn {
-    let series = element(number);
+    drawn_with(SeriesElement::Spring(element(number)), number)
+}
+
+pub(super) fn drawn_with(series: SeriesElement, number: u64) -> Drawn {
     let mut state = stream(42, number);
     let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
     let friction = spread(50.0, 2e4);
     let parts = Components {
         friction: Friction::Viscous { viscous: friction },
         force_sensor: ForceSensor { stiffness: spread(1e6, 1e8) },
-        ..rig(series)
+        series: Some(series),
+        ..components(hose_line(), StiffnessModel::ByVolume)
     };
     let actuator = Actuator::new(parts).unwrap();
     let (mass, stiffness, damping) = (spread(1.0, 500.0), spread(1e4, 1e8), spread(10.0, 1e4));
@@ -91,9 +98,8 @@ fn drawn(number: u64) -> Drawn {
     let point = OperatingPoint { pressure_a: pressures[0], pressure_b: pressures[1], ..point };
     let parameters = two_pressure_linear_parameters(&model, &point, SpoolDirection::Extending);
     let force = at_rest(&machine, &rest, "load_force_n");
-    let series = LinearSeries::new(&series, force);
-    let plant =
-        LinearPlant { series: Some(series), ..LinearPlant::of_two_pressures(&parameters, 0.0, linear) };
+    let series = LinearSeries::of_components(&parts, force);
+    let plant = LinearPlant { series, ..LinearPlant::of_two_pressures(&parameters, 0.0, linear) };
     Drawn { machine, rest, plant }
 }
 
@@ -106,11 +112,11 @@ fn at_rest(machine: &Machine, rest: &InitialCondition, name: &str) -> f64 {
 }
 
 /// States and, for a prescribed load, the motion of its ground.
-const VARIABLES: usize = 14;
+const VARIABLES: usize = 16;
 
 impl Drawn {
     /// A signal of the machine, for one unit of the command and of the motion of the ground.
-    fn small_signal(&self, signal: &str, feed_forward: f64, frequency: f64) -> [Complex64; 2] {
+    pub(super) fn small_signal(&self, signal: &str, feed_forward: f64, frequency: f64) -> [Complex64; 2] {
         let inputs = [&[self.rest.command], &self.rest.inputs[..]].concat();
         let (zero, one) = (Complex64::ZERO, Complex64::ONE);
         let count = self.rest.state.len();
@@ -132,55 +138,56 @@ impl Drawn {
 /// 200 rigs at 20 frequencies; every other one feeds the velocity of its load forward.
 #[test]
 fn it_is_the_machine_for_small_motions() {
-    let mut worst = 0.0_f64;
     for number in 0..200 {
-        let rig = drawn(number);
-        let gain = if number.is_multiple_of(2) { 0.03 * pow(3e3, number as f64 / 200.0) } else { 0.0 };
-        let fed = (gain > 0.0).then_some(gain);
-        let plant = LinearPlant { load_velocity_feed_forward: fed, ..rig.plant };
-        let on_load = LinearSeries { output: SeriesOutput::OnLoad, ..plant.series.unwrap() };
-        let port = LinearPlant { series: Some(on_load), ..plant };
-        for (plant, signal) in [(plant, "force_n"), (port, "load_force_n")] {
-            let coefficients = plant.coefficients();
-            let disturbance = coefficients.disturbance.unwrap();
-            for step in 0..20 {
-                let frequency = 1e-2 * pow(1e6, f64::from(step) / 19.0);
-                let [command, ground] = rig.small_signal(signal, gain, frequency);
-                for (told, own) in [(&coefficients.command, command), (&disturbance, ground)] {
-                    let error = (told.at_frequency(frequency) / own - 1.0).norm_sqr().sqrt();
-                    worst = worst.max(error);
-                    assert!(error < 1e-6, "rig {number}, {signal} at {frequency} rad/s: {error}");
-                }
+        is_the_machine(&drawn(number), number);
+    }
+}
+
+/// The force through the sensor and that on the load, with a velocity that is fed forward in every other rig.
+pub(super) fn is_the_machine(rig: &Drawn, number: u64) {
+    let gain = if number.is_multiple_of(2) { 0.03 * pow(3e3, number as f64 / 200.0) } else { 0.0 };
+    let fed = (gain > 0.0).then_some(gain);
+    let plant = LinearPlant { load_velocity_feed_forward: fed, ..rig.plant };
+    let on_load = LinearSeries { output: SeriesOutput::OnLoad, ..plant.series.unwrap() };
+    let port = LinearPlant { series: Some(on_load), ..plant };
+    for (plant, signal) in [(plant, "force_n"), (port, "load_force_n")] {
+        let coefficients = plant.coefficients();
+        let disturbance = coefficients.disturbance.unwrap();
+        for step in 0..20 {
+            let frequency = 1e-2 * pow(1e6, f64::from(step) / 19.0);
+            let [command, ground] = rig.small_signal(signal, gain, frequency);
+            for (told, own) in [(&coefficients.command, command), (&disturbance, ground)] {
+                let error = (told.at_frequency(frequency) / own - 1.0).norm_sqr().sqrt();
+                assert!(error < 1e-6, "rig {number}, {signal} at {frequency} rad/s: {error}");
             }
         }
     }
-    assert!(worst > 0.0);
 }
 
 /// The path of a load that yields: its velocity for a volt.
 #[test]
 fn the_velocity_of_the_load_is_that_of_the_machine() {
     for number in (2..80).filter(|number| number % 5 > 1) {
-        let rig = drawn(number);
-        let coefficients = rig.plant.coefficients();
-        let rate = coefficients.rate.unwrap();
-        let [lumped] = [PlantInMotion::lumped(&rig.plant)];
-        for frequency in [0.3, 7.0, 90.0, 1100.0] {
-            let at = |polynomial: &[f64]| {
-                let s = Complex64::new(0.0, frequency);
-                polynomial.iter().fold(Complex64::ZERO, |sum, one| sum * s + *one)
-            };
-            let own = rig.small_signal("load_velocity_m_per_s", 0.0, frequency);
-            let told = [&rate.command, &rate.disturbance]
-                .map(|path| at(path) / at(&coefficients.command.denominator));
-            let moving = lumped.load_velocity(Complex64::new(0.0, frequency));
-            for ((own, told), moving) in own.into_iter().zip(told).zip(moving) {
-                assert!((told / own - 1.0).norm_sqr() < 1e-14, "rig {number} at {frequency}: {told} {own}");
-                assert!(
-                    (moving / own - 1.0).norm_sqr() < 1e-14,
-                    "rig {number} at {frequency}: {moving} {own}"
-                );
-            }
+        velocity_is_that_of_the_machine(&drawn(number), number);
+    }
+}
+
+pub(super) fn velocity_is_that_of_the_machine(rig: &Drawn, number: u64) {
+    let coefficients = rig.plant.coefficients();
+    let rate = coefficients.rate.unwrap();
+    let [lumped] = [PlantInMotion::lumped(&rig.plant)];
+    for frequency in [0.3, 7.0, 90.0, 1100.0] {
+        let at = |polynomial: &[f64]| {
+            let s = Complex64::new(0.0, frequency);
+            polynomial.iter().fold(Complex64::ZERO, |sum, one| sum * s + *one)
+        };
+        let own = rig.small_signal("load_velocity_m_per_s", 0.0, frequency);
+        let told =
+            [&rate.command, &rate.disturbance].map(|path| at(path) / at(&coefficients.command.denominator));
+        let moving = lumped.load_velocity(Complex64::new(0.0, frequency));
+        for ((own, told), moving) in own.into_iter().zip(told).zip(moving) {
+            assert!((told / own - 1.0).norm_sqr() < 1e-14, "rig {number} at {frequency}: {told} {own}");
+            assert!((moving / own - 1.0).norm_sqr() < 1e-14, "rig {number} at {frequency}: {moving} {own}");
         }
     }
 }
@@ -189,45 +196,48 @@ fn the_velocity_of_the_load_is_that_of_the_machine() {
 /// where the velocity of the load is fed forward from a sensor with an error and a filter.
 #[test]
 fn the_response_is_that_of_the_polynomials() {
+    let bounded: usize = (0..80).map(|number| responds_as_its_polynomials(&drawn(number), number)).sum();
+    assert!(bounded > 1000, "{bounded}");
+}
+
+/// How many bounds of its roll-off were compared.
+pub(super) fn responds_as_its_polynomials(rig: &Drawn, number: u64) -> usize {
     let mut bounded = 0;
-    for number in 0..80 {
-        let rig = drawn(number);
-        let gain = if number.is_multiple_of(2) { Some(0.1) } else { None };
-        let filter = RateFilter::SecondOrder { frequency_rad_per_s: 900.0, damping_ratio: 0.7 };
-        let velocity_sensor = match number % 3 {
-            0 => VelocitySensor { gain: Some(1.05), filter },
-            _ => VelocitySensor::default(),
-        };
-        let plant = LinearPlant { load_velocity_feed_forward: gain, velocity_sensor, ..rig.plant };
-        let coefficients = plant.coefficients();
-        let moving = PlantInMotion::lumped(&plant);
-        let disturbance = coefficients.disturbance.unwrap();
-        for step in 0..20 {
-            let frequency = 1e-2 * pow(1e7, f64::from(step) / 19.0);
-            let [command, ground] = moving.response(Complex64::new(0.0, frequency));
-            for (own, told) in [(command, &coefficients.command), (ground, &disturbance)] {
-                assert!((own / told.at_frequency(frequency) - 1.0).norm_sqr() < 1e-18, "rig {number}");
-            }
-            use phea_dynamics::uncertain_plant::responding::RespondingPlant;
-            let Some(bound) = moving.roll_off(frequency) else { continue };
-            for beyond in [1.0, 1.7, 6.0, 50.0] {
-                let here = beyond * frequency;
-                let found = coefficients.command.at_frequency(here).norm_sqr().sqrt();
-                assert!(
-                    found <= (1.0 + 1e-7) * bound / pow(beyond, 3.0),
-                    "rig {number} at {here}: {found} {bound}"
-                );
-                bounded += 1;
-            }
+    let gain = if number.is_multiple_of(2) { Some(0.1) } else { None };
+    let filter = RateFilter::SecondOrder { frequency_rad_per_s: 900.0, damping_ratio: 0.7 };
+    let velocity_sensor = match number % 3 {
+        0 => VelocitySensor { gain: Some(1.05), filter },
+        _ => VelocitySensor::default(),
+    };
+    let plant = LinearPlant { load_velocity_feed_forward: gain, velocity_sensor, ..rig.plant };
+    let coefficients = plant.coefficients();
+    let moving = PlantInMotion::lumped(&plant);
+    let disturbance = coefficients.disturbance.unwrap();
+    for step in 0..20 {
+        let frequency = 1e-2 * pow(1e7, f64::from(step) / 19.0);
+        let [command, ground] = moving.response(Complex64::new(0.0, frequency));
+        for (own, told) in [(command, &coefficients.command), (ground, &disturbance)] {
+            assert!((own / told.at_frequency(frequency) - 1.0).norm_sqr() < 1e-18, "rig {number}");
+        }
+        use phea_dynamics::uncertain_plant::responding::RespondingPlant;
+        let Some(bound) = moving.roll_off(frequency) else { continue };
+        for beyond in [1.0, 1.7, 6.0, 50.0] {
+            let here = beyond * frequency;
+            let found = coefficients.command.at_frequency(here).norm_sqr().sqrt();
+            assert!(
+                found <= (1.0 + 1e-7) * bound / pow(beyond, 3.0),
+                "rig {number} at {here}: {found} {bound}"
+            );
+            bounded += 1;
         }
     }
-    assert!(bounded > 1000, "{bounded}");
+    bounded
 }
 
 /// A rigid spring is none: in the linear plant, with lines in motion and in the machine at rest and in small motions.
 #[test]
 fn a_rigid_spring_is_no_spring() {
-    let rigid = |damping| SeriesElement {
+    let rigid = |damping| SeriesSpring {
         stiffness: 1e25,
         damping,
         mass: None,
@@ -246,7 +256,7 @@ fn a_rigid_spring_is_no_spring() {
                 load_velocity_feed_forward: Some(3.0),
                 ..LinearPlant::of_load_pressure(&nominal_plant(), 1e-13, load)
             };
-            let series = Some(LinearSeries::new(&rigid(damping), 1e3));
+            let series = Some(LinearSeries::of_spring(&rigid(damping), 1e3));
             let sprung = LinearPlant { series, ..plain };
             let behind = BehindLines {
                 lines: [line(components(hose_line(), StiffnessModel::ByVolume).fluid); 2],
@@ -286,7 +296,7 @@ fn a_rigid_spring_is_no_spring() {
 /// A spring without damper and mass is a softer force sensor, in the machine too.
 #[test]
 fn a_spring_alone_is_a_softer_sensor() {
-    let spring = SeriesElement {
+    let spring = SeriesSpring {
         stiffness: 2.24e6,
         damping: None,
         mass: None,
@@ -346,14 +356,14 @@ fn ledgers_close() {
             let own = element(number);
             // a few newtons reach the ends of a short travel
             let travel = own.travel.map(|travel| SeriesTravel { travel: 2e-4, ..travel });
-            let own = SeriesElement { travel, stiffness: 2e6, damping: own.damping.map(|_| 800.0), ..own };
-            let own = SeriesElement { mass: own.mass.map(|_| 3.0), ..own };
+            let own = SeriesSpring { travel, stiffness: 2e6, damping: own.damping.map(|_| 800.0), ..own };
+            let own = SeriesSpring { mass: own.mass.map(|_| 3.0), ..own };
             let ends = own.travel.map(|travel| SeriesTravel {
                 ends: travel.ends.map(|ends| Contact { stiffness: 2e7, ..ends }),
                 ..travel
             });
             // an edge that opens at zero drop is too fast for this method where the root's transition is short
-            let parts = rig(SeriesElement { travel: ends, ..own });
+            let parts = rig(SeriesSpring { travel: ends, ..own });
             let valve = Servovalve { transition_pressure: 1e5, ..parts.valve };
             let machine = machine_of(
                 Components { valve, ..parts },
@@ -371,7 +381,7 @@ fn what_is_stored_changes_by_what_enters_and_is_lost() {
     for number in 0..40 {
         let own = element(number);
         let travel = own.travel.map(|travel| SeriesTravel { travel: 1e-3, ..travel });
-        let own = SeriesElement { travel, stiffness: 2e6, ..own };
+        let own = SeriesSpring { travel, stiffness: 2e6, ..own };
         let machine = machine_of(rig(own), &MachineOptions::default());
         let start =
             StartValues { position: 0.25, pressure_a: 35e5, pressure_b: 35e5, ..StartValues::default() };
@@ -401,7 +411,7 @@ fn it_is_passive_under_random_motions_of_its_ports() {
             ends: travel.ends.map(|ends| Contact { stiffness: 3e7, ..ends }),
             ..travel
         });
-        let own = SeriesElement {
+        let own = SeriesSpring {
             travel,
             stiffness: 2e6,
             damping: own.damping.map(|_| 600.0),
@@ -445,10 +455,10 @@ fn impossible_elements_are_refused() {
     let ends = Some(Contact { stiffness: 1e8, relative_damping: 0.5 });
     let travel = Some(SeriesTravel { travel: 5e-3, progression: None, ends });
     let own =
-        SeriesElement { stiffness: 0.0, damping: None, mass: None, travel, force_from: ForceFrom::Sensor };
+        SeriesSpring { stiffness: 0.0, damping: None, mass: None, travel, force_from: ForceFrom::Sensor };
     let refused = Actuator::new(rig(own)).unwrap_err().to_string();
     assert!(refused.contains("series.stiffness is 0, but must be positive"), "{refused}");
     assert!(refused.contains("series.stop_damping is 0.5, but must be zero where"), "{refused}");
-    let fit = SeriesElement { stiffness: 2e6, damping: Some(100.0), ..own };
+    let fit = SeriesSpring { stiffness: 2e6, damping: Some(100.0), ..own };
     assert!(Actuator::new(rig(fit)).is_ok());
 }

@@ -9,7 +9,9 @@ use phea_dynamics::controller::VirtualImpedance;
 use phea_dynamics::portable::{exp_complex, pow};
 use phea_dynamics::random::{share, stream};
 use phea_dynamics::uncertain_plant::responding::RespondingPlant;
-use phea_hydraulics::plant::{LinearPlant, LinearSeries, PlantInMotion, SeriesOutput};
+use phea_hydraulics::plant::{
+    LinearElement, LinearPlant, LinearSeries, LinearSpring, PlantInMotion, SeriesOutput,
+};
 
 use super::plant_in_motion::drawn;
 
@@ -75,7 +77,8 @@ fn the_quotients_are_force_and_motion() {
         let beside = impedance(number);
         let output =
             [SeriesOutput::Sensor, SeriesOutput::Deflection, SeriesOutput::OnLoad][number as usize % 3];
-        let series = LinearSeries { stiffness: 8e5, damping: Some(300.0), mass: Some(4.0), output };
+        let spring = LinearSpring { stiffness: 8e5, damping: Some(300.0), mass: Some(4.0) };
+        let series = LinearSeries { element: LinearElement::Spring(spring), output };
         let plain = LinearPlant {
             series: (number % 2 == 1).then_some(series),
             load_velocity_feed_forward: (number % 3 == 1).then_some(12.0),

@@ -182,7 +182,7 @@ pub struct DeclaredActuator {
     pub force_sensor: DeclaredForceSensor,
     /// What the velocity of the load is measured with; absent: the true one is known at once.
     pub velocity_sensor: Option<DeclaredVelocitySensor>,
-    /// The spring between load cell and load; absent: the cell pushes on the load itself.
+    /// What lies between load cell and load; absent: the cell pushes on the load itself.
     pub series: Option<DeclaredSeries>,
     /// The linkage between rod and load; absent: the load moves with the rod.
     pub linkage: Option<DeclaredLinkage>,
@@ -358,7 +358,7 @@ impl DeclaredActuator {
             &mut self.velocity_sensor,
             DeclaredVelocitySensor::visit,
         );
-        let k = plain("series", "The spring between force sensor and load; absent: none.");
+        let k = plain("series", "A spring or transmission between force sensor and load; absent: none.");
         v.table(k, &mut self.series, DeclaredSeries::visit);
         let k = plain("linkage", "What lies between the rod and a load that turns; absent: nothing.");
         v.table(k, &mut self.linkage, DeclaredLinkage::visit);

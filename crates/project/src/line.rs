@@ -197,10 +197,20 @@ impl DeclaredLine {
         self.hose().and_then(|hose| hose.expansion.pressure())
     }
 
-    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
-        self.component.visit(v);
+    /// A hose or pipe that ends at no chamber.
+    pub(crate) fn visit_alone<V: Visitor>(&mut self, v: &mut V) {
+        self.component.visit(false, v);
+        self.visit_stiffening(v);
+    }
+
+    fn visit_stiffening<V: Visitor>(&mut self, v: &mut V) {
         let k = key("dynamic_stiffening", &RATIO, "r_β, the hose's dynamic over its static modulus.");
         BoundedNumber::visit(v, k.at_least(1.0), &mut self.dynamic_stiffening);
+    }
+
+    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+        self.component.visit(true, v);
+        self.visit_stiffening(v);
         v.variant(plain("model", "What of the line moves."), &mut self.motion, false);
         let k = plain("accumulator", "A gas-charged accumulator at the chamber's end of the line.");
         v.table(k, &mut self.accumulator, DeclaredAccumulator::visit_at_chamber);
@@ -214,7 +224,8 @@ impl Component {
     /// Keys of which each makes it a volume that is stated directly.
     pub(crate) const VOLUME: [&'static str; 2] = ["volume", "effective_bulk_modulus"];
 
-    fn visit<V: Visitor>(&mut self, v: &mut V) {
+    /// Also as a volume that is stated directly, where `or_volume`.
+    fn visit<V: Visitor>(&mut self, or_volume: bool, v: &mut V) {
         let (mut name, mut hose, mut pipe, mut volume, mut length) = (None, None, None, None, 0.0);
         match std::mem::take(self) {
             Component::Hose { name: of, properties, length: m } => {
@@ -226,8 +237,11 @@ impl Component {
         v.catalogue(plain("hose", "Name of a hose of the catalogue."), CatalogueKind::Hose, &mut name);
         v.way(&Component::HOSE, &mut hose, HoseProperties::visit);
         v.table(plain("pipe", "A pipe instead of a hose."), &mut pipe, DeclaredPipe::visit);
-        v.way(&Component::VOLUME, &mut volume, LineVolume::visit);
-        let k = key("length", &LENGTH, "Length of the line to one chamber.").positive();
+        if or_volume {
+            v.way(&Component::VOLUME, &mut volume, LineVolume::visit);
+        }
+        let words = if or_volume { "Length of the line to one chamber." } else { "Length of the line." };
+        let k = key("length", &LENGTH, words).positive();
         match (hose, pipe, volume) {
             (Some(properties), _, _) => {
                 v.quantity(k, &mut length);

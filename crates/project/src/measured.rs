@@ -40,7 +40,7 @@ const fn signal(name: &'static str) -> (&'static str, &'static str) {
 
 /// The signals that can be measured, each as a project names it and as the column of a simulation's
 /// table is called: every column but time.
-pub static MEASURABLE: [(&str, &str); 43] = [
+pub static MEASURABLE: [(&str, &str); 45] = [
     signal("force_n"),
     signal("reference_n"),
     signal("control_v"),
@@ -84,6 +84,8 @@ pub static MEASURABLE: [(&str, &str); 43] = [
     signal("setting_a_ratio"),
     signal("setting_b_ratio"),
     signal("adjustment_power_w"),
+    signal("transmission_pressure_rod_pa"),
+    signal("transmission_pressure_load_pa"),
 ];
 
 impl MeasuredFile {

@@ -1,16 +1,29 @@
-//! `[series]` and `[series.coil]`: the spring between force sensor and load.
+//! `[series]` with `[series.coil]` or `[series.line]`: the spring or the hydraulic transmission between
+//! force sensor and load.
 
-use phea_hydraulics::series::ForceFrom;
+use phea_hydraulics::series::{ForceFrom, MOST_SEGMENTS};
 
 use super::cost::PartCost;
 use super::key::{key, plain};
-use super::visitor::Visitor;
-use phea_quantity::{DAMPING, DENSITY, INVERSE_VELOCITY, LENGTH, MASS, PRESSURE, PricedBy, RATIO, STIFFNESS};
+use super::line::DeclaredLine;
+use super::visitor::{Variants, Visitor};
+use phea_quantity::{
+    AREA, DAMPING, DENSITY, INVERSE_VELOCITY, LENGTH, MASS, PRESSURE, PricedBy, RATIO, STIFFNESS, VOLUME,
+};
+
+/// What lies between force sensor and load.
+#[derive(Clone, Debug, PartialEq)]
+pub enum DeclaredSeries {
+    /// A spring.
+    Spring(DeclaredSpring),
+    /// Two pistons with a line between them.
+    Transmission(DeclaredTransmission),
+}
 
 /// The spring between force sensor and load, with its damper, the mass before it and the ends of
 /// its travel.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct DeclaredSeries {
+pub struct DeclaredSpring {
     /// N/m, of the spring; of a progressive one at rest.
     pub stiffness: f64,
     /// N·s/m, beside the spring.
@@ -34,6 +47,25 @@ pub struct DeclaredSeries {
     pub cost: PartCost,
 }
 
+/// A hydraulic transmission between force sensor and load, filled once and closed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DeclaredTransmission {
+    /// m², of either piston.
+    pub piston_area: f64,
+    /// Pa, gauge, at rest and without force.
+    pub filling_pressure: f64,
+    /// m³, of oil at either piston beside that of the line.
+    pub end_volume: f64,
+    /// Into how many segments the line is cut.
+    pub segments: u32,
+    /// The hose or pipe between the pistons.
+    pub line: DeclaredLine,
+    /// m, of either cylinder of it; absent: not known.
+    pub cylinder_length: Option<f64>,
+    /// What both cylinders cost and weigh together.
+    pub cylinders: PartCost,
+}
+
 /// What a coil spring is wound from.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SpringCoil {
@@ -51,8 +83,90 @@ pub struct SpringCoil {
 const STEEL_SHEAR_MODULUS: f64 = 81.5e9;
 const STEEL_DENSITY: f64 = 7850.0;
 
+/// Default number of segments of a transmission: its first wave is 3 % slow.
+const SEGMENTS: u32 = 2;
+
+impl Default for DeclaredSeries {
+    fn default() -> Self {
+        DeclaredSeries::Spring(DeclaredSpring::default())
+    }
+}
+
+impl Default for DeclaredTransmission {
+    fn default() -> Self {
+        DeclaredTransmission {
+            piston_area: 0.0,
+            filling_pressure: 0.0,
+            end_volume: 0.0,
+            segments: SEGMENTS,
+            line: DeclaredLine::default(),
+            cylinder_length: None,
+            cylinders: PartCost::default(),
+        }
+    }
+}
+
 impl DeclaredSeries {
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+        v.variant(plain("kind", "What lies between force sensor and load."), self, false);
+    }
+
+    /// It, where it is a spring.
+    pub fn spring(&self) -> Option<&DeclaredSpring> {
+        if let DeclaredSeries::Spring(spring) = self { Some(spring) } else { None }
+    }
+
+    /// It, where it is a transmission.
+    pub fn transmission(&self) -> Option<&DeclaredTransmission> {
+        if let DeclaredSeries::Transmission(transmission) = self { Some(transmission) } else { None }
+    }
+}
+
+impl Variants for DeclaredSeries {
+    fn all(&self) -> Vec<DeclaredSeries> {
+        vec![DeclaredSeries::default(), DeclaredSeries::Transmission(DeclaredTransmission::default())]
+    }
+
+    fn word(&self) -> &'static str {
+        match self {
+            DeclaredSeries::Spring(_) => "spring",
+            DeclaredSeries::Transmission(_) => "transmission",
+        }
+    }
+
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        match self {
+            DeclaredSeries::Spring(spring) => spring.visit(v),
+            DeclaredSeries::Transmission(transmission) => transmission.visit(v),
+        }
+    }
+}
+
+impl DeclaredTransmission {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let k = key("piston_area", &AREA, "Of either piston of the transmission.").positive();
+        v.quantity(k, &mut self.piston_area);
+        let k = key("filling_pressure", &PRESSURE, "Of its oil, at rest and without force.").positive();
+        v.quantity(k, &mut self.filling_pressure);
+        let k = key("end_volume", &VOLUME, "Oil at either piston, beside that of the line.").not_negative();
+        v.quantity(k.or(0.0), &mut self.end_volume);
+        let k = key("segments", &RATIO, "Into how many segments its line is cut; absent: 2.").at_least(1.0);
+        let mut segments = Some(self.segments);
+        v.optional_count(k.at_most(MOST_SEGMENTS as f64), &mut segments);
+        self.segments = segments.unwrap_or(SEGMENTS);
+        v.needed_table(plain("line", "The hose or pipe between its pistons."), &mut self.line, |line, v| {
+            line.visit_alone(v);
+        });
+        let k = key("cylinder_length", &LENGTH, "Length of either of its cylinders, when retracted.");
+        v.optional(k.positive(), &mut self.cylinder_length);
+        v.price(plain("price", "What both cylinders cost."), PricedBy::Piece, &mut self.cylinders.price);
+        let k = key("cylinders_mass", &MASS, "Mass of both cylinders as parts.");
+        v.optional(k.not_negative(), &mut self.cylinders.mass);
+    }
+}
+
+impl DeclaredSpring {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
         let k = key("stiffness", &STIFFNESS, "Of the spring between force sensor and load, at rest.");
         v.quantity(k.positive(), &mut self.stiffness);
         let k = key("damping", &DAMPING, "Damping beside the spring.").not_negative();

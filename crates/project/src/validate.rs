@@ -153,6 +153,11 @@ impl Check<'_, '_> {
         self.reader.findings.push(RawFinding::warning(place, message));
     }
 
+    fn warning_with_help(&mut self, path: &str, message: impl Into<String>, help: impl Into<String>) {
+        let place = self.place(path);
+        self.reader.findings.push(RawFinding::warning(place, message).help(help));
+    }
+
     /// Something is absent from the table at `path`, perhaps because its value was rejected.
     fn missing(&mut self, path: &str, name: &str, message: impl Into<String>) {
         if self.declared(&format!("{path}.{name}")) || !self.has_table(path) {

@@ -20,6 +20,8 @@ const HEAT: &str = include_str!("../../project/tests/valid/accumulator_heat.toml
 const CROSS_PORT: &str = include_str!("../../project/tests/valid/cross_port.toml");
 const SERIES: &str = include_str!("../../project/tests/valid/series.toml");
 const SERIES_COIL: &str = include_str!("../../project/tests/valid/series_coil.toml");
+const TRANSMISSION: &str = include_str!("../../project/tests/valid/transmission.toml");
+const TRANSMISSION_PIPE: &str = include_str!("../../project/tests/valid/transmission_pipe.toml");
 const VOLUMES: &str = include_str!("../../project/tests/valid/volumes.toml");
 const LINKAGE: &str = include_str!("../../project/tests/valid/linkage.toml");
 const WEIGHT: &str = include_str!("../../project/tests/valid/linkage_weight.toml");
@@ -175,6 +177,8 @@ fn on_springs() -> Vec<(String, Vec<&'static str>)> {
     let springs = [
         (without_uncertainty(SERIES), vec!["operating_point.load_force=2 kN"]),
         (without_uncertainty(SERIES_COIL), vec![]),
+        (without_uncertainty(TRANSMISSION), vec!["fluid.kinematic_viscosity=46 cSt"]),
+        (TRANSMISSION_PIPE.to_string(), vec![]),
         (ASYMMETRIC.to_string(), vec!["series={ stiffness = \"20 MN/m\" }"]),
     ];
     springs.into_iter().chain(with_motors()).chain(with_linkages()).collect()
@@ -247,7 +251,7 @@ fn without_uncertainty(text: &str) -> String {
 }
 
 /// Values of what may be absent, or is not a number.
-const STATED: [(&str, &str); 68] = [
+const STATED: [(&str, &str); 74] = [
     ("cross_port.mass", "1 kg"),
     ("cross_port.price", "100 EUR"),
     ("line.accumulator.mass", "1 kg"),
@@ -263,6 +267,12 @@ const STATED: [(&str, &str); 68] = [
     ("line.pipe.wall_density", "7850 kg/m3"),
     ("series.price", "100 EUR"),
     ("series.spring_mass", "1 kg"),
+    ("series.segments", "4"),
+    ("series.line.dynamic_stiffening", "4.8"),
+    ("series.line.price", "100 EUR"),
+    ("series.line.price_per_length", "100 EUR/m"),
+    ("series.line.pipe.price", "100 EUR"),
+    ("series.line.pipe.price_per_length", "100 EUR/m"),
     ("valve.mass", "1 kg"),
     ("valve.price", "100 EUR"),
     ("linkage.extensions", "[0, 0.0205, 0.04, 0.06, 0.08]"),

@@ -2,12 +2,13 @@
 
 use phea_hydraulics::cylinder::chamber_volumes;
 use phea_hydraulics::line::Line;
-use phea_hydraulics::series::LEAST_ACTIVE_COILS;
+use phea_hydraulics::plant::LinearElement;
+use phea_hydraulics::series::{LEAST_ACTIVE_COILS, SeriesElement};
 
 use super::columns::{AlternativeColumn, column};
 use super::{JudgedAlternative, no_rig};
-use crate::parts::{self, parts};
-use crate::project::{DeclaredActuator, Project};
+use crate::parts::{self, parts, transmission};
+use crate::project::{DeclaredActuator, DeclaredSeries, Project};
 use crate::quantity::{DisplayUnit, MASS, MotionKind, VOLUME, fitting};
 use crate::rig::{Rig, power_at_rest, series_coil};
 use crate::setup::Setup;
@@ -103,6 +104,7 @@ impl JudgedAlternative {
 ///
 /// ```text
 /// stroke + cylinder.dead_length + installed length of the coil springs on the rod
+///                               + both cylinders of a transmission, wherever the one of the load stands
 /// ```
 ///
 /// # Errors
@@ -113,24 +115,34 @@ pub fn retracted_length(project: &Project) -> Result<f64, String> {
     actuator_length(declared, &rig).map_err(String::from)
 }
 
-/// Stroke (of a telescopic piston its longest stage), dead length and the springs on the rod.
+/// Stroke (of a telescopic piston its longest stage), dead length and what lies in series.
 fn actuator_length(declared: &DeclaredActuator, rig: &Rig) -> Result<f64, &'static str> {
     let cylinder = &declared.cylinder;
     let dead = cylinder.dead_length.ok_or("not stated: cylinder.dead_length")?;
-    let spring = match (&declared.series, series_coil(declared, rig)) {
-        (None, _) => 0.0,
-        (Some(_), Some(pair)) if pair.active_coils < LEAST_ACTIVE_COILS => {
-            return Err("the coils of the series spring are too few to be wound");
+    let series = match &declared.series {
+        None => 0.0,
+        Some(DeclaredSeries::Spring(_)) => match series_coil(declared, rig) {
+            Some(pair) if pair.active_coils < LEAST_ACTIVE_COILS => {
+                return Err("the coils of the series spring are too few to be wound");
+            }
+            Some(pair) => pair.installed_length,
+            None => return Err("not stated: series.coil, which has a length"),
+        },
+        Some(DeclaredSeries::Transmission(transmission)) => {
+            2.0 * transmission.cylinder_length.ok_or("not stated: series.cylinder_length")?
         }
-        (Some(_), Some(pair)) => pair.installed_length,
-        (Some(_), None) => return Err("not stated: series.coil, which has a length"),
     };
-    Ok(cylinder.longest_stage_m() + dead + spring)
+    Ok(cylinder.longest_stage_m() + dead + series)
 }
 
-/// Of the rod, and of what moves between force sensor and spring.
+/// Of the rod, and of what moves between force sensor and load: the oil of a transmission as its pistons
+/// feel it.
 fn moving_mass(_: &DeclaredActuator, rig: &Rig) -> Result<f64, &'static str> {
-    let on_rod = rig.actuator.components().series.and_then(|series| series.mass).unwrap_or(0.0);
+    let on_rod = match (rig.plant.series.map(|series| series.element), rig.actuator.components().series) {
+        (Some(LinearElement::Oil(column)), _) => column.mass * column.segments as f64,
+        (_, Some(SeriesElement::Spring(spring))) => spring.mass.unwrap_or(0.0),
+        _ => 0.0,
+    };
     Ok(rig.linear.moving_mass + on_rod)
 }
 
@@ -152,7 +164,8 @@ fn lines_volume(_: &DeclaredActuator, rig: &Rig) -> Result<f64, &'static str> {
     Ok(lines(rig).into_iter().map(Line::volume).sum())
 }
 
-/// Lines, chambers at the operating point, dead volumes, and what the accumulators hold there.
+/// Lines, chambers at the operating point, dead volumes, what the accumulators hold there, and the oil of
+/// a transmission.
 fn oil_volume(declared: &DeclaredActuator, rig: &Rig) -> Result<f64, &'static str> {
     let components = rig.actuator.components();
     let (cylinder, point) = (&components.cylinder, &rig.point);
@@ -160,7 +173,8 @@ fn oil_volume(declared: &DeclaredActuator, rig: &Rig) -> Result<f64, &'static st
     let pressures = [point.pressure_a, point.pressure_b];
     let held = components.accumulators.iter().zip(pressures);
     let held: f64 = held.filter_map(|(gas, pressure)| Some(gas.as_ref()?.oil(pressure))).sum();
-    Ok(lines_volume(declared, rig)? + chamber_a + chamber_b + held)
+    let closed = transmission(rig).map_or(0.0, |transmission| transmission.oil_volume());
+    Ok(lines_volume(declared, rig)? + chamber_a + chamber_b + held + closed)
 }
 
 /// Of the accumulators at the chambers, at their precharge.

@@ -1,4 +1,6 @@
-use phea_hydraulics::series::{CoilPair, LEAST_ACTIVE_COILS};
+use phea_hydraulics::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
+use phea_hydraulics::line::{Conduit, StiffeningMember};
+use phea_hydraulics::series::{CoilPair, LEAST_ACTIVE_COILS, SeriesElement, SeriesSpring, Transmission};
 
 use super::list::List;
 use crate::project::Project;
@@ -6,10 +8,42 @@ use crate::rig::{Rig, series_coil, stall_force};
 
 const TOO_FEW_COILS: &str = "fewer than two active coils, whose ends would decide the stiffness: take a smaller index, a lower stress, or disc springs";
 
-/// The spring between force sensor and load, and how it is wound.
+/// What lies between force sensor and load.
 pub(super) fn series(project: &Project, rig: &Rig, list: &mut List) {
     let components = rig.actuator.components();
-    let Some(spring) = &components.series else { return };
+    match &components.series {
+        None => {}
+        Some(SeriesElement::Spring(element)) => spring(element, project, rig, list),
+        Some(SeriesElement::Transmission(element)) => transmission(element, rig, list),
+    }
+}
+
+/// The oil between two pistons, as rod and load feel it.
+fn transmission(transmission: &Transmission, rig: &Rig, list: &mut List) {
+    let fluid = &rig.actuator.components().fluid;
+    let column = transmission.column(fluid, StiffeningMember::Nominal);
+    let count = column.segments as f64;
+    list.group("Transmission");
+    list.add("series.stiffness_of_oil", "k", column.stiffness(), "N/m", "k = A^2/(C + 2 C_e)");
+    list.add("series.reflected_mass", "m", count * column.mass, "kg", "m = A^2 ρ L/a");
+    list.add("series.reflected_damping", "b", count * column.damping, "N.s/m", "b = 32 ν m/d^2");
+    let conduit =
+        Conduit::of_line(&transmission.line, fluid, transmission.filling_pressure, StiffeningMember::Nominal);
+    match conduit {
+        Ok(conduit) => list.add("series.wave_travel_time", "T", conduit.delay(), "s", "T = L sqrt(ρ/β_e)"),
+        Err(_) => {
+            list.absent("series.wave_travel_time", "T", "s", "T = L sqrt(ρ/β_e)", "the line has no length")
+        }
+    }
+    list.add("series.oil_volume", "V", transmission.oil_volume(), "m3", "V = a L + 2 V_e");
+    let stall = stall_force(rig);
+    list.add("series.pressure_at_stall", "p", column.pressure(stall), "Pa", "p = p_0 + F_{max}/A");
+    let tears = transmission.piston_area * (transmission.filling_pressure + ATMOSPHERIC_PRESSURE_ABSOLUTE);
+    list.add("series.pull_limit", "F", tears, "N", "F = A (p_0 + p_{atm})");
+}
+
+/// The spring, and how it is wound.
+fn spring(spring: &SeriesSpring, project: &Project, rig: &Rig, list: &mut List) {
     list.group("Series spring");
     let force = rig.point.hydraulic_force;
     list.add(

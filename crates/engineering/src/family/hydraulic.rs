@@ -159,7 +159,7 @@ impl Open<'_> {
         let gain = velocity_gain(self.declared, &numbers);
         let velocity_sensor = VelocitySensor { gain, ..plant.velocity_sensor };
         let force = place.point.hydraulic_force;
-        let series = place.components.series.map(|series| LinearSeries::new(&series, force));
+        let series = LinearSeries::of_components(&place.components, force);
         let dynamic_feedback = place.dynamic_feedback;
         let virtual_impedance = self.rig.virtual_impedance;
         let cylinder = &place.components.cylinder;

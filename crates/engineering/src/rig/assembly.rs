@@ -8,7 +8,7 @@ use phea_hydraulics::force_sensor::ForceSensor;
 use phea_hydraulics::friction::{Friction, LuGre, Stribeck};
 use phea_hydraulics::line::{Anchoring, Hose, Line, Pipe, PipeWall, Stiffening};
 use phea_hydraulics::linkage::{Linkage, STANDARD_GRAVITY};
-use phea_hydraulics::series::{SeriesElement, SeriesTravel};
+use phea_hydraulics::series::{SeriesElement, SeriesSpring, SeriesTravel, Transmission};
 use phea_hydraulics::servovalve::{
     Edges, Servovalve, Supply, flow_coefficient_from_rating, leakage_coefficient_from_rating,
 };
@@ -20,8 +20,8 @@ use super::gas::{accumulator, adjustment};
 use super::numbers::Numbers;
 use crate::project::{
     self, BoundedNumber, Compliance, Component, DeclaredAccumulator, DeclaredNeck, DeclaredSeries,
-    DeclaredWeight, EdgeCoefficients, FrictionLaw, HoseExpansion, LineVolume, NullLeakage, RatedFlow,
-    StribeckCurve, ValveCoefficients,
+    DeclaredSpring, DeclaredTransmission, DeclaredWeight, EdgeCoefficients, FrictionLaw, HoseExpansion,
+    LineVolume, NullLeakage, RatedFlow, StribeckCurve, ValveCoefficients,
 };
 
 /// Kinematic viscosity of ISO VG 46 oil at 40 degrees Celsius, m2/s: used where a project states
@@ -100,12 +100,36 @@ fn linkage<S: Scalar>(
     reduced.linkage.convert(&mut S::from).with_moment(moment * S::from(STANDARD_GRAVITY))
 }
 
-/// The spring between force sensor and load; a damper, a mass and a progression of zero are none.
+/// What lies between force sensor and load.
 fn series<S: Scalar>(declared: &DeclaredSeries, numbers: &Numbers<'_, S>) -> SeriesElement<S> {
+    match declared {
+        DeclaredSeries::Spring(declared) => SeriesElement::Spring(spring(declared, numbers)),
+        DeclaredSeries::Transmission(declared) => {
+            SeriesElement::Transmission(transmission(declared, numbers))
+        }
+    }
+}
+
+/// The expansion of its hose is that at the filling pressure.
+fn transmission<S: Scalar>(declared: &DeclaredTransmission, numbers: &Numbers<'_, S>) -> Transmission<S> {
+    let at = |key: &str, value: f64| numbers.at(key, value);
+    let filling_pressure = at("filling_pressure", declared.filling_pressure);
+    let pressures = ExpansionPressures { working: filling_pressure, operating: filling_pressure };
+    Transmission {
+        piston_area: at("piston_area", declared.piston_area),
+        line: line(&declared.line, &numbers.within("line"), pressures),
+        end_volume: at("end_volume", declared.end_volume),
+        filling_pressure,
+        segments: declared.segments as usize,
+    }
+}
+
+/// A damper, a mass and a progression of zero are none.
+fn spring<S: Scalar>(declared: &DeclaredSpring, numbers: &Numbers<'_, S>) -> SeriesSpring<S> {
     let at = |key: &str, value: f64| numbers.at(key, value);
     let where_any =
         |key: &str, value: f64| (value > 0.0 || numbers.is_open(key)).then(|| numbers.at(key, value));
-    SeriesElement {
+    SeriesSpring {
         stiffness: at("stiffness", declared.stiffness),
         damping: where_any("damping", declared.damping),
         mass: where_any("mass", declared.mass),

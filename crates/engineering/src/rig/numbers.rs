@@ -9,7 +9,7 @@ pub struct Numbers<'a, S = f64> {
     /// `a` or `b` inside a line, whose keys are then without their table.
     side: Option<&'static str>,
     /// The nested tables of a key; empty names are ignored.
-    tables: [&'static str; 2],
+    tables: [&'static str; 3],
 }
 
 impl Numbers<'_, f64> {
@@ -22,7 +22,7 @@ impl Numbers<'_, f64> {
 impl<'a, S: Scalar> Numbers<'a, S> {
     /// These numbers uncertain, in their order.
     pub fn open(names: &'a [String], values: &'a [S]) -> Numbers<'a, S> {
-        Numbers { names, values, side: None, tables: [""; 2] }
+        Numbers { names, values, side: None, tables: [""; 3] }
     }
 
     /// Inside the line to chamber `a` or `b`: a number for one line takes precedence over the same
@@ -31,10 +31,14 @@ impl<'a, S: Scalar> Numbers<'a, S> {
         Numbers { side: Some(side), ..*self }
     }
 
-    /// Inside a table, and a table in it.
+    /// Inside a table, and up to two tables in it.
     pub(super) fn within(&self, table: &'static str) -> Numbers<'a, S> {
-        let [first, _] = self.tables;
-        Numbers { tables: if first.is_empty() { [table, ""] } else { [first, table] }, ..*self }
+        let tables = match self.tables {
+            ["", ..] => [table, "", ""],
+            [first, "", _] => [first, table, ""],
+            [first, second, _] => [first, second, table],
+        };
+        Numbers { tables, ..*self }
     }
 
     /// The value of an uncertain number.

@@ -1,4 +1,4 @@
-use phea_hydraulics::series::{CoilPair, CoilWire, coil_pair};
+use phea_hydraulics::series::{CoilPair, CoilWire, SeriesElement, coil_pair};
 
 use super::Rig;
 use crate::project::{DeclaredActuator, SpringCoil};
@@ -14,9 +14,9 @@ pub(crate) fn stall_force(rig: &Rig) -> f64 {
 /// The pair of coil springs that is the series spring and holds the stall force; `None` where none
 /// is declared.
 pub(crate) fn series_coil(declared: &DeclaredActuator, rig: &Rig) -> Option<CoilPair> {
-    let stiffness = rig.actuator.components().series.as_ref()?.stiffness;
-    let coil = declared.series.as_ref()?.coil?;
+    let SeriesElement::Spring(spring) = rig.actuator.components().series.as_ref()? else { return None };
+    let coil = declared.series.as_ref()?.spring()?.coil?;
     let SpringCoil { index, allowed_shear_stress, shear_modulus, density } = coil;
     let wire = CoilWire { index, allowed_shear_stress, shear_modulus, density };
-    Some(coil_pair(stiffness, stall_force(rig), &wire))
+    Some(coil_pair(spring.stiffness, stall_force(rig), &wire))
 }

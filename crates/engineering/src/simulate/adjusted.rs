@@ -1,7 +1,7 @@
 //! The work of accumulators that are adjusted in a run, and what their valves throttle.
 
 use phea_dynamics::simulation::{Stretch, gauss_points};
-use phea_hydraulics::machine::SIGNALS;
+use phea_hydraulics::machine::{SIGNALS, TRANSMISSION_SIGNALS};
 
 use super::bench::ControlledMachine;
 
@@ -30,8 +30,8 @@ pub(super) struct AdjustmentWatch {
     inputs: Vec<f64>,
 }
 
-/// Place of the power in [`SIGNALS`], the last.
-const POWER_PLACE: usize = SIGNALS.len() - 1;
+/// Place of the power in [`SIGNALS`], before those of a transmission.
+const POWER_PLACE: usize = SIGNALS.len() - 1 - TRANSMISSION_SIGNALS.len();
 const _: () = assert!(matches!(SIGNALS[POWER_PLACE].as_bytes(), b"adjustment_power_w"));
 
 impl AdjustmentWatch {

@@ -170,6 +170,7 @@ mod tests {
         SignalParts {
             external_force: true,
             series: true,
+            transmission: true,
             linkage: true,
             impedance: true,
             adjustment: true,

@@ -78,7 +78,7 @@ impl LimitWatch {
         let components = bench.rig.actuator.components();
         let (cylinder, supply) = (&components.cylinder, &components.supply);
         let voltage = components.valve.nominal_voltage;
-        let sensed = match components.series.map(|series| series.force_from) {
+        let sensed = match components.series.map(|series| series.force_from()) {
             Some(ForceFrom::Deflection) => SensedForce::Deflection(components.force_sensor.stiffness),
             Some(ForceFrom::Sensor) | None => SensedForce::Measured,
         };

@@ -2,6 +2,7 @@
 
 use phea_hydraulics::machine::{
     ADJUSTMENT_SIGNALS, GAS_PRESSURE_SIGNALS, HEAT_SIGNALS, LINKAGE_SIGNALS, SERIES_SIGNALS,
+    TRANSMISSION_SIGNALS,
 };
 
 use super::ControlledMachine;
@@ -14,6 +15,8 @@ pub struct SignalParts {
     pub external_force: bool,
     /// A series element.
     pub series: bool,
+    /// It is a transmission.
+    pub transmission: bool,
     /// A linkage.
     pub linkage: bool,
     /// A virtual impedance.
@@ -37,6 +40,7 @@ impl SignalParts {
         SignalParts {
             external_force: machine.has_external_force(),
             series: machine.has_series_element(),
+            transmission: machine.has_transmission(),
             linkage: machine.has_linkage(),
             impedance: !bench.control.impedance_states().is_empty(),
             adjustment: machine.has_adjustment(),
@@ -51,6 +55,9 @@ impl SignalParts {
         let side = |names: &[&str; 2]| names.iter().position(|of| *of == name);
         if SERIES_SIGNALS.contains(&name) {
             return self.series;
+        }
+        if TRANSMISSION_SIGNALS.contains(&name) {
+            return self.transmission;
         }
         if LINKAGE_SIGNALS.contains(&name) {
             return self.linkage;

@@ -422,7 +422,7 @@ pub(crate) fn asymmetric_circuit() -> Figure {
             cylinder: "63/36 mm, stroke 300 mm".into(),
             mass: "25 kg".into(),
             load_cell: Some(vec!["load cell".into(), "50 MN/m".into()]),
-            series: Some(SeriesSymbol { has_damper: true, words: "2.24 MN/m".into() }),
+            series: Some(SeriesSymbol { kind: SeriesKind::DampedSpring, words: "2.24 MN/m".into() }),
             environment: Environment::SpringMassDamper,
             environment_rows: vec!["5 kg, 2 MN/m, 100 N·s/m".into()],
             controller: Some(ControllerSymbol {

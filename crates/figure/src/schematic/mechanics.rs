@@ -5,7 +5,7 @@ use super::super::colour::Role;
 use super::super::scene::{Anchor, Baseline, Fill, Rectangle, Scene, Stroke, Text, point};
 use super::super::typeset;
 use super::pen::{MOTION, OUTLINE, ROW, arrow, block, ground, lines, rows, spring, word};
-use super::{Environment, Rods, SchematicInput, SeriesSymbol};
+use super::{Environment, Rods, SchematicInput, SeriesKind, SeriesSymbol};
 
 /// Height of the rod's axis.
 pub(super) const AXIS: f64 = 74.0;
@@ -86,21 +86,43 @@ pub(super) fn load(scene: &mut Scene, input: &SchematicInput) {
     environment(scene, input, from);
 }
 
-/// The spring between load cell and environment; where it ends.
+/// What lies between load cell and environment; where it ends.
 fn between(scene: &mut Scene, series: &SeriesSymbol, from: f64) -> f64 {
-    let (to, half) = (from + 34.0, if series.has_damper { 14.0 } else { 9.0 });
-    for x in [from, to] {
-        lines(scene, &[(x, AXIS - half), (x, AXIS + half)], Stroke::solid(Role::Axis, 3.0));
-    }
-    if series.has_damper {
-        spring(scene, from, to, AXIS - 8.0, 5.0, OUTLINE);
-        damper(scene, from, to, AXIS + 8.0);
-    } else {
-        spring(scene, from, to, AXIS, 7.0, OUTLINE);
+    let to = from + 34.0;
+    let ends = |scene: &mut Scene, half: f64| {
+        for x in [from, to] {
+            lines(scene, &[(x, AXIS - half), (x, AXIS + half)], Stroke::solid(Role::Axis, 3.0));
+        }
+    };
+    match series.kind {
+        SeriesKind::Spring => {
+            ends(scene, 9.0);
+            spring(scene, from, to, AXIS, 7.0, OUTLINE);
+        }
+        SeriesKind::DampedSpring => {
+            ends(scene, 14.0);
+            spring(scene, from, to, AXIS - 8.0, 5.0, OUTLINE);
+            damper(scene, from, to, AXIS + 8.0);
+        }
+        SeriesKind::Transmission => pistons(scene, from, to),
     }
     let words = [series.words.clone()];
     rows(scene, &words, (0.5 * (from + to) + 6.0, AXIS + 20.0), Anchor::Middle, 84.0, 1);
     to
+}
+
+/// Two cylinders with a line between them, and the rods that come out of them.
+fn pistons(scene: &mut Scene, from: f64, to: f64) {
+    let heavy = Stroke::solid(Role::Axis, 3.0);
+    for (rod, inner) in [(from, from + 14.0), (to, to - 14.0)] {
+        let [left, right] = [rod.min(inner), rod.max(inner)];
+        block(scene, left, AXIS - 10.0, right - left, 20.0);
+        let piston = 0.5 * (rod + inner);
+        lines(scene, &[(piston, AXIS - 10.0), (piston, AXIS + 10.0)], heavy);
+        lines(scene, &[(rod, AXIS), (piston, AXIS)], heavy);
+    }
+    let line = [(from + 14.0, AXIS), (to - 14.0, AXIS)];
+    lines(scene, &line, Stroke::solid(Role::Axis, 2.0));
 }
 
 fn environment(scene: &mut Scene, input: &SchematicInput, from: f64) {

@@ -17,10 +17,11 @@ use crate::plant::{LinearLoad, LinearPlant, LinearSeries, SeriesOutput};
 /// A spring is felt through: the load never meets more than the spring's own stiffness.
 /// ```
 /// use phea_hydraulics::impedance::{open_loop_impedance, port};
-/// use phea_hydraulics::plant::{LinearLoad, LinearPlant, LinearSeries, SeriesOutput};
+/// use phea_hydraulics::plant::{LinearElement, LinearLoad, LinearPlant, LinearSeries, LinearSpring, SeriesOutput};
 /// # let plain = LinearPlant::of_load_pressure(
 /// #     &phea_hydraulics::reference_rig::nominal_plant(), 0.0, LinearLoad::Prescribed);
-/// let series = LinearSeries { stiffness: 1e5, damping: None, mass: Some(2.0), output: SeriesOutput::Sensor };
+/// let spring = LinearSpring { stiffness: 1e5, damping: None, mass: Some(2.0) };
+/// let series = LinearSeries { element: LinearElement::Spring(spring), output: SeriesOutput::Sensor };
 /// let felt = open_loop_impedance(&port(&LinearPlant { series: Some(series), ..plain })?)?;
 /// let stiffness = felt.at_frequency(3e4).norm_sqr().sqrt() * 3e4;
 /// assert!((stiffness / 1e5 - 1.0).abs() < 1e-2);
@@ -64,11 +65,12 @@ fn sharing_poles(plant: &LinearPlant, model: LinearModel) -> Result<LinearModel,
 ///
 /// ```text
 /// measured force that reaches the load      [`closed_loop_impedance`]
-/// force sensor before a mass m              -s Z = (F_L/X_L - G m s^2 F_L/U_C)/(1 + G F_s/U_C)
+/// force sensor before a mass or oil         -s Z = (F_L/X_L - G beta F_L/U_C)/(1 + G F_s/U_C)
 /// ```
 ///
-/// The second is the general one: what the sensor measures and the load does not feel is the
-/// acceleration of the mass. A virtual impedance Z_v adds what the loop makes of the motion:
+/// The second is the general one: what the sensor measures and the load does not feel,
+/// [`LinearSeries::held_back`], is the acceleration of a mass, beta = m s^2, or of the oil of a
+/// transmission with what its line takes. A virtual impedance Z_v adds what the loop makes of the motion:
 ///
 /// ```text
 /// Z -> Z + (Z_v/s) G F_L/U_C/(1 + G F_s/U_C)                  about Z_v/s where the loop has much gain
@@ -85,7 +87,7 @@ pub fn closed_loop_port(
         return closed_loop_port(&alone, controller)?.parallel(&beside(&impedance, &alone, controller)?);
     }
     let shaken = plant.series.filter(|series| series.output == SeriesOutput::Sensor);
-    let Some((series, mass)) = shaken.and_then(|series| Some((series, series.mass?))) else {
+    let Some((series, held_back)) = shaken.and_then(|series| Some((series, series.held_back()?))) else {
         return closed_loop_impedance(&port(plant)?, controller);
     };
     let alone = LinearPlant { load: LinearLoad::Prescribed, ..*plant };
@@ -98,7 +100,7 @@ pub fn closed_loop_port(
     // the path of the motion has the filter of a velocity that is fed forward, that of the command has not
     let filter = of(fed_forward_filter(plant));
     let [over, under] = [controller.numerator(), controller.denominator()];
-    let accelerated = of(vec![-mass, 0.0, 0.0]).product(&of(felt.command.numerator));
+    let accelerated = of(held_back).scaled(-1.0).product(&of(felt.command.numerator));
     let measured = of(alone.coefficients().command.numerator);
     let moved = of(moved).product(&under).sum(&accelerated.product(&over).product(&filter));
     let closed = of(denominator).product(&under).sum(&measured.product(&over).product(&filter));
@@ -115,7 +117,8 @@ fn beside(
 ) -> Result<TransferFunction, LinearError> {
     let LinearModel { command: measured, .. } = port(plant)?;
     let followed = controller.series(&measured)?.feedback(&TransferFunction::gain_only(1.0))?;
-    let shaken = plant.series.filter(|series| series.output == SeriesOutput::Sensor && series.mass.is_some());
+    let shaken =
+        plant.series.filter(|series| series.output == SeriesOutput::Sensor && series.held_back().is_some());
     let followed = match shaken {
         None => followed,
         Some(series) => {

@@ -100,18 +100,10 @@ impl Conduit {
         if !problems.is_empty() {
             return Err(LineError::Impossible { problems });
         }
-        let (length, bore) = match *line {
-            Line::Hose { hose, length } => (length, hose.filled().bore),
-            Line::Pipe { pipe, length } => (length, pipe.bore),
-            Line::Volume { .. } => return Err(LineError::NoBore),
-        };
-        let conduit = Conduit {
-            length,
-            bore,
-            density: fluid.density,
-            kinematic_viscosity: fluid.kinematic_viscosity,
-            effective_bulk_modulus: line.filled().effective_modulus(fluid.modulus_at(pressure), member),
-        };
+        if matches!(line, Line::Volume { .. }) {
+            return Err(LineError::NoBore);
+        }
+        let conduit = Conduit::filled(line, fluid, pressure, member);
         conduit.check().map(|()| conduit)
     }
 
@@ -138,6 +130,28 @@ impl Conduit {
 }
 
 impl<S: Scalar> Conduit<S> {
+    /// The fluid column of a hose or pipe over any scalar, unchecked; of a plain volume length and bore
+    /// are not a number.
+    pub(crate) fn filled(
+        line: &Line<S>,
+        fluid: &Fluid<S>,
+        pressure: S,
+        member: StiffeningMember,
+    ) -> Conduit<S> {
+        let (length, bore) = match *line {
+            Line::Hose { hose, length } => (length, hose.filled().bore),
+            Line::Pipe { pipe, length } => (length, pipe.bore),
+            Line::Volume { .. } => (S::from(f64::NAN), S::from(f64::NAN)),
+        };
+        Conduit {
+            length,
+            bore,
+            density: fluid.density,
+            kinematic_viscosity: fluid.kinematic_viscosity,
+            effective_bulk_modulus: line.filled().effective_modulus(fluid.modulus_at(pressure), member),
+        }
+    }
+
     /// Area of the bore in m2.
     pub fn area(&self) -> S {
         S::from(FRAC_PI_4) * self.bore.squared()

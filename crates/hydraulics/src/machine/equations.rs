@@ -5,6 +5,7 @@ use super::{Accumulator, Machine, MachineState, Motion, PowerUnit};
 use crate::cross_port::CrossPort;
 use crate::friction::FrictionForce;
 use crate::operating_point::hydraulic_force;
+use crate::series::MovingSeries;
 use crate::servovalve::{EdgeFlows, Edges, Servovalve, Supply, edge_conductances, edge_flows, tare_flow};
 use crate::stroke::{ActuatorStroke, Telescope};
 
@@ -257,7 +258,7 @@ impl<S: Scalar> Machine<S> {
         let ground = ground_of(inputs);
         let load = self.load_of(&state, &ground);
         let end = self.end_of(&load);
-        let joint = self.joint(&state, &end.motion);
+        let joint = self.joint(&state, vector, &end.motion);
         let position = joint.position;
         let flows = self.flows(&state, self.ports(&state, vector));
         let forces = self.forces(&state, position);
@@ -296,6 +297,11 @@ impl<S: Scalar> Machine<S> {
             series: joint.series_rates,
         };
         self.layout.write(state_rates, rates);
+        if let Some(MovingSeries::Oil(column)) = &self.series {
+            let ends = [joint.sensed, end.motion.velocity];
+            let (columns, rates) = (self.layout.columns(vector), self.layout.columns_mut(rates));
+            self.write_column_rates(column, columns, ends, rates);
+        }
     }
 
     /// What enters both chambers and not their growing volumes, in m3/s, with these flows from the

@@ -4,8 +4,8 @@ mod volume;
 use phea_dynamics::scalar::Scalar;
 
 use super::equations::constant;
-use super::series::Joint;
 use super::{Machine, Motion};
+use crate::series::MovingSeries;
 use instant::Instant;
 
 /// Names of the accounts of oil, in the order of [`Ledger::oil`]. Accounts of parts that a machine
@@ -258,7 +258,7 @@ impl<S: Scalar> Machine<S> {
                 inflow: joint.sensed * (velocity - joint.behind_sensor),
                 lost: zero,
             },
-            self.series_account(joint, now.end.velocity),
+            self.series_account(now),
             self.end_stop_account(position, velocity, forces.end_stops),
             Account {
                 stored: held + self.weight_energy(load),
@@ -277,17 +277,30 @@ impl<S: Scalar> Machine<S> {
         now.joint.on_load * now.end.velocity
     }
 
-    /// Spring, damper, ends and mass between the sensor and a load that moves at this velocity.
-    fn series_account<T: Scalar + From<S>>(&self, joint: &Joint<T>, load_velocity: T) -> Account<T> {
-        let zero = T::from(0.0);
-        let Some(series) = &self.series else { return Account { stored: zero, inflow: zero, lost: zero } };
-        let series = series.convert(&mut constant::<S, T>);
-        let Motion { position: deflection, velocity: rate } = joint.spring;
-        let kinetic = T::from(0.5) * series.mass.unwrap_or(zero) * joint.behind_sensor.squared();
-        Account {
-            stored: series.stored_energy(deflection) + kinetic,
-            inflow: joint.sensed * joint.behind_sensor - joint.on_load * load_velocity,
-            lost: series.dissipated(deflection, rate),
+    /// Spring, damper, ends and mass, or the oil of a transmission, between the sensor and a load.
+    fn series_account<T: Scalar + From<S>>(&self, now: &Instant<T>) -> Account<T> {
+        let (zero, half, joint) = (T::from(0.0), T::from(0.5), &now.joint);
+        let inflow = joint.sensed * joint.behind_sensor - joint.on_load * now.end.velocity;
+        match &self.series {
+            None => Account { stored: zero, inflow: zero, lost: zero },
+            Some(MovingSeries::Spring(spring)) => {
+                let spring = spring.convert(&mut constant::<S, T>);
+                let Motion { position: deflection, velocity: rate } = joint.spring;
+                let kinetic = half * spring.mass.unwrap_or(zero) * joint.behind_sensor.squared();
+                let stored = spring.stored_energy(deflection) + kinetic;
+                Account { stored, inflow, lost: spring.dissipated(deflection, rate) }
+            }
+            Some(MovingSeries::Oil(column)) => {
+                let column = column.convert(&mut constant::<S, T>);
+                let forces = self.column_forces(&column, joint.sensed, &now.columns);
+                let springs = forces.iter().enumerate();
+                let elastic = springs.fold(zero, |sum, (plugs, force)| {
+                    sum + half * force.squared() / column.stiffness_behind(plugs)
+                });
+                let squares = now.columns.chunks_exact(2).fold(zero, |sum, plug| sum + plug[0].squared());
+                let stored = elastic + half * column.mass * squares;
+                Account { stored, inflow, lost: column.damping * squares }
+            }
         }
     }
 

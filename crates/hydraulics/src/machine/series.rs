@@ -3,14 +3,15 @@ use phea_dynamics::scalar::Scalar;
 use super::equations::constant;
 use super::{Machine, MachineState, Motion};
 use crate::force_sensor;
-use crate::series::{ForceFrom, SeriesElement};
+use crate::series::{ForceFrom, MovingSeries, OilColumn, SeriesSpring};
 
-/// Which states a series element has. The state `deflection` is that of the force sensor, except
+/// Which states a series element has in [`MachineState`]; those of a transmission follow the states of
+/// gas. The state `deflection` is that of the force sensor, except
 /// where the spring has neither damper nor mass: both carry the same force then, so that one of the
 /// deflections gives the other, and the state is that of the spring.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum SeriesStates {
-    /// There is no such element.
+    /// There is no spring.
     #[default]
     Absent,
     /// Neither damper nor mass: no additional states.
@@ -22,14 +23,28 @@ pub(super) enum SeriesStates {
 }
 
 impl SeriesStates {
-    pub(super) fn of<S>(element: Option<&SeriesElement<S>>) -> SeriesStates {
+    pub(super) fn of<S>(element: Option<&MovingSeries<S>>) -> SeriesStates {
         match element {
-            None => SeriesStates::Absent,
-            Some(SeriesElement { mass: Some(_), .. }) => SeriesStates::Mass,
-            Some(SeriesElement { damping: Some(_), .. }) => SeriesStates::Damped,
-            Some(_) => SeriesStates::Spring,
+            None | Some(MovingSeries::Oil(_)) => SeriesStates::Absent,
+            Some(MovingSeries::Spring(SeriesSpring { mass: Some(_), .. })) => SeriesStates::Mass,
+            Some(MovingSeries::Spring(SeriesSpring { damping: Some(_), .. })) => SeriesStates::Damped,
+            Some(MovingSeries::Spring(_)) => SeriesStates::Spring,
         }
     }
+}
+
+/// A joint that holds a force at rest, or in steady motion.
+pub(super) struct HeldJoint {
+    /// The state `deflection`.
+    pub(super) deflection: f64,
+    /// States of a spring.
+    pub(super) series: Motion,
+    /// States of a transmission.
+    pub(super) columns: Vec<f64>,
+    /// How far the piston is ahead of the load, in m.
+    pub(super) ahead: f64,
+    /// The force on the load in N.
+    pub(super) on_load: f64,
 }
 
 /// What connects the rod with the load, at one instant. Units: m, N, m/s.
@@ -45,7 +60,7 @@ pub(super) struct Joint<T> {
     pub(super) on_load: T,
     /// Behind the sensor: velocity v_m, that of the load without a series element.
     pub(super) behind_sensor: T,
-    /// Of the spring: d and d'; zero without one.
+    /// Of the spring, or of all oil of a transmission: d and d'; zero without one.
     pub(super) spring: Motion<T>,
     /// Rate of the state `deflection`.
     pub(super) deflection_rate: T,
@@ -54,11 +69,23 @@ pub(super) struct Joint<T> {
 }
 
 impl<S: Scalar> Machine<S> {
-    /// What connects the rod with its load.
+    /// What connects the rod with its load, at a state by name and as a vector.
     #[inline(always)]
-    pub(super) fn joint<T: Scalar + From<S>>(&self, state: &MachineState<T>, load: &Motion<T>) -> Joint<T> {
-        if let Some(series) = &self.series {
-            return self.joint_through(series, [state.deflection, state.velocity], &state.series, load);
+    pub(super) fn joint<T: Scalar + From<S>>(
+        &self,
+        state: &MachineState<T>,
+        vector: &[T],
+        load: &Motion<T>,
+    ) -> Joint<T> {
+        let own = [state.deflection, state.velocity];
+        match &self.series {
+            Some(MovingSeries::Spring(spring)) => {
+                return self.joint_through(spring, own, &state.series, load);
+            }
+            Some(MovingSeries::Oil(column)) => {
+                return self.joint_through_oil(column, own, self.layout.columns(vector), load);
+            }
+            None => {}
         }
         let sensed = force_sensor::force(constant(self.sensor_stiffness), state.deflection);
         let zero = T::from(0.0);
@@ -84,7 +111,7 @@ impl<S: Scalar> Machine<S> {
     #[inline(never)]
     fn joint_through<T: Scalar + From<S>>(
         &self,
-        series: &SeriesElement<S>,
+        series: &SeriesSpring<S>,
         [own_deflection, velocity]: [T; 2],
         element: &Motion<T>,
         load: &Motion<T>,
@@ -132,19 +159,114 @@ impl<S: Scalar> Machine<S> {
         }
     }
 
+    /// The joint through a transmission. The first spring carries the force of the sensor, so that
+    /// both yield together:
+    ///
+    /// ```text
+    /// k_1 d_1 = K_S d_S,    d_S' (1 + K_S/k_1) = v - u_1
+    /// ```
+    #[inline(never)]
+    fn joint_through_oil<T: Scalar + From<S>>(
+        &self,
+        column: &OilColumn<S>,
+        [own_deflection, velocity]: [T; 2],
+        columns: &[T],
+        load: &Motion<T>,
+    ) -> Joint<T> {
+        let column = column.convert(&mut constant::<S, T>);
+        let sensor: T = constant(self.sensor_stiffness);
+        let one = T::from(1.0);
+        let sensed = force_sensor::force(sensor, own_deflection);
+        let share = sensor / column.end_stiffness;
+        let (mut deflection, mut last) = (own_deflection * share, T::from(f64::NAN));
+        for (_, behind) in plugs(columns) {
+            deflection = deflection + behind;
+            last = behind;
+        }
+        let first = columns.first().copied().unwrap_or(T::from(f64::NAN));
+        let own_rate = (velocity - first) / (one + share);
+        let behind_sensor = velocity - own_rate;
+        Joint {
+            position: load.position + deflection + own_deflection,
+            sensor_deflection: own_deflection,
+            sensed,
+            on_load: column.end_stiffness * last,
+            behind_sensor,
+            spring: Motion { position: deflection, velocity: behind_sensor - load.velocity },
+            deflection_rate: own_rate,
+            series_rates: Motion { position: T::from(0.0), velocity: T::from(0.0) },
+        }
+    }
+
+    /// Rates of the states of a transmission, with the force of the sensor at one end and the velocity
+    /// of the load at the other.
+    ///
+    /// ```text
+    /// m du_j/dt = f_j - f_j+1 - b u_j          dd_j+1/dt = u_j - u_j+1,  v_L after the last plug
+    /// ```
+    #[inline(never)]
+    pub(super) fn write_column_rates<T: Scalar + From<S>>(
+        &self,
+        column: &OilColumn<S>,
+        columns: &[T],
+        [sensed, load_velocity]: [T; 2],
+        rates: &mut [T],
+    ) {
+        let column = column.convert(&mut constant::<S, T>);
+        let velocities = plugs(columns).map(|(velocity, _)| velocity);
+        let next = velocities.skip(1).chain([load_velocity]);
+        let mut before = sensed;
+        let states = plugs(columns).zip(next).enumerate();
+        for ((plug, ((velocity, deflection), next)), rates) in states.zip(rates.chunks_exact_mut(2)) {
+            let behind = column.stiffness_behind(plug + 1) * deflection;
+            let left = before - behind - column.damping * velocity;
+            rates.copy_from_slice(&[left / column.mass, velocity - next]);
+            before = behind;
+        }
+    }
+
+    /// The force in N through each spring of a transmission, from the rod on.
+    pub(super) fn column_forces<T: Scalar + From<S>>(
+        &self,
+        column: &OilColumn<T>,
+        sensed: T,
+        columns: &[T],
+    ) -> Vec<T> {
+        let behind = plugs(columns).enumerate();
+        let behind = behind.map(|(plug, (_, deflection))| column.stiffness_behind(plug + 1) * deflection);
+        [sensed].into_iter().chain(behind).collect()
+    }
+
+    /// The lowest pressure in the oil of a transmission, in Pa.
+    #[inline(never)]
+    pub(super) fn least_oil_pressure<T: Scalar + From<S>>(
+        &self,
+        column: &OilColumn<S>,
+        sensed: T,
+        columns: &[T],
+    ) -> T {
+        let column = column.convert(&mut constant::<S, T>);
+        let forces = self.column_forces(&column, sensed, columns);
+        column.pressure(forces.into_iter().fold(sensed, |least, force| least.minimum(force)))
+    }
+
     /// The force that is measured, in N: through the sensor, or by the deflection of the spring.
     #[inline(always)]
     pub(super) fn measured_force<T: Scalar + From<S>>(&self, state: &MachineState<T>) -> T {
         match &self.series {
-            None => force_sensor::force(constant(self.sensor_stiffness), state.deflection),
-            Some(series) => self.measured_through(series, state.deflection, state.series.position),
+            None | Some(MovingSeries::Oil(_)) => {
+                force_sensor::force(constant(self.sensor_stiffness), state.deflection)
+            }
+            Some(MovingSeries::Spring(spring)) => {
+                self.measured_through(spring, state.deflection, state.series.position)
+            }
         }
     }
 
     #[inline(never)]
     fn measured_through<T: Scalar + From<S>>(
         &self,
-        series: &SeriesElement<S>,
+        series: &SeriesSpring<S>,
         own_deflection: T,
         of_element: T,
     ) -> T {
@@ -162,7 +284,7 @@ impl<S: Scalar> Machine<S> {
     /// the mass between them.
     pub(super) fn typical_joint(&self, force: S, swing: impl Fn(S) -> S) -> (S, Motion<S>) {
         let sensor = force / self.sensor_stiffness;
-        let Some(series) = &self.series else {
+        let Some(MovingSeries::Spring(series)) = &self.series else {
             return (sensor, Motion { position: sensor, velocity: sensor });
         };
         let spring = force / series.stiffness;
@@ -172,16 +294,51 @@ impl<S: Scalar> Machine<S> {
     }
 }
 
+/// Velocity of each plug of oil and deflection of the spring behind it.
+fn plugs<T: Copy>(columns: &[T]) -> impl Iterator<Item = (T, T)> + '_ {
+    columns.chunks_exact(2).map(|pair| (pair[0], pair[1]))
+}
+
+impl<S: Scalar> Machine<S> {
+    /// Typical magnitudes of the states of a transmission at a force in N, in their order.
+    pub(super) fn typical_columns(&self, force: S) -> Vec<S> {
+        let Some(MovingSeries::Oil(column)) = &self.series else { return Vec::new() };
+        let swing = force / (column.end_stiffness * column.mass).sqrt();
+        let of = |plug: usize| [swing, force / column.stiffness_behind(plug + 1)];
+        (0..column.segments).flat_map(of).collect()
+    }
+}
+
 impl Machine {
-    /// The states of what connects rod and load where it holds a force in N at rest, in motion at a
-    /// velocity in m/s; and how far the piston is ahead of the load, in m.
-    pub(super) fn held_joint(&self, force: f64, velocity: f64) -> (f64, Motion, f64) {
+    /// The states of what connects rod and load where the sensor holds a force in N at rest, or in
+    /// motion at a velocity in m/s.
+    pub(super) fn held_joint(&self, force: f64, velocity: f64) -> HeldJoint {
         let sensor = force / self.sensor_stiffness;
-        let Some(series) = &self.series else {
-            return (sensor, Motion { position: 0.0, velocity: 0.0 }, sensor);
+        let none = Motion { position: 0.0, velocity: 0.0 };
+        let joint = |deflection, series, ahead| HeldJoint {
+            deflection,
+            series,
+            columns: Vec::new(),
+            ahead,
+            on_load: force,
         };
-        let spring = series.deflection_under(force);
-        let own = if self.layout.series() == SeriesStates::Spring { spring } else { sensor };
-        (own, Motion { position: spring, velocity }, sensor + spring)
+        match &self.series {
+            None => joint(sensor, none, sensor),
+            Some(MovingSeries::Spring(series)) => {
+                let spring = series.deflection_under(force);
+                let own = if self.layout.series() == SeriesStates::Spring { spring } else { sensor };
+                joint(own, Motion { position: spring, velocity }, sensor + spring)
+            }
+            Some(MovingSeries::Oil(column)) => {
+                let forces = column.steady_forces(force, velocity);
+                let deflections: Vec<f64> =
+                    forces.iter().enumerate().map(|(j, force)| force / column.stiffness_behind(j)).collect();
+                HeldJoint {
+                    columns: deflections.iter().skip(1).flat_map(|one| [velocity, *one]).collect(),
+                    on_load: forces.last().copied().unwrap_or(f64::NAN),
+                    ..joint(sensor, none, sensor + deflections.iter().sum::<f64>())
+                }
+            }
+        }
     }
 }

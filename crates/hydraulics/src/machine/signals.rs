@@ -2,9 +2,10 @@ use phea_dynamics::scalar::Scalar;
 
 use super::equations::constant;
 use super::{Machine, Motion};
+use crate::series::MovingSeries;
 
 /// Names of the signals of a machine, with units, in the order of [`Machine::outputs`].
-pub const SIGNALS: [&str; 31] = [
+pub const SIGNALS: [&str; 33] = [
     "force_n",
     "spool_v",
     "pressure_a_pa",
@@ -36,11 +37,17 @@ pub const SIGNALS: [&str; 31] = [
     "setting_a_ratio",
     "setting_b_ratio",
     "adjustment_power_w",
+    "transmission_pressure_rod_pa",
+    "transmission_pressure_load_pa",
 ];
 
 /// Those of [`SIGNALS`] that only a machine with a series element has: without one the force on the
 /// load is `force_n`, and nothing deflects beside the sensor.
 pub const SERIES_SIGNALS: [&str; 2] = ["series_deflection_m", "load_force_n"];
+
+/// Those of [`SIGNALS`] that only a machine with a transmission has: the pressures of its oil at either
+/// piston.
+pub const TRANSMISSION_SIGNALS: [&str; 2] = ["transmission_pressure_rod_pa", "transmission_pressure_load_pa"];
 
 /// Those of [`SIGNALS`] that only a machine with a linkage has: its load turns.
 pub const LINKAGE_SIGNALS: [&str; 3] = ["joint_angle_rad", "joint_velocity_rad_per_s", "joint_torque_n_m"];
@@ -66,8 +73,9 @@ pub const ADJUSTMENT_SIGNALS: [&str; 3] = ["setting_a_ratio", "setting_b_ratio",
 /// `accumulator_empty`: the chamber's pressure, or that behind the neck where there is one, less the
 /// precharge of its accumulator in Pa. `accumulator_overpressure`: what is left to the pressure limit of
 /// that gas in Pa, which moves with a precharge that is adjusted. `series_end`: the way left to the
-/// nearer end of a series spring's travel in m.
-pub const INDICATORS: [&str; 13] = [
+/// nearer end of a series spring's travel in m. `cavitation_transmission`: the lowest pressure in the
+/// oil of a transmission, less vapour pressure in Pa.
+pub const INDICATORS: [&str; 14] = [
     "cavitation_a",
     "cavitation_b",
     "end_stop_a",
@@ -81,6 +89,7 @@ pub const INDICATORS: [&str; 13] = [
     "accumulator_overpressure_a",
     "accumulator_overpressure_b",
     "series_end",
+    "cavitation_transmission",
 ];
 
 impl<S: Scalar> Machine<S> {
@@ -92,7 +101,8 @@ impl<S: Scalar> Machine<S> {
     /// with, `hydraulic_force_n` what the chambers push the piston with; between them lie its
     /// friction, end stops and acceleration. With a series element `force_n` is the force that its
     /// [`ForceFrom`](crate::series::ForceFrom) measures, F_e that through the sensor,
-    /// `load_force_n` that on the load, and `series_deflection_m` how far the spring is compressed.
+    /// `load_force_n` that on the load, and `series_deflection_m` how far the spring, or the oil of a
+    /// transmission, is compressed.
     /// Behind a linkage `load_position_m` is that of the rod's end, and `joint_torque_n_m` what the
     /// rod turns the joint with. `gas_pressure` is that of the gas behind a neck, gauge, and
     /// `gas_temperature_ratio` the absolute temperature of gas that exchanges heat over that of its
@@ -120,7 +130,7 @@ impl<S: Scalar> Machine<S> {
         let state = self.layout.read(vector);
         let load = self.load_of(&state, &ground_of(inputs));
         let end = self.end_of(&load);
-        let joint = self.joint(&state, &end.motion);
+        let joint = self.joint(&state, vector, &end.motion);
         let position = joint.position;
         let ports = self.ports(&state, vector);
         let flows = self.flows(&state, ports);
@@ -139,6 +149,7 @@ impl<S: Scalar> Machine<S> {
             if self.linkage.is_some() { (load, end.on_load(joint.on_load)) } else { (still, zero) };
         let [gas_pressures, ratios] =
             if self.layout.has_gas() { self.told_of_gas(vector) } else { [[zero; 2]; 2] };
+        let oil_pressures = self.oil_pressures([joint.sensed, joint.on_load]);
         [
             self.measured_force(&state),
             state.spool.spool,
@@ -171,7 +182,20 @@ impl<S: Scalar> Machine<S> {
             settings[0],
             settings[1],
             power,
+            oil_pressures[0],
+            oil_pressures[1],
         ]
+    }
+
+    /// Pressures of the oil of a transmission in Pa where it carries these forces in N; zero without one.
+    fn oil_pressures<T: Scalar + From<S>>(&self, forces: [T; 2]) -> [T; 2] {
+        match &self.series {
+            Some(MovingSeries::Oil(column)) => {
+                let column = column.convert(&mut constant::<S, T>);
+                forces.map(|force| column.pressure(force))
+            }
+            Some(MovingSeries::Spring(_)) | None => [T::from(0.0); 2],
+        }
     }
 
     /// The [`INDICATORS`] at a state and inputs.
@@ -180,7 +204,7 @@ impl<S: Scalar> Machine<S> {
         let gas = self.layout.read_gas(vector);
         let ground = ground_of(inputs);
         let load = self.load_of(&state, &ground);
-        let joint = self.joint(&state, &self.end_of(&load).motion);
+        let joint = self.joint(&state, vector, &self.end_of(&load).motion);
         let position = joint.position;
         let vapour: T = constant(self.vapour_pressure);
         let [to_end_a, to_end_b] = match self.cylinder.stroke.length() {
@@ -209,9 +233,18 @@ impl<S: Scalar> Machine<S> {
             charged(precharge_b, behind_b),
             below(limit_a, behind_a),
             below(limit_b, behind_b),
-            self.series.map_or(T::from(1.0), |series| {
-                series.convert(&mut constant::<S, T>).clearance(joint.spring.position)
-            }),
+            match &self.series {
+                Some(MovingSeries::Spring(spring)) => {
+                    spring.convert(&mut constant::<S, T>).clearance(joint.spring.position)
+                }
+                Some(MovingSeries::Oil(_)) | None => T::from(1.0),
+            },
+            match &self.series {
+                Some(MovingSeries::Oil(column)) => {
+                    self.least_oil_pressure(column, joint.sensed, self.layout.columns(vector)) - vapour
+                }
+                Some(MovingSeries::Spring(_)) | None => T::from(1.0),
+            },
         ]
     }
 }

@@ -2,6 +2,7 @@ use phea_dynamics::simulation::Plant;
 
 use super::balance::Kept;
 use super::gas::GasStates;
+use super::series::HeldJoint;
 use super::{LoadModel, Machine, MachineError, MachineState};
 use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 use crate::friction::MovingFriction;
@@ -55,6 +56,12 @@ impl InitialCondition {
     }
 }
 
+/// A state whose load is held, with the states of the oil of a transmission.
+struct HeldState {
+    state: MachineState,
+    columns: Vec<f64>,
+}
+
 /// Largest residual of an equilibrium, in scales per second.
 const REST_TOLERANCE: f64 = 1e-4;
 /// Force in N that is rounding: a load without spring or wall holds it.
@@ -91,8 +98,8 @@ impl Machine {
         state.supply_pressure = self.supply.pressure;
         state.velocity = start.velocity;
         state.bristle = self.settled_bristle(start.velocity);
-        let (state, ground) = self.held(&state, start.position, start.force)?;
-        Ok(self.begin(&state, start.position, ground))
+        let (held, ground) = self.held(&state, start.position, start.force)?;
+        Ok(self.begin(&held, start.position, ground))
     }
 
     /// The machine at rest, or in steady motion with its load, at an operating point of its
@@ -154,8 +161,8 @@ impl Machine {
         let balanced = self.balanced(&state, start.position, kept);
         let forces = self.forces(&balanced, start.position);
         let force = forces.hydraulic + forces.end_stops - forces.friction.force;
-        let (state, ground) = self.held(&balanced, start.position, force)?;
-        let beginning = self.begin(&state, start.position, ground);
+        let (held, ground) = self.held(&balanced, start.position, force)?;
+        let beginning = self.begin(&held, start.position, ground);
         let residual = self.residual(&beginning);
         if residual <= REST_TOLERANCE { Ok(beginning) } else { Err(MachineError::NoRest { residual }) }
     }
@@ -167,18 +174,25 @@ impl Machine {
         state: &MachineState,
         position: f64,
         force: f64,
-    ) -> Result<(MachineState, f64), MachineError> {
-        let (deflection, series, ahead) = self.held_joint(force, state.velocity);
-        let held = self.held_load(position - ahead, force, state.velocity);
+    ) -> Result<(HeldState, f64), MachineError> {
+        let HeldJoint { deflection, series, columns, ahead, on_load } =
+            self.held_joint(force, state.velocity);
+        let held = self.held_load(position - ahead, on_load, state.velocity);
         let (load, ground) = held.ok_or(MachineError::ImpossibleStart { quantity: "force", value: force })?;
-        Ok((MachineState { deflection, load, series, ..*state }, ground))
+        Ok((HeldState { state: MachineState { deflection, load, series, ..*state }, columns }, ground))
     }
 
-    fn begin(&self, state: &MachineState, position: f64, ground: f64) -> InitialCondition {
+    fn begin(
+        &self,
+        HeldState { state, columns }: &HeldState,
+        position: f64,
+        ground: f64,
+    ) -> InitialCondition {
         let mut vector = vec![0.0; self.layout.count()];
         self.layout.write(*state, &mut vector);
         let pressures = [state.pressure_a, state.pressure_b];
         self.layout.write_gas(GasStates { pressures, ..GasStates::zero() }, &mut vector);
+        self.layout.columns_mut(&mut vector).copy_from_slice(columns);
         let flows = self.steady_flows(state, self.areas_at(position));
         let mut waves = Vec::new();
         let places = self.layout.lines_mut(&mut vector).into_iter().zip(&self.lines);

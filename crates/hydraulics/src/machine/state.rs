@@ -4,6 +4,7 @@ use phea_dynamics::simulation::Sliding;
 use super::gas::GasStates;
 use super::series::SeriesStates;
 use super::{Machine, Motion};
+use crate::series::MovingSeries;
 use crate::servovalve::SpoolState;
 
 /// States of a machine, or their rates, by name. States that a machine lacks are zero and have no
@@ -11,8 +12,8 @@ use crate::servovalve::SpoolState;
 ///
 /// The order of the vector is that of the fields: spool voltage and rate, p_A, p_B, deflection,
 /// velocity, and then, if present, those of bristles, load, capacity between the chambers, supply,
-/// spool friction, magnetic lag, series element. The states of gas ([`Machine::state_names`] names
-/// them too) and those of lines follow; they are read by what is made of them alone, so that machines
+/// spool friction, magnetic lag, series spring. The states of gas ([`Machine::state_names`] names
+/// them too), of the oil of a transmission and those of lines follow; they are read by what is made of them alone, so that machines
 /// without them do not carry zeros along.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MachineState<T = f64> {
@@ -37,7 +38,7 @@ pub struct MachineState<T = f64> {
     pub cross_port_pressure: T,
     /// Supply pressure p_S in Pa, where a pump is limited.
     pub supply_pressure: T,
-    /// A series element with damper or mass: deflection of its spring in m, and velocity of the mass
+    /// A series spring with damper or mass: deflection of its spring in m, and velocity of the mass
     /// between sensor and spring in m/s.
     pub series: Motion<T>,
 }
@@ -67,6 +68,8 @@ pub(super) struct Layout {
     external_force: bool,
     /// States of the gas, which follow those of [`MachineState`].
     gas: usize,
+    /// States of the oil of a transmission, which follow those of the gas.
+    columns: usize,
     /// States of both lines, which follow all others, A first.
     lines: [usize; 2],
     /// Waves that arrive from both lines, the last inputs, A first.
@@ -115,6 +118,10 @@ impl Layout {
             heat: machine.thermal_time_constants.map(|time| time.is_some()),
             capacity: machine.cross_port.is_some_and(|port| port.capacity.is_some()),
             series: SeriesStates::of(machine.series.as_ref()),
+            columns: match &machine.series {
+                Some(MovingSeries::Oil(column)) => 2 * column.segments,
+                Some(MovingSeries::Spring(_)) | None => 0,
+            },
             external_force: machine.external_force,
             lines: machine.lines.map(|line| line.states()),
             waves: machine.lines.map(|line| line.delays().len()),
@@ -144,7 +151,21 @@ impl Layout {
     /// Number of states before those of the lines.
     #[inline(always)]
     fn before_lines(&self) -> usize {
-        self.own + self.gas
+        self.own + self.gas + self.columns
+    }
+
+    /// States of the oil of a transmission: of each segment velocity and deflection.
+    #[inline(always)]
+    pub(super) fn columns<'a, T>(&self, vector: &'a [T]) -> &'a [T] {
+        let first = self.own + self.gas;
+        vector.get(first..first + self.columns).unwrap_or_default()
+    }
+
+    /// The same, to be written.
+    #[inline(always)]
+    pub(super) fn columns_mut<'a, T>(&self, vector: &'a mut [T]) -> &'a mut [T] {
+        let first = self.own + self.gas;
+        vector.get_mut(first..first + self.columns).unwrap_or_default()
     }
 
     /// Where friction acts: on the velocity, the sixth of the states that all machines have, and on
@@ -395,6 +416,10 @@ impl Machine {
         }
         self.layout.visit(&mut own, |name| names.push((*name).to_string()));
         self.layout.visit_gas(&mut GAS_NAMES.clone(), |name| names.push((*name).to_string()));
+        let plug = |number: usize| {
+            [format!("transmission_velocity_{number}_m_per_s"), format!("transmission_deflection_{number}_m")]
+        };
+        names.extend((1..=self.layout.columns / 2).flat_map(plug));
         for (line, count) in ["line_a", "line_b"].into_iter().zip(self.layout.lines) {
             names.extend((1..=count).map(|number| format!("{line}_{number}")));
         }
@@ -426,71 +451,3 @@ const GAS_NAMES: GasStates<&str> = GasStates {
     pressures: ["gas_pressure_a_pa", "gas_pressure_b_pa"],
     warmings: ["gas_warming_a", "gas_warming_b"],
 };
-
-impl<S: Scalar> Machine<S> {
-    /// A tenth of the force that the supply can produce, in N: the typical magnitudes of the states
-    /// follow from it.
-    pub(super) fn typical_force(&self) -> S {
-        self.typical_pressure() * (self.cylinder.area_a + self.cylinder.area_b) / S::from(2.0)
-    }
-
-    fn typical_pressure(&self) -> S {
-        (self.supply.pressure - self.supply.tank_pressure) / S::from(10.0)
-    }
-
-    /// A tenth of the valve's nominal voltage, in V.
-    pub(super) fn typical_command(&self) -> S {
-        self.valve.nominal_voltage / S::from(10.0)
-    }
-
-    /// Typical magnitudes of the states, by which errors are scaled, from the typical force and
-    /// command.
-    pub(super) fn typical_state(&self) -> MachineState<S> {
-        let (command, pressure, force) =
-            (self.typical_command(), self.typical_pressure(), self.typical_force());
-        let swing = |mass: S| force / (self.sensor_stiffness * mass).sqrt();
-        let velocity = swing(self.cylinder.moving_mass);
-        let (own, series) = self.typical_joint(force, swing);
-        let deflection = force / self.sensor_stiffness;
-        let memory = command / S::from(100.0);
-        MachineState {
-            spool: SpoolState {
-                spool: command,
-                spool_rate: command * self.valve.natural_frequency,
-                spool_friction: memory,
-                magnetic_lag: memory,
-            },
-            pressure_a: pressure,
-            pressure_b: pressure,
-            deflection: own,
-            velocity,
-            bristle: self.friction.bristle_stiffness().map_or(deflection, |stiffness| force / stiffness),
-            load: self.typical_load(deflection, velocity, swing),
-            supply_pressure: pressure,
-            cross_port_pressure: pressure,
-            series,
-        }
-    }
-
-    /// The same in the order of the vector, the states of gas and lines included.
-    pub(super) fn typical_vector(&self) -> Vec<S> {
-        let typical = self.typical_state();
-        let flow = typical.velocity * self.cylinder.area_a;
-        let mut vector = vec![S::from(0.0); self.layout.count()];
-        self.layout.write(typical, &mut vector);
-        let gas = GasStates {
-            neck_flows: [flow; 2],
-            pressures: [typical.pressure_a; 2],
-            // thirty degrees
-            warmings: [S::from(0.1); 2],
-        };
-        self.layout.write_gas(gas, &mut vector);
-        for (places, line) in self.layout.lines_mut(&mut vector).into_iter().zip(&self.lines) {
-            let (pressures, flows) = (line.scales(1.0, 0.0), line.scales(0.0, 1.0));
-            for (place, (of_pressure, of_flow)) in places.iter_mut().zip(pressures.into_iter().zip(flows)) {
-                *place = S::from(of_pressure) * typical.pressure_a + S::from(of_flow) * flow;
-            }
-        }
-        vector
-    }
-}

@@ -6,7 +6,8 @@ use phea_dynamics::controller::{RateFilter, VirtualImpedance};
 
 use super::supply::{Coupled, Over};
 use super::{
-    Chamber, ChamberPair, ChamberPolynomials, LinearLoad, LinearPlant, Paths, VelocitySensor, YieldingSupply,
+    Chamber, ChamberPair, ChamberPolynomials, LinearLoad, LinearPlant, LinearSeries, Paths, VelocitySensor,
+    YieldingSupply,
 };
 use crate::accumulator::GasBranch;
 use crate::cross_port::DynamicFeedback;
@@ -307,10 +308,7 @@ impl PlantInMotion {
     /// friction and load where none of their coefficients is negative.
     pub fn is_passive(&self) -> bool {
         let load = self.plant.load.terms().map_or([0.0; 3], |load| load.own());
-        let series =
-            self.plant.series.iter().flat_map(|series| {
-                [Some(series.stiffness), series.damping, series.mass].into_iter().flatten()
-            });
+        let series = self.plant.series.iter().flat_map(LinearSeries::numbers);
         let own = [
             self.plant.moving_mass,
             self.plant.viscous_friction,

@@ -1,4 +1,4 @@
-//! The spring between force sensor and load in the linear plant.
+//! The spring or transmission between force sensor and load in the linear plant.
 
 use phea_dynamics::analytic::Analytic;
 use phea_dynamics::scalar::Scalar;
@@ -6,31 +6,59 @@ use phea_dynamics::uncertain_plant::{PlantCoefficients, RateNumerators, Rational
 
 use super::supply::{Admittance, Over};
 use super::{ChamberPolynomials, LinearPlant, Paths};
+use crate::actuator::Components;
+use crate::line::StiffeningMember;
 use crate::linear::polynomial::{product, scaled, shifted, sum};
-use crate::series::{ForceFrom, SeriesElement};
+use crate::series::{ForceFrom, MovingSeries, OilColumn, SeriesSpring};
 
-/// A series element for small motions about an operating point. Units: N/m, N s/m, kg.
+/// A series element for small motions about an operating point.
+///
+/// Whatever it is, force and displacement at the sensor are those at the load by a matrix, whose
+/// determinant is one, so that it is reciprocal:
 ///
 /// ```text
-/// T = c s + k,   mu = m s^2,   K = K_S,   E = mu + T + K                  spring, mass and sensor
-/// Delta = Q E + D K (mu + T),   B = (mu + K) Q + D K mu                   Q and D of the plant without it
-/// V Delta F_s = K (mu + T) w^2 N_u U_sp - K T V Q X_L                     through the sensor
-/// V Delta F_L = K T w^2 N_u U_sp - T V B X_L                              on the load
-/// F_d = k/T F_L                                                           by the deflection of the spring
+/// F_s = (alpha F_L + beta t X_L)/t,    X_m = (gamma F_L + delta t X_L)/t
+/// spring        alpha = t + m s^2/k,   beta = m s^2,   gamma = 1/k,   delta = 1,   t = 1 + c s/k
+/// oil           t = 1,   ((alpha, beta), (gamma, delta)) = K_1 M K_2 M ... K_N+1
+///               K = ((1, 0), (1/k, 1)) of a spring,   M = ((1, m s^2 + b s), (0, 1)) of a plug
 /// ```
 ///
-/// [`LinearPlant::coefficients`] closes them with the load. Everything is divided by k, so that the
-/// equations of a rigid spring are those without one.
+/// With Q and D of the plant without it, between rod and sensor:
+///
+/// ```text
+/// Delta = Q (alpha + K gamma) + K D alpha,     B = (Q + K D) beta/K + Q delta       K = K_S
+/// V Delta F_s = K alpha w^2 N_u U_sp - K t V Q X_L                        through the sensor
+/// V Delta F_L = K t w^2 N_u U_sp - K t V B X_L                            on the load
+/// F_d = F_L/t                                                             by the deflection of the spring
+/// ```
+///
+/// [`LinearPlant::coefficients`] closes them with the load.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinearSeries<S = f64> {
-    /// Stiffness k of the spring there.
+    /// What it is.
+    pub element: LinearElement<S>,
+    /// Which force is the output of the plant.
+    pub output: SeriesOutput,
+}
+
+/// A series element for small motions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LinearElement<S = f64> {
+    /// A spring.
+    Spring(LinearSpring<S>),
+    /// The oil of a transmission, which is linear.
+    Oil(OilColumn<S>),
+}
+
+/// A series spring for small motions. Units: N/m, N s/m, kg.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinearSpring<S = f64> {
+    /// Stiffness k of the spring at its deflection.
     pub stiffness: S,
     /// Damping c beside it; `None` for no damper.
     pub damping: Option<S>,
     /// Mass m between sensor and spring; `None` for no mass.
     pub mass: Option<S>,
-    /// Which force is the output of the plant.
-    pub output: SeriesOutput,
 }
 
 /// The force that a plant with a series element gives out.
@@ -40,30 +68,68 @@ pub enum SeriesOutput {
     Sensor,
     /// k times the deflection of the spring.
     Deflection,
-    /// On the load: through spring and damper.
+    /// On the load.
     OnLoad,
 }
 
 impl<S: Scalar> LinearSeries<S> {
-    /// The element about the deflection at which it holds a force in N.
-    pub fn new(element: &SeriesElement<S>, force: S) -> LinearSeries<S> {
+    /// A spring about the deflection at which it holds a force in N.
+    pub fn of_spring(spring: &SeriesSpring<S>, force: S) -> LinearSeries<S> {
         LinearSeries {
-            stiffness: element.stiffness_under(force),
-            damping: element.damping,
-            mass: element.mass,
-            output: match element.force_from {
+            element: LinearElement::Spring(LinearSpring {
+                stiffness: spring.stiffness_under(force),
+                damping: spring.damping,
+                mass: spring.mass,
+            }),
+            output: match spring.force_from {
                 ForceFrom::Sensor => SeriesOutput::Sensor,
                 ForceFrom::Deflection => SeriesOutput::Deflection,
             },
         }
     }
+
+    /// The series element of a rig where it holds a force in N; `None` where there is none.
+    pub fn of_components(components: &Components<S>, force: S) -> Option<LinearSeries<S>> {
+        match components.series.as_ref()?.in_motion(&components.fluid, StiffeningMember::Nominal) {
+            MovingSeries::Spring(spring) => Some(LinearSeries::of_spring(&spring, force)),
+            MovingSeries::Oil(column) => {
+                Some(LinearSeries { element: LinearElement::Oil(column), output: SeriesOutput::Sensor })
+            }
+        }
+    }
+
+    /// Stiffness in N/m for slow motions.
+    pub fn stiffness(&self) -> S {
+        match &self.element {
+            LinearElement::Spring(spring) => spring.stiffness,
+            LinearElement::Oil(column) => column.stiffness(),
+        }
+    }
+
+    /// Whether it is a spring alone, which makes the force sensor softer and nothing else.
+    pub fn is_spring_alone(&self) -> bool {
+        let LinearElement::Spring(spring) = &self.element else { return false };
+        spring.damping.is_none() && spring.mass.is_none()
+    }
+
+    /// beta: the force through the sensor that does not reach the load, for a unit of the motion of the
+    /// load; `None` where both forces are the same.
+    pub fn held_back(&self) -> Option<Vec<S>> {
+        match &self.element {
+            LinearElement::Spring(spring) => spring.mass.map(|mass| vec![mass, S::from(0.0), S::from(0.0)]),
+            LinearElement::Oil(column) => column.matrix(&plug_polynomials(column)).lag,
+        }
+    }
 }
 
-/// T/k, mu and mu/k and one, as polynomials or as their values.
-struct Terms<T> {
-    one: T,
+/// The entries of the matrix: t, alpha, beta, K_S gamma and delta, as polynomials or as their values;
+/// `None` for a beta of zero and a delta of one.
+struct SeriesMatrix<T> {
     tied: T,
-    inertia: Option<[T; 2]>,
+    force: T,
+    lag: Option<T>,
+    yields: T,
+    moved: Option<T>,
 }
 
 /// What a series element is between. `driven` is K w^2 N_u, `spool` V, `fed` what the velocity of
@@ -81,19 +147,21 @@ struct Between<'a, S, T> {
 }
 
 impl<S: Scalar> LinearSeries<S> {
-    /// All paths through the element, divided by k; `load` is its own polynomial and that of its
-    /// ground.
-    fn paths<T: Admittance<S> + Clone>(&self, terms: &Terms<T>, between: &Between<'_, S, T>) -> Paths<T> {
+    /// All paths through the element; `load` is its own polynomial and that of its ground.
+    fn paths<T: Admittance<S> + Clone>(
+        &self,
+        matrix: &SeriesMatrix<T>,
+        between: &Between<'_, S, T>,
+    ) -> Paths<T> {
         let Between { chambers: ChamberPolynomials { own, .. }, moved, driven, spool, sensor, .. } = *between;
-        let Terms { one, tied, inertia } = terms;
+        let SeriesMatrix { tied, force: free, lag, yields, moved: carried } = matrix;
         let minus = |value: T| value.by(S::from(-1.0));
-        let free = inertia.as_ref().map_or(tied.clone(), |[_, scaled]| tied.plus(scaled));
-        let all = free.plus(&one.by(sensor / self.stiffness));
-        let delta = moved.times(&all).plus(&own.times(&free).by(sensor));
+        let delta = moved.times(&free.plus(yields)).plus(&own.times(free).by(sensor));
         let held = spool.times(&delta);
-        let pushed = inertia.as_ref().map_or((*moved).clone(), |[inertia, _]| {
-            let inert = moved.times(inertia).by(S::from(1.0) / sensor);
-            moved.plus(&inert).plus(&own.times(inertia))
+        let carried = carried.as_ref().map_or((*moved).clone(), |carried| moved.times(carried));
+        let pushed = lag.as_ref().map_or(carried.clone(), |lag| {
+            let inert = moved.times(lag).by(S::from(1.0) / sensor);
+            carried.plus(&inert).plus(&own.times(lag))
         });
         let fed_as = |factor: Option<&T>| match (between.fed, factor) {
             (Some(fed), Some(factor)) => Some(fed.times(factor)),
@@ -104,7 +172,7 @@ impl<S: Scalar> LinearSeries<S> {
         let by_motion = minus(spool.times(&pushed).by(sensor));
         let ground = match self.output {
             SeriesOutput::Sensor => {
-                with(minus(spool.times(moved).times(tied).by(sensor)), fed_as(Some(&free)))
+                with(minus(spool.times(moved).times(tied).by(sensor)), fed_as(Some(free)))
             }
             SeriesOutput::Deflection => with(by_motion, fed_as(None)),
             SeriesOutput::OnLoad => with(by_motion, fed_as(None)).times(tied),
@@ -116,7 +184,7 @@ impl<S: Scalar> LinearSeries<S> {
         let through = shared(driven.times(tied));
         let Some([load, ground_of_load]) = &between.load else {
             let command = match self.output {
-                SeriesOutput::Sensor => driven.times(&free),
+                SeriesOutput::Sensor => driven.times(free),
                 SeriesOutput::Deflection => (*driven).clone(),
                 SeriesOutput::OnLoad => through.clone(),
             };
@@ -125,9 +193,8 @@ impl<S: Scalar> LinearSeries<S> {
         let command = match self.output {
             SeriesOutput::Sensor => {
                 let resisted = free.times(load);
-                let resisted = inertia
-                    .as_ref()
-                    .map_or(resisted.clone(), |[mu, _]| resisted.plus(&shared(tied.times(mu))));
+                let resisted =
+                    lag.as_ref().map_or(resisted.clone(), |lag| resisted.plus(&shared(tied.times(lag))));
                 driven.times(&resisted)
             }
             SeriesOutput::Deflection => driven.times(load),
@@ -144,13 +211,56 @@ impl<S: Scalar> LinearSeries<S> {
         }
     }
 
-    fn polynomials(&self) -> Terms<Vec<S>> {
+    /// The matrix as polynomials, for a sensor of this stiffness in N/m.
+    fn polynomials(&self, sensor: S) -> SeriesMatrix<Vec<S>> {
         let (one, zero) = (S::from(1.0), S::from(0.0));
-        Terms {
-            one: vec![one],
-            tied: self.damping.map_or(vec![one], |damping| vec![damping / self.stiffness, one]),
-            inertia: self.mass.map(|mass| [vec![mass, zero, zero], vec![mass / self.stiffness, zero, zero]]),
+        match &self.element {
+            LinearElement::Spring(spring) => {
+                let tied = spring.damping.map_or(vec![one], |damping| vec![damping / spring.stiffness, one]);
+                let scaled = spring.mass.map(|mass| vec![mass / spring.stiffness, zero, zero]);
+                SeriesMatrix {
+                    force: scaled.map_or(tied.clone(), |scaled| tied.plus(&scaled)),
+                    tied,
+                    lag: spring.mass.map(|mass| vec![mass, zero, zero]),
+                    yields: vec![sensor / spring.stiffness],
+                    moved: None,
+                }
+            }
+            LinearElement::Oil(column) => column.matrix(&plug_polynomials(column)).yielding(sensor),
         }
+    }
+}
+
+/// One and m s^2 + b s of an oil column.
+fn plug_polynomials<S: Scalar>(column: &OilColumn<S>) -> [Vec<S>; 2] {
+    [vec![S::from(1.0)], vec![column.mass, column.damping, S::from(0.0)]]
+}
+
+impl<S: Scalar> OilColumn<S> {
+    /// Its matrix, from one and m s^2 + b s, as polynomials or as their values; with gamma in
+    /// place of K_S gamma.
+    fn matrix<T: Admittance<S> + Clone>(&self, [one, plug]: &[T; 2]) -> SeriesMatrix<T> {
+        let spring = |plugs: usize| S::from(1.0) / self.stiffness_behind(plugs);
+        // (alpha, beta) and (gamma, delta) of the first spring, then of each plug and the spring behind it
+        let (mut force, mut lag) = (one.clone(), one.by(S::from(0.0)));
+        let (mut yields, mut moved) = (one.by(spring(0)), one.clone());
+        for plugs in 1..=self.segments {
+            lag = lag.plus(&force.times(plug));
+            moved = moved.plus(&yields.times(plug));
+            force = force.plus(&lag.by(spring(plugs)));
+            yields = yields.plus(&moved.by(spring(plugs)));
+        }
+        SeriesMatrix { tied: one.clone(), force, lag: Some(lag), yields, moved: Some(moved) }
+    }
+}
+
+impl<T> SeriesMatrix<T> {
+    /// The same for a sensor of this stiffness in N/m.
+    fn yielding<S>(self, sensor: S) -> SeriesMatrix<T>
+    where
+        T: Admittance<S>,
+    {
+        SeriesMatrix { yields: self.yields.by(sensor), ..self }
     }
 }
 
@@ -164,6 +274,15 @@ pub(super) struct BeyondSensor {
     pub(super) output: f64,
 }
 
+/// At most the force that passes a mass over the one before it, and the velocity of the mass over that
+/// force; of w m, the impedance of the spring behind it, and the mobility behind that. `None` at too low
+/// a frequency.
+fn beyond_mass(inertia: f64, tied: f64, speed: f64) -> Option<(f64, f64)> {
+    let left = 1.0 - tied * speed;
+    let yielding = 1.0 / (inertia - tied / left);
+    (left > 0.0 && yielding > 0.0).then_some((tied / left * yielding, yielding))
+}
+
 impl LinearSeries {
     /// Bounds at a frequency w in rad/s; of the load, displacement and velocity per newton. `None`
     /// where this frequency is too low for them.
@@ -172,27 +291,79 @@ impl LinearSeries {
     /// v_m = Y F_s,   Y = 1/(m s + Z),   1/Z = s/T + Y_L                  F_L = Z Y F_s
     /// without m   Y = s/T + Y_L: spring and damper yield with the sensor, Im (s/T) >= 0, and F_L = F_s
     /// with m      |Z| <= |T/s|/(1 - |T/s| |Y_L|) = Z_0,   |Y| <= 1/(w m - Z_0)
+    /// oil         the same from plug to plug, |m s + b| >= w m; its first spring yields with the sensor
     /// ```
     pub(super) fn beyond_sensor(&self, w: f64, [yielding, speed]: [f64; 2]) -> Option<BeyondSensor> {
-        let Some(mass) = self.mass else { return Some(BeyondSensor { yielding, passed: 1.0, output: 1.0 }) };
-        let damping = self.damping.unwrap_or(0.0);
-        let tied = {
-            let spring = self.stiffness / w;
-            (damping * damping + spring * spring).sqrt()
+        let (passed, yielding) = match &self.element {
+            LinearElement::Spring(LinearSpring { mass: None, .. }) => {
+                return Some(BeyondSensor { yielding, passed: 1.0, output: 1.0 });
+            }
+            LinearElement::Spring(LinearSpring { stiffness, damping, mass: Some(mass) }) => {
+                let (damping, spring) = (damping.unwrap_or(0.0), stiffness / w);
+                beyond_mass(w * mass, (damping * damping + spring * spring).sqrt(), speed)?
+            }
+            LinearElement::Oil(column) => {
+                (1..=column.segments).rev().try_fold((1.0, speed), |(passed, speed), plugs| {
+                    let (more, speed) =
+                        beyond_mass(w * column.mass, column.stiffness_behind(plugs) / w, speed)?;
+                    Some((passed * more, speed))
+                })?
+            }
         };
-        let left = 1.0 - tied * speed;
-        let yielding = 1.0 / (w * mass - tied / left);
-        let passed = tied / left * yielding;
         let output = if self.output == SeriesOutput::Sensor { 1.0 } else { passed };
-        (left > 0.0 && yielding > 0.0).then_some(BeyondSensor { yielding, passed, output })
+        Some(BeyondSensor { yielding, passed, output })
     }
 
-    fn values<A: Analytic>(&self, s: A) -> Terms<Over<A>> {
+    /// Above this frequency in rad/s no mode of it lies, on a sensor of this stiffness in N/m; `None`
+    /// for an element that has none.
+    pub(super) fn fastest_rad_per_s(&self, sensor: f64) -> Option<f64> {
+        match &self.element {
+            LinearElement::Spring(spring) => Some(((sensor + spring.stiffness) / spring.mass?).sqrt()),
+            LinearElement::Oil(column) => Some(column.fastest_rad_per_s()),
+        }
+    }
+
+    /// Below this frequency in rad/s the resistance of a transmission takes less than its springs;
+    /// `None` without one.
+    pub(super) fn slowest_rad_per_s(&self) -> Option<f64> {
+        let LinearElement::Oil(column) = &self.element else { return None };
+        let resisted = column.damping * column.segments as f64;
+        (resisted > 0.0).then(|| column.stiffness() / resisted)
+    }
+
+    /// Every number of it: it is passive where none is negative.
+    pub(super) fn numbers(&self) -> Vec<f64> {
+        match &self.element {
+            LinearElement::Spring(spring) => {
+                [Some(spring.stiffness), spring.damping, spring.mass].into_iter().flatten().collect()
+            }
+            LinearElement::Oil(column) => {
+                vec![column.end_stiffness, column.inner_stiffness, column.mass, column.damping]
+            }
+        }
+    }
+
+    /// The matrix at s, for a sensor of this stiffness in N/m.
+    fn values<A: Analytic>(&self, s: A, sensor: f64) -> SeriesMatrix<Over<A>> {
         let one = A::from(1.0);
-        let tied = self.damping.map_or(one, |damping| s.scaled(damping / self.stiffness) + one);
-        let inertia =
-            self.mass.map(|mass| [mass, mass / self.stiffness].map(|mass| Over((s * s).scaled(mass))));
-        Terms { one: Over(one), tied: Over(tied), inertia }
+        match &self.element {
+            LinearElement::Spring(spring) => {
+                let tied = spring.damping.map_or(one, |damping| s.scaled(damping / spring.stiffness) + one);
+                let inert = |mass: f64| (s * s).scaled(mass);
+                let free = spring.mass.map_or(tied, |mass| tied + inert(mass / spring.stiffness));
+                SeriesMatrix {
+                    tied: Over(tied),
+                    force: Over(free),
+                    lag: spring.mass.map(|mass| Over(inert(mass))),
+                    yields: Over(A::from(sensor / spring.stiffness)),
+                    moved: None,
+                }
+            }
+            LinearElement::Oil(column) => {
+                let plug = (s * s).scaled(column.mass) + s.scaled(column.damping);
+                column.matrix(&[Over(one), Over(plug)]).yielding(sensor)
+            }
+        }
     }
 
     /// The paths of a plant without polynomials at s; `driven` includes the spool.
@@ -219,7 +390,8 @@ impl LinearSeries {
             load,
             share: terms.and_then(|terms| terms.share),
         };
-        let Paths { command, ground, sensed, fed, driven, held } = self.paths(&self.values(s), &between);
+        let Paths { command, ground, sensed, fed, driven, held } =
+            self.paths(&self.values(s, plant.sensor_stiffness), &between);
         Paths {
             command: command.0,
             ground: ground.0,
@@ -244,11 +416,11 @@ impl<S: Scalar> LinearPlant<S> {
         // the filter of the velocity that is fed forward, where one is: d_v times every path but that
         let filtered =
             |path: &Vec<S>| if fed.is_some() { shows.filtered(path.clone()) } else { path.clone() };
-        let terms = series.polynomials();
+        let matrix = series.polynomials(self.sensor_stiffness);
         let paths = |[driven, spool]: [&Vec<S>; 2], load: Option<[Vec<S>; 2]>| {
             let (moved, fed, sensor) = (&moved, fed.as_ref(), self.sensor_stiffness);
             let share = self.load.terms().and_then(|terms| terms.share);
-            series.paths(&terms, &Between { chambers, moved, driven, spool, fed, sensor, load, share })
+            series.paths(&matrix, &Between { chambers, moved, driven, spool, fed, sensor, load, share })
         };
         let behind_filter = [filtered(&driven), filtered(&spool)];
         let behind_filter = [&behind_filter[0], &behind_filter[1]];

@@ -1,7 +1,7 @@
 //! Prices: all of one project are in one currency.
 
 use super::Check;
-use crate::{Component, DeclaredActuator, LineCost};
+use crate::{Component, DeclaredActuator, DeclaredLine, DeclaredSeries, LineCost};
 use phea_quantity::Price;
 
 pub(super) fn prices(actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
@@ -26,18 +26,31 @@ fn stated(actuator: &DeclaredActuator, check: &Check<'_, '_>) -> Vec<(String, Pr
             let own = format!("line.{side}.{key}");
             if check.declared(&own) { own } else { format!("line.{key}") }
         };
-        let of = |cost: &LineCost, table: &str| {
-            [("price", cost.ends.price), ("price_per_length", cost.price_per_length)]
-                .map(|(key, price)| (at(&format!("{table}{key}")), price))
-        };
-        match &line.component {
-            Component::Hose { properties, .. } => found.extend(of(&properties.cost, "")),
-            Component::Pipe { pipe, .. } => found.extend(of(&pipe.cost, "pipe.")),
-            Component::Volume(_) => {}
-        }
+        found.extend(of_line(line, &at));
         found.extend(line.accumulator.iter().map(|gas| (at("accumulator.price"), gas.cost.price)));
     }
     found.extend(actuator.cross_port.iter().map(|port| ("cross_port.price".to_string(), port.cost.price)));
-    found.extend(actuator.series.iter().map(|spring| ("series.price".to_string(), spring.cost.price)));
+    match &actuator.series {
+        Some(DeclaredSeries::Spring(spring)) => found.push(("series.price".to_string(), spring.cost.price)),
+        Some(DeclaredSeries::Transmission(transmission)) => {
+            found.push(("series.price".to_string(), transmission.cylinders.price));
+            found.extend(of_line(&transmission.line, &|key| format!("series.line.{key}")));
+        }
+        None => {}
+    }
     found.into_iter().filter_map(|(path, price)| Some((path, price?))).collect()
+}
+
+/// The prices of a hose or pipe, whose keys are at these paths.
+fn of_line(line: &DeclaredLine, at: &dyn Fn(&str) -> String) -> Vec<(String, Option<Price>)> {
+    let of = |cost: &LineCost, table: &str| {
+        [("price", cost.ends.price), ("price_per_length", cost.price_per_length)]
+            .map(|(key, price)| (at(&format!("{table}{key}")), price))
+            .to_vec()
+    };
+    match &line.component {
+        Component::Hose { properties, .. } => of(&properties.cost, ""),
+        Component::Pipe { pipe, .. } => of(&pipe.cost, "pipe."),
+        Component::Volume(_) => Vec::new(),
+    }
 }

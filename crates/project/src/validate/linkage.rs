@@ -134,7 +134,7 @@ fn refusal_of_table(error: &LinkageError) -> (&'static str, String, String) {
 fn not_yet(project: &Project, actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
     let impedance = project.controller.as_ref().is_some_and(|controller| controller.impedance.is_some());
     let absent = [
-        (actuator.series.is_some(), "series", "a spring between force sensor and load"),
+        (actuator.series.is_some(), "series", "a spring or transmission between force sensor and load"),
         (impedance, "controller.impedance", "a virtual impedance"),
         (project.bench.friction.is_some(), "bench.friction", "a test of friction"),
     ];

@@ -10,7 +10,7 @@ pub(super) fn motor(project: &Project, actuator: &DeclaredActuator, check: &mut 
         check.error_with_help("motor.end_stops", message, "state the `stroke`, or remove [motor.end_stops]");
     }
     let absent = [
-        (actuator.series.is_some(), "series", "a spring between force sensor and load"),
+        (actuator.series.is_some(), "series", "a spring or transmission between force sensor and load"),
         (project.sizing.is_some(), "sizing", "the sizing of a hose"),
         (project.bench.friction.is_some(), "bench.friction", "a test of friction"),
     ];

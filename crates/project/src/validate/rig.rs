@@ -246,19 +246,22 @@ fn expansion(line: &DeclaredLine, supply: f64, path: &str, check: &mut Check<'_,
     check.warning(&format!("{path}.{key}"), message);
 }
 
-fn line(line: &DeclaredLine, path: &str, check: &mut Check<'_, '_>) {
+pub(super) fn line(line: &DeclaredLine, path: &str, check: &mut Check<'_, '_>) {
     let written = |names: &[&str]| names.iter().any(|name| check.declared(&format!("{path}.{name}")));
     let ways = [written(&Component::HOSE), written(&["pipe"]), written(&Component::VOLUME)];
     match ways {
         [false, false, false] => {
-            let message = format!("missing `hose`, `pipe` or `volume` in [{path}]");
+            let or_volume =
+                if path.starts_with("line") { "`hose`, `pipe` or `volume`" } else { "`hose` or `pipe`" };
+            let message = format!("missing {or_volume} in [{path}]");
             return check.missing(path, "pipe", message);
         }
         [true, false, false] | [false, true, false] | [false, false, true] => {}
         [_, is_pipe, _] => {
             let at = if is_pipe { "pipe" } else { "volume" };
-            return check
-                .error(&format!("{path}.{at}"), "a line is a hose, a pipe or a volume: only one of them");
+            let ways =
+                if path.starts_with("line") { "a hose, a pipe or a volume" } else { "a hose or a pipe" };
+            return check.error(&format!("{path}.{at}"), format!("a line is {ways}: only one of them"));
         }
     }
     // a key that one side does not use may be for the other

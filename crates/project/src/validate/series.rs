@@ -2,11 +2,72 @@
 //! the cylinder.
 
 use super::Check;
-use crate::{DeclaredActuator, DeclaredSeries, Project, Uncertain};
-use phea_quantity::{self as quantity, FORCE, LENGTH, STIFFNESS};
+use super::rig;
+use crate::{DeclaredActuator, DeclaredSeries, DeclaredSpring, DeclaredTransmission, Project, Uncertain};
+use phea_quantity::{self as quantity, AREA, FORCE, LENGTH, PRESSURE, STIFFNESS};
 
 pub(super) fn series(project: &Project, actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
-    let Some(series) = &actuator.series else { return };
+    match &actuator.series {
+        None => {}
+        Some(DeclaredSeries::Spring(declared)) => spring(project, actuator, declared, check),
+        Some(DeclaredSeries::Transmission(declared)) => transmission(actuator, declared, check),
+    }
+}
+
+/// Pa, between absolute and gauge pressures.
+const ATMOSPHERE: f64 = 101_325.0;
+
+/// The line between two pistons, and whether its oil stands the force of the cylinder.
+fn transmission(actuator: &DeclaredActuator, declared: &DeclaredTransmission, check: &mut Check<'_, '_>) {
+    if check.declared("series.line") {
+        rig::line(&declared.line, "series.line", check);
+    }
+    let rests = ["series.piston_area", "series.filling_pressure", "supply.pressure"];
+    if rests.iter().any(|path| check.refused(path) || !check.declared(path)) || declared.piston_area <= 0.0 {
+        return;
+    }
+    let (stall, area) = (stall_force(actuator), declared.piston_area);
+    let [force, filling] =
+        [quantity::display(stall, &FORCE, 4), quantity::display(declared.filling_pressure, &PRESSURE, 4)];
+    let holds = area * (declared.filling_pressure + ATMOSPHERE);
+    if holds < stall {
+        let message = format!(
+            "filled with {filling} the oil tears off at a pull of {}, and the cylinder pulls with up to {force} (stall force)",
+            quantity::display(holds, &FORCE, 4)
+        );
+        let help = format!(
+            "for loads that are pulled, fill it with {} or more, or take a `piston_area` of at least {}",
+            quantity::display(round_up(stall / area - ATMOSPHERE), &PRESSURE, 4),
+            quantity::display(round_up(stall / (declared.filling_pressure + ATMOSPHERE)), &AREA, 4)
+        );
+        check.warning_with_help("series.filling_pressure", message, help);
+    }
+    let most = declared.filling_pressure + stall / area;
+    let working = declared.line.hose().and_then(|hose| hose.working_pressure);
+    if let Some(working) = working.filter(|working| *working < most) {
+        let message = format!(
+            "at the stall force of {force} the oil of the transmission has {}, and the hose's `working_pressure` is {}",
+            quantity::display(most, &PRESSURE, 4),
+            quantity::display(working, &PRESSURE, 4)
+        );
+        let key = if declared.line.hose_name().is_some() { "hose" } else { "working_pressure" };
+        check.warning(&format!("series.line.{key}"), message);
+    }
+}
+
+/// The greatest force in N that the supply gives the piston, in either direction.
+fn stall_force(actuator: &DeclaredActuator) -> f64 {
+    let [area_a, area_b] = actuator.cylinder.effective_areas_m2();
+    let [supply, tank] = [actuator.supply.pressure, actuator.supply.tank_pressure];
+    (area_a * supply - area_b * tank).max(area_b * supply - area_a * tank)
+}
+
+fn spring(
+    project: &Project,
+    actuator: &DeclaredActuator,
+    series: &DeclaredSpring,
+    check: &mut Check<'_, '_>,
+) {
     if series.travel.is_none() {
         for (key, needs) in
             [("progression", series.progression > 0.0), ("stop_stiffness", series.stop_stiffness.is_some())]
@@ -33,7 +94,7 @@ pub(super) fn series(project: &Project, actuator: &DeclaredActuator, check: &mut
 }
 
 /// Without a damper and a mass nothing but the force decides how fast the spring moves.
-fn damped_stops(series: &DeclaredSeries, check: &mut Check<'_, '_>) {
+fn damped_stops(series: &DeclaredSpring, check: &mut Check<'_, '_>) {
     if series.stop_damping == 0.0 {
         return;
     }
@@ -51,14 +112,12 @@ fn damped_stops(series: &DeclaredSeries, check: &mut Check<'_, '_>) {
 /// The force at which the cylinder stalls must lie within the travel.
 fn bottoms_out(
     actuator: &DeclaredActuator,
-    series: &DeclaredSeries,
+    series: &DeclaredSpring,
     (place, stiffness): (&str, f64),
     check: &mut Check<'_, '_>,
 ) {
     let Some(travel) = series.travel else { return };
-    let [area_a, area_b] = actuator.cylinder.effective_areas_m2();
-    let [supply, tank] = [actuator.supply.pressure, actuator.supply.tank_pressure];
-    let stall = (area_a * supply - area_b * tank).max(area_b * supply - area_a * tank);
+    let stall = stall_force(actuator);
     let holds = stiffness * travel * (1.0 + series.progression);
     if ["series.stiffness", "series.travel", "supply.pressure"].iter().any(|path| check.refused(path))
         || !(stall > holds && holds > 0.0)

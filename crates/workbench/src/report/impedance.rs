@@ -15,7 +15,7 @@ use crate::figure::{
 use crate::linearize::{
     Linearization, PortView, asked_sentence, asked_table, frequency_grid, passivity_sentence,
 };
-use crate::project::Project;
+use crate::project::{DeclaredSeries, Project};
 use crate::quantity::DisplayUnit;
 
 pub(super) fn chapter(
@@ -29,7 +29,10 @@ pub(super) fn chapter(
     out.equations(vec!["Z = -F_e/(s X_L)".to_string()]);
     let met = match project.actuator.as_ref().and_then(|actuator| actuator.series.as_ref()) {
         None => "the sensor's stiffness alone",
-        Some(_) => {
+        Some(DeclaredSeries::Transmission(_)) => {
+            "sensor, oil of the transmission and its inertia alone; the stiffnesses of sensor and oil in series stand for K_S in the straight lines"
+        }
+        Some(DeclaredSeries::Spring(_)) => {
             "sensor and series spring alone, whose stiffnesses in series stand for K_S in the straight lines"
         }
     };

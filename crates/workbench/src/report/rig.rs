@@ -5,15 +5,15 @@ use phea_hydraulics::series::ForceFrom;
 use super::chapter::Chapter;
 use crate::document::{Document, Table};
 use crate::figure::{
-    ControllerSymbol, Environment, Figure, LineKind, LineSymbol, Rods, SchematicInput, SeriesSymbol,
-    SupplyKind, Words, schematic,
+    ControllerSymbol, Environment, Figure, LineKind, LineSymbol, Rods, SchematicInput, SeriesKind,
+    SeriesSymbol, SupplyKind, Words, schematic,
 };
 use crate::linearize::{linkage_places, linkage_table};
 use crate::project::{
-    self, AdjustmentKind, Component, CylinderTriangle, DeclaredAdjustment, GasAtOne, LineVolume, LinkageKind,
-    Load, Project, RatedFlow, SupplyModel,
+    self, AdjustmentKind, Component, CylinderTriangle, DeclaredAdjustment, DeclaredSeries, GasAtOne,
+    LineVolume, LinkageKind, Load, Project, RatedFlow, SupplyModel,
 };
-use crate::quantity::{self, Dimension, FLOW, LENGTH, MASS, PRESSURE, STIFFNESS, VOLTAGE, VOLUME};
+use crate::quantity::{self, AREA, Dimension, FLOW, LENGTH, MASS, PRESSURE, STIFFNESS, VOLTAGE, VOLUME};
 use crate::rig::{CrossPortAtPoint, Rig, cross_port_at_point};
 use phea_hydraulics::cross_port::Restrictor;
 
@@ -58,10 +58,7 @@ fn circuit(project: &Project, actuator: &project::DeclaredActuator) -> Figure {
         cylinder: moving_words(actuator),
         mass: moving(moving_mass(actuator), &MASS),
         load_cell: Some(vec![moving(actuator.force_sensor.stiffness, &STIFFNESS)]),
-        series: actuator.series.as_ref().map(|series| SeriesSymbol {
-            has_damper: series.damping > 0.0,
-            words: shown(series.stiffness, &STIFFNESS),
-        }),
+        series: actuator.series.as_ref().map(series_symbol),
         environment: match actuator.load {
             Load::Prescribed => Environment::PrescribedMotion,
             Load::Wall { .. } => Environment::Wall,
@@ -219,7 +216,10 @@ pub(super) fn load_words(actuator: &project::DeclaredActuator) -> String {
     };
     match &actuator.series {
         None => load,
-        Some(series) => format!("{load}; series spring {}", series_words(series)),
+        Some(series) => {
+            let [name, words] = series_words(series);
+            format!("{load}; {name} {words}")
+        }
     }
 }
 
@@ -244,8 +244,44 @@ fn linkage_words(linkage: &project::DeclaredLinkage) -> String {
     }
 }
 
-/// The spring between force sensor and load in a few words.
-fn series_words(series: &project::DeclaredSeries) -> String {
+fn series_symbol(series: &DeclaredSeries) -> SeriesSymbol {
+    match series {
+        DeclaredSeries::Spring(spring) => SeriesSymbol {
+            kind: if spring.damping > 0.0 { SeriesKind::DampedSpring } else { SeriesKind::Spring },
+            words: shown(spring.stiffness, &STIFFNESS),
+        },
+        DeclaredSeries::Transmission(transmission) => SeriesSymbol {
+            kind: SeriesKind::Transmission,
+            words: format!("oil, {}", shown(transmission.piston_area, &AREA)),
+        },
+    }
+}
+
+/// What lies between force sensor and load: its name, and what it is in a few words.
+fn series_words(series: &DeclaredSeries) -> [String; 2] {
+    match series {
+        DeclaredSeries::Spring(spring) => ["series spring".to_string(), spring_words(spring)],
+        DeclaredSeries::Transmission(transmission) => {
+            ["hydraulic transmission".to_string(), transmission_words(transmission)]
+        }
+    }
+}
+
+fn transmission_words(transmission: &project::DeclaredTransmission) -> String {
+    let name = transmission.line.hose_name().map(str::to_string);
+    let pistons = format!("pistons of {}", shown(transmission.piston_area, &AREA));
+    let filled = format!("filled with {}", shown(transmission.filling_pressure, &PRESSURE));
+    let own = Some(transmission.end_volume).filter(|volume| *volume > 0.0);
+    let own = own.map(|volume| format!("{} at either end", shown(volume, &VOLUME)));
+    let segments = match transmission.segments {
+        1 => "1 segment".to_string(),
+        count => format!("{count} segments"),
+    };
+    let line = name.into_iter().chain(line_alone(&transmission.line).rows).chain([segments]);
+    [pistons, filled].into_iter().chain(own).chain(line).collect::<Vec<String>>().join(", ")
+}
+
+fn spring_words(series: &project::DeclaredSpring) -> String {
     let not_zero =
         |value: f64, dimension: &'static Dimension| Some(shown(value, dimension)).filter(|_| value > 0.0);
     let measured = (series.force_from == ForceFrom::Deflection).then(|| "measures the force".to_string());
@@ -321,7 +357,8 @@ fn facts(actuator: &project::DeclaredActuator, rig: &Rig) -> Table {
         ("moving mass", moving(moving_mass(actuator), &MASS)),
         ("force sensor", moving(actuator.force_sensor.stiffness, &STIFFNESS)),
     ];
-    rows.extend(actuator.series.as_ref().map(|series| ("series spring", series_words(series))));
+    let series = actuator.series.as_ref().map(series_words);
+    rows.extend(series.as_ref().map(|[name, words]| (name.as_str(), words.clone())));
     rows.extend(actuator.linkage.as_ref().map(|linkage| ("linkage", linkage_words(linkage))));
     if components.line_a == components.line_b {
         rows.push(("each line", line(&actuator.line.a).rows.join(", ")));

@@ -305,6 +305,10 @@ fn occurrence_words(occurrence: &Occurrence) -> String {
             "the series spring reaches the end of its travel",
             "the series spring is within its travel again",
         ),
+        "cavitation_transmission" => (
+            "the oil of the transmission cavitates",
+            "the pressure in the transmission is above vapour pressure again",
+        ),
         "supply_lost" => ("the supply falls below the tank", "the supply is above the tank again"),
         _ => ("the command reaches its limit", "the command leaves its limit"),
     };

@@ -19,6 +19,8 @@ pub(super) struct Instant<T> {
     pub(super) end: Motion<T>,
     pub(super) ground: Motion<T>,
     pub(super) joint: Joint<T>,
+    /// States of the oil of a transmission.
+    pub(super) columns: Vec<T>,
     /// Of the force from outside on the load, in W.
     pub(super) external_power: T,
     pub(super) flows: Flows<T>,
@@ -188,7 +190,7 @@ impl<S: Scalar> Machine<S> {
         let ([port_a, port_b], [from_a, from_b]) = (ports, flows.from_valve);
         let ([line_a, line_b], [vector_a, vector_b]) = (&self.lines, self.layout.lines(vector));
         let end = self.end_of(&load).motion;
-        let joint = self.joint(&state, &end);
+        let joint = self.joint(&state, vector, &end);
         let (position, velocity) = (joint.position, state.velocity);
         let sides = self.sides(&state, position);
         let lines = [
@@ -207,6 +209,7 @@ impl<S: Scalar> Machine<S> {
             end,
             ground,
             joint,
+            columns: self.layout.columns(vector).to_vec(),
             external_power: external.map_or(T::from(0.0), |force| force * load.velocity),
             turned: match self.cylinder.stroke {
                 ActuatorStroke::Limited(_) | ActuatorStroke::Telescopic(_) => T::from(0.0),

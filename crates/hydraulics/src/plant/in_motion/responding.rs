@@ -9,7 +9,7 @@ use phea_dynamics::uncertain_plant::PlantCoefficients;
 use phea_dynamics::uncertain_plant::responding::RespondingPlant;
 
 use super::super::series::BeyondSensor;
-use super::super::{ChamberDynamics, LinearLoad, LinearPlant, Paths, YieldingSupply};
+use super::super::{ChamberDynamics, LinearLoad, LinearPlant, LinearSeries, Paths, YieldingSupply};
 use super::{ChamberSide, PlantInMotion};
 
 /// How far below the slowest and above the fastest thing of a plant its response is its own.
@@ -174,9 +174,9 @@ impl RespondingPlant for PlantInMotion {
         });
         let fastest = modes.chain(necks).fold(ABOVE_QUARTER_WAVE * quarter_wave, f64::max).max(passed);
         let fastest = fastest.max(ABOVE_SPOOL * self.plant.valve_natural_frequency);
-        let shaken = self.plant.series.and_then(|series| {
-            Some(((self.plant.sensor_stiffness + series.stiffness) / series.mass?).sqrt())
-        });
+        let series = self.plant.series.as_ref();
+        let shaken = series.and_then(|series| series.fastest_rad_per_s(self.plant.sensor_stiffness));
+        let resisted = series.and_then(LinearSeries::slowest_rad_per_s);
         let fastest = fastest.max(ABOVE_SERIES_MASS * shaken.unwrap_or(0.0));
         let slowest = if slowest > 0.0 { slowest } else { self.plant.valve_natural_frequency };
         let filter = self.plant.velocity_sensor.filter.frequency_rad_per_s();
@@ -188,7 +188,7 @@ impl RespondingPlant for PlantInMotion {
             Some([1.0 / gas.compliance, own + 1.0 / gas.compliance].map(|per| per * gas.valve.unwrap_or(0.0)))
         });
         let valves = valves.flatten().filter(|corner| *corner > 0.0);
-        let lags = || filter.into_iter().chain(lag).chain(heat.clone()).chain(valves.clone());
+        let lags = || filter.into_iter().chain(lag).chain(heat.clone()).chain(valves.clone()).chain(resisted);
         let slowest = lags().fold(slowest, f64::min);
         let fastest = lags().fold(fastest, |fastest, lag| fastest.max(ABOVE_SPOOL * lag));
         [BELOW * slowest, fastest]

@@ -1,0 +1,256 @@
+use phea_dynamics::scalar::Scalar;
+
+use super::ForceFrom;
+use crate::contact::Contact;
+use crate::parameter::{ParameterError, Problems};
+
+/// A spring with damper and mass between force sensor and load. Units: N/m, N s/m, kg.
+///
+/// ```text
+/// F_f(d) = k d (1 + b (d/t)^2)                        spring; b is zero for a linear one
+/// F_L = F_f(d) + c d' + F_ends(d, d')                 on the load, F_ends of Contact beyond the travel t
+/// m dv_m/dt = K_S (x - x_m) - F_L,   d = x_m - x_L    without a mass both forces are the same
+/// ```
+///
+/// Source: Pratt and Williamson (1995), "Series elastic actuators", IROS, for the arrangement.
+///
+/// # Example
+/// Its force grows faster than its deflection, by the progression at the end of the travel.
+/// ```
+/// use phea_hydraulics::series::{ForceFrom, SeriesSpring, SeriesTravel};
+/// let travel = SeriesTravel { travel: 0.01, progression: Some(0.5), ends: None };
+/// let spring = SeriesSpring {
+///     stiffness: 2.24e6, damping: None, mass: None, travel: Some(travel), force_from: ForceFrom::Sensor,
+/// };
+/// assert!((spring.spring_force(0.01) / 33.6e3 - 1.0_f64).abs() < 1e-12);
+/// assert!((spring.deflection_under(33.6e3) - 0.01).abs() < 1e-15);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SeriesSpring<S = f64> {
+    /// Stiffness k of the spring, of a progressive one at rest.
+    pub stiffness: S,
+    /// Damping c beside the spring; `None` for no damper.
+    pub damping: Option<S>,
+    /// Mass m between sensor and spring; `None` for a massless connection.
+    pub mass: Option<S>,
+    /// How far it yields; `None` for as far as it is pressed.
+    pub travel: Option<SeriesTravel<S>>,
+    /// What the measured force is taken from.
+    pub force_from: ForceFrom,
+}
+
+/// The travel of a spring to either side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SeriesTravel<S = f64> {
+    /// Travel t in m to either side.
+    pub travel: S,
+    /// Progression b: share by which the force at the end of the travel exceeds k t; `None` for a
+    /// linear spring.
+    pub progression: Option<S>,
+    /// What stops it there; `None` where the ends are reported and nothing stops it.
+    pub ends: Option<Contact<S>>,
+}
+
+impl SeriesSpring {
+    /// Impossible parameters of this spring; empty if there are none.
+    pub fn problems(&self) -> Vec<ParameterError> {
+        let mut problems = Problems::default();
+        problems.positive("stiffness", self.stiffness);
+        if let Some(damping) = self.damping {
+            problems.positive("damping", damping);
+        }
+        if let Some(mass) = self.mass {
+            problems.positive("mass", mass);
+        }
+        if let Some(SeriesTravel { travel, progression, ends }) = self.travel {
+            problems.positive("travel", travel);
+            problems.not_negative("progression", progression.unwrap_or(0.0));
+            if let Some(ends) = ends {
+                problems.positive("stop_stiffness", ends.stiffness);
+                let damped = ends.relative_damping;
+                let free = self.damping.is_none() && self.mass.is_none();
+                let requirement = match free {
+                    true => {
+                        "zero where the element has neither `damping` nor `mass`: nothing moves against it"
+                    }
+                    false => "zero or positive",
+                };
+                problems.require(
+                    "stop_damping",
+                    damped,
+                    damped == 0.0 || (damped > 0.0 && !free),
+                    requirement,
+                );
+            }
+        }
+        problems.into_vec()
+    }
+
+    /// The deflection in m at which it holds a force in N at rest, its ends included.
+    ///
+    /// ```text
+    /// F_f(d) + F_ends(d, 0) = F
+    /// ```
+    pub fn deflection_under(&self, force: f64) -> f64 {
+        // the force is odd and convex from zero on, so that Newton's steps from beyond the root
+        // come back to it from one side
+        let mut deflection = force / self.stiffness;
+        for _ in 0..STEPS_MAXIMUM {
+            let step = (self.elastic_force(deflection) - force) / self.elastic_slope(deflection);
+            let next = deflection - step;
+            if next == deflection {
+                break;
+            }
+            deflection = next;
+        }
+        deflection
+    }
+}
+
+/// Newton steps of a deflection: three suffice for a linear spring, about ten for any other.
+const STEPS_MAXIMUM: usize = 60;
+
+impl<S: Copy> SeriesSpring<S> {
+    /// Every parameter replaced, in a fixed order.
+    #[inline(always)]
+    pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> SeriesSpring<T> {
+        SeriesSpring {
+            stiffness: of(self.stiffness),
+            damping: self.damping.map(&mut *of),
+            mass: self.mass.map(&mut *of),
+            travel: self.travel.map(|travel| SeriesTravel {
+                travel: of(travel.travel),
+                progression: travel.progression.map(&mut *of),
+                ends: travel.ends.map(|ends| ends.convert(of)),
+            }),
+            force_from: self.force_from,
+        }
+    }
+}
+
+impl<S: Scalar> SeriesSpring<S> {
+    /// F_f in N at a deflection in m: the spring alone.
+    #[inline(always)]
+    pub fn spring_force(&self, deflection: S) -> S {
+        match self.progressive() {
+            None => self.stiffness * deflection,
+            Some((travel, progression)) => {
+                let grown = progression * (deflection / travel).squared();
+                self.stiffness * deflection * (S::from(1.0) + grown)
+            }
+        }
+    }
+
+    /// Its slope in N/m.
+    fn spring_slope(&self, deflection: S) -> S {
+        match self.progressive() {
+            None => self.stiffness,
+            Some((travel, progression)) => {
+                let grown = progression * (deflection / travel).squared();
+                self.stiffness * (S::from(1.0) + S::from(3.0) * grown)
+            }
+        }
+    }
+
+    fn progressive(&self) -> Option<(S, S)> {
+        let travel = self.travel?;
+        Some((travel.travel, travel.progression?))
+    }
+
+    /// How far beyond the upper and the lower end of the travel it is, in m, and the contact.
+    fn beyond(&self, deflection: S) -> Option<([S; 2], Contact<S>)> {
+        let SeriesTravel { travel, ends, .. } = self.travel?;
+        Some(([deflection - travel, -deflection - travel], ends?))
+    }
+
+    /// Spring and ends at rest, in N.
+    pub(crate) fn elastic_force(&self, deflection: S) -> S {
+        self.spring_force(deflection) + self.ends_force(deflection, S::from(0.0))
+    }
+
+    /// Its slope in N/m.
+    pub(crate) fn elastic_slope(&self, deflection: S) -> S {
+        let spring = self.spring_slope(deflection);
+        let Some((beyond, ends)) = self.beyond(deflection) else { return spring };
+        let zero = S::from(0.0);
+        let pressed = |depth: S| S::select(zero.less_than(depth), ends.stiffness, zero);
+        spring + pressed(beyond[0]) + pressed(beyond[1])
+    }
+
+    /// Of the ends of the travel in N, at a deflection in m that grows at a rate in m/s.
+    pub(crate) fn ends_force(&self, deflection: S, rate: S) -> S {
+        let Some(([above, below], ends)) = self.beyond(deflection) else { return S::from(0.0) };
+        ends.force(above, rate) - ends.force(below, -rate)
+    }
+
+    /// The rate of the deflection in m/s at which a damped element without mass holds a force.
+    ///
+    /// ```text
+    /// c w + K d+ (1 + e w)+ = F - F_f = P         w = min(P/c, (P - K d+)/(c + K d+ e)) at the upper end
+    /// ```
+    pub(crate) fn rate_under(&self, damping: S, force: S, deflection: S) -> S {
+        let left = force - self.spring_force(deflection);
+        let Some(([above, below], ends)) = self.beyond(deflection) else { return left / damping };
+        let zero = S::from(0.0);
+        let towards = |left: S, depth: S| {
+            let elastic = ends.stiffness * depth.maximum(zero);
+            let pressed = (left - elastic) / (damping + elastic * ends.relative_damping);
+            (left / damping).minimum(pressed)
+        };
+        S::select(zero.less_than(below), -towards(-left, below), towards(left, above))
+    }
+
+    /// Elastic energy of spring and ends in J.
+    pub(crate) fn stored_energy(&self, deflection: S) -> S {
+        let half = S::from(0.5);
+        let spring = half * self.stiffness * deflection.squared();
+        let spring = self.progressive().map_or(spring, |(travel, progression)| {
+            spring * (S::from(1.0) + half * progression * (deflection / travel).squared())
+        });
+        let Some(([above, below], ends)) = self.beyond(deflection) else { return spring };
+        spring + ends.stored_energy(above) + ends.stored_energy(below)
+    }
+
+    /// Power in W that damper and ends turn into heat: never negative.
+    pub(crate) fn dissipated(&self, deflection: S, rate: S) -> S {
+        let damper = self.damping.map_or(S::from(0.0), |damping| damping * rate.squared());
+        let Some(([above, below], ends)) = self.beyond(deflection) else { return damper };
+        damper + ends.dissipated(above, rate) + ends.dissipated(below, -rate)
+    }
+
+    /// The way left to the nearer end of the travel in m, negative beyond it; one metre without
+    /// ends.
+    pub(crate) fn clearance(&self, deflection: S) -> S {
+        self.travel.map_or(S::from(1.0), |travel| travel.travel - deflection.abs())
+    }
+
+    /// Stiffness of the spring in N/m for small motions about the deflection at which it holds a
+    /// force in N.
+    ///
+    /// ```text
+    /// k_t = k (1 + 3 b (d/t)^2) = k (r + 1/r - 1),    r^3 = 1 + 2 z^2 + 2 |z| root(1 + z^2),    z = 3 root(3 b) F/(2 k t)
+    /// ```
+    ///
+    /// This is the solution of the cubic F_f(d) = F by hyperbolic functions: sinh 3w = z, r = e^2w.
+    ///
+    /// # Example
+    /// At the end of its travel a spring with progression 0.5 is 2.5 times as stiff as at rest.
+    /// ```
+    /// use phea_hydraulics::series::{ForceFrom, SeriesSpring, SeriesTravel};
+    /// let travel = SeriesTravel { travel: 0.01, progression: Some(0.5), ends: None };
+    /// let spring = SeriesSpring {
+    ///     stiffness: 2.24e6, damping: None, mass: None, travel: Some(travel), force_from: ForceFrom::Sensor,
+    /// };
+    /// assert!((spring.stiffness_under(33.6e3) / (2.5 * 2.24e6) - 1.0_f64).abs() < 1e-12);
+    /// assert_eq!(spring.stiffness_under(0.0), 2.24e6);
+    /// ```
+    pub fn stiffness_under(&self, force: S) -> S {
+        let Some((travel, progression)) = self.progressive() else { return self.stiffness };
+        let (one, two) = (S::from(1.0), S::from(2.0));
+        let z = S::from(1.5) * (S::from(3.0) * progression).sqrt() * force / (self.stiffness * travel);
+        let square = z.squared();
+        let cubed = one + two * square + two * z.abs() * (one + square).sqrt();
+        let r = (cubed.ln() / S::from(3.0)).exp();
+        self.stiffness * (r + one / r - one)
+    }
+}
