@@ -68,6 +68,7 @@ mod sizing_laws;
 mod specification;
 mod sweep;
 mod telescopic;
+mod transmission;
 mod trial;
 mod trusted_data;
 mod uncertainty_directions;

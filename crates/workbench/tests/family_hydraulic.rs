@@ -274,3 +274,33 @@ fn stages_are_those_of_the_position() {
         ],
     );
 }
+
+/// The oil of a transmission: pistons, hose or pipe, and the fluid in it.
+#[test]
+fn a_transmission_is_that_of_its_numbers() {
+    follows_the_rig(
+        include_str!("../../project/tests/valid/transmission.toml"),
+        // ORIGIN: written by hand, around those of the file
+        &[
+            ("series.piston_area", [1.9e-3, 2e-3, 2.1e-3]),
+            ("series.end_volume", [1e-5, 2e-5, 3e-5]),
+            ("series.filling_pressure", [50e5, 60e5, 70e5]),
+            ("series.line.bore", [0.012, 0.0127, 0.0135]),
+            ("series.line.length", [1.9, 2.0, 2.1]),
+            ("series.line.volumetric_expansion", [1.5e-5, 1.56e-5, 1.6e-5]),
+            ("series.line.dynamic_stiffening.nominal", [4.2, 5.0, 5.0]),
+            ("fluid.kinematic_viscosity", [2e-5, 4.6e-5, 9e-5]),
+            ("fluid.density", [850.0, 870.0, 890.0]),
+        ],
+    );
+    follows_the_rig(
+        &format!("{}\n[uncertainty]\n", include_str!("../../project/tests/valid/transmission_pipe.toml")),
+        // ORIGIN: written by hand, around those of the file
+        &[
+            ("series.line.pipe.bore", [0.010, 0.0105, 0.011]),
+            ("series.line.pipe.wall_thickness", [2.6e-3, 2.75e-3, 2.9e-3]),
+            ("series.line.pipe.youngs_modulus", [1.9e11, 2.06e11, 2.1e11]),
+            ("fluid.bulk_modulus", [1.4e9, 1.45e9, 1.5e9]),
+        ],
+    );
+}

@@ -1,0 +1,149 @@
+//! A hydraulic transmission as an engineer meets it: what `check` derives, the verdict of the example and its machine, cavitation,
+//! alternatives, and what is refused.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
+#![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
+
+use phea_workbench::alternatives::retracted_length;
+use phea_workbench::command::Request;
+use phea_workbench::project;
+use phea_workbench::source::Memory;
+use serde_json::Value;
+
+use crate::ask::{answer, check, derived, load, near};
+
+const TRANSMISSION: &str = include_str!("../../../examples/ybitu/transmission.toml");
+/// As long as one with a hose, whose numbers are known by hand.
+const PIPE: &str = "series={ kind = \"transmission\", piston_area = \"20 cm2\", filling_pressure = \"60 bar\", \
+                    end_volume = \"20 cm3\", line = { pipe = { bore = \"10 mm\" }, length = \"2 m\" } }";
+
+fn parsed(text: &str) -> Value {
+    serde_json::from_str(text).unwrap()
+}
+
+/// The example without what is uncertain of its hose.
+fn certain() -> String {
+    let lines: Vec<&str> = TRANSMISSION.lines().filter(|line| !line.starts_with("\"series.")).collect();
+    lines.join("\n")
+}
+
+/// ORIGIN: analytic, a rigid pipe of 10 mm and 2 m, 0.157 L, with 20 mL at either end, pistons of 20 cm2 and the oil of the example
+#[test]
+fn check_derives_its_oil() {
+    let told = check(&certain(), &[PIPE]);
+    let bore = std::f64::consts::FRAC_PI_4 * 1e-4;
+    near(derived(&told, "series.oil_volume"), bore * 2.0 + 4e-5, 1e-12);
+    near(derived(&told, "series.stiffness_of_oil"), 4e-6 * 1.45e9 / (bore * 2.0 + 4e-5), 1e-12);
+    let mass = 870.0 * 2.0 * bore * (2e-3 / bore).powi(2);
+    near(derived(&told, "series.reflected_mass"), mass, 1e-12);
+    near(derived(&told, "series.reflected_damping"), 32.0 * 46e-6 * mass / 1e-4, 1e-12);
+    near(derived(&told, "series.wave_travel_time"), 2.0 * (870.0 / 1.45e9_f64).sqrt(), 1e-12);
+    let stall = derived(&told, "cylinder.stall_force");
+    near(derived(&told, "series.pressure_at_stall"), 60e5 + stall / 2e-3, 1e-12);
+    near(derived(&told, "series.pull_limit"), 2e-3 * (60e5 + 101_325.0), 1e-12);
+    let softened = 1.0 / (1.0 / derived(&told, "linear.hydraulic_stiffness") + 1.0 / 20e6);
+    let softened = 1.0 / (1.0 / softened + 1.0 / derived(&told, "series.stiffness_of_oil"));
+    near(derived(&told, "dynamics.equivalent_stiffness"), softened, 1e-12);
+}
+
+/// Its controller satisfies every specification, stability is proven, and the machine does as the linear loop says.
+#[test]
+fn the_example_is_met_and_the_machine_agrees() {
+    let said = parsed(&answer(TRANSMISSION, &[], &[], &Request::VerifyOnMachine).json);
+    assert_eq!(said["verdict"], "met", "{}", said["specifications"]);
+    for run in said["machine"]["runs"].as_array().unwrap() {
+        assert_eq!(run["agrees"], Value::from(true), "{run}");
+    }
+    // two uncertain numbers: all six take a minute
+    let few = "uncertainty={ flow_gain = { nominal = 5.4e-5, minimum = 3.23e-5, maximum = 5.61e-5 }, \
+               \"series.line.length\" = { nominal = 2, minimum = 1.9, maximum = 2.1 } }";
+    let said = parsed(&answer(TRANSMISSION, &[few], &[], &Request::VerifyProven { on_machine: false }).json);
+    assert_eq!(said["proof"]["stable"]["proven"], true, "{}", said["proof"]);
+}
+
+/// Every load, and waves in the lines of the rig beside it.
+#[test]
+fn small_steps_on_the_machine_are_those_of_the_linear_loop() {
+    let scenario = "scenario=[{ name = \"step\", duration = \"1 s\", reference = [{ at = \"0.1 s\", force = \"100 N\" }] }]";
+    let viscous = "cylinder.friction={ model = \"viscous\", viscous = \"1 kN.s/m\" }";
+    let sprung = ["load.model=spring_mass_damper", "load.mass=100", "load.stiffness=2e6", "load.damping=500"];
+    let slow = [
+        "controller={ numerator = \"2e-5*s + 2e-4\", denominator = \"s\" }",
+        "prefilter={ numerator = \"1\", denominator = \"1\" }",
+    ];
+    let waves = ["line.model=transmission_line"];
+    for other in [&[][..], &sprung, &waves] {
+        let settings = [&[scenario, viscous][..], &slow, other].concat();
+        let said = parsed(&answer(&certain(), &settings, &[], &Request::VerifyOnMachine).json);
+        let run = &said["machine"]["runs"][0];
+        assert_eq!(run["agrees"], Value::from(true), "{other:?}: {run}");
+    }
+}
+
+/// A pull of 2 kN on oil that is filled with 2 bar tears it off, which is an event of the run and a warning before it.
+#[test]
+fn a_run_says_where_the_oil_tears_off() {
+    let scenario = "scenario=[{ name = \"pull\", duration = \"1 s\", reference = [{ at = \"0.1 s\", force = \"-2 kN\" }] }]";
+    let said = answer(TRANSMISSION, &[scenario, "series.filling_pressure=2 bar"], &[], &Request::Simulate);
+    assert!(said.text.contains("the oil of the transmission cavitates"), "{}", said.text);
+    assert!(said.json.contains("\"cavitation_transmission\""), "{}", said.json);
+    let filled = answer(TRANSMISSION, &[scenario], &[], &Request::Simulate);
+    assert!(!filled.text.contains("cavitates"), "{}", filled.text);
+    let warned = load(TRANSMISSION, &["series.filling_pressure=2 bar"], &[]).warnings;
+    assert!(warned.iter().any(|one| one.message.contains("the oil tears off at a pull of")), "{warned:?}");
+}
+
+/// Length, price and mass of an alternative count both cylinders, the hose and its oil.
+#[test]
+fn what_it_costs_and_weighs() {
+    let length = |settings: &[&str]| retracted_length(&load(TRANSMISSION, settings, &[]).project);
+    // ORIGIN: analytic, 0.5 m of stroke, 0.3 m and two cylinders of 0.2 m
+    near(length(&["cylinder.dead_length=0.3 m"]).unwrap(), 1.2, 1e-12);
+    let unstated = length(&["cylinder.dead_length=0.3 m", PIPE]).unwrap_err();
+    assert_eq!(unstated, "not stated: series.cylinder_length");
+    let costs = [
+        "series.price=180 EUR",
+        "series.cylinders_mass=3 kg",
+        "series.line.price_per_length=15 EUR/m",
+        "series.line.mass_per_length=0.3 kg/m",
+    ];
+    let told = check(TRANSMISSION, &costs);
+    // ORIGIN: analytic
+    near(derived(&told, "parts.series.price"), 180.0, 1e-12);
+    near(derived(&told, "parts.series.line.price"), 30.0, 1e-12);
+    near(derived(&told, "parts.series.mass"), 3.0, 1e-12);
+    near(derived(&told, "parts.series.line.mass"), 0.6, 1e-12);
+    let lines = 2.0 * 870.0 * derived(&told, "line.volume");
+    near(
+        derived(&told, "parts.oil_in_lines.mass"),
+        lines + 870.0 * derived(&told, "series.oil_volume"),
+        1e-12,
+    );
+}
+
+/// The words of the report name pistons, filling and line.
+#[test]
+fn the_report_names_it() {
+    let page = answer(TRANSMISSION, &["series.segments=1"], &[], &Request::Linearize);
+    assert!(
+        page.text.contains(
+            "inertia and resistance of the transmission are counted in the plant and its impedance alone"
+        ),
+        "{}",
+        page.text
+    );
+}
+
+/// A linkage or a motor has no place for it.
+#[test]
+fn it_is_for_loads_that_move_with_the_rod() {
+    for (rig, place) in [
+        (include_str!("../../project/tests/valid/linkage.toml"), "remove [series] or [linkage]"),
+        (include_str!("../../project/tests/valid/motor.toml"), "remove [series]"),
+    ] {
+        let source = Memory::default().with("rig.toml", rig);
+        let refused = project::read(&source, "rig.toml", &[PIPE.to_string()], &[]).unwrap_err().to_string();
+        assert!(refused.contains("a spring or transmission between force sensor and load"), "{refused}");
+        assert!(refused.contains(place), "{refused}");
+    }
+}
