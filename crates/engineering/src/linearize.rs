@@ -15,8 +15,8 @@ use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_dynamics::portable;
 use phea_hydraulics::actuator::Components;
 use phea_hydraulics::impedance::{
-    Asymptote, closed_loop_port, compliance_hidden_above, final_force_after_load_step, impedance_asymptotes,
-    load_motion_of, open_loop_impedance, port,
+    Asymptote, closed_loop_port, compliance_hidden_above, final_force_after_load_step, load_motion_of,
+    open_loop_impedance, port,
 };
 use phea_hydraulics::line::StiffeningMember;
 use phea_hydraulics::linear::{
@@ -207,7 +207,7 @@ fn open_loop_view(rig: &Rig, port: &LinearModel) -> Result<PortView, LinearError
     let impedance = open_loop_impedance(port)?;
     Ok(PortView {
         passivity: passivity(&impedance)?,
-        asymptotes: impedance_asymptotes(&rig.leaking(), None),
+        asymptotes: port::own_asymptotes(rig, None),
         final_force_n: final_force_after_load_step(&port.load_position, 1e-3),
         impedance,
     })

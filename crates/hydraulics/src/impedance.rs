@@ -9,7 +9,7 @@
 mod asymptote;
 mod series;
 
-pub use asymptote::{Asymptote, AsymptoteKind, compliance_hidden_above, impedance_asymptotes};
+pub use asymptote::{Asymptote, AsymptoteKind, compliance_hidden_above, impedance_asymptotes, through_oil};
 pub use series::{closed_loop_port, port};
 
 use num_complex::Complex64;

@@ -8,6 +8,9 @@ use phea_dynamics::portable::{pow, sin};
 use phea_dynamics::random::{share, stream};
 use phea_dynamics::simulation::Plant;
 use phea_hydraulics::actuator::{Actuator, Components};
+use phea_hydraulics::impedance::{
+    AsymptoteKind, impedance_asymptotes, open_loop_impedance, port, through_oil,
+};
 use phea_hydraulics::line::{
     Conduit, DynamicLine, LaminarFriction, Line, LineModel, Pipe, PipeWall, Segments, StiffeningMember,
 };
@@ -409,6 +412,25 @@ fn the_port_of_a_loop_counts_what_the_oil_holds_back() {
             let error = (shown.at_frequency(frequency) / expected - 1.0).norm_sqr().sqrt();
             assert!(error < 1e-6, "{number} at {frequency}: {error}");
         }
+    }
+}
+
+/// Above all resonances the load meets the oil at its own piston alone, and the line says from where.
+#[test]
+fn at_last_the_load_meets_the_oil_at_its_piston() {
+    for number in (0..40).filter(|number| number % 5 < 2) {
+        let plant = drawn(number).plant;
+        let LinearElement::Oil(column) = plant.series.unwrap().element else { panic!("{plant:?}") };
+        let lines = through_oil(impedance_asymptotes(&nominal_plant(), None), &column);
+        let last = lines.last().unwrap();
+        assert!(
+            last.kind == AsymptoteKind::OilLimit
+                && lines.iter().all(|line| line.to <= last.from || line == last)
+        );
+        let shown = open_loop_impedance(&port(&plant).unwrap()).unwrap();
+        let far = 30.0 * last.from.max(3e3);
+        let error = (shown.at_frequency(far) / last.at_frequency(far) - 1.0).norm_sqr().sqrt();
+        assert!(error < 3e-2, "{number}: {error}");
     }
 }
 

@@ -17,7 +17,7 @@ pub enum DeclaredSeries {
     /// A spring.
     Spring(DeclaredSpring),
     /// Two pistons with a line between them.
-    Transmission(DeclaredTransmission),
+    Transmission(Box<DeclaredTransmission>),
 }
 
 /// The spring between force sensor and load, with its damper, the mass before it and the ends of
@@ -124,7 +124,7 @@ impl DeclaredSeries {
 
 impl Variants for DeclaredSeries {
     fn all(&self) -> Vec<DeclaredSeries> {
-        vec![DeclaredSeries::default(), DeclaredSeries::Transmission(DeclaredTransmission::default())]
+        vec![DeclaredSeries::default(), DeclaredSeries::Transmission(Box::default())]
     }
 
     fn word(&self) -> &'static str {

@@ -7,8 +7,8 @@ use phea_dynamics::controller::{Controller, VirtualImpedance};
 use phea_dynamics::frequency::logarithmic_grid;
 use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_dynamics::portable;
-use phea_hydraulics::impedance::{Asymptote, AsymptoteKind, impedance_asymptotes};
-use phea_hydraulics::plant::{LinearLoad, LinearPlant};
+use phea_hydraulics::impedance::{Asymptote, AsymptoteKind, impedance_asymptotes, through_oil};
+use phea_hydraulics::plant::{LinearElement, LinearLoad, LinearPlant};
 use phea_qft::closed_loop::Compensation;
 
 use crate::rig::Rig;
@@ -115,7 +115,7 @@ fn widest(all: &[AskedAt]) -> Option<[f64; 2]> {
 /// Straight lines of the impedance of a closed loop. That of a virtual impedance takes the place of what
 /// the loop gives way to, as far as its term of lowest order lasts and the loop acts.
 pub(super) fn asymptotes(rig: &Rig, controller: &TransferFunction) -> Vec<Asymptote> {
-    let mut lines = impedance_asymptotes(&rig.leaking(), Some(controller));
+    let mut lines = own_asymptotes(rig, Some(controller));
     let Some(VirtualImpedance { mass, damping, stiffness, .. }) = rig.virtual_impedance else {
         return lines;
     };
@@ -136,6 +136,15 @@ pub(super) fn asymptotes(rig: &Rig, controller: &TransferFunction) -> Vec<Asympt
         lines.insert(0, Asymptote { kind, power, coefficient, from: 0.0, to });
     }
     lines
+}
+
+/// Of the rig without a virtual impedance; without a controller those of the open loop.
+pub(super) fn own_asymptotes(rig: &Rig, controller: Option<&TransferFunction>) -> Vec<Asymptote> {
+    let lines = impedance_asymptotes(&rig.leaking(), controller);
+    match rig.plant.series.map(|series| series.element) {
+        Some(LinearElement::Oil(column)) => through_oil(lines, &column),
+        Some(LinearElement::Spring(_)) | None => lines,
+    }
 }
 
 /// L/(1 + L) at zero frequency: 1 where the controller integrates.

@@ -3,6 +3,7 @@ use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::portable;
 
 use crate::linear::LinearParameters;
+use crate::series::OilColumn;
 
 /// The meaning of an asymptote of the driving-point impedance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -13,6 +14,8 @@ pub enum AsymptoteKind {
     CompliancePlateau,
     /// The piston's mass stands still between load and fluid: K_S/s.
     SensorLimit,
+    /// The oil of a transmission stands still: the last of its springs, k_N+1/s.
+    OilLimit,
 }
 
 /// One straight line of the impedance in a logarithmic plot, Z = coefficient s^power.
@@ -98,6 +101,27 @@ pub fn impedance_asymptotes(
     ];
     asymptotes.retain(|line| line.coefficient.is_finite() && line.from < line.to);
     asymptotes
+}
+
+/// These asymptotes where a transmission lies between sensor and load: its oil stands still before the
+/// piston's mass does.
+///
+/// ```text
+/// limit           k_N+1/s               above sqrt((k_N + k_N+1)/m) of its last plug
+/// ```
+pub fn through_oil(asymptotes: Vec<Asymptote>, column: &OilColumn) -> Vec<Asymptote> {
+    let springs = column.stiffness_behind(column.segments - 1) + column.end_stiffness;
+    let limit = compliance_hidden_above(springs, column.mass);
+    let kept = asymptotes.into_iter().filter(|line| line.kind != AsymptoteKind::SensorLimit);
+    let kept = kept.map(|line| Asymptote { to: line.to.min(limit), ..line });
+    let own = Asymptote {
+        kind: AsymptoteKind::OilLimit,
+        power: -1,
+        coefficient: column.end_stiffness,
+        from: limit,
+        to: f64::INFINITY,
+    };
+    kept.filter(|line| line.from < line.to).chain([own]).collect()
 }
 
 /// G(s) -> gain/s^integrators as s -> 0, for a continuous controller; differentiators count

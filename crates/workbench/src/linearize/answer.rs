@@ -167,6 +167,7 @@ fn asymptote(asymptote: &Asymptote) -> Object {
         AsymptoteKind::LowFrequency => "low_frequency",
         AsymptoteKind::CompliancePlateau => "compliance_plateau",
         AsymptoteKind::SensorLimit => "sensor_limit",
+        AsymptoteKind::OilLimit => "oil_limit",
     };
     Object::new()
         .with("kind", kind)

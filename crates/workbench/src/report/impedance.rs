@@ -30,7 +30,7 @@ pub(super) fn chapter(
     let met = match project.actuator.as_ref().and_then(|actuator| actuator.series.as_ref()) {
         None => "the sensor's stiffness alone",
         Some(DeclaredSeries::Transmission(_)) => {
-            "sensor, oil of the transmission and its inertia alone; the stiffnesses of sensor and oil in series stand for K_S in the straight lines"
+            "the sensor and the oil of the transmission alone, of which above all resonances only the oil at the load's piston still yields, k_{N+1}/s"
         }
         Some(DeclaredSeries::Spring(_)) => {
             "sensor and series spring alone, whose stiffnesses in series stand for K_S in the straight lines"
@@ -109,6 +109,7 @@ fn asymptotes(linearization: &Linearization) -> Table {
                 AsymptoteKind::LowFrequency => "low frequency",
                 AsymptoteKind::CompliancePlateau => "compliance plateau K_eq",
                 AsymptoteKind::SensorLimit => "limit K_S",
+                AsymptoteKind::OilLimit => "limit of the transmission's last oil",
             };
             let unit = match asymptote.power {
                 -1 => "N/m",
@@ -148,6 +149,7 @@ fn figure(linearization: &Linearization) -> Result<Figure, LinearError> {
                     AsymptoteKind::LowFrequency => format!("{}, {name}", behaviour(asymptote.power)),
                     AsymptoteKind::CompliancePlateau => "K_eq/s".to_string(),
                     AsymptoteKind::SensorLimit => "K_S/s".to_string(),
+                    AsymptoteKind::OilLimit => "k_{N+1}/s".to_string(),
                 },
                 coefficient: asymptote.coefficient,
                 exponent: asymptote.power,

@@ -252,7 +252,10 @@ fn series_symbol(series: &DeclaredSeries) -> SeriesSymbol {
         },
         DeclaredSeries::Transmission(transmission) => SeriesSymbol {
             kind: SeriesKind::Transmission,
-            words: format!("oil, {}", shown(transmission.piston_area, &AREA)),
+            words: match transmission.line.length() {
+                Some(length) => format!("{} of oil", shown(length, &LENGTH)),
+                None => "oil".to_string(),
+            },
         },
     }
 }
