@@ -75,6 +75,21 @@ impl<S: Scalar> SeriesElement<S> {
         }
     }
 
+    /// How far it is compressed in m where it holds a force in N at rest, within its travel, and the slope
+    /// in m/N.
+    pub fn held_deflection(&self, force: S, fluid: &Fluid<S>) -> [S; 2] {
+        let one = S::from(1.0);
+        match self {
+            SeriesElement::Spring(spring) => {
+                [spring.held_deflection(force), one / spring.stiffness_under(force)]
+            }
+            SeriesElement::Transmission(transmission) => {
+                let stiffness = transmission.column(fluid, StiffeningMember::Nominal).stiffness();
+                [force / stiffness, one / stiffness]
+            }
+        }
+    }
+
     /// What the measured force is taken from.
     pub fn force_from(&self) -> ForceFrom {
         match self {

@@ -47,6 +47,20 @@ fn the_family_follows_a_payload() {
     follows_the_position(&text);
 }
 
+/// With a progressive spring or a transmission on the rod, which takes its deflection from the position of the joint.
+#[test]
+fn the_family_follows_what_lies_in_series() {
+    for series in SERIES {
+        follows_the_position(&KNEE.replacen("[linkage]", &format!("[series]\n{series}\n[linkage]"), 1));
+    }
+}
+
+const SERIES: [&str; 2] = [
+    "stiffness = \"400 N/mm\"\ndamping = \"80 N.s/m\"\nmass = \"0.2 kg\"\ntravel = \"12 mm\"\nprogression = 0.5\n",
+    "kind = \"transmission\"\npiston_area = \"2 cm2\"\nfilling_pressure = \"170 bar\"\nend_volume = \"2 mL\"\n\
+     line = { pipe = { bore = \"6 mm\" }, length = \"0.8 m\" }\n",
+];
+
 fn follows_the_position(text: &str) {
     let uncertain = "\"load.mass\" = { nominal = \"0.6 kg.m2\", minimum = \"0.3 kg.m2\", maximum = \"0.8 kg.m2\", points = 2 }";
     let project = project_of(&text.replace("[uncertainty]\n", &format!("[uncertainty]\n{uncertain}\n")), &[]);
@@ -86,10 +100,14 @@ fn follows_the_position(text: &str) {
 /// The machine rests at the operating point with the lever arm that the plant has.
 #[test]
 fn the_machine_rests_where_the_plant_is() {
-    for settings in
-        [&[][..], &["operating_point.position=\"12 mm\"", "operating_point.load_force=\"1.1 kN\""]]
-    {
-        let project = project_of(KNEE, settings);
+    let other = ["operating_point.position=\"12 mm\"", "operating_point.load_force=\"1.1 kN\""];
+    let texts = ["", SERIES[0], SERIES[1]].map(|series| match series {
+        "" => KNEE.to_string(),
+        series => KNEE.replacen("[linkage]", &format!("[series]\n{series}\n[linkage]"), 1),
+    });
+    let cases = texts.iter().flat_map(|text| [(text, &[][..]), (text, &other[..])]);
+    for (text, settings) in cases {
+        let project = project_of(text, settings);
         let bench = ControlledMachine::new(&Setup::new(&project).unwrap()).unwrap();
         let rest = bench.machine.rest_under_load(&bench.rig.point).unwrap();
         let outputs = bench.machine.outputs::<f64>(&rest.state, &rest.all_inputs());
@@ -110,9 +128,14 @@ fn a_weight_is_held_at_rest() {
     let weight =
         "[linkage.weight]\nmass = \"4 kg\"\ncentre_distance = \"0.3 m\"\nlevel_angle = \"40 deg\"\n\n[load]";
     let text = KNEE.replacen("[load]", weight, 1).replacen("load_force = \"600 N\"\n", "", 1);
-    for settings in
-        [&["family={}"][..], &["family={}", "load.stiffness=3", "operating_point.position=\"15 mm\""]]
-    {
+    // as soft as the weight on its lever arm
+    let soft =
+        "series={ stiffness = \"20 N/mm\", damping = \"80 N.s/m\", travel = \"400 mm\", progression = 0.5 }";
+    for settings in [
+        &["family={}"][..],
+        &["family={}", "load.stiffness=3", "operating_point.position=\"15 mm\""],
+        &["family={}", soft],
+    ] {
         let project = project_of(&text, settings);
         let bench = ControlledMachine::new(&Setup::new(&project).unwrap()).unwrap();
         let rest = bench.machine.rest_under_load(&bench.rig.point).unwrap();

@@ -42,5 +42,17 @@ pub fn place<S: Scalar>(
 /// The force that holds the weight of a load that yields; `None` where there is none.
 fn weight_held<S: Scalar>(project: &Project, components: &Components<S>, position: S) -> Option<S> {
     let declared = project.actuator.as_ref().filter(|declared| declared.load != project::Load::Prescribed);
-    declared.and(components.linkage.as_ref())?.holding_force(position, components.force_sensor.stiffness)
+    let linkage = declared.and(components.linkage.as_ref())?;
+    linkage.holding_force(position, |force| shortened(components, force))
+}
+
+/// How far force sensor and what lies in series with it are compressed by a force in N, in m, and the slope
+/// in m/N.
+pub(super) fn shortened<S: Scalar>(components: &Components<S>, force: S) -> [S; 2] {
+    let compliance = S::from(1.0) / components.force_sensor.stiffness;
+    let [own, slope] = components
+        .series
+        .as_ref()
+        .map_or([S::from(0.0); 2], |series| series.held_deflection(force, &components.fluid));
+    [force * compliance + own, compliance + slope]
 }

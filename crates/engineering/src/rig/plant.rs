@@ -12,6 +12,7 @@ use phea_hydraulics::two_pressure::{TwoPressureLinearParameters, reduce};
 
 use super::numbers::Numbers;
 use super::parameters::{ParameterOrigin, ResolvedParameter, parameter_field};
+use super::place::shortened;
 use crate::project::{self, DeclaredAdjustment};
 
 /// Parameters of the linear model that presuppose one load pressure.
@@ -63,13 +64,14 @@ impl<S: Scalar> YieldingLoad<S> {
 }
 
 /// The load's end of the rod at an operating point, and the weight of the load there; `None` without a
-/// linkage. The force sensor is compressed by the force there.
+/// linkage. The force sensor, and what lies in series with it, is compressed by the force there.
 pub(crate) fn rod_end<S: Scalar>(
     components: &Components<S>,
     point: &OperatingPoint<S>,
 ) -> Option<(RodEnd<S>, Option<WeightAt<S>>)> {
     let linkage = components.linkage.as_ref()?;
-    let position = point.position - point.hydraulic_force / components.force_sensor.stiffness;
+    let [shortened, _] = shortened(components, point.hydraulic_force);
+    let position = point.position - shortened;
     let angle = linkage.angle(position);
     Some((linkage.end(angle), linkage.weight_at(angle)))
 }

@@ -85,24 +85,34 @@ impl<S: Scalar> Linkage<S> {
         Some(WeightAt::of(T::from(weight.moment), T::local(&weight.height, [angle])))
     }
 
-    /// The force of the rod in N that holds the weight where the piston is at a position in m and the
-    /// sensor between them has a stiffness in N/m; `None` without a weight.
+    /// The force of the rod in N that holds the weight where the piston is at a position in m; `yields`
+    /// gives how far the rod is shortened by a force in N, in m, and its slope in m/N. `None` without a
+    /// weight.
     ///
     /// ```text
-    /// F = -tau_g(theta)/g'(theta),   g(theta) = x - F/K_S            by repetition, since K_S is great
+    /// F = -tau_g(theta)/g'(theta),   g(theta) + d(F) = x             by Newton's steps in theta
+    /// dF/dtheta = (k_g + tau_g g''/g')/g'                            k_g = -dtau_g/dtheta
     /// ```
-    pub fn holding_force(&self, position: S, sensor_stiffness: S) -> Option<S> {
+    pub fn holding_force(&self, position: S, yields: impl Fn(S) -> [S; 2]) -> Option<S> {
         self.weight.as_ref()?;
-        let mut force = S::from(0.0);
+        let force_at = |angle: S| {
+            let (end, weight) = (self.end(angle), self.weight_at(angle)?);
+            let force = -(weight.torque / end.lever_arm);
+            let slope = (weight.stiffness + weight.torque * end.lever_slope / end.lever_arm) / end.lever_arm;
+            Some((end, force, slope))
+        };
+        let mut angle = self.angle(position);
         for _ in 0..HOLDING_STEPS {
-            let angle = self.angle(position - force / sensor_stiffness);
-            force = -(self.weight_at(angle)?.torque / self.end(angle).lever_arm);
+            let (end, force, slope) = force_at(angle)?;
+            let [shortened, compliance] = yields(force);
+            let beyond = end.position + shortened - position;
+            angle = angle - beyond / (end.lever_arm + compliance * slope);
         }
-        Some(force)
+        Some(force_at(angle)?.1)
     }
 }
 
-/// Repetitions: each divides the error by K_S over the stiffness of weight and lever arm.
+/// Newton's steps: a stiff rod needs two, one as soft as its weight five.
 const HOLDING_STEPS: usize = 6;
 
 impl<S: Scalar> WeightAt<S> {

@@ -246,11 +246,27 @@ impl<S: Scalar> SeriesSpring<S> {
     /// ```
     pub fn stiffness_under(&self, force: S) -> S {
         let Some((travel, progression)) = self.progressive() else { return self.stiffness };
+        let (one, r) = (S::from(1.0), self.grown(force, travel, progression));
+        self.stiffness * (r + one / r - one)
+    }
+
+    /// The deflection in m at which the spring alone holds a force in N, by the same solution.
+    ///
+    /// ```text
+    /// d = 3 F/(k (1 + r + 1/r))
+    /// ```
+    pub fn held_deflection(&self, force: S) -> S {
+        let Some((travel, progression)) = self.progressive() else { return force / self.stiffness };
+        let (one, r) = (S::from(1.0), self.grown(force, travel, progression));
+        S::from(3.0) * force / (self.stiffness * (one + r + one / r))
+    }
+
+    /// r of [`SeriesSpring::stiffness_under`].
+    fn grown(&self, force: S, travel: S, progression: S) -> S {
         let (one, two) = (S::from(1.0), S::from(2.0));
         let z = S::from(1.5) * (S::from(3.0) * progression).sqrt() * force / (self.stiffness * travel);
         let square = z.squared();
         let cubed = one + two * square + two * z.abs() * (one + square).sqrt();
-        let r = (cubed.ln() / S::from(3.0)).exp();
-        self.stiffness * (r + one / r - one)
+        (cubed.ln() / S::from(3.0)).exp()
     }
 }

@@ -22,7 +22,7 @@ pub(super) fn linkage(project: &Project, actuator: &DeclaredActuator, check: &mu
         check.warning("linkage.weight", message);
     }
     closes(linkage, actuator.cylinder.stroke, check);
-    not_yet(project, actuator, check);
+    not_yet(project, check);
     for (index, scenario) in project.scenarios.iter().enumerate() {
         files(scenario, &format!("scenario[{index}]"), check);
     }
@@ -131,10 +131,9 @@ fn refusal_of_table(error: &LinkageError) -> (&'static str, String, String) {
 }
 
 /// Parts that take the load for one that moves with the rod.
-fn not_yet(project: &Project, actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
+fn not_yet(project: &Project, check: &mut Check<'_, '_>) {
     let impedance = project.controller.as_ref().is_some_and(|controller| controller.impedance.is_some());
     let absent = [
-        (actuator.series.is_some(), "series", "a spring or transmission between force sensor and load"),
         (impedance, "controller.impedance", "a virtual impedance"),
         (project.bench.friction.is_some(), "bench.friction", "a test of friction"),
     ];
