@@ -350,20 +350,16 @@ fn drawn(number: u64) -> Drawn {
         friction: Friction::Viscous { viscous: friction },
         force_sensor: ForceSensor { stiffness: sensor },
         linkage: Some(linkage),
+        series: series(number, &mut spread),
         ..components(hose_line(), StiffnessModel::ByVolume)
     };
-    let series = series(number, &mut spread);
     // every second one with a weight that is level anywhere over the stroke
     let weighed = linkage.level_at(spread(0.1, 6.0)).with_moment(spread(0.1, 30.0));
     let linkage = if number % 2 == 1 { weighed } else { linkage };
-    let rig = Components { linkage: Some(linkage), series, ..rig };
+    let rig = Components { linkage: Some(linkage), ..rig };
     let (mass, stiffness, damping) = (spread(0.05, 5.0), spread(1e2, 1e5), spread(0.1, 30.0));
     let contact = Contact { stiffness, relative_damping: spread(0.01, 1.0) };
-    let load = match number % 3 {
-        0 => LoadModel::Prescribed,
-        1 => LoadModel::SpringMassDamper { mass, stiffness, damping },
-        _ => LoadModel::Wall { mass, damping, gap: 0.02, contact },
-    };
+    let load = load(number, [mass, stiffness, damping], contact);
     let actuator = Actuator::new(rig).unwrap();
     let machine = Machine::new(&actuator, &MachineOptions { load, ..MachineOptions::default() }).unwrap();
     let position = spread(0.005, 0.075);
@@ -392,10 +388,19 @@ fn drawn(number: u64) -> Drawn {
             lever_arm: end.lever_arm,
         },
     };
-    let plant = plant_at(&actuator, position, &rest, own);
-    let plant = LinearPlant { series: LinearSeries::of_components(&rig, force), ..plant };
-    let fed = (number % 4 > 1).then_some(0.1 * spread(0.1, 10.0));
-    Drawn { machine, rest, sensor, end, plant: LinearPlant { load_velocity_feed_forward: fed, ..plant } }
+    let load_velocity_feed_forward = (number % 4 > 1).then_some(0.1 * spread(0.1, 10.0));
+    let series = LinearSeries::of_components(&rig, force);
+    let plant =
+        LinearPlant { series, load_velocity_feed_forward, ..plant_at(&actuator, position, &rest, own) };
+    Drawn { machine, rest, sensor, end, plant }
+}
+
+fn load(number: u64, [mass, stiffness, damping]: [f64; 3], contact: Contact) -> LoadModel {
+    match number % 3 {
+        0 => LoadModel::Prescribed,
+        1 => LoadModel::SpringMassDamper { mass, stiffness, damping },
+        _ => LoadModel::Wall { mass, damping, gap: 0.02, contact },
+    }
 }
 
 /// Place of the deflection of what lies between sensor and load in the signals of a machine.
