@@ -406,19 +406,16 @@ fn load(number: u64, [mass, stiffness, damping]: [f64; 3], contact: Contact) -> 
 /// Place of the deflection of what lies between sensor and load in the signals of a machine.
 const SERIES_DEFLECTION: usize = 19;
 
-/// Of five numbers one has a damped and progressive spring between sensor and load, one with a mass, and one a
-/// transmission.
+/// Of five numbers two have a damped and progressive spring between sensor and load, one a transmission.
 fn series(number: u64, spread: &mut impl FnMut(f64, f64) -> f64) -> Option<SeriesElement> {
-    let travel = SeriesTravel { travel: spread(5e-3, 2e-2), progression: Some(spread(0.1, 1.0)), ends: None };
-    let spring = SeriesSpring {
-        stiffness: spread(2e5, 2e6),
-        damping: Some(spread(50.0, 2e3)),
-        mass: (number % 5 == 2).then_some(0.5),
-        travel: Some(travel),
-        force_from: ForceFrom::Sensor,
-    };
     match number % 5 {
-        1 | 2 => Some(SeriesElement::Spring(spring)),
+        1 | 2 => Some(SeriesElement::Spring(SeriesSpring {
+            stiffness: spread(2e5, 2e6),
+            damping: Some(spread(50.0, 2e3)),
+            mass: (number % 5 == 2).then_some(0.5),
+            travel: Some(SeriesTravel { travel: 2e-2, progression: Some(spread(0.1, 1.0)), ends: None }),
+            force_from: ForceFrom::Sensor,
+        })),
         3 => Some(SeriesElement::Transmission(Transmission {
             piston_area: spread(2e-4, 1e-3),
             line: pipe_line(),
