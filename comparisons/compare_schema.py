@@ -34,7 +34,7 @@ UNSEEN = {
         motor_stops_without_stroke motor_unserved motor_file
         linkage_open linkage_four_bar_open linkage_dead_point linkage_table_rough linkage_table_short linkage_table_falling
         linkage_table_counts linkage_motor linkage_unserved linkage_units
-        price_currencies stage_order stage_count stage_bench
+        price_currencies stage_order stage_count stage_bench transmission_currencies transmission_two_lines transmission_without_line
         adjustment_beside adjustment_course adjustment_ends adjustment_none adjustment_uncertain
     """.split(),
     "numbers that a double cannot hold, infinity, and none": """
