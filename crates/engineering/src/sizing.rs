@@ -9,12 +9,14 @@
 mod bore;
 mod branch;
 mod candidate;
+mod other_means;
 mod problem;
 mod sensitivity;
 
 pub use bore::{BoreVerdict, CommercialBore};
 pub use branch::{Branch, GainStep, model_name};
 pub use candidate::{Candidate, Consequence, SizingReason};
+pub use other_means::{OtherMeans, OtherMeansProblem, SizedGas, SizedPipe, SizedSpring, SizedValve};
 pub use problem::{HoseOption, SizingProblem};
 pub use sensitivity::{Influence, sensitivity};
 
@@ -58,6 +60,8 @@ pub struct Sizing {
     pub decisions: Vec<SizingStep>,
     /// Influence of the uncertainties on the best candidate of the project's stiffness model.
     pub influences: Vec<Influence>,
+    /// The same stiffness by other means; `None` where nobody asks, and without an accepted hose.
+    pub other_means: Option<OtherMeans>,
 }
 
 /// Sizes every hose of the problem.
@@ -92,8 +96,12 @@ pub fn size(problem: &SizingProblem, question: Question) -> Sizing {
         candidates,
         decisions,
         influences: vec![],
+        other_means: None,
     };
     sizing.influences = sizing.best().map(|candidate| sensitivity(problem, candidate)).unwrap_or_default();
+    let best = sizing.best().map(|best| (best.branch.stiffness.minimum, best.option.hoses[0].bore));
+    sizing.other_means =
+        problem.other_means.as_ref().zip(best).map(|(asked, (stiffness, bore))| asked.solve(stiffness, bore));
     sizing
 }
 

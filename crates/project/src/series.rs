@@ -208,7 +208,7 @@ impl DeclaredSpring {
 }
 
 impl SpringCoil {
-    fn visit<V: Visitor>(&mut self, v: &mut V) {
+    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
         let k = key("index", &RATIO, "Mean diameter of the coil over the diameter of the wire.");
         v.quantity(k.at_least(3.0).at_most(20.0), &mut self.index);
         let k =

@@ -1,8 +1,11 @@
-//! `[sizing]`.
+//! `[sizing]` and `[sizing.other_means]`.
 
-use super::key::key;
+use super::key::{key, plain};
+use super::series::SpringCoil;
 use super::visitor::Visitor;
-use phea_quantity::{FLOW_GAIN, FLOW_PRESSURE_COEFFICIENT, LENGTH, RATIO, TIME, VELOCITY, VOLTAGE_PER_FORCE};
+use phea_quantity::{
+    FLOW_GAIN, FLOW_PRESSURE_COEFFICIENT, FORCE, LENGTH, RATIO, STIFFNESS, TIME, VELOCITY, VOLTAGE_PER_FORCE,
+};
 
 /// The requirements for the compliant component.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -26,6 +29,60 @@ pub struct DeclaredSizing {
     pub hose_length: Option<[f64; 2]>,
     /// m, hoses are cut to multiples of this; absent: to any length.
     pub length_increment: Option<f64>,
+    /// What else is sized for the stiffness of the hose; absent: nothing.
+    pub other_means: Option<OtherMeansWish>,
+}
+
+/// What is asked of the ways to be as soft as the hose without it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OtherMeansWish {
+    /// N/m, K_H; absent: that of the hose which is accepted.
+    pub stiffness: Option<f64>,
+    /// N, forces at standstill between which gas is to be in use; absent: no gas is sized.
+    pub force_range: Option<[f64; 2]>,
+    /// Precharge over the lowest pressure of a chamber between these forces, both absolute.
+    pub precharge_share: f64,
+    /// Of the gas.
+    pub polytropic_exponent: f64,
+    /// Of the mode of the load cell; absent: no valve between the chambers is sized.
+    pub damping_ratio: Option<f64>,
+    /// What a spring on the rod is wound from; absent: only its stiffness and travel are found.
+    pub coil: Option<SpringCoil>,
+}
+
+/// Accumulators are commonly filled to 0.9 of their lowest working pressure.
+const PRECHARGE_SHARE: f64 = 0.9;
+/// Of nitrogen that exchanges no heat.
+const ADIABATIC: f64 = 1.4;
+
+impl Default for OtherMeansWish {
+    fn default() -> Self {
+        OtherMeansWish {
+            stiffness: None,
+            force_range: None,
+            precharge_share: PRECHARGE_SHARE,
+            polytropic_exponent: ADIABATIC,
+            damping_ratio: None,
+            coil: None,
+        }
+    }
+}
+
+impl OtherMeansWish {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let k = key("stiffness", &STIFFNESS, "K_H of the other means; absent: that of the accepted hose.");
+        v.optional(k.positive(), &mut self.stiffness);
+        let k = key("force_range", &FORCE, "Forces at standstill between which gas is to be in use.");
+        v.pair(k, &mut self.force_range);
+        let k = key("precharge_share", &RATIO, "Precharge over the lowest pressure of a chamber, absolute.");
+        v.quantity(k.positive().at_most(1.0).or(PRECHARGE_SHARE), &mut self.precharge_share);
+        let k = key("polytropic_exponent", &RATIO, "Of the gas: 1 isothermal, 1.4 without heat.");
+        v.quantity(k.at_least(1.0).at_most(2.0).or(ADIABATIC), &mut self.polytropic_exponent);
+        let k = key("damping_ratio", &RATIO, "Of the load cell's mode, by a valve between the chambers.");
+        v.optional(k.positive().below(1.0), &mut self.damping_ratio);
+        let k = plain("coil", "What a spring on the rod is wound from.");
+        v.table(k, &mut self.coil, SpringCoil::visit);
+    }
 }
 
 /// The wanted speed of a closed loop.
@@ -94,5 +151,7 @@ impl DeclaredSizing {
         v.pair(k, &mut self.hose_length);
         let k = key("length_increment", &LENGTH, "Hoses are cut to multiples of this.").positive();
         v.optional(k, &mut self.length_increment);
+        let k = plain("other_means", "Sizes gas, a spring, a pipe and a valve between the chambers too.");
+        v.table(k, &mut self.other_means, OtherMeansWish::visit);
     }
 }

@@ -38,6 +38,7 @@ mod neck;
 mod noise;
 mod number_table;
 mod operating_region;
+mod other_means;
 mod parts;
 mod plant_of_verdicts;
 mod proof;

@@ -7,7 +7,7 @@ use crate::catalogue::{Catalogue, CatalogueKind, DASH_SIZES};
 use crate::project::{self, HoseProperties, SettlingTime, Speed};
 use crate::quantity::significant;
 use crate::setup::Setup;
-use crate::sizing::{HoseOption, SizingProblem};
+use crate::sizing::{HoseOption, OtherMeansProblem, SizingProblem};
 
 /// Recommended oil velocity of pressure lines, m/s (Rabie 2009, quoted in Ledezma 2019, section
 /// 6.3.1.1).
@@ -111,6 +111,13 @@ pub fn sizing_problem(setup: &Setup<'_>, catalogue: &Catalogue) -> Result<Sizing
         model: components.stiffness_model,
         unlike: unlike(actuator),
         hoses,
+        other_means: wish.other_means.clone().map(|wish| OtherMeansProblem {
+            wish,
+            actuator: rig.actuator,
+            linear: rig.leaking(),
+            position: rig.point.position,
+            length: actuator.cylinder.dead_length.map(|dead| actuator.cylinder.longest_stage_m() + dead),
+        }),
         market_bores: DASH_SIZES.iter().map(|(name, bore)| (name.to_string(), *bore)).collect(),
     })
 }

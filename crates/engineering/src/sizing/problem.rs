@@ -6,11 +6,14 @@ use phea_hydraulics::linear::{
 use phea_hydraulics::stiffness::{StiffnessModel, StrokeStiffness, chamber_compliance};
 
 use super::SizingStep;
+use super::other_means::OtherMeansProblem;
 use crate::quantity::{DisplayUnit, significant};
 
 /// The input of the procedure, with every value resolved. SI units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SizingProblem {
+    /// What else is sized for the stiffness of the hose; `None` where nobody asks.
+    pub other_means: Option<OtherMeansProblem>,
     /// The cylinder.
     pub cylinder: Cylinder,
     /// What leaks from chamber to chamber, which K_c of the linear model includes, m3/(s Pa).

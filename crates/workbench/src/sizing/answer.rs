@@ -1,5 +1,5 @@
 use super::model_name;
-use super::{BoreVerdict, Candidate, Consequence, Sizing};
+use super::{BoreVerdict, Candidate, Consequence, OtherMeans, Sizing};
 use crate::answer::{self, Csv, Object, OutputFile, quoted};
 use crate::project::Loaded;
 
@@ -26,7 +26,53 @@ pub fn json(loaded: &Loaded, sizing: &Sizing) -> String {
                 .with("stiffness_n_per_m", influence.stiffness_n_per_m)
                 .with("length_m", influence.length_m)
         });
+    let body = match &sizing.other_means {
+        None => body,
+        Some(found) => body.with("other_means", other_means(found)),
+    };
     answer::json("size", loaded, body)
+}
+
+/// What cannot be has its reason in place of its numbers.
+fn other_means(found: &OtherMeans) -> Object {
+    let absent = |reason: &String| Object::new().with("reason", reason.as_str());
+    let pipe = found.pipe.as_ref().map_or_else(absent, |pipe| {
+        Object::new().with("bore_m", pipe.bore).with("length_m", pipe.length).with("oil_m3", pipe.oil)
+    });
+    let gas = found.gas.as_ref().map_or_else(absent, |gas| {
+        Object::new()
+            .with("gas_volume_m3", gas.volume)
+            .with("precharge_pressure_pa", gas.precharge)
+            .with("pressure_ratio", gas.pressure_ratio)
+            .with("stiffness_n_per_m", gas.stiffness)
+    });
+    let spring = found.spring.as_ref().map_or_else(absent, |spring| {
+        let coil = spring.coil.as_ref();
+        Object::new()
+            .with("stiffness_n_per_m", spring.stiffness)
+            .with("travel_m", spring.travel)
+            .with("installed_length_m", coil.map(|coil| coil.installed_length))
+            .with("mass_kg", coil.map(|coil| coil.mass))
+            .with("actuator_length_m", spring.actuator_length)
+    });
+    let out = Object::new()
+        .with("stiffness_n_per_m", found.stiffness)
+        .with("chambers_n_per_m", found.chambers)
+        .with("pipe", pipe)
+        .with("gas", gas)
+        .with("spring", spring);
+    match &found.valves {
+        Err(reason) => out.with("valves_reason", reason.as_str()),
+        Ok(valves) => out.each("valves", valves, |valve| {
+            Object::new()
+                .with("stiffness_n_per_m", valve.stiffness)
+                .with("damping_ratio_alone", valve.alone)
+                .with("conductance_m3_per_s_pa", valve.conductance)
+                .with("damping_ratio_at_most", valve.most[0])
+                .with("at_conductance_m3_per_s_pa", valve.most[1])
+                .with("loss_w", valve.loss)
+        }),
+    }
 }
 
 /// Of its reasons those that reject it come first.

@@ -1,11 +1,11 @@
 //! A sizing for people.
 
 use super::answer::branch_name;
-use super::{Candidate, Consequence, Influence, Sizing, model_name};
+use super::{Candidate, Consequence, Influence, OtherMeans, SizedValve, Sizing, model_name};
 use crate::answer::significant;
 use crate::document::{Cell, Document, StatusMark, Table};
 use crate::figure::Figure;
-use crate::quantity::DisplayUnit;
+use crate::quantity::{DisplayUnit, LENGTH, MASS, PRESSURE, VOLUME, display};
 
 /// The tables and sentences of `size`.
 pub fn text(sizing: &Sizing) -> String {
@@ -31,6 +31,9 @@ pub(crate) fn document(sizing: &Sizing, figures: Vec<Figure>) -> Document {
         (Some(other.1.is_some().into()), format!("{}: {}", other.0, answer_sentence(other.1))),
     ]);
     out.figures(figures);
+    if let Some(found) = &sizing.other_means {
+        other_means(&mut out, found);
+    }
     let headings = ["quantity", "low · nominal · high", "K_H at this length, MN/m", "length for this K_H, m"];
     out.section(
         "What is uncertain",
@@ -40,6 +43,72 @@ pub(crate) fn document(sizing: &Sizing, figures: Vec<Figure>) -> Document {
         out.explanation("Each number goes from its low to its high value while all others stay nominal. Stiffening has its declared interval; where none is stated, 10 % either way is assumed.");
     }
     out
+}
+
+/// What else has the stiffness of the hose, and what damps the load cell.
+fn other_means(out: &mut Document, found: &OtherMeans) {
+    let mega = |value: f64| DisplayUnit::MEGANEWTON_PER_METRE.text(value, 3);
+    let length = |value: f64| display(value, &LENGTH, 3);
+    let pipe = found.pipe.as_ref().map(|pipe| {
+        let oil = display(pipe.oil, &VOLUME, 3);
+        format!("{} of {} bore a line, with {oil} of oil in both", length(pipe.length), length(pipe.bore))
+    });
+    let gas = found.gas.as_ref().map(|gas| {
+        let [volume, precharge] = [display(gas.volume, &VOLUME, 3), display(gas.precharge, &PRESSURE, 3)];
+        let ratio = significant(gas.pressure_ratio, 3);
+        let [soft, stiff] = gas.stiffness.map(mega);
+        format!(
+            "{volume} at {precharge} at each chamber: K_H at its least over the stroke from {soft} to {stiff} over the forces; at the \
+             supply pressure the gas has {ratio} times the absolute pressure of its precharge"
+        )
+    });
+    let spring = found.spring.as_ref().map(|spring| {
+        let wound = spring.coil.as_ref().map_or("how it is wound is not known".to_string(), |coil| {
+            let [wire, coils] = [length(coil.wire_diameter), significant(coil.active_coils, 3)];
+            let [long, heavy] = [length(coil.installed_length), display(coil.mass, &MASS, 3)];
+            format!("two coils of {wire} wire with {coils} active turns each, {long} and {heavy} together")
+        });
+        let actuator = spring.actuator_length.map(|long| format!("; the actuator is {} long", length(long)));
+        let [stiffness, travel] = [mega(spring.stiffness), length(spring.travel)];
+        format!("{stiffness}, ±{travel} under the stall force; {wound}{}", actuator.unwrap_or_default())
+    });
+    out.heading(format!("The {} of the hose by other means", mega(found.stiffness)));
+    let cell = |found: Result<String, &String>| found.unwrap_or_else(|reason| format!("- ({reason})"));
+    let mut rows = Table::new(["means", "size"]);
+    rows.row(["chambers without any line".to_string(), mega(found.chambers)]);
+    rows.row(["pipe".to_string(), cell(pipe)]);
+    rows.row(["gas at the chambers".to_string(), cell(gas)]);
+    rows.row(["spring on the rod".to_string(), cell(spring)]);
+    match &found.valves {
+        Err(reason) => rows.row(["valve between the chambers".to_string(), format!("- ({reason})")]),
+        Ok(valves) => {
+            for valve in valves {
+                let name = format!("valve between the chambers, K_H {}", mega(valve.stiffness));
+                rows.row([name, valve_words(valve)]);
+            }
+        }
+    }
+    out.table(rows);
+    out.explanation("Pipe, gas and spring stand in place of the hose: K_H is that of chambers and pipe, of chambers and gas, or of chambers and spring in series. A valve between the chambers does not soften: it damps the mode of the load cell, of the rig as it is declared and of its chambers without any line.");
+}
+
+/// How much a valve damps, and what it costs.
+fn valve_words(valve: &SizedValve) -> String {
+    let [most, at] = valve.most.map(|value| significant(value, 3));
+    let alone = significant(valve.alone, 3);
+    let Some(conductance) = valve.conductance else {
+        return format!(
+            "- (no conductance damps the load cell so much: from {alone} without it to {most} at most, with {at} m3/(s.Pa))"
+        );
+    };
+    let loss = valve
+        .loss
+        .map(|watt| format!("; it loses {} at the greatest force", DisplayUnit::WATT.text(watt, 3)));
+    format!(
+        "{} m3/(s.Pa), from a damping ratio of {alone} without it{}; {most} at most, with {at}",
+        significant(conductance, 3),
+        loss.unwrap_or_default()
+    )
 }
 
 /// What to buy and which gain to set, in a sentence.

@@ -1,0 +1,297 @@
+//! The stiffness of the hose by other means: a pipe, gas at the chambers, a spring on the rod; and a valve
+//! between the chambers that damps the mode of the load cell.
+
+use phea_dynamics::linear::{Polynomial, TransferFunction};
+use phea_hydraulics::accumulator::Accumulator;
+use phea_hydraulics::actuator::{Actuator, Components};
+use phea_hydraulics::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
+use phea_hydraulics::line::{Line, Pipe, PipeWall, StiffeningMember};
+use phea_hydraulics::linear::LinearParameters;
+use phea_hydraulics::operating_point::{Condition, SteadyLoad, operating_point};
+use phea_hydraulics::series::{CoilPair, CoilWire, LEAST_ACTIVE_COILS, coil_pair};
+
+use crate::project::OtherMeansWish;
+
+/// What the other means are sized from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OtherMeansProblem {
+    /// What is asked.
+    pub wish: OtherMeansWish,
+    /// The rig, with the lines that it declares.
+    pub actuator: Actuator,
+    /// Its linear parameters, the stiffness of a series element in series with the force sensor.
+    pub linear: LinearParameters,
+    /// Of the operating point, m.
+    pub position: f64,
+    /// m, stroke and `cylinder.dead_length`; `None` where that is not stated.
+    pub length: Option<f64>,
+}
+
+/// The other means.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OtherMeans {
+    /// K_H that is asked of them, N/m.
+    pub stiffness: f64,
+    /// Least K_H over the stroke of the chambers without any line, N/m.
+    pub chambers: f64,
+    /// Each, or why it cannot be.
+    pub pipe: Result<SizedPipe, String>,
+    /// Gas at both chambers.
+    pub gas: Result<SizedGas, String>,
+    /// A spring on the rod.
+    pub spring: Result<SizedSpring, String>,
+    /// A valve between the chambers: of the rig as declared, and of its chambers without any line.
+    pub valves: Result<[SizedValve; 2], String>,
+}
+
+/// A pipe to each chamber.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SizedPipe {
+    /// m, that of the hose.
+    pub bore: f64,
+    /// m, of each.
+    pub length: f64,
+    /// m3, of oil in both.
+    pub oil: f64,
+}
+
+/// Equal accumulators at both chambers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SizedGas {
+    /// m3, of each at its precharge.
+    pub volume: f64,
+    /// Pa, gauge.
+    pub precharge: f64,
+    /// Supply pressure over precharge, both absolute: for the maker's limit.
+    pub pressure_ratio: f64,
+    /// Softest and stiffest least K_H over the stroke between the forces, N/m.
+    pub stiffness: [f64; 2],
+}
+
+/// A spring between force sensor and load.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SizedSpring {
+    /// N/m.
+    pub stiffness: f64,
+    /// m, to either side, under the stall force.
+    pub travel: f64,
+    /// How it is wound; `None` where the wire is not stated, or has too few coils.
+    pub coil: Option<CoilPair>,
+    /// m, of the actuator with it from mount to mount, retracted.
+    pub actuator_length: Option<f64>,
+}
+
+/// A laminar valve between the chambers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SizedValve {
+    /// K_H of the rig that it damps, N/m.
+    pub stiffness: f64,
+    /// Damping ratio of the mode of the load cell without it.
+    pub alone: f64,
+    /// m3/(s Pa), with which the mode is damped as asked; `None` where none does.
+    pub conductance: Option<f64>,
+    /// The greatest damping ratio that any gives, and that conductance.
+    pub most: [f64; 2],
+    /// W, what the valve loses at the greatest force of the range; `None` without a range.
+    pub loss: Option<f64>,
+}
+
+/// Halvings of every search: the interval is rounding then.
+const HALVINGS: usize = 80;
+/// Forces over the range at which gas is compared.
+const FORCES: usize = 21;
+/// Conductances that are compared, and how far they extend to either side of the corner of the chambers.
+const CONDUCTANCES: usize = 400;
+const DECADES: f64 = 4.0;
+
+impl OtherMeansProblem {
+    /// All of them, for a hose of this K_H in N/m and bore in m.
+    pub(super) fn solve(&self, hose_stiffness: f64, bore: f64) -> OtherMeans {
+        let stiffness = self.wish.stiffness.unwrap_or(hose_stiffness);
+        let chambers = self.least(&rigid_pipe(bore, 0.0), None, [self.actuator.mean_pressure(); 2]);
+        OtherMeans {
+            stiffness,
+            chambers,
+            pipe: self.pipe(stiffness, chambers, bore),
+            gas: self.gas(stiffness, chambers, bore),
+            spring: self.spring(stiffness, chambers),
+            valves: self.valves(chambers),
+        }
+    }
+
+    /// Least K_H over the stroke in N/m with this line, and this gas, at both chambers.
+    fn least(&self, line: &Line, gas: Option<Accumulator>, pressures: [f64; 2]) -> f64 {
+        let components = Components {
+            line_a: *line,
+            line_b: *line,
+            accumulators: [gas; 2],
+            necks: [None; 2],
+            thermal_time_constants: [None; 2],
+            adjustments: [None; 2],
+            ..*self.actuator.components()
+        };
+        components.chamber_compliance(pressures, StiffeningMember::Nominal).over_stroke().minimum
+    }
+
+    fn pipe(&self, stiffness: f64, chambers: f64, bore: f64) -> Result<SizedPipe, String> {
+        softer(stiffness, chambers)?;
+        let pressures = [self.actuator.mean_pressure(); 2];
+        let length = falls_to(stiffness, |length| self.least(&rigid_pipe(bore, length), None, pressures))
+            .ok_or("no length of it is as soft")?;
+        Ok(SizedPipe { bore, length, oil: 2.0 * rigid_pipe(bore, length).volume() })
+    }
+
+    /// ```text
+    /// P_0 = share P_min,    max over F of K_H(V_0, p_A(F), p_B(F)) = K_H        P_min the lowest chamber pressure over F
+    /// ```
+    fn gas(&self, stiffness: f64, chambers: f64, bore: f64) -> Result<SizedGas, String> {
+        let [low, high] = self.wish.force_range.ok_or("not stated: sizing.other_means.force_range")?;
+        softer(stiffness, chambers)?;
+        let held = |index: usize| {
+            let force = low + (high - low) * index as f64 / (FORCES - 1) as f64;
+            let condition = Condition::Load(SteadyLoad::Force(force));
+            let point = operating_point(&self.actuator, self.position, condition);
+            point.map(|point| [point.pressure_a, point.pressure_b])
+        };
+        let pressures: Result<Vec<[f64; 2]>, _> = (0..FORCES).map(held).collect();
+        let pressures =
+            pressures.map_err(|_| "the rig does not hold every force of sizing.other_means.force_range")?;
+        let lowest = pressures.iter().flatten().fold(f64::INFINITY, |least, one| least.min(*one));
+        let absolute = lowest + ATMOSPHERIC_PRESSURE_ABSOLUTE;
+        let precharge = self.wish.precharge_share * absolute - ATMOSPHERIC_PRESSURE_ABSOLUTE;
+        if precharge <= 0.0 {
+            return Err(
+                "a chamber comes so near to the tank in this range that no precharge lies below it".into()
+            );
+        }
+        let none = rigid_pipe(bore, 0.0);
+        let over_range = |volume: f64| {
+            let gas = Accumulator {
+                gas_volume: volume,
+                precharge_pressure: precharge,
+                polytropic_exponent: self.wish.polytropic_exponent,
+            };
+            let of = |pressures: &[f64; 2]| self.least(&none, Some(gas), *pressures);
+            pressures
+                .iter()
+                .map(of)
+                .fold([f64::INFINITY, 0.0], |[least, most]: [f64; 2], one| [least.min(one), most.max(one)])
+        };
+        let volume =
+            falls_to(stiffness, |volume| over_range(1e-6 * volume)[1]).ok_or("no volume is as soft")? * 1e-6;
+        let supply = self.actuator.components().supply.pressure + ATMOSPHERIC_PRESSURE_ABSOLUTE;
+        Ok(SizedGas {
+            volume,
+            precharge,
+            pressure_ratio: supply / (precharge + ATMOSPHERIC_PRESSURE_ABSOLUTE),
+            stiffness: over_range(volume),
+        })
+    }
+
+    /// ```text
+    /// 1/k = 1/K_H - 1/K_chambers,    travel F_stall/k
+    /// ```
+    fn spring(&self, stiffness: f64, chambers: f64) -> Result<SizedSpring, String> {
+        softer(stiffness, chambers)?;
+        let spring = 1.0 / (1.0 / stiffness - 1.0 / chambers);
+        let Components { cylinder, supply, .. } = self.actuator.components();
+        let [retracting, extending] = cylinder.stall_forces(supply);
+        let stall = extending.max(-retracting);
+        let coil = self.wish.coil.map(|coil| {
+            let wire = CoilWire {
+                index: coil.index,
+                allowed_shear_stress: coil.allowed_shear_stress,
+                shear_modulus: coil.shear_modulus,
+                density: coil.density,
+            };
+            coil_pair(spring, stall, &wire)
+        });
+        let coil = coil.filter(|pair| pair.active_coils >= LEAST_ACTIVE_COILS);
+        let actuator_length = coil.zip(self.length).map(|(pair, length)| length + pair.installed_length);
+        Ok(SizedSpring { stiffness: spring, travel: stall / spring, coil, actuator_length })
+    }
+
+    fn valves(&self, chambers: f64) -> Result<[SizedValve; 2], String> {
+        let wanted = self.wish.damping_ratio.ok_or("not stated: sizing.other_means.damping_ratio")?;
+        Ok([self.linear.hydraulic_stiffness, chambers].map(|stiffness| self.valve(stiffness, wanted)))
+    }
+
+    fn valve(&self, stiffness: f64, wanted: f64) -> SizedValve {
+        let linear = LinearParameters { hydraulic_stiffness: stiffness, ..self.linear };
+        let area = linear.useful_area;
+        let mode = ((linear.hydraulic_stiffness + linear.sensor_stiffness) / linear.moving_mass).sqrt();
+        let corner = mode * area * area / linear.hydraulic_stiffness;
+        let damped = |conductance: f64| load_cell_damping(&linear, conductance);
+        let at = |index: usize| {
+            let exponent = DECADES * (2.0 * index as f64 / (CONDUCTANCES - 1) as f64 - 1.0);
+            corner * phea_dynamics::portable::pow(10.0, exponent)
+        };
+        let all: Vec<[f64; 2]> = (0..CONDUCTANCES).map(|index| [damped(at(index)), at(index)]).collect();
+        let most = all.iter().fold([0.0; 2], |most, one| if one[0] > most[0] { *one } else { most });
+        let first = all.iter().position(|[ratio, _]| *ratio >= wanted);
+        let conductance = first.map(|index| {
+            let (mut less, mut more) = (if index == 0 { 0.0 } else { all[index - 1][1] }, all[index][1]);
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * (less + more);
+                if damped(middle) < wanted { less = middle } else { more = middle }
+            }
+            more
+        });
+        let greatest = self.wish.force_range.map(|[low, high]| low.abs().max(high.abs()));
+        let loss = conductance
+            .zip(greatest)
+            .map(|(conductance, force)| conductance * (force / area) * (force / area));
+        SizedValve { stiffness, alone: damped(0.0), conductance, most, loss }
+    }
+}
+
+/// Damping ratio of the mode of the load cell with a laminar conductance in m3/(s Pa) between the chambers;
+/// one where nothing oscillates.
+///
+/// ```text
+/// (C s + K_c + G)(M s^2 + f_v s + K_S) + A^2 s = 0,    C = A^2/K_H                    4.25, 6.6 with the valve shut
+/// ```
+fn load_cell_damping(linear: &LinearParameters, conductance: f64) -> f64 {
+    let square = linear.useful_area * linear.useful_area;
+    let flow = Polynomial::new(vec![
+        square / linear.hydraulic_stiffness,
+        linear.flow_pressure_coefficient + conductance,
+    ]);
+    let held = Polynomial::new(vec![linear.moving_mass, linear.viscous_friction, linear.sensor_stiffness]);
+    let closed = flow.product(&held).sum(&Polynomial::new(vec![square, 0.0]));
+    let Ok(modes) = TransferFunction::from_polynomials(&Polynomial::new(vec![1.0]), &closed) else {
+        return f64::NAN;
+    };
+    let oscillates = modes.poles().iter().find(|pole| pole.im > 0.0);
+    oscillates.map_or(1.0, |pole| -pole.re / pole.norm_sqr().sqrt())
+}
+
+/// A pipe with a rigid wall.
+fn rigid_pipe(bore: f64, length: f64) -> Line {
+    Line::Pipe { pipe: Pipe { bore, wall: PipeWall::Rigid }, length }
+}
+
+/// Nothing has to be softer than the chambers are.
+fn softer(stiffness: f64, chambers: f64) -> Result<(), String> {
+    match stiffness < chambers {
+        true => Ok(()),
+        false => Err("the chambers without any line are as soft".to_string()),
+    }
+}
+
+/// Where a falling function of a positive number comes to a value; `None` where it does not up to a million.
+fn falls_to(value: f64, of: impl Fn(f64) -> f64) -> Option<f64> {
+    let mut most = 1e-3;
+    while of(most) > value {
+        most *= 2.0;
+        if most > 1e6 {
+            return None;
+        }
+    }
+    let mut least = 0.0;
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (least + most);
+        if of(middle) > value { least = middle } else { most = middle }
+    }
+    Some(most)
+}

@@ -1,0 +1,119 @@
+//! The stiffness of the hose by other means: pipe, gas, spring and a valve between the chambers, against closed forms and rigs that
+//! declare what was found.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
+#![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
+
+use phea_workbench::command::Request;
+use serde_json::Value;
+
+use crate::ask::{answer, check, derived, json, near, size};
+
+const COMPLIANCE: &str = include_str!("../../../examples/ybitu/compliance.toml");
+
+fn found(settings: &[&str]) -> Value {
+    size(COMPLIANCE, settings)["other_means"].clone()
+}
+
+fn number(value: &Value, path: &str) -> f64 {
+    let at = path.split('.').fold(value, |value, key| match key.parse::<usize>() {
+        Ok(index) => &value[index],
+        Err(_) => &value[key],
+    });
+    at.as_f64().unwrap_or_else(|| panic!("{path}: {value}"))
+}
+
+/// ORIGIN: analytic, a rigid pipe at both chambers of a symmetric cylinder, K_H = 2 A^2 beta/(V_line + A L/2) at mid stroke
+#[test]
+fn a_pipe_is_long() {
+    let told = found(&[]);
+    let area = std::f64::consts::FRAC_PI_4 * (0.05 * 0.05 - 0.022 * 0.022);
+    let stiffness = number(&told, "stiffness_n_per_m");
+    let chamber = area * 0.25;
+    let volume = 2.0 * area * area * 1.45e9 / stiffness - chamber;
+    near(number(&told, "pipe.length_m"), volume / (std::f64::consts::FRAC_PI_4 * 0.0127 * 0.0127), 1e-9);
+    near(number(&told, "pipe.oil_m3"), 2.0 * volume, 1e-9);
+    near(number(&told, "chambers_n_per_m"), 2.0 * area * area * 1.45e9 / chamber, 1e-12);
+}
+
+/// Chambers and spring in series have the stiffness of the hose; the coils hold the stall force, as those of `[series.coil]`.
+#[test]
+fn a_spring_stands_in_series() {
+    let told = found(&[]);
+    let [hose, chambers, spring] =
+        ["stiffness_n_per_m", "chambers_n_per_m", "spring.stiffness_n_per_m"].map(|path| number(&told, path));
+    near(1.0 / (1.0 / spring + 1.0 / chambers), hose, 1e-12);
+    let series = format!(
+        "series={{ stiffness = {spring:?}, coil = {{ index = 4, allowed_shear_stress = \"600 MPa\" }} }}"
+    );
+    let declared = check(COMPLIANCE, &[&series]);
+    near(number(&told, "spring.travel_m"), derived(&declared, "series.deflection_at_stall"), 1e-12);
+    let length = derived(&declared, "series.coil.installed_length");
+    near(number(&told, "spring.installed_length_m"), length, 1e-12);
+    near(number(&told, "spring.mass_kg"), derived(&declared, "series.coil.mass"), 1e-12);
+    // ORIGIN: analytic, 0.5 m of stroke and the 0.3 m that the example states
+    near(number(&told, "spring.actuator_length_m"), 0.8 + length, 1e-12);
+}
+
+/// A rig that declares the gas has the stiffness that was asked where it is stiffest, and its gas is in use at all forces.
+#[test]
+fn gas_has_that_stiffness_where_it_is_declared() {
+    let told = found(&[]);
+    let [volume, precharge] =
+        ["gas.gas_volume_m3", "gas.precharge_pressure_pa"].map(|path| number(&told, path));
+    let [soft, stiff] =
+        ["gas.stiffness_n_per_m.0", "gas.stiffness_n_per_m.1"].map(|path| number(&told, path));
+    near(stiff, number(&told, "stiffness_n_per_m"), 1e-9);
+    assert!(soft < stiff);
+    let line = format!(
+        "line={{ pipe = {{ bore = \"12.7 mm\" }}, length = 1e-9, compliance = \"by_volume\", accumulator = {{ gas_volume = {volume:?}, \
+         precharge_pressure = {precharge:?}, polytropic_exponent = 1.4 }} }}"
+    );
+    // without force the stiffness is the greatest, and at 250 mm it is softest
+    let settings = [line.as_str(), "operating_point.load_force=0 N", "operating_point.position=\"250 mm\""];
+    near(derived(&check(COMPLIANCE, &settings), "stiffness.with_accumulators"), stiff, 1e-8);
+    // the share of the lowest chamber pressure over these forces
+    let ends = ["-4 kN", "4 kN"].map(|force| {
+        let told = check(COMPLIANCE, &[&format!("operating_point.load_force={force}")]);
+        derived(&told, "operating_point.pressure_a").min(derived(&told, "operating_point.pressure_b"))
+    });
+    near(precharge + 101_325.0, 0.9 * (ends[0].min(ends[1]) + 101_325.0), 1e-9);
+}
+
+/// With the linear parameters of Table 6.3, the hose of 2.24 MN/m and the pipe of 17.1 MN/m.
+/// ORIGIN: recomputed by comparisons/recompute_cross_port.py
+#[test]
+fn a_valve_damps_the_load_cell() {
+    let hose = "linear.hydraulic_stiffness=2.24e6";
+    let told = found(&[hose, "operating_point.position=250 mm"]);
+    assert!(told["valves"][0]["conductance_m3_per_s_pa"].is_null(), "{told}");
+    near(number(&told, "valves.0.damping_ratio_alone"), 0.002_951_49, 1e-3);
+    near(number(&told, "valves.0.damping_ratio_at_most"), 0.030_347_3, 1e-3);
+    near(number(&told, "valves.0.at_conductance_m3_per_s_pa"), 1.501_26e-9, 3e-2);
+    let pipe =
+        found(&["uncertainty.hydraulic_stiffness={ nominal = 1.71e7, minimum = 1.7e7, maximum = 1.72e7 }"]);
+    let conductance = number(&pipe, "valves.0.conductance_m3_per_s_pa");
+    near(conductance, 1.076_440e-10, 1e-5);
+    let area = std::f64::consts::FRAC_PI_4 * (0.05 * 0.05 - 0.022 * 0.022);
+    near(number(&pipe, "valves.0.loss_w"), conductance * (4e3_f64 / area).powi(2), 1e-9);
+}
+
+/// What is not asked or cannot be has its reason; without the table nothing is said of other means.
+#[test]
+fn what_cannot_be_has_its_reason() {
+    let alone = "sizing.other_means={ stiffness = \"30 MN/m\", force_range = [\"-20 kN\", \"4 kN\"] }";
+    let told = found(&[alone]);
+    for means in ["pipe", "spring"] {
+        assert_eq!(told[means]["reason"], "the chambers without any line are as soft", "{told}");
+    }
+    assert_eq!(told["valves_reason"], "not stated: sizing.other_means.damping_ratio");
+    let far = found(&["sizing.other_means.force_range=[\"-20 kN\", \"4 kN\"]"]);
+    let reason = far["gas"]["reason"].as_str().unwrap();
+    assert!(reason.contains("does not hold every force"), "{reason}");
+    let unstated = found(&["sizing.other_means={}"]);
+    assert_eq!(unstated["gas"]["reason"], "not stated: sizing.other_means.force_range");
+    let hose = json(crate::ask::HOSE, &[], &[], &Request::Size { gain: None, length: None });
+    assert!(hose.get("other_means").is_none());
+    let text = answer(COMPLIANCE, &[], &[], &Request::Size { gain: None, length: None }).text;
+    assert!(text.contains("of the hose by other means") && text.contains("spring on the rod"), "{text}");
+}
