@@ -5,11 +5,14 @@
 
 use phea_hydraulics::cross_port::Restrictor;
 use phea_hydraulics::operating_point::OperatingPoint;
+use phea_hydraulics::series::MOST_SEGMENTS;
 
 use crate::control::{velocity_sensor, virtual_impedance};
 use crate::project::{CrossPortKind, DeclaredSeries, LineMotion, Load, Project, Pump, SupplyModel};
 use crate::quantity::{DisplayUnit, PRESSURE, display, significant};
-use crate::rig::{ChargedRange, accumulator_place, charged_range, cross_port_at_point, limits_load_motion};
+use crate::rig::{
+    ChargedRange, accumulator_place, charged_range, cross_port_at_point, limits_load_motion, waves_right_to,
+};
 use crate::setup::Setup;
 
 /// A declared effect that the linear loop does not include.
@@ -26,7 +29,7 @@ pub fn caveats(setup: &Setup<'_>) -> Vec<Caveat> {
     let of_rig =
         supply(setup).into_iter().chain(accumulator(setup)).chain(cross_port(setup)).chain(neck(setup));
     let of_rig = of_rig.chain(adjustment(setup)).chain(gas_valve(setup));
-    apart_from_lines(setup.project).chain(of_rig).chain(progression(setup)).collect()
+    apart_from_lines(setup.project).chain(of_rig).chain(progression(setup)).chain(segments(setup)).collect()
 }
 
 /// Declared effects that no linear model includes, in sentences.
@@ -62,6 +65,22 @@ fn progression(setup: &Setup<'_>) -> Option<Caveat> {
             stiffness(here),
             stiffness(declared.stiffness),
             stiffness(stiffest)
+        ),
+        unproven: false,
+    })
+}
+
+/// The waves of a transmission beyond its segments.
+fn segments(setup: &Setup<'_>) -> Option<Caveat> {
+    let declared = setup.project.actuator.as_ref()?.series.as_ref()?.transmission()?;
+    let right_to = waves_right_to(setup.rig().ok()?)?;
+    Some(Caveat {
+        sentence: format!(
+            "the line of the transmission is counted in segments, here {}, whose waves are right to 3 % up to {} rad/s: a margin beyond that may \
+             be that of its segments{}",
+            declared.segments,
+            significant(right_to, 3),
+            if (declared.segments as usize) < MOST_SEGMENTS { "; `--on-machine` tries more" } else { "" }
         ),
         unproven: false,
     })

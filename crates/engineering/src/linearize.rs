@@ -15,8 +15,7 @@ use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_dynamics::portable;
 use phea_hydraulics::actuator::Components;
 use phea_hydraulics::impedance::{
-    Asymptote, closed_loop_port, compliance_hidden_above, final_force_after_load_step, load_motion_of,
-    open_loop_impedance, port,
+    Asymptote, closed_loop_port, final_force_after_load_step, load_motion_of, open_loop_impedance, port,
 };
 use phea_hydraulics::line::StiffeningMember;
 use phea_hydraulics::linear::{
@@ -32,6 +31,7 @@ use phea_hydraulics::two_pressure::two_pressure_coefficients;
 pub use agreement::AgreementBand;
 pub use agreement::{WITHIN_DB, WITHIN_DEG};
 pub use linkage::{LinkagePlace, LinkagePosition, linkage_places};
+pub(crate) use port::hidden_above;
 pub use port::{AskedAt, AskedImpedance, SHOWN_AT, WITHIN_PERCENT};
 pub use sweep::{POINTS, Sweep, SweepPoint, SweepRequest, Swept, sweep};
 pub(crate) use sweep::{points, range, values};
@@ -93,6 +93,10 @@ pub struct Linearization {
     pub linkage: Vec<LinkagePlace>,
     /// Above this frequency the piston's mass hides the compliance, rad/s.
     pub compliance_hidden_above_rad_per_s: f64,
+    /// What hides it, and the equation of that frequency.
+    pub hidden_by: &'static str,
+    /// The same for a figure.
+    pub hidden_label: &'static str,
 }
 
 /// Largest differences of two responses: below 1000 rad/s, and everywhere.
@@ -154,6 +158,7 @@ pub fn linearize(
     let closed_loop = continuous.map(|controller| closed_loop_view(rig, controller)).transpose()?;
     let reductions = [&two_pressure.command, &full.command, &decomposed[1], &first_order];
     let agreement = agreement::agreement(rig, &frequency_grid(&plant.command)?, &plant.command, reductions);
+    let [hidden_by, hidden_label] = port::hidden_words(rig);
     Ok(Linearization {
         motion: rig.motion,
         plant_is_fifth_order: is_fifth_order(rig),
@@ -175,10 +180,9 @@ pub fn linearize(
         closed_loop,
         asked: controller.map(|given| port::asked(rig, given, sensor)).transpose()?.flatten(),
         linkage: linkage_places(rig),
-        compliance_hidden_above_rad_per_s: compliance_hidden_above(
-            rig.linear.hydraulic_stiffness,
-            rig.linear.moving_mass,
-        ),
+        compliance_hidden_above_rad_per_s: port::hidden_above(rig),
+        hidden_by,
+        hidden_label,
         plant,
         two_pressure,
         full,

@@ -55,7 +55,7 @@ pub use plant::{LoadLever, YieldingLoad, linear, plant, sides, stated};
 pub(crate) use plant::{load_at, rod_end};
 pub(crate) use sizing::own_hoses;
 pub use sizing::{SizingError, sizing_problem};
-pub(crate) use spring::{series_coil, stall_force};
+pub(crate) use spring::{series_coil, stall_force, waves_right_to};
 pub(crate) use supply::yielding_supply;
 pub use supply::{power_at_rest, power_unit, settled_supply};
 

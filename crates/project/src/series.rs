@@ -83,8 +83,8 @@ pub struct SpringCoil {
 const STEEL_SHEAR_MODULUS: f64 = 81.5e9;
 const STEEL_DENSITY: f64 = 7850.0;
 
-/// Default number of segments of a transmission: its first wave is 3 % slow.
-const SEGMENTS: u32 = 2;
+/// Default number of segments of a transmission: its first wave, half a wave long, is 3 % slow.
+const SEGMENTS: u32 = 4;
 
 impl Default for DeclaredSeries {
     fn default() -> Self {
@@ -150,7 +150,7 @@ impl DeclaredTransmission {
         v.quantity(k, &mut self.filling_pressure);
         let k = key("end_volume", &VOLUME, "Oil at either piston, beside that of the line.").not_negative();
         v.quantity(k.or(0.0), &mut self.end_volume);
-        let k = key("segments", &RATIO, "Into how many segments its line is cut; absent: 2.").at_least(1.0);
+        let k = key("segments", &RATIO, "Into how many segments its line is cut; absent: 4.").at_least(1.0);
         let mut segments = Some(self.segments);
         v.optional_count(k.at_most(MOST_SEGMENTS as f64), &mut segments);
         self.segments = segments.unwrap_or(SEGMENTS);

@@ -288,7 +288,7 @@ fn a_transmission_is_that_of_its_numbers() {
             ("series.line.bore", [0.012, 0.0127, 0.0135]),
             ("series.line.length", [1.9, 2.0, 2.1]),
             ("series.line.volumetric_expansion", [1.5e-5, 1.56e-5, 1.6e-5]),
-            ("series.line.dynamic_stiffening.nominal", [4.2, 5.0, 5.0]),
+            ("series.line.dynamic_stiffening", [4.2, 5.0, 5.0]),
             ("fluid.kinematic_viscosity", [2e-5, 4.6e-5, 9e-5]),
             ("fluid.density", [850.0, 870.0, 890.0]),
         ],

@@ -310,8 +310,10 @@ fn dynamics(rig: &Rig, list: &mut List) {
         "N/(s.V)",
         "dF_e/dt per volt = K_{qU} K_{eq}/A_u",
     );
-    let hidden = (linear.hydraulic_stiffness / linear.moving_mass).sqrt();
-    list.add("dynamics.compliance_hidden_above", "ω", hidden, "rad/s", "ω = sqrt(K_H/M)");
+    let hidden = crate::linearize::hidden_above(rig);
+    let by_piston = hidden == (rig.linear.hydraulic_stiffness / rig.linear.moving_mass).sqrt();
+    let equation = if by_piston { "ω = sqrt(K_H/M)" } else { "ω = sqrt(K_{eq}/m)" };
+    list.add("dynamics.compliance_hidden_above", "ω", hidden, "rad/s", equation);
 }
 
 fn friction(rig: &Rig, list: &mut List) {

@@ -4,7 +4,7 @@ use phea_hydraulics::series::{CoilPair, LEAST_ACTIVE_COILS, SeriesElement, Serie
 
 use super::list::List;
 use crate::project::Project;
-use crate::rig::{Rig, series_coil, stall_force};
+use crate::rig::{Rig, series_coil, stall_force, waves_right_to};
 
 const TOO_FEW_COILS: &str = "fewer than two active coils, whose ends would decide the stiffness: take a smaller index, a lower stress, or disc springs";
 
@@ -36,8 +36,11 @@ fn transmission(transmission: &Transmission, rig: &Rig, list: &mut List) {
         }
     }
     list.add("series.oil_volume", "V", transmission.oil_volume(), "m3", "V = a L + 2 V_e");
-    let stall = stall_force(rig);
-    list.add("series.pressure_at_stall", "p", column.pressure(stall), "Pa", "p = p_0 + F_{max}/A");
+    let right_to = waves_right_to(rig).unwrap_or(f64::INFINITY);
+    list.add("series.waves_right_to", "ω", right_to, "rad/s", "ω = 0.85 N/T, where waves are 3 % slow");
+    let components = rig.actuator.components();
+    let [_, extending] = components.cylinder.stall_forces(&components.supply);
+    list.add("series.pressure_at_stall", "p", column.pressure(extending), "Pa", "p = p_0 + F_{max}/A");
     let tears = transmission.piston_area * (transmission.filling_pressure + ATMOSPHERIC_PRESSURE_ABSOLUTE);
     list.add("series.pull_limit", "F", tears, "N", "F = A (p_0 + p_{atm})");
 }

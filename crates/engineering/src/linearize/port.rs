@@ -7,7 +7,9 @@ use phea_dynamics::controller::{Controller, VirtualImpedance};
 use phea_dynamics::frequency::logarithmic_grid;
 use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_dynamics::portable;
-use phea_hydraulics::impedance::{Asymptote, AsymptoteKind, impedance_asymptotes, through_oil};
+use phea_hydraulics::impedance::{
+    Asymptote, AsymptoteKind, compliance_hidden_above, impedance_asymptotes, through_oil,
+};
 use phea_hydraulics::plant::{LinearElement, LinearLoad, LinearPlant};
 use phea_qft::closed_loop::Compensation;
 
@@ -136,6 +138,31 @@ pub(super) fn asymptotes(rig: &Rig, controller: &TransferFunction) -> Vec<Asympt
         lines.insert(0, Asymptote { kind, power, coefficient, from: 0.0, to });
     }
     lines
+}
+
+/// Above which frequency in rad/s a mass hides the compliance of the chambers from the load: the piston's,
+/// or that of the oil in a transmission.
+///
+/// ```text
+/// w = sqrt(K_H/M), or sqrt(K_eq/m) where that is less           m = N m of the oil, as its pistons feel it
+/// ```
+pub(crate) fn hidden_above(rig: &Rig) -> f64 {
+    let piston = compliance_hidden_above(rig.linear.hydraulic_stiffness, rig.linear.moving_mass);
+    oil_hides_above(rig).map_or(piston, |oil| oil.min(piston))
+}
+
+/// What that mass is, and the equation of the frequency for a figure.
+pub(super) fn hidden_words(rig: &Rig) -> [&'static str; 2] {
+    match oil_hides_above(rig).is_some_and(|oil| oil == hidden_above(rig)) {
+        true => ["the oil of the transmission", "√(K_eq/m)"],
+        false => ["the piston's mass", "√(K_H/M)"],
+    }
+}
+
+fn oil_hides_above(rig: &Rig) -> Option<f64> {
+    let LinearElement::Oil(column) = rig.plant.series?.element else { return None };
+    let mass = column.segments as f64 * column.mass;
+    Some(compliance_hidden_above(rig.leaking().equivalent_stiffness(), mass))
 }
 
 /// Of the rig without a virtual impedance; without a controller those of the open loop.

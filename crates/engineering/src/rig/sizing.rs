@@ -111,14 +111,24 @@ pub fn sizing_problem(setup: &Setup<'_>, catalogue: &Catalogue) -> Result<Sizing
         model: components.stiffness_model,
         unlike: unlike(actuator),
         hoses,
-        other_means: wish.other_means.clone().map(|wish| OtherMeansProblem {
-            wish,
-            actuator: rig.actuator,
-            linear: rig.leaking(),
-            position: rig.point.position,
-            length: actuator.cylinder.dead_length.map(|dead| actuator.cylinder.longest_stage_m() + dead),
-        }),
+        other_means: other_means(wish, actuator, rig),
         market_bores: DASH_SIZES.iter().map(|(name, bore)| (name.to_string(), *bore)).collect(),
+    })
+}
+
+/// What the other means are sized from, where somebody asks.
+fn other_means(
+    wish: &project::DeclaredSizing,
+    declared: &project::DeclaredActuator,
+    rig: &super::Rig,
+) -> Option<OtherMeansProblem> {
+    let cylinder = &declared.cylinder;
+    Some(OtherMeansProblem {
+        wish: wish.other_means.clone()?,
+        actuator: rig.actuator,
+        linear: rig.leaking(),
+        position: rig.point.position,
+        length: cylinder.dead_length.map(|dead| cylinder.longest_stage_m() + dead),
     })
 }
 

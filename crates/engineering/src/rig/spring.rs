@@ -1,3 +1,4 @@
+use phea_hydraulics::line::{Conduit, StiffeningMember};
 use phea_hydraulics::series::{CoilPair, CoilWire, SeriesElement, coil_pair};
 
 use super::Rig;
@@ -19,4 +20,19 @@ pub(crate) fn series_coil(declared: &DeclaredActuator, rig: &Rig) -> Option<Coil
     let SpringCoil { index, allowed_shear_stress, shear_modulus, density } = coil;
     let wire = CoilWire { index, allowed_shear_stress, shear_modulus, density };
     Some(coil_pair(spring.stiffness, stall_force(rig), &wire))
+}
+
+/// Up to which frequency in rad/s the waves in the segments of a transmission are at most 3 % slow; `None`
+/// without one.
+///
+/// ```text
+/// (2 N/T) sin(w T/2N) = 0.97 w         w = 0.85 N/T
+/// ```
+pub(crate) fn waves_right_to(rig: &Rig) -> Option<f64> {
+    let components = rig.actuator.components();
+    let SeriesElement::Transmission(transmission) = components.series.as_ref()? else { return None };
+    let line = (&transmission.line, &components.fluid);
+    let conduit =
+        Conduit::of_line(line.0, line.1, transmission.filling_pressure, StiffeningMember::Nominal).ok()?;
+    Some(0.85 * transmission.segments as f64 / conduit.delay())
 }

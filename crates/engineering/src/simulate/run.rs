@@ -247,11 +247,11 @@ fn found(
     found
 }
 
-/// When a chamber first cavitates or has no volume, or the piston leaves a stroke without end
+/// When a chamber or a transmission first cavitates, a chamber has no volume, or the piston leaves a stroke without end
 /// stops.
 fn outside_model_s(occurrences: &[Occurrence], has_end_stops: bool) -> Option<f64> {
     let outside = |kind: &str| match kind {
-        "cavitation_a" | "cavitation_b" | "empty_a" | "empty_b" => true,
+        "cavitation_a" | "cavitation_b" | "cavitation_transmission" | "empty_a" | "empty_b" => true,
         "end_stop_a" | "end_stop_b" => !has_end_stops,
         _ => false,
     };

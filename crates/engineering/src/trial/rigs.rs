@@ -6,13 +6,14 @@ use std::sync::Arc;
 
 use phea_dynamics::uncertain_plant::PlantMember;
 use phea_hydraulics::line::{Conduit, StiffeningMember};
+use phea_hydraulics::series::MOST_SEGMENTS;
 use phea_qft::family::Family;
 use phea_qft::verification::PlantPoint;
 
 use crate::audit::{NamedPlant, ProjectAudit};
 use crate::project::{
-    Component, DeclaredActuator, DeclaredLine, LINEAR_PARAMETERS, LineMotion, Linear, Project,
-    ValveCoefficients,
+    Component, DeclaredActuator, DeclaredLine, DeclaredSeries, LINEAR_PARAMETERS, LineMotion, Linear,
+    Project, ValveCoefficients,
 };
 use crate::rig::{Rig, feed_forward};
 use crate::robust::RobustProblem;
@@ -89,11 +90,17 @@ pub(super) fn rigs(
     (rigs, missing)
 }
 
-/// The same rig with its lumped lines as transmission lines; `None` if no line is lumped and long.
+/// The same rig with its lumped lines as transmission lines, and a transmission in as many segments as it
+/// may have; `None` if no line is lumped and long, and no transmission has less.
 pub fn with_waves(project: &Project) -> Option<Project> {
     let mut other = project.clone();
-    let line = &mut other.actuator.as_mut()?.line;
+    let actuator = other.actuator.as_mut()?;
+    let line = &mut actuator.line;
     let mut moved = false;
+    if let Some(DeclaredSeries::Transmission(transmission)) = &mut actuator.series {
+        moved = (transmission.segments as usize) < MOST_SEGMENTS;
+        transmission.segments = MOST_SEGMENTS as u32;
+    }
     for side in [&mut line.a, &mut line.b] {
         if side.length().is_some() && side.motion == LineMotion::Lumped {
             side.motion = LineMotion::TransmissionLine { end_share: None };

@@ -104,9 +104,10 @@ pub fn impedance_asymptotes(
 }
 
 /// These asymptotes where a transmission lies between sensor and load: its oil stands still before the
-/// piston's mass does.
+/// piston's mass does, and at low frequency friction and mass of the oil are felt whatever the loop does.
 ///
 /// ```text
+/// low frequency   N b + Z               and of a mass Z = M s:  N b up to N b/(M + N m), then (M + N m) s
 /// limit           k_N+1/s               above sqrt((k_N + k_N+1)/m) of its last plug
 /// ```
 pub fn through_oil(asymptotes: Vec<Asymptote>, column: &OilColumn) -> Vec<Asymptote> {
@@ -114,6 +115,20 @@ pub fn through_oil(asymptotes: Vec<Asymptote>, column: &OilColumn) -> Vec<Asympt
     let limit = compliance_hidden_above(springs, column.mass);
     let kept = asymptotes.into_iter().filter(|line| line.kind != AsymptoteKind::SensorLimit);
     let kept = kept.map(|line| Asymptote { to: line.to.min(limit), ..line });
+    let count = column.segments as f64;
+    let (friction, oil) = (count * column.damping, count * column.mass);
+    let kept = kept.flat_map(|line| match (line.kind, line.power) {
+        (AsymptoteKind::LowFrequency, 0) => {
+            vec![Asymptote { coefficient: line.coefficient + friction, ..line }]
+        }
+        (AsymptoteKind::LowFrequency, 1) => {
+            let coefficient = line.coefficient + oil;
+            let corner = friction / coefficient;
+            let damper = Asymptote { power: 0, coefficient: friction, to: corner, ..line };
+            vec![damper, Asymptote { coefficient, from: corner, ..line }]
+        }
+        _ => vec![line],
+    });
     let own = Asymptote {
         kind: AsymptoteKind::OilLimit,
         power: -1,

@@ -3,7 +3,9 @@
 
 use super::Check;
 use super::rig;
-use crate::{DeclaredActuator, DeclaredSeries, DeclaredSpring, DeclaredTransmission, Project, Uncertain};
+use crate::{
+    BoundedNumber, DeclaredActuator, DeclaredSeries, DeclaredSpring, DeclaredTransmission, Project, Uncertain,
+};
 use phea_quantity::{self as quantity, AREA, FORCE, LENGTH, PRESSURE, STIFFNESS};
 
 pub(super) fn series(project: &Project, actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
@@ -22,44 +24,66 @@ fn transmission(actuator: &DeclaredActuator, declared: &DeclaredTransmission, ch
     if check.declared("series.line") {
         rig::line(&declared.line, "series.line", check);
     }
+    if let Some(BoundedNumber { nominal, minimum, maximum }) = declared.line.dynamic_stiffening
+        && (minimum, maximum) != (nominal, nominal)
+    {
+        let message = "only `nominal` counts here: the line of a transmission has one stiffness";
+        let help = "state the range as [uncertainty] \"series.line.dynamic_stiffening.nominal\"";
+        check.warning_with_help("series.line.dynamic_stiffening", message, help);
+    }
     let rests = ["series.piston_area", "series.filling_pressure", "supply.pressure"];
     if rests.iter().any(|path| check.refused(path) || !check.declared(path)) || declared.piston_area <= 0.0 {
         return;
     }
-    let (stall, area) = (stall_force(actuator), declared.piston_area);
-    let [force, filling] =
-        [quantity::display(stall, &FORCE, 4), quantity::display(declared.filling_pressure, &PRESSURE, 4)];
+    let ([push, pull], area) = (stall_forces(actuator), declared.piston_area);
+    let pressure = |value: f64| quantity::display(value, &PRESSURE, 4);
+    let force = |value: f64| quantity::display(value, &FORCE, 4);
     let holds = area * (declared.filling_pressure + ATMOSPHERE);
-    if holds < stall {
+    if holds < pull {
         let message = format!(
-            "filled with {filling} the oil tears off at a pull of {}, and the cylinder pulls with up to {force} (stall force)",
-            quantity::display(holds, &FORCE, 4)
+            "filled with {} the oil tears off at a pull of {}, and the cylinder pulls with up to {} (stall force)",
+            pressure(declared.filling_pressure),
+            force(holds),
+            force(pull)
         );
-        let help = format!(
-            "for loads that are pulled, fill it with {} or more, or take a `piston_area` of at least {}",
-            quantity::display(round_up(stall / area - ATMOSPHERE), &PRESSURE, 4),
-            quantity::display(round_up(stall / (declared.filling_pressure + ATMOSPHERE)), &AREA, 4)
-        );
+        let wider = quantity::display(round_up(pull / (declared.filling_pressure + ATMOSPHERE)), &AREA, 4);
+        let fuller = round_up(pull / area - ATMOSPHERE);
+        let fill = if fuller < MOST_FILLING {
+            format!("fill it with {} or more, or ", pressure(fuller))
+        } else {
+            String::new()
+        };
+        let help = format!("for loads that are pulled, {fill}take a `piston_area` of at least {wider}");
         check.warning_with_help("series.filling_pressure", message, help);
     }
-    let most = declared.filling_pressure + stall / area;
+    let most = declared.filling_pressure + push / area;
     let working = declared.line.hose().and_then(|hose| hose.working_pressure);
     if let Some(working) = working.filter(|working| *working < most) {
         let message = format!(
-            "at the stall force of {force} the oil of the transmission has {}, and the hose's `working_pressure` is {}",
-            quantity::display(most, &PRESSURE, 4),
-            quantity::display(working, &PRESSURE, 4)
+            "at the stall force of {} the oil of the transmission has {}, and the hose's `working_pressure` is {}",
+            force(push),
+            pressure(most),
+            pressure(working)
         );
         let key = if declared.line.hose_name().is_some() { "hose" } else { "working_pressure" };
         check.warning(&format!("series.line.{key}"), message);
     }
 }
 
-/// The greatest force in N that the supply gives the piston, in either direction.
-fn stall_force(actuator: &DeclaredActuator) -> f64 {
+/// Pa, beyond which no filling is proposed.
+const MOST_FILLING: f64 = 500e5;
+
+/// The greatest push and the greatest pull in N that the supply gives the piston.
+fn stall_forces(actuator: &DeclaredActuator) -> [f64; 2] {
     let [area_a, area_b] = actuator.cylinder.effective_areas_m2();
     let [supply, tank] = [actuator.supply.pressure, actuator.supply.tank_pressure];
-    (area_a * supply - area_b * tank).max(area_b * supply - area_a * tank)
+    [area_a * supply - area_b * tank, area_b * supply - area_a * tank]
+}
+
+/// The greatest force in N that the supply gives the piston, in either direction.
+fn stall_force(actuator: &DeclaredActuator) -> f64 {
+    let [push, pull] = stall_forces(actuator);
+    push.max(pull)
 }
 
 fn spring(

@@ -30,13 +30,14 @@ pub(super) fn chapter(
     let met = match project.actuator.as_ref().and_then(|actuator| actuator.series.as_ref()) {
         None => "the sensor's stiffness alone",
         Some(DeclaredSeries::Transmission(_)) => {
-            "the sensor and the oil of the transmission alone, of which above all resonances only the oil at the load's piston still yields, k_{N+1}/s"
+            "the inertia of the oil, and above all resonances only the compliance of that at its own piston, k_{N+1}/s"
         }
         Some(DeclaredSeries::Spring(_)) => {
             "sensor and series spring alone, whose stiffnesses in series stand for K_S in the straight lines"
         }
     };
-    out.explanation(format!("The driving-point impedance Z is the resistance to a load that moves the rod: a damper, spring or mass, depending on frequency. Above {hidden} rad/s the piston's mass hides the hydraulic compliance, and the load meets {met}."));
+    let hiding = linearization.hidden_by;
+    out.explanation(format!("The driving-point impedance Z is the resistance to a load that moves the rod: a damper, spring or mass, depending on frequency. Above {hidden} rad/s {hiding} hides the hydraulic compliance, and the load meets {met}."));
     out.left_out(project);
     out.figures([figure(linearization)?]);
     out.heading("Passivity");
@@ -109,7 +110,7 @@ fn asymptotes(linearization: &Linearization) -> Table {
                 AsymptoteKind::LowFrequency => "low frequency",
                 AsymptoteKind::CompliancePlateau => "compliance plateau K_eq",
                 AsymptoteKind::SensorLimit => "limit K_S",
-                AsymptoteKind::OilLimit => "limit of the transmission's last oil",
+                AsymptoteKind::OilLimit => "limit: oil at the load's piston",
             };
             let unit = match asymptote.power {
                 -1 => "N/m",
@@ -164,7 +165,7 @@ fn figure(linearization: &Linearization) -> Result<Figure, LinearError> {
         series: views(linearization).iter().map(|(name, view)| series(name, &view.impedance)).collect(),
         asymptotes: lines,
         corners: vec![FrequencyMark {
-            label: "√(K_H/M)".to_string(),
+            label: linearization.hidden_label.to_string(),
             frequency_rad_per_s: linearization.compliance_hidden_above_rad_per_s,
         }],
         non_passive_bands_rad_per_s: bands
