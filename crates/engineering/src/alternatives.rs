@@ -6,6 +6,7 @@
 //! ```
 
 mod asked;
+mod by_other_means;
 mod cases;
 mod columns;
 mod comparison;

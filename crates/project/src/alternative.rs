@@ -32,7 +32,7 @@ impl Alternative {
         v.overrides(k, &mut self.set);
         let k = plain(
             "size",
-            "Whether its hose and length are those that [sizing] finds, before anything is designed.",
+            "Whether its hose and length, or its gas, spring, pipe or valve, are those that [sizing] finds.",
         );
         v.flag(k, &mut self.size);
         let k = plain(

@@ -4,10 +4,11 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
+use phea_workbench::alternatives::asked;
 use phea_workbench::command::Request;
 use serde_json::Value;
 
-use crate::ask::{answer, check, derived, json, near, size};
+use crate::ask::{answer, check, derived, json, load, near, size, source};
 
 const COMPLIANCE: &str = include_str!("../../../examples/ybitu/compliance.toml");
 
@@ -116,4 +117,32 @@ fn what_cannot_be_has_its_reason() {
     assert!(hose.get("other_means").is_none());
     let text = answer(COMPLIANCE, &[], &[], &Request::Size { gain: None, length: None }).text;
     assert!(text.contains("of the hose by other means") && text.contains("spring on the rod"), "{text}");
+}
+
+/// An alternative that is sized takes the gas, spring, pipe or valve that `size` finds for the declared project.
+#[test]
+fn an_alternative_takes_what_is_found() {
+    let told = found(&[]);
+    let (before, _) = COMPLIANCE.split_once("[[load_case]]").unwrap();
+    let pipe = "\"line\" = { pipe = { bore = \"10.5 mm\" }, length = \"0.35 m\", compliance = \"uniform\"";
+    let of = |set: &str| {
+        let text =
+            format!("{before}[[alternative]]\nname = \"sized\"\nsize = true\n\n[alternative.set]\n{set}\n");
+        let loaded = load(&text, &[], &[]);
+        let (all, _) = asked(&source(&text), &loaded, &[]).unwrap();
+        all.last().unwrap().loaded.project.clone()
+    };
+    let gas =
+        of(&format!("{pipe}, accumulator = {{ gas_volume = \"1 mL\", precharge_pressure = \"5 bar\" }} }}"));
+    near(gas.number("line.a.accumulator.gas_volume").unwrap(), number(&told, "gas.gas_volume_m3"), 1e-12);
+    let precharge = gas.number("line.b.accumulator.precharge_pressure").unwrap();
+    near(precharge, number(&told, "gas.precharge_pressure_pa"), 1e-12);
+    let spring = of(&format!("{pipe} }}\n\"series\" = {{ stiffness = \"9 MN/m\", travel = \"9 mm\" }}"));
+    near(spring.number("series.stiffness").unwrap(), number(&told, "spring.stiffness_n_per_m"), 1e-12);
+    near(spring.number("series.travel").unwrap(), 1.1 * number(&told, "spring.travel_m"), 1e-12);
+    let valve = of(&format!("{pipe} }}\n\"cross_port\" = {{ kind = \"laminar\", conductance = 1e-15 }}"));
+    let conductance = number(&told, "valves.1.conductance_m3_per_s_pa");
+    near(valve.number("cross_port.conductance").unwrap(), conductance, 1e-12);
+    let plain = of(&format!("{pipe} }}"));
+    near(plain.number("line.a.length").unwrap(), number(&told, "pipe.length_m"), 1e-12);
 }

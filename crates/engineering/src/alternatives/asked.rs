@@ -1,6 +1,7 @@
 //! The alternatives of a project as projects, ready to be judged: with their settings, with the hose
 //! that `[sizing]` finds where one asks for it, and with the ranges that follow their rig.
 
+use super::by_other_means::OtherPart;
 use super::recentred::{self, MovedRange};
 use crate::audit::outside;
 use crate::catalogue::{self, Catalogue, CatalogueKind};
@@ -75,7 +76,7 @@ pub fn asked(
     for (index, alternative) in loaded.project.alternatives.iter().enumerate() {
         let other = read_alternative(source, loaded, catalogues, index).map_err(ProcedureError::Catalogue)?;
         let wrong = |reason: String| ProcedureError::Alternative { name: alternative.name.clone(), reason };
-        let mut one = sized(&again, alternative, other, &catalogue)?;
+        let mut one = sized(&again, alternative, (loaded, other), &catalogue)?;
         if alternative.recentre {
             one.moved = recentred::moved(&loaded.project, &one.loaded.project).map_err(wrong)?;
             one.loaded = again.with(&one.loaded, &recentred::settings(&one.moved))?;
@@ -104,11 +105,11 @@ fn counted(all: &[AskedAlternative]) -> Result<PartsCounted, ProcedureError> {
     Ok(PartsCounted::of(projects(all.len())).unwrap_or_default())
 }
 
-/// With the hose that `[sizing]` finds, where it asks for it.
+/// With the hose that `[sizing]` finds, or another part for its stiffness, where it asks for it.
 fn sized(
     again: &ReadingAgain<'_>,
     alternative: &Alternative,
-    other: Loaded,
+    (declared, other): (&Loaded, Loaded),
     catalogue: &Catalogue,
 ) -> Result<AskedAlternative, ProcedureError> {
     let name = alternative.name.clone();
@@ -117,6 +118,11 @@ fn sized(
         return Ok(one(other, None));
     }
     let wrong = |reason: &str| ProcedureError::Alternative { name: name.clone(), reason: reason.to_string() };
+    let actuators = declared.project.actuator.as_ref().zip(other.project.actuator.as_ref());
+    if let Some((part, actuator)) = actuators.and_then(|(one, two)| Some((OtherPart::of(one, two)?, two))) {
+        let settings = part.settings(declared, actuator, catalogue).map_err(|reason| wrong(&reason))?;
+        return Ok(one(again.with(&other, &settings)?, None));
+    }
     let is_hose = |line: &DeclaredLine| matches!(line.component, Component::Hose { .. });
     let lines = other.project.actuator.as_ref().map(|actuator| [&actuator.line.a, &actuator.line.b]);
     let Some(lines) = lines.filter(|lines| lines.iter().all(|line| is_hose(line))) else {

@@ -1,0 +1,89 @@
+//! An alternative whose gas, spring, pipe or valve between the chambers is sized for the stiffness of the
+//! hose that `[sizing]` finds for the project as it is declared.
+
+use crate::catalogue::Catalogue;
+use crate::project::{Component, CrossPortKind, DeclaredActuator, Loaded};
+use crate::rig::sizing_problem;
+use crate::setup::Setup;
+use crate::sizing::{OtherMeans, Question, size};
+
+/// Share of the travel under the stall force by which a sized spring may go further.
+const SPARE_TRAVEL: f64 = 0.1;
+
+/// What of an alternative is sized, in place of a hose.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum OtherPart {
+    Gas,
+    Spring,
+    Valve,
+    Pipe,
+}
+
+impl OtherPart {
+    /// The part that this alternative has and the declared project lacks; `None` where it has hoses and
+    /// nothing else.
+    pub(super) fn of(declared: &DeclaredActuator, other: &DeclaredActuator) -> Option<OtherPart> {
+        let gas = |rig: &DeclaredActuator| rig.line.a.accumulator.is_some() && rig.line.a == rig.line.b;
+        let spring = |rig: &DeclaredActuator| rig.series.as_ref().is_some_and(|one| one.spring().is_some());
+        let laminar = |rig: &DeclaredActuator| {
+            rig.cross_port.as_ref().is_some_and(|port| matches!(port.kind, CrossPortKind::Laminar { .. }))
+        };
+        let pipe = |rig: &DeclaredActuator| {
+            rig.line.a == rig.line.b && matches!(rig.line.a.component, Component::Pipe { .. })
+        };
+        let parts = [
+            (gas(other) && !gas(declared), OtherPart::Gas),
+            (spring(other) && !spring(declared), OtherPart::Spring),
+            (laminar(other) && !laminar(declared), OtherPart::Valve),
+            (pipe(other) && !pipe(declared), OtherPart::Pipe),
+        ];
+        parts.into_iter().find(|(is_new, _)| *is_new).map(|(_, part)| part)
+    }
+
+    /// The settings that size it for the project as it is declared.
+    ///
+    /// # Errors
+    /// Why it cannot be sized.
+    pub(super) fn settings(
+        self,
+        declared: &Loaded,
+        other: &DeclaredActuator,
+        catalogue: &Catalogue,
+    ) -> Result<Vec<String>, String> {
+        let setup = Setup::new(&declared.project).map_err(|error| error.to_string())?;
+        let problem = sizing_problem(&setup, catalogue).map_err(|error| error.to_string())?;
+        let found = size(&problem, Question::Both).other_means.ok_or(
+            "gas, a spring, a pipe and a valve are sized by [sizing.other_means], with a hose that is accepted: state that table",
+        )?;
+        self.of_means(&found, other)
+    }
+
+    fn of_means(self, found: &OtherMeans, other: &DeclaredActuator) -> Result<Vec<String>, String> {
+        match self {
+            OtherPart::Gas => {
+                let gas = found.gas.clone()?;
+                Ok(vec![
+                    format!("line.accumulator.gas_volume={:e}", gas.volume),
+                    format!("line.accumulator.precharge_pressure={:e}", gas.precharge),
+                ])
+            }
+            OtherPart::Spring => {
+                let spring = found.spring.clone()?;
+                let limited = other.series.as_ref().and_then(|one| one.spring()?.travel);
+                let travel =
+                    limited.map(|_| format!("series.travel={:e}", (1.0 + SPARE_TRAVEL) * spring.travel));
+                Ok([format!("series.stiffness={:e}", spring.stiffness)].into_iter().chain(travel).collect())
+            }
+            OtherPart::Valve => {
+                let [_, alone] = found.valves.clone()?;
+                let conductance =
+                    alone.conductance.ok_or("no valve between the chambers damps the load cell so much")?;
+                Ok(vec![format!("cross_port.conductance={conductance:e}")])
+            }
+            OtherPart::Pipe => {
+                let pipe = found.pipe.clone()?;
+                Ok(vec![format!("line.pipe.bore={:e}", pipe.bore), format!("line.length={:e}", pipe.length)])
+            }
+        }
+    }
+}
