@@ -32,7 +32,7 @@ pub use agreement::AgreementBand;
 pub use agreement::{WITHIN_DB, WITHIN_DEG};
 pub use linkage::{LinkagePlace, LinkagePosition, linkage_places};
 pub(crate) use port::hidden_above;
-pub use port::{AskedAt, AskedImpedance, SHOWN_AT, WITHIN_PERCENT};
+pub use port::{AskedAt, AskedImpedance, HidingMass, SHOWN_AT, WITHIN_PERCENT};
 pub use sweep::{POINTS, Sweep, SweepPoint, SweepRequest, Swept, sweep};
 pub(crate) use sweep::{points, range, values};
 
@@ -93,10 +93,8 @@ pub struct Linearization {
     pub linkage: Vec<LinkagePlace>,
     /// Above this frequency the piston's mass hides the compliance, rad/s.
     pub compliance_hidden_above_rad_per_s: f64,
-    /// What hides it, and the equation of that frequency.
-    pub hidden_by: &'static str,
-    /// The same for a figure.
-    pub hidden_label: &'static str,
+    /// The mass that hides it.
+    pub hidden_by: HidingMass,
 }
 
 /// Largest differences of two responses: below 1000 rad/s, and everywhere.
@@ -158,7 +156,7 @@ pub fn linearize(
     let closed_loop = continuous.map(|controller| closed_loop_view(rig, controller)).transpose()?;
     let reductions = [&two_pressure.command, &full.command, &decomposed[1], &first_order];
     let agreement = agreement::agreement(rig, &frequency_grid(&plant.command)?, &plant.command, reductions);
-    let [hidden_by, hidden_label] = port::hidden_words(rig);
+    let (hidden_by, compliance_hidden_above_rad_per_s) = hidden_above(rig);
     Ok(Linearization {
         motion: rig.motion,
         plant_is_fifth_order: is_fifth_order(rig),
@@ -180,9 +178,8 @@ pub fn linearize(
         closed_loop,
         asked: controller.map(|given| port::asked(rig, given, sensor)).transpose()?.flatten(),
         linkage: linkage_places(rig),
-        compliance_hidden_above_rad_per_s: port::hidden_above(rig),
+        compliance_hidden_above_rad_per_s,
         hidden_by,
-        hidden_label,
         plant,
         two_pressure,
         full,

@@ -11,8 +11,8 @@ mod numbers;
 mod parameters;
 mod place;
 mod plant;
+mod series;
 mod sizing;
-mod spring;
 mod supply;
 
 use num_complex::Complex64;
@@ -53,9 +53,10 @@ pub(crate) use plant::with_gas;
 pub(crate) use plant::with_supply;
 pub use plant::{LoadLever, YieldingLoad, linear, plant, sides, stated};
 pub(crate) use plant::{load_at, rod_end};
+pub(crate) use series::{series_coil, stall_force, waves_right_to};
 pub(crate) use sizing::own_hoses;
 pub use sizing::{SizingError, sizing_problem};
-pub(crate) use spring::{series_coil, stall_force, waves_right_to};
+
 pub(crate) use supply::yielding_supply;
 pub use supply::{power_at_rest, power_unit, settled_supply};
 

@@ -383,28 +383,26 @@ fn what_is_stored_changes_by_what_enters_and_is_lost() {
         let travel = own.travel.map(|travel| SeriesTravel { travel: 1e-3, ..travel });
         let own = SeriesSpring { travel, stiffness: 2e6, ..own };
         let machine = machine_of(rig(own), &MachineOptions::default());
-        let start =
-            StartValues { position: 0.25, pressure_a: 35e5, pressure_b: 35e5, ..StartValues::default() };
-        let beginning = machine.start(&start).unwrap();
-        for _ in 0..10 {
-            let around = beginning.state.iter().zip(machine.scales());
-            let state: Vec<f64> =
-                around.map(|(value, scale)| value + 4.0 * scale * random(&mut seed)).collect();
-            let inputs = [0.25 + 0.1 * random(&mut seed), 0.1 * random(&mut seed)];
-            check_instant("a series element", &machine, &state, random(&mut seed), inputs);
-        }
+        closes_at_any_state("a series element", &machine, &mut seed);
+    }
+}
+
+/// The accounts at ten random states around that at rest.
+pub(super) fn closes_at_any_state(name: &str, machine: &Machine, seed: &mut u64) {
+    let start = StartValues { position: 0.25, pressure_a: 35e5, pressure_b: 35e5, ..StartValues::default() };
+    let beginning = machine.start(&start).unwrap();
+    for _ in 0..10 {
+        let around = beginning.state.iter().zip(machine.scales());
+        let state: Vec<f64> = around.map(|(value, scale)| value + 4.0 * scale * random(seed)).collect();
+        let inputs = [0.25 + 0.1 * random(seed), 0.1 * random(seed)];
+        check_instant(name, machine, &state, random(seed), inputs);
     }
 }
 
 /// Whatever moves its two ends: from rest, what has entered it is never less than what it gave back.
 #[test]
 fn it_is_passive_under_random_motions_of_its_ports() {
-    let series = ENERGY_ACCOUNTS.iter().position(|name| *name == "series").unwrap();
     for number in 0..16 {
-        let mut state = stream(43, number);
-        let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
-        let waves: Vec<[f64; 3]> =
-            (0..4).map(|_| [spread(2e-5, 4e-4), spread(20.0, 900.0), spread(0.05, 0.5)]).collect();
         let own = element(number);
         let travel = own.travel.map(|travel| SeriesTravel {
             travel: 3e-4,
@@ -419,34 +417,43 @@ fn it_is_passive_under_random_motions_of_its_ports() {
             ..own
         };
         let machine = machine_of(rig(own), &MachineOptions::default());
-        let start =
-            StartValues { position: 0.25, pressure_a: 35e5, pressure_b: 35e5, ..StartValues::default() };
-        let beginning = machine.start(&start).unwrap();
-        let ground = |time: f64| {
-            let shift = |[size, frequency, _]: &[f64; 3]| size * pow(sin(frequency * time), 2.0);
-            let speed = |[size, frequency, _]: &[f64; 3]| size * frequency * sin(2.0 * frequency * time);
-            [beginning.inputs[0] + waves.iter().map(shift).sum::<f64>(), waves.iter().map(speed).sum()]
-        };
-        let count = machine.states();
-        let mut state = [&beginning.state[..], &[0.0, 0.0]].concat();
-        let mut rates = |time: f64, state: &[f64]| {
-            let inputs = ground(time);
-            let command: f64 =
-                waves.iter().map(|[_, frequency, size]| 4.0 * size * sin(0.7 * frequency * time)).sum();
-            let mut rates = vec![0.0; count];
-            machine.rates(&state[..count], command, &inputs, &mut rates);
-            let inflow = machine.ledger(&state[..count], &inputs).unwrap().energy[series].inflow;
-            rates.extend([inflow, inflow.abs()]);
-            rates
-        };
-        let (mut least, mut through) = (0.0_f64, 0.0);
-        for index in 0..20_000 {
-            step(&mut state, f64::from(index) * 1e-5, 1e-5, &mut rates);
-            least = least.min(state[count]);
-            through = state[count + 1];
-        }
-        assert!(through > 0.1 && least >= -1e-6 * through, "{number}: {least} of {through}");
+        stays_passive(&machine, 43, number);
     }
+}
+
+/// From rest, with random motions of both ports of what lies in series, drawn by this seed.
+pub(super) fn stays_passive(machine: &Machine, seed: u64, number: u64) {
+    let series = ENERGY_ACCOUNTS.iter().position(|name| *name == "series").unwrap();
+    let mut state = stream(seed, number);
+    let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
+    let waves: Vec<[f64; 3]> =
+        (0..4).map(|_| [spread(2e-5, 4e-4), spread(20.0, 900.0), spread(0.05, 0.5)]).collect();
+    let start = StartValues { position: 0.25, pressure_a: 35e5, pressure_b: 35e5, ..StartValues::default() };
+    let beginning = machine.start(&start).unwrap();
+    let ground = |time: f64| {
+        let shift = |[size, frequency, _]: &[f64; 3]| size * pow(sin(frequency * time), 2.0);
+        let speed = |[size, frequency, _]: &[f64; 3]| size * frequency * sin(2.0 * frequency * time);
+        [beginning.inputs[0] + waves.iter().map(shift).sum::<f64>(), waves.iter().map(speed).sum()]
+    };
+    let count = machine.states();
+    let mut state = [&beginning.state[..], &[0.0, 0.0]].concat();
+    let mut rates = |time: f64, state: &[f64]| {
+        let inputs = ground(time);
+        let command: f64 =
+            waves.iter().map(|[_, frequency, size]| 4.0 * size * sin(0.7 * frequency * time)).sum();
+        let mut rates = vec![0.0; count];
+        machine.rates(&state[..count], command, &inputs, &mut rates);
+        let inflow = machine.ledger(&state[..count], &inputs).unwrap().energy[series].inflow;
+        rates.extend([inflow, inflow.abs()]);
+        rates
+    };
+    let (mut least, mut through) = (0.0_f64, 0.0);
+    for index in 0..20_000 {
+        step(&mut state, f64::from(index) * 1e-5, 1e-5, &mut rates);
+        least = least.min(state[count]);
+        through = state[count + 1];
+    }
+    assert!(through > 0.1 && least >= -1e-6 * through, "{number}: {least} of {through}");
 }
 
 /// What cannot be is refused with its place.

@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used)] // helpers of tests
 
 use num_complex::Complex64;
-use phea_dynamics::portable::{pow, sin};
+use phea_dynamics::portable::pow;
 use phea_dynamics::random::{share, stream};
 use phea_dynamics::simulation::Plant;
 use phea_hydraulics::actuator::{Actuator, Components};
@@ -15,9 +15,7 @@ use phea_hydraulics::line::{
     Conduit, DynamicLine, LaminarFriction, Line, LineModel, Pipe, PipeWall, Segments, StiffeningMember,
 };
 use phea_hydraulics::linear::{LinearParameters, transfer_functions};
-use phea_hydraulics::machine::{
-    ENERGY_ACCOUNTS, INDICATORS, LoadModel, Machine, MachineOptions, SIGNALS, StartValues,
-};
+use phea_hydraulics::machine::{INDICATORS, LoadModel, Machine, MachineOptions, SIGNALS, StartValues};
 use phea_hydraulics::operating_point::{Condition, operating_point};
 use phea_hydraulics::plant::{
     LinearElement, LinearLoad, LinearPlant, LinearSeries, PlantInMotion, SeriesOutput,
@@ -27,9 +25,10 @@ use phea_hydraulics::series::{ForceFrom, SeriesElement, SeriesSpring, Transmissi
 use phea_hydraulics::servovalve::Servovalve;
 use phea_hydraulics::stiffness::StiffnessModel;
 
-use super::machine_conservation::{Motion, check, check_instant, machine_of, random, step};
+use super::machine_conservation::{Motion, check, machine_of};
 use super::series::{
-    drawn_with, is_the_machine, responds_as_its_polynomials, velocity_is_that_of_the_machine,
+    closes_at_any_state, drawn_with, is_the_machine, responds_as_its_polynomials, stays_passive,
+    velocity_is_that_of_the_machine,
 };
 
 fn rig(transmission: Transmission) -> Components {
@@ -334,56 +333,16 @@ fn what_is_stored_changes_by_what_enters_and_is_lost() {
     for number in 0..40 {
         let own = Transmission { segments: 1 + number as usize % 8, ..transmission(number) };
         let machine = machine_of(rig(own), &MachineOptions::default());
-        let start =
-            StartValues { position: 0.25, pressure_a: 35e5, pressure_b: 35e5, ..StartValues::default() };
-        let beginning = machine.start(&start).unwrap();
-        for _ in 0..10 {
-            let around = beginning.state.iter().zip(machine.scales());
-            let state: Vec<f64> =
-                around.map(|(value, scale)| value + 4.0 * scale * random(&mut seed)).collect();
-            let inputs = [0.25 + 0.1 * random(&mut seed), 0.1 * random(&mut seed)];
-            check_instant("a transmission", &machine, &state, random(&mut seed), inputs);
-        }
+        closes_at_any_state("a transmission", &machine, &mut seed);
     }
 }
 
 /// Whatever moves its two ends: from rest, what has entered it is never less than what it gave back.
 #[test]
 fn it_is_passive_under_random_motions_of_its_ports() {
-    let series = ENERGY_ACCOUNTS.iter().position(|name| *name == "series").unwrap();
     for number in 0..12 {
-        let mut state = stream(83, number);
-        let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
-        let waves: Vec<[f64; 3]> =
-            (0..4).map(|_| [spread(2e-5, 4e-4), spread(20.0, 900.0), spread(0.05, 0.5)]).collect();
         let machine = machine_of(rig(transmission(number)), &MachineOptions::default());
-        let start =
-            StartValues { position: 0.25, pressure_a: 35e5, pressure_b: 35e5, ..StartValues::default() };
-        let beginning = machine.start(&start).unwrap();
-        let ground = |time: f64| {
-            let shift = |[size, frequency, _]: &[f64; 3]| size * pow(sin(frequency * time), 2.0);
-            let speed = |[size, frequency, _]: &[f64; 3]| size * frequency * sin(2.0 * frequency * time);
-            [beginning.inputs[0] + waves.iter().map(shift).sum::<f64>(), waves.iter().map(speed).sum()]
-        };
-        let count = machine.states();
-        let mut state = [&beginning.state[..], &[0.0, 0.0]].concat();
-        let mut rates = |time: f64, state: &[f64]| {
-            let inputs = ground(time);
-            let command: f64 =
-                waves.iter().map(|[_, frequency, size]| 4.0 * size * sin(0.7 * frequency * time)).sum();
-            let mut rates = vec![0.0; count];
-            machine.rates(&state[..count], command, &inputs, &mut rates);
-            let inflow = machine.ledger(&state[..count], &inputs).unwrap().energy[series].inflow;
-            rates.extend([inflow, inflow.abs()]);
-            rates
-        };
-        let (mut least, mut through) = (0.0_f64, 0.0);
-        for index in 0..20_000 {
-            step(&mut state, f64::from(index) * 1e-5, 1e-5, &mut rates);
-            least = least.min(state[count]);
-            through = state[count + 1];
-        }
-        assert!(through > 0.1 && least >= -1e-6 * through, "{number}: {least} of {through}");
+        stays_passive(&machine, 83, number);
     }
 }
 

@@ -118,15 +118,16 @@ fn sized(
         return Ok(one(other, None));
     }
     let wrong = |reason: &str| ProcedureError::Alternative { name: name.clone(), reason: reason.to_string() };
-    let actuators = declared.project.actuator.as_ref().zip(other.project.actuator.as_ref());
-    if let Some((part, actuator)) = actuators.and_then(|(one, two)| Some((OtherPart::of(one, two)?, two))) {
-        let settings = part.settings(declared, actuator, catalogue).map_err(|reason| wrong(&reason))?;
-        return Ok(one(again.with(&other, &settings)?, None));
-    }
     let is_hose = |line: &DeclaredLine| matches!(line.component, Component::Hose { .. });
     let lines = other.project.actuator.as_ref().map(|actuator| [&actuator.line.a, &actuator.line.b]);
     let Some(lines) = lines.filter(|lines| lines.iter().all(|line| is_hose(line))) else {
-        return Err(wrong("`size` finds the hoses of both sides: its [line] must have them"));
+        let actuators = declared.project.actuator.as_ref().zip(other.project.actuator.as_ref());
+        let part = actuators.and_then(|(one, two)| Some((OtherPart::of(one, two)?, two)));
+        let Some((part, actuator)) = part else {
+            return Err(wrong("`size` finds the hoses of both sides: its [line] must have them"));
+        };
+        let settings = part.settings(declared, actuator, catalogue).map_err(|reason| wrong(&reason))?;
+        return Ok(one(again.with(&other, &settings)?, None));
     };
     let alike = lines[0] == lines[1];
     let named = lines[0].hose_name().map(str::to_string);

@@ -20,8 +20,7 @@ pub(super) enum OtherPart {
 }
 
 impl OtherPart {
-    /// The part that this alternative has and the declared project lacks; `None` where it has hoses and
-    /// nothing else.
+    /// The part that this alternative has and the declared project lacks; `None` where there is none.
     pub(super) fn of(declared: &DeclaredActuator, other: &DeclaredActuator) -> Option<OtherPart> {
         let gas = |rig: &DeclaredActuator| rig.line.a.accumulator.is_some() && rig.line.a == rig.line.b;
         let spring = |rig: &DeclaredActuator| rig.series.as_ref().is_some_and(|one| one.spring().is_some());

@@ -13,6 +13,7 @@ use super::list::List;
 use super::parts::costs;
 use super::series::series;
 use super::valve::valve;
+use crate::linearize::{HidingMass, hidden_above};
 use crate::linearize::{stiffness_models, stroke_stiffness};
 use crate::project::Project;
 use crate::quantity::MotionKind;
@@ -310,9 +311,11 @@ fn dynamics(rig: &Rig, list: &mut List) {
         "N/(s.V)",
         "dF_e/dt per volt = K_{qU} K_{eq}/A_u",
     );
-    let hidden = crate::linearize::hidden_above(rig);
-    let by_piston = hidden == (rig.linear.hydraulic_stiffness / rig.linear.moving_mass).sqrt();
-    let equation = if by_piston { "ω = sqrt(K_H/M)" } else { "ω = sqrt(K_{eq}/m)" };
+    let (mass, hidden) = hidden_above(rig);
+    let equation = match mass {
+        HidingMass::Piston => "ω = sqrt(K_H/M)",
+        HidingMass::Oil => "ω = sqrt(K_{eq}/m)",
+    };
     list.add("dynamics.compliance_hidden_above", "ω", hidden, "rad/s", equation);
 }
 

@@ -29,15 +29,11 @@ fn transmission(transmission: &Transmission, rig: &Rig, list: &mut List) {
     list.add("series.reflected_damping", "b", count * column.damping, "N.s/m", "b = 32 ν m/d^2");
     let conduit =
         Conduit::of_line(&transmission.line, fluid, transmission.filling_pressure, StiffeningMember::Nominal);
-    match conduit {
-        Ok(conduit) => list.add("series.wave_travel_time", "T", conduit.delay(), "s", "T = L sqrt(ρ/β_e)"),
-        Err(_) => {
-            list.absent("series.wave_travel_time", "T", "s", "T = L sqrt(ρ/β_e)", "the line has no length")
-        }
+    if let (Ok(conduit), Some(right_to)) = (conduit, waves_right_to(rig)) {
+        list.add("series.wave_travel_time", "T", conduit.delay(), "s", "T = L sqrt(ρ/β_e)");
+        list.add("series.waves_right_to", "ω", right_to, "rad/s", "ω = 0.85 N/T, where waves are 3 % slow");
     }
     list.add("series.oil_volume", "V", transmission.oil_volume(), "m3", "V = a L + 2 V_e");
-    let right_to = waves_right_to(rig).unwrap_or(f64::INFINITY);
-    list.add("series.waves_right_to", "ω", right_to, "rad/s", "ω = 0.85 N/T, where waves are 3 % slow");
     let components = rig.actuator.components();
     let [_, extending] = components.cylinder.stall_forces(&components.supply);
     list.add("series.pressure_at_stall", "p", column.pressure(extending), "Pa", "p = p_0 + F_{max}/A");

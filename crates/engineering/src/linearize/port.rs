@@ -140,29 +140,49 @@ pub(super) fn asymptotes(rig: &Rig, controller: &TransferFunction) -> Vec<Asympt
     lines
 }
 
-/// Above which frequency in rad/s a mass hides the compliance of the chambers from the load: the piston's,
-/// or that of the oil in a transmission.
-///
-/// ```text
-/// w = sqrt(K_H/M), or sqrt(K_eq/m) where that is less           m = N m of the oil, as its pistons feel it
-/// ```
-pub(crate) fn hidden_above(rig: &Rig) -> f64 {
-    let piston = compliance_hidden_above(rig.linear.hydraulic_stiffness, rig.linear.moving_mass);
-    oil_hides_above(rig).map_or(piston, |oil| oil.min(piston))
+/// The mass that hides the compliance of the chambers from the load at high frequency.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum HidingMass {
+    /// The piston's, above sqrt(K_H/M).
+    Piston,
+    /// That of the oil in a transmission, as its pistons feel it: above sqrt(K_eq/m).
+    Oil,
 }
 
-/// What that mass is, and the equation of the frequency for a figure.
-pub(super) fn hidden_words(rig: &Rig) -> [&'static str; 2] {
-    match oil_hides_above(rig).is_some_and(|oil| oil == hidden_above(rig)) {
-        true => ["the oil of the transmission", "√(K_eq/m)"],
-        false => ["the piston's mass", "√(K_H/M)"],
+impl HidingMass {
+    /// It in words.
+    pub fn words(self) -> &'static str {
+        match self {
+            HidingMass::Piston => "the piston's mass",
+            HidingMass::Oil => "the oil of the transmission",
+        }
+    }
+
+    /// Its frequency, as the label of a figure.
+    pub fn label(self) -> &'static str {
+        match self {
+            HidingMass::Piston => "√(K_H/M)",
+            HidingMass::Oil => "√(K_eq/m)",
+        }
     }
 }
 
-fn oil_hides_above(rig: &Rig) -> Option<f64> {
-    let LinearElement::Oil(column) = rig.plant.series?.element else { return None };
-    let mass = column.segments as f64 * column.mass;
-    Some(compliance_hidden_above(rig.leaking().equivalent_stiffness(), mass))
+/// Which mass does so, and above which frequency in rad/s: the lower one.
+///
+/// ```text
+/// sqrt(K_H/M) of the piston,    sqrt(K_eq/m) of the oil, m = N m_j
+/// ```
+pub(crate) fn hidden_above(rig: &Rig) -> (HidingMass, f64) {
+    let piston = compliance_hidden_above(rig.linear.hydraulic_stiffness, rig.linear.moving_mass);
+    let oil = rig.plant.series.and_then(|series| match series.element {
+        LinearElement::Oil(column) => Some(column.segments as f64 * column.mass),
+        LinearElement::Spring(_) => None,
+    });
+    let oil = oil.map(|mass| compliance_hidden_above(rig.leaking().equivalent_stiffness(), mass));
+    match oil.filter(|oil| *oil < piston) {
+        Some(oil) => (HidingMass::Oil, oil),
+        None => (HidingMass::Piston, piston),
+    }
 }
 
 /// Of the rig without a virtual impedance; without a controller those of the open loop.

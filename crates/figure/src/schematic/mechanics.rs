@@ -114,15 +114,17 @@ fn between(scene: &mut Scene, series: &SeriesSymbol, from: f64) -> f64 {
 /// Two cylinders with a line between them, and the rods that come out of them.
 fn pistons(scene: &mut Scene, from: f64, to: f64) {
     let heavy = Stroke::solid(Role::Axis, 3.0);
-    for (rod, inner) in [(from, from + 14.0), (to, to - 14.0)] {
+    for (rod, inner) in [(from, from + 13.0), (to, to - 13.0)] {
         let [left, right] = [rod.min(inner), rod.max(inner)];
         block(scene, left, AXIS - 10.0, right - left, 20.0);
         let piston = 0.5 * (rod + inner);
         lines(scene, &[(piston, AXIS - 10.0), (piston, AXIS + 10.0)], heavy);
         lines(scene, &[(rod, AXIS), (piston, AXIS)], heavy);
     }
-    let line = [(from + 14.0, AXIS), (to - 14.0, AXIS)];
-    lines(scene, &line, Stroke::solid(Role::Axis, 2.0));
+    // from chamber to chamber, away from the rods
+    let [one, other, low] = [from + 10.0, to - 10.0, AXIS + 16.0];
+    let hose = [(one, AXIS + 10.0), (one, low), (other, low), (other, AXIS + 10.0)];
+    lines(scene, &hose, Stroke::solid(Role::Axis, 2.0));
 }
 
 fn environment(scene: &mut Scene, input: &SchematicInput, from: f64) {

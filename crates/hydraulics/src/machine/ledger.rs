@@ -4,6 +4,7 @@ mod volume;
 use phea_dynamics::scalar::Scalar;
 
 use super::equations::constant;
+use super::series::plugs;
 use super::{Machine, Motion};
 use crate::series::MovingSeries;
 use instant::Instant;
@@ -292,12 +293,13 @@ impl<S: Scalar> Machine<S> {
             }
             Some(MovingSeries::Oil(column)) => {
                 let column = column.convert(&mut constant::<S, T>);
-                let forces = self.column_forces(&column, joint.sensed, &now.columns);
+                let behind = plugs(&now.columns).map(|(_, deflection)| deflection);
+                let forces = column.forces(joint.sensed, behind);
                 let springs = forces.iter().enumerate();
                 let elastic = springs.fold(zero, |sum, (plugs, force)| {
                     sum + half * force.squared() / column.stiffness_behind(plugs)
                 });
-                let squares = now.columns.chunks_exact(2).fold(zero, |sum, plug| sum + plug[0].squared());
+                let squares = plugs(&now.columns).fold(zero, |sum, (velocity, _)| sum + velocity.squared());
                 let stored = elastic + half * column.mass * squares;
                 Account { stored, inflow, lost: column.damping * squares }
             }

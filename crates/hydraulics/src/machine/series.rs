@@ -225,18 +225,6 @@ impl<S: Scalar> Machine<S> {
         }
     }
 
-    /// The force in N through each spring of a transmission, from the rod on.
-    pub(super) fn column_forces<T: Scalar + From<S>>(
-        &self,
-        column: &OilColumn<T>,
-        sensed: T,
-        columns: &[T],
-    ) -> Vec<T> {
-        let behind = plugs(columns).enumerate();
-        let behind = behind.map(|(plug, (_, deflection))| column.stiffness_behind(plug + 1) * deflection);
-        [sensed].into_iter().chain(behind).collect()
-    }
-
     /// The lowest pressure in the oil of a transmission, in Pa.
     #[inline(never)]
     pub(super) fn least_oil_pressure<T: Scalar + From<S>>(
@@ -246,7 +234,7 @@ impl<S: Scalar> Machine<S> {
         columns: &[T],
     ) -> T {
         let column = column.convert(&mut constant::<S, T>);
-        let forces = self.column_forces(&column, sensed, columns);
+        let forces = column.forces(sensed, plugs(columns).map(|(_, deflection)| deflection));
         column.pressure(forces.into_iter().fold(sensed, |least, force| least.minimum(force)))
     }
 
@@ -295,7 +283,7 @@ impl<S: Scalar> Machine<S> {
 }
 
 /// Velocity of each plug of oil and deflection of the spring behind it.
-fn plugs<T: Copy>(columns: &[T]) -> impl Iterator<Item = (T, T)> + '_ {
+pub(super) fn plugs<T: Copy>(columns: &[T]) -> impl Iterator<Item = (T, T)> + '_ {
     columns.chunks_exact(2).map(|pair| (pair[0], pair[1]))
 }
 

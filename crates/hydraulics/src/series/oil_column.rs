@@ -64,6 +64,14 @@ impl<S: Scalar> OilColumn<S> {
         self.filling_pressure + force / self.piston_area
     }
 
+    /// The force in N through each spring, from the rod on: that through the sensor, then those of the
+    /// springs behind the plugs, from their deflections in m.
+    pub(crate) fn forces(&self, sensed: S, deflections: impl Iterator<Item = S>) -> Vec<S> {
+        let behind = deflections.enumerate();
+        let behind = behind.map(|(plug, deflection)| self.stiffness_behind(plug + 1) * deflection);
+        [sensed].into_iter().chain(behind).collect()
+    }
+
     /// The force in N through each spring, from the rod on, where the first carries `force` and all
     /// oil moves at a velocity in m/s.
     pub(crate) fn steady_forces(&self, force: S, velocity: S) -> Vec<S> {

@@ -36,7 +36,7 @@ pub fn text(loaded: &Loaded, linearization: &Linearization) -> String {
     out.sentences([
         format!("open loop:   {}", passivity_sentence(&linearization.open_loop.passivity)),
         format!("closed loop: {closed}"),
-        format!("above {hidden} rad/s {} hides the compliance", linearization.hidden_by),
+        format!("above {hidden} rad/s {} hides the compliance", linearization.hidden_by.words()),
     ]);
     if let Some(asked) = &linearization.asked {
         out.section("Impedance asked and shown", asked_table(asked));

@@ -36,7 +36,7 @@ pub(super) fn chapter(
             "sensor and series spring alone, whose stiffnesses in series stand for K_S in the straight lines"
         }
     };
-    let hiding = linearization.hidden_by;
+    let hiding = linearization.hidden_by.words();
     out.explanation(format!("The driving-point impedance Z is the resistance to a load that moves the rod: a damper, spring or mass, depending on frequency. Above {hidden} rad/s {hiding} hides the hydraulic compliance, and the load meets {met}."));
     out.left_out(project);
     out.figures([figure(linearization)?]);
@@ -165,7 +165,7 @@ fn figure(linearization: &Linearization) -> Result<Figure, LinearError> {
         series: views(linearization).iter().map(|(name, view)| series(name, &view.impedance)).collect(),
         asymptotes: lines,
         corners: vec![FrequencyMark {
-            label: linearization.hidden_label.to_string(),
+            label: linearization.hidden_by.label().to_string(),
             frequency_rad_per_s: linearization.compliance_hidden_above_rad_per_s,
         }],
         non_passive_bands_rad_per_s: bands
