@@ -124,9 +124,9 @@ fn what_it_costs_and_weighs() {
     );
 }
 
-/// The words of the report name pistons, filling and line.
+/// The models with one load pressure have its oil as a spring, and say so.
 #[test]
-fn the_report_names_it() {
+fn the_reduced_models_say_what_they_leave_out() {
     let page = answer(TRANSMISSION, &["series.segments=1"], &[], &Request::Linearize);
     assert!(
         page.text.contains(
