@@ -3,6 +3,7 @@
 
 mod agreement;
 mod linkage;
+mod over_force;
 mod port;
 mod sweep;
 
@@ -31,6 +32,7 @@ use phea_hydraulics::two_pressure::two_pressure_coefficients;
 pub use agreement::AgreementBand;
 pub use agreement::{WITHIN_DB, WITHIN_DEG};
 pub use linkage::{LinkagePlace, LinkagePosition, linkage_places};
+pub use over_force::{StiffnessOverForce, stiffness_over_force};
 pub(crate) use port::hidden_above;
 pub use port::{AskedAt, AskedImpedance, HidingMass, SHOWN_AT, WITHIN_PERCENT};
 pub use sweep::{POINTS, Sweep, SweepPoint, SweepRequest, Swept, sweep};

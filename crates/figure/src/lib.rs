@@ -41,6 +41,7 @@ pub mod schematic;
 pub mod simplify;
 pub mod sizing_chart;
 pub mod step_response;
+pub mod stiffness_over_force;
 pub mod stiffness_over_stroke;
 pub mod svg;
 pub mod templates;
@@ -74,6 +75,7 @@ pub use schematic::{
 };
 pub use sizing_chart::{SizingCandidate, SizingChartInput, SizingCurve, sizing_chart};
 pub use step_response::{SettlingBand, StepResponseInput, TimeBounds, TimeEvent, TimeSeries, step_response};
+pub use stiffness_over_force::{ForceStiffnessCurve, ForceStiffnessInput, stiffness_over_force};
 pub use stiffness_over_stroke::{StiffnessCurve, StiffnessInput, stiffness_over_stroke};
 pub use templates::templates;
 pub use time_bands::{TimeBands, TimeBandsInput, time_bands};

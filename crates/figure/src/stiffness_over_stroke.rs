@@ -42,21 +42,10 @@ pub struct StiffnessInput {
 /// twelve apart.
 pub fn stiffness_over_stroke(words: Words, input: &StiffnessInput) -> Figure {
     let (length, stiffness) = units(input.motion);
-    let values = || {
-        input.curves.iter().flat_map(move |curve| {
-            [&curve.stiffness_n_per_m, &curve.minimum_n_per_m, &curve.maximum_n_per_m]
-                .into_iter()
-                .flatten()
-                .map(move |v| stiffness.of(*v))
-        })
-    };
-    let (low, high) = extent(values().filter(|v| v.is_finite()));
-    let title = stiffness.title("Hydraulic stiffness K_H");
-    let y = if high > 12.0 * low && low > 0.0 {
-        Axis::fit_logarithmic(title, values())
-    } else {
-        Axis::fit_linear(title, values().chain([0.0]))
-    };
+    let values = input.curves.iter().flat_map(|curve| {
+        [&curve.stiffness_n_per_m, &curve.minimum_n_per_m, &curve.maximum_n_per_m].into_iter().flatten()
+    });
+    let y = stiffness_axis(values.copied().collect(), stiffness);
     let positions = input.curves.iter().flat_map(|curve| curve.positions_m.iter());
     let (left, right) = extent(positions.map(|v| length.of(*v)));
     let x = Axis::linear(length.title("Piston position x_p"), left, right);
@@ -79,6 +68,18 @@ pub fn stiffness_over_stroke(words: Words, input: &StiffnessInput) -> Figure {
     }
     let panels = vec![Panel { y, height: 270.0, marks }];
     words.with_scene(Plot { x, panels, legend, equal_aspect: false }.draw())
+}
+
+/// The axis of stiffnesses in N/m, or N m/rad.
+pub(super) fn stiffness_axis(values: Vec<f64>, unit: DisplayUnit) -> Axis {
+    let shown = || values.iter().map(|value| unit.of(*value));
+    let (low, high) = extent(shown().filter(|v| v.is_finite()));
+    let title = unit.title("Hydraulic stiffness K_H");
+    if high > 12.0 * low && low > 0.0 {
+        Axis::fit_logarithmic(title, shown())
+    } else {
+        Axis::fit_linear(title, shown().chain([0.0]))
+    }
 }
 
 fn band_fill(index: usize) -> Fill {
@@ -106,13 +107,19 @@ fn curve_marks(
         marks.push(Mark::Area { corners: around, fill: band_fill(index) });
     }
     let line = points(&curve.stiffness_n_per_m);
-    let softest =
-        line.iter().copied().filter(|p| p.1.is_finite()).reduce(|a, b| if b.1 < a.1 { b } else { a });
+    let least = softest(&line, index, stiffness);
     marks.push(Mark::Line { points: line, stroke: series_stroke(index) });
-    if let Some((x, y)) = softest {
-        let style = MarkerStyle { marker: Marker::Circle, role: series_role(index), radius: 4.0 };
-        let text = format!("{} {}", plain(y), stiffness.symbol);
-        marks.push(Mark::Markers { points: vec![(x, y, format!("softest: {text}"))], style });
-        marks.push(Mark::Label { at: vec![(x, y)], text, role: Role::Text, side: PointSide::Above });
-    }
+    marks.extend(least.into_iter().flatten());
+}
+
+/// The lowest point of a line with its value.
+pub(super) fn softest(line: &[(f64, f64)], index: usize, unit: DisplayUnit) -> Option<[Mark; 2]> {
+    let finite = line.iter().copied().filter(|p| p.1.is_finite());
+    let (x, y) = finite.reduce(|a, b| if b.1 < a.1 { b } else { a })?;
+    let style = MarkerStyle { marker: Marker::Circle, role: series_role(index), radius: 4.0 };
+    let text = format!("{} {}", plain(y), unit.symbol);
+    Some([
+        Mark::Markers { points: vec![(x, y, format!("softest: {text}"))], style },
+        Mark::Label { at: vec![(x, y)], text, role: Role::Text, side: PointSide::Above },
+    ])
 }

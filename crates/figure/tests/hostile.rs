@@ -147,6 +147,23 @@ fn bode_diagrams() {
 }
 
 #[test]
+fn stiffness_curves_over_the_force() {
+    repeat(22, |r| {
+        let curve = |r: &mut Random| ForceStiffnessCurve {
+            name: r.name(),
+            forces_n: r.numbers(),
+            stiffness_n_per_m: r.numbers(),
+        };
+        let input = ForceStiffnessInput {
+            curves: r.many(5, curve),
+            operating_force_n: r.maybe(Random::number),
+            motion: if r.unit() < 0.5 { MotionKind::Rotary } else { MotionKind::Linear },
+        };
+        stiffness_over_force(r.words(), &input)
+    });
+}
+
+#[test]
 fn stiffness_curves() {
     repeat(2, |r| {
         let curve = |r: &mut Random| StiffnessCurve {

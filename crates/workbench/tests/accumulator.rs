@@ -5,10 +5,15 @@
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
 use phea_workbench::command::Request;
+use phea_workbench::linearize::stiffness_over_force;
+use phea_workbench::setup::Setup;
 
-use crate::ask::{HOSE, answer, check, derived, json, near, number, size_request, try_answer, within};
+use crate::ask::{
+    HOSE, answer, check, derived, json, near, number, project_of, size_request, try_answer, within,
+};
 
 const GAS: &str = include_str!("../../../examples/ybitu/accumulator.toml");
+const SWITCHED: &str = include_str!("../../../examples/ybitu/switched_gas.toml");
 const BOTH: &str = include_str!("../../project/tests/valid/accumulators.toml");
 const ATMOSPHERE: f64 = 101_325.0;
 
@@ -51,6 +56,52 @@ fn at_the_limits_of_force_a_chamber_stands_just_above_its_precharge() {
         let stiffness = derived(&told, &format!("stiffness.at_{end}_force"));
         near(derived(&there, "linear.hydraulic_stiffness"), stiffness, 1e-6);
     }
+}
+
+/// The stiffness over the force is that of the rig which declares the force, and ends where `check` says that the gas is shut off.
+#[test]
+fn stiffness_over_the_force_is_that_of_the_rig_under_this_force() {
+    // a pump that gives way to leakage has another pressure at each force
+    let pump = "accumulator = { gas_volume = \"1 L\", precharge_pressure = \"50 bar\", maximum_pressure_ratio = 4 }\n";
+    let both = BOTH.replace("pump_limited", "constant").replace(pump, "");
+    for text in [GAS, &both] {
+        let project = project_of(text, &[]);
+        let found = stiffness_over_force(&Setup::rig_of(&project).unwrap()).unwrap();
+        assert!(found.at_settings.is_empty() && found.forces.is_sorted_by(|one, next| one < next));
+        assert!(found.forces.len() > 100 && found.forces.len() == found.at_rest.len());
+        for index in [1, found.forces.len() / 2, found.forces.len() - 2] {
+            let there = check(text, &[&format!("operating_point.load_force={:e} N", found.forces[index])]);
+            near(found.at_rest[index], derived(&there, "linear.hydraulic_stiffness"), 1e-6);
+        }
+        let told = check(text, &[]);
+        let last = found.forces.len() - 1;
+        for (index, side, end) in [(0, "a", "least"), (last, "b", "greatest")] {
+            near(found.forces[index], derived(&told, &format!("line.{side}.accumulator.{end}_force")), 1e-9);
+            near(found.at_rest[index], derived(&told, &format!("stiffness.at_{end}_force")), 1e-9);
+        }
+    }
+    let of = |text: &str, settings: &[&str]| {
+        stiffness_over_force(&Setup::rig_of(&project_of(text, settings)).unwrap())
+    };
+    assert_eq!(of(HOSE, &[]), None, "without gas");
+    // a shut valve leaves no gas, an open one that of the same rig without a valve
+    let shut = "line.accumulator.adjustment.setting=0";
+    assert_eq!(of(SWITCHED, &[shut]), None);
+    let [open, bare] = [of(SWITCHED, &[]).unwrap(), of(GAS, &[]).unwrap()];
+    assert_eq!(open.at_settings.iter().map(|(setting, _)| *setting).collect::<Vec<_>>(), [0.0]);
+    for (one, other) in open.at_rest.iter().zip(&bare.at_rest) {
+        near(*one, *other, 1e-6);
+    }
+}
+
+/// The report draws it where there is gas, and only there.
+#[test]
+fn the_report_draws_the_stiffness_over_the_force() {
+    let drawn = |text: &str| {
+        let answer = try_answer(text, &[], &[], &Request::Report).unwrap();
+        answer.files.iter().any(|file| file.name == "stiffness-force.svg")
+    };
+    assert!(drawn(BOTH) && !drawn(include_str!("../../project/tests/valid/telescopic.toml")));
 }
 
 /// The example is as soft as the thesis wished, and a verdict names the forces beyond which its gas is shut off.

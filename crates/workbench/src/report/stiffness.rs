@@ -5,9 +5,13 @@ use phea_hydraulics::stiffness::StiffnessModel;
 
 use super::chapter::Chapter;
 use crate::document::Document;
-use crate::figure::{Figure, StiffnessCurve, StiffnessInput, Words, stiffness_over_stroke};
+use crate::figure::{
+    self, Figure, ForceStiffnessCurve, ForceStiffnessInput, StiffnessCurve, StiffnessInput, Words,
+    stiffness_over_stroke,
+};
 use crate::linearize::{
-    Linearization, stiffness_at, stiffness_at_setting, stiffness_at_settings, stiffness_sentence,
+    Linearization, StiffnessOverForce, stiffness_at, stiffness_at_setting, stiffness_at_settings,
+    stiffness_over_force, stiffness_sentence,
 };
 use crate::rig::Rig;
 use crate::sizing::model_name;
@@ -21,6 +25,7 @@ pub(super) fn chapter(rig: &Rig, linearization: &Linearization) -> Chapter {
     out.explanation(stiffness_sentence(linearization));
     out.explanation(format!("This project declares `{declared}`. The thesis' tables are made with `uniform`; a steel chamber does not become softer because a hose is screwed to it, and a hose swells as its data sheet states, so a rig will behave as in `by_volume`."));
     out.figures(rig.actuator.components().cylinder.stroke.length().map(|stroke| figure(rig, stroke)));
+    out.figures(stiffness_over_force(rig).map(|found| over_force(rig, found)));
     Chapter::of("stiffness", "Stiffness over the stroke", out)
 }
 
@@ -46,6 +51,29 @@ fn figure(rig: &Rig, stroke: f64) -> Figure {
         ),
     };
     stiffness_over_stroke(Words::new("stiffness", "Hydraulic stiffness over the stroke", caption), &input)
+}
+
+/// Gas under pressure: the stiffness over the forces that the rig holds.
+fn over_force(rig: &Rig, found: StiffnessOverForce) -> Figure {
+    let StiffnessOverForce { forces, at_rest, at_settings } = found;
+    let curve = |name: String, stiffness_n_per_m: Vec<f64>| ForceStiffnessCurve {
+        name,
+        forces_n: forces.clone(),
+        stiffness_n_per_m,
+    };
+    let name = if at_settings.is_empty() { "with the gas" } else { "at the setting of rest" };
+    let others =
+        at_settings.into_iter().map(|(setting, values)| curve(format!("at setting {setting}"), values));
+    let input = ForceStiffnessInput {
+        curves: std::iter::once(curve(name.to_string(), at_rest)).chain(others).collect(),
+        operating_force_n: Some(rig.point.hydraulic_force),
+        motion: rig.motion,
+    };
+    let caption = "Hydraulic stiffness for slow motions against the force that is held at standstill, at the position of the operating point: with its pressure the gas becomes stiffer. The curves end where the gas at a chamber is shut off, or at the nominal voltage.";
+    figure::stiffness_over_force(
+        Words::new("stiffness-force", "Hydraulic stiffness over the force", caption),
+        &input,
+    )
 }
 
 fn positions(stroke: f64) -> Vec<f64> {
