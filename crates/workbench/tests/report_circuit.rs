@@ -34,6 +34,18 @@ fn texts(project: &str, settings: &[&str]) -> Vec<String> {
     texts
 }
 
+/// The chapter on the impedance says where it is.
+#[test]
+fn the_impedance_of_a_linkage_is_told_at_the_rod_and_about_the_joint() {
+    let page = |project: &str| {
+        let answer = try_answer(project, &[], &[], &Request::Report).unwrap();
+        let file = answer.files.into_iter().find(|file| file.name == "report.html").unwrap();
+        String::from_utf8(file.bytes).unwrap()
+    };
+    let sentence = "about the joint it is r² (Z + ";
+    assert!(page(LINKAGE).contains(sentence) && !page(TELESCOPIC).contains(sentence));
+}
+
 #[track_caller]
 fn says(texts: &[String], expected: &[&str]) {
     for words in expected {

@@ -69,7 +69,7 @@ fn over_force(rig: &Rig, found: StiffnessOverForce) -> Figure {
         operating_force_n: Some(rig.point.hydraulic_force),
         motion: rig.motion,
     };
-    let caption = "Hydraulic stiffness for slow motions against the force that is held at standstill, at the position of the operating point: with its pressure the gas becomes stiffer. The curves end where the gas at a chamber is shut off, or at the nominal voltage.";
+    let caption = "Hydraulic stiffness for slow motions against the force that is held at standstill, at the position of the operating point: with more force the gas of chamber A becomes stiffer and that of chamber B softer. The curves end where the gas at a chamber is shut off, or at the nominal voltage.";
     figure::stiffness_over_force(
         Words::new("stiffness-force", "Hydraulic stiffness over the force", caption),
         &input,
