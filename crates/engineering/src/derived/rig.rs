@@ -302,7 +302,10 @@ fn dynamics(rig: &Rig, list: &mut List) {
         "ξ_m",
         damping_ratio,
         "1",
-        "2 ξ_m ω_m = f_v/M + (K_c + G) K_H^2/(A_u^2 (K_H + K_S))",
+        match rig.plant.series {
+            None => "2 ξ_m ω_m = f_v/M + (K_c + G) K_H^2/(A_u^2 (K_H + K_S))",
+            Some(_) => "2 ξ_m ω_m = f_v/M + (K_c + G) K_H^2/(A_u^2 (K_H + K_S k_t/(K_S + k_t)))",
+        },
     );
     list.add(
         "dynamics.force_rate_gain",
