@@ -124,7 +124,8 @@ fn leaves_its_way(signals: &[Signal], rest: f64, place: &str, check: &mut Check<
     );
     let index =
         courses.iter().position(|course| course.corners.iter().any(|[start, _]| *start == time)).unwrap_or(0);
-    check.error_with_help(&format!("{place}[{index}]"), message, "one of them must be smaller");
+    let help = "no simulation runs this scenario: one of them must be smaller";
+    check.warning_with_help(&format!("{place}[{index}]"), message, help);
 }
 
 /// What rounding may add to a setting.
