@@ -149,9 +149,10 @@ fn cylinder(cylinder: &DeclaredCylinder, check: &mut Check<'_, '_>) {
     piston(cylinder, check);
     // an area has its rods subtracted already
     let by_area = cylinder.piston_area.is_some() || cylinder.piston_areas.is_some();
-    if !by_area
-        && !["rod_diameter", "rod_diameters"].iter().any(|name| check.declared(&format!("cylinder.{name}")))
-    {
+    let written =
+        ["rod_diameter", "rod_diameters"].iter().any(|name| check.declared(&format!("cylinder.{name}")));
+    let by_model = cylinder.rod_diameter.is_some() || cylinder.rod_diameters.is_some();
+    if !by_area && !written && !by_model {
         check.missing("cylinder", "rod_diameter", "missing `rod_diameter` or `rod_diameters` in [cylinder]");
     }
     let too_thick = |piston: f64| cylinder.rod_diameters_m().iter().any(|rod| *rod >= piston);
@@ -264,6 +265,13 @@ fn lines(actuator: &DeclaredActuator, lines: &DeclaredLines, check: &mut Check<'
             let message = "the hose's `working_pressure` is below the supply pressure";
             let key = if side.hose_name().is_some() { "hose" } else { "working_pressure" };
             check.warning(&format!("{path}.{key}"), message);
+        }
+        let working = side.pipe().and_then(|pipe| pipe.working_pressure);
+        if working.is_some_and(|working| working < actuator.supply.pressure) {
+            let key =
+                if check.declared(&format!("{path}.pipe.model")) { "model" } else { "working_pressure" };
+            let message = "the pipe's `working_pressure` is below the supply pressure";
+            check.warning(&format!("{path}.pipe.{key}"), message);
         }
     }
 }
