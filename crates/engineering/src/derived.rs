@@ -11,6 +11,8 @@ mod rig;
 mod series;
 mod valve;
 
+use std::borrow::Cow;
+
 pub use rig::derive;
 
 /// A quantity that follows from the project.
@@ -21,13 +23,13 @@ pub struct Derived {
     /// Name, unique, with dots between its parts.
     pub name: String,
     /// Symbol as in the notation, such as `K_H`.
-    pub symbol: &'static str,
+    pub symbol: Cow<'static, str>,
     /// Value, SI, or why it does not exist.
     pub value: Result<f64, &'static str>,
     /// SI unit.
     pub unit: &'static str,
     /// Equation it follows from.
-    pub equation: &'static str,
+    pub equation: Cow<'static, str>,
     /// The value in use instead, where the project states one.
     pub stated: Option<Stated>,
 }

@@ -63,13 +63,14 @@ pub use measured_response::{MeasuredResponseInput, ResponseCurve, measured_respo
 pub use nichols::{BoundGroup, NicholsInput, OpenLoopViolation, USUAL_CONTOURS_DB, nichols};
 pub use nomograph::{NomographBore, NomographInput, nomograph};
 pub use pareto_front::{FrontPlace, ParetoCurve, ParetoInput, ParetoPoint, pareto_front};
-pub use phea_quantity::DisplayUnit;
+pub use phea_quantity::{DisplayUnit, MotionKind};
 pub use pole_map::{PoleMapInput, PoleMapScale, PoleSeries, pole_map};
 pub use pole_sweep::{PoleSweepInput, PoleSweepPoint, pole_sweep};
 pub use prefilter_band::{PrefilterPanel, PrefilterPoint, prefilter_band};
 pub use schematic::{
-    ControllerSymbol, Environment, LineKind, LineSymbol, Rods, SchematicInput, SeriesKind, SeriesSymbol,
-    SupplyKind, TestCircuitInput, TestPorts, schematic, test_circuit,
+    AccumulatorSymbol, ControllerSymbol, Environment, LineKind, LineSymbol, LinkageSymbol, Rods,
+    SchematicInput, SeriesKind, SeriesSymbol, SupplyKind, TestCircuitInput, TestPorts, schematic,
+    test_circuit,
 };
 pub use sizing_chart::{SizingCandidate, SizingChartInput, SizingCurve, sizing_chart};
 pub use step_response::{SettlingBand, StepResponseInput, TimeBounds, TimeEvent, TimeSeries, step_response};

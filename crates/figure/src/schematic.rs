@@ -5,6 +5,8 @@
 //! top, the lines below them, then servovalve and controller, then supply and tank. Every text
 //! comes from the caller and is cut to its place.
 
+mod gas;
+mod lever;
 mod mechanics;
 mod motor;
 mod pen;
@@ -12,6 +14,8 @@ mod symbols;
 mod test_circuit;
 
 pub use test_circuit::{TestCircuitInput, TestPorts, test_circuit};
+
+use phea_quantity::MotionKind;
 
 use super::scene::Scene;
 use super::{Figure, WIDTH, Words};
@@ -39,10 +43,24 @@ pub enum LineKind {
 pub struct LineSymbol {
     /// Kind.
     pub kind: LineKind,
-    /// Whether an accumulator is connected at the chamber.
-    pub has_accumulator: bool,
-    /// Words, one row each, such as `hose 12.7 mm` and `1.5 m`; three rows at most.
+    /// The accumulator at the chamber, where there is one.
+    pub accumulator: Option<AccumulatorSymbol>,
+    /// Words, one row each, such as `hose 12.7 mm` and `1.5 m`; [`LINE_ROWS`] at most.
     pub rows: Vec<String>,
+}
+
+/// Rows of words that a line has room for.
+pub const LINE_ROWS: usize = 6;
+
+/// An accumulator at a chamber.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AccumulatorSymbol {
+    /// Its gas stays.
+    Fixed,
+    /// Its gas is adjusted in operation: an arrow through it.
+    Adjusted,
+    /// A valve between it and the chamber is adjusted: an arrow through that.
+    BehindValve,
 }
 
 /// Rods of the cylinder.
@@ -52,6 +70,13 @@ pub enum Rods {
     Both,
     /// Towards the load only.
     TowardsLoad,
+}
+
+/// A joint behind the rod's end, about which the load turns.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LinkageSymbol {
+    /// Words beside the lever, such as `four-bar`, `arm r`, `49.8 mm`; three short rows at most.
+    pub rows: Vec<String>,
 }
 
 /// What the rod pushes.
@@ -109,10 +134,12 @@ pub struct SchematicInput {
     pub line_a: LineSymbol,
     /// Line of chamber B.
     pub line_b: LineSymbol,
-    /// A motor in place of the cylinder.
-    pub rotary: bool,
+    /// A motor in place of the cylinder is drawn as one, with the symbols of one.
+    pub motion: MotionKind,
     /// Rods.
     pub rods: Rods,
+    /// Stages of a telescopic piston after the first; [`STAGES`] of them are drawn.
+    pub further_stages: usize,
     /// Whether chamber B faces the load; otherwise chamber A does.
     pub load_beside_b: bool,
     /// Word above the cylinder, such as `50/22 mm, stroke 500 mm`.
@@ -124,6 +151,8 @@ pub struct SchematicInput {
     pub load_cell: Option<Vec<String>>,
     /// A spring between load cell and environment, where there is one.
     pub series: Option<SeriesSymbol>,
+    /// A joint between these and the environment, where there is one.
+    pub linkage: Option<LinkageSymbol>,
     /// Environment.
     pub environment: Environment,
     /// Words below the environment, such as its stiffness; two rows at most.
@@ -131,6 +160,10 @@ pub struct SchematicInput {
     /// Control loop, where there is one.
     pub controller: Option<ControllerSymbol>,
 }
+
+/// Further stages of a telescopic piston that are drawn one in another; the words tell how many there
+/// are.
+pub const STAGES: usize = 3;
 
 /// As low as the supply or the words of the controller reach.
 fn height(input: &SchematicInput) -> f64 {
@@ -149,14 +182,14 @@ pub fn schematic(words: Words, input: &SchematicInput) -> Figure {
     symbols::supply(&mut scene, input);
     symbols::working_lines(&mut scene, input);
     symbols::valve(&mut scene, input);
-    if input.rotary {
+    if input.motion.is_rotary() {
         motor::motor(&mut scene, input);
     } else {
         mechanics::cylinder(&mut scene, input);
     }
     mechanics::load(&mut scene, input);
     if let Some(controller) = &input.controller {
-        symbols::controller(&mut scene, controller, input.load_cell.is_some());
+        symbols::controller(&mut scene, controller, input);
     }
     words.with_scene(scene)
 }

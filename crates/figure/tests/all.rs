@@ -1,6 +1,7 @@
 //! Figures from outside: what is drawn, and that it can be read.
 #![cfg(test)]
 
+mod circuit;
 mod colours;
 mod drawn;
 #[path = "../src/family_step/edge.rs"]

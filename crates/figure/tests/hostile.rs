@@ -282,10 +282,12 @@ fn tornadoes() {
 #[test]
 fn circuits() {
     repeat(9, |r| {
+        let accumulators =
+            [AccumulatorSymbol::Fixed, AccumulatorSymbol::Adjusted, AccumulatorSymbol::BehindValve];
         let line = |r: &mut Random| LineSymbol {
             kind: if r.unit() < 0.5 { LineKind::Hose } else { LineKind::Pipe },
-            has_accumulator: r.unit() < 0.5,
-            rows: r.many(5, Random::name),
+            accumulator: r.maybe(|r| accumulators[r.below(3)]),
+            rows: r.many(9, Random::name),
         };
         let controller = |r: &mut Random| ControllerSymbol {
             has_prefilter: r.unit() < 0.5,
@@ -293,7 +295,9 @@ fn circuits() {
         };
         let series = [SeriesKind::Spring, SeriesKind::DampedSpring, SeriesKind::Transmission];
         let input = SchematicInput {
-            rotary: r.unit() < 0.5,
+            motion: if r.unit() < 0.5 { MotionKind::Rotary } else { MotionKind::Linear },
+            further_stages: r.below(5),
+            linkage: r.maybe(|r| LinkageSymbol { rows: r.many(5, Random::name) }),
             supply: if r.unit() < 0.5 { SupplyKind::Pump } else { SupplyKind::ConstantPressure },
             supply_rows: r.many(4, Random::name),
             tank: r.name(),

@@ -44,6 +44,7 @@ mod plant_of_verdicts;
 mod proof;
 mod recorded_tables;
 mod repair;
+mod report_circuit;
 mod report_design;
 mod report_opening;
 mod report_page;

@@ -6,6 +6,7 @@ use phea_dynamics::random::{share, stream};
 use phea_dynamics::uncertain_plant::PlantCoefficients;
 use phea_hydraulics::machine::SIGNALS;
 use phea_qft::family::Family;
+use phea_workbench::command::Request;
 use phea_workbench::family::family;
 use phea_workbench::linearize::{LinkagePosition, linkage_places};
 use phea_workbench::project::Project;
@@ -13,7 +14,7 @@ use phea_workbench::setup::Setup;
 use phea_workbench::simulate::{ControlledMachine, ScenarioRun, simulate_project};
 use phea_workbench::source::Memory;
 
-use super::ask::project_of;
+use super::ask::{HOSE, project_of, try_answer};
 
 const KNEE: &str = include_str!("../../../examples/leg/knee.toml");
 const FREQUENCIES: [f64; 6] = [0.1, 3.0, 30.0, 300.0, 2000.0, 9000.0];
@@ -147,6 +148,32 @@ fn a_weight_is_held_at_rest() {
         let held = signal("joint_torque_n_m");
         assert!((held / torque - 1.0).abs() < 1e-9, "{settings:?}: {held} {torque}");
     }
+}
+
+/// What `linearize` and the report say of the impedance about the joint, for a spring K in place of Z s: the torque F g' of a
+/// force F_0 - K (x - x_0) falls with the angle by r^2 (K + k_g).
+#[test]
+fn the_impedance_about_the_joint_is_told() {
+    let project = project_of(KNEE, &[]);
+    let rig = Setup::rig_of(&project).unwrap();
+    let linkage = rig.actuator.components().linkage.as_ref().unwrap();
+    let here = linkage_places(&rig).into_iter().find(|at| at.at == LinkagePosition::OperatingPoint).unwrap();
+    let rows = phea_workbench::derived::derive(&project, &rig);
+    let geometric = rows.iter().find(|row| row.name == "linkage.geometric_stiffness").unwrap().value.unwrap();
+    let (force, stiffness, step) = (rig.point.hydraulic_force, 2e5, 1e-5);
+    let torque = |angle: f64| {
+        let end = linkage.end(angle);
+        (force - stiffness * (end.position - here.position_m)) * end.lever_arm
+    };
+    let falls = (torque(here.angle_rad - step) - torque(here.angle_rad + step)) / (2.0 * step);
+    let told = here.lever_arm_m * here.lever_arm_m * (stiffness + geometric);
+    assert!((falls / told - 1.0).abs() < 1e-6, "{falls} {told}");
+    // the geometric stiffness is not lost in rounding
+    assert!((geometric / stiffness).abs() > 1e-3, "{geometric}");
+    let sentence = "about the joint it is r² (Z + k_g/s), in N·m·s/rad, with the lever arm r = 49.84 mm";
+    let answered = |text: &str| try_answer(text, &[], &[], &Request::Linearize).unwrap().text;
+    assert!(answered(KNEE).contains(sentence));
+    assert!(!answered(HOSE).contains("joint"));
 }
 
 fn run(project: &Project) -> ScenarioRun {

@@ -200,6 +200,77 @@ fn of_linear_motion(text: &str) -> Vec<String> {
     found
 }
 
+/// Symbols of a cylinder in a text, also where tags separate a letter from its subscript.
+fn symbols_of_a_cylinder(text: &str) -> Vec<String> {
+    const SYMBOLS: [&str; 9] = ["K_H", "F_e", "F_H", "F_ref", "A_A", "A_B", "A_u", "x_p", "x_L"];
+    let mut plain = String::new();
+    for (index, part) in text.replace("</i><sub>", "_<").split('<').enumerate() {
+        let (tag, shown) = if index == 0 { ("", part) } else { part.split_once('>').unwrap_or(("", part)) };
+        // a drawing goes down to a subscript, and back up
+        plain.push_str(match tag {
+            "" | "/tspan" => "",
+            _ if tag.starts_with("tspan") => {
+                if tag.contains("dy=\"-") {
+                    " "
+                } else {
+                    "_"
+                }
+            }
+            _ => " ",
+        });
+        plain.push_str(shown);
+    }
+    let of_name = |c: char| c.is_alphanumeric() || c == '_';
+    plain.split(|c| !of_name(c)).filter(|word| SYMBOLS.contains(word)).map(str::to_string).collect()
+}
+
+/// The equations of `check` are those of a motor, and so are the symbols everywhere; of a cylinder they are found, so that
+/// the test would see them.
+#[test]
+fn equations_and_symbols_are_those_of_a_motor() {
+    let equation = |name: &str| {
+        let json: Value = serde_json::from_str(&answered(VANE, &Request::Check).json).unwrap();
+        let rows = json["derived"].as_array().unwrap();
+        let row = rows.iter().find(|row| row["name"] == name).unwrap_or_else(|| panic!("{name}"));
+        [&row["symbol"], &row["equation"]].map(|text| text.as_str().unwrap().to_string())
+    };
+    let is = |name: &str, symbol: &str, text: &str| assert_eq!(equation(name), [symbol, text], "{name}");
+    is("stiffness.minimum", "K_θ", "K_θ = min over θ of D^2 (1/C_A + 1/C_B)");
+    is("operating_point.hydraulic_torque", "T_H", "T_H = D (p_A - p_B)");
+    is("linear.flow_gain", "K_qU", "K_{qU} = D^2 (K_{qA}/C_A + K_{qB}/C_B)/K_θ");
+    is("linear.flow_pressure_coefficient", "K_c", "1/K_c = 1/K_{cA} + 1/K_{cB}");
+    is("dynamics.mechanical_frequency", "ω_m", "ω_m = sqrt((K_θ + K_S)/J)");
+    for request in [Request::Check, Request::Linearize, Request::Report] {
+        let answer = answered(TURNING, &request);
+        assert_eq!(symbols_of_a_cylinder(&answer.text), [""; 0], "{}", request.name());
+        for file in
+            answer.files.iter().filter(|file| file.name.ends_with("svg") || file.name.ends_with("html"))
+        {
+            let text = std::str::from_utf8(&file.bytes).unwrap();
+            assert_eq!(symbols_of_a_cylinder(text), [""; 0], "{}: {}", request.name(), file.name);
+        }
+    }
+    let linear = answered(&rig(None), &Request::Report);
+    let found = |name: &str| {
+        let file = linear.files.iter().find(|file| file.name == name).unwrap();
+        symbols_of_a_cylinder(std::str::from_utf8(&file.bytes).unwrap())
+    };
+    for symbol in ["K_H", "F_e", "A_A", "x_p"] {
+        assert!(found("report.html").iter().any(|one| one == symbol), "{symbol}");
+    }
+    assert!(found("circuit.svg").iter().any(|one| one == "F_e"));
+}
+
+/// A motor has no length from mount to mount, and is not asked for one.
+#[test]
+fn a_motor_has_no_retracted_length() {
+    let answer = answered(VANE, &Request::Alternatives(AlternativesRequest::default()));
+    let json: Value = serde_json::from_str(&answer.json).unwrap();
+    let reason = &json["alternatives"][0]["columns"]["actuator_length_m_reason"];
+    assert_eq!(reason, "a motor has no retracted length");
+    assert!(!answer.text.contains("dead_length") && !answer.json.contains("dead_length"));
+}
+
 /// The text of a page or drawing, its code and styles left out.
 fn text_of(markup: &str) -> String {
     let mut text = String::new();

@@ -353,7 +353,13 @@ fn flow(project: &Project, rig: &Rig, list: &mut List) {
             Line::Volume { .. } => continue,
         };
         let velocity = 4.0 * flow / (std::f64::consts::PI * bore * bore);
-        list.add(format!("{name}.oil_velocity"), "v_oil", velocity, "m/s", "v_{oil} = 4 q_{pump}/(π D^2)");
+        list.add(
+            format!("{name}.oil_velocity"),
+            "v_oil",
+            velocity,
+            "m/s",
+            "v_{oil} = 4 q_{pump}/(π D_{ho}^2)",
+        );
     }
 }
 

@@ -370,47 +370,53 @@ pub(crate) fn sensitivities() -> Figure {
 }
 
 pub(crate) fn circuit() -> Figure {
+    schematic(words("schematic", "The rig"), &circuit_of_hoses())
+}
+
+/// What it shows.
+pub(crate) fn circuit_of_hoses() -> SchematicInput {
     let hose = LineSymbol {
         kind: LineKind::Hose,
-        has_accumulator: false,
+        accumulator: None,
         rows: vec!["Synflex 3130-08".into(), "12.7 mm × 1.5 m".into(), "β_e 261 MPa".into()],
     };
-    schematic(
-        words("schematic", "The rig"),
-        &SchematicInput {
-            rotary: false,
-            supply: SupplyKind::ConstantPressure,
-            supply_rows: vec!["70 bar".into(), "9.8 L/min".into()],
-            tank: "0 bar".into(),
-            valve_rows: vec!["Moog 760 C263-A".into(), "1099 rad/s, ζ 0.9".into()],
-            line_a: hose.clone(),
-            line_b: hose,
-            rods: Rods::Both,
-            load_beside_b: true,
-            cylinder: "50/22 mm, stroke 500 mm".into(),
-            mass: "13.1 kg".into(),
-            load_cell: Some(vec!["load cell".into(), "98.1 MN/m".into()]),
-            series: None,
-            environment: Environment::PrescribedMotion,
-            environment_rows: vec!["K_S 20 MN/m".into()],
-            controller: Some(ControllerSymbol {
-                has_prefilter: true,
-                rows: vec!["G = (0.001 s + 0.008)/s".into(), "F = 910/(s^2 + 83 s + 910)".into()],
-            }),
-        },
-    )
+    SchematicInput {
+        motion: MotionKind::Linear,
+        further_stages: 0,
+        linkage: None,
+        supply: SupplyKind::ConstantPressure,
+        supply_rows: vec!["70 bar".into(), "9.8 L/min".into()],
+        tank: "0 bar".into(),
+        valve_rows: vec!["Moog 760 C263-A".into(), "1099 rad/s, ζ 0.9".into()],
+        line_a: hose.clone(),
+        line_b: hose,
+        rods: Rods::Both,
+        load_beside_b: true,
+        cylinder: "50/22 mm, stroke 500 mm".into(),
+        mass: "13.1 kg".into(),
+        load_cell: Some(vec!["load cell".into(), "98.1 MN/m".into()]),
+        series: None,
+        environment: Environment::PrescribedMotion,
+        environment_rows: vec!["K_S 20 MN/m".into()],
+        controller: Some(ControllerSymbol {
+            has_prefilter: true,
+            rows: vec!["G = (0.001 s + 0.008)/s".into(), "F = 910/(s^2 + 83 s + 910)".into()],
+        }),
+    }
 }
 
 pub(crate) fn asymmetric_circuit() -> Figure {
     let pipe = LineSymbol {
         kind: LineKind::Pipe,
-        has_accumulator: true,
+        accumulator: Some(AccumulatorSymbol::Fixed),
         rows: vec!["pipe 10.5 mm".into(), "0.35 m".into(), "14.2 mL, 15 bar".into()],
     };
     schematic(
         words("schematic-asymmetric", "An asymmetric cylinder on pipes"),
         &SchematicInput {
-            rotary: false,
+            motion: MotionKind::Linear,
+            further_stages: 0,
+            linkage: None,
             supply: SupplyKind::Pump,
             supply_rows: vec!["210 bar".into(), "38 L/min".into()],
             tank: "0 bar".into(),

@@ -4,8 +4,8 @@ use super::super::SMALL_SIZE;
 use super::super::colour::Role;
 use super::super::scene::{Anchor, Baseline, Fill, Rectangle, Scene, Stroke, Text, point};
 use super::super::typeset;
-use super::pen::{MOTION, OUTLINE, ROW, arrow, block, ground, lines, rows, spring, word};
-use super::{Environment, Rods, SchematicInput, SeriesKind, SeriesSymbol};
+use super::pen::{MOTION, OUTLINE, ROW, arrow, block, ground, lines, rows, spring, word, wrapped};
+use super::{Environment, Rods, STAGES, SchematicInput, SeriesKind, SeriesSymbol, lever};
 
 /// Height of the rod's axis.
 pub(super) const AXIS: f64 = 74.0;
@@ -20,6 +20,8 @@ pub(super) const CELL: f64 = 412.0;
 /// Lower edge of the load cell.
 pub(super) const CELL_BOTTOM: f64 = AXIS + 15.0;
 const WALL: f64 = 520.0;
+/// That of a load on a lever, which stands further right.
+const WALL_OF_LEVER: f64 = 540.0;
 /// Port of the chamber away from the load.
 pub(super) const PORT_FAR: (f64, f64) = (LEFT + 30.0, AXIS + HALF);
 /// Port of the chamber beside the load.
@@ -38,17 +40,35 @@ pub(super) fn cylinder(scene: &mut Scene, input: &SchematicInput) {
     let end = MASS - 20.0;
     let rod = Rectangle { left: rod_left, top: AXIS - ROD, right: end, bottom: AXIS + ROD };
     scene.rectangle(rod, Some(OUTLINE), Some(Fill::solid(Role::Surface)));
-    let piston = Rectangle { left: PISTON - 7.0, top: AXIS - HALF, right: PISTON + 7.0, bottom: AXIS + HALF };
-    scene.rectangle(piston, Some(OUTLINE), Some(Fill::solid(Role::Surface)));
+    pistons_within(scene, input.further_stages);
     let (far, near) = if input.load_beside_b { ("A", "B") } else { ("B", "A") };
     for (name, x) in [(far, 0.5 * (LEFT + PISTON)), (near, 0.5 * (RIGHT + PISTON))] {
         word(scene, name, (x - 14.0, AXIS + 15.0), Role::Text);
         word(scene, &format!("p_{name}"), (x + 14.0, AXIS + 15.0), Role::Muted);
     }
-    let text = typeset::fitted(&input.cylinder, SMALL_SIZE, RIGHT - LEFT + 30.0);
+    let text = typeset::fitted(&input.cylinder, SMALL_SIZE, 330.0);
     let at = point(0.5 * (LEFT + RIGHT), 8.0);
     scene.text(Text::new(at, text, SMALL_SIZE).held(Anchor::Middle, Baseline::Top));
     position_arrow(scene, input);
+}
+
+/// The piston; a telescopic one is a sleeve for each stage, and in the last of them the piston.
+fn pistons_within(scene: &mut Scene, further_stages: usize) {
+    let surface = Some(Fill::solid(Role::Surface));
+    let mut half = HALF;
+    for stage in 0..further_stages.min(STAGES) {
+        let inner = half - 5.0;
+        let reach = 18.0 - 4.0 * stage as f64;
+        for [top, bottom] in [[AXIS - half, AXIS - inner], [AXIS + inner, AXIS + half]] {
+            let sleeve = Rectangle { left: PISTON - reach, top, right: PISTON + reach, bottom };
+            scene.rectangle(sleeve, Some(OUTLINE), surface);
+        }
+        half = inner;
+    }
+    let wide = if further_stages > 0 { 5.0 } else { 7.0 };
+    let piston =
+        Rectangle { left: PISTON - wide, top: AXIS - half, right: PISTON + wide, bottom: AXIS + half };
+    scene.rectangle(piston, Some(OUTLINE), surface);
 }
 
 /// The position x_p counts from the A end to the B end.
@@ -65,16 +85,16 @@ fn position_arrow(scene: &mut Scene, input: &SchematicInput) {
 pub(super) fn load(scene: &mut Scene, input: &SchematicInput) {
     let heavy = Stroke::solid(Role::Axis, 3.0);
     block(scene, MASS - 20.0, AXIS - 22.0, 40.0, 44.0);
-    word(scene, "M", (MASS, AXIS), Role::Text);
+    word(scene, &input.motion.formula("M"), (MASS, AXIS), Role::Text);
     let mass = [input.mass.clone()];
     // an inertia takes more room than a mass: above what the sensor has
-    let (top, wide) = if input.rotary { (AXIS - 41.0 - 2.0 * ROW, 100.0) } else { (AXIS - 41.0, 56.0) };
+    let (top, wide) = if input.motion.is_rotary() { (4.0, 100.0) } else { (AXIS - 41.0, 56.0) };
     rows(scene, &mass, (MASS, top), Anchor::Middle, wide, 1);
     match &input.load_cell {
         Some(words) => {
             lines(scene, &[(MASS + 20.0, AXIS), (CELL - 17.0, AXIS)], heavy);
             block(scene, CELL - 17.0, AXIS - 15.0, 34.0, 30.0);
-            word(scene, "F_e", (CELL, AXIS), Role::Text);
+            word(scene, &input.motion.formula("F_e"), (CELL, AXIS), Role::Text);
             let top = if words.len() > 1 { AXIS - 41.0 - ROW } else { AXIS - 41.0 };
             rows(scene, words, (CELL, top), Anchor::Middle, 80.0, 2);
             lines(scene, &[(CELL + 17.0, AXIS), (CELL + 26.0, AXIS)], heavy);
@@ -82,12 +102,45 @@ pub(super) fn load(scene: &mut Scene, input: &SchematicInput) {
         None => lines(scene, &[(MASS + 20.0, AXIS), (CELL + 26.0, AXIS)], heavy),
     }
     let from = CELL + 26.0;
-    let from = input.series.as_ref().map_or(from, |series| between(scene, series, from));
-    environment(scene, input, from);
+    let words = if input.linkage.is_some() { BesideLever::Yes } else { BesideLever::No };
+    let from = input.series.as_ref().map_or(from, |series| between(scene, series, from, words));
+    match &input.linkage {
+        Some(linkage) => {
+            // a mass is at the end of the lever, anything else beside the pin there
+            let aside = if input.environment == Environment::SpringMassDamper { -12.0 } else { 4.0 };
+            let from = lever::lever(scene, linkage, from) + aside;
+            let place = EnvironmentPlace { from, axis: lever::LOAD, wall: WALL_OF_LEVER, words: 100.0 };
+            environment(scene, input, &place, ["J", "θ_0"]);
+        }
+        None => {
+            let place = EnvironmentPlace { from, axis: AXIS, wall: WALL, words: 132.0 };
+            let names = if input.motion.is_rotary() { ["J_L", "θ_L"] } else { ["m", "x_L"] };
+            environment(scene, input, &place, names);
+        }
+    }
+}
+
+/// Where the environment is drawn.
+struct EnvironmentPlace {
+    /// What holds it.
+    from: f64,
+    /// Height of its axis.
+    axis: f64,
+    /// Where its ground is.
+    wall: f64,
+    /// Width of its words.
+    words: f64,
+}
+
+/// Whether what is drawn has a lever to its right.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum BesideLever {
+    Yes,
+    No,
 }
 
 /// What lies between load cell and environment; where it ends.
-fn between(scene: &mut Scene, series: &SeriesSymbol, from: f64) -> f64 {
+fn between(scene: &mut Scene, series: &SeriesSymbol, from: f64, beside: BesideLever) -> f64 {
     let to = from + 34.0;
     let ends = |scene: &mut Scene, half: f64| {
         for x in [from, to] {
@@ -106,8 +159,17 @@ fn between(scene: &mut Scene, series: &SeriesSymbol, from: f64) -> f64 {
         }
         SeriesKind::Transmission => pistons(scene, from, to),
     }
-    let words = [series.words.clone()];
-    rows(scene, &words, (0.5 * (from + to) + 6.0, AXIS + 20.0), Anchor::Middle, 84.0, 1);
+    match beside {
+        BesideLever::No => {
+            let words = [series.words.clone()];
+            rows(scene, &words, (0.5 * (from + to) + 6.0, AXIS + 20.0), Anchor::Middle, 84.0, 1);
+        }
+        // between the signal of the load cell and the lever
+        BesideLever::Yes => {
+            let words = wrapped(&series.words, 52.0);
+            rows(scene, &words, (to - 4.0, AXIS + 20.0), Anchor::End, 52.0, 2);
+        }
+    }
     to
 }
 
@@ -127,31 +189,40 @@ fn pistons(scene: &mut Scene, from: f64, to: f64) {
     lines(scene, &hose, Stroke::solid(Role::Axis, 2.0));
 }
 
-fn environment(scene: &mut Scene, input: &SchematicInput, from: f64) {
+/// The environment with the names of its mass and of its position.
+fn environment(
+    scene: &mut Scene,
+    input: &SchematicInput,
+    place: &EnvironmentPlace,
+    [mass, position]: [&str; 2],
+) {
+    let &EnvironmentPlace { from, axis, wall, words } = place;
     match input.environment {
         Environment::PrescribedMotion => {
-            spring(scene, from, WALL - 6.0, AXIS, 9.0, OUTLINE);
-            let wall =
-                Rectangle { left: WALL - 6.0, top: AXIS - 32.0, right: WALL + 6.0, bottom: AXIS + 32.0 };
-            scene.rectangle(wall, Some(OUTLINE), Some(Fill::solid(Role::Surface)));
-            let y = AXIS - 44.0;
-            arrow(scene, (WALL, y), (WALL + 26.0, y), MOTION);
-            arrow(scene, (WALL, y), (WALL - 26.0, y), MOTION);
-            word(scene, "x_L", (WALL, y - 13.0), Role::Accent);
+            // its arrow takes room to the right
+            let wall = wall.min(WALL);
+            spring(scene, from, wall - 6.0, axis, 9.0, OUTLINE);
+            let plate =
+                Rectangle { left: wall - 6.0, top: axis - 32.0, right: wall + 6.0, bottom: axis + 32.0 };
+            scene.rectangle(plate, Some(OUTLINE), Some(Fill::solid(Role::Surface)));
+            let y = axis - 44.0;
+            arrow(scene, (wall, y), (wall + 26.0, y), MOTION);
+            arrow(scene, (wall, y), (wall - 26.0, y), MOTION);
+            word(scene, position, (wall, y - 13.0), Role::Accent);
         }
         Environment::Wall => {
-            spring(scene, from, WALL, AXIS, 9.0, OUTLINE);
-            ground(scene, WALL, AXIS - 30.0, AXIS + 30.0);
+            spring(scene, from, wall, axis, 9.0, OUTLINE);
+            ground(scene, wall, axis - 30.0, axis + 30.0);
         }
         Environment::SpringMassDamper => {
-            block(scene, from, AXIS - 18.0, 24.0, 36.0);
-            word(scene, "m", (from + 12.0, AXIS), Role::Text);
-            spring(scene, from + 24.0, WALL, AXIS - 10.0, 6.0, OUTLINE);
-            damper(scene, from + 24.0, WALL, AXIS + 10.0);
-            ground(scene, WALL, AXIS - 30.0, AXIS + 30.0);
+            block(scene, from, axis - 18.0, 24.0, 36.0);
+            word(scene, mass, (from + 12.0, axis), Role::Text);
+            spring(scene, from + 24.0, wall, axis - 10.0, 6.0, OUTLINE);
+            damper(scene, from + 24.0, wall, axis + 10.0);
+            ground(scene, wall, axis - 30.0, axis + 30.0);
         }
     }
-    rows(scene, &input.environment_rows, (WALL + 32.0, AXIS + 40.0), Anchor::End, 132.0, 2);
+    rows(scene, &input.environment_rows, (WALL + 32.0, axis + 40.0), Anchor::End, words, 2);
 }
 
 fn damper(scene: &mut Scene, from: f64, to: f64, y: f64) {

@@ -34,16 +34,16 @@ pub(super) fn motor(scene: &mut Scene, input: &SchematicInput) {
     }
     // as wide as the inertia of the load leaves room for
     let text = typeset::fitted(&input.cylinder, SMALL_SIZE, 220.0);
-    scene.text(Text::new(point(PISTON - 18.0, 8.0), text, SMALL_SIZE).held(Anchor::Middle, Baseline::Top));
-    angle_arrow(scene);
+    scene.text(Text::new(point(PISTON - 18.0, 4.0), text, SMALL_SIZE).held(Anchor::Middle, Baseline::Top));
+    angle_arrow(scene, &input.motion.formula("x_p"));
 }
 
-/// The angle x_p grows while oil enters chamber A.
-fn angle_arrow(scene: &mut Scene) {
+/// The angle grows while oil enters chamber A.
+fn angle_arrow(scene: &mut Scene, name: &str) {
     let (from, to, top) = (point(PISTON - 24.0, AXIS - 24.0), point(PISTON + 24.0, AXIS - 24.0), AXIS - 40.0);
     let bend = [point(PISTON - 12.0, top), point(PISTON + 12.0, top)];
     let path = vec![PathStep::Move(from), PathStep::Curve(bend[0], bend[1], to)];
     scene.shape(Shape::Path(path), Some(MOTION), None);
     head(scene, (to.x + 2.0, to.y + 3.0), (0.6, 0.8), MOTION.role);
-    word(scene, "x_p", (PISTON + 44.0, AXIS - 30.0), Role::Accent);
+    word(scene, name, (PISTON + 44.0, AXIS - 30.0), Role::Accent);
 }

@@ -73,6 +73,12 @@ pub(super) fn flexible(scene: &mut Scene, from: (f64, f64), to: (f64, f64), sag:
     scene.shape(Shape::Path(steps), Some(stroke), None);
 }
 
+/// The arrow of adjustability through the middle of a symbol, after ISO 1219-1.
+pub(super) fn adjustable(scene: &mut Scene, at: (f64, f64), (wide, high): (f64, f64)) {
+    let [from, to] = [(at.0 - wide, at.1 + high), (at.0 + wide, at.1 - high)];
+    arrow(scene, from, to, Stroke::solid(Role::Axis, 1.2));
+}
+
 /// Short diagonal strokes beside an upright line: fixed ground.
 pub(super) fn ground(scene: &mut Scene, x: f64, top: f64, bottom: f64) {
     lines(scene, &[(x, top), (x, bottom)], Stroke::solid(Role::Axis, 2.4));
@@ -97,6 +103,21 @@ pub(super) fn rows(
         let position = point(at.0, at.1 + ROW * index as f64);
         scene.text(Text::new(position, content, SMALL_SIZE).held(anchor, Baseline::Top));
     }
+}
+
+/// A text broken between words so that each row is at most this wide, where its words are.
+pub(super) fn wrapped(text: &str, limit: f64) -> Vec<String> {
+    let mut found: Vec<String> = Vec::new();
+    for word in text.split(' ') {
+        match found.last_mut() {
+            Some(row) if typeset::width(&format!("{row} {word}"), SMALL_SIZE) <= limit => {
+                row.push(' ');
+                row.push_str(word);
+            }
+            _ => found.push(word.to_string()),
+        }
+    }
+    found
 }
 
 /// A word in the middle of a place.

@@ -1,12 +1,13 @@
 //! Supply, tank, lines, servovalve and the blocks of the controller.
 
 use super::super::colour::Role;
-use super::super::scene::{Anchor, Fill, Rectangle, Scene, Shape, Stroke, point};
+use super::super::scene::{Anchor, Fill, Scene, Stroke, point};
+use super::gas;
 use super::mechanics::{CELL, CELL_BOTTOM, PORT_FAR, PORT_NEAR};
 use super::pen::{
     HOSE, MEASURED, OUTLINE, PIPE, ROW, SIGNAL, arrow, block, flexible, head, lines, rows, spring, word,
 };
-use super::{ControllerSymbol, LineKind, SchematicInput, SupplyKind};
+use super::{ControllerSymbol, LINE_ROWS, LineKind, SchematicInput, SupplyKind};
 
 /// Middle of the valve.
 pub(super) const VALVE: (f64, f64) = (202.0, 232.0);
@@ -85,7 +86,9 @@ pub(super) fn working_lines(scene: &mut Scene, input: &SchematicInput) {
         (near, PORT_NEAR, VALVE.0 + PORT, PORT_NEAR.0 + 16.0, Anchor::Start),
     ];
     for (line, port, valve_x, text_x, anchor) in places {
-        let (top, bottom) = ((port.0, port.1 + 10.0), (valve_x, TOP - 12.0));
+        // the branch to the gas is at the chamber, before the line begins
+        let branched = if line.accumulator.is_some() { gas::BRANCH + 10.0 } else { 0.0 };
+        let (top, bottom) = ((port.0, port.1 + 10.0 + branched), (valve_x, TOP - 12.0));
         lines(scene, &[(port.0, port.1), top], PIPE);
         lines(scene, &[bottom, (valve_x, TOP)], PIPE);
         match line.kind {
@@ -100,24 +103,11 @@ pub(super) fn working_lines(scene: &mut Scene, input: &SchematicInput) {
                 lines(scene, &[top, (top.0, bend), (bottom.0, bend), bottom], PIPE);
             }
         }
-        if line.has_accumulator {
-            let inwards = if port.0 < valve_x { 30.0 } else { -30.0 };
-            accumulator(scene, (port.0, port.1 + 6.0), port.0 + inwards);
+        if let Some(kind) = line.accumulator {
+            gas::accumulator(scene, kind, port, if port.0 < valve_x { 1.0 } else { -1.0 });
         }
-        rows(scene, &line.rows, (text_x, 116.0), anchor, 112.0, 3);
+        rows(scene, &line.rows, (text_x, 116.0), anchor, 112.0, LINE_ROWS);
     }
-}
-
-/// A gas-charged accumulator below its branch: the triangle of the gas, hollow, points to the oil.
-fn accumulator(scene: &mut Scene, branch: (f64, f64), x: f64) {
-    let (top, half, height) = (branch.1 + 6.0, 8.0, 32.0);
-    lines(scene, &[branch, (x, branch.1), (x, top)], PIPE);
-    let shell = Rectangle { left: x - half, top, right: x + half, bottom: top + height };
-    scene.shape(Shape::Rectangle(shell, half), Some(OUTLINE), Some(Fill::solid(Role::Surface)));
-    let middle = top + 0.5 * height;
-    lines(scene, &[(x - half, middle), (x + half, middle)], OUTLINE);
-    let gas = [point(x, middle + 2.5), point(x - 4.0, middle + 9.5), point(x + 4.0, middle + 9.5)];
-    scene.polygon(&gas, Some(OUTLINE), None);
 }
 
 /// The 4/3 servovalve: three positions, continuous between them, spring on one side and torque
@@ -166,7 +156,7 @@ fn torque_motor(scene: &mut Scene, left: f64) {
 }
 
 /// Prefilter, comparison and controller from right to left, and the measured force from above.
-pub(super) fn controller(scene: &mut Scene, symbol: &ControllerSymbol, measured: bool) {
+pub(super) fn controller(scene: &mut Scene, symbol: &ControllerSymbol, input: &SchematicInput) {
     let y = VALVE.1;
     let sum = (CELL, y);
     let g = (sum.0 - 80.0, sum.0 - 44.0);
@@ -185,13 +175,13 @@ pub(super) fn controller(scene: &mut Scene, symbol: &ControllerSymbol, measured:
     } else {
         arrow(scene, (550.0, y), (sum.0 + 9.0, y), SIGNAL);
     }
-    word(scene, "F_ref", (526.0, y - 14.0), Role::Text);
+    word(scene, &input.motion.formula("F_ref"), (526.0, y - 14.0), Role::Text);
     word(scene, "+", (sum.0 + 16.0, y + 13.0), Role::Text);
-    if measured {
+    if input.load_cell.is_some() {
         lines(scene, &[(CELL, CELL_BOTTOM), (CELL, y - 15.0)], MEASURED);
         head(scene, (CELL, y - 9.0), (0.0, 1.0), SIGNAL.role);
         word(scene, "\u{2212}", (sum.0 - 12.0, y - 17.0), Role::Text);
-        word(scene, "F_e", (CELL + 14.0, 172.0), Role::Text);
+        word(scene, &input.motion.formula("F_e"), (CELL + 14.0, 172.0), Role::Text);
     }
     rows(scene, &symbol.rows, (550.0, CONTROLLER_ROWS), Anchor::End, 245.0, 3);
 }

@@ -11,6 +11,7 @@
 /// assert_eq!(words.of("force step: the piston stalls"), "force step: the shaft stalls");
 /// assert_eq!(words.of("[force_sensor] in [-2 kN, 5 kN]"), "[force_sensor] in [-2 kN.m, 5 kN.m]");
 /// assert_eq!(Vocabulary::rotary(vec!["k".to_string()]).of("12 kN"), "12 kN.m");
+/// assert_eq!(words.of("K_H at its least, and Z = -F_e/(s X_L)"), "K_θ at its least, and Z = -T_e/(s Θ_L)");
 /// assert_eq!(Vocabulary::default().of("12 kN"), "12 kN");
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -21,8 +22,19 @@ pub struct Vocabulary {
 }
 
 /// Words and units, each as it stands between characters of other kinds; the longer before those
-/// that they begin with. Symbols stay: F is a torque then, and x an angle.
+/// that they begin with.
 static ROTARY: &[(&str, &str)] = &[
+    ("not stated: cylinder.dead_length", "a motor has no retracted length"),
+    ("F_e/(s X_L)", "T_e/(s Θ_L)"),
+    ("F_e/U_C", "T_e/U_C"),
+    ("F_e/F_ref", "T_e/T_ref"),
+    ("F_ref", "T_ref"),
+    ("F_e", "T_e"),
+    ("F_H", "T_H"),
+    ("K_H/M", "K_θ/J"),
+    ("K_H", "K_θ"),
+    ("x_L", "θ_L"),
+    ("x_p", "θ"),
     ("MN/m", "MN.m/rad"),
     ("kN/mm", "MN.m/rad"),
     ("N/mm", "kN.m/rad"),

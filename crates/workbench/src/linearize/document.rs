@@ -7,8 +7,8 @@ use phea_dynamics::portable;
 use phea_hydraulics::linear::{ModeShare, ResponseDifference};
 
 use super::{
-    AgreementBand, AskedAt, AskedImpedance, Linearization, LinkagePlace, ReductionDifference, WITHIN_DB,
-    WITHIN_DEG, WITHIN_PERCENT, stiffness_sentence,
+    AgreementBand, AskedAt, AskedImpedance, Linearization, LinkagePlace, LinkagePosition,
+    ReductionDifference, WITHIN_DB, WITHIN_DEG, WITHIN_PERCENT, stiffness_sentence,
 };
 use crate::answer::significant;
 use crate::caveat::of_models;
@@ -38,6 +38,7 @@ pub fn text(loaded: &Loaded, linearization: &Linearization) -> String {
         format!("closed loop: {closed}"),
         format!("above {hidden} rad/s {} hides the compliance", linearization.hidden_by.words()),
     ]);
+    out.sentences(impedance_at_joint(linearization));
     if let Some(asked) = &linearization.asked {
         out.section("Impedance asked and shown", asked_table(asked));
         out.sentences([asked_sentence(asked)]);
@@ -91,6 +92,15 @@ pub(crate) fn linkage_table(places: &[LinkagePlace]) -> Table {
     };
     let headings = ["position", "rod's end, mm", "joint, deg", "lever arm, mm", "reflected mass, kg"];
     Table::new(headings).with(places.iter().map(row))
+}
+
+/// Where Z is, of a rig whose load turns about a joint: with v = r omega and tau = F r, whose arm changes.
+pub(crate) fn impedance_at_joint(linearization: &Linearization) -> Option<String> {
+    let here = linearization.linkage.iter().find(|place| place.at == LinkagePosition::OperatingPoint)?;
+    let arm = crate::quantity::display(here.lever_arm_m, &crate::quantity::LENGTH, 4);
+    Some(format!(
+        "Z is that of the rod's end, in N·s/m: about the joint it is r² (Z + k_g/s), in N·m·s/rad, with the lever arm r = {arm} and the geometric stiffness k_g at the operating point"
+    ))
 }
 
 /// A virtual impedance and what the port shows, at a few frequencies.

@@ -18,6 +18,8 @@ pub(super) fn said(json: &str, words: &Vocabulary) -> String {
             out.push_str(&format!("\"{}\"", MotionKind::Rotary.name(inside)));
         } else if is_quantity(&key) {
             out.push_str(&format!("\"{}\"", MotionKind::Rotary.name(inside)));
+        } else if key == "symbol" {
+            out.push_str(&format!("\"{}\"", MotionKind::Rotary.formula(inside)));
         } else if is_kept(&key) {
             out.push_str(text);
         } else {
@@ -62,7 +64,6 @@ fn is_kept(key: &str) -> bool {
         "kind",
         "hose",
         "file",
-        "symbol",
         "cause",
     ]
     .contains(&key)

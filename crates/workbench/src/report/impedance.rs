@@ -13,7 +13,8 @@ use crate::figure::{
     AsymptoteLine, Figure, FrequencyMark, FrequencySeries, ImpedanceInput, Words, impedance,
 };
 use crate::linearize::{
-    Linearization, PortView, asked_sentence, asked_table, frequency_grid, passivity_sentence,
+    Linearization, PortView, asked_sentence, asked_table, frequency_grid, impedance_at_joint,
+    passivity_sentence,
 };
 use crate::project::{DeclaredSeries, Project};
 use crate::quantity::DisplayUnit;
@@ -38,6 +39,7 @@ pub(super) fn chapter(
     };
     let hiding = linearization.hidden_by.words();
     out.explanation(format!("The driving-point impedance Z is the resistance to a load that moves the rod: a damper, spring or mass, depending on frequency. Above {hidden} rad/s {hiding} hides the hydraulic compliance, and the load meets {met}."));
+    out.explanations(impedance_at_joint(linearization).map(|sentence| format!("{sentence}.")));
     out.left_out(project);
     out.figures([figure(linearization)?]);
     out.heading("Passivity");
@@ -165,7 +167,7 @@ fn figure(linearization: &Linearization) -> Result<Figure, LinearError> {
         series: views(linearization).iter().map(|(name, view)| series(name, &view.impedance)).collect(),
         asymptotes: lines,
         corners: vec![FrequencyMark {
-            label: linearization.hidden_by.label().to_string(),
+            label: linearization.motion.formula(linearization.hidden_by.label()).into_owned(),
             frequency_rad_per_s: linearization.compliance_hidden_above_rad_per_s,
         }],
         non_passive_bands_rad_per_s: bands

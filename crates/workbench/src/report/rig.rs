@@ -1,25 +1,23 @@
 //! The chapter on the rig: its circuit, drawn from the project, and its declaration.
 
+mod circuit;
+
 use phea_hydraulics::series::ForceFrom;
 
 use super::chapter::Chapter;
 use crate::document::{Document, Table};
-use crate::figure::{
-    ControllerSymbol, Environment, Figure, LineKind, LineSymbol, Rods, SchematicInput, SeriesKind,
-    SeriesSymbol, SupplyKind, Words, schematic,
-};
+use crate::figure::{LineKind, LineSymbol};
 use crate::linearize::{linkage_places, linkage_table};
 use crate::project::{
-    self, AdjustmentKind, Component, CylinderTriangle, DeclaredAdjustment, DeclaredSeries, GasAtOne,
-    LineVolume, LinkageKind, Load, Project, RatedFlow, SupplyModel,
+    self, Component, CylinderTriangle, DeclaredSeries, LineVolume, LinkageKind, Load, Project, RatedFlow,
 };
-use crate::quantity::{self, AREA, Dimension, FLOW, LENGTH, MASS, PRESSURE, STIFFNESS, VOLTAGE, VOLUME};
+use crate::quantity::{self, AREA, Dimension, FLOW, LENGTH, MASS, PRESSURE, STIFFNESS, VOLUME};
 use crate::rig::{CrossPortAtPoint, Rig, cross_port_at_point};
 use phea_hydraulics::cross_port::Restrictor;
 
 pub(super) fn chapter(project: &Project, actuator: &project::DeclaredActuator, rig: &Rig) -> Chapter {
     let mut out = Document::default();
-    out.figures([circuit(project, actuator)]);
+    out.figures([circuit::circuit(project, actuator, rig)]);
     out.table(facts(actuator, rig));
     let places = linkage_places(rig);
     if !places.is_empty() {
@@ -33,57 +31,18 @@ fn shown(value: f64, dimension: &Dimension) -> String {
     quantity::display(value, dimension, 4)
 }
 
-fn circuit(project: &Project, actuator: &project::DeclaredActuator) -> Figure {
-    let [rod_a, rod_b] = actuator.cylinder.rod_diameters_m();
-    let moving = |value, dimension| shown(value, actuator.motion().dimension(dimension));
-    let mut supply_rows = vec![shown(actuator.supply.pressure, &PRESSURE)];
-    supply_rows.extend(actuator.supply.flow().map(|flow| shown(flow, &FLOW)));
-    let symmetric = rod_a > 0.0 && rod_b > 0.0;
-    let input = SchematicInput {
-        supply: match actuator.supply.model {
-            SupplyModel::Constant { .. } => SupplyKind::ConstantPressure,
-            SupplyModel::PumpLimited(_) => SupplyKind::Pump,
-        },
-        supply_rows,
-        tank: shown(actuator.supply.tank_pressure, &PRESSURE),
-        valve_rows: vec![
-            actuator.valve.model.clone().unwrap_or_else(|| "servovalve".to_string()),
-            format!("±{}", shown(actuator.valve.nominal_voltage, &VOLTAGE)),
-        ],
-        line_a: line(&actuator.line.a),
-        line_b: line(&actuator.line.b),
-        rods: if symmetric { Rods::Both } else { Rods::TowardsLoad },
-        load_beside_b: symmetric || rod_b > 0.0 || actuator.motor.is_some(),
-        rotary: actuator.motion().is_rotary(),
-        cylinder: moving_words(actuator),
-        mass: moving(moving_mass(actuator), &MASS),
-        load_cell: Some(vec![moving(actuator.force_sensor.stiffness, &STIFFNESS)]),
-        series: actuator.series.as_ref().map(series_symbol),
-        environment: match actuator.load {
-            Load::Prescribed => Environment::PrescribedMotion,
-            Load::Wall { .. } => Environment::Wall,
-            Load::SpringMassDamper { .. } => Environment::SpringMassDamper,
-        },
-        environment_rows: match actuator.load {
-            Load::Prescribed => None,
-            Load::SpringMassDamper { stiffness, .. } | Load::Wall { stiffness, .. } => Some(stiffness),
-        }
-        .map(|stiffness| shown(stiffness, actuator.load_motion().dimension(&STIFFNESS)))
-        .into_iter()
-        .chain(actuator.linkage.as_ref().map(|_| "on a linkage".to_string()))
-        .collect(),
-        controller: project.controller.as_ref().map(|controller| ControllerSymbol {
-            has_prefilter: project.prefilter.is_some(),
-            rows: controller_words(project, controller),
-        }),
-    };
-    let caption = "The circuit as the project describes it: supply, servovalve, lines, cylinder, load cell, load, and the loop that closes over the force.";
-    schematic(Words::new("circuit", "The rig", caption), &input)
+/// Who reads what the cylinder is.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Beside {
+    /// A drawing, which shows at which end a rod comes out.
+    Drawing,
+    /// Other words.
+    Words,
 }
 
 /// The cylinder or the motor in a few words.
-fn moving_words(actuator: &project::DeclaredActuator) -> String {
-    let Some(motor) = &actuator.motor else { return cylinder_words(&actuator.cylinder) };
+fn moving_words(actuator: &project::DeclaredActuator, beside: Beside) -> String {
+    let Some(motor) = &actuator.motor else { return cylinder_words(&actuator.cylinder, beside) };
     let displacement = shown(motor.displacement, &quantity::DISPLACEMENT);
     match motor.stroke {
         Some(stroke) => format!("{displacement}, stroke {}", shown(stroke, &quantity::ANGLE)),
@@ -101,13 +60,14 @@ fn shown_in_millimetres(length: f64) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_string() } else { text }
 }
 
-fn cylinder_words(cylinder: &project::DeclaredCylinder) -> String {
+fn cylinder_words(cylinder: &project::DeclaredCylinder, beside: Beside) -> String {
     let millimetres = shown_in_millimetres;
     let piston = cylinder.piston_diameter_m();
     let [rod_a, rod_b] = cylinder.rod_diameters_m();
     let rods = match [rod_a, rod_b] {
         [0.0, 0.0] => " mm without rod".to_string(),
         [a, b] if a == b => format!("/{} mm", millimetres(a)),
+        [rod, 0.0] | [0.0, rod] if beside == Beside::Drawing => format!("/{} mm", millimetres(rod)),
         [0.0, b] => format!("/{} mm, rod through B", millimetres(b)),
         [a, 0.0] => format!("/{} mm, rod through A", millimetres(a)),
         [a, b] => format!("/{} (A)/{} (B) mm", millimetres(a), millimetres(b)),
@@ -120,60 +80,21 @@ fn cylinder_words(cylinder: &project::DeclaredCylinder) -> String {
     format!("{}{rods}, {stroke}", millimetres(piston))
 }
 
-fn line(declared: &project::DeclaredLine) -> LineSymbol {
-    let mut symbol = line_alone(declared);
-    symbol.has_accumulator = declared.accumulator.is_some();
-    symbol.rows.extend(declared.accumulator.as_ref().map(|gas| {
-        format!("{}, {}", shown(gas.gas_volume, &VOLUME), shown(gas.precharge_pressure, &PRESSURE))
-    }));
-    let gas = declared.accumulator.as_ref();
-    symbol.rows.extend(gas.and_then(|gas| gas.temperatures).map(|temperatures| {
-        let [stated, working] = [temperatures.precharge, temperatures.working];
-        format!(
-            "at {}, works at {}",
-            shown(stated, &quantity::TEMPERATURE),
-            shown(working, &quantity::TEMPERATURE)
-        )
-    }));
-    let time_constant = gas.and_then(|gas| gas.thermal_time_constant);
-    symbol.rows.extend(time_constant.map(|time| format!("heat {}", shown(time, &quantity::TIME))));
-    let neck = declared.accumulator.as_ref().and_then(|gas| gas.neck);
-    symbol.rows.extend(
-        neck.map(|neck| format!("neck {}, {}", shown(neck.diameter, &LENGTH), shown(neck.length, &LENGTH))),
-    );
-    symbol.rows.extend(gas.and_then(|gas| gas.adjustment).map(adjustment_words));
-    symbol
-}
-
-/// What of an accumulator is adjusted, in a few words.
-fn adjustment_words(declared: DeclaredAdjustment) -> String {
-    let setting = quantity::significant(declared.setting, 3);
-    match declared.kind {
-        AdjustmentKind::Valve(_) => format!("behind a valve, setting {setting}"),
-        AdjustmentKind::Gas(GasAtOne { gas_volume, precharge_pressure }) => {
-            let volume = gas_volume.map(|volume| shown(volume, &VOLUME));
-            let precharge = precharge_pressure.map(|pressure| shown(pressure, &PRESSURE));
-            let ends: Vec<String> = volume.into_iter().chain(precharge).collect();
-            format!("to {}, setting {setting}", ends.join(", "))
-        }
-    }
-}
-
 fn line_alone(declared: &project::DeclaredLine) -> LineSymbol {
     match &declared.component {
         Component::Pipe { pipe, length } => LineSymbol {
             kind: LineKind::Pipe,
-            has_accumulator: false,
+            accumulator: None,
             rows: vec![format!("pipe {}", shown(pipe.bore, &LENGTH)), shown(*length, &LENGTH)],
         },
         Component::Hose { properties, length, .. } => LineSymbol {
             kind: LineKind::Hose,
-            has_accumulator: false,
+            accumulator: None,
             rows: vec![format!("hose {}", shown(properties.bore, &LENGTH)), shown(*length, &LENGTH)],
         },
         Component::Volume(LineVolume { volume, effective_bulk_modulus }) => LineSymbol {
             kind: LineKind::Pipe,
-            has_accumulator: false,
+            accumulator: None,
             rows: vec![shown(*volume, &VOLUME), format!("β {}", shown(*effective_bulk_modulus, &PRESSURE))],
         },
     }
@@ -244,22 +165,6 @@ fn linkage_words(linkage: &project::DeclaredLinkage) -> String {
     }
 }
 
-fn series_symbol(series: &DeclaredSeries) -> SeriesSymbol {
-    match series {
-        DeclaredSeries::Spring(spring) => SeriesSymbol {
-            kind: if spring.damping > 0.0 { SeriesKind::DampedSpring } else { SeriesKind::Spring },
-            words: shown(spring.stiffness, &STIFFNESS),
-        },
-        DeclaredSeries::Transmission(transmission) => SeriesSymbol {
-            kind: SeriesKind::Transmission,
-            words: match transmission.line.length() {
-                Some(length) => format!("{} of oil", shown(length, &LENGTH)),
-                None => "oil".to_string(),
-            },
-        },
-    }
-}
-
 /// What lies between force sensor and load: its name, and what it is in a few words.
 fn series_words(series: &DeclaredSeries) -> [String; 2] {
     match series {
@@ -312,30 +217,6 @@ pub(super) fn lines_words(actuator: &project::DeclaredActuator) -> String {
     if a == b { format!("{a} each") } else { format!("A {a}; B {b}") }
 }
 
-fn controller_words(project: &Project, controller: &project::DeclaredController) -> Vec<String> {
-    let words = |letter: &str, transfer: &project::Transfer| match (
-        &transfer.ratio.numerator,
-        &transfer.ratio.denominator,
-    ) {
-        (Some(numerator), Some(denominator)) => {
-            Some(format!("{letter} = {}/{}", polynomial(numerator.text()), polynomial(denominator.text())))
-        }
-        _ => None,
-    };
-    let mut rows: Vec<String> = words("G", &controller.transfer).into_iter().collect();
-    rows.extend(project.prefilter.as_ref().and_then(|prefilter| words("F", &prefilter.transfer)));
-    if let Some(sample_time) = controller.sample_time {
-        rows.push(format!("sampled every {}", shown(sample_time, &quantity::TIME)));
-    }
-    rows
-}
-
-/// A polynomial for people: products by a space, in parentheses if it is a sum.
-fn polynomial(text: &str) -> String {
-    let spaced = text.replace('*', " ");
-    if spaced.contains(['+', '-', ' ']) { format!("({spaced})") } else { spaced }
-}
-
 fn facts(actuator: &project::DeclaredActuator, rig: &Rig) -> Table {
     let components = rig.actuator.components();
     let moving = |value, dimension| shown(value, actuator.motion().dimension(dimension));
@@ -357,7 +238,7 @@ fn facts(actuator: &project::DeclaredActuator, rig: &Rig) -> Table {
             ),
         ),
         ("servovalve", valve_words(actuator)),
-        ("cylinder", moving_words(actuator)),
+        ("cylinder", moving_words(actuator, Beside::Words)),
         ("moving mass", moving(moving_mass(actuator), &MASS)),
         ("force sensor", moving(actuator.force_sensor.stiffness, &STIFFNESS)),
     ];
@@ -365,10 +246,10 @@ fn facts(actuator: &project::DeclaredActuator, rig: &Rig) -> Table {
     rows.extend(series.as_ref().map(|[name, words]| (name.as_str(), words.clone())));
     rows.extend(actuator.linkage.as_ref().map(|linkage| ("linkage", linkage_words(linkage))));
     if components.line_a == components.line_b {
-        rows.push(("each line", line(&actuator.line.a).rows.join(", ")));
+        rows.push(("each line", circuit::line_words(&actuator.line.a)));
     } else {
-        rows.push(("line A", line(&actuator.line.a).rows.join(", ")));
-        rows.push(("line B", line(&actuator.line.b).rows.join(", ")));
+        rows.push(("line A", circuit::line_words(&actuator.line.a)));
+        rows.push(("line B", circuit::line_words(&actuator.line.b)));
     }
     rows.extend(cross_port_at_point(rig).map(|found| ("between the chambers", cross_port_words(&found))));
     Table::new(["component", "declared"]).with(rows.into_iter().map(|(name, text)| [name.to_string(), text]))

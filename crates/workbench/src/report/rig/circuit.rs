@@ -1,0 +1,195 @@
+//! The circuit of a project, in symbols and a few words each.
+
+use super::{Beside, line_alone, moving_mass, moving_words, shown, shown_in_millimetres};
+use crate::figure::{
+    AccumulatorSymbol, ControllerSymbol, Environment, Figure, LineSymbol, LinkageSymbol, Rods,
+    SchematicInput, SeriesKind, SeriesSymbol, SupplyKind, Words, schematic,
+};
+use crate::linearize::{LinkagePosition, linkage_places};
+use crate::project::{
+    self, AdjustmentKind, DeclaredAccumulator, DeclaredActuator, DeclaredAdjustment, DeclaredLine,
+    DeclaredLinkage, DeclaredSeries, LinkageKind, Load, Project, SupplyModel,
+};
+use crate::quantity::{self, FLOW, LENGTH, MASS, PRESSURE, STIFFNESS, VOLTAGE, VOLUME};
+use crate::rig::Rig;
+
+pub(super) fn circuit(project: &Project, actuator: &DeclaredActuator, rig: &Rig) -> Figure {
+    let [rod_a, rod_b] = actuator.cylinder.rod_diameters_m();
+    let moving = |value, dimension| shown(value, actuator.motion().dimension(dimension));
+    let mut supply_rows = vec![shown(actuator.supply.pressure, &PRESSURE)];
+    supply_rows.extend(actuator.supply.flow().map(|flow| shown(flow, &FLOW)));
+    let symmetric = rod_a > 0.0 && rod_b > 0.0;
+    let input = SchematicInput {
+        supply: match actuator.supply.model {
+            SupplyModel::Constant { .. } => SupplyKind::ConstantPressure,
+            SupplyModel::PumpLimited(_) => SupplyKind::Pump,
+        },
+        supply_rows,
+        tank: shown(actuator.supply.tank_pressure, &PRESSURE),
+        valve_rows: vec![
+            actuator.valve.model.clone().unwrap_or_else(|| "servovalve".to_string()),
+            format!("±{}", shown(actuator.valve.nominal_voltage, &VOLTAGE)),
+        ],
+        line_a: line_symbol(&actuator.line.a),
+        line_b: line_symbol(&actuator.line.b),
+        rods: if symmetric { Rods::Both } else { Rods::TowardsLoad },
+        load_beside_b: symmetric || rod_b > 0.0 || actuator.motor.is_some(),
+        motion: actuator.motion(),
+        further_stages: actuator.cylinder.stages.len(),
+        cylinder: moving_words(actuator, Beside::Drawing),
+        mass: moving(moving_mass(actuator), &MASS),
+        load_cell: Some(vec![moving(actuator.force_sensor.stiffness, &STIFFNESS)]),
+        series: actuator.series.as_ref().map(series_symbol),
+        linkage: actuator.linkage.as_ref().map(|linkage| linkage_symbol(linkage, rig)),
+        environment: match actuator.load {
+            Load::Prescribed => Environment::PrescribedMotion,
+            Load::Wall { .. } => Environment::Wall,
+            Load::SpringMassDamper { .. } => Environment::SpringMassDamper,
+        },
+        environment_rows: environment_rows(actuator),
+        controller: project.controller.as_ref().map(|controller| ControllerSymbol {
+            has_prefilter: project.prefilter.is_some(),
+            rows: controller_words(project, controller),
+        }),
+    };
+    let caption = "The circuit as the project describes it: supply, servovalve, lines, cylinder, load cell, load, and the loop that closes over the force.";
+    schematic(Words::new("circuit", "The rig", caption), &input)
+}
+
+/// What the load is, below its drawing.
+fn environment_rows(actuator: &DeclaredActuator) -> Vec<String> {
+    let stiffness = match actuator.load {
+        Load::Prescribed => None,
+        Load::SpringMassDamper { stiffness, .. } | Load::Wall { stiffness, .. } => Some(stiffness),
+    };
+    let stiffness = stiffness.map(|value| shown(value, actuator.load_motion().dimension(&STIFFNESS)));
+    let weight = actuator.linkage.as_ref().and_then(|linkage| linkage.weight);
+    let weight = weight.map(|weight| format!("weighs {}", shown(weight.mass, &MASS)));
+    stiffness.into_iter().chain(weight).collect()
+}
+
+/// The lever of a linkage: its kind, and its arm at the operating point.
+fn linkage_symbol(linkage: &DeclaredLinkage, rig: &Rig) -> LinkageSymbol {
+    let kind = match linkage.kind {
+        LinkageKind::Triangle(_) => "triangle",
+        LinkageKind::FourBar { .. } => "four-bar",
+        LinkageKind::Table { .. } => "table",
+    };
+    let places = linkage_places(rig);
+    let here = places.iter().find(|place| place.at == LinkagePosition::OperatingPoint);
+    let arm = here.map(|place| ["arm r".to_string(), quantity::display(place.lever_arm_m, &LENGTH, 3)]);
+    LinkageSymbol { rows: std::iter::once(kind.to_string()).chain(arm.into_iter().flatten()).collect() }
+}
+
+/// A line with what of its gas is told beside the drawing; what heat does to it is told in the table.
+fn line_symbol(declared: &DeclaredLine) -> LineSymbol {
+    let mut symbol = line_alone(declared);
+    let Some(gas) = &declared.accumulator else { return symbol };
+    symbol.accumulator = Some(match gas.adjustment.map(|adjustment| adjustment.kind) {
+        None => AccumulatorSymbol::Fixed,
+        Some(AdjustmentKind::Gas(_)) => AccumulatorSymbol::Adjusted,
+        Some(AdjustmentKind::Valve(_)) => AccumulatorSymbol::BehindValve,
+    });
+    symbol.rows.push(gas_at_rest(gas));
+    symbol.rows.extend(gas.adjustment.iter().flat_map(|adjustment| adjustment_rows(gas, adjustment)));
+    symbol.rows.extend(neck_words(gas));
+    symbol
+}
+
+/// Volume and precharge where the setting of the gas is at rest.
+fn gas_at_rest(gas: &DeclaredAccumulator) -> String {
+    let [mut volume, mut precharge] = [gas.gas_volume, gas.precharge_pressure];
+    if let Some(DeclaredAdjustment { kind: AdjustmentKind::Gas(one), setting }) = gas.adjustment {
+        let at = |zero: f64, one: Option<f64>| one.map_or(zero, |one| zero + setting * (one - zero));
+        [volume, precharge] = [at(volume, one.gas_volume), at(precharge, one.precharge_pressure)];
+    }
+    // two quantities of three digits are as wide as a row
+    format!("{}, {}", quantity::display(volume, &VOLUME, 3), quantity::display(precharge, &PRESSURE, 3))
+}
+
+/// Where the setting is, and between what it is adjusted.
+fn adjustment_rows(gas: &DeclaredAccumulator, adjustment: &DeclaredAdjustment) -> Vec<String> {
+    let setting = shown(adjustment.setting, &quantity::RATIO);
+    match adjustment.kind {
+        AdjustmentKind::Valve(_) => vec![format!("valve, setting {setting}")],
+        AdjustmentKind::Gas(one) => {
+            let volume = one.gas_volume.map(|one| [shown(gas.gas_volume, &VOLUME), shown(one, &VOLUME)]);
+            let precharge = one
+                .precharge_pressure
+                .map(|one| [shown(gas.precharge_pressure, &PRESSURE), shown(one, &PRESSURE)]);
+            let ranges = volume.into_iter().chain(precharge);
+            let ranges = ranges.map(|[zero, one]| format!("{zero} to {one}"));
+            std::iter::once(format!("at setting {setting} of")).chain(ranges).collect()
+        }
+    }
+}
+
+fn neck_words(gas: &DeclaredAccumulator) -> Option<String> {
+    let neck = gas.neck?;
+    let mm = shown_in_millimetres;
+    Some(format!("neck {} × {} mm", mm(neck.diameter), mm(neck.length)))
+}
+
+/// A line with its gas, in a few words.
+pub(super) fn line_words(declared: &DeclaredLine) -> String {
+    let mut rows = line_alone(declared).rows;
+    if let Some(gas) = &declared.accumulator {
+        rows.push(gas_at_rest(gas));
+        rows.extend(gas.temperatures.map(|temperatures| {
+            let [stated, working] = [temperatures.precharge, temperatures.working]
+                .map(|temperature| shown(temperature, &quantity::TEMPERATURE));
+            format!("at {stated}, works at {working}")
+        }));
+        let time_constant = gas.thermal_time_constant;
+        rows.extend(time_constant.map(|time| format!("heat {}", shown(time, &quantity::TIME))));
+        rows.extend(neck_words(gas));
+        rows.extend(gas.adjustment.as_ref().map(|adjustment| {
+            let rows = adjustment_rows(gas, adjustment);
+            match adjustment.kind {
+                AdjustmentKind::Valve(_) => format!("behind a {}", rows.join(" ")),
+                AdjustmentKind::Gas(_) => rows.join(" "),
+            }
+        }));
+    }
+    rows.join(", ")
+}
+
+fn series_symbol(series: &DeclaredSeries) -> SeriesSymbol {
+    match series {
+        DeclaredSeries::Spring(spring) => SeriesSymbol {
+            kind: if spring.damping > 0.0 { SeriesKind::DampedSpring } else { SeriesKind::Spring },
+            words: shown(spring.stiffness, &STIFFNESS),
+        },
+        DeclaredSeries::Transmission(transmission) => SeriesSymbol {
+            kind: SeriesKind::Transmission,
+            words: match transmission.line.length() {
+                Some(length) => format!("{} of oil", shown(length, &LENGTH)),
+                None => "oil".to_string(),
+            },
+        },
+    }
+}
+
+fn controller_words(project: &Project, controller: &project::DeclaredController) -> Vec<String> {
+    let words = |letter: &str, transfer: &project::Transfer| match (
+        &transfer.ratio.numerator,
+        &transfer.ratio.denominator,
+    ) {
+        (Some(numerator), Some(denominator)) => {
+            Some(format!("{letter} = {}/{}", polynomial(numerator.text()), polynomial(denominator.text())))
+        }
+        _ => None,
+    };
+    let mut rows: Vec<String> = words("G", &controller.transfer).into_iter().collect();
+    rows.extend(project.prefilter.as_ref().and_then(|prefilter| words("F", &prefilter.transfer)));
+    if let Some(sample_time) = controller.sample_time {
+        rows.push(format!("sampled every {}", shown(sample_time, &quantity::TIME)));
+    }
+    rows
+}
+
+/// A polynomial for people: products by a space, in parentheses if it is a sum.
+fn polynomial(text: &str) -> String {
+    let spaced = text.replace('*', " ");
+    if spaced.contains(['+', '-', ' ']) { format!("({spaced})") } else { spaced }
+}

@@ -1,0 +1,81 @@
+//! The circuit of a report says what the project declares, uncut.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
+
+use crate::ask::try_answer;
+use phea_workbench::command::Request;
+
+const LINKAGE: &str = include_str!("../../project/tests/valid/linkage.toml");
+const FOUR_BAR: &str = include_str!("../../project/tests/valid/linkage_four_bar.toml");
+const TABLE: &str = include_str!("../../project/tests/valid/linkage_table.toml");
+const SWITCHED: &str = include_str!("../../../examples/ybitu/switched_gas.toml");
+const ADJUSTED: &str = include_str!("../../../examples/ybitu/variable_impedance.toml");
+const TELESCOPIC: &str = include_str!("../../project/tests/valid/telescopic.toml");
+const TURNING: &str = include_str!("../../project/tests/valid/motor_turning.toml");
+
+/// The texts of the drawing, sub- and superscripts joined to what they belong to.
+fn texts(project: &str, settings: &[&str]) -> Vec<String> {
+    let answer = try_answer(project, settings, &[], &Request::Report).unwrap();
+    let file = answer.files.iter().find(|file| file.name == "circuit.svg").unwrap();
+    let svg = std::str::from_utf8(&file.bytes).unwrap();
+    let texts: Vec<String> = svg
+        .split("<text ")
+        .skip(1)
+        .map(|text| {
+            let inside = text.split_once('>').unwrap().1.split("</text>").next().unwrap();
+            let parts = inside.split('<').enumerate();
+            parts
+                .map(|(index, part)| if index == 0 { part } else { part.split_once('>').unwrap().1 })
+                .collect()
+        })
+        .collect();
+    let cut: Vec<&String> = texts.iter().filter(|text| text.contains('…')).collect();
+    assert!(cut.is_empty(), "{cut:?}");
+    texts
+}
+
+#[track_caller]
+fn says(texts: &[String], expected: &[&str]) {
+    for words in expected {
+        assert!(texts.iter().any(|text| text == words), "{words}: {texts:?}");
+    }
+}
+
+/// The lever arm of a triangle is a b sin(phi)/l by the law of cosines, here at the position of rest.
+#[test]
+fn a_lever_has_its_kind_and_its_arm() {
+    // ORIGIN: analytic, of the lengths of the project file
+    let (a, b, l_0, position) = (0.3_f64, 0.05_f64, 0.26_f64, 0.03);
+    let sensor_stretch = 2000.0 / 20e6;
+    let l = l_0 + position - sensor_stretch;
+    let cosine = (a * a + b * b - l * l) / (2.0 * a * b);
+    let arm = 1e3 * a * b * (1.0 - cosine * cosine).sqrt() / l;
+    let arm = format!("{arm:.1} mm");
+    says(
+        &texts(LINKAGE, &[]),
+        &["triangle", "arm r", &arm, "θ", "J", "900 N.m/rad", "50/22 mm, stroke 80 mm"],
+    );
+    says(&texts(FOUR_BAR, &[]), &["four-bar", "arm r"]);
+    says(&texts(TABLE, &[]), &["table", "arm r", "θ0"]);
+}
+
+/// The gas is that of the setting of rest: between both ends in proportion to the setting.
+#[test]
+fn adjusted_gas_is_told_where_it_rests() {
+    for (setting, volume) in [("0", "3.5 mL"), ("0.5", "8.85 mL"), ("1", "14.2 mL")] {
+        let set = format!("line.accumulator.adjustment.setting={setting}");
+        let gas = format!("{volume}, 15 bar");
+        let at = format!("at setting {setting} of");
+        let found = texts(ADJUSTED, &[&set]);
+        says(&found, &[&gas, &at, "3.5 mL to 14.2 mL"]);
+    }
+    says(&texts(SWITCHED, &[]), &["14.2 mL, 15 bar", "valve, setting 1"]);
+}
+
+#[test]
+fn a_telescopic_piston_tells_its_stages_and_a_motor_its_symbols() {
+    says(&texts(TELESCOPIC, &[]), &["50/22 mm, 500 mm in 3 stages"]);
+    let found = texts(TURNING, &[]);
+    says(&found, &["θ", "J", "Te", "Tref", "0.005 kg.m2"]);
+    assert!(!found.iter().any(|text| ["xp", "xL", "M", "Fe", "Fref"].contains(&text.as_str())), "{found:?}");
+}
