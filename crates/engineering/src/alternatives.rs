@@ -34,7 +34,7 @@ use crate::design::{DesignError, ProjectDesign, design_project};
 use crate::error::ProcedureError;
 use crate::linearize::{Linearization, linearize};
 use crate::parts::PartsCounted;
-use crate::project::{Loaded, Project};
+use crate::project::{ImpedanceForm, Loaded, Project};
 use crate::rig::{RigError, sizing_problem};
 use crate::setup::Setup;
 use crate::simulate::{ScenarioRun, simulate_project};
@@ -227,16 +227,17 @@ impl Judging<'_> {
         let AskedAlternative { name, loaded, no_hose, moved } = asked;
         let mut designing =
             |progress: Progress| watch(Progress { share: DESIGNING * progress.share, ..progress });
+        let project = in_impedance_form(&loaded.project);
         let design = match no_hose {
             Some(reason) => Err(reason),
-            None => match designed(self.source, &loaded.project, &mut designing) {
+            None => match designed(self.source, &project, &mut designing) {
                 Err(ProcedureError::Stopped) => return None,
                 Ok(view) if view.stopped => return None,
                 design => design.map_err(|error| error.to_string()),
             },
         };
         let deployed = match &design {
-            Ok(view) => Ok(view.deployed(&loaded.project)),
+            Ok(view) => Ok(view.deployed(&project)),
             Err(_) => Err("no controller was designed".to_string()),
         };
         let mut driving = |progress: Progress| {
@@ -262,6 +263,20 @@ impl Judging<'_> {
             loaded,
         })
     }
+}
+
+/// The project with the controller of the force in place of that of an inner position loop: the same loop,
+/// and what a design finds.
+///
+/// ```text
+/// C_x = G (M_v s^2 + B_v s + K_v)
+/// ```
+fn in_impedance_form(project: &Project) -> Project {
+    let mut project = project.clone();
+    if let Some(impedance) = project.controller.as_mut().and_then(|own| own.impedance.as_mut()) {
+        impedance.form = ImpedanceForm::Impedance;
+    }
+    project
 }
 
 fn designed(

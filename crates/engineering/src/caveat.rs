@@ -8,6 +8,7 @@ use phea_hydraulics::operating_point::OperatingPoint;
 use phea_hydraulics::series::MOST_SEGMENTS;
 
 use crate::control::{velocity_sensor, virtual_impedance};
+use crate::family::{ShutGas, shut_gas};
 use crate::project::{CrossPortKind, DeclaredSeries, LineMotion, Load, Project, Pump, SupplyModel};
 use crate::quantity::{DisplayUnit, PRESSURE, display, significant};
 use crate::rig::{
@@ -43,6 +44,7 @@ pub fn of_models(project: &Project) -> Vec<String> {
         .chain(of_gas(project))
         .chain(fed_in_loop(project))
         .chain(beside_spring(project))
+        .chain(standing(project))
         .collect()
 }
 
@@ -77,12 +79,32 @@ fn segments(setup: &Setup<'_>) -> Option<Caveat> {
     Some(Caveat {
         sentence: format!(
             "the line of the transmission is counted in segments, here {}, whose waves are right to 3 % up to {} rad/s: a margin beyond that may \
-             be that of its segments{}",
+             be that of its segments{}{}",
             declared.segments,
             significant(right_to, 3),
-            if (declared.segments as usize) < MOST_SEGMENTS { "; `--on-machine` tries more" } else { "" }
+            if (declared.segments as usize) < MOST_SEGMENTS { "; `--on-machine` tries more" } else { "" },
+            if declared.segments > PROVEN_SEGMENTS {
+                "; `--prove` encloses two segments, and no more"
+            } else {
+                ""
+            }
         ),
         unproven: false,
+    })
+}
+
+/// Segments up to which the polynomials of the plant can be enclosed.
+const PROVEN_SEGMENTS: u32 = 2;
+
+/// A linear model has settings that stand.
+fn standing(project: &Project) -> Option<String> {
+    let adjusted: Vec<_> = project.actuator.as_ref()?.adjustments().into_iter().flatten().collect();
+    let moves_gas = adjusted.iter().any(|one| one.valve().is_none());
+    let brings = if moves_gas { ", and one that moves brings energy in" } else { "" };
+    (!adjusted.is_empty()).then(|| {
+        format!(
+            "line.accumulator.adjustment is counted at its setting of rest: stiffness and passivity are those of a setting that stands{brings}"
+        )
     })
 }
 
@@ -195,7 +217,7 @@ fn supply(setup: &Setup<'_>) -> Option<Caveat> {
     Some(Caveat { sentence, unproven: !rests })
 }
 
-/// The gas of accumulators is counted at the pressures of the operating point; where a force empties
+/// The gas of accumulators is counted at the pressures of each operating point; where a force empties
 /// one of them, the actuator becomes as stiff as without it.
 fn accumulator(setup: &Setup<'_>) -> Option<Caveat> {
     if is_measured(setup.project) {
@@ -206,17 +228,31 @@ fn accumulator(setup: &Setup<'_>) -> Option<Caveat> {
     let [of_a, of_b] = accumulator_place(declared);
     let unit = setup.project.motion().unit(DisplayUnit::KILONEWTON);
     let newton = |point: OperatingPoint| unit.text(point.hydraulic_force, 3);
+    let shut = shut_gas(setup).ok().flatten();
     let (place, beyond) = match (least, greatest) {
-        (None, None) => return None,
-        (Some(least), None) => (of_a, format!("below {}", newton(least))),
-        (None, Some(greatest)) => (of_b, format!("above {}", newton(greatest))),
+        (None, None) => (if shut.as_ref()?.side == 'A' { of_a } else { of_b }, None),
+        (Some(least), None) => (of_a, Some(format!("below {}", newton(least)))),
+        (None, Some(greatest)) => (of_b, Some(format!("above {}", newton(greatest)))),
         (Some(least), Some(greatest)) => {
-            (of_a, format!("below {} and above {}", newton(least), newton(greatest)))
+            (of_a, Some(format!("below {} and above {}", newton(least), newton(greatest))))
         }
     };
+    let declared = beyond.map(|beyond| {
+        format!(
+            ": at forces {beyond} a chamber of the declared rig falls below the precharge, its gas is shut off, and only a simulation \
+             shows a motion that goes there"
+        )
+    });
+    let of_family = shut.map(|ShutGas { count, examined, side, at }| {
+        format!(
+            "; at {count} of {examined} plants of the family it is shut off, and they are as stiff as without it, the first at chamber {side} \
+             with {at}"
+        )
+    });
     let sentence = format!(
-        "{place} is counted for small motions, with its gas at the pressures of the operating point: at forces {beyond} a chamber \
-         falls below the precharge, its gas is shut off, and only a simulation shows how stiff the actuator is then"
+        "{place} is counted for small motions, with its gas at the pressures of the operating point{}{}",
+        declared.unwrap_or_default(),
+        of_family.unwrap_or_default()
     );
     Some(Caveat { sentence, unproven: false })
 }

@@ -1,6 +1,6 @@
 //! Why a procedure that is made of several has no result.
 
-use phea_project::Refusal;
+use phea_project::{LateError, Refusal};
 
 use crate::audit::AuditError;
 use crate::bench::BenchError;
@@ -8,7 +8,7 @@ use crate::campaign::CampaignError;
 use crate::control::ControlError;
 use crate::design::DesignError;
 use crate::family::ProjectFamilyError;
-use crate::rig::RigError;
+use crate::rig::{RigError, SizingError};
 use crate::shaping::ShapingError;
 use crate::simulate::SimulateError;
 
@@ -45,7 +45,7 @@ pub enum ProcedureError {
     Catalogue(Refusal),
     /// The project does not say what to size for.
     #[error("{0}")]
-    Sizing(#[from] crate::rig::SizingError),
+    Sizing(#[from] SizingError),
     /// There is only the project itself.
     #[error(
         "the project has no [[alternative]]: add one with `name` and `set = {{ \"line.length\" = \"3 m\" }}`"
@@ -111,6 +111,22 @@ impl ProcedureError {
             ProcedureError::Simulate(error) | ProcedureError::Campaign(CampaignError::Simulate(error)) => {
                 error.refusal()
             }
+            _ => None,
+        }
+    }
+
+    /// The error at the place of a key, where the project has one: known only where its rig is computed.
+    pub fn late(&self) -> Option<LateError> {
+        let rig = match self {
+            ProcedureError::Rig(error)
+            | ProcedureError::Family(ProjectFamilyError::Rig(error))
+            | ProcedureError::Sizing(SizingError::Rig(error))
+            | ProcedureError::Simulate(SimulateError::Rig(error))
+            | ProcedureError::Bench(BenchError::Rig(error)) => error,
+            _ => return None,
+        };
+        match rig {
+            RigError::Accumulator(empty) => Some(empty.at()),
             _ => None,
         }
     }

@@ -7,6 +7,7 @@ mod in_motion;
 pub mod measured;
 mod moved;
 mod region;
+mod shut_gas;
 mod uncertain;
 mod visited;
 mod visited_box;
@@ -21,6 +22,7 @@ use crate::setup::Setup;
 use crate::source::Source;
 
 pub(crate) use gain_slopes::gain_slopes;
+pub use shut_gas::{ShutGas, shut_gas};
 pub use visited_box::{Extreme, VisitedRange, visited_box};
 
 /// Why a project has no uncertain plant.

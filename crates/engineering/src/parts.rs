@@ -85,7 +85,7 @@ impl CostedPart {
 pub struct PartsCounted {
     /// Of the prices; `None` where none is stated.
     pub currency: Option<Currency>,
-    /// Whether a mass is stated.
+    /// Whether a mass is stated, or follows from the coils of a spring.
     pub masses: bool,
     /// Whether the price of a servovalve is stated, and the mass of one.
     pub servovalve: [bool; 2],
@@ -103,7 +103,8 @@ impl PartsCounted {
             counted.servovalve[0] |= valve.price.is_some();
             counted.servovalve[1] |= valve.mass.is_some();
             let costs = stated(declared);
-            counted.masses |= costs.iter().any(|cost| cost.mass.is_some());
+            let is_wound = declared.series.as_ref().and_then(|series| series.spring()?.coil).is_some();
+            counted.masses |= is_wound || costs.iter().any(|cost| cost.mass.is_some());
             for Price { currency, .. } in costs.into_iter().filter_map(|cost| cost.price) {
                 match counted.currency {
                     Some(first) if first != currency => return Err([first, currency]),

@@ -16,6 +16,7 @@ mod sensitivity;
 pub use bore::{BoreVerdict, CommercialBore};
 pub use branch::{Branch, GainStep, model_name};
 pub use candidate::{Candidate, Consequence, SizingReason};
+pub(crate) use other_means::TOO_FEW_COILS;
 pub use other_means::{OtherMeans, OtherMeansProblem, SizedGas, SizedPipe, SizedSpring, SizedValve};
 pub use problem::{HoseOption, SizingProblem};
 pub use sensitivity::{Influence, sensitivity};

@@ -1,13 +1,16 @@
 //! A machine whose first input is its command, to differentiate it by, and its supply.
 
+#![allow(clippy::unwrap_used)] // helpers of tests
+
+use num_complex::Complex64;
 use phea_dynamics::portable::pow;
 use phea_dynamics::random::{share, stream};
-use phea_dynamics::scalar::Scalar;
-use phea_dynamics::simulation::{Plant, System};
+use phea_dynamics::scalar::{Dual, Scalar};
+use phea_dynamics::simulation::{Plant, System, small_signal};
 use phea_hydraulics::accumulator::{AdjustedPart, Adjustment, GasValve, Neck};
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::cross_port::{CrossPort, Restrictor};
-use phea_hydraulics::machine::{Accumulator, Machine, PowerUnit, PumpLimited};
+use phea_hydraulics::machine::{Accumulator, InitialCondition, Machine, PowerUnit, PumpLimited, SIGNALS};
 use phea_hydraulics::operating_point::{Balance, Settled, SettledSupply};
 use phea_hydraulics::plant::YieldingSupply;
 use phea_hydraulics::servovalve::{SpoolDirection, Supply};
@@ -139,4 +142,59 @@ impl System<f64> for Commanded {
     fn outgoing<T: Scalar + From<f64>>(&self, state: &[T], inputs: &[T], waves: &mut [T]) {
         self.0.outgoing(state, &inputs[1..], waves);
     }
+}
+
+/// States that signals of a machine may depend on, without those of its lines, and inputs likewise, without waves.
+const STATES: usize = 24;
+const INPUTS: usize = 4;
+
+/// Where a signal stands among those of a machine.
+pub(super) fn place(signal: &str) -> usize {
+    SIGNALS.iter().position(|known| *known == signal).unwrap()
+}
+
+/// How signals of a machine at rest grow with its states and with its inputs.
+pub(super) fn slopes(
+    machine: &Machine,
+    rest: &InitialCondition,
+    signals: &[&str],
+) -> Vec<[f64; STATES + INPUTS]> {
+    let moved = |values: &[f64], from: usize, to: usize| -> Vec<Dual<{ STATES + INPUTS }>> {
+        let at = |(index, value): (usize, &f64)| match from + index < to {
+            true => Dual::variable(*value, from + index),
+            false => Dual::constant(*value),
+        };
+        values.iter().enumerate().map(at).collect()
+    };
+    let (state, inputs) = (moved(&rest.state, 0, STATES), moved(&rest.all_inputs(), STATES, STATES + INPUTS));
+    let outputs = machine.outputs(&state, &inputs);
+    signals.iter().map(|signal| *outputs[place(signal)].gradient()).collect()
+}
+
+/// These states of a machine and then these inputs, for one unit of its command and of the motion of its ground, which for one unit of
+/// the rod's end moves by `turned`; with this gain from the load's velocity to the command.
+pub(super) fn amplitudes(
+    machine: &Machine,
+    rest: &InitialCondition,
+    (gain, turned): (f64, f64),
+    frequency: f64,
+) -> [Vec<Complex64>; 2] {
+    let inputs = [vec![rest.command], rest.all_inputs()].concat();
+    let (zero, one) = (Complex64::ZERO, Complex64::ONE);
+    let moved = [zero, one * turned, Complex64::new(0.0, frequency * turned)];
+    [[one, zero, zero], moved].map(|drive| {
+        let mut drive = drive.to_vec();
+        drive.resize(inputs.len(), zero);
+        let system = Commanded(*machine, gain);
+        let mut states = small_signal(&system, &rest.state, &inputs, &drive, frequency).unwrap();
+        let mut inputs = drive.split_off(1);
+        states.resize(STATES, zero);
+        inputs.resize(INPUTS, zero);
+        [states, inputs].concat()
+    })
+}
+
+/// A signal of these slopes at these amplitudes.
+pub(super) fn signal_of(amplitudes: &[Complex64], slopes: &[f64]) -> Complex64 {
+    amplitudes.iter().zip(slopes).map(|(amplitude, slope)| amplitude * *slope).sum()
 }

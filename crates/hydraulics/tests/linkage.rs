@@ -31,12 +31,12 @@ use super::machine_conservation::{Motion, check, machine_of, step};
 use super::plant::point_at;
 use super::rich_machines::{asymmetric, pump};
 
-const STROKE: f64 = 0.08;
+pub(super) const STROKE: f64 = 0.08;
 /// The zero of the joint's angle, rad.
-const OFFSET: f64 = 0.4;
+pub(super) const OFFSET: f64 = 0.4;
 
 /// The knee of comparisons/recompute_linkage.py.
-fn knee() -> PivotTriangle {
+pub(super) fn knee() -> PivotTriangle {
     PivotTriangle { cylinder_pivot: 0.30, rod_pivot: 0.05, retracted_length: 0.26 }
 }
 
@@ -70,7 +70,7 @@ fn table(rows: usize, roughness: f64, tolerance: f64) -> LinkageGeometry {
 }
 
 /// All kinds.
-fn linkages() -> [Linkage; 4] {
+pub(super) fn linkages() -> [Linkage; 4] {
     let table = table(30, 0.0, 1e-6).reduced(STROKE, 0.0).unwrap().linkage;
     let [open, crossed] = [false, true].map(|crossed| reduced(LinkageGeometry::FourBar(four_bar(crossed))));
     [reduced(LinkageGeometry::Triangle(knee())), open, crossed, table]

@@ -68,7 +68,7 @@ fn turning(cylinder: Cylinder, number: u64) -> Cylinder {
 }
 
 /// Three stages with long transitions.
-fn telescope(number: u64) -> Telescope {
+pub(super) fn telescope(number: u64) -> Telescope {
     let mut state = stream(13, number);
     let mut ratio = || 0.4 + 0.9 * share(&mut state);
     let mut stage = |from: f64| Some(PistonStage { from, ratios: [ratio(), ratio()] });
@@ -152,29 +152,43 @@ pub(super) fn point_at(position: f64, state: &[f64]) -> OperatingPoint {
     }
 }
 
+/// The plant of an actuator where its machine rests, its piston at a position in m, and the compliances of its chambers with
+/// lumped lines; the pressures in Pa at the valve's ports are those of the chambers or a little off them.
+pub(super) fn plant_at_rest(
+    actuator: &Actuator,
+    (machine, unit): (&Machine, &PowerUnit),
+    (position, ports, state): (f64, [f64; 2], &[f64]),
+    load: LinearLoad,
+) -> (LinearPlant, [f64; 2]) {
+    let components = actuator.components();
+    let (pressures, stated) = ([state[2], state[3]], components.supply);
+    let supplied = supply_pressure(machine, stated.pressure, state);
+    let friction = components.friction.viscous();
+    let model = TwoPressureModel {
+        supply: Supply { pressure: supplied, ..stated },
+        ..TwoPressureModel::new(actuator, pressures, StiffeningMember::Nominal, friction)
+    };
+    let [pressure_a, pressure_b] = ports;
+    let point = OperatingPoint { pressure_a, pressure_b, ..point_at(position, state) };
+    let parameters = two_pressure_linear_parameters(&model, &point, SpoolDirection::Extending);
+    let supply = yielding(actuator, unit, state[0], ports, supplied);
+    let (across, dynamic_feedback) = components.cross_admittance(pressures);
+    let gas = components.gas_branches(pressures);
+    let compliances = without_branches(components, pressures, parameters.compliances);
+    let parameters = TwoPressureLinearParameters { compliances, ..parameters };
+    let plant = LinearPlant::of_two_pressures(&parameters, across, load);
+    let area_stiffness = components.cylinder.area_stiffness(position, pressures);
+    (LinearPlant { supply, dynamic_feedback, gas, area_stiffness, ..plant }, compliances)
+}
+
 impl Drawn {
     /// The plant where the machine rests.
     fn plant(&self) -> LinearPlant {
         let state = &self.rest.state;
-        let pressures = [state[2], state[3]];
-        let stated = self.actuator.components().supply;
-        let supplied = supply_pressure(&self.machine, stated.pressure, state);
-        let model = TwoPressureModel {
-            supply: Supply { pressure: supplied, ..stated },
-            ..TwoPressureModel::new(&self.actuator, pressures, StiffeningMember::Nominal, self.friction)
-        };
         let moved = if self.load == LinearLoad::Prescribed { 0.0 } else { state[6] };
-        let point = point_at(self.rest.inputs[0] + moved + state[4], state);
-        let parameters = two_pressure_linear_parameters(&model, &point, SpoolDirection::Extending);
-        let supply = yielding(&self.actuator, &self.unit, state[0], pressures, supplied);
-        let components = self.actuator.components();
-        let (across, dynamic_feedback) = components.cross_admittance(pressures);
-        let gas = components.gas_branches(pressures);
-        let compliances = without_branches(components, pressures, parameters.compliances);
-        let parameters = TwoPressureLinearParameters { compliances, ..parameters };
-        let plant = LinearPlant::of_two_pressures(&parameters, across, self.load);
-        let area_stiffness = components.cylinder.area_stiffness(point.position, pressures);
-        LinearPlant { supply, dynamic_feedback, gas, area_stiffness, ..plant }
+        let position = self.rest.inputs[0] + moved + state[4];
+        let pressures = [state[2], state[3]];
+        plant_at_rest(&self.actuator, (&self.machine, &self.unit), (position, pressures, state), self.load).0
     }
 
     /// F_e/U_C and F_e/X_0 of the machine's own derivatives.

@@ -13,7 +13,6 @@ use phea_dynamics::uncertain_plant::RationalCoefficients;
 use phea_dynamics::uncertain_plant::responding::RespondingPlant;
 use phea_hydraulics::accumulator::Accumulator;
 use phea_hydraulics::actuator::{Actuator, Components};
-use phea_hydraulics::cross_port::CrossFlow;
 use phea_hydraulics::cylinder::{Cylinder, areas_from_diameters};
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::force_sensor::ForceSensor;
@@ -21,22 +20,18 @@ use phea_hydraulics::friction::Friction;
 use phea_hydraulics::line::{
     DynamicLine, END_SHARE, LaminarFriction, Line, LineModel, Segments, StiffeningMember,
 };
-use phea_hydraulics::machine::{Chambers, LoadModel, Machine, MachineOptions};
-use phea_hydraulics::operating_point::{Condition, OperatingPoint, operating_point};
-use phea_hydraulics::plant::{BehindLines, LinearLoad, LinearPlant, PlantInMotion};
+use phea_hydraulics::machine::{Chambers, InitialCondition, LoadModel, Machine, MachineOptions, PowerUnit};
+use phea_hydraulics::operating_point::{Condition, operating_point};
+use phea_hydraulics::plant::{BehindLines, ChamberDynamics, LinearLoad, LinearPlant, PlantInMotion};
 use phea_hydraulics::reference_rig::{components, cylinder, hose, hose_line, leaking, pipe_line};
-use phea_hydraulics::servovalve::{SpoolDirection, Supply};
 use phea_hydraulics::stiffness::StiffnessModel;
-use phea_hydraulics::two_pressure::{
-    TwoPressureLinearParameters, TwoPressureModel, two_pressure_linear_parameters,
-};
 
 use super::commanded::{
-    Commanded, cross_port, gas_valves, necks, power_unit, supply_pressure, thermal_time_constants,
-    without_branches, yielding,
+    Commanded, cross_port, gas_valves, necks, place, power_unit, thermal_time_constants, without_branches,
 };
+use super::plant::plant_at_rest;
 
-fn model(number: u64, time: f64) -> LineModel {
+pub(super) fn model(number: u64, time: f64) -> LineModel {
     let friction =
         if number.is_multiple_of(2) { LaminarFriction::Steady } else { LaminarFriction::FrequencyDependent };
     match number % 6 {
@@ -69,41 +64,27 @@ fn loads(number: u64, mass: f64, stiffness: f64, damping: f64) -> (LoadModel, Li
     (sprung, LinearLoad::Yielding { mass, damping, stiffness })
 }
 
-/// Where a machine rests, with the pressures at the valve's ports: the leakage flows through the lines, so that these are a little off
-/// the chambers.
-fn at_ports(
-    state: &[f64],
-    position: f64,
-    lines: &[DynamicLine; 2],
-    across: Option<CrossFlow>,
-) -> OperatingPoint {
-    let leaking = across.map_or(0.0, |across| across.flow(state[2] - state[3]));
-    let drops = lines.map(|line| line.transfer_matrix(Complex64::new(0.0, 1e-6)).impedance.re * leaking);
-    OperatingPoint {
-        position,
-        command: state[0],
-        pressure_a: state[2] + drops[0],
-        pressure_b: state[3] - drops[1],
-        velocity: 0.0,
-        hydraulic_force: 0.0,
-        net_flow_a: 0.0,
-        net_flow_b: 0.0,
-    }
-}
-
-/// The two-pressure model with its supply at this pressure, and what it is at a point.
-fn parameters_at(
-    supplied: f64,
+/// The plant behind these lines where its machine rests, its piston at a position in m: the leakage flows through the lines, so that
+/// the pressures at the valve's ports are a little off the chambers.
+pub(super) fn plant_behind(
     actuator: &Actuator,
-    point: &OperatingPoint,
-    (pressures, friction): ([f64; 2], f64),
-) -> TwoPressureLinearParameters {
-    let supply = Supply { pressure: supplied, ..actuator.components().supply };
-    let model = TwoPressureModel {
-        supply,
-        ..TwoPressureModel::new(actuator, pressures, StiffeningMember::Nominal, friction)
-    };
-    two_pressure_linear_parameters(&model, point, SpoolDirection::Extending)
+    (machine, unit): (&Machine, &PowerUnit),
+    lines: [DynamicLine; 2],
+    (position, rest): (f64, &InitialCondition),
+    load: LinearLoad,
+) -> (LinearPlant, BehindLines) {
+    let parts = actuator.components();
+    let outputs = machine.outputs(&rest.state, &rest.all_inputs());
+    let ports = ["port_pressure_a_pa", "port_pressure_b_pa"].map(|name| outputs[place(name)]);
+    let (plant, lumped) = plant_at_rest(actuator, (machine, unit), (position, ports, &rest.state), load);
+    let pressures = [rest.state[2], rest.state[3]];
+    let oil = Chambers::behind_lines(actuator, StiffeningMember::Nominal, [0.0; 2]);
+    let (oil, gas) = (oil.compliance(position, pressures), parts.gas_compliance(pressures));
+    let own = without_branches(parts, pressures, [0, 1].map(|side| oil[side] + gas[side].unwrap_or(0.0)));
+    let ChamberDynamics::TwoPressures { flow_pressures, .. } = plant.chambers else { unreachable!() };
+    let outward = parts.cylinder.external_leakage.unwrap_or(0.0);
+    let leaking = flow_pressures.map(|whole| outward / whole);
+    (plant, BehindLines { lines, chambers: own, lumped, leaking })
 }
 
 /// Gas at one chamber, both or none, which most rests leave in use.
@@ -120,8 +101,8 @@ fn accumulators(number: u64) -> [Option<Accumulator>; 2] {
     })
 }
 
-/// The parts of a rig for every number, the models of its lines and its friction, its numbers drawn by `spread`.
-fn parts(number: u64, spread: &mut impl FnMut(f64, f64) -> f64) -> (Components, [LineModel; 2], f64) {
+/// The parts of a rig for every number and the models of its lines, its numbers drawn by `spread`.
+fn parts(number: u64, spread: &mut impl FnMut(f64, f64) -> f64) -> (Components, [LineModel; 2]) {
     let (friction, leakage) = (spread(50.0, 2e4), spread(1e-14, 1e-10));
     let [area_a, area_b] = areas_from_diameters(0.05, [0.022, spread(0.01, 0.036)]).unwrap();
     let stiffness_model = if number % 5 < 2 { StiffnessModel::Uniform } else { StiffnessModel::ByVolume };
@@ -150,13 +131,16 @@ fn parts(number: u64, spread: &mut impl FnMut(f64, f64) -> f64) -> (Components, 
         adjustments: gas_valves(number),
         ..leaking(parts, leakage)
     };
-    (parts, models, friction)
+    // every fifth leaks to the tank as well, from behind its lines
+    let external_leakage = (number % 5 == 3).then_some(1e-14 * pow(1e3, number as f64 / 108.0));
+    let parts = Components { cylinder: Cylinder { external_leakage, ..parts.cylinder }, ..parts };
+    (parts, models)
 }
 
 pub(crate) fn drawn(number: u64) -> Drawn {
     let mut state = stream(23, number);
     let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
-    let (parts, models, friction) = parts(number, &mut spread);
+    let (parts, models) = parts(number, &mut spread);
     let actuator = Actuator::new(parts).unwrap();
     let parts = actuator.components();
     let line = |line: &Line, model: &LineModel| {
@@ -173,33 +157,14 @@ pub(crate) fn drawn(number: u64) -> Drawn {
     let rest = machine.rest(&operating_point(&actuator, spread(0.05, 0.45), condition).unwrap()).unwrap();
     let moves = linear_load != LinearLoad::Prescribed;
     let position = rest.inputs[0] + if moves { rest.state[6] } else { 0.0 } + rest.state[4];
-    let pressures = [rest.state[2], rest.state[3]];
-    let point = at_ports(&rest.state, position, &lines, parts.cross_flow());
-    let (across, dynamic_feedback) = parts.cross_admittance(pressures);
-    let gas = parts.gas_branches(pressures);
-    let supplied = supply_pressure(&machine, parts.supply.pressure, &rest.state);
-    let parameters = parameters_at(supplied, &actuator, &point, (pressures, friction));
-    let [oil_a, oil_b] = Chambers::behind_lines(&actuator, StiffeningMember::Nominal, [0.0; 2])
-        .compliance(position, pressures);
-    let [gas_a, gas_b] = parts.gas_compliance(pressures);
-    let own = [oil_a + gas_a.unwrap_or(0.0), oil_b + gas_b.unwrap_or(0.0)];
-    let [own, compliances] =
-        [own, parameters.compliances].map(|whole| without_branches(parts, pressures, whole));
-    let parameters = TwoPressureLinearParameters { compliances, ..parameters };
-    let behind = BehindLines { lines, chambers: own, lumped: compliances };
-    let supply = yielding(&actuator, &unit, point.command, [point.pressure_a, point.pressure_b], supplied);
+    let (plant, behind) = plant_behind(&actuator, (&machine, &unit), lines, (position, &rest), linear_load);
     Drawn {
         machine,
         inputs: [&rest.inputs[..], &rest.waves[..]].concat(),
         state: rest.state,
         command: rest.command,
         sensor: parts.force_sensor.stiffness,
-        plant: LinearPlant {
-            supply,
-            dynamic_feedback,
-            gas,
-            ..LinearPlant::of_two_pressures(&parameters, across, linear_load)
-        },
+        plant,
         behind,
     }
 }

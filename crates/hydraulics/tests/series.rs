@@ -6,8 +6,7 @@ use num_complex::Complex64;
 use phea_dynamics::controller::RateFilter;
 use phea_dynamics::portable::{pow, sin};
 use phea_dynamics::random::{share, stream};
-use phea_dynamics::scalar::Dual;
-use phea_dynamics::simulation::{Plant, small_signal};
+use phea_dynamics::simulation::Plant;
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::contact::Contact;
 use phea_hydraulics::force_sensor::{ForceSensor, in_series};
@@ -26,7 +25,7 @@ use phea_hydraulics::servovalve::{Servovalve, SpoolDirection};
 use phea_hydraulics::stiffness::StiffnessModel;
 use phea_hydraulics::two_pressure::{TwoPressureModel, two_pressure_linear_parameters};
 
-use super::commanded::Commanded;
+use super::commanded::{amplitudes, place, signal_of, slopes};
 use super::machine_conservation::{Motion, check, check_instant, machine_of, random, step};
 
 fn rig(spring: SeriesSpring) -> Components {
@@ -37,7 +36,7 @@ fn rig(spring: SeriesSpring) -> Components {
 }
 
 /// Spring alone, with a damper, with a mass, with both; every other one progressive with ends.
-fn element(number: u64) -> SeriesSpring {
+pub(super) fn element(number: u64) -> SeriesSpring {
     let mut state = stream(41, number);
     let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
     let free = number.is_multiple_of(4);
@@ -103,35 +102,16 @@ pub(super) fn drawn_with(series: SeriesElement, number: u64) -> Drawn {
     Drawn { machine, rest, plant }
 }
 
-fn place(name: &str) -> usize {
-    SIGNALS.iter().position(|known| *known == name).unwrap()
-}
-
 fn at_rest(machine: &Machine, rest: &InitialCondition, name: &str) -> f64 {
     machine.outputs(&rest.state, &rest.inputs)[place(name)]
 }
 
-/// States and, for a prescribed load, the motion of its ground.
-const VARIABLES: usize = 16;
-
 impl Drawn {
     /// A signal of the machine, for one unit of the command and of the motion of the ground.
     pub(super) fn small_signal(&self, signal: &str, feed_forward: f64, frequency: f64) -> [Complex64; 2] {
-        let inputs = [&[self.rest.command], &self.rest.inputs[..]].concat();
-        let (zero, one) = (Complex64::ZERO, Complex64::ONE);
-        let count = self.rest.state.len();
-        let variable = |(index, value): (usize, &f64)| Dual::<VARIABLES>::variable(*value, index);
-        let state: Vec<_> = self.rest.state.iter().enumerate().map(variable).collect();
-        let ground: Vec<_> =
-            (count..).zip(&self.rest.inputs).map(|(index, value)| variable((index, value))).collect();
-        let slopes = *self.machine.outputs(&state, &ground)[place(signal)].gradient();
-        let moved = [zero, one, Complex64::new(0.0, frequency)];
-        [[one, zero, zero], moved].map(|drive| {
-            let system = Commanded(self.machine, feed_forward);
-            let amplitudes = small_signal(&system, &self.rest.state, &inputs, &drive, frequency).unwrap();
-            let all = amplitudes.iter().chain(&drive[1..]);
-            all.zip(slopes).map(|(amplitude, slope)| amplitude * slope).sum::<Complex64>()
-        })
+        let slopes = slopes(&self.machine, &self.rest, &[signal]);
+        amplitudes(&self.machine, &self.rest, (feed_forward, 1.0), frequency)
+            .map(|amplitudes| signal_of(&amplitudes, &slopes[0]))
     }
 }
 
@@ -262,6 +242,7 @@ fn a_rigid_spring_is_no_spring() {
                 lines: [line(components(hose_line(), StiffnessModel::ByVolume).fluid); 2],
                 chambers: [2.7e-13; 2],
                 lumped: [2.7e-13 + 4e-12; 2],
+                leaking: [0.0; 2],
             };
             for frequency in [1e-3, 0.5, 20.0, 700.0, 1.3e3, 9e3] {
                 let s = Complex64::new(0.0, frequency);

@@ -25,6 +25,7 @@ use phea_hydraulics::series::{ForceFrom, SeriesElement, SeriesSpring, Transmissi
 use phea_hydraulics::servovalve::Servovalve;
 use phea_hydraulics::stiffness::StiffnessModel;
 
+use super::commanded::place;
 use super::machine_conservation::{Motion, check, machine_of};
 use super::series::{
     closes_at_any_state, drawn_with, is_the_machine, responds_as_its_polynomials, stays_passive,
@@ -41,7 +42,7 @@ fn pipe(bore: f64, length: f64) -> Line {
 }
 
 /// Of one to three segments, every third with the soft hose, every other with oil beside the line.
-fn transmission(number: u64) -> Transmission {
+pub(super) fn transmission(number: u64) -> Transmission {
     let mut state = stream(81, number);
     let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
     let length = spread(0.2, 6.0);
@@ -230,10 +231,6 @@ fn slow_motions_meet_all_of_its_compliance() {
         let LinearElement::Oil(column) = series.element else { panic!("{series:?}") };
         assert_eq!(column.pressure(0.0), own.filling_pressure);
     }
-}
-
-fn place(name: &str) -> usize {
-    SIGNALS.iter().position(|known| *known == name).unwrap()
 }
 
 /// In steady motion all oil moves alike, and its resistance takes R_0 A^2 v from the force, and R_0 A v from the pressure.

@@ -4,6 +4,7 @@ use std::f64::consts::FRAC_PI_4;
 
 use super::key::{key, plain};
 use super::visitor::{Variants, Visitor};
+use crate::catalogue::CatalogueKind;
 use phea_quantity::{
     AREA, DAMPING, FLOW_PRESSURE_COEFFICIENT, FORCE, INVERSE_VELOCITY, LENGTH, MASS, RATIO, STIFFNESS,
     VELOCITY, VOLUME,
@@ -12,6 +13,8 @@ use phea_quantity::{
 /// The cylinder; `a` is the end x = 0, and x grows from A to B.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DeclaredCylinder {
+    /// Name of the catalogue's cylinder, if piston and rod came from there.
+    pub model: Option<String>,
     /// m; this or `piston_area`.
     pub piston_diameter: Option<f64>,
     /// m², on which the pressure acts, the same in both chambers: rods are subtracted already.
@@ -120,6 +123,8 @@ impl DeclaredCylinder {
     }
 
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let k = plain("model", "Name of a cylinder of the catalogue.");
+        v.catalogue(k, CatalogueKind::Cylinder, &mut self.model);
         let k =
             key("piston_diameter", &LENGTH, "Diameter of the piston; or `piston_area` or `piston_areas`.")
                 .positive();

@@ -106,3 +106,14 @@ impl Diagnostic {
         if self.line == 0 { origin } else { origin.line(self.line).char_column(self.column) }
     }
 }
+
+/// What is wrong with a valid project is sometimes known only where its rig is computed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LateError {
+    /// The key.
+    pub path: String,
+    /// What is wrong with it.
+    pub message: String,
+    /// What to do.
+    pub help: String,
+}

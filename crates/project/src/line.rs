@@ -116,12 +116,20 @@ pub enum HoseExpansion {
 /// A pipe with an elastic wall.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DeclaredPipe {
+    /// Name of the catalogue's pipe, if it came from there.
+    pub model: Option<String>,
     /// m, inner diameter.
     pub bore: f64,
     /// The data of the wall; absent: it is rigid.
     pub wall: Option<ElasticWall>,
     /// Of the wall.
     pub poisson_ratio: f64,
+    /// m.
+    pub outer_diameter: Option<f64>,
+    /// Pa.
+    pub working_pressure: Option<f64>,
+    /// Pa.
+    pub burst_pressure: Option<f64>,
     /// What it costs and weighs.
     pub cost: LineCost,
 }
@@ -182,6 +190,11 @@ impl DeclaredLine {
     /// Name of its hose in the catalogue.
     pub fn hose_name(&self) -> Option<&str> {
         if let Component::Hose { name, .. } = &self.component { name.as_deref() } else { None }
+    }
+
+    /// Its pipe.
+    pub fn pipe(&self) -> Option<&DeclaredPipe> {
+        if let Component::Pipe { pipe, .. } = &self.component { Some(pipe) } else { None }
     }
 
     /// m, of a hose or pipe.
@@ -336,12 +349,21 @@ impl HoseProperties {
 }
 
 impl DeclaredPipe {
-    fn visit<V: Visitor>(&mut self, v: &mut V) {
+    /// The keys that a pipe has, in the catalogue too.
+    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let k = plain("model", "Name of a pipe of the catalogue.");
+        v.catalogue(k, CatalogueKind::Pipe, &mut self.model);
         v.quantity(key("bore", &LENGTH, "Inner diameter of the pipe.").positive(), &mut self.bore);
         v.way(&["wall_thickness", "youngs_modulus"], &mut self.wall, ElasticWall::visit);
         let k =
             key("poisson_ratio", &RATIO, "Poisson's ratio of the wall.").not_negative().below(0.5).or(0.3);
         v.quantity(k, &mut self.poisson_ratio);
+        let k = key("outer_diameter", &LENGTH, "Outer diameter of the pipe.").positive();
+        v.optional(k, &mut self.outer_diameter);
+        let k = key("working_pressure", &PRESSURE, "Highest permitted working pressure.").positive();
+        v.optional(k, &mut self.working_pressure);
+        let k = key("burst_pressure", &PRESSURE, "Pressure at which it may burst.").positive();
+        v.optional(k, &mut self.burst_pressure);
         self.cost.visit(v);
     }
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use sha2::{Digest, Sha256};
 
-use super::diagnostic::{Diagnostic, Refusal, Severity};
+use super::diagnostic::{LateError, Refusal, Severity};
 use super::key::{Key, Motions, key};
 use super::linear::LINEAR_PARAMETERS;
 use super::listing::{KeyEntry, Listing};
@@ -45,64 +45,21 @@ pub fn read(
         (source, path),
         source.read(path).map_err(|error| error.to_string()),
         settings,
-        catalogues,
+        (catalogues, None),
         None,
     )
 }
 
-/// The alternative of a project with this index: the same bytes with the same settings, and then
-/// those of the alternative. Its settings are listed as if they had been given to [`read`].
-///
-/// # Errors
-/// [`Refusal`] with all errors; those in a value of the alternative have its place.
-///
-/// # Example
-/// ```
-/// use phea_project::{self as project, STARTER};
-/// use phea_project::source::Memory;
-/// let text = format!("{STARTER}\n[[alternative]]\nname = \"80 bar\"\nset = {{ \"supply.pressure\" = \"80 bar\" }}\n");
-/// let source = Memory::default().with("rig.toml", text);
-/// let base = project::read(&source, "rig.toml", &[], &[])?;
-/// let other = project::read_alternative(&source, &base, &[], 0)?;
-/// assert_eq!(other.project.number("supply.pressure"), Some(80e5));
-/// assert_eq!(other.settings, ["supply.pressure=\"80 bar\""]);
-/// # Ok::<(), phea_project::Refusal>(())
-/// ```
-pub fn read_alternative(
-    source: &dyn Source,
-    base: &Loaded,
-    catalogues: &[String],
-    index: usize,
-) -> Result<Loaded, Refusal> {
-    let name = base.project.alternatives.get(index).map_or("", |one| one.name.as_str());
-    read_again(source, base, catalogues, (OwnSettings::Alternative(index), name))
-}
-
-/// The load case of a project with this index, read as an alternative is: its settings are listed as
-/// if they had been given to [`read`], so that alternatives of it can be read.
-///
-/// # Errors
-/// [`Refusal`] with all errors; those in a value of the load case have its place.
-pub fn read_load_case(
-    source: &dyn Source,
-    base: &Loaded,
-    catalogues: &[String],
-    index: usize,
-) -> Result<Loaded, Refusal> {
-    let name = base.project.load_cases.get(index).map_or("", |one| one.name.as_str());
-    read_again(source, base, catalogues, (OwnSettings::LoadCase(index), name))
-}
-
 /// Whose settings a project is read again with, by its index.
 #[derive(Clone, Copy)]
-enum OwnSettings {
+pub(super) enum OwnSettings {
     Alternative(usize),
     LoadCase(usize),
 }
 
 impl OwnSettings {
     /// The table that lists it, and the words for it.
-    fn table(self) -> (&'static str, &'static str, usize) {
+    pub(super) fn table(self) -> (&'static str, &'static str, usize) {
         match self {
             OwnSettings::Alternative(index) => ("alternative", "alternative", index),
             OwnSettings::LoadCase(index) => ("load_case", "load case", index),
@@ -128,35 +85,12 @@ impl OwnSettings {
     }
 }
 
-/// The bytes of a project with its settings, and then with those of a part of it of that name.
-fn read_again(
-    source: &dyn Source,
-    base: &Loaded,
-    catalogues: &[String],
-    (own, name): (OwnSettings, &str),
-) -> Result<Loaded, Refusal> {
-    // what recordings gave holds here, too
-    let settings = base.all_settings();
-    let read = read_bytes((source, &base.path), Ok(base.bytes.clone()), &settings, catalogues, Some(own));
-    read.map_err(|mut refusal| {
-        // a warning on the project itself is told with the project, and once
-        let known = |found: &Diagnostic| {
-            found.severity != Severity::Error
-                && base.warnings.iter().any(|warning| warning.message == found.message)
-        };
-        refusal.diagnostics.retain(|found| !known(found));
-        for found in &mut refusal.diagnostics {
-            found.message = format!("{} `{name}`: {}", own.table().1, found.message);
-        }
-        refusal
-    })
-}
-
-fn read_bytes(
+/// A project of bytes with settings, then with those of a part of it, and with what was found later.
+pub(super) fn read_bytes(
     (source, path): (&dyn Source, &str),
     bytes: Result<Vec<u8>, String>,
     settings: &[String],
-    catalogues: &[String],
+    (catalogues, late): (&[String], Option<&LateError>),
     own: Option<OwnSettings>,
 ) -> Result<Loaded, Refusal> {
     let mut findings = Findings::default();
@@ -180,6 +114,9 @@ fn read_bytes(
     let mut reader = Reader::new(&root, project_text, &catalogue, &mut findings);
     let folder = path.rfind(['/', '\\']).map_or(String::new(), |last| path[..=last].to_string());
     let project = Project { folder, ..project(&mut reader, &root) };
+    if let Some(late) = late {
+        validate::late(late, &mut reader);
+    }
     let (mut provenance, catalogue_files) = (reader.provenance, reader.catalogue_files);
     provenance.sort_by(|a, b| a.path.cmp(&b.path));
     provenance.dedup_by(|a, b| a.path == b.path);

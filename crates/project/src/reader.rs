@@ -315,7 +315,7 @@ fn unknown(entry: &Entry, frame: &mut Frame<'_>) -> RawFinding {
     let found = RawFinding::error(entry.key_place, message);
     match near {
         Some(name) => found.help(format!("did you mean `{name}`?")),
-        None if frame.asked.len() <= 12 => found.help(format!("known here: {}", frame.asked.join(", "))),
+        None if frame.asked.len() <= 16 => found.help(format!("known here: {}", frame.asked.join(", "))),
         None => found,
     }
 }

@@ -27,13 +27,14 @@ use super::reader::Reader;
 use super::text::{Findings, Place, RawFinding};
 use super::tree::{Entry, TreeNode, Value};
 use super::visitor::Visitor;
-use super::{DeclaredElement, LINEAR_PARAMETERS, Project};
+use super::{DeclaredElement, LINEAR_PARAMETERS, LateError, Project};
 
 /// Reports all contradictions between values.
 pub(super) fn project(project: &Project, reader: &mut Reader<'_>) {
     let mut check = Check { reader };
     if let Some(actuator) = &project.actuator {
         rig::actuator(actuator, &mut check);
+        rig::precharge_ranges(project, actuator, &mut check);
         match actuator.motor {
             Some(_) => motor::motor(project, actuator, &mut check),
             None => series::series(project, actuator, &mut check),
@@ -67,6 +68,11 @@ pub(super) fn project(project: &Project, reader: &mut Reader<'_>) {
     }
     alternative::alternatives(&project.alternatives, &mut check);
     alternative::load_cases(project, &mut check);
+}
+
+/// An error that was found later.
+pub(super) fn late(late: &LateError, reader: &mut Reader<'_>) {
+    Check { reader }.error_with_help(&late.path, &late.message, &late.help);
 }
 
 impl DeclaredElement {

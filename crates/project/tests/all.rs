@@ -2,6 +2,7 @@
 #![cfg(test)]
 
 mod alternative;
+mod catalogue_parts;
 mod formula;
 mod kernels;
 mod malformed;

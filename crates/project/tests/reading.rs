@@ -199,14 +199,14 @@ fn catalogues_are_added_and_every_number_has_a_source() {
     assert_eq!(report.diagnostics.len(), 3);
 
     let own = catalogue::load(&Memory::default(), &[]).expect("built in");
-    for kind in [CatalogueKind::Hose, CatalogueKind::Valve] {
+    for kind in CatalogueKind::ALL {
         for entry in own.entries(kind) {
             assert!(entry.file.contains(&format!("{}s/{}.toml", kind.name(), entry.name)), "{}", entry.file);
         }
     }
     // Read as a user's files, so that everything wrong with one is reported.
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("catalogue");
-    for kind in [CatalogueKind::Hose, CatalogueKind::Valve] {
+    for kind in CatalogueKind::ALL {
         let files = std::fs::read_dir(folder.join(format!("{}s", kind.name()))).expect("a folder");
         let files: Vec<_> = files.map(|file| file.expect("a file").path()).collect();
         assert_eq!(own.names(kind).len(), files.len());

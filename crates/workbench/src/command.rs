@@ -45,7 +45,7 @@ use crate::motion;
 use crate::project::Loaded;
 use crate::quantity::{self, LENGTH, VOLTAGE_PER_FORCE};
 use crate::report::report_beside;
-use crate::rig::{RigError, sizing_problem};
+use crate::rig::{RigError, SizingError, sizing_problem};
 use crate::robust::robust_problem;
 use crate::setup::Setup;
 use crate::shaping::{self, RequestedChange, Shaped, shape};
@@ -189,6 +189,23 @@ pub fn answer_into(
     watch: Watch<'_>,
 ) -> Result<Answer, CommandError> {
     motor::refuse(loaded, request)?;
+    let answer = answer_of(source, loaded, catalogues, request, destination, watch);
+    answer.map_err(|error| match &error {
+        CommandError::Procedure(procedure) => procedure.late().map_or(error, |late| {
+            ProcedureError::Catalogue(crate::project::refused(source, loaded, &late)).into()
+        }),
+        _ => error,
+    })
+}
+
+fn answer_of(
+    source: &dyn Source,
+    loaded: &Loaded,
+    catalogues: &[String],
+    request: &Request,
+    destination: Option<&dyn Destination>,
+    watch: Watch<'_>,
+) -> Result<Answer, CommandError> {
     // these three know their own way: the bench tests the declared valve, whose recordings may not be
     // there yet
     if matches!(request, Request::Bench | Request::Compare | Request::Campaign(_)) {
@@ -450,7 +467,10 @@ fn report_answer(
         None => None,
         Some(_) => {
             let catalogue = crate::catalogue::load(source, catalogues).map_err(ProcedureError::Catalogue)?;
-            Some(sizing_problem(&setup, &catalogue)?)
+            match sizing_problem(&setup, &catalogue) {
+                Err(SizingError::Rig(error)) => return Err(error.into()),
+                problem => Some(problem),
+            }
         }
     };
     let judged = alternatives

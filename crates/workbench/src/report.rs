@@ -49,6 +49,7 @@ use crate::linearize::{Linearization, linearize, stiffness_at_settings, stiffnes
 use crate::project::{DeclaredActuator, Loaded, Project, Signal};
 use crate::quantity::MotionKind;
 use crate::rig::Rig;
+use crate::rig::SizingError;
 use crate::setup::Setup;
 use crate::sizing::{Question, Sizing, SizingProblem, size};
 use crate::source::Source;
@@ -92,7 +93,7 @@ pub fn report(
     source: &dyn Source,
     loaded: &Loaded,
     setup: &Setup<'_>,
-    problem: Option<&SizingProblem>,
+    problem: Option<&ProblemOfSizing>,
     watch: Watch<'_>,
 ) -> Result<Report, CommandError> {
     report_beside(source, loaded, (setup, problem), None, watch)
@@ -105,7 +106,7 @@ pub fn report(
 pub fn report_beside(
     source: &dyn Source,
     loaded: &Loaded,
-    (setup, problem): (&Setup<'_>, Option<&SizingProblem>),
+    (setup, problem): (&Setup<'_>, Option<&ProblemOfSizing>),
     alternatives: Option<&Alternatives>,
     watch: Watch<'_>,
 ) -> Result<Report, CommandError> {
@@ -169,6 +170,9 @@ pub fn report_beside(
     let figures = all.flat_map(|chapter| chapter.figures).collect();
     Ok(Report { html, figures, tables, summary: facts, decision })
 }
+
+/// What the sizing procedure needs, or why it does not apply to the rig.
+pub type ProblemOfSizing = Result<SizingProblem, SizingError>;
 
 /// The report in a few numbers: name and text.
 type Facts = Vec<(&'static str, String)>;
@@ -241,8 +245,10 @@ struct RigPart {
 fn rig_part(
     setup: &Setup<'_>,
     actuator: &DeclaredActuator,
-    problem: Option<&SizingProblem>,
+    problem: Option<&ProblemOfSizing>,
 ) -> Result<RigPart, CommandError> {
+    let refused = problem.and_then(|problem| problem.as_ref().err());
+    let problem = problem.and_then(|problem| problem.as_ref().ok());
     let (project, rig, sensor) = (setup.project, setup.rig()?, &setup.sensor);
     let linearization = linearize(rig, setup.controller.as_ref(), sensor)?;
     let derived = derive(project, rig);
@@ -256,6 +262,7 @@ fn rig_part(
     if let (Some(problem), Some(sizing)) = (problem, &sizing) {
         chapters.push(sizing::chapter(problem, sizing));
     }
+    chapters.extend(refused.map(sizing::refused));
     let appendix = vec![
         stiffness::chapter(rig, &linearization),
         Chapter::of("derived", "Derived quantities", derived::document(&derived)),

@@ -6,6 +6,7 @@
 
 use phea_workbench::command::Request;
 use phea_workbench::linearize::stiffness_over_force;
+use phea_workbench::project::Severity;
 use phea_workbench::setup::Setup;
 
 use crate::ask::{
@@ -155,6 +156,48 @@ fn gas_that_is_shut_off_at_the_operating_point_is_refused() {
     }
 }
 
+/// The refusal stands at the key, in the file or in the alternative that sets it.
+#[test]
+fn what_shuts_off_the_gas_is_refused_at_its_place() {
+    let line_of = |text: &str, key: &str| 1 + text.lines().position(|line| line.contains(key)).unwrap();
+    let place = |text: &str, request: &Request| {
+        let refused = try_answer(text, &[], &[], request).unwrap_err();
+        let found = &refused.refusal().unwrap().diagnostics;
+        let error = found.iter().find(|one| one.severity == Severity::Error).unwrap().clone();
+        (error.line, error.message, error.help.unwrap())
+    };
+    let text = GAS.replacen("precharge_pressure = \"15 bar\"", "precharge_pressure = \"40 bar\"", 1);
+    for request in [Request::Check, Request::Verify] {
+        let (line, message, help) = place(&text, &request);
+        assert_eq!(line, line_of(&text, "precharge_pressure"), "{message}");
+        assert!(message.contains("is above the") && help.contains("lower the precharge"), "{message} {help}");
+    }
+    let own = "\n[[alternative]]\nname = \"thesis\"\n[alternative.set]\n\"line.accumulator.precharge_pressure\" = \"35 bar\"\n";
+    let text = format!("{GAS}{own}");
+    let (line, message, _) = place(&text, &Request::Check);
+    assert_eq!(line, line_of(&text, "\"line.accumulator.precharge_pressure\" = "), "{message}");
+    assert!(message.contains("alternative `thesis`"), "{message}");
+}
+
+/// A family whose precharge goes beyond the pressure of a chamber tells at how many of its plants; one that does not
+/// says nothing.
+#[test]
+fn a_verdict_tells_at_how_many_plants_the_gas_is_shut_off() {
+    let caveat = |most: f64| {
+        let range = format!(
+            "uncertainty.\"line.accumulator.precharge_pressure\"={{ nominal = 15e5, minimum = 15e5, maximum = {most:e}, points = 3 }}"
+        );
+        json(GAS, &[&range], &[], &Request::Verify).to_string()
+    };
+    // chamber B of the example stands below the 30 bar that one of three points of the range has
+    let told = check(GAS, &[]);
+    assert!(derived(&told, "operating_point.pressure_b") < 30e5);
+    let said = caveat(30e5);
+    assert!(said.contains("it is shut off") && said.contains("chamber B"), "{said}");
+    assert!(said.contains("line.accumulator.precharge_pressure = 30"), "{said}");
+    assert!(!caveat(20e5).contains("it is shut off"));
+}
+
 /// The sizing of a hose leaves gas out, and says so rather than answer.
 #[test]
 fn sizing_refuses_gas() {
@@ -162,4 +205,8 @@ fn sizing_refuses_gas() {
     let said = try_answer(HOSE, &[gas], &[], &size_request(None, None)).unwrap_err().to_string();
     assert!(said.contains("counts no gas"), "{said}");
     assert!(number(&json(HOSE, &[], &[], &size_request(None, None)), "candidates.0.length_m") > 0.0);
+    // a report has a sentence in the place of the chapter
+    let found = answer(HOSE, &["specification=[]", "scenario=[]", gas], &[], &Request::Report);
+    let page = String::from_utf8_lossy(&found.files[0].bytes).into_owned();
+    assert!(page.contains("No hose is sized") && page.contains("counts no gas"));
 }

@@ -138,7 +138,7 @@ fn a_simulation_tells_the_work_of_a_setting() {
     let switched = run(VALVE, &steps);
     assert_eq!(switched["scenarios"][0]["status"], "completed", "{switched}");
     assert_eq!(switched["scenarios"][0]["adjustment_brought_j"], 0.0);
-    let beyond = scenario("{ kind = \"ramp\", change = 0.8, duration = \"0.1 s\" }");
+    let beyond = scenario("{ kind = \"sine\", amplitude = 0.8, frequency = \"5 Hz\" }");
     let asked = [at(MOVED, 0.25), beyond];
     let refused =
         try_answer(&text, &[&asked[0], &asked[1]], &[], &Request::Simulate).unwrap_err().to_string();

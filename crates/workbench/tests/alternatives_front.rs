@@ -1,10 +1,12 @@
-//! The front over the length of a hose that the book shows.
+//! Fronts over a swept number; that over the length of a hose which the book shows.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
 use phea_workbench::command::{AlternativesRequest, Request};
 
-use super::alternatives::{BOOK, parsed, rows_of_the_book, stands_in};
+use serde_json::Value;
+
+use super::alternatives::{BOOK, LOOP, parsed, rows_of_the_book, stands_in};
 use super::ask::{HOSE, answer};
 
 const FIGURE: &str = include_str!("../../../book/src/images/hose_length_front.svg");
@@ -47,4 +49,93 @@ fn soak_the_book_says_what_the_front_shows() {
     assert_eq!((by_volume(0.5) - by_volume(1.0)).round(), 188.0);
     assert_eq!((by_volume(2.0) - by_volume(2.5)).round(), 80.0);
     assert_eq!((100.0 * (1.0 - by_volume(2.5) / by_volume(0.5))).round(), 27.0);
+}
+
+fn front(columns: &str, sweep: &str) -> Request {
+    Request::Alternatives(AlternativesRequest {
+        files: true,
+        front: Some(columns.to_string()),
+        sweep: Some(sweep.to_string()),
+        points: Some(2),
+        ..AlternativesRequest::default()
+    })
+}
+
+/// Dominance of the points, compared with its definition; the same bytes in two threads at once.
+#[test]
+fn a_front_is_what_nothing_dominates() {
+    let request = front("high_frequency_gain_db,swept:more", "plant.delay=1 ms..20 ms");
+    let ask = || answer(LOOP, &[], &[], &request);
+    let [found, again] = std::thread::scope(|scope| {
+        let both = [scope.spawn(ask), scope.spawn(ask)];
+        both.map(|one| one.join().unwrap())
+    });
+    assert_eq!(found.json, again.json);
+    assert_eq!(found.text, again.text);
+    let json = parsed(&found);
+    let points = json["front"]["points"].as_array().unwrap();
+    assert_eq!(points.len(), 6);
+    let numbers = |point: &Value| {
+        let comparable = point["comparable"] == true;
+        let number = |key: &str| point[key].as_f64().filter(|_| comparable);
+        Some([number("high_frequency_gain_db")?, -number("swept")?])
+    };
+    let mut on_front = 0;
+    for point in points {
+        let dominated = |other: &&Value| match (numbers(point), numbers(other)) {
+            (Some(own), Some(other)) => {
+                other.iter().zip(own).all(|(other, own)| *other <= own) && other != own
+            }
+            _ => false,
+        };
+        let behind = points.iter().filter(dominated).count();
+        assert_eq!(point["dominated_by"].as_array().unwrap().len(), behind);
+        assert_eq!(point["on_front"] == true, numbers(point).is_some() && behind == 0);
+        on_front += usize::from(point["on_front"] == true);
+    }
+    assert!((1..points.len()).contains(&on_front), "{on_front}");
+    let csv = found.files.iter().find(|file| file.name == "front.csv").unwrap();
+    assert_eq!(csv.bytes.iter().filter(|byte| **byte == b'\n').count(), 1 + points.len());
+    assert!(found.files.iter().any(|file| file.name == "front.svg"));
+}
+
+/// Feasibility as a column is the relaxation: 0 where all is satisfied, and those that miss are compared.
+#[test]
+fn a_front_may_go_over_feasibility() {
+    let text = LOOP.replace("limit = 2", "limit = 1.5")
+        + "[[specification]]\nkind = \"sensitivity\"\nlimit = 0.2\nfrequencies = [1]\n";
+    let found = parsed(&answer(
+        &text,
+        &["alternative=[{ name = \"faster\", set = { \"plant.denominator\" = \"s + 3\" } }]"],
+        &[],
+        &front("feasible,swept:more", "plant.delay=1 ms..1 s"),
+    ));
+    let points = found["front"]["points"].as_array().unwrap();
+    let of = |point: &Value| (point["feasible"].as_bool().unwrap(), point["relaxation_db"].as_f64().unwrap());
+    let all: Vec<(bool, f64)> = points.iter().map(of).collect();
+    assert!(all.iter().all(|(feasible, relaxation)| *feasible == (*relaxation == 0.0)), "{all:?}");
+    assert!(
+        all.iter().any(|(feasible, _)| *feasible) && all.iter().any(|(feasible, _)| !feasible),
+        "{all:?}"
+    );
+    assert!(points.iter().all(|point| point["comparable"] == true));
+    // more delay and more relaxation: neither dominates the other
+    let ends = |on_front: bool| points.iter().filter(|point| point["on_front"] == on_front).count();
+    assert!(ends(true) >= 2, "{found}");
+}
+
+/// Refused before anything is designed.
+#[test]
+fn a_front_that_cannot_be_says_why() {
+    let refused = |columns: &str, sweep: &str| {
+        crate::ask::try_answer(LOOP, &[], &[], &front(columns, sweep)).unwrap_err().to_string()
+    };
+    let delay = "plant.delay=1 ms..20 ms";
+    let spelled = refused("ordr,swept", delay);
+    assert_eq!(spelled, "--front ordr,swept: there is no column `ordr`; did you mean `order`?");
+    assert!(refused("order", delay).contains("two or three columns"));
+    assert!(refused("colour_of_the_oil,swept", delay).contains("; there are relaxation_db, order,"));
+    assert!(refused("order,order:more", delay).contains("`order` stands twice"));
+    assert!(refused("order:best,swept", delay).contains("neither `less` nor `more`"));
+    assert!(refused("order,swept", "plant.dely=1..2").contains("did you mean `plant.delay`?"));
 }

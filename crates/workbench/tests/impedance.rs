@@ -252,10 +252,25 @@ name = "pipe with a virtual spring"
 [alternative.set]
 "line" = { pipe = { bore = "10.5 mm" }, length = "0.35 m", compliance = "uniform" }
 "controller.impedance" = { stiffness = "2 MN/m", damping = "400 kN.s/m", filter_time = "2 ms" }
+
+[[alternative]]
+name = "pipe with an inner position loop"
+[alternative.set]
+"line" = { pipe = { bore = "10.5 mm" }, length = "0.35 m", compliance = "uniform" }
+"controller" = { gain = 1, zeros = [], poles = [-100, -100], impedance = { stiffness = "2 MN/m", damping = "400 kN.s/m", filter_time = "2 ms", form = "admittance" } }
 "#
     );
     let request = Request::Alternatives(AlternativesRequest::default());
-    let found: Value = serde_json::from_str(&answer(&text, &[], &[], &request).json).unwrap();
+    let told = answer(&text, &[], &[], &request);
+    let found: Value = serde_json::from_str(&told.json).unwrap();
+    // both forms are one loop, and the design is that of the force
+    let both = [2, 3].map(|index| found["alternatives"][index]["columns"].clone());
+    assert_eq!(both[0], both[1]);
+    assert!(
+        told.text.contains(
+            "pipe with an inner position loop: designed as the same loop with form = \"impedance\""
+        )
+    );
     let columns = |index: usize| found["alternatives"][index]["columns"].clone();
     let at = |index: usize, key: &str| columns(index)["impedance"][0][key].as_f64();
     // at 1 rad/s: |B_v + K_v/(jw)|

@@ -10,10 +10,11 @@ use phea_workbench::command::{
     SimulateRequest,
 };
 use phea_workbench::linearize::SweepRequest;
+use phea_workbench::setup::Setup;
 use phea_workbench::shaping::Shaped;
 use serde_json::Value;
 
-use super::ask::{load, try_answer};
+use super::ask::{load, project_of, try_answer};
 
 const VANE: &str = include_str!("../../../examples/rotary/vane.toml");
 const TURNING: &str = include_str!("../../project/tests/valid/motor_turning.toml");
@@ -114,6 +115,36 @@ fn the_verdict_is_that_of_the_cylinder_on_its_lever() {
     assert!((peak * arm / turned - 1.0).abs() < 1e-4, "{peak} {turned}");
     let [rise, turned] = [metric(&one, 0, "rise_time_s"), metric(&other, 0, "rise_time_s")];
     assert!((rise / turned - 1.0).abs() < 1e-4, "{rise} {turned}");
+}
+
+/// What leaks to the tank flows through a narrow line to get there, and the valve does not: without motion
+///
+/// ```text
+/// T_e = D (K_qA/(K_cA + G_e (1 + K_cA R)) + K_qB/(K_cB + G_e (1 + K_cB R))) U_C,     R = 128 rho nu L/(pi d^4)
+/// ```
+#[test]
+fn it_leaks_behind_its_lines() {
+    let tight = rig(Some(0.04)).replace("internal_leakage", "case_leakage").replace("10 mm", "2 mm");
+    let leakage = 2e-13;
+    let resistance = 128.0 * 870.0 * 46e-6 / (std::f64::consts::PI * 16e-12);
+    for model in ["lumped", "segments"] {
+        let settings = ["fluid.kinematic_viscosity=46e-6".to_string(), format!("line.model={model}")];
+        let project = project_of(&tight, &settings.each_ref().map(String::as_str));
+        let setup = Setup::new(&project).unwrap();
+        let rig = setup.rig().unwrap();
+        let passed = if model == "lumped" { 0.0 } else { resistance };
+        let chambers = &rig.two_pressure.chambers;
+        let sides = [
+            (chambers.flow_gain_a, chambers.flow_pressure_a - leakage),
+            (chambers.flow_gain_b, chambers.flow_pressure_b - leakage),
+        ];
+        let of_side = |(gain, valve): (f64, f64)| gain / (valve + leakage * (1.0 + valve * passed));
+        let [displacement, _] = rig.two_pressure.areas;
+        let expected = displacement * sides.map(of_side).iter().sum::<f64>();
+        let found = rig.response(1e-6).re;
+        close(found, expected, model);
+        assert!(model == "lumped" || leakage * resistance > 1e-2, "a line that is felt");
+    }
 }
 
 /// Medians of a campaign and the columns of alternatives are those of the cylinder, times the arm.

@@ -21,6 +21,7 @@ const KNOWN: &[(&str, &[&str])] = &[
             "catalogue",
             "cost",
             "cross_port",
+            "cylinder",
             "fluid",
             "interval",
             "line",

@@ -7,8 +7,10 @@ use crate::audit::outside;
 use crate::catalogue::{self, Catalogue, CatalogueKind};
 use crate::error::ProcedureError;
 use crate::parts::PartsCounted;
-use crate::project::{self, AS_DECLARED, Alternative, Component, DeclaredLine, Loaded, read_alternative};
-use crate::rig::{own_hoses, sizing_problem};
+use crate::project::{
+    self, AS_DECLARED, Alternative, Component, DeclaredLine, Loaded, read_alternative, refused_alternative,
+};
+use crate::rig::{RigError, own_hoses, sizing_problem};
 use crate::setup::Setup;
 use crate::sizing::{Candidate, Question, size};
 use crate::source::Source;
@@ -57,7 +59,7 @@ impl ReadingAgain<'_> {
 /// The project as it is declared, and its alternatives in file order.
 ///
 /// # Errors
-/// [`ProcedureError::Catalogue`] for an alternative that is no valid project,
+/// [`ProcedureError::Catalogue`] for an alternative that is no valid project, or whose gas is shut off,
 /// [`ProcedureError::Alternative`] for one that cannot be sized or whose ranges cannot be moved.
 pub fn asked(
     source: &dyn Source,
@@ -77,6 +79,10 @@ pub fn asked(
         let other = read_alternative(source, loaded, catalogues, index).map_err(ProcedureError::Catalogue)?;
         let wrong = |reason: String| ProcedureError::Alternative { name: alternative.name.clone(), reason };
         let mut one = sized(&again, alternative, (loaded, other), &catalogue)?;
+        if let Err(RigError::Accumulator(empty)) = Setup::rig_of(&one.loaded.project) {
+            let refusal = refused_alternative(source, loaded, index, &empty.at());
+            return Err(ProcedureError::Catalogue(refusal));
+        }
         if alternative.recentre {
             one.moved = recentred::moved(&loaded.project, &one.loaded.project).map_err(wrong)?;
             one.loaded = again.with(&one.loaded, &recentred::settings(&one.moved))?;

@@ -81,11 +81,14 @@ impl JudgedAlternative {
             Ok(view) => of(&view.designed.figures).map_err(String::from),
             Err(reason) => Err(reason.clone()),
         };
-        let relaxation =
-            self.design.as_ref().map_err(Clone::clone).and_then(|view| match &view.design.status {
+        let relaxation = match &self.design {
+            Ok(view) => match &view.design.status {
                 DesignStatus::Infeasible(relaxation) => Ok(relaxation.relaxation_db),
+                _ if self.feasible() == Ok(true) => Ok(0.0),
                 _ => Err("the specifications were not found infeasible".to_string()),
-            });
+            },
+            Err(reason) => Err(reason.clone()),
+        };
         let unknown = "not known of a family that is not known to be stable";
         let modulus = figure(|figures| figures.modulus_margin.ok_or("")).map_err(|_| unknown.to_string());
         let delay = figure(|figures| figures.delay_margin_s.ok_or("")).map_err(|_| unknown.to_string());

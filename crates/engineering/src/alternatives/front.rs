@@ -27,6 +27,11 @@ const POINTS: usize = 5;
 /// The swept number as a column.
 const SWEPT: &str = "swept";
 
+/// How far the specifications are from what can be had, 0 where all are satisfied; and the same by the
+/// name of the column that says yes or no.
+const RELAXATION: &str = "relaxation_db";
+const FEASIBLE: &str = "feasible";
+
 /// A column of a front.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrontColumn {
@@ -63,7 +68,8 @@ pub struct FrontPoint {
     /// Whether every specification is satisfied there, or why this is not known.
     pub feasible: Result<bool, String>,
     /// Whether it satisfies them, is driven to its end, and is not contradicted by the machine: only
-    /// such points dominate others, or are on a front.
+    /// such points dominate others, or are on a front. Where the relaxation is a column, those that miss
+    /// the specifications are compared too.
     pub comparable: bool,
     /// The columns, with their words and units, or why there are none.
     pub values: Vec<Result<FrontValue, String>>,
@@ -105,6 +111,14 @@ pub(super) struct FrontPlan {
     pub(super) values: Vec<f64>,
 }
 
+impl FrontPlan {
+    /// Whether it may dominate others.
+    fn compares(&self, judged: &JudgedAlternative) -> bool {
+        let by_relaxation = self.columns.iter().any(|column| column.key == RELAXATION);
+        judged.is_comparable() || by_relaxation && judged.is_judged() && !judged.is_contradicted()
+    }
+}
+
 /// Reads the request.
 ///
 /// # Errors
@@ -138,10 +152,14 @@ fn column_of(text: &str, motion: MotionKind) -> Result<FrontColumn, String> {
         Some((name, "more")) => (name, Some(ColumnSense::More)),
         Some((_, other)) => return Err(format!("`{other}` is neither `less` nor `more`")),
     };
+    let name = if name == FEASIBLE { RELAXATION } else { name };
     let known = COLUMN_SENSES.iter().find(|(key, _)| motion.name(key) == name);
     let names: Vec<_> = COLUMN_SENSES.iter().map(|(key, _)| motion.name(key)).collect();
     let names = names.iter().map(|name| name.as_ref());
-    let help = || nearest(name, names).map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+    let help = || match nearest(name, names.clone()) {
+        Some(near) => format!("; did you mean `{near}`?"),
+        None => format!("; there are {}", names.collect::<Vec<_>>().join(", ")),
+    };
     let (key, _) = known.ok_or_else(|| format!("there is no column `{name}`{}", help()))?;
     Ok(FrontColumn { key, sense: wanted.or(sense_of(key)).unwrap_or(ColumnSense::Less) })
 }
@@ -201,7 +219,7 @@ fn point(
             alternative,
             value,
             feasible: judged.feasible(),
-            comparable: judged.is_comparable(),
+            comparable: plan.compares(&judged),
             values: values_of(&judged, plan, value),
             dominated_by: vec![],
         },

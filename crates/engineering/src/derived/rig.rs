@@ -1,7 +1,7 @@
 use phea_hydraulics::cylinder::{Cylinder, chamber_volumes};
 use phea_hydraulics::friction::Friction;
 use phea_hydraulics::line::{Hose, Line, StiffeningMember};
-use phea_hydraulics::linear::{MechanicalDamping, decompose};
+use phea_hydraulics::linear::{MechanicalDamping, decompose, transfer_functions};
 use phea_hydraulics::operating_point::Condition;
 
 use super::Derived;
@@ -302,7 +302,10 @@ fn dynamics(rig: &Rig, list: &mut List) {
         "ξ_m",
         damping_ratio,
         "1",
-        "2 ξ_m ω_m = f_v/M + (K_c + G) K_H^2/(A_u^2 (K_H + K_S))",
+        match rig.plant.series {
+            None => "2 ξ_m ω_m = f_v/M + (K_c + G) K_H^2/(A_u^2 (K_H + K_S))",
+            Some(_) => "2 ξ_m ω_m = f_v/M + (K_c + G) K_H^2/(A_u^2 (K_H + K_S k_t/(K_S + k_t)))",
+        },
     );
     list.add(
         "dynamics.force_rate_gain",
@@ -317,6 +320,23 @@ fn dynamics(rig: &Rig, list: &mut List) {
         HidingMass::Oil => "ω = sqrt(K_{eq}/m)",
     };
     list.add("dynamics.compliance_hidden_above", "ω", hidden, "rad/s", equation);
+    least_damped(rig, list);
+}
+
+/// The mode of the plant that oscillates longest, with all of its parts but waves in the lines; none where it does not
+/// oscillate.
+fn least_damped(rig: &Rig, list: &mut List) {
+    let Ok(plant) = transfer_functions(&rig.plant.coefficients()) else { return };
+    let oscillating = plant.command.poles().iter().filter(|pole| pole.im > 0.0);
+    let modes = oscillating.map(|pole| [pole.norm_sqr().sqrt(), -pole.re / pole.norm_sqr().sqrt()]);
+    let Some([frequency, ratio]) = modes.reduce(|least, one| if one[1] < least[1] { one } else { least })
+    else {
+        return;
+    };
+    let equation =
+        "s = -ξ_d ω_d ± j ω_d sqrt(1 - ξ_d^2), least damped poles of the plant, all lumped parts in it";
+    list.add("dynamics.least_damped_frequency", "ω_d", frequency, "rad/s", equation);
+    list.add("dynamics.least_damped_ratio", "ξ_d", ratio, "1", equation);
 }
 
 fn friction(rig: &Rig, list: &mut List) {

@@ -5,8 +5,7 @@ use phea_hydraulics::series::{CoilPair, LEAST_ACTIVE_COILS, SeriesElement, Serie
 use super::list::List;
 use crate::project::Project;
 use crate::rig::{Rig, series_coil, stall_force, waves_right_to};
-
-const TOO_FEW_COILS: &str = "fewer than two active coils, whose ends would decide the stiffness: take a smaller index, a lower stress, or disc springs";
+use crate::sizing::TOO_FEW_COILS;
 
 /// What lies between force sensor and load.
 pub(super) fn series(project: &Project, rig: &Rig, list: &mut List) {

@@ -125,6 +125,19 @@ impl Visited {
         })
     }
 
+    /// The chamber, A or B, that stands below the precharge of its gas at a plant.
+    pub(super) fn shut_gas(&self, open: &Open<'_>, values: &[f64]) -> Option<char> {
+        let &[_, pressure_a, pressure_b] = self.settled.evaluate(values).first_chunk()?;
+        let all = open.all(values);
+        let components = components(open.declared, &Numbers::open(open.names, &all));
+        let is_shut = |side: usize, pressure: f64| {
+            let open = !components.gas_valve(side).is_some_and(|valve| valve.shut);
+            open && components.accumulators[side].is_some_and(|gas| pressure < gas.precharge_pressure)
+        };
+        let chambers = [('A', 0, pressure_a), ('B', 1, pressure_b)];
+        chambers.into_iter().find(|(_, side, pressure)| is_shut(*side, *pressure)).map(|(name, ..)| name)
+    }
+
     /// The parameters that determine the operating point, with their values.
     pub(super) fn member(&self, project: &Project, values: &[f64]) -> String {
         let named =

@@ -7,21 +7,13 @@ use phea_hydraulics::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 use phea_hydraulics::operating_point::{Condition, OperatingPoint, operating_point};
 
 use super::Rig;
-use crate::project::{DeclaredActuator, DeclaredLine};
+use crate::project::{DeclaredActuator, DeclaredLine, LateError};
 use crate::quantity::DisplayUnit;
 
 /// An accumulator whose precharge is above the pressure of its chamber at the operating point: the
 /// bladder fills the shell, and the gas takes no part.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error(
-    "{place}.precharge_pressure: {}{} is above the {} at which chamber {side} stands at the operating point, so that the gas is \
-     shut off and changes nothing: lower the precharge, or move the [operating_point]",
-    DisplayUnit::BAR.text(*precharge_pressure, 4),
-    stated.map_or(String::new(), |stated| {
-        format!(" at `working_temperature`, from {} at `precharge_temperature`,", DisplayUnit::BAR.text(stated, 4))
-    }),
-    DisplayUnit::BAR.text(*pressure, 4)
-)]
+#[error("{}: {}: {}", self.at().path, self.at().message, self.at().help)]
 pub struct EmptyAccumulator {
     /// The table of the project.
     pub place: &'static str,
@@ -33,6 +25,24 @@ pub struct EmptyAccumulator {
     pub stated: Option<f64>,
     /// Of the chamber, Pa gauge.
     pub pressure: f64,
+}
+
+impl EmptyAccumulator {
+    /// The error at the place of its key.
+    pub fn at(&self) -> LateError {
+        let EmptyAccumulator { place, side, precharge_pressure, stated, pressure } = self;
+        let bar = |value: f64| DisplayUnit::BAR.text(value, 4);
+        let from = stated.map_or(String::new(), |stated| {
+            format!(" at `working_temperature`, from {} at `precharge_temperature`,", bar(stated))
+        });
+        let message = format!(
+            "{}{from} is above the {} at which chamber {side} stands at the operating point, so that the gas is shut off and changes nothing",
+            bar(*precharge_pressure),
+            bar(*pressure)
+        );
+        let help = "lower the precharge, or move the [operating_point]".to_string();
+        LateError { path: format!("{place}.precharge_pressure"), message, help }
+    }
 }
 
 /// The last operating points at standstill at which the gas is in use; `None` where it is up to the

@@ -38,8 +38,12 @@ pub fn in_motion(
         _ => without_branches(components, pressures, compliances),
     };
     let chambers_alone = own(compliance_at(&bare, point.position));
+    let leakage = components.cylinder.external_leakage.unwrap_or(0.0);
+    let of_valve = &chambers.chambers;
+    let leaking = [of_valve.flow_pressure_a, of_valve.flow_pressure_b].map(|whole| leakage / whole);
     Ok(moving.map(|lines| {
-        let behind = BehindLines { lines, chambers: chambers_alone, lumped: own(chambers.compliances) };
+        let lumped = own(chambers.compliances);
+        let behind = BehindLines { lines, chambers: chambers_alone, lumped, leaking };
         PlantInMotion::new(plant, &behind)
     }))
 }

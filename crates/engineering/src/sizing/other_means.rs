@@ -34,6 +34,9 @@ pub struct OtherMeans {
     pub stiffness: f64,
     /// Least K_H over the stroke of the chambers without any line, N/m.
     pub chambers: f64,
+    /// m, of the actuator from mount to mount, retracted, with the hose and all means but the spring; `None`
+    /// where `cylinder.dead_length` is not stated.
+    pub actuator_length: Option<f64>,
     /// Each, or why it cannot be.
     pub pipe: Result<SizedPipe, String>,
     /// Gas at both chambers.
@@ -75,8 +78,8 @@ pub struct SizedSpring {
     pub stiffness: f64,
     /// m, to either side, under the stall force.
     pub travel: f64,
-    /// How it is wound; `None` where the wire is not stated, or has too few coils.
-    pub coil: Option<CoilPair>,
+    /// How it is wound, or why this is not known.
+    pub coil: Result<CoilPair, &'static str>,
     /// m, of the actuator with it from mount to mount, retracted.
     pub actuator_length: Option<f64>,
 }
@@ -96,6 +99,9 @@ pub struct SizedValve {
     pub loss: Option<f64>,
 }
 
+/// Why a spring is not wound.
+pub(crate) const TOO_FEW_COILS: &str = "fewer than two active coils, whose ends would decide the stiffness: take a smaller index, a lower stress, or disc springs";
+
 /// Halvings of every search: the interval is rounding then.
 const HALVINGS: usize = 80;
 /// Forces over the range at which gas is compared.
@@ -112,6 +118,7 @@ impl OtherMeansProblem {
         OtherMeans {
             stiffness,
             chambers,
+            actuator_length: self.length,
             pipe: self.pipe(stiffness, chambers, bore),
             gas: self.gas(stiffness, chambers, bore),
             spring: self.spring(stiffness, chambers),
@@ -206,8 +213,12 @@ impl OtherMeansProblem {
             };
             coil_pair(spring, stall, &wire)
         });
-        let coil = coil.filter(|pair| pair.active_coils >= LEAST_ACTIVE_COILS);
-        let actuator_length = coil.zip(self.length).map(|(pair, length)| length + pair.installed_length);
+        let coil = match coil {
+            None => Err("not stated: sizing.other_means.coil"),
+            Some(pair) if pair.active_coils < LEAST_ACTIVE_COILS => Err(TOO_FEW_COILS),
+            Some(pair) => Ok(pair),
+        };
+        let actuator_length = coil.ok().zip(self.length).map(|(pair, length)| length + pair.installed_length);
         Ok(SizedSpring { stiffness: spring, travel: stall / spring, coil, actuator_length })
     }
 

@@ -19,8 +19,8 @@ use crate::line::{DynamicLine, Segments, TransferMatrix};
 /// ```text
 /// q_valve = K_q U_sp - K_c p_port                                              valve
 /// p_port = a p + b q,   q_valve = c p + d q                                    line: TransferMatrix
-/// q = C s p + A s X + G (p - p_other)                                          chamber behind it
-/// so each chamber of LinearPlant has   K_q/(d + K_c b)   for K_q   and   C s + (c + K_c a)/(d + K_c b)   for C s + K_c
+/// q = C s p + A s X + G (p - p_other) + G_e p                                  chamber behind it, which leaks to the tank
+/// so each chamber of LinearPlant has   K_q/(d + K_c b)   for K_q   and   C s + G_e + (c + K_c a)/(d + K_c b)   for C s + K_c + G_e
 /// ```
 ///
 /// At every frequency it is the machine with these lines, for small motions. Where a stated number
@@ -39,7 +39,8 @@ use crate::line::{DynamicLine, Segments, TransferMatrix};
 /// let line = DynamicLine::new(&hose_line(), &fluid, 35e5, StiffeningMember::Nominal, &model)?;
 /// let plant = LinearPlant::of_load_pressure(&nominal_plant(), 0.0, LinearLoad::Prescribed);
 /// let chamber = 0.25 * 1.58e-3 / 1.45e9; // what the oil of half a stroke yields, in m3/Pa
-/// let behind = BehindLines { lines: [line; 2], chambers: [chamber; 2], lumped: [chamber + line.elastic_compliance(); 2] };
+/// let lumped = [chamber + line.elastic_compliance(); 2];
+/// let behind = BehindLines { lines: [line; 2], chambers: [chamber; 2], lumped, leaking: [0.0; 2] };
 /// let moving = PlantInMotion::new(&plant, &behind);
 /// let lumped = plant.coefficients().command;
 /// let ratio = |frequency| {
@@ -68,6 +69,9 @@ pub struct BehindLines {
     pub chambers: [f64; 2],
     /// Compliance of both together where the line is lumped, as it follows from the parts.
     pub lumped: [f64; 2],
+    /// Share of each flow-pressure coefficient of the plant that is leakage from the chamber to the
+    /// tank, from 0 to 1: it lies behind the line, the valve before it.
+    pub leaking: [f64; 2],
 }
 
 /// A chamber with its line.
@@ -77,7 +81,10 @@ struct ChamberSide {
     /// Of the chamber with the end of the line there.
     compliance: f64,
     flow_gain: f64,
+    /// K_c of the valve.
     flow_pressure: f64,
+    /// G_e to the tank, behind the line.
+    leakage: f64,
     line: DynamicLine,
     /// Gas behind a neck, or with heat.
     gas: Option<GasBranch>,
@@ -132,7 +139,7 @@ impl PlantInMotion {
         let none = DynamicLine::Segments(Segments::lumped(0.0));
         PlantInMotion::new(
             plant,
-            &BehindLines { lines: [none; 2], chambers: compliances, lumped: compliances },
+            &BehindLines { lines: [none; 2], chambers: compliances, lumped: compliances, leaking: [0.0; 2] },
         )
     }
 
@@ -144,7 +151,9 @@ impl PlantInMotion {
             let line = behind.lines[side].stiffened(stiffer);
             let compliance = behind.chambers[side] / stiffer + line.chamber_compliance();
             let gas = plant.gas[side];
-            ChamberSide { area, compliance, flow_gain, flow_pressure, line, gas }
+            let leakage = behind.leaking[side] * flow_pressure;
+            let flow_pressure = flow_pressure - leakage;
+            ChamberSide { area, compliance, flow_gain, flow_pressure, leakage, line, gas }
         };
         let sides = [side(0), side(1)];
         let alike = sides[0].line == sides[1].line;
@@ -315,7 +324,7 @@ impl PlantInMotion {
             self.plant.internal_leakage,
             self.plant.valve_damping_ratio,
         ];
-        let of_sides = self.sides.iter().flat_map(|side| [side.compliance, side.flow_pressure]);
+        let of_sides = self.sides.iter().flat_map(|side| [side.compliance, side.flow_pressure, side.leakage]);
         let of_supply = self.plant.supply.iter().flat_map(|supply| {
             let to_tank = [0, 1].map(|side| self.sides[side].flow_pressure - supply.edges[side]);
             [supply.edges, to_tank, [supply.compliance, supply.conductance]].concat()
@@ -347,6 +356,7 @@ impl ChamberSide {
         let passed = line.flow + line.impedance.scaled(self.flow_pressure);
         let taken = line.admittance + line.pressure.scaled(self.flow_pressure);
         let own = s.scaled(self.compliance);
+        let own = if self.leakage == 0.0 { own } else { own + A::from(self.leakage) };
         let own = self.gas.map_or(own, |gas| own + gas.admittance_at(s));
         let admittance = own * passed + taken;
         AtChamber { admittance, passed, impedance: line.impedance }

@@ -6,8 +6,8 @@ use super::built_in::BUILT_IN;
 use super::{Catalogue, CatalogueEntry, CatalogueKind};
 use crate::source::Source;
 use crate::{
-    Findings, HoseProperties, RawFinding, Reader, Refusal, TreeNode, TreeValue, Valve, Visitor, key, plain,
-    read_tree,
+    DeclaredCylinder, DeclaredPipe, Findings, HoseProperties, RawFinding, Reader, Refusal, TreeNode,
+    TreeValue, Valve, Visitor, key, plain, read_tree,
 };
 use phea_quantity::RATIO;
 
@@ -87,7 +87,12 @@ impl Head {
     fn visit<V: Visitor>(&mut self, v: &mut V) {
         let mut schema = 1;
         v.count(key("schema", &RATIO, "Version of this format: 1.").at_least(1.0).at_most(1.0), &mut schema);
-        let words = &[("hose", CatalogueKind::Hose), ("valve", CatalogueKind::Valve)];
+        let words = &[
+            ("hose", CatalogueKind::Hose),
+            ("valve", CatalogueKind::Valve),
+            ("pipe", CatalogueKind::Pipe),
+            ("cylinder", CatalogueKind::Cylinder),
+        ];
         v.choice(plain("kind", "What the product is."), words, &mut self.kind, true);
         v.text(plain("name", "The name projects use."), &mut self.name, true);
         v.text(plain("title", "The name people use."), &mut self.title, true);
@@ -112,6 +117,8 @@ fn entry(file: &str, root: TreeNode, findings: &mut Findings) -> Option<Catalogu
             hose = Some(properties).filter(|_| !reader.incomplete);
         }
         CatalogueKind::Valve => Valve::default().visit(&mut reader),
+        CatalogueKind::Pipe => DeclaredPipe::default().visit(&mut reader),
+        CatalogueKind::Cylinder => DeclaredCylinder::default().visit(&mut reader),
     }
     reader.close();
     let sources = sources(&root, &head, findings);

@@ -14,6 +14,16 @@ use crate::visitor::{FormulaShape, Kinds, NamedNumber, ValueForm, Variants, Visi
 use phea_quantity::spelling::nearest;
 use phea_quantity::{MotionKind, Price, PricedBy};
 
+/// What an entry of the catalogue states and does not apply where the project states the first: a pressure
+/// belongs to the flow that it was stated with, and areas and rods are stated in one way.
+const REPLACED: [(&str, &[&str]); 5] = [
+    ("tare_flow", &["tare_pressure"]),
+    ("rod_diameter", &["rod_diameters"]),
+    ("rod_diameters", &["rod_diameter"]),
+    ("piston_area", &["piston_diameter", "rod_diameter", "rod_diameters"]),
+    ("piston_areas", &["piston_diameter", "rod_diameter", "rod_diameters"]),
+];
+
 impl Visitor for Reader<'_> {
     fn moves(&mut self, motion: Option<MotionKind>) {
         self.motion = Motions::both(motion.unwrap_or_default());
@@ -202,9 +212,10 @@ impl Visitor for Reader<'_> {
                 self.catalogue_files.push(entry.file.clone());
             }
             if let Some(frame) = self.frames.last_mut() {
-                // a pressure belongs to the flow that it was stated with
-                let own = frame.layers.first().is_some_and(|table| table.node.get("tare_flow").is_some());
-                let hidden = if own { vec!["tare_pressure"] } else { Vec::new() };
+                let own =
+                    |name: &str| frame.layers.first().is_some_and(|table| table.node.get(name).is_some());
+                let replaced = REPLACED.iter().filter(|(name, _)| own(name));
+                let hidden = replaced.flat_map(|(_, others)| others.iter().copied()).collect();
                 frame.layers.push(Layer { node: &entry.values, hidden, entry: Some(entry) });
             }
             return;

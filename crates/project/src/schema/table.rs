@@ -79,10 +79,15 @@ impl SchemaTable {
         self.rule(json!({ "anyOf": all }));
     }
 
-    /// One of several keys and no other of them; or none, unless one is needed.
+    /// One of several keys and no other of them; or none, unless one is needed and no entry of the catalogue has it.
     pub(super) fn require_only_one(&mut self, names: &[&str], needed: bool) {
         let each = names.iter().map(|name| json!({ "required": [name] }));
-        let none = (!needed).then(|| json!({ "not": any_of(names) }));
+        let entry = self.catalogue.as_ref().filter(|_| names.iter().all(|name| self.is_catalogued(name)));
+        let none = match (needed, entry) {
+            (false, _) => Some(json!({ "not": any_of(names) })),
+            (true, Some((entry, _))) => Some(json!({ "required": [entry], "not": any_of(names) })),
+            (true, None) => None,
+        };
         self.rule(json!({ "oneOf": each.chain(none).collect::<Vec<_>>() }));
     }
 

@@ -9,7 +9,7 @@ use crate::formula::Formula;
 use crate::key::{Key, Motions};
 use crate::listing::{Listing, keys_of};
 use crate::visitor::{FormulaShape, Kinds, NamedNumber, ValueForm, Variants, Visitor};
-use crate::{HoseProperties, Valve};
+use crate::{DeclaredCylinder, DeclaredPipe, HoseProperties, Valve};
 use phea_quantity::{MotionKind, Price, PricedBy, price_pattern};
 
 /// Puts the schema together, table by table.
@@ -104,6 +104,8 @@ fn keys_of_entry(kind: CatalogueKind) -> Vec<&'static str> {
     match kind {
         CatalogueKind::Hose => HoseProperties::default().visit(&mut listing),
         CatalogueKind::Valve => Valve::default().visit(&mut listing),
+        CatalogueKind::Pipe => DeclaredPipe::default().visit(&mut listing),
+        CatalogueKind::Cylinder => DeclaredCylinder::default().visit(&mut listing),
     }
     listing.outermost
 }

@@ -5,7 +5,7 @@ use crate::{
     AdjustmentKind, DeclaredAccumulator, DeclaredActuator, DeclaredAdjustment, DeclaredSupply, GasAtOne,
     Scenario, Signal, SignalUnit, Uncertain,
 };
-use phea_quantity::{self as quantity, PRESSURE};
+use phea_quantity::{self as quantity, PRESSURE, TIME};
 
 /// Pa, between absolute and gauge pressures.
 const ATMOSPHERE: f64 = 101_325.0;
@@ -90,6 +90,9 @@ pub(super) fn course(
         let help = "state [line.accumulator.adjustment], or leave out `setting_change`";
         return check.error_with_help(&place, message, help);
     }
+    for rest in adjusted.iter().map(|one| one.setting) {
+        leaves_its_way(signals, rest, &place, check);
+    }
     let moves_gas = adjusted.iter().any(|one| one.valve().is_none());
     let jumps = |signal: &Signal| match signal {
         Signal::Step { at, .. } => *at > 0.0,
@@ -100,6 +103,66 @@ pub(super) fn course(
         let message = "a step would add or take gas in no time";
         let help = "let the setting move in a time: `kind = \"ramp\"` with a `duration`";
         check.error_with_help(&format!("{place}[{index}]"), message, help);
+    }
+}
+
+/// A setting stays from 0 to 1. Signals of steps and ramps alone have their extremes where one begins or
+/// ends; of others a simulation tells.
+fn leaves_its_way(signals: &[Signal], rest: f64, place: &str, check: &mut Check<'_, '_>) {
+    let courses: Option<Vec<PartCourse>> = signals.iter().map(PartCourse::of).collect();
+    let Some(courses) = courses else { return };
+    let sum = |time: f64| rest + courses.iter().map(|course| course.value(time)).sum::<f64>();
+    let times = courses.iter().flat_map(|course| &course.corners).map(|[time, _]| *time);
+    let beyond = |time: &f64| !(-ROUNDING..=1.0 + ROUNDING).contains(&sum(*time));
+    let Some(time) = times.filter(beyond).reduce(f64::min) else { return };
+    let words = |value: f64| quantity::significant(value, 4);
+    let message = format!(
+        "the setting comes to {} at {}, and it stays from 0 to 1: it is `adjustment.setting`, {}, and the `change` of every signal",
+        words(sum(time)),
+        quantity::display(time, &TIME, 4),
+        words(rest)
+    );
+    let index =
+        courses.iter().position(|course| course.corners.iter().any(|[start, _]| *start == time)).unwrap_or(0);
+    let help = "no simulation runs this scenario: one of them must be smaller";
+    check.warning_with_help(&format!("{place}[{index}]"), message, help);
+}
+
+/// What rounding may add to a setting.
+const ROUNDING: f64 = 1e-9;
+
+/// A signal of steps, or a ramp; zero before it begins.
+struct PartCourse {
+    is_ramp: bool,
+    /// Times in s and values.
+    corners: Vec<[f64; 2]>,
+}
+
+impl PartCourse {
+    fn of(signal: &Signal) -> Option<PartCourse> {
+        let (is_ramp, corners) = match signal {
+            Signal::Step { at, value, .. } => (false, vec![[*at, *value]]),
+            Signal::Steps { times, values } => {
+                (false, times.iter().zip(values).map(|(time, value)| [*time, *value]).collect())
+            }
+            Signal::Ramp { value, start, duration } => {
+                let start = start.unwrap_or(0.0);
+                (true, vec![[start, 0.0], [start + duration, *value]])
+            }
+            _ => return None,
+        };
+        Some(PartCourse { is_ramp, corners })
+    }
+
+    fn value(&self, time: f64) -> f64 {
+        match self.corners.as_slice() {
+            [[start, _], [end, last]] if self.is_ramp && (*start..*end).contains(&time) => {
+                last * (time - start) / (end - start)
+            }
+            corners => {
+                corners.iter().rev().find(|[start, _]| *start <= time).map_or(0.0, |[_, value]| *value)
+            }
+        }
     }
 }
 

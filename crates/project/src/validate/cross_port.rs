@@ -34,19 +34,54 @@ pub(super) fn cross_port(actuator: &DeclaredActuator, check: &mut Check<'_, '_>)
 /// An orifice throttles only where it is narrower than the ports of the cylinder: the narrower line,
 /// or the piston where the lines are plain volumes.
 fn orifice_within_port(orifice: &DeclaredOrifice, actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
-    let (key, diameter) = match orifice.size {
-        OrificeSize::Diameter { diameter, .. } => ("diameter", diameter),
-        OrificeSize::Flow { flow, pressure_drop } => {
-            let velocity = DISCHARGE_COEFFICIENT * (2.0 * pressure_drop / actuator.fluid.density).sqrt();
-            ("flow", (4.0 * flow / (std::f64::consts::PI * velocity)).sqrt())
-        }
-    };
     let bores = [&actuator.line.a, &actuator.line.b].into_iter().filter_map(bore);
-    let (port, what) = match bores.reduce(f64::min) {
-        Some(bore) => (bore, "the bore of the line"),
+    let port = match bores.reduce(f64::min) {
+        Some(bore) => (bore, OF_LINE),
         // nothing is known of the ports of a motor
         None if actuator.motor.is_some() => return,
         None => (actuator.cylinder.piston_diameter_m(), "the piston"),
+    };
+    narrower(orifice, actuator.fluid.density, port, "cross_port", check);
+}
+
+const OF_LINE: &str = "the bore of the line";
+
+/// The valve between a chamber and its gas throttles only where it is narrower than the line there.
+pub(super) fn gas_valves_within_lines(actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
+    for (own, line) in [("line.a", &actuator.line.a), ("line.b", &actuator.line.b)] {
+        let Some((bore, gas)) = bore(line).zip(line.accumulator.as_ref()) else { continue };
+        let own = format!("{own}.accumulator");
+        let path = if check.declared(&own) { own } else { "line.accumulator".to_string() };
+        if let Some(valve) = gas.adjustment.as_ref().and_then(|of| of.valve()) {
+            let path = format!("{path}.adjustment");
+            narrower(&valve.orifice, actuator.fluid.density, (bore, OF_LINE), &path, check);
+        }
+        if let Some(neck) = gas.neck.filter(|neck| bore > 0.0 && neck.diameter > bore) {
+            let [own, bore] = [neck.diameter, bore].map(|length| quantity::display(length, &LENGTH, 3));
+            let message = format!(
+                "the neck is {own} wide and {OF_LINE} {bore}: the oil passes the line first, which then is the neck"
+            );
+            let help = "state the narrowest passage between chamber and gas";
+            check.warning_with_help(&format!("{path}.neck_diameter"), message, help);
+        }
+    }
+}
+
+/// Reports an orifice in the table at `path` that is no narrower than what leads to it: its diameter in m,
+/// and what it is.
+fn narrower(
+    orifice: &DeclaredOrifice,
+    density: f64,
+    (port, what): (f64, &str),
+    path: &str,
+    check: &mut Check<'_, '_>,
+) {
+    let (key, diameter) = match orifice.size {
+        OrificeSize::Diameter { diameter, .. } => ("diameter", diameter),
+        OrificeSize::Flow { flow, pressure_drop } => {
+            let velocity = DISCHARGE_COEFFICIENT * (2.0 * pressure_drop / density).sqrt();
+            ("flow", (4.0 * flow / (std::f64::consts::PI * velocity)).sqrt())
+        }
     };
     if !(port > 0.0 && diameter >= port) {
         return;
@@ -59,7 +94,7 @@ fn orifice_within_port(orifice: &DeclaredOrifice, actuator: &DeclaredActuator, c
         ),
     };
     let help = "an orifice throttles where it is narrower than what leads to it: state a smaller one";
-    check.error_with_help(&format!("cross_port.{key}"), message, help);
+    check.error_with_help(&format!("{path}.{key}"), message, help);
 }
 
 /// m, of a hose or a pipe.

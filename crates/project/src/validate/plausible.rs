@@ -6,7 +6,7 @@ use crate::listing::Listing;
 use phea_quantity::display;
 
 /// Usual ranges in SI: path, least, greatest, and the part.
-const USUAL: [(&str, f64, f64, &str); 26] = [
+const USUAL: [(&str, f64, f64, &str); 29] = [
     ("fluid.bulk_modulus", 1e9, 2.5e9, "fluids of hydraulics"),
     ("fluid.density", 700.0, 1300.0, "fluids of hydraulics"),
     ("fluid.kinematic_viscosity", 5e-6, 5e-4, "fluids of hydraulics"),
@@ -29,6 +29,9 @@ const USUAL: [(&str, f64, f64, &str); 26] = [
     ("force_sensor.stiffness", 1e6, 1e10, "load cells"),
     ("series.stiffness", 1e4, 1e8, "series springs"),
     ("series.travel", 1e-3, 0.1, "series springs"),
+    ("series.coil.allowed_shear_stress", 2e8, 1.2e9, "spring steels"),
+    ("series.coil.shear_modulus", 4e10, 9e10, "spring materials"),
+    ("series.coil.density", 4000.0, 9000.0, "spring materials"),
     ("series.piston_area", 5e-5, 0.02, "pistons of transmissions"),
     ("series.filling_pressure", 1e5, 3.5e7, "transmissions"),
     ("series.line.length", 0.05, 30.0, "lines"),

@@ -3,8 +3,8 @@
 use super::{Check, adjustment, cross_port, line_motion};
 use crate::{
     BoundedNumber, Component, DeclaredAccumulator, DeclaredActuator, DeclaredCylinder, DeclaredFriction,
-    DeclaredLine, DeclaredLines, DeclaredSupply, FrictionLaw, NullLeakage, Pump, StribeckCurve, SupplyModel,
-    Valve,
+    DeclaredLine, DeclaredLines, DeclaredSupply, FrictionLaw, NullLeakage, Project, Pump, StribeckCurve,
+    SupplyModel, Valve,
 };
 use phea_hydraulics::stroke::FURTHER_STAGES;
 use phea_quantity::{self as quantity, DAMPING, LENGTH, PRESSURE, display};
@@ -23,6 +23,7 @@ pub(super) fn actuator(actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
     }
     lines(actuator, &actuator.line, check);
     cross_port::cross_port(actuator, check);
+    cross_port::gas_valves_within_lines(actuator, check);
 }
 
 fn supply(actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
@@ -33,7 +34,7 @@ fn supply(actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
         check.error(at, "`tank_pressure` must be below `pressure`");
     }
     if let SupplyModel::PumpLimited(Pump { accumulator: Some(gas), .. }) = &supply.model {
-        pressure_ratio(gas, supply, "supply.accumulator", check);
+        pressure_ratio(gas, supply, "supply.accumulator.maximum_pressure_ratio", check);
     }
 }
 
@@ -58,10 +59,44 @@ fn accumulator(gas: &DeclaredAccumulator, supply: &DeclaredSupply, path: &str, c
     // compressed most where its precharge is least
     let [first, last] = gas.ends();
     let most = if last.precharge_pressure < first.precharge_pressure { last } else { first };
-    pressure_ratio(&most, supply, path, check);
+    pressure_ratio(&most, supply, &format!("{path}.maximum_pressure_ratio"), check);
 }
 
-/// The maker's limit of the compression of the gas, at the highest pressure that the supply gives.
+/// The ends of the ranges of a precharge: the supply reaches the highest, and the lowest is not compressed
+/// beyond the maker's limit.
+pub(super) fn precharge_ranges(project: &Project, actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
+    let range_of = |name: &str| project.uncertainty.iter().find(|one| one.name == name);
+    let most = range_of("supply.pressure").map_or(actuator.supply.pressure, |range| range.maximum);
+    let supply = DeclaredSupply { pressure: most, ..actuator.supply.clone() };
+    let sides = [("line.a", &actuator.line.a), ("line.b", &actuator.line.b)];
+    let mut seen = vec![];
+    for (side, line) in sides {
+        let Some(gas) = &line.accumulator else { continue };
+        let names = [side, "line"].map(|table| format!("{table}.accumulator.precharge_pressure"));
+        let Some(range) =
+            names.iter().find_map(|name| range_of(name)).filter(|range| !seen.contains(&&range.name))
+        else {
+            continue;
+        };
+        seen.push(&range.name);
+        let at = |precharge_pressure: f64| DeclaredAccumulator { precharge_pressure, ..*gas };
+        let place = format!("uncertainty.{}", range.name);
+        pressure_ratio(&at(range.minimum), &supply, &format!("{place}.minimum"), check);
+        let working = at(range.maximum).working_precharge(ATMOSPHERE);
+        if supply.pressure > 0.0 && working >= supply.pressure {
+            let [precharge, pressure] =
+                [working, supply.pressure].map(|pressure| quantity::display(pressure, &PRESSURE, 4));
+            let message = format!(
+                "the precharge goes up to {precharge} and the supply has {pressure}: no chamber ever lets oil into this accumulator there"
+            );
+            let help = "let the range end below the lowest pressure at which the gas is to work";
+            check.error_with_help(&format!("{place}.maximum"), message, help);
+        }
+    }
+}
+
+/// The maker's limit of the compression of the gas, at the highest pressure that the supply gives; `path` is
+/// where the error stands.
 fn pressure_ratio(gas: &DeclaredAccumulator, supply: &DeclaredSupply, path: &str, check: &mut Check<'_, '_>) {
     let Some(limit) = gas.maximum_pressure_ratio else { return };
     let precharge = gas.working_precharge(ATMOSPHERE) + ATMOSPHERE;
@@ -79,7 +114,7 @@ fn pressure_ratio(gas: &DeclaredAccumulator, supply: &DeclaredSupply, path: &str
          `maximum_pressure_ratio` permits {limit}"
     );
     let help = format!("raise `precharge_pressure` to {needed} or more, or lower the supply pressure");
-    check.error_with_help(&format!("{path}.maximum_pressure_ratio"), message, help);
+    check.error_with_help(path, message, help);
 }
 
 fn imperfections(valve: &Valve, check: &mut Check<'_, '_>) {
@@ -114,9 +149,10 @@ fn cylinder(cylinder: &DeclaredCylinder, check: &mut Check<'_, '_>) {
     piston(cylinder, check);
     // an area has its rods subtracted already
     let by_area = cylinder.piston_area.is_some() || cylinder.piston_areas.is_some();
-    if !by_area
-        && !["rod_diameter", "rod_diameters"].iter().any(|name| check.declared(&format!("cylinder.{name}")))
-    {
+    let written =
+        ["rod_diameter", "rod_diameters"].iter().any(|name| check.declared(&format!("cylinder.{name}")));
+    let by_model = cylinder.rod_diameter.is_some() || cylinder.rod_diameters.is_some();
+    if !by_area && !written && !by_model {
         check.missing("cylinder", "rod_diameter", "missing `rod_diameter` or `rod_diameters` in [cylinder]");
     }
     let too_thick = |piston: f64| cylinder.rod_diameters_m().iter().any(|rod| *rod >= piston);
@@ -229,6 +265,13 @@ fn lines(actuator: &DeclaredActuator, lines: &DeclaredLines, check: &mut Check<'
             let message = "the hose's `working_pressure` is below the supply pressure";
             let key = if side.hose_name().is_some() { "hose" } else { "working_pressure" };
             check.warning(&format!("{path}.{key}"), message);
+        }
+        let working = side.pipe().and_then(|pipe| pipe.working_pressure);
+        if working.is_some_and(|working| working < actuator.supply.pressure) {
+            let key =
+                if check.declared(&format!("{path}.pipe.model")) { "model" } else { "working_pressure" };
+            let message = "the pipe's `working_pressure` is below the supply pressure";
+            check.warning(&format!("{path}.pipe.{key}"), message);
         }
     }
 }

@@ -152,7 +152,9 @@ fn passivity(one: &JudgedAlternative) -> Object {
     let failed = linearization.err().map_or("", String::as_str);
     let open = linearization.ok().map(|found| passivity_body(&found.open_loop.passivity));
     let closed = linearization.ok().and_then(|found| found.closed_loop.as_ref());
+    let closed = closed.filter(|_| one.deployed.is_ok());
     let absent = linearization.ok().and_then(|found| found.closed_loop_absent.as_deref());
+    let absent = one.deployed.as_ref().err().map(String::as_str).or(absent);
     Object::new().known("open_loop", open, failed).known(
         "closed_loop",
         closed.map(|view| passivity_body(&view.passivity)),

@@ -27,15 +27,20 @@ pub(crate) fn document(found: &Alternatives) -> Document {
         out.sentences(front::findings(front));
     }
     out.heading_on_page("All numbers");
-    out.table(table(found));
+    out.table(table(found).in_parts_of(PART));
     out
 }
+
+/// Alternatives side by side on the paper.
+const PART: usize = 6;
 
 /// The rigs that their families do not contain, and what to do.
 pub(crate) fn told_first(found: &Alternatives) -> Vec<String> {
     let all = summary::groups(found).into_iter().flat_map(|(_, judged)| judged);
     let mut told: Vec<String> = Vec::new();
-    for sentence in all.filter_map(|one| Some(outside_words(&one.name, one.outside.as_ref()?))) {
+    for sentence in
+        all.filter_map(|one| Some(outside_words(&one.name, one.outside.as_ref()?, !one.moved.is_empty())))
+    {
         if !told.contains(&sentence) {
             told.push(sentence);
         }
@@ -43,11 +48,15 @@ pub(crate) fn told_first(found: &Alternatives) -> Vec<String> {
     told
 }
 
-/// A sentence on ranges that do not follow a rig.
-pub(crate) fn outside_words(name: &str, outside: &str) -> String {
-    format!(
-        "{name}: the ranges of [uncertainty] do not contain its rig ({outside}): state them in `set`, or let them follow by `recentre = true`"
-    )
+/// A sentence on ranges that do not contain the rig of an alternative, whether they were moved or not.
+pub(crate) fn outside_words(name: &str, outside: &str, moved: bool) -> String {
+    let cure = match moved {
+        false => "state them in `set`, or let them follow by `recentre = true`",
+        true => {
+            "`recentre` moved them by what the rigs differ, and the declared rig lies outside of its own: state them in `set`"
+        }
+    };
+    format!("{name}: the ranges of [uncertainty] do not contain its rig ({outside}): {cure}")
 }
 
 /// A row for each column, and a column for each alternative.
@@ -93,7 +102,7 @@ fn feasible(one: &JudgedAlternative) -> Cell {
 }
 
 /// Whether every plant of its family, with the declared load on it, is stable in the designed loop.
-fn stable(one: &JudgedAlternative) -> Cell {
+pub(super) fn stable(one: &JudgedAlternative) -> Cell {
     let view = one.design.as_ref().ok();
     match view.map(|view| view.designed.view.audit.stability.verdict) {
         Some(Verdict::Met) => Cell::from("yes").marked(true),
@@ -104,9 +113,10 @@ fn stable(one: &JudgedAlternative) -> Cell {
 }
 
 /// Whether the impedance at the load is passive, or in how many bands it is not.
-fn port(one: &JudgedAlternative, closed: bool) -> Cell {
+pub(super) fn port(one: &JudgedAlternative, closed: bool) -> Cell {
     let Ok(found) = &one.linearization else { return Cell::Missing };
-    let view: Option<&PortView> = if closed { found.closed_loop.as_ref() } else { Some(&found.open_loop) };
+    let designed = found.closed_loop.as_ref().filter(|_| one.deployed.is_ok());
+    let view: Option<&PortView> = if closed { designed } else { Some(&found.open_loop) };
     let Some(report) = view.map(|view| &view.passivity) else { return Cell::Missing };
     match (report.passive, report.bands.first(), report.bands.len()) {
         (true, ..) => "yes".into(),

@@ -3,9 +3,9 @@
 
 use phea_engineering::simulate::file_names;
 
-use super::document::{at, parts};
+use super::document::{at, parts, port, stable};
 use super::front;
-use super::summary::groups;
+use super::summary::{groups, machine};
 use super::{AlternativeColumns, Alternatives, ColumnPart, JudgedAlternative};
 use crate::answer::{Csv, OutputFile, picture_files, quoted};
 use crate::figure::{Figure, FigureError, FrequencySeries, ImpedanceInput, Words, impedance};
@@ -108,7 +108,8 @@ fn table(file: &str, groups: &[(&str, &[JudgedAlternative])]) -> OutputFile {
     }
     let headings: Vec<String> = named.iter().map(|(part, key)| heading(part, &motion.name(key))).collect();
     let case = if groups.len() > 1 { "load_case," } else { "" };
-    let mut csv = Csv::new(&format!("{case}name,feasible,{}", headings.join(",")));
+    let words = "stable_with_its_load,machine,passive_open_loop,passive_closed_loop";
+    let mut csv = Csv::new(&format!("{case}name,feasible,{},{words}", headings.join(",")));
     let rows = groups.iter().flat_map(|(case, judged)| judged.iter().map(move |one| (*case, one)));
     for ((case, one), columns) in rows.zip(&all) {
         let feasible = one.feasible().map_or(String::new(), |feasible| feasible.to_string());
@@ -117,9 +118,11 @@ fn table(file: &str, groups: &[(&str, &[JudgedAlternative])]) -> OutputFile {
             value.map_or(String::new(), |value| value.to_string())
         };
         let values = named.iter().map(value).collect::<Vec<_>>().join(",");
+        let words = [stable(one), machine(one), port(one, false), port(one, true)];
+        let words = words.map(|cell| quoted(&cell.text())).join(",");
         match groups.len() {
-            1 => csv.row(&[&quoted(&one.name), &feasible, &values]),
-            _ => csv.row(&[&quoted(case), &quoted(&one.name), &feasible, &values]),
+            1 => csv.row(&[&quoted(&one.name), &feasible, &values, &words]),
+            _ => csv.row(&[&quoted(case), &quoted(&one.name), &feasible, &values, &words]),
         }
     }
     csv.file(file)

@@ -9,13 +9,13 @@ use super::{
     MovedRange,
 };
 use crate::design::status_sentence;
-use crate::project::{AS_DECLARED, LINEAR_PARAMETERS};
+use crate::project::{AS_DECLARED, ImpedanceForm, LINEAR_PARAMETERS};
 use crate::quantity::{DisplayUnit, MotionKind, fitting, significant};
 use crate::trial::Agreement;
 
 /// Of the declared load, and then of each load case.
 pub(crate) fn findings(found: &Alternatives) -> Vec<String> {
-    let mut sentences = of_judged(&found.judged);
+    let mut sentences = of_judged(&found.judged, found.not_reached.len());
     sentences.extend(ranges(&found.judged));
     sentences.extend(costs(&MeasuredAlternatives::of(found.judged.iter())));
     sentences.extend(found.not_reached.iter().map(|name| format!("{name}: not reached")));
@@ -28,11 +28,11 @@ pub(crate) fn findings(found: &Alternatives) -> Vec<String> {
 /// Of a load case.
 pub(super) fn of_case(case: &JudgedCase) -> Vec<String> {
     let not_reached = case.not_reached.iter().map(|name| format!("{name}: not reached"));
-    of_judged(&case.judged).into_iter().chain(not_reached).collect()
+    of_judged(&case.judged, case.not_reached.len()).into_iter().chain(not_reached).collect()
 }
 
-fn of_judged(judged: &[JudgedAlternative]) -> Vec<String> {
-    let mut sentences = specifications(judged);
+fn of_judged(judged: &[JudgedAlternative], not_reached: usize) -> Vec<String> {
+    let mut sentences = specifications(judged, not_reached);
     sentences.extend(shared(judged, judged.iter().flat_map(lacking)));
     let comparable = MeasuredAlternatives::of(judged.iter().filter(|one| one.is_comparable()));
     sentences.extend(best(&comparable));
@@ -74,7 +74,7 @@ impl MeasuredAlternatives {
 const FOUR: [&str; 4] = ["disturbance", "control effort", "order", "delay tolerated"];
 
 /// Who meets every specification, who misses them by how much, and what else became of a design.
-fn specifications(judged: &[JudgedAlternative]) -> Vec<String> {
+fn specifications(judged: &[JudgedAlternative], not_reached: usize) -> Vec<String> {
     let named = |which: &dyn Fn(&JudgedAlternative) -> Option<String>| {
         judged.iter().filter_map(which).collect::<Vec<_>>()
     };
@@ -87,7 +87,10 @@ fn specifications(judged: &[JudgedAlternative]) -> Vec<String> {
     let mut sentences = vec![];
     match (met.as_slice(), judged.len()) {
         ([], _) => {}
-        (met, all) if met.len() == all => sentences.push("all satisfy every specification".to_string()),
+        (met, all) if met.len() == all => {
+            let which = if not_reached > 0 { "all that were reached" } else { "all" };
+            sentences.push(format!("{which} satisfy every specification"));
+        }
         (met, _) => sentences.push(format!("every specification is satisfied by: {}", met.join(", "))),
     }
     if !missed.is_empty() {
@@ -162,13 +165,28 @@ fn lacking(one: &JudgedAlternative) -> Vec<(&str, String)> {
     });
     let caveats = view.map(|view| view.designed.view.caveats.as_slice()).unwrap_or_default();
     let caveats = caveats.iter().map(|caveat| caveat.sentence.clone());
+    let impedance = impedance(one).into_iter().flatten();
     let not_driven = one.runs.as_ref().err().filter(|_| view.is_some()).cloned();
     contradicts
         .into_iter()
         .chain(caveats)
+        .chain(impedance)
         .chain(not_driven)
         .map(|sentence| (one.name.as_str(), sentence))
         .collect()
+}
+
+/// What is compared of a loop that shows the load an impedance.
+fn impedance(one: &JudgedAlternative) -> Option<Vec<String>> {
+    let declared = one.loaded.project.controller.as_ref()?.impedance?;
+    let form = (declared.form == ImpedanceForm::Admittance).then(|| {
+        "designed as the same loop with form = \"impedance\": of the position it is C_x = G (M_v s^2 + B_v s + K_v)"
+            .to_string()
+    });
+    let asked = "the disturbance is the whole change of the force, and counts what the virtual impedance asks for: the impedances at the \
+                 load tell how near it comes"
+        .to_string();
+    Some(form.into_iter().chain([asked]).collect())
 }
 
 /// The ranges that follow a rig, in one sentence.

@@ -69,6 +69,9 @@ pub(super) fn findings(front: &Front) -> Vec<String> {
         }
     });
     let mut sentences = match on_front.as_slice() {
+        [] if front.points.iter().any(|point| point.comparable) => {
+            vec!["no point is on a front: none has a value in every column".to_string()]
+        }
         [] => {
             vec!["no point is on a front: none satisfies every specification, on the machine too".to_string()]
         }

@@ -83,5 +83,8 @@ fn rigs(all: &[AskedAlternative], base: &Loaded, case: &str) -> Result<Vec<Strin
             return Err(ProcedureError::Alternative { name, reason: error.to_string() }.into());
         }
     }
-    Ok(all.iter().filter_map(|one| Some(outside_words(&one.name, &one.outside(base)?))).collect())
+    Ok(all
+        .iter()
+        .filter_map(|one| Some(outside_words(&one.name, &one.outside(base)?, !one.moved.is_empty())))
+        .collect())
 }

@@ -22,7 +22,7 @@ pub(crate) fn document(derived: &[Derived]) -> Document {
         out.section(group, Table::new(["quantity", "value", "unit", "equation"]).with(own.map(cells)));
     }
     let absent = derived.iter().filter_map(|quantity| Some((&quantity.name, quantity.value.err()?)));
-    out.explanations(absent.map(|(name, reason)| format!("`{name}`: {reason}.")));
+    out.sentences(absent.map(|(name, reason)| format!("`{name}`: {reason}")));
     let stated = stated(derived);
     if !stated.is_empty() {
         out.heading("Stated by the project and used instead of the derived value");

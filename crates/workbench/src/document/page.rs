@@ -47,22 +47,33 @@ impl Block {
 
 impl Table {
     fn markup(&self) -> Markup {
+        let parts = self.parts();
+        html! { @for part in &parts { (self.part(part)) } }
+    }
+
+    /// With these columns.
+    fn part(&self, columns: &[usize]) -> Markup {
         let has_equations = self.rows().flatten().any(|cell| matches!(cell, Cell::Equation(_)));
-        let wide = self.headings.len() >= WIDE || has_equations;
-        let numeric: Vec<bool> = (0..self.headings.len()).map(|column| self.is_numeric(column)).collect();
-        let is_number = |column: usize| numeric.get(column).copied().unwrap_or_default();
+        let wide = columns.len() >= WIDE || has_equations;
+        let numeric: Vec<(usize, bool)> =
+            columns.iter().map(|column| (*column, self.is_numeric(*column))).collect();
         html! {
             div.table.wide[wide] { table {
-                thead { tr { @for (column, heading) in self.headings.iter().enumerate() { th.number[is_number(column)] { (breakable(heading)) } } } }
+                thead { tr { @for (is_number, heading) in placed(&self.headings, &numeric) { th.number[is_number] { (breakable(heading)) } } } }
                 @for group in &self.groups {
                     tbody.group[self.grouped_by.is_some()] {
-                        @if self.grouped_by.is_some() { tr { th colspan=(self.headings.len()) { (prose(&group.name)) } } }
-                        @for row in &group.rows { tr { @for (column, cell) in row.iter().enumerate() { td.number[is_number(column)] { (cell.markup()) } } } }
+                        @if self.grouped_by.is_some() { tr { th colspan=(columns.len()) { (prose(&group.name)) } } }
+                        @for row in &group.rows { tr { @for (is_number, cell) in placed(row, &numeric) { td.number[is_number] { (cell.markup()) } } } }
                     }
                 }
             } }
         }
     }
+}
+
+/// The items of these columns, each with whether its column is one of numbers.
+fn placed<'i, Item>(items: &'i [Item], columns: &[(usize, bool)]) -> Vec<(bool, &'i Item)> {
+    columns.iter().filter_map(|(column, is_number)| Some((*is_number, items.get(*column)?))).collect()
 }
 
 /// A text, whose long names may be broken where they are joined.

@@ -9,6 +9,8 @@ pub(crate) struct Table {
     pub(super) grouped_by: Option<String>,
     pub(super) headings: Vec<String>,
     pub(super) groups: Vec<RowGroup>,
+    /// Columns besides the first that one part of it has on a page; `None`: it is whole.
+    pub(super) columns_of_part: Option<usize>,
 }
 
 /// Rows that belong together.
@@ -56,6 +58,20 @@ impl Table {
             self.row(row);
         }
         self
+    }
+
+    /// On a page in parts of at most so many columns besides the first, which each part repeats.
+    pub(crate) fn in_parts_of(self, columns: usize) -> Table {
+        Table { columns_of_part: Some(columns), ..self }
+    }
+
+    /// The places of the columns of each part: all of them where it is whole.
+    pub(super) fn parts(&self) -> Vec<Vec<usize>> {
+        let columns: Vec<usize> = (1..self.headings.len()).collect();
+        let most = self.columns_of_part.filter(|most| *most < columns.len());
+        let Some(most) = most else { return vec![(0..self.headings.len()).collect()] };
+        let even = columns.len().div_ceil(columns.len().div_ceil(most));
+        columns.chunks(even).map(|part| std::iter::once(0).chain(part.iter().copied()).collect()).collect()
     }
 
     /// Whether it has no row.

@@ -208,7 +208,8 @@ fn spring_words(series: &project::DeclaredSpring) -> String {
 /// The declared lines in a few words.
 pub(super) fn lines_words(actuator: &project::DeclaredActuator) -> String {
     let words = |line: &project::DeclaredLine| {
-        let name = line.hose_name().map(|name| format!("{name}, "));
+        let name = line.hose_name().or_else(|| line.pipe()?.model.as_deref());
+        let name = name.map(|name| format!("{name}, "));
         let gas = if line.accumulator.is_some() { ", accumulator" } else { "" };
         format!("{}{}{gas}", name.unwrap_or_default(), line_alone(line).rows.join(", "))
     };

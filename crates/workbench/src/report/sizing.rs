@@ -1,11 +1,12 @@
 //! The chapter on sizing: decisions, nomograph, candidates, uncertainties.
 
 use super::chapter::Chapter;
-use crate::document::Document;
+use crate::document::{Document, StatusMark};
 use crate::figure::{
     CandidateVerdict, DisplayUnit, Figure, NomographBore, NomographInput, SizingCandidate, SizingChartInput,
     SizingCurve, TornadoBar, TornadoInput, Words, nomograph, sizing_chart, tornado,
 };
+use crate::rig::SizingError;
 use crate::sizing::{BoreVerdict, Candidate, Sizing, SizingProblem, document, model_name};
 use phea_hydraulics::stiffness::StiffnessModel;
 
@@ -19,6 +20,13 @@ pub(super) fn chapter(problem: &SizingProblem, sizing: &Sizing) -> Chapter {
     let mut out = Document::default();
     out.explanation(format!("The procedure of Ledezma (2019), section 6.3, applied to {hoses} of the catalogue, once with each stiffness model; both lines alike."));
     out.append(document(sizing, figures));
+    Chapter::of("sizing", "Sizing of the hose", out)
+}
+
+/// In place of it: why the procedure does not apply to the rig.
+pub(super) fn refused(error: &SizingError) -> Chapter {
+    let mut out = Document::default();
+    out.verdict(StatusMark::Note, "No hose is sized", vec![error.to_string()]);
     Chapter::of("sizing", "Sizing of the hose", out)
 }
 

@@ -47,7 +47,7 @@ fn other_means(found: &OtherMeans) -> Object {
             .with("stiffness_n_per_m", gas.stiffness)
     });
     let spring = found.spring.as_ref().map_or_else(absent, |spring| {
-        let coil = spring.coil.as_ref();
+        let coil = spring.coil.as_ref().ok();
         Object::new()
             .with("stiffness_n_per_m", spring.stiffness)
             .with("travel_m", spring.travel)
@@ -58,6 +58,7 @@ fn other_means(found: &OtherMeans) -> Object {
     let out = Object::new()
         .with("stiffness_n_per_m", found.stiffness)
         .with("chambers_n_per_m", found.chambers)
+        .with("actuator_length_m", found.actuator_length)
         .with("pipe", pipe)
         .with("gas", gas)
         .with("spring", spring);

@@ -63,11 +63,16 @@ fn other_means(out: &mut Document, found: &OtherMeans) {
         )
     });
     let spring = found.spring.as_ref().map(|spring| {
-        let wound = spring.coil.as_ref().map_or("how it is wound is not known".to_string(), |coil| {
-            let [wire, coils] = [length(coil.wire_diameter), significant(coil.active_coils, 3)];
-            let [long, heavy] = [length(coil.installed_length), display(coil.mass, &MASS, 3)];
-            format!("two coils of {wire} wire with {coils} active turns each, {long} and {heavy} together")
-        });
+        let wound = spring.coil.as_ref().map_or_else(
+            |reason| format!("how it is wound is not known ({reason})"),
+            |coil| {
+                let [wire, coils] = [length(coil.wire_diameter), significant(coil.active_coils, 3)];
+                let [long, heavy] = [length(coil.installed_length), display(coil.mass, &MASS, 3)];
+                format!(
+                    "two coils of {wire} wire with {coils} active turns each, {long} and {heavy} together"
+                )
+            },
+        );
         let actuator = spring.actuator_length.map(|long| format!("; the actuator is {} long", length(long)));
         let [stiffness, travel] = [mega(spring.stiffness), length(spring.travel)];
         format!("{stiffness}, ±{travel} under the stall force; {wound}{}", actuator.unwrap_or_default())
@@ -88,6 +93,11 @@ fn other_means(out: &mut Document, found: &OtherMeans) {
             }
         }
     }
+    let without = found.actuator_length.map_or_else(
+        || "- (not stated: cylinder.dead_length)".to_string(),
+        |long| format!("{} with any of them but the spring", length(long)),
+    );
+    rows.row(["length of the actuator, retracted".to_string(), without]);
     out.table(rows);
     out.explanation("Pipe, gas and spring stand in place of the hose: K_H is that of chambers and pipe, of chambers and gas, or of chambers and spring in series. A valve between the chambers does not soften: it damps the mode of the load cell, of the rig as it is declared and of its chambers without any line.");
 }

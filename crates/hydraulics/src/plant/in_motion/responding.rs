@@ -48,19 +48,21 @@ impl RespondingPlant for PlantInMotion {
     /// p_port = p + R q,   q = K_q U - K_c p_port      so that q = K_q/(1 + K_c R) U - K_c/(1 + K_c R) p
     /// ```
     ///
-    /// and the edges of a supply that yields likewise.
+    /// beside what the chamber leaks, and the edges of a supply that yields likewise.
     fn slow(&self) -> PlantCoefficients<f64> {
         let of = |value: fn(&ChamberSide) -> f64| [value(&self.sides[0]), value(&self.sides[1])];
         let passing = |side: &ChamberSide| 1.0 + side.flow_pressure * side.line.resistance();
         let slow = [passing(&self.sides[0]), passing(&self.sides[1])];
         let over = |values: [f64; 2]| [values[0] / slow[0], values[1] / slow[1]];
+        let ([valve_a, valve_b], [leaking_a, leaking_b]) =
+            (over(of(|side| side.flow_pressure)), of(|side| side.leakage));
         let chambers = ChamberDynamics::TwoPressures {
             areas: of(|side| side.area),
             compliances: of(|side| {
                 side.compliance - side.line.chamber_compliance() + side.line.static_compliance()
             }),
             flow_gains: over(of(|side| side.flow_gain)),
-            flow_pressures: over(of(|side| side.flow_pressure)),
+            flow_pressures: [valve_a + leaking_a, valve_b + leaking_b],
         };
         let supply = self.plant.supply.map(|supply| {
             let [resistance_a, resistance_b] = over(of(|side| side.line.resistance()));
@@ -162,7 +164,8 @@ impl RespondingPlant for PlantInMotion {
         let slowest = self.sides.iter().map(|side| {
             let line = side.line.static_compliance() - side.line.chamber_compliance();
             let gas = side.gas.map_or(0.0, |gas| gas.at_rest());
-            (side.flow_pressure + self.plant.internal_leakage) / (side.compliance + line + gas)
+            let leaking = side.flow_pressure + side.leakage + self.plant.internal_leakage;
+            leaking / (side.compliance + line + gas)
         });
         let [filled, passed] = self.feedback_rad_per_s();
         let slowest = slowest.fold(filled, f64::min).min(self.plant.valve_natural_frequency);

@@ -1,0 +1,75 @@
+//! Plants of a family at which the gas at a chamber is shut off.
+
+use phea_qft::family::{Extent, UncertainFamily};
+
+use super::visited::Visited;
+use super::{ProjectFamilyError, uncertain, uncertain_plant};
+use crate::setup::Setup;
+
+/// The plants at which a chamber stands below the precharge of its gas: they are as stiff as without it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShutGas {
+    /// How many of those that were examined: the members, and the corners of the box.
+    pub count: usize,
+    /// How many were examined.
+    pub examined: usize,
+    /// The chamber of the first, A or B.
+    pub side: char,
+    /// The uncertain numbers of the first that are not nominal, in words.
+    pub at: String,
+}
+
+/// Largest number of uncertain numbers whose corners are all examined.
+const MOST_AXES: usize = 10;
+
+/// Where in a family the gas at a chamber is shut off; `None` where it is in use at every plant that is
+/// examined, or there is none.
+///
+/// ```text
+/// P_A < P_0 of accumulator A,   or   P_B < P_0 of accumulator B            at the operating point of the plant
+/// ```
+///
+/// # Errors
+/// Those of [`family`](super::family()).
+pub fn shut_gas(setup: &Setup<'_>) -> Result<Option<ShutGas>, ProjectFamilyError> {
+    let project = setup.project;
+    let Some(declared) = &project.actuator else { return Ok(None) };
+    if [&declared.line.a, &declared.line.b].iter().all(|line| line.accumulator.is_none()) {
+        return Ok(None);
+    }
+    let family = uncertain::family(project, uncertain_plant(setup)?)?;
+    let parameters = family.plant().parameters();
+    let visited = Visited::new(setup, parameters)?;
+    let open = visited.open(project, declared);
+    let plants = examined(&family);
+    let mut shut = plants.iter().filter_map(|values| Some((values, visited.shut_gas(&open, values)?)));
+    let Some((first, side)) = shut.next() else { return Ok(None) };
+    let count = 1 + shut.count();
+    let moved = parameters.iter().zip(first).filter(|(parameter, value)| parameter.nominal != **value);
+    let words: Vec<String> = moved
+        .map(|(parameter, value)| {
+            format!("{} = {}", parameter.name, project.in_words(&parameter.name, *value))
+        })
+        .collect();
+    Ok(Some(ShutGas { count, examined: plants.len(), side, at: words.join(", ") }))
+}
+
+/// The members, and the corners of a box of a few numbers.
+fn examined(family: &UncertainFamily) -> Vec<Vec<f64>> {
+    let axes = family.coordinates().len();
+    let corners = match family.extent() {
+        Extent::Box if axes <= MOST_AXES => 1_usize << axes,
+        _ => 0,
+    };
+    let corner = |corner: usize| {
+        let shares: Vec<f64> = (0..axes).map(|axis| f64::from(u8::from(corner >> axis & 1 == 1))).collect();
+        family.values(&shares)
+    };
+    let mut all = family.members().to_vec();
+    for values in (0..corners).map(corner) {
+        if !all.contains(&values) {
+            all.push(values);
+        }
+    }
+    all
+}
