@@ -99,3 +99,18 @@ fn the_numbers_of_cylinders_agree() {
         assert_eq!(name, format!("iso_6020_2_{piston}_{rod}"));
     }
 }
+
+/// The oil of a transmission has more than the pipe stands at the stall force: a warning at the pipe.
+#[test]
+fn the_pipe_of_a_transmission_has_its_limit() {
+    let text = include_str!("valid/transmission_pipe.toml");
+    let source = Memory::default().with("rig.toml", text);
+    let told = |settings: &[&str]| {
+        let settings: Vec<String> = settings.iter().map(|one| one.to_string()).collect();
+        let loaded =
+            phea_project::read(&source, "rig.toml", &settings, &[]).unwrap_or_else(|found| panic!("{found}"));
+        loaded.warnings.iter().any(|found| found.message.contains("the pipe's `working_pressure` is"))
+    };
+    assert!(told(&["series.line.pipe.working_pressure=20 bar"]));
+    assert!(!told(&["series.line.pipe.working_pressure=900 bar"]) && !told(&[]));
+}

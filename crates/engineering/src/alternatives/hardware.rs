@@ -117,6 +117,9 @@ pub fn retracted_length(project: &Project) -> Result<f64, String> {
 
 /// Stroke (of a telescopic piston its longest stage), dead length and what lies in series.
 fn actuator_length(declared: &DeclaredActuator, rig: &Rig) -> Result<f64, &'static str> {
+    if declared.motor.is_some() {
+        return Err("a motor has no retracted length");
+    }
     let cylinder = &declared.cylinder;
     let dead = cylinder.dead_length.ok_or("not stated: cylinder.dead_length")?;
     let series = match &declared.series {

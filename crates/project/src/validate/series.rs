@@ -57,15 +57,22 @@ fn transmission(actuator: &DeclaredActuator, declared: &DeclaredTransmission, ch
         check.warning_with_help("series.filling_pressure", message, help);
     }
     let most = declared.filling_pressure + push / area;
-    let working = declared.line.hose().and_then(|hose| hose.working_pressure);
-    if let Some(working) = working.filter(|working| *working < most) {
+    let of_hose = declared.line.hose().and_then(|hose| hose.working_pressure);
+    let of_pipe = declared.line.pipe().and_then(|pipe| pipe.working_pressure);
+    let (part, limit) = (if of_hose.is_some() { "hose" } else { "pipe" }, of_hose.or(of_pipe));
+    if let Some(working) = limit.filter(|working| *working < most) {
         let message = format!(
-            "at the stall force of {} the oil of the transmission has {}, and the hose's `working_pressure` is {}",
+            "at the stall force of {} the oil of the transmission has {}, and the {part}'s `working_pressure` is {}",
             force(push),
             pressure(most),
             pressure(working)
         );
-        let key = if declared.line.hose_name().is_some() { "hose" } else { "working_pressure" };
+        let key = match part {
+            "hose" if declared.line.hose_name().is_some() => "hose",
+            "hose" => "working_pressure",
+            _ if check.declared("series.line.pipe.working_pressure") => "pipe.working_pressure",
+            _ => "pipe.model",
+        };
         check.warning(&format!("series.line.{key}"), message);
     }
 }

@@ -24,7 +24,6 @@ pub struct Vocabulary {
 /// Words and units, each as it stands between characters of other kinds; the longer before those
 /// that they begin with.
 static ROTARY: &[(&str, &str)] = &[
-    ("not stated: cylinder.dead_length", "a motor has no retracted length"),
     ("F_e/(s X_L)", "T_e/(s Θ_L)"),
     ("F_e/U_C", "T_e/U_C"),
     ("F_e/F_ref", "T_e/T_ref"),
