@@ -34,7 +34,7 @@ pub fn refused_alternative(source: &dyn Source, base: &Loaded, index: usize, lat
 }
 
 /// The alternative of a project with this index: the same bytes with the same settings, and then
-/// those of the alternative. Its settings are listed as if they had been given to [`read`].
+/// those of the alternative. Its settings are listed as if they had been given to [`read`](super::read()).
 ///
 /// # Errors
 /// [`Refusal`] with all errors; those in a value of the alternative have its place.
@@ -62,7 +62,7 @@ pub fn read_alternative(
 }
 
 /// The load case of a project with this index, read as an alternative is: its settings are listed as
-/// if they had been given to [`read`], so that alternatives of it can be read.
+/// if they had been given to [`read`](super::read()), so that alternatives of it can be read.
 ///
 /// # Errors
 /// [`Refusal`] with all errors; those in a value of the load case have its place.
