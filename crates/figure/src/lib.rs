@@ -69,8 +69,8 @@ pub use pole_map::{PoleMapInput, PoleMapScale, PoleSeries, pole_map};
 pub use pole_sweep::{PoleSweepInput, PoleSweepPoint, pole_sweep};
 pub use prefilter_band::{PrefilterPanel, PrefilterPoint, prefilter_band};
 pub use schematic::{
-    AccumulatorSymbol, ControllerSymbol, Environment, LineKind, LineSymbol, LinkageSymbol, Rods,
-    SchematicInput, SeriesKind, SeriesSymbol, SupplyKind, TestCircuitInput, TestPorts, schematic,
+    AccumulatorSymbol, ControllerSymbol, CrossPortSymbol, Environment, LineKind, LineSymbol, LinkageSymbol,
+    Rods, SchematicInput, SeriesKind, SeriesSymbol, SupplyKind, TestCircuitInput, TestPorts, schematic,
     test_circuit,
 };
 pub use sizing_chart::{SizingCandidate, SizingChartInput, SizingCurve, sizing_chart};

@@ -5,6 +5,7 @@
 //! top, the lines below them, then servovalve and controller, then supply and tank. Every text
 //! comes from the caller and is cut to its place.
 
+mod cross_port;
 mod gas;
 mod lever;
 mod mechanics;
@@ -61,6 +62,16 @@ pub enum AccumulatorSymbol {
     Adjusted,
     /// A valve between it and the chamber is adjusted: an arrow through that.
     BehindValve,
+}
+
+/// A valve between the chambers.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CrossPortSymbol {
+    /// A capacity in series with it: nothing flows at rest.
+    pub has_capacity: bool,
+    /// Words below it, such as `orifice` and `0.8 mm`; two short rows at most, shown where no accumulator
+    /// has its place there.
+    pub rows: Vec<String>,
 }
 
 /// Rods of the cylinder.
@@ -134,6 +145,8 @@ pub struct SchematicInput {
     pub line_a: LineSymbol,
     /// Line of chamber B.
     pub line_b: LineSymbol,
+    /// A valve between the chambers, where there is one.
+    pub cross_port: Option<CrossPortSymbol>,
     /// A motor in place of the cylinder is drawn as one, with the symbols of one.
     pub motion: MotionKind,
     /// Rods.
@@ -181,6 +194,10 @@ pub fn schematic(words: Words, input: &SchematicInput) -> Figure {
     let mut scene = Scene::new(WIDTH, height(input));
     symbols::supply(&mut scene, input);
     symbols::working_lines(&mut scene, input);
+    if let Some(symbol) = &input.cross_port {
+        let has_room = [&input.line_a, &input.line_b].iter().all(|line| line.accumulator.is_none());
+        cross_port::cross_port(&mut scene, symbol, has_room);
+    }
     symbols::valve(&mut scene, input);
     if input.motion.is_rotary() {
         motor::motor(&mut scene, input);

@@ -312,6 +312,8 @@ fn circuits() {
         };
         let series = [SeriesKind::Spring, SeriesKind::DampedSpring, SeriesKind::Transmission];
         let input = SchematicInput {
+            cross_port: r
+                .maybe(|r| CrossPortSymbol { has_capacity: r.unit() < 0.5, rows: r.many(4, Random::name) }),
             motion: if r.unit() < 0.5 { MotionKind::Rotary } else { MotionKind::Linear },
             further_stages: r.below(5),
             linkage: r.maybe(|r| LinkageSymbol { rows: r.many(5, Random::name) }),

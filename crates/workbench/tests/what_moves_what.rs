@@ -251,7 +251,7 @@ fn without_uncertainty(text: &str) -> String {
 }
 
 /// Values of what may be absent, or is not a number.
-const STATED: [(&str, &str); 74] = [
+const STATED: [(&str, &str); 80] = [
     ("cross_port.mass", "1 kg"),
     ("cross_port.price", "100 EUR"),
     ("line.accumulator.mass", "1 kg"),

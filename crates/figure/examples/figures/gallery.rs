@@ -381,6 +381,7 @@ pub(crate) fn circuit_of_hoses() -> SchematicInput {
         rows: vec!["Synflex 3130-08".into(), "12.7 mm × 1.5 m".into(), "β_e 261 MPa".into()],
     };
     SchematicInput {
+        cross_port: None,
         motion: MotionKind::Linear,
         further_stages: 0,
         linkage: None,
@@ -414,6 +415,7 @@ pub(crate) fn asymmetric_circuit() -> Figure {
     schematic(
         words("schematic-asymmetric", "An asymmetric cylinder on pipes"),
         &SchematicInput {
+            cross_port: None,
             motion: MotionKind::Linear,
             further_stages: 0,
             linkage: None,

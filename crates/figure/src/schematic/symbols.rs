@@ -87,7 +87,11 @@ pub(super) fn working_lines(scene: &mut Scene, input: &SchematicInput) {
     ];
     for (line, port, valve_x, text_x, anchor) in places {
         // the branch to the gas is at the chamber, before the line begins
-        let branched = if line.accumulator.is_some() { gas::BRANCH + 10.0 } else { 0.0 };
+        let branched = match (&line.accumulator, &input.cross_port) {
+            (Some(_), _) => gas::BRANCH + 10.0,
+            (None, Some(_)) => 12.0,
+            (None, None) => 0.0,
+        };
         let (top, bottom) = ((port.0, port.1 + 10.0 + branched), (valve_x, TOP - 12.0));
         lines(scene, &[(port.0, port.1), top], PIPE);
         lines(scene, &[bottom, (valve_x, TOP)], PIPE);

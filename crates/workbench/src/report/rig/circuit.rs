@@ -2,13 +2,14 @@
 
 use super::{Beside, line_alone, moving_mass, moving_words, shown, shown_in_millimetres};
 use crate::figure::{
-    AccumulatorSymbol, ControllerSymbol, Environment, Figure, LineSymbol, LinkageSymbol, Rods,
-    SchematicInput, SeriesKind, SeriesSymbol, SupplyKind, Words, schematic,
+    AccumulatorSymbol, ControllerSymbol, CrossPortSymbol, Environment, Figure, LineSymbol, LinkageSymbol,
+    Rods, SchematicInput, SeriesKind, SeriesSymbol, SupplyKind, Words, schematic,
 };
 use crate::linearize::{LinkagePosition, linkage_places};
 use crate::project::{
-    self, AdjustmentKind, DeclaredAccumulator, DeclaredActuator, DeclaredAdjustment, DeclaredLine,
-    DeclaredLinkage, DeclaredSeries, LinkageKind, Load, Project, SupplyModel,
+    self, AdjustmentKind, CrossPortKind, DeclaredAccumulator, DeclaredActuator, DeclaredAdjustment,
+    DeclaredCrossPort, DeclaredLine, DeclaredLinkage, DeclaredSeries, LinkageKind, Load, OrificeSize,
+    Project, SupplyModel,
 };
 use crate::quantity::{self, FLOW, LENGTH, MASS, PRESSURE, STIFFNESS, VOLTAGE, VOLUME};
 use crate::rig::Rig;
@@ -34,6 +35,7 @@ pub(super) fn circuit(project: &Project, actuator: &DeclaredActuator, rig: &Rig)
         line_b: line_symbol(&actuator.line.b),
         rods: if symmetric { Rods::Both } else { Rods::TowardsLoad },
         load_beside_b: symmetric || rod_b > 0.0 || actuator.motor.is_some(),
+        cross_port: actuator.cross_port.as_ref().map(cross_port_symbol),
         motion: actuator.motion(),
         further_stages: actuator.cylinder.stages.len(),
         cylinder: moving_words(actuator, Beside::Drawing),
@@ -79,6 +81,22 @@ fn linkage_symbol(linkage: &DeclaredLinkage, rig: &Rig) -> LinkageSymbol {
     let here = places.iter().find(|place| place.at == LinkagePosition::OperatingPoint);
     let arm = here.map(|place| ["arm r".to_string(), quantity::display(place.lever_arm_m, &LENGTH, 3)]);
     LinkageSymbol { rows: std::iter::once(kind.to_string()).chain(arm.into_iter().flatten()).collect() }
+}
+
+/// A valve between the chambers: its kind, and what it is stated by.
+fn cross_port_symbol(declared: &DeclaredCrossPort) -> CrossPortSymbol {
+    let (has_capacity, kind) = match &declared.kind {
+        CrossPortKind::Laminar { .. } => (false, "laminar valve"),
+        CrossPortKind::Orifice(_) => (false, "orifice"),
+        CrossPortKind::DynamicPressureFeedback { .. } => (true, "feedback"),
+    };
+    let size = declared.orifice().map(|orifice| match orifice.size {
+        OrificeSize::Diameter { diameter, .. } => shown(diameter, &LENGTH),
+        OrificeSize::Flow { flow, pressure_drop } => {
+            format!("{} at {}", shown(flow, &FLOW), shown(pressure_drop, &PRESSURE))
+        }
+    });
+    CrossPortSymbol { has_capacity, rows: std::iter::once(kind.to_string()).chain(size).collect() }
 }
 
 /// A line with what of its gas is told beside the drawing; what heat does to it is told in the table.
