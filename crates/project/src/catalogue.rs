@@ -58,7 +58,10 @@ impl CatalogueKind {
 /// Components by name.
 #[derive(Clone, Debug, Default)]
 pub struct Catalogue {
-    entries: Vec<Arc<CatalogueEntry>>,
+    /// Whether the built-in files are part of it.
+    has_built_in: bool,
+    /// Of the user's files.
+    own: Vec<Arc<CatalogueEntry>>,
 }
 
 /// One product.
@@ -98,9 +101,15 @@ impl Catalogue {
         self.entries(kind).find(|entry| entry.name == name)
     }
 
-    /// The entries of that kind, built-in ones first, each group by name.
+    /// The entries of that kind, built-in ones first, each group by name; an entry of the user's takes the
+    /// place of the built-in one of its name. The built-in files of a kind are read when it is first asked for.
     pub fn entries(&self, kind: CatalogueKind) -> impl Iterator<Item = &CatalogueEntry> {
-        self.entries.iter().map(Arc::as_ref).filter(move |entry| entry.kind == kind)
+        let built_in = if self.has_built_in { read::built_in(kind) } else { &[] };
+        let own = move || self.own.iter().map(Arc::as_ref).filter(move |entry| entry.kind == kind);
+        let replaced =
+            move |entry: &'static CatalogueEntry| own().find(|one| one.name == entry.name).unwrap_or(entry);
+        let is_new = move |entry: &&CatalogueEntry| built_in.iter().all(|one| one.name != entry.name);
+        built_in.iter().map(replaced).chain(own().filter(is_new))
     }
 
     /// The names of that kind.

@@ -27,8 +27,7 @@ pub fn load(source: &dyn Source, paths: &[String]) -> Result<Catalogue, Refusal>
 impl Catalogue {
     /// Like [`load`], with the errors among other findings.
     pub(crate) fn gather(source: &dyn Source, paths: &[String], findings: &mut Findings) -> Catalogue {
-        static CHECKED: OnceLock<Catalogue> = OnceLock::new();
-        let mut catalogue = CHECKED.get_or_init(Catalogue::built_in).clone();
+        let mut catalogue = Catalogue { has_built_in: true, own: vec![] };
         for path in paths {
             let files = match source.list(path) {
                 Ok(None) => vec![path.clone()],
@@ -52,25 +51,36 @@ impl Catalogue {
         catalogue
     }
 
-    /// The built-in catalogue. Its files are checked by tests, so that no findings arise here.
-    fn built_in() -> Catalogue {
-        let mut catalogue = Catalogue::default();
-        let mut findings = Findings::default();
-        for (name, content) in BUILT_IN {
-            catalogue.take(&format!("built-in:{name}"), content.as_bytes(), &mut findings);
-        }
-        catalogue
-    }
-
     fn take(&mut self, file: &str, bytes: &[u8], findings: &mut Findings) {
         let Some(root) = read_tree(file, bytes, findings) else { return };
         if let Some(entry) = entry(file, root, findings).map(Arc::new) {
-            match self.entries.iter_mut().find(|known| known.kind == entry.kind && known.name == entry.name) {
+            match self.own.iter_mut().find(|known| known.kind == entry.kind && known.name == entry.name) {
                 Some(known) => *known = entry,
-                None => self.entries.push(entry),
+                None => self.own.push(entry),
             }
         }
     }
+}
+
+/// The built-in entries of a kind. Their files are checked by tests, so that no findings arise here.
+pub(super) fn built_in(kind: CatalogueKind) -> &'static [CatalogueEntry] {
+    static READ: [OnceLock<Vec<CatalogueEntry>>; CatalogueKind::ALL.len()] =
+        [const { OnceLock::new() }; CatalogueKind::ALL.len()];
+    let Some(read) = CatalogueKind::ALL.iter().position(|one| *one == kind).and_then(|place| READ.get(place))
+    else {
+        return &[];
+    };
+    read.get_or_init(|| {
+        let folder = format!("{}s/", kind.name());
+        let files = BUILT_IN.iter().filter(|(name, _)| name.starts_with(&folder));
+        let mut findings = Findings::default();
+        let read = |(name, content): &(&str, &str)| {
+            let file = format!("built-in:{name}");
+            let root = read_tree(&file, content.as_bytes(), &mut findings)?;
+            entry(&file, root, &mut findings)
+        };
+        files.filter_map(read).collect()
+    })
 }
 
 /// The description of a product in a file.
