@@ -272,10 +272,11 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Whether absent keys are accepted, which is remembered.
+    /// Whether absent keys are accepted, which is remembered: an entry of the catalogue that is not there
+    /// might have had them.
     fn takes_absent(&mut self) -> bool {
         self.incomplete = true;
-        self.partial || self.looks_elsewhere()
+        self.partial || self.looks_elsewhere() || self.is_lost()
     }
 
     /// The present table, as in `missing ... in [line]`.

@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 
 use phea_project::catalogue::{self, CatalogueKind};
 use phea_project::source::Memory;
-use phea_project::{Component, DeclaredActuator, DeclaredPipe, Loaded, Refusal};
+use phea_project::{Component, DeclaredActuator, DeclaredPipe, Loaded, Refusal, Severity};
 
 const PARTS: &str = include_str!("valid/catalogue_parts.toml");
 
@@ -51,7 +51,11 @@ fn what_the_project_states_goes_before_its_entry() {
     let warnings = read(&["supply.pressure=350 bar"]).unwrap().warnings;
     let told = |message: &str| warnings.iter().any(|found| found.message == message);
     assert!(told("the pipe's `working_pressure` is below the supply pressure"), "{warnings:?}");
-    let misspelt = read(&["line.pipe.model=\"parker_eo_14x22\""]).unwrap_err();
+    let misspelt =
+        read(&["line.pipe.model=\"parker_eo_14x22\"", "cylinder.model=\"iso_6020_2_50\""]).unwrap_err();
+    // what the entries would have stated is not asked for
+    let errors = misspelt.diagnostics.iter().filter(|found| found.severity == Severity::Error);
+    assert_eq!(errors.count(), 2, "{misspelt}");
     let error = misspelt.diagnostics.iter().find(|found| found.message.contains("no pipe called")).unwrap();
     assert!(
         error.help.as_ref().is_some_and(|help| help.starts_with("did you mean \"parker_eo_")),

@@ -285,7 +285,7 @@ impl Visitor for Reader<'_> {
 
     fn lacks(&mut self, ways: &[&[&'static str]], what: &str) {
         let refused = ways.iter().any(|keys| keys.iter().all(|name| self.is_there(name)));
-        if !self.takes_absent() && !self.is_lost() && !refused {
+        if !self.takes_absent() && !refused {
             let message = format!("missing {what}{}", self.of_table());
             self.findings.push(RawFinding::error(self.place(), message).consequence());
         }

@@ -56,6 +56,9 @@ fn accumulator(gas: &DeclaredAccumulator, supply: &DeclaredSupply, path: &str, c
         return check.error_with_help(&format!("{path}.precharge_pressure"), message, help);
     }
     adjustment::adjustment(gas, supply, path, check);
+    if check.refused(&format!("{path}.precharge_pressure")) {
+        return;
+    }
     // compressed most where its precharge is least
     let [first, last] = gas.ends();
     let most = if last.precharge_pressure < first.precharge_pressure { last } else { first };
@@ -152,7 +155,7 @@ fn cylinder(cylinder: &DeclaredCylinder, check: &mut Check<'_, '_>) {
     let written =
         ["rod_diameter", "rod_diameters"].iter().any(|name| check.declared(&format!("cylinder.{name}")));
     let by_model = cylinder.rod_diameter.is_some() || cylinder.rod_diameters.is_some();
-    if !by_area && !written && !by_model {
+    if !by_area && !written && !by_model && !check.refused("cylinder.model") {
         check.missing("cylinder", "rod_diameter", "missing `rod_diameter` or `rod_diameters` in [cylinder]");
     }
     let too_thick = |piston: f64| cylinder.rod_diameters_m().iter().any(|rod| *rod >= piston);
