@@ -494,7 +494,7 @@ fn ledgers_close_with_a_linkage() {
         let external_force = load.moves();
         let options =
             MachineOptions { load, external_force, power_unit: pump(), ..MachineOptions::default() };
-        let [duration, width] = if rig.series.is_some() { [0.06, 5e-6] } else { [0.2, 2e-5] };
+        let [duration, width] = if rig.series.is_some() { [0.06, 2e-6] } else { [0.2, 1e-5] };
         check(&machine_of(rig, &options), &motion, &start, duration, width);
     }
 }

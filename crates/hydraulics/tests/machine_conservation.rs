@@ -38,11 +38,16 @@ pub(super) fn step(
     }
 }
 
-/// Names and accounts at an instant, oil first.
-fn accounts(machine: &Machine, state: &[f64], inputs: &[f64]) -> Vec<(String, Account<f64>)> {
+/// Names of the accounts, oil first.
+fn names() -> Vec<String> {
+    let oil = OIL_ACCOUNTS.iter().map(|name| format!("oil of {name}"));
+    oil.chain(ENERGY_ACCOUNTS.iter().map(|name| format!("energy of {name}"))).collect()
+}
+
+/// Accounts at an instant, as [`names`] lists them.
+fn accounts(machine: &Machine, state: &[f64], inputs: &[f64]) -> Vec<Account<f64>> {
     let ledger = machine.ledger(state, inputs).unwrap();
-    let oil = OIL_ACCOUNTS.iter().map(|name| format!("oil of {name}")).zip(ledger.oil);
-    oil.chain(ENERGY_ACCOUNTS.iter().map(|name| format!("energy of {name}")).zip(ledger.energy)).collect()
+    ledger.oil.into_iter().chain(ledger.energy).collect()
 }
 
 /// How a machine is moved: command in V, ground of its load, force on the load from outside and setting of its accumulators where
@@ -81,40 +86,42 @@ struct Closing {
     least_loss: f64,
 }
 
+/// What enters and is lost is summed by Simpson's rule over the steps.
 fn run(machine: &Machine, motion: &Motion, start: &[f64], duration: f64, width: f64) -> Vec<Closing> {
-    let count = machine.states();
-    let before = accounts(machine, start, &motion.inputs(0.0));
-    let mut state = start.to_vec();
-    state.resize(count + 3 * before.len(), 0.0);
-    let mut least = vec![0.0_f64; before.len()];
+    let at = |index: usize, state: &[f64]| accounts(machine, state, &motion.inputs(index as f64 * width));
     let mut rates = |time: f64, state: &[f64]| {
-        let (plant, inputs) = (&state[..count], motion.inputs(time));
-        let mut rates = vec![0.0; count];
-        machine.rates(plant, motion.command(time), &inputs, &mut rates);
-        for (index, (_, account)) in accounts(machine, plant, &inputs).iter().enumerate() {
-            let Account { inflow, lost, .. } = *account;
-            least[index] = least[index].min(lost);
-            rates.extend([inflow, lost, inflow.abs() + lost.abs()]);
-        }
+        let mut rates = vec![0.0; state.len()];
+        machine.rates(state, motion.command(time), &motion.inputs(time), &mut rates);
         rates
     };
+    let mut state = start.to_vec();
+    let mut now = at(0, &state);
+    let empty = |(name, account): (String, &Account<f64>)| {
+        let (gap, throughput, lost, least_loss) = (account.stored, 0.0, 0.0, account.lost.min(0.0));
+        Closing { name, gap, throughput, lost, least_loss }
+    };
+    let mut closing: Vec<Closing> = names().into_iter().zip(&now).map(empty).collect();
     let steps = (duration / width).round() as usize;
-    for index in 0..steps {
-        step(&mut state, index as f64 * width, width, &mut rates);
+    assert_eq!(steps % 2, 0);
+    for index in 0..=steps {
+        let of_simpson = if index == 0 || index == steps { 1.0 } else { (2 + index % 2 * 2) as f64 };
+        let weight = of_simpson * width / 3.0;
+        for (sum, Account { inflow, lost, .. }) in closing.iter_mut().zip(&now) {
+            sum.gap += weight * (inflow - lost);
+            sum.throughput += weight * (inflow.abs() + lost.abs());
+            sum.lost += weight * lost;
+            sum.least_loss = sum.least_loss.min(*lost);
+        }
+        if index < steps {
+            step(&mut state, index as f64 * width, width, &mut rates);
+            now = at(index + 1, &state);
+        }
     }
     assert!(state.iter().all(|value| value.is_finite()));
-    let after = accounts(machine, &state[..count], &motion.inputs(duration));
-    let sums = state[count..].chunks(3);
-    let closing = before.into_iter().zip(after).zip(sums).zip(least);
+    for (sum, account) in closing.iter_mut().zip(&now) {
+        sum.gap -= account.stored;
+    }
     closing
-        .map(|((((name, before), (_, after)), sums), least_loss)| Closing {
-            name,
-            gap: after.stored - before.stored - (sums[0] - sums[1]),
-            throughput: sums[2],
-            lost: sums[1],
-            least_loss,
-        })
-        .collect()
 }
 
 pub(super) fn machine_of(components: Components, options: &MachineOptions) -> Machine {
@@ -157,15 +164,15 @@ fn ledgers_close_with_loads_of_their_own() {
     let walled = LoadModel::Wall { mass: 8.0, damping: 50.0, gap: 4e-4, contact };
     for load in [sprung, walled] {
         let pushed = MachineOptions { load, external_force: true, ..MachineOptions::default() };
-        check(&machine_of(asymmetric(), &pushed), &motion, &start, 0.3, 2e-5);
+        check(&machine_of(asymmetric(), &pushed), &motion, &start, 0.3, 1e-5);
         let options = MachineOptions { load, power_unit: pump(), ..MachineOptions::default() };
-        check(&machine_of(asymmetric(), &options), &motion, &start, 0.3, 2e-5);
+        check(&machine_of(asymmetric(), &options), &motion, &start, 0.3, 1e-5);
         check(
             &machine_of(asymmetric(), &MachineOptions { load, ..Default::default() }),
             &motion,
             &start,
             0.3,
-            2e-5,
+            1e-5,
         );
     }
 }
@@ -183,7 +190,7 @@ fn ledgers_close_in_the_end_stops() {
     for (position, bias) in [(0.002, -4.0), (0.498, 4.0)] {
         let motion = Motion { amplitude: 2.0, bias, ground: 0.0, ground_amplitude: 0.0 };
         let start = StartValues { position, pressure_a: 20e5, pressure_b: 20e5, ..StartValues::default() };
-        check(&machine, &motion, &start, 0.1, 5e-6);
+        check(&machine, &motion, &start, 0.1, 2e-6);
         let beginning = machine.start(&start).unwrap();
         let inputs = beginning.inputs;
         let motion = Motion { ground: inputs[0], ..motion };
