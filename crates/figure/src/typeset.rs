@@ -7,7 +7,6 @@
 //!   minus sign;
 //! - braces hold anything: `V_{A,0}`, `e^{-sT}`.
 
-use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
 use skrifa::MetadataProvider;
@@ -150,18 +149,21 @@ pub fn fitted(content: &str, size: f64, limit: f64) -> String {
 
 /// Advance of a letter in font sizes; a letter the font lacks counts as one.
 fn advance(letter: char) -> f64 {
-    static ADVANCES: OnceLock<BTreeMap<char, f64>> = OnceLock::new();
+    // by code point, up to the last of the font
+    static ADVANCES: OnceLock<Vec<f64>> = OnceLock::new();
     let table = ADVANCES.get_or_init(|| {
-        let Ok(font) = skrifa::FontRef::new(FONT) else { return BTreeMap::new() };
+        let Ok(font) = skrifa::FontRef::new(FONT) else { return Vec::new() };
         let metrics = font.glyph_metrics(Size::new(1.0), LocationRef::default());
-        font.charmap()
-            .mappings()
-            .filter_map(|(code, glyph)| {
-                Some((char::from_u32(code)?, f64::from(metrics.advance_width(glyph)?)))
-            })
-            .collect()
+        let mut table = Vec::new();
+        for (code, glyph) in font.charmap().mappings() {
+            let Some(advance) = metrics.advance_width(glyph) else { continue };
+            let place = code as usize;
+            table.resize(table.len().max(place + 1), 1.0);
+            table[place] = f64::from(advance);
+        }
+        table
     });
-    table.get(&letter).copied().unwrap_or(1.0)
+    table.get(letter as usize).copied().unwrap_or(1.0)
 }
 
 /// Downward shift from the held point to the line of the letters, in view box units.

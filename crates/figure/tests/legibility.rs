@@ -25,18 +25,16 @@ pub(crate) fn check(figure: &Figure) {
             assert!(page.contains_point(p), "{name}: {p:?} of {item:?} is outside");
         }
     }
-    let texts: Vec<_> = scene.texts().collect();
-    for (index, text) in texts.iter().enumerate() {
-        let bounds = text.bounds();
-        assert!(page.contains(&bounds), "{name}: {:?} is outside: {bounds:?}", text.content);
+    let texts: Vec<_> = scene.texts().map(|text| (text, text.bounds())).collect();
+    for (index, (text, bounds)) in texts.iter().enumerate() {
+        assert!(page.contains(bounds), "{name}: {:?} is outside: {bounds:?}", text.content);
         assert!(text.size >= SMALL_SIZE, "{name}: {:?} is too small", text.content);
-        for other in texts.iter().take(index) {
+        for (other, of_other) in texts.iter().take(index) {
             assert!(
-                !bounds.overlaps(&other.bounds()),
-                "{name}: {:?} lies upon {:?}: {bounds:?} and {:?}",
+                !bounds.overlaps(of_other),
+                "{name}: {:?} lies upon {:?}: {bounds:?} and {of_other:?}",
                 text.content,
                 other.content,
-                other.bounds()
             );
         }
     }

@@ -339,35 +339,37 @@ fn loaded(text: &str, settings: &[String]) -> Option<Project> {
     project::read(&source, "rig.toml", settings, &[]).ok().map(|loaded| loaded.project)
 }
 
-/// What is computed of a project, one text for each part; `None` for a part that it does not have.
-fn computed(project: &Project) -> [Option<String>; PARTS.len()] {
+/// What is computed of a project, one text for each part; `None` for a part that it does not have,
+/// or that is not asked for.
+fn computed(project: &Project, asked: [bool; PARTS.len()]) -> [Option<String>; PARTS.len()] {
     let setup = Setup::new(project).unwrap();
-    let rig = setup.rig().ok();
-    let sizing = sizing_problem(&setup, &Catalogue::default()).ok();
-    let plant = rig.map(Rig::in_loop).map(|rig| {
+    let sizing = || sizing_problem(&setup, &Catalogue::default()).ok();
+    let plant = || {
+        let rig = setup.rig().ok().map(Rig::in_loop)?;
         let load = |w: f64| match &rig.in_motion {
             Some(plant) => plant.response(Complex64::new(0.0, w))[1],
             None => rig.plant.coefficients().disturbance.unwrap().at_frequency(w),
         };
         let at = |w: f64| format!("{:?} {:?}", rig.response(w), load(w));
-        [0.3, 20.0, 400.0, 1000.0, 3000.0].map(at).concat()
-    });
+        Some([0.3, 20.0, 400.0, 1000.0, 3000.0].map(at).concat())
+    };
+    let closed = || {
+        let compensation = setup.compensation(setup.controller.as_ref()?).ok()?;
+        Some(format!("{compensation:?} {:?}", setup.prefilter))
+    };
     // the machine of a bench stands behind its rig, and before what a scenario adds
-    let machine = ControlledMachine::new(&setup).ok().map(|bench| {
-        let all = format!("{bench:?}");
-        all[all.find(", machine: ").unwrap()..].to_string()
-    });
-    [
-        sizing.map(|problem| format!("{:?}", size(&problem, Question::Both))),
-        plant,
-        setup
-            .controller
-            .as_ref()
-            .and_then(|given| setup.compensation(given).ok())
-            .map(|loop_| format!("{loop_:?} {:?}", setup.prefilter)),
-        Some(format!("{:?}", setup.sensor)),
-        machine,
-    ]
+    let machine = || {
+        let all = format!("{:?}", ControlledMachine::new(&setup).ok()?);
+        Some(all[all.find(", machine: ").unwrap()..].to_string())
+    };
+    let parts: [&dyn Fn() -> Option<String>; PARTS.len()] = [
+        &|| sizing().map(|problem| format!("{:?}", size(&problem, Question::Both))),
+        &plant,
+        &closed,
+        &|| Some(format!("{:?}", setup.sensor)),
+        &machine,
+    ];
+    std::array::from_fn(|index| asked[index].then(parts[index]).flatten())
 }
 
 /// Other values of a key where the rig states one: a number a hundredth larger, or each other word.
@@ -400,15 +402,24 @@ fn moved() -> (BTreeMap<String, BTreeSet<&'static str>>, BTreeSet<String>) {
     for (text, settings) in rigs() {
         let settings: Vec<String> = settings.iter().map(ToString::to_string).collect();
         let Some(own) = loaded(&text, &settings) else { panic!("{settings:?}") };
-        let before = computed(&own);
+        let before = computed(&own, [true; PARTS.len()]);
         for entry in &keys {
             for other in others(entry, &own) {
+                // what is known to move is not tried again
+                let known = moved.get(&entry.path);
+                let open = |index: usize| {
+                    before[index].is_some() && known.is_none_or(|row| !row.contains(PARTS[index]))
+                };
+                let asked = std::array::from_fn(open);
+                if known.is_some() && asked == [false; PARTS.len()] {
+                    continue;
+                }
                 let changed = [&settings[..], &[format!("{}={other}", entry.path)]].concat();
                 let Some(project) = loaded(&text, &changed).filter(|project| *project != own) else {
                     continue;
                 };
                 let row = moved.entry(entry.path.clone()).or_default();
-                for ((part, before), after) in PARTS.iter().zip(&before).zip(computed(&project)) {
+                for ((part, before), after) in PARTS.iter().zip(&before).zip(computed(&project, asked)) {
                     if before.is_some() && after.is_some() && *before != after {
                         row.insert(part);
                     }
