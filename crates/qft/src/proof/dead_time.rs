@@ -26,6 +26,10 @@ pub(super) struct InFrequency<S> {
 }
 
 impl<S: Decimal> InFrequency<S> {
+    pub(super) fn none() -> InFrequency<S> {
+        InFrequency { real: InS(vec![]), imaginary: InS(vec![]) }
+    }
+
     pub(super) fn parts(&self) -> [&[BoxPolynomial<S>]; 2] {
         [&self.real.0, &self.imaginary.0]
     }

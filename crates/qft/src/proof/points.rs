@@ -47,7 +47,7 @@ struct PanelTerms<S> {
 
 impl<S: Decimal> PanelTerms<S> {
     fn of(claimed: &Claimed<S>, pair: [[&[PolynomialProduct<S>]; 2]; 2], range: PanelRange) -> PanelTerms<S> {
-        let none = || InFrequency { real: InS(vec![]), imaginary: InS(vec![]) };
+        let none = InFrequency::none;
         let mut out = PanelTerms { whole: [none(), none()], rests: vec![], unused: vec![] };
         for (place, [own, late]) in pair.into_iter().enumerate() {
             let mut add = |parts: &[PolynomialProduct<S>]| {
@@ -157,11 +157,16 @@ impl<S: Decimal> Points<S> {
         let [u, v] = &terms.whole;
         let mut points = Points::powers([u, v], degrees)?;
         points.bring_to(range);
-        for (of, rest) in &terms.rests {
-            let mut left = Points::powers([of, of], degrees)?;
+        // two at a time, in the places of U and V
+        for both in terms.rests.chunks(2) {
+            let (one, nothing) = (&both[0].0, InFrequency::none());
+            let other = both.get(1).map_or(&nothing, |(other, _)| other);
+            let mut left = Points::powers([one, other], degrees)?;
             left.bring_to(range);
             for (point, left) in points.values.iter_mut().zip(&left.values) {
-                point[4] = point[4] + *rest * (left[0].abs() + left[1].abs());
+                for ((_, rest), parts) in both.iter().zip(left.chunks(2)) {
+                    point[4] = point[4] + *rest * (parts[0].abs() + parts[1].abs());
+                }
             }
         }
         Some(points)
@@ -257,12 +262,12 @@ impl<S: Decimal> Points<S> {
         let block = stride * (degree + 1);
         let mut low = self.clone();
         for step in 1..=degree {
-            self.for_lines(axis, |line, at| {
+            for line in self.lines(axis) {
                 for place in 0..=degree - step {
-                    let (one, next) = (line[at(place)], line[at(place + 1)]);
-                    line[at(place)] = [0, 1, 2, 3, 4].map(|part| (one[part] + next[part]).times(0.5));
+                    let at = line + place * stride;
+                    self.values[at] = each(self.values[at], self.values[at + stride], halfway);
                 }
-            });
+            }
             for from in (0..self.values.len()).step_by(block) {
                 let to = from + step * stride;
                 low.values[to..to + stride].copy_from_slice(&self.values[from..from + stride]);
@@ -273,58 +278,72 @@ impl<S: Decimal> Points<S> {
 
     /// x -> width x in powers of the variable of the frequency.
     fn scale_frequency(&mut self, width: S) {
-        let degree = self.degrees[0];
-        self.for_lines(0, |line, at| {
-            let mut factor = S::from(1.0);
-            for place in 1..=degree {
-                factor = factor * width;
-                line[at(place)] = line[at(place)].map(|part| part * factor);
+        let mut factor = S::from(1.0);
+        for place in 1..=self.degrees[0] {
+            factor = factor * width;
+            self.scale(0, place, factor);
+        }
+    }
+
+    /// Multiplies all points at this place of an axis.
+    fn scale(&mut self, axis: usize, place: usize, factor: S) {
+        let distance = place * self.stride(axis);
+        for line in self.lines(axis) {
+            for part in &mut self.values[line + distance] {
+                *part = *part * factor;
             }
-        });
+        }
     }
 
     fn reverse_frequency(&mut self) {
-        let degree = self.degrees[0];
-        self.for_lines(0, |line, at| {
+        let (degree, stride) = (self.degrees[0], self.stride(0));
+        for line in self.lines(0) {
             for place in 0..=degree / 2 {
-                line.swap(at(place), at(degree - place));
+                self.values.swap(line + place * stride, line + (degree - place) * stride);
             }
-        });
+        }
     }
 
     /// b_k = sum over i <= k of C(k, i)/C(n, i) a_i: divided by C(n, i), then summed up n times.
     fn bring_to_bernstein(&mut self, axis: usize) {
-        let degree = self.degrees[axis];
-        self.for_lines(axis, |line, at| {
-            let mut binomial = S::from(1.0);
-            for place in 0..=degree {
-                let share = S::from(1.0) / binomial;
-                line[at(place)] = line[at(place)].map(|part| part * share);
-                binomial = binomial.times((degree - place) as f64) / S::from((place + 1) as f64);
-            }
+        let (degree, stride) = (self.degrees[axis], self.stride(axis));
+        // C(n, 0) = C(n, n) = 1
+        let mut binomial = S::from(1.0);
+        for place in 1..degree {
+            binomial = binomial.times((degree - place + 1) as f64) / S::from(place as f64);
+            self.scale(axis, place, S::from(1.0) / binomial);
+        }
+        for line in self.lines(axis) {
             for step in 0..degree {
                 for place in (step + 1..=degree).rev() {
-                    let (before, here) = (line[at(place - 1)], line[at(place)]);
-                    line[at(place)] = [0, 1, 2, 3, 4].map(|part| here[part] + before[part]);
+                    let at = line + place * stride;
+                    self.values[at] =
+                        each(self.values[at], self.values[at - stride], |here, before| here + before);
                 }
-            }
-        });
-    }
-
-    /// Every line of points along an axis: the values, and the position of each point.
-    fn for_lines(
-        &mut self,
-        axis: usize,
-        mut of_line: impl FnMut(&mut [PanelPoint<S>], &dyn Fn(usize) -> usize),
-    ) {
-        let stride = self.stride(axis);
-        let block = stride * (self.degrees[axis] + 1);
-        for start in (0..self.values.len()).step_by(block) {
-            for offset in start..start + stride {
-                of_line(&mut self.values, &|place| offset + place * stride);
             }
         }
     }
+
+    /// The first point of every line along an axis; the next is [`Points::stride`] further.
+    fn lines(&self, axis: usize) -> impl Iterator<Item = usize> + use<S> {
+        let stride = self.stride(axis);
+        let blocks = (0..self.values.len()).step_by(stride * (self.degrees[axis] + 1));
+        blocks.flat_map(move |start| start..start + stride)
+    }
+}
+
+/// One operation on each number of two points.
+#[inline]
+fn each<S: Copy>(mut one: PanelPoint<S>, other: PanelPoint<S>, of: impl Fn(S, S) -> S) -> PanelPoint<S> {
+    for (here, there) in one.iter_mut().zip(other) {
+        *here = of(*here, there);
+    }
+    one
+}
+
+#[inline]
+fn halfway<S: Decimal>(one: S, next: S) -> S {
+    (one + next).times(0.5)
 }
 
 impl<S: Decimal> InFrequency<S> {
