@@ -8,7 +8,7 @@ use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use phea_workbench::answer::OutputFile;
+use phea_workbench::answer::{OutputFile, picture_of};
 use phea_workbench::source::{Destination, Unfinished, WriteError};
 
 use crate::file_system::reason;
@@ -139,9 +139,17 @@ pub(crate) fn expect_folder(folder: &Path) -> Result<(), String> {
     }
 }
 
-/// Writes files into a folder; gives their paths.
+/// Writes files into a folder, and of drawings their pictures; gives their paths.
 pub(crate) fn write(folder: &Path, files: &[OutputFile]) -> Result<Vec<PathBuf>, String> {
-    files.iter().map(|file| write_as(&folder.join(&file.name), file)).collect()
+    let mut written = Vec::new();
+    for file in files {
+        written.push(write_as(&folder.join(&file.name), file)?);
+        let picture = picture_of(file).map_err(|error| format!("cannot draw {}: {error}", file.name))?;
+        if let Some(picture) = picture {
+            written.push(write_as(&folder.join(&picture.name), &picture)?);
+        }
+    }
+    Ok(written)
 }
 
 /// Writes a file to the given path, creating its folder if needed, and returns the path.

@@ -19,7 +19,8 @@ pub(crate) use object::{Json, Object};
 pub use phea_engineering::number_table::{NumberTable, TableFormat};
 
 pub use crate::source::OutputFile;
-pub(crate) use pictures::{PNG_SCALE, part_files, picture_files};
+pub use pictures::picture_of;
+pub(crate) use pictures::{part_files, picture_files};
 pub(crate) use recorded::body_in_use;
 
 use crate::project::Loaded;
@@ -34,7 +35,8 @@ pub struct Answer {
     pub text: String,
     /// One JSON object.
     pub json: String,
-    /// Files for the output folder.
+    /// Files for the output folder; the PNG of a drawing, which [`picture_of`] makes, is written
+    /// with it.
     pub files: Vec<OutputFile>,
     /// Whether the answer is yes; a no ends the command with status 1.
     pub affirmative: bool,

@@ -6,7 +6,6 @@ mod lines;
 mod markup;
 
 use crate::answer::Answer;
-use crate::figure::png;
 use crate::project::{Loaded, Project};
 use crate::quantity::{MotionKind, Vocabulary};
 use crate::source::OutputFile;
@@ -54,12 +53,10 @@ pub(crate) fn said_of(answer: Answer, projects: &[Loaded]) -> Answer {
     if words.is_plain() {
         return answer;
     }
-    let mut files: Vec<OutputFile> = answer.files.into_iter().map(|file| said_in(file, &words)).collect();
-    redraw(&mut files);
     Answer {
         text: lines::said(&answer.text, &words),
         json: json::said(&answer.json, &words),
-        files,
+        files: answer.files.into_iter().map(|file| said_in(file, &words)).collect(),
         affirmative: answer.affirmative,
     }
 }
@@ -80,25 +77,4 @@ fn headings(table: &str) -> String {
     let (first, rest) = table.split_once('\n').unwrap_or((table, ""));
     let names: Vec<_> = first.split(',').map(|name| MotionKind::Rotary.name(name)).collect();
     format!("{}\n{rest}", names.join(","))
-}
-
-/// Pictures of drawings whose words have changed.
-fn redraw(files: &mut [OutputFile]) {
-    let drawings: Vec<(String, String)> = files
-        .iter()
-        .filter_map(|file| {
-            let stem = file.name.strip_suffix(".svg")?;
-            Some((format!("{stem}.png"), String::from_utf8(file.bytes.clone()).ok()?))
-        })
-        .collect();
-    for file in files.iter_mut() {
-        let drawing = drawings.iter().find(|(name, _)| *name == file.name);
-        let drawn = drawing.and_then(|(_, svg)| {
-            let [width, height] = markup::view_box(svg)?;
-            png::render(svg, width, height, crate::answer::PNG_SCALE).ok()
-        });
-        if let Some(bytes) = drawn {
-            file.bytes = bytes;
-        }
-    }
 }

@@ -345,13 +345,9 @@ fn each_written_project_is_the_one_that_was_driven() {
             "as declared.toml",
             "pipe.toml",
             "alternatives.svg",
-            "alternatives.png",
             "alternatives-event-1.svg",
-            "alternatives-event-1.png",
             "alternatives-event-2.svg",
-            "alternatives-event-2.png",
             "alternatives-impedance.svg",
-            "alternatives-impedance.png"
         ]
     );
 }

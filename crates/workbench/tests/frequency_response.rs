@@ -250,9 +250,7 @@ fn the_answer_has_its_keys_files_and_figures() {
         "frequency_response_open_loop.csv",
         "frequency_response_closed_loop.csv",
         "frequency-response-open-loop.svg",
-        "frequency-response-open-loop.png",
         "frequency-response-closed-loop.svg",
-        "frequency-response-closed-loop.png",
     ];
     assert_eq!(names, expected);
     assert!(answer.text.contains("less linear plant"), "{}", answer.text);

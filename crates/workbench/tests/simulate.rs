@@ -387,8 +387,8 @@ fn projects_stand_side_by_side() {
     assert!(peak(0) < peak(1), "the softer line feels less: {} {}", peak(0), peak(1));
     assert_eq!(json["command"], "compare");
     let names: Vec<&str> = answer.files.iter().map(|file| file.name.as_str()).collect();
-    assert_eq!(names.len(), 6, "{names:?}");
-    assert!(names.contains(&"compare-1.svg") && names.contains(&"compare-1-event-2.png"), "{names:?}");
+    assert_eq!(names.len(), 3, "{names:?}");
+    assert!(names.contains(&"compare-1.svg") && names.contains(&"compare-1-event-2.svg"), "{names:?}");
     assert!(answer.text.contains("disturbance peak"), "{}", answer.text);
     let overloads: Vec<&str> = answer.text.lines().filter(|line| line.contains("is overloaded")).collect();
     assert!(overloads.len() == 1 && overloads[0].starts_with("   B: from 2."), "{}", answer.text);

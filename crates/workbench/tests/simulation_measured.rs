@@ -89,7 +89,7 @@ fn it_is_told_in_text_json_and_a_figure() {
     assert!(row["nrmse"].is_f64() && row["nrmse_reason"].is_null());
     let names: Vec<&str> = answer.files.iter().map(|file| file.name.as_str()).collect();
     assert!(
-        names.contains(&"simulation-1-measured.png") && names.contains(&"simulation-1-step-1.svg"),
+        names.contains(&"simulation-1-measured.svg") && names.contains(&"simulation-1-step-1.svg"),
         "{names:?}"
     );
 }

@@ -108,11 +108,3 @@ impl<'t> Subscript<'t> {
         further
     }
 }
-
-/// Width and height of a drawing.
-pub(super) fn view_box(svg: &str) -> Option<[f64; 2]> {
-    let (_, after) = svg.split_once("viewBox=\"")?;
-    let (numbers, _) = after.split_once('"')?;
-    let mut numbers = numbers.split_whitespace().skip(2).map(str::parse);
-    Some([numbers.next()?.ok()?, numbers.next()?.ok()?])
-}
