@@ -36,7 +36,7 @@ const DEPTH_DB: f64 = 60.0;
 
 /// Draws a panel for each loop, all with the same axes. Where the smallest magnitude is above the
 /// largest, no prefilter satisfies the limits.
-pub fn prefilter_band(words: Words, panels: &[PrefilterPanel]) -> Figure {
+pub fn prefilter_band(words: &Words, panels: &[PrefilterPanel]) -> Figure {
     let all = || panels.iter().flat_map(|panel| &panel.points);
     let x = Axis::fit_logarithmic("Frequency (rad/s)", all().map(|point| point.frequency_rad_per_s));
     let values = all().flat_map(|point| [Some(point.least_db), Some(point.greatest_db), point.prefilter_db]);

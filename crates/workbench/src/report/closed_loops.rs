@@ -9,7 +9,7 @@ use phea_qft::verification::{SpecificationFinding, Verdict, WorstCase};
 
 use crate::answer::significant;
 use crate::audit::{closed_loop_symbol, frequency_words, kind_key};
-use crate::figure::{FamilyMagnitudeInput, Figure, MagnitudeCurve, MagnitudeMark, Words, family_magnitude};
+use crate::figure::{FamilyEnvelope, FamilyMagnitude, Figure, MagnitudeCurve, MagnitudeMark, Words};
 use crate::robust::RobustProblem;
 
 /// Number of members that are drawn, in addition to the worst.
@@ -89,20 +89,19 @@ fn figure(
         if lower.is_some() { " and the least" } else { "" }
     );
     let name = format!("audit_{number}_{}", kind_key(requirement));
-    let input = FamilyMagnitudeInput {
+    let chart = FamilyMagnitude {
         quantity: closed_loop_symbol(requirement).to_string(),
         upper_limit: Some(limit(upper)),
         lower_limit: lower.map(limit),
-        greatest,
-        least,
+        envelopes: vec![FamilyEnvelope { name: String::new(), greatest, least }],
         members: curves,
         design_frequencies_rad_per_s: specification.frequencies_rad_per_s.clone(),
         tolerance_db,
         marks: finding.worst.iter().filter_map(|worst| mark(problem, requirement, finding, worst)).collect(),
-        ..FamilyMagnitudeInput::default()
+        ..FamilyMagnitude::default()
     };
     let title = format!("Specification {number}, {}", problem.name_of(number - 1));
-    Ok(family_magnitude(Words::new(name, title, caption), &input))
+    Ok(chart.draw(&Words::new(name, title, caption)))
 }
 
 /// Tracking without a prefilter: the spread of the family against the allowed one.
@@ -116,22 +115,21 @@ fn spread_figure(
 ) -> Figure {
     let allowed = quotient(limits);
     let mark = spread_mark(&allowed, finding);
-    let input = FamilyMagnitudeInput {
+    let chart = FamilyMagnitude {
         quantity: "max|T|/min|T|".to_string(),
-        unit: String::new(),
         upper_limit: Some(allowed),
-        greatest: quotient(family),
+        envelopes: vec![FamilyEnvelope { greatest: quotient(family), ..FamilyEnvelope::default() }],
         design_frequencies_rad_per_s: specification.frequencies_rad_per_s.clone(),
         tolerance_db,
         marks: mark.into_iter().collect(),
-        ..FamilyMagnitudeInput::default()
+        ..FamilyMagnitude::default()
     };
     let words = Words::new(
         format!("audit_{number}_tracking"),
         format!("Specification {number}, tracking by its spread"),
         "The greatest over the least |T| of the members, which no prefilter changes, and the upper over the lower limit.",
     );
-    family_magnitude(words, &input)
+    chart.draw(&words)
 }
 
 /// The second over the first.

@@ -9,9 +9,7 @@ use super::chapter::Chapter;
 use super::load_motion::{self, Moved};
 use crate::answer::significant;
 use crate::document::{Document, Table};
-use crate::figure::{
-    AsymptoteLine, Figure, FrequencyMark, FrequencySeries, ImpedanceInput, Words, impedance,
-};
+use crate::figure::{AsymptoteLine, Figure, FrequencyMark, FrequencySeries, ImpedanceDiagram, Words};
 use crate::linearize::{
     Linearization, PortView, asked_sentence, asked_table, frequency_grid, impedance_at_joint,
     passivity_sentence,
@@ -163,7 +161,7 @@ fn figure(linearization: &Linearization) -> Result<Figure, LinearError> {
     }
     let bands =
         linearization.closed_loop.as_ref().map(|view| view.passivity.bands.as_slice()).unwrap_or_default();
-    let input = ImpedanceInput {
+    let chart = ImpedanceDiagram {
         series: views(linearization).iter().map(|(name, view)| series(name, &view.impedance)).collect(),
         asymptotes: lines,
         corners: vec![FrequencyMark {
@@ -178,5 +176,5 @@ fn figure(linearization: &Linearization) -> Result<Figure, LinearError> {
     };
     let caption =
         "Magnitude and phase of Z with its straight lines; shaded where the closed loop is not passive.";
-    Ok(impedance(Words::new("impedance", "Driving-point impedance", caption), &input))
+    Ok(chart.draw(&Words::new("impedance", "Driving-point impedance", caption)))
 }

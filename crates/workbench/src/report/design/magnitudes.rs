@@ -7,9 +7,7 @@ use phea_qft::specification::{Requirement, Specification};
 use super::super::closed_loops::{curve, extreme, limit_curve, mark, quotient, span, spread_mark};
 use crate::audit::{closed_loop_symbol, kind_key};
 use crate::design::{AuditedController, ProjectDesign};
-use crate::figure::{
-    FamilyEnvelope, FamilyMagnitudeInput, Figure, MagnitudeCurve, MagnitudeMark, Words, family_magnitude,
-};
+use crate::figure::{FamilyEnvelope, FamilyMagnitude, Figure, MagnitudeCurve, MagnitudeMark, Words};
 
 /// One loop that is drawn: its name, the side, and its plants.
 struct Drawn<'a> {
@@ -56,21 +54,17 @@ fn figure(drawn: &[Drawn<'_>], index: usize, specification: &Specification) -> O
         Some(MagnitudeMark { text: format!("{}: {}", one.name, mark.text), ..mark })
     });
     let quantity = if by_spread { "max|T|/min|T|" } else { closed_loop_symbol(requirement) };
-    let FamilyEnvelope { name, greatest, least } = envelope(first);
-    let input = FamilyMagnitudeInput {
-        name,
+    let chart = FamilyMagnitude {
         quantity: quantity.to_string(),
         marks: marks.collect(),
         upper_limit: Some(upper),
         lower_limit: lower,
-        greatest,
-        least,
-        others: others.iter().map(|one| envelope(one)).collect(),
+        envelopes: seen.iter().map(|one| envelope(one)).collect(),
         design_frequencies_rad_per_s: specification.frequencies_rad_per_s.clone(),
         tolerance_db: first.side.view.audit.tolerance_db,
-        ..FamilyMagnitudeInput::default()
+        ..FamilyMagnitude::default()
     };
-    Some(family_magnitude(words((index, title), requirement, quantity, others.is_empty(), by_spread), &input))
+    Some(chart.draw(&words((index, title), requirement, quantity, others.is_empty(), by_spread)))
 }
 
 fn words(
