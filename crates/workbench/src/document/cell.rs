@@ -76,6 +76,10 @@ pub(crate) enum Cell {
     Quantity { value: f64, precision: Precision, unit: &'static str },
     /// What is good or bad.
     Status(StatusMark, Box<Cell>),
+    /// In bold letters.
+    Strong(Box<Cell>),
+    /// One right behind the other.
+    Joined(Vec<Cell>),
     /// No such thing.
     #[default]
     Missing,
@@ -126,6 +130,21 @@ impl Cell {
         Cell::Status(mark.into(), Box::new(self))
     }
 
+    /// In bold letters.
+    pub(crate) fn strong(self) -> Cell {
+        Cell::Strong(Box::new(self))
+    }
+
+    /// With another one right behind it.
+    pub(crate) fn then(self, next: impl Into<Cell>) -> Cell {
+        let mut cells = match self {
+            Cell::Joined(cells) => cells,
+            first => vec![first],
+        };
+        cells.push(next.into());
+        Cell::Joined(cells)
+    }
+
     /// That of a verdict.
     pub(crate) fn verdict(verdict: Verdict) -> Cell {
         Cell::from(verdict_words(verdict)).marked(verdict)
@@ -150,7 +169,8 @@ impl Cell {
     pub(crate) fn text(&self) -> String {
         match self {
             Cell::Text(text) | Cell::Code(text) | Cell::Name { name: text, .. } => text.clone(),
-            Cell::Status(_, cell) => cell.text(),
+            Cell::Status(_, cell) | Cell::Strong(cell) => cell.text(),
+            Cell::Joined(cells) => cells.iter().map(Cell::text).collect(),
             Cell::Unit(unit) => unit.to_string(),
             // braces are what only typesetting needs
             Cell::Equation(equation) => equation.replace(['{', '}'], ""),
