@@ -7,7 +7,7 @@ use phea_dynamics::portable::{argument, log10, magnitude};
 use super::axis::{Axis, extent};
 use super::colour::{Role, series_stroke};
 use super::legend::LegendEntry;
-use super::plot::{AxisDirection, Mark, Panel, Plot};
+use super::plot::{AxisDirection, Mark, Panel};
 use super::scene::{Dash, Stroke};
 use super::ticks::plain;
 use super::{Figure, FrequencyMark, Words};
@@ -21,6 +21,21 @@ pub struct FrequencySeries {
     pub frequencies_rad_per_s: Vec<f64>,
     /// Response at each, in SI units of the quantity.
     pub response: Vec<Complex64>,
+}
+
+impl FrequencySeries {
+    /// A response at these frequencies.
+    pub fn new(
+        name: impl Into<String>,
+        frequencies_rad_per_s: &[f64],
+        response: impl Fn(f64) -> Complex64,
+    ) -> FrequencySeries {
+        FrequencySeries {
+            name: name.into(),
+            frequencies_rad_per_s: frequencies_rad_per_s.to_vec(),
+            response: frequencies_rad_per_s.iter().map(|frequency| response(*frequency)).collect(),
+        }
+    }
 }
 
 /// Magnitude and phase of one quantity in several models.
@@ -55,7 +70,7 @@ impl BodeDiagram {
         }
         mark_frequencies(&mut panels, &self.marks);
         let legend = LegendEntry::of_series(self.series.iter().map(|series| &series.name));
-        words.with_scene(Plot { x: frequency_axis(&self.series), panels, legend, equal_aspect: false }.draw())
+        words.with_plot(frequency_axis(&self.series), panels, legend)
     }
 }
 

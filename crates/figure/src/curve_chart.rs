@@ -3,7 +3,7 @@
 use super::axis::Axis;
 use super::colour::{Role, series_role, series_stroke};
 use super::legend::LegendEntry;
-use super::plot::{AxisDirection, Mark, Marker, MarkerStyle, Panel, Plot};
+use super::plot::{AxisDirection, Mark, Marker, MarkerStyle, Panel};
 use super::scene::{Dash, Fill, Stroke};
 use super::ticks::plain;
 use super::{Figure, Words};
@@ -176,6 +176,6 @@ impl CurveChart {
         let bands =
             bands.map(|band| LegendEntry::area(format!("settling band ±{} %", plain(band.percent)), SETTLED));
         let legend = self.legend.iter().map(entry).chain(bands).collect();
-        words.with_scene(Plot { x, panels, legend, equal_aspect: false }.draw())
+        words.with_plot(x, panels, legend)
     }
 }

@@ -9,7 +9,7 @@ use super::bode::{
 };
 use super::colour::Role;
 use super::legend::LegendEntry;
-use super::plot::{AxisDirection, Mark, Marker, MarkerStyle, Plot};
+use super::plot::{AxisDirection, Mark, Marker, MarkerStyle};
 use super::scene::Fill;
 use super::{Figure, Words};
 
@@ -84,7 +84,7 @@ impl EstimatedResponse {
         ];
         legend.extend(LegendEntry::of_series(self.models.iter().map(|model| &model.name)));
         let x = frequency_axis(self.models.iter().chain([&self.estimate]));
-        words.with_scene(Plot { x, panels, legend, equal_aspect: false }.draw())
+        words.with_plot(x, panels, legend)
     }
 
     /// Both edges around each value, which lie apart by what the share of the radius in the magnitude

@@ -6,7 +6,7 @@ use super::axis::{Axis, extent};
 use super::colour::{Role, series_role};
 use super::legend::LegendEntry;
 use super::open_loop::decibel_axis;
-use super::plot::{AxisDirection, Mark, Marker, MarkerStyle, Panel, Plot};
+use super::plot::{AxisDirection, Mark, Marker, MarkerStyle, Panel};
 use super::scene::{Dash, Fill, Stroke};
 use super::{Figure, Words};
 
@@ -95,7 +95,7 @@ impl FamilyMagnitude {
             marks.push(Mark::Callout { at, text: mark.text.clone(), role: style.role });
         }
         let panels = vec![Panel { y, height: 280.0, marks }];
-        words.with_scene(Plot { x, panels, legend: self.legend(), equal_aspect: false }.draw())
+        words.with_plot(x, panels, self.legend())
     }
 
     fn curves(&self) -> impl Iterator<Item = &MagnitudeCurve> {

@@ -7,7 +7,7 @@ use super::axis::{Axis, extent};
 use super::colour::{Role, series_dash, series_role};
 use super::fan_chart::{TimeBand, TimeSeries};
 use super::legend::LegendEntry;
-use super::plot::{Mark, Panel, Plot};
+use super::plot::{Mark, Panel};
 use super::scene::{Dash, Fill, Stroke};
 use super::{Figure, Words};
 use phea_quantity::DisplayUnit;
@@ -45,7 +45,7 @@ impl FamilySteps {
         let values = self.shown().flat_map(|series| series.values.iter().copied());
         let y = Axis::fit_linear(&self.quantity, values.filter(|v| VALUES.contains(v)).chain([0.0, 1.1]));
         let panels = vec![Panel { y, height: 270.0, marks: self.marks(unit) }];
-        words.with_scene(Plot { x, panels, legend: self.legend(), equal_aspect: false }.draw())
+        words.with_plot(x, panels, self.legend())
     }
 
     fn shown(&self) -> impl Iterator<Item = &TimeSeries> {

@@ -3,7 +3,7 @@
 use super::axis::Axis;
 use super::colour::Role;
 use super::legend::LegendEntry;
-use super::plot::{AxisDirection, Mark, Panel, Plot};
+use super::plot::{AxisDirection, Mark, Panel};
 use super::scene::{Dash, Fill, Stroke};
 use super::{Figure, Words};
 use phea_quantity::DisplayUnit;
@@ -78,9 +78,7 @@ impl FanChart {
             self.bands.iter().enumerate().map(|(i, band)| LegendEntry::area(&band.name, fill(i))).collect();
         legend.extend(lines.iter().rev().map(|(series, stroke)| LegendEntry::line(&series.name, *stroke)));
         let panels = vec![Panel { y, height: 260.0, marks }];
-        words.with_scene(
-            Plot { x: Axis::linear("Time (s)", start, end), panels, legend, equal_aspect: false }.draw(),
-        )
+        words.with_plot(Axis::linear("Time (s)", start, end), panels, legend)
     }
 
     fn area(&self, index: usize, band: &TimeBand) -> Mark {

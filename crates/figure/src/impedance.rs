@@ -8,7 +8,7 @@ use super::axis::{Axis, extent};
 use super::bode::{FrequencySeries, frequency_axis, mark_frequencies, unwrapped_degrees};
 use super::colour::{Role, series_stroke};
 use super::legend::LegendEntry;
-use super::plot::{AxisDirection, Mark, Panel, Plot, PointSide};
+use super::plot::{AxisDirection, Mark, Panel, PointSide};
 use super::scene::{Dash, Fill, Stroke};
 use super::{Figure, FrequencyMark, Words};
 
@@ -64,7 +64,7 @@ impl ImpedanceDiagram {
         if !self.non_passive_bands_rad_per_s.is_empty() {
             legend.push(LegendEntry::area("Re Z < 0: not passive", Fill::tint(Role::Bad)));
         }
-        words.with_scene(Plot { x, panels, legend, equal_aspect: false }.draw())
+        words.with_plot(x, panels, legend)
     }
 
     fn curves(&self, of: impl Fn(&[Complex64]) -> Vec<f64>) -> Vec<Mark> {

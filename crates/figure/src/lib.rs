@@ -73,6 +73,9 @@ pub use stiffness::{StiffnessCurve, StiffnessDiagram, StiffnessOver};
 pub use templates::templates;
 pub use tornado::{Tornado, TornadoBar};
 
+use axis::Axis;
+use legend::LegendEntry;
+use plot::{Panel, Plot};
 use scene::Scene;
 use svg::{SvgDestination, SvgNames};
 
@@ -133,6 +136,11 @@ impl Words {
     fn with_scene(&self, scene: Scene) -> Figure {
         let Words { name, title, caption } = self.clone();
         Figure { name, title, caption, scene }
+    }
+
+    /// The figure that shows panels on one x axis, with their legend.
+    fn with_plot(&self, x: Axis, panels: Vec<Panel>, legend: Vec<LegendEntry>) -> Figure {
+        self.with_scene(Plot { x, panels, legend, equal_aspect: false }.draw())
     }
 }
 

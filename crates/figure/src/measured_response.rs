@@ -8,7 +8,7 @@ use super::axis::Axis;
 use super::bode::{BodeCurve, FrequencySeries, all, curves, decibels, frequency_axis, level_title, panel};
 use super::colour::Role;
 use super::legend::LegendEntry;
-use super::plot::{AxisDirection, Mark, Marker, MarkerStyle, Plot};
+use super::plot::{AxisDirection, Mark, Marker, MarkerStyle};
 use super::{Figure, Words};
 
 /// A measured response on its models.
@@ -67,7 +67,7 @@ impl MeasuredResponse {
         let mut legend = LegendEntry::of_series(self.models.iter().map(|model| &model.name));
         legend.push(LegendEntry::marker(&self.measured.name, POINTS));
         let x = frequency_axis(self.models.iter().chain([&self.measured]));
-        words.with_scene(Plot { x, panels, legend, equal_aspect: false }.draw())
+        words.with_plot(x, panels, legend)
     }
 
     /// The phase of each measured point: that of the first model's curve at its frequency, on the same

@@ -13,7 +13,7 @@ pub use boundary::{Boundary, boundaries};
 pub use contour::magnitude_contour;
 
 use super::bode::FrequencySeries;
-use super::plot::{Panel, Plot};
+use super::plot::Panel;
 use super::{Figure, Words};
 use chart::PlacedChart;
 
@@ -63,6 +63,6 @@ impl NicholsChart<'_> {
         let placed = PlacedChart::new(self);
         let panels = vec![Panel { y: placed.y.clone(), height: 440.0, marks: placed.all_marks() }];
         let (x, legend) = (placed.x.clone(), placed.legend());
-        words.with_scene(Plot { x, panels, legend, equal_aspect: false }.draw())
+        words.with_plot(x, panels, legend)
     }
 }

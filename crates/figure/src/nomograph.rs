@@ -12,7 +12,7 @@ use std::f64::consts::PI;
 use super::axis::Axis;
 use super::colour::Role;
 use super::legend::LegendEntry;
-use super::plot::{AxisDirection, Mark, Panel, Plot, PointSide};
+use super::plot::{AxisDirection, Mark, Panel, PointSide};
 use super::scene::{Dash, Fill, Stroke};
 use super::ticks::plain;
 use super::{CandidateVerdict, Figure, Words};
@@ -88,7 +88,7 @@ impl Nomograph {
         legend.push(LegendEntry::area("acceptable velocity", Fill::tint(Role::Good)));
         legend.push(LegendEntry::line("exact bores at its limits", limit_stroke()));
         let panels = vec![Panel { y, height: 340.0, marks }];
-        words.with_scene(Plot { x, panels, legend, equal_aspect: false }.draw())
+        words.with_plot(x, panels, legend)
     }
 
     /// The exact bores at which the design flow runs at the limits of the range, and the feasible

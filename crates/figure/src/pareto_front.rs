@@ -3,7 +3,7 @@
 use super::axis::{Axis, extent};
 use super::colour::{Role, series_role, series_stroke};
 use super::legend::LegendEntry;
-use super::plot::{Mark, Marker, MarkerStyle, Panel, Plot};
+use super::plot::{Mark, Marker, MarkerStyle, Panel};
 use super::{Figure, Words};
 use phea_quantity::DisplayUnit;
 
@@ -69,7 +69,7 @@ impl ParetoFront {
             Panel { y, height: 260.0, marks: self.marks(column, [x_unit, y_unit]) }
         });
         let panels = panels.collect();
-        words.with_scene(Plot { x, panels, legend: self.legend(), equal_aspect: false }.draw())
+        words.with_plot(x, panels, self.legend())
     }
 
     fn marks(&self, column: usize, [x_unit, y_unit]: [DisplayUnit; 2]) -> Vec<Mark> {

@@ -6,7 +6,7 @@ use phea_dynamics::portable::magnitude;
 use super::axis::{Axis, Scale, extent};
 use super::colour::{series_role, series_stroke};
 use super::legend::LegendEntry;
-use super::plot::{Mark, Marker, MarkerStyle, Panel, Plot};
+use super::plot::{Mark, Marker, MarkerStyle, Panel};
 use super::{Figure, Words};
 use phea_quantity::DisplayUnit;
 
@@ -53,7 +53,7 @@ impl PoleSweep {
         let room = if x.scale == Scale::Linear { 0.02 * (to - from) } else { 0.0 };
         let x = Axis { minimum: x.minimum - room, maximum: x.maximum + room, ..x };
         panels.retain(|panel| !panel.marks.is_empty());
-        words.with_scene(Plot { x, panels, legend: self.legend(), equal_aspect: false }.draw())
+        words.with_plot(x, panels, self.legend())
     }
 
     /// Of each value, the pairs of the upper half plane.

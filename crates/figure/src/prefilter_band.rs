@@ -5,7 +5,7 @@ use super::axis::{Axis, extent};
 use super::colour::{Role, series_role};
 use super::family_magnitude::excess;
 use super::legend::LegendEntry;
-use super::plot::{Mark, Panel, Plot};
+use super::plot::{Mark, Panel};
 use super::scene::{Dash, Fill, Stroke};
 use super::{Figure, Words};
 
@@ -53,7 +53,7 @@ pub fn prefilter_band(words: &Words, panels: &[PrefilterPanel]) -> Figure {
         Panel { y, height, marks }
     };
     let panels_drawn = panels.iter().enumerate().map(panel).collect();
-    words.with_scene(Plot { x, panels: panels_drawn, legend: legend(panels), equal_aspect: false }.draw())
+    words.with_plot(x, panels_drawn, legend(panels))
 }
 
 fn title(name: &str) -> String {

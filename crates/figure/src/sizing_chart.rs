@@ -4,7 +4,7 @@
 use super::axis::Axis;
 use super::colour::{Role, series_stroke};
 use super::legend::LegendEntry;
-use super::plot::{AxisDirection, Mark, Panel, Plot, PointSide};
+use super::plot::{AxisDirection, Mark, Panel, PointSide};
 use super::scene::{Dash, Fill, Stroke};
 use super::{CandidateVerdict, Figure, Words};
 use phea_quantity::DisplayUnit;
@@ -89,8 +89,7 @@ impl SizingChart {
             marks: self.panel_marks(|c| &c.gain_v_per_n, |c| c.gain_v_per_n, gain, false),
         };
         self.gain_limits(&mut lower.marks);
-        let plot = Plot { x, panels: vec![upper, lower], legend: self.legend(), equal_aspect: false };
-        words.with_scene(plot.draw())
+        words.with_plot(x, vec![upper, lower], self.legend())
     }
 
     fn panel_marks(

@@ -4,7 +4,7 @@
 use super::axis::{Axis, extent};
 use super::colour::{Role, series_role, series_stroke};
 use super::legend::LegendEntry;
-use super::plot::{AxisDirection, Mark, Marker, MarkerStyle, Panel, Plot, PointSide};
+use super::plot::{AxisDirection, Mark, Marker, MarkerStyle, Panel, PointSide};
 use super::scene::Fill;
 use super::ticks::plain;
 use super::{Figure, Words};
@@ -75,7 +75,7 @@ impl StiffnessDiagram {
         marks.extend(point.map(|at| Mark::dotted(AxisDirection::X, at, "operating point")));
         let panels = vec![Panel { y: self.axis(), height: 270.0, marks }];
         let x = Axis::linear(place.title(title), left, right);
-        words.with_scene(Plot { x, panels, legend, equal_aspect: false }.draw())
+        words.with_plot(x, panels, legend)
     }
 
     fn unit(&self) -> DisplayUnit {

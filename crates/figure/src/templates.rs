@@ -8,7 +8,7 @@ use super::bode::{decibel, unwrapped_degrees};
 use super::colour::{Role, ramp_role};
 use super::legend::LegendEntry;
 use super::open_loop::{decibel_axis, phase_near};
-use super::plot::{Mark, Marker, MarkerStyle, Panel, Plot};
+use super::plot::{Mark, Marker, MarkerStyle, Panel};
 use super::scene::{Fill, Stroke};
 use super::ticks::plain;
 use super::{Figure, Words};
@@ -58,7 +58,7 @@ pub fn templates(words: &Words, templates: &[Template]) -> Figure {
         let stroke = Some(Stroke::solid(Role::Muted, OUTLINE));
         legend.push(LegendEntry { stroke, ..LegendEntry::area("region filled by the family", fill) });
     }
-    words.with_scene(Plot { x, panels, legend, equal_aspect: false }.draw())
+    words.with_plot(x, panels, legend)
 }
 
 /// Between a template and the frame, degrees.

@@ -75,10 +75,8 @@ fn impedances(found: &Alternatives) -> Option<Figure> {
             Some(closed) => (closed, one.name.clone()),
             None => (&models.open_loop, format!("{}, open loop", one.name)),
         };
-        let frequencies_rad_per_s = frequency_grid(&port.impedance).ok()?;
-        let response = frequencies_rad_per_s.iter().map(|frequency| port.impedance.at_frequency(*frequency));
-        let response = response.collect();
-        Some(FrequencySeries { name: words, frequencies_rad_per_s, response })
+        let grid = frequency_grid(&port.impedance).ok()?;
+        Some(FrequencySeries::new(words, &grid, |frequency| port.impedance.at_frequency(frequency)))
     });
     let chart = ImpedanceDiagram { series: series.collect(), ..ImpedanceDiagram::default() };
     let words = Words::new(

@@ -55,39 +55,34 @@ impl ValveFigures {
 }
 
 fn circuits(found: &Identification) -> Vec<Figure> {
-    let has = |circuit| found.recordings.iter().any(|one| one.circuit == circuit);
-    let mut figures = Vec::new();
-    let supply = vec![display(found.usual_drop(), &PRESSURE, 3)];
-    let words = |rows: [&str; 4]| rows.map(str::to_string).to_vec();
-    if has(PortCircuit::Blocked) {
-        let chart = TestCircuit {
-            ports: TestPorts::Blocked,
-            supply_rows: supply.clone(),
-            rows: words([
-                "ports blocked",
-                "recorded over U_C:",
-                "leakage with tare flow,",
-                "pressures at A and B",
-            ]),
+    let supply = display(found.usual_drop(), &PRESSURE, 3);
+    let drawn = |circuit: PortCircuit| {
+        let (ports, rows, [name, title, caption]) = match circuit {
+            PortCircuit::Blocked => (
+                TestPorts::Blocked,
+                ["ports blocked", "recorded over U_C:", "leakage with tare flow,", "pressures at A and B"],
+                [
+                    "circuit_blocked",
+                    "Test with blocked ports",
+                    "Circuit of the tests with blocked ports, internal leakage and pressure gain (Ledezma 2019, Figure 5.3).",
+                ],
+            ),
+            PortCircuit::Connected => (
+                TestPorts::Joined,
+                ["ports joined", "through the meter", "recorded over U_C:", "flow, pressures at A and B"],
+                [
+                    "circuit_joined",
+                    "Metering test",
+                    "Circuit of the metering test (Ledezma 2019, Figure 5.6).",
+                ],
+            ),
         };
-        let caption = "Circuit of the tests with blocked ports, internal leakage and pressure gain (Ledezma 2019, Figure 5.3).";
-        figures.push(chart.draw(&Words::new("circuit_blocked", "Test with blocked ports", caption)));
-    }
-    if has(PortCircuit::Connected) {
-        let chart = TestCircuit {
-            ports: TestPorts::Joined,
-            supply_rows: supply,
-            rows: words([
-                "ports joined",
-                "through the meter",
-                "recorded over U_C:",
-                "flow, pressures at A and B",
-            ]),
-        };
-        let caption = "Circuit of the metering test (Ledezma 2019, Figure 5.6).";
-        figures.push(chart.draw(&Words::new("circuit_joined", "Metering test", caption)));
-    }
-    figures
+        let rows = rows.map(str::to_string).to_vec();
+        let chart = TestCircuit { ports, supply_rows: vec![supply.clone()], rows };
+        chart.draw(&Words::new(name, title, caption))
+    };
+    let has = |circuit: &PortCircuit| found.recordings.iter().any(|one| one.circuit == *circuit);
+    [PortCircuit::Blocked, PortCircuit::Connected].into_iter().filter(has).map(drawn).collect()
 }
 
 /// Name of the file without folder and ending.

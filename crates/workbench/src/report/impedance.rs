@@ -1,7 +1,7 @@
 //! The chapter on the driving-point impedance: the impedance at the load, its asymptotes, and
 //! passivity.
 
-use phea_dynamics::linear::{LinearError, TransferFunction};
+use phea_dynamics::linear::LinearError;
 use phea_dynamics::time_response::TimeResponseError;
 use phea_hydraulics::impedance::AsymptoteKind;
 
@@ -133,11 +133,6 @@ fn asymptotes(linearization: &Linearization) -> Table {
 fn figure(linearization: &Linearization) -> Result<Figure, LinearError> {
     let grid = frequency_grid(&linearization.full.command)?;
     let (first, last) = (grid.first().copied().unwrap_or(0.01), grid.last().copied().unwrap_or(1e4));
-    let series = |name: &str, function: &TransferFunction| FrequencySeries {
-        name: name.to_string(),
-        response: grid.iter().map(|frequency| function.at_frequency(*frequency)).collect(),
-        frequencies_rad_per_s: grid.clone(),
-    };
     let mut lines: Vec<AsymptoteLine> = Vec::new();
     for (name, view) in views(linearization) {
         for asymptote in &view.asymptotes {
@@ -162,7 +157,10 @@ fn figure(linearization: &Linearization) -> Result<Figure, LinearError> {
     let bands =
         linearization.closed_loop.as_ref().map(|view| view.passivity.bands.as_slice()).unwrap_or_default();
     let chart = ImpedanceDiagram {
-        series: views(linearization).iter().map(|(name, view)| series(name, &view.impedance)).collect(),
+        series: views(linearization)
+            .iter()
+            .map(|(name, view)| FrequencySeries::new(*name, &grid, |at| view.impedance.at_frequency(at)))
+            .collect(),
         asymptotes: lines,
         corners: vec![FrequencyMark {
             label: linearization.motion.formula(linearization.hidden_by.label()).into_owned(),

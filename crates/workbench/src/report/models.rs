@@ -83,11 +83,9 @@ fn diagram(
     reference: &TransferFunction,
 ) -> Result<Figure, LinearError> {
     let grid = frequency_grid(reference)?;
-    let series = models.iter().map(|(name, function)| FrequencySeries {
-        name: name.to_string(),
-        response: grid.iter().map(|frequency| function.at_frequency(*frequency)).collect(),
-        frequencies_rad_per_s: grid.clone(),
-    });
+    let series = models
+        .iter()
+        .map(|(name, function)| FrequencySeries::new(*name, &grid, |at| function.at_frequency(at)));
     let resonance = resonance(reference)
         .map(|pole| FrequencyMark { label: "resonance".to_string(), frequency_rad_per_s: pole.im });
     let chart = BodeDiagram {
