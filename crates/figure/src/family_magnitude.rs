@@ -48,8 +48,6 @@ pub struct FamilyEnvelope {
 pub struct FamilyMagnitude {
     /// The closed loop, such as `|L/(1+L)|`.
     pub quantity: String,
-    /// Its unit, such as `V/N`; empty for a ratio.
-    pub unit: String,
     /// The greatest magnitude allowed, over the band where it holds.
     pub upper_limit: Option<MagnitudeCurve>,
     /// The least magnitude allowed.
@@ -111,10 +109,6 @@ impl FamilyMagnitude {
 
     /// Holds limits and marks, the family above them, and of it below them no more than 30 dB.
     fn magnitude_axis(&self) -> Axis {
-        let title = match self.unit.as_str() {
-            "" => format!("{} (dB)", self.quantity),
-            unit => format!("{} (dB re 1 {unit})", self.quantity),
-        };
         let finite = |value: &f64| value.is_finite();
         let of = |curve: &MagnitudeCurve| points(curve).into_iter().map(|point| point.1).filter(finite);
         let limits: Vec<f64> = self.upper_limit.iter().chain(&self.lower_limit).flat_map(of).collect();
@@ -123,7 +117,7 @@ impl FamilyMagnitude {
         let (lowest, _) = extent(wanted.iter().copied());
         let family = self.envelopes.iter().flat_map(FamilyEnvelope::curves).flat_map(of);
         let family = family.filter(|value| lowest.is_nan() || *value > lowest - DEPTH_DB);
-        decibel_axis(&title, wanted.iter().copied().chain(family))
+        decibel_axis(&format!("{} (dB)", self.quantity), wanted.iter().copied().chain(family))
     }
 
     /// The family between its greatest and least magnitude, what lies beyond a limit, and faintly the

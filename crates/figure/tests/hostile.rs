@@ -384,7 +384,6 @@ fn families_over_frequency() {
         let chart = FamilyMagnitude {
             envelopes: r.many(3, envelope),
             quantity: r.name(),
-            unit: r.name(),
             upper_limit: r.maybe(curve),
             lower_limit: r.maybe(curve),
             members: r.many(4, curve),

@@ -76,7 +76,7 @@ impl<'a> LoopFamily<'a> {
     }
 }
 
-/// A specification in these loops, with all curves of the first of them, and whether it is shown by
+/// A specification in these loops, with every member in the first of them, and whether it is shown by
 /// the spread of the family, which a prefilter does not change. `None` if no loop has a margin to it.
 pub(super) fn magnitudes(
     loops: &[LoopFamily<'_>],
