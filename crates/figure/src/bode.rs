@@ -1,5 +1,4 @@
-//! Bode diagram: magnitude in dB and phase in degrees over rad/s, with the difference between
-//! models on request.
+//! Bode diagram: magnitude in dB and phase in degrees over rad/s, with the difference between models.
 
 use num_complex::Complex64;
 use phea_dynamics::portable::{argument, log10, magnitude};
@@ -38,7 +37,8 @@ impl FrequencySeries {
     }
 }
 
-/// Magnitude and phase of one quantity in several models.
+/// Magnitude and phase of one quantity in several models, and the size of each one's difference from
+/// the first where both have the same frequencies.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BodeDiagram {
     /// The quantity, such as `F_e/U_C`.
@@ -47,9 +47,6 @@ pub struct BodeDiagram {
     pub unit: String,
     /// Models, the reference first.
     pub series: Vec<FrequencySeries>,
-    /// Adds panels with the size of each model's difference from the first, on a logarithmic axis
-    /// (same frequencies only).
-    pub with_difference: bool,
     /// Frequencies to mark.
     pub marks: Vec<FrequencyMark>,
 }
@@ -65,9 +62,7 @@ impl BodeDiagram {
                 &c.degrees
             }),
         ];
-        if self.with_difference {
-            panels.extend(difference_panels(&curves));
-        }
+        panels.extend(difference_panels(&curves));
         mark_frequencies(&mut panels, &self.marks);
         let legend = LegendEntry::of_series(self.series.iter().map(|series| &series.name));
         words.with_plot(frequency_axis(&self.series), panels, legend)

@@ -139,7 +139,6 @@ fn bode_diagrams() {
             quantity: r.name(),
             unit: r.name(),
             series: r.many(10, Random::frequency_series),
-            with_difference: r.unit() < 0.5,
             marks: r.many(6, Random::mark),
         };
         chart.draw(&r.words())
@@ -422,5 +421,48 @@ fn families_over_time() {
             named: r.many(2, Random::time_series),
         };
         chart.draw(&r.words())
+    });
+}
+
+#[test]
+fn fans_of_runs() {
+    repeat(15, |r| {
+        let band =
+            |r: &mut Random| TimeBand { name: r.name(), upper: r.time_series(), lower: r.time_series() };
+        let chart = FanChart {
+            quantity: r.name(),
+            unit: DisplayUnit::KILONEWTON,
+            bands: r.many(3, band),
+            middle: r.time_series(),
+            single: r.maybe(Random::time_series),
+            reference: r.maybe(Random::time_series),
+            events: r.many(4, |r| (r.number(), r.name())),
+            span_s: [r.number(), r.number()],
+        };
+        chart.draw(&r.words())
+    });
+}
+
+#[test]
+fn measured_and_estimated_responses() {
+    repeat(16, |r| {
+        let measured = MeasuredResponse {
+            quantity: r.name(),
+            unit: r.name(),
+            models: r.many(3, Random::frequency_series),
+            measured: r.frequency_series(),
+            model: r.complex(),
+            distortion_percent: r.numbers(),
+        };
+        let estimated = EstimatedResponse {
+            quantity: r.name(),
+            unit: r.name(),
+            estimate: r.frequency_series(),
+            radii: r.numbers(),
+            coherence: r.numbers(),
+            least_coherence: r.number(),
+            models: r.many(3, Random::frequency_series),
+        };
+        if r.unit() < 0.5 { measured.draw(&r.words()) } else { estimated.draw(&r.words()) }
     });
 }

@@ -68,7 +68,6 @@ pub(crate) fn bode_of_models() -> Figure {
         quantity: "F_e/U_C".into(),
         unit: "N/V".into(),
         series,
-        with_difference: true,
         marks: vec![
             FrequencyMark { label: "valve".into(), frequency_rad_per_s: 1099.0 },
             FrequencyMark { label: "piston on load cell".into(), frequency_rad_per_s: 2938.0 },

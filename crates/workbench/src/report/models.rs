@@ -92,7 +92,6 @@ fn diagram(
         quantity: "F_e/U_C".to_string(),
         unit: "N/V".to_string(),
         series: series.collect(),
-        with_difference: true,
         marks: resonance.into_iter().collect(),
     };
     Ok(chart.draw(&words))
