@@ -118,7 +118,6 @@ pub(super) fn magnitudes(
         members: curves.into_iter().next().unwrap_or_default(),
         design_frequencies_rad_per_s: specification.frequencies_rad_per_s.clone(),
         tolerance_db: first.view.audit.tolerance_db,
-        ..FamilyMagnitude::default()
     };
     Some((chart, by_spread))
 }
