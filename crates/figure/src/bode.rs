@@ -1,5 +1,4 @@
-//! Bode diagram: magnitude in dB and phase in degrees over rad/s, with the difference between
-//! models on request.
+//! Bode diagram: magnitude in dB and phase in degrees over rad/s, with the difference between models.
 
 use num_complex::Complex64;
 use phea_dynamics::portable::{argument, log10, magnitude};
@@ -7,7 +6,7 @@ use phea_dynamics::portable::{argument, log10, magnitude};
 use super::axis::{Axis, extent};
 use super::colour::{Role, series_stroke};
 use super::legend::LegendEntry;
-use super::plot::{AxisDirection, Mark, Panel, Plot};
+use super::plot::{AxisDirection, Mark, Panel};
 use super::scene::{Dash, Stroke};
 use super::ticks::plain;
 use super::{Figure, FrequencyMark, Words};
@@ -23,87 +22,109 @@ pub struct FrequencySeries {
     pub response: Vec<Complex64>,
 }
 
-/// What a Bode diagram shows.
+impl FrequencySeries {
+    /// A response at these frequencies.
+    pub fn new(
+        name: impl Into<String>,
+        frequencies_rad_per_s: &[f64],
+        response: impl Fn(f64) -> Complex64,
+    ) -> FrequencySeries {
+        FrequencySeries {
+            name: name.into(),
+            frequencies_rad_per_s: frequencies_rad_per_s.to_vec(),
+            response: frequencies_rad_per_s.iter().map(|frequency| response(*frequency)).collect(),
+        }
+    }
+}
+
+/// Magnitude and phase of one quantity in several models, and the size of each one's difference from
+/// the first where both have the same frequencies.
 #[derive(Clone, Debug, PartialEq)]
-pub struct BodeInput {
+pub struct BodeDiagram {
     /// The quantity, such as `F_e/U_C`.
     pub quantity: String,
     /// Its unit, such as `N/V`: 0 dB is one of it.
     pub unit: String,
     /// Models, the reference first.
     pub series: Vec<FrequencySeries>,
-    /// Adds panels with the size of each model's difference from the first, on a logarithmic axis
-    /// (same frequencies only).
-    pub with_difference: bool,
     /// Frequencies to mark.
     pub marks: Vec<FrequencyMark>,
 }
 
-/// Draws the diagram.
-pub fn bode(words: Words, input: &BodeInput) -> Figure {
-    let curves = curves(&input.series);
-    let frequencies = input.series.iter().flat_map(|s| s.frequencies_rad_per_s.iter().copied());
-    let x = Axis::fit_logarithmic("Frequency (rad/s)", frequencies);
-    let magnitude_title = format!("|{}| (dB re 1 {})", input.quantity, input.unit);
-    let mut panels = vec![
-        panel(Axis::fit_decibel(magnitude_title, all(&curves, |c| &c.decibels)), 190.0, &curves, |c| {
-            &c.decibels
-        }),
-        panel(Axis::fit_angle("Phase (°)", all(&curves, |c| &c.degrees)), 150.0, &curves, |c| &c.degrees),
-    ];
-    if input.with_difference {
+impl BodeDiagram {
+    /// Draws the diagram.
+    pub fn draw(&self, words: &Words) -> Figure {
+        let curves = curves(&self.series, None);
+        let title = level_title(&self.quantity, &self.unit);
+        let mut panels = vec![
+            panel(Axis::fit_decibel(title, all(&curves, |c| &c.decibels)), 190.0, &curves, |c| &c.decibels),
+            panel(Axis::fit_angle("Phase (°)", all(&curves, |c| &c.degrees)), 150.0, &curves, |c| {
+                &c.degrees
+            }),
+        ];
         panels.extend(difference_panels(&curves));
+        mark_frequencies(&mut panels, &self.marks);
+        let legend = LegendEntry::of_series(self.series.iter().map(|series| &series.name));
+        words.with_plot(frequency_axis(&self.series), panels, legend)
     }
-    mark_frequencies(&mut panels, &input.marks);
-    let legend = curves
-        .iter()
-        .map(|curve| LegendEntry::line(curve.name.clone(), series_stroke(curve.index)))
-        .collect();
-    let plot = Plot { x, panels, legend, equal_aspect: false };
-    words.with_scene(plot.draw())
+}
+
+/// An axis that holds the frequencies of all series.
+pub(super) fn frequency_axis<'s>(series: impl IntoIterator<Item = &'s FrequencySeries>) -> Axis {
+    let frequencies = series.into_iter().flat_map(|one| one.frequencies_rad_per_s.iter().copied());
+    Axis::fit_logarithmic("Frequency (rad/s)", frequencies)
+}
+
+/// Title of the magnitude of a quantity in dB.
+pub(super) fn level_title(quantity: &str, unit: &str) -> String {
+    format!("|{quantity}| (dB re 1 {unit})")
 }
 
 /// Adds an upright line at each frequency to every panel, its label to the first.
 pub(super) fn mark_frequencies(panels: &mut [Panel], marks: &[FrequencyMark]) {
+    let stroke = Stroke::solid(Role::Muted, 1.2).dashed(Dash::Dashed);
     for (index, panel) in panels.iter_mut().enumerate() {
         for mark in marks {
             let label = match index {
                 0 => format!("{} {} rad/s", mark.label, plain(mark.frequency_rad_per_s)),
                 _ => String::new(),
             };
-            panel.marks.push(Mark::Reference {
-                direction: AxisDirection::X,
-                at: mark.frequency_rad_per_s,
-                stroke: Stroke::solid(Role::Muted, 1.2).dashed(Dash::Dashed),
-                label,
-            });
+            panel.marks.push(Mark::reference(AxisDirection::X, mark.frequency_rad_per_s, stroke, label));
         }
     }
 }
 
 pub(super) struct BodeCurve {
     pub(super) index: usize,
-    pub(super) name: String,
     pub(super) frequencies: Vec<f64>,
     pub(super) decibels: Vec<f64>,
     pub(super) degrees: Vec<f64>,
 }
 
-/// Magnitude and unwrapped phase of each response; a later one starts within half a turn of the
-/// first.
-fn curves(series: &[FrequencySeries]) -> Vec<BodeCurve> {
+/// Magnitude and unwrapped phase of each response; the phase starts within half a turn of `start`,
+/// or of the first one.
+pub(super) fn curves(series: &[FrequencySeries], start: Option<f64>) -> Vec<BodeCurve> {
     let mut result: Vec<BodeCurve> = Vec::with_capacity(series.len());
     for (index, one) in series.iter().enumerate() {
-        let start = result.first().and_then(|first| first.degrees.first().copied());
+        let start = start.or(result.first().and_then(|first| first.degrees.first().copied()));
         result.push(BodeCurve {
             index,
-            name: one.name.clone(),
             frequencies: one.frequencies_rad_per_s.clone(),
-            decibels: one.response.iter().map(|z| 20.0 * log10(magnitude(*z))).collect(),
+            decibels: decibels(&one.response),
             degrees: unwrapped_degrees(&one.response, start),
         });
     }
     result
+}
+
+/// A magnitude in dB.
+pub(super) fn decibel(response: Complex64) -> f64 {
+    20.0 * log10(magnitude(response))
+}
+
+/// Magnitudes in dB.
+pub(super) fn decibels(response: &[Complex64]) -> Vec<f64> {
+    response.iter().map(|value| decibel(*value)).collect()
 }
 
 /// Phase in degrees without jumps of a turn, its first value nearest to `start` (or in (-180,
@@ -153,7 +174,6 @@ fn differences(curves: &[BodeCurve]) -> Vec<BodeCurve> {
         .filter(|other| other.frequencies == first.frequencies)
         .map(|other| BodeCurve {
             index: other.index,
-            name: other.name.clone(),
             frequencies: other.frequencies.clone(),
             decibels: minus(&other.decibels, &first.decibels),
             degrees: minus(&other.degrees, &first.degrees),
@@ -161,14 +181,21 @@ fn differences(curves: &[BodeCurve]) -> Vec<BodeCurve> {
         .collect()
 }
 
-fn all<'a>(
+/// What all curves have of one kind.
+pub(super) fn all<'a>(
     curves: &'a [BodeCurve],
     of: impl Fn(&BodeCurve) -> &Vec<f64> + 'a,
 ) -> impl Iterator<Item = f64> + 'a {
     curves.iter().flat_map(move |curve| of(curve).clone())
 }
 
-fn panel(y: Axis, height: f64, curves: &[BodeCurve], of: impl Fn(&BodeCurve) -> &Vec<f64>) -> Panel {
+/// The curves in a panel.
+pub(super) fn panel(
+    y: Axis,
+    height: f64,
+    curves: &[BodeCurve],
+    of: impl Fn(&BodeCurve) -> &Vec<f64>,
+) -> Panel {
     let marks = curves
         .iter()
         .map(|curve| Mark::Line {

@@ -6,7 +6,7 @@ use super::axis::{Axis, extent};
 use super::colour::{Role, series_role};
 use super::legend::LegendEntry;
 use super::open_loop::decibel_axis;
-use super::plot::{AxisDirection, Mark, Marker, MarkerStyle, Panel, Plot};
+use super::plot::{AxisDirection, Mark, Marker, MarkerStyle, Panel};
 use super::scene::{Dash, Fill, Stroke};
 use super::{Figure, Words};
 
@@ -32,10 +32,10 @@ pub struct MagnitudeMark {
     pub is_violation: bool,
 }
 
-/// The extremes of a family within another loop, to be compared with.
+/// The extremes of a family within a loop.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FamilyEnvelope {
-    /// Which loop.
+    /// Which loop; empty where there is one.
     pub name: String,
     /// The greatest magnitude of the family.
     pub greatest: MagnitudeCurve,
@@ -43,25 +43,17 @@ pub struct FamilyEnvelope {
     pub least: Option<MagnitudeCurve>,
 }
 
-/// What the figure shows.
+/// The magnitudes of a closed loop, of the whole family, and their limits.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct FamilyMagnitudeInput {
-    /// The name of the loop, where two loops are drawn.
-    pub name: String,
+pub struct FamilyMagnitude {
     /// The closed loop, such as `|L/(1+L)|`.
     pub quantity: String,
-    /// Its unit, such as `V/N`; empty for a ratio.
-    pub unit: String,
     /// The greatest magnitude allowed, over the band where it holds.
     pub upper_limit: Option<MagnitudeCurve>,
     /// The least magnitude allowed.
     pub lower_limit: Option<MagnitudeCurve>,
-    /// The greatest magnitude of the family.
-    pub greatest: MagnitudeCurve,
-    /// The least magnitude of the family, where there is a lower limit.
-    pub least: Option<MagnitudeCurve>,
-    /// The family within other loops.
-    pub others: Vec<FamilyEnvelope>,
+    /// The family within the loop, and within others to compare it with.
+    pub envelopes: Vec<FamilyEnvelope>,
     /// Some members.
     pub members: Vec<MagnitudeCurve>,
     /// Frequencies to mark on the axis, rad/s.
@@ -75,33 +67,157 @@ pub struct FamilyMagnitudeInput {
 /// How far below limits and marks a magnitude is still shown, dB.
 const DEPTH_DB: f64 = 30.0;
 
-/// Draws the figure.
-pub fn family_magnitude(words: Words, input: &FamilyMagnitudeInput) -> Figure {
-    let x = Axis::fit_logarithmic("Frequency (rad/s)", frequencies(input));
-    let y = magnitude_axis(input);
-    let mut marks = areas(input);
-    marks.extend(lines(input));
-    let foot = y.minimum + 0.018 * (y.maximum - y.minimum);
-    let designs =
-        input.design_frequencies_rad_per_s.iter().map(|&frequency| (frequency, foot, String::new()));
-    marks.push(Mark::Markers { points: designs.collect(), style: DESIGN });
-    for mark in &input.marks {
-        let (frequency, value) = (mark.frequency_rad_per_s, 20.0 * log10(mark.magnitude));
-        let style = if mark.is_violation { VIOLATION } else { MARGIN };
-        let points = vec![(frequency, value, mark.text.clone())];
-        marks.push(Mark::Markers { points, style });
-        let at = vec![(frequency, value)];
-        marks.push(Mark::Callout { at, text: mark.text.clone(), role: style.role });
+impl FamilyEnvelope {
+    fn curves(&self) -> impl Iterator<Item = &MagnitudeCurve> {
+        [&self.greatest].into_iter().chain(&self.least)
     }
-    let panels = vec![Panel { y, height: 280.0, marks }];
-    words.with_scene(Plot { x, panels, legend: legend(input), equal_aspect: false }.draw())
+}
+
+impl FamilyMagnitude {
+    /// Draws the figure.
+    pub fn draw(&self, words: &Words) -> Figure {
+        let x = Axis::fit_logarithmic("Frequency (rad/s)", self.frequencies());
+        let y = self.magnitude_axis();
+        let mut marks = self.areas();
+        marks.extend(self.lines());
+        let foot = y.minimum + 0.018 * (y.maximum - y.minimum);
+        let designs =
+            self.design_frequencies_rad_per_s.iter().map(|&frequency| (frequency, foot, String::new()));
+        marks.push(Mark::Markers { points: designs.collect(), style: DESIGN });
+        for mark in &self.marks {
+            let (frequency, value) = (mark.frequency_rad_per_s, 20.0 * log10(mark.magnitude));
+            let style = if mark.is_violation { VIOLATION } else { MARGIN };
+            let points = vec![(frequency, value, mark.text.clone())];
+            marks.push(Mark::Markers { points, style });
+            let at = vec![(frequency, value)];
+            marks.push(Mark::Callout { at, text: mark.text.clone(), role: style.role });
+        }
+        let panels = vec![Panel { y, height: 280.0, marks }];
+        words.with_plot(x, panels, self.legend())
+    }
+
+    fn curves(&self) -> impl Iterator<Item = &MagnitudeCurve> {
+        let limits = self.upper_limit.iter().chain(&self.lower_limit);
+        limits.chain(self.envelopes.iter().flat_map(FamilyEnvelope::curves))
+    }
+
+    fn frequencies(&self) -> Vec<f64> {
+        let curves = self.curves().flat_map(|curve| &curve.frequencies_rad_per_s);
+        let marks = self.marks.iter().map(|mark| &mark.frequency_rad_per_s);
+        curves.chain(marks).chain(&self.design_frequencies_rad_per_s).copied().collect()
+    }
+
+    /// Holds limits and marks, the family above them, and of it below them no more than 30 dB.
+    fn magnitude_axis(&self) -> Axis {
+        let finite = |value: &f64| value.is_finite();
+        let of = |curve: &MagnitudeCurve| points(curve).into_iter().map(|point| point.1).filter(finite);
+        let limits: Vec<f64> = self.upper_limit.iter().chain(&self.lower_limit).flat_map(of).collect();
+        let marked = self.marks.iter().map(|mark| 20.0 * log10(mark.magnitude)).filter(finite);
+        let wanted: Vec<f64> = limits.into_iter().chain(marked).collect();
+        let (lowest, _) = extent(wanted.iter().copied());
+        let family = self.envelopes.iter().flat_map(FamilyEnvelope::curves).flat_map(of);
+        let family = family.filter(|value| lowest.is_nan() || *value > lowest - DEPTH_DB);
+        decibel_axis(&format!("{} (dB)", self.quantity), wanted.iter().copied().chain(family))
+    }
+
+    /// The family between its greatest and least magnitude, what lies beyond a limit, and faintly the
+    /// frequencies where it does.
+    fn areas(&self) -> Vec<Mark> {
+        let mut marks = Vec::new();
+        for (index, FamilyEnvelope { greatest, least, .. }) in self.behind_first() {
+            let Some(least) = least else { continue };
+            let around = points(greatest).into_iter().chain(points(least).into_iter().rev()).collect();
+            let fill = Fill { role: series_role(index), opacity: 0.1 };
+            marks.push(Mark::Area { corners: around, fill });
+        }
+        for corners in self.violated() {
+            let (from, to) = extent(corners.iter().map(|corner| corner.0));
+            marks.push(Mark::band(AxisDirection::X, [from, to], Fill { opacity: 0.09, ..EXCESS }));
+            marks.push(Mark::Area { corners, fill: EXCESS });
+        }
+        marks
+    }
+
+    /// The envelopes with their places, the first one last: it lies on top.
+    fn behind_first(&self) -> impl Iterator<Item = (usize, &FamilyEnvelope)> {
+        let all = || self.envelopes.iter().enumerate();
+        all().skip(1).chain(all().take(1))
+    }
+
+    /// What lies beyond a limit by more than the tolerance, of every loop.
+    fn violated(&self) -> Vec<Vec<(f64, f64)>> {
+        let moved = |curve: &MagnitudeCurve, by: f64| -> Vec<(f64, f64)> {
+            points(curve).into_iter().map(|(frequency, value)| (frequency, value + by)).collect()
+        };
+        let upper = self.upper_limit.as_ref().map(|limit| moved(limit, self.tolerance_db));
+        let lower = self.lower_limit.as_ref().map(|limit| moved(limit, -self.tolerance_db));
+        let mut areas = Vec::new();
+        for FamilyEnvelope { greatest, least, .. } in &self.envelopes {
+            areas.extend(upper.iter().flat_map(|limit| excess(&points(greatest), limit)));
+            areas.extend(lower.iter().zip(least).flat_map(|(limit, least)| excess(limit, &points(least))));
+        }
+        areas
+    }
+
+    fn lines(&self) -> Vec<Mark> {
+        let line = |curve: &MagnitudeCurve, stroke: Stroke| Mark::Line { points: points(curve), stroke };
+        let mut marks: Vec<Mark> = self.members.iter().map(|member| line(member, member_stroke())).collect();
+        for (index, envelope) in self.behind_first() {
+            let strokes = envelope_strokes(index);
+            let both = envelope.curves().zip(strokes).map(|(curve, stroke)| line(curve, stroke));
+            let mut both: Vec<Mark> = both.collect();
+            // of another loop the greatest lies on top
+            if index > 0 {
+                both.reverse();
+            }
+            marks.extend(both);
+        }
+        let upper = self.upper_limit.iter().map(|limit| points(limit).into_iter().rev().collect());
+        let lower = self.lower_limit.iter().map(points);
+        for limit in upper.chain(lower).collect::<Vec<Vec<(f64, f64)>>>() {
+            let fringe = Stroke::solid(limit_stroke().role, 0.7);
+            marks.push(Mark::Fringe { points: limit.clone(), stroke: fringe });
+            marks.push(Mark::Line { points: limit, stroke: limit_stroke() });
+        }
+        marks
+    }
+
+    fn legend(&self) -> Vec<LegendEntry> {
+        let mut legend = Vec::new();
+        let named = |name: &str, greatest: &str| {
+            if name.is_empty() { greatest.to_string() } else { format!("{name}: {greatest}") }
+        };
+        for (index, FamilyEnvelope { name, least, .. }) in self.envelopes.iter().enumerate() {
+            let [of_greatest, of_least] = envelope_strokes(index);
+            let word = if least.is_some() || !name.is_empty() { "greatest" } else { "worst" };
+            let word = if name.is_empty() { format!("{word} of the family") } else { word.to_string() };
+            legend.push(LegendEntry::line(named(name, &word), of_greatest));
+            if least.is_some() {
+                legend.push(LegendEntry::line(named(name, "least"), of_least));
+            }
+        }
+        if !self.members.is_empty() {
+            legend.push(LegendEntry::line("members", member_stroke()));
+        }
+        match (&self.upper_limit, &self.lower_limit) {
+            (None, None) => {}
+            (Some(_), Some(_)) => legend.push(LegendEntry::line("limits", limit_stroke())),
+            _ => legend.push(LegendEntry::line("limit", limit_stroke())),
+        }
+        if !self.design_frequencies_rad_per_s.is_empty() {
+            legend.push(LegendEntry::marker("design frequency", DESIGN));
+        }
+        if !self.violated().is_empty() {
+            legend.push(LegendEntry::area("violated", EXCESS));
+        }
+        legend
+    }
 }
 
 const DESIGN: MarkerStyle = MarkerStyle { marker: Marker::Triangle, role: Role::Text, radius: 4.0 };
 const VIOLATION: MarkerStyle = MarkerStyle { marker: Marker::Cross, role: Role::Bad, radius: 4.5 };
 const MARGIN: MarkerStyle = MarkerStyle { marker: Marker::Circle, role: Role::Good, radius: 4.0 };
 const EXCESS: Fill = Fill { role: Role::Bad, opacity: 0.28 };
-const FAMILY: Role = Role::Series(0);
 
 fn limit_stroke() -> Stroke {
     Stroke::solid(Role::Bad, 1.8).dashed(Dash::LongDash)
@@ -111,112 +227,17 @@ fn member_stroke() -> Stroke {
     Stroke::solid(Role::Muted, 0.5)
 }
 
-fn greatest_stroke() -> Stroke {
-    Stroke::solid(FAMILY, 2.2)
-}
-
-fn least_stroke() -> Stroke {
-    Stroke::solid(FAMILY, 2.0).dashed(Dash::Dashed)
-}
-
-fn other_strokes(index: usize) -> [Stroke; 2] {
-    let role = series_role(index + 1);
-    [Stroke::solid(role, 2.2).dashed(Dash::DashDot), Stroke::solid(role, 2.0).dashed(Dash::Dotted)]
+/// Strokes of the greatest and the least magnitude within a loop.
+fn envelope_strokes(index: usize) -> [Stroke; 2] {
+    let dashes = if index == 0 { [Dash::Solid, Dash::Dashed] } else { [Dash::DashDot, Dash::Dotted] };
+    let stroke = |width: f64, dash: Dash| Stroke::solid(series_role(index), width).dashed(dash);
+    [stroke(2.2, dashes[0]), stroke(2.0, dashes[1])]
 }
 
 /// (rad/s, dB)
 fn points(curve: &MagnitudeCurve) -> Vec<(f64, f64)> {
     let values = curve.magnitudes.iter().map(|magnitude| 20.0 * log10(*magnitude));
     curve.frequencies_rad_per_s.iter().copied().zip(values).collect()
-}
-
-fn curves(input: &FamilyMagnitudeInput) -> impl Iterator<Item = &MagnitudeCurve> {
-    let limits = input.upper_limit.iter().chain(&input.lower_limit);
-    let others = input.others.iter().flat_map(|other| [&other.greatest].into_iter().chain(&other.least));
-    limits.chain([&input.greatest]).chain(&input.least).chain(others)
-}
-
-fn frequencies(input: &FamilyMagnitudeInput) -> Vec<f64> {
-    let curves = curves(input).flat_map(|curve| &curve.frequencies_rad_per_s);
-    let marks = input.marks.iter().map(|mark| &mark.frequency_rad_per_s);
-    curves.chain(marks).chain(&input.design_frequencies_rad_per_s).copied().collect()
-}
-
-/// Holds limits and marks, the family above them, and of it below them no more than 30 dB.
-fn magnitude_axis(input: &FamilyMagnitudeInput) -> Axis {
-    let title = match input.unit.as_str() {
-        "" => format!("{} (dB)", input.quantity),
-        unit => format!("{} (dB re 1 {unit})", input.quantity),
-    };
-    let finite = |value: &f64| value.is_finite();
-    let of = |curve: &MagnitudeCurve| points(curve).into_iter().map(|point| point.1).filter(finite);
-    let limits: Vec<f64> = input.upper_limit.iter().chain(&input.lower_limit).flat_map(of).collect();
-    let marked = input.marks.iter().map(|mark| 20.0 * log10(mark.magnitude)).filter(finite);
-    let wanted: Vec<f64> = limits.into_iter().chain(marked).collect();
-    let (lowest, _) = extent(wanted.iter().copied());
-    let others =
-        input.others.iter().flat_map(|other| of(&other.greatest).chain(other.least.iter().flat_map(of)));
-    let family = of(&input.greatest).chain(input.least.iter().flat_map(of)).chain(others);
-    let family = family.filter(|value| lowest.is_nan() || *value > lowest - DEPTH_DB);
-    decibel_axis(&title, wanted.iter().copied().chain(family))
-}
-
-/// The family between its greatest and least magnitude, what lies beyond a limit, and faintly the
-/// frequencies where it does.
-fn areas(input: &FamilyMagnitudeInput) -> Vec<Mark> {
-    let mut marks = Vec::new();
-    let mut between = |greatest: &MagnitudeCurve, least: &Option<MagnitudeCurve>, role: Role| {
-        let Some(least) = least else { return };
-        let around = points(greatest).into_iter().chain(points(least).into_iter().rev()).collect();
-        marks.push(Mark::Area { corners: around, fill: Fill { role, opacity: 0.1 } });
-    };
-    for (index, other) in input.others.iter().enumerate() {
-        between(&other.greatest, &other.least, series_role(index + 1));
-    }
-    between(&input.greatest, &input.least, FAMILY);
-    for corners in violated(input) {
-        let (from, to) = extent(corners.iter().map(|corner| corner.0));
-        let (direction, fill) = (AxisDirection::X, Fill { opacity: 0.09, ..EXCESS });
-        marks.push(Mark::Band { direction, from, to, fill, hatched: false, label: String::new() });
-        marks.push(Mark::Area { corners, fill: EXCESS });
-    }
-    marks
-}
-
-/// What lies beyond a limit by more than the tolerance, of every loop.
-fn violated(input: &FamilyMagnitudeInput) -> Vec<Vec<(f64, f64)>> {
-    let moved = |curve: &MagnitudeCurve, by: f64| -> Vec<(f64, f64)> {
-        points(curve).into_iter().map(|(frequency, value)| (frequency, value + by)).collect()
-    };
-    let upper = input.upper_limit.as_ref().map(|limit| moved(limit, input.tolerance_db));
-    let lower = input.lower_limit.as_ref().map(|limit| moved(limit, -input.tolerance_db));
-    let mut areas = Vec::new();
-    let others = input.others.iter().map(|other| (&other.greatest, &other.least));
-    for (greatest, least) in [(&input.greatest, &input.least)].into_iter().chain(others) {
-        areas.extend(upper.iter().flat_map(|limit| excess(&points(greatest), limit)));
-        areas.extend(lower.iter().zip(least).flat_map(|(limit, least)| excess(limit, &points(least))));
-    }
-    areas
-}
-
-fn lines(input: &FamilyMagnitudeInput) -> Vec<Mark> {
-    let line = |curve: &MagnitudeCurve, stroke: Stroke| Mark::Line { points: points(curve), stroke };
-    let mut marks: Vec<Mark> = input.members.iter().map(|member| line(member, member_stroke())).collect();
-    for (index, other) in input.others.iter().enumerate() {
-        let [greatest, least] = other_strokes(index);
-        marks.extend(other.least.iter().map(|curve| line(curve, least)));
-        marks.push(line(&other.greatest, greatest));
-    }
-    marks.push(line(&input.greatest, greatest_stroke()));
-    marks.extend(input.least.iter().map(|least| line(least, least_stroke())));
-    let upper = input.upper_limit.iter().map(|limit| points(limit).into_iter().rev().collect());
-    let lower = input.lower_limit.iter().map(points);
-    for limit in upper.chain(lower).collect::<Vec<Vec<(f64, f64)>>>() {
-        let fringe = Stroke::solid(limit_stroke().role, 0.7);
-        marks.push(Mark::Fringe { points: limit.clone(), stroke: fringe });
-        marks.push(Mark::Line { points: limit, stroke: limit_stroke() });
-    }
-    marks
 }
 
 /// The areas where the first curve lies above the second, straight in dB over log frequency between
@@ -273,38 +294,4 @@ fn between(curve: &[(f64, f64)], frequency: f64) -> Option<f64> {
         below + (above - below) * log10(frequency / low) / log10(high / low)
     };
     value.is_finite().then_some(value)
-}
-
-fn legend(input: &FamilyMagnitudeInput) -> Vec<LegendEntry> {
-    let mut legend = Vec::new();
-    let named = |name: &str, greatest: &str| {
-        if name.is_empty() { greatest.to_string() } else { format!("{name}: {greatest}") }
-    };
-    let mut family = |name: &str, [greatest, least]: [Stroke; 2], has_least: bool| {
-        let word = if has_least || !name.is_empty() { "greatest" } else { "worst" };
-        let word = if name.is_empty() { format!("{word} of the family") } else { word.to_string() };
-        legend.push(LegendEntry::line(named(name, &word), greatest));
-        if has_least {
-            legend.push(LegendEntry::line(named(name, "least"), least));
-        }
-    };
-    family(&input.name, [greatest_stroke(), least_stroke()], input.least.is_some());
-    for (index, other) in input.others.iter().enumerate() {
-        family(&other.name, other_strokes(index), other.least.is_some());
-    }
-    if !input.members.is_empty() {
-        legend.push(LegendEntry::line("members", member_stroke()));
-    }
-    match (&input.upper_limit, &input.lower_limit) {
-        (None, None) => {}
-        (Some(_), Some(_)) => legend.push(LegendEntry::line("limits", limit_stroke())),
-        _ => legend.push(LegendEntry::line("limit", limit_stroke())),
-    }
-    if !input.design_frequencies_rad_per_s.is_empty() {
-        legend.push(LegendEntry::marker("design frequency", DESIGN));
-    }
-    if !violated(input).is_empty() {
-        legend.push(LegendEntry::area("violated", EXCESS));
-    }
-    legend
 }

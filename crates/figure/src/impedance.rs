@@ -5,10 +5,10 @@ use num_complex::Complex64;
 use phea_dynamics::portable::{magnitude, pow};
 
 use super::axis::{Axis, extent};
-use super::bode::{FrequencySeries, mark_frequencies, unwrapped_degrees};
+use super::bode::{FrequencySeries, frequency_axis, mark_frequencies, unwrapped_degrees};
 use super::colour::{Role, series_stroke};
 use super::legend::LegendEntry;
-use super::plot::{AxisDirection, Mark, Panel, Plot, PointSide};
+use super::plot::{AxisDirection, Mark, Panel, PointSide};
 use super::scene::{Dash, Fill, Stroke};
 use super::{Figure, FrequencyMark, Words};
 
@@ -27,9 +27,9 @@ pub struct AsymptoteLine {
     pub to_rad_per_s: f64,
 }
 
-/// What the figure shows.
+/// Impedances with their straight lines and bands.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct ImpedanceInput {
+pub struct ImpedanceDiagram {
     /// Impedances in N.s/m, such as open and closed loop.
     pub series: Vec<FrequencySeries>,
     /// Straight lines.
@@ -42,64 +42,72 @@ pub struct ImpedanceInput {
     pub with_phase: bool,
 }
 
-/// Draws the figure.
-pub fn impedance(words: Words, input: &ImpedanceInput) -> Figure {
-    let frequencies = || input.series.iter().flat_map(|s| s.frequencies_rad_per_s.iter().copied());
-    let x = Axis::fit_logarithmic("Frequency (rad/s)", frequencies());
-    let values = input.series.iter().flat_map(|s| s.response.iter().map(|z| magnitude(*z)));
-    let mut marks: Vec<Mark> = bands(input, "not passive");
-    marks.extend(input.asymptotes.iter().map(|line| asymptote_line(line, &x)));
-    marks.extend(curves(input, |response| response.iter().map(|z| magnitude(*z)).collect()));
-    marks.extend(input.asymptotes.iter().map(|line| asymptote_label(line, &x)));
-    let mut panels = vec![Panel { y: Axis::fit_logarithmic("|Z| (N·s/m)", values), height: 290.0, marks }];
-    if input.with_phase {
-        panels.push(phase_panel(input));
+impl ImpedanceDiagram {
+    /// Draws the figure.
+    pub fn draw(&self, words: &Words) -> Figure {
+        let x = frequency_axis(&self.series);
+        let values = self.series.iter().flat_map(|s| s.response.iter().map(|z| magnitude(*z)));
+        let mut marks: Vec<Mark> = self.bands("not passive");
+        marks.extend(self.asymptotes.iter().map(|line| asymptote_line(line, &x)));
+        marks.extend(self.curves(|response| response.iter().map(|z| magnitude(*z)).collect()));
+        marks.extend(self.asymptotes.iter().map(|line| asymptote_label(line, &x)));
+        let mut panels =
+            vec![Panel { y: Axis::fit_logarithmic("|Z| (N·s/m)", values), height: 290.0, marks }];
+        if self.with_phase {
+            panels.push(self.phase_panel());
+        }
+        mark_frequencies(&mut panels, &self.corners);
+        let mut legend = LegendEntry::of_series(self.series.iter().map(|series| &series.name));
+        if !self.asymptotes.is_empty() {
+            legend.push(LegendEntry::line("asymptotes", asymptote_stroke()));
+        }
+        if !self.non_passive_bands_rad_per_s.is_empty() {
+            legend.push(LegendEntry::area("Re Z < 0: not passive", Fill::tint(Role::Bad)));
+        }
+        words.with_plot(x, panels, legend)
     }
-    mark_frequencies(&mut panels, &input.corners);
-    let mut legend: Vec<LegendEntry> = input
-        .series
-        .iter()
-        .enumerate()
-        .map(|(index, series)| LegendEntry::line(&series.name, series_stroke(index)))
-        .collect();
-    if !input.asymptotes.is_empty() {
-        legend.push(LegendEntry::line("asymptotes", asymptote_stroke()));
+
+    fn curves(&self, of: impl Fn(&[Complex64]) -> Vec<f64>) -> Vec<Mark> {
+        self.series
+            .iter()
+            .enumerate()
+            .map(|(index, series)| Mark::Line {
+                points: series.frequencies_rad_per_s.iter().copied().zip(of(&series.response)).collect(),
+                stroke: series_stroke(index),
+            })
+            .collect()
     }
-    if !input.non_passive_bands_rad_per_s.is_empty() {
-        legend.push(LegendEntry::area("Re Z < 0: not passive", Fill::tint(Role::Bad)));
+
+    fn bands(&self, label: &str) -> Vec<Mark> {
+        self.non_passive_bands_rad_per_s
+            .iter()
+            .map(|&(from, to)| Mark::Band {
+                direction: AxisDirection::X,
+                from,
+                to,
+                fill: Fill::tint(Role::Bad),
+                hatched: true,
+                label: label.to_string(),
+            })
+            .collect()
     }
-    words.with_scene(Plot { x, panels, legend, equal_aspect: false }.draw())
+
+    fn phase_panel(&self) -> Panel {
+        // Re Z >= 0 bounds the phase of a passive impedance, so each curve starts from its principal
+        // value.
+        let degrees = |response: &[Complex64]| unwrapped_degrees(response, None);
+        let (low, high) = extent(self.series.iter().flat_map(|s| degrees(&s.response)));
+        let mut marks = self.bands("");
+        let stroke = Stroke::solid(Role::Bad, 1.2).dashed(Dash::LongDash);
+        marks.extend([-90.0, 90.0].map(|limit| Mark::reference(AxisDirection::Y, limit, stroke, "")));
+        marks.extend(self.curves(degrees));
+        let y = Axis::fit_angle("arg Z (°)", [low, high, -95.0, 95.0]);
+        Panel { y, height: 120.0, marks }
+    }
 }
 
 fn asymptote_stroke() -> Stroke {
     Stroke::solid(Role::Axis, 1.3).dashed(Dash::Dashed)
-}
-
-fn curves(input: &ImpedanceInput, of: impl Fn(&[Complex64]) -> Vec<f64>) -> Vec<Mark> {
-    input
-        .series
-        .iter()
-        .enumerate()
-        .map(|(index, series)| Mark::Line {
-            points: series.frequencies_rad_per_s.iter().copied().zip(of(&series.response)).collect(),
-            stroke: series_stroke(index),
-        })
-        .collect()
-}
-
-fn bands(input: &ImpedanceInput, label: &str) -> Vec<Mark> {
-    input
-        .non_passive_bands_rad_per_s
-        .iter()
-        .map(|&(from, to)| Mark::Band {
-            direction: AxisDirection::X,
-            from,
-            to,
-            fill: Fill::tint(Role::Bad),
-            hatched: true,
-            label: label.to_string(),
-        })
-        .collect()
 }
 
 fn asymptote_line(line: &AsymptoteLine, x: &Axis) -> Mark {
@@ -114,23 +122,4 @@ fn asymptote_label(line: &AsymptoteLine, x: &Axis) -> Mark {
     let at = (middle, line.coefficient * pow(middle, f64::from(line.exponent)));
     let side = if line.exponent < 0 { PointSide::Right } else { PointSide::Above };
     Mark::Label { at: vec![at], text: line.label.clone(), role: Role::Text, side }
-}
-
-fn phase_panel(input: &ImpedanceInput) -> Panel {
-    // Re Z >= 0 bounds the phase of a passive impedance, so each curve starts from its principal
-    // value.
-    let degrees = |response: &[Complex64]| unwrapped_degrees(response, None);
-    let (low, high) = extent(input.series.iter().flat_map(|s| degrees(&s.response)));
-    let mut marks = bands(input, "");
-    for limit in [-90.0, 90.0] {
-        marks.push(Mark::Reference {
-            direction: AxisDirection::Y,
-            at: limit,
-            stroke: Stroke::solid(Role::Bad, 1.2).dashed(Dash::LongDash),
-            label: String::new(),
-        });
-    }
-    marks.extend(curves(input, degrees));
-    let y = Axis::fit_angle("arg Z (°)", [low, high, -95.0, 95.0]);
-    Panel { y, height: 120.0, marks }
 }

@@ -1,6 +1,7 @@
 //! The legend: below the axes, where it can cover no data.
 
 use super::LABEL_SIZE;
+use super::colour::series_stroke;
 use super::plot::{MarkerStyle, draw_marker};
 use super::scene::{Anchor, Baseline, Fill, Rectangle, Scene, Stroke, Text, point};
 use super::typeset;
@@ -30,6 +31,12 @@ impl LegendEntry {
     /// An entry for a line.
     pub fn line(text: impl Into<String>, stroke: Stroke) -> Self {
         LegendEntry { text: text.into(), stroke: Some(stroke), marker: None, fill: None }
+    }
+
+    /// Entries for the lines of series, each in its colour.
+    pub(crate) fn of_series<'n>(names: impl IntoIterator<Item = &'n String>) -> Vec<LegendEntry> {
+        let entry = |(index, name): (usize, &String)| LegendEntry::line(name, series_stroke(index));
+        names.into_iter().enumerate().map(entry).collect()
     }
 
     /// Words about the whole figure, without a sample.

@@ -1,7 +1,7 @@
 //! Pictures as plain values: numbers in, a scene of primitives out, SVG text and PNG bytes from it.
 //!
 //! ```text
-//! numbers -> builder (bode, nomograph, ...) -> Figure { scene } -> to_svg_inline | to_svg_standalone | to_png
+//! numbers -> chart (BodeDiagram, Nomograph, ...) -> Figure { scene } -> to_svg_inline | to_svg_standalone | to_png
 //! ```
 //!
 //! The layer is our own because one small list of primitives with roles for colours serves axes,
@@ -19,10 +19,11 @@ pub mod axis;
 pub mod bode;
 pub mod clip;
 pub mod colour;
-pub mod curves;
+pub mod curve_chart;
 pub mod estimated_response;
 pub mod family_magnitude;
-pub mod family_step;
+pub mod family_steps;
+pub mod fan_chart;
 pub mod impedance;
 pub mod legend;
 pub mod measured_response;
@@ -40,48 +41,41 @@ pub mod scene;
 pub mod schematic;
 pub mod simplify;
 pub mod sizing_chart;
-pub mod step_response;
-pub mod stiffness_over_force;
-pub mod stiffness_over_stroke;
+pub mod stiffness;
 pub mod svg;
 pub mod templates;
 pub mod ticks;
-pub mod time_bands;
-pub mod time_panels;
 pub mod tornado;
 pub mod typeset;
 
-pub use bode::{BodeInput, FrequencySeries, bode};
+pub use bode::{BodeDiagram, FrequencySeries};
 pub use colour::{Theme, style_sheet};
-pub use curves::{Curve, CurvePanel, CurveStyle, CurvesInput, curves, curves_over_decades};
-pub use estimated_response::{EstimatedResponseInput, estimated_response};
-pub use family_magnitude::{
-    FamilyEnvelope, FamilyMagnitudeInput, MagnitudeCurve, MagnitudeMark, family_magnitude,
-};
-pub use family_step::{FamilyStepInput, family_step};
-pub use impedance::{AsymptoteLine, ImpedanceInput, impedance};
-pub use measured_response::{MeasuredResponseInput, ResponseCurve, measured_response};
-pub use nichols::{BoundGroup, NicholsInput, OpenLoopViolation, USUAL_CONTOURS_DB, nichols};
-pub use nomograph::{NomographBore, NomographInput, nomograph};
-pub use pareto_front::{FrontPlace, ParetoCurve, ParetoInput, ParetoPoint, pareto_front};
+pub use curve_chart::{Curve, CurveChart, CurvePanel, CurveRange, CurveStyle, SettlingBand};
+pub use estimated_response::EstimatedResponse;
+pub use family_magnitude::{FamilyEnvelope, FamilyMagnitude, MagnitudeCurve, MagnitudeMark};
+pub use family_steps::FamilySteps;
+pub use fan_chart::{FanChart, TimeBand, TimeSeries};
+pub use impedance::{AsymptoteLine, ImpedanceDiagram};
+pub use measured_response::MeasuredResponse;
+pub use nichols::{BoundGroup, NicholsChart, OpenLoopViolation, USUAL_CONTOURS_DB};
+pub use nomograph::{Nomograph, NomographBore};
+pub use pareto_front::{FrontPlace, ParetoCurve, ParetoFront, ParetoPoint};
 pub use phea_quantity::{DisplayUnit, MotionKind};
-pub use pole_map::{PoleMapInput, PoleMapScale, PoleSeries, pole_map};
-pub use pole_sweep::{PoleSweepInput, PoleSweepPoint, pole_sweep};
+pub use pole_map::{PoleMap, PoleMapScale, PoleSeries};
+pub use pole_sweep::{PoleSweep, PoleSweepPoint};
 pub use prefilter_band::{PrefilterPanel, PrefilterPoint, prefilter_band};
 pub use schematic::{
     AccumulatorSymbol, ControllerSymbol, CrossPortSymbol, Environment, LineKind, LineSymbol, LinkageSymbol,
-    Rods, SchematicInput, SeriesKind, SeriesSymbol, SupplyKind, TestCircuitInput, TestPorts, schematic,
-    test_circuit,
+    Rods, Schematic, SeriesKind, SeriesSymbol, SupplyKind, TestCircuit, TestPorts,
 };
-pub use sizing_chart::{SizingCandidate, SizingChartInput, SizingCurve, sizing_chart};
-pub use step_response::{SettlingBand, StepResponseInput, TimeBounds, TimeEvent, TimeSeries, step_response};
-pub use stiffness_over_force::{ForceStiffnessCurve, ForceStiffnessInput, stiffness_over_force};
-pub use stiffness_over_stroke::{StiffnessCurve, StiffnessInput, stiffness_over_stroke};
+pub use sizing_chart::{SizingCandidate, SizingChart, SizingCurve};
+pub use stiffness::{StiffnessCurve, StiffnessDiagram, StiffnessOver};
 pub use templates::templates;
-pub use time_bands::{TimeBands, TimeBandsInput, time_bands};
-pub use time_panels::{TimePanel, TimePanelsInput, time_panels};
-pub use tornado::{TornadoBar, TornadoInput, tornado};
+pub use tornado::{Tornado, TornadoBar};
 
+use axis::Axis;
+use legend::LegendEntry;
+use plot::{Panel, Plot};
 use scene::Scene;
 use svg::{SvgDestination, SvgNames};
 
@@ -139,8 +133,14 @@ impl Words {
     }
 
     /// The figure that shows a scene.
-    fn with_scene(self, scene: Scene) -> Figure {
-        Figure { name: self.name, title: self.title, caption: self.caption, scene }
+    fn with_scene(&self, scene: Scene) -> Figure {
+        let Words { name, title, caption } = self.clone();
+        Figure { name, title, caption, scene }
+    }
+
+    /// The figure that shows panels on one x axis, with their legend.
+    fn with_plot(&self, x: Axis, panels: Vec<Panel>, legend: Vec<LegendEntry>) -> Figure {
+        self.with_scene(Plot { x, panels, legend, equal_aspect: false }.draw())
     }
 }
 

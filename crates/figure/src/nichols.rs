@@ -13,9 +13,9 @@ pub use boundary::{Boundary, boundaries};
 pub use contour::magnitude_contour;
 
 use super::bode::FrequencySeries;
-use super::plot::{Panel, Plot};
+use super::plot::Panel;
 use super::{Figure, Words};
-use chart::Chart;
+use chart::PlacedChart;
 
 /// Contours of |T| that a chart usually shows, dB.
 pub const USUAL_CONTOURS_DB: [f64; 10] = [6.0, 3.0, 1.0, 0.5, 0.0, -1.0, -3.0, -6.0, -12.0, -20.0];
@@ -40,9 +40,9 @@ pub struct OpenLoopViolation {
     pub text: String,
 }
 
-/// What the chart shows.
+/// The open loop by phase and magnitude, among what it has to keep to.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct NicholsInput<'a> {
+pub struct NicholsChart<'a> {
     /// Open loops; the first is the one at which templates and the words of marks are put.
     pub loops: Vec<FrequencySeries>,
     /// Frequencies to mark on the loops, rad/s.
@@ -57,9 +57,12 @@ pub struct NicholsInput<'a> {
     pub contours_db: Vec<f64>,
 }
 
-/// Draws the chart.
-pub fn nichols(words: Words, input: &NicholsInput<'_>) -> Figure {
-    let chart = Chart::new(input);
-    let panels = vec![Panel { y: chart.y.clone(), height: 440.0, marks: chart.all_marks() }];
-    words.with_scene(Plot { x: chart.x.clone(), panels, legend: chart.legend(), equal_aspect: false }.draw())
+impl NicholsChart<'_> {
+    /// Draws the chart.
+    pub fn draw(&self, words: &Words) -> Figure {
+        let placed = PlacedChart::new(self);
+        let panels = vec![Panel { y: placed.y.clone(), height: 440.0, marks: placed.all_marks() }];
+        let (x, legend) = (placed.x.clone(), placed.legend());
+        words.with_plot(x, panels, legend)
+    }
 }

@@ -12,7 +12,7 @@ use std::f64::consts::PI;
 use super::axis::Axis;
 use super::colour::Role;
 use super::legend::LegendEntry;
-use super::plot::{AxisDirection, Mark, Panel, Plot, PointSide};
+use super::plot::{AxisDirection, Mark, Panel, PointSide};
 use super::scene::{Dash, Fill, Stroke};
 use super::ticks::plain;
 use super::{CandidateVerdict, Figure, Words};
@@ -29,9 +29,9 @@ pub struct NomographBore {
     pub verdict: CandidateVerdict,
 }
 
-/// What the nomograph shows.
+/// Commercial bores over the flow, with the velocities that are acceptable.
 #[derive(Clone, Debug, PartialEq)]
-pub struct NomographInput {
+pub struct Nomograph {
     /// Commercial bores.
     pub bores: Vec<NomographBore>,
     /// Largest flow of the system, m3/s.
@@ -45,49 +45,89 @@ fn velocity(flow_m3_per_s: f64, bore_m: f64) -> f64 {
     4.0 * flow_m3_per_s / (PI * bore_m * bore_m)
 }
 
-/// Draws the nomograph.
-pub fn nomograph(words: Words, input: &NomographInput) -> Figure {
-    let unit = DisplayUnit::LITRE_PER_MINUTE;
-    let flow = unit.of(input.design_flow_m3_per_s);
-    let (slowest, fastest) = input.velocity_range_m_per_s;
-    let x = Axis::logarithmic(unit.title("Flow q"), flow / 5.0, flow * 2.2);
-    let ends = [1.0, 2.2].into_iter().flat_map(|factor| {
-        input.bores.iter().map(move |b| velocity(factor * input.design_flow_m3_per_s, b.bore_m))
-    });
-    let y = Axis::fit_logarithmic(
-        "Oil velocity v (m/s)",
-        ends.chain([slowest / 2.0, fastest * 2.0]).map(|v| v.max(slowest / 20.0).min(fastest * 10.0)),
-    );
-    let mut marks = vec![
-        Mark::Band {
-            direction: AxisDirection::Y,
-            from: slowest,
-            to: fastest,
-            fill: Fill::tint(Role::Good),
-            hatched: false,
-            label: format!("{} to {} m/s", plain(slowest), plain(fastest)),
-        },
-        Mark::Reference {
-            direction: AxisDirection::X,
-            at: flow,
-            stroke: Stroke::solid(Role::Accent, 1.8),
-            label: format!("design flow {} L/min", plain(flow)),
-        },
-    ];
-    marks.extend(input.bores.iter().map(|bore| bore_line(bore, &x)));
-    limits(&mut marks, input, &x);
-    bore_markers(&mut marks, input, flow);
-    marks.extend(input.bores.iter().map(|bore| bore_label(bore, &x)));
-    let used = |verdict: &CandidateVerdict| input.bores.iter().any(|bore| bore.verdict == *verdict);
-    let mut legend: Vec<LegendEntry> = CandidateVerdict::ALL
-        .into_iter()
-        .filter(used)
-        .map(|verdict| LegendEntry::marker(format!("bore {}", verdict.label()), verdict.marker()))
-        .collect();
-    legend.push(LegendEntry::area("acceptable velocity", Fill::tint(Role::Good)));
-    legend.push(LegendEntry::line("exact bores at its limits", limit_stroke()));
-    let panels = vec![Panel { y, height: 340.0, marks }];
-    words.with_scene(Plot { x, panels, legend, equal_aspect: false }.draw())
+impl Nomograph {
+    /// Draws the nomograph.
+    pub fn draw(&self, words: &Words) -> Figure {
+        let unit = DisplayUnit::LITRE_PER_MINUTE;
+        let flow = unit.of(self.design_flow_m3_per_s);
+        let (slowest, fastest) = self.velocity_range_m_per_s;
+        let x = Axis::logarithmic(unit.title("Flow q"), flow / 5.0, flow * 2.2);
+        let ends = [1.0, 2.2].into_iter().flat_map(|factor| {
+            self.bores.iter().map(move |b| velocity(factor * self.design_flow_m3_per_s, b.bore_m))
+        });
+        let y = Axis::fit_logarithmic(
+            "Oil velocity v (m/s)",
+            ends.chain([slowest / 2.0, fastest * 2.0]).map(|v| v.max(slowest / 20.0).min(fastest * 10.0)),
+        );
+        let mut marks = vec![
+            Mark::Band {
+                direction: AxisDirection::Y,
+                from: slowest,
+                to: fastest,
+                fill: Fill::tint(Role::Good),
+                hatched: false,
+                label: format!("{} to {} m/s", plain(slowest), plain(fastest)),
+            },
+            Mark::reference(
+                AxisDirection::X,
+                flow,
+                Stroke::solid(Role::Accent, 1.8),
+                format!("design flow {} L/min", plain(flow)),
+            ),
+        ];
+        marks.extend(self.bores.iter().map(|bore| bore_line(bore, &x)));
+        self.limits(&mut marks, &x);
+        self.bore_markers(&mut marks, flow);
+        marks.extend(self.bores.iter().map(|bore| bore_label(bore, &x)));
+        let used = |verdict: &CandidateVerdict| self.bores.iter().any(|bore| bore.verdict == *verdict);
+        let mut legend: Vec<LegendEntry> = CandidateVerdict::ALL
+            .into_iter()
+            .filter(used)
+            .map(|verdict| LegendEntry::marker(format!("bore {}", verdict.label()), verdict.marker()))
+            .collect();
+        legend.push(LegendEntry::area("acceptable velocity", Fill::tint(Role::Good)));
+        legend.push(LegendEntry::line("exact bores at its limits", limit_stroke()));
+        let panels = vec![Panel { y, height: 340.0, marks }];
+        words.with_plot(x, panels, legend)
+    }
+
+    /// The exact bores at which the design flow runs at the limits of the range, and the feasible
+    /// stretch of the flow line.
+    fn limits(&self, marks: &mut Vec<Mark>, x: &Axis) {
+        let (slowest, fastest) = self.velocity_range_m_per_s;
+        let flow = DisplayUnit::LITRE_PER_MINUTE.of(self.design_flow_m3_per_s);
+        for limit in [slowest, fastest] {
+            let bore = (4.0 * self.design_flow_m3_per_s / (PI * limit)).sqrt();
+            marks.push(Mark::Line { points: line_of(bore, x), stroke: limit_stroke() });
+            let text = format!("{} mm", plain(DisplayUnit::MILLIMETRE.of(bore)));
+            marks.push(Mark::Label {
+                at: vec![(flow, limit)],
+                text,
+                role: Role::Good,
+                side: PointSide::Left,
+            });
+        }
+        marks.push(Mark::Line {
+            points: vec![(flow, slowest), (flow, fastest)],
+            stroke: Stroke::solid(Role::Accent, 5.0),
+        });
+    }
+
+    fn bore_markers(&self, marks: &mut Vec<Mark>, flow: f64) {
+        for verdict in CandidateVerdict::ALL {
+            let points: Vec<(f64, f64, String)> = self
+                .bores
+                .iter()
+                .filter(|bore| bore.verdict == verdict)
+                .map(|bore| {
+                    let v = velocity(self.design_flow_m3_per_s, bore.bore_m);
+                    let diameter = plain(DisplayUnit::MILLIMETRE.of(bore.bore_m));
+                    (flow, v, format!("{diameter} mm: {} m/s, {}", plain(v), verdict.label()))
+                })
+                .collect();
+            marks.push(Mark::Markers { points, style: verdict.marker() });
+        }
+    }
 }
 
 fn limit_stroke() -> Stroke {
@@ -107,39 +147,6 @@ fn bore_line(bore: &NomographBore, x: &Axis) -> Mark {
         CandidateVerdict::Rejected => Stroke::solid(Role::Muted, 1.0),
     };
     Mark::Line { points: line_of(bore.bore_m, x), stroke }
-}
-
-/// The exact bores at which the design flow runs at the limits of the range, and the feasible
-/// stretch of the flow line.
-fn limits(marks: &mut Vec<Mark>, input: &NomographInput, x: &Axis) {
-    let (slowest, fastest) = input.velocity_range_m_per_s;
-    let flow = DisplayUnit::LITRE_PER_MINUTE.of(input.design_flow_m3_per_s);
-    for limit in [slowest, fastest] {
-        let bore = (4.0 * input.design_flow_m3_per_s / (PI * limit)).sqrt();
-        marks.push(Mark::Line { points: line_of(bore, x), stroke: limit_stroke() });
-        let text = format!("{} mm", plain(DisplayUnit::MILLIMETRE.of(bore)));
-        marks.push(Mark::Label { at: vec![(flow, limit)], text, role: Role::Good, side: PointSide::Left });
-    }
-    marks.push(Mark::Line {
-        points: vec![(flow, slowest), (flow, fastest)],
-        stroke: Stroke::solid(Role::Accent, 5.0),
-    });
-}
-
-fn bore_markers(marks: &mut Vec<Mark>, input: &NomographInput, flow: f64) {
-    for verdict in CandidateVerdict::ALL {
-        let points: Vec<(f64, f64, String)> = input
-            .bores
-            .iter()
-            .filter(|bore| bore.verdict == verdict)
-            .map(|bore| {
-                let v = velocity(input.design_flow_m3_per_s, bore.bore_m);
-                let diameter = plain(DisplayUnit::MILLIMETRE.of(bore.bore_m));
-                (flow, v, format!("{diameter} mm: {} m/s, {}", plain(v), verdict.label()))
-            })
-            .collect();
-        marks.push(Mark::Markers { points, style: verdict.marker() });
-    }
 }
 
 /// The bore's name where its line ends on the right.

@@ -1,10 +1,10 @@
 //! A frequency response as a curve of phase and magnitude.
 
 use num_complex::Complex64;
-use phea_dynamics::portable::{argument, log10, magnitude};
+use phea_dynamics::portable::{argument, log10};
 
 use super::axis::{Axis, extent};
-use super::bode::{FrequencySeries, unwrapped_degrees};
+use super::bode::{FrequencySeries, decibel, unwrapped_degrees};
 use super::ticks::TickSteps;
 
 /// A response with its phase unwrapped, most of it between -360 and 0 degrees.
@@ -12,10 +12,6 @@ pub(super) struct UnwrappedResponse {
     frequencies: Vec<f64>,
     /// (phase in degrees, magnitude in dB)
     pub(super) points: Vec<(f64, f64)>,
-}
-
-pub(super) fn decibel(response: Complex64) -> f64 {
-    20.0 * log10(magnitude(response))
 }
 
 /// Phase in degrees on the turn nearest to `near`.

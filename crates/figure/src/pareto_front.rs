@@ -3,7 +3,7 @@
 use super::axis::{Axis, extent};
 use super::colour::{Role, series_role, series_stroke};
 use super::legend::LegendEntry;
-use super::plot::{Mark, Marker, MarkerStyle, Panel, Plot};
+use super::plot::{Mark, Marker, MarkerStyle, Panel};
 use super::{Figure, Words};
 use phea_quantity::DisplayUnit;
 
@@ -38,9 +38,9 @@ pub struct ParetoCurve {
     pub points: Vec<ParetoPoint>,
 }
 
-/// What the figure shows.
+/// Alternatives by their columns.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ParetoInput {
+pub struct ParetoFront {
     /// Two or three columns: what is drawn, and its unit. The first lies along x.
     pub columns: Vec<(String, DisplayUnit)>,
     /// The alternatives.
@@ -50,24 +50,61 @@ pub struct ParetoInput {
 /// Room beyond the outermost points, as a share of what they span.
 const ROOM: f64 = 0.03;
 
-/// Draws the figure.
-pub fn pareto_front(words: Words, input: &ParetoInput) -> Figure {
-    let axis = |column: usize| {
-        let (title, unit) = input.columns.get(column).cloned().unwrap_or((String::new(), DisplayUnit::ONE));
-        let points = input.curves.iter().flat_map(|curve| &curve.points);
-        let values = points.filter_map(|point| Some(unit.of(*point.values.get(column)?)));
-        let (least, greatest) = extent(values);
-        // markers at both ends are not cut
-        let room = ROOM * (greatest - least);
-        (Axis::fit_linear(unit.title(&title), [least - room, greatest + room]), unit)
-    };
-    let (x, x_unit) = axis(0);
-    let panels = (1..input.columns.len()).map(|column| {
-        let (y, y_unit) = axis(column);
-        Panel { y, height: 260.0, marks: marks(input, column, [x_unit, y_unit]) }
-    });
-    let panels = panels.collect();
-    words.with_scene(Plot { x, panels, legend: legend(input), equal_aspect: false }.draw())
+impl ParetoFront {
+    /// Draws the figure.
+    pub fn draw(&self, words: &Words) -> Figure {
+        let axis = |column: usize| {
+            let (title, unit) =
+                self.columns.get(column).cloned().unwrap_or((String::new(), DisplayUnit::ONE));
+            let points = self.curves.iter().flat_map(|curve| &curve.points);
+            let values = points.filter_map(|point| Some(unit.of(*point.values.get(column)?)));
+            let (least, greatest) = extent(values);
+            // markers at both ends are not cut
+            let room = ROOM * (greatest - least);
+            (Axis::fit_linear(unit.title(&title), [least - room, greatest + room]), unit)
+        };
+        let (x, x_unit) = axis(0);
+        let panels = (1..self.columns.len()).map(|column| {
+            let (y, y_unit) = axis(column);
+            Panel { y, height: 260.0, marks: self.marks(column, [x_unit, y_unit]) }
+        });
+        let panels = panels.collect();
+        words.with_plot(x, panels, self.legend())
+    }
+
+    fn marks(&self, column: usize, [x_unit, y_unit]: [DisplayUnit; 2]) -> Vec<Mark> {
+        let mut marks = Vec::new();
+        let at = |point: &ParetoPoint| {
+            Some((x_unit.of(*point.values.first()?), y_unit.of(*point.values.get(column)?)))
+        };
+        for (index, curve) in self.curves.iter().enumerate() {
+            let points = curve.points.iter().filter_map(at).collect();
+            marks.push(Mark::Line { points, stroke: series_stroke(index) });
+        }
+        for (index, curve) in self.curves.iter().enumerate() {
+            for point in &curve.points {
+                let Some((x, y)) = at(point) else { continue };
+                let points = vec![(x, y, format!("{}, {}", curve.name, point.label))];
+                marks.push(Mark::Markers { points, style: style(point.place, series_role(index)) });
+            }
+        }
+        marks
+    }
+
+    fn legend(&self) -> Vec<LegendEntry> {
+        let mut legend = LegendEntry::of_series(self.curves.iter().map(|curve| &curve.name));
+        let places = [
+            (FrontPlace::OnFront, "on the front"),
+            (FrontPlace::Dominated, "dominated"),
+            (FrontPlace::NotToBeHad, "not satisfied, or contradicted by the machine"),
+        ];
+        let used = |place: FrontPlace| {
+            self.curves.iter().flat_map(|curve| &curve.points).any(|point| point.place == place)
+        };
+        let places = places.into_iter().filter(|(place, _)| used(*place));
+        legend.extend(places.map(|(place, words)| LegendEntry::marker(words, style(place, Role::Axis))));
+        legend
+    }
 }
 
 fn style(place: FrontPlace, role: Role) -> MarkerStyle {
@@ -76,40 +113,4 @@ fn style(place: FrontPlace, role: Role) -> MarkerStyle {
         FrontPlace::Dominated => MarkerStyle { marker: Marker::Ring, role, radius: 4.5 },
         FrontPlace::NotToBeHad => MarkerStyle { marker: Marker::Cross, role, radius: 4.5 },
     }
-}
-
-fn marks(input: &ParetoInput, column: usize, [x_unit, y_unit]: [DisplayUnit; 2]) -> Vec<Mark> {
-    let mut marks = Vec::new();
-    let at = |point: &ParetoPoint| {
-        Some((x_unit.of(*point.values.first()?), y_unit.of(*point.values.get(column)?)))
-    };
-    for (index, curve) in input.curves.iter().enumerate() {
-        let points = curve.points.iter().filter_map(at).collect();
-        marks.push(Mark::Line { points, stroke: series_stroke(index) });
-    }
-    for (index, curve) in input.curves.iter().enumerate() {
-        for point in &curve.points {
-            let Some((x, y)) = at(point) else { continue };
-            let points = vec![(x, y, format!("{}, {}", curve.name, point.label))];
-            marks.push(Mark::Markers { points, style: style(point.place, series_role(index)) });
-        }
-    }
-    marks
-}
-
-fn legend(input: &ParetoInput) -> Vec<LegendEntry> {
-    let curves = input.curves.iter().enumerate();
-    let mut legend: Vec<LegendEntry> =
-        curves.map(|(index, curve)| LegendEntry::line(&curve.name, series_stroke(index))).collect();
-    let places = [
-        (FrontPlace::OnFront, "on the front"),
-        (FrontPlace::Dominated, "dominated"),
-        (FrontPlace::NotToBeHad, "not satisfied, or contradicted by the machine"),
-    ];
-    let used = |place: FrontPlace| {
-        input.curves.iter().flat_map(|curve| &curve.points).any(|point| point.place == place)
-    };
-    let places = places.into_iter().filter(|(place, _)| used(*place));
-    legend.extend(places.map(|(place, words)| LegendEntry::marker(words, style(place, Role::Axis))));
-    legend
 }

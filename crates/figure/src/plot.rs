@@ -10,7 +10,7 @@ pub(crate) use paint::draw_marker;
 use super::axis::Axis;
 use super::colour::Role;
 use super::legend::LegendEntry;
-use super::scene::{Fill, Scene, Stroke};
+use super::scene::{Dash, Fill, Scene, Stroke};
 
 /// Form of a marker.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -142,6 +142,28 @@ pub enum Mark {
         /// The side tried first.
         side: PointSide,
     },
+}
+
+impl Mark {
+    /// A straight line across the panel, with a text next to it.
+    pub(crate) fn reference(
+        direction: AxisDirection,
+        at: f64,
+        stroke: Stroke,
+        label: impl Into<String>,
+    ) -> Mark {
+        Mark::Reference { direction, at, stroke, label: label.into() }
+    }
+
+    /// A thin dotted one.
+    pub(crate) fn dotted(direction: AxisDirection, at: f64, label: impl Into<String>) -> Mark {
+        Mark::reference(direction, at, Stroke::solid(Role::Muted, 1.2).dashed(Dash::Dotted), label)
+    }
+
+    /// A band across the panel without a text.
+    pub(crate) const fn band(direction: AxisDirection, [from, to]: [f64; 2], fill: Fill) -> Mark {
+        Mark::Band { direction, from, to, fill, hatched: false, label: String::new() }
+    }
 }
 
 /// Which axis a value belongs to.

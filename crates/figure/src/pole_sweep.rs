@@ -6,7 +6,7 @@ use phea_dynamics::portable::magnitude;
 use super::axis::{Axis, Scale, extent};
 use super::colour::{series_role, series_stroke};
 use super::legend::LegendEntry;
-use super::plot::{Mark, Marker, MarkerStyle, Panel, Plot};
+use super::plot::{Mark, Marker, MarkerStyle, Panel};
 use super::{Figure, Words};
 use phea_quantity::DisplayUnit;
 
@@ -23,9 +23,9 @@ pub struct PoleSweepPoint {
     pub bandwidth_rad_per_s: Option<f64>,
 }
 
-/// What the figure shows.
+/// Poles, damping and stiffness over a number.
 #[derive(Clone, Debug, PartialEq)]
-pub struct PoleSweepInput {
+pub struct PoleSweep {
     /// What is swept.
     pub quantity: String,
     /// Its unit.
@@ -38,93 +38,98 @@ pub struct PoleSweepInput {
     pub points: Vec<PoleSweepPoint>,
 }
 
-/// Draws the figure.
-pub fn pole_sweep(words: Words, input: &PoleSweepInput) -> Figure {
-    let (from, to) = extent(input.points.iter().map(|point| input.unit.of(point.value)));
-    let title = input.unit.title(&input.quantity);
-    let x = if input.by_ratio && from > 0.0 {
-        Axis::logarithmic(title, from, to)
-    } else {
-        Axis::linear(title, from, to)
-    };
-    let mut panels = vec![poles(input), damping(input), stiffness(input)];
-    // markers at both ends are not cut
-    let room = if x.scale == Scale::Linear { 0.02 * (to - from) } else { 0.0 };
-    let x = Axis { minimum: x.minimum - room, maximum: x.maximum + room, ..x };
-    panels.retain(|panel| !panel.marks.is_empty());
-    words.with_scene(Plot { x, panels, legend: legend(input), equal_aspect: false }.draw())
+impl PoleSweep {
+    /// Draws the figure.
+    pub fn draw(&self, words: &Words) -> Figure {
+        let (from, to) = extent(self.points.iter().map(|point| self.unit.of(point.value)));
+        let title = self.unit.title(&self.quantity);
+        let x = if self.by_ratio && from > 0.0 {
+            Axis::logarithmic(title, from, to)
+        } else {
+            Axis::linear(title, from, to)
+        };
+        let mut panels = vec![self.poles(), self.damping(), self.stiffness()];
+        // markers at both ends are not cut
+        let room = if x.scale == Scale::Linear { 0.02 * (to - from) } else { 0.0 };
+        let x = Axis { minimum: x.minimum - room, maximum: x.maximum + room, ..x };
+        panels.retain(|panel| !panel.marks.is_empty());
+        words.with_plot(x, panels, self.legend())
+    }
+
+    /// Of each value, the pairs of the upper half plane.
+    fn each(&self) -> impl Iterator<Item = (f64, Complex64)> {
+        self.points.iter().flat_map(|point| {
+            let upper = point.poles.iter().filter(|pole| pole.im >= 0.0);
+            upper.map(|pole| (self.unit.of(point.value), *pole))
+        })
+    }
+
+    fn poles(&self) -> Panel {
+        let markers = |complex: bool, style: MarkerStyle| {
+            let chosen = self.each().filter(|(_, pole)| (pole.im > 0.0) == complex);
+            let points = chosen.map(|(value, pole)| (value, magnitude(pole), String::new())).collect();
+            Mark::Markers { points, style }
+        };
+        let bandwidth: Vec<(f64, f64)> = self.bandwidths().collect();
+        let values =
+            self.each().map(|(_, pole)| magnitude(pole)).chain(bandwidth.iter().map(|point| point.1));
+        let y = Axis::fit_logarithmic("Pole, rad/s", values.filter(|value| *value > 0.0));
+        let mut marks = Vec::new();
+        if !bandwidth.is_empty() {
+            marks.push(Mark::Line { points: bandwidth, stroke: series_stroke(BANDWIDTH) });
+        }
+        marks.extend([markers(false, REAL), markers(true, COMPLEX)]);
+        Panel { y, height: 230.0, marks }
+    }
+
+    fn bandwidths(&self) -> impl Iterator<Item = (f64, f64)> {
+        self.points.iter().filter_map(|point| Some((self.unit.of(point.value), point.bandwidth_rad_per_s?)))
+    }
+
+    fn damping(&self) -> Panel {
+        let of_pair = self.each().filter(|(_, pole)| pole.im > 0.0);
+        let ratios: Vec<(f64, f64)> =
+            of_pair.map(|(value, pole)| (value, -pole.re / magnitude(pole))).collect();
+        let values = ratios.iter().map(|point| point.1);
+        // a ringing pair and a well damped one lie decades apart; a pair that grows has no logarithm
+        let y = match ratios.iter().all(|point| point.1 > 0.0) {
+            true => Axis::fit_logarithmic("Damping ratio ζ", values),
+            false => Axis::fit_linear("Damping ratio ζ", values.chain([0.0])),
+        };
+        let points: Vec<_> = ratios.into_iter().map(|(value, ratio)| (value, ratio, String::new())).collect();
+        let marks = if points.is_empty() { vec![] } else { vec![Mark::Markers { points, style: COMPLEX }] };
+        Panel { y, height: 110.0, marks }
+    }
+
+    fn stiffness(&self) -> Panel {
+        let unit = self.stiffness_unit;
+        let line = |end: usize, index: usize| {
+            let points = self.points.iter();
+            let points: Vec<(f64, f64)> = points
+                .map(|point| (self.unit.of(point.value), unit.of(point.stiffness_n_per_m[end])))
+                .collect();
+            Mark::Line { points, stroke: series_stroke(index) }
+        };
+        let values = self.points.iter().flat_map(|point| point.stiffness_n_per_m).map(|value| unit.of(value));
+        let y = Axis::fit_linear(unit.title("K_H"), values.chain([0.0]));
+        Panel { y, height: 130.0, marks: vec![line(0, LEAST), line(1, GREATEST)] }
+    }
+
+    fn legend(&self) -> Vec<LegendEntry> {
+        let mut legend =
+            vec![LegendEntry::marker("real pole", REAL), LegendEntry::marker("pair of poles, |p|", COMPLEX)];
+        if self.bandwidths().next().is_some() {
+            legend.push(LegendEntry::line("bandwidth of the loop", series_stroke(BANDWIDTH)));
+        }
+        legend.push(LegendEntry::line("least K_H", series_stroke(LEAST)));
+        legend.push(LegendEntry::line("greatest K_H", series_stroke(GREATEST)));
+        legend
+    }
 }
 
 const REAL: MarkerStyle = MarkerStyle { marker: Marker::Cross, role: series_role(0), radius: 4.5 };
 const COMPLEX: MarkerStyle = MarkerStyle { marker: Marker::Circle, role: series_role(1), radius: 3.5 };
 const BANDWIDTH: usize = 2;
 
-/// Of each value, the pairs of the upper half plane.
-fn each<'a>(input: &'a PoleSweepInput) -> impl Iterator<Item = (f64, Complex64)> + 'a {
-    input.points.iter().flat_map(|point| {
-        let upper = point.poles.iter().filter(|pole| pole.im >= 0.0);
-        upper.map(|pole| (input.unit.of(point.value), *pole))
-    })
-}
-
-fn poles(input: &PoleSweepInput) -> Panel {
-    let markers = |complex: bool, style: MarkerStyle| {
-        let chosen = each(input).filter(|(_, pole)| (pole.im > 0.0) == complex);
-        let points = chosen.map(|(value, pole)| (value, magnitude(pole), String::new())).collect();
-        Mark::Markers { points, style }
-    };
-    let bandwidth: Vec<(f64, f64)> = bandwidths(input).collect();
-    let values = each(input).map(|(_, pole)| magnitude(pole)).chain(bandwidth.iter().map(|point| point.1));
-    let y = Axis::fit_logarithmic("Pole, rad/s", values.filter(|value| *value > 0.0));
-    let mut marks = Vec::new();
-    if !bandwidth.is_empty() {
-        marks.push(Mark::Line { points: bandwidth, stroke: series_stroke(BANDWIDTH) });
-    }
-    marks.extend([markers(false, REAL), markers(true, COMPLEX)]);
-    Panel { y, height: 230.0, marks }
-}
-
-fn bandwidths(input: &PoleSweepInput) -> impl Iterator<Item = (f64, f64)> + '_ {
-    input.points.iter().filter_map(|point| Some((input.unit.of(point.value), point.bandwidth_rad_per_s?)))
-}
-
-fn damping(input: &PoleSweepInput) -> Panel {
-    let of_pair = each(input).filter(|(_, pole)| pole.im > 0.0);
-    let ratios: Vec<(f64, f64)> = of_pair.map(|(value, pole)| (value, -pole.re / magnitude(pole))).collect();
-    let values = ratios.iter().map(|point| point.1);
-    // a ringing pair and a well damped one lie decades apart; a pair that grows has no logarithm
-    let y = match ratios.iter().all(|point| point.1 > 0.0) {
-        true => Axis::fit_logarithmic("Damping ratio ζ", values),
-        false => Axis::fit_linear("Damping ratio ζ", values.chain([0.0])),
-    };
-    let points: Vec<_> = ratios.into_iter().map(|(value, ratio)| (value, ratio, String::new())).collect();
-    let marks = if points.is_empty() { vec![] } else { vec![Mark::Markers { points, style: COMPLEX }] };
-    Panel { y, height: 110.0, marks }
-}
-
-fn stiffness(input: &PoleSweepInput) -> Panel {
-    let unit = input.stiffness_unit;
-    let line = |end: usize, index: usize| {
-        let points = input.points.iter();
-        let points: Vec<(f64, f64)> =
-            points.map(|point| (input.unit.of(point.value), unit.of(point.stiffness_n_per_m[end]))).collect();
-        Mark::Line { points, stroke: series_stroke(index) }
-    };
-    let values = input.points.iter().flat_map(|point| point.stiffness_n_per_m).map(|value| unit.of(value));
-    let y = Axis::fit_linear(unit.title("K_H"), values.chain([0.0]));
-    Panel { y, height: 130.0, marks: vec![line(0, LEAST), line(1, GREATEST)] }
-}
-
 const LEAST: usize = 3;
 const GREATEST: usize = 4;
-
-fn legend(input: &PoleSweepInput) -> Vec<LegendEntry> {
-    let mut legend =
-        vec![LegendEntry::marker("real pole", REAL), LegendEntry::marker("pair of poles, |p|", COMPLEX)];
-    if bandwidths(input).next().is_some() {
-        legend.push(LegendEntry::line("bandwidth of the loop", series_stroke(BANDWIDTH)));
-    }
-    legend.push(LegendEntry::line("least K_H", series_stroke(LEAST)));
-    legend.push(LegendEntry::line("greatest K_H", series_stroke(GREATEST)));
-    legend
-}

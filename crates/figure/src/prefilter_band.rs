@@ -5,7 +5,7 @@ use super::axis::{Axis, extent};
 use super::colour::{Role, series_role};
 use super::family_magnitude::excess;
 use super::legend::LegendEntry;
-use super::plot::{Mark, Panel, Plot};
+use super::plot::{Mark, Panel};
 use super::scene::{Dash, Fill, Stroke};
 use super::{Figure, Words};
 
@@ -36,7 +36,7 @@ const DEPTH_DB: f64 = 60.0;
 
 /// Draws a panel for each loop, all with the same axes. Where the smallest magnitude is above the
 /// largest, no prefilter satisfies the limits.
-pub fn prefilter_band(words: Words, panels: &[PrefilterPanel]) -> Figure {
+pub fn prefilter_band(words: &Words, panels: &[PrefilterPanel]) -> Figure {
     let all = || panels.iter().flat_map(|panel| &panel.points);
     let x = Axis::fit_logarithmic("Frequency (rad/s)", all().map(|point| point.frequency_rad_per_s));
     let values = all().flat_map(|point| [Some(point.least_db), Some(point.greatest_db), point.prefilter_db]);
@@ -53,7 +53,7 @@ pub fn prefilter_band(words: Words, panels: &[PrefilterPanel]) -> Figure {
         Panel { y, height, marks }
     };
     let panels_drawn = panels.iter().enumerate().map(panel).collect();
-    words.with_scene(Plot { x, panels: panels_drawn, legend: legend(panels), equal_aspect: false }.draw())
+    words.with_plot(x, panels_drawn, legend(panels))
 }
 
 fn title(name: &str) -> String {

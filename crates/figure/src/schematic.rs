@@ -14,7 +14,7 @@ mod pen;
 mod symbols;
 mod test_circuit;
 
-pub use test_circuit::{TestCircuitInput, TestPorts, test_circuit};
+pub use test_circuit::{TestCircuit, TestPorts};
 
 use phea_quantity::MotionKind;
 
@@ -130,9 +130,9 @@ pub struct ControllerSymbol {
     pub rows: Vec<String>,
 }
 
-/// What the diagram shows.
+/// A rig with its controller, in symbols.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct SchematicInput {
+pub struct Schematic {
     /// Supply.
     pub supply: SupplyKind,
     /// Label of the supply, such as `70 bar`; two rows at most.
@@ -178,35 +178,37 @@ pub struct SchematicInput {
 /// are.
 pub const STAGES: usize = 3;
 
-/// As low as the supply or the words of the controller reach.
-fn height(input: &SchematicInput) -> f64 {
-    let rows = input.controller.as_ref().map_or(0, |controller| controller.rows.len().min(3));
-    let words = symbols::CONTROLLER_ROWS + pen::ROW * rows as f64 + 4.0;
-    let supply: f64 = match input.supply {
-        SupplyKind::ConstantPressure => 340.0,
-        SupplyKind::Pump => 368.0,
-    };
-    supply.max(words)
-}
+impl Schematic {
+    /// Draws the diagram.
+    pub fn draw(&self, words: &Words) -> Figure {
+        let mut scene = Scene::new(WIDTH, self.height());
+        symbols::supply(&mut scene, self);
+        symbols::working_lines(&mut scene, self);
+        if let Some(symbol) = &self.cross_port {
+            let has_room = [&self.line_a, &self.line_b].iter().all(|line| line.accumulator.is_none());
+            cross_port::cross_port(&mut scene, symbol, has_room);
+        }
+        symbols::valve(&mut scene, self);
+        if self.motion.is_rotary() {
+            motor::motor(&mut scene, self);
+        } else {
+            mechanics::cylinder(&mut scene, self);
+        }
+        mechanics::load(&mut scene, self);
+        if let Some(controller) = &self.controller {
+            symbols::controller(&mut scene, controller, self);
+        }
+        words.with_scene(scene)
+    }
 
-/// Draws the diagram.
-pub fn schematic(words: Words, input: &SchematicInput) -> Figure {
-    let mut scene = Scene::new(WIDTH, height(input));
-    symbols::supply(&mut scene, input);
-    symbols::working_lines(&mut scene, input);
-    if let Some(symbol) = &input.cross_port {
-        let has_room = [&input.line_a, &input.line_b].iter().all(|line| line.accumulator.is_none());
-        cross_port::cross_port(&mut scene, symbol, has_room);
+    /// As low as the supply or the words of the controller reach.
+    fn height(&self) -> f64 {
+        let rows = self.controller.as_ref().map_or(0, |controller| controller.rows.len().min(3));
+        let words = symbols::CONTROLLER_ROWS + pen::ROW * rows as f64 + 4.0;
+        let supply: f64 = match self.supply {
+            SupplyKind::ConstantPressure => 340.0,
+            SupplyKind::Pump => 368.0,
+        };
+        supply.max(words)
     }
-    symbols::valve(&mut scene, input);
-    if input.motion.is_rotary() {
-        motor::motor(&mut scene, input);
-    } else {
-        mechanics::cylinder(&mut scene, input);
-    }
-    mechanics::load(&mut scene, input);
-    if let Some(controller) = &input.controller {
-        symbols::controller(&mut scene, controller, input);
-    }
-    words.with_scene(scene)
 }

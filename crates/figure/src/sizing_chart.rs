@@ -4,7 +4,7 @@
 use super::axis::Axis;
 use super::colour::{Role, series_stroke};
 use super::legend::LegendEntry;
-use super::plot::{AxisDirection, Mark, Panel, Plot, PointSide};
+use super::plot::{AxisDirection, Mark, Panel, PointSide};
 use super::scene::{Dash, Fill, Stroke};
 use super::{CandidateVerdict, Figure, Words};
 use phea_quantity::DisplayUnit;
@@ -38,9 +38,9 @@ pub struct SizingCandidate {
     pub verdict: CandidateVerdict,
 }
 
-/// What the chart shows.
+/// Stiffness and gain over the length, with what was examined.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct SizingChartInput {
+pub struct SizingChart {
     /// Curves.
     pub curves: Vec<SizingCurve>,
     /// Candidates.
@@ -53,114 +53,100 @@ pub struct SizingChartInput {
     pub pole_gain_v_per_n: Option<f64>,
 }
 
-/// Draws the chart.
-pub fn sizing_chart(words: Words, input: &SizingChartInput) -> Figure {
-    let (stiffness, gain) = (DisplayUnit::MEGANEWTON_PER_METRE, DisplayUnit::MILLIVOLT_PER_NEWTON);
-    let lengths = input.curves.iter().flat_map(|c| c.lengths_m.iter().copied());
-    let x = Axis::fit_logarithmic(
-        "Length of one line (m)",
-        lengths.chain(input.candidates.iter().map(|c| c.length_m)),
-    );
-    let stiffnesses = input.curves.iter().flat_map(|c| c.stiffness_n_per_m.iter());
-    let gains = input.curves.iter().flat_map(|c| c.gain_v_per_n.iter());
-    let floors = input.minimum_gain_v_per_n.iter().chain(&input.pole_gain_v_per_n);
-    let upper = Panel {
-        y: Axis::fit_logarithmic(
-            stiffness.title("K_H"),
-            stiffnesses
-                .copied()
-                .chain(input.candidates.iter().map(|c| c.stiffness_n_per_m))
-                .map(|v| stiffness.of(v)),
-        ),
-        height: 190.0,
-        marks: panel_marks(input, |c| &c.stiffness_n_per_m, |c| c.stiffness_n_per_m, stiffness, true),
-    };
-    let mut lower = Panel {
-        y: Axis::fit_logarithmic(
-            gain.title("K_p"),
-            gains
-                .chain(floors)
-                .copied()
-                .chain(input.candidates.iter().map(|c| c.gain_v_per_n))
-                .map(|v| gain.of(v)),
-        ),
-        height: 190.0,
-        marks: panel_marks(input, |c| &c.gain_v_per_n, |c| c.gain_v_per_n, gain, false),
-    };
-    gain_limits(&mut lower.marks, input);
-    let plot = Plot { x, panels: vec![upper, lower], legend: legend(input), equal_aspect: false };
-    words.with_scene(plot.draw())
-}
+impl SizingChart {
+    /// Draws the chart.
+    pub fn draw(&self, words: &Words) -> Figure {
+        let (stiffness, gain) = (DisplayUnit::MEGANEWTON_PER_METRE, DisplayUnit::MILLIVOLT_PER_NEWTON);
+        let lengths = self.curves.iter().flat_map(|c| c.lengths_m.iter().copied());
+        let x = Axis::fit_logarithmic(
+            "Length of one line (m)",
+            lengths.chain(self.candidates.iter().map(|c| c.length_m)),
+        );
+        let stiffnesses = self.curves.iter().flat_map(|c| c.stiffness_n_per_m.iter());
+        let gains = self.curves.iter().flat_map(|c| c.gain_v_per_n.iter());
+        let floors = self.minimum_gain_v_per_n.iter().chain(&self.pole_gain_v_per_n);
+        let upper = Panel {
+            y: Axis::fit_logarithmic(
+                stiffness.title("K_H"),
+                stiffnesses
+                    .copied()
+                    .chain(self.candidates.iter().map(|c| c.stiffness_n_per_m))
+                    .map(|v| stiffness.of(v)),
+            ),
+            height: 190.0,
+            marks: self.panel_marks(|c| &c.stiffness_n_per_m, |c| c.stiffness_n_per_m, stiffness, true),
+        };
+        let mut lower = Panel {
+            y: Axis::fit_logarithmic(
+                gain.title("K_p"),
+                gains
+                    .chain(floors)
+                    .copied()
+                    .chain(self.candidates.iter().map(|c| c.gain_v_per_n))
+                    .map(|v| gain.of(v)),
+            ),
+            height: 190.0,
+            marks: self.panel_marks(|c| &c.gain_v_per_n, |c| c.gain_v_per_n, gain, false),
+        };
+        self.gain_limits(&mut lower.marks);
+        words.with_plot(x, vec![upper, lower], self.legend())
+    }
 
-fn panel_marks(
-    input: &SizingChartInput,
-    curve_values: impl Fn(&SizingCurve) -> &Vec<f64>,
-    candidate_value: impl Fn(&SizingCandidate) -> f64,
-    unit: DisplayUnit,
-    named: bool,
-) -> Vec<Mark> {
-    let mut marks = Vec::new();
-    if let Some((from, to)) = input.length_range_m {
-        marks.push(Mark::Band {
-            direction: AxisDirection::X,
-            from,
-            to,
-            fill: Fill::tint(Role::Good),
-            hatched: false,
-            label: String::new(),
-        });
+    fn panel_marks(
+        &self,
+        curve_values: impl Fn(&SizingCurve) -> &Vec<f64>,
+        candidate_value: impl Fn(&SizingCandidate) -> f64,
+        unit: DisplayUnit,
+        named: bool,
+    ) -> Vec<Mark> {
+        let mut marks = Vec::new();
+        if let Some((from, to)) = self.length_range_m {
+            marks.push(Mark::band(AxisDirection::X, [from, to], Fill::tint(Role::Good)));
+        }
+        for (index, curve) in self.curves.iter().enumerate() {
+            let values = curve_values(curve).iter().map(|v| unit.of(*v));
+            let points = curve.lengths_m.iter().copied().zip(values).collect();
+            marks.push(Mark::Line { points, stroke: series_stroke(index) });
+        }
+        for candidate in &self.candidates {
+            let y = unit.of(candidate_value(candidate));
+            let note = format!("{} ({})", candidate.label, candidate.verdict.label());
+            let points = vec![(candidate.length_m, y, note)];
+            marks.push(Mark::Markers { points, style: candidate.verdict.marker() });
+        }
+        for candidate in self.candidates.iter().filter(|c| named && !c.label.is_empty()) {
+            let at = (candidate.length_m, unit.of(candidate_value(candidate)));
+            let role = candidate.verdict.role();
+            marks.push(Mark::Label {
+                at: vec![at],
+                text: candidate.label.clone(),
+                role,
+                side: PointSide::Above,
+            });
+        }
+        marks
     }
-    for (index, curve) in input.curves.iter().enumerate() {
-        let values = curve_values(curve).iter().map(|v| unit.of(*v));
-        let points = curve.lengths_m.iter().copied().zip(values).collect();
-        marks.push(Mark::Line { points, stroke: series_stroke(index) });
-    }
-    for candidate in &input.candidates {
-        let y = unit.of(candidate_value(candidate));
-        let note = format!("{} ({})", candidate.label, candidate.verdict.label());
-        let points = vec![(candidate.length_m, y, note)];
-        marks.push(Mark::Markers { points, style: candidate.verdict.marker() });
-    }
-    for candidate in input.candidates.iter().filter(|c| named && !c.label.is_empty()) {
-        let at = (candidate.length_m, unit.of(candidate_value(candidate)));
-        let role = candidate.verdict.role();
-        marks.push(Mark::Label { at: vec![at], text: candidate.label.clone(), role, side: PointSide::Above });
-    }
-    marks
-}
 
-fn gain_limits(marks: &mut Vec<Mark>, input: &SizingChartInput) {
-    let unit = DisplayUnit::MILLIVOLT_PER_NEWTON;
-    if let Some(floor) = input.minimum_gain_v_per_n {
-        marks.push(Mark::Reference {
-            direction: AxisDirection::Y,
-            at: unit.of(floor),
-            stroke: Stroke::solid(Role::Warning, 1.6).dashed(Dash::LongDash),
-            label: "smallest gain".to_string(),
-        });
+    fn gain_limits(&self, marks: &mut Vec<Mark>) {
+        let unit = DisplayUnit::MILLIVOLT_PER_NEWTON;
+        if let Some(floor) = self.minimum_gain_v_per_n {
+            let stroke = Stroke::solid(Role::Warning, 1.6).dashed(Dash::LongDash);
+            marks.push(Mark::reference(AxisDirection::Y, unit.of(floor), stroke, "smallest gain"));
+        }
+        if let Some(pole) = self.pole_gain_v_per_n {
+            let stroke = Stroke::solid(Role::Bad, 1.6).dashed(Dash::DashDot);
+            marks.push(Mark::reference(AxisDirection::Y, unit.of(pole), stroke, "K_H infinite"));
+        }
     }
-    if let Some(pole) = input.pole_gain_v_per_n {
-        marks.push(Mark::Reference {
-            direction: AxisDirection::Y,
-            at: unit.of(pole),
-            stroke: Stroke::solid(Role::Bad, 1.6).dashed(Dash::DashDot),
-            label: "K_H infinite".to_string(),
-        });
-    }
-}
 
-fn legend(input: &SizingChartInput) -> Vec<LegendEntry> {
-    let mut legend: Vec<LegendEntry> = input
-        .curves
-        .iter()
-        .enumerate()
-        .map(|(index, curve)| LegendEntry::line(&curve.name, series_stroke(index)))
-        .collect();
-    let used = |verdict: &CandidateVerdict| input.candidates.iter().any(|c| c.verdict == *verdict);
-    let verdicts = CandidateVerdict::ALL.into_iter().filter(used);
-    legend.extend(verdicts.map(|verdict| LegendEntry::marker(verdict.label(), verdict.marker())));
-    if input.length_range_m.is_some() {
-        legend.push(LegendEntry::area("acceptable length", Fill::tint(Role::Good)));
+    fn legend(&self) -> Vec<LegendEntry> {
+        let mut legend = LegendEntry::of_series(self.curves.iter().map(|curve| &curve.name));
+        let used = |verdict: &CandidateVerdict| self.candidates.iter().any(|c| c.verdict == *verdict);
+        let verdicts = CandidateVerdict::ALL.into_iter().filter(used);
+        legend.extend(verdicts.map(|verdict| LegendEntry::marker(verdict.label(), verdict.marker())));
+        if self.length_range_m.is_some() {
+            legend.push(LegendEntry::area("acceptable length", Fill::tint(Role::Good)));
+        }
+        legend
     }
-    legend
 }

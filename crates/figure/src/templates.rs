@@ -4,11 +4,11 @@ use num_complex::Complex64;
 use phea_qft::template::Template;
 
 use super::axis::Axis;
-use super::bode::unwrapped_degrees;
+use super::bode::{decibel, unwrapped_degrees};
 use super::colour::{Role, ramp_role};
 use super::legend::LegendEntry;
-use super::open_loop::{decibel, decibel_axis, phase_near};
-use super::plot::{Mark, Marker, MarkerStyle, Panel, Plot};
+use super::open_loop::{decibel_axis, phase_near};
+use super::plot::{Mark, Marker, MarkerStyle, Panel};
 use super::scene::{Fill, Stroke};
 use super::ticks::plain;
 use super::{Figure, Words};
@@ -28,10 +28,10 @@ use super::{Figure, Words};
 ///     outlines: vec![],
 ///     resolution: Resolution::Members,
 /// };
-/// let figure = templates(Words::new("plants", "Templates", "Plants at 10 rad/s"), &[template]);
+/// let figure = templates(&Words::new("plants", "Templates", "Plants at 10 rad/s"), &[template]);
 /// assert!(figure.to_svg_inline().contains(">10 rad/s<"));
 /// ```
-pub fn templates(words: Words, templates: &[Template]) -> Figure {
+pub fn templates(words: &Words, templates: &[Template]) -> Figure {
     let placed: Vec<PlacedTemplate> = templates
         .iter()
         .enumerate()
@@ -58,7 +58,7 @@ pub fn templates(words: Words, templates: &[Template]) -> Figure {
         let stroke = Some(Stroke::solid(Role::Muted, OUTLINE));
         legend.push(LegendEntry { stroke, ..LegendEntry::area("region filled by the family", fill) });
     }
-    words.with_scene(Plot { x, panels, legend, equal_aspect: false }.draw())
+    words.with_plot(x, panels, legend)
 }
 
 /// Between a template and the frame, degrees.

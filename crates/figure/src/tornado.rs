@@ -23,9 +23,9 @@ pub struct TornadoBar {
     pub high_value: f64,
 }
 
-/// What the figure shows.
+/// How far a result moves with each parameter.
 #[derive(Clone, Debug, PartialEq)]
-pub struct TornadoInput {
+pub struct Tornado {
     /// The result, such as `Hydraulic stiffness K_H`.
     pub quantity: String,
     /// Its unit.
@@ -40,30 +40,92 @@ const ROW: f64 = 34.0;
 const BAR: f64 = 18.0;
 const TOP: f64 = 26.0;
 
-/// Draws the bars; a bar whose values are not finite is left out.
-pub fn tornado(words: Words, input: &TornadoInput) -> Figure {
-    let mut bars: Vec<&TornadoBar> =
-        input.bars.iter().filter(|bar| is_drawable(bar, input.nominal)).collect();
-    let span = |bar: &TornadoBar| {
-        let ends = [bar.low_value, bar.high_value, input.nominal];
-        ends.into_iter().fold(f64::NEG_INFINITY, f64::max) - ends.into_iter().fold(f64::INFINITY, f64::min)
-    };
-    bars.sort_by(|a, b| span(b).total_cmp(&span(a)));
-    let frame = frame(&bars);
-    let axis = axis(input, &bars, frame);
-    let entries = [
-        LegendEntry::area("parameter at its low setting", fill(false)),
-        LegendEntry::area("at its high setting", fill(true)),
-    ];
-    let below = frame.bottom + 9.0 + LABEL_SIZE + 8.0 + TITLE_SIZE + 8.0;
-    let mut scene = Scene::new(WIDTH, (below + legend::height(&entries, WIDTH - 16.0) + 8.0).ceil());
-    scale(&mut scene, &axis, frame);
-    for (index, bar) in bars.iter().enumerate() {
-        draw_bar(&mut scene, bar, input, &axis, frame, index);
+impl Tornado {
+    /// Draws the bars; a bar whose values are not finite is left out.
+    pub fn draw(&self, words: &Words) -> Figure {
+        let mut bars: Vec<&TornadoBar> =
+            self.bars.iter().filter(|bar| is_drawable(bar, self.nominal)).collect();
+        let span = |bar: &TornadoBar| {
+            let ends = [bar.low_value, bar.high_value, self.nominal];
+            ends.into_iter().fold(f64::NEG_INFINITY, f64::max)
+                - ends.into_iter().fold(f64::INFINITY, f64::min)
+        };
+        bars.sort_by(|a, b| span(b).total_cmp(&span(a)));
+        let frame = frame(&bars);
+        let axis = self.axis(&bars, frame);
+        let entries = [
+            LegendEntry::area("parameter at its low setting", fill(false)),
+            LegendEntry::area("at its high setting", fill(true)),
+        ];
+        let below = frame.bottom + 9.0 + LABEL_SIZE + 8.0 + TITLE_SIZE + 8.0;
+        let mut scene = Scene::new(WIDTH, (below + legend::height(&entries, WIDTH - 16.0) + 8.0).ceil());
+        scale(&mut scene, &axis, frame);
+        for (index, bar) in bars.iter().enumerate() {
+            self.draw_bar(&mut scene, bar, &axis, frame, index);
+        }
+        self.nominal_line(&mut scene, &axis, frame);
+        legend::draw(&mut scene, &entries, frame.left.min(70.0), below, WIDTH - 16.0);
+        words.with_scene(scene)
     }
-    nominal_line(&mut scene, input, &axis, frame);
-    legend::draw(&mut scene, &entries, frame.left.min(70.0), below, WIDTH - 16.0);
-    words.with_scene(scene)
+
+    /// An axis with room for the labels at the ends of the longest bars.
+    fn axis(&self, bars: &[&TornadoBar], frame: Rectangle) -> Axis {
+        let (mut low, mut high) = (self.nominal, self.nominal);
+        let (mut before, mut after) = (12.0_f64, 12.0_f64);
+        for (value, _, words) in bars.iter().flat_map(|bar| ends(bar, self.nominal)) {
+            (low, high) = (low.min(value), high.max(value));
+            let room = typeset::width(&words, SMALL_SIZE).min(0.3 * frame.width()) + 12.0;
+            if value < self.nominal {
+                before = before.max(room);
+            } else {
+                after = after.max(room);
+            }
+        }
+        let per_unit = (high - low) / (frame.width() - before - after);
+        let (minimum, maximum) = (low - before * per_unit, high + after * per_unit);
+        Axis::linear(self.unit.title(&self.quantity), self.unit.of(minimum), self.unit.of(maximum))
+    }
+
+    fn draw_bar(&self, scene: &mut Scene, bar: &TornadoBar, axis: &Axis, frame: Rectangle, index: usize) {
+        let middle = frame.top + ROW * (index as f64 + 0.5);
+        let name = typeset::fitted(&bar.parameter, LABEL_SIZE, frame.left - 16.0);
+        let at = point(frame.left - 8.0, middle);
+        scene.text(Text::new(at, name, LABEL_SIZE).held(Anchor::End, Baseline::Middle));
+        let nominal = place(axis, frame, self.unit.of(self.nominal));
+        let one_sided = (bar.low_value - self.nominal) * (bar.high_value - self.nominal) >= 0.0;
+        for (value, high, words) in ends(bar, self.nominal) {
+            let x = place(axis, frame, self.unit.of(value));
+            // Two ends on one side of the nominal value share the row, one above the other.
+            let (from, to) = match (one_sided, high) {
+                (false, _) => (middle - 0.5 * BAR, middle + 0.5 * BAR),
+                (true, false) => (middle - 0.5 * BAR, middle),
+                (true, true) => (middle, middle + 0.5 * BAR),
+            };
+            let area = Rectangle::from_corners(point(nominal.min(x), from), point(nominal.max(x), to));
+            scene.rectangle(area, None, Some(fill(high)));
+            let (dx, anchor) = if value < self.nominal { (-5.0, Anchor::End) } else { (5.0, Anchor::Start) };
+            let limit = if dx > 0.0 { frame.right - x - 8.0 } else { x - frame.left - 8.0 };
+            let words = typeset::fitted(&words, SMALL_SIZE, limit);
+            let text = Text::new(point(x + dx, middle), words, SMALL_SIZE).held(anchor, Baseline::Middle);
+            scene.text(text.coloured(Role::Muted));
+        }
+    }
+
+    fn nominal_line(&self, scene: &mut Scene, axis: &Axis, frame: Rectangle) {
+        let value = self.unit.of(self.nominal);
+        let x = place(axis, frame, value);
+        if !x.is_finite() {
+            return;
+        }
+        scene.line(point(x, frame.top - 4.0), point(x, frame.bottom), Stroke::solid(Role::Text, 1.6));
+        let text = format!("nominal {} {}", plain(value), self.unit.symbol);
+        let half = 0.5 * typeset::width(&text, LABEL_SIZE);
+        let middle = x.clamp(half + 4.0, WIDTH - half - 4.0);
+        scene.text(
+            Text::new(point(middle, frame.top - 9.0), text, LABEL_SIZE)
+                .held(Anchor::Middle, Baseline::Letters),
+        );
+    }
 }
 
 /// Finite, and not so large that differences overflow.
@@ -122,69 +184,4 @@ fn ends(bar: &TornadoBar, nominal: f64) -> Vec<(f64, bool, String)> {
     } else {
         vec![(bar.low_value, false, String::new()), (bar.high_value, true, both)]
     }
-}
-
-/// An axis with room for the labels at the ends of the longest bars.
-fn axis(input: &TornadoInput, bars: &[&TornadoBar], frame: Rectangle) -> Axis {
-    let (mut low, mut high) = (input.nominal, input.nominal);
-    let (mut before, mut after) = (12.0_f64, 12.0_f64);
-    for (value, _, words) in bars.iter().flat_map(|bar| ends(bar, input.nominal)) {
-        (low, high) = (low.min(value), high.max(value));
-        let room = typeset::width(&words, SMALL_SIZE).min(0.3 * frame.width()) + 12.0;
-        if value < input.nominal {
-            before = before.max(room);
-        } else {
-            after = after.max(room);
-        }
-    }
-    let per_unit = (high - low) / (frame.width() - before - after);
-    let (minimum, maximum) = (low - before * per_unit, high + after * per_unit);
-    Axis::linear(input.unit.title(&input.quantity), input.unit.of(minimum), input.unit.of(maximum))
-}
-
-fn draw_bar(
-    scene: &mut Scene,
-    bar: &TornadoBar,
-    input: &TornadoInput,
-    axis: &Axis,
-    frame: Rectangle,
-    index: usize,
-) {
-    let middle = frame.top + ROW * (index as f64 + 0.5);
-    let name = typeset::fitted(&bar.parameter, LABEL_SIZE, frame.left - 16.0);
-    let at = point(frame.left - 8.0, middle);
-    scene.text(Text::new(at, name, LABEL_SIZE).held(Anchor::End, Baseline::Middle));
-    let nominal = place(axis, frame, input.unit.of(input.nominal));
-    let one_sided = (bar.low_value - input.nominal) * (bar.high_value - input.nominal) >= 0.0;
-    for (value, high, words) in ends(bar, input.nominal) {
-        let x = place(axis, frame, input.unit.of(value));
-        // Two ends on one side of the nominal value share the row, one above the other.
-        let (from, to) = match (one_sided, high) {
-            (false, _) => (middle - 0.5 * BAR, middle + 0.5 * BAR),
-            (true, false) => (middle - 0.5 * BAR, middle),
-            (true, true) => (middle, middle + 0.5 * BAR),
-        };
-        let area = Rectangle::from_corners(point(nominal.min(x), from), point(nominal.max(x), to));
-        scene.rectangle(area, None, Some(fill(high)));
-        let (dx, anchor) = if value < input.nominal { (-5.0, Anchor::End) } else { (5.0, Anchor::Start) };
-        let limit = if dx > 0.0 { frame.right - x - 8.0 } else { x - frame.left - 8.0 };
-        let words = typeset::fitted(&words, SMALL_SIZE, limit);
-        let text = Text::new(point(x + dx, middle), words, SMALL_SIZE).held(anchor, Baseline::Middle);
-        scene.text(text.coloured(Role::Muted));
-    }
-}
-
-fn nominal_line(scene: &mut Scene, input: &TornadoInput, axis: &Axis, frame: Rectangle) {
-    let value = input.unit.of(input.nominal);
-    let x = place(axis, frame, value);
-    if !x.is_finite() {
-        return;
-    }
-    scene.line(point(x, frame.top - 4.0), point(x, frame.bottom), Stroke::solid(Role::Text, 1.6));
-    let text = format!("nominal {} {}", plain(value), input.unit.symbol);
-    let half = 0.5 * typeset::width(&text, LABEL_SIZE);
-    let middle = x.clamp(half + 4.0, WIDTH - half - 4.0);
-    scene.text(
-        Text::new(point(middle, frame.top - 9.0), text, LABEL_SIZE).held(Anchor::Middle, Baseline::Letters),
-    );
 }

@@ -4,7 +4,7 @@
 mod circuit;
 mod colours;
 mod drawn;
-#[path = "../src/family_step/edge.rs"]
+#[path = "../src/family_steps/edge.rs"]
 mod edge;
 #[path = "../examples/figures/gallery.rs"]
 mod gallery;

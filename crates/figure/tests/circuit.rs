@@ -6,10 +6,10 @@ use phea_figure::scene::{Item, PathStep, Point, Rectangle, Shape};
 use phea_figure::*;
 
 /// The circuit of the example rig with something else.
-fn circuit(change: impl Fn(&mut SchematicInput)) -> Figure {
-    let mut input = gallery::circuit_of_hoses();
-    change(&mut input);
-    let figure = schematic(Words::new("circuit", "The rig", ""), &input);
+fn circuit(change: impl Fn(&mut Schematic)) -> Figure {
+    let mut schematic = gallery::circuit_of_hoses();
+    change(&mut schematic);
+    let figure = schematic.draw(&Words::new("circuit", "The rig", ""));
     check(&figure);
     figure
 }
@@ -56,9 +56,9 @@ fn triangles(figure: &Figure) -> Vec<[Point; 3]> {
 #[test]
 fn a_motor_has_its_own_symbols() {
     let [linear, rotary] = [MotionKind::Linear, MotionKind::Rotary].map(|motion| {
-        circuit(|input| {
-            input.motion = motion;
-            input.environment = Environment::PrescribedMotion;
+        circuit(|schematic| {
+            schematic.motion = motion;
+            schematic.environment = Environment::PrescribedMotion;
         })
     });
     let of_a_cylinder = ["x_p", "x_L", "M", "F_e", "F_ref"];
@@ -72,7 +72,7 @@ fn a_motor_has_its_own_symbols() {
 /// Each further stage is a sleeve of two walls inside the one before it, up to as many as can be told apart.
 #[test]
 fn stages_lie_one_in_another() {
-    let with = |stages: usize| circuit(|input| input.further_stages = stages);
+    let with = |stages: usize| circuit(|schematic| schematic.further_stages = stages);
     let piston = rectangles(&with(0)).len();
     for stages in 1..=5 {
         let all = rectangles(&with(stages));
@@ -96,10 +96,10 @@ fn a_linkage_is_a_lever_about_a_joint() {
     let words = ["four-bar", "arm r", "49.8 mm"];
     for environment in [Environment::PrescribedMotion, Environment::Wall, Environment::SpringMassDamper] {
         for series in [None, Some(SeriesKind::Spring), Some(SeriesKind::Transmission)] {
-            let figure = circuit(|input| {
-                input.environment = environment.clone();
-                input.series = series.map(|kind| SeriesSymbol { kind, words: "200 kN/m".into() });
-                input.linkage = Some(LinkageSymbol { rows: words.map(String::from).to_vec() });
+            let figure = circuit(|schematic| {
+                schematic.environment = environment.clone();
+                schematic.series = series.map(|kind| SeriesSymbol { kind, words: "200 kN/m".into() });
+                schematic.linkage = Some(LinkageSymbol { rows: words.map(String::from).to_vec() });
             });
             let axis = body(&figure).centre().y;
             let pins: Vec<Point> = circles(&figure).into_iter().filter(|pin| pin.x > 450.0).collect();
@@ -118,7 +118,7 @@ fn a_linkage_is_a_lever_about_a_joint() {
 /// in one point between the chamber's port and the gas.
 #[test]
 fn an_arrow_goes_through_what_is_adjusted() {
-    let with = |kind: Option<AccumulatorSymbol>| circuit(|input| input.line_a.accumulator = kind);
+    let with = |kind: Option<AccumulatorSymbol>| circuit(|schematic| schematic.line_a.accumulator = kind);
     let plain = triangles(&with(Some(AccumulatorSymbol::Fixed))).len();
     assert_eq!(plain, triangles(&with(None)).len() + 1, "the triangle of the gas");
     assert_eq!(triangles(&with(Some(AccumulatorSymbol::Adjusted))).len(), plain + 1);

@@ -135,31 +135,13 @@ fn repeat(seed: u64, of: impl Fn(&mut Random) -> Figure) {
 #[test]
 fn bode_diagrams() {
     repeat(1, |r| {
-        let input = BodeInput {
+        let chart = BodeDiagram {
             quantity: r.name(),
             unit: r.name(),
             series: r.many(10, Random::frequency_series),
-            with_difference: r.unit() < 0.5,
             marks: r.many(6, Random::mark),
         };
-        bode(r.words(), &input)
-    });
-}
-
-#[test]
-fn stiffness_curves_over_the_force() {
-    repeat(22, |r| {
-        let curve = |r: &mut Random| ForceStiffnessCurve {
-            name: r.name(),
-            forces_n: r.numbers(),
-            stiffness_n_per_m: r.numbers(),
-        };
-        let input = ForceStiffnessInput {
-            curves: r.many(5, curve),
-            operating_force_n: r.maybe(Random::number),
-            motion: if r.unit() < 0.5 { MotionKind::Rotary } else { MotionKind::Linear },
-        };
-        stiffness_over_force(r.words(), &input)
+        chart.draw(&r.words())
     });
 }
 
@@ -168,18 +150,19 @@ fn stiffness_curves() {
     repeat(2, |r| {
         let curve = |r: &mut Random| StiffnessCurve {
             name: r.name(),
-            positions_m: r.numbers(),
+            places: r.numbers(),
             stiffness_n_per_m: r.numbers(),
             minimum_n_per_m: r.numbers(),
             maximum_n_per_m: r.numbers(),
         };
-        let input = StiffnessInput {
+        let chart = StiffnessDiagram {
             curves: r.many(9, curve),
-            operating_position_m: r.maybe(Random::number),
+            over: if r.unit() < 0.5 { StiffnessOver::Force } else { StiffnessOver::Stroke },
+            operating_point: r.maybe(Random::number),
             band_label: r.name(),
-            ..StiffnessInput::default()
+            motion: if r.unit() < 0.5 { MotionKind::Rotary } else { MotionKind::Linear },
         };
-        stiffness_over_stroke(r.words(), &input)
+        chart.draw(&r.words())
     });
 }
 
@@ -188,12 +171,12 @@ fn nomographs() {
     repeat(3, |r| {
         let bore =
             |r: &mut Random| NomographBore { bore_m: r.number(), label: r.name(), verdict: r.verdict() };
-        let input = NomographInput {
+        let chart = Nomograph {
             bores: r.many(12, bore),
             design_flow_m3_per_s: r.number(),
             velocity_range_m_per_s: (r.number(), r.number()),
         };
-        nomograph(r.words(), &input)
+        chart.draw(&r.words())
     });
 }
 
@@ -201,13 +184,13 @@ fn nomographs() {
 fn pole_maps() {
     repeat(4, |r| {
         let series = |r: &mut Random| PoleSeries { name: r.name(), poles: r.complex(), zeros: r.complex() };
-        let input = PoleMapInput {
+        let chart = PoleMap {
             series: r.many(6, series),
             scale: if r.unit() < 0.5 { PoleMapScale::Linear } else { PoleMapScale::SignedLogarithmic },
             damping_ratios: r.numbers(),
             natural_frequencies_rad_per_s: r.numbers(),
         };
-        pole_map(r.words(), &input)
+        chart.draw(&r.words())
     });
 }
 
@@ -221,31 +204,49 @@ fn impedances() {
             from_rad_per_s: r.number(),
             to_rad_per_s: r.number(),
         };
-        let input = ImpedanceInput {
+        let chart = ImpedanceDiagram {
             series: r.many(4, Random::frequency_series),
             asymptotes: r.many(6, asymptote),
             corners: r.many(5, Random::mark),
             non_passive_bands_rad_per_s: r.many(4, |r| (r.number(), r.number())),
             with_phase: r.unit() < 0.5,
         };
-        impedance(r.words(), &input)
+        chart.draw(&r.words())
     });
 }
 
 #[test]
-fn step_responses() {
+fn curves_in_panels() {
     repeat(6, |r| {
-        let input = StepResponseInput {
-            quantity: r.name(),
-            unit: DisplayUnit::KILONEWTON,
-            reference: r.maybe(Random::time_series),
-            responses: r.many(9, Random::time_series),
-            settling_band: r.maybe(|r| SettlingBand { level: r.number(), percent: r.number() }),
-            bounds: r.maybe(|r| TimeBounds { upper: r.time_series(), lower: r.time_series() }),
-            events: r.many(5, |r| TimeEvent { time_s: r.number(), label: r.name() }),
-            controls: r.many(3, Random::time_series),
+        let curve = |r: &mut Random| {
+            let style = match r.below(4) {
+                0 => CurveStyle::Line(r.below(9)),
+                1 => CurveStyle::Dots(r.below(9)),
+                2 => CurveStyle::Reference,
+                _ => CurveStyle::Limit,
+            };
+            Curve { points: r.numbers().into_iter().zip(r.numbers()).collect(), style }
         };
-        step_response(r.words(), &input)
+        let panel = |r: &mut Random| CurvePanel {
+            title: r.name(),
+            height: 60.0 + 200.0 * r.unit(),
+            curves: r.many(9, curve),
+            range: match r.below(3) {
+                0 => CurveRange::Fitted,
+                1 => CurveRange::WithZero,
+                _ => CurveRange::Between([r.number(), r.number()]),
+            },
+            marked: r.many(5, |r| (r.number(), r.name())),
+            zero_line: r.unit() < 0.5,
+            settling_band: r.maybe(|r| SettlingBand { level: r.number(), percent: r.number() }),
+        };
+        let chart = CurveChart {
+            x_title: r.name(),
+            x_range: [r.number(), r.number()],
+            panels: r.many(4, panel),
+            legend: r.many(4, |r| (r.name(), CurveStyle::Line(r.below(9)))),
+        };
+        if r.unit() < 0.5 { chart.draw(&r.words()) } else { chart.draw_over_decades(&r.words()) }
     });
 }
 
@@ -265,14 +266,14 @@ fn sizing_charts() {
             gain_v_per_n: r.number(),
             verdict: r.verdict(),
         };
-        let input = SizingChartInput {
+        let chart = SizingChart {
             curves: r.many(5, curve),
             candidates: r.many(20, candidate),
             length_range_m: r.maybe(|r| (r.number(), r.number())),
             minimum_gain_v_per_n: r.maybe(Random::number),
             pole_gain_v_per_n: r.maybe(Random::number),
         };
-        sizing_chart(r.words(), &input)
+        chart.draw(&r.words())
     });
 }
 
@@ -286,13 +287,13 @@ fn tornadoes() {
             low_value: r.number(),
             high_value: r.number(),
         };
-        let input = TornadoInput {
+        let chart = Tornado {
             quantity: r.name(),
             unit: DisplayUnit::MEGANEWTON_PER_METRE,
             nominal: r.number(),
             bars: r.many(8, bar),
         };
-        tornado(r.words(), &input)
+        chart.draw(&r.words())
     });
 }
 
@@ -311,7 +312,7 @@ fn circuits() {
             rows: r.many(5, Random::name),
         };
         let series = [SeriesKind::Spring, SeriesKind::DampedSpring, SeriesKind::Transmission];
-        let input = SchematicInput {
+        let chart = Schematic {
             cross_port: r
                 .maybe(|r| CrossPortSymbol { has_capacity: r.unit() < 0.5, rows: r.many(4, Random::name) }),
             motion: if r.unit() < 0.5 { MotionKind::Rotary } else { MotionKind::Linear },
@@ -335,7 +336,7 @@ fn circuits() {
             environment_rows: r.many(4, Random::name),
             controller: r.maybe(controller),
         };
-        schematic(r.words(), &input)
+        chart.draw(&r.words())
     });
 }
 
@@ -349,7 +350,7 @@ fn nichols_charts() {
             open_loop: r.response(),
             text: r.name(),
         };
-        let input = NicholsInput {
+        let chart = NicholsChart {
             loops: r.many(3, Random::frequency_series),
             design_frequencies_rad_per_s: r.numbers(),
             bounds: bounds.iter().map(|bounds| BoundGroup { name: r.name(), bounds }).collect(),
@@ -357,13 +358,13 @@ fn nichols_charts() {
             violations: r.many(3, violation),
             contours_db: r.numbers(),
         };
-        nichols(r.words(), &input)
+        chart.draw(&r.words())
     });
 }
 
 #[test]
 fn template_charts() {
-    repeat(11, |r| templates(r.words(), &r.many(6, Random::template)));
+    repeat(11, |r| templates(&r.words(), &r.many(6, Random::template)));
 }
 
 #[test]
@@ -379,21 +380,17 @@ fn families_over_frequency() {
         };
         let envelope =
             |r: &mut Random| FamilyEnvelope { name: r.name(), greatest: curve(r), least: r.maybe(curve) };
-        let input = FamilyMagnitudeInput {
-            name: r.name(),
-            others: r.many(2, envelope),
+        let chart = FamilyMagnitude {
+            envelopes: r.many(3, envelope),
             quantity: r.name(),
-            unit: r.name(),
             upper_limit: r.maybe(curve),
             lower_limit: r.maybe(curve),
-            greatest: curve(r),
-            least: r.maybe(curve),
             members: r.many(4, curve),
             design_frequencies_rad_per_s: r.numbers(),
             tolerance_db: r.number(),
             marks: r.many(3, mark),
         };
-        family_magnitude(r.words(), &input)
+        chart.draw(&r.words())
     });
 }
 
@@ -407,21 +404,65 @@ fn prefilters_in_their_band() {
             prefilter_db: Some(r.number()),
         };
         let panel = |r: &mut Random| PrefilterPanel { name: r.name(), points: r.many(6, point) };
-        prefilter_band(r.words(), &r.many(3, panel))
+        prefilter_band(&r.words(), &r.many(3, panel))
     });
 }
 
 #[test]
 fn families_over_time() {
     repeat(13, |r| {
-        let bounds = |r: &mut Random| TimeBounds { upper: r.time_series(), lower: r.time_series() };
-        let input = FamilyStepInput {
+        let band =
+            |r: &mut Random| TimeBand { name: r.name(), upper: r.time_series(), lower: r.time_series() };
+        let chart = FamilySteps {
             quantity: r.name(),
-            bounds: r.maybe(bounds),
+            band: r.maybe(band),
             members: r.many(4, Random::time_series),
             nominal: r.maybe(Random::time_series),
             named: r.many(2, Random::time_series),
         };
-        family_step(r.words(), &input)
+        chart.draw(&r.words())
+    });
+}
+
+#[test]
+fn fans_of_runs() {
+    repeat(15, |r| {
+        let band =
+            |r: &mut Random| TimeBand { name: r.name(), upper: r.time_series(), lower: r.time_series() };
+        let chart = FanChart {
+            quantity: r.name(),
+            unit: DisplayUnit::KILONEWTON,
+            bands: r.many(3, band),
+            middle: r.time_series(),
+            single: r.maybe(Random::time_series),
+            reference: r.maybe(Random::time_series),
+            events: r.many(4, |r| (r.number(), r.name())),
+            span_s: [r.number(), r.number()],
+        };
+        chart.draw(&r.words())
+    });
+}
+
+#[test]
+fn measured_and_estimated_responses() {
+    repeat(16, |r| {
+        let measured = MeasuredResponse {
+            quantity: r.name(),
+            unit: r.name(),
+            models: r.many(3, Random::frequency_series),
+            measured: r.frequency_series(),
+            model: r.complex(),
+            distortion_percent: r.numbers(),
+        };
+        let estimated = EstimatedResponse {
+            quantity: r.name(),
+            unit: r.name(),
+            estimate: r.frequency_series(),
+            radii: r.numbers(),
+            coherence: r.numbers(),
+            least_coherence: r.number(),
+            models: r.many(3, Random::frequency_series),
+        };
+        if r.unit() < 0.5 { measured.draw(&r.words()) } else { estimated.draw(&r.words()) }
     });
 }

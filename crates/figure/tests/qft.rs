@@ -208,22 +208,25 @@ fn magnitudes(frequencies: &[f64], magnitudes: &[f64]) -> MagnitudeCurve {
 fn violated_areas_begin_where_the_limit_is_crossed() {
     let (one, rising) =
         (magnitudes(&[0.1, 10.0], &[1.0, 1.0]), magnitudes(&[0.1, 0.3, 10.0], &[0.1, 0.3, 10.0]));
-    let upper = FamilyMagnitudeInput {
+    let upper = FamilyMagnitude {
         upper_limit: Some(one.clone()),
-        greatest: rising.clone(),
-        ..FamilyMagnitudeInput::default()
+        envelopes: vec![FamilyEnvelope { greatest: rising.clone(), ..FamilyEnvelope::default() }],
+        ..FamilyMagnitude::default()
     };
-    let lower = FamilyMagnitudeInput {
+    let lower = FamilyMagnitude {
         lower_limit: Some(one),
-        greatest: rising.clone(),
-        least: Some(rising),
-        ..FamilyMagnitudeInput::default()
+        envelopes: vec![FamilyEnvelope {
+            greatest: rising.clone(),
+            least: Some(rising),
+            ..FamilyEnvelope::default()
+        }],
+        ..FamilyMagnitude::default()
     };
     // Twice the limit is reached at 2 rad/s.
-    let tolerant = FamilyMagnitudeInput { tolerance_db: 20.0 * log10(2.0), ..upper.clone() };
+    let tolerant = FamilyMagnitude { tolerance_db: 20.0 * log10(2.0), ..upper.clone() };
     let two = 0.5 * (1.0 + log10(2.0));
-    for (input, parts) in [(upper, (0.5, 1.0)), (lower, (0.0, 0.5)), (tolerant, (two, 1.0))] {
-        let figure = family_magnitude(Words::new("f", "f", "f"), &input);
+    for (chart, parts) in [(upper, (0.5, 1.0)), (lower, (0.0, 0.5)), (tolerant, (two, 1.0))] {
+        let figure = chart.draw(&Words::new("f", "f", "f"));
         let (areas, (left, right)) = (painted(&figure, Role::Bad), frame_of(&figure));
         assert_eq!(areas.len(), 1);
         let part = |p: &Point| (p.x - left) / (right - left);
@@ -239,15 +242,13 @@ fn the_other_loop_is_judged_by_the_same_limit() {
     let (one, rising) =
         (magnitudes(&[0.1, 10.0], &[1.0, 1.0]), magnitudes(&[0.1, 0.3, 10.0], &[0.1, 0.3, 10.0]));
     let kept = magnitudes(&[0.1, 10.0], &[0.5, 0.5]);
-    let other = FamilyEnvelope { name: "other".to_string(), greatest: rising, least: None };
-    let input = FamilyMagnitudeInput {
-        name: "one".to_string(),
+    let envelope = |name: &str, greatest| FamilyEnvelope { name: name.to_string(), greatest, least: None };
+    let chart = FamilyMagnitude {
         upper_limit: Some(one),
-        greatest: kept,
-        others: vec![other],
-        ..FamilyMagnitudeInput::default()
+        envelopes: vec![envelope("one", kept), envelope("other", rising)],
+        ..FamilyMagnitude::default()
     };
-    let figure = family_magnitude(Words::new("f", "f", "f"), &input);
+    let figure = chart.draw(&Words::new("f", "f", "f"));
     let (areas, (left, right)) = (painted(&figure, Role::Bad), frame_of(&figure));
     assert_eq!(areas.len(), 1);
     let from = areas[0].iter().map(|p| (p.x - left) / (right - left)).fold(1.0, f64::min);
@@ -266,7 +267,7 @@ fn the_band_of_a_prefilter_ends_where_its_edges_cross() {
         prefilter_db: Some(-1.0),
     };
     let panel = PrefilterPanel { name: "loop".to_string(), points: vec![point(0.1, -5.0), point(10.0, 5.0)] };
-    let figure = prefilter_band(Words::new("p", "p", "p"), &[panel]);
+    let figure = prefilter_band(&Words::new("p", "p", "p"), &[panel]);
     let (left, right) = frame_of(&figure);
     for (role, ends) in [(Role::Good, [0.0, 0.5]), (Role::Bad, [0.5, 1.0])] {
         let areas = painted(&figure, role);
@@ -288,7 +289,7 @@ fn a_violation_lies_on_the_loop_that_it_belongs_to() {
         response: vec![open_loop((phase, magnitude)), open_loop((phase, magnitude - 20.0))],
         frequencies_rad_per_s: w.clone(),
     };
-    let input = NicholsInput {
+    let chart = NicholsChart {
         loops: vec![level(-100.0, 30.0), level(-200.0, 10.0)],
         design_frequencies_rad_per_s: w.clone(),
         violations: vec![OpenLoopViolation {
@@ -296,9 +297,9 @@ fn a_violation_lies_on_the_loop_that_it_belongs_to() {
             open_loop: open_loop((-200.0, 10.0)),
             text: "second".to_string(),
         }],
-        ..NicholsInput::default()
+        ..NicholsChart::default()
     };
-    let figure = nichols(Words::new("n", "n", "n"), &input);
+    let figure = chart.draw(&Words::new("n", "n", "n"));
     // middle of the corners of everything that is drawn with this note
     let place = |note: &str| {
         let found = figure.scene.items.iter().find_map(|item| match item {
@@ -337,8 +338,8 @@ fn the_phase_axis_follows_the_loop() {
         }
     };
     for (turns, leftmost) in [(0.5, "\u{2212}360"), (1.5, "\u{2212}630"), (9.0, "\u{2212}1080")] {
-        let input = NicholsInput { loops: vec![response(turns)], ..NicholsInput::default() };
-        let figure = nichols(Words::new("n", "n", "n"), &input);
+        let chart = NicholsChart { loops: vec![response(turns)], ..NicholsChart::default() };
+        let figure = chart.draw(&Words::new("n", "n", "n"));
         let first = figure.scene.texts().next().unwrap().content.clone();
         assert_eq!(first, leftmost);
     }

@@ -8,9 +8,7 @@ mod terminal;
 mod typeset;
 
 pub(crate) use cell::{Cell, StatusMark};
-pub(crate) use page::{badge, place};
 pub(crate) use table::Table;
-pub(crate) use typeset::coded;
 pub use typeset::{prose, typeset};
 
 use crate::figure::Figure;
@@ -45,6 +43,16 @@ enum Block {
     Figure(Box<Figure>),
     /// Details that the page shows on request.
     Folded(String, Table),
+    /// What was asked, and what became of it: the first column has the words.
+    Asked(Table),
+    /// Facts by name, each on a card; those of results are small on paper.
+    Cards { facts: Vec<(String, String)>, are_results: bool },
+    /// A sentence that must not be overlooked.
+    Callout(StatusMark, String),
+    /// What to do, in this order, below its title.
+    Steps { title: String, steps: Vec<String> },
+    /// Blocks that the page shows side by side.
+    Beside(Document),
     /// Lines as they are.
     Preformatted(String),
 }
@@ -116,6 +124,37 @@ impl Document {
         self.blocks.push(Block::Folded(summary.into(), table));
     }
 
+    /// A table of what was asked, and what became of it; omitted if it has no rows.
+    pub(crate) fn asked(&mut self, table: Table) {
+        if !table.is_empty() {
+            self.blocks.push(Block::Asked(table));
+        }
+    }
+
+    /// Facts by name, each on a card.
+    pub(crate) fn cards(&mut self, facts: Vec<(String, String)>, are_results: bool) {
+        if !facts.is_empty() {
+            self.blocks.push(Block::Cards { facts, are_results });
+        }
+    }
+
+    /// Sentences that must not be overlooked.
+    pub(crate) fn callouts(&mut self, mark: StatusMark, sentences: impl IntoIterator<Item = String>) {
+        self.blocks.extend(sentences.into_iter().map(|sentence| Block::Callout(mark, sentence)));
+    }
+
+    /// What to do, in this order; omitted if there is nothing to do.
+    pub(crate) fn steps(&mut self, title: &str, steps: Vec<String>) {
+        if !steps.is_empty() {
+            self.blocks.push(Block::Steps { title: title.to_string(), steps });
+        }
+    }
+
+    /// The blocks of another document, side by side on a page.
+    pub(crate) fn beside(&mut self, blocks: Document) {
+        self.blocks.push(Block::Beside(blocks));
+    }
+
     /// Figures, which a terminal leaves out.
     pub(crate) fn figures(&mut self, figures: impl IntoIterator<Item = Figure>) {
         self.blocks.extend(figures.into_iter().map(|figure| Block::Figure(Box::new(figure))));
@@ -141,9 +180,10 @@ impl Document {
 
     /// Its figures in their order.
     pub(crate) fn into_figures(self) -> Vec<Figure> {
-        let figures = self.blocks.into_iter().filter_map(|block| match block {
-            Block::Figure(figure) => Some(*figure),
-            _ => None,
+        let figures = self.blocks.into_iter().flat_map(|block| match block {
+            Block::Figure(figure) => vec![*figure],
+            Block::Beside(document) => document.into_figures(),
+            _ => vec![],
         });
         figures.collect()
     }

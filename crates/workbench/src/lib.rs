@@ -18,6 +18,7 @@ pub mod identify;
 pub mod line_test;
 pub mod linearize;
 pub(crate) mod motion;
+pub(crate) mod over_time;
 pub mod report;
 pub mod response;
 pub mod shaping;

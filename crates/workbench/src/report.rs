@@ -29,10 +29,7 @@ mod specifications;
 mod stiffness;
 mod test_bench;
 
-use maud::{Markup, html};
-
 pub use crate::document::{prose, typeset};
-pub use chapter::Chapter;
 pub use opening::{Decided, Decision};
 
 use phea_dynamics::watch::Watch;
@@ -54,6 +51,7 @@ use crate::setup::Setup;
 use crate::sizing::{Question, Sizing, SizingProblem, size};
 use crate::source::Source;
 
+use chapter::Chapter;
 use driven::MachineChapter;
 use judged::Judged;
 use opening::{Contents, opening};
@@ -164,10 +162,11 @@ pub fn report_beside(
         opening: &first,
         chapters: &chapters,
         appendix: &appendix,
+        sha256: &loaded.sha256,
     };
-    let html = page.html(&footer(loaded));
+    let html = page.html();
     let all = std::iter::once(first).chain(chapters).chain(appendix);
-    let figures = all.flat_map(|chapter| chapter.figures).collect();
+    let figures = all.flat_map(|chapter| chapter.document.into_figures()).collect();
     Ok(Report { html, figures, tables, summary: facts, decision })
 }
 
@@ -374,12 +373,5 @@ fn subtitle(project: &Project) -> &'static str {
             "Hydraulic torque control through added compliance: linear models, robust control"
         }
         None => "Robust control of an uncertain plant",
-    }
-}
-
-fn footer(loaded: &Loaded) -> Markup {
-    html! {
-        p { "Made by phea " (env!("CARGO_PKG_VERSION")) " from a project with SHA-256 " code { (loaded.sha256) } "." }
-        p { "Equations are numbered as in Ledezma (2019), Universidade Federal de Santa Catarina; corrected where its book of errata says so." }
     }
 }

@@ -15,7 +15,7 @@ pub(crate) use document::{
     adjustment_sentence, cause_words, coarse_sentence, compare_text, gas_sentence, headline, measured,
     metrics_row, occurrence_sentences, published, published_row, text, windows,
 };
-pub(crate) use figures::{comparison_files, figure_files, laid_over, pictures, turns};
+pub(crate) use figures::{around, comparison_files, figure_files, laid_over, pictures, turns};
 pub(crate) use frequency::{
     files as frequency_files, pictures as frequency_pictures, text as frequency_text,
 };

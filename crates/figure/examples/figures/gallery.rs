@@ -64,19 +64,16 @@ pub(crate) fn bode_of_models() -> Figure {
             response: response(model),
         })
         .collect();
-    bode(
-        words("bode", "Frequency response of the linear models"),
-        &BodeInput {
-            quantity: "F_e/U_C".into(),
-            unit: "N/V".into(),
-            series,
-            with_difference: true,
-            marks: vec![
-                FrequencyMark { label: "valve".into(), frequency_rad_per_s: 1099.0 },
-                FrequencyMark { label: "piston on load cell".into(), frequency_rad_per_s: 2938.0 },
-            ],
-        },
-    )
+    BodeDiagram {
+        quantity: "F_e/U_C".into(),
+        unit: "N/V".into(),
+        series,
+        marks: vec![
+            FrequencyMark { label: "valve".into(), frequency_rad_per_s: 1099.0 },
+            FrequencyMark { label: "piston on load cell".into(), frequency_rad_per_s: 2938.0 },
+        ],
+    }
+    .draw(&words("bode", "Frequency response of the linear models"))
 }
 
 fn words(name: &str, title: &str) -> Words {
@@ -107,47 +104,43 @@ pub(crate) fn stiffness() -> Figure {
     };
     let curve = |name: &str, uniform: bool| StiffnessCurve {
         name: name.to_string(),
-        positions_m: positions.clone(),
+        places: positions.clone(),
         stiffness_n_per_m: along(5.0, uniform),
         minimum_n_per_m: along(4.0, uniform),
         maximum_n_per_m: along(6.0, uniform),
     };
-    stiffness_over_stroke(
-        words("stiffness", "Hydraulic stiffness over the stroke"),
-        &StiffnessInput {
-            curves: vec![
-                curve("1.5 m of hose, modulus by volume", false),
-                curve("1.5 m of hose, one modulus (uniform)", true),
-            ],
-            operating_position_m: Some(0.25),
-            band_label: "stiffening 4 to 6".to_string(),
-            ..StiffnessInput::default()
-        },
-    )
+    StiffnessDiagram {
+        curves: vec![
+            curve("1.5 m of hose, modulus by volume", false),
+            curve("1.5 m of hose, one modulus (uniform)", true),
+        ],
+        operating_point: Some(0.25),
+        band_label: "stiffening 4 to 6".to_string(),
+        ..StiffnessDiagram::default()
+    }
+    .draw(&words("stiffness", "Hydraulic stiffness over the stroke"))
 }
 
 /// A stiff pipe beside the hose: the axis becomes logarithmic.
 pub(crate) fn stiffness_against_pipe() -> Figure {
-    let positions_m: Vec<f64> = (0..=100).map(|i| STROKE * f64::from(i) / 100.0).collect();
+    let places: Vec<f64> = (0..=100).map(|i| STROKE * f64::from(i) / 100.0).collect();
     let curve = |name: &str, line: f64, modulus: f64, uniform: bool| StiffnessCurve {
         name: name.to_string(),
-        stiffness_n_per_m: positions_m.iter().map(|x| total_stiffness(*x, line, modulus, uniform)).collect(),
-        positions_m: positions_m.clone(),
+        stiffness_n_per_m: places.iter().map(|x| total_stiffness(*x, line, modulus, uniform)).collect(),
+        places: places.clone(),
         ..StiffnessCurve::default()
     };
-    stiffness_over_stroke(
-        words("stiffness-pipe", "Hose against pipe"),
-        &StiffnessInput {
-            curves: vec![
-                curve("hose, by volume", 1.9e-4, hose_modulus(5.0), false),
-                curve("hose, uniform", 1.9e-4, hose_modulus(5.0), true),
-                curve("pipe", 3.03e-5, OIL, true),
-            ],
-            operating_position_m: None,
-            band_label: String::new(),
-            ..StiffnessInput::default()
-        },
-    )
+    StiffnessDiagram {
+        curves: vec![
+            curve("hose, by volume", 1.9e-4, hose_modulus(5.0), false),
+            curve("hose, uniform", 1.9e-4, hose_modulus(5.0), true),
+            curve("pipe", 3.03e-5, OIL, true),
+        ],
+        operating_point: None,
+        band_label: String::new(),
+        ..StiffnessDiagram::default()
+    }
+    .draw(&words("stiffness-pipe", "Hose against pipe"))
 }
 
 pub(crate) fn commercial_bores() -> Figure {
@@ -156,23 +149,21 @@ pub(crate) fn commercial_bores() -> Figure {
         label: dash.to_string(),
         verdict,
     };
-    nomograph(
-        words("nomograph", "Commercial bores for the design flow"),
-        &NomographInput {
-            bores: vec![
-                bore("-3", 4.8, CandidateVerdict::Rejected),
-                bore("-4", 6.4, CandidateVerdict::Rejected),
-                bore("-5", 7.9, CandidateVerdict::Accepted),
-                bore("-6", 9.5, CandidateVerdict::Accepted),
-                bore("-8", 12.7, CandidateVerdict::Warned),
-                bore("-10", 15.9, CandidateVerdict::Warned),
-                bore("-12", 19.0, CandidateVerdict::Warned),
-                bore("-16", 25.4, CandidateVerdict::Warned),
-            ],
-            design_flow_m3_per_s: 9.8e-3 / 60.0,
-            velocity_range_m_per_s: (2.1, 4.6),
-        },
-    )
+    Nomograph {
+        bores: vec![
+            bore("-3", 4.8, CandidateVerdict::Rejected),
+            bore("-4", 6.4, CandidateVerdict::Rejected),
+            bore("-5", 7.9, CandidateVerdict::Accepted),
+            bore("-6", 9.5, CandidateVerdict::Accepted),
+            bore("-8", 12.7, CandidateVerdict::Warned),
+            bore("-10", 15.9, CandidateVerdict::Warned),
+            bore("-12", 19.0, CandidateVerdict::Warned),
+            bore("-16", 25.4, CandidateVerdict::Warned),
+        ],
+        design_flow_m3_per_s: 9.8e-3 / 60.0,
+        velocity_range_m_per_s: (2.1, 4.6),
+    }
+    .draw(&words("nomograph", "Commercial bores for the design flow"))
 }
 
 pub(crate) fn poles(scale: PoleMapScale) -> Figure {
@@ -185,7 +176,7 @@ pub(crate) fn poles(scale: PoleMapScale) -> Figure {
     };
     let mut full = series("full model (6.7)", -2.96, -11.64);
     full.zeros = vec![real(-1.9)];
-    let mut input = PoleMapInput {
+    let mut chart = PoleMap {
         series: vec![
             full,
             series("decomposed (6.12), corrected", -2.96, -11.7),
@@ -196,12 +187,12 @@ pub(crate) fn poles(scale: PoleMapScale) -> Figure {
         natural_frequencies_rad_per_s: vec![1099.0, 2938.0],
     };
     if scale == PoleMapScale::Linear {
-        input.series.truncate(2);
-        input.damping_ratios = vec![0.2, 0.4, 0.6, 0.8];
-        input.natural_frequencies_rad_per_s = vec![1000.0, 2000.0, 3000.0];
-        return pole_map(words("pole-map-linear", "Poles and zeros, linear scale"), &input);
+        chart.series.truncate(2);
+        chart.damping_ratios = vec![0.2, 0.4, 0.6, 0.8];
+        chart.natural_frequencies_rad_per_s = vec![1000.0, 2000.0, 3000.0];
+        return chart.draw(&words("pole-map-linear", "Poles and zeros, linear scale"));
     }
-    pole_map(words("pole-map", "Poles and zeros of the linear models"), &input)
+    chart.draw(&words("pole-map", "Poles and zeros of the linear models"))
 }
 
 pub(crate) fn driving_point_impedance() -> Figure {
@@ -234,68 +225,77 @@ pub(crate) fn driving_point_impedance() -> Figure {
     };
     let damper = (AREA * AREA + viscous * leak) / leak;
     let equivalent = 1.0 / (1.0 / sensor + 1.0 / hydraulic);
-    impedance(
-        words("impedance", "Driving-point impedance"),
-        &ImpedanceInput {
-            series: vec![
-                series("open loop", response(0.0, 0.0)),
-                series("closed loop, PI", response(1e-3, 8e-3)),
-            ],
-            asymptotes: vec![
-                line("damper (A^2 + f_v K_c)/K_c", damper, 0, 1e-2, 2.0),
-                line("spring K_eq", equivalent, -1, 0.2, 2e3),
-                line("spring K_S", sensor, -1, 1e3, 1e5),
-                line("mass A/(K_qU K_i)", AREA / (5.4e-5 * 8e-3), 1, 1e-2, 30.0),
-            ],
-            corners: vec![FrequencyMark { label: "√(K_H/M)".into(), frequency_rad_per_s: 413.0 }],
-            non_passive_bands_rad_per_s: vec![(447.0, 921.0)],
-            with_phase: true,
-        },
-    )
+    ImpedanceDiagram {
+        series: vec![
+            series("open loop", response(0.0, 0.0)),
+            series("closed loop, PI", response(1e-3, 8e-3)),
+        ],
+        asymptotes: vec![
+            line("damper (A^2 + f_v K_c)/K_c", damper, 0, 1e-2, 2.0),
+            line("spring K_eq", equivalent, -1, 0.2, 2e3),
+            line("spring K_S", sensor, -1, 1e3, 1e5),
+            line("mass A/(K_qU K_i)", AREA / (5.4e-5 * 8e-3), 1, 1e-2, 30.0),
+        ],
+        corners: vec![FrequencyMark { label: "√(K_H/M)".into(), frequency_rad_per_s: 413.0 }],
+        non_passive_bands_rad_per_s: vec![(447.0, 921.0)],
+        with_phase: true,
+    }
+    .draw(&words("impedance", "Driving-point impedance"))
 }
 
-fn sampled(name: &str, end: f64, of: impl Fn(f64) -> f64) -> TimeSeries {
-    let times_s: Vec<f64> = (0..=600).map(|i| end * f64::from(i) / 600.0).collect();
-    let values = times_s.iter().map(|t| of(*t)).collect();
-    TimeSeries { name: name.to_string(), times_s, values }
+fn sampled(end: f64, of: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
+    (0..=600).map(|i| end * f64::from(i) / 600.0).map(|t| (t, of(t))).collect()
 }
 
 pub(crate) fn force_step() -> Figure {
     let start = 0.05;
     let slow = |t: f64| 1.0 - (70.0 * exp(-13.0 * t) - 13.0 * exp(-70.0 * t)) / 57.0;
     let quick = |t: f64| 1.0 - exp(-18.0 * t) * (cos(24.0 * t) + 0.75 * sin(24.0 * t));
-    let after = |of: &dyn Fn(f64) -> f64, t: f64| if t < start { 0.0 } else { 4e3 * of(t - start) };
-    let bound =
-        |rate: f64| move |t: f64| if t < start { 0.0 } else { 4e3 * (1.0 - exp(-rate * (t - start))) };
-    step_response(
-        words("step", "Force step of the linear loop"),
-        &StepResponseInput {
-            quantity: "Force F_e".into(),
-            unit: DisplayUnit::KILONEWTON,
-            reference: Some(sampled("reference", 0.6, |t| if t < start { 0.0 } else { 4e3 })),
-            responses: vec![
-                sampled("with prefilter", 0.6, |t| after(&slow, t)),
-                sampled("without prefilter", 0.6, |t| after(&quick, t)),
+    let after = |of: &dyn Fn(f64) -> f64| sampled(0.6, |t| if t < start { 0.0 } else { 4.0 * of(t - start) });
+    let bound = |rate: f64| after(&|t| 1.0 - exp(-rate * t));
+    let command = |of: &dyn Fn(f64) -> f64| sampled(0.6, |t| if t < start { 0.0 } else { of(t - start) });
+    let apart = |points, style| Curve { points, style };
+    let marked = |words: [&str; 2]| [0.367, 0.262].into_iter().zip(words.map(String::from)).collect();
+    let force = CurvePanel {
+        settling_band: Some(SettlingBand { level: 4.0, percent: 2.0 }),
+        marked: marked(["t_s(2 %) = 317 ms", "t_s(2 %) = 212 ms"]),
+        ..CurvePanel::new(
+            DisplayUnit::KILONEWTON.title("Force F_e"),
+            250.0,
+            vec![
+                apart(bound(40.0), CurveStyle::Limit),
+                apart(bound(8.0), CurveStyle::Limit),
+                apart(after(&|_| 1.0), CurveStyle::Reference),
+                Curve::line(after(&slow), 0),
+                Curve::line(after(&quick), 1),
             ],
-            settling_band: Some(SettlingBand { level: 4e3, percent: 2.0 }),
-            bounds: Some(TimeBounds {
-                upper: sampled("upper", 0.6, bound(40.0)),
-                lower: sampled("lower", 0.6, bound(8.0)),
-            }),
-            events: vec![
-                TimeEvent { time_s: 0.367, label: "t_s(2 %) = 317 ms".into() },
-                TimeEvent { time_s: 0.262, label: "t_s(2 %) = 212 ms".into() },
+        )
+    };
+    let control = CurvePanel {
+        range: CurveRange::WithZero,
+        marked: marked(["", ""]),
+        ..CurvePanel::new(
+            DisplayUnit::VOLT.title("Control U_C"),
+            110.0,
+            vec![
+                Curve::line(command(&|t| 1.9 * (exp(-13.0 * t) - exp(-70.0 * t))), 0),
+                Curve::line(command(&|t| 4.0 * exp(-18.0 * t) * cos(20.0 * t)), 1),
             ],
-            controls: vec![
-                sampled("with prefilter", 0.6, |t| {
-                    if t < start { 0.0 } else { 1.9 * (exp(-13.0 * (t - start)) - exp(-70.0 * (t - start))) }
-                }),
-                sampled("without prefilter", 0.6, |t| {
-                    if t < start { 0.0 } else { 4.0 * exp(-18.0 * (t - start)) * cos(20.0 * (t - start)) }
-                }),
-            ],
-        },
-    )
+        )
+    };
+    let legend = [
+        ("with prefilter", CurveStyle::Line(0)),
+        ("without prefilter", CurveStyle::Line(1)),
+        ("reference", CurveStyle::Reference),
+        ("tracking bounds", CurveStyle::Limit),
+    ];
+    let chart = CurveChart {
+        x_title: "Time (s)".into(),
+        x_range: [0.0, 0.6],
+        panels: vec![force, control],
+        legend: legend.map(|(name, style)| (name.to_string(), style)).to_vec(),
+    };
+    chart.draw(&words("step", "Force step of the linear loop"))
 }
 
 pub(crate) fn lengths() -> Figure {
@@ -327,21 +327,19 @@ pub(crate) fn lengths() -> Figure {
             verdict,
         }
     };
-    sizing_chart(
-        words("sizing", "Length, stiffness and gain"),
-        &SizingChartInput {
-            curves: vec![curve("3130-08, uniform", true), curve("3130-08, by volume", false)],
-            candidates: vec![
-                candidate("K_p 0.25 mV/N", 1.07, CandidateVerdict::Accepted),
-                candidate("3130-08, 1.5 m", 1.5, CandidateVerdict::Accepted),
-                candidate("K_p 0.5 mV/N", 5.66, CandidateVerdict::Warned),
-                candidate("K_p 1 mV/N", 14.84, CandidateVerdict::Rejected),
-            ],
-            length_range_m: Some((0.3, 3.0)),
-            minimum_gain_v_per_n: Some(1e-4),
-            pole_gain_v_per_n: Some(2.1e-5),
-        },
-    )
+    SizingChart {
+        curves: vec![curve("3130-08, uniform", true), curve("3130-08, by volume", false)],
+        candidates: vec![
+            candidate("K_p 0.25 mV/N", 1.07, CandidateVerdict::Accepted),
+            candidate("3130-08, 1.5 m", 1.5, CandidateVerdict::Accepted),
+            candidate("K_p 0.5 mV/N", 5.66, CandidateVerdict::Warned),
+            candidate("K_p 1 mV/N", 14.84, CandidateVerdict::Rejected),
+        ],
+        length_range_m: Some((0.3, 3.0)),
+        minimum_gain_v_per_n: Some(1e-4),
+        pole_gain_v_per_n: Some(2.1e-5),
+    }
+    .draw(&words("sizing", "Length, stiffness and gain"))
 }
 
 pub(crate) fn sensitivities() -> Figure {
@@ -352,35 +350,33 @@ pub(crate) fn sensitivities() -> Figure {
         low_value: 1e6 * low.1,
         high_value: 1e6 * high.1,
     };
-    tornado(
-        words("tornado", "Sensitivity of the hydraulic stiffness"),
-        &TornadoInput {
-            quantity: "Hydraulic stiffness K_H".into(),
-            unit: DisplayUnit::MEGANEWTON_PER_METRE,
-            nominal: 2.233e6,
-            bars: vec![
-                bar("bulk modulus β_0", ("1.3 GPa", 2.19), ("1.6 GPa", 2.27)),
-                bar("stiffening r_β", ("4", 1.85), ("6", 2.59)),
-                bar("expansion E", ("+10 %", 2.05), ("−10 %", 2.43)),
-                bar("entrained air", ("0 %", 2.233), ("2 %", 2.02)),
-                bar("piston position x_p", ("0 mm", 4.109), ("500 mm", 4.0)),
-            ],
-        },
-    )
+    Tornado {
+        quantity: "Hydraulic stiffness K_H".into(),
+        unit: DisplayUnit::MEGANEWTON_PER_METRE,
+        nominal: 2.233e6,
+        bars: vec![
+            bar("bulk modulus β_0", ("1.3 GPa", 2.19), ("1.6 GPa", 2.27)),
+            bar("stiffening r_β", ("4", 1.85), ("6", 2.59)),
+            bar("expansion E", ("+10 %", 2.05), ("−10 %", 2.43)),
+            bar("entrained air", ("0 %", 2.233), ("2 %", 2.02)),
+            bar("piston position x_p", ("0 mm", 4.109), ("500 mm", 4.0)),
+        ],
+    }
+    .draw(&words("tornado", "Sensitivity of the hydraulic stiffness"))
 }
 
 pub(crate) fn circuit() -> Figure {
-    schematic(words("schematic", "The rig"), &circuit_of_hoses())
+    circuit_of_hoses().draw(&words("schematic", "The rig"))
 }
 
 /// What it shows.
-pub(crate) fn circuit_of_hoses() -> SchematicInput {
+pub(crate) fn circuit_of_hoses() -> Schematic {
     let hose = LineSymbol {
         kind: LineKind::Hose,
         accumulator: None,
         rows: vec!["Synflex 3130-08".into(), "12.7 mm × 1.5 m".into(), "β_e 261 MPa".into()],
     };
-    SchematicInput {
+    Schematic {
         cross_port: None,
         motion: MotionKind::Linear,
         further_stages: 0,
@@ -412,31 +408,29 @@ pub(crate) fn asymmetric_circuit() -> Figure {
         accumulator: Some(AccumulatorSymbol::Fixed),
         rows: vec!["pipe 10.5 mm".into(), "0.35 m".into(), "14.2 mL, 15 bar".into()],
     };
-    schematic(
-        words("schematic-asymmetric", "An asymmetric cylinder on pipes"),
-        &SchematicInput {
-            cross_port: None,
-            motion: MotionKind::Linear,
-            further_stages: 0,
-            linkage: None,
-            supply: SupplyKind::Pump,
-            supply_rows: vec!["210 bar".into(), "38 L/min".into()],
-            tank: "0 bar".into(),
-            valve_rows: vec!["a servovalve with a rather long name".into()],
-            line_a: pipe.clone(),
-            line_b: pipe,
-            rods: Rods::TowardsLoad,
-            load_beside_b: true,
-            cylinder: "63/36 mm, stroke 300 mm".into(),
-            mass: "25 kg".into(),
-            load_cell: Some(vec!["load cell".into(), "50 MN/m".into()]),
-            series: Some(SeriesSymbol { kind: SeriesKind::DampedSpring, words: "2.24 MN/m".into() }),
-            environment: Environment::SpringMassDamper,
-            environment_rows: vec!["5 kg, 2 MN/m, 100 N·s/m".into()],
-            controller: Some(ControllerSymbol {
-                has_prefilter: false,
-                rows: vec!["G = 0.0005 + 0.002/s".into()],
-            }),
-        },
-    )
+    Schematic {
+        cross_port: None,
+        motion: MotionKind::Linear,
+        further_stages: 0,
+        linkage: None,
+        supply: SupplyKind::Pump,
+        supply_rows: vec!["210 bar".into(), "38 L/min".into()],
+        tank: "0 bar".into(),
+        valve_rows: vec!["a servovalve with a rather long name".into()],
+        line_a: pipe.clone(),
+        line_b: pipe,
+        rods: Rods::TowardsLoad,
+        load_beside_b: true,
+        cylinder: "63/36 mm, stroke 300 mm".into(),
+        mass: "25 kg".into(),
+        load_cell: Some(vec!["load cell".into(), "50 MN/m".into()]),
+        series: Some(SeriesSymbol { kind: SeriesKind::DampedSpring, words: "2.24 MN/m".into() }),
+        environment: Environment::SpringMassDamper,
+        environment_rows: vec!["5 kg, 2 MN/m, 100 N·s/m".into()],
+        controller: Some(ControllerSymbol {
+            has_prefilter: false,
+            rows: vec!["G = 0.0005 + 0.002/s".into()],
+        }),
+    }
+    .draw(&words("schematic-asymmetric", "An asymmetric cylinder on pipes"))
 }

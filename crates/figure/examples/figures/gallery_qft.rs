@@ -144,7 +144,7 @@ fn stability_bounds() -> Figure {
         .collect();
     let templates: Vec<Template> = [1.0, 10.0, 100.0].iter().map(|w| template(&plants, *w, true)).collect();
     let w = frequencies(0.05, 3000.0, 400);
-    let input = NicholsInput {
+    let chart = NicholsChart {
         loops: vec![FrequencySeries {
             name: "nominal loop L_0".to_string(),
             response: response(|s| plants[0](s) * servo_controller(s), &w),
@@ -154,11 +154,11 @@ fn stability_bounds() -> Figure {
         bounds: vec![BoundGroup { name: "bounds |T| ≤ 1.2".to_string(), bounds: &bounds }],
         templates: &templates,
         contours_db: nichols::USUAL_CONTOURS_DB.to_vec(),
-        ..NicholsInput::default()
+        ..NicholsChart::default()
     };
     let caption =
         "The nominal loop of a servo stays outside the bounds of robust stability at every design frequency.";
-    nichols(Words::new("nichols-stability", "Robust stability on the Nichols chart", caption), &input)
+    chart.draw(&Words::new("nichols-stability", "Robust stability on the Nichols chart", caption))
 }
 
 fn bounds_of_double_lag() -> [Vec<Bound>; 3] {
@@ -179,12 +179,12 @@ fn specifications() -> Figure {
     let bounds = bounds_of_double_lag();
     let names = ["|T| ≤ 1.2", "|S|", "|P S| ≤ 0.01"];
     let groups = names.iter().zip(&bounds);
-    let input = NicholsInput {
+    let chart = NicholsChart {
         bounds: groups.map(|(name, bounds)| BoundGroup { name: (*name).to_string(), bounds }).collect(),
-        ..NicholsInput::default()
+        ..NicholsChart::default()
     };
     let caption = "Bounds of stability, sensitivity and disturbances, each with its forbidden side.";
-    nichols(Words::new("bounds-specifications", "Bounds of three specifications", caption), &input)
+    chart.draw(&Words::new("bounds-specifications", "Bounds of three specifications", caption))
 }
 
 fn worst_case() -> Figure {
@@ -198,7 +198,7 @@ fn worst_case() -> Figure {
     }
     let w = frequencies(0.05, 3000.0, 400);
     let at = Complex64::new(0.0, 67.0);
-    let input = NicholsInput {
+    let chart = NicholsChart {
         loops: vec![FrequencySeries {
             name: "nominal loop L_0".to_string(),
             response: response(|s| plants[0](s) * lag_controller(s), &w),
@@ -212,10 +212,10 @@ fn worst_case() -> Figure {
             text: "|T| 0.25 dB over at 67 rad/s".to_string(),
         }],
         contours_db: nichols::USUAL_CONTOURS_DB.to_vec(),
-        ..NicholsInput::default()
+        ..NicholsChart::default()
     };
     let caption = "Every design frequency keeps to its bound, and the loop fails between two of them.";
-    nichols(Words::new("nichols-worst-case", "Worst-case bounds and the loop", caption), &input)
+    chart.draw(&Words::new("nichols-worst-case", "Worst-case bounds and the loop", caption))
 }
 
 /// e^(-0.1 s) k/(s + 1) under 4(s + 1)/s, k from 1 to 2: the phase falls without end.
@@ -230,7 +230,7 @@ fn with_dead_time() -> Figure {
         .map(|w| bound(&plants, &Requirement::RobustStability(Limit::Constant(1.5)), *w))
         .collect();
     let w = frequencies(0.1, 200.0, 600);
-    let input = NicholsInput {
+    let chart = NicholsChart {
         loops: vec![FrequencySeries {
             name: "nominal loop L_0".to_string(),
             response: response(|s| plants[0](s) * 4.0 * (s + 1.0) / s, &w),
@@ -239,17 +239,17 @@ fn with_dead_time() -> Figure {
         design_frequencies_rad_per_s: design.to_vec(),
         bounds: vec![BoundGroup { name: "bounds |T| ≤ 1.5".to_string(), bounds: &bounds }],
         contours_db: vec![3.5, 0.0, -6.0, -20.0],
-        ..NicholsInput::default()
+        ..NicholsChart::default()
     };
     let caption = "Dead time turns the loop on and on; chart and bounds go along.";
-    nichols(Words::new("nichols-dead-time", "A loop with dead time", caption), &input)
+    chart.draw(&Words::new("nichols-dead-time", "A loop with dead time", caption))
 }
 
 fn templates_of_servo() -> Figure {
     let plants = servo();
     let all: Vec<Template> = SERVO_FREQUENCIES.iter().map(|w| template(&plants, *w, true)).collect();
     let caption = "Where the plants of the servo lie at each design frequency.";
-    templates(Words::new("templates", "Templates of the servo", caption), &all)
+    templates(&Words::new("templates", "Templates of the servo", caption), &all)
 }
 
 /// Curve over frequencies.
@@ -281,7 +281,7 @@ fn complementary_sensitivity() -> Figure {
     let greatest = envelope(&members, f64::max);
     let peaks = greatest.magnitudes.iter().zip(&w);
     let (peak, at) = peaks.max_by(|a, b| a.0.total_cmp(b.0)).unwrap();
-    let input = FamilyMagnitudeInput {
+    let chart = FamilyMagnitude {
         quantity: "|T| = |L/(1+L)|".to_string(),
         upper_limit: Some(curve(&[0.1, 2000.0], vec![1.2, 1.2])),
         marks: vec![MagnitudeMark {
@@ -290,14 +290,14 @@ fn complementary_sensitivity() -> Figure {
             text: "0.25 dB over at 67 rad/s".to_string(),
             is_violation: true,
         }],
-        greatest,
+        envelopes: vec![FamilyEnvelope { greatest, ..FamilyEnvelope::default() }],
         members,
         design_frequencies_rad_per_s: vec![0.1, 5.0, 10.0, 100.0],
-        ..FamilyMagnitudeInput::default()
+        ..FamilyMagnitude::default()
     };
     let caption =
         "The family meets the limit at every design frequency and exceeds it between 10 and 100 rad/s.";
-    family_magnitude(Words::new("family-stability", "Robust stability over frequency", caption), &input)
+    chart.draw(&Words::new("family-stability", "Robust stability over frequency", caption))
 }
 
 fn tracking() -> Figure {
@@ -309,12 +309,15 @@ fn tracking() -> Figure {
     let [upper, lower] = tracking_limits().map(|limit| of(&limit, &band));
     let members: Vec<MagnitudeCurve> =
         servo_parameters().into_iter().map(|parameters| of(&servo_tracking(parameters), &w)).collect();
-    let input = FamilyMagnitudeInput {
+    let chart = FamilyMagnitude {
         quantity: "|F L/(1+L)|".to_string(),
         upper_limit: Some(upper),
         lower_limit: Some(lower),
-        greatest: envelope(&members, f64::max),
-        least: Some(envelope(&members, f64::min)),
+        envelopes: vec![FamilyEnvelope {
+            name: String::new(),
+            greatest: envelope(&members, f64::max),
+            least: Some(envelope(&members, f64::min)),
+        }],
         marks: vec![MagnitudeMark {
             frequency_rad_per_s: 10.0,
             magnitude: magnitude(servo_tracking((1.0, 1.0)).at_frequency(10.0)),
@@ -323,10 +326,10 @@ fn tracking() -> Figure {
         }],
         members,
         design_frequencies_rad_per_s: vec![0.1, 0.5, 1.0, 2.0, 10.0],
-        ..FamilyMagnitudeInput::default()
+        ..FamilyMagnitude::default()
     };
     let caption = "The family follows its reference between the two limits.";
-    family_magnitude(Words::new("family-tracking", "Tracking over frequency", caption), &input)
+    chart.draw(&Words::new("family-tracking", "Tracking over frequency", caption))
 }
 
 fn steps() -> Figure {
@@ -337,13 +340,17 @@ fn steps() -> Figure {
         values: step_response(system, &times).unwrap(),
     };
     let [upper, lower] = tracking_limits();
-    let input = FamilyStepInput {
+    let chart = FamilySteps {
         quantity: "Position, part of the step".to_string(),
-        bounds: Some(TimeBounds { upper: series("upper", &upper), lower: series("lower", &lower) }),
+        band: Some(TimeBand {
+            name: "band of the limits".to_string(),
+            upper: series("upper", &upper),
+            lower: series("lower", &lower),
+        }),
         members: servo_parameters().into_iter().map(|p| series("", &servo_tracking(p))).collect(),
         nominal: Some(series("nominal plant", &servo_tracking((1.0, 1.0)))),
         named: vec![],
     };
     let caption = "Step responses of the servo inside the band of the responses of the limits.";
-    family_step(Words::new("family-steps", "Step responses of the family", caption), &input)
+    chart.draw(&Words::new("family-steps", "Step responses of the family", caption))
 }

@@ -3,21 +3,22 @@
 use phea_qft::bound::Bound;
 
 use super::super::axis::{Axis, extent};
+use super::super::bode::decibel;
 use super::super::colour::{Role, ramp_role, series_dash, series_marker, series_role};
 use super::super::legend::LegendEntry;
-use super::super::open_loop::{UnwrappedResponse, decibel, decibel_axis, phase_near};
+use super::super::open_loop::{UnwrappedResponse, decibel_axis, phase_near};
 use super::super::plot::{Mark, Marker, MarkerStyle, PointSide};
 use super::super::scene::{Dash, Stroke};
 use super::super::templates::PlacedTemplate;
 use super::super::ticks::{TickSteps, decimal, plain};
-use super::{Boundary, NicholsInput, OpenLoopViolation, boundaries, magnitude_contour};
+use super::{Boundary, NicholsChart, OpenLoopViolation, boundaries, magnitude_contour};
 
 /// Most turns that an axis of phase shows on either side of -360 to 0 degrees.
 const TURNS: i32 = 2;
 
-/// The input in its place: axes, curves, and the colour of each frequency.
-pub(super) struct Chart<'a> {
-    input: &'a NicholsInput<'a>,
+/// A chart in its place: axes, curves, and the colour of each frequency.
+pub(super) struct PlacedChart<'a> {
+    chart: &'a NicholsChart<'a>,
     frequencies: Vec<f64>,
     loops: Vec<UnwrappedResponse>,
     marks: Vec<LoopMark>,
@@ -29,27 +30,27 @@ pub(super) struct Chart<'a> {
     pub(super) y: Axis,
 }
 
-impl<'a> Chart<'a> {
-    pub(super) fn new(input: &'a NicholsInput<'a>) -> Chart<'a> {
-        let frequencies = frequencies(input);
-        let loops: Vec<UnwrappedResponse> = input.loops.iter().map(UnwrappedResponse::new).collect();
+impl<'a> PlacedChart<'a> {
+    pub(super) fn new(chart: &'a NicholsChart<'a>) -> PlacedChart<'a> {
+        let frequencies = frequencies(chart);
+        let loops: Vec<UnwrappedResponse> = chart.loops.iter().map(UnwrappedResponse::new).collect();
         let nominal = loops.first();
         let on_loop = |frequency: f64| nominal.and_then(|nominal| nominal.at(frequency));
-        let marks = loop_marks(&loops, &input.design_frequencies_rad_per_s);
-        let violations = input
+        let marks = loop_marks(&loops, &chart.design_frequencies_rad_per_s);
+        let violations = chart
             .violations
             .iter()
             .map(|violation| (phase_on_nearest(&loops, violation), decibel(violation.open_loop)));
         let violations: Vec<(f64, f64)> = violations.collect();
-        let templates = input.templates.iter().filter_map(|template| {
+        let templates = chart.templates.iter().filter_map(|template| {
             let place = on_loop(template.frequency_rad_per_s)?;
             Some(PlacedTemplate::new(template, place, role(&frequencies, template.frequency_rad_per_s)))
         });
         let templates: Vec<PlacedTemplate> = templates.collect();
         let boundaries: Vec<Vec<Vec<Boundary>>> =
-            input.bounds.iter().map(|group| group.bounds.iter().map(boundaries).collect()).collect();
-        let mut chart = Chart {
-            input,
+            chart.bounds.iter().map(|group| group.bounds.iter().map(boundaries).collect()).collect();
+        let mut placed = PlacedChart {
+            chart,
             frequencies,
             loops,
             marks,
@@ -59,9 +60,9 @@ impl<'a> Chart<'a> {
             x: Axis::linear("Open-loop phase (°)", -360.0, 0.0),
             y: Axis::linear("Open-loop magnitude (dB)", -20.0, 20.0),
         };
-        chart.y = chart.magnitude_axis();
-        chart.x = chart.phase_axis();
-        chart
+        placed.y = placed.magnitude_axis();
+        placed.x = placed.phase_axis();
+        placed
     }
 
     /// Everything within the frame from back to front; labels in the order of their claim to a
@@ -118,7 +119,7 @@ impl<'a> Chart<'a> {
     }
 
     fn contours(&self) -> Vec<Mark> {
-        let contours = self.input.contours_db.iter().map(|contour| magnitude_contour(*contour));
+        let contours = self.chart.contours_db.iter().map(|contour| magnitude_contour(*contour));
         let contours: Vec<Vec<(f64, f64)>> = contours.collect();
         self.turns()
             .flat_map(|shift| {
@@ -156,13 +157,13 @@ impl<'a> Chart<'a> {
     }
 
     fn bound(&self, group: usize, index: usize) -> Option<&Bound> {
-        self.input.bounds.get(group)?.bounds.get(index)
+        self.chart.bounds.get(group)?.bounds.get(index)
     }
 
     /// Colour by frequency; dashes by group, or by frequency where there is one group.
     fn bound_stroke(&self, group: usize, bound: &Bound) -> Stroke {
         let role = role(&self.frequencies, bound.frequency_rad_per_s);
-        let dash = match (self.input.bounds.len(), role) {
+        let dash = match (self.chart.bounds.len(), role) {
             (1, Role::Ramp(step)) => series_dash(usize::from(step)),
             _ => series_dash(group),
         };
@@ -196,7 +197,7 @@ impl<'a> Chart<'a> {
     }
 
     fn violations(&self) -> Vec<Mark> {
-        let texts = self.input.violations.iter().map(|violation| &violation.text);
+        let texts = self.chart.violations.iter().map(|violation| &violation.text);
         texts
             .zip(&self.violations)
             .flat_map(|(text, &(phase, magnitude))| {
@@ -251,7 +252,7 @@ impl<'a> Chart<'a> {
     /// Upon closed contours above the critical point; of the others at the border.
     fn contour_labels(&self) -> Vec<Mark> {
         let text = |contour: f64| decimal(contour, usize::from(contour.fract() != 0.0));
-        self.input
+        self.chart
             .contours_db
             .iter()
             .filter_map(|&contour| {
@@ -268,7 +269,7 @@ impl<'a> Chart<'a> {
     }
 
     pub(super) fn legend(&self) -> Vec<LegendEntry> {
-        let loops = self.input.loops.iter().enumerate();
+        let loops = self.chart.loops.iter().enumerate();
         let mut legend: Vec<LegendEntry> =
             loops.map(|(index, one)| LegendEntry::line(&one.name, self.loop_stroke(index))).collect();
         if self.loops.len() > 1 {
@@ -277,19 +278,19 @@ impl<'a> Chart<'a> {
         } else if !self.marks.is_empty() {
             legend.push(LegendEntry::marker("design frequency", loop_marker(0)));
         }
-        let several = self.input.bounds.len() > 1;
-        for (index, group) in self.input.bounds.iter().enumerate() {
+        let several = self.chart.bounds.len() > 1;
+        for (index, group) in self.chart.bounds.iter().enumerate() {
             let dash = if several { series_dash(index) } else { Dash::Solid };
             legend.push(LegendEntry::line(&group.name, Stroke::solid(Role::Text, 1.8).dashed(dash)));
         }
-        if !self.input.contours_db.is_empty() {
+        if !self.chart.contours_db.is_empty() {
             legend.push(LegendEntry::line("|T| in dB", contour_stroke()));
         }
         legend.push(LegendEntry::marker("critical point", CRITICAL_POINT));
         if !self.violations.is_empty() {
             legend.push(LegendEntry::marker("violation", VIOLATION));
         }
-        if self.input.bounds.iter().any(|group| !group.bounds.is_empty()) {
+        if self.chart.bounds.iter().any(|group| !group.bounds.is_empty()) {
             legend.push(LegendEntry::note("numbers on bounds: rad/s; ticked side forbidden"));
         }
         legend
@@ -342,10 +343,10 @@ fn phase_on_nearest(loops: &[UnwrappedResponse], violation: &OpenLoopViolation) 
 }
 
 /// All frequencies of the chart, rising.
-fn frequencies(input: &NicholsInput<'_>) -> Vec<f64> {
-    let bounds = input.bounds.iter().flat_map(|group| group.bounds).map(|bound| bound.frequency_rad_per_s);
-    let templates = input.templates.iter().map(|template| template.frequency_rad_per_s);
-    let design = input.design_frequencies_rad_per_s.iter().copied();
+fn frequencies(chart: &NicholsChart<'_>) -> Vec<f64> {
+    let bounds = chart.bounds.iter().flat_map(|group| group.bounds).map(|bound| bound.frequency_rad_per_s);
+    let templates = chart.templates.iter().map(|template| template.frequency_rad_per_s);
+    let design = chart.design_frequencies_rad_per_s.iter().copied();
     let mut all: Vec<f64> = design.chain(bounds).chain(templates).collect();
     all.sort_by(f64::total_cmp);
     all.dedup();

@@ -5,7 +5,7 @@ use super::super::colour::Role;
 use super::super::scene::{Anchor, Baseline, Fill, Rectangle, Scene, Stroke, Text, point};
 use super::super::typeset;
 use super::pen::{MOTION, OUTLINE, ROW, arrow, block, ground, lines, rows, spring, word, wrapped};
-use super::{Environment, Rods, STAGES, SchematicInput, SeriesKind, SeriesSymbol, lever};
+use super::{Environment, Rods, STAGES, Schematic, SeriesKind, SeriesSymbol, lever};
 
 /// Height of the rod's axis.
 pub(super) const AXIS: f64 = 74.0;
@@ -28,28 +28,28 @@ pub(super) const PORT_FAR: (f64, f64) = (LEFT + 30.0, AXIS + HALF);
 pub(super) const PORT_NEAR: (f64, f64) = (RIGHT - 30.0, AXIS + HALF);
 
 /// The cylinder with piston, rods and the names of its chambers.
-pub(super) fn cylinder(scene: &mut Scene, input: &SchematicInput) {
+pub(super) fn cylinder(scene: &mut Scene, schematic: &Schematic) {
     let oil = Fill { role: Role::Series(0), opacity: 0.13 };
     let body = Rectangle { left: LEFT, top: AXIS - HALF, right: RIGHT, bottom: AXIS + HALF };
     scene.rectangle(body, None, Some(Fill::solid(Role::Background)));
     scene.rectangle(body, Some(OUTLINE), Some(oil));
-    let rod_left = match input.rods {
+    let rod_left = match schematic.rods {
         Rods::Both => LEFT - 44.0,
         Rods::TowardsLoad => PISTON,
     };
     let end = MASS - 20.0;
     let rod = Rectangle { left: rod_left, top: AXIS - ROD, right: end, bottom: AXIS + ROD };
     scene.rectangle(rod, Some(OUTLINE), Some(Fill::solid(Role::Surface)));
-    pistons_within(scene, input.further_stages);
-    let (far, near) = if input.load_beside_b { ("A", "B") } else { ("B", "A") };
+    pistons_within(scene, schematic.further_stages);
+    let (far, near) = if schematic.load_beside_b { ("A", "B") } else { ("B", "A") };
     for (name, x) in [(far, 0.5 * (LEFT + PISTON)), (near, 0.5 * (RIGHT + PISTON))] {
         word(scene, name, (x - 14.0, AXIS + 15.0), Role::Text);
         word(scene, &format!("p_{name}"), (x + 14.0, AXIS + 15.0), Role::Muted);
     }
-    let text = typeset::fitted(&input.cylinder, SMALL_SIZE, 330.0);
+    let text = typeset::fitted(&schematic.cylinder, SMALL_SIZE, 330.0);
     let at = point(0.5 * (LEFT + RIGHT), 8.0);
     scene.text(Text::new(at, text, SMALL_SIZE).held(Anchor::Middle, Baseline::Top));
-    position_arrow(scene, input);
+    position_arrow(scene, schematic);
 }
 
 /// The piston; a telescopic one is a sleeve for each stage, and in the last of them the piston.
@@ -72,9 +72,9 @@ fn pistons_within(scene: &mut Scene, further_stages: usize) {
 }
 
 /// The position x_p counts from the A end to the B end.
-fn position_arrow(scene: &mut Scene, input: &SchematicInput) {
+fn position_arrow(scene: &mut Scene, schematic: &Schematic) {
     let y = AXIS - HALF - 11.0;
-    let (from, to) = if input.load_beside_b { (PISTON, PISTON + 40.0) } else { (PISTON, PISTON - 40.0) };
+    let (from, to) = if schematic.load_beside_b { (PISTON, PISTON + 40.0) } else { (PISTON, PISTON - 40.0) };
     lines(scene, &[(from, y - 5.0), (from, y + 5.0)], MOTION);
     arrow(scene, (from, y), (to, y), MOTION);
     let away = if to > from { 13.0 } else { -13.0 };
@@ -82,19 +82,19 @@ fn position_arrow(scene: &mut Scene, input: &SchematicInput) {
 }
 
 /// Mass, load cell and environment on the axis of the rod.
-pub(super) fn load(scene: &mut Scene, input: &SchematicInput) {
+pub(super) fn load(scene: &mut Scene, schematic: &Schematic) {
     let heavy = Stroke::solid(Role::Axis, 3.0);
     block(scene, MASS - 20.0, AXIS - 22.0, 40.0, 44.0);
-    word(scene, &input.motion.formula("M"), (MASS, AXIS), Role::Text);
-    let mass = [input.mass.clone()];
+    word(scene, &schematic.motion.formula("M"), (MASS, AXIS), Role::Text);
+    let mass = [schematic.mass.clone()];
     // an inertia takes more room than a mass: above what the sensor has
-    let (top, wide) = if input.motion.is_rotary() { (4.0, 100.0) } else { (AXIS - 41.0, 56.0) };
+    let (top, wide) = if schematic.motion.is_rotary() { (4.0, 100.0) } else { (AXIS - 41.0, 56.0) };
     rows(scene, &mass, (MASS, top), Anchor::Middle, wide, 1);
-    match &input.load_cell {
+    match &schematic.load_cell {
         Some(words) => {
             lines(scene, &[(MASS + 20.0, AXIS), (CELL - 17.0, AXIS)], heavy);
             block(scene, CELL - 17.0, AXIS - 15.0, 34.0, 30.0);
-            word(scene, &input.motion.formula("F_e"), (CELL, AXIS), Role::Text);
+            word(scene, &schematic.motion.formula("F_e"), (CELL, AXIS), Role::Text);
             let top = if words.len() > 1 { AXIS - 41.0 - ROW } else { AXIS - 41.0 };
             rows(scene, words, (CELL, top), Anchor::Middle, 80.0, 2);
             lines(scene, &[(CELL + 17.0, AXIS), (CELL + 26.0, AXIS)], heavy);
@@ -102,20 +102,20 @@ pub(super) fn load(scene: &mut Scene, input: &SchematicInput) {
         None => lines(scene, &[(MASS + 20.0, AXIS), (CELL + 26.0, AXIS)], heavy),
     }
     let from = CELL + 26.0;
-    let words = if input.linkage.is_some() { BesideLever::Yes } else { BesideLever::No };
-    let from = input.series.as_ref().map_or(from, |series| between(scene, series, from, words));
-    match &input.linkage {
+    let words = if schematic.linkage.is_some() { BesideLever::Yes } else { BesideLever::No };
+    let from = schematic.series.as_ref().map_or(from, |series| between(scene, series, from, words));
+    match &schematic.linkage {
         Some(linkage) => {
             // a mass is at the end of the lever, anything else beside the pin there
-            let aside = if input.environment == Environment::SpringMassDamper { -12.0 } else { 4.0 };
+            let aside = if schematic.environment == Environment::SpringMassDamper { -12.0 } else { 4.0 };
             let from = lever::lever(scene, linkage, from) + aside;
             let place = EnvironmentPlace { from, axis: lever::LOAD, wall: WALL_OF_LEVER, words: 100.0 };
-            environment(scene, input, &place, ["J", "θ_0"]);
+            environment(scene, schematic, &place, ["J", "θ_0"]);
         }
         None => {
             let place = EnvironmentPlace { from, axis: AXIS, wall: WALL, words: 132.0 };
-            let names = if input.motion.is_rotary() { ["J_L", "θ_L"] } else { ["m", "x_L"] };
-            environment(scene, input, &place, names);
+            let names = if schematic.motion.is_rotary() { ["J_L", "θ_L"] } else { ["m", "x_L"] };
+            environment(scene, schematic, &place, names);
         }
     }
 }
@@ -192,12 +192,12 @@ fn pistons(scene: &mut Scene, from: f64, to: f64) {
 /// The environment with the names of its mass and of its position.
 fn environment(
     scene: &mut Scene,
-    input: &SchematicInput,
+    schematic: &Schematic,
     place: &EnvironmentPlace,
     [mass, position]: [&str; 2],
 ) {
     let &EnvironmentPlace { from, axis, wall, words } = place;
-    match input.environment {
+    match schematic.environment {
         Environment::PrescribedMotion => {
             // its arrow takes room to the right
             let wall = wall.min(WALL);
@@ -222,7 +222,7 @@ fn environment(
             ground(scene, wall, axis - 30.0, axis + 30.0);
         }
     }
-    rows(scene, &input.environment_rows, (WALL + 32.0, axis + 40.0), Anchor::End, words, 2);
+    rows(scene, &schematic.environment_rows, (WALL + 32.0, axis + 40.0), Anchor::End, words, 2);
 }
 
 fn damper(scene: &mut Scene, from: f64, to: f64, y: f64) {

@@ -5,7 +5,7 @@ use super::super::SMALL_SIZE;
 use super::super::colour::Role;
 use super::super::scene::{Anchor, Baseline, Fill, PathStep, Rectangle, Scene, Shape, Text, point};
 use super::super::typeset;
-use super::SchematicInput;
+use super::Schematic;
 use super::mechanics::{AXIS, HALF, MASS, PISTON, PORT_FAR, PORT_NEAR, ROD};
 use super::pen::{MOTION, OUTLINE, PIPE, head, lines, word};
 
@@ -13,7 +13,7 @@ use super::pen::{MOTION, OUTLINE, PIPE, head, lines, word};
 const PORTS: f64 = AXIS + 16.0;
 
 /// The motor with its ports, its shaft and the direction of its angle.
-pub(super) fn motor(scene: &mut Scene, input: &SchematicInput) {
+pub(super) fn motor(scene: &mut Scene, schematic: &Schematic) {
     for (port, inwards) in [(PORT_FAR, 1.0), (PORT_NEAR, -1.0)] {
         let edge = PISTON - inwards * (HALF * HALF - 16.0 * 16.0).sqrt();
         lines(scene, &[port, (port.0, PORTS), (edge, PORTS)], PIPE);
@@ -27,15 +27,15 @@ pub(super) fn motor(scene: &mut Scene, input: &SchematicInput) {
     // a motor that turns both ways: oil comes in at either side
     head(scene, (PISTON - HALF + 11.0, AXIS), (1.0, 0.0), Role::Axis);
     head(scene, (PISTON + HALF - 11.0, AXIS), (-1.0, 0.0), Role::Axis);
-    let (far, near) = if input.load_beside_b { ("A", "B") } else { ("B", "A") };
+    let (far, near) = if schematic.load_beside_b { ("A", "B") } else { ("B", "A") };
     for (name, x, way) in [(far, PORT_FAR.0, -1.0), (near, PORT_NEAR.0, 1.0)] {
         word(scene, name, (x + 14.0 * way, PORTS + 4.0), Role::Text);
         word(scene, &format!("p_{name}"), (x + 36.0 * way, PORTS + 4.0), Role::Muted);
     }
     // as wide as the inertia of the load leaves room for
-    let text = typeset::fitted(&input.cylinder, SMALL_SIZE, 220.0);
+    let text = typeset::fitted(&schematic.cylinder, SMALL_SIZE, 220.0);
     scene.text(Text::new(point(PISTON - 18.0, 4.0), text, SMALL_SIZE).held(Anchor::Middle, Baseline::Top));
-    angle_arrow(scene, &input.motion.formula("x_p"));
+    angle_arrow(scene, &schematic.motion.formula("x_p"));
 }
 
 /// The angle grows while oil enters chamber A.

@@ -7,7 +7,7 @@ use super::mechanics::{CELL, CELL_BOTTOM, PORT_FAR, PORT_NEAR};
 use super::pen::{
     HOSE, MEASURED, OUTLINE, PIPE, ROW, SIGNAL, arrow, block, flexible, head, lines, rows, spring, word,
 };
-use super::{ControllerSymbol, LINE_ROWS, LineKind, SchematicInput, SupplyKind};
+use super::{ControllerSymbol, LINE_ROWS, LineKind, Schematic, SupplyKind};
 
 /// Middle of the valve.
 pub(super) const VALVE: (f64, f64) = (202.0, 232.0);
@@ -22,8 +22,8 @@ pub(super) const CONTROLLER_ROWS: f64 = BOTTOM + 16.0 + 2.0 * ROW + 8.0;
 pub(super) const VALVE_END: f64 = VALVE.0 + 1.5 * SIDE + 24.0;
 
 /// Pressure source or pump, and the tank.
-pub(super) fn supply(scene: &mut Scene, input: &SchematicInput) {
-    feed(scene, input.supply, &input.supply_rows, &input.tank);
+pub(super) fn supply(scene: &mut Scene, schematic: &Schematic) {
+    feed(scene, schematic.supply, &schematic.supply_rows, &schematic.tank);
 }
 
 /// The same by its words.
@@ -78,16 +78,19 @@ fn tank_symbol(scene: &mut Scene, x: f64, bottom: f64) {
 }
 
 /// Both lines with their words.
-pub(super) fn working_lines(scene: &mut Scene, input: &SchematicInput) {
-    let (far, near) =
-        if input.load_beside_b { (&input.line_a, &input.line_b) } else { (&input.line_b, &input.line_a) };
+pub(super) fn working_lines(scene: &mut Scene, schematic: &Schematic) {
+    let (far, near) = if schematic.load_beside_b {
+        (&schematic.line_a, &schematic.line_b)
+    } else {
+        (&schematic.line_b, &schematic.line_a)
+    };
     let places = [
         (far, PORT_FAR, VALVE.0 - PORT, PORT_FAR.0 - 16.0, Anchor::End),
         (near, PORT_NEAR, VALVE.0 + PORT, PORT_NEAR.0 + 16.0, Anchor::Start),
     ];
     for (line, port, valve_x, text_x, anchor) in places {
         // the branch to the gas is at the chamber, before the line begins
-        let branched = match (&line.accumulator, &input.cross_port) {
+        let branched = match (&line.accumulator, &schematic.cross_port) {
             (Some(_), _) => gas::BRANCH + 10.0,
             (None, Some(_)) => 12.0,
             (None, None) => 0.0,
@@ -116,9 +119,9 @@ pub(super) fn working_lines(scene: &mut Scene, input: &SchematicInput) {
 
 /// The 4/3 servovalve: three positions, continuous between them, spring on one side and torque
 /// motor on the other.
-pub(super) fn valve(scene: &mut Scene, input: &SchematicInput) {
-    let ports = if input.load_beside_b { ["A", "B"] } else { ["B", "A"] };
-    valve_with(scene, ports, &input.valve_rows);
+pub(super) fn valve(scene: &mut Scene, schematic: &Schematic) {
+    let ports = if schematic.load_beside_b { ["A", "B"] } else { ["B", "A"] };
+    valve_with(scene, ports, &schematic.valve_rows);
 }
 
 /// The same by the names of its ports and its words.
@@ -160,7 +163,7 @@ fn torque_motor(scene: &mut Scene, left: f64) {
 }
 
 /// Prefilter, comparison and controller from right to left, and the measured force from above.
-pub(super) fn controller(scene: &mut Scene, symbol: &ControllerSymbol, input: &SchematicInput) {
+pub(super) fn controller(scene: &mut Scene, symbol: &ControllerSymbol, schematic: &Schematic) {
     let y = VALVE.1;
     let sum = (CELL, y);
     let g = (sum.0 - 80.0, sum.0 - 44.0);
@@ -179,13 +182,13 @@ pub(super) fn controller(scene: &mut Scene, symbol: &ControllerSymbol, input: &S
     } else {
         arrow(scene, (550.0, y), (sum.0 + 9.0, y), SIGNAL);
     }
-    word(scene, &input.motion.formula("F_ref"), (526.0, y - 14.0), Role::Text);
+    word(scene, &schematic.motion.formula("F_ref"), (526.0, y - 14.0), Role::Text);
     word(scene, "+", (sum.0 + 16.0, y + 13.0), Role::Text);
-    if input.load_cell.is_some() {
+    if schematic.load_cell.is_some() {
         lines(scene, &[(CELL, CELL_BOTTOM), (CELL, y - 15.0)], MEASURED);
         head(scene, (CELL, y - 9.0), (0.0, 1.0), SIGNAL.role);
         word(scene, "\u{2212}", (sum.0 - 12.0, y - 17.0), Role::Text);
-        word(scene, &input.motion.formula("F_e"), (CELL + 14.0, 172.0), Role::Text);
+        word(scene, &schematic.motion.formula("F_e"), (CELL + 14.0, 172.0), Role::Text);
     }
     rows(scene, &symbol.rows, (550.0, CONTROLLER_ROWS), Anchor::End, 245.0, 3);
 }

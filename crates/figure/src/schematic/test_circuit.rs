@@ -16,9 +16,9 @@ pub enum TestPorts {
     Joined,
 }
 
-/// What the diagram shows.
+/// A valve on its test bench.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct TestCircuitInput {
+pub struct TestCircuit {
     /// How the ports are piped.
     pub ports: TestPorts,
     /// Label of the supply, such as `70 bar`; two rows at most.
@@ -38,34 +38,36 @@ const GAUGE: f64 = 132.0;
 /// Height of the pipe from the supply.
 const FEED: f64 = 284.0;
 
-/// Draws the diagram.
-pub fn test_circuit(words: Words, input: &TestCircuitInput) -> Figure {
-    let mut scene = Scene::new(WIDTH, 368.0);
-    feed(&mut scene, SupplyKind::Pump, &input.supply_rows, "0 bar");
-    for ((x, port), outward) in SIDES.into_iter().zip([VALVE.0 - PORT, VALVE.0 + PORT]).zip([-1.0, 1.0]) {
-        lines(&mut scene, &[(port, TOP), (port, SHOULDER), (x, SHOULDER), (x, END)], PIPE);
-        let name = if outward < 0.0 { "p_A" } else { "p_B" };
-        gauge(&mut scene, (x, GAUGE), outward, name);
-    }
-    let [left, right] = SIDES;
-    match input.ports {
-        TestPorts::Blocked => {
-            for x in SIDES {
-                lines(&mut scene, &[(x - 9.0, END), (x + 9.0, END)], PIPE);
+impl TestCircuit {
+    /// Draws the diagram.
+    pub fn draw(&self, words: &Words) -> Figure {
+        let mut scene = Scene::new(WIDTH, 368.0);
+        feed(&mut scene, SupplyKind::Pump, &self.supply_rows, "0 bar");
+        for ((x, port), outward) in SIDES.into_iter().zip([VALVE.0 - PORT, VALVE.0 + PORT]).zip([-1.0, 1.0]) {
+            lines(&mut scene, &[(port, TOP), (port, SHOULDER), (x, SHOULDER), (x, END)], PIPE);
+            let name = if outward < 0.0 { "p_A" } else { "p_B" };
+            gauge(&mut scene, (x, GAUGE), outward, name);
+        }
+        let [left, right] = SIDES;
+        match self.ports {
+            TestPorts::Blocked => {
+                for x in SIDES {
+                    lines(&mut scene, &[(x - 9.0, END), (x + 9.0, END)], PIPE);
+                }
+                meter(&mut scene, (VALVE.0 - PORT - 30.0, FEED), "q_leak", (16.0, 24.0));
             }
-            meter(&mut scene, (VALVE.0 - PORT - 30.0, FEED), "q_leak", (16.0, 24.0));
+            TestPorts::Joined => {
+                lines(&mut scene, &[(left, END), (right, END)], PIPE);
+                meter(&mut scene, (VALVE.0, END), "q", (0.0, -26.0));
+            }
         }
-        TestPorts::Joined => {
-            lines(&mut scene, &[(left, END), (right, END)], PIPE);
-            meter(&mut scene, (VALVE.0, END), "q", (0.0, -26.0));
-        }
+        gauge(&mut scene, (VALVE.0 - PORT - 60.0, FEED), -1.0, "p_S");
+        valve_with(&mut scene, ["A", "B"], &[]);
+        arrow(&mut scene, (VALVE_END + 70.0, VALVE.1), (VALVE_END + 1.0, VALVE.1), SIGNAL);
+        word(&mut scene, "U_C", (VALVE_END + 44.0, VALVE.1 - 14.0), Role::Text);
+        rows(&mut scene, &self.rows, (right + 76.0, 48.0), Anchor::Start, 205.0, 6);
+        words.with_scene(scene)
     }
-    gauge(&mut scene, (VALVE.0 - PORT - 60.0, FEED), -1.0, "p_S");
-    valve_with(&mut scene, ["A", "B"], &[]);
-    arrow(&mut scene, (VALVE_END + 70.0, VALVE.1), (VALVE_END + 1.0, VALVE.1), SIGNAL);
-    word(&mut scene, "U_C", (VALVE_END + 44.0, VALVE.1 - 14.0), Role::Text);
-    rows(&mut scene, &input.rows, (right + 76.0, 48.0), Anchor::Start, 205.0, 6);
-    words.with_scene(scene)
 }
 
 /// A flow meter in a pipe from left to right.

@@ -8,7 +8,7 @@ use super::front;
 use super::summary::{groups, machine};
 use super::{AlternativeColumns, Alternatives, ColumnPart, JudgedAlternative};
 use crate::answer::{Csv, OutputFile, picture_files, quoted};
-use crate::figure::{Figure, FigureError, FrequencySeries, ImpedanceInput, Words, impedance};
+use crate::figure::{Figure, FigureError, FrequencySeries, ImpedanceDiagram, Words};
 use crate::linearize::frequency_grid;
 use crate::project::{IdentifiedUse, Project, print};
 use crate::simulate::{ScenarioRun, laid_over};
@@ -75,18 +75,16 @@ fn impedances(found: &Alternatives) -> Option<Figure> {
             Some(closed) => (closed, one.name.clone()),
             None => (&models.open_loop, format!("{}, open loop", one.name)),
         };
-        let frequencies_rad_per_s = frequency_grid(&port.impedance).ok()?;
-        let response = frequencies_rad_per_s.iter().map(|frequency| port.impedance.at_frequency(*frequency));
-        let response = response.collect();
-        Some(FrequencySeries { name: words, frequencies_rad_per_s, response })
+        let grid = frequency_grid(&port.impedance).ok()?;
+        Some(FrequencySeries::new(words, &grid, |frequency| port.impedance.at_frequency(frequency)))
     });
-    let input = ImpedanceInput { series: series.collect(), ..ImpedanceInput::default() };
+    let chart = ImpedanceDiagram { series: series.collect(), ..ImpedanceDiagram::default() };
     let words = Words::new(
         "alternatives-impedance",
         "The impedance at the load",
         "Z = -F_e/(s X_L) of the nominal rig of each alternative under the controller designed for it: how hard it resists a load that moves.",
     );
-    (!input.series.is_empty()).then(|| impedance(words, &input))
+    (!chart.series.is_empty()).then(|| chart.draw(&words))
 }
 
 /// A row for each alternative, in SI, behind the name of its load case where there are several; a value

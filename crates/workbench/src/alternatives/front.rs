@@ -3,7 +3,7 @@
 use super::{ColumnSense, Front, FrontPoint, FrontValue};
 use crate::answer::{Csv, Json, Object, OutputFile, quoted};
 use crate::document::{Cell, Table};
-use crate::figure::{Figure, FrontPlace, ParetoCurve, ParetoInput, ParetoPoint, Words, pareto_front};
+use crate::figure::{Figure, FrontPlace, ParetoCurve, ParetoFront, ParetoPoint, Words};
 use crate::quantity::DisplayUnit;
 
 /// A row for each point.
@@ -177,11 +177,11 @@ pub(super) fn figure(front: &Front) -> Option<Figure> {
         known.map_or(DisplayUnit::ONE, |found| found.unit)
     };
     let columns = (0..front.columns.len()).map(|index| (column_words(front, index).to_string(), unit(index)));
-    let input = ParetoInput { columns: columns.collect(), curves };
+    let chart = ParetoFront { columns: columns.collect(), curves };
     let caption = format!(
         "Each alternative over {}, every point with a controller of its own. Points on the front are dominated by no other.",
         front.path
     );
     let words = Words::new("front", format!("Front over {}", front.path), caption);
-    (!input.curves.is_empty()).then(|| pareto_front(words, &input))
+    (!chart.curves.is_empty()).then(|| chart.draw(&words))
 }

@@ -6,14 +6,8 @@ use super::Summary;
 use super::{CampaignError, Effort, Shard};
 use super::{METRIC_NAMES, Row};
 use crate::answer::{OutputFile, part_files};
-use crate::figure::{
-    DisplayUnit, Figure, TimeBands, TimeBandsInput, TimeEvent, TimeSeries, Words, time_bands,
-};
-use crate::simulate::{Cause, Window, cause_words};
-
-/// Time drawn before and after the start of a window, s.
-const BEFORE_S: f64 = 0.02;
-const AFTER_S: f64 = 0.5;
+use crate::figure::{DisplayUnit, FanChart, Figure, TimeBand, TimeSeries, Words};
+use crate::simulate::{Cause, Window, around, cause_words};
 
 /// The bands over the whole scenario, and around each event; empty if no run was driven.
 ///
@@ -29,7 +23,7 @@ pub(crate) fn pictures(plan: &Plan, summary: &Summary) -> Result<Vec<Figure>, Ca
     if summary.bands.times_s.len() < 2 {
         return Ok(vec![]);
     }
-    let mut figures = vec![picture(words, plan, summary, [0.0, end], None)];
+    let mut figures = vec![picture(&words, plan, summary, [0.0, end], None)];
     let windows = plan.windows().iter().enumerate();
     for (index, window) in windows.filter(|(_, window)| window.start_s < end) {
         let words = Words::new(
@@ -40,8 +34,8 @@ pub(crate) fn pictures(plan: &Plan, summary: &Summary) -> Result<Vec<Figure>, Ca
                 worst_words(window, plan.is_open_loop())
             ),
         );
-        let span = [(window.start_s - BEFORE_S).max(0.0), (window.start_s + AFTER_S).min(end)];
-        figures.push(picture(words, plan, summary, span, worst_series(plan, summary, index)?));
+        let span = around(window, end);
+        figures.push(picture(&words, plan, summary, span, worst_series(plan, summary, index)?));
     }
     Ok(figures)
 }
@@ -79,7 +73,7 @@ fn worst_series(plan: &Plan, summary: &Summary, index: usize) -> Result<Option<T
 }
 
 fn picture(
-    words: Words,
+    words: &Words,
     plan: &Plan,
     summary: &Summary,
     span_s: [f64; 2],
@@ -97,24 +91,21 @@ fn picture(
         values: plan.reference_n.clone(),
     });
     let inside = |window: &&Window| window.start_s >= span_s[0] && window.start_s <= span_s[1];
-    let event =
-        |window: &Window| TimeEvent { time_s: window.start_s, label: window.cause.label().to_string() };
-    time_bands(
-        words,
-        &TimeBandsInput {
-            quantity: "Force F_e".to_string(),
-            unit: DisplayUnit::KILONEWTON,
-            bands: vec![
-                TimeBands { name: "90 % of the runs".to_string(), lower: series(0), upper: series(4) },
-                TimeBands { name: "50 % of the runs".to_string(), lower: series(1), upper: series(3) },
-            ],
-            middle: TimeSeries { name: "median".to_string(), ..series(2) },
-            single: worst,
-            reference,
-            events: plan.windows().iter().filter(inside).map(event).collect(),
-            span_s,
-        },
-    )
+    let event = |window: &Window| (window.start_s, window.cause.label().to_string());
+    FanChart {
+        quantity: "Force F_e".to_string(),
+        unit: DisplayUnit::KILONEWTON,
+        bands: vec![
+            TimeBand { name: "90 % of the runs".to_string(), lower: series(0), upper: series(4) },
+            TimeBand { name: "50 % of the runs".to_string(), lower: series(1), upper: series(3) },
+        ],
+        middle: TimeSeries { name: "median".to_string(), ..series(2) },
+        single: worst,
+        reference,
+        events: plan.windows().iter().filter(inside).map(event).collect(),
+        span_s,
+    }
+    .draw(words)
 }
 
 /// The table for other programs and the figures.

@@ -63,6 +63,8 @@ pub(crate) enum Precision {
 pub(crate) enum Cell {
     /// Words, a sentence.
     Text(String),
+    /// Words as they are: nothing in them is a symbol or a number to be set.
+    Plain(String),
     /// A path or a name of a file or of a program.
     Code(String),
     /// The name of a number for programs, such as `line.a.wave_speed`; the page shows it in words
@@ -76,6 +78,10 @@ pub(crate) enum Cell {
     Quantity { value: f64, precision: Precision, unit: &'static str },
     /// What is good or bad.
     Status(StatusMark, Box<Cell>),
+    /// In bold letters.
+    Strong(Box<Cell>),
+    /// One right behind the other.
+    Joined(Vec<Cell>),
     /// No such thing.
     #[default]
     Missing,
@@ -116,6 +122,11 @@ impl Cell {
         }
     }
 
+    /// Words as they are.
+    pub(crate) fn plain(text: impl Into<String>) -> Cell {
+        Cell::Plain(text.into())
+    }
+
     /// How many.
     pub(crate) fn count(value: usize) -> Cell {
         Cell::Text(value.to_string())
@@ -124,6 +135,21 @@ impl Cell {
     /// With a mark.
     pub(crate) fn marked(self, mark: impl Into<StatusMark>) -> Cell {
         Cell::Status(mark.into(), Box::new(self))
+    }
+
+    /// In bold letters.
+    pub(crate) fn strong(self) -> Cell {
+        Cell::Strong(Box::new(self))
+    }
+
+    /// With another one right behind it.
+    pub(crate) fn then(self, next: impl Into<Cell>) -> Cell {
+        let mut cells = match self {
+            Cell::Joined(cells) => cells,
+            first => vec![first],
+        };
+        cells.push(next.into());
+        Cell::Joined(cells)
     }
 
     /// That of a verdict.
@@ -149,8 +175,11 @@ impl Cell {
     /// As a text, in which symbols and numbers are not typeset.
     pub(crate) fn text(&self) -> String {
         match self {
-            Cell::Text(text) | Cell::Code(text) | Cell::Name { name: text, .. } => text.clone(),
-            Cell::Status(_, cell) => cell.text(),
+            Cell::Text(text) | Cell::Plain(text) | Cell::Code(text) | Cell::Name { name: text, .. } => {
+                text.clone()
+            }
+            Cell::Status(_, cell) | Cell::Strong(cell) => cell.text(),
+            Cell::Joined(cells) => cells.iter().map(Cell::text).collect(),
             Cell::Unit(unit) => unit.to_string(),
             // braces are what only typesetting needs
             Cell::Equation(equation) => equation.replace(['{', '}'], ""),

@@ -2,8 +2,9 @@
 
 use maud::{Markup, PreEscaped, html};
 
+use super::typeset::coded;
 use super::typeset::unit;
-use super::{Block, Cell, Document, StatusMark, Table, coded, prose, typeset};
+use super::{Block, Cell, Document, StatusMark, Table, prose, typeset};
 use crate::figure::Figure;
 
 /// Columns from which a table takes the whole width of the paper, as one with equations always does.
@@ -39,6 +40,19 @@ impl Block {
             }
             Block::Table(table) => table.markup(),
             Block::Figure(figure) => place(figure),
+            Block::Asked(table) => html! { div.verdicts { (table.markup()) } },
+            Block::Cards { facts, are_results } => html! {
+                dl.facts.results[*are_results] {
+                    @for (name, words) in facts { div.fact { dt { (name) } dd { (carded(words)) } } }
+                }
+            },
+            Block::Callout(mark, sentence) => {
+                html! { div class={ "callout " (mark.class()) "-edge" } { p { (prose(sentence)) } } }
+            }
+            Block::Steps { title, steps } => html! {
+                div { h3 { (title) } ol.next { @for step in steps { li { (coded(step)) } } } }
+            },
+            Block::Beside(document) => html! { div.pair { (document.markup()) } },
             Block::Folded(summary, table) => html! { details { summary { (summary) } (table.markup()) } },
             Block::Preformatted(text) => html! { pre { (text) } },
         }
@@ -76,6 +90,11 @@ fn placed<'i, Item>(items: &'i [Item], columns: &[(usize, bool)]) -> Vec<(bool, 
     columns.iter().filter_map(|(column, is_number)| Some((*is_number, items.get(*column)?))).collect()
 }
 
+/// The words of a card, whose long names may be broken where they are joined.
+fn carded(words: &str) -> Markup {
+    PreEscaped(prose(words).into_string().replace('_', "_<wbr>"))
+}
+
 /// A text, whose long names may be broken where they are joined.
 fn breakable(text: &str) -> Markup {
     PreEscaped(prose(text).into_string().replace('_', "_<wbr>").replace('.', ".<wbr>"))
@@ -94,21 +113,24 @@ fn words(name: &str) -> String {
 
 impl Cell {
     /// For the page.
-    pub(crate) fn markup(&self) -> Markup {
+    fn markup(&self) -> Markup {
         match self {
             Cell::Text(text) => coded(text),
+            Cell::Plain(text) => html! { (text) },
             Cell::Code(text) => html! { code { (breakable(text)) } },
             Cell::Name { name, symbol } => html! { span.symbol { (typeset(symbol)) } (prose(&words(name))) },
             Cell::Unit(text) => html! { span.unit { (unit(text)) } },
             Cell::Equation(equation) => typeset(equation),
             Cell::Status(mark, cell) => badge(*mark, &cell.text()),
+            Cell::Strong(cell) => html! { b { (cell.markup()) } },
+            Cell::Joined(cells) => html! { @for cell in cells { (cell.markup()) } },
             Cell::Quantity { .. } | Cell::Missing => prose(&self.text()),
         }
     }
 }
 
 /// A figure with its caption.
-pub(crate) fn place(figure: &Figure) -> Markup {
+fn place(figure: &Figure) -> Markup {
     html! {
         figure {
             (PreEscaped(figure.to_svg_inline()))
@@ -129,7 +151,7 @@ impl StatusMark {
 }
 
 /// The form with the word in its colour.
-pub(crate) fn badge(mark: StatusMark, word: &str) -> Markup {
+fn badge(mark: StatusMark, word: &str) -> Markup {
     let (outline, inside) = match mark {
         StatusMark::Good => ("M8 1a7 7 0 1 1 0 14a7 7 0 1 1 0-14z", "M4.5 8.3l2.4 2.4l4.6-5.2"),
         StatusMark::Note => ("M8 1.2l7.2 13.2h-14.4z", "M8 6v4.2M8 12v.8"),

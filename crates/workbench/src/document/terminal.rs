@@ -21,7 +21,18 @@ impl Document {
                 }
                 Block::Sentences(sentences) => indented(&mut out, sentences.iter().map(|(_, text)| text)),
                 Block::Equations(equations) => indented(&mut out, equations),
-                Block::Table(table) | Block::Folded(_, table) => out.push_str(&format!("{}\n", table.text())),
+                Block::Table(table) | Block::Folded(_, table) | Block::Asked(table) => {
+                    out.push_str(&format!("{}\n", table.text()))
+                }
+                Block::Cards { facts, .. } => {
+                    indented(&mut out, facts.iter().map(|(name, words)| format!("{name}: {words}")));
+                }
+                Block::Callout(_, sentence) => indented(&mut out, [sentence]),
+                Block::Steps { title, steps } => {
+                    out.push_str(&format!("{above}{title}\n"));
+                    indented(&mut out, steps);
+                }
+                Block::Beside(document) => out.push_str(&document.text()),
                 Block::Preformatted(text) => out.push_str(text),
                 Block::HeadingOfFigures(_) | Block::Explanation(_) | Block::Figure(_) => {}
             }
@@ -30,7 +41,7 @@ impl Document {
     }
 }
 
-fn indented<'a>(out: &mut String, sentences: impl IntoIterator<Item = &'a String>) {
+fn indented(out: &mut String, sentences: impl IntoIterator<Item = impl std::fmt::Display>) {
     for sentence in sentences {
         out.push_str(&format!("  {sentence}\n"));
     }

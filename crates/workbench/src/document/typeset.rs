@@ -75,7 +75,7 @@ pub fn prose(sentence: &str) -> Markup {
 }
 
 /// The same, with text between backticks as code.
-pub(crate) fn coded(sentence: &str) -> Markup {
+pub(super) fn coded(sentence: &str) -> Markup {
     let parts = sentence.split('`').enumerate();
     html! {
         @for (index, part) in parts {

@@ -1,5 +1,5 @@
 use super::{FrictionIdentification, PressedCurve, PressedRows, ShakenRows, SteadyPoint};
-use crate::figure::{Curve, CurvePanel, CurveStyle, CurvesInput, Figure, Words, curves};
+use crate::figure::{Curve, CurveChart, CurvePanel, CurveStyle, Figure, Words};
 use crate::quantity::DisplayUnit;
 
 /// The friction map; force and position of each press and each shake.
@@ -9,10 +9,6 @@ pub(crate) fn pictures(found: &FrictionIdentification) -> Vec<Figure> {
     let shakes = found.shakes.iter().enumerate();
     let shaken = shakes.filter_map(|(index, shake)| shaken(found, index, shake));
     map(found).into_iter().chain(pressed).chain(shaken).collect()
-}
-
-fn panel(title: &str, height: f64, curves: Vec<Curve>, zero_line: bool) -> CurvePanel {
-    CurvePanel { title: title.to_string(), curves, marked: vec![], zero_line, height }
 }
 
 const CURVE_POINTS: u32 = 400;
@@ -25,17 +21,18 @@ fn map(found: &FrictionIdentification) -> Option<Figure> {
         return None;
     }
     let shown = DisplayUnit::MILLIMETRE;
-    let measured = points.iter().map(|point| (shown.of(point.velocity), point.force)).collect();
+    let measured = points.iter().map(|point| (shown.of(point.velocity), point.force));
     let left = |point: &SteadyPoint| (shown.of(point.velocity), point.modelled - point.force);
-    let both = panel(
+    let both = CurvePanel::new(
         "Friction (N)",
         220.0,
-        vec![curve(found, fastest, 1.0), curve(found, fastest, -1.0), dots(measured, 1)],
-        true,
-    );
-    let rest = panel("\u{394}F (N)", 76.0, vec![dots(points.iter().map(left).collect(), 1)], true);
+        vec![curve(found, fastest, 1.0), curve(found, fastest, -1.0), Curve::dots(measured, 1)],
+    )
+    .with_zero_line();
+    let rest =
+        CurvePanel::new("\u{394}F (N)", 76.0, vec![Curve::dots(points.iter().map(left), 1)]).with_zero_line();
     let end = 1.05 * shown.of(fastest);
-    let input = CurvesInput {
+    let chart = CurveChart {
         x_title: "Velocity (mm/s)".to_string(),
         x_range: [-end, end],
         panels: vec![both, rest],
@@ -45,11 +42,7 @@ fn map(found: &FrictionIdentification) -> Option<Figure> {
         ],
     };
     let caption = "Friction over velocity: recorded at constant velocities, the identified steady curve, and what it leaves.";
-    Some(curves(Words::new("friction_map", "Friction map", caption), &input))
-}
-
-fn dots(points: Vec<(f64, f64)>, series: usize) -> Curve {
-    Curve { points, style: CurveStyle::Dots(series) }
+    Some(chart.draw(&Words::new("friction_map", "Friction map", caption)))
 }
 
 /// The identified curve of one way: finer where it is steep.
@@ -59,7 +52,7 @@ fn curve(found: &FrictionIdentification, fastest: f64, way: f64) -> Curve {
         let velocity = way * fastest * share * share * share;
         (DisplayUnit::MILLIMETRE.of(velocity), found.lugre.curve.steady_force(velocity))
     };
-    Curve { points: (1..=CURVE_POINTS).map(point).collect(), style: CurveStyle::Line(0) }
+    Curve::line((1..=CURVE_POINTS).map(point), 0)
 }
 
 /// Force and position until the piston breaks away, and what is left of both over time.
@@ -97,7 +90,6 @@ fn over_time(words: Words, curve: &PressedCurve, time_step: f64, rows: usize) ->
     let over_time = |values: Vec<f64>| -> Vec<(f64, f64)> {
         values.into_iter().take(rows).enumerate().map(|(row, value)| (time(row), value)).collect()
     };
-    let line = |points: Vec<(f64, f64)>| Curve { points, style: CurveStyle::Line(0) };
     let less = |model: &[f64], shown: &[f64]| -> Vec<f64> {
         model.iter().zip(shown).map(|(model, shown)| model - shown).collect()
     };
@@ -108,17 +100,16 @@ fn over_time(words: Words, curve: &PressedCurve, time_step: f64, rows: usize) ->
     let force_rest = over_time(less(modelled_forces, forces));
     let [shown, explained] = [forces, modelled_forces].map(|forces| over_time(forces.clone()));
     let panels = vec![
-        panel("Force (N)", 110.0, vec![dots(shown, 1), line(explained)], false),
-        panel("\u{394}F (N)", 62.0, vec![dots(force_rest, 1)], true),
-        panel(
+        CurvePanel::new("Force (N)", 110.0, vec![Curve::dots(shown, 1), Curve::line(explained, 0)]),
+        CurvePanel::new("\u{394}F (N)", 62.0, vec![Curve::dots(force_rest, 1)]).with_zero_line(),
+        CurvePanel::new(
             "Displacement (\u{b5}m)",
             130.0,
-            vec![dots(over_time(moved), 1), line(over_time(modelled))],
-            false,
+            vec![Curve::dots(over_time(moved), 1), Curve::line(over_time(modelled), 0)],
         ),
-        panel("\u{394}x (\u{b5}m)", 62.0, vec![dots(rest, 1)], true),
+        CurvePanel::new("\u{394}x (\u{b5}m)", 62.0, vec![Curve::dots(rest, 1)]).with_zero_line(),
     ];
-    let input = CurvesInput {
+    let chart = CurveChart {
         x_title: "Time (ms)".to_string(),
         x_range: [0.0, time(rows)],
         panels,
@@ -127,5 +118,5 @@ fn over_time(words: Words, curve: &PressedCurve, time_step: f64, rows: usize) ->
             ("identified friction".to_string(), CurveStyle::Line(0)),
         ],
     };
-    curves(words, &input)
+    chart.draw(&words)
 }

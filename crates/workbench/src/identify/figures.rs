@@ -3,10 +3,7 @@
 use phea_hydraulics::servovalve::{PortCircuit, TestOutput};
 
 use super::{Identification, Recording, SignalFit, SignalKind};
-use crate::figure::{
-    Curve, CurvePanel, CurveStyle, CurvesInput, Figure, TestCircuitInput, TestPorts, Words, curves,
-    test_circuit,
-};
+use crate::figure::{Curve, CurveChart, CurvePanel, CurveStyle, Figure, TestCircuit, TestPorts, Words};
 use crate::quantity::{DisplayUnit, PRESSURE, display};
 
 /// Commands around null that the leakage is drawn over, percent of the nominal voltage.
@@ -58,52 +55,34 @@ impl ValveFigures {
 }
 
 fn circuits(found: &Identification) -> Vec<Figure> {
-    let has = |circuit| found.recordings.iter().any(|one| one.circuit == circuit);
-    let mut figures = Vec::new();
-    let supply = vec![display(found.usual_drop(), &PRESSURE, 3)];
-    let words = |rows: [&str; 4]| rows.map(str::to_string).to_vec();
-    if has(PortCircuit::Blocked) {
-        let input = TestCircuitInput {
-            ports: TestPorts::Blocked,
-            supply_rows: supply.clone(),
-            rows: words([
-                "ports blocked",
-                "recorded over U_C:",
-                "leakage with tare flow,",
-                "pressures at A and B",
-            ]),
+    let supply = display(found.usual_drop(), &PRESSURE, 3);
+    let drawn = |circuit: PortCircuit| {
+        let (ports, rows, [name, title, caption]) = match circuit {
+            PortCircuit::Blocked => (
+                TestPorts::Blocked,
+                ["ports blocked", "recorded over U_C:", "leakage with tare flow,", "pressures at A and B"],
+                [
+                    "circuit_blocked",
+                    "Test with blocked ports",
+                    "Circuit of the tests with blocked ports, internal leakage and pressure gain (Ledezma 2019, Figure 5.3).",
+                ],
+            ),
+            PortCircuit::Connected => (
+                TestPorts::Joined,
+                ["ports joined", "through the meter", "recorded over U_C:", "flow, pressures at A and B"],
+                [
+                    "circuit_joined",
+                    "Metering test",
+                    "Circuit of the metering test (Ledezma 2019, Figure 5.6).",
+                ],
+            ),
         };
-        let caption = "Circuit of the tests with blocked ports, internal leakage and pressure gain (Ledezma 2019, Figure 5.3).";
-        figures.push(test_circuit(Words::new("circuit_blocked", "Test with blocked ports", caption), &input));
-    }
-    if has(PortCircuit::Connected) {
-        let input = TestCircuitInput {
-            ports: TestPorts::Joined,
-            supply_rows: supply,
-            rows: words([
-                "ports joined",
-                "through the meter",
-                "recorded over U_C:",
-                "flow, pressures at A and B",
-            ]),
-        };
-        let caption = "Circuit of the metering test (Ledezma 2019, Figure 5.6).";
-        figures.push(test_circuit(Words::new("circuit_joined", "Metering test", caption), &input));
-    }
-    figures
-}
-
-/// A panel of curves.
-fn panel(title: impl Into<String>, height: f64, curves: Vec<Curve>) -> CurvePanel {
-    CurvePanel { title: title.into(), curves, marked: vec![], zero_line: false, height }
-}
-
-fn line(points: Vec<(f64, f64)>, series: usize) -> Curve {
-    Curve { points, style: CurveStyle::Line(series) }
-}
-
-fn dots(points: Vec<(f64, f64)>, series: usize) -> Curve {
-    Curve { points, style: CurveStyle::Dots(series) }
+        let rows = rows.map(str::to_string).to_vec();
+        let chart = TestCircuit { ports, supply_rows: vec![supply.clone()], rows };
+        chart.draw(&Words::new(name, title, caption))
+    };
+    let has = |circuit: &PortCircuit| found.recordings.iter().any(|one| one.circuit == *circuit);
+    [PortCircuit::Blocked, PortCircuit::Connected].into_iter().filter(has).map(drawn).collect()
 }
 
 /// Name of the file without folder and ending.
@@ -143,28 +122,28 @@ fn series(found: &Identification, index: usize, recording: &Recording) -> Figure
     let times = || recording.times.iter().copied();
     let mut panels = Vec::new();
     if let Some(temperature) = &recording.oil_temperature {
-        let points = times().zip(temperature.iter().copied()).collect();
-        panels.push(panel("Oil (°C)", 64.0, vec![line(points, 0)]));
+        let points = times().zip(temperature.iter().copied());
+        panels.push(CurvePanel::new("Oil (°C)", 64.0, vec![Curve::line(points, 0)]));
     }
     let commands = recording.inputs.iter().map(|input| percent(found, input.command));
-    panels.push(panel("U_C (%)", 78.0, vec![line(times().zip(commands).collect(), 0)]));
+    panels.push(CurvePanel::new("U_C (%)", 78.0, vec![Curve::line(times().zip(commands), 0)]));
     if let Some((kind, title)) = flow_signal(recording) {
         let values = recording.signal(kind).map(|signal| signal.values.clone()).unwrap_or_default();
         let shown = values.iter().map(|value| litre.of(value.unwrap_or(0.0)));
-        panels.push(panel(title, 100.0, vec![line(times().zip(shown).collect(), 0)]));
+        panels.push(CurvePanel::new(title, 100.0, vec![Curve::line(times().zip(shown), 0)]));
     }
     let supply = recording.inputs.iter().map(|input| bar.of(input.supply.pressure));
-    let mut pressures = vec![line(times().zip(supply).collect(), 0)];
+    let mut pressures = vec![Curve::line(times().zip(supply), 0)];
     for port in 0..2 {
         let of_row = |(row, time): (usize, f64)| {
             Some((time, bar.of(port_pressures(recording, row)?.get(port).copied()?)))
         };
-        pressures.push(line(times().enumerate().filter_map(of_row).collect(), port + 1));
+        pressures.push(Curve::line(times().enumerate().filter_map(of_row), port + 1));
     }
-    panels.push(panel("Pressure (bar)", 120.0, pressures));
+    panels.push(CurvePanel::new("Pressure (bar)", 120.0, pressures));
     let ends = [recording.times.first(), recording.times.last()].map(|time| time.copied().unwrap_or(0.0));
     let legend = ["p_S", "p_A", "p_B"].into_iter().enumerate();
-    let input = CurvesInput {
+    let chart = CurveChart {
         x_title: "Time (s)".to_string(),
         x_range: ends,
         panels,
@@ -176,7 +155,7 @@ fn series(found: &Identification, index: usize, recording: &Recording) -> Figure
         recording.file
     );
     let title = format!("Recorded: {}", name.replace('_', " "));
-    curves(Words::new(format!("series_{}_{name}", index + 1), title, caption), &input)
+    chart.draw(&Words::new(format!("series_{}_{name}", index + 1), title, caption))
 }
 
 /// Rows of one way of the command; those before its first reversal only where there are no others.
@@ -206,6 +185,17 @@ fn over_command(
     points
 }
 
+/// A chart over the command, to this far on either side of zero, percent.
+fn over_commands(reach: f64, panels: Vec<CurvePanel>, legend: Vec<(String, CurveStyle)>) -> CurveChart {
+    CurveChart { x_title: COMMAND.to_string(), x_range: [-reach, reach], panels, legend }
+}
+
+/// The greatest command of all recordings, percent.
+fn greatest_command(found: &Identification) -> f64 {
+    let commands = found.recordings.iter().flat_map(|one| &one.inputs).map(|input| input.command.abs());
+    percent(found, commands.fold(0.0, f64::max)).ceil()
+}
+
 /// Both nulls as marks.
 fn null_marks(found: &Identification) -> Vec<(f64, String)> {
     let nulls = found.simple.nulls.into_iter().zip(["rising", "falling"]);
@@ -225,17 +215,13 @@ fn leakage(found: &Identification, recording: &Recording) -> Figure {
         value.map(|value| litre.of(value))
     };
     let shown = WAYS.into_iter().enumerate();
-    let lines = shown.map(|(index, (_, rising))| line(over_command(found, recording, rising, value), index));
-    let mut only = panel("Leakage with tare flow (L/min)", 250.0, lines.collect());
+    let lines =
+        shown.map(|(index, (_, rising))| Curve::line(over_command(found, recording, rising, value), index));
+    let mut only = CurvePanel::new("Leakage with tare flow (L/min)", 250.0, lines.collect());
     only.marked = null_marks(found);
-    let input = CurvesInput {
-        x_title: COMMAND.to_string(),
-        x_range: [-AROUND_NULL, AROUND_NULL],
-        panels: vec![only],
-        legend: ways_legend(CurveStyle::Line),
-    };
+    let chart = over_commands(AROUND_NULL, vec![only], ways_legend(CurveStyle::Line));
     let caption = "Internal leakage around null with rising and with falling command; the base is the tare flow, and the centres of both curves lie a hysteresis apart (Ledezma 2019, Figure 5.5).";
-    curves(Words::new("leakage_both_ways", "Internal leakage both ways", caption), &input)
+    chart.draw(&Words::new("leakage_both_ways", "Internal leakage both ways", caption))
 }
 
 /// Flow with the direction that the model gives it where the meter tells none.
@@ -263,21 +249,17 @@ fn flow_gain(found: &Identification) -> Vec<Figure> {
         let both = WAYS
             .into_iter()
             .flat_map(|(_, rising)| over_command(found, one, rising, |row| signed_flow(one, &outputs, row)));
-        dots(both.collect(), series)
+        Curve::dots(both, series)
     });
     let names = metered.iter().enumerate();
-    let most = found.recordings.iter().flat_map(|one| &one.inputs).map(|input| input.command.abs());
-    let most = percent(found, most.fold(0.0, f64::max)).ceil();
-    let input = CurvesInput {
-        x_title: COMMAND.to_string(),
-        x_range: [-most, most],
-        panels: vec![panel("Flow from A to B (L/min)", 260.0, whole.collect())],
-        legend: names
-            .map(|(series, (_, one))| (stem(one).replace('_', " "), CurveStyle::Dots(series)))
-            .collect(),
-    };
+    let most = greatest_command(found);
+    let chart = over_commands(
+        most,
+        vec![CurvePanel::new("Flow from A to B (L/min)", 260.0, whole.collect())],
+        names.map(|(series, (_, one))| (stem(one).replace('_', " "), CurveStyle::Dots(series))).collect(),
+    );
     let caption = "Flow over the command by each meter, with the direction of the model where the meter tells none; where the large meter stands still there are no readings (Ledezma 2019, Figure 5.9).";
-    let first = curves(Words::new("flow_gain", "Flow gain", caption), &input);
+    let first = chart.draw(&Words::new("flow_gain", "Flow gain", caption));
     vec![first, flow_gain_at_null(found, &metered)]
 }
 
@@ -290,25 +272,21 @@ fn flow_gain_at_null(found: &Identification, metered: &[(usize, &Recording)]) ->
             let outputs = found.shown(*index, &found.coefficients);
             over_command(found, one, rising, |row| signed_flow(one, &outputs, row))
         });
-        shown.push(dots(read.collect(), series));
+        shown.push(Curve::dots(read, series));
         if let Some((index, one)) = finest {
             let outputs = found.shown(*index, &found.coefficients);
             let flow = |row: usize| outputs.get(row).map(|output| litre.of(output.port_flow));
-            shown.push(line(over_command(found, one, rising, flow), series));
+            shown.push(Curve::line(over_command(found, one, rising, flow), series));
         }
     }
     let mut legend = ways_legend(CurveStyle::Dots);
     legend.extend(
         ways_legend(CurveStyle::Line).into_iter().map(|(name, style)| (format!("model, {name}"), style)),
     );
-    let input = CurvesInput {
-        x_title: COMMAND.to_string(),
-        x_range: [-NEAR_NULL, NEAR_NULL],
-        panels: vec![panel("Flow from A to B (L/min)", 260.0, shown)],
-        legend,
-    };
+    let chart =
+        over_commands(NEAR_NULL, vec![CurvePanel::new("Flow from A to B (L/min)", 260.0, shown)], legend);
     let caption = "The same around null, both ways: between the curves lies the hysteresis (Ledezma 2019, Figure 5.10). Lines are the identified valve.";
-    curves(Words::new("flow_gain_at_null", "Flow gain around null", caption), &input)
+    chart.draw(&Words::new("flow_gain_at_null", "Flow gain around null", caption))
 }
 
 fn pressure_sensitivity(found: &Identification) -> Option<Figure> {
@@ -321,16 +299,12 @@ fn pressure_sensitivity(found: &Identification) -> Option<Figure> {
     let bar = DisplayUnit::BAR;
     let load = |row: usize| port_pressures(recording, row).map(|[a, b]| bar.of(a - b));
     let shown = WAYS.into_iter().enumerate();
-    let lines = shown.map(|(index, (_, rising))| line(over_command(found, recording, rising, load), index));
-    let only = CurvePanel { zero_line: true, ..panel("p_A - p_B (bar)", 250.0, lines.collect()) };
-    let input = CurvesInput {
-        x_title: COMMAND.to_string(),
-        x_range: [-CLOSE_TO_NULL, CLOSE_TO_NULL],
-        panels: vec![only],
-        legend: ways_legend(CurveStyle::Line),
-    };
+    let lines =
+        shown.map(|(index, (_, rising))| Curve::line(over_command(found, recording, rising, load), index));
+    let only = CurvePanel::new("p_A - p_B (bar)", 250.0, lines.collect()).with_zero_line();
+    let chart = over_commands(CLOSE_TO_NULL, vec![only], ways_legend(CurveStyle::Line));
     let caption = "Load pressure over the command with blocked ports: its slope at zero is the pressure sensitivity (Ledezma 2019, section 5.3).";
-    Some(curves(Words::new("pressure_sensitivity", "Pressure sensitivity", caption), &input))
+    Some(chart.draw(&Words::new("pressure_sensitivity", "Pressure sensitivity", caption)))
 }
 
 /// A recorded signal, the unit it is shown in, and its value in the model.
@@ -357,13 +331,13 @@ fn against_model(found: &Identification, index: usize, (way, rising): (&str, boo
             let Some(signal) = recording.signal(*kind) else { continue };
             let measured = |row: usize| signal.values.get(row).copied().flatten().map(|value| unit.of(value));
             let model = |row: usize| outputs.get(row).map(|output| unit.of(of(output)));
-            both.push(dots(over_command(found, recording, rising, measured), series));
-            both.push(line(over_command(found, recording, rising, model), series));
+            both.push(Curve::dots(over_command(found, recording, rising, measured), series));
+            both.push(Curve::line(over_command(found, recording, rising, model), series));
             let rest = |row: usize| Some(model(row)? - measured(row)?);
-            left.push(dots(over_command(found, recording, rising, rest), series));
+            left.push(Curve::dots(over_command(found, recording, rising, rest), series));
         }
-        panels.push(panel(title, 130.0, both));
-        panels.push(CurvePanel { zero_line: true, ..panel(residual, 76.0, left) });
+        panels.push(CurvePanel::new(title, 130.0, both));
+        panels.push(CurvePanel::new(residual, 76.0, left).with_zero_line());
     }
     let names = ["leakage", "p_A", "p_B"].into_iter().enumerate();
     let mut legend: Vec<(String, CurveStyle)> =
@@ -374,20 +348,18 @@ fn against_model(found: &Identification, index: usize, (way, rising): (&str, boo
             .enumerate()
             .map(|(series, name)| (format!("{name}, model"), CurveStyle::Line(series))),
     );
-    let input =
-        CurvesInput { x_title: COMMAND.to_string(), x_range: [-AROUND_NULL, AROUND_NULL], panels, legend };
+    let chart = over_commands(AROUND_NULL, panels, legend);
     let figure = if rising { "5.12" } else { "5.11" };
     let caption = format!(
         "Leakage test and identified valve with {way}: leakage, pressures at both ports, and what is left of each (Ledezma 2019, Figure {figure})."
     );
     let name = if rising { "test_and_model_rising" } else { "test_and_model_falling" };
-    curves(Words::new(name, format!("Test and model, {way}"), caption), &input)
+    chart.draw(&Words::new(name, format!("Test and model, {way}"), caption))
 }
 
 /// What the model leaves of every signal, over the command.
 fn residuals(found: &Identification) -> Figure {
-    let most = found.recordings.iter().flat_map(|one| &one.inputs).map(|input| input.command.abs());
-    let most = percent(found, most.fold(0.0, f64::max)).ceil();
+    let most = greatest_command(found);
     let one = |signal: &SignalFit| {
         let recording = found.recordings.get(signal.recording)?;
         let unit = if signal.kind.is_pressure() { DisplayUnit::BAR } else { DisplayUnit::LITRE_PER_MINUTE };
@@ -402,17 +374,10 @@ fn residuals(found: &Identification) -> Figure {
         };
         let title = format!("{short} ({})", unit.symbol);
         let label = vec![(-most, stem(recording).replace('_', " "))];
-        let mut shown = panel(title, 62.0, vec![dots(points.collect(), 0)]);
-        shown.zero_line = true;
-        shown.marked = label;
-        Some(shown)
+        let residual = CurvePanel::new(title, 62.0, vec![Curve::dots(points, 0)]).with_zero_line();
+        Some(CurvePanel { marked: label, ..residual })
     };
-    let input = CurvesInput {
-        x_title: COMMAND.to_string(),
-        x_range: [-most, most],
-        panels: found.signals.iter().filter_map(one).collect(),
-        legend: vec![],
-    };
+    let chart = over_commands(most, found.signals.iter().filter_map(one).collect(), vec![]);
     let caption = "What the identified valve leaves of every recorded signal, over the command: noise alone where the model is right.";
-    curves(Words::new("residuals", "Residuals", caption), &input)
+    chart.draw(&Words::new("residuals", "Residuals", caption))
 }

@@ -1,7 +1,7 @@
 use phea_dynamics::portable::{exp, ln};
 
 use super::{LineIdentification, ResponseFit, RiseFit};
-use crate::figure::{Curve, CurvePanel, CurveStyle, CurvesInput, Figure, Words, curves, curves_over_decades};
+use crate::figure::{Curve, CurveChart, CurvePanel, CurveStyle, Figure, Words};
 use crate::quantity::DisplayUnit;
 
 /// Points of a fitted curve.
@@ -23,43 +23,25 @@ fn volume_over_pressure(fit: &RiseFit) -> Figure {
     let points = fit.points();
     let shown = || points.iter().step_by(points.len().div_ceil(MOST).max(1));
     let at = |index: usize| low + (high - low) * index as f64 / (POINTS - 1) as f64;
-    let fitted = (0..POINTS).map(|index| (bar(at(index)), fit.volume(at(index)) / MILLILITRE)).collect();
+    let fitted = (0..POINTS).map(|index| (bar(at(index)), fit.volume(at(index)) / MILLILITRE));
     let left =
         shown().map(|(pressure, volume)| (bar(*pressure), (volume - fit.volume(*pressure)) / MILLILITRE));
+    let recorded = shown().map(|(pressure, volume)| (bar(*pressure), volume / MILLILITRE));
+    let both = vec![Curve::dots(recorded, 0), Curve::line(fitted, 1)];
     let panels = vec![
-        CurvePanel {
-            title: "Volume (mL)".to_string(),
-            curves: vec![
-                Curve {
-                    points: shown().map(|(pressure, volume)| (bar(*pressure), volume / MILLILITRE)).collect(),
-                    style: CurveStyle::Dots(0),
-                },
-                Curve { points: fitted, style: CurveStyle::Line(1) },
-            ],
-            marked: vec![],
-            zero_line: false,
-            height: 220.0,
-        },
-        CurvePanel {
-            title: "Residual (mL)".to_string(),
-            curves: vec![Curve { points: left.collect(), style: CurveStyle::Dots(0) }],
-            marked: vec![],
-            zero_line: true,
-            height: 100.0,
-        },
+        CurvePanel::new("Volume (mL)", 220.0, both),
+        CurvePanel::new("Residual (mL)", 100.0, vec![Curve::dots(left, 0)]).with_zero_line(),
     ];
     let caption = "Each point is a row of the record, drift taken off; the slope of the line is the compliance at rest. What is left wanders where the noise of a flow meter is summed up, and has two branches where the wall creeps.";
     let words =
         Words::new("line.pressure_rise", format!("{}: volume over pressure", fit.record.file), caption);
-    curves(
-        words,
-        &CurvesInput {
-            x_title: "Pressure (bar)".to_string(),
-            x_range: [bar(low), bar(high)],
-            panels,
-            legend: legend(),
-        },
-    )
+    CurveChart {
+        x_title: "Pressure (bar)".to_string(),
+        x_range: [bar(low), bar(high)],
+        panels,
+        legend: legend(),
+    }
+    .draw(&words)
 }
 
 fn compliance_over_frequency(found: &LineIdentification, fit: &ResponseFit) -> Figure {
@@ -74,46 +56,25 @@ fn compliance_over_frequency(found: &LineIdentification, fit: &ResponseFit) -> F
         let compliance = fit.model_response(&found.known, at(index))?.inv().im / at(index);
         Some((hertz(at(index)), per_bar(compliance)))
     });
-    let fitted: Vec<(f64, f64)> = fitted.collect();
     let bar = |p: &super::CompliancePoint| {
         let end = |sign: f64| (hertz(p.frequency), per_bar(p.measured + sign * p.edge));
-        Curve { points: vec![end(-1.0), end(1.0)], style: CurveStyle::Line(0) }
+        Curve::line([end(-1.0), end(1.0)], 0)
     };
-    let coherence = points.iter().map(|point| (hertz(point.frequency), point.coherence)).collect();
-    let measured = points.iter().map(|point| (hertz(point.frequency), per_bar(point.measured))).collect();
+    let coherence = points.iter().map(|point| (hertz(point.frequency), point.coherence));
+    let measured = points.iter().map(|point| (hertz(point.frequency), per_bar(point.measured)));
+    let mut compliances = vec![Curve::line(fitted, 1)];
+    compliances.extend(points.iter().map(bar));
+    compliances.push(Curve::dots(measured, 0));
     let panels = vec![
-        CurvePanel {
-            title: "Compliance (mL/bar)".to_string(),
-            curves: [Curve { points: fitted, style: CurveStyle::Line(1) }]
-                .into_iter()
-                .chain(points.iter().map(bar))
-                .chain([Curve { points: measured, style: CurveStyle::Dots(0) }])
-                .collect(),
-            marked: vec![],
-            zero_line: true,
-            height: 240.0,
-        },
-        CurvePanel {
-            title: "Coherence γ²".to_string(),
-            curves: vec![Curve { points: coherence, style: CurveStyle::Dots(0) }],
-            marked: vec![],
-            zero_line: false,
-            height: 90.0,
-        },
+        CurvePanel::new("Compliance (mL/bar)", 240.0, compliances).with_zero_line(),
+        CurvePanel::new("Coherence γ²", 90.0, vec![Curve::dots(coherence, 0)]),
     ];
     let mut legend = legend();
     legend.push(("95 % confidence".to_string(), CurveStyle::Line(0)));
     let caption = "Imaginary part of flow over pressure, divided by the frequency: the compliance, as long as the line is short beside the wave. It grows towards the quarter wave, beyond which the line answers as an inertance.";
     let title = format!("{}: compliance over frequency", fit.member.file);
-    curves_over_decades(
-        Words::new("line.frequency_response", title, caption),
-        &CurvesInput {
-            x_title: "Frequency (Hz)".to_string(),
-            x_range: [first, last].map(hertz),
-            panels,
-            legend,
-        },
-    )
+    CurveChart { x_title: "Frequency (Hz)".to_string(), x_range: [first, last].map(hertz), panels, legend }
+        .draw_over_decades(&Words::new("line.frequency_response", title, caption))
 }
 
 fn legend() -> Vec<(String, CurveStyle)> {

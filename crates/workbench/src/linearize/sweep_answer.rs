@@ -4,7 +4,7 @@ use super::root_list;
 use super::{Sweep, SweepPoint, Swept};
 use crate::answer::{Csv, Object, OutputFile, significant};
 use crate::document::Table;
-use crate::figure::{Figure, PoleSweepInput, PoleSweepPoint, Words, pole_sweep};
+use crate::figure::{Figure, PoleSweep, PoleSweepPoint, Words};
 use crate::quantity::DisplayUnit;
 
 /// The swept number, in the JSON of `linearize`.
@@ -152,14 +152,14 @@ pub(crate) fn sweep_figure(sweep: &Sweep) -> Figure {
         "Magnitude and damping ratio of each pole, the bandwidth of the loop with the given controller, and the stiffness over the stroke.{}",
         unmoved(sweep).map_or(String::new(), |sentence| format!(" Note: {sentence}."))
     );
-    let input = PoleSweepInput {
+    let chart = PoleSweep {
         quantity: sweep.path.clone(),
         unit: sweep.unit,
         stiffness_unit: stiffness_unit(sweep),
         by_ratio: sweep.by_ratio,
         points: points.collect(),
     };
-    pole_sweep(Words::new("sweep", format!("Poles over {}", sweep.path), caption), &input)
+    chart.draw(&Words::new("sweep", format!("Poles over {}", sweep.path), caption))
 }
 
 /// Every pole at every value as a table for other programs.

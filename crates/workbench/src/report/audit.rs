@@ -13,7 +13,7 @@ pub(super) fn chapter(
     view: &ProjectAudit,
     tried: Option<&Trial>,
 ) -> Result<Chapter, CommandError> {
-    let mut figures = closed_loops::figures(problem, &view.audit.specifications, view.audit.tolerance_db)?;
+    let mut figures = closed_loops::figures(problem, view)?;
     let steps = family_steps::figure(problem, view, ["family_steps", "Step responses of the family"]);
     let refused = steps.and_then(|steps| steps.map(|figure| figures.push(figure)).err());
     let mut out = document(view, figures);

@@ -12,8 +12,7 @@ use crate::audit::{ProjectAudit, closed_loop_symbol, frequency_number, kind_key}
 use crate::document::{Cell, Document, StatusMark, Table};
 use crate::error::CommandError;
 use crate::figure::{
-    BoundGroup, Figure, FrequencySeries, NicholsInput, OpenLoopViolation, USUAL_CONTOURS_DB, Words, nichols,
-    templates,
+    BoundGroup, Figure, FrequencySeries, NicholsChart, OpenLoopViolation, USUAL_CONTOURS_DB, Words, templates,
 };
 use crate::robust::{DesignFrequency, RobustProblem};
 
@@ -58,7 +57,7 @@ fn template_row(one: &DesignFrequency) -> [String; 3] {
 
 fn template_figure(found: &[Template]) -> Figure {
     let caption = "Every plant of the family by phase and magnitude, at each design frequency; the nominal plant marked.";
-    templates(Words::new("templates", "Templates", caption), found)
+    templates(&Words::new("templates", "Templates", caption), found)
 }
 
 fn specification_figures(problem: &RobustProblem, found: &[DesignFrequency]) -> Vec<Figure> {
@@ -76,12 +75,12 @@ fn specification_figures(problem: &RobustProblem, found: &[DesignFrequency]) -> 
             "Where the nominal loop may not be, so that every plant satisfies the limit of {}; ticks point to the forbidden side.",
             closed_loop_symbol(requirement)
         );
-        let input = NicholsInput {
+        let chart = NicholsChart {
             bounds: vec![BoundGroup { name: problem.name_of(index).to_string(), bounds: &bounds }],
             contours_db: USUAL_CONTOURS_DB.to_vec(),
-            ..NicholsInput::default()
+            ..NicholsChart::default()
         };
-        figures.push(nichols(Words::new(name, title, caption), &input));
+        figures.push(chart.draw(&Words::new(name, title, caption)));
     }
     figures
 }
@@ -120,7 +119,7 @@ pub(super) fn chart(
 ) -> Result<Figure, CommandError> {
     let nominal = nominal_loop(problem)?;
     let bounds: Vec<Bound> = found.iter().map(|one| one.bounds.union.clone()).collect();
-    let input = NicholsInput {
+    let chart = NicholsChart {
         loops: nominal.into_iter().collect(),
         design_frequencies_rad_per_s: problem.design_frequencies(),
         bounds: vec![BoundGroup { name: "all specifications".to_string(), bounds: &bounds }],
@@ -129,7 +128,7 @@ pub(super) fn chart(
         contours_db: vec![],
     };
     let caption = "The bounds of all specifications together, the nominal loop with its design frequencies, and the plants that violate a specification most: a loop above a bound that is open upwards, and outside closed ones, satisfies all of them at that frequency.";
-    Ok(nichols(Words::new("nichols", "Nichols chart of the loop", caption), &input))
+    Ok(chart.draw(&Words::new("nichols", "Nichols chart of the loop", caption)))
 }
 
 /// The open loop of each worst plant, where it violates.

@@ -8,8 +8,8 @@ use phea_qft::specification::{Limit, Requirement, Specification};
 use phea_qft::verification::{SpecificationFinding, Verdict, WorstCase};
 
 use crate::answer::significant;
-use crate::audit::{closed_loop_symbol, frequency_words, kind_key};
-use crate::figure::{FamilyMagnitudeInput, Figure, MagnitudeCurve, MagnitudeMark, Words, family_magnitude};
+use crate::audit::{ProjectAudit, closed_loop_symbol, frequency_words, kind_key};
+use crate::figure::{FamilyEnvelope, FamilyMagnitude, Figure, MagnitudeCurve, MagnitudeMark, Words};
 use crate::robust::RobustProblem;
 
 /// Number of members that are drawn, in addition to the worst.
@@ -19,7 +19,7 @@ pub(super) const DRAWN_MEMBERS: usize = 40;
 const MARGIN_OF_FREQUENCY: f64 = 10.0;
 
 /// The frequencies that a figure of this finding covers, rad/s.
-pub(super) fn span(specification: &Specification, finding: &SpecificationFinding) -> [f64; 2] {
+fn span(specification: &Specification, finding: &SpecificationFinding) -> [f64; 2] {
     let mut ends = specification.frequencies_rad_per_s.clone();
     ends.extend(finding.worst.iter().map(|worst| worst.frequency_rad_per_s));
     ends.extend(finding.violations.iter().flat_map(|band| band.band_rad_per_s));
@@ -29,113 +29,156 @@ pub(super) fn span(specification: &Specification, finding: &SpecificationFinding
     if ends.is_empty() { [0.01, 1000.0] } else { [low / MARGIN_OF_FREQUENCY, high * MARGIN_OF_FREQUENCY] }
 }
 
-/// One figure for each specification that has a margin; the magnitudes of an unstable loop do not
-/// describe a response.
-pub(super) fn figures(
-    problem: &RobustProblem,
-    findings: &[SpecificationFinding],
-    tolerance_db: f64,
-) -> Result<Vec<Figure>, LinearError> {
-    let members = problem.members()?;
-    let numbered = problem.specifications.iter().zip(findings).enumerate();
-    numbered
-        .filter(|(_, (_, finding))| finding.worst.is_some())
-        .map(|(index, (specification, finding))| {
-            figure(problem, &members, index + 1, (specification, finding), tolerance_db)
-        })
-        .collect()
+/// The family of plants within one loop, and what its audit found.
+pub(super) struct LoopFamily<'a> {
+    /// Of the loop; empty where there is one.
+    name: &'static str,
+    problem: &'a RobustProblem,
+    view: &'a ProjectAudit,
+    members: Vec<Member>,
 }
 
-fn figure(
-    problem: &RobustProblem,
-    members: &[Member],
-    number: usize,
-    (specification, finding): (&Specification, &SpecificationFinding),
-    tolerance_db: f64,
-) -> Result<Figure, LinearError> {
+impl<'a> LoopFamily<'a> {
+    pub(super) fn new(
+        name: &'static str,
+        problem: &'a RobustProblem,
+        view: &'a ProjectAudit,
+    ) -> Result<LoopFamily<'a>, LinearError> {
+        Ok(LoopFamily { name, problem, view, members: problem.members()? })
+    }
+
+    /// What the audit found, if the specification has a margin: the magnitudes of an unstable loop do
+    /// not describe a response.
+    fn finding(&self, index: usize) -> Option<&SpecificationFinding> {
+        self.view.audit.specifications.get(index).filter(|finding| finding.worst.is_some())
+    }
+
+    /// Of each plant, the one that the audit found worst as the last.
+    fn curves(&self, index: usize, requirement: &Requirement, frequencies: &[f64]) -> Vec<MagnitudeCurve> {
+        let worst = self.finding(index).and_then(|found| self.problem.member(&found.worst.as_ref()?.plant));
+        let members = self.members.iter().chain(&worst);
+        members.map(|member| curve(self.problem, requirement, member, frequencies)).collect()
+    }
+
+    fn mark(
+        &self,
+        index: usize,
+        requirement: &Requirement,
+        spread: Option<&MagnitudeCurve>,
+    ) -> Option<MagnitudeMark> {
+        let found = self.finding(index)?;
+        let mark = match spread {
+            Some(allowed) => spread_mark(allowed, found).filter(|_| !self.problem.has_prefilter)?,
+            None => mark(self.problem, requirement, found, found.worst.as_ref()?)?,
+        };
+        let text = if self.name.is_empty() { mark.text } else { format!("{}: {}", self.name, mark.text) };
+        Some(MagnitudeMark { text, ..mark })
+    }
+}
+
+/// A specification in these loops, with every member in the first of them, and whether it is shown by
+/// the spread of the family, which a prefilter does not change. `None` if no loop has a margin to it.
+pub(super) fn magnitudes(
+    loops: &[LoopFamily<'_>],
+    index: usize,
+    specification: &Specification,
+) -> Option<(FamilyMagnitude, bool)> {
+    let seen: Vec<&LoopFamily<'_>> = loops.iter().filter(|one| one.finding(index).is_some()).collect();
+    let first = seen.first()?;
     let requirement = &specification.requirement;
-    let [from, to] = span(specification, finding);
-    let mut frequencies = problem.drawn_frequencies(from, to);
-    frequencies.extend(finding.envelope.iter().map(|point| point.0).filter(|w| (from..=to).contains(w)));
+    let frequencies = frequencies(&seen, index, specification);
+    let (lower, upper) = requirement.limits();
+    let by_spread = lower.is_some() && seen.iter().any(|one| !one.problem.has_prefilter);
+    let limit = |limit| limit_curve(limit, specification.band_rad_per_s, &frequencies);
+    let (upper_limit, lower_limit) = match lower {
+        Some(lower) if by_spread => (quotient([limit(lower), limit(upper)]), None),
+        lower => (limit(upper), lower.map(limit)),
+    };
+    let spread = by_spread.then_some(&upper_limit);
+    let marks = seen.iter().filter_map(|one| one.mark(index, requirement, spread)).collect();
+    let curves = seen.iter().map(|one| one.curves(index, requirement, &frequencies));
+    let curves: Vec<Vec<MagnitudeCurve>> = curves.collect();
+    let envelopes = seen.iter().zip(&curves).map(|(one, curves)| {
+        let name = one.name.to_string();
+        let [least, greatest] = [extreme(curves, f64::min), extreme(curves, f64::max)];
+        match lower {
+            Some(_) if by_spread => {
+                FamilyEnvelope { name, greatest: quotient([least, greatest]), least: None }
+            }
+            lower => FamilyEnvelope { name, greatest, least: lower.map(|_| least) },
+        }
+    });
+    let quantity = if by_spread { "max|T|/min|T|" } else { closed_loop_symbol(requirement) };
+    let chart = FamilyMagnitude {
+        quantity: quantity.to_string(),
+        marks,
+        envelopes: envelopes.collect(),
+        upper_limit: Some(upper_limit),
+        lower_limit,
+        members: curves.into_iter().next().unwrap_or_default(),
+        design_frequencies_rad_per_s: specification.frequencies_rad_per_s.clone(),
+        tolerance_db: first.view.audit.tolerance_db,
+    };
+    Some((chart, by_spread))
+}
+
+/// The frequencies of the figures of the single loops, and those that their audits examined, rad/s.
+fn frequencies(seen: &[&LoopFamily<'_>], index: usize, specification: &Specification) -> Vec<f64> {
+    let spans = seen.iter().filter_map(|one| Some(span(specification, one.finding(index)?)));
+    let [from, to] =
+        spans.fold([f64::INFINITY, 0.0_f64], |all, one| [all[0].min(one[0]), all[1].max(one[1])]);
+    let mut frequencies = Vec::new();
+    for one in seen {
+        frequencies.extend(one.problem.drawn_frequencies(from, to));
+        let audited = one.finding(index).into_iter().flat_map(|found| &found.envelope);
+        frequencies.extend(audited.map(|point| point.0).filter(|w| (from..=to).contains(w)));
+    }
     frequencies.sort_by(f64::total_cmp);
     frequencies.dedup();
-    let worst = finding.worst.as_ref().and_then(|worst| problem.member(&worst.plant));
-    let mut curves: Vec<MagnitudeCurve> = members
-        .iter()
-        .chain(&worst)
-        .map(|member| curve(problem, requirement, member, &frequencies))
-        .collect();
-    let greatest = extreme(&curves, f64::max);
-    let least = requirement.limits().0.map(|_| extreme(&curves, f64::min));
-    // the last is the worst plant
+    frequencies
+}
+
+/// One figure for each specification that has a margin.
+pub(super) fn figures(problem: &RobustProblem, view: &ProjectAudit) -> Result<Vec<Figure>, LinearError> {
+    let family = [LoopFamily::new("", problem, view)?];
+    let specifications = problem.specifications.iter().enumerate();
+    Ok(specifications.filter_map(|(index, one)| figure(&family, index, one)).collect())
+}
+
+fn figure(family: &[LoopFamily<'_>; 1], index: usize, specification: &Specification) -> Option<Figure> {
+    let (mut chart, by_spread) = magnitudes(family, index, specification)?;
+    let requirement = &specification.requirement;
+    let number = index + 1;
+    let (title, caption) = if by_spread {
+        chart.members.clear();
+        let caption = "The greatest over the least |T| of the members, which no prefilter changes, and the upper over the lower limit.";
+        ("tracking by its spread", caption.to_string())
+    } else {
+        thin_out(&mut chart.members);
+        let caption = format!(
+            "{} of {} plants of the family (thin), the greatest{} of all members (thick), and the limit.",
+            closed_loop_symbol(requirement),
+            chart.members.len(),
+            if chart.lower_limit.is_some() { " and the least" } else { "" }
+        );
+        (family[0].problem.name_of(index), caption)
+    };
+    let name = format!("audit_{number}_{}", kind_key(requirement));
+    Some(chart.draw(&Words::new(name, format!("Specification {number}, {title}"), caption)))
+}
+
+/// Keeps some of the curves, and the last, which is that of the worst plant.
+fn thin_out(curves: &mut Vec<MagnitudeCurve>) {
     let (last, step) = (curves.len().saturating_sub(1), curves.len() / DRAWN_MEMBERS + 1);
     let mut index = 0;
     curves.retain(|_| {
         index += 1;
         (index - 1) % step == 0 || index - 1 == last
     });
-    let (lower, upper) = requirement.limits();
-    let band = specification.band_rad_per_s;
-    if let (Some(lower), false) = (lower, problem.has_prefilter) {
-        let limits = [lower, upper].map(|limit| limit_curve(limit, band, &frequencies));
-        let family = [least.unwrap_or_default(), greatest];
-        return Ok(spread_figure(number, specification, finding, limits, family, tolerance_db));
-    }
-    let limit = |limit: &Limit| limit_curve(limit, band, &frequencies);
-    let caption = format!(
-        "{} of {} plants of the family (thin), the greatest{} of all members (thick), and the limit.",
-        closed_loop_symbol(requirement),
-        curves.len(),
-        if lower.is_some() { " and the least" } else { "" }
-    );
-    let name = format!("audit_{number}_{}", kind_key(requirement));
-    let input = FamilyMagnitudeInput {
-        quantity: closed_loop_symbol(requirement).to_string(),
-        upper_limit: Some(limit(upper)),
-        lower_limit: lower.map(limit),
-        greatest,
-        least,
-        members: curves,
-        design_frequencies_rad_per_s: specification.frequencies_rad_per_s.clone(),
-        tolerance_db,
-        marks: finding.worst.iter().filter_map(|worst| mark(problem, requirement, finding, worst)).collect(),
-        ..FamilyMagnitudeInput::default()
-    };
-    let title = format!("Specification {number}, {}", problem.name_of(number - 1));
-    Ok(family_magnitude(Words::new(name, title, caption), &input))
-}
-
-/// Tracking without a prefilter: the spread of the family against the allowed one.
-fn spread_figure(
-    number: usize,
-    specification: &Specification,
-    finding: &SpecificationFinding,
-    limits: [MagnitudeCurve; 2],
-    family: [MagnitudeCurve; 2],
-    tolerance_db: f64,
-) -> Figure {
-    let allowed = quotient(limits);
-    let mark = spread_mark(&allowed, finding);
-    let input = FamilyMagnitudeInput {
-        quantity: "max|T|/min|T|".to_string(),
-        unit: String::new(),
-        upper_limit: Some(allowed),
-        greatest: quotient(family),
-        design_frequencies_rad_per_s: specification.frequencies_rad_per_s.clone(),
-        tolerance_db,
-        marks: mark.into_iter().collect(),
-        ..FamilyMagnitudeInput::default()
-    };
-    let words = Words::new(
-        format!("audit_{number}_tracking"),
-        format!("Specification {number}, tracking by its spread"),
-        "The greatest over the least |T| of the members, which no prefilter changes, and the upper over the lower limit.",
-    );
-    family_magnitude(words, &input)
 }
 
 /// The second over the first.
-pub(super) fn quotient([low, high]: [MagnitudeCurve; 2]) -> MagnitudeCurve {
+fn quotient([low, high]: [MagnitudeCurve; 2]) -> MagnitudeCurve {
     MagnitudeCurve {
         magnitudes: high.magnitudes.iter().zip(&low.magnitudes).map(|(high, low)| high / low).collect(),
         frequencies_rad_per_s: high.frequencies_rad_per_s,
@@ -143,7 +186,7 @@ pub(super) fn quotient([low, high]: [MagnitudeCurve; 2]) -> MagnitudeCurve {
 }
 
 /// Where the spread is worst compared with the allowed one.
-pub(super) fn spread_mark(allowed: &MagnitudeCurve, finding: &SpecificationFinding) -> Option<MagnitudeMark> {
+fn spread_mark(allowed: &MagnitudeCurve, finding: &SpecificationFinding) -> Option<MagnitudeMark> {
     let worst = finding.worst.as_ref()?;
     let place = worst.frequency_rad_per_s;
     let index = allowed.frequencies_rad_per_s.partition_point(|&frequency| frequency < place);
@@ -158,7 +201,7 @@ pub(super) fn spread_mark(allowed: &MagnitudeCurve, finding: &SpecificationFindi
     })
 }
 
-pub(super) fn curve(
+fn curve(
     problem: &RobustProblem,
     requirement: &Requirement,
     member: &Member,
@@ -173,7 +216,7 @@ pub(super) fn curve(
     curve
 }
 
-pub(super) fn limit_curve(limit: &Limit, band: [f64; 2], frequencies: &[f64]) -> MagnitudeCurve {
+fn limit_curve(limit: &Limit, band: [f64; 2], frequencies: &[f64]) -> MagnitudeCurve {
     let within = frequencies.iter().filter(|frequency| (band[0]..=band[1]).contains(*frequency));
     let (frequencies_rad_per_s, magnitudes) =
         within.filter_map(|&frequency| Some((frequency, limit.magnitude(frequency)?))).unzip();
@@ -182,7 +225,7 @@ pub(super) fn limit_curve(limit: &Limit, band: [f64; 2], frequencies: &[f64]) ->
 
 /// The extreme of all curves at the frequencies of the first; measured ones with a smaller range
 /// are left out there.
-pub(super) fn extreme(curves: &[MagnitudeCurve], choose: fn(f64, f64) -> f64) -> MagnitudeCurve {
+fn extreme(curves: &[MagnitudeCurve], choose: fn(f64, f64) -> f64) -> MagnitudeCurve {
     let mut extreme = curves.first().cloned().unwrap_or_default();
     let count = extreme.magnitudes.len();
     for curve in curves.iter().filter(|curve| curve.magnitudes.len() == count) {
@@ -194,7 +237,7 @@ pub(super) fn extreme(curves: &[MagnitudeCurve], choose: fn(f64, f64) -> f64) ->
 }
 
 /// Where a finding is worst, and by how much.
-pub(super) fn mark(
+fn mark(
     problem: &RobustProblem,
     requirement: &Requirement,
     finding: &SpecificationFinding,

@@ -15,7 +15,7 @@ use phea_qft::verification::{PlantPoint, Verdict};
 
 use super::closed_loops::DRAWN_MEMBERS;
 use crate::audit::ProjectAudit;
-use crate::figure::{FamilyStepInput, Figure, TimeBounds, TimeSeries, Words, family_step};
+use crate::figure::{FamilySteps, Figure, TimeBand, TimeSeries, Words};
 use crate::linear_loop::of_responses::real_parts;
 use crate::robust::RobustProblem;
 
@@ -45,7 +45,7 @@ pub(super) fn figure(
         return Some(Err("measured responses have no step response".to_string()));
     };
     let drawn = drawn(problem, family, view, limits);
-    Some(drawn.map(|input| family_step(words(names), &input)).map_err(|error| error.to_string()))
+    Some(drawn.map(|chart| chart.draw(&words(names))).map_err(|error| error.to_string()))
 }
 
 fn drawn(
@@ -53,7 +53,7 @@ fn drawn(
     family: &UncertainFamily,
     view: &ProjectAudit,
     (lower, upper): (&TransferFunction, &TransferFunction),
-) -> Result<FamilyStepInput, TimeResponseError> {
+) -> Result<FamilySteps, TimeResponseError> {
     let duration = duration(lower);
     let times = match problem.compensation.sample_time_s() {
         None => uniform_times(duration, SAMPLES)?,
@@ -94,9 +94,10 @@ fn drawn(
         Some(PlantPoint::Parameters(values)) => vec![member("the plant that tracks worst", values)?],
         _ => vec![],
     };
-    Ok(FamilyStepInput {
+    Ok(FamilySteps {
         quantity: "Output, part of the step".to_string(),
-        bounds: Some(TimeBounds {
+        band: Some(TimeBand {
+            name: "band of the limits".to_string(),
             upper: series("upper limit", upper, &limit_times)?,
             lower: series("lower limit", lower, &limit_times)?,
         }),

@@ -1,7 +1,7 @@
 //! The chapter on the driving-point impedance: the impedance at the load, its asymptotes, and
 //! passivity.
 
-use phea_dynamics::linear::{LinearError, TransferFunction};
+use phea_dynamics::linear::LinearError;
 use phea_dynamics::time_response::TimeResponseError;
 use phea_hydraulics::impedance::AsymptoteKind;
 
@@ -9,9 +9,7 @@ use super::chapter::Chapter;
 use super::load_motion::{self, Moved};
 use crate::answer::significant;
 use crate::document::{Document, Table};
-use crate::figure::{
-    AsymptoteLine, Figure, FrequencyMark, FrequencySeries, ImpedanceInput, Words, impedance,
-};
+use crate::figure::{AsymptoteLine, Figure, FrequencyMark, FrequencySeries, ImpedanceDiagram, Words};
 use crate::linearize::{
     Linearization, PortView, asked_sentence, asked_table, frequency_grid, impedance_at_joint,
     passivity_sentence,
@@ -135,11 +133,6 @@ fn asymptotes(linearization: &Linearization) -> Table {
 fn figure(linearization: &Linearization) -> Result<Figure, LinearError> {
     let grid = frequency_grid(&linearization.full.command)?;
     let (first, last) = (grid.first().copied().unwrap_or(0.01), grid.last().copied().unwrap_or(1e4));
-    let series = |name: &str, function: &TransferFunction| FrequencySeries {
-        name: name.to_string(),
-        response: grid.iter().map(|frequency| function.at_frequency(*frequency)).collect(),
-        frequencies_rad_per_s: grid.clone(),
-    };
     let mut lines: Vec<AsymptoteLine> = Vec::new();
     for (name, view) in views(linearization) {
         for asymptote in &view.asymptotes {
@@ -163,8 +156,11 @@ fn figure(linearization: &Linearization) -> Result<Figure, LinearError> {
     }
     let bands =
         linearization.closed_loop.as_ref().map(|view| view.passivity.bands.as_slice()).unwrap_or_default();
-    let input = ImpedanceInput {
-        series: views(linearization).iter().map(|(name, view)| series(name, &view.impedance)).collect(),
+    let chart = ImpedanceDiagram {
+        series: views(linearization)
+            .iter()
+            .map(|(name, view)| FrequencySeries::new(*name, &grid, |at| view.impedance.at_frequency(at)))
+            .collect(),
         asymptotes: lines,
         corners: vec![FrequencyMark {
             label: linearization.motion.formula(linearization.hidden_by.label()).into_owned(),
@@ -178,5 +174,5 @@ fn figure(linearization: &Linearization) -> Result<Figure, LinearError> {
     };
     let caption =
         "Magnitude and phase of Z with its straight lines; shaded where the closed loop is not passive.";
-    Ok(impedance(Words::new("impedance", "Driving-point impedance", caption), &input))
+    Ok(chart.draw(&Words::new("impedance", "Driving-point impedance", caption)))
 }

@@ -6,8 +6,10 @@ use phea_dynamics::time_response::{
 };
 
 use crate::answer::significant;
-use crate::figure::{DisplayUnit, Figure, StepResponseInput, TimeSeries, Words, step_response};
+use crate::figure::axis::extent;
+use crate::figure::{DisplayUnit, Figure, Words};
 use crate::linearize::PortView;
+use crate::over_time::{Trace, chart, panel, trace};
 use crate::project::{LoadMotion, MotionShape, Project};
 
 /// The motion that is shown where no scenario moves the load: 1 mm in 0.1 s.
@@ -63,7 +65,7 @@ pub(super) struct MovedForce {
     pub(super) peak_n: f64,
     /// The remaining force, N.
     remains_n: f64,
-    series: TimeSeries,
+    series: Trace,
 }
 
 /// Load step that the final force of a port is stated for, m.
@@ -91,7 +93,7 @@ pub(super) fn forces(
         let force = view.impedance.series(&TransferFunction::gain_only(-1.0))?;
         let values = forced_response(&force, &input, &times_s)?;
         let peak_n = values.iter().copied().fold(0.0, larger);
-        let series = TimeSeries { name: name.to_string(), times_s: times_s.clone(), values };
+        let series = trace(&times_s, &values);
         let remains_n = final_force_n * distance / STATED_STEP;
         forces.push(Moved { name, force: Some(MovedForce { peak_n, remains_n, series }) });
     }
@@ -131,15 +133,11 @@ pub(super) fn figure(project: &Project, forces: &[Moved]) -> Figure {
         significant(duration, 3),
         end(forces, unit)
     );
-    let input = StepResponseInput {
-        quantity: "Force F_e".to_string(),
-        unit,
-        reference: None,
-        responses: forces.iter().filter_map(|moved| Some(moved.force.as_ref()?.series.clone())).collect(),
-        settling_band: None,
-        bounds: None,
-        events: vec![],
-        controls: vec![],
-    };
-    step_response(Words::new("load-motion", "Load motion", caption), &input)
+    let known = forces
+        .iter()
+        .filter_map(|moved| Some((moved.name.to_string(), moved.force.as_ref()?.series.clone())));
+    let (names, series): (Vec<String>, Vec<Trace>) = known.unzip();
+    let (start, end) = extent(series.iter().flatten().map(|(time, _)| *time));
+    let chart = chart(vec![panel("Force F_e", unit, 250.0, series)], names, &[], [start, end]);
+    chart.draw(&Words::new("load-motion", "Load motion", caption))
 }

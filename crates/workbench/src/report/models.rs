@@ -4,8 +4,7 @@
 use super::chapter::Chapter;
 use crate::document::Document;
 use crate::figure::{
-    BodeInput, Figure, FrequencyMark, FrequencySeries, PoleMapInput, PoleMapScale, PoleSeries, Words, bode,
-    pole_map,
+    BodeDiagram, Figure, FrequencyMark, FrequencySeries, PoleMap, PoleMapScale, PoleSeries, Words,
 };
 use crate::linearize::{Linearization, document, frequency_grid, resonance};
 use phea_dynamics::linear::{LinearError, TransferFunction};
@@ -37,14 +36,14 @@ fn poles(linearization: &Linearization) -> Figure {
     if !linearization.plant_is_fifth_order {
         all.insert(0, series("plant", &linearization.plant.command));
     }
-    let input = PoleMapInput {
+    let chart = PoleMap {
         series: all,
         scale: PoleMapScale::SignedLogarithmic,
         damping_ratios: vec![0.01, 0.1, 0.5, 0.9],
         natural_frequencies_rad_per_s: vec![1.0, 10.0, 100.0, 1000.0],
     };
     let caption = "Poles from command to force: the slow hydraulic pole, the piston on the load cell, the valve's spool.";
-    pole_map(Words::new("poles", "Pole map", caption), &input)
+    chart.draw(&Words::new("poles", "Pole map", caption))
 }
 
 /// The models with the values in use, the plant first, which may be the fifth-order model.
@@ -84,19 +83,16 @@ fn diagram(
     reference: &TransferFunction,
 ) -> Result<Figure, LinearError> {
     let grid = frequency_grid(reference)?;
-    let series = models.iter().map(|(name, function)| FrequencySeries {
-        name: name.to_string(),
-        response: grid.iter().map(|frequency| function.at_frequency(*frequency)).collect(),
-        frequencies_rad_per_s: grid.clone(),
-    });
+    let series = models
+        .iter()
+        .map(|(name, function)| FrequencySeries::new(*name, &grid, |at| function.at_frequency(at)));
     let resonance = resonance(reference)
         .map(|pole| FrequencyMark { label: "resonance".to_string(), frequency_rad_per_s: pole.im });
-    let input = BodeInput {
+    let chart = BodeDiagram {
         quantity: "F_e/U_C".to_string(),
         unit: "N/V".to_string(),
         series: series.collect(),
-        with_difference: true,
         marks: resonance.into_iter().collect(),
     };
-    Ok(bode(words, &input))
+    Ok(chart.draw(&words))
 }

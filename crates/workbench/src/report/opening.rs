@@ -5,16 +5,14 @@ mod next;
 mod side;
 mod verdicts;
 
-use maud::{Markup, PreEscaped, html};
-
-use super::chapter::{Chapter, place};
+use super::chapter::Chapter;
 use super::driven::{DESIGNED, GIVEN, MachineChapter};
 use super::judged::Judged;
 use super::{Facts, NOMINAL_LOOP};
 use crate::answer::Object;
 use crate::audit::verdict_key;
 use crate::design::explanation_words;
-use crate::document::{coded, prose};
+use crate::document::{Document, StatusMark};
 use crate::figure::Figure;
 use crate::setup::Setup;
 use crate::simulate::at_a_glance;
@@ -89,36 +87,32 @@ pub(super) fn opening(contents: &Contents<'_>, nichols: Option<Figure>) -> (Chap
     let next = next_steps(contents, &sides);
     let mut figures: Vec<Figure> = contents.driven.and_then(over_time).into_iter().collect();
     figures.extend(nichols);
-    let body = html! {
-        (cards("facts", contents.facts))
-        (cards("facts results", contents.results))
-        (verdicts::table(contents, &sides))
-        (hindrances(contents))
-        @if !figures.is_empty() {
-            div.pair {
-                @for figure in &figures { (place(figure)) }
-                // beside a figure that stands alone
-                @if figures.len() == 1 { (steps(&next)) }
-            }
+    let mut out = Document::default();
+    out.cards(carded(contents.facts), false);
+    out.cards(carded(contents.results), true);
+    out.asked(verdicts::table(contents, &sides));
+    out.callouts(StatusMark::Bad, hindrances(contents));
+    let mut steps = Document::default();
+    steps.steps("What to do next", next.clone());
+    let mut pair = Document::default();
+    let count = figures.len();
+    pair.figures(figures);
+    match count {
+        0 => out.append(steps),
+        // beside a figure that stands alone
+        1 => {
+            pair.append(steps);
+            out.beside(pair);
         }
-        @if figures.len() != 1 { (steps(&next)) }
-    };
+        _ => {
+            out.beside(pair);
+            out.append(steps);
+        }
+    }
     let decided =
         |name: &str| sides.iter().find(|side| side.name == name).map(|side| decided(contents, side));
     let decision = Decision { given: decided(GIVEN), designed: decided(DESIGNED), next };
-    (Chapter { anchor: "decision", title: "What was required, and the result", body, figures }, decision)
-}
-
-/// What to do next.
-fn steps(next: &[String]) -> Markup {
-    html! {
-        @if !next.is_empty() {
-            div {
-                h3 { "What to do next" }
-                ol.next { @for step in next { li { (coded(step)) } } }
-            }
-        }
-    }
+    (Chapter::of("decision", "What was required, and the result", out), decision)
 }
 
 /// The first scenario that is drawn, of both controllers.
@@ -140,25 +134,15 @@ fn decided(contents: &Contents<'_>, side: &Side<'_>) -> Decided {
 }
 
 /// What prevents any controller, stated first.
-fn hindrances(contents: &Contents<'_>) -> Markup {
-    let Some(judged) = contents.judged else { return html! {} };
-    let found = judged.found();
+fn hindrances(contents: &Contents<'_>) -> Vec<String> {
+    let found = contents.judged.and_then(Judged::found);
     let explained = found.into_iter().flat_map(|view| view.explanations.iter().map(move |one| (view, one)));
     let explained = explained.filter(|(_, explanation)| explanation.is_impossible);
-    let sentences: Vec<String> =
-        explained.map(|(view, explanation)| explanation_words(view, explanation)).take(2).collect();
-    html! { @for sentence in &sentences { div.callout.bad-edge { p { (prose(sentence)) } } } }
+    explained.map(|(view, explanation)| explanation_words(view, explanation)).take(2).collect()
 }
 
-/// The words of a card, whose long names may be broken where they are joined.
-fn card(value: &str) -> Markup {
-    PreEscaped(prose(value).into_string().replace('_', "_<wbr>"))
-}
-
-fn cards(class: &str, facts: &Facts) -> Markup {
-    html! {
-        @if !facts.is_empty() {
-            dl class=(class) { @for (name, value) in facts.iter().filter(|(name, _)| *name != NOMINAL_LOOP) { div.fact { dt { (name) } dd { (card(value)) } } } }
-        }
-    }
+/// The facts that stand on cards.
+fn carded(facts: &Facts) -> Vec<(String, String)> {
+    let shown = facts.iter().filter(|(name, _)| *name != NOMINAL_LOOP);
+    shown.map(|(name, words)| (name.to_string(), words.clone())).collect()
 }

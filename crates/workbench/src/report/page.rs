@@ -13,11 +13,13 @@ pub(super) struct Page<'a> {
     pub(super) opening: &'a Chapter,
     pub(super) chapters: &'a [Chapter],
     pub(super) appendix: &'a [Chapter],
+    /// SHA-256 of the project.
+    pub(super) sha256: &'a str,
 }
 
 impl Page<'_> {
     /// The file.
-    pub(super) fn html(&self, footer: &Markup) -> String {
+    pub(super) fn html(&self) -> String {
         let style = format!("{}{}", include_str!("style.css"), style_sheet());
         html! {
             (DOCTYPE)
@@ -31,13 +33,16 @@ impl Page<'_> {
                 body {
                     header { h1 { (self.title) } p.subtitle { (self.subtitle) } }
                     main {
-                        section.opening id=(self.opening.anchor) { h2 { (self.opening.title) } (self.opening.body) }
+                        section.opening id=(self.opening.anchor) { h2 { (self.opening.title) } (self.opening.document.markup()) }
                         (self.contents())
                         @for chapter in self.chapters { (section(chapter)) }
                         @if !self.appendix.is_empty() { p.part { "Appendix" } }
                         @for chapter in self.appendix { (section(chapter)) }
                     }
-                    footer { (footer) }
+                    footer {
+                        p { "Made by phea " (env!("CARGO_PKG_VERSION")) " from a project with SHA-256 " code { (self.sha256) } "." }
+                        p { "Equations are numbered as in Ledezma (2019), Universidade Federal de Santa Catarina; corrected where its book of errata says so." }
+                    }
                 }
             }
         }
@@ -56,5 +61,5 @@ impl Page<'_> {
 }
 
 fn section(chapter: &Chapter) -> Markup {
-    html! { section id=(chapter.anchor) { h2 { (chapter.title) } div.columns { (chapter.body) } } }
+    html! { section id=(chapter.anchor) { h2 { (chapter.title) } div.columns { (chapter.document.markup()) } } }
 }

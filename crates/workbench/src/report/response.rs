@@ -5,10 +5,9 @@ use phea_dynamics::frequency::Margins;
 use super::chapter::Chapter;
 use crate::answer::significant;
 use crate::document::{Document, StatusMark, Table};
-use crate::figure::{
-    DisplayUnit, Figure, SettlingBand, StepResponseInput, TimeEvent, TimeSeries, Words, step_response,
-};
+use crate::figure::{DisplayUnit, Figure, SettlingBand, Words};
 use crate::linear_loop::{LinearLoop, LoopStability, StepView, settling_words};
+use crate::over_time::ForceStep;
 use crate::project::Project;
 use crate::quantity::MotionKind;
 
@@ -49,32 +48,21 @@ pub(super) fn chapter(
 
 fn figure(view: &StepView, reference: f64, motion: MotionKind) -> Figure {
     let unit = motion.unit(DisplayUnit::KILONEWTON);
-    let series = |name: &str, values: &[f64]| TimeSeries {
-        name: name.to_string(),
-        times_s: view.times_s.clone(),
-        values: values.iter().map(|value| value * reference).collect(),
-    };
+    let sized = |values: &[f64]| values.iter().map(|value| value * reference).collect::<Vec<f64>>();
     let band = view.metrics.settling_band_percent;
-    let settled = view.metrics.settling.time_s().map(|time_s| TimeEvent {
-        time_s,
-        label: format!("t_s({} %) = {} s", significant(band, 2), significant(time_s, 3)),
-    });
-    let ones = vec![1.0; view.times_s.len()];
-    let input = StepResponseInput {
-        quantity: "Force F_e".to_string(),
+    let words = |time_s| format!("t_s({} %) = {} s", significant(band, 2), significant(time_s, 3));
+    let shown = ForceStep {
+        times_s: &view.times_s,
+        reference: &vec![reference; view.times_s.len()],
+        force: &sized(&view.response),
+        filtered_reference: &sized(&view.filtered_reference),
+        command: &sized(&view.command_v_per_n),
         unit,
-        reference: Some(series("reference", &ones)),
-        responses: vec![
-            series("force", &view.response),
-            series("prefiltered reference", &view.filtered_reference),
-        ],
         settling_band: Some(SettlingBand { level: reference, percent: band }),
-        bounds: None,
-        events: settled.into_iter().collect(),
-        controls: vec![series("command U_C", &view.command_v_per_n)],
+        settled: view.metrics.settling.time_s().map(|time_s| (time_s, words(time_s))),
     };
     let caption = format!("A step of {}: force, prefiltered reference and command.", unit.text(reference, 3));
-    step_response(Words::new("step", "Step response", caption), &input)
+    shown.chart().draw(&Words::new("step", "Step response", caption))
 }
 
 fn metrics(view: &StepView) -> Table {

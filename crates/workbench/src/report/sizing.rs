@@ -3,8 +3,8 @@
 use super::chapter::Chapter;
 use crate::document::{Document, StatusMark};
 use crate::figure::{
-    CandidateVerdict, DisplayUnit, Figure, NomographBore, NomographInput, SizingCandidate, SizingChartInput,
-    SizingCurve, TornadoBar, TornadoInput, Words, nomograph, sizing_chart, tornado,
+    CandidateVerdict, DisplayUnit, Figure, Nomograph, NomographBore, SizingCandidate, SizingChart,
+    SizingCurve, Tornado, TornadoBar, Words,
 };
 use crate::rig::SizingError;
 use crate::sizing::{BoreVerdict, Candidate, Sizing, SizingProblem, document, model_name};
@@ -46,12 +46,12 @@ fn bores(problem: &SizingProblem, sizing: &Sizing) -> Figure {
         "At {} L/min the recommended velocities of {slowest} to {fastest} m/s take a bore of {smallest} to {largest} mm. A faster bore is rejected, a slower one only causes a warning.",
         DisplayUnit::LITRE_PER_MINUTE.number(problem.maximum_flow, 3)
     );
-    let input = NomographInput {
+    let chart = Nomograph {
         bores: sizing.bores.iter().map(bore).collect(),
         design_flow_m3_per_s: problem.maximum_flow,
         velocity_range_m_per_s: (slowest, fastest),
     };
-    nomograph(Words::new("sizing-nomograph", "Feasible bores", caption), &input)
+    chart.draw(&Words::new("sizing-nomograph", "Feasible bores", caption))
 }
 
 fn lengths(problem: &SizingProblem, sizing: &Sizing) -> Figure {
@@ -96,7 +96,7 @@ fn lengths(problem: &SizingProblem, sizing: &Sizing) -> Figure {
                 CandidateVerdict::Rejected
             },
         });
-    let input = SizingChartInput {
+    let chart = SizingChart {
         curves,
         candidates: candidates.collect(),
         length_range_m: Some((problem.hose_length[0], problem.hose_length[1])),
@@ -107,7 +107,7 @@ fn lengths(problem: &SizingProblem, sizing: &Sizing) -> Figure {
         "Least stiffness over the stroke and the proportional gain that makes the time constant {} ms, for each length of hose per line.",
         DisplayUnit::MILLISECOND.number(problem.time_constant, 3)
     );
-    sizing_chart(Words::new("sizing-length", "Length, stiffness and gain", caption), &input)
+    chart.draw(&Words::new("sizing-length", "Length, stiffness and gain", caption))
 }
 
 fn uncertain(sizing: &Sizing) -> Option<Figure> {
@@ -119,12 +119,12 @@ fn uncertain(sizing: &Sizing) -> Option<Figure> {
         low_value: influence.stiffness_n_per_m[0],
         high_value: influence.stiffness_n_per_m[2],
     });
-    let input = TornadoInput {
+    let chart = Tornado {
         quantity: "Hydraulic stiffness K_H".to_string(),
         unit: DisplayUnit::MEGANEWTON_PER_METRE,
         nominal,
         bars: bars.collect(),
     };
     let caption = "Least stiffness over the stroke of the chosen hose.";
-    Some(tornado(Words::new("sizing-sensitivity", "Influence on the stiffness", caption), &input))
+    Some(chart.draw(&Words::new("sizing-sensitivity", "Influence on the stiffness", caption)))
 }

@@ -5,10 +5,7 @@ use phea_hydraulics::stiffness::StiffnessModel;
 
 use super::chapter::Chapter;
 use crate::document::Document;
-use crate::figure::{
-    self, Figure, ForceStiffnessCurve, ForceStiffnessInput, StiffnessCurve, StiffnessInput, Words,
-    stiffness_over_stroke,
-};
+use crate::figure::{Figure, StiffnessCurve, StiffnessDiagram, StiffnessOver, Words};
 use crate::linearize::{
     Linearization, StiffnessOverForce, stiffness_at, stiffness_at_setting, stiffness_at_settings,
     stiffness_over_force, stiffness_sentence,
@@ -37,11 +34,12 @@ fn figure(rig: &Rig, stroke: f64) -> Figure {
     };
     let mut curves = vec![curve(rig, declared, stroke), curve(rig, other, stroke)];
     curves.extend(settings(rig, stroke));
-    let input = StiffnessInput {
+    let chart = StiffnessDiagram {
         curves,
-        operating_position_m: Some(rig.point.position),
+        operating_point: Some(rig.point.position),
         band_label: "dynamic stiffening from least to greatest".to_string(),
         motion: rig.motion,
+        ..StiffnessDiagram::default()
     };
     let told = "Hydraulic stiffness against piston position: the declared model with its band of dynamic stiffening, and the other model";
     let caption = match rig.actuator.components().adjustments {
@@ -50,30 +48,30 @@ fn figure(rig: &Rig, stroke: f64) -> Figure {
             "{told}, both at the setting of rest, and the declared model at other settings of the accumulators, for slow motions."
         ),
     };
-    stiffness_over_stroke(Words::new("stiffness", "Hydraulic stiffness over the stroke", caption), &input)
+    chart.draw(&Words::new("stiffness", "Hydraulic stiffness over the stroke", caption))
 }
 
 /// Gas under pressure: the stiffness over the forces that the rig holds.
 fn over_force(rig: &Rig, found: StiffnessOverForce) -> Figure {
     let StiffnessOverForce { forces, at_rest, at_settings } = found;
-    let curve = |name: String, stiffness_n_per_m: Vec<f64>| ForceStiffnessCurve {
+    let curve = |name: String, stiffness_n_per_m: Vec<f64>| StiffnessCurve {
         name,
-        forces_n: forces.clone(),
+        places: forces.clone(),
         stiffness_n_per_m,
+        ..StiffnessCurve::default()
     };
     let name = if at_settings.is_empty() { "with the gas" } else { "at the setting of rest" };
     let others =
         at_settings.into_iter().map(|(setting, values)| curve(format!("at setting {setting}"), values));
-    let input = ForceStiffnessInput {
+    let chart = StiffnessDiagram {
         curves: std::iter::once(curve(name.to_string(), at_rest)).chain(others).collect(),
-        operating_force_n: Some(rig.point.hydraulic_force),
+        over: StiffnessOver::Force,
+        operating_point: Some(rig.point.hydraulic_force),
         motion: rig.motion,
+        ..StiffnessDiagram::default()
     };
     let caption = "Hydraulic stiffness for slow motions against the force that is held at standstill, at the position of the operating point: with more force the gas of chamber A becomes stiffer and that of chamber B softer. The curves end where the gas at a chamber is shut off, or at the nominal voltage.";
-    figure::stiffness_over_force(
-        Words::new("stiffness-force", "Hydraulic stiffness over the force", caption),
-        &input,
-    )
+    chart.draw(&Words::new("stiffness-force", "Hydraulic stiffness over the force", caption))
 }
 
 fn positions(stroke: f64) -> Vec<f64> {
@@ -83,11 +81,11 @@ fn positions(stroke: f64) -> Vec<f64> {
 /// The declared model where accumulators can be adjusted to.
 fn settings(rig: &Rig, stroke: f64) -> Vec<StiffnessCurve> {
     let of = |setting: f64| {
-        let positions_m = positions(stroke);
+        let places = positions(stroke);
         StiffnessCurve {
             name: format!("at setting {setting}"),
-            stiffness_n_per_m: positions_m.iter().map(|x| stiffness_at_setting(rig, setting, *x)).collect(),
-            positions_m,
+            stiffness_n_per_m: places.iter().map(|x| stiffness_at_setting(rig, setting, *x)).collect(),
+            places,
             ..StiffnessCurve::default()
         }
     };
@@ -95,8 +93,8 @@ fn settings(rig: &Rig, stroke: f64) -> Vec<StiffnessCurve> {
 }
 
 fn curve(rig: &Rig, model: StiffnessModel, stroke: f64) -> StiffnessCurve {
-    let positions_m = positions(stroke);
-    let at = |member| positions_m.iter().map(|x| stiffness_at(rig, model, member, *x)).collect::<Vec<f64>>();
+    let places = positions(stroke);
+    let at = |member| places.iter().map(|x| stiffness_at(rig, model, member, *x)).collect::<Vec<f64>>();
     let (minimum, maximum) = (at(StiffeningMember::Minimum), at(StiffeningMember::Maximum));
     let uncertain = minimum != maximum;
     StiffnessCurve {
@@ -104,6 +102,6 @@ fn curve(rig: &Rig, model: StiffnessModel, stroke: f64) -> StiffnessCurve {
         stiffness_n_per_m: at(StiffeningMember::Nominal),
         minimum_n_per_m: if uncertain { minimum } else { vec![] },
         maximum_n_per_m: if uncertain { maximum } else { vec![] },
-        positions_m,
+        places,
     }
 }

@@ -2,7 +2,7 @@ use num_complex::Complex64;
 
 use super::Compared;
 use super::files::stem;
-use crate::figure::{EstimatedResponseInput, Figure, FrequencySeries, Words, estimated_response};
+use crate::figure::{EstimatedResponse, Figure, FrequencySeries, Words};
 
 /// A Bode diagram of each member.
 pub(crate) fn pictures(found: &[Compared]) -> Vec<Figure> {
@@ -21,7 +21,7 @@ fn picture(compared: &Compared, stem: &str) -> Figure {
     let model = compared.plant.clone().map(|plant| series("linear plant of the project", plant));
     let caption = "Each point is a frequency of the record; the band around it holds the truth with 95 % confidence. Points below the dotted line of the coherence are left out.";
     let title = format!("{}: {output} over {input}", member.file);
-    let input = EstimatedResponseInput {
+    let chart = EstimatedResponse {
         quantity: format!("{output}/{input}"),
         unit: format!("{}/{}", member.units[1], member.units[0]),
         estimate: series("estimate", member.points.iter().map(|point| point.response).collect()),
@@ -30,5 +30,5 @@ fn picture(compared: &Compared, stem: &str) -> Figure {
         least_coherence: member.least_coherence,
         models: model.into_iter().collect(),
     };
-    estimated_response(Words::new(format!("{stem}.response"), title, caption), &input)
+    chart.draw(&Words::new(format!("{stem}.response"), title, caption))
 }

@@ -3,9 +3,9 @@
 use super::{Cause, GAS_TEMPERATURES, Metrics, Record, ScenarioComparison, ScenarioRun, Window, cause_words};
 use crate::answer::{OutputFile, picture_files, significant};
 use crate::figure::{
-    DisplayUnit, Figure, FigureError, SettlingBand, StepResponseInput, TimeEvent, TimePanel, TimePanelsInput,
-    TimeSeries, Words, step_response, time_panels,
+    CurveChart, CurvePanel, CurveStyle, DisplayUnit, Figure, FigureError, SettlingBand, Words,
 };
+use crate::over_time::{ForceStep, Trace, behind, chart, panel, trace};
 use phea_hydraulics::machine::{GAS_PRESSURE_SIGNALS, HEAT_SIGNALS};
 
 /// Time drawn before and after the start of a window, s.
@@ -24,7 +24,7 @@ pub(crate) fn pictures(run: &ScenarioRun, number: usize) -> Vec<Figure> {
         format!("Simulated: {}", run.name),
         "Force, voltages, pressures and position over the whole scenario.",
     );
-    let mut figures = vec![overview(whole, run, [0.0, end])];
+    let mut figures = vec![overview(&whole, run, [0.0, end])];
     for (index, window) in enlarged(&run.windows, end) {
         let positions = if moves_load(window) { ", positions" } else { "" };
         let asked_for = if run.open_loop { "" } else { " with its reference" };
@@ -37,7 +37,7 @@ pub(crate) fn pictures(run: &ScenarioRun, number: usize) -> Vec<Figure> {
             format!("Enlarged: {}", cause_words(window)),
             caption,
         );
-        figures.push(close_up(words, run, window, around(window, end)));
+        figures.push(close_up(&words, run, window, around(window, end)));
     }
     figures.extend(overlaid(run, number, [0.0, end]));
     figures
@@ -48,25 +48,21 @@ fn overlaid(run: &ScenarioRun, number: usize, span_s: [f64; 2]) -> Option<Figure
     let height = if run.measured.len() > 3 { 100.0 } else { 150.0 };
     let panels = run.measured.iter().map(|overlay| {
         let simulated = over_time(&run.record, run.record.signal(overlay.signal));
-        let measured = TimeSeries {
-            name: String::new(),
-            times_s: overlay.times_s.clone(),
-            values: overlay.measured.clone(),
-        };
+        let measured = trace(&overlay.times_s, &overlay.measured);
         panel(&overlay.quantity(), overlay.display_unit(), height, vec![simulated, measured])
     });
-    let panels: Vec<TimePanel> = panels.collect();
+    let panels: Vec<CurvePanel> = panels.collect();
     let words = Words::new(
         format!("simulation-{number}-measured"),
         format!("Measured and simulated: {}", run.name),
         "What was measured on the rig, on what the machine of the project does.",
     );
     let legend = ["simulated", "measured"].map(String::from);
-    (!panels.is_empty()).then(|| drawn(words, run, panels, legend, span_s))
+    (!panels.is_empty()).then(|| drawn(run, panels, legend, span_s).draw(&words))
 }
 
 /// Everything at a glance.
-fn overview(words: Words, run: &ScenarioRun, span_s: [f64; 2]) -> Figure {
+fn overview(words: &Words, run: &ScenarioRun, span_s: [f64; 2]) -> Figure {
     let record = &run.record;
     let mut panels = vec![measured(record, 190.0), voltages(record), pressures(record), positions(record)];
     panels.extend(joint(record));
@@ -81,12 +77,12 @@ fn overview(words: Words, run: &ScenarioRun, span_s: [f64; 2]) -> Figure {
     if !record.external_force_n.is_empty() {
         legend[0] = format!("{}, force from outside", legend[0]);
     }
-    drawn(words, run, panels, with_gas(legend, record), span_s)
+    drawn(run, panels, with_gas(legend, record), span_s).draw(words)
 }
 
 /// The signals between command and force, in the order of Figure 6.17 of Ledezma (2019); with
 /// positions where the load moves.
-pub(super) fn close_up(words: Words, run: &ScenarioRun, window: &Window, span_s: [f64; 2]) -> Figure {
+pub(super) fn close_up(words: &Words, run: &ScenarioRun, window: &Window, span_s: [f64; 2]) -> Figure {
     let record = &run.record;
     let forces = ["force_n", "hydraulic_force_n"].map(|name| over_time(record, record.signal(name)));
     let forces = panel("Forces F_e, F_H", record.motion.unit(DisplayUnit::KILONEWTON), 150.0, forces.into());
@@ -109,21 +105,19 @@ pub(super) fn close_up(words: Words, run: &ScenarioRun, window: &Window, span_s:
         panels.extend(from_outside(record));
         legend[0] = format!("{}, force from outside", legend[0]);
     }
-    drawn(words, run, panels, with_gas(legend, record), span_s)
+    drawn(run, panels, with_gas(legend, record), span_s).draw(words)
 }
 
 /// The measured force, its reference, and the command.
-fn measured(record: &Record, height: f64) -> TimePanel {
+fn measured(record: &Record, height: f64) -> CurvePanel {
+    let unit = record.motion.unit(DisplayUnit::KILONEWTON);
     let series = [record.signal("force_n"), record.filtered_reference_n.clone()]
         .map(|values| over_time(record, values));
-    TimePanel {
-        reference: asked_for(record),
-        ..panel("Force F_e", record.motion.unit(DisplayUnit::KILONEWTON), height, series.into())
-    }
+    behind(panel("Force F_e", unit, height, series.into()), unit, CurveStyle::Reference, asked_for(record))
 }
 
 /// The reference; none in an open loop.
-pub(super) fn asked_for(record: &Record) -> Option<TimeSeries> {
+pub(super) fn asked_for(record: &Record) -> Option<Trace> {
     (!record.reference_n.is_empty()).then(|| over_time(record, record.reference_n.clone()))
 }
 
@@ -133,7 +127,7 @@ pub(super) fn moves_load(window: &Window) -> bool {
 }
 
 /// The external force on the load, if there is one.
-fn from_outside(record: &Record) -> Option<TimePanel> {
+fn from_outside(record: &Record) -> Option<CurvePanel> {
     let series =
         (!record.external_force_n.is_empty()).then(|| over_time(record, record.external_force_n.clone()))?;
     Some(match turns(record) {
@@ -143,7 +137,7 @@ fn from_outside(record: &Record) -> Option<TimePanel> {
 }
 
 /// The settings of accumulators that are adjusted, if there are any.
-fn settings(record: &Record) -> Option<TimePanel> {
+fn settings(record: &Record) -> Option<CurvePanel> {
     if !record.parts.adjustment {
         return None;
     }
@@ -157,14 +151,14 @@ pub(crate) fn turns(record: &Record) -> bool {
 }
 
 /// The angle of the joint behind a linkage, if there is one.
-fn joint(record: &Record) -> Option<TimePanel> {
+fn joint(record: &Record) -> Option<CurvePanel> {
     let series = turns(record).then(|| over_time(record, record.signal("joint_angle_rad")))?;
     Some(panel("Joint θ", DisplayUnit::DEGREE, 90.0, vec![series]))
 }
 
 /// The pressures of gas behind necks and the temperatures of gas that exchanges heat, where there are
 /// any: over that of the wall where the working temperature is not stated.
-fn gas(record: &Record) -> Vec<TimePanel> {
+fn gas(record: &Record) -> Vec<CurvePanel> {
     let unstated = [0, 1].map(|side| match record.parts.gas_wall_celsius[side] {
         None => record.signal(HEAT_SIGNALS[side]),
         Some(_) => vec![],
@@ -194,37 +188,24 @@ fn with_gas(legend: [String; 2], record: &Record) -> [String; 2] {
     })
 }
 
-fn voltages(record: &Record) -> TimePanel {
+fn voltages(record: &Record) -> CurvePanel {
     let series = [record.control_v.clone(), record.signal("spool_v")].map(|values| over_time(record, values));
     panel("Voltage", DisplayUnit::VOLT, 110.0, series.into())
 }
 
-fn pressures(record: &Record) -> TimePanel {
+fn pressures(record: &Record) -> CurvePanel {
     let series = ["pressure_a_pa", "pressure_b_pa"].map(|name| over_time(record, record.signal(name)));
     panel("Pressure", DisplayUnit::BAR, 110.0, series.into())
 }
 
-fn positions(record: &Record) -> TimePanel {
+fn positions(record: &Record) -> CurvePanel {
     let series = ["position_m", "load_position_m"].map(|name| over_time(record, record.signal(name)));
     panel("Position", record.motion.unit(DisplayUnit::MILLIMETRE), 90.0, series.into())
 }
 
 /// Panels of one run, with its events.
-fn drawn(
-    words: Words,
-    run: &ScenarioRun,
-    panels: Vec<TimePanel>,
-    legend: [String; 2],
-    span_s: [f64; 2],
-) -> Figure {
-    let input = TimePanelsInput {
-        panels,
-        legend: legend.into(),
-        reference: "reference".to_string(),
-        events: run.windows.iter().filter_map(|(window, _)| instant(window, span_s)).collect(),
-        span_s,
-    };
-    time_panels(words, &input)
+fn drawn(run: &ScenarioRun, panels: Vec<CurvePanel>, legend: [String; 2], span_s: [f64; 2]) -> CurveChart {
+    chart(panels, legend, &instants(&run.windows, span_s), span_s)
 }
 
 /// The events that have a figure of their own, with their indices among all.
@@ -253,31 +234,21 @@ pub(super) fn enlarged(windows: &[(Window, Metrics)], end_s: f64) -> Vec<(usize,
         .collect()
 }
 
-/// The event of a window, if it is within the frame.
-pub(super) fn instant(window: &Window, [start, end]: [f64; 2]) -> Option<TimeEvent> {
-    let seen = window.start_s >= start && window.start_s < end;
-    seen.then(|| TimeEvent { time_s: window.start_s, label: window.cause.label().to_string() })
+/// The events of windows that are within the frame.
+pub(super) fn instants(windows: &[(Window, Metrics)], [start, end]: [f64; 2]) -> Vec<(f64, String)> {
+    let seen = windows.iter().map(|(window, _)| window);
+    let seen = seen.filter(|window| window.start_s >= start && window.start_s < end);
+    seen.map(|window| (window.start_s, window.cause.label().to_string())).collect()
 }
 
 /// From shortly before an event to half a second later, within the run.
-pub(super) fn around(window: &Window, end_s: f64) -> [f64; 2] {
+pub(crate) fn around(window: &Window, end_s: f64) -> [f64; 2] {
     [(window.start_s - BEFORE_S).max(0.0), (window.start_s + AFTER_S).min(end_s)]
 }
 
-pub(super) fn panel(quantity: &str, unit: DisplayUnit, height: f64, series: Vec<TimeSeries>) -> TimePanel {
-    TimePanel {
-        quantity: quantity.to_string(),
-        unit,
-        series,
-        reference: None,
-        wished: vec![],
-        shown: None,
-        height,
-    }
-}
-
-pub(super) fn over_time(record: &Record, values: Vec<f64>) -> TimeSeries {
-    TimeSeries { name: String::new(), times_s: record.times_s.clone(), values }
+/// Values of a signal at the times of its record.
+pub(super) fn over_time(record: &Record, values: Vec<f64>) -> Trace {
+    trace(&record.times_s, &values)
 }
 
 /// Each scenario over time, its events enlarged, and its steps with their settling bands, as SVG and PNG.
@@ -308,33 +279,25 @@ fn step(run: &ScenarioRun, window: &Window, (number, event): (usize, usize)) -> 
     let until = settling.map_or(window.end_s, |time_s| window.end_s.min(window.start_s + 3.0 * time_s));
     let span = [(window.start_s - 0.05 * (until - window.start_s)).max(0.0), until];
     let record = &run.record;
-    let of = |name: &str, values: &[f64]| {
-        let pairs =
-            record.times_s.iter().zip(values).filter(|(time, _)| **time >= span[0] && **time <= span[1]);
-        let (times_s, values) = pairs.map(|(time, value)| (*time, *value)).unzip();
-        TimeSeries { name: name.to_string(), times_s, values }
+    let of = |values: &[f64]| -> Vec<f64> {
+        let pairs = record.times_s.iter().zip(values);
+        pairs.filter(|(time, _)| (span[0]..=span[1]).contains(*time)).map(|(_, value)| *value).collect()
     };
-    let settled = settling.map(|time_s| TimeEvent {
-        time_s: window.start_s + time_s,
-        label: format!("t_s = {} s", significant(time_s, 3)),
-    });
     let percent = run.settling_band_percent;
-    let input = StepResponseInput {
-        quantity: "Force F_e".to_string(),
+    let shown = ForceStep {
+        times_s: &of(&record.times_s),
+        reference: &of(&record.reference_n),
+        force: &of(&record.signal("force_n")),
+        filtered_reference: &of(&record.filtered_reference_n),
+        command: &of(&record.control_v),
         unit: record.motion.unit(DisplayUnit::KILONEWTON),
-        reference: Some(of("reference", &record.reference_n)),
-        responses: vec![
-            of("force", &record.signal("force_n")),
-            of("prefiltered reference", &record.filtered_reference_n),
-        ],
         settling_band: (to_n != 0.0).then_some(SettlingBand { level: to_n, percent }),
-        bounds: None,
-        events: settled.into_iter().collect(),
-        controls: vec![of("command", &record.control_v)],
+        settled: settling
+            .map(|time_s| (window.start_s + time_s, format!("t_s = {} s", significant(time_s, 3)))),
     };
     let title = format!("Step response: {}", cause_words(window));
     let caption = "Measured force, reference before and after the prefilter, and the command; the band is that of the settling time.";
-    Some(step_response(Words::new(format!("simulation-{number}-step-{event}"), title, caption), &input))
+    Some(shown.chart().draw(&Words::new(format!("simulation-{number}-step-{event}"), title, caption)))
 }
 
 /// Each scenario of a comparison and each of its events, all projects in one figure, as SVG and PNG.
@@ -365,38 +328,33 @@ pub(crate) fn laid_over(
     let ends = runs.iter().filter_map(|run| run.record.times_s.last().copied());
     let end = ends.fold(0.0, f64::max);
     let words = |suffix: String, title: String| Words::new(format!("{file}{suffix}"), title, caption);
-    let mut figures = vec![side_by_side(words(String::new(), title.to_string()), titles, runs, [0.0, end])];
+    let mut figures = vec![side_by_side(&words(String::new(), title.to_string()), titles, runs, [0.0, end])];
     let windows = runs.first().map(|run| run.windows.as_slice()).unwrap_or_default();
     for (index, window) in enlarged(windows, end) {
         let words = words(format!("-event-{}", index + 1), format!("Enlarged: {}", cause_words(window)));
-        figures.push(side_by_side(words, titles, runs, around(window, end)));
+        figures.push(side_by_side(&words, titles, runs, around(window, end)));
     }
     figures
 }
 
-fn side_by_side(words: Words, titles: &[String], runs: &[&ScenarioRun], span_s: [f64; 2]) -> Figure {
-    let each = |values: fn(&Record) -> Vec<f64>| -> Vec<TimeSeries> {
+fn side_by_side(words: &Words, titles: &[String], runs: &[&ScenarioRun], span_s: [f64; 2]) -> Figure {
+    let each = |values: fn(&Record) -> Vec<f64>| -> Vec<Trace> {
         runs.iter().map(|run| over_time(&run.record, values(&run.record))).collect()
-    };
-    let load_pressure = |record: &Record| -> Vec<f64> {
-        let (one, other) = (record.signal("pressure_a_pa"), record.signal("pressure_b_pa"));
-        one.iter().zip(&other).map(|(one, other)| one - other).collect()
     };
     let reference = runs.iter().find_map(|run| asked_for(&run.record));
     let windows = runs.first().map(|run| run.windows.as_slice()).unwrap_or_default();
-    let input = TimePanelsInput {
-        panels: vec![
-            TimePanel {
-                reference,
-                ..panel("Force F_e", DisplayUnit::KILONEWTON, 230.0, each(|record| record.signal("force_n")))
-            },
-            panel("Command U_C", DisplayUnit::VOLT, 130.0, each(|record| record.control_v.clone())),
-            panel("p_A - p_B", DisplayUnit::BAR, 130.0, each(load_pressure)),
-        ],
-        legend: titles.to_vec(),
-        reference: "reference".to_string(),
-        events: windows.iter().filter_map(|(window, _)| instant(window, span_s)).collect(),
-        span_s,
-    };
-    time_panels(words, &input)
+    let unit = DisplayUnit::KILONEWTON;
+    let forces = panel("Force F_e", unit, 230.0, each(|record| record.signal("force_n")));
+    let panels = vec![
+        behind(forces, unit, CurveStyle::Reference, reference),
+        panel("Command U_C", DisplayUnit::VOLT, 130.0, each(|record| record.control_v.clone())),
+        panel("p_A - p_B", DisplayUnit::BAR, 130.0, each(load_pressure)),
+    ];
+    chart(panels, titles.to_vec(), &instants(windows, span_s), span_s).draw(words)
+}
+
+/// The difference of the pressures of both chambers.
+pub(super) fn load_pressure(record: &Record) -> Vec<f64> {
+    let (one, other) = (record.signal("pressure_a_pa"), record.signal("pressure_b_pa"));
+    one.iter().zip(&other).map(|(one, other)| one - other).collect()
 }

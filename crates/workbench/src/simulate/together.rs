@@ -1,10 +1,11 @@
 //! Figures of one scenario under several controllers: the same machine, the same reference, a colour for each controller.
 
 use super::figures::{
-    AFTER_S, BEFORE_S, around, asked_for, close_up, enlarged, instant, moves_load, over_time, panel,
+    AFTER_S, BEFORE_S, around, asked_for, close_up, enlarged, instants, load_pressure, moves_load, over_time,
 };
 use super::{Cause, Record, ScenarioRun, TrackingWish, Window, cause_words};
-use crate::figure::{DisplayUnit, Figure, TimePanel, TimePanelsInput, TimeSeries, Words, time_panels};
+use crate::figure::{CurveChart, CurvePanel, CurveRange, CurveStyle, DisplayUnit, Figure, Words};
+use crate::over_time::{Trace, behind, chart, has, panel, trace};
 use crate::quantity::MotionKind;
 
 /// A run with the name of its controller.
@@ -25,7 +26,7 @@ pub(crate) fn together(runs: &[NamedRun<'_>], number: usize, wish: Option<&Track
         format!("Simulated: {}", first.run.name),
         format!("Force, command, load pressure and piston over the whole scenario, {}.", whose(runs)),
     );
-    let mut figures = vec![drawn(words, runs, [0.0, end], ([190.0, 110.0], true), wish)];
+    let mut figures = vec![drawn(&words, runs, [0.0, end], ([190.0, 110.0], true), wish)];
     for (index, window) in enlarged(&first.run.windows, end) {
         let words = Words::new(
             format!("simulation-{number}-event-{}", index + 1),
@@ -33,7 +34,7 @@ pub(crate) fn together(runs: &[NamedRun<'_>], number: usize, wish: Option<&Track
             format!("What the event does to force, command and load pressure, {}.", whose(runs)),
         );
         let shown = ([190.0, 110.0], moves_load(window));
-        figures.push(drawn(words, runs, around(window, end), shown, wish));
+        figures.push(drawn(&words, runs, around(window, end), shown, wish));
     }
     figures
 }
@@ -48,10 +49,9 @@ pub(crate) fn at_a_glance(name: &str, runs: &[NamedRun<'_>], wish: Option<&Track
     let span = if from < end { [(from - BEFORE_S).max(0.0), until.min(end)] } else { [0.0, end] };
     let title = format!("Force over time: {}", first.run.name);
     let caption = format!("The nonlinear machine, {}{}.", whose(runs), of_wish(wish));
-    let mut input =
-        TimePanelsInput { panels: forces_enlarged(runs, [220.0, 110.0], span, wish), ..input(runs, span) };
-    input.panels.push(commands(runs, 90.0));
-    Some(time_panels(Words::new(name, title, caption), &input))
+    let mut panels = forces_enlarged(runs, [220.0, 110.0], span, wish);
+    panels.push(commands(runs, 90.0));
+    Some(with_events(runs, panels, span).draw(&Words::new(name, title, caption)))
 }
 
 /// The signals inside the machine at each event, for one controller: as Figure 6.17 of Ledezma
@@ -66,7 +66,7 @@ pub(crate) fn close_ups(named: NamedRun<'_>, number: usize) -> Vec<Figure> {
             format!("Inside the machine, {name} controller: {}, {}", run.name, cause_words(window)),
             "Voltages, pressures of both chambers, hydraulic and measured force, measured force.",
         );
-        close_up(words, run, window, around(window, end))
+        close_up(&words, run, window, around(window, end))
     };
     events.map(figure).collect()
 }
@@ -81,25 +81,22 @@ pub(crate) fn measured_together(runs: &[NamedRun<'_>], number: usize) -> Option<
             let record = &named.run.record;
             over_time(record, record.signal(overlay.signal))
         });
-        let measured = curve(&overlay.times_s, &overlay.measured);
+        let measured = trace(&overlay.times_s, &overlay.measured);
         let series = simulated.chain([measured]).collect();
         let reference = asked_for(&first.run.record).filter(|_| overlay.signal == "force_n");
-        TimePanel { reference, ..panel(&overlay.quantity(), overlay.display_unit(), height, series) }
+        let unit = overlay.display_unit();
+        behind(panel(&overlay.quantity(), unit, height, series), unit, CurveStyle::Reference, reference)
     });
-    let panels: Vec<TimePanel> = panels.collect();
+    let panels: Vec<CurvePanel> = panels.collect();
     let words = Words::new(
         format!("simulation-{number}-measured"),
         format!("Measured and simulated: {}", first.run.name),
         format!("What was measured on the rig, on what its machine does, {}.", whose(runs)),
     );
-    let mut input = TimePanelsInput { panels, ..input(runs, [0.0, end_of(runs)]) };
-    input.legend.truncate(runs.len());
-    input.legend.push("measured".to_string());
-    (!overlays.is_empty()).then(|| time_panels(words, &input))
-}
-
-fn curve(times_s: &[f64], values: &[f64]) -> TimeSeries {
-    TimeSeries { name: String::new(), times_s: times_s.to_vec(), values: values.to_vec() }
+    let names = runs.iter().map(|named| named.name).chain(["measured"]).map(String::from);
+    let span_s = [0.0, end_of(runs)];
+    let events = instants(&first.run.windows, span_s);
+    (!overlays.is_empty()).then(|| chart(panels, names, &events, span_s).draw(&words))
 }
 
 fn end_of(runs: &[NamedRun<'_>]) -> f64 {
@@ -119,16 +116,12 @@ fn of_wish(wish: Option<&TrackingWish>) -> String {
 }
 
 fn drawn(
-    words: Words,
+    words: &Words,
     runs: &[NamedRun<'_>],
     span_s: [f64; 2],
     ([tall, low], positions): ([f64; 2], bool),
     wish: Option<&TrackingWish>,
 ) -> Figure {
-    let load_pressure = |record: &Record| {
-        let (one, other) = (record.signal("pressure_a_pa"), record.signal("pressure_b_pa"));
-        one.iter().zip(&other).map(|(one, other)| one - other).collect()
-    };
     // a step is compared with its wish; motions of the load, and the whole run, show the piston
     let mut panels = match positions {
         true => vec![forces(runs, tall, span_s, wish)],
@@ -140,26 +133,18 @@ fn drawn(
         let piston = each(runs, |record| record.signal("position_m"));
         panels.push(panel("Piston", motion(runs).unit(DisplayUnit::MILLIMETRE), 90.0, piston));
     }
-    time_panels(words, &TimePanelsInput { panels, ..input(runs, span_s) })
+    with_events(runs, panels, span_s).draw(words)
 }
 
-/// Names, span and events; the panels follow.
-fn input(runs: &[NamedRun<'_>], span_s: [f64; 2]) -> TimePanelsInput {
+/// Panels with the name of each controller and the events.
+fn with_events(runs: &[NamedRun<'_>], panels: Vec<CurvePanel>, span_s: [f64; 2]) -> CurveChart {
     let windows = runs.first().map(|named| named.run.windows.as_slice()).unwrap_or_default();
-    let mut legend: Vec<String> = runs.iter().map(|named| named.name.to_string()).collect();
-    if force_measured(runs).is_some() {
-        legend.push("measured".to_string());
-    }
-    TimePanelsInput {
-        panels: vec![],
-        legend,
-        reference: "reference".to_string(),
-        events: windows.iter().filter_map(|(window, _)| instant(window, span_s)).collect(),
-        span_s,
-    }
+    let measured = force_measured(runs).map(|_| "measured");
+    let names = runs.iter().map(|named| named.name).chain(measured).map(String::from);
+    chart(panels, names, &instants(windows, span_s), span_s)
 }
 
-fn each(runs: &[NamedRun<'_>], values: impl Fn(&Record) -> Vec<f64>) -> Vec<TimeSeries> {
+fn each(runs: &[NamedRun<'_>], values: impl Fn(&Record) -> Vec<f64>) -> Vec<Trace> {
     runs.iter().map(|named| over_time(&named.run.record, values(&named.run.record))).collect()
 }
 
@@ -169,24 +154,22 @@ fn motion(runs: &[NamedRun<'_>]) -> MotionKind {
 }
 
 /// The force as measured on the rig, if it was measured.
-fn force_measured(runs: &[NamedRun<'_>]) -> Option<TimeSeries> {
+fn force_measured(runs: &[NamedRun<'_>]) -> Option<Trace> {
     let overlay = runs.first()?.run.measured.iter().find(|overlay| overlay.signal == "force_n")?;
-    Some(curve(&overlay.times_s, &overlay.measured))
+    Some(trace(&overlay.times_s, &overlay.measured))
 }
 
-fn forces(runs: &[NamedRun<'_>], height: f64, span_s: [f64; 2], wish: Option<&TrackingWish>) -> TimePanel {
+fn forces(runs: &[NamedRun<'_>], height: f64, span_s: [f64; 2], wish: Option<&TrackingWish>) -> CurvePanel {
     let mut curves = each(runs, |record| record.signal("force_n"));
     curves.extend(force_measured(runs));
     let first = runs.first().map(|named| named.run);
     let windows = first.map(|run| run.windows.as_slice()).unwrap_or_default();
-    let lines = wish.map(|wish| {
-        wish.lines(windows.iter().map(|(window, _)| window), span_s).iter().map(|line| series(line)).collect()
-    });
-    TimePanel {
-        reference: first.and_then(|run| asked_for(&run.record)),
-        wished: lines.unwrap_or_default(),
-        ..panel("Force F_e", motion(runs).unit(DisplayUnit::KILONEWTON), height, curves)
-    }
+    let wished = wish.map(|wish| wish.lines(windows.iter().map(|(window, _)| window), span_s));
+    let wished = wished.into_iter().flatten();
+    let wished = wished.map(|line| line.iter().map(|[time_s, value]| (*time_s, *value)).collect());
+    let unit = motion(runs).unit(DisplayUnit::KILONEWTON);
+    let panel = behind(panel("Force F_e", unit, height, curves), unit, CurveStyle::Limit, wished);
+    behind(panel, unit, CurveStyle::Reference, first.and_then(|run| asked_for(&run.record)))
 }
 
 /// The force and, below it, an enlargement around the reference of the only step in the frame, if
@@ -196,12 +179,13 @@ fn forces_enlarged(
     [tall, low]: [f64; 2],
     span_s: [f64; 2],
     wish: Option<&TrackingWish>,
-) -> Vec<TimePanel> {
+) -> Vec<CurvePanel> {
     let whole = forces(runs, tall, span_s, wish);
-    let near = near_reference(runs, span_s).filter(|_| !whole.wished.is_empty());
-    let enlarged = near.map(|shown| TimePanel {
-        quantity: "F_e enlarged".to_string(),
-        shown: Some(shown),
+    let near = near_reference(runs, span_s).filter(|_| has(&whole, CurveStyle::Limit));
+    let unit = motion(runs).unit(DisplayUnit::KILONEWTON);
+    let enlarged = near.map(|ends| CurvePanel {
+        title: unit.title("F_e enlarged"),
+        range: CurveRange::Between(ends.map(|end| unit.of(end))),
         height: low,
         ..whole.clone()
     });
@@ -232,14 +216,8 @@ fn near_reference(runs: &[NamedRun<'_>], span_s: [f64; 2]) -> Option<[f64; 2]> {
     (above.is_finite() && above < 1.0).then(|| [ends[0].min(ends[1]), ends[0].max(ends[1])])
 }
 
-fn commands(runs: &[NamedRun<'_>], height: f64) -> TimePanel {
+fn commands(runs: &[NamedRun<'_>], height: f64) -> CurvePanel {
     // the longer title does not fit next to a low frame
     let title = if height < 100.0 { "U_C" } else { "Command U_C" };
     panel(title, DisplayUnit::VOLT, height, each(runs, |record| record.control_v.clone()))
-}
-
-/// A line that the force should not cross.
-fn series(line: &[[f64; 2]]) -> TimeSeries {
-    let (times_s, values) = line.iter().map(|[time_s, value]| (*time_s, *value)).unzip();
-    TimeSeries { name: String::new(), times_s, values }
 }

@@ -2,7 +2,7 @@
 
 use super::{Agreement, StepResponse, Trial, TrialRun, TrialStep, agreement_word, percent_words};
 use crate::document::{Cell, Document, Table};
-use crate::figure::{FamilyStepInput, Figure, TimeSeries, Words, family_step};
+use crate::figure::{FamilySteps, Figure, TimeSeries, Words};
 use crate::quantity::DisplayUnit;
 
 /// A trial, with its figure if that has a name and a title.
@@ -74,9 +74,9 @@ fn figure(trial: &Trial, [name, title]: [&str; 2]) -> Option<Figure> {
     let nominal = series("linear loop, nominal plant", &first.linear_response);
     let named = runs.iter().filter_map(|run| series(&run.what, &run.machine_response)).collect();
     let quantity = "Force, part of the step".to_string();
-    let input = FamilyStepInput { quantity, nominal, named, ..FamilyStepInput::default() };
+    let chart = FamilySteps { quantity, nominal, named, ..FamilySteps::default() };
     let caption = "A step of the reference on the nonlinear machine: the rig as declared, with waves in its lines, and its worst plants made into rigs. A force that leaves the frame is drawn up to there.";
-    Some(family_step(Words::new(name, title, caption), &input))
+    Some(chart.draw(&Words::new(name, title, caption)))
 }
 
 /// The same in a few words: the word, and the machine that is worst.

@@ -6,7 +6,7 @@ use phea_qft::bound::{Bound, Placement};
 use super::super::bounds::nominal_loop;
 use crate::audit::frequency_number;
 use crate::design::{AuditedController, ProjectDesign};
-use crate::figure::{BoundGroup, Figure, FrequencySeries, NicholsInput, OpenLoopViolation, Words, nichols};
+use crate::figure::{BoundGroup, Figure, FrequencySeries, NicholsChart, OpenLoopViolation, Words};
 use crate::robust::DesignFrequency;
 
 /// The chart; `None` without a nominal plant.
@@ -24,12 +24,12 @@ pub(super) fn figure(view: &ProjectDesign, found: &[DesignFrequency]) -> Result<
         return Ok(None);
     }
     let bounds: Vec<Bound> = found.iter().map(|one| one.bounds.union.clone()).collect();
-    let input = NicholsInput {
+    let chart = NicholsChart {
         loops,
         design_frequencies_rad_per_s: view.designed.problem.design_frequencies(),
         bounds: vec![BoundGroup { name: "bounds of all specifications".to_string(), bounds: &bounds }],
         violations,
-        ..NicholsInput::default()
+        ..NicholsChart::default()
     };
     let (title, whose) = match alone {
         true => ("Nichols chart of the designed loop", "loop"),
@@ -38,7 +38,7 @@ pub(super) fn figure(view: &ProjectDesign, found: &[DesignFrequency]) -> Result<
     let caption = format!(
         "The nominal {whose} among the bounds of all specifications; crossed out where a bound forbids it."
     );
-    Ok(Some(nichols(Words::new("design_nichols", title, caption), &input)))
+    Ok(Some(chart.draw(&Words::new("design_nichols", title, caption))))
 }
 
 /// The loop of a side where it lies in a bound.

@@ -53,7 +53,7 @@ fn figure(
     );
     let name = format!("design_{}_prefilter", index + 1);
     let words = Words::new(name, format!("Prefilter for specification {}", index + 1), caption);
-    Ok(Some(prefilter_band(words, &panels)))
+    Ok(Some(prefilter_band(&words, &panels)))
 }
 
 /// The band of one loop, with a sentence on where it is tightest; `None` for a loop that is not

@@ -1,6 +1,5 @@
 //! The table of verdicts and numbers: a row for each requirement, a column for each controller.
 
-use maud::{Markup, html};
 use phea_qft::proof::Standing;
 use phea_qft::verification::{SpecificationFinding, Verdict};
 
@@ -8,55 +7,49 @@ use super::Contents;
 use super::side::Side;
 use crate::answer::significant;
 use crate::audit::frequency_words;
-use crate::document::{Cell, StatusMark, badge};
-use crate::document::{prose, typeset};
+use crate::document::{Cell, StatusMark, Table};
 use crate::quantity::DisplayUnit;
-use crate::report::chapter::{cell, grouped};
 use crate::report::specifications::demand;
 use crate::simulate::{HeldWish, ScenarioRun};
 use crate::trial;
 
-type Rows = Vec<Vec<Markup>>;
+type Rows = Vec<Vec<Cell>>;
 
 /// The table; empty without a controller.
-pub(super) fn table(contents: &Contents<'_>, sides: &[Side<'_>]) -> Markup {
-    if sides.is_empty() {
-        return html! {};
-    }
+pub(super) fn table(contents: &Contents<'_>, sides: &[Side<'_>]) -> Table {
+    let names = sides.iter().map(|side| format!("{} controller", side.name));
+    let mut table = Table::grouped_by("judged", std::iter::once("what was asked".to_string()).chain(names));
     let groups = [
         ("The whole family of plants", of_family(contents, sides)),
         ("The nonlinear machine", of_machine(contents, sides)),
         ("The numbers that matter", numbers(sides)),
     ];
-    let groups: Vec<(String, Rows)> = groups
-        .into_iter()
-        .filter(|(_, rows)| !rows.is_empty())
-        .map(|(name, rows)| (name.to_string(), rows))
-        .collect();
-    let names: Vec<String> = sides.iter().map(|side| format!("{} controller", side.name)).collect();
-    let mut headings = vec!["what was asked"];
-    headings.extend(names.iter().map(String::as_str));
-    html! { div.verdicts { (grouped(&headings, 9, &groups)) } }
+    for (name, rows) in groups.into_iter().filter(|(_, rows)| !rows.is_empty()) {
+        table.group(name);
+        rows.into_iter().for_each(|row| table.row(row));
+    }
+    table
 }
 
 /// A row, whose cell of each controller may be missing.
-fn row(name: Markup, sides: &[Side<'_>], of: impl Fn(&Side<'_>) -> Option<Markup>) -> Option<Vec<Markup>> {
-    let cells: Vec<Option<Markup>> = sides.iter().map(of).collect();
-    if cells.iter().all(Option::is_none) {
-        return None;
-    }
-    let cells = cells.into_iter().map(|found| found.unwrap_or_else(|| cell("-")));
-    Some(std::iter::once(name).chain(cells).collect())
+fn row(
+    name: impl Into<Cell>,
+    sides: &[Side<'_>],
+    of: impl Fn(&Side<'_>) -> Option<Cell>,
+) -> Option<Vec<Cell>> {
+    let cells: Vec<Option<Cell>> = sides.iter().map(of).collect();
+    let is_known = cells.iter().any(Option::is_some);
+    is_known.then(|| std::iter::once(name.into()).chain(cells.into_iter().map(Cell::from)).collect())
 }
 
 fn of_family(contents: &Contents<'_>, sides: &[Side<'_>]) -> Rows {
     let Some(judged) = contents.judged else { return vec![] };
     let mut rows = Vec::new();
-    rows.extend(row(html! { b { "every specification, at every frequency" } }, sides, |side| {
-        let verdict = Cell::verdict(side.view?.audit.verdict).markup();
-        Some(html! { b { (verdict) (proven(side.is_proven().unwrap_or(false))) } })
+    rows.extend(row(Cell::from("every specification, at every frequency").strong(), sides, |side| {
+        let verdict = Cell::verdict(side.view?.audit.verdict);
+        Some(verdict.then(proven(side.is_proven().unwrap_or(false))).strong())
     }));
-    rows.extend(row(cell("every plant stable"), sides, |side| {
+    rows.extend(row("every plant stable", sides, |side| {
         let verdict = side.view?.audit.stability.verdict;
         let word = match verdict {
             Verdict::Met => "stable",
@@ -64,12 +57,11 @@ fn of_family(contents: &Contents<'_>, sides: &[Side<'_>]) -> Rows {
             Verdict::NotProven => "not proven",
         };
         let is_proven = side.proof().is_some_and(|proof| proof.stability == Standing::Proven);
-        Some(html! { (badge(verdict.into(), word)) (proven(is_proven)) })
+        Some(Cell::from(word).marked(verdict).then(proven(is_proven)))
     }));
     for (index, specification) in judged.problem.specifications.iter().enumerate() {
-        let name = html! {
-            (index + 1) " " (judged.problem.name_of(index)) ", " (typeset(&demand(&specification.requirement)))
-        };
+        let name = Cell::plain(format!("{} {}, ", index + 1, judged.problem.name_of(index)))
+            .then(Cell::Equation(demand(&specification.requirement)));
         rows.extend(row(name, sides, |side| {
             let is_proven = side.proof().and_then(|proof| proof.specifications.get(index));
             let is_proven = is_proven.is_some_and(|own| own.standing == Standing::Proven);
@@ -85,8 +77,9 @@ fn proven(is_proven: bool) -> &'static str {
 }
 
 /// The verdict, its margin, and where it occurs.
-fn finding(finding: &SpecificationFinding, is_proven: bool) -> Markup {
-    let Some(worst) = &finding.worst else { return Cell::verdict(finding.verdict).markup() };
+fn finding(finding: &SpecificationFinding, is_proven: bool) -> Cell {
+    let verdict = Cell::verdict(finding.verdict);
+    let Some(worst) = &finding.worst else { return verdict };
     let place = frequency_words(worst.frequency_rad_per_s);
     let size = significant(worst.margin_db.abs(), 3);
     let told = match finding.verdict {
@@ -98,18 +91,18 @@ fn finding(finding: &SpecificationFinding, is_proven: bool) -> Markup {
             format!("; {size} dB {} {place}", if worst.margin_db < 0.0 { "off" } else { "to spare" })
         }
     };
-    html! { (Cell::verdict(finding.verdict).markup()) (proven(is_proven)) (told) }
+    verdict.then(proven(is_proven)).then(Cell::plain(told))
 }
 
 fn of_machine(contents: &Contents<'_>, sides: &[Side<'_>]) -> Rows {
     let mut rows = Vec::new();
-    rows.extend(row(cell("tried on the rig, its worst plants, waves in its lines"), sides, |side| {
+    rows.extend(row("tried on the rig, its worst plants, waves in its lines", sides, |side| {
         let trial = side.trial?;
         let words = trial::words(trial);
         let which = words.split_once(": ").map_or(String::new(), |(_, which)| format!(": {which}"));
-        Some(html! { (Cell::agreement(trial.agreement()).markup()) (which) })
+        Some(Cell::agreement(trial.agreement()).then(Cell::plain(which)))
     }));
-    rows.extend(row(cell("every scenario driven to its end"), sides, |side| Some(driven(side.runs?))));
+    rows.extend(row("every scenario driven to its end", sides, |side| Some(driven(side.runs?))));
     let Some(wish) = contents.driven.and_then(|driven| driven.wish.as_ref()) else { return rows };
     if let Some(words) = wish.overshoot_words() {
         let steps = sides.iter().find_map(|side| Some(side.overshoot(wish)?.1));
@@ -123,61 +116,61 @@ fn of_machine(contents: &Contents<'_>, sides: &[Side<'_>]) -> Rows {
 }
 
 /// The wish, and the number of steps of which the worst is shown.
-fn wished(words: &str, steps: Option<usize>) -> Markup {
+fn wished(words: &str, steps: Option<usize>) -> Cell {
     let steps =
         steps.filter(|steps| *steps > 1).map_or("the step".to_string(), |steps| format!("all {steps} steps"));
-    html! { "wished of " (steps) ": " (words) }
+    Cell::plain(format!("wished of {steps}: {words}"))
 }
 
-fn held(held: HeldWish) -> Markup {
+fn held(held: HeldWish) -> Cell {
     match held.kept {
         Some(kept) => {
-            let (mark, word) = if kept { (StatusMark::Good, "kept") } else { (StatusMark::Bad, "missed") };
-            html! { (badge(mark, word)) ": " (held.words) " at worst" }
+            let word = if kept { "kept" } else { "missed" };
+            Cell::from(word).marked(kept).then(Cell::plain(format!(": {} at worst", held.words)))
         }
-        None => html! { (held.words) ", which is not the band of the wish" },
+        None => Cell::plain(format!("{}, which is not the band of the wish", held.words)),
     }
 }
 
-fn driven(runs: &[ScenarioRun]) -> Markup {
+fn driven(runs: &[ScenarioRun]) -> Cell {
     let ended = runs.iter().filter(|run| run.stopped().is_none()).count();
     let outside = runs.iter().filter(|run| run.outside_model_s.is_some()).count();
     if ended < runs.len() {
-        return html! { (badge(StatusMark::Bad, "no")) ": " (ended) " of " (runs.len()) };
+        return Cell::from("no").marked(false).then(format!(": {ended} of {}", runs.len()));
     }
     match outside {
-        0 => html! { (badge(StatusMark::Good, "yes")) },
-        _ => {
-            html! { (badge(StatusMark::Note, "yes")) ", but " (outside) " beyond what the equations hold for" }
-        }
+        0 => Cell::from("yes").marked(true),
+        _ => Cell::from("yes")
+            .marked(StatusMark::Note)
+            .then(format!(", but {outside} beyond what the equations hold for")),
     }
 }
 
 /// The measurements, and the properties of the loop.
 fn numbers(sides: &[Side<'_>]) -> Rows {
     let mut rows = Vec::new();
-    rows.extend(row(cell("measured less simulated, NRMSE"), sides, measured));
-    rows.extend(row(cell("delay that the family still tolerates"), sides, |side| {
+    rows.extend(row("measured less simulated, NRMSE", sides, measured));
+    rows.extend(row("delay that the family still tolerates", sides, |side| {
         let delay_s = side.delay_margin_s()?;
-        Some(cell(match delay_s {
-            f64::INFINITY => "any".to_string(),
-            _ => DisplayUnit::MILLISECOND.text(delay_s, 3),
-        }))
+        Some(match delay_s {
+            f64::INFINITY => "any".into(),
+            _ => Cell::plain(DisplayUnit::MILLISECOND.text(delay_s, 3)),
+        })
     }));
-    rows.extend(row(cell("order of controller and prefilter"), sides, |side| {
+    rows.extend(row("order of controller and prefilter", sides, |side| {
         let figures = side.figures?;
-        Some(cell(format!("{} and {}", figures.order, figures.prefilter_order)))
+        Some(format!("{} and {}", figures.order, figures.prefilter_order).into())
     }));
     rows
 }
 
 /// The measured signals with their deviations.
-fn measured(side: &Side<'_>) -> Option<Markup> {
+fn measured(side: &Side<'_>) -> Option<Cell> {
     let overlays = side.runs?.iter().flat_map(|run| &run.measured);
     let told: Vec<String> = overlays
         .filter_map(|overlay| {
             Some(format!("{} {} %", overlay.quantity(), significant(100.0 * overlay.nrmse.ok()?, 3)))
         })
         .collect();
-    (!told.is_empty()).then(|| prose(&told.join(", ")))
+    (!told.is_empty()).then(|| told.join(", ").into())
 }

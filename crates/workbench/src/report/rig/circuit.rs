@@ -3,7 +3,7 @@
 use super::{Beside, line_alone, moving_mass, moving_words, shown, shown_in_millimetres};
 use crate::figure::{
     AccumulatorSymbol, ControllerSymbol, CrossPortSymbol, Environment, Figure, LineSymbol, LinkageSymbol,
-    Rods, SchematicInput, SeriesKind, SeriesSymbol, SupplyKind, Words, schematic,
+    Rods, Schematic, SeriesKind, SeriesSymbol, SupplyKind, Words,
 };
 use crate::linearize::{LinkagePosition, linkage_places};
 use crate::project::{
@@ -20,7 +20,7 @@ pub(super) fn circuit(project: &Project, actuator: &DeclaredActuator, rig: &Rig)
     let mut supply_rows = vec![shown(actuator.supply.pressure, &PRESSURE)];
     supply_rows.extend(actuator.supply.flow().map(|flow| shown(flow, &FLOW)));
     let symmetric = rod_a > 0.0 && rod_b > 0.0;
-    let input = SchematicInput {
+    let chart = Schematic {
         supply: match actuator.supply.model {
             SupplyModel::Constant { .. } => SupplyKind::ConstantPressure,
             SupplyModel::PumpLimited(_) => SupplyKind::Pump,
@@ -55,7 +55,7 @@ pub(super) fn circuit(project: &Project, actuator: &DeclaredActuator, rig: &Rig)
         }),
     };
     let caption = "The circuit as the project describes it: supply, servovalve, lines, cylinder, load cell, load, and the loop that closes over the force.";
-    schematic(Words::new("circuit", "The rig", caption), &input)
+    chart.draw(&Words::new("circuit", "The rig", caption))
 }
 
 /// What the load is, below its drawing.

@@ -1,7 +1,7 @@
 //! Bode diagrams of a frequency response: points of the machine on the curves of its models.
 
 use super::{MachineResponse, MachineResponses};
-use crate::figure::{Figure, MeasuredResponseInput, ResponseCurve, Words, measured_response};
+use crate::figure::{Figure, FrequencySeries, MeasuredResponse, Words};
 
 /// A diagram for each loop.
 pub(crate) fn pictures(found: &MachineResponses) -> Vec<Figure> {
@@ -36,22 +36,22 @@ fn diagram(
 ) -> Figure {
     let caption = "Each point is the fundamental of the force, over whole periods of a sine that the nonlinear machine has settled to; \
                    below, what it differs by from the linear plant, and its harmonics over the fundamental.";
-    let curve = |name: &str, response: &[num_complex::Complex64], frequencies: &[f64]| ResponseCurve {
+    let curve = |name: &str, response: &[num_complex::Complex64], frequencies: &[f64]| FrequencySeries {
         name: name.to_string(),
         frequencies_rad_per_s: frequencies.to_vec(),
         response: response.to_vec(),
     };
     let frequencies = &response.curve_rad_per_s;
-    let mut curves = vec![curve(model, &response.linear_plant, frequencies)];
+    let mut models = vec![curve(model, &response.linear_plant, frequencies)];
     if !response.linearised_machine.is_empty() {
-        curves.push(curve("machine, linearised", &response.linearised_machine, frequencies));
+        models.push(curve("machine, linearised", &response.linearised_machine, frequencies));
     }
     let seen = || response.points.iter().filter(|point| point.machine.is_finite());
-    let input = MeasuredResponseInput {
+    let chart = MeasuredResponse {
         quantity: quantity.to_string(),
         unit: unit.to_string(),
-        curves,
-        measured: ResponseCurve {
+        models,
+        measured: FrequencySeries {
             name: "machine, sines".to_string(),
             frequencies_rad_per_s: seen().map(|point| point.frequency_rad_per_s).collect(),
             response: seen().map(|point| point.machine).collect(),
@@ -59,5 +59,5 @@ fn diagram(
         model: seen().map(|point| point.linear_plant).collect(),
         distortion_percent: seen().map(|point| 100.0 * point.distortion).collect(),
     };
-    measured_response(Words::new(name, title, caption), &input)
+    chart.draw(&Words::new(name, title, caption))
 }

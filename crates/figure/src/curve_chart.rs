@@ -1,0 +1,181 @@
+//! Measured and computed curves over one common quantity: panels below each other.
+
+use super::axis::Axis;
+use super::colour::{Role, series_role, series_stroke};
+use super::legend::LegendEntry;
+use super::plot::{AxisDirection, Mark, Marker, MarkerStyle, Panel};
+use super::scene::{Dash, Fill, Stroke};
+use super::ticks::plain;
+use super::{Figure, Words};
+
+/// How a curve is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CurveStyle {
+    /// A line, in the colour and dash of a series.
+    Line(usize),
+    /// A small dot for each point, in the colour of a series.
+    Dots(usize),
+    /// What is commanded: a thin line without a colour of its own.
+    Reference,
+    /// What the others should not cross.
+    Limit,
+}
+
+impl CurveStyle {
+    const fn stroke(self) -> Stroke {
+        match self {
+            CurveStyle::Line(series) | CurveStyle::Dots(series) => series_stroke(series),
+            CurveStyle::Reference => Stroke::solid(Role::Muted, 1.6),
+            CurveStyle::Limit => Stroke::solid(Role::Bad, 1.4).dashed(Dash::LongDash),
+        }
+    }
+}
+
+/// A curve in the units of its axes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curve {
+    /// (x, y).
+    pub points: Vec<(f64, f64)>,
+    /// How it is drawn.
+    pub style: CurveStyle,
+}
+
+impl Curve {
+    /// A line.
+    pub fn line(points: impl IntoIterator<Item = (f64, f64)>, series: usize) -> Curve {
+        Curve { points: points.into_iter().collect(), style: CurveStyle::Line(series) }
+    }
+
+    /// A dot for each point.
+    pub fn dots(points: impl IntoIterator<Item = (f64, f64)>, series: usize) -> Curve {
+        Curve { points: points.into_iter().collect(), style: CurveStyle::Dots(series) }
+    }
+}
+
+/// The band that a response must stay in from some time on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SettlingBand {
+    /// Final value, in the unit of the panel.
+    pub level: f64,
+    /// Half width as a percentage of the level.
+    pub percent: f64,
+}
+
+/// What the upright axis of a panel shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum CurveRange {
+    /// All curves.
+    #[default]
+    Fitted,
+    /// All curves and zero.
+    WithZero,
+    /// From one value to another.
+    Between([f64; 2]),
+}
+
+/// One pair of axes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CurvePanel {
+    /// Title of the upright axis, with its unit.
+    pub title: String,
+    /// Height of the frame in view box units.
+    pub height: f64,
+    /// Back to front.
+    pub curves: Vec<Curve>,
+    /// What the upright axis shows.
+    pub range: CurveRange,
+    /// Values of x that are marked, with a word in this panel.
+    pub marked: Vec<(f64, String)>,
+    /// Whether zero is marked, as for residuals.
+    pub zero_line: bool,
+    /// Where a response has to settle.
+    pub settling_band: Option<SettlingBand>,
+}
+
+impl CurvePanel {
+    /// Curves on a pair of axes that shows all of them.
+    pub fn new(title: impl Into<String>, height: f64, curves: Vec<Curve>) -> CurvePanel {
+        CurvePanel { title: title.into(), height, curves, ..CurvePanel::default() }
+    }
+
+    /// With zero marked.
+    pub fn with_zero_line(self) -> CurvePanel {
+        CurvePanel { zero_line: true, ..self }
+    }
+
+    fn placed(&self, [least, most]: [f64; 2]) -> Panel {
+        let shown = |curve: &Curve| -> Vec<(f64, f64)> {
+            let all = curve.points.iter().copied();
+            all.filter(|(x, y)| (least..=most).contains(x) && y.is_finite()).collect()
+        };
+        let curves: Vec<(Vec<(f64, f64)>, CurveStyle)> =
+            self.curves.iter().map(|curve| (shown(curve), curve.style)).collect();
+        let values = curves.iter().flat_map(|(points, _)| points.iter().map(|(_, y)| *y));
+        let y = match self.range {
+            CurveRange::Fitted => Axis::fit_linear(&self.title, values),
+            CurveRange::WithZero => Axis::fit_linear(&self.title, values.chain([0.0])),
+            CurveRange::Between([from, to]) => Axis::linear(&self.title, from, to),
+        };
+        let mut marks: Vec<Mark> = self.settling_band.iter().map(band).collect();
+        if self.zero_line {
+            marks.push(Mark::reference(AxisDirection::Y, 0.0, Stroke::solid(Role::Muted, 1.2), ""));
+        }
+        marks.extend(curves.into_iter().map(|(points, style)| match style {
+            CurveStyle::Dots(series) => Mark::Dots { points, role: series_role(series), radius: DOT },
+            _ => Mark::Line { points, stroke: style.stroke() },
+        }));
+        marks.extend(self.marked.iter().map(|(at, word)| Mark::dotted(AxisDirection::X, *at, word)));
+        Panel { y, height: self.height, marks }
+    }
+}
+
+fn band(settling: &SettlingBand) -> Mark {
+    let half = 0.01 * settling.percent * settling.level;
+    Mark::band(AxisDirection::Y, [settling.level - half, settling.level + half], SETTLED)
+}
+
+/// Curves over one quantity.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CurveChart {
+    /// Title of the lying axis, with its unit.
+    pub x_title: String,
+    /// Its ends; points beyond are left out.
+    pub x_range: [f64; 2],
+    /// Top to bottom.
+    pub panels: Vec<CurvePanel>,
+    /// What each style stands for.
+    pub legend: Vec<(String, CurveStyle)>,
+}
+
+/// Radius of a dot.
+const DOT: f64 = 1.5;
+const SETTLED: Fill = Fill { role: Role::Good, opacity: 0.25 };
+
+impl CurveChart {
+    /// Draws the chart.
+    pub fn draw(&self, words: &Words) -> Figure {
+        let [least, most] = self.x_range;
+        self.over(words, Axis::linear(&self.x_title, least, most))
+    }
+
+    /// Draws the chart over a logarithmic axis.
+    pub fn draw_over_decades(&self, words: &Words) -> Figure {
+        self.over(words, Axis::fit_logarithmic(&self.x_title, self.x_range))
+    }
+
+    fn over(&self, words: &Words, x: Axis) -> Figure {
+        let panels = self.panels.iter().map(|panel| panel.placed(self.x_range)).collect();
+        let entry = |(text, style): &(String, CurveStyle)| match style {
+            CurveStyle::Dots(series) => {
+                let style = MarkerStyle { marker: Marker::Circle, role: series_role(*series), radius: 2.5 };
+                LegendEntry::marker(text, style)
+            }
+            _ => LegendEntry::line(text, style.stroke()),
+        };
+        let bands = self.panels.iter().filter_map(|panel| panel.settling_band);
+        let bands =
+            bands.map(|band| LegendEntry::area(format!("settling band ±{} %", plain(band.percent)), SETTLED));
+        let legend = self.legend.iter().map(entry).chain(bands).collect();
+        words.with_plot(x, panels, legend)
+    }
+}

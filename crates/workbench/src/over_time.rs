@@ -1,0 +1,100 @@
+//! Charts over time: samples in SI, shown in the units of their panels.
+
+use crate::figure::axis::extent;
+use crate::figure::{Curve, CurveChart, CurvePanel, CurveRange, CurveStyle, DisplayUnit, SettlingBand};
+
+/// Time in s and value in SI, rising in time.
+pub(crate) type Trace = Vec<(f64, f64)>;
+
+/// Values at these times.
+pub(crate) fn trace(times_s: &[f64], values: &[f64]) -> Trace {
+    times_s.iter().copied().zip(values.iter().copied()).collect()
+}
+
+/// A panel of lines, each in the colour of its place.
+pub(crate) fn panel(quantity: &str, unit: DisplayUnit, height: f64, lines: Vec<Trace>) -> CurvePanel {
+    let lines = lines.into_iter().enumerate().map(|(place, line)| Curve::line(shown(line, unit), place));
+    CurvePanel::new(unit.title(quantity), height, lines.collect())
+}
+
+/// The panel with further lines behind those that it has.
+pub(crate) fn behind(
+    mut panel: CurvePanel,
+    unit: DisplayUnit,
+    style: CurveStyle,
+    lines: impl IntoIterator<Item = Trace>,
+) -> CurvePanel {
+    let lines = lines.into_iter().map(|line| Curve { points: shown(line, unit).collect(), style });
+    panel.curves.splice(0..0, lines.collect::<Vec<_>>());
+    panel
+}
+
+fn shown(trace: Trace, unit: DisplayUnit) -> impl Iterator<Item = (f64, f64)> {
+    trace.into_iter().map(move |(time, value)| (time, unit.of(value)))
+}
+
+/// Whether a panel has a line of this style.
+pub(crate) fn has(panel: &CurvePanel, style: CurveStyle) -> bool {
+    panel.curves.iter().any(|curve| curve.style == style)
+}
+
+/// Panels on one time axis: what the lines of each place are called, and events with their words,
+/// which stand in the tallest panel, where there is most room beside the curves.
+pub(crate) fn chart(
+    mut panels: Vec<CurvePanel>,
+    names: impl IntoIterator<Item = String>,
+    events: &[(f64, String)],
+    span_s: [f64; 2],
+) -> CurveChart {
+    let tallest = panels.iter().map(|panel| panel.height).fold(0.0, f64::max);
+    let worded = panels.iter().position(|panel| panel.height == tallest);
+    for (index, panel) in panels.iter_mut().enumerate() {
+        let word = |word: &String| if Some(index) == worded { word.clone() } else { String::new() };
+        panel.marked = events.iter().map(|(time_s, label)| (*time_s, word(label))).collect();
+    }
+    let named = names.into_iter().enumerate().map(|(place, name)| (name, CurveStyle::Line(place)));
+    let further = [("reference", CurveStyle::Reference), ("wished in time", CurveStyle::Limit)];
+    let drawn = further.into_iter().filter(|(_, style)| panels.iter().any(|panel| has(panel, *style)));
+    let legend = named.chain(drawn.map(|(name, style)| (name.to_string(), style))).collect();
+    CurveChart { x_title: "Time (s)".to_string(), x_range: span_s, panels, legend }
+}
+
+/// Force after a step of the reference, and the command.
+pub(crate) struct ForceStep<'a> {
+    pub(crate) times_s: &'a [f64],
+    /// N
+    pub(crate) reference: &'a [f64],
+    /// N
+    pub(crate) force: &'a [f64],
+    /// N
+    pub(crate) filtered_reference: &'a [f64],
+    /// V
+    pub(crate) command: &'a [f64],
+    /// The unit of forces.
+    pub(crate) unit: DisplayUnit,
+    /// Where the force has to settle, N.
+    pub(crate) settling_band: Option<SettlingBand>,
+    /// When it has settled, s, in words.
+    pub(crate) settled: Option<(f64, String)>,
+}
+
+impl ForceStep<'_> {
+    /// The chart of it.
+    pub(crate) fn chart(self) -> CurveChart {
+        let of = |values: &[f64]| trace(self.times_s, values);
+        let forces = panel("Force F_e", self.unit, 250.0, vec![of(self.force), of(self.filtered_reference)]);
+        let level = |band: SettlingBand| SettlingBand { level: self.unit.of(band.level), ..band };
+        let forces = CurvePanel {
+            settling_band: self.settling_band.map(level),
+            ..behind(forces, self.unit, CurveStyle::Reference, [of(self.reference)])
+        };
+        let command = CurvePanel {
+            range: CurveRange::WithZero,
+            ..panel("Control U_C", DisplayUnit::VOLT, 110.0, vec![of(self.command)])
+        };
+        let names = ["force", "prefiltered reference"].map(String::from);
+        let events: Vec<(f64, String)> = self.settled.into_iter().collect();
+        let (start, end) = extent(self.times_s.iter().copied());
+        chart(vec![forces, command], names, &events, [start, end])
+    }
+}
