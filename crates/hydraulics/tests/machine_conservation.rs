@@ -20,12 +20,7 @@ use super::rich_machines::{
 };
 
 /// Classical Runge-Kutta step of rates that depend on time.
-pub(super) fn step(
-    state: &mut [f64],
-    time: f64,
-    width: f64,
-    rates: &mut impl FnMut(f64, &[f64]) -> Vec<f64>,
-) {
+pub(super) fn step(state: &mut [f64], time: f64, width: f64, rates: &mut dyn FnMut(f64, &[f64]) -> Vec<f64>) {
     let along = |state: &[f64], slope: &[f64], share: f64| -> Vec<f64> {
         state.iter().zip(slope).map(|(value, slope)| value + share * width * slope).collect()
     };

@@ -445,11 +445,7 @@ pub fn compare_watched(
             crate::simulate::compare_text(&comparison, projects)
         ),
         json: crate::simulate::compare_json(&comparison),
-        files: if figures {
-            crate::simulate::comparison_files(&comparison).map_err(CommandError::Figure)?
-        } else {
-            vec![]
-        },
+        files: if figures { crate::simulate::comparison_files(&comparison) } else { vec![] },
         affirmative: comparison.projects.len() == projects.len() && comparison.is_complete(),
     };
     Ok(motion::said_of(answer, projects))
@@ -480,8 +476,7 @@ fn report_answer(
         return Err(ProcedureError::Stopped.into());
     }
     let report = report_beside(source, loaded, (&setup, problem.as_ref()), judged.as_ref(), watch)?;
-    let written =
-        if files { report.files().map_err(CommandError::Figure)? } else { vec![report.page_file()] };
+    let written = if files { report.files() } else { vec![report.page_file()] };
     let text: String = report.summary.iter().map(|(name, value)| format!("{name}: {value}\n")).collect();
     let body = Object::new()
         .each("summary", &report.summary, |(name, text)| {

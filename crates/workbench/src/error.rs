@@ -3,7 +3,6 @@
 use phea_engineering::error::ProcedureError;
 use phea_engineering::identify::IdentifyError;
 
-use crate::figure::FigureError;
 use crate::project::Refusal;
 use crate::simulate::SimulateError;
 
@@ -16,9 +15,6 @@ pub enum CommandError {
     /// The recordings of the project say nothing of its valve.
     #[error("{0}")]
     Identify(IdentifyError),
-    /// A figure cannot be drawn.
-    #[error("a figure: {0}")]
-    Figure(FigureError),
     /// A plant that is not an actuator, without specifications.
     #[error(
         "a report on a [plant] needs at least one [[specification]]; one on a rig needs [valve], [cylinder] and [line]"
@@ -68,7 +64,6 @@ impl CommandError {
             CommandError::Compare { error, .. } => error.refusal(),
             CommandError::Identify(IdentifyError::Files(refusal)) => Some(refusal),
             CommandError::Identify(_)
-            | CommandError::Figure(_)
             | CommandError::OfCylinders { .. }
             | CommandError::MixedMotion { .. }
             | CommandError::NothingToReport => None,

@@ -40,7 +40,7 @@ use crate::answer::{OutputFile, picture_files, significant};
 use crate::audit::{CERTIFICATE_FILE, ProjectAudit, certificate_of, verdict_words};
 use crate::derived::{self, derive};
 use crate::error::CommandError;
-use crate::figure::{Figure, FigureError};
+use crate::figure::Figure;
 use crate::linear_loop::{LinearLoop, LoopStability, StepView, linear_loop_of, settling_words};
 use crate::linearize::{Linearization, linearize, stiffness_at_settings, stiffness_words};
 use crate::project::{DeclaredActuator, Loaded, Project, Signal};
@@ -294,15 +294,12 @@ impl Report {
         OutputFile::new("report.html", self.html.clone())
     }
 
-    /// The page and every figure as SVG and PNG.
-    ///
-    /// # Errors
-    /// A figure that the rasteriser rejects.
-    pub fn files(&self) -> Result<Vec<OutputFile>, FigureError> {
+    /// The page and every figure as SVG.
+    pub fn files(&self) -> Vec<OutputFile> {
         let mut files = vec![self.page_file()];
         files.extend(self.tables.iter().cloned());
-        files.extend(picture_files(&self.figures)?);
-        Ok(files)
+        files.extend(picture_files(&self.figures));
+        files
     }
 }
 

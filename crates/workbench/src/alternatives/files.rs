@@ -8,16 +8,13 @@ use super::front;
 use super::summary::{groups, machine};
 use super::{AlternativeColumns, Alternatives, ColumnPart, JudgedAlternative};
 use crate::answer::{Csv, OutputFile, picture_files, quoted};
-use crate::figure::{Figure, FigureError, FrequencySeries, ImpedanceDiagram, Words};
+use crate::figure::{Figure, FrequencySeries, ImpedanceDiagram, Words};
 use crate::linearize::frequency_grid;
 use crate::project::{IdentifiedUse, Project, print};
 use crate::simulate::{ScenarioRun, laid_over};
 
 /// All of them.
-///
-/// # Errors
-/// A figure that the rasteriser rejects.
-pub(crate) fn files(found: &Alternatives) -> Result<Vec<OutputFile>, FigureError> {
+pub(crate) fn files(found: &Alternatives) -> Vec<OutputFile> {
     let mut files = vec![table("alternatives.csv", &[("", &found.judged)])];
     if !found.cases.is_empty() {
         files.push(table("load_cases.csv", &groups(found)));
@@ -41,8 +38,8 @@ pub(crate) fn files(found: &Alternatives) -> Result<Vec<OutputFile>, FigureError
         }
     }
     files.extend(found.front.as_ref().map(front::csv));
-    files.extend(picture_files(&figures(found))?);
-    Ok(files)
+    files.extend(picture_files(&figures(found)));
+    files
 }
 
 /// The forces laid over each other, and the front.

@@ -5,15 +5,15 @@ use crate::figure::{Figure, FigureError, png};
 const PNG_SCALE: f64 = 2.0;
 
 /// Figures as SVG.
-pub(crate) fn picture_files(figures: &[Figure]) -> Result<Vec<OutputFile>, FigureError> {
+pub(crate) fn picture_files(figures: &[Figure]) -> Vec<OutputFile> {
     part_files(figures, "")
 }
 
 /// The same for a part, whose name follows that of the figure.
-pub(crate) fn part_files(figures: &[Figure], part: &str) -> Result<Vec<OutputFile>, FigureError> {
+pub(crate) fn part_files(figures: &[Figure], part: &str) -> Vec<OutputFile> {
     let file =
         |figure: &Figure| OutputFile::new(format!("{}{part}.svg", figure.name), figure.to_svg_standalone());
-    Ok(figures.iter().map(file).collect())
+    figures.iter().map(file).collect()
 }
 
 /// The PNG of a drawing, which is written with it: 2 pixels to a unit of its view box; `None` for a

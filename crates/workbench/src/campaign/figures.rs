@@ -111,7 +111,7 @@ fn picture(
 /// The table for other programs and the figures.
 ///
 /// # Errors
-/// A figure that cannot be drawn, and [`CampaignError`].
+/// [`CampaignError`].
 pub(crate) fn files(
     plan: &Plan,
     (shard, rows): (&Shard, &[Row]),
@@ -119,7 +119,6 @@ pub(crate) fn files(
 ) -> Result<Vec<OutputFile>, crate::error::CommandError> {
     let rows = plan.parquet(rows).map_err(CampaignError::RowStore)?;
     let mut files = vec![OutputFile::new(format!("{}.parquet", shard.name()), rows)];
-    let pictures = part_files(&pictures(plan, summary)?, &shard.part());
-    files.extend(pictures.map_err(crate::error::CommandError::Figure)?);
+    files.extend(part_files(&pictures(plan, summary)?, &shard.part()));
     Ok(files)
 }

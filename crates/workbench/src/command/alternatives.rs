@@ -46,12 +46,10 @@ pub(super) fn alternatives_answer(
     watch: Watch<'_>,
 ) -> Result<Answer, CommandError> {
     let found = judge(source, loaded, catalogues, &request.read()?, watch)?;
-    let written = request.files.then(|| alternatives::files(&found));
-    let written = written.transpose().map_err(CommandError::Figure)?;
     Ok(Answer {
         text: alternatives::text(&found),
         json: alternatives::json(loaded, &found),
-        files: written.unwrap_or_default(),
+        files: if request.files { alternatives::files(&found) } else { vec![] },
         affirmative: found.is_complete(),
     })
 }

@@ -43,8 +43,7 @@ pub fn friction_watched(
     let found = identify_friction(friction_recordings(source, &files, &known)?, &known, watch)?;
     let mut files = friction::files(&found);
     if asked.figures {
-        let pictures = picture_files(&friction::pictures(&found));
-        files.extend(pictures.map_err(|error| refused(&error.to_string()))?);
+        files.extend(picture_files(&friction::pictures(&found)));
     }
     Ok(Answer {
         text: friction::text(&found),

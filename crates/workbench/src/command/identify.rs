@@ -1,7 +1,6 @@
 //! `identify`: the valve that explains recorded tests.
 
 use crate::answer::{Answer, picture_files};
-use crate::figure::FigureError;
 use crate::identify::{
     self, IdentifyError, Known, Read, RecordedFiles, SMALLEST_EFFECT, Search, ValveFigures, identify,
     joint_region, recorded_files, recordings,
@@ -58,8 +57,7 @@ pub fn identify_watched(
     let mut written = identify::files(&found);
     written.extend(region.iter().flatten().map(|region| identify::file(&found, region)));
     if asked.figures {
-        let refused = |error: FigureError| IdentifyError::Data(error.to_string());
-        written.extend(picture_files(&ValveFigures::of(&found).all()).map_err(refused)?);
+        written.extend(picture_files(&ValveFigures::of(&found).all()));
     }
     Ok(Answer {
         text: identify::text(&found, &read, region.as_ref()),

@@ -54,7 +54,7 @@ pub fn line_watched(
     let records = line_records(source, &files, known.piston_area)?;
     let found = identify_line(records, known, &asked.settings, watch)?;
     let drawn = if asked.figures { line_test::pictures(&found) } else { Vec::new() };
-    let pictures = picture_files(&drawn).map_err(|error| refuse(&error.to_string()))?;
+    let pictures = picture_files(&drawn);
     let affirmative = found.effective_bulk_modulus.is_ok() || found.dynamic_bulk_modulus.is_ok();
     Ok(Answer {
         text: line_test::text(&found),

@@ -33,7 +33,7 @@ pub(super) fn swept_answer(
     let swept = sweep(source, loaded, catalogues, asked)?;
     let mut files = linearize::files(&linearization);
     files.extend(linearize::sweep_files(&swept));
-    files.extend(picture_files(&[linearize::sweep_figure(&swept)]).map_err(CommandError::Figure)?);
+    files.extend(picture_files(&[linearize::sweep_figure(&swept)]));
     Ok(Answer {
         text: linearize::sweep_text(&swept),
         json: linearize::json_swept(loaded, &linearization, &swept),

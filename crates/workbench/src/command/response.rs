@@ -42,7 +42,7 @@ pub fn response_watched(
         .map_err(|error| IdentifyError::Data(error.to_string()))?;
     let found: Vec<Compared> = found.into_iter().map(|member| Compared::with(member, rig.as_ref())).collect();
     let drawn = if asked.figures { response::pictures(&found) } else { Vec::new() };
-    let pictures = picture_files(&drawn).map_err(|error| IdentifyError::Data(error.to_string()))?;
+    let pictures = picture_files(&drawn);
     let files = response::files(&found).into_iter().chain(pictures).collect();
     Ok(Answer {
         text: response::text(&found),

@@ -81,7 +81,7 @@ pub(super) fn simulate_answer(
     };
     let mut written = files(loaded, &runs);
     if asked.figures {
-        written.extend(figure_files(&runs).map_err(CommandError::Figure)?);
+        written.extend(figure_files(&runs));
     }
     let all = runs.len() == loaded.project.scenarios.len();
     Ok(Answer {
@@ -102,7 +102,7 @@ fn frequency_answer(
     // writing to memory cannot fail
     let mut written: Vec<OutputFile> = frequency_files(&found, asked.table).unwrap_or_default();
     if asked.figures {
-        written.extend(picture_files(&frequency_pictures(&found)).map_err(CommandError::Figure)?);
+        written.extend(picture_files(&frequency_pictures(&found)));
     }
     Ok(Answer {
         text: frequency_text(&found),

@@ -2,9 +2,7 @@
 
 use super::{Cause, GAS_TEMPERATURES, Metrics, Record, ScenarioComparison, ScenarioRun, Window, cause_words};
 use crate::answer::{OutputFile, picture_files, significant};
-use crate::figure::{
-    CurveChart, CurvePanel, CurveStyle, DisplayUnit, Figure, FigureError, SettlingBand, Words,
-};
+use crate::figure::{CurveChart, CurvePanel, CurveStyle, DisplayUnit, Figure, SettlingBand, Words};
 use crate::over_time::{ForceStep, Trace, behind, chart, panel, trace};
 use phea_hydraulics::machine::{GAS_PRESSURE_SIGNALS, HEAT_SIGNALS};
 
@@ -251,11 +249,8 @@ pub(super) fn over_time(record: &Record, values: Vec<f64>) -> Trace {
     trace(&record.times_s, &values)
 }
 
-/// Each scenario over time, its events enlarged, and its steps with their settling bands, as SVG and PNG.
-///
-/// # Errors
-/// A figure that the rasteriser rejects.
-pub(crate) fn figure_files(runs: &[ScenarioRun]) -> Result<Vec<OutputFile>, FigureError> {
+/// Each scenario over time, its events enlarged, and its steps with their settling bands, as SVG.
+pub(crate) fn figure_files(runs: &[ScenarioRun]) -> Vec<OutputFile> {
     let of_run = |(number, run): (usize, &ScenarioRun)| {
         let mut figures = pictures(run, number + 1);
         figures.extend(steps(run, number + 1));
@@ -300,11 +295,8 @@ fn step(run: &ScenarioRun, window: &Window, (number, event): (usize, usize)) -> 
     Some(shown.chart().draw(&Words::new(format!("simulation-{number}-step-{event}"), title, caption)))
 }
 
-/// Each scenario of a comparison and each of its events, all projects in one figure, as SVG and PNG.
-///
-/// # Errors
-/// A figure that the rasteriser rejects.
-pub(crate) fn comparison_files(comparison: &ScenarioComparison<'_>) -> Result<Vec<OutputFile>, FigureError> {
+/// Each scenario of a comparison and each of its events, all projects in one figure, as SVG.
+pub(crate) fn comparison_files(comparison: &ScenarioComparison<'_>) -> Vec<OutputFile> {
     let scenarios = comparison.scenarios().into_iter().enumerate();
     let figures = scenarios.flat_map(|(number, name)| compared(comparison, name, number + 1));
     picture_files(&figures.collect::<Vec<_>>())
