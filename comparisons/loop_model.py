@@ -46,8 +46,51 @@ def evaluate(text, **names):
     return eval(compiled(text), {"__builtins__": {}}, names)
 
 
+class Powers:
+    """A polynomial while a formula is evaluated; NumPy's own looks for leading zeros after every operation."""
+
+    # of NumPy's scalars too: a product with one is no array
+    __array_ufunc__ = None
+
+    def __init__(self, coefficients):
+        self.coefficients = coefficients
+
+    @staticmethod
+    def of(value):
+        return value if isinstance(value, Powers) else Powers(np.array([float(value)]))
+
+    def __add__(self, other):
+        one, other = self.coefficients, Powers.of(other).coefficients
+        total = np.zeros(max(len(one), len(other)))
+        total[len(total) - len(one) :] = one
+        total[len(total) - len(other) :] += other
+        return Powers(total)
+
+    def __mul__(self, other):
+        if isinstance(other, Powers):
+            return Powers(np.convolve(self.coefficients, other.coefficients))
+        return Powers(self.coefficients * other)
+
+    def __pow__(self, exponent):
+        return self if exponent == 1 else self * self ** (exponent - 1)
+
+    def __neg__(self):
+        return Powers(-self.coefficients)
+
+    def __sub__(self, other):
+        return self + -Powers.of(other)
+
+    def __rsub__(self, other):
+        return -self + other
+
+    def __truediv__(self, number):
+        return Powers(self.coefficients / number)
+
+    __radd__, __rmul__ = __add__, __mul__
+
+
 def polynomial(text, variable="s", **names):
-    return np.poly1d([0.0]) + evaluate(text, **{variable: np.poly1d([1.0, 0.0])}, **names)
+    return np.poly1d(Powers.of(evaluate(text, **{variable: Powers(np.array([1.0, 0.0]))}, **names)).coefficients)
 
 
 class Transfer:
@@ -67,6 +110,12 @@ class Transfer:
             self.variable = "z" if "z" in both else "s"
             self.numerator = polynomial(table["numerator"], self.variable)
             self.denominator = polynomial(table["denominator"], self.variable)
+
+    def __call__(self, s):
+        """Its values; one is asked for very often."""
+        if self.numerator.order == self.denominator.order == 0:
+            return self.numerator.coeffs[0] / self.denominator.coeffs[0] + 0.0 * s
+        return self.numerator(s) / self.denominator(s)
 
     @functools.cache
     def sampled(self, sample_time):
@@ -205,9 +254,10 @@ class Project:
         if self.sample_time:
             return self.sampled_responses(values, frequency)
         s = 1j * frequency
-        feedback = self.controller.numerator(s) / self.controller.denominator(s)
-        prefilter = self.prefilter.numerator(s) / self.prefilter.denominator(s)
-        sensor = self.sensor.numerator(s) / self.sensor.denominator(s) * np.exp(-s * self.sensor_delay)
+        feedback, prefilter = self.controller(s), self.prefilter(s)
+        sensor = self.sensor(s)
+        if self.sensor_delay:
+            sensor = sensor * np.exp(-s * self.sensor_delay)
         if self.measured:
             plant = self.measured_responses(values, frequency) * np.exp(-s * self.loop_delay)
             return plant, 0.0, feedback, prefilter, sensor
