@@ -201,7 +201,7 @@ fn what_is_identified_is_a_family_that_verify_audits() {
     let answer = response_watched(&source, None, &asked, &mut |_| true).unwrap();
     let names: Vec<&str> = answer.files.iter().map(|file| file.name.as_str()).collect();
     assert_eq!(names[..3], ["run.response.csv", "run-2.response.csv", "measured.toml"]);
-    assert_eq!(names.len(), 7, "two pictures of each: {names:?}");
+    assert_eq!(names.len(), 5, "a picture of each: {names:?}");
     let fragment = String::from_utf8(answer.files[2].bytes.clone()).unwrap();
     let project = format!(
         "schema = 1\n{fragment}\n[[specification]]\nkind = \"robust_stability\"\nlimit = 1.3\nfrequencies = [32, 60, 250]\n\n[controller]\nnumerator = \"0.5\"\ndenominator = \"s\"\n"
