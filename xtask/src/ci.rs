@@ -52,6 +52,15 @@ const REPOSITORY: &str = "tidy::tests::the_repository_is_tidy";
 pub(crate) struct Built {
     root: PathBuf,
     variables: Vec<(&'static str, String)>,
+    /// Nothing is kept for a second build, which this one would take longer for.
+    once: bool,
+}
+
+impl Built {
+    /// The variable that keeps nothing for a second build, if there is none.
+    fn not_kept(&self) -> Option<(&'static str, &'static str)> {
+        self.once.then_some(("CARGO_INCREMENTAL", "0"))
+    }
 }
 
 type Stage = fn(&Built) -> Outcome;
@@ -112,7 +121,7 @@ pub(crate) fn run(root: &Path, wanted: &[&str]) -> bool {
             return false;
         }
     };
-    let built = Built { root: root.to_path_buf(), variables };
+    let built = Built { root: root.to_path_buf(), variables, once: is_strict() || is_fresh(&target(root)) };
     // A build often waits for one crate: the second processor compares meanwhile.
     let mut begun = chosen(COMPARISONS).then(|| comparisons::begin(root));
     let mut results = Vec::new();
@@ -135,6 +144,12 @@ pub(crate) fn run(root: &Path, wanted: &[&str]) -> bool {
 /// Where cargo builds.
 fn target(root: &Path) -> PathBuf {
     std::env::var_os("CARGO_TARGET_DIR").map_or(root.join("target"), |folder| root.join(folder))
+}
+
+/// Whether nobody works here: no package but this one was built for further builds.
+fn is_fresh(target: &Path) -> bool {
+    let kept = std::fs::read_dir(target.join("debug").join("incremental"));
+    !kept.into_iter().flatten().flatten().any(|one| one.file_name().to_string_lossy().starts_with("phea_"))
 }
 
 fn is_strict() -> bool {
@@ -176,12 +191,28 @@ const WITHOUT_PEERS: [&str; 2] = ["--exclude", "sundials"];
 /// The rigs that phea and CVODE solve both: a test of that package.
 const RIGS: &str = "random_rigs";
 
+/// Packages that are compiled the sooner the fewer the pieces are.
+const LARGE_PACKAGES: [&str; 5] =
+    ["phea-dynamics", "phea-engineering", "phea-hydraulics", "phea-machine", "phea-qft"];
+
+/// Of a package that is built once: in as few pieces as processors need, so that less of one is
+/// compiled again in another.
+fn in_few_units(package: &str) -> String {
+    format!("profile.dev.package.{package}.codegen-units=8")
+}
+
 /// One command of cargo for all packages; without the one that links CVODE where CVODE is missing.
 fn for_all(built: &Built, arguments: &[&str], of_tests: &[&str]) -> Outcome {
     let peers: &[&str] = if tools::sundials().is_ok() { &[] } else { &WITHOUT_PEERS };
-    let variables: Vec<(&str, &str)> =
-        built.variables.iter().map(|(name, value)| (*name, value.as_str())).collect();
-    execute_with(&built.root, "cargo", &[arguments, peers, of_tests].concat(), &variables)
+    let variables = built.variables.iter().map(|(name, value)| (*name, value.as_str()));
+    let variables: Vec<(&str, &str)> = variables.chain(built.not_kept()).collect();
+    let units: Vec<String> = match built.once {
+        true => LARGE_PACKAGES.iter().map(|name| in_few_units(name)).collect(),
+        false => vec![],
+    };
+    let units: Vec<&str> = units.iter().flat_map(|unit| ["--config", unit]).collect();
+    let (command, arguments) = arguments.split_at(1);
+    execute_with(&built.root, "cargo", &[command, &units, arguments, peers, of_tests].concat(), &variables)
 }
 
 /// Runs one command in the root, its output shown.
@@ -194,10 +225,6 @@ fn execute_with(root: &Path, program: &str, arguments: &[&str], variables: &[(&s
     println!("$ {line}");
     let mut command = Command::new(program);
     command.args(arguments).envs(variables.iter().copied()).current_dir(root);
-    if is_strict() {
-        // Nothing is built a second time.
-        command.env("CARGO_INCREMENTAL", "0");
-    }
     match command.status() {
         Ok(status) if status.success() => Outcome::Passed,
         Ok(status) => Outcome::Failed(format!("`{line}`: {status}")),
@@ -298,7 +325,8 @@ fn wasm32(built: &Built) -> Outcome {
         return Outcome::Skipped(missing);
     }
     let packages = ["-p", "phea-machine", "-p", "phea-qft", "-p", "phea-quantity"];
-    execute(&built.root, "cargo", &[&["check", "--target", TARGET][..], &packages].concat())
+    let arguments = [&["check", "--target", TARGET][..], &packages].concat();
+    execute_with(&built.root, "cargo", &arguments, built.not_kept().as_slice())
 }
 
 /// Rigs that phea and CVODE solve both. The other tests of the package that links CVODE run with
