@@ -8,6 +8,7 @@ use super::crossings::SlopedFunction;
 use super::decibels;
 use super::grid::{rotation_limit, search_grid};
 use crate::linear::{TimeDomain, TransferFunction};
+use crate::order::sort_by_number;
 use crate::portable::{ln, magnitude};
 
 /// A crossing of the negative real axis: the loop passes through -1 when its gain is multiplied by
@@ -193,7 +194,7 @@ fn gain_margins(open_loop: &TransferFunction, grid: &[f64]) -> Vec<GainMargin> {
     });
     let mut margins: Vec<GainMargin> = found.into_iter().map(|w| gain_margin(open_loop, w)).collect();
     margins.extend(gain_margins_at_the_ends(open_loop));
-    margins.sort_by(|a, b| a.frequency_rad_per_s.total_cmp(&b.frequency_rad_per_s));
+    sort_by_number(&mut margins, |margin| margin.frequency_rad_per_s);
     margins.dedup();
     margins
 }

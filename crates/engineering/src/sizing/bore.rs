@@ -1,3 +1,4 @@
+use phea_dynamics::order::sort_by_number;
 use std::f64::consts::PI;
 
 use super::{SizingProblem, SizingStep};
@@ -99,7 +100,7 @@ pub(super) fn assess(problem: &SizingProblem, decisions: &mut Vec<SizingStep>) -
             verdict: verdict(problem, bore_m),
         })
         .collect();
-    bores.sort_by(|one, other| one.bore_m.total_cmp(&other.bore_m));
+    sort_by_number(&mut bores, |bore| bore.bore_m);
     let [smallest, largest] = range(problem).map(|bore| DisplayUnit::MILLIMETRE.number(bore, 3));
     let feasible: Vec<&str> = bores
         .iter()

@@ -6,6 +6,7 @@ mod spread;
 
 use std::cmp::Ordering;
 
+use phea_dynamics::order::sort_by_number;
 use phea_dynamics::watch::{Stopped, Watch, part, tell};
 
 use super::descent::{Binding, Descent, DescentOptions, DescentStatus, DescentWork, is_usable};
@@ -286,7 +287,7 @@ impl StartSearch<'_> {
             candidates.iter().filter(|candidate| is_usable(&candidate.judgement)).collect();
         let mut modest: Vec<&JudgedPoint> =
             usable.iter().copied().filter(|one| one.judgement.worst_margin_db > MODEST_DB).collect();
-        modest.sort_by(|one, other| one.judgement.objective_db.total_cmp(&other.judgement.objective_db));
+        sort_by_number(&mut modest, |one| one.judgement.objective_db);
         if self.options.descent.aim == Aim::WorstMargin {
             modest.clear();
         }

@@ -1,6 +1,7 @@
 //! The design frequencies of a problem, prepared for judging one controller after the other.
 
 use num_complex::Complex64;
+use phea_dynamics::order::sort_by_number;
 use phea_dynamics::portable;
 
 use crate::bound::{BoundError, FrequencyBounds, Placement, TemplateFill};
@@ -134,7 +135,7 @@ impl DesignChart {
     pub fn margins(&self, compensation: &Compensation, tracking: TrackingJudgement) -> Vec<DesignMargin> {
         let mut margins: Vec<DesignMargin> =
             self.stations.iter().flat_map(|station| self.at(station, compensation, tracking)).collect();
-        margins.sort_by(|a, b| a.margin_db.total_cmp(&b.margin_db));
+        sort_by_number(&mut margins, |margin| margin.margin_db);
         margins
     }
 

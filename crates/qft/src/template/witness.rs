@@ -3,6 +3,7 @@
 
 use super::plants::{PlantPosition, Plants, Stop};
 use super::region::{Corner, Region};
+use phea_dynamics::order::sort_by_number;
 
 /// Number of witnesses added at a time.
 const TAKEN_IN: usize = 8;
@@ -37,7 +38,7 @@ pub(super) fn outside(plants: &Plants, contours: &[Vec<Corner>], witnesses: &[us
         (distance > 1.0).then_some(Outside { plant, distance, beside })
     });
     let mut found: Vec<Outside> = found.collect();
-    found.sort_by(|first, second| second.distance.total_cmp(&first.distance));
+    sort_by_number(&mut found, |outside| -outside.distance);
     found
 }
 

@@ -1,5 +1,6 @@
 //! From margins to findings.
 
+use phea_dynamics::order::sort_by_number;
 use std::ops::Range;
 
 use super::evaluator::Evaluator;
@@ -109,7 +110,7 @@ pub(super) fn local_minima(envelope: &[EnvelopePoint]) -> Vec<[f64; 3]> {
             _ => None,
         })
         .collect();
-    minima.sort_by(|left, right| left.0.total_cmp(&right.0));
+    sort_by_number(&mut minima, |minimum| minimum.0);
     minima.into_iter().map(|minimum| minimum.1).collect()
 }
 

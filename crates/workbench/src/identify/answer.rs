@@ -1,3 +1,4 @@
+use phea_dynamics::order::sort_by_number;
 use std::collections::BTreeMap;
 
 use phea_hydraulics::servovalve::{LeakageModel, StaticCoefficients};
@@ -229,7 +230,7 @@ pub(super) fn correlations(found: &Identification) -> Vec<([&'static str; 2], f6
             (told && correlation.abs() > REMARKABLE).then_some((both, correlation))
         })
         .collect();
-    listed.sort_by(|(_, first), (_, second)| second.abs().total_cmp(&first.abs()));
+    sort_by_number(&mut listed, |(_, correlation)| -correlation.abs());
     listed
 }
 

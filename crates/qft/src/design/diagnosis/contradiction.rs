@@ -13,6 +13,7 @@
 use std::f64::consts::PI;
 
 use num_complex::Complex64;
+use phea_dynamics::order::{sort_by_number, sorted_distinct};
 use phea_dynamics::portable;
 
 use super::candidate::PlantWithinLoop;
@@ -59,8 +60,7 @@ pub(super) fn contradictions(
         .copied()
         .collect();
     frequencies.retain(|frequency| boundary.plane.place(*frequency).is_finite());
-    frequencies.sort_by(f64::total_cmp);
-    frequencies.dedup();
+    let frequencies = sorted_distinct(frequencies);
     let skip = frequencies.len().div_ceil(FREQUENCIES_MAXIMUM).max(1);
     let places = frequencies.iter().step_by(skip);
     let mut found: Vec<([f64; 2], Finding)> = places
@@ -70,7 +70,7 @@ pub(super) fn contradictions(
             place.contradiction(largest)
         })
         .collect();
-    found.sort_by(|a, b| b.0[0].total_cmp(&a.0[0]));
+    sort_by_number(&mut found, |one| -one.0[0]);
     found.into_iter().map(|(_, finding)| finding).collect()
 }
 

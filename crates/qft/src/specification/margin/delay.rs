@@ -3,6 +3,7 @@ use std::f64::consts::PI;
 use num_complex::Complex64;
 use phea_dynamics::frequency::logarithmic_grid;
 use phea_dynamics::linear::TransferFunction;
+use phea_dynamics::order::sort_numbers;
 use phea_dynamics::portable::{exp, ln, magnitude, sin, tan};
 
 use super::super::minimum::minimum_between;
@@ -168,7 +169,7 @@ pub fn guaranteed_delay(limit: &Limit, band_rad_per_s: [f64; 2]) -> Result<Delay
         Limit::Table(table) => table.points().iter().map(|point| point.0).collect(),
     };
     grid.extend(corners.into_iter().filter(|w| from < *w && *w < to));
-    grid.sort_by(f64::total_cmp);
+    sort_numbers(&mut grid);
     let delays = grid.iter().map(|&w| delay_allowed(limit, w)).collect::<Result<Vec<f64>, _>>()?;
     let least = delays.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1)).map_or(0, |(index, _)| index);
     let around = grid.get(least.saturating_sub(1)).zip(grid.get(least + 1).or(grid.last()));
