@@ -14,13 +14,12 @@ pub use closed_loop::ClosedLoop;
 pub(crate) use closed_loop::PlantPath;
 pub use limit::{Limit, LimitError, LimitTable};
 pub use margin::{
-    DelayGuarantee, GuaranteedMargins, MarginError, delay_margin_limit, delay_margin_limit_table,
-    guaranteed_delay, guaranteed_margins, guaranteed_margins_of_robust_stability,
-    guaranteed_margins_of_sensitivity, robust_stability_limit_for_gain_increase,
-    robust_stability_limit_for_gain_reduction, robust_stability_limit_for_modulus_margin,
-    robust_stability_limit_for_phase_margin, sensitivity_limit_for_gain_increase,
-    sensitivity_limit_for_gain_reduction, sensitivity_limit_for_modulus_margin,
-    sensitivity_limit_for_phase_margin,
+    GuaranteedMargins, MarginError, delay_margin_limit, guaranteed_margins,
+    guaranteed_margins_of_robust_stability, guaranteed_margins_of_sensitivity,
+    robust_stability_limit_for_gain_increase, robust_stability_limit_for_gain_reduction,
+    robust_stability_limit_for_modulus_margin, robust_stability_limit_for_phase_margin,
+    sensitivity_limit_for_gain_increase, sensitivity_limit_for_gain_reduction,
+    sensitivity_limit_for_modulus_margin, sensitivity_limit_for_phase_margin,
 };
 pub use time_domain::{
     ExtraRoot, LimitOrder, LowerWish, Reached, TimeDomainError, TrackingLimit, TrackingSpread, Translation,
