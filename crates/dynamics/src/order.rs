@@ -58,6 +58,20 @@ pub fn sort_numbers(numbers: &mut [f64]) {
     numbers.sort_by(f64::total_cmp);
 }
 
+/// The least and the greatest of numbers, NaN left out; of none, infinity and minus infinity.
+///
+/// # Example
+/// ```
+/// use phea_dynamics::order::ends;
+///
+/// assert_eq!(ends([2.0, f64::NAN, -1.0]), [-1.0, 2.0]);
+/// assert_eq!(ends([]), [f64::INFINITY, f64::NEG_INFINITY]);
+/// ```
+pub fn ends(numbers: impl IntoIterator<Item = f64>) -> [f64; 2] {
+    let none = [f64::INFINITY, f64::NEG_INFINITY];
+    numbers.into_iter().fold(none, |[least, most], number| [least.min(number), most.max(number)])
+}
+
 /// These numbers, the least first and each once.
 ///
 /// # Example

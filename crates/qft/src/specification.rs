@@ -8,6 +8,7 @@ mod minimum;
 mod time_domain;
 
 use num_complex::Complex64;
+use phea_dynamics::frequency::decibels;
 use phea_dynamics::portable;
 
 pub use closed_loop::ClosedLoop;
@@ -153,7 +154,7 @@ impl Specification {
     /// ```
     pub fn margin_db(&self, response: &LoopResponse, frequency_rad_per_s: f64) -> Option<f64> {
         let below = |limit: &Limit, value: Complex64| {
-            Some(decibel(limit.magnitude(frequency_rad_per_s)? / portable::magnitude(value)))
+            Some(decibels(limit.magnitude(frequency_rad_per_s)? / portable::magnitude(value)))
         };
         let value = self.requirement.closed_loop().response(response);
         match self.requirement.limits() {
@@ -161,8 +162,4 @@ impl Specification {
             (None, upper) => below(upper, value),
         }
     }
-}
-
-fn decibel(ratio: f64) -> f64 {
-    20.0 * portable::log10(ratio)
 }

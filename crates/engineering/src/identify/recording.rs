@@ -1,6 +1,6 @@
 //! A static test as it was recorded.
 
-use phea_dynamics::order::sort_numbers;
+use phea_dynamics::order::{ends, sort_numbers};
 use phea_hydraulics::servovalve::{PortCircuit, TestInput, TestOutput};
 
 /// Differences of values, over their range, that are the rounding of their digits.
@@ -110,9 +110,7 @@ impl Recording {
 impl RecordedSignal {
     /// Smallest and largest value, single rows that their neighbours contradict left out.
     pub fn range(&self) -> [f64; 2] {
-        let values = self.despiked();
-        let known = || values.iter().flatten().copied();
-        [known().fold(f64::INFINITY, f64::min), known().fold(f64::NEG_INFINITY, f64::max)]
+        ends(self.despiked().into_iter().flatten())
     }
 
     /// The step of the converter, or of the digits, that all values are multiples of from the least

@@ -22,6 +22,17 @@ pub enum LineLength {
     OutOfReach,
 }
 
+impl LineLength {
+    /// In m: zero where none is needed, infinite where none is enough.
+    pub fn metres(self) -> f64 {
+        match self {
+            LineLength::Length(length) => length,
+            LineLength::NotNeeded { .. } => 0.0,
+            LineLength::OutOfReach => f64::INFINITY,
+        }
+    }
+}
+
 /// Hose length L_ho of each line for a wanted least stiffness K_H, one modulus for hose and
 /// chamber, in m.
 ///

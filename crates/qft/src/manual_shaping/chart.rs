@@ -1,6 +1,7 @@
 //! The design frequencies of a problem, prepared for judging one controller after the other.
 
 use num_complex::Complex64;
+use phea_dynamics::frequency::decibels;
 use phea_dynamics::order::sort_by_number;
 use phea_dynamics::portable;
 
@@ -249,5 +250,5 @@ fn spread<'a>(
     };
     let (greatest, plant) = magnitudes().max_by(|a, b| a.0.total_cmp(&b.0))?;
     let (least, other) = magnitudes().min_by(|a, b| a.0.total_cmp(&b.0))?;
-    Some((20.0 * portable::log10(allowed * least / greatest), plant, other))
+    Some((decibels(allowed * least / greatest), plant, other))
 }

@@ -3,7 +3,7 @@
 
 use super::plants::{PlantPosition, Plants, Stop};
 use super::region::{Corner, Region};
-use phea_dynamics::order::sort_by_number;
+use phea_dynamics::order::{ends, sort_by_number};
 
 /// Number of witnesses added at a time.
 const TAKEN_IN: usize = 8;
@@ -60,7 +60,7 @@ pub(super) fn take_in(plants: &mut Plants, region: &mut Region, outside: &[Outsi
 /// nearest corner.
 fn distance(plants: &Plants, contours: &[Vec<Corner>], place: PlantPosition) -> (f64, Option<[usize; 2]>) {
     let phases = || contours.iter().flatten().map(|corner| corner.place.phase_deg);
-    let (low, high) = (phases().fold(f64::INFINITY, f64::min), phases().fold(f64::NEG_INFINITY, f64::max));
+    let [low, high] = ends(phases());
     let first = ((low - place.phase_deg) / 360.0).floor();
     let turns = ((high - low) / 360.0).ceil() + 1.0;
     let mut nearest = (f64::INFINITY, None);

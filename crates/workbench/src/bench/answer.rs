@@ -1,7 +1,7 @@
 //! The tests of the bench for programs, and their tables.
 
 use super::line::line_test;
-use super::table::{RecordedColumn, RecordedTable};
+use super::table::{BenchColumn, BenchTable};
 use super::{BenchRow, BenchRun, BenchSeries, FrictionRun, ReversalReading, friction};
 use crate::answer::{self, Json, Object, OutputFile};
 use crate::line_test::LineRun;
@@ -9,10 +9,10 @@ use crate::project::Loaded;
 use crate::quantity::DisplayUnit;
 
 /// What a test records.
-pub(super) fn recorded(run: &BenchRun) -> RecordedTable {
+pub(super) fn recorded(run: &BenchRun) -> BenchTable {
     let (volt, bar, litres) = (DisplayUnit::VOLT, DisplayUnit::BAR, DisplayUnit::LITRE_PER_MINUTE);
     let column = |names, unit, of: fn(&BenchRow) -> f64| {
-        RecordedColumn::of(names, unit, run.rows.iter().map(of).collect())
+        BenchColumn::of(names, unit, run.rows.iter().map(of).collect())
     };
     let [leak, flow] = run.series.test().measures_flow();
     let mut columns = vec![
@@ -33,7 +33,7 @@ pub(super) fn recorded(run: &BenchRun) -> RecordedTable {
         columns.push(column(names, DisplayUnit::DEGREE_CELSIUS, of));
     }
     let times = run.rows.iter().map(|row| row.time).collect();
-    RecordedTable { name: run.series.name(), title: title(run.series), times, columns }
+    BenchTable { name: run.series.name(), title: title(run.series), times, columns }
 }
 
 fn title(series: BenchSeries) -> &'static str {

@@ -1,13 +1,13 @@
 //! The runs of a cylinder for its friction.
 
-use super::table::{RecordedColumn, RecordedTable};
+use super::table::{BenchColumn, BenchTable};
 use super::{FrictionRow, FrictionRun, FrictionSeries};
 use crate::quantity::DisplayUnit;
 
 /// What a run records.
-pub(super) fn recorded(run: &FrictionRun) -> RecordedTable {
+pub(super) fn recorded(run: &FrictionRun) -> BenchTable {
     let column = |names, unit, of: fn(&FrictionRow) -> f64| {
-        RecordedColumn::of(names, unit, run.rows.iter().map(of).collect())
+        BenchColumn::of(names, unit, run.rows.iter().map(of).collect())
     };
     let columns = vec![
         column(["position_mm", "position", "m"], DisplayUnit::MILLIMETRE, |row| row.position),
@@ -15,7 +15,7 @@ pub(super) fn recorded(run: &FrictionRun) -> RecordedTable {
         column(["pressure_b_bar", "pressure at B", "Pa"], DisplayUnit::BAR, |row| row.pressure_b),
     ];
     let times = run.rows.iter().map(|row| row.time).collect();
-    RecordedTable { name: run.series.name(), title: title(run.series), times, columns }
+    BenchTable { name: run.series.name(), title: title(run.series), times, columns }
 }
 
 fn title(series: FrictionSeries) -> &'static str {

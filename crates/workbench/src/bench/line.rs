@@ -1,13 +1,13 @@
 //! The tests of a line: text, JSON and tables.
 
-use super::table::{RecordedColumn, RecordedTable};
+use super::table::{BenchColumn, BenchTable};
 use crate::answer::{Object, OutputFile};
 use crate::document::Document;
 use crate::line_test::{LineRun, LineSeries};
 use crate::quantity::DisplayUnit;
 
 /// What a test records.
-fn recorded(run: &LineRun) -> RecordedTable {
+fn recorded(run: &LineRun) -> BenchTable {
     let litres = DisplayUnit::LITRE_PER_MINUTE;
     let (name, quantity, unit, factor, si) = match run.series {
         LineSeries::PressureRise => ("volume_ml", "volume displaced into the line", "mL", 1e6, "m3"),
@@ -16,10 +16,10 @@ fn recorded(run: &LineRun) -> RecordedTable {
         }
     };
     let shown = run.inputs.iter().map(|input| factor * input).collect();
-    let input = RecordedColumn { name, quantity, unit, shown, si, values: run.inputs.clone() };
+    let input = BenchColumn { name, quantity, unit, shown, si, values: run.inputs.clone() };
     let names = ["pressure_bar", "pressure at the open end", "Pa"];
-    let pressure = RecordedColumn::of(names, DisplayUnit::BAR, run.pressures.clone());
-    RecordedTable {
+    let pressure = BenchColumn::of(names, DisplayUnit::BAR, run.pressures.clone());
+    BenchTable {
         name: run.series.name(),
         title: title(run.series),
         times: run.times.clone(),

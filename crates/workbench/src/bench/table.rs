@@ -2,12 +2,14 @@
 
 use std::io;
 
+use phea_dynamics::order::ends;
+
 use crate::answer::{NumberTable, Object, OutputFile, TableFormat};
 use crate::document::{Cell, Document, Table};
 use crate::quantity::{DisplayUnit, TIME, display};
 
 /// The table of a test.
-pub(super) struct RecordedTable {
+pub(super) struct BenchTable {
     /// Of the test and its file.
     pub(super) name: &'static str,
     /// For people.
@@ -15,11 +17,11 @@ pub(super) struct RecordedTable {
     /// Of the rows, s.
     pub(super) times: Vec<f64>,
     /// Without time.
-    pub(super) columns: Vec<RecordedColumn>,
+    pub(super) columns: Vec<BenchColumn>,
 }
 
 /// A column of it.
-pub(super) struct RecordedColumn {
+pub(super) struct BenchColumn {
     /// Its name in the file.
     pub(super) name: &'static str,
     /// For people.
@@ -32,24 +34,24 @@ pub(super) struct RecordedColumn {
     pub(super) values: Vec<f64>,
 }
 
-impl RecordedColumn {
+impl BenchColumn {
     /// Of values in SI, shown in a unit.
     pub(super) fn of(
         [name, quantity, si]: [&'static str; 3],
         unit: DisplayUnit,
         values: Vec<f64>,
-    ) -> RecordedColumn {
+    ) -> BenchColumn {
         let shown = values.iter().map(|value| unit.of(*value)).collect();
-        RecordedColumn { name, quantity, unit: unit.symbol, shown, si, values }
+        BenchColumn { name, quantity, unit: unit.symbol, shown, si, values }
     }
 
     /// Smallest and largest value, SI.
     pub(super) fn range(&self) -> [f64; 2] {
-        ends(&self.values)
+        ends(self.values.iter().copied())
     }
 }
 
-impl RecordedTable {
+impl BenchTable {
     fn file_name(&self) -> String {
         format!("{}.csv", self.name)
     }
@@ -78,7 +80,7 @@ impl RecordedTable {
     /// A section that shows how far each column goes.
     pub(super) fn tell(&self, digits: usize, out: &mut Document) {
         let rows = self.columns.iter().map(|column| {
-            let [least, most] = ends(&column.shown).map(|value| Cell::number(value, digits));
+            let [least, most] = ends(column.shown.iter().copied()).map(|value| Cell::number(value, digits));
             [Cell::from(column.quantity), least, most, Cell::from(column.unit)]
         });
         out.section(self.title, Table::new(["recorded", "least", "most", "unit"]).with(rows));
@@ -101,9 +103,4 @@ impl RecordedTable {
             Object::new().with("name", column.quantity).with("unit", column.si).with("range", column.range())
         })
     }
-}
-
-fn ends(values: &[f64]) -> [f64; 2] {
-    let all = || values.iter().copied();
-    [all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max)]
 }
