@@ -63,9 +63,6 @@ pub struct Margins {
     pub phase_margins: Vec<PhaseMargin>,
     /// Closest approach to -1.
     pub modulus_margin: ModulusMargin,
-    /// Frequency in rad/s up to which crossings were listed: infinite, unless dead time makes them
-    /// endless.
-    pub listed_up_to_rad_per_s: f64,
 }
 
 impl Margins {
@@ -151,7 +148,6 @@ pub fn margins(open_loop: &TransferFunction) -> Margins {
         gain_margins: gain_margins(open_loop, &listed),
         phase_margins: phase_margins(open_loop, &grid),
         modulus_margin: modulus_margin(open_loop, &grid),
-        listed_up_to_rad_per_s: limit,
     }
 }
 
