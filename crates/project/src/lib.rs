@@ -109,6 +109,7 @@ pub(crate) use signal::SignalUnit;
 pub use text::{Findings, Place, RawFinding};
 pub use tree::{Entry, TreeNode, Value as TreeValue, read as read_tree, value_or_finding};
 pub(crate) use visitor::Visitor;
+pub use visitor::word_of;
 
 use phea_quantity::{MotionKind, RATIO};
 

@@ -1,8 +1,8 @@
-use phea_dynamics::order::sort_by_number;
 use std::f64::consts::PI;
 
 use super::{SizingProblem, SizingStep};
 use crate::quantity::DisplayUnit;
+use phea_dynamics::order::sort_by_number;
 
 /// What the oil velocity says about a bore.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -12,11 +12,11 @@
 //! taken when the plant found there really lies further out; the walk from the contour to the new
 //! plants and back is closed, so the region that it encloses is filled.
 
-use phea_dynamics::order::sort_by_number;
 use std::collections::BTreeSet;
 
 use super::plants::{Plants, Stop};
 use super::region::{Corner, Region};
+use phea_dynamics::order::sort_by_number;
 
 /// Least outward gain of a push, in tolerances.
 const GAIN_MINIMUM: f64 = 0.1;

@@ -1,6 +1,5 @@
 //! From margins to findings.
 
-use phea_dynamics::order::sort_by_number;
 use std::ops::Range;
 
 use super::evaluator::Evaluator;
@@ -10,6 +9,7 @@ use super::scan::{Scan, ScannedPlant, WorstPlant};
 use super::{Evidence, PlantPoint, SpecificationFinding, Verdict, ViolatedBand, WorstCase};
 use crate::family::Family;
 use crate::specification::Specification;
+use phea_dynamics::order::sort_by_number;
 
 /// Violations below this are due to rounding, dB.
 const ROUNDING_DB: f64 = 1e-9;

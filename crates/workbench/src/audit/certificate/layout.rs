@@ -9,7 +9,7 @@ use phea_qft::proof::{
 };
 use serde::{Deserialize, Serialize};
 
-use crate::project::Loaded;
+use crate::project::{Loaded, word_of};
 use claims::{Cover, StatedClaim, covers, panels};
 
 /// What the file begins with.
@@ -129,10 +129,6 @@ const BINARY: [(&str, Binary); 4] = [
 ];
 /// The third where the first is less than the second, else the fourth.
 const SELECT: &str = "select";
-
-fn name_of<T: PartialEq>(table: &[(&'static str, T)], operation: T) -> &'static str {
-    table.iter().find(|(_, known)| *known == operation).map_or("", |(name, _)| name)
-}
 
 fn named<T: Copy>(table: &[(&str, T)], name: &str) -> Option<T> {
     table.iter().find(|(known, _)| *known == name).map(|(_, operation)| *operation)
@@ -351,8 +347,8 @@ impl Operation {
         match *node {
             Node::Parameter(index) => one("parameter", index as f64),
             Node::Constant(value) => one("number", value),
-            Node::Unary(unary, x) => one(name_of(&UNARY, unary), x as f64),
-            Node::Binary(binary, x, y) => Some(Operation::Two((name_of(&BINARY, binary).to_string(), x, y))),
+            Node::Unary(unary, x) => one(word_of(&UNARY, &unary), x as f64),
+            Node::Binary(binary, x, y) => Some(Operation::Two((word_of(&BINARY, &binary).to_string(), x, y))),
             Node::Select(x, y, if_less, otherwise) => {
                 Some(Operation::Four((SELECT.to_string(), x, y, if_less, otherwise)))
             }
