@@ -110,7 +110,7 @@ impl ElementPattern {
         };
         let raise_db = match turn {
             Some(turn) if !within(turn.to_degrees(), turn_deg) => None,
-            turn => Some(self.raise(turn).map(|ratio| decibels(ratio))),
+            turn => Some(self.raise(turn).map(decibels)),
         };
         Reach { turn_deg, raise_db }
     }
