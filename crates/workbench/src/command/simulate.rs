@@ -40,7 +40,7 @@ impl FrequencyOptions {
     /// The request, in SI.
     ///
     /// # Errors
-    /// [`ProcedureError::Option`] for a text that is not a positive quantity of its kind.
+    /// [`CommandError`] for a text that is not a positive quantity of its kind.
     ///
     /// # Example
     /// ```
