@@ -1,7 +1,7 @@
 """Recomputes the numbers with which the tests of the specifications compare phea, and states them.
 
 Independent of phea: responses by the matrix exponential (SciPy) of a companion form, exact limits by a root finder on overshoot and
-settling time together, margins and delays by brute force on the circle itself. Fails where a stated number differs from the result.
+settling time together, margins by brute force on the circle itself. Fails where a stated number differs from the result.
 
     python comparisons/recompute_specifications.py
 """
@@ -157,23 +157,11 @@ def margins_of_one_point_three():
     expect("|T| <= 1.3: phase margin, deg", np.degrees(phase), 45.2397299, 1e-7)
 
 
-def delay_of_an_integrator():
-    """Longest tau with |L/(1+L)| <= 1/(2 sin(w tau/2)) for L = 1/s, by scanning the frequencies at each tau."""
-    grid = np.linspace(1e-3, 10, 200_001)
-
-    def spare(tau):
-        half = np.minimum(grid * tau, np.pi) / 2
-        return np.min(1 / (2 * np.sin(half)) - 1 / np.sqrt(1 + grid**2))
-
-    expect("delay that 1/s is promised, s", brentq(spare, 1.2, 1.7, xtol=1e-12), 1.47749502, 1e-8)
-
-
 def main():
     printed_limits()
     exact_limits()
     spreads()
     margins_of_one_point_three()
-    delay_of_an_integrator()
     if FAILURES:
         sys.exit(f"{len(FAILURES)} stated numbers are not so: {', '.join(FAILURES)}")
 

@@ -21,6 +21,7 @@ pub mod expression;
 pub mod frequency;
 pub mod least_squares;
 pub mod linear;
+pub mod order;
 pub mod portable;
 pub mod random;
 pub mod scalar;

@@ -13,6 +13,7 @@ use num_complex::Complex64;
 use phea_dynamics::controller::{Controller, Timing};
 use phea_dynamics::frequency::{PassivityReport, logarithmic_grid, passivity};
 use phea_dynamics::linear::{LinearError, TransferFunction};
+use phea_dynamics::order::sorted_distinct;
 use phea_dynamics::portable;
 use phea_hydraulics::actuator::Components;
 use phea_hydraulics::impedance::{
@@ -293,9 +294,7 @@ pub fn frequency_grid(function: &TransferFunction) -> Result<Vec<f64>, LinearErr
     let mut grid = logarithmic_grid(first, last, 600)?;
     grid.extend(function.poles().iter().filter(|pole| pole.im > 0.0).flat_map(resonance_grid));
     grid.retain(|frequency| (first..=last).contains(frequency));
-    grid.sort_by(f64::total_cmp);
-    grid.dedup();
-    Ok(grid)
+    Ok(sorted_distinct(grid))
 }
 
 /// The lightly damped pole of a system, upper half plane: the complex one with the smallest damping

@@ -5,6 +5,7 @@ use num_complex::Complex64;
 use phea_dynamics::controller::Controller;
 use phea_dynamics::frequency::logarithmic_grid;
 use phea_dynamics::linear::{LinearError, Polynomial, TransferFunction};
+use phea_dynamics::order::sorted_distinct;
 use phea_dynamics::portable;
 use phea_qft::bound::{BoundError, CombinedBound, FrequencyBounds, PhaseGrid, Placement, TemplateFill};
 use phea_qft::closed_loop::{Compensation, Member};
@@ -159,8 +160,7 @@ fn named_specifications(
     let mut frequencies: Vec<f64> =
         specifications.iter().flat_map(|one| one.frequencies_rad_per_s.iter().copied()).collect();
     frequencies.retain(|frequency| *frequency <= highest_frequency_rad_per_s);
-    frequencies.sort_by(f64::total_cmp);
-    frequencies.dedup();
+    let frequencies = sorted_distinct(frequencies);
     for (specification, name) in of_rounding(setup, &frequencies) {
         specifications.push(specification);
         names.push(name.to_string());
@@ -177,11 +177,8 @@ impl RobustProblem {
     /// Every frequency at which a bound is drawn, rad/s, increasing.
     pub fn design_frequencies(&self) -> Vec<f64> {
         let all = self.specifications.iter().flat_map(|one| one.frequencies_rad_per_s.iter().copied());
-        let mut frequencies: Vec<f64> =
-            all.filter(|&frequency| frequency <= self.compensation.highest_frequency_rad_per_s()).collect();
-        frequencies.sort_by(f64::total_cmp);
-        frequencies.dedup();
-        frequencies
+        let highest = self.compensation.highest_frequency_rad_per_s();
+        sorted_distinct(all.filter(|&frequency| frequency <= highest).collect())
     }
 
     /// Templates and bounds at every design frequency that the family reaches.
@@ -302,9 +299,7 @@ impl RobustProblem {
             frequencies.extend(offsets.filter(|frequency| (from..=to).contains(frequency)));
         }
         frequencies.extend(self.design_frequencies().into_iter().filter(|f| (from..=to).contains(f)));
-        frequencies.sort_by(f64::total_cmp);
-        frequencies.dedup();
-        frequencies
+        sorted_distinct(frequencies)
     }
 }
 

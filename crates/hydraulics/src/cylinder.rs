@@ -131,38 +131,6 @@ impl<S: Copy> Cylinder<S> {
     }
 }
 
-/// Annulus areas in m2 on the A and B sides, from the piston diameter and the rod diameters on each
-/// side in m (zero for no rod).
-///
-/// ```text
-/// A_A = pi/4 (D_p^2 - D_rA^2)        A_B = pi/4 (D_p^2 - D_rB^2)
-/// ```
-///
-/// # Errors
-/// Negative diameters, and a rod as thick as its piston or thicker.
-///
-/// # Example
-/// ```
-/// use phea_hydraulics::cylinder::areas_from_diameters;
-/// let [area_a, area_b] = areas_from_diameters(0.05, [0.022, 0.022])?;
-/// assert_eq!(area_a, area_b);
-/// assert!((area_a - 1.58336e-3).abs() < 0.5e-8);
-/// assert!(areas_from_diameters(0.02, [0.022, 0.0]).is_err());
-/// # Ok::<(), phea_hydraulics::parameter::ParameterError>(())
-/// ```
-pub fn areas_from_diameters(piston: f64, rods: [f64; 2]) -> Result<[f64; 2], ParameterError> {
-    let mut problems = Problems::default();
-    problems.positive("piston_diameter", piston);
-    for (name, rod) in ["rod_diameter_a", "rod_diameter_b"].into_iter().zip(rods) {
-        problems.require(name, rod, rod >= 0.0, "zero or positive");
-        problems.require(name, rod, rod < piston, "less than the piston diameter");
-    }
-    match problems.into_vec().into_iter().next() {
-        Some(problem) => Err(problem),
-        None => Ok(rods.map(|rod| annulus_area(piston, rod))),
-    }
-}
-
 /// Area between piston and rod in m2, from their diameters in m.
 ///
 /// ```text

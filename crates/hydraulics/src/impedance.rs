@@ -95,19 +95,8 @@ pub fn closed_loop_impedance(
     TransferFunction::from_factors(open.gain() * sensitivity_gain, zeros, poles)
 }
 
-/// Force per load position F_e/X_L in N/m with the loop closed by a controller G in V/N: second
-/// half of thesis (6.8) times s.
-///
-/// # Errors
-/// As [`closed_loop_impedance`].
-pub fn closed_loop_load_motion(
-    model: &LinearModel,
-    controller: &TransferFunction,
-) -> Result<TransferFunction, LinearError> {
-    load_motion_of(&closed_loop_impedance(model, controller)?)
-}
-
-/// Force per load position in N/m of an impedance: -s Z.
+/// Force per load position in N/m of an impedance: -s Z; with the loop closed, second half of thesis
+/// (6.8) times s.
 ///
 /// # Errors
 /// Factors that are not finite.

@@ -16,8 +16,8 @@ mod length;
 mod range;
 
 pub use length::{
-    LineLength, hose_length_by_volume, hose_length_uniform, line_length_for_stiffness,
-    line_share_for_stiffness, stiffness_from_hose_length,
+    LineLength, hose_length_by_volume, hose_length_uniform, line_share_for_stiffness,
+    stiffness_from_hose_length,
 };
 pub use range::{ModelDifference, StrokeStiffness, model_difference};
 
@@ -69,7 +69,7 @@ pub struct ChamberCompliance<S = f64> {
 /// The thesis' hose, both models, piston at mid stroke
 /// ```
 /// # use phea_hydraulics::{cylinder::*, line::*, stiffness::*, stroke::ActuatorStroke};
-/// # let areas = areas_from_diameters(0.05, [0.022, 0.022])?;
+/// # let areas = [annulus_area(0.05, 0.022); 2];
 /// # let cylinder = Cylinder { area_a: areas[0], area_b: areas[1], stroke: ActuatorStroke::Limited(0.5), moving_mass: 13.1,
 /// #     dead_volume_a: 0.0, dead_volume_b: 0.0, internal_leakage: None, external_leakage: None, end_stops: None };
 /// # let dynamic_stiffening = Stiffening { nominal: 5.0, minimum: 4.0, maximum: 5.0 };
@@ -80,7 +80,6 @@ pub struct ChamberCompliance<S = f64> {
 /// let uniform = hydraulic_stiffness(&of(StiffnessModel::Uniform), 0.25);
 /// let by_volume = hydraulic_stiffness(&of(StiffnessModel::ByVolume), 0.25);
 /// assert!((uniform - 2.233e6).abs() < 0.5e3 && (by_volume - 4.630e6).abs() < 0.5e3);
-/// # Ok::<(), phea_hydraulics::parameter::ParameterError>(())
 /// ```
 pub fn chamber_compliance<S: Scalar>(
     model: StiffnessModel,

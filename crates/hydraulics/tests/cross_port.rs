@@ -9,7 +9,7 @@ use phea_dynamics::random::{share, stream};
 use phea_dynamics::simulation::Plant;
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::cross_port::{CrossPort, DynamicFeedback, Restrictor};
-use phea_hydraulics::cylinder::{Cylinder, areas_from_diameters};
+use phea_hydraulics::cylinder::{Cylinder, annulus_area};
 use phea_hydraulics::linear::LinearParameters;
 use phea_hydraulics::machine::{ENERGY_ACCOUNTS, Machine, MachineOptions};
 use phea_hydraulics::operating_point::{Balance, Condition, Steady, SteadyLoad, operating_point};
@@ -195,7 +195,7 @@ fn an_orifice_settles_where_the_machine_rests() {
         let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
         let equal = number % 3 == 0;
         let [area_a, area_b] =
-            areas_from_diameters(0.05, [0.022, if equal { 0.022 } else { spread(0.01, 0.036) }]).unwrap();
+            [0.022, if equal { 0.022 } else { spread(0.01, 0.036) }].map(|rod| annulus_area(0.05, rod));
         let rig = components(hose_line(), StiffnessModel::ByVolume);
         let port = CrossPort {
             restrictor: Restrictor::Orifice {

@@ -6,7 +6,7 @@ use phea_dynamics::portable::sin;
 use phea_dynamics::simulation::Plant;
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::contact::Contact;
-use phea_hydraulics::cylinder::{Cylinder, areas_from_diameters};
+use phea_hydraulics::cylinder::{Cylinder, annulus_area};
 use phea_hydraulics::fluid::{ATMOSPHERIC_PRESSURE_ABSOLUTE, EntrainedAir, Fluid};
 use phea_hydraulics::friction::{Friction, MovingFriction};
 use phea_hydraulics::line::{Line, StiffeningMember};
@@ -183,7 +183,7 @@ fn the_rate_is_limited() {
 }
 
 fn foamy() -> Components {
-    let [area_a, area_b] = areas_from_diameters(0.05, [0.0, 0.022]).unwrap();
+    let [area_a, area_b] = [0.0, 0.022].map(|rod| annulus_area(0.05, rod));
     let air = Some(EntrainedAir { volume_fraction: 0.02, polytropic_exponent: 1.4 });
     let hose = components(hose_line(), StiffnessModel::ByVolume);
     Components {

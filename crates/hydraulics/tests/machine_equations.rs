@@ -8,7 +8,7 @@ use phea_dynamics::scalar::{Dependence, Dual, LANES, Lanes};
 use phea_dynamics::simulation::Plant;
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::contact::Contact;
-use phea_hydraulics::cylinder::{Cylinder, areas_from_diameters};
+use phea_hydraulics::cylinder::{Cylinder, annulus_area};
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::friction::{Friction, Stribeck};
 use phea_hydraulics::line::{
@@ -79,7 +79,7 @@ fn hose() -> Components {
 
 /// Unequal areas and lines, air, and a static friction curve.
 fn asymmetric() -> Components {
-    let [area_a, area_b] = areas_from_diameters(0.05, [0.0, 0.022]).unwrap();
+    let [area_a, area_b] = [0.0, 0.022].map(|rod| annulus_area(0.05, rod));
     let air = Some(EntrainedAir { volume_fraction: 0.02, polytropic_exponent: 1.4 });
     let curve = Stribeck {
         coulomb: 80.0,
@@ -332,7 +332,7 @@ fn jacobians_are_slopes_and_keep_to_their_pattern() {
 /// The viscous rig's Jacobian is the linearised two-pressure model, at rest and in steady motion.
 #[test]
 fn small_motions_are_those_of_the_two_pressure_model() {
-    let [area_a, area_b] = areas_from_diameters(0.05, [0.0, 0.022]).unwrap();
+    let [area_a, area_b] = [0.0, 0.022].map(|rod| annulus_area(0.05, rod));
     let hose = components(hose_line(), StiffnessModel::ByVolume);
     let asymmetric =
         Components { cylinder: Cylinder { area_a, area_b, ..cylinder() }, line_b: pipe_line(), ..hose };

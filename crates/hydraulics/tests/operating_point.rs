@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)] // helpers of tests
 
 use phea_hydraulics::actuator::{Actuator, Components};
-use phea_hydraulics::cylinder::{Cylinder, areas_from_diameters};
+use phea_hydraulics::cylinder::{Cylinder, annulus_area};
 use phea_hydraulics::operating_point::{Condition, OperatingPointError, SteadyLoad, operating_point};
 use phea_hydraulics::reference_rig::{USEFUL_AREA, components, cylinder, hose_line, valve_with_equal_edges};
 use phea_hydraulics::servovalve::{Servovalve, SpoolDirection, chamber_flows, velocity_gain};
@@ -14,7 +14,7 @@ fn rig() -> Components {
 }
 
 fn asymmetric() -> Actuator {
-    let [area_a, area_b] = areas_from_diameters(0.05, [0.0, 0.022]).unwrap();
+    let [area_a, area_b] = [0.0, 0.022].map(|rod| annulus_area(0.05, rod));
     Actuator::new(Components { cylinder: Cylinder { area_a, area_b, ..cylinder() }, ..rig() }).unwrap()
 }
 

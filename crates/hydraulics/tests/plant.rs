@@ -9,7 +9,7 @@ use phea_dynamics::simulation::small_signal;
 use phea_hydraulics::accumulator::Accumulator;
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::contact::Contact;
-use phea_hydraulics::cylinder::{Cylinder, areas_from_diameters};
+use phea_hydraulics::cylinder::{Cylinder, annulus_area};
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::force_sensor::ForceSensor;
 use phea_hydraulics::friction::Friction;
@@ -82,7 +82,7 @@ fn drawn(number: u64) -> Drawn {
     let air = (number.is_multiple_of(3))
         .then(|| EntrainedAir { volume_fraction: spread(1e-3, 3e-2), polytropic_exponent: spread(1.0, 1.4) });
     let rods = [0.022, spread(0.01, 0.036)];
-    let [area_a, area_b] = areas_from_diameters(0.05, rods).unwrap();
+    let [area_a, area_b] = rods.map(|rod| annulus_area(0.05, rod));
     let line_b = if number.is_multiple_of(2) { hose_line() } else { pipe_line() };
     let model = if number % 5 < 2 { StiffnessModel::Uniform } else { StiffnessModel::ByVolume };
     let reference = components(hose_line(), model);

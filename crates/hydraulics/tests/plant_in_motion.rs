@@ -13,7 +13,7 @@ use phea_dynamics::uncertain_plant::RationalCoefficients;
 use phea_dynamics::uncertain_plant::responding::RespondingPlant;
 use phea_hydraulics::accumulator::Accumulator;
 use phea_hydraulics::actuator::{Actuator, Components};
-use phea_hydraulics::cylinder::{Cylinder, areas_from_diameters};
+use phea_hydraulics::cylinder::{Cylinder, annulus_area};
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::force_sensor::ForceSensor;
 use phea_hydraulics::friction::Friction;
@@ -104,7 +104,7 @@ fn accumulators(number: u64) -> [Option<Accumulator>; 2] {
 /// The parts of a rig for every number and the models of its lines, its numbers drawn by `spread`.
 fn parts(number: u64, spread: &mut impl FnMut(f64, f64) -> f64) -> (Components, [LineModel; 2]) {
     let (friction, leakage) = (spread(50.0, 2e4), spread(1e-14, 1e-10));
-    let [area_a, area_b] = areas_from_diameters(0.05, [0.022, spread(0.01, 0.036)]).unwrap();
+    let [area_a, area_b] = [0.022, spread(0.01, 0.036)].map(|rod| annulus_area(0.05, rod));
     let stiffness_model = if number % 5 < 2 { StiffnessModel::Uniform } else { StiffnessModel::ByVolume };
     let reference = components(hose_line(), stiffness_model);
     let air = EntrainedAir { volume_fraction: spread(1e-3, 1e-2), polytropic_exponent: 1.3 };

@@ -5,7 +5,7 @@
 use phea_hydraulics::accumulator::{AdjustedPart, Adjustment, GasValve, Neck};
 use phea_hydraulics::actuator::Components;
 use phea_hydraulics::cross_port::{CrossPort, Restrictor};
-use phea_hydraulics::cylinder::{Cylinder, areas_from_diameters};
+use phea_hydraulics::cylinder::{Cylinder, annulus_area};
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::friction::{Friction, LuGre, LuGrePassivity};
 use phea_hydraulics::line::{DynamicLine, LaminarFriction, LineModel, StiffeningMember};
@@ -26,7 +26,7 @@ pub(super) fn passive_friction() -> Friction {
 }
 
 pub(super) fn asymmetric() -> Components {
-    let [area_a, area_b] = areas_from_diameters(0.05, [0.0, 0.022]).unwrap();
+    let [area_a, area_b] = [0.0, 0.022].map(|rod| annulus_area(0.05, rod));
     let hose = components(hose_line(), StiffnessModel::ByVolume);
     Components {
         cylinder: Cylinder { area_a, area_b, dead_volume_a: 2e-5, dead_volume_b: 1e-5, ..cylinder() },

@@ -8,7 +8,7 @@ use phea_dynamics::random::{share, stream};
 use phea_hydraulics::accumulator::{Accumulator, AdjustedPart, Adjustment, GasValve, Neck};
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::cross_port::{CrossPort, Restrictor};
-use phea_hydraulics::cylinder::{Cylinder, areas_from_diameters};
+use phea_hydraulics::cylinder::{Cylinder, annulus_area};
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::force_sensor::ForceSensor;
 use phea_hydraulics::friction::Friction;
@@ -141,7 +141,7 @@ fn actuator(draw: &mut Draw, number: u64, stroke: f64, motor: bool) -> Component
     let rods = [0.3 * least, if unequal { draw.spread(0.4, 0.7) * least } else { 0.3 * least }];
     let [area_a, area_b] = match motor {
         true => [draw.spread(1e-5, 1e-4); 2],
-        false => areas_from_diameters(least, rods).unwrap(),
+        false => rods.map(|rod| annulus_area(least, rod)),
     };
     let stages = telescope(number);
     let scale = stroke / stages.stroke;

@@ -7,7 +7,7 @@ use phea_dynamics::expression::Expression;
 use phea_dynamics::linear::StateSpace;
 use phea_dynamics::scalar::Dual;
 use phea_hydraulics::actuator::{Actuator, Components};
-use phea_hydraulics::cylinder::{Cylinder, areas_from_diameters};
+use phea_hydraulics::cylinder::{Cylinder, annulus_area};
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::impedance::open_loop_impedance;
 use phea_hydraulics::line::StiffeningMember;
@@ -63,7 +63,7 @@ fn check_against_jacobian(system: &StateSpace, jacobian: &[[f64; 8]; 6]) {
 }
 
 fn rigs() -> Vec<Components> {
-    let [area_a, area_b] = areas_from_diameters(0.05, [0.0, 0.022]).unwrap();
+    let [area_a, area_b] = [0.0, 0.022].map(|rod| annulus_area(0.05, rod));
     let unequal = components(hose_line(), StiffnessModel::Uniform);
     let asymmetric = Components {
         cylinder: Cylinder { area_a, area_b, dead_volume_a: 2e-5, ..cylinder() },

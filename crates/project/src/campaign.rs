@@ -44,7 +44,8 @@ pub enum Distribution {
     Triangular,
 }
 
-static DISTRIBUTIONS: [(&str, Distribution); 4] = [
+/// The words of a distribution.
+pub static DISTRIBUTIONS: [(&str, Distribution); 4] = [
     ("uniform", Distribution::Uniform),
     ("normal", Distribution::Normal),
     ("log_uniform", Distribution::LogUniform),

@@ -78,15 +78,7 @@ impl DeclaredFamily {
         let k = plain("operating_region", "The operating points that the rig visits.");
         v.table(k, &mut self.operating_region, OperatingRegion::visit);
         let k = plain("replaces", "Ranges that the region and the directions replace, to compare with them.");
-        v.dictionary(
-            k,
-            |u| &u.name,
-            &mut self.replaces,
-            |uncertain: &mut Uncertain, number, v| {
-                uncertain.name = number.name.to_string();
-                uncertain.visit(number.key, v);
-            },
-        );
+        Uncertain::visit_all(k, &mut self.replaces, v);
         let k = plain("measured", "Files with measured frequency responses, the nominal plant first.");
         v.texts(k, &mut self.measured);
         let doc = "Open-loop poles of each measured plant in the right half plane.";

@@ -109,6 +109,7 @@ pub(crate) use signal::SignalUnit;
 pub use text::{Findings, Place, RawFinding};
 pub use tree::{Entry, TreeNode, Value as TreeValue, read as read_tree, value_or_finding};
 pub(crate) use visitor::Visitor;
+pub use visitor::word_of;
 
 use phea_quantity::{MotionKind, RATIO};
 
@@ -285,15 +286,7 @@ impl Project {
             DeclaredSizing::visit,
         );
         let k = plain("uncertainty", "Uncertain numbers and their grids.");
-        v.dictionary(
-            k,
-            |u| &u.name,
-            &mut self.uncertainty,
-            |uncertain: &mut Uncertain, number, v| {
-                uncertain.name = number.name.to_string();
-                uncertain.visit(number.key, v);
-            },
-        );
+        Uncertain::visit_all(k, &mut self.uncertainty, v);
         let k = plain("uncertainty_direction", "Numbers that are uncertain together.");
         v.tables(k, &mut self.directions, UncertaintyDirection::visit);
         v.table(plain("family", "Which plants are examined."), &mut self.family, DeclaredFamily::visit);

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::formula::Formula;
 use super::key::{Key, Motions};
-use super::visitor::{FormulaShape, Kinds, NamedNumber, ValueForm, Variants, Visitor};
+use super::visitor::{FormulaShape, Kinds, NamedNumber, Variants, Visitor};
 use crate::catalogue::CatalogueKind;
 use phea_quantity::{MotionKind, Price, PricedBy};
 
@@ -157,10 +157,6 @@ impl Visitor for Listing {
         self.list(key, "true or false", false);
     }
 
-    fn switch(&mut self, key: Key, field: &mut bool) {
-        self.flag(key, field);
-    }
-
     fn text(&mut self, key: Key, _field: &mut Option<String>, required: bool) {
         self.list(key, "a text", required);
     }
@@ -242,10 +238,6 @@ impl Visitor for Listing {
         self.of_variant = outside;
     }
 
-    fn record<T: Default>(&mut self, key: Key, field: &mut Option<T>, visit: impl Fn(&mut T, &mut Self)) {
-        self.table(key, field, visit);
-    }
-
     fn tables<T: Default>(&mut self, key: Key, field: &mut Vec<T>, visit: impl Fn(&mut T, &mut Self)) {
         if self.everything {
             self.within(&format!("{}[]", key.name), |listing| visit(&mut T::default(), listing));
@@ -298,9 +290,5 @@ impl Visitor for Listing {
         for (key, field) in keys.into_iter().zip(fields) {
             self.within(key.name, |listing| visit(field, listing));
         }
-    }
-
-    fn form(&mut self, _key: Key, field: ValueForm) -> ValueForm {
-        field
     }
 }

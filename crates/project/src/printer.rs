@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::formula::Formula;
 use super::key::{Key, Motions};
 use super::toml_text::{bare_or_quoted, inline, list, quoted};
-use super::visitor::{FormulaShape, Kinds, NamedNumber, ValueForm, Variants, Visitor};
+use super::visitor::{FormulaShape, Kinds, NamedNumber, Variants, Visitor};
 use crate::catalogue::CatalogueKind;
 use phea_quantity::{self as quantity, MotionKind, Price, PricedBy};
 
@@ -253,10 +253,6 @@ impl Visitor for Printer {
         self.part(field, visit);
     }
 
-    fn record<T: Default>(&mut self, key: Key, field: &mut Option<T>, visit: impl Fn(&mut T, &mut Self)) {
-        self.table(key, field, visit);
-    }
-
     fn tables<T: Default>(&mut self, key: Key, field: &mut Vec<T>, visit: impl Fn(&mut T, &mut Self)) {
         let path = self.path(key.name);
         let mut sections = Vec::new();
@@ -334,9 +330,5 @@ impl Visitor for Printer {
                 outer.inner.push(section);
             }
         }
-    }
-
-    fn form(&mut self, _key: Key, field: ValueForm) -> ValueForm {
-        field
     }
 }

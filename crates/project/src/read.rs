@@ -429,6 +429,11 @@ impl Project {
 }
 
 impl Findings {
+    /// The bytes of a file; none, with a finding, if it cannot be read.
+    pub fn bytes_of(&mut self, source: &dyn Source, path: &str) -> Option<Vec<u8>> {
+        source.read(path).map_err(|error| self.unreadable(path, &error.to_string())).ok()
+    }
+
     /// A file that could not be read at all.
     pub fn unreadable(&mut self, path: &str, reason: &str) {
         let text = self.add_text(path, "", 0);

@@ -155,6 +155,14 @@ impl Findings {
         self.errors
     }
 
+    /// What was read, unless an error was found.
+    ///
+    /// # Errors
+    /// All findings.
+    pub fn or_refused<T>(self, read: T) -> Result<T, Box<Refusal>> {
+        if self.errors > 0 { Err(Box::new(self.report())) } else { Ok(read) }
+    }
+
     /// Whether an error was found.
     pub fn has_errors(&self) -> bool {
         self.found.iter().any(|found| found.severity == Severity::Error)

@@ -32,8 +32,21 @@ pub enum DeclaredSpacing {
 }
 
 impl Uncertain {
+    /// A table of them, each by the name of its number.
+    pub(crate) fn visit_all<V: Visitor>(k: Key, all: &mut Vec<Uncertain>, v: &mut V) {
+        v.dictionary(
+            k,
+            |uncertain| &uncertain.name,
+            all,
+            |uncertain: &mut Uncertain, number, v| {
+                uncertain.name = number.name.to_string();
+                uncertain.visit(number.key, v);
+            },
+        );
+    }
+
     /// `number` gives name, dimension and range of the number itself.
-    pub(crate) fn visit<V: Visitor>(&mut self, number: Key, v: &mut V) {
+    fn visit<V: Visitor>(&mut self, number: Key, v: &mut V) {
         let part = |name, doc| Key { name, doc, default: None, ..number };
         v.quantity(part("nominal", "The value of plant 0."), &mut self.nominal);
         v.quantity(part("minimum", "The least it may be."), &mut self.minimum);

@@ -9,6 +9,10 @@ use phea_quantity::{
     ANGULAR_FREQUENCY, FLOW, FLOW_COEFFICIENT, PRESSURE, RATIO, TIME, VOLTAGE, VOLTAGE_RATE,
 };
 
+/// The words of `leakage_model`.
+pub static LEAKAGE_MODELS: [(&str, LeakageModel); 2] =
+    [("each_edge", LeakageModel::EachEdge), ("one_curve", LeakageModel::OneCurve)];
+
 /// The servovalve, by coefficients of its four edges or by its data sheet.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Valve {
@@ -194,9 +198,8 @@ impl Valve {
         v.quantity(k, &mut self.damping_ratio);
         let k = key("leakage_shape", &RATIO, "λ of sech(λ U/U_n) in the leakage; 0 keeps it constant.");
         v.quantity(k.not_negative().or(0.0), &mut self.leakage_shape);
-        let words = &[("each_edge", LeakageModel::EachEdge), ("one_curve", LeakageModel::OneCurve)];
         let k = plain("leakage_model", "What follows sech(λ U/U_n): each edge's leakage, or the valve's.");
-        v.choice(k, words, &mut self.leakage_model, false);
+        v.choice(k, &LEAKAGE_MODELS, &mut self.leakage_model, false);
         let k = key("tare_flow", &FLOW, "Pilot stage flow from supply to tank.").not_negative().or(0.0);
         v.quantity(k, &mut self.tare_flow);
         let k = key("transition_pressure", &PRESSURE, "Drop below which the square root is made regular.");

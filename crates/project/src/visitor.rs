@@ -9,6 +9,11 @@ use super::key::Key;
 use crate::catalogue::CatalogueKind;
 use phea_quantity::{MotionKind, Price, PricedBy};
 
+/// The word of a value, in the table of a choice; empty for a value that has none.
+pub fn word_of<T: PartialEq>(words: &[(&'static str, T)], value: &T) -> &'static str {
+    words.iter().find(|(_, known)| known == value).map_or("", |(word, _)| word)
+}
+
 /// A choice with keys of its own for each of its variants.
 pub(crate) trait Variants: Clone {
     /// Whether a key of another variant is an error, and not a warning.
@@ -53,7 +58,9 @@ pub(crate) trait Visitor: Sized {
     /// True or false; absent, the field keeps its value.
     fn flag(&mut self, key: Key, field: &mut bool);
     /// True or false; absent, it is true.
-    fn switch(&mut self, key: Key, field: &mut bool);
+    fn switch(&mut self, key: Key, field: &mut bool) {
+        self.flag(key, field);
+    }
     /// A text; required if `required`.
     fn text(&mut self, key: Key, field: &mut Option<String>, required: bool);
     /// A price that may be absent.
@@ -99,7 +106,9 @@ pub(crate) trait Visitor: Sized {
     /// Of these keys of the present table at most one may be written, and one must be if `needed`.
     fn one_of(&mut self, _keys: &'static [&'static str], _needed: bool) {}
     /// A table or, shorter, an array of its values in the order of its keys.
-    fn record<T: Default>(&mut self, key: Key, field: &mut Option<T>, visit: impl Fn(&mut T, &mut Self));
+    fn record<T: Default>(&mut self, key: Key, field: &mut Option<T>, visit: impl Fn(&mut T, &mut Self)) {
+        self.table(key, field, visit);
+    }
     /// An array of tables.
     fn tables<T: Default>(&mut self, key: Key, field: &mut Vec<T>, visit: impl Fn(&mut T, &mut Self));
     /// One table, or an array of them.
@@ -129,7 +138,9 @@ pub(crate) trait Visitor: Sized {
     );
     /// The form in which the key's value is written; a reader examines the file, other visitors use
     /// the form of `field`.
-    fn form(&mut self, key: Key, field: ValueForm) -> ValueForm;
+    fn form(&mut self, _key: Key, field: ValueForm) -> ValueForm {
+        field
+    }
 }
 
 /// Kinds of which one is chosen.

@@ -8,19 +8,19 @@ mod minimum;
 mod time_domain;
 
 use num_complex::Complex64;
+use phea_dynamics::frequency::decibels;
 use phea_dynamics::portable;
 
 pub use closed_loop::ClosedLoop;
 pub(crate) use closed_loop::PlantPath;
 pub use limit::{Limit, LimitError, LimitTable};
 pub use margin::{
-    DelayGuarantee, GuaranteedMargins, MarginError, delay_margin_limit, delay_margin_limit_table,
-    guaranteed_delay, guaranteed_margins, guaranteed_margins_of_robust_stability,
-    guaranteed_margins_of_sensitivity, robust_stability_limit_for_gain_increase,
-    robust_stability_limit_for_gain_reduction, robust_stability_limit_for_modulus_margin,
-    robust_stability_limit_for_phase_margin, sensitivity_limit_for_gain_increase,
-    sensitivity_limit_for_gain_reduction, sensitivity_limit_for_modulus_margin,
-    sensitivity_limit_for_phase_margin,
+    GuaranteedMargins, MarginError, delay_margin_limit, guaranteed_margins,
+    guaranteed_margins_of_robust_stability, guaranteed_margins_of_sensitivity,
+    robust_stability_limit_for_gain_increase, robust_stability_limit_for_gain_reduction,
+    robust_stability_limit_for_modulus_margin, robust_stability_limit_for_phase_margin,
+    sensitivity_limit_for_gain_increase, sensitivity_limit_for_gain_reduction,
+    sensitivity_limit_for_modulus_margin, sensitivity_limit_for_phase_margin,
 };
 pub use time_domain::{
     ExtraRoot, LimitOrder, LowerWish, Reached, TimeDomainError, TrackingLimit, TrackingSpread, Translation,
@@ -154,7 +154,7 @@ impl Specification {
     /// ```
     pub fn margin_db(&self, response: &LoopResponse, frequency_rad_per_s: f64) -> Option<f64> {
         let below = |limit: &Limit, value: Complex64| {
-            Some(decibel(limit.magnitude(frequency_rad_per_s)? / portable::magnitude(value)))
+            Some(decibels(limit.magnitude(frequency_rad_per_s)? / portable::magnitude(value)))
         };
         let value = self.requirement.closed_loop().response(response);
         match self.requirement.limits() {
@@ -162,8 +162,4 @@ impl Specification {
             (None, upper) => below(upper, value),
         }
     }
-}
-
-fn decibel(ratio: f64) -> f64 {
-    20.0 * portable::log10(ratio)
 }

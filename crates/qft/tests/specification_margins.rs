@@ -8,13 +8,12 @@ use phea_dynamics::frequency::{logarithmic_grid, margins};
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::portable::{cos, magnitude, sin};
 use phea_qft::specification::{
-    GuaranteedMargins, Limit, LimitTable, MarginError, Requirement, delay_margin_limit,
-    delay_margin_limit_table, guaranteed_delay, guaranteed_margins, guaranteed_margins_of_robust_stability,
-    guaranteed_margins_of_sensitivity, robust_stability_limit_for_gain_increase,
-    robust_stability_limit_for_gain_reduction, robust_stability_limit_for_modulus_margin,
-    robust_stability_limit_for_phase_margin, sensitivity_limit_for_gain_increase,
-    sensitivity_limit_for_gain_reduction, sensitivity_limit_for_modulus_margin,
-    sensitivity_limit_for_phase_margin,
+    GuaranteedMargins, Limit, MarginError, Requirement, delay_margin_limit, guaranteed_margins,
+    guaranteed_margins_of_robust_stability, guaranteed_margins_of_sensitivity,
+    robust_stability_limit_for_gain_increase, robust_stability_limit_for_gain_reduction,
+    robust_stability_limit_for_modulus_margin, robust_stability_limit_for_phase_margin,
+    sensitivity_limit_for_gain_increase, sensitivity_limit_for_gain_reduction,
+    sensitivity_limit_for_modulus_margin, sensitivity_limit_for_phase_margin,
 };
 
 const LIMITS: [f64; 8] = [0.3, 0.5, 0.7, 1.0, 1.2, 1.3, 2.0, 6.0];
@@ -173,7 +172,7 @@ fn the_thesis_limit_of_one_point_three_is_a_little_less_than_its_five_decibels()
 }
 
 #[test]
-fn the_delay_limits_allow_no_loop_more_delay_than_it_bears() {
+fn the_delay_limit_allows_no_loop_more_delay_than_it_bears() {
     let loops = [
         real_loop(1.0, &[], &[0.0]),
         real_loop(30.0, &[], &[0.0]),
@@ -189,33 +188,20 @@ fn the_delay_limits_allow_no_loop_more_delay_than_it_bears() {
         let closed = open.feedback(&TransferFunction::gain_only(1.0)).unwrap();
         assert!(closed.is_stable());
         let true_margin = margins(&open).delay_margin_s();
-        // its own |L/(1+L)| as the limit
-        let own = guaranteed_delay(&Limit::Rational(closed), band).unwrap().delay_s;
-        assert!(own <= true_margin * (1.0 + 1e-9) && own > 0.5 * true_margin, "{own} {true_margin}");
-        // the longest delay whose limit it keeps to, by halving, for either form of the limit
-        let longest = |limit_of: &dyn Fn(f64) -> Limit| {
-            let keeps = |delay: f64| {
-                let limit = limit_of(delay);
-                grid.iter().all(|w| {
-                    let allowed = limit.magnitude(*w).unwrap();
-                    complementary(open.at_frequency(*w)) <= allowed * (1.0 + 1e-12)
-                })
-            };
-            let (mut kept, mut broken) = (0.0, 4.0 * true_margin);
-            for _ in 0..20 {
-                let middle = 0.5 * (kept + broken);
-                if keeps(middle) { kept = middle } else { broken = middle }
-            }
-            kept
+        // the longest delay whose limit it keeps to, by halving
+        let keeps = |delay: f64| {
+            let limit = delay_margin_limit(delay).unwrap();
+            grid.iter().all(|w| complementary(open.at_frequency(*w)) <= limit.magnitude(*w).unwrap())
         };
-        let simple = longest(&|delay| delay_margin_limit(delay).unwrap());
-        let sharp = longest(&|delay| delay_margin_limit_table(delay, band).unwrap());
-        assert!(0.0 < simple && simple <= sharp, "{simple} {sharp}");
-        assert!(sharp <= own * (1.0 + 1e-3) && own <= sharp * 1.01, "{sharp} {own}");
+        let (mut kept, mut broken) = (0.0, 4.0 * true_margin);
+        for _ in 0..20 {
+            let middle = 0.5 * (kept + broken);
+            if keeps(middle) { kept = middle } else { broken = middle }
+        }
+        assert!(0.3 * true_margin < kept && kept <= true_margin, "{kept} {true_margin}");
     }
 }
 
-// ORIGIN: recomputed by comparisons/recompute_specifications.py
 #[test]
 fn an_integrator_bears_a_quarter_turn_and_is_promised_one_radian() {
     let gain = 7.0;
@@ -229,38 +215,6 @@ fn an_integrator_bears_a_quarter_turn_and_is_promised_one_radian() {
             .all(|w| complementary(open.at_frequency(*w)) <= limit.magnitude(*w).unwrap())
     };
     assert!(kept(1.0 / gain) && !kept(1.01 / gain));
-    // the sharp limit promises nearly half as much again
-    let closed = Limit::Rational(real_loop(gain, &[], &[-gain]));
-    assert!(close(guaranteed_delay(&closed, [0.01, 1e4]).unwrap().delay_s, 1.47749502 / gain, 1e-8));
-}
-
-#[test]
-fn the_table_of_tangents_lies_close_below_the_limit_and_gives_its_delay_back() {
-    let delay = 0.8e-3;
-    for band in [[0.1, 1e5], [2000.0, 3000.0], [5000.0, 6000.0], [1e-3, 1.0]] {
-        let limit = delay_margin_limit_table(delay, band).unwrap();
-        for w in logarithmic_grid(band[0], band[1], 5000).unwrap() {
-            let exact = if w * delay < PI { 0.5 / sin(w * delay / 2.0) } else { 0.5 };
-            let share = limit.magnitude(w).unwrap() / exact;
-            assert!(share <= 1.0 + 1e-12 && share > 1.0 - 1.15e-3, "{w}: {share}");
-        }
-    }
-    let table = delay_margin_limit_table(delay, [0.1, 1e5]).unwrap();
-    let guarantee = guaranteed_delay(&table, [0.1, 1e5]).unwrap();
-    assert!(close(guarantee.delay_s, delay, 1e-6) && guarantee.delay_s >= delay * (1.0 - 1e-12));
-    let simple = guaranteed_delay(&delay_margin_limit(delay).unwrap(), [0.1, 1e5]).unwrap();
-    assert!(close(simple.delay_s, delay, 1e-8));
-}
-
-#[test]
-fn a_constant_limit_guarantees_its_phase_margin_at_the_end_of_the_band() {
-    let guarantee = guaranteed_delay(&Limit::Constant(1.0), [0.1, 50.0]).unwrap();
-    assert!(close(guarantee.delay_s, PI / 3.0 / 50.0, 1e-12));
-    assert_eq!(guarantee.frequency_rad_per_s, 50.0);
-    // below one half the loop never has size one; at one half it may, half a turn away
-    let delay = |limit: f64| guaranteed_delay(&Limit::Constant(limit), [0.1, 50.0]).unwrap().delay_s;
-    assert_eq!(delay(0.49), f64::INFINITY);
-    assert!(close(delay(0.5), PI / 50.0, 1e-12));
 }
 
 #[test]
@@ -284,12 +238,5 @@ fn what_is_no_margin_has_no_limit() {
         assert!(guaranteed_margins_of_robust_stability(value).is_err());
         assert!(guaranteed_margins_of_sensitivity(value).is_err());
         assert!(delay_margin_limit(value).is_err());
-        assert!(delay_margin_limit_table(value, [1.0, 2.0]).is_err());
     }
-    for band in [[0.0, 1.0], [2.0, 1.0], [1.0, f64::INFINITY]] {
-        assert!(delay_margin_limit_table(1.0, band).is_err());
-        assert!(guaranteed_delay(&Limit::Constant(1.0), band).is_err());
-    }
-    let table = Limit::Table(LimitTable::new(vec![(1.0, 1.0), (2.0, 1.0)]).unwrap());
-    assert!(matches!(guaranteed_delay(&table, [1.5, 3.0]), Err(MarginError::Silent { .. })));
 }

@@ -4,6 +4,7 @@ mod answer;
 mod document;
 mod friction;
 mod line;
+mod table;
 
 pub use phea_engineering::bench::*;
 

@@ -313,23 +313,27 @@ fn without_derived(source: &dyn Source, setup: &Setup<'_>) -> Result<&'static st
 }
 
 fn question(gain: Option<&str>, length: Option<&str>) -> Result<Question, CommandError> {
-    let positive = |option: &'static str, text: &str, dimension: &quantity::Dimension| {
-        let refuse = |message: String| ProcedureError::Option { option, text: text.to_string(), message };
-        // A bare number is SI, as everywhere.
-        let bare = text.trim().parse::<f64>().ok().filter(|value| value.is_finite());
-        let value = match bare {
-            Some(value) => value,
-            None => {
-                quantity::parse(text, dimension).map_err(|error| refuse(error_words(&error, dimension)))?
-            }
-        };
-        if value > 0.0 { Ok(value) } else { Err(refuse("must be positive".to_string())) }
-    };
     Ok(match (gain, length) {
-        (Some(text), _) => Question::Gain(positive("gain", text, &VOLTAGE_PER_FORCE)?),
-        (None, Some(text)) => Question::Length(positive("length", text, &LENGTH)?),
+        (Some(text), _) => Question::Gain(positive("gain", text, text, &VOLTAGE_PER_FORCE)?),
+        (None, Some(text)) => Question::Length(positive("length", text, text, &LENGTH)?),
         (None, None) => Question::Both,
     })
+}
+
+/// A positive number in SI, a part of the text of an option, bare or with its unit.
+fn positive(
+    option: &'static str,
+    text: &str,
+    part: &str,
+    dimension: &quantity::Dimension,
+) -> Result<f64, ProcedureError> {
+    let refuse = |message: String| ProcedureError::Option { option, text: text.to_string(), message };
+    let bare = part.trim().parse::<f64>().ok().filter(|value| value.is_finite());
+    let value = match bare {
+        Some(value) => value,
+        None => quantity::parse(part, dimension).map_err(|error| refuse(error_words(&error, dimension)))?,
+    };
+    if value > 0.0 { Ok(value) } else { Err(refuse("must be positive".to_string())) }
 }
 
 /// The error of a quantity, and what is expected.

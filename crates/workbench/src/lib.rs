@@ -14,6 +14,7 @@ pub mod design;
 pub mod document;
 pub(crate) mod error;
 pub mod friction;
+mod grouped;
 pub mod identify;
 pub mod line_test;
 pub mod linearize;

@@ -1,6 +1,7 @@
 use num_complex::Complex64;
 
 use crate::linear::{LinearError, Polynomial, TimeDomain, TransferFunction};
+use crate::order::sort_by_number;
 
 /// Denominators at z = 1 up to this are of integrators: 1e-12 rad of pole angle, beyond any sampled
 /// plant.
@@ -106,7 +107,7 @@ impl Section {
 
 fn cascade(function: &TransferFunction) -> Vec<Section> {
     let mut poles = grouped(function.poles());
-    poles.sort_by(|one, other| distance_from_one(other).total_cmp(&distance_from_one(one)));
+    sort_by_number(&mut poles, |group| -distance_from_one(group));
     let mut zeros = grouped(function.zeros());
     // Pairs first: they need a section of order two, and there are always enough of those.
     zeros.sort_by_key(|group| std::cmp::Reverse(group.len()));
@@ -132,7 +133,7 @@ fn grouped(roots: &[Complex64]) -> Vec<Vec<Complex64>> {
     let mut groups: Vec<Vec<Complex64>> =
         roots.iter().filter(|root| root.im > 0.0).map(|root| vec![*root, root.conj()]).collect();
     let mut real: Vec<Complex64> = roots.iter().copied().filter(|root| root.im == 0.0).collect();
-    real.sort_by(|one, other| (one.re - 1.0).abs().total_cmp(&(other.re - 1.0).abs()));
+    sort_by_number(&mut real, |root| (root.re - 1.0).abs());
     groups.extend(real.chunks(2).map(<[Complex64]>::to_vec));
     groups
 }

@@ -3,6 +3,7 @@
 use num_complex::Complex64;
 
 use crate::linear::{LinearError, TimeDomain, TransferFunction};
+use crate::order::sorted_distinct;
 use crate::portable::{argument, exp, ln, magnitude, pow};
 
 /// `points` frequencies from `from` to `to` (both included, positive, in rad/s), equally spaced in
@@ -69,9 +70,7 @@ pub(super) fn search_grid(system: &TransferFunction) -> Vec<f64> {
     }
     extend_by_rotations(&mut grid, system, highest, to);
     grid.retain(|w| *w >= from && *w <= to);
-    grid.sort_by(f64::total_cmp);
-    grid.dedup();
-    grid
+    sorted_distinct(grid)
 }
 
 /// Zeros and poles; those of a sampled system as ln(z)/T.

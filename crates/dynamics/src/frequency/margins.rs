@@ -8,6 +8,7 @@ use super::crossings::SlopedFunction;
 use super::decibels;
 use super::grid::{rotation_limit, search_grid};
 use crate::linear::{TimeDomain, TransferFunction};
+use crate::order::sort_by_number;
 use crate::portable::{ln, magnitude};
 
 /// A crossing of the negative real axis: the loop passes through -1 when its gain is multiplied by
@@ -62,9 +63,6 @@ pub struct Margins {
     pub phase_margins: Vec<PhaseMargin>,
     /// Closest approach to -1.
     pub modulus_margin: ModulusMargin,
-    /// Frequency in rad/s up to which crossings were listed: infinite, unless dead time makes them
-    /// endless.
-    pub listed_up_to_rad_per_s: f64,
 }
 
 impl Margins {
@@ -150,7 +148,6 @@ pub fn margins(open_loop: &TransferFunction) -> Margins {
         gain_margins: gain_margins(open_loop, &listed),
         phase_margins: phase_margins(open_loop, &grid),
         modulus_margin: modulus_margin(open_loop, &grid),
-        listed_up_to_rad_per_s: limit,
     }
 }
 
@@ -193,7 +190,7 @@ fn gain_margins(open_loop: &TransferFunction, grid: &[f64]) -> Vec<GainMargin> {
     });
     let mut margins: Vec<GainMargin> = found.into_iter().map(|w| gain_margin(open_loop, w)).collect();
     margins.extend(gain_margins_at_the_ends(open_loop));
-    margins.sort_by(|a, b| a.frequency_rad_per_s.total_cmp(&b.frequency_rad_per_s));
+    sort_by_number(&mut margins, |margin| margin.frequency_rad_per_s);
     margins.dedup();
     margins
 }

@@ -1,5 +1,6 @@
 //! How well data determine variables: covariance, and directions that they do not determine.
 
+use crate::order::sort_by_number;
 use nalgebra::{DMatrix, SymmetricEigen};
 
 use super::Linearised;
@@ -137,7 +138,7 @@ fn sandwich(information: DMatrix<f64>, scatter: &DMatrix<f64>) -> Uncertainty {
         let deviation = if is_told(*value) { variance.max(0.0).sqrt() } else { f64::INFINITY };
         directions.push((*value, Direction { shares: vector.iter().copied().collect(), deviation }));
     }
-    directions.sort_by(|(first, _), (second, _)| second.total_cmp(first));
+    sort_by_number(&mut directions, |(value, _)| -value);
     let directions: Vec<Direction> = directions.into_iter().map(|(_, direction)| direction).collect();
     let untold = |index: usize| {
         let share = |direction: &Direction| direction.shares.get(index).copied().unwrap_or(0.0);

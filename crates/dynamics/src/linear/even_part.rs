@@ -5,6 +5,7 @@ use num_complex::Complex64;
 use super::double_double::DoubleDouble;
 use super::polynomial::{expand, multiply};
 use super::{LinearError, Polynomial};
+use crate::order::sort_numbers;
 use crate::portable::magnitude;
 
 /// R(x) = Re (N(jw) conj D(jw)) with x = w^2, coefficients in twice the working precision, highest
@@ -54,7 +55,7 @@ impl EvenPart {
         }
         let roots = polynomial.roots()?;
         let mut frequencies: Vec<f64> = roots.iter().map(|root| magnitude(*root).sqrt()).collect();
-        frequencies.sort_by(f64::total_cmp);
+        sort_numbers(&mut frequencies);
         Ok(frequencies)
     }
 

@@ -16,6 +16,7 @@ use num_complex::Complex64;
 use super::double_double::DoubleDouble;
 use super::polynomial::expand;
 use super::{LinearError, MAXIMUM_DELAY_STATES, StateSpace, TimeDomain, TransferFunction};
+use crate::order::sort_by_number;
 use crate::portable::magnitude;
 
 pub(crate) fn cascade(system: &TransferFunction) -> Result<StateSpace, LinearError> {
@@ -94,7 +95,7 @@ fn slowest_first(poles: &[Complex64], domain: TimeDomain) -> Vec<Complex64> {
         TimeDomain::Discrete { .. } => Complex64::new(1.0, 0.0),
     };
     let mut upper: Vec<Complex64> = poles.iter().copied().filter(|pole| pole.im >= 0.0).collect();
-    upper.sort_by(|a, b| magnitude(a - slow).total_cmp(&magnitude(b - slow)));
+    sort_by_number(&mut upper, |pole| magnitude(pole - slow));
     upper
 }
 

@@ -12,6 +12,7 @@ use super::double_double::ComplexDoubleDouble;
 pub(crate) use super::refinement::conjugate_pairs;
 use super::refinement::{repelled_step, sort, symmetrise};
 use super::{LinearError, Polynomial};
+use crate::order::sort_by_number;
 use crate::portable::{self, magnitude};
 
 const MAXIMUM_SWEEPS: usize = 300;
@@ -244,7 +245,7 @@ fn merge_multiple(polynomial: &Polynomial, roots: Vec<Complex64>) -> Vec<Complex
         // each root of the upper half plane counts once, its mirror image once more if it is near
         let near = |root: &Complex64| magnitude(root - seed) <= 0.05 * magnitude(seed);
         let (mut cluster, far): (Vec<Complex64>, Vec<Complex64>) = open.iter().copied().partition(near);
-        cluster.sort_by(|a, b| magnitude(a - seed).total_cmp(&magnitude(b - seed)));
+        sort_by_number(&mut cluster, |root| magnitude(root - seed));
         cluster.insert(0, seed);
         let taken = (1..=cluster.len()).rev().find_map(|size| {
             multiple_root(polynomial, &cluster[..size]).map(|(root, count)| (root, count, size))

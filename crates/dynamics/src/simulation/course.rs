@@ -1,5 +1,7 @@
 //! Inputs, observers, settings and outcome of a simulation.
 
+use std::ops::DerefMut;
+
 use super::{Method, Profile, Stretch};
 use crate::portable;
 
@@ -76,37 +78,7 @@ pub trait Observer {
     }
 }
 
-impl<O: Observer + ?Sized> Observer for &mut O {
-    fn wanted(&self) -> &[usize] {
-        (**self).wanted()
-    }
-
-    fn wants_row(&self, row: u64) -> bool {
-        (**self).wants_row(row)
-    }
-
-    fn observe(&mut self, time_s: f64, states: &[f64], inputs: &[f64]) {
-        (**self).observe(time_s, states, inputs);
-    }
-
-    fn wants_inputs(&self) -> bool {
-        (**self).wants_inputs()
-    }
-
-    fn attention(&self) -> Attention {
-        (**self).attention()
-    }
-
-    fn follow(&mut self, stretch: &Stretch<'_>) {
-        (**self).follow(stretch);
-    }
-
-    fn looks_closer(&self, stretch: &Stretch<'_>) -> bool {
-        (**self).looks_closer(stretch)
-    }
-}
-
-impl<O: Observer + ?Sized> Observer for Box<O> {
+impl<P: DerefMut<Target: Observer>> Observer for P {
     fn wanted(&self) -> &[usize] {
         (**self).wanted()
     }

@@ -16,6 +16,7 @@ use super::propagator::Propagator;
 use super::quartic::Quartic;
 use super::slot::Slot;
 use super::task::{Task, check};
+use crate::order::sort_by_number;
 
 /// All lanes and the method they share.
 struct Drive<'a, S, O> {
@@ -410,7 +411,7 @@ impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
         let status = self.slots[lane].as_ref()?.passage.status?;
         let Slot { passage, observer, .. } = self.slots[lane].take()?;
         let mut events = passage.events;
-        events.sort_by(|one, other| one.time_s.total_cmp(&other.time_s));
+        sort_by_number(&mut events, |event| event.time_s);
         let end = self.state.iter().map(|state| state.lane(lane)).collect();
         let amplification = self.watches[lane].amplification();
         Some((Outcome { status, events, work: passage.work, end, amplification }, observer))

@@ -6,6 +6,7 @@ use std::collections::VecDeque;
 use super::growth::GrowingMode;
 use super::history::History;
 use super::{Attention, Event, Input, InputSchedule, ProfilePiece, Sampler, Status, StepCounts};
+use crate::order::sorted_distinct;
 use crate::portable;
 
 /// No step grows by more than this, nor shrinks below the other.
@@ -75,8 +76,7 @@ impl<'a> Passage<'a> {
         }
         times.push(course.duration_s);
         times.retain(|&time| time <= course.duration_s);
-        times.sort_by(f64::total_cmp);
-        times.dedup();
+        let times = sorted_distinct(times);
         Passage {
             course,
             segments: course.inputs.iter().map(|input| segment(input, 0.0)).collect(),

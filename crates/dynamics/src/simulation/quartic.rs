@@ -1,4 +1,5 @@
 use super::method::Extension;
+use crate::order::sort_numbers;
 
 /// Halvings in which a root is found to the last bit of a part of a step.
 const HALVINGS: usize = 60;
@@ -172,7 +173,7 @@ impl Quartic {
             let crosses = |level: f64| (self.at(before) - level) * (self.at(turning) - level) < 0.0;
             let levels = [-limit, limit].into_iter().filter(|level| crosses(*level));
             let mut between: Vec<f64> = levels.map(|level| self.crossing(level, [before, turning])).collect();
-            between.sort_by(f64::total_cmp);
+            sort_numbers(&mut between);
             ends.extend(between);
             ends.push(turning);
         }
@@ -242,7 +243,7 @@ fn roots_within([c0, c1, c2]: [f64; 3]) -> Vec<f64> {
     let sum = -0.5 * (c1 + square.sqrt().copysign(c1));
     let mut roots: Vec<f64> =
         [sum / c2, c0 / sum].into_iter().filter(|root| *root > 0.0 && *root < 1.0).collect();
-    roots.sort_by(f64::total_cmp);
+    sort_numbers(&mut roots);
     roots
 }
 

@@ -6,6 +6,7 @@ use super::{SampledSignal, TimeResponseError};
 use crate::linear::double_double::DoubleDouble;
 use crate::linear::matrix_exponential::ExactStep;
 use crate::linear::{StateSpace, TimeDomain, TransferFunction};
+use crate::order::sorted_distinct;
 
 /// Response at these times to a unit step at time zero, from rest.
 ///
@@ -98,8 +99,7 @@ fn continuous(
     let mut events: Vec<f64> = inputs.iter().flat_map(|input| input.times_s().iter().copied()).collect();
     events.retain(|time| *time > 0.0 && *time < end);
     events.extend_from_slice(times_s);
-    events.sort_by(f64::total_cmp);
-    events.dedup();
+    let events = sorted_distinct(events);
     let mut steps = StepCache::new(system, 8.0 * f64::EPSILON * end);
     let mut state = initial_state.clone();
     // what rounding took from the state in the last step; without it long runs of short steps drift

@@ -57,16 +57,12 @@ impl Settling {
 pub struct StepMetrics {
     /// From 10 to 90 percent of the step, s; none if it never gets there.
     pub rise_time_10_90_s: Option<f64>,
-    /// From the step until the final value is first reached, s.
-    pub rise_time_0_100_s: Option<f64>,
     /// The extreme value in the direction of the step.
     pub peak_value: f64,
     /// When it is first taken, s.
     pub peak_time_s: f64,
     /// How far the peak exceeds the final value, percent of the step; zero when it does not.
     pub overshoot_percent: f64,
-    /// How far the response goes the wrong way first, percent of the step; zero when it does not.
-    pub undershoot_percent: f64,
     /// Whether and when the response stays within the band.
     pub settling: Settling,
     /// The band of the settling time: plus or minus this percentage of the step.
@@ -88,7 +84,7 @@ pub struct StepMetrics {
 /// let values = [0.0, 1.0, 1.5, 1.0, 1.0];
 /// let metrics = step_metrics(&times, &values, StepBaseline::unit(), 5.0)?;
 /// assert_eq!((metrics.overshoot_percent, metrics.peak_time_s), (50.0, 2.0));
-/// assert_eq!(metrics.rise_time_0_100_s, Some(1.0));
+/// assert_eq!(metrics.rise_time_10_90_s, Some(0.8));
 /// assert!(metrics.settling.time_s().is_some_and(|time| (time - 2.9).abs() < 1e-15));
 /// # Ok::<(), phea_dynamics::time_response::TimeResponseError>(())
 /// ```
@@ -115,7 +111,6 @@ pub fn step_metrics(
     let values_after = after_step.map(|(_, value)| *value);
     let start = (first.0, f64::NEG_INFINITY, baseline.initial_value);
     let (peak_time_s, peak, peak_value) = samples.iter().zip(values_after).fold(start, higher);
-    let lowest = samples.iter().map(|sample| sample.1).fold(f64::INFINITY, f64::min);
     let rise_10_90 = first_reach(&samples, 0.1).zip(first_reach(&samples, 0.9)).map(|(low, high)| high - low);
     let settling = match settling_time(&samples, settling_band_percent / 100.0) {
         Some(time_s) => Settling::Settled { time_s },
@@ -123,11 +118,9 @@ pub fn step_metrics(
     };
     Ok(StepMetrics {
         rise_time_10_90_s: rise_10_90,
-        rise_time_0_100_s: first_reach(&samples, 1.0),
         peak_value,
         peak_time_s,
         overshoot_percent: (100.0 * (peak - 1.0)).max(0.0),
-        undershoot_percent: (-100.0 * lowest).max(0.0),
         settling,
         settling_band_percent,
     })

@@ -2,7 +2,7 @@
 
 use phea_dynamics::{portable, random};
 
-use super::project::{Distribution, Key};
+use super::project::{DISTRIBUTIONS, Distribution, Key, word_of};
 use super::quantity::{self, DisplayUnit};
 
 /// A varied number: between two ends, as distributed.
@@ -70,12 +70,7 @@ impl VariedRange {
 
     /// In words, as in a project file.
     pub fn distribution_word(&self) -> &'static str {
-        match self.distribution {
-            Distribution::Uniform => "uniform",
-            Distribution::Normal => "normal",
-            Distribution::LogUniform => "log_uniform",
-            Distribution::Triangular => "triangular",
-        }
+        word_of(&DISTRIBUTIONS, &self.distribution)
     }
 }
 

@@ -117,17 +117,8 @@ impl Row {
 
 /// The metrics of a window; absent if the window does not exist.
 pub(super) fn numbers(metrics: &Metrics) -> [Option<f64>; METRIC_NAMES.len()] {
-    [
-        metrics.overshoot_percent.ok(),
-        metrics.rise_time_s.ok(),
-        metrics.settling_time_s.ok(),
-        metrics.disturbance_peak_n.ok(),
-        metrics.steady_state_error_n.ok(),
-        metrics.control_peak_v.ok(),
-        metrics.control_rms_v.ok(),
-        metrics.tracking_error_peak_n.ok(),
-        metrics.force_peak_n.ok(),
-    ]
+    let all = metrics.named();
+    METRIC_NAMES.map(|name| all.iter().find(|(known, _)| *known == name)?.1.ok())
 }
 
 /// Which of [`METRIC_NAMES`] a window can have; an open loop has no reference.

@@ -1,5 +1,7 @@
 //! The distribution of a number over the runs of a campaign.
 
+use phea_dynamics::order::sort_numbers;
+
 /// Shares of the runs below each quantile, percent.
 pub const QUANTILES: [u8; 5] = [5, 25, 50, 75, 95];
 
@@ -34,7 +36,7 @@ pub(super) fn spread(numbers: impl Iterator<Item = (u64, Option<f64>)>) -> Optio
             }
         }
     }
-    values.sort_by(f64::total_cmp);
+    sort_numbers(&mut values);
     let extremes = [*values.first()?, *values.last()?];
     Some(Spread { count: values.len(), missing, quantiles: quantiles(&values)?, extremes, worst: worst? })
 }

@@ -3,6 +3,7 @@
 use super::plan::Plan;
 use super::row::{LUMP_NAMES, METRIC_NAMES, Ran, Row, RowOutcome, STATUS_WORDS, meaningful};
 use super::spread::{Spread, quantiles, spread};
+use phea_dynamics::order::sort_numbers;
 
 /// Quantiles of the force over time, of all runs that lasted until then.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -111,7 +112,7 @@ fn bands(times_s: &[f64], driven: &[(u64, &Ran)]) -> Bands {
     for (index, time_s) in times_s.iter().enumerate() {
         let forces = driven.iter().filter_map(|(_, ran)| ran.force_n.get(index));
         let mut forces: Vec<f64> = forces.map(|force| f64::from(*force)).collect();
-        forces.sort_by(f64::total_cmp);
+        sort_numbers(&mut forces);
         let Some(five) = quantiles(&forces) else { break };
         bands.times_s.push(*time_s);
         bands.force_n.push(five);

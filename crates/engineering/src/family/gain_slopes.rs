@@ -1,6 +1,7 @@
 //! How much K_qU and K_c change with numbers of the project, at its operating points.
 
 use phea_dynamics::expression::Expression;
+use phea_dynamics::order::sorted_distinct;
 use phea_dynamics::scalar::Dual;
 use phea_dynamics::uncertain_plant::UncertainParameter;
 
@@ -68,9 +69,7 @@ pub(crate) fn gain_slopes<const N: usize>(
 fn combinations(points: &[UncertainParameter]) -> Vec<Vec<f64>> {
     let mut all = vec![Vec::new()];
     for UncertainParameter { nominal, minimum, maximum, .. } in points {
-        let mut places = vec![*minimum, *nominal, *maximum, 0.5 * (minimum + maximum)];
-        places.sort_by(f64::total_cmp);
-        places.dedup();
+        let places = sorted_distinct(vec![*minimum, *nominal, *maximum, 0.5 * (minimum + maximum)]);
         all = all
             .iter()
             .flat_map(|before: &Vec<f64>| places.iter().map(|place| [before.as_slice(), &[*place]].concat()))

@@ -15,7 +15,7 @@ use phea_qft::family::{MeasuredFamily, MeasuredPlant};
 
 use self::column::{MeasurementColumns, ResponseForm};
 use super::ProjectFamilyError;
-use crate::project::{DeclaredFamily, Findings, Project, Severity};
+use crate::project::{DeclaredFamily, Findings, Project};
 use crate::source::Source;
 use crate::table::{Column, MeasuredTable};
 
@@ -29,19 +29,11 @@ pub(super) fn family(
     let mut plants = Vec::new();
     for name in &declared.measured {
         let path = project.path_of(name);
-        match source.read(&path) {
-            Ok(bytes) => {
-                let unstable_poles = declared.unstable_poles as usize;
-                plants.extend(plant(name, &path, bytes, unstable_poles, &mut findings));
-            }
-            Err(error) => findings.unreadable(&path, &error.to_string()),
-        }
+        let bytes = findings.bytes_of(source, &path);
+        let unstable_poles = declared.unstable_poles as usize;
+        plants.extend(bytes.and_then(|bytes| plant(name, &path, bytes, unstable_poles, &mut findings)));
     }
-    let report = findings.report();
-    if report.diagnostics.iter().any(|diagnostic| diagnostic.severity == Severity::Error) {
-        return Err(ProjectFamilyError::Measurement(Box::new(report)));
-    }
-    Ok(MeasuredFamily::new(plants)?)
+    Ok(MeasuredFamily::new(findings.or_refused(plants).map_err(ProjectFamilyError::Measurement)?)?)
 }
 
 /// The plant of one file; `None` if it has an error.

@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 
 use phea_dynamics::expression::Expression;
+use phea_dynamics::order::sort_by_number;
 use phea_dynamics::random;
 use phea_qft::family::{Coordinate, Extent, Family, UncertainFamily};
 
@@ -129,7 +130,7 @@ fn extreme(family: &UncertainFamily, expression: &Expression, sign: f64) -> Extr
     };
     let all = family.members().iter().chain(&drawn);
     let mut starts: Vec<(f64, &Vec<f64>)> = all.map(|values| (rounded(values), values)).collect();
-    starts.sort_by(|one, other| other.0.total_cmp(&one.0));
+    sort_by_number(&mut starts, |start| -start.0);
     starts.dedup_by_key(|start| start.0);
     starts.truncate(if family.extent() == Extent::Box { STARTS } else { 1 });
     let climbed = starts.into_iter().map(|(_, values)| match family.extent() {

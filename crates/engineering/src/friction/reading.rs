@@ -1,6 +1,6 @@
 use crate::identify::IdentifyError;
 use crate::project::{Findings, Project};
-use crate::quantity::{Dimension, FORCE, LENGTH, PRESSURE, TIME, VELOCITY};
+use crate::quantity::{FORCE, LENGTH, PRESSURE, TIME, VELOCITY};
 use crate::response::time_step;
 use crate::setup::Setup;
 use crate::source::Source;
@@ -58,21 +58,13 @@ pub struct FrictionRecording {
 }
 
 const MEASURANDS: [Measurand; 6] = [
-    measurand("time", None, &TIME),
-    measurand("position", None, &LENGTH),
-    measurand("velocity", None, &VELOCITY),
-    measurand("pressure_a", Some("p_A"), &PRESSURE),
-    measurand("pressure_b", Some("p_B"), &PRESSURE),
-    measurand("force", None, &FORCE),
+    Measurand::of("time", &TIME),
+    Measurand::of("position", &LENGTH),
+    Measurand::of("velocity", &VELOCITY),
+    Measurand::of("pressure_a", &PRESSURE).with_symbol("p_A"),
+    Measurand::of("pressure_b", &PRESSURE).with_symbol("p_B"),
+    Measurand::of("force", &FORCE),
 ];
-
-const fn measurand(
-    name: &'static str,
-    symbol: Option<&'static str>,
-    dimension: &'static Dimension,
-) -> Measurand {
-    Measurand { name, symbol, dimension, may_be_share: false }
-}
 
 /// The runs in these files, one each.
 ///
@@ -86,15 +78,10 @@ pub fn friction_recordings(
     let mut findings = Findings::default();
     let mut recordings = Vec::new();
     for file in files {
-        match source.read(file) {
-            Ok(bytes) => recordings.extend(recording(file, bytes, known, &mut findings)),
-            Err(error) => findings.unreadable(file, &error.to_string()),
-        }
+        let bytes = findings.bytes_of(source, file);
+        recordings.extend(bytes.and_then(|bytes| recording(file, bytes, known, &mut findings)));
     }
-    if findings.error_count() > 0 {
-        return Err(IdentifyError::Files(Box::new(findings.report())));
-    }
-    Ok(recordings)
+    findings.or_refused(recordings).map_err(IdentifyError::Files)
 }
 
 fn recording(

@@ -1,6 +1,7 @@
 //! Intervals from repeated fits with resampled noise.
 
 use phea_dynamics::least_squares::{Ending, Settings};
+use phea_dynamics::order::sort_numbers;
 use phea_dynamics::random::{share, stream};
 use phea_dynamics::watch::{Stopped, Watch, tell, unwatched};
 
@@ -75,7 +76,7 @@ pub(super) fn bootstrap(
     for (index, ((ends, estimates), least)) in
         intervals.iter_mut().zip(&mut estimates).zip(lowest).enumerate()
     {
-        estimates.sort_by(f64::total_cmp);
+        sort_numbers(estimates);
         *ends = [0.025, 0.975].map(|share| percentile(estimates, share));
         // a coefficient that ends at the bound of the search may be zero
         if Kind::vanishes(index) && ends[0] <= least {

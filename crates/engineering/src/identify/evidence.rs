@@ -35,9 +35,6 @@ pub struct ExplainedBy {
 pub struct ModelEvidence {
     /// Both, the one that explains the recordings better first.
     pub models: [ExplainedBy; 2],
-    /// Rows that count, all signals together: fewer than were read if neighbouring residuals are
-    /// correlated.
-    pub independent_rows: f64,
 }
 
 impl ModelEvidence {
@@ -92,7 +89,7 @@ impl ModelEvidence {
         if models[1].criterion < models[0].criterion {
             models.reverse();
         }
-        ModelEvidence { models, independent_rows }
+        ModelEvidence { models }
     }
 }
 

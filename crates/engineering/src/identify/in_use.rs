@@ -15,11 +15,10 @@ use super::{
     Search, identify, joint_region, recordings,
 };
 use crate::project::{
-    self, FromRecordings, HashedFile, IdentifiedFamily, IdentifiedNumber, IdentifiedUse, KeptNumber, Loaded,
-    Origin, Project, RecordedTest, UncertaintyDirection, sha256,
+    self, FromRecordings, HashedFile, IdentifiedFamily, IdentifiedNumber, IdentifiedUse, KeptNumber,
+    LEAKAGE_MODELS, Loaded, Origin, Project, RecordedTest, UncertaintyDirection, sha256, word_of,
 };
 use crate::source::{Memory, Source};
-use phea_hydraulics::servovalve::LeakageModel;
 
 /// The recordings that a project declares, each with its path as a source takes it.
 pub fn recorded_files(project: &Project) -> Vec<RecordedTest> {
@@ -142,10 +141,7 @@ fn settings(
     numbers: &[IdentifiedNumber],
     region: Option<&JointRegion>,
 ) -> Vec<String> {
-    let model = match found.tested.leakage_model {
-        LeakageModel::EachEdge => "each_edge",
-        LeakageModel::OneCurve => "one_curve",
-    };
+    let model = word_of(&LEAKAGE_MODELS, &found.tested.leakage_model);
     // edges may be declared as a list of four, inside which no name can be set
     let tables = ["valve.flow_coefficients", "valve.leakage_coefficients"];
     let edge = |one: &IdentifiedNumber, table: &str| {

@@ -1,6 +1,7 @@
 //! What recordings leave uncertain of a valve, as far as the plant sees it.
 
 use nalgebra::{DMatrix, SymmetricEigen};
+use phea_dynamics::order::sort_by_number;
 use phea_dynamics::portable::{erfc, pow};
 use phea_hydraulics::servovalve::{Edges, StaticCoefficients};
 
@@ -171,7 +172,7 @@ fn spread(found: &Identification) -> DMatrix<f64> {
 fn turned(effects: &DMatrix<f64>) -> DMatrix<f64> {
     let eigen = SymmetricEigen::new(effects.transpose() * effects);
     let mut order: Vec<usize> = (0..COUNT).collect();
-    order.sort_by(|one, other| eigen.eigenvalues[*other].total_cmp(&eigen.eigenvalues[*one]));
+    sort_by_number(&mut order, |index| -eigen.eigenvalues[*index]);
     DMatrix::from_fn(COUNT, COUNT, |row, column| {
         order.get(column).map_or(0.0, |index| eigen.eigenvectors[(row, *index)])
     })

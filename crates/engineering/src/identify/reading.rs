@@ -11,6 +11,7 @@ mod assembled;
 mod plausible;
 mod rows;
 
+use phea_dynamics::order::ends;
 use phea_hydraulics::servovalve::PortCircuit;
 
 use super::Known;
@@ -80,18 +81,15 @@ pub fn recordings(
     let mut findings = Findings::default();
     let mut recorded = RecordedFiles::default();
     for declared in files {
-        match source.read(&declared.file) {
-            Ok(bytes) => {
-                if let Some((recording, contents)) = recording(declared, bytes, known, &mut findings) {
-                    recorded.recordings.push(recording);
-                    recorded.contents.push(contents);
-                }
-            }
-            Err(error) => findings.unreadable(&declared.file, &error.to_string()),
+        let bytes = findings.bytes_of(source, &declared.file);
+        let read = bytes.and_then(|bytes| recording(declared, bytes, known, &mut findings));
+        if let Some((recording, contents)) = read {
+            recorded.recordings.push(recording);
+            recorded.contents.push(contents);
         }
     }
     if findings.error_count() > 0 {
-        return Err(Box::new(findings.report()));
+        return findings.or_refused(recorded);
     }
     recorded.warnings = findings.report().diagnostics;
     Ok(recorded)
@@ -147,7 +145,7 @@ fn recording(
         heading: table.heading(column).to_string(),
         signal: *signal,
         unit: column.unit.clone(),
-        range: range(taken.of(*signal).unwrap_or_default()),
+        range: ends(taken.of(*signal).unwrap_or_default().iter().copied()),
         gaps,
     });
     let contents = FileContents {
@@ -254,10 +252,4 @@ fn is_above_tank(
         true => found.help("are the columns exchanged, or in other units than their headings say?"),
         false => found,
     });
-}
-
-/// Least and greatest of the values; NaN is none.
-fn range(values: &[f64]) -> [f64; 2] {
-    let least = values.iter().copied().fold(f64::INFINITY, f64::min);
-    [least, values.iter().copied().fold(f64::NEG_INFINITY, f64::max)]
 }

@@ -1,5 +1,6 @@
 //! A static test as it was recorded.
 
+use phea_dynamics::order::{ends, sort_numbers};
 use phea_hydraulics::servovalve::{PortCircuit, TestInput, TestOutput};
 
 /// Differences of values, over their range, that are the rounding of their digits.
@@ -109,16 +110,14 @@ impl Recording {
 impl RecordedSignal {
     /// Smallest and largest value, single rows that their neighbours contradict left out.
     pub fn range(&self) -> [f64; 2] {
-        let values = self.despiked();
-        let known = || values.iter().flatten().copied();
-        [known().fold(f64::INFINITY, f64::min), known().fold(f64::NEG_INFINITY, f64::max)]
+        ends(self.despiked().into_iter().flatten())
     }
 
     /// The step of the converter, or of the digits, that all values are multiples of from the least
     /// one on; zero where they have none.
     pub(super) fn step(&self) -> f64 {
         let mut sorted: Vec<f64> = self.values.iter().flatten().copied().collect();
-        sorted.sort_by(f64::total_cmp);
+        sort_numbers(&mut sorted);
         let (Some(least), Some(most)) = (sorted.first().copied(), sorted.last().copied()) else { return 0.0 };
         let gaps = sorted.windows(2).filter_map(|pair| Some(pair.last()? - pair.first()?));
         let step = gaps.filter(|gap| *gap > ROUNDING * (most - least)).fold(f64::INFINITY, f64::min);
@@ -151,6 +150,6 @@ pub(super) fn usual_drop(recordings: &[Recording]) -> f64 {
 
 /// Middle of some numbers; NaN of none.
 pub(crate) fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
+    sort_numbers(&mut values);
     values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
 }

@@ -5,6 +5,7 @@ mod half_height;
 mod reading;
 mod straight_line;
 
+use phea_dynamics::order::sort_numbers;
 use phea_hydraulics::servovalve::{PortCircuit, TestedValve, flow_coefficient_from_rating};
 
 pub use reading::CurveReading;
@@ -169,7 +170,7 @@ fn leakage(recording: &Recording, tested: &TestedValve, found: &mut SimpleCalcul
     let base = rows().filter(|(_, input, _)| input.command.abs() > 0.6 * largest);
     let base: Vec<f64> = base.map(|(_, _, leak)| leak).collect();
     let mut highest: Vec<f64> = rows().map(|(_, _, leak)| leak).collect();
-    highest.sort_by(f64::total_cmp);
+    sort_numbers(&mut highest);
     let Some(least) = highest.first().copied() else { return };
     let (tare_flow, noise) = base_flow(&base, least);
     let tare = tare_flow.value;

@@ -1,6 +1,7 @@
 //! What the data do not determine, and which further test would.
 
 use phea_dynamics::least_squares::Uncertainty;
+use phea_dynamics::order::sort_by_number;
 use phea_hydraulics::servovalve::{STATIC_COEFFICIENTS, StaticCoefficients, Supply, TestInput, TestedValve};
 
 use super::COEFFICIENT_NAMES;
@@ -47,7 +48,7 @@ pub(super) fn untold(
                 .filter(|(_, share)| share.abs() > PART)
                 .map(|((name, _), share)| (*name, *share))
                 .collect();
-            shares.sort_by(|(_, first), (_, second)| second.abs().total_cmp(&first.abs()));
+            sort_by_number(&mut shares, |(_, share)| -share.abs());
             let tells = |rows: &[[f64; STATIC_COEFFICIENTS]]| {
                 let along = |row: &[f64; STATIC_COEFFICIENTS]| -> f64 {
                     row.iter().zip(&direction.shares).map(|(slope, share)| slope * share).sum()

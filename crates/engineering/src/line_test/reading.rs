@@ -1,5 +1,7 @@
 //! Recordings of a blocked line from tables.
 
+use phea_dynamics::order;
+
 use super::{RiseRecord, VolumeSource};
 use crate::identify::IdentifyError;
 use crate::project::{Findings, RawFinding};
@@ -25,20 +27,12 @@ const SLOW: f64 = 6.0;
 const BLOCKS: usize = 200;
 
 const SIGNALS: [Measurand; 5] = [
-    measurand("time", None, &TIME),
-    measurand("pressure", Some("p"), &PRESSURE),
-    measurand("flow", Some("q"), &FLOW),
-    measurand("volume", Some("V"), &VOLUME),
-    measurand("position", Some("x"), &LENGTH),
+    Measurand::of("time", &TIME),
+    Measurand::of("pressure", &PRESSURE).with_symbol("p"),
+    Measurand::of("flow", &FLOW).with_symbol("q"),
+    Measurand::of("volume", &VOLUME).with_symbol("V"),
+    Measurand::of("position", &LENGTH).with_symbol("x"),
 ];
-
-const fn measurand(
-    name: &'static str,
-    symbol: Option<&'static str>,
-    dimension: &'static crate::quantity::Dimension,
-) -> Measurand {
-    Measurand { name, symbol, dimension, may_be_share: false }
-}
 
 /// The recordings of these files, one each. A position becomes a volume by the piston's area in m2.
 ///
@@ -52,15 +46,10 @@ pub fn line_records(
     let mut findings = Findings::default();
     let mut records = Vec::new();
     for file in files {
-        match source.read(file) {
-            Ok(bytes) => records.extend(record(file, bytes, piston_area, &mut findings)),
-            Err(error) => findings.unreadable(file, &error.to_string()),
-        }
+        let bytes = findings.bytes_of(source, file);
+        records.extend(bytes.and_then(|bytes| record(file, bytes, piston_area, &mut findings)));
     }
-    if findings.error_count() > 0 {
-        return Err(IdentifyError::Files(Box::new(findings.report())));
-    }
-    Ok(records)
+    findings.or_refused(records).map_err(IdentifyError::Files)
 }
 
 fn record(file: &str, bytes: Vec<u8>, piston_area: f64, findings: &mut Findings) -> Option<LineRecord> {
@@ -158,7 +147,6 @@ fn goes_back_and_forth(times: &[f64], flows: &[f64], volumes: &[f64]) -> bool {
     let ends = times.first().zip(times.last()).map_or(0.0, |(first, last)| last - first);
     let step = ends / times.len().saturating_sub(1).max(1) as f64;
     let distance: f64 = flows.chunks(length).map(|block| step * block.iter().sum::<f64>().abs()).sum();
-    let least = volumes.iter().copied().fold(f64::INFINITY, f64::min);
-    let most = volumes.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let [least, most] = order::ends(volumes.iter().copied());
     distance > SLOW * (most - least)
 }

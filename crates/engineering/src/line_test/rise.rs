@@ -1,6 +1,7 @@
 //! Compliance from a slow rise of the pressure.
 
 use nalgebra::{DMatrix, DVector};
+use phea_dynamics::order::ends;
 use phea_dynamics::portable::{exp, ln};
 
 use super::rise_noise::{Whitened, whitened};
@@ -79,8 +80,7 @@ const STEPS: [usize; 2] = [16, 24];
 /// for the recorded ones, whose noise they hardly share. Harvey (1989), section 2.3, for the local
 /// level; Patterson and Thompson (1971) for the likelihood.
 pub(super) fn rise_fit(record: RiseRecord) -> Result<RiseFit, String> {
-    let ends = || record.pressures.iter().copied();
-    let pressures = [ends().fold(f64::INFINITY, f64::min), ends().fold(f64::NEG_INFINITY, f64::max)];
+    let pressures = ends(record.pressures.iter().copied());
     let [low, high] = pressures;
     if low >= high {
         return Err(format!("{}: the pressure never moves", record.file));

@@ -28,17 +28,13 @@ pub const UNEVEN: f64 = 0.1;
 const FEWEST_ROWS: usize = 32;
 
 const MEASURANDS: [(Measurand, &str); 6] = [
-    (measurand("time", &TIME), "s"),
-    (measurand("input", &RATIO), "1"),
-    (measurand("command", &VOLTAGE), "V"),
-    (measurand("control", &VOLTAGE), "V"),
-    (measurand("output", &RATIO), "1"),
-    (measurand("force", &FORCE), "N"),
+    (Measurand::of("time", &TIME), "s"),
+    (Measurand::of("input", &RATIO), "1"),
+    (Measurand::of("command", &VOLTAGE), "V"),
+    (Measurand::of("control", &VOLTAGE), "V"),
+    (Measurand::of("output", &RATIO), "1"),
+    (Measurand::of("force", &FORCE), "N"),
 ];
-
-const fn measurand(name: &'static str, dimension: &'static crate::quantity::Dimension) -> Measurand {
-    Measurand { name, symbol: None, dimension, may_be_share: false }
-}
 
 /// The records of these files, one each.
 ///
@@ -48,15 +44,10 @@ pub fn sampled_pairs(source: &dyn Source, files: &[String]) -> Result<Vec<Sample
     let mut findings = Findings::default();
     let mut records = Vec::new();
     for file in files {
-        match source.read(file) {
-            Ok(bytes) => records.extend(pair(file, bytes, &mut findings)),
-            Err(error) => findings.unreadable(file, &error.to_string()),
-        }
+        let bytes = findings.bytes_of(source, file);
+        records.extend(bytes.and_then(|bytes| pair(file, bytes, &mut findings)));
     }
-    if findings.error_count() > 0 {
-        return Err(IdentifyError::Files(Box::new(findings.report())));
-    }
-    Ok(records)
+    findings.or_refused(records).map_err(IdentifyError::Files)
 }
 
 fn pair(file: &str, bytes: Vec<u8>, findings: &mut Findings) -> Option<SampledPair> {

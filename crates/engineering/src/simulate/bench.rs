@@ -87,18 +87,7 @@ impl ControlledMachine {
                 Control::Sampled(Box::new(sampled(setup, sensed, controller, sample_time_s, feed_forward)?))
             }
         };
-        let (settings, expansion_stated_at) = (settings(project), expansion_stated_at(project));
-        Ok(ControlledMachine {
-            rig,
-            machine,
-            control,
-            settings,
-            feed_forward,
-            expansion_stated_at,
-            force_capacity_n: capacity(project),
-            gas_wall_celsius: gas_wall_celsius(project),
-            motion: project.motion(),
-        })
+        Ok(ControlledMachine::assembled(project, rig, machine, (control, feed_forward)))
     }
 
     /// The machine alone, for a stated command, which is not subject to limits, samples and delays
@@ -109,18 +98,26 @@ impl ControlledMachine {
         let machine = *sensed.plant();
         let control =
             Control::Open(Box::new(CommandedPlant::on_hold(sensed, &TransferFunction::gain_only(1.0))?));
-        let (settings, expansion_stated_at) = (settings(project), expansion_stated_at(project));
-        Ok(ControlledMachine {
+        Ok(ControlledMachine::assembled(project, rig, machine, (control, 0.0)))
+    }
+
+    fn assembled(
+        project: &Project,
+        rig: Rig,
+        machine: Machine,
+        (control, feed_forward): (Control, f64),
+    ) -> ControlledMachine {
+        ControlledMachine {
             rig,
             machine,
             control,
-            settings,
-            feed_forward: 0.0,
-            expansion_stated_at,
+            settings: settings(project),
+            feed_forward,
+            expansion_stated_at: expansion_stated_at(project),
             force_capacity_n: capacity(project),
             gas_wall_celsius: gas_wall_celsius(project),
             motion: project.motion(),
-        })
+        }
     }
 
     /// The same controller around another machine, made from this actuator.

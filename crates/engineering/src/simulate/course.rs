@@ -1,5 +1,6 @@
 //! The start of a scenario, and its inputs.
 
+use phea_dynamics::order::sort_by_number;
 use phea_dynamics::simulation::{Input, Plant, Profile, ProfileError};
 use phea_hydraulics::machine::{InitialCondition, StartValues};
 use phea_hydraulics::operating_point::{Condition, SteadyLoad, operating_point};
@@ -308,7 +309,7 @@ fn windows(scenario: &Scenario, [reference, command, external, setting]: [&Profi
     if let Some(motion) = scenario.load_motion.as_ref().filter(|motion| motion.start < end_s) {
         windows.push(window(Cause::LoadMotion, motion.start));
     }
-    windows.sort_by(|one, other| one.start_s.total_cmp(&other.start_s));
+    sort_by_number(&mut windows, |window| window.start_s);
     let starts: Vec<f64> = windows.iter().map(|window| window.start_s).collect();
     for window in &mut windows {
         let next = starts.iter().copied().find(|start| *start > window.start_s);

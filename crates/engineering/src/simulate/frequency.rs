@@ -8,6 +8,7 @@ mod point;
 pub use point::ResponsePoint;
 
 use num_complex::Complex64;
+use phea_dynamics::order::sorted_distinct;
 use phea_dynamics::simulation::SimulationSettings;
 use phea_hydraulics::machine::{InitialCondition, Machine};
 
@@ -149,9 +150,7 @@ fn frequencies(request: &FrequencyRequest, rested: &RestedMachine) -> Vec<f64> {
         let last = LAST_OVER_VALVE * rested.rig.actuator.components().valve.natural_frequency;
         asked = spread([FIRST_RAD_PER_S, last], POINTS);
     }
-    asked.sort_by(f64::total_cmp);
-    asked.dedup();
-    asked
+    sorted_distinct(asked)
 }
 
 /// Frequencies at equal ratios, the ends among them.

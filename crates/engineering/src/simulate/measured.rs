@@ -7,6 +7,8 @@
 //! The simulation is sampled every quarter of a millisecond or more often (less often, as reported,
 //! in a scenario of more than 100 s) and interpolated linearly.
 
+use phea_dynamics::order::ends;
+
 use super::Look;
 use super::columns::ColumnSource;
 use super::metrics::Measured;
@@ -55,7 +57,17 @@ pub struct Overlay {
 impl Overlay {
     /// The unit in which people read the signal.
     pub fn display_unit(&self) -> DisplayUnit {
-        let by_ending = [
+        self.ending().map_or(DisplayUnit::VOLT, |(_, unit)| unit)
+    }
+
+    /// The signal without its unit, in words.
+    pub fn quantity(&self) -> String {
+        let name = self.ending().and_then(|(ending, _)| self.signal.strip_suffix(ending));
+        name.unwrap_or(self.signal).replace('_', " ")
+    }
+
+    fn ending(&self) -> Option<(&'static str, DisplayUnit)> {
+        let all = [
             ("_m3_per_s", DisplayUnit::LITRE_PER_MINUTE),
             ("_rad_per_s", DisplayUnit::RADIAN_PER_SECOND),
             ("_rad", DisplayUnit::DEGREE),
@@ -67,29 +79,9 @@ impl Overlay {
             ("_pa", DisplayUnit::BAR),
             ("_n", DisplayUnit::NEWTON),
             ("_m", DisplayUnit::MILLIMETRE),
+            ("_v", DisplayUnit::VOLT),
         ];
-        let found = by_ending.into_iter().find(|(ending, _)| self.signal.ends_with(ending));
-        found.map_or(DisplayUnit::VOLT, |(_, unit)| unit)
-    }
-
-    /// The signal without its unit, in words.
-    pub fn quantity(&self) -> String {
-        let endings = [
-            "_m3_per_s",
-            "_rad_per_s",
-            "_rad",
-            "_n_m",
-            "_degC",
-            "_ratio",
-            "_w",
-            "_m_per_s",
-            "_pa",
-            "_n",
-            "_m",
-            "_v",
-        ];
-        let name = endings.iter().find_map(|ending| self.signal.strip_suffix(ending)).unwrap_or(self.signal);
-        name.replace('_', " ")
+        all.into_iter().find(|(ending, _)| self.signal.ends_with(ending))
     }
 }
 
@@ -110,15 +102,12 @@ pub(super) fn measurements(
     let mut found = Vec::new();
     for declared in &scenario.measured {
         let path = project.path_of(&declared.file);
-        match source.read(&path) {
-            Ok(bytes) => {
-                let taken = of_file(declared, scenario.duration, (&path, bytes), &mut findings);
-                found.extend(taken.unwrap_or_default());
-            }
-            Err(error) => findings.unreadable(&path, &error.to_string()),
+        if let Some(bytes) = findings.bytes_of(source, &path) {
+            let taken = of_file(declared, scenario.duration, (&path, bytes), &mut findings);
+            found.extend(taken.unwrap_or_default());
         }
     }
-    if findings.error_count() > 0 { Err(Box::new(findings.report())) } else { Ok(found) }
+    findings.or_refused(found)
 }
 
 fn of_file(
@@ -127,16 +116,8 @@ fn of_file(
     (path, bytes): (&str, Vec<u8>),
     findings: &mut Findings,
 ) -> Option<Vec<Measurement>> {
-    let measurands: Vec<Measurand> = declared
-        .signals
-        .iter()
-        .map(|one| Measurand {
-            name: one.signal,
-            symbol: None,
-            dimension: one.dimension(),
-            may_be_share: false,
-        })
-        .collect();
+    let measurands: Vec<Measurand> =
+        declared.signals.iter().map(|one| Measurand::of(one.signal, one.dimension())).collect();
     let time_unit = declared.time_column.as_ref().map(|_| declared.time_unit.as_deref().unwrap_or(TIME.si));
     let time = Sought { measurand: &TIMES, heading: declared.time_column.as_deref(), unit: time_unit };
     let named = declared.signals.iter().zip(&measurands).map(|(one, measurand)| Sought {
@@ -237,8 +218,8 @@ impl<'a> Overlaying<'a> {
             let squares: f64 =
                 pairs.map(|(measured, simulated)| (measured - simulated) * (measured - simulated)).sum();
             let rmse = (squares / overlay.measured.len() as f64).sqrt();
-            let largest = overlay.measured.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-            let range = largest - overlay.measured.iter().copied().fold(f64::INFINITY, f64::min);
+            let [least, most] = ends(overlay.measured.iter().copied());
+            let range = most - least;
             let found = if rmse.is_finite() { Ok(rmse) } else { Err(NO_SIGNAL) };
             overlay.rmse = found;
             overlay.nrmse = if range > 0.0 { found.map(|rmse| rmse / range) } else { Err(NO_RANGE) };

@@ -11,23 +11,19 @@
 use phea_dynamics::simulation::{Profile, ProfileError};
 
 use crate::project::{Findings, Project, RawFinding, Refusal};
-use crate::quantity::{Dimension, FORCE, LENGTH, RATIO, TIME, VOLTAGE};
+use crate::quantity::{FORCE, LENGTH, RATIO, TIME, VOLTAGE};
 use crate::source::Source;
 use crate::table::{Column, Measurand, MeasuredTable, Sought};
 
-const fn measurand(name: &'static str, dimension: &'static Dimension) -> Measurand {
-    Measurand { name, symbol: None, dimension, may_be_share: false }
-}
-
 /// Times of the rows.
-pub(super) static TIMES: Measurand = measurand("time", &TIME);
-static POSITION: Measurand = measurand("position", &LENGTH);
+pub(super) static TIMES: Measurand = Measurand::of("time", &TIME);
+static POSITION: Measurand = Measurand::of("position", &LENGTH);
 /// A force over time.
-pub(super) static FORCES: Measurand = measurand("force", &FORCE);
+pub(super) static FORCES: Measurand = Measurand::of("force", &FORCE);
 /// A command over time.
-pub(super) static VOLTAGES: Measurand = measurand("voltage", &VOLTAGE);
+pub(super) static VOLTAGES: Measurand = Measurand::of("voltage", &VOLTAGE);
 /// By how much a setting has moved, over time.
-pub(super) static CHANGES: Measurand = measurand("change", &RATIO);
+pub(super) static CHANGES: Measurand = Measurand::of("change", &RATIO);
 
 /// The motion as a function of time, beginning at `start_s`, or the errors of the file.
 pub(super) fn motion(
@@ -66,14 +62,9 @@ fn read(
 ) -> Result<Vec<(f64, f64)>, Box<Refusal>> {
     let mut findings = Findings::default();
     let path = project.path_of(file);
-    let rows = match source.read(&path) {
-        Ok(bytes) => rows(&path, bytes, values, &mut findings),
-        Err(error) => {
-            findings.unreadable(&path, &error.to_string());
-            None
-        }
-    };
-    if findings.error_count() > 0 { Err(Box::new(findings.report())) } else { Ok(rows.unwrap_or_default()) }
+    let bytes = findings.bytes_of(source, &path);
+    let rows = bytes.and_then(|bytes| rows(&path, bytes, values, &mut findings));
+    findings.or_refused(rows.unwrap_or_default())
 }
 
 fn rows(

@@ -2,6 +2,7 @@
 
 use std::cell::{Cell, RefCell};
 
+use phea_dynamics::order::sort_by_number;
 use phea_dynamics::simulation::{
     Amplification, Event, Input, InputSchedule, Outcome, Sampler, Status, StepCounts, Task,
 };
@@ -242,7 +243,7 @@ fn found(
     if matches!(bench.control, Control::Sampled(_)) {
         let limits = samples.limits.iter();
         found.extend(limits.map(|&(time_s, begins)| Occurrence { time_s, kind: COMMAND_LIMIT, begins }));
-        found.sort_by(|one, other| one.time_s.total_cmp(&other.time_s));
+        sort_by_number(&mut found, |one| one.time_s);
     }
     found
 }

@@ -160,13 +160,8 @@ pub(super) fn read(
 ) -> Result<SavedState, Box<Refusal>> {
     let mut findings = Findings::default();
     let path = project.path_of(file);
-    let root = match source.read(&path) {
-        Ok(bytes) => read_tree(&path, &bytes, &mut findings),
-        Err(error) => {
-            findings.unreadable(&path, &error.to_string());
-            None
-        }
-    };
+    let bytes = findings.bytes_of(source, &path);
+    let root = bytes.and_then(|bytes| read_tree(&path, &bytes, &mut findings));
     let found = root.filter(|_| !findings.has_errors()).map(|root| {
         goes_on(&root, setting_change, &mut findings);
         taken(&root, bench, &mut findings)

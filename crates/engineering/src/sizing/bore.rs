@@ -2,6 +2,7 @@ use std::f64::consts::PI;
 
 use super::{SizingProblem, SizingStep};
 use crate::quantity::DisplayUnit;
+use phea_dynamics::order::sort_by_number;
 
 /// What the oil velocity says about a bore.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -99,7 +100,7 @@ pub(super) fn assess(problem: &SizingProblem, decisions: &mut Vec<SizingStep>) -
             verdict: verdict(problem, bore_m),
         })
         .collect();
-    bores.sort_by(|one, other| one.bore_m.total_cmp(&other.bore_m));
+    sort_by_number(&mut bores, |bore| bore.bore_m);
     let [smallest, largest] = range(problem).map(|bore| DisplayUnit::MILLIMETRE.number(bore, 3));
     let feasible: Vec<&str> = bores
         .iter()

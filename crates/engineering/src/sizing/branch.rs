@@ -1,5 +1,5 @@
 use phea_hydraulics::line::StiffeningMember;
-use phea_hydraulics::stiffness::{LineLength, StiffnessModel, StrokeStiffness, line_share_for_stiffness};
+use phea_hydraulics::stiffness::{StiffnessModel, StrokeStiffness, line_share_for_stiffness};
 
 use super::{HoseOption, Question, SizingProblem, SizingStep};
 use crate::quantity::significant;
@@ -147,12 +147,7 @@ fn gain_step(problem: &SizingProblem, option: &HoseOption, model: StiffnessModel
         StiffeningMember::Nominal,
         stiffness_n_per_m,
     );
-    let length_m = match length {
-        LineLength::Length(length) => length,
-        LineLength::NotNeeded { .. } => 0.0,
-        LineLength::OutOfReach => f64::INFINITY,
-    };
-    GainStep { gain_v_per_n: gain, stiffness_n_per_m, length_m }
+    GainStep { gain_v_per_n: gain, stiffness_n_per_m, length_m: length.metres() }
 }
 
 /// The model's name in the project file.

@@ -1,5 +1,5 @@
 use phea_hydraulics::line::{Hose, Stiffening, StiffeningMember};
-use phea_hydraulics::stiffness::{LineLength, line_share_for_stiffness};
+use phea_hydraulics::stiffness::line_share_for_stiffness;
 
 use super::{Candidate, HoseOption, SizingProblem};
 use crate::quantity::DisplayUnit;
@@ -106,10 +106,5 @@ fn outcome(problem: &SizingProblem, option: &HoseOption, candidate: &Candidate) 
         StiffeningMember::Nominal,
         candidate.branch.stiffness.minimum,
     );
-    let length = match length {
-        LineLength::Length(length) => length,
-        LineLength::NotNeeded { .. } => 0.0,
-        LineLength::OutOfReach => f64::INFINITY,
-    };
-    (stiffness, length)
+    (stiffness, length.metres())
 }

@@ -1,5 +1,7 @@
 //! The values of a row, as they are written.
 
+use crate::project::Place;
+
 /// What stands between two values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Separator {
@@ -14,6 +16,13 @@ pub(super) enum Separator {
 pub(super) struct TextCell<'a> {
     pub(super) text: &'a str,
     pub(super) start: usize,
+}
+
+impl TextCell<'_> {
+    /// In the text with this index.
+    pub(super) fn place(&self, text: usize) -> Place {
+        Place { text, start: self.start, end: self.start + self.text.len() }
+    }
 }
 
 /// The values of one row, from left to right.

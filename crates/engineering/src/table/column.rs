@@ -19,6 +19,18 @@ pub struct Measurand {
     pub may_be_share: bool,
 }
 
+impl Measurand {
+    /// Known by its name.
+    pub const fn of(name: &'static str, dimension: &'static Dimension) -> Measurand {
+        Measurand { name, symbol: None, dimension, may_be_share: false }
+    }
+
+    /// Known by a symbol too.
+    pub const fn with_symbol(self, symbol: &'static str) -> Measurand {
+        Measurand { symbol: Some(symbol), ..self }
+    }
+}
+
 /// A signal that is looked for, by its own name or by the heading and unit that a project states.
 #[derive(Clone, Copy, Debug)]
 pub struct Sought<'a> {

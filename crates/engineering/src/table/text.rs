@@ -41,11 +41,7 @@ pub(super) fn open(
     let mut cells = Cells::new(content, layout.header, separator);
     let mut headings: Vec<Heading> = cells
         .by_ref()
-        .map(|cell| Heading {
-            text: cell.text.to_string(),
-            place: Place { text, start: cell.start, end: cell.start + cell.text.len() },
-            unit: None,
-        })
+        .map(|cell| Heading { text: cell.text.to_string(), place: cell.place(text), unit: None })
         .collect();
     let below = cells.at;
     let mut starts = starts(content, below, separator);
@@ -141,9 +137,7 @@ impl TextRows {
     pub(super) fn place(&self, content: &str, row: usize, index: usize) -> Place {
         let mut cells = self.cells(content, row);
         let found = cells.by_ref().nth(index);
-        let [start, end] =
-            found.map_or([cells.at, cells.at], |cell| [cell.start, cell.start + cell.text.len()]);
-        Place { text: self.text, start, end }
+        found.map_or(Place { text: self.text, start: cells.at, end: cells.at }, |cell| cell.place(self.text))
     }
 
     /// The line of a row, from 1.
@@ -261,7 +255,7 @@ impl TextReading {
     fn take(&mut self, row: usize, slot: usize, column: &Column, cell: super::cell::TextCell<'_>) {
         let value = column.scale.read(cell.text);
         if self.point.is_none() && value.is_some() && cell.text.contains('.') {
-            self.point = Some(self.place(cell));
+            self.point = Some(cell.place(self.text));
         }
         let value = value.unwrap_or_else(|| self.other(row, slot, column, cell));
         if let Some(values) = self.numbers.columns.get_mut(slot) {
@@ -277,21 +271,13 @@ impl TextReading {
         }
         let has_both = cell.text.contains('.') && cell.text.contains(',');
         if !has_both && let Some(value) = column.scale.read(&cell.text.replace(',', ".")) {
-            self.comma.get_or_insert(Place {
-                text: self.text,
-                start: cell.start,
-                end: cell.start + cell.text.len(),
-            });
+            self.comma.get_or_insert(cell.place(self.text));
             return value;
         }
-        let place = self.place(cell);
+        let place = cell.place(self.text);
         let found = || no_number(place, cell.text).expected(column.expected());
         self.wrong.get_mut(slot).into_iter().for_each(|wrong| wrong.add(found));
         f64::NAN
-    }
-
-    fn place(&self, cell: super::cell::TextCell<'_>) -> Place {
-        Place { text: self.text, start: cell.start, end: cell.start + cell.text.len() }
     }
 
     /// Takes no number of a row that is not whole.

@@ -1,5 +1,6 @@
 use num_complex::Complex64;
 use phea_dynamics::linear::TransferFunction;
+use phea_dynamics::order::sort_by_number;
 use phea_dynamics::portable;
 
 /// The contribution of one mode (a real pole or a conjugate pair) to the step response.
@@ -80,7 +81,7 @@ pub fn dominance(system: &TransferFunction) -> Vec<ModeShare> {
             }
         })
         .collect();
-    modes.sort_by(|a, b| b.pole.re.total_cmp(&a.pole.re));
+    sort_by_number(&mut modes, |mode| -mode.pole.re);
     modes
 }
 

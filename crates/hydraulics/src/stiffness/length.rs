@@ -22,6 +22,17 @@ pub enum LineLength {
     OutOfReach,
 }
 
+impl LineLength {
+    /// In m: zero where none is needed, infinite where none is enough.
+    pub fn metres(self) -> f64 {
+        match self {
+            LineLength::Length(length) => length,
+            LineLength::NotNeeded { .. } => 0.0,
+            LineLength::OutOfReach => f64::INFINITY,
+        }
+    }
+}
+
 /// Hose length L_ho of each line for a wanted least stiffness K_H, one modulus for hose and
 /// chamber, in m.
 ///
@@ -84,26 +95,12 @@ pub fn stiffness_from_hose_length<S: Scalar>(
         / (S::from(2.0) * area * stroke + S::from(PI) * bore.squared() * length)
 }
 
-/// Length of both lines, each like `line`, that brings the least stiffness over the stroke to
-/// `stiffness` in N/m: either model, any cylinder.
-///
-/// The length of a [`Line::Volume`] is its volume over the given one: a factor. Solved by
-/// bisection, since the least stiffness falls strictly as lines grow; agrees with
-/// [`hose_length_uniform`] and [`hose_length_by_volume`] where those apply.
-pub fn line_length_for_stiffness(
-    model: StiffnessModel,
-    fluid_modulus: f64,
-    cylinder: &Cylinder,
-    line: &Line,
-    member: StiffeningMember,
-    stiffness: f64,
-) -> LineLength {
-    let unit = with_length(line, 1.0);
-    line_share_for_stiffness(model, fluid_modulus, cylinder, [&unit; 2], member, stiffness)
-}
-
 /// The factor of the lengths of two lines that brings the least stiffness over the stroke to `stiffness`
-/// in N/m: lines of this proportion, each of its own hose.
+/// in N/m: lines of this proportion, each of its own hose; either model, any cylinder.
+///
+/// The length of a [`Line::Volume`] is its volume over the given one. Solved by bisection, since the
+/// least stiffness falls strictly as lines grow; agrees with [`hose_length_uniform`] and
+/// [`hose_length_by_volume`] where those apply.
 ///
 /// Where the softest position lies within the stroke and both have the same compliance c:
 ///

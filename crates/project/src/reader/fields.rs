@@ -113,10 +113,6 @@ impl Visitor for Reader<'_> {
         }
     }
 
-    fn switch(&mut self, key: Key, field: &mut bool) {
-        self.flag(key, field);
-    }
-
     fn text(&mut self, key: Key, field: &mut Option<String>, required: bool) {
         match self.find(key) {
             Some(hit) => match &hit.node.value {

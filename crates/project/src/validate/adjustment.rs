@@ -5,10 +5,8 @@ use crate::{
     AdjustmentKind, DeclaredAccumulator, DeclaredActuator, DeclaredAdjustment, DeclaredSupply, GasAtOne,
     Scenario, Signal, SignalUnit, Uncertain,
 };
+use phea_hydraulics::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE as ATMOSPHERE;
 use phea_quantity::{self as quantity, PRESSURE, TIME};
-
-/// Pa, between absolute and gauge pressures.
-const ATMOSPHERE: f64 = 101_325.0;
 
 /// The adjustment of the gas at a chamber.
 pub(super) fn adjustment(

@@ -1,7 +1,8 @@
 //! A linkage: whether it closes over the stroke, and what phea does not yet do with one.
 
 use super::Check;
-use crate::{DeclaredActuator, DeclaredLinkage, LinkageKind, Load, MotionShape, Project, Scenario, Signal};
+use super::motor::keys_of_files;
+use crate::{DeclaredActuator, DeclaredLinkage, LinkageKind, Load, Project, Scenario};
 use phea_hydraulics::linkage::LinkageError;
 use phea_quantity::{self as quantity, LENGTH};
 
@@ -153,18 +154,11 @@ fn not_yet(project: &Project, check: &mut Check<'_, '_>) {
 
 /// Columns of files have the names and units of a load that moves with the rod.
 fn files(scenario: &Scenario, path: &str, check: &mut Check<'_, '_>) {
-    let mut refuse = |key: &str| {
-        let message = "with a [linkage] this file is not read yet: its columns say force and position, and the load turns";
+    let message =
+        "with a [linkage] this file is not read yet: its columns say force and position, and the load turns";
+    let of_load = ["external_force", "load_motion", "start"];
+    for key in keys_of_files(scenario).filter(|key| of_load.contains(key)) {
         check.error_with_help(&format!("{path}.{key}"), message, "state the values in the project file");
-    };
-    if scenario.external_force.iter().any(|signal| matches!(signal, Signal::File { .. })) {
-        refuse("external_force");
-    }
-    if scenario.load_motion.as_ref().is_some_and(|motion| matches!(motion.shape, MotionShape::File { .. })) {
-        refuse("load_motion");
-    }
-    if scenario.start.as_ref().is_some_and(|start| start.file.is_some()) {
-        refuse("start");
     }
 }
 

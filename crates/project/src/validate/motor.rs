@@ -27,23 +27,22 @@ pub(super) fn motor(project: &Project, actuator: &DeclaredActuator, check: &mut 
 
 /// Columns of files have the names and units of linear motion.
 fn files(scenario: &Scenario, path: &str, check: &mut Check<'_, '_>) {
-    let mut refuse = |key: &str| {
-        let message = "files of a rig with a [motor] are not read yet: their columns say force and position";
+    let message = "files of a rig with a [motor] are not read yet: their columns say force and position";
+    for key in keys_of_files(scenario) {
         check.error_with_help(&format!("{path}.{key}"), message, "state the values in the project file");
-    };
-    let is_file = |signal: &Signal| matches!(signal, Signal::File { .. });
-    for (key, signals) in [("reference", &scenario.reference), ("external_force", &scenario.external_force)] {
-        if signals.iter().any(is_file) {
-            refuse(key);
-        }
     }
-    if scenario.load_motion.as_ref().is_some_and(|motion| matches!(motion.shape, MotionShape::File { .. })) {
-        refuse("load_motion");
-    }
-    if scenario.start.as_ref().is_some_and(|start| start.file.is_some()) {
-        refuse("start");
-    }
-    if !scenario.measured.is_empty() {
-        refuse("measured");
-    }
+}
+
+/// The keys of a scenario that name files.
+pub(super) fn keys_of_files(scenario: &Scenario) -> impl Iterator<Item = &'static str> {
+    let has_file = |all: &[Signal]| all.iter().any(|signal| matches!(signal, Signal::File { .. }));
+    let motion = scenario.load_motion.as_ref();
+    let keys = [
+        ("reference", has_file(&scenario.reference)),
+        ("external_force", has_file(&scenario.external_force)),
+        ("load_motion", motion.is_some_and(|motion| matches!(motion.shape, MotionShape::File { .. }))),
+        ("start", scenario.start.as_ref().is_some_and(|start| start.file.is_some())),
+        ("measured", !scenario.measured.is_empty()),
+    ];
+    keys.into_iter().filter(|(_, is_there)| *is_there).map(|(key, _)| key)
 }

@@ -6,11 +6,9 @@ use crate::{
     DeclaredLine, DeclaredLines, DeclaredSupply, FrictionLaw, NullLeakage, Project, Pump, StribeckCurve,
     SupplyModel, Valve,
 };
+use phea_hydraulics::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE as ATMOSPHERE;
 use phea_hydraulics::stroke::FURTHER_STAGES;
 use phea_quantity::{self as quantity, DAMPING, LENGTH, PRESSURE, display};
-
-/// Pa, between absolute and gauge pressures.
-const ATMOSPHERE: f64 = 101_325.0;
 
 pub(super) fn actuator(actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
     supply(actuator, check);

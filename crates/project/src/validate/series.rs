@@ -6,6 +6,7 @@ use super::rig;
 use crate::{
     BoundedNumber, DeclaredActuator, DeclaredSeries, DeclaredSpring, DeclaredTransmission, Project, Uncertain,
 };
+use phea_hydraulics::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE as ATMOSPHERE;
 use phea_quantity::{self as quantity, AREA, FORCE, LENGTH, PRESSURE, STIFFNESS};
 
 pub(super) fn series(project: &Project, actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
@@ -15,9 +16,6 @@ pub(super) fn series(project: &Project, actuator: &DeclaredActuator, check: &mut
         Some(DeclaredSeries::Transmission(declared)) => transmission(actuator, declared, check),
     }
 }
-
-/// Pa, between absolute and gauge pressures.
-const ATMOSPHERE: f64 = 101_325.0;
 
 /// The line between two pistons, and whether its oil stands the force of the cylinder.
 fn transmission(actuator: &DeclaredActuator, declared: &DeclaredTransmission, check: &mut Check<'_, '_>) {

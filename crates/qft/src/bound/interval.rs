@@ -1,5 +1,7 @@
 //! Unions of gain intervals.
 
+use phea_dynamics::order::sort_by_number;
+
 /// A union of disjoint open intervals of gains, in increasing order; the last may end at infinity.
 /// The gains themselves, not dB.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -17,7 +19,7 @@ impl GainIntervals {
     /// ```
     pub fn union_of(mut intervals: Vec<[f64; 2]>) -> GainIntervals {
         intervals.retain(|[low, high]| low < high);
-        intervals.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        sort_by_number(&mut intervals, |interval| interval[0]);
         let mut union: Vec<[f64; 2]> = Vec::with_capacity(intervals.len());
         for [low, high] in intervals {
             match union.last_mut() {

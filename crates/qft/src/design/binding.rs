@@ -2,6 +2,7 @@
 
 use super::result::{BindingLimit, Conflict};
 use crate::verification::{Audit, PlantPoint, WorstCase};
+use phea_dynamics::order::sort_by_number;
 
 /// For each design frequency the specification that leaves the loop the least room, in order of
 /// increasing frequency.
@@ -17,7 +18,7 @@ pub(super) fn binding_limits(audit: &Audit) -> Vec<BindingLimit> {
             }
         }
     }
-    limits.sort_by(|one, other| one.frequency_rad_per_s.total_cmp(&other.frequency_rad_per_s));
+    sort_by_number(&mut limits, |limit| limit.frequency_rad_per_s);
     limits
 }
 
@@ -39,7 +40,7 @@ pub(super) fn all_conflicts(audit: &Audit, beside: &[Audit], tolerance_db: f64) 
             conflicts(audit, tolerance_db).into_iter().map(|one| Conflict { plant: plant.clone(), ..one }),
         );
     }
-    found.sort_by(|one, other| one.margin_db.total_cmp(&other.margin_db));
+    sort_by_number(&mut found, |conflict| conflict.margin_db);
     found
 }
 
@@ -58,6 +59,6 @@ fn conflicts(audit: &Audit, tolerance_db: f64) -> Vec<Conflict> {
             });
         }
     }
-    found.sort_by(|one, other| one.margin_db.total_cmp(&other.margin_db));
+    sort_by_number(&mut found, |conflict| conflict.margin_db);
     found
 }

@@ -4,6 +4,7 @@ use num_complex::Complex64;
 use phea_dynamics::controller::{Compensator, Element};
 use phea_dynamics::frequency::logarithmic_grid;
 use phea_dynamics::linear::TransferFunction;
+use phea_dynamics::order::sort_by_number;
 use phea_dynamics::portable;
 use phea_dynamics::uncertain_plant::RationalCoefficients;
 
@@ -166,7 +167,7 @@ impl Ground {
 fn grown_at(structure: &Structure, simpler: &TransferFunction, corner: f64) -> Option<Vec<f64>> {
     let mut gain = simpler.gain();
     let (mut zeros, mut poles) = (simpler.zeros().to_vec(), simpler.poles().to_vec());
-    zeros.sort_by(|one, other| one.norm_sqr().total_cmp(&other.norm_sqr()));
+    sort_by_number(&mut zeros, |zero| zero.norm_sqr());
     let [wanted_zeros, wanted_poles] = [structure.roots(1.0), structure.roots(-1.0)];
     while zeros.len() > wanted_zeros {
         gain *= portable::magnitude(zeros.pop()?);

@@ -10,7 +10,7 @@ mod coefficients;
 mod rate_noise;
 mod rounding_effect;
 
-pub use coefficients::{CoefficientEffect, CoefficientFormat, RoundedController, rounded};
+pub use coefficients::{CoefficientFormat, RoundedController, rounded};
 pub use rate_noise::{RateNoise, rate_noise};
 pub use rounding_effect::{LimitCycle, RoundingEffect, RoundingEffects, rounding_effects};
 

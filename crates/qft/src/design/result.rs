@@ -1,6 +1,7 @@
 //! What a design ends with.
 
 use phea_dynamics::controller::Controller;
+use phea_dynamics::order::sort_numbers;
 
 use crate::loop_shaping::{SearchResult, Structure};
 use crate::verification::{Audit, PlantPoint};
@@ -110,7 +111,7 @@ impl Starts {
 
 /// The median of an even number of values is the lesser of the middle two.
 fn least_median_greatest(mut values: Vec<f64>) -> Option<[f64; 3]> {
-    values.sort_by(f64::total_cmp);
+    sort_numbers(&mut values);
     let middle = *values.get(values.len().saturating_sub(1) / 2)?;
     Some([*values.first()?, middle, *values.last()?])
 }

@@ -6,6 +6,7 @@ mod place;
 
 use std::collections::BTreeMap;
 
+use phea_dynamics::order::sort_by_number;
 use phea_dynamics::watch::{Stopped, Watch, tell};
 
 use super::search::{Aim, Judgement, MarginRow, SearchProblem, Slopes};
@@ -424,7 +425,7 @@ impl Descent {
         }
         self.binding =
             strengths.into_iter().map(|(sample, multiplier)| Binding { sample, multiplier }).collect();
-        self.binding.sort_by(|a, b| b.multiplier.total_cmp(&a.multiplier));
+        sort_by_number(&mut self.binding, |binding| -binding.multiplier);
     }
 
     /// Updates the curvature of the Lagrangian from a step.

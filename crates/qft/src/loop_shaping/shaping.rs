@@ -3,6 +3,7 @@
 use num_complex::Complex64;
 use phea_dynamics::controller::{Compensator, Controller};
 use phea_dynamics::linear::{LinearError, TransferFunction};
+use phea_dynamics::order::sort_by_number;
 use phea_dynamics::portable;
 
 use super::margins::{
@@ -400,7 +401,7 @@ impl Shaping {
             slopes: along(&margin.terms, own, dimension),
         }));
         rows.retain(|row| row.slopes.iter().all(|slope| slope.is_finite()));
-        rows.sort_by(|one, other| (one.margin_db / one.rate).total_cmp(&(other.margin_db / other.rate)));
+        sort_by_number(&mut rows, |row| row.margin_db / row.rate);
         rows.truncate(ROWS_MAXIMUM);
         rows
     }

@@ -6,6 +6,7 @@ mod spread;
 
 use std::cmp::Ordering;
 
+use phea_dynamics::order::sort_by_number;
 use phea_dynamics::watch::{Stopped, Watch, part, tell};
 
 use super::descent::{Binding, Descent, DescentOptions, DescentStatus, DescentWork, is_usable};
@@ -89,10 +90,6 @@ pub struct SearchResult {
     pub binding: Vec<Binding>,
     /// Every completed descent, the best first.
     pub ends: Vec<DescentEnd>,
-    /// How much worse the worst of these ends is than the best, dB: of the objective, or of the
-    /// worst margin where that is the aim or no end keeps the reserve; infinite where only some
-    /// ends do. `None` with fewer than two ends.
-    pub spread_db: Option<f64>,
     /// Number of points that were evaluated before the descents: given ones, samples and the last
     /// generation of an evolution, if any.
     pub points: usize,
@@ -286,7 +283,7 @@ impl StartSearch<'_> {
             candidates.iter().filter(|candidate| is_usable(&candidate.judgement)).collect();
         let mut modest: Vec<&JudgedPoint> =
             usable.iter().copied().filter(|one| one.judgement.worst_margin_db > MODEST_DB).collect();
-        modest.sort_by(|one, other| one.judgement.objective_db.total_cmp(&other.judgement.objective_db));
+        sort_by_number(&mut modest, |one| one.judgement.objective_db);
         if self.options.descent.aim == Aim::WorstMargin {
             modest.clear();
         }
@@ -361,19 +358,11 @@ impl StartSearch<'_> {
             x: best.x,
             judgement: best.judgement,
             binding: descents.first().map_or(vec![], |descent| descent.binding().to_vec()),
-            spread_db: self.spread_db(&ends),
             points: points.len(),
             stable_points: points.iter().filter(|one| is_usable(&one.judgement)).count(),
             ends,
             work: descents.iter().fold(self.work, |sum, descent| sum + descent.work()),
         })
-    }
-
-    fn spread_db(&self, ends: &[DescentEnd]) -> Option<f64> {
-        let standing = |end: &DescentEnd| standing(&self.options.descent, Some(end.judgement));
-        let [best, .., worst] = ends else { return None };
-        let (best, worst) = (standing(best), standing(worst));
-        Some(if best.0 == worst.0 { worst.1 - best.1 } else { f64::INFINITY })
     }
 }
 

@@ -1,6 +1,8 @@
 //! The design frequencies of a problem, prepared for judging one controller after the other.
 
 use num_complex::Complex64;
+use phea_dynamics::frequency::decibels;
+use phea_dynamics::order::sort_by_number;
 use phea_dynamics::portable;
 
 use crate::bound::{BoundError, FrequencyBounds, Placement, TemplateFill};
@@ -134,7 +136,7 @@ impl DesignChart {
     pub fn margins(&self, compensation: &Compensation, tracking: TrackingJudgement) -> Vec<DesignMargin> {
         let mut margins: Vec<DesignMargin> =
             self.stations.iter().flat_map(|station| self.at(station, compensation, tracking)).collect();
-        margins.sort_by(|a, b| a.margin_db.total_cmp(&b.margin_db));
+        sort_by_number(&mut margins, |margin| margin.margin_db);
         margins
     }
 
@@ -248,5 +250,5 @@ fn spread<'a>(
     };
     let (greatest, plant) = magnitudes().max_by(|a, b| a.0.total_cmp(&b.0))?;
     let (least, other) = magnitudes().min_by(|a, b| a.0.total_cmp(&b.0))?;
-    Some((20.0 * portable::log10(allowed * least / greatest), plant, other))
+    Some((decibels(allowed * least / greatest), plant, other))
 }

@@ -2,6 +2,7 @@
 
 use num_complex::Complex64;
 use phea_dynamics::controller::{Element, Timing};
+use phea_dynamics::frequency::decibels;
 use phea_dynamics::linear::Discretization;
 use phea_dynamics::portable;
 
@@ -139,7 +140,7 @@ pub fn pass_through(
     element.ok_or_else(|| PassError::Unreachable {
         pattern,
         turn_deg: turn.map(f64::to_degrees),
-        raise_db: raise.map(decibel),
+        raise_db: raise.map(decibels),
         reach: pattern.reach(change.frequency, turn),
     })
 }
@@ -201,10 +202,6 @@ fn check_numbers(pattern: ElementPattern) -> Result<(), PassError> {
         _ => return Ok(()),
     };
     if value > 0.0 && value.is_finite() { Ok(()) } else { Err(PassError::Number { pattern, what, value }) }
-}
-
-fn decibel(ratio: f64) -> f64 {
-    20.0 * portable::log10(ratio)
 }
 
 fn signed(value: f64) -> String {

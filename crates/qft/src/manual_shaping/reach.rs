@@ -2,6 +2,7 @@
 
 use num_complex::Complex64;
 use phea_dynamics::controller::Element;
+use phea_dynamics::frequency::decibels;
 use phea_dynamics::portable;
 
 /// Which element is to be solved for, and its numbers that are not free.
@@ -109,7 +110,7 @@ impl ElementPattern {
         };
         let raise_db = match turn {
             Some(turn) if !within(turn.to_degrees(), turn_deg) => None,
-            turn => Some(self.raise(turn).map(|ratio| 20.0 * portable::log10(ratio))),
+            turn => Some(self.raise(turn).map(decibels)),
         };
         Reach { turn_deg, raise_db }
     }
@@ -141,7 +142,7 @@ impl ElementPattern {
     /// The element with E(jw) = r e^(j theta); `None` where there is none.
     pub(super) fn through(self, change: &ElementTarget) -> Option<Element> {
         let reach = self.reach(change.frequency, Some(change.turn));
-        let ratio_db = 20.0 * portable::log10(change.ratio);
+        let ratio_db = decibels(change.ratio);
         if !reach.raise_db.is_some_and(|range| within(ratio_db, range)) {
             return None;
         }

@@ -2,6 +2,7 @@
 
 use phea_dynamics::frequency::decibels;
 use phea_dynamics::linear::TransferFunction;
+use phea_dynamics::order::sort_by_number;
 use phea_dynamics::portable;
 
 use super::band::RESOLVED_DB;
@@ -70,7 +71,7 @@ impl PrefilterBand {
             (point.frequency_rad_per_s > 0.0 || margin.margin_db < -RESOLVED_DB).then_some(margin)
         };
         let mut margins: Vec<PrefilterMargin> = self.points.iter().filter_map(margin).collect();
-        margins.sort_by(|left, right| left.share().total_cmp(&right.share()));
+        sort_by_number(&mut margins, PrefilterMargin::share);
         margins
     }
 }

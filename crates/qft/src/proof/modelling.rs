@@ -5,6 +5,7 @@ use super::NotProven;
 use super::certificate::{Certificate, ParameterSegment};
 use super::claimed::Loop;
 use super::model::{parameters_over, turn};
+use phea_dynamics::order::sort_by_number;
 
 /// Degrees of the polynomials that replace such coefficients: the first with a small remainder is
 /// used, otherwise the last.
@@ -117,7 +118,7 @@ fn halved(certificate: &Certificate, of_box: usize) -> Option<(Halves, [f64; 2])
     if candidates.iter().all(|(_, _, shares)| greatest(shares).is_infinite()) {
         candidates.sort_by_key(|(variable, halves, _)| halvings(halves, *variable, &mut share_of));
     } else {
-        candidates.sort_by(|(.., one), (.., other)| greatest(one).total_cmp(&greatest(other)));
+        sort_by_number(&mut candidates, |(.., shares)| greatest(shares));
     }
     candidates.into_iter().next().map(|(_, halves, shares)| (halves, shares))
 }

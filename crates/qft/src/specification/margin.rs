@@ -20,15 +20,13 @@
 //! # Ok::<(), phea_qft::specification::MarginError>(())
 //! ```
 
-mod delay;
-
 use std::f64::consts::PI;
 
+use num_complex::Complex64;
+use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::portable::{asin, sin};
 
 use super::{Limit, Requirement};
-
-pub use delay::{DelayGuarantee, delay_margin_limit, delay_margin_limit_table, guaranteed_delay};
 
 /// Why a margin has no limit, or a limit no margin.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -42,12 +40,6 @@ pub enum MarginError {
         value: f64,
         /// The range, in words.
         expected: &'static str,
-    },
-    /// The limit is given as a table that does not cover this frequency.
-    #[error("the limit says nothing at {frequency_rad_per_s} rad/s, where a guarantee is asked for")]
-    Silent {
-        /// The frequency, rad/s.
-        frequency_rad_per_s: f64,
     },
 }
 
@@ -281,6 +273,35 @@ fn limit_for_phase_margin(phase_rad: f64) -> Result<f64, MarginError> {
         return Err(MarginError::OutOfRange { what: "the phase margin in rad", value: phase_rad, expected });
     }
     Ok(0.5 / sin(phase_rad / 2.0))
+}
+
+/// The limit on |L/(1+L)| that lets every loop tolerate this much additional delay in s (positive).
+///
+/// ```text
+/// |L/(1+L)| <= 1/(w tau)          since 1 + L e^(-s tau) = (1 + L)(1 + (e^(-s tau) - 1) L/(1+L))
+///                                 and |e^(-jw tau) - 1| <= w tau
+/// ```
+///
+/// Sufficient, by the small gain theorem: the loop may tolerate more.
+///
+/// # Errors
+/// [`MarginError::OutOfRange`].
+///
+/// # Example
+/// ```
+/// let limit = phea_qft::specification::delay_margin_limit(0.5e-3)?;
+/// assert_eq!(limit.magnitude(1000.0), Some(2.0)); // one millisecond's worth at 1000 rad/s is 1, half of it 2
+/// # Ok::<(), phea_qft::specification::MarginError>(())
+/// ```
+pub fn delay_margin_limit(delay_s: f64) -> Result<Limit, MarginError> {
+    let gain = 1.0 / positive("the delay in s", delay_s)?;
+    let limit = TransferFunction::from_factors(gain, Vec::new(), vec![Complex64::new(0.0, 0.0)]);
+    let expected = "large enough that its inverse is finite";
+    limit.map(Limit::Rational).map_err(|_| MarginError::OutOfRange {
+        what: "the delay in s",
+        value: delay_s,
+        expected,
+    })
 }
 
 fn positive(what: &'static str, value: f64) -> Result<f64, MarginError> {

@@ -1,6 +1,7 @@
 //! Stability of a family: every member, then the worst of what lies between them.
 
 use phea_dynamics::linear::LinearError;
+use phea_dynamics::order::sort_by_number;
 use phea_dynamics::watch::{Stopped, Watch, part, tell};
 
 use super::badness::{Badness, badness_of};
@@ -269,7 +270,7 @@ impl<'a> StabilityAudit<'a> {
         let mut order: Vec<(f64, &PlantPoint)> =
             self.badness.iter().map(|plant| badness.among(plant)).zip(&self.plants).collect();
         order.retain(|(value, _)| value.is_finite());
-        order.sort_by(|one, other| other.0.total_cmp(&one.0));
+        sort_by_number(&mut order, |one| -one.0);
         let mut chosen: Vec<Vec<f64>> = Vec::new();
         for (_, plant) in order {
             let PlantPoint::Parameters(values) = plant else { continue };

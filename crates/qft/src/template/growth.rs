@@ -16,6 +16,7 @@ use std::collections::BTreeSet;
 
 use super::plants::{Plants, Stop};
 use super::region::{Corner, Region};
+use phea_dynamics::order::sort_by_number;
 
 /// Least outward gain of a push, in tolerances.
 const GAIN_MINIMUM: f64 = 0.1;
@@ -196,8 +197,7 @@ fn outward_moves(slopes: &[[f64; 2]], shares: &[f64], normal: [f64; 2], reach: f
         })
         .collect();
     let mut order: Vec<usize> = (0..rates.len()).filter(|&axis| rates[axis][1] != 0.0).collect();
-    let price = |axis: usize| -rates[axis][0] / rates[axis][1];
-    order.sort_by(|&first, &second| price(first).total_cmp(&price(second)));
+    sort_by_number(&mut order, |&axis| -rates[axis][0] / rates[axis][1]);
     let mut moves: Vec<f64> = ends.iter().map(|end| end[0]).collect();
     let mut drift: f64 = moves.iter().zip(&rates).map(|(step, rate)| step * rate[1]).sum();
     for axis in order {

@@ -3,6 +3,7 @@
 
 use super::plants::{PlantPosition, Plants, Stop};
 use super::region::{Corner, Region};
+use phea_dynamics::order::{ends, sort_by_number};
 
 /// Number of witnesses added at a time.
 const TAKEN_IN: usize = 8;
@@ -37,7 +38,7 @@ pub(super) fn outside(plants: &Plants, contours: &[Vec<Corner>], witnesses: &[us
         (distance > 1.0).then_some(Outside { plant, distance, beside })
     });
     let mut found: Vec<Outside> = found.collect();
-    found.sort_by(|first, second| second.distance.total_cmp(&first.distance));
+    sort_by_number(&mut found, |outside| -outside.distance);
     found
 }
 
@@ -59,7 +60,7 @@ pub(super) fn take_in(plants: &mut Plants, region: &mut Region, outside: &[Outsi
 /// nearest corner.
 fn distance(plants: &Plants, contours: &[Vec<Corner>], place: PlantPosition) -> (f64, Option<[usize; 2]>) {
     let phases = || contours.iter().flatten().map(|corner| corner.place.phase_deg);
-    let (low, high) = (phases().fold(f64::INFINITY, f64::min), phases().fold(f64::NEG_INFINITY, f64::max));
+    let [low, high] = ends(phases());
     let first = ((low - place.phase_deg) / 360.0).floor();
     let turns = ((high - low) / 360.0).ceil() + 1.0;
     let mut nearest = (f64::INFINITY, None);

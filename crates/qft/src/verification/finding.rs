@@ -9,6 +9,7 @@ use super::scan::{Scan, ScannedPlant, WorstPlant};
 use super::{Evidence, PlantPoint, SpecificationFinding, Verdict, ViolatedBand, WorstCase};
 use crate::family::Family;
 use crate::specification::Specification;
+use phea_dynamics::order::sort_by_number;
 
 /// Violations below this are due to rounding, dB.
 const ROUNDING_DB: f64 = 1e-9;
@@ -109,7 +110,7 @@ pub(super) fn local_minima(envelope: &[EnvelopePoint]) -> Vec<[f64; 3]> {
             _ => None,
         })
         .collect();
-    minima.sort_by(|left, right| left.0.total_cmp(&right.0));
+    sort_by_number(&mut minima, |minimum| minimum.0);
     minima.into_iter().map(|minimum| minimum.1).collect()
 }
 

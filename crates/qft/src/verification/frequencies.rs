@@ -3,6 +3,7 @@
 use num_complex::Complex64;
 use phea_dynamics::frequency::logarithmic_grid;
 use phea_dynamics::linear::{Polynomial, TimeDomain, TransferFunction};
+use phea_dynamics::order::sorted_distinct;
 use phea_dynamics::portable;
 
 use super::asymptote;
@@ -190,9 +191,7 @@ pub(super) fn common_grid<'a>(
         grid.extend((1..=TURNS_MAXIMUM).map(|turn| TURN / turning * turn as f64));
     }
     grid.retain(|frequency| band[0] <= *frequency && *frequency <= band[1]);
-    grid.sort_by(f64::total_cmp);
-    grid.dedup();
-    grid
+    sorted_distinct(grid)
 }
 
 fn spaced([from, to]: [f64; 2], per_decade: f64) -> Vec<f64> {

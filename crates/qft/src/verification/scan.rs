@@ -2,6 +2,7 @@
 //! each plant between them.
 
 use num_complex::Complex64;
+use phea_dynamics::order::sort_by_number;
 use phea_dynamics::portable;
 
 use super::PlantPoint;
@@ -90,7 +91,7 @@ impl Scan {
         let mut peaks = self.peaks.get(criterion).cloned().unwrap_or_default();
         let highest = peaks.iter().map(|peak| peak.excess).fold(0.0, f64::max);
         peaks.retain(|peak| peak.excess >= WORTH_POLISHING * highest);
-        peaks.sort_by(|left, right| right.excess.total_cmp(&left.excess));
+        sort_by_number(&mut peaks, |peak| -peak.excess);
         peaks
     }
 
@@ -150,7 +151,7 @@ impl Scan {
                 samples.push(self.sample(evaluator, plant, index, frequency, &at));
             }
         }
-        samples.sort_by(|left, right| left.frequency.total_cmp(&right.frequency));
+        sort_by_number(&mut samples, |sample| sample.frequency);
         // a duplicate frequency would hide one side of a peak
         samples.dedup_by(|next, kept| next.frequency == kept.frequency);
         if !plant.features.complete {

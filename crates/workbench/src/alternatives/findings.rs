@@ -9,6 +9,7 @@ use super::{
     MovedRange,
 };
 use crate::design::status_sentence;
+use crate::grouped::grouped;
 use crate::project::{AS_DECLARED, ImpedanceForm, LINEAR_PARAMETERS};
 use crate::quantity::{DisplayUnit, MotionKind, fitting, significant};
 use crate::trial::Agreement;
@@ -126,25 +127,18 @@ fn tried(judged: &[JudgedAlternative]) -> String {
 /// Each sentence once, behind the names of all that it holds for; of most of them, of those that it does
 /// not hold for.
 fn shared<'a>(judged: &'a [JudgedAlternative], told: impl Iterator<Item = (&'a str, String)>) -> Vec<String> {
-    let mut sentences: Vec<(Vec<&str>, String)> = Vec::new();
-    for (name, sentence) in told {
-        match sentences.iter_mut().find(|(_, known)| *known == sentence) {
-            Some((names, _)) => names.push(name),
-            None => sentences.push((vec![name], sentence)),
-        }
-    }
     let others = |names: &[&str]| {
         let others = judged.iter().map(|one| one.name.as_str()).filter(|name| !names.contains(name));
         others.collect::<Vec<_>>()
     };
-    let words = |(names, sentence): (Vec<&str>, String)| match others(&names).as_slice() {
+    let words = |(sentence, names): (String, Vec<&str>)| match others(&names).as_slice() {
         [] if names.len() > 1 => format!("all: {sentence}"),
         others if names.len() > 3 * others.len() && names.len() > 3 => {
             format!("all but {}: {sentence}", others.join(", "))
         }
         _ => format!("{}: {sentence}", names.join(", ")),
     };
-    sentences.into_iter().map(words).collect()
+    grouped(told.map(|(name, sentence)| (sentence, name))).into_iter().map(words).collect()
 }
 
 /// What the machine contradicts, what the verdict leaves out, and why nothing was driven.

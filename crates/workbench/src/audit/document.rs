@@ -11,6 +11,7 @@ use super::{
 use crate::answer::significant;
 use crate::document::{Cell, Document, StatusMark, Table};
 use crate::figure::Figure;
+use crate::grouped::grouped;
 use crate::quantity::DisplayUnit;
 use crate::trial::{self, Trial};
 
@@ -136,15 +137,8 @@ fn not_proven(view: &ProjectAudit, proof: &Proof) -> Vec<String> {
     let named =
         proof.specifications.iter().enumerate().map(|(index, own)| (view.numbered(index), &own.standing));
     let all = std::iter::once(("stability".to_string(), &proof.stability)).chain(named);
-    let mut told: Vec<(String, Vec<String>)> = vec![];
-    for (name, standing) in all {
-        let Some(reason) = why_not_proven(view, proof, standing) else { continue };
-        match told.iter_mut().find(|(known, _)| *known == reason) {
-            Some((_, names)) => names.push(name),
-            None => told.push((reason, vec![name])),
-        }
-    }
-    told.into_iter().map(|(reason, names)| format!("{}: {reason}", names.join(", "))).collect()
+    let told = all.filter_map(|(name, standing)| Some((why_not_proven(view, proof, standing)?, name)));
+    grouped(told).into_iter().map(|(reason, names)| format!("{}: {reason}", names.join(", "))).collect()
 }
 
 fn mark_of(standing: &Standing) -> StatusMark {
@@ -215,15 +209,9 @@ pub(crate) fn basis(view: &ProjectAudit) -> Vec<String> {
 
 /// Each remark once, with the specifications that it concerns.
 fn remarks(view: &ProjectAudit) -> Vec<String> {
-    let mut found: Vec<(String, Vec<String>)> = Vec::new();
-    for (index, finding) in view.audit.specifications.iter().enumerate() {
-        for remark in remark_sentences(finding, &view.names) {
-            let name = view.numbered(index);
-            match found.iter_mut().find(|(text, _)| *text == remark) {
-                Some((_, names)) => names.push(name),
-                None => found.push((remark, vec![name])),
-            }
-        }
-    }
-    found.into_iter().map(|(remark, names)| format!("{}: {remark}", names.join(", "))).collect()
+    let found = view.audit.specifications.iter().enumerate().flat_map(|(index, finding)| {
+        let remarks = remark_sentences(finding, &view.names).into_iter();
+        remarks.map(move |remark| (remark, view.numbered(index)))
+    });
+    grouped(found).into_iter().map(|(remark, names)| format!("{}: {remark}", names.join(", "))).collect()
 }

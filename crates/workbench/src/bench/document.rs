@@ -1,46 +1,27 @@
 //! The tests of the bench for people.
 
-use super::answer::{range, signals};
+use super::answer::recorded;
 use super::{BenchRun, BenchSeries, FrictionRun, ReversalReading, friction};
 use crate::answer::significant;
-use crate::document::{Cell, Document, Table};
+use crate::document::Document;
 use crate::project::Loaded;
-use crate::quantity::{PRESSURE, TIME, display};
+use crate::quantity::{PRESSURE, display};
 
 /// A table for each test.
 pub fn text(loaded: &Loaded, remarks: &[&str], runs: &[BenchRun], of_friction: &[FrictionRun]) -> String {
     let mut out = Document::default();
     out.sentences(remarks.iter().map(|remark| remark.to_string()));
     for run in runs {
-        let rows = signals(run).into_iter().map(|signal| {
-            let [least, most] = range(run, &signal);
-            [
-                Cell::from(signal.quantity),
-                Cell::number(signal.unit.of(least), 4),
-                Cell::number(signal.unit.of(most), 4),
-                Cell::from(signal.unit.symbol),
-            ]
-        });
-        out.section(title(run.series), Table::new(["recorded", "least", "most", "unit"]).with(rows));
-        let duration = run.rows.last().map_or(0.0, |row| row.time);
-        out.sentences([format!("{} rows in {}.", run.rows.len(), display(duration, &TIME, 4))]);
+        recorded(run).tell(4, &mut out);
         out.sentences(sag(loaded, run));
         if run.series == BenchSeries::Reversals {
             out.sentences(reversals(run.reversals.as_ref()));
         }
     }
-    friction::tell(of_friction, &mut out);
-    out.text()
-}
-
-fn title(series: BenchSeries) -> &'static str {
-    match series {
-        BenchSeries::Leakage => "Internal leakage, ports blocked (ISO 10770-1, 8.1.3)",
-        BenchSeries::Metering => "Metering, ports joined through a meter (ISO 10770-1, 8.1.4)",
-        BenchSeries::PressureGain => "Pressure gain around null, ports blocked",
-        BenchSeries::LowFlowMetering => "Metering with the meter of small flows (ISO 10770-1, 8.1.4)",
-        BenchSeries::Reversals => "Hysteresis and threshold, ports joined through a meter (ISO 10770-1)",
+    for run in of_friction {
+        friction::recorded(run).tell(6, &mut out);
     }
+    out.text()
 }
 
 /// That the pump did not keep the pressure.

@@ -1,20 +1,29 @@
 //! The tests of a line: text, JSON and tables.
 
-use std::io;
-
-use crate::answer::{NumberTable, Object, OutputFile, TableFormat};
-use crate::document::{Cell, Document, Table};
+use super::table::{BenchColumn, BenchTable};
+use crate::answer::{Object, OutputFile};
+use crate::document::Document;
 use crate::line_test::{LineRun, LineSeries};
-use crate::quantity::{DisplayUnit, TIME, display};
+use crate::quantity::DisplayUnit;
 
-/// What enters the line in a test: in words, its column, its unit in the table and the factor to it.
-fn input(series: LineSeries) -> (&'static str, &'static str, &'static str, f64) {
-    match series {
-        LineSeries::PressureRise => ("volume displaced into the line", "volume_ml", "mL", 1e6),
+/// What a test records.
+fn recorded(run: &LineRun) -> BenchTable {
+    let litres = DisplayUnit::LITRE_PER_MINUTE;
+    let (name, quantity, unit, factor, si) = match run.series {
+        LineSeries::PressureRise => ("volume_ml", "volume displaced into the line", "mL", 1e6, "m3"),
         LineSeries::FrequencyResponse => {
-            let unit = DisplayUnit::LITRE_PER_MINUTE;
-            ("flow into the line", "flow_l_per_min", unit.symbol, unit.of(1.0))
+            ("flow_l_per_min", "flow into the line", litres.symbol, litres.of(1.0), "m3/s")
         }
+    };
+    let shown = run.inputs.iter().map(|input| factor * input).collect();
+    let input = BenchColumn { name, quantity, unit, shown, si, values: run.inputs.clone() };
+    let names = ["pressure_bar", "pressure at the open end", "Pa"];
+    let pressure = BenchColumn::of(names, DisplayUnit::BAR, run.pressures.clone());
+    BenchTable {
+        name: run.series.name(),
+        title: title(run.series),
+        times: run.times.clone(),
+        columns: vec![input, pressure],
     }
 }
 
@@ -22,19 +31,7 @@ fn input(series: LineSeries) -> (&'static str, &'static str, &'static str, f64) 
 pub fn line_text(runs: &[LineRun]) -> String {
     let mut out = Document::default();
     for run in runs {
-        let (name, _, unit, factor) = input(run.series);
-        let bar = DisplayUnit::BAR;
-        let signals = [
-            (name, &run.inputs, factor, unit),
-            ("pressure at the open end", &run.pressures, bar.of(1.0), bar.symbol),
-        ];
-        let rows = signals.map(|(name, values, factor, unit)| {
-            let [least, most] = ends(values).map(|value| Cell::number(factor * value, 4));
-            [Cell::from(name), least, most, Cell::from(unit)]
-        });
-        out.section(title(run.series), Table::new(["recorded", "least", "most", "unit"]).with(rows));
-        let duration = run.times.last().copied().unwrap_or(0.0);
-        out.sentences([format!("{} rows in {}.", run.times.len(), display(duration, &TIME, 4))]);
+        recorded(run).tell(4, &mut out);
     }
     if runs.is_empty() { String::new() } else { format!("\n{}", out.text()) }
 }
@@ -46,46 +43,18 @@ fn title(series: LineSeries) -> &'static str {
     }
 }
 
-fn ends(values: &[f64]) -> [f64; 2] {
-    let all = || values.iter().copied();
-    [all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max)]
-}
-
 /// A test in JSON.
 pub(super) fn line_test(run: &LineRun) -> Object {
-    Object::new()
-        .with("name", run.series.name())
-        .with("file", file_name(run))
-        .with("rows", run.times.len())
-        .with("duration_s", run.times.last().copied())
-        .with(
-            match run.series {
-                LineSeries::PressureRise => "volume_m3",
-                LineSeries::FrequencyResponse => "flow_m3_per_s",
-            },
-            ends(&run.inputs),
-        )
-        .with("pressure_pa", ends(&run.pressures))
-}
-
-fn file_name(run: &LineRun) -> String {
-    format!("{}.csv", run.series.name())
+    let table = recorded(run);
+    let input = match run.series {
+        LineSeries::PressureRise => "volume_m3",
+        LineSeries::FrequencyResponse => "flow_m3_per_s",
+    };
+    let columns = [input, "pressure_pa"].into_iter().zip(&table.columns);
+    columns.fold(table.json(), |out, (key, column)| out.with(key, column.range()))
 }
 
 /// The tables, a file for each test.
 pub fn line_files(runs: &[LineRun]) -> Vec<OutputFile> {
-    // nothing that is written to memory can fail
-    runs.iter()
-        .map(|run| OutputFile { name: file_name(run), bytes: table(run).unwrap_or_default() })
-        .collect()
-}
-
-fn table(run: &LineRun) -> io::Result<Vec<u8>> {
-    let (_, column, _, factor) = input(run.series);
-    let columns = ["time_s", column, "pressure_bar"];
-    let mut table = NumberTable::new(Vec::new(), TableFormat::Csv, &columns)?;
-    for ((time, input), pressure) in run.times.iter().zip(&run.inputs).zip(&run.pressures) {
-        table.row(&[*time, factor * input, DisplayUnit::BAR.of(*pressure)])?;
-    }
-    table.finish()
+    runs.iter().map(|run| recorded(run).file()).collect()
 }

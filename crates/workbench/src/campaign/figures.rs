@@ -31,7 +31,7 @@ pub(crate) fn pictures(plan: &Plan, summary: &Summary) -> Result<Vec<Figure>, Ca
             format!("Enlarged: {}", cause_words(window)),
             format!(
                 "The bands around what begins it, and the run with the worst {}.",
-                worst_words(window, plan.is_open_loop())
+                worst_metric(window, plan.is_open_loop())[1]
             ),
         );
         let span = around(window, end);
@@ -40,30 +40,22 @@ pub(crate) fn pictures(plan: &Plan, summary: &Summary) -> Result<Vec<Figure>, Ca
     Ok(figures)
 }
 
-/// The metric by which a window's worst run is chosen.
-fn worst_metric(window: &Window, open_loop: bool) -> &'static str {
+/// The metric by which a window's worst run is chosen, and what it is of.
+fn worst_metric(window: &Window, open_loop: bool) -> [&'static str; 2] {
     match window.cause {
-        _ if open_loop => "force_peak_n",
-        Cause::ReferenceStep { .. } => "overshoot_percent",
-        Cause::ReferenceMotion { .. } => "tracking_error_peak_n",
-        Cause::CommandStep { .. } | Cause::CommandMotion { .. } => "force_peak_n",
-        Cause::LoadMotion | Cause::ExternalForce | Cause::SettingChange => "disturbance_peak_n",
-    }
-}
-
-fn worst_words(window: &Window, open_loop: bool) -> &'static str {
-    match window.cause {
-        _ if open_loop => "force",
-        Cause::ReferenceStep { .. } => "overshoot",
-        Cause::ReferenceMotion { .. } => "tracking error",
-        Cause::CommandStep { .. } | Cause::CommandMotion { .. } => "force",
-        Cause::LoadMotion | Cause::ExternalForce | Cause::SettingChange => "disturbance",
+        _ if open_loop => ["force_peak_n", "force"],
+        Cause::ReferenceStep { .. } => ["overshoot_percent", "overshoot"],
+        Cause::ReferenceMotion { .. } => ["tracking_error_peak_n", "tracking error"],
+        Cause::CommandStep { .. } | Cause::CommandMotion { .. } => ["force_peak_n", "force"],
+        Cause::LoadMotion | Cause::ExternalForce | Cause::SettingChange => {
+            ["disturbance_peak_n", "disturbance"]
+        }
     }
 }
 
 /// The complete force of a window's worst run.
 fn worst_series(plan: &Plan, summary: &Summary, index: usize) -> Result<Option<TimeSeries>, CampaignError> {
-    let metric = plan.windows().get(index).map(|window| worst_metric(window, plan.is_open_loop()));
+    let metric = plan.windows().get(index).map(|window| worst_metric(window, plan.is_open_loop())[0]);
     let place = METRIC_NAMES.iter().position(|name| Some(*name) == metric);
     let spread = place.and_then(|place| summary.metrics.get(index).and_then(|spreads| spreads[place]));
     let Some((_, run)) = spread.map(|spread| spread.worst) else { return Ok(None) };

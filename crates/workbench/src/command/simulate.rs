@@ -1,16 +1,15 @@
 //! `simulate`: scenarios, or a frequency response.
 
-use super::{CommandError, Watch, error_words};
+use super::{CommandError, Watch, positive};
 use crate::answer::{Answer, OutputFile, TableFormat, picture_files};
 use crate::project::Loaded;
-use crate::quantity::{self, ANGULAR_FREQUENCY, Dimension, FORCE, VOLTAGE};
+use crate::quantity::{ANGULAR_FREQUENCY, Dimension, FORCE, VOLTAGE};
 use crate::setup::Setup;
 use crate::simulate::{
     FrequencyRequest, RunOutput, ScenarioRun, figure_files, files, frequency_files, frequency_json,
     frequency_pictures, frequency_response, frequency_text, json, simulate_checked, simulate_into, text,
 };
 use crate::source::{Destination, Source};
-use phea_engineering::error::ProcedureError;
 
 /// What is asked of `simulate`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -41,7 +40,7 @@ impl FrequencyOptions {
     /// The request, in SI.
     ///
     /// # Errors
-    /// [`ProcedureError::Option`] for a text that is not a positive quantity of its kind.
+    /// [`CommandError`] for a text that is not a positive quantity of its kind.
     ///
     /// # Example
     /// ```
@@ -131,20 +130,4 @@ pub(super) fn frequencies(text: &str) -> Result<Vec<f64>, CommandError> {
 
 fn is_number(text: &str) -> bool {
     text.trim().parse::<f64>().is_ok()
-}
-
-/// A positive number in SI, bare or with its unit.
-fn positive(
-    option: &'static str,
-    text: &str,
-    part: &str,
-    dimension: &'static Dimension,
-) -> Result<f64, CommandError> {
-    let refuse = |message: String| ProcedureError::Option { option, text: text.to_string(), message };
-    let bare = part.parse::<f64>().ok().filter(|value| value.is_finite());
-    let value = match bare {
-        Some(value) => value,
-        None => quantity::parse(part, dimension).map_err(|error| refuse(error_words(&error, dimension)))?,
-    };
-    if value > 0.0 { Ok(value) } else { Err(refuse("must be positive".to_string()).into()) }
 }

@@ -1,5 +1,6 @@
 use std::collections::BTreeMap;
 
+use phea_dynamics::order::sort_by_number;
 use phea_hydraulics::servovalve::{LeakageModel, StaticCoefficients};
 use serde::Serialize;
 
@@ -8,7 +9,7 @@ use super::numbers;
 use super::region::{FoundRegion, RegionBody, body};
 use super::{Bootstrap, COEFFICIENT_NAMES, ExplainedBy, Identification, Read, Untold};
 use crate::answer::{self, Number, OutputFile, in_toml};
-use crate::project::Loaded;
+use crate::project::{LEAKAGE_MODELS, Loaded, word_of};
 
 #[derive(Serialize)]
 struct IdentifyAnswer<'a> {
@@ -179,10 +180,7 @@ pub fn json(
 
 /// The name of a model in the project file.
 pub(super) fn word(model: LeakageModel) -> &'static str {
-    match model {
-        LeakageModel::EachEdge => "each_edge",
-        LeakageModel::OneCurve => "one_curve",
-    }
+    word_of(&LEAKAGE_MODELS, &model)
 }
 
 fn model(explained: &ExplainedBy) -> ModelBody {
@@ -229,7 +227,7 @@ pub(super) fn correlations(found: &Identification) -> Vec<([&'static str; 2], f6
             (told && correlation.abs() > REMARKABLE).then_some((both, correlation))
         })
         .collect();
-    listed.sort_by(|(_, first), (_, second)| second.abs().total_cmp(&first.abs()));
+    sort_by_number(&mut listed, |(_, correlation)| -correlation.abs());
     listed
 }
 

@@ -1,5 +1,6 @@
 //! The figures of chapter 5 of the thesis, from recordings and the valve that explains them.
 
+use phea_dynamics::order::sort_by_number;
 use phea_hydraulics::servovalve::{PortCircuit, TestOutput};
 
 use super::{Identification, Recording, SignalFit, SignalKind};
@@ -181,7 +182,7 @@ fn over_command(
 ) -> Vec<(f64, f64)> {
     let point = |row: usize| Some((percent(found, recording.inputs.get(row)?.command), of(row)?));
     let mut points: Vec<(f64, f64)> = rows_of(recording, rising).into_iter().filter_map(point).collect();
-    points.sort_by(|(first, _), (second, _)| first.total_cmp(second));
+    sort_by_number(&mut points, |point| point.0);
     points
 }
 

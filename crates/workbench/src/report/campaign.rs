@@ -13,6 +13,7 @@ use crate::campaign::{
 use crate::document::{Cell, Document, StatusMark, Table};
 use crate::error::CommandError;
 use crate::figure::Figure;
+use crate::grouped::grouped;
 use crate::project::{Distribution, Loaded};
 use crate::simulate::{Window, cause_words, metric_of};
 use crate::source::Source;
@@ -171,14 +172,7 @@ fn drawn(out: &mut Document, plan: &Plan, summary: &Summary) {
 
 /// How the numbers are distributed, in sentences.
 fn distributions(plan: &Plan) -> String {
-    let mut known: Vec<(&str, Vec<&str>)> = Vec::new();
-    for range in plan.ranges() {
-        let word = range.distribution_word();
-        match known.iter_mut().find(|(other, _)| *other == word) {
-            Some((_, paths)) => paths.push(&range.path),
-            None => known.push((word, vec![&range.path])),
-        }
-    }
+    let known = grouped(plan.ranges().iter().map(|range| (range.distribution_word(), range.path.as_str())));
     let plain = |word: &str| word.replace('_', "-");
     match known.as_slice() {
         [(word, _)] => format!("Every distribution is {}.", plain(word)),

@@ -2,6 +2,7 @@
 
 use phea_dynamics::frequency::decibels;
 use phea_dynamics::linear::LinearError;
+use phea_dynamics::order::sorted_distinct;
 use phea_dynamics::portable;
 use phea_qft::closed_loop::Member;
 use phea_qft::specification::{Limit, Requirement, Specification};
@@ -133,9 +134,7 @@ fn frequencies(seen: &[&LoopFamily<'_>], index: usize, specification: &Specifica
         let audited = one.finding(index).into_iter().flat_map(|found| &found.envelope);
         frequencies.extend(audited.map(|point| point.0).filter(|w| (from..=to).contains(w)));
     }
-    frequencies.sort_by(f64::total_cmp);
-    frequencies.dedup();
-    frequencies
+    sorted_distinct(frequencies)
 }
 
 /// One figure for each specification that has a margin.

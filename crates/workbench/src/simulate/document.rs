@@ -279,41 +279,35 @@ fn beyond_words(beyond: &BeyondExpansion) -> String {
 }
 
 fn occurrence_words(occurrence: &Occurrence) -> String {
-    let (begins, ends) = match occurrence.kind {
-        "cavitation_a" => ("chamber A cavitates", "chamber A is above vapour pressure again"),
-        "cavitation_b" => ("chamber B cavitates", "chamber B is above vapour pressure again"),
-        "end_stop_a" => ("the piston reaches the end of chamber A", "the piston leaves the end of chamber A"),
-        "end_stop_b" => ("the piston reaches the end of chamber B", "the piston leaves the end of chamber B"),
-        "empty_a" => ("chamber A has no volume left", "chamber A has volume again"),
-        "empty_b" => ("chamber B has no volume left", "chamber B has volume again"),
-        "load_contact" => ("the load touches the wall", "the load leaves the wall"),
-        "accumulator_empty_a" => {
-            ("the gas at chamber A is shut off: below the precharge", "the gas at chamber A is in use again")
+    let Occurrence { kind, time_s, begins } = *occurrence;
+    let of_chamber = [("_a", "A"), ("_b", "B")];
+    let of_chamber = of_chamber.iter().find_map(|(end, chamber)| Some((kind.strip_suffix(end)?, *chamber)));
+    let (kind, chamber) = of_chamber.unwrap_or((kind, ""));
+    let [first, then] = match kind {
+        "cavitation" => ["chamber # cavitates", "chamber # is above vapour pressure again"],
+        "end_stop" => ["the piston reaches the end of chamber #", "the piston leaves the end of chamber #"],
+        "empty" => ["chamber # has no volume left", "chamber # has volume again"],
+        "load_contact" => ["the load touches the wall", "the load leaves the wall"],
+        "accumulator_empty" => {
+            ["the gas at chamber # is shut off: below the precharge", "the gas at chamber # is in use again"]
         }
-        "accumulator_empty_b" => {
-            ("the gas at chamber B is shut off: below the precharge", "the gas at chamber B is in use again")
-        }
-        "accumulator_overpressure_a" => (
-            "the gas at chamber A is above its maximum_pressure_ratio",
-            "the gas at chamber A is within its maximum_pressure_ratio again",
-        ),
-        "accumulator_overpressure_b" => (
-            "the gas at chamber B is above its maximum_pressure_ratio",
-            "the gas at chamber B is within its maximum_pressure_ratio again",
-        ),
-        "series_end" => (
+        "accumulator_overpressure" => [
+            "the gas at chamber # is above its maximum_pressure_ratio",
+            "the gas at chamber # is within its maximum_pressure_ratio again",
+        ],
+        "series_end" => [
             "the series spring reaches the end of its travel",
             "the series spring is within its travel again",
-        ),
-        "cavitation_transmission" => (
+        ],
+        "cavitation_transmission" => [
             "the oil of the transmission cavitates",
             "the pressure in the transmission is above vapour pressure again",
-        ),
-        "supply_lost" => ("the supply falls below the tank", "the supply is above the tank again"),
-        _ => ("the command reaches its limit", "the command leaves its limit"),
+        ],
+        "supply_lost" => ["the supply falls below the tank", "the supply is above the tank again"],
+        _ => ["the command reaches its limit", "the command leaves its limit"],
     };
-    let what = if occurrence.begins { begins } else { ends };
-    format!("{} s: {what}", DisplayUnit::SECOND.number(occurrence.time_s, 5))
+    let what = if begins { first } else { then }.replace('#', chamber);
+    format!("{} s: {what}", DisplayUnit::SECOND.number(time_s, 5))
 }
 
 /// The tables of `compare`: a row for each metric, a column for each project; projects that were not begun are named.

@@ -5,6 +5,7 @@ use super::{Candidate, Consequence, Influence, OtherMeans, SizedValve, Sizing, m
 use crate::answer::significant;
 use crate::document::{Cell, Document, StatusMark, Table};
 use crate::figure::Figure;
+use crate::grouped::grouped;
 use crate::quantity::{DisplayUnit, LENGTH, MASS, PRESSURE, VOLUME, display};
 
 /// The tables and sentences of `size`.
@@ -141,19 +142,8 @@ fn answer_sentence(best: Option<&Candidate>) -> String {
 /// Candidates of one hose with the same findings, so that these are stated once; in the order of
 /// the first of each.
 fn alike(candidates: &[Candidate]) -> Vec<Vec<&Candidate>> {
-    let mut groups: Vec<Vec<&Candidate>> = Vec::new();
-    for candidate in candidates {
-        let same = |group: &&mut Vec<&Candidate>| {
-            group.first().is_some_and(|first| {
-                first.option.name == candidate.option.name && first.findings == candidate.findings
-            })
-        };
-        match groups.iter_mut().find(same) {
-            Some(group) => group.push(candidate),
-            None => groups.push(vec![candidate]),
-        }
-    }
-    groups
+    let all = candidates.iter().map(|one| ((&one.option.name, &one.findings), one));
+    grouped(all).into_iter().map(|(_, group)| group).collect()
 }
 
 /// The common objections to these candidates.

@@ -2,6 +2,7 @@
 
 use super::Profile;
 use super::piece::{PieceShape, ProfilePiece};
+use crate::order::sorted_distinct;
 
 impl Profile {
     /// The sum of functions; nothing sums to zero. It breaks where one of them does.
@@ -20,9 +21,7 @@ impl Profile {
     /// ```
     #[must_use]
     pub fn sum(profiles: &[Profile]) -> Profile {
-        let mut breaks: Vec<f64> = profiles.iter().flat_map(Profile::breaks).collect();
-        breaks.sort_by(f64::total_cmp);
-        breaks.dedup();
+        let breaks = sorted_distinct(profiles.iter().flat_map(Profile::breaks).collect());
         let none = ProfilePiece::new(PieceShape::Constant { value: 0.0 });
         let total = |of: &dyn Fn(&Profile) -> ProfilePiece| {
             profiles.iter().fold(none.clone(), |sum, profile| sum.plus(&of(profile)))

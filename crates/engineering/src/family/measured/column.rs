@@ -1,29 +1,25 @@
 //! What the columns of a measurement hold, by their names.
 
 use crate::project::{Findings, RawFinding};
-use crate::quantity::{ANGLE, ANGULAR_FREQUENCY, Dimension, GAIN, RATIO};
+use crate::quantity::{ANGLE, ANGULAR_FREQUENCY, GAIN, RATIO};
 use crate::table::{Column, Measurand, MeasuredTable, Sought};
 
 /// What a column may hold. A pair of magnitude and phase, or of real and imaginary part, is a
 /// response.
 static MEASURANDS: [Measurand; 12] = [
-    measurand("frequency", &ANGULAR_FREQUENCY),
-    measurand("magnitude", &GAIN),
-    measurand("phase", &ANGLE),
-    measurand("real", &RATIO),
-    measurand("imaginary", &RATIO),
-    measurand("load_motion_magnitude", &GAIN),
-    measurand("load_motion_phase", &ANGLE),
-    measurand("load_motion_real", &RATIO),
-    measurand("load_motion_imaginary", &RATIO),
-    measurand("coherence", &RATIO),
-    measurand("standard_deviation", &RATIO),
-    measurand("confidence_95", &RATIO),
+    Measurand::of("frequency", &ANGULAR_FREQUENCY),
+    Measurand::of("magnitude", &GAIN),
+    Measurand::of("phase", &ANGLE),
+    Measurand::of("real", &RATIO),
+    Measurand::of("imaginary", &RATIO),
+    Measurand::of("load_motion_magnitude", &GAIN),
+    Measurand::of("load_motion_phase", &ANGLE),
+    Measurand::of("load_motion_real", &RATIO),
+    Measurand::of("load_motion_imaginary", &RATIO),
+    Measurand::of("coherence", &RATIO),
+    Measurand::of("standard_deviation", &RATIO),
+    Measurand::of("confidence_95", &RATIO),
 ];
-
-const fn measurand(name: &'static str, dimension: &'static Dimension) -> Measurand {
-    Measurand { name, symbol: None, dimension, may_be_share: false }
-}
 
 /// How a response is written.
 #[derive(Clone, Debug)]

@@ -3,6 +3,7 @@
 use std::f64::consts::{LN_2, PI};
 
 use nalgebra::{DMatrix, DVector};
+use phea_dynamics::order::{sort_by_number, sort_numbers};
 use phea_dynamics::portable;
 use phea_dynamics::spectrum::Transform;
 use phea_hydraulics::friction::{TRENDS, trends};
@@ -68,7 +69,7 @@ pub(super) fn sines(signals: [&Vec<f64>; 2]) -> Option<Vec<f64>> {
             let is_one = is_apart && angle > FEWEST_PERIODS * line && more.len() < MOST_SINES;
             more.extend(is_one.then_some(angle));
         }
-        more.sort_by(f64::total_cmp);
+        sort_numbers(&mut more);
         if more.len() == angles.len() {
             break;
         }
@@ -104,7 +105,7 @@ fn peaks(power: &[f64], enough: f64) -> Vec<f64> {
         .filter(|(_, three)| three[1] > enough && three[1] >= three[0] && three[1] > three[2])
         .map(|(before, three)| (three[1], before + 1))
         .collect();
-    peaks.sort_by(|one, other| other.0.total_cmp(&one.0));
+    sort_by_number(&mut peaks, |peak| -peak.0);
     peaks.into_iter().map(|(_, line)| PI * line as f64 / power.len() as f64).collect()
 }
 

@@ -1,6 +1,7 @@
 //! Slopes at null: flow gain and pressure sensitivity.
 
 use phea_dynamics::least_squares::{Linearised, Settings, minimise, uncertainty};
+use phea_dynamics::order::sort_by_number;
 use phea_hydraulics::servovalve::{PortCircuit, TestedValve, flow_coefficient_from_rating};
 
 use super::straight_line::straight_line;
@@ -34,8 +35,7 @@ pub(super) fn flow_gains(
 ) -> [Option<CurveReading>; 2] {
     let mut metered: Vec<&Recording> =
         recordings.iter().filter(|one| one.circuit == PortCircuit::Connected).collect();
-    let largest = |one: &Recording| largest_command(std::slice::from_ref(one));
-    metered.sort_by(|first, second| largest(first).total_cmp(&largest(second)));
+    sort_by_number(&mut metered, |one| largest_command(std::slice::from_ref(*one)));
     let null = null.unwrap_or(0.0);
     let of = |recording: &Recording| {
         [1.0, -1.0].map(|sign| {

@@ -1,6 +1,7 @@
 //! The peak of the leakage, and where the curve is half as high.
 
 use super::CurveReading;
+use phea_dynamics::order::sort_by_number;
 
 /// The curve of the leakage: its base, its peak, and the noise of a row.
 pub(super) struct Flank {
@@ -19,7 +20,7 @@ impl Flank {
     /// height.
     pub(super) fn half_height(&self, points: &[(f64, f64)]) -> Option<[CurveReading; 2]> {
         let mut sorted = points.to_vec();
-        sorted.sort_by(|(first, _), (second, _)| first.total_cmp(second));
+        sort_by_number(&mut sorted, |point| point.0);
         let ends = crossings(&sorted, self.height(0.5))?;
         let quarters = [0.25, 0.75].map(|share| crossings(&sorted, self.height(share)));
         let deviation = |side: usize| {
@@ -47,7 +48,7 @@ fn crossings(sorted: &[(f64, f64)], height: f64) -> Option<[f64; 2]> {
 /// Highest mean of a twenty-fourth of these rows, neighbours over the command.
 pub(super) fn peak(points: &[(f64, f64)], noise: f64) -> Option<CurveReading> {
     let mut sorted = points.to_vec();
-    sorted.sort_by(|(first, _), (second, _)| first.total_cmp(second));
+    sort_by_number(&mut sorted, |point| point.0);
     let width = (sorted.len() / 24).max(1);
     let means =
         sorted.windows(width).map(|rows| rows.iter().map(|(_, leak)| leak).sum::<f64>() / width as f64);

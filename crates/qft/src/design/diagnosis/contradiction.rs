@@ -13,6 +13,8 @@
 use std::f64::consts::PI;
 
 use num_complex::Complex64;
+use phea_dynamics::frequency::decibels;
+use phea_dynamics::order::{sort_by_number, sorted_distinct};
 use phea_dynamics::portable;
 
 use super::candidate::PlantWithinLoop;
@@ -59,8 +61,7 @@ pub(super) fn contradictions(
         .copied()
         .collect();
     frequencies.retain(|frequency| boundary.plane.place(*frequency).is_finite());
-    frequencies.sort_by(f64::total_cmp);
-    frequencies.dedup();
+    let frequencies = sorted_distinct(frequencies);
     let skip = frequencies.len().div_ceil(FREQUENCIES_MAXIMUM).max(1);
     let places = frequencies.iter().step_by(skip);
     let mut found: Vec<([f64; 2], Finding)> = places
@@ -70,7 +71,7 @@ pub(super) fn contradictions(
             place.contradiction(largest)
         })
         .collect();
-    found.sort_by(|a, b| b.0[0].total_cmp(&a.0[0]));
+    sort_by_number(&mut found, |one| -one.0[0]);
     found.into_iter().map(|(_, finding)| finding).collect()
 }
 
@@ -224,12 +225,12 @@ impl<'a> DemandedPlants<'a> {
                 sensor: own / plant.plant,
             };
             let size = portable::magnitude(specification.requirement.closed_loop().response(&response));
-            (*point, 20.0 * portable::log10(size))
+            (*point, decibels(size))
         };
         let sizes: Vec<(&PlantPoint, f64)> = self.plants.iter().map(size_db).collect();
         let greatest = sizes.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
         let least = sizes.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
-        let limit_db = 20.0 * portable::log10(demanded(specification, self.frequency)?);
+        let limit_db = decibels(demanded(specification, self.frequency)?);
         let spread = specification.requirement.is_tracking();
         let (size, other, rate) =
             if spread { (greatest.1 - least.1, Some(least.0.clone()), 2.0) } else { (greatest.1, None, 1.0) };
@@ -246,7 +247,7 @@ fn proven_db(high_db: f64, turn: f64, largest_complementary: f64) -> f64 {
     let far = (COVERED / (turn * largest_complementary)).sqrt();
     let factor = portable::pow(10.0, high_db / 20.0).min(far);
     let slack = (1.0 + turn) / (1.0 - turn * largest_complementary * factor * factor);
-    20.0 * portable::log10(factor / slack) - 1e-3
+    decibels(factor / slack) - 1e-3
 }
 
 /// The specification at one frequency alone, its limits relaxed by a factor.

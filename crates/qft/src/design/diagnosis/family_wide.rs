@@ -1,6 +1,7 @@
 //! What no controller can achieve for the family as a whole, or for one plant whatever its limits.
 
 use num_complex::Complex64;
+use phea_dynamics::order::sort_numbers;
 
 use super::candidate::PlantWithinLoop;
 use super::finding::Finding;
@@ -121,7 +122,7 @@ pub(super) fn unstable_controller(candidates: &[PlantWithinLoop]) -> Option<Find
         if is_strictly_proper(candidate) {
             zeros.push(f64::INFINITY);
         }
-        zeros.sort_by(f64::total_cmp);
+        sort_numbers(&mut zeros);
         let poles = real(&candidate.unstable_poles);
         let between = zeros
             .iter()

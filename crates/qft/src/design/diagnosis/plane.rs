@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use num_complex::Complex64;
+use phea_dynamics::order::sort_numbers;
 use phea_dynamics::portable;
 
 /// The open right half plane of s or, for a sampled loop, the half plane to which the outside of
@@ -120,7 +121,7 @@ impl BoundaryCells {
         let mut ends: Vec<f64> =
             (0..=count as u32).map(|index| low * portable::exp(step * f64::from(index))).collect();
         ends.extend(places.iter().filter(|place| **place > low));
-        ends.sort_by(f64::total_cmp);
+        sort_numbers(&mut ends);
         ends.dedup_by(|next, last| *next <= *last * (1.0 + 1e-9));
         let last = ends.last().copied().unwrap_or(low);
         let mut cells = vec![[0.0, low]];

@@ -1,5 +1,6 @@
 //! What is impossible at a single frequency, plant by plant.
 
+use phea_dynamics::frequency::decibels;
 use phea_dynamics::portable;
 
 use super::candidate::PlantWithinLoop;
@@ -12,10 +13,6 @@ use crate::specification::{Requirement, Specification};
 /// The deficit of two limits below which nothing is reported, dB: each verdict tolerates 0.001 dB.
 const TOLERANCE_DB: f64 = 0.002;
 const RELAXATION_MAXIMUM_DB: f64 = 400.0;
-
-fn decibels(ratio: f64) -> f64 {
-    20.0 * portable::log10(ratio)
-}
 
 /// Tracking limits that are crossed, each specification where it is worst, over its design
 /// frequencies and those of the cells.

@@ -1,8 +1,7 @@
 //! Controllers whose coefficients were rounded: what is verified is what is deployed.
 
-use num_complex::Complex64;
 use phea_dynamics::controller::{Compensator, Controller, Element, Section};
-use phea_dynamics::linear::{Polynomial, TimeDomain, TransferFunction};
+use phea_dynamics::linear::{TimeDomain, TransferFunction};
 use phea_dynamics::portable;
 
 use super::QuantizationError;
@@ -34,25 +33,6 @@ pub struct RoundedController {
     pub feedback: Vec<Section>,
     /// F likewise; empty where it acts before the sampling.
     pub prefilter: Vec<Section>,
-    /// What rounding did to G.
-    pub feedback_effect: CoefficientEffect,
-    /// What rounding did to F.
-    pub prefilter_effect: CoefficientEffect,
-}
-
-/// What rounding did to a transfer function.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CoefficientEffect {
-    /// The largest |p' - p|/|1 - p| of a pole p: its shift as a share of its distance from z = 1,
-    /// where slow poles lie.
-    pub largest_pole_shift: f64,
-    /// Gain at zero frequency divided by that before rounding; `None` where it is infinite or zero,
-    /// as with an integrator.
-    pub dc_gain_ratio: Option<f64>,
-}
-
-impl CoefficientEffect {
-    const NONE: CoefficientEffect = CoefficientEffect { largest_pole_shift: 0.0, dc_gain_ratio: Some(1.0) };
 }
 
 impl CoefficientFormat {
@@ -103,10 +83,8 @@ impl CoefficientFormat {
 /// let timing = Timing { sample_time_s: Some(1e-3), ..Timing::default() };
 /// let prefilter = Compensator::new(vec![Element::RealPole { frequency: 20.0 }]);
 /// let controller = Controller { prefilter, timing, ..Controller::default() };
-/// let kept = rounded(&controller, CoefficientFormat::Double)?;
-/// assert_eq!(kept.prefilter_effect.largest_pole_shift, 0.0);
 /// let single = rounded(&controller, CoefficientFormat::Single)?;
-/// let off = single.prefilter_effect.dc_gain_ratio.map_or(1.0, |ratio| (ratio - 1.0).abs());
+/// let off = (single.controller.prefilter.transfer_function()?.dc_gain() - 1.0).abs();
 /// assert!(off > 1e-8 && off < 6e-6); // at most 2^-25 of p over 1 - p, and as much of the numerator
 /// # Ok(())
 /// # }
@@ -127,22 +105,17 @@ pub fn rounded(
         let exact = Section::in_series(&sampled)?;
         let kept =
             exact.iter().map(|section| rounded_section(section, format)).collect::<Result<Vec<_>, _>>()?;
-        let function = in_series(&kept, sample_time_s)?;
-        let effect = CoefficientEffect {
-            largest_pole_shift: largest_pole_shift(&exact, &kept)?,
-            dc_gain_ratio: Some(function.dc_gain() / sampled.dc_gain()).filter(|ratio| ratio.is_finite()),
-        };
-        let function = Compensator::new(vec![Element::General(function)]);
-        Ok::<_, QuantizationError>((function, kept, effect))
+        let function = Compensator::new(vec![Element::General(in_series(&kept, sample_time_s)?)]);
+        Ok::<_, QuantizationError>((function, kept))
     };
-    let (feedback_function, feedback, feedback_effect) = sections(&controller.feedback)?;
-    let (prefilter_function, prefilter, prefilter_effect) = match controller.timing.continuous_prefilter {
-        true => (controller.prefilter.clone(), vec![], CoefficientEffect::NONE),
+    let (feedback_function, feedback) = sections(&controller.feedback)?;
+    let (prefilter_function, prefilter) = match controller.timing.continuous_prefilter {
+        true => (controller.prefilter.clone(), vec![]),
         false => sections(&controller.prefilter)?,
     };
     let controller =
         Controller { feedback: feedback_function, prefilter: prefilter_function, ..controller.clone() };
-    Ok(RoundedController { controller, feedback, prefilter, feedback_effect, prefilter_effect })
+    Ok(RoundedController { controller, feedback, prefilter })
 }
 
 fn rounded_section(section: &Section, format: CoefficientFormat) -> Result<Section, QuantizationError> {
@@ -170,26 +143,6 @@ fn in_series(sections: &[Section], sample_time_s: f64) -> Result<TransferFunctio
     sections
         .iter()
         .try_fold(unity, |product, section| Ok(product.series(&section.transfer_function(sample_time_s)?)?))
-}
-
-fn largest_pole_shift(exact: &[Section], kept: &[Section]) -> Result<f64, QuantizationError> {
-    let mut largest = 0.0_f64;
-    for (before, after) in exact.iter().zip(kept) {
-        let (before, after) = (poles(before)?, poles(after)?);
-        for (pole, moved) in before.iter().zip(&after) {
-            let shift = portable::magnitude(moved - pole);
-            if shift > 0.0 {
-                largest = largest.max(shift / portable::magnitude(1.0 - pole));
-            }
-        }
-    }
-    Ok(largest)
-}
-
-/// Sorted by magnitude.
-fn poles(section: &Section) -> Result<Vec<Complex64>, QuantizationError> {
-    let [a1, a2] = section.denominator;
-    Ok(Polynomial::new(vec![1.0, a1, a2]).roots()?)
 }
 
 fn power_of_two(exponent: f64) -> f64 {

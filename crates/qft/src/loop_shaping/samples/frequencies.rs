@@ -3,6 +3,7 @@
 use num_complex::Complex64;
 use phea_dynamics::frequency::logarithmic_grid;
 use phea_dynamics::linear::Polynomial;
+use phea_dynamics::order::{sort_numbers, sorted_distinct};
 use phea_dynamics::portable;
 
 use super::{FamilyPlant, SamplesError, around, plant_at};
@@ -105,9 +106,7 @@ pub fn search_frequencies(
     }
     let [first, last] = measured_by_all(problem, plants)?;
     grid.retain(|frequency| (first..=last).contains(frequency));
-    grid.sort_by(f64::total_cmp);
-    grid.dedup();
-    Ok(grid)
+    Ok(sorted_distinct(grid))
 }
 
 /// The frequencies around which the response of one plant bends, rad/s: all of them, however
@@ -184,7 +183,7 @@ fn around_root(root: Complex64) -> Vec<f64> {
 
 /// Where frequencies are crowded, some are left out.
 fn thin(frequencies: &mut Vec<f64>) {
-    frequencies.sort_by(f64::total_cmp);
+    sort_numbers(frequencies);
     let mut apart = 1e-3;
     loop {
         let mut last = 0.0;

@@ -41,6 +41,8 @@ impl AdditiveRecurrence {
 
 #[cfg(test)]
 mod tests {
+    use phea_dynamics::order::sort_numbers;
+
     use super::AdditiveRecurrence;
 
     /// In one dimension the step is the golden section, with which any n points leave gaps of at
@@ -53,7 +55,7 @@ mod tests {
         for count in [10, 57, 233] {
             let mut points: Vec<f64> =
                 (0..count).map(|index| spread.point(index, &[[0.0, 1.0]])[0]).collect();
-            points.sort_by(f64::total_cmp);
+            sort_numbers(&mut points);
             let ring =
                 points.windows(2).map(|pair| pair[1] - pair[0]).chain([1.0 + points[0] - points[count - 1]]);
             let widest = ring.fold(0.0, f64::max);

@@ -1,5 +1,6 @@
 use num_complex::Complex64;
 use phea_dynamics::linear::{Polynomial, TimeDomain};
+use phea_dynamics::order::{sort_numbers, sorted_distinct};
 use phea_dynamics::portable::{ln, log10};
 
 use super::super::Limit;
@@ -119,10 +120,7 @@ fn table(limit: &Limit) -> &[(f64, f64)] {
 /// The ends of the band, and between them the points of tables.
 fn pieces(lower: &Limit, upper: &Limit, [from, to]: [f64; 2]) -> Vec<f64> {
     let points = table(lower).iter().chain(table(upper)).map(|point| point.0);
-    let mut ends: Vec<f64> = points.filter(|w| from < *w && *w < to).chain([from, to]).collect();
-    ends.sort_by(f64::total_cmp);
-    ends.dedup();
-    ends
+    sorted_distinct(points.filter(|w| from < *w && *w < to).chain([from, to]).collect())
 }
 
 /// Differences below this are rounding, dB.
@@ -211,7 +209,7 @@ impl<'a> SquaredRatio<'a> {
         // a surplus point does no harm: roots that are real up to rounding count
         let real = slope.roots()?.into_iter().filter(|root| root.re > 0.0 && root.im.abs() <= 1e-6 * root.re);
         let mut frequencies: Vec<f64> = real.map(|root| root.re.sqrt()).collect();
-        frequencies.sort_by(f64::total_cmp);
+        sort_numbers(&mut frequencies);
         Ok(frequencies)
     }
 }

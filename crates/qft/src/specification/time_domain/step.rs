@@ -1,5 +1,6 @@
 use num_complex::Complex64;
 use phea_dynamics::linear::{TimeDomain, TransferFunction};
+use phea_dynamics::order::sort_by_number;
 use phea_dynamics::portable::{ln, magnitude};
 use phea_dynamics::time_response::{Settling, step_response};
 
@@ -117,7 +118,7 @@ fn sample_times(poles: &[Complex64], band: f64) -> Result<Vec<f64>, TimeDomainEr
     let life = 20.0 - ln(band);
     let mut modes: Vec<(f64, f64)> =
         poles.iter().map(|pole| (life / -pole.re, STEP_RAD / magnitude(*pole))).collect();
-    modes.sort_by(|a, b| a.0.total_cmp(&b.0));
+    sort_by_number(&mut modes, |mode| mode.0);
     let damping = poles.iter().map(|pole| -pole.re / magnitude(*pole)).fold(1.0, f64::min);
     let (mut times, mut now) = (vec![0.0], 0.0);
     for (index, &(end, _)) in modes.iter().enumerate() {

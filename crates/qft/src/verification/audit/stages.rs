@@ -1,5 +1,6 @@
 //! What is done in each stage of an audit.
 
+use phea_dynamics::order::sort_by_number;
 use phea_dynamics::portable;
 use phea_dynamics::watch::{Stopped, Watch, tell};
 
@@ -98,7 +99,7 @@ impl SpecificationAudit<'_> {
     /// worst.
     fn look_at_cases(&mut self, number: usize) {
         let Some(cases) = self.cases.get_mut(number) else { return };
-        cases.sort_by(|left, right| left.margin_db.total_cmp(&right.margin_db));
+        sort_by_number(cases, |case| case.margin_db);
         let mut frequencies: Vec<f64> = Vec::new();
         for case in cases.iter() {
             let apart = |other: &f64| (case.frequency / other - 1.0).abs() > FREQUENCY_DISTANCE;

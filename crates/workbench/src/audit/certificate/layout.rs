@@ -9,7 +9,7 @@ use phea_qft::proof::{
 };
 use serde::{Deserialize, Serialize};
 
-use crate::project::Loaded;
+use crate::project::{Loaded, word_of};
 use claims::{Cover, StatedClaim, covers, panels};
 
 /// What the file begins with.
@@ -121,11 +121,17 @@ const UNARY: [(&str, Unary); 5] = [
     ("ln", Unary::Logarithm),
     ("abs", Unary::Magnitude),
 ];
+const BINARY: [(&str, Binary); 4] = [
+    ("add", Binary::Add),
+    ("subtract", Binary::Subtract),
+    ("multiply", Binary::Multiply),
+    ("divide", Binary::Divide),
+];
 /// The third where the first is less than the second, else the fourth.
 const SELECT: &str = "select";
 
-fn unary_name(unary: Unary) -> &'static str {
-    UNARY.iter().find(|(_, known)| *known == unary).map_or("", |(name, _)| name)
+fn named<T: Copy>(table: &[(&str, T)], name: &str) -> Option<T> {
+    table.iter().find(|(known, _)| *known == name).map(|(_, operation)| *operation)
 }
 
 #[derive(Serialize, Deserialize)]
@@ -338,15 +344,11 @@ impl File {
 impl Operation {
     fn of(node: &Node) -> Option<Operation> {
         let one = |name: &str, value: f64| Some(Operation::Number((name.to_string(), value)));
-        let two = |name: &str, x: usize, y: usize| Some(Operation::Two((name.to_string(), x, y)));
         match *node {
             Node::Parameter(index) => one("parameter", index as f64),
             Node::Constant(value) => one("number", value),
-            Node::Unary(unary, x) => one(unary_name(unary), x as f64),
-            Node::Binary(Binary::Add, x, y) => two("add", x, y),
-            Node::Binary(Binary::Subtract, x, y) => two("subtract", x, y),
-            Node::Binary(Binary::Multiply, x, y) => two("multiply", x, y),
-            Node::Binary(Binary::Divide, x, y) => two("divide", x, y),
+            Node::Unary(unary, x) => one(word_of(&UNARY, &unary), x as f64),
+            Node::Binary(binary, x, y) => Some(Operation::Two((word_of(&BINARY, &binary).to_string(), x, y))),
             Node::Select(x, y, if_less, otherwise) => {
                 Some(Operation::Four((SELECT.to_string(), x, y, if_less, otherwise)))
             }
@@ -362,11 +364,10 @@ impl Operation {
             Operation::Number((name, value)) => match name.as_str() {
                 "parameter" => Ok(Node::Parameter(index(*value)?)),
                 "number" => Ok(Node::Constant(*value)),
-                name if UNARY.iter().any(|(known, _)| *known == name) => {
-                    let unary = UNARY.iter().find(|(known, _)| *known == name).map(|(_, unary)| *unary);
-                    Ok(Node::Unary(unary.unwrap_or(Unary::Negate), index(*value)?))
-                }
-                _ => Err(meaning(format!("`{name}` is not an operation on one number"))),
+                name => match named(&UNARY, name) {
+                    Some(unary) => Ok(Node::Unary(unary, index(*value)?)),
+                    None => Err(meaning(format!("`{name}` is not an operation on one number"))),
+                },
             },
             Operation::Four((name, x, y, if_less, otherwise)) if name == SELECT => {
                 Ok(Node::Select(*x, *y, *if_less, *otherwise))
@@ -374,12 +375,9 @@ impl Operation {
             Operation::Four((name, ..)) => {
                 Err(meaning(format!("`{name}` is not an operation on four numbers")))
             }
-            Operation::Two((name, x, y)) => match name.as_str() {
-                "add" => Ok(Node::Binary(Binary::Add, *x, *y)),
-                "subtract" => Ok(Node::Binary(Binary::Subtract, *x, *y)),
-                "multiply" => Ok(Node::Binary(Binary::Multiply, *x, *y)),
-                "divide" => Ok(Node::Binary(Binary::Divide, *x, *y)),
-                _ => Err(meaning(format!("`{name}` is not an operation on two numbers"))),
+            Operation::Two((name, x, y)) => match named(&BINARY, name) {
+                Some(binary) => Ok(Node::Binary(binary, *x, *y)),
+                None => Err(meaning(format!("`{name}` is not an operation on two numbers"))),
             },
         }
     }

@@ -2,6 +2,7 @@
 //! contradictions by the machine, effects that no verdict includes, wishes that are not met, and
 //! missing declarations.
 
+use phea_dynamics::order::sort_by_number;
 use phea_qft::design::{DesignStatus, Relaxation};
 use phea_qft::verification::Verdict;
 
@@ -107,7 +108,7 @@ fn given_words(view: &ProjectAudit) -> String {
         .filter(|(_, finding)| finding.verdict == Verdict::Violated)
         .filter_map(|(index, finding)| Some((index, finding.worst.as_ref()?)))
         .collect();
-    violated.sort_by(|one, other| one.1.margin_db.total_cmp(&other.1.margin_db));
+    sort_by_number(&mut violated, |one| one.1.margin_db);
     let Some((index, worst)) = violated.first() else {
         return "the given controller does not satisfy every specification".to_string();
     };

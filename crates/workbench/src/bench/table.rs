@@ -1,0 +1,106 @@
+//! What a test records: as a file, for people and for programs.
+
+use std::io;
+
+use phea_dynamics::order::ends;
+
+use crate::answer::{NumberTable, Object, OutputFile, TableFormat};
+use crate::document::{Cell, Document, Table};
+use crate::quantity::{DisplayUnit, TIME, display};
+
+/// The table of a test.
+pub(super) struct BenchTable {
+    /// Of the test and its file.
+    pub(super) name: &'static str,
+    /// For people.
+    pub(super) title: &'static str,
+    /// Of the rows, s.
+    pub(super) times: Vec<f64>,
+    /// Without time.
+    pub(super) columns: Vec<BenchColumn>,
+}
+
+/// A column of it.
+pub(super) struct BenchColumn {
+    /// Its name in the file.
+    pub(super) name: &'static str,
+    /// For people.
+    pub(super) quantity: &'static str,
+    /// Its unit in the file, and the values there.
+    pub(super) unit: &'static str,
+    pub(super) shown: Vec<f64>,
+    /// Its SI unit, and the values in that.
+    pub(super) si: &'static str,
+    pub(super) values: Vec<f64>,
+}
+
+impl BenchColumn {
+    /// Of values in SI, shown in a unit.
+    pub(super) fn of(
+        [name, quantity, si]: [&'static str; 3],
+        unit: DisplayUnit,
+        values: Vec<f64>,
+    ) -> BenchColumn {
+        let shown = values.iter().map(|value| unit.of(*value)).collect();
+        BenchColumn { name, quantity, unit: unit.symbol, shown, si, values }
+    }
+
+    /// Smallest and largest value, SI.
+    pub(super) fn range(&self) -> [f64; 2] {
+        ends(self.values.iter().copied())
+    }
+}
+
+impl BenchTable {
+    fn file_name(&self) -> String {
+        format!("{}.csv", self.name)
+    }
+
+    fn duration_s(&self) -> f64 {
+        self.times.last().copied().unwrap_or(0.0)
+    }
+
+    /// The table as a file.
+    pub(super) fn file(&self) -> OutputFile {
+        // nothing that is written to memory can fail
+        OutputFile { name: self.file_name(), bytes: self.csv().unwrap_or_default() }
+    }
+
+    fn csv(&self) -> io::Result<Vec<u8>> {
+        let names: Vec<&str> =
+            std::iter::once("time_s").chain(self.columns.iter().map(|column| column.name)).collect();
+        let mut table = NumberTable::new(Vec::new(), TableFormat::Csv, &names)?;
+        for (row, time_s) in self.times.iter().enumerate() {
+            let shown = self.columns.iter().filter_map(|column| column.shown.get(row).copied());
+            table.row(&std::iter::once(*time_s).chain(shown).collect::<Vec<f64>>())?;
+        }
+        table.finish()
+    }
+
+    /// A section that shows how far each column goes.
+    pub(super) fn tell(&self, digits: usize, out: &mut Document) {
+        let rows = self.columns.iter().map(|column| {
+            let [least, most] = ends(column.shown.iter().copied()).map(|value| Cell::number(value, digits));
+            [Cell::from(column.quantity), least, most, Cell::from(column.unit)]
+        });
+        out.section(self.title, Table::new(["recorded", "least", "most", "unit"]).with(rows));
+        let duration = display(self.duration_s(), &TIME, 4);
+        out.sentences([format!("{} rows in {duration}.", self.times.len())]);
+    }
+
+    /// What it is, in JSON.
+    pub(super) fn json(&self) -> Object {
+        Object::new()
+            .with("name", self.name)
+            .with("file", self.file_name())
+            .with("rows", self.times.len())
+            .with("duration_s", self.duration_s())
+    }
+
+    /// The same with the smallest and the largest value of each column.
+    pub(super) fn json_of_signals(&self) -> Object {
+        self.json().each("signals", &self.columns, |column| {
+            Object::new().with("name", column.quantity).with("unit", column.si).with("range", column.range())
+        })
+    }
+}
