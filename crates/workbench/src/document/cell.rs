@@ -63,8 +63,6 @@ pub(crate) enum Precision {
 pub(crate) enum Cell {
     /// Words, a sentence.
     Text(String),
-    /// Words as they are: nothing in them is a symbol or a number to be set.
-    Plain(String),
     /// A path or a name of a file or of a program.
     Code(String),
     /// The name of a number for programs, such as `line.a.wave_speed`; the page shows it in words
@@ -122,11 +120,6 @@ impl Cell {
         }
     }
 
-    /// Words as they are.
-    pub(crate) fn plain(text: impl Into<String>) -> Cell {
-        Cell::Plain(text.into())
-    }
-
     /// How many.
     pub(crate) fn count(value: usize) -> Cell {
         Cell::Text(value.to_string())
@@ -175,9 +168,7 @@ impl Cell {
     /// As a text, in which symbols and numbers are not typeset.
     pub(crate) fn text(&self) -> String {
         match self {
-            Cell::Text(text) | Cell::Plain(text) | Cell::Code(text) | Cell::Name { name: text, .. } => {
-                text.clone()
-            }
+            Cell::Text(text) | Cell::Code(text) | Cell::Name { name: text, .. } => text.clone(),
             Cell::Status(_, cell) | Cell::Strong(cell) => cell.text(),
             Cell::Joined(cells) => cells.iter().map(Cell::text).collect(),
             Cell::Unit(unit) => unit.to_string(),

@@ -116,7 +116,6 @@ impl Cell {
     fn markup(&self) -> Markup {
         match self {
             Cell::Text(text) => coded(text),
-            Cell::Plain(text) => html! { (text) },
             Cell::Code(text) => html! { code { (breakable(text)) } },
             Cell::Name { name, symbol } => html! { span.symbol { (typeset(symbol)) } (prose(&words(name))) },
             Cell::Unit(text) => html! { span.unit { (unit(text)) } },

@@ -60,7 +60,7 @@ fn of_family(contents: &Contents<'_>, sides: &[Side<'_>]) -> Rows {
         Some(Cell::from(word).marked(verdict).then(proven(is_proven)))
     }));
     for (index, specification) in judged.problem.specifications.iter().enumerate() {
-        let name = Cell::plain(format!("{} {}, ", index + 1, judged.problem.name_of(index)))
+        let name = Cell::from(format!("{} {}, ", index + 1, judged.problem.name_of(index)))
             .then(Cell::Equation(demand(&specification.requirement)));
         rows.extend(row(name, sides, |side| {
             let is_proven = side.proof().and_then(|proof| proof.specifications.get(index));
@@ -91,7 +91,7 @@ fn finding(finding: &SpecificationFinding, is_proven: bool) -> Cell {
             format!("; {size} dB {} {place}", if worst.margin_db < 0.0 { "off" } else { "to spare" })
         }
     };
-    verdict.then(proven(is_proven)).then(Cell::plain(told))
+    verdict.then(proven(is_proven)).then(Cell::from(told))
 }
 
 fn of_machine(contents: &Contents<'_>, sides: &[Side<'_>]) -> Rows {
@@ -100,7 +100,7 @@ fn of_machine(contents: &Contents<'_>, sides: &[Side<'_>]) -> Rows {
         let trial = side.trial?;
         let words = trial::words(trial);
         let which = words.split_once(": ").map_or(String::new(), |(_, which)| format!(": {which}"));
-        Some(Cell::agreement(trial.agreement()).then(Cell::plain(which)))
+        Some(Cell::agreement(trial.agreement()).then(Cell::from(which)))
     }));
     rows.extend(row("every scenario driven to its end", sides, |side| Some(driven(side.runs?))));
     let Some(wish) = contents.driven.and_then(|driven| driven.wish.as_ref()) else { return rows };
@@ -119,16 +119,16 @@ fn of_machine(contents: &Contents<'_>, sides: &[Side<'_>]) -> Rows {
 fn wished(words: &str, steps: Option<usize>) -> Cell {
     let steps =
         steps.filter(|steps| *steps > 1).map_or("the step".to_string(), |steps| format!("all {steps} steps"));
-    Cell::plain(format!("wished of {steps}: {words}"))
+    Cell::from(format!("wished of {steps}: {words}"))
 }
 
 fn held(held: HeldWish) -> Cell {
     match held.kept {
         Some(kept) => {
             let word = if kept { "kept" } else { "missed" };
-            Cell::from(word).marked(kept).then(Cell::plain(format!(": {} at worst", held.words)))
+            Cell::from(word).marked(kept).then(Cell::from(format!(": {} at worst", held.words)))
         }
-        None => Cell::plain(format!("{}, which is not the band of the wish", held.words)),
+        None => Cell::from(format!("{}, which is not the band of the wish", held.words)),
     }
 }
 
@@ -154,7 +154,7 @@ fn numbers(sides: &[Side<'_>]) -> Rows {
         let delay_s = side.delay_margin_s()?;
         Some(match delay_s {
             f64::INFINITY => "any".into(),
-            _ => Cell::plain(DisplayUnit::MILLISECOND.text(delay_s, 3)),
+            _ => Cell::from(DisplayUnit::MILLISECOND.text(delay_s, 3)),
         })
     }));
     rows.extend(row("order of controller and prefilter", sides, |side| {
