@@ -49,7 +49,7 @@ def evaluate(text, **names):
 class Powers:
     """A polynomial while a formula is evaluated; NumPy's own looks for leading zeros after every operation."""
 
-    # of NumPy's scalars too: a product with one is no array
+    # so that a NumPy scalar times a polynomial is a polynomial, and not an array
     __array_ufunc__ = None
 
     def __init__(self, coefficients):
@@ -112,7 +112,7 @@ class Transfer:
             self.denominator = polynomial(table["denominator"], self.variable)
 
     def __call__(self, s):
-        """Its values; one is asked for very often."""
+        """Its values at s; a constant, which is asked for very often, is not evaluated as a polynomial."""
         if self.numerator.order == self.denominator.order == 0:
             return self.numerator.coeffs[0] / self.denominator.coeffs[0] + 0.0 * s
         return self.numerator(s) / self.denominator(s)

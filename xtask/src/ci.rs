@@ -52,12 +52,12 @@ const REPOSITORY: &str = "tidy::tests::the_repository_is_tidy";
 pub(crate) struct Built {
     root: PathBuf,
     variables: Vec<(&'static str, String)>,
-    /// Nothing is kept for a second build, which this one would take longer for.
+    /// Whether nothing is kept for a second build; keeping it makes this one slower.
     once: bool,
 }
 
 impl Built {
-    /// The variable that keeps nothing for a second build, if there is none.
+    /// The variable by which cargo keeps nothing for a second build, where nothing is kept.
     fn not_kept(&self) -> Option<(&'static str, &'static str)> {
         self.once.then_some(("CARGO_INCREMENTAL", "0"))
     }
@@ -146,7 +146,7 @@ fn target(root: &Path) -> PathBuf {
     std::env::var_os("CARGO_TARGET_DIR").map_or(root.join("target"), |folder| root.join(folder))
 }
 
-/// Whether nobody works here: no package but this one was built for further builds.
+/// Whether nobody works here: cargo has kept nothing of phea's packages for a second build.
 fn is_fresh(target: &Path) -> bool {
     let kept = std::fs::read_dir(target.join("debug").join("incremental"));
     !kept.into_iter().flatten().flatten().any(|one| one.file_name().to_string_lossy().starts_with("phea_"))
@@ -191,12 +191,12 @@ const WITHOUT_PEERS: [&str; 2] = ["--exclude", "sundials"];
 /// The rigs that phea and CVODE solve both: a test of that package.
 const RIGS: &str = "random_rigs";
 
-/// Packages that are compiled the sooner the fewer the pieces are.
+/// Packages that compile faster in fewer pieces.
 const LARGE_PACKAGES: [&str; 5] =
     ["phea-dynamics", "phea-engineering", "phea-hydraulics", "phea-machine", "phea-qft"];
 
-/// Of a package that is built once: in as few pieces as processors need, so that less of one is
-/// compiled again in another.
+/// cargo's setting by which a package is compiled in few pieces, so that less code is compiled in
+/// several of them.
 fn in_few_units(package: &str) -> String {
     format!("profile.dev.package.{package}.codegen-units=8")
 }

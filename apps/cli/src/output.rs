@@ -139,7 +139,7 @@ pub(crate) fn expect_folder(folder: &Path) -> Result<(), String> {
     }
 }
 
-/// Writes files into a folder, and of drawings their pictures; gives their paths.
+/// Writes files into a folder, drawings as SVG and as PNG; returns their paths.
 pub(crate) fn write(folder: &Path, files: &[OutputFile]) -> Result<Vec<PathBuf>, String> {
     let mut written = Vec::new();
     for file in files {

@@ -78,7 +78,7 @@ pub(crate) enum Cell {
     Status(StatusMark, Box<Cell>),
     /// In bold letters.
     Strong(Box<Cell>),
-    /// One right behind the other.
+    /// Cells that follow each other directly, in one.
     Joined(Vec<Cell>),
     /// No such thing.
     #[default]
@@ -135,7 +135,7 @@ impl Cell {
         Cell::Strong(Box::new(self))
     }
 
-    /// With another one right behind it.
+    /// Followed directly by another one.
     pub(crate) fn then(self, next: impl Into<Cell>) -> Cell {
         let mut cells = match self {
             Cell::Joined(cells) => cells,

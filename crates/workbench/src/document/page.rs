@@ -7,8 +7,12 @@ use super::typeset::unit;
 use super::{Block, Cell, Document, StatusMark, Table, prose, typeset};
 use crate::figure::Figure;
 
-/// Columns from which a table takes the whole width of the paper, as one with equations always does.
+/// Columns from which a table takes the whole width of the paper, as one with a cell that is not
+/// broken always does: an equation, or a mark of more letters than [`LONG_MARK`].
 const WIDE: usize = 5;
+
+/// Letters of a mark that fits into a column of half of the paper.
+const LONG_MARK: usize = 24;
 
 impl Document {
     /// For the page.
@@ -67,8 +71,12 @@ impl Table {
 
     /// With these columns.
     fn part(&self, columns: &[usize]) -> Markup {
-        let has_equations = self.rows().flatten().any(|cell| matches!(cell, Cell::Equation(_)));
-        let wide = columns.len() >= WIDE || has_equations;
+        let is_long = |cell: &Cell| match cell {
+            Cell::Equation(_) => true,
+            Cell::Status(_, marked) => marked.text().chars().count() > LONG_MARK,
+            _ => false,
+        };
+        let wide = columns.len() >= WIDE || self.rows().flatten().any(is_long);
         let numeric: Vec<(usize, bool)> =
             columns.iter().map(|column| (*column, self.is_numeric(*column))).collect();
         html! {
