@@ -141,7 +141,7 @@ class Fit:
                 values = table[f"{name}_l_per_min"] * LITRE_PER_MINUTE
             read = np.ones(len(values), bool)
             if name.endswith("flow"):
-                read = values != 0          # a meter that stands still
+                read = values != 0          # a meter that reads zero
             if name == "flow" and not np.any(values < 0):
                 name = "magnitude"
             assert np.sum(read) == signal["rows"], f"{path} {name}: {np.sum(read)} rows, phea has {signal['rows']}"

@@ -88,7 +88,7 @@ def recomputed(project, published, at_design, findings):
     """Stability, delay margin and worst cases, held to what is published."""
     search = Search(project)
     expected_stable, margins = published
-    # measured plants of stable drives: a response does not tell its poles, the loop is seen by its margins alone
+    # measured plants of stable drives: a response does not show its poles, the loop is seen by its margins alone
     stable, slowest, plant = (True, None, None) if project.measured else stability(search)
     findings.demand(stable == expected_stable, f"stable: {stable}")
     delay = delay_margin(search)[0] if stable else None

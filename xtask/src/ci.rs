@@ -1,4 +1,4 @@
-//! The test command: stages one after the other, comparisons beside them, the time of each in a
+//! The test command: stages one after the other, comparisons in parallel with them, the time of each in a
 //! table at the end.
 //!
 //! A stage that fails does not stop the later ones, so that one run shows everything that has to be

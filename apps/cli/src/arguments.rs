@@ -121,11 +121,11 @@ pub(crate) enum Command {
         /// How tables are written: csv or parquet
         #[arg(long, value_name = "FORMAT", requires = "out")]
         table: Option<TableFormat>,
-        /// Write no figures beside the tables: they take most of the time of a short run
+        /// Write no figures with the tables: they take most of the time of a short run
         #[arg(long, requires = "out")]
         no_figures: bool,
         /// Instead of the scenarios, the machine's response to sines around its operating point,
-        /// beside the linear plant
+        /// compared with the linear plant
         #[arg(long)]
         frequency_response: bool,
         /// Frequencies of the sines, such as "1, 10, 100 rad/s"; a unit holds for the numbers
@@ -151,7 +151,7 @@ pub(crate) enum Command {
         #[command(flatten)]
         common: Common,
         /// Two or three columns of a front, separated by commas, such as
-        /// "disturbance_peak_n,swept"; `:less` or `:more` behind one says what is better
+        /// "disturbance_peak_n,swept"; `:less` or `:more` after one says what is better
         #[arg(long, value_name = "COLUMN,COLUMN", requires = "sweep")]
         front: Option<String>,
         /// The number over which the front is drawn, such as "line.length=0.5 m..3 m"; every value of
@@ -161,7 +161,7 @@ pub(crate) enum Command {
         /// Values of the sweep, both ends among them (5)
         #[arg(long, value_name = "N", requires = "sweep")]
         points: Option<usize>,
-        /// Frequencies at which the impedance at the load is told ("1, 10, 100 rad/s")
+        /// Frequencies at which the impedance at the load is printed ("1, 10, 100 rad/s")
         #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
         frequencies: Option<String>,
     },
@@ -191,7 +191,7 @@ pub(crate) enum Command {
     /// metering and pressure gain (ISO 10770-1)
     Bench(Common),
     /// Coefficients of a servovalve (or frequency responses, or the friction of the cylinder) from
-    /// recorded tests, with confidence intervals and what the data do not tell
+    /// recorded tests, with confidence intervals and what the data do not determine
     Identify(IdentifyArguments),
     /// Everything above as one self-contained HTML page; a controller is designed where the project
     /// has a design section or gives no law

@@ -6,7 +6,7 @@
 
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
-#![allow(clippy::print_stdout, reason = "what went is told to who asks")]
+#![allow(clippy::print_stdout, reason = "what went is printed for who asks")]
 
 use std::fs;
 use std::path::{Path, PathBuf};

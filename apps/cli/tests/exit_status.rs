@@ -183,7 +183,7 @@ fn people_are_told_of_a_refusal_on_standard_error() {
     }
 }
 
-/// What is wrong with a measured response is told with its place, to people and to programs.
+/// What is wrong with a measured response is reported with its place, to people and to programs.
 #[test]
 fn a_bad_row_of_a_measurement_has_its_place() {
     let folder = folder("measurement");

@@ -1,11 +1,11 @@
 //! Rows are written as they come and never held: gigabytes of them take the memory of a page.
 //!
-//! `cargo xtask ci soak` asks for it, with `PHEA_KILLS=100`; `--nocapture` tells how much was
+//! `cargo xtask ci soak` asks for it, with `PHEA_KILLS=100`; `--nocapture` prints how much was
 //! written, in what time, and within what memory.
 
 #![cfg(target_os = "linux")]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
-#![allow(clippy::print_stdout, reason = "how fast it was is told to who asks")]
+#![allow(clippy::print_stdout, reason = "how fast it was is printed for who asks")]
 
 use std::fs;
 use std::path::Path;

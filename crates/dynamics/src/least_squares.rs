@@ -54,7 +54,7 @@ const STRAIGHT: usize = 40;
 /// Share of a step at which the second derivative along it is taken.
 const PROBE: f64 = 0.1;
 
-/// Largest bend over a step: beyond it the series of which both are the first terms is no guide.
+/// Largest bend over a step: beyond it the series of which both are the first terms is not a guide.
 const MOST_BEND: f64 = 0.375;
 
 /// How a search ended.
@@ -204,7 +204,7 @@ struct DampedStep {
 
 impl DampedStep {
     /// Adds half of the acceleration along the step, from the residuals after a part p of it; nothing
-    /// where that is no small share of the step, or beyond the bounds.
+    /// where that is not a small share of the step, or beyond the bounds.
     ///
     /// ```text
     /// step + a/2        (normal) a = -sum h j r'',    r'' = 2/p ((r(x + p step) - r)/p - j step)

@@ -8,7 +8,7 @@
 //! Element -> Compensator -> Controller -> SampledController                    the controller
 //! System + InputSchedule + SimulationSettings -> simulate -> Trajectory, Outcome
 //! Plant -> Sensed -> CommandedPlant -> System                                  the closed loop
-//! residuals, derivatives -> Minimum -> Uncertainty                             what data tell
+//! residuals, derivatives -> Minimum -> Uncertainty                             what data determine
 //! recorded signals -> Blocks -> SpectralPoint                                  measured frequency responses
 //! ```
 //!

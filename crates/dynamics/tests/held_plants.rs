@@ -91,7 +91,7 @@ fn what_dies_within_a_sample_leaves_the_rest_exact() {
     }
 }
 
-/// A pole that grows by exp(1000) within a sample is told, as soon as it is met.
+/// A pole that grows by exp(1000) within a sample is reported, as soon as it is met.
 #[test]
 fn growth_beyond_the_range_of_numbers_is_refused() {
     let plant = TransferFunction::from_factors(1.0, vec![], vec![c(1e5, 0.0), c(0.0, 0.0)]).unwrap();

@@ -26,7 +26,7 @@ impl Seeded {
         (self.next() * count as f64).floor() as usize
     }
 
-    /// `count` roots with magnitudes from 0.01 up over so many decades, a fifth of them in the right half plane.
+    /// `count` roots with magnitudes from 0.01 up over this number of decades, a fifth of them in the right half plane.
     fn roots(&mut self, count: usize, decades: f64) -> Vec<Complex64> {
         let mut roots = Vec::new();
         while roots.len() < count {

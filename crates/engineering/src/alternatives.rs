@@ -56,12 +56,12 @@ pub struct Alternatives {
     pub front: Option<Front>,
 }
 
-/// What is asked of the alternatives of a project.
+/// What is requested for the alternatives of a project.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AlternativesOptions {
     /// Fronts over a swept key.
     pub front: Option<FrontRequest>,
-    /// Frequencies in rad/s at which the impedance at the load is told.
+    /// Frequencies in rad/s at which the impedance at the load is stated.
     pub impedance_at: Vec<f64>,
 }
 
@@ -83,7 +83,7 @@ pub struct JudgedAlternative {
     /// The parameters of its rig outside of their ranges in `[uncertainty]`, in words; `None` where
     /// they are those of the project as it is declared.
     pub outside: Option<String>,
-    /// Frequencies in rad/s at which its impedance is told.
+    /// Frequencies in rad/s at which its impedance is stated.
     pub impedance_at: Vec<f64>,
     /// What is counted of the parts of all that are compared.
     pub counted: PartsCounted,
@@ -153,7 +153,7 @@ impl JudgedAlternative {
 /// # Errors
 /// [`ProcedureError::NoAlternative`] for a project without alternatives, [`DesignError::NoSpecification`] for one
 /// without specifications, those of [`asked()`], and [`ProcedureError::Option`] for a front that cannot be. What an
-/// alternative lacks otherwise is told of that alternative.
+/// alternative lacks otherwise is reported of that alternative.
 ///
 /// # Example
 /// ```

@@ -54,7 +54,7 @@ pub enum AuditError {
     NoSpecification,
 }
 
-/// What the watch is told.
+/// Name of the stage in progress reports.
 const STAGE: &str = "auditing";
 
 /// Audits the given controller and prefilter over the whole family and band.

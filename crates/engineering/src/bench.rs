@@ -231,7 +231,7 @@ fn meter_coefficient(meter: &FlowMeter) -> f64 {
     if meter.pressure_drop > 0.0 { meter.range / meter.pressure_drop.sqrt() } else { f64::INFINITY }
 }
 
-/// The oil after a share of the test, beside the one that the valve is stated at.
+/// The oil after a share of the test, relative to the one that the valve is stated at.
 fn oil_at(oil: &OilTemperature, share: f64) -> (f64, WarmOil) {
     let law = OilLaw { viscosity_slope: oil.viscosity_slope, density_slope: oil.density_slope };
     let temperature = oil.start + (oil.end - oil.start) * share;

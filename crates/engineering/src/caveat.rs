@@ -103,7 +103,7 @@ fn standing(project: &Project) -> Option<String> {
     let brings = if moves_gas { ", and one that moves brings energy in" } else { "" };
     (!adjusted.is_empty()).then(|| {
         format!(
-            "line.accumulator.adjustment is counted at its setting of rest: stiffness and passivity are those of a setting that stands{brings}"
+            "line.accumulator.adjustment is counted at its setting of rest: stiffness and passivity are those of a fixed setting{brings}"
         )
     })
 }
@@ -285,7 +285,7 @@ fn adjustment(setup: &Setup<'_>) -> Option<Caveat> {
     let at = |value: f64| significant(value, 3);
     let counted = match (range, adjusted) {
         (Some(range), _) => {
-            format!("at every setting from {} to {} that stands", at(range.minimum), at(range.maximum))
+            format!("at every fixed setting from {} to {}", at(range.minimum), at(range.maximum))
         }
         (None, [Some(a), Some(b)]) if a.setting != b.setting => {
             format!("at its settings of rest, {} at A and {} at B", at(a.setting), at(b.setting))
@@ -443,7 +443,7 @@ fn feed_forward(project: &Project) -> Option<Caveat> {
     })
 }
 
-/// A virtual impedance: what the specifications of its loop speak of, or that measured plants lack it.
+/// A virtual impedance: what the specifications of its loop refer to, or that measured plants lack it.
 fn impedance(project: &Project) -> Option<Caveat> {
     virtual_impedance(project)?;
     let yields = project.actuator.as_ref().is_some_and(|actuator| actuator.load != Load::Prescribed);

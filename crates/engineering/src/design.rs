@@ -202,7 +202,7 @@ pub fn design_and_repair(
 /// Designs a controller for the project, after the audit of the one that it gives.
 ///
 /// # Errors
-/// [`ProcedureError`] for a project without a specification, a part of it that is no transfer
+/// [`ProcedureError`] for a project without a specification, a part of it that is not a transfer
 /// function, a family that cannot be built, or a watcher that stops it before anything was found.
 pub fn design_project(
     source: &dyn Source,

@@ -149,7 +149,7 @@ pub fn identify_friction(
     })
 }
 
-const NOTHING: &str = "nothing is recorded that tells a friction: neither a constant velocity for 20 rows or more, nor a force that presses the piston from rest or shakes it while its position is recorded";
+const NOTHING: &str = "no recording determines the friction: there is neither a constant velocity for 20 rows or more, nor a force that presses the piston from rest or shakes it while its position is recorded";
 
 /// Whether friction acts both ways, so that it differs from a force that is always there.
 fn goes_both_ways(slides: &[ConstantVelocity], presses: &[PressedRows]) -> bool {

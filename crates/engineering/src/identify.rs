@@ -1,7 +1,7 @@
 //! The coefficients of a servovalve from recorded static tests.
 //!
 //! ```text
-//! files -> Recording -> first guess (thesis, section 5.2) -> least squares over all signals at once -> intervals, what the data do not tell
+//! files -> Recording -> first guess (thesis, section 5.2) -> least squares over all signals at once -> intervals, what the data do not determine
 //! ```
 //!
 //! The model is [`phea_hydraulics::servovalve::TestedValve`]; all signals of all files are explained

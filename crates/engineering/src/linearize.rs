@@ -201,7 +201,7 @@ fn absence(controller: Option<&TransferFunction>, view: Option<&PortView>) -> Op
         (_, Some(_)) => return None,
         (None, None) => "the project gives no controller",
         (Some(_), None) => {
-            "the controller is sampled or the loop has dead time: its impedance is no rational function"
+            "the controller is sampled or the loop has dead time: its impedance is not a rational function"
         }
     };
     Some(reason.to_string())

@@ -1,4 +1,4 @@
-//! A family beside the box of ranges that it replaces.
+//! A family compared with the box of ranges that it replaces.
 
 use phea_qft::family::Family;
 use phea_qft::template::{Template, TemplateError, TemplateOptions, Templates};
@@ -46,7 +46,7 @@ pub struct TemplateAreas {
     pub visited: f64,
 }
 
-/// The ranges that a project says are replaced, beside what is visited.
+/// The ranges that a project says are replaced, with what is visited.
 pub fn replaced_ranges(project: &Project, visited: &[VisitedRange]) -> Vec<ReplacedRange> {
     let declared = project.family.iter().flat_map(|family| &family.replaces);
     let range = |one: &crate::project::Uncertain| {
@@ -68,7 +68,7 @@ pub fn replaced_ranges(project: &Project, visited: &[VisitedRange]) -> Vec<Repla
     declared.filter_map(range).collect()
 }
 
-/// Areas of the templates at the design frequencies of a problem, beside those of the box that the
+/// Areas of the templates at the design frequencies of a problem, and those of the box that the
 /// project says it replaces; nothing where it says so of none. `own` are those of the problem's family.
 ///
 /// # Errors
@@ -102,7 +102,7 @@ pub enum ReplacedError {
     /// A template of it cannot be built.
     #[error("[family.replaces]: {0}")]
     Template(#[from] TemplateError),
-    /// The controller is no transfer function.
+    /// The controller is not a transfer function.
     #[error(transparent)]
     Control(#[from] crate::control::ControlError),
 }

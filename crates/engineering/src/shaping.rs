@@ -62,7 +62,7 @@ pub enum ShapingError {
     )]
     Admittance,
     /// Elements in tables with others between them.
-    #[error("the elements of [{table}] stand in tables with others between them: bring them together first")]
+    #[error("the elements of [{table}] are separated by other tables: bring them together first")]
     Scattered {
         /// `controller` or `prefilter`.
         table: &'static str,

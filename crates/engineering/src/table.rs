@@ -7,7 +7,7 @@
 //! One reader for everything that was measured: static tests of a valve, frequency responses,
 //! signals of a scenario. In text the separator is found, and the row that names the columns,
 //! wherever it is; a unit stands in a heading or below it; a decimal sign is a point or a comma,
-//! one of them in a whole file. Rows without any value and rows that begin with `#` are no rows.
+//! one of them in a whole file. Rows without any value and rows that begin with `#` are not rows.
 
 mod cell;
 mod column;
@@ -64,7 +64,7 @@ impl MeasuredTable {
     /// Takes a file in. `separator` is that of a text; absent, it is found.
     ///
     /// # Errors
-    /// `None` for what is no table, with the reason among the findings.
+    /// `None` for what is not a table, with the reason among the findings.
     pub fn read(
         file: &str,
         bytes: Vec<u8>,
@@ -108,7 +108,7 @@ impl MeasuredTable {
     }
 
     /// The numbers of these columns. What is not a number is an error, and a row with more or fewer
-    /// values than there are columns; gaps and a last row that was cut off are told in the result.
+    /// values than there are columns; gaps and a last row that was cut off are reported in the result.
     pub fn numbers(&self, columns: &[&Column], findings: &mut Findings) -> ColumnNumbers {
         match &self.rows {
             TableRows::Text(rows) => {

@@ -1,4 +1,4 @@
-//! Kernels that cannot be reached from outside, compiled here once more for the unit tests beside their code: the library
+//! Kernels that cannot be reached from outside, compiled here once more for the unit tests next to their code: the library
 //! itself is not built for tests. What lies outside a kernel it takes from the module above it, which is here this file.
 #![allow(dead_code, unreachable_pub, reason = "a kernel's callers stay in the library")]
 

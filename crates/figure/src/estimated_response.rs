@@ -13,7 +13,7 @@ use super::plot::{AxisDirection, Mark, Marker, MarkerStyle};
 use super::scene::Fill;
 use super::{Figure, Words};
 
-/// An estimated response beside its models.
+/// An estimated response with its models.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EstimatedResponse {
     /// The quantity, such as `force/command`.

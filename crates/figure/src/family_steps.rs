@@ -23,7 +23,7 @@ pub struct FamilySteps {
     pub members: Vec<TimeSeries>,
     /// The nominal plant.
     pub nominal: Option<TimeSeries>,
-    /// Members to tell apart, such as the worst.
+    /// Members to distinguish, such as the worst.
     pub named: Vec<TimeSeries>,
 }
 

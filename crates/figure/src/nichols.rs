@@ -40,7 +40,7 @@ pub struct OpenLoopViolation {
     pub text: String,
 }
 
-/// The open loop by phase and magnitude, among what it has to keep to.
+/// The open loop by phase and magnitude, with the limits that it must satisfy.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct NicholsChart<'a> {
     /// Open loops; the first is the one at which templates and the words of marks are put.

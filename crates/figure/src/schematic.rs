@@ -115,7 +115,7 @@ pub struct SeriesSymbol {
 pub enum SeriesKind {
     /// A spring.
     Spring,
-    /// A spring with a damper beside it.
+    /// A spring with a damper parallel to it.
     DampedSpring,
     /// Two pistons with a line between them.
     Transmission,
@@ -174,7 +174,7 @@ pub struct Schematic {
     pub controller: Option<ControllerSymbol>,
 }
 
-/// Further stages of a telescopic piston that are drawn one in another; the words tell how many there
+/// Further stages of a telescopic piston that are drawn one in another; the words say how many there
 /// are.
 pub const STAGES: usize = 3;
 

@@ -13,10 +13,10 @@ use phea_quantity::{DisplayUnit, MotionKind};
 /// What stiffness is drawn over.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum StiffnessOver {
-    /// The piston's position, m; each curve tells where it is softest.
+    /// The piston's position, m; each curve shows where it is softest.
     #[default]
     Stroke,
-    /// The hydraulic force, N; the first curve tells where it is softest.
+    /// The hydraulic force, N; the first curve shows where it is softest.
     Force,
 }
 

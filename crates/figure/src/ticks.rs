@@ -57,7 +57,7 @@ pub fn round_step(span: f64, count: usize, steps: TickSteps) -> f64 {
 }
 
 /// Ticks of a linear axis from `minimum` to `maximum`, at most `count` intervals, labels divided by
-/// 10^`exponent`. Where that leaves a single one, which tells no scale, the steps are finer.
+/// 10^`exponent`. Where that leaves a single one, which shows no scale, the steps are finer.
 ///
 /// # Example
 /// ```

@@ -52,7 +52,7 @@ fn triangles(figure: &Figure) -> Vec<[Point; 3]> {
     figure.scene.items.iter().filter_map(of).collect()
 }
 
-/// Symbols of a cylinder do not stand beside a motor, nor those of a motor beside a cylinder.
+/// Symbols of a cylinder do not appear with a motor, nor those of a motor with a cylinder.
 #[test]
 fn a_motor_has_its_own_symbols() {
     let [linear, rotary] = [MotionKind::Linear, MotionKind::Rotary].map(|motion| {
@@ -69,7 +69,7 @@ fn a_motor_has_its_own_symbols() {
     }
 }
 
-/// Each further stage is a sleeve of two walls inside the one before it, up to as many as can be told apart.
+/// Each further stage is a sleeve of two walls inside the one before it, up to as many as can be distinguished.
 #[test]
 fn stages_lie_one_in_another() {
     let with = |stages: usize| circuit(|schematic| schematic.further_stages = stages);

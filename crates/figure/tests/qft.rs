@@ -236,7 +236,7 @@ fn violated_areas_begin_where_the_limit_is_crossed() {
     }
 }
 
-/// What another loop violates is painted too, beside what the first keeps to.
+/// What another loop violates is painted too, next to what the first satisfies.
 #[test]
 fn the_other_loop_is_judged_by_the_same_limit() {
     let (one, rising) =

@@ -93,7 +93,7 @@ pub struct LinkageTable {
 pub enum LinkageGeometry {
     /// One joint.
     Triangle(PivotTriangle),
-    /// Four joints beside those of the cylinder.
+    /// Four joints in addition to those of the cylinder.
     FourBar(FourBar),
     /// Not known: measured.
     Table(LinkageTable),

@@ -226,7 +226,7 @@ impl<S: Scalar> ChamberDynamics<S> {
 }
 
 impl<S: Scalar> ChamberDynamics<S> {
-    /// The same beside gas of its own dynamics, of either form, each chamber multiplied by the
+    /// The same with gas of its own dynamics, of either form, each chamber multiplied by the
     /// denominator of its gas.
     fn beside(&self, gas: [Option<GasBranch<S>>; 2]) -> ChamberPair<Vec<S>> {
         let [one, other] = [self.side(0), self.side(1)];
@@ -407,7 +407,7 @@ impl<S: Scalar> LinearPlant<S> {
     ///               v_L = s (K_S w^2 N_u U_C + (c s + k) V (Q + K_S D) X_0)/(V (Q (Z + K_S) + K_S Z D))
     /// ```
     ///
-    /// Behind a linkage Z has k_g beside k, and r^2 K_S w^2 N_u and r^2 K_S stand for what the force does
+    /// Behind a linkage Z has k_g in addition to k, and r^2 K_S w^2 N_u and r^2 K_S stand for what the force does
     /// to the load: [`LinearLoad::Linked`]. The velocity of the load that is fed forward is a second path of a prescribed motion, and a
     /// second loop of a load that yields. With the sensor's gain 1 + e and its filter H_v = 1/d_v,
     ///

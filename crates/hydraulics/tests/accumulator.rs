@@ -68,7 +68,7 @@ fn without_gas_it_is_the_rig_without_accumulator() {
 }
 
 /// Below the precharge the gas takes nothing and the indicator says so; what the chamber's oil yields is not what an empty
-/// chamber is told by.
+/// chamber is known by.
 #[test]
 fn gas_is_shut_off_below_its_precharge() {
     let gas = Accumulator { gas_volume: 2e-5, precharge_pressure: 20e5, polytropic_exponent: 1.4 };

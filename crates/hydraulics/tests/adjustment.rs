@@ -40,7 +40,7 @@ fn adjusted(part: AdjustedPart, setting: f64, neck: Option<Neck>) -> Components 
     }
 }
 
-/// A setting that stands is the accumulator declared with what it stands for, in every rate.
+/// A fixed setting is the accumulator declared with what the setting stands for, in every rate.
 #[test]
 fn a_frozen_setting_is_the_declared_accumulator() {
     let neck = Neck::round([6e-3, 0.04], [870.0, 46e-6, 1.45e9], 1.5);

@@ -57,7 +57,7 @@ fn a_laminar_valve_adds_to_the_flow_pressure_coefficient() {
     assert!(apart(&plant(&linear, 1e-10, None), &plant(&leaky, 0.0, None)) < 1e-12);
 }
 
-/// The limits of feedback: a restrictor that is shut is none, an open one joins the capacity to both chambers, a capacity without
+/// The limits of feedback: a restrictor that is shut has no effect, an open one joins the capacity to both chambers, a capacity without
 /// end leaves the restrictor, one of nothing shuts it.
 #[test]
 fn feedback_has_four_limits() {
@@ -70,7 +70,7 @@ fn feedback_has_four_limits() {
     assert!(apart(&of(1e-24, 1e-13), &bare) < 1e-9);
     assert!(apart(&of(1e-10, 1e-28), &bare) < 1e-9);
     assert!(apart(&of(1e-10, 1e4), &plant(&linear, 1e-12 + 1e-10, None)) < 1e-9);
-    // C_x beside A^2/K_H, which is half the compliance of a chamber
+    // C_x in addition to A^2/K_H, which is half the compliance of a chamber
     let area = linear.useful_area;
     let soft = 1.0 / (1.0 / linear.hydraulic_stiffness + 1e-13 / (area * area));
     let softened = LinearParameters { hydraulic_stiffness: soft, ..linear };
@@ -146,7 +146,7 @@ fn a_valve_that_is_shut_is_none() {
     }
 }
 
-/// A laminar valve is leakage across the piston, in the machine as at rest; only the account of energy tells them apart.
+/// A laminar valve is leakage across the piston, in the machine as at rest; only the account of energy distinguishes them.
 #[test]
 fn a_laminar_valve_is_leakage() {
     let conductance = 3e-12;

@@ -8,7 +8,7 @@ const NUMBERS: [f64; 7] = [80.0, 120.0, 0.01, 2.0, 100.0, 1e7, 2e3];
 const MASS: f64 = 13.1;
 
 /// Displacement of a mass on bristles that begins at this velocity and deflection, by the method of
-/// Runge and Kutta with so many steps between rows.
+/// Runge and Kutta with this number of steps between rows.
 fn runge_kutta(
     lugre: &LuGre,
     [velocity, deflection]: [f64; 2],

@@ -230,7 +230,7 @@ fn it_is_shut_off_by_the_pressure_of_its_own_temperature() {
     }
 }
 
-/// A limit of the maker is told where it is passed, by the pressure of the gas.
+/// A limit of the maker is reported where it is passed, by the pressure of the gas.
 #[test]
 fn too_much_pressure_is_told() {
     let rig =

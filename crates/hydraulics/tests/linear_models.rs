@@ -50,7 +50,7 @@ fn poles_of_table_6_1() {
         check("valve decay", poles[2].re, -989.1, 2e-6);
         check("valve frequency", poles[2].im, 479.04299, 2e-5);
     }
-    // ORIGIN: thesis Table 6.1, one unit of the last digit. Its -2.963 tells K_c to a third digit: 5.71e-13.
+    // ORIGIN: thesis Table 6.1, one unit of the last digit. Its -2.963 gives K_c to a third digit: 5.71e-13.
     for (stiffness, real, frequency) in
         [(1.5e7, -2.963, 2.93e3), (1.5e6, -0.336, 2.75e3), (1.5e5, -0.034, 2.73e3)]
     {

@@ -255,7 +255,7 @@ fn a_machine_with_everything_is_the_text_of_its_equations() {
     assert!(contacts > 50);
 }
 
-/// The forces that a machine tells of are those that accelerate its piston: M dv/dt = F_H + F_stops - F_fr - F_e.
+/// The forces that a machine reports are those that accelerate its piston: M dv/dt = F_H + F_stops - F_fr - F_e.
 #[test]
 fn forces_that_are_told_accelerate_the_piston() {
     let signal = |name: &str| SIGNALS.iter().position(|&signal| signal == name).unwrap();

@@ -64,7 +64,7 @@ fn apart(length: f64, compliances: [f64; 2], frequency: f64) -> f64 {
     gaps.map(|(with, without)| (with / without - 1.0).norm_sqr().sqrt()).fold(0.0, f64::max)
 }
 
-/// A neck that becomes short is none; one that becomes long shuts its gas off; between them it is neither.
+/// A neck that becomes short has no effect; one that becomes long shuts its gas off; between them it is neither.
 #[test]
 fn a_neck_has_two_limits() {
     let (lumped, alone) = ([8e-13 + 3e-12, 9e-13], [8e-13, 9e-13]);
@@ -96,7 +96,7 @@ fn it_rings_at_the_helmholtz_resonance() {
     let neck = Neck::round([6e-3, 0.04], OIL, 0.0);
     let machine = machine([Some(gas), None], [Some(neck), None]);
     let necked = GasBranch::of(gas.compliance(30e5), None, Some(&neck));
-    // ORIGIN: analytic, sqrt(A/(rho L C)) with the oil of the neck beside the gas
+    // ORIGIN: analytic, sqrt(A/(rho L C)) with the oil of the neck in addition to the gas
     let area = FRAC_PI_4 * 36e-6;
     let own = gas.compliance(30e5) + area * 0.04 / 1.45e9;
     let frequency = (area / (870.0 * 0.04 * own)).sqrt();

@@ -273,7 +273,7 @@ fn polytropic_gas_is_lossless() {
 }
 
 /// Gas that exchanges heat with its wall can do work by the heat of the wall: what it stores is
-/// what it could do at the temperature of the wall, U - T_w S, beside an atmosphere and a chamber
+/// what it could do at the temperature of the wall, U - T_w S, with an atmosphere and a chamber
 /// that keeps its pressure.
 ///
 /// ```text
@@ -384,7 +384,7 @@ fn a_linkage_is_lossless_before_a_load_with_weight() {
         let machine = machine_of(rig, &MachineOptions { load, ..MachineOptions::default() });
         let start = StartValues { position: 0.04, ..at_rest(REST) };
         let held = machine.start(&start).unwrap().state[6];
-        // beside the torque that holds the weight at rest
+        // in addition to the torque that holds the weight at rest
         let power = |now: &Now| -stiffness * (now.state[6] - held) * now.inputs[1];
         let stored = |now: &Now| now.stored("rig") + stiffness * held * now.inputs[0];
         let passed = run(&machine, &start, (number, 0.05, 1), power, stored);

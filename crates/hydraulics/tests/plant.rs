@@ -284,7 +284,7 @@ fn without_load_and_leakage_it_is_the_known_models() {
     }
 }
 
-/// Equal chambers: one load pressure tells all, leakage included.
+/// Equal chambers: one load pressure determines all, leakage included.
 #[test]
 fn equal_chambers_need_one_pressure() {
     let actuator = Actuator::new(Components {

@@ -214,7 +214,7 @@ pub(super) fn responds_as_its_polynomials(rig: &Drawn, number: u64) -> usize {
     bounded
 }
 
-/// A rigid spring is none: in the linear plant, with lines in motion and in the machine at rest and in small motions.
+/// A rigid spring has no effect: in the linear plant, with lines in motion and in the machine at rest and in small motions.
 #[test]
 fn a_rigid_spring_is_no_spring() {
     let rigid = |damping| SeriesSpring {

@@ -33,7 +33,7 @@ use super::transmission::transmission;
 
 const RIGS: u64 = 200;
 
-/// Parts by name, each with those further down that no rig has beside it.
+/// Parts by name, each with those further down that no rig has with it.
 const PARTS: [(&str, &[&str]); 29] = [
     ("polytropic gas", &[]),
     ("gas with heat", &[]),
@@ -437,9 +437,9 @@ fn apart(rig: &Drawn) -> f64 {
 /// to 1e-8: forces by command and by motion of the load or of its ground, and the velocity of a
 /// load that yields.
 ///
-/// What cannot be combined: [`Actuator::new`] refuses a neck beside a valve before the same gas, as
-/// one of them leads to it; a polytropic exponent other than one beside a thermal time constant,
-/// which tells of the heat already; and gas that is added and taken beside a thermal time constant,
+/// What cannot be combined: [`Actuator::new`] refuses a neck with a valve before the same gas, as
+/// one of them leads to it; a polytropic exponent other than one with a thermal time constant,
+/// which states the heat already; and gas that is added and taken with a thermal time constant,
 /// as the temperature of what is added is not known. Spring and transmission, the kinds of valves
 /// between the chambers, and the strokes of a motor that turns on, of a telescopic piston and of
 /// any other cylinder are each one choice. A motor has one displacement, and behind it `phea check`

@@ -41,7 +41,7 @@ fn pipe(bore: f64, length: f64) -> Line {
     Line::Pipe { pipe: Pipe { bore, wall: PipeWall::Rigid }, length }
 }
 
-/// Of one to three segments, every third with the soft hose, every other with oil beside the line.
+/// Of one to three segments, every third with the soft hose, every other with oil in addition to the line.
 pub(super) fn transmission(number: u64) -> Transmission {
     let mut state = stream(81, number);
     let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
@@ -95,7 +95,7 @@ fn conduit(transmission: &Transmission) -> Conduit {
         .unwrap()
 }
 
-/// The modes of a rig whose load is held, as pairs of frequency in rad/s and damping ratio, beside those of the valve.
+/// The modes of a rig whose load is held, as pairs of frequency in rad/s and damping ratio, in addition to those of the valve.
 /// ORIGIN: recomputed by comparisons/recompute_transmission.py, eigenvalues of the equations in pressures and flows
 #[test]
 fn its_modes_are_those_of_pressures_and_flows() {
@@ -314,7 +314,7 @@ fn ledgers_close() {
             check(&machine_of(Components { valve, ..parts }, &options), &motion, &start, 0.1, 5e-6);
         }
     }
-    // beside lines in segments of the rig itself
+    // with lines in segments of the rig itself
     let parts = rig(transmission(2));
     let model = LineModel::Segments { count: 3, friction: LaminarFriction::Steady, relaxation_time: None };
     let line = DynamicLine::new(&hose_line(), &parts.fluid, 35e5, StiffeningMember::Nominal, &model).unwrap();

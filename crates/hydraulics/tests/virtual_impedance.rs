@@ -1,4 +1,4 @@
-//! The linear plant beside a virtual impedance, y = F_e + Z_v X_L, against the machine's own derivatives and against the force and the
+//! The linear plant with a virtual impedance, y = F_e + Z_v X_L, against the machine's own derivatives and against the force and the
 //! motion of the load by themselves.
 
 #![allow(clippy::unwrap_used)] // helpers of tests

@@ -1,4 +1,4 @@
-//! Machines driven hard by the method that drives everything: they end where they should, or tell why not.
+//! Machines driven hard by the method that drives everything: they end where they should, or state why not.
 
 #![allow(clippy::unwrap_used)] // helpers of tests
 

@@ -90,7 +90,7 @@ impl Variants for AdjustmentKind {
 impl DeclaredAdjustment {
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
         v.variant(plain("kind", "What the setting moves."), &mut self.kind, true);
-        let k = key("setting", &RATIO, "Where it stands at rest, from 0, as declared or shut, to 1.");
+        let k = key("setting", &RATIO, "Its value at rest, from 0, as declared or shut, to 1.");
         v.quantity(k.at_least(0.0).at_most(1.0).or(0.0), &mut self.setting);
     }
 

@@ -1,9 +1,9 @@
-//! `[[alternative]]`: the same project with other values, to be judged beside it.
+//! `[[alternative]]`: the same project with other values, to be compared with it.
 
 use super::key::plain;
 use super::visitor::Visitor;
 
-/// The name under which the project itself is judged beside its alternatives.
+/// The name under which the project itself is judged among its alternatives.
 pub const AS_DECLARED: &str = "as declared";
 
 /// Settings of the project under a name.

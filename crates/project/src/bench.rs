@@ -108,7 +108,7 @@ pub struct FlowMeter {
     pub noise: f64,
     /// Pa, its drop at the highest flow.
     pub pressure_drop: f64,
-    /// Whether it tells the direction.
+    /// Whether it indicates the direction.
     pub signed: bool,
 }
 
@@ -292,7 +292,7 @@ impl FlowMeter {
     fn visit<V: Visitor>(&mut self, absent: FlowMeter, v: &mut V) {
         let k = key("range", &FLOW, "The highest flow it measures.").positive().or(absent.range);
         v.quantity(k, &mut self.range);
-        let k = key("minimum", &FLOW, "Flow below which it stands still.").not_negative().or(absent.minimum);
+        let k = key("minimum", &FLOW, "Flow below which it reads zero.").not_negative().or(absent.minimum);
         v.quantity(k, &mut self.minimum);
         let k = key("noise", &FLOW, "Root mean square of its noise.").not_negative().or(absent.noise);
         v.quantity(k, &mut self.noise);
@@ -303,7 +303,7 @@ impl FlowMeter {
             v.quantity(k.or(absent.pressure_drop), &mut self.pressure_drop);
         }
         v.flag(
-            plain("signed", "Whether it tells the direction of the flow; absent: false."),
+            plain("signed", "Whether it indicates the direction of the flow; absent: false."),
             &mut self.signed,
         );
     }

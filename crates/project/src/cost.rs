@@ -17,7 +17,7 @@ pub struct PartCost {
 /// The same of a hose or a pipe: what both its ends add, and each metre.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LineCost {
-    /// Of one line, beside that of its length.
+    /// Of one line, in addition to that of its length.
     pub ends: PartCost,
     /// Of a metre.
     pub price_per_length: Option<Price>,
@@ -34,11 +34,12 @@ impl PartCost {
 
 impl LineCost {
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
-        let k = plain("price", "Of one line, beside `price_per_length`: its fittings, or all of it.");
+        let k = plain("price", "Of one line, in addition to `price_per_length`: its fittings, or all of it.");
         v.price(k, PricedBy::Piece, &mut self.ends.price);
         let k = plain("price_per_length", "Of a metre of it.");
         v.price(k, PricedBy::Length, &mut self.price_per_length);
-        let k = key("mass", &MASS, "Of one line, beside `mass_per_length`: its fittings, or all of it.");
+        let k =
+            key("mass", &MASS, "Of one line, in addition to `mass_per_length`: its fittings, or all of it.");
         v.optional(k.not_negative(), &mut self.ends.mass);
         let k = key("mass_per_length", &MASS_PER_LENGTH, "Mass of a metre of it, without oil.");
         v.optional(k.not_negative(), &mut self.mass_per_length);

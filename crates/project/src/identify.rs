@@ -118,7 +118,7 @@ impl TestSignal {
             TestSignal::LeakFlow => "Column of the flow from the supply while the ports are blocked.",
             TestSignal::Flow => "Column of the flow from port A to port B.",
             TestSignal::OilTemperature => {
-                "Column of the temperature of the oil, which is told and has no part in the fit."
+                "Column of the temperature of the oil, which is printed but not used in the fit."
             }
         }
     }

@@ -158,7 +158,7 @@ pub struct Project {
     pub bench: Bench,
     /// What the servovalve is identified from.
     pub identify: Option<Identify>,
-    /// The same project with other values, to be judged beside it, in file order.
+    /// The same project with other values, to be compared with it, in file order.
     pub alternatives: Vec<Alternative>,
     /// Other values under which it and its alternatives are judged again, in file order.
     pub load_cases: Vec<LoadCase>,

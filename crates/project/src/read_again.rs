@@ -87,7 +87,7 @@ fn read_again(
     let settings = base.all_settings();
     let read = read_bytes((source, &base.path), Ok(base.bytes.clone()), &settings, also, Some(own));
     read.map_err(|mut refusal| {
-        // a warning on the project itself is told with the project, and once
+        // a warning on the project itself is reported with the project, and once
         let known = |found: &Diagnostic| {
             found.severity != Severity::Error
                 && base.warnings.iter().any(|warning| warning.message == found.message)

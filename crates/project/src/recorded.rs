@@ -24,7 +24,7 @@ pub struct IdentifiedNumber {
     pub declared: Option<f64>,
 }
 
-/// A number that stays as declared, because the recordings do not tell it.
+/// A number that stays as declared, because the recordings do not determine it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct KeptNumber {
     /// Of the project.
@@ -53,9 +53,9 @@ pub struct FromRecordings {
     pub project_sha256: String,
     /// The recordings, in the order of the project.
     pub files: Vec<HashedFile>,
-    /// What they tell.
+    /// What they determine.
     pub numbers: Vec<IdentifiedNumber>,
-    /// What they do not tell.
+    /// What they do not determine.
     pub kept: Vec<KeptNumber>,
     /// What they leave uncertain, where it is in use.
     pub family: Option<IdentifiedFamily>,

@@ -35,8 +35,7 @@ pub fn schema() -> Value {
     if let Value::Object(members) = &mut schema {
         members.insert("$schema".to_string(), json!("http://json-schema.org/draft-07/schema#"));
         members.insert("title".to_string(), json!("Project file of phea"));
-        members
-            .insert("description".to_string(), json!("A rig, or any other plant, and what is wanted of it."));
+        members.insert("description".to_string(), json!("A rig, or any other plant, and its requirements."));
         members.insert("definitions".to_string(), definitions());
     }
     schema

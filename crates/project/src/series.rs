@@ -26,7 +26,7 @@ pub enum DeclaredSeries {
 pub struct DeclaredSpring {
     /// N/m, of the spring; of a progressive one at rest.
     pub stiffness: f64,
-    /// N·s/m, beside the spring.
+    /// N·s/m, parallel to the spring.
     pub damping: f64,
     /// kg, between force sensor and spring.
     pub mass: f64,
@@ -54,7 +54,7 @@ pub struct DeclaredTransmission {
     pub piston_area: f64,
     /// Pa, gauge, at rest and without force.
     pub filling_pressure: f64,
-    /// m³, of oil at either piston beside that of the line.
+    /// m³, of oil at either piston in addition to that of the line.
     pub end_volume: f64,
     /// Into how many segments the line is cut.
     pub segments: u32,
@@ -148,7 +148,8 @@ impl DeclaredTransmission {
         v.quantity(k, &mut self.piston_area);
         let k = key("filling_pressure", &PRESSURE, "Of its oil, at rest and without force.").positive();
         v.quantity(k, &mut self.filling_pressure);
-        let k = key("end_volume", &VOLUME, "Oil at either piston, beside that of the line.").not_negative();
+        let k = key("end_volume", &VOLUME, "Oil at either piston, in addition to that of the line.")
+            .not_negative();
         v.quantity(k.or(0.0), &mut self.end_volume);
         let k = key("segments", &RATIO, "Into how many segments its line is cut; absent: 4.").at_least(1.0);
         let mut segments = Some(self.segments);
@@ -169,7 +170,7 @@ impl DeclaredSpring {
     fn visit<V: Visitor>(&mut self, v: &mut V) {
         let k = key("stiffness", &STIFFNESS, "Of the spring between force sensor and load, at rest.");
         v.quantity(k.positive(), &mut self.stiffness);
-        let k = key("damping", &DAMPING, "Damping beside the spring.").not_negative();
+        let k = key("damping", &DAMPING, "Damping parallel to the spring.").not_negative();
         v.quantity(k.or(0.0), &mut self.damping);
         let k = key("mass", &MASS, "Mass between force sensor and spring.").not_negative();
         v.quantity(k.or(0.0), &mut self.mass);

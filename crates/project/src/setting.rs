@@ -182,7 +182,7 @@ fn insert(table: &mut TreeNode, path: &[PathPart], value: TreeNode) -> Result<()
             let item = name.parse::<usize>().ok().and_then(|index| items.get_mut(index));
             let wrong = || {
                 let found =
-                    RawFinding::error(*place, format!("`{name}` is no element of this list of {count}"));
+                    RawFinding::error(*place, format!("`{name}` is not an element of this list of {count}"));
                 found.help("elements are counted from 0")
             };
             let item = item.ok_or_else(wrong)?;

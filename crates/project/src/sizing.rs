@@ -33,7 +33,7 @@ pub struct DeclaredSizing {
     pub other_means: Option<OtherMeansWish>,
 }
 
-/// What is asked of the ways to be as soft as the hose without it.
+/// Requirements on the ways to be as soft as the hose without it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OtherMeansWish {
     /// N/m, K_H; absent: that of the hose which is accepted.

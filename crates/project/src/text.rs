@@ -88,7 +88,7 @@ impl RawFinding {
         self
     }
 
-    /// The same of so many rows of a table, of which this is the first.
+    /// The same of this number of rows of a table, of which this is the first.
     pub fn and_more(mut self, rows: usize) -> Self {
         self.message = format!("{}; {rows} rows are like this", self.message);
         self

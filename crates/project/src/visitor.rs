@@ -1,6 +1,6 @@
 //! One description of every table serves reading, printing and listing.
 //!
-//! Each type of the project has one `visit` function that names its keys beside its fields. A
+//! Each type of the project has one `visit` function that names its keys with its fields. A
 //! reader fills the fields from the file, a printer writes them, a listing collects the possible
 //! keys: so each key is defined in one place.
 
@@ -180,7 +180,7 @@ pub(crate) enum FormulaShape {
 pub(crate) enum ValueForm {
     /// A number, bare or with its unit in text.
     Number,
-    /// A text that is no quantity.
+    /// A text that is not a quantity.
     Text,
     /// A table.
     Table,

@@ -1,4 +1,4 @@
-//! Every malformed project of the corpus is refused with the messages and places written beside it.
+//! Every malformed project of the corpus is refused with the messages and places written next to it.
 //!
 //! `NAME.expect` has one line for each finding, in order: severity, line, column and message, and below it, indented,
 //! the help if there is one.

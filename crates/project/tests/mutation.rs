@@ -200,7 +200,7 @@ fn run(seed: u64, inputs: u64, valid: &[Vec<u8>], all: &[Vec<u8>]) -> u64 {
     accepted
 }
 
-/// Reads so many inputs, split between the threads.
+/// Reads this number of inputs, split between the threads.
 fn neither_panic_nor_hang(inputs: u64) {
     let mut valid = corpus(&["tests/valid", "../../examples/ybitu"]);
     valid.push(STARTER.as_bytes().to_vec());

@@ -137,7 +137,7 @@ fn settings_come_before_everything_else() {
     for (setting, message) in [
         ("line.length", "a setting has the form path=value"),
         ("line..length=1 m", "an empty name in the path"),
-        ("specification.7.limit=1", "`7` is no element of this list of 3"),
+        ("specification.7.limit=1", "`7` is not an element of this list of 3"),
         ("line.length.x=1", "nothing can be set inside a text"),
         ("line.length=1 s", "expected a length, found a time"),
         ("supply.presure=70 bar", "unknown key `presure` in [supply]"),
@@ -325,7 +325,7 @@ fn areas_come_from_diameters_or_stand_for_themselves() {
     let [area_a, area_b] = diameters.effective_areas_m2();
     // ORIGIN: analytic, pi/4 (0.05^2 - 0.022^2) = 1.58336e-3
     assert!((area_a - 1.58336e-3).abs() < 0.5e-8 && area_a == area_b);
-    // An area is what the pressure acts on: a rod given beside it takes nothing away.
+    // An area is what the pressure acts on: a rod given as well takes nothing away.
     let area = DeclaredCylinder {
         piston_area: Some(1.583e-3),
         rod_diameter: Some(0.022),

@@ -15,7 +15,7 @@ use crate::verification::{
     audit_among,
 };
 
-/// What the watch is told.
+/// Name of the stage in progress reports.
 const STAGE: &str = "auditing";
 
 /// Audits a controller over the whole family and band.

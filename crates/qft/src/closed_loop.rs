@@ -132,7 +132,7 @@ impl Compensation {
     /// The loop of a controller with this sensor (1 where the output itself is fed back).
     ///
     /// # Errors
-    /// [`LinearError`] if a part is no transfer function or cannot be sampled;
+    /// [`LinearError`] if a part is not a transfer function or cannot be sampled;
     /// [`LinearError::DomainMismatch`] for a controller or prefilter in z whose samples are not
     /// those of the loop; [`LinearError::WrongDomain`] for a sensor in z.
     ///

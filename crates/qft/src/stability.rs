@@ -128,7 +128,7 @@ pub enum Irresolution {
     /// infinity, still contain zero.
     #[error("it could not be shown that no pole passes through infinity inside the box")]
     InfinityOpen,
-    /// A controller or sensor with undamped poles beside the origin, in a loop that is known by
+    /// A controller or sensor with undamped poles away from the origin, in a loop that is known by
     /// measured points only.
     #[error(
         "controller or sensor has poles on the boundary of stability, which measured points cannot go around"
@@ -176,7 +176,7 @@ pub enum Irresolution {
         frequency_rad_per_s: f64,
     },
     /// The turns do not add up to a number of poles.
-    #[error("the turns of 1 + L add up to {count:.2} unstable poles, which is no number of poles")]
+    #[error("the turns of 1 + L add up to {count:.2} unstable poles, which is not a number of poles")]
     Count {
         /// What they add up to.
         count: f64,

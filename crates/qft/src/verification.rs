@@ -27,7 +27,7 @@ use crate::stability::{Instability, Irresolution};
 /// was evaluated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// Every plant keeps to it.
+    /// Every plant satisfies it.
     Met,
     /// At least one plant, named with its frequency, does not.
     Violated,

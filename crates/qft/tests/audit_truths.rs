@@ -243,7 +243,7 @@ fn a_pole_that_passes_through_infinity_is_met() {
 }
 
 /// (x - 0.5)^2 s^2 + s loses its highest power for one plant, without a change of sign: its pole is at -1/(x - 0.5)^2. Multiplied out the
-/// square can be told from a change of sign by no enclosure.
+/// square can be distinguished from a change of sign by no enclosure.
 #[test]
 fn a_pole_that_touches_infinity_is_told_where_the_square_is_recorded() {
     let build = |expanded: bool| {

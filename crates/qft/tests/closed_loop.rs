@@ -149,7 +149,7 @@ fn a_continuous_loop_carries_delay_and_sensor() {
     }
 }
 
-/// K in U = G (F R - Y) + K s D is a path beside Pd: Pd + K jw P, with P late in a continuous loop, and that of the samples in a sampled
+/// K in U = G (F R - Y) + K s D is a path parallel to Pd: Pd + K jw P, with P late in a continuous loop, and that of the samples in a sampled
 /// one, a/(s + a) being (1 - r + (r - e)/z)/(z (z - e)) behind a sample and a share of one. The loop itself stays.
 #[test]
 fn a_rate_that_is_fed_forward_is_a_path_of_the_disturbance() {
@@ -185,7 +185,7 @@ fn measured_lag(a: f64) -> MeasuredPlant {
     measured_lag_at(a, 500)
 }
 
-/// Measured at so many points, from 0.5 rad/s in steps of 1.3 %.
+/// Measured at this number of points, from 0.5 rad/s in steps of 1.3 %.
 fn measured_lag_at(a: f64, points: i32) -> MeasuredPlant {
     let frequencies_rad_per_s: Vec<f64> =
         (0..points).map(|k| 0.5 * portable::exp(f64::from(k) * 0.013)).collect();

@@ -60,7 +60,7 @@ fn polar(decibels: f64, degrees: f64) -> Complex64 {
     Complex64::new(size * angle.cos(), size * angle.sin())
 }
 
-/// What an element makes of a loop that samples, or does not, as loop and verification see it: beside a pair of poles, without which a
+/// What an element makes of a loop that samples, or does not, as loop and verification see it: next to a pair of poles, without which a
 /// zero could not be sampled.
 fn response(element: Element, timing: Timing, frequency: f64) -> Complex64 {
     let pair = Element::ComplexPoles { natural_frequency: 300.0, damping_ratio: 0.7 };

@@ -206,7 +206,7 @@ fn blind(problem: &RandomProblem, nominal: Vec<f64>) -> Audit {
     }
 }
 
-/// How often something was shown: (stable, unstable, limited from above), over so many problems with so many points of each.
+/// How often something was shown: (stable, unstable, limited from above), over this number of problems with this number of points of each.
 pub(crate) fn sound(problems: std::ops::Range<u64>, points: usize, sampled: bool) -> [usize; 3] {
     let mut shown = [0; 3];
     for seed in problems {
@@ -421,7 +421,7 @@ fn a_limit_given_as_a_table_is_that_of_the_audit() {
     assert!(altered(&|points| points[1].0 = 0.5).is_err());
 }
 
-/// Where parameters move together, a nominal plant beside their line belongs to the family all the same.
+/// Where parameters move together, a nominal plant away from their line belongs to the family all the same.
 #[test]
 fn a_plant_beside_the_box_is_in_the_proof() {
     let parameter =
@@ -442,7 +442,7 @@ fn a_plant_beside_the_box_is_in_the_proof() {
     let family = UncertainFamily::new(plant.unwrap(), vec![together], vec![], Extent::Box).unwrap();
     let family = Family::Uncertain(family);
     let compensation = Compensation::new(&Controller::default(), TransferFunction::gain_only(1.0)).unwrap();
-    // |P S| = |g/(j w + g)| at w = 1: 1/sqrt 2 on the line, 3/sqrt 10 beside it
+    // |P S| = |g/(j w + g)| at w = 1: 1/sqrt 2 on the line, 3/sqrt 10 away from it
     let specifications = [Specification {
         requirement: Requirement::PlantInputDisturbance(Limit::Constant(0.8)),
         frequencies_rad_per_s: vec![1.0],

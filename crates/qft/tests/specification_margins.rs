@@ -40,7 +40,7 @@ fn sensitivity(open: Complex64) -> f64 {
     1.0 / magnitude(1.0 + open)
 }
 
-/// Whether a loop through this point keeps to the limit is read off the margins alone, on the whole negative axis and the whole
+/// Whether a loop through this point satisfies the limit is read off the margins alone, on the whole negative axis and the whole
 /// unit circle.
 fn margins_draw_the_line(closed: fn(Complex64) -> f64, limit: f64, guaranteed: &GuaranteedMargins) {
     for step in 1..4000 {
@@ -188,7 +188,7 @@ fn the_delay_limit_allows_no_loop_more_delay_than_it_bears() {
         let closed = open.feedback(&TransferFunction::gain_only(1.0)).unwrap();
         assert!(closed.is_stable());
         let true_margin = margins(&open).delay_margin_s();
-        // the longest delay whose limit it keeps to, by halving
+        // the longest delay whose limit it satisfies, by halving
         let keeps = |delay: f64| {
             let limit = delay_margin_limit(delay).unwrap();
             grid.iter().all(|w| complementary(open.at_frequency(*w)) <= limit.magnitude(*w).unwrap())

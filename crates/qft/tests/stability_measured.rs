@@ -123,7 +123,7 @@ fn a_measured_family_is_judged_plant_by_plant() {
         let compensation = loop_of(vec![], Timing::default());
         family_stability(&family, &compensation, &mut unwatched).unwrap()
     };
-    // (s + 1)^3 bears a gain of 8
+    // (s + 1)^3 tolerates a gain of 8
     let good = audited(&[1.0, 7.5]).finding;
     assert_eq!((good.verdict, good.evidence), (Verdict::Met, Evidence::Grid));
     assert_eq!(good.closest_approach.unwrap().plant, PlantPoint::Measured(1));

@@ -129,7 +129,7 @@ fn the_published_controller_is_stable_for_the_whole_of_its_table() {
     assert!((values[3] / stiffness - 1.0).abs() < 2e-3, "{values:?}");
 }
 
-/// The loop tolerates each of these delays, and what it bears beyond them is what is left of the margin without delay.
+/// The loop tolerates each of these delays, and what it tolerates beyond them is what is left of the margin without delay.
 #[test]
 fn the_published_controller_bears_delays_up_to_its_margin() {
     let family = thesis_family([2, 2, 2, 3, 2, 2]);

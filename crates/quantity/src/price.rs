@@ -38,7 +38,7 @@ pub struct Price {
 /// Reads a price.
 ///
 /// # Errors
-/// [`QuantityError`] for a text that is no price, a negative one, an unknown currency, and one for a
+/// [`QuantityError`] for a text that is not a price, a negative one, an unknown currency, and one for a
 /// length where one for a piece is wanted, or the other way round.
 ///
 /// # Example
@@ -86,18 +86,10 @@ pub fn parse_price(text: &str, by: PricedBy) -> Result<Price, QuantityError> {
         (PricedBy::Length, Some(unit)) => parse(&format!("1 {unit}"), &LENGTH)
             .map_err(|found| error(&found.message, number.end, found.help))?,
         (PricedBy::Piece, Some(_)) => {
-            return Err(error(
-                "this is a price for a length, and one for a piece is wanted",
-                number.end,
-                None,
-            ));
+            return Err(error("this is a price per length; expected a price per piece", number.end, None));
         }
         (PricedBy::Length, None) => {
-            return Err(error(
-                "this is a price for a piece, and one for a length is wanted",
-                number.end,
-                None,
-            ));
+            return Err(error("this is a price per piece; expected a price per length", number.end, None));
         }
     };
     Ok(Price { amount: amount / metres, currency })

@@ -32,7 +32,7 @@ impl UnitScale {
     /// The unit of this dimension; an empty text is that of a pure number.
     ///
     /// # Errors
-    /// [`QuantityError`] for what is no unit, or one of another dimension.
+    /// [`QuantityError`] for what is not a unit, or one of another dimension.
     pub fn new(unit: &str, dimension: &Dimension) -> Result<UnitScale, QuantityError> {
         let (product, is_decibel) = unit_of(unit, dimension)?;
         let of = |factors: &[u64]| {
@@ -42,7 +42,7 @@ impl UnitScale {
         Ok(UnitScale { product, over, under, is_decibel })
     }
 
-    /// SI; `None` for what is no decimal number, and for one that f64 cannot hold.
+    /// SI; `None` for what is not a decimal number, and for one that f64 cannot hold.
     pub fn read(&self, number: &str) -> Option<f64> {
         let value = self.read_quickly(number.as_bytes()).or_else(|| self.read_exactly(number))?;
         let value = if self.is_decibel { decibels(value) } else { value };
@@ -98,7 +98,7 @@ struct ScaledDecimal {
 }
 
 impl ScaledDecimal {
-    /// `None` for what is none, and for one of more digits.
+    /// `None` for what is not a decimal, and for one of more digits.
     fn read(text: &[u8]) -> Option<ScaledDecimal> {
         let (is_negative, text) = match text {
             [b'-', rest @ ..] => (true, rest),

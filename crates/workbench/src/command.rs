@@ -158,7 +158,7 @@ pub fn answer(
     answer_watched(source, loaded, catalogues, request, &mut |_| true)
 }
 
-/// The same, telling its progress.
+/// The same, reporting its progress.
 ///
 /// # Errors
 /// Those of [`answer()`], and [`ProcedureError::Stopped`].
@@ -218,7 +218,7 @@ fn answer_of(
     Ok(motion::said(Answer { text, ..answer }, loaded))
 }
 
-/// The project as its recordings tell it, where it wants that.
+/// The project with its valve as identified from its recordings, where it asks for that.
 fn with_recordings(
     source: &dyn Source,
     loaded: &Loaded,

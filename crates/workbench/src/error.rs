@@ -30,7 +30,7 @@ pub enum CommandError {
     },
     /// Projects side by side of which some move along a line and others turn.
     #[error(
-        "{path} has a [motor] and {other} a [cylinder]: their numbers have different units, and cannot stand side by side"
+        "{path} has a [motor] and {other} a [cylinder]: their numbers have different units, and cannot be compared"
     )]
     MixedMotion {
         /// Of the project with a motor.

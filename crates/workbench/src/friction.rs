@@ -1,4 +1,4 @@
-//! What is told of the friction of a cylinder from recorded runs: text, JSON, figures, and the
+//! Output on the friction of a cylinder from recorded runs: text, JSON, figures, and the
 //! fragment of a project file.
 
 mod answer;

@@ -1,4 +1,4 @@
-//! What is told of a line from recordings of it: text, JSON, figures, and the fragment of a project.
+//! Output on a line from recordings of it: text, JSON, figures, and the fragment of a project.
 
 mod answer;
 mod document;
@@ -12,7 +12,7 @@ pub use document::text;
 pub(crate) use figures::pictures;
 pub use files::files;
 
-/// The numbers of a line in the order in which they are told: key, what it is, and the number.
+/// The numbers of a line in the order in which they are printed: key, what it is, and the number.
 pub(crate) fn numbers(
     found: &LineIdentification,
 ) -> [(&'static str, &'static str, &Result<LineNumber, Undetermined>); 8] {

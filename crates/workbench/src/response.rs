@@ -1,4 +1,4 @@
-//! What is told of frequency responses from recorded signals: text, JSON, figures, and the files of
+//! Output on frequency responses from recorded signals: text, JSON, figures, and the files of
 //! a measured family.
 
 mod answer;

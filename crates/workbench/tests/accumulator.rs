@@ -179,7 +179,7 @@ fn what_shuts_off_the_gas_is_refused_at_its_place() {
     assert!(message.contains("alternative `thesis`"), "{message}");
 }
 
-/// A family whose precharge goes beyond the pressure of a chamber tells at how many of its plants; one that does not
+/// A family whose precharge goes beyond the pressure of a chamber states at how many of its plants; one that does not
 /// says nothing.
 #[test]
 fn a_verdict_tells_at_how_many_plants_the_gas_is_shut_off() {

@@ -1,4 +1,4 @@
-//! An accumulator that is adjusted, from the project's keys to plant, family, verdict, simulation and what is told of it.
+//! An accumulator that is adjusted, from the project's keys to plant, family, verdict, simulation and output.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -40,7 +40,7 @@ fn widest(one: &phea_workbench::project::Project, other: &phea_workbench::projec
     gaps.fold(0.0, f64::max)
 }
 
-/// A setting that stands is the accumulator declared with what it stands for, in every form of the plant.
+/// A fixed setting is the accumulator declared with what the setting stands for, in every form of the plant.
 #[test]
 fn a_setting_is_the_declared_accumulator() {
     let text = without_uncertainty(GAS);
@@ -115,7 +115,7 @@ fn a_verdict_says_that_settings_stand() {
     assert!(models.contains("the valve of line.accumulator.adjustment is counted in the plant"), "{models}");
 }
 
-/// A simulation of a setting that moves tells its work; one of a setting that leaves its way is refused.
+/// A simulation of a setting that moves states its work; one of a setting that leaves its way is refused.
 #[test]
 fn a_simulation_tells_the_work_of_a_setting() {
     let text = without_uncertainty(GAS);

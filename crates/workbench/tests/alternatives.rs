@@ -101,7 +101,7 @@ fn every_alternative_has_its_columns_and_reasons() {
     for json in [&judged().1, &parsed(&answer(LOOP, &[], &[], &asked(false)))] {
         let mut found = Vec::new();
         unexplained("", json, &mut found);
-        // the ends of a proof's interval have their reason beside the interval
+        // the ends of a proof's interval have their reason next to the interval
         found.retain(|path| !path.contains(".enclosure_db."));
         assert!(found.is_empty(), "{}", found.join("\n"));
         for one in json["alternatives"].as_array().unwrap() {
@@ -155,7 +155,7 @@ fn a_spring_on_the_rod_has_a_length() {
     let derived = check["derived"].as_array().unwrap();
     let coils = derived.iter().find(|one| one["name"] == "series.coil.installed_length").unwrap();
     let spring = coils["value"].as_f64().unwrap();
-    // ORIGIN: analytic, 0.5 m of stroke and 0.3 m; thesis chapter 7 has the spring beside it
+    // ORIGIN: analytic, 0.5 m of stroke and 0.3 m; thesis chapter 7 has the spring with it
     assert!(spring > 0.1 && (found.unwrap() - (0.8 + spring)).abs() < 1e-12);
     assert_eq!(length("").0.unwrap_err(), "not stated: series.coil, which has a length");
     let few = length(", coil = { index = 12, allowed_shear_stress = \"600 MPa\" }").0.unwrap_err();

@@ -138,7 +138,7 @@ fn a_front_that_cannot_be_says_why() {
     assert_eq!(spelled, "--front ordr,swept: there is no column `ordr`; did you mean `order`?");
     assert!(refused("order", delay).contains("two or three columns"));
     assert!(refused("colour_of_the_oil,swept", delay).contains("; there are relaxation_db, order,"));
-    assert!(refused("order,order:more", delay).contains("`order` stands twice"));
+    assert!(refused("order,order:more", delay).contains("`order` is listed twice"));
     assert!(refused("order:best,swept", delay).contains("neither `less` nor `more`"));
     assert!(refused("order,swept", "plant.dely=1..2").contains("did you mean `plant.delay`?"));
 }

@@ -394,7 +394,7 @@ fn runs_that_never_settle_are_told_beside_the_quantiles() {
     }
 }
 
-/// What is wrong with `[campaign]` is told once, in the text that says it.
+/// What is wrong with `[campaign]` is reported once, in the text that says it.
 #[test]
 fn what_is_refused_of_a_campaign_has_its_place_and_a_hint() {
     let refused = |settings: &[&str]| {

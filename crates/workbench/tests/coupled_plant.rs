@@ -1,4 +1,4 @@
-//! The plant of every verdict is that of the declared rig, with its load and its leakage; what it does not count is told first.
+//! The plant of every verdict is that of the declared rig, with its load and its leakage; what it does not count is reported first.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -271,7 +271,7 @@ fn a_late_feed_forward_of_a_prescribed_load_is_a_path_of_its_motion() {
     }
 }
 
-/// What changes no specification is told, and the verdict stays.
+/// What changes no specification is reported, and the verdict stays.
 #[test]
 fn a_path_that_no_specification_limits_decides_nothing() {
     for (settings, told) in

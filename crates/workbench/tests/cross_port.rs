@@ -76,7 +76,7 @@ fn feedback_costs_nothing_at_rest() {
     }
 }
 
-/// An orifice without a drop is told first, and no verdict is met with it unless the range of its transition is stated.
+/// An orifice without a drop is reported first, and no verdict is met with it unless the range of its transition is stated.
 #[test]
 fn an_orifice_without_a_drop_is_told_first() {
     let told = json(FEEDBACK, &[], &[], &Request::Verify);
@@ -168,7 +168,7 @@ fn models_without_feedback_say_so() {
     );
 }
 
-/// `check` tells the damping of the plant with the valve in it: without one about that of the decomposed model, with the
+/// `check` states the damping of the plant with the valve in it: without one about that of the decomposed model, with the
 /// feedback of the comparison in the book the 0.09 that it was sized for, where the decomposed model has not changed.
 #[test]
 fn check_tells_the_damping_with_the_valve_in_it() {

@@ -48,7 +48,7 @@ fn the_section_becomes_what_a_design_begins_with() {
     // around the design frequencies, 0.1 and 1 rad/s, where the project says nothing
     let StructureFactor::RealZero { frequency: [low, high] } = parts[1] else { panic!("{parts:?}") };
     assert!(low < 0.1 && high > 1.0, "{low} {high}");
-    // a prefilter beside a controller without a law is kept
+    // a prefilter with a controller without a law is kept
     let PrefilterChoice::Given(kept) = &options.prefilter else { panic!("{options:?}") };
     assert_eq!((kept.gain(), kept.poles()[0].re), (0.1, 0.9));
     assert_eq!(begun(TIMED, &[], Some(3)).1.seed, 3);

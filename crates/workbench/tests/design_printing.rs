@@ -155,7 +155,7 @@ fn programs_read_the_keys_that_stay() {
     assert_eq!(object["prefilter"]["poles"], serde_json::json!([[-6.0, 0.0]]));
     assert_eq!(object["structure"]["parts"][1]["frequency_rad_per_s"], serde_json::json!([10.0, 1000.0]));
     assert_eq!(object["seed"], 7);
-    // the same object that `verify` prints, beside what every object carries
+    // the same object that `verify` prints, in addition to what every object carries
     let designed = String::from_utf8(files(&loaded, &view).remove(0).bytes).unwrap();
     let (source, loaded) = self::loaded(&designed);
     let verified = answer(&source, &loaded, &[], &Request::Verify).unwrap().json;
@@ -199,7 +199,7 @@ fn a_sampled_design_is_written_as_it_was_found_and_told_as_it_is_deployed() {
     assert_eq!(written, expected);
 }
 
-/// What the project says of its prefilter beside the law holds for the designed one too, in the file and in what is pasted.
+/// What the project says of its prefilter in addition to the law holds for the designed one too, in the file and in what is pasted.
 #[test]
 fn a_prefilter_that_acts_between_samples_goes_on_doing_so() {
     let sampled = PROJECT.replace("TIMING\n", "sample_time = \"2 ms\"\n");

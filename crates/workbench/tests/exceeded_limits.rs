@@ -1,4 +1,4 @@
-//! Limits of the rig that a simulation goes beyond, told with their times.
+//! Limits of the rig that a simulation goes beyond, reported with their times.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 

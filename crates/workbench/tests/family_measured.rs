@@ -209,7 +209,7 @@ fn files_that_are_none_are_told() {
         "frequency_hz,real,imaginary\n# nothing\n",
         &["1:1 the file has no rows below the names of its columns"],
     );
-    refuses([0x66, 0xff, 0x00, 0x0a], &["0:0 the file is no text"]);
+    refuses([0x66, 0xff, 0x00, 0x0a], &["0:0 the file is not text"]);
     let source = Memory::default().with("p.toml", PROJECT);
     let project = project::read(&source, "p.toml", &[], &[]).unwrap().project;
     let error = family(&Setup::new(&project).unwrap(), &source).unwrap_err().to_string();

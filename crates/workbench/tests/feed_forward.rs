@@ -104,7 +104,7 @@ fn a_little_less_than_the_gain_is_passive() {
         let leak = parameters.flow_pressure_coefficient / (parameters.useful_area * parameters.flow_gain);
         let less = lag(&parameters) * integral / (proportional + leak);
         assert!((100.0 * less - less_percent).abs() < 0.05, "{line}: {less}");
-        // friction beside leakage makes the gain at rest 3e-5 more than A/K_qU
+        // friction in addition to leakage makes the gain at rest 3e-5 more than A/K_qU
         assert!(resistance(1.0 - less - 1e-4) > 0.0 && resistance(1.0 - less + 1e-4) < 0.0, "{line}");
         assert!(resistance(1.0) < 0.0 && resistance(0.0) > 0.0, "{line}");
         // the lag T of a filter asks for more: (1 - a)(K_p + K_c/(A K_qU)) = (tau + a T) K_i

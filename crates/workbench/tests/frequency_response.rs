@@ -210,7 +210,7 @@ fn a_sampled_loop_around_waves_is_that_of_their_response() {
 }
 
 /// Bristles hold the piston: below their break-away the machine is stiffer than any plant of viscous friction, and the sines see it.
-/// A spring of 1e7 N/m beside the load cell of 2e7 N/m leaves two thirds of the force.
+/// A spring of 1e7 N/m in addition to the load cell of 2e7 N/m leaves two thirds of the force.
 #[test]
 fn sines_below_break_away_see_the_bristles() {
     let found = shaken(&load(&SMOOTH[1..]), &[20.0], [1e-4, 1.0]);

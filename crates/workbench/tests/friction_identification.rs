@@ -147,7 +147,7 @@ fn a_quick_force_leaves_the_stiffness_open() {
     is_open(&found, "bristle_stiffness_n_per_m", "record one that rises slowly");
 }
 
-/// The pressures have an error of their zero: both ways tell it from friction.
+/// The pressures have an error of their zero: both ways separate it from friction.
 #[test]
 fn an_error_of_the_zero_is_no_friction() {
     let source = recorded(&["bench.friction={ velocities = 6 }"]);
@@ -215,7 +215,7 @@ fn files_that_are_no_runs_are_refused_with_their_places() {
         "time_s,position_mm,force_n\n0,1,2\n0.1,1,2\n",
         &["2 rows are too few for a run of the cylinder"],
     );
-    // a piston that rests tells nothing
+    // a piston that rests shows nothing
     let rest: String = (0..200).map(|row| format!("{},5,0\n", f64::from(row) * 0.01)).collect();
-    refused(&format!("time_s,position_mm,force_n\n{rest}"), &["nothing is recorded that tells a friction"]);
+    refused(&format!("time_s,position_mm,force_n\n{rest}"), &["no recording determines the friction"]);
 }

@@ -16,7 +16,7 @@ use serde_json::Value;
 const STIFFNESS: &str = "bristle_stiffness_n_per_m";
 const DAMPING: &str = "bristle_damping_n_s_per_m";
 
-/// Stiffness and damping are within 1.5 half widths of what they are, and told to this share.
+/// Stiffness and damping are within 1.5 half widths of what they are, and determined to this share.
 #[track_caller]
 fn tells(found: &Value, share: f64) {
     for (key, truth) in &TRUTH[5..] {
@@ -173,7 +173,7 @@ command = [
     }
 }
 
-/// A recording that cannot tell says what would.
+/// A recording that does not determine them says what would.
 #[test]
 fn a_shaken_piston_that_tells_too_little_says_what_would() {
     let files = [SLIDING, SHAKEN];

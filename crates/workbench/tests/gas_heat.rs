@@ -1,4 +1,4 @@
-//! Heat and temperature of accumulators from the project's keys to plant, family, verdict, runs and what is told of them.
+//! Heat and temperature of accumulators from the project's keys to plant, family, verdict, runs and output.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 

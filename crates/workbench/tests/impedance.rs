@@ -116,7 +116,7 @@ fn a_damper_makes_a_late_spring_passive() {
     }
 }
 
-/// The view of `linearize` is the port that its band and its points speak of.
+/// The view of `linearize` is the port that its band and its points refer to.
 #[test]
 fn what_is_shown_is_the_port() {
     let project = read(
@@ -224,7 +224,7 @@ fn the_verdict_speaks_of_the_loop_that_exists() {
     assert!(without.iter().zip(&with).any(|(one, other)| (one - other).abs() > 0.1), "{without:?} {with:?}");
 }
 
-/// Active and passive compliance in one table: a pipe whose loop shows a spring and a damper beside the hose and the pipe themselves.
+/// Active and passive compliance in one table: a pipe whose loop shows a spring and a damper compared with the hose and the pipe themselves.
 #[test]
 fn alternatives_state_what_is_asked_beside_what_is_shown() {
     let (head, _) = HOSE.split_once("[uncertainty]").unwrap();
@@ -351,7 +351,7 @@ fn a_proof_and_a_trial_are_of_the_loop_with_it() {
     assert!((margin(&found) - margin(&without)).abs() > 0.1, "{} {}", margin(&found), margin(&without));
 }
 
-/// Report, linear models and derived quantities speak of it; what states the controller of a position is not designed.
+/// Report, linear models and derived quantities state it; what states the controller of a position is not designed.
 #[test]
 fn every_answer_speaks_of_it() {
     let position = "controller.impedance.form=admittance";

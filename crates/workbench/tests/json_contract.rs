@@ -106,7 +106,7 @@ fn the_hash_is_of_the_bytes_and_settings_stand_beside_it() {
     assert_eq!(plain["derived"], json(&windows, &[], &[], &Request::Check)["derived"]);
 }
 
-/// Nulls without a reason beside them. A reason stands under `reason` or under the key with `_reason`.
+/// Nulls without a reason next to them. A reason is under `reason` or under the key with `_reason`.
 pub(crate) fn unexplained(path: &str, value: &Value, found: &mut Vec<String>) {
     match value {
         Value::Object(fields) => {
@@ -182,7 +182,7 @@ fn check_lists_derived_quantities() {
     names.sort_unstable();
     let all = names.len();
     names.dedup();
-    assert_eq!(names.len(), all, "a name stands twice");
+    assert_eq!(names.len(), all, "a name is used twice");
     // A plant given as a transfer function is valid, and nothing follows from it.
     let object = json(PLANT, &[], &[], &Request::Check);
     assert_eq!(object["derived"], serde_json::json!([]));

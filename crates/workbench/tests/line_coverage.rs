@@ -37,7 +37,7 @@ pub(crate) const WAVES: [&str; 8] = [
 const SETTINGS: ResponseSettings =
     ResponseSettings { period: None, settling: None, segment: None, coherence: 0.0 };
 
-/// What is asked of an identification, and what is true.
+/// Requirements on an identification, and what is true.
 type Sought = (&'static str, fn(&LineIdentification) -> &Result<LineNumber, Undetermined>, f64);
 
 /// Each 95 % interval covers the truth as often as a binomial distribution allows.

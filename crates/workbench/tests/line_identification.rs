@@ -190,7 +190,7 @@ fn air_shows_as_a_modulus_that_grows_with_the_pressure() {
     let truth = modulus(35e5);
     let [low, high] =
         [0, 1].map(|end| found["effective_bulk_modulus_pa"]["confidence_95"][end].as_f64().unwrap());
-    // ORIGIN: analytic, the modulus of oil with air in a pipe. The law is no polynomial: half a percent at most beside three terms between 25 and 45 bar
+    // ORIGIN: analytic, the modulus of oil with air in a pipe. The law is not a polynomial: half a percent at most away from three terms between 25 and 45 bar
     assert!(0.995 * low < truth && truth < 1.005 * high, "{low} {truth} {high}");
     let slope = (modulus(36e5) - modulus(34e5)) / 2e5;
     near(value(&found, "modulus_slope"), slope, 0.1);
@@ -216,7 +216,7 @@ fn what_a_recording_does_not_tell_is_not_determined_with_the_reason() {
     // the wall of the project does not creep, and that of the record does
     let answer = identified(HOSE, &[], &files).unwrap();
     assert!(answer.text.contains("does not explain this response"), "{}", answer.text);
-    // far below the quarter wave nothing tells the inertance
+    // far below the quarter wave nothing determines the inertance
     let low = ["bench.line.frequencies=[\"0.5 Hz\", \"4 Hz\"]", "bench.line.periods=4"];
     let files = benched(HOSE, &[&["line.model=\"segments\"", "line.segments=1"], &low[..]].concat());
     let found = line(&identified(HOSE, &["line.model=\"segments\"", "line.segments=1"], &files).unwrap());
@@ -263,7 +263,7 @@ fn recordings_that_are_none_of_a_line_are_refused_with_the_place() {
     refused(&rows("time_s,pressure_bar", &|n| format!("{n},{n}")), &["there is no column `flow`"]);
     refused(&rows("pressure_bar,flow_l_per_min", &|n| format!("{n},{n}")), &["there is no column `time`"]);
     refused(&rows("presure_bar,volume_ml", &|n| format!("{n},{n}")), &["did you mean `presure_bar`?"]);
-    refused(&rows("pressure_kg,volume_ml", &|n| format!("{n},{n}")), &["`kg` is no unit of"]);
+    refused(&rows("pressure_kg,volume_ml", &|n| format!("{n},{n}")), &["`kg` is not a unit of"]);
     let back = |n: u32| format!("{},{n},{n}", if n == 7 { 3 } else { n });
     refused(
         &rows("time_s,pressure_bar,volume_ml", &back),

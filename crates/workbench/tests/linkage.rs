@@ -180,7 +180,7 @@ fn run(project: &Project) -> ScenarioRun {
     simulate_project(&Memory::default(), &Setup::new(project).unwrap(), &mut |_| true).unwrap().remove(0)
 }
 
-/// Behind a linkage a run starts at rest where the operating point is, and not beside it.
+/// Behind a linkage a run starts at rest where the operating point is, and nowhere else.
 #[test]
 fn a_run_starts_at_the_operating_point() {
     for settings in [&[][..], &["operating_point.position=\"15 mm\"", "load.stiffness=400"]] {

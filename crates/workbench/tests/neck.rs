@@ -1,4 +1,4 @@
-//! The neck of an accumulator from the project's keys to plant, family, verdict and what is told of it.
+//! The neck of an accumulator from the project's keys to plant, family, verdict and output.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -27,7 +27,7 @@ const RIGS: [&[&str]; 6] = [
     &["line.model=transmission_line", "linear.hydraulic_stiffness=2e6"],
 ];
 
-/// A neck that becomes short is none, in every form of the plant; the one of an example is not short.
+/// A neck that becomes short has no effect, in every form of the plant; the one of an example is not short.
 #[test]
 fn a_short_neck_is_none() {
     let text = without_uncertainty(GAS);
@@ -58,7 +58,7 @@ fn the_family_is_the_rig_at_its_nominal() {
     }
 }
 
-/// Its resonance and damping ratio are told, and nothing at rest changes.
+/// Its resonance and damping ratio are printed, and nothing at rest changes.
 #[test]
 fn check_derives_the_resonance_of_a_neck() {
     let own = ["line.b.accumulator.neck_diameter=\"4 mm\"", "line.b.accumulator.neck_length=\"20 mm\""];
@@ -66,7 +66,7 @@ fn check_derives_the_resonance_of_a_neck() {
     for (side, diameter, length) in [("a", 6e-3, 0.04), ("b", 4e-3, 0.02)] {
         let area = std::f64::consts::FRAC_PI_4 * diameter * diameter;
         let of_gas = derived(&told, &format!("line.{side}.accumulator.compliance"));
-        // ORIGIN: analytic, sqrt(A/(rho L C)) and 16 nu/(w d^2), with the oil of the neck beside the gas
+        // ORIGIN: analytic, sqrt(A/(rho L C)) and 16 nu/(w d^2), with the oil of the neck in addition to the gas
         let resonance = (area / (870.0 * length * (of_gas + area * length / 1.45e9))).sqrt();
         near(derived(&told, &format!("line.{side}.accumulator.neck_resonance")), resonance, 1e-9);
         let damping = 16.0 * 46e-6 / (resonance * diameter * diameter);

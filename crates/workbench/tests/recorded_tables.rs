@@ -1,5 +1,5 @@
 //! Recorded tests of every kind: each file of the corpus is read as the reference, to the last bit,
-//! or refused with what is written beside it.
+//! or refused with what is written next to it.
 //!
 //! `NAME.expect` begins with what is read, and has a line for each finding: severity, line, column
 //! and message, and indented below it what was expected and what helps. `NAME.toml` is what a

@@ -45,7 +45,7 @@ fn what_cannot_be_had_with_waves_is_told() {
     assert_eq!((&object["status"], &object["machine"]["verdict"]), (&"met".into(), &"contradicts".into()));
     assert_eq!((&repair["status"], &repair["plant_before"]["stable"]), (&"infeasible".into(), &false.into()));
     assert_eq!(repair["taken_in"], "the same with waves in its lines");
-    // the controller that is told comes as near as is told, to the family and to the plant with waves
+    // the controller that is printed comes as near as is printed, to the family and to the plant with waves
     let relaxation = number(repair, "relaxation_db");
     assert!(relaxation > 0.01, "{relaxation} dB");
     let both = [&repair["nearest"]["verification"], &repair["plant_after"]];
@@ -96,7 +96,7 @@ fn a_design_is_repaired_where_it_can_be() {
     assert_eq!(object["machine"]["verdict"], "agrees");
     assert!(said.affirmative);
     assert_eq!(repair["plant_after"]["verdict"], "met");
-    // the first design is told beside it
+    // the first design is printed with it
     assert_eq!(repair["before"]["controller"], first["controller"]);
     assert!(said.text.contains("before the repair"), "{}", said.text);
     // what it does with waves in every plant is what the audit of the same project says that declares them

@@ -88,7 +88,7 @@ fn a_design_is_part_of_the_report_where_it_is_asked_for_or_no_law_is_given() {
     let designed = report_of(lawless, &["design.maximum_order=1", "design.prefilter_maximum_order=1"]);
     assert!(chapter(&designed).is_some() && !designed.html.contains("id=\"audit\""));
     assert!(!chapter(&designed).unwrap().contains(">given<"), "there is nothing to compare with");
-    assert!(HOSE.contains("[design]"), "the example shows the published controller beside ours");
+    assert!(HOSE.contains("[design]"), "the example shows the published controller next to ours");
 }
 
 #[test]
@@ -101,7 +101,7 @@ fn both_controllers_stand_side_by_side_as_their_audits_found_them() {
     assert_eq!(row(chapter, "crossover of the nominal loop")[1], "10.0 rad/s");
     assert_eq!(row(chapter, "phase margin of the nominal loop")[1], "90.0 deg");
     assert_eq!(row(chapter, "order of controller and prefilter")[1], "1 and 1");
-    // of the family the one with k = 20 bears least delay: pi/2 over its crossover of 20 rad/s. ORIGIN: analytic
+    // of the family the one with k = 20 tolerates least delay: pi/2 over its crossover of 20 rad/s. ORIGIN: analytic
     assert_eq!(row(chapter, "delay margin of the family")[1], "78.5 ms");
     // |1 + k/s| is nowhere below 1 and tends to it
     let distance: f64 = row(chapter, "modulus margin of the family")[1].parse().unwrap();
@@ -132,7 +132,7 @@ fn both_controllers_stand_side_by_side_as_their_audits_found_them() {
     assert_eq!((cost.matches(">k<").count(), cost.matches("<tr>").count()), (1, 6), "{cost}");
 }
 
-/// A sampled loop shows its law as it runs, and beside it the design that was made without samples: that of the same project when it is continuous.
+/// A sampled loop shows its law as it runs, and next to it the design that was made without samples: that of the same project when it is continuous.
 #[test]
 fn a_sampled_loop_is_shown_with_what_sampling_changes() {
     let settings = ["controller.sample_time=\"5 ms\"", "controller.delay=\"2 ms\""];
@@ -155,7 +155,7 @@ fn what_cannot_be_met_is_told_with_what_stands_against_it() {
     let report = report_of(CONTRADICTORY, &[]);
     let chapter = chapter(&report).unwrap();
     assert!(fact(&report).unwrap().starts_with("infeasible by "), "{:?}", fact(&report));
-    let (_, rest) = chapter.split_once("What stands against one another").unwrap();
+    let (_, rest) = chapter.split_once("Conflicting specifications").unwrap();
     let (conflicts, _) = rest.split_once("What the specifications cost").unwrap();
     for words in ["1 sensitivity", "2 robust stability", "dB wider"] {
         assert!(conflicts.contains(words), "{words}: {conflicts}");

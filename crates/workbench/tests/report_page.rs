@@ -125,7 +125,7 @@ fn every_link_of_the_page_has_its_place() {
     let all = places.len();
     places.sort_unstable();
     places.dedup();
-    assert_eq!(places.len(), all, "an id stands twice");
+    assert_eq!(places.len(), all, "an id is used twice");
 }
 
 /// HTML's void elements, which XML wants closed.
@@ -164,7 +164,7 @@ fn the_page_and_every_figure_are_well_formed() {
         let document = Document::parse(&xml).unwrap_or_else(|error| panic!("{error}"));
         let title = document.descendants().find(|node| node.has_tag_name("h1")).unwrap();
         assert!(project.contains(&format!("title = \"{}\"", text(title))));
-        // the marks of verdicts have their word beside them
+        // the marks of verdicts have their word next to them
         let mut figures = elements(page, "svg");
         figures.retain(|figure| !figure.contains("aria-hidden=\"true\""));
         assert!(figures.len() >= 7, "{}", figures.len());
@@ -215,7 +215,7 @@ fn demands(page: &str) -> String {
     text(chapter)
 }
 
-/// |T| <= 1.3 bears 1 + 1/1.3 and 1 - 1/1.3 of the gain, 2 asin(1/2.6) of phase, and keeps 1/2.3 away from -1.
+/// |T| <= 1.3 tolerates 1 + 1/1.3 and 1 - 1/1.3 of the gain, 2 asin(1/2.6) of phase, and keeps 1/2.3 away from -1.
 #[test]
 fn what_is_demanded_is_said_with_what_it_means() {
     let chapter = demands(page(hose()));
@@ -463,7 +463,7 @@ fn an_unstable_loop_is_called_unstable_and_not_measured() {
     assert!(unstable.figures.iter().all(|figure| figure.name != "step"));
     let (_, step) = plain_hose().summary.iter().find(|(name, _)| *name == "Nominal linear loop").unwrap();
     assert!(step.contains("% overshoot, settles in "), "{step}");
-    // A proportional loop ends beside its reference: it does not settle in the band.
+    // A proportional loop ends away from its reference: it does not settle in the band.
     let beside = report_of(&nominal(), &["controller.numerator=\"0.0001\"", "controller.denominator=\"1\""]);
     assert!(!beside.html.contains("settles in not"));
 }

@@ -277,7 +277,7 @@ fn records_that_give_no_response_are_refused_with_the_place_and_the_reason() {
     refused(&gap, &usual, &["shaken.csv:101", "20 ms after the row before"]);
     let flat = vec![1.0; times.len()];
     refused(&table("time_s,input,output", [&times, &flat, &wave]), &usual, &["the input never moves"]);
-    refused(&table("time_s,input,force_kg", [&times, &wave, &wave]), &usual, &["`kg` is no unit of"]);
+    refused(&table("time_s,input,force_kg", [&times, &wave, &wave]), &usual, &["`kg` is not a unit of"]);
     refused(
         &table("time_s,command_v,angle", [&times, &wave, &wave]),
         &usual,

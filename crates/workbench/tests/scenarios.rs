@@ -143,7 +143,7 @@ fn a_recorded_reference_is_followed_like_what_was_recorded() {
         .unwrap_err()
         .to_string();
     assert!(
-        error.contains("`nm` is no unit of a force") && error.contains("did you mean `force_n`?"),
+        error.contains("`nm` is not a unit of a force") && error.contains("did you mean `force_n`?"),
         "{error}"
     );
 }
@@ -416,7 +416,7 @@ fn a_state_is_refused_where_it_does_not_fit_and_not_written_where_it_would_not_b
     assert_eq!(unsaved(&late), "a command is under way in the delay of the controller");
 }
 
-/// The expansion of a hose is known up to the pressure it is stated at: beyond, supply and chambers are told with both numbers.
+/// The expansion of a hose is known up to the pressure it is stated at: beyond, supply and chambers are reported with both numbers.
 #[test]
 fn an_expansion_is_carried_on_beyond_its_pressure_with_a_warning() {
     let hose = include_str!("../../../examples/ybitu/hose.toml");

@@ -196,7 +196,7 @@ fn lines_in_motion_and_the_spring_go_together() {
     assert!((told / own - 1.0).norm_sqr() < 1e-18, "{told} {own}");
 }
 
-/// A progressive spring is told before the verdict; what the reduced models leave out is told with them.
+/// A progressive spring is reported before the verdict; what the reduced models leave out is reported with them.
 #[test]
 fn what_is_not_counted_is_told() {
     let spring =

@@ -17,7 +17,7 @@ use phea_workbench::simulate::simulate_project;
 use phea_workbench::source::Memory;
 
 const BENCHMARK: &str = include_str!("../../../examples/benchmark/closed_loop.toml");
-/// Viscous friction and four equal edges: nothing has a kink. Nothing is asked of the controller, which starts at rest.
+/// Viscous friction and four equal edges: nothing has a kink. The controller has nothing to do, which starts at rest.
 const SMOOTH: [&str; 6] = [
     "cylinder.friction={ model = \"viscous\", viscous = \"100 N.s/m\" }",
     "valve.flow_coefficients=[3e-7, 3e-7, 3e-7, 3e-7]",
@@ -43,7 +43,7 @@ pub(crate) fn loaded(settings: &[&str], more: &[String]) -> Project {
     project::read(&source, "rig.toml", &settings, &[]).unwrap_or_else(|report| panic!("{report}")).project
 }
 
-/// Force over motion of the load or its ground in N/m at so many hertz, as the machine answers at the samples.
+/// Force over motion of the load or its ground in N/m at this number of hertz, as the machine answers at the samples.
 pub(crate) fn of_machine(settings: &[&str], hertz: u32) -> Complex64 {
     let frequency = TAU * f64::from(hertz);
     let amplitude = SPEED / frequency;

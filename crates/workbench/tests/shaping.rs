@@ -319,7 +319,7 @@ fn what_cannot_be_changed_is_refused_with_its_place() {
     };
     let element_help =
         "an element is an inline table: { kind = \"lead\", zero_frequency = 5, pole_frequency = 50 }";
-    check(Change::Add, "lead", "this is no element", 1, element_help);
+    check(Change::Add, "lead", "this is not an element", 1, element_help);
     check(Change::Add, "{ kind = \"led\" }", "`kind` cannot be \"led\"", 10, "did you mean \"lead\"?");
     let lag = "{ kind = \"lag\", zero_frequency = 5, pole_frequency = 50 }";
     check(Change::Add, lag, "a lag has its zero above its pole", 34, "write kind = \"lead\"");
@@ -334,10 +334,10 @@ fn what_cannot_be_changed_is_refused_with_its_place() {
         30,
         "",
     );
-    check(Change::Remove, "0", "`0` is no number of an element", 1, "there is one element");
-    check(Change::Remove, "one", "`one` is no number of an element", 1, "elements are counted from 1");
+    check(Change::Remove, "0", "`0` is not the number of an element", 1, "there is one element");
+    check(Change::Remove, "one", "`one` is not the number of an element", 1, "elements are counted from 1");
     check(Change::Move, "1", "there is no `=` in it", 1, "for instance 3=1");
-    check(Change::Move, "1 = 2", "`2` is no number of an element", 5, "there is one element");
+    check(Change::Move, "1 = 2", "`2` is not the number of an element", 5, "there is one element");
     let needs = "missing `frequency` in [elements]: kind \"pole\" needs it";
     check(Change::Replace, "1={ kind = \"pole\" }", needs, 3, "Corner or natural frequency.");
     let example = "for instance: lead through -6 dB, -130 deg at 20 rad/s";
@@ -345,7 +345,7 @@ fn what_cannot_be_changed_is_refused_with_its_place() {
     check(Change::Pass, "lead through 3 dB", "it does not say `at` which frequency", 14, example);
     check(Change::Pass, "leed through 3 dB at 2", "`leed` cannot be solved for", 1, "did you mean `lead`?");
     let coordinate = "write a magnitude in dB, a phase in deg, or both";
-    check(Change::Pass, "pi through 3 dB, 4 at 2", "`4` is no coordinate of the chart", 18, coordinate);
+    check(Change::Pass, "pi through 3 dB, 4 at 2", "`4` is not a coordinate of the chart", 18, coordinate);
     check(Change::Pass, "pi through x dB at 2", "`x` is not a number", 12, example);
     let (message, column, _) = refusal(Change::Pass, "pi through 1 dB at 2 bar");
     assert_eq!((message.as_str(), column), ("expected an angular frequency, found a pressure", 22));

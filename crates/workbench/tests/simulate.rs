@@ -230,7 +230,7 @@ fn a_limit_that_is_reached_is_told_with_its_time() {
     }
 }
 
-/// A load pulled away by 100 mm in 10 ms empties a chamber: told, not clamped.
+/// A load pulled away by 100 mm in 10 ms empties a chamber: reported, not clamped.
 #[test]
 fn cavitation_is_told() {
     let run = run_of(
@@ -339,7 +339,7 @@ fn the_answer_has_the_keys_that_stay() {
     assert!(table.lines().nth(1).unwrap().starts_with("0,0,0,0,0,3500000,3500000,0.25,"));
 }
 
-/// Stopped after a while, what there is is told and the answer is no.
+/// Stopped after a while, what there is is printed and the answer is no.
 #[test]
 fn a_run_that_is_stopped_keeps_what_it_has() {
     let loaded = load(BENCHMARK, &[]);

@@ -43,7 +43,7 @@ fn apart(one: &ScenarioRun, other: &ScenarioRun) -> f64 {
     one.iter().zip(&other).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max)
 }
 
-/// The run that is told is the one without a check, and what is told of it is the difference to a run at a tenth.
+/// The run that is printed is the one without a check, and what is printed of it is the difference to a run at a tenth.
 #[test]
 fn a_check_is_the_difference_of_two_runs() {
     let run_checked = checked(&[SHORT, "simulation.tolerance=1e-5"]);

@@ -1,5 +1,5 @@
 //! The simulated machine against models that it must agree with: its own linearisation, the static friction curve, and hose
-//! beside pipe as they were computed independently.
+//! next to pipe as they were computed independently.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "the platform's functions are exact enough for a test")]

@@ -13,7 +13,7 @@ use serde_json::Value;
 
 const BENCHMARK: &str = include_str!("../../../examples/simulation/benchmark.toml");
 
-/// The benchmark's first 2.5 s, with this put behind its scenario and this file beside it.
+/// The benchmark's first 2.5 s, with this put after its scenario and this file next to it.
 fn rig(measured: &str, content: &str) -> (Memory, project::Loaded) {
     let text = format!("{BENCHMARK}\n{measured}");
     let source = Memory::default().with("rig.toml", text.as_str()).with("bench.csv", content);

@@ -78,7 +78,7 @@ fn a_valve_that_is_shut_for_ten_seconds() {
     assert!(run.work.steps < 2000 && run.occurrences.is_empty());
 }
 
-/// A pump that gives next to nothing: the force that is asked for does not come, the command reaches its limit, and both are told.
+/// A pump that gives almost nothing: the required force is not reached, the command reaches its limit, and both are reported.
 #[test]
 fn a_supply_that_is_lost() {
     let lost = ["supply.model=pump_limited", "supply.flow=0.001 L/min", "supply.volume=0.1 L"];
@@ -101,7 +101,7 @@ fn pressures_that_are_reversed() {
     assert!(refusal.contains("`tank_pressure` must be below `pressure`"), "{refusal}");
 }
 
-/// A load that takes the piston beyond its stroke: stopped where there are stops, told where there are none.
+/// A load that takes the piston beyond its stroke: stopped where there are stops, reported where there are none.
 #[test]
 fn a_load_beyond_the_end_of_the_stroke() {
     for distance in ["252 mm", "-252 mm"] {
@@ -119,7 +119,7 @@ fn a_load_beyond_the_end_of_the_stroke() {
     }
 }
 
-/// A hose of no length is refused at its key; next to nothing of one is a stiff machine.
+/// A hose of no length is refused at its key; almost none of it is a stiff machine.
 #[test]
 fn hoses_without_length() {
     for (text, setting, words) in [
@@ -230,7 +230,7 @@ fn rows_that_do_not_divide_the_scenario() {
     }
 }
 
-/// A scenario whose table no disk would be asked to hold is refused at its key, with what is asked for and what there may be.
+/// A scenario whose table no disk could hold is refused at its key, with what is asked for and what there may be.
 #[test]
 fn more_rows_than_are_held() {
     for (setting, asked) in [

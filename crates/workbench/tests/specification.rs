@@ -109,7 +109,7 @@ fn margins_become_limits() {
     assert!((delay.magnitude(250.0).unwrap() - 2.0).abs() < 1e-14);
 }
 
-/// The thesis' limits (6.28, 6.29) beside their wishes do what the errata say; wished outright they are met.
+/// The thesis' limits (6.28, 6.29) with their wishes do what the errata say; wished outright they are met.
 #[test]
 fn wishes_in_time_are_checked() {
     let given = "[[specification]]\nkind = \"tracking\"\nfrequencies = [1]\n\

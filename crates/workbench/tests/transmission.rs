@@ -64,7 +64,7 @@ fn the_example_is_met_and_the_machine_agrees() {
     assert_eq!(said["proof"]["stable"]["proven"], true, "{}", said["proof"]);
 }
 
-/// Every load, and waves in the lines of the rig beside it.
+/// Every load, and waves in the lines of the rig as well.
 #[test]
 fn small_steps_on_the_machine_are_those_of_the_linear_loop() {
     let scenario = "scenario=[{ name = \"step\", duration = \"1 s\", reference = [{ at = \"0.1 s\", force = \"100 N\" }] }]";

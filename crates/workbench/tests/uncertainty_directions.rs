@@ -235,7 +235,7 @@ fn a_direction_moves_numbers_that_exist_and_are_uncertain_nowhere_else() {
     let edge = "\"valve.flow_coefficients.supply_to_a\" = 1e-9";
     let cases = [
         (direction("a", "\"valve.flow_coefficients.suply_to_a\" = 1e-9"), "supply_to_a"),
-        (direction("a", "\"line.volume\" = 1e-5"), "`line.volume` is no number of this project"),
+        (direction("a", "\"line.volume\" = 1e-5"), "`line.volume` is not a number of this project"),
         (direction("a", ""), "`changes` is empty"),
         (direction("flow_gain", edge), "a name of its own"),
         (direction("a", edge) + &direction("a", edge), "a second direction called \"a\""),

@@ -1,4 +1,4 @@
-//! How often the intervals of an identified valve cover its truth, and how wide they are beside the Cramer-Rao bound.
+//! How often the intervals of an identified valve cover its truth, and how wide they are compared with the Cramer-Rao bound.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::print_stdout, reason = "how often and how wide is worth reading")]

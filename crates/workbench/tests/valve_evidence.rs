@@ -10,7 +10,7 @@ use phea_workbench::source::Memory;
 use serde_json::Value;
 
 const ONE_CURVE: &str = "valve.leakage_model=\"one_curve\"";
-/// Enough to tell both models apart, and quick.
+/// Enough to distinguish both models, and quick.
 const FEW_ROWS: &str = "bench.sample_time=2";
 
 /// Recordings of either model speak for it, and its coefficients are the truth of the table.
@@ -68,7 +68,7 @@ fn the_fragment_is_for_the_model_it_names() {
     assert!((1.5..2.5).contains(&ratio), "{ratio}");
 }
 
-/// Metering alone with a coarse meter: the models differ where it stands still.
+/// Metering alone with a coarse meter: the models differ where it reads zero.
 #[test]
 fn recordings_that_do_not_decide_say_so() {
     let coarse = ["bench.flow_meter.minimum=\"3 L/min\"", "bench.pressure_noise=\"2 bar\"", FEW_ROWS];
@@ -80,10 +80,10 @@ fn recordings_that_do_not_decide_say_so() {
     assert_eq!(found["leakage_model"], "each_edge");
 }
 
-/// What is not there has an interval from zero, not a confident one beside it.
+/// What is not there has an interval from zero, not a confident one away from it.
 #[test]
 fn what_may_be_zero_has_a_bound_from_above() {
-    // a meter that tells no direction shows the magnitude of its own noise
+    // a meter that does not indicate the direction shows the magnitude of its own noise
     let cases = [
         ("valve.hysteresis=\"1e-9 V\"", "/hysteresis_v", 0.0, 2e-3),
         ("valve.leakage_coefficients.supply_to_b=1e-15", "/leakage_coefficients/supply_to_b", 1e-15, 1e-10),
@@ -101,7 +101,7 @@ fn what_may_be_zero_has_a_bound_from_above() {
     }
 }
 
-/// A valve without tare flow, as a direct-driven one, by meters that tell the direction, that show the magnitude of
+/// A valve without tare flow, as a direct-driven one, by meters that indicate the direction, that show the magnitude of
 /// their own noise where nothing flows, and that stand still there: most rows of the leakage then say nothing, or
 /// nothing but noise. The tare flow has a bound from above, and the leakage is still found.
 #[test]

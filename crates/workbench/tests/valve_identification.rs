@@ -1,4 +1,4 @@
-//! The coefficients of a valve from recorded tests: truth recovered within its intervals, what is not told, files of
+//! The coefficients of a valve from recorded tests: truth recovered within its intervals, what is left open, files of
 //! every kind, and the way back into a project.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
@@ -128,12 +128,12 @@ fn metering_alone_does_not_tell_the_leakage() {
         |one: &&Value| one["coefficients"].as_array().unwrap().iter().any(|name| name == "tare_flow");
     assert!(untold.iter().filter(of_tare).all(by_leakage) && untold.iter().any(by_leakage), "{untold:?}");
     assert!(answer.text.contains("a test of leakage"));
-    // what it does tell
+    // what it does determine
     let flow = interval(&found, "/flow_coefficients/supply_to_a").unwrap();
     assert!(flow[0] <= 3.2e-7 && flow[1] >= 3.2e-7 && flow[1] < 1.2 * flow[0], "{flow:?}");
 }
 
-/// Without pressures, edges in series cannot be told apart: only K_3 K_6/sqrt(K_3^2 + K_6^2) passes the meter.
+/// Without pressures, edges in series cannot be distinguished: only K_3 K_6/sqrt(K_3^2 + K_6^2) passes the meter.
 #[test]
 fn a_flow_alone_does_not_tell_edges_in_series_apart() {
     let files = recorded(&["bench.flow_meter.pressure_drop=0"]);
@@ -209,9 +209,9 @@ fn files_that_are_no_tests_are_refused_with_their_place() {
         (cell(3, 3, "over"), "`over` is not a number", "leakage.csv:4:"),
         (cell(4, 0, "1"), "the time of the row before", "leakage.csv:5:1"),
         (cell(4, 0, "0.2"), "a time before that of the row before", "leakage.csv:5:1"),
-        (cell(9, 2, "7e6"), "7e6 bar is no supply pressure of a valve test", "leakage.csv:10:"),
+        (cell(9, 2, "7e6"), "7e6 bar is not a plausible supply pressure of a valve test", "leakage.csv:10:"),
         (cell(0, 3, "pressure_a"), "`pressure_a` has no unit", "leakage.csv:1:"),
-        (cell(0, 3, "pressure_a_v"), "`v` is no unit of a pressure", "leakage.csv:1:"),
+        (cell(0, 3, "pressure_a_v"), "`v` is not a unit of a pressure", "leakage.csv:1:"),
         (
             cell(0, 3, "pressure_b_bar"),
             "`pressure_b_bar` is a second column of `pressure_b`",

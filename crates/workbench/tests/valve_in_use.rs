@@ -74,7 +74,7 @@ fn every_number_that_is_used_is_the_truth_of_the_bench() {
         let middle = 0.5 * (low + high);
         assert!((truth - middle).abs() < 1.5 * (high - low), "{path}: {truth} and {low} to {high}");
     }
-    assert!(answer.text.contains("The valve as its recordings tell it"), "{}", answer.text);
+    assert!(answer.text.contains("The valve as identified from its recordings"), "{}", answer.text);
     // cat rig.toml recorded/... | sha256sum
     let together = RECORDED.iter().fold(IDENTIFIED.to_string(), |all, (_, text)| all + text);
     assert_eq!(json["project_sha256"], sha256(together.as_bytes()).as_str());
@@ -83,7 +83,7 @@ fn every_number_that_is_used_is_the_truth_of_the_bench() {
     assert_eq!(json["identified"]["files"][0]["sha256"], sha256(&first).as_str());
 }
 
-/// Port pressures alone tell ratios of the coefficients: the command refuses and says which are open.
+/// Port pressures alone determine ratios of the coefficients: the command refuses and says which are open.
 #[test]
 fn a_valve_that_the_recordings_do_not_determine_is_refused() {
     let [start, end] = ["[[identify.recording]]", "[cylinder] "].map(|at| IDENTIFIED.find(at).unwrap());

@@ -203,7 +203,7 @@ fn the_table_stands_beside_the_published_numbers() {
     }
 }
 
-/// The recordings beside the example are those of its bench, byte for byte; every figure of chapter 5 is drawn of
+/// The recordings next to the example are those of its bench, byte for byte; every figure of chapter 5 is drawn of
 /// them, and the identified valve is the one that made them.
 #[test]
 fn the_recordings_of_the_example_are_made_by_its_bench() {

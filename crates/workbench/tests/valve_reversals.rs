@@ -61,7 +61,7 @@ fn ideal_reversals_show_the_declared_threshold_and_hysteresis() {
     }
 }
 
-/// With the noise of the instruments the intervals hold the truth and are narrow enough to tell it.
+/// With the noise of the instruments the intervals hold the truth and are narrow enough to be useful.
 #[test]
 fn noisy_reversals_tell_the_threshold() {
     let valve = ["valve.threshold=\"40 mV\"", "valve.hysteresis=\"128 mV\"", "bench.reversals.size=0.02"];
@@ -119,7 +119,7 @@ fn warm_oil_flows_by_its_density_and_leaks_by_its_viscosity() {
     assert!(((warm_null - warm_base) / (cold_null - cold_base) / laminar - 1.0).abs() < 1e-4);
 }
 
-/// The small meter takes more of the pressure, and shows where the large one stands still.
+/// The small meter takes more of the pressure, and shows where the large one reads zero.
 #[test]
 fn two_meters_see_two_ranges() {
     let found = bench(&[

@@ -83,7 +83,7 @@ fn null_is_passed_late_both_ways() {
         .filter(|row| (a[*row] - b[*row] > 0.0) != (a[row + 1] - b[row + 1] > 0.0))
         .map(|row| command[row])
         .collect();
-    // equal pressures lie beside null where the edges differ, by the same either way
+    // equal pressures lie away from null where the edges differ, by the same either way
     assert_eq!(crossings.len(), 1, "{crossings:?}");
     let [falling, rising] = [crossings[0], {
         let back = tested(&[settings.as_slice(), &["bench.cycles=2", "bench.duration=\"480 s\""]].concat());

@@ -1,4 +1,4 @@
-//! Verdicts of rigs whose lines move: their responses, their stability, and their steps beside the machine's.
+//! Verdicts of rigs whose lines move: their responses, their stability, and their steps compared with the machine's.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -29,7 +29,7 @@ fn asked(request: &Request, settings: &[&str]) -> Value {
     serde_json::from_str(&answer(&one_rig(), &settings, &[], request).json).unwrap()
 }
 
-/// Unstable poles that an answer speaks of.
+/// Unstable poles that an answer reports.
 fn unstable(object: &Value) -> usize {
     let reason = object["stability"]["reason"].as_str().unwrap();
     let before = reason.split_once(" unstable closed-loop pole").map(|(before, _)| before);

@@ -32,7 +32,7 @@ const TURNING: &str = include_str!("../../project/tests/valid/motor_turning.toml
 const TELESCOPIC: &str = include_str!("../../project/tests/valid/telescopic.toml");
 const ASYMMETRIC: &str = include_str!("../../project/tests/valid/asymmetric.toml");
 const GUIDE: &str = include_str!("../../../book/src/guide/what_moves_what.md");
-/// Tables that declare the rig and its loop; the others state what is asked of it.
+/// Tables that declare the rig and its loop; the others state its requirements.
 const TABLES: [&str; 16] = [
     "fluid",
     "supply",

@@ -94,7 +94,7 @@ fn uses(files: &[&RustFile]) -> Uses {
     uses
 }
 
-/// The top-level module that a path leads to from a file that is so many modules below the root: by its name, or where the
+/// The top-level module that a path leads to from a file that lies `depth` modules below the root: by its name, or where the
 /// root passes a type on, by that type.
 fn used_room<'a>(
     path: &'a str,

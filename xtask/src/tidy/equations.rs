@@ -47,7 +47,7 @@ pub(super) fn check(repository: &Repository) -> Vec<Violation> {
     found
 }
 
-/// What a row says implements it, and is no word of the code.
+/// What a row says implements it, and is not a word of the code.
 fn not_implemented(vocabulary: &Vocabulary, row: &Row<'_>) -> Vec<Violation> {
     let unknown = vocabulary.unknown(&row.spans("implemented by")).into_iter();
     unknown

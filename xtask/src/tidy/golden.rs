@@ -2,7 +2,7 @@
 //!
 //! A test, and a function, constant or static in a `tests` folder, carries a comment `ORIGIN: ...`,
 //! inside or directly above, if an assertion in it names a number of four significant digits or
-//! more; in files called `golden*.rs`, if any number in it has so many.
+//! more; in files called `golden*.rs`, if any number in it has that many digits.
 
 use proc_macro2::{Span, TokenStream, TokenTree};
 use syn::spanned::Spanned;

@@ -50,7 +50,7 @@ struct Declared {
 }
 
 impl Declared {
-    /// `arguments` tells whether these tokens are what `key` or its like was called with.
+    /// `arguments` returns whether these tokens are what `key` or its like was called with.
     fn collect(&mut self, tokens: TokenStream, path: &str, arguments: bool) {
         let mut tokens = tokens.into_iter().peekable();
         if let Some(TokenTree::Literal(literal)) = tokens.peek() {

@@ -1,4 +1,4 @@
-//! One concept a file, named after it: `foo.rs` beside `foo/`, no drawer for leftovers. The tests
+//! One concept a file, named after it: `foo.rs` next to `foo/`, no drawer for leftovers. The tests
 //! of a package are one program, and no file of tests is left out of it.
 
 use super::Violation;
@@ -38,7 +38,7 @@ fn declares(text: &str, name: &str) -> bool {
 fn check_name(path: &str) -> Option<Violation> {
     let mut parts = path.trim_end_matches(".rs").split('/');
     let leftover = parts.find(|part| LEFTOVERS.contains(part))?;
-    let cure = if leftover == "mod" { "foo.rs beside foo/" } else { "the concept it holds" };
+    let cure = if leftover == "mod" { "foo.rs next to foo/" } else { "the concept it holds" };
     Some(Violation::new(path, 0, format!("named `{leftover}`: name it after {cure}")))
 }
 

@@ -81,7 +81,7 @@ pub(super) fn tables<'a>(text: &'a str, column: &str) -> Vec<Row<'a>> {
     rows
 }
 
-/// The cells of a table's line; none where the line is no part of a table.
+/// The cells of a table's line; none where the line is not part of a table.
 fn cells(line: &str) -> Vec<&str> {
     let inner = line.trim().strip_prefix('|').and_then(|rest| rest.strip_suffix('|'));
     inner.map(|inner| inner.split('|').map(str::trim).collect()).unwrap_or_default()
@@ -96,7 +96,7 @@ impl Vocabulary {
         Vocabulary(libraries.flat_map(|file| file.words()).collect())
     }
 
-    /// Those names of which some part is no word.
+    /// Those names of which some part is not a word.
     pub(super) fn unknown<'a>(&self, names: &[&'a str]) -> Vec<&'a str> {
         let known = |name: &&str| name.split("::").all(|word| self.0.contains(word));
         names.iter().copied().filter(|name| !known(name)).collect()

@@ -1,4 +1,4 @@
-//! The project speaks of itself alone: nothing in it tells on which desk, or from which plan, it
+//! The project speaks of itself alone: nothing in it says on which desk, or from which plan, it
 //! was written.
 
 use super::Violation;

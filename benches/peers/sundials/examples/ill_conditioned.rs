@@ -1,4 +1,4 @@
-//! A rig whose peak hangs on a ringing of 1e-5 N that grows: by CVODE and by phea, at many tolerances.
+//! A rig whose peak depends on a ringing of 1e-5 N that grows: by CVODE and by phea, at many tolerances.
 //!
 //!     cargo run --release -p sundials --example ill_conditioned -- 1e-9 1e-11
 //!

@@ -87,13 +87,13 @@ impl Following {
 ///
 /// The same equations, inputs, samples and held commands as in [`phea_dynamics::simulation::simulate`], on another
 /// method. CVODE starts anew at each break of an input, at each sample and where a command takes effect; the error is
-/// measured by the tolerance times state and scale, as there. Delayed waves, told behind the states at the start, are kept as
+/// measured by the tolerance times state and scale, as there. Delayed waves, given after the states at the start, are kept as
 /// polynomials of degree eleven over an eighth of the shortest delay or less; CVODE never steps beyond what has been sent, and
 /// starts anew where a break comes back.
 ///
 /// # Errors
 ///
-/// As [`integrate`]; [`CvodeError::Argument`] for a start that does not tell every state and every wave.
+/// As [`integrate`]; [`CvodeError::Argument`] for a start that does not give every state and every wave.
 ///
 /// # Example
 ///
@@ -131,7 +131,7 @@ pub fn follow(
 ) -> Result<Vec<Vec<f64>>, CvodeError> {
     let (delays, scales) = (system.delays(), system.scales());
     if start.len() != system.states() + delays.len() {
-        return Err(CvodeError::Argument("the start tells each state and each wave"));
+        return Err(CvodeError::Argument("the start must give each state and each wave"));
     }
     let (start, sent) = start.split_at(system.states());
     let waves = RefCell::new(Waves::new(delays, sent.to_vec()));
@@ -202,7 +202,7 @@ struct Held {
 }
 
 impl Held {
-    /// Samples if it is time to, puts due commands into force, and tells when something happens next.
+    /// Samples if it is time to, puts due commands into force, and returns when something happens next.
     fn act(&mut self, sampler: &mut dyn Sampler, time: f64, state: &[f64], inputs: &[f64]) -> f64 {
         if time >= self.sample as f64 * sampler.sample_time_s() {
             self.sample += 1;
@@ -225,7 +225,7 @@ struct Kicked {
 }
 
 impl Kicked {
-    /// Kicks the state if it is time to, and tells when the next is due.
+    /// Kicks the state if it is time to, and returns when the next is due.
     fn act(&mut self, time: f64, state: &mut [f64], scales: &[f64]) -> f64 {
         let Kicks { period_s, size, .. } = self.kicks;
         if time >= self.count as f64 * period_s {

@@ -70,7 +70,7 @@ pub const MOST_STEPS: i64 = 20_000_000;
 ///
 /// CVODE starts anew at each of `stops`, where rates may jump or bend. Rates are taken as continuous from the right: a piece
 /// that ends at a stop sees the last number below it, the piece that begins there sees the stop itself, so that `t >= stop`
-/// tells them apart. A rate that is not finite makes CVODE try a shorter step. A panic of `rates` passes through.
+/// distinguishes them. A rate that is not finite makes CVODE try a shorter step. A panic of `rates` passes through.
 ///
 /// # Errors
 ///

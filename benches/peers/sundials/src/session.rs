@@ -98,7 +98,7 @@ impl<'a> Session<'a> {
     }
 
     fn state(&self) -> Vec<f64> {
-        // SAFETY: the vector was made with so many elements, and nobody writes to it now; the caller is alive.
+        // SAFETY: the vector was made with this number of elements, and nobody writes to it now; the caller is alive.
         unsafe {
             let first = c::N_VGetArrayPointer(self.objects.state);
             std::slice::from_raw_parts(first, (*self.caller).states).to_vec()

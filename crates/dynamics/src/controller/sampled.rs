@@ -48,7 +48,7 @@ pub struct ControllerOutput {
 impl Controller {
     /// The controller as it is deployed with this sample time: continuous compensators discretised
     /// by the timing's method, sampled ones taken as they are. A prefilter that acts before the
-    /// samples is no part of it.
+    /// samples is not part of it.
     ///
     /// # Errors
     /// A compensator that is improper, has dead time or cannot be discretised, or a sampled one

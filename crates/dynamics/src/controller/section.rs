@@ -28,7 +28,7 @@ impl Section {
     ///
     /// # Errors
     /// [`LinearError::WrongDomain`] for a continuous one, [`LinearError::Improper`],
-    /// [`LinearError::NotRational`] for one with dead time, which is no section.
+    /// [`LinearError::NotRational`] for one with dead time, which is not a section.
     ///
     /// # Example
     /// An integrator of 2/s every 0.1 s by the bilinear rule, and back:

@@ -5,14 +5,14 @@ use nalgebra::{DMatrix, SymmetricEigen};
 
 use super::Linearised;
 
-/// How well data tell variables.
+/// How well data determine variables.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Uncertainty {
     /// Standard deviation of each variable; infinite where nothing depends on it.
     pub deviations: Vec<f64>,
     /// Correlation of each pair, row by row.
     pub correlations: Vec<f64>,
-    /// Combinations of variables, the best told first.
+    /// Combinations of variables, the best determined first.
     pub directions: Vec<Direction>,
 }
 

@@ -168,7 +168,7 @@ impl Mirror {
 mod tests {
     use super::*;
 
-    /// Each value of one list beside its nearest of the other.
+    /// The largest distance from a value of one list to its nearest of the other.
     fn farthest(found: &[Complex64], expected: &[Complex64]) -> f64 {
         let mut open = expected.to_vec();
         let mut most: f64 = 0.0;

@@ -16,7 +16,7 @@ use crate::order::sort_by_number;
 use crate::portable::{self, magnitude};
 
 const MAXIMUM_SWEEPS: usize = 300;
-/// A pair whose imaginary part is more than this share of it is no double root on the axis.
+/// A pair whose imaginary part is more than this share of it is not a double root on the axis.
 const FAR_FROM_AXIS: f64 = 0.5;
 
 /// All roots, sorted, in exact conjugate pairs.

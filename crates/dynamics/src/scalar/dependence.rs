@@ -3,7 +3,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 use super::{Lanes, Scalar};
 
 /// Which variables a number depends on, and nothing of its value: an equation evaluated with it
-/// tells which of its derivatives can differ from zero anywhere.
+/// shows which of its derivatives can differ from zero anywhere.
 ///
 /// Both sides of a choice count. Variables are counted from 0 to [`Dependence::CAPACITY`] - 1.
 ///

@@ -101,7 +101,7 @@ pub fn equilibrium<E: System<f64>>(
         return Err(EquilibriumError::NotFinite);
     }
     for _ in 0..STEPS {
-        // each equation over what a scale of its most telling variable makes of it
+        // each equation over what a scale of its most influential variable makes of it
         let weights: Vec<f64> =
             (0..rest.len()).map(|row| 1.0 / jacobian.row(row).amax().max(f64::MIN_POSITIVE)).collect();
         let weighted = |rest: &DVector<f64>| DVector::from_fn(rest.len(), |row, _| weights[row] * rest[row]);

@@ -69,7 +69,7 @@ const NEARLY: f64 = 1.25;
 /// When the damping of friction falls below this fraction of its last value, the modes are computed
 /// again.
 const FALLEN: f64 = 0.02;
-/// Where waves come back late the Jacobian does not tell whether a mode decays: one that decays by
+/// Where waves come back late the Jacobian does not show whether a mode decays: one that decays by
 /// less than this part of its frequency is taken to grow by the other.
 const UNTOLD: [f64; 2] = [0.05, 1e-3];
 /// More growth than this, as a logarithm, leads beyond any linear mode.
@@ -275,7 +275,7 @@ impl GrowthWatch {
         self.growth + 0.5 * (self.damping - damping)
     }
 
-    /// Whether the modes at the last look tell those under this damping of friction.
+    /// Whether the modes at the last look show those under this damping of friction.
     fn is_known_at(&self, damping: f64) -> bool {
         let [growth, decay] = LEFT.map(|left| left * self.growth);
         let now = self.growth_at(damping);

@@ -106,7 +106,7 @@ impl<S: Lane> Stepper<S> {
         }
     }
 
-    /// Whether a step may be further off than the error at its end tells. Never for the explicit
+    /// Whether a step may be further off than the error at its end shows. Never for the explicit
     /// method, whose steps are too short for that.
     ///
     /// Where a state is bound stiffly, what lies between the ends is. And a step that was shortened

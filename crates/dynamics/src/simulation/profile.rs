@@ -60,7 +60,7 @@ pub enum ProfileError {
         time_s: f64,
     },
     /// Too few points to interpolate between, or a value missing.
-    #[error("{values} values at {times} times; as many of each are needed, and at least two")]
+    #[error("{values} values at {times} times; the same number of each is needed, and at least two")]
     Count {
         /// How many times there are.
         times: usize,

@@ -30,7 +30,7 @@ struct Triangle<S> {
 /// What a substitution works on: an index of eight bits is always inside.
 pub(super) type ColumnIndex<S> = [S; COLUMN];
 
-/// As many states as a [`Dependence`](crate::scalar::Dependence) tells apart.
+/// As many states as a [`Dependence`](crate::scalar::Dependence) distinguishes.
 pub(super) const COLUMN: usize = 256;
 
 /// Systems with at most this number of states are solved by their inverse.

@@ -28,7 +28,7 @@ pub struct Transform {
     length: usize,
     /// Of the power of two that is halved.
     halving: Halving,
-    /// Where the length is no power of two.
+    /// Where the length is not a power of two.
     chirp: Option<Chirp>,
 }
 

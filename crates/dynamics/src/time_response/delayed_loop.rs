@@ -1,4 +1,4 @@
-//! Step response of a loop with dead time, which is no rational function when closed.
+//! Step response of a loop with dead time, which is not a rational function when closed.
 
 use nalgebra::DMatrix;
 

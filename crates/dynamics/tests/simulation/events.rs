@@ -8,7 +8,7 @@ use phea_dynamics::simulation::{Input, Method, Profile, System};
 
 use super::laws::{course, run, run_by};
 
-/// x'' = -omega^2 x beside an input w; the indicators are x - a for levels a, and w - 1/2.
+/// x'' = -omega^2 x with an input w; the indicators are x - a for levels a, and w - 1/2.
 #[derive(Clone)]
 struct Watched {
     omega: f64,
@@ -62,7 +62,7 @@ fn zeros_of_a_sine() {
     }
 }
 
-/// Levels that are passed in one step are told apart, in the order of time.
+/// Levels that are passed in one step are distinguished, in the order of time.
 #[test]
 fn several_in_one_step() {
     let levels = vec![0.5, -0.3, 0.1, 0.501, 0.0];
@@ -102,7 +102,7 @@ fn at_and_between_breaks() {
     assert_eq!(times, [(0.7, true), (1.1, false)]);
 }
 
-/// Nothing changes sign, nothing is told; what is positive from the start has not become so.
+/// Nothing changes sign, nothing is reported; what is positive from the start has not become so.
 #[test]
 fn nothing_happens() {
     let system = Watched { omega: 3.0, levels: vec![1.5, -1.5] };

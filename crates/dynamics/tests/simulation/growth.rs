@@ -169,7 +169,7 @@ fn samples_do_not_hide_growth() {
     }
 }
 
-/// A course that is too long for the oscillation that would have to be followed ends, and tells the mode.
+/// A course that is too long for the oscillation that would have to be followed ends, and names the mode.
 #[test]
 fn what_cannot_be_resolved_is_told() {
     let law = TwoMasses { omega: 1e4, alpha: 20.0 };

@@ -276,7 +276,7 @@ fn a_neighbour_that_fails_fails_alone() {
     }
 }
 
-/// y' = sqrt(w), whose derivative at w = 0 is infinite: no harm while w stands still, whoever moves beside it.
+/// y' = sqrt(w), whose derivative at w = 0 is infinite: no harm while w does not change, whatever moves next to it.
 #[derive(Clone)]
 struct Root;
 

@@ -59,7 +59,7 @@ impl ReadingAgain<'_> {
 /// The project as it is declared, and its alternatives in file order.
 ///
 /// # Errors
-/// [`ProcedureError::Catalogue`] for an alternative that is no valid project, or whose gas is shut off,
+/// [`ProcedureError::Catalogue`] for an alternative that is not a valid project, or whose gas is shut off,
 /// [`ProcedureError::Alternative`] for one that cannot be sized or whose ranges cannot be moved.
 pub fn asked(
     source: &dyn Source,

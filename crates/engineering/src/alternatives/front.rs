@@ -135,7 +135,7 @@ pub(super) fn plan(request: &FrontRequest, motions: Motions) -> Result<FrontPlan
     let columns = columns.collect::<Result<Vec<_>, _>>()?;
     let twice = |one: &FrontColumn| columns.iter().filter(|other| other.key == one.key).count() > 1;
     if let Some(column) = columns.iter().find(|column| twice(column)) {
-        return Err(refused(format!("`{}` stands twice", column.key)));
+        return Err(refused(format!("`{}` is listed twice", column.key)));
     }
     let asked = range(&request.sweep.range, motions)?;
     let count = points(request.sweep.points.or(Some(POINTS)))?;

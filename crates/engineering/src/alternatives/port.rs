@@ -7,7 +7,7 @@ use super::JudgedAlternative;
 use super::columns::{AlternativeColumn, ColumnPart, column};
 use crate::quantity::{DAMPING, fitting};
 
-/// Frequencies at which the impedance is told where none are asked for, rad/s.
+/// Frequencies at which the impedance is stated where none are asked for, rad/s.
 pub const IMPEDANCE_AT: [f64; 3] = [1.0, 10.0, 100.0];
 
 impl JudgedAlternative {

@@ -22,7 +22,7 @@ pub struct ReversalReading {
 /// Threshold, rest of the hysteresis, and the flow over the opening up to its third power.
 const VARIABLES: usize = 6;
 
-/// Share of the nominal voltage below which neither is told from nothing.
+/// Share of the nominal voltage below which neither can be distinguished from zero.
 const LEAST: f64 = 1e-6;
 
 /// Fewest rows with a flow.

@@ -8,7 +8,7 @@ use super::list::List;
 use crate::project::{DeclaredAccumulator, Project};
 use crate::rig::{ChargedRange, Rig, charged_range, components_at_setting};
 
-/// The precharge at the temperature in operation, beside the one that is stated.
+/// The precharge at the temperature in operation, and the one that is stated.
 fn precharge(declared: &DeclaredAccumulator, gas: &Accumulator, name: String, list: &mut List) {
     let Some(temperatures) = declared.temperatures else { return };
     let equation = "P_0 = P_{stated} T/T_{stated}, absolute";

@@ -47,7 +47,7 @@ const CERTAIN_CHANGE: f64 = 0.05;
 /// Share by which the force may still change in the second half.
 const SETTLED: f64 = 0.05;
 
-/// Sum of the residuals of a line, over noise and the root of their number, beyond which it is none.
+/// Sum of the residuals of a line, over noise and the root of their number, beyond which it is not a line.
 /// The largest of white noise exceeds 0.9 in one case of twenty: a bend too many does no harm.
 const BENT: f64 = 1.0;
 
@@ -107,7 +107,7 @@ fn straight_pieces(values: &[f64], noise: f64, share: f64) -> Vec<Range<usize>> 
     joined(found, |rows| bend(values, rows, noise, share).is_none())
 }
 
-/// Neighbouring pieces joined where they are one: a search may have split one beside a jump.
+/// Neighbouring pieces joined where they are one: a search may have split one next to a jump.
 fn joined(pieces: Vec<Range<usize>>, is_straight: impl Fn(&Range<usize>) -> bool) -> Vec<Range<usize>> {
     let mut found: Vec<Range<usize>> = Vec::with_capacity(pieces.len());
     for piece in pieces {

@@ -23,7 +23,7 @@ pub struct ShakenRows {
 /// Fewest rows that say anything.
 const FEWEST_ROWS: usize = 100;
 
-/// The recording as one that is shaken; `None` where its force is no sum of sines.
+/// The recording as one that is shaken; `None` where its force is not a sum of sines.
 pub(super) fn shaken_rows(recording: &FrictionRecording, index: usize) -> Option<ShakenRows> {
     let rows = recording.forces.len();
     if rows < FEWEST_ROWS {

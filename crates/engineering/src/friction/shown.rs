@@ -1,4 +1,4 @@
-//! What the identified friction shows beside the recordings.
+//! The behaviour of the identified friction, compared with the recordings.
 
 use phea_dynamics::least_squares::Minimum;
 use phea_hydraulics::friction::KnottedForce;

@@ -1,4 +1,4 @@
-//! What the recordings tell of each coefficient, and why they do not.
+//! What the recordings determine of each coefficient, and why they leave others open.
 
 use std::f64::consts::PI;
 
@@ -8,7 +8,7 @@ use phea_hydraulics::friction::FRICTION_COEFFICIENTS;
 
 use super::problem::{DAMPING, FrictionProblem, ZERO};
 
-/// A coefficient as the recordings tell it. SI.
+/// A coefficient as determined by the recordings. SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrictionEstimate {
     /// Where the sum of squares has its minimum.

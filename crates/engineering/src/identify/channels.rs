@@ -16,7 +16,7 @@ const RESOLUTION: f64 = 1e-6;
 /// Evaluations of a search whose end is the start of another.
 const FEW_EVALUATIONS: usize = 60;
 
-/// Evaluations of the last search. Where the recordings hardly tell coefficients apart, the sum has a
+/// Evaluations of the last search. Where the recordings hardly distinguish coefficients, the sum has a
 /// long curved valley.
 const EVALUATIONS: usize = 1000;
 

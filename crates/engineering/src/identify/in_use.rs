@@ -1,4 +1,4 @@
-//! The valve of a project as its recordings tell it, in place of the declared one.
+//! The valve of a project as identified from its recordings, in place of the declared one.
 //!
 //! ```text
 //! project, recordings -> coefficients, family -> settings of the project -> the project, read again
@@ -26,7 +26,7 @@ pub fn recorded_files(project: &Project) -> Vec<RecordedTest> {
     declared.map(|one| RecordedTest { file: project.path_of(&one.file), ..one.clone() }).collect()
 }
 
-/// The project with the valve that its recordings tell, where `identify.use` wants that; `None`
+/// The project with the valve identified from its recordings, where `identify.use` wants that; `None`
 /// where it does not, or where it was done already.
 ///
 /// The hash is that of the bytes of the project followed by those of each recording, so that another
@@ -34,7 +34,7 @@ pub fn recorded_files(project: &Project) -> Vec<RecordedTest> {
 ///
 /// # Errors
 /// [`IdentifyError`] where files are refused, where the recordings do not determine a coefficient that
-/// the plant depends on, and where what they tell contradicts the project.
+/// the plant depends on, and where what they determine contradicts the project.
 pub fn in_use(
     source: &dyn Source,
     loaded: &Loaded,
@@ -85,12 +85,12 @@ fn held(source: &dyn Source, loaded: &Loaded, files: &[RecordedTest]) -> (Memory
     (memory, hashes, sha256(&together))
 }
 
-/// A fit that did not end, or left a coefficient of the plant open, is no valve: the others were
+/// A fit that did not end, or left a coefficient of the plant open, is not a valve: the others were
 /// fitted together with it.
 fn determined(found: &Identification) -> Result<(), IdentifyError> {
     let refused = |reason: String| {
         Err(IdentifyError::Data(format!(
-            "{reason}, so that they cannot take the place of [valve]; `phea identify` tells more, and `--set identify.use=\"nothing\"` keeps the declared valve"
+            "{reason}, so that they cannot take the place of [valve]; `phea identify` gives the details, and `--set identify.use=\"nothing\"` keeps the declared valve"
         )))
     };
     if !found.has_converged() {
@@ -124,7 +124,7 @@ fn numbers(found: &Identification, project: &Project) -> (Vec<IdentifiedNumber>,
         match interval {
             None => kept.push(KeptNumber { path, reason: "the recordings do not determine it" }),
             Some([low, _]) if *name == "hysteresis" && low == 0.0 => {
-                kept.push(KeptNumber { path, reason: "the recordings do not tell it from zero" });
+                kept.push(KeptNumber { path, reason: "the recordings cannot distinguish it from zero" });
             }
             Some(interval) => {
                 let declared = project.number(&path);

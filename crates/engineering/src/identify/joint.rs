@@ -57,9 +57,9 @@ pub enum JointRegionError {
     )]
     NotTold(&'static str),
     /// A coefficient whose region is not positive.
-    #[error("the region of `{0}` begins below zero: the recordings do not tell it from nothing")]
+    #[error("the region of `{0}` begins below zero: the recordings cannot distinguish it from zero")]
     BelowZero(&'static str),
-    /// The rig with the identified valve has no operating point, or is none.
+    /// The rig with the identified valve has no operating point, or is not a rig.
     #[error(transparent)]
     Family(#[from] ProjectFamilyError),
     /// The project has no rig.
@@ -85,7 +85,7 @@ pub enum JointRegionError {
 /// than `smallest_effect` together, each at its end.
 ///
 /// # Errors
-/// [`JointRegionError`] for coefficients that are not told, and a rig that has no plant.
+/// [`JointRegionError`] for coefficients that are not determined, and a rig that has no plant.
 pub fn joint_region(
     found: &Identification,
     project: &Project,

@@ -48,7 +48,7 @@ pub enum SignalKind {
     LeakFlow,
     /// Flow from port A to port B.
     PortFlow,
-    /// The same by a meter that tells no direction.
+    /// The same by a meter that does not indicate the direction.
     PortFlowMagnitude,
 }
 

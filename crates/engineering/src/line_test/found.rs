@@ -18,10 +18,10 @@ pub struct LineNumber {
     pub interval: [f64; 2],
 }
 
-/// Why the recordings do not tell a number.
+/// Why the recordings do not determine a number.
 pub type Undetermined = String;
 
-/// A line as recordings tell it.
+/// A line as identified from recordings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LineIdentification {
     /// What was known.
@@ -46,16 +46,16 @@ pub struct LineIdentification {
     pub relaxation_time: Result<LineNumber, Undetermined>,
     /// m/s, of a fast wave.
     pub wave_speed: Result<LineNumber, Undetermined>,
-    /// kg/m3, of the oil, as its inertance shows it beside the declared length and bore.
+    /// kg/m3, of the oil, as its inertance shows it with the declared length and bore.
     pub density: Result<LineNumber, Undetermined>,
 }
 
 /// Normal quantile of 97.5 %.
 pub(super) const QUANTILE: f64 = 1.959_963_984_540_054;
-/// Standard deviation of a logarithm beyond which a number is not told: a factor of one and a half
+/// Standard deviation of a logarithm beyond which a number is not determined: a factor of one and a half
 /// either way.
 const TOLD: f64 = 0.2;
-/// The same of a wave speed and of a relaxation time, which follow from what the response has beside
+/// The same of a wave speed and of a relaxation time, which follow from what the response has besides
 /// a compliance: below five standard deviations it may be nothing.
 const SHOWN: f64 = 0.1;
 /// Share of the range of a pressure rise by which it may be extrapolated.
@@ -81,7 +81,7 @@ impl LineNumber {
     }
 }
 
-/// Finds what recordings tell of a line: at most one slow test and one fast one.
+/// Finds what recordings determine of a line: at most one slow test and one fast one.
 ///
 /// ```text
 /// beta_e = V/(dV/dp)       r_beta = (C_rest - V/beta_0)/(C_fast - V/beta_0)       c = L/sqrt(I C_fast)
@@ -150,7 +150,7 @@ pub fn identify_line(
     Ok(combined(known, rise, response))
 }
 
-/// The fit of a frequency response, the pressure rise beside it.
+/// The fit of a frequency response, together with the pressure rise.
 fn shaken(
     record: &SampledPair,
     rise: Option<&RiseFit>,
@@ -234,7 +234,7 @@ fn relative(value: f64, deviation: f64) -> Result<LineNumber, Undetermined> {
     Err("the pressure does not rise with the volume".to_string())
 }
 
-/// m3/Pa: of a creeping wall, oil and wall after the creep. What is no hose yields at rest as it does
+/// m3/Pa: of a creeping wall, oil and wall after the creep. What is not a hose yields at rest as it does
 /// in motion.
 fn compliance_at_rest(
     known: &KnownLine,
@@ -311,7 +311,7 @@ fn stiffening(
     Ok(LineNumber::of_logarithm(ln(slow / fast), pow(of_fast * of_fast + of_slow * of_slow, 0.5)))
 }
 
-/// tau of a creeping wall, beside the declared oil.
+/// tau of a creeping wall, with the declared oil.
 fn relaxation(known: &KnownLine, fit: &ResponseFit) -> Result<LineNumber, Undetermined> {
     if fit.parameters.creep.is_none() {
         return Err("the declared model of the line has no creep (`line.relaxation_time`)".to_string());

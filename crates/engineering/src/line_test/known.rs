@@ -7,7 +7,7 @@ use crate::project::{LineMotion, LineSegments, LineSide};
 use crate::rig::line_model;
 use crate::setup::Setup;
 
-/// What a project says of a line, beside what is identified of it.
+/// What a project says of a line, in addition to what is identified of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KnownLine {
     /// Which line.
@@ -24,7 +24,7 @@ pub struct KnownLine {
     pub motion: LineMotion,
     /// m2, of the piston that displaces a recorded volume, where there is one.
     pub piston_area: f64,
-    /// Whether it ends at an accumulator, which is no part of it while that end is blocked.
+    /// Whether it ends at an accumulator, which is not part of it while that end is blocked.
     pub leaves_accumulator: bool,
 }
 

@@ -44,7 +44,7 @@ pub struct RiseFit {
     /// Their covariance.
     covariance: DMatrix<f64>,
     /// m3/s that the meter shows or the line loses at standstill; none where the record does not
-    /// tell it from the compliance.
+    /// separate it from the compliance.
     pub drift: Option<f64>,
     /// m3, at the first row.
     offset: f64,
@@ -58,7 +58,7 @@ pub struct RiseFit {
 const DECISIVE: f64 = 3.29;
 /// Most terms of the volume over the pressure.
 const MOST_TERMS: usize = 3;
-/// Share of the compliance that its standard deviation may be for a drift to be taken as told.
+/// Share of the compliance that its standard deviation may be for a drift to be taken as determined.
 const TOLD: f64 = 0.1;
 /// Windows of a record over which pressures are smoothed.
 const WINDOWS: usize = 100;

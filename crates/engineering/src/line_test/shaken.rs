@@ -74,7 +74,7 @@ const STEP: f64 = 1e-5;
 const RANGE: f64 = 1e4;
 
 /// Fits the model of the line to a response. `slow` is ln of the whole compliance, with its standard
-/// deviation, where a pressure rise tells it.
+/// deviation, where a pressure rise determines it.
 pub(super) fn response_fit(
     member: ResponseMember,
     pressure: f64,

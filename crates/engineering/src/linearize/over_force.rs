@@ -8,7 +8,7 @@ use phea_hydraulics::stiffness::hydraulic_stiffness;
 
 use crate::rig::{ChargedRange, Rig, charged_range, components_at_setting};
 
-/// Forces over which the stiffness is told.
+/// Forces over which the stiffness is stated.
 const FORCES: u32 = 120;
 
 /// The stiffness over the forces at which the gas is in use; all vectors have one value for each force.

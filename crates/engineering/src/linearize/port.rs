@@ -1,4 +1,4 @@
-//! The impedance that a loop shows at its port beside the virtual one that is asked of it.
+//! The impedance that a loop shows at its port, and the virtual one that is required of it.
 
 use std::sync::Arc;
 
@@ -23,7 +23,7 @@ pub const WITHIN_PERCENT: f64 = 10.0;
 const LOOKED_AT: [f64; 2] = [1e-2, 1e4];
 const COUNT: usize = 1201;
 
-/// The impedance that is asked of a port, and what the port shows, with the load at its port moved as
+/// The impedance that is required of a port, and what the port shows, with the load at its port moved as
 /// if by a hand.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AskedImpedance {

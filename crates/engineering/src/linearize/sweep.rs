@@ -75,7 +75,7 @@ pub struct SweepPoint {
 /// The models at one value.
 #[derive(Clone, Debug)]
 pub struct Swept {
-    /// As `linearize` tells it.
+    /// As `linearize` states it.
     pub linearization: Linearization,
     /// Poles of the plant or, where the plant does not depend on the key, with the derived
     /// parameters, rad/s.

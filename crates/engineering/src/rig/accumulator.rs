@@ -36,7 +36,7 @@ impl EmptyAccumulator {
             format!(" at `working_temperature`, from {} at `precharge_temperature`,", bar(stated))
         });
         let message = format!(
-            "{}{from} is above the {} at which chamber {side} stands at the operating point, so that the gas is shut off and changes nothing",
+            "{}{from} is above the pressure of chamber {side} at the operating point, {}, so that the gas is shut off and changes nothing",
             bar(*precharge_pressure),
             bar(*pressure)
         );

@@ -124,7 +124,7 @@ fn transmission<S: Scalar>(declared: &DeclaredTransmission, numbers: &Numbers<'_
     }
 }
 
-/// A damper, a mass and a progression of zero are none.
+/// A damper, a mass or a progression of zero is left out.
 fn spring<S: Scalar>(declared: &DeclaredSpring, numbers: &Numbers<'_, S>) -> SeriesSpring<S> {
     let at = |key: &str, value: f64| numbers.at(key, value);
     let where_any =

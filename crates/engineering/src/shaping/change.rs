@@ -175,7 +175,7 @@ fn element(
     findings: &mut Findings,
 ) -> Option<DeclaredElement> {
     if !piece.words.starts_with('{') {
-        return piece.refuse(findings, "this is no element", ELEMENT_HELP);
+        return piece.refuse(findings, "this is not an element", ELEMENT_HELP);
     }
     let node = value_or_finding(piece.text(), piece.range(), findings)?;
     DeclaredElement::read(&node, sample_time, findings)
@@ -190,7 +190,7 @@ fn pair<'a>(piece: &TextPiece<'a>, example: &str, findings: &mut Findings) -> Op
 
 /// The number of an element, from 1, as an index.
 fn number(piece: &TextPiece<'_>, count: usize, findings: &mut Findings) -> Option<usize> {
-    let message = format!("`{}` is no number of an element", piece.words);
+    let message = format!("`{}` is not the number of an element", piece.words);
     let Ok(number) = piece.words.parse::<usize>() else {
         return piece.refuse(findings, message, "elements are counted from 1");
     };

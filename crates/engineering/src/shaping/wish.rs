@@ -126,7 +126,7 @@ fn coordinates(point: &TextPiece<'_>, findings: &mut Findings) -> Option<[Option
             (Some(number), _) => (0, plain(&number, findings)?),
             (None, Some(number)) => (1, plain(&number, findings)?),
             (None, None) => {
-                let message = format!("`{}` is no coordinate of the chart", part.words);
+                let message = format!("`{}` is not a coordinate of the chart", part.words);
                 return part.refuse(findings, message, "write a magnitude in dB, a phase in deg, or both");
             }
         };

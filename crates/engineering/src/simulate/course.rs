@@ -164,7 +164,7 @@ impl ScenarioDrive {
     }
 }
 
-/// Instants at which a setting is looked at beside its breaks.
+/// Instants at which a setting is looked at in addition to its breaks.
 const LOOKS: u32 = 20_000;
 /// By how much rounding may move it beyond its ends.
 const BEYOND: f64 = 1e-9;

@@ -8,7 +8,7 @@ use phea_hydraulics::machine::{
 use super::ControlledMachine;
 use super::columns::{EXTERNAL_FORCE, EXTERNAL_TORQUE, GAS_TEMPERATURES, VIRTUAL_FORCE};
 
-/// Which parts a rig has beside those that every rig has.
+/// Which parts a rig has in addition to those that every rig has.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SignalParts {
     /// A force from outside, or a torque behind a linkage.

@@ -39,7 +39,7 @@ pub struct SavedState {
     pub states: Vec<(String, f64)>,
     /// m, position of the load's ground.
     pub ground_m: f64,
-    /// By how much the setting of accumulators has moved from rest; `None` where it is no input.
+    /// By how much the setting of accumulators has moved from rest; `None` where it is not an input.
     pub setting_change: Option<f64>,
     /// What a sampled controller remembers.
     pub(crate) memory: Option<DigitalMemory>,

@@ -30,7 +30,7 @@ pub struct OtherMeansProblem {
 /// The other means.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OtherMeans {
-    /// K_H that is asked of them, N/m.
+    /// K_H that is required of them, N/m.
     pub stiffness: f64,
     /// Least K_H over the stroke of the chambers without any line, N/m.
     pub chambers: f64,

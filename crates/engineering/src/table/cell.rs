@@ -56,7 +56,7 @@ impl<'a> Cells<'a> {
         }
     }
 
-    /// The first byte from here that is no space.
+    /// The first byte from here that is not a space.
     fn past_spaces(&self, mut at: usize) -> usize {
         let bytes = self.content.as_bytes();
         let is_space = |byte: u8| byte == b' ' || (byte == b'\t' && self.separator != Separator::Sign(b'\t'));

@@ -11,7 +11,7 @@ use crate::spelling::nearest;
 pub struct Measurand {
     /// In words with underscores; a heading may have spaces, hyphens and capitals.
     pub name: &'static str,
-    /// As formulae call it; known where a unit that fits stands beside it.
+    /// As formulae call it; known where a unit that fits stands next to it.
     pub symbol: Option<&'static str>,
     /// What its unit is of.
     pub dimension: &'static Dimension,
@@ -178,7 +178,7 @@ impl MeasuredTable {
     fn without_unit(&self, sought: &Sought<'_>, heading: &Heading, written: &str) -> RawFinding {
         let message = match written {
             "" => format!("`{}` has no unit", heading.text),
-            written => format!("`{written}` is no unit of {}", sought.measurand.dimension.name),
+            written => format!("`{written}` is not a unit of {}", sought.measurand.dimension.name),
         };
         let names: Vec<String> = match sought.heading {
             Some(stated) => {

@@ -2,7 +2,7 @@
 
 use crate::project::Findings;
 
-/// How files begin that are no tables of text, what they are, and what to do.
+/// How files begin that are not tables of text, what they are, and what to do.
 const OTHERS: [(&[u8], &str); 7] = [
     (b"PK\x03\x04", "a spreadsheet or an archive: save the sheet as CSV"),
     (b"\xd0\xcf\x11\xe0", "a spreadsheet of an old kind: save the sheet as CSV"),
@@ -17,7 +17,7 @@ const OTHERS: [(&[u8], &str); 7] = [
 /// that spreadsheets write: UTF-16 with its mark, and one byte for each sign (ISO 8859-1).
 pub(super) fn text(file: &str, mut bytes: Vec<u8>, findings: &mut Findings) -> Option<(String, usize)> {
     if let Some((_, what)) = OTHERS.iter().find(|(start, _)| bytes.starts_with(start)) {
-        findings.unreadable(file, &format!("the file is no text with a table but {what}"));
+        findings.unreadable(file, &format!("the file is not text with a table but {what}"));
         return None;
     }
     let (found, skipped) = if bytes.starts_with(b"\xff\xfe") {
@@ -32,7 +32,7 @@ pub(super) fn text(file: &str, mut bytes: Vec<u8>, findings: &mut Findings) -> O
     };
     let is_text = |content: &String| !content.bytes().take(MOST_LOOKED_AT).any(is_control);
     let Some(content) = found.filter(is_text) else {
-        findings.unreadable(file, "the file is no text");
+        findings.unreadable(file, "the file is not text");
         return None;
     };
     // lines may end as they did on old systems

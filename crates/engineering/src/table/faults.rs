@@ -2,9 +2,9 @@
 
 use crate::project::RawFinding;
 
-/// Up to so many rows with the same fault are told one by one.
+/// Up to this number of rows with the same fault are reported one by one.
 const FEW: usize = 5;
-/// The most that are kept of what is told one by one.
+/// The most that are kept of those reported one by one.
 const MOST_KEPT: usize = 400;
 
 /// Rows of one fault, in a column or in the whole table.

@@ -65,7 +65,7 @@ pub(super) fn lines(content: &str, from: usize) -> impl Iterator<Item = (&str, u
     })
 }
 
-/// Whether a row has something in it but separators, and is no comment.
+/// Whether a row has something in it but separators, and is not a comment.
 pub(super) fn is_row(line: &str, separator: Separator) -> bool {
     let nothing = |sign: char| {
         sign.is_whitespace() || matches!(separator, Separator::Sign(byte) if sign == char::from(byte))

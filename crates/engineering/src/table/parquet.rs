@@ -228,7 +228,7 @@ impl ParquetRows {
 
     /// Reads a column; or why it cannot be read.
     fn column(&self, index: usize, reading: &mut ParquetReading<'_>) -> Result<(), String> {
-        const NO_NUMBERS: &str = "its values are no numbers";
+        const NO_NUMBERS: &str = "its values are not numbers";
         let description = self.file.metadata().file_metadata().schema_descr().column(index);
         if description.max_rep_level() > 0 {
             return Err("its values are lists".to_string());

@@ -197,7 +197,7 @@ impl TextRows {
                 match slots.get(index) {
                     Some(Some((slot, column))) => reading.take(row, *slot, column, cell),
                     Some(None) => {}
-                    // a separator at the end of a row is no value
+                    // a separator at the end of a row is not a value
                     None if cell.text.is_empty() => continue,
                     None => {}
                 }

@@ -177,7 +177,7 @@ fn made(setup: &Setup<'_>, declared: &Rig, names: &[&str], values: &[f64]) -> Re
 fn derived(project: &Project, name: &str) -> Result<f64, String> {
     let rig = Setup::rig_of(project).map_err(|error| error.to_string())?;
     let found = rig.parameters.iter().find(|parameter| parameter.name == name);
-    found.map(|parameter| parameter.derived).ok_or_else(|| format!("`{name}` is no parameter"))
+    found.map(|parameter| parameter.derived).ok_or_else(|| format!("`{name}` is not a parameter"))
 }
 
 /// The rig after one secant step, in the logarithm, of the numbers that determine this parameter.

@@ -208,7 +208,7 @@ impl<'a> PlacedChart<'a> {
             .collect()
     }
 
-    /// On the first loop; the colour tells the frequency on the others.
+    /// On the first loop; the colour shows the frequency on the others.
     fn frequency_labels(&self) -> Vec<Mark> {
         self.marks
             .iter()

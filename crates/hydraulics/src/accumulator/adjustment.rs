@@ -106,7 +106,7 @@ impl<S: Copy> Adjustment<S> {
     }
 
     /// As a machine has it: `None` of gas whose setting does not move. Whether its valve is shut at
-    /// rest is told by its setting there.
+    /// rest is known from its setting there.
     pub(crate) fn of_machine(self, moves: bool) -> Option<Adjustment<S>> {
         let part = match self.part {
             AdjustedPart::Valve(valve) => AdjustedPart::Valve(GasValve { shut: false, ..valve }),

@@ -38,7 +38,7 @@ pub fn port(plant: &LinearPlant) -> Result<LinearModel, LinearError> {
 }
 
 /// Coefficients of 1/H_v of a velocity that is fed forward within the plant, 1 where none is: the
-/// denominator of the path of the load's motion has it beside that of the command's path.
+/// denominator of the path of the load's motion has it in addition to that of the command's path.
 fn fed_forward_filter(plant: &LinearPlant) -> Vec<f64> {
     match plant.load_velocity_feed_forward {
         Some(_) => plant.velocity_sensor.filter.denominator(),
@@ -46,7 +46,7 @@ fn fed_forward_filter(plant: &LinearPlant) -> Vec<f64> {
     }
 }
 
-/// The path of the load's motion with the poles of the command's path, digit by digit, beside those
+/// The path of the load's motion with the poles of the command's path, digit by digit, in addition to those
 /// of the filter of a velocity that is fed forward: a loop around them cancels the shared ones.
 fn sharing_poles(plant: &LinearPlant, model: LinearModel) -> Result<LinearModel, LinearError> {
     let filter = fed_forward_filter(plant);

@@ -115,7 +115,7 @@ impl BlockedLine {
 }
 
 impl AeratedFluid {
-    /// Compliance beside that at the mean pressure, in m3/Pa.
+    /// Compliance in excess of that at the mean pressure, in m3/Pa.
     fn excess<T: Scalar + From<f64>>(&self, pressure: T) -> T {
         let constant = |value: f64| <T as From<f64>>::from(value);
         let absolute = pressure + constant(ATMOSPHERIC_PRESSURE_ABSOLUTE);

@@ -51,7 +51,7 @@ struct Creep<S> {
 
 impl Segments {
     /// One elastic capacity of this compliance in m3/Pa, all of it at the chamber: the lumped line.
-    /// Zero is no line.
+    /// Zero is not a line.
     pub fn lumped(compliance: f64) -> Segments {
         Segments {
             count: 0,

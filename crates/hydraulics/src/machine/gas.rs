@@ -93,7 +93,7 @@ impl<S: Scalar> Machine<S> {
         })
     }
 
-    /// Rates of the pressures of both chambers in Pa/s beside gas that has states of its own, with
+    /// Rates of the pressures of both chambers in Pa/s with gas that has states of its own, with
     /// these flows into them in m3/s and these compliances in m3/Pa; writes the rates of those states.
     /// Apart, so that machines without such gas do not carry its code along.
     #[inline(never)]

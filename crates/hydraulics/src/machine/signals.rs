@@ -42,7 +42,7 @@ pub const SIGNALS: [&str; 33] = [
 ];
 
 /// Those of [`SIGNALS`] that only a machine with a series element has: without one the force on the
-/// load is `force_n`, and nothing deflects beside the sensor.
+/// load is `force_n`, and nothing deflects but the sensor.
 pub const SERIES_SIGNALS: [&str; 2] = ["series_deflection_m", "load_force_n"];
 
 /// Those of [`SIGNALS`] that only a machine with a transmission has: the pressures of its oil at either

@@ -196,7 +196,7 @@ impl Layout {
     }
 
     /// By how much the setting of accumulators has moved from rest and its rate in 1/s, inputs; zero
-    /// where they are none.
+    /// where none is adjusted.
     #[inline(always)]
     pub(super) fn setting<T: Scalar>(&self, inputs: &[T]) -> [T; 2] {
         if !self.setting {

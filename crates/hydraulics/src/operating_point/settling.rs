@@ -43,7 +43,7 @@ pub struct Settled<S = f64> {
 /// to fall.
 const HALVINGS_OF_TRAVEL: usize = 18;
 /// Number of halvings for the load pressure that remains with a flow from chamber to chamber, and to
-/// less than the transition pressure of an orifice: beside one, and for leakage to the tank.
+/// less than the transition pressure of an orifice: with an orifice, and for leakage to the tank.
 const HALVINGS_OF_LEAKAGE: usize = 12;
 const HALVINGS_OF_ORIFICE: usize = 20;
 /// How often the load pressure of unequal areas is taken anew.
@@ -310,7 +310,7 @@ impl Balance {
 impl Balance {
     /// Whether the pressures are unique whatever is known: so they are without a flow from chamber
     /// to chamber, with equal areas, at a stated command, and under a stated load pressure. Under a
-    /// force, such a flow beside unequal areas may leave several.
+    /// force, such a flow with unequal areas may leave several.
     ///
     /// ```text
     /// dF/dU ~ A_A K_qA K_cB + A_B K_qB K_cA + G (A_A - A_B) (K_qA - K_qB)              may change its sign with much leakage

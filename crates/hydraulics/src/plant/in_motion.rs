@@ -120,7 +120,7 @@ impl PlantInMotion {
         PlantInMotion { plant: LinearPlant { load, ..self.plant }, ..self }
     }
 
-    /// The same with a virtual impedance beside its force.
+    /// The same with a virtual impedance added to its force.
     #[must_use]
     pub fn beside(self, virtual_impedance: Option<VirtualImpedance>) -> PlantInMotion {
         PlantInMotion { plant: LinearPlant { virtual_impedance, ..self.plant }, ..self }

@@ -55,7 +55,7 @@ pub enum LinearElement<S = f64> {
 pub struct LinearSpring<S = f64> {
     /// Stiffness k of the spring at its deflection.
     pub stiffness: S,
-    /// Damping c beside it; `None` for no damper.
+    /// Damping c parallel to it; `None` for no damper.
     pub damping: Option<S>,
     /// Mass m between sensor and spring; `None` for no mass.
     pub mass: Option<S>,

@@ -1,4 +1,4 @@
-//! The output of the linear plant beside a virtual impedance: y = F_e + Z_v X_L.
+//! The output of the linear plant with a virtual impedance: y = F_e + Z_v X_L.
 
 use phea_dynamics::analytic::Analytic;
 use phea_dynamics::controller::VirtualImpedance;

@@ -29,7 +29,7 @@ use crate::parameter::{ParameterError, Problems};
 pub struct SeriesSpring<S = f64> {
     /// Stiffness k of the spring, of a progressive one at rest.
     pub stiffness: S,
-    /// Damping c beside the spring; `None` for no damper.
+    /// Damping c parallel to the spring; `None` for no damper.
     pub damping: Option<S>,
     /// Mass m between sensor and spring; `None` for a massless connection.
     pub mass: Option<S>,

@@ -48,7 +48,7 @@ pub struct Transmission<S = f64> {
     pub piston_area: S,
     /// The hose or pipe between them.
     pub line: Line<S>,
-    /// Oil V_e at either end beside that of the line.
+    /// Oil V_e at either end in addition to that of the line.
     pub end_volume: S,
     /// Gauge pressure p_0 with which it is filled, at rest and without force.
     pub filling_pressure: S,

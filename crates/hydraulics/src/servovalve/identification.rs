@@ -8,13 +8,13 @@ use super::{
     connected_ports, edge_conductances, tare_flow,
 };
 
-/// How many numbers static tests tell of a valve.
+/// How many numbers static tests determine of a valve.
 pub const STATIC_COEFFICIENTS: usize = 12;
 
 /// A number with its derivatives with respect to all static coefficients.
 pub type Sensitive = Dual<STATIC_COEFFICIENTS>;
 
-/// The numbers that static tests tell of a valve. Units: m3/(s Pa^0.5), m3/s, V.
+/// The numbers that static tests determine of a valve. Units: m3/(s Pa^0.5), m3/s, V.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StaticCoefficients<S = f64> {
     /// K_v3 to K_v6.

@@ -364,7 +364,7 @@ impl Visitor for Reader<'_> {
                 let message = if is_count {
                     format!("`{}` is a whole number: only quantities vary", entry.key)
                 } else {
-                    format!("`{}` is no number of this project", entry.key)
+                    format!("`{}` is not a number of this project", entry.key)
                 };
                 self.findings.push(RawFinding::error(entry.key_place, message).maybe_help(help));
                 continue;
@@ -386,7 +386,7 @@ impl Visitor for Reader<'_> {
         for entry in entries.unwrap_or_default() {
             let Some(number) = self.named.get(&entry.key).copied() else {
                 let near = nearest(&entry.key, self.named.keys().map(String::as_str));
-                let message = format!("`{}` is no {} of this project", entry.key, key.name);
+                let message = format!("`{}` is not a {} of this project", entry.key, key.name);
                 let help = near.map(|name| format!("did you mean `{name}`?"));
                 self.findings.push(RawFinding::error(entry.key_place, message).maybe_help(help));
                 continue;

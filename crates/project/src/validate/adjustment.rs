@@ -105,7 +105,7 @@ pub(super) fn course(
 }
 
 /// A setting stays from 0 to 1. Signals of steps and ramps alone have their extremes where one begins or
-/// ends; of others a simulation tells.
+/// ends; for others a simulation reports it.
 fn leaves_its_way(signals: &[Signal], rest: f64, place: &str, check: &mut Check<'_, '_>) {
     let courses: Option<Vec<PartCourse>> = signals.iter().map(PartCourse::of).collect();
     let Some(courses) = courses else { return };
@@ -179,7 +179,7 @@ pub(super) fn uncertain(
     let path = format!("uncertainty.{}", uncertain.name);
     let sides = actuator.map_or([None; 2], DeclaredActuator::adjustments);
     if uncertain.minimum == 0.0 && sides.into_iter().flatten().any(|one| one.valve().is_some()) {
-        let message = "a `valve` that is shut takes its gas out of the plant: it is no limit of plants with the gas in them";
+        let message = "a `valve` that is shut takes its gas out of the plant: it is not the limit of plants with the gas in them";
         let help = "let the range begin above 0, and judge the shut valve as an alternative of its own with `setting = 0`";
         check.error_with_help(&format!("{path}.minimum"), message, help);
     }

@@ -4,7 +4,7 @@ use super::Check;
 use crate::{Component, CrossPortKind, DeclaredActuator, DeclaredLine, DeclaredOrifice, OrificeSize};
 use phea_quantity::{self as quantity, LENGTH};
 
-/// Discharge coefficient by which a flow tells an opening.
+/// Discharge coefficient by which a flow gives an opening.
 const DISCHARGE_COEFFICIENT: f64 = 0.6;
 
 pub(super) fn cross_port(actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {

@@ -4,7 +4,7 @@ use super::Check;
 use crate::{IdentifiedUse, Identify, Project, RecordedTest, StaticTest, TestSignal};
 use phea_quantity::{self as quantity, RATIO};
 
-/// Files that are there twice, units that are none, and signals that a test does not have.
+/// Files that are there twice, units that do not fit, and signals that a test does not have.
 pub(super) fn identify(identify: &Identify, check: &mut Check<'_, '_>) {
     for (index, recorded) in identify.recordings.iter().enumerate() {
         let path = format!("identify.recording[{index}]");
@@ -30,10 +30,10 @@ pub(super) fn in_use(project: &Project, identify: &Identify, check: &mut Check<'
     }
     if identify.recordings.is_empty() {
         let help = "declare each file in a table [[identify.recording]]";
-        check.error_with_help(path, "`use` takes from recordings, and there are none", help);
+        check.error_with_help(path, "`use` takes numbers from recordings, and none is declared", help);
     }
     if project.actuator.is_none() && !check.has_table("valve") {
-        let message = "`use` takes the place of numbers of [valve], which this project has not";
+        let message = "`use` takes the place of numbers of [valve], which this project does not have";
         check.error(path, message);
     }
 }
@@ -56,7 +56,7 @@ fn columns(recorded: &RecordedTest, path: &str, check: &mut Check<'_, '_>) {
         let is_share = signal == TestSignal::Command && unit == "%";
         let dimension = if is_share { &RATIO } else { signal.dimension() };
         if let Err(error) = quantity::parse(&format!("1 {unit}"), dimension) {
-            let message = format!("`{unit}` is no unit of {}: {error}", dimension.name);
+            let message = format!("`{unit}` is not a unit of {}: {error}", dimension.name);
             let units: &[&str] = if dimension.units.is_empty() { &["%"] } else { dimension.units };
             check.error_with_help(&format!("{path}.unit"), message, format!("such as {}", units.join(", ")));
         }

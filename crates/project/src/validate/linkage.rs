@@ -48,7 +48,7 @@ fn closes(linkage: &DeclaredLinkage, stroke: f64, check: &mut Check<'_, '_>) {
                 angles.len(),
                 extensions.len()
             );
-            return check.error_with_help("linkage.angles", message, "state as many of one as of the other");
+            return check.error_with_help("linkage.angles", message, "state the same number of both");
         }
     } else if !check.declared("linkage.retracted_length") {
         return;
@@ -140,8 +140,9 @@ fn not_yet(project: &Project, check: &mut Check<'_, '_>) {
     ];
     for (is_there, path, what) in absent {
         if is_there {
-            let message =
-                format!("{what} is for a load that moves with the rod: there is none with a [linkage] yet");
+            let message = format!(
+                "{what} is for a load that moves with the rod: it is not supported with a [linkage] yet"
+            );
             check.error_with_help(path, message, format!("remove [{path}] or [linkage]"));
         }
     }

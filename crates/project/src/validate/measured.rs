@@ -34,7 +34,7 @@ pub(super) fn measured(files: &[MeasuredFile], path: &str, check: &mut Check<'_,
 
 fn unit(written: &str, dimension: &'static Dimension, path: &str, check: &mut Check<'_, '_>) {
     if let Err(error) = quantity::parse(&format!("1 {written}"), dimension) {
-        let message = format!("`{written}` is no unit of {}: {error}", dimension.name);
+        let message = format!("`{written}` is not a unit of {}: {error}", dimension.name);
         check.error_with_help(path, message, format!("such as {}", dimension.units.join(", ")));
     }
 }

@@ -16,7 +16,7 @@ pub(super) fn motor(project: &Project, actuator: &DeclaredActuator, check: &mut 
     ];
     for (is_there, path, what) in absent {
         if is_there {
-            let message = format!("{what} is for a [cylinder]: there is none for a [motor] yet");
+            let message = format!("{what} is for a [cylinder]: it is not supported with a [motor] yet");
             check.error_with_help(path, message, format!("remove [{path}]"));
         }
     }

@@ -43,7 +43,8 @@ fn one_signal(signal: &Signal, unit: SignalUnit, path: &str, check: &mut Check<'
             let both = !times.is_empty() && !values.is_empty();
             if both && times.len() != values.len() {
                 let (times, values) = (times.len(), values.len());
-                let message = format!("{times} `times` need as many `{}`, not {values}", unit.values);
+                let message =
+                    format!("{times} `times` need the same number of `{}`, not {values}", unit.values);
                 check.error(&format!("{path}.{}", unit.values), message);
             }
         }
@@ -62,7 +63,8 @@ fn multisine(sines: &Multisine, path: &str, check: &mut Check<'_, '_>) {
     let amplitudes = if let Amplitudes::Each(each) = &sines.amplitudes { each.as_slice() } else { &[] };
     for (name, values) in [("amplitudes", amplitudes), ("phases", sines.phases.as_slice())] {
         if !values.is_empty() && values.len() != count {
-            let message = format!("{count} `frequencies` need as many `{name}`, not {}", values.len());
+            let message =
+                format!("{count} `frequencies` need the same number of `{name}`, not {}", values.len());
             check.error(&format!("{path}.{name}"), message);
         }
     }

@@ -69,7 +69,7 @@ impl<E: Into<LoopDesignError>> From<E> for Leave {
     }
 }
 
-/// What the watch is told.
+/// Name of the stage in progress reports.
 const SHAPING: &str = "shaping the loop";
 const FITTING: &str = "fitting the prefilter";
 const CHECKING: &str = "looking between the samples";
@@ -106,7 +106,7 @@ pub(super) struct Attempt {
     starts: Option<Starts>,
     x: Vec<f64>,
     rounds: Vec<DesignRound>,
-    /// The audits of the plants beside the family, of the controller that is audited.
+    /// The audits of the plants added to the family, of the controller that is audited.
     beside: Vec<Audit>,
 }
 

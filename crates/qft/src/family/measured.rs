@@ -27,7 +27,7 @@ pub struct MeasuredFamily {
     plants: Vec<MeasuredPlant>,
 }
 
-/// Why measurements are no family.
+/// Why measurements are not a family.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MeasurementError {
     /// There is no plant.

@@ -31,7 +31,7 @@ pub enum SamplesError {
     #[error("{0}")]
     Linear(#[from] LinearError),
     /// A point that is not a plant of the family.
-    #[error("{0:?} is no plant of the family")]
+    #[error("{0:?} is not a plant of the family")]
     Plant(PlantPoint),
 }
 

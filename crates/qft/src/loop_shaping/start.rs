@@ -195,7 +195,7 @@ pub fn search(
     Ok(search.result(&points, &descents))
 }
 
-/// What the watch is told.
+/// Name of the stage in progress reports.
 const STAGE: &str = "search";
 
 /// A search on its way.

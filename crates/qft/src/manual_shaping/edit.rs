@@ -42,7 +42,7 @@ pub enum EditError {
         count: usize,
     },
     /// An element that is not a transfer function.
-    #[error("the element is no transfer function: {0}")]
+    #[error("the element is not a transfer function: {0}")]
     Element(LinearError),
     /// An element that makes the loop zero.
     #[error("the element is zero at every frequency")]

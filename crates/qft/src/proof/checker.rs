@@ -46,7 +46,7 @@ pub enum Rejection {
     #[error("the certificate makes no claim")]
     NoClaim,
     /// Another number of boxes than the family has.
-    #[error("it does not speak of every box of the family")]
+    #[error("it does not cover every box of the family")]
     Boxes,
     /// More control points than a claim may have.
     #[error("a claim has too many control points")]

@@ -114,7 +114,7 @@ pub(crate) struct StabilityAudit<'a> {
     record: StabilityRecord,
 }
 
-/// What the watch is told.
+/// Name of the stage in progress reports.
 const STAGE: &str = "stability";
 
 impl<'a> StabilityAudit<'a> {

@@ -156,7 +156,7 @@ pub(crate) fn audit_among(
     Ok((findings, AuditWork { plants, searches, responses: audit.evaluator.responses() }))
 }
 
-/// What the watch is told.
+/// Name of the stage in progress reports.
 const STAGE: &str = "specifications";
 
 /// What an audit has seen so far.

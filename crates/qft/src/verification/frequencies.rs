@@ -31,7 +31,7 @@ pub(super) struct Features {
     /// Smallest and largest magnitude of a root, rad/s.
     pub(super) range: Option<[f64; 2]>,
     /// Whether every resonance of the closed loop is among them; otherwise the turning of 1 + L
-    /// must tell.
+    /// must decide.
     pub(super) complete: bool,
     pub(super) dead_time_s: f64,
 }

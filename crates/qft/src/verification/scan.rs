@@ -37,7 +37,7 @@ pub(super) struct WorstPlant {
     pub(super) plant: usize,
 }
 
-/// A local maximum of the excess of one plant, with the frequencies beside it.
+/// A local maximum of the excess of one plant, with the frequencies next to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Peak {
     pub(super) excess: f64,

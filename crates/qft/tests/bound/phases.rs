@@ -116,7 +116,7 @@ fn between_its_phases_a_bound_is_as_straight_as_promised() {
             }
         }
     }
-    // The promise is kept at the middle between two phases; a kink beside it may double it.
+    // The promise is kept at the middle between two phases; a kink next to it may double it.
     assert!(worst < 0.11 && compared > 1000, "{worst} dB, {compared} compared");
 }
 

@@ -8,7 +8,7 @@ use phea_qft::template::{Resolution, Template, TemplatePoint};
 
 use super::random::{Numbers, random_requirements, random_template};
 
-/// Nearer to its limit than this, a closed loop is not told from one that meets it.
+/// Nearer to its limit than this, a closed loop is not distinguished from one that meets it.
 const TOLERANCE_DB: f64 = 1e-9;
 
 fn response(template: &Template, point: &TemplatePoint, nominal_loop: Complex64) -> LoopResponse {
@@ -130,7 +130,7 @@ fn a_filled_bound_serves_the_whole_region_and_forbids_only_what_a_plant_of_it_fo
             for _ in 0..12 {
                 let nominal_loop = numbers.polar([0.05, 20.0], [-std::f64::consts::TAU, 0.0]);
                 let (gain, phase) = (portable::magnitude(nominal_loop), portable::argument(nominal_loop));
-                // A hair beside the plant with 1 + L = 0, whose closed loops are no numbers.
+                // A hair away from the plant with 1 + L = 0, whose closed loops are not numbers.
                 let response = -template.nominal / nominal_loop * (1.0 + 1e-6);
                 let itself = TemplatePoint { response, ..members[0].clone() };
                 let is_inside = inside(&template.outlines[0], template.nominal, -nominal_loop);

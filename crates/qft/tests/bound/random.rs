@@ -38,7 +38,7 @@ pub(crate) fn random_template(numbers: &mut Numbers) -> Template {
     template_of(numbers, count)
 }
 
-/// The same with so many plants.
+/// The same with this number of plants.
 pub(crate) fn template_of(numbers: &mut Numbers, count: usize) -> Template {
     let spread = [1.0, numbers.factor(1.01, 30.0)];
     let angles = [0.0, numbers.factor(0.01, 6.0)];
@@ -65,7 +65,7 @@ pub(crate) fn template_of(numbers: &mut Numbers, count: usize) -> Template {
     }
 }
 
-/// Every kind, with limits on both sides of one and, where the school formula bears it, sometimes one itself, relative to what they
+/// Every kind, with limits on both sides of one and, where the school formula allows it, sometimes one itself, relative to what they
 /// limit.
 pub(crate) fn random_requirements(numbers: &mut Numbers, template: &Template) -> Vec<Requirement> {
     let mut limit = |unit: f64| {

@@ -1,4 +1,4 @@
-//! Designs that serve a plant beside their family: they must be those of a family that has it among its members.
+//! Designs that serve a plant in addition to their family: they must be those of a family that has it among its members.
 
 use phea_dynamics::uncertain_plant::UncertainPlant;
 use phea_dynamics::watch::unwatched;
@@ -76,7 +76,7 @@ fn a_design_goes_on_with_a_plant_that_it_takes_in() {
     assert_same(found, &designed(&both, options()));
 }
 
-/// What a plant and a second one cannot both have is told by the relaxation of a family of both.
+/// What a plant and a second one cannot both have is shown by the relaxation of a family of both.
 #[test]
 fn what_cannot_be_had_with_it_is_told_with_the_least_relaxation() {
     let too_late = [4.0, 0.4];

@@ -19,7 +19,7 @@ fn times(limit: &Limit, factor: f64) -> Limit {
     }
 }
 
-/// Every upper limit raised and every lower one lowered by so many dB.
+/// Every upper limit raised and every lower one lowered by this number of dB.
 fn relaxed(problem: &DesignProblem, relaxation_db: f64) -> DesignProblem {
     let factor = 10.0_f64.powf(relaxation_db / 20.0);
     let requirement = |one: &Requirement| match one {

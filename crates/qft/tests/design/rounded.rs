@@ -54,7 +54,7 @@ fn coefficients(controller: &Controller) -> Vec<f64> {
 }
 
 /// A proportional-integral law in z is b0 + b1/z over 1 - 1/z, its integral gain (b0 + b1)/T: steps of 2^-6 in b0 and b1 are steps of 1.6/s in
-/// that gain. Rounding the least that keeps to the sensitivity breaks it; the design for those steps keeps to it.
+/// that gain. Rounding the least that satisfies the sensitivity breaks it; the design for those steps satisfies it.
 #[test]
 fn coarse_coefficients_are_designed_for() {
     let problem = regulation();
@@ -167,7 +167,7 @@ fn binds(design: &Design, specification: usize) -> bool {
 }
 
 /// What the rounded measurement may do to the command limits |G/(1+L)|: the less it may do, the less gain the controller has at pi/T, and the
-/// command of the loop that rounds keeps to it.
+/// command of the loop that rounds satisfies it.
 #[test]
 fn an_allowed_error_of_the_command_binds_the_gain() {
     let quantization = Quantization { measurement: Some(converter()), ..Quantization::default() };

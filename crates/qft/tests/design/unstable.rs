@@ -108,7 +108,7 @@ fn pendulum() -> DesignProblem {
 }
 
 /// A resonance at 503 rad/s behind an unstable pole at 55 to 111 1/s and 0.11 ms of delay. G = 92.56 (s/9.748 + 1)/(s (s/505.6 + 1)) is
-/// known to keep to both limits.
+/// known to satisfy both limits.
 fn unstable_resonance() -> DesignProblem {
     const W: f64 = 503.116;
     let plant = uncertain(&[("k", 0.116601, 0.116601, 0.233202), ("p", 110.759, 55.3795, 110.759)], |p| {

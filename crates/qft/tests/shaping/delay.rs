@@ -1,4 +1,4 @@
-//! The margin to a demanded delay, against the delay that each loop really bears.
+//! The margin to a demanded delay, against the delay that each loop really tolerates.
 
 use phea_dynamics::controller::{Controller, Element, Timing};
 use phea_dynamics::frequency::logarithmic_grid;
@@ -61,7 +61,7 @@ fn points() -> Vec<PlantPoint> {
         .to_vec()
 }
 
-/// The least delay that one of the plants bears; `None` where one is unstable.
+/// The least delay that one of the plants tolerates; `None` where one is unstable.
 fn borne(samples: &Samples, structure: &Structure, x: &[f64]) -> Option<f64> {
     let controller = Controller { feedback: structure.compensator(x), ..Controller::default() };
     let around = Compensation::new(&controller, TransferFunction::gain_only(1.0)).unwrap();
@@ -118,7 +118,7 @@ fn its_slopes_are_those_of_central_differences() {
     }
 }
 
-/// The resonance at 10 rad/s comes up to 0.8, where the phase bears some 30 ms.
+/// The resonance at 10 rad/s comes up to 0.8, where the phase tolerates some 30 ms.
 #[test]
 fn a_peak_below_one_is_a_row_before_it_is_a_crossover() {
     let x = [0.7f64, 5.0, 5.0].map(f64::ln);

@@ -30,7 +30,7 @@ fn assert_resolved(template: &Template) {
     }
 }
 
-/// k a/(s(s+a)): a is told by the phase, -90 deg - atan(w/a), then k by the magnitude; one of the two is at an end all along the
+/// k a/(s(s+a)): a is known from the phase, -90 deg - atan(w/a), then k by the magnitude; one of the two is at an end all along the
 /// outline, and the area between the four arcs is ln(k ratio) times the range of phase.
 #[test]
 fn a_motor_is_bounded_by_four_arcs() {

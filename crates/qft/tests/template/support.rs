@@ -23,7 +23,7 @@ pub(crate) fn coefficients<'t>(
     PlantCoefficients { command, disturbance: None, dead_time_s: 0.0.into(), rate: None }
 }
 
-/// The family over a box with a grid of so many points along each parameter.
+/// The family over a box with a grid of this number of points along each parameter.
 pub(crate) fn family<F>(ranges: &[Range], points: usize, equations: F) -> UncertainFamily
 where
     F: for<'t> FnOnce(&[Recorded<'t>]) -> PlantCoefficients<Recorded<'t>>,
@@ -130,7 +130,7 @@ pub(crate) fn random_values(family: &UncertainFamily, count: usize, seed: u64) -
     (0..count).map(|_| point()).collect()
 }
 
-/// A response over so many parameters in -1 to 1 whose real and imaginary part at 1 rad/s are quadratic, with random coefficients.
+/// A response over this number of parameters in -1 to 1 whose real and imaginary part at 1 rad/s are quadratic, with random coefficients.
 pub(crate) fn quadratic_family(dimension: usize, seed: u64) -> UncertainFamily {
     let names = ["a", "b", "c", "d"];
     let ranges: Vec<Range> =

@@ -1,4 +1,4 @@
-//! Loops with dead time, continuous and sampled, with a sensor and correlated parameters, beside an independent search.
+//! Loops with dead time, continuous and sampled, with a sensor and correlated parameters, compared with an independent search.
 
 use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
 use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients, UncertainPlant};

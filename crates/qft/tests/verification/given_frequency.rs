@@ -25,7 +25,7 @@ fn carts<'t>(p: &[Recorded<'t>]) -> PlantCoefficients<Recorded<'t>> {
     }
 }
 
-/// Two carts and a spring (Wie and Bernstein 1992): the grid has plants beside those whose resonance lies there.
+/// Two carts and a spring (Wie and Bernstein 1992): the grid has plants next to those whose resonance lies there.
 // ORIGIN: recomputed by comparisons/recompute_audit.py
 #[test]
 fn a_spring_between_two_of_the_grid_resonates_at_the_given_frequency() {

@@ -91,7 +91,7 @@ static ROTARY: &[(&str, &str)] = &[
 impl Vocabulary {
     /// That of a rig that turns. `kept` are texts of the user: names, titles, paths.
     pub fn rotary(mut kept: Vec<String>) -> Vocabulary {
-        // a name that is one of these words is told as that word
+        // a name that is one of these words is printed as that word
         kept.retain(|text| !text.is_empty() && !ROTARY.iter().any(|(linear, _)| linear == text));
         kept.sort_by_key(|text| std::cmp::Reverse(text.len()));
         Vocabulary { words: ROTARY, kept }

@@ -96,7 +96,7 @@ fn specifications(judged: &[JudgedAlternative], not_reached: usize) -> Vec<Strin
     }
     if !missed.is_empty() {
         sentences.push(format!(
-            "no controller tried{} does, unless every limit is wider by what stands in brackets: {}",
+            "no controller tried{} does, unless every limit is wider by the amount given in brackets: {}",
             tried(judged),
             missed.join(", ")
         ));
@@ -178,7 +178,7 @@ fn impedance(one: &JudgedAlternative) -> Option<Vec<String>> {
             .to_string()
     });
     let asked = "the disturbance is the whole change of the force, and counts what the virtual impedance asks for: the impedances at the \
-                 load tell how near it comes"
+                 load show how near it comes"
         .to_string();
     Some(form.into_iter().chain([asked]).collect())
 }

@@ -28,7 +28,7 @@ pub(super) fn table(front: &Front) -> Table {
         };
         let place = match (point.is_on_front(), point.dominated_by.first()) {
             (true, _) => "yes".to_string(),
-            (false, Some(first)) => format!("behind {}", named(front, *first)),
+            (false, Some(first)) => format!("dominated by {}", named(front, *first)),
             (false, None) => "-".to_string(),
         };
         let own = [point.alternative.clone().into(), front.unit.number(point.value, 4).into(), feasible];
@@ -75,7 +75,7 @@ pub(super) fn findings(front: &Front) -> Vec<String> {
         [] => {
             vec!["no point is on a front: none satisfies every specification, on the machine too".to_string()]
         }
-        [only] => vec![format!("{} dominates every other point that is to be had", name_of(front, only))],
+        [only] => vec![format!("{} dominates every other feasible point", name_of(front, only))],
         several => several.windows(2).map(|pair| step(front, pair[0], pair[1])).collect(),
     };
     for point in &front.points {

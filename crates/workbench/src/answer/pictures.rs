@@ -17,7 +17,7 @@ pub(crate) fn part_files(figures: &[Figure], part: &str) -> Vec<OutputFile> {
 }
 
 /// The PNG of a drawing, which is written with it: 2 pixels to a unit of its view box; `None` for a
-/// file that is no SVG drawing.
+/// file that is not an SVG drawing.
 ///
 /// # Errors
 /// A drawing that the rasteriser rejects.

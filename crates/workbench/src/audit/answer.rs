@@ -44,7 +44,7 @@ pub(crate) fn body(view: &ProjectAudit) -> Object {
     let timing = Object::new()
         .known("sample_time_s", view.sample_time_s, "the controller is continuous")
         .with("delay_s", view.delay_s);
-    let no_margin = "there is none: not every plant is known to be stable";
+    let no_margin = "no margin: not every plant is known to be stable";
     Object::new()
         .with("verdict", verdict_key(audit.verdict))
         .with("evidence", evidence_key(audit.evidence))

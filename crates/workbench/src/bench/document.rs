@@ -37,7 +37,7 @@ fn sag(loaded: &Loaded, run: &BenchRun) -> Option<String> {
 fn reversals(found: Option<&ReversalReading>) -> Vec<String> {
     let Some(found) = found else {
         return vec![
-            "The meter stands still in nearly all rows: neither hysteresis nor threshold can be read."
+            "The meter reads zero in nearly all rows: neither hysteresis nor threshold can be read."
                 .to_string(),
         ];
     };

@@ -12,7 +12,7 @@ use crate::project::{AS_DECLARED, Loaded};
 use crate::setup::Setup;
 use crate::source::Source;
 
-/// What is asked of the alternatives of a project, as written.
+/// What is requested for the alternatives of a project, as written.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct AlternativesRequest {
     /// Whether files are wanted.
@@ -23,7 +23,7 @@ pub struct AlternativesRequest {
     pub sweep: Option<String>,
     /// The number of its values.
     pub points: Option<usize>,
-    /// Frequencies at which the impedance at the load is told, such as `1, 10 Hz`.
+    /// Frequencies at which the impedance at the load is stated, such as `1, 10 Hz`.
     pub frequencies: Option<String>,
 }
 
@@ -55,7 +55,7 @@ pub(super) fn alternatives_answer(
 }
 
 /// Reads every alternative and assembles its rig, so that a wrong one is found before anything is
-/// designed; tells whose rig is not in its family.
+/// designed; reports whose rig is not in its family.
 pub(super) fn read_alternatives(
     source: &dyn Source,
     loaded: &Loaded,

@@ -20,7 +20,7 @@ pub struct FrictionRequest {
 /// Identifies the friction of a project's cylinder, whose areas and moving mass the project states.
 ///
 /// # Errors
-/// [`IdentifyError`] for a project without a cylinder, files that are no evenly sampled runs, and runs
+/// [`IdentifyError`] for a project without a cylinder, files that are not evenly sampled runs, and runs
 /// that say nothing.
 pub fn friction_watched(
     source: &dyn Source,

@@ -10,7 +10,7 @@ use crate::source::Source;
 
 use super::Watch;
 
-/// Which recordings tell of which line.
+/// Which recordings belong to which line.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LineRequest {
     /// Recordings, as text or Parquet; none: those of the project's `[identify] line`.
@@ -26,7 +26,7 @@ pub struct LineRequest {
 /// Identifies a line of a project from recordings of it with its far end blocked.
 ///
 /// # Errors
-/// [`IdentifyError`] without a project that describes the line, for files that are no recordings,
+/// [`IdentifyError`] without a project that describes the line, for files that are not recordings,
 /// and for those that no line explains.
 pub fn line_watched(
     source: &dyn Source,

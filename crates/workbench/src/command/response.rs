@@ -20,10 +20,10 @@ pub struct ResponseRequest {
     pub figures: bool,
 }
 
-/// Estimates the response of each file, beside the linear plant of a project where there is one.
+/// Estimates the response of each file, compared with the linear plant of a project where there is one.
 ///
 /// # Errors
-/// [`IdentifyError`] for files that are no evenly sampled records, and records that say nothing.
+/// [`IdentifyError`] for files that are not evenly sampled records, and records that say nothing.
 pub fn response_watched(
     source: &dyn Source,
     loaded: Option<&Loaded>,

@@ -11,7 +11,7 @@ use crate::simulate::{
 };
 use crate::source::{Destination, Source};
 
-/// What is asked of `simulate`.
+/// What is requested of `simulate`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SimulateRequest {
     /// How tables are written.

@@ -5,7 +5,7 @@ use crate::project::Loaded;
 use crate::replaced::{ReplacedRange, replaced_ranges};
 use crate::specification::{CheckedWish, wish_row};
 
-/// The JSON object of `check`; `told` are warnings beside those of the reader.
+/// The JSON object of `check`; `told` are warnings in addition to those of the reader.
 pub fn json(
     loaded: &Loaded,
     derived: &[Derived],

@@ -70,7 +70,7 @@ pub(crate) fn visited_text(project: &Project, ranges: &[VisitedRange]) -> String
     out.text()
 }
 
-/// The ranges that a family replaces, beside what it visits.
+/// The ranges that a family replaces, with what it visits.
 pub(crate) fn replaced_table(ranges: &[ReplacedRange]) -> Table {
     let row = |range: &ReplacedRange| {
         let ends = [range.stated[0], range.stated[1], range.visited[0], range.visited[1]];

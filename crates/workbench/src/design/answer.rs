@@ -56,7 +56,7 @@ pub(crate) fn body(view: &ProjectDesign) -> Result<Object, LinearError> {
         .with("objective", objective)
         .with("seed", view.options.seed)
         .with("controller", factors(side.problem.compensation.feedback()))
-        .known("prefilter", prefilter, "none is needed or wanted")
+        .known("prefilter", prefilter, "no prefilter is needed or requested")
         .maybe("continuous_law", continuous_law(side)?)
         .with("figures", figures(side))
         .with("structure", structure(&design.structure))

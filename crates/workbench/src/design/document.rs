@@ -81,7 +81,7 @@ fn repaired(repair: &Repair) -> Result<Document, LinearError> {
 /// The limits that conflict, what the specifications cost, and how it was found.
 pub(crate) fn costs(view: &ProjectDesign) -> Document {
     let mut out = Document::default();
-    out.section("What stands against one another", conflicts(view));
+    out.section("Conflicting specifications", conflicts(view));
     if let DesignStatus::Infeasible(relaxation) = &view.design.status {
         out.explanation(format!(
             "With every limit {} dB wider these are all reached at once: improving one of them worsens another.",
@@ -97,7 +97,7 @@ pub(crate) fn costs(view: &ProjectDesign) -> Document {
     );
     out.section("What the specifications cost: the limits that the loop touches", binding);
     out.explanation(
-        "The specification that leaves the designed loop least room at each design frequency, with the plant that sets it. Where the margin is next to nothing the limit costs: relaxed there it would allow a controller of less gain; relaxing any other gains nothing. The head of the chapter names where each specification is worst over its whole band, which may lie between these frequencies.",
+        "The specification that leaves the designed loop least room at each design frequency, with the plant that sets it. Where the margin is almost zero the limit costs: relaxed there it would allow a controller of less gain; relaxing any other gains nothing. The head of the chapter names where each specification is worst over its whole band, which may lie between these frequencies.",
     );
     out.heading("Rounds of search and audit");
     out.explanation(

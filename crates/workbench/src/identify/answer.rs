@@ -240,7 +240,7 @@ fn untold(untold: &Untold) -> UntoldBody {
     }
 }
 
-/// The table `[valve]` of a project with what was identified: what the data do not tell is a
+/// The table `[valve]` of a project with what was identified: what the data do not determine is a
 /// comment.
 pub fn files(found: &Identification) -> Vec<OutputFile> {
     let numbers = found.coefficients.to_array();

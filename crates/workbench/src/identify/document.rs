@@ -24,7 +24,7 @@ pub fn text(found: &Identification, read: &Read, region: Option<&FoundRegion>) -
     out.text()
 }
 
-/// What the leakage is, and the coefficients with their intervals beside those by hand.
+/// What the leakage is, and the coefficients with their intervals, and those found by hand.
 pub(crate) fn tell_coefficients(found: &Identification, out: &mut Document) {
     out.heading("Model of the leakage");
     out.sentences(leakage(found));
@@ -58,7 +58,7 @@ pub(crate) fn tell_signals(found: &Identification, out: &mut Document) {
         }));
     }
     if !found.untold.is_empty() {
-        out.heading("What the data cannot tell apart");
+        out.heading("What the data cannot distinguish");
         out.sentences(found.untold.iter().map(not_told));
     }
 }
@@ -70,7 +70,7 @@ fn leakage(found: &Identification) -> Vec<String> {
     let by = significant(evidence.difference(), 3);
     let first = match evidence.preferred() {
         Some(model) => format!(
-            "The recordings speak for {} (`{}`) rather than {}: the information criterion of Schwarz is lower by {by}, where {DECISIVE} is decisive.",
+            "The recordings favour {} (`{}`) rather than {}: the information criterion of Schwarz is lower by {by}, where {DECISIVE} is decisive.",
             described(model),
             word(model),
             described(worse.model)
@@ -188,7 +188,7 @@ fn not_told(untold: &super::Untold) -> String {
     let names: Vec<&str> = untold.shares.iter().map(|(name, _)| *name).collect();
     let first = match names.as_slice() {
         [only] => format!("The data do not determine {only}"),
-        several => format!("The data cannot tell apart {}", several.join(", ")),
+        several => format!("The data cannot distinguish {}", several.join(", ")),
     };
     let tests: Vec<String> = untold.told_by.iter().map(|test| test.name().replace('_', " ")).collect();
     match tests.as_slice() {

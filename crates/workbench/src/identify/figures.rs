@@ -225,7 +225,7 @@ fn leakage(found: &Identification, recording: &Recording) -> Figure {
     chart.draw(&Words::new("leakage_both_ways", "Internal leakage both ways", caption))
 }
 
-/// Flow with the direction that the model gives it where the meter tells none.
+/// Flow with the direction that the model gives it where the meter does not indicate it.
 fn signed_flow(recording: &Recording, outputs: &[TestOutput], row: usize) -> Option<f64> {
     let (kind, _) = flow_signal(recording)?;
     let value = recording.signal(kind)?.values.get(row).copied()??;
@@ -259,7 +259,7 @@ fn flow_gain(found: &Identification) -> Vec<Figure> {
         vec![CurvePanel::new("Flow from A to B (L/min)", 260.0, whole.collect())],
         names.map(|(series, (_, one))| (stem(one).replace('_', " "), CurveStyle::Dots(series))).collect(),
     );
-    let caption = "Flow over the command by each meter, with the direction of the model where the meter tells none; where the large meter stands still there are no readings (Ledezma 2019, Figure 5.9).";
+    let caption = "Flow over the command by each meter, with the direction of the model where the meter does not indicate it; where the large meter reads zero there are no readings (Ledezma 2019, Figure 5.9).";
     let first = chart.draw(&Words::new("flow_gain", "Flow gain", caption));
     vec![first, flow_gain_at_null(found, &metered)]
 }

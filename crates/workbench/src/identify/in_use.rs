@@ -9,12 +9,12 @@ use crate::project::{FromRecordings, IdentifiedFamily, Loaded};
 pub(crate) fn heading_in_use(loaded: &Loaded) -> String {
     let Some(recorded) = &loaded.recorded else { return String::new() };
     let mut out = Document::default();
-    out.heading("The valve as its recordings tell it");
+    out.heading("The valve as identified from its recordings");
     tell_in_use(recorded, &mut out);
     format!("{}\n", out.text())
 }
 
-/// The files, the numbers beside the declared ones, what stays as declared, and the family.
+/// The files, the numbers with the declared ones, what stays as declared, and the family.
 pub(crate) fn tell_in_use(recorded: &FromRecordings, out: &mut Document) {
     let files = recorded.files.iter().map(|file| format!("From {}, SHA-256 `{}`.", file.path, file.sha256));
     out.sentences(files);

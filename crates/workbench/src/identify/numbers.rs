@@ -71,7 +71,7 @@ struct NumberLine {
     thesis: Option<&'static str>,
 }
 
-/// The numbers with their equations, beside those that the thesis prints of the valve of its rig.
+/// The numbers with their equations, and those that the thesis prints of the valve of its rig.
 pub(crate) fn tell(found: &Identification, out: &mut Document) {
     let headings = ["number", "read", "95 % from", "to", "unit", "by", "Ledezma (2019)"];
     let rows = lines(&found.simple).into_iter().filter_map(|(line, reading)| {
@@ -126,7 +126,7 @@ fn null_offset(found: &Identification) -> Option<String> {
     let reason = match found.simple.nulls[0]?.method {
         NullMethod::LeakageCentre => "the leakage curve of unequal edges is not even about null",
         NullMethod::FlowLines => "where the straight lines begin the spool still remembers its last reversal",
-        NullMethod::EqualPressures => "unequal edges balance the ports beside null",
+        NullMethod::EqualPressures => "unequal edges balance the ports away from null",
     };
     let [low, high] = read.interval?;
     (!(low..=high).contains(&found.coefficients.null_bias)).then(|| {

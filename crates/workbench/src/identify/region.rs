@@ -97,8 +97,10 @@ pub(super) fn body(region: &FoundRegion) -> RegionBody {
 /// The tables `[[uncertainty_direction]]` of a project.
 pub(crate) fn file(found: &Identification, region: &JointRegion) -> OutputFile {
     let files: Vec<&str> = found.recordings.iter().map(|one| one.file.as_str()).collect();
-    let mut text =
-        format!("# What {} leave uncertain of the valve, for the table [valve] beside.\n", files.join(", "));
+    let mut text = format!(
+        "# What {} leave uncertain of the valve, for the table [valve] of valve.toml.\n",
+        files.join(", ")
+    );
     for sentence in sentences(region) {
         text.push_str(&format!("# {sentence}\n"));
     }

@@ -58,7 +58,11 @@ fn rise(fit: &RiseFit) -> Object {
         .with("pressures_pa", [low, high])
         .with("terms", fit.terms())
         .each("compliance", [low, f64::midpoint(low, high), high], tangent)
-        .known("drift_m3_per_s", fit.drift, "the record has no standstill that tells it from the compliance")
+        .known(
+            "drift_m3_per_s",
+            fit.drift,
+            "the record has no standstill that separates it from the compliance",
+        )
         .with("volume_noise_m3", fit.white_noise)
         .with("volume_walk_m3", fit.walk)
 }

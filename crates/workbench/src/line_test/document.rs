@@ -4,7 +4,7 @@ use crate::document::{Cell, Document, Table};
 use crate::project::LineSide;
 use crate::quantity::{DisplayUnit, FLOW, PRESSURE, VOLUME, display};
 
-/// The numbers of the line, what the recordings do not tell, and how they were explained.
+/// The numbers of the line, what the recordings do not determine, and how they were explained.
 pub fn text(found: &LineIdentification) -> String {
     let mut out = Document::default();
     let rows = numbers(found).into_iter().filter_map(|(key, what, number)| {
@@ -58,7 +58,7 @@ fn rise(fit: &RiseFit) -> Vec<String> {
             display(drift, &FLOW, 3)
         ),
         None => {
-            "the record has no standstill that would tell a meter's zero error or leakage: none is supposed"
+            "the record has no standstill that would show a meter's zero error or leakage: both are taken as zero"
                 .to_string()
         }
     };

@@ -71,7 +71,7 @@ fn compliance_over_frequency(found: &LineIdentification, fit: &ResponseFit) -> F
     ];
     let mut legend = legend();
     legend.push(("95 % confidence".to_string(), CurveStyle::Line(0)));
-    let caption = "Imaginary part of flow over pressure, divided by the frequency: the compliance, as long as the line is short beside the wave. It grows towards the quarter wave, beyond which the line answers as an inertance.";
+    let caption = "Imaginary part of flow over pressure, divided by the frequency: the compliance, as long as the line is short compared with the wavelength. It grows towards the quarter wave, beyond which the line behaves as an inertance.";
     let title = format!("{}: compliance over frequency", fit.member.file);
     CurveChart { x_title: "Frequency (Hz)".to_string(), x_range: [first, last].map(hertz), panels, legend }
         .draw_over_decades(&Words::new("line.frequency_response", title, caption))

@@ -119,7 +119,7 @@ pub(crate) fn asked_table(asked: &AskedImpedance) -> Table {
     Table::new(headings).with(asked.points.iter().map(row))
 }
 
-/// Where the port shows what is asked of it.
+/// Where the port shows the required impedance.
 pub(crate) fn asked_sentence(asked: &AskedImpedance) -> String {
     let within = significant(WITHIN_PERCENT, 3);
     match asked.follows_rad_per_s {

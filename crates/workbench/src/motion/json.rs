@@ -50,7 +50,7 @@ fn is_quantity(key: &str) -> bool {
     ["metric", "signal", "column", "quantity"].contains(&key)
 }
 
-/// Keys whose text is no sentence.
+/// Keys whose text is not a sentence.
 fn is_kept(key: &str) -> bool {
     [
         "version",

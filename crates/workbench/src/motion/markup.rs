@@ -2,7 +2,7 @@
 
 use crate::quantity::{MotionKind, Vocabulary};
 
-/// Elements whose text is no sentence.
+/// Elements whose text is not a sentence.
 const KEPT: [&str; 4] = ["code", "style", "script", "pre"];
 
 /// The same page or drawing for a rig that turns.

@@ -15,7 +15,7 @@ pub(super) fn chapter(project: &Project, found: Option<&Alternatives>) -> Option
         (None, names) => {
             let mut out = Document::default();
             out.explanation(format!(
-                "The project has alternatives that are not judged here: {}. `phea report --alternatives` designs a controller for each and shows them beside each other, as `phea alternatives` does.",
+                "The project has alternatives that are not judged here: {}. `phea report --alternatives` designs a controller for each and shows them side by side, as `phea alternatives` does.",
                 names.join(", ")
             ));
             out

@@ -22,7 +22,7 @@ use crate::source::Source;
 const RUNS: u64 = 500;
 const SEED: u32 = 1;
 
-/// Runs whose numbers are told.
+/// Runs whose numbers are printed.
 const WORST: usize = 4;
 
 /// Significant digits of the numbers in the tables: an answer has all of them.

@@ -53,7 +53,7 @@ pub(super) fn chapter(
             "U_C = G (F F_{ref} - y)".to_string(),
             "y = F_e + (M_v s^2 + B_v s + K_v)/(τ s + 1)^n (X_L - X_0)".to_string(),
         ]);
-        out.explanation("What the loop is asked to show to a load that moves its port, beside what it shows: Z = M_v s + B_v + K_v/s against -F_e/(s X_L) of the nominal plant, waves, samples and delay included.");
+        out.explanation("The impedance that the loop is required to show to a load that moves its port, and the one that it shows: Z = M_v s + B_v + K_v/s against -F_e/(s X_L) of the nominal plant, waves, samples and delay included.");
         out.table(asked_table(asked));
         out.sentences([format!("closed loop: {}", asked_sentence(asked))]);
     }

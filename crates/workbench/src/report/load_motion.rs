@@ -1,4 +1,4 @@
-//! The force while the load moves, from the driving-point impedance: open loop beside closed loop.
+//! The force while the load moves, from the driving-point impedance: open loop and closed loop.
 
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::time_response::{

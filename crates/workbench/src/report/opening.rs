@@ -99,7 +99,7 @@ pub(super) fn opening(contents: &Contents<'_>, nichols: Option<Figure>) -> (Chap
     pair.figures(figures);
     match count {
         0 => out.append(steps),
-        // beside a figure that stands alone
+        // next to a figure that stands alone
         1 => {
             pair.append(steps);
             out.beside(pair);

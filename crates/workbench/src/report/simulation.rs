@@ -51,7 +51,7 @@ pub(super) fn inside(project: &Project, driven: &MachineChapter) -> Option<Chapt
         return None;
     }
     let mut out = Document::default();
-    out.explanation("What the figures of both controllers leave out: the spool beside the command, both chambers, and hydraulic and measured force, between which lie the friction and the acceleration of the piston; in the order of Figure 6.17 of Ledezma (2019).");
+    out.explanation("What the figures of both controllers leave out: the spool and the command, both chambers, and hydraulic and measured force, between which lie the friction and the acceleration of the piston; in the order of Figure 6.17 of Ledezma (2019).");
     out.figures(figures);
     Some(Chapter::of("inside", "Inside the machine at each event", out))
 }

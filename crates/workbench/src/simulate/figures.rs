@@ -27,7 +27,7 @@ pub(crate) fn pictures(run: &ScenarioRun, number: usize) -> Vec<Figure> {
         let positions = if moves_load(window) { ", positions" } else { "" };
         let asked_for = if run.open_loop { "" } else { " with its reference" };
         let caption = format!(
-            "Voltages, pressures of both chambers, hydraulic force beside measured force, measured force\
+            "Voltages, pressures of both chambers, hydraulic and measured force, measured force\
              {asked_for}{positions}. Between hydraulic and measured force lie the friction and the acceleration of the piston."
         );
         let words = Words::new(

@@ -5,7 +5,7 @@ use crate::answer::Object;
 use crate::document::Cell;
 use crate::quantity::DisplayUnit;
 
-/// How a metric is told.
+/// How a metric is printed.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Metric {
     /// Its name in answers.

@@ -49,13 +49,13 @@ pub(crate) struct Compared {
     pub(crate) growth: Vec<f64>,
     /// Rows before the trajectories separate.
     pub(crate) rows: usize,
-    /// Largest magnitude of the force or of what is asked for, N.
+    /// Largest magnitude of the force or of its reference, N.
     pub(crate) peak: f64,
     /// Whether CVODE finds the same at two tolerances.
     pub(crate) well_posed: bool,
     /// Whether CVODE's force rings anywhere, above the floor of [`Roughness`].
     pub(crate) rough: bool,
-    /// Largest difference between phea's runs over all rows, as a part of the peak: what a check at a tenth of the tolerance tells.
+    /// Largest difference between phea's runs over all rows, as a part of the peak: what a check at a tenth of the tolerance shows.
     pub(crate) estimate: f64,
     /// Whether the force still swings to and fro at the end, long after the last thing that happened.
     pub(crate) hunts: bool,
@@ -106,7 +106,7 @@ impl Ours {
         Ours { status, error, error_of_all, beyond, roughness: None, may_show_errors, work, seconds }
     }
 
-    /// Whether it keeps what is asked for, and how it fails otherwise.
+    /// Whether it meets its requirements, and how it fails otherwise.
     pub(crate) fn fault(&self) -> Option<String> {
         match self {
             Ours { status, .. } if *status != Status::Completed => {
@@ -146,7 +146,7 @@ impl Sampler for Digital<'_> {
     }
 }
 
-/// phea's own loop, as compiled for its users, whose rates cease to be numbers after so many evaluations: how a run on CVODE is ended.
+/// phea's own loop, as compiled for its users, whose rates cease to be numbers after this number of evaluations: how a run on CVODE is ended.
 struct Patient<'a> {
     control: &'a Loop,
     left: Cell<u64>,

@@ -6,7 +6,7 @@
 //! Two families: `any`, whose valve, lines, cylinder, friction, load, controller and its samples vary over decades, and `falling`,
 //! whose friction falls with the velocity where a slow load lets the piston go, so that it feeds the ringing on the load cell. One
 //! of these words runs that family alone. The reference is CVODE at 1e-11, phea is judged at the tolerance 1e-7. What it does at
-//! 1e-6, which a project has by default, is told beside it. Every fourth rig of the first family is compared with `closed_loop.h` as
+//! 1e-6, which a project has by default, is reported with it. Every fourth rig of the first family is compared with `closed_loop.h` as
 //! well; `timed` adds what CVODE costs at the same error; `only=N` runs one rig, `from=N` begins with it; `judged=1e-9` judges phea at
 //! that tolerance.
 //!
@@ -20,13 +20,13 @@
 //! A solver that keeps a tolerance may err by as much as that in every step, and takes 32 steps between two kicks in the mean. Ten
 //! errors of 1e-6 grow to the thousandth of the peak that is allowed where A passes 100: there trajectories count as separated. Until
 //! then an error is held against that thousandth, from then on against what ten such errors grow to, 10 x 1e-6 A(t). The peak is that
-//! of the force, or what is asked for where the loop never brings it.
+//! of the force, or of the reference where the loop never brings it.
 //!
 //! Where A is large that bound is met by no ringing at all as well as by the right one. So from then on the force must ring as
 //! strongly as CVODE's does, too: [`roughness`].
 //!
 //! A rig is well posed where CVODE at 1e-9 finds the force of 1e-11 to 1e-5 of the peak. On these the error at the default tolerance
-//! is told over all rows, with what a run at a tenth of the tolerance says of it.
+//! is reported over all rows, with what a run at a tenth of the tolerance says of it.
 
 mod compare;
 mod falling;
@@ -95,7 +95,7 @@ fn main() -> ExitCode {
     if failed.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
-/// Runs a family and tells what came of it.
+/// Runs a family and reports what came of it.
 fn passes(family: Family, asked: &Asked, program: &Path) -> bool {
     println!("family `{}`", family.word());
     let Asked { numbers, manner, told } = asked;

@@ -57,7 +57,7 @@ pub(crate) struct Rig {
 }
 
 impl Rig {
-    /// Its state at the beginning, so many numbers without those of its waves: what a controller adds is at rest.
+    /// Its state at the beginning, this number of values without those of its waves: what a controller adds is at rest.
     pub(crate) fn beginning(&self, states: usize) -> Vec<f64> {
         let mut start = self.start.clone();
         start.resize(states, 0.0);

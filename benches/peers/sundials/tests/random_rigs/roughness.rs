@@ -1,12 +1,12 @@
-//! How much of a force rings: what tells whether a solver has calmed an oscillation, where trajectories have parted.
+//! How much of a force rings: what shows whether a solver has calmed an oscillation, where trajectories have parted.
 //!
 //! ```text
 //! R_k^2 = mean over window k of (F - mean of F over the 10 ms around)^2          windows of 0.1 s
 //! ```
 //!
-//! The phase of a ringing that grew out of next to nothing says nothing, how strong it is does, as far as anybody knows: an onset may
+//! The phase of a ringing that grew out of almost nothing says nothing, how strong it is does, as far as anybody knows: an onset may
 //! fall into the window before or after, and where CVODE's own runs (at 1e-11, the same moved by chance, at 1e-9) differ by
-//! more than these parts in the largest of R_(k-1), R_k, R_(k+1), the strength hangs on what is smaller than any tolerance. A rig on
+//! more than these parts in the largest of R_(k-1), R_k, R_(k+1), the strength depends on what is smaller than any tolerance. A rig on
 //! which phea differs from them is run by CVODE at 1e-13 too: it may be CVODE's own error that grew into a ringing, and phea is right.
 //!
 //! ```text
@@ -39,7 +39,7 @@ pub(crate) struct Roughness {
 }
 
 impl Roughness {
-    /// Of a run's force, its rows so far apart, which separate after so many; `None` where they do not.
+    /// Of a run's force, with rows at this distance, which separate after this number; `None` where they do not.
     pub(crate) fn compared(
         force: &[f64],
         references: &[&[f64]],

@@ -118,7 +118,7 @@ impl Tally {
         }
     }
 
-    /// Takes what is told of a rig whose trajectories separate.
+    /// Takes what is reported of a rig whose trajectories separate.
     fn separate(&mut self, number: u64, compared: &Compared, ours: &Ours) {
         let (rows, of) = (compared.rows, compared.growth.len());
         self.separating.push(rows as f64 / of as f64);

@@ -75,7 +75,7 @@ impl MeasurementColumns {
         }
         let (columns, _) = found.filter(|_| findings.error_count() == before)?;
         let columns: [Option<Column>; 12] = columns.try_into().ok()?;
-        // the plants are the responses as they are: how well they are known is told beside
+        // the plants are the responses as they are: how well they are known is reported separately
         let [frequency, magnitude, phase, real, imaginary, one, two, three, four, _, _, radius] = columns;
         let load = [one, two, three, four];
         let has_load = load.iter().any(Option::is_some);

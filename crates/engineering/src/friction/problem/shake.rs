@@ -5,7 +5,7 @@ use phea_hydraulics::friction::{FRICTION_COEFFICIENTS, LuGre, MultisineForce, Pr
 use super::{FrictionProblem, ResidualRows, ZERO};
 use crate::friction::shaking::ShakenRows;
 
-/// Variables of a shake that are no sizes of its force: where the position, the velocity and the
+/// Variables of a shake that are not sizes of its force: where the position, the velocity and the
 /// deflection of the bristles begin.
 const BEGINNINGS: usize = 3;
 

@@ -39,7 +39,7 @@ const FEWEST_PERIODS: f64 = 3.0;
 /// How many times longer the transformed signal is, by zeros.
 const FILLED_UP: usize = 4;
 
-/// Distance of two sines, over a line of the rows, from which they can be told from each other.
+/// Distance of two sines, over a line of the rows, from which they can be distinguished.
 const APART: f64 = 1.5;
 
 /// The sines that a force is made of, as angles in rad from row to row, rising; `None` where sines do

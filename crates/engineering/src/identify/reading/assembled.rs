@@ -63,7 +63,7 @@ pub(super) fn assembled(file: &str, taken: &Taken, circuit: PortCircuit, known: 
     }
 }
 
-/// A flow between the ports: by a meter that tells the direction if some of it is negative.
+/// A flow between the ports: by a meter that indicates the direction if some of it is negative.
 fn port_flow(values: &[f64]) -> RecordedSignal {
     let signed = values.iter().any(|value| *value < 0.0);
     let kind = if signed { SignalKind::PortFlow } else { SignalKind::PortFlowMagnitude };

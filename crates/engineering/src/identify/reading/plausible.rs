@@ -38,7 +38,7 @@ fn greatest(signal: TestSignal, nominal_voltage: f64) -> f64 {
     }
 }
 
-/// Refuses columns whose numbers reach what no test reaches, and single values that are none.
+/// Refuses columns whose numbers reach what no test reaches, and single values that are impossible.
 pub(super) fn check(
     table: &MeasuredTable,
     columns: &[(TestSignal, Column)],
@@ -52,12 +52,12 @@ pub(super) fn check(
         let Some(values) = taken.of(*signal) else { continue };
         if *signal == TestSignal::Command && values.iter().all(|value| Some(value) == values.first()) {
             let place = table.headings.get(column.index).map(|heading| heading.place).unwrap_or_default();
-            findings.push(RawFinding::error(place, "the command never moves: this is no test of a valve"));
+            findings.push(RawFinding::error(place, "the command never moves: this is not a test of a valve"));
             continue;
         }
         let level = match signal {
             TestSignal::Time => duration(values),
-            // a meter that stands still shows nothing
+            // a meter that reads zero shows nothing
             TestSignal::LeakFlow => reached(values.iter().filter(|value| **value != 0.0)),
             _ => reached(values),
         };
@@ -78,7 +78,7 @@ pub(super) fn check(
                 "" => display(*value, dimension, 3),
                 text => format!("{text} {}", column.unit),
             };
-            let message = format!("{written} is no {} of a valve test", words(*signal));
+            let message = format!("{written} is not a plausible {} of a valve test", words(*signal));
             let found = table.error(*row, column, message, findings);
             findings.push(found.expected(format!("at most {}", display(most, dimension, 3))));
         }
@@ -112,7 +112,9 @@ fn implausible(
     let heading = table.heading(column);
     let name = words(signal);
     let message = match (signal, supply) {
-        (TestSignal::Time, _) => format!("`{heading}` lasts {}: no test of a valve does", shown(level)),
+        (TestSignal::Time, _) => {
+            format!("`{heading}` lasts {}: no test of a valve takes that long", shown(level))
+        }
         (TestSignal::Command, _) => format!(
             "`{heading}` reaches {}, the nominal voltage is {}",
             shown(level),
@@ -121,7 +123,7 @@ fn implausible(
         (_, Some(supply)) => {
             format!("`{heading}` reaches {}, the supply pressure {}", shown(level), shown(supply))
         }
-        _ => format!("`{heading}` reaches {}: that is no {name} of a valve test", shown(level)),
+        _ => format!("`{heading}` reaches {}: that is not a plausible {name} of a valve test", shown(level)),
     };
     let place = table.headings.get(column.index).map(|heading| heading.place).unwrap_or_default();
     let expected = format!("{} to {}", shown(limits[0]), shown(limits[1]));

@@ -4,7 +4,7 @@ use super::Taken;
 use crate::project::{Findings, RawFinding, TestSignal};
 use crate::table::{Column, ColumnNumbers, MeasuredTable};
 
-/// A column with more gaps than this share of the rows is no record.
+/// A column with more gaps than this share of the rows is not a record.
 const MOST_GAPS: f64 = 0.5;
 
 /// Says what is missing, and leaves out the rows that cannot be used: those without an input, and

@@ -22,7 +22,7 @@ const SENSITIVITY_WINDOW: f64 = 0.4;
 const FEWEST: usize = 12;
 
 /// dq/dU for positive and negative commands at this drop from supply to tank, by the test with the
-/// smallest command that tells both.
+/// smallest command that shows both.
 ///
 /// ```text
 /// K_qU = sqrt(p/2) d/dU (q/sqrt((p_S - p_T - |p_L|)/2))

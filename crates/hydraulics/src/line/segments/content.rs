@@ -21,7 +21,7 @@ impl<S: Scalar> Segments<S> {
     /// capacity   C p             C p^2/2                                      each but that of the chamber
     /// wall       C_r w           C_r w^2/2            C_r (p - w)^2/theta     a spring behind its damper
     /// plug       0               I q^2/2              R q^2
-    /// friction   0               (4 m/n) I u^2/2      4 m (nu/R^2) I (q - u)^2     each lag an inertance beside a resistance
+    /// friction   0               (4 m/n) I u^2/2      4 m (nu/R^2) I (q - u)^2     each lag an inertance parallel to a resistance
     /// ```
     ///
     /// A line is linear and hands on volumes, so that these squares are exact. In steady flow plug

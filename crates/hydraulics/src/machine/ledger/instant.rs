@@ -94,7 +94,7 @@ impl<T: Scalar> Instant<T> {
 
 impl<T: Scalar> GasInstant<T> {
     /// The gas at this pressure in Pa, which receives a flow in proportion to its share of the
-    /// compliance: the flow is `arriving` in m3/s, the compliance beside it `beside` in m3/Pa.
+    /// compliance: the flow is `arriving` in m3/s, the compliance parallel to it `beside` in m3/Pa.
     fn of(gas: Option<Accumulator<T>>, pressure: T, arriving: T, beside: T) -> GasInstant<T> {
         let zero = T::from(0.0);
         let Some(gas) = gas else {

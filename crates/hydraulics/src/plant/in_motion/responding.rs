@@ -48,7 +48,7 @@ impl RespondingPlant for PlantInMotion {
     /// p_port = p + R q,   q = K_q U - K_c p_port      so that q = K_q/(1 + K_c R) U - K_c/(1 + K_c R) p
     /// ```
     ///
-    /// beside what the chamber leaks, and the edges of a supply that yields likewise.
+    /// in addition to what the chamber leaks, and the edges of a supply that yields likewise.
     fn slow(&self) -> PlantCoefficients<f64> {
         let of = |value: fn(&ChamberSide) -> f64| [value(&self.sides[0]), value(&self.sides[1])];
         let passing = |side: &ChamberSide| 1.0 + side.flow_pressure * side.line.resistance();
@@ -215,7 +215,7 @@ impl PlantInMotion {
         next.0 < LARGE_STEP * here.0 && (turned < SMALL_TURN || is_small)
     }
 
-    /// Where dynamic pressure feedback turns, from its capacity with those of the chambers beside it
+    /// Where dynamic pressure feedback turns, from its capacity with those of the chambers next to it
     /// to its restrictor between the chambers alone, in rad/s.
     fn feedback_rad_per_s(&self) -> [f64; 2] {
         let Some(feedback) = &self.plant.dynamic_feedback else { return [f64::INFINITY, 0.0] };

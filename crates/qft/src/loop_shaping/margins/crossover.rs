@@ -175,7 +175,7 @@ fn delay_at(crossover: Crossover, [lower, upper]: [&LoopValue; 2], delay_s: f64)
     }
 }
 
-/// |L| at a peak below 1 or a dip above it, where the phase alone would not bear the delay.
+/// |L| at a peak below 1 or a dip above it, where the phase alone would not tolerate the delay.
 fn peak(before: &LoopValue, point: &LoopValue, after: &LoopValue, delay_s: f64) -> Option<ColumnDependence> {
     let [low, here, high] = [before, point, after].map(|point| point.open.norm_sqr());
     let sign = if here < 1.0 && low < here && high <= here {

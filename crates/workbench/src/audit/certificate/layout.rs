@@ -316,7 +316,7 @@ impl File {
         let mut results = parts.concat();
         results.extend(dead_time);
         let coefficients = Expression::from_nodes(file.parameters.clone(), nodes, results)
-            .ok_or_else(|| meaning("an operation acts on what does not stand before it"))?;
+            .ok_or_else(|| meaning("an operation acts on a value that is not defined before it"))?;
         let segments = |one: Vec<StatedSegment>| one.into_iter().map(ParameterSegment::try_from).collect();
         let boxes =
             file.boxes.into_iter().map(segments).collect::<Result<Vec<Vec<ParameterSegment>>, _>>()?;

@@ -131,7 +131,7 @@ fn plant_words(view: &ProjectAudit, plant: &phea_qft::verification::PlantPoint) 
     match view.names.headings().len() {
         0 => String::new(),
         1 | 2 => format!(" (plant {})", view.names.text(plant)),
-        _ => " (its plant stands in the audit)".to_string(),
+        _ => " (its plant is listed in the audit)".to_string(),
     }
 }
 
@@ -265,7 +265,7 @@ fn delay(project: &Project, side: &Side<'_>) -> Option<String> {
     })
 }
 
-/// What would tell more.
+/// What would give more certainty.
 fn undeclared(contents: &Contents<'_>, taken: Option<&Side<'_>>) -> Vec<String> {
     let project = contents.setup.project;
     let mut steps = Vec::new();

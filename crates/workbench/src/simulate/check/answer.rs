@@ -50,7 +50,7 @@ pub(crate) fn sentences(check: &ToleranceCheck) -> Vec<String> {
     if check.is_doubtful() {
         told.push(
             "that is more than a thousandth: take its numbers for no more exact than this, or state a smaller `simulation.tolerance`; \
-             where that does not bring them closer, they hang on what no solver tells"
+             where that does not bring them closer, they depend on details that no solver resolves"
                 .to_string(),
         );
     }

@@ -10,7 +10,7 @@ use crate::answer::{NumberTable, Object, OutputFile, TableFormat};
 
 const NO_WINDOW: &str = "the simulation ended before a window did";
 const NO_SYSTEM: &str =
-    "a sampled loop around a machine with states and waves is no linear system of finite order here";
+    "a sampled loop around a machine with states and waves is not a linear system of finite order here";
 
 /// The part of the JSON object.
 pub(crate) fn body(found: &MachineResponses) -> Object {

@@ -77,6 +77,6 @@ fn remark(point: &ResponsePoint) -> Option<String> {
         return Some(format!("{at} rad/s: not settled, the last two windows differ by {percent} %"));
     }
     (!point.reached.is_empty()).then(|| {
-        format!("{at} rad/s: {} on the way, so that this is no small motion", point.reached.join(", "))
+        format!("{at} rad/s: {} on the way, so that this is not a small motion", point.reached.join(", "))
     })
 }
