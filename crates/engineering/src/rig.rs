@@ -169,7 +169,7 @@ impl Rig {
         let balance = Balance::at(components, position);
         let supply = settled_supply(declared, &numbers, &balance, steady)
             .filter(|found| found.supply.pressure.is_finite());
-        // the valve at the pressure that the pump maintains, lines and stall forces at the stated one
+        // the valve at the pressure of the pump, lines and stall forces at the stated one
         let settled = supply.map_or(components.supply, |found| found.supply);
         let at_valve = Actuator::new(Components { supply: settled, ..*components })?;
         let point = operating_point(&at_valve, position, steady.into())?;

@@ -1,4 +1,4 @@
-//! A linkage between rod and load: its geometry, machine and plant against closed forms, the rig without one, and a Lagrangian.
+//! A linkage between rod and load: geometry, machine and plant, against closed forms and a Lagrangian.
 
 #![allow(clippy::unwrap_used)] // helpers of tests
 
@@ -76,7 +76,7 @@ pub(super) fn linkages() -> [Linkage; 4] {
     [reduced(LinkageGeometry::Triangle(knee())), open, crossed, table]
 }
 
-/// Extension, lever arm and its slope of the triangle in closed form, and the inverse, everywhere in the stroke.
+/// Extension, lever arm, its slope and the inverse of the triangle in closed form.
 #[test]
 fn a_triangle_is_the_law_of_cosines() {
     let linkage = reduced(LinkageGeometry::Triangle(knee()));
@@ -108,7 +108,7 @@ fn a_four_bar_closes() {
         let at = |x: f64| sense * (linkage.angle(x) + OFFSET);
         for (x, expected) in rows {
             let turns = (at(x) - expected) / std::f64::consts::TAU;
-            // crossed, the lever arm grows fourfold towards a dead point, which one polynomial follows less well
+            // crossed, the lever arm grows fourfold towards a dead point: the fit is worse
             let tolerance = if is_crossed { 1e-7 } else { 1e-10 };
             assert!((turns - turns.round()).abs() < tolerance, "{is_crossed} {x}: {} {expected}", at(x));
         }
@@ -145,7 +145,7 @@ fn impossible_linkages_are_refused() {
     assert!(matches!(back, LinkageError::DeadPoint { .. } | LinkageError::NoFourBar { .. }), "{back:?}");
 }
 
-/// A table of the knee is the knee, and its residual is what it leaves; a rough one keeps within its tolerance.
+/// A table of the knee is the knee up to its residual; a rough one is within its tolerance.
 #[test]
 fn a_table_is_what_was_measured() {
     let exact = reduced(LinkageGeometry::Triangle(knee()));
@@ -170,7 +170,7 @@ fn intervals_enclose_it() {
             let found = wide.angle(Interval::new(x - 1e-9, x + 1e-9));
             let angle = linkage.angle(x);
             assert!(found.low() <= angle && angle <= found.high(), "{x}");
-            // the angle itself moves by a twelfth of this, for the knee whose lever arm is 20 to 50 mm
+            // the angle moves by a twelfth of this, for a knee with a lever arm of 20 to 50 mm
             assert!(kind > 0 || found.high() - found.low() < 1e-6, "{x}");
         }
     }
@@ -269,7 +269,7 @@ fn pairs() -> [[LoadModel; 2]; 3] {
     [[LoadModel::Prescribed; 2], [sprung(1.0), sprung(square)], [walled(1.0, 1.0), walled(square, ARM)]]
 }
 
-/// A lever arm that is the same everywhere: the rig with the load in linear quantities, by all its rates.
+/// A constant lever arm: the rig with the load in linear quantities, by all its rates.
 #[test]
 fn a_constant_lever_is_a_load_in_other_units() {
     let angle = |x: f64| x / ARM - 5.0;
@@ -322,7 +322,7 @@ fn a_constant_lever_has_the_plant_of_a_load_in_other_units() {
     }
 }
 
-/// A rig of its own for every number, at rest, with every kind of linkage and load, pushed and pulled.
+/// A rig for every number, at rest, with every kind of linkage and load, pushed and pulled.
 struct Drawn {
     machine: Machine,
     rest: InitialCondition,
@@ -406,7 +406,7 @@ fn load(number: u64, [mass, stiffness, damping]: [f64; 3], contact: Contact) -> 
 /// Place of the deflection of what lies between sensor and load in the signals of a machine.
 const SERIES_DEFLECTION: usize = 19;
 
-/// Of five numbers two have a damped and progressive spring between sensor and load, one a transmission.
+/// Of five numbers two have a damped, progressive spring on the rod, one a transmission.
 fn series(number: u64, spread: &mut impl FnMut(f64, f64) -> f64) -> Option<SeriesElement> {
     match number % 5 {
         1 | 2 => Some(SeriesElement::Spring(SeriesSpring {

@@ -224,7 +224,7 @@ fn the_verdict_speaks_of_the_loop_that_exists() {
     assert!(without.iter().zip(&with).any(|(one, other)| (one - other).abs() > 0.1), "{without:?} {with:?}");
 }
 
-/// Active and passive compliance in one table: a pipe whose loop shows a spring and a damper compared with the hose and the pipe themselves.
+/// Active and passive compliance in one table: a pipe whose loop shows a spring and a damper, next to hose and pipe.
 #[test]
 fn alternatives_state_what_is_asked_beside_what_is_shown() {
     let (head, _) = HOSE.split_once("[uncertainty]").unwrap();
@@ -278,7 +278,7 @@ name = "pipe with an inner position loop"
     assert!((at(2, "impedance_asked_n_s_per_m").unwrap() / asked - 1.0).abs() < 1e-12);
     assert_eq!((at(0, "impedance_asked_n_s_per_m"), at(1, "impedance_asked_n_s_per_m")), (None, None));
     let shown = [1, 2].map(|index| at(index, "impedance_closed_n_s_per_m").unwrap());
-    // as far as 1/(1 + L), at most 1/|1 - 5j| there, lets it be another, and what the pipe itself shows
+    // as far as 1/(1 + L), at most 1/|1 - 5j| there, lets it differ, and what the pipe shows
     assert!((shown[1] / asked - 1.0).abs() < 0.2 + shown[0] / asked, "{shown:?}, {asked}");
     assert!(shown[0] < 0.5 * asked, "{shown:?}, {asked}");
     // the load does not yield: the loop to be designed is the same

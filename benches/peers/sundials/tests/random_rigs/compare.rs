@@ -32,7 +32,7 @@ const KICKS: Kicks = Kicks { period_s: 1e-2, size: 1e-8, seed: 1 };
 pub(crate) const ERRORS: f64 = 10.0;
 /// Growth of kicks from which on it cannot hold the largest error.
 const SEPARATED: f64 = crate::LARGEST_ERROR / (ERRORS * TOLERANCE);
-/// A rig is well posed if CVODE at this tolerance finds what it finds at the other, up to this part of the peak.
+/// A rig is well posed if CVODE at this tolerance agrees with the other, up to this part of the peak.
 const LOOSER: f64 = 1e-9;
 const WELL_POSED: f64 = 1e-5;
 /// Around the row at which CVODE meets a chamber without fluid, s.
@@ -57,7 +57,7 @@ pub(crate) struct Compared {
     pub(crate) rough: bool,
     /// Largest difference between phea's runs over all rows, as a part of the peak: what a check at a tenth of the tolerance shows.
     pub(crate) estimate: f64,
-    /// Whether the force still swings to and fro at the end, long after the last thing that happened.
+    /// Whether the force still swings at the end, long after the last thing that happened.
     pub(crate) hunts: bool,
     /// When CVODE has left the model, a chamber having no fluid any more, in s.
     emptied_s: Option<f64>,
@@ -83,11 +83,11 @@ pub(crate) struct Cost {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ours {
     pub(crate) status: Status,
-    /// Largest error of the force over the rows before trajectories separate, as a part of the peak.
+    /// Largest error of the force before trajectories separate, as a part of the peak.
     pub(crate) error: f64,
     /// The same over all rows.
     pub(crate) error_of_all: f64,
-    /// Largest error over what kicks as large as the tolerance grow to, over all rows after they separate.
+    /// Largest error over the growth of kicks of the tolerance, over all rows after they separate.
     pub(crate) beyond: f64,
     /// Its ringing where trajectories have separated; `None` where they do not.
     pub(crate) roughness: Option<Roughness>,
@@ -203,7 +203,7 @@ impl Observer for Rows<'_> {
 }
 
 impl Compared {
-    /// How far kicks leave the trajectory what it is, and what the force does where this one is asked for.
+    /// How far kicks leave the trajectory as it is, and the peak of force and reference.
     fn look_at(&mut self, asked: f64, reference: &[f64], kicked: &[f64]) {
         self.peak = reference.iter().fold(asked.abs(), |most: f64, force| most.max(force.abs()));
         let mut most = 0.0_f64;
@@ -216,7 +216,7 @@ impl Compared {
         self.rough = is_rough(roughest(reference, OUTPUT_STEP_S), self.peak);
     }
 
-    /// Whether phea ended where there is no model any more: CVODE steps over the infinite pressure of a chamber that empties.
+    /// Whether phea ended at an emptied chamber, whose infinite pressure CVODE steps over.
     pub(crate) fn leaves_the_model(&self) -> bool {
         let ended_s = self.ours.and_then(|ours| match ours.status {
             Status::StepTooSmall { time_s } | Status::NotFinite { time_s } => Some(time_s),
@@ -231,7 +231,7 @@ impl Compared {
         self.rows < self.growth.len()
     }
 
-    /// Takes phea's runs, the judged one first, and holds them against CVODE's: the reference, the same moved by chance, and a looser one.
+    /// phea's runs, the judged one first, against CVODE's reference, that with kicks, and a looser one.
     fn take(&mut self, runs: &[(Ours, Vec<f64>); 2], references: &[&[f64]]) {
         let reference = references[0];
         let [judged, by_default] = runs;
