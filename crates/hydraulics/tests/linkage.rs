@@ -1,4 +1,4 @@
-//! A linkage between rod and load: geometry, machine and plant, against closed forms and a Lagrangian.
+//! A linkage between rod and load: geometry, machine and plant by closed forms and a Lagrangian.
 
 #![allow(clippy::unwrap_used)] // helpers of tests
 

@@ -32,7 +32,7 @@ const KICKS: Kicks = Kicks { period_s: 1e-2, size: 1e-8, seed: 1 };
 pub(crate) const ERRORS: f64 = 10.0;
 /// Growth of kicks from which on it cannot hold the largest error.
 const SEPARATED: f64 = crate::LARGEST_ERROR / (ERRORS * TOLERANCE);
-/// A rig is well posed if CVODE at this tolerance agrees with the other, up to this part of the peak.
+/// A rig is well posed if CVODE at this tolerance agrees with the other to this part of the peak.
 const LOOSER: f64 = 1e-9;
 const WELL_POSED: f64 = 1e-5;
 /// Around the row at which CVODE meets a chamber without fluid, s.
@@ -231,7 +231,7 @@ impl Compared {
         self.rows < self.growth.len()
     }
 
-    /// phea's runs, the judged one first, against CVODE's reference, that with kicks, and a looser one.
+    /// Holds phea's runs, the judged one first, against CVODE's: the reference, kicked, and looser.
     fn take(&mut self, runs: &[(Ours, Vec<f64>); 2], references: &[&[f64]]) {
         let reference = references[0];
         let [judged, by_default] = runs;
