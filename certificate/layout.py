@@ -29,7 +29,7 @@ def read(text):
         return int(x) if x.denominator == 1 else x
 
     def refuse(name):
-        raise Malformed(f"{name} is no number")
+        raise Malformed(f"{name} is not a number")
     try:
         return json.loads(text, object_pairs_hook=once, parse_float=decimal, parse_int=decimal, parse_constant=refuse)
     except RecursionError:
@@ -86,12 +86,12 @@ def read_sampling(value, file):
     need(0 <= value["sensor_delay"] <= Fraction(file.get("delay", 0)), "the delay of the sensor is not a part of `delay`")
     need(is_number(value["sample_time"]) and value["sample_time"] > 0, "the sample time is not greater than zero")
     value["sample_time"] = Fraction(value["sample_time"])
-    need(is_index(value["images"], 65) and value["images"] > 0, "`images` is no number from 1 to 64")
+    need(is_index(value["images"], 65) and value["images"] > 0, "`images` is not a number from 1 to 64")
     need(is_list(value["bounds"], lambda box: is_list(box, least=1, most=2), len(file["boxes"]), len(file["boxes"])),
          "there is not a list of bounds for each box")
     for bound in (bound for box in value["bounds"] for bound in box):
         keys(bound, ("order", "ratio", "panels"), (), "a bound")
-        need(is_index(bound["order"], 65) and bound["order"] > 0, "the order of a bound is no number from 1 to 64")
+        need(is_index(bound["order"], 65) and bound["order"] > 0, "the order of a bound is not a number from 1 to 64")
         need(is_number(bound["ratio"]) and bound["ratio"] > 0, "the ratio of a bound is not greater than zero")
         bound["panels"] = read_panels(bound["panels"], "a bound")
 
@@ -117,14 +117,14 @@ def read_certificate(file):
          "its title, version, hash or settings are no text")
     for recording in file.setdefault("recordings", []) if is_list(file.get("recordings", [])) else [None]:
         keys(recording, ("file", "sha256"), (), "a recording")
-        need(type(recording["file"]) is str and type(recording["sha256"]) is str, "a recording is no text")
+        need(type(recording["file"]) is str and type(recording["sha256"]) is str, "a recording is not a text")
     models = "model_degree" in file
-    need(not models or is_index(file["model_degree"], 9) and file["model_degree"] > 0, "`model_degree` is no number from 1 to 8")
-    need(is_index(file["variables"], 13), "`variables` is no number from 0 to 12")
+    need(not models or is_index(file["model_degree"], 9) and file["model_degree"] > 0, "`model_degree` is not a number from 1 to 8")
+    need(is_index(file["variables"], 13), "`variables` is not a number from 0 to 12")
     need(is_list(file["parameters"], lambda x: type(x) is str), "`parameters` is no list of names")
-    need(type(file["terms"]) is int and 1 <= file["terms"] <= 24, "`terms` is no number from 1 to 24")
+    need(type(file["terms"]) is int and 1 <= file["terms"] <= 24, "`terms` is not a number from 1 to 24")
     file.setdefault("delay", 0)
-    need(is_number(file["delay"]) and file["delay"] >= 0, "`delay` is no number, or negative")
+    need(is_number(file["delay"]) and file["delay"] >= 0, "`delay` is not a number, or negative")
 
     def is_range(triple):
         return is_list(triple, least=3, most=4 if models else 3) and is_number(triple[0]) and is_number(triple[1]) \

@@ -1,4 +1,4 @@
-//! Changes of a controller, in the order in which they stand on the command line.
+//! Changes of a controller, in the order in which they are given on the command line.
 
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, Error, FromArgMatches};
 use phea_workbench::shaping::{Change, RequestedChange};

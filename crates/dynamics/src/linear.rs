@@ -73,7 +73,7 @@ pub enum LinearError {
         /// What the number was.
         what: &'static str,
     },
-    /// A polynomial that is zero everywhere stands where roots or a denominator are needed.
+    /// A polynomial that is zero everywhere is given where roots or a denominator are needed.
     #[error("the polynomial is zero everywhere")]
     ZeroPolynomial,
     /// Values at which an uncertain plant has no plant.

@@ -96,7 +96,7 @@ fn segments(setup: &Setup<'_>) -> Option<Caveat> {
 /// Segments up to which the polynomials of the plant can be enclosed.
 const PROVEN_SEGMENTS: u32 = 2;
 
-/// A linear model has settings that stand.
+/// A linear model has fixed settings.
 fn standing(project: &Project) -> Option<String> {
     let adjusted: Vec<_> = project.actuator.as_ref()?.adjustments().into_iter().flatten().collect();
     let moves_gas = adjusted.iter().any(|one| one.valve().is_none());
@@ -273,7 +273,7 @@ fn neck(setup: &Setup<'_>) -> Option<Caveat> {
     })
 }
 
-/// A verdict is of settings that stand.
+/// A verdict is for fixed settings.
 fn adjustment(setup: &Setup<'_>) -> Option<Caveat> {
     if is_measured(setup.project) {
         return None;

@@ -218,7 +218,7 @@ impl Plot {
     /// Draws the plot in the usual width.
     ///
     /// A label that finds no free place is left out, so that nothing overlaps: whatever a figure
-    /// labels must also stand in a table of the report.
+    /// labels must also be in a table of the report.
     pub fn draw(&self) -> Scene {
         if self.equal_aspect { layout::draw(&layout::with_equal_aspect(self)) } else { layout::draw(self) }
     }

@@ -245,7 +245,7 @@ impl Actuator {
     }
 
     /// Pressure in Pa at which the fluid's modulus is taken when no operating point is given:
-    /// midway between supply and tank, where the chambers of an idle symmetric actuator stand.
+    /// midway between supply and tank, the pressure in the chambers of an idle symmetric actuator.
     pub fn mean_pressure(&self) -> f64 {
         0.5 * (self.0.supply.pressure + self.0.supply.tank_pressure)
     }

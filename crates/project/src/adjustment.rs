@@ -11,7 +11,7 @@ use phea_quantity::{PRESSURE, RATIO, VOLUME};
 pub struct DeclaredAdjustment {
     /// What the setting moves.
     pub kind: AdjustmentKind,
-    /// Where it stands at rest.
+    /// Its value at rest.
     pub setting: f64,
 }
 

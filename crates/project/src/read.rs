@@ -361,7 +361,7 @@ impl Project {
         named.get(path).map_or_else(|| value.to_string(), |key| display(value, key.dimension, 4))
     }
 
-    /// The same project with another number at a path; `None` if no number stands there. Those of the
+    /// The same project with another number at a path; `None` if no number is there. Those of the
     /// operating point always are.
     #[must_use]
     pub fn with_number(&self, path: &str, value: f64) -> Option<Project> {

@@ -39,7 +39,7 @@ pub(crate) fn has(panel: &CurvePanel, style: CurveStyle) -> bool {
 }
 
 /// Panels on one time axis: what the lines of each place are called, and events with their words,
-/// which stand in the tallest panel, where there is most room next to the curves.
+/// which are in the tallest panel, where there is most room next to the curves.
 pub(crate) fn chart(
     mut panels: Vec<CurvePanel>,
     names: impl IntoIterator<Item = String>,

@@ -84,7 +84,7 @@ pub(super) fn answered(recorded: &IdentifyArguments) -> Result<(Answer, Vec<Path
     Ok((answer, written))
 }
 
-/// The project, which may stand among the files by its ending, and the tables.
+/// The project, which may be among the files, known by its ending, and the tables.
 fn named(recorded: &IdentifyArguments) -> Result<(Option<String>, Vec<String>), Failure> {
     let is_project = |file: &&String| Path::new(file).extension().is_some_and(|ending| ending == "toml");
     let (projects, files): (Vec<&String>, Vec<&String>) = recorded.files.iter().partition(is_project);

@@ -91,7 +91,7 @@ impl SampledController {
         }
     }
 
-    /// The state in which it holds a command while reference and measurement stand still: an
+    /// The state in which it holds a command while reference and measurement do not change: an
     /// integral part carries the command, and a controller without one gives its response to the
     /// error.
     ///

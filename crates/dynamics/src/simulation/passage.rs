@@ -1,4 +1,4 @@
-//! One machine's way through time: where it stands, how far the next step may go, what breaks
+//! One machine's way through time: where it is, how far the next step may go, what breaks
 //! ahead.
 
 use std::collections::VecDeque;

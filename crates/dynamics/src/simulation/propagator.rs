@@ -104,7 +104,7 @@ impl<S: Lane> Propagator<S> {
         self.age[lane] = 0;
     }
 
-    /// The step from a state with inputs that stand still; the error of each lane in units of the
+    /// The step from a state with constant inputs; the error of each lane in units of the
     /// tolerance.
     #[inline(always)]
     pub(super) fn step<E: System<S>>(&mut self, system: &E, trial: StepTrial<'_, S>, inputs: &[S]) -> S {

@@ -6,7 +6,7 @@ use super::visited::Visited;
 use super::{ProjectFamilyError, uncertain, uncertain_plant};
 use crate::setup::Setup;
 
-/// The plants at which a chamber stands below the precharge of its gas: they are as stiff as without it.
+/// The plants at which the pressure of a chamber is below the precharge of its gas: they are as stiff as without it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShutGas {
     /// How many of those that were examined: the members, and the corners of the box.

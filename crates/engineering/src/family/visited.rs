@@ -125,7 +125,7 @@ impl Visited {
         })
     }
 
-    /// The chamber, A or B, that stands below the precharge of its gas at a plant.
+    /// The chamber, A or B, whose pressure is below the precharge of its gas at a plant.
     pub(super) fn shut_gas(&self, open: &Open<'_>, values: &[f64]) -> Option<char> {
         let &[_, pressure_a, pressure_b] = self.settled.evaluate(values).first_chunk()?;
         let all = open.all(values);

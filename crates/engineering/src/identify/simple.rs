@@ -224,7 +224,7 @@ fn base_flow(base: &[f64], least: f64) -> (CurveReading, f64) {
     (CurveReading::of(middle, deviation), deviation * (base.len() as f64).sqrt())
 }
 
-/// Whether the command rises at a row; `None` where it stands.
+/// Whether the command rises at a row; `None` where it does not change.
 pub(super) fn direction(recording: &Recording, row: usize) -> Option<bool> {
     let before = recording.inputs.get(row.checked_sub(1)?)?.command;
     let now = recording.inputs.get(row)?.command;

@@ -186,7 +186,7 @@ fn bare(text: &str) -> Option<f64> {
     text.parse::<f64>().ok().filter(|value| value.is_finite())
 }
 
-/// What stands behind the number.
+/// What follows the number.
 fn unit_of(text: &str) -> &str {
     let number =
         (0..text.len()).rev().find(|end| text.get(..*end).is_some_and(|start| bare(start.trim()).is_some()));

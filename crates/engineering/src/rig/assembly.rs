@@ -256,7 +256,7 @@ fn neck<S: Scalar>(
 pub(super) struct ExpansionPressures<S = f64> {
     /// The supply's: the thesis refers the wall's modulus to it.
     working: S,
-    /// Midway between supply and tank, where the chambers of an idle actuator stand.
+    /// Midway between supply and tank, the pressure in the chambers of an idle actuator.
     operating: S,
 }
 

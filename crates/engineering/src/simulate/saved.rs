@@ -69,7 +69,7 @@ fn state_names(bench: &ControlledMachine) -> Vec<String> {
 const SETTING_CHANGE: &str = "setting_change";
 /// Differences of a setting that are rounding.
 const SAME_SETTING: f64 = 1e-9;
-/// Where the load's ground stands.
+/// Where the load's ground is.
 const GROUND: &str = "ground_position_m";
 /// What a sampled controller holds.
 const HELD: &str = "held_command_v";

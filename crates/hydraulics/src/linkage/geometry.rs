@@ -1,4 +1,4 @@
-//! Where a linkage of given lengths stands at an extension of the cylinder.
+//! Where a linkage of given lengths is at an extension of the cylinder.
 
 use nalgebra::{DMatrix, DVector};
 use phea_dynamics::portable;

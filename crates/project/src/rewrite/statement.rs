@@ -12,7 +12,7 @@ pub(super) struct Statement {
     pub(super) range: Range<usize>,
 }
 
-/// What stands in a statement.
+/// What a statement contains.
 pub(super) enum StatementContent {
     /// Space or a comment.
     Nothing,

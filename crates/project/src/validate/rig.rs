@@ -97,7 +97,7 @@ pub(super) fn precharge_ranges(project: &Project, actuator: &DeclaredActuator, c
 }
 
 /// The maker's limit of the compression of the gas, at the highest pressure that the supply gives; `path` is
-/// where the error stands.
+/// where the error is.
 fn pressure_ratio(gas: &DeclaredAccumulator, supply: &DeclaredSupply, path: &str, check: &mut Check<'_, '_>) {
     let Some(limit) = gas.maximum_pressure_ratio else { return };
     let precharge = gas.working_precharge(ATMOSPHERE) + ATMOSPHERE;

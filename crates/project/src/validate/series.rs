@@ -17,7 +17,7 @@ pub(super) fn series(project: &Project, actuator: &DeclaredActuator, check: &mut
     }
 }
 
-/// The line between two pistons, and whether its oil stands the force of the cylinder.
+/// The line between two pistons, and whether its oil withstands the force of the cylinder.
 fn transmission(actuator: &DeclaredActuator, declared: &DeclaredTransmission, check: &mut Check<'_, '_>) {
     if check.declared("series.line") {
         rig::line(&declared.line, "series.line", check);

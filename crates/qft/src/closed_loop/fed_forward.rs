@@ -122,7 +122,7 @@ impl FedBack {
         })
     }
 
-    /// P/(1 - K P_v), and so with what stands behind P as a sensor does: it has the poles of P_v but
+    /// P/(1 - K P_v), and so with what follows P as a sensor does: it has the poles of P_v but
     /// those of the filter of the rate. Dead time that P_v has and P has not are zeros at z = 0.
     pub(super) fn around(&self, function: &TransferFunction) -> Result<TransferFunction, LinearError> {
         let (mut poles, mut zeros) = (function.poles().to_vec(), function.zeros().to_vec());

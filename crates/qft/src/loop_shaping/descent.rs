@@ -179,7 +179,7 @@ impl Descent {
         }
     }
 
-    /// Where it stands.
+    /// Where it is.
     pub(super) fn x(&self) -> &[f64] {
         self.here.as_ref().map_or(&self.x, |here| &here.x)
     }

@@ -8,7 +8,7 @@ use phea_dynamics::linear::LinearError;
 pub enum Edit {
     /// A new element.
     Add {
-        /// How many elements stand before it.
+        /// How many elements are before it.
         at: usize,
         /// The element, and whether it acts.
         stage: Stage,

@@ -375,7 +375,7 @@ impl<S: Decimal> Loop<S> {
         Claimed { u, v, dead_time: self.dead_time.clone(), images: self.images.clone(), which }
     }
 
-    /// That no pole stands on the boundary of stability.
+    /// That no pole lies on the boundary of stability.
     pub(crate) fn stability(&self) -> Claimed<S> {
         self.claim(self.characteristic(), Default::default(), [Which::WithSensor; 2]).joined()
     }

@@ -30,7 +30,7 @@ pub(crate) fn files(found: &Alternatives) -> Vec<OutputFile> {
     for ((_, one), name) in all.iter().zip(names) {
         if let Ok(deployed) = &one.deployed {
             let mut project = Project { alternatives: vec![], load_cases: vec![], ..deployed.clone() };
-            // what the recordings gave stands in it as numbers: they need not lie in its folder
+            // what the recordings gave is in it as numbers: they need not lie in its folder
             if let Some(identify) = &mut project.identify {
                 identify.takes = IdentifiedUse::Nothing;
             }

@@ -148,7 +148,7 @@ fn lacking(one: &JudgedAlternative) -> Vec<(&str, String)> {
         view.and_then(|view| view.trial.as_ref()).map(|trial| trial.runs.as_slice()).unwrap_or_default();
     let contradicts: Vec<_> = runs.iter().filter(|run| run.agreement == Agreement::Contradicts).collect();
     let contradicts = contradicts.split_first().map(|(first, further)| {
-        // what could be done about it stands in the reason after the first sentence, and with `design`
+        // what could be done about it is in the reason after the first sentence, and with `design`
         let reason = first.reason.split(". ").next().unwrap_or_default();
         let further = match further.len() {
             0 => String::new(),

@@ -19,7 +19,7 @@ pub(crate) enum Json {
     Object(Object),
 }
 
-/// An object of JSON, whose keys stand in the order in which they were added.
+/// An object of JSON, whose keys are in the order in which they were added.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Object(Vec<(String, Json)>);
 

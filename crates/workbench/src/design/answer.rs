@@ -172,7 +172,7 @@ fn round(round: &DesignRound) -> Object {
         .maybe("reason", unstable)
 }
 
-/// What stands against one another where the search can do no better.
+/// What conflicts where the search can do no better.
 fn conflicts(view: &ProjectDesign) -> Vec<Object> {
     let DesignStatus::Infeasible(relaxation) = &view.design.status else { return vec![] };
     let row = |conflict: &Conflict| {

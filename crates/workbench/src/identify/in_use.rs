@@ -5,7 +5,7 @@ use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
 use crate::project::{FromRecordings, IdentifiedFamily, Loaded};
 
-/// What stands before the answer of every command; nothing where recordings gave nothing.
+/// What precedes the answer of every command; nothing where recordings gave nothing.
 pub(crate) fn heading_in_use(loaded: &Loaded) -> String {
     let Some(recorded) = &loaded.recorded else { return String::new() };
     let mut out = Document::default();

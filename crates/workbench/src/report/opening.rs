@@ -141,7 +141,7 @@ fn hindrances(contents: &Contents<'_>) -> Vec<String> {
     explained.map(|(view, explanation)| explanation_words(view, explanation)).take(2).collect()
 }
 
-/// The facts that stand on cards.
+/// The facts that are shown on cards.
 fn carded(facts: &Facts) -> Vec<(String, String)> {
     let shown = facts.iter().filter(|(name, _)| *name != NOMINAL_LOOP);
     shown.map(|(name, words)| (name.to_string(), words.clone())).collect()

@@ -30,7 +30,7 @@ pub(super) fn chapter(project: &Project, judged: &Judged) -> Option<Chapter> {
     Some(Chapter::of("proven", "What is proven", out))
 }
 
-/// Where the proof stands.
+/// Where the certificate of the proof is, and what it contains.
 fn certified(view: &ProjectAudit, file: &str) -> Option<String> {
     let certificate = view.proof.as_ref()?.certificate.as_ref()?;
     Some(format!(

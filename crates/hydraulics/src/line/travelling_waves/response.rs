@@ -63,7 +63,7 @@ impl<const M: usize> TravellingWaves<M> {
         }
     }
 
-    /// Steady resistance of the line, Pa s/m3: waves that stand still resist nothing.
+    /// Steady resistance of the line, Pa s/m3: waves at rest resist nothing.
     pub(in crate::line) fn resistance(&self) -> f64 {
         2.0 * self.half_resistance
     }

@@ -90,7 +90,7 @@ impl RespondingPlant for PlantInMotion {
     /// ```
     ///
     /// A limited supply is a third port, `power_per_volt`. The feed-forward of a load that can move
-    /// multiplies this by at most 1/(1 - (1 + e) K_x |H_v| |P Y_L|). A series element stands between
+    /// multiplies this by at most 1/(1 - (1 + e) K_x |H_v| |P Y_L|). A series element lies between
     /// K_e and Y_L: `LinearSeries::beyond_sensor`.
     fn roll_off(&self, frequency_rad_per_s: f64) -> Option<f64> {
         let friction = self.plant.viscous_friction;

@@ -106,7 +106,7 @@ pub enum Finding {
         phase_rad: f64,
         /// Its gain there.
         gain: f64,
-        /// Who stands against whom there.
+        /// What conflicts with what there.
         parties: Vec<Party>,
         /// Lower and upper bound on the least relaxation of every limit that would allow a loop at
         /// this frequency, dB.
