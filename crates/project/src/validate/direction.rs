@@ -9,7 +9,8 @@ use phea_quantity::display;
 
 pub(super) fn directions(project: &Project, check: &mut Check<'_, '_>) {
     if !project.directions.is_empty() && project.actuator.is_none() {
-        let message = "[[uncertainty_direction]] moves numbers of an actuator, which this project does not have";
+        let message =
+            "[[uncertainty_direction]] moves numbers of an actuator, which this project does not have";
         return check.error("uncertainty_direction", message);
     }
     let stated = project.system_numbers();
