@@ -168,10 +168,10 @@ fn summary(results: &[(&str, Outcome, Duration)], strict: bool) -> bool {
     let failed = count(|outcome| matches!(outcome, Outcome::Failed(_)));
     let skipped = count(|outcome| matches!(outcome, Outcome::Skipped(_)));
     let passed = count(|outcome| matches!(outcome, Outcome::Passed));
-    println!("{passed} passed, {failed} failed, {skipped} skipped");
     if strict && skipped > 0 {
         println!("`CI` is set: what is skipped counts as failed");
     }
+    println!("{passed} passed, {failed} failed, {skipped} skipped");
     failed == 0 && !(strict && skipped > 0)
 }
 
@@ -252,7 +252,7 @@ fn stories(built: &Built) -> Outcome {
     for_all(built, &["test", "--workspace", "--test", "all"], &["--", STORIES])
 }
 
-/// Twenty times as many mutated projects as the tests read.
+/// Twenty times as many mutated projects as the tests read: of [`soak`] too.
 fn mutation(built: &Built) -> Outcome {
     for_all(built, &["test", "--workspace", "--test", "all"], &["--", "--ignored", "mutation::"])
 }
@@ -295,9 +295,11 @@ fn killed_campaigns(root: &Path) -> Outcome {
 
 /// What takes too long for every commit, before a release: all of it, so that one run shows
 /// everything that has to be mended.
-fn soak(Built { root, .. }: &Built) -> Outcome {
+fn soak(built: &Built) -> Outcome {
+    let root = &built.root;
     let cargo = |arguments: &[&str]| execute(root, "cargo", arguments);
     let ended = [
+        mutation(built),
         killed_campaigns(root),
         cargo(&IDENTIFIED_VALVES),
         cargo(&LONG_ROBUST_TESTS),

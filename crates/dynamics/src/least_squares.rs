@@ -308,11 +308,12 @@ fn equations(at: &Linearised, count: usize, curvature: CurvatureWeight, beyond: 
             continue;
         }
         for (i, first) in row.iter().enumerate().filter(|(_, first)| **first != 0.0) {
-            for (j, second) in row.iter().enumerate().take(i + 1) {
-                normal[(i, j)] += counts * first * second;
+            let column = normal.as_mut_slice().get_mut(i * count..=i * count + i).unwrap_or_default();
+            for (sum, second) in column.iter_mut().zip(row) {
+                *sum += counts * first * second;
             }
         }
     }
-    normal.fill_upper_triangle_with_lower_triangle();
+    normal.fill_lower_triangle_with_upper_triangle();
     StepEquations { normal, weighted, slope }
 }

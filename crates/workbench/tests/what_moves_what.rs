@@ -372,23 +372,28 @@ fn computed(project: &Project, asked: [bool; PARTS.len()]) -> [Option<String>; P
     std::array::from_fn(|index| asked[index].then(parts[index]).flatten())
 }
 
-/// Other values of a key where the rig states one: a number a hundredth larger, or each other word.
-fn others(entry: &KeyEntry, project: &Project) -> Vec<String> {
+/// Other values of a key where the rig states one, and whether one that is accepted is enough: each
+/// other word, a number a hundredth larger or, where that is refused, smaller.
+fn others(entry: &KeyEntry, project: &Project) -> (Vec<String>, bool) {
     if let Some(words) = entry.takes.strip_prefix("one of ") {
-        return words.split(", ").map(|word| word.trim_matches('"').to_string()).collect();
+        return (words.split(", ").map(|word| word.trim_matches('"').to_string()).collect(), false);
     }
     if entry.takes == "true or false" {
-        return vec!["true".to_string(), "false".to_string()];
+        return (vec!["true".to_string(), "false".to_string()], false);
     }
-    let of_one_side = entry.path.replace("line.", "line.a.");
-    match project.number(&entry.path).or(project.number(&of_one_side)) {
+    let of_one_side = || {
+        let path = entry.path.strip_prefix("line.").map(|rest| format!("line.a.{rest}"));
+        path.and_then(|path| project.number(&path))
+    };
+    let values = match project.number(&entry.path).or_else(of_one_side) {
         Some(0.0) => vec!["1e-3".to_string()],
         Some(value) => vec![format!("{:?}", value * 1.01), format!("{:?}", value * 0.99)],
         None => {
             let stated = STATED.iter().filter(|(path, _)| *path == entry.path);
             stated.map(|(_, value)| (*value).to_string()).collect()
         }
-    }
+    };
+    (values, true)
 }
 
 /// The keys of the tables above that can be changed, with what they move, and the others.
@@ -404,16 +409,16 @@ fn moved() -> (BTreeMap<String, BTreeSet<&'static str>>, BTreeSet<String>) {
         let Some(own) = loaded(&text, &settings) else { panic!("{settings:?}") };
         let before = computed(&own, [true; PARTS.len()]);
         for entry in &keys {
-            for other in others(entry, &own) {
-                // what is known to move is not tried again
-                let known = moved.get(&entry.path);
-                let open = |index: usize| {
-                    before[index].is_some() && known.is_none_or(|row| !row.contains(PARTS[index]))
-                };
-                let asked = std::array::from_fn(open);
-                if known.is_some() && asked == [false; PARTS.len()] {
-                    continue;
-                }
+            // what is known to move is not tried again
+            let known = moved.get(&entry.path);
+            let open =
+                |index: usize| before[index].is_some() && known.is_none_or(|row| !row.contains(PARTS[index]));
+            let asked = std::array::from_fn(open);
+            if known.is_some() && asked == [false; PARTS.len()] {
+                continue;
+            }
+            let (others, one_is_enough) = others(entry, &own);
+            for other in others {
                 let changed = [&settings[..], &[format!("{}={other}", entry.path)]].concat();
                 let Some(project) = loaded(&text, &changed).filter(|project| *project != own) else {
                     continue;
@@ -423,6 +428,9 @@ fn moved() -> (BTreeMap<String, BTreeSet<&'static str>>, BTreeSet<String>) {
                     if before.is_some() && after.is_some() && *before != after {
                         row.insert(part);
                     }
+                }
+                if one_is_enough {
+                    break;
                 }
             }
         }

@@ -175,7 +175,9 @@ fn environment(root: &Path, told: &mut String) -> Result<PathBuf, String> {
     }
     let program = python.to_string_lossy().into_owned();
     if root.join(REQUIREMENTS).exists() {
-        quietly(root, told, &program, &["-m", "pip", "install", "--quiet", "-r", REQUIREMENTS])?;
+        // what is imported is compiled then, the rest of the packages never
+        let install = ["-m", "pip", "install", "--quiet", "--no-compile", "-r", REQUIREMENTS];
+        quietly(root, told, &program, &install)?;
     }
     Ok(python)
 }

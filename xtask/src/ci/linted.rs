@@ -22,6 +22,10 @@ const CLIPPY_ARGUMENTS: (&str, &str) = ("CLIPPY_ARGS", "__CLIPPY_HACKERY__");
 /// would take the optimisation from the library too.
 const PLAIN_TESTS: &str = "phea-qft";
 
+/// The libraries that are compiled once more for the unit tests of their kernels, without
+/// optimisation: these tests take no time.
+const PLAIN_UNIT_TESTS: [&str; 2] = ["phea_dynamics", "phea_hydraulics"];
+
 /// The variables with which commands of cargo build so. All commands of a run need the same, or
 /// cargo would build everything once more.
 pub(super) fn variables(target: &Path) -> Result<Vec<(&'static str, String)>, String> {
@@ -60,8 +64,12 @@ pub(crate) fn in_place_of_the_compiler() -> Option<ExitCode> {
 }
 
 fn is_plain_test(arguments: &[OsString]) -> bool {
-    let of_package = std::env::var_os("CARGO_PKG_NAME").is_some_and(|name| name == PLAIN_TESTS);
-    of_package && arguments.iter().any(|one| one == "--test")
+    let is_package = std::env::var_os("CARGO_PKG_NAME").is_some_and(|name| name == PLAIN_TESTS);
+    let is_library = arguments.windows(2).any(|pair| {
+        let [option, name] = pair else { return false };
+        option == "--crate-name" && PLAIN_UNIT_TESTS.iter().any(|library| name == library)
+    });
+    (is_package || is_library) && arguments.iter().any(|one| one == "--test")
 }
 
 fn succeeds(command: &mut Command) -> bool {

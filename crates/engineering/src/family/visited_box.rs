@@ -111,7 +111,7 @@ pub fn visited_box(setup: &Setup<'_>) -> Result<Option<Vec<VisitedRange>>, Proje
 
 /// The most of a result over a family with sign 1, the least with sign -1.
 fn extreme(family: &UncertainFamily, expression: &Expression, sign: f64) -> Extreme {
-    let value = |values: &[f64]| sign * expression.evaluate(values).first().copied().unwrap_or(f64::NAN);
+    let value = |values: &[f64]| sign * expression.number(values);
     // among plants that differ only by rounding the first is kept, which is nearest to the nominal
     // one
     let unit = SAME * value(&family.plant().nominal()).abs();
@@ -185,7 +185,7 @@ impl Hill<'_> {
     }
 
     fn height_of(&self, expression: &Expression, shares: &[f64]) -> f64 {
-        self.sign * expression.evaluate(&self.family.values(shares)).first().copied().unwrap_or(f64::NAN)
+        self.sign * expression.number(&self.family.values(shares))
     }
 
     /// Steps along each coordinate, and along all of them together, while they increase the value,
