@@ -16,7 +16,7 @@ use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, gri
 use phea_qft::manual_shaping::{
     DesignChart, Edit, ElementPattern, PassError, WantedPoint, apply, pass_through,
 };
-use phea_qft::specification::{Limit, Requirement, Specification};
+use phea_qft::specification::{ClosedLoop, Limit, Requirement, Specification};
 use phea_qft::template::{TemplateOptions, template};
 use phea_qft::verification::TrackingJudgement;
 
@@ -255,9 +255,9 @@ fn what_a_margin_asks_for_brings_it_to_zero() {
         band_rad_per_s: [2.0, 2.0],
     };
     let specifications = [
-        specification(Requirement::RobustStability(Limit::Constant(1.2))),
-        specification(Requirement::Sensitivity(Limit::Constant(0.5))),
-        specification(Requirement::ControlEffort(Limit::Constant(3.0))),
+        specification(Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(1.2))),
+        specification(Requirement::at_most(ClosedLoop::Sensitivity, Limit::Constant(0.5))),
+        specification(Requirement::at_most(ClosedLoop::ControlEffort, Limit::Constant(3.0))),
     ];
     let built = template(&family, &loop_of(vec![]), 2.0, &TemplateOptions::default()).unwrap();
     let chart = DesignChart::new(&family, vec![built.template], &specifications).unwrap();

@@ -9,7 +9,7 @@
 
 use num_complex::Complex64;
 use phea_dynamics::portable;
-use phea_qft::specification::{Limit, LoopResponse, Requirement, Specification, WishOutcome};
+use phea_qft::specification::{Limit, LoopResponse, Specification, WishOutcome};
 use phea_workbench::project::{self, Project};
 use phea_workbench::source::Memory;
 use phea_workbench::specification::{SpecificationError, specifications, wishes};
@@ -30,10 +30,7 @@ fn one(kind: &str, limit: &str) -> Result<Specification, SpecificationError> {
 
 #[track_caller]
 fn limit(kind: &str, text: &str) -> Limit {
-    match one(kind, &format!("limit = {text}")).unwrap().requirement {
-        Requirement::RobustStability(limit) | Requirement::Sensitivity(limit) => limit,
-        other => panic!("{other:?}"),
-    }
+    one(kind, &format!("limit = {text}")).unwrap().requirement.limits().1.clone()
 }
 
 /// Every kind with a number, and the closed loop it limits: for P = 3, Pd = 8, G = 1, F = 2, H = 1.
@@ -133,9 +130,8 @@ fn wishes_in_time_are_checked() {
     assert!((settled(0) - 0.126).abs() < 5e-4 && (settled(1) - 0.356).abs() < 5e-4);
     assert!(matches!(checked[0].check.outcome(), WishOutcome::Missed { .. }));
     assert_eq!([2, 3].map(|index: usize| checked[index].check.outcome()), [WishOutcome::Met; 2]);
-    let Requirement::Tracking { upper, .. } = &specifications(&project).unwrap()[0].requirement else {
-        panic!()
-    };
+    let requirement = &specifications(&project).unwrap()[0].requirement;
+    let (Some(_), upper) = requirement.limits() else { panic!() };
     let s = Complex64::new(0.0, 30.0);
     let printed = portable::magnitude(2116.0 / 75.0 * (s + 75.0) / (s * s + 73.6 * s + 2116.0));
     assert!((upper.magnitude(30.0).unwrap() / printed - 1.0).abs() < 1e-13);

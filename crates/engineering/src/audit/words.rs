@@ -7,6 +7,7 @@ use phea_qft::verification::{
 };
 
 use super::{LimitSide, PlantNames, ReachedLimit};
+use crate::project::{SPECIFICATION_KINDS, word_of};
 use crate::quantity::significant;
 use crate::quantity::{RATIO, display};
 
@@ -62,14 +63,7 @@ pub fn kind_key(requirement: &Requirement) -> &'static str {
 
 /// The word of the kind that limits a closed loop.
 pub fn closed_loop_key(closed_loop: ClosedLoop) -> &'static str {
-    match closed_loop {
-        ClosedLoop::RobustStability => "robust_stability",
-        ClosedLoop::Sensitivity => "sensitivity",
-        ClosedLoop::PlantInputDisturbance => "plant_input_disturbance",
-        ClosedLoop::ControlEffort => "control_effort",
-        ClosedLoop::LoadMotion => "load_motion",
-        ClosedLoop::Tracking => "tracking",
-    }
+    word_of(&SPECIFICATION_KINDS, &closed_loop)
 }
 
 /// The kind for people.
@@ -79,13 +73,13 @@ pub fn kind_words(requirement: &Requirement) -> String {
 
 /// The closed loop that a kind limits.
 pub fn closed_loop_symbol(requirement: &Requirement) -> &'static str {
-    match requirement {
-        Requirement::RobustStability(_) => "|L/(1+L)|",
-        Requirement::Sensitivity(_) => "|1/(1+L)|",
-        Requirement::PlantInputDisturbance(_) => "|P/(1+L)|",
-        Requirement::ControlEffort(_) => "|G/(1+L)|",
-        Requirement::LoadMotion(_) => "|Pd/(1+L)|",
-        Requirement::Tracking { .. } => "|F L/(1+L)|",
+    match requirement.closed_loop() {
+        ClosedLoop::RobustStability => "|L/(1+L)|",
+        ClosedLoop::Sensitivity => "|1/(1+L)|",
+        ClosedLoop::PlantInputDisturbance => "|P/(1+L)|",
+        ClosedLoop::ControlEffort => "|G/(1+L)|",
+        ClosedLoop::LoadMotion => "|Pd/(1+L)|",
+        ClosedLoop::Tracking => "|F L/(1+L)|",
     }
 }
 
@@ -178,13 +172,13 @@ pub fn place_words(frequency_rad_per_s: f64) -> String {
 
 /// The meaning of a kind for the user of the machine.
 pub fn meaning(requirement: &Requirement) -> &'static str {
-    match requirement {
-        Requirement::RobustStability(_) => "no resonance of the closed loop above the limit",
-        Requirement::Sensitivity(_) => "disturbances of the output are suppressed",
-        Requirement::PlantInputDisturbance(_) => "disturbances at the input of the plant are suppressed",
-        Requirement::ControlEffort(_) => "the plant is not driven harder than allowed",
-        Requirement::LoadMotion(_) => "motion of the load disturbs the output no more than allowed",
-        Requirement::Tracking { .. } => "the output follows its reference within its limits",
+    match requirement.closed_loop() {
+        ClosedLoop::RobustStability => "no resonance of the closed loop above the limit",
+        ClosedLoop::Sensitivity => "disturbances of the output are suppressed",
+        ClosedLoop::PlantInputDisturbance => "disturbances at the input of the plant are suppressed",
+        ClosedLoop::ControlEffort => "the plant is not driven harder than allowed",
+        ClosedLoop::LoadMotion => "motion of the load disturbs the output no more than allowed",
+        ClosedLoop::Tracking => "the output follows its reference within its limits",
     }
 }
 

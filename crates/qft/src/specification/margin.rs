@@ -26,7 +26,7 @@ use num_complex::Complex64;
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::portable::{asin, sin};
 
-use super::{Limit, Requirement};
+use super::{ClosedLoop, Limit, Requirement};
 
 /// Why a margin has no limit, or a limit no margin.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -124,18 +124,19 @@ pub fn guaranteed_margins_of_sensitivity(limit: f64) -> Result<GuaranteedMargins
 ///
 /// # Example
 /// ```
-/// use phea_qft::specification::{Limit, Requirement, guaranteed_margins};
-/// let stability = Requirement::RobustStability(Limit::Constant(1.0));
+/// use phea_qft::specification::{ClosedLoop, Limit, Requirement, guaranteed_margins};
+/// let stability = Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(1.0));
 /// assert_eq!(guaranteed_margins(&stability)?.map(|margins| margins.gain_increase), Some(2.0));
-/// assert_eq!(guaranteed_margins(&Requirement::ControlEffort(Limit::Constant(1.0)))?, None);
+/// assert_eq!(guaranteed_margins(&Requirement::at_most(ClosedLoop::ControlEffort, Limit::Constant(1.0)))?, None);
 /// # Ok::<(), phea_qft::specification::MarginError>(())
 /// ```
 pub fn guaranteed_margins(requirement: &Requirement) -> Result<Option<GuaranteedMargins>, MarginError> {
-    match requirement {
-        Requirement::RobustStability(Limit::Constant(limit)) => {
+    let (_, limit) = requirement.limits();
+    match (requirement.closed_loop(), limit) {
+        (ClosedLoop::RobustStability, Limit::Constant(limit)) => {
             guaranteed_margins_of_robust_stability(*limit).map(Some)
         }
-        Requirement::Sensitivity(Limit::Constant(limit)) => {
+        (ClosedLoop::Sensitivity, Limit::Constant(limit)) => {
             guaranteed_margins_of_sensitivity(*limit).map(Some)
         }
         _ => Ok(None),

@@ -135,7 +135,7 @@ fn factors(roots: &[Complex64], variable: char) -> Vec<String> {
 
 /// How far apart the limits of tracking are; empty for other kinds.
 fn spread(out: &mut Document, number: usize, specification: &Specification) {
-    let Requirement::Tracking { lower, upper } = &specification.requirement else { return };
+    let (Some(lower), upper) = specification.requirement.limits() else { return };
     let decibels = |value: f64| if value.abs() < 5e-4 { "0".to_string() } else { significant(value, 3) };
     match tracking_spread(lower, upper, specification.band_rad_per_s) {
         Ok(spread) => match spread.order {
