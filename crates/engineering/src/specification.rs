@@ -2,6 +2,7 @@
 
 mod limit;
 mod rounding;
+mod wish;
 
 use phea_dynamics::linear::LinearError;
 use phea_qft::specification::{
@@ -65,6 +66,13 @@ impl CheckedWish {
     /// Whether the limit meets the wish.
     pub fn is_met(&self) -> bool {
         self.check.outcome() == WishOutcome::Met
+    }
+
+    /// What was wished, whether the limit meets it, and what the limit itself reaches.
+    pub fn sentence(&self) -> String {
+        let met = if self.is_met() { "met" } else { "not met" };
+        let words = wish::words(&self.check);
+        format!("Specification {}, {} limit, {met}; {words}.", self.number, self.key)
     }
 }
 

@@ -144,3 +144,31 @@ fn a_wish_without_a_limit_is_told_with_its_place() {
     assert_eq!((error.number, error.key), (1, "lower"));
     assert!(error.to_string().starts_with("[[specification]] 1, `lower`: "), "{error}");
 }
+
+/// As many digits as it takes to see the difference.
+// ORIGIN: written by hand
+#[test]
+fn checks_of_wishes_read_as_sentences() {
+    let upper = "upper = { overshoot_percent = 1, settling_time = \"0.1 s\", settling_band_percent = 1 }";
+    let sentence = |side: usize, gain: f64, settling_time: &str| {
+        let text = format!(
+            "[[specification]]\nkind = \"tracking\"\nfrequencies = [1]\n{upper}\n\
+             lower = {{ numerator = \"{gain}\", denominator = \"s + 10\", settling_time = \"{settling_time}\", \
+             settling_band_percent = 1 }}\n"
+        );
+        wishes(&loaded(&text)).unwrap()[side].sentence()
+    };
+    let wished = "Specification 1, lower limit, not met; wished: no overshoot, settled within 1 % in";
+    let of_itself = "the limit itself has no overshoot and";
+    assert_eq!(sentence(1, 10.0, "0.3 s"), format!("{wished} 0.3 s; {of_itself} settles in 0.461 s."));
+    assert_eq!(sentence(1, 5.0, "0.3 s"), format!("{wished} 0.3 s; {of_itself} stays 50 % off."));
+    assert_eq!(
+        sentence(1, 10.0, "0.4605 s"),
+        format!("{wished} 0.4605 s; {of_itself} settles in 0.46052 s.")
+    );
+    assert_eq!(
+        sentence(0, 10.0, "0.3 s"),
+        "Specification 1, upper limit, met; wished: at most 1 % overshoot, settled within 1 % in 0.1 s; \
+         the limit itself satisfies it."
+    );
+}

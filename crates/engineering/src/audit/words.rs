@@ -1,12 +1,10 @@
 //! Verdicts, requirements and worst cases in words.
 
+use phea_dynamics::portable;
 use phea_qft::specification::{ClosedLoop, Requirement};
-use phea_qft::verification::{
-    ClosestApproach, Evidence, SpecificationFinding, StabilityFinding, StabilityMethod, StabilityReason,
-    Verdict, WorstCase,
-};
+use phea_qft::verification::{Evidence, SpecificationFinding, Verdict, WorstCase};
 
-use super::{LimitSide, PlantNames, ReachedLimit};
+use super::{LimitSide, ReachedLimit};
 use crate::project::{SPECIFICATION_KINDS, word_of};
 use crate::quantity::significant;
 use crate::quantity::{RATIO, display};
@@ -182,65 +180,7 @@ pub fn meaning(requirement: &Requirement) -> &'static str {
     }
 }
 
-/// Whether the family is stable, and how this is known.
-pub fn stability_sentence(stability: &StabilityFinding, names: &PlantNames) -> String {
-    let plant = names.text(&stability.plant);
-    let rate = |value: f64| significant(value, 3);
-    match (stability.verdict, stability.largest_real_part) {
-        (Verdict::Met, Some(real)) => {
-            format!("every plant is stable; the slowest closed-loop pole lies at {} 1/s", rate(real))
-        }
-        (Verdict::Met, None) => format!("every plant is stable: {}", stability_reason(stability)),
-        (Verdict::Violated, Some(real)) if real >= 0.0 => {
-            format!("unstable: a closed-loop pole lies at {} 1/s, with {plant}", rate(real))
-        }
-        (Verdict::Violated, _) => format!("unstable, with {plant}: {}", stability_reason(stability)),
-        (Verdict::NotProven, _) => {
-            format!("stability is not proven: {} ({plant})", stability_reason(stability))
-        }
-    }
-}
-
-/// How stability was decided.
-pub fn stability_reason(stability: &StabilityFinding) -> String {
-    match &stability.reason {
-        StabilityReason::Unstable(instability) => instability.to_string(),
-        StabilityReason::UnstablePrefilter => "the prefilter itself is unstable".to_owned(),
-        StabilityReason::NotResolved(irresolution) => irresolution.to_string(),
-        StabilityReason::AllStable { members, corners, between, method, closest } => {
-            let folding = match between {
-                0 => String::new(),
-                _ => format!(" and {between} plants between them, through which modes fold,"),
-            };
-            let way = method_words(*method);
-            let stable = match (members, corners + between) {
-                (1, 0) => format!("the family is one plant, stable {way}"),
-                (_, 0) => format!("all {members} plants are stable {way}"),
-                _ => format!(
-                    "all {members} members and {corners} corners of the box{folding} are stable {way}"
-                ),
-            };
-            let Some(ClosestApproach { distance, frequency_rad_per_s, .. }) = closest else { return stable };
-            let between = if stability.evidence == Evidence::Search { " between them, too," } else { "" };
-            let [distance, frequency] = [*distance, *frequency_rad_per_s].map(rounded);
-            format!("{stable}; the smallest |1 + L| found{between} is {distance} (at {frequency} rad/s)")
-        }
-    }
-}
-
-fn method_words(method: StabilityMethod) -> &'static str {
-    match method {
-        StabilityMethod::Poles => "by their closed-loop poles",
-        StabilityMethod::Turns => "by the turns of their characteristic function",
-        StabilityMethod::Enclosed => {
-            "by Nyquist's count, 1 + L of the nominal plant enclosed from each frequency to the next"
-        }
-        StabilityMethod::Points => "by Nyquist's count on points of their responses",
-        StabilityMethod::MeasuredPoints => "by Nyquist's count on the points of their responses",
-    }
-}
-
 /// To four significant digits, for a reader.
 pub(crate) fn rounded(value: f64) -> f64 {
-    format!("{value:.3e}").parse().unwrap_or(value)
+    portable::rounded(value, 4)
 }

@@ -32,12 +32,7 @@ pub(super) fn chapter(project: &Project, problem: &RobustProblem) -> Result<Chap
     }
     if !wishes.is_empty() {
         out.heading("Tracking limits in time");
-        out.marked(wishes.iter().map(|wish| {
-            let met = if wish.is_met() { "met" } else { "not met" };
-            let sentence =
-                format!("Specification {}, {} limit, {met}; {}.", wish.number, wish.key, wish.check);
-            (Some(wish.is_met().into()), sentence)
-        }));
+        out.marked(wishes.iter().map(|wish| (Some(wish.is_met().into()), wish.sentence())));
     }
     if !margins.is_empty() {
         out.heading("Margins that the limits guarantee");
