@@ -12,6 +12,17 @@ pub use libm::{
     sinh, tan, tanh,
 };
 
+/// The nearest number of this many significant digits.
+///
+/// # Example
+/// ```
+/// # use phea_dynamics::portable::rounded;
+/// assert_eq!([1234.56, -0.1, f64::INFINITY].map(|value| rounded(value, 3)), [1230.0, -0.1, f64::INFINITY]);
+/// ```
+pub fn rounded(value: f64, digits: usize) -> f64 {
+    format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value)
+}
+
 /// Magnitude |z|, free of overflow.
 ///
 /// # Example

@@ -5,6 +5,7 @@ mod alone;
 mod plant;
 mod proven;
 mod remark;
+mod stability;
 mod velocity_noise;
 mod words;
 pub(crate) use velocity_noise::declared as declared_velocity_noise;
@@ -17,9 +18,10 @@ pub(crate) use alone::{caveat as caveat_of_rig, unexamined as unexamined_rig};
 pub use plant::{NamedPlant, NamedValue, PlantNames};
 pub use proven::{prove_audit, standing_word, try_to_prove, why_not_proven};
 pub use remark::remark_sentences;
+pub use stability::{stability_reason, stability_sentence};
 pub use words::{
     closed_loop_key, closed_loop_symbol, frequency_number, frequency_words, kind_key, kind_words,
-    margin_words, meaning, stability_reason, stability_sentence, verdict_key, verdict_words, worst_at_design,
+    margin_words, meaning, verdict_key, verdict_words, worst_at_design,
 };
 
 use phea_dynamics::portable;

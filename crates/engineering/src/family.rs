@@ -12,11 +12,12 @@ mod uncertain;
 mod visited;
 mod visited_box;
 
+use phea_dynamics::closed_loop::ClosedLoop;
 use phea_dynamics::uncertain_plant::{UncertainParameter, UncertainPlant, UncertainPlantError};
 use phea_hydraulics::line::LineError;
 use phea_qft::family::{Family, MeasurementError};
 
-use crate::project::{FormulaError, Project, Refusal, SpecificationKind};
+use crate::project::{FormulaError, Project, Refusal};
 use crate::rig::RigError;
 use crate::setup::Setup;
 use crate::source::Source;
@@ -154,7 +155,7 @@ pub fn family(setup: &Setup<'_>, source: &dyn Source) -> Result<Family, ProjectF
 
 /// A limit on load motion needs a path from it.
 fn check_second_path(project: &Project, family: &Family) -> Result<(), ProjectFamilyError> {
-    let wanted = project.specifications.iter().any(|one| one.kind == SpecificationKind::LoadMotion);
+    let wanted = project.specifications.iter().any(|one| one.kind == ClosedLoop::LoadMotion);
     match family {
         Family::Measured(family) if wanted => {
             let without = family.plants().iter().find(|plant| plant.disturbance.is_none());

@@ -5,9 +5,11 @@ mod change;
 mod piece;
 mod save;
 mod wish;
+mod words;
 mod workpiece;
 
 pub use change::{Change, RequestedChange};
+pub use words::pass_words;
 
 use num_complex::Complex64;
 use phea_dynamics::controller::Compensator;

@@ -2,15 +2,16 @@
 
 mod limit;
 mod rounding;
+mod wish;
 
 use phea_dynamics::linear::LinearError;
 use phea_qft::specification::{
-    LimitError, MarginError, Requirement, Specification, TimeDomainError, WishCheck, WishOutcome,
+    ClosedLoop, LimitError, MarginError, Requirement, Specification, TimeDomainError, WishCheck, WishOutcome,
 };
 
-use self::limit::{MarginOf, TrackingSide};
+use self::limit::TrackingSide;
 pub(crate) use self::rounding::of_rounding;
-use crate::project::{self, FormulaError, Project, SpecificationKind};
+use crate::project::{self, FormulaError, Project};
 
 /// Why a declared specification cannot be used.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -66,6 +67,13 @@ impl CheckedWish {
     pub fn is_met(&self) -> bool {
         self.check.outcome() == WishOutcome::Met
     }
+
+    /// What was wished, whether the limit meets it, and what the limit itself reaches.
+    pub fn sentence(&self) -> String {
+        let met = if self.is_met() { "met" } else { "not met" };
+        let words = wish::words(&self.check);
+        format!("Specification {}, {} limit, {met}; {words}.", self.number, self.key)
+    }
 }
 
 /// The specifications of a project, in file order.
@@ -82,7 +90,7 @@ impl CheckedWish {
 /// let project = phea_project::read(&source, "servo.toml", &[], &[])?.project;
 /// let specifications = phea_engineering::specification::specifications(&project)?;
 /// assert_eq!(specifications[0].band_rad_per_s, [1.0, 15.0]); // the span of the frequencies
-/// let phea_qft::specification::Requirement::Sensitivity(limit) = &specifications[0].requirement else { panic!() };
+/// let (_, limit) = specifications[0].requirement.limits();
 /// assert!((limit.magnitude(15.0).unwrap() - 0.5_f64.sqrt()).abs() < 1e-15);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -140,22 +148,15 @@ fn specification(
         let found = found.and_then(|limit| limit::over_frequency(limit, takes));
         found.map_err(|reason| SpecificationError { number, key, reason })
     };
-    let limit = |takes| found("limit", &declared.limit, takes);
-    let plain = || limit(limit::Takes::Neither);
     let requirement = match declared.kind {
-        SpecificationKind::RobustStability => {
-            Requirement::RobustStability(limit(limit::Takes::Margins(MarginOf::RobustStability))?)
-        }
-        SpecificationKind::Sensitivity => {
-            Requirement::Sensitivity(limit(limit::Takes::Margins(MarginOf::Sensitivity))?)
-        }
-        SpecificationKind::PlantInputDisturbance => Requirement::PlantInputDisturbance(plain()?),
-        SpecificationKind::ControlEffort => Requirement::ControlEffort(plain()?),
-        SpecificationKind::LoadMotion => Requirement::LoadMotion(plain()?),
-        SpecificationKind::Tracking => Requirement::Tracking {
-            lower: found("lower", &declared.lower, limit::Takes::Wish(TrackingSide::Lower))?,
-            upper: found("upper", &declared.upper, limit::Takes::Wish(TrackingSide::Upper))?,
-        },
+        ClosedLoop::Tracking => Requirement::tracking(
+            found("lower", &declared.lower, limit::Takes::Wish(TrackingSide::Lower))?,
+            found("upper", &declared.upper, limit::Takes::Wish(TrackingSide::Upper))?,
+        ),
+        closed_loop => Requirement::at_most(
+            closed_loop,
+            found("limit", &declared.limit, limit::Takes::MarginsOf(closed_loop))?,
+        ),
     };
     Ok(Specification {
         requirement,

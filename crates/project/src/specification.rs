@@ -3,13 +3,14 @@
 use super::key::{key, plain};
 use super::limit::DeclaredLimit;
 use super::visitor::Visitor;
+use phea_dynamics::closed_loop::ClosedLoop;
 use phea_quantity::ANGULAR_FREQUENCY;
 
 /// One specification.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DeclaredSpecification {
     /// Which closed loop is limited.
-    pub kind: SpecificationKind,
+    pub kind: ClosedLoop,
     /// Upper limit; for every kind except tracking.
     pub limit: Option<DeclaredLimit>,
     /// Upper limit of tracking.
@@ -22,32 +23,14 @@ pub struct DeclaredSpecification {
     pub band: Option<[f64; 2]>,
 }
 
-/// Which closed loop is limited.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum SpecificationKind {
-    /// |L/(1+L)|.
-    #[default]
-    RobustStability,
-    /// |1/(1+L)|.
-    Sensitivity,
-    /// |P/(1+L)|.
-    PlantInputDisturbance,
-    /// |G/(1+L)|.
-    ControlEffort,
-    /// |P_d/(1+L)|.
-    LoadMotion,
-    /// lower <= |F L/(1+L)| <= upper.
-    Tracking,
-}
-
-/// The words of `kind`.
-pub(crate) static SPECIFICATION_KINDS: [(&str, SpecificationKind); 6] = [
-    ("robust_stability", SpecificationKind::RobustStability),
-    ("sensitivity", SpecificationKind::Sensitivity),
-    ("plant_input_disturbance", SpecificationKind::PlantInputDisturbance),
-    ("control_effort", SpecificationKind::ControlEffort),
-    ("load_motion", SpecificationKind::LoadMotion),
-    ("tracking", SpecificationKind::Tracking),
+/// The words of `kind`, by which answers and certificates call a closed loop too.
+pub static SPECIFICATION_KINDS: [(&str, ClosedLoop); 6] = [
+    ("robust_stability", ClosedLoop::RobustStability),
+    ("sensitivity", ClosedLoop::Sensitivity),
+    ("plant_input_disturbance", ClosedLoop::PlantInputDisturbance),
+    ("control_effort", ClosedLoop::ControlEffort),
+    ("load_motion", ClosedLoop::LoadMotion),
+    ("tracking", ClosedLoop::Tracking),
 ];
 
 impl DeclaredSpecification {

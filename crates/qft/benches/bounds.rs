@@ -15,7 +15,7 @@ use num_complex::Complex64;
 use phea_dynamics::linear::{Polynomial, TransferFunction};
 use phea_dynamics::portable;
 use phea_qft::bound::{BoundError, BoundFunction, GainIntervals, TemplateFill};
-use phea_qft::specification::{Limit, Requirement};
+use phea_qft::specification::{ClosedLoop, Limit, Requirement};
 use phea_qft::template::{Resolution, Template, TemplatePoint};
 
 /// Values of k and of a.
@@ -64,17 +64,17 @@ fn tasks() -> Result<[Task; 2], phea_dynamics::linear::LinearError> {
         Task {
             name: "margin",
             drivers: &["margin", "margin_by_phase"],
-            requirement: Requirement::RobustStability(Limit::Constant(1.2)),
+            requirement: Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(1.2)),
             frequencies: &[0.1, 0.5, 1.0, 2.0, 15.0, 100.0],
             phases: 361,
         },
         Task {
             name: "tracking",
             drivers: &["tracking"],
-            requirement: Requirement::Tracking {
-                lower: rational(&[120.0], &[1.0, 17.0, 82.0, 120.0])?,
-                upper: rational(&[0.6584, 19.752], &[1.0, 4.0, 19.752])?,
-            },
+            requirement: Requirement::tracking(
+                rational(&[120.0], &[1.0, 17.0, 82.0, 120.0])?,
+                rational(&[0.6584, 19.752], &[1.0, 4.0, 19.752])?,
+            ),
             frequencies: &[0.1, 0.5, 1.0, 2.0],
             phases: 73,
         },

@@ -23,7 +23,7 @@ use phea_qft::design::{
 };
 use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, grid};
 use phea_qft::loop_shaping::{Structure, StructureFactor};
-use phea_qft::specification::{Limit, Requirement, Specification};
+use phea_qft::specification::{ClosedLoop, Limit, Requirement, Specification};
 use phea_qft::verification::TOLERANCE_DB;
 
 type Failure = Box<dyn std::error::Error>;
@@ -169,15 +169,15 @@ fn servo() -> Result<DesignProblem, Failure> {
     };
     let specifications = vec![
         Specification {
-            requirement: Requirement::RobustStability(Limit::Constant(1.2)),
+            requirement: Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(1.2)),
             frequencies_rad_per_s: vec![0.1, 0.5, 1.0, 15.0, 100.0],
             band_rad_per_s: [0.0, f64::INFINITY],
         },
         Specification {
-            requirement: Requirement::Tracking {
-                lower: rational(&[120.0], &[1.0, 17.0, 82.0, 120.0])?,
-                upper: rational(&[0.6584, 19.752], &[1.0, 4.0, 19.752])?,
-            },
+            requirement: Requirement::tracking(
+                rational(&[120.0], &[1.0, 17.0, 82.0, 120.0])?,
+                rational(&[0.6584, 19.752], &[1.0, 4.0, 19.752])?,
+            ),
             frequencies_rad_per_s: vec![0.1, 0.5, 1.0, 15.0],
             band_rad_per_s: [0.0, 15.0],
         },

@@ -24,7 +24,7 @@ use phea_qft::audit::audit;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, vertices};
 use phea_qft::proof::{Claim, FrequencyPanel, ProofOptions, check, prove};
-use phea_qft::specification::{Limit, Requirement, Specification};
+use phea_qft::specification::{ClosedLoop, Limit, Requirement, Specification};
 use phea_qft::verification::{AuditProblem, TOLERANCE_DB, TrackingJudgement};
 
 #[path = "../tests/rig.rs"]
@@ -142,7 +142,7 @@ fn proved(uncertain: usize, margin_db: f64) -> Result<(Effort, f64, f64), Failur
     };
     let compensation = Compensation::new(&controller, TransferFunction::gain_only(1.0))?;
     let specifications = [Specification {
-        requirement: Requirement::RobustStability(Limit::Constant(LIMIT)),
+        requirement: Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(LIMIT)),
         frequencies_rad_per_s: vec![],
         band_rad_per_s: BAND_RAD_PER_S,
     }];

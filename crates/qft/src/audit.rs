@@ -34,7 +34,7 @@ const STAGE: &str = "auditing";
 /// use phea_qft::audit::audit;
 /// use phea_qft::closed_loop::Compensation;
 /// use phea_qft::family::{Extent, Family, UncertainFamily};
-/// use phea_qft::specification::{Limit, Requirement, Specification};
+/// use phea_qft::specification::{ClosedLoop, Limit, Requirement, Specification};
 /// use phea_qft::verification::{AuditProblem, TOLERANCE_DB, TrackingJudgement, Verdict};
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let plant = UncertainPlant::record(vec![], |_| PlantCoefficients {
@@ -46,7 +46,7 @@ const STAGE: &str = "auditing";
 /// let family = Family::Uncertain(UncertainFamily::new(plant, vec![], vec![], Extent::Box)?);
 /// let compensation = Compensation::new(&Controller::default(), TransferFunction::gain_only(1.0))?;
 /// let specifications = [Specification {
-///     requirement: Requirement::RobustStability(Limit::Constant(1.2)),
+///     requirement: Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(1.2)),
 ///     frequencies_rad_per_s: vec![1.0],
 ///     band_rad_per_s: [0.0, f64::INFINITY],
 /// }];

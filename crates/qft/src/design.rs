@@ -1,5 +1,13 @@
 //! The design of a controller and its prefilter: search, audit, and a new constraint for every
 //! counterexample, until both agree.
+//!
+//! ```text
+//! diagnose      a limit that no controller meets: the structures below are tried for the smallest relaxation alone
+//! grow          structures of growing order, each begun from the controller before, until one meets every limit
+//! fewer zeros   of the order that was found, as long as every limit is still met: the last such design is kept
+//! relax         where none was found: the structure that came nearest, for the smallest relaxation
+//! again         where that relaxation turns out to be none: this structure for the objective, then fewer zeros
+//! ```
 
 mod attempt;
 mod binding;

@@ -16,5 +16,5 @@ mod reach;
 
 pub use chart::{DesignChart, DesignMargin, DesignPoint};
 pub use edit::{Edit, EditError, apply};
-pub use passing::{PassError, WantedPoint, pass_through};
+pub use passing::{NeededCoordinate, PassError, WantedPoint, pass_through};
 pub use reach::{ElementPattern, Reach};

@@ -1,7 +1,6 @@
 //! Specifications: a closed-loop magnitude, its limit over frequency, the frequencies at which
 //! bounds are drawn, and the band where it must hold.
 
-mod closed_loop;
 mod limit;
 mod margin;
 mod minimum;
@@ -11,8 +10,6 @@ use num_complex::Complex64;
 use phea_dynamics::frequency::decibels;
 use phea_dynamics::portable;
 
-pub use closed_loop::ClosedLoop;
-pub(crate) use closed_loop::PlantPath;
 pub use limit::{Limit, LimitError, LimitTable};
 pub use margin::{
     GuaranteedMargins, MarginError, delay_margin_limit, guaranteed_margins,
@@ -22,6 +19,7 @@ pub use margin::{
     sensitivity_limit_for_gain_increase, sensitivity_limit_for_gain_reduction,
     sensitivity_limit_for_modulus_margin, sensitivity_limit_for_phase_margin,
 };
+pub use phea_dynamics::closed_loop::{ClosedLoop, LoopResponse};
 pub use time_domain::{
     ExtraRoot, LimitOrder, LowerWish, Reached, TimeDomainError, TrackingLimit, TrackingSpread, Translation,
     UpperWish, WishCheck, WishOutcome, Wished, check_lower, check_upper, tracking_lower, tracking_spread,
@@ -42,77 +40,38 @@ pub use time_domain::{
 /// L = P G H is the loop of plant P, controller G and sensor H; F is the prefilter, and Pd =
 /// F_e/X_L the path of the load motion.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Requirement {
-    /// |L/(1+L)| <= limit
-    RobustStability(Limit),
-    /// |1/(1+L)| <= limit
-    Sensitivity(Limit),
-    /// |P/(1+L)| <= limit
-    PlantInputDisturbance(Limit),
-    /// |G/(1+L)| <= limit
-    ControlEffort(Limit),
-    /// |Pd/(1+L)| <= limit
-    LoadMotion(Limit),
-    /// lower <= |F P G/(1+L)| <= upper; F L/(1+L) where the sensor is 1
-    Tracking {
-        /// The least magnitude.
-        lower: Limit,
-        /// The greatest magnitude.
-        upper: Limit,
-    },
-}
-
-/// One member of a closed loop at one frequency: plant, load-motion path, controller, prefilter and
-/// sensor.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LoopResponse {
-    /// P(j w)
-    pub plant: Complex64,
-    /// Pd(j w)
-    pub load_motion: Complex64,
-    /// G(j w)
-    pub controller: Complex64,
-    /// F(j w)
-    pub prefilter: Complex64,
-    /// H(j w)
-    pub sensor: Complex64,
+pub struct Requirement {
+    closed_loop: ClosedLoop,
+    /// Of tracking, and of no other.
+    lower: Option<Limit>,
+    upper: Limit,
 }
 
 impl Requirement {
+    /// This closed loop at most this large; of tracking, the least magnitude is zero.
+    pub fn at_most(closed_loop: ClosedLoop, upper: Limit) -> Requirement {
+        let lower = (closed_loop == ClosedLoop::Tracking).then_some(Limit::Constant(0.0));
+        Requirement { closed_loop, lower, upper }
+    }
+
+    /// What follows the reference, between these limits.
+    pub fn tracking(lower: Limit, upper: Limit) -> Requirement {
+        Requirement { closed_loop: ClosedLoop::Tracking, lower: Some(lower), upper }
+    }
+
     /// Which closed loop it limits.
     pub fn closed_loop(&self) -> ClosedLoop {
-        match self {
-            Requirement::RobustStability(_) => ClosedLoop::RobustStability,
-            Requirement::Sensitivity(_) => ClosedLoop::Sensitivity,
-            Requirement::PlantInputDisturbance(_) => ClosedLoop::PlantInputDisturbance,
-            Requirement::ControlEffort(_) => ClosedLoop::ControlEffort,
-            Requirement::LoadMotion(_) => ClosedLoop::LoadMotion,
-            Requirement::Tracking { .. } => ClosedLoop::Tracking,
-        }
+        self.closed_loop
     }
 
     /// Whether it limits what follows the reference, which alone has a lower limit.
     pub fn is_tracking(&self) -> bool {
-        self.closed_loop() == ClosedLoop::Tracking
+        self.closed_loop == ClosedLoop::Tracking
     }
 
     /// The lower limit, of tracking alone, and the upper one.
     pub fn limits(&self) -> (Option<&Limit>, &Limit) {
-        match self {
-            Requirement::RobustStability(limit)
-            | Requirement::Sensitivity(limit)
-            | Requirement::PlantInputDisturbance(limit)
-            | Requirement::ControlEffort(limit)
-            | Requirement::LoadMotion(limit) => (None, limit),
-            Requirement::Tracking { lower, upper } => (Some(lower), upper),
-        }
-    }
-}
-
-impl LoopResponse {
-    /// L = P G H.
-    pub fn open_loop(&self) -> Complex64 {
-        self.plant * self.controller * self.sensor
+        (self.lower.as_ref(), &self.upper)
     }
 }
 
@@ -141,11 +100,11 @@ impl Specification {
     /// # Example
     /// ```
     /// use num_complex::Complex64;
-    /// use phea_qft::specification::{Limit, LoopResponse, Requirement, Specification};
+    /// use phea_qft::specification::{ClosedLoop, Limit, LoopResponse, Requirement, Specification};
     /// let one = Complex64::new(1.0, 0.0);
     /// let response = LoopResponse { plant: one, load_motion: one, controller: one, prefilter: one, sensor: one };
     /// let specification = Specification {
-    ///     requirement: Requirement::RobustStability(Limit::Constant(5.0)),
+    ///     requirement: Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(5.0)),
     ///     frequencies_rad_per_s: vec![1.0],
     ///     band_rad_per_s: [1.0, 1.0],
     /// };

@@ -43,11 +43,6 @@ pub(crate) use measured::{is_stable as is_stable_by_points, points_with_sensor};
 use responding::PoleCounting;
 pub(crate) use responding::own_poles;
 
-/// To four significant digits, for a reader.
-pub(crate) fn rounded(value: f64) -> f64 {
-    format!("{value:.3e}").parse().unwrap_or(value)
-}
-
 /// Stability of one loop.
 #[derive(Clone, Debug, PartialEq)]
 pub enum StabilityStatus {
@@ -78,74 +73,42 @@ pub enum Instability {
 }
 
 /// Why the stability of a loop could not be decided.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Irresolution {
     /// The loop is not valid, or cannot be computed.
-    #[error("{0}")]
     Linear(LinearError),
     /// A closed-loop pole lies so near the boundary of stability that rounding hides on which side
     /// it lies.
-    #[error(
-        "a closed-loop pole near {} rad/s cannot be distinguished from the boundary of stability",
-        rounded(*frequency_rad_per_s)
-    )]
     NearBoundary {
         /// Where on the boundary, rad/s.
         frequency_rad_per_s: f64,
     },
     /// Too many steps along the boundary of stability.
-    #[error(
-        "the turns of the characteristic function could not be counted beyond {} rad/s",
-        rounded(*frequency_rad_per_s)
-    )]
     Budget {
         /// Where the count stopped, rad/s.
         frequency_rad_per_s: f64,
     },
     /// Dead time in a loop whose gain tends to one: its poles approach the boundary of stability.
-    #[error(
-        "with dead time and a gain of one at infinite frequency, poles approach the boundary of stability"
-    )]
     GainAtInfinity,
     /// Plants of the box between which a pole passes through infinity, and none of which was found
     /// to be unstable.
-    #[error(
-        "the leading coefficient of the characteristic equation changes its sign inside the box, so that a pole passes through infinity"
-    )]
     PoleThroughInfinity,
     /// Modes beyond half the sampling rate pass through the band more often than plants in between
     /// can be examined.
-    #[error(
-        "modes beyond half of the sampling rate pass through the band while parameters move, too often to be followed"
-    )]
     Folding,
     /// Plants without polynomials in a sampled loop, between which modes may fold.
-    #[error(
-        "which modes beyond half of the sampling rate fold into the band between one plant and the next is not known where lines move"
-    )]
     FoldingUnknown,
     /// The enclosures of the coefficients that must not vanish, so that no pole passes through
     /// infinity, still contain zero.
-    #[error("it could not be shown that no pole passes through infinity inside the box")]
     InfinityOpen,
     /// A controller or sensor with undamped poles away from the origin, in a loop that is known by
     /// measured points only.
-    #[error(
-        "controller or sensor has poles on the boundary of stability, which measured points cannot go around"
-    )]
     UndampedController,
     /// A plant whose own unstable poles cannot be counted.
-    #[error("how many unstable poles the plant has by itself is not known")]
     OpenLoopPoles,
     /// Fewer than two points were measured below half the sampling rate.
-    #[error("there are fewer than two points to count turns between")]
     Points,
     /// Between two measured points 1 + L turns further than can be followed.
-    #[error(
-        "1 + L turns by {turn_deg:.0} degrees between {} and {} rad/s; the measurement is too coarse there",
-        rounded(*from_rad_per_s),
-        rounded(*to_rad_per_s)
-    )]
     Coarse {
         /// rad/s
         from_rad_per_s: f64,
@@ -155,10 +118,6 @@ pub enum Irresolution {
         turn_deg: f64,
     },
     /// The measurement ends while the gain is not small.
-    #[error(
-        "the measurement ends at {} rad/s where |L| = {gain:.2} is not well below one",
-        rounded(*frequency_rad_per_s)
-    )]
     HighEnd {
         /// rad/s
         frequency_rad_per_s: f64,
@@ -167,16 +126,11 @@ pub enum Irresolution {
     },
     /// The behaviour of the loop below the first measured point cannot be concluded from the
     /// measurement.
-    #[error(
-        "below {} rad/s, where the measurement begins, the loop's integrators cannot be identified",
-        rounded(*frequency_rad_per_s)
-    )]
     LowEnd {
         /// rad/s
         frequency_rad_per_s: f64,
     },
     /// The turns do not add up to a number of poles.
-    #[error("the turns of 1 + L add up to {count:.2} unstable poles, which is not a number of poles")]
     Count {
         /// What they add up to.
         count: f64,
@@ -330,22 +284,6 @@ impl MemberStability {
             largest_real_part: None,
             closest_approach: None,
             critical_delay: None,
-        }
-    }
-}
-
-impl std::fmt::Display for Instability {
-    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Instability::Pole { real_part } => {
-                write!(formatter, "a closed-loop pole has the real part {real_part:.3e} 1/s")
-            }
-            Instability::Poles { count } => {
-                write!(formatter, "{count} unstable closed-loop pole{}", if *count == 1 { "" } else { "s" })
-            }
-            Instability::GainAtInfinity => {
-                write!(formatter, "dead time in a loop whose gain stays above one at every high frequency")
-            }
         }
     }
 }

@@ -9,7 +9,7 @@ use phea_dynamics::watch::{Stopped, unwatched};
 use phea_qft::audit::audit;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, grid};
-use phea_qft::specification::{Limit, Requirement, Specification};
+use phea_qft::specification::{ClosedLoop, Limit, Requirement, Specification};
 use phea_qft::stability::family_stability;
 use phea_qft::verification::{AuditProblem, TOLERANCE_DB, TrackingJudgement, Verdict, audit_specifications};
 
@@ -42,7 +42,7 @@ fn sampled_loop() -> Compensation {
 
 fn specifications() -> [Specification; 1] {
     [Specification {
-        requirement: Requirement::Sensitivity(Limit::Constant(1.5)),
+        requirement: Requirement::at_most(ClosedLoop::Sensitivity, Limit::Constant(1.5)),
         frequencies_rad_per_s: vec![1.0],
         band_rad_per_s: [0.0, f64::INFINITY],
     }]

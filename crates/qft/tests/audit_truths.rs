@@ -13,7 +13,7 @@ use phea_dynamics::uncertain_plant::{
 use phea_dynamics::watch::unwatched;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, vertices};
-use phea_qft::specification::{Limit, Requirement, Specification};
+use phea_qft::specification::{ClosedLoop, Limit, Requirement, Specification};
 use phea_qft::stability::Irresolution;
 use phea_qft::verification::{
     Audit, AuditProblem, PlantPoint, StabilityReason, TOLERANCE_DB, TrackingJudgement, Verdict,
@@ -83,14 +83,17 @@ fn sampled_integrator(gain: f64, sample_time_s: f64) -> Controller {
 
 fn sensitivity(limit: f64) -> Specification {
     Specification {
-        requirement: Requirement::Sensitivity(Limit::Constant(limit)),
+        requirement: Requirement::at_most(ClosedLoop::Sensitivity, Limit::Constant(limit)),
         frequencies_rad_per_s: vec![1.0, 2.0],
         band_rad_per_s: [0.0, f64::INFINITY],
     }
 }
 
 fn robust_stability(limit: f64) -> Specification {
-    Specification { requirement: Requirement::RobustStability(Limit::Constant(limit)), ..sensitivity(limit) }
+    Specification {
+        requirement: Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(limit)),
+        ..sensitivity(limit)
+    }
 }
 
 fn audit(family: &Family, controller: &Controller, specifications: &[Specification]) -> Audit {

@@ -20,7 +20,7 @@ use phea_dynamics::watch::unwatched;
 use phea_qft::closed_loop::{Compensation, Member};
 use phea_qft::family::{Extent, Family, UncertainFamily};
 use phea_qft::loop_shaping::SampleStability;
-use phea_qft::specification::{Limit, LoopResponse, Requirement, Specification};
+use phea_qft::specification::{ClosedLoop, Limit, LoopResponse, Requirement, Specification};
 use phea_qft::stability::{StabilityStatus, member_stability};
 use phea_qft::verification::{AuditProblem, TOLERANCE_DB, TrackingJudgement, audit_specifications};
 
@@ -426,12 +426,10 @@ fn an_audit_sees_it() {
     let members = vec![vec![1.0], vec![1.5], vec![2.0]];
     let around = compensation(fed(2.5, 0.013), vec![Element::Gain(0.5)], TransferFunction::gain_only(1.0));
     let family = UncertainFamily::new(plant.clone(), vec![], members.clone(), Extent::Members).unwrap();
-    for requirement in
-        [Requirement::LoadMotion(Limit::Constant(0.1)), Requirement::RobustStability(Limit::Constant(1.2))]
-    {
+    for (closed_loop, limit) in [(ClosedLoop::LoadMotion, 0.1), (ClosedLoop::RobustStability, 1.2)] {
         let nyquist = std::f64::consts::PI / SAMPLE_TIME;
         let demanded = Specification {
-            requirement,
+            requirement: Requirement::at_most(closed_loop, Limit::Constant(limit)),
             frequencies_rad_per_s: vec![1.0],
             band_rad_per_s: [0.0, f64::INFINITY],
         };

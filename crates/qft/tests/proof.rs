@@ -15,7 +15,7 @@ use phea_qft::proof::{
     Certificate, Claim, ControlLaw, FrequencyPanel, Late, LimitOf, Proof, ProofOptions, Standing, check,
     prove,
 };
-use phea_qft::specification::{Limit, LimitTable, Requirement, Specification};
+use phea_qft::specification::{ClosedLoop, Limit, LimitTable, Requirement, Specification};
 use phea_qft::stability::{StabilityStatus, member_stability};
 use phea_qft::verification::{
     Audit, AuditProblem, Evidence, PlantPoint, SpecificationFinding, StabilityFinding, StabilityReason,
@@ -167,12 +167,15 @@ fn six_specifications() -> Vec<Specification> {
     };
     let lower = Limit::Rational(rational(vec![0.1], vec![1.0, 1.0]));
     vec![
-        specification(Requirement::RobustStability(Limit::Constant(1.5)), whole),
-        specification(Requirement::Sensitivity(Limit::Constant(1.8)), whole),
-        specification(Requirement::PlantInputDisturbance(Limit::Constant(3.0)), [0.1, 20.0]),
-        specification(Requirement::ControlEffort(Limit::Constant(2.0)), [0.2, 30.0]),
-        specification(Requirement::LoadMotion(Limit::Constant(6.0)), whole),
-        specification(Requirement::Tracking { lower, upper: Limit::Constant(1.5) }, [0.0, 2.0]),
+        specification(Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(1.5)), whole),
+        specification(Requirement::at_most(ClosedLoop::Sensitivity, Limit::Constant(1.8)), whole),
+        specification(
+            Requirement::at_most(ClosedLoop::PlantInputDisturbance, Limit::Constant(3.0)),
+            [0.1, 20.0],
+        ),
+        specification(Requirement::at_most(ClosedLoop::ControlEffort, Limit::Constant(2.0)), [0.2, 30.0]),
+        specification(Requirement::at_most(ClosedLoop::LoadMotion, Limit::Constant(6.0)), whole),
+        specification(Requirement::tracking(lower, Limit::Constant(1.5)), [0.0, 2.0]),
     ]
 }
 
@@ -359,7 +362,7 @@ fn the_peak_of_a_second_order_loop_is_enclosed() {
     let family = Family::Uncertain(UncertainFamily::of_nominal(plant.unwrap()));
     let compensation = Compensation::new(&Controller::default(), TransferFunction::gain_only(1.0)).unwrap();
     let specifications = [Specification {
-        requirement: Requirement::RobustStability(Limit::Constant(1.0)),
+        requirement: Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(1.0)),
         frequencies_rad_per_s: vec![1.0],
         band_rad_per_s: [0.0, f64::INFINITY],
     }];
@@ -391,7 +394,7 @@ fn a_limit_given_as_a_table_is_that_of_the_audit() {
     let compensation = Compensation::new(&Controller::default(), TransferFunction::gain_only(1.0)).unwrap();
     let table = LimitTable::new(vec![(1.0, 1.0), (10.0, 0.1), (100.0, 0.01)]).unwrap();
     let specifications = [Specification {
-        requirement: Requirement::RobustStability(Limit::Table(table)),
+        requirement: Requirement::at_most(ClosedLoop::RobustStability, Limit::Table(table)),
         frequencies_rad_per_s: vec![1.0],
         band_rad_per_s: [0.0, f64::INFINITY],
     }];
@@ -444,7 +447,7 @@ fn a_plant_beside_the_box_is_in_the_proof() {
     let compensation = Compensation::new(&Controller::default(), TransferFunction::gain_only(1.0)).unwrap();
     // |P S| = |g/(j w + g)| at w = 1: 1/sqrt 2 on the line, 3/sqrt 10 away from it
     let specifications = [Specification {
-        requirement: Requirement::PlantInputDisturbance(Limit::Constant(0.8)),
+        requirement: Requirement::at_most(ClosedLoop::PlantInputDisturbance, Limit::Constant(0.8)),
         frequencies_rad_per_s: vec![1.0],
         band_rad_per_s: [1.0, 10.0],
     }];

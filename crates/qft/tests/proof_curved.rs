@@ -15,7 +15,7 @@ use phea_qft::audit::audit;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, vertices};
 use phea_qft::proof::{Certificate, ParameterSegment, Proof, ProofOptions, Standing, check, prove};
-use phea_qft::specification::{Limit, LoopResponse, Requirement, Specification};
+use phea_qft::specification::{ClosedLoop, Limit, LoopResponse, Requirement, Specification};
 use phea_qft::verification::{AuditProblem, TOLERANCE_DB, TrackingJudgement};
 
 fn parameter(name: &str, minimum: f64, maximum: f64) -> UncertainParameter {
@@ -93,9 +93,9 @@ fn specifications() -> Vec<Specification> {
     let specification =
         |requirement| Specification { requirement, frequencies_rad_per_s: vec![1.0], band_rad_per_s: whole };
     vec![
-        specification(Requirement::RobustStability(Limit::Constant(2.0))),
-        specification(Requirement::Sensitivity(Limit::Constant(2.0))),
-        specification(Requirement::PlantInputDisturbance(Limit::Constant(3.0))),
+        specification(Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(2.0))),
+        specification(Requirement::at_most(ClosedLoop::Sensitivity, Limit::Constant(2.0))),
+        specification(Requirement::at_most(ClosedLoop::PlantInputDisturbance, Limit::Constant(3.0))),
     ]
 }
 

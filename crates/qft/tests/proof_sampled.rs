@@ -11,7 +11,7 @@ use phea_qft::audit::audit;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, vertices};
 use phea_qft::proof::{Certificate, Claim, ControlLaw, Proof, ProofOptions, Standing, check, prove};
-use phea_qft::specification::{Limit, Requirement, Specification};
+use phea_qft::specification::{ClosedLoop, Limit, Requirement, Specification};
 use phea_qft::verification::{AuditProblem, TOLERANCE_DB, TrackingJudgement};
 
 use crate::proof::{sound, thesis_in};
@@ -72,7 +72,7 @@ fn integrator(gains: [f64; 2], limit: f64, band_rad_per_s: [f64; 2]) -> Proof {
         dead_time_s: 0.0.into(),
         rate: None,
     });
-    let requirement = Requirement::Sensitivity(Limit::Constant(limit));
+    let requirement = Requirement::at_most(ClosedLoop::Sensitivity, Limit::Constant(limit));
     let options = ProofOptions { width_db: 0.3, ..ProofOptions::default() };
     proven(plant.unwrap(), 1.0, requirement, band_rad_per_s, options)
 }
@@ -146,7 +146,7 @@ fn a_folded_mode_that_passes_the_band_is_not_proven() {
         dead_time_s: 0.0.into(),
         rate: None,
     });
-    let requirement = || Requirement::RobustStability(Limit::Constant(1000.0));
+    let requirement = || Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(1000.0));
     let found = proven(
         plant.unwrap(),
         0.9,

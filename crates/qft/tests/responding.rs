@@ -19,7 +19,7 @@ use phea_dynamics::watch::unwatched;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::family::{Coordinate, Extent, FINE, Family, Spacing, UncertainFamily, tabulated, vertices};
 use phea_qft::loop_shaping::SampleStability;
-use phea_qft::specification::{Limit, Requirement, Specification};
+use phea_qft::specification::{ClosedLoop, Limit, Requirement, Specification};
 use phea_qft::stability::{Instability, MemberStability, StabilityStatus, member_stability};
 use phea_qft::verification::{AuditProblem, TOLERANCE_DB, TrackingJudgement, Verdict, audit_specifications};
 
@@ -211,9 +211,9 @@ impl RespondingPlants for HiddenBox {
 
 fn specifications() -> Vec<Specification> {
     let all = [
-        Requirement::RobustStability(Limit::Constant(1.4)),
-        Requirement::Sensitivity(Limit::Constant(1.6)),
-        Requirement::LoadMotion(Limit::Constant(0.05)),
+        Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(1.4)),
+        Requirement::at_most(ClosedLoop::Sensitivity, Limit::Constant(1.6)),
+        Requirement::at_most(ClosedLoop::LoadMotion, Limit::Constant(0.05)),
     ];
     let specification = |requirement| Specification {
         requirement,

@@ -2,7 +2,7 @@
 
 use num_complex::Complex64;
 use phea_dynamics::portable;
-use phea_qft::specification::{Limit, LoopResponse, Requirement, Specification};
+use phea_qft::specification::{ClosedLoop, Limit, LoopResponse, Requirement, Specification};
 
 fn margin(requirement: Requirement) -> f64 {
     let real = |value: f64| Complex64::new(value, 0.0);
@@ -23,14 +23,14 @@ fn margin(requirement: Requirement) -> f64 {
 fn each_kind_limits_its_own_closed_loop() {
     let limit = Limit::Constant;
     for (requirement, ratio) in [
-        (Requirement::RobustStability(limit(1.5)), 2.0),
-        (Requirement::Sensitivity(limit(0.5)), 2.0),
-        (Requirement::PlantInputDisturbance(limit(0.375)), 0.5),
-        (Requirement::ControlEffort(limit(0.25)), 1.0),
-        (Requirement::LoadMotion(limit(20.0)), 10.0),
-        (Requirement::Tracking { lower: limit(1.0), upper: limit(15.0) }, 1.5),
-        (Requirement::Tracking { lower: limit(3.0), upper: limit(15.0) }, 0.5),
-        (Requirement::Tracking { lower: limit(0.1), upper: limit(1.5) }, 1.0),
+        (Requirement::at_most(ClosedLoop::RobustStability, limit(1.5)), 2.0),
+        (Requirement::at_most(ClosedLoop::Sensitivity, limit(0.5)), 2.0),
+        (Requirement::at_most(ClosedLoop::PlantInputDisturbance, limit(0.375)), 0.5),
+        (Requirement::at_most(ClosedLoop::ControlEffort, limit(0.25)), 1.0),
+        (Requirement::at_most(ClosedLoop::LoadMotion, limit(20.0)), 10.0),
+        (Requirement::tracking(limit(1.0), limit(15.0)), 1.5),
+        (Requirement::tracking(limit(3.0), limit(15.0)), 0.5),
+        (Requirement::tracking(limit(0.1), limit(1.5)), 1.0),
     ] {
         assert!(
             (margin(requirement.clone()) - 20.0 * portable::log10(ratio)).abs() < 1e-12,

@@ -8,7 +8,7 @@ use phea_dynamics::frequency::{logarithmic_grid, margins};
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::portable::{cos, magnitude, sin};
 use phea_qft::specification::{
-    GuaranteedMargins, Limit, MarginError, Requirement, delay_margin_limit, guaranteed_margins,
+    ClosedLoop, GuaranteedMargins, Limit, MarginError, Requirement, delay_margin_limit, guaranteed_margins,
     guaranteed_margins_of_robust_stability, guaranteed_margins_of_sensitivity,
     robust_stability_limit_for_gain_increase, robust_stability_limit_for_gain_reduction,
     robust_stability_limit_for_modulus_margin, robust_stability_limit_for_phase_margin,
@@ -151,13 +151,16 @@ fn only_constant_limits_on_the_two_loop_functions_say_something() {
     let rational = Limit::Rational(real_loop(1.0, &[], &[-1.0]));
     for (requirement, expected) in [
         (
-            Requirement::RobustStability(Limit::Constant(1.3)),
+            Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(1.3)),
             guaranteed_margins_of_robust_stability(1.3).ok(),
         ),
-        (Requirement::Sensitivity(Limit::Constant(1.3)), guaranteed_margins_of_sensitivity(1.3).ok()),
-        (Requirement::RobustStability(rational.clone()), None),
-        (Requirement::PlantInputDisturbance(Limit::Constant(1.3)), None),
-        (Requirement::LoadMotion(Limit::Constant(1.3)), None),
+        (
+            Requirement::at_most(ClosedLoop::Sensitivity, Limit::Constant(1.3)),
+            guaranteed_margins_of_sensitivity(1.3).ok(),
+        ),
+        (Requirement::at_most(ClosedLoop::RobustStability, rational.clone()), None),
+        (Requirement::at_most(ClosedLoop::PlantInputDisturbance, Limit::Constant(1.3)), None),
+        (Requirement::at_most(ClosedLoop::LoadMotion, Limit::Constant(1.3)), None),
     ] {
         assert_eq!(guaranteed_margins(&requirement), Ok(expected), "{requirement:?}");
     }

@@ -301,25 +301,3 @@ fn what_has_no_answer_is_refused_and_what_never_settles_says_so() {
         assert!(matches!(refused, Err(TimeDomainError::OutOfRange { .. })), "{zero:?}");
     }
 }
-
-// ORIGIN: written by hand
-#[test]
-fn checks_read_as_sentences() {
-    let lag = |gain: f64| check_lower(&factored(gain, &[], &[c(-10.0, 0.0)]), &LOWER).unwrap().to_string();
-    let wished = "wished: no overshoot, settled within 1 % in 0.3 s; the limit itself";
-    assert_eq!(lag(10.0), format!("{wished} has no overshoot and settles in 0.461 s"));
-    assert_eq!(lag(5.0), format!("{wished} has no overshoot and stays 50 % off"));
-    // as many digits as it takes to see the difference
-    let late = LowerWish { settling_time_s: 0.4605, settling_band_percent: 1.0 };
-    let check = check_lower(&factored(10.0, &[], &[c(-10.0, 0.0)]), &late).unwrap();
-    assert_eq!(
-        check.to_string(),
-        "wished: no overshoot, settled within 1 % in 0.4605 s; the limit itself has no overshoot and settles in \
-         0.46052 s"
-    );
-    let kept = tracking_upper(&UPPER, ExtraRoot::None, Translation::Exact).unwrap().check.to_string();
-    assert_eq!(
-        kept,
-        "wished: at most 1 % overshoot, settled within 1 % in 0.1 s; the limit itself satisfies it"
-    );
-}

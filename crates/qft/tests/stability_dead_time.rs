@@ -40,7 +40,7 @@ fn is_stable(found: &MemberStability) -> bool {
     match &found.status {
         StabilityStatus::Stable => true,
         StabilityStatus::Unstable(_) => false,
-        StabilityStatus::NotResolved(reason) => panic!("{reason}"),
+        StabilityStatus::NotResolved(reason) => panic!("{reason:?}"),
     }
 }
 

@@ -4,6 +4,11 @@
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
 use crate::ask::{answer, json, try_answer};
+use num_complex::Complex64;
+use phea_dynamics::controller::Timing;
+use phea_dynamics::linear::Discretization;
+use phea_engineering::shaping::pass_words;
+use phea_qft::manual_shaping::{ElementPattern, WantedPoint, pass_through};
 use phea_workbench::command::{CommandError, ProcedureError, Request};
 use phea_workbench::project::{self, DeclaredElement, ElementKind, Loaded};
 use phea_workbench::shaping::{Change, RequestedChange, Shaped};
@@ -353,5 +358,54 @@ fn what_cannot_be_changed_is_refused_with_its_place() {
     assert!(
         message
             .starts_with("a lead turns the loop by more than 0 and less than 90 degrees; the point needs -")
+    );
+}
+
+// ORIGIN: written by hand
+#[test]
+fn what_an_element_cannot_do_is_said_in_words() {
+    let message = |pattern, magnitude_db, phase_deg, timing: Timing| {
+        let wanted = WantedPoint { frequency_rad_per_s: 20.0, magnitude_db, phase_deg };
+        let (size, phase) = (10_f64.powf(-0.5), -150_f64.to_radians());
+        let present = Complex64::new(size * phase.cos(), size * phase.sin());
+        pass_words(&pass_through(pattern, &wanted, present, &timing).unwrap_err())
+    };
+    let continuous = Timing::default();
+    let said = |pattern, magnitude_db, phase_deg, words: &str| {
+        assert_eq!(message(pattern, magnitude_db, phase_deg, continuous), words);
+    };
+    said(
+        ElementPattern::Lead,
+        Some(0.0),
+        Some(-30.0),
+        "a lead turns the loop by more than 0 and less than 90 degrees; the point needs +120 degrees",
+    );
+    said(
+        ElementPattern::Lead,
+        Some(-9.0),
+        Some(-110.0),
+        "a lead, turning it by +40 degrees, raises the loop by more than +2.315 dB; the point needs +1 dB",
+    );
+    said(
+        ElementPattern::RealPole,
+        Some(-16.0),
+        Some(-195.0),
+        "a real pole, turning it by -45 degrees, raises the loop by -3.01 dB; the point needs -6 dB",
+    );
+    let phase = "a gain leaves the phase as it is; the point needs +10 degrees";
+    said(ElementPattern::Gain, Some(0.0), Some(-140.0), phase);
+    let magnitude = "a real zero raises the loop by more than 0 dB; the point needs -2 dB";
+    said(ElementPattern::RealZero, Some(-12.0), None, magnitude);
+    said(ElementPattern::Lag, Some(-12.0), None, "a lag needs magnitude and phase of the point");
+    let notch = |pole_damping_ratio| ElementPattern::NotchHere { pole_damping_ratio };
+    let needs = "a notch at this frequency needs the magnitude of the point";
+    said(notch(0.5), None, Some(-170.0), needs);
+    let number = "a notch at this frequency cannot have a damping ratio of -1";
+    said(notch(-1.0), Some(-12.0), None, number);
+    let held =
+        Timing { sample_time_s: Some(0.01), discretization: Discretization::Matched, ..Timing::default() };
+    assert_eq!(
+        message(ElementPattern::Lag, Some(-12.0), Some(-160.0), held),
+        "in a sampled loop an element is solved for with the discretization `tustin` alone"
     );
 }

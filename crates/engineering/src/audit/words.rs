@@ -1,12 +1,11 @@
 //! Verdicts, requirements and worst cases in words.
 
+use phea_dynamics::portable;
 use phea_qft::specification::{ClosedLoop, Requirement};
-use phea_qft::verification::{
-    ClosestApproach, Evidence, SpecificationFinding, StabilityFinding, StabilityMethod, StabilityReason,
-    Verdict, WorstCase,
-};
+use phea_qft::verification::{Evidence, SpecificationFinding, Verdict, WorstCase};
 
-use super::{LimitSide, PlantNames, ReachedLimit};
+use super::{LimitSide, ReachedLimit};
+use crate::project::{SPECIFICATION_KINDS, word_of};
 use crate::quantity::significant;
 use crate::quantity::{RATIO, display};
 
@@ -62,14 +61,7 @@ pub fn kind_key(requirement: &Requirement) -> &'static str {
 
 /// The word of the kind that limits a closed loop.
 pub fn closed_loop_key(closed_loop: ClosedLoop) -> &'static str {
-    match closed_loop {
-        ClosedLoop::RobustStability => "robust_stability",
-        ClosedLoop::Sensitivity => "sensitivity",
-        ClosedLoop::PlantInputDisturbance => "plant_input_disturbance",
-        ClosedLoop::ControlEffort => "control_effort",
-        ClosedLoop::LoadMotion => "load_motion",
-        ClosedLoop::Tracking => "tracking",
-    }
+    word_of(&SPECIFICATION_KINDS, &closed_loop)
 }
 
 /// The kind for people.
@@ -79,13 +71,13 @@ pub fn kind_words(requirement: &Requirement) -> String {
 
 /// The closed loop that a kind limits.
 pub fn closed_loop_symbol(requirement: &Requirement) -> &'static str {
-    match requirement {
-        Requirement::RobustStability(_) => "|L/(1+L)|",
-        Requirement::Sensitivity(_) => "|1/(1+L)|",
-        Requirement::PlantInputDisturbance(_) => "|P/(1+L)|",
-        Requirement::ControlEffort(_) => "|G/(1+L)|",
-        Requirement::LoadMotion(_) => "|Pd/(1+L)|",
-        Requirement::Tracking { .. } => "|F L/(1+L)|",
+    match requirement.closed_loop() {
+        ClosedLoop::RobustStability => "|L/(1+L)|",
+        ClosedLoop::Sensitivity => "|1/(1+L)|",
+        ClosedLoop::PlantInputDisturbance => "|P/(1+L)|",
+        ClosedLoop::ControlEffort => "|G/(1+L)|",
+        ClosedLoop::LoadMotion => "|Pd/(1+L)|",
+        ClosedLoop::Tracking => "|F L/(1+L)|",
     }
 }
 
@@ -178,75 +170,17 @@ pub fn place_words(frequency_rad_per_s: f64) -> String {
 
 /// The meaning of a kind for the user of the machine.
 pub fn meaning(requirement: &Requirement) -> &'static str {
-    match requirement {
-        Requirement::RobustStability(_) => "no resonance of the closed loop above the limit",
-        Requirement::Sensitivity(_) => "disturbances of the output are suppressed",
-        Requirement::PlantInputDisturbance(_) => "disturbances at the input of the plant are suppressed",
-        Requirement::ControlEffort(_) => "the plant is not driven harder than allowed",
-        Requirement::LoadMotion(_) => "motion of the load disturbs the output no more than allowed",
-        Requirement::Tracking { .. } => "the output follows its reference within its limits",
-    }
-}
-
-/// Whether the family is stable, and how this is known.
-pub fn stability_sentence(stability: &StabilityFinding, names: &PlantNames) -> String {
-    let plant = names.text(&stability.plant);
-    let rate = |value: f64| significant(value, 3);
-    match (stability.verdict, stability.largest_real_part) {
-        (Verdict::Met, Some(real)) => {
-            format!("every plant is stable; the slowest closed-loop pole lies at {} 1/s", rate(real))
-        }
-        (Verdict::Met, None) => format!("every plant is stable: {}", stability_reason(stability)),
-        (Verdict::Violated, Some(real)) if real >= 0.0 => {
-            format!("unstable: a closed-loop pole lies at {} 1/s, with {plant}", rate(real))
-        }
-        (Verdict::Violated, _) => format!("unstable, with {plant}: {}", stability_reason(stability)),
-        (Verdict::NotProven, _) => {
-            format!("stability is not proven: {} ({plant})", stability_reason(stability))
-        }
-    }
-}
-
-/// How stability was decided.
-pub fn stability_reason(stability: &StabilityFinding) -> String {
-    match &stability.reason {
-        StabilityReason::Unstable(instability) => instability.to_string(),
-        StabilityReason::UnstablePrefilter => "the prefilter itself is unstable".to_owned(),
-        StabilityReason::NotResolved(irresolution) => irresolution.to_string(),
-        StabilityReason::AllStable { members, corners, between, method, closest } => {
-            let folding = match between {
-                0 => String::new(),
-                _ => format!(" and {between} plants between them, through which modes fold,"),
-            };
-            let way = method_words(*method);
-            let stable = match (members, corners + between) {
-                (1, 0) => format!("the family is one plant, stable {way}"),
-                (_, 0) => format!("all {members} plants are stable {way}"),
-                _ => format!(
-                    "all {members} members and {corners} corners of the box{folding} are stable {way}"
-                ),
-            };
-            let Some(ClosestApproach { distance, frequency_rad_per_s, .. }) = closest else { return stable };
-            let between = if stability.evidence == Evidence::Search { " between them, too," } else { "" };
-            let [distance, frequency] = [*distance, *frequency_rad_per_s].map(rounded);
-            format!("{stable}; the smallest |1 + L| found{between} is {distance} (at {frequency} rad/s)")
-        }
-    }
-}
-
-fn method_words(method: StabilityMethod) -> &'static str {
-    match method {
-        StabilityMethod::Poles => "by their closed-loop poles",
-        StabilityMethod::Turns => "by the turns of their characteristic function",
-        StabilityMethod::Enclosed => {
-            "by Nyquist's count, 1 + L of the nominal plant enclosed from each frequency to the next"
-        }
-        StabilityMethod::Points => "by Nyquist's count on points of their responses",
-        StabilityMethod::MeasuredPoints => "by Nyquist's count on the points of their responses",
+    match requirement.closed_loop() {
+        ClosedLoop::RobustStability => "no resonance of the closed loop above the limit",
+        ClosedLoop::Sensitivity => "disturbances of the output are suppressed",
+        ClosedLoop::PlantInputDisturbance => "disturbances at the input of the plant are suppressed",
+        ClosedLoop::ControlEffort => "the plant is not driven harder than allowed",
+        ClosedLoop::LoadMotion => "motion of the load disturbs the output no more than allowed",
+        ClosedLoop::Tracking => "the output follows its reference within its limits",
     }
 }
 
 /// To four significant digits, for a reader.
 pub(crate) fn rounded(value: f64) -> f64 {
-    format!("{value:.3e}").parse().unwrap_or(value)
+    portable::rounded(value, 4)
 }

@@ -289,7 +289,7 @@ fn band_looks(times_s: &[f64], windows: &[Window]) -> Vec<usize> {
 
 /// A time without the rounding error of its step, to twelve digits.
 fn plain(time_s: f64) -> f64 {
-    format!("{time_s:.11e}").parse().unwrap_or(time_s)
+    phea_dynamics::portable::rounded(time_s, 12)
 }
 
 /// Tables of the project that may be written as arrays.

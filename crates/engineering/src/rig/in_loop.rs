@@ -1,6 +1,7 @@
 //! The plant as it appears to the loop: with the feed-forward of the load velocity, and with what a
 //! virtual impedance adds to its output.
 
+use phea_dynamics::closed_loop::ClosedLoop;
 use phea_dynamics::controller::{RateFilter, RateSensor};
 use phea_dynamics::scalar::Scalar;
 use phea_hydraulics::linear::LinearParameters;
@@ -9,7 +10,7 @@ use phea_hydraulics::plant::{LinearPlant, PlantInMotion, VelocitySensor};
 use super::Rig;
 use super::numbers::Numbers;
 use crate::control::velocity_sensor;
-use crate::project::{DeclaredActuator, Load, Project, SpecificationKind};
+use crate::project::{DeclaredActuator, Load, Project};
 
 /// The error of the velocity sensor's gain.
 const GAIN_ERROR: &str = "velocity_sensor.gain_error";
@@ -136,7 +137,7 @@ pub(crate) fn velocity_gain<S: Scalar>(declared: &DeclaredActuator, numbers: &Nu
 
 /// Whether a specification limits the path that a prescribed load has into the loop.
 pub(crate) fn limits_load_motion(project: &Project) -> bool {
-    project.specifications.iter().any(|specification| specification.kind == SpecificationKind::LoadMotion)
+    project.specifications.iter().any(|specification| specification.kind == ClosedLoop::LoadMotion)
 }
 
 /// Gain of the load's velocity on the command in V s/m, zero where nothing is fed forward; the area

@@ -6,6 +6,7 @@ use phea_qft::manual_shaping::{Edit, EditError, ElementPattern, apply, pass_thro
 use super::piece::TextPiece;
 use super::present;
 use super::wish::{self, ElementWish};
+use super::words::pass_words;
 use super::workpiece::Workpiece;
 use crate::error::ProcedureError;
 use crate::project::{DeclaredElement, ElementKind, Findings, RawFinding, Refusal, value_or_finding};
@@ -152,7 +153,7 @@ fn pass(
     let element = match pass_through(wish.pattern, &wish.point, present, &workpiece.timing()) {
         Ok(element) => element,
         Err(error) => {
-            findings.push(RawFinding::error(whole.place(), error.to_string()));
+            findings.push(RawFinding::error(whole.place(), pass_words(&error)));
             return Ok(None);
         }
     };

@@ -7,6 +7,7 @@
 use phea_qft::manual_shaping::{ElementPattern, WantedPoint};
 
 use super::piece::TextPiece;
+use super::words::element_words;
 use crate::project::{Findings, RawFinding};
 use crate::quantity::{self, ANGULAR_FREQUENCY};
 use crate::spelling::nearest;
@@ -110,7 +111,7 @@ fn numbered(
             Some(ElementPattern::NotchBeside { natural_frequency: frequency(value, findings)? })
         }
         _ => {
-            let message = format!("`{}` cannot be given for {}", key.words, pattern.name());
+            let message = format!("`{}` cannot be given for {}", key.words, element_words(pattern));
             let help = "a notch takes `frequency` or `damping_ratio`, a roll_off `damping_ratio`";
             key.refuse(findings, message, help)
         }

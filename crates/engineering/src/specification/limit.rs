@@ -3,8 +3,8 @@
 use phea_dynamics::linear::{Polynomial, TransferFunction};
 use phea_dynamics::time_response::SettlingRule;
 use phea_qft::specification::{
-    ExtraRoot, Limit, LimitTable, LowerWish, MarginError, Translation, UpperWish, WishCheck, check_lower,
-    check_upper, delay_margin_limit, robust_stability_limit_for_gain_increase,
+    ClosedLoop, ExtraRoot, Limit, LimitTable, LowerWish, MarginError, Translation, UpperWish, WishCheck,
+    check_lower, check_upper, delay_margin_limit, robust_stability_limit_for_gain_increase,
     robust_stability_limit_for_gain_reduction, robust_stability_limit_for_modulus_margin,
     robust_stability_limit_for_phase_margin, sensitivity_limit_for_gain_increase,
     sensitivity_limit_for_gain_reduction, sensitivity_limit_for_modulus_margin,
@@ -18,16 +18,9 @@ use crate::project::{self, MarginWish, Rational, ResponseRule, ResponseWish};
 /// What a key accepts in addition to the forms that all keys accept.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Takes {
-    Neither,
-    Margins(MarginOf),
+    /// Where this is robust stability or the sensitivity.
+    MarginsOf(ClosedLoop),
     Wish(TrackingSide),
-}
-
-/// The closed loop whose magnitude is to guarantee margins.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum MarginOf {
-    RobustStability,
-    Sensitivity,
 }
 
 /// Which limit of tracking.
@@ -53,7 +46,9 @@ pub(super) fn over_frequency(
             let points = table.frequencies.iter().copied().zip(table.values.iter().copied());
             Limit::Table(LimitTable::new(points.collect())?)
         }
-        (project::DeclaredLimit::Margins(wish), Takes::Margins(of)) => of_margins(wish, of)?,
+        (project::DeclaredLimit::Margins(wish), Takes::MarginsOf(closed_loop)) => {
+            of_margins(wish, closed_loop)?
+        }
         (project::DeclaredLimit::Response(wish), Takes::Wish(side)) => {
             Limit::Rational(of_wish(wish, side)?.0)
         }
@@ -68,24 +63,25 @@ fn function(rational: &Rational) -> Result<TransferFunction, SpecificationProble
 }
 
 /// The strictest of the limits that guarantee the margins, or the one that guarantees the delay.
-fn of_margins(wish: &MarginWish, of: MarginOf) -> Result<Limit, SpecificationProblem> {
-    if let (Some(delay_s), MarginOf::RobustStability) = (wish.delay_margin, of) {
+fn of_margins(wish: &MarginWish, closed_loop: ClosedLoop) -> Result<Limit, SpecificationProblem> {
+    if let (Some(delay_s), ClosedLoop::RobustStability) = (wish.delay_margin, closed_loop) {
         return Ok(delay_margin_limit(delay_s)?);
     }
     type Translate = fn(f64) -> Result<f64, MarginError>;
-    let translations: [Translate; 4] = match of {
-        MarginOf::RobustStability => [
+    let translations: [Translate; 4] = match closed_loop {
+        ClosedLoop::RobustStability => [
             robust_stability_limit_for_gain_increase,
             robust_stability_limit_for_gain_reduction,
             robust_stability_limit_for_phase_margin,
             robust_stability_limit_for_modulus_margin,
         ],
-        MarginOf::Sensitivity => [
+        ClosedLoop::Sensitivity => [
             sensitivity_limit_for_gain_increase,
             sensitivity_limit_for_gain_reduction,
             sensitivity_limit_for_phase_margin,
             sensitivity_limit_for_modulus_margin,
         ],
+        _ => return Err(SpecificationProblem::Form("margins")),
     };
     let wishes = [wish.gain_margin, wish.gain_reduction, wish.phase_margin, wish.modulus_margin];
     let mut strictest = None::<f64>;

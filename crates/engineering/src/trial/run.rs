@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use phea_dynamics::portable::exp;
 use phea_dynamics::time_response::{StepBaseline, step_metrics};
-use phea_qft::specification::Requirement;
+use phea_qft::specification::ClosedLoop;
 use phea_qft::verification::Verdict;
 
 use super::prediction::{Prediction, predicted};
@@ -313,8 +313,8 @@ fn swing_words([low, high]: [f64; 2]) -> String {
 /// M = 1/(2 zeta sqrt(1 - zeta^2)),     overshoot = exp(-pi zeta/sqrt(1 - zeta^2))
 /// ```
 fn most_overshoot_percent(problem: &RobustProblem) -> Option<f64> {
-    let limits = problem.specifications.iter().filter_map(|one| match &one.requirement {
-        Requirement::RobustStability(limit) => limit.magnitude(0.0),
+    let limits = problem.specifications.iter().filter_map(|one| match one.requirement.closed_loop() {
+        ClosedLoop::RobustStability => one.requirement.limits().1.magnitude(0.0),
         _ => None,
     });
     let peak =

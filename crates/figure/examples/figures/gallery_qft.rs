@@ -9,7 +9,7 @@ use phea_dynamics::portable::{cos, magnitude, pow, sin};
 use phea_dynamics::time_response::{step_response, uniform_times};
 use phea_figure::*;
 use phea_qft::bound::{Bound, BoundFunction, TemplateFill};
-use phea_qft::specification::{Limit, Requirement};
+use phea_qft::specification::{ClosedLoop, Limit, Requirement};
 use phea_qft::template::{Resolution, Template, TemplatePoint};
 
 /// Every figure once.
@@ -140,7 +140,7 @@ fn stability_bounds() -> Figure {
     let plants = servo();
     let bounds: Vec<Bound> = SERVO_FREQUENCIES
         .iter()
-        .map(|w| bound(&plants, &Requirement::RobustStability(Limit::Constant(1.2)), *w))
+        .map(|w| bound(&plants, &Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(1.2)), *w))
         .collect();
     let templates: Vec<Template> = [1.0, 10.0, 100.0].iter().map(|w| template(&plants, *w, true)).collect();
     let w = frequencies(0.05, 3000.0, 400);
@@ -169,9 +169,9 @@ fn bounds_of_double_lag() -> [Vec<Bound>; 3] {
         frequencies.iter().map(|w| bound(&plants, &requirement, *w)).collect()
     };
     [
-        at(&[0.1, 5.0, 10.0, 100.0], Requirement::RobustStability(Limit::Constant(1.2))),
-        at(&low, Requirement::Sensitivity(Limit::Rational(sensitivity))),
-        at(&low, Requirement::PlantInputDisturbance(Limit::Constant(0.01))),
+        at(&[0.1, 5.0, 10.0, 100.0], Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(1.2))),
+        at(&low, Requirement::at_most(ClosedLoop::Sensitivity, Limit::Rational(sensitivity))),
+        at(&low, Requirement::at_most(ClosedLoop::PlantInputDisturbance, Limit::Constant(0.01))),
     ]
 }
 
@@ -227,7 +227,7 @@ fn with_dead_time() -> Figure {
     let design = [1.0, 5.0, 10.0, 30.0, 60.0];
     let bounds: Vec<Bound> = design
         .iter()
-        .map(|w| bound(&plants, &Requirement::RobustStability(Limit::Constant(1.5)), *w))
+        .map(|w| bound(&plants, &Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(1.5)), *w))
         .collect();
     let w = frequencies(0.1, 200.0, 600);
     let chart = NicholsChart {

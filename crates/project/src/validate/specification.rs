@@ -2,15 +2,15 @@
 
 use super::Check;
 use crate::{
-    DeclaredLimit, DeclaredSpecification, Formula, MarginWish, Project, ResponseRule, ResponseWish,
-    SpecificationKind, Variable,
+    DeclaredLimit, DeclaredSpecification, Formula, MarginWish, Project, ResponseRule, ResponseWish, Variable,
 };
+use phea_dynamics::closed_loop::ClosedLoop;
 
 pub(super) fn specifications(project: &Project, check: &mut Check<'_, '_>) {
     for (index, specification) in project.specifications.iter().enumerate() {
         one_specification(specification, &format!("specification[{index}]"), check);
         let second_path = project.plant.as_ref().is_none_or(|plant| plant.disturbance.is_some());
-        if specification.kind == SpecificationKind::LoadMotion && !second_path {
+        if specification.kind == ClosedLoop::LoadMotion && !second_path {
             check.error(&format!("specification[{index}].kind"), "\"load_motion\" needs [plant.disturbance]");
         }
     }
@@ -19,7 +19,7 @@ pub(super) fn specifications(project: &Project, check: &mut Check<'_, '_>) {
 fn one_specification(specification: &DeclaredSpecification, path: &str, check: &mut Check<'_, '_>) {
     let limits =
         [("limit", &specification.limit), ("upper", &specification.upper), ("lower", &specification.lower)];
-    let tracking = specification.kind == SpecificationKind::Tracking;
+    let tracking = specification.kind == ClosedLoop::Tracking;
     for (name, limit) in limits {
         let belongs = tracking != (name == "limit");
         let at = format!("{path}.{name}");
@@ -60,13 +60,7 @@ fn frequencies(specification: &DeclaredSpecification, path: &str, check: &mut Ch
     }
 }
 
-fn one_limit(
-    limit: &DeclaredLimit,
-    kind: SpecificationKind,
-    name: &str,
-    path: &str,
-    check: &mut Check<'_, '_>,
-) {
+fn one_limit(limit: &DeclaredLimit, kind: ClosedLoop, name: &str, path: &str, check: &mut Check<'_, '_>) {
     match limit {
         DeclaredLimit::Constant(_) => {}
         DeclaredLimit::Text(formula) => continuous(&[formula], path, check),
@@ -89,9 +83,7 @@ fn one_limit(
             refuse(&[&["values"], FUNCTION_KEYS, RESPONSE_KEYS].concat(), because, path, check);
             margins(wish, kind, path, check);
         }
-        DeclaredLimit::Response(wish) if kind == SpecificationKind::Tracking => {
-            response(wish, name, path, check)
-        }
+        DeclaredLimit::Response(wish) if kind == ClosedLoop::Tracking => response(wish, name, path, check),
         DeclaredLimit::Response(_) => {
             check.error(path, "a wish in time makes `upper` and `lower` of \"tracking\"")
         }
@@ -132,9 +124,9 @@ fn continuous(formulas: &[&Formula], path: &str, check: &mut Check<'_, '_>) {
     }
 }
 
-fn margins(wish: &MarginWish, kind: SpecificationKind, path: &str, check: &mut Check<'_, '_>) {
-    let stability = kind == SpecificationKind::RobustStability;
-    if !stability && kind != SpecificationKind::Sensitivity {
+fn margins(wish: &MarginWish, kind: ClosedLoop, path: &str, check: &mut Check<'_, '_>) {
+    let stability = kind == ClosedLoop::RobustStability;
+    if !stability && kind != ClosedLoop::Sensitivity {
         return check.error(path, "margins are limits of \"robust_stability\" and \"sensitivity\" alone");
     }
     let Some(_) = wish.delay_margin else { return };

@@ -18,7 +18,7 @@ use crate::template::Template;
 /// ```
 /// use num_complex::Complex64;
 /// use phea_qft::bound::{Feasibility, TemplateFill, FrequencyBounds, PhaseGrid, Placement};
-/// use phea_qft::specification::{Limit, Requirement, Specification};
+/// use phea_qft::specification::{ClosedLoop, Limit, Requirement, Specification};
 /// use phea_qft::template::{Resolution, Template, TemplatePoint};
 /// let one = Complex64::new(1.0, 0.0);
 /// let plant = TemplatePoint { member: Some(0), values: vec![], response: one, load_motion: one, sensor: one };
@@ -30,8 +30,8 @@ use crate::template::Template;
 /// };
 /// // |S| <= 1/2 and |T| <= 1/2 contradict each other, since S + T = 1: only S = T = 1/2 would do
 /// let bounds = FrequencyBounds::new(&template, &[
-///     specification(Requirement::Sensitivity(Limit::Constant(0.4))),
-///     specification(Requirement::RobustStability(Limit::Constant(0.5))),
+///     specification(Requirement::at_most(ClosedLoop::Sensitivity, Limit::Constant(0.4))),
+///     specification(Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(0.5))),
 /// ], TemplateFill::Points)?;
 /// let Feasibility::Nowhere { collisions } = bounds.combined(&PhaseGrid::default()).feasibility else { panic!() };
 /// assert_eq!(collisions[0].specifications, [0, 1]); // more gain for the first, less for the second

@@ -39,8 +39,11 @@ impl Edge {
         }
     }
 
-    /// The edge between two plants whose sensitivity is limited; e = |q|^2 - |u|^2/W^2, where u
-    /// goes straight from one to the other.
+    /// The edge between two plants whose sensitivity is limited.
+    ///
+    /// ```text
+    /// e = |q|^2 - |u|^2/W^2,    u straight from one plant to the other
+    /// ```
     pub(super) fn of_sensitivity(
         ends: [&WeightedPlant; 2],
         disturbances: [Complex64; 2],

@@ -35,14 +35,14 @@ use crate::template::{Template, TemplatePoint};
 /// ```
 /// use num_complex::Complex64;
 /// use phea_qft::bound::{BoundFunction, TemplateFill};
-/// use phea_qft::specification::{Limit, Requirement};
+/// use phea_qft::specification::{ClosedLoop, Limit, Requirement};
 /// use phea_qft::template::{Resolution, Template, TemplatePoint};
 /// let one = Complex64::new(1.0, 0.0);
 /// let plant = TemplatePoint { member: Some(0), values: vec![], response: one, load_motion: one, sensor: one };
 /// let template = Template {
 ///     frequency_rad_per_s: 1.0, nominal: one, points: vec![plant], outlines: vec![], resolution: Resolution::Members,
 /// };
-/// let limit = Requirement::RobustStability(Limit::Constant(2.0));
+/// let limit = Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(2.0));
 /// let bound = BoundFunction::new(&template, &limit, TemplateFill::Points)?;
 /// let forbidden = bound.forbidden(-std::f64::consts::PI);
 /// let [low, high] = forbidden.intervals()[0];

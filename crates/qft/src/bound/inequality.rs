@@ -65,12 +65,20 @@ pub(super) struct Ray {
 }
 
 impl Ray {
+    /// How far a plant lies along the ray.
+    ///
+    /// ```text
     /// c = Re(conj(q) e^(j phi))
+    /// ```
     pub(super) fn along(&self, inverse: Complex64) -> f64 {
         inverse.re * self.direction.re + inverse.im * self.direction.im
     }
 
+    /// How far it lies across the ray.
+    ///
+    /// ```text
     /// s = Im(conj(q) e^(j phi))
+    /// ```
     fn across(&self, inverse: Complex64) -> f64 {
         inverse.re * self.direction.im - inverse.im * self.direction.re
     }

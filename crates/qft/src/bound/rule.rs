@@ -1,6 +1,7 @@
 //! What a requirement means for one plant: its limit and weight in the q-plane.
 
 use num_complex::Complex64;
+use phea_dynamics::closed_loop::PlantPath;
 use phea_dynamics::portable;
 
 use super::BoundError;
@@ -8,7 +9,7 @@ use super::ceiling::CeilingPlant;
 use super::fill::Edge;
 use super::inequality::{InequalityForm, WeightedPlant};
 use super::power_of_two::power_of_two;
-use crate::specification::{ClosedLoop, Limit, PlantPath, Requirement};
+use crate::specification::{ClosedLoop, Limit, Requirement};
 use crate::template::{Template, TemplatePoint};
 
 /// A requirement at one frequency.

@@ -71,7 +71,6 @@ impl<E: Into<LoopDesignError>> From<E> for Leave {
 
 /// Name of the stage in progress reports.
 const SHAPING: &str = "shaping the loop";
-const FITTING: &str = "fitting the prefilter";
 const CHECKING: &str = "looking between the samples";
 const AUDITING: &str = "auditing";
 const WHOLE: [f64; 2] = [0.0, 1.0];
@@ -261,7 +260,7 @@ impl Attempt {
             PrefilterOptions { least_order: order, ..PrefilterOptions::new(order, self.options.seed) };
         // only a starting point is needed here; the descent that follows finds what the band lacks
         let band = band.relaxed(room_db);
-        let outcome = fit_prefilter(&band, &problem.timing, &options, &mut part(watch, FITTING, WHOLE))?;
+        let outcome = fit_prefilter(&band, &problem.timing, &options, watch)?;
         let fitted = match outcome {
             PrefilterOutcome::Found(fitted) => Some(fitted),
             PrefilterOutcome::OrderTooLow { best } => best,

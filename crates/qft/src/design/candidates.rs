@@ -13,7 +13,7 @@ use super::problem::DesignProblem;
 use super::stabilising::stabilising;
 use crate::family::Family;
 use crate::loop_shaping::{Structure, StructureFactor};
-use crate::specification::{Limit, Requirement, Specification};
+use crate::specification::{ClosedLoop, Limit, Specification};
 use crate::verification::corners;
 
 /// How far the corners of a controller may lie below and above the highest frequency of the
@@ -44,7 +44,7 @@ const SAME: f64 = 1e-6;
 /// # use phea_dynamics::linear::TransferFunction;
 /// # use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients, UncertainPlant};
 /// # use phea_qft::family::{Extent, Family, UncertainFamily};
-/// # use phea_qft::specification::{Limit, Requirement, Specification};
+/// # use phea_qft::specification::{ClosedLoop, Limit, Requirement, Specification};
 /// use phea_qft::design::{DesignProblem, gain_range};
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// # let plant = UncertainPlant::record(vec![], |_| PlantCoefficients {
@@ -59,7 +59,7 @@ const SAME: f64 = 1e-6;
 /// #     sensor: TransferFunction::gain_only(1.0),
 /// #     timing: Timing::default(),
 /// #     specifications: vec![Specification {
-/// #         requirement: Requirement::RobustStability(Limit::Constant(1.2)),
+/// #         requirement: Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(1.2)),
 /// #         frequencies_rad_per_s: vec![1.0, 10.0],
 /// #         band_rad_per_s: [1.0, 10.0],
 /// #     }],
@@ -201,9 +201,9 @@ fn span(specifications: &[Specification]) -> [f64; 2] {
 /// The exponent of w with which a loop must grow as w tends to zero, if this specification is to be
 /// satisfied.
 fn wanted_type(specification: &Specification) -> i64 {
-    match &specification.requirement {
-        Requirement::Sensitivity(limit) => order_at_zero(limit).max(0),
-        Requirement::Tracking { lower, upper } => {
+    match (specification.requirement.closed_loop(), specification.requirement.limits()) {
+        (ClosedLoop::Sensitivity, (_, limit)) => order_at_zero(limit).max(0),
+        (ClosedLoop::Tracking, (Some(lower), upper)) => {
             let at_zero = |limit: &Limit| match limit {
                 Limit::Constant(value) => Some(*value),
                 Limit::Rational(function) => Some(function.dc_gain().abs()),
@@ -213,10 +213,7 @@ fn wanted_type(specification: &Specification) -> i64 {
             let narrow = at_zero(lower).zip(at_zero(upper));
             i64::from(narrow.is_some_and(|(low, high)| high - low <= SAME * high))
         }
-        Requirement::RobustStability(_)
-        | Requirement::PlantInputDisturbance(_)
-        | Requirement::ControlEffort(_)
-        | Requirement::LoadMotion(_) => 0,
+        _ => 0,
     }
 }
 

@@ -1,7 +1,7 @@
 //! What the search learns from an audit: plants and frequencies that it had not evaluated.
 
 use super::problem::DesignProblem;
-use crate::specification::Requirement;
+use crate::specification::ClosedLoop;
 use crate::verification::{Audit, DelayMargin, PlantPoint, SpecificationFinding, TrackingJudgement, Verdict};
 
 /// A plant, or the pair of a spread, and the frequency at which it violates a limit (0 and infinity
@@ -21,9 +21,9 @@ pub(super) fn counterexamples(
 ) -> Vec<Counterexample> {
     let mut found: Vec<Counterexample> = Vec::new();
     for finding in findings {
-        let tolerance = match finding.requirement {
+        let tolerance = match finding.requirement.closed_loop() {
             _ if is_spread(finding, tracking) => 2.0 * of_tracking_db,
-            Requirement::Tracking { .. } => of_tracking_db,
+            ClosedLoop::Tracking => of_tracking_db,
             _ => tolerance_db,
         };
         let bands = finding.violations.iter().map(|band| &band.worst);

@@ -49,7 +49,7 @@ use crate::specification::{Limit, Specification};
 /// # use phea_qft::family::{Extent, Family, UncertainFamily};
 /// use num_complex::Complex64;
 /// use phea_qft::design::{DesignProblem, Finding, ConstraintPlace, diagnose};
-/// use phea_qft::specification::{Limit, Requirement, Specification};
+/// use phea_qft::specification::{ClosedLoop, Limit, Requirement, Specification};
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let roll_off = TransferFunction::from_factors(3.0, vec![], vec![Complex64::new(-2.0, 0.0)])?; // 3/(s + 2)
 /// # let plant = UncertainPlant::record(vec![], |_| PlantCoefficients {
@@ -66,7 +66,7 @@ use crate::specification::{Limit, Specification};
 ///     sensor: TransferFunction::gain_only(1.0),
 ///     timing: Timing::default(),
 ///     specifications: vec![Specification {
-///         requirement: Requirement::RobustStability(Limit::Rational(roll_off)),
+///         requirement: Requirement::at_most(ClosedLoop::RobustStability, Limit::Rational(roll_off)),
 ///         frequencies_rad_per_s: vec![1.0],
 ///         band_rad_per_s: [0.0, f64::INFINITY],
 ///     }],

@@ -17,7 +17,7 @@ pub use rounding_effect::{LimitCycle, RoundingEffect, RoundingEffects, rounding_
 pub use phea_dynamics::controller::{Converter, ConverterError};
 use phea_dynamics::linear::LinearError;
 
-use crate::specification::{Limit, Requirement, Specification};
+use crate::specification::{ClosedLoop, Limit, Requirement, Specification};
 
 /// The converters and the coefficients of the computer that runs a controller; a converter that is
 /// absent does not round.
@@ -81,13 +81,13 @@ impl Quantization {
     /// 5 N allowed for 16 bits over 20 V
     /// ```
     /// use phea_qft::design::quantization::{Converter, Quantization};
-    /// use phea_qft::specification::{Limit, Requirement};
+    /// use phea_qft::specification::{ClosedLoop, Limit, Requirement};
     /// # fn main() -> Result<(), phea_qft::design::quantization::QuantizationError> {
     /// let quantization =
     ///     Quantization { command: Some(Converter::new(16, [-10.0, 10.0])?), ..Quantization::default() };
     /// let specification = quantization.force_specification(5.0, vec![1.0, 10.0]).map(|found| found.requirement);
     /// // ORIGIN: analytic, 5 N over half of 20 V/65536
-    /// assert_eq!(specification, Some(Requirement::PlantInputDisturbance(Limit::Constant(32768.0))));
+    /// assert_eq!(specification, Some(Requirement::at_most(ClosedLoop::PlantInputDisturbance, Limit::Constant(32768.0))));
     /// # Ok(())
     /// # }
     /// ```
@@ -97,7 +97,10 @@ impl Quantization {
         frequencies_rad_per_s: Vec<f64>,
     ) -> Option<Specification> {
         let limit = Limit::Constant(allowed_rms / (0.5 * self.command?.step()));
-        Some(everywhere(Requirement::PlantInputDisturbance(limit), frequencies_rad_per_s))
+        Some(everywhere(
+            Requirement::at_most(ClosedLoop::PlantInputDisturbance, limit),
+            frequencies_rad_per_s,
+        ))
     }
 
     /// The specification that keeps the effect of a rounded measurement on the command below a
@@ -114,7 +117,7 @@ impl Quantization {
         frequencies_rad_per_s: Vec<f64>,
     ) -> Option<Specification> {
         let limit = Limit::Constant(allowed_rms / (0.5 * self.measurement?.step()));
-        Some(everywhere(Requirement::ControlEffort(limit), frequencies_rad_per_s))
+        Some(everywhere(Requirement::at_most(ClosedLoop::ControlEffort, limit), frequencies_rad_per_s))
     }
 }
 

@@ -91,7 +91,7 @@ struct LearntPlants {
 /// use phea_qft::design::*;
 /// # use phea_qft::family::{Extent, Family, UncertainFamily};
 /// use phea_qft::loop_shaping::Structure;
-/// # use phea_qft::specification::{Limit, Requirement, Specification};
+/// # use phea_qft::specification::{ClosedLoop, Limit, Requirement, Specification};
 /// # use phea_qft::verification::TOLERANCE_DB;
 /// # let gain = UncertainParameter { name: "k".into(), nominal: 1.0, minimum: 1.0, maximum: 4.0 };
 /// # let plant = UncertainPlant::record(vec![gain], |p| {
@@ -100,7 +100,7 @@ struct LearntPlants {
 /// # })?;
 /// # let members = vec![vec![1.0], vec![4.0]];
 /// # let family = Family::Uncertain(UncertainFamily::new(plant, vec![], members, Extent::Members)?);
-/// let requirement = Requirement::Sensitivity(Limit::Constant(0.5));
+/// let requirement = Requirement::at_most(ClosedLoop::Sensitivity, Limit::Constant(0.5));
 /// let problem = DesignProblem {
 ///     family, // 1/s, 4/s
 ///     beside: vec![],

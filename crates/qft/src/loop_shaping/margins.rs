@@ -12,10 +12,11 @@ mod crossover;
 mod rows;
 
 use num_complex::Complex64;
+use phea_dynamics::closed_loop::PlantPath;
 use phea_dynamics::portable;
 
 use super::samples::FrequencyColumn;
-use crate::specification::{ClosedLoop, PlantPath, Specification};
+use crate::specification::{ClosedLoop, Specification};
 use crate::verification::TrackingJudgement;
 
 pub(super) use crossover::{DelayMargins, bandwidth, delay_margins};

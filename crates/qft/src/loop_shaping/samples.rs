@@ -48,7 +48,7 @@ pub enum SamplesError {
 /// use phea_qft::design::DesignProblem;
 /// use phea_qft::family::{Extent, Family, UncertainFamily};
 /// use phea_qft::loop_shaping::Samples;
-/// use phea_qft::specification::{Limit, Requirement, Specification};
+/// use phea_qft::specification::{ClosedLoop, Limit, Requirement, Specification};
 /// use phea_qft::verification::PlantPoint;
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let gain = UncertainParameter { name: "k".into(), nominal: 1.0, minimum: 1.0, maximum: 4.0 };
@@ -64,7 +64,7 @@ pub enum SamplesError {
 ///     sensor: TransferFunction::gain_only(1.0),
 ///     timing: Timing::default(),
 ///     specifications: vec![Specification {
-///         requirement: Requirement::Sensitivity(Limit::Constant(2.0)),
+///         requirement: Requirement::at_most(ClosedLoop::Sensitivity, Limit::Constant(2.0)),
 ///         frequencies_rad_per_s: vec![1.0],
 ///         band_rad_per_s: [0.0, f64::INFINITY],
 ///     }],

@@ -45,7 +45,7 @@ const WINDOW_DB: f64 = 20.0;
 /// # use phea_dynamics::linear::TransferFunction;
 /// # use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant};
 /// # use phea_qft::family::{Extent, Family, UncertainFamily};
-/// # use phea_qft::specification::{Limit, Requirement, Specification};
+/// # use phea_qft::specification::{ClosedLoop, Limit, Requirement, Specification};
 /// # use phea_qft::verification::PlantPoint;
 /// use phea_qft::design::{DesignProblem, Objective};
 /// use phea_qft::loop_shaping::{Samples, SearchProblem, Shaping, Structure};
@@ -63,7 +63,7 @@ const WINDOW_DB: f64 = 20.0;
 /// #     sensor: TransferFunction::gain_only(1.0),
 /// #     timing: Timing::default(),
 /// #     specifications: vec![Specification {
-/// #         requirement: Requirement::Sensitivity(Limit::Constant(2.0)),
+/// #         requirement: Requirement::at_most(ClosedLoop::Sensitivity, Limit::Constant(2.0)),
 /// #         frequencies_rad_per_s: vec![1.0],
 /// #         band_rad_per_s: [0.0, f64::INFINITY],
 /// #     }],

@@ -26,7 +26,7 @@ use crate::verification::{PlantPoint, TrackingJudgement};
 /// use phea_qft::closed_loop::Compensation;
 /// use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily};
 /// use phea_qft::manual_shaping::DesignChart;
-/// use phea_qft::specification::{Limit, Requirement, Specification};
+/// use phea_qft::specification::{ClosedLoop, Limit, Requirement, Specification};
 /// use phea_qft::template::{TemplateOptions, template};
 /// use phea_qft::verification::{PlantPoint, TrackingJudgement};
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -45,7 +45,7 @@ use crate::verification::{PlantPoint, TrackingJudgement};
 ///     Compensation::new(&Controller { feedback, ..Controller::default() }, TransferFunction::gain_only(1.0))
 /// };
 /// let specification = Specification {
-///     requirement: Requirement::Sensitivity(Limit::Constant(0.5)),
+///     requirement: Requirement::at_most(ClosedLoop::Sensitivity, Limit::Constant(0.5)),
 ///     frequencies_rad_per_s: vec![1.0],
 ///     band_rad_per_s: [1.0, 1.0],
 /// };

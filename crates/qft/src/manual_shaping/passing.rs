@@ -7,7 +7,6 @@ use phea_dynamics::linear::Discretization;
 use phea_dynamics::portable;
 
 use super::reach::{ElementPattern, ElementTarget, Reach};
-use crate::stability::rounded;
 
 /// A point of the Nichols chart, or one of its coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,16 +20,14 @@ pub struct WantedPoint {
 }
 
 /// Why no element is found.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum PassError {
     /// A frequency that is not positive, or beyond what a sampled loop has.
-    #[error("the loop has no point at {frequency_rad_per_s} rad/s")]
     Frequency {
         /// rad/s
         frequency_rad_per_s: f64,
     },
     /// A loop that is zero or not finite, which no element moves.
-    #[error("the loop is {present} at {frequency_rad_per_s} rad/s: no element moves it")]
     NoLoop {
         /// The loop as it is.
         present: Complex64,
@@ -38,29 +35,23 @@ pub enum PassError {
         frequency_rad_per_s: f64,
     },
     /// The point does not specify the coordinate that the element needs.
-    #[error("{} needs {needs} of the point", pattern.name())]
     Incomplete {
         /// Which element.
         pattern: ElementPattern,
         /// What of the point.
-        needs: &'static str,
+        needs: NeededCoordinate,
     },
-    /// Given numbers of the element are invalid.
-    #[error("{} cannot have {what} {value}", pattern.name())]
+    /// The given number of the element is invalid.
     Number {
         /// Which element.
         pattern: ElementPattern,
-        /// Which of its numbers.
-        what: &'static str,
-        /// As given.
+        /// Its damping ratio, or its frequency in rad/s.
         value: f64,
     },
     /// A sampled loop whose elements are not discretised by the bilinear rule, for which alone
     /// there is a closed form.
-    #[error("in a sampled loop an element is solved for with the discretization `tustin` alone")]
     Discretization,
     /// The element cannot move the loop to this point.
-    #[error("{}", unreachable_words(*pattern, *turn_deg, *raise_db, reach))]
     Unreachable {
         /// Which element.
         pattern: ElementPattern,
@@ -71,6 +62,17 @@ pub enum PassError {
         /// What it can do.
         reach: Reach,
     },
+}
+
+/// What an element needs of the point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NeededCoordinate {
+    /// The magnitude; it does not change the phase.
+    Magnitude,
+    /// Magnitude or phase.
+    Either,
+    /// Magnitude and phase.
+    Both,
 }
 
 /// The element that moves the loop from where it is, `present` = L(jw), to the wanted point.
@@ -130,11 +132,11 @@ pub fn pass_through(
     let (turn, raise) = (wanted.phase_deg.map(|_| change.turn), wanted.magnitude_db.map(|_| change.ratio));
     let incomplete = |needs| Err(PassError::Incomplete { pattern, needs });
     let element = match (raise, turn) {
-        (None, None) => return incomplete("magnitude or phase"),
+        (None, None) => return incomplete(NeededCoordinate::Either),
         (Some(_), Some(_)) => pattern.through(&change),
-        _ if !pattern.has_one_number() => return incomplete("magnitude and phase"),
+        _ if !pattern.has_one_number() => return incomplete(NeededCoordinate::Both),
         (Some(_), None) => pattern.of_magnitude(&change),
-        (None, Some(_)) if pattern.keeps_phase() => return incomplete("the magnitude"),
+        (None, Some(_)) if pattern.keeps_phase() => return incomplete(NeededCoordinate::Magnitude),
         (None, Some(_)) => pattern.of_phase(&change),
     };
     element.ok_or_else(|| PassError::Unreachable {
@@ -195,44 +197,11 @@ fn principal(angle: f64) -> f64 {
 }
 
 fn check_numbers(pattern: ElementPattern) -> Result<(), PassError> {
-    let (what, value) = match pattern {
-        ElementPattern::RollOff { damping_ratio } => ("a damping ratio of", damping_ratio),
-        ElementPattern::NotchHere { pole_damping_ratio } => ("a damping ratio of", pole_damping_ratio),
-        ElementPattern::NotchBeside { natural_frequency } => ("a frequency of", natural_frequency),
+    let value = match pattern {
+        ElementPattern::RollOff { damping_ratio: value }
+        | ElementPattern::NotchHere { pole_damping_ratio: value }
+        | ElementPattern::NotchBeside { natural_frequency: value } => value,
         _ => return Ok(()),
     };
-    if value > 0.0 && value.is_finite() { Ok(()) } else { Err(PassError::Number { pattern, what, value }) }
-}
-
-fn signed(value: f64) -> String {
-    if value > 0.0 { format!("+{}", rounded(value)) } else { rounded(value).to_string() }
-}
-
-fn unreachable_words(
-    pattern: ElementPattern,
-    turn_deg: Option<f64>,
-    raise_db: Option<f64>,
-    reach: &Reach,
-) -> String {
-    let name = pattern.name();
-    if let (Some(turn), None) = (turn_deg, reach.raise_db) {
-        let [low, high] = reach.turn_deg;
-        let can = if low == high {
-            "leaves the phase as it is".to_string()
-        } else {
-            format!("turns the loop by more than {low} and less than {high} degrees")
-        };
-        return format!("{name} {can}; the point needs {} degrees", signed(turn));
-    }
-    let range = match reach.raise_db {
-        Some([low, high]) if low == high => format!("by {} dB", signed(low)),
-        Some([low, high]) if low == f64::NEG_INFINITY => format!("by less than {} dB", signed(high)),
-        Some([low, f64::INFINITY]) => format!("by more than {} dB", signed(low)),
-        Some([low, high]) => format!("by more than {} and less than {} dB", signed(low), signed(high)),
-        None => "by nothing".to_string(),
-    };
-    let there = turn_deg.map_or(String::new(), |turn| format!(", turning it by {} degrees,", signed(turn)));
-    let needs = raise_db
-        .map_or("rounding leaves none".to_string(), |raise| format!("the point needs {} dB", signed(raise)));
-    format!("{name}{there} raises the loop {range}; {needs}")
+    if value > 0.0 && value.is_finite() { Ok(()) } else { Err(PassError::Number { pattern, value }) }
 }

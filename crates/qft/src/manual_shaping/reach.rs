@@ -67,23 +67,6 @@ pub(super) struct ElementTarget {
 const TOLERANCE: f64 = 1e-9;
 
 impl ElementPattern {
-    /// Its name, with an article.
-    pub fn name(self) -> &'static str {
-        match self {
-            ElementPattern::Gain => "a gain",
-            ElementPattern::RealPole => "a real pole",
-            ElementPattern::RealZero => "a real zero",
-            ElementPattern::Lead => "a lead",
-            ElementPattern::Lag => "a lag",
-            ElementPattern::ComplexPoles => "a complex pair of poles",
-            ElementPattern::ComplexZeros => "a complex pair of zeros",
-            ElementPattern::RollOff { .. } => "a roll-off",
-            ElementPattern::ProportionalIntegral => "a PI element",
-            ElementPattern::NotchHere { .. } => "a notch at this frequency",
-            ElementPattern::NotchBeside { .. } => "a notch next to this frequency",
-        }
-    }
-
     /// Whether magnitude or phase alone determines it.
     pub(super) fn has_one_number(self) -> bool {
         use ElementPattern::{Gain, NotchHere, RealPole, RealZero, RollOff};

@@ -90,7 +90,7 @@ impl PrefilterBand {
     ///     frequency_rad_per_s: 3.0, greatest: 0.8, greatest_member: 7, least: 0.5, least_member: 2,
     /// };
     /// let tracking = Specification {
-    ///     requirement: Requirement::Tracking { lower: Limit::Constant(0.4), upper: Limit::Constant(1.0) },
+    ///     requirement: Requirement::tracking(Limit::Constant(0.4), Limit::Constant(1.0)),
     ///     frequencies_rad_per_s: vec![3.0],
     ///     band_rad_per_s: [1.0, 10.0],
     /// };

@@ -5,7 +5,7 @@ use phea_dynamics::frequency::decibels;
 use super::band::RESOLVED_DB;
 use super::{PrefilterBand, PrefilterBandPoint, PrefilterError};
 use crate::closed_loop::{Compensation, Member};
-use crate::specification::{Limit, Requirement, Specification};
+use crate::specification::{Limit, Specification};
 use crate::verification::{AxisEnd, tracking_ratio};
 
 /// Edges whose curvature changes by less than this share of their distance from one decade to the
@@ -24,10 +24,8 @@ pub(super) struct TrackingDemand<'a> {
 
 impl TrackingDemand<'_> {
     pub(super) fn of(specification: &Specification) -> Result<TrackingDemand<'_>, PrefilterError> {
-        match &specification.requirement {
-            Requirement::Tracking { lower, upper } => {
-                Ok(TrackingDemand { lower, upper, band: specification.band_rad_per_s })
-            }
+        match specification.requirement.limits() {
+            (Some(lower), upper) => Ok(TrackingDemand { lower, upper, band: specification.band_rad_per_s }),
             _ => Err(PrefilterError::NotTracking),
         }
     }

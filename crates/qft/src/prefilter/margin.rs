@@ -53,7 +53,7 @@ impl PrefilterBand {
     /// # let extremes =
     /// #     TrackingExtremes { frequency_rad_per_s: 3.0, greatest: 1.0, greatest_member: 0, least: 1.0, least_member: 0 };
     /// # let tracking = Specification {
-    /// #     requirement: Requirement::Tracking { lower: Limit::Constant(0.5), upper: Limit::Constant(1.0) },
+    /// #     requirement: Requirement::tracking(Limit::Constant(0.5), Limit::Constant(1.0)),
     /// #     frequencies_rad_per_s: vec![3.0],
     /// #     band_rad_per_s: [1.0, 10.0],
     /// # };

@@ -100,7 +100,7 @@ pub enum PrefilterOutcome {
 /// let decibel = 10.0_f64.powf(0.05);
 /// let (lower, upper) = (Limit::Constant(1.0 / decibel), Limit::Constant(decibel));
 /// let tracking = Specification {
-///     requirement: Requirement::Tracking { lower, upper },
+///     requirement: Requirement::tracking(lower, upper),
 ///     frequencies_rad_per_s: vec![],
 ///     band_rad_per_s: [0.1, 20.0],
 /// };

@@ -81,10 +81,9 @@ fn bounded(
 
 /// A number of few digits that is not greater.
 fn rounded(value: f64) -> f64 {
-    let lower = value * (1.0 - 1e-4);
-    format!("{lower:.5e}").parse().unwrap_or(lower)
+    portable::rounded(value * (1.0 - 1e-4), 6)
 }
 
 fn rounded_up(value: f64) -> f64 {
-    format!("{value:.3e}").parse().unwrap_or(value)
+    portable::rounded(value, 4)
 }

@@ -96,7 +96,7 @@ pub enum Rejection {
 /// # use phea_qft::closed_loop::Compensation;
 /// # use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, vertices};
 /// use phea_qft::proof::{Certificate, Claim, ProofOptions, Rejection, check, prove};
-/// # use phea_qft::specification::{Limit, Requirement, Specification};
+/// # use phea_qft::specification::{ClosedLoop, Limit, Requirement, Specification};
 /// # use phea_qft::verification::{AuditProblem, TOLERANCE_DB, TrackingJudgement};
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// # let gain = UncertainParameter { name: "k".into(), nominal: 1.0, minimum: 1.0, maximum: 4.0 };
@@ -111,7 +111,7 @@ pub enum Rejection {
 /// # let family = Family::Uncertain(UncertainFamily::new(plant, vec![coordinate], members, Extent::Box)?);
 /// # let compensation = Compensation::new(&Controller::default(), TransferFunction::gain_only(1.0))?;
 /// # let specifications = [Specification {
-/// #     requirement: Requirement::RobustStability(Limit::Constant(1.2)),
+/// #     requirement: Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(1.2)),
 /// #     frequencies_rad_per_s: vec![1.0],
 /// #     band_rad_per_s: [0.0, f64::INFINITY],
 /// # }];

@@ -26,6 +26,8 @@
 //! with R' for N Hn/(D Hd). N includes the hold, and N E the addition R' D or, for the plant alone,
 //! R D: `images`.
 
+use phea_dynamics::portable;
+
 use super::certificate::{
     Certificate, CertificateMember, CertificateSide, LimitOf, LimitedLoop, ParameterSegment,
 };
@@ -196,7 +198,7 @@ impl<S: Decimal> Claimed<S> {
         let [_, end] = self.band([from, to]);
         let beyond = end * (1.0 + BEYOND);
         let is_cut = self.images.is_some() && end < to;
-        [from, if is_cut { format!("{beyond:.9e}").parse().unwrap_or(beyond) } else { to }]
+        [from, if is_cut { portable::rounded(beyond, 10) } else { to }]
     }
 
     /// The direction of U, a polynomial with numbers as coefficients, towards infinity.

@@ -167,7 +167,11 @@ impl<S: Decimal> OverPanel<S> {
     }
 }
 
+/// The integral of x^k e^(-j a x) from 0 to 1, by its series.
+///
+/// ```text
 /// I_k = sum over n of (-j a)^n/(n! (k + n + 1))
+/// ```
 fn moment<S: Decimal>(k: usize, turn: S) -> Complex<S> {
     let mut power = [S::from(1.0), S::from(0.0)];
     let mut out = [S::uncertain(HOLD_REST); 2];

@@ -107,7 +107,7 @@ fn parted([from, to]: [f64; 2], [begin, end]: [f64; 2]) -> Option<f64> {
 
 /// A number of few digits.
 fn rounded(value: f64) -> f64 {
-    format!("{value:.4e}").parse().unwrap_or(value)
+    portable::rounded(value, 5)
 }
 
 /// The ends of the panels without dead time.

@@ -77,9 +77,11 @@ pub(super) fn prefilter_is_stable(certificate: &Certificate, around: &Loop<Inter
     }
 }
 
-/// Whether the roots of a polynomial in zeta = z - 1, of degree two at most, have |z| < 1: with
-/// coefficients 1, b1 (of zeta) and b0, P(z = 1) = b0 > 0, P(z = -1) = 4 - 2 b1 + b0 > 0 and b0 -
-/// b1 + 1 < 1.
+/// Whether the roots of a polynomial in zeta = z - 1, of degree two at most, have |z| < 1.
+///
+/// ```text
+/// p = zeta^2 + b1 zeta + b0:    p(z = 1) = b0 > 0,    p(z = -1) = 4 - 2 b1 + b0 > 0,    p(z = 0) = 1 - b1 + b0 < 1
+/// ```
 fn is_within_circle(section: &[f64]) -> bool {
     let number = |value: f64| if value == 0.0 { Interval::from(0.0) } else { Interval::decimal(value) };
     let is_positive = |value: Interval| value.low() > 0.0;

@@ -73,7 +73,11 @@ fn law(function: &TransferFunction) -> ControlLaw {
     }
 }
 
-/// Polynomials in z - 1 with these roots, which come in conjugate pairs: z - p = (z - 1) + (1 - p).
+/// Polynomials in z - 1 with these roots, which come in conjugate pairs.
+///
+/// ```text
+/// z - p = (z - 1) + (1 - p),    (z - p)(z - conj p) = (z - 1)^2 + 2 Re(1 - p) (z - 1) + |1 - p|^2
+/// ```
 fn sections(roots: &[Complex64]) -> Vec<Vec<f64>> {
     let of_root = |root: &Complex64| {
         let [re, im] = [1.0 - root.re, root.im];

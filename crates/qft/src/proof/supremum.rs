@@ -69,7 +69,8 @@ pub(super) fn enclose(
             break;
         }
         let near = found.least * wanted.width;
-        let ratio = rounded(if found.least <= wanted.decisive { near.min(wanted.decisive) } else { near });
+        let ratio = if found.least <= wanted.decisive { near.min(wanted.decisive) } else { near };
+        let ratio = portable::rounded(ratio, 8);
         match walk_boxes(certificate, (&claims, ratio), wanted.effort, watch)? {
             Boxes::Shown(panels) => {
                 found.most = Some((ratio, panels));
@@ -90,11 +91,6 @@ pub(super) fn enclose(
     let least = confirmed.map(|[u, v]| v / u).fold(f64::NEG_INFINITY, f64::max);
     found.least = if least.is_finite() { least } else { found.least } * (1.0 - ROUNDED);
     Ok(Some(found))
-}
-
-/// A number of few digits.
-fn rounded(value: f64) -> f64 {
-    format!("{value:.7e}").parse().unwrap_or(value)
 }
 
 /// What became of a claim in all boxes.

@@ -26,7 +26,7 @@ use num_complex::Complex64;
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::portable::{asin, sin};
 
-use super::{Limit, Requirement};
+use super::{ClosedLoop, Limit, Requirement};
 
 /// Why a margin has no limit, or a limit no margin.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -124,25 +124,30 @@ pub fn guaranteed_margins_of_sensitivity(limit: f64) -> Result<GuaranteedMargins
 ///
 /// # Example
 /// ```
-/// use phea_qft::specification::{Limit, Requirement, guaranteed_margins};
-/// let stability = Requirement::RobustStability(Limit::Constant(1.0));
+/// use phea_qft::specification::{ClosedLoop, Limit, Requirement, guaranteed_margins};
+/// let stability = Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(1.0));
 /// assert_eq!(guaranteed_margins(&stability)?.map(|margins| margins.gain_increase), Some(2.0));
-/// assert_eq!(guaranteed_margins(&Requirement::ControlEffort(Limit::Constant(1.0)))?, None);
+/// assert_eq!(guaranteed_margins(&Requirement::at_most(ClosedLoop::ControlEffort, Limit::Constant(1.0)))?, None);
 /// # Ok::<(), phea_qft::specification::MarginError>(())
 /// ```
 pub fn guaranteed_margins(requirement: &Requirement) -> Result<Option<GuaranteedMargins>, MarginError> {
-    match requirement {
-        Requirement::RobustStability(Limit::Constant(limit)) => {
+    let (_, limit) = requirement.limits();
+    match (requirement.closed_loop(), limit) {
+        (ClosedLoop::RobustStability, Limit::Constant(limit)) => {
             guaranteed_margins_of_robust_stability(*limit).map(Some)
         }
-        Requirement::Sensitivity(Limit::Constant(limit)) => {
+        (ClosedLoop::Sensitivity, Limit::Constant(limit)) => {
             guaranteed_margins_of_sensitivity(*limit).map(Some)
         }
         _ => Ok(None),
     }
 }
 
-/// The limit on |L/(1+L)| that lets the gain grow by this factor (above one): W = 1/(factor - 1).
+/// The limit on |L/(1+L)| that lets the gain grow by this factor (above one).
+///
+/// ```text
+/// W = 1/(factor - 1)
+/// ```
 ///
 /// # Errors
 /// [`MarginError::OutOfRange`].
@@ -155,8 +160,11 @@ pub fn robust_stability_limit_for_gain_increase(factor: f64) -> Result<f64, Marg
     Ok(1.0 / (above_one("the increase of gain", factor)? - 1.0))
 }
 
-/// The limit on |L/(1+L)| that lets the gain fall to this factor (above zero, below one): W = 1/(1
-/// - factor).
+/// The limit on |L/(1+L)| that lets the gain fall to this factor (above zero, below one).
+///
+/// ```text
+/// W = 1/(1 - factor)
+/// ```
 ///
 /// # Errors
 /// [`MarginError::OutOfRange`].
@@ -169,8 +177,11 @@ pub fn robust_stability_limit_for_gain_reduction(factor: f64) -> Result<f64, Mar
     Ok(1.0 / (1.0 - between_zero_and_one("the reduction of gain", factor)?))
 }
 
-/// The limit on |L/(1+L)| for this phase margin in rad (above zero, up to pi): W = 1/(2
-/// sin(phase/2)).
+/// The limit on |L/(1+L)| for this phase margin in rad (above zero, up to pi).
+///
+/// ```text
+/// W = 1/(2 sin(phase/2))
+/// ```
 ///
 /// # Errors
 /// [`MarginError::OutOfRange`].
@@ -185,8 +196,11 @@ pub fn robust_stability_limit_for_phase_margin(phase_rad: f64) -> Result<f64, Ma
     limit_for_phase_margin(phase_rad)
 }
 
-/// The limit on |L/(1+L)| that keeps |1 + L| at this distance (above zero, below one) or more: W =
-/// 1/distance - 1.
+/// The limit on |L/(1+L)| that keeps |1 + L| at this distance (above zero, below one) or more.
+///
+/// ```text
+/// W = 1/distance - 1
+/// ```
 ///
 /// # Errors
 /// [`MarginError::OutOfRange`].
@@ -200,8 +214,11 @@ pub fn robust_stability_limit_for_modulus_margin(distance: f64) -> Result<f64, M
     Ok((1.0 - distance) / distance)
 }
 
-/// The limit on |1/(1+L)| that lets the gain grow by this factor (above one): W = factor/(factor -
-/// 1).
+/// The limit on |1/(1+L)| that lets the gain grow by this factor (above one).
+///
+/// ```text
+/// W = factor/(factor - 1)
+/// ```
 ///
 /// # Errors
 /// [`MarginError::OutOfRange`].
@@ -215,8 +232,11 @@ pub fn sensitivity_limit_for_gain_increase(factor: f64) -> Result<f64, MarginErr
     Ok(factor / (factor - 1.0))
 }
 
-/// The limit on |1/(1+L)| that lets the gain fall to this factor (above zero, below one): W =
-/// factor/(1 - factor).
+/// The limit on |1/(1+L)| that lets the gain fall to this factor (above zero, below one).
+///
+/// ```text
+/// W = factor/(1 - factor)
+/// ```
 ///
 /// # Errors
 /// [`MarginError::OutOfRange`].
@@ -230,9 +250,12 @@ pub fn sensitivity_limit_for_gain_reduction(factor: f64) -> Result<f64, MarginEr
     Ok(factor / (1.0 - factor))
 }
 
-/// The limit on |1/(1+L)| for this phase margin in rad (above zero, up to pi): W = 1/(2
-/// sin(phase/2)), as for
-/// |L/(1+L)|, since both are equal where |L| = 1.
+/// The limit on |1/(1+L)| for this phase margin in rad (above zero, up to pi): as for |L/(1+L)|,
+/// since both are equal where |L| = 1.
+///
+/// ```text
+/// W = 1/(2 sin(phase/2))
+/// ```
 ///
 /// # Errors
 /// [`MarginError::OutOfRange`].
@@ -247,7 +270,12 @@ pub fn sensitivity_limit_for_phase_margin(phase_rad: f64) -> Result<f64, MarginE
     limit_for_phase_margin(phase_rad)
 }
 
-/// The limit on |1/(1+L)| that keeps |1 + L| at this distance (above zero) or more: W = 1/distance.
+/// The limit on |1/(1+L)| that keeps |1 + L| at this distance (above zero) or more.
+///
+/// ```text
+/// W = 1/distance
+/// ```
+///
 /// A loop that vanishes at high frequency cannot keep more than one.
 ///
 /// # Errors
@@ -261,7 +289,11 @@ pub fn sensitivity_limit_for_modulus_margin(distance: f64) -> Result<f64, Margin
     Ok(1.0 / positive("the modulus margin", distance)?)
 }
 
-/// The angle at which |L| = 1 meets |1 + L| = 1/W: 2 sin(phase/2) = 1/W; infinity where it cannot.
+/// The angle at which |L| = 1 meets |1 + L| = 1/W; infinity where it cannot.
+///
+/// ```text
+/// 2 sin(phase/2) = 1/W
+/// ```
 fn phase_margin(limit: f64) -> f64 {
     let sine = 0.5 / limit;
     if sine > 1.0 { f64::INFINITY } else { 2.0 * asin(sine) }

@@ -84,8 +84,10 @@ impl Characteristic {
 
     /// |p|^2 on the boundary of stability as a polynomial in q = |s|^2 or q = |v|^2.
     ///
-    /// There s^2 = -q, or v^2 = -q v - q; so p = a(q) + b(q) s and |p|^2 = a^2 + a b t + b^2 q with
-    /// t = s + conj(s), which is 0 or -q.
+    /// ```text
+    /// continuous:  s^2 = -q:          p = a(q) + b(q) s,    |p|^2 = a^2 + b^2 q
+    /// sampled:     v^2 = -q v - q:    p = a(q) + b(q) v,    |p|^2 = a^2 - a b q + b^2 q    since v + conj(v) = -q
+    /// ```
     fn squared_magnitude(&self, polynomial: &Polynomial) -> Polynomial {
         let continuous = self.domain == TimeDomain::Continuous;
         let times_q = |p: &Polynomial| {

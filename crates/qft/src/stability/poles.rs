@@ -34,7 +34,11 @@ impl Characteristic {
         Ok(Some(roots.iter().map(real_part).fold(f64::NEG_INFINITY, f64::max)))
     }
 
-    /// f = c z^k + n by their roots, and its derivative.
+    /// The characteristic function by the roots of its parts, and its derivative.
+    ///
+    /// ```text
+    /// f = c z^k + n,    f' = c' z^k + k c z^(k-1) + n'
+    /// ```
     fn closed_product(&self, n: &RootProduct, c: &RootProduct, v: Complex64) -> (Complex64, Complex64) {
         let (mut value, mut slope) = c.with_slope(v);
         let z = v + 1.0;

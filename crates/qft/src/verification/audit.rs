@@ -96,7 +96,7 @@ impl AuditProblem<'_> {
 /// use phea_dynamics::watch::unwatched;
 /// use phea_qft::closed_loop::Compensation;
 /// use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily};
-/// use phea_qft::specification::{Limit, Requirement, Specification};
+/// use phea_qft::specification::{ClosedLoop, Limit, Requirement, Specification};
 /// use phea_qft::verification::{AuditProblem, TOLERANCE_DB, TrackingJudgement, Verdict, audit_specifications};
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let gain = UncertainParameter { name: "k".into(), nominal: 1.0, minimum: 1.0, maximum: 2.0 };
@@ -110,7 +110,7 @@ impl AuditProblem<'_> {
 /// let family = Family::Uncertain(UncertainFamily::new(plant, vec![along], vec![], Extent::Box)?);
 /// let compensation = Compensation::new(&Controller::default(), TransferFunction::gain_only(1.0))?;
 /// let sensitivity = Specification {
-///     requirement: Requirement::Sensitivity(Limit::Constant(0.5)),
+///     requirement: Requirement::at_most(ClosedLoop::Sensitivity, Limit::Constant(0.5)),
 ///     frequencies_rad_per_s: vec![1.0],
 ///     band_rad_per_s: [0.0, f64::INFINITY],
 /// };

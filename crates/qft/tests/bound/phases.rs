@@ -7,7 +7,7 @@ use phea_dynamics::portable;
 use phea_qft::bound::{
     Bound, BoundError, BoundFunction, Feasibility, FrequencyBounds, PhaseGrid, Placement, TemplateFill,
 };
-use phea_qft::specification::{Limit, LimitTable, Requirement, Specification};
+use phea_qft::specification::{ClosedLoop, Limit, LimitTable, Requirement, Specification};
 use phea_qft::template::{Resolution, Template, TemplatePoint};
 
 use super::random::{Numbers, random_requirements, random_template};
@@ -45,7 +45,9 @@ fn specification(requirement: Requirement) -> Specification {
 #[test]
 fn the_tip_of_a_closed_bound_is_found() {
     for limit in [1.01, 1.2, 2.0, 7.0] {
-        let bound = function(&unit(), Requirement::RobustStability(Limit::Constant(limit))).bound(&FINE);
+        let bound =
+            function(&unit(), Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(limit)))
+                .bound(&FINE);
         let within = |sign: f64| -PI + sign * portable::asin(1.0 / limit);
         let forbidden: Vec<f64> = bound
             .phases_rad
@@ -61,7 +63,7 @@ fn the_tip_of_a_closed_bound_is_found() {
 
 #[test]
 fn any_grid_of_phases_ends() {
-    let function = function(&unit(), Requirement::RobustStability(Limit::Constant(1.2)));
+    let function = function(&unit(), Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(1.2)));
     for spacing_rad in [0.0, -1.0, f64::NAN, f64::INFINITY, 10.0] {
         let phases = function.bound(&PhaseGrid::uniform(spacing_rad)).phases_rad;
         assert_eq!(phases, [-TAU, 0.0], "{spacing_rad}");
@@ -128,9 +130,9 @@ fn no_small_island_is_overlooked() {
     });
     let grid = PhaseGrid::uniform(5.0_f64.to_radians());
     for requirement in [
-        Requirement::Sensitivity(Limit::Constant(800.0)),
-        Requirement::RobustStability(Limit::Constant(800.0)),
-        Requirement::Tracking { lower: Limit::Constant(1.0), upper: Limit::Constant(2000.0) },
+        Requirement::at_most(ClosedLoop::Sensitivity, Limit::Constant(800.0)),
+        Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(800.0)),
+        Requirement::tracking(Limit::Constant(1.0), Limit::Constant(2000.0)),
     ] {
         let bound = function(&template(&plants), requirement).bound(&grid);
         for plant in plants {
@@ -154,8 +156,8 @@ fn limits_at_and_beside_one_lose_no_digit() {
     let tiny = [0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3];
     for limit in tiny.into_iter().flat_map(|off| [1.0 + off, 1.0 - off]) {
         for requirement in [
-            Requirement::RobustStability(Limit::Constant(limit)),
-            Requirement::ControlEffort(Limit::Constant(limit)),
+            Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(limit)),
+            Requirement::at_most(ClosedLoop::ControlEffort, Limit::Constant(limit)),
         ] {
             let found = at(requirement);
             assert_eq!(found.len(), 1);
@@ -163,9 +165,9 @@ fn limits_at_and_beside_one_lose_no_digit() {
             close(found[0][1], if limit > 1.0 { limit / (limit - 1.0) } else { f64::INFINITY });
         }
         for requirement in [
-            Requirement::Sensitivity(Limit::Constant(limit)),
-            Requirement::PlantInputDisturbance(Limit::Constant(limit)),
-            Requirement::LoadMotion(Limit::Constant(limit)),
+            Requirement::at_most(ClosedLoop::Sensitivity, Limit::Constant(limit)),
+            Requirement::at_most(ClosedLoop::PlantInputDisturbance, Limit::Constant(limit)),
+            Requirement::at_most(ClosedLoop::LoadMotion, Limit::Constant(limit)),
         ] {
             let found = at(requirement);
             assert_eq!(found.len(), 1);
@@ -180,7 +182,8 @@ fn limits_at_and_beside_one_lose_no_digit() {
 fn a_control_effort_at_the_gain_of_a_plant_is_a_half_plane() {
     for gain in [3.0, 0.7, 1e-6, 1e9] {
         let template = template(&[Complex64::new(gain, 0.0)]);
-        let function = function(&template, Requirement::ControlEffort(Limit::Constant(1.0 / gain)));
+        let function =
+            function(&template, Requirement::at_most(ClosedLoop::ControlEffort, Limit::Constant(1.0 / gain)));
         for off in [0.0, 0.5, 1.2] {
             let found = function.forbidden(-PI + off);
             let [[low, high]] = *found.intervals() else { panic!("{found:?}") };
@@ -195,14 +198,19 @@ fn a_control_effort_at_the_gain_of_a_plant_is_a_half_plane() {
 fn limits_at_the_ends_of_what_they_can_be() {
     let constant = Limit::Constant;
     let forbidden = |requirement| function(&unit(), requirement).forbidden(-2.0);
-    assert!(forbidden(Requirement::RobustStability(constant(f64::INFINITY))).is_empty());
-    assert!(forbidden(Requirement::Tracking { lower: constant(0.0), upper: constant(1.0) }).is_empty());
-    assert!(forbidden(Requirement::Tracking { lower: constant(1.0), upper: constant(1.0) }).is_empty());
-    assert!(forbidden(Requirement::Tracking { lower: constant(2.0), upper: constant(1.0) }).is_everything());
-    assert!(forbidden(Requirement::RobustStability(constant(0.0))).is_everything());
-    assert!(forbidden(Requirement::Sensitivity(constant(0.0))).is_everything());
+    assert!(forbidden(Requirement::at_most(ClosedLoop::RobustStability, constant(f64::INFINITY))).is_empty());
+    assert!(forbidden(Requirement::tracking(constant(0.0), constant(1.0))).is_empty());
+    assert!(forbidden(Requirement::tracking(constant(1.0), constant(1.0))).is_empty());
+    assert!(forbidden(Requirement::tracking(constant(2.0), constant(1.0))).is_everything());
+    assert!(forbidden(Requirement::at_most(ClosedLoop::RobustStability, constant(0.0))).is_everything());
+    assert!(forbidden(Requirement::at_most(ClosedLoop::Sensitivity, constant(0.0))).is_everything());
     let refused = |template: &Template, limit| {
-        BoundFunction::new(template, &Requirement::Sensitivity(limit), TemplateFill::Points).unwrap_err()
+        BoundFunction::new(
+            template,
+            &Requirement::at_most(ClosedLoop::Sensitivity, limit),
+            TemplateFill::Points,
+        )
+        .unwrap_err()
     };
     let table = Limit::Table(LimitTable::new(vec![(2.0, 1.0)]).unwrap());
     assert_eq!(refused(&unit(), table), BoundError::NoLimit { frequency_rad_per_s: 1.0 });
@@ -225,10 +233,10 @@ fn specifications_that_collide_are_named_with_their_phases() {
         &[
             Specification {
                 frequencies_rad_per_s: vec![2.0],
-                ..specification(Requirement::Sensitivity(Limit::Constant(0.0)))
+                ..specification(Requirement::at_most(ClosedLoop::Sensitivity, Limit::Constant(0.0)))
             },
-            specification(Requirement::RobustStability(limit.clone())),
-            specification(Requirement::Sensitivity(limit)),
+            specification(Requirement::at_most(ClosedLoop::RobustStability, limit.clone())),
+            specification(Requirement::at_most(ClosedLoop::Sensitivity, limit)),
         ],
         TemplateFill::Points,
     )
@@ -257,8 +265,8 @@ fn specifications_that_collide_are_named_with_their_phases() {
 /// One specification that allows nothing anywhere is named alone.
 #[test]
 fn a_specification_that_forbids_everything_stands_alone() {
-    let impossible = specification(Requirement::Sensitivity(Limit::Constant(0.0)));
-    let margin = specification(Requirement::RobustStability(Limit::Constant(1.2)));
+    let impossible = specification(Requirement::at_most(ClosedLoop::Sensitivity, Limit::Constant(0.0)));
+    let margin = specification(Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(1.2)));
     let bounds = FrequencyBounds::new(&unit(), &[margin, impossible], TemplateFill::Points).unwrap();
     let Feasibility::Nowhere { collisions } = bounds.combined(&PhaseGrid::default()).feasibility else {
         panic!()
@@ -272,7 +280,7 @@ fn a_specification_that_forbids_everything_stands_alone() {
 fn a_loop_is_placed_with_its_distance_in_db() {
     let bounds = FrequencyBounds::new(
         &unit(),
-        &[specification(Requirement::RobustStability(Limit::Constant(2.0)))],
+        &[specification(Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(2.0)))],
         TemplateFill::Points,
     )
     .unwrap();

@@ -4,7 +4,7 @@
 use num_complex::Complex64;
 use phea_dynamics::portable;
 use phea_qft::bound::{BoundFunction, GainIntervals, TemplateFill};
-use phea_qft::specification::{Limit, Requirement};
+use phea_qft::specification::{ClosedLoop, Limit, Requirement};
 use phea_qft::template::{Template, TemplatePoint};
 
 use super::random::{Numbers, random_requirements, random_template, template_of};
@@ -32,34 +32,25 @@ fn school(a: f64, b: f64, c: f64) -> Vec<[f64; 2]> {
 fn plain(template: &Template, requirement: &Requirement, phase_rad: f64) -> GainIntervals {
     let direction = Complex64::new(portable::cos(phase_rad), portable::sin(phase_rad));
     let limit = |limit: &Limit| limit.magnitude(template.frequency_rad_per_s).unwrap();
+    let (lower, upper) = requirement.limits();
+    let w = limit(upper) * limit(upper);
     let mut found = Vec::new();
     for point in &template.points {
         let q = template.nominal / point.response;
         let (size, c) = (q.norm_sqr(), (q.conj() * direction).re);
         let plant = (point.response / point.sensor).norm_sqr();
-        match requirement {
-            Requirement::RobustStability(w) => {
-                let w = limit(w) * limit(w);
-                found.extend(school(w - 1.0, 2.0 * w * c, w * size));
+        match requirement.closed_loop() {
+            ClosedLoop::RobustStability => found.extend(school(w - 1.0, 2.0 * w * c, w * size)),
+            ClosedLoop::Sensitivity => found.extend(school(w, 2.0 * w * c, (w - 1.0) * size)),
+            ClosedLoop::PlantInputDisturbance => found.extend(school(w, 2.0 * w * c, (w - plant) * size)),
+            ClosedLoop::ControlEffort => {
+                found.extend(school(w - 1.0 / point.response.norm_sqr(), 2.0 * w * c, w * size))
             }
-            Requirement::Sensitivity(w) => {
-                let w = limit(w) * limit(w);
-                found.extend(school(w, 2.0 * w * c, (w - 1.0) * size));
+            ClosedLoop::LoadMotion => {
+                found.extend(school(w, 2.0 * w * c, (w - point.load_motion.norm_sqr()) * size))
             }
-            Requirement::PlantInputDisturbance(w) => {
-                let w = limit(w) * limit(w);
-                found.extend(school(w, 2.0 * w * c, (w - plant) * size));
-            }
-            Requirement::ControlEffort(w) => {
-                let w = limit(w) * limit(w);
-                found.extend(school(w - 1.0 / point.response.norm_sqr(), 2.0 * w * c, w * size));
-            }
-            Requirement::LoadMotion(w) => {
-                let w = limit(w) * limit(w);
-                found.extend(school(w, 2.0 * w * c, (w - point.load_motion.norm_sqr()) * size));
-            }
-            Requirement::Tracking { lower, upper } => {
-                let d = limit(upper) / limit(lower);
+            ClosedLoop::Tracking => {
+                let d = limit(upper) / lower.map(limit).unwrap();
                 for other in &template.points {
                     found.extend(pair(template, point, other, d * d, direction));
                 }
@@ -132,7 +123,7 @@ fn the_same_intervals_for_a_thousand_plants() {
         let template = template_of(&mut numbers, 1000);
         for requirement in random_requirements(&mut numbers, &template) {
             let function = BoundFunction::new(&template, &requirement, TemplateFill::Points).unwrap();
-            let tracking = matches!(requirement, Requirement::Tracking { .. });
+            let tracking = requirement.is_tracking();
             for _ in 0..if tracking { 2 } else { 40 } {
                 let phase = numbers.between(-std::f64::consts::TAU, 0.0);
                 let (found, expected) = (function.forbidden(phase), plain(&template, &requirement, phase));

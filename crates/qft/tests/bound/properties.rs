@@ -3,7 +3,7 @@
 use num_complex::Complex64;
 use phea_dynamics::portable;
 use phea_qft::bound::{BoundFunction, TemplateFill};
-use phea_qft::specification::{Limit, LoopResponse, Requirement, Specification};
+use phea_qft::specification::{ClosedLoop, Limit, LoopResponse, Requirement, Specification};
 use phea_qft::template::{Resolution, Template, TemplatePoint};
 
 use super::random::{Numbers, random_requirements, random_template};
@@ -36,12 +36,12 @@ fn worst_db<'a>(
         };
         specification.margin_db(&response(template, point, nominal_loop), 1.0).unwrap()
     };
-    let Requirement::Tracking { lower, upper } = requirement else {
+    let (Some(lower), upper) = requirement.limits() else {
         return points.map(|point| margin(requirement, point)).fold(f64::INFINITY, f64::min);
     };
     // margin to both limits, added: upper/lower over max|T|/min|T|
-    let above = Requirement::Tracking { lower: Limit::Constant(1e-200), upper: upper.clone() };
-    let below = Requirement::Tracking { lower: lower.clone(), upper: Limit::Constant(1e200) };
+    let above = Requirement::tracking(Limit::Constant(1e-200), upper.clone());
+    let below = Requirement::tracking(lower.clone(), Limit::Constant(1e200));
     let start = [f64::INFINITY; 2];
     let [above_db, below_db] = points.fold(start, |[above_db, below_db], point| {
         [above_db.min(margin(&above, point)), below_db.min(margin(&below, point))]
@@ -122,7 +122,7 @@ fn a_filled_bound_serves_the_whole_region_and_forbids_only_what_a_plant_of_it_fo
     for trial in 0..60 {
         let (template, members) = disc(&mut numbers);
         for requirement in random_requirements(&mut numbers, &template) {
-            if matches!(requirement, Requirement::LoadMotion(_) | Requirement::ControlEffort(_)) {
+            if matches!(requirement.closed_loop(), ClosedLoop::LoadMotion | ClosedLoop::ControlEffort) {
                 continue;
             }
             let [points, filled] = [TemplateFill::Points, TemplateFill::Filled]
@@ -179,7 +179,8 @@ fn a_filled_bound_of_the_control_effort_serves_the_region_in_the_plane_of_the_pl
         grid.map(|(row, column)| plant(Complex64::new(step(row), step(column)))).collect();
     let mut counts = [0; 2];
     for _ in 0..60 {
-        let requirement = Requirement::ControlEffort(Limit::Constant(numbers.factor(0.05, 5.0)));
+        let requirement =
+            Requirement::at_most(ClosedLoop::ControlEffort, Limit::Constant(numbers.factor(0.05, 5.0)));
         let function = BoundFunction::new(&template, &requirement, TemplateFill::Filled).unwrap();
         for _ in 0..5 {
             let nominal_loop = numbers.polar([0.05, 5.0], [-std::f64::consts::TAU, 0.0]);

@@ -4,7 +4,7 @@ use num_complex::Complex64;
 use phea_dynamics::linear::{Polynomial, TransferFunction};
 use phea_dynamics::portable;
 use phea_qft::bound::{BoundFunction, GainIntervals, TemplateFill};
-use phea_qft::specification::{Limit, Requirement};
+use phea_qft::specification::{ClosedLoop, Limit, Requirement};
 use phea_qft::template::{Resolution, Template, TemplatePoint};
 
 fn template(frequency: f64, plants: &[Complex64]) -> Template {
@@ -46,13 +46,13 @@ fn example_a(frequency: f64) -> Template {
 }
 
 fn specifications_of_a(frequency: f64) -> Vec<Requirement> {
-    let mut requirements = vec![Requirement::RobustStability(Limit::Constant(1.2))];
+    let mut requirements = vec![Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(1.2))];
     if frequency <= 10.0 {
         let limit = rational(&[0.02, 1.28, 14.96, 48.0], &[1.0, 14.4, 169.0]);
-        requirements.push(Requirement::Sensitivity(limit));
+        requirements.push(Requirement::at_most(ClosedLoop::Sensitivity, limit));
     }
     if frequency <= 50.0 {
-        requirements.push(Requirement::PlantInputDisturbance(Limit::Constant(0.01)));
+        requirements.push(Requirement::at_most(ClosedLoop::PlantInputDisturbance, Limit::Constant(0.01)));
     }
     requirements
 }
@@ -63,10 +63,10 @@ fn example_b(frequency: f64) -> (Template, Requirement) {
     let range = equally_spaced(1.0, 10.0, 19);
     let plants: Vec<Complex64> =
         range.clone().flat_map(|a| range.clone().map(move |k| k * a / (s * (s + a)))).collect();
-    let tracking = Requirement::Tracking {
-        lower: rational(&[120.0], &[1.0, 17.0, 82.0, 120.0]),
-        upper: rational(&[0.6584, 19.752], &[1.0, 4.0, 19.752]),
-    };
+    let tracking = Requirement::tracking(
+        rational(&[120.0], &[1.0, 17.0, 82.0, 120.0]),
+        rational(&[0.6584, 19.752], &[1.0, 4.0, 19.752]),
+    );
     (template(frequency, &plants), tracking)
 }
 

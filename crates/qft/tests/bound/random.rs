@@ -2,7 +2,7 @@
 
 use num_complex::Complex64;
 use phea_dynamics::portable;
-use phea_qft::specification::{Limit, Requirement};
+use phea_qft::specification::{ClosedLoop, Limit, Requirement};
 use phea_qft::template::{Resolution, Template, TemplatePoint};
 
 /// Numbers in [0, 1), the same in every run (Marsaglia 2003, xorshift).
@@ -77,11 +77,11 @@ pub(crate) fn random_requirements(numbers: &mut Numbers, template: &Template) ->
     let sensor = portable::magnitude(template.points[0].sensor);
     let load_motion = portable::magnitude(template.points[0].load_motion);
     vec![
-        Requirement::RobustStability(limit(1.0)),
-        Requirement::Sensitivity(limit(1.0)),
-        Requirement::PlantInputDisturbance(limit(response / sensor)),
-        Requirement::ControlEffort(limit(1.0 / response)),
-        Requirement::LoadMotion(limit(load_motion)),
-        Requirement::Tracking { lower: Limit::Constant(1.0), upper: limit(1.0) },
+        Requirement::at_most(ClosedLoop::RobustStability, limit(1.0)),
+        Requirement::at_most(ClosedLoop::Sensitivity, limit(1.0)),
+        Requirement::at_most(ClosedLoop::PlantInputDisturbance, limit(response / sensor)),
+        Requirement::at_most(ClosedLoop::ControlEffort, limit(1.0 / response)),
+        Requirement::at_most(ClosedLoop::LoadMotion, limit(load_motion)),
+        Requirement::tracking(Limit::Constant(1.0), limit(1.0)),
     ]
 }

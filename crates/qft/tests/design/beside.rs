@@ -4,7 +4,7 @@ use phea_dynamics::uncertain_plant::UncertainPlant;
 use phea_dynamics::watch::unwatched;
 use phea_qft::design::{Design, DesignOptions, DesignProblem, DesignStatus, design, design_again};
 use phea_qft::family::{Extent, Family, UncertainFamily};
-use phea_qft::specification::Requirement;
+use phea_qft::specification::{ClosedLoop, Requirement};
 use phea_qft::verification::{TrackingJudgement, Verdict};
 
 use super::problems::{
@@ -24,7 +24,7 @@ const LATE: [f64; 2] = [4.0, 0.2];
 /// |T| <= 1.3 and |S| <= 2 |s/(s + 3)|, of the quick plant and these others.
 fn regulation(others: &[[f64; 2]]) -> DesignProblem {
     let frequencies = [0.1, 1.0, 10.0];
-    let sensitivity = Requirement::Sensitivity(rational(&[2.0, 0.0], &[1.0, 3.0]));
+    let sensitivity = Requirement::at_most(ClosedLoop::Sensitivity, rational(&[2.0, 0.0], &[1.0, 3.0]));
     let specifications = vec![stability(1.3, &frequencies), demand(sensitivity, &frequencies, EVERYWHERE)];
     let members = others.iter().map(|one| one.to_vec()).collect();
     let family = UncertainFamily::new(lagging(QUICK), vec![], members, Extent::Members).unwrap();

@@ -4,7 +4,7 @@ use phea_dynamics::controller::Timing;
 use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients, UncertainPlant};
 use phea_qft::design::DesignProblem;
 use phea_qft::family::Spacing;
-use phea_qft::specification::Requirement;
+use phea_qft::specification::{ClosedLoop, Requirement};
 use phea_qft::verification::TrackingJudgement;
 
 use super::problems::{
@@ -27,7 +27,7 @@ fn regulation(gain_in_path: f64, rate_feed_forward: f64) -> DesignProblem {
         }
     });
     let frequencies = [0.1, 1.0, 10.0];
-    let motion = Requirement::LoadMotion(rational(&[4.0, 0.0], &[1.0, 3.0]));
+    let motion = Requirement::at_most(ClosedLoop::LoadMotion, rational(&[4.0, 0.0], &[1.0, 3.0]));
     let specifications = vec![stability(1.3, &frequencies), demand(motion, &frequencies, EVERYWHERE)];
     DesignProblem {
         timing: Timing { rate_feed_forward, ..Timing::default() },

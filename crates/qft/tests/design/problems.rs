@@ -15,7 +15,7 @@ use phea_qft::design::{
 };
 use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, grid};
 use phea_qft::loop_shaping::{Structure, StructureFactor};
-use phea_qft::specification::{Limit, Requirement, Specification};
+use phea_qft::specification::{ClosedLoop, Limit, Requirement, Specification};
 use phea_qft::verification::{Audit, AuditProblem, TOLERANCE_DB, TrackingJudgement, Verdict};
 
 pub(crate) const EVERYWHERE: [f64; 2] = [0.0, f64::INFINITY];
@@ -75,15 +75,15 @@ pub(crate) fn demand(requirement: Requirement, frequencies: &[f64], band: [f64; 
 }
 
 pub(crate) fn stability(limit: f64, frequencies: &[f64]) -> Specification {
-    demand(Requirement::RobustStability(Limit::Constant(limit)), frequencies, EVERYWHERE)
+    demand(Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(limit)), frequencies, EVERYWHERE)
 }
 
 /// The tracking of the servo up to this frequency, rad/s.
 pub(crate) fn following(frequencies: &[f64], to: f64) -> Specification {
-    let requirement = Requirement::Tracking {
-        lower: rational(&[120.0], &[1.0, 17.0, 82.0, 120.0]),
-        upper: rational(&[0.6584, 19.752], &[1.0, 4.0, 19.752]),
-    };
+    let requirement = Requirement::tracking(
+        rational(&[120.0], &[1.0, 17.0, 82.0, 120.0]),
+        rational(&[0.6584, 19.752], &[1.0, 4.0, 19.752]),
+    );
     demand(requirement, frequencies, [0.0, to])
 }
 

@@ -3,7 +3,7 @@
 use phea_dynamics::portable;
 use phea_qft::design::{ControllerChoice, DesignOptions};
 use phea_qft::family::{Extent, Family, Spacing, UncertainFamily};
-use phea_qft::specification::{Limit, Requirement};
+use phea_qft::specification::{ClosedLoop, Limit, Requirement};
 use phea_qft::verification::TrackingJudgement;
 
 use super::problems::{
@@ -35,10 +35,10 @@ fn edge_plants() -> Family {
 #[test]
 fn edge_plants_with_less_gain_than_published() {
     let sensitivity = rational(&[0.02, 1.28, 14.96, 48.0], &[1.0, 14.4, 169.0]);
-    let disturbance = Requirement::PlantInputDisturbance(Limit::Constant(0.01));
+    let disturbance = Requirement::at_most(ClosedLoop::PlantInputDisturbance, Limit::Constant(0.01));
     let specifications = vec![
         stability(1.2, &[0.1, 5.0, 10.0, 100.0]),
-        demand(Requirement::Sensitivity(sensitivity), &[0.1, 5.0, 10.0], [0.0, 10.0]),
+        demand(Requirement::at_most(ClosedLoop::Sensitivity, sensitivity), &[0.1, 5.0, 10.0], [0.0, 10.0]),
         demand(disturbance, &[0.1, 5.0, 10.0], [0.0, 50.0]),
     ];
     let problem = problem(edge_plants(), specifications);
@@ -64,7 +64,8 @@ fn a_wheel_with_less_gain_than_published() {
         let numerator = vec![p[0] * square, p[0] * p[1] * square];
         (numerator, vec![1.0.into(), p[2] * p[3] * 2.0.into(), square])
     });
-    let sensitivity = Requirement::Sensitivity(Limit::Constant(10.0_f64.powf(6.0 / 20.0)));
+    let sensitivity =
+        Requirement::at_most(ClosedLoop::Sensitivity, Limit::Constant(10.0_f64.powf(6.0 / 20.0)));
     let frequencies = [0.2, 0.5, 1.0, 3.0, 5.0, 7.0, 10.0, 20.0, 50.0];
     let problem =
         problem(boxed(plant, Spacing::Linear, 3), vec![demand(sensitivity, &frequencies, EVERYWHERE)]);

@@ -2,7 +2,7 @@
 
 use phea_dynamics::linear::TransferFunction;
 use phea_qft::design::{Design, DesignProblem, DesignStatus, Relaxation};
-use phea_qft::specification::{Limit, Requirement, Specification};
+use phea_qft::specification::{ClosedLoop, Limit, Requirement, Specification};
 use phea_qft::verification::{TrackingJudgement, Verdict};
 
 use super::problems::{audited, demand, designed, example_d, integrator, least_gain, problem, structure};
@@ -22,13 +22,9 @@ fn times(limit: &Limit, factor: f64) -> Limit {
 /// Every upper limit raised and every lower one lowered by this number of dB.
 fn relaxed(problem: &DesignProblem, relaxation_db: f64) -> DesignProblem {
     let factor = 10.0_f64.powf(relaxation_db / 20.0);
-    let requirement = |one: &Requirement| match one {
-        Requirement::RobustStability(limit) => Requirement::RobustStability(times(limit, factor)),
-        Requirement::Sensitivity(limit) => Requirement::Sensitivity(times(limit, factor)),
-        Requirement::Tracking { lower, upper } => {
-            Requirement::Tracking { lower: times(lower, 1.0 / factor), upper: times(upper, factor) }
-        }
-        _ => panic!("{one:?}"),
+    let requirement = |one: &Requirement| match one.limits() {
+        (Some(lower), upper) => Requirement::tracking(times(lower, 1.0 / factor), times(upper, factor)),
+        (None, limit) => Requirement::at_most(one.closed_loop(), times(limit, factor)),
     };
     let specifications = problem
         .specifications
@@ -46,8 +42,16 @@ fn relaxation(design: &Design) -> &Relaxation {
 /// Sensitivity up to 1 rad/s against complementary sensitivity from there on.
 fn integrator_problem(greatest: f64, [sensitivity, complementary]: [f64; 2]) -> DesignProblem {
     let specifications = vec![
-        demand(Requirement::Sensitivity(Limit::Constant(sensitivity)), &[1.0], [0.0, 1.0]),
-        demand(Requirement::RobustStability(Limit::Constant(complementary)), &[1.0], [1.0, f64::INFINITY]),
+        demand(
+            Requirement::at_most(ClosedLoop::Sensitivity, Limit::Constant(sensitivity)),
+            &[1.0],
+            [0.0, 1.0],
+        ),
+        demand(
+            Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(complementary)),
+            &[1.0],
+            [1.0, f64::INFINITY],
+        ),
     ];
     problem(integrator(greatest), specifications)
 }

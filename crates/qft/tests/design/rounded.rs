@@ -10,7 +10,7 @@ use phea_qft::design::{
 };
 use phea_qft::family::{Family, Spacing};
 use phea_qft::loop_shaping::{Structure, StructureFactor};
-use phea_qft::specification::Requirement;
+use phea_qft::specification::{ClosedLoop, Requirement};
 use phea_qft::verification::{TrackingJudgement, Verdict};
 
 use super::problems::{
@@ -29,7 +29,7 @@ fn lag() -> Family {
 /// |T| <= 1.3 and |S| <= 2 |s/(s + 3)| at 100 Hz.
 fn regulation() -> DesignProblem {
     let frequencies = [0.1, 1.0, 10.0];
-    let sensitivity = Requirement::Sensitivity(rational(&[2.0, 0.0], &[1.0, 3.0]));
+    let sensitivity = Requirement::at_most(ClosedLoop::Sensitivity, rational(&[2.0, 0.0], &[1.0, 3.0]));
     let specifications = vec![stability(1.3, &frequencies), demand(sensitivity, &frequencies, EVERYWHERE)];
     let timing = Timing { sample_time_s: Some(SAMPLE), ..Timing::default() };
     DesignProblem { timing, ..problem(lag(), specifications) }

@@ -9,7 +9,7 @@ use phea_dynamics::uncertain_plant::{
 use phea_qft::design::quantization::CoefficientFormat;
 use phea_qft::design::{ControllerChoice, DesignOptions, DesignProblem, Objective, PrefilterChoice};
 use phea_qft::family::Spacing;
-use phea_qft::specification::{Limit, Requirement, Specification};
+use phea_qft::specification::{ClosedLoop, Limit, Requirement, Specification};
 use phea_qft::verification::{TOLERANCE_DB, TrackingJudgement};
 
 use super::problems::{
@@ -31,10 +31,10 @@ fn growing(maximum_order: usize, prefilter: PrefilterChoice, seed: u64) -> Desig
 const SUSPENSION: [f64; 11] = [0.1, 1.0, 1.5, 2.0, 2.5, 3.0, 3.66, 5.5, 10.0, 20.0, 30.0];
 
 fn suspension_tracking() -> Specification {
-    let requirement = Requirement::Tracking {
-        lower: rational(&[916.3], &[1.0, 39.76, 354.9, 916.3]),
-        upper: rational(&[1.722, 68.89], &[1.0, 16.6, 68.89]),
-    };
+    let requirement = Requirement::tracking(
+        rational(&[916.3], &[1.0, 39.76, 354.9, 916.3]),
+        rational(&[1.722, 68.89], &[1.0, 16.6, 68.89]),
+    );
     demand(requirement, &SUSPENSION, [0.0, 30.0])
 }
 
@@ -51,7 +51,7 @@ fn attracted_magnet() -> DesignProblem {
     let plant = uncertain(&[("a", 430.25, 382.0, 478.5), ("k", 1063.5, 1021.0, 1106.0)], |p| {
         (vec![p[1]], vec![1.0.into(), 0.0.into(), -p[0]])
     });
-    let stable = Requirement::RobustStability(Limit::Constant(1.2));
+    let stable = Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(1.2));
     let specifications = vec![demand(stable, &SUSPENSION, [0.0, 30.0]), suspension_tracking()];
     problem(boxed(plant, Spacing::Linear, 3), specifications)
 }
@@ -118,7 +118,8 @@ fn unstable_resonance() -> DesignProblem {
         let resonance = [one, Recorded::from(2.0 * 0.0637575 * W), Recorded::from(W * W)];
         (vec![p[0] * Recorded::from(W * W)], product(&product(&pole, &lag), &resonance))
     });
-    let sensitivity = Requirement::Sensitivity(rational(&[40.5551149869696, 0.0], &[1.0, 57.6809]));
+    let sensitivity =
+        Requirement::at_most(ClosedLoop::Sensitivity, rational(&[40.5551149869696, 0.0], &[1.0, 57.6809]));
     let specifications = vec![
         stability(35.319516964544526, &[1.73, 5.77, 17.3, 57.7, 173.0]),
         demand(sensitivity, &[1.73, 5.77, 17.3], [0.0, 28.8404]),
@@ -141,10 +142,10 @@ fn missile() -> DesignProblem {
     ];
     let plant = uncertain(&parameters, |p| (vec![p[0], p[1]], vec![p[2], p[3], p[4], -p[5]]));
     let frequencies = [0.1, 0.5, 1.0, 2.0, 5.0, 10.0, 15.0, 20.0, 50.0];
-    let tracking = Requirement::Tracking {
-        lower: rational(&[120.0], &[1.0, 17.0, 82.0, 120.0]),
-        upper: rational(&[0.6584, 19.752], &[1.0, 4.0, 19.752]),
-    };
+    let tracking = Requirement::tracking(
+        rational(&[120.0], &[1.0, 17.0, 82.0, 120.0]),
+        rational(&[0.6584, 19.752], &[1.0, 4.0, 19.752]),
+    );
     let specifications = vec![stability(1.2, &frequencies), demand(tracking, &frequencies[..7], [0.0, 15.0])];
     problem(boxed(plant, Spacing::Linear, 2), specifications)
 }
@@ -223,7 +224,8 @@ fn a_pair_of_zeros_over_a_pair_of_poles_is_tried() {
         (vec![p[0], p[0] * Recorded::from(0.4), p[0]], vec![1.0.into(), 2.0.into(), 1.0.into()])
     });
     let frequencies = [0.1, 1.0, 10.0];
-    let sensitivity = demand(Requirement::Sensitivity(Limit::Constant(0.6)), &frequencies, EVERYWHERE);
+    let sensitivity =
+        demand(Requirement::at_most(ClosedLoop::Sensitivity, Limit::Constant(0.6)), &frequencies, EVERYWHERE);
     let problem = problem(boxed(plant, Spacing::Linear, 3), vec![stability(0.6, &frequencies), sensitivity]);
     let design = designed(&problem, growing(2, PrefilterChoice::None, 1));
     assert_met(&problem, &design, TrackingJudgement::Spread);

@@ -1,7 +1,7 @@
 //! Limits that contradict each other at a frequency.
 
 use phea_qft::design::Finding;
-use phea_qft::specification::{Limit, Requirement};
+use phea_qft::specification::{ClosedLoop, Limit, Requirement};
 
 use super::problems::{boxed, decibels, demand, impossibilities, plain, problem, rational, single};
 
@@ -10,8 +10,16 @@ use super::problems::{boxed, decibels, demand, impossibilities, plain, problem, 
 fn sensitivity_against_complementary_sensitivity() {
     let of = |limit_of_s: f64| {
         let specifications = vec![
-            demand(Requirement::Sensitivity(Limit::Constant(limit_of_s)), &[2.0], [1.0, 3.0]),
-            demand(Requirement::RobustStability(Limit::Constant(0.5)), &[2.0], [2.0, 100.0]),
+            demand(
+                Requirement::at_most(ClosedLoop::Sensitivity, Limit::Constant(limit_of_s)),
+                &[2.0],
+                [1.0, 3.0],
+            ),
+            demand(
+                Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(0.5)),
+                &[2.0],
+                [2.0, 100.0],
+            ),
         ];
         problem(single(&[1.0], &[1.0, 1.0], 0.0), specifications)
     };
@@ -41,9 +49,13 @@ fn sensitivity_against_complementary_sensitivity() {
 fn effort_against_disturbance() {
     // ORIGIN: analytic, |P(j 2)| = 8/4 for 8/(s^2): |T| <= 0.2 * 2, |S| <= 1/2
     let specifications = vec![
-        demand(Requirement::ControlEffort(Limit::Constant(0.2)), &[], [2.0, 2.0]),
-        demand(Requirement::PlantInputDisturbance(Limit::Constant(1.0)), &[2.0], [2.0, 2.0]),
-        demand(Requirement::ControlEffort(Limit::Constant(0.2)), &[2.0], [1.99, 2.01]),
+        demand(Requirement::at_most(ClosedLoop::ControlEffort, Limit::Constant(0.2)), &[], [2.0, 2.0]),
+        demand(
+            Requirement::at_most(ClosedLoop::PlantInputDisturbance, Limit::Constant(1.0)),
+            &[2.0],
+            [2.0, 2.0],
+        ),
+        demand(Requirement::at_most(ClosedLoop::ControlEffort, Limit::Constant(0.2)), &[2.0], [1.99, 2.01]),
     ];
     let found = impossibilities(&problem(single(&[8.0], &[1.0, 0.0, 0.0], 0.0), specifications));
     let contradiction = found.iter().find_map(|finding| match finding {
@@ -61,9 +73,8 @@ fn spread_against_stability_takes_two_plants() {
     let of = |ratio: f64| {
         let family =
             boxed(&[("k", 1.0, 1.0, 10.0)], 3, |p| plain(vec![p[0]], vec![1.0.into(), 1.0.into()], 0.0));
-        let tracking =
-            Requirement::Tracking { lower: Limit::Constant(1.0 / ratio), upper: Limit::Constant(ratio) };
-        let effort = Requirement::ControlEffort(Limit::Constant(0.5));
+        let tracking = Requirement::tracking(Limit::Constant(1.0 / ratio), Limit::Constant(ratio));
+        let effort = Requirement::at_most(ClosedLoop::ControlEffort, Limit::Constant(0.5));
         problem(family, vec![demand(tracking, &[1.0], [1.0, 1.0]), demand(effort, &[1.0], [1.0, 1.0])])
     };
     // |G| must be small: the spread stays near 10, whatever the limits of |T|
@@ -80,10 +91,7 @@ fn spread_against_stability_takes_two_plants() {
 
 #[test]
 fn crossed_limits_of_tracking() {
-    let tracking = Requirement::Tracking {
-        lower: rational(&[10.0], &[1.0, 10.0]),
-        upper: rational(&[9.0], &[1.0, 9.0]),
-    };
+    let tracking = Requirement::tracking(rational(&[10.0], &[1.0, 10.0]), rational(&[9.0], &[1.0, 9.0]));
     let found = impossibilities(&problem(
         single(&[1.0], &[1.0, 0.0], 0.0),
         vec![demand(tracking, &[1.0], [0.0, 50.0])],
@@ -99,17 +107,17 @@ fn crossed_limits_of_tracking() {
 /// T = 1 at a pole on the axis, S = 1 and T = 0 at a zero.
 #[test]
 fn poles_and_zeros_on_the_axis() {
-    let low = Requirement::RobustStability(Limit::Constant(0.9));
+    let low = Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(0.9));
     let found =
         impossibilities(&problem(single(&[1.0], &[1.0, 0.0, 4.0], 0.0), vec![demand(low, &[], [1.0, 3.0])]));
     assert!(matches!(found[0], Finding::PoleOnTheAxis { frequency_rad_per_s: 2.0, .. }), "{found:?}");
-    let following = Requirement::Tracking { lower: Limit::Constant(0.5), upper: Limit::Constant(1.5) };
+    let following = Requirement::tracking(Limit::Constant(0.5), Limit::Constant(1.5));
     let found = impossibilities(&problem(
         single(&[1.0, 0.0], &[1.0, 1.0], 0.0),
         vec![demand(following, &[], [0.0, 1.0])],
     ));
     assert!(matches!(found[0], Finding::ZeroOnTheAxis { frequency_rad_per_s: 0.0, .. }), "{found:?}");
-    let quiet = Requirement::Sensitivity(Limit::Constant(0.5));
+    let quiet = Requirement::at_most(ClosedLoop::Sensitivity, Limit::Constant(0.5));
     let found = impossibilities(&problem(
         single(&[1.0, 0.0, 9.0], &[1.0, 2.0, 1.0], 0.0),
         vec![demand(quiet, &[], [2.9, 3.1])],

@@ -6,7 +6,7 @@ use num_complex::Complex64;
 use phea_dynamics::linear::TransferFunction;
 use phea_qft::design::{ConstraintPlace, DesignProblem};
 use phea_qft::family::Family;
-use phea_qft::specification::{Limit, Requirement};
+use phea_qft::specification::{ClosedLoop, Limit, Requirement};
 
 use super::problems::{
     boxed, constraints, decibels, demand, everywhere, forced_peak_db, impossibilities, plain, problem,
@@ -14,11 +14,11 @@ use super::problems::{
 };
 
 fn limit_of_t(limit: f64) -> Requirement {
-    Requirement::RobustStability(Limit::Constant(limit))
+    Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(limit))
 }
 
 fn limit_of_s(limit: f64) -> Requirement {
-    Requirement::Sensitivity(Limit::Constant(limit))
+    Requirement::at_most(ClosedLoop::Sensitivity, Limit::Constant(limit))
 }
 
 /// A limit that falls short by 1 dB is found, with that 1 dB; one with 0.05 dB to spare is not.
@@ -62,7 +62,7 @@ fn a_complex_pair_counts_twice() {
 /// |G S| >= 1/|P_s(p)| with P_s = k/(s + p): 2 p/k for k/(s - p), which proportional control reaches.
 #[test]
 fn an_unstable_plant_costs_control_effort() {
-    let effort = |limit: f64| Requirement::ControlEffort(Limit::Constant(limit));
+    let effort = |limit: f64| Requirement::at_most(ClosedLoop::ControlEffort, Limit::Constant(limit));
     check(&single(&[5.0], &[1.0, -3.0], 0.0), effort, 6.0 / 5.0, pole(3.0));
 }
 
@@ -70,7 +70,8 @@ fn an_unstable_plant_costs_control_effort() {
 #[test]
 fn a_zero_costs_disturbance_rejection() {
     // ORIGIN: analytic, P = 4 (2 - s)/(s + 1)^2: |P_m(2)| = 4 (2 + 2)/9
-    let disturbance = |limit: f64| Requirement::PlantInputDisturbance(Limit::Constant(limit));
+    let disturbance =
+        |limit: f64| Requirement::at_most(ClosedLoop::PlantInputDisturbance, Limit::Constant(limit));
     check(&single(&[-4.0, 8.0], &[1.0, 2.0, 1.0], 0.0), disturbance, 16.0 / 9.0, zero(2.0));
 }
 
@@ -78,7 +79,7 @@ fn a_zero_costs_disturbance_rejection() {
 #[test]
 fn a_pole_above_the_bandwidth_allowed_is_told() {
     let of = |p: f64| {
-        let limit = Requirement::RobustStability(rational(&[4.0], &[1.0, 2.0])); // 2 * 2/(s + 2)
+        let limit = Requirement::at_most(ClosedLoop::RobustStability, rational(&[4.0], &[1.0, 2.0])); // 2 * 2/(s + 2)
         problem(single(&[1.0], &[1.0, -p], 0.0), vec![everywhere(limit)])
     };
     let found = constraints(&of(5.0));
@@ -94,7 +95,8 @@ fn a_pole_above_the_bandwidth_allowed_is_told() {
 #[test]
 fn a_zero_below_the_bandwidth_demanded_is_told() {
     let of = |bandwidth: f64| {
-        let limit = Requirement::Sensitivity(rational(&[2.0, 0.0], &[1.0, 2.0 * bandwidth]));
+        let limit =
+            Requirement::at_most(ClosedLoop::Sensitivity, rational(&[2.0, 0.0], &[1.0, 2.0 * bandwidth]));
         problem(single(&[1.0, -10.0], &[1.0, 2.0, 1.0], 0.0), vec![everywhere(limit)])
     };
     assert_eq!(impossibilities(&of(4.9)), []);
@@ -122,7 +124,8 @@ fn what_is_not_limited_must_rise() {
 #[test]
 fn a_stable_plant_has_a_water_bed() {
     let of = |peak: f64, dead_time_s: f64| {
-        let roll_off = Requirement::RobustStability(rational(&[100.0], &[1.0, 0.0, 0.0]));
+        let roll_off =
+            Requirement::at_most(ClosedLoop::RobustStability, rational(&[100.0], &[1.0, 0.0, 0.0]));
         let specifications = vec![
             demand(limit_of_s(0.01), &[], [0.0, 3.0]),
             demand(limit_of_s(peak), &[], [3.0, 10.0]),
@@ -195,7 +198,7 @@ fn tracking_beyond_what_dead_time_leaves_is_told() {
     let of = |to: f64| {
         let family =
             boxed(&[("k", 1.0, 1.0, 10.0)], 3, |p| plain(vec![p[0]], vec![1.0.into(), 0.0.into()], 0.1));
-        let tracking = Requirement::Tracking { lower: Limit::Constant(0.9), upper: Limit::Constant(1.1) };
+        let tracking = Requirement::tracking(Limit::Constant(0.9), Limit::Constant(1.1));
         problem(family, vec![everywhere(limit_of_t(1.5)), demand(tracking, &[], [0.0, to])])
     };
     assert_eq!(impossibilities(&of(0.3)), []);

@@ -1,7 +1,7 @@
 //! The mistakes of `examples/qft/mistakes`: each is explained, in one sentence, with its numbers.
 
 use phea_qft::design::{ConstraintPlace, Finding, diagnose};
-use phea_qft::specification::{Limit, Requirement};
+use phea_qft::specification::{ClosedLoop, Limit, Requirement};
 
 use super::problems::{EVERYWHERE, boxed, decibels, demand, plain, problem, rational};
 
@@ -13,8 +13,8 @@ fn numbers<'t, const N: usize>(values: [f64; N]) -> Vec<phea_dynamics::expressio
 #[test]
 fn contradictory_bounds() {
     let family = boxed(&[("k", 10.0, 10.0, 20.0)], 3, |p| plain(vec![p[0]], numbers([1.0, 5.0, 0.0]), 0.0));
-    let sensitivity = Requirement::Sensitivity(rational(&[1.0, 0.0], &[1.0, 30.0]));
-    let stability = Requirement::RobustStability(rational(&[5.0], &[1.0, 5.0]));
+    let sensitivity = Requirement::at_most(ClosedLoop::Sensitivity, rational(&[1.0, 0.0], &[1.0, 30.0]));
+    let stability = Requirement::at_most(ClosedLoop::RobustStability, rational(&[5.0], &[1.0, 5.0]));
     let specifications = vec![
         demand(sensitivity, &[0.1, 1.0, 10.0], [0.0, 10.0]),
         demand(stability, &[8.0, 10.0, 100.0], [8.0, f64::INFINITY]),
@@ -41,9 +41,9 @@ fn contradictory_bounds() {
 #[test]
 fn wide_tracking() {
     let family = boxed(&[("k", 1.0, 1.0, 10.0)], 5, |p| plain(vec![p[0]], numbers([1.0, 0.0]), 0.1));
-    let tracking = Requirement::Tracking { lower: Limit::Constant(0.9), upper: Limit::Constant(1.1) };
+    let tracking = Requirement::tracking(Limit::Constant(0.9), Limit::Constant(1.1));
     let frequencies = [0.1, 1.0, 10.0, 60.0];
-    let stability = Requirement::RobustStability(Limit::Constant(1.4));
+    let stability = Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(1.4));
     let specifications =
         vec![demand(stability, &frequencies, EVERYWHERE), demand(tracking, &frequencies, [0.0, 60.0])];
     let found = diagnose(&problem(family, specifications));
@@ -59,7 +59,7 @@ fn fast_unstable_pole() {
     let family = boxed(&[("k", 10.0, 8.0, 12.0), ("w", 4.0, 3.8, 4.2)], 3, |p| {
         plain(vec![p[0]], vec![1.0.into(), 0.0.into(), -(p[1] * p[1])], 0.0)
     });
-    let roll_off = Requirement::RobustStability(rational(&[3.0], &[1.0, 2.0]));
+    let roll_off = Requirement::at_most(ClosedLoop::RobustStability, rational(&[3.0], &[1.0, 2.0]));
     let specification = demand(roll_off, &[0.1, 1.0, 2.0, 5.0, 10.0, 50.0], EVERYWHERE);
     let found = diagnose(&problem(family, vec![specification]));
     let Finding::RightHalfPlane { constraint, relaxation_db } = &found[0] else { panic!("{found:?}") };

@@ -4,13 +4,13 @@ use phea_dynamics::expression::Recorded;
 use phea_dynamics::uncertain_plant::{PlantCoefficients, UncertainParameter, UncertainPlant};
 use phea_qft::design::{FindingSeverity, diagnose};
 use phea_qft::family::{Extent, Family, UncertainFamily};
-use phea_qft::specification::{Limit, Requirement, Specification};
+use phea_qft::specification::{ClosedLoop, Limit, Requirement, Specification};
 
 use super::problems::{EVERYWHERE, boxed, demand, plain, problem, rational, sampled};
 use crate::rig::force;
 
 fn stability(limit: f64, frequencies: &[f64]) -> Specification {
-    demand(Requirement::RobustStability(Limit::Constant(limit)), frequencies, EVERYWHERE)
+    demand(Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(limit)), frequencies, EVERYWHERE)
 }
 
 fn silent(family: Family, specifications: Vec<Specification>) {
@@ -39,10 +39,10 @@ fn forty_edge_plants() {
     });
     let family = UncertainFamily::new(plant, vec![], members.collect(), Extent::Members).unwrap();
     let limit = rational(&[0.02, 1.28, 14.96, 48.0], &[1.0, 14.4, 169.0]);
-    let disturbance = Requirement::PlantInputDisturbance(Limit::Constant(0.01));
+    let disturbance = Requirement::at_most(ClosedLoop::PlantInputDisturbance, Limit::Constant(0.01));
     let specifications = vec![
         stability(1.2, &[0.1, 5.0, 10.0, 100.0]),
-        demand(Requirement::Sensitivity(limit), &[0.1, 5.0, 10.0], [0.0, 10.0]),
+        demand(Requirement::at_most(ClosedLoop::Sensitivity, limit), &[0.1, 5.0, 10.0], [0.0, 10.0]),
         demand(disturbance, &[0.1, 5.0, 10.0], [0.0, 50.0]),
     ];
     silent(Family::Uncertain(family), specifications);
@@ -55,10 +55,10 @@ fn servo() {
         let family = boxed(&[("k", 1.0, 1.0, 10.0), ("a", 1.0, 1.0, 10.0)], 5, |p| {
             plain(vec![p[0] * p[1]], vec![1.0.into(), p[1], 0.0.into()], 0.0)
         });
-        let tracking = Requirement::Tracking {
-            upper: rational(&[0.6584, 19.752], &[1.0, 4.0, 19.752]),
-            lower: rational(&[120.0], &[1.0, 17.0, 82.0, 120.0]),
-        };
+        let tracking = Requirement::tracking(
+            rational(&[120.0], &[1.0, 17.0, 82.0, 120.0]),
+            rational(&[0.6584, 19.752], &[1.0, 4.0, 19.752]),
+        );
         let frequencies: Vec<f64> = [0.1, 0.5, 1.0, 2.0, 10.0, to].into();
         silent(family, vec![stability(1.2, &[0.1, 1.0, 100.0]), demand(tracking, &frequencies, [0.0, to])]);
     }
@@ -82,7 +82,7 @@ fn resonant() {
         let [k, a, z, w] = [p[0], p[1], p[2], p[3]];
         plain(vec![k * w * w, k * a * w * w], vec![1.0.into(), z * w + z * w, w * w], 0.0)
     });
-    let six_db = Requirement::Sensitivity(Limit::Constant(10f64.powf(0.3)));
+    let six_db = Requirement::at_most(ClosedLoop::Sensitivity, Limit::Constant(10f64.powf(0.3)));
     silent(family, vec![demand(six_db, &[0.2, 0.5, 1.0, 3.0, 5.0, 7.0, 10.0, 20.0, 50.0], [0.2, 50.0])]);
 }
 
@@ -117,11 +117,11 @@ fn thesis() {
         ("valve_damping_ratio", 0.9, 0.72, 1.08),
     ];
     let slow = [0.01, 0.1, 1.0, 5.0, 10.0, 50.0, 100.0, 150.0];
-    let sensitivity = Requirement::Sensitivity(rational(&[1.0, 0.0], &[1.0, 15.0]));
-    let tracking = Requirement::Tracking {
-        upper: rational(&[2116.0 / 75.0, 2116.0], &[1.0, 73.6, 2116.0]),
-        lower: rational(&[20000.0], &[1.0, 90.0, 2400.0, 20000.0]),
-    };
+    let sensitivity = Requirement::at_most(ClosedLoop::Sensitivity, rational(&[1.0, 0.0], &[1.0, 15.0]));
+    let tracking = Requirement::tracking(
+        rational(&[20000.0], &[1.0, 90.0, 2400.0, 20000.0]),
+        rational(&[2116.0 / 75.0, 2116.0], &[1.0, 73.6, 2116.0]),
+    );
     let specifications = vec![
         stability(1.3, &slow),
         demand(sensitivity, &slow[..5], [0.01, 10.0]),

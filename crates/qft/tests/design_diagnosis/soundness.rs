@@ -8,7 +8,7 @@ use phea_dynamics::watch::unwatched;
 use phea_qft::closed_loop::{Compensation, MemberResponse};
 use phea_qft::design::DesignProblem;
 use phea_qft::family::Family;
-use phea_qft::specification::{Limit, LimitTable, LoopResponse, Requirement, Specification};
+use phea_qft::specification::{ClosedLoop, Limit, LimitTable, LoopResponse, Requirement, Specification};
 use phea_qft::stability::family_stability;
 use phea_qft::verification::Verdict;
 
@@ -71,11 +71,11 @@ fn specifications(
     factor: f64,
 ) -> Vec<Specification> {
     let none = || Limit::Constant(1.0);
-    let kinds: [fn(Limit) -> Requirement; 4] = [
-        Requirement::RobustStability,
-        Requirement::Sensitivity,
-        Requirement::PlantInputDisturbance,
-        Requirement::ControlEffort,
+    let closed_loops = [
+        ClosedLoop::RobustStability,
+        ClosedLoop::Sensitivity,
+        ClosedLoop::PlantInputDisturbance,
+        ClosedLoop::ControlEffort,
     ];
     let first = responses.first().unwrap().0;
     let last = responses.last().unwrap().0;
@@ -95,8 +95,8 @@ fn specifications(
         design.iter().copied().filter(|w| band[0] <= *w && *w <= band[1]).collect()
     };
     let mut all: Vec<Specification> = Vec::new();
-    for (number, kind) in kinds.into_iter().enumerate() {
-        let requirement = kind(none());
+    for (number, closed_loop) in closed_loops.into_iter().enumerate() {
+        let requirement = Requirement::at_most(closed_loop, none());
         let points =
             responses.iter().map(|(w, members)| (*w, factor * greatest(&sizes(&requirement, members))));
         let points: Vec<(f64, f64)> = points.collect();
@@ -107,16 +107,16 @@ fn specifications(
             table(points.clone())
         };
         let own = band(number < 2);
-        all.push(demand(kind(limit), &within(own), own));
+        all.push(demand(Requirement::at_most(closed_loop, limit), &within(own), own));
         let own = band(false);
-        all.push(demand(kind(table(points)), &within(own), own));
+        all.push(demand(Requirement::at_most(closed_loop, table(points)), &within(own), own));
     }
-    let tracking = Requirement::Tracking { lower: none(), upper: none() };
+    let tracking = Requirement::tracking(none(), none());
     let of = |pick: &dyn Fn(&[f64]) -> f64, factor: f64| {
         let points = responses.iter().map(|(w, members)| (*w, factor * pick(&sizes(&tracking, members))));
         table(points.collect())
     };
-    let requirement = Requirement::Tracking { lower: of(&least, 1.0 / factor), upper: of(&greatest, factor) };
+    let requirement = Requirement::tracking(of(&least, 1.0 / factor), of(&greatest, factor));
     let own = band(false);
     all.push(demand(requirement, &within(own), own));
     all

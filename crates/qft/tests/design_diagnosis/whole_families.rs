@@ -3,7 +3,7 @@
 use num_complex::Complex64;
 use phea_qft::design::{DesignProblem, Finding, FindingSeverity, diagnose};
 use phea_qft::family::{Family, MeasuredFamily, MeasuredPlant};
-use phea_qft::specification::{Limit, Requirement};
+use phea_qft::specification::{ClosedLoop, Limit, Requirement};
 
 use super::problems::{
     boxed, decibels, demand, everywhere, impossibilities, plain, problem, rational, sampled, single,
@@ -23,7 +23,7 @@ fn gains_of_both_signs_need_the_same_controller() {
         assert_eq!(diagnose(&problem(gain(0.5, pole), vec![])), []);
     }
     // a stable plant may be left alone, unless integral action is asked for
-    let integral = Requirement::Sensitivity(rational(&[2.0, 0.0], &[1.0, 0.01]));
+    let integral = Requirement::at_most(ClosedLoop::Sensitivity, rational(&[2.0, 0.0], &[1.0, 0.01]));
     assert_eq!(diagnose(&problem(gain(-1.0, -3.0), vec![])), []);
     let found = impossibilities(&problem(gain(-1.0, -3.0), vec![demand(integral, &[], [0.0, 1e-3])]));
     assert!(matches!(found[0], Finding::GainSign { pole_rad_per_s: 0.0, .. }), "{found:?}");
@@ -63,7 +63,7 @@ fn plants_that_no_stable_controller_stabilises() {
 
 #[test]
 fn frequencies_out_of_reach() {
-    let stability = Requirement::RobustStability(Limit::Constant(1.5));
+    let stability = Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(1.5));
     let of = |family: Family| problem(family, vec![demand(stability.clone(), &[1.0, 50.0], [1.0, 50.0])]);
     let found = diagnose(&sampled(of(single(&[1.0], &[1.0, 1.0], 0.0)), 0.1, 0.0));
     assert!(
@@ -84,7 +84,7 @@ fn frequencies_out_of_reach() {
 
 #[test]
 fn a_static_gain_that_is_not_one() {
-    let tracking = Requirement::Tracking { lower: Limit::Constant(0.8), upper: Limit::Constant(0.9) };
+    let tracking = Requirement::tracking(Limit::Constant(0.8), Limit::Constant(0.9));
     let found = diagnose(&problem(single(&[1.0], &[1.0, 0.0], 0.0), vec![demand(tracking, &[], [0.0, 1.0])]));
     assert_eq!(found, [Finding::StaticGain { specification: 0, lower: 0.8, upper: 0.9 }]);
     assert_eq!(found[0].severity(), FindingSeverity::Warning);
@@ -103,8 +103,8 @@ fn measured_plants_have_a_water_bed_too() {
         is_resolved: false,
     };
     let specifications = vec![
-        demand(Requirement::Sensitivity(Limit::Constant(0.05)), &[], [0.0, 20.0]),
-        everywhere(Requirement::RobustStability(Limit::Constant(1.5))),
+        demand(Requirement::at_most(ClosedLoop::Sensitivity, Limit::Constant(0.05)), &[], [0.0, 20.0]),
+        everywhere(Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(1.5))),
     ];
     let of = |delay_s: f64| {
         let family = Family::Measured(MeasuredFamily::new(vec![plant.clone()]).unwrap());

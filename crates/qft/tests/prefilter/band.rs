@@ -3,7 +3,7 @@
 use num_complex::Complex64;
 use phea_dynamics::linear::TransferFunction;
 use phea_qft::prefilter::{BandEdge, PrefilterBand, PrefilterError, tracking_extremes};
-use phea_qft::specification::{Limit, LoopResponse, Requirement, Specification};
+use phea_qft::specification::{ClosedLoop, Limit, LoopResponse, Requirement, Specification};
 
 use super::loops::{around, integrators, member, rational, servo, spaced, tracking};
 
@@ -147,7 +147,7 @@ fn what_leaves_no_band_says_why() {
     };
     assert_eq!(of(&members, &[0.1], &constant()), PrefilterError::NoFrequency);
     assert_eq!(of(&[], &[2.0], &constant()), PrefilterError::NoMember);
-    let requirement = Requirement::Sensitivity(Limit::Constant(2.0));
+    let requirement = Requirement::at_most(ClosedLoop::Sensitivity, Limit::Constant(2.0));
     let sensitivity = Specification { requirement, ..constant() };
     assert_eq!(of(&members, &[2.0], &sensitivity), PrefilterError::NotTracking);
     let nowhere = [member(&compensation, &[f64::NAN], &[1.0, 0.0, 4.0])];

@@ -35,7 +35,7 @@ pub(crate) fn integrators(gains: &[f64]) -> (Compensation, Vec<Member>) {
 }
 
 pub(crate) fn tracking(lower: Limit, upper: Limit, band: [f64; 2]) -> Specification {
-    let requirement = Requirement::Tracking { lower, upper };
+    let requirement = Requirement::tracking(lower, upper);
     Specification { requirement, frequencies_rad_per_s: vec![], band_rad_per_s: band }
 }
 

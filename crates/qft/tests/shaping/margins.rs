@@ -6,7 +6,7 @@ use phea_dynamics::portable::magnitude;
 use phea_qft::closed_loop::{Compensation, Member};
 use phea_qft::design::{DesignProblem, Objective};
 use phea_qft::loop_shaping::{Samples, SearchProblem, Shaping, Structure};
-use phea_qft::specification::{LoopResponse, Requirement, Specification};
+use phea_qft::specification::{LoopResponse, Specification};
 
 use super::random::{Draw, plants, problem, rational, structure};
 
@@ -38,7 +38,7 @@ fn plain(
     }
     let responses: Vec<LoopResponse> =
         members.iter().map(|member| response(around, member, frequency)).collect();
-    if spread && let Requirement::Tracking { lower, upper } = &specification.requirement {
+    if spread && let (Some(lower), upper) = specification.requirement.limits() {
         let closed = |at: &LoopResponse| magnitude(specification.requirement.closed_loop().response(at));
         let greatest = responses.iter().map(closed).fold(0.0, f64::max);
         let least = responses.iter().map(closed).fold(f64::INFINITY, f64::min);
@@ -83,7 +83,7 @@ fn check(problem: &DesignProblem, structure: &Structure, x: &[f64], prefilter: O
             count += 1;
             let least = found.map(|margin| margin.margin_db).fold(f64::INFINITY, f64::min);
             assert!((least - expected).abs() < 1e-9, "{index} at {frequency}: {least} is not {expected}");
-            let tracks = matches!(specification.requirement, Requirement::Tracking { .. });
+            let tracks = specification.requirement.is_tracking();
             worst = f64::min(worst, expected / if spread && tracks { 2.0 } else { 1.0 });
         }
     }

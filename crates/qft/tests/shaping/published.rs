@@ -9,7 +9,7 @@ use phea_dynamics::uncertain_plant::{
 use phea_qft::design::{DesignProblem, Objective};
 use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, grid, vertices};
 use phea_qft::loop_shaping::{Samples, Shaping, Structure, search_frequencies};
-use phea_qft::specification::{Limit, Requirement, Specification};
+use phea_qft::specification::{ClosedLoop, Limit, Requirement, Specification};
 
 use super::random::{plants, rational};
 use crate::rig::force;
@@ -51,7 +51,7 @@ fn specification(requirement: Requirement, frequencies: &[f64], band: [f64; 2]) 
 }
 
 fn stability(limit: f64) -> Specification {
-    let requirement = Requirement::RobustStability(Limit::Constant(limit));
+    let requirement = Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(limit));
     specification(requirement, &[0.1, 1.0, 10.0, 100.0], EVERYWHERE)
 }
 
@@ -111,8 +111,16 @@ fn forty_edge_plants() {
     let limit = rational(&[0.02, 1.28, 14.96, 48.0], &[1.0, 14.4, 169.0]);
     let specifications = vec![
         stability(1.2),
-        specification(Requirement::Sensitivity(Limit::Rational(limit)), &[0.1, 5.0], [0.0, 10.0]),
-        specification(Requirement::PlantInputDisturbance(Limit::Constant(0.01)), &[0.1], [0.0, 50.0]),
+        specification(
+            Requirement::at_most(ClosedLoop::Sensitivity, Limit::Rational(limit)),
+            &[0.1, 5.0],
+            [0.0, 10.0],
+        ),
+        specification(
+            Requirement::at_most(ClosedLoop::PlantInputDisturbance, Limit::Constant(0.01)),
+            &[0.1],
+            [0.0, 50.0],
+        ),
     ];
     let published = rational(&[379.0 / 42.0, 379.0], &[1.0 / (247.0 * 247.0), 1.0 / 247.0, 1.0]);
     let (shaping, x) = shaping(family, specifications, &published, None);
@@ -131,10 +139,10 @@ fn servo() -> Family {
 }
 
 fn following(to: f64) -> Specification {
-    let requirement = Requirement::Tracking {
-        upper: Limit::Rational(rational(&[0.6584, 19.752], &[1.0, 4.0, 19.752])),
-        lower: Limit::Rational(rational(&[120.0], &[1.0, 17.0, 82.0, 120.0])),
-    };
+    let requirement = Requirement::tracking(
+        Limit::Rational(rational(&[120.0], &[1.0, 17.0, 82.0, 120.0])),
+        Limit::Rational(rational(&[0.6584, 19.752], &[1.0, 4.0, 19.752])),
+    );
     specification(requirement, &[0.1, 0.5, 1.0, 2.0], [0.0, to])
 }
 
@@ -175,7 +183,7 @@ fn between_its_design_frequencies_this_design_fails() {
     let coordinates = along(&plant, Spacing::Linear, 3);
     let members = grid(&plant, &coordinates).unwrap();
     let design = [0.2, 0.5, 1.0, 3.0, 5.0, 7.0, 10.0, 20.0, 50.0];
-    let six_db = Requirement::Sensitivity(Limit::Constant(10f64.powf(0.3)));
+    let six_db = Requirement::at_most(ClosedLoop::Sensitivity, Limit::Constant(10f64.powf(0.3)));
     let published = Compensator::new(vec![
         Element::Gain(2.5),
         Element::Integrator,
@@ -221,14 +229,18 @@ fn the_published_force_controller() {
     let members = vertices(&plant, &coordinates).unwrap();
     let family = family(plant, coordinates, members);
     let limit = |numerator: &[f64], denominator: &[f64]| Limit::Rational(rational(numerator, denominator));
-    let tracking = Requirement::Tracking {
-        upper: limit(&[2116.0 / 75.0, 2116.0], &[1.0, 73.6, 2116.0]),
-        lower: limit(&[20000.0], &[1.0, 90.0, 2400.0, 20000.0]),
-    };
+    let tracking = Requirement::tracking(
+        limit(&[20000.0], &[1.0, 90.0, 2400.0, 20000.0]),
+        limit(&[2116.0 / 75.0, 2116.0], &[1.0, 73.6, 2116.0]),
+    );
     let slow = [0.01, 0.1, 1.0, 5.0, 10.0];
     let specifications = vec![
         stability(1.3),
-        specification(Requirement::Sensitivity(limit(&[1.0, 0.0], &[1.0, 15.0])), &slow, [0.01, 10.0]),
+        specification(
+            Requirement::at_most(ClosedLoop::Sensitivity, limit(&[1.0, 0.0], &[1.0, 15.0])),
+            &slow,
+            [0.01, 10.0],
+        ),
         specification(tracking, &[1.0, 5.0, 10.0, 20.0, 150.0], [0.01, 150.0]),
     ];
     let published = rational(&[0.001, 0.008], &[1.0, 0.0]);

@@ -9,7 +9,7 @@ use phea_dynamics::uncertain_plant::{
 use phea_qft::design::DesignProblem;
 use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, random};
 use phea_qft::loop_shaping::{Structure, StructureFactor};
-use phea_qft::specification::{Limit, LimitTable, Requirement, Specification};
+use phea_qft::specification::{ClosedLoop, Limit, LimitTable, Requirement, Specification};
 use phea_qft::verification::PlantPoint;
 
 /// A linear congruential generator (Knuth's MMIX constants), so that the draws are the same everywhere.
@@ -66,19 +66,19 @@ pub(crate) fn specifications() -> Vec<Specification> {
     let everywhere = [0.0, f64::INFINITY];
     let table = LimitTable::new(vec![(0.5, 0.3), (5.0, 1.0), (20.0, 2.0)]).unwrap();
     vec![
-        specification(Requirement::RobustStability(constant(1.3)), everywhere),
-        specification(Requirement::Sensitivity(Limit::Table(table)), everywhere),
-        specification(Requirement::PlantInputDisturbance(constant(0.4)), [0.0, 40.0]),
-        specification(Requirement::ControlEffort(constant(7.0)), [3.0, f64::INFINITY]),
+        specification(Requirement::at_most(ClosedLoop::RobustStability, constant(1.3)), everywhere),
+        specification(Requirement::at_most(ClosedLoop::Sensitivity, Limit::Table(table)), everywhere),
+        specification(Requirement::at_most(ClosedLoop::PlantInputDisturbance, constant(0.4)), [0.0, 40.0]),
+        specification(Requirement::at_most(ClosedLoop::ControlEffort, constant(7.0)), [3.0, f64::INFINITY]),
         specification(
-            Requirement::LoadMotion(Limit::Rational(rational(&[5.0, 0.0], &[1.0, 4.0]))),
+            Requirement::at_most(ClosedLoop::LoadMotion, Limit::Rational(rational(&[5.0, 0.0], &[1.0, 4.0]))),
             everywhere,
         ),
         specification(
-            Requirement::Tracking {
-                upper: Limit::Rational(rational(&[1.0, 20.0], &[1.0, 4.0, 20.0])),
-                lower: Limit::Rational(rational(&[120.0], &[1.0, 17.0, 82.0, 120.0])),
-            },
+            Requirement::tracking(
+                Limit::Rational(rational(&[120.0], &[1.0, 17.0, 82.0, 120.0])),
+                Limit::Rational(rational(&[1.0, 20.0], &[1.0, 4.0, 20.0])),
+            ),
             [0.0, 15.0],
         ),
     ]

@@ -11,7 +11,7 @@ use phea_qft::family::{Extent, Family, MeasuredFamily, MeasuredPlant, UncertainF
 use phea_qft::loop_shaping::{
     Samples, SamplesError, SearchProblem, Shaping, Structure, StructureFactor, search_frequencies,
 };
-use phea_qft::specification::{Limit, Requirement};
+use phea_qft::specification::{ClosedLoop, Limit, Requirement};
 use phea_qft::verification::PlantPoint;
 
 use super::random::{plants, problem, specification};
@@ -27,7 +27,7 @@ fn with_family(family: Family, limit: f64) -> DesignProblem {
         sensor: TransferFunction::gain_only(1.0),
         timing: Timing::default(),
         specifications: vec![specification(
-            Requirement::RobustStability(Limit::Constant(limit)),
+            Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(limit)),
             [0.0, f64::INFINITY],
         )],
         minimum_delay_margin_s: 0.0,

@@ -3,7 +3,6 @@
 use phea_dynamics::controller::Timing;
 use phea_qft::design::{DesignProblem, Objective};
 use phea_qft::loop_shaping::{Samples, SearchProblem, Shaping, Structure};
-use phea_qft::specification::Requirement;
 
 use super::random::{Draw, plants, problem, rational, structure};
 
@@ -41,7 +40,7 @@ fn margins_of_each_kind_move_with_their_slopes() {
         let problem = DesignProblem { specifications: vec![specification.clone()], ..all.clone() };
         for _ in 0..8 {
             check_single(&problem, &mut draw, false);
-            if matches!(specification.requirement, Requirement::Tracking { .. }) {
+            if specification.requirement.is_tracking() {
                 check_single(&problem, &mut draw, true);
             }
         }

@@ -4,7 +4,7 @@ use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
 use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients, UncertainPlant};
 use phea_qft::closed_loop::Compensation;
 use phea_qft::family::{Coordinate, Family, Spacing};
-use phea_qft::specification::{Limit, LimitTable, Requirement, Specification};
+use phea_qft::specification::{ClosedLoop, Limit, LimitTable, Requirement, Specification};
 use phea_qft::verification::{SpecificationFinding, TrackingJudgement};
 
 use super::plants::{along, audited, on_grid, parameter, rational, specification};
@@ -57,9 +57,21 @@ fn a_process_with_dead_time() {
     let design = [0.1, 0.5, 1.0, 2.0, 5.0, 10.0];
     let six_db = 10f64.powf(0.3);
     let specifications = [
-        specification(Requirement::RobustStability(Limit::Constant(1.3)), &design, everywhere),
-        specification(Requirement::Sensitivity(Limit::Constant(six_db)), &design, everywhere),
-        specification(Requirement::PlantInputDisturbance(Limit::Constant(0.6)), &design, everywhere),
+        specification(
+            Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(1.3)),
+            &design,
+            everywhere,
+        ),
+        specification(
+            Requirement::at_most(ClosedLoop::Sensitivity, Limit::Constant(six_db)),
+            &design,
+            everywhere,
+        ),
+        specification(
+            Requirement::at_most(ClosedLoop::PlantInputDisturbance, Limit::Constant(0.6)),
+            &design,
+            everywhere,
+        ),
     ];
     let integral = Element::General(rational(&[1.8, 1.8], &[1.0, 0.0]));
     let controller = Controller { feedback: Compensator::new(vec![integral]), ..Controller::default() };
@@ -119,15 +131,16 @@ fn a_load_frame_with_everything_at_once() {
     let family = on_grid(plant.unwrap(), coordinates);
     let everywhere = [0.0, f64::INFINITY];
     let table = LimitTable::new(vec![(1.0, 0.01), (30.0, 1.2), (100.0, 10.0), (200.0, 10.0)]).unwrap();
+    let stable = Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(1.3));
     let specifications = [
-        specification(Requirement::RobustStability(Limit::Constant(1.3)), &[], everywhere),
+        specification(stable, &[], everywhere),
         specification(
-            Requirement::LoadMotion(Limit::Table(table)),
+            Requirement::at_most(ClosedLoop::LoadMotion, Limit::Table(table)),
             &[1.0, 3.0, 10.0, 30.0, 100.0],
             [1.0, 200.0],
         ),
         specification(
-            Requirement::ControlEffort(Limit::Constant(10f64.powf(0.6))),
+            Requirement::at_most(ClosedLoop::ControlEffort, Limit::Constant(10f64.powf(0.6))),
             &[1.0, 10.0, 100.0],
             everywhere,
         ),

@@ -5,7 +5,7 @@ use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients, UncertainPlant};
 use phea_qft::closed_loop::Compensation;
 use phea_qft::family::{Family, Spacing};
-use phea_qft::specification::{Limit, Requirement};
+use phea_qft::specification::{ClosedLoop, Limit, Requirement};
 use phea_qft::verification::{SpecificationFinding, TrackingJudgement, Verdict};
 
 use super::plants::{along, audited, compensation, on_grid, parameter, rational, specification};
@@ -57,24 +57,40 @@ fn an_integrator_tracks_at_zero_frequency_and_sees_nothing_at_infinity() {
     let integrator = gain_times(&[1.0], &[1.0, 0.0], 0.0);
     let constant = Limit::Constant;
     // |T| = k/|jw + k|: 1 at zero
-    let stability = judged(&integrator, &unity(1.0), Requirement::RobustStability(constant(1.5)), EVERYWHERE);
+    let stability = judged(
+        &integrator,
+        &unity(1.0),
+        Requirement::at_most(ClosedLoop::RobustStability, constant(1.5)),
+        EVERYWHERE,
+    );
     check(&stability, decibels(1.5), 0.0);
     assert_eq!(stability.interior, None);
     // |S| = w/|jw + k|: 1 at infinity
-    let sensitivity = judged(&integrator, &unity(1.0), Requirement::Sensitivity(constant(0.9)), EVERYWHERE);
+    let sensitivity = judged(
+        &integrator,
+        &unity(1.0),
+        Requirement::at_most(ClosedLoop::Sensitivity, constant(0.9)),
+        EVERYWHERE,
+    );
     check(&sensitivity, decibels(0.9), f64::INFINITY);
     assert_eq!(sensitivity.verdict, Verdict::Violated);
     let [from, to] = sensitivity.violations[0].band_rad_per_s;
     // w = 0.9/sqrt(1 - 0.81), and a little above for the tolerance of 0.001 dB
     assert!((from / (0.9 / 0.19f64.sqrt()) - 1.0).abs() < 1e-3 && to == f64::INFINITY, "{from}");
     // |S| against s/(s + 3): 3/k at zero, 1 at infinity, both margins known
-    let sloped = Requirement::Sensitivity(Limit::Rational(rational(&[1.0, 0.0], &[1.0, 3.0])));
+    let sloped =
+        Requirement::at_most(ClosedLoop::Sensitivity, Limit::Rational(rational(&[1.0, 0.0], &[1.0, 3.0])));
     check(&judged(&integrator, &unity(1.0), sloped, EVERYWHERE), decibels(1.0 / 3.0), 0.0);
     // |P/(1+L)| -> 1/G
-    let disturbance = Requirement::PlantInputDisturbance(constant(0.25));
+    let disturbance = Requirement::at_most(ClosedLoop::PlantInputDisturbance, constant(0.25));
     check(&judged(&integrator, &unity(5.0), disturbance, EVERYWHERE), decibels(1.25), 0.0);
     // |G/(1+L)| -> G
-    let effort = judged(&integrator, &unity(5.0), Requirement::ControlEffort(constant(4.0)), EVERYWHERE);
+    let effort = judged(
+        &integrator,
+        &unity(5.0),
+        Requirement::at_most(ClosedLoop::ControlEffort, constant(4.0)),
+        EVERYWHERE,
+    );
     check(&effort, decibels(0.8), f64::INFINITY);
 }
 
@@ -82,11 +98,11 @@ fn an_integrator_tracks_at_zero_frequency_and_sees_nothing_at_infinity() {
 fn a_lower_limit_above_a_vanishing_magnitude_is_violated_without_end() {
     let integrator = gain_times(&[1.0], &[1.0, 0.0], 0.0);
     let constant = Limit::Constant;
-    let tracking = Requirement::Tracking { lower: constant(0.5), upper: constant(1.1) };
+    let tracking = Requirement::tracking(constant(0.5), constant(1.1));
     check(&judged(&integrator, &unity(1.0), tracking, EVERYWHERE), f64::NEG_INFINITY, f64::INFINITY);
     // a lower limit that falls as fast keeps a margin: k/w against 0.25/w
     let lower = Limit::Rational(rational(&[0.25], &[1.0, 0.25]));
-    let tracking = Requirement::Tracking { lower, upper: constant(1.1) };
+    let tracking = Requirement::tracking(lower, constant(1.1));
     let finding = judged(&integrator, &unity(1.0), tracking, EVERYWHERE);
     check(&finding, 0.0, 0.0); // T = lower = 1 at zero frequency, and rounding is no violation
     assert_eq!(finding.verdict, Verdict::Met);
@@ -96,7 +112,12 @@ fn a_lower_limit_above_a_vanishing_magnitude_is_violated_without_end() {
 fn dead_time_turns_a_loop_that_does_not_vanish_through_its_worst_phase() {
     // L = k/4 e^(-s T): |1 + L| comes down to 1 - k/4, again and again
     let family = gain_times(&[1.0], &[1.0], 0.1);
-    let finding = judged(&family, &unity(0.25), Requirement::Sensitivity(Limit::Constant(1.5)), EVERYWHERE);
+    let finding = judged(
+        &family,
+        &unity(0.25),
+        Requirement::at_most(ClosedLoop::Sensitivity, Limit::Constant(1.5)),
+        EVERYWHERE,
+    );
     let worst = finding.worst.as_ref().unwrap();
     assert!((worst.margin_db - decibels(0.75)).abs() < 1e-6, "{worst:?}");
 }
@@ -104,7 +125,12 @@ fn dead_time_turns_a_loop_that_does_not_vanish_through_its_worst_phase() {
 #[test]
 fn a_loop_of_minus_one_at_zero_frequency_is_not_resolved() {
     let family = gain_times(&[-1.0], &[1.0, 1.0], 0.0);
-    let finding = judged(&family, &unity(1.0), Requirement::Sensitivity(Limit::Constant(1e9)), [0.0, 1.0]);
+    let finding = judged(
+        &family,
+        &unity(1.0),
+        Requirement::at_most(ClosedLoop::Sensitivity, Limit::Constant(1e9)),
+        [0.0, 1.0],
+    );
     assert_ne!(finding.verdict, Verdict::Met, "{finding:?}");
 }
 
@@ -118,7 +144,7 @@ fn resonance_peak(gain: f64, damping: f64) -> f64 {
 fn a_peak_a_millionth_wide_is_found() {
     for (damping, dead_time_s) in [(1e-2, 0.0), (1e-4, 0.0), (1e-7, 0.0), (1e-4, 1e-14)] {
         let family = gain_times(&[1e6], &[1.0, 2e3 * damping, 1e6], dead_time_s);
-        let requirement = Requirement::PlantInputDisturbance(Limit::Constant(1.0));
+        let requirement = Requirement::at_most(ClosedLoop::PlantInputDisturbance, Limit::Constant(1.0));
         let finding = judged(&family, &unity(0.3), requirement, EVERYWHERE);
         // 2/(1 + 2 g) > 1/(1 + g), but the damping of the stiffer loop is less
         let peak =
@@ -137,7 +163,12 @@ fn the_worst_interior_minimum_is_stated_beside_an_end() {
     let family = gain_times(&[1.0], &[1.0, 0.4, 1.0], 0.0);
     // |P/(1+L)| = k/|1 + k g - w^2 + 0.4 jw|, against 1/s: worst at infinity for a limit that falls faster still
     let limit = Limit::Rational(rational(&[1.0], &[0.01, 0.1, 1.0, 1.0]));
-    let finding = judged(&family, &unity(0.5), Requirement::PlantInputDisturbance(limit), EVERYWHERE);
+    let finding = judged(
+        &family,
+        &unity(0.5),
+        Requirement::at_most(ClosedLoop::PlantInputDisturbance, limit),
+        EVERYWHERE,
+    );
     let worst = finding.worst.as_ref().unwrap();
     assert_eq!((worst.margin_db, worst.frequency_rad_per_s), (f64::NEG_INFINITY, f64::INFINITY));
     let interior = finding.interior.as_ref().unwrap();
@@ -149,7 +180,7 @@ fn the_worst_interior_minimum_is_stated_beside_an_end() {
 fn a_spread_has_limits_at_both_ends() {
     let integrator = gain_times(&[1.0], &[1.0, 0.0], 0.0);
     let limit = |gain: f64| Limit::Rational(rational(&[gain], &[1.0, gain]));
-    let tracking = Requirement::Tracking { lower: limit(0.5), upper: limit(2.0) };
+    let tracking = Requirement::tracking(limit(0.5), limit(2.0));
     let specifications = [specification(tracking, &[], EVERYWHERE)];
     let (findings, _) = audited(&integrator, &unity(1.0), &specifications, TrackingJudgement::Spread);
     let (last, margin) = findings[0].envelope.last().copied().unwrap();
@@ -162,7 +193,7 @@ fn a_spread_has_limits_at_both_ends() {
 #[test]
 fn senseless_demands_are_not_met() {
     let integrator = gain_times(&[1.0], &[1.0, 0.0], 0.0);
-    let requirement = |limit: f64| Requirement::RobustStability(Limit::Constant(limit));
+    let requirement = |limit: f64| Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(limit));
     for band in [[f64::NAN, 1.0], [0.0, f64::NAN], [2.0, 1.0], [-2.0, -1.0], [f64::INFINITY, 0.0]] {
         let finding = judged(&integrator, &unity(1.0), requirement(1.5), band);
         assert_eq!((finding.verdict, finding.worst), (Verdict::NotProven, None), "{band:?}");
@@ -197,12 +228,17 @@ fn a_rate_that_is_fed_forward_has_its_share_in_both_ends() {
             let timing = Timing { sample_time_s, rate_feed_forward: gain, ..Timing::default() };
             let unity = TransferFunction::gain_only(1.0);
             let around = compensation(unity.clone(), unity, timing);
-            let finding = judged(&family, &around, Requirement::LoadMotion(limit.clone()), [0.0, 0.5]);
+            let finding = judged(
+                &family,
+                &around,
+                Requirement::at_most(ClosedLoop::LoadMotion, limit.clone()),
+                [0.0, 0.5],
+            );
             check(&finding, decibels(0.1 / 9.0 / at_zero), 0.0);
         }
         let timing = Timing { rate_feed_forward: gain, ..Timing::default() };
         let around = compensation(TransferFunction::gain_only(0.1), TransferFunction::gain_only(1.0), timing);
-        let requirement = Requirement::LoadMotion(Limit::Constant(1.0));
+        let requirement = Requirement::at_most(ClosedLoop::LoadMotion, Limit::Constant(1.0));
         let finding = judged(&family, &around, requirement, [1e4, f64::INFINITY]);
         let worst = finding.worst.as_ref().unwrap();
         let greatest = 2.0 + 2.0 * f64::abs(gain);

@@ -8,7 +8,7 @@ use phea_dynamics::uncertain_plant::{
 };
 use phea_qft::closed_loop::Compensation;
 use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily};
-use phea_qft::specification::{Limit, Requirement, Specification};
+use phea_qft::specification::{ClosedLoop, Limit, Requirement, Specification};
 use phea_qft::verification::{SpecificationFinding, TrackingJudgement, Verdict};
 
 use super::plants::{along, audited, compensation, on_grid, parameter, rational, specification, stability};
@@ -83,9 +83,13 @@ fn forty_edge_plants_with_both_published_controllers() {
     let limit = rational(&[0.02, 1.28, 14.96, 48.0], &[1.0, 14.4, 169.0]);
     let specifications = [
         stability(1.2, &[0.1, 5.0, 10.0, 100.0], EVERYWHERE),
-        specification(Requirement::Sensitivity(Limit::Rational(limit)), &[0.1, 5.0, 10.0], [0.0, 10.0]),
         specification(
-            Requirement::PlantInputDisturbance(Limit::Constant(0.01)),
+            Requirement::at_most(ClosedLoop::Sensitivity, Limit::Rational(limit)),
+            &[0.1, 5.0, 10.0],
+            [0.0, 10.0],
+        ),
+        specification(
+            Requirement::at_most(ClosedLoop::PlantInputDisturbance, Limit::Constant(0.01)),
             &[0.1, 5.0, 10.0],
             [0.0, 50.0],
         ),
@@ -114,10 +118,10 @@ fn servo() -> Family {
 }
 
 fn following(to: f64) -> Specification {
-    let requirement = Requirement::Tracking {
-        upper: Limit::Rational(rational(&[0.6584, 19.752], &[1.0, 4.0, 19.752])),
-        lower: Limit::Rational(rational(&[120.0], &[1.0, 17.0, 82.0, 120.0])),
-    };
+    let requirement = Requirement::tracking(
+        Limit::Rational(rational(&[120.0], &[1.0, 17.0, 82.0, 120.0])),
+        Limit::Rational(rational(&[0.6584, 19.752], &[1.0, 4.0, 19.752])),
+    );
     specification(requirement, &[0.1, 0.5, 1.0, 2.0], [0.0, to])
 }
 
@@ -183,7 +187,7 @@ fn between_its_design_frequencies_this_design_fails() {
     let family = on_grid(plant, coordinates);
     let numerator = product(&[&[2.5], &[0.2, 1.0], &[1.0 / 16.0, 0.3, 1.0]]);
     let denominator = product(&[&[1.0, 0.0], &[1.0, 1.0], &[1.0 / 3.2, 1.0], &[1.0 / 26.0, 1.0]]);
-    let six_db = Requirement::Sensitivity(Limit::Constant(10f64.powf(0.3)));
+    let six_db = Requirement::at_most(ClosedLoop::Sensitivity, Limit::Constant(10f64.powf(0.3)));
     let design = [0.2, 0.5, 1.0, 3.0, 5.0, 7.0, 10.0, 20.0, 50.0];
     let findings = judged(
         &family,

@@ -5,7 +5,7 @@ use phea_dynamics::linear::{Polynomial, TransferFunction};
 use phea_dynamics::uncertain_plant::{UncertainParameter, UncertainPlant};
 use phea_qft::closed_loop::Compensation;
 use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, grid};
-use phea_qft::specification::{Limit, Requirement, Specification};
+use phea_qft::specification::{ClosedLoop, Limit, Requirement, Specification};
 use phea_qft::verification::{
     AuditProblem, AuditWork, SpecificationFinding, TOLERANCE_DB, TrackingJudgement, audit_specifications,
 };
@@ -45,7 +45,11 @@ pub(crate) fn specification(requirement: Requirement, frequencies: &[f64], band:
 }
 
 pub(crate) fn stability(limit: f64, frequencies: &[f64], band: [f64; 2]) -> Specification {
-    specification(Requirement::RobustStability(Limit::Constant(limit)), frequencies, band)
+    specification(
+        Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(limit)),
+        frequencies,
+        band,
+    )
 }
 
 pub(crate) fn audited(

@@ -5,7 +5,7 @@ use phea_dynamics::expression::Recorded;
 use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients, UncertainPlant};
 use phea_qft::closed_loop::Compensation;
 use phea_qft::family::{Family, Spacing};
-use phea_qft::specification::{Limit, LoopResponse, Requirement, Specification};
+use phea_qft::specification::{ClosedLoop, Limit, LoopResponse, Requirement, Specification};
 use phea_qft::verification::{SpecificationFinding, TrackingJudgement};
 
 use super::plants::{along, audited, compensation, on_grid, parameter, rational, specification};
@@ -78,7 +78,7 @@ pub(crate) fn damped_case(seed: u64, damping: [f64; 2], scale: f64, factor: f64,
     let roll_off = draw.factor(20.0, 200.0) * scale;
     let feedback = rational(&[gain, gain * corner], &[1.0 / (roll_off * roll_off), 1.4 / roll_off, 1.0, 0.0]);
     let constant = |value: f64| Limit::Constant(value * factor);
-    let tracking = Requirement::Tracking { lower: constant(0.5), upper: constant(1.2) };
+    let tracking = Requirement::tracking(constant(0.5), constant(1.2));
     let sloped = Limit::Rational(rational(&[2.0 * factor, 0.0], &[1.0, scale]));
     let design = [0.3 * scale, 3.0 * scale, 30.0 * scale];
     let everywhere = [0.0, f64::INFINITY];
@@ -86,10 +86,22 @@ pub(crate) fn damped_case(seed: u64, damping: [f64; 2], scale: f64, factor: f64,
         family: on_grid(plant, coordinates),
         around: compensation(feedback, rational(&[scale], &[1.0, scale]), Timing::default()),
         specifications: vec![
-            specification(Requirement::RobustStability(constant(1.5)), &design, everywhere),
-            specification(Requirement::Sensitivity(sloped), &design, everywhere),
-            specification(Requirement::PlantInputDisturbance(constant(2.0)), &design, everywhere),
-            specification(Requirement::ControlEffort(constant(3.0)), &design, everywhere),
+            specification(
+                Requirement::at_most(ClosedLoop::RobustStability, constant(1.5)),
+                &design,
+                everywhere,
+            ),
+            specification(Requirement::at_most(ClosedLoop::Sensitivity, sloped), &design, everywhere),
+            specification(
+                Requirement::at_most(ClosedLoop::PlantInputDisturbance, constant(2.0)),
+                &design,
+                everywhere,
+            ),
+            specification(
+                Requirement::at_most(ClosedLoop::ControlEffort, constant(3.0)),
+                &design,
+                everywhere,
+            ),
             specification(tracking, &design, [0.01 * scale, scale]),
         ],
     }

@@ -6,7 +6,7 @@ use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients, UncertainPlant};
 use phea_qft::closed_loop::Compensation;
 use phea_qft::family::{Extent, Family, MeasuredFamily, MeasuredPlant, Spacing, UncertainFamily};
-use phea_qft::specification::{Limit, LimitTable, LoopResponse, Requirement, Specification};
+use phea_qft::specification::{ClosedLoop, Limit, LimitTable, LoopResponse, Requirement, Specification};
 use phea_qft::verification::{
     Evidence, PlantPoint, Remark, SpecificationFinding, TrackingJudgement, Verdict,
 };
@@ -93,18 +93,18 @@ fn nothing_is_demanded_beyond_the_ends_of_a_table() {
     let table = |points: &[(f64, f64)]| Limit::Table(LimitTable::new(points.to_vec()).unwrap());
     let everywhere = [0.0, f64::INFINITY];
     // the peak of the worst plant lies at sqrt(4 - 1/2) rad/s, beyond this table
-    let low = Requirement::RobustStability(table(&[(0.1, 1.5), (1.0, 1.5)]));
+    let low = Requirement::at_most(ClosedLoop::RobustStability, table(&[(0.1, 1.5), (1.0, 1.5)]));
     let low = judged(&servo(2), &unity(), &specification(low, &[0.5], everywhere));
     assert_eq!(low.verdict, Verdict::Met);
     assert!(low.worst.as_ref().unwrap().frequency_rad_per_s <= 1.0);
     assert_eq!(low.remarks, [Remark::TableEnds { table_rad_per_s: [0.1, 1.0] }]);
-    let through = Requirement::RobustStability(table(&[(0.1, 1.5), (10.0, 1.5)]));
+    let through = Requirement::at_most(ClosedLoop::RobustStability, table(&[(0.1, 1.5), (10.0, 1.5)]));
     let through = judged(&servo(2), &unity(), &specification(through, &[], everywhere));
     let worst = through.worst.as_ref().unwrap();
     assert!((worst.margin_db - 20.0 * (1.5 / servo_peak(4.0)).log10()).abs() < 1e-6);
     assert!((worst.frequency_rad_per_s - 3.5f64.sqrt()).abs() < 1e-6);
     // a table outside of the band demands nothing, which is not the same as being met
-    let outside = Requirement::RobustStability(table(&[(20.0, 1.5), (30.0, 1.5)]));
+    let outside = Requirement::at_most(ClosedLoop::RobustStability, table(&[(20.0, 1.5), (30.0, 1.5)]));
     let outside = judged(&servo(2), &unity(), &specification(outside, &[], [0.1, 10.0]));
     assert_eq!((outside.verdict, outside.worst), (Verdict::NotProven, None));
 }
@@ -112,7 +112,7 @@ fn nothing_is_demanded_beyond_the_ends_of_a_table() {
 /// Load motion acts on the plant itself: |Pd/(1+L)|, with Pd = -2 s/(s + 10), is 2 at infinity and peaks where |S| does.
 #[test]
 fn load_motion_has_a_path_of_its_own() {
-    let requirement = Requirement::LoadMotion(Limit::Constant(1.0));
+    let requirement = Requirement::at_most(ClosedLoop::LoadMotion, Limit::Constant(1.0));
     let finding = judged(&servo(3), &unity(), &specification(requirement, &[2.0], [0.0, f64::INFINITY]));
     let worst = finding.worst.as_ref().unwrap();
     assert_eq!(worst.frequency_rad_per_s, f64::INFINITY);
@@ -135,10 +135,10 @@ fn a_sampled_loop_is_judged_up_to_half_its_sampling_frequency() {
         let around = Compensation::new(&controller, sensor).unwrap();
         let nyquist = std::f64::consts::PI / 0.1;
         for requirement in [
-            Requirement::RobustStability(Limit::Constant(2.0)),
-            Requirement::Sensitivity(Limit::Constant(2.0)),
-            Requirement::LoadMotion(Limit::Constant(2.0)),
-            Requirement::Tracking { lower: Limit::Constant(1e-4), upper: Limit::Constant(1.3) },
+            Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(2.0)),
+            Requirement::at_most(ClosedLoop::Sensitivity, Limit::Constant(2.0)),
+            Requirement::at_most(ClosedLoop::LoadMotion, Limit::Constant(2.0)),
+            Requirement::tracking(Limit::Constant(1e-4), Limit::Constant(1.3)),
         ] {
             let demanded = specification(requirement, &[1.0], [0.0, f64::INFINITY]);
             let finding = judged(&servo(2), &around, &demanded);

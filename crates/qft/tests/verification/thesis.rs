@@ -5,7 +5,7 @@ use phea_dynamics::expression::Recorded;
 use phea_dynamics::uncertain_plant::{PlantCoefficients, UncertainPlant};
 use phea_qft::closed_loop::Compensation;
 use phea_qft::family::{Family, Spacing};
-use phea_qft::specification::{Limit, Requirement, Specification};
+use phea_qft::specification::{ClosedLoop, Limit, Requirement, Specification};
 use phea_qft::verification::{
     PlantPoint, Remark, SpecificationFinding, TrackingJudgement, Verdict, WorstCase,
 };
@@ -40,11 +40,11 @@ pub(crate) fn thesis_loop(delay_s: f64) -> Compensation {
 
 pub(crate) fn thesis_specifications() -> Vec<Specification> {
     let rational = |numerator: &[f64], denominator: &[f64]| Limit::Rational(rational(numerator, denominator));
-    let sensitivity = Requirement::Sensitivity(rational(&[1.0, 0.0], &[1.0, 15.0]));
-    let tracking = Requirement::Tracking {
-        upper: rational(&[2116.0 / 75.0, 2116.0], &[1.0, 73.6, 2116.0]),
-        lower: rational(&[20000.0], &[1.0, 90.0, 2400.0, 20000.0]),
-    };
+    let sensitivity = Requirement::at_most(ClosedLoop::Sensitivity, rational(&[1.0, 0.0], &[1.0, 15.0]));
+    let tracking = Requirement::tracking(
+        rational(&[20000.0], &[1.0, 90.0, 2400.0, 20000.0]),
+        rational(&[2116.0 / 75.0, 2116.0], &[1.0, 73.6, 2116.0]),
+    );
     vec![
         stability(1.3, &SLOW, [0.0, f64::INFINITY]),
         specification(sensitivity, &SLOW[..5], [0.01, 10.0]),

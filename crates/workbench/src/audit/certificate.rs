@@ -2,6 +2,7 @@
 
 mod layout;
 
+use phea_dynamics::portable;
 use phea_qft::proof::{Certificate, CertificateSide, Claim, LimitedLoop, Rejection, check};
 
 use super::{ProjectAudit, closed_loop_key};
@@ -80,7 +81,7 @@ fn band(certificate: &Certificate, limited: &LimitedLoop) -> String {
         certificate.sampling.as_ref().map_or(f64::INFINITY, |own| std::f64::consts::PI / own.sample_time_s);
     match to.min(end) {
         f64::INFINITY => format!("from {from} rad/s on"),
-        to => format!("from {from} to {} rad/s", format!("{to:.5e}").parse().unwrap_or(to)),
+        to => format!("from {from} to {} rad/s", portable::rounded(to, 6)),
     }
 }
 

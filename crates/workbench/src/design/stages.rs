@@ -5,7 +5,6 @@ use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_dynamics::portable;
 use phea_dynamics::watch::Watch;
 use phea_qft::bound::Placement;
-use phea_qft::specification::Requirement;
 
 use super::answer::factors;
 use super::{AuditedController, ProjectDesign, Repair};
@@ -105,7 +104,7 @@ fn prefilter_band(side: &AuditedController) -> Result<Option<OutputFile>, Linear
     let tracking = problem.specifications.iter().enumerate();
     let mut any = false;
     for (index, one) in tracking {
-        let Requirement::Tracking { lower, upper } = &one.requirement else { continue };
+        let (Some(lower), upper) = one.requirement.limits() else { continue };
         if !problem.has_prefilter {
             continue;
         }

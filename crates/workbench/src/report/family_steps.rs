@@ -10,7 +10,7 @@ use phea_dynamics::uncertain_plant::responding::RespondingPlant;
 use phea_dynamics::uncertain_plant::{PlantCoefficients, PlantMember};
 use phea_qft::closed_loop::Member;
 use phea_qft::family::{Family, UncertainFamily};
-use phea_qft::specification::{Limit, Requirement};
+use phea_qft::specification::Limit;
 use phea_qft::verification::{PlantPoint, Verdict};
 
 use super::closed_loops::DRAWN_MEMBERS;
@@ -32,10 +32,8 @@ pub(super) fn figure(
     names: [&str; 2],
 ) -> Option<Result<Figure, String>> {
     let limits =
-        problem.specifications.iter().find_map(|specification| match &specification.requirement {
-            Requirement::Tracking { lower: Limit::Rational(lower), upper: Limit::Rational(upper) } => {
-                Some((lower, upper))
-            }
+        problem.specifications.iter().find_map(|specification| match specification.requirement.limits() {
+            (Some(Limit::Rational(lower)), Limit::Rational(upper)) => Some((lower, upper)),
             _ => None,
         })?;
     if view.audit.stability.verdict != Verdict::Met {
@@ -86,10 +84,8 @@ fn drawn(
     let step = family.members().len() / DRAWN_MEMBERS + 1;
     let members: Vec<TimeSeries> =
         family.members().iter().step_by(step).map(|values| member("", values)).collect::<Result<_, _>>()?;
-    let worst = view.audit.specifications.iter().find_map(|finding| match &finding.requirement {
-        Requirement::Tracking { .. } => finding.worst.as_ref(),
-        _ => None,
-    });
+    let worst = view.audit.specifications.iter().find(|one| one.requirement.is_tracking());
+    let worst = worst.and_then(|finding| finding.worst.as_ref());
     let named = match worst.map(|worst| &worst.plant) {
         Some(PlantPoint::Parameters(values)) => vec![member("the plant that tracks worst", values)?],
         _ => vec![],

@@ -32,12 +32,7 @@ pub(super) fn chapter(project: &Project, problem: &RobustProblem) -> Result<Chap
     }
     if !wishes.is_empty() {
         out.heading("Tracking limits in time");
-        out.marked(wishes.iter().map(|wish| {
-            let met = if wish.is_met() { "met" } else { "not met" };
-            let sentence =
-                format!("Specification {}, {} limit, {met}; {}.", wish.number, wish.key, wish.check);
-            (Some(wish.is_met().into()), sentence)
-        }));
+        out.marked(wishes.iter().map(|wish| (Some(wish.is_met().into()), wish.sentence())));
     }
     if !margins.is_empty() {
         out.heading("Margins that the limits guarantee");
@@ -135,7 +130,7 @@ fn factors(roots: &[Complex64], variable: char) -> Vec<String> {
 
 /// How far apart the limits of tracking are; empty for other kinds.
 fn spread(out: &mut Document, number: usize, specification: &Specification) {
-    let Requirement::Tracking { lower, upper } = &specification.requirement else { return };
+    let (Some(lower), upper) = specification.requirement.limits() else { return };
     let decibels = |value: f64| if value.abs() < 5e-4 { "0".to_string() } else { significant(value, 3) };
     match tracking_spread(lower, upper, specification.band_rad_per_s) {
         Ok(spread) => match spread.order {

@@ -32,10 +32,6 @@ pub(crate) fn text(wishes: &[CheckedWish]) -> String {
     if wishes.is_empty() {
         return String::new();
     }
-    let line = |wish: &CheckedWish| {
-        let met = if wish.is_met() { "met" } else { "not met" };
-        format!("  Specification {}, {} limit, {met}; {}.\n", wish.number, wish.key, wish.check)
-    };
-    let lines: String = wishes.iter().map(line).collect();
+    let lines: String = wishes.iter().map(|wish| format!("  {}\n", wish.sentence())).collect();
     format!("Tracking limits in time\n{lines}\n")
 }

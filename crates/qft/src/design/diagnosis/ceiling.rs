@@ -151,7 +151,7 @@ fn node(specifications: &[Specification], candidates: &[PlantWithinLoop], freque
         .collect();
     let of = |index: &usize| specifications.get(*index).map(|specification| &specification.requirement);
     let plain = |requirement: &Requirement| {
-        matches!(requirement, Requirement::RobustStability(_) | Requirement::Sensitivity(_))
+        matches!(requirement.closed_loop(), ClosedLoop::RobustStability | ClosedLoop::Sensitivity)
     };
     let needed = demands.iter().any(|(index, _)| of(index).is_some_and(|requirement| !plain(requirement)));
     let responses: Vec<Option<MemberResponse>> = candidates

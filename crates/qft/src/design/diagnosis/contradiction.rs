@@ -24,7 +24,7 @@ use super::interpolation::least_relaxation_db;
 use super::plane::BoundaryCells;
 use crate::bound::{Bound, Feasibility, FrequencyBounds, PhaseGrid, TemplateFill};
 use crate::closed_loop::MemberResponse;
-use crate::specification::{Limit, LoopResponse, Specification};
+use crate::specification::{Limit, LoopResponse, Requirement, Specification};
 use crate::template::{Resolution, Template, TemplatePoint};
 use crate::verification::PlantPoint;
 
@@ -254,11 +254,10 @@ fn proven_db(high_db: f64, turn: f64, largest_complementary: f64) -> f64 {
 fn constant(specification: &Specification, frequency: f64, factor: f64) -> Option<Specification> {
     let (lower, upper) = specification.requirement.limits();
     let upper = Limit::Constant(factor * upper.magnitude(frequency)?);
-    let lower = match lower {
-        Some(lower) => Some(Limit::Constant(lower.magnitude(frequency)? / factor)),
-        None => None,
+    let requirement = match lower {
+        Some(lower) => Requirement::tracking(Limit::Constant(lower.magnitude(frequency)? / factor), upper),
+        None => Requirement::at_most(specification.requirement.closed_loop(), upper),
     };
-    let requirement = specification.requirement.closed_loop().limited(lower, upper);
     Some(Specification {
         requirement,
         frequencies_rad_per_s: vec![frequency],

@@ -5,7 +5,7 @@ use phea_dynamics::order::sort_numbers;
 
 use super::candidate::PlantWithinLoop;
 use super::finding::Finding;
-use crate::specification::{Requirement, Specification};
+use crate::specification::{ClosedLoop, Specification};
 
 /// Poles of two plants that differ by less than this share count as equal.
 const SAME: f64 = 1e-9;
@@ -54,8 +54,10 @@ pub(super) fn gain_signs(specifications: &[Specification], candidates: &[PlantWi
 
 /// Whether S(0) = 0 is required.
 fn demands_integral_action(specification: &Specification) -> bool {
-    let Requirement::Sensitivity(limit) = &specification.requirement else { return false };
-    specification.band_rad_per_s[0] == 0.0 && limit.magnitude(0.0) == Some(0.0)
+    let (requirement, band) = (&specification.requirement, specification.band_rad_per_s);
+    requirement.closed_loop() == ClosedLoop::Sensitivity
+        && band[0] == 0.0
+        && requirement.limits().1.magnitude(0.0) == Some(0.0)
 }
 
 fn signs(index: usize, candidate: &PlantWithinLoop, integral: bool) -> Vec<Sign> {

@@ -8,7 +8,7 @@ use super::ceiling::{Ceiling, Ceilings, demanded};
 use super::finding::{Finding, SharedLimit};
 use super::interpolation::least_relaxation_db;
 use crate::closed_loop::Compensation;
-use crate::specification::{Requirement, Specification};
+use crate::specification::{ClosedLoop, Specification};
 
 /// The deficit of two limits below which nothing is reported, dB: each verdict tolerates 0.001 dB.
 const TOLERANCE_DB: f64 = 0.002;
@@ -83,7 +83,7 @@ pub(super) fn on_the_axis(
     for candidate in candidates {
         for (specification, demand) in specifications.iter().enumerate() {
             for &frequency in candidate.axis_poles.iter().filter(|pole| **pole < highest) {
-                let Requirement::RobustStability(_) = demand.requirement else { continue };
+                let ClosedLoop::RobustStability = demand.requirement.closed_loop() else { continue };
                 let Some(limit) = demanded(demand, frequency).filter(|limit| below_one(*limit)) else {
                     continue;
                 };
@@ -114,13 +114,15 @@ fn forbidden_by_zero(
     frequency: f64,
 ) -> Option<f64> {
     let limit = demanded(specification, frequency)?;
-    match &specification.requirement {
-        Requirement::Sensitivity(_) => Some(limit).filter(|limit| below_one(*limit)),
-        Requirement::LoadMotion(_) => {
+    match specification.requirement.closed_loop() {
+        ClosedLoop::Sensitivity => Some(limit).filter(|limit| below_one(*limit)),
+        ClosedLoop::LoadMotion => {
             let motion = portable::magnitude(candidate.member.response(frequency)?.load_motion);
             Some(limit / motion).filter(|limit| below_one(*limit))
         }
-        Requirement::Tracking { lower, .. } => lower.magnitude(frequency).filter(|lower| *lower > 0.0),
+        ClosedLoop::Tracking => {
+            specification.requirement.limits().0?.magnitude(frequency).filter(|lower| *lower > 0.0)
+        }
         _ => None,
     }
 }

@@ -46,7 +46,7 @@ const PEAKS_MAXIMUM: usize = 80;
 /// # use phea_qft::design::DesignProblem;
 /// # use phea_qft::family::{Extent, Family, UncertainFamily};
 /// use phea_qft::loop_shaping::search_frequencies;
-/// # use phea_qft::specification::{Limit, Requirement, Specification};
+/// # use phea_qft::specification::{ClosedLoop, Limit, Requirement, Specification};
 /// use phea_qft::verification::PlantPoint;
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// # let gain = UncertainParameter { name: "k".into(), nominal: 1.0, minimum: 1.0, maximum: 4.0 };
@@ -62,7 +62,7 @@ const PEAKS_MAXIMUM: usize = 80;
 ///     sensor: TransferFunction::gain_only(1.0),
 ///     timing: Timing::default(),
 ///     specifications: vec![Specification {
-///         requirement: Requirement::RobustStability(Limit::Constant(1.2)),
+///         requirement: Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(1.2)),
 ///         frequencies_rad_per_s: vec![1.0],
 ///         band_rad_per_s: [0.5, 10.0],
 ///     }],

@@ -156,7 +156,11 @@ fn assigned(ranges: &[Vec<[f64; 2]>], roots: &[Complex64]) -> Option<Vec<Vec<f64
     })
 }
 
-/// Natural frequency and damping ratio of (s - r)(s - t) = s^2 + 2 zeta w s + w^2.
+/// Natural frequency and damping ratio of a pair of roots.
+///
+/// ```text
+/// (s - r)(s - t) = s^2 + 2 zeta w s + w^2:    w = sqrt(r t),    zeta = -(r + t)/(2 w)
+/// ```
 fn of_pair([one, other]: [Complex64; 2]) -> Vec<f64> {
     let natural_frequency = (one * other).re.sqrt();
     vec![natural_frequency, -0.5 * (one + other).re / natural_frequency]

@@ -4,11 +4,11 @@ use phea_qft::proof::{
     CertificateMember, CertificateSide, Claim, FrequencyPanel, Late, LimitOf, LimitedLoop, PoleCount,
     StableBox,
 };
-use phea_qft::specification::ClosedLoop;
 use serde::{Deserialize, Serialize};
 
 use super::{CertificateError, CertificateRational, meaning};
 use crate::audit::closed_loop_key;
+use crate::project::SPECIFICATION_KINDS;
 
 #[derive(Serialize, Deserialize)]
 #[serde(tag = "claim", rename_all = "snake_case", deny_unknown_fields)]
@@ -219,15 +219,7 @@ fn limited(
     limit: StatedLimit,
     band: &[FrequencyEnd; 2],
 ) -> Result<LimitedLoop, CertificateError> {
-    let known = [
-        ClosedLoop::RobustStability,
-        ClosedLoop::Sensitivity,
-        ClosedLoop::PlantInputDisturbance,
-        ClosedLoop::ControlEffort,
-        ClosedLoop::LoadMotion,
-        ClosedLoop::Tracking,
-    ];
-    let found = known.into_iter().find(|one| closed_loop_key(*one) == closed_loop);
+    let found = SPECIFICATION_KINDS.iter().find(|(key, _)| *key == closed_loop).map(|(_, known)| *known);
     Ok(LimitedLoop {
         closed_loop: found.ok_or_else(|| meaning(format!("`{closed_loop}` is not a closed loop")))?,
         side: match side {

@@ -1,8 +1,6 @@
-//! The closed loops whose magnitudes are limited.
+//! The closed loops around a plant whose magnitudes specifications limit.
 
 use num_complex::Complex64;
-
-use super::{Limit, LoopResponse, Requirement};
 
 /// A closed loop, with S = 1/(1+L) and L = P G H.
 ///
@@ -13,7 +11,7 @@ use super::{Limit, LoopResponse, Requirement};
 /// # Example
 /// ```
 /// use num_complex::Complex64;
-/// use phea_qft::specification::{ClosedLoop, LoopResponse};
+/// use phea_dynamics::closed_loop::{ClosedLoop, LoopResponse};
 /// let value = |real| Complex64::new(real, 0.0);
 /// let response = LoopResponse {
 ///     plant: value(2.0),
@@ -24,9 +22,10 @@ use super::{Limit, LoopResponse, Requirement};
 /// };
 /// assert_eq!(ClosedLoop::ControlEffort.response(&response), value(3.0 / 7.0));
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ClosedLoop {
     /// L S
+    #[default]
     RobustStability,
     /// S
     Sensitivity,
@@ -42,7 +41,7 @@ pub enum ClosedLoop {
 
 /// The factor A that the plant contributes to a closed loop in addition to S.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum PlantPath {
+pub enum PlantPath {
     /// P H
     PlantAndSensor,
     /// 1
@@ -68,7 +67,7 @@ impl ClosedLoop {
     }
 
     /// A
-    pub(crate) fn plant_path(self) -> PlantPath {
+    pub fn plant_path(self) -> PlantPath {
         match self {
             ClosedLoop::RobustStability => PlantPath::PlantAndSensor,
             ClosedLoop::Sensitivity | ClosedLoop::ControlEffort => PlantPath::One,
@@ -78,26 +77,35 @@ impl ClosedLoop {
     }
 
     /// Whether G is a factor: a = 1.
-    pub(crate) fn has_feedback(self) -> bool {
+    pub fn has_feedback(self) -> bool {
         matches!(self, ClosedLoop::RobustStability | ClosedLoop::ControlEffort | ClosedLoop::Tracking)
     }
 
     /// Whether F is a factor: f = 1.
-    pub(crate) fn has_prefilter(self) -> bool {
+    pub fn has_prefilter(self) -> bool {
         self == ClosedLoop::Tracking
     }
+}
 
-    /// This closed loop within these limits; the lower one counts for tracking alone.
-    pub(crate) fn limited(self, lower: Option<Limit>, upper: Limit) -> Requirement {
-        match self {
-            ClosedLoop::RobustStability => Requirement::RobustStability(upper),
-            ClosedLoop::Sensitivity => Requirement::Sensitivity(upper),
-            ClosedLoop::PlantInputDisturbance => Requirement::PlantInputDisturbance(upper),
-            ClosedLoop::ControlEffort => Requirement::ControlEffort(upper),
-            ClosedLoop::LoadMotion => Requirement::LoadMotion(upper),
-            ClosedLoop::Tracking => {
-                Requirement::Tracking { lower: lower.unwrap_or(Limit::Constant(0.0)), upper }
-            }
-        }
+/// One member of a closed loop at one frequency: plant, load-motion path, controller, prefilter and
+/// sensor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LoopResponse {
+    /// P(j w)
+    pub plant: Complex64,
+    /// Pd(j w)
+    pub load_motion: Complex64,
+    /// G(j w)
+    pub controller: Complex64,
+    /// F(j w)
+    pub prefilter: Complex64,
+    /// H(j w)
+    pub sensor: Complex64,
+}
+
+impl LoopResponse {
+    /// L = P G H.
+    pub fn open_loop(&self) -> Complex64 {
+        self.plant * self.controller * self.sensor
     }
 }

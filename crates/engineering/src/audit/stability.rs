@@ -1,0 +1,145 @@
+//! Stability in words: what was found, how, and why not.
+
+use phea_qft::stability::{Instability, Irresolution};
+use phea_qft::verification::{
+    ClosestApproach, Evidence, StabilityFinding, StabilityMethod, StabilityReason, Verdict,
+};
+
+use super::PlantNames;
+use super::words::rounded;
+use crate::quantity::significant;
+
+/// Whether the family is stable, and how this is known.
+pub fn stability_sentence(stability: &StabilityFinding, names: &PlantNames) -> String {
+    let plant = names.text(&stability.plant);
+    let rate = |value: f64| significant(value, 3);
+    match (stability.verdict, stability.largest_real_part) {
+        (Verdict::Met, Some(real)) => {
+            format!("every plant is stable; the slowest closed-loop pole lies at {} 1/s", rate(real))
+        }
+        (Verdict::Met, None) => format!("every plant is stable: {}", stability_reason(stability)),
+        (Verdict::Violated, Some(real)) if real >= 0.0 => {
+            format!("unstable: a closed-loop pole lies at {} 1/s, with {plant}", rate(real))
+        }
+        (Verdict::Violated, _) => format!("unstable, with {plant}: {}", stability_reason(stability)),
+        (Verdict::NotProven, _) => {
+            format!("stability is not proven: {} ({plant})", stability_reason(stability))
+        }
+    }
+}
+
+/// How stability was decided.
+pub fn stability_reason(stability: &StabilityFinding) -> String {
+    match &stability.reason {
+        StabilityReason::Unstable(instability) => instability_words(*instability),
+        StabilityReason::UnstablePrefilter => "the prefilter itself is unstable".to_owned(),
+        StabilityReason::NotResolved(irresolution) => irresolution_words(irresolution),
+        StabilityReason::AllStable { members, corners, between, method, closest } => {
+            let folding = match between {
+                0 => String::new(),
+                _ => format!(" and {between} plants between them, through which modes fold,"),
+            };
+            let way = method_words(*method);
+            let stable = match (members, corners + between) {
+                (1, 0) => format!("the family is one plant, stable {way}"),
+                (_, 0) => format!("all {members} plants are stable {way}"),
+                _ => format!(
+                    "all {members} members and {corners} corners of the box{folding} are stable {way}"
+                ),
+            };
+            let Some(ClosestApproach { distance, frequency_rad_per_s, .. }) = closest else { return stable };
+            let between = if stability.evidence == Evidence::Search { " between them, too," } else { "" };
+            let [distance, frequency] = [*distance, *frequency_rad_per_s].map(rounded);
+            format!("{stable}; the smallest |1 + L| found{between} is {distance} (at {frequency} rad/s)")
+        }
+    }
+}
+
+fn method_words(method: StabilityMethod) -> &'static str {
+    match method {
+        StabilityMethod::Poles => "by their closed-loop poles",
+        StabilityMethod::Turns => "by the turns of their characteristic function",
+        StabilityMethod::Enclosed => {
+            "by Nyquist's count, 1 + L of the nominal plant enclosed from each frequency to the next"
+        }
+        StabilityMethod::Points => "by Nyquist's count on points of their responses",
+        StabilityMethod::MeasuredPoints => "by Nyquist's count on the points of their responses",
+    }
+}
+
+fn instability_words(instability: Instability) -> String {
+    match instability {
+        Instability::Pole { real_part } => {
+            format!("a closed-loop pole has the real part {real_part:.3e} 1/s")
+        }
+        Instability::Poles { count } => {
+            format!("{count} unstable closed-loop pole{}", if count == 1 { "" } else { "s" })
+        }
+        Instability::GainAtInfinity => {
+            "dead time in a loop whose gain stays above one at every high frequency".to_string()
+        }
+    }
+}
+
+fn irresolution_words(irresolution: &Irresolution) -> String {
+    let words = match irresolution {
+        Irresolution::Linear(error) => return error.to_string(),
+        Irresolution::NearBoundary { frequency_rad_per_s } => {
+            return format!(
+                "a closed-loop pole near {} rad/s cannot be distinguished from the boundary of stability",
+                rounded(*frequency_rad_per_s)
+            );
+        }
+        Irresolution::Budget { frequency_rad_per_s } => {
+            return format!(
+                "the turns of the characteristic function could not be counted beyond {} rad/s",
+                rounded(*frequency_rad_per_s)
+            );
+        }
+        Irresolution::Coarse { from_rad_per_s, to_rad_per_s, turn_deg } => {
+            return format!(
+                "1 + L turns by {turn_deg:.0} degrees between {} and {} rad/s; the measurement is too coarse there",
+                rounded(*from_rad_per_s),
+                rounded(*to_rad_per_s)
+            );
+        }
+        Irresolution::HighEnd { frequency_rad_per_s, gain } => {
+            return format!(
+                "the measurement ends at {} rad/s where |L| = {gain:.2} is not well below one",
+                rounded(*frequency_rad_per_s)
+            );
+        }
+        Irresolution::LowEnd { frequency_rad_per_s } => {
+            return format!(
+                "below {} rad/s, where the measurement begins, the loop's integrators cannot be identified",
+                rounded(*frequency_rad_per_s)
+            );
+        }
+        Irresolution::Count { count } => {
+            return format!(
+                "the turns of 1 + L add up to {count:.2} unstable poles, which is not a number of poles"
+            );
+        }
+        Irresolution::GainAtInfinity => {
+            "with dead time and a gain of one at infinite frequency, poles approach the boundary of stability"
+        }
+        Irresolution::PoleThroughInfinity => {
+            "the leading coefficient of the characteristic equation changes its sign inside the box, so that a pole passes through infinity"
+        }
+        Irresolution::Folding => {
+            "modes beyond half of the sampling rate pass through the band while parameters move, too often to be followed"
+        }
+        Irresolution::FoldingUnknown => {
+            "which modes beyond half of the sampling rate fold into the band between one plant and the next is not known where lines move"
+        }
+        Irresolution::InfinityOpen => {
+            "it could not be shown that no pole passes through infinity inside the box"
+        }
+        Irresolution::UndampedController => {
+            "controller or sensor has poles on the boundary of stability, which measured points cannot go around"
+        }
+        Irresolution::OpenLoopPoles => "how many unstable poles the plant has by itself is not known",
+        Irresolution::Points => "there are fewer than two points to count turns between",
+    };
+    words.to_string()
+}

@@ -1,0 +1,41 @@
+//! A wish in time and what its limit reaches, in words.
+
+use phea_dynamics::time_response::Settling;
+use phea_qft::specification::{WishCheck, WishOutcome, Wished};
+
+use crate::quantity::{RATIO, display};
+
+/// `wished: at most 1 % overshoot, settled within 1 % in 0.1 s; the limit itself reaches 2.19 %
+/// overshoot and settles in 0.126 s`
+pub(super) fn words(check: &WishCheck) -> String {
+    let Wished { overshoot_percent, settling_time_s, settling_band_percent } = check.wished;
+    let wished = match overshoot_percent {
+        0.0 => "no overshoot".to_string(),
+        _ => format!("at most {overshoot_percent} % overshoot"),
+    };
+    let reached = if check.outcome() == WishOutcome::Met {
+        "satisfies it".to_string()
+    } else {
+        let overshoot = match check.reached.overshoot_percent {
+            0.0 => "has no overshoot".to_string(),
+            reached => format!("reaches {} % overshoot", beside(reached, overshoot_percent)),
+        };
+        let settling = match check.reached.settling {
+            Settling::Settled { time_s } => format!("settles in {} s", beside(time_s, settling_time_s)),
+            Settling::NotSettled { deviation_percent } => {
+                format!("stays {} % off", display(deviation_percent, &RATIO, 3))
+            }
+        };
+        format!("{overshoot} and {settling}")
+    };
+    format!(
+        "wished: {wished}, settled within {settling_band_percent} % in {settling_time_s} s; the limit itself {reached}"
+    )
+}
+
+/// The value in three digits, or as many more as distinguish it from the other.
+fn beside(value: f64, other: f64) -> String {
+    let number = |value: f64, digits: usize| display(value, &RATIO, digits);
+    let differs = |digits: &usize| value == other || number(value, *digits) != number(other, *digits);
+    number(value, (3..12).find(differs).unwrap_or(12))
+}
