@@ -3,9 +3,9 @@
 
 use num_complex::Complex64;
 use phea_dynamics::controller::{
-    AntiWindup, Compensator, Controller, Element, RateFilter, RateSensor, Stage, Timing, VirtualImpedance,
+    Compensator, Controller, Element, RateFilter, RateSensor, Stage, Timing, VirtualImpedance,
 };
-use phea_dynamics::linear::{Discretization, LinearError, Polynomial, TimeDomain, TransferFunction};
+use phea_dynamics::linear::{LinearError, Polynomial, TimeDomain, TransferFunction};
 use phea_qft::design::quantization::{CoefficientFormat, Converter, Quantization, QuantizationError};
 
 use crate::project::{
@@ -64,11 +64,7 @@ pub fn controller(project: &Project) -> Result<Option<Controller>, ControlError>
         prefilter: prefilter(project)?.unwrap_or_default(),
         timing: timing(project),
         command_limit: declared.saturation,
-        anti_windup: match declared.anti_windup {
-            project::DeclaredAntiWindup::None => AntiWindup::None,
-            project::DeclaredAntiWindup::BackCalculation => AntiWindup::BackCalculation,
-            project::DeclaredAntiWindup::Clamping => AntiWindup::Clamping,
-        },
+        anti_windup: declared.anti_windup,
     }))
 }
 
@@ -89,11 +85,7 @@ pub fn timing(project: &Project) -> Timing {
     Timing {
         sample_time_s: declared.sample_time,
         delay_s: declared.delay,
-        discretization: match declared.discretization {
-            project::DeclaredDiscretization::Tustin => Discretization::Tustin,
-            project::DeclaredDiscretization::ZeroOrderHold => Discretization::ZeroOrderHold,
-            project::DeclaredDiscretization::Matched => Discretization::Matched,
-        },
+        discretization: declared.discretization,
         continuous_prefilter: project.prefilter.as_ref().is_some_and(|prefilter| prefilter.continuous),
         rate_feed_forward: 0.0,
         rate_sensor: RateSensor::default(),

@@ -4,6 +4,7 @@ use super::formula::Formula;
 use super::key::{Key, key, plain};
 use super::plant::Rational;
 use super::visitor::{FormulaShape, ValueForm, Visitor};
+use phea_dynamics::time_response::SettlingRule;
 use phea_quantity::{ANGLE, ANGULAR_FREQUENCY, GAIN, RATIO, TIME};
 
 /// A limit over frequency.
@@ -60,28 +61,11 @@ pub struct ResponseWish {
     pub zero: Option<f64>,
     /// rad/s, the pole added to `lower`.
     pub pole: Option<f64>,
-    /// How the wish becomes a transfer function.
-    pub rule: ResponseRule,
+    /// The rule by which the wish becomes a second-order model; absent: such that the response,
+    /// extra zero or pole included, meets the wish.
+    pub rule: Option<SettlingRule>,
     /// The limit itself, where it is given and only checked against the wish.
     pub function: Option<Rational>,
-}
-
-/// How a wish in time becomes a second-order model.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum ResponseRule {
-    /// Such that the response, extra zero or pole included, meets the wish.
-    #[default]
-    Exact,
-    /// 3 over xi w_n.
-    FivePercent,
-    /// 4 over xi w_n.
-    TwoPercent,
-    /// 4.6 over xi w_n.
-    OnePercent,
-    /// 5 over xi w_n.
-    OnePercentThesis,
-    /// 5.83 over w_n, critically damped.
-    CriticallyDampedTwoPercent,
 }
 
 impl DeclaredLimit {
@@ -215,12 +199,12 @@ impl ResponseWish {
         v.optional(k, &mut self.pole);
         if v.names_everything() || *self != ResponseWish::default() {
             let words = &[
-                ("exact", ResponseRule::Exact),
-                ("five_percent", ResponseRule::FivePercent),
-                ("two_percent", ResponseRule::TwoPercent),
-                ("one_percent", ResponseRule::OnePercent),
-                ("one_percent_thesis", ResponseRule::OnePercentThesis),
-                ("critically_damped_two_percent", ResponseRule::CriticallyDampedTwoPercent),
+                ("exact", None),
+                ("five_percent", Some(SettlingRule::FivePercent)),
+                ("two_percent", Some(SettlingRule::TwoPercent)),
+                ("one_percent", Some(SettlingRule::OnePercent)),
+                ("one_percent_thesis", Some(SettlingRule::OnePercentThesis)),
+                ("critically_damped_two_percent", Some(SettlingRule::CriticallyDampedTwoPercent)),
             ];
             v.choice(
                 plain("rule", "How the wish becomes a transfer function."),

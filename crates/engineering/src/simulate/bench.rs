@@ -3,7 +3,7 @@
 
 use phea_dynamics::controller::Controller;
 use phea_dynamics::linear::TransferFunction;
-use phea_dynamics::simulation::{CommandedPlant, Method, Sensed, SimulationSettings};
+use phea_dynamics::simulation::{CommandedPlant, Sensed, SimulationSettings};
 use phea_hydraulics::actuator::Actuator;
 use phea_hydraulics::contact::Contact;
 use phea_hydraulics::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
@@ -14,7 +14,7 @@ use phea_machine::{Control, Sampled};
 
 use super::SimulateError;
 use crate::control::{velocity_sensor, virtual_impedance};
-use crate::project::{self, FrictionLaw, Project, Scenario, StepMethod};
+use crate::project::{self, FrictionLaw, Project, Scenario};
 use crate::quantity::MotionKind;
 use crate::rig::{Numbers, Rig, feed_forward, lines, power_unit, velocity_gain};
 use crate::setup::Setup;
@@ -163,10 +163,7 @@ pub(super) fn settings(project: &Project) -> SimulationSettings {
     SimulationSettings {
         tolerance: declared.tolerance,
         maximum_steps: u64::from(declared.maximum_steps),
-        method: match declared.method {
-            StepMethod::Rosenbrock => Method::Rosenbrock,
-            StepMethod::DormandPrince => Method::DormandPrince,
-        },
+        method: declared.method,
     }
 }
 
