@@ -105,7 +105,7 @@ pub enum ReplacedError {
     Template(#[from] TemplateError),
     /// The controller is not a transfer function.
     #[error(transparent)]
-    Control(#[from] crate::control::ControlError),
+    Control(#[from] crate::setup::ControlError),
 }
 
 /// The project with the ranges that are replaced, and without what replaces them; `None` where it

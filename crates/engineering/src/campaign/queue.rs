@@ -14,7 +14,6 @@ use super::plan::Plan;
 use super::prepared::{Prepared, Watched, prepared};
 use super::row::{Row, RowOutcome};
 use super::supply::RemainingRuns;
-use crate::control::{velocity_sensor, virtual_impedance};
 use crate::setup::Setup;
 use crate::simulate::SimulateError;
 
@@ -105,8 +104,8 @@ pub(super) fn in_lanes(shared: &Shared<'_>, most: usize, give: Give<'_>) -> Resu
         true => None,
         false => {
             let given = setup.controller.as_ref().ok_or(SimulateError::NoController)?;
-            let (gain, sensor) = (plan.bench.feed_forward, velocity_sensor(&plan.project));
-            let impedance = virtual_impedance(&plan.project).unwrap_or_default();
+            let (gain, sensor) = (plan.bench.feed_forward, setup.velocity_sensor);
+            let impedance = setup.virtual_impedance.unwrap_or_default();
             Some((given, FedMotion { gain, sensor, impedance }))
         }
     };

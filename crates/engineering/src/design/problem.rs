@@ -7,11 +7,11 @@ use phea_qft::design::{
 use phea_qft::loop_shaping::{Structure, StructureFactor};
 use phea_qft::verification::TOLERANCE_DB;
 
-use crate::control::{ControlError, element};
 use crate::error::ProcedureError;
 use crate::project::{DesignObjective, StructurePart};
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
+use crate::setup::{ControlError, element};
 
 /// How far corner frequencies may lie below and above the design frequencies.
 const FREQUENCY_FACTORS: [f64; 2] = [0.1, 100.0];

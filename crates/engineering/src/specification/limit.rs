@@ -11,8 +11,8 @@ use phea_qft::specification::{
 };
 
 use super::SpecificationProblem;
-use crate::control::from_formulas;
 use crate::project::{self, MarginWish, Rational, ResponseWish};
+use crate::setup::from_formulas;
 
 /// What a key accepts in addition to the forms that all keys accept.
 #[derive(Clone, Copy, Debug)]
