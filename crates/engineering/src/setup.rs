@@ -63,9 +63,14 @@ impl<'a> Setup<'a> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn new(project: &'a Project) -> Result<Setup<'a>, ControlError> {
-        let velocity_sensor = control::velocity_sensor(project);
-        let virtual_impedance = control::virtual_impedance(project);
-        let rig = rig(project, velocity_sensor, virtual_impedance);
+        Setup::around(project, Setup::rig_of(project))
+    }
+
+    /// The same of a project whose rig is known.
+    pub(crate) fn around(
+        project: &'a Project,
+        rig: Result<Rig, RigError>,
+    ) -> Result<Setup<'a>, ControlError> {
         let fed = rig.as_ref().ok().and_then(|rig| rig.fed?.in_loop());
         let timing = control::timing(project);
         let timing = fed.map_or(timing, |(rate_feed_forward, rate_sensor)| Timing {
@@ -85,8 +90,8 @@ impl<'a> Setup<'a> {
             sensor: control::sensor(project)?,
             timing,
             quantization: control::quantization(project)?,
-            velocity_sensor,
-            virtual_impedance,
+            velocity_sensor: control::velocity_sensor(project),
+            virtual_impedance: control::virtual_impedance(project),
             rig,
         })
     }
@@ -96,7 +101,9 @@ impl<'a> Setup<'a> {
     /// # Errors
     /// As [`Setup::rig`].
     pub fn rig_of(project: &Project) -> Result<Rig, RigError> {
-        rig(project, control::velocity_sensor(project), control::virtual_impedance(project))
+        let declared = project.actuator.as_ref().ok_or(RigError::NoActuator)?;
+        let sensor = control::velocity_sensor(project);
+        Rig::of(project, declared, sensor, control::virtual_impedance(project))
     }
 
     /// The rig.
@@ -137,13 +144,4 @@ impl<'a> Setup<'a> {
         let linear = |error| ControlError::Linear { place: "[controller]", error };
         Compensation::new(&self.deployed(controller)?, self.sensor.clone()).map_err(linear)
     }
-}
-
-fn rig(
-    project: &Project,
-    velocity_sensor: RateSensor,
-    virtual_impedance: Option<VirtualImpedance>,
-) -> Result<Rig, RigError> {
-    let declared = project.actuator.as_ref().ok_or(RigError::NoActuator)?;
-    Rig::of(project, declared, velocity_sensor, virtual_impedance)
 }
