@@ -13,7 +13,7 @@ mod virtual_impedance;
 
 pub(crate) use integral::integral_row;
 
-pub use converter::{Converter, ConverterError};
+pub use converter::{CoefficientFormat, CoefficientTooLarge, Converter, ConverterError};
 pub use element::{Compensator, Element, Stage};
 pub use rate_sensor::{RateFilter, RateSensor};
 pub use sampled::{ControllerOutput, ControllerState, SampledController};

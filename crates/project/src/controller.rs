@@ -14,7 +14,7 @@ use super::text::Findings;
 use super::tree::TreeNode;
 use super::visitor::Visitor;
 use crate::catalogue::Catalogue;
-use phea_dynamics::controller::AntiWindup;
+use phea_dynamics::controller::{AntiWindup, CoefficientFormat};
 use phea_dynamics::linear::Discretization;
 use phea_quantity::{FORCE, RATIO, TIME, VOLTAGE, VOLTAGE_PER_VELOCITY};
 
@@ -116,22 +116,12 @@ pub struct DeclaredQuantization {
     /// N (or the plant's output unit), from and to.
     pub measurement_range: Option<[f64; 2]>,
     /// How the coefficients are kept.
-    pub coefficients: Coefficients,
+    pub coefficients: CoefficientFormat,
     /// N (or the plant's output unit), rms: allowed error of the force due to the rounded command.
     pub allowed_force_error: Option<f64>,
     /// V (or the plant's input unit), rms: allowed error of the command due to the rounded
     /// measurement.
     pub allowed_command_error: Option<f64>,
-}
-
-/// How coefficients are kept.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Coefficients {
-    /// With 53 bits: unchanged.
-    #[default]
-    Double,
-    /// With 24 bits.
-    Single,
 }
 
 impl DeclaredQuantization {
@@ -143,7 +133,7 @@ impl DeclaredQuantization {
         let k = bits("measurement_bits", "Bits of the measurement's converter; 0: it does not round.");
         v.count(k, &mut self.measurement_bits);
         v.pair(key("measurement_range", &FORCE, "From and to.").of_motion(), &mut self.measurement_range);
-        let words = &[("f64", Coefficients::Double), ("f32", Coefficients::Single)];
+        let words = &[("f64", CoefficientFormat::Double), ("f32", CoefficientFormat::Single)];
         let k = plain("coefficients", "How the coefficients are kept.");
         v.choice(k, words, &mut self.coefficients, false);
         let doc = "What the rounded command may do to the force, rms: a specification.";

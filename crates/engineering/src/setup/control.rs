@@ -5,7 +5,7 @@ use phea_dynamics::controller::{
     Compensator, Controller, Element, RateFilter, RateSensor, Stage, Timing, VirtualImpedance,
 };
 use phea_dynamics::linear::{LinearError, Polynomial, TimeDomain, TransferFunction};
-use phea_qft::design::quantization::{CoefficientFormat, Converter, Quantization, QuantizationError};
+use phea_qft::design::quantization::{Converter, Quantization, QuantizationError};
 
 use crate::project::{
     self, ElementKind, Formula, FormulaError, ImpedanceForm, Project, Rational, RationalFunction, Transfer,
@@ -151,10 +151,7 @@ pub(super) fn quantization(project: &Project) -> Result<Quantization, ControlErr
     Ok(Quantization {
         command: converter(declared.command_bits, declared.command_range)?,
         measurement: converter(declared.measurement_bits, declared.measurement_range)?,
-        coefficients: match declared.coefficients {
-            project::Coefficients::Double => CoefficientFormat::Double,
-            project::Coefficients::Single => CoefficientFormat::Single,
-        },
+        coefficients: declared.coefficients,
     })
 }
 
