@@ -63,6 +63,19 @@ pub enum AntiWindup {
     Clamping,
 }
 
+/// What is minimised or maximised among the controllers that satisfy every specification.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Objective {
+    /// lim s^r G(s), r the relative degree; in a sampled loop that of the elements before they are
+    /// sampled, which by Tustin's rule is |G| at pi/T without its r zeros there.
+    #[default]
+    LeastHighFrequencyGain,
+    /// The gain crossover of the nominal loop.
+    LeastBandwidth,
+    /// The least margin of all specifications.
+    BestWorstMargin,
+}
+
 /// Feedback compensator G, prefilter F, timing and limits.
 ///
 /// ```text
