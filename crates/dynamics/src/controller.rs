@@ -13,7 +13,7 @@ mod virtual_impedance;
 
 pub(crate) use integral::integral_row;
 
-pub use converter::{Converter, ConverterError};
+pub use converter::{CoefficientFormat, CoefficientTooLarge, Converter, ConverterError};
 pub use element::{Compensator, Element, Stage};
 pub use rate_sensor::{RateFilter, RateSensor};
 pub use sampled::{ControllerOutput, ControllerState, SampledController};
@@ -61,6 +61,19 @@ pub enum AntiWindup {
     BackCalculation,
     /// The state is held while the command is limited and the error drives it further out.
     Clamping,
+}
+
+/// What is minimised or maximised among the controllers that satisfy every specification.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Objective {
+    /// lim s^r G(s), r the relative degree; in a sampled loop that of the elements before they are
+    /// sampled, which by Tustin's rule is |G| at pi/T without its r zeros there.
+    #[default]
+    LeastHighFrequencyGain,
+    /// The gain crossover of the nominal loop.
+    LeastBandwidth,
+    /// The least margin of all specifications.
+    BestWorstMargin,
 }
 
 /// Feedback compensator G, prefilter F, timing and limits.

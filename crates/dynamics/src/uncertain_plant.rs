@@ -30,6 +30,16 @@ pub struct UncertainParameter {
     pub maximum: f64,
 }
 
+/// How the points of a parameter are spread over its range.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Spacing {
+    /// Evenly.
+    #[default]
+    Linear,
+    /// By a constant factor; needs a positive lower bound.
+    Logarithmic,
+}
+
 /// A quotient of polynomials, highest power first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RationalCoefficients<S> {

@@ -35,8 +35,8 @@ use crate::error::ProcedureError;
 use crate::linearize::{Linearization, linearize};
 use crate::parts::PartsCounted;
 use crate::project::{ImpedanceForm, Loaded, Project};
-use crate::rig::{RigError, sizing_problem};
-use crate::setup::Setup;
+use crate::rig::{Rig, RigError, sizing_problem};
+use crate::setup::{ControlError, Setup};
 use crate::simulate::{ScenarioRun, simulate_project};
 use crate::sizing::{Question, Sizing, size};
 use crate::source::Source;
@@ -78,6 +78,8 @@ pub struct JudgedAlternative {
     pub name: String,
     /// The project with its settings.
     pub loaded: Loaded,
+    /// The rig of that project, or why there is none.
+    pub rig: Result<Rig, String>,
     /// The ranges of `[uncertainty]` that follow its rig.
     pub moved: Vec<MovedRange>,
     /// The parameters of its rig outside of their ranges in `[uncertainty]`, in words; `None` where
@@ -185,7 +187,7 @@ pub fn judge(
     let cases = asked_cases(source, loaded, catalogues)?;
     let catalogue = catalogue::load(source, catalogues).map_err(ProcedureError::Catalogue)?;
     let impedance_at = request.impedance_at.as_slice();
-    let judging = Judging { source, catalogue: &catalogue, declared: loaded, impedance_at, counted };
+    let judging = Judging { source, catalogue: &catalogue, all: &all, impedance_at, counted };
     let swept = planned.as_ref().map_or(0, |plan| plan.values.len());
     let rounds = (1 + cases.len() + swept) as f64;
     let round = |watch: Watch<'_>, [first, last]: [f64; 2], progress: Progress| {
@@ -215,7 +217,7 @@ const DESIGNING: f64 = 0.7;
 pub(crate) struct Judging<'a> {
     source: &'a dyn Source,
     catalogue: &'a Catalogue,
-    declared: &'a Loaded,
+    all: &'a [AskedAlternative],
     impedance_at: &'a [f64],
     counted: PartsCounted,
 }
@@ -223,14 +225,16 @@ pub(crate) struct Judging<'a> {
 impl Judging<'_> {
     /// `None` where the watch stops it.
     fn judged(&self, asked: AskedAlternative, watch: Watch<'_>) -> Option<JudgedAlternative> {
-        let outside = asked.outside(self.declared);
-        let AskedAlternative { name, loaded, no_hose, moved } = asked;
+        let outside = asked.outside(self.all);
+        let AskedAlternative { name, loaded, rig, no_hose, moved } = asked;
         let mut designing =
             |progress: Progress| watch(Progress { share: DESIGNING * progress.share, ..progress });
         let project = in_impedance_form(&loaded.project);
+        let setup = Setup::around(&project, rig.clone());
+        let setup = setup.as_ref().map_err(Clone::clone);
         let design = match no_hose {
             Some(reason) => Err(reason),
-            None => match designed(self.source, &project, &mut designing) {
+            None => match designed(self.source, setup.clone(), &mut designing) {
                 Err(ProcedureError::Stopped) => return None,
                 Ok(view) if view.stopped => return None,
                 design => design.map_err(|error| error.to_string()),
@@ -243,8 +247,10 @@ impl Judging<'_> {
         let mut driving = |progress: Progress| {
             watch(Progress { share: DESIGNING + (1.0 - DESIGNING) * progress.share, ..progress })
         };
+        let last = Setup::new(deployed.as_ref().unwrap_or(&loaded.project));
+        let last = last.as_ref().map_err(Clone::clone);
         let runs = deployed.as_ref().map_err(Clone::clone);
-        let runs = runs.and_then(|deployed| driven(self.source, deployed, &mut driving));
+        let runs = runs.and_then(|deployed| driven(self.source, deployed, last.clone(), &mut driving));
         if runs.as_ref().is_ok_and(|runs| runs.iter().any(ScenarioRun::was_cancelled)) {
             return None;
         }
@@ -254,9 +260,9 @@ impl Judging<'_> {
             outside,
             impedance_at: self.impedance_at.to_vec(),
             counted: self.counted,
-            sizing: sized(&loaded.project, self.catalogue).map_err(|error| error.to_string()),
-            linearization: linearized(deployed.as_ref().unwrap_or(&loaded.project))
-                .map_err(|error| error.to_string()),
+            rig: rig.map_err(|error| error.to_string()),
+            sizing: sized(setup, self.catalogue).map_err(|error| error.to_string()),
+            linearization: linearized(last).map_err(|error| error.to_string()),
             design,
             deployed,
             runs,
@@ -279,29 +285,36 @@ fn in_impedance_form(project: &Project) -> Project {
     project
 }
 
+type Lowered<'a> = Result<&'a Setup<'a>, ControlError>;
+
 fn designed(
     source: &dyn Source,
-    project: &Project,
+    setup: Lowered<'_>,
     watch: Watch<'_>,
 ) -> Result<ProjectDesign, ProcedureError> {
-    design_project(source, &Setup::new(project)?, None, watch)
+    design_project(source, setup?, None, watch)
 }
 
-fn sized(project: &Project, catalogue: &Catalogue) -> Result<Sizing, ProcedureError> {
-    Ok(size(&sizing_problem(&Setup::new(project)?, catalogue)?, Question::Both))
+fn sized(setup: Lowered<'_>, catalogue: &Catalogue) -> Result<Sizing, ProcedureError> {
+    Ok(size(&sizing_problem(setup?, catalogue)?, Question::Both))
 }
 
-fn linearized(project: &Project) -> Result<Linearization, ProcedureError> {
-    let setup = Setup::new(project)?;
+fn linearized(setup: Lowered<'_>) -> Result<Linearization, ProcedureError> {
+    let setup = setup?;
     Ok(linearize(setup.rig()?, setup.controller.as_ref(), &setup.sensor)?)
 }
 
-fn driven(source: &dyn Source, project: &Project, watch: Watch<'_>) -> Result<Vec<ScenarioRun>, String> {
+fn driven(
+    source: &dyn Source,
+    project: &Project,
+    setup: Lowered<'_>,
+    watch: Watch<'_>,
+) -> Result<Vec<ScenarioRun>, String> {
     if project.actuator.is_none() || project.scenarios.is_empty() {
         return Ok(vec![]);
     }
-    let setup = Setup::new(project).map_err(|error| error.to_string())?;
-    simulate_project(source, &setup, watch).map_err(|error| error.to_string())
+    let setup = setup.map_err(|error| error.to_string())?;
+    simulate_project(source, setup, watch).map_err(|error| error.to_string())
 }
 
 /// Why there is nothing of a machine.

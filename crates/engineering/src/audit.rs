@@ -14,6 +14,7 @@ pub(crate) use words::rounded;
 pub use words::{evidence_key, evidence_sentence, finding_sentence, place_words};
 
 pub use alone::outside;
+pub(crate) use alone::outside_of;
 pub(crate) use alone::{caveat as caveat_of_rig, unexamined as unexamined_rig};
 pub use plant::{NamedPlant, NamedValue, PlantNames};
 pub use proven::{prove_audit, standing_word, try_to_prove, why_not_proven};

@@ -7,7 +7,6 @@ use phea_hydraulics::cross_port::Restrictor;
 use phea_hydraulics::operating_point::OperatingPoint;
 use phea_hydraulics::series::MOST_SEGMENTS;
 
-use crate::control::{velocity_sensor, virtual_impedance};
 use crate::family::{ShutGas, shut_gas};
 use crate::project::{CrossPortKind, DeclaredSeries, LineMotion, Load, Project, Pump, SupplyModel};
 use crate::quantity::{DisplayUnit, PRESSURE, display, significant};
@@ -30,19 +29,20 @@ pub fn caveats(setup: &Setup<'_>) -> Vec<Caveat> {
     let of_rig =
         supply(setup).into_iter().chain(accumulator(setup)).chain(cross_port(setup)).chain(neck(setup));
     let of_rig = of_rig.chain(adjustment(setup)).chain(gas_valve(setup));
-    apart_from_lines(setup.project).chain(of_rig).chain(progression(setup)).chain(segments(setup)).collect()
+    apart_from_lines(setup).chain(of_rig).chain(progression(setup)).chain(segments(setup)).collect()
 }
 
 /// Declared effects that no linear model includes, in sentences.
-pub fn of_models(project: &Project) -> Vec<String> {
-    let others = apart_from_lines(project).map(|caveat| caveat.sentence);
+pub fn of_models(setup: &Setup<'_>) -> Vec<String> {
+    let project = setup.project;
+    let others = apart_from_lines(setup).map(|caveat| caveat.sentence);
     lumped(project)
         .into_iter()
         .chain(others)
         .chain(constant_supply(project))
         .chain(fed_between_chambers(project))
         .chain(of_gas(project))
-        .chain(fed_in_loop(project))
+        .chain(fed_in_loop(setup))
         .chain(beside_spring(project))
         .chain(standing(project))
         .collect()
@@ -133,8 +133,9 @@ fn beside_spring(project: &Project) -> Option<String> {
 }
 
 /// What no linear model counts.
-fn apart_from_lines(project: &Project) -> impl Iterator<Item = Caveat> {
-    [load(project), stages(project), feed_forward(project), impedance(project)].into_iter().flatten()
+fn apart_from_lines(setup: &Setup<'_>) -> impl Iterator<Item = Caveat> {
+    let project = setup.project;
+    [load(project), stages(project), feed_forward(project), impedance(setup)].into_iter().flatten()
 }
 
 /// A telescopic piston is that of each operating point.
@@ -444,8 +445,9 @@ fn feed_forward(project: &Project) -> Option<Caveat> {
 }
 
 /// A virtual impedance: what the specifications of its loop refer to, or that measured plants lack it.
-fn impedance(project: &Project) -> Option<Caveat> {
-    virtual_impedance(project)?;
+fn impedance(setup: &Setup<'_>) -> Option<Caveat> {
+    let project = setup.project;
+    setup.virtual_impedance?;
     let yields = project.actuator.as_ref().is_some_and(|actuator| actuator.load != Load::Prescribed);
     if is_measured(project) {
         let what = match yields {
@@ -473,16 +475,16 @@ fn impedance(project: &Project) -> Option<Caveat> {
 
 /// The feed-forward of the load velocity, which the models of a linearisation do not include
 /// because they describe the rig without its controller.
-fn fed_in_loop(project: &Project) -> Option<String> {
-    let controller = project.controller.as_ref()?;
+fn fed_in_loop(setup: &Setup<'_>) -> Option<String> {
+    let controller = setup.project.controller.as_ref()?;
     let declared = controller.load_velocity_feed_forward?;
     let why = match controller.sample_time {
         None if controller.delay > 0.0 => "as controller.delay delays it",
-        None if velocity_sensor(project).delay_s > 0.0 => "as velocity_sensor.delay delays it",
+        None if setup.velocity_sensor.delay_s > 0.0 => "as velocity_sensor.delay delays it",
         None => "which have no controller",
         Some(_) => "as the controller samples it",
     };
-    (declared.gain != Some(0.0) && feed_forward(project).is_none()).then(|| {
+    (declared.gain != Some(0.0) && feed_forward(setup.project).is_none()).then(|| {
         format!(
             "the load velocity that [controller] feeds forward is not in these models, {why}: verify, design and simulate count it"
         )

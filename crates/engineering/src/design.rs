@@ -28,12 +28,12 @@ use phea_qft::design::{Design, DesignOptions, DesignOutcome, DesignProblem, Pref
 use phea_qft::verification::Verdict;
 
 use crate::audit::{ProjectAudit, audit_problem, caveat_of_rig, unexamined_rig};
-use crate::control::is_of_position;
 use crate::error::ProcedureError;
 use crate::project::{self, Project};
 use crate::quantity;
 use crate::robust::{RobustProblem, robust_problem};
 use crate::setup::Setup;
+use crate::setup::is_of_position;
 use crate::source::Source;
 use crate::trial::{Agreement, Trial, tried};
 use phea_dynamics::watch::{Stopped, Watch, part};

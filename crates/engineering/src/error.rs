@@ -5,10 +5,10 @@ use phea_project::{LateError, Refusal};
 use crate::audit::AuditError;
 use crate::bench::BenchError;
 use crate::campaign::CampaignError;
-use crate::control::ControlError;
 use crate::design::DesignError;
 use crate::family::ProjectFamilyError;
 use crate::rig::{RigError, SizingError};
+use crate::setup::ControlError;
 use crate::shaping::ShapingError;
 use crate::simulate::SimulateError;
 

@@ -21,7 +21,6 @@ pub mod audit;
 pub mod bench;
 pub mod campaign;
 pub mod caveat;
-pub mod control;
 pub mod derived;
 pub mod design;
 pub mod error;

@@ -1,10 +1,11 @@
 //! A family compared with the box of ranges that it replaces.
 
+use phea_dynamics::uncertain_plant::Spacing;
 use phea_qft::family::Family;
 use phea_qft::template::{Template, TemplateError, TemplateOptions, Templates};
 
 use crate::family::{ProjectFamilyError, VisitedRange, family};
-use crate::project::{DeclaredFamily, DeclaredSpacing, Project};
+use crate::project::{DeclaredFamily, Project};
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
 use crate::source::Source;
@@ -52,8 +53,8 @@ pub fn replaced_ranges(project: &Project, visited: &[VisitedRange]) -> Vec<Repla
     let range = |one: &crate::project::Uncertain| {
         let visited = visited.iter().find(|visited| visited.name == one.name)?;
         let scale = |value: f64| match one.spacing {
-            DeclaredSpacing::Logarithmic => phea_dynamics::portable::ln(value),
-            DeclaredSpacing::Linear => value,
+            Spacing::Logarithmic => phea_dynamics::portable::ln(value),
+            Spacing::Linear => value,
         };
         let (low, high) = (visited.minimum.value, visited.maximum.value);
         let both = (scale(high.min(one.maximum)) - scale(low.max(one.minimum))).max(0.0);
@@ -104,7 +105,7 @@ pub enum ReplacedError {
     Template(#[from] TemplateError),
     /// The controller is not a transfer function.
     #[error(transparent)]
-    Control(#[from] crate::control::ControlError),
+    Control(#[from] crate::setup::ControlError),
 }
 
 /// The project with the ranges that are replaced, and without what replaces them; `None` where it

@@ -16,7 +16,7 @@ mod sizing;
 mod supply;
 
 use num_complex::Complex64;
-use phea_dynamics::controller::VirtualImpedance;
+use phea_dynamics::controller::{RateSensor, VirtualImpedance};
 use phea_hydraulics::actuator::{Actuator, ActuatorError, Components};
 use phea_hydraulics::force_sensor::in_series;
 use phea_hydraulics::line::{LineError, StiffeningMember};
@@ -30,7 +30,6 @@ use phea_hydraulics::two_pressure::{
     TwoPressureLinearParameters, TwoPressureModel, reduce, two_pressure_linear_parameters,
 };
 
-use crate::control::virtual_impedance;
 use crate::project::{self, Project};
 use crate::quantity::MotionKind;
 
@@ -40,7 +39,6 @@ pub use cross_port::{CrossPortAtPoint, cross_port_at_point};
 pub use gas::components_at_setting;
 pub use in_loop::FeedForwardPath;
 pub(crate) use in_loop::as_response;
-pub use in_loop::feed_forward;
 pub(crate) use in_loop::{limits_load_motion, velocity_gain};
 pub use lines::{in_motion, line_model, lines};
 pub use numbers::Numbers;
@@ -161,7 +159,12 @@ impl Rig {
     /// # Errors
     /// [`RigError`] if a parameter is impossible, or there is no equilibrium at the operating
     /// point.
-    pub fn of(project: &Project, declared: &project::DeclaredActuator) -> Result<Rig, RigError> {
+    pub fn of(
+        project: &Project,
+        declared: &project::DeclaredActuator,
+        velocity_sensor: RateSensor,
+        virtual_impedance: Option<VirtualImpedance>,
+    ) -> Result<Rig, RigError> {
         let actuator = assembly::actuator(declared)?;
         let components = actuator.components();
         let numbers = Numbers::declared();
@@ -219,8 +222,8 @@ impl Rig {
             load,
             plant,
             in_motion,
-            fed: FeedForwardPath::of(project, &linear),
-            virtual_impedance: virtual_impedance(project),
+            fed: FeedForwardPath::of(project, &linear, velocity_sensor),
+            virtual_impedance,
         })
     }
 }

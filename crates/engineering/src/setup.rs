@@ -5,14 +5,18 @@
 //! Project -> Setup { rig, controller, prefilter, sensor, timing, quantization } -> machine, plant, family, sizing, reductions
 //! ```
 
-use phea_dynamics::controller::{Compensator, Controller, Timing};
+mod control;
+
+use phea_dynamics::controller::{Compensator, Controller, RateSensor, Timing, VirtualImpedance};
 use phea_dynamics::linear::TransferFunction;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::design::quantization::{CoefficientFormat, Quantization, rounded};
 
-use crate::control::{self, ControlError};
 use crate::project::Project;
 use crate::rig::{Rig, RigError};
+
+pub use control::ControlError;
+pub(crate) use control::{element, from_formulas, is_of_position};
 
 /// The rig of a project with its controller, as values to compute with. A rig with a changed number
 /// is another setup.
@@ -32,6 +36,11 @@ pub struct Setup<'a> {
     pub timing: Timing,
     /// The rounding in the controller's computer: none where the project does not say.
     pub quantization: Quantization,
+    /// Filter and dead time of the sensor of the load's velocity; none where the project declares
+    /// no sensor.
+    pub velocity_sensor: RateSensor,
+    /// The virtual impedance of the loop; `None` where there is none, or one of zero.
+    pub virtual_impedance: Option<VirtualImpedance>,
     rig: Result<Rig, RigError>,
 }
 
@@ -54,22 +63,35 @@ impl<'a> Setup<'a> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn new(project: &'a Project) -> Result<Setup<'a>, ControlError> {
-        let rig = Setup::rig_of(project);
+        Setup::around(project, Setup::rig_of(project))
+    }
+
+    /// The same of a project whose rig is known.
+    pub(crate) fn around(
+        project: &'a Project,
+        rig: Result<Rig, RigError>,
+    ) -> Result<Setup<'a>, ControlError> {
         let fed = rig.as_ref().ok().and_then(|rig| rig.fed?.in_loop());
-        let timing = match fed {
-            None => control::timing(project),
-            Some((rate_feed_forward, rate_sensor)) => {
-                Timing { rate_feed_forward, rate_sensor, ..control::timing(project) }
-            }
-        };
-        let controller = control::controller(project)?;
+        let timing = control::timing(project);
+        let timing = fed.map_or(timing, |(rate_feed_forward, rate_sensor)| Timing {
+            rate_feed_forward,
+            rate_sensor,
+            ..timing
+        });
+        let mut controller = control::controller(project, timing)?;
+        let prefilter = control::prefilter(project, &timing)?;
+        if let (Some(controller), Some(prefilter)) = (&mut controller, &prefilter) {
+            controller.prefilter = prefilter.clone();
+        }
         Ok(Setup {
             project,
-            controller: controller.map(|given| Controller { timing, ..given }),
-            prefilter: control::prefilter(project)?,
+            controller,
+            prefilter,
             sensor: control::sensor(project)?,
             timing,
             quantization: control::quantization(project)?,
+            velocity_sensor: control::velocity_sensor(project),
+            virtual_impedance: control::virtual_impedance(project),
             rig,
         })
     }
@@ -79,7 +101,9 @@ impl<'a> Setup<'a> {
     /// # Errors
     /// As [`Setup::rig`].
     pub fn rig_of(project: &Project) -> Result<Rig, RigError> {
-        Rig::of(project, project.actuator.as_ref().ok_or(RigError::NoActuator)?)
+        let declared = project.actuator.as_ref().ok_or(RigError::NoActuator)?;
+        let sensor = control::velocity_sensor(project);
+        Rig::of(project, declared, sensor, control::virtual_impedance(project))
     }
 
     /// The rig.
@@ -93,9 +117,11 @@ impl<'a> Setup<'a> {
 
     /// The same rig and controller for another question: the project may differ only in its
     /// scenarios, specifications and settings.
-    pub fn asked<'b>(&self, project: &'b Project) -> Setup<'b> {
-        let Setup { controller, prefilter, sensor, timing, quantization, rig, .. } = self.clone();
-        Setup { project, controller, prefilter, sensor, timing, quantization, rig }
+    pub fn asked<'b>(&self, project: &'b Project) -> Setup<'b>
+    where
+        'a: 'b,
+    {
+        Setup { project, ..self.clone() }
     }
 
     /// A controller as the project's computer runs it: in z with rounded coefficients, or unchanged

@@ -19,11 +19,11 @@ use phea_qft::template::{TemplateError, TemplateOptions, Templates};
 use phea_qft::verification::{StabilityFinding, TrackingJudgement};
 
 use crate::audit::PlantNames;
-use crate::control::is_of_position;
 use crate::error::ProcedureError;
 use crate::project::{self, DeclaredElement, Findings, Loaded, Refusal};
 use crate::robust::{RobustError, RobustProblem, robust_problem};
 use crate::setup::Setup;
+use crate::setup::is_of_position;
 use crate::source::Source;
 use phea_dynamics::watch::{Watch, tell};
 use workpiece::Workpiece;
@@ -121,10 +121,11 @@ pub fn shape(
     if shaped == Shaped::Controller && is_of_position(&loaded.project) {
         return Err(ShapingError::Admittance.into());
     }
-    let mut workpiece = Workpiece::new(&loaded.project, shaped)?;
     // without the elements, since the original ones may be such that they cannot be sampled
     let bare = workpiece::with_elements(&loaded.project, shaped, &[]);
-    let bare = robust_problem(source, &Setup::new(&bare)?)?;
+    let bare = Setup::new(&bare)?;
+    let mut workpiece = Workpiece::new(&loaded.project, &bare.timing, shaped)?;
+    let bare = robust_problem(source, &bare)?;
     let mut shaping = workpiece.given().clone();
     for requested in changes {
         let mut findings = Findings::default();

@@ -62,12 +62,12 @@ use phea_hydraulics::line::LineError;
 use phea_hydraulics::machine::MachineError;
 use phea_hydraulics::operating_point::OperatingPointError;
 
-use crate::control::ControlError;
 use crate::linear_loop::LoopError;
 use crate::number_table::TableFormat;
 use crate::project::Refusal;
 use crate::quantity::{FORCE, LENGTH, RATIO, TIME, VOLTAGE, display};
 use crate::rig::RigError;
+use crate::setup::ControlError;
 use crate::setup::Setup;
 use crate::source::{Destination, Source, WriteError};
 use phea_dynamics::watch::{Progress, Watch};

@@ -28,11 +28,12 @@ use crate::line::{Line, StiffeningMember};
 use crate::stroke::ActuatorStroke;
 
 /// Which modulus the fluid in the cylinder's chambers has.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum StiffnessModel {
     /// The line's effective modulus holds for line and chamber alike (the thesis).
     Uniform,
     /// The chamber keeps the fluid's modulus, and the line takes up what its sheet says.
+    #[default]
     ByVolume,
 }
 

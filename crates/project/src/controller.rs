@@ -14,6 +14,8 @@ use super::text::Findings;
 use super::tree::TreeNode;
 use super::visitor::Visitor;
 use crate::catalogue::Catalogue;
+use phea_dynamics::controller::{AntiWindup, CoefficientFormat};
+use phea_dynamics::linear::Discretization;
 use phea_quantity::{FORCE, RATIO, TIME, VOLTAGE, VOLTAGE_PER_VELOCITY};
 
 /// A transfer function: a ratio of polynomials, or elements in series.
@@ -67,13 +69,13 @@ pub struct DeclaredController {
     /// V (or the plant's input unit), limit of the command.
     pub saturation: Option<f64>,
     /// What happens to the integrator at the limit.
-    pub anti_windup: DeclaredAntiWindup,
+    pub anti_windup: AntiWindup,
     /// s; absent: continuous.
     pub sample_time: Option<f64>,
     /// s, computation and transport delay of the loop.
     pub delay: f64,
     /// How a continuous controller becomes a sampled one.
-    pub discretization: DeclaredDiscretization,
+    pub discretization: Discretization,
     /// The rounding in its computer; absent: none.
     pub quantization: Option<DeclaredQuantization>,
     /// The feed-forward of the load velocity; absent: none.
@@ -114,22 +116,12 @@ pub struct DeclaredQuantization {
     /// N (or the plant's output unit), from and to.
     pub measurement_range: Option<[f64; 2]>,
     /// How the coefficients are kept.
-    pub coefficients: Coefficients,
+    pub coefficients: CoefficientFormat,
     /// N (or the plant's output unit), rms: allowed error of the force due to the rounded command.
     pub allowed_force_error: Option<f64>,
     /// V (or the plant's input unit), rms: allowed error of the command due to the rounded
     /// measurement.
     pub allowed_command_error: Option<f64>,
-}
-
-/// How coefficients are kept.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Coefficients {
-    /// With 53 bits: unchanged.
-    #[default]
-    Double,
-    /// With 24 bits.
-    Single,
 }
 
 impl DeclaredQuantization {
@@ -141,7 +133,7 @@ impl DeclaredQuantization {
         let k = bits("measurement_bits", "Bits of the measurement's converter; 0: it does not round.");
         v.count(k, &mut self.measurement_bits);
         v.pair(key("measurement_range", &FORCE, "From and to.").of_motion(), &mut self.measurement_range);
-        let words = &[("f64", Coefficients::Double), ("f32", Coefficients::Single)];
+        let words = &[("f64", CoefficientFormat::Double), ("f32", CoefficientFormat::Single)];
         let k = plain("coefficients", "How the coefficients are kept.");
         v.choice(k, words, &mut self.coefficients, false);
         let doc = "What the rounded command may do to the force, rms: a specification.";
@@ -152,30 +144,6 @@ impl DeclaredQuantization {
         let doc = "What the rounded measurement may do to the command, rms: a specification.";
         v.optional(key("allowed_command_error", &VOLTAGE, doc).positive(), &mut self.allowed_command_error);
     }
-}
-
-/// What happens to the integrator at the limit.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum DeclaredAntiWindup {
-    /// It winds up.
-    #[default]
-    None,
-    /// It is fed back the excess.
-    BackCalculation,
-    /// It stops.
-    Clamping,
-}
-
-/// How a continuous controller becomes a sampled one.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum DeclaredDiscretization {
-    /// The bilinear rule.
-    #[default]
-    Tustin,
-    /// Exact for piecewise constant input.
-    ZeroOrderHold,
-    /// Poles and zeros mapped by exp(sT).
-    Matched,
 }
 
 impl DeclaredController {
@@ -190,9 +158,9 @@ impl DeclaredController {
         let k = key("saturation", &VOLTAGE, "Limit of the command.").positive();
         v.optional(k, &mut self.saturation);
         let words = &[
-            ("none", DeclaredAntiWindup::None),
-            ("back_calculation", DeclaredAntiWindup::BackCalculation),
-            ("clamping", DeclaredAntiWindup::Clamping),
+            ("none", AntiWindup::None),
+            ("back_calculation", AntiWindup::BackCalculation),
+            ("clamping", AntiWindup::Clamping),
         ];
         let k = plain("anti_windup", "What happens to the integrator at the limit.");
         v.choice(k, words, &mut self.anti_windup, false);
@@ -201,9 +169,9 @@ impl DeclaredController {
         let k = key("delay", &TIME, "Computation and transport delay of the loop, part of every verdict.");
         v.quantity(k.not_negative().or(0.0), &mut self.delay);
         let words = &[
-            ("tustin", DeclaredDiscretization::Tustin),
-            ("zero_order_hold", DeclaredDiscretization::ZeroOrderHold),
-            ("matched", DeclaredDiscretization::Matched),
+            ("tustin", Discretization::Tustin),
+            ("zero_order_hold", Discretization::ZeroOrderHold),
+            ("matched", Discretization::Matched),
         ];
         let k = plain("discretization", "How a continuous controller becomes a sampled one.");
         v.choice(k, words, &mut self.discretization, false);

@@ -3,13 +3,14 @@
 use super::controller::DeclaredElement;
 use super::key::{key, plain};
 use super::visitor::{Variants, Visitor};
+use phea_dynamics::controller::Objective;
 use phea_quantity::{ANGULAR_FREQUENCY, RATIO, TIME};
 
 /// What is optimised, and among which controllers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DeclaredDesign {
     /// What is minimised or maximised.
-    pub objective: DesignObjective,
+    pub objective: Objective,
     /// Most poles of the controller.
     pub maximum_order: u32,
     /// Largest number of poles of the prefilter; 0: none is designed.
@@ -24,23 +25,11 @@ pub struct DeclaredDesign {
     pub structure: Vec<StructurePart>,
 }
 
-/// What is minimised or maximised among the controllers that satisfy every specification.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum DesignObjective {
-    /// The high-frequency gain.
-    #[default]
-    LeastHighFrequencyGain,
-    /// The gain crossover of the nominal loop.
-    LeastBandwidth,
-    /// The least margin of all specifications.
-    BestWorstMargin,
-}
-
 /// The words of `objective`.
-pub static DESIGN_OBJECTIVES: [(&str, DesignObjective); 3] = [
-    ("least_high_frequency_gain", DesignObjective::LeastHighFrequencyGain),
-    ("least_bandwidth", DesignObjective::LeastBandwidth),
-    ("best_worst_margin", DesignObjective::BestWorstMargin),
+pub static DESIGN_OBJECTIVES: [(&str, Objective); 3] = [
+    ("least_high_frequency_gain", Objective::LeastHighFrequencyGain),
+    ("least_bandwidth", Objective::LeastBandwidth),
+    ("best_worst_margin", Objective::BestWorstMargin),
 ];
 
 /// One factor of a structure. Every free number has its least and greatest value, frequencies in
@@ -87,7 +76,7 @@ const MAXIMUM_ORDER: f64 = 20.0;
 impl Default for DeclaredDesign {
     fn default() -> DeclaredDesign {
         DeclaredDesign {
-            objective: DesignObjective::default(),
+            objective: Objective::default(),
             maximum_order: 4,
             prefilter_maximum_order: 3,
             seed: 1,

@@ -1,8 +1,9 @@
 //! `[[uncertainty_direction]]`: numbers that are uncertain together.
 
+use super::Uncertain;
 use super::key::{AcceptedRange, Key, key, plain};
 use super::visitor::Visitor;
-use super::{DeclaredSpacing, Uncertain};
+use phea_dynamics::uncertain_plant::Spacing;
 use phea_quantity::RATIO;
 
 /// The variable z of a direction.
@@ -53,7 +54,7 @@ impl UncertaintyDirection {
             minimum: -self.deviations,
             maximum: self.deviations,
             points: self.points,
-            spacing: DeclaredSpacing::Linear,
+            spacing: Spacing::Linear,
         }
     }
 }

@@ -1,5 +1,18 @@
 //! The project file: a rig, or any other plant, and its requirements, in one readable text.
 //!
+//! ```text
+//! bytes -> tree -> setting (--set) -> reader <- catalogue: values of named parts
+//!                                     |
+//!                             Project::visit_system, visit_wishes: each key beside its field
+//!                                     |
+//!                                     -> validate: the conditions between keys -> Loaded, or a Refusal
+//!
+//! Project   -> printer -> text                   the same visits, written
+//!           -> listing -> keys, numbers by path  what `--set` and campaigns may change
+//!           -> schema                            for editors
+//! bytes, controller -> rewrite -> bytes          everything else as it was
+//! ```
+//!
 //! Inside, everything is SI. Keys are a contract: other tools read them.
 
 mod adjustment;
@@ -28,6 +41,7 @@ mod linear;
 mod linkage;
 mod listing;
 mod load_case;
+mod loaded;
 mod measured;
 mod motor;
 mod operating_point;
@@ -82,6 +96,7 @@ pub use linear::*;
 pub use linkage::*;
 pub use listing::KeyEntry;
 pub use load_case::*;
+pub use loaded::*;
 pub use measured::*;
 pub use motor::*;
 pub use operating_point::*;
@@ -112,6 +127,9 @@ pub(crate) use visitor::Visitor;
 pub use visitor::word_of;
 
 use phea_quantity::{MotionKind, RATIO};
+
+/// A commented project to start from.
+pub const STARTER: &str = include_str!("starter.toml");
 
 /// A project as it was declared. It has exactly one of `actuator`, `plant` and measured plants in
 /// `family`.
@@ -164,6 +182,57 @@ pub struct Project {
     pub load_cases: Vec<LoadCase>,
 }
 
+impl Project {
+    /// The tables that make the system: the actuator or the plant.
+    fn visit_system<V: Visitor>(&mut self, v: &mut V) {
+        let mut schema = 1;
+        v.count(key("schema", &RATIO, "Version of this format: 1.").at_least(1.0).at_most(1.0), &mut schema);
+        let mut title = (!self.title.is_empty()).then(|| std::mem::take(&mut self.title));
+        v.text(plain("title", "One line for people."), &mut title, false);
+        self.title = title.unwrap_or_default();
+        v.table(plain("plant", "Any plant but an actuator."), &mut self.plant, DeclaredPlant::visit);
+        v.part(&mut self.actuator, DeclaredActuator::visit);
+    }
+
+    /// The requirements on the system.
+    fn visit_wishes<V: Visitor>(&mut self, v: &mut V) {
+        let k = plain("operating_point", "Where the linear model is taken.");
+        v.table_or_default(k, &mut self.operating_point, DeclaredOperatingPoint::visit);
+        let k = plain("linear", "Parameters of the linear model, set outright.");
+        v.table_or_default(k, &mut self.linear, Linear::visit);
+        v.table(
+            plain("sizing", "What the compliance is sized for."),
+            &mut self.sizing,
+            DeclaredSizing::visit,
+        );
+        let k = plain("uncertainty", "Uncertain numbers and their grids.");
+        Uncertain::visit_all(k, &mut self.uncertainty, v);
+        let k = plain("uncertainty_direction", "Numbers that are uncertain together.");
+        v.tables(k, &mut self.directions, UncertaintyDirection::visit);
+        v.table(plain("family", "Which plants are examined."), &mut self.family, DeclaredFamily::visit);
+        v.table(plain("sensor", "Dynamics of the sensor."), &mut self.sensor, Sensor::visit);
+        let k = plain("specification", "What the closed loop must meet.");
+        v.tables(k, &mut self.specifications, DeclaredSpecification::visit);
+        let k = plain("controller", "Given, to be verified; absent, to be designed.");
+        v.table(k, &mut self.controller, DeclaredController::visit);
+        let k = plain("prefilter", "Given, to be verified; absent, to be designed.");
+        v.table(k, &mut self.prefilter, Prefilter::visit);
+        v.table(plain("design", "How a controller is designed."), &mut self.design, DeclaredDesign::visit);
+        v.tables(plain("scenario", "What is simulated."), &mut self.scenarios, Scenario::visit);
+        let k = plain("simulation", "How exactly scenarios are simulated.");
+        v.table_or_default(k, &mut self.simulation, Simulation::visit);
+        v.table(plain("campaign", "What a campaign varies."), &mut self.campaign, Campaign::visit);
+        let k = plain("bench", "How the servovalve is tested.");
+        v.table_or_default(k, &mut self.bench, Bench::visit);
+        let k = plain("identify", "What the servovalve is identified from.");
+        v.table(k, &mut self.identify, Identify::visit);
+        let k = plain("alternative", "The project with other values, for `phea alternatives`.");
+        v.tables(k, &mut self.alternatives, Alternative::visit);
+        let k = plain("load_case", "Other values under which all alternatives are judged again.");
+        v.tables(k, &mut self.load_cases, LoadCase::visit);
+    }
+}
+
 /// The hydraulic actuator and what it works against.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DeclaredActuator {
@@ -191,139 +260,6 @@ pub struct DeclaredActuator {
     pub linkage: Option<DeclaredLinkage>,
     /// What the force acts on.
     pub load: Load,
-}
-
-/// A commented project to start from.
-pub const STARTER: &str = include_str!("starter.toml");
-
-/// A project that was read, with information about the reading.
-#[derive(Clone, Debug)]
-pub struct Loaded {
-    /// What was declared, with settings applied, catalogue values and defaults filled in.
-    pub project: Project,
-    /// Warnings: values that are doubtful but not wrong.
-    pub warnings: Vec<Diagnostic>,
-    /// Name and content of every text a warning points into.
-    pub texts: Vec<(String, String)>,
-    /// The path of the file, as it was given.
-    pub path: String,
-    /// The file's bytes.
-    pub bytes: Vec<u8>,
-    /// Of the file's bytes, in hexadecimal; with recordings in use, of those followed by the bytes
-    /// of each recording in order.
-    pub sha256: String,
-    /// The `path=value` texts that were applied, as given.
-    pub settings: Vec<String>,
-    /// The catalogue files a value came from: those of the project's own and `built-in:NAME`.
-    pub catalogue_files: Vec<String>,
-    /// Where every number that is not simply declared in the file came from, in path order.
-    pub provenance: Vec<Provenance>,
-    /// The user's catalogue files and folders, as given.
-    pub catalogues: Vec<String>,
-    /// What recordings gave in place of what the project declares; absent: nothing did.
-    pub recorded: Option<FromRecordings>,
-}
-
-impl Loaded {
-    /// Every setting that makes this project of its file: those that follow from recordings, and
-    /// the user's.
-    pub fn all_settings(&self) -> Vec<String> {
-        let recorded = self.recorded.iter().flat_map(|recorded| &recorded.settings);
-        recorded.chain(&self.settings).cloned().collect()
-    }
-}
-
-/// Where a number came from.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Provenance {
-    /// Dotted path, such as `valve.nominal_flow`.
-    pub path: String,
-    /// Who said it.
-    pub origin: Origin,
-}
-
-/// Who said a number.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Origin {
-    /// The project file.
-    Project,
-    /// A `--set`, quoted.
-    Setting(String),
-    /// The catalogue, with the source of the number.
-    Catalogue {
-        /// Name of the entry.
-        name: String,
-        /// Author, title and table.
-        source: String,
-    },
-    /// The default of the key.
-    Default,
-    /// Recorded tests, by identification.
-    Recordings,
-}
-
-impl Project {
-    /// The tables that make the system: the actuator or the plant.
-    fn visit_system<V: Visitor>(&mut self, v: &mut V) {
-        let mut schema = 1;
-        v.count(key("schema", &RATIO, "Version of this format: 1.").at_least(1.0).at_most(1.0), &mut schema);
-        let mut title = (!self.title.is_empty()).then(|| std::mem::take(&mut self.title));
-        v.text(plain("title", "One line for people."), &mut title, false);
-        self.title = title.unwrap_or_default();
-        v.table(plain("plant", "Any plant but an actuator."), &mut self.plant, DeclaredPlant::visit);
-        v.part(&mut self.actuator, DeclaredActuator::visit);
-    }
-
-    /// The requirements on the system.
-    fn visit_wishes<V: Visitor>(&mut self, v: &mut V) {
-        let k = plain("operating_point", "Where the linear model is taken.");
-        table_or_default(k, &mut self.operating_point, DeclaredOperatingPoint::visit, v);
-        let k = plain("linear", "Parameters of the linear model, set outright.");
-        table_or_default(k, &mut self.linear, Linear::visit, v);
-        v.table(
-            plain("sizing", "What the compliance is sized for."),
-            &mut self.sizing,
-            DeclaredSizing::visit,
-        );
-        let k = plain("uncertainty", "Uncertain numbers and their grids.");
-        Uncertain::visit_all(k, &mut self.uncertainty, v);
-        let k = plain("uncertainty_direction", "Numbers that are uncertain together.");
-        v.tables(k, &mut self.directions, UncertaintyDirection::visit);
-        v.table(plain("family", "Which plants are examined."), &mut self.family, DeclaredFamily::visit);
-        v.table(plain("sensor", "Dynamics of the sensor."), &mut self.sensor, Sensor::visit);
-        let k = plain("specification", "What the closed loop must meet.");
-        v.tables(k, &mut self.specifications, DeclaredSpecification::visit);
-        let k = plain("controller", "Given, to be verified; absent, to be designed.");
-        v.table(k, &mut self.controller, DeclaredController::visit);
-        let k = plain("prefilter", "Given, to be verified; absent, to be designed.");
-        v.table(k, &mut self.prefilter, Prefilter::visit);
-        v.table(plain("design", "How a controller is designed."), &mut self.design, DeclaredDesign::visit);
-        v.tables(plain("scenario", "What is simulated."), &mut self.scenarios, Scenario::visit);
-        let k = plain("simulation", "How exactly scenarios are simulated.");
-        table_or_default(k, &mut self.simulation, Simulation::visit, v);
-        v.table(plain("campaign", "What a campaign varies."), &mut self.campaign, Campaign::visit);
-        let k = plain("bench", "How the servovalve is tested.");
-        table_or_default(k, &mut self.bench, Bench::visit, v);
-        let k = plain("identify", "What the servovalve is identified from.");
-        v.table(k, &mut self.identify, Identify::visit);
-        let k = plain("alternative", "The project with other values, for `phea alternatives`.");
-        v.tables(k, &mut self.alternatives, Alternative::visit);
-        let k = plain("load_case", "Other values under which all alternatives are judged again.");
-        v.tables(k, &mut self.load_cases, LoadCase::visit);
-    }
-}
-
-/// A table whose absence means its default.
-fn table_or_default<T: Default + PartialEq, V: Visitor>(
-    key: Key,
-    field: &mut T,
-    visit: impl Fn(&mut T, &mut V),
-    v: &mut V,
-) {
-    let declared = *field != T::default();
-    let mut table = declared.then(|| std::mem::take(field));
-    v.table(key, &mut table, visit);
-    *field = table.unwrap_or_default();
 }
 
 impl DeclaredActuator {
@@ -358,11 +294,9 @@ impl DeclaredActuator {
         let k = plain("linkage", "What lies between the rod and a load that turns; absent: nothing.");
         v.table(k, &mut self.linkage, DeclaredLinkage::visit);
         v.load_moves((!v.names_everything()).then(|| self.load_motion()));
-        table_or_default(plain("load", "What the force acts on."), &mut self.load, Load::visit, v);
+        v.table_or_default(plain("load", "What the force acts on."), &mut self.load, Load::visit);
     }
-}
 
-impl DeclaredActuator {
     /// Every table with its name.
     fn tables() -> impl Iterator<Item = &'static str> + Clone {
         Self::REQUIRED.into_iter().chain(Self::MOVING).chain(Self::OPTIONAL)
@@ -380,6 +314,7 @@ impl DeclaredActuator {
     }
 }
 
+/// A table of which a schema says beside that of the plant that it is required.
 fn required<T: Default, V: Visitor>(key: Key, field: &mut T, visit: impl Fn(&mut T, &mut V), v: &mut V) {
     let mut table = Some(std::mem::take(field));
     v.table(key, &mut table, visit);

@@ -4,6 +4,7 @@ use super::formula::Formula;
 use super::key::{Key, key, plain};
 use super::plant::Rational;
 use super::visitor::{FormulaShape, ValueForm, Visitor};
+use phea_dynamics::time_response::SettlingRule;
 use phea_quantity::{ANGLE, ANGULAR_FREQUENCY, GAIN, RATIO, TIME};
 
 /// A limit over frequency.
@@ -60,28 +61,11 @@ pub struct ResponseWish {
     pub zero: Option<f64>,
     /// rad/s, the pole added to `lower`.
     pub pole: Option<f64>,
-    /// How the wish becomes a transfer function.
-    pub rule: ResponseRule,
+    /// The rule by which the wish becomes a second-order model; absent: such that the response,
+    /// extra zero or pole included, meets the wish.
+    pub rule: Option<SettlingRule>,
     /// The limit itself, where it is given and only checked against the wish.
     pub function: Option<Rational>,
-}
-
-/// How a wish in time becomes a second-order model.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum ResponseRule {
-    /// Such that the response, extra zero or pole included, meets the wish.
-    #[default]
-    Exact,
-    /// 3 over xi w_n.
-    FivePercent,
-    /// 4 over xi w_n.
-    TwoPercent,
-    /// 4.6 over xi w_n.
-    OnePercent,
-    /// 5 over xi w_n.
-    OnePercentThesis,
-    /// 5.83 over w_n, critically damped.
-    CriticallyDampedTwoPercent,
 }
 
 impl DeclaredLimit {
@@ -115,72 +99,42 @@ impl DeclaredLimit {
     }
 
     /// Every key is read, so that the nearest spelling of a misspelt one is found; the keys that
-    /// are present decide the form.
+    /// are present decide the form. No key at all counts as an empty table.
     fn visit_table<V: Visitor>(&mut self, v: &mut V) {
-        let mut parts = Parts::of(self);
+        let (mut table, mut function) = (DeclaredLimitTable::default(), None);
+        let (mut margins, mut response) = (MarginWish::default(), ResponseWish::default());
+        match std::mem::take(self) {
+            DeclaredLimit::Table(of) => table = of,
+            DeclaredLimit::Rational(of) => function = Some(of),
+            DeclaredLimit::Margins(of) => margins = of,
+            DeclaredLimit::Response(of) => {
+                response = of;
+                function = response.function.take();
+            }
+            DeclaredLimit::Constant(_) | DeclaredLimit::Text(_) => {}
+        }
+        let (mut numerator, mut denominator) = function.map(|of| (of.numerator, of.denominator)).unzip();
         let k = key("frequencies", &ANGULAR_FREQUENCY, "Frequencies of a tabled limit, increasing.");
-        v.quantities(k.positive(), &mut parts.table.frequencies, false);
+        v.quantities(k.positive(), &mut table.frequencies, false);
         let k = key("values", &GAIN, "The limit at each frequency.").positive();
-        v.quantities(k, &mut parts.table.values, false);
+        v.quantities(k, &mut table.values, false);
         let k = plain("numerator", "Polynomial, such as \"2116*(s + 75)/75\".");
-        v.formula(k, FormulaShape::Polynomial, &mut parts.numerator, false);
+        v.formula(k, FormulaShape::Polynomial, &mut numerator, false);
         let k = plain("denominator", "Polynomial, such as \"s^2 + 73.6*s + 2116\".");
-        v.formula(k, FormulaShape::Polynomial, &mut parts.denominator, parts.numerator.is_some());
-        parts.margins.visit(v);
-        parts.response.visit(v);
-        *self = parts.limit();
-    }
-}
-
-/// The parts of a limit, whatever its form.
-#[derive(Default)]
-struct Parts {
-    table: DeclaredLimitTable,
-    numerator: Option<Formula>,
-    denominator: Option<Formula>,
-    margins: MarginWish,
-    response: ResponseWish,
-}
-
-impl Parts {
-    fn of(limit: &mut DeclaredLimit) -> Parts {
-        let mut parts = Parts::default();
-        let function = match std::mem::take(limit) {
-            DeclaredLimit::Rational(rational) => Some(rational),
-            DeclaredLimit::Response(mut response) => {
-                let function = response.function.take();
-                parts.response = response;
-                function
-            }
-            DeclaredLimit::Table(table) => {
-                parts.table = table;
-                None
-            }
-            DeclaredLimit::Margins(margins) => {
-                parts.margins = margins;
-                None
-            }
-            DeclaredLimit::Constant(_) | DeclaredLimit::Text(_) => None,
-        };
-        if let Some(Rational { numerator, denominator }) = function {
-            (parts.numerator, parts.denominator) = (Some(numerator), Some(denominator));
-        }
-        parts
-    }
-
-    /// The form that the parts make; no part at all counts as an empty table.
-    fn limit(self) -> DeclaredLimit {
-        let function = self.numerator.zip(self.denominator);
+        v.formula(k, FormulaShape::Polynomial, &mut denominator, numerator.is_some());
+        margins.visit(v);
+        response.visit(v);
+        let function = numerator.zip(denominator);
         let function = function.map(|(numerator, denominator)| Rational { numerator, denominator });
-        if !self.table.frequencies.is_empty() {
-            DeclaredLimit::Table(self.table)
-        } else if self.margins != MarginWish::default() {
-            DeclaredLimit::Margins(self.margins)
-        } else if self.response != ResponseWish::default() {
-            DeclaredLimit::Response(ResponseWish { function, ..self.response })
-        } else {
-            function.map_or(DeclaredLimit::Table(self.table), DeclaredLimit::Rational)
-        }
+        *self = match function {
+            _ if !table.frequencies.is_empty() => DeclaredLimit::Table(table),
+            _ if margins != MarginWish::default() => DeclaredLimit::Margins(margins),
+            function if response != ResponseWish::default() => {
+                DeclaredLimit::Response(ResponseWish { function, ..response })
+            }
+            Some(function) => DeclaredLimit::Rational(function),
+            None => DeclaredLimit::Table(table),
+        };
     }
 }
 
@@ -215,12 +169,12 @@ impl ResponseWish {
         v.optional(k, &mut self.pole);
         if v.names_everything() || *self != ResponseWish::default() {
             let words = &[
-                ("exact", ResponseRule::Exact),
-                ("five_percent", ResponseRule::FivePercent),
-                ("two_percent", ResponseRule::TwoPercent),
-                ("one_percent", ResponseRule::OnePercent),
-                ("one_percent_thesis", ResponseRule::OnePercentThesis),
-                ("critically_damped_two_percent", ResponseRule::CriticallyDampedTwoPercent),
+                ("exact", None),
+                ("five_percent", Some(SettlingRule::FivePercent)),
+                ("two_percent", Some(SettlingRule::TwoPercent)),
+                ("one_percent", Some(SettlingRule::OnePercent)),
+                ("one_percent_thesis", Some(SettlingRule::OnePercentThesis)),
+                ("critically_damped_two_percent", Some(SettlingRule::CriticallyDampedTwoPercent)),
             ];
             v.choice(
                 plain("rule", "How the wish becomes a transfer function."),

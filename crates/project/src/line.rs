@@ -7,27 +7,18 @@ use super::key::{key, plain};
 use super::line_motion::LineMotion;
 use super::visitor::{Kinds, Visitor};
 use crate::catalogue::CatalogueKind;
+use phea_hydraulics::stiffness::StiffnessModel;
 use phea_quantity::{DENSITY, EXPANSION_SLOPE, LENGTH, PRESSURE, RATIO, VOLUME, VOLUME_PER_LENGTH};
 
 /// The lines between the valve and the chambers.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DeclaredLines {
     /// To which volume the line's effective bulk modulus applies.
-    pub compliance: Compliance,
+    pub compliance: StiffnessModel,
     /// The line to chamber A.
     pub a: DeclaredLine,
     /// The line to chamber B.
     pub b: DeclaredLine,
-}
-
-/// To which volume the line's effective bulk modulus applies.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Compliance {
-    /// Each volume has its own: the chamber keeps the fluid's.
-    #[default]
-    ByVolume,
-    /// Line and chamber together, as in Ledezma (2019).
-    Uniform,
 }
 
 /// One line.
@@ -382,7 +373,7 @@ impl ElasticWall {
 impl DeclaredLines {
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
         let k = plain("compliance", "To which volume the line's effective bulk modulus applies.");
-        let words = &[("by_volume", Compliance::ByVolume), ("uniform", Compliance::Uniform)];
+        let words = &[("by_volume", StiffnessModel::ByVolume), ("uniform", StiffnessModel::Uniform)];
         v.choice(k, words, &mut self.compliance, false);
         let keys = [plain("a", "The line to chamber A."), plain("b", "The line to chamber B.")];
         let mut sides = [std::mem::take(&mut self.a), std::mem::take(&mut self.b)];

@@ -2,6 +2,7 @@
 
 use super::key::{Key, key, plain};
 use super::visitor::{Kinds, Variants, Visitor};
+use phea_hydraulics::line::LaminarFriction;
 use phea_quantity::{MASS_PER_LENGTH, RATIO, STRAIN_PER_FORCE, STRAIN_PER_PRESSURE, TIME};
 
 /// The dynamic model of a line with its parameters.
@@ -38,18 +39,9 @@ pub struct LineSegments {
     /// How many; absent: [`LineSegments::COUNT`].
     pub count: Option<u32>,
     /// The friction of the flow in them; absent: it depends on frequency.
-    pub friction: Option<LineFriction>,
+    pub friction: Option<LaminarFriction>,
     /// s, of a wall that creeps; absent: it is elastic.
     pub relaxation_time: Option<f64>,
-}
-
-/// The model of laminar friction in segments.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum LineFriction {
-    /// As in steady flow.
-    Steady,
-    /// With the boundary layer of changing flow.
-    FrequencyDependent,
 }
 
 /// The data of a hose's wall that moves along its axis; absent values are assumed.
@@ -65,8 +57,10 @@ pub struct LineWall {
     pub axial_compliance: Option<f64>,
 }
 
-static FRICTIONS: [(&str, Option<LineFriction>); 2] =
-    [("steady", Some(LineFriction::Steady)), ("frequency_dependent", Some(LineFriction::FrequencyDependent))];
+static FRICTIONS: [(&str, Option<LaminarFriction>); 2] = [
+    ("steady", Some(LaminarFriction::Steady)),
+    ("frequency_dependent", Some(LaminarFriction::FrequencyDependent)),
+];
 
 const RELAXATION: Key = key(
     "relaxation_time",
@@ -160,7 +154,7 @@ impl LineSegments {
 
     /// The most with this friction and this wall.
     pub(crate) fn most(&self) -> u32 {
-        let lags = if self.friction == Some(LineFriction::Steady) { 0 } else { 5 };
+        let lags = if self.friction == Some(LaminarFriction::Steady) { 0 } else { 5 };
         let creeping = u32::from(self.relaxation_time.is_some());
         // a wall creeps at both ends of each segment
         (Self::MOST_STATES - creeping) / (2 + lags + creeping)

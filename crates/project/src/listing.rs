@@ -99,8 +99,13 @@ impl Listing {
 
 /// The keys of a variant.
 pub(crate) fn keys_of<T: Variants>(variant: &T) -> Vec<&'static str> {
+    keys_of_table(|listing| variant.clone().visit(listing))
+}
+
+/// The keys of a table, those of the tables in it left out.
+pub(crate) fn keys_of_table(visit: impl FnOnce(&mut Listing)) -> Vec<&'static str> {
     let mut listing = Listing::of_everything();
-    variant.clone().visit(&mut listing);
+    visit(&mut listing);
     listing.outermost
 }
 
@@ -239,6 +244,7 @@ impl Visitor for Listing {
     }
 
     fn tables<T: Default>(&mut self, key: Key, field: &mut Vec<T>, visit: impl Fn(&mut T, &mut Self)) {
+        self.note(key);
         if self.everything {
             self.within(&format!("{}[]", key.name), |listing| visit(&mut T::default(), listing));
         }

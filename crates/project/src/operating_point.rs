@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use super::key::{Key, key, plain};
 use super::listing::Listing;
 use super::visitor::Visitor;
-use super::{DeclaredActuator, DeclaredSpacing, OperatingRegion, Project, Uncertain, UncertaintyDirection};
+use super::{DeclaredActuator, OperatingRegion, Project, Uncertain, UncertaintyDirection};
+use phea_dynamics::uncertain_plant::Spacing;
 use phea_quantity::{FORCE, LENGTH, PRESSURE, VELOCITY, VOLTAGE};
 
 /// Where the linear model is taken; absent parts are mid stroke and null.
@@ -142,7 +143,7 @@ impl Project {
                 minimum,
                 maximum,
                 points: region.points,
-                spacing: DeclaredSpacing::Linear,
+                spacing: Spacing::Linear,
             })
         };
         numbers.into_iter().filter_map(uncertain).collect()

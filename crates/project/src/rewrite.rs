@@ -11,21 +11,15 @@ mod surgery;
 
 use std::collections::BTreeMap;
 
-use self::surgery::{KeyValues, LAW, replaced};
+use self::surgery::{KeyValues, replaced};
+use super::listing::keys_of_table;
 use super::printer::Printer;
 use super::{DeclaredController, Prefilter, Transfer};
 
-/// Keys of [controller] other than its transfer function.
-const BESIDE: [&str; 8] = [
-    "saturation",
-    "anti_windup",
-    "sample_time",
-    "delay",
-    "discretization",
-    "quantization",
-    "load_velocity_feed_forward",
-    "impedance",
-];
+/// Keys of [controller] and [prefilter] that form a transfer function.
+fn law_keys() -> Vec<&'static str> {
+    keys_of_table(|listing| Transfer::default().visit(listing))
+}
 
 /// The bytes of a project file with this controller, and with this prefilter if there is one, in
 /// place of the old ones. Other keys of `[controller]` and `[prefilter]` remain as they are
@@ -41,16 +35,23 @@ pub fn with_laws(
     let (mark, content) =
         text.strip_prefix('\u{feff}').map_or(("", text.as_ref()), |rest| ("\u{feff}", rest));
     let overrides = |table: &str| settings.iter().any(|setting| setting.trim_start().starts_with(table));
-    let overridden = overrides("controller");
-    let lines = if overridden { controller_lines(controller) } else { law_lines(&controller.transfer) };
-    let keys: Vec<&str> = LAW.into_iter().chain(BESIDE.into_iter().filter(|_| overridden)).collect();
+    let (keys, lines) = match overrides("controller") {
+        true => {
+            let all = keys_of_table(|listing| DeclaredController::default().visit(listing));
+            (all, controller_lines(controller))
+        }
+        false => (law_keys(), law_lines(&controller.transfer)),
+    };
     let mut content = replaced(content, "controller", &keys, &lines);
     if let Some(prefilter) = prefilter {
-        // a controller in z has the samples of the loop
-        let overridden = overrides("prefilter");
-        let lines = if overridden { prefilter_lines(prefilter) } else { law_lines(&prefilter.transfer) };
-        let keys: Vec<&str> =
-            LAW.into_iter().chain(["sample_time"]).chain(overridden.then_some("continuous")).collect();
+        let (keys, lines) = match overrides("prefilter") {
+            true => {
+                let all = keys_of_table(|listing| Prefilter::default().visit(listing));
+                (all, prefilter_lines(prefilter))
+            }
+            // a controller in z has the samples of the loop
+            false => ([law_keys(), vec!["sample_time"]].concat(), law_lines(&prefilter.transfer)),
+        };
         content = replaced(&content, "prefilter", &keys, &lines);
     }
     format!("{mark}{content}").into_bytes()
@@ -58,7 +59,7 @@ pub fn with_laws(
 
 /// The text with these lines in place of the transfer function of the table.
 pub fn with_law(text: &str, table: &str, lines: &[(String, String)]) -> String {
-    replaced(text, table, &LAW, lines)
+    replaced(text, table, &law_keys(), lines)
 }
 
 /// Keys with their default values are left out.

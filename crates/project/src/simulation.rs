@@ -2,23 +2,14 @@
 
 use super::key::{key, plain};
 use super::visitor::Visitor;
+use phea_dynamics::simulation::Method;
 use phea_quantity::RATIO;
-
-/// How steps are made.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum StepMethod {
-    /// Implicit, of order 5, for stiff systems.
-    #[default]
-    Rosenbrock,
-    /// Explicit, of order 5: an independent check.
-    DormandPrince,
-}
 
 /// The method, accuracy, random numbers and largest effort.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Simulation {
     /// How steps are made.
-    pub method: StepMethod,
+    pub method: Method,
     /// Largest error of a step, relative to each state plus its scale.
     pub tolerance: f64,
     /// Number of steps after which a simulation ends.
@@ -29,13 +20,13 @@ pub struct Simulation {
 
 impl Default for Simulation {
     fn default() -> Simulation {
-        Simulation { method: StepMethod::default(), tolerance: 1e-6, maximum_steps: 10_000_000, seed: 1 }
+        Simulation { method: Method::default(), tolerance: 1e-6, maximum_steps: 10_000_000, seed: 1 }
     }
 }
 
 impl Simulation {
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
-        let words = &[("rosenbrock", StepMethod::Rosenbrock), ("dormand_prince", StepMethod::DormandPrince)];
+        let words = &[("rosenbrock", Method::Rosenbrock), ("dormand_prince", Method::DormandPrince)];
         v.choice(plain("method", "How steps are made."), words, &mut self.method, false);
         let k = key("tolerance", &RATIO, "Largest error of a step, relative to each state plus its scale.");
         v.quantity(k.at_least(1e-12).at_most(1e-2).or(1e-6), &mut self.tolerance);

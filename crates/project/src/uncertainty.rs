@@ -2,6 +2,7 @@
 
 use super::key::{Key, key, plain};
 use super::visitor::Visitor;
+use phea_dynamics::uncertain_plant::Spacing;
 use phea_quantity::RATIO;
 
 /// One uncertain number.
@@ -18,17 +19,7 @@ pub struct Uncertain {
     /// Points of the grid over it.
     pub points: u32,
     /// How the points are spread.
-    pub spacing: DeclaredSpacing,
-}
-
-/// How grid points are spread.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum DeclaredSpacing {
-    /// Evenly.
-    #[default]
-    Linear,
-    /// By a constant factor.
-    Logarithmic,
+    pub spacing: Spacing,
 }
 
 impl Uncertain {
@@ -53,7 +44,7 @@ impl Uncertain {
         v.quantity(part("maximum", "The most it may be."), &mut self.maximum);
         let k = key("points", &RATIO, "Points of the grid over it.").at_least(1.0).at_most(1000.0).or(3.0);
         v.count(k, &mut self.points);
-        let words = &[("linear", DeclaredSpacing::Linear), ("log", DeclaredSpacing::Logarithmic)];
+        let words = &[("linear", Spacing::Linear), ("log", Spacing::Logarithmic)];
         v.choice(plain("spacing", "How the points are spread."), words, &mut self.spacing, false);
     }
 }

@@ -90,6 +90,17 @@ pub(crate) trait Visitor: Sized {
         self.table(key, &mut value, visit);
         *field = value.unwrap_or_default();
     }
+    /// A table whose absence means its default.
+    fn table_or_default<T: Default + PartialEq>(
+        &mut self,
+        key: Key,
+        field: &mut T,
+        visit: impl Fn(&mut T, &mut Self),
+    ) {
+        let mut value = (*field != T::default()).then(|| std::mem::take(field));
+        self.table(key, &mut value, visit);
+        *field = value.unwrap_or_default();
+    }
     /// Keys of the present table that belong to a part which may be absent as a whole.
     fn part<T: Default>(&mut self, field: &mut Option<T>, visit: impl Fn(&mut T, &mut Self));
     /// Keys of the present table that describe one thing in one way: this way is chosen if one of

@@ -9,12 +9,13 @@ mod measured;
 mod member;
 mod tabulated;
 
-pub use coordinate::{Coordinate, Spacing};
+pub use coordinate::Coordinate;
 pub use measured::{MeasuredFamily, MeasuredPlant, MeasurementError};
 pub use member::{grid, random, vertices};
 pub(crate) use tabulated::{COARSE, points, table};
 pub use tabulated::{FINE, tabulated};
 
+pub use phea_dynamics::uncertain_plant::Spacing;
 use phea_dynamics::uncertain_plant::UncertainPlant;
 
 /// The plants that a loop must control.

@@ -8,7 +8,8 @@ use phea_dynamics::portable::{cos, exp, magnitude, sin};
 use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients};
 use phea_qft::closed_loop::{Compensation, Member};
 use phea_qft::design::quantization::{
-    CoefficientFormat, Converter, LimitCycle, Quantization, QuantizationError, rounded, rounding_effects,
+    CoefficientFormat, CoefficientTooLarge, Converter, LimitCycle, Quantization, QuantizationError, rounded,
+    rounding_effects,
 };
 
 const SAMPLE: f64 = 0.01;
@@ -302,7 +303,7 @@ fn what_cannot_be_is_refused() {
     assert_eq!(rounded(&gain(1e-3), small), Err(QuantizationError::Vanished([1e-3, 0.0, 0.0])));
     assert_eq!(
         rounded(&gain(2.0), small),
-        Err(QuantizationError::TooLarge { value: 2.0, largest: 1.0 - 1.0 / 256.0 })
+        Err(QuantizationError::from(CoefficientTooLarge { value: 2.0, largest: 1.0 - 1.0 / 256.0 }))
     );
     assert!(rounded(&gain(1e39), CoefficientFormat::Single).is_err());
     let continuous = Controller::default();

@@ -273,8 +273,8 @@ fn answer_as_read(
 fn check(source: &dyn Source, loaded: &Loaded, catalogues: &[String]) -> Result<Answer, CommandError> {
     let of_alternatives = read_alternatives(source, loaded, catalogues)?;
     let setup = Setup::new(&loaded.project)?;
-    let derived = match setup.rig() {
-        Ok(rig) => derive(&loaded.project, rig),
+    let derived = match derive(&setup) {
+        Ok(derived) => derived,
         // A plant given as a transfer function has nothing to derive; it is valid all the same.
         Err(RigError::NoActuator) => vec![],
         Err(error) => return Err(error.into()),

@@ -250,7 +250,7 @@ fn rig_part(
     let problem = problem.and_then(|problem| problem.as_ref().ok());
     let (project, rig, sensor) = (setup.project, setup.rig()?, &setup.sensor);
     let linearization = linearize(rig, setup.controller.as_ref(), sensor)?;
-    let derived = derive(project, rig);
+    let derived = derive(setup)?;
     let sizing = problem.map(|problem| size(problem, Question::Both));
     let band = project.scenarios.first().map_or(SETTLING_BAND, |scenario| scenario.settling_band_percent);
     let seen = rig.in_loop().plant.coefficients();
@@ -266,8 +266,8 @@ fn rig_part(
         stiffness::chapter(rig, &linearization),
         Chapter::of("derived", "Derived quantities", derived::document(&derived)),
         models::chapter(&linearization)?,
-        impedance::chapter(project, &linearization)?,
-        response::chapter(project, given.as_ref(), reference(project)),
+        impedance::chapter(setup, &linearization)?,
+        response::chapter(setup, given.as_ref(), reference(project)),
     ];
     let mut facts = vec![("Load", rig::load_words(actuator)), ("Lines", rig::lines_words(actuator))];
     facts.extend(summary((&linearization, rig), sizing.as_ref(), problem, given.as_ref()));

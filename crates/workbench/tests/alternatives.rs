@@ -5,9 +5,9 @@
 
 use std::sync::OnceLock;
 
-use crate::ask::{HOSE, answer, load, source};
+use crate::ask::{HOSE, answer, load, retracted_length, source};
 use crate::json_contract::unexplained;
-use phea_workbench::alternatives::{COLUMN_SENSES, asked as asked_of, retracted_length};
+use phea_workbench::alternatives::{COLUMN_SENSES, asked as asked_of};
 use phea_workbench::answer::Answer;
 use phea_workbench::command::{AlternativesRequest, Request, answer_watched};
 use serde_json::Value;
@@ -273,7 +273,7 @@ fn ranges_follow_the_rig_where_that_is_asked() {
     // ORIGIN: recomputed by book/recompute_theory.py, thesis (6.19) with the pipes: 17.1 to 124 MN/m
     assert!((nominal / 1.71e7 - 1.0).abs() < 5e-3 && nominal == least, "{nominal} {least}");
     assert!((greatest / 1.24e8 - 1.0).abs() < 5e-3, "{greatest}");
-    assert!(following[1].outside(&declared).is_none());
+    assert!(following[1].outside(&following).is_none());
     let warning = "pipe: the ranges of [uncertainty] do not contain its rig";
     let check = |recentre: &str| answer(&text(recentre), &[], &[], &Request::Check).text;
     assert!(check("recentre = false").contains(warning) && !check("recentre = true").contains(warning));

@@ -3,9 +3,11 @@
 
 use std::sync::OnceLock;
 
+use phea_workbench::alternatives;
 use phea_workbench::answer::Answer;
 use phea_workbench::command::{self, CommandError, IdentifyError, Request};
 use phea_workbench::project::{self, Loaded, Project};
+use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 use serde_json::Value;
 
@@ -32,6 +34,12 @@ pub(crate) fn source(project: &str) -> Memory {
         .fold(Memory::default(), |source, (path, text)| source.with(path, text))
         .with(OVERRIDE, include_str!("catalogue/override/eaton_synflex_3130_08.toml"))
         .with("rig.toml", project)
+}
+
+/// From mount to mount, as `alternatives` tells it.
+pub(crate) fn retracted_length(project: &Project) -> Result<f64, &'static str> {
+    let rig = Setup::rig_of(project).unwrap();
+    alternatives::retracted_length(project.actuator.as_ref().unwrap(), &rig)
 }
 
 fn owned(texts: &[&str]) -> Vec<String> {

@@ -155,10 +155,11 @@ fn a_weight_is_held_at_rest() {
 #[test]
 fn the_impedance_about_the_joint_is_told() {
     let project = project_of(KNEE, &[]);
-    let rig = Setup::rig_of(&project).unwrap();
+    let setup = Setup::new(&project).unwrap();
+    let rig = setup.rig().unwrap();
     let linkage = rig.actuator.components().linkage.as_ref().unwrap();
-    let here = linkage_places(&rig).into_iter().find(|at| at.at == LinkagePosition::OperatingPoint).unwrap();
-    let rows = phea_workbench::derived::derive(&project, &rig);
+    let here = linkage_places(rig).into_iter().find(|at| at.at == LinkagePosition::OperatingPoint).unwrap();
+    let rows = phea_workbench::derived::derive(&setup).unwrap();
     let geometric = rows.iter().find(|row| row.name == "linkage.geometric_stiffness").unwrap().value.unwrap();
     let (force, stiffness, step) = (rig.point.hydraulic_force, 2e5, 1e-5);
     let torque = |angle: f64| {

@@ -111,7 +111,7 @@ fn the_spring_is_in_the_equivalent_stiffness_and_in_the_sizing() {
     let project = project_of(SERIES, &[]);
     let setup = Setup::new(&project).unwrap();
     let rig = setup.rig().unwrap();
-    let list = derive(&project, rig);
+    let list = derive(&setup).unwrap();
     let value = |name: &str| list.iter().find(|one| one.name == name).unwrap().value.unwrap();
     let stiffness = rig.linear.hydraulic_stiffness;
     let expected = 1.0 / (1.0 / stiffness + 1.0 / 20e6 + 1.0 / 2.24e6);

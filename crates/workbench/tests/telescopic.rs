@@ -4,12 +4,11 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
-use phea_workbench::alternatives::retracted_length;
 use phea_workbench::audit::{CERTIFICATE_FILE, check_certificate};
 use phea_workbench::command::{FrictionRequest, Request, friction_watched};
 use phea_workbench::source::Memory;
 
-use crate::ask::{HOSE, answer, check, derived, load, near, size_request, try_answer};
+use crate::ask::{HOSE, answer, check, derived, load, near, retracted_length, size_request, try_answer};
 
 const TELESCOPIC: &str = include_str!("../../../examples/ybitu/telescopic.toml");
 const VISCOUS: &str = "cylinder.friction={ model = \"viscous\", viscous = \"1 kN.s/m\" }";

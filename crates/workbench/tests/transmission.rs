@@ -4,13 +4,12 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
-use phea_workbench::alternatives::retracted_length;
 use phea_workbench::command::Request;
 use phea_workbench::project;
 use phea_workbench::source::Memory;
 use serde_json::Value;
 
-use crate::ask::{answer, check, derived, load, near};
+use crate::ask::{answer, check, derived, load, near, retracted_length};
 
 const TRANSMISSION: &str = include_str!("../../../examples/ybitu/transmission.toml");
 /// As long as one with a hose, whose numbers are known by hand.

@@ -1,4 +1,6 @@
-//! Converters between a computer and what it controls.
+//! Converters between a computer and what it controls, and how it keeps coefficients.
+
+use crate::portable;
 
 /// A converter that rounds to the nearest of 2^bits levels over its range.
 ///
@@ -61,4 +63,63 @@ impl Converter {
         let [minimum, maximum] = self.range;
         ((value / self.step).round() * self.step).clamp(minimum, maximum)
     }
+}
+
+/// How a coefficient is kept.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CoefficientFormat {
+    /// IEEE 754 with 53 bits: unchanged.
+    #[default]
+    Double,
+    /// IEEE 754 with 24 bits.
+    Single,
+    /// A multiple of 2^-fraction_bits, below 2^integer_bits in magnitude.
+    Fixed {
+        /// Bits before the point, without the sign.
+        integer_bits: u8,
+        /// Bits behind the point.
+        fraction_bits: u8,
+    },
+}
+
+/// A coefficient is beyond what its format can hold.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("the coefficient {value} is beyond the largest of its format, {largest}")]
+pub struct CoefficientTooLarge {
+    /// The coefficient.
+    pub value: f64,
+    /// The largest that can be represented.
+    pub largest: f64,
+}
+
+impl CoefficientFormat {
+    /// The nearest number that can be represented; halves are rounded away from zero in fixed
+    /// point, and to even in floating point.
+    ///
+    /// # Errors
+    /// [`CoefficientTooLarge`].
+    ///
+    /// # Example
+    /// ```
+    /// use phea_dynamics::controller::CoefficientFormat;
+    /// let format = CoefficientFormat::Fixed { integer_bits: 1, fraction_bits: 3 };
+    /// assert_eq!(format.rounded(-1.3), Ok(-1.25));
+    /// assert!(format.rounded(1.95).is_err()); // 2 would be the nearest
+    /// ```
+    pub fn rounded(self, value: f64) -> Result<f64, CoefficientTooLarge> {
+        let (kept, largest) = match self {
+            CoefficientFormat::Double => (value, f64::MAX),
+            CoefficientFormat::Single => (f64::from(value as f32), f64::from(f32::MAX)),
+            CoefficientFormat::Fixed { integer_bits, fraction_bits } => {
+                let unit = power_of_two(-f64::from(fraction_bits));
+                ((value / unit).round() * unit, power_of_two(f64::from(integer_bits)) - unit)
+            }
+        };
+        // also what is not a number
+        if kept.abs() <= largest { Ok(kept) } else { Err(CoefficientTooLarge { value, largest }) }
+    }
+}
+
+fn power_of_two(exponent: f64) -> f64 {
+    portable::pow(2.0, exponent)
 }

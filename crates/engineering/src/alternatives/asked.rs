@@ -3,14 +3,14 @@
 
 use super::by_other_means::OtherPart;
 use super::recentred::{self, MovedRange};
-use crate::audit::outside;
+use crate::audit::outside_of;
 use crate::catalogue::{self, Catalogue, CatalogueKind};
 use crate::error::ProcedureError;
 use crate::parts::PartsCounted;
 use crate::project::{
     self, AS_DECLARED, Alternative, Component, DeclaredLine, Loaded, read_alternative, refused_alternative,
 };
-use crate::rig::{RigError, own_hoses, sizing_problem};
+use crate::rig::{Rig, RigError, own_hoses, sizing_problem};
 use crate::setup::Setup;
 use crate::sizing::{Candidate, Question, size};
 use crate::source::Source;
@@ -22,6 +22,8 @@ pub struct AskedAlternative {
     pub name: String,
     /// The project with its settings, and with what was found for it.
     pub loaded: Loaded,
+    /// The rig of that project.
+    pub rig: Result<Rig, RigError>,
     /// Why `[sizing]` finds no hose, where it asks for one.
     pub no_hose: Option<String>,
     /// The ranges of `[uncertainty]` that were moved.
@@ -29,14 +31,34 @@ pub struct AskedAlternative {
 }
 
 impl AskedAlternative {
+    pub(super) fn new(name: &str, loaded: Loaded, no_hose: Option<String>) -> AskedAlternative {
+        let rig = Setup::rig_of(&loaded.project);
+        AskedAlternative { name: name.to_string(), loaded, rig, no_hose, moved: vec![] }
+    }
+
     /// The parameters of its rig that lie outside of their ranges in `[uncertainty]`, in words; `None`
-    /// where they are those of the project as it is declared.
-    pub fn outside(&self, declared: &Loaded) -> Option<String> {
-        let words = |loaded: &Loaded| {
-            let setup = Setup::new(&loaded.project).ok()?;
-            outside(&setup).map(|(_, words)| words)
+    /// where they are those of the project as it is declared, the first of all.
+    pub fn outside(&self, all: &[AskedAlternative]) -> Option<String> {
+        let words = |one: &AskedAlternative| {
+            let rig = one.rig.as_ref().ok()?;
+            outside_of(&one.loaded.project, rig).map(|(_, words)| words)
         };
-        words(&self.loaded).filter(|own| words(declared).as_ref() != Some(own))
+        words(self).filter(|own| all.first().and_then(words).as_ref() != Some(own))
+    }
+
+    /// The same with its ranges moved from those of the rig of another project.
+    ///
+    /// # Errors
+    /// [`ProcedureError`] for a range that cannot be moved.
+    pub(super) fn recentred(
+        self,
+        again: &ReadingAgain<'_>,
+        base: &AskedAlternative,
+    ) -> Result<AskedAlternative, ProcedureError> {
+        let moved = recentred::moved(base, &self)
+            .map_err(|reason| ProcedureError::Alternative { name: self.name.clone(), reason })?;
+        let loaded = again.with(&self.loaded, &recentred::settings(&moved))?;
+        Ok(AskedAlternative { moved, ..AskedAlternative::new(&self.name, loaded, self.no_hose) })
     }
 }
 
@@ -68,27 +90,21 @@ pub fn asked(
 ) -> Result<(Vec<AskedAlternative>, PartsCounted), ProcedureError> {
     let catalogue = catalogue::load(source, catalogues).map_err(ProcedureError::Catalogue)?;
     let again = ReadingAgain { source, catalogues };
-    let itself = AskedAlternative {
-        name: AS_DECLARED.to_string(),
-        loaded: loaded.clone(),
-        no_hose: None,
-        moved: vec![],
-    };
-    let mut found = vec![itself];
+    let itself = AskedAlternative::new(AS_DECLARED, loaded.clone(), None);
+    let mut found = vec![];
     for (index, alternative) in loaded.project.alternatives.iter().enumerate() {
         let other = read_alternative(source, loaded, catalogues, index).map_err(ProcedureError::Catalogue)?;
-        let wrong = |reason: String| ProcedureError::Alternative { name: alternative.name.clone(), reason };
-        let mut one = sized(&again, alternative, (loaded, other), &catalogue)?;
-        if let Err(RigError::Accumulator(empty)) = Setup::rig_of(&one.loaded.project) {
+        let mut one = sized(&again, alternative, (&itself, other), &catalogue)?;
+        if let Err(RigError::Accumulator(empty)) = &one.rig {
             let refusal = refused_alternative(source, loaded, index, &empty.at());
             return Err(ProcedureError::Catalogue(refusal));
         }
         if alternative.recentre {
-            one.moved = recentred::moved(&loaded.project, &one.loaded.project).map_err(wrong)?;
-            one.loaded = again.with(&one.loaded, &recentred::settings(&one.moved))?;
+            one = one.recentred(&again, &itself)?;
         }
         found.push(one);
     }
+    found.insert(0, itself);
     let counted = counted(&found)?;
     Ok((found, counted))
 }
@@ -115,11 +131,11 @@ fn counted(all: &[AskedAlternative]) -> Result<PartsCounted, ProcedureError> {
 fn sized(
     again: &ReadingAgain<'_>,
     alternative: &Alternative,
-    (declared, other): (&Loaded, Loaded),
+    (declared, other): (&AskedAlternative, Loaded),
     catalogue: &Catalogue,
 ) -> Result<AskedAlternative, ProcedureError> {
     let name = alternative.name.clone();
-    let one = |loaded, no_hose| AskedAlternative { name: name.clone(), loaded, no_hose, moved: vec![] };
+    let one = |loaded, no_hose| AskedAlternative::new(&name, loaded, no_hose);
     if !alternative.size {
         return Ok(one(other, None));
     }
@@ -127,7 +143,7 @@ fn sized(
     let is_hose = |line: &DeclaredLine| matches!(line.component, Component::Hose { .. });
     let lines = other.project.actuator.as_ref().map(|actuator| [&actuator.line.a, &actuator.line.b]);
     let Some(lines) = lines.filter(|lines| lines.iter().all(|line| is_hose(line))) else {
-        let actuators = declared.project.actuator.as_ref().zip(other.project.actuator.as_ref());
+        let actuators = declared.loaded.project.actuator.as_ref().zip(other.project.actuator.as_ref());
         let part = actuators.and_then(|(one, two)| Some((OtherPart::of(one, two)?, two)));
         let Some((part, actuator)) = part else {
             return Err(wrong("`size` finds the hoses of both sides: its [line] must have them"));
@@ -162,16 +178,14 @@ fn sized(
     if alike && catalogue.find(CatalogueKind::Hose, &best.option.name).is_some() {
         settings.insert(0, format!("line.hose=\"{}\"", best.option.name));
     }
-    let found = again.with(&other, &settings)?;
-    let has = Setup::rig_of(&found.project).map(|rig| {
-        let components = rig.actuator.components();
-        [components.line_a, components.line_b]
-    });
+    let found = one(again.with(&other, &settings)?, None);
+    let components = found.rig.as_ref().map(|rig| rig.actuator.components());
+    let has = components.map(|components| [components.line_a, components.line_b]);
     let same = has.is_ok_and(|lines| lines == best.option.lines(best.branch.lengths_m));
     if !same && (!alike || named.as_deref() != Some(best.option.name.as_str())) {
         return Err(wrong(
             "[line] states properties of its own hose, which the hose that [sizing] finds would take over: state them in a catalogue",
         ));
     }
-    Ok(one(found, None))
+    Ok(found)
 }

@@ -1,8 +1,9 @@
 //! An alternative whose gas, spring, pipe or valve between the chambers is sized for the stiffness of the
 //! hose that `[sizing]` finds for the project as it is declared.
 
+use super::AskedAlternative;
 use crate::catalogue::Catalogue;
-use crate::project::{Component, CrossPortKind, DeclaredActuator, Loaded};
+use crate::project::{Component, CrossPortKind, DeclaredActuator};
 use crate::rig::sizing_problem;
 use crate::setup::Setup;
 use crate::sizing::{OtherMeans, Question, size};
@@ -45,11 +46,12 @@ impl OtherPart {
     /// Why it cannot be sized.
     pub(super) fn settings(
         self,
-        declared: &Loaded,
+        declared: &AskedAlternative,
         other: &DeclaredActuator,
         catalogue: &Catalogue,
     ) -> Result<Vec<String>, String> {
-        let setup = Setup::new(&declared.project).map_err(|error| error.to_string())?;
+        let setup = Setup::around(&declared.loaded.project, declared.rig.clone());
+        let setup = setup.map_err(|error| error.to_string())?;
         let problem = sizing_problem(&setup, catalogue).map_err(|error| error.to_string())?;
         let found = size(&problem, Question::Both).other_means.ok_or(
             "gas, a spring, a pipe and a valve are sized by [sizing.other_means], with a hose that is accepted: state that table",

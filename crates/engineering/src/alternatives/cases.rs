@@ -30,8 +30,6 @@ pub struct AskedCase {
     pub name: String,
     /// What it sets.
     pub settings: Vec<String>,
-    /// The project with these settings.
-    pub loaded: Loaded,
     /// The project itself first, then its alternatives in file order.
     pub all: Vec<AskedAlternative>,
     /// What is counted of their parts.
@@ -57,7 +55,7 @@ pub fn asked_cases(
         };
         let (all, counted) = asked(source, &there, catalogues).map_err(named)?;
         let settings = case.settings().collect();
-        Ok(AskedCase { name: case.name.clone(), settings, loaded: there, all, counted })
+        Ok(AskedCase { name: case.name.clone(), settings, all, counted })
     });
     each.collect()
 }
@@ -95,8 +93,7 @@ pub(super) fn judged_cases(
     let count = cases.len() as f64;
     let mut goes_on = goes_on;
     let judged = cases.into_iter().enumerate().map(|(index, case)| {
-        let judging =
-            Judging { source, catalogue, declared: &case.loaded, impedance_at, counted: case.counted };
+        let judging = Judging { source, catalogue, all: &case.all, impedance_at, counted: case.counted };
         let mut told = |progress: Progress| {
             watch(Progress { share: (index as f64 + progress.share) / count, ..progress })
         };

@@ -4,10 +4,10 @@ use phea_dynamics::watch::{Progress, Watch};
 
 use super::asked::ReadingAgain;
 use super::comparison::sense_of;
-use super::{AskedAlternative, COLUMN_SENSES, ColumnSense, JudgedAlternative, Judging, dominates, recentred};
+use super::{AskedAlternative, COLUMN_SENSES, ColumnSense, JudgedAlternative, Judging, dominates};
 use crate::error::ProcedureError;
 use crate::linearize::{SweepRequest, points, range, values};
-use crate::project::{Motions, Project};
+use crate::project::Motions;
 use crate::quantity::{self, DisplayUnit, MotionKind};
 use crate::spelling::nearest;
 
@@ -241,15 +241,12 @@ fn at(
     path: &str,
     value: f64,
 ) -> Result<AskedAlternative, ProcedureError> {
-    let mut loaded = again.with(&one.loaded, &[format!("{path}={value:e}")])?;
-    let wrong = |reason: String| ProcedureError::Alternative { name: one.name.clone(), reason };
-    let is_rig = |project: &Project| project.actuator.is_some();
-    let mut moved = vec![];
-    if is_rig(&loaded.project) {
-        moved = recentred::moved(&one.loaded.project, &loaded.project).map_err(wrong)?;
-        loaded = again.with(&loaded, &recentred::settings(&moved))?;
+    let loaded = again.with(&one.loaded, &[format!("{path}={value:e}")])?;
+    let there = AskedAlternative::new(&one.name, loaded, one.no_hose.clone());
+    match there.loaded.project.actuator {
+        Some(_) => there.recentred(again, one),
+        None => Ok(there),
     }
-    Ok(AskedAlternative { loaded, moved, ..one.clone() })
 }
 
 fn values_of(judged: &JudgedAlternative, plan: &FrontPlan, value: f64) -> Vec<Result<FrontValue, String>> {

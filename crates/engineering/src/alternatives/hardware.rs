@@ -8,10 +8,9 @@ use phea_hydraulics::series::{LEAST_ACTIVE_COILS, SeriesElement};
 use super::columns::{AlternativeColumn, column};
 use super::{JudgedAlternative, no_rig};
 use crate::parts::{self, parts, transmission};
-use crate::project::{DeclaredActuator, DeclaredSeries, Project};
+use crate::project::{DeclaredActuator, DeclaredSeries};
 use crate::quantity::{DisplayUnit, MASS, MotionKind, VOLUME, fitting};
 use crate::rig::{Rig, power_at_rest, series_coil};
-use crate::setup::Setup;
 
 impl JudgedAlternative {
     pub(super) fn rig_columns(&self) -> Vec<AlternativeColumn> {
@@ -19,8 +18,8 @@ impl JudgedAlternative {
             let found = self.linearization.as_ref().map_err(Clone::clone)?;
             Ok([found.stiffness[0].minimum, found.stiffness[0].maximum][end])
         };
-        let equivalent = Setup::rig_of(&self.loaded.project).map_err(|error| error.to_string());
-        let equivalent = equivalent.map(|rig| rig.leaking().equivalent_stiffness());
+        let rig = self.rig.as_ref().map_err(Clone::clone);
+        let equivalent = rig.map(|rig| rig.leaking().equivalent_stiffness());
         let motion = self.loaded.project.motion();
         let stiff = motion.unit(DisplayUnit::MEGANEWTON_PER_METRE);
         let mut columns = vec![
@@ -35,10 +34,9 @@ impl JudgedAlternative {
     }
 
     fn made_of(&self, motion: MotionKind) -> [AlternativeColumn; 8] {
-        let rig = Setup::rig_of(&self.loaded.project).map_err(|error| error.to_string());
         let declared = self.loaded.project.actuator.as_ref();
         let of = |value: fn(&DeclaredActuator, &Rig) -> Result<f64, &'static str>| {
-            let rig = rig.as_ref().map_err(Clone::clone)?;
+            let rig = self.rig.as_ref().map_err(Clone::clone)?;
             value(declared.ok_or("")?, rig).map_err(String::from)
         };
         let (metre, litre) = (DisplayUnit::METRE, |value: &Result<f64, String>| {
@@ -51,13 +49,7 @@ impl JudgedAlternative {
         let inertia = fitting(1.0, motion.dimension(&MASS));
         let power = of(|declared, rig| Ok(power_at_rest(declared, rig)));
         [
-            column(
-                "actuator_length_m",
-                "length, retracted",
-                metre,
-                3,
-                retracted_length(&self.loaded.project),
-            ),
+            column("actuator_length_m", "length, retracted", metre, 3, of(retracted_length)),
             column("lines_length_m", "length of both lines", metre, 3, of(lines_length)),
             column("moving_mass_kg", "moving mass", inertia, 3, of(moving_mass)),
             column("lines_volume_m3", "oil in both lines", litre(&in_lines), 3, in_lines),
@@ -71,9 +63,8 @@ impl JudgedAlternative {
     /// What its parts cost and weigh.
     fn parts(&self) -> [AlternativeColumn; 2] {
         let counted = self.counted;
-        let rig = Setup::rig_of(&self.loaded.project).map_err(|error| error.to_string());
         let declared = self.loaded.project.actuator.as_ref().ok_or_else(no_rig);
-        let all = rig.as_ref().map_err(Clone::clone).and_then(|rig| Ok((parts(declared?, rig), rig)));
+        let all = self.rig.as_ref().map_err(Clone::clone).and_then(|rig| Ok((parts(declared?, rig), rig)));
         let price = all.clone().and_then(|(all, _)| parts::price(&all, counted));
         let mass = all.and_then(|(all, rig)| parts::mass(&all, rig, counted));
         let currency = counted
@@ -100,7 +91,7 @@ impl JudgedAlternative {
     }
 }
 
-/// The length in m of the actuator of a project from mount to mount with the rod in.
+/// The length in m of an actuator from mount to mount with the rod in.
 ///
 /// ```text
 /// stroke + cylinder.dead_length + installed length of the coil springs on the rod
@@ -108,15 +99,8 @@ impl JudgedAlternative {
 /// ```
 ///
 /// # Errors
-/// What the project does not state, or why the spring has no length.
-pub fn retracted_length(project: &Project) -> Result<f64, String> {
-    let rig = Setup::rig_of(project).map_err(|error| error.to_string())?;
-    let declared = project.actuator.as_ref().ok_or_else(no_rig)?;
-    actuator_length(declared, &rig).map_err(String::from)
-}
-
-/// Stroke (of a telescopic piston its longest stage), dead length and what lies in series.
-fn actuator_length(declared: &DeclaredActuator, rig: &Rig) -> Result<f64, &'static str> {
+/// What is not stated, or why the spring has no length.
+pub fn retracted_length(declared: &DeclaredActuator, rig: &Rig) -> Result<f64, &'static str> {
     if declared.motor.is_some() {
         return Err("a motor has no retracted length");
     }

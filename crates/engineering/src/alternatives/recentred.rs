@@ -3,10 +3,10 @@
 
 use phea_hydraulics::line::StiffeningMember;
 
+use super::AskedAlternative;
 use crate::linearize::stroke_stiffness;
-use crate::project::{Project, Uncertain};
-use crate::rig::Rig;
-use crate::setup::Setup;
+use crate::project::Uncertain;
+use crate::rig::{Rig, RigError};
 
 /// A range that was moved.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,9 +32,10 @@ const SAME: f64 = 1e-9;
 /// range is that over the stroke, the ends have the quotients of the least and of the greatest
 /// stiffness over the stroke. A range that the other project states differently is its own and is
 /// left alone, as is a parameter that `[linear]` states.
-pub(super) fn moved(base: &Project, other: &Project) -> Result<Vec<MovedRange>, String> {
-    let rig = |project| Setup::rig_of(project).map_err(|error| error.to_string());
-    let rigs = [rig(base)?, rig(other)?];
+pub(super) fn moved(base: &AskedAlternative, other: &AskedAlternative) -> Result<Vec<MovedRange>, String> {
+    let text = |error: &RigError| error.to_string();
+    let rigs = [base.rig.as_ref().map_err(text)?, other.rig.as_ref().map_err(text)?];
+    let [base, other] = [base, other].map(|one| &one.loaded.project);
     let inherited = |range: &&Uncertain| base.uncertainty.contains(range);
     let mut found = Vec::new();
     for range in other.uncertainty.iter().filter(inherited) {
@@ -61,7 +62,7 @@ pub(super) fn moved(base: &Project, other: &Project) -> Result<Vec<MovedRange>, 
 
 /// The derived parameter of each rig: at the operating point, and what its least and its greatest
 /// value are measured by.
-fn derived(rigs: &[Rig; 2], name: &str) -> Option<[[f64; 3]; 2]> {
+fn derived(rigs: &[&Rig; 2], name: &str) -> Option<[[f64; 3]; 2]> {
     let of = |rig: &Rig| {
         let found = rig.parameters.iter().find(|parameter| parameter.name == name)?;
         let here = found.derived;
@@ -73,7 +74,7 @@ fn derived(rigs: &[Rig; 2], name: &str) -> Option<[[f64; 3]; 2]> {
             _ => [here; 3],
         })
     };
-    Some([of(&rigs[0])?, of(&rigs[1])?])
+    Some([of(rigs[0])?, of(rigs[1])?])
 }
 
 fn same(from: &[f64; 3], to: &[f64; 3]) -> bool {

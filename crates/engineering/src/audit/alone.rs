@@ -7,7 +7,7 @@ use super::asked;
 use crate::caveat::Caveat;
 use crate::project::Project;
 use crate::quantity::significant;
-use crate::rig::{ParameterOrigin, ResolvedParameter};
+use crate::rig::{ParameterOrigin, ResolvedParameter, Rig};
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
 
@@ -18,7 +18,11 @@ const ROUNDED: f64 = 0.01;
 /// The project without its uncertainty, and the parameters that the box does not contain. `None`
 /// where the box contains the rig, or there is no rig.
 pub fn outside(setup: &Setup<'_>) -> Option<(Project, String)> {
-    let (project, rig) = (setup.project, setup.rig().ok()?);
+    outside_of(setup.project, setup.rig().ok()?)
+}
+
+/// The same of a project and its rig.
+pub(crate) fn outside_of(project: &Project, rig: &Rig) -> Option<(Project, String)> {
     let beyond = |one: &&ResolvedParameter| {
         let slack = ROUNDED * one.derived.abs();
         one.origin == ParameterOrigin::Uncertainty

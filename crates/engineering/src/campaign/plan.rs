@@ -1,9 +1,11 @@
 //! The data that all runs of a campaign share.
 
+use phea_dynamics::controller::Controller;
+use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::random;
 use phea_dynamics::scalar::Dependence;
 use phea_dynamics::simulation::Plant;
-use phea_machine::Control;
+use phea_machine::{Control, FedMotion};
 use sha2::{Digest, Sha256};
 
 use super::CampaignError;
@@ -55,6 +57,10 @@ pub struct Plan {
     place: usize,
     /// Machine and controller as declared.
     pub(super) bench: ControlledMachine,
+    /// H.
+    pub(super) sensor: TransferFunction,
+    /// The controller with what it is fed of the load's motion; `None` in an open loop.
+    pub(super) law: Option<(Controller, FedMotion)>,
     pub(super) driven: ScenarioDrive,
     pub(super) columns: CampaignColumns,
     /// Of every look, s.
@@ -107,8 +113,15 @@ impl Plan {
         };
         let scenario = project.scenarios.get(place).ok_or(CampaignError::NoScenario)?.clone();
         let ranges = ranges(&project, campaign, &scenario)?;
-        let bench =
-            ControlledMachine::of_scenario(&Setup::new(&project).map_err(SimulateError::from)?, &scenario)?;
+        let setup = Setup::new(&project).map_err(SimulateError::from)?;
+        let bench = ControlledMachine::of_scenario(&setup, &scenario)?;
+        let fed = FedMotion {
+            gain: bench.feed_forward,
+            sensor: setup.velocity_sensor,
+            impedance: setup.virtual_impedance.unwrap_or_default(),
+        };
+        let law = setup.controller.filter(|_| !scenario.is_open_loop()).map(|given| (given, fed));
+        let sensor = setup.sensor;
         let driven = driven(source, &project, &bench, &scenario)?;
         let looks = (scenario.duration / scenario.output_step * (1.0 + 4.0 * f64::EPSILON)) as usize + 1;
         let times_s: Vec<f64> = (0..looks).map(|look| look as f64 * scenario.output_step).collect();
@@ -133,6 +146,8 @@ impl Plan {
             scenario,
             place,
             bench,
+            sensor,
+            law,
             driven,
             columns,
             times_s,
@@ -243,8 +258,7 @@ impl Plan {
             return None;
         }
         let declared = self.project.controller.as_ref()?.load_velocity_feed_forward.as_ref()?;
-        let linear = &self.bench.rig.linear;
-        let gain = linear.useful_area / linear.flow_gain;
+        let gain = self.bench.feed_forward;
         declared.gain.is_none().then(|| format!("controller.load_velocity_feed_forward.gain={gain:e}"))
     }
 

@@ -43,13 +43,17 @@ pub(super) fn prepared(plan: &Plan, draw: Draw) -> Result<Prepared, Box<Row>> {
         return Err(refused(problem, None));
     }
     let project = plan.drawn(&draw).ok_or_else(|| refused("a path leads to no number".to_string(), None))?;
-    let lumps = Setup::rig_of(&project).ok().map(|rig| {
+    let rig = Setup::rig_of(&project).ok();
+    let lumps = rig.as_ref().map(|rig| {
         let linear = rig.derived;
         [linear.hydraulic_stiffness, linear.flow_gain, linear.flow_pressure_coefficient]
     });
     let made = || -> Result<_, SimulateError> {
         let declared = project.actuator.as_ref().ok_or(RigError::NoActuator)?;
-        let actuator = actuator(declared).map_err(RigError::from)?;
+        let actuator = match rig {
+            Some(rig) => rig.actuator,
+            None => actuator(declared).map_err(RigError::from)?,
+        };
         let external_force = plan.bench.machine.has_external_force();
         let moving_setting = plan.bench.machine.has_moving_setting();
         let options = MachineOptions { external_force, moving_setting, ..options(&project, &actuator)? };

@@ -8,14 +8,12 @@ use std::sync::{Mutex, PoisonError};
 
 use phea_dynamics::simulation::{Outcome, SimulationError, Status, Task};
 use phea_hydraulics::machine::{Machine, MachineError};
-use phea_machine::{Control, FedMotion, Fleet, Lanewise, Watcher};
+use phea_machine::{Control, Fleet, Lanewise, Watcher};
 
 use super::plan::Plan;
 use super::prepared::{Prepared, Watched, prepared};
 use super::row::{Row, RowOutcome};
 use super::supply::RemainingRuns;
-use crate::control::{velocity_sensor, virtual_impedance};
-use crate::setup::Setup;
 use crate::simulate::SimulateError;
 
 use super::CampaignError;
@@ -100,17 +98,8 @@ pub(super) fn in_lanes(shared: &Shared<'_>, most: usize, give: Give<'_>) -> Resu
     if matches!(plan.bench.control, Control::Sampled(_)) || !Lanewise::is_available() {
         return one_by_one(shared, most, give);
     }
-    let setup = Setup::new(&plan.project).map_err(SimulateError::from)?;
-    let controller = match plan.is_open_loop() {
-        true => None,
-        false => {
-            let given = setup.controller.as_ref().ok_or(SimulateError::NoController)?;
-            let (gain, sensor) = (plan.bench.feed_forward, velocity_sensor(&plan.project));
-            let impedance = virtual_impedance(&plan.project).unwrap_or_default();
-            Some((given, FedMotion { gain, sensor, impedance }))
-        }
-    };
-    let lanes = Lanewise::new(&plan.bench.machine, &setup.sensor, controller);
+    let law = plan.law.as_ref().map(|(controller, fed)| (controller, *fed));
+    let lanes = Lanewise::new(&plan.bench.machine, &plan.sensor, law);
     let mut lanes = lanes.map_err(SimulateError::from)?;
     driven(shared, (most, give), |batch| lanes.in_lanes(batch, &plan.bench.settings))
 }

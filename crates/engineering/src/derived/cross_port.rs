@@ -1,12 +1,11 @@
 use phea_hydraulics::cross_port::{DynamicFeedback, Restrictor};
 
 use super::list::List;
-use crate::control;
-use crate::project::Project;
 use crate::rig::{CrossPortAtPoint, Rig, cross_port_at_point};
+use crate::setup::Setup;
 
 /// A valve between the chambers: what it passes and costs at rest, and what its feedback is made of.
-pub(super) fn cross_port(project: &Project, rig: &Rig, list: &mut List) {
+pub(super) fn cross_port(setup: &Setup<'_>, rig: &Rig, list: &mut List) {
     let Some(found) = cross_port_at_point(rig) else { return };
     list.group("Valve between the chambers");
     if let Restrictor::Orifice { flow_coefficient, .. } = found.valve.restrictor {
@@ -39,22 +38,21 @@ pub(super) fn cross_port(project: &Project, rig: &Rig, list: &mut List) {
             let equation = "V_{cp} = C_{cp} (p_S - p_T), to either side";
             list.add("cross_port.displaced_volume", "V_cp", greatest, "m3", equation);
         }
-        None => static_error(project, &found, list),
+        None => static_error(setup, &found, list),
     }
 }
 
 /// What a leak at rest costs in force: the gain of the plant at rest, and the static error of the
 /// given controller where it does not integrate.
-fn static_error(project: &Project, found: &CrossPortAtPoint, list: &mut List) {
+fn static_error(setup: &Setup<'_>, found: &CrossPortAtPoint, list: &mut List) {
     let [with, without] = found.static_gains;
     list.add("cross_port.static_gain", "P(0)", with, "N/V", "P(0) = F_e/U_C at rest");
     list.add("cross_port.static_gain_without", "P(0)", without, "N/V", "P(0) with q_{cp} = 0");
-    let given = control::controller(project).ok().flatten();
-    let feedback = given.and_then(|given| given.feedback.transfer_function().ok());
-    let Some((feedback, sensor)) = feedback.zip(control::sensor(project).ok()) else { return };
+    let given = setup.controller.as_ref();
+    let Some(feedback) = given.and_then(|given| given.feedback.transfer_function().ok()) else { return };
     let origin = if feedback.domain() == phea_dynamics::linear::TimeDomain::Continuous { 0.0 } else { 1.0 };
     let integrates = feedback.poles().iter().any(|pole| (pole.re - origin).abs() < 1e-12 && pole.im == 0.0);
-    let gain = feedback.dc_gain() * sensor.dc_gain();
+    let gain = feedback.dc_gain() * setup.sensor.dc_gain();
     let name = "cross_port.static_error";
     let equation = "e = 1/(1 + G(0) P(0) H(0)), of the reference";
     list.add(name, "e", if integrates { 0.0 } else { 1.0 / (1.0 + gain * with) }, "1", equation);

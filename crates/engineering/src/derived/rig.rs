@@ -17,10 +17,15 @@ use crate::linearize::{HidingMass, hidden_above};
 use crate::linearize::{stiffness_models, stroke_stiffness};
 use crate::project::Project;
 use crate::quantity::MotionKind;
-use crate::rig::{ParameterOrigin, Rig};
+use crate::rig::{ParameterOrigin, Rig, RigError};
+use crate::setup::Setup;
 
 /// Every derived quantity of a rig, in the order in which they follow from each other.
-pub fn derive(project: &Project, rig: &Rig) -> Vec<Derived> {
+///
+/// # Errors
+/// Those of [`Setup::rig`].
+pub fn derive(setup: &Setup<'_>) -> Result<Vec<Derived>, RigError> {
+    let (project, rig) = (setup.project, setup.rig()?);
     let mut list = List::new(project.motion());
     moving(rig, &mut list);
     lines(rig, &mut list);
@@ -31,14 +36,14 @@ pub fn derive(project: &Project, rig: &Rig) -> Vec<Derived> {
     linkage(project, rig, &mut list);
     valve(project, rig, &mut list);
     equilibrium(rig, &mut list);
-    cross_port(project, rig, &mut list);
+    cross_port(setup, rig, &mut list);
     linear_parameters(rig, &mut list);
     dynamics(rig, &mut list);
     impedance(rig, &mut list);
     friction(rig, &mut list);
     flow(project, rig, &mut list);
     sizing(project, rig, &mut list);
-    list.into_entries()
+    Ok(list.into_entries())
 }
 
 /// What moves: cylinder or motor.

@@ -1,17 +1,15 @@
 //! From a project to the problem of a design.
 
 use phea_dynamics::controller::Element;
-use phea_qft::design::{
-    ControllerChoice, DesignOptions, DesignProblem, Objective, PrefilterChoice, gain_range,
-};
+use phea_qft::design::{ControllerChoice, DesignOptions, DesignProblem, PrefilterChoice, gain_range};
 use phea_qft::loop_shaping::{Structure, StructureFactor};
 use phea_qft::verification::TOLERANCE_DB;
 
-use crate::control::{ControlError, element};
 use crate::error::ProcedureError;
-use crate::project::{DesignObjective, StructurePart};
+use crate::project::StructurePart;
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
+use crate::setup::{ControlError, element};
 
 /// How far corner frequencies may lie below and above the design frequencies.
 const FREQUENCY_FACTORS: [f64; 2] = [0.1, 100.0];
@@ -49,11 +47,7 @@ pub fn design_options(
         ControllerChoice::Given(structure(&design.structure, design.gain, &problem, &frequencies)?)
     };
     Ok(DesignOptions {
-        objective: match design.objective {
-            DesignObjective::LeastHighFrequencyGain => Objective::LeastHighFrequencyGain,
-            DesignObjective::LeastBandwidth => Objective::LeastBandwidth,
-            DesignObjective::BestWorstMargin => Objective::BestWorstMargin,
-        },
+        objective: design.objective,
         controller,
         prefilter: prefilter_choice(setup, given, design.prefilter_maximum_order)?,
         seed: u64::from(seed.unwrap_or(design.seed)),

@@ -6,8 +6,7 @@ use phea_qft::loop_shaping::{Structure, StructureFactor};
 use phea_qft::verification::Verdict;
 
 use super::{ProjectDesign, Repair, RepairStatus};
-use crate::project::DESIGN_OBJECTIVES;
-use crate::project::DesignObjective;
+use crate::project::{DESIGN_OBJECTIVES, word_of};
 use crate::quantity::significant;
 
 /// The word of a status in JSON.
@@ -78,12 +77,7 @@ fn tried(choice: &ControllerChoice) -> String {
 
 /// The word of an objective, as the project file spells it.
 pub fn objective_key(objective: Objective) -> &'static str {
-    let declared = match objective {
-        Objective::LeastHighFrequencyGain => DesignObjective::LeastHighFrequencyGain,
-        Objective::LeastBandwidth => DesignObjective::LeastBandwidth,
-        Objective::BestWorstMargin => DesignObjective::BestWorstMargin,
-    };
-    DESIGN_OBJECTIVES.iter().find(|(_, value)| *value == declared).map_or("", |(word, _)| word)
+    word_of(&DESIGN_OBJECTIVES, &objective)
 }
 
 /// `integrator, zero, pole pair`

@@ -3,12 +3,12 @@
 
 use std::collections::BTreeSet;
 
-use phea_dynamics::uncertain_plant::{PlantCoefficients, UncertainParameter, UncertainPlant};
+use phea_dynamics::uncertain_plant::{PlantCoefficients, Spacing, UncertainParameter, UncertainPlant};
 use phea_qft::family::{self, Coordinate, Extent, UncertainFamily};
 
 use super::ProjectFamilyError;
 use super::region::within_reach;
-use crate::project::{Case, DeclaredSpacing, Project, Uncertain};
+use crate::project::{Case, Project};
 
 /// The uncertain parameters: those of `[uncertainty]`, then those that only explicit cases give
 /// values to.
@@ -121,6 +121,7 @@ fn coordinates(project: &Project, plant: &UncertainPlant) -> Vec<Coordinate> {
             continue;
         }
         let uncertain = numbers.iter().find(|uncertain| uncertain.name == parameter.name);
+        let spacing = uncertain.map_or(Spacing::Linear, |uncertain| uncertain.spacing);
         let group = group_of(&parameter.name);
         let opposed = group
             .and_then(|group| groups.get(group))
@@ -128,24 +129,17 @@ fn coordinates(project: &Project, plant: &UncertainPlant) -> Vec<Coordinate> {
         let known = coordinates.iter_mut().find(|(other, _)| other.is_some() && *other == group);
         if let Some((_, coordinate)) = known {
             coordinate.parameters.push(index);
-            coordinate.spacing.push(spacing(uncertain));
+            coordinate.spacing.push(spacing);
             coordinate.opposed.extend(opposed);
         } else {
             let coordinate = Coordinate {
                 parameters: vec![index],
                 opposed: opposed.into_iter().collect(),
-                spacing: vec![spacing(uncertain)],
+                spacing: vec![spacing],
                 points: uncertain.map_or(2, |uncertain| uncertain.points as usize),
             };
             coordinates.push((group, coordinate));
         }
     }
     coordinates.into_iter().map(|(_, coordinate)| coordinate).collect()
-}
-
-fn spacing(uncertain: Option<&Uncertain>) -> family::Spacing {
-    match uncertain.map(|uncertain| uncertain.spacing) {
-        Some(DeclaredSpacing::Logarithmic) => family::Spacing::Logarithmic,
-        _ => family::Spacing::Linear,
-    }
 }

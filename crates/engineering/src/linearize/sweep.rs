@@ -94,7 +94,7 @@ pub struct Swept {
 /// [`ProcedureError::Catalogue`] for a project that one of the values makes invalid.
 pub fn sweep(
     source: &dyn Source,
-    loaded: &Loaded,
+    (loaded, setup): (&Loaded, &Setup<'_>),
     catalogues: &[String],
     request: &SweepRequest,
 ) -> Result<Sweep, ProcedureError> {
@@ -117,7 +117,7 @@ pub fn sweep(
         .map(|(value, found)| SweepPoint { value, found: found.map(|models| swept(models, plant_follows)) })
         .collect();
     let unit = quantity::fitting(ends[0].abs().max(ends[1].abs()), key.dimension);
-    let caveats = caveats(&Setup::new(&loaded.project)?);
+    let caveats = caveats(setup);
     Ok(Sweep { path, unit, si: key.dimension.si, motion, by_ratio, plant_follows, caveats, points })
 }
 

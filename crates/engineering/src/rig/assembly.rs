@@ -12,16 +12,15 @@ use phea_hydraulics::series::{SeriesElement, SeriesSpring, SeriesTravel, Transmi
 use phea_hydraulics::servovalve::{
     Edges, Servovalve, Supply, flow_coefficient_from_rating, leakage_coefficient_from_rating,
 };
-use phea_hydraulics::stiffness::StiffnessModel;
 use phea_hydraulics::stroke::{ActuatorStroke, FURTHER_STAGES, PistonStage, Telescope};
 
 use super::cross_port::cross_port;
 use super::gas::{accumulator, adjustment};
 use super::numbers::Numbers;
 use crate::project::{
-    self, BoundedNumber, Compliance, Component, DeclaredAccumulator, DeclaredNeck, DeclaredSeries,
-    DeclaredSpring, DeclaredTransmission, DeclaredWeight, EdgeCoefficients, FrictionLaw, HoseExpansion,
-    LineVolume, NullLeakage, RatedFlow, StribeckCurve, ValveCoefficients,
+    self, BoundedNumber, Component, DeclaredAccumulator, DeclaredNeck, DeclaredSeries, DeclaredSpring,
+    DeclaredTransmission, DeclaredWeight, EdgeCoefficients, FrictionLaw, HoseExpansion, LineVolume,
+    NullLeakage, RatedFlow, StribeckCurve, ValveCoefficients,
 };
 
 /// Kinematic viscosity of ISO VG 46 oil at 40 degrees Celsius, m2/s: used where a project states
@@ -82,7 +81,7 @@ pub fn components<S: Scalar>(
         linkage: declared.linkage.as_ref().map(|linkage| {
             self::linkage(linkage, declared.cylinder.stroke, &numbers.within("linkage.weight"))
         }),
-        stiffness_model: stiffness_model(declared.line.compliance),
+        stiffness_model: declared.line.compliance,
     }
 }
 
@@ -142,13 +141,6 @@ fn spring<S: Scalar>(declared: &DeclaredSpring, numbers: &Numbers<'_, S>) -> Ser
             }),
         }),
         force_from: declared.force_from,
-    }
-}
-
-pub(super) fn stiffness_model(compliance: Compliance) -> StiffnessModel {
-    match compliance {
-        Compliance::Uniform => StiffnessModel::Uniform,
-        Compliance::ByVolume => StiffnessModel::ByVolume,
     }
 }
 

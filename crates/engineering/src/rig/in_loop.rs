@@ -9,7 +9,6 @@ use phea_hydraulics::plant::{LinearPlant, PlantInMotion, VelocitySensor};
 
 use super::Rig;
 use super::numbers::Numbers;
-use crate::control::velocity_sensor;
 use crate::project::{DeclaredActuator, Load, Project};
 
 /// The error of the velocity sensor's gain.
@@ -49,6 +48,14 @@ impl Rig {
         }
     }
 
+    /// Gain of the load's velocity on the command in V s/m, zero where nothing is fed forward.
+    pub fn feed_forward(&self) -> f64 {
+        match self.fed {
+            Some(FeedForwardPath::InPlant { gain, .. } | FeedForwardPath::InLoop { gain, .. }) => gain,
+            None => 0.0,
+        }
+    }
+
     /// The same rig in a loop without its virtual impedance: the output of its plant is the force.
     #[must_use]
     pub fn without_impedance(&self) -> Rig {
@@ -79,11 +86,17 @@ pub enum FeedForwardPath {
 }
 
 impl FeedForwardPath {
-    /// The feed-forward in the loop of a project; `None` where nothing is fed forward.
-    pub(super) fn of(project: &Project, linear: &LinearParameters) -> Option<FeedForwardPath> {
+    /// The feed-forward in the loop of a project; `None` where nothing is fed forward. The area over
+    /// the flow gain supplies the flow that the motion needs.
+    pub(super) fn of(
+        project: &Project,
+        linear: &LinearParameters,
+        sensor: RateSensor,
+    ) -> Option<FeedForwardPath> {
         let controller = project.controller.as_ref()?;
         let yields = project.actuator.as_ref()?.load != Load::Prescribed;
-        let (gain, sensor) = (feed_forward(project, linear), velocity_sensor(project));
+        let declared = controller.load_velocity_feed_forward?;
+        let gain = declared.gain.unwrap_or(linear.useful_area / linear.flow_gain);
         let (filter, delay) = (sensor.filter, controller.delay + sensor.delay_s);
         match (yields, controller.sample_time) {
             _ if gain == 0.0 => None,
@@ -138,11 +151,4 @@ pub(crate) fn velocity_gain<S: Scalar>(declared: &DeclaredActuator, numbers: &Nu
 /// Whether a specification limits the path that a prescribed load has into the loop.
 pub(crate) fn limits_load_motion(project: &Project) -> bool {
     project.specifications.iter().any(|specification| specification.kind == ClosedLoop::LoadMotion)
-}
-
-/// Gain of the load's velocity on the command in V s/m, zero where nothing is fed forward; the area
-/// over the flow gain supplies the flow that the motion needs.
-pub fn feed_forward(project: &Project, linear: &LinearParameters) -> f64 {
-    let declared = project.controller.as_ref().and_then(|controller| controller.load_velocity_feed_forward);
-    declared.map_or(0.0, |declared| declared.gain.unwrap_or(linear.useful_area / linear.flow_gain))
 }

@@ -13,7 +13,7 @@ use phea_hydraulics::stiffness::compliance_at;
 use phea_hydraulics::two_pressure::TwoPressureLinearParameters;
 
 use super::plant::without_branches;
-use crate::project::{self, LineFriction, LineMotion, LineSegments, LineWall};
+use crate::project::{self, LineMotion, LineSegments, LineWall};
 
 /// The plant with lines in motion in place of its lumped ones; `None` where both are lumped.
 ///
@@ -113,10 +113,7 @@ pub fn line_model(motion: &LineMotion, line: &Line) -> LineModel {
 fn segmented(declared: &LineSegments) -> LineModel {
     LineModel::Segments {
         count: declared.count() as usize,
-        friction: match declared.friction {
-            Some(LineFriction::Steady) => LaminarFriction::Steady,
-            Some(LineFriction::FrequencyDependent) | None => LaminarFriction::FrequencyDependent,
-        },
+        friction: declared.friction.unwrap_or(LaminarFriction::FrequencyDependent),
         relaxation_time: declared.relaxation_time,
     }
 }

@@ -5,22 +5,33 @@ use phea_dynamics::controller::{Compensator, Element, Stage, Timing};
 use phea_dynamics::linear::{TimeDomain, TransferFunction};
 
 use super::Shaped;
-use crate::control::{self, ControlError};
 use crate::project::{self, ElementKind, Project, RationalFunction, Transfer};
+use crate::setup::{self, ControlError};
 
 /// The elements of a project, and every element that was ever named, so that each keeps the form in
 /// which it was written.
 pub(super) struct Workpiece<'a> {
     project: &'a Project,
     shaped: Shaped,
+    timing: Timing,
     given: Compensator,
     known: Vec<(Element, project::DeclaredElement)>,
 }
 
 impl<'a> Workpiece<'a> {
-    /// The elements that the project gives; empty if it gives none.
-    pub(super) fn new(project: &'a Project, shaped: Shaped) -> Result<Workpiece<'a>, ControlError> {
-        let mut workpiece = Workpiece { project, shaped, given: Compensator::default(), known: vec![] };
+    /// The elements that the project gives; empty if it gives none. `timing` is that of its
+    /// controller.
+    pub(super) fn new(
+        project: &'a Project,
+        timing: &Timing,
+        shaped: Shaped,
+    ) -> Result<Workpiece<'a>, ControlError> {
+        let timing = match shaped {
+            Shaped::Controller => *timing,
+            Shaped::Prefilter => timing.of_prefilter(),
+        };
+        let mut workpiece =
+            Workpiece { project, shaped, timing, given: Compensator::default(), known: vec![] };
         let declared = workpiece.transfer().map(Transfer::as_elements).unwrap_or_default();
         for declared in declared {
             let stage = workpiece.know(declared)?;
@@ -43,16 +54,12 @@ impl<'a> Workpiece<'a> {
             Shaped::Controller => None,
             Shaped::Prefilter => self.project.prefilter.as_ref().and_then(|prefilter| prefilter.sample_time),
         };
-        own.or(self.timing().sample_time_s)
+        own.or(self.timing.sample_time_s)
     }
 
     /// When what is shaped acts.
     pub(super) fn timing(&self) -> Timing {
-        let timing = control::timing(self.project);
-        match self.shaped {
-            Shaped::Controller => timing,
-            Shaped::Prefilter => timing.of_prefilter(),
-        }
+        self.timing
     }
 
     /// Registers an element as it is declared, and returns it as it acts in the loop.
@@ -61,7 +68,7 @@ impl<'a> Workpiece<'a> {
             Shaped::Controller => "[controller]",
             Shaped::Prefilter => "[prefilter]",
         };
-        let element = control::element(place, &declared, self.sample_time())?;
+        let element = setup::element(place, &declared, self.sample_time())?;
         let enabled = declared.enabled;
         self.known.push((element.clone(), declared));
         Ok(Stage { element, enabled })
@@ -92,10 +99,9 @@ impl<'a> Workpiece<'a> {
         let place = "the elements";
         let explain = |error| ControlError::Linear { place, error };
         let function: TransferFunction = compensator.transfer_function().map_err(explain)?;
-        let timing = self.timing();
         let function = match (self.sample_time(), function.domain()) {
             (Some(sample_time_s), TimeDomain::Continuous) => {
-                function.discretized(sample_time_s, timing.discretization).map_err(explain)?
+                function.discretized(sample_time_s, self.timing.discretization).map_err(explain)?
             }
             _ => function,
         };

@@ -3,7 +3,7 @@
 
 use phea_dynamics::controller::Controller;
 use phea_dynamics::linear::TransferFunction;
-use phea_dynamics::simulation::{CommandedPlant, Method, Sensed, SimulationSettings};
+use phea_dynamics::simulation::{CommandedPlant, Sensed, SimulationSettings};
 use phea_hydraulics::actuator::Actuator;
 use phea_hydraulics::contact::Contact;
 use phea_hydraulics::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
@@ -13,10 +13,9 @@ use phea_hydraulics::servovalve::SpoolImperfection;
 use phea_machine::{Control, Sampled};
 
 use super::SimulateError;
-use crate::control::{velocity_sensor, virtual_impedance};
-use crate::project::{self, FrictionLaw, Project, Scenario, StepMethod};
+use crate::project::{self, FrictionLaw, Project, Scenario};
 use crate::quantity::MotionKind;
-use crate::rig::{Numbers, Rig, feed_forward, lines, power_unit, velocity_gain};
+use crate::rig::{Numbers, Rig, lines, power_unit, velocity_gain};
 use crate::setup::Setup;
 
 /// A machine with its controller.
@@ -72,13 +71,13 @@ impl ControlledMachine {
         let project = setup.project;
         let (rig, sensed) = rig_and_machine(setup, driven)?;
         let controller = setup.controller.clone().ok_or(SimulateError::NoController)?;
-        let feed_forward = feed_forward(project, &rig.linear);
+        let feed_forward = rig.feed_forward();
         let machine = *sensed.plant();
         let sensed = match feed_forward == 0.0 {
             true => sensed,
-            false => sensed.with_rate_sensor(&velocity_sensor(project))?,
+            false => sensed.with_rate_sensor(&setup.velocity_sensor)?,
         };
-        let sensed = sensed.with_impedance(&virtual_impedance(project).unwrap_or_default())?;
+        let sensed = sensed.with_impedance(&setup.virtual_impedance.unwrap_or_default())?;
         let control = match controller.timing.sample_time_s {
             None => {
                 Control::Continuous(Box::new(CommandedPlant::in_loop(sensed, &controller, feed_forward)?))
@@ -163,10 +162,7 @@ pub(super) fn settings(project: &Project) -> SimulationSettings {
     SimulationSettings {
         tolerance: declared.tolerance,
         maximum_steps: u64::from(declared.maximum_steps),
-        method: match declared.method {
-            StepMethod::Rosenbrock => Method::Rosenbrock,
-            StepMethod::DormandPrince => Method::DormandPrince,
-        },
+        method: declared.method,
     }
 }
 

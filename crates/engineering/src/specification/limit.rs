@@ -1,7 +1,6 @@
 //! A limit over frequency from each form in which it may be written.
 
 use phea_dynamics::linear::{Polynomial, TransferFunction};
-use phea_dynamics::time_response::SettlingRule;
 use phea_qft::specification::{
     ClosedLoop, ExtraRoot, Limit, LimitTable, LowerWish, MarginError, Translation, UpperWish, WishCheck,
     check_lower, check_upper, delay_margin_limit, robust_stability_limit_for_gain_increase,
@@ -12,8 +11,8 @@ use phea_qft::specification::{
 };
 
 use super::SpecificationProblem;
-use crate::control::from_formulas;
-use crate::project::{self, MarginWish, Rational, ResponseRule, ResponseWish};
+use crate::project::{self, MarginWish, Rational, ResponseWish};
+use crate::setup::from_formulas;
 
 /// What a key accepts in addition to the forms that all keys accept.
 #[derive(Clone, Copy, Debug)]
@@ -102,6 +101,7 @@ pub(super) fn of_wish(
     let needed = |value: Option<f64>| value.ok_or(SpecificationProblem::Missing);
     let settling_time_s = needed(wish.settling_time)?;
     let settling_band_percent = needed(wish.settling_band_percent)?;
+    let translation = wish.rule.map_or(Translation::Exact, Translation::Rule);
     let given = wish.function.as_ref().map(function).transpose()?;
     match side {
         TrackingSide::Upper => {
@@ -111,7 +111,7 @@ pub(super) fn of_wish(
                 let check = check_upper(&function, &wished)?;
                 return Ok((function, check));
             }
-            let limit = tracking_upper(&wished, extra(wish.zero), translation(wish.rule))?;
+            let limit = tracking_upper(&wished, extra(wish.zero), translation)?;
             Ok((limit.function, limit.check))
         }
         TrackingSide::Lower => {
@@ -120,7 +120,7 @@ pub(super) fn of_wish(
                 let check = check_lower(&function, &wished)?;
                 return Ok((function, check));
             }
-            let limit = tracking_lower(&wished, extra(wish.pole), translation(wish.rule))?;
+            let limit = tracking_lower(&wished, extra(wish.pole), translation)?;
             Ok((limit.function, limit.check))
         }
     }
@@ -128,17 +128,4 @@ pub(super) fn of_wish(
 
 fn extra(root: Option<f64>) -> ExtraRoot {
     root.map_or(ExtraRoot::None, |rad_per_s| ExtraRoot::At { rad_per_s })
-}
-
-fn translation(rule: ResponseRule) -> Translation {
-    match rule {
-        ResponseRule::Exact => Translation::Exact,
-        ResponseRule::FivePercent => Translation::Rule(SettlingRule::FivePercent),
-        ResponseRule::TwoPercent => Translation::Rule(SettlingRule::TwoPercent),
-        ResponseRule::OnePercent => Translation::Rule(SettlingRule::OnePercent),
-        ResponseRule::OnePercentThesis => Translation::Rule(SettlingRule::OnePercentThesis),
-        ResponseRule::CriticallyDampedTwoPercent => {
-            Translation::Rule(SettlingRule::CriticallyDampedTwoPercent)
-        }
-    }
 }

@@ -32,14 +32,17 @@ pub(super) enum Prediction {
 }
 
 /// The prediction for one machine.
-pub(super) fn predicted(tried: &Tried, problem: &RobustProblem) -> Result<Prediction, ProcedureError> {
+pub(super) fn predicted(
+    tried: &Tried,
+    setup: &Setup<'_>,
+    problem: &RobustProblem,
+) -> Result<Prediction, ProcedureError> {
     match &tried.plant {
         None => Ok(Prediction::Unknown),
         Some(PlantMember::Responding(plant)) => {
             Ok(of_responses(plant, &problem.compensation).unwrap_or(Prediction::Unknown))
         }
         Some(PlantMember::Rational(plant)) => {
-            let setup = Setup::new(&tried.project)?;
             let Some(given) = &setup.controller else { return Ok(Prediction::Unknown) };
             let given = setup.deployed(given)?;
             let closed = linear_loop_of(plant, &given, &setup.sensor, BAND_PERCENT);

@@ -15,7 +15,7 @@ use crate::project::{
     Component, DeclaredActuator, DeclaredLine, DeclaredSeries, LINEAR_PARAMETERS, LineMotion, Linear,
     Project, ValveCoefficients,
 };
-use crate::rig::{Rig, feed_forward};
+use crate::rig::Rig;
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
 
@@ -117,7 +117,7 @@ pub(crate) fn waves_alone(setup: &Setup<'_>) -> Option<Project> {
     let mut alone = with_waves(setup.project)?;
     let fed = alone.controller.as_mut().and_then(|given| given.load_velocity_feed_forward.as_mut());
     if let Some(fed) = fed {
-        fed.gain = Some(feed_forward(setup.project, &rig.linear));
+        fed.gain = Some(rig.feed_forward());
     }
     let operating_point = setup.project.resolved_operating_point();
     Some(Project { linear: Linear::default(), operating_point, ..alone.without_uncertainty() })
@@ -142,7 +142,7 @@ fn made(setup: &Setup<'_>, declared: &Rig, names: &[&str], values: &[f64]) -> Re
     let is_linear = |name: &str| LINEAR_PARAMETERS.iter().any(|parameter| parameter.key.name == name);
     let mut rig = project.clone();
     // what is fed forward is that of the declared rig
-    let gain = feed_forward(project, &declared.linear);
+    let gain = declared.feed_forward();
     if let Some(given) = rig.controller.as_mut().and_then(|given| given.load_velocity_feed_forward.as_mut()) {
         given.gain = Some(gain);
     }
@@ -156,14 +156,19 @@ fn made(setup: &Setup<'_>, declared: &Rig, names: &[&str], values: &[f64]) -> Re
     rig = rig.without_uncertainty();
     let wanted: Vec<(&str, f64)> =
         names.iter().copied().zip(values.iter().copied()).filter(|(name, _)| is_linear(name)).collect();
+    if wanted.is_empty() {
+        return Ok(rig);
+    }
+    let mut found = lowered(&rig)?;
     let mut missed = Vec::new();
     for _ in 0..PASSES {
         missed.clear();
         for (name, value) in &wanted {
-            let now = derived(&rig, name)?;
+            let now = derived(&found, name)?;
             if (now - value).abs() > CLOSE * value.abs() {
                 missed.push(format!("{name} comes to {now:.4e} and not to {value:.4e}"));
                 rig = towards(&rig, name, now, *value)?;
+                found = lowered(&rig)?;
             }
         }
         if missed.is_empty() {
@@ -173,9 +178,12 @@ fn made(setup: &Setup<'_>, declared: &Rig, names: &[&str], values: &[f64]) -> Re
     Err(format!("no rig was found whose linear model has these parameters: {}", missed.join("; ")))
 }
 
+fn lowered(project: &Project) -> Result<Rig, String> {
+    Setup::rig_of(project).map_err(|error| error.to_string())
+}
+
 /// A parameter of the linear model as it follows from the rig.
-fn derived(project: &Project, name: &str) -> Result<f64, String> {
-    let rig = Setup::rig_of(project).map_err(|error| error.to_string())?;
+fn derived(rig: &Rig, name: &str) -> Result<f64, String> {
     let found = rig.parameters.iter().find(|parameter| parameter.name == name);
     found.map(|parameter| parameter.derived).ok_or_else(|| format!("`{name}` is not a parameter"))
 }
@@ -183,7 +191,7 @@ fn derived(project: &Project, name: &str) -> Result<f64, String> {
 /// The rig after one secant step, in the logarithm, of the numbers that determine this parameter.
 fn towards(project: &Project, name: &str, now: f64, wanted: f64) -> Result<Project, String> {
     use phea_dynamics::portable::{ln, pow};
-    let nudged = scaled(project, name, 1.0 + NUDGE)?;
+    let nudged = lowered(&scaled(project, name, 1.0 + NUDGE)?)?;
     let slope = ln(derived(&nudged, name)? / now) / ln(1.0 + NUDGE);
     if slope.is_nan() || slope.abs() < 1e-6 {
         return Err(format!("nothing in the rig moves `{name}`"));

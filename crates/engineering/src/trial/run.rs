@@ -14,6 +14,7 @@ use crate::error::ProcedureError;
 use crate::project::{LineMotion, Project, Scenario, Signal};
 use crate::quantity::significant;
 use crate::quantity::{DisplayUnit, FORCE};
+use crate::rig::Rig;
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
 use crate::simulate::{ScenarioRun, SimulateError, simulate_project};
@@ -106,7 +107,8 @@ pub(super) fn run(
     view: &ProjectAudit,
     watch: Watch<'_>,
 ) -> Result<Option<TrialRun>, ProcedureError> {
-    let predicted = predicted(tried, problem)?;
+    let setup = Setup::new(&tried.project)?;
+    let predicted = predicted(tried, &setup, problem)?;
     let grows = matches!(predicted, Prediction::Grows);
     let (linear, linear_response) = match predicted {
         Prediction::Step(metrics, response) => {
@@ -121,7 +123,7 @@ pub(super) fn run(
     let [shortest, longest] = DURATION_S;
     let settles_s = linear.and_then(|step| step.settling_time_s).unwrap_or(shortest);
     let duration = BEFORE_S + (SETTLING_TIMES * settles_s).clamp(shortest, longest);
-    let reference_n = reference(&tried.project)?;
+    let reference_n = reference(setup.rig()?);
     let project = stepped(&tried.project, reference_n, duration);
     let (what, plant) = (tried.what.clone(), tried.named.clone());
     let run = |status, met, (machine, machine_response), (agreement, reason)| {
@@ -140,7 +142,7 @@ pub(super) fn run(
             met,
         })
     };
-    match simulate_project(source, &Setup::new(&project)?, watch) {
+    match simulate_project(source, &setup.asked(&project), watch) {
         Ok(runs) => {
             let Some(driven) = runs.first().filter(|driven| !driven.was_cancelled()) else { return Ok(None) };
             let machine = step_of(driven, reference_n);
@@ -163,8 +165,7 @@ pub(super) fn run(
 }
 
 /// A step from the force of the operating point, in the direction with more room.
-fn reference(project: &Project) -> Result<[f64; 2], ProcedureError> {
-    let rig = Setup::rig_of(project)?;
+fn reference(rig: &Rig) -> [f64; 2] {
     let components = rig.actuator.components();
     let [area_a, area_b] = components.cylinder.areas_at(rig.point.position);
     let area = 0.5 * (area_a + area_b);
@@ -172,7 +173,7 @@ fn reference(project: &Project) -> Result<[f64; 2], ProcedureError> {
     let from = rig.point.hydraulic_force;
     let step = STEP_SHARE * push;
     let towards = if from + step <= REACH * push { step } else { -step };
-    Ok([from, from + towards])
+    [from, from + towards]
 }
 
 /// The project with one scenario: in equilibrium under the first reference, then the second.

@@ -2,10 +2,6 @@
 
 use super::statement::{Statement, StatementContent, entries, statements};
 
-/// Keys of [controller] and [prefilter] that form a transfer function.
-pub(super) const LAW: [&str; 7] =
-    ["numerator", "denominator", "gain", "zeros", "poles", "domain", "elements"];
-
 /// Keys with their values as TOML.
 pub(super) type KeyValues = Vec<(String, String)>;
 
@@ -114,7 +110,8 @@ mod tests {
     }
 
     fn rewritten(text: &str) -> String {
-        replaced(text, "controller", &LAW, &law())
+        let keys = ["numerator", "denominator", "gain", "zeros", "poles", "domain", "elements"];
+        replaced(text, "controller", &keys, &law())
     }
 
     #[test]

@@ -1,9 +1,8 @@
 //! `[family]`.
 
 use super::Check;
-use crate::{
-    Correlation, DeclaredFamily, DeclaredSpacing, IdentifiedUse, OperatingRegion, Project, Uncertain,
-};
+use crate::{Correlation, DeclaredFamily, IdentifiedUse, OperatingRegion, Project, Uncertain};
+use phea_dynamics::uncertain_plant::Spacing;
 
 pub(super) fn family(project: &Project, check: &mut Check<'_, '_>) {
     let Some(family) = &project.family else { return };
@@ -112,7 +111,7 @@ fn replaces(project: &Project, family: &DeclaredFamily, check: &mut Check<'_, '_
     for one in &family.replaces {
         let path = format!("family.replaces.{}", one.name);
         check.bounds(&path, [one.minimum, one.nominal, one.maximum]);
-        if one.spacing == DeclaredSpacing::Logarithmic && one.minimum <= 0.0 {
+        if one.spacing == Spacing::Logarithmic && one.minimum <= 0.0 {
             check.error(&format!("{path}.minimum"), "logarithmic spacing needs a `minimum` above zero");
         }
         let compared = ["flow_gain", "flow_pressure_coefficient", "hydraulic_stiffness"];

@@ -2,9 +2,11 @@
 
 use super::Check;
 use crate::{
-    DeclaredAntiWindup, DeclaredDiscretization, DeclaredElement, DeclaredQuantization, ElementKind, Formula,
-    Prefilter, Project, RationalFunction, Transfer, Variable,
+    DeclaredElement, DeclaredQuantization, ElementKind, Formula, Prefilter, Project, RationalFunction,
+    Transfer, Variable,
 };
+use phea_dynamics::controller::AntiWindup;
+use phea_dynamics::linear::Discretization;
 
 /// Most zeros, poles or elements of a transfer function.
 const MAXIMUM_ORDER: usize = 50;
@@ -14,11 +16,11 @@ pub(super) fn controllers(project: &Project, check: &mut Check<'_, '_>) {
         let timing = ["sample_time", "delay", "discretization", "saturation", "anti_windup", "impedance"];
         let only_timing = timing.iter().any(|name| check.declared(&format!("controller.{name}")));
         transfer(&controller.transfer, "controller", controller.sample_time, only_timing, check);
-        if controller.anti_windup != DeclaredAntiWindup::None && controller.saturation.is_none() {
+        if controller.anti_windup != AntiWindup::None && controller.saturation.is_none() {
             check.warning("controller.anti_windup", "`anti_windup` has no effect without `saturation`");
         }
         let discrete = is_discrete(&controller.transfer);
-        let chosen = controller.discretization != DeclaredDiscretization::default();
+        let chosen = controller.discretization != Discretization::default();
         if chosen && (discrete || controller.sample_time.is_none()) {
             let why = if discrete { "the controller is in `z` already" } else { "there is no `sample_time`" };
             check.warning("controller.discretization", format!("`discretization` has no effect: {why}"));

@@ -1,9 +1,7 @@
 //! `[[specification]]`.
 
 use super::Check;
-use crate::{
-    DeclaredLimit, DeclaredSpecification, Formula, MarginWish, Project, ResponseRule, ResponseWish, Variable,
-};
+use crate::{DeclaredLimit, DeclaredSpecification, Formula, MarginWish, Project, ResponseWish, Variable};
 use phea_dynamics::closed_loop::ClosedLoop;
 
 pub(super) fn specifications(project: &Project, check: &mut Check<'_, '_>) {
@@ -160,7 +158,7 @@ fn response(wish: &ResponseWish, name: &str, path: &str, check: &mut Check<'_, '
         continuous(&[&function.numerator, &function.denominator], path, check);
         let because = "has no meaning together with `numerator`, which is checked as it is";
         refuse(&["zero", "pole"], because, path, check);
-        if wish.rule != ResponseRule::default() {
+        if wish.rule.is_some() {
             refuse(&["rule"], because, path, check);
         }
     }

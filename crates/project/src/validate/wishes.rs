@@ -6,9 +6,10 @@ use super::measured::measured;
 use super::signal::signals;
 use super::{Check, adjustment, linear_parameter};
 use crate::{
-    Campaign, DELAY_PATH, DeclaredActuator, DeclaredPlant, DeclaredSizing, DeclaredSpacing, Distribution,
-    Formula, LINEAR_PARAMETERS, LinearParameter, Load, Project, Scenario, SignalUnit, Start, Uncertain,
+    Campaign, DELAY_PATH, DeclaredActuator, DeclaredPlant, DeclaredSizing, Distribution, Formula,
+    LINEAR_PARAMETERS, LinearParameter, Load, Project, Scenario, SignalUnit, Start, Uncertain,
 };
+use phea_dynamics::uncertain_plant::Spacing;
 use phea_quantity::significant;
 use phea_quantity::spelling::nearest;
 use phea_quantity::{self as quantity, RATIO};
@@ -258,7 +259,7 @@ pub(super) fn uncertainty(project: &Project, check: &mut Check<'_, '_>) {
             check.error(&path, message);
         }
         check.bounds(&path, [uncertain.minimum, uncertain.nominal, uncertain.maximum]);
-        if uncertain.spacing == DeclaredSpacing::Logarithmic && uncertain.minimum <= 0.0 {
+        if uncertain.spacing == Spacing::Logarithmic && uncertain.minimum <= 0.0 {
             check.error(&format!("{path}.minimum"), "logarithmic spacing needs a `minimum` above zero");
         }
         if uncertain.points == 1 && uncertain.minimum < uncertain.maximum {

@@ -16,8 +16,9 @@ use phea_dynamics::watch::{Watch, part};
 pub(super) use self::beginning::StartingPoints;
 use self::beginning::{best_of, search_options};
 pub use self::error::LoopDesignError;
+use super::Objective;
 use super::counterexample::{Counterexample, counterexamples, worst_margin_db};
-use super::problem::{DesignOptions, DesignProblem, Objective, PrefilterChoice};
+use super::problem::{DesignOptions, DesignProblem, PrefilterChoice};
 use super::result::{DesignRound, Starts};
 use crate::closed_loop::Compensation;
 use crate::loop_shaping::{

@@ -4,6 +4,7 @@ use phea_dynamics::controller::Timing;
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::uncertain_plant::UncertainPlant;
 
+use super::Objective;
 use super::quantization::CoefficientFormat;
 use crate::family::Family;
 use crate::loop_shaping::Structure;
@@ -35,19 +36,6 @@ impl DesignProblem {
     pub fn bears_its_delay(&self, delay_margin_s: f64) -> bool {
         delay_margin_s >= (1.0 - DELAY_SHARE) * self.minimum_delay_margin_s
     }
-}
-
-/// What is minimised or maximised among the controllers that satisfy every specification.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Objective {
-    /// lim s^r G(s), r the relative degree; in a sampled loop that of the elements before they are
-    /// sampled, which by Tustin's rule is |G| at pi/T without its r zeros there.
-    #[default]
-    LeastHighFrequencyGain,
-    /// The gain crossover of the nominal loop.
-    LeastBandwidth,
-    /// The least margin of all specifications.
-    BestWorstMargin,
 }
 
 /// Which controllers are tried.

@@ -10,11 +10,11 @@ mod coefficients;
 mod rate_noise;
 mod rounding_effect;
 
-pub use coefficients::{CoefficientFormat, RoundedController, rounded};
+pub use coefficients::{RoundedController, rounded};
 pub use rate_noise::{RateNoise, rate_noise};
 pub use rounding_effect::{LimitCycle, RoundingEffect, RoundingEffects, rounding_effects};
 
-pub use phea_dynamics::controller::{Converter, ConverterError};
+pub use phea_dynamics::controller::{CoefficientFormat, CoefficientTooLarge, Converter, ConverterError};
 use phea_dynamics::linear::LinearError;
 
 use crate::specification::{ClosedLoop, Limit, Requirement, Specification};
@@ -41,13 +41,8 @@ pub enum QuantizationError {
     #[error("rounding needs a sampled loop")]
     Continuous,
     /// A coefficient beyond what its format can hold.
-    #[error("the coefficient {value} is beyond the largest of its format, {largest}")]
-    TooLarge {
-        /// The coefficient.
-        value: f64,
-        /// The largest that can be represented.
-        largest: f64,
-    },
+    #[error(transparent)]
+    TooLarge(#[from] CoefficientTooLarge),
     /// All coefficients of a numerator are rounded to zero.
     #[error("the numerator {0:?} is rounded to zero")]
     Vanished([f64; 3]),

@@ -3,17 +3,7 @@
 use phea_dynamics::portable;
 use phea_dynamics::uncertain_plant::{UncertainParameter, UncertainPlant};
 
-use super::FamilyError;
-
-/// How the points of a parameter are spread over its range.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Spacing {
-    /// Evenly.
-    #[default]
-    Linear,
-    /// By a constant factor; needs a positive lower bound.
-    Logarithmic,
-}
+use super::{FamilyError, Spacing};
 
 /// One direction of the box, run through by a share from 0 to 1. Several parameters in it are fully
 /// correlated.

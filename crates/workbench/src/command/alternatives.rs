@@ -9,7 +9,6 @@ use crate::alternatives::{
 use crate::answer::Answer;
 use crate::linearize::SweepRequest;
 use crate::project::{AS_DECLARED, Loaded};
-use crate::setup::Setup;
 use crate::source::Source;
 
 /// What is requested for the alternatives of a project, as written.
@@ -64,25 +63,25 @@ pub(super) fn read_alternatives(
     if loaded.project.alternatives.is_empty() {
         return Ok(vec![]);
     }
-    let mut told = rigs(&asked(source, loaded, catalogues)?.0, loaded, "")?;
+    let mut told = rigs(&asked(source, loaded, catalogues)?.0, "")?;
     for case in asked_cases(source, loaded, catalogues)? {
-        let further = rigs(&case.all, &case.loaded, &format!(", {}", case.name))?;
+        let further = rigs(&case.all, &format!(", {}", case.name))?;
         told.extend(further.into_iter().filter(|sentence| !told.contains(sentence)).collect::<Vec<_>>());
     }
     Ok(told)
 }
 
 /// Assembles the rig of each; the sentences on those that their families do not contain.
-fn rigs(all: &[AskedAlternative], base: &Loaded, case: &str) -> Result<Vec<String>, CommandError> {
+fn rigs(all: &[AskedAlternative], case: &str) -> Result<Vec<String>, CommandError> {
     let own = |one: &&AskedAlternative| !case.is_empty() || one.name != AS_DECLARED;
     for one in all.iter().filter(own).filter(|one| one.loaded.project.actuator.is_some()) {
-        if let Err(error) = Setup::rig_of(&one.loaded.project) {
+        if let Err(error) = &one.rig {
             let name = format!("{}{case}", one.name);
             return Err(ProcedureError::Alternative { name, reason: error.to_string() }.into());
         }
     }
     Ok(all
         .iter()
-        .filter_map(|one| Some(outside_words(&one.name, &one.outside(base)?, !one.moved.is_empty())))
+        .filter_map(|one| Some(outside_words(&one.name, &one.outside(all)?, !one.moved.is_empty())))
         .collect())
 }

@@ -8,16 +8,16 @@ use crate::project::Loaded;
 use crate::setup::Setup;
 use crate::source::Source;
 
-fn linearized(loaded: &Loaded) -> Result<Linearization, CommandError> {
-    let setup = Setup::new(&loaded.project)?;
+fn linearized(setup: &Setup<'_>) -> Result<Linearization, CommandError> {
     Ok(linearize(setup.rig()?, setup.controller.as_ref(), &setup.sensor)?)
 }
 
 pub(super) fn linearize_answer(loaded: &Loaded) -> Result<Answer, CommandError> {
-    let linearization = linearized(loaded)?;
+    let setup = Setup::new(&loaded.project)?;
+    let linearization = linearized(&setup)?;
     Ok(Answer {
-        text: linearize::text(loaded, &linearization),
-        json: linearize::json(loaded, &linearization),
+        text: linearize::text(&setup, &linearization),
+        json: linearize::json(loaded, &setup, &linearization),
         files: linearize::files(&linearization),
         affirmative: true,
     })
@@ -29,14 +29,15 @@ pub(super) fn swept_answer(
     catalogues: &[String],
     asked: &SweepRequest,
 ) -> Result<Answer, CommandError> {
-    let linearization = linearized(loaded)?;
-    let swept = sweep(source, loaded, catalogues, asked)?;
+    let setup = Setup::new(&loaded.project)?;
+    let linearization = linearized(&setup)?;
+    let swept = sweep(source, (loaded, &setup), catalogues, asked)?;
     let mut files = linearize::files(&linearization);
     files.extend(linearize::sweep_files(&swept));
     files.extend(picture_files(&[linearize::sweep_figure(&swept)]));
     Ok(Answer {
         text: linearize::sweep_text(&swept),
-        json: linearize::json_swept(loaded, &linearization, &swept),
+        json: linearize::json_swept(loaded, &setup, &linearization, &swept),
         files,
         affirmative: true,
     })

@@ -10,19 +10,25 @@ use super::{
 use crate::answer::{self, Csv, Json, Object, OutputFile, quoted};
 use crate::caveat::of_models;
 use crate::project::Loaded;
+use crate::setup::Setup;
 
 /// The JSON object of `linearize`.
-pub fn json(loaded: &Loaded, linearization: &Linearization) -> String {
-    answer::json("linearize", loaded, body(loaded, linearization))
+pub fn json(loaded: &Loaded, setup: &Setup<'_>, linearization: &Linearization) -> String {
+    answer::json("linearize", loaded, body(setup, linearization))
 }
 
 /// The same with the results of a sweep.
-pub(crate) fn json_swept(loaded: &Loaded, linearization: &Linearization, sweep: &Sweep) -> String {
-    let body = body(loaded, linearization).with("swept", head(sweep)).with("sweep", rows(sweep));
+pub(crate) fn json_swept(
+    loaded: &Loaded,
+    setup: &Setup<'_>,
+    linearization: &Linearization,
+    sweep: &Sweep,
+) -> String {
+    let body = body(setup, linearization).with("swept", head(sweep)).with("sweep", rows(sweep));
     answer::json("linearize", loaded, body)
 }
 
-fn body(loaded: &Loaded, linearization: &Linearization) -> Object {
+fn body(setup: &Setup<'_>, linearization: &Linearization) -> Object {
     let plant = &linearization.plant;
     let poles = Object::new()
         .with("plant", plant.command.poles())
@@ -58,7 +64,7 @@ fn body(loaded: &Loaded, linearization: &Linearization) -> Object {
         .maybe("virtual_impedance", linearization.asked.as_ref().map(asked))
         .with("compliance_hidden_above_rad_per_s", linearization.compliance_hidden_above_rad_per_s)
         .with("load_step_final_force_n", final_force(linearization))
-        .with("warnings", of_models(&loaded.project))
+        .with("warnings", of_models(setup))
 }
 
 fn stiffness(linearization: &Linearization) -> Object {

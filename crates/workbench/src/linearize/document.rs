@@ -14,12 +14,12 @@ use crate::answer::significant;
 use crate::caveat::of_models;
 use crate::document::{Cell, Document, Table};
 use crate::figure::Figure;
-use crate::project::Loaded;
+use crate::setup::Setup;
 
 /// The tables and sentences of `linearize` for people.
-pub fn text(loaded: &Loaded, linearization: &Linearization) -> String {
+pub fn text(setup: &Setup<'_>, linearization: &Linearization) -> String {
     let mut out = Document::default();
-    for sentence in of_models(&loaded.project) {
+    for sentence in of_models(setup) {
         out.preformatted(format!("warning: {sentence}\n"));
     }
     out.preformatted(format!("Stiffness\n  {}\n", stiffness_sentence(linearization)));

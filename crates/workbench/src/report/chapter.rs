@@ -1,6 +1,6 @@
 use crate::caveat::of_models;
 use crate::document::{Document, StatusMark};
-use crate::project::Project;
+use crate::setup::Setup;
 
 /// One chapter of the report.
 pub(super) struct Chapter {
@@ -21,8 +21,8 @@ impl Chapter {
 
 impl Document {
     /// The effects that a chapter on the linear loop does not include, if any.
-    pub(super) fn left_out(&mut self, project: &Project) {
-        for sentence in of_models(project) {
+    pub(super) fn left_out(&mut self, setup: &Setup<'_>) {
+        for sentence in of_models(setup) {
             self.verdict(StatusMark::Note, sentence, vec![]);
         }
     }

@@ -14,13 +14,15 @@ use crate::linearize::{
     Linearization, PortView, asked_sentence, asked_table, frequency_grid, impedance_at_joint,
     passivity_sentence,
 };
-use crate::project::{DeclaredSeries, Project};
+use crate::project::DeclaredSeries;
 use crate::quantity::DisplayUnit;
+use crate::setup::Setup;
 
 pub(super) fn chapter(
-    project: &Project,
+    setup: &Setup<'_>,
     linearization: &Linearization,
 ) -> Result<Chapter, TimeResponseError> {
+    let project = setup.project;
     let forces = load_motion::forces(project, &views(linearization))?;
     let hidden = significant(linearization.compliance_hidden_above_rad_per_s, 4);
     let motion = project.motion();
@@ -38,7 +40,7 @@ pub(super) fn chapter(
     let hiding = linearization.hidden_by.words();
     out.explanation(format!("The driving-point impedance Z is the resistance to a load that moves the rod: a damper, spring or mass, depending on frequency. Above {hidden} rad/s {hiding} hides the hydraulic compliance, and the load meets {met}."));
     out.explanations(impedance_at_joint(linearization).map(|sentence| format!("{sentence}.")));
-    out.left_out(project);
+    out.left_out(setup);
     out.figures([figure(linearization)?]);
     out.heading("Passivity");
     out.explanation("A passive port stays stable against every passive load (poles not in the right half plane, simple ones with positive residue on the axis, Re Z not negative).");

@@ -8,14 +8,14 @@ use crate::document::{Document, StatusMark, Table};
 use crate::figure::{DisplayUnit, Figure, SettlingBand, Words};
 use crate::linear_loop::{LinearLoop, LoopStability, StepView, settling_words};
 use crate::over_time::ForceStep;
-use crate::project::Project;
 use crate::quantity::MotionKind;
+use crate::setup::Setup;
 
 /// Height of the drawn step where the project's scenarios give none, N.
 const REFERENCE: f64 = 1000.0;
 
 pub(super) fn chapter(
-    project: &Project,
+    setup: &Setup<'_>,
     linear_loop: Option<&LinearLoop>,
     reference_n: Option<f64>,
 ) -> Chapter {
@@ -26,10 +26,10 @@ pub(super) fn chapter(
         return Chapter::of(anchor, title, out);
     };
     out.explanation("The fifth-order model with its nominal values in a loop with the given controller and prefilter. One linear plant: this proves nothing for the others, or for the nonlinear machine.");
-    out.left_out(project);
+    out.left_out(setup);
     match &linear_loop.step {
         Ok(view) => {
-            out.figures([figure(view, reference_n.unwrap_or(REFERENCE), project.motion())]);
+            out.figures([figure(view, reference_n.unwrap_or(REFERENCE), setup.project.motion())]);
             out.table(metrics(view));
         }
         Err(reason) => out.verdict(StatusMark::Bad, format!("No step response: {reason}"), vec![]),

@@ -1,27 +1,9 @@
 //! Controllers whose coefficients were rounded: what is verified is what is deployed.
 
-use phea_dynamics::controller::{Compensator, Controller, Element, Section};
+use phea_dynamics::controller::{CoefficientFormat, Compensator, Controller, Element, Section};
 use phea_dynamics::linear::{TimeDomain, TransferFunction};
-use phea_dynamics::portable;
 
 use super::QuantizationError;
-
-/// How a coefficient is kept.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum CoefficientFormat {
-    /// IEEE 754 with 53 bits: unchanged.
-    #[default]
-    Double,
-    /// IEEE 754 with 24 bits.
-    Single,
-    /// A multiple of 2^-fraction_bits, below 2^integer_bits in magnitude.
-    Fixed {
-        /// Bits before the point, without the sign.
-        integer_bits: u8,
-        /// Bits behind the point.
-        fraction_bits: u8,
-    },
-}
 
 /// A controller as it is deployed.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,34 +15,6 @@ pub struct RoundedController {
     pub feedback: Vec<Section>,
     /// F likewise; empty where it acts before the sampling.
     pub prefilter: Vec<Section>,
-}
-
-impl CoefficientFormat {
-    /// The nearest number that can be represented; halves are rounded away from zero in fixed
-    /// point, and to even in floating point.
-    ///
-    /// # Errors
-    /// [`QuantizationError::TooLarge`].
-    ///
-    /// # Example
-    /// ```
-    /// use phea_qft::design::quantization::CoefficientFormat;
-    /// let format = CoefficientFormat::Fixed { integer_bits: 1, fraction_bits: 3 };
-    /// assert_eq!(format.rounded(-1.3), Ok(-1.25));
-    /// assert!(format.rounded(1.95).is_err()); // 2 would be the nearest
-    /// ```
-    pub fn rounded(self, value: f64) -> Result<f64, QuantizationError> {
-        let (kept, largest) = match self {
-            CoefficientFormat::Double => (value, f64::MAX),
-            CoefficientFormat::Single => (f64::from(value as f32), f64::from(f32::MAX)),
-            CoefficientFormat::Fixed { integer_bits, fraction_bits } => {
-                let unit = power_of_two(-f64::from(fraction_bits));
-                ((value / unit).round() * unit, power_of_two(f64::from(integer_bits)) - unit)
-            }
-        };
-        // also what is not a number
-        if kept.abs() <= largest { Ok(kept) } else { Err(QuantizationError::TooLarge { value, largest }) }
-    }
 }
 
 /// The controller with its coefficients rounded to this format, section by section.
@@ -143,8 +97,4 @@ fn in_series(sections: &[Section], sample_time_s: f64) -> Result<TransferFunctio
     sections
         .iter()
         .try_fold(unity, |product, section| Ok(product.series(&section.transfer_function(sample_time_s)?)?))
-}
-
-fn power_of_two(exponent: f64) -> f64 {
-    portable::pow(2.0, exponent)
 }

@@ -1,12 +1,11 @@
-//! The controller and prefilter of a project as values of `phea_dynamics`;
-//! [`Setup`](crate::setup::Setup) holds them.
+//! The controller and prefilter of a project as values of `phea_dynamics`.
 
 use num_complex::Complex64;
 use phea_dynamics::controller::{
-    AntiWindup, Compensator, Controller, Element, RateFilter, RateSensor, Stage, Timing, VirtualImpedance,
+    Compensator, Controller, Element, RateFilter, RateSensor, Stage, Timing, VirtualImpedance,
 };
-use phea_dynamics::linear::{Discretization, LinearError, Polynomial, TimeDomain, TransferFunction};
-use phea_qft::design::quantization::{CoefficientFormat, Converter, Quantization, QuantizationError};
+use phea_dynamics::linear::{LinearError, Polynomial, TimeDomain, TransferFunction};
+use phea_qft::design::quantization::{Converter, Quantization, QuantizationError};
 
 use crate::project::{
     self, ElementKind, Formula, FormulaError, ImpedanceForm, Project, Rational, RationalFunction, Transfer,
@@ -48,12 +47,12 @@ pub enum ControlError {
     },
 }
 
-/// The given controller with its prefilter; `None` where the project gives no transfer function for
-/// one.
+/// The given controller, with this timing and without its prefilter; `None` where the project gives
+/// no transfer function for one.
 ///
 /// # Errors
-/// [`ControlError`] if one of them is not a transfer function.
-pub fn controller(project: &Project) -> Result<Option<Controller>, ControlError> {
+/// [`ControlError`] if it is not a transfer function.
+pub(super) fn controller(project: &Project, timing: Timing) -> Result<Option<Controller>, ControlError> {
     let Some(declared) = project.controller.as_ref().filter(|controller| controller.has_law()) else {
         return Ok(None);
     };
@@ -61,14 +60,10 @@ pub fn controller(project: &Project) -> Result<Option<Controller>, ControlError>
     feedback.stages.extend(admittance(declared)?);
     Ok(Some(Controller {
         feedback,
-        prefilter: prefilter(project)?.unwrap_or_default(),
-        timing: timing(project),
+        prefilter: Compensator::default(),
+        timing,
         command_limit: declared.saturation,
-        anti_windup: match declared.anti_windup {
-            project::DeclaredAntiWindup::None => AntiWindup::None,
-            project::DeclaredAntiWindup::BackCalculation => AntiWindup::BackCalculation,
-            project::DeclaredAntiWindup::Clamping => AntiWindup::Clamping,
-        },
+        anti_windup: declared.anti_windup,
     }))
 }
 
@@ -76,24 +71,20 @@ pub fn controller(project: &Project) -> Result<Option<Controller>, ControlError>
 ///
 /// # Errors
 /// [`ControlError`] if it is not a transfer function.
-pub fn prefilter(project: &Project) -> Result<Option<Compensator>, ControlError> {
+pub(super) fn prefilter(project: &Project, timing: &Timing) -> Result<Option<Compensator>, ControlError> {
     let Some(declared) = &project.prefilter else { return Ok(None) };
-    let sample_time = declared.sample_time.or(timing(project).sample_time_s);
+    let sample_time = declared.sample_time.or(timing.sample_time_s);
     compensator("[prefilter]", &declared.transfer, sample_time).map(Some)
 }
 
 /// When the controller acts, whether it is given or to be designed; continuous and without delay
 /// where the project does not say.
-pub fn timing(project: &Project) -> Timing {
+pub(super) fn timing(project: &Project) -> Timing {
     let Some(declared) = &project.controller else { return Timing::default() };
     Timing {
         sample_time_s: declared.sample_time,
         delay_s: declared.delay,
-        discretization: match declared.discretization {
-            project::DeclaredDiscretization::Tustin => Discretization::Tustin,
-            project::DeclaredDiscretization::ZeroOrderHold => Discretization::ZeroOrderHold,
-            project::DeclaredDiscretization::Matched => Discretization::Matched,
-        },
+        discretization: declared.discretization,
         continuous_prefilter: project.prefilter.as_ref().is_some_and(|prefilter| prefilter.continuous),
         rate_feed_forward: 0.0,
         rate_sensor: RateSensor::default(),
@@ -112,13 +103,13 @@ fn admittance(declared: &project::DeclaredController) -> Result<Option<Stage>, C
 }
 
 /// Whether the declared controller is that of the position in an inner loop.
-pub fn is_of_position(project: &Project) -> bool {
+pub(crate) fn is_of_position(project: &Project) -> bool {
     let impedance = project.controller.as_ref().and_then(|controller| controller.impedance);
     impedance.is_some_and(|impedance| impedance.form == ImpedanceForm::Admittance)
 }
 
 /// The virtual impedance of the loop; `None` where there is none, or one of zero.
-pub fn virtual_impedance(project: &Project) -> Option<VirtualImpedance> {
+pub(super) fn virtual_impedance(project: &Project) -> Option<VirtualImpedance> {
     let declared = project.controller.as_ref()?.impedance?;
     Some(lowered(&declared)).filter(|impedance| !impedance.is_zero())
 }
@@ -134,7 +125,7 @@ fn lowered(declared: &project::DeclaredImpedance) -> VirtualImpedance {
 
 /// Filter and dead time of the sensor of the load's velocity; none where the project declares no
 /// sensor.
-pub fn velocity_sensor(project: &Project) -> RateSensor {
+pub(super) fn velocity_sensor(project: &Project) -> RateSensor {
     let declared = project.actuator.as_ref().and_then(|actuator| actuator.velocity_sensor.as_ref());
     let Some(declared) = declared else { return RateSensor::default() };
     let filter = match (declared.filter_frequency, declared.filter_damping_ratio) {
@@ -151,7 +142,7 @@ pub fn velocity_sensor(project: &Project) -> RateSensor {
 ///
 /// # Errors
 /// [`ControlError::Quantization`] for an invalid converter.
-pub fn quantization(project: &Project) -> Result<Quantization, ControlError> {
+pub(super) fn quantization(project: &Project) -> Result<Quantization, ControlError> {
     let declared = project.controller.as_ref().and_then(|controller| controller.quantization.clone());
     let Some(declared) = declared else { return Ok(Quantization::default()) };
     let converter = |bits: u32, range: Option<[f64; 2]>| -> Result<_, QuantizationError> {
@@ -160,10 +151,7 @@ pub fn quantization(project: &Project) -> Result<Quantization, ControlError> {
     Ok(Quantization {
         command: converter(declared.command_bits, declared.command_range)?,
         measurement: converter(declared.measurement_bits, declared.measurement_range)?,
-        coefficients: match declared.coefficients {
-            project::Coefficients::Double => CoefficientFormat::Double,
-            project::Coefficients::Single => CoefficientFormat::Single,
-        },
+        coefficients: declared.coefficients,
     })
 }
 
@@ -171,7 +159,7 @@ pub fn quantization(project: &Project) -> Result<Quantization, ControlError> {
 ///
 /// # Errors
 /// [`ControlError`] if it is not a transfer function.
-pub fn sensor(project: &Project) -> Result<TransferFunction, ControlError> {
+pub(super) fn sensor(project: &Project) -> Result<TransferFunction, ControlError> {
     let Some(declared) = &project.sensor else { return Ok(TransferFunction::gain_only(1.0)) };
     let place = "[sensor]";
     let Rational { numerator, denominator } = &declared.transfer;
@@ -182,7 +170,7 @@ pub fn sensor(project: &Project) -> Result<TransferFunction, ControlError> {
 }
 
 /// The elements in series, including disabled ones.
-pub fn compensator(
+fn compensator(
     place: &'static str,
     transfer: &Transfer,
     sample_time: Option<f64>,
@@ -206,7 +194,7 @@ pub(crate) fn from_formulas(
 }
 
 /// An element as it acts in the loop.
-pub fn element(
+pub(crate) fn element(
     place: &'static str,
     declared: &project::DeclaredElement,
     sample_time: Option<f64>,
