@@ -400,14 +400,4 @@ impl<S: Scalar> Linkage<S> {
     }
 }
 
-impl<S: Copy> Linkage<S> {
-    /// Every parameter replaced, in a fixed order.
-    #[inline(always)]
-    pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> Linkage<T> {
-        Linkage {
-            extension: self.extension.convert(of),
-            guess: self.guess.convert(of),
-            weight: self.weight.map(|weight| weight.convert(of)),
-        }
-    }
-}
+phea_dynamics::parameters! { Linkage { extension, guess, weight } }

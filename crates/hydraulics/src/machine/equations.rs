@@ -1,4 +1,4 @@
-use phea_dynamics::scalar::{LocalFunction, Scalar};
+use phea_dynamics::scalar::{LocalFunction, Parameters, Scalar};
 
 use super::signals::ground_of;
 use super::{Accumulator, Machine, MachineState, Motion, PowerUnit};
@@ -56,7 +56,7 @@ struct ValveEdges<'m, S> {
 }
 
 /// Of opening and both ports' pressures.
-impl<S: Copy> LocalFunction<S, 3, 4> for ValveEdges<'_, S> {
+impl<S: Scalar> LocalFunction<S, 3, 4> for ValveEdges<'_, S> {
     #[inline(always)]
     fn at<T: Scalar>(&self, [opening, a, b]: [T; 3], constant: impl Fn(S) -> T + Copy) -> [T; 4] {
         self.at([opening, a, b, constant(self.supply.pressure)], constant)
@@ -64,7 +64,7 @@ impl<S: Copy> LocalFunction<S, 3, 4> for ValveEdges<'_, S> {
 }
 
 /// Of opening, both ports' pressures, and that of the supply.
-impl<S: Copy> LocalFunction<S, 4, 4> for ValveEdges<'_, S> {
+impl<S: Scalar> LocalFunction<S, 4, 4> for ValveEdges<'_, S> {
     #[inline(always)]
     fn at<T: Scalar>(&self, [opening, a, b, pressure]: [T; 4], constant: impl Fn(S) -> T + Copy) -> [T; 4] {
         let valve = self.valve.convert(&mut |parameter| constant(parameter));
