@@ -23,7 +23,7 @@ pub struct EmptyAccumulator {
     pub precharge_pressure: f64,
     /// Pa gauge, as it is stated for another temperature.
     pub stated: Option<f64>,
-    /// Of the chamber, Pa gauge.
+    /// Pressure of the chamber, Pa gauge.
     pub pressure: f64,
 }
 
