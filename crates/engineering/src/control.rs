@@ -112,7 +112,7 @@ fn admittance(declared: &project::DeclaredController) -> Result<Option<Stage>, C
 }
 
 /// Whether the declared controller is that of the position in an inner loop.
-pub fn is_of_position(project: &Project) -> bool {
+pub(crate) fn is_of_position(project: &Project) -> bool {
     let impedance = project.controller.as_ref().and_then(|controller| controller.impedance);
     impedance.is_some_and(|impedance| impedance.form == ImpedanceForm::Admittance)
 }

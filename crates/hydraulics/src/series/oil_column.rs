@@ -39,7 +39,7 @@ phea_dynamics::parameters! {
 impl<S: Copy> OilColumn<S> {
     /// k of the spring behind this many plugs.
     #[inline(always)]
-    pub fn stiffness_behind(&self, plugs: usize) -> S {
+    pub(crate) fn stiffness_behind(&self, plugs: usize) -> S {
         if plugs == 0 || plugs == self.segments { self.end_stiffness } else { self.inner_stiffness }
     }
 }
