@@ -26,6 +26,7 @@ mod dual;
 mod exponential;
 mod interval;
 mod lanes;
+mod parameters;
 
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -34,6 +35,7 @@ pub use dependence::Dependence;
 pub use dual::Dual;
 pub use interval::Interval;
 pub use lanes::{LANES, Lanes};
+pub use parameters::Parameters;
 
 use crate::portable;
 

@@ -114,6 +114,9 @@ pub trait System<S: Scalar> {
 /// ```text
 /// dy/dt = f(y, u, w),        F = h(y, w)          u the command, w other inputs, F what the controller measures
 /// ```
+///
+/// It is no [`System`] with one input more: what it measures, sends and indicates does not depend
+/// on the command, which a controller computes from its measurement.
 pub trait Plant<S: Scalar> {
     /// Number of states.
     fn states(&self) -> usize;

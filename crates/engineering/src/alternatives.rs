@@ -116,13 +116,13 @@ impl Alternatives {
 
 impl JudgedAlternative {
     /// Whether it has a design that was driven.
-    pub fn is_judged(&self) -> bool {
+    pub(crate) fn is_judged(&self) -> bool {
         let completed = |runs: &Vec<ScenarioRun>| runs.iter().all(|run| run.stopped().is_none());
         self.design.is_ok() && self.runs.as_ref().is_ok_and(completed)
     }
 
     /// Whether the machine does something that the verdict excludes.
-    pub fn is_contradicted(&self) -> bool {
+    pub(crate) fn is_contradicted(&self) -> bool {
         let trial = self.design.as_ref().ok().and_then(|view| view.trial.as_ref());
         trial.is_some_and(|trial| trial.agreement() == Agreement::Contradicts)
     }

@@ -108,7 +108,7 @@ pub enum BenchError {
     /// A test would have more rows than can be recorded.
     #[error("[bench] asks for {rows} rows a test: at most {most} are recorded")]
     TooManyRows {
-        /// Of one test.
+        /// Rows of one test.
         rows: f64,
         /// How many there may be.
         most: usize,

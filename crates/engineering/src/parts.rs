@@ -29,9 +29,9 @@ pub struct CostedPart {
 /// Kinds of parts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PartKind {
-    /// Of a line.
+    /// A hose of a line.
     Hose,
-    /// Of a line.
+    /// A pipe of a line.
     Pipe,
     /// At a chamber.
     Accumulator,
@@ -83,7 +83,7 @@ impl CostedPart {
 /// What is counted of the parts of several rigs that are compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PartsCounted {
-    /// Of the prices; `None` where none is stated.
+    /// Currency of the prices; `None` where none is stated.
     pub currency: Option<Currency>,
     /// Whether a mass is stated, or follows from the coils of a spring.
     pub masses: bool,

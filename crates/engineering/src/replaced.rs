@@ -41,9 +41,9 @@ const ROUNDED: f64 = 0.01;
 pub struct TemplateAreas {
     /// rad/s
     pub frequency_rad_per_s: f64,
-    /// Of the box.
+    /// Area of the template of the box.
     pub replaced: f64,
-    /// Of the family.
+    /// Area of the template of the family.
     pub visited: f64,
 }
 

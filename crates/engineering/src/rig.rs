@@ -33,10 +33,11 @@ use phea_hydraulics::two_pressure::{
 use crate::project::{self, Project};
 use crate::quantity::MotionKind;
 
-pub use accumulator::{ChargedRange, EmptyAccumulator, accumulator_place, charged_range};
+pub use accumulator::EmptyAccumulator;
+pub(crate) use accumulator::{ChargedRange, accumulator_place, charged_range};
 pub use assembly::{actuator, components};
 pub use cross_port::{CrossPortAtPoint, cross_port_at_point};
-pub use gas::components_at_setting;
+pub(crate) use gas::components_at_setting;
 pub use in_loop::FeedForwardPath;
 pub(crate) use in_loop::as_response;
 pub(crate) use in_loop::{limits_load_motion, velocity_gain};
@@ -55,8 +56,8 @@ pub(crate) use series::{series_coil, stall_force, waves_right_to};
 pub(crate) use sizing::own_hoses;
 pub use sizing::{SizingError, sizing_problem};
 
-pub(crate) use supply::yielding_supply;
-pub use supply::{power_at_rest, power_unit, settled_supply};
+pub(crate) use supply::{power_at_rest, yielding_supply};
+pub use supply::{power_unit, settled_supply};
 
 /// A rig with everything that procedures compute with.
 #[derive(Clone, Debug, PartialEq)]
@@ -144,13 +145,13 @@ impl Rig {
 
     /// The linearised two-pressure model with the stiffness of a series element in series with the force
     /// sensor.
-    pub fn softened_chambers(&self) -> TwoPressureLinearParameters {
+    pub(crate) fn softened_chambers(&self) -> TwoPressureLinearParameters {
         let sensor_stiffness = self.beyond_piston(self.two_pressure.sensor_stiffness);
         TwoPressureLinearParameters { sensor_stiffness, ..self.two_pressure }
     }
 
     /// The stiffness in N/m of a force sensor together with a series element, where there is one.
-    pub fn beyond_piston(&self, sensor_stiffness: f64) -> f64 {
+    fn beyond_piston(&self, sensor_stiffness: f64) -> f64 {
         self.plant.series.map_or(sensor_stiffness, |series| in_series(sensor_stiffness, series.stiffness()))
     }
 

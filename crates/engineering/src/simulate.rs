@@ -112,7 +112,7 @@ pub enum SimulateError {
     /// A scenario does not begin.
     #[error("scenario \"{name}\": {error}")]
     Start {
-        /// Of the scenario.
+        /// Name of the scenario.
         name: String,
         /// What is wrong with its start.
         error: MachineError,
@@ -122,7 +122,7 @@ pub enum SimulateError {
         "scenario \"{name}\" states no `start`, and there is no operating point without force at mid stroke: {error}"
     )]
     Equilibrium {
-        /// Of the scenario.
+        /// Name of the scenario.
         name: String,
         /// Why not.
         error: OperatingPointError,
@@ -134,9 +134,9 @@ pub enum SimulateError {
         display(*reference_n, &FORCE, 6)
     )]
     NoRest {
-        /// Of the scenario.
+        /// Name of the scenario.
         name: String,
-        /// At time zero, N.
+        /// Reference at time zero, N.
         reference_n: f64,
         /// What moves.
         what: &'static str,
@@ -150,11 +150,11 @@ pub enum SimulateError {
         display(*reference_n, &FORCE, 6), display(*position_m, &LENGTH, 4)
     )]
     NoRestThere {
-        /// Of the scenario.
+        /// Name of the scenario.
         name: String,
-        /// At time zero, N.
+        /// Reference at time zero, N.
         reference_n: f64,
-        /// Of the piston, m.
+        /// Position of the piston, m.
         position_m: f64,
     },
     /// The equilibrium needs a command beyond its limit.
@@ -163,9 +163,9 @@ pub enum SimulateError {
         display(*reference_n, &FORCE, 6), display(*command_v, &VOLTAGE, 4), display(*limit_v, &VOLTAGE, 6)
     )]
     RestBeyondLimit {
-        /// Of the scenario.
+        /// Name of the scenario.
         name: String,
-        /// At time zero, N.
+        /// Reference at time zero, N.
         reference_n: f64,
         /// V.
         command_v: f64,
@@ -175,7 +175,7 @@ pub enum SimulateError {
     /// The search for an equilibrium does not fit the loop.
     #[error("scenario \"{name}\" states no `start`: {error}")]
     Rest {
-        /// Of the scenario.
+        /// Name of the scenario.
         name: String,
         /// What does not fit.
         error: EquilibriumError,
@@ -183,7 +183,7 @@ pub enum SimulateError {
     /// A reference or motion that is not a function of time.
     #[error("scenario \"{name}\": {error}")]
     Profile {
-        /// Of the scenario.
+        /// Name of the scenario.
         name: String,
         /// What is wrong with it.
         error: ProfileError,
@@ -198,9 +198,9 @@ pub enum SimulateError {
         display(*setting, &RATIO, 4), display(*time_s, &TIME, 4)
     )]
     Setting {
-        /// Of the scenario.
+        /// Name of the scenario.
         name: String,
-        /// Beyond 0 or 1.
+        /// The setting, which is below 0 or above 1.
         setting: f64,
         /// When, s.
         time_s: f64,
@@ -208,7 +208,7 @@ pub enum SimulateError {
     /// Start, input schedule or settings do not fit the machine.
     #[error("scenario \"{name}\": {error}")]
     Simulation {
-        /// Of the scenario.
+        /// Name of the scenario.
         name: String,
         /// What does not fit.
         error: SimulationError,

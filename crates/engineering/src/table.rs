@@ -102,7 +102,7 @@ impl MeasuredTable {
     }
 
     /// Where the columns are named.
-    pub fn header_place(&self) -> Place {
+    pub(crate) fn header_place(&self) -> Place {
         let ends = self.headings.first().zip(self.headings.last());
         ends.map_or(Place::default(), |(first, last)| Place { end: last.place.end, ..first.place })
     }
@@ -123,7 +123,7 @@ impl MeasuredTable {
 
     /// The same where nothing may be missing: gaps, a last row that was cut off and rows that hold
     /// no number are errors too, each with NaN among the numbers.
-    pub fn all_numbers(&self, columns: &[&Column], findings: &mut Findings) -> Vec<Vec<f64>> {
+    pub(crate) fn all_numbers(&self, columns: &[&Column], findings: &mut Findings) -> Vec<Vec<f64>> {
         for place in &self.left_out {
             findings.push(
                 RawFinding::error(*place, "there is no number in this row")

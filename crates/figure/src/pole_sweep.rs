@@ -19,7 +19,7 @@ pub struct PoleSweepPoint {
     pub poles: Vec<Complex64>,
     /// Least and greatest over the stroke, N/m.
     pub stiffness_n_per_m: [f64; 2],
-    /// Of the closed loop, rad/s, where there is one.
+    /// Bandwidth of the closed loop, rad/s, where there is one.
     pub bandwidth_rad_per_s: Option<f64>,
 }
 

@@ -10,7 +10,7 @@ pub use branch::{GasBranch, NeckImpedance};
 pub use heat::{GasRelaxation, HEAT_CAPACITY_RATIO, HeatedGas, RelaxingGas};
 pub use neck::Neck;
 
-use phea_dynamics::scalar::{LocalFunction, Scalar};
+use phea_dynamics::scalar::{LocalFunction, Parameters, Scalar};
 
 use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 use crate::parameter::{ParameterError, Problems};
@@ -39,20 +39,10 @@ impl Accumulator {
     }
 }
 
-impl<S: Copy> Accumulator<S> {
-    /// Every parameter replaced, in a fixed order.
-    #[inline(always)]
-    pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> Accumulator<T> {
-        Accumulator {
-            gas_volume: of(self.gas_volume),
-            precharge_pressure: of(self.precharge_pressure),
-            polytropic_exponent: of(self.polytropic_exponent),
-        }
-    }
-}
+phea_dynamics::parameters! { Accumulator { gas_volume, precharge_pressure, polytropic_exponent } }
 
 /// Its compliance, of the pressure.
-impl<S: Copy> LocalFunction<S, 1, 1> for Accumulator<S> {
+impl<S: Scalar> LocalFunction<S, 1, 1> for Accumulator<S> {
     #[inline(always)]
     fn at<T: Scalar>(&self, [pressure]: [T; 1], constant: impl Fn(S) -> T + Copy) -> [T; 1] {
         [self.convert(&mut |parameter| constant(parameter)).compliance(pressure)]

@@ -128,7 +128,7 @@ impl<S: Scalar> Components<S> {
     }
 
     /// What flows from chamber to chamber at rest; `None` where nothing does.
-    pub fn cross_flow(&self) -> Option<CrossFlow<S>> {
+    pub(crate) fn cross_flow(&self) -> Option<CrossFlow<S>> {
         CrossFlow::of(self.cylinder.internal_leakage, self.cross_port.as_ref())
     }
 

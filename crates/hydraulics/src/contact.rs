@@ -32,13 +32,7 @@ impl Contact {
     }
 }
 
-impl<S: Copy> Contact<S> {
-    /// Every parameter replaced, in a fixed order.
-    #[inline(always)]
-    pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> Contact<T> {
-        Contact { stiffness: of(self.stiffness), relative_damping: of(self.relative_damping) }
-    }
-}
+phea_dynamics::parameters! { Contact { stiffness, relative_damping } }
 
 impl<S: Scalar> Contact<S> {
     /// Force in N at a penetration in m that grows at a rate in m/s; zero without penetration.

@@ -62,25 +62,11 @@ impl CrossPort {
     }
 }
 
-impl<S: Copy> CrossPort<S> {
-    /// Every parameter replaced, in a fixed order.
-    #[inline(always)]
-    pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> CrossPort<T> {
-        CrossPort { restrictor: self.restrictor.convert(of), capacity: self.capacity.map(of) }
-    }
-}
+phea_dynamics::parameters! { CrossPort { restrictor, capacity } }
 
-impl<S: Copy> Restrictor<S> {
-    #[inline(always)]
-    fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> Restrictor<T> {
-        match *self {
-            Restrictor::Laminar { conductance } => Restrictor::Laminar { conductance: of(conductance) },
-            Restrictor::Orifice { flow_coefficient, transition_pressure } => Restrictor::Orifice {
-                flow_coefficient: of(flow_coefficient),
-                transition_pressure: of(transition_pressure),
-            },
-        }
-    }
+phea_dynamics::parameters! {
+    Restrictor = Restrictor::Laminar { conductance }
+        | Restrictor::Orifice { flow_coefficient, transition_pressure }
 }
 
 impl<S: Scalar> Restrictor<S> {

@@ -1,7 +1,7 @@
 //! The cylinder, or the motor in its place: areas, stroke, moving mass and chamber volumes, symmetric
 //! or not.
 
-use phea_dynamics::scalar::Scalar;
+use phea_dynamics::scalar::{Parameters, Scalar};
 
 use crate::contact::Contact;
 use crate::parameter::{ParameterError, Problems};
@@ -113,21 +113,10 @@ impl<S: Scalar> Cylinder<S> {
     }
 }
 
-impl<S: Copy> Cylinder<S> {
-    /// Every parameter replaced, in a fixed order.
-    #[inline(always)]
-    pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> Cylinder<T> {
-        Cylinder {
-            area_a: of(self.area_a),
-            area_b: of(self.area_b),
-            stroke: self.stroke.convert(of),
-            moving_mass: of(self.moving_mass),
-            dead_volume_a: of(self.dead_volume_a),
-            dead_volume_b: of(self.dead_volume_b),
-            internal_leakage: self.internal_leakage.map(&mut *of),
-            external_leakage: self.external_leakage.map(&mut *of),
-            end_stops: self.end_stops.map(|contact| contact.convert(of)),
-        }
+phea_dynamics::parameters! {
+    Cylinder {
+        area_a, area_b, stroke, moving_mass, dead_volume_a, dead_volume_b, internal_leakage,
+        external_leakage, end_stops,
     }
 }
 

@@ -20,8 +20,11 @@ impl ForceSensor {
     }
 }
 
-/// Force on the load F_e = K_S (x_p - x_L) in N, positive when the rod pushes; the deflection x_p -
-/// x_L in m.
+/// Force on the load in N, positive when the rod pushes, of the deflection x_p - x_L in m.
+///
+/// ```text
+/// F_e = K_S (x_p - x_L)
+/// ```
 #[inline(always)]
 pub fn force<S: Scalar>(stiffness: S, deflection: S) -> S {
     stiffness * deflection

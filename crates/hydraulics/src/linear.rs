@@ -54,8 +54,11 @@ pub struct LinearParameters<S = f64> {
 }
 
 impl<S: Scalar> LinearParameters<S> {
-    /// Equivalent stiffness K_eq = K_H K_S/(K_H + K_S) in N/m: both springs in series, thesis
-    /// (6.12).
+    /// Equivalent stiffness in N/m: both springs in series.
+    ///
+    /// ```text
+    /// K_eq = K_H K_S/(K_H + K_S)                                           thesis (6.12)
+    /// ```
     pub fn equivalent_stiffness(&self) -> S {
         in_series(self.hydraulic_stiffness, self.sensor_stiffness)
     }

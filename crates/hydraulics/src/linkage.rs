@@ -106,7 +106,7 @@ pub struct Linkage<S = f64> {
     extension: ChebyshevSeries<S>,
     /// theta(x) in rad, near enough for Newton's steps.
     guess: ChebyshevSeries<S>,
-    /// Of the load; `None` for one that gravity does not turn.
+    /// Weight of the load; `None` for one that gravity does not turn.
     weight: Option<LinkedWeight<S>>,
 }
 
@@ -131,7 +131,7 @@ pub enum LinkageError {
         position: f64,
         /// From pivot to pivot there.
         length: f64,
-        /// Of the possible lengths, the least and the greatest.
+        /// The least and the greatest of the possible lengths.
         possible: [f64; 2],
     },
     /// The links of a four-bar do not meet.
@@ -400,14 +400,4 @@ impl<S: Scalar> Linkage<S> {
     }
 }
 
-impl<S: Copy> Linkage<S> {
-    /// Every parameter replaced, in a fixed order.
-    #[inline(always)]
-    pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> Linkage<T> {
-        Linkage {
-            extension: self.extension.convert(of),
-            guess: self.guess.convert(of),
-            weight: self.weight.map(|weight| weight.convert(of)),
-        }
-    }
-}
+phea_dynamics::parameters! { Linkage { extension, guess, weight } }

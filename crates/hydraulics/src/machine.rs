@@ -54,7 +54,7 @@ pub use signals::{
 pub use start::{InitialCondition, StartValues};
 pub use state::MachineState;
 
-use phea_dynamics::scalar::Scalar;
+use phea_dynamics::scalar::{Parameters, Scalar};
 use phea_dynamics::simulation::{Lane, Plant, Sliding};
 
 use crate::accumulator::{Adjustment, Neck};
@@ -264,36 +264,12 @@ impl Machine {
     }
 }
 
-impl<S: Copy> Machine<S> {
-    /// Every parameter replaced, in a fixed order.
-    #[inline(always)]
-    pub fn convert<T: Copy>(&self, of: &mut impl FnMut(S) -> T) -> Machine<T> {
-        Machine {
-            valve: self.valve.convert(of),
-            spool: self.spool.convert(of),
-            tare_reference_drop: of(self.tare_reference_drop),
-            supply: self.supply.convert(of),
-            power_unit: self.power_unit.convert(of),
-            cylinder: self.cylinder.convert(of),
-            chambers: self.chambers.convert(of),
-            accumulators: self.accumulators.map(|gas| gas.map(|gas| gas.convert(of))),
-            necks: self.necks.map(|neck| neck.map(|neck| neck.convert(of))),
-            thermal_time_constants: self.thermal_time_constants.map(|time| time.map(&mut *of)),
-            gas_pressure_limits: self.gas_pressure_limits.map(|limit| limit.map(&mut *of)),
-            adjustments: self.adjustments.map(|of_gas| of_gas.map(|adjustment| adjustment.convert(of))),
-            moving_setting: self.moving_setting,
-            cross_port: self.cross_port.map(|port| port.convert(of)),
-            lines: self.lines.map(|line| line.convert(of)),
-            friction: self.friction.convert(of),
-            sensor_stiffness: of(self.sensor_stiffness),
-            series: self.series.map(|series| series.convert(of)),
-            linkage: self.linkage.map(|linkage| linkage.convert(of)),
-            load: self.load.convert(of),
-            velocity_gain: of(self.velocity_gain),
-            external_force: self.external_force,
-            vapour_pressure: of(self.vapour_pressure),
-            layout: self.layout,
-        }
+phea_dynamics::parameters! {
+    Machine {
+        valve, spool, tare_reference_drop, supply, power_unit, cylinder, chambers, accumulators,
+        necks, thermal_time_constants, gas_pressure_limits, adjustments, moving_setting: kept,
+        cross_port, lines, friction, sensor_stiffness, series, linkage, load, velocity_gain,
+        external_force: kept, vapour_pressure, layout: kept,
     }
 }
 
@@ -308,7 +284,7 @@ impl<S: Lane> Machine<S> {
     /// # use phea_hydraulics::{actuator::Actuator, stiffness::StiffnessModel};
     /// # use phea_hydraulics::reference_rig::{components, hose_line, leaking, pipe_line};
     /// # use phea_hydraulics::machine::{Machine, MachineError, MachineOptions};
-    /// use phea_dynamics::scalar::Lanes;
+    /// use phea_dynamics::scalar::{Lanes, Parameters};
     /// let of = |line| Actuator::new(components(line, StiffnessModel::ByVolume));
     /// let [hose, pipe] = [of(hose_line())?, of(pipe_line())?].map(|a| Machine::new(&a, &MachineOptions::default()));
     /// let (hose, pipe) = (hose?, pipe?);

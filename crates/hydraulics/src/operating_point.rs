@@ -126,7 +126,11 @@ fn whole(value: f64) -> f64 {
 }
 
 impl OperatingPoint {
-    /// Load pressure p_L = p_A - p_B in Pa.
+    /// Load pressure in Pa.
+    ///
+    /// ```text
+    /// p_L = p_A - p_B
+    /// ```
     pub fn load_pressure(&self) -> f64 {
         self.pressure_a - self.pressure_b
     }

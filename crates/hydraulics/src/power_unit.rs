@@ -57,25 +57,15 @@ impl PumpLimited {
     }
 }
 
+phea_dynamics::parameters! { PowerUnit = PowerUnit::Constant | PowerUnit::PumpLimited(pump) }
+phea_dynamics::parameters! {
+    PumpLimited { pump_flow, relief_override, volume, effective_bulk_modulus, accumulator }
+}
+
 impl<S: Copy> PowerUnit<S> {
     /// Whether the supply pressure is a state.
     pub fn yields(&self) -> bool {
         matches!(self, PowerUnit::PumpLimited(_))
-    }
-
-    /// Every parameter replaced, in a fixed order.
-    #[inline(always)]
-    pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> PowerUnit<T> {
-        match self {
-            PowerUnit::Constant => PowerUnit::Constant,
-            PowerUnit::PumpLimited(pump) => PowerUnit::PumpLimited(PumpLimited {
-                pump_flow: of(pump.pump_flow),
-                relief_override: of(pump.relief_override),
-                volume: of(pump.volume),
-                effective_bulk_modulus: of(pump.effective_bulk_modulus),
-                accumulator: pump.accumulator.map(|accumulator| accumulator.convert(of)),
-            }),
-        }
     }
 }
 

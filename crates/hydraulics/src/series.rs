@@ -99,13 +99,6 @@ impl<S: Scalar> SeriesElement<S> {
     }
 }
 
-impl<S: Copy> MovingSeries<S> {
-    /// Every parameter replaced, in a fixed order.
-    #[inline(always)]
-    pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> MovingSeries<T> {
-        match self {
-            MovingSeries::Spring(spring) => MovingSeries::Spring(spring.convert(of)),
-            MovingSeries::Oil(column) => MovingSeries::Oil(column.convert(of)),
-        }
-    }
+phea_dynamics::parameters! {
+    MovingSeries = MovingSeries::Spring(spring) | MovingSeries::Oil(column)
 }

@@ -47,6 +47,8 @@ pub struct Edges<S = f64> {
     pub b_to_tank: S,
 }
 
+phea_dynamics::parameters! { Edges { supply_to_a, a_to_tank, supply_to_b, b_to_tank } }
+
 impl<S: Copy> Edges<S> {
     /// The same number for all four edges.
     ///
@@ -66,12 +68,6 @@ impl<S: Copy> Edges<S> {
     /// In the order 3, 4, 5, 6.
     pub fn to_array(&self) -> [S; 4] {
         [self.supply_to_a, self.a_to_tank, self.supply_to_b, self.b_to_tank]
-    }
-
-    /// Every parameter replaced, in a fixed order.
-    #[inline(always)]
-    pub fn convert<T: Copy>(&self, of: &mut impl FnMut(S) -> T) -> Edges<T> {
-        Edges::from_array(self.to_array().map(of))
     }
 }
 
@@ -133,31 +129,14 @@ impl Servovalve {
     }
 }
 
-impl<S: Copy> Servovalve<S> {
-    /// Every parameter replaced, in a fixed order.
-    #[inline(always)]
-    pub fn convert<T: Copy>(&self, of: &mut impl FnMut(S) -> T) -> Servovalve<T> {
-        Servovalve {
-            flow_coefficients: self.flow_coefficients.convert(of),
-            leakage_coefficients: self.leakage_coefficients.convert(of),
-            leakage_shape: of(self.leakage_shape),
-            leakage_model: self.leakage_model,
-            tare_flow: of(self.tare_flow),
-            nominal_voltage: of(self.nominal_voltage),
-            natural_frequency: of(self.natural_frequency),
-            damping_ratio: of(self.damping_ratio),
-            transition_pressure: of(self.transition_pressure),
-        }
+phea_dynamics::parameters! {
+    Servovalve {
+        flow_coefficients, leakage_coefficients, leakage_shape, leakage_model: kept, tare_flow,
+        nominal_voltage, natural_frequency, damping_ratio, transition_pressure,
     }
 }
 
-impl<S: Copy> Supply<S> {
-    /// Every parameter replaced, in a fixed order.
-    #[inline(always)]
-    pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> Supply<T> {
-        Supply { pressure: of(self.pressure), tank_pressure: of(self.tank_pressure) }
-    }
-}
+phea_dynamics::parameters! { Supply { pressure, tank_pressure } }
 
 impl Supply {
     /// Impossible parameters of this supply; empty if there are none.

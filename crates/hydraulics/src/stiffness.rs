@@ -163,18 +163,6 @@ impl<S: Scalar> ChamberCompliance<S> {
     }
 }
 
-impl<S: Copy> ChamberCompliance<S> {
-    /// Every parameter replaced, in a fixed order.
-    #[inline(always)]
-    pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> ChamberCompliance<T> {
-        ChamberCompliance {
-            area_a: of(self.area_a),
-            area_b: of(self.area_b),
-            stroke: self.stroke.convert(of),
-            constant_a: of(self.constant_a),
-            slope_a: of(self.slope_a),
-            constant_b: of(self.constant_b),
-            slope_b: of(self.slope_b),
-        }
-    }
+phea_dynamics::parameters! {
+    ChamberCompliance { area_a, area_b, stroke, constant_a, slope_a, constant_b, slope_b }
 }

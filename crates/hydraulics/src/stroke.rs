@@ -18,17 +18,13 @@ pub enum ActuatorStroke<S = f64> {
     Unlimited,
 }
 
-impl<S: Copy> ActuatorStroke<S> {
-    /// Every parameter replaced.
-    #[inline(always)]
-    pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> ActuatorStroke<T> {
-        match self {
-            ActuatorStroke::Limited(stroke) => ActuatorStroke::Limited(of(*stroke)),
-            ActuatorStroke::Telescopic(telescope) => ActuatorStroke::Telescopic(telescope.convert(of)),
-            ActuatorStroke::Unlimited => ActuatorStroke::Unlimited,
-        }
-    }
+phea_dynamics::parameters! {
+    ActuatorStroke = ActuatorStroke::Limited(stroke)
+        | ActuatorStroke::Telescopic(telescope)
+        | ActuatorStroke::Unlimited
+}
 
+impl<S: Copy> ActuatorStroke<S> {
     /// The stroke in m or rad, where there is one.
     pub fn length(&self) -> Option<S> {
         match self {

@@ -89,18 +89,9 @@ impl<S: Copy> TwoPressureState<S> {
     }
 }
 
-impl<S: Copy> TwoPressureModel<S> {
-    /// Every parameter replaced, in a fixed order.
-    pub fn convert<T: Copy>(&self, of: &mut impl FnMut(S) -> T) -> TwoPressureModel<T> {
-        TwoPressureModel {
-            valve: self.valve.convert(of),
-            supply: self.supply.convert(of),
-            chambers: self.chambers.convert(of),
-            moving_mass: of(self.moving_mass),
-            viscous_friction: of(self.viscous_friction),
-            sensor_stiffness: of(self.sensor_stiffness),
-            external_leakage: self.external_leakage.map(of),
-        }
+phea_dynamics::parameters! {
+    TwoPressureModel {
+        valve, supply, chambers, moving_mass, viscous_friction, sensor_stiffness, external_leakage,
     }
 }
 

@@ -1,6 +1,6 @@
 //! Fluid, lines, orifice and friction: limits, conservation and consistency.
 
-use phea_dynamics::scalar::{Dual, Scalar};
+use phea_dynamics::scalar::{Dual, Parameters, Scalar};
 use phea_hydraulics::fluid::{ATMOSPHERIC_PRESSURE_ABSOLUTE, EntrainedAir, Fluid, bulk_modulus_with_air};
 use phea_hydraulics::friction::{Friction, LuGre, LuGrePassivity, Stribeck};
 use phea_hydraulics::line::{

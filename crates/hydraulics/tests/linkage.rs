@@ -5,7 +5,7 @@
 use num_complex::Complex64;
 use phea_dynamics::portable::{cos, pow, sin};
 use phea_dynamics::random::{share, stream};
-use phea_dynamics::scalar::Interval;
+use phea_dynamics::scalar::{Interval, Parameters};
 use phea_dynamics::simulation::{Plant, small_signal};
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::contact::Contact;

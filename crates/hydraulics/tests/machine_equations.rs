@@ -4,7 +4,7 @@
 
 use phea_dynamics::linear::StateSpace;
 use phea_dynamics::portable::{cosh, expm1, pow};
-use phea_dynamics::scalar::{Dependence, Dual, LANES, Lanes};
+use phea_dynamics::scalar::{Dependence, Dual, LANES, Lanes, Parameters};
 use phea_dynamics::simulation::Plant;
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::contact::Contact;

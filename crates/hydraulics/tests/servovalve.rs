@@ -1,7 +1,7 @@
 //! The four-edge valve: data sheet, coefficients at any operating point, and what is true of any such valve.
 
 use phea_dynamics::portable;
-use phea_dynamics::scalar::Dual;
+use phea_dynamics::scalar::{Dual, Parameters};
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::operating_point::{Condition, operating_point};
 use phea_hydraulics::reference_rig::{USEFUL_AREA, components, hose_line, valve, valve_with_equal_edges};

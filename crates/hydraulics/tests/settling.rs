@@ -4,7 +4,7 @@
 
 use phea_dynamics::expression::Expression;
 use phea_dynamics::random::share;
-use phea_dynamics::scalar::Dual;
+use phea_dynamics::scalar::{Dual, Parameters};
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::cross_port::CrossFlow;
 use phea_hydraulics::cylinder::{Cylinder, annulus_area};

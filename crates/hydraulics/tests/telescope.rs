@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)] // helpers of tests
 
 use phea_dynamics::random::{share, stream};
-use phea_dynamics::scalar::{Dual, Interval};
+use phea_dynamics::scalar::{Dual, Interval, Parameters};
 use phea_dynamics::simulation::Plant;
 use phea_hydraulics::accumulator::Accumulator;
 use phea_hydraulics::actuator::{Actuator, ActuatorError, Components};

@@ -5,7 +5,7 @@
 use num_complex::Complex64;
 use phea_dynamics::expression::Expression;
 use phea_dynamics::linear::StateSpace;
-use phea_dynamics::scalar::Dual;
+use phea_dynamics::scalar::{Dual, Parameters};
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::cylinder::{Cylinder, annulus_area};
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};

@@ -14,7 +14,7 @@ use super::samples::{ControllerSample, ControllerSamples};
 pub struct DigitalMemory {
     /// Its last command, V.
     pub command_v: f64,
-    /// Of its sections.
+    /// States of its sections.
     pub memories: Vec<f64>,
     /// The position in its random numbers.
     pub random: u64,

@@ -2,7 +2,7 @@
 
 use phea_dynamics::controller::{Controller, RateSensor, VirtualImpedance};
 use phea_dynamics::linear::{LinearError, TransferFunction};
-use phea_dynamics::scalar::Lanes;
+use phea_dynamics::scalar::{Lanes, Parameters};
 use phea_dynamics::simulation::{
     CommandedPlant, Lane, Outcome, Queue, Sensed, SimulationError, SimulationSettings, Task, can_drive, drive,
 };

@@ -9,9 +9,9 @@ use super::control::{Commanded, Control};
 /// The constant inputs of a loop in equilibrium.
 #[derive(Clone, Copy, Debug)]
 pub struct HeldInputs {
-    /// N.
+    /// Reference, N.
     pub reference_n: f64,
-    /// Of an open loop, V.
+    /// Command of an open loop, V.
     pub command_v: f64,
     /// External force on the load, N, if the machine has that input.
     pub external_n: f64,

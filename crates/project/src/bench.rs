@@ -60,7 +60,7 @@ pub struct Bench {
     pub pressure_range: f64,
     /// Bits of the converters of all signals; zero: no conversion.
     pub converter_bits: u32,
-    /// Of the noise.
+    /// Seed of the noise.
     pub seed: u32,
 }
 

@@ -60,7 +60,7 @@ impl CatalogueKind {
 pub struct Catalogue {
     /// Whether the built-in files are part of it.
     has_built_in: bool,
-    /// Of the user's files.
+    /// Entries of the user's files.
     own: Vec<Arc<CatalogueEntry>>,
 }
 

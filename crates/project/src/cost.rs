@@ -8,7 +8,7 @@ use phea_quantity::{MASS, MASS_PER_LENGTH, Price, PricedBy};
 /// What a part costs and weighs, as far as it is stated.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PartCost {
-    /// Of the part.
+    /// Price of the part.
     pub price: Option<Price>,
     /// kg, of the part.
     pub mass: Option<f64>,
@@ -17,9 +17,9 @@ pub struct PartCost {
 /// The same of a hose or a pipe: what both its ends add, and each metre.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LineCost {
-    /// Of one line, in addition to that of its length.
+    /// Cost of the ends of one line, in addition to that of its length.
     pub ends: PartCost,
-    /// Of a metre.
+    /// Price of a metre.
     pub price_per_length: Option<Price>,
     /// kg/m, without the oil in it.
     pub mass_per_length: Option<f64>,

@@ -79,9 +79,9 @@ pub struct DeclaredAccumulator {
 /// Temperatures of the gas of an accumulator, in degC.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct GasTemperatures {
-    /// At which the precharge is stated.
+    /// Temperature at which the precharge is stated.
     pub precharge: f64,
-    /// Of the gas at its wall in operation.
+    /// Temperature of the gas at its wall in operation.
     pub working: f64,
 }
 
@@ -106,7 +106,7 @@ pub struct DeclaredNeck {
     pub diameter: f64,
     /// m.
     pub length: f64,
-    /// Of both its ends, over the velocity head.
+    /// Loss at both its ends, over the velocity head.
     pub loss_coefficient: f64,
 }
 

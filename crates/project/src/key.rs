@@ -28,9 +28,9 @@ pub struct Key {
 /// How a rig moves, and how its load does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Motions {
-    /// Of the rod or the shaft.
+    /// Motion of the rod or the shaft.
     pub rig: MotionKind,
-    /// Of what it drives.
+    /// Motion of what it drives.
     pub load: MotionKind,
 }
 

@@ -113,7 +113,7 @@ pub struct DeclaredPipe {
     pub bore: f64,
     /// The data of the wall; absent: it is rigid.
     pub wall: Option<ElasticWall>,
-    /// Of the wall.
+    /// Poisson's ratio of the wall.
     pub poisson_ratio: f64,
     /// m.
     pub outer_diameter: Option<f64>,

@@ -5,7 +5,7 @@
 pub struct HashedFile {
     /// As the project names it.
     pub path: String,
-    /// Of its bytes, in hexadecimal.
+    /// SHA-256 of its bytes, in hexadecimal.
     pub sha256: String,
 }
 
@@ -27,7 +27,7 @@ pub struct IdentifiedNumber {
 /// A number that stays as declared, because the recordings do not determine it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct KeptNumber {
-    /// Of the project.
+    /// Path of the number in the project.
     pub path: String,
     /// Why.
     pub reason: &'static str,

@@ -83,16 +83,16 @@ pub enum MotionShape {
     },
     /// Sine.
     Sine {
-        /// Of the sine.
+        /// Amplitude of the sine.
         amplitude: f64,
-        /// Of the sine.
+        /// Frequency of the sine.
         frequency: f64,
     },
     /// Sine whose frequency moves evenly.
     Chirp {
         /// How long it moves.
         duration: f64,
-        /// Of the sine.
+        /// Amplitude of the sine.
         amplitude: f64,
         /// Where it begins.
         frequency: f64,

@@ -42,9 +42,9 @@ pub enum Signal {
         start: Option<f64>,
         /// How long it moves; absent: to the end.
         duration: Option<f64>,
-        /// Of the sine.
+        /// Amplitude of the sine.
         amplitude: f64,
-        /// Of the sine.
+        /// Frequency of the sine.
         frequency: f64,
     },
     /// Sine whose frequency moves evenly.
@@ -53,7 +53,7 @@ pub enum Signal {
         start: Option<f64>,
         /// How long it moves.
         duration: f64,
-        /// Of the sine.
+        /// Amplitude of the sine.
         amplitude: f64,
         /// Where it begins.
         frequency: f64,
@@ -122,13 +122,13 @@ pub(crate) struct SignalUnit {
 }
 
 impl SignalUnit {
-    /// Of a reference.
+    /// The unit of a reference.
     pub(crate) const REFERENCE: SignalUnit =
         SignalUnit { value: "force", values: "forces", dimension: &FORCE, published: true, on_load: false };
-    /// Of an external force on the load.
+    /// The unit of an external force on the load.
     pub(crate) const EXTERNAL_FORCE: SignalUnit =
         SignalUnit { value: "force", values: "forces", dimension: &FORCE, published: false, on_load: true };
-    /// Of an open-loop command.
+    /// The unit of an open-loop command.
     pub(crate) const COMMAND: SignalUnit = SignalUnit {
         value: "voltage",
         values: "voltages",
@@ -136,7 +136,7 @@ impl SignalUnit {
         published: false,
         on_load: false,
     };
-    /// Of the setting of accumulators.
+    /// The unit of the setting of accumulators.
     pub(crate) const SETTING_CHANGE: SignalUnit = SignalUnit {
         value: "change",
         values: "changes",

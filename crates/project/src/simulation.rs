@@ -14,7 +14,7 @@ pub struct Simulation {
     pub tolerance: f64,
     /// Number of steps after which a simulation ends.
     pub maximum_steps: u32,
-    /// Of all random numbers.
+    /// Seed of all random numbers.
     pub seed: u32,
 }
 

@@ -42,9 +42,9 @@ pub struct OtherMeansWish {
     pub force_range: Option<[f64; 2]>,
     /// Precharge over the lowest pressure of a chamber between these forces, both absolute.
     pub precharge_share: f64,
-    /// Of the gas.
+    /// Polytropic exponent of the gas.
     pub polytropic_exponent: f64,
-    /// Of the mode of the load cell; absent: no valve between the chambers is sized.
+    /// Damping ratio of the mode of the load cell; absent: no valve between the chambers is sized.
     pub damping_ratio: Option<f64>,
     /// What a spring on the rod is wound from; absent: only its stiffness and travel are found.
     pub coil: Option<SpringCoil>,

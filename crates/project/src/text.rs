@@ -101,7 +101,7 @@ impl RawFinding {
     }
 
     /// The same as an error of syntax, for which others may be a consequence.
-    pub fn syntax(mut self) -> Self {
+    pub(crate) fn syntax(mut self) -> Self {
         self.syntax = true;
         self
     }

@@ -31,7 +31,7 @@ pub enum PricedBy {
 pub struct Price {
     /// In the currency, for a piece or a metre.
     pub amount: f64,
-    /// Of the amount.
+    /// Currency of the amount.
     pub currency: Currency,
 }
 

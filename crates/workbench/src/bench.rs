@@ -14,7 +14,7 @@ use crate::setup::Setup;
 
 pub use answer::{files, json};
 pub use document::text;
-pub use line::{line_files, line_text};
+pub(crate) use line::{line_files, line_text};
 
 /// What the tests leave out of the project, in sentences; none where nothing is left out.
 pub(crate) fn remarks(setup: &Setup<'_>) -> Vec<&'static str> {

@@ -33,15 +33,15 @@ pub enum CommandError {
         "{path} has a [motor] and {other} a [cylinder]: their numbers have different units, and cannot be compared"
     )]
     MixedMotion {
-        /// Of the project with a motor.
+        /// Path of the project with a motor.
         path: String,
-        /// Of the other.
+        /// Path of the other.
         other: String,
     },
     /// The machine of one project among several cannot be simulated.
     #[error("{path}: {error}")]
     Compare {
-        /// Of the project.
+        /// Path of the project.
         path: String,
         /// Why not.
         error: SimulateError,

@@ -29,7 +29,6 @@ mod specifications;
 mod stiffness;
 mod test_bench;
 
-pub use crate::document::{prose, typeset};
 pub use opening::{Decided, Decision};
 
 use phea_dynamics::watch::Watch;
@@ -101,7 +100,7 @@ pub fn report(
 ///
 /// # Errors
 /// As [`report`].
-pub fn report_beside(
+pub(crate) fn report_beside(
     source: &dyn Source,
     loaded: &Loaded,
     (setup, problem): (&Setup<'_>, Option<&ProblemOfSizing>),

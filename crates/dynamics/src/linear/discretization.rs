@@ -68,7 +68,11 @@ impl TransferFunction {
         }
     }
 
-    /// z = (kappa + s)/(kappa - s); every factor s - r contributes (kappa - r)/(z + 1) to the gain.
+    /// The bilinear image of every zero and pole.
+    ///
+    /// ```text
+    /// z = (kappa + s)/(kappa - s)          s - r contributes (kappa - r)/(z + 1) to the gain
+    /// ```
     fn bilinear(&self, kappa: f64, sample_time_s: f64) -> Result<Self, LinearError> {
         let centre = Complex64::new(kappa, 0.0);
         if self.zeros().iter().chain(self.poles()).any(|root| *root == centre) {
@@ -184,7 +188,11 @@ impl StateSpace {
         Ok(result)
     }
 
-    /// With kappa = 2/T:  A_d = (kappa + A)(kappa - A)^-1, and inputs and outputs to match.
+    /// The bilinear image of the states, and inputs and outputs to match.
+    ///
+    /// ```text
+    /// A_d = (kappa + A)(kappa - A)^-1,     kappa = 2/T
+    /// ```
     fn trapezoidal(&self, kappa: f64, sample_time_s: f64) -> Result<Self, LinearError> {
         let order = self.order();
         let resolvent = Resolvent::new(self.a(), Complex64::new(kappa, 0.0));
@@ -254,7 +262,11 @@ fn check_continuous(domain: TimeDomain, sample_time_s: f64) -> Result<(), Linear
     Ok(())
 }
 
-/// kappa = w/tan(wT/2), which makes s = kappa (z - 1)/(z + 1) exact at w.
+/// The kappa with which the bilinear image is exact at w.
+///
+/// ```text
+/// s = kappa (z - 1)/(z + 1),     kappa = w/tan(w T/2)
+/// ```
 fn prewarped(frequency_rad_per_s: f64, sample_time_s: f64) -> Result<f64, LinearError> {
     let half_angle = frequency_rad_per_s * sample_time_s / 2.0;
     if !(half_angle > 0.0 && half_angle < std::f64::consts::FRAC_PI_2) {
@@ -277,8 +289,11 @@ fn exponential_of(z: Complex64) -> Complex64 {
     if z.im == 0.0 { Complex64::new(size, 0.0) } else { Complex64::new(size * cos(z.im), size * sin(z.im)) }
 }
 
-/// (1 - exp(rT))/(-r), and T for r = 0: low-frequency value of the image of a factor over that of
-/// the factor.
+/// Low-frequency value of the image of a factor over that of the factor.
+///
+/// ```text
+/// (1 - exp(r T))/(-r),     T for r = 0
+/// ```
 fn low_frequency_ratio(root: Complex64, sample_time_s: f64) -> Complex64 {
     if root == Complex64::new(0.0, 0.0) {
         return Complex64::new(sample_time_s, 0.0);

@@ -8,11 +8,14 @@ use super::{LinearError, Polynomial};
 use crate::order::sort_numbers;
 use crate::portable::magnitude;
 
-/// R(x) = Re (N(jw) conj D(jw)) with x = w^2, coefficients in twice the working precision, highest
-/// power first.
+/// The polynomial whose sign is that of the real part of a response N/D, its coefficients in twice
+/// the working precision, highest power first.
 ///
-/// For real polynomials conj D(jw) = D(-jw), so R is the even part of N(s) D(-s) with s^2 = -x. Its
-/// sign is the sign of Re N/D.
+/// ```text
+/// R(x) = Re (N(jw) conj D(jw)),     x = w^2
+/// ```
+///
+/// For real polynomials conj D(jw) = D(-jw), so R is the even part of N(s) D(-s) with s^2 = -x.
 pub(crate) struct EvenPart {
     coefficients: Vec<DoubleDouble>,
 }

@@ -173,7 +173,11 @@ impl StateSpace {
         StateSpace::new(a, b, c, self.d() + other.d(), self.domain())
     }
 
-    /// This system closed by `other` in negative feedback: u = r - H y.
+    /// This system closed by `other` in negative feedback.
+    ///
+    /// ```text
+    /// u = r - H y
+    /// ```
     ///
     /// # Errors
     /// [`LinearError::DomainMismatch`], [`LinearError::Shape`], [`LinearError::IllPosedLoop`] when

@@ -119,8 +119,12 @@ fn divided(dividend: &[DoubleDouble], divisor: &[DoubleDouble]) -> (Vec<DoubleDo
 /// The states of a chain whose slowest section comes first in the list and last in the signal's
 /// way.
 ///
-/// With w = 2^exponent a section with input v has the state x = w v/(s - p), or the two states x_1
-/// = w^2 v/d and x_2 = w (s - sigma) v/d; x or x_1 is its output.
+/// ```text
+/// x   = w v/(s - p)                                    one real pole; v the input, w = 2^exponent
+/// x_1 = w^2 v/d,     x_2 = w (s - sigma) v/d           a pair, d its denominator
+/// ```
+///
+/// The output of a section is x or x_1.
 fn states_of(chain: &[ChainSection], order: usize, feedthrough: f64) -> Chain {
     let mut a = DMatrix::zeros(order, order);
     let mut b = DMatrix::zeros(order, 1);

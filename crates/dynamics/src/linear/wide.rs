@@ -36,7 +36,7 @@ impl WideNumbers {
 /// A square matrix in twice the working precision, row by row.
 pub(super) struct Wide {
     order: usize,
-    /// Of a row.
+    /// Groups in a row.
     groups: usize,
     entries: Vec<WideNumbers>,
 }

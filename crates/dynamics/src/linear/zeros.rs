@@ -136,7 +136,12 @@ fn vanishes_at_origin(system: &StateSpace) -> bool {
     at_origin.is_some_and(|(value, size)| magnitude(value) <= 16.0 * f64::EPSILON * size)
 }
 
-/// f/f' for the numerator f = g(s) prod (s - p) of the response g; nothing at a pole that cancels.
+/// The step of Newton's method for the numerator f of the response g; nothing at a pole that
+/// cancels.
+///
+/// ```text
+/// f/f',     f = g(s) prod (s - p)
+/// ```
 fn newton_step(system: &StateSpace, poles: &[Complex64], s: Complex64) -> Option<Complex64> {
     if poles.iter().any(|pole| magnitude(pole - s) <= 1e-6 * magnitude(s)) {
         return None;

@@ -52,16 +52,8 @@ impl<const N: usize, S: Scalar> Dual<N, S> {
     }
 
     /// Replaces the value, and keeps the derivatives.
-    ///
-    /// # Example
-    /// ```
-    /// use phea_dynamics::scalar::Dual;
-    /// let mut x = Dual::<1>::variable(3.0, 0);
-    /// x.set_value(4.0);
-    /// assert_eq!((x * x).gradient(), &[8.0]);
-    /// ```
     #[inline]
-    pub fn set_value(&mut self, value: S) {
+    pub(crate) fn set_value(&mut self, value: S) {
         self.value = value;
     }
 

@@ -158,7 +158,7 @@ pub(super) struct GrowthWatch {
     /// Places in the Jacobian of df/dv, and of df/dz, dg/dv, dg/dz.
     own: Option<usize>,
     memory: Option<[usize; 3]>,
-    /// Of the method that makes the steps.
+    /// What the method that makes the steps takes from an amplitude.
     lost: AmplitudeLost,
     /// Whether waves come back late.
     delayed: bool,

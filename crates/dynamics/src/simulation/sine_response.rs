@@ -19,7 +19,7 @@ const HARMONICS: usize = 20;
 /// For how long the response to a sine is evaluated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SinePlan {
-    /// Of the sine, rad/s.
+    /// Frequency of the sine, rad/s.
     pub frequency_rad_per_s: f64,
     /// Periods of one window, over which the fundamental is taken; at least one.
     pub window_periods: u32,
@@ -173,7 +173,7 @@ struct Windows<'a> {
     plan: SinePlan,
     phasors: [Complex64; ROWS],
     rows: usize,
-    /// Of the first harmonic, the second, and so on.
+    /// Sums of the first harmonic, the second, and so on.
     sums: [Complex64; HARMONICS],
     /// The first value of the window.
     first: f64,

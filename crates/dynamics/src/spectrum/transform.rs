@@ -26,7 +26,7 @@ use crate::portable::{cos, sin};
 #[derive(Clone, Debug)]
 pub struct Transform {
     length: usize,
-    /// Of the power of two that is halved.
+    /// The transform whose length is the power of two.
     halving: Halving,
     /// Where the length is not a power of two.
     chirp: Option<Chirp>,

@@ -85,7 +85,11 @@ impl Stepped {
         Stepped { state: vec![0.0; system.order()], system }
     }
 
-    /// y = C x + D u, then x becomes A x + B u.
+    /// The output of one sample.
+    ///
+    /// ```text
+    /// y(k) = C x(k) + D u(k),     x(k+1) = A x(k) + B u(k)
+    /// ```
     fn step(&mut self, input: f64) -> f64 {
         let (system, state) = (&self.system, &self.state);
         let row = |matrix: &DMatrix<f64>, row: usize, direct: f64| {

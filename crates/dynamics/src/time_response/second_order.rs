@@ -96,7 +96,11 @@ impl SecondOrder {
     }
 
     /// The system with this overshoot (percent, from 0 up to but not 100) and settling time in s, by
-    /// a rule of thumb: w_n = factor/(xi t_s).
+    /// a rule of thumb.
+    ///
+    /// ```text
+    /// w_n = factor/(xi t_s)
+    /// ```
     ///
     /// # Errors
     /// [`TimeResponseError::OutOfRange`].
@@ -226,8 +230,11 @@ impl SecondOrder {
         TransferFunction::assembled(natural * natural, Vec::new(), poles, TimeDomain::Continuous)
     }
 
-    /// 1 - y(t) = exp(-sigma t) (cos w_d t + sigma/w_d sin w_d t), continued beyond critical
-    /// damping.
+    /// What the step response still lacks, continued beyond critical damping.
+    ///
+    /// ```text
+    /// 1 - y(t) = exp(-sigma t) (cos w_d t + sigma/w_d sin w_d t)
+    /// ```
     fn deviation(&self, time: f64) -> f64 {
         let sigma = self.damping_ratio * self.natural_frequency_rad_per_s;
         if let Some(damped) = self.damped_frequency_rad_per_s() {

@@ -162,7 +162,11 @@ impl<'a> StepCache<'a> {
     }
 }
 
-/// x(k+1) = A x(k) + B u(kT); the output at time t is that of the last sample instant not after t.
+/// The output at time t is that of the last sample instant not after t.
+///
+/// ```text
+/// x(k+1) = A x(k) + B u(kT)
+/// ```
 fn sampled(
     system: &StateSpace,
     sample_time_s: f64,

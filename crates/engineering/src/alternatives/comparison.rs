@@ -107,7 +107,7 @@ pub const COMPARED_AT_A_GLANCE: [(&str, &str); 9] = [
 /// A measure by which alternatives dominate each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ComparedMeasure {
-    /// Of the column.
+    /// Key of the column.
     pub key: &'static str,
     /// For people.
     pub words: &'static str,

@@ -12,7 +12,7 @@ use crate::robust::RobustProblem;
 /// The noise of the measured velocity of the load with the effects that it has in a sampled loop.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VelocityNoise {
-    /// Of the noise and of the rounding together, m/s rms.
+    /// Noise and rounding of the velocity together, m/s rms.
     pub rms_m_per_s: f64,
     /// How the rig moves.
     pub motion: MotionKind,

@@ -63,7 +63,7 @@ pub struct Plan {
     pub(super) law: Option<(Controller, FedMotion)>,
     pub(super) driven: ScenarioDrive,
     pub(super) columns: CampaignColumns,
-    /// Of every look, s.
+    /// Time of every look, s.
     pub times_s: Vec<f64>,
     /// Reference at every recorded time, N; at a step, the value from then on. Zero in an open
     /// loop.

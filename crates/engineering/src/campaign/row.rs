@@ -146,7 +146,7 @@ pub(super) struct CampaignColumns {
     pub(super) windows: Vec<Window>,
     /// Whether a stated command drives the valve.
     pub(super) open_loop: bool,
-    /// Of the bands, s.
+    /// Times of the bands, s.
     pub(super) times_s: Vec<f64>,
     /// By which columns of forces and positions, or of torques and angles, are called.
     pub(super) motion: MotionKind,

@@ -37,11 +37,11 @@ pub struct Summary {
     pub occurrences: Vec<(&'static str, usize, u64)>,
     /// For each window, the spread of each of [`METRIC_NAMES`] that occurs in it.
     pub metrics: Vec<[Option<Spread>; METRIC_NAMES.len()]>,
-    /// Of [`LUMP_NAMES`].
+    /// Spread of each of [`LUMP_NAMES`].
     pub lumps: [Option<Spread>; LUMP_NAMES.len()],
     /// Runs whose machine has one outside its bounds in `[uncertainty]`, where there are bounds.
     pub outside: [Option<usize>; LUMP_NAMES.len()],
-    /// Of the force.
+    /// Bands of the force.
     pub bands: Bands,
     /// Runs to look at again, in the order of the metrics they are worst in.
     pub worst: Vec<WorstRun>,

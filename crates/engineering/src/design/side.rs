@@ -36,7 +36,7 @@ pub struct LoopFigures {
     pub high_frequency_gain_db: f64,
     /// Poles of the prefilter, likewise.
     pub prefilter_order: usize,
-    /// Of the nominal loop; `None` for an unstable or a measured family.
+    /// Margins of the nominal loop; `None` for an unstable or a measured family.
     pub nominal: Option<NominalMargins>,
     /// The least |1 + L| of the family; `None` unless it is stable.
     pub modulus_margin: Option<f64>,

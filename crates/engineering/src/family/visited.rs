@@ -29,7 +29,7 @@ const WITHIN: usize = 64;
 #[derive(Debug)]
 pub(super) struct Visited {
     pub(super) rig: Rig,
-    /// Of the parameters, then of what their directions move.
+    /// Names of the parameters, then of what their directions move.
     names: Vec<String>,
     /// What directions move.
     by_directions: Vec<MovedNumber>,

@@ -59,7 +59,7 @@ pub(super) struct Around {
 /// A signal of one recording, and the scale of its residuals.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct FrictionChannel {
-    /// Of each row.
+    /// Scale of each row.
     pub(super) scale: f64,
     /// First residual, and the one after the last.
     pub(super) residuals: [usize; 2],

@@ -99,13 +99,13 @@ impl KnownLine {
     }
 
     /// Its motion as declared.
-    pub fn declared_model(&self) -> LineModel {
+    pub(crate) fn declared_model(&self) -> LineModel {
         line_model(&self.motion, &self.line)
     }
 
     /// The model in which its response is sought: as declared, and where that has no waves, with
     /// them, so that they are found if they are there.
-    pub fn sought_model(&self) -> LineModel {
+    pub(crate) fn sought_model(&self) -> LineModel {
         let waves = LineModel::TransmissionLine { end_share: END_SHARE };
         match (self.dimensions(), self.declared_model()) {
             (None, _) => LineModel::Lumped,

@@ -283,7 +283,7 @@ impl RiseFit {
 
     /// Slope of the compliance over the pressure at a pressure in Pa, in m3/Pa2, and its standard
     /// deviation.
-    pub fn compliance_slope(&self, pressure: f64) -> [f64; 2] {
+    pub(crate) fn compliance_slope(&self, pressure: f64) -> [f64; 2] {
         let (u, half) = (self.scaled(pressure), self.half());
         self.combined(|term| term as f64 * powered(u, term.saturating_sub(1)) / (half * half))
     }

@@ -8,9 +8,9 @@ const LOOKED_AT: usize = 201;
 /// Which position of a linkage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LinkagePosition {
-    /// Of the rod, at the start of the stroke.
+    /// The rod is at the start of the stroke.
     Retracted,
-    /// At its end.
+    /// It is at the end.
     Extended,
     /// That of the operating point.
     OperatingPoint,

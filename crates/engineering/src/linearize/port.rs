@@ -49,7 +49,7 @@ pub struct AskedAt {
 
 impl AskedImpedance {
     /// What is asked, without the filter of the measured position: M_v s^2 + B_v s + K_v.
-    pub fn unfiltered(&self) -> VirtualImpedance {
+    pub(crate) fn unfiltered(&self) -> VirtualImpedance {
         VirtualImpedance { filter_time_s: 0.0, ..self.impedance }
     }
 }

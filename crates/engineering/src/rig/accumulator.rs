@@ -23,7 +23,7 @@ pub struct EmptyAccumulator {
     pub precharge_pressure: f64,
     /// Pa gauge, as it is stated for another temperature.
     pub stated: Option<f64>,
-    /// Of the chamber, Pa gauge.
+    /// Pressure of the chamber, Pa gauge.
     pub pressure: f64,
 }
 
@@ -48,7 +48,7 @@ impl EmptyAccumulator {
 /// The last operating points at standstill at which the gas is in use; `None` where it is up to the
 /// nominal voltage.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ChargedRange {
+pub(crate) struct ChargedRange {
     /// With less force the gas at chamber A is shut off.
     pub least: Option<OperatingPoint>,
     /// With more force the gas at chamber B is shut off.
@@ -57,7 +57,7 @@ pub struct ChargedRange {
 
 /// The tables that declare accumulators at chambers A and B: `line.accumulator` where both are the
 /// same.
-pub fn accumulator_place(declared: &DeclaredActuator) -> [&'static str; 2] {
+pub(crate) fn accumulator_place(declared: &DeclaredActuator) -> [&'static str; 2] {
     let line = &declared.line;
     match line.a.accumulator == line.b.accumulator {
         true => ["line.accumulator"; 2],
@@ -116,7 +116,7 @@ fn shut(components: &Components, side: usize) -> bool {
 /// ```text
 /// P_A(U) = 1.01 P_0 of accumulator A,   P_B(U) = 1.01 P_0 of accumulator B             at q_A = q_B = 0, absolute
 /// ```
-pub fn charged_range(rig: &Rig) -> Option<ChargedRange> {
+pub(crate) fn charged_range(rig: &Rig) -> Option<ChargedRange> {
     let components = rig.actuator.components();
     let [gas_a, gas_b] = [0, 1].map(|side| components.accumulators[side].filter(|_| !shut(components, side)));
     if gas_a.or(gas_b).is_none() || rig.point.velocity != 0.0 {

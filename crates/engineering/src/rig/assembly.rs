@@ -1,4 +1,4 @@
-use phea_dynamics::scalar::Scalar;
+use phea_dynamics::scalar::{Parameters, Scalar};
 use phea_hydraulics::accumulator::Neck;
 use phea_hydraulics::actuator::{Actuator, ActuatorError, Components};
 use phea_hydraulics::contact::Contact;

@@ -70,9 +70,9 @@ pub enum FeedForwardPath {
     InPlant {
         /// V s/m
         gain: f64,
-        /// Of the sensor.
+        /// Filter of the sensor.
         filter: RateFilter,
-        /// Of the sensor and of the loop, s.
+        /// Delay of sensor and loop together, s.
         delay: f64,
     },
     /// In the loop around the plant, with the samples and the delay of the command: see

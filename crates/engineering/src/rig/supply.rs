@@ -63,7 +63,7 @@ pub(crate) fn yielding_supply<S: Scalar>(
 /// ```
 ///
 /// What a pump delivers beyond that, through its relief valve, is not in it.
-pub fn power_at_rest(declared: &project::DeclaredActuator, rig: &Rig) -> f64 {
+pub(crate) fn power_at_rest(declared: &project::DeclaredActuator, rig: &Rig) -> f64 {
     if let Some(found) = rig.supply {
         return found.taken * found.supply.pressure;
     }

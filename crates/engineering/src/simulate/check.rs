@@ -28,17 +28,17 @@ const NOT_COMPARED: &str = "one of the two runs has none";
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct ToleranceCheck {
-    /// Of the second run.
+    /// Tolerance of the second run.
     pub tolerance: f64,
     /// How the second run ended, if it ended early: the comparison extends until then.
     pub stopped: Option<StoppedRun>,
     /// Time between two compared samples, s.
     pub look_s: f64,
-    /// Of the force; `None` if the two runs have no sample in common.
+    /// Difference of the force; `None` if the two runs have no sample in common.
     pub force: Option<Difference>,
-    /// Of the command and of all signals of the machine.
+    /// Differences of the command and of all signals of the machine.
     pub signals: Vec<Difference>,
-    /// Of each window's metrics, in order.
+    /// Differences of each window's metrics, in order.
     pub metrics: Vec<MetricDifferences>,
 }
 

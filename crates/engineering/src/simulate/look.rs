@@ -25,7 +25,7 @@ use crate::source::WriteError;
 /// The observations of a run.
 pub(super) struct Sighted {
     pub(super) record: Record,
-    /// Of each window.
+    /// Metrics of each window.
     pub(super) metrics: Vec<Metrics>,
     /// Highest pressures of chambers A and B, Pa.
     pub(super) peak_pressures_pa: [f64; 2],
@@ -33,7 +33,7 @@ pub(super) struct Sighted {
     /// The limits of the rig that it exceeds.
     pub(super) exceeded: Vec<Exceeded>,
     pub(super) adjustment: Option<AdjustmentWork>,
-    /// Of chambers with gas.
+    /// Ranges of the chambers with gas.
     pub(super) gas: Vec<GasRange>,
 }
 
@@ -64,7 +64,7 @@ pub(super) struct Looking<'a> {
     adjustment: Option<AdjustmentWatch>,
     gas: Vec<GasWatch>,
     follower: Follower<'a>,
-    /// Of chambers A and B, and the highest so far, Pa.
+    /// Pressures of chambers A and B; below, the highest so far, Pa.
     pressures: [WeightedSum; 2],
     peak_pressures_pa: [f64; 2],
     overlays: Vec<Overlaying<'a>>,

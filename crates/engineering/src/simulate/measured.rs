@@ -34,7 +34,7 @@ pub(super) struct Measurement {
 /// A measured signal and the simulated one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Overlay {
-    /// Of the measurement.
+    /// Name of the file with the measurement.
     pub file: String,
     /// Its column.
     pub column: String,

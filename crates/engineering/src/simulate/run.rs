@@ -68,7 +68,7 @@ pub struct ScenarioRun {
     pub beyond_expansion: Vec<BeyondExpansion>,
     /// Limits of the rig that it exceeds.
     pub exceeded: Vec<Exceeded>,
-    /// Of accumulators that are adjusted by a valve, or as it runs; `None` where there is none.
+    /// Work of accumulators that are adjusted by a valve or as it runs; `None` where there is none.
     pub adjustment: Option<AdjustmentWork>,
     /// The gas at each chamber that has some.
     pub gas: Vec<GasRange>,

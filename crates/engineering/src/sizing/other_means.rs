@@ -21,7 +21,7 @@ pub struct OtherMeansProblem {
     pub actuator: Actuator,
     /// Its linear parameters, the stiffness of a series element in series with the force sensor.
     pub linear: LinearParameters,
-    /// Of the operating point, m.
+    /// Position at the operating point, m.
     pub position: f64,
     /// m, stroke and `cylinder.dead_length`; `None` where that is not stated.
     pub length: Option<f64>,

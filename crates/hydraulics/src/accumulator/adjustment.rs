@@ -84,27 +84,15 @@ impl Adjustment {
     }
 }
 
-impl<S: Copy> Adjustment<S> {
-    /// Every parameter replaced, in a fixed order.
-    #[inline(always)]
-    pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> Adjustment<T> {
-        Adjustment {
-            setting: of(self.setting),
-            part: match &self.part {
-                AdjustedPart::Gas { gas_volume, precharge_pressure } => AdjustedPart::Gas {
-                    gas_volume: of(*gas_volume),
-                    precharge_pressure: of(*precharge_pressure),
-                },
-                AdjustedPart::Valve(valve) => AdjustedPart::Valve(GasValve {
-                    flow_coefficient: of(valve.flow_coefficient),
-                    transition_pressure: of(valve.transition_pressure),
-                    compliance: of(valve.compliance),
-                    shut: valve.shut,
-                }),
-            },
-        }
-    }
+phea_dynamics::parameters! { Adjustment { setting, part } }
+phea_dynamics::parameters! {
+    AdjustedPart = AdjustedPart::Gas { gas_volume, precharge_pressure } | AdjustedPart::Valve(valve)
+}
+phea_dynamics::parameters! {
+    GasValve { flow_coefficient, transition_pressure, compliance, shut: kept }
+}
 
+impl<S: Copy> Adjustment<S> {
     /// As a machine has it: `None` of gas whose setting does not move. Whether its valve is shut at
     /// rest is known from its setting there.
     pub(crate) fn of_machine(self, moves: bool) -> Option<Adjustment<S>> {

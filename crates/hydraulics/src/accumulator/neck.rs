@@ -37,18 +37,7 @@ impl Neck {
     }
 }
 
-impl<S: Copy> Neck<S> {
-    /// Every parameter replaced, in a fixed order.
-    #[inline(always)]
-    pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> Neck<T> {
-        Neck {
-            inertance: of(self.inertance),
-            resistance: of(self.resistance),
-            loss: of(self.loss),
-            compliance: of(self.compliance),
-        }
-    }
-}
+phea_dynamics::parameters! { Neck { inertance, resistance, loss, compliance } }
 
 impl<S: Scalar> Neck<S> {
     /// A round neck of a diameter and a length in m, filled with oil of a density in kg/m3, a

@@ -120,14 +120,4 @@ impl LuGre {
     }
 }
 
-impl<S: Copy> LuGre<S> {
-    /// Every parameter replaced, in a fixed order.
-    #[inline(always)]
-    pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> LuGre<T> {
-        LuGre {
-            curve: self.curve.convert(of),
-            bristle_stiffness: of(self.bristle_stiffness),
-            bristle_damping: of(self.bristle_damping),
-        }
-    }
-}
+phea_dynamics::parameters! { LuGre { curve, bristle_stiffness, bristle_damping } }

@@ -1,4 +1,4 @@
-use phea_dynamics::scalar::{LocalFunction, Scalar};
+use phea_dynamics::scalar::{LocalFunction, Parameters, Scalar};
 
 use super::{Friction, LuGre, Stribeck, StribeckShape};
 
@@ -54,6 +54,12 @@ impl MovingFriction {
     }
 }
 
+phea_dynamics::parameters! {
+    MovingFriction = MovingFriction::Viscous { viscous }
+        | MovingFriction::Stribeck { curve, shape: kept, regular_velocity }
+        | MovingFriction::LuGre { lugre, shape: kept }
+}
+
 impl<S: Copy> MovingFriction<S> {
     /// Whether its bristles are a state.
     pub(crate) fn has_bristles(&self) -> bool {
@@ -67,26 +73,10 @@ impl<S: Copy> MovingFriction<S> {
             _ => None,
         }
     }
-
-    /// Every parameter replaced, in a fixed order.
-    #[inline(always)]
-    pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> MovingFriction<T> {
-        match *self {
-            MovingFriction::Viscous { viscous } => MovingFriction::Viscous { viscous: of(viscous) },
-            MovingFriction::Stribeck { curve, shape, regular_velocity } => MovingFriction::Stribeck {
-                curve: curve.convert(of),
-                shape,
-                regular_velocity: of(regular_velocity),
-            },
-            MovingFriction::LuGre { lugre, shape } => {
-                MovingFriction::LuGre { lugre: lugre.convert(of), shape }
-            }
-        }
-    }
 }
 
 /// Force in N and rate of the bristles in m/s, of velocity and deflection.
-impl<S: Copy> LocalFunction<S, 2, 2> for MovingFriction<S> {
+impl<S: Scalar> LocalFunction<S, 2, 2> for MovingFriction<S> {
     #[inline(always)]
     fn at<T: Scalar>(&self, [velocity, bristle]: [T; 2], constant: impl Fn(S) -> T + Copy) -> [T; 2] {
         let FrictionForce { force, bristle_rate } =

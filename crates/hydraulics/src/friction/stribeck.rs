@@ -131,16 +131,6 @@ impl Stribeck {
     }
 }
 
-impl<S: Copy> Stribeck<S> {
-    /// Every parameter replaced, in a fixed order.
-    #[inline(always)]
-    pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> Stribeck<T> {
-        Stribeck {
-            coulomb: of(self.coulomb),
-            static_friction: of(self.static_friction),
-            stribeck_velocity: of(self.stribeck_velocity),
-            stribeck_exponent: of(self.stribeck_exponent),
-            viscous: of(self.viscous),
-        }
-    }
+phea_dynamics::parameters! {
+    Stribeck { coulomb, static_friction, stribeck_velocity, stribeck_exponent, viscous }
 }

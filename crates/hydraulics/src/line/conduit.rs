@@ -157,12 +157,20 @@ impl<S: Scalar> Conduit<S> {
         S::from(FRAC_PI_4) * self.bore.squared()
     }
 
-    /// Compliance C = A L/beta_e in m3/Pa.
+    /// Compliance in m3/Pa.
+    ///
+    /// ```text
+    /// C = A L/beta_e
+    /// ```
     pub fn compliance(&self) -> S {
         self.area() * self.length / self.effective_bulk_modulus
     }
 
-    /// Inertance rho L/A in Pa s2/m3.
+    /// Inertance in Pa s2/m3.
+    ///
+    /// ```text
+    /// I = rho L/A
+    /// ```
     pub fn inertance(&self) -> S {
         self.density * self.length / self.area()
     }
@@ -176,17 +184,29 @@ impl<S: Scalar> Conduit<S> {
         S::from(8.0) * self.viscous_rate() * self.inertance()
     }
 
-    /// nu/R^2 in 1/s: the rate at which friction spreads from the wall into the flow.
+    /// Rate in 1/s at which friction spreads from the wall into the flow.
+    ///
+    /// ```text
+    /// nu/R^2
+    /// ```
     pub fn viscous_rate(&self) -> S {
         S::from(4.0) * self.kinematic_viscosity / self.bore.squared()
     }
 
-    /// Speed of a pressure wave c = sqrt(beta_e/rho) in m/s.
+    /// Speed of a pressure wave in m/s.
+    ///
+    /// ```text
+    /// c = sqrt(beta_e/rho)
+    /// ```
     pub fn speed(&self) -> S {
         (self.effective_bulk_modulus / self.density).sqrt()
     }
 
-    /// Time T = L/c in s that a wave takes along the line.
+    /// Time in s that a wave takes along the line.
+    ///
+    /// ```text
+    /// T = L/c
+    /// ```
     pub fn delay(&self) -> S {
         self.length / self.speed()
     }
@@ -200,7 +220,11 @@ impl<S: Scalar> Conduit<S> {
         self.density * self.speed() / self.area()
     }
 
-    /// Dissipation number nu T/R^2, without unit: how much friction a wave meets on its way.
+    /// Dissipation number, without unit: how much friction a wave meets on its way.
+    ///
+    /// ```text
+    /// nu T/R^2
+    /// ```
     pub fn dissipation_number(&self) -> S {
         self.viscous_rate() * self.delay()
     }

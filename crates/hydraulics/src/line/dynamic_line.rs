@@ -38,17 +38,13 @@ pub enum DynamicLine<S = f64> {
     TwoWave(TwoWaveLine<S>),
 }
 
-impl<S: Copy> DynamicLine<S> {
-    /// Every parameter replaced, in a fixed order.
-    #[inline(always)]
-    pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> DynamicLine<T> {
-        match self {
-            DynamicLine::Segments(line) => DynamicLine::Segments(line.convert(of)),
-            DynamicLine::TransmissionLine(line) => DynamicLine::TransmissionLine(line.convert(of)),
-            DynamicLine::TwoWave(line) => DynamicLine::TwoWave(line.convert(of)),
-        }
-    }
+phea_dynamics::parameters! {
+    DynamicLine = DynamicLine::Segments(line)
+        | DynamicLine::TransmissionLine(line)
+        | DynamicLine::TwoWave(line)
+}
 
+impl<S: Copy> DynamicLine<S> {
     /// Number of states.
     pub fn states(&self) -> usize {
         match self {

@@ -112,24 +112,12 @@ impl Segments {
     }
 }
 
-impl<S: Copy> Segments<S> {
-    /// Every parameter replaced, in a fixed order.
-    #[inline(always)]
-    pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> Segments<T> {
-        Segments {
-            count: self.count,
-            compliance: of(self.compliance),
-            inertance: of(self.inertance),
-            resistance: of(self.resistance),
-            viscous_rate: of(self.viscous_rate),
-            friction: self.friction,
-            creep: self.creep.map(|creep| Creep {
-                compliance: of(creep.compliance),
-                retardation_time: of(creep.retardation_time),
-            }),
-        }
-    }
+phea_dynamics::parameters! {
+    Segments { count: kept, compliance, inertance, resistance, viscous_rate, friction: kept, creep }
+}
+phea_dynamics::parameters! { Creep { compliance, retardation_time } }
 
+impl<S: Copy> Segments<S> {
     fn lags(&self) -> usize {
         match self.friction {
             LaminarFriction::Steady => 0,

@@ -73,14 +73,21 @@ impl StandardLinearSolid {
 }
 
 impl<S: Scalar> StandardLinearSolid<S> {
-    /// The delayed part per volume, 1/beta_static - 1/beta_dynamic, in 1/Pa.
+    /// The delayed part of the compliance per volume, in 1/Pa.
+    ///
+    /// ```text
+    /// 1/beta_static - 1/beta_dynamic
+    /// ```
     pub fn retarded_compliance(&self) -> S {
         let one = S::from(1.0);
         one / self.static_modulus - one / self.dynamic_modulus
     }
 
-    /// Time theta = tau beta_dynamic/beta_static in s in which the volume follows while the
-    /// pressure is held.
+    /// Time in s in which the volume follows while the pressure is held.
+    ///
+    /// ```text
+    /// theta = tau beta_dynamic/beta_static
+    /// ```
     pub(crate) fn retardation_time(&self) -> S {
         self.relaxation_time * self.dynamic_modulus / self.static_modulus
     }

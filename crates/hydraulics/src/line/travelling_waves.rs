@@ -84,21 +84,10 @@ impl<const M: usize> TravellingWaves<M> {
     }
 }
 
-impl<const M: usize, S: Copy> TravellingWaves<M, S> {
-    /// Every parameter replaced, in a fixed order.
-    #[inline(always)]
-    pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> TravellingWaves<M, T> {
-        TravellingWaves {
-            waves: self.waves.map(|wave| Wave {
-                impedance: of(wave.impedance),
-                delay: of(wave.delay),
-                weights: wave.weights.map(&mut *of),
-            }),
-            end_compliance: of(self.end_compliance),
-            half_resistance: of(self.half_resistance),
-        }
-    }
+phea_dynamics::parameters! { TravellingWaves<M> { waves, end_compliance, half_resistance } }
+phea_dynamics::parameters! { Wave { impedance, delay, weights } }
 
+impl<const M: usize, S: Copy> TravellingWaves<M, S> {
     /// Number of states.
     pub fn states(&self) -> usize {
         1 + 2 * M * FILTERS

@@ -1,5 +1,5 @@
 use phea_dynamics::portable;
-use phea_dynamics::scalar::{LocalFunction, Scalar};
+use phea_dynamics::scalar::{LocalFunction, Parameters, Scalar};
 
 /// Terms of a [`ChebyshevSeries`].
 pub(super) const TERMS: usize = 32;
@@ -66,17 +66,7 @@ pub(super) fn in_powers(of_chebyshev: &[f64; TERMS]) -> [f64; TERMS] {
     powers
 }
 
-impl<S: Copy> ChebyshevSeries<S> {
-    /// Every parameter replaced, in a fixed order.
-    #[inline(always)]
-    pub(super) fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> ChebyshevSeries<T> {
-        ChebyshevSeries {
-            coefficients: self.coefficients.map(&mut *of),
-            middle: of(self.middle),
-            half_width: of(self.half_width),
-        }
-    }
-}
+phea_dynamics::parameters! { ChebyshevSeries { coefficients, middle, half_width } }
 
 impl<S: Scalar> ChebyshevSeries<S> {
     /// Value, first and second derivative at u, by Horner's rule and its derivatives.
@@ -96,7 +86,7 @@ impl<S: Scalar> ChebyshevSeries<S> {
 }
 
 /// Value and first two derivatives.
-impl<S: Copy> LocalFunction<S, 1, 3> for ChebyshevSeries<S> {
+impl<S: Scalar> LocalFunction<S, 1, 3> for ChebyshevSeries<S> {
     #[inline(always)]
     fn at<T: Scalar>(&self, [u]: [T; 1], constant: impl Fn(S) -> T + Copy) -> [T; 3] {
         self.convert(&mut |parameter| constant(parameter)).at(u)

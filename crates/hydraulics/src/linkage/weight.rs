@@ -122,10 +122,4 @@ impl<S: Scalar> WeightAt<S> {
     }
 }
 
-impl<S: Copy> LinkedWeight<S> {
-    /// Every parameter replaced, in a fixed order.
-    #[inline(always)]
-    pub(super) fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> LinkedWeight<T> {
-        LinkedWeight { moment: of(self.moment), height: self.height.convert(of) }
-    }
-}
+phea_dynamics::parameters! { LinkedWeight { moment, height } }

@@ -1,6 +1,6 @@
 //! The gas of accumulators that are adjusted in operation.
 
-use phea_dynamics::scalar::Scalar;
+use phea_dynamics::scalar::{Parameters, Scalar};
 
 use super::Machine;
 use crate::accumulator::{Adjustment, MovedGas};

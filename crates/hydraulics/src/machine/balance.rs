@@ -1,5 +1,5 @@
 use nalgebra::{Matrix4, Vector4};
-use phea_dynamics::scalar::{Dual, Scalar};
+use phea_dynamics::scalar::{Dual, Parameters, Scalar};
 
 use super::equations::constant;
 use super::{Machine, MachineState, PowerUnit};

@@ -1,4 +1,4 @@
-use phea_dynamics::scalar::{LocalFunction, Scalar};
+use phea_dynamics::scalar::{LocalFunction, Parameters, Scalar};
 
 use crate::actuator::{Actuator, Components};
 use crate::fluid::{ATMOSPHERIC_PRESSURE_ABSOLUTE, bulk_modulus_with_air};
@@ -136,44 +136,17 @@ fn aerated_side(
     }
 }
 
-impl<S: Copy> Chambers<S> {
-    /// Every parameter replaced, in a fixed order.
-    #[inline(always)]
-    pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> Chambers<T> {
-        match self {
-            Chambers::Clean(compliance) => Chambers::Clean(compliance.convert(of)),
-            Chambers::Aerated(aerated) => Chambers::Aerated(aerated.convert(of)),
-        }
-    }
+phea_dynamics::parameters! { Chambers = Chambers::Clean(compliance) | Chambers::Aerated(aerated) }
+
+phea_dynamics::parameters! {
+    AeratedChambers { bulk_modulus, volume_fraction, polytropic_exponent, stroke, side_a, side_b }
 }
 
-impl<S: Copy> AeratedChambers<S> {
-    #[inline(always)]
-    fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> AeratedChambers<T> {
-        AeratedChambers {
-            bulk_modulus: of(self.bulk_modulus),
-            volume_fraction: of(self.volume_fraction),
-            polytropic_exponent: of(self.polytropic_exponent),
-            stroke: self.stroke.convert(of),
-            side_a: self.side_a.convert(of),
-            side_b: self.side_b.convert(of),
-        }
-    }
+phea_dynamics::parameters! {
+    AeratedSide { fluid_constant, fluid_slope, wall_constant, wall_slope }
 }
 
-impl<S: Copy> AeratedSide<S> {
-    #[inline(always)]
-    fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> AeratedSide<T> {
-        AeratedSide {
-            fluid_constant: of(self.fluid_constant),
-            fluid_slope: of(self.fluid_slope),
-            wall_constant: of(self.wall_constant),
-            wall_slope: of(self.wall_slope),
-        }
-    }
-}
-
-impl<S: Copy> Chambers<S> {
+impl<S: Scalar> Chambers<S> {
     /// C_A and C_B in m3/Pa at piston position `x` in m and chamber pressures in Pa gauge.
     #[inline(always)]
     pub fn compliance<T: Scalar + From<S>>(&self, x: T, [pressure_a, pressure_b]: [T; 2]) -> [T; 2] {
@@ -184,14 +157,14 @@ impl<S: Copy> Chambers<S> {
     }
 }
 
-impl<S: Copy> LocalFunction<S, 1, 2> for ChamberCompliance<S> {
+impl<S: Scalar> LocalFunction<S, 1, 2> for ChamberCompliance<S> {
     #[inline(always)]
     fn at<T: Scalar>(&self, [x]: [T; 1], constant: impl Fn(S) -> T + Copy) -> [T; 2] {
         compliance_at(&self.convert(&mut |parameter| constant(parameter)), x)
     }
 }
 
-impl<S: Copy> LocalFunction<S, 3, 2> for AeratedChambers<S> {
+impl<S: Scalar> LocalFunction<S, 3, 2> for AeratedChambers<S> {
     fn at<T: Scalar>(&self, [x, p_a, p_b]: [T; 3], constant: impl Fn(S) -> T + Copy) -> [T; 2] {
         self.convert(&mut |parameter| constant(parameter)).compliance(x, [p_a, p_b])
     }

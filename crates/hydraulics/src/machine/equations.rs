@@ -1,4 +1,4 @@
-use phea_dynamics::scalar::{LocalFunction, Scalar};
+use phea_dynamics::scalar::{LocalFunction, Parameters, Scalar};
 
 use super::signals::ground_of;
 use super::{Accumulator, Machine, MachineState, Motion, PowerUnit};
@@ -35,11 +35,11 @@ impl<T: Scalar> Flows<T> {
 /// Every force at one instant, in N.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Forces<T> {
-    /// Of the chamber pressures, towards B.
+    /// Force of the chamber pressures, towards B.
     pub(super) hydraulic: T,
     /// Friction and the rate of its bristles.
     pub(super) friction: FrictionForce<T>,
-    /// Of the end stops, towards B: positive at the A end.
+    /// Force of the end stops, towards B: positive at the A end.
     pub(super) end_stops: T,
 }
 
@@ -55,16 +55,16 @@ struct ValveEdges<'m, S> {
     supply: &'m Supply<S>,
 }
 
-/// Of opening and both ports' pressures.
-impl<S: Copy> LocalFunction<S, 3, 4> for ValveEdges<'_, S> {
+/// Flows as a function of opening and both ports' pressures.
+impl<S: Scalar> LocalFunction<S, 3, 4> for ValveEdges<'_, S> {
     #[inline(always)]
     fn at<T: Scalar>(&self, [opening, a, b]: [T; 3], constant: impl Fn(S) -> T + Copy) -> [T; 4] {
         self.at([opening, a, b, constant(self.supply.pressure)], constant)
     }
 }
 
-/// Of opening, both ports' pressures, and that of the supply.
-impl<S: Copy> LocalFunction<S, 4, 4> for ValveEdges<'_, S> {
+/// Flows as a function of opening, both ports' pressures, and that of the supply.
+impl<S: Scalar> LocalFunction<S, 4, 4> for ValveEdges<'_, S> {
     #[inline(always)]
     fn at<T: Scalar>(&self, [opening, a, b, pressure]: [T; 4], constant: impl Fn(S) -> T + Copy) -> [T; 4] {
         let valve = self.valve.convert(&mut |parameter| constant(parameter));

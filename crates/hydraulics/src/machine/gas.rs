@@ -1,6 +1,6 @@
 //! The gas of accumulators at the chambers: at its chamber, behind necks and valves, and where it exchanges heat.
 
-use phea_dynamics::scalar::Scalar;
+use phea_dynamics::scalar::{Parameters, Scalar};
 
 use super::Machine;
 use super::equations::constant;

@@ -1,7 +1,7 @@
 mod instant;
 mod volume;
 
-use phea_dynamics::scalar::Scalar;
+use phea_dynamics::scalar::{Parameters, Scalar};
 
 use super::equations::constant;
 use super::series::plugs;

@@ -75,6 +75,12 @@ impl LoadModel {
     }
 }
 
+phea_dynamics::parameters! {
+    LoadModel = LoadModel::Prescribed
+        | LoadModel::SpringMassDamper { mass, stiffness, damping }
+        | LoadModel::Wall { mass, damping, gap, contact }
+}
+
 impl<S: Copy> LoadModel<S> {
     /// Whether the load's position and velocity are states.
     pub fn moves(&self) -> bool {
@@ -86,23 +92,6 @@ impl<S: Copy> LoadModel<S> {
         match *self {
             LoadModel::Prescribed => None,
             LoadModel::SpringMassDamper { mass, .. } | LoadModel::Wall { mass, .. } => Some(mass),
-        }
-    }
-
-    /// Every parameter replaced, in a fixed order.
-    #[inline(always)]
-    pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> LoadModel<T> {
-        match *self {
-            LoadModel::Prescribed => LoadModel::Prescribed,
-            LoadModel::SpringMassDamper { mass, stiffness, damping } => {
-                LoadModel::SpringMassDamper { mass: of(mass), stiffness: of(stiffness), damping: of(damping) }
-            }
-            LoadModel::Wall { mass, damping, gap, contact } => LoadModel::Wall {
-                mass: of(mass),
-                damping: of(damping),
-                gap: of(gap),
-                contact: contact.convert(of),
-            },
         }
     }
 }

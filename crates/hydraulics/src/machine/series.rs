@@ -1,4 +1,4 @@
-use phea_dynamics::scalar::Scalar;
+use phea_dynamics::scalar::{Parameters, Scalar};
 
 use super::equations::constant;
 use super::{Machine, MachineState, Motion};
@@ -50,7 +50,7 @@ pub(super) struct HeldJoint {
 /// What connects the rod with the load, at one instant. Units: m, N, m/s.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Joint<T> {
-    /// Of the piston, x.
+    /// Position x of the piston.
     pub(super) position: T,
     /// x - x_m.
     pub(super) sensor_deflection: T,
@@ -60,7 +60,7 @@ pub(super) struct Joint<T> {
     pub(super) on_load: T,
     /// Behind the sensor: velocity v_m, that of the load without a series element.
     pub(super) behind_sensor: T,
-    /// Of the spring, or of all oil of a transmission: d and d'; zero without one.
+    /// Deflection d of the spring, or of all oil of a transmission, and its rate; zero without one.
     pub(super) spring: Motion<T>,
     /// Rate of the state `deflection`.
     pub(super) deflection_rate: T,

@@ -1,4 +1,4 @@
-use phea_dynamics::scalar::Scalar;
+use phea_dynamics::scalar::{Parameters, Scalar};
 
 use super::equations::constant;
 use super::{Machine, Motion};

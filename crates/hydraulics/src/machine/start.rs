@@ -211,7 +211,11 @@ impl Machine {
         }
     }
 
-    /// Deflection of the bristles in steady motion: z = sign(v) g(v)/sigma_0.
+    /// Deflection of the bristles in steady motion.
+    ///
+    /// ```text
+    /// z = sign(v) g(v)/sigma_0
+    /// ```
     fn settled_bristle(&self, velocity: f64) -> f64 {
         match self.friction {
             MovingFriction::LuGre { lugre, .. } => {

@@ -70,6 +70,7 @@ impl<S: Scalar> Balance<S> {
     /// The pressures of a recorded supply are those that are found for a number:
     /// ```
     /// use phea_dynamics::expression::Expression;
+    /// use phea_dynamics::scalar::Parameters;
     /// use phea_hydraulics::operating_point::{Balance, SteadyLoad, Steady};
     /// use phea_hydraulics::reference_rig::{USEFUL_AREA, valve};
     /// use phea_hydraulics::servovalve::Supply;

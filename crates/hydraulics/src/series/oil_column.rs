@@ -29,24 +29,17 @@ pub struct OilColumn<S = f64> {
     pub segments: usize,
 }
 
-impl<S: Copy> OilColumn<S> {
-    /// Every parameter replaced, in a fixed order.
-    #[inline(always)]
-    pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> OilColumn<T> {
-        OilColumn {
-            end_stiffness: of(self.end_stiffness),
-            inner_stiffness: of(self.inner_stiffness),
-            mass: of(self.mass),
-            damping: of(self.damping),
-            piston_area: of(self.piston_area),
-            filling_pressure: of(self.filling_pressure),
-            segments: self.segments,
-        }
+phea_dynamics::parameters! {
+    OilColumn {
+        end_stiffness, inner_stiffness, mass, damping, piston_area, filling_pressure,
+        segments: kept,
     }
+}
 
+impl<S: Copy> OilColumn<S> {
     /// k of the spring behind this many plugs.
     #[inline(always)]
-    pub fn stiffness_behind(&self, plugs: usize) -> S {
+    pub(crate) fn stiffness_behind(&self, plugs: usize) -> S {
         if plugs == 0 || plugs == self.segments { self.end_stiffness } else { self.inner_stiffness }
     }
 }

@@ -110,23 +110,8 @@ impl SeriesSpring {
 /// Newton steps of a deflection: three suffice for a linear spring, about ten for any other.
 const STEPS_MAXIMUM: usize = 60;
 
-impl<S: Copy> SeriesSpring<S> {
-    /// Every parameter replaced, in a fixed order.
-    #[inline(always)]
-    pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> SeriesSpring<T> {
-        SeriesSpring {
-            stiffness: of(self.stiffness),
-            damping: self.damping.map(&mut *of),
-            mass: self.mass.map(&mut *of),
-            travel: self.travel.map(|travel| SeriesTravel {
-                travel: of(travel.travel),
-                progression: travel.progression.map(&mut *of),
-                ends: travel.ends.map(|ends| ends.convert(of)),
-            }),
-            force_from: self.force_from,
-        }
-    }
-}
+phea_dynamics::parameters! { SeriesSpring { stiffness, damping, mass, travel, force_from: kept } }
+phea_dynamics::parameters! { SeriesTravel { travel, progression, ends } }
 
 impl<S: Scalar> SeriesSpring<S> {
     /// F_f in N at a deflection in m: the spring alone.

@@ -1,6 +1,6 @@
 //! What static tests of a valve would show for other coefficients, with derivatives.
 
-use phea_dynamics::scalar::{Dual, Scalar};
+use phea_dynamics::scalar::{Dual, Parameters, Scalar};
 
 use super::ports::KnownPorts;
 use super::{

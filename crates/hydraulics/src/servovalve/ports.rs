@@ -1,6 +1,6 @@
 //! A servovalve on a test bench: its ports blocked, or connected to each other through a meter.
 
-use phea_dynamics::scalar::{LocalFunction, Scalar};
+use phea_dynamics::scalar::{LocalFunction, Parameters, Scalar};
 
 use super::{PortCircuit, Servovalve, Supply, edge_conductances};
 use crate::orifice::{self, regular_root, regular_root_slope};

@@ -72,17 +72,8 @@ impl SpoolImperfection {
     }
 }
 
-impl<S: Copy> SpoolImperfection<S> {
-    /// Every parameter replaced, in a fixed order.
-    #[inline(always)]
-    pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> SpoolImperfection<T> {
-        SpoolImperfection {
-            null_bias: of(self.null_bias),
-            hysteresis_width: self.hysteresis_width.map(&mut *of),
-            threshold: self.threshold.map(&mut *of),
-            rate_limit: self.rate_limit.map(&mut *of),
-        }
-    }
+phea_dynamics::parameters! {
+    SpoolImperfection { null_bias, hysteresis_width, threshold, rate_limit }
 }
 
 impl<S: Scalar> SpoolImperfection<S> {

@@ -47,19 +47,8 @@ pub struct Telescope<S = f64> {
     pub transition: S,
 }
 
-impl<S: Copy> Telescope<S> {
-    /// Every parameter replaced, in a fixed order.
-    #[inline(always)]
-    pub fn convert<T>(&self, of: &mut impl FnMut(S) -> T) -> Telescope<T> {
-        Telescope {
-            stroke: of(self.stroke),
-            stages: self.stages.map(|stage| {
-                stage.map(|stage| PistonStage { from: of(stage.from), ratios: stage.ratios.map(&mut *of) })
-            }),
-            transition: of(self.transition),
-        }
-    }
-}
+phea_dynamics::parameters! { Telescope { stroke, stages, transition } }
+phea_dynamics::parameters! { PistonStage { from, ratios } }
 
 /// What the transition to a stage adds, over its share t of the transition: b, db/dt and the integral
 /// of b.

@@ -1,7 +1,7 @@
 //! Lumped, segments, creep and the transmission line against the exact line.
 
 use num_complex::Complex64;
-use phea_dynamics::scalar::Lanes;
+use phea_dynamics::scalar::{Lanes, Parameters};
 use phea_hydraulics::line::{
     Conduit, DynamicLine, END_SHARE, LaminarFriction, Line, LineError, LineModel, LineResponse, Segments,
     StandardLinearSolid, StiffeningMember, TransmissionLine, friction_factor,

@@ -28,7 +28,7 @@ fn recorded(run: &LineRun) -> BenchTable {
 }
 
 /// A table for each test.
-pub fn line_text(runs: &[LineRun]) -> String {
+pub(crate) fn line_text(runs: &[LineRun]) -> String {
     let mut out = Document::default();
     for run in runs {
         recorded(run).tell(4, &mut out);
@@ -55,6 +55,6 @@ pub(super) fn line_test(run: &LineRun) -> Object {
 }
 
 /// The tables, a file for each test.
-pub fn line_files(runs: &[LineRun]) -> Vec<OutputFile> {
+pub(crate) fn line_files(runs: &[LineRun]) -> Vec<OutputFile> {
     runs.iter().map(|run| recorded(run).file()).collect()
 }

@@ -10,11 +10,11 @@ use crate::quantity::{DisplayUnit, TIME, display};
 
 /// The table of a test.
 pub(super) struct BenchTable {
-    /// Of the test and its file.
+    /// Name of the test and its file.
     pub(super) name: &'static str,
     /// For people.
     pub(super) title: &'static str,
-    /// Of the rows, s.
+    /// Times of the rows, s.
     pub(super) times: Vec<f64>,
     /// Without time.
     pub(super) columns: Vec<BenchColumn>,

@@ -13,7 +13,7 @@ use crate::source::{Destination, Source};
 /// A request on the campaign that a project declares.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CampaignRequest {
-    /// Of all random numbers.
+    /// Seed of all random numbers.
     pub seed: u32,
     /// All runs or one.
     pub asked: CampaignRuns,

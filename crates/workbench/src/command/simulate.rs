@@ -30,9 +30,9 @@ pub struct SimulateRequest {
 pub struct FrequencyOptions {
     /// Such as `1, 10, 100 rad/s`: a unit holds for the bare numbers before it.
     pub frequencies: Option<String>,
-    /// Of the command of the open loop, such as `0.1 V`.
+    /// Amplitude of the command of the open loop, such as `0.1 V`.
     pub amplitude: Option<String>,
-    /// Of the reference of the closed loop, such as `100 N`.
+    /// Amplitude of the reference of the closed loop, such as `100 N`.
     pub reference_amplitude: Option<String>,
 }
 

@@ -56,7 +56,7 @@ fn recording(found: &FrictionIdentification, index: usize) -> Object {
         .maybe("shaken_hz", shake.map(frequencies))
 }
 
-/// Of the sines of its force.
+/// The frequencies of the sines of its force.
 fn frequencies(shake: &ShakenRows) -> Json {
     Json::List(shake.force.frequencies.iter().map(|one| Json::Number(DisplayUnit::HERTZ.of(*one))).collect())
 }

@@ -28,7 +28,7 @@ pub(super) struct SimpleBody {
     flow_gain_retracting_m3_per_s_v: Option<f64>,
     pressure_sensitivity_pa_per_v: Option<f64>,
     flow_pressure_coefficient: Option<f64>,
-    /// Of those that have one.
+    /// Intervals of those that have one.
     confidence_95: BTreeMap<&'static str, [f64; 2]>,
 }
 

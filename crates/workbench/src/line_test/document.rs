@@ -27,7 +27,7 @@ pub fn text(found: &LineIdentification) -> String {
     out.text()
 }
 
-/// Of a line.
+/// The chamber at the end of a line.
 fn chamber(side: LineSide) -> &'static str {
     match side {
         LineSide::A => "A",

@@ -32,7 +32,7 @@ fn span(specification: &Specification, finding: &SpecificationFinding) -> [f64; 
 
 /// The family of plants within one loop, and what its audit found.
 pub(super) struct LoopFamily<'a> {
-    /// Of the loop; empty where there is one.
+    /// Name of the loop; empty where there is one.
     name: &'static str,
     problem: &'a RobustProblem,
     view: &'a ProjectAudit,

@@ -47,7 +47,7 @@ pub struct Decision {
 /// What is known about one controller; absent where it was not requested.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Decided {
-    /// Of the family: `met`, `violated`, `not_proven`.
+    /// Verdict on the family: `met`, `violated`, `not_proven`.
     pub verdict: Option<&'static str>,
     /// The same for each specification, in file order.
     pub specifications: Vec<&'static str>,

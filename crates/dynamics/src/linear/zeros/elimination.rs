@@ -77,9 +77,14 @@ pub(super) fn reduce(system: &StateSpace, roundings: f64) -> (f64, Option<DMatri
 
 type StateMatrices = (DMatrix<Traced>, DVector<Traced>, RowDVector<Traced>, Traced);
 
-/// Ties state k by C x = 0. With y' = c_k (x_k + sum m_j x_j) as a new state, m_j = c_j/c_k, the
-/// others obey x_i' = sum (a_ij - a_ik m_j) x_j + b_i u, and y'/c_k is driven by the new output row
-/// and feedthrough.
+/// Ties state k by C x = 0, with the output as a new state. The others obey
+///
+/// ```text
+/// dx_i/dt = sum over j of (a_ij - a_ik m_j) x_j + b_i u,     m_j = c_j/c_k
+/// y = c_k (x_k + sum over j of m_j x_j)
+/// ```
+///
+/// and the rate of y/c_k is the new output row and feedthrough.
 fn eliminate(a: &DMatrix<Traced>, b: &DVector<Traced>, c: &RowDVector<Traced>, k: usize) -> StateMatrices {
     let order = a.nrows();
     let kept: Vec<usize> = (0..order).filter(|&i| i != k).collect();

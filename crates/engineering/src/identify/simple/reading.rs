@@ -39,7 +39,7 @@ impl CurveReading {
         (!all.is_empty()).then(|| CurveReading::of(sum / count, squares.sqrt() / count))
     }
 
-    /// Of two that err independently.
+    /// The quotient of two that err independently.
     pub(in crate::identify) fn over(&self, other: &CurveReading) -> CurveReading {
         let value = self.value / other.value;
         let [first, second] = [self, other].map(|one| one.deviation() / one.value);

@@ -62,7 +62,7 @@ impl ResponsePoint {
 /// The rig that is excited, and its initial state.
 pub(super) struct RestingRig<'a> {
     pub(super) control: &'a Control,
-    /// Of all states, followed by the waves in transit.
+    /// Values of all states, followed by the waves in transit.
     pub(super) start: &'a [f64],
     /// Amplitudes of the states on the orbit of the linearised system, for an amplitude of one;
     /// empty if unknown.

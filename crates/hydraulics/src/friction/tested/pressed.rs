@@ -1,4 +1,4 @@
-use phea_dynamics::scalar::{Dual, Scalar};
+use phea_dynamics::scalar::{Dual, Parameters, Scalar};
 
 use super::{FRICTION_COEFFICIENTS, MultisineForce};
 use crate::friction::LuGre;

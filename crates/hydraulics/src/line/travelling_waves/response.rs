@@ -91,8 +91,12 @@ impl<const M: usize> TravellingWaves<M> {
 }
 
 impl Wave<f64> {
-    /// With E = e^(-s T) A(s) and A(s) = 1 - s T times a sum of lags: (1 - E)/(s T) is the mean of
-    /// e^(-s T), and that sum times e^(-s T).
+    /// A wave over s.
+    ///
+    /// ```text
+    /// E = e^(-s T) (1 - s T l(s)),     l(s) = sum over i of w_i/(c_i + s T)
+    /// (1 - E)/(s T) = (1 - e^(-s T))/(s T) + l(s) e^(-s T)
+    /// ```
     fn response<A: Analytic>(&self, s: A) -> WaveResponse<A> {
         let angle = s.scaled(self.delay);
         let mut lags = A::from(0.0);

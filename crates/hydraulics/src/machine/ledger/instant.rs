@@ -1,4 +1,4 @@
-use phea_dynamics::scalar::Scalar;
+use phea_dynamics::scalar::{Parameters, Scalar};
 
 use super::super::equations::{Flows, constant};
 use super::super::gas::GasStates;
@@ -21,7 +21,7 @@ pub(super) struct Instant<T> {
     pub(super) joint: Joint<T>,
     /// States of the oil of a transmission.
     pub(super) columns: Vec<T>,
-    /// Of the force from outside on the load, in W.
+    /// Power of the force from outside on the load, in W.
     pub(super) external_power: T,
     pub(super) flows: Flows<T>,
     /// What a motor that turns on passes from side A to side B, in m3/s; zero with a stroke, where a
@@ -50,7 +50,7 @@ pub(super) struct GasInstant<T> {
     energy: T,
     /// What it gives to its wall, in W.
     pub(super) heat: T,
-    /// Of its adjustment, in W.
+    /// Power of its adjustment, in W.
     pub(super) work: T,
 }
 

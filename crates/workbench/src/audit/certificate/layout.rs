@@ -14,7 +14,7 @@ use claims::{Cover, StatedClaim, covers, panels};
 
 /// What the file begins with.
 const FORMAT: &str = "phea-certificate";
-/// Of the layout.
+/// Version of the layout.
 const VERSION: u32 = 1;
 
 #[derive(Serialize, Deserialize)]
@@ -37,7 +37,7 @@ pub(super) struct File {
     plant: CertificatePlant,
     #[serde(default, skip_serializing_if = "is_zero")]
     delay: f64,
-    /// Of the series that replaces dead time.
+    /// Terms of the series that replaces dead time.
     terms: usize,
     #[serde(default, skip_serializing_if = "is_none")]
     model_degree: usize,
