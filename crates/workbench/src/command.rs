@@ -71,16 +71,15 @@ pub enum Request {
         length: Option<String>,
     },
     /// Linear models.
-    Linearize,
-    /// The same over a range of one number of the project.
-    LinearizeSwept(SweepRequest),
+    Linearize {
+        /// A range of one number of the project, over which they are followed too.
+        sweep: Option<SweepRequest>,
+    },
     /// The audit of the given controller.
-    Verify,
-    /// The same, tried on the nonlinear machine.
-    VerifyOnMachine,
-    /// The audit with a proof, tried on the machine or not.
-    VerifyProven {
-        /// Whether it is.
+    Verify {
+        /// Whether it is proven.
+        proof: bool,
+        /// Whether it is tried on the nonlinear machine.
         on_machine: bool,
     },
     /// Shaping by hand, elements changed in order.
@@ -99,10 +98,8 @@ pub enum Request {
         /// Whether the design continues if the machine contradicts it.
         repair: bool,
     },
-    /// The nonlinear machine through every scenario, its tables as text.
-    Simulate,
-    /// The same with the requested files, or the machine's frequency response.
-    SimulateAs(SimulateRequest),
+    /// The nonlinear machine through every scenario, or its frequency response.
+    Simulate(SimulateRequest),
     /// The same scenarios of this project and others side by side.
     Compare,
     /// The project and each of its alternatives: sized, designed, audited and driven.
@@ -111,14 +108,12 @@ pub enum Request {
     Campaign(CampaignRequest),
     /// Static tests of the servovalve.
     Bench,
-    /// The page with every figure as a file.
-    Report,
-    /// The page alone.
-    Page,
-    /// The report with a chapter on the alternatives of the project, each of which is designed for.
-    ReportOfAlternatives {
-        /// Whether every figure is wanted as a file.
+    /// The page with every chapter.
+    Report {
+        /// Whether every figure is wanted as a file too.
         files: bool,
+        /// Whether it has a chapter on the alternatives of the project, each of which is designed for.
+        alternatives: bool,
     },
 }
 
@@ -128,16 +123,16 @@ impl Request {
         match self {
             Request::Check => "check",
             Request::Size { .. } => "size",
-            Request::Linearize | Request::LinearizeSwept(_) => "linearize",
-            Request::Verify | Request::VerifyOnMachine | Request::VerifyProven { .. } => "verify",
+            Request::Linearize { .. } => "linearize",
+            Request::Verify { .. } => "verify",
             Request::Shape { .. } => "shape",
             Request::Design { .. } => "design",
-            Request::Simulate | Request::SimulateAs(_) => "simulate",
+            Request::Simulate(_) => "simulate",
             Request::Compare => "compare",
             Request::Alternatives(_) => "alternatives",
             Request::Campaign(_) => "campaign",
             Request::Bench => "bench",
-            Request::Report | Request::Page | Request::ReportOfAlternatives { .. } => "report",
+            Request::Report { .. } => "report",
         }
     }
 }
@@ -147,39 +142,25 @@ pub use phea_dynamics::watch::{Progress, Watch};
 /// Answers a request on a project; `catalogues` are the user's files and folders.
 ///
 /// # Errors
-/// [`CommandError`] if the project lacks something that the command needs, or something in it
-/// cannot be computed.
+/// Those of [`answer_into`] but those of writing.
 pub fn answer(
     source: &dyn Source,
     loaded: &Loaded,
     catalogues: &[String],
     request: &Request,
 ) -> Result<Answer, CommandError> {
-    answer_watched(source, loaded, catalogues, request, &mut |_| true)
-}
-
-/// The same, reporting its progress.
-///
-/// # Errors
-/// Those of [`answer()`], and [`ProcedureError::Stopped`].
-pub fn answer_watched(
-    source: &dyn Source,
-    loaded: &Loaded,
-    catalogues: &[String],
-    request: &Request,
-    watch: Watch<'_>,
-) -> Result<Answer, CommandError> {
     let held = HeldFiles::default();
-    let mut answer = answer_into(source, loaded, catalogues, request, Some(&held), watch)?;
+    let mut answer = answer_into(source, loaded, catalogues, request, Some(&held), &mut |_| true)?;
     answer.files.splice(0..0, held.into_files());
     Ok(answer)
 }
 
-/// The same, the tables of simulated scenarios written to a destination as they come, or nowhere: all other files are in the
-/// answer.
+/// The same, telling its progress, the tables of simulated scenarios written to a destination as they
+/// come, or nowhere: all other files are in the answer.
 ///
 /// # Errors
-/// Those of [`answer_watched`], and where a table cannot be written.
+/// [`CommandError`] if the project lacks something that the command needs, something in it cannot be
+/// computed, or a table cannot be written; [`ProcedureError::Stopped`].
 pub fn answer_into(
     source: &dyn Source,
     loaded: &Loaded,
@@ -189,33 +170,19 @@ pub fn answer_into(
     watch: Watch<'_>,
 ) -> Result<Answer, CommandError> {
     motor::refuse(loaded, request)?;
-    let answer = answer_of(source, loaded, catalogues, request, destination, watch);
-    answer.map_err(|error| match &error {
-        CommandError::Procedure(procedure) => procedure.late().map_or(error, |late| {
-            ProcedureError::Catalogue(crate::project::refused(source, loaded, &late)).into()
-        }),
-        _ => error,
-    })
-}
-
-fn answer_of(
-    source: &dyn Source,
-    loaded: &Loaded,
-    catalogues: &[String],
-    request: &Request,
-    destination: Option<&dyn Destination>,
-    watch: Watch<'_>,
-) -> Result<Answer, CommandError> {
     // these three know their own way: the bench tests the declared valve, whose recordings may not be
     // there yet
-    if matches!(request, Request::Bench | Request::Compare | Request::Campaign(_)) {
-        return answer_as_read(source, loaded, catalogues, request, destination, watch);
-    }
-    let identified = with_recordings(source, loaded, watch)?;
-    let loaded = identified.as_ref().unwrap_or(loaded);
-    let answer = answer_as_read(source, loaded, catalogues, request, destination, watch)?;
-    let text = format!("{}{}", heading_in_use(loaded), answer.text);
-    Ok(motion::said(Answer { text, ..answer }, loaded))
+    let answer = if matches!(request, Request::Bench | Request::Compare | Request::Campaign(_)) {
+        answer_as_read(source, loaded, catalogues, request, destination, watch)
+    } else {
+        with_recordings(source, loaded, watch).and_then(|identified| {
+            let loaded = identified.as_ref().unwrap_or(loaded);
+            let answer = answer_as_read(source, loaded, catalogues, request, destination, watch)?;
+            let text = format!("{}{}", heading_in_use(loaded), answer.text);
+            Ok(motion::said(Answer { text, ..answer }, loaded))
+        })
+    };
+    answer.map_err(|error| error.as_refusal(source, loaded))
 }
 
 /// The project with its valve as identified from its recordings, where it asks for that.
@@ -241,31 +208,26 @@ fn answer_as_read(
             let question = question(gain.as_deref(), length.as_deref())?;
             size_answer(source, loaded, catalogues, question)
         }
-        Request::Linearize => linearize_answer(loaded),
-        Request::LinearizeSwept(asked) => swept_answer(source, loaded, catalogues, asked),
-        Request::Verify => verify_answer(source, loaded, [false, false], watch),
-        Request::VerifyOnMachine => verify_answer(source, loaded, [false, true], watch),
-        Request::VerifyProven { on_machine } => verify_answer(source, loaded, [true, *on_machine], watch),
+        Request::Linearize { sweep: None } => linearize_answer(loaded),
+        Request::Linearize { sweep: Some(asked) } => swept_answer(source, loaded, catalogues, asked),
+        Request::Verify { proof, on_machine } => verify_answer(source, loaded, *proof, *on_machine, watch),
         Request::Shape { shaped, changes } => {
             let shaping = shape(source, loaded, *shaped, changes, watch)?;
             let (text, json) = (shaping::text(&shaping), shaping::json(loaded, &shaping));
             Ok(Answer { text, json, files: shaping::files(&shaping), affirmative: true })
         }
         Request::Design { seed, stages, repair } => {
-            design_answer((source, loaded), *seed, [*stages, *repair], watch)
+            design_answer(source, loaded, *seed, *stages, *repair, watch)
         }
-        Request::Simulate => simulate_answer(source, loaded, &SimulateRequest::default(), destination, watch),
-        Request::SimulateAs(asked) => simulate_answer(source, loaded, asked, destination, watch),
+        Request::Simulate(asked) => simulate_answer(source, loaded, asked, destination, watch),
         Request::Compare => compare_watched(source, std::slice::from_ref(loaded), false, watch),
         Request::Alternatives(asked) => alternatives_answer(source, loaded, catalogues, asked, watch),
         Request::Campaign(asked) => {
             campaign_watched(source, loaded, catalogues, asked, (None, destination), watch)
         }
         Request::Bench => bench_answer(loaded, watch),
-        Request::Report => report_answer(source, loaded, catalogues, [false, true], watch),
-        Request::Page => report_answer(source, loaded, catalogues, [false, false], watch),
-        Request::ReportOfAlternatives { files } => {
-            report_answer(source, loaded, catalogues, [true, *files], watch)
+        Request::Report { files, alternatives } => {
+            report_answer(source, loaded, catalogues, *files, *alternatives, watch)
         }
     }
 }
@@ -364,12 +326,13 @@ fn size_answer(
 fn verify_answer(
     source: &dyn Source,
     loaded: &Loaded,
-    [proven, on_machine]: [bool; 2],
+    proof: bool,
+    on_machine: bool,
     watch: Watch<'_>,
 ) -> Result<Answer, CommandError> {
     let setup = Setup::new(&loaded.project)?;
     let mut view = audit_project(source, &setup, watch)?;
-    if proven {
+    if proof {
         prove_audit(&robust_problem(source, &setup)?, &mut view, watch)?;
     }
     let mut files = audit::files(&view);
@@ -403,9 +366,11 @@ fn bench_answer(loaded: &Loaded, watch: Watch<'_>) -> Result<Answer, CommandErro
 }
 
 fn design_answer(
-    (source, loaded): (&dyn Source, &Loaded),
+    source: &dyn Source,
+    loaded: &Loaded,
     seed: Option<u32>,
-    [stages, repair]: [bool; 2],
+    stages: bool,
+    repair: bool,
     watch: Watch<'_>,
 ) -> Result<Answer, CommandError> {
     let setup = Setup::new(&loaded.project)?;
@@ -459,7 +424,8 @@ fn report_answer(
     source: &dyn Source,
     loaded: &Loaded,
     catalogues: &[String],
-    [alternatives, files]: [bool; 2],
+    files: bool,
+    alternatives: bool,
     watch: Watch<'_>,
 ) -> Result<Answer, CommandError> {
     let setup = Setup::new(&loaded.project)?;

@@ -200,8 +200,12 @@ fn a_late_feed_forward_is_in_the_loop() {
         let delay = format!("controller.delay={delay_ms} ms");
         let fed = format!("controller.load_velocity_feed_forward.gain={gain}");
         let viscous = "cylinder.friction={ model = \"viscous\", viscous = \"100 N.s/m\" }";
-        let said =
-            answer(&text, &[&SPRUNG[..], &[viscous, &delay, &fed]].concat(), &[], &Request::VerifyOnMachine);
+        let said = answer(
+            &text,
+            &[&SPRUNG[..], &[viscous, &delay, &fed]].concat(),
+            &[],
+            &Request::Verify { proof: false, on_machine: true },
+        );
         let object: Value = serde_json::from_str(&said.json).unwrap();
         assert_eq!(object["stable"], Value::from(stable), "{gain} {delay_ms}: {}", said.text);
         let run = &object["machine"]["runs"][0];
@@ -229,7 +233,7 @@ fn a_sampled_feed_forward_is_in_the_loop() {
         let fed = format!("controller.load_velocity_feed_forward.gain={gain}");
         let viscous = "cylinder.friction={ model = \"viscous\", viscous = \"100 N.s/m\" }";
         let settings = [&SPRUNG[..], &[viscous, &timing[0], &timing[1], &fed]].concat();
-        let said = answer(&text, &settings, &[], &Request::VerifyOnMachine);
+        let said = answer(&text, &settings, &[], &Request::Verify { proof: false, on_machine: true });
         let object: Value = serde_json::from_str(&said.json).unwrap();
         assert_eq!(object["stable"], Value::from(stable), "{gain} {sample_ms} {delay_ms}: {}", said.text);
         let run = &object["machine"]["runs"][0];

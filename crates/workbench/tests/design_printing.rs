@@ -158,7 +158,8 @@ fn programs_read_the_keys_that_stay() {
     // the same object that `verify` prints, in addition to what every object carries
     let designed = String::from_utf8(files(&loaded, &view).remove(0).bytes).unwrap();
     let (source, loaded) = self::loaded(&designed);
-    let verified = answer(&source, &loaded, &[], &Request::Verify).unwrap().json;
+    let verified =
+        answer(&source, &loaded, &[], &Request::Verify { proof: false, on_machine: false }).unwrap().json;
     let verified: serde_json::Value = serde_json::from_str(&verified).unwrap();
     for (key, value) in object["verification"].as_object().unwrap() {
         assert_eq!(*value, verified[key], "{key}");
@@ -296,7 +297,8 @@ fn what_the_computer_rounds_is_part_of_the_design() {
     assert!(text(&loaded, &view).unwrap().contains("the rounded command moves the output by "));
     let designed = String::from_utf8(files(&loaded, &view).remove(0).bytes).unwrap();
     let (source, loaded) = self::loaded(&designed);
-    let verified = answer(&source, &loaded, &[], &Request::Verify).unwrap().json;
+    let verified =
+        answer(&source, &loaded, &[], &Request::Verify { proof: false, on_machine: false }).unwrap().json;
     let verified: serde_json::Value = serde_json::from_str(&verified).unwrap();
     assert_eq!(object["verification"]["specifications"], verified["specifications"]);
 }
