@@ -11,5 +11,5 @@ pub(crate) use answer::{body, stable};
 pub use answer::{files, json};
 pub(crate) use certificate::certificate_of;
 pub use certificate::{CERTIFICATE_FILE, CertificateError, check_certificate};
-pub use document::text;
-pub(crate) use document::{basis, document, proven, summary, text_on_machine};
+pub use document::output;
+pub(crate) use document::{basis, document, proven, summary};

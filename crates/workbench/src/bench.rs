@@ -13,8 +13,8 @@ use crate::project::IdentifiedUse;
 use crate::setup::Setup;
 
 pub use answer::{files, json};
-pub use document::text;
-pub use line::{line_files, line_text};
+pub(crate) use document::document;
+pub use line::line_files;
 
 /// What the tests leave out of the project, in sentences; none where nothing is left out.
 pub(crate) fn remarks(setup: &Setup<'_>) -> Vec<&'static str> {

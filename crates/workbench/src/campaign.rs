@@ -7,5 +7,5 @@ mod figures;
 pub use phea_engineering::campaign::*;
 
 pub(crate) use answer::{json, run_json};
-pub(crate) use document::{counted, lumps, metrics, run_text, text};
+pub(crate) use document::{counted, document, lumps, metrics, run_document};
 pub(crate) use figures::{files, pictures};

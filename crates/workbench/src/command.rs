@@ -11,6 +11,7 @@ mod refusal;
 mod response;
 mod schema;
 mod simulate;
+mod told;
 
 pub use crate::error::CommandError;
 pub use alternatives::AlternativesRequest;
@@ -37,11 +38,11 @@ use crate::bench;
 use crate::caveat::caveats;
 use crate::derived::{self, derive};
 use crate::design::{self, design_and_repair, design_project};
+use crate::document::Document;
 use crate::family::{family, visited_box};
-use crate::identify::{heading_in_use, in_use};
+use crate::identify::in_use;
 use crate::line_test::line_runs;
 use crate::linearize::SweepRequest;
-use crate::motion;
 use crate::project::Loaded;
 use crate::quantity::{self, LENGTH, VOLTAGE_PER_FORCE};
 use crate::report::report_beside;
@@ -57,6 +58,7 @@ use crate::trial::{Agreement, tried};
 use alternatives::{alternatives_answer, read_alternatives};
 use linearize::{linearize_answer, swept_answer};
 use simulate::simulate_answer;
+use told::Told;
 
 /// A request on a project.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -172,16 +174,14 @@ pub fn answer_into(
     motor::refuse(loaded, request)?;
     // these three know their own way: the bench tests the declared valve, whose recordings may not be
     // there yet
-    let answer = if matches!(request, Request::Bench | Request::Compare | Request::Campaign(_)) {
-        answer_as_read(source, loaded, catalogues, request, destination, watch)
-    } else {
-        with_recordings(source, loaded, watch).and_then(|identified| {
-            let loaded = identified.as_ref().unwrap_or(loaded);
-            let answer = answer_as_read(source, loaded, catalogues, request, destination, watch)?;
-            let text = format!("{}{}", heading_in_use(loaded), answer.text);
-            Ok(motion::said(Answer { text, ..answer }, loaded))
-        })
+    let identified = match request {
+        Request::Bench | Request::Compare | Request::Campaign(_) => Ok(None),
+        _ => with_recordings(source, loaded, watch),
     };
+    let answer = identified.and_then(|identified| {
+        let loaded = identified.as_ref().unwrap_or(loaded);
+        answer_as_read(source, loaded, catalogues, request, destination, watch)
+    });
     answer.map_err(|error| error.as_refusal(source, loaded))
 }
 
@@ -202,7 +202,11 @@ fn answer_as_read(
     destination: Option<&dyn Destination>,
     watch: Watch<'_>,
 ) -> Result<Answer, CommandError> {
-    match request {
+    let told = match request {
+        Request::Compare => return compare_watched(source, std::slice::from_ref(loaded), false, watch),
+        Request::Campaign(asked) => {
+            return campaign_watched(source, loaded, catalogues, asked, (None, destination), watch);
+        }
         Request::Check => check(source, loaded, catalogues),
         Request::Size { gain, length } => {
             let question = question(gain.as_deref(), length.as_deref())?;
@@ -213,26 +217,23 @@ fn answer_as_read(
         Request::Verify { proof, on_machine } => verify_answer(source, loaded, *proof, *on_machine, watch),
         Request::Shape { shaped, changes } => {
             let shaping = shape(source, loaded, *shaped, changes, watch)?;
-            let (text, json) = (shaping::text(&shaping), shaping::json(loaded, &shaping));
-            Ok(Answer { text, json, files: shaping::files(&shaping), affirmative: true })
+            let (document, json) = (shaping::document(&shaping), shaping::json(loaded, &shaping));
+            Ok(Told { document, json, files: shaping::files(&shaping), affirmative: true })
         }
         Request::Design { seed, stages, repair } => {
             design_answer(source, loaded, *seed, *stages, *repair, watch)
         }
         Request::Simulate(asked) => simulate_answer(source, loaded, asked, destination, watch),
-        Request::Compare => compare_watched(source, std::slice::from_ref(loaded), false, watch),
         Request::Alternatives(asked) => alternatives_answer(source, loaded, catalogues, asked, watch),
-        Request::Campaign(asked) => {
-            campaign_watched(source, loaded, catalogues, asked, (None, destination), watch)
-        }
         Request::Bench => bench_answer(loaded, watch),
         Request::Report { files, alternatives } => {
             report_answer(source, loaded, catalogues, *files, *alternatives, watch)
         }
-    }
+    }?;
+    Ok(told.print(loaded))
 }
 
-fn check(source: &dyn Source, loaded: &Loaded, catalogues: &[String]) -> Result<Answer, CommandError> {
+fn check(source: &dyn Source, loaded: &Loaded, catalogues: &[String]) -> Result<Told, CommandError> {
     let of_alternatives = read_alternatives(source, loaded, catalogues)?;
     let setup = Setup::new(&loaded.project)?;
     let derived = match setup.rig() {
@@ -243,19 +244,26 @@ fn check(source: &dyn Source, loaded: &Loaded, catalogues: &[String]) -> Result<
     };
     specifications(&loaded.project)?;
     let wishes = wishes(&loaded.project)?;
-    let in_time = specification::text(&wishes);
     let visited = visited_box(&setup)?;
-    let in_words = |ranges: &Vec<_>| format!("{}\n", derived::visited_text(&loaded.project, ranges));
-    let boxed = visited.as_ref().map_or(String::new(), in_words);
     let told: Vec<String> = told_first(&setup).into_iter().chain(of_alternatives).collect();
-    let first: String = told.iter().map(|sentence| format!("warning: {sentence}\n")).collect();
-    let text = match derived.as_slice() {
-        [] => format!("{first}{in_time}The project is valid. {}\n", without_derived(source, &setup)?),
-        derived => format!("{first}{}\n{boxed}{in_time}The project is valid.\n", derived::text(derived)),
-    };
+    let mut document = Document::default();
+    document.warnings(told.clone());
+    if !derived.is_empty() {
+        document.append(derived::document(&derived));
+        document.gap();
+    }
+    if let Some(ranges) = visited.as_ref().filter(|_| !derived.is_empty()) {
+        document.append(derived::visited(&loaded.project, ranges));
+        document.gap();
+    }
+    document.append(specification::document(&wishes));
+    document.line(match derived.is_empty() {
+        true => format!("The project is valid. {}", without_derived(source, &setup)?),
+        false => "The project is valid.".to_string(),
+    });
     let files = derived::files(&derived);
     let json = derived::json(loaded, &derived, visited.as_deref(), &wishes, told);
-    Ok(Answer { text, json, files, affirmative: true })
+    Ok(Told { document, json, files, affirmative: true })
 }
 
 /// Effects that no verdict on the linear loop includes, and parameters of the rig outside its own
@@ -309,13 +317,13 @@ fn size_answer(
     loaded: &Loaded,
     catalogues: &[String],
     question: Question,
-) -> Result<Answer, CommandError> {
+) -> Result<Told, CommandError> {
     let setup = Setup::new(&loaded.project)?;
     let catalogue = crate::catalogue::load(source, catalogues).map_err(ProcedureError::Catalogue)?;
     let problem = sizing_problem(&setup, &catalogue)?;
     let sizing = size(&problem, question);
-    Ok(Answer {
-        text: sizing::text(&sizing),
+    Ok(Told {
+        document: sizing::document(&sizing, vec![]),
         json: sizing::json(loaded, &sizing),
         files: sizing::files(&sizing),
         affirmative: sizing.best().is_some(),
@@ -329,7 +337,7 @@ fn verify_answer(
     proof: bool,
     on_machine: bool,
     watch: Watch<'_>,
-) -> Result<Answer, CommandError> {
+) -> Result<Told, CommandError> {
     let setup = Setup::new(&loaded.project)?;
     let mut view = audit_project(source, &setup, watch)?;
     if proof {
@@ -339,30 +347,30 @@ fn verify_answer(
     files.extend(certificate_of(loaded, &view, CERTIFICATE_FILE));
     let is_met = view.audit.verdict == Verdict::Met;
     if !on_machine {
-        let (text, json) = (audit::text(&view), audit::json(loaded, &view));
-        return Ok(Answer { text, json, files, affirmative: is_met });
+        let (document, json) = (audit::output(&view, None), audit::json(loaded, &view));
+        return Ok(Told { document, json, files, affirmative: is_met });
     }
     let Some(trial) = tried(source, &setup, &robust_problem(source, &setup)?, &view, watch)? else {
         return Err(RigError::NoActuator.into());
     };
-    Ok(Answer {
-        text: audit::text_on_machine(&view, &trial),
+    Ok(Told {
+        document: audit::output(&view, Some(&trial)),
         json: audit::json_on_machine(loaded, &view, &trial),
         files,
         affirmative: is_met && trial.agreement() != Agreement::Contradicts,
     })
 }
 
-fn bench_answer(loaded: &Loaded, watch: Watch<'_>) -> Result<Answer, CommandError> {
+fn bench_answer(loaded: &Loaded, watch: Watch<'_>) -> Result<Told, CommandError> {
     let setup = Setup::new(&loaded.project)?;
     let runs = bench::bench(&setup, watch)?;
     let lines = line_runs(&setup, watch)?;
     let of_friction = bench::friction_runs(&setup, watch)?;
     let remarks = bench::remarks(&setup);
-    let text = bench::text(loaded, &remarks, &runs, &of_friction) + &bench::line_text(&lines);
+    let document = bench::document(loaded, &remarks, &runs, &of_friction, &lines);
     let files = bench::files(&runs, &of_friction).into_iter().chain(bench::line_files(&lines)).collect();
     let json = bench::json(loaded, remarks, &runs, &lines, &of_friction);
-    Ok(Answer { text, json, files, affirmative: true })
+    Ok(Told { document, json, files, affirmative: true })
 }
 
 fn design_answer(
@@ -372,14 +380,14 @@ fn design_answer(
     stages: bool,
     repair: bool,
     watch: Watch<'_>,
-) -> Result<Answer, CommandError> {
+) -> Result<Told, CommandError> {
     let setup = Setup::new(&loaded.project)?;
     let view = match repair {
         true => design_and_repair(source, &setup, seed, watch)?,
         false => design_project(source, &setup, seed, watch)?,
     };
-    Ok(Answer {
-        text: design::text(loaded, &view)?,
+    Ok(Told {
+        document: design::output(loaded, &view)?,
         json: design::json(loaded, &view)?,
         files: if stages { design::stage_files(loaded, &view, watch)? } else { design::files(loaded, &view) },
         affirmative: view.is_met() && view.agreement() != Agreement::Contradicts,
@@ -407,17 +415,13 @@ pub fn compare_watched(
         let path = projects.get(index).map(|loaded| loaded.path.clone()).unwrap_or_default();
         CommandError::Compare { path, error }
     })?;
-    let answer = Answer {
-        text: format!(
-            "{}{}",
-            projects.iter().map(heading_in_use).collect::<String>(),
-            crate::simulate::compare_text(&comparison, projects)
-        ),
+    let told = Told {
+        document: crate::simulate::comparison(&comparison, projects),
         json: crate::simulate::compare_json(&comparison),
         files: if figures { crate::simulate::comparison_files(&comparison) } else { vec![] },
         affirmative: comparison.projects.len() == projects.len() && comparison.is_complete(),
     };
-    Ok(motion::said_of(answer, projects))
+    Ok(told.print_of(projects))
 }
 
 fn report_answer(
@@ -427,7 +431,7 @@ fn report_answer(
     files: bool,
     alternatives: bool,
     watch: Watch<'_>,
-) -> Result<Answer, CommandError> {
+) -> Result<Told, CommandError> {
     let setup = Setup::new(&loaded.project)?;
     let problem = match loaded.project.sizing {
         None => None,
@@ -447,12 +451,13 @@ fn report_answer(
     }
     let report = report_beside(source, loaded, (&setup, problem.as_ref()), judged.as_ref(), watch)?;
     let written = if files { report.files() } else { vec![report.page_file()] };
-    let text: String = report.summary.iter().map(|(name, value)| format!("{name}: {value}\n")).collect();
+    let mut document = Document::default();
+    report.summary.iter().for_each(|(name, value)| document.line(format!("{name}: {value}")));
     let body = Object::new()
         .each("summary", &report.summary, |(name, text)| {
             Object::new().with("name", *name).with("text", text.as_str())
         })
         .each("figures", &report.figures, |figure| figure.name.as_str())
         .with("decision", report.decision.json());
-    Ok(Answer { text, json: answer::json("report", loaded, body), files: written, affirmative: true })
+    Ok(Told { document, json: answer::json("report", loaded, body), files: written, affirmative: true })
 }

@@ -6,6 +6,4 @@ mod document;
 pub use phea_engineering::derived::*;
 
 pub use answer::{files, json};
-pub(crate) use document::document;
-pub use document::text;
-pub(crate) use document::{replaced_sentences, replaced_table, visited_text};
+pub(crate) use document::{document, replaced_sentences, replaced_table, visited};

@@ -8,7 +8,7 @@ pub use phea_engineering::design::*;
 
 pub(crate) use answer::body;
 pub use answer::json;
-pub use document::text;
+pub use document::output;
 pub(crate) use document::{costs, explanation_words, laws, side_by_side, status};
 pub(crate) use stages::bound_files;
 pub use stages::{files, stage_files};

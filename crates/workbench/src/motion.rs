@@ -42,13 +42,8 @@ fn texts_of_user(loaded: &Loaded, project: &Project) -> Vec<String> {
         .collect()
 }
 
-/// An answer about this project, as its motion has it.
-pub(crate) fn said(answer: Answer, loaded: &Loaded) -> Answer {
-    said_of(answer, std::slice::from_ref(loaded))
-}
-
-/// An answer about projects of one motion.
-pub(crate) fn said_of(answer: Answer, projects: &[Loaded]) -> Answer {
+/// An answer about projects of one motion, as that has it.
+pub(crate) fn said(answer: Answer, projects: &[Loaded]) -> Answer {
     let words = vocabulary_of(projects);
     if words.is_plain() {
         return answer;

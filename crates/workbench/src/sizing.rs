@@ -7,4 +7,3 @@ pub use phea_engineering::sizing::*;
 
 pub use answer::{files, json};
 pub(crate) use document::document;
-pub use document::text;

@@ -117,7 +117,7 @@ fn what_is_not_counted_is_told_first() {
     ] {
         let view = audited(&satisfied(settings));
         assert_eq!(view.audit.verdict, Verdict::NotProven, "{key}");
-        let text = audit::text(&view);
+        let text = audit::output(&view, None).text();
         let first: Vec<&str> = text.lines().take(3).map(str::trim).collect();
         assert_eq!(first[0], "Verdict: not proven");
         assert!(first[1..].iter().any(|line| line.starts_with(key)), "{text}");

@@ -1,7 +1,7 @@
 //! `linearize`: the linear models, at one value or over a sweep.
 
 use super::CommandError;
-use crate::answer::Answer;
+use super::told::Told;
 use crate::answer::picture_files;
 use crate::linearize::{self, Linearization, SweepRequest, linearize, sweep};
 use crate::project::Loaded;
@@ -13,10 +13,10 @@ fn linearized(loaded: &Loaded) -> Result<Linearization, CommandError> {
     Ok(linearize(setup.rig()?, setup.controller.as_ref(), &setup.sensor)?)
 }
 
-pub(super) fn linearize_answer(loaded: &Loaded) -> Result<Answer, CommandError> {
+pub(super) fn linearize_answer(loaded: &Loaded) -> Result<Told, CommandError> {
     let linearization = linearized(loaded)?;
-    Ok(Answer {
-        text: linearize::text(loaded, &linearization),
+    Ok(Told {
+        document: linearize::output(loaded, &linearization),
         json: linearize::json(loaded, &linearization),
         files: linearize::files(&linearization),
         affirmative: true,
@@ -28,14 +28,14 @@ pub(super) fn swept_answer(
     loaded: &Loaded,
     catalogues: &[String],
     asked: &SweepRequest,
-) -> Result<Answer, CommandError> {
+) -> Result<Told, CommandError> {
     let linearization = linearized(loaded)?;
     let swept = sweep(source, loaded, catalogues, asked)?;
     let mut files = linearize::files(&linearization);
     files.extend(linearize::sweep_files(&swept));
     files.extend(picture_files(&[linearize::sweep_figure(&swept)]));
-    Ok(Answer {
-        text: linearize::sweep_text(&swept),
+    Ok(Told {
+        document: linearize::sweep_document(&swept),
         json: linearize::json_swept(loaded, &linearization, &swept),
         files,
         affirmative: true,

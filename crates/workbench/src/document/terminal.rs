@@ -6,15 +6,18 @@ use super::{Block, Document, Table};
 
 impl Document {
     /// For a terminal.
-    pub(crate) fn text(&self) -> String {
+    pub fn text(&self) -> String {
         let mut out = String::new();
-        let mut below_heading = true;
+        // no empty line stands above a heading that follows directly
+        let mut directly = true;
         for block in &self.blocks {
-            let above = if below_heading { "" } else { "\n" };
-            below_heading = matches!(block, Block::Heading(_));
+            let above = if directly { "" } else { "\n" };
+            directly = matches!(block, Block::Heading(_) | Block::Warning(_) | Block::Gap);
             match block {
+                Block::Warning(sentence) => out.push_str(&format!("warning: {sentence}\n")),
+                Block::Line(text) => out.push_str(&format!("{text}\n")),
                 Block::Heading(title) => out.push_str(&format!("{above}{title}\n")),
-                Block::HeadingOnPage(_) => out.push('\n'),
+                Block::HeadingOnPage(_) | Block::Gap => out.push('\n'),
                 Block::Verdict { title, sentences, .. } => {
                     out.push_str(&format!("{above}{title}\n"));
                     indented(&mut out, sentences);

@@ -17,12 +17,11 @@ use crate::figure::Figure;
 use crate::project::Loaded;
 
 /// The tables and sentences of `linearize` for people.
-pub fn text(loaded: &Loaded, linearization: &Linearization) -> String {
+pub(crate) fn output(loaded: &Loaded, linearization: &Linearization) -> Document {
     let mut out = Document::default();
-    for sentence in of_models(&loaded.project) {
-        out.preformatted(format!("warning: {sentence}\n"));
-    }
-    out.preformatted(format!("Stiffness\n  {}\n", stiffness_sentence(linearization)));
+    out.warnings(of_models(&loaded.project));
+    out.heading("Stiffness");
+    out.sentences([stiffness_sentence(linearization)]);
     if !linearization.linkage.is_empty() {
         out.section("Linkage", linkage_table(&linearization.linkage));
     }
@@ -43,7 +42,7 @@ pub fn text(loaded: &Loaded, linearization: &Linearization) -> String {
         out.section("Impedance asked and shown", asked_table(asked));
         out.sentences([asked_sentence(asked)]);
     }
-    out.text()
+    out
 }
 
 /// Poles of the models, their differences, and the dominant modes; the figures follow the poles.

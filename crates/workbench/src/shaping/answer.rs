@@ -1,7 +1,7 @@
 use phea_qft::bound::Placement;
 
 use super::ProjectShaping;
-use super::text::polar;
+use super::document::polar;
 use crate::answer::{self, Csv, Object, OutputFile};
 use crate::audit::{kind_key, stability_reason, stable, verdict_key};
 use crate::project::Loaded;
