@@ -22,6 +22,7 @@ pub mod bench;
 pub mod campaign;
 pub mod caveat;
 pub mod control;
+pub mod csv;
 pub mod derived;
 pub mod design;
 pub mod error;

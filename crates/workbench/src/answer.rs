@@ -3,7 +3,6 @@
 //! Each command has one typed output; this module gives all of them the same envelope and the same
 //! treatment of numbers that do not exist.
 
-mod csv;
 mod number;
 mod object;
 mod pictures;
@@ -13,9 +12,9 @@ use serde::Serialize;
 
 use crate::quantity::print_bare;
 pub use crate::quantity::significant;
-pub(crate) use csv::{Csv, quoted};
 pub use number::Number;
 pub(crate) use object::{Json, Object};
+pub(crate) use phea_engineering::csv::{Csv, quoted};
 pub use phea_engineering::number_table::{NumberTable, TableFormat};
 
 pub use crate::source::OutputFile;

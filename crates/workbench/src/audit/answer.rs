@@ -153,5 +153,5 @@ pub fn files(view: &ProjectAudit) -> Vec<OutputFile> {
             csv.row(&[&index, &kind_key(&finding.requirement), frequency, margin]);
         }
     }
-    vec![csv.file("margins.csv")]
+    vec![OutputFile::new("margins.csv", csv.text())]
 }

@@ -78,5 +78,5 @@ pub fn files(derived: &[Derived]) -> Vec<OutputFile> {
         let equation = quoted(&quantity.equation.replace(['{', '}'], ""));
         csv.row(&[&quantity.name, &value, &quantity.unit, &equation, &stated]);
     }
-    vec![csv.file("derived.csv")]
+    vec![OutputFile::new("derived.csv", csv.text())]
 }

@@ -193,5 +193,5 @@ pub fn files(linearization: &Linearization) -> Vec<OutputFile> {
             csv.row(&[&quoted(model), &equation, &pole.re, &pole.im]);
         }
     }
-    vec![csv.file("poles.csv")]
+    vec![OutputFile::new("poles.csv", csv.text())]
 }

@@ -168,5 +168,5 @@ pub(crate) fn sweep_files(sweep: &Sweep) -> Vec<OutputFile> {
             csv.row(&[&point.value, &pole.re, &pole.im]);
         }
     }
-    vec![csv.file("sweep.csv")]
+    vec![OutputFile::new("sweep.csv", csv.text())]
 }

@@ -76,5 +76,5 @@ pub fn files(view: &ProjectShaping) -> Vec<OutputFile> {
         let allowed = matches!(margin.placement, Placement::Allowed { .. });
         csv.row(&[&number, &kind, &margin.frequency_rad_per_s, &margin.margin_db, &allowed]);
     }
-    vec![OutputFile::new(SHAPED_PROJECT, view.saved.clone()), csv.file("margins.csv")]
+    vec![OutputFile::new(SHAPED_PROJECT, view.saved.clone()), OutputFile::new("margins.csv", csv.text())]
 }

@@ -145,5 +145,5 @@ pub fn files(sizing: &Sizing) -> Vec<OutputFile> {
             &quoted(&reasons.join("; ")),
         ]);
     }
-    vec![csv.file("sizing.csv")]
+    vec![OutputFile::new("sizing.csv", csv.text())]
 }
