@@ -6,7 +6,7 @@ mod lines;
 mod markup;
 
 use crate::answer::Answer;
-use crate::project::{Loaded, Project};
+use crate::project::{Loaded, Project, Signal};
 use crate::quantity::{MotionKind, Vocabulary};
 use crate::source::OutputFile;
 
@@ -24,22 +24,30 @@ fn vocabulary_of(projects: &[Loaded]) -> Vocabulary {
 }
 
 fn texts_of_user(loaded: &Loaded, project: &Project) -> Vec<String> {
-    let scenarios = project.scenarios.iter().map(|scenario| scenario.name.clone());
-    let lines = project.actuator.iter().flat_map(|actuator| [&actuator.line.a, &actuator.line.b]);
-    let hoses = lines.filter_map(|line| line.hose_name().map(str::to_string));
-    let alternatives = project.alternatives.iter().map(|one| one.name.clone());
-    let cases = project.load_cases.iter().map(|case| case.name.clone());
-    let valve = project.actuator.as_ref().and_then(|actuator| actuator.valve.model.clone());
-    let texts = [project.title.clone(), loaded.path.clone()];
+    let mut texts = vec![project.title.clone(), loaded.path.clone()];
+    texts.extend(loaded.settings.clone());
+    if let Some(actuator) = &project.actuator {
+        let lines = [&actuator.line.a, &actuator.line.b];
+        texts.extend(lines.iter().filter_map(|line| line.hose_name().map(str::to_string)));
+        texts.extend(actuator.valve.model.clone());
+    }
+    texts.extend(project.directions.iter().map(|direction| direction.name.clone()));
+    for scenario in &project.scenarios {
+        texts.push(scenario.name.clone());
+        texts.extend(scenario.measured.iter().map(|measured| measured.file.clone()));
+        for published in scenario.reference.iter().filter_map(Signal::published) {
+            texts.extend(published.source.iter().chain(&published.remark).cloned());
+        }
+    }
+    for one in &project.alternatives {
+        texts.push(one.name.clone());
+        texts.extend(one.settings());
+    }
+    for case in &project.load_cases {
+        texts.push(case.name.clone());
+        texts.extend(case.settings());
+    }
     texts
-        .into_iter()
-        .chain(scenarios)
-        .chain(hoses)
-        .chain(valve)
-        .chain(alternatives)
-        .chain(cases)
-        .chain(loaded.settings.clone())
-        .collect()
 }
 
 /// An answer about projects of one motion, as that has it.

@@ -231,6 +231,22 @@ fn symbols_of_a_cylinder(text: &str) -> Vec<String> {
     plain.split(|c| !of_name(c)).filter(|word| SYMBOLS.contains(word)).map(str::to_string).collect()
 }
 
+/// Texts of the user stay as they are, whatever words are in them.
+#[test]
+fn texts_of_the_user_stay() {
+    let text = rig(Some(0.04)).replace(
+        "force = 40 }",
+        "force = 40, published = { source = \"force of the piston\", overshoot_percent = 3 } }",
+    );
+    let direction = "\n[[uncertainty_direction]]\nname = \"wear of the piston\"\nchanges = { \"motor.inertia\" = 1e-3 }\n";
+    let of_audit =
+        answered(&format!("{text}{direction}"), &Request::Verify { proof: false, on_machine: false });
+    assert!(of_audit.text.contains("wear of the piston"), "{}", of_audit.text);
+    let of_run = answered(&text, &Request::Report { files: false, alternatives: false });
+    let page = String::from_utf8(of_run.files[0].bytes.clone()).unwrap();
+    assert!(page.contains("force of the piston"), "{page}");
+}
+
 /// The equations of `check` are those of a motor, and so are the symbols everywhere; of a cylinder they are found, so that
 /// the test would see them.
 #[test]
