@@ -80,15 +80,19 @@ pub fn pieces(content: &str) -> Vec<(String, Level)> {
 }
 
 /// The pieces of an equation, which has no names of users: `_` and `^` take the next word with its
-/// sign, after any letter.
+/// sign, or what stands in parentheses, after any letter.
 ///
 /// # Example
 /// ```
 /// use phea_figure::typeset::{pieces_of_equation, Level::*};
 /// assert_eq!(pieces_of_equation("beta_e"), [("beta".to_string(), Line), ("e".to_string(), Subscript)]);
+/// assert_eq!(pieces_of_equation("P^(1/n)"), [("P".to_string(), Line), ("(1/n)".to_string(), Superscript)]);
 /// ```
 pub fn pieces_of_equation(equation: &str) -> Vec<(String, Level)> {
     split(equation, |_, _, rest| {
+        if rest.first() == Some(&'(') {
+            return rest.iter().position(|&c| c == ')').map_or(0, |end| end + 1);
+        }
         let sign = usize::from(rest.first() == Some(&'-'));
         sign + rest.iter().skip(sign).take_while(|c| c.is_alphanumeric()).count()
     })
