@@ -12,7 +12,8 @@ use crate::line_test::KnownLine;
 use crate::project::IdentifiedUse;
 use crate::setup::Setup;
 
-pub use answer::{files, json};
+pub(crate) use answer::body;
+pub use answer::files;
 pub(crate) use document::document;
 pub use line::line_files;
 

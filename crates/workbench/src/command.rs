@@ -32,7 +32,7 @@ use phea_qft::family::Family;
 use phea_qft::verification::Verdict;
 
 use crate::alternatives::{AlternativesOptions as AskedOfAlternatives, judge};
-use crate::answer::{self, Answer, Object};
+use crate::answer::{Answer, Object};
 use crate::audit::{self, CERTIFICATE_FILE, audit_project, certificate_of, outside, prove_audit};
 use crate::bench;
 use crate::caveat::caveats;
@@ -157,8 +157,8 @@ pub fn answer(
     Ok(answer)
 }
 
-/// The same, telling its progress, the tables of simulated scenarios written to a destination as they
-/// come, or nowhere: all other files are in the answer.
+/// The same, reporting its progress. The tables of simulated scenarios are written to a destination
+/// as they come, if there is one; all other files are in the answer.
 ///
 /// # Errors
 /// [`CommandError`] if the project lacks something that the command needs, something in it cannot be
@@ -217,8 +217,8 @@ fn answer_as_read(
         Request::Verify { proof, on_machine } => verify_answer(source, loaded, *proof, *on_machine, watch),
         Request::Shape { shaped, changes } => {
             let shaping = shape(source, loaded, *shaped, changes, watch)?;
-            let (document, json) = (shaping::document(&shaping), shaping::json(loaded, &shaping));
-            Ok(Told { document, json, files: shaping::files(&shaping), affirmative: true })
+            let (document, body) = (shaping::document(&shaping), shaping::body(&shaping));
+            Ok(Told { document, body, files: shaping::files(&shaping), affirmative: true })
         }
         Request::Design { seed, stages, repair } => {
             design_answer(source, loaded, *seed, *stages, *repair, watch)
@@ -230,7 +230,7 @@ fn answer_as_read(
             report_answer(source, loaded, catalogues, *files, *alternatives, watch)
         }
     }?;
-    Ok(told.print(loaded))
+    Ok(told.print(request.name(), std::slice::from_ref(loaded)))
 }
 
 fn check(source: &dyn Source, loaded: &Loaded, catalogues: &[String]) -> Result<Told, CommandError> {
@@ -262,8 +262,8 @@ fn check(source: &dyn Source, loaded: &Loaded, catalogues: &[String]) -> Result<
         false => "The project is valid.".to_string(),
     });
     let files = derived::files(&derived);
-    let json = derived::json(loaded, &derived, visited.as_deref(), &wishes, told);
-    Ok(Told { document, json, files, affirmative: true })
+    let body = derived::body(loaded, &derived, visited.as_deref(), &wishes, told);
+    Ok(Told { document, body, files, affirmative: true })
 }
 
 /// Effects that no verdict on the linear loop includes, and parameters of the rig outside its own
@@ -324,7 +324,7 @@ fn size_answer(
     let sizing = size(&problem, question);
     Ok(Told {
         document: sizing::document(&sizing, vec![]),
-        json: sizing::json(loaded, &sizing),
+        body: sizing::body(&sizing),
         files: sizing::files(&sizing),
         affirmative: sizing.best().is_some(),
     })
@@ -347,15 +347,15 @@ fn verify_answer(
     files.extend(certificate_of(loaded, &view, CERTIFICATE_FILE));
     let is_met = view.audit.verdict == Verdict::Met;
     if !on_machine {
-        let (document, json) = (audit::output(&view, None), audit::json(loaded, &view));
-        return Ok(Told { document, json, files, affirmative: is_met });
+        let (document, body) = (audit::output(&view, None), audit::body(&view));
+        return Ok(Told { document, body, files, affirmative: is_met });
     }
     let Some(trial) = tried(source, &setup, &robust_problem(source, &setup)?, &view, watch)? else {
         return Err(RigError::NoActuator.into());
     };
     Ok(Told {
         document: audit::output(&view, Some(&trial)),
-        json: audit::json_on_machine(loaded, &view, &trial),
+        body: audit::body(&view).with("machine", crate::trial::body(&trial)),
         files,
         affirmative: is_met && trial.agreement() != Agreement::Contradicts,
     })
@@ -369,8 +369,8 @@ fn bench_answer(loaded: &Loaded, watch: Watch<'_>) -> Result<Told, CommandError>
     let remarks = bench::remarks(&setup);
     let document = bench::document(loaded, &remarks, &runs, &of_friction, &lines);
     let files = bench::files(&runs, &of_friction).into_iter().chain(bench::line_files(&lines)).collect();
-    let json = bench::json(loaded, remarks, &runs, &lines, &of_friction);
-    Ok(Told { document, json, files, affirmative: true })
+    let body = bench::body(remarks, &runs, &lines, &of_friction);
+    Ok(Told { document, body, files, affirmative: true })
 }
 
 fn design_answer(
@@ -388,7 +388,7 @@ fn design_answer(
     };
     Ok(Told {
         document: design::output(loaded, &view)?,
-        json: design::json(loaded, &view)?,
+        body: design::body(&view)?,
         files: if stages { design::stage_files(loaded, &view, watch)? } else { design::files(loaded, &view) },
         affirmative: view.is_met() && view.agreement() != Agreement::Contradicts,
     })
@@ -417,11 +417,11 @@ pub fn compare_watched(
     })?;
     let told = Told {
         document: crate::simulate::comparison(&comparison, projects),
-        json: crate::simulate::compare_json(&comparison),
+        body: crate::simulate::comparison_body(&comparison),
         files: if figures { crate::simulate::comparison_files(&comparison) } else { vec![] },
         affirmative: comparison.projects.len() == projects.len() && comparison.is_complete(),
     };
-    Ok(told.print_of(projects))
+    Ok(told.print("compare", projects))
 }
 
 fn report_answer(
@@ -459,5 +459,5 @@ fn report_answer(
         })
         .each("figures", &report.figures, |figure| figure.name.as_str())
         .with("decision", report.decision.json());
-    Ok(Told { document, json: answer::json("report", loaded, body), files: written, affirmative: true })
+    Ok(Told { document, body, files: written, affirmative: true })
 }

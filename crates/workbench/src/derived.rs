@@ -5,5 +5,6 @@ mod document;
 
 pub use phea_engineering::derived::*;
 
-pub use answer::{files, json};
+pub(crate) use answer::body;
+pub use answer::files;
 pub(crate) use document::{document, replaced_sentences, replaced_table, visited};

@@ -6,8 +6,7 @@ mod stages;
 
 pub use phea_engineering::design::*;
 
-pub(crate) use answer::body;
-pub use answer::json;
+pub use answer::body;
 pub use document::output;
 pub(crate) use document::{costs, explanation_words, laws, side_by_side, status};
 pub(crate) use stages::bound_files;

@@ -10,10 +10,11 @@
 //!   setup::Setup                        the rig, the controller, the sensor: the input of every procedure
 //!   engineering procedure -> values     ProjectAudit, Linearization, ScenarioRun, ...
 //!     X/document.rs -> document::Document   for people: blocks, tables of typed cells
-//!     X/answer.rs   -> answer::Object       for programs, in the envelope of answer::json
+//!     X/answer.rs   -> answer::Object       for programs, in the envelope of answer::envelope
 //!     X/figures.rs  -> figure::Figure       drawn as SVG, as files and on the page
 //!     report.rs     -> chapters             Documents and Figures, one after another on a page
-//!   motion::said                        the words of a rig that turns
+//!   command::told::Told { document: Document, body: Object, files, affirmative }
+//!     printed below what recordings gave, of a rig that turns in its words (motion.rs)
 //! answer::Answer { text, json, files, affirmative }
 //! ```
 //!

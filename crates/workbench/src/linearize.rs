@@ -6,8 +6,8 @@ mod sweep_answer;
 
 pub use phea_engineering::linearize::*;
 
-pub use answer::{files, json};
-pub(crate) use answer::{json_swept, passivity as passivity_body};
+pub use answer::files;
+pub(crate) use answer::{body, body_swept, passivity as passivity_body};
 pub(crate) use document::output;
 pub(crate) use document::{
     asked_sentence, asked_table, document, impedance_at_joint, linkage_table, models, passivity_sentence,

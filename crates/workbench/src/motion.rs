@@ -2,10 +2,9 @@
 //! names, units and words. Procedures compute and write in the names of linear motion.
 
 mod json;
-mod lines;
 mod markup;
 
-use crate::answer::Answer;
+use crate::answer::Object;
 use crate::project::{Loaded, Project, Signal};
 use crate::quantity::{MotionKind, Vocabulary};
 use crate::source::OutputFile;
@@ -16,7 +15,7 @@ pub(crate) fn vocabulary(loaded: &Loaded) -> Vocabulary {
 }
 
 /// The words for projects of one motion.
-fn vocabulary_of(projects: &[Loaded]) -> Vocabulary {
+pub(crate) fn vocabulary_of(projects: &[Loaded]) -> Vocabulary {
     if !projects.iter().any(|loaded| loaded.project.motion().is_rotary()) {
         return Vocabulary::default();
     }
@@ -50,17 +49,16 @@ fn texts_of_user(loaded: &Loaded, project: &Project) -> Vec<String> {
     texts
 }
 
-/// An answer about projects of one motion, as that has it.
-pub(crate) fn said(answer: Answer, projects: &[Loaded]) -> Answer {
-    let words = vocabulary_of(projects);
-    if words.is_plain() {
-        return answer;
-    }
-    Answer {
-        text: lines::said(&answer.text, &words),
-        json: json::said(&answer.json, &words),
-        files: answer.files.into_iter().map(|file| said_in(file, &words)).collect(),
-        affirmative: answer.affirmative,
+/// What is said to programs of projects of one motion, as that has it.
+pub(crate) fn object(object: Object, words: &Vocabulary) -> Object {
+    if words.is_plain() { object } else { json::said(object, words) }
+}
+
+/// Pages, drawings and tables, as the motion has them.
+pub(crate) fn files(files: Vec<OutputFile>, words: &Vocabulary) -> Vec<OutputFile> {
+    match words.is_plain() {
+        true => files,
+        false => files.into_iter().map(|file| said_in(file, words)).collect(),
     }
 }
 

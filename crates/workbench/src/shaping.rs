@@ -5,5 +5,6 @@ mod document;
 
 pub use phea_engineering::shaping::*;
 
-pub use answer::{SHAPED_PROJECT, files, json};
+pub(crate) use answer::body;
+pub use answer::{SHAPED_PROJECT, files};
 pub(crate) use document::document;

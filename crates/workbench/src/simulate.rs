@@ -10,7 +10,7 @@ mod together;
 
 pub use phea_engineering::simulate::*;
 
-pub(crate) use answer::{body, compare_json, frequency_json, json};
+pub(crate) use answer::{body, comparison_body, frequency_body};
 pub(crate) use document::{
     adjustment_sentence, cause_words, coarse_sentence, comparison, document, gas_sentence, headline,
     measured, metrics_row, occurrence_sentences, published, published_row, windows,

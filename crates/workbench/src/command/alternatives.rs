@@ -48,7 +48,7 @@ pub(super) fn alternatives_answer(
     let found = judge(source, loaded, catalogues, &request.read()?, watch)?;
     Ok(Told {
         document: alternatives::output(&found),
-        json: alternatives::json(loaded, &found),
+        body: alternatives::body(&found),
         files: if request.files { alternatives::files(&found) } else { vec![] },
         affirmative: found.is_complete(),
     })

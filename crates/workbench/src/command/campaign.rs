@@ -50,7 +50,7 @@ pub fn campaign_watched(
         CampaignRuns::All(wanted) => wanted,
         CampaignRuns::One(run) => {
             let told = one(source, loaded, catalogues, (&plan, run), destination, watch)?;
-            return Ok(told.print(loaded));
+            return Ok(told.print("campaign", std::slice::from_ref(loaded)));
         }
     };
     let rows = campaign::campaign(&plan, wanted, ledger, watch)?;
@@ -63,11 +63,11 @@ pub fn campaign_watched(
     };
     let told = Told {
         document: campaign::document(&plan, (wanted, request.files), rows.len(), &summary),
-        json: campaign::json(loaded, &plan, wanted, rows.len(), &summary),
+        body: campaign::body(&plan, wanted, rows.len(), &summary),
         files,
         affirmative: complete,
     };
-    Ok(told.print(loaded))
+    Ok(told.print("campaign", std::slice::from_ref(loaded)))
 }
 
 /// One run: its numbers as settings of the project, and the complete output of `simulate` with
@@ -91,7 +91,7 @@ fn one(
     let runs = simulate_into(source, &Setup::new(&drawn.project)?, output, watch)?;
     Ok(Told {
         document: campaign::run_document(&draw, &settings, &drawn, &runs),
-        json: campaign::run_json(loaded, (plan, &draw), &settings, (&drawn, &runs)),
+        body: campaign::run_body((plan, &draw), &settings, (&drawn, &runs)),
         files: simulate::files(&drawn, &runs),
         affirmative: runs.iter().all(|run| run.stopped().is_none()),
     })

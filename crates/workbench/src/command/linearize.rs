@@ -17,7 +17,7 @@ pub(super) fn linearize_answer(loaded: &Loaded) -> Result<Told, CommandError> {
     let linearization = linearized(loaded)?;
     Ok(Told {
         document: linearize::output(loaded, &linearization),
-        json: linearize::json(loaded, &linearization),
+        body: linearize::body(loaded, &linearization),
         files: linearize::files(&linearization),
         affirmative: true,
     })
@@ -36,7 +36,7 @@ pub(super) fn swept_answer(
     files.extend(picture_files(&[linearize::sweep_figure(&swept)]));
     Ok(Told {
         document: linearize::sweep_document(&swept),
-        json: linearize::json_swept(loaded, &linearization, &swept),
+        body: linearize::body_swept(loaded, &linearization, &swept),
         files,
         affirmative: true,
     })

@@ -7,8 +7,8 @@ use crate::project::Loaded;
 use crate::quantity::{ANGULAR_FREQUENCY, Dimension, FORCE, VOLTAGE};
 use crate::setup::Setup;
 use crate::simulate::{
-    FrequencyRequest, RunOutput, ScenarioRun, document, figure_files, files, frequency_document,
-    frequency_files, frequency_json, frequency_pictures, frequency_response, json, simulate_checked,
+    FrequencyRequest, RunOutput, ScenarioRun, body, document, figure_files, files, frequency_body,
+    frequency_document, frequency_files, frequency_pictures, frequency_response, simulate_checked,
     simulate_into,
 };
 use crate::source::{Destination, Source};
@@ -87,7 +87,7 @@ pub(super) fn simulate_answer(
     let all = runs.len() == loaded.project.scenarios.len();
     Ok(Told {
         document: document(loaded, &runs),
-        json: json(loaded, &runs),
+        body: body(loaded, &runs),
         files: written,
         affirmative: all && runs.iter().all(|run: &ScenarioRun| run.stopped().is_none()),
     })
@@ -107,7 +107,7 @@ fn frequency_answer(
     }
     Ok(Told {
         document: frequency_document(&found),
-        json: frequency_json(loaded, &found),
+        body: frequency_body(loaded, &found),
         files: written,
         affirmative: found.is_settled(),
     })

@@ -7,22 +7,17 @@ use super::{
     AgreementBand, AskedImpedance, Linearization, LinkagePlace, PortView, ReductionDifference, Sweep,
     WITHIN_PERCENT, models, stiffness_sentence,
 };
-use crate::answer::{self, Csv, Json, Object, OutputFile, quoted};
+use crate::answer::{Csv, Json, Object, OutputFile, quoted};
 use crate::caveat::of_models;
 use crate::project::Loaded;
 
-/// The JSON object of `linearize`.
-pub fn json(loaded: &Loaded, linearization: &Linearization) -> String {
-    answer::json("linearize", loaded, body(loaded, linearization))
-}
-
 /// The same with the results of a sweep.
-pub(crate) fn json_swept(loaded: &Loaded, linearization: &Linearization, sweep: &Sweep) -> String {
-    let body = body(loaded, linearization).with("swept", head(sweep)).with("sweep", rows(sweep));
-    answer::json("linearize", loaded, body)
+pub(crate) fn body_swept(loaded: &Loaded, linearization: &Linearization, sweep: &Sweep) -> Object {
+    body(loaded, linearization).with("swept", head(sweep)).with("sweep", rows(sweep))
 }
 
-fn body(loaded: &Loaded, linearization: &Linearization) -> Object {
+/// What `linearize` says to programs.
+pub(crate) fn body(loaded: &Loaded, linearization: &Linearization) -> Object {
     let plant = &linearization.plant;
     let poles = Object::new()
         .with("plant", plant.command.poles())
