@@ -8,7 +8,7 @@ use std::process::ExitCode;
 use phea_workbench::answer::{Answer, OutputFile};
 use phea_workbench::audit::{CERTIFICATE_FILE, check_certificate};
 use phea_workbench::command::{
-    self, AlternativesRequest, CampaignRequest, CommandError, FrequencyOptions, Request, SimulateRequest,
+    self, AlternativesRequest, CommandError, FrequencyOptions, Request, SimulateRequest,
 };
 use phea_workbench::design::DESIGNED_PROJECT;
 use phea_workbench::linearize::SweepRequest;
@@ -27,24 +27,24 @@ pub(crate) fn run(arguments: Arguments) -> ExitCode {
     let outcome = match arguments.command {
         Command::New { folder } => new(&folder),
         Command::Schema { out } => schema(out.as_deref()),
-        Command::Check(common) => on_project(&common, &Request::Check),
-        Command::Size { common, gain, length } => on_project(&common, &Request::Size { gain, length }),
-        Command::Linearize { common, sweep: None, .. } => on_project(&common, &Request::Linearize),
-        Command::Linearize { common, sweep: Some(range), points } => {
-            on_project(&common, &Request::LinearizeSwept(SweepRequest { range, points }))
+        Command::Check(common) => on_project(&common, &Request::Check, None),
+        Command::Size { common, gain, length } => on_project(&common, &Request::Size { gain, length }, None),
+        Command::Linearize { common, sweep, points } => {
+            let sweep = sweep.map(|range| SweepRequest { range, points });
+            on_project(&common, &Request::Linearize { sweep }, None)
         }
         Command::Verify { common, on_machine, prove, certificate } => {
-            let request = verification(prove || certificate.is_some(), on_machine);
-            on_project_saving(&common, &request, certificate.as_deref())
+            let request = Request::Verify { proof: prove || certificate.is_some(), on_machine };
+            on_project(&common, &request, certificate.as_deref())
         }
         Command::CheckCertificate { file, json } => told(json, checked(&file)),
         Command::Shape { common, changes, prefilter, save } => {
             let shaped = if prefilter { Shaped::Prefilter } else { Shaped::Controller };
-            on_project_saving(&common, &Request::Shape { shaped, changes: changes.0 }, save.as_deref())
+            on_project(&common, &Request::Shape { shaped, changes: changes.0 }, save.as_deref())
         }
         Command::Design { common, seed, save, no_repair } => {
             let request = Request::Design { seed, stages: common.out.is_some(), repair: !no_repair };
-            on_project_saving(&common, &request, save.as_deref())
+            on_project(&common, &request, save.as_deref())
         }
         Command::Simulate {
             common,
@@ -57,48 +57,33 @@ pub(crate) fn run(arguments: Arguments) -> ExitCode {
             check,
         } => {
             let options = FrequencyOptions { frequencies, amplitude, reference_amplitude };
-            let request = Request::SimulateAs(SimulateRequest {
+            let request = Request::Simulate(SimulateRequest {
                 table: table.unwrap_or_default(),
                 figures: common.out.is_some() && !no_figures,
                 frequency_response: frequency_response.then_some(options),
                 check,
             });
-            on_project(&common, &request)
+            on_project(&common, &request, None)
         }
-        Command::Compare(several) => on_projects(&several),
+        Command::Compare(several) => told(several.json, compared(&several)),
         Command::Alternatives { common, front, sweep, points, frequencies } => {
             let files = common.out.is_some();
             let request = AlternativesRequest { files, front, sweep, points, frequencies };
-            on_project(&common, &Request::Alternatives(request))
+            on_project(&common, &Request::Alternatives(request), None)
         }
         Command::Campaign { common, runs, seed, shard, run, threads } => {
-            match campaign::request(runs, seed, shard.as_deref(), run, (threads, common.out.is_some())) {
-                Ok(request) => on_campaign(&common, &request),
-                Err(message) => Err(Failure::wrong_input(format!("error: {message}"))),
-            }
+            campaign::request(runs, seed, shard.as_deref(), run, (threads, common.out.is_some()))
+                .map_err(|message| Failure::wrong_input(format!("error: {message}")))
+                .and_then(|request| told(common.json, campaign::answered(&common, &request)))
         }
-        Command::Bench(common) => on_project(&common, &Request::Bench),
+        Command::Bench(common) => on_project(&common, &Request::Bench, None),
         Command::Identify(recorded) => told(recorded.json, identify::answered(&recorded)),
         Command::Report { common, alternatives } => {
-            on_project(&common, &report_request(&common, alternatives))
+            let files = common.out.is_some();
+            on_project(&common, &Request::Report { files, alternatives }, None)
         }
     };
     ended(outcome)
-}
-
-fn verification(prove: bool, on_machine: bool) -> Request {
-    match (prove, on_machine) {
-        (true, on_machine) => Request::VerifyProven { on_machine },
-        (false, true) => Request::VerifyOnMachine,
-        (false, false) => Request::Verify,
-    }
-}
-
-fn report_request(common: &Common, alternatives: bool) -> Request {
-    if alternatives {
-        return Request::ReportOfAlternatives { files: common.out.is_some() };
-    }
-    if common.out.is_some() { Request::Report } else { Request::Page }
 }
 
 /// An invalid command line, or one that requests help.
@@ -161,12 +146,9 @@ fn checked(path: &Path) -> Result<(Answer, Vec<PathBuf>), Failure> {
     Ok((answer, vec![]))
 }
 
-fn on_project(common: &Common, request: &Request) -> Result<u8, Failure> {
-    on_project_saving(common, request, None)
-}
-
-/// The same, the designed or shaped project or the certificate written to a file of its own.
-fn on_project_saving(common: &Common, request: &Request, save: Option<&Path>) -> Result<u8, Failure> {
+/// Answers a request on a project; the designed or shaped project or the certificate is written to
+/// a file of its own too where one is named.
+fn on_project(common: &Common, request: &Request, save: Option<&Path>) -> Result<u8, Failure> {
     told(common.json, answered(common, request, save))
 }
 
@@ -186,16 +168,7 @@ fn told(json: bool, outcome: Result<(Answer, Vec<PathBuf>), Failure>) -> Result<
     }
 }
 
-/// A campaign, its table kept in the folder for files.
-fn on_campaign(common: &Common, asked: &CampaignRequest) -> Result<u8, Failure> {
-    told(common.json, campaign::answered(common, asked))
-}
-
 /// Several projects in one answer.
-fn on_projects(several: &Several) -> Result<u8, Failure> {
-    told(several.json, compared(several))
-}
-
 fn compared(several: &Several) -> Result<(Answer, Vec<PathBuf>), Failure> {
     let request = Request::Compare;
     let paths = several.projects.iter().map(|path| path.to_string_lossy());
@@ -239,10 +212,7 @@ fn answered(
     let mut line = ProgressLine::default();
     // commands that can return their best result so far are asked to stop; all others have nothing
     // to save
-    let keeps = matches!(
-        request,
-        Request::Design { .. } | Request::Simulate | Request::SimulateAs(_) | Request::Alternatives(_)
-    );
+    let keeps = matches!(request, Request::Design { .. } | Request::Simulate(_) | Request::Alternatives(_));
     let interruption = keeps.then(Interruption::listen);
     let tables = common.out.as_deref().map(Folder::new);
     let destination = tables.as_ref().map(|tables| tables as &dyn Destination);
@@ -313,7 +283,7 @@ fn write_files(common: &Common, request: &Request, answer: &Answer) -> Result<Ve
     if let Some(folder) = &common.out {
         return write(folder, &answer.files);
     }
-    if !matches!(request, Request::Page | Request::ReportOfAlternatives { .. }) {
+    if !matches!(request, Request::Report { .. }) {
         return Ok(vec![]);
     }
     let stem = common.project.file_stem().unwrap_or_default().to_string_lossy();

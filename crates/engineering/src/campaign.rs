@@ -33,9 +33,10 @@ pub use workers::Effort;
 pub use ledger::campaign;
 pub use row::meaningful;
 
+use crate::csv;
 use crate::project::{self, Refusal};
 use crate::quantity;
-use crate::simulate::{self, SimulateError};
+use crate::simulate::{self, SimulateError, shortest_number};
 
 /// Why a valid project has no campaign.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -3,6 +3,7 @@
 use std::io::{self, Write};
 use std::sync::Arc;
 
+use crate::csv::Csv;
 use parquet::basic::{Repetition, Type as Physical};
 use parquet::data_type::DoubleType;
 use parquet::file::properties::WriterProperties;
@@ -59,7 +60,7 @@ const GROUP: usize = 65_536;
 pub struct NumberTable<W: Write + Send>(Writing<W>);
 
 enum Writing<W: Write + Send> {
-    Csv { sink: W, line: Vec<u8>, columns: usize },
+    Csv { sink: W, line: Csv, columns: usize },
     Parquet { file: Box<SerializedFileWriter<W>>, group: Vec<Vec<f64>> },
 }
 
@@ -71,8 +72,8 @@ impl<W: Write + Send> NumberTable<W> {
     pub fn new(mut sink: W, format: TableFormat, columns: &[&str]) -> io::Result<Self> {
         let writing = match format {
             TableFormat::Csv => {
-                writeln!(sink, "{}", columns.join(","))?;
-                Writing::Csv { sink, line: Vec::new(), columns: columns.len() }
+                sink.write_all(Csv::new(&columns.join(",")).text().as_bytes())?;
+                Writing::Csv { sink, line: Csv::default(), columns: columns.len() }
             }
             TableFormat::Parquet => {
                 let field = |name: &&str| {
@@ -108,14 +109,9 @@ impl<W: Write + Send> NumberTable<W> {
         match &mut self.0 {
             Writing::Csv { sink, line, .. } => {
                 line.clear();
-                for (column, value) in row.enumerate() {
-                    if column > 0 {
-                        line.push(b',');
-                    }
-                    push_number(line, value);
-                }
-                line.push(b'\n');
-                sink.write_all(line)
+                row.for_each(|value| push_number(line.cell(), value));
+                line.end_row();
+                sink.write_all(line.text().as_bytes())
             }
             Writing::Parquet { file, group } => {
                 for (column, value) in group.iter_mut().zip(row) {
@@ -169,12 +165,12 @@ fn write_group<W: Write + Send>(
 
 /// Appends the shortest text that reads back as the same number; nothing for a number that does not
 /// exist.
-pub(crate) fn push_number(text: &mut Vec<u8>, value: f64) {
+fn push_number(text: &mut String, value: f64) {
     if value.is_finite() {
         let mut buffer = zmij::Buffer::new();
         let digits = buffer.format_finite(value);
-        text.extend(digits.strip_suffix(".0").unwrap_or(digits).bytes());
+        text.push_str(digits.strip_suffix(".0").unwrap_or(digits));
     } else if !value.is_nan() {
-        text.extend(if value > 0.0 { "inf" } else { "-inf" }.bytes());
+        text.push_str(if value > 0.0 { "inf" } else { "-inf" });
     }
 }

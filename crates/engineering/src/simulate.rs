@@ -22,7 +22,7 @@ mod parts;
 mod record;
 mod run;
 mod saved;
-mod shortest_number;
+pub(crate) mod shortest_number;
 mod signal;
 mod sum;
 mod sums;

@@ -32,6 +32,7 @@ mod supply;
 mod tally;
 
 use metrics::{Cause, Metrics, Window};
+use phea_engineering::csv;
 use phea_engineering::simulate;
 use phea_engineering::simulate::ControlledMachine;
 use phea_project as project;

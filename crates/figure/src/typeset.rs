@@ -70,11 +70,43 @@ impl Level {
 /// assert_eq!(pieces("my_rig"), [("my_rig".to_string(), Line)]);
 /// ```
 pub fn pieces(content: &str) -> Vec<(String, Level)> {
+    let mut pieces = split(content, length_in_label);
+    for (text, level) in &mut pieces {
+        if *level != Level::Line {
+            *text = text.replace('-', "\u{2212}");
+        }
+    }
+    pieces
+}
+
+/// The pieces of an equation, which has no names of users: `_` and `^` take the next word with its
+/// sign, or what stands in parentheses, after any letter.
+///
+/// # Example
+/// ```
+/// use phea_figure::typeset::{pieces_of_equation, Level::*};
+/// assert_eq!(pieces_of_equation("beta_e"), [("beta".to_string(), Line), ("e".to_string(), Subscript)]);
+/// assert_eq!(pieces_of_equation("P^(1/n)"), [("P".to_string(), Line), ("(1/n)".to_string(), Superscript)]);
+/// ```
+pub fn pieces_of_equation(equation: &str) -> Vec<(String, Level)> {
+    split(equation, |_, _, rest| {
+        if rest.first() == Some(&'(') {
+            return rest.iter().position(|&c| c == ')').map_or(0, |end| end + 1);
+        }
+        let sign = usize::from(rest.first() == Some(&'-'));
+        sign + rest.iter().skip(sign).take_while(|c| c.is_alphanumeric()).count()
+    })
+}
+
+/// Letters that `_` or `^` takes, of those behind it, where no brace follows.
+type ScriptLength = fn(level: Level, before: &[char], rest: &[char]) -> usize;
+
+fn split(content: &str, length: ScriptLength) -> Vec<(String, Level)> {
     let letters: Vec<char> = content.chars().filter(|c| !c.is_control()).collect();
     let mut result: Vec<(String, Level)> = Vec::new();
     let mut index = 0;
     while let Some(&letter) = letters.get(index) {
-        if let Some((level, script, next)) = script_at(&letters, index) {
+        if let Some((level, script, next)) = script_at(&letters, index, length) {
             result.push((script, level));
             index = next;
         } else {
@@ -89,20 +121,28 @@ pub fn pieces(content: &str) -> Vec<(String, Level)> {
 }
 
 /// A sub- or superscript that starts at `index`: its level, its text and where the line goes on.
-fn script_at(letters: &[char], index: usize) -> Option<(Level, String, usize)> {
+fn script_at(letters: &[char], index: usize, length: ScriptLength) -> Option<(Level, String, usize)> {
     let level = match letters.get(index)? {
         '_' => Level::Subscript,
         '^' => Level::Superscript,
         _ => return None,
     };
     let rest = letters.get(index + 1..)?;
-    if rest.first() == Some(&'{') {
-        let length = rest.iter().position(|&c| c == '}')?;
-        let script: String = rest.get(1..length)?.iter().collect();
-        return (!script.is_empty()).then(|| (level, script.replace('-', "\u{2212}"), index + length + 2));
-    }
-    let length = match level {
-        Level::Subscript if is_symbol_before(letters, index) => {
+    let brace = rest.iter().position(|&c| c == '}').filter(|_| rest.first() == Some(&'{'));
+    let (from, to, taken) = match brace {
+        Some(end) => (1, end, end + 1),
+        None => {
+            let length = length(level, letters.get(..index)?, rest);
+            (0, length, length)
+        }
+    };
+    let script: String = rest.get(from..to)?.iter().collect();
+    (!script.is_empty()).then(|| (level, script, index + 1 + taken))
+}
+
+fn length_in_label(level: Level, before: &[char], rest: &[char]) -> usize {
+    match level {
+        Level::Subscript if is_symbol(before) => {
             rest.iter().take_while(|c| c.is_alphanumeric() || **c == '\'').count()
         }
         Level::Superscript => {
@@ -111,16 +151,14 @@ fn script_at(letters: &[char], index: usize) -> Option<(Level, String, usize)> {
             if digits == 0 { 0 } else { sign + digits }
         }
         _ => 0,
-    };
-    let script: String = rest.get(..length)?.iter().collect();
-    (length > 0).then(|| (level, script.replace('-', "\u{2212}"), index + 1 + length))
+    }
 }
 
-/// True when exactly one letter stands between the beginning of a word and `index`.
-fn is_symbol_before(letters: &[char], index: usize) -> bool {
-    let before = |back: usize| index.checked_sub(back).and_then(|i| letters.get(i));
-    before(1).is_some_and(|c| c.is_alphabetic())
-        && before(2).is_none_or(|c| !(c.is_alphanumeric() || matches!(c, '_' | '-')))
+/// True when exactly one letter stands between the beginning of a word and the end.
+fn is_symbol(before: &[char]) -> bool {
+    let mut back = before.iter().rev();
+    back.next().is_some_and(|c| c.is_alphabetic())
+        && back.next().is_none_or(|c| !(c.is_alphanumeric() || matches!(c, '_' | '-')))
 }
 
 /// Width of a marked-up line at a font size.

@@ -64,7 +64,7 @@ fn measured(name: &str, is_designed: bool, settings: &[&str]) -> Result<(), Fail
         prove_audit(&problem, &mut view, &mut |_| true)?;
         Ok(view)
     })?;
-    let request = Request::VerifyProven { on_machine: false };
+    let request = Request::Verify { proof: true, on_machine: false };
     let answer = command::answer(&source, &loaded, &[], &request)?;
     let file = answer.files.iter().find(|file| file.name == CERTIFICATE_FILE).ok_or("no certificate")?;
     let certificate = String::from_utf8(file.bytes.clone())?;

@@ -9,6 +9,6 @@ mod summary;
 
 pub use phea_engineering::alternatives::*;
 
-pub(crate) use answer::json;
-pub(crate) use document::{document, outside_words, text, told_first};
+pub(crate) use answer::body;
+pub(crate) use document::{document, output, outside_words, told_first};
 pub(crate) use files::{figures, files};

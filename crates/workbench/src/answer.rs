@@ -3,19 +3,17 @@
 //! Each command has one typed output; this module gives all of them the same envelope and the same
 //! treatment of numbers that do not exist.
 
-mod csv;
 mod number;
 mod object;
 mod pictures;
 mod recorded;
 
-use serde::Serialize;
-
 use crate::quantity::print_bare;
 pub use crate::quantity::significant;
-pub(crate) use csv::{Csv, quoted};
 pub use number::Number;
-pub(crate) use object::{Json, Object};
+pub(crate) use object::Json;
+pub use object::Object;
+pub(crate) use phea_engineering::csv::{Csv, quoted};
 pub use phea_engineering::number_table::{NumberTable, TableFormat};
 
 pub use crate::source::OutputFile;
@@ -42,41 +40,19 @@ pub struct Answer {
     pub affirmative: bool,
 }
 
-/// The keys of every JSON object in addition to those of the command.
-#[derive(Clone, Debug, Serialize)]
-struct Envelope<'a, Body> {
-    schema: u32,
-    version: &'static str,
-    command: &'static str,
-    title: &'a str,
-    project_sha256: &'a str,
-    settings: &'a [String],
-    catalogue_files: &'a [String],
-    /// Of a rig that turns: its torques are in N m and its angles in rad.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    motion: Option<&'static str>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    identified: Option<Object>,
-    #[serde(flatten)]
-    body: Body,
-}
-
-/// The JSON object of a command on a project.
-pub fn json<Body: Serialize>(command: &'static str, loaded: &Loaded, body: Body) -> String {
-    let envelope = Envelope {
-        schema: SCHEMA,
-        version: env!("CARGO_PKG_VERSION"),
-        command,
-        title: &loaded.project.title,
-        project_sha256: &loaded.sha256,
-        settings: &loaded.settings,
-        catalogue_files: &loaded.catalogue_files,
-        motion: loaded.project.motion().is_rotary().then_some("rotary"),
-        identified: loaded.recorded.as_ref().map(body_in_use),
-        body,
-    };
-    // Every output type has string keys and finite numbers by construction, so that nothing can fail here.
-    serde_json::to_string_pretty(&envelope).unwrap_or_else(|error| format!("{{\"error\": \"{error}\"}}"))
+/// The keys of every JSON object in front of those of the command.
+pub(crate) fn envelope(command: &'static str, loaded: &Loaded) -> Object {
+    Object::new()
+        .with("schema", SCHEMA)
+        .with("version", env!("CARGO_PKG_VERSION"))
+        .with("command", command)
+        .with("title", loaded.project.title.as_str())
+        .with("project_sha256", loaded.sha256.as_str())
+        .with("settings", loaded.settings.as_slice())
+        .with("catalogue_files", loaded.catalogue_files.as_slice())
+        // of a rig that turns: its torques are in N m and its angles in rad
+        .maybe("motion", loaded.project.motion().is_rotary().then_some("rotary"))
+        .maybe("identified", loaded.recorded.as_ref().map(body_in_use))
 }
 
 /// A number with this many significant digits as TOML writes it.

@@ -6,10 +6,10 @@ mod document;
 
 pub use phea_engineering::audit::*;
 
-pub(crate) use answer::json_on_machine;
+pub use answer::files;
+pub(crate) use answer::json;
 pub(crate) use answer::{body, stable};
-pub use answer::{files, json};
 pub(crate) use certificate::certificate_of;
 pub use certificate::{CERTIFICATE_FILE, CertificateError, check_certificate};
-pub use document::text;
-pub(crate) use document::{basis, document, proven, summary, text_on_machine};
+pub use document::output;
+pub(crate) use document::{basis, document, proven, summary};

@@ -12,9 +12,10 @@ use crate::line_test::KnownLine;
 use crate::project::IdentifiedUse;
 use crate::setup::Setup;
 
-pub use answer::{files, json};
-pub use document::text;
-pub(crate) use line::{line_files, line_text};
+pub(crate) use answer::body;
+pub use answer::files;
+pub(crate) use document::document;
+pub(crate) use line::line_files;
 
 /// What the tests leave out of the project, in sentences; none where nothing is left out.
 pub(crate) fn remarks(setup: &Setup<'_>) -> Vec<&'static str> {

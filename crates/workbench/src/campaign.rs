@@ -6,6 +6,6 @@ mod figures;
 
 pub use phea_engineering::campaign::*;
 
-pub(crate) use answer::{json, run_json};
-pub(crate) use document::{counted, lumps, metrics, run_text, text};
+pub(crate) use answer::{body, run_body};
+pub(crate) use document::{counted, document, lumps, metrics, run_document};
 pub(crate) use figures::{files, pictures};

@@ -11,6 +11,7 @@ mod refusal;
 mod response;
 mod schema;
 mod simulate;
+mod told;
 
 pub use crate::error::CommandError;
 pub use alternatives::AlternativesRequest;
@@ -31,17 +32,17 @@ use phea_qft::family::Family;
 use phea_qft::verification::Verdict;
 
 use crate::alternatives::{AlternativesOptions as AskedOfAlternatives, judge};
-use crate::answer::{self, Answer, Object};
+use crate::answer::{Answer, Object};
 use crate::audit::{self, CERTIFICATE_FILE, audit_project, certificate_of, outside, prove_audit};
 use crate::bench;
 use crate::caveat::caveats;
 use crate::derived::{self, derive};
 use crate::design::{self, design_and_repair, design_project};
+use crate::document::Document;
 use crate::family::{family, visited_box};
-use crate::identify::{heading_in_use, in_use};
+use crate::identify::in_use;
 use crate::line_test::line_runs;
 use crate::linearize::SweepRequest;
-use crate::motion;
 use crate::project::Loaded;
 use crate::quantity::{self, LENGTH, VOLTAGE_PER_FORCE};
 use crate::report::report_beside;
@@ -57,6 +58,7 @@ use crate::trial::{Agreement, tried};
 use alternatives::{alternatives_answer, read_alternatives};
 use linearize::{linearize_answer, swept_answer};
 use simulate::simulate_answer;
+use told::Told;
 
 /// A request on a project.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -71,16 +73,15 @@ pub enum Request {
         length: Option<String>,
     },
     /// Linear models.
-    Linearize,
-    /// The same over a range of one number of the project.
-    LinearizeSwept(SweepRequest),
+    Linearize {
+        /// A range of one number of the project, over which they are followed too.
+        sweep: Option<SweepRequest>,
+    },
     /// The audit of the given controller.
-    Verify,
-    /// The same, tried on the nonlinear machine.
-    VerifyOnMachine,
-    /// The audit with a proof, tried on the machine or not.
-    VerifyProven {
-        /// Whether it is.
+    Verify {
+        /// Whether it is proven.
+        proof: bool,
+        /// Whether it is tried on the nonlinear machine.
         on_machine: bool,
     },
     /// Shaping by hand, elements changed in order.
@@ -99,10 +100,8 @@ pub enum Request {
         /// Whether the design continues if the machine contradicts it.
         repair: bool,
     },
-    /// The nonlinear machine through every scenario, its tables as text.
-    Simulate,
-    /// The same with the requested files, or the machine's frequency response.
-    SimulateAs(SimulateRequest),
+    /// The nonlinear machine through every scenario, or its frequency response.
+    Simulate(SimulateRequest),
     /// The same scenarios of this project and others side by side.
     Compare,
     /// The project and each of its alternatives: sized, designed, audited and driven.
@@ -111,14 +110,12 @@ pub enum Request {
     Campaign(CampaignRequest),
     /// Static tests of the servovalve.
     Bench,
-    /// The page with every figure as a file.
-    Report,
-    /// The page alone.
-    Page,
-    /// The report with a chapter on the alternatives of the project, each of which is designed for.
-    ReportOfAlternatives {
-        /// Whether every figure is wanted as a file.
+    /// The page with every chapter.
+    Report {
+        /// Whether every figure is wanted as a file too.
         files: bool,
+        /// Whether it has a chapter on the alternatives of the project, each of which is designed for.
+        alternatives: bool,
     },
 }
 
@@ -128,16 +125,16 @@ impl Request {
         match self {
             Request::Check => "check",
             Request::Size { .. } => "size",
-            Request::Linearize | Request::LinearizeSwept(_) => "linearize",
-            Request::Verify | Request::VerifyOnMachine | Request::VerifyProven { .. } => "verify",
+            Request::Linearize { .. } => "linearize",
+            Request::Verify { .. } => "verify",
             Request::Shape { .. } => "shape",
             Request::Design { .. } => "design",
-            Request::Simulate | Request::SimulateAs(_) => "simulate",
+            Request::Simulate(_) => "simulate",
             Request::Compare => "compare",
             Request::Alternatives(_) => "alternatives",
             Request::Campaign(_) => "campaign",
             Request::Bench => "bench",
-            Request::Report | Request::Page | Request::ReportOfAlternatives { .. } => "report",
+            Request::Report { .. } => "report",
         }
     }
 }
@@ -147,39 +144,25 @@ pub use phea_dynamics::watch::{Progress, Watch};
 /// Answers a request on a project; `catalogues` are the user's files and folders.
 ///
 /// # Errors
-/// [`CommandError`] if the project lacks something that the command needs, or something in it
-/// cannot be computed.
+/// Those of [`answer_into`] but those of writing.
 pub fn answer(
     source: &dyn Source,
     loaded: &Loaded,
     catalogues: &[String],
     request: &Request,
 ) -> Result<Answer, CommandError> {
-    answer_watched(source, loaded, catalogues, request, &mut |_| true)
-}
-
-/// The same, reporting its progress.
-///
-/// # Errors
-/// Those of [`answer()`], and [`ProcedureError::Stopped`].
-pub fn answer_watched(
-    source: &dyn Source,
-    loaded: &Loaded,
-    catalogues: &[String],
-    request: &Request,
-    watch: Watch<'_>,
-) -> Result<Answer, CommandError> {
     let held = HeldFiles::default();
-    let mut answer = answer_into(source, loaded, catalogues, request, Some(&held), watch)?;
+    let mut answer = answer_into(source, loaded, catalogues, request, Some(&held), &mut |_| true)?;
     answer.files.splice(0..0, held.into_files());
     Ok(answer)
 }
 
-/// The same, the tables of simulated scenarios written to a destination as they come, or nowhere: all other files are in the
-/// answer.
+/// The same, reporting its progress. The tables of simulated scenarios are written to a destination
+/// as they come, if there is one; all other files are in the answer.
 ///
 /// # Errors
-/// Those of [`answer_watched`], and where a table cannot be written.
+/// [`CommandError`] if the project lacks something that the command needs, something in it cannot be
+/// computed, or a table cannot be written; [`ProcedureError::Stopped`].
 pub fn answer_into(
     source: &dyn Source,
     loaded: &Loaded,
@@ -189,33 +172,17 @@ pub fn answer_into(
     watch: Watch<'_>,
 ) -> Result<Answer, CommandError> {
     motor::refuse(loaded, request)?;
-    let answer = answer_of(source, loaded, catalogues, request, destination, watch);
-    answer.map_err(|error| match &error {
-        CommandError::Procedure(procedure) => procedure.late().map_or(error, |late| {
-            ProcedureError::Catalogue(crate::project::refused(source, loaded, &late)).into()
-        }),
-        _ => error,
-    })
-}
-
-fn answer_of(
-    source: &dyn Source,
-    loaded: &Loaded,
-    catalogues: &[String],
-    request: &Request,
-    destination: Option<&dyn Destination>,
-    watch: Watch<'_>,
-) -> Result<Answer, CommandError> {
     // these three know their own way: the bench tests the declared valve, whose recordings may not be
     // there yet
-    if matches!(request, Request::Bench | Request::Compare | Request::Campaign(_)) {
-        return answer_as_read(source, loaded, catalogues, request, destination, watch);
-    }
-    let identified = with_recordings(source, loaded, watch)?;
-    let loaded = identified.as_ref().unwrap_or(loaded);
-    let answer = answer_as_read(source, loaded, catalogues, request, destination, watch)?;
-    let text = format!("{}{}", heading_in_use(loaded), answer.text);
-    Ok(motion::said(Answer { text, ..answer }, loaded))
+    let identified = match request {
+        Request::Bench | Request::Compare | Request::Campaign(_) => Ok(None),
+        _ => with_recordings(source, loaded, watch),
+    };
+    let answer = identified.and_then(|identified| {
+        let loaded = identified.as_ref().unwrap_or(loaded);
+        answer_as_read(source, loaded, catalogues, request, destination, watch)
+    });
+    answer.map_err(|error| error.as_refusal(source, loaded))
 }
 
 /// The project with its valve as identified from its recordings, where it asks for that.
@@ -235,42 +202,38 @@ fn answer_as_read(
     destination: Option<&dyn Destination>,
     watch: Watch<'_>,
 ) -> Result<Answer, CommandError> {
-    match request {
+    let told = match request {
+        Request::Compare => return compare_watched(source, std::slice::from_ref(loaded), false, watch),
+        Request::Campaign(asked) => {
+            return campaign_watched(source, loaded, catalogues, asked, (None, destination), watch);
+        }
         Request::Check => check(source, loaded, catalogues),
         Request::Size { gain, length } => {
             let question = question(gain.as_deref(), length.as_deref())?;
             size_answer(source, loaded, catalogues, question)
         }
-        Request::Linearize => linearize_answer(loaded),
-        Request::LinearizeSwept(asked) => swept_answer(source, loaded, catalogues, asked),
-        Request::Verify => verify_answer(source, loaded, [false, false], watch),
-        Request::VerifyOnMachine => verify_answer(source, loaded, [false, true], watch),
-        Request::VerifyProven { on_machine } => verify_answer(source, loaded, [true, *on_machine], watch),
+        Request::Linearize { sweep: None } => linearize_answer(loaded),
+        Request::Linearize { sweep: Some(asked) } => swept_answer(source, loaded, catalogues, asked),
+        Request::Verify { proof, on_machine } => verify_answer(source, loaded, *proof, *on_machine, watch),
         Request::Shape { shaped, changes } => {
             let shaping = shape(source, loaded, *shaped, changes, watch)?;
-            let (text, json) = (shaping::text(&shaping), shaping::json(loaded, &shaping));
-            Ok(Answer { text, json, files: shaping::files(&shaping), affirmative: true })
+            let (document, body) = (shaping::document(&shaping), shaping::body(&shaping));
+            Ok(Told { document, body, files: shaping::files(&shaping), affirmative: true })
         }
         Request::Design { seed, stages, repair } => {
-            design_answer((source, loaded), *seed, [*stages, *repair], watch)
+            design_answer(source, loaded, *seed, *stages, *repair, watch)
         }
-        Request::Simulate => simulate_answer(source, loaded, &SimulateRequest::default(), destination, watch),
-        Request::SimulateAs(asked) => simulate_answer(source, loaded, asked, destination, watch),
-        Request::Compare => compare_watched(source, std::slice::from_ref(loaded), false, watch),
+        Request::Simulate(asked) => simulate_answer(source, loaded, asked, destination, watch),
         Request::Alternatives(asked) => alternatives_answer(source, loaded, catalogues, asked, watch),
-        Request::Campaign(asked) => {
-            campaign_watched(source, loaded, catalogues, asked, (None, destination), watch)
-        }
         Request::Bench => bench_answer(loaded, watch),
-        Request::Report => report_answer(source, loaded, catalogues, [false, true], watch),
-        Request::Page => report_answer(source, loaded, catalogues, [false, false], watch),
-        Request::ReportOfAlternatives { files } => {
-            report_answer(source, loaded, catalogues, [true, *files], watch)
+        Request::Report { files, alternatives } => {
+            report_answer(source, loaded, catalogues, *files, *alternatives, watch)
         }
-    }
+    }?;
+    Ok(told.print(request.name(), std::slice::from_ref(loaded)))
 }
 
-fn check(source: &dyn Source, loaded: &Loaded, catalogues: &[String]) -> Result<Answer, CommandError> {
+fn check(source: &dyn Source, loaded: &Loaded, catalogues: &[String]) -> Result<Told, CommandError> {
     let of_alternatives = read_alternatives(source, loaded, catalogues)?;
     let setup = Setup::new(&loaded.project)?;
     let derived = match derive(&setup) {
@@ -281,19 +244,26 @@ fn check(source: &dyn Source, loaded: &Loaded, catalogues: &[String]) -> Result<
     };
     specifications(&loaded.project)?;
     let wishes = wishes(&loaded.project)?;
-    let in_time = specification::text(&wishes);
     let visited = visited_box(&setup)?;
-    let in_words = |ranges: &Vec<_>| format!("{}\n", derived::visited_text(&loaded.project, ranges));
-    let boxed = visited.as_ref().map_or(String::new(), in_words);
     let told: Vec<String> = told_first(&setup).into_iter().chain(of_alternatives).collect();
-    let first: String = told.iter().map(|sentence| format!("warning: {sentence}\n")).collect();
-    let text = match derived.as_slice() {
-        [] => format!("{first}{in_time}The project is valid. {}\n", without_derived(source, &setup)?),
-        derived => format!("{first}{}\n{boxed}{in_time}The project is valid.\n", derived::text(derived)),
-    };
+    let mut document = Document::default();
+    document.warnings(told.clone());
+    if !derived.is_empty() {
+        document.append(derived::document(&derived));
+        document.gap();
+    }
+    if let Some(ranges) = visited.as_ref().filter(|_| !derived.is_empty()) {
+        document.append(derived::visited(&loaded.project, ranges));
+        document.gap();
+    }
+    document.append(specification::document(&wishes));
+    document.line(match derived.is_empty() {
+        true => format!("The project is valid. {}", without_derived(source, &setup)?),
+        false => "The project is valid.".to_string(),
+    });
     let files = derived::files(&derived);
-    let json = derived::json(loaded, &derived, visited.as_deref(), &wishes, told);
-    Ok(Answer { text, json, files, affirmative: true })
+    let body = derived::body(loaded, &derived, visited.as_deref(), &wishes, told);
+    Ok(Told { document, body, files, affirmative: true })
 }
 
 /// Effects that no verdict on the linear loop includes, and parameters of the rig outside its own
@@ -347,14 +317,14 @@ fn size_answer(
     loaded: &Loaded,
     catalogues: &[String],
     question: Question,
-) -> Result<Answer, CommandError> {
+) -> Result<Told, CommandError> {
     let setup = Setup::new(&loaded.project)?;
     let catalogue = crate::catalogue::load(source, catalogues).map_err(ProcedureError::Catalogue)?;
     let problem = sizing_problem(&setup, &catalogue)?;
     let sizing = size(&problem, question);
-    Ok(Answer {
-        text: sizing::text(&sizing),
-        json: sizing::json(loaded, &sizing),
+    Ok(Told {
+        document: sizing::document(&sizing, vec![]),
+        body: sizing::body(&sizing),
         files: sizing::files(&sizing),
         affirmative: sizing.best().is_some(),
     })
@@ -364,58 +334,61 @@ fn size_answer(
 fn verify_answer(
     source: &dyn Source,
     loaded: &Loaded,
-    [proven, on_machine]: [bool; 2],
+    proof: bool,
+    on_machine: bool,
     watch: Watch<'_>,
-) -> Result<Answer, CommandError> {
+) -> Result<Told, CommandError> {
     let setup = Setup::new(&loaded.project)?;
     let mut view = audit_project(source, &setup, watch)?;
-    if proven {
+    if proof {
         prove_audit(&robust_problem(source, &setup)?, &mut view, watch)?;
     }
     let mut files = audit::files(&view);
     files.extend(certificate_of(loaded, &view, CERTIFICATE_FILE));
     let is_met = view.audit.verdict == Verdict::Met;
     if !on_machine {
-        let (text, json) = (audit::text(&view), audit::json(loaded, &view));
-        return Ok(Answer { text, json, files, affirmative: is_met });
+        let (document, body) = (audit::output(&view, None), audit::body(&view));
+        return Ok(Told { document, body, files, affirmative: is_met });
     }
     let Some(trial) = tried(source, &setup, &robust_problem(source, &setup)?, &view, watch)? else {
         return Err(RigError::NoActuator.into());
     };
-    Ok(Answer {
-        text: audit::text_on_machine(&view, &trial),
-        json: audit::json_on_machine(loaded, &view, &trial),
+    Ok(Told {
+        document: audit::output(&view, Some(&trial)),
+        body: audit::body(&view).with("machine", crate::trial::body(&trial)),
         files,
         affirmative: is_met && trial.agreement() != Agreement::Contradicts,
     })
 }
 
-fn bench_answer(loaded: &Loaded, watch: Watch<'_>) -> Result<Answer, CommandError> {
+fn bench_answer(loaded: &Loaded, watch: Watch<'_>) -> Result<Told, CommandError> {
     let setup = Setup::new(&loaded.project)?;
     let runs = bench::bench(&setup, watch)?;
     let lines = line_runs(&setup, watch)?;
     let of_friction = bench::friction_runs(&setup, watch)?;
     let remarks = bench::remarks(&setup);
-    let text = bench::text(loaded, &remarks, &runs, &of_friction) + &bench::line_text(&lines);
+    let document = bench::document(loaded, &remarks, &runs, &of_friction, &lines);
     let files = bench::files(&runs, &of_friction).into_iter().chain(bench::line_files(&lines)).collect();
-    let json = bench::json(loaded, remarks, &runs, &lines, &of_friction);
-    Ok(Answer { text, json, files, affirmative: true })
+    let body = bench::body(remarks, &runs, &lines, &of_friction);
+    Ok(Told { document, body, files, affirmative: true })
 }
 
 fn design_answer(
-    (source, loaded): (&dyn Source, &Loaded),
+    source: &dyn Source,
+    loaded: &Loaded,
     seed: Option<u32>,
-    [stages, repair]: [bool; 2],
+    stages: bool,
+    repair: bool,
     watch: Watch<'_>,
-) -> Result<Answer, CommandError> {
+) -> Result<Told, CommandError> {
     let setup = Setup::new(&loaded.project)?;
     let view = match repair {
         true => design_and_repair(source, &setup, seed, watch)?,
         false => design_project(source, &setup, seed, watch)?,
     };
-    Ok(Answer {
-        text: design::text(loaded, &view)?,
-        json: design::json(loaded, &view)?,
+    Ok(Told {
+        document: design::output(loaded, &view)?,
+        body: design::body(&view)?,
         files: if stages { design::stage_files(loaded, &view, watch)? } else { design::files(loaded, &view) },
         affirmative: view.is_met() && view.agreement() != Agreement::Contradicts,
     })
@@ -442,26 +415,23 @@ pub fn compare_watched(
         let path = projects.get(index).map(|loaded| loaded.path.clone()).unwrap_or_default();
         CommandError::Compare { path, error }
     })?;
-    let answer = Answer {
-        text: format!(
-            "{}{}",
-            projects.iter().map(heading_in_use).collect::<String>(),
-            crate::simulate::compare_text(&comparison, projects)
-        ),
-        json: crate::simulate::compare_json(&comparison),
+    let told = Told {
+        document: crate::simulate::comparison(&comparison, projects),
+        body: crate::simulate::comparison_body(&comparison),
         files: if figures { crate::simulate::comparison_files(&comparison) } else { vec![] },
         affirmative: comparison.projects.len() == projects.len() && comparison.is_complete(),
     };
-    Ok(motion::said_of(answer, projects))
+    Ok(told.print("compare", projects))
 }
 
 fn report_answer(
     source: &dyn Source,
     loaded: &Loaded,
     catalogues: &[String],
-    [alternatives, files]: [bool; 2],
+    files: bool,
+    alternatives: bool,
     watch: Watch<'_>,
-) -> Result<Answer, CommandError> {
+) -> Result<Told, CommandError> {
     let setup = Setup::new(&loaded.project)?;
     let problem = match loaded.project.sizing {
         None => None,
@@ -481,12 +451,13 @@ fn report_answer(
     }
     let report = report_beside(source, loaded, (&setup, problem.as_ref()), judged.as_ref(), watch)?;
     let written = if files { report.files() } else { vec![report.page_file()] };
-    let text: String = report.summary.iter().map(|(name, value)| format!("{name}: {value}\n")).collect();
+    let mut document = Document::default();
+    report.summary.iter().for_each(|(name, value)| document.line(format!("{name}: {value}")));
     let body = Object::new()
         .each("summary", &report.summary, |(name, text)| {
             Object::new().with("name", *name).with("text", text.as_str())
         })
         .each("figures", &report.figures, |figure| figure.name.as_str())
         .with("decision", report.decision.json());
-    Ok(Answer { text, json: answer::json("report", loaded, body), files: written, affirmative: true })
+    Ok(Told { document, body, files: written, affirmative: true })
 }

@@ -5,7 +5,6 @@ mod document;
 
 pub use phea_engineering::derived::*;
 
-pub use answer::{files, json};
-pub(crate) use document::document;
-pub use document::text;
-pub(crate) use document::{replaced_sentences, replaced_table, visited_text};
+pub(crate) use answer::body;
+pub use answer::files;
+pub(crate) use document::{document, replaced_sentences, replaced_table, visited};

@@ -6,9 +6,8 @@ mod stages;
 
 pub use phea_engineering::design::*;
 
-pub(crate) use answer::body;
-pub use answer::json;
-pub use document::text;
+pub use answer::body;
+pub use document::output;
 pub(crate) use document::{costs, explanation_words, laws, side_by_side, status};
 pub(crate) use stages::bound_files;
 pub use stages::{files, stage_files};

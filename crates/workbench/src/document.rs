@@ -15,7 +15,7 @@ use crate::figure::Figure;
 
 /// Blocks in the order in which they are read.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Document {
+pub struct Document {
     blocks: Vec<Block>,
 }
 
@@ -23,6 +23,12 @@ pub(crate) struct Document {
 /// backticks is code.
 #[derive(Clone, Debug)]
 enum Block {
+    /// A sentence that stands before everything.
+    Warning(String),
+    /// A line by itself.
+    Line(String),
+    /// An empty line of a terminal.
+    Gap,
     /// Begins a section.
     Heading(String),
     /// The same, for which a terminal prints only an empty line.
@@ -58,6 +64,21 @@ enum Block {
 }
 
 impl Document {
+    /// Sentences that stand before everything.
+    pub(crate) fn warnings(&mut self, sentences: impl IntoIterator<Item = String>) {
+        self.blocks.extend(sentences.into_iter().map(Block::Warning));
+    }
+
+    /// A line by itself.
+    pub(crate) fn line(&mut self, text: impl Into<String>) {
+        self.blocks.push(Block::Line(text.into()));
+    }
+
+    /// An empty line of a terminal.
+    pub(crate) fn gap(&mut self) {
+        self.blocks.push(Block::Gap);
+    }
+
     /// Begins a section.
     pub(crate) fn heading(&mut self, title: impl Into<String>) {
         self.blocks.push(Block::Heading(title.into()));

@@ -3,8 +3,9 @@
 use phea_engineering::error::ProcedureError;
 use phea_engineering::identify::IdentifyError;
 
-use crate::project::Refusal;
+use crate::project::{Loaded, Refusal, refused};
 use crate::simulate::SimulateError;
+use crate::source::Source;
 
 /// Why a valid project has no answer.
 #[derive(Debug, thiserror::Error)]
@@ -54,6 +55,15 @@ impl CommandError {
         match error {
             IdentifyError::Stopped => CommandError::Procedure(ProcedureError::Stopped),
             error => CommandError::Identify(error),
+        }
+    }
+
+    /// The same error; where a name of the catalogue was looked for late, as the refusal of the project.
+    pub(crate) fn as_refusal(self, source: &dyn Source, loaded: &Loaded) -> CommandError {
+        let CommandError::Procedure(procedure) = &self else { return self };
+        match procedure.late() {
+            Some(late) => ProcedureError::Catalogue(refused(source, loaded, &late)).into(),
+            None => self,
         }
     }
 

@@ -9,8 +9,8 @@ mod files;
 pub use phea_engineering::friction::*;
 
 pub use answer::json;
+pub(crate) use document::document;
 pub(crate) use document::tell;
-pub use document::text;
 pub(crate) use figures::pictures;
 pub use files::files;
 

@@ -11,11 +11,11 @@ mod region;
 pub use phea_engineering::identify::*;
 
 pub use answer::{files, json};
-pub use document::text;
+pub(crate) use document::document;
 pub(crate) use document::{tell_coefficients, tell_signals};
 pub(crate) use figures::ValveFigures;
 pub use files::Read;
-pub(crate) use in_use::{heading_in_use, tell_in_use};
+pub(crate) use in_use::{in_use_above, tell_in_use};
 pub(crate) use numbers::tell as tell_numbers;
 pub use region::FoundRegion;
 pub(crate) use region::file;

@@ -1,7 +1,25 @@
 //! The output for the engineer: commands on a project, with the text, JSON, files and figures of
 //! their answers, and the report.
 //!
-//! A shell hands in text and bytes through [`source::Source`] and prints what an [`answer::Answer`] holds.
+//! A shell hands in text and bytes through [`source::Source`] and prints what an [`answer::Answer`]
+//! holds. [`command::answer_into`] is the way from one to the other:
+//!
+//! ```text
+//! command::Request, project::Loaded     what is asked, of which project
+//!   identify::in_use -> Loaded          read again with what its recordings tell
+//!   setup::Setup                        the rig, the controller, the sensor: the input of every procedure
+//!   engineering procedure -> values     ProjectAudit, Linearization, ScenarioRun, ...
+//!     X/document.rs -> document::Document   for people: blocks, tables of typed cells
+//!     X/answer.rs   -> answer::Object       for programs, in the envelope of answer::envelope
+//!     X/figures.rs  -> figure::Figure       drawn as SVG, as files and on the page
+//!     report.rs     -> chapters             Documents and Figures, one after another on a page
+//!   command::told::Told { document: Document, body: Object, files, affirmative }
+//!     printed below what recordings gave, of a rig that turns in its words (motion.rs)
+//! answer::Answer { text, json, files, affirmative }
+//! ```
+//!
+//! The module X of a procedure has the name of that procedure's module in `phea_engineering`, and
+//! exports its values beside their output, so that a caller finds both in one place.
 
 pub mod alternatives;
 pub mod answer;

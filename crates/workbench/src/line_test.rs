@@ -8,7 +8,7 @@ mod files;
 pub use phea_engineering::line_test::*;
 
 pub use answer::json;
-pub use document::text;
+pub(crate) use document::document;
 pub(crate) use figures::pictures;
 pub use files::files;
 

@@ -6,12 +6,12 @@ mod sweep_answer;
 
 pub use phea_engineering::linearize::*;
 
-pub use answer::{files, json};
-pub(crate) use answer::{json_swept, passivity as passivity_body};
-pub use document::text;
+pub use answer::files;
+pub(crate) use answer::{body, body_swept, passivity as passivity_body};
+pub(crate) use document::output;
 pub(crate) use document::{
     asked_sentence, asked_table, document, impedance_at_joint, linkage_table, models, passivity_sentence,
     root_list,
 };
-pub(crate) use sweep_answer::sweep_text;
+pub(crate) use sweep_answer::sweep_document;
 pub(crate) use sweep_answer::{sweep_figure, sweep_files};

@@ -2,11 +2,10 @@
 //! names, units and words. Procedures compute and write in the names of linear motion.
 
 mod json;
-mod lines;
 mod markup;
 
-use crate::answer::Answer;
-use crate::project::{Loaded, Project};
+use crate::answer::Object;
+use crate::project::{Loaded, Project, Signal};
 use crate::quantity::{MotionKind, Vocabulary};
 use crate::source::OutputFile;
 
@@ -16,7 +15,7 @@ pub(crate) fn vocabulary(loaded: &Loaded) -> Vocabulary {
 }
 
 /// The words for projects of one motion.
-fn vocabulary_of(projects: &[Loaded]) -> Vocabulary {
+pub(crate) fn vocabulary_of(projects: &[Loaded]) -> Vocabulary {
     if !projects.iter().any(|loaded| loaded.project.motion().is_rotary()) {
         return Vocabulary::default();
     }
@@ -24,40 +23,42 @@ fn vocabulary_of(projects: &[Loaded]) -> Vocabulary {
 }
 
 fn texts_of_user(loaded: &Loaded, project: &Project) -> Vec<String> {
-    let scenarios = project.scenarios.iter().map(|scenario| scenario.name.clone());
-    let lines = project.actuator.iter().flat_map(|actuator| [&actuator.line.a, &actuator.line.b]);
-    let hoses = lines.filter_map(|line| line.hose_name().map(str::to_string));
-    let alternatives = project.alternatives.iter().map(|one| one.name.clone());
-    let cases = project.load_cases.iter().map(|case| case.name.clone());
-    let valve = project.actuator.as_ref().and_then(|actuator| actuator.valve.model.clone());
-    let texts = [project.title.clone(), loaded.path.clone()];
-    texts
-        .into_iter()
-        .chain(scenarios)
-        .chain(hoses)
-        .chain(valve)
-        .chain(alternatives)
-        .chain(cases)
-        .chain(loaded.settings.clone())
-        .collect()
-}
-
-/// An answer about this project, as its motion has it.
-pub(crate) fn said(answer: Answer, loaded: &Loaded) -> Answer {
-    said_of(answer, std::slice::from_ref(loaded))
-}
-
-/// An answer about projects of one motion.
-pub(crate) fn said_of(answer: Answer, projects: &[Loaded]) -> Answer {
-    let words = vocabulary_of(projects);
-    if words.is_plain() {
-        return answer;
+    let mut texts = vec![project.title.clone(), loaded.path.clone()];
+    texts.extend(loaded.settings.clone());
+    if let Some(actuator) = &project.actuator {
+        let lines = [&actuator.line.a, &actuator.line.b];
+        texts.extend(lines.iter().filter_map(|line| line.hose_name().map(str::to_string)));
+        texts.extend(actuator.valve.model.clone());
     }
-    Answer {
-        text: lines::said(&answer.text, &words),
-        json: json::said(&answer.json, &words),
-        files: answer.files.into_iter().map(|file| said_in(file, &words)).collect(),
-        affirmative: answer.affirmative,
+    texts.extend(project.directions.iter().map(|direction| direction.name.clone()));
+    for scenario in &project.scenarios {
+        texts.push(scenario.name.clone());
+        texts.extend(scenario.measured.iter().map(|measured| measured.file.clone()));
+        for published in scenario.reference.iter().filter_map(Signal::published) {
+            texts.extend(published.source.iter().chain(&published.remark).cloned());
+        }
+    }
+    for one in &project.alternatives {
+        texts.push(one.name.clone());
+        texts.extend(one.settings());
+    }
+    for case in &project.load_cases {
+        texts.push(case.name.clone());
+        texts.extend(case.settings());
+    }
+    texts
+}
+
+/// What is said to programs of projects of one motion, as that has it.
+pub(crate) fn object(object: Object, words: &Vocabulary) -> Object {
+    if words.is_plain() { object } else { json::said(object, words) }
+}
+
+/// Pages, drawings and tables, as the motion has them.
+pub(crate) fn files(files: Vec<OutputFile>, words: &Vocabulary) -> Vec<OutputFile> {
+    match words.is_plain() {
+        true => files,
+        false => files.into_iter().map(|file| said_in(file, words)).collect(),
     }
 }
 

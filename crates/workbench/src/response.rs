@@ -9,7 +9,7 @@ mod files;
 pub use phea_engineering::response::*;
 
 pub use answer::json;
-pub use document::text;
+pub(crate) use document::document;
 pub(crate) use figures::pictures;
 pub use files::files;
 

@@ -1,9 +1,10 @@
 //! The output of `shape`: text, JSON, files and figures.
 
 mod answer;
-mod text;
+mod document;
 
 pub use phea_engineering::shaping::*;
 
-pub use answer::{SHAPED_PROJECT, files, json};
-pub use text::text;
+pub(crate) use answer::body;
+pub use answer::{SHAPED_PROJECT, files};
+pub(crate) use document::document;

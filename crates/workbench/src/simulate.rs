@@ -10,14 +10,14 @@ mod together;
 
 pub use phea_engineering::simulate::*;
 
-pub(crate) use answer::{body, compare_json, frequency_json, json};
+pub(crate) use answer::{body, comparison_body, frequency_body};
 pub(crate) use document::{
-    adjustment_sentence, cause_words, coarse_sentence, compare_text, gas_sentence, headline, measured,
-    metrics_row, occurrence_sentences, published, published_row, text, windows,
+    adjustment_sentence, cause_words, coarse_sentence, comparison, document, gas_sentence, headline,
+    measured, metrics_row, occurrence_sentences, published, published_row, windows,
 };
 pub(crate) use figures::{around, comparison_files, figure_files, laid_over, pictures, turns};
 pub(crate) use frequency::{
-    files as frequency_files, pictures as frequency_pictures, text as frequency_text,
+    document as frequency_document, files as frequency_files, pictures as frequency_pictures,
 };
 pub(crate) use metrics::{METRICS, OVERSHOOT, SETTLING, cells_of, metric_of};
 pub(crate) use together::{NamedRun, at_a_glance, close_ups, measured_together, together};

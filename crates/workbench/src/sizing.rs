@@ -5,6 +5,6 @@ mod document;
 
 pub use phea_engineering::sizing::*;
 
-pub use answer::{files, json};
+pub(crate) use answer::body;
+pub use answer::files;
 pub(crate) use document::document;
-pub use document::text;

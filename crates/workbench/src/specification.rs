@@ -4,4 +4,4 @@ mod answer;
 
 pub use phea_engineering::specification::*;
 
-pub(crate) use answer::{text, wish_row};
+pub(crate) use answer::{document, wish_row};

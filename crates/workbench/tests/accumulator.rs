@@ -99,7 +99,8 @@ fn stiffness_over_the_force_is_that_of_the_rig_under_this_force() {
 #[test]
 fn the_report_draws_the_stiffness_over_the_force() {
     let drawn = |text: &str| {
-        let answer = try_answer(text, &[], &[], &Request::Report).unwrap();
+        let answer =
+            try_answer(text, &[], &[], &Request::Report { files: true, alternatives: false }).unwrap();
         answer.files.iter().any(|file| file.name == "stiffness-force.svg")
     };
     assert!(drawn(BOTH) && !drawn(include_str!("../../project/tests/valid/telescopic.toml")));
@@ -108,7 +109,7 @@ fn the_report_draws_the_stiffness_over_the_force() {
 /// The example is as soft as the thesis wished, and a verdict names the forces beyond which its gas is shut off.
 #[test]
 fn a_verdict_names_the_forces_beyond_which_the_gas_is_shut_off() {
-    let told = json(GAS, &[], &[], &Request::Verify);
+    let told = json(GAS, &[], &[], &Request::Verify { proof: false, on_machine: false });
     let said = told.to_string();
     assert!(said.contains("line.accumulator is counted for small motions"), "{said}");
     assert!(said.contains("below -5.26 kN and above 4.95 kN"), "{said}");
@@ -135,7 +136,7 @@ fn families_have_the_stiffness_of_their_gas() {
 #[test]
 fn a_run_reports_where_the_gas_is_shut_off() {
     let scenario = "scenario=[{ name = \"push\", duration = \"2 s\", reference = [{ at = \"0.2 s\", force = \"7 kN\" }, { at = \"1 s\", force = \"0 N\" }] }]";
-    let ask = |settings: &[&str]| answer(GAS, settings, &[], &Request::Simulate).text;
+    let ask = |settings: &[&str]| answer(GAS, settings, &[], &Request::Simulate(Default::default())).text;
     let told = ask(&[scenario]);
     assert!(told.contains("the gas at chamber B is shut off"), "{told}");
     assert!(told.contains("the gas at chamber B is in use again"), "{told}");
@@ -167,7 +168,7 @@ fn what_shuts_off_the_gas_is_refused_at_its_place() {
         (error.line, error.message, error.help.unwrap())
     };
     let text = GAS.replacen("precharge_pressure = \"15 bar\"", "precharge_pressure = \"40 bar\"", 1);
-    for request in [Request::Check, Request::Verify] {
+    for request in [Request::Check, Request::Verify { proof: false, on_machine: false }] {
         let (line, message, help) = place(&text, &request);
         assert_eq!(line, line_of(&text, "precharge_pressure"), "{message}");
         assert!(message.contains("is above the") && help.contains("lower the precharge"), "{message} {help}");
@@ -187,7 +188,7 @@ fn a_verdict_tells_at_how_many_plants_the_gas_is_shut_off() {
         let range = format!(
             "uncertainty.\"line.accumulator.precharge_pressure\"={{ nominal = 15e5, minimum = 15e5, maximum = {most:e}, points = 3 }}"
         );
-        json(GAS, &[&range], &[], &Request::Verify).to_string()
+        json(GAS, &[&range], &[], &Request::Verify { proof: false, on_machine: false }).to_string()
     };
     // chamber B of the example stands below the 30 bar that one of three points of the range has
     let told = check(GAS, &[]);
@@ -206,7 +207,12 @@ fn sizing_refuses_gas() {
     assert!(said.contains("counts no gas"), "{said}");
     assert!(number(&json(HOSE, &[], &[], &size_request(None, None)), "candidates.0.length_m") > 0.0);
     // a report has a sentence in the place of the chapter
-    let found = answer(HOSE, &["specification=[]", "scenario=[]", gas], &[], &Request::Report);
+    let found = answer(
+        HOSE,
+        &["specification=[]", "scenario=[]", gas],
+        &[],
+        &Request::Report { files: true, alternatives: false },
+    );
     let page = String::from_utf8_lossy(&found.files[0].bytes).into_owned();
     assert!(page.contains("No hose is sized") && page.contains("counts no gas"));
 }

@@ -105,13 +105,16 @@ fn check_derives_the_stiffness_of_each_setting() {
 #[test]
 fn a_verdict_says_that_settings_stand() {
     let text = without_uncertainty(GAS);
-    let said = |more: &[&str]| json(&text, &[&[LIMIT], more].concat(), &[], &Request::Verify).to_string();
+    let said = |more: &[&str]| {
+        json(&text, &[&[LIMIT], more].concat(), &[], &Request::Verify { proof: false, on_machine: false })
+            .to_string()
+    };
     let moved = said(&[&at(MOVED, 0.25)]);
     assert!(moved.contains("line.accumulator.adjustment is counted at its setting of rest, 0.25"), "{moved}");
     let valve = said(&[&at(VALVE, 0.5)]);
     assert!(valve.contains("has no drop at rest"), "{valve}");
     assert!(!said(&[&accumulator("6 mL", "15 bar", "")]).contains("adjustment"));
-    let models = answer(&text, &[&at(VALVE, 0.5)], &[], &Request::Linearize).text;
+    let models = answer(&text, &[&at(VALVE, 0.5)], &[], &Request::Linearize { sweep: None }).text;
     assert!(models.contains("the valve of line.accumulator.adjustment is counted in the plant"), "{models}");
 }
 
@@ -126,7 +129,7 @@ fn a_simulation_tells_the_work_of_a_setting() {
     };
     let ramp = scenario("{ kind = \"ramp\", change = 0.75, start = \"0.05 s\", duration = \"0.1 s\" }");
     let run = |adjustment: &str, scenario: &str| {
-        json(&text, &[&at(adjustment, 0.25), scenario], &[], &Request::Simulate)
+        json(&text, &[&at(adjustment, 0.25), scenario], &[], &Request::Simulate(Default::default()))
     };
     let found = run(MOVED, &ramp);
     let scenario_of = &found["scenarios"][0];
@@ -140,14 +143,15 @@ fn a_simulation_tells_the_work_of_a_setting() {
     assert_eq!(switched["scenarios"][0]["adjustment_brought_j"], 0.0);
     let beyond = scenario("{ kind = \"sine\", amplitude = 0.8, frequency = \"5 Hz\" }");
     let asked = [at(MOVED, 0.25), beyond];
-    let refused =
-        try_answer(&text, &[&asked[0], &asked[1]], &[], &Request::Simulate).unwrap_err().to_string();
+    let refused = try_answer(&text, &[&asked[0], &asked[1]], &[], &Request::Simulate(Default::default()))
+        .unwrap_err()
+        .to_string();
     assert!(refused.contains("a setting stays from 0 to 1"), "{refused}");
 }
 
 /// A run of the rig with this accumulator and scenario: its answer and its rows.
 fn rows_of(settings: &[&str]) -> (serde_json::Value, Vec<std::collections::BTreeMap<String, f64>>) {
-    let found = answer(&without_uncertainty(GAS), settings, &[], &Request::Simulate);
+    let found = answer(&without_uncertainty(GAS), settings, &[], &Request::Simulate(Default::default()));
     let file = found.files.iter().find(|file| file.name == "moves.csv").unwrap();
     let text = String::from_utf8(file.bytes.clone()).unwrap();
     let mut lines = text.lines();
@@ -183,7 +187,13 @@ fn the_loss_of_switching_is_told() {
         }
     }
     assert!(told > 0.05 && (told / expected - 1.0).abs() < 1e-3, "{told} {expected}");
-    let text = answer(&without_uncertainty(GAS), &[&at(VALVE, 0.0), scenario], &[], &Request::Simulate).text;
+    let text = answer(
+        &without_uncertainty(GAS),
+        &[&at(VALVE, 0.0), scenario],
+        &[],
+        &Request::Simulate(Default::default()),
+    )
+    .text;
     assert!(text.contains("the valves between chambers and gas throttle"), "{text}");
 }
 

@@ -9,7 +9,7 @@ use crate::ask::{HOSE, answer, load, retracted_length, source};
 use crate::json_contract::unexplained;
 use phea_workbench::alternatives::{COLUMN_SENSES, asked as asked_of};
 use phea_workbench::answer::Answer;
-use phea_workbench::command::{AlternativesRequest, Request, answer_watched};
+use phea_workbench::command::{AlternativesRequest, Request, answer_into};
 use serde_json::Value;
 
 fn asked(files: bool) -> Request {
@@ -327,7 +327,7 @@ fn each_written_project_is_the_one_that_was_driven() {
     for (index, name) in ["as declared", "pipe"].into_iter().enumerate() {
         let file = found.files.iter().find(|file| file.name == format!("{name}.toml")).unwrap();
         let text = std::str::from_utf8(&file.bytes).unwrap();
-        let alone = parsed(&answer(text, &[], &[], &Request::Simulate));
+        let alone = parsed(&answer(text, &[], &[], &Request::Simulate(Default::default())));
         let columns = &json["alternatives"][index]["columns"]["scenarios"][0];
         let events = &alone["scenarios"][0]["events"];
         let peak = |event: usize, key: &str| events[event]["metrics"][key].as_f64().unwrap();
@@ -357,7 +357,7 @@ fn each_written_project_is_the_one_that_was_driven() {
 fn a_stop_keeps_what_is_finished() {
     let mut watch = |progress: phea_workbench::command::Progress| progress.share < 0.34;
     let stopped =
-        answer_watched(&source(LOOP), &load(LOOP, &[], &[]), &[], &asked(false), &mut watch).unwrap();
+        answer_into(&source(LOOP), &load(LOOP, &[], &[]), &[], &asked(false), None, &mut watch).unwrap();
     let json = parsed(&stopped);
     assert_eq!(json["alternatives"].as_array().unwrap().len(), 1);
     assert_eq!(json["not_reached"], serde_json::json!(["faster", "late"]));
@@ -372,10 +372,10 @@ fn the_report_names_or_judges_the_alternatives() {
         let file = found.files.into_iter().find(|file| file.name == "report.html").unwrap();
         String::from_utf8(file.bytes).unwrap()
     };
-    let named = page(&Request::Page);
+    let named = page(&Request::Report { files: false, alternatives: false });
     assert!(named.contains("<section id=\"alternatives\">") && named.contains("phea report --alternatives"));
     assert!(named.contains("faster, late") && !named.contains("delay tolerated</td>"));
-    let judged = page(&Request::ReportOfAlternatives { files: false });
+    let judged = page(&Request::Report { files: false, alternatives: true });
     assert!(judged.contains("<section id=\"alternatives\">") && judged.contains("delay tolerated</td>"));
     assert!(!judged.contains("phea report --alternatives"));
 }

@@ -93,7 +93,7 @@ pub(crate) fn check(project: &str, settings: &[&str]) -> Value {
 
 #[track_caller]
 pub(crate) fn linearize(project: &str, settings: &[&str]) -> Value {
-    json(project, settings, &[], &Request::Linearize)
+    json(project, settings, &[], &Request::Linearize { sweep: None })
 }
 
 #[track_caller]

@@ -117,7 +117,7 @@ fn what_is_not_counted_is_told_first() {
     ] {
         let view = audited(&satisfied(settings));
         assert_eq!(view.audit.verdict, Verdict::NotProven, "{key}");
-        let text = audit::text(&view);
+        let text = audit::output(&view, None).text();
         let first: Vec<&str> = text.lines().take(3).map(str::trim).collect();
         assert_eq!(first[0], "Verdict: not proven");
         assert!(first[1..].iter().any(|line| line.starts_with(key)), "{text}");
@@ -200,8 +200,12 @@ fn a_late_feed_forward_is_in_the_loop() {
         let delay = format!("controller.delay={delay_ms} ms");
         let fed = format!("controller.load_velocity_feed_forward.gain={gain}");
         let viscous = "cylinder.friction={ model = \"viscous\", viscous = \"100 N.s/m\" }";
-        let said =
-            answer(&text, &[&SPRUNG[..], &[viscous, &delay, &fed]].concat(), &[], &Request::VerifyOnMachine);
+        let said = answer(
+            &text,
+            &[&SPRUNG[..], &[viscous, &delay, &fed]].concat(),
+            &[],
+            &Request::Verify { proof: false, on_machine: true },
+        );
         let object: Value = serde_json::from_str(&said.json).unwrap();
         assert_eq!(object["stable"], Value::from(stable), "{gain} {delay_ms}: {}", said.text);
         let run = &object["machine"]["runs"][0];
@@ -229,7 +233,7 @@ fn a_sampled_feed_forward_is_in_the_loop() {
         let fed = format!("controller.load_velocity_feed_forward.gain={gain}");
         let viscous = "cylinder.friction={ model = \"viscous\", viscous = \"100 N.s/m\" }";
         let settings = [&SPRUNG[..], &[viscous, &timing[0], &timing[1], &fed]].concat();
-        let said = answer(&text, &settings, &[], &Request::VerifyOnMachine);
+        let said = answer(&text, &settings, &[], &Request::Verify { proof: false, on_machine: true });
         let object: Value = serde_json::from_str(&said.json).unwrap();
         assert_eq!(object["stable"], Value::from(stable), "{gain} {sample_ms} {delay_ms}: {}", said.text);
         let run = &object["machine"]["runs"][0];

@@ -79,25 +79,25 @@ fn feedback_costs_nothing_at_rest() {
 /// An orifice without a drop is reported first, and no verdict is met with it unless the range of its transition is stated.
 #[test]
 fn an_orifice_without_a_drop_is_told_first() {
-    let told = json(FEEDBACK, &[], &[], &Request::Verify);
+    let told = json(FEEDBACK, &[], &[], &Request::Verify { proof: false, on_machine: false });
     assert_eq!(told["verdict"], "not_proven", "{told}");
     assert!(
         told.to_string().contains("cross_port is counted for small motions: its orifice has no drop at rest"),
         "{told}"
     );
     let range = "uncertainty={ \"cross_port.transition_pressure\" = { nominal = \"20 kPa\", minimum = \"1 kPa\", maximum = \"20 bar\", points = 3, spacing = \"log\" } }";
-    let told = json(FEEDBACK, &[range], &[], &Request::Verify);
+    let told = json(FEEDBACK, &[range], &[], &Request::Verify { proof: false, on_machine: false });
     assert_eq!(told["verdict"], "met", "{told}");
     let laminar =
         "cross_port={ kind = \"dynamic_pressure_feedback\", conductance = 1e-10, capacity = 1e-12 }";
-    let told = json(FEEDBACK, &[laminar], &[], &Request::Verify);
+    let told = json(FEEDBACK, &[laminar], &[], &Request::Verify { proof: false, on_machine: false });
     assert_eq!(told["verdict"], "met", "{told}");
     assert!(!told.to_string().contains("cross_port is counted"), "{told}");
     let told = json(
         PIPE,
         &["cross_port={ kind = \"orifice\", diameter = \"1 mm\" }", "operating_point.load_force=2 kN"],
         &[],
-        &Request::Verify,
+        &Request::Verify { proof: false, on_machine: false },
     );
     assert!(!told.to_string().contains("cross_port is counted"), "{told}");
 }
@@ -127,7 +127,12 @@ fn the_machine_agrees_with_the_linear_loop() {
         "cross_port={ kind = \"dynamic_pressure_feedback\", conductance = 1e-10, capacity = 1e-12 }",
     ] {
         let scenario = "scenario=[{ name = \"step\", duration = \"1 s\", reference = [{ at = \"0.1 s\", force = \"100 N\" }] }]";
-        let said = answer(PIPE, &[port, VISCOUS, scenario], &[], &Request::VerifyOnMachine);
+        let said = answer(
+            PIPE,
+            &[port, VISCOUS, scenario],
+            &[],
+            &Request::Verify { proof: false, on_machine: true },
+        );
         let object: serde_json::Value = serde_json::from_str(&said.json).unwrap();
         let run = &object["machine"]["runs"][0];
         assert_eq!(run["agrees"], serde_json::Value::from(true), "{port}: {run}");
@@ -154,16 +159,16 @@ fn sizing_counts_a_leak_and_refuses_a_capacity() {
 /// The models of a linearisation that leave feedback out say so; a laminar valve is in all of them.
 #[test]
 fn models_without_feedback_say_so() {
-    let text = |settings: &[&str]| answer(PIPE, settings, &[], &Request::Linearize).text;
+    let text = |settings: &[&str]| answer(PIPE, settings, &[], &Request::Linearize { sweep: None }).text;
     let feedback =
         "cross_port={ kind = \"dynamic_pressure_feedback\", conductance = 1e-10, capacity = 1e-12 }";
     assert!(text(&[feedback]).contains("is counted in the plant and the impedance at the load"));
     assert!(!text(&[LAMINAR]).contains("is counted in the plant and the impedance"));
-    let object = json(PIPE, &[feedback], &[], &Request::Linearize);
+    let object = json(PIPE, &[feedback], &[], &Request::Linearize { sweep: None });
     assert_eq!(object["passivity"]["open_loop"]["passive"], true, "{object}");
     within(
         number(&object, "stiffness.minimum_n_per_m"),
-        number(&json(PIPE, &[], &[], &Request::Linearize), "stiffness.minimum_n_per_m"),
+        number(&json(PIPE, &[], &[], &Request::Linearize { sweep: None }), "stiffness.minimum_n_per_m"),
         1.0,
     );
 }

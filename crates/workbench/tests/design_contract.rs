@@ -102,7 +102,8 @@ fn the_gain_of_a_structure_is_wide_and_of_the_right_sign() {
 fn a_controller_may_give_its_timing_alone() {
     let object = json(TIMED, &[], &[], &Request::Check);
     assert_eq!(object["command"], "check");
-    let refused = try_answer(TIMED, &[], &[], &Request::Verify).unwrap_err();
+    let refused =
+        try_answer(TIMED, &[], &[], &Request::Verify { proof: false, on_machine: false }).unwrap_err();
     assert!(
         matches!(refused, CommandError::Procedure(ProcedureError::Audit(AuditError::NoLaw))),
         "{refused}"
@@ -134,7 +135,9 @@ const CONVERTED: &str = "schema = 1\n[plant]\nnumerator = \"k\"\ndenominator = \
 /// less gain the controller has.
 #[test]
 fn allowed_errors_of_the_converters_are_specifications() {
-    let verified = |settings: &[&str]| json(CONVERTED, settings, &[], &Request::Verify);
+    let verified = |settings: &[&str]| {
+        json(CONVERTED, settings, &[], &Request::Verify { proof: false, on_machine: false })
+    };
     assert_eq!(verified(&[])["specifications"].as_array().unwrap().len(), 2);
     let force = "controller.quantization.allowed_force_error=\"1 mN\"";
     let command = "controller.quantization.allowed_command_error=0.25";
@@ -169,7 +172,7 @@ fn allowed_errors_of_the_converters_are_specifications() {
             assert!(design["rounding"]["effects"][2]["rms"].as_f64().unwrap() < 0.055);
         }
     }
-    let text = answer(CONVERTED, &[command], &[], &Request::Verify).text;
+    let text = answer(CONVERTED, &[command], &[], &Request::Verify { proof: false, on_machine: false }).text;
     assert!(text.contains("3 command error of the rounded measurement"), "{text}");
 }
 

@@ -19,8 +19,8 @@ use phea_qft::verification::{AuditProblem, PlantPoint, TOLERANCE_DB, TrackingJud
 use phea_workbench::audit::audit_project;
 use phea_workbench::command::{Request, answer};
 use phea_workbench::design::{
-    AuditedController, DESIGNED_PROJECT, ProjectDesign, design_options, design_problem, files, json,
-    stage_files, text,
+    AuditedController, DESIGNED_PROJECT, ProjectDesign, body, design_options, design_problem, files, output,
+    stage_files,
 };
 use phea_workbench::project::{
     self, DeclaredQuantization, FeedForward, Loaded, Prefilter, RationalFunction, Transfer,
@@ -36,6 +36,10 @@ const PROJECT: &str = "schema = 1\ntitle = \"drive\"\n\n[plant]\nnumerator = \"k
     [[specification]]\nkind = \"tracking\"\nfrequencies = [0.1, 1]\nupper = 1.2\nlower = \"4/(s + 4)\"\n\n\
     [controller]        # by hand\nnumerator = \"1\"  # slow\ndenominator = \"1\"\nsaturation = \"10 V\"\nTIMING\n\
     [prefilter]\nnumerator = \"1\"\ndenominator = \"1\"\n";
+
+fn text(loaded: &Loaded, view: &ProjectDesign) -> String {
+    output(loaded, view).unwrap().text()
+}
 
 fn loaded(text: &str) -> (Memory, Loaded) {
     let source = Memory::default().with("drive.toml", text);
@@ -119,7 +123,7 @@ fn infeasible() -> DesignStatus {
 #[test]
 fn people_read_the_status_first_and_the_law_as_it_is_pasted() {
     let (_, loaded, view) = view(&PROJECT.replace("TIMING\n", ""), infeasible());
-    let text = text(&loaded, &view).unwrap();
+    let text = text(&loaded, &view);
     assert!(
         text.starts_with("Design: infeasible: none of the controllers tried, of order 4 at most, "),
         "{text}"
@@ -142,8 +146,8 @@ fn people_read_the_status_first_and_the_law_as_it_is_pasted() {
 #[test]
 fn programs_read_the_keys_that_stay() {
     let (_, loaded, view) = view(&PROJECT.replace("TIMING\n", ""), infeasible());
-    let object: serde_json::Value = serde_json::from_str(&json(&loaded, &view).unwrap()).unwrap();
-    assert_eq!((object["command"].as_str(), object["status"].as_str()), (Some("design"), Some("infeasible")));
+    let object: serde_json::Value = serde_json::from_str(&body(&view).unwrap().print()).unwrap();
+    assert_eq!(object["status"], "infeasible");
     assert_eq!(object["relaxation_db"], 1.25);
     assert_eq!(object["conflicts"][0]["plant"]["k"], 10.0);
     assert_eq!(object["binding"][0]["kind"], "tracking");
@@ -158,7 +162,8 @@ fn programs_read_the_keys_that_stay() {
     // the same object that `verify` prints, in addition to what every object carries
     let designed = String::from_utf8(files(&loaded, &view).remove(0).bytes).unwrap();
     let (source, loaded) = self::loaded(&designed);
-    let verified = answer(&source, &loaded, &[], &Request::Verify).unwrap().json;
+    let verified =
+        answer(&source, &loaded, &[], &Request::Verify { proof: false, on_machine: false }).unwrap().json;
     let verified: serde_json::Value = serde_json::from_str(&verified).unwrap();
     for (key, value) in object["verification"].as_object().unwrap() {
         assert_eq!(*value, verified[key], "{key}");
@@ -171,7 +176,7 @@ fn programs_read_the_keys_that_stay() {
 fn a_sampled_design_is_written_as_it_was_found_and_told_as_it_is_deployed() {
     let timing = "sample_time = \"2 ms\"\ndelay = \"1 ms\"\ndiscretization = \"matched\"\n";
     let (_, loaded, view) = view(&PROJECT.replace("TIMING\n", timing), DesignStatus::Met);
-    let object: serde_json::Value = serde_json::from_str(&json(&loaded, &view).unwrap()).unwrap();
+    let object: serde_json::Value = serde_json::from_str(&body(&view).unwrap().print()).unwrap();
     assert_eq!(
         (object["controller"]["domain"].as_str(), object["controller"]["sample_time_s"].as_f64()),
         (Some("z"), Some(0.002))
@@ -180,7 +185,7 @@ fn a_sampled_design_is_written_as_it_was_found_and_told_as_it_is_deployed() {
     let pole = object["controller"]["poles"][0][0].as_f64().unwrap();
     // ORIGIN: analytic, exp(-500 0.002)
     assert!((pole - 0.367_879_441_171_442_3).abs() < 1e-12, "{pole}");
-    let text = text(&loaded, &view).unwrap();
+    let text = text(&loaded, &view);
     assert!(
         text.contains("G(s) = ") && text.contains("G(z) = ") && text.contains("sampled every 2.00 ms"),
         "{text}"
@@ -207,7 +212,7 @@ fn a_prefilter_that_acts_between_samples_goes_on_doing_so() {
         let (_, loaded, view) = view(&format!("{sampled}{beside}"), DesignStatus::Met);
         let law = format!("[prefilter]\ngain = 6\npoles = [-6]\n{beside}");
         let written = String::from_utf8(files(&loaded, &view).remove(0).bytes).unwrap();
-        assert!(written.ends_with(&law) && text(&loaded, &view).unwrap().contains(&law), "{written}");
+        assert!(written.ends_with(&law) && text(&loaded, &view).contains(&law), "{written}");
         assert_eq!(self::loaded(&written).1.project.prefilter.unwrap().continuous, says);
     }
 }
@@ -244,11 +249,7 @@ fn every_stage_is_a_file() {
     view.stopped = true;
     let left = names(stage_files(&loaded, &view, &mut |_| false).unwrap());
     assert!(!left.contains(&"bounds.csv".to_string()) && left.contains(&"loop.csv".to_string()), "{left:?}");
-    assert!(
-        text(&loaded, &view)
-            .unwrap()
-            .starts_with("Design: stopped: this is the best controller found so far")
-    );
+    assert!(text(&loaded, &view).starts_with("Design: stopped: this is the best controller found so far"));
 }
 
 /// A published law of elements is the product of those that act, and all of them go where the designed one comes.
@@ -284,7 +285,7 @@ fn elements_are_a_published_law() {
 fn what_the_computer_rounds_is_part_of_the_design() {
     let timing = "sample_time = \"2 ms\"\nquantization = { command_bits = 12, command_range = [-10, 10], coefficients = \"f32\" }\n";
     let (_, loaded, view) = view(&PROJECT.replace("TIMING\n", timing), DesignStatus::Met);
-    let object: serde_json::Value = serde_json::from_str(&json(&loaded, &view).unwrap()).unwrap();
+    let object: serde_json::Value = serde_json::from_str(&body(&view).unwrap().print()).unwrap();
     let pole = object["controller"]["poles"][0][0].as_f64().unwrap();
     assert_eq!(pole, f64::from(pole as f32));
     let effect = &object["rounding"]["effects"][0];
@@ -293,10 +294,11 @@ fn what_the_computer_rounds_is_part_of_the_design() {
     // ORIGIN: analytic, 20/4096/2/5
     assert!(effect["peak"].as_f64().unwrap() >= 0.999 * 20.0 / 4096.0 / 2.0 / 5.0, "{effect}");
     assert!(effect["peak_plant"]["k"].is_number());
-    assert!(text(&loaded, &view).unwrap().contains("the rounded command moves the output by "));
+    assert!(text(&loaded, &view).contains("the rounded command moves the output by "));
     let designed = String::from_utf8(files(&loaded, &view).remove(0).bytes).unwrap();
     let (source, loaded) = self::loaded(&designed);
-    let verified = answer(&source, &loaded, &[], &Request::Verify).unwrap().json;
+    let verified =
+        answer(&source, &loaded, &[], &Request::Verify { proof: false, on_machine: false }).unwrap().json;
     let verified: serde_json::Value = serde_json::from_str(&verified).unwrap();
     assert_eq!(object["verification"]["specifications"], verified["specifications"]);
 }
@@ -332,7 +334,7 @@ fn what_a_setting_says_beside_the_law_is_written_with_it() {
     }
     assert!(set.ends_with("[prefilter]\ngain = 2\ncontinuous = true\n"), "{set}");
     assert!(!set.contains("command_bits = 8") && !set.contains("[controller.quantization]"), "{set}");
-    let pasted = self::text(&loaded, &view).unwrap();
+    let pasted = self::text(&loaded, &view);
     assert!(pasted.contains("load_velocity_feed_forward = {"), "{pasted}");
     assert!(pasted.contains("[prefilter]\ngain = 2\ncontinuous = true\n\n"), "{pasted}");
 }

@@ -23,7 +23,10 @@ fn designed_and_verified(project: &str, settings: &[&str]) -> (Value, Value) {
 fn with_verified(answer: &Answer) -> (Value, Value) {
     let file = answer.files.iter().find(|file| file.name == DESIGNED_PROJECT).unwrap();
     let written = String::from_utf8(file.bytes.clone()).unwrap();
-    (serde_json::from_str(&answer.json).unwrap(), json(&written, &[], &[], &Request::Verify))
+    (
+        serde_json::from_str(&answer.json).unwrap(),
+        json(&written, &[], &[], &Request::Verify { proof: false, on_machine: false }),
+    )
 }
 
 /// That every specification is met over the band and the family that the project declares, and that the project which is written says so too.

@@ -11,7 +11,7 @@ const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");
 
 /// What the first scenario, a step to 4 kN at 2 s, exceeds; and the text.
 fn exceeded(text: &str, settings: &[&str]) -> (Vec<Value>, String) {
-    let said = answer(text, settings, &[], &Request::Simulate);
+    let said = answer(text, settings, &[], &Request::Simulate(Default::default()));
     let object: Value = serde_json::from_str(&said.json).unwrap();
     (object["scenarios"][0]["exceeded"].as_array().unwrap().clone(), said.text)
 }

@@ -222,7 +222,7 @@ fn sines_below_break_away_see_the_bristles() {
 
 fn answered(settings: &[&str], options: FrequencyOptions, figures: bool) -> Result<Answer, String> {
     let asked = SimulateRequest { frequency_response: Some(options), figures, ..SimulateRequest::default() };
-    let request = Request::SimulateAs(asked);
+    let request = Request::Simulate(asked);
     command::answer(&Memory::default(), &load(settings), &[], &request).map_err(|error| error.to_string())
 }
 

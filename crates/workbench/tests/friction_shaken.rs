@@ -147,7 +147,7 @@ command = [
   { kind = "multisine", start = "10 ms", amplitude = "0.1 V", frequencies = ["73 Hz", "101 Hz", "139 Hz", "179 Hz", "211 Hz", "240 Hz", "283 Hz"] },
 ]
 "#;
-    let request = Request::Simulate;
+    let request = Request::Simulate(Default::default());
     let simulated = answer(&format!("{before}{scenario}"), &[], &[], &request);
     let run = simulated.files.iter().find(|file| file.name.ends_with(".csv")).unwrap();
     let text = String::from_utf8(run.bytes.clone()).unwrap();

@@ -120,9 +120,9 @@ fn a_precharge_that_is_too_high_when_warm_is_refused() {
 #[test]
 fn what_does_not_count_it_is_told() {
     let text = with_gas("thermal_time_constant = \"2 s\"");
-    let models = answer(&text, &[], &[], &Request::Linearize).text;
+    let models = answer(&text, &[], &[], &Request::Linearize { sweep: None }).text;
     assert!(models.contains("line.accumulator.thermal_time_constant is counted in the plant"), "{models}");
-    let both = answer(&text, RIGS[3], &[], &Request::Linearize).text;
+    let both = answer(&text, RIGS[3], &[], &Request::Linearize { sweep: None }).text;
     assert!(
         both.contains("the neck of line.accumulator and its thermal_time_constant are counted"),
         "{both}"
@@ -134,7 +134,7 @@ fn what_does_not_count_it_is_told() {
 fn verify_answers_with_heat() {
     let opened = "uncertainty={ \"line.accumulator.thermal_time_constant\" = { nominal = \"2 s\", minimum = \"1 s\", maximum = \"6 s\", points = 2 } }";
     let text = with_gas("thermal_time_constant = \"2 s\"");
-    let told = json(&text, &[LIMIT, opened], &[], &Request::Verify);
+    let told = json(&text, &[LIMIT, opened], &[], &Request::Verify { proof: false, on_machine: false });
     assert_eq!(told["stable"].as_bool(), Some(true), "{told}");
 }
 
@@ -147,7 +147,7 @@ fn a_run_tells_where_the_limit_of_the_maker_is_passed() {
     let scenario = "scenario=[{ name = \"pressed\", duration = \"0.6 s\", load_motion = { kind = \"smooth_step\", start = \"0.1 s\", duration = \"20 ms\", distance = \"-20 mm\" } }]";
     let ask = |ratio: &str| {
         let limit = format!("line.accumulator.maximum_pressure_ratio={ratio}");
-        answer(GAS, &[scenario, &limit, CERTAIN], &[], &Request::Simulate).text
+        answer(GAS, &[scenario, &limit, CERTAIN], &[], &Request::Simulate(Default::default())).text
     };
     let told = ask("4.44");
     assert!(told.contains("is above its maximum_pressure_ratio"), "{told}");
@@ -208,7 +208,7 @@ fn the_gas_of_a_run_is_adiabatic_where_it_has_no_time_for_heat() {
 /// Figures have the gas of a rig that has such gas, side by side, and of no other.
 #[test]
 fn figures_have_the_gas_that_is_there() {
-    let request = Request::SimulateAs(SimulateRequest { figures: true, ..SimulateRequest::default() });
+    let request = Request::Simulate(SimulateRequest { figures: true, ..SimulateRequest::default() });
     let drawn = |text: &str| {
         let files = answer(text, &[PRESSED], &[], &request).files;
         let figure = files.iter().find(|file| file.name == "simulation-1.svg").unwrap();

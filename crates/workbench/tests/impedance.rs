@@ -332,7 +332,7 @@ filter_time = "5 ms"
 #[test]
 fn a_proof_and_a_trial_are_of_the_loop_with_it() {
     let text = yielding();
-    let found = answer(&text, &[], &[], &Request::VerifyProven { on_machine: true });
+    let found = answer(&text, &[], &[], &Request::Verify { proof: true, on_machine: true });
     let found: Value = serde_json::from_str(&found.json).unwrap();
     assert_eq!(
         (found["verdict"].as_str(), found["evidence"].as_str()),
@@ -344,7 +344,7 @@ fn a_proof_and_a_trial_are_of_the_loop_with_it() {
         &text,
         &["controller.impedance.stiffness=0", "controller.impedance.damping=0"],
         &[],
-        &Request::Verify,
+        &Request::Verify { proof: false, on_machine: false },
     );
     let without: Value = serde_json::from_str(&without.json).unwrap();
     let margin = |found: &Value| found["specifications"][0]["worst_margin_db"].as_f64().unwrap();
@@ -356,7 +356,8 @@ fn a_proof_and_a_trial_are_of_the_loop_with_it() {
 fn every_answer_speaks_of_it() {
     let position = "controller.impedance.form=admittance";
     let law = "controller.numerator=60*s + 300";
-    let page = answer(&yielding(), &[position, law], &[], &Request::Page);
+    let page =
+        answer(&yielding(), &[position, law], &[], &Request::Report { files: false, alternatives: false });
     let html = page.files.iter().find(|file| file.name == "report.html").unwrap();
     let html = String::from_utf8_lossy(&html.bytes);
     for words in
@@ -365,10 +366,10 @@ fn every_answer_speaks_of_it() {
         assert!(html.contains(words), "{words}");
     }
     let of = |request: &Request| answer(&yielding(), &[], &[], request);
-    let models: Value = serde_json::from_str(&of(&Request::Linearize).json).unwrap();
+    let models: Value = serde_json::from_str(&of(&Request::Linearize { sweep: None }).json).unwrap();
     assert_eq!(models["virtual_impedance"]["stiffness_n_per_m"], 1e5);
     assert_eq!(models["virtual_impedance"]["points"].as_array().unwrap().len(), 5);
-    assert!(of(&Request::Linearize).text.contains("Impedance asked and shown"));
+    assert!(of(&Request::Linearize { sweep: None }).text.contains("Impedance asked and shown"));
     assert!(of(&Request::Check).json.contains("impedance.spring_below"));
     let design = Request::Design { seed: None, stages: false, repair: false };
     let refused = try_answer(&yielding(), &[position, law], &[], &design).unwrap_err().to_string();

@@ -21,10 +21,10 @@ fn requests() -> [Request; 8] {
         size_request(None, None),
         size_request(Some("4e-4"), None),
         size_request(None, Some("1.5 m")),
-        Request::Linearize,
-        Request::Verify,
-        Request::VerifyOnMachine,
-        Request::Report,
+        Request::Linearize { sweep: None },
+        Request::Verify { proof: false, on_machine: false },
+        Request::Verify { proof: false, on_machine: true },
+        Request::Report { files: true, alternatives: false },
     ]
 }
 
@@ -71,7 +71,7 @@ fn answered() -> Vec<(String, Value)> {
             .push((format!("gain {gain}"), json(HOSE, &[], &[FICTITIOUS], &size_request(Some(gain), None))));
     }
     let bare = HOSE.split("[controller]").next().unwrap();
-    answers.push(("no controller".to_string(), json(bare, &[], &[], &Request::Linearize)));
+    answers.push(("no controller".to_string(), json(bare, &[], &[], &Request::Linearize { sweep: None })));
     answers.push(("plant".to_string(), json(PLANT, &[], &[], &Request::Check)));
     answers
 }
@@ -250,7 +250,7 @@ fn size_has_its_candidates() {
 #[test]
 fn linearize_has_its_keys() {
     for project in [HOSE, PIPE] {
-        let object = json(project, &[], &[], &Request::Linearize);
+        let object = json(project, &[], &[], &Request::Linearize { sweep: None });
         let minimum = number(&object, "stiffness.minimum_n_per_m");
         assert!(minimum > 0.0 && minimum < number(&object, "stiffness.maximum_n_per_m"));
         for (model, count) in [("full", 5), ("decomposed", 5), ("first_order", 1)] {
@@ -276,7 +276,7 @@ fn linearize_has_its_keys() {
 fn without_a_rational_loop_there_is_a_reason_instead_of_a_view() {
     let bare = HOSE.split("[controller]").next().unwrap();
     for (project, settings) in [(bare, &[][..]), (HOSE, &["controller.delay=\"1 ms\""])] {
-        let object = json(project, settings, &[], &Request::Linearize);
+        let object = json(project, settings, &[], &Request::Linearize { sweep: None });
         assert!(object["passivity"]["closed_loop"].is_null());
         assert!(object["passivity"]["closed_loop_reason"].is_string());
         assert!(object["passivity"]["open_loop"]["passive"].is_boolean());

@@ -220,7 +220,8 @@ fn what_does_not_fit_is_refused_at_its_key() {
     let wasted = load(&["line.model=creeping", "line.relaxation_time=0.1 s", "line.dynamic_stiffening=1"]);
     assert!(wasted.warnings.iter().any(|found| found.message.contains("nothing creeps")));
     let giving = load(&["line.model=two_wave", "line.wall.pressure_compliance=0"]);
-    let giving = command::answer(&Memory::default(), &giving, &[], &Request::Simulate).unwrap_err();
+    let giving = command::answer(&Memory::default(), &giving, &[], &Request::Simulate(Default::default()))
+        .unwrap_err();
     assert!(giving.to_string().contains("[line] model: fixed_end_modulus is"), "{giving}");
 }
 
@@ -262,14 +263,23 @@ fn a_campaign_varies_what_is_no_count() {
 #[test]
 fn the_linear_model_knows_no_motion() {
     let linear = |settings: &[&str]| {
-        let answer = command::answer(&Memory::default(), &load(settings), &[], &Request::Linearize).unwrap();
+        let answer =
+            command::answer(&Memory::default(), &load(settings), &[], &Request::Linearize { sweep: None })
+                .unwrap();
         serde_json::from_str::<Value>(&answer.json).unwrap()["poles"].clone()
     };
     assert_eq!(linear(&[]), linear(&["line.model=segments", "line.relaxation_time=0.1 s"]));
     let range = "{ nominal = \"0.1 s\", minimum = \"0.1 s\", maximum = \"1 s\" }";
     let uncertain = format!("uncertainty.\"line.relaxation_time\"={range}");
     let project = load(&["line.model=creeping", "line.relaxation_time=0.1 s", &uncertain]);
-    let error = command::answer(&Memory::default(), &project, &[], &Request::Verify).unwrap_err().to_string();
+    let error = command::answer(
+        &Memory::default(),
+        &project,
+        &[],
+        &Request::Verify { proof: false, on_machine: false },
+    )
+    .unwrap_err()
+    .to_string();
     assert!(
         error.contains("`line.relaxation_time`") && error.contains("does not enter the linear model"),
         "{error}"

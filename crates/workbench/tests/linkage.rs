@@ -172,7 +172,7 @@ fn the_impedance_about_the_joint_is_told() {
     // the geometric stiffness is not lost in rounding
     assert!((geometric / stiffness).abs() > 1e-3, "{geometric}");
     let sentence = "about the joint it is r² (Z + k_g/s), in N·m·s/rad, with the lever arm r = 49.84 mm";
-    let answered = |text: &str| try_answer(text, &[], &[], &Request::Linearize).unwrap().text;
+    let answered = |text: &str| try_answer(text, &[], &[], &Request::Linearize { sweep: None }).unwrap().text;
     assert!(answered(KNEE).contains(sentence));
     assert!(!answered(HOSE).contains("joint"));
 }

@@ -96,18 +96,25 @@ fn the_verdict_is_that_of_the_cylinder_on_its_lever() {
         serde_json::from_str(&answered(project, request).json).unwrap()
     };
     let [linear, rotary] = [rig(None), rig(Some(arm))];
-    let [one, other] = [&linear, &rotary].map(|project| json(project, &Request::Verify));
+    let [one, other] =
+        [&linear, &rotary].map(|project| json(project, &Request::Verify { proof: false, on_machine: false }));
     assert_eq!(one["verdict"], other["verdict"]);
     let of = |audit: &Value, key: &str| audit["specifications"][0][key].as_f64().unwrap();
     assert!((of(&one, "worst_margin_db") - of(&other, "worst_margin_db")).abs() < 1e-7);
-    let (one, other) = (json(&linear, &Request::Linearize), json(&rotary, &Request::Linearize));
+    let (one, other) = (
+        json(&linear, &Request::Linearize { sweep: None }),
+        json(&rotary, &Request::Linearize { sweep: None }),
+    );
     let stiffness = |found: &Value, key: &str| found["stiffness"][key].as_f64().unwrap();
     close(
         stiffness(&one, "minimum_n_per_m") * arm * arm,
         stiffness(&other, "minimum_n_m_per_rad"),
         "least stiffness",
     );
-    let (one, other) = (json(&linear, &Request::Simulate), json(&rotary, &Request::Simulate));
+    let (one, other) = (
+        json(&linear, &Request::Simulate(Default::default())),
+        json(&rotary, &Request::Simulate(Default::default())),
+    );
     let metric = |run: &Value, event: usize, key: &str| {
         run["scenarios"][0]["events"][event]["metrics"][key].as_f64().unwrap()
     };
@@ -224,6 +231,22 @@ fn symbols_of_a_cylinder(text: &str) -> Vec<String> {
     plain.split(|c| !of_name(c)).filter(|word| SYMBOLS.contains(word)).map(str::to_string).collect()
 }
 
+/// Texts of the user stay as they are, whatever words are in them.
+#[test]
+fn texts_of_the_user_stay() {
+    let text = rig(Some(0.04)).replace(
+        "force = 40 }",
+        "force = 40, published = { source = \"force of the piston\", overshoot_percent = 3 } }",
+    );
+    let direction = "\n[[uncertainty_direction]]\nname = \"wear of the piston\"\nchanges = { \"motor.inertia\" = 1e-3 }\n";
+    let of_audit =
+        answered(&format!("{text}{direction}"), &Request::Verify { proof: false, on_machine: false });
+    assert!(of_audit.text.contains("wear of the piston"), "{}", of_audit.text);
+    let of_run = answered(&text, &Request::Report { files: false, alternatives: false });
+    let page = String::from_utf8(of_run.files[0].bytes.clone()).unwrap();
+    assert!(page.contains("force of the piston"), "{page}");
+}
+
 /// The equations of `check` are those of a motor, and so are the symbols everywhere; of a cylinder they are found, so that
 /// the test would see them.
 #[test]
@@ -240,7 +263,11 @@ fn equations_and_symbols_are_those_of_a_motor() {
     is("linear.flow_gain", "K_qU", "K_{qU} = D^2 (K_{qA}/C_A + K_{qB}/C_B)/K_θ");
     is("linear.flow_pressure_coefficient", "K_c", "1/K_c = 1/K_{cA} + 1/K_{cB}");
     is("dynamics.mechanical_frequency", "ω_m", "ω_m = sqrt((K_θ + K_S)/J)");
-    for request in [Request::Check, Request::Linearize, Request::Report] {
+    for request in [
+        Request::Check,
+        Request::Linearize { sweep: None },
+        Request::Report { files: true, alternatives: false },
+    ] {
         let answer = answered(TURNING, &request);
         assert_eq!(symbols_of_a_cylinder(&answer.text), [""; 0], "{}", request.name());
         for file in
@@ -250,7 +277,7 @@ fn equations_and_symbols_are_those_of_a_motor() {
             assert_eq!(symbols_of_a_cylinder(text), [""; 0], "{}: {}", request.name(), file.name);
         }
     }
-    let linear = answered(&rig(None), &Request::Report);
+    let linear = answered(&rig(None), &Request::Report { files: true, alternatives: false });
     let found = |name: &str| {
         let file = linear.files.iter().find(|file| file.name == name).unwrap();
         symbols_of_a_cylinder(std::str::from_utf8(&file.bytes).unwrap())
@@ -347,15 +374,14 @@ fn nothing_is_said_in_newtons_or_millimetres() {
     let with_figures = SimulateRequest { figures: true, ..SimulateRequest::default() };
     for request in [
         Request::Check,
-        Request::Linearize,
-        Request::LinearizeSwept(SweepRequest {
-            range: "line.length=0.5 m..1 m".to_string(),
-            points: Some(2),
-        }),
-        Request::VerifyOnMachine,
-        Request::VerifyProven { on_machine: false },
-        Request::SimulateAs(with_figures.clone()),
-        Request::SimulateAs(SimulateRequest {
+        Request::Linearize { sweep: None },
+        Request::Linearize {
+            sweep: Some(SweepRequest { range: "line.length=0.5 m..1 m".to_string(), points: Some(2) }),
+        },
+        Request::Verify { proof: false, on_machine: true },
+        Request::Verify { proof: true, on_machine: false },
+        Request::Simulate(with_figures.clone()),
+        Request::Simulate(SimulateRequest {
             frequency_response: Some(FrequencyOptions {
                 frequencies: Some("10".to_string()),
                 ..FrequencyOptions::default()
@@ -364,11 +390,16 @@ fn nothing_is_said_in_newtons_or_millimetres() {
         }),
         Request::Campaign(campaign(true)),
         Request::Alternatives(AlternativesRequest { files: true, ..AlternativesRequest::default() }),
-        Request::Report,
+        Request::Report { files: true, alternatives: false },
     ] {
         check(VANE, &request);
     }
-    for request in [Request::Check, Request::Linearize, Request::SimulateAs(with_figures), Request::Report] {
+    for request in [
+        Request::Check,
+        Request::Linearize { sweep: None },
+        Request::Simulate(with_figures),
+        Request::Report { files: true, alternatives: false },
+    ] {
         check(TURNING, &request);
     }
 }

@@ -83,13 +83,19 @@ fn check_derives_the_resonance_of_a_neck() {
 fn what_does_not_count_it_is_told() {
     let lossless = "line.accumulator.neck_loss_coefficient=0";
     for (text, necks, told) in [(NECK, &[][..], true), (NECK, &[lossless], false), (BOTH, &[], false)] {
-        let verdict = json(text, &[&[LIMIT][..], necks].concat(), &[], &Request::Verify).to_string();
+        let verdict = json(
+            text,
+            &[&[LIMIT][..], necks].concat(),
+            &[],
+            &Request::Verify { proof: false, on_machine: false },
+        )
+        .to_string();
         assert_eq!(
             verdict.contains("neck_loss_coefficient is not counted for small motions"),
             told,
             "{verdict}"
         );
-        let models = answer(text, necks, &[], &Request::Linearize).text;
+        let models = answer(text, necks, &[], &Request::Linearize { sweep: None }).text;
         let said = "the neck of line.accumulator is counted in the plant and the impedance";
         assert_eq!(models.contains(said), text == NECK, "{models}");
     }
@@ -98,6 +104,10 @@ fn what_does_not_count_it_is_told() {
 /// The controller of the example stabilises every plant of its family with the gas at the chamber, and not with a neck before it.
 #[test]
 fn a_verdict_sees_the_resonance() {
-    let stable = |necks: &[&str]| json(GAS, necks, &[], &Request::Verify)["stable"].as_bool().unwrap();
+    let stable = |necks: &[&str]| {
+        json(GAS, necks, &[], &Request::Verify { proof: false, on_machine: false })["stable"]
+            .as_bool()
+            .unwrap()
+    };
     assert_eq!([&[][..], &SHORT, &NECKS].map(stable), [true, true, false]);
 }

@@ -11,7 +11,7 @@ use phea_workbench::audit::{CERTIFICATE_FILE, CertificateError, check_certificat
 use phea_workbench::command::Request;
 use serde_json::Value;
 
-const PROVEN: Request = Request::VerifyProven { on_machine: false };
+const PROVEN: Request = Request::Verify { proof: true, on_machine: false };
 
 fn proven(project: &str, settings: &[&str]) -> (Value, String) {
     let answer: Answer = answer(project, settings, &[], &PROVEN);
@@ -85,7 +85,7 @@ fn dead_time_and_correlated_parameters_are_covered() {
 fn an_uncertain_supply_is_in_the_proof() {
     let family = "uncertainty={ \"supply.pressure\" = { nominal = 7e6, minimum = 6.5e6, maximum = 7.5e6, points = 2 }, \"line.length\" = { nominal = 1.5, minimum = 1.4, maximum = 1.6, points = 2 } }";
     for settings in [&[family][..], &[family, "controller.sample_time=1 ms"][..]] {
-        let searched = json(HOSE, settings, &[], &Request::Verify);
+        let searched = json(HOSE, settings, &[], &Request::Verify { proof: false, on_machine: false });
         let (shown, certificate) = proven(HOSE, settings);
         assert_eq!(shown["proof"]["stable"]["proven"], true);
         for (search, row) in searched["specifications"]
@@ -106,7 +106,8 @@ fn loads_and_leakage_are_in_the_proof() {
     let load = "load={ model = \"spring_mass_damper\", mass = \"80 kg\", stiffness = \"2 kN/mm\", damping = \"500 N.s/m\" }";
     let family = "uncertainty={ \"load.mass\" = { nominal = \"80 kg\", minimum = \"40 kg\", maximum = \"120 kg\" }, \"load.damping\" = { nominal = 500, minimum = 300, maximum = 900 } }";
     let leak = "cylinder.internal_leakage=1e-12";
-    let searched = json(HOSE, &[load, leak, family], &[], &Request::Verify);
+    let searched =
+        json(HOSE, &[load, leak, family], &[], &Request::Verify { proof: false, on_machine: false });
     let (shown, certificate) = proven(HOSE, &[load, leak, family]);
     for (search, row) in
         searched["specifications"].as_array().unwrap().iter().zip(shown["specifications"].as_array().unwrap())
@@ -182,7 +183,7 @@ fn the_delay_of_a_sensor_is_not_that_of_the_plant() {
     for delay in [0.0, 0.15, 0.25] {
         let text = project(0.17, delay, [8.3, 8.6]);
         let (shown, certificate) = proven(&text, &[]);
-        let searched = json(&text, &[], &[], &Request::Verify);
+        let searched = json(&text, &[], &[], &Request::Verify { proof: false, on_machine: false });
         let worst_db = searched["specifications"][0]["worst_margin_db"].as_f64().unwrap();
         let enclosure = &shown["specifications"][0]["enclosure_db"];
         let [least, most] = [0, 1].map(|index| enclosure[index].as_f64().unwrap());

@@ -55,7 +55,12 @@ fn what_cannot_be_had_with_waves_is_told() {
     let waves = runs.iter().find(|run| run["what"] == repair["taken_in"]).unwrap();
     assert_eq!(waves["agreement"], "agrees");
     // the project that is written with it says the same
-    let written = json(file(&said, NEAREST_PROJECT).unwrap(), &[], &[], &Request::Verify);
+    let written = json(
+        file(&said, NEAREST_PROJECT).unwrap(),
+        &[],
+        &[],
+        &Request::Verify { proof: false, on_machine: false },
+    );
     assert_eq!(written["stable"], true);
     assert!((worst_margin(&written) - worst_margin(&repair["nearest"]["verification"])).abs() < 1e-3);
     // ORIGIN: analytic, pi c/(2 L) with the wave's speed in the hose at 35 bar
@@ -101,7 +106,12 @@ fn a_design_is_repaired_where_it_can_be() {
     assert!(said.text.contains("before the repair"), "{}", said.text);
     // what it does with waves in every plant is what the audit of the same project says that declares them
     let written = file(&said, DESIGNED_PROJECT).unwrap();
-    let declared = json(written, &["line.model=transmission_line"], &[], &Request::Verify);
+    let declared = json(
+        written,
+        &["line.model=transmission_line"],
+        &[],
+        &Request::Verify { proof: false, on_machine: false },
+    );
     let whole = &repair["family_with_waves"];
     assert_eq!((&declared["verdict"], &declared["stable"]), (&whole["verdict"], &whole["stable"]));
     assert!((worst_margin(&declared) - worst_margin(whole)).abs() < 1e-6);
@@ -139,7 +149,7 @@ fn a_repair_may_be_stopped() {
         !progress.stage.starts_with("designing again")
     };
     let said: Result<Answer, CommandError> =
-        command::answer_watched(&source(&wider()), &loaded, &[], &REPAIRED, &mut watch);
+        command::answer_into(&source(&wider()), &loaded, &[], &REPAIRED, None, &mut watch);
     let said = said.unwrap();
     let object = object(&said);
     assert_eq!((&object["status"], &object["repair"]["status"]), (&"met".into(), &"stopped".into()));

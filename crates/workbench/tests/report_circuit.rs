@@ -21,7 +21,9 @@ fn drawn(project: &str) -> &str {
 
 /// The texts of the drawing, sub- and superscripts joined to what they belong to.
 fn texts(project: &str, settings: &[&str]) -> Vec<String> {
-    let answer = try_answer(drawn(project), settings, &[], &Request::Report).unwrap();
+    let answer =
+        try_answer(drawn(project), settings, &[], &Request::Report { files: true, alternatives: false })
+            .unwrap();
     let file = answer.files.iter().find(|file| file.name == "circuit.svg").unwrap();
     let svg = std::str::from_utf8(&file.bytes).unwrap();
     let texts: Vec<String> = svg
@@ -44,7 +46,9 @@ fn texts(project: &str, settings: &[&str]) -> Vec<String> {
 #[test]
 fn the_impedance_of_a_linkage_is_told_at_the_rod_and_about_the_joint() {
     let page = |project: &str| {
-        let answer = try_answer(drawn(project), &[], &[], &Request::Report).unwrap();
+        let answer =
+            try_answer(drawn(project), &[], &[], &Request::Report { files: true, alternatives: false })
+                .unwrap();
         let file = answer.files.into_iter().find(|file| file.name == "report.html").unwrap();
         String::from_utf8(file.bytes).unwrap()
     };

@@ -95,7 +95,7 @@ fn both_controllers_stand_there_as_the_commands_tell_them() {
     let told = report(&source, &loaded, &Setup::new(&loaded.project).unwrap(), None, &mut |_| true).unwrap();
     let page = opening(&told);
 
-    let verified = json(&source, &loaded, &Request::VerifyOnMachine);
+    let verified = json(&source, &loaded, &Request::Verify { proof: false, on_machine: true });
     // what was measured does not take part in a design
     let designed: Value = serde_json::from_str(&designed_hose().json).unwrap();
     let both = [&verified, &designed["verification"]];

@@ -16,7 +16,7 @@ use resvg::usvg::roxmltree::{Document, Node};
 const PLANT: &str = include_str!("truth/plant.toml");
 
 fn ask_for_report(project: &str) -> Answer {
-    answer(&without_design(project), &[], &[], &Request::Report)
+    answer(&without_design(project), &[], &[], &Request::Report { files: true, alternatives: false })
 }
 
 /// The project without its section [design]: a search takes its time, and most questions are about other chapters.
@@ -328,7 +328,11 @@ fn a_hostile_title_stays_a_title() {
 #[test]
 fn another_plant_is_checked_and_refused_elsewhere_with_the_reason() {
     assert!(answer(PLANT, &[], &[], &Request::Check).affirmative);
-    for request in [Request::Report, Request::Linearize, ask::size_request(None, None)] {
+    for request in [
+        Request::Report { files: true, alternatives: false },
+        Request::Linearize { sweep: None },
+        ask::size_request(None, None),
+    ] {
         let error = try_answer(PLANT, &[], &[], &request).unwrap_err().to_string();
         assert!(error.contains("[plant]") && error.contains("[cylinder]"), "{error}");
     }
@@ -428,7 +432,7 @@ fn only_models_of_the_same_parameters_are_drawn_against_each_other() {
     }
     assert!(!reduction.contains("(6.12)") && !reduction.contains("(6.13)"));
     // Derived K_H of the hose at mid stroke is softer than the value that holds: the table names both fifth orders.
-    let text = answer(HOSE, &[], &[], &Request::Linearize).text;
+    let text = answer(HOSE, &[], &[], &Request::Linearize { sweep: None }).text;
     for row in
         ["two-pressure, derived parameters", "fifth order, derived parameters", "6.7 instead of two-pressure"]
     {

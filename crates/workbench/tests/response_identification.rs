@@ -52,7 +52,7 @@ fn rig(amplitude: f64) -> Loaded {
 /// The table that `simulate` writes.
 fn simulated(loaded: &Loaded) -> String {
     let source = Memory::default().with("rig.toml", BENCHMARK);
-    let answer = command::answer(&source, loaded, &[], &Request::Simulate);
+    let answer = command::answer(&source, loaded, &[], &Request::Simulate(Default::default()));
     let answer = answer.unwrap_or_else(|error| panic!("{error}"));
     let file = answer.files.iter().find(|file| file.name.ends_with(".csv")).expect("a table");
     String::from_utf8(file.bytes.clone()).unwrap()
@@ -220,7 +220,8 @@ fn what_is_identified_is_a_family_that_verify_audits() {
         }
     }
     let verdict =
-        command::answer(&source, &loaded, &[], &Request::Verify).unwrap_or_else(|error| panic!("{error}"));
+        command::answer(&source, &loaded, &[], &Request::Verify { proof: false, on_machine: false })
+            .unwrap_or_else(|error| panic!("{error}"));
     let json: Value = serde_json::from_str(&verdict.json).unwrap();
     assert_eq!(json["command"], "verify");
     assert!(!json["specifications"].as_array().unwrap().is_empty(), "{json}");

@@ -191,7 +191,8 @@ fn an_open_loop_does_not_know_its_controller() {
     assert_eq!(plain.record, limited.record);
     assert_eq!(plain.windows[0].0.cause, Cause::CommandStep { from_v: 0.0, to_v: 3.0 });
     let loaded = load(&text, &Memory::default());
-    let answer = command::answer(&Memory::default(), &loaded, &[], &Request::Simulate).unwrap();
+    let answer =
+        command::answer(&Memory::default(), &loaded, &[], &Request::Simulate(Default::default())).unwrap();
     assert!(
         answer.text.contains("one: completed open loop (") && answer.text.contains("command to 3 V at 50 ms"),
         "{}",
@@ -255,7 +256,8 @@ fn a_campaign_takes_an_open_loop_and_other_references() {
 fn continued(first: &str, second: &str, change: impl Fn(String) -> String) -> [ScenarioRun; 2] {
     let text = change(rig(first));
     let loaded = load(&text, &Memory::default());
-    let answer = command::answer(&Memory::default(), &loaded, &[], &Request::Simulate).unwrap();
+    let answer =
+        command::answer(&Memory::default(), &loaded, &[], &Request::Simulate(Default::default())).unwrap();
     let file = answer.files.iter().find(|file| file.name == "one.state.toml").unwrap();
     let run = run_with(&text, &Memory::default());
     let source = Memory::default().with("one.state.toml", file.bytes.clone());
@@ -340,9 +342,13 @@ fn a_setting_goes_on_from_where_it_was() {
             assert!(apart < tolerance, "{part} {name}: {apart}");
         }
         let text = adjusted(rig(&first));
-        let answer =
-            command::answer(&Memory::default(), &load(&text, &Memory::default()), &[], &Request::Simulate)
-                .unwrap();
+        let answer = command::answer(
+            &Memory::default(),
+            &load(&text, &Memory::default()),
+            &[],
+            &Request::Simulate(Default::default()),
+        )
+        .unwrap();
         let state = answer.files.iter().find(|file| file.name == "one.state.toml").unwrap().bytes.clone();
         let source = Memory::default().with("one.state.toml", state);
         for elsewhere in ["", "setting_change = { kind = \"ramp\", change = 0.4, duration = \"0.2 s\" }"] {
@@ -374,7 +380,8 @@ fn a_sampled_controller_goes_on_with_what_it_knows() {
 fn a_state_is_refused_where_it_does_not_fit_and_not_written_where_it_would_not_be_whole() {
     let first = format!("duration = \"0.01 s\"\n{START}\nreference = []");
     let loaded = load(&rig(&first), &Memory::default());
-    let answer = command::answer(&Memory::default(), &loaded, &[], &Request::Simulate).unwrap();
+    let answer =
+        command::answer(&Memory::default(), &loaded, &[], &Request::Simulate(Default::default())).unwrap();
     let json: Value = serde_json::from_str(&answer.json).unwrap();
     assert_eq!(json["scenarios"][0]["state_file"], "one.state.toml");
     let state = String::from_utf8(answer.files[1].bytes.clone()).unwrap();

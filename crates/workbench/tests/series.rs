@@ -173,7 +173,7 @@ fn the_machine_follows_its_linear_loop() {
     let small = "scenario=[{ name = \"small\", duration = \"1.5 s\", reference = [{ at = \"0.2 s\", force = \"50 N\" }] }]";
     for settings in [&[][..], &["series.force_from=deflection"]] {
         let settings = [settings, &[viscous, small]].concat();
-        let said = answer(SERIES, &settings, &[], &Request::VerifyOnMachine);
+        let said = answer(SERIES, &settings, &[], &Request::Verify { proof: false, on_machine: true });
         let object: Value = serde_json::from_str(&said.json).unwrap();
         assert_eq!(object["stable"], Value::from(true), "{}", said.text);
         let run = &object["machine"]["runs"][0];
@@ -201,8 +201,8 @@ fn lines_in_motion_and_the_spring_go_together() {
 fn what_is_not_counted_is_told() {
     let spring =
         "series={ stiffness = \"2.24 MN/m\", damping = 500, travel = \"5.5 mm\", progression = 0.2 }";
-    let said = answer(SERIES, &[spring], &[], &Request::Verify);
+    let said = answer(SERIES, &[spring], &[], &Request::Verify { proof: false, on_machine: false });
     assert!(said.text.contains("series.progression is counted for small motions"), "{}", said.text);
-    let said = answer(SERIES, &[], &[], &Request::Linearize);
+    let said = answer(SERIES, &[], &[], &Request::Linearize { sweep: None });
     assert!(said.text.contains("series.damping and series.mass are counted in the plant"), "{}", said.text);
 }

@@ -293,7 +293,7 @@ fn answer(text: &str, settings: &[&str], request: &Request) -> command::CommandE
 #[test]
 fn what_cannot_be_simulated_is_refused_in_words() {
     let says = |settings: &[&str], words: &str| {
-        let error = answer(BENCHMARK, settings, &Request::Simulate).to_string();
+        let error = answer(BENCHMARK, settings, &Request::Simulate(Default::default())).to_string();
         assert!(error.contains(words), "{error}");
     };
     says(&["cylinder.friction.model=stribeck"], "regular velocity");
@@ -303,7 +303,7 @@ fn what_cannot_be_simulated_is_refused_in_words() {
     let thick = answer(
         HOSE,
         &["line.model=transmission_line", "fluid.kinematic_viscosity=1 m2/s"],
-        &Request::Simulate,
+        &Request::Simulate(Default::default()),
     );
     assert!(thick.to_string().contains("[line] model: the dissipation number"), "{thick}");
 }
@@ -311,7 +311,8 @@ fn what_cannot_be_simulated_is_refused_in_words() {
 #[test]
 fn the_answer_has_the_keys_that_stay() {
     let loaded = load(BENCHMARK, &["scenario.0.duration=2.6 s"]);
-    let answer = command::answer(&Memory::default(), &loaded, &[], &Request::Simulate).unwrap();
+    let answer =
+        command::answer(&Memory::default(), &loaded, &[], &Request::Simulate(Default::default())).unwrap();
     assert!(answer.affirmative);
     let json: Value = serde_json::from_str(&answer.json).unwrap();
     let scenario = &json["scenarios"][0];
@@ -343,10 +344,14 @@ fn the_answer_has_the_keys_that_stay() {
 #[test]
 fn a_run_that_is_stopped_keeps_what_it_has() {
     let loaded = load(BENCHMARK, &[]);
-    let answer =
-        command::answer_watched(&Memory::default(), &loaded, &[], &Request::Simulate, &mut |progress| {
-            progress.share < 0.5
-        });
+    let answer = command::answer_into(
+        &Memory::default(),
+        &loaded,
+        &[],
+        &Request::Simulate(Default::default()),
+        None,
+        &mut |progress| progress.share < 0.5,
+    );
     let answer = answer.unwrap();
     assert!(!answer.affirmative);
     let json: Value = serde_json::from_str(&answer.json).unwrap();
@@ -364,7 +369,9 @@ fn a_long_scenario_says_how_often_it_was_looked_at() {
     for (duration, look_s, told) in [("5 s", 0.25e-3, false), ("2000 s", 5e-3, true)] {
         let (duration, rows) = (format!("scenario.0.duration={duration}"), "scenario.0.output_step=5 s");
         let loaded = load(BENCHMARK, &[&duration, rows]);
-        let answer = command::answer(&Memory::default(), &loaded, &[], &Request::Simulate).unwrap();
+        let answer =
+            command::answer(&Memory::default(), &loaded, &[], &Request::Simulate(Default::default()))
+                .unwrap();
         let json: Value = serde_json::from_str(&answer.json).unwrap();
         let found = json["scenarios"][0]["look_s"].as_f64().unwrap();
         assert!((found / look_s - 1.0).abs() < 1e-9, "{found}");

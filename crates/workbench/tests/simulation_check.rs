@@ -34,7 +34,7 @@ fn checked(settings: &[&str]) -> ScenarioRun {
 }
 
 fn with_check() -> Request {
-    Request::SimulateAs(SimulateRequest { check: true, ..SimulateRequest::default() })
+    Request::Simulate(SimulateRequest { check: true, ..SimulateRequest::default() })
 }
 
 fn apart(one: &ScenarioRun, other: &ScenarioRun) -> f64 {
@@ -89,7 +89,7 @@ fn an_answer_tells_the_check_where_it_was_asked_for() {
         (json["scenarios"][0].clone(), answer.text)
     };
     let doubt = "more than a thousandth";
-    let (plain, text) = ask(&[SHORT], &Request::Simulate);
+    let (plain, text) = ask(&[SHORT], &Request::Simulate(Default::default()));
     assert!(plain["check"].is_null() && plain["check_reason"].is_string() && !text.contains("checked at"));
     let (sure, text) = ask(&[SHORT], &with_check());
     let check = &sure["check"];
@@ -115,7 +115,9 @@ fn an_answer_tells_the_check_where_it_was_asked_for() {
 #[test]
 fn a_run_reports_where_errors_may_be_visible() {
     let ask = |settings: &[&str]| {
-        let answer = command::answer(&Memory::default(), &load(settings), &[], &Request::Simulate).unwrap();
+        let answer =
+            command::answer(&Memory::default(), &load(settings), &[], &Request::Simulate(Default::default()))
+                .unwrap();
         let json: Value = serde_json::from_str(&answer.json).unwrap();
         (json["scenarios"][0].clone(), answer.text)
     };

@@ -77,7 +77,7 @@ fn what_does_not_change_has_no_range() {
 fn it_is_told_in_text_json_and_a_figure() {
     let content = "t,F,pressure_a_pa\n-1000,0,35\n0,0.01,35\n1200,1.1,40\n1400,3.3,50\n";
     let (source, loaded) = rig(MAPPED, content);
-    let request = Request::SimulateAs(SimulateRequest { figures: true, ..SimulateRequest::default() });
+    let request = Request::Simulate(SimulateRequest { figures: true, ..SimulateRequest::default() });
     let answer = command::answer(&source, &loaded, &[], &request).unwrap();
     assert!(answer.text.contains("NRMSE") && answer.text.contains("bench.csv `F`"), "{}", answer.text);
     let json: Value = serde_json::from_str(&answer.json).unwrap();

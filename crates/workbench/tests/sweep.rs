@@ -8,7 +8,7 @@ use phea_workbench::linearize::SweepRequest;
 use serde_json::Value;
 
 fn request(range: &str, points: Option<usize>) -> Request {
-    Request::LinearizeSwept(SweepRequest { range: range.to_string(), points })
+    Request::Linearize { sweep: Some(SweepRequest { range: range.to_string(), points }) }
 }
 
 fn swept(project: &str, range: &str, points: usize) -> Value {
@@ -40,7 +40,8 @@ fn each_value_is_that_of_linearize() {
         assert_eq!(row["value"].as_f64(), Some(length));
         let setting = format!("line.length={length}");
         let alone: Value =
-            serde_json::from_str(&answer(&hose, &[&setting], &[], &Request::Linearize).json).unwrap();
+            serde_json::from_str(&answer(&hose, &[&setting], &[], &Request::Linearize { sweep: None }).json)
+                .unwrap();
         for end in ["minimum_n_per_m", "maximum_n_per_m"] {
             assert_eq!(row["stiffness"][end], alone["stiffness"][end], "{length} {end}");
         }

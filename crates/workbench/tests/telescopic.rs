@@ -40,7 +40,7 @@ fn check_derives_its_stages() {
 /// The controller of the example is proven to stabilise every position, and its certificate holds.
 #[test]
 fn every_position_is_proven_to_be_stable() {
-    let said = answer(TELESCOPIC, &[], &[], &Request::VerifyProven { on_machine: false });
+    let said = answer(TELESCOPIC, &[], &[], &Request::Verify { proof: true, on_machine: false });
     let object: serde_json::Value = serde_json::from_str(&said.json).unwrap();
     assert_eq!(object["proof"]["stable"]["proven"], true, "{}", object["proof"]);
     for index in [0, 1] {
@@ -61,7 +61,12 @@ fn the_machine_agrees_with_the_linear_loop() {
     for position in ["100 mm", "300 mm", "400 mm"] {
         let place = format!("operating_point.position={position}");
         let scenario = "scenario=[{ name = \"step\", duration = \"1 s\", reference = [{ at = \"0.1 s\", force = \"100 N\" }] }]";
-        let said = answer(TELESCOPIC, &[VISCOUS, &place, scenario], &[], &Request::VerifyOnMachine);
+        let said = answer(
+            TELESCOPIC,
+            &[VISCOUS, &place, scenario],
+            &[],
+            &Request::Verify { proof: false, on_machine: true },
+        );
         let object: serde_json::Value = serde_json::from_str(&said.json).unwrap();
         let run = &object["machine"]["runs"][0];
         assert_eq!(run["agrees"], serde_json::Value::from(true), "{position}: {run}");
@@ -76,7 +81,8 @@ fn behind_a_linkage_the_machine_agrees_too() {
     for position in ["20 mm", "30 mm", "45 mm"] {
         let place = format!("operating_point.position={position}");
         let limit = "specification=[{ kind = \"robust_stability\", limit = 3, frequencies = [1, 10, 100] }]";
-        let said = answer(rig, &[stage, &place, limit], &[], &Request::VerifyOnMachine);
+        let said =
+            answer(rig, &[stage, &place, limit], &[], &Request::Verify { proof: false, on_machine: true });
         let object: serde_json::Value = serde_json::from_str(&said.json).unwrap();
         for run in object["machine"]["runs"].as_array().unwrap() {
             assert_eq!(run["agrees"], serde_json::Value::from(true), "{position}: {run}");
@@ -88,7 +94,7 @@ fn behind_a_linkage_the_machine_agrees_too() {
 #[test]
 fn a_steady_motion_through_a_transition_is_not_proven() {
     let verdict = |settings: &[&str]| {
-        let said = answer(TELESCOPIC, settings, &[], &Request::Verify);
+        let said = answer(TELESCOPIC, settings, &[], &Request::Verify { proof: false, on_machine: false });
         let object: serde_json::Value = serde_json::from_str(&said.json).unwrap();
         (object["verdict"].clone(), said.text)
     };

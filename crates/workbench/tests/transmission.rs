@@ -48,7 +48,8 @@ fn check_derives_its_oil() {
 /// Its controller satisfies every specification, stability is proven, and the machine does as the linear loop says.
 #[test]
 fn the_example_is_met_and_the_machine_agrees() {
-    let said = parsed(&answer(TRANSMISSION, &[], &[], &Request::VerifyOnMachine).json);
+    let said =
+        parsed(&answer(TRANSMISSION, &[], &[], &Request::Verify { proof: false, on_machine: true }).json);
     assert_eq!(said["verdict"], "met", "{}", said["specifications"]);
     for run in said["machine"]["runs"].as_array().unwrap() {
         assert_eq!(run["agrees"], Value::from(true), "{run}");
@@ -57,8 +58,13 @@ fn the_example_is_met_and_the_machine_agrees() {
     let few = "uncertainty={ flow_gain = { nominal = 5.4e-5, minimum = 3.23e-5, maximum = 5.61e-5 }, \
                \"series.line.length\" = { nominal = 2, minimum = 1.9, maximum = 2.1 } }";
     let said = parsed(
-        &answer(TRANSMISSION, &[few, "series.segments=2"], &[], &Request::VerifyProven { on_machine: false })
-            .json,
+        &answer(
+            TRANSMISSION,
+            &[few, "series.segments=2"],
+            &[],
+            &Request::Verify { proof: true, on_machine: false },
+        )
+        .json,
     );
     assert_eq!(said["proof"]["stable"]["proven"], true, "{}", said["proof"]);
 }
@@ -76,7 +82,9 @@ fn small_steps_on_the_machine_are_those_of_the_linear_loop() {
     let waves = ["line.model=transmission_line"];
     for other in [&[][..], &sprung, &waves] {
         let settings = [&[scenario, viscous, "series.segments=2"][..], &slow, other].concat();
-        let said = parsed(&answer(&certain(), &settings, &[], &Request::VerifyOnMachine).json);
+        let said = parsed(
+            &answer(&certain(), &settings, &[], &Request::Verify { proof: false, on_machine: true }).json,
+        );
         let run = &said["machine"]["runs"][0];
         assert_eq!(run["agrees"], Value::from(true), "{other:?}: {run}");
     }
@@ -86,10 +94,15 @@ fn small_steps_on_the_machine_are_those_of_the_linear_loop() {
 #[test]
 fn a_run_says_where_the_oil_tears_off() {
     let scenario = "scenario=[{ name = \"pull\", duration = \"1 s\", reference = [{ at = \"0.1 s\", force = \"-2 kN\" }] }]";
-    let said = answer(TRANSMISSION, &[scenario, "series.filling_pressure=2 bar"], &[], &Request::Simulate);
+    let said = answer(
+        TRANSMISSION,
+        &[scenario, "series.filling_pressure=2 bar"],
+        &[],
+        &Request::Simulate(Default::default()),
+    );
     assert!(said.text.contains("the oil of the transmission cavitates"), "{}", said.text);
     assert!(said.json.contains("\"cavitation_transmission\""), "{}", said.json);
-    let filled = answer(TRANSMISSION, &[scenario], &[], &Request::Simulate);
+    let filled = answer(TRANSMISSION, &[scenario], &[], &Request::Simulate(Default::default()));
     assert!(!filled.text.contains("cavitates"), "{}", filled.text);
     let warned = load(TRANSMISSION, &["series.filling_pressure=2 bar"], &[]).warnings;
     assert!(warned.iter().any(|one| one.message.contains("the oil tears off at a pull of")), "{warned:?}");
@@ -126,7 +139,7 @@ fn what_it_costs_and_weighs() {
 /// The models with one load pressure have its oil as a spring, and say so.
 #[test]
 fn the_reduced_models_say_what_they_leave_out() {
-    let page = answer(TRANSMISSION, &["series.segments=1"], &[], &Request::Linearize);
+    let page = answer(TRANSMISSION, &["series.segments=1"], &[], &Request::Linearize { sweep: None });
     assert!(
         page.text.contains(
             "inertia and resistance of the transmission are counted in the plant and its impedance alone"

@@ -18,7 +18,7 @@ const DESIGNED: [&str; 4] = [
 ];
 
 fn on_machine(settings: &[&str]) -> (bool, Value, String) {
-    let said = answer(HOSE, settings, &[], &Request::VerifyOnMachine);
+    let said = answer(HOSE, settings, &[], &Request::Verify { proof: false, on_machine: true });
     (said.affirmative, serde_json::from_str(&said.json).unwrap(), said.text)
 }
 
@@ -101,6 +101,6 @@ fn load_and_leakage_are_in_both() {
 
 #[test]
 fn a_plant_without_a_machine_is_refused() {
-    let refused = try_answer(PLANT, &[], &[], &Request::VerifyOnMachine);
+    let refused = try_answer(PLANT, &[], &[], &Request::Verify { proof: false, on_machine: true });
     assert!(matches!(refused, Err(CommandError::Procedure(ProcedureError::Rig(_)))), "{refused:?}");
 }

@@ -138,7 +138,7 @@ fn it_is_proven_where_the_plants_are_quotients() {
     let damped = SPRUNG.replace("500 N.s/m", "2000 N.s/m");
     let proven = |settings: &[&str]| -> Value {
         let loaded = with_family(&[settings, &["controller.load_velocity_feed_forward.gain=15"]].concat());
-        let request = Request::VerifyProven { on_machine: false };
+        let request = Request::Verify { proof: true, on_machine: false };
         let answer = command::answer(&Memory::default(), &loaded, &[], &request).unwrap();
         serde_json::from_str(&answer.json).unwrap()
     };
@@ -159,7 +159,13 @@ fn it_is_proven_where_the_plants_are_quotients() {
 fn the_worst_error_is_tried_on_the_machine() {
     let sensor = "velocity_sensor={ filter_frequency = \"200 Hz\", delay = \"0.5 ms\" }";
     let loaded = with_family(&["controller.load_velocity_feed_forward={}", sensor]);
-    let answer = command::answer(&Memory::default(), &loaded, &[], &Request::VerifyOnMachine).unwrap();
+    let answer = command::answer(
+        &Memory::default(),
+        &loaded,
+        &[],
+        &Request::Verify { proof: false, on_machine: true },
+    )
+    .unwrap();
     let answer: Value = serde_json::from_str(&answer.json).unwrap();
     let runs = answer["machine"]["runs"].as_array().unwrap();
     let worst = runs.iter().find(|run| run["what"].as_str().unwrap().contains("worst plant")).unwrap();

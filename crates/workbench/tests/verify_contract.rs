@@ -4,12 +4,12 @@
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
 use crate::ask::{self, HOSE, answer, json, try_answer};
-use phea_workbench::command::{CommandError, ProcedureError, Progress, Request, answer_watched};
+use phea_workbench::command::{CommandError, ProcedureError, Progress, Request, answer_into};
 use phea_workbench::shaping::Shaped;
 use serde_json::Value;
 
 fn verify(project: &str, settings: &[&str]) -> Value {
-    json(project, settings, &[], &Request::Verify)
+    json(project, settings, &[], &Request::Verify { proof: false, on_machine: false })
 }
 
 fn close(value: &Value, expected: f64, relative: f64) {
@@ -83,7 +83,7 @@ fn what_cannot_be_met_is_not_called_met() {
 
 #[test]
 fn the_text_says_the_verdict_first_and_what_it_rests_on() {
-    let text = answer(HOSE, &[], &[], &Request::Verify).text;
+    let text = answer(HOSE, &[], &[], &Request::Verify { proof: false, on_machine: false }).text;
     assert!(text.starts_with("Verdict: violated\n"));
     for words in ["11.89", "at the design frequencies alone it would have passed", "a search is not a proof"]
     {
@@ -96,7 +96,11 @@ fn the_text_says_the_verdict_first_and_what_it_rests_on() {
 fn a_feed_forward_is_told_to_be_left_out() {
     let words = "feeds forward is not";
     let shape = Request::Shape { shaped: Shaped::Controller, changes: vec![] };
-    for (text, request) in [(HOSE, Request::Linearize), (INTEGRATOR, Request::Verify), (INTEGRATOR, shape)] {
+    for (text, request) in [
+        (HOSE, Request::Linearize { sweep: None }),
+        (INTEGRATOR, Request::Verify { proof: false, on_machine: false }),
+        (INTEGRATOR, shape),
+    ] {
         for (settings, told) in [
             (vec![], false),
             (vec!["controller.load_velocity_feed_forward={ gain = 0 }"], false),
@@ -119,7 +123,7 @@ fn a_feed_forward_is_told_to_be_left_out() {
 #[test]
 fn without_a_controller_there_is_nothing_to_verify() {
     let bare = HOSE.split("[controller]").next().unwrap();
-    let refused = try_answer(bare, &[], &[], &Request::Verify);
+    let refused = try_answer(bare, &[], &[], &Request::Verify { proof: false, on_machine: false });
     assert!(matches!(refused, Err(CommandError::Procedure(ProcedureError::Audit(_)))), "{refused:?}");
 }
 
@@ -132,7 +136,14 @@ fn a_watcher_sees_progress_rise_and_can_stop_it() {
         shares.push(progress.share);
         shares.len() < 50
     };
-    let stopped = answer_watched(&source, &loaded, &[], &Request::Verify, &mut watch);
+    let stopped = answer_into(
+        &source,
+        &loaded,
+        &[],
+        &Request::Verify { proof: false, on_machine: false },
+        None,
+        &mut watch,
+    );
     assert!(matches!(stopped, Err(CommandError::Procedure(ProcedureError::Stopped))));
     assert_eq!(shares.len(), 50);
     assert!(shares.is_sorted() && shares.iter().all(|share| (0.0..=1.0).contains(share)));
@@ -140,7 +151,12 @@ fn a_watcher_sees_progress_rise_and_can_stop_it() {
 
 #[test]
 fn a_number_set_outside_of_its_own_range_is_refused_with_the_cure() {
-    let refused = try_answer(HOSE, &["linear.flow_pressure_coefficient=0"], &[], &Request::Verify);
+    let refused = try_answer(
+        HOSE,
+        &["linear.flow_pressure_coefficient=0"],
+        &[],
+        &Request::Verify { proof: false, on_machine: false },
+    );
     let words = refused.unwrap_err().to_string();
     for part in ["`linear.flow_pressure_coefficient` = 0", "6.42e-13 to 7e-11", "widen the range"] {
         assert!(words.contains(part), "{part} is missing in: {words}");

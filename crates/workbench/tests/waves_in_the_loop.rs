@@ -40,7 +40,8 @@ fn unstable(object: &Value) -> usize {
 /// moves along too, and a wall that creeps fast enough saves it.
 #[test]
 fn the_published_loop_is_unstable_with_waves() {
-    let count = |settings: &[&str]| unstable(&asked(&Request::Verify, settings));
+    let count =
+        |settings: &[&str]| unstable(&asked(&Request::Verify { proof: false, on_machine: false }, settings));
     assert_eq!(count(&[]), 0);
     // ORIGIN: recomputed by comparisons/recompute_waves.py
     assert_eq!(count(&["line.model=transmission_line"]), 4);
@@ -59,7 +60,7 @@ fn the_published_loop_is_unstable_with_waves() {
 #[test]
 fn the_step_that_is_predicted_is_the_machines() {
     let object = asked(
-        &Request::VerifyOnMachine,
+        &Request::Verify { proof: false, on_machine: true },
         &["line.model=segments", "line.segments=8", "line.relaxation_time=1 ms"],
     );
     let first = &object["machine"]["runs"][0];
@@ -89,7 +90,7 @@ fn one_rig_with_waves_is_designed_for() {
 fn worst_plants_have_their_parameters() {
     let text = include_str!("../../../examples/ybitu/hose.toml");
     let settings = ["line.model=segments", "line.segments=4", "line.relaxation_time=0.3 ms"];
-    let said = answer(text, &settings, &[], &Request::Verify);
+    let said = answer(text, &settings, &[], &Request::Verify { proof: false, on_machine: false });
     let object: Value = serde_json::from_str(&said.json).unwrap();
     let worst = &object["specifications"][1]["plant"];
     let flow_gain = worst["flow_gain"].as_f64().unwrap();
@@ -111,7 +112,7 @@ fn a_box_is_searched_between_its_members() {
     let text = format!("{start}{range}[[specification]]{specifications}");
     let moving = ["line.model=segments", "line.segments=6", "line.relaxation_time=0.5 ms"];
     let margin = |text: &str, settings: &[&str]| {
-        let said = answer(text, settings, &[], &Request::Verify);
+        let said = answer(text, settings, &[], &Request::Verify { proof: false, on_machine: false });
         let object: Value = serde_json::from_str(&said.json).unwrap();
         assert_eq!(object["stability"]["verdict"], Value::from("met"), "{}", said.text);
         object["specifications"][0]["worst_margin_db"].as_f64().unwrap()

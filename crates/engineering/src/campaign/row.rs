@@ -1,12 +1,12 @@
 //! One run as a line of a table: its drawn numbers, its end, and its metrics.
 
-use std::fmt::Write as _;
-
 use phea_hydraulics::machine::INDICATORS;
 use sha2::{Digest, Sha256};
 
 use phea_quantity::MotionKind;
 
+use super::csv::{Csv, quoted};
+use super::shortest_number;
 use super::simulate::{COMMAND_LIMIT, Cause, ERRORS_AMPLIFIED, Metrics, Window};
 
 /// Names of the metrics, in the order of a row.
@@ -155,22 +155,22 @@ pub(super) struct CampaignColumns {
 impl CampaignColumns {
     /// The line above the rows.
     pub(super) fn header(&self) -> String {
-        let mut text = "run,campaign,status,reason,ended_s,steps,occurrences".to_string();
+        let mut csv = Csv::default();
+        csv.cells(&[&"run,campaign,status,reason,ended_s,steps,occurrences"]);
         let paths = self.paths.iter().map(String::as_str);
         for name in paths.chain(LUMP_COLUMNS) {
-            let _ = write!(text, ",{}", self.motion.name(name));
+            csv.cells(&[&self.motion.name(name)]);
         }
         for (number, window) in self.windows.iter().enumerate() {
             for metric in meaningful(window, self.open_loop) {
-                let name = self.motion.name(METRIC_NAMES[metric]);
-                let _ = write!(text, ",event{}_{name}", number + 1);
+                csv.cells(&[&format!("event{}_{}", number + 1, self.motion.name(METRIC_NAMES[metric]))]);
             }
         }
         for time_s in &self.times_s {
-            let _ = write!(text, ",{}_at_{time_s}_s", self.motion.name("force_n"));
+            csv.cells(&[&format!("{}_at_{time_s}_s", self.motion.name("force_n"))]);
         }
-        text.push_str(",check\n");
-        text
+        csv.row(&[&"check"]);
+        csv.text().to_string()
     }
 
     /// The beginning of the line of a run.
@@ -191,36 +191,31 @@ impl CampaignColumns {
 
     /// A row without its end.
     fn text(&self, row: &Row) -> String {
-        let mut text = self.beginning(row.run);
-        let _ = write!(text, "{},", row.status());
+        let mut csv = Csv::default();
+        csv.cells(&[&row.run, &self.mark, &row.status()]);
         let ran = row.ran();
-        if let RowOutcome::Refused(reason) = &row.outcome {
-            let _ = write!(text, "\"{}\"", reason.replace('"', "\"\"").replace(['\n', '\r'], " "));
-        }
-        cell(&mut text, ran.and_then(|ran| ran.ended_s));
-        text.push(',');
-        if let Some(ran) = ran {
-            let _ = write!(text, "{}", ran.steps);
-        }
-        text.push(',');
-        text.push_str(&ran.map(|ran| ran.occurrences.join(";")).unwrap_or_default());
-        row.values.iter().for_each(|value| cell(&mut text, Some(*value)));
+        csv.cells(&[&match &row.outcome {
+            RowOutcome::Refused(reason) => quoted(&reason.replace(['\n', '\r'], " ")),
+            RowOutcome::Driven(_) => String::new(),
+        }]);
+        cell(&mut csv, ran.and_then(|ran| ran.ended_s));
+        csv.cells(&[&ran.map_or(String::new(), |ran| ran.steps.to_string())]);
+        csv.cells(&[&ran.map_or(String::new(), |ran| ran.occurrences.join(";"))]);
+        row.values.iter().for_each(|value| cell(&mut csv, Some(*value)));
         for lump in 0..LUMP_NAMES.len() {
-            cell(&mut text, row.lumps.map(|lumps| lumps[lump]));
+            cell(&mut csv, row.lumps.map(|lumps| lumps[lump]));
         }
         for (number, window) in self.windows.iter().enumerate() {
             let metrics = ran.and_then(|ran| ran.metrics.get(number));
             for metric in meaningful(window, self.open_loop) {
-                cell(&mut text, metrics.and_then(|metrics| metrics[metric]));
+                cell(&mut csv, metrics.and_then(|metrics| metrics[metric]));
             }
         }
         for index in 0..self.times_s.len() {
-            text.push(',');
-            if let Some(force) = ran.and_then(|ran| ran.force_n.get(index)) {
-                let _ = write!(text, "{force}");
-            }
+            let force = ran.and_then(|ran| ran.force_n.get(index));
+            csv.cells(&[&force.map_or(String::new(), f32::to_string)]);
         }
-        text
+        csv.text().to_string()
     }
 
     /// The row that a line contains.
@@ -301,15 +296,11 @@ fn number(cell: &str) -> Option<Option<f64>> {
     if cell.is_empty() { Some(None) } else { cell.parse().ok().map(Some) }
 }
 
-/// The shortest text that reads back as the same number.
-fn cell(text: &mut String, value: Option<f64>) {
-    text.push(',');
+/// The next cell; empty if there is no number.
+fn cell(csv: &mut Csv, value: Option<f64>) {
+    let text = csv.cell();
     if let Some(value) = value {
-        let size = value.abs();
-        let _ = match size == 0.0 || (1e-4..1e15).contains(&size) {
-            true => write!(text, "{value}"),
-            false => write!(text, "{value:e}"),
-        };
+        shortest_number::number(text, value);
     }
 }
 

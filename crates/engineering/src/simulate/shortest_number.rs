@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 /// The shortest text that reads back as the same number.
-pub(super) fn number(text: &mut String, value: f64) {
+pub(crate) fn number(text: &mut String, value: f64) {
     let size = value.abs();
     let plain = size == 0.0 || (1e-4..1e15).contains(&size);
     // writing to a text does not fail

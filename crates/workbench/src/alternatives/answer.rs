@@ -4,23 +4,21 @@ use super::document::told_first;
 use super::findings::{findings, of_case};
 use super::front;
 use super::{AlternativeColumn, Alternatives, ColumnPart, JudgedAlternative, JudgedCase, MovedRange};
-use crate::answer::{self, Json, Object};
+use crate::answer::{Json, Object};
 use crate::audit::verdict_key;
 use crate::design;
 use crate::linearize::passivity_body;
-use crate::project::Loaded;
 use crate::trial;
 
-/// The JSON object of `alternatives`.
-pub(crate) fn json(loaded: &Loaded, found: &Alternatives) -> String {
-    let body = Object::new()
+/// What `alternatives` says to programs.
+pub(crate) fn body(found: &Alternatives) -> Object {
+    Object::new()
         .each("alternatives", &found.judged, row)
         .with("not_reached", found.not_reached.as_slice())
         .with("warnings", told_first(found))
         .with("findings", findings(found))
         .each("load_cases", &found.cases, case)
-        .maybe("front", found.front.as_ref().map(front::json));
-    answer::json("alternatives", loaded, body)
+        .maybe("front", found.front.as_ref().map(front::json))
 }
 
 /// The same under a load case.

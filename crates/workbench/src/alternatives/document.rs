@@ -9,13 +9,15 @@ use crate::linearize::PortView;
 use crate::quantity::{DisplayUnit, significant};
 use phea_qft::verification::Verdict;
 
-/// The table and the findings.
-pub(crate) fn text(found: &Alternatives) -> String {
-    let first: String = told_first(found).iter().map(|sentence| format!("warning: {sentence}\n")).collect();
-    format!("{first}{}", document(found).text())
+/// The table and the findings, below what must be known first.
+pub(crate) fn output(found: &Alternatives) -> Document {
+    let mut out = Document::default();
+    out.warnings(told_first(found));
+    out.append(document(found));
+    out
 }
 
-/// The same as a document; its figures follow.
+/// The table and the findings; the figures follow.
 pub(crate) fn document(found: &Alternatives) -> Document {
     let mut out = Document::default();
     out.table(summary::table(found));

@@ -112,15 +112,16 @@ fn table(file: &str, groups: &[(&str, &[JudgedAlternative])]) -> OutputFile {
             let value = at(columns, part, key).and_then(|column| column.value.clone().ok());
             value.map_or(String::new(), |value| value.to_string())
         };
-        let values = named.iter().map(value).collect::<Vec<_>>().join(",");
-        let words = [stable(one), machine(one), port(one, false), port(one, true)];
-        let words = words.map(|cell| quoted(&cell.text())).join(",");
-        match groups.len() {
-            1 => csv.row(&[&quoted(&one.name), &feasible, &values, &words]),
-            _ => csv.row(&[&quoted(case), &quoted(&one.name), &feasible, &values, &words]),
+        if groups.len() > 1 {
+            csv.cells(&[&quoted(case)]);
         }
+        csv.cells(&[&quoted(&one.name), &feasible]);
+        named.iter().for_each(|column| csv.cells(&[&value(column)]));
+        let [stable, machine, open, closed] =
+            [stable(one), machine(one), port(one, false), port(one, true)].map(|cell| quoted(&cell.text()));
+        csv.row(&[&stable, &machine, &open, &closed]);
     }
-    csv.file(file)
+    OutputFile::new(file, csv.text())
 }
 
 fn heading(part: &ColumnPart, key: &str) -> String {

@@ -149,11 +149,11 @@ pub(super) fn csv(front: &Front) -> OutputFile {
         let value = |value: &Result<FrontValue, String>| {
             value.as_ref().map_or(String::new(), |found| found.value.to_string())
         };
-        let values = point.values.iter().map(value).collect::<Vec<_>>().join(",");
-        let name = quoted(&point.alternative);
-        csv.row(&[&name, &point.value, &feasible, &point.comparable, &values, &point.is_on_front()]);
+        csv.cells(&[&quoted(&point.alternative), &point.value, &feasible, &point.comparable]);
+        point.values.iter().for_each(|found| csv.cells(&[&value(found)]));
+        csv.row(&[&point.is_on_front()]);
     }
-    csv.file("front.csv")
+    OutputFile::new("front.csv", csv.text())
 }
 
 /// The points of every alternative; `None` where no point has all values.

@@ -21,7 +21,7 @@ pub(crate) enum Json {
 
 /// An object of JSON, whose keys are in the order in which they were added.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Object(Vec<(String, Json)>);
+pub struct Object(Vec<(String, Json)>);
 
 impl Object {
     /// Without a key.
@@ -74,8 +74,13 @@ impl Object {
         self
     }
 
+    /// Its keys with their values, in their order.
+    pub(crate) fn entries(self) -> impl Iterator<Item = (String, Json)> {
+        self.0.into_iter()
+    }
+
     /// Printed by itself.
-    pub(crate) fn print(&self) -> String {
+    pub fn print(&self) -> String {
         // every key is a text and every number is finite, so that nothing can fail
         serde_json::to_string_pretty(self).unwrap_or_default()
     }

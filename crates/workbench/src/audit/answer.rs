@@ -6,18 +6,12 @@ use super::{ProjectAudit, ReachedLimit, VelocityNoise};
 use super::{
     evidence_key, kind_key, kind_words, remark_sentences, stability_reason, verdict_key, why_not_proven,
 };
-use crate::answer::{self, Csv, Object, OutputFile};
+use crate::answer::{Csv, Object, OutputFile, envelope};
 use crate::project::Loaded;
-use crate::trial::{self, Trial};
 
-/// The JSON object of `verify`.
-pub fn json(loaded: &Loaded, view: &ProjectAudit) -> String {
-    answer::json("verify", loaded, body(view))
-}
-
-/// The JSON object of `verify --on-machine`.
-pub(crate) fn json_on_machine(loaded: &Loaded, view: &ProjectAudit, trial: &Trial) -> String {
-    answer::json("verify", loaded, body(view).with("machine", trial::body(trial)))
+/// The JSON object of `verify`, as a file.
+pub(crate) fn json(loaded: &Loaded, view: &ProjectAudit) -> String {
+    envelope("verify", loaded).and(body(view)).print()
 }
 
 /// An audit in JSON, without the keys of every object.
@@ -153,5 +147,5 @@ pub fn files(view: &ProjectAudit) -> Vec<OutputFile> {
             csv.row(&[&index, &kind_key(&finding.requirement), frequency, margin]);
         }
     }
-    vec![csv.file("margins.csv")]
+    vec![OutputFile::new("margins.csv", csv.text())]
 }

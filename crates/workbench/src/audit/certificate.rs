@@ -7,6 +7,7 @@ use phea_qft::proof::{Certificate, CertificateSide, Claim, LimitedLoop, Rejectio
 
 use super::{ProjectAudit, closed_loop_key};
 use crate::answer::{Answer, Object, OutputFile, SCHEMA};
+use crate::document::Document;
 use crate::project::Loaded;
 pub use layout::CertificateError;
 use layout::File;
@@ -46,21 +47,20 @@ fn answer(
     rejected: Option<&(usize, Rejection)>,
 ) -> Answer {
     let claims: Vec<String> = certificate.claims.iter().map(|claim| sentence(certificate, claim)).collect();
-    let mut text = format!("{title}\n");
-    for (index, claim) in claims.iter().enumerate() {
+    let mut out = Document::default();
+    out.line(title);
+    out.sentences(claims.iter().enumerate().map(|(index, claim)| {
         let word = match rejected {
             Some((number, _)) if *number == index + 1 => "rejected",
             Some((number, _)) if *number < index + 1 => "not checked",
             _ => "holds",
         };
-        text.push_str(&format!("  {word}: {claim}\n"));
-    }
-    match rejected {
-        Some((number, reason)) => {
-            text.push_str(&format!("The certificate is rejected at claim {number}: {reason}.\n"))
-        }
-        None => text.push_str(&format!("Every claim holds: {}.\n", claims.len())),
-    }
+        format!("{word}: {claim}")
+    }));
+    out.line(match rejected {
+        Some((number, reason)) => format!("The certificate is rejected at claim {number}: {reason}."),
+        None => format!("Every claim holds: {}.", claims.len()),
+    });
     let body = Object::new()
         .with("schema", SCHEMA)
         .with("version", env!("CARGO_PKG_VERSION"))
@@ -71,7 +71,7 @@ fn answer(
         .with("claims", claims)
         .maybe("rejected_claim", rejected.map(|(number, _)| *number))
         .maybe("reason", rejected.map(|(_, reason)| reason.to_string()));
-    Answer { text, json: body.print(), files: vec![], affirmative: rejected.is_none() }
+    Answer { text: out.text(), json: body.print(), files: vec![], affirmative: rejected.is_none() }
 }
 
 /// The frequencies of a claim.

@@ -15,22 +15,14 @@ use crate::grouped::grouped;
 use crate::quantity::DisplayUnit;
 use crate::trial::{self, Trial};
 
-/// The tables and sentences of `verify` for people.
-pub fn text(view: &ProjectAudit) -> String {
-    with_proof(view).text()
-}
-
-fn with_proof(view: &ProjectAudit) -> Document {
+/// The tables and sentences of `verify` for people, with the trial on the machine where there is one.
+pub fn output(view: &ProjectAudit, tried: Option<&Trial>) -> Document {
     let mut out = document(view, vec![]);
     out.append(proven(view, "What is proven"));
+    if let Some(trial) = tried {
+        out.append(trial::document(trial, None));
+    }
     out
-}
-
-/// The same with the trial on the machine.
-pub(crate) fn text_on_machine(view: &ProjectAudit, tried: &Trial) -> String {
-    let mut out = with_proof(view);
-    out.append(trial::document(tried, None));
-    out.text()
 }
 
 /// An audit: the verdict first, then the figures, then its basis.

@@ -3,9 +3,8 @@
 use super::line::line_test;
 use super::table::{BenchColumn, BenchTable};
 use super::{BenchRow, BenchRun, BenchSeries, FrictionRun, ReversalReading, friction};
-use crate::answer::{self, Json, Object, OutputFile};
+use crate::answer::{Json, Object, OutputFile};
 use crate::line_test::LineRun;
-use crate::project::Loaded;
 use crate::quantity::DisplayUnit;
 
 /// What a test records.
@@ -57,14 +56,13 @@ fn reversals(found: &ReversalReading) -> Object {
         .with("threshold_share_of_nominal", found.threshold.0 / found.nominal_voltage)
 }
 
-/// The JSON object of `bench`.
-pub fn json(
-    loaded: &Loaded,
+/// What `bench` says to programs.
+pub(crate) fn body(
     remarks: Vec<&'static str>,
     runs: &[BenchRun],
     lines: &[LineRun],
     of_friction: &[FrictionRun],
-) -> String {
+) -> Object {
     let test = |run: &BenchRun| {
         recorded(run)
             .json_of_signals()
@@ -77,7 +75,7 @@ pub fn json(
         .each("tests", runs, test)
         .maybe("line_tests", some(lines.iter().map(|run| line_test(run).into()).collect()));
     let of_friction = of_friction.iter().map(|run| friction::recorded(run).json_of_signals().into());
-    answer::json("bench", loaded, out.maybe("friction_runs", some(of_friction.collect())))
+    out.maybe("friction_runs", some(of_friction.collect()))
 }
 
 /// The tables, a file for each test.

@@ -1,14 +1,21 @@
 //! The tests of the bench for people.
 
 use super::answer::recorded;
-use super::{BenchRun, BenchSeries, FrictionRun, ReversalReading, friction};
+use super::{BenchRun, BenchSeries, FrictionRun, ReversalReading, friction, line};
 use crate::answer::significant;
 use crate::document::Document;
+use crate::line_test::LineRun;
 use crate::project::Loaded;
 use crate::quantity::{PRESSURE, display};
 
 /// A table for each test.
-pub fn text(loaded: &Loaded, remarks: &[&str], runs: &[BenchRun], of_friction: &[FrictionRun]) -> String {
+pub(crate) fn document(
+    loaded: &Loaded,
+    remarks: &[&str],
+    runs: &[BenchRun],
+    of_friction: &[FrictionRun],
+    lines: &[LineRun],
+) -> Document {
     let mut out = Document::default();
     out.sentences(remarks.iter().map(|remark| remark.to_string()));
     for run in runs {
@@ -21,7 +28,10 @@ pub fn text(loaded: &Loaded, remarks: &[&str], runs: &[BenchRun], of_friction: &
     for run in of_friction {
         friction::recorded(run).tell(6, &mut out);
     }
-    out.text()
+    for run in lines {
+        line::recorded(run).tell(4, &mut out);
+    }
+    out
 }
 
 /// That the pump did not keep the pressure.

@@ -2,12 +2,11 @@
 
 use super::table::{BenchColumn, BenchTable};
 use crate::answer::{Object, OutputFile};
-use crate::document::Document;
 use crate::line_test::{LineRun, LineSeries};
 use crate::quantity::DisplayUnit;
 
 /// What a test records.
-fn recorded(run: &LineRun) -> BenchTable {
+pub(super) fn recorded(run: &LineRun) -> BenchTable {
     let litres = DisplayUnit::LITRE_PER_MINUTE;
     let (name, quantity, unit, factor, si) = match run.series {
         LineSeries::PressureRise => ("volume_ml", "volume displaced into the line", "mL", 1e6, "m3"),
@@ -25,15 +24,6 @@ fn recorded(run: &LineRun) -> BenchTable {
         times: run.times.clone(),
         columns: vec![input, pressure],
     }
-}
-
-/// A table for each test.
-pub(crate) fn line_text(runs: &[LineRun]) -> String {
-    let mut out = Document::default();
-    for run in runs {
-        recorded(run).tell(4, &mut out);
-    }
-    if runs.is_empty() { String::new() } else { format!("\n{}", out.text()) }
 }
 
 fn title(series: LineSeries) -> &'static str {

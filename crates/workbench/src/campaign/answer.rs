@@ -5,18 +5,12 @@ use super::{Draw, Plan};
 use super::{LUMP_NAMES, METRIC_NAMES, STATUS_WORDS, meaningful};
 use super::{QUANTILES, Spread};
 use super::{Summary, WorstRun};
-use crate::answer::{self, Object};
+use crate::answer::Object;
 use crate::project::Loaded;
 use crate::simulate::{self, ScenarioRun};
 
-/// The JSON object of a campaign. Runs are counted from 0; `until` is beyond the last.
-pub(crate) fn json(
-    loaded: &Loaded,
-    plan: &Plan,
-    wanted: RequestedRuns,
-    rows: usize,
-    summary: &Summary,
-) -> String {
+/// What a campaign says to programs. Runs are counted from 0; `until` is beyond the last.
+pub(crate) fn body(plan: &Plan, wanted: RequestedRuns, rows: usize, summary: &Summary) -> Object {
     let runs = wanted.shard.runs_of(wanted.runs);
     let counted = Object::new()
         .with("asked", wanted.runs)
@@ -31,7 +25,7 @@ pub(crate) fn json(
         0..QUANTILES.len(),
         |quantile| summary.bands.force_n.iter().map(|forces| forces[quantile]).collect::<Vec<f64>>(),
     );
-    let body = Object::new()
+    Object::new()
         .with("scenario", plan.scenario())
         .with("seed", plan.seed())
         .with("runs", counted)
@@ -57,24 +51,21 @@ pub(crate) fn json(
         .with("metrics", events(plan, summary))
         .with("lumps", lumps(plan, summary))
         .with("bands", bands)
-        .each("worst_runs", &summary.worst, |worst| worst_run(plan, worst));
-    answer::json("campaign", loaded, body)
+        .each("worst_runs", &summary.worst, |worst| worst_run(plan, worst))
 }
 
-/// The JSON object of one run.
-pub(crate) fn run_json(
-    loaded: &Loaded,
+/// What one run says to programs.
+pub(crate) fn run_body(
     (plan, draw): (&Plan, &Draw),
     settings: &[String],
     (drawn, runs): (&Loaded, &[ScenarioRun]),
-) -> String {
-    let body = Object::new()
+) -> Object {
+    Object::new()
         .with("scenario", plan.scenario())
         .with("seed", plan.seed())
         .with("run", draw.run)
         .with("run_settings", settings)
-        .and(simulate::body(drawn, runs));
-    answer::json("campaign", loaded, body)
+        .and(simulate::body(drawn, runs))
 }
 
 fn events(plan: &Plan, summary: &Summary) -> Vec<Object> {

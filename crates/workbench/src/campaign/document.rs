@@ -6,7 +6,7 @@ use super::{Draw, Plan};
 use super::{LUMP_NAMES, METRIC_NAMES, STATUS_WORDS, meaningful};
 use super::{QUANTILES, Spread};
 use crate::answer::significant;
-use crate::document::{Cell, Table};
+use crate::document::{Cell, Document, Table};
 use crate::project::Loaded;
 use crate::simulate::{self, ScenarioRun, cause_words, metric_of};
 
@@ -45,44 +45,42 @@ fn without(metric: usize, spread: Option<Spread>, driven: usize) -> Option<Strin
 }
 
 /// Tables and sentences of a campaign; whether its rows are kept.
-pub(crate) fn text(
+pub(crate) fn document(
     plan: &Plan,
     (wanted, kept): (RequestedRuns, bool),
     rows: usize,
     summary: &Summary,
-) -> String {
+) -> Document {
     let runs = wanted.shard.runs_of(wanted.runs);
     let asked = runs.end - runs.start;
-    let mut out = format!("{}: {}, seed {}\n", plan.scenario(), counted(rows), plan.seed());
+    let mut out = Document::default();
+    out.line(format!("{}: {}, seed {}", plan.scenario(), counted(rows), plan.seed()));
     if (rows as u64) < asked {
         let next = match kept {
             true => "the same command continues from there",
             false => "with --out they would be kept, and the same command would continue from there",
         };
-        out.push_str(&format!("Stopped after {rows} of {asked} runs; {next}.\n"));
+        out.line(format!("Stopped after {rows} of {asked} runs; {next}."));
     }
-    for (word, count) in STATUS_WORDS.iter().zip(summary.statuses).filter(|(_, count)| *count > 0) {
-        out.push_str(&format!("  {count} {}\n", word.replace('_', " ")));
-    }
-    for (run, reason) in summary.refused.iter().take(TOLD) {
-        out.push_str(&format!("  run {run}: {reason}\n"));
-    }
-    for (run, word, time_s) in summary.ended.iter().take(TOLD) {
-        out.push_str(&format!("  run {run}: {} at {} s\n", word.replace('_', " "), significant(*time_s, 4)));
-    }
-    for (kind, count, first) in &summary.occurrences {
-        out.push_str(&format!(
-            "  {} in {}, the first is run {first}\n",
-            kind.replace('_', " "),
-            counted(*count)
-        ));
-    }
+    let statuses = STATUS_WORDS.iter().zip(summary.statuses).filter(|(_, count)| *count > 0);
+    out.sentences(statuses.map(|(word, count)| format!("{count} {}", word.replace('_', " "))));
+    out.sentences(summary.refused.iter().take(TOLD).map(|(run, reason)| format!("run {run}: {reason}")));
+    let ended = summary.ended.iter().take(TOLD).map(|(run, word, time_s)| {
+        format!("run {run}: {} at {} s", word.replace('_', " "), significant(*time_s, 4))
+    });
+    out.sentences(ended);
+    out.sentences(summary.occurrences.iter().map(|(kind, count, first)| {
+        format!("{} in {}, the first is run {first}", kind.replace('_', " "), counted(*count))
+    }));
     if rows > 0 {
-        out.push_str(&format!("\n{}\n\n{}\n", metrics(plan, summary).text(), lumps(plan, summary).text()));
+        out.gap();
+        out.table(metrics(plan, summary));
+        out.gap();
+        out.table(lumps(plan, summary));
     }
     if let Some(worst) = summary.worst.first() {
-        out.push_str(&format!(
-            "To repeat a run: --run INDEX, such as --run {}; it prints the numbers as --set, and everything that happened.\n",
+        out.line(format!(
+            "To repeat a run: --run INDEX, such as --run {}; it prints the numbers as --set, and everything that happened.",
             worst.run
         ));
     }
@@ -136,7 +134,16 @@ pub(crate) fn lumps(plan: &Plan, summary: &Summary) -> Table {
 }
 
 /// One run: its numbers as settings, and the output of `simulate`.
-pub(crate) fn run_text(draw: &Draw, settings: &[String], drawn: &Loaded, runs: &[ScenarioRun]) -> String {
-    let lines: String = settings.iter().map(|setting| format!("  --set \"{setting}\"\n")).collect();
-    format!("Run {}:\n{lines}\n{}", draw.run, simulate::text(drawn, runs))
+pub(crate) fn run_document(
+    draw: &Draw,
+    settings: &[String],
+    drawn: &Loaded,
+    runs: &[ScenarioRun],
+) -> Document {
+    let mut out = Document::default();
+    out.line(format!("Run {}:", draw.run));
+    out.sentences(settings.iter().map(|setting| format!("--set \"{setting}\"")));
+    out.gap();
+    out.append(simulate::document(drawn, runs));
+    out
 }

@@ -1,12 +1,12 @@
 //! `alternatives`: one project with several sets of values, judged side by side.
 
 use super::simulate::frequencies;
+use super::told::Told;
 use super::{CommandError, ProcedureError, Watch};
 use crate::alternatives::{
     self, AlternativesOptions as Asked, AskedAlternative, FrontRequest, IMPEDANCE_AT, asked, asked_cases,
     judge, outside_words,
 };
-use crate::answer::Answer;
 use crate::linearize::SweepRequest;
 use crate::project::{AS_DECLARED, Loaded};
 use crate::source::Source;
@@ -43,11 +43,11 @@ pub(super) fn alternatives_answer(
     catalogues: &[String],
     request: &AlternativesRequest,
     watch: Watch<'_>,
-) -> Result<Answer, CommandError> {
+) -> Result<Told, CommandError> {
     let found = judge(source, loaded, catalogues, &request.read()?, watch)?;
-    Ok(Answer {
-        text: alternatives::text(&found),
-        json: alternatives::json(loaded, &found),
+    Ok(Told {
+        document: alternatives::output(&found),
+        body: alternatives::body(&found),
         files: if request.files { alternatives::files(&found) } else { vec![] },
         affirmative: found.is_complete(),
     })

@@ -1,10 +1,9 @@
 //! Campaigns as a command: all runs with their rows stored, or one run again.
 
+use super::told::Told;
 use super::{CommandError, Watch, with_recordings};
 use crate::answer::{Answer, TableFormat};
 use crate::campaign::{self, CampaignError, Plan, RequestedRuns, RowStore, Summary};
-use crate::identify::heading_in_use;
-use crate::motion;
 use crate::project::{self, Loaded};
 use crate::setup::Setup;
 use crate::simulate::{self, RunOutput, simulate_into};
@@ -50,8 +49,8 @@ pub fn campaign_watched(
     let wanted = match request.asked {
         CampaignRuns::All(wanted) => wanted,
         CampaignRuns::One(run) => {
-            let answer = one(source, loaded, catalogues, (&plan, run), destination, watch)?;
-            return Ok(motion::said(answer, loaded));
+            let told = one(source, loaded, catalogues, (&plan, run), destination, watch)?;
+            return Ok(told.print("campaign", std::slice::from_ref(loaded)));
         }
     };
     let rows = campaign::campaign(&plan, wanted, ledger, watch)?;
@@ -62,13 +61,13 @@ pub fn campaign_watched(
         true => campaign::files(&plan, (&wanted.shard, &rows), &summary)?,
         false => vec![],
     };
-    let answer = Answer {
-        text: heading_in_use(loaded) + &campaign::text(&plan, (wanted, request.files), rows.len(), &summary),
-        json: campaign::json(loaded, &plan, wanted, rows.len(), &summary),
+    let told = Told {
+        document: campaign::document(&plan, (wanted, request.files), rows.len(), &summary),
+        body: campaign::body(&plan, wanted, rows.len(), &summary),
         files,
         affirmative: complete,
     };
-    Ok(motion::said(answer, loaded))
+    Ok(told.print("campaign", std::slice::from_ref(loaded)))
 }
 
 /// One run: its numbers as settings of the project, and the complete output of `simulate` with
@@ -80,7 +79,7 @@ fn one(
     (plan, run): (&Plan, u64),
     destination: Option<&dyn Destination>,
     watch: Watch<'_>,
-) -> Result<Answer, CommandError> {
+) -> Result<Told, CommandError> {
     let draw = plan.draw(run);
     let settings = plan.settings(&draw);
     let all: Vec<String> = loaded.all_settings().into_iter().chain(settings.iter().cloned()).collect();
@@ -90,9 +89,9 @@ fn one(
     let table = destination.map(|destination| (destination, TableFormat::Csv));
     let output = RunOutput { samples: false, table };
     let runs = simulate_into(source, &Setup::new(&drawn.project)?, output, watch)?;
-    Ok(Answer {
-        text: heading_in_use(loaded) + &campaign::run_text(&draw, &settings, &drawn, &runs),
-        json: campaign::run_json(loaded, (plan, &draw), &settings, (&drawn, &runs)),
+    Ok(Told {
+        document: campaign::run_document(&draw, &settings, &drawn, &runs),
+        body: campaign::run_body((plan, &draw), &settings, (&drawn, &runs)),
         files: simulate::files(&drawn, &runs),
         affirmative: runs.iter().all(|run| run.stopped().is_none()),
     })

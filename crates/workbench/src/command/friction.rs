@@ -46,7 +46,7 @@ pub fn friction_watched(
         files.extend(picture_files(&friction::pictures(&found)));
     }
     Ok(Answer {
-        text: friction::text(&found),
+        text: friction::document(&found).text(),
         json: friction::json(loaded, &found),
         files,
         affirmative: found.has_converged() && found.estimates.iter().all(|one| one.untold.is_none()),

@@ -60,7 +60,7 @@ pub fn identify_watched(
         written.extend(picture_files(&ValveFigures::of(&found).all()));
     }
     Ok(Answer {
-        text: identify::text(&found, &read, region.as_ref()),
+        text: identify::document(&found, &read, region.as_ref()).text(),
         json: identify::json(loaded, &found, &read, region.as_ref()),
         files: written,
         affirmative: found.has_converged() && found.untold.is_empty(),

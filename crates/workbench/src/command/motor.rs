@@ -11,25 +11,12 @@ pub(super) fn refuse(loaded: &Loaded, request: &Request) -> Result<(), CommandEr
     if !loaded.project.motion().is_rotary() {
         return Ok(());
     }
-    let command = match request {
-        Request::Check
-        | Request::Linearize
-        | Request::Verify
-        | Request::VerifyOnMachine
-        | Request::VerifyProven { .. }
-        | Request::Design { .. }
-        | Request::Simulate
-        | Request::SimulateAs(_)
-        | Request::LinearizeSwept(_)
-        | Request::Alternatives(_)
-        | Request::ReportOfAlternatives { .. }
-        | Request::Campaign(_)
-        | Request::Compare
-        | Request::Report
-        | Request::Page => return Ok(()),
-        other => other.name(),
-    };
-    Err(CommandError::OfCylinders { command })
+    match request {
+        Request::Size { .. } | Request::Shape { .. } | Request::Bench => {
+            Err(CommandError::OfCylinders { command: request.name() })
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Refuses projects side by side of which some turn and others do not.

@@ -45,7 +45,7 @@ pub fn response_watched(
     let pictures = picture_files(&drawn);
     let files = response::files(&found).into_iter().chain(pictures).collect();
     Ok(Answer {
-        text: response::text(&found),
+        text: response::document(&found).text(),
         json: response::json(loaded, &found),
         files,
         affirmative: true,

@@ -1,13 +1,15 @@
 //! `simulate`: scenarios, or a frequency response.
 
+use super::told::Told;
 use super::{CommandError, Watch, positive};
-use crate::answer::{Answer, OutputFile, TableFormat, picture_files};
+use crate::answer::{OutputFile, TableFormat, picture_files};
 use crate::project::Loaded;
 use crate::quantity::{ANGULAR_FREQUENCY, Dimension, FORCE, VOLTAGE};
 use crate::setup::Setup;
 use crate::simulate::{
-    FrequencyRequest, RunOutput, ScenarioRun, figure_files, files, frequency_files, frequency_json,
-    frequency_pictures, frequency_response, frequency_text, json, simulate_checked, simulate_into, text,
+    FrequencyRequest, RunOutput, ScenarioRun, body, document, figure_files, files, frequency_body,
+    frequency_document, frequency_files, frequency_pictures, frequency_response, simulate_checked,
+    simulate_into,
 };
 use crate::source::{Destination, Source};
 
@@ -67,7 +69,7 @@ pub(super) fn simulate_answer(
     asked: &SimulateRequest,
     destination: Option<&dyn Destination>,
     watch: Watch<'_>,
-) -> Result<Answer, CommandError> {
+) -> Result<Told, CommandError> {
     if let Some(options) = &asked.frequency_response {
         return frequency_answer(loaded, asked, &options.request()?, watch);
     }
@@ -83,9 +85,9 @@ pub(super) fn simulate_answer(
         written.extend(figure_files(&runs));
     }
     let all = runs.len() == loaded.project.scenarios.len();
-    Ok(Answer {
-        text: text(loaded, &runs),
-        json: json(loaded, &runs),
+    Ok(Told {
+        document: document(loaded, &runs),
+        body: body(loaded, &runs),
         files: written,
         affirmative: all && runs.iter().all(|run: &ScenarioRun| run.stopped().is_none()),
     })
@@ -96,16 +98,16 @@ fn frequency_answer(
     asked: &SimulateRequest,
     request: &FrequencyRequest,
     watch: Watch<'_>,
-) -> Result<Answer, CommandError> {
+) -> Result<Told, CommandError> {
     let found = frequency_response(&Setup::new(&loaded.project)?, request, watch)?;
     // writing to memory cannot fail
     let mut written: Vec<OutputFile> = frequency_files(&found, asked.table).unwrap_or_default();
     if asked.figures {
         written.extend(picture_files(&frequency_pictures(&found)));
     }
-    Ok(Answer {
-        text: frequency_text(&found),
-        json: frequency_json(loaded, &found),
+    Ok(Told {
+        document: frequency_document(&found),
+        body: frequency_body(loaded, &found),
         files: written,
         affirmative: found.is_settled(),
     })

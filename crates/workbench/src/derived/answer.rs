@@ -1,26 +1,25 @@
 use super::Derived;
-use crate::answer::{self, Csv, Object, OutputFile, quoted};
+use crate::answer::{Csv, Object, OutputFile, quoted};
 use crate::family::{Extreme, VisitedRange};
 use crate::project::Loaded;
 use crate::replaced::{ReplacedRange, replaced_ranges};
 use crate::specification::{CheckedWish, wish_row};
 
-/// The JSON object of `check`; `told` are warnings in addition to those of the reader.
-pub fn json(
+/// What `check` says to programs; `told` are warnings in addition to those of the reader.
+pub(crate) fn body(
     loaded: &Loaded,
     derived: &[Derived],
     visited: Option<&[VisitedRange]>,
     wishes: &[CheckedWish],
     told: Vec<String>,
-) -> String {
+) -> Object {
     let warnings = loaded.warnings.iter().map(|warning| warning.message.clone());
-    let body = Object::new()
+    Object::new()
         .each("derived", derived, row)
         .maybe("visited_box", visited.map(|ranges| ranges.iter().map(range).collect::<Vec<_>>()))
         .each("replaced", &replaced_ranges(&loaded.project, visited.unwrap_or_default()), replaced)
         .each("wishes", wishes, wish_row)
-        .with("warnings", told.into_iter().chain(warnings).collect::<Vec<_>>());
-    answer::json("check", loaded, body)
+        .with("warnings", told.into_iter().chain(warnings).collect::<Vec<_>>())
 }
 
 fn replaced(range: &ReplacedRange) -> Object {
@@ -78,5 +77,5 @@ pub fn files(derived: &[Derived]) -> Vec<OutputFile> {
         let equation = quoted(&quantity.equation.replace(['{', '}'], ""));
         csv.row(&[&quantity.name, &value, &quantity.unit, &equation, &stated]);
     }
-    vec![csv.file("derived.csv")]
+    vec![OutputFile::new("derived.csv", csv.text())]
 }

@@ -7,11 +7,6 @@ use crate::family::{Extreme, VisitedRange};
 use crate::project::Project;
 use crate::replaced::{ReplacedRange, replaced_ranges};
 
-/// The tables of `check`, and a sentence for each contradiction.
-pub fn text(derived: &[Derived]) -> String {
-    document(derived).text()
-}
-
 /// All derived quantities, and the values that the project states instead.
 pub(crate) fn document(derived: &[Derived]) -> Document {
     let mut out = Document::default();
@@ -44,7 +39,7 @@ fn cells(quantity: &Derived) -> [Cell; 4] {
 }
 
 /// The box of linear parameters that the family visits, for people.
-pub(crate) fn visited_text(project: &Project, ranges: &[VisitedRange]) -> String {
+pub(crate) fn visited(project: &Project, ranges: &[VisitedRange]) -> Document {
     let mut out = Document::default();
     out.heading(
         "The box of the family: the parameters of the linear model over its operating points and numbers",
@@ -67,7 +62,7 @@ pub(crate) fn visited_text(project: &Project, ranges: &[VisitedRange]) -> String
         out.section("The ranges that the family replaces", replaced_table(&replaced));
         out.sentences(replaced_sentences(&replaced));
     }
-    out.text()
+    out
 }
 
 /// The ranges that a family replaces, with what it visits.

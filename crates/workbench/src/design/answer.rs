@@ -10,18 +10,12 @@ use phea_qft::verification::PlantPoint;
 use super::AuditedController;
 use super::{Explanation, ProjectDesign};
 use super::{objective_key, part_key, status_key};
-use crate::answer::{self, Json, Object};
+use crate::answer::{Json, Object};
 use crate::audit;
-use crate::project::Loaded;
 use crate::trial::{self, Agreement};
 
-/// The JSON object of `design`.
-pub fn json(loaded: &Loaded, view: &ProjectDesign) -> Result<String, LinearError> {
-    Ok(answer::json("design", loaded, body(view)?))
-}
-
 /// A design in JSON, without the keys of every object.
-pub(crate) fn body(view: &ProjectDesign) -> Result<Object, LinearError> {
+pub fn body(view: &ProjectDesign) -> Result<Object, LinearError> {
     let design = &view.design;
     let side = &view.designed;
     let prefilter = side.problem.has_prefilter.then(|| factors(side.problem.compensation.prefilter()));

@@ -20,7 +20,7 @@ const DIGITS: usize = 5;
 
 /// The output of `design` for people: the status first, then the controller, its performance, and
 /// the evidence.
-pub fn text(loaded: &Loaded, view: &ProjectDesign) -> Result<String, LinearError> {
+pub fn output(loaded: &Loaded, view: &ProjectDesign) -> Result<Document, LinearError> {
     let mut out = status(view);
     if view.minimum_delay_margin_s > 0.0 {
         let does = if view.bears_its_delay { "tolerates" } else { "does not tolerate" };
@@ -47,8 +47,11 @@ pub fn text(loaded: &Loaded, view: &ProjectDesign) -> Result<String, LinearError
     out.heading("Audit of the designed controller");
     out.append(audit::document(&view.designed.view, vec![]));
     out.append(audit::proven(&view.designed.view, "What is proven of the designed controller"));
-    out.preformatted(settings_sentence(loaded));
-    Ok(out.text())
+    if let Some(sentence) = settings_sentence(loaded) {
+        out.gap();
+        out.line(sentence);
+    }
+    Ok(out)
 }
 
 /// How the search ended, what is known whatever a search finds, and the audit of the result.
@@ -251,18 +254,17 @@ fn starts_sentence(starts: &Starts) -> String {
 }
 
 /// Settings of the command line are not in the file that a design writes.
-fn settings_sentence(loaded: &Loaded) -> String {
+fn settings_sentence(loaded: &Loaded) -> Option<String> {
     let others: Vec<&str> = loaded
         .settings
         .iter()
         .map(|setting| setting.trim())
         .filter(|setting| !setting.starts_with("controller") || setting.contains("quantization"))
         .collect();
-    if others.is_empty() {
-        return String::new();
-    }
-    format!(
-        "\nA project written by this design does not contain what was set on the command line: --set {}\n",
-        others.join(" --set ")
-    )
+    (!others.is_empty()).then(|| {
+        format!(
+            "A project written by this design does not contain what was set on the command line: --set {}",
+            others.join(" --set ")
+        )
+    })
 }

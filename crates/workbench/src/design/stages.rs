@@ -76,7 +76,7 @@ fn drawn(problem: &RobustProblem) -> Vec<f64> {
 /// L0 over frequency, and at the design frequencies how far it lies from the bounds.
 fn nominal_loop(problem: &RobustProblem, found: &[DesignFrequency]) -> Result<OutputFile, LinearError> {
     let mut csv = Csv::new("frequency_rad_per_s,magnitude_db,phase_deg,allowed,distance_db");
-    let Some(nominal) = problem.nominal()? else { return Ok(csv.file(LOOP)) };
+    let Some(nominal) = problem.nominal()? else { return Ok(OutputFile::new(LOOP, csv.text())) };
     for frequency in drawn(problem) {
         let Some(response) = problem.response(&nominal, frequency) else { continue };
         let value = response.open_loop();
@@ -91,7 +91,7 @@ fn nominal_loop(problem: &RobustProblem, found: &[DesignFrequency]) -> Result<Ou
         };
         csv.row(&[&frequency, &decibels(magnitude), &phase, &allowed, &distance]);
     }
-    Ok(csv.file(LOOP))
+    Ok(OutputFile::new(LOOP, csv.text()))
 }
 
 /// Least and greatest |F T| of the members against the limits of tracking, and the remaining
@@ -125,7 +125,7 @@ fn prefilter_band(side: &AuditedController) -> Result<Option<OutputFile>, Linear
             csv.row(&[&index, &frequency, &low, &least, &greatest, &high, &below, &above]);
         }
     }
-    Ok(any.then(|| csv.file("prefilter_band.csv")))
+    Ok(any.then(|| OutputFile::new("prefilter_band.csv", csv.text())))
 }
 
 fn rounds(view: &ProjectDesign) -> OutputFile {
@@ -145,7 +145,7 @@ fn rounds(view: &ProjectDesign) -> OutputFile {
             &audited,
         ]);
     }
-    csv.file("rounds.csv")
+    OutputFile::new("rounds.csv", csv.text())
 }
 
 /// Bounds and templates as tables for other programs.
@@ -176,5 +176,5 @@ pub(crate) fn bound_files(problem: &RobustProblem, found: &[DesignFrequency]) ->
             plants.row(&[&one.frequency_rad_per_s, &response.re, &response.im]);
         }
     }
-    vec![bounds.file("bounds.csv"), plants.file("templates.csv")]
+    vec![OutputFile::new("bounds.csv", bounds.text()), OutputFile::new("templates.csv", plants.text())]
 }

@@ -27,6 +27,9 @@ impl Block {
             Block::Heading(title) | Block::HeadingOnPage(title) | Block::HeadingOfFigures(title) => {
                 html! { h3 { (prose(title)) } }
             }
+            Block::Warning(sentence) => Block::Callout(StatusMark::Note, sentence.clone()).markup(),
+            Block::Line(text) => html! { p { (coded(text)) } },
+            Block::Gap => Markup::default(),
             Block::Verdict { mark, title, sentences } => html! {
                 div class={ "callout " (mark.class()) "-edge" } {
                     p { b { (prose(title)) "." } }

@@ -3,37 +3,48 @@
 use comfy_table::presets;
 
 use super::{Block, Document, Table};
+use crate::quantity::Vocabulary;
 
 impl Document {
     /// For a terminal.
-    pub(crate) fn text(&self) -> String {
+    pub fn text(&self) -> String {
+        self.text_in(&Vocabulary::default())
+    }
+
+    /// The same in these words.
+    pub(crate) fn text_in(&self, words: &Vocabulary) -> String {
         let mut out = String::new();
-        let mut below_heading = true;
+        // no empty line stands above a heading that follows directly
+        let mut directly = true;
         for block in &self.blocks {
-            let above = if below_heading { "" } else { "\n" };
-            below_heading = matches!(block, Block::Heading(_));
+            let above = if directly { "" } else { "\n" };
+            directly = matches!(block, Block::Heading(_) | Block::Warning(_) | Block::Gap);
             match block {
-                Block::Heading(title) => out.push_str(&format!("{above}{title}\n")),
-                Block::HeadingOnPage(_) => out.push('\n'),
-                Block::Verdict { title, sentences, .. } => {
-                    out.push_str(&format!("{above}{title}\n"));
-                    indented(&mut out, sentences);
+                Block::Warning(sentence) => out.push_str(&format!("warning: {}\n", words.of(sentence))),
+                Block::Line(text) => out.push_str(&format!("{}\n", words.of(text))),
+                Block::Heading(title) => out.push_str(&format!("{above}{}\n", words.of(title))),
+                Block::HeadingOnPage(_) | Block::Gap => out.push('\n'),
+                Block::Verdict { title, sentences: steps, .. } | Block::Steps { title, steps } => {
+                    out.push_str(&format!("{above}{}\n", words.of(title)));
+                    steps.iter().for_each(|step| indented(&mut out, words.of(step)));
                 }
-                Block::Sentences(sentences) => indented(&mut out, sentences.iter().map(|(_, text)| text)),
-                Block::Equations(equations) => indented(&mut out, equations),
+                Block::Sentences(sentences) => {
+                    sentences.iter().for_each(|(_, text)| indented(&mut out, words.of(text)));
+                }
+                Block::Equations(equations) => {
+                    equations.iter().for_each(|equation| indented(&mut out, words.of(equation)));
+                }
                 Block::Table(table) | Block::Folded(_, table) | Block::Asked(table) => {
-                    out.push_str(&format!("{}\n", table.text()))
+                    out.push_str(&format!("{}\n", table.text_in(words)))
                 }
-                Block::Cards { facts, .. } => {
-                    indented(&mut out, facts.iter().map(|(name, words)| format!("{name}: {words}")));
+                Block::Cards { facts, .. } => facts.iter().for_each(|(name, fact)| {
+                    indented(&mut out, words.of(&format!("{name}: {fact}")));
+                }),
+                Block::Callout(_, sentence) => indented(&mut out, words.of(sentence)),
+                Block::Beside(document) => out.push_str(&document.text_in(words)),
+                Block::Preformatted(text) => {
+                    text.split_inclusive('\n').for_each(|line| out.push_str(&words.of(line)));
                 }
-                Block::Callout(_, sentence) => indented(&mut out, [sentence]),
-                Block::Steps { title, steps } => {
-                    out.push_str(&format!("{above}{title}\n"));
-                    indented(&mut out, steps);
-                }
-                Block::Beside(document) => out.push_str(&document.text()),
-                Block::Preformatted(text) => out.push_str(text),
                 Block::HeadingOfFigures(_) | Block::Explanation(_) | Block::Figure(_) => {}
             }
         }
@@ -41,23 +52,21 @@ impl Document {
     }
 }
 
-fn indented(out: &mut String, sentences: impl IntoIterator<Item = impl std::fmt::Display>) {
-    for sentence in sentences {
-        out.push_str(&format!("  {sentence}\n"));
-    }
+fn indented(out: &mut String, sentence: String) {
+    out.push_str(&format!("  {sentence}\n"));
 }
 
 impl Table {
     /// Its lines without the last line break.
-    pub(crate) fn text(&self) -> String {
+    fn text_in(&self, words: &Vocabulary) -> String {
         let mut printed = comfy_table::Table::new();
         printed.load_style(presets::NOTHING);
-        printed.set_header(self.grouped_by.iter().chain(&self.headings));
+        printed.set_header(self.grouped_by.iter().chain(&self.headings).map(|heading| words.of(heading)));
         for group in &self.groups {
-            let mut name = group.name.as_str();
+            let mut name = words.of(&group.name);
             for row in &group.rows {
-                let first = self.grouped_by.is_some().then(|| std::mem::take(&mut name).to_string());
-                printed.add_row(first.into_iter().chain(row.iter().map(|cell| cell.text())));
+                let first = self.grouped_by.is_some().then(|| std::mem::take(&mut name));
+                printed.add_row(first.into_iter().chain(row.iter().map(|cell| words.of(&cell.text()))));
             }
         }
         printed.trim_fmt()

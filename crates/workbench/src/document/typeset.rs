@@ -1,6 +1,8 @@
 //! Plain-text equations such as `K_H = A_u^2 beta_e/V` set with italics, subscripts and superscripts.
 
-use maud::{Markup, PreEscaped, html};
+use maud::{Markup, html};
+
+use crate::figure::typeset::{Level, pieces_of_equation};
 
 /// Sets a plain-text equation for a page: `_` and `^` take the next word or a `{group}`, single letters are italic.
 ///
@@ -11,37 +13,31 @@ use maud::{Markup, PreEscaped, html};
 /// assert!(markup.contains("<i>K</i><sub>H</sub>") && markup.contains("<sup>2</sup>"));
 /// ```
 pub fn typeset(equation: &str) -> Markup {
-    let mut inside = String::new();
-    let mut rest = equation;
-    while let Some(first) = rest.chars().next() {
-        let after = &rest[first.len_utf8()..];
-        rest = match first {
-            '_' | '^' => {
-                let (script, remainder) = script(after);
-                let text = escaped(script);
-                let tag = if first == '_' { "sub" } else { "sup" };
-                inside.push_str(&format!("<{tag}>{text}</{tag}>"));
-                remainder
-            }
-            _ if first.is_alphabetic() => {
-                let length = rest.find(|c: char| !c.is_alphabetic()).unwrap_or(rest.len());
-                let (word, remainder) = rest.split_at(length);
-                let word_text = escaped(word);
-                // One letter is a quantity; a longer word is a function's name or prose and stays upright.
-                if word.chars().count() == 1 {
-                    inside.push_str(&format!("<i>{word_text}</i>"));
-                } else {
-                    inside.push_str(&word_text);
+    html! {
+        span.equation {
+            @for (text, level) in pieces_of_equation(equation) {
+                @match level {
+                    Level::Line => { (line(&text)) }
+                    Level::Subscript => { sub { (text) } }
+                    Level::Superscript => { sup { (text) } }
                 }
-                remainder
             }
-            _ => {
-                inside.push_str(&escaped(&first.to_string()));
-                after
-            }
-        };
+        }
     }
-    html! { span.equation { (PreEscaped(inside)) } }
+}
+
+/// One letter is a quantity; a longer word is a function's name or prose and stays upright.
+fn line(text: &str) -> Markup {
+    let letters: Vec<char> = text.chars().collect();
+    let words = letters.chunk_by(|one, next| one.is_alphabetic() && next.is_alphabetic());
+    html! {
+        @for word in words {
+            @match word {
+                [letter] if letter.is_alphabetic() => { i { (letter) } }
+                _ => { (String::from_iter(word)) }
+            }
+        }
+    }
 }
 
 /// Sets a sentence: words such as `K_H` and numbers such as `2.2e6` as in an equation, the rest
@@ -55,23 +51,16 @@ pub fn typeset(equation: &str) -> Markup {
 /// assert!(markup.contains("`by_volume`"));
 /// ```
 pub fn prose(sentence: &str) -> Markup {
-    let mut inside = String::new();
-    for (index, word) in sentence.split(' ').enumerate() {
-        if index > 0 {
-            inside.push(' ');
-        }
-        let core = word.trim_end_matches([',', '.', ';', ':', ')', '°']);
-        let (core, tail) = word.split_at(core.len());
-        let (head, core) = core.split_at(core.len() - core.trim_start_matches('(').len());
-        let is_symbol = core.split_once('_').is_some_and(|(base, _)| base.chars().count() == 1);
-        let set = if is_symbol {
-            typeset(core).into_string()
-        } else {
-            number(core).unwrap_or_else(|| escaped(core))
-        };
-        inside.push_str(&format!("{}{set}{}", escaped(head), escaped(tail)));
-    }
-    html! { (PreEscaped(inside)) }
+    html! { @for (index, word) in sentence.split(' ').enumerate() { @if index > 0 { " " } (set(word)) } }
+}
+
+/// A word with the marks around it.
+fn set(word: &str) -> Markup {
+    let core = word.trim_end_matches([',', '.', ';', ':', ')', '°']);
+    let (core, tail) = word.split_at(core.len());
+    let (head, core) = core.split_at(core.len() - core.trim_start_matches('(').len());
+    let is_symbol = core.split_once('_').is_some_and(|(base, _)| base.chars().count() == 1);
+    html! { (head) @if is_symbol { (typeset(core)) } @else { (number(core)) } (tail) }
 }
 
 /// The same, with text between backticks as code.
@@ -84,28 +73,19 @@ pub(super) fn coded(sentence: &str) -> Markup {
     }
 }
 
-/// `2.2e6` as 2.2·10^6; `None` for anything else.
-fn number(word: &str) -> Option<String> {
-    let (mantissa, exponent) = word.split_once('e')?;
-    let (_, exponent): (f64, i32) = (mantissa.parse().ok()?, exponent.parse().ok()?);
-    Some(format!("{mantissa}·10<sup>{exponent}</sup>"))
+/// `2.2e6` as 2.2·10^6; anything else as it is.
+fn number(word: &str) -> Markup {
+    let parts = word.split_once('e').and_then(|(mantissa, exponent)| {
+        let (_, exponent): (f64, i32) = (mantissa.parse().ok()?, exponent.parse().ok()?);
+        Some((mantissa, exponent))
+    });
+    html! { @match parts {
+        Some((mantissa, exponent)) => { (mantissa) "·10" sup { (exponent) } }
+        None => { (word) }
+    } }
 }
 
 /// A unit as it is printed: m3/(s.V) as m³/(s·V).
 pub(super) fn unit(text: &str) -> String {
     text.replace("Pa^0.5", "√Pa").replace('2', "²").replace('3', "³").replace('.', "·")
-}
-
-/// The operand of `_` or `^` and what follows it.
-fn script(text: &str) -> (&str, &str) {
-    if let Some((group, remainder)) = text.strip_prefix('{').and_then(|grouped| grouped.split_once('}')) {
-        return (group, remainder);
-    }
-    let signed = usize::from(text.starts_with('-'));
-    let length = text[signed..].find(|c: char| !c.is_alphanumeric()).map_or(text.len(), |end| end + signed);
-    text.split_at(length)
-}
-
-fn escaped(text: &str) -> String {
-    html! { (text) }.into_string()
 }

@@ -1,5 +1,5 @@
 use super::{FRICTION_NAMES, FrictionEstimate, FrictionIdentification, ShakenRows, because};
-use crate::answer::{self, Json, Object};
+use crate::answer::{Json, Object, envelope};
 use crate::project::Loaded;
 use crate::quantity::DisplayUnit;
 
@@ -26,7 +26,7 @@ pub fn json(loaded: &Loaded, found: &FrictionIdentification) -> String {
         .with("position_residual_rms_m", found.residual_rms[1])
         .with("independent_share", found.independent)
         .with("converged", found.has_converged());
-    answer::json("identify", loaded, body)
+    envelope("identify", loaded).and(body).print()
 }
 
 fn estimate(one: &FrictionEstimate) -> Object {

@@ -7,10 +7,10 @@ use crate::quantity::DisplayUnit;
 
 /// Coefficients with their intervals and why some are open, the friction map, and how well all is
 /// explained.
-pub fn text(found: &FrictionIdentification) -> String {
+pub(crate) fn document(found: &FrictionIdentification) -> Document {
     let mut out = Document::default();
     tell(found, &mut out);
-    out.text()
+    out
 }
 
 /// The same for a chapter of the report.

@@ -12,7 +12,7 @@ use crate::quantity::DisplayUnit;
 
 /// What the leakage is, the coefficients with their intervals, what the files hold, how well the
 /// signals are explained, and what the data do not determine.
-pub fn text(found: &Identification, read: &Read, region: Option<&FoundRegion>) -> String {
+pub(crate) fn document(found: &Identification, read: &Read, region: Option<&FoundRegion>) -> Document {
     let mut out = Document::default();
     tell_coefficients(found, &mut out);
     numbers::tell(found, &mut out);
@@ -21,7 +21,7 @@ pub fn text(found: &Identification, read: &Read, region: Option<&FoundRegion>) -
     if let Some(region) = region {
         region::chapter(&mut out, region);
     }
-    out.text()
+    out
 }
 
 /// What the leakage is, and the coefficients with their intervals, and those found by hand.

@@ -6,12 +6,14 @@ use crate::document::{Cell, Document, Table};
 use crate::project::{FromRecordings, IdentifiedFamily, Loaded};
 
 /// What precedes the answer of every command; nothing where recordings gave nothing.
-pub(crate) fn heading_in_use(loaded: &Loaded) -> String {
-    let Some(recorded) = &loaded.recorded else { return String::new() };
+pub(crate) fn in_use_above(loaded: &Loaded) -> Document {
     let mut out = Document::default();
-    out.heading("The valve as identified from its recordings");
-    tell_in_use(recorded, &mut out);
-    format!("{}\n", out.text())
+    if let Some(recorded) = &loaded.recorded {
+        out.heading("The valve as identified from its recordings");
+        tell_in_use(recorded, &mut out);
+        out.gap();
+    }
+    out
 }
 
 /// The files, the numbers with the declared ones, what stays as declared, and the family.

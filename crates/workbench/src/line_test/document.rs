@@ -5,7 +5,7 @@ use crate::project::LineSide;
 use crate::quantity::{DisplayUnit, FLOW, PRESSURE, VOLUME, display};
 
 /// The numbers of the line, what the recordings do not determine, and how they were explained.
-pub fn text(found: &LineIdentification) -> String {
+pub(crate) fn document(found: &LineIdentification) -> Document {
     let mut out = Document::default();
     let rows = numbers(found).into_iter().filter_map(|(key, what, number)| {
         let LineNumber { value, interval: [low, high] } = *number.as_ref().ok()?;
@@ -24,7 +24,7 @@ pub fn text(found: &LineIdentification) -> String {
     out.sentences(found.known.remark().map(str::to_string));
     out.sentences(found.rise.iter().flat_map(rise));
     out.sentences(found.response.iter().flat_map(response));
-    out.text()
+    out
 }
 
 /// The chamber at the end of a line.

@@ -7,28 +7,17 @@ use super::{
     AgreementBand, AskedImpedance, Linearization, LinkagePlace, PortView, ReductionDifference, Sweep,
     WITHIN_PERCENT, models, stiffness_sentence,
 };
-use crate::answer::{self, Csv, Json, Object, OutputFile, quoted};
+use crate::answer::{Csv, Json, Object, OutputFile, quoted};
 use crate::caveat::of_models;
-use crate::project::Loaded;
 use crate::setup::Setup;
 
-/// The JSON object of `linearize`.
-pub fn json(loaded: &Loaded, setup: &Setup<'_>, linearization: &Linearization) -> String {
-    answer::json("linearize", loaded, body(setup, linearization))
-}
-
 /// The same with the results of a sweep.
-pub(crate) fn json_swept(
-    loaded: &Loaded,
-    setup: &Setup<'_>,
-    linearization: &Linearization,
-    sweep: &Sweep,
-) -> String {
-    let body = body(setup, linearization).with("swept", head(sweep)).with("sweep", rows(sweep));
-    answer::json("linearize", loaded, body)
+pub(crate) fn body_swept(setup: &Setup<'_>, linearization: &Linearization, sweep: &Sweep) -> Object {
+    body(setup, linearization).with("swept", head(sweep)).with("sweep", rows(sweep))
 }
 
-fn body(setup: &Setup<'_>, linearization: &Linearization) -> Object {
+/// What `linearize` says to programs.
+pub(crate) fn body(setup: &Setup<'_>, linearization: &Linearization) -> Object {
     let plant = &linearization.plant;
     let poles = Object::new()
         .with("plant", plant.command.poles())
@@ -199,5 +188,5 @@ pub fn files(linearization: &Linearization) -> Vec<OutputFile> {
             csv.row(&[&quoted(model), &equation, &pole.re, &pole.im]);
         }
     }
-    vec![csv.file("poles.csv")]
+    vec![OutputFile::new("poles.csv", csv.text())]
 }

@@ -17,12 +17,11 @@ use crate::figure::Figure;
 use crate::setup::Setup;
 
 /// The tables and sentences of `linearize` for people.
-pub fn text(setup: &Setup<'_>, linearization: &Linearization) -> String {
+pub(crate) fn output(setup: &Setup<'_>, linearization: &Linearization) -> Document {
     let mut out = Document::default();
-    for sentence in of_models(setup) {
-        out.preformatted(format!("warning: {sentence}\n"));
-    }
-    out.preformatted(format!("Stiffness\n  {}\n", stiffness_sentence(linearization)));
+    out.warnings(of_models(setup));
+    out.heading("Stiffness");
+    out.sentences([stiffness_sentence(linearization)]);
     if !linearization.linkage.is_empty() {
         out.section("Linkage", linkage_table(&linearization.linkage));
     }
@@ -43,7 +42,7 @@ pub fn text(setup: &Setup<'_>, linearization: &Linearization) -> String {
         out.section("Impedance asked and shown", asked_table(asked));
         out.sentences([asked_sentence(asked)]);
     }
-    out.text()
+    out
 }
 
 /// Poles of the models, their differences, and the dominant modes; the figures follow the poles.

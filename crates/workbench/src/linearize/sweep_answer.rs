@@ -3,7 +3,7 @@
 use super::root_list;
 use super::{Sweep, SweepPoint, Swept};
 use crate::answer::{Csv, Object, OutputFile, significant};
-use crate::document::Table;
+use crate::document::{Document, Table};
 use crate::figure::{Figure, PoleSweep, PoleSweepPoint, Words};
 use crate::quantity::DisplayUnit;
 
@@ -61,13 +61,11 @@ fn resonance(found: &Swept) -> Option<[f64; 2]> {
 }
 
 /// The table of a sweep for people.
-pub(crate) fn sweep_text(sweep: &Sweep) -> String {
-    let mut out = String::new();
-    for caveat in &sweep.caveats {
-        out.push_str(&format!("warning: {}\n", caveat.sentence));
-    }
+pub(crate) fn sweep_document(sweep: &Sweep) -> Document {
+    let mut out = Document::default();
+    out.warnings(sweep.caveats.iter().map(|caveat| caveat.sentence.clone()));
     if let Some(sentence) = unmoved(sweep) {
-        out.push_str(&format!("note: {sentence}\n"));
+        out.line(format!("note: {sentence}"));
     }
     let key = match sweep.unit.symbol {
         "1" | "" => sweep.path.clone(),
@@ -87,12 +85,12 @@ pub(crate) fn sweep_text(sweep: &Sweep) -> String {
     for point in &sweep.points {
         lines.row(cells(sweep, point));
     }
-    out.push_str(&format!("{}\n", lines.text()));
-    out.push_str("  K_H is of the nominal wall; the bandwidth is that of the nominal loop with the given controller, to -3 dB.\n");
+    out.table(lines);
+    out.sentences([
+        "K_H is of the nominal wall; the bandwidth is that of the nominal loop with the given controller, to -3 dB.".to_string(),
+    ]);
     let reasons = sweep.points.iter().filter_map(|point| Some((point.value, point.found.as_ref().err()?)));
-    for (value, reason) in reasons {
-        out.push_str(&format!("  {}: {reason}\n", sweep.unit.text(value, 4)));
-    }
+    out.sentences(reasons.map(|(value, reason)| format!("{}: {reason}", sweep.unit.text(value, 4))));
     out
 }
 
@@ -170,5 +168,5 @@ pub(crate) fn sweep_files(sweep: &Sweep) -> Vec<OutputFile> {
             csv.row(&[&point.value, &pole.re, &pole.im]);
         }
     }
-    vec![csv.file("sweep.csv")]
+    vec![OutputFile::new("sweep.csv", csv.text())]
 }

@@ -9,7 +9,7 @@ use crate::quantity::DisplayUnit;
 const SHOWN: usize = 16;
 
 /// A section for each record: how it was taken apart, the response, and what was left out.
-pub fn text(found: &[Compared]) -> String {
+pub(crate) fn document(found: &[Compared]) -> Document {
     let mut out = Document::default();
     for compared in found {
         let member = &compared.member;
@@ -36,7 +36,7 @@ pub fn text(found: &[Compared]) -> String {
         out.sentences(left_out(member));
         out.sentences(agreement(compared));
     }
-    out.text()
+    out
 }
 
 /// How the record was taken apart.

@@ -1,7 +1,7 @@
 use phea_dynamics::portable::{argument, log10, magnitude};
 
 use super::{Averaging, Compared};
-use crate::answer::{OutputFile, significant};
+use crate::answer::{Csv, OutputFile, significant};
 use crate::quantity::DisplayUnit;
 
 /// A table for each member, as `[family] measured` reads it, and the fragment that names them.
@@ -11,7 +11,7 @@ pub fn files(found: &[Compared]) -> Vec<OutputFile> {
     let mut files: Vec<OutputFile> = found
         .iter()
         .zip(&names)
-        .map(|(compared, name)| OutputFile::new(name.clone(), table(compared)))
+        .map(|(compared, name)| OutputFile::new(name.clone(), table(compared).text()))
         .collect();
     let quoted: Vec<String> = names.iter().map(|name| format!("    \"{name}\",\n")).collect();
     let fragment = format!(
@@ -33,7 +33,7 @@ pub(super) fn stem(found: &[Compared], index: usize) -> String {
     if is_taken { format!("{own}-{}", index + 1) } else { own }
 }
 
-fn table(compared: &Compared) -> String {
+fn table(compared: &Compared) -> Csv {
     let member = &compared.member;
     let [input, output] = member.signals;
     let [below, above] = member.units;
@@ -43,23 +43,22 @@ fn table(compared: &Compared) -> String {
             format!("{count} segments of {} s, Hann window, overlapping by half", significant(length, 6))
         }
     };
-    let mut text = format!(
-        "# Identified by phea from {}: {output} over {input}, 0 dB is 1 {above}/{below}.\n# {method}; frequencies with a squared coherence below {} are left out.\n# standard_deviation and confidence_95 (radius of the disc) in {above}/{below}.\nfrequency_hz,magnitude_db,phase_deg,coherence,standard_deviation,confidence_95\n",
+    let comment = format!(
+        "# Identified by phea from {}: {output} over {input}, 0 dB is 1 {above}/{below}.\n# {method}; frequencies with a squared coherence below {} are left out.\n# standard_deviation and confidence_95 (radius of the disc) in {above}/{below}.",
         member.file,
         significant(member.least_coherence, 3)
     );
+    let headings = "frequency_hz,magnitude_db,phase_deg,coherence,standard_deviation,confidence_95";
+    let mut csv = Csv::new(&format!("{comment}\n{headings}"));
     for point in &member.points {
-        let row = [
-            DisplayUnit::HERTZ.of(point.frequency),
-            20.0 * log10(magnitude(point.response)),
-            argument(point.response).to_degrees(),
-            point.coherence,
-            point.deviation,
-            point.radius,
-        ];
-        let row: Vec<String> = row.iter().map(ToString::to_string).collect();
-        text.push_str(&row.join(","));
-        text.push('\n');
+        csv.row(&[
+            &DisplayUnit::HERTZ.of(point.frequency),
+            &(20.0 * log10(magnitude(point.response))),
+            &argument(point.response).to_degrees(),
+            &point.coherence,
+            &point.deviation,
+            &point.radius,
+        ]);
     }
-    text
+    csv
 }

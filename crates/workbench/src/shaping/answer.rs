@@ -1,19 +1,18 @@
 use phea_qft::bound::Placement;
 
 use super::ProjectShaping;
-use super::text::polar;
-use crate::answer::{self, Csv, Object, OutputFile};
+use super::document::polar;
+use crate::answer::{Csv, Object, OutputFile};
 use crate::audit::{kind_key, stability_reason, stable, verdict_key};
-use crate::project::Loaded;
 
-/// The JSON object of `shape`.
-pub fn json(loaded: &Loaded, view: &ProjectShaping) -> String {
+/// What `shape` says to programs.
+pub(crate) fn body(view: &ProjectShaping) -> Object {
     let stability = &view.stability;
     let of_stability = Object::new()
         .with("verdict", verdict_key(stability.verdict))
         .with("plant", view.names.named(&stability.plant))
         .with("reason", stability_reason(stability));
-    let body = Object::new()
+    Object::new()
         .with("shaped", view.shaped.table())
         .with("changes", view.changes)
         .each("elements", view.elements.iter().enumerate(), |(index, element)| {
@@ -44,8 +43,7 @@ pub fn json(loaded: &Loaded, view: &ProjectShaping) -> String {
                 .and(placement(&point.placement))
         })
         .with("unreached_rad_per_s", view.unreached_rad_per_s.as_slice())
-        .each("warnings", &view.problem.caveats, |caveat| caveat.sentence.as_str());
-    answer::json("shape", loaded, body)
+        .each("warnings", &view.problem.caveats, |caveat| caveat.sentence.as_str())
 }
 
 fn placement(placement: &Placement) -> Object {
@@ -76,5 +74,5 @@ pub fn files(view: &ProjectShaping) -> Vec<OutputFile> {
         let allowed = matches!(margin.placement, Placement::Allowed { .. });
         csv.row(&[&number, &kind, &margin.frequency_rad_per_s, &margin.margin_db, &allowed]);
     }
-    vec![OutputFile::new(SHAPED_PROJECT, view.saved.clone()), csv.file("margins.csv")]
+    vec![OutputFile::new(SHAPED_PROJECT, view.saved.clone()), OutputFile::new("margins.csv", csv.text())]
 }

@@ -6,24 +6,17 @@ use super::frequency;
 use super::metrics::metrics_row;
 use super::state_names;
 use super::{Cause, Metrics, ScenarioComparison, ScenarioRun, Window};
-use crate::answer::{self, Object, body_in_use};
+use crate::answer::{Object, body_in_use};
 use crate::project::Loaded;
 
-/// The JSON object of `simulate`.
-pub(crate) fn json(loaded: &Loaded, runs: &[ScenarioRun]) -> String {
-    answer::json("simulate", loaded, body(loaded, runs))
+/// What `simulate` says to programs if a frequency response is requested: no scenario is run.
+pub(crate) fn frequency_body(loaded: &Loaded, found: &MachineResponses) -> Object {
+    Object::new().with("frequency_response", frequency::body(found)).and(body(loaded, &[]))
 }
 
-/// The JSON object of `simulate` if a frequency response is requested: no scenario is run.
-pub(crate) fn frequency_json(loaded: &Loaded, found: &MachineResponses) -> String {
-    let response = Object::new().with("frequency_response", frequency::body(found));
-    answer::json("simulate", loaded, response.and(body(loaded, &[])))
-}
-
-/// The JSON object of `compare`, in the envelope of the first project.
-pub(crate) fn compare_json(comparison: &ScenarioComparison<'_>) -> String {
-    let Some((first, _)) = comparison.projects.first() else { return String::new() };
-    let body = Object::new().each("projects", &comparison.projects, |(loaded, runs)| {
+/// What `compare` says to programs.
+pub(crate) fn comparison_body(comparison: &ScenarioComparison<'_>) -> Object {
+    Object::new().each("projects", &comparison.projects, |(loaded, runs)| {
         Object::new()
             .with("path", loaded.path.as_str())
             .with("title", loaded.project.title.as_str())
@@ -32,8 +25,7 @@ pub(crate) fn compare_json(comparison: &ScenarioComparison<'_>) -> String {
             .with("catalogue_files", loaded.catalogue_files.as_slice())
             .maybe("identified", loaded.recorded.as_ref().map(body_in_use))
             .and(body(loaded, runs))
-    });
-    answer::json("compare", first, body)
+    })
 }
 
 /// What `simulate` says of a project; scenarios are not run where the run was stopped before they began.

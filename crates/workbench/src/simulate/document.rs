@@ -16,7 +16,7 @@ use crate::quantity::{DisplayUnit, FORCE, PRESSURE, TIME, VOLTAGE, ZERO_CELSIUS,
 const TOLD: usize = 8;
 
 /// The tables and sentences of `simulate`.
-pub(crate) fn text(loaded: &Loaded, runs: &[ScenarioRun]) -> String {
+pub(crate) fn document(loaded: &Loaded, runs: &[ScenarioRun]) -> Document {
     let mut out = Document::default();
     for run in runs {
         out.heading(headline(run));
@@ -26,16 +26,15 @@ pub(crate) fn text(loaded: &Loaded, runs: &[ScenarioRun]) -> String {
         let told = coarse_sentence(run).into_iter().chain(checked).chain(adjusted).chain(gas_sentence(run));
         out.sentences(told.chain(occurrence_sentences(run)));
     }
-    let below = if runs.is_empty() { "" } else { "\n" };
-    format!("{}{below}{}", out.text(), not_run(loaded, runs))
-}
-
-fn not_run(loaded: &Loaded, runs: &[ScenarioRun]) -> String {
-    match loaded.project.scenarios.len().saturating_sub(runs.len()) {
-        0 => String::new(),
-        1 => "One scenario was not begun.\n".to_string(),
-        more => format!("{more} scenarios were not begun.\n"),
+    if !runs.is_empty() {
+        out.gap();
     }
+    match loaded.project.scenarios.len().saturating_sub(runs.len()) {
+        0 => {}
+        1 => out.line("One scenario was not begun."),
+        more => out.line(format!("{more} scenarios were not begun.")),
+    }
+    out
 }
 
 /// Name and end of a run, and its effort.
@@ -311,25 +310,27 @@ fn occurrence_words(occurrence: &Occurrence) -> String {
 }
 
 /// The tables of `compare`: a row for each metric, a column for each project; projects that were not begun are named.
-pub(crate) fn compare_text(comparison: &ScenarioComparison<'_>, asked: &[Loaded]) -> String {
-    let mut out = String::new();
+pub(crate) fn comparison(comparison: &ScenarioComparison<'_>, asked: &[Loaded]) -> Document {
+    let mut out = Document::default();
     for (number, (loaded, runs)) in comparison.projects.iter().enumerate() {
-        out.push_str(&format!("{}  {} ({})\n", letter(number), loaded.project.title, loaded.path));
+        out.line(format!("{}  {} ({})", letter(number), loaded.project.title, loaded.path));
         for run in runs.iter().filter(|run| run.stopped().is_some()) {
-            out.push_str(&format!("   {}\n", headline(run)));
+            out.line(format!("   {}", headline(run)));
         }
     }
     for (number, loaded) in asked.iter().enumerate().skip(comparison.projects.len()) {
         let (letter, title) = (letter(number), &loaded.project.title);
-        out.push_str(&format!("{letter}  {title} ({})\n   not begun\n", loaded.path));
+        out.line(format!("{letter}  {title} ({})", loaded.path));
+        out.line("   not begun");
     }
     for name in comparison.scenarios() {
         let columns: Vec<Option<&ScenarioRun>> = comparison.runs_of(name).collect();
-        out.push_str(&format!("\n{name}\n{}\n", side_by_side(&columns).text()));
+        out.heading(name);
+        out.table(side_by_side(&columns));
         for (number, run) in columns.iter().enumerate() {
             let exceeded = run.iter().flat_map(|run| &run.exceeded).map(exceeded_words);
             for sentence in run.and_then(amplified_sentence).into_iter().chain(exceeded) {
-                out.push_str(&format!("   {}: {sentence}\n", letter(number)));
+                out.line(format!("   {}: {sentence}", letter(number)));
             }
         }
     }

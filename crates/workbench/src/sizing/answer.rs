@@ -1,10 +1,9 @@
 use super::model_name;
 use super::{BoreVerdict, Candidate, Consequence, OtherMeans, Sizing};
-use crate::answer::{self, Csv, Object, OutputFile, quoted};
-use crate::project::Loaded;
+use crate::answer::{Csv, Object, OutputFile, quoted};
 
-/// The JSON object of `size`.
-pub fn json(loaded: &Loaded, sizing: &Sizing) -> String {
+/// What `size` says to programs.
+pub(crate) fn body(sizing: &Sizing) -> Object {
     let body = Object::new()
         .with("bore_range_m", sizing.bore_range_m)
         .with("pole_gain_v_per_n", sizing.pole_gain_v_per_n)
@@ -26,11 +25,7 @@ pub fn json(loaded: &Loaded, sizing: &Sizing) -> String {
                 .with("stiffness_n_per_m", influence.stiffness_n_per_m)
                 .with("length_m", influence.length_m)
         });
-    let body = match &sizing.other_means {
-        None => body,
-        Some(found) => body.with("other_means", other_means(found)),
-    };
-    answer::json("size", loaded, body)
+    body.maybe("other_means", sizing.other_means.as_ref().map(other_means))
 }
 
 /// What cannot be has its reason in place of its numbers.
@@ -145,5 +140,5 @@ pub fn files(sizing: &Sizing) -> Vec<OutputFile> {
             &quoted(&reasons.join("; ")),
         ]);
     }
-    vec![csv.file("sizing.csv")]
+    vec![OutputFile::new("sizing.csv", csv.text())]
 }

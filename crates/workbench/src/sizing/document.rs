@@ -8,11 +8,6 @@ use crate::figure::Figure;
 use crate::grouped::grouped;
 use crate::quantity::{DisplayUnit, LENGTH, MASS, PRESSURE, VOLUME, display};
 
-/// The tables and sentences of `size`.
-pub fn text(sizing: &Sizing) -> String {
-    document(sizing, vec![]).text()
-}
-
 /// Every decision, the candidates with the objections to them, the answer with its figures, and the
 /// uncertainties.
 pub(crate) fn document(sizing: &Sizing, figures: Vec<Figure>) -> Document {

@@ -2,6 +2,7 @@ use phea_dynamics::time_response::Settling;
 
 use super::CheckedWish;
 use crate::answer::{Object, significant};
+use crate::document::Document;
 
 /// A wish in time in the JSON of `check`.
 pub(crate) fn wish_row(wish: &CheckedWish) -> Object {
@@ -28,10 +29,13 @@ pub(crate) fn wish_row(wish: &CheckedWish) -> Object {
 }
 
 /// The section of `check` on wishes in time, with an empty line below; empty if there is no wish.
-pub(crate) fn text(wishes: &[CheckedWish]) -> String {
+pub(crate) fn document(wishes: &[CheckedWish]) -> Document {
+    let mut out = Document::default();
     if wishes.is_empty() {
-        return String::new();
+        return out;
     }
-    let lines: String = wishes.iter().map(|wish| format!("  {}\n", wish.sentence())).collect();
-    format!("Tracking limits in time\n{lines}\n")
+    out.heading("Tracking limits in time");
+    out.sentences(wishes.iter().map(CheckedWish::sentence));
+    out.gap();
+    out
 }

@@ -11,7 +11,7 @@ use crate::document::{Cell, Document, Table};
 use phea_qft::verification::Verdict;
 
 /// The tables and sentences of `shape`.
-pub fn text(view: &ProjectShaping) -> String {
+pub(crate) fn document(view: &ProjectShaping) -> Document {
     let what = match view.shaped {
         Shaped::Controller => "Controller",
         Shaped::Prefilter => "Prefilter",
@@ -22,10 +22,8 @@ pub fn text(view: &ProjectShaping) -> String {
         count => format!("{count} elements"),
     };
     let mut out = Document::default();
-    for caveat in &view.problem.caveats {
-        out.preformatted(format!("warning: {}\n", caveat.sentence));
-    }
-    out.preformatted(format!("{what}: {count}\n"));
+    out.warnings(view.problem.caveats.iter().map(|caveat| caveat.sentence.clone()));
+    out.line(format!("{what}: {count}"));
     let elements = view.elements.iter().enumerate();
     out.sentences(elements.map(|(index, element)| format!("{}  {}", index + 1, element.print())));
     out.heading("Stability");
@@ -52,7 +50,7 @@ pub fn text(view: &ProjectShaping) -> String {
     }
     let between = "Nothing is stated about the frequencies between these: `verify` examines them.";
     out.sentences(asked.then(|| between.to_string()));
-    out.text()
+    out
 }
 
 fn margins(view: &ProjectShaping) -> Table {

@@ -8,12 +8,12 @@ use crate::document::{Cell, Document, Table};
 use crate::quantity::{FORCE, LENGTH, VOLTAGE, display};
 
 /// The tables and sentences of a frequency response.
-pub(crate) fn text(found: &MachineResponses) -> String {
+pub(crate) fn document(found: &MachineResponses) -> Document {
     let position = display(found.position_m, found.motion.dimension(&LENGTH), 4);
     let (force, command) =
         (display(found.force_n, found.motion.dimension(&FORCE), 4), display(found.command_v, &VOLTAGE, 4));
     let mut out = Document::default();
-    out.preformatted(format!("Around rest at {position}, {force} on the load, a command of {command}.\n"));
+    out.line(format!("Around rest at {position}, {force} on the load, a command of {command}."));
     let mut section = |title: &str, found: &MachineResponse, unit: &str| {
         out.heading(title);
         out.table(response(found, unit));
@@ -25,9 +25,9 @@ pub(crate) fn text(found: &MachineResponses) -> String {
         Err(reason) => out.heading(format!("No closed loop: {reason}.")),
     }
     if found.stopped {
-        out.preformatted("Stopped before its end.\n");
+        out.line("Stopped before its end.");
     }
-    out.text()
+    out
 }
 
 fn response(response: &MachineResponse, unit: &str) -> Table {

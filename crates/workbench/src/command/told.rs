@@ -1,0 +1,32 @@
+//! What a command says of a project, before it is printed.
+
+use crate::answer::{Answer, Object, OutputFile, envelope};
+use crate::document::Document;
+use crate::identify::in_use_above;
+use crate::motion;
+use crate::project::Loaded;
+
+/// An [`Answer`] whose text and JSON are not printed yet.
+pub(super) struct Told {
+    pub(super) document: Document,
+    pub(super) body: Object,
+    pub(super) files: Vec<OutputFile>,
+    pub(super) affirmative: bool,
+}
+
+impl Told {
+    /// Below what recordings gave, in the envelope of the first project and the words of their motion.
+    pub(super) fn print(self, command: &'static str, projects: &[Loaded]) -> Answer {
+        let mut document = Document::default();
+        projects.iter().for_each(|loaded| document.append(in_use_above(loaded)));
+        document.append(self.document);
+        let envelope = projects.first().map_or(Object::new(), |first| envelope(command, first));
+        let words = motion::vocabulary_of(projects);
+        Answer {
+            text: document.text_in(&words),
+            json: motion::object(envelope.and(self.body), &words).print(),
+            files: motion::files(self.files, &words),
+            affirmative: self.affirmative,
+        }
+    }
+}
