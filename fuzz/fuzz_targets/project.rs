@@ -1,4 +1,5 @@
-//! Any bytes as a project file: the reader neither panics nor hangs, and what it accepts it prints and reads again.
+//! Any bytes as a project file: the reader neither panics nor hangs, and what it accepts it prints
+//! and reads again.
 //!
 //! `cargo +nightly fuzz run project crates/project/tests/malformed crates/project/tests/valid`
 

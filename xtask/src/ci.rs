@@ -1,5 +1,5 @@
-//! The test command: stages one after the other, comparisons in parallel with them, the time of each in a
-//! table at the end.
+//! The test command: stages one after the other, comparisons in parallel with them, the time of
+//! each in a table at the end.
 //!
 //! A stage that fails does not stop the later ones, so that one run shows everything that has to be
 //! mended.
@@ -262,8 +262,8 @@ const LONG_ROBUST_TESTS: [&str; 8] =
     ["test", "--release", "-p", "phea-qft", "--test", "all", "--", "--ignored"];
 
 /// Four hundred valves, lines and frictions, identified from recordings of one each: how often the
-/// intervals cover the truth; and the alternatives of the book under each of its loads, and over the length of its
-/// hose.
+/// intervals cover the truth; and the alternatives of the book under each of its loads, and over
+/// the length of its hose.
 const IDENTIFIED_VALVES: [&str; 13] = [
     "test",
     "--release",

@@ -154,8 +154,8 @@ pub(crate) enum Command {
         /// "disturbance_peak_n,swept"; `:less` or `:more` after one says what is better
         #[arg(long, value_name = "COLUMN,COLUMN", requires = "sweep")]
         front: Option<String>,
-        /// The number over which the front is drawn, such as "line.length=0.5 m..3 m"; every value of
-        /// every alternative is a design
+        /// The number over which the front is drawn, such as "line.length=0.5 m..3 m"; every value
+        /// of every alternative is a design
         #[arg(long, value_name = "KEY=FROM..TO", requires = "front", allow_hyphen_values = true)]
         sweep: Option<String>,
         /// Values of the sweep, both ends among them (5)
@@ -249,7 +249,8 @@ pub(crate) struct IdentifyArguments {
     /// What is identified
     #[arg(long, value_name = "WHAT", default_value = "valve")]
     pub(crate) of: SubjectWord,
-    /// Recorded tests, tables as text or Parquet; or the project whose `[[identify.recording]]` names them
+    /// Recorded tests, tables as text or Parquet; or the project whose `[[identify.recording]]`
+    /// names them
     #[arg(required_unless_present = "project", num_args = 1.., value_name = "PROJECT.toml|TABLE")]
     pub(crate) files: Vec<String>,
     /// The project of the valve: nominal voltage, and pressures that the files lack
@@ -258,7 +259,8 @@ pub(crate) struct IdentifyArguments {
     /// Print one JSON object on standard output and nothing else
     #[arg(long)]
     pub(crate) json: bool,
-    /// Write the identified table of the valve into this folder, as valve.toml, and the figures of the tests
+    /// Write the identified table of the valve into this folder, as valve.toml, and the figures of
+    /// the tests
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Override a value of the project, e.g. --set "valve.nominal_voltage=5 V"; may be repeated
@@ -279,7 +281,8 @@ pub(crate) struct IdentifyArguments {
     /// Of a response: the period of the input ("2 s"), if it is not to be found
     #[arg(long, value_name = "TIME")]
     pub(crate) period: Option<String>,
-    /// Of a response: what is left out at the beginning ("1 s"); absent: one period of a periodic input
+    /// Of a response: what is left out at the beginning ("1 s"); absent: one period of a periodic
+    /// input
     #[arg(long, value_name = "TIME")]
     pub(crate) settling: Option<String>,
     /// Of a response: length of a segment ("4 s"), of an input that is not periodic
@@ -288,7 +291,8 @@ pub(crate) struct IdentifyArguments {
     /// Of a response: squared coherence below which a frequency is left out (0.8)
     #[arg(long, value_name = "NUMBER")]
     pub(crate) coherence: Option<f64>,
-    /// Of a line: the one to chamber A or to chamber B; absent: `bench.line.side` of the project, or A
+    /// Of a line: the one to chamber A or to chamber B; absent: `bench.line.side` of the project,
+    /// or A
     #[arg(long, value_name = "CHAMBER", ignore_case = true)]
     pub(crate) side: Option<ChamberWord>,
 }
@@ -309,7 +313,8 @@ pub(crate) enum SubjectWord {
     Valve,
     /// Frequency responses, from a command (or input) and a force (or output) over time
     Response,
-    /// Bulk modulus, stiffening and wave speed of a line, from its pressure while its far end is blocked
+    /// Bulk modulus, stiffening and wave speed of a line, from its pressure while its far end is
+    /// blocked
     Line,
     /// Friction of the cylinder, from runs at constant velocities and from breakaway
     Friction,

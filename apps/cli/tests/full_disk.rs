@@ -16,8 +16,8 @@ fn folder(name: &str) -> PathBuf {
     folder
 }
 
-/// The command where no file may be longer than this number of blocks of a shell, 512 or 1024 bytes:
-/// writing beyond fails.
+/// The command where no file may be longer than this number of blocks of a shell, 512 or 1024
+/// bytes: writing beyond fails.
 fn limited(folder: &Path, blocks: u32, arguments: &[&str]) -> Output {
     let script = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$0\" \"$@\"");
     let mut command = Command::new("sh");

@@ -4,11 +4,11 @@
 //! minimise  sum rho(r_i(x))    with  lower <= x <= upper,     rho(r) = r^2/2 for |r| <= k,  k|r| - k^2/2 beyond
 //! ```
 //!
-//! A damped Gauss-Newton method (Levenberg 1944, Marquardt 1963) on the normal equations, with psi
-//! = rho' (Huber 1964) for the residuals and psi' for their curvature. A variable at a bound that
-//! the step would leave is held for that step. Where it takes long, as in a curved valley, each step
-//! bends with the second derivative of the residuals along it (Transtrum and Sethna 2012). The caller scales the variables to order one and the
-//! residuals to their noise.
+//! A damped Gauss-Newton method (Levenberg 1944, Marquardt 1963) on the normal equations, with
+//! psi = rho' (Huber 1964) for the residuals and psi' for their curvature. A variable at a bound
+//! that the step would leave is held for that step. Where it takes long, as in a curved valley,
+//! each step bends with the second derivative of the residuals along it (Transtrum and Sethna
+//! 2012). The caller scales the variables to order one and the residuals to their noise.
 
 mod uncertainty;
 
@@ -203,8 +203,8 @@ struct DampedStep {
 }
 
 impl DampedStep {
-    /// Adds half of the acceleration along the step, from the residuals after a part p of it; nothing
-    /// where that is not a small share of the step, or beyond the bounds.
+    /// Adds half of the acceleration along the step, from the residuals after a part p of it;
+    /// nothing where that is not a small share of the step, or beyond the bounds.
     ///
     /// ```text
     /// step + a/2        (normal) a = -sum h j r'',    r'' = 2/p ((r(x + p step) - r)/p - j step)

@@ -1,6 +1,6 @@
 //! Systems without a fluid: the scalar every model equation is written over, recorded expressions,
-//! linear systems, their frequency and time responses, controllers, the closed loops around a plant,
-//! and the uncertain plant that robust design works on.
+//! linear systems, their frequency and time responses, controllers, the closed loops around a
+//! plant, and the uncertain plant that robust design works on.
 //!
 //! ```text
 //! parameters -> Expression -> UncertainPlant -> PlantMember                    the family

@@ -5,8 +5,8 @@
 
 /// Sorts items by a number, the least first; those of equal numbers stay in order.
 ///
-/// The order is that of [`f64::total_cmp`], so that a negated number reverses it exactly. The number
-/// of each item is computed once.
+/// The order is that of [`f64::total_cmp`], so that a negated number reverses it exactly. The
+/// number of each item is computed once.
 ///
 /// # Example
 /// ```

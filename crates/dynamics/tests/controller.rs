@@ -1,4 +1,5 @@
-//! The sampled controller against what it must do: follow its transfer function, and come off its limit.
+//! The sampled controller against what it must do: follow its transfer function, and come off its
+//! limit.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -14,7 +15,8 @@ fn controller(elements: Vec<Element>, discretization: Discretization) -> Control
     Controller { feedback: Compensator::new(elements), timing, ..Controller::default() }
 }
 
-/// Steady response to a sampled cosine, after `settle` samples: the complex amplitude over one period.
+/// Steady response to a sampled cosine, after `settle` samples: the complex amplitude over one
+/// period.
 fn measured_response(sampled: &SampledController, period: usize, settle: usize) -> Complex64 {
     let mut state = sampled.at_rest();
     let turn = 2.0 * PI / period as f64;
@@ -29,7 +31,8 @@ fn measured_response(sampled: &SampledController, period: usize, settle: usize) 
     amplitude
 }
 
-/// The difference equations, run, agree with the sampled transfer function: independent of how sections were made.
+/// The difference equations, run, agree with the sampled transfer function: independent of how
+/// sections were made.
 #[test]
 fn the_running_controller_has_the_response_of_its_transfer_function() {
     let shaped = vec![
@@ -47,7 +50,8 @@ fn the_running_controller_has_the_response_of_its_transfer_function() {
         let sampled = controller.sampled(sample_time_s).unwrap();
         for period in [20, 125, 800] {
             let expected = function.at_frequency(2.0 * PI / (period as f64 * sample_time_s));
-            // 8000 samples: whole periods, and long enough for the slowest pole (20 rad/s) to have died away.
+            // 8000 samples: whole periods, and long enough for the slowest pole (20 rad/s) to have
+            // died away.
             let measured = measured_response(&sampled, period, 8000);
             let error = magnitude(measured - expected) / magnitude(expected);
             assert!(error < 1e-9, "{method:?}, period {period}: {measured} for {expected}");
@@ -90,7 +94,8 @@ fn samples_to_unwind(anti_windup: AntiWindup) -> usize {
     (0..2000).find(|_| !sampled.step(&mut state, -1.0, 0.0).limited).unwrap()
 }
 
-/// Ten seconds at an error of one take the integral to 10; without anti-windup it takes nine seconds to bring it back.
+/// Ten seconds at an error of one take the integral to 10; without anti-windup it takes nine
+/// seconds to bring it back.
 #[test]
 fn anti_windup_leaves_the_limit_at_once() {
     // ORIGIN: analytic, 10 - 0.1 - t = 1 at t = 8.9 s

@@ -54,7 +54,8 @@ fn prewarping_is_exact_at_its_frequency() {
 
 #[test]
 fn held_first_order_lag_with_dead_time() {
-    // ORIGIN: analytic. a/(s + a) exp(-s tau), tau = (1 - m) T:  z^-1 ((1 - e^-amT) z + e^-amT - e^-aT)/(z - e^-aT)
+    // ORIGIN: analytic. a/(s + a) exp(-s tau), tau = (1 - m) T: z^-1 ((1 - e^-amT)
+    // z + e^-amT - e^-aT)/(z - e^-aT)
     let (a, step, m) = (2.0, 0.25, 0.3);
     let lag = factored(a, &[], &[c(-a, 0.0)]);
     let sampled = lag.discretized(step, Discretization::ZeroOrderHold).unwrap();
@@ -105,7 +106,8 @@ fn holds_in_series_of_half_the_step_agree_at_low_frequency() {
     let w = 20.0;
     for step in [1e-3, 5e-4, 2.5e-4] {
         let held = system.discretized(step, Discretization::ZeroOrderHold).unwrap().at_frequency(w);
-        // ORIGIN: analytic. hold: exp(-jwT/2) sinc(wT/2); the images add terms of the order of P at 2 pi/T
+        // ORIGIN: analytic. hold: exp(-jwT/2) sinc(wT/2); the images add terms of the order of P at
+        // 2 pi/T
         let x = w * step / 2.0;
         let truth = system.at_frequency(w) * c(cos(x), -sin(x)) * (sin(x) / x);
         let image = magnitude(system.at_frequency(2.0 * std::f64::consts::PI / step - w));

@@ -71,7 +71,8 @@ fn margins_of_a_third_order_loop() {
 
 #[test]
 fn margins_with_dead_time() {
-    // ORIGIN: analytic. k exp(-s tau)/s: crosses one at k; -180 deg at pi/(2 tau), 5 pi/(2 tau), ...
+    // ORIGIN: analytic. k exp(-s tau)/s: crosses one at k; -180 deg at pi/(2 tau), 5 pi/(2 tau),
+    // ...
     let (k, tau) = (3.0, 0.1);
     let integrator = rational(&[k], &[1.0, 0.0]).with_dead_time(tau).unwrap();
     let result = margins(&integrator);
@@ -90,7 +91,8 @@ fn margins_with_dead_time() {
 
 #[test]
 fn a_conditionally_stable_loop_has_both_gain_margins() {
-    // ORIGIN: analytic. k (s + 1)^2/s^3 crosses the axis at L(j) = -2 k; with k = 2 the gain may fall to a quarter
+    // ORIGIN: analytic. k (s + 1)^2/s^3 crosses the axis at L(j) = -2 k; with k = 2 the gain may
+    // fall to a quarter
     let result = margins(&rational(&[2.0, 4.0, 2.0], &[1.0, 0.0, 0.0, 0.0]));
     let decrease = result.gain_decrease().unwrap();
     close(decrease.frequency_rad_per_s, 1.0, 1e-14);

@@ -19,8 +19,8 @@ fn searched(
     minimise(&start, &bounds, settings, &mut evaluate).unwrap()
 }
 
-/// A valley along y = e^x whose walls are 10^4 times as steep as its floor: straight steps leave it at once, and would
-/// take thousands of evaluations.
+/// A valley along y = e^x whose walls are 10^4 times as steep as its floor: straight steps leave it
+/// at once, and would take thousands of evaluations.
 #[test]
 fn a_curved_valley_is_followed_to_its_end() {
     let settings = Settings { robust_beyond: f64::INFINITY, maximum_evaluations: 500, ..Settings::default() };

@@ -22,7 +22,8 @@ impl Seeded {
     }
 }
 
-/// Largest distance from a true root to the nearest found one, relative to the root, each found root used once.
+/// Largest distance from a true root to the nearest found one, relative to the root, each found
+/// root used once.
 fn worst_error(found: &[Complex64], truth: &[Complex64]) -> f64 {
     assert_eq!(found.len(), truth.len());
     let mut open = found.to_vec();
@@ -63,7 +64,8 @@ fn degree_twelve_mixed_over_nine_decades() {
 
 #[test]
 fn damping_of_the_hydraulic_poles_survives() {
-    // ORIGIN: thesis Table 6.1, K_H = 1.5e7 N/m: the real part of the mechanical pair is 1/250 of its magnitude
+    // ORIGIN: thesis Table 6.1, K_H = 1.5e7 N/m: the real part of the mechanical pair is 1/250 of
+    // its magnitude
     let truth = [real(-2.96), real(-0.0341), Complex64::new(-11.64, 2938.0), Complex64::new(-989.1, 479.0)];
     let all: Vec<Complex64> = truth
         .iter()
@@ -100,7 +102,8 @@ fn wilkinson_like_spread() {
     // ORIGIN: analytic. Degree 12 is the last of the family whose roots are conditioned below 1e9.
     let truth: Vec<Complex64> = (1..=12).map(|k| real(-f64::from(k))).collect();
     check(&truth, 1e-15);
-    // degree 20: every coefficient is rounded, and the roots of the rounded polynomial are those found.
+    // degree 20: every coefficient is rounded, and the roots of the rounded polynomial are those
+    // found.
     // ORIGIN: other tool (mpmath with 60 digits on the same rounded coefficients)
     let truth: Vec<Complex64> = (1..=20).map(|k| real(-f64::from(k))).collect();
     let found = Polynomial::from_roots(1.0, &truth).unwrap().roots().unwrap();

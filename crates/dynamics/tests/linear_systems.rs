@@ -1,4 +1,5 @@
-//! Transfer functions and state space: the same system in two forms, joined in two ways, badly scaled.
+//! Transfer functions and state space: the same system in two forms, joined in two ways, badly
+//! scaled.
 #![cfg(test)]
 
 use nalgebra::DMatrix;
@@ -26,7 +27,8 @@ impl Seeded {
         (self.next() * count as f64).floor() as usize
     }
 
-    /// `count` roots with magnitudes from 0.01 up over this number of decades, a fifth of them in the right half plane.
+    /// `count` roots with magnitudes from 0.01 up over this number of decades, a fifth of them in
+    /// the right half plane.
     fn roots(&mut self, count: usize, decades: f64) -> Vec<Complex64> {
         let mut roots = Vec::new();
         while roots.len() < count {
@@ -156,7 +158,8 @@ fn a_common_pole_appears_once_in_a_sum() {
 
 #[test]
 fn closing_a_loop_moves_a_slow_pole_beside_a_fast_one() {
-    // ORIGIN: analytic. (s + 1e-3)(s + 1e6) + 1e3 = s^2 + (1e6 + 1e-3) s + 2e3: the slow root is -c/b (1 + c/b^2 + ...)
+    // ORIGIN: analytic. (s + 1e-3)(s + 1e6) + 1e3 = s^2 + (1e6 + 1e-3) s + 2e3: the slow root is
+    // -c/b (1 + c/b^2 + ...)
     let plant = TransferFunction::from_factors(1e3, vec![], vec![c(-1e-3, 0.0), c(-1e6, 0.0)]).unwrap();
     let closed = plant.feedback(&TransferFunction::gain_only(1.0)).unwrap();
     let (b, product) = (1e6 + 1e-3, 2e3);
@@ -338,7 +341,8 @@ fn delay_becomes_states() {
 
 #[test]
 fn structure_gives_exact_poles() {
-    // integrator - two tanks in exchange - integrator: the exchange conserves volume, so its matrix is singular
+    // integrator - two tanks in exchange - integrator: the exchange conserves volume, so its matrix
+    // is singular
     #[rustfmt::skip]
     let a = DMatrix::from_row_slice(5, 5, &[
         0.0, 1.0, 0.0, 0.0, 0.3,

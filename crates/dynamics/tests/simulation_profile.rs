@@ -122,7 +122,8 @@ fn a_table_on_a_line_is_the_line_and_on_a_fine_grid_the_function() {
             assert!((table.rate(time_s) - 2.0).abs() < 1e-14);
         }
     }
-    // away from extreme points halving the grid divides the error by eight: the slopes are of second order
+    // away from extreme points halving the grid divides the error by eight: the slopes are of
+    // second order
     let error = |count: i32| {
         let times: Vec<f64> = (0..=count).map(|index| 3.0 * f64::from(index) / f64::from(count)).collect();
         let values: Vec<f64> = times.iter().map(|time_s| portable::exp(*time_s)).collect();

@@ -1,4 +1,5 @@
-//! Responses in time against closed forms, step metrics, second-order specifications and their inverse.
+//! Responses in time against closed forms, step metrics, second-order specifications and their
+//! inverse.
 #![cfg(test)]
 
 use nalgebra::{DMatrix, DVector};
@@ -299,7 +300,8 @@ fn from_a_specification_to_the_model_and_back() {
 
 #[test]
 fn the_tracking_bounds_as_printed_are_not_what_they_claim() {
-    // ORIGIN: thesis section 6.4, its tracking bounds evaluated: upper 2.2 % and 0.126 s, lower 0.356 s (1 % bands)
+    // ORIGIN: thesis section 6.4, its tracking bounds evaluated: upper 2.2 % and 0.126 s, lower
+    // 0.356 s (1 % bands)
     let upper = factored(2116.0 / 75.0, &[c(-75.0, 0.0)], &[c(-36.8, 27.6), c(-36.8, -27.6)]);
     let lower = factored(400.0 * 50.0, &[], &[c(-20.0, 0.0), c(-20.0, 0.0), c(-50.0, 0.0)]);
     let times = uniform_times(1.0, 100_001).unwrap();

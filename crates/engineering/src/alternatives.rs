@@ -148,14 +148,15 @@ impl JudgedAlternative {
     }
 }
 
-/// Judges the project as it is declared, and each of its alternatives, one after the other; then all of
-/// them again under each load case. If the watch answers `false`, the one at hand and all later ones are
-/// not reached.
+/// Judges the project as it is declared, and each of its alternatives, one after the other; then
+/// all of them again under each load case. If the watch answers `false`, the one at hand and all
+/// later ones are not reached.
 ///
 /// # Errors
-/// [`ProcedureError::NoAlternative`] for a project without alternatives, [`DesignError::NoSpecification`] for one
-/// without specifications, those of [`asked()`], and [`ProcedureError::Option`] for a front that cannot be. What an
-/// alternative lacks otherwise is reported of that alternative.
+/// [`ProcedureError::NoAlternative`] for a project without alternatives,
+/// [`DesignError::NoSpecification`] for one without specifications, those of [`asked()`], and
+/// [`ProcedureError::Option`] for a front that cannot be. What an alternative lacks otherwise is
+/// reported of that alternative.
 ///
 /// # Example
 /// ```
@@ -271,8 +272,8 @@ impl Judging<'_> {
     }
 }
 
-/// The project with the controller of the force in place of that of an inner position loop: the same loop,
-/// and what a design finds.
+/// The project with the controller of the force in place of that of an inner position loop: the
+/// same loop, and what a design finds.
 ///
 /// ```text
 /// C_x = G (M_v s^2 + B_v s + K_v)

@@ -218,8 +218,8 @@ fn wanted(settings: &Bench) -> Vec<BenchSeries> {
     series
 }
 
-/// The meter between the ports: small flows and reversals are measured by the small one, where there
-/// is one.
+/// The meter between the ports: small flows and reversals are measured by the small one, where
+/// there is one.
 fn meter_of(series: BenchSeries, settings: &Bench) -> FlowMeter {
     let small = matches!(series, BenchSeries::LowFlowMetering | BenchSeries::Reversals);
     let small = settings.low_flow_meter.filter(|_| small);

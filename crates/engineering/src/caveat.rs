@@ -218,8 +218,8 @@ fn supply(setup: &Setup<'_>) -> Option<Caveat> {
     Some(Caveat { sentence, unproven: !rests })
 }
 
-/// The gas of accumulators is counted at the pressures of each operating point; where a force empties
-/// one of them, the actuator becomes as stiff as without it.
+/// The gas of accumulators is counted at the pressures of each operating point; where a force
+/// empties one of them, the actuator becomes as stiff as without it.
 fn accumulator(setup: &Setup<'_>) -> Option<Caveat> {
     if is_measured(setup.project) {
         return None;
@@ -444,7 +444,8 @@ fn feed_forward(project: &Project) -> Option<Caveat> {
     })
 }
 
-/// A virtual impedance: what the specifications of its loop refer to, or that measured plants lack it.
+/// A virtual impedance: what the specifications of its loop refer to, or that measured plants lack
+/// it.
 fn impedance(setup: &Setup<'_>) -> Option<Caveat> {
     let project = setup.project;
     setup.virtual_impedance?;

@@ -115,7 +115,8 @@ impl ProcedureError {
         }
     }
 
-    /// The error at the place of a key, where the project has one: known only where its rig is computed.
+    /// The error at the place of a key, where the project has one: known only where its rig is
+    /// computed.
     pub fn late(&self) -> Option<LateError> {
         let rig = match self {
             ProcedureError::Rig(error)

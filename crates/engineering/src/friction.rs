@@ -6,9 +6,10 @@
 //!
 //! The model is [`LuGre`]: while the piston slides at a constant velocity, its equation has a
 //! solution in closed form, and the force is explained for the recorded velocity; while it is
-//! pressed or shaken and has not broken away, the mass on its bristles is simulated, and the position
-//! is explained for the recorded force, whose noise is explained with it: a force that presses is
-//! straight between knots, one that shakes is a sum of sines. One set of coefficients explains all.
+//! pressed or shaken and has not broken away, the mass on its bristles is simulated, and the
+//! position is explained for the recorded force, whose noise is explained with it: a force that
+//! presses is straight between knots, one that shakes is a sum of sines. One set of coefficients
+//! explains all.
 
 mod guess;
 mod motion;
@@ -61,8 +62,8 @@ pub struct FrictionIdentification {
     pub lugre: LuGre,
     /// N, that the instruments show without friction; `None` where the recordings go one way.
     pub zero: Option<FrictionEstimate>,
-    /// N, root mean square of what is left of the force, each block as one row; and m of the position
-    /// of what was pressed.
+    /// N, root mean square of what is left of the force, each block as one row; and m of the
+    /// position of what was pressed.
     pub residual_rms: [Option<f64>; 2],
     /// Share of the residuals that are independent, the least of all signals.
     pub independent: f64,
@@ -98,8 +99,8 @@ const SAME_SCALE: f64 = 1e-2;
 /// Finds the friction that explains all recordings at once.
 ///
 /// # Errors
-/// [`IdentifyError`] where nothing in the recordings is of a constant velocity and nothing is pressed
-/// from rest, and when it is stopped.
+/// [`IdentifyError`] where nothing in the recordings is of a constant velocity and nothing is
+/// pressed from rest, and when it is stopped.
 pub fn identify_friction(
     recordings: Vec<FrictionRecording>,
     known: &KnownCylinder,

@@ -4,8 +4,8 @@
 //! files -> Recording -> first guess (thesis, section 5.2) -> least squares over all signals at once -> intervals, what the data do not determine
 //! ```
 //!
-//! The model is [`phea_hydraulics::servovalve::TestedValve`]; all signals of all files are explained
-//! by one set of coefficients.
+//! The model is [`phea_hydraulics::servovalve::TestedValve`]; all signals of all files are
+//! explained by one set of coefficients.
 
 mod bootstrap;
 mod channels;
@@ -193,7 +193,8 @@ pub struct SignalFit {
     pub scale: f64,
     /// Largest less smallest recorded value.
     pub range: f64,
-    /// Correlation of neighbouring residuals: near zero for noise, near one where the model is wrong.
+    /// Correlation of neighbouring residuals: near zero for noise, near one where the model is
+    /// wrong.
     pub correlation: f64,
 }
 

@@ -89,8 +89,8 @@ pub struct Linearization {
     pub closed_loop: Option<PortView>,
     /// Why there is no closed loop.
     pub closed_loop_absent: Option<String>,
-    /// What a virtual impedance asks of the port, and what the loop shows there; `None` without one,
-    /// or without a controller.
+    /// What a virtual impedance asks of the port, and what the loop shows there; `None` without
+    /// one, or without a controller.
     pub asked: Option<AskedImpedance>,
     /// The linkage over the stroke; empty without one.
     pub linkage: Vec<LinkagePlace>,
@@ -243,8 +243,8 @@ pub fn stroke_stiffness(rig: &Rig, member: StiffeningMember) -> StrokeStiffness 
     rig.actuator.chamber_compliance([rig.point.pressure_a, rig.point.pressure_b], member).over_stroke()
 }
 
-/// The settings that accumulators can be adjusted to besides that of rest, 0 and 1, with the stiffness
-/// over the stroke there; empty where nothing is adjusted.
+/// The settings that accumulators can be adjusted to besides that of rest, 0 and 1, with the
+/// stiffness over the stroke there; empty where nothing is adjusted.
 pub fn stiffness_at_settings(rig: &Rig) -> Vec<(f64, StrokeStiffness)> {
     let components = rig.actuator.components();
     let pressures = [rig.point.pressure_a, rig.point.pressure_b];

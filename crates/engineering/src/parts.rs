@@ -1,5 +1,6 @@
-//! What the parts that make a rig yield cost and weigh: lines, accumulators, the spring or transmission
-//! and the valve between the chambers. Nothing is known of them but what the project or a catalogue states.
+//! What the parts that make a rig yield cost and weigh: lines, accumulators, the spring or
+//! transmission and the valve between the chambers. Nothing is known of them but what the project
+//! or a catalogue states.
 
 use std::f64::consts::PI;
 

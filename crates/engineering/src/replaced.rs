@@ -70,7 +70,8 @@ pub fn replaced_ranges(project: &Project, visited: &[VisitedRange]) -> Vec<Repla
 }
 
 /// Areas of the templates at the design frequencies of a problem, and those of the box that the
-/// project says it replaces; nothing where it says so of none. `own` are those of the problem's family.
+/// project says it replaces; nothing where it says so of none. `own` are those of the problem's
+/// family.
 ///
 /// # Errors
 /// Those of the family of the box and of its templates.

@@ -22,7 +22,8 @@ use crate::identify::IdentifyError;
 pub struct ResponseSettings {
     /// s, of a periodic input; absent: it is found.
     pub period: Option<f64>,
-    /// s at the beginning that are left out; absent: one period of a periodic input, otherwise nothing.
+    /// s at the beginning that are left out; absent: one period of a periodic input, otherwise
+    /// nothing.
     pub settling: Option<f64>,
     /// s, of a segment; absent: about an eighth of the record.
     pub segment: Option<f64>,
@@ -31,7 +32,8 @@ pub struct ResponseSettings {
 }
 
 impl Default for ResponseSettings {
-    /// A squared coherence of 0.8 over ten blocks leaves a standard deviation of 17 % of the response.
+    /// A squared coherence of 0.8 over ten blocks leaves a standard deviation of 17 % of the
+    /// response.
     fn default() -> ResponseSettings {
         ResponseSettings { period: None, settling: None, segment: None, coherence: 0.8 }
     }
@@ -40,7 +42,8 @@ impl Default for ResponseSettings {
 /// The members of a family from records, one each.
 ///
 /// # Errors
-/// [`IdentifyError`] where a record is too short or its input does not move, and when it is stopped.
+/// [`IdentifyError`] where a record is too short or its input does not move, and when it is
+/// stopped.
 pub fn members(
     records: &[SampledPair],
     settings: &ResponseSettings,

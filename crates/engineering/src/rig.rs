@@ -130,8 +130,8 @@ impl Rig {
     }
 
     /// The linear parameters in use, with what leaks from chamber to chamber in parallel to K_c:
-    /// with one load pressure both have the same effect; and with the stiffness of a series element in
-    /// series with the force sensor.
+    /// with one load pressure both have the same effect; and with the stiffness of a series element
+    /// in series with the force sensor.
     pub fn leaking(&self) -> LinearParameters {
         let flow_pressure_coefficient = self.linear.flow_pressure_coefficient + self.internal_leakage;
         self.softened(&LinearParameters { flow_pressure_coefficient, ..self.linear })
@@ -143,8 +143,8 @@ impl Rig {
         LinearParameters { sensor_stiffness: self.beyond_piston(parameters.sensor_stiffness), ..*parameters }
     }
 
-    /// The linearised two-pressure model with the stiffness of a series element in series with the force
-    /// sensor.
+    /// The linearised two-pressure model with the stiffness of a series element in series with the
+    /// force sensor.
     pub(crate) fn softened_chambers(&self) -> TwoPressureLinearParameters {
         let sensor_stiffness = self.beyond_piston(self.two_pressure.sensor_stiffness);
         TwoPressureLinearParameters { sensor_stiffness, ..self.two_pressure }

@@ -108,7 +108,8 @@ impl MeasuredTable {
     }
 
     /// The numbers of these columns. What is not a number is an error, and a row with more or fewer
-    /// values than there are columns; gaps and a last row that was cut off are reported in the result.
+    /// values than there are columns; gaps and a last row that was cut off are reported in the
+    /// result.
     pub fn numbers(&self, columns: &[&Column], findings: &mut Findings) -> ColumnNumbers {
         match &self.rows {
             TableRows::Text(rows) => {

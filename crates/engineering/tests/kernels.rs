@@ -1,5 +1,6 @@
-//! Kernels that cannot be reached from outside, compiled here once more for the unit tests next to their code: the library
-//! itself is not built for tests. What lies outside a kernel it takes from the module above it, which is here this file.
+//! Kernels that cannot be reached from outside, compiled here once more for the unit tests next to
+//! their code: the library itself is not built for tests. What lies outside a kernel it takes from
+//! the module above it, which is here this file.
 #![allow(dead_code, unreachable_pub, reason = "a kernel's callers stay in the library")]
 
 #[path = "../src/simulate/columns.rs"]

@@ -1,4 +1,5 @@
-//! Bode diagram: magnitude in dB and phase in degrees over rad/s, with the difference between models.
+//! Bode diagram: magnitude in dB and phase in degrees over rad/s, with the difference between
+//! models.
 
 use num_complex::Complex64;
 use phea_dynamics::portable::{argument, log10, magnitude};
@@ -37,8 +38,8 @@ impl FrequencySeries {
     }
 }
 
-/// Magnitude and phase of one quantity in several models, and the size of each one's difference from
-/// the first where both have the same frequencies.
+/// Magnitude and phase of one quantity in several models, and the size of each one's difference
+/// from the first where both have the same frequencies.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BodeDiagram {
     /// The quantity, such as `F_e/U_C`.

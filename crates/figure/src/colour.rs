@@ -174,8 +174,8 @@ impl Role {
     }
 }
 
-/// Line of the series with this index: colour and dash pattern together. Where the colours are used up
-/// they come again with other patterns, so that the first 64 lines differ.
+/// Line of the series with this index: colour and dash pattern together. Where the colours are used
+/// up they come again with other patterns, so that the first 64 lines differ.
 ///
 /// # Example
 /// ```

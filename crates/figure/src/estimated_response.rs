@@ -87,8 +87,8 @@ impl EstimatedResponse {
         words.with_plot(x, panels, legend)
     }
 
-    /// Both edges around each value, which lie apart by what the share of the radius in the magnitude
-    /// makes of them.
+    /// Both edges around each value, which lie apart by what the share of the radius in the
+    /// magnitude makes of them.
     fn band(&self, values: &[f64], of: impl Fn(f64) -> [f64; 2]) -> Vec<[f64; 2]> {
         let sizes = self.estimate.response.iter().map(|value| magnitude(*value));
         let shares = sizes.zip(&self.radii).map(|(size, radius)| radius / size);

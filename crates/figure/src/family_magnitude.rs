@@ -120,8 +120,8 @@ impl FamilyMagnitude {
         decibel_axis(&format!("{} (dB)", self.quantity), wanted.iter().copied().chain(family))
     }
 
-    /// The family between its greatest and least magnitude, what lies beyond a limit, and faintly the
-    /// frequencies where it does.
+    /// The family between its greatest and least magnitude, what lies beyond a limit, and faintly
+    /// the frequencies where it does.
     fn areas(&self) -> Vec<Mark> {
         let mut marks = Vec::new();
         for (index, FamilyEnvelope { greatest, least, .. }) in self.behind_first() {

@@ -34,9 +34,9 @@ const SHORT_S: f64 = 0.5;
 const VALUES: std::ops::RangeInclusive<f64> = -0.5..=2.5;
 
 impl FamilySteps {
-    /// Draws the figure. The band reaches from what the lower limit's response will still fall to, to
-    /// what the upper limit's will still rise to: where the upper one swings below its final value it
-    /// does not cut the band.
+    /// Draws the figure. The band reaches from what the lower limit's response will still fall to,
+    /// to what the upper limit's will still rise to: where the upper one swings below its final
+    /// value it does not cut the band.
     pub fn draw(&self, words: &Words) -> Figure {
         let times = self.shown().flat_map(|series| series.times_s.iter().copied());
         let (start, end) = extent(times.filter(|time| time.is_finite()));

@@ -93,8 +93,8 @@ impl ImpedanceDiagram {
     }
 
     fn phase_panel(&self) -> Panel {
-        // Re Z >= 0 bounds the phase of a passive impedance, so each curve starts from its principal
-        // value.
+        // Re Z >= 0 bounds the phase of a passive impedance, so each curve starts from its
+        // principal value.
         let degrees = |response: &[Complex64]| unwrapped_degrees(response, None);
         let (low, high) = extent(self.series.iter().flat_map(|s| degrees(&s.response)));
         let mut marks = self.bands("");

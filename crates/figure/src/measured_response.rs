@@ -70,8 +70,8 @@ impl MeasuredResponse {
         words.with_plot(x, panels, legend)
     }
 
-    /// The phase of each measured point: that of the first model's curve at its frequency, on the same
-    /// turn, and what it differs by.
+    /// The phase of each measured point: that of the first model's curve at its frequency, on the
+    /// same turn, and what it differs by.
     fn near_first(&self, curves: &[BodeCurve], angles: &[f64]) -> Vec<f64> {
         let Some(curve) = curves.first() else { return angles.to_vec() };
         let at = self.measured.frequencies_rad_per_s.iter().zip(&self.model).zip(angles);

@@ -99,8 +99,8 @@ impl PoleMap {
         }
     }
 
-    /// Lines of constant damping ratio and constant natural frequency in the left half plane, labelled
-    /// where they end.
+    /// Lines of constant damping ratio and constant natural frequency in the left half plane,
+    /// labelled where they end.
     fn grid(&self, marks: &mut Vec<Mark>, x: &Axis, y: &Axis) {
         let reach = x.minimum.abs().max(y.maximum.abs());
         let least = match x.scale {

@@ -91,7 +91,8 @@ impl PoleSweep {
         let ratios: Vec<(f64, f64)> =
             of_pair.map(|(value, pole)| (value, -pole.re / magnitude(pole))).collect();
         let values = ratios.iter().map(|point| point.1);
-        // a ringing pair and a well damped one lie decades apart; a pair that grows has no logarithm
+        // a ringing pair and a well damped one lie decades apart; a pair that grows has no
+        // logarithm
         let y = match ratios.iter().all(|point| point.1 > 0.0) {
             true => Axis::fit_logarithmic("Damping ratio ζ", values),
             false => Axis::fit_linear("Damping ratio ζ", values.chain([0.0])),

@@ -69,8 +69,8 @@ pub enum AccumulatorSymbol {
 pub struct CrossPortSymbol {
     /// A capacity in series with it: nothing flows at rest.
     pub has_capacity: bool,
-    /// Words below it, such as `orifice` and `0.8 mm`; two short rows at most, shown where no accumulator
-    /// has its place there.
+    /// Words below it, such as `orifice` and `0.8 mm`; two short rows at most, shown where no
+    /// accumulator has its place there.
     pub rows: Vec<String>,
 }
 
@@ -174,8 +174,8 @@ pub struct Schematic {
     pub controller: Option<ControllerSymbol>,
 }
 
-/// Further stages of a telescopic piston that are drawn one in another; the words say how many there
-/// are.
+/// Further stages of a telescopic piston that are drawn one in another; the words say how many
+/// there are.
 pub const STAGES: usize = 3;
 
 impl Schematic {

@@ -1,5 +1,5 @@
-//! Hydraulic stiffness, Ledezma (2019), Figure 6.4: one curve a model or design, with its band, over
-//! the stroke; of a rig with gas also over the force that is held at standstill.
+//! Hydraulic stiffness, Ledezma (2019), Figure 6.4: one curve a model or design, with its band,
+//! over the stroke; of a rig with gas also over the force that is held at standstill.
 
 use super::axis::{Axis, extent};
 use super::colour::{Role, series_role, series_stroke};
@@ -52,8 +52,8 @@ pub struct StiffnessDiagram {
 }
 
 impl StiffnessDiagram {
-    /// Draws the diagram: linear from zero, or logarithmic when the curves lie more than a factor of
-    /// twelve apart.
+    /// Draws the diagram: linear from zero, or logarithmic when the curves lie more than a factor
+    /// of twelve apart.
     pub fn draw(&self, words: &Words) -> Figure {
         let (place, title) = match self.over {
             StiffnessOver::Stroke => (DisplayUnit::MILLIMETRE, "Piston position x_p"),

@@ -69,7 +69,8 @@ fn a_motor_has_its_own_symbols() {
     }
 }
 
-/// Each further stage is a sleeve of two walls inside the one before it, up to as many as can be distinguished.
+/// Each further stage is a sleeve of two walls inside the one before it, up to as many as can be
+/// distinguished.
 #[test]
 fn stages_lie_one_in_another() {
     let with = |stages: usize| circuit(|schematic| schematic.further_stages = stages);
@@ -90,7 +91,8 @@ fn stages_lie_one_in_another() {
     }
 }
 
-/// The rod's end lies between joint and load, on the axis of the rod, and below them stand the words.
+/// The rod's end lies between joint and load, on the axis of the rod, and below them stand the
+/// words.
 #[test]
 fn a_linkage_is_a_lever_about_a_joint() {
     let words = ["four-bar", "arm r", "49.8 mm"];
@@ -114,8 +116,8 @@ fn a_linkage_is_a_lever_about_a_joint() {
     assert!(circles(&circuit(|_| {})).iter().all(|circle| circle.x < 450.0), "no lever without a linkage");
 }
 
-/// One triangle more is the head of an arrow through the gas; a valve has two of its own, which meet
-/// in one point between the chamber's port and the gas.
+/// One triangle more is the head of an arrow through the gas; a valve has two of its own, which
+/// meet in one point between the chamber's port and the gas.
 #[test]
 fn an_arrow_goes_through_what_is_adjusted() {
     let with = |kind: Option<AccumulatorSymbol>| circuit(|schematic| schematic.line_a.accumulator = kind);

@@ -60,7 +60,8 @@ fn text_and_lines_stand_out_and_decoration_stays_behind() {
     }
 }
 
-/// Full dichromacy as matrices on linear sRGB. ORIGIN: paper, Machado, Oliveira and Fernandes (2009), severity 1.0.
+/// Full dichromacy as matrices on linear sRGB. ORIGIN: paper, Machado, Oliveira and Fernandes
+/// (2009), severity 1.0.
 const SIGHT: [(&str, [Rgb; 3]); 4] = [
     ("normal", [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]),
     (
@@ -81,7 +82,8 @@ fn product(matrix: &[Rgb; 3], v: Rgb) -> Rgb {
     matrix.map(|row| row[0] * v[0] + row[1] * v[1] + row[2] * v[2])
 }
 
-/// Oklab coordinates of linear sRGB. ORIGIN: paper, Ottosson (2020), A perceptual color space for image processing.
+/// Oklab coordinates of linear sRGB. ORIGIN: paper, Ottosson (2020), A perceptual color space for
+/// image processing.
 fn oklab(c: Rgb) -> Rgb {
     let cone = product(
         &[

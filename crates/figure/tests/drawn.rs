@@ -61,7 +61,8 @@ fn texts<'a>(group: &'a usvg::Group, found: &mut Vec<&'a usvg::Text>) {
 
 #[test]
 fn text_is_as_wide_as_the_rasteriser_sets_it() {
-    // Two independent ways: our sum of advances, and the shaping of the rasteriser with the embedded font alone.
+    // Two independent ways: our sum of advances, and the shaping of the rasteriser with the
+    // embedded font alone.
     let mut options = usvg::Options::default();
     options.fontdb_mut().load_font_data(phea_figure::typeset::FONT.to_vec());
     for figure in gallery::all() {
@@ -101,7 +102,8 @@ fn notes(figure: &Figure) -> String {
 
 #[test]
 fn the_nomograph_shows_the_velocities_of_the_thesis() {
-    // ORIGIN: analytic, v = 4 q/(pi d^2) with 9.8 L/min: 1.29 m/s in 12.7 mm; 2.1 to 4.6 m/s need 9.95 to 6.72 mm.
+    // ORIGIN: analytic, v = 4 q/(pi d^2) with 9.8 L/min: 1.29 m/s in 12.7 mm; 2.1 to 4.6 m/s need
+    // 9.95 to 6.72 mm.
     let svg = notes(&gallery::commercial_bores());
     for text in ["12.7 mm: 1.29 m/s", ">6.72 mm<", ">9.95 mm<", ">design flow 9.8 L/min<"] {
         assert!(svg.contains(text), "{text}");
@@ -110,7 +112,8 @@ fn the_nomograph_shows_the_velocities_of_the_thesis() {
 
 #[test]
 fn the_softest_point_is_marked() {
-    // ORIGIN: recomputed from Ledezma (2019), equations 6.19 to 6.24: 2.233 MN/m in mid stroke, by volume 5.01.
+    // ORIGIN: recomputed from Ledezma (2019), equations 6.19 to 6.24: 2.233 MN/m in mid stroke, by
+    // volume 5.01.
     let svg = notes(&gallery::stiffness());
     assert!(svg.contains(">2.23 MN/m<") && svg.contains(">5.01 MN/m<"));
 }

@@ -1,4 +1,5 @@
-//! Figures from numbers and words that make no sense: no panic, and every rule of legibility still holds.
+//! Figures from numbers and words that make no sense: no panic, and every rule of legibility still
+//! holds.
 
 use crate::legibility::check;
 use num_complex::Complex64;

@@ -37,8 +37,8 @@ impl Random {
 
 const FRAME: Rectangle = Rectangle { left: -100.0, top: -70.0, right: 110.0, bottom: 90.0 };
 
-/// True when the point lies on the segment between two others, to rounding: measured from the nearer end, since the
-/// other may be very far away.
+/// True when the point lies on the segment between two others, to rounding: measured from the
+/// nearer end, since the other may be very far away.
 fn lies_on(p: Point, a: Point, b: Point) -> bool {
     let away = |q: Point| hypot(p.x - q.x, p.y - q.y);
     let (near, far) = if away(a) < away(b) { (a, b) } else { (b, a) };
@@ -58,7 +58,8 @@ fn a_cut_polyline_stays_in_the_frame_and_on_the_curve() {
             assert!(run.len() > 1);
             for pair in run.windows(2) {
                 assert!(FRAME.contains_point(pair[0]) && FRAME.contains_point(pair[1]), "{run:?}");
-                // Both ends and the middle lie on one piece of the curve: nothing runs along the frame.
+                // Both ends and the middle lie on one piece of the curve: nothing runs along the
+                // frame.
                 let middle = point(0.5 * (pair[0].x + pair[1].x), 0.5 * (pair[0].y + pair[1].y));
                 let on_curve = points.windows(2).any(|piece| {
                     piece[0].y.is_finite()
@@ -96,7 +97,8 @@ fn a_point_out_of_range_or_not_a_number_splits_the_line() {
 
 #[test]
 fn a_cut_polygon_has_the_area_of_the_intersection() {
-    // ORIGIN: analytic. A square of side 40 about the corner (110, 90) shares 20 x 20 with the frame.
+    // ORIGIN: analytic. A square of side 40 about the corner (110, 90) shares 20 x 20 with the
+    // frame.
     let square = [point(90.0, 70.0), point(130.0, 70.0), point(130.0, 110.0), point(90.0, 110.0)];
     let inside = clip::polygon(&square, &FRAME);
     let area: f64 =
@@ -238,7 +240,8 @@ fn markup_takes_symbols_and_leaves_names_alone() {
 
 #[test]
 fn text_has_the_size_of_its_font() {
-    // ORIGIN: data sheet, the font's own table: advances in DejaVu Sans 2.37, units of 2048 to the em: H 1540, digit 1303, space 651.
+    // ORIGIN: data sheet, the font's own table: advances in DejaVu Sans 2.37, units of 2048 to the
+    // em: H 1540, digit 1303, space 651.
     assert!((width("H", 2048.0) - 1540.0).abs() < 0.5);
     assert!((width("07", 2048.0) - 2.0 * 1303.0).abs() < 1.0);
     assert!((width(" ", 2048.0) - 651.0).abs() < 0.5);

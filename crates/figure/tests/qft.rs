@@ -1,4 +1,5 @@
-//! What the figures of the robust method promise: contours that are contours, edges that enclose what is forbidden.
+//! What the figures of the robust method promise: contours that are contours, edges that enclose
+//! what is forbidden.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -46,7 +47,8 @@ fn every(step_deg: f64) -> Vec<f64> {
     (0..=(360.0 / step_deg) as usize).map(|i| i as f64 * step_deg - 360.0).collect()
 }
 
-/// Twice the area to the left, in degrees times dB: negative when what is enclosed lies to the right.
+/// Twice the area to the left, in degrees times dB: negative when what is enclosed lies to the
+/// right.
 fn area(edge: &Boundary) -> f64 {
     edge.points.windows(2).map(|pair| pair[0].0 * pair[1].1 - pair[1].0 * pair[0].1).sum()
 }
@@ -112,8 +114,8 @@ fn a_hole_is_an_edge_of_its_own() {
     }
 }
 
-/// Whatever the spans, every one of their ends lies on exactly one edge, and an edge is closed or begins and ends at the
-/// outermost phases.
+/// Whatever the spans, every one of their ends lies on exactly one edge, and an edge is closed or
+/// begins and ends at the outermost phases.
 #[test]
 fn every_end_lies_on_one_edge() {
     let mut state = 7_u64;
@@ -202,8 +204,9 @@ fn magnitudes(frequencies: &[f64], magnitudes: &[f64]) -> MagnitudeCurve {
     MagnitudeCurve { frequencies_rad_per_s: frequencies.to_vec(), magnitudes: magnitudes.to_vec() }
 }
 
-/// A magnitude equal to the frequency crosses a limit of 1 at 1 rad/s, halfway between 0.1 and 10 rad/s; as the least of a
-/// family it misses a lower limit of 1 below there. A tolerance moves the crossing.
+/// A magnitude equal to the frequency crosses a limit of 1 at 1 rad/s, halfway between 0.1 and 10
+/// rad/s; as the least of a family it misses a lower limit of 1 below there. A tolerance moves the
+/// crossing.
 #[test]
 fn violated_areas_begin_where_the_limit_is_crossed() {
     let (one, rising) =
@@ -280,7 +283,8 @@ fn the_band_of_a_prefilter_ends_where_its_edges_cross() {
     assert!(texts.iter().any(|text| text.starts_with("nothing left")), "{texts:?}");
 }
 
-/// Every loop has its own form of marks, and what violates is crossed out where its own loop is, on its own turn.
+/// Every loop has its own form of marks, and what violates is crossed out where its own loop is, on
+/// its own turn.
 #[test]
 fn a_violation_lies_on_the_loop_that_it_belongs_to() {
     let w = vec![1.0, 10.0];

@@ -152,8 +152,8 @@ impl<S: Scalar> Accumulator<S> {
     /// integral of p dV = P_0 V_0 ((P/P_0)^((n-1)/n) - 1)/(n - 1) - p_atm (V_0 - V)
     /// ```
     ///
-    /// For n = 1 the quotient is ln(P/P_0). While the bladder lifts, the pressure of the oil is less
-    /// than that of the gas by d (1 - w)^2, which takes from this
+    /// For n = 1 the quotient is ln(P/P_0). While the bladder lifts, the pressure of the oil is
+    /// less than that of the gas by d (1 - w)^2, which takes from this
     ///
     /// ```text
     /// 2 d^2 V_0/(n P_0) integral from 0 to w of (1 - x)^2 x (1 + x^2 d/P_0)^-(1 + 1/n) dx

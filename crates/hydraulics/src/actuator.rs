@@ -34,8 +34,8 @@ pub struct Components<S = f64> {
     pub accumulators: [Option<Accumulator<S>>; 2],
     /// Necks of these accumulators; of a side without one they have no effect.
     pub necks: [Option<Neck<S>>; 2],
-    /// Thermal time constants in s of their gas, which then has a polytropic exponent of 1; of a side
-    /// without an accumulator they have no effect.
+    /// Thermal time constants in s of their gas, which then has a polytropic exponent of 1; of a
+    /// side without an accumulator they have no effect.
     pub thermal_time_constants: [Option<S>; 2],
     /// What of these accumulators is adjusted in operation, about the gas above, which is that at
     /// rest; of a side without an accumulator it has no effect.
@@ -115,8 +115,8 @@ impl<S: Scalar> Components<S> {
         })
     }
 
-    /// Compliance in m3/Pa of the gas of these branches at rest, without the oil of their necks; zero
-    /// where there is none.
+    /// Compliance in m3/Pa of the gas of these branches at rest, without the oil of their necks;
+    /// zero where there is none.
     pub fn branch_compliance(&self, pressures: [S; 2]) -> [S; 2] {
         let gas = self.gas_compliance(pressures);
         [0, 1].map(|side| {

@@ -1,5 +1,5 @@
-//! The cylinder, or the motor in its place: areas, stroke, moving mass and chamber volumes, symmetric
-//! or not.
+//! The cylinder, or the motor in its place: areas, stroke, moving mass and chamber volumes,
+//! symmetric or not.
 
 use phea_dynamics::scalar::{Parameters, Scalar};
 
@@ -50,8 +50,8 @@ impl Cylinder {
         std::iter::once([1.0; 2]).chain(further.flatten().map(|stage| stage.ratios)).map(of)
     }
 
-    /// The forces in N that the supply gives the piston as it retracts and as it extends, the greatest of
-    /// all stages:
+    /// The forces in N that the supply gives the piston as it retracts and as it extends, the
+    /// greatest of all stages:
     ///
     /// ```text
     /// F_min = A_A p_T - A_B p_S          F_max = A_A p_S - A_B p_T
@@ -101,8 +101,9 @@ impl<S: Scalar> Cylinder<S> {
         self.stroke.areas([self.area_a, self.area_b], x)
     }
 
-    /// What the slopes of the areas of a telescopic piston make of two pressures in Pa: a stiffness of
-    /// the piston in N/m, which is negative where a growing area pushes it on; `None` for any other.
+    /// What the slopes of the areas of a telescopic piston make of two pressures in Pa: a stiffness
+    /// of the piston in N/m, which is negative where a growing area pushes it on; `None` for any
+    /// other.
     ///
     /// ```text
     /// k_A = p_B dA_B/dx - p_A dA_A/dx
@@ -141,7 +142,8 @@ pub fn annulus_area<S: Scalar>(piston: S, rod: S) -> S {
 /// V_A = V_A0 + A_A x        V_B = V_B0 + A_B (L - x)                  thesis (4.27), (4.28)
 /// ```
 ///
-/// A telescopic piston sweeps the integral of its areas. Without a stroke both are the dead volumes alone.
+/// A telescopic piston sweeps the integral of its areas. Without a stroke both are the dead volumes
+/// alone.
 ///
 /// # Example
 /// ```

@@ -95,8 +95,8 @@ pub fn closed_loop_impedance(
     TransferFunction::from_factors(open.gain() * sensitivity_gain, zeros, poles)
 }
 
-/// Force per load position in N/m of an impedance: -s Z; with the loop closed, second half of thesis
-/// (6.8) times s.
+/// Force per load position in N/m of an impedance: -s Z; with the loop closed, second half of
+/// thesis (6.8) times s.
 ///
 /// # Errors
 /// Factors that are not finite.

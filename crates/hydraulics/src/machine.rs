@@ -75,9 +75,10 @@ use state::Layout;
 /// them.
 ///
 /// Its inputs are the position in m and the velocity in m/s of the load's ground ([`LoadModel`]; in
-/// rad and rad/s behind a linkage), the force from outside in N (N m) where it has one ([`MachineOptions::external_force`]), by how much
-/// the setting of its accumulators has moved and its rate in 1/s where it moves ([`MachineOptions::moving_setting`]), and then the
-/// waves that arrive from line A and line B; its states are named by [`MachineState`].
+/// rad and rad/s behind a linkage), the force from outside in N (N m) where it has one
+/// ([`MachineOptions::external_force`]), by how much the setting of its accumulators has moved and
+/// its rate in 1/s where it moves ([`MachineOptions::moving_setting`]), and then the waves that
+/// arrive from line A and line B; its states are named by [`MachineState`].
 ///
 /// # Example
 /// A machine at rest stays at rest.
@@ -190,8 +191,8 @@ impl Machine {
         self.external_force
     }
 
-    /// Whether accumulators at its chambers are adjusted: by a valve, or by gas that is added and taken
-    /// as it runs.
+    /// Whether accumulators at its chambers are adjusted: by a valve, or by gas that is added and
+    /// taken as it runs.
     pub fn has_adjustment(&self) -> bool {
         self.layout.is_adjusted()
     }

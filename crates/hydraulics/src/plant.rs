@@ -55,8 +55,8 @@ pub struct LinearPlant<S = f64> {
     pub moving_mass: S,
     /// Slope f_v of the friction in N s/m.
     pub viscous_friction: S,
-    /// Stiffness k_A in N/m that the slope of the areas of a telescopic piston gives it; `None` where they
-    /// have none.
+    /// Stiffness k_A in N/m that the slope of the areas of a telescopic piston gives it; `None`
+    /// where they have none.
     pub area_stiffness: Option<S>,
     /// Stiffness K_S of the force sensor in N/m; with a prescribed load, of sensor and environment.
     pub sensor_stiffness: S,
@@ -152,8 +152,8 @@ struct ChamberPolynomials<T> {
     displaced: T,
 }
 
-/// Both chambers where nothing flows between them, and the same joined to one pressure: with an admittance Y
-/// between them, of which the determinant of their equations is linear,
+/// Both chambers where nothing flows between them, and the same joined to one pressure: with an
+/// admittance Y between them, of which the determinant of their equations is linear,
 ///
 /// ```text
 /// D = D_apart + Y D_joined,   N_u and N_v likewise
@@ -175,9 +175,9 @@ impl<T> ChamberPair<T> {
     }
 }
 
-/// Paths over their divisors: F_e (sensed - fed) = command U_C + ground X_0 and v_L (sensed - fed) =
-/// s (driven U_C + held R X_0), `fed` being the feedback through the velocity of a load that can
-/// move and R what ties this load to its ground.
+/// Paths over their divisors: F_e (sensed - fed) = command U_C + ground X_0 and v_L
+/// (sensed - fed) = s (driven U_C + held R X_0), `fed` being the feedback through the velocity of a
+/// load that can move and R what ties this load to its ground.
 struct Paths<T> {
     command: T,
     ground: T,
@@ -407,17 +407,18 @@ impl<S: Scalar> LinearPlant<S> {
     ///               v_L = s (K_S w^2 N_u U_C + (c s + k) V (Q + K_S D) X_0)/(V (Q (Z + K_S) + K_S Z D))
     /// ```
     ///
-    /// Behind a linkage Z has k_g in addition to k, and r^2 K_S w^2 N_u and r^2 K_S stand for what the force does
-    /// to the load: [`LinearLoad::Linked`]. The velocity of the load that is fed forward is a second path of a prescribed motion, and a
-    /// second loop of a load that yields. With the sensor's gain 1 + e and its filter H_v = 1/d_v,
+    /// Behind a linkage Z has k_g in addition to k, and r^2 K_S w^2 N_u and r^2 K_S stand for what
+    /// the force does to the load: [`LinearLoad::Linked`]. The velocity of the load that is fed
+    /// forward is a second path of a prescribed motion, and a second loop of a load that yields.
+    /// With the sensor's gain 1 + e and its filter H_v = 1/d_v,
     ///
     /// ```text
     /// prescribed    F_e = (N U_C - (d_v B - (1 + e) K_x s N) X_0/d_v)/D                    N, B, D of the equations above
     /// yielding      F_e = (d_v N U_C - (c s + k) (d_v B - (1 + e) K_x s K_S w^2 N_u) X_0)/(d_v D - (1 + e) K_x s K_S w^2 N_u)
     /// ```
     ///
-    /// The `rate` is (1 + e) v_L, before its filter. With a series element between sensor and load see
-    /// [`LinearSeries`]. With a virtual impedance the output is y:
+    /// The `rate` is (1 + e) v_L, before its filter. With a series element between sensor and load
+    /// see [`LinearSeries`]. With a virtual impedance the output is y:
     ///
     /// ```text
     /// y/U_C = F_e/U_C + Z_v X_L/U_C,     y/X_0 = F_e/X_0 + Z_v X_L/X_0         X_L = X_0 where its motion is prescribed

@@ -5,10 +5,10 @@
 //! rod - force sensor K_S - piston - oil - line - oil - piston - load                     Transmission
 //! ```
 //!
-//! The sensor sits on the rod, as on a rig, and what lies in series is screwed to it; the load hangs on
-//! the other end. With a mass the sensor measures what accelerates this mass, too; the deflection of
-//! the spring does not see it. With a transmission it measures what accelerates the oil and what the
-//! line takes, and these are held by the line's fixings and not by the load.
+//! The sensor sits on the rod, as on a rig, and what lies in series is screwed to it; the load
+//! hangs on the other end. With a mass the sensor measures what accelerates this mass, too; the
+//! deflection of the spring does not see it. With a transmission it measures what accelerates the
+//! oil and what the line takes, and these are held by the line's fixings and not by the load.
 
 mod coil;
 mod oil_column;
@@ -75,8 +75,8 @@ impl<S: Scalar> SeriesElement<S> {
         }
     }
 
-    /// How far it is compressed in m where it holds a force in N at rest, within its travel, and the slope
-    /// in m/N.
+    /// How far it is compressed in m where it holds a force in N at rest, within its travel, and
+    /// the slope in m/N.
     pub fn held_deflection(&self, force: S, fluid: &Fluid<S>) -> [S; 2] {
         let one = S::from(1.0);
         match self {

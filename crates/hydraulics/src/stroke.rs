@@ -44,8 +44,8 @@ impl<S: Copy> ActuatorStroke<S> {
 }
 
 impl<S: Scalar> ActuatorStroke<S> {
-    /// What the position adds to each chamber, as a way of the piston's areas: the way from the A end
-    /// and the way to the B end.
+    /// What the position adds to each chamber, as a way of the piston's areas: the way from the A
+    /// end and the way to the B end.
     ///
     /// ```text
     /// x and L - x;   l_A(x) and l_B(L) - l_B(x) of a telescopic piston;   zero and zero without a stroke

@@ -1,4 +1,5 @@
-//! Accumulators at the chambers: published and recomputed numbers, limits, and the moment at which the gas is shut off.
+//! Accumulators at the chambers: published and recomputed numbers, limits, and the moment at which
+//! the gas is shut off.
 
 #![allow(clippy::unwrap_used)] // helpers of tests
 
@@ -67,8 +68,8 @@ fn without_gas_it_is_the_rig_without_accumulator() {
     assert!(apart(1e-15) < 1e-9);
 }
 
-/// Below the precharge the gas takes nothing and the indicator says so; what the chamber's oil yields is not what an empty
-/// chamber is known by.
+/// Below the precharge the gas takes nothing and the indicator says so; what the chamber's oil
+/// yields is not what an empty chamber is known by.
 #[test]
 fn gas_is_shut_off_below_its_precharge() {
     let gas = Accumulator { gas_volume: 2e-5, precharge_pressure: 20e5, polytropic_exponent: 1.4 };
@@ -98,7 +99,8 @@ fn gas_is_shut_off_below_its_precharge() {
     }
 }
 
-/// A gas without volume, without precharge, or with an index that no gas has, is refused by its path.
+/// A gas without volume, without precharge, or with an index that no gas has, is refused by its
+/// path.
 #[test]
 fn impossible_gas_is_refused() {
     for (gas_volume, precharge_pressure, polytropic_exponent, quantity) in [

@@ -1,5 +1,5 @@
-//! Accumulators that are adjusted in operation: frozen settings, closed forms of their work and of switching, limits, passivity,
-//! and their refusals.
+//! Accumulators that are adjusted in operation: frozen settings, closed forms of their work and of
+//! switching, limits, passivity, and their refusals.
 
 #![allow(clippy::unwrap_used)] // helpers of tests
 
@@ -96,7 +96,8 @@ fn its_work_is_that_of_the_polytrope() {
             };
             (0..4000).for_each(|index| step(&mut state, f64::from(index) / 4000.0, 1.0 / 4000.0, &mut rates));
             let last = adjustment.moved(&gas, 1.0, 0.0).gas;
-            // ORIGIN: analytic, P = P_0 (V_0/(V_0 - V_oil))^n and the integral of p dV_oil from the precharge on
+            // ORIGIN: analytic, P = P_0 (V_0/(V_0 - V_oil))^n and the integral of p dV_oil from the
+            // precharge on
             let ideal = |gas: &Accumulator| {
                 let (precharge, ratio) =
                     (gas.precharge_pressure + ATMOSPHERE, gas.gas_volume / (gas.gas_volume - held));
@@ -118,7 +119,8 @@ fn its_work_is_that_of_the_polytrope() {
     }
 }
 
-/// What the oil can get back from the gas at a pressure, W: the integral of p C dp by Simpson's rule.
+/// What the oil can get back from the gas at a pressure, W: the integral of p C dp by Simpson's
+/// rule.
 fn held_energy(gas: &Accumulator, pressure: f64) -> f64 {
     let steps = 100_000;
     let from = 0.98 * (gas.precharge_pressure + ATMOSPHERE) - ATMOSPHERE;
@@ -131,13 +133,15 @@ fn held_energy(gas: &Accumulator, pressure: f64) -> f64 {
     (0..steps).map(strip).sum::<f64>() * width
 }
 
-/// A stiffness that swings at twice the frequency of the oil pumps energy into it: 1/2 dK/dt x^2 over a cycle, in each phase.
+/// A stiffness that swings at twice the frequency of the oil pumps energy into it: 1/2 dK/dt x^2
+/// over a cycle, in each phase.
 #[test]
 fn a_swinging_stiffness_pumps_half_its_rate_times_the_square() {
     let middle = GAS.oil(35e5);
     let adjustment =
         Adjustment { setting: 0.5, part: AdjustedPart::Gas { gas_volume: 8e-6, precharge_pressure: -3e5 } };
-    // ORIGIN: analytic, the pressure of gas that holds this oil, and its stiffness dp/dV_oil = n P/V
+    // ORIGIN: analytic, the pressure of gas that holds this oil, and its stiffness dp/dV_oil = n
+    // P/V
     let pressure = |gas: &Accumulator, oil: f64| {
         let ratio = gas.gas_volume / (gas.gas_volume - oil);
         (gas.precharge_pressure + ATMOSPHERE) * pow(ratio, gas.polytropic_exponent) - ATMOSPHERE
@@ -168,7 +172,8 @@ fn a_swinging_stiffness_pumps_half_its_rate_times_the_square() {
     }
 }
 
-/// Oil and gas behind a valve, with a flow into the oil: both pressures, and the work of flow and valve.
+/// Oil and gas behind a valve, with a flow into the oil: both pressures, and the work of flow and
+/// valve.
 fn switched(
     start: [f64; 2],
     compliance: f64,
@@ -192,7 +197,8 @@ fn switched(
     *state.first_chunk().unwrap()
 }
 
-/// Switched on at equal pressures nothing is lost; at unequal ones 1/2 C_1 C_2/(C_1 + C_2) dp^2, the more exactly the smaller dp.
+/// Switched on at equal pressures nothing is lost; at unequal ones 1/2 C_1 C_2/(C_1 + C_2) dp^2,
+/// the more exactly the smaller dp.
 #[test]
 fn switching_loses_what_two_compliances_lose() {
     let compliance = 2e-12;
@@ -264,7 +270,8 @@ fn a_frozen_opening_is_passive() {
     }
 }
 
-/// In the linear plant a valve without resistance is no valve, and one that passes nothing is no accumulator.
+/// In the linear plant a valve without resistance is no valve, and one that passes nothing is no
+/// accumulator.
 #[test]
 fn its_conductance_has_two_limits() {
     let gas = GAS.compliance(35e5);
@@ -286,7 +293,8 @@ fn its_conductance_has_two_limits() {
     }
 }
 
-/// Shut at rest, a valve leaves neither gas nor its oil in the plant; the machine keeps the pressure of its gas.
+/// Shut at rest, a valve leaves neither gas nor its oil in the plant; the machine keeps the
+/// pressure of its gas.
 #[test]
 fn a_shut_valve_keeps_its_gas() {
     let parts = adjusted(AdjustedPart::Valve(GasValve { shut: true, ..VALVE }), 0.0, None);
@@ -336,7 +344,8 @@ fn it_rests_like_the_declared_one() {
     }
 }
 
-/// Settings outside 0 to 1, gas that vanishes on the way, a valve of no size, and what goes with neither are refused by path.
+/// Settings outside 0 to 1, gas that vanishes on the way, a valve of no size, and what goes with
+/// neither are refused by path.
 #[test]
 fn impossible_adjustments_are_refused() {
     let gas = AdjustedPart::Gas { gas_volume: 1e-5, precharge_pressure: 0.0 };

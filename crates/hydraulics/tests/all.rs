@@ -1,4 +1,5 @@
-//! The components and machines from outside: closed forms, limits, conservation and published numbers.
+//! The components and machines from outside: closed forms, limits, conservation and published
+//! numbers.
 #![cfg(test)]
 
 mod accumulator;

@@ -15,7 +15,8 @@ use phea_hydraulics::operating_point::{Balance, Settled, SettledSupply};
 use phea_hydraulics::plant::YieldingSupply;
 use phea_hydraulics::servovalve::{SpoolDirection, Supply};
 
-/// Two of five numbers have a supply that yields, with an accumulator for every other of these; some pumps give less than what leaks.
+/// Two of five numbers have a supply that yields, with an accumulator for every other of these;
+/// some pumps give less than what leaks.
 pub(super) fn power_unit(number: u64) -> PowerUnit {
     if number % 5 < 3 {
         return PowerUnit::Constant;
@@ -100,7 +101,8 @@ pub(super) fn supply_pressure(machine: &Machine, stated: f64, state: &[f64]) -> 
     place.map_or(stated, |place| state[place])
 }
 
-/// The supply where it rests, for small motions, with this command in V and these pressures at the valve's ports and of the supply in Pa.
+/// The supply where it rests, for small motions, with this command in V and these pressures at the
+/// valve's ports and of the supply in Pa.
 pub(super) fn yielding(
     actuator: &Actuator,
     unit: &PowerUnit,
@@ -144,7 +146,8 @@ impl System<f64> for Commanded {
     }
 }
 
-/// States that signals of a machine may depend on, without those of its lines, and inputs likewise, without waves.
+/// States that signals of a machine may depend on, without those of its lines, and inputs likewise,
+/// without waves.
 const STATES: usize = 24;
 const INPUTS: usize = 4;
 
@@ -171,8 +174,9 @@ pub(super) fn slopes(
     signals.iter().map(|signal| *outputs[place(signal)].gradient()).collect()
 }
 
-/// These states of a machine and then these inputs, for one unit of its command and of the motion of its ground, which for one unit of
-/// the rod's end moves by `turned`; with this gain from the load's velocity to the command.
+/// These states of a machine and then these inputs, for one unit of its command and of the motion
+/// of its ground, which for one unit of the rod's end moves by `turned`; with this gain from the
+/// load's velocity to the command.
 pub(super) fn amplitudes(
     machine: &Machine,
     rest: &InitialCondition,

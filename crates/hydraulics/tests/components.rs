@@ -83,7 +83,8 @@ fn elastic_pipe_is_a_little_softer_than_its_fluid() {
     assert!((taken_by_wall / (elastic.volume() * pipe.wall_compliance()) - 1.0).abs() < 1e-12);
 }
 
-/// The thesis multiplies a modulus of the expanded bore with the unexpanded volume; a hose's sheet says what its wall gives.
+/// The thesis multiplies a modulus of the expanded bore with the unexpanded volume; a hose's sheet
+/// says what its wall gives.
 #[test]
 fn a_hose_takes_up_what_its_sheet_says() {
     let (hose, line) = (hose(), hose_line());
@@ -95,7 +96,8 @@ fn a_hose_takes_up_what_its_sheet_says() {
         assert!((line.filled().volume() / (1.45e9 * oil) - 1.0).abs() < 1e-12);
         let of_modulus = line.filled().volume() / line.filled().effective_modulus(1.45e9, member);
         assert!((of_modulus / (wall + oil) - 1.0).abs() < 1e-12);
-        // ORIGIN: analytic, thesis (6.24) leaves A_ho/(A_ho + E(70 bar)) of the wall and the oil of the unexpanded bore
+        // ORIGIN: analytic, thesis (6.24) leaves A_ho/(A_ho + E(70 bar)) of the wall and the oil of
+        // the unexpanded bore
         let printed = wall * bore_area / (bore_area + 1.56e-5) + bore_area * 1.5 / 1.45e9;
         assert!((line.compliance_of_unexpanded(1.45e9, member) / printed - 1.0).abs() < 1e-12);
     }
@@ -163,8 +165,9 @@ fn derivatives_of_friction_exist_at_standstill() {
     }
 }
 
-/// Power taken less power stored in the bristles, F v - sigma_0 z dz/dt, at any velocity and any deflection that the model
-/// can reach (|sigma_0 z| <= F_S): never negative when the condition holds, negative somewhere just beyond it.
+/// Power taken less power stored in the bristles, F v - sigma_0 z dz/dt, at any velocity and any
+/// deflection that the model can reach (|sigma_0 z| <= F_S): never negative when the condition
+/// holds, negative somewhere just beyond it.
 #[test]
 fn lugre_gives_no_energy_exactly_when_it_is_passive() {
     let least_dissipation = |lugre: LuGre| {

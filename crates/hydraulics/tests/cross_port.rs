@@ -1,4 +1,5 @@
-//! A valve between the chambers: closed forms, limits, passivity, and the equilibrium that it leaves.
+//! A valve between the chambers: closed forms, limits, passivity, and the equilibrium that it
+//! leaves.
 
 #![allow(clippy::unwrap_used)] // helpers of tests
 
@@ -57,8 +58,8 @@ fn a_laminar_valve_adds_to_the_flow_pressure_coefficient() {
     assert!(apart(&plant(&linear, 1e-10, None), &plant(&leaky, 0.0, None)) < 1e-12);
 }
 
-/// The limits of feedback: a restrictor that is shut has no effect, an open one joins the capacity to both chambers, a capacity without
-/// end leaves the restrictor, one of nothing shuts it.
+/// The limits of feedback: a restrictor that is shut has no effect, an open one joins the capacity
+/// to both chambers, a capacity without end leaves the restrictor, one of nothing shuts it.
 #[test]
 fn feedback_has_four_limits() {
     let linear = nominal_plant();
@@ -86,7 +87,8 @@ fn damping_ratio(linear: &LinearParameters, leakage: f64, feedback: Option<Dynam
     -pole.unwrap().re / magnitude(*pole.unwrap())
 }
 
-/// What it does to the resonance that FACTS of the thesis leave undamped: with pipes a tenth is to be had, with the hose it is not.
+/// What it does to the resonance that FACTS of the thesis leave undamped: with pipes a tenth is to
+/// be had, with the hose it is not.
 #[test]
 fn it_damps_the_resonance_on_the_load_cell() {
     let hose = nominal_plant();
@@ -104,7 +106,8 @@ fn it_damps_the_resonance_on_the_load_cell() {
     }
 }
 
-/// What is between the chambers takes energy at every frequency, so that the impedance at the load has no negative real part.
+/// What is between the chambers takes energy at every frequency, so that the impedance at the load
+/// has no negative real part.
 #[test]
 fn the_impedance_stays_passive() {
     let linear = nominal_plant();
@@ -146,7 +149,8 @@ fn a_valve_that_is_shut_is_none() {
     }
 }
 
-/// A laminar valve is leakage across the piston, in the machine as at rest; only the account of energy distinguishes them.
+/// A laminar valve is leakage across the piston, in the machine as at rest; only the account of
+/// energy distinguishes them.
 #[test]
 fn a_laminar_valve_is_leakage() {
     let conductance = 3e-12;
@@ -171,7 +175,8 @@ fn a_laminar_valve_is_leakage() {
     assert!((heat_of_leakage[place("leakage")].lost / lost - 1.0).abs() < 1e-12);
 }
 
-/// Feedback leaks nothing at rest: the equilibrium is that without it, and its capacity holds the pressure difference.
+/// Feedback leaks nothing at rest: the equilibrium is that without it, and its capacity holds the
+/// pressure difference.
 #[test]
 fn feedback_leaves_the_equilibrium_alone() {
     for port in [laminar(1e-9, Some(1e-12)), orifice(1e-7, Some(1e-12))] {

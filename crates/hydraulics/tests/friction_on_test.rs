@@ -40,8 +40,8 @@ fn runge_kutta(
     moved
 }
 
-/// A force of 96 N put on slowly and let go within 3 ms: the mass rings on its bristles, and keeps a
-/// part of the displacement.
+/// A force of 96 N put on slowly and let go within 3 ms: the mass rings on its bristles, and keeps
+/// a part of the displacement.
 fn released() -> KnottedForce {
     KnottedForce { knots: vec![0, 60, 63, 120], forces: vec![0.0, 96.0, 0.0, 0.0] }
 }

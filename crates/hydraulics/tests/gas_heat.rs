@@ -1,4 +1,5 @@
-//! Gas that exchanges heat with its wall: limits, closed forms, a cycle integrated by SciPy, passivity, and its refusals.
+//! Gas that exchanges heat with its wall: limits, closed forms, a cycle integrated by SciPy,
+//! passivity, and its refusals.
 
 #![allow(clippy::unwrap_used)] // helpers of tests
 
@@ -49,7 +50,8 @@ fn driven(
     *state.first_chunk().unwrap()
 }
 
-/// In the linear plant a short time constant is isothermal gas, a long one adiabatic gas, and one between them neither.
+/// In the linear plant a short time constant is isothermal gas, a long one adiabatic gas, and one
+/// between them neither.
 #[test]
 fn the_time_constant_has_two_limits() {
     let isothermal = GAS.compliance(35e5);
@@ -90,7 +92,8 @@ fn small_motions_are_a_lead_of_gamma() {
     assert!((later.time / (1.4 * 3.0) - 1.0).abs() < 1e-12);
 }
 
-/// In a volume that is held the gas comes to the temperature of its wall exponentially, and its pressure with it.
+/// In a volume that is held the gas comes to the temperature of its wall exponentially, and its
+/// pressure with it.
 #[test]
 fn held_gas_cools_exponentially() {
     let gas = RelaxingGas { gas: GAS, time_constant: 0.7 };
@@ -144,7 +147,8 @@ fn a_cycle_is_that_of_scipy() {
     }
 }
 
-/// A machine whose gas has no time for heat is one whose gas is polytropic with 1.4 from where it stands.
+/// A machine whose gas has no time for heat is one whose gas is polytropic with 1.4 from where it
+/// stands.
 #[test]
 fn a_machine_with_fast_gas_is_the_polytropic_one() {
     // the polytrope through the gas at 35 bar, from the same precharge
@@ -174,7 +178,8 @@ fn a_machine_with_fast_gas_is_the_polytropic_one() {
     assert!(heated[6].abs() > 1e-3);
 }
 
-/// Whatever flows, no more comes out of the gas than went in: with the pressure counted from where it rested.
+/// Whatever flows, no more comes out of the gas than went in: with the pressure counted from where
+/// it rested.
 #[test]
 fn it_is_passive_under_random_flows() {
     for number in 0..64 {
@@ -197,7 +202,8 @@ fn it_is_passive_under_random_flows() {
         let mut before = 0.0;
         driven(&gas, [rest, 0.0], flow, (4.0, 40_000), |_, [pressure, warming, work, heat]| {
             let heated = gas.at(pressure, warming);
-            // work at the pressure from rest: that in full less P_rest times the oil that has entered
+            // work at the pressure from rest: that in full less P_rest times the oil that has
+            // entered
             entered = work - from_rest * (heated.oil - gas.at(rest, 0.0).oil);
             // and the heat is what the first law says
             let held = heated.energy + ATMOSPHERE * heated.oil;

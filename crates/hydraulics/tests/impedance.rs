@@ -1,4 +1,5 @@
-//! The impedance at the load: asymptotes, the published controller's lack of passivity, and the step that leaves no force.
+//! The impedance at the load: asymptotes, the published controller's lack of passivity, and the
+//! step that leaves no force.
 
 #![allow(clippy::unwrap_used)] // helpers of tests
 
@@ -161,7 +162,8 @@ fn asymptotes_that_are_nearest_nowhere_are_left_out() {
     // Without leakage the spring holds from the start.
     let tight = LinearParameters { flow_pressure_coefficient: 0.0, ..nominal };
     assert_eq!(kinds(&tight, None), all[1..]);
-    // A loop faster than sqrt(K_H/M) leaves no plateau: its damper A/(K_qU K_p) crosses the spring above 413 rad/s.
+    // A loop faster than sqrt(K_H/M) leaves no plateau: its damper A/(K_qU K_p) crosses the spring
+    // above 413 rad/s.
     let fast = TransferFunction::gain_only(0.1);
     assert_eq!(kinds(&nominal, Some(&fast)), [all[0], all[2]]);
 }

@@ -50,7 +50,8 @@ fn poles_of_table_6_1() {
         check("valve decay", poles[2].re, -989.1, 2e-6);
         check("valve frequency", poles[2].im, 479.04299, 2e-5);
     }
-    // ORIGIN: thesis Table 6.1, one unit of the last digit. Its -2.963 gives K_c to a third digit: 5.71e-13.
+    // ORIGIN: thesis Table 6.1, one unit of the last digit. Its -2.963 gives K_c to a third digit:
+    // 5.71e-13.
     for (stiffness, real, frequency) in
         [(1.5e7, -2.963, 2.93e3), (1.5e6, -0.336, 2.75e3), (1.5e5, -0.034, 2.73e3)]
     {
@@ -63,7 +64,8 @@ fn poles_of_table_6_1() {
     }
 }
 
-/// ORIGIN: analytic, the block equations (4.23), (4.24), (6.5), (6.6) and F_e = K_S (x_p - x_L) solved at one frequency.
+/// ORIGIN: analytic, the block equations (4.23), (4.24), (6.5), (6.6) and F_e = K_S (x_p - x_L)
+/// solved at one frequency.
 #[test]
 fn fifth_order_model_solves_the_block_equations() {
     let p = nominal_plant();
@@ -100,7 +102,8 @@ fn errors_of_the_decomposition() {
         response_difference(grid, |w| full.at_frequency(w), |w| decomposed.at_frequency(w))
     };
     let below = logarithmic(1e-3, 1e3, 2000);
-    // ORIGIN: recomputed by comparisons/recompute_rig.py; thesis 6.2.3 prints 0.2 dB and 0.003 degrees
+    // ORIGIN: recomputed by comparisons/recompute_rig.py; thesis 6.2.3 prints 0.2 dB and 0.003
+    // degrees
     let printed = errors(MechanicalDamping::Printed, &below);
     assert!(printed.magnitude_db <= 1e-4);
     check("printed, below 1000 rad/s", printed.phase_deg, 0.0034, 1e-4);
@@ -174,8 +177,8 @@ fn stiffness_and_length_of_table_6_2() {
         check("K_H", found.0 / stiffness, 1.0, 1e-6);
         check("L_ho", found.1 / length, 1.0, 1e-6);
     }
-    // ORIGIN: thesis Table 6.2, one unit of the last digit. Only K_qU near 5.625e-5 gives all eight (5.62e-5 gives 1.1763e6
-    // and 14.82 in the second and third rows).
+    // ORIGIN: thesis Table 6.2, one unit of the last digit. Only K_qU near 5.625e-5 gives all eight
+    // (5.62e-5 gives 1.1763e6 and 14.82 in the second and third rows).
     for (gain, (stiffness, unit), (length, length_unit)) in [
         (0.01, (5.65e4, 1e2), (180.0, 1.0)),
         (0.001, (5.76e5, 1e3), (14.84, 0.01)),
@@ -235,7 +238,8 @@ fn sizing_equations_undo_each_other() {
 fn hydraulic_mode_dominates_more_the_softer_it_is() {
     let modes = |stiffness| dominance(&linear_model(&table_6_1(stiffness)).unwrap().command);
     let (stiff, soft) = (modes(1.5e7), modes(1.5e5));
-    // ORIGIN: analytic, over (6.12) the share of the slow pole -a is 1/((1 - a e_1/e_0 + ...)(1 - ...)): within 1 % of 1
+    // ORIGIN: analytic, over (6.12) the share of the slow pole -a is 1/((1 - a
+    // e_1/e_0 + ...)(1 - ...)): within 1 % of 1
     assert!((stiff[0].step_share - 1.0).abs() < 1e-2 && (soft[0].step_share - 1.0).abs() < 1e-4);
     for index in [1, 2] {
         assert!(stiff[index].step_share < 1e-2);

@@ -1,4 +1,5 @@
-//! What each component adds to the machine: closed forms, limits, and a published kind of reference run.
+//! What each component adds to the machine: closed forms, limits, and a published kind of reference
+//! run.
 
 #![allow(clippy::unwrap_used)] // helpers of tests
 
@@ -59,7 +60,8 @@ fn load_step(time: f64) -> [f64; 2] {
     [0.25 + 5e-3 * position, 5e-3 * slope / 0.1]
 }
 
-/// The closed loop of 5 s on which solvers are compared: PI controller and prefilter, 4 kN at 2 s, 5 mm of load at 3 s.
+/// The closed loop of 5 s on which solvers are compared: PI controller and prefilter, 4 kN at 2 s,
+/// 5 mm of load at 3 s.
 ///
 /// ORIGIN: other tool, CVODE at a tolerance of 1e-12 on the same equations written in C
 #[test]
@@ -82,7 +84,8 @@ fn the_benchmark_runs_as_the_reference_says() {
     for (time, force) in expected {
         let last = (time / width).round() as usize;
         for index in done..last {
-            // Held over the step, so that the jump of the reference falls on the border of two steps.
+            // Held over the step, so that the jump of the reference falls on the border of two
+            // steps.
             let wanted = reference((index as f64 + 0.5) * width);
             let mut rates = |time: f64, state: &[f64], rates: &mut [f64]| {
                 let (plant, loop_states) = state.split_at(7);
@@ -135,7 +138,8 @@ fn triangle(phase: f64) -> f64 {
     1.0 - 4.0 * (phase - 0.5).abs()
 }
 
-/// A slow cycle finds null where it was measured: rising at 0.078 V, falling at -0.05 V (section 5.2.1 of the thesis).
+/// A slow cycle finds null where it was measured: rising at 0.078 V, falling at -0.05 V (section
+/// 5.2.1 of the thesis).
 #[test]
 fn a_slow_cycle_finds_null_at_bias_and_half_width() {
     for threshold in [None, Some(0.05)] {
@@ -151,8 +155,8 @@ fn a_slow_cycle_finds_null_at_bias_and_half_width() {
     }
 }
 
-/// What of a reversal the threshold takes moves the opening by 7 % of it (x = 2 exp(-20 x), half of x); twice as much by nearly
-/// all that is beyond.
+/// What of a reversal the threshold takes moves the opening by 7 % of it (x = 2 exp(-20 x), half of
+/// x); twice as much by nearly all that is beyond.
 #[test]
 fn a_reversal_takes_the_threshold() {
     let spool = SpoolImperfection { threshold: Some(0.05), ..SpoolImperfection::default() };
@@ -194,7 +198,8 @@ fn foamy() -> Components {
     }
 }
 
-/// Compliances with air are those of the actuator at the same pressures, for every kind of line and both models.
+/// Compliances with air are those of the actuator at the same pressures, for every kind of line and
+/// both models.
 #[test]
 fn air_softens_each_chamber_by_its_own_pressure() {
     let volume = Line::Volume { volume: 1.9e-4, effective_bulk_modulus: 2.6e8 };
@@ -222,7 +227,8 @@ fn air_softens_each_chamber_by_its_own_pressure() {
     assert!(rates.iter().all(|rate| rate.is_finite()));
 }
 
-/// Bristles that move slowly give the static curve, and so does the smoothed one but near standstill.
+/// Bristles that move slowly give the static curve, and so does the smoothed one but near
+/// standstill.
 #[test]
 fn slow_bristles_are_the_static_curve() {
     let Friction::LuGre(lugre) = benchmark_components().friction else { unreachable!() };
@@ -247,7 +253,8 @@ fn slow_bristles_are_the_static_curve() {
     }
 }
 
-/// A mass thrown at a contact comes back with 1 - 2 c v/3 of its speed: Hunt and Crossley's result for slow impacts.
+/// A mass thrown at a contact comes back with 1 - 2 c v/3 of its speed: Hunt and Crossley's result
+/// for slow impacts.
 #[test]
 fn contacts_restitute_as_hunt_and_crossley_say() {
     for relative_damping in [0.0, 0.05, 0.2] {
@@ -281,8 +288,8 @@ fn pump() -> PumpLimited {
     }
 }
 
-/// A pump holds nearly the stated pressure while it has flow to spare; asked for more than it has, it sets the velocity and the
-/// pressure falls.
+/// A pump holds nearly the stated pressure while it has flow to spare; asked for more than it has,
+/// it sets the velocity and the pressure falls.
 #[test]
 fn a_pump_gives_what_it_has() {
     let unit = PumpLimited { accumulator: None, ..pump() };

@@ -45,8 +45,8 @@ fn accounts(machine: &Machine, state: &[f64], inputs: &[f64]) -> Vec<Account<f64
     ledger.oil.into_iter().chain(ledger.energy).collect()
 }
 
-/// How a machine is moved: command in V, ground of its load, force on the load from outside and setting of its accumulators where
-/// it has these inputs.
+/// How a machine is moved: command in V, ground of its load, force on the load from outside and
+/// setting of its accumulators where it has these inputs.
 pub(super) struct Motion {
     pub(super) amplitude: f64,
     pub(super) bias: f64,
@@ -72,7 +72,8 @@ impl Motion {
     }
 }
 
-/// What a run shows: each account's name, how far it is from closing and what went through it, and what it lost.
+/// What a run shows: each account's name, how far it is from closing and what went through it, and
+/// what it lost.
 struct Closing {
     name: String,
     gap: f64,
@@ -172,13 +173,15 @@ fn ledgers_close_with_loads_of_their_own() {
     }
 }
 
-/// Driven into both of its stops, the piston stays in reach, the stops are reported, and the ledgers close.
+/// Driven into both of its stops, the piston stays in reach, the stops are reported, and the
+/// ledgers close.
 #[test]
 fn ledgers_close_in_the_end_stops() {
     let contact = Contact { stiffness: 1e8, relative_damping: 0.5 };
     let load = LoadModel::SpringMassDamper { mass: 5.0, stiffness: 0.0, damping: 100.0 };
     let options = MachineOptions { load, ..MachineOptions::default() };
-    // An open edge at zero drop and a small chamber are too fast for this method where the root's transition is short.
+    // An open edge at zero drop and a small chamber are too fast for this method where the root's
+    // transition is short.
     let rig = asymmetric();
     let valve = Servovalve { transition_pressure: 1e5, ..rig.valve };
     let machine = machine_of(stopped(Components { valve, ..rig }, contact), &options);
@@ -202,7 +205,8 @@ fn ledgers_close_in_the_end_stops() {
             machine.indicate(&state, &inputs, &mut indicators);
             deepest = deepest.min(indicators[2].min(indicators[3]));
         }
-        // The whole supply presses 70 bar on 1.96e-3 m2: 0.14 mm into 1e8 N/m, and no more than twice that when it bounces.
+        // The whole supply presses 70 bar on 1.96e-3 m2: 0.14 mm into 1e8 N/m, and no more than
+        // twice that when it bounces.
         assert!(deepest < -2e-5 && deepest > -2.8e-4, "{deepest}");
     }
 }
@@ -245,8 +249,8 @@ pub(super) fn random(state: &mut u64) -> f64 {
     (*state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
 }
 
-/// What is wrong with the accounts at this state: what is stored must change, along the rates of all states, by what enters and
-/// is lost; energy is never stored or lost below zero.
+/// What is wrong with the accounts at this state: what is stored must change, along the rates of
+/// all states, by what enters and is lost; energy is never stored or lost below zero.
 pub(super) fn check_instant(name: &str, machine: &Machine, state: &[f64], command: f64, inputs: [f64; 2]) {
     let along = |value: f64, rate: f64| Dual::<1>::new(value, [rate]);
     let mut moved = vec![along(inputs[0], inputs[1]), along(inputs[1], 0.0)];
@@ -275,7 +279,8 @@ pub(super) fn check_instant(name: &str, machine: &Machine, state: &[f64], comman
     }
 }
 
-/// At any state, whether it comes about or not: near the pressures of a run, about atmospheric pressure, with gas let out.
+/// At any state, whether it comes about or not: near the pressures of a run, about atmospheric
+/// pressure, with gas let out.
 #[test]
 fn what_is_stored_changes_by_what_enters_and_is_lost() {
     let mut seed = 7;
@@ -302,7 +307,8 @@ fn what_is_stored_changes_by_what_enters_and_is_lost() {
     }
 }
 
-/// What is under way between the ends of a line is no part of states and inputs: no ledger, rather than a wrong one.
+/// What is under way between the ends of a line is no part of states and inputs: no ledger, rather
+/// than a wrong one.
 #[test]
 fn waves_have_no_ledger() {
     let rig = asymmetric();
@@ -314,7 +320,8 @@ fn waves_have_no_ledger() {
     assert!(machine.ledger(&beginning.state, &beginning.all_inputs()).is_none());
 }
 
-/// Energy in J that friction takes over one cycle of velocities in m/s held over distances in m, after the bristles settled.
+/// Energy in J that friction takes over one cycle of velocities in m/s held over distances in m,
+/// after the bristles settled.
 fn cycle_energy(lugre: &LuGre, legs: &[(f64, f64)]) -> f64 {
     let mut state = vec![0.0, 0.0];
     let mut taken = 0.0;
@@ -335,8 +342,9 @@ fn cycle_energy(lugre: &LuGre, legs: &[(f64, f64)]) -> f64 {
     taken
 }
 
-/// LuGre friction takes energy over every cycle if sigma_2 >= sigma_1 (F_S - F_C)/F_C. Outside, a slow creep that loads the
-/// bristles to F_S and a jerk that unloads them at F_C give energy, cycle after cycle.
+/// LuGre friction takes energy over every cycle if sigma_2 >= sigma_1 (F_S - F_C)/F_C. Outside, a
+/// slow creep that loads the bristles to F_S and a jerk that unloads them at F_C give energy, cycle
+/// after cycle.
 #[test]
 fn lugre_takes_energy_under_its_condition_and_may_give_it_outside() {
     let Friction::LuGre(outside) = benchmark_components().friction else { unreachable!() };
@@ -355,8 +363,8 @@ fn lugre_takes_energy_under_its_condition_and_may_give_it_outside() {
     }
 }
 
-/// Newton's law of the load alone: a force from outside changes its acceleration by F_x/m and nothing else, and its power is what the
-/// load and the rig take in.
+/// Newton's law of the load alone: a force from outside changes its acceleration by F_x/m and
+/// nothing else, and its power is what the load and the rig take in.
 #[test]
 fn a_force_from_outside_acts_on_the_load_alone() {
     let load = LoadModel::SpringMassDamper { mass: 20.0, stiffness: 3e5, damping: 200.0 };

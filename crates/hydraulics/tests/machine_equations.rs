@@ -1,4 +1,5 @@
-//! The machine's equations against texts of their own, its Jacobian against differences, and its rests.
+//! The machine's equations against texts of their own, its Jacobian against differences, and its
+//! rests.
 
 #![allow(clippy::unwrap_used)] // helpers of tests
 
@@ -125,7 +126,8 @@ fn machines() -> Vec<Machine> {
 /// State, command and inputs.
 type Instant = (Vec<f64>, f64, Vec<f64>);
 
-/// A state within some hundred scales of a working point, and the command and inputs that go with it.
+/// A state within some hundred scales of a working point, and the command and inputs that go with
+/// it.
 fn some_state(machine: &Machine, noise: &mut Noise) -> Instant {
     let mut state: Vec<f64> = machine.scales().iter().map(|scale| scale * 2.0 * noise.next()).collect();
     state[2] = 35e5 + 25e5 * noise.next();
@@ -140,7 +142,8 @@ fn some_state(machine: &Machine, noise: &mut Noise) -> Instant {
     (state, 8.0 * noise.next(), inputs)
 }
 
-/// The benchmark's equations in another form: pressures by moduli and volumes, flows by signed roots, hyperbolic cosine.
+/// The benchmark's equations in another form: pressures by moduli and volumes, flows by signed
+/// roots, hyperbolic cosine.
 fn benchmark_rates(state: &[f64], command: f64, inputs: &[f64]) -> [f64; 7] {
     let &[voltage, rate, p_a, p_b, deflection, v, z] = state else { unreachable!() };
     let root = |drop: f64| drop.signum() * (drop * drop / (drop * drop + 1e6).sqrt()).sqrt();
@@ -255,7 +258,8 @@ fn a_machine_with_everything_is_the_text_of_its_equations() {
     assert!(contacts > 50);
 }
 
-/// The forces that a machine reports are those that accelerate its piston: M dv/dt = F_H + F_stops - F_fr - F_e.
+/// The forces that a machine reports are those that accelerate its piston: M
+/// dv/dt = F_H + F_stops - F_fr - F_e.
 #[test]
 fn forces_that_are_told_accelerate_the_piston() {
     let signal = |name: &str| SIGNALS.iter().position(|&signal| signal == name).unwrap();
@@ -279,7 +283,8 @@ fn forces_that_are_told_accelerate_the_piston() {
     assert!(stopped > 20, "{stopped}");
 }
 
-/// Derivatives by dual numbers agree with central differences, and differ from zero only where the pattern says so.
+/// Derivatives by dual numbers agree with central differences, and differ from zero only where the
+/// pattern says so.
 #[test]
 fn jacobians_are_slopes_and_keep_to_their_pattern() {
     let mut noise = Noise(7);

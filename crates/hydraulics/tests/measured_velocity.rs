@@ -1,4 +1,5 @@
-//! A load velocity that is fed forward as its sensor shows it, against the machine's own derivatives.
+//! A load velocity that is fed forward as its sensor shows it, against the machine's own
+//! derivatives.
 
 #![allow(clippy::unwrap_used)] // helpers of tests
 
@@ -14,8 +15,9 @@ use phea_hydraulics::plant::{
 
 use super::plant_in_motion::drawn;
 
-/// A filter, an error of the gain and a delay of the measured velocity: the machine's own derivatives with K_x (1 + e) H_v e^(-s tau),
-/// behind lines in motion; with lumped lines and without delay the quotient of polynomials, which without error is that without sensor.
+/// A filter, an error of the gain and a delay of the measured velocity: the machine's own
+/// derivatives with K_x (1 + e) H_v e^(-s tau), behind lines in motion; with lumped lines and
+/// without delay the quotient of polynomials, which without error is that without sensor.
 #[test]
 fn a_measured_feed_forward_is_the_machine_with_what_its_sensor_shows() {
     for number in 0..36 {
@@ -74,8 +76,8 @@ fn a_measured_feed_forward_is_the_machine_with_what_its_sensor_shows() {
     );
 }
 
-/// Closed over the force, the impedance at the load is the quotient of its own paths, with the filter of
-/// the velocity that is fed forward, with and without a spring and a mass on the rod.
+/// Closed over the force, the impedance at the load is the quotient of its own paths, with the
+/// filter of the velocity that is fed forward, with and without a spring and a mass on the rod.
 #[test]
 fn the_closed_impedance_has_the_filter_once() {
     let zero = Complex64::new(0.0, 0.0);

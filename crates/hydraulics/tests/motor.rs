@@ -1,4 +1,5 @@
-//! A motor: the same equations as a cylinder on a lever, its stiffness, its leakage, and turning on.
+//! A motor: the same equations as a cylinder on a lever, its stiffness, its leakage, and turning
+//! on.
 
 #![allow(clippy::unwrap_used)] // helpers of tests
 

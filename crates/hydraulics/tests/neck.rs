@@ -1,4 +1,5 @@
-//! The neck of an accumulator at a chamber: its limits, its resonance, passivity, and the pressure by which its gas is shut off.
+//! The neck of an accumulator at a chamber: its limits, its resonance, passivity, and the pressure
+//! by which its gas is shut off.
 
 #![allow(clippy::unwrap_used)] // helpers of tests
 
@@ -19,7 +20,8 @@ use super::machine_conservation::{check_instant, machine_of, random, step};
 
 /// Density, kinematic viscosity and bulk modulus of the oil.
 const OIL: [f64; 3] = [870.0, 46e-6, 1.45e9];
-/// The first state of the neck at chamber A of a machine with nothing but necks; its gas pressure follows, then chamber B.
+/// The first state of the neck at chamber A of a machine with nothing but necks; its gas pressure
+/// follows, then chamber B.
 const NECK_FLOW: usize = 6;
 
 fn machine(gas: [Option<Accumulator>; 2], necks: [Option<Neck>; 2]) -> Machine {
@@ -27,8 +29,8 @@ fn machine(gas: [Option<Accumulator>; 2], necks: [Option<Neck>; 2]) -> Machine {
     machine_of(Components { accumulators: gas, necks, ..rig }, &MachineOptions::default())
 }
 
-/// The plants with these compliances and this gas behind necks: lumped, and without polynomials; with a constant supply and with
-/// one that yields.
+/// The plants with these compliances and this gas behind necks: lumped, and without polynomials;
+/// with a constant supply and with one that yields.
 pub(super) fn responses(
     compliances: [f64; 2],
     gas: [Option<GasBranch>; 2],
@@ -56,7 +58,8 @@ pub(super) fn responses(
         .collect()
 }
 
-/// The largest relative gap between the plants of a chamber A with gas behind a neck of this length, and with these compliances.
+/// The largest relative gap between the plants of a chamber A with gas behind a neck of this
+/// length, and with these compliances.
 fn apart(length: f64, compliances: [f64; 2], frequency: f64) -> f64 {
     let gas = GasBranch::of(3e-12, None, Some(&Neck::round([6e-3, length], OIL, 1.5)));
     let with = responses([8e-13, 9e-13], [Some(gas), None], frequency);
@@ -64,7 +67,8 @@ fn apart(length: f64, compliances: [f64; 2], frequency: f64) -> f64 {
     gaps.map(|(with, without)| (with / without - 1.0).norm_sqr().sqrt()).fold(0.0, f64::max)
 }
 
-/// A neck that becomes short has no effect; one that becomes long shuts its gas off; between them it is neither.
+/// A neck that becomes short has no effect; one that becomes long shuts its gas off; between them
+/// it is neither.
 #[test]
 fn a_neck_has_two_limits() {
     let (lumped, alone) = ([8e-13 + 3e-12, 9e-13], [8e-13, 9e-13]);
@@ -160,8 +164,8 @@ impl Shaking {
     }
 }
 
-/// Whatever drives the port: what has entered neck and gas, less what they hold more, has been lost, and this only grows,
-/// as long as the gas is in use, which these motions leave it.
+/// Whatever drives the port: what has entered neck and gas, less what they hold more, has been
+/// lost, and this only grows, as long as the gas is in use, which these motions leave it.
 #[test]
 fn it_is_passive_under_random_pressures_of_its_port() {
     let places = ["neck_a", "accumulator_a", "neck_b", "accumulator_b"]
@@ -222,7 +226,8 @@ fn accounts_close_where_its_gas_is_shut_off() {
     }
 }
 
-/// The gas is shut off by its own pressure, not by that of its chamber; oil cavitates in the neck as in the chamber.
+/// The gas is shut off by its own pressure, not by that of its chamber; oil cavitates in the neck
+/// as in the chamber.
 #[test]
 fn it_is_empty_at_the_pressure_of_its_gas() {
     let gas = Accumulator { gas_volume: 2e-5, precharge_pressure: 20e5, polytropic_exponent: 1.4 };
@@ -239,7 +244,8 @@ fn it_is_empty_at_the_pressure_of_its_gas() {
     }
 }
 
-/// Where the gas is shut off while oil leaves the neck, its pressure may fall below that of the vapour.
+/// Where the gas is shut off while oil leaves the neck, its pressure may fall below that of the
+/// vapour.
 #[test]
 fn oil_in_a_neck_cavitates() {
     let gas = Accumulator { gas_volume: 2e-5, precharge_pressure: 20e5, polytropic_exponent: 1.4 };
@@ -255,7 +261,8 @@ fn oil_in_a_neck_cavitates() {
     assert_eq!(told(20e5, -2e5), told(-2e5, 20e5));
 }
 
-/// Without flow through it a neck is not seen: the machine rests where it rests with the gas at its chamber.
+/// Without flow through it a neck is not seen: the machine rests where it rests with the gas at its
+/// chamber.
 #[test]
 fn at_rest_it_is_not_seen() {
     for number in 0..16 {

@@ -152,8 +152,9 @@ pub(super) fn point_at(position: f64, state: &[f64]) -> OperatingPoint {
     }
 }
 
-/// The plant of an actuator where its machine rests, its piston at a position in m, and the compliances of its chambers with
-/// lumped lines; the pressures in Pa at the valve's ports are those of the chambers or a little off them.
+/// The plant of an actuator where its machine rests, its piston at a position in m, and the
+/// compliances of its chambers with lumped lines; the pressures in Pa at the valve's ports are
+/// those of the chambers or a little off them.
 pub(super) fn plant_at_rest(
     actuator: &Actuator,
     (machine, unit): (&Machine, &PowerUnit),
@@ -209,7 +210,8 @@ impl Drawn {
 fn it_is_the_machine_for_small_motions() {
     for number in 0..300 {
         let rig = drawn(number);
-        // every other rig feeds the velocity of its load forward, from a thousandth of what holds the force to three times that
+        // every other rig feeds the velocity of its load forward, from a thousandth of what holds
+        // the force to three times that
         let feed_forward =
             if number.is_multiple_of(2) { 0.03 * pow(3e3, number as f64 / 300.0) } else { 0.0 };
         let fed = (feed_forward > 0.0).then_some(feed_forward);
@@ -226,7 +228,8 @@ fn it_is_the_machine_for_small_motions() {
     }
 }
 
-/// Where a limited pump settles the machine rests, as far as the pump gives what is taken there; the others have fallen to less.
+/// Where a limited pump settles the machine rests, as far as the pump gives what is taken there;
+/// the others have fallen to less.
 #[test]
 fn a_limited_pump_settles_where_the_machine_rests() {
     let mut counted = [0, 0];
@@ -253,7 +256,8 @@ fn a_limited_pump_settles_where_the_machine_rests() {
     assert!(counted.iter().all(|count| *count > 10), "{counted:?}");
 }
 
-/// Without leakage and with a prescribed load it is the model it is made of, coefficient by coefficient.
+/// Without leakage and with a prescribed load it is the model it is made of, coefficient by
+/// coefficient.
 #[test]
 fn without_load_and_leakage_it_is_the_known_models() {
     let of_load_pressure = LinearPlant::of_load_pressure(&nominal_plant(), 0.0, LinearLoad::Prescribed);

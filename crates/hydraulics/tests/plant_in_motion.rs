@@ -1,4 +1,5 @@
-//! The plant behind lines in motion against the machine's own derivatives, delays included, and against lumped lines.
+//! The plant behind lines in motion against the machine's own derivatives, delays included, and
+//! against lumped lines.
 
 #![allow(clippy::unwrap_used)] // helpers of tests
 
@@ -44,7 +45,8 @@ pub(super) fn model(number: u64, time: f64) -> LineModel {
     }
 }
 
-/// LinearPlant and machine of a rig of its own for every number, with a model of its own for every line.
+/// LinearPlant and machine of a rig of its own for every number, with a model of its own for every
+/// line.
 pub(crate) struct Drawn {
     machine: Machine,
     inputs: Vec<f64>,
@@ -64,8 +66,9 @@ fn loads(number: u64, mass: f64, stiffness: f64, damping: f64) -> (LoadModel, Li
     (sprung, LinearLoad::Yielding { mass, damping, stiffness })
 }
 
-/// The plant behind these lines where its machine rests, its piston at a position in m: the leakage flows through the lines, so that
-/// the pressures at the valve's ports are a little off the chambers.
+/// The plant behind these lines where its machine rests, its piston at a position in m: the leakage
+/// flows through the lines, so that the pressures at the valve's ports are a little off the
+/// chambers.
 pub(super) fn plant_behind(
     actuator: &Actuator,
     (machine, unit): (&Machine, &PowerUnit),
@@ -170,7 +173,8 @@ pub(crate) fn drawn(number: u64) -> Drawn {
 }
 
 impl Drawn {
-    /// F_e and the velocity of the load, by the command and by the ground, where nothing is fed forward.
+    /// F_e and the velocity of the load, by the command and by the ground, where nothing is fed
+    /// forward.
     pub(crate) fn force_and_velocity(&self, frequency: f64) -> [[Complex64; 2]; 2] {
         let s = Complex64::new(0.0, frequency);
         let inputs = [&[self.command], &self.inputs[..]].concat();
@@ -220,8 +224,9 @@ fn it_is_the_machine_for_small_motions() {
     }
 }
 
-/// The velocity of the load is that of the machine, by the command and by the ground; with lumped lines it is the quotient over the
-/// plant's denominator, and fed forward at once it is fed back too.
+/// The velocity of the load is that of the machine, by the command and by the ground; with lumped
+/// lines it is the quotient over the plant's denominator, and fed forward at once it is fed back
+/// too.
 #[test]
 fn the_velocity_of_the_load_is_that_of_the_machine() {
     let mut yielding = 0;
@@ -310,7 +315,8 @@ fn a_late_feed_forward_is_enclosed() {
     }
 }
 
-/// The plant's own poles in the right half plane against those with e^(-s tau) as six quotients of second order.
+/// The plant's own poles in the right half plane against those with e^(-s tau) as six quotients of
+/// second order.
 #[test]
 fn poles_of_a_late_plant_are_counted() {
     let plant = LinearPlant::of_load_pressure(
@@ -387,7 +393,8 @@ fn lumped_lines_make_the_rational_plant() {
     }
 }
 
-/// What a line yields at once is what its lumped model yields, and a stiffer line is one with a stiffer fluid and wall.
+/// What a line yields at once is what its lumped model yields, and a stiffer line is one with a
+/// stiffer fluid and wall.
 #[test]
 fn compliance_is_that_of_the_lumped_line() {
     for number in 0..12 {
@@ -403,8 +410,8 @@ fn compliance_is_that_of_the_lumped_line() {
     }
 }
 
-/// Whatever lies between two frequencies lies in the disc of both, which shrinks onto the response; and the response stays below its
-/// roll-off from wherever that begins.
+/// Whatever lies between two frequencies lies in the disc of both, which shrinks onto the response;
+/// and the response stays below its roll-off from wherever that begins.
 #[test]
 fn what_bounds_it_holds_it() {
     let mut state = 8;
@@ -435,7 +442,8 @@ fn what_bounds_it_holds_it() {
     }
 }
 
-/// Every fourth plant with its load's velocity fed forward, late and behind a filter that resonates.
+/// Every fourth plant with its load's velocity fed forward, late and behind a filter that
+/// resonates.
 fn sometimes_fed(plant: PlantInMotion, number: u64) -> PlantInMotion {
     let filter = RateFilter::SecondOrder { frequency_rad_per_s: 700.0, damping_ratio: 0.3 };
     match number % 4 {
@@ -444,7 +452,8 @@ fn sometimes_fed(plant: PlantInMotion, number: u64) -> PlantInMotion {
     }
 }
 
-/// Towards zero frequency both paths are those of the slow plant: lines are resistances there, and have crept all they ever do.
+/// Towards zero frequency both paths are those of the slow plant: lines are resistances there, and
+/// have crept all they ever do.
 #[test]
 fn slowly_it_is_a_quotient_of_polynomials() {
     for number in 0..108 {

@@ -1,4 +1,5 @@
-//! The spring between force sensor and load: the linear plant against the machine, the rigid limit, ledgers and passivity.
+//! The spring between force sensor and load: the linear plant against the machine, the rigid limit,
+//! ledgers and passivity.
 
 #![allow(clippy::unwrap_used)] // helpers of tests
 
@@ -123,7 +124,8 @@ fn it_is_the_machine_for_small_motions() {
     }
 }
 
-/// The force through the sensor and that on the load, with a velocity that is fed forward in every other rig.
+/// The force through the sensor and that on the load, with a velocity that is fed forward in every
+/// other rig.
 pub(super) fn is_the_machine(rig: &Drawn, number: u64) {
     let gain = if number.is_multiple_of(2) { 0.03 * pow(3e3, number as f64 / 200.0) } else { 0.0 };
     let fed = (gain > 0.0).then_some(gain);
@@ -214,7 +216,8 @@ pub(super) fn responds_as_its_polynomials(rig: &Drawn, number: u64) -> usize {
     bounded
 }
 
-/// A rigid spring has no effect: in the linear plant, with lines in motion and in the machine at rest and in small motions.
+/// A rigid spring has no effect: in the linear plant, with lines in motion and in the machine at
+/// rest and in small motions.
 #[test]
 fn a_rigid_spring_is_no_spring() {
     let rigid = |damping| SeriesSpring {
@@ -343,7 +346,8 @@ fn ledgers_close() {
                 ends: travel.ends.map(|ends| Contact { stiffness: 2e7, ..ends }),
                 ..travel
             });
-            // an edge that opens at zero drop is too fast for this method where the root's transition is short
+            // an edge that opens at zero drop is too fast for this method where the root's
+            // transition is short
             let parts = rig(SeriesSpring { travel: ends, ..own });
             let valve = Servovalve { transition_pressure: 1e5, ..parts.valve };
             let machine = machine_of(
@@ -380,7 +384,8 @@ pub(super) fn closes_at_any_state(name: &str, machine: &Machine, seed: &mut u64)
     }
 }
 
-/// Whatever moves its two ends: from rest, what has entered it is never less than what it gave back.
+/// Whatever moves its two ends: from rest, what has entered it is never less than what it gave
+/// back.
 #[test]
 fn it_is_passive_under_random_motions_of_its_ports() {
     for number in 0..16 {

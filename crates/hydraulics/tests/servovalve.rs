@@ -1,4 +1,5 @@
-//! The four-edge valve: data sheet, coefficients at any operating point, and what is true of any such valve.
+//! The four-edge valve: data sheet, coefficients at any operating point, and what is true of any
+//! such valve.
 
 use phea_dynamics::portable;
 use phea_dynamics::scalar::{Dual, Parameters};
@@ -26,7 +27,8 @@ fn rig() -> Components {
 fn coefficients_from_a_data_sheet() {
     // ORIGIN: thesis Table 5.1, K_vp from 88 % of the rated flow of Table A.1
     check("K_vp", flow_coefficient_from_rating(0.88 * 6.31e-4, 70e5), 2.97e-7, 1e-9);
-    // ORIGIN: analytic, the flow through two such edges in series at the rated drop is the rated flow
+    // ORIGIN: analytic, the flow through two such edges in series at the rated drop is the rated
+    // flow
     let coefficient: f64 = flow_coefficient_from_rating(6e-4, 70e5);
     let through = |middle: f64| coefficient * (70e5 - middle).sqrt() - coefficient * middle.sqrt();
     assert_eq!(through(35e5), 0.0);
@@ -39,7 +41,8 @@ fn coefficients_from_a_data_sheet() {
     assert!((quarter / leak - 1.0).abs() < 1e-14);
 }
 
-/// ORIGIN: analytic, thesis (4.21) and (4.22) corrected, with plain square roots and the derivative of the leakage.
+/// ORIGIN: analytic, thesis (4.21) and (4.22) corrected, with plain square roots and the derivative
+/// of the leakage.
 #[test]
 fn control_coefficients_are_the_closed_forms_for_equal_edges() {
     let valve = Servovalve { transition_pressure: 1e-3, ..valve_with_equal_edges() };
@@ -81,10 +84,12 @@ fn ranges_of_table_6_3() {
 #[test]
 fn velocity_gain_carries_the_same_flow_through_both_edges() {
     let gain = |direction| velocity_gain(&valve(), &SUPPLY, [USEFUL_AREA; 2], 0.0, direction).unwrap();
-    // ORIGIN: recomputed by comparisons/recompute_rig.py, the edges of Table 5.1 in series at 70 bar
+    // ORIGIN: recomputed by comparisons/recompute_rig.py, the edges of Table 5.1 in series at 70
+    // bar
     check("extending", USEFUL_AREA * gain(SpoolDirection::Extending), 6.51e-5, 1e-7);
     check("retracting", USEFUL_AREA * gain(SpoolDirection::Retracting), 4.13e-5, 1e-7);
-    // ORIGIN: recomputed by comparisons/recompute_rig.py, mean of both chambers at half the supply pressure
+    // ORIGIN: recomputed by comparisons/recompute_rig.py, mean of both chambers at half the supply
+    // pressure
     let mean = |direction| control_coefficients(&valve(), &SUPPLY, 0.0, 0.0, direction).flow_gain;
     check("mean of chambers, extending", mean(SpoolDirection::Extending), 6.59467e-5, 1e-10);
     check("mean of chambers, retracting", mean(SpoolDirection::Retracting), 4.20936e-5, 1e-10);
@@ -112,7 +117,8 @@ fn leakage_adds_to_the_flow_gain_under_load() {
     assert!((largest - expected).abs() < 1e-3 * expected, "{largest} against {expected}");
 }
 
-/// With the leakage's curve on each edge the total leakage is not greatest at null, as thesis (4.14) has it.
+/// With the leakage's curve on each edge the total leakage is not greatest at null, as
+/// thesis (4.14) has it.
 #[test]
 fn total_leakage_peaks_beside_null() {
     // ORIGIN: recomputed by comparisons/recompute_rig.py (plain square roots, blocked ports)
@@ -146,8 +152,8 @@ fn total_leakage_peaks_beside_null() {
     }
 }
 
-/// ORIGIN: analytic, thesis (4.14): wherever the spool is, the whole leakage is one secant, and at null that of the other
-/// model.
+/// ORIGIN: analytic, thesis (4.14): wherever the spool is, the whole leakage is one secant, and at
+/// null that of the other model.
 #[test]
 fn one_curve_is_the_curve_of_the_whole_valve() {
     let each = Servovalve { transition_pressure: 1e-3, ..valve() };
@@ -165,8 +171,8 @@ fn one_curve_is_the_curve_of_the_whole_valve() {
     }
 }
 
-/// ORIGIN: analytic, equal edges: what one edge opens the other closes, so that null passes twice the flow gain of one
-/// edge.
+/// ORIGIN: analytic, equal edges: what one edge opens the other closes, so that null passes twice
+/// the flow gain of one edge.
 #[test]
 fn one_curve_doubles_the_flow_gain_at_null() {
     let one = Servovalve { leakage_model: LeakageModel::OneCurve, ..valve_with_equal_edges() };
@@ -176,8 +182,8 @@ fn one_curve_doubles_the_flow_gain_at_null() {
     assert!((gain(one, 1.0) / gain(valve_with_equal_edges(), 1.0) - 1.0).abs() < 1e-3);
 }
 
-/// Analytic derivatives of both chambers' flows against dual numbers, everywhere, the laminar zone and reversed drops
-/// included.
+/// Analytic derivatives of both chambers' flows against dual numbers, everywhere, the laminar zone
+/// and reversed drops included.
 #[test]
 fn chamber_coefficients_are_the_derivatives_of_the_flows() {
     let one_curve = Servovalve { leakage_model: LeakageModel::OneCurve, ..valve() };

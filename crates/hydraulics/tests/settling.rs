@@ -36,7 +36,8 @@ impl Draw {
         if share(&mut self.0) < 0.5 { LeakageModel::EachEdge } else { LeakageModel::OneCurve }
     }
 
-    /// Edges that differ threefold, any leakage of them by either model, one rod or two, and a supply from 30 to 300 bar.
+    /// Edges that differ threefold, any leakage of them by either model, one rod or two, and a
+    /// supply from 30 to 300 bar.
     fn rig(&mut self) -> Actuator {
         let rods = [self.even(0.0, 0.036), self.even(0.0, 0.036)];
         let [area_a, area_b] = rods.map(|rod| annulus_area(0.05, rod));
@@ -101,8 +102,8 @@ fn settled_points_are_those_of_bisection() {
     assert!(found > 9_500, "{found}");
 }
 
-/// Whether the force at standstill rises with the command all over its range: with unequal areas and edges much leakage undoes that, and
-/// one load has several commands.
+/// Whether the force at standstill rises with the command all over its range: with unequal areas
+/// and edges much leakage undoes that, and one load has several commands.
 fn rises(actuator: &Actuator) -> bool {
     let balance = Balance::at(actuator.components(), 0.25);
     let force = |command: f64| {
@@ -114,7 +115,8 @@ fn rises(actuator: &Actuator) -> bool {
     commands.windows(2).all(|pair| force(pair[0]) < force(pair[1]))
 }
 
-/// With leakage across the piston every point is where the machine rests, found by its own equations from the point without leakage.
+/// With leakage across the piston every point is where the machine rests, found by its own
+/// equations from the point without leakage.
 #[test]
 fn leaking_points_are_where_the_machine_rests() {
     let mut draw = Draw(11);
@@ -176,8 +178,9 @@ fn settle<S: phea_dynamics::scalar::Scalar>(p: &[S], leakage_model: LeakageModel
 const NAMES: [&str; 15] =
     ["K3", "K4", "K5", "K6", "L3", "L4", "L5", "L6", "p_S", "p_T", "A_A", "A_B", "G", "v", "F"];
 
-/// One recording serves every point of a box that brings the spool through null, and differentiating it gives the derivatives of the
-/// point itself, by the theorem of implicit functions.
+/// One recording serves every point of a box that brings the spool through null, and
+/// differentiating it gives the derivatives of the point itself, by the theorem of implicit
+/// functions.
 #[test]
 fn a_recorded_point_is_right_everywhere_with_its_derivatives() {
     for leakage_model in [LeakageModel::EachEdge, LeakageModel::OneCurve] {

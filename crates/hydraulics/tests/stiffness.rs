@@ -35,7 +35,8 @@ fn modulus_chain_of_the_thesis() {
 
 #[test]
 fn stiffness_of_hose_and_pipe_in_both_models() {
-    // ORIGIN: recomputed by comparisons/recompute_rig.py; thesis 6.4.1 prints 2.24e6 and Table 6.3 4.11e6
+    // ORIGIN: recomputed by comparisons/recompute_rig.py; thesis 6.4.1 prints 2.24e6 and Table 6.3
+    // 4.11e6
     let uniform = over_stroke(StiffnessModel::Uniform, &hose_line(), StiffeningMember::Nominal);
     check("uniform centre", uniform.minimum, 2.233e6, 1e3);
     check("uniform ends", uniform.maximum, 4.109e6, 1e3);

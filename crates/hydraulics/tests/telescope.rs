@@ -1,4 +1,5 @@
-//! A telescopic piston: its areas and volumes, machine and stiffness against closed forms, the single stage, and its ledgers.
+//! A telescopic piston: its areas and volumes, machine and stiffness against closed forms, the
+//! single stage, and its ledgers.
 
 #![allow(clippy::unwrap_used)] // helpers of tests
 
@@ -34,7 +35,8 @@ fn with(telescope: Telescope, rig: Components) -> Components {
     Components { cylinder: Cylinder { stroke: ActuatorStroke::Telescopic(telescope), ..rig.cylinder }, ..rig }
 }
 
-/// dV_A/dx = A_A and dV_B/dx = -A_B at every position, within transitions too; likewise the slopes of the areas.
+/// dV_A/dx = A_A and dV_B/dx = -A_B at every position, within transitions too; likewise the slopes
+/// of the areas.
 #[test]
 fn areas_are_the_slopes_of_the_volumes() {
     let cylinder = with(three(0.05), asymmetric()).cylinder;
@@ -102,7 +104,8 @@ fn stiffness_is_that_of_each_stage() {
     let plain = Actuator::new(asymmetric()).unwrap();
     let plain = plain.chamber_compliance([0.0; 2], StiffeningMember::Nominal);
     let Cylinder { area_a, area_b, .. } = rig.cylinder;
-    // ORIGIN: analytic, areas and the ways swept by hand: 0.2 m, 0.15 m and 0.15 m of the three stages
+    // ORIGIN: analytic, areas and the ways swept by hand: 0.2 m, 0.15 m and 0.15 m of the three
+    // stages
     let by_hand = [
         (0.1, [1.0, 1.0], [0.1, 0.1 + 0.15 * 0.9 + 0.15 * 1.2]),
         (0.3, [0.7, 0.9], [0.2 + 0.1 * 0.7, 0.05 * 0.9 + 0.15 * 1.2]),
@@ -132,7 +135,8 @@ fn the_range_over_the_stroke_is_reached() {
     }
 }
 
-/// A force is held with the areas of the stage in which the piston stands, and the machine rests there.
+/// A force is held with the areas of the stage in which the piston stands, and the machine rests
+/// there.
 #[test]
 fn a_force_is_held_by_the_stage_that_moves() {
     let rig = with(three(0.02), asymmetric());

@@ -1,5 +1,6 @@
-//! The hydraulic transmission between force sensor and load: the linear plant against the machine, the line in segments and
-//! the distributed one, the spring that it is for slow motions, ledgers and passivity.
+//! The hydraulic transmission between force sensor and load: the linear plant against the machine,
+//! the line in segments and the distributed one, the spring that it is for slow motions, ledgers
+//! and passivity.
 
 #![allow(clippy::unwrap_used)] // helpers of tests
 
@@ -41,7 +42,8 @@ fn pipe(bore: f64, length: f64) -> Line {
     Line::Pipe { pipe: Pipe { bore, wall: PipeWall::Rigid }, length }
 }
 
-/// Of one to three segments, every third with the soft hose, every other with oil in addition to the line.
+/// Of one to three segments, every third with the soft hose, every other with oil in addition to
+/// the line.
 pub(super) fn transmission(number: u64) -> Transmission {
     let mut state = stream(81, number);
     let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
@@ -64,7 +66,8 @@ fn drawn(number: u64) -> super::series::Drawn {
     drawn_with(SeriesElement::Transmission(transmission(number)), number)
 }
 
-/// 200 rigs at 20 frequencies, to 1e-6; prescribed and yielding loads, a velocity fed forward in every other.
+/// 200 rigs at 20 frequencies, to 1e-6; prescribed and yielding loads, a velocity fed forward in
+/// every other.
 #[test]
 fn it_is_the_machine_for_small_motions() {
     for number in 0..200 {
@@ -95,8 +98,10 @@ fn conduit(transmission: &Transmission) -> Conduit {
         .unwrap()
 }
 
-/// The modes of a rig whose load is held, as pairs of frequency in rad/s and damping ratio, in addition to those of the valve.
-/// ORIGIN: recomputed by comparisons/recompute_transmission.py, eigenvalues of the equations in pressures and flows
+/// The modes of a rig whose load is held, as pairs of frequency in rad/s and damping ratio, in
+/// addition to those of the valve.
+/// ORIGIN: recomputed by comparisons/recompute_transmission.py, eigenvalues of the equations in
+/// pressures and flows
 #[test]
 fn its_modes_are_those_of_pressures_and_flows() {
     let own = Transmission {
@@ -149,7 +154,8 @@ fn its_line_is_the_line_in_segments() {
     }
 }
 
-/// The distributed line with steady friction, Z_c sinh(Gamma): the error falls with the square of the number of segments.
+/// The distributed line with steady friction, Z_c sinh(Gamma): the error falls with the square of
+/// the number of segments.
 #[test]
 fn many_segments_are_the_distributed_line() {
     for number in 0..20 {
@@ -170,7 +176,8 @@ fn many_segments_are_the_distributed_line() {
     }
 }
 
-/// Without inertia and friction it is a spring: in the linear plant at every frequency, and in the machine at rest.
+/// Without inertia and friction it is a spring: in the linear plant at every frequency, and in the
+/// machine at rest.
 #[test]
 fn without_inertia_it_is_a_spring() {
     for segments in [1, 4] {
@@ -233,7 +240,8 @@ fn slow_motions_meet_all_of_its_compliance() {
     }
 }
 
-/// In steady motion all oil moves alike, and its resistance takes R_0 A^2 v from the force, and R_0 A v from the pressure.
+/// In steady motion all oil moves alike, and its resistance takes R_0 A^2 v from the force, and R_0
+/// A v from the pressure.
 #[test]
 fn steady_motion_costs_the_resistance_of_the_line() {
     for number in 0..12 {
@@ -267,7 +275,8 @@ fn steady_motion_costs_the_resistance_of_the_line() {
     }
 }
 
-/// A pull lowers its pressure, and the oil tears off at that of its vapour: the indicator is zero there.
+/// A pull lowers its pressure, and the oil tears off at that of its vapour: the indicator is zero
+/// there.
 /// ORIGIN: analytic, F = -A (p_0 + 101,325 Pa).
 #[test]
 fn a_pull_beyond_its_filling_is_reported() {
@@ -334,7 +343,8 @@ fn what_is_stored_changes_by_what_enters_and_is_lost() {
     }
 }
 
-/// Whatever moves its two ends: from rest, what has entered it is never less than what it gave back.
+/// Whatever moves its two ends: from rest, what has entered it is never less than what it gave
+/// back.
 #[test]
 fn it_is_passive_under_random_motions_of_its_ports() {
     for number in 0..12 {
@@ -343,7 +353,8 @@ fn it_is_passive_under_random_motions_of_its_ports() {
     }
 }
 
-/// The port of the load with its force fed back: F_L/X_L of the loop, by eliminating the command from both paths.
+/// The port of the load with its force fed back: F_L/X_L of the loop, by eliminating the command
+/// from both paths.
 #[test]
 fn the_port_of_a_loop_counts_what_the_oil_holds_back() {
     use phea_dynamics::linear::{Polynomial, TransferFunction};
@@ -371,7 +382,8 @@ fn the_port_of_a_loop_counts_what_the_oil_holds_back() {
     }
 }
 
-/// Above all resonances the load meets the oil at its own piston alone, and the line says from where.
+/// Above all resonances the load meets the oil at its own piston alone, and the line says from
+/// where.
 #[test]
 fn at_last_the_load_meets_the_oil_at_its_piston() {
     for number in (0..40).filter(|number| number % 5 < 2) {

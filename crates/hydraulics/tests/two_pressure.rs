@@ -1,4 +1,5 @@
-//! The two-pressure model against its own dual-number linearisation, and the fifth-order model against it.
+//! The two-pressure model against its own dual-number linearisation, and the fifth-order model
+//! against it.
 
 #![allow(clippy::unwrap_used)] // helpers of tests
 
@@ -27,7 +28,8 @@ fn model(actuator: &Actuator, point: &OperatingPoint, friction: f64) -> TwoPress
     TwoPressureModel::new(actuator, [point.pressure_a, point.pressure_b], StiffeningMember::Nominal, friction)
 }
 
-/// Matrices of the nonlinear equations at a state, by dual numbers: states first, then command and load velocity.
+/// Matrices of the nonlinear equations at a state, by dual numbers: states first, then command and
+/// load velocity.
 fn jacobian(
     model: &TwoPressureModel,
     state: &TwoPressureState,
@@ -48,8 +50,9 @@ fn jacobian(
     (rates.map(|rate| *rate.gradient()), rates.map(|rate| rate.value()))
 }
 
-/// Every entry agrees to 1e-9 of itself. The chambers' dependence on the deflection is proportional to a net flow that
-/// vanishes at an equilibrium: it must be 1e-9 of what the piston's velocity does to the same pressure.
+/// Every entry agrees to 1e-9 of itself. The chambers' dependence on the deflection is proportional
+/// to a net flow that vanishes at an equilibrium: it must be 1e-9 of what the piston's velocity
+/// does to the same pressure.
 fn check_against_jacobian(system: &StateSpace, jacobian: &[[f64; 8]; 6]) {
     for (row, duals) in jacobian.iter().enumerate() {
         for (column, &dual) in duals.iter().enumerate() {
@@ -148,7 +151,8 @@ fn recorded_rates_are_the_rates() {
     }
 }
 
-/// A passive actuator stays passive whatever its edges, areas and position: leakage and friction only take energy.
+/// A passive actuator stays passive whatever its edges, areas and position: leakage and friction
+/// only take energy.
 #[test]
 fn open_loop_impedance_of_the_two_pressure_model_is_passive() {
     for components in rigs() {
@@ -219,7 +223,8 @@ fn coefficients_and_state_space_respond_alike() {
 }
 
 fn matched(position: f64) -> TwoPressureLinearParameters {
-    // The case of comparisons/recompute_rig.py: the hose, K_qU 5.62e-5, K_c 6.42e-13, f_v 100, K_S 2e7.
+    // The case of comparisons/recompute_rig.py: the hose, K_qU 5.62e-5, K_c 6.42e-13, f_v 100, K_S
+    // 2e7.
     let valve = Servovalve {
         flow_coefficients: Edges::equal(5.62e-4 / 35e5_f64.sqrt()),
         leakage_coefficients: Edges::equal(6.42e-13 * 140e5_f64.sqrt()),

@@ -1,4 +1,5 @@
-//! A valve on a test bench: balance of flows, limits, and a slow spool against the equations of a fast one.
+//! A valve on a test bench: balance of flows, limits, and a slow spool against the equations of a
+//! fast one.
 
 use phea_hydraulics::reference_rig::valve;
 use phea_hydraulics::servovalve::{
@@ -27,7 +28,8 @@ fn blocked_ports_pass_on_what_they_take() {
             let found = blocked_ports(&valve, &SUPPLY, opening);
             let conductances = edge_conductances(&valve, opening);
             let edges = edge_flows(&valve, &SUPPLY, &conductances, found.pressure_a, found.pressure_b);
-            // where an edge is wide open its drop is below one rounding error of the supply pressure
+            // where an edge is wide open its drop is below one rounding error of the supply
+            // pressure
             let rounding = 1e-9 * 2.0 * 3.85e-7 * opening.abs() / 10.0 / 1e3_f64.sqrt() + 1e-20;
             assert!((edges.supply_to_a - edges.a_to_tank).abs() < rounding, "{opening} {edges:?}");
             assert!((edges.supply_to_b - edges.b_to_tank).abs() < rounding, "{opening} {edges:?}");

@@ -1,5 +1,5 @@
-//! The linear plant with a virtual impedance, y = F_e + Z_v X_L, against the machine's own derivatives and against the force and the
-//! motion of the load by themselves.
+//! The linear plant with a virtual impedance, y = F_e + Z_v X_L, against the machine's own
+//! derivatives and against the force and the motion of the load by themselves.
 
 #![allow(clippy::unwrap_used)] // helpers of tests
 
@@ -44,7 +44,8 @@ fn check(found: Complex64, expected: Complex64, what: &str) {
     assert!(error < 1e-7, "{what}: {error}");
 }
 
-/// Behind lines in motion, and with the velocity of the load fed forward late: what the machine's derivatives make of force and motion.
+/// Behind lines in motion, and with the velocity of the load fed forward late: what the machine's
+/// derivatives make of force and motion.
 #[test]
 fn the_output_is_that_of_the_machine() {
     for number in 0..36 {
@@ -70,7 +71,8 @@ fn the_output_is_that_of_the_machine() {
     }
 }
 
-/// The quotients of polynomials are the force and the motion of the load, with a series element too; the rate stays that of the load.
+/// The quotients of polynomials are the force and the motion of the load, with a series element
+/// too; the rate stays that of the load.
 #[test]
 fn the_quotients_are_force_and_motion() {
     for number in 0..48 {

@@ -40,8 +40,8 @@ pub struct Rest {
 /// [`EquilibriumError`] where none is found.
 ///
 /// # Example
-/// A controller that integrates lets the loop rest where the force is its reference, 2 kN, instead of the
-/// 3 kN of the guess.
+/// A controller that integrates lets the loop rest where the force is its reference, 2 kN, instead
+/// of the 3 kN of the guess.
 /// ```
 /// # use phea_dynamics::controller::{Compensator, Controller, Element};
 /// # use phea_dynamics::linear::TransferFunction;

@@ -52,8 +52,8 @@ impl Control {
 /// states.
 ///
 /// # Example
-/// At rest the machine pushes with the force of its operating point; an amplitude of its state j times
-/// as large pushes with j times that force.
+/// At rest the machine pushes with the force of its operating point; an amplitude of its state j
+/// times as large pushes with j times that force.
 /// ```
 /// # use num_complex::Complex64;
 /// # use phea_dynamics::portable::magnitude;

@@ -1,5 +1,5 @@
-//! The machine behind lines with dynamics of their own: their limits, and each against the other, by the method that drives
-//! everything.
+//! The machine behind lines with dynamics of their own: their limits, and each against the other,
+//! by the method that drives everything.
 
 #![allow(clippy::unwrap_used)] // helpers of tests
 
@@ -43,7 +43,8 @@ fn two_waves() -> DynamicLine {
     DynamicLine::TwoWave(hose.in_time(END_SHARE).unwrap())
 }
 
-/// Force in N every millisecond while the load moves smoothly by 2 mm, begun 20 ms after a rest at 2 kN.
+/// Force in N every millisecond while the load moves smoothly by 2 mm, begun 20 ms after a rest at
+/// 2 kN.
 fn forces(line: Option<DynamicLine>, motion_s: f64, duration_s: f64) -> Vec<f64> {
     let machine = machine(line);
     let point = operating_point(&actuator(), 0.2, Condition::Load(SteadyLoad::Force(2e3))).unwrap();
@@ -63,7 +64,8 @@ fn largest_difference(one: &[f64], other: &[f64]) -> f64 {
     one.iter().zip(other).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
-/// A capacity without segments behind the valve is the lumped line, whatever the stiffness model of the chamber.
+/// A capacity without segments behind the valve is the lumped line, whatever the stiffness model of
+/// the chamber.
 #[test]
 fn one_capacity_is_the_lumped_line() {
     let compliance = hose_line().compliance(1.45e9, StiffeningMember::Nominal);
@@ -93,7 +95,8 @@ fn slow_motions_see_the_lumped_line() {
     }
 }
 
-/// More segments come nearer to the wave that travels, the order of the error is that of their length squared.
+/// More segments come nearer to the wave that travels, the order of the error is that of their
+/// length squared.
 #[test]
 fn segments_become_a_transmission_line() {
     let travelling = forces(Some(waves()), 0.02, 0.05);

@@ -1,4 +1,5 @@
-//! Machines driven hard by the method that drives everything: they end where they should, or state why not.
+//! Machines driven hard by the method that drives everything: they end where they should, or state
+//! why not.
 
 #![allow(clippy::unwrap_used)] // helpers of tests
 
@@ -71,7 +72,8 @@ fn a_shut_valve_settles() {
     assert!(result.outcome.events.is_empty());
     let pressure = column(&outputs, "pressure_a_pa");
     let [before, last] = [pressure[pressure.len() - 10], pressure[pressure.len() - 1]];
-    // ORIGIN: analytic, thesis Table 5.1: p_A = p_S/(1 + (K_vin4/K_vin3)^2) where leakage in equals leakage out
+    // ORIGIN: analytic, thesis Table 5.1: p_A = p_S/(1 + (K_vin4/K_vin3)^2) where leakage in equals
+    // leakage out
     assert!((last / (70e5 / (1.0 + (2.2_f64 / 2.35) * (2.2 / 2.35))) - 1.0).abs() < 1e-3);
     assert!((before - last).abs() < 1e-4 * last && result.outcome.work.steps < 2000);
 }
@@ -91,7 +93,8 @@ fn a_piston_meets_its_end_stops() {
     assert!(largest > 0.5 && largest < 0.501 && least < 0.0 && least > -0.001);
 }
 
-/// 20 mm of load in 10 ms: chambers cavitate and are reported, not clamped, and the run ends in time.
+/// 20 mm of load in 10 ms: chambers cavitate and are reported, not clamped, and the run ends in
+/// time.
 #[test]
 fn violent_loads_are_survived() {
     let air = Some(EntrainedAir { volume_fraction: 0.01, polytropic_exponent: 1.4 });
@@ -150,7 +153,8 @@ fn lost_supplies_and_reversed_pressures_are_no_error() {
     assert!(taken[0] < 0.0 && taken[taken.len() - 1] > 0.0);
 }
 
-/// A wall that is met at speed pushes and never pulls, with every kind of friction and every imperfection of the spool.
+/// A wall that is met at speed pushes and never pulls, with every kind of friction and every
+/// imperfection of the spool.
 #[test]
 fn walls_are_met_with_every_friction() {
     let Friction::LuGre(lugre) = benchmark_components().friction else { unreachable!() };

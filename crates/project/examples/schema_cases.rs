@@ -1,7 +1,9 @@
-//! Prints the schema of the project file, and projects with what the reader finds in each: one JSON value in each line.
+//! Prints the schema of the project file, and projects with what the reader finds in each: one JSON
+//! value in each line.
 //!
-//! After the files that are named come mutations of those that are accepted: keys removed, renamed, or given another value. The sequence is fixed
-//! by its seed. `comparisons/compare_schema.py` reads the lines.
+//! After the files that are named come mutations of those that are accepted: keys removed, renamed,
+//! or given another value. The sequence is fixed by its seed. `comparisons/compare_schema.py` reads
+//! the lines.
 #![allow(clippy::print_stdout, reason = "what it prints is what it is for")]
 
 use phea_project::source::Memory;

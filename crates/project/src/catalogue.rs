@@ -101,8 +101,9 @@ impl Catalogue {
         self.entries(kind).find(|entry| entry.name == name)
     }
 
-    /// The entries of that kind, built-in ones first, each group by name; an entry of the user's takes the
-    /// place of the built-in one of its name. The built-in files of a kind are read when it is first asked for.
+    /// The entries of that kind, built-in ones first, each group by name; an entry of the user's
+    /// takes the place of the built-in one of its name. The built-in files of a kind are read when
+    /// it is first asked for.
     pub fn entries(&self, kind: CatalogueKind) -> impl Iterator<Item = &CatalogueEntry> {
         let built_in = if self.has_built_in { read::built_in(kind) } else { &[] };
         let own = move || self.own.iter().map(Arc::as_ref).filter(move |entry| entry.kind == kind);

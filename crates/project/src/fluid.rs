@@ -64,7 +64,8 @@ pub struct DeclaredAccumulator {
     pub polytropic_exponent: f64,
     /// s, at a chamber: of the heat between gas and wall. `None` for polytropic gas.
     pub thermal_time_constant: Option<f64>,
-    /// At which the precharge is stated, and at which the gas works; `None` where they are the same.
+    /// At which the precharge is stated, and at which the gas works; `None` where they are the
+    /// same.
     pub temperatures: Option<GasTemperatures>,
     /// Highest permitted pressure over the precharge, both absolute, if stated.
     pub maximum_pressure_ratio: Option<f64>,

@@ -1,5 +1,5 @@
-//! `[identify]`: recorded static tests of the servovalve and what their columns hold; recordings of a
-//! line and of the cylinder.
+//! `[identify]`: recorded static tests of the servovalve and what their columns hold; recordings of
+//! a line and of the cylinder.
 
 use super::key::plain;
 use super::visitor::Visitor;

@@ -302,7 +302,8 @@ impl DeclaredActuator {
         Self::REQUIRED.into_iter().chain(Self::MOVING).chain(Self::OPTIONAL)
     }
 
-    /// What moves: a motor, or otherwise a cylinder. The keys of all other tables measure its motion.
+    /// What moves: a motor, or otherwise a cylinder. The keys of all other tables measure its
+    /// motion.
     fn visit_moving<V: Visitor>(&mut self, v: &mut V) {
         let k = plain("motor", "A rotary actuator in place of the cylinder.");
         v.table(k, &mut self.motor, DeclaredMotor::visit);

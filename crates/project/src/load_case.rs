@@ -1,5 +1,5 @@
-//! `[[load_case]]`: other values under which the project and its alternatives are judged again, such
-//! as another load.
+//! `[[load_case]]`: other values under which the project and its alternatives are judged again,
+//! such as another load.
 
 use super::key::plain;
 use super::visitor::Visitor;

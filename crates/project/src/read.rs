@@ -85,7 +85,8 @@ impl OwnSettings {
     }
 }
 
-/// A project of bytes with settings, then with those of a part of it, and with what was found later.
+/// A project of bytes with settings, then with those of a part of it, and with what was found
+/// later.
 pub(super) fn read_bytes(
     (source, path): (&dyn Source, &str),
     bytes: Result<Vec<u8>, String>,
@@ -408,8 +409,8 @@ impl Project {
         (listing.assigned == wanted).then_some(project)
     }
 
-    /// The same project as if every number of it were known: without `[uncertainty]`, its directions
-    /// and `[family]`.
+    /// The same project as if every number of it were known: without `[uncertainty]`, its
+    /// directions and `[family]`.
     #[must_use]
     pub fn without_uncertainty(&self) -> Project {
         Project { uncertainty: Vec::new(), directions: Vec::new(), family: None, ..self.clone() }

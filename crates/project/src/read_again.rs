@@ -1,5 +1,5 @@
-//! A project read once more: with the settings of an alternative or a load case, or for the place of what
-//! was found later.
+//! A project read once more: with the settings of an alternative or a load case, or for the place
+//! of what was found later.
 
 use super::Loaded;
 use super::diagnostic::{Diagnostic, LateError, Refusal, Severity};
@@ -61,8 +61,8 @@ pub fn read_alternative(
     read_again(source, base, (catalogues, None), (OwnSettings::Alternative(index), name))
 }
 
-/// The load case of a project with this index, read as an alternative is: its settings are listed as
-/// if they had been given to [`read`](super::read()), so that alternatives of it can be read.
+/// The load case of a project with this index, read as an alternative is: its settings are listed
+/// as if they had been given to [`read`](super::read()), so that alternatives of it can be read.
 ///
 /// # Errors
 /// [`Refusal`] with all errors; those in a value of the load case have its place.

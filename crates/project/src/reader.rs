@@ -52,8 +52,8 @@ struct Frame<'a> {
     layers: Vec<Layer<'a>>,
     /// Keys asked for so far.
     asked: Vec<&'static str>,
-    /// Those that are needed and not there, with what is said of each at the end of the table: a key
-    /// that is misspelt explains one.
+    /// Those that are needed and not there, with what is said of each at the end of the table: a
+    /// key that is misspelt explains one.
     lacking: Vec<(&'static str, RawFinding)>,
     /// The choice of the variant being read, in words.
     chosen: Option<String>,
@@ -155,7 +155,8 @@ impl<'a> Reader<'a> {
         frame.asked
     }
 
-    /// Ends a table whose unknown keys are reported in the table around it. Returns the keys that were read.
+    /// Ends a table whose unknown keys are reported in the table around it. Returns the keys that
+    /// were read.
     fn leave(&mut self) -> Vec<&'static str> {
         let Some(frame) = self.frames.pop() else { return Vec::new() };
         frame.lacking.into_iter().for_each(|(name, found)| self.lack(name, found));
@@ -263,8 +264,8 @@ impl<'a> Reader<'a> {
         self.lack(key.name, found);
     }
 
-    /// What is said of a key of the present table that is needed and not there, unless a key that is
-    /// misspelt explains it.
+    /// What is said of a key of the present table that is needed and not there, unless a key that
+    /// is misspelt explains it.
     pub(crate) fn lack(&mut self, name: &'static str, found: RawFinding) {
         match self.frames.last_mut() {
             Some(frame) => frame.lacking.push((name, found)),
@@ -272,8 +273,8 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Whether absent keys are accepted, which is remembered: an entry of the catalogue that is not there
-    /// might have had them.
+    /// Whether absent keys are accepted, which is remembered: an entry of the catalogue that is not
+    /// there might have had them.
     fn takes_absent(&mut self) -> bool {
         self.incomplete = true;
         self.partial || self.looks_elsewhere() || self.is_lost()

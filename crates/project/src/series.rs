@@ -1,5 +1,5 @@
-//! `[series]` with `[series.coil]` or `[series.line]`: the spring or the hydraulic transmission between
-//! force sensor and load.
+//! `[series]` with `[series.coil]` or `[series.line]`: the spring or the hydraulic transmission
+//! between force sensor and load.
 
 use phea_hydraulics::series::{ForceFrom, MOST_SEGMENTS};
 

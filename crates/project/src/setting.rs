@@ -62,9 +62,9 @@ impl TableSetting<'_> {
     }
 }
 
-/// The settings of a table, in its order: a key is a path, as in a setting on the command line; keys
-/// with dots outside quotes and tables with a heading state paths part by part, and an inline table
-/// is a value.
+/// The settings of a table, in its order: a key is a path, as in a setting on the command line;
+/// keys with dots outside quotes and tables with a heading state paths part by part, and an inline
+/// table is a value.
 pub(crate) fn of_table<'t>(
     table: &'t TreeNode,
     findings: &Findings,

@@ -36,8 +36,8 @@ pub(crate) trait Visitor: Sized {
     fn names_everything(&self) -> bool {
         false
     }
-    /// How the rig moves of which the keys that follow are; `None` where this is open, in a description
-    /// of every key.
+    /// How the rig moves of which the keys that follow are; `None` where this is open, in a
+    /// description of every key.
     fn moves(&mut self, _motion: Option<MotionKind>) {}
     /// How its load moves, where that is not as the rig does.
     fn load_moves(&mut self, _motion: Option<MotionKind>) {}
@@ -133,8 +133,8 @@ pub(crate) trait Visitor: Sized {
         field: &mut Vec<T>,
         visit: impl Fn(&mut T, NamedNumber<'_>, &mut Self),
     );
-    /// The present table as a list of names and numbers; `of` makes the key of an entry from the key
-    /// of the number that it names.
+    /// The present table as a list of names and numbers; `of` makes the key of an entry from the
+    /// key of the number that it names.
     fn numbers(&mut self, key: Key, of: fn(Key) -> Key, field: &mut Vec<(String, f64)>);
     /// A table of settings: each a path, as `--set` takes it, and its value in TOML.
     fn overrides(&mut self, key: Key, field: &mut Vec<(String, String)>);

@@ -81,7 +81,8 @@ fn errors_stand_where_they_are_written() {
     assert!(refusal.diagnostics.iter().all(|found| found.file == "rig.toml"));
 }
 
-/// A warning on the project is reported with the project: a refusal of its alternative does not repeat it.
+/// A warning on the project is reported with the project: a refusal of its alternative does not
+/// repeat it.
 #[test]
 fn a_warning_of_the_project_is_not_repeated() {
     let rig = include_str!("../../../examples/ybitu/hose.toml");

@@ -1,7 +1,8 @@
-//! Every malformed project of the corpus is refused with the messages and places written next to it.
+//! Every malformed project of the corpus is refused with the messages and places written next to
+//! it.
 //!
-//! `NAME.expect` has one line for each finding, in order: severity, line, column and message, and below it, indented,
-//! the help if there is one.
+//! `NAME.expect` has one line for each finding, in order: severity, line, column and message, and
+//! below it, indented, the help if there is one.
 
 #![allow(
     clippy::expect_used,

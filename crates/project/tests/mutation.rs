@@ -1,7 +1,9 @@
-//! Texts spliced and mutated from the corpora: no input makes the reader panic, hang or contradict itself.
+//! Texts spliced and mutated from the corpora: no input makes the reader panic, hang or contradict
+//! itself.
 //!
-//! The sequence is fixed by its seed. Every input is at most a few kilobytes, so the work for each is bounded; the
-//! limits that bound it for any size (bytes, nesting, listed findings) are checked on their own below.
+//! The sequence is fixed by its seed. Every input is at most a few kilobytes, so the work for each
+//! is bounded; the limits that bound it for any size (bytes, nesting, listed findings) are checked
+//! on their own below.
 
 #![allow(
     clippy::expect_used,

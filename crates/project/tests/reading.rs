@@ -267,7 +267,8 @@ fn what_has_no_effect_is_told() {
     warns(&weak, "the hose's `working_pressure` is below the supply pressure");
 }
 
-/// The measured valve of the catalogue is the thesis' null at 0.078 V rising and -0.05 V falling, and the example's valve but for that.
+/// The measured valve of the catalogue is the thesis' null at 0.078 V rising and -0.05 V falling,
+/// and the example's valve but for that.
 #[test]
 fn the_measured_valve_adds_its_null_to_that_of_the_examples() {
     let read = |settings: &[String]| {

@@ -1,4 +1,5 @@
-//! The schema that lies in the book is that of the code; `comparisons/compare_schema.py` holds it against the reader.
+//! The schema that lies in the book is that of the code; `comparisons/compare_schema.py` holds it
+//! against the reader.
 #![allow(clippy::expect_used, reason = "helpers of tests may fail the test")]
 
 use std::collections::BTreeSet;

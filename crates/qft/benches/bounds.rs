@@ -1,8 +1,10 @@
-//! Bounds of ten thousand plants beside NumPy, one core each, in one run: `cargo bench -p phea-qft --bench bounds`.
+//! Bounds of ten thousand plants beside NumPy, one core each, in one run:
+//! `cargo bench -p phea-qft --bench bounds`.
 //!
-//! The peer is `benches/peers/bounds.py`, run by the Python in `target/venv` (made by `cargo xtask ci comparisons`) or by the one that
-//! `PHEA_PYTHON` names. Both evaluate the plants k a/(s (s + a)) and bound them at the same phases; every value of the peer is
-//! compared, and a difference fails the bench. Times are printed and never asserted.
+//! The peer is `benches/peers/bounds.py`, run by the Python in `target/venv` (made by
+//! `cargo xtask ci comparisons`) or by the one that `PHEA_PYTHON` names. Both evaluate the plants k
+//! a/(s (s + a)) and bound them at the same phases; every value of the peer is compared, and a
+//! difference fails the bench. Times are printed and never asserted.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a bench talks to the person who started it")]
 #![allow(missing_docs, reason = "a program of its own")]
 
@@ -21,13 +23,15 @@ use phea_qft::template::{Resolution, Template, TemplatePoint};
 /// Values of k and of a.
 const SIDE: u32 = 100;
 
-/// Runs here, together about as long as one of the peer: on a machine that is shared a short run is either undisturbed or not.
+/// Runs here, together about as long as one of the peer: on a machine that is shared a short run is
+/// either undisturbed or not.
 const RUNS: usize = 50;
 
 /// Runs of the peer, by its processor time. The fastest of each side counts.
 const PEER_RUNS: usize = 9;
 
-/// What is bounded, at which frequencies in rad/s, at how many phases, and the drivers that do the same.
+/// What is bounded, at which frequencies in rad/s, at how many phases, and the drivers that do the
+/// same.
 struct Task {
     name: &'static str,
     drivers: &'static [&'static str],
@@ -164,7 +168,8 @@ fn bound(task: &Task, frequency: f64) -> Result<Vec<GainIntervals>, BoundError> 
     Ok((0..task.phases).map(|index| function.forbidden(phase(index))).collect())
 }
 
-/// Greatest difference between the outer ends of a union and the values of the peer: one value is the upper end, two are both.
+/// Greatest difference between the outer ends of a union and the values of the peer: one value is
+/// the upper end, two are both.
 fn difference_db(ours: &GainIntervals, theirs: &[f64]) -> f64 {
     let mut ends = ours.intervals().iter().flatten().map(|gain| 20.0 * portable::log10(*gain));
     let ours = [ends.next(), ends.next_back()];

@@ -1,9 +1,12 @@
-//! Example D beside differential evolution in NumPy, one core each, in one run: `cargo bench -p phea-qft --bench design`.
+//! Example D beside differential evolution in NumPy, one core each, in one run:
+//! `cargo bench -p phea-qft --bench design`.
 //!
-//! P = k a/(s (s + a)): the controller of one zero and two poles with the least high-frequency gain, real and complex poles, from three seeds.
-//! The peer is `benches/peers/design.py`, run by the Python in `target/venv` (made by `cargo xtask ci comparisons`) or by the one that
-//! `PHEA_PYTHON` names. What phea finds must be met by its audit over the whole box and lie within 0.1 dB of the least gain; the peer looks at
-//! 81 plants and 180 frequencies alone, and so may find less. Times are printed and never asserted.
+//! P = k a/(s (s + a)): the controller of one zero and two poles with the least high-frequency
+//! gain, real and complex poles, from three seeds. The peer is `benches/peers/design.py`, run by
+//! the Python in `target/venv` (made by `cargo xtask ci comparisons`) or by the one that
+//! `PHEA_PYTHON` names. What phea finds must be met by its audit over the whole box and lie within
+//! 0.1 dB of the least gain; the peer looks at 81 plants and 180 frequencies alone, and so may find
+//! less. Times are printed and never asserted.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a bench talks to the person who started it")]
 #![allow(missing_docs, reason = "a program of its own")]
 
@@ -34,7 +37,8 @@ const RUNS: usize = 5;
 /// How far from the least gain an answer may lie, dB.
 const ALLOWED_DB: f64 = 0.1;
 
-/// What is asked of both: the peer's word for it, the damping ratios of the poles, and the least gain of a dense search over the whole box.
+/// What is asked of both: the peer's word for it, the damping ratios of the poles, and the least
+/// gain of a dense search over the whole box.
 struct Task {
     poles: &'static str,
     damping_ratio: [f64; 2],
@@ -70,7 +74,8 @@ fn run() -> Result<bool, Failure> {
     Ok(all_reached)
 }
 
-/// Runs both from one seed, prints times, gains and ratio, and whether phea's answer is met and as low as it can be.
+/// Runs both from one seed, prints times, gains and ratio, and whether phea's answer is met and as
+/// low as it can be.
 fn beside(task: &Task, problem: &DesignProblem, seed: u64) -> Result<bool, Failure> {
     let (seconds, design) = timed(task, problem, seed)?;
     println!(

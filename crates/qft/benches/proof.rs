@@ -1,10 +1,12 @@
-//! Leaves and seconds of a proof against the margin and against the number of uncertain parameters, beside plain interval arithmetic:
-//! `taskset -c 0 cargo bench -p phea-qft --bench proof`.
+//! Leaves and seconds of a proof against the margin and against the number of uncertain parameters,
+//! beside plain interval arithmetic: `taskset -c 0 cargo bench -p phea-qft --bench proof`.
 //!
-//! The claim is |L/(1 + L)| <= r |W| from 1 to 10,000 rad/s under the controller that phea designs for the rig of the thesis. r is the greatest
-//! ratio that is reached, times the margin. Interval arithmetic evaluates the same polynomials on a box of frequencies and parameters, and
-//! halves the box across its widest side until |V| <= |U| on each part. What it has not shown when its boxes are used up, it has not shown.
-//! The table is written to `benches/peers/proof_leaves.csv` with `-- --save`; times are printed and never asserted.
+//! The claim is |L/(1 + L)| <= r |W| from 1 to 10,000 rad/s under the controller that phea designs
+//! for the rig of the thesis. r is the greatest ratio that is reached, times the margin. Interval
+//! arithmetic evaluates the same polynomials on a box of frequencies and parameters, and halves the
+//! box across its widest side until |V| <= |U| on each part. What it has not shown when its boxes
+//! are used up, it has not shown. The table is written to `benches/peers/proof_leaves.csv` with
+//! `-- --save`; times are printed and never asserted.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a bench talks to the person who started it")]
 #![allow(missing_docs, reason = "a program of its own")]
 
@@ -40,7 +42,8 @@ const BAND_RAD_PER_S: [f64; 2] = [1.0, 1e4];
 /// Boxes that interval arithmetic may look at.
 const BOXES_MAXIMUM: usize = 3_000_000;
 
-/// Name, least and greatest value of each parameter: those of Table 6.3 first, then mass and stiffness of the load cell. The first is nominal.
+/// Name, least and greatest value of each parameter: those of Table 6.3 first, then mass and
+/// stiffness of the load cell. The first is nominal.
 const PARAMETERS: [(&str, f64, f64); 8] = [
     ("viscous_friction", 100.0, 3e4),
     ("flow_gain", 3.23e-5, 5.61e-5),
@@ -70,7 +73,8 @@ fn main() -> ExitCode {
     }
 }
 
-/// What one method needed: leaves and seconds, or the fraction of the boxes that it showed before they were used up.
+/// What one method needed: leaves and seconds, or the fraction of the boxes that it showed before
+/// they were used up.
 struct Effort {
     leaves: usize,
     seconds: f64,
@@ -131,7 +135,8 @@ fn rational(coefficients: [&[f64]; 2]) -> Result<TransferFunction, Failure> {
     Ok(TransferFunction::from_polynomials(&numerator, &denominator)?)
 }
 
-/// The leaves of the claim from above, seconds to prove everything and to check it again, and the ratio that was claimed.
+/// The leaves of the claim from above, seconds to prove everything and to check it again, and the
+/// ratio that was claimed.
 fn proved(uncertain: usize, margin_db: f64) -> Result<(Effort, f64, f64), Failure> {
     let family = family(uncertain)?;
     let law = Element::General(rational(CONTROLLER)?);

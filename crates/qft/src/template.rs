@@ -241,8 +241,8 @@ impl Template {
     }
 }
 
-/// Area within a closed polygon of responses, degrees times dB; its corners are less than half a turn
-/// apart.
+/// Area within a closed polygon of responses, degrees times dB; its corners are less than half a
+/// turn apart.
 ///
 /// ```text
 /// area = abs(sum of (phi_{k+1} - phi_k) (m_k + m_{k+1})/2)

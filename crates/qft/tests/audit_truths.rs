@@ -1,5 +1,5 @@
-//! Audits of plants that once were judged falsely: poles that die within a sample, modes that fold through the sampled band, poles
-//! that pass through infinity.
+//! Audits of plants that once were judged falsely: poles that die within a sample, modes that fold
+//! through the sampled band, poles that pass through infinity.
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
 use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
@@ -160,7 +160,8 @@ fn a_slow_resonance_beside_fast_poles_is_unstable() {
     close(found.stability.largest_real_part.unwrap(), 0.018_115_567_606_715, 1e-9);
 }
 
-/// A mode of 4 to 16 rad/s, sampled each second, folds back to every frequency of the band four times.
+/// A mode of 4 to 16 rad/s, sampled each second, folds back to every frequency of the band four
+/// times.
 // ORIGIN: recomputed by comparisons/recompute_sampling.py
 #[test]
 fn a_mode_that_folds_is_followed_to_its_worst() {
@@ -194,7 +195,8 @@ fn a_mode_that_folds_is_unstable_in_a_hundredth_of_the_box() {
     assert!(found.stability.largest_real_part.unwrap() > 0.00415);
 }
 
-/// Three modes that fold by themselves pass through the band in more combinations than can be looked at.
+/// Three modes that fold by themselves pass through the band in more combinations than can be
+/// looked at.
 #[test]
 fn modes_that_fold_too_often_leave_the_verdict_open() {
     let ranges = [("u", 10.0, 10.0, 40.0), ("v", 50.0, 50.0, 90.0), ("w", 100.0, 100.0, 150.0)];
@@ -223,7 +225,8 @@ fn leading<'t>(p: &[Recorded<'t>]) -> Recorded<'t> {
     from * from - 0.001.into()
 }
 
-/// ((x - 0.37)^2 - 0.001) s^2 + s: a pole at 1/(0.001 - (x - 0.37)^2), unstable for |x - 0.37| < 0.0316.
+/// ((x - 0.37)^2 - 0.001) s^2 + s: a pole at 1/(0.001 - (x - 0.37)^2), unstable for |x - 0.37| <
+/// 0.0316.
 #[test]
 fn a_pole_that_passes_through_infinity_is_met() {
     let plant = family(&[("x", 0.0, 0.0, 1.0)], Spacing::Linear, |p| {
@@ -245,8 +248,9 @@ fn a_pole_that_passes_through_infinity_is_met() {
     assert!((value(&found.stability.plant) - 0.37).abs() < 0.001_f64.sqrt());
 }
 
-/// (x - 0.5)^2 s^2 + s loses its highest power for one plant, without a change of sign: its pole is at -1/(x - 0.5)^2. Multiplied out the
-/// square can be distinguished from a change of sign by no enclosure.
+/// (x - 0.5)^2 s^2 + s loses its highest power for one plant, without a change of sign: its pole is
+/// at -1/(x - 0.5)^2. Multiplied out the square can be distinguished from a change of sign by no
+/// enclosure.
 #[test]
 fn a_pole_that_touches_infinity_is_told_where_the_square_is_recorded() {
     let build = |expanded: bool| {
@@ -288,8 +292,9 @@ fn a_gain_at_infinity_that_passes_one_inside_the_box_is_met() {
     assert_eq!(found.verdict, Verdict::Met);
 }
 
-/// Damping that is negative for |x - 0.37| < 0.002 only: no search for the largest real part starts there, but the resonance passes the
-/// design frequency there. What the one audit meets the other judges.
+/// Damping that is negative for |x - 0.37| < 0.002 only: no search for the largest real part starts
+/// there, but the resonance passes the design frequency there. What the one audit meets the other
+/// judges.
 #[test]
 fn the_worst_plant_of_a_specification_is_judged_for_stability() {
     let plant = family(&[("x", 0.0, 0.0, 1.0)], Spacing::Linear, |p| {

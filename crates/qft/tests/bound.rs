@@ -1,4 +1,5 @@
-//! Bounds: against published examples, against the plain method, and against the closed loops themselves.
+//! Bounds: against published examples, against the plain method, and against the closed loops
+//! themselves.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 mod phases;

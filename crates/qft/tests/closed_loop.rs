@@ -72,7 +72,8 @@ fn integrator_and_lag_are_held_exactly() {
     });
 }
 
-/// Before the samples a/(s + a) is a/(jw + a) at every frequency; a step of the reference meets it as (1 - e)/(z - e), e = exp(-a T).
+/// Before the samples a/(s + a) is a/(jw + a) at every frequency; a step of the reference meets it
+/// as (1 - e)/(z - e), e = exp(-a T).
 #[test]
 fn a_prefilter_before_the_samples_is_not_sampled() {
     let a = 200.0;
@@ -94,8 +95,9 @@ fn a_prefilter_before_the_samples_is_not_sampled() {
     assert_eq!(refused.unwrap_err(), LinearError::DomainMismatch);
 }
 
-/// A dead time d of a share of a sample splits the step: with r = exp(-a (T - d)), a/(s + a) becomes
-/// (1 - r + (r - e)/z)/(z - e). Plant and loop delay add up, whole samples are powers of 1/z.
+/// A dead time d of a share of a sample splits the step: with r = exp(-a (T - d)), a/(s + a)
+/// becomes (1 - r + (r - e)/z)/(z - e). Plant and loop delay add up, whole samples are powers of
+/// 1/z.
 #[test]
 fn fractions_of_a_sample_are_exact() {
     let (a, dead_time) = (30.0, 0.0037);
@@ -115,8 +117,8 @@ fn fractions_of_a_sample_are_exact() {
     }
 }
 
-/// P H is held as one: b/(s (s + b)) becomes ((bT - 1 + e) z + 1 - e - bT e)/(b (z - 1)(z - e)). The dead time of the
-/// sensor adds to the loop's.
+/// P H is held as one: b/(s (s + b)) becomes ((bT - 1 + e) z + 1 - e - bT e)/(b (z - 1)(z - e)).
+/// The dead time of the sensor adds to the loop's.
 #[test]
 fn plant_and_sensor_are_held_together() {
     let b = 80.0;
@@ -149,8 +151,9 @@ fn a_continuous_loop_carries_delay_and_sensor() {
     }
 }
 
-/// K in U = G (F R - Y) + K s D is a path parallel to Pd: Pd + K jw P, with P late in a continuous loop, and that of the samples in a sampled
-/// one, a/(s + a) being (1 - r + (r - e)/z)/(z (z - e)) behind a sample and a share of one. The loop itself stays.
+/// K in U = G (F R - Y) + K s D is a path parallel to Pd: Pd + K jw P, with P late in a continuous
+/// loop, and that of the samples in a sampled one, a/(s + a) being (1 - r + (r - e)/z)/(z (z - e))
+/// behind a sample and a share of one. The loop itself stays.
 #[test]
 fn a_rate_that_is_fed_forward_is_a_path_of_the_disturbance() {
     let (a, gain, share) = (30.0, 0.7, 0.0037);
@@ -201,7 +204,8 @@ fn measured_lag_at(a: f64, points: i32) -> MeasuredPlant {
     }
 }
 
-/// A measured plant is the same plant where it was measured, close to it between, and nothing beyond.
+/// A measured plant is the same plant where it was measured, close to it between, and nothing
+/// beyond.
 #[test]
 fn a_measured_plant_stands_for_the_plant() {
     let (a, sensor) = (30.0, rational(&[80.0], &[1.0, 80.0]));
@@ -212,15 +216,17 @@ fn a_measured_plant_stands_for_the_plant() {
     let (found, expected) = (measured.response(point).unwrap(), exact.response(point).unwrap());
     close(found.plant, expected.plant);
     close(found.sensor, expected.sensor);
-    // Straight over a step h of ln w: the error is below h^2/8 times the second derivative of ln P, at most 1/2.
+    // Straight over a step h of ln w: the error is below h^2/8 times the second derivative of ln P,
+    // at most 1/2.
     let between = point * 1.0065;
     let ratio = measured.response(between).unwrap().plant / exact.response(between).unwrap().plant;
     assert!(portable::magnitude(ratio - 1.0) < 0.013 * 0.013 / 16.0, "{ratio}");
     assert_eq!([0.4, 400.0].map(|frequency| measured.response(frequency)), [None, None]);
 }
 
-/// Sampled, a measured plant has the hold's lag and droop; only the images above pi/T are not there. Those of a lag a/(s + a)
-/// sum up to w a T^2/12 of its gain at low frequency: the sum of a (w T)/(w - 2 pi n/T)^2 over all n but zero.
+/// Sampled, a measured plant has the hold's lag and droop; only the images above pi/T are not
+/// there. Those of a lag a/(s + a) sum up to w a T^2/12 of its gain at low frequency: the sum of a
+/// (w T)/(w - 2 pi n/T)^2 over all n but zero.
 #[test]
 fn a_measured_plant_is_held_up_to_its_images() {
     let a = 30.0;
@@ -235,8 +241,8 @@ fn a_measured_plant_is_held_up_to_its_images() {
     }
 }
 
-/// Measured up to many times pi/T its images are summed too, and what is left beyond falls with the square of the reach; measured too
-/// short for them, the response near pi/T is not known.
+/// Measured up to many times pi/T its images are summed too, and what is left beyond falls with the
+/// square of the reach; measured too short for them, the response near pi/T is not known.
 #[test]
 fn the_images_of_a_measured_plant_are_summed() {
     let a = 30.0;

@@ -81,7 +81,8 @@ fn a_grid_holds_its_corners_and_stays_within_the_box() {
     assert!(corners.iter().all(|corner| all.contains(corner)));
     let inside = |values: &Vec<f64>| values[..3].iter().all(|value| (1.0..=100.0).contains(value));
     assert!(all.iter().all(inside));
-    // Equal factors: the fourth root of 100 from point to point, the last coordinate running fastest.
+    // Equal factors: the fourth root of 100 from point to point, the last coordinate running
+    // fastest.
     for index in 0..4 {
         assert!((all[4 * (index + 1)][0] / all[4 * index][0] - 10.0_f64.sqrt()).abs() < 1e-13);
     }
@@ -118,7 +119,8 @@ fn measured(frequencies: &[f64], command: Vec<Complex64>) -> MeasuredPlant {
     }
 }
 
-/// Straight lines in dB and phase over the logarithm of frequency: c (jw)^n is met between its points.
+/// Straight lines in dB and phase over the logarithm of frequency: c (jw)^n is met between its
+/// points.
 #[test]
 fn powers_of_s_are_met_between_the_points() {
     let power = |w: f64| 3.0 / (Complex64::new(0.0, w) * Complex64::new(0.0, w) * Complex64::new(0.0, w));

@@ -1,5 +1,6 @@
-//! A rate that is fed forward and that the command moves too: the plant that a sampled loop sees then, against closed forms, against the
-//! loop assembled in states, and against the same plant with its polynomials hidden.
+//! A rate that is fed forward and that the command moves too: the plant that a sampled loop sees
+//! then, against closed forms, against the loop assembled in states, and against the same plant
+//! with its polynomials hidden.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -43,8 +44,9 @@ fn lagging(w: f64, dead_time_s: f64) -> TransferFunction {
     lag.with_dead_time(dead_time_s).unwrap()
 }
 
-/// The sum of r/(s + p) over these (r, p), held and sampled behind a delay: r/p (1 - q + (q - e)/z)/((z - e) z^k), e = exp(-p T),
-/// q = exp(-p (T - d)) with the rest d of a sample.
+/// The sum of r/(s + p) over these (r, p), held and sampled behind a delay: r/p
+/// (1 - q + (q - e)/z)/((z - e) z^k), e = exp(-p T), q = exp(-p (T - d)) with the rest d of a
+/// sample.
 fn held(parts: &[(f64, f64)], delay_s: f64, z: Complex64) -> Complex64 {
     let whole = (delay_s / SAMPLE_TIME + 1e-9).floor();
     let rest = (delay_s - whole * SAMPLE_TIME).max(0.0);
@@ -62,8 +64,9 @@ fn close(found: Complex64, expected: Complex64, tolerance: f64) {
     assert!(error < tolerance, "{found} is not {expected}: {error:e}");
 }
 
-/// P = 1/((s + a)(s + b)), P_v = c s P and V_d = s (s + 1) P by partial fractions: P' = P/(1 - K P_v), Pd' = Pd + K V_d P', behind shares
-/// of a sample, whole ones, and a sensor that makes a share whole.
+/// P = 1/((s + a)(s + b)), P_v = c s P and V_d = s (s + 1) P by partial fractions: P' = P/(1 - K
+/// P_v), Pd' = Pd + K V_d P', behind shares of a sample, whole ones, and a sensor that makes a
+/// share whole.
 #[test]
 fn it_is_the_closed_form_of_two_lags() {
     let (a, b, c, w) = (4.0, 30.0, 3.0, 90.0);
@@ -110,8 +113,9 @@ fn it_is_the_closed_form_of_two_lags() {
     close(around.member(plant).unwrap().response(7.0).unwrap().plant, expected, 1e-13);
 }
 
-/// The same with a sensor of the rate: c s w/((s + a)(s + b)(s + w)) by partial fractions, behind a delay of its own. The zeros that P'
-/// has there, at z = exp(-w T) and for each sample of that delay, are those of the closed form.
+/// The same with a sensor of the rate: c s w/((s + a)(s + b)(s + w)) by partial fractions, behind a
+/// delay of its own. The zeros that P' has there, at z = exp(-w T) and for each sample of that
+/// delay, are those of the closed form.
 #[test]
 fn a_sensor_of_the_rate_is_a_path_of_its_own() {
     let (a, b, c, w) = (4.0, 30.0, 3.0, 55.0);
@@ -312,8 +316,8 @@ fn in_states(
     poles.iter().map(|pole| ln(magnitude(*pole)) / SAMPLE_TIME).fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// 300 loops, behind shares of a sample and whole ones: the slowest pole is that of the loop in states, and where the polynomials are
-/// hidden the count of unstable poles says the same.
+/// 300 loops, behind shares of a sample and whole ones: the slowest pole is that of the loop in
+/// states, and where the polynomials are hidden the count of unstable poles says the same.
 #[test]
 fn its_poles_are_those_of_the_loop_in_states() {
     let mut state = 5;

@@ -1,5 +1,5 @@
-//! Kernels that cannot be reached from outside, compiled here once more for the unit tests next to their code: the library
-//! itself is not built for tests.
+//! Kernels that cannot be reached from outside, compiled here once more for the unit tests next to
+//! their code: the library itself is not built for tests.
 #![allow(dead_code, unreachable_pub, reason = "a kernel's callers stay in the library")]
 
 mod descent;

@@ -1,4 +1,5 @@
-//! Elements solved for a point really pass it, what cannot be reached is refused, and every change can be taken back.
+//! Elements solved for a point really pass it, what cannot be reached is refused, and every change
+//! can be taken back.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
@@ -60,8 +61,8 @@ fn polar(decibels: f64, degrees: f64) -> Complex64 {
     Complex64::new(size * angle.cos(), size * angle.sin())
 }
 
-/// What an element makes of a loop that samples, or does not, as loop and verification see it: next to a pair of poles, without which a
-/// zero could not be sampled.
+/// What an element makes of a loop that samples, or does not, as loop and verification see it: next
+/// to a pair of poles, without which a zero could not be sampled.
 fn response(element: Element, timing: Timing, frequency: f64) -> Complex64 {
     let pair = Element::ComplexPoles { natural_frequency: 300.0, damping_ratio: 0.7 };
     let of = |elements| {
@@ -72,7 +73,8 @@ fn response(element: Element, timing: Timing, frequency: f64) -> Complex64 {
     of(vec![pair.clone(), element]) / of(vec![pair])
 }
 
-/// An element solved for a random point either passes it, or the point lies outside of what it says it can reach.
+/// An element solved for a random point either passes it, or the point lies outside of what it says
+/// it can reach.
 #[test]
 fn every_solved_element_passes_its_point() {
     let mut shares = Shares(1);
@@ -127,7 +129,8 @@ fn every_solved_element_passes_its_point() {
     }
 }
 
-/// Points on the boundary of what an element can do, at 10 rad/s from L = 1: refused there, solved a little inside.
+/// Points on the boundary of what an element can do, at 10 rad/s from L = 1: refused there, solved
+/// a little inside.
 #[test]
 fn the_ends_of_what_can_be_reached_are_where_they_are_said_to_be() {
     let at = |pattern, magnitude_db: f64, phase_deg: f64| {
@@ -205,8 +208,8 @@ fn loop_of(elements: Vec<Element>) -> Compensation {
     Compensation::new(&controller, TransferFunction::gain_only(1.0)).unwrap()
 }
 
-/// Two independent ways to judge a loop agree: a plant with a negative margin means a forbidden loop, and the loop that was raised or lowered
-/// as far as it has to be has none.
+/// Two independent ways to judge a loop agree: a plant with a negative margin means a forbidden
+/// loop, and the loop that was raised or lowered as far as it has to be has none.
 #[test]
 fn what_a_margin_asks_for_brings_it_to_zero() {
     let family = box_family();
@@ -270,7 +273,8 @@ fn random_edit(shares: &mut Shares, count: usize) -> Edit {
     }
 }
 
-/// A hundred random sequences of edits: the response is at each step that of the elements multiplied one by one.
+/// A hundred random sequences of edits: the response is at each step that of the elements
+/// multiplied one by one.
 #[test]
 fn edited_elements_multiply() {
     let mut shares = Shares(2);

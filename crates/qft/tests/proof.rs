@@ -1,4 +1,5 @@
-//! Proofs against what is known: published numbers, random problems that must not contradict them, certificates that were tampered with.
+//! Proofs against what is known: published numbers, random problems that must not contradict them,
+//! certificates that were tampered with.
 #![cfg(test)]
 
 use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
@@ -46,7 +47,8 @@ pub(crate) fn thesis_in(compensation: &Compensation) -> Proof {
     prove(&problem, &found, ProofOptions::default(), &mut unwatched).unwrap()
 }
 
-/// The published controller is stable with every plant, and violates each specification by what is known; no enclosure is wider than 0.1 dB.
+/// The published controller is stable with every plant, and violates each specification by what is
+/// known; no enclosure is wider than 0.1 dB.
 // ORIGIN: recomputed by comparisons/recompute_audit.py
 #[test]
 fn the_published_controller_is_refuted() {
@@ -65,7 +67,8 @@ fn the_published_controller_is_refuted() {
     assert!(certificate.leaves() < 200, "{}", certificate.leaves());
 }
 
-/// With 1 ms of delay the lightly damped piston no longer rings with the loop: |T| reaches 1.134 of the 1.3 that are allowed.
+/// With 1 ms of delay the lightly damped piston no longer rings with the loop: |T| reaches 1.134 of
+/// the 1.3 that are allowed.
 // ORIGIN: recomputed by comparisons/recompute_audit.py
 #[test]
 fn delay_belongs_to_what_is_proven() {
@@ -209,7 +212,8 @@ fn blind(problem: &RandomProblem, nominal: Vec<f64>) -> Audit {
     }
 }
 
-/// How often something was shown: (stable, unstable, limited from above), over this number of problems with this number of points of each.
+/// How often something was shown: (stable, unstable, limited from above), over this number of
+/// problems with this number of points of each.
 pub(crate) fn sound(problems: std::ops::Range<u64>, points: usize, sampled: bool) -> [usize; 3] {
     let mut shown = [0; 3];
     for seed in problems {
@@ -272,7 +276,8 @@ fn never_contradicted(random: &RandomProblem, proof: &Proof, values: &[f64], fre
     }
 }
 
-/// 100 random problems, 500 random plants and frequencies of each: nothing contradicts what was shown of them.
+/// 100 random problems, 500 random plants and frequencies of each: nothing contradicts what was
+/// shown of them.
 #[test]
 fn no_plant_contradicts_a_proof() {
     let [stable, unstable, limited] = sound(0..100, 500, false);
@@ -297,7 +302,8 @@ fn a_certificate_that_was_tampered_with_is_rejected() {
         change(&mut other);
         check(&other).is_err()
     };
-    // a greater mass of the piston's ratio: every limit that is shown is lowered below what is reached
+    // a greater mass of the piston's ratio: every limit that is shown is lowered below what is
+    // reached
     for (index, claim) in genuine.claims.iter().enumerate() {
         if let Claim::Limited { ratio, .. } = claim {
             let lowered = ratio / 1.01;
@@ -424,7 +430,8 @@ fn a_limit_given_as_a_table_is_that_of_the_audit() {
     assert!(altered(&|points| points[1].0 = 0.5).is_err());
 }
 
-/// Where parameters move together, a nominal plant away from their line belongs to the family all the same.
+/// Where parameters move together, a nominal plant away from their line belongs to the family all
+/// the same.
 #[test]
 fn a_plant_beside_the_box_is_in_the_proof() {
     let parameter =
@@ -460,7 +467,8 @@ fn a_plant_beside_the_box_is_in_the_proof() {
     assert_eq!(proof.certificate.unwrap().plant.boxes.len(), 2);
 }
 
-/// What a checker computes with must not run over: powers beyond a byte, binomials beyond a double, division by nothing.
+/// What a checker computes with must not run over: powers beyond a byte, binomials beyond a double,
+/// division by nothing.
 #[test]
 fn a_certificate_that_overflows_is_rejected() {
     let genuine = thesis(0.0).certificate.unwrap();

@@ -1,5 +1,5 @@
-//! Proofs of plants whose coefficients are no polynomials in their parameters, and of parameters that move together by equal factors: against
-//! random plants.
+//! Proofs of plants whose coefficients are no polynomials in their parameters, and of parameters
+//! that move together by equal factors: against random plants.
 #![cfg(test)]
 
 use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
@@ -22,7 +22,8 @@ fn parameter(name: &str, minimum: f64, maximum: f64) -> UncertainParameter {
     UncertainParameter { name: name.into(), nominal: minimum, minimum, maximum }
 }
 
-/// Every operation that is recorded, with a choice that is decided on the whole box and one that is not.
+/// Every operation that is recorded, with a choice that is decided on the whole box and one that is
+/// not.
 fn curved<'t>(p: &[Recorded<'t>]) -> PlantCoefficients<Recorded<'t>> {
     let (pressure, length, heat) = (p[0], p[1], p[2]);
     let flow = (pressure - 1.0.into()).sqrt();

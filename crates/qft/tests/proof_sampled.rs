@@ -1,4 +1,5 @@
-//! Proofs of sampled loops: against the audit, which samples by state space, against closed forms, and against random plants.
+//! Proofs of sampled loops: against the audit, which samples by state space, against closed forms,
+//! and against random plants.
 #![cfg(test)]
 
 use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
@@ -24,8 +25,8 @@ fn published(sample_time_s: f64, delay_s: f64) -> Compensation {
     Compensation::new(&controller, TransferFunction::gain_only(1.0)).unwrap()
 }
 
-/// The published law at three rates and delays, a fraction of a sample among them: every enclosure holds what the audit finds by another
-/// way of sampling, and stability is proven in a few leaves.
+/// The published law at three rates and delays, a fraction of a sample among them: every enclosure
+/// holds what the audit finds by another way of sampling, and stability is proven in a few leaves.
 #[test]
 fn enclosures_of_the_published_controller_hold_what_the_audit_finds() {
     for (sample_time_s, delay_s) in [(0.001, 0.0), (0.001, 0.001), (0.0005, 0.0002)] {
@@ -105,7 +106,8 @@ fn proven(
     prove(&problem, &found, options, &mut unwatched).unwrap()
 }
 
-// ORIGIN: analytic, S = (z - 1)/(z - 1 + k T) is greatest where the band ends and k is greatest: 2/sqrt 3 at a third of pi/T and k T = 1/2
+// ORIGIN: analytic, S = (z - 1)/(z - 1 + k T) is greatest where the band ends and k is greatest:
+// 2/sqrt 3 at a third of pi/T and k T = 1/2
 #[test]
 fn the_sensitivity_of_a_sampled_integrator_is_enclosed() {
     let proof = integrator([0.3, 0.5], 1.0, [0.0, std::f64::consts::FRAC_PI_3]);
@@ -126,8 +128,8 @@ fn poles_of_a_sampled_loop_are_counted() {
     assert!(crossed.stability != Standing::Proven, "{:?}", crossed.stability);
 }
 
-/// A mode that is folded onto frequencies at which the loop has gain is unstable for some of its frequencies and none of its ends: what the
-/// ends say is not taken for the box.
+/// A mode that is folded onto frequencies at which the loop has gain is unstable for some of its
+/// frequencies and none of its ends: what the ends say is not taken for the box.
 #[test]
 fn a_folded_mode_that_passes_the_band_is_not_proven() {
     let turn = 2.0 * std::f64::consts::PI;

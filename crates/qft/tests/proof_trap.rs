@@ -13,7 +13,8 @@ use crate::verification::thesis::thesis_family;
 
 const LIMIT: f64 = 1.3;
 
-/// Proportional and integral action with a roll-off of second order, which resonates between the frequencies of the grid.
+/// Proportional and integral action with a roll-off of second order, which resonates between the
+/// frequencies of the grid.
 fn law() -> Compensation {
     let [gain, zero, natural_frequency, damping_ratio]: [f64; 4] = [9.6e-5, 2.0, 56.0, 0.18];
     let square = natural_frequency * natural_frequency;

@@ -1,4 +1,5 @@
-//! Plants without polynomials: one that has polynomials after all, and hides them, must be judged as the same plant that shows them.
+//! Plants without polynomials: one that has polynomials after all, and hides them, must be judged
+//! as the same plant that shows them.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -107,8 +108,8 @@ fn compensation(state: &mut u64, natural: f64) -> Compensation {
     Compensation::new(&controller, sensor.unwrap()).unwrap()
 }
 
-/// Unstable poles by enclosures, and by the turns of the characteristic function: independent counts, of 400 loops, some of them with
-/// more than one unstable pair.
+/// Unstable poles by enclosures, and by the turns of the characteristic function: independent
+/// counts, of 400 loops, some of them with more than one unstable pair.
 #[test]
 fn poles_are_counted_as_those_of_the_polynomials() {
     let mut state = 11;
@@ -141,9 +142,10 @@ fn poles_are_counted_as_those_of_the_polynomials() {
     assert!(found[0] > 100 && found[1] > 100 && found[2] > 1, "{found:?}");
 }
 
-/// A search counts the poles of a table of the plant, which it looks at to 3 %. Of every loop that such an error cannot turn over it says
-/// what the polynomials say, if the range of the plant shows the loop below its crossovers and above them; if not, it is sure of none that
-/// is unstable. What it says is also said of the same table where more than the count is asked for.
+/// A search counts the poles of a table of the plant, which it looks at to 3 %. Of every loop that
+/// such an error cannot turn over it says what the polynomials say, if the range of the plant shows
+/// the loop below its crossovers and above them; if not, it is sure of none that is unstable. What
+/// it says is also said of the same table where more than the count is asked for.
 #[test]
 fn a_search_counts_poles_as_those_of_the_polynomials() {
     let mut state = 17;
@@ -223,7 +225,8 @@ fn specifications() -> Vec<Specification> {
     all.into_iter().map(specification).collect()
 }
 
-/// The search of the box, between its corners, finds the same worst plants with polynomials and without.
+/// The search of the box, between its corners, finds the same worst plants with polynomials and
+/// without.
 #[test]
 fn a_box_is_searched_as_that_of_the_polynomials() {
     let parameter = |name: &str, minimum: f64, maximum: f64| UncertainParameter {

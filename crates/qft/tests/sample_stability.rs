@@ -1,4 +1,5 @@
-//! A sample of plants asked about one controller after another, against the stability of each plant and against closed forms.
+//! A sample of plants asked about one controller after another, against the stability of each plant
+//! and against closed forms.
 #![cfg(test)]
 
 use std::f64::consts::PI;
@@ -166,7 +167,8 @@ fn delayed_loops_are_judged_as_by_their_turns() {
     assert!(tally.stable > 50 && tally.unresolved < 60, "{tally:?}");
 }
 
-/// Loops made to have one pair of poles damped by a millionth, one way or the other, among others over five decades.
+/// Loops made to have one pair of poles damped by a millionth, one way or the other, among others
+/// over five decades.
 #[test]
 fn a_millionth_of_damping_is_told() {
     let (mut random, mut tally) = (Random(5), Tally::default());
@@ -189,7 +191,8 @@ fn a_millionth_of_damping_is_told() {
     assert_eq!((tally.asked, tally.undecided, tally.unresolved), (400, 0, 0), "{tally:?}");
 }
 
-/// k/(s (s + 1) (s + 2)) is stable up to k = 6, k/s in samples up to k T = 2, k e^(-s)/s up to k = pi/2: to the last digits.
+/// k/(s (s + 1) (s + 2)) is stable up to k = 6, k/s in samples up to k T = 2, k e^(-s)/s up to
+/// k = pi/2: to the last digits.
 #[test]
 fn the_boundary_is_where_it_is() {
     let cubic = plant(&[1.0], &[1.0, 3.0, 2.0, 0.0], 0.0);
@@ -211,8 +214,9 @@ fn the_boundary_is_where_it_is() {
     }
 }
 
-/// x(n + 1) = x(n) - k T x(n - d) is stable for 0 < k T < 2 sin(pi/(4 d + 2)) (Levin and May 1976): by the table for a few samples
-/// of delay, by turns for many; the real part is that of the roots of z^(d + 1) - z^d + k T.
+/// x(n + 1) = x(n) - k T x(n - d) is stable for 0 < k T < 2 sin(pi/(4 d + 2)) (Levin and May 1976):
+/// by the table for a few samples of delay, by turns for many; the real part is that of the roots
+/// of z^(d + 1) - z^d + k T.
 #[test]
 fn samples_of_delay_and_the_real_part() {
     for samples in [0_u32, 1, 3, 20, 40, 300] {
@@ -250,8 +254,8 @@ fn the_real_part_of_a_delayed_loop() {
     assert_eq!(improper(1.5), (false, f64::INFINITY));
 }
 
-/// Plants around which a gain must lie between two limits: answers do not depend on what was asked before, and the plant that
-/// fails is found at once.
+/// Plants around which a gain must lie between two limits: answers do not depend on what was asked
+/// before, and the plant that fails is found at once.
 #[test]
 fn answers_do_not_depend_on_their_order() {
     let compensation = around(TransferFunction::gain_only(1.0), None, 0.0);
@@ -280,7 +284,8 @@ fn answers_do_not_depend_on_their_order() {
     }
 }
 
-/// A lag that was measured at 500 points: k a/(s + a) with a negative gain is stable down to k = -1.
+/// A lag that was measured at 500 points: k a/(s + a) with a negative gain is stable down to
+/// k = -1.
 #[test]
 fn measured_plants_are_counted_by_nyquist() {
     let compensation = around(TransferFunction::gain_only(1.0), None, 0.0);

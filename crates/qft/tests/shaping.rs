@@ -1,4 +1,5 @@
-//! What a search of a loop sees: structures, samples, margins and their slopes, against plain evaluations.
+//! What a search of a loop sees: structures, samples, margins and their slopes, against plain
+//! evaluations.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]

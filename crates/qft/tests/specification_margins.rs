@@ -40,8 +40,8 @@ fn sensitivity(open: Complex64) -> f64 {
     1.0 / magnitude(1.0 + open)
 }
 
-/// Whether a loop through this point satisfies the limit is read off the margins alone, on the whole negative axis and the whole
-/// unit circle.
+/// Whether a loop through this point satisfies the limit is read off the margins alone, on the
+/// whole negative axis and the whole unit circle.
 fn margins_draw_the_line(closed: fn(Complex64) -> f64, limit: f64, guaranteed: &GuaranteedMargins) {
     for step in 1..4000 {
         let crossing = 0.002 * f64::from(step) - 0.0007;

@@ -91,7 +91,8 @@ fn limits_that_cross_say_where_and_how_far() {
         }
         kept => panic!("{kept:?}"),
     }
-    // up to infinity the crossing is the same, and the limits end at the ratio of their high-frequency gains
+    // up to infinity the crossing is the same, and the limits end at the ratio of their
+    // high-frequency gains
     let spread = tracking_spread(&lower, &upper, EVERYWHERE).unwrap();
     assert!(matches!(spread.order, LimitOrder::Crossed { from_rad_per_s, frequency_rad_per_s, .. }
         if (from_rad_per_s - 12.65701387).abs() < 1e-8 && frequency_rad_per_s == f64::INFINITY));
@@ -140,7 +141,8 @@ fn tables_and_constants_are_compared_between_their_points_too() {
         }
     }
     assert!(crossed > 10 && crossed < 80, "{crossed}");
-    // the resonance 100/(s^2 + 6 s + 100) over a limit that falls as 1/w^2: the turn lies between the points of the table
+    // the resonance 100/(s^2 + 6 s + 100) over a limit that falls as 1/w^2: the turn lies between
+    // the points of the table
     let falling = table(&[(1.0, 100.0), (1000.0, 1e-4)]);
     let spread = tracking_spread(&falling, &function(&[100.0], &[1.0, 6.0, 100.0]), [0.0, 1e9]).unwrap();
     assert_eq!(spread.grows_from_rad_per_s, None);

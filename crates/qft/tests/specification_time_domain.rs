@@ -138,8 +138,8 @@ fn exact_limits_meet_any_wish_whatever_the_extra_root() {
     }
 }
 
-/// The settling time jumps where an extreme of the response reaches the band; no natural frequency settles at the wished time then,
-/// and the faster side of the jump is taken.
+/// The settling time jumps where an extreme of the response reaches the band; no natural frequency
+/// settles at the wished time then, and the faster side of the jump is taken.
 #[test]
 fn where_the_settling_time_jumps_the_wish_is_met_with_time_to_spare() {
     let wish = UpperWish { overshoot_percent: 99.9, settling_time_s: 0.1, settling_band_percent: 1.0 };
@@ -189,7 +189,8 @@ fn no_overshoot_means_critical_damping_or_a_zero_that_cancels_the_slow_pole() {
     let slow = ExtraRoot::Times { natural_frequencies: 0.5 };
     let limit = tracking_upper(&wish, slow, Translation::Exact).unwrap();
     let natural = limit.natural_frequency_rad_per_s;
-    // (s + w/2) cancels, w^2/(w/2) = 2 w remains: a lag that settles after ln 100 of its time constants
+    // (s + w/2) cancels, w^2/(w/2) = 2 w remains: a lag that settles after ln 100 of its time
+    // constants
     assert!(close(limit.damping_ratio, 1.25, 1e-12));
     assert!(close(natural * 2.0 * 0.1, ln(100.0), 1e-7), "{natural}");
     assert_eq!(limit.check.outcome(), WishOutcome::Met);

@@ -44,7 +44,8 @@ fn is_stable(found: &MemberStability) -> bool {
     }
 }
 
-/// Just below the critical delay a loop is stable and just above it is not; the margin from below is what is left.
+/// Just below the critical delay a loop is stable and just above it is not; the margin from below
+/// is what is left.
 fn check_critical_delay(numerator: &[f64], denominator: &[f64], critical: f64) {
     let prompt = found(numerator, denominator, 0.0).critical_delay.unwrap();
     assert!((prompt.delay_s / critical - 1.0).abs() < 1e-12, "{} against {critical}", prompt.delay_s);
@@ -176,7 +177,8 @@ fn slow_poles_beside_fast_ones() {
     assert!((found.largest_real_part.unwrap() / -1e-3 - 1.0).abs() < 1e-12);
 }
 
-/// A lightly damped resonance, stable as long as its peak k/(2 zeta) stays below one, whatever the dead time.
+/// A lightly damped resonance, stable as long as its peak k/(2 zeta) stays below one, whatever the
+/// dead time.
 #[test]
 fn a_sharp_resonance_is_not_stepped_over() {
     let damping = 1e-5;
@@ -224,7 +226,8 @@ fn critical_delays_are_those_of_the_margins() {
     }
 }
 
-/// e^(-s T) replaced by Pade's approximant of order six has as many unstable poles, where all of them are slow against 1/T.
+/// e^(-s T) replaced by Pade's approximant of order six has as many unstable poles, where all of
+/// them are slow against 1/T.
 #[test]
 fn pade_approximants_have_as_many_unstable_poles() {
     let pade = |delay: f64| {

@@ -14,7 +14,8 @@ use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, gri
 use phea_qft::stability::{FamilyStability, family_stability};
 use phea_qft::verification::{Evidence, PlantPoint, StabilityReason, Verdict};
 
-/// 1e-3/(s^2 + d s + 1) with d = (p - 0.3)^2 + least: among members at p = 0, 0.5 and 1 nothing shows how small d becomes.
+/// 1e-3/(s^2 + d s + 1) with d = (p - 0.3)^2 + least: among members at p = 0, 0.5 and 1 nothing
+/// shows how small d becomes.
 fn dip(least: f64, extent: Extent) -> Family {
     let parameter = UncertainParameter { name: "p".into(), nominal: 1.0, minimum: 0.0, maximum: 1.0 };
     let plant = UncertainPlant::record(vec![parameter], |p| {
@@ -71,7 +72,8 @@ fn the_largest_real_part_lies_inside() {
     assert!((values[0] - 0.3).abs() < 1e-5, "{values:?}");
 }
 
-/// With dead time the smallest |1 + L| leads there: 1 - 1e-3/d at the resonance, after a quarter of a turn.
+/// With dead time the smallest |1 + L| leads there: 1 - 1e-3/d at the resonance, after a quarter of
+/// a turn.
 #[test]
 fn the_closest_approach_lies_inside() {
     let timing = Timing { delay_s: std::f64::consts::FRAC_PI_2, ..Timing::default() };

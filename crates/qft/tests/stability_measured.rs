@@ -1,4 +1,5 @@
-//! Nyquist's count on measured points: right where the points suffice, not resolved where they do not.
+//! Nyquist's count on measured points: right where the points suffice, not resolved where they do
+//! not.
 #![cfg(test)]
 
 use num_complex::Complex64;
@@ -42,7 +43,8 @@ fn found(plant: &MeasuredPlant, compensation: &Compensation) -> MemberStability 
     member_stability(&compensation.measured(plant), compensation)
 }
 
-/// The count of unstable poles agrees with the roots of the closed loop for plants stable and not, with and without integrators.
+/// The count of unstable poles agrees with the roots of the closed loop for plants stable and not,
+/// with and without integrators.
 #[test]
 fn the_count_is_that_of_the_poles() {
     let resonant = function(&[4.0], &[1.0, 0.4, 4.0, 0.0]);

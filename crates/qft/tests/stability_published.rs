@@ -61,7 +61,8 @@ fn unstable_family() -> Family {
     family(plant.unwrap(), vec![coordinate(0, 3, Spacing::Linear), coordinate(1, 3, Spacing::Linear)])
 }
 
-/// C = 5.18 is a published answer for this family. s^2 + C k s + C k a - 2.5 has a root at (-C k + sqrt(C^2 k^2 - 4 C k a + 10))/2.
+/// C = 5.18 is a published answer for this family. s^2 + C k s + C k a - 2.5 has a root at (-C
+/// k + sqrt(C^2 k^2 - 4 C k a + 10))/2.
 #[test]
 fn a_published_design_for_an_unstable_plant_is_unstable() {
     let found = audited(&unstable_family(), &controller(&[5.18], &[1.0], 0.0));
@@ -119,7 +120,8 @@ fn fifth_order<S: Scalar>(p: &[S]) -> PlantCoefficients<S> {
 fn the_published_controller_is_stable_for_the_whole_of_its_table() {
     let found = audited(&thesis_family([3, 3, 5, 3, 3, 3]), &controller(&[0.001, 0.008], &[1.0, 0.0], 0.0));
     assert_eq!((found.finding.verdict, found.finding.evidence), (Verdict::Met, Evidence::Search));
-    // ORIGIN: recomputed independently, a search of the peak of |L/(1+L)| over the box; S + T = 1 keeps |S| within one of it
+    // ORIGIN: recomputed independently, a search of the peak of |L/(1+L)| over the box; S + T = 1
+    // keeps |S| within one of it
     let (peak, frequency, stiffness) = (11.887, 1304.4, 3.71e6);
     assert!((found.finding.largest_real_part.unwrap() + 2.9).abs() < 0.05);
     let closest = found.finding.closest_approach.unwrap();
@@ -129,7 +131,8 @@ fn the_published_controller_is_stable_for_the_whole_of_its_table() {
     assert!((values[3] / stiffness - 1.0).abs() < 2e-3, "{values:?}");
 }
 
-/// The loop tolerates each of these delays, and what it tolerates beyond them is what is left of the margin without delay.
+/// The loop tolerates each of these delays, and what it tolerates beyond them is what is left of
+/// the margin without delay.
 #[test]
 fn the_published_controller_bears_delays_up_to_its_margin() {
     let family = thesis_family([2, 2, 2, 3, 2, 2]);

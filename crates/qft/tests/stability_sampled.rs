@@ -40,8 +40,8 @@ fn an_integrator_has_one_pole() {
     }
 }
 
-/// x(n + 1) = x(n) - k T x(n - d) is stable for 0 < k T < 2 sin(pi/(4 d + 2)) (Levin and May 1976): by poles for a few samples of
-/// delay, by turns for many.
+/// x(n + 1) = x(n) - k T x(n - d) is stable for 0 < k T < 2 sin(pi/(4 d + 2)) (Levin and May 1976):
+/// by poles for a few samples of delay, by turns for many.
 #[test]
 fn an_integrator_with_samples_of_delay() {
     for samples in [0_u32, 1, 3, 20, 40, 300] {
@@ -58,7 +58,8 @@ fn an_integrator_with_samples_of_delay() {
     }
 }
 
-/// 1/(z - 1) leaves a sixth of a turn at w T = pi/3: one sample of delay, which is what brings k T = 1 to its limit.
+/// 1/(z - 1) leaves a sixth of a turn at w T = pi/3: one sample of delay, which is what brings k
+/// T = 1 to its limit.
 #[test]
 fn a_whole_sample_is_borne_exactly() {
     for samples in [0.0, 4.0, 40.0] {
@@ -70,8 +71,9 @@ fn a_whole_sample_is_borne_exactly() {
     }
 }
 
-/// k/s with a delay of m samples, m < 1, closes to z^2 - (1 - k T (1 - m)) z + k T m: stable until m = 1/(k T), where 1 < k T < 4/3.
-/// The family's margin is that of its largest gain, to the last digits, though phase over frequency gives 0.66 for it.
+/// k/s with a delay of m samples, m < 1, closes to z^2 - (1 - k T (1 - m)) z + k T m: stable until
+/// m = 1/(k T), where 1 < k T < 4/3. The family's margin is that of its largest gain, to the last
+/// digits, though phase over frequency gives 0.66 for it.
 #[test]
 fn a_fraction_of_a_sample_is_borne_exactly() {
     let gain = UncertainParameter { name: "k".into(), nominal: 0.6, minimum: 0.5, maximum: 1.25 };
@@ -121,12 +123,14 @@ fn nothing_is_cancelled() {
     }
 }
 
-/// The slow poles of a sampled loop are those of the continuous one to the order of the sample time, however slow they are.
+/// The slow poles of a sampled loop are those of the continuous one to the order of the sample
+/// time, however slow they are.
 #[test]
 fn slow_poles_keep_their_digits() {
     let integral = Element::ProportionalIntegral { proportional_gain: 1e-3, integral_gain: 1e-9 };
     let found = found(vec![integral], (&[1.0], &[1.0, 1.0]), 0.0);
-    // s^2 + 1.001 s + 1e-9: the slow root, and half a sample of the hold times its square is nothing
+    // s^2 + 1.001 s + 1e-9: the slow root, and half a sample of the hold times its square is
+    // nothing
     let expected = -2e-9 / (1.001 + f64::sqrt(1.001 * 1.001 - 4e-9));
     assert!((found.largest_real_part.unwrap() / expected - 1.0).abs() < 1e-5);
 }

@@ -1,7 +1,7 @@
 //! Dimensions of physical quantities, and which units people expect to read for each.
 
-/// Exponents of (mass, length, time, voltage, angle, temperature), counted in halves so that m³/(s·√Pa) is
-/// exact.
+/// Exponents of (mass, length, time, voltage, angle, temperature), counted in halves so that
+/// m³/(s·√Pa) is exact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Exponents(pub [i8; 6]);
 

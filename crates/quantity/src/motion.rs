@@ -98,8 +98,8 @@ impl MotionKind {
         if self.is_rotary() { names::symbol(of) } else { of }
     }
 
-    /// The name of a quantity for programs, stated as that of linear motion: a key of JSON, a column
-    /// of a table.
+    /// The name of a quantity for programs, stated as that of linear motion: a key of JSON, a
+    /// column of a table.
     ///
     /// # Example
     /// ```

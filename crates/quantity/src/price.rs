@@ -38,8 +38,8 @@ pub struct Price {
 /// Reads a price.
 ///
 /// # Errors
-/// [`QuantityError`] for a text that is not a price, a negative one, an unknown currency, and one for a
-/// length where one for a piece is wanted, or the other way round.
+/// [`QuantityError`] for a text that is not a price, a negative one, an unknown currency, and one
+/// for a length where one for a piece is wanted, or the other way round.
 ///
 /// # Example
 /// ```

@@ -1,9 +1,11 @@
-//! A campaign on one core beside a loop over CVODE: `cargo bench -p phea-workbench --bench campaign -- [RUNS]`.
+//! A campaign on one core beside a loop over CVODE:
+//! `cargo bench -p phea-workbench --bench campaign -- [RUNS]`.
 //!
-//! The runs of examples/benchmark/campaign.toml, seed 1: time a run in lanes, one by one, and of CVODE (BDF with stability-limit
-//! detection, 1e-6, the program of benches/peers) on the same draws, in processor time. The force of 200 runs against the same at
-//! tolerance 1e-10, and that against CVODE at 1e-12. Values are compared, and fail the bench; times are printed and never asserted.
-//! Where CVODE cannot be compiled (Debian: libsundials-dev), only phea is timed.
+//! The runs of examples/benchmark/campaign.toml, seed 1: time a run in lanes, one by one, and of
+//! CVODE (BDF with stability-limit detection, 1e-6, the program of benches/peers) on the same
+//! draws, in processor time. The force of 200 runs against the same at tolerance 1e-10, and that
+//! against CVODE at 1e-12. Values are compared, and fail the bench; times are printed and never
+//! asserted. Where CVODE cannot be compiled (Debian: libsundials-dev), only phea is timed.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a bench talks to the person who started it")]
 #![allow(missing_docs, reason = "a program of its own")]
 
@@ -26,7 +28,8 @@ const REPEATED: u64 = 200;
 /// Runs of CVODE, and those at 1e-12.
 const PEER_RUNS: u64 = 100;
 const PEER_CHECKS: u64 = 5;
-/// Largest error of the force in N that is asked for, of the median run and of all but one in a hundred.
+/// Largest error of the force in N that is asked for, of the median run and of all but one in a
+/// hundred.
 const MEDIAN_ERROR: f64 = 0.02;
 const RARE_ERROR: f64 = 0.2;
 /// Largest difference in N between two solvers at their most exact.

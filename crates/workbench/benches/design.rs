@@ -1,8 +1,9 @@
-//! The designs of the rig of the examples, timed on one core: `cargo bench -p phea-workbench --bench design`.
+//! The designs of the rig of the examples, timed on one core:
+//! `cargo bench -p phea-workbench --bench design`.
 //!
-//! With hoses, with hoses and sampled at 1 kHz with 0.5 ms of delay, and with steel pipes: from the project file to the answer, audits included.
-//! Every design must be met and, made a second time from the same seed, be the same bytes; or the bench fails. Times are printed and never
-//! asserted.
+//! With hoses, with hoses and sampled at 1 kHz with 0.5 ms of delay, and with steel pipes: from the
+//! project file to the answer, audits included. Every design must be met and, made a second time
+//! from the same seed, be the same bytes; or the bench fails. Times are printed and never asserted.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a bench talks to the person who started it")]
 #![allow(missing_docs, reason = "a program of its own")]
 

@@ -1,10 +1,12 @@
-//! A recorded test of a million rows, imported as `phea identify` imports it: `cargo bench -p phea-workbench --bench import`.
+//! A recorded test of a million rows, imported as `phea identify` imports it:
+//! `cargo bench -p phea-workbench --bench import`.
 //!
-//! Six columns (time, command, supply pressure, both port pressures, leakage) as text with commas and as Parquet, in the folder
-//! for temporary files. Each is read by a process of its own, from the file to numbers in SI with every check of the
-//! reader. Prints the size of the file, the best and the median time of several processes, and the most memory one of them had
-//! (`VmHWM`, the file's own bytes among it). Times are printed and never asserted; fails where a number differs between both
-//! files, or where more than 200 MB were needed.
+//! Six columns (time, command, supply pressure, both port pressures, leakage) as text with commas
+//! and as Parquet, in the folder for temporary files. Each is read by a process of its own, from
+//! the file to numbers in SI with every check of the reader. Prints the size of the file, the best
+//! and the median time of several processes, and the most memory one of them had (`VmHWM`, the
+//! file's own bytes among it). Times are printed and never asserted; fails where a number differs
+//! between both files, or where more than 200 MB were needed.
 //!
 //! As a program it takes `read FILE`.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a bench talks to the person who started it")]

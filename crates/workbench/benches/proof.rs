@@ -1,7 +1,9 @@
-//! Proofs of the rig of the examples, timed on one core: `taskset -c 0 cargo bench -p phea-workbench --bench proof`.
+//! Proofs of the rig of the examples, timed on one core:
+//! `taskset -c 0 cargo bench -p phea-workbench --bench proof`.
 //!
-//! The published controller and two designs, continuous and sampled: seconds of the search, of the proof and of checking its certificate again,
-//! leaves, bytes. Every claim about a design must be proven, or the bench fails. Times are printed and never asserted.
+//! The published controller and two designs, continuous and sampled: seconds of the search, of the
+//! proof and of checking its certificate again, leaves, bytes. Every claim about a design must be
+//! proven, or the bench fails. Times are printed and never asserted.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a bench talks to the person who started it")]
 #![allow(missing_docs, reason = "a program of its own")]
 

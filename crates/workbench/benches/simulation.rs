@@ -1,12 +1,15 @@
-//! The closed loop of the examples simulated and timed on one core: `cargo bench -p phea-workbench --bench simulation`.
+//! The closed loop of the examples simulated and timed on one core:
+//! `cargo bench -p phea-workbench --bench simulation`.
 //!
-//! The machine and its controller as the project files of `examples/benchmark` state them; the force alone is looked at, as a
-//! campaign looks at its runs. Prints time per run, the best and the mean of many, the largest error of the force
-//! against the golden reference, and the work; fails where that error is above 0.02 N at the file's own tolerance. Times are
-//! printed and never asserted.
+//! The machine and its controller as the project files of `examples/benchmark` state them; the
+//! force alone is looked at, as a campaign looks at its runs. Prints time per run, the best and the
+//! mean of many, the largest error of the force against the golden reference, and the work; fails
+//! where that error is above 0.02 N at the file's own tolerance. Times are printed and never
+//! asserted.
 //!
-//! As a program it takes the words of the drivers in `benches/peers`, which `closed_loop_times.py` runs in turn with it:
-//! `closed_loop|closed_loop_sampled TOLERANCE|file [repeats=N] [output=FILE]`.
+//! As a program it takes the words of the drivers in `benches/peers`, which `closed_loop_times.py`
+//! runs in turn with it: `closed_loop|closed_loop_sampled TOLERANCE|file [repeats=N]
+//! [output=FILE]`.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a bench talks to the person who started it")]
 #![allow(missing_docs, reason = "a program of its own")]
 

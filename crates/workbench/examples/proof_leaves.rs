@@ -1,7 +1,9 @@
-//! Draws the leaves of a proof against the number of uncertain parameters from what the bench `proof` of phea-qft measured:
-//! `cargo run -p phea-workbench --example proof_leaves -- book/src/images`.
+//! Draws the leaves of a proof against the number of uncertain parameters from what the bench
+//! `proof` of phea-qft measured: `cargo run -p phea-workbench --example proof_leaves --
+//! book/src/images`.
 //!
-//! Reads the committed measurement, writes `proof_leaves.svg` into the folder, and a PNG with the second word `png`.
+//! Reads the committed measurement, writes `proof_leaves.svg` into the folder, and a PNG with the
+//! second word `png`.
 
 use std::{env, fs, io, path::PathBuf};
 
@@ -27,7 +29,8 @@ fn main() -> io::Result<()> {
     Ok(())
 }
 
-/// Parameters, leaves of the proof, boxes that interval arithmetic showed, and the fraction of the whole that these are.
+/// Parameters, leaves of the proof, boxes that interval arithmetic showed, and the fraction of the
+/// whole that these are.
 fn rows() -> Vec<[f64; 4]> {
     let rows = MEASURED.lines().map(|line| line.split(',').collect::<Vec<_>>());
     let wanted = rows.filter(|row| row.len() == 9 && row[0] == "parameters");

@@ -1,7 +1,8 @@
 //! Draws work against precision from what `benches/peers/closed_loop_times.py` measured:
 //! `cargo run -p phea-workbench --example work_precision -- book/src/images`.
 //!
-//! Reads the committed measurement, writes `work_precision.svg` into the folder, and a PNG with the second word `png`.
+//! Reads the committed measurement, writes `work_precision.svg` into the folder, and a PNG with the
+//! second word `png`.
 
 use std::{env, fs, io, path::PathBuf};
 

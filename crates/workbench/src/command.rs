@@ -114,7 +114,8 @@ pub enum Request {
     Report {
         /// Whether every figure is wanted as a file too.
         files: bool,
-        /// Whether it has a chapter on the alternatives of the project, each of which is designed for.
+        /// Whether it has a chapter on the alternatives of the project, each of which is designed
+        /// for.
         alternatives: bool,
     },
 }
@@ -161,8 +162,8 @@ pub fn answer(
 /// as they come, if there is one; all other files are in the answer.
 ///
 /// # Errors
-/// [`CommandError`] if the project lacks something that the command needs, something in it cannot be
-/// computed, or a table cannot be written; [`ProcedureError::Stopped`].
+/// [`CommandError`] if the project lacks something that the command needs, something in it cannot
+/// be computed, or a table cannot be written; [`ProcedureError::Stopped`].
 pub fn answer_into(
     source: &dyn Source,
     loaded: &Loaded,
@@ -172,8 +173,8 @@ pub fn answer_into(
     watch: Watch<'_>,
 ) -> Result<Answer, CommandError> {
     motor::refuse(loaded, request)?;
-    // these three know their own way: the bench tests the declared valve, whose recordings may not be
-    // there yet
+    // these three know their own way: the bench tests the declared valve, whose recordings may not
+    // be there yet
     let identified = match request {
         Request::Bench | Request::Compare | Request::Campaign(_) => Ok(None),
         _ => with_recordings(source, loaded, watch),

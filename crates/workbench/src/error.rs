@@ -58,7 +58,8 @@ impl CommandError {
         }
     }
 
-    /// The same error; where a name of the catalogue was looked for late, as the refusal of the project.
+    /// The same error; where a name of the catalogue was looked for late, as the refusal of the
+    /// project.
     pub(crate) fn as_refusal(self, source: &dyn Source, loaded: &Loaded) -> CommandError {
         let CommandError::Procedure(procedure) = &self else { return self };
         match procedure.late() {

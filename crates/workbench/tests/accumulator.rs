@@ -1,5 +1,5 @@
-//! Accumulators at the chambers as an engineer meets them: what `check` derives, what a verdict says first, what a run reports,
-//! and what is refused.
+//! Accumulators at the chambers as an engineer meets them: what `check` derives, what a verdict
+//! says first, what a run reports, and what is refused.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
@@ -42,7 +42,8 @@ fn check_derives_what_the_gas_yields_and_the_stiffness_with_and_without() {
     near(derived(&told, "linear.hydraulic_stiffness"), stiffness(expected), 1e-10);
 }
 
-/// The force at which `check` says that the gas is shut off is one that brings a chamber down to its precharge.
+/// The force at which `check` says that the gas is shut off is one that brings a chamber down to
+/// its precharge.
 #[test]
 fn at_the_limits_of_force_a_chamber_stands_just_above_its_precharge() {
     let told = check(GAS, &[]);
@@ -59,7 +60,8 @@ fn at_the_limits_of_force_a_chamber_stands_just_above_its_precharge() {
     }
 }
 
-/// The stiffness over the force is that of the rig which declares the force, and ends where `check` says that the gas is shut off.
+/// The stiffness over the force is that of the rig which declares the force, and ends where `check`
+/// says that the gas is shut off.
 #[test]
 fn stiffness_over_the_force_is_that_of_the_rig_under_this_force() {
     // a pump that gives way to leakage has another pressure at each force
@@ -106,7 +108,8 @@ fn the_report_draws_the_stiffness_over_the_force() {
     assert!(drawn(BOTH) && !drawn(include_str!("../../project/tests/valid/telescopic.toml")));
 }
 
-/// The example is as soft as the thesis wished, and a verdict names the forces beyond which its gas is shut off.
+/// The example is as soft as the thesis wished, and a verdict names the forces beyond which its gas
+/// is shut off.
 #[test]
 fn a_verdict_names_the_forces_beyond_which_the_gas_is_shut_off() {
     let told = json(GAS, &[], &[], &Request::Verify { proof: false, on_machine: false });
@@ -132,7 +135,8 @@ fn families_have_the_stiffness_of_their_gas() {
     }
 }
 
-/// Driven to a force beyond the limit, the run says when the gas is shut off and when it is in use again.
+/// Driven to a force beyond the limit, the run says when the gas is shut off and when it is in use
+/// again.
 #[test]
 fn a_run_reports_where_the_gas_is_shut_off() {
     let scenario = "scenario=[{ name = \"push\", duration = \"2 s\", reference = [{ at = \"0.2 s\", force = \"7 kN\" }, { at = \"1 s\", force = \"0 N\" }] }]";
@@ -180,8 +184,8 @@ fn what_shuts_off_the_gas_is_refused_at_its_place() {
     assert!(message.contains("alternative `thesis`"), "{message}");
 }
 
-/// A family whose precharge goes beyond the pressure of a chamber states at how many of its plants; one that does not
-/// says nothing.
+/// A family whose precharge goes beyond the pressure of a chamber states at how many of its plants;
+/// one that does not says nothing.
 #[test]
 fn a_verdict_tells_at_how_many_plants_the_gas_is_shut_off() {
     let caveat = |most: f64| {

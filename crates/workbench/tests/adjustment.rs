@@ -1,4 +1,5 @@
-//! An accumulator that is adjusted, from the project's keys to plant, family, verdict, simulation and output.
+//! An accumulator that is adjusted, from the project's keys to plant, family, verdict, simulation
+//! and output.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -24,7 +25,8 @@ fn at(adjustment: &str, setting: f64) -> String {
     accumulator("6 mL", "15 bar", &adjustment.replace("SETTING", &setting.to_string()))
 }
 
-/// What the plants are compared with: two pressures, one that is stated, a limited pump, and lines with waves.
+/// What the plants are compared with: two pressures, one that is stated, a limited pump, and lines
+/// with waves.
 const RIGS: [&[&str]; 4] = [
     &[],
     &["linear.hydraulic_stiffness=2e6"],
@@ -40,7 +42,8 @@ fn widest(one: &phea_workbench::project::Project, other: &phea_workbench::projec
     gaps.fold(0.0, f64::max)
 }
 
-/// A fixed setting is the accumulator declared with what the setting stands for, in every form of the plant.
+/// A fixed setting is the accumulator declared with what the setting stands for, in every form of
+/// the plant.
 #[test]
 fn a_setting_is_the_declared_accumulator() {
     let text = without_uncertainty(GAS);
@@ -118,7 +121,8 @@ fn a_verdict_says_that_settings_stand() {
     assert!(models.contains("the valve of line.accumulator.adjustment is counted in the plant"), "{models}");
 }
 
-/// A simulation of a setting that moves states its work; one of a setting that leaves its way is refused.
+/// A simulation of a setting that moves states its work; one of a setting that leaves its way is
+/// refused.
 #[test]
 fn a_simulation_tells_the_work_of_a_setting() {
     let text = without_uncertainty(GAS);
@@ -163,14 +167,16 @@ fn rows_of(settings: &[&str]) -> (serde_json::Value, Vec<std::collections::BTree
     (serde_json::from_str(&found.json).unwrap(), lines.map(row).collect())
 }
 
-/// What the valves throttle is the integral of their drops times their flows, which the rows give too.
+/// What the valves throttle is the integral of their drops times their flows, which the rows give
+/// too.
 #[test]
 fn the_loss_of_switching_is_told() {
     let scenario = "scenario=[{ name = \"moves\", duration = \"0.3 s\", output_step = \"0.02 ms\", reference = [{ at = 0, force = \"1 kN\" }, \
          { at = \"0.05 s\", force = \"3 kN\" }], setting_change = [{ at = \"0.15 s\", change = 0.5 }] }]";
     let (found, rows) = rows_of(&[&at(VALVE, 0.0), scenario]);
     let told = found["scenarios"][0]["gas_valve_throttled_j"].as_f64().unwrap();
-    // ORIGIN: analytic, q = s K dp/(dp^2 + dp_t^2)^(1/4) with the flow of 20 L/min at 5 bar wide open
+    // ORIGIN: analytic, q = s K dp/(dp^2 + dp_t^2)^(1/4) with the flow of 20 L/min at 5 bar wide
+    // open
     let coefficient = 20e-3 / 60.0 / 5e5_f64.sqrt();
     let mut expected = 0.0;
     for two in rows.windows(2) {
@@ -197,7 +203,8 @@ fn the_loss_of_switching_is_told() {
     assert!(text.contains("the valves between chambers and gas throttle"), "{text}");
 }
 
-/// Peaks of gas are those of the solution; of gas too fast for heat its temperature follows the adiabate.
+/// Peaks of gas are those of the solution; of gas too fast for heat its temperature follows the
+/// adiabate.
 #[test]
 fn peaks_of_gas_are_told() {
     let scenario = "scenario=[{ name = \"moves\", duration = \"0.5 s\", output_step = \"0.1 ms\", reference = [{ at = 0, force = \"1 kN\" }, \

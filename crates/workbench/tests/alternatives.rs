@@ -139,8 +139,8 @@ fn lengths_and_losses_are_those_of_the_rig() {
     }
 }
 
-/// With a spring on the rod, that of the rig as declared and of the coils that `check` winds; without
-/// coils, or with too few of them, the reason.
+/// With a spring on the rod, that of the rig as declared and of the coils that `check` winds;
+/// without coils, or with too few of them, the reason.
 #[test]
 fn a_spring_on_the_rod_has_a_length() {
     let length = |coil: &str| {
@@ -270,7 +270,8 @@ fn ranges_follow_the_rig_where_that_is_asked() {
     let moved: Vec<&str> = following[1].moved.iter().map(|range| range.name.as_str()).collect();
     assert_eq!(moved, ["hydraulic_stiffness"]);
     let [nominal, least, greatest] = following[1].moved[0].moved;
-    // ORIGIN: recomputed by book/recompute_theory.py, thesis (6.19) with the pipes: 17.1 to 124 MN/m
+    // ORIGIN: recomputed by book/recompute_theory.py, thesis (6.19) with the pipes: 17.1 to 124
+    // MN/m
     assert!((nominal / 1.71e7 - 1.0).abs() < 5e-3 && nominal == least, "{nominal} {least}");
     assert!((greatest / 1.24e8 - 1.0).abs() < 5e-3, "{greatest}");
     assert!(following[1].outside(&following).is_none());
@@ -279,7 +280,8 @@ fn ranges_follow_the_rig_where_that_is_asked() {
     assert!(check("recentre = false").contains(warning) && !check("recentre = true").contains(warning));
 }
 
-/// A sized alternative has the hose and length that `size` accepts first; one without a hose is refused.
+/// A sized alternative has the hose and length that `size` accepts first; one without a hose is
+/// refused.
 #[test]
 fn a_sized_alternative_has_the_hose_of_size() {
     let text = format!(
@@ -395,7 +397,8 @@ pub(super) fn stands_in(row: &str, output: &str) -> bool {
     lines.map(|line| format!("{line} ")).any(|line| line.contains(&format!("{row} ")))
 }
 
-/// The ways that story and book share stand in both, and the story's output is compared with the command's.
+/// The ways that story and book share stand in both, and the story's output is compared with the
+/// command's.
 #[test]
 fn the_book_says_what_the_story_shows() {
     let story = include_str!("../../../examples/13_alternatives.md");

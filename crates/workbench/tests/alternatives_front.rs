@@ -99,7 +99,8 @@ fn a_front_is_what_nothing_dominates() {
     assert!(found.files.iter().any(|file| file.name == "front.svg"));
 }
 
-/// Feasibility as a column is the relaxation: 0 where all is satisfied, and those that miss are compared.
+/// Feasibility as a column is the relaxation: 0 where all is satisfied, and those that miss are
+/// compared.
 #[test]
 fn a_front_may_go_over_feasibility() {
     let text = LOOP.replace("limit = 2", "limit = 1.5")

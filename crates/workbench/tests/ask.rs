@@ -115,7 +115,8 @@ pub(crate) fn size_request(gain: Option<&str>, length: Option<&str>) -> Request 
     Request::Size { gain: gain.map(str::to_string), length: length.map(str::to_string) }
 }
 
-/// The number at a path such as `stiffness.minimum_n_per_m` or `bands.0.1`; the strings "inf" and "-inf" are infinite.
+/// The number at a path such as `stiffness.minimum_n_per_m` or `bands.0.1`; the strings "inf" and
+/// "-inf" are infinite.
 #[track_caller]
 pub(crate) fn number(value: &Value, path: &str) -> f64 {
     let found = value.pointer(&format!("/{}", path.replace('.', "/")));

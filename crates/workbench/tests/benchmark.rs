@@ -1,4 +1,5 @@
-//! The closed loop that phea is measured on, at the tolerance that its project files state, against the golden reference.
+//! The closed loop that phea is measured on, at the tolerance that its project files state, against
+//! the golden reference.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 

@@ -1,4 +1,5 @@
-//! Campaigns: the same rows however they are computed, wherever they are interrupted, and each run as `simulate` has it.
+//! Campaigns: the same rows however they are computed, wherever they are interrupted, and each run
+//! as `simulate` has it.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -50,7 +51,8 @@ fn lanes(threads: usize) -> Effort {
     Effort { threads, lanes: true }
 }
 
-/// Every machine has its bits alone, in lanes, and whatever the threads; so do those that end early.
+/// Every machine has its bits alone, in lanes, and whatever the threads; so do those that end
+/// early.
 #[test]
 fn rows_are_the_same_in_lanes_one_by_one_and_on_any_number_of_threads() {
     let sampled = ["controller.sample_time=1 ms", "force_sensor.noise=2 N"];
@@ -94,7 +96,8 @@ fn open_loop() -> (Memory, Loaded) {
     (source, loaded)
 }
 
-/// Machines that a stated command drives: the same rows in lanes and alone, and each as `simulate` has it.
+/// Machines that a stated command drives: the same rows in lanes and alone, and each as `simulate`
+/// has it.
 #[test]
 fn an_open_loop_is_drawn_as_a_closed_one_is() {
     let (source, loaded) = open_loop();
@@ -151,7 +154,8 @@ fn batches_come_in_their_order_on_any_number_of_threads() {
     }
 }
 
-/// A run, written as settings, is the same machine for `simulate`: where both look as often, the same bits of the force.
+/// A run, written as settings, is the same machine for `simulate`: where both look as often, the
+/// same bits of the force.
 #[test]
 fn a_run_is_what_simulate_makes_of_its_settings() {
     let often = "scenario.0.output_step=0.25 ms";
@@ -216,7 +220,8 @@ fn kept(loaded: &Loaded, request: &CampaignRequest, page: &mut Page) -> Result<S
     command::campaign_watched(&source(), loaded, &[], request, (Some(page), None), &mut |_| true)
         .map(|answer| answer.json)
 }
-/// Over 200 runs half of all stay within 0.02 N of the same at a tolerance of 1e-10, and all but two within 0.2 N.
+/// Over 200 runs half of all stay within 0.02 N of the same at a tolerance of 1e-10, and all but
+/// two within 0.2 N.
 #[test]
 fn the_force_is_as_exact_as_the_campaign_says() {
     let of = |settings: &[&str]| {
@@ -373,7 +378,8 @@ fn the_parquet_table_says_what_the_text_says() {
     assert!(page.text.contains(",refused,"));
 }
 
-/// Quantiles are of the runs that have a number; those that never settle are counted where the quantiles stand.
+/// Quantiles are of the runs that have a number; those that never settle are counted where the
+/// quantiles stand.
 #[test]
 fn runs_that_never_settle_are_told_beside_the_quantiles() {
     let loaded = load(&SHORT);

@@ -1,4 +1,5 @@
-//! The plant of every verdict is that of the declared rig, with its load and its leakage; what it does not count is reported first.
+//! The plant of every verdict is that of the declared rig, with its load and its leakage; what it
+//! does not count is reported first.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -36,8 +37,8 @@ fn overshoot(project: &Project) -> f64 {
     closed.step.unwrap().metrics.overshoot_percent
 }
 
-/// The load alone makes a loop that overshoots by nothing overshoot by a quarter, and the linear plant says so. The machine, which has
-/// friction, overshoots a little less.
+/// The load alone makes a loop that overshoots by nothing overshoot by a quarter, and the linear
+/// plant says so. The machine, which has friction, overshoots a little less.
 #[test]
 fn a_load_that_yields_is_in_the_loop() {
     let [prescribed, sprung] = [project_of(HOSE, &[]), project_of(HOSE, &SPRUNG)];
@@ -51,7 +52,8 @@ fn a_load_that_yields_is_in_the_loop() {
     assert!((25.0..expected[1]).contains(&machine), "{machine}");
 }
 
-/// Leakage across the piston adds to the valve's: the slow pole is (K_c + G) times what it was over K_c.
+/// Leakage across the piston adds to the valve's: the slow pole is (K_c + G) times what it was over
+/// K_c.
 #[test]
 fn leakage_across_the_piston_moves_the_slow_pole() {
     let slowest = |settings: &[&str]| {
@@ -63,7 +65,8 @@ fn leakage_across_the_piston_moves_the_slow_pole() {
     assert!((slowest(&["cylinder.internal_leakage=1e-11"]) - 8.5508).abs() < 1e-4);
 }
 
-/// The load feels the leakage too: slow motions meet a damper of A^2/(K_c + G) and the friction. The load is not in what it feels.
+/// The load feels the leakage too: slow motions meet a damper of A^2/(K_c + G) and the friction.
+/// The load is not in what it feels.
 #[test]
 fn the_load_feels_the_leakage_and_not_itself() {
     let damper = |settings: &[&str]| {
@@ -94,7 +97,8 @@ fn audited(project: &Project) -> ProjectAudit {
     audit_project(&Memory::default(), &Setup::new(project).unwrap(), &mut |_| true).unwrap()
 }
 
-/// What is declared and not in the linear loop stands above everything else that is said, and no verdict is met.
+/// What is declared and not in the linear loop stands above everything else that is said, and no
+/// verdict is met.
 #[test]
 fn what_is_not_counted_is_told_first() {
     let met = audited(&satisfied(&[]));
@@ -124,7 +128,8 @@ fn what_is_not_counted_is_told_first() {
     }
 }
 
-/// A prefilter before the samples: a step of 910/(s^2 + 83 s + 910), as it is between any two samples, reaches the loop.
+/// A prefilter before the samples: a step of 910/(s^2 + 83 s + 910), as it is between any two
+/// samples, reaches the loop.
 #[test]
 fn a_prefilter_before_the_samples_acts_in_continuous_time() {
     let project = project_of(HOSE, &["controller.sample_time=5 ms", "prefilter.continuous=true"]);
@@ -144,7 +149,8 @@ fn a_prefilter_before_the_samples_acts_in_continuous_time() {
     assert!(problem.caveats.is_empty(), "{:?}", problem.caveats);
 }
 
-/// A limited pump that gives what is taken is counted, and what that says no more than a simulation of larger steps is told.
+/// A limited pump that gives what is taken is counted, and what that says no more than a simulation
+/// of larger steps is told.
 #[test]
 fn a_limited_pump_is_counted() {
     let view = audited(&satisfied(&["supply.model=pump_limited"]));
@@ -165,8 +171,9 @@ fn without_uncertainty() -> String {
     format!("{start}[[specification]]{specifications}")
 }
 
-/// A load that yields and is fed forward swings up once the gain is too large, with lumped lines as with waves in them, sampled as at once:
-/// so do the machines of theory/feed_forward.md, 0.7 and 1.3 times A/K_qU.
+/// A load that yields and is fed forward swings up once the gain is too large, with lumped lines as
+/// with waves in them, sampled as at once: so do the machines of theory/feed_forward.md, 0.7 and
+/// 1.3 times A/K_qU.
 #[test]
 fn a_load_velocity_that_is_fed_forward_is_in_the_loop() {
     let certain = without_uncertainty();
@@ -189,8 +196,9 @@ fn a_load_velocity_that_is_fed_forward_is_in_the_loop() {
     }
 }
 
-/// A load that yields and is fed forward late: the loop is unstable behind 8.5 ms, stable behind 10 and unstable behind 13 again, where
-/// without the feed-forward none of them is stable, and so is the machine with viscous friction.
+/// A load that yields and is fed forward late: the loop is unstable behind 8.5 ms, stable behind 10
+/// and unstable behind 13 again, where without the feed-forward none of them is stable, and so is
+/// the machine with viscous friction.
 #[test]
 fn a_late_feed_forward_is_in_the_loop() {
     let text = without_uncertainty();
@@ -221,7 +229,8 @@ fn a_late_feed_forward_is_in_the_loop() {
     }
 }
 
-/// A load that yields and is fed forward in samples, with viscous friction: the machine says what the loop in z does.
+/// A load that yields and is fed forward in samples, with viscous friction: the machine says what
+/// the loop in z does.
 #[test]
 fn a_sampled_feed_forward_is_in_the_loop() {
     let text = without_uncertainty();
@@ -248,7 +257,8 @@ fn a_sampled_feed_forward_is_in_the_loop() {
     }
 }
 
-/// Beside a prescribed load a late feed-forward is a path of its motion: P_d + K s P, P late or of the samples, and the loop itself stays.
+/// Beside a prescribed load a late feed-forward is a path of its motion: P_d + K s P, P late or of
+/// the samples, and the loop itself stays.
 #[test]
 fn a_late_feed_forward_of_a_prescribed_load_is_a_path_of_its_motion() {
     let limit = "[[specification]]\nkind = \"load_motion\"\nlimit = 1e6\nfrequencies = [1, 10, 100]\n\n[[specification]]";
@@ -287,7 +297,8 @@ fn a_path_that_no_specification_limits_decides_nothing() {
     }
 }
 
-/// The box of Table 6.3 begins above the K_c that the edges of Table 5.1 make: what the loop does with that rig is told.
+/// The box of Table 6.3 begins above the K_c that the edges of Table 5.1 make: what the loop does
+/// with that rig is told.
 #[test]
 fn a_family_that_does_not_contain_the_rig_says_so_first() {
     let view = audited(&satisfied(&[]));

@@ -1,5 +1,5 @@
-//! A valve between the chambers as an engineer meets it: what `check` derives, what a verdict says first, how the linear plant and the
-//! machine agree, and what is refused.
+//! A valve between the chambers as an engineer meets it: what `check` derives, what a verdict says
+//! first, how the linear plant and the machine agree, and what is refused.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
@@ -52,7 +52,8 @@ fn check_tells_the_static_error() {
     assert_eq!(derived(&check(PIPE, &[LAMINAR]), "cross_port.static_error"), 0.0);
 }
 
-/// Feedback: capacity of a piston on its springs, corner, and nothing lost at rest, whatever the load.
+/// Feedback: capacity of a piston on its springs, corner, and nothing lost at rest, whatever the
+/// load.
 #[test]
 fn feedback_costs_nothing_at_rest() {
     let told = check(FEEDBACK, &["operating_point.load_force=2 kN"]);
@@ -76,7 +77,8 @@ fn feedback_costs_nothing_at_rest() {
     }
 }
 
-/// An orifice without a drop is reported first, and no verdict is met with it unless the range of its transition is stated.
+/// An orifice without a drop is reported first, and no verdict is met with it unless the range of
+/// its transition is stated.
 #[test]
 fn an_orifice_without_a_drop_is_told_first() {
     let told = json(FEEDBACK, &[], &[], &Request::Verify { proof: false, on_machine: false });
@@ -102,7 +104,8 @@ fn an_orifice_without_a_drop_is_told_first() {
     assert!(!told.to_string().contains("cross_port is counted"), "{told}");
 }
 
-/// What the caveat says of an oscillation: its mean slope is that of a transition pressure of 0.81 times its amplitude.
+/// What the caveat says of an oscillation: its mean slope is that of a transition pressure of 0.81
+/// times its amplitude.
 #[test]
 fn an_oscillation_has_the_slope_of_a_transition_pressure() {
     let orifice = Restrictor::Orifice { flow_coefficient: 1e-8, transition_pressure: 1.0 };
@@ -139,7 +142,8 @@ fn the_machine_agrees_with_the_linear_loop() {
     }
 }
 
-/// Sizing counts what leaks from chamber to chamber in K_c, and refuses a capacity that would share the work of the hose.
+/// Sizing counts what leaks from chamber to chamber in K_c, and refuses a capacity that would share
+/// the work of the hose.
 #[test]
 fn sizing_counts_a_leak_and_refuses_a_capacity() {
     let request = size_request(None, None);
@@ -173,8 +177,9 @@ fn models_without_feedback_say_so() {
     );
 }
 
-/// `check` states the damping of the plant with the valve in it: without one about that of the decomposed model, with the
-/// feedback of the comparison in the book the 0.09 that it was sized for, where the decomposed model has not changed.
+/// `check` states the damping of the plant with the valve in it: without one about that of the
+/// decomposed model, with the feedback of the comparison in the book the 0.09 that it was sized
+/// for, where the decomposed model has not changed.
 #[test]
 fn check_tells_the_damping_with_the_valve_in_it() {
     let feedback = "cross_port={ kind = \"dynamic_pressure_feedback\", conductance = 1.07644e-10, piston_diameter = \"12 mm\", spring_stiffness = \"30 N/mm\" }";

@@ -39,7 +39,8 @@ fn edges_are_declared_or_follow_from_the_data_sheet() {
 
 #[test]
 fn declared_edges_are_held_against_a_known_rating() {
-    // ORIGIN: analytic, mean of 3.2, 2.5, 2.0 and 3.85e-7 is 2.8875e-7; a rating of 5.6e-4 m3/s at 70 bar gives 2.993e-7
+    // ORIGIN: analytic, mean of 3.2, 2.5, 2.0 and 3.85e-7 is 2.8875e-7; a rating of 5.6e-4 m3/s at
+    // 70 bar gives 2.993e-7
     let rating = |flow: &str| {
         let flow = format!("valve.nominal_flow=\"{flow} m3/s\"");
         row(&[&flow, "valve.nominal_pressure_drop=\"70 bar\""], "valve.flow_coefficient_rated")
@@ -53,7 +54,8 @@ fn declared_edges_are_held_against_a_known_rating() {
 
 #[test]
 fn a_stated_value_outside_its_own_bounds_contradicts() {
-    // Within a percent of the derived 2.2330e6, but below the 2.24e6 that [uncertainty] states as its least.
+    // Within a percent of the derived 2.2330e6, but below the 2.24e6 that [uncertainty] states as
+    // its least.
     let outside = row(&["linear.hydraulic_stiffness=2.23e6"], "linear.hydraulic_stiffness");
     assert_eq!(outside["declared"]["contradicts"], true);
     assert_eq!(row(&[], "linear.hydraulic_stiffness")["declared"]["contradicts"], false);
@@ -96,8 +98,8 @@ fn a_command_alone_moves_the_piston_without_load_pressure() {
     let moving = ["operating_point.command=2"];
     assert!(equation(&moving).contains("(p_S + p_T + p_L)/2"));
     assert_eq!(number(&row(&moving, "operating_point.load_pressure"), "value"), 0.0);
-    // ORIGIN: analytic, with the leakage closed edges 3 and 6 take the drop of 35 bar each, K_cA = K_v3 u/(2 sqrt(35e5)),
-    // and p_L has both in series: 1/K_c = 1/K_cA + 1/K_cB
+    // ORIGIN: analytic, with the leakage closed edges 3 and 6 take the drop of 35 bar each,
+    // K_cA = K_v3 u/(2 sqrt(35e5)), and p_L has both in series: 1/K_c = 1/K_cA + 1/K_cB
     let slope = |edge: f64| edge * 0.2 / (2.0 * 35e5_f64.sqrt());
     let expected = 1.0 / (1.0 / slope(3.2e-7) + 1.0 / slope(3.85e-7));
     near(number(&row(&moving, "linear.flow_pressure_coefficient"), "value"), expected, 1e-6);

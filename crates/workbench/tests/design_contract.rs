@@ -1,5 +1,5 @@
-//! What `design` takes and answers: the section of the project, a controller that gives its timing alone, and the keys other programs
-//! read.
+//! What `design` takes and answers: the section of the project, a controller that gives its timing
+//! alone, and the keys other programs read.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -77,7 +77,8 @@ fn without_the_section_orders_grow_and_tracking_decides_on_a_prefilter() {
     );
 }
 
-/// The gain of a structure that says nothing of it lies around 1/|P0| at the design frequencies, its sign opposes the plant.
+/// The gain of a structure that says nothing of it lies around 1/|P0| at the design frequencies,
+/// its sign opposes the plant.
 #[test]
 fn the_gain_of_a_structure_is_wide_and_of_the_right_sign() {
     let text = |numerator: &str| {
@@ -131,8 +132,8 @@ const CONVERTED: &str = "schema = 1\n[plant]\nnumerator = \"k\"\ndenominator = \
     [design]\nobjective = \"best_worst_margin\"\nprefilter_maximum_order = 0\ngain = [1, 300]\n\
     structure = [{ kind = \"integrator\" }, { kind = \"zero\", frequency = [0.1, 100] }]\n";
 
-/// What the converters may do are two specifications more: for `verify` and for `design`, with words of their own. The less they may do, the
-/// less gain the controller has.
+/// What the converters may do are two specifications more: for `verify` and for `design`, with
+/// words of their own. The less they may do, the less gain the controller has.
 #[test]
 fn allowed_errors_of_the_converters_are_specifications() {
     let verified = |settings: &[&str]| {
@@ -149,7 +150,8 @@ fn allowed_errors_of_the_converters_are_specifications() {
     let names = ["force error of the rounded command", "command error of the rounded measurement"];
     assert_eq!(told(&rows[2]), ("plant_input_disturbance".into(), names[0].into(), "met".into()));
     assert_eq!(told(&rows[3]), ("control_effort".into(), names[1].into(), "met".into()));
-    // ORIGIN: analytic, the limits are the allowed errors over half of 8/512; towards infinite frequency, pi/T, |G S| is a little above 12
+    // ORIGIN: analytic, the limits are the allowed errors over half of 8/512; towards infinite
+    // frequency, pi/T, |G S| is a little above 12
     assert_eq!(rows[2]["reached"]["limit"], 0.128);
     assert_eq!(rows[3]["reached"]["limit"], 32.0);
     // those frequencies at which bounds are drawn that lie below pi/T
@@ -176,7 +178,8 @@ fn allowed_errors_of_the_converters_are_specifications() {
     assert!(text.contains("3 command error of the rounded measurement"), "{text}");
 }
 
-/// The law of an answer is the one whose coefficients the computer keeps, and its verification is that law's.
+/// The law of an answer is the one whose coefficients the computer keeps, and its verification is
+/// that law's.
 #[test]
 fn the_answer_is_what_is_deployed() {
     let single = json(CONVERTED, &["controller.quantization.coefficients=\"f32\""], &[], &DESIGN);

@@ -47,7 +47,8 @@ fn loaded(text: &str) -> (Memory, Loaded) {
     (source, loaded)
 }
 
-/// 5 (s/50 + 1)/(s/500 + 1) and a prefilter of first order, as if a search had found them for coefficients that are kept so.
+/// 5 (s/50 + 1)/(s/500 + 1) and a prefilter of first order, as if a search had found them for
+/// coefficients that are kept so.
 fn design(problem: &DesignProblem, coefficients: CoefficientFormat, status: DesignStatus) -> Design {
     let lead = Element::LeadLag { zero_frequency: 50.0, pole_frequency: 500.0 };
     let law = Controller {
@@ -204,7 +205,8 @@ fn a_sampled_design_is_written_as_it_was_found_and_told_as_it_is_deployed() {
     assert_eq!(written, expected);
 }
 
-/// What the project says of its prefilter in addition to the law holds for the designed one too, in the file and in what is pasted.
+/// What the project says of its prefilter in addition to the law holds for the designed one too, in
+/// the file and in what is pasted.
 #[test]
 fn a_prefilter_that_acts_between_samples_goes_on_doing_so() {
     let sampled = PROJECT.replace("TIMING\n", "sample_time = \"2 ms\"\n");
@@ -252,7 +254,8 @@ fn every_stage_is_a_file() {
     assert!(text(&loaded, &view).starts_with("Design: stopped: this is the best controller found so far"));
 }
 
-/// A published law of elements is the product of those that act, and all of them go where the designed one comes.
+/// A published law of elements is the product of those that act, and all of them go where the
+/// designed one comes.
 #[test]
 fn elements_are_a_published_law() {
     let elements = "elements = [\n  { kind = \"gain\", value = 3 },  # loud\n  { kind = \"pi\", proportional_gain = 2, integral_gain = 4 },\n  \
@@ -290,7 +293,8 @@ fn what_the_computer_rounds_is_part_of_the_design() {
     assert_eq!(pole, f64::from(pole as f32));
     let effect = &object["rounding"]["effects"][0];
     assert_eq!((effect["of"].as_str(), effect["on"].as_str()), (Some("command"), Some("output")));
-    // no rounding does less than it would at rest: half a step of 20 V/4096 through 1/G(z = 1), where the plant integrates
+    // no rounding does less than it would at rest: half a step of 20 V/4096 through 1/G(z = 1),
+    // where the plant integrates
     // ORIGIN: analytic, 20/4096/2/5
     assert!(effect["peak"].as_f64().unwrap() >= 0.999 * 20.0 / 4096.0 / 2.0 / 5.0, "{effect}");
     assert!(effect["peak_plant"]["k"].is_number());

@@ -1,5 +1,6 @@
-//! Designs of whole projects whose truth is known: that the rig can be met at all, and with how much, was found by an independent search. The rig in a
-//! computer takes longer and is a task of `benches/design.rs`.
+//! Designs of whole projects whose truth is known: that the rig can be met at all, and with how
+//! much, was found by an independent search. The rig in a computer takes longer and is a task of
+//! `benches/design.rs`.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
@@ -29,7 +30,8 @@ fn with_verified(answer: &Answer) -> (Value, Value) {
     )
 }
 
-/// That every specification is met over the band and the family that the project declares, and that the project which is written says so too.
+/// That every specification is met over the band and the family that the project declares, and that
+/// the project which is written says so too.
 fn assert_met(design: &Value, verified: &Value, orders: [f64; 2]) {
     assert_eq!(design["status"], "met", "{}", design["rounds"]);
     assert_eq!(design["relaxation_db"], Value::Null);
@@ -51,8 +53,8 @@ fn assert_met(design: &Value, verified: &Value, orders: [f64; 2]) {
     assert!(found[0] <= orders[0] && found[1] <= orders[1], "{found:?}");
 }
 
-/// Table 6.3 with the hose: met by a controller of third order and a prefilter of second, for which the least lim s G was found by an
-/// independent search as well.
+/// Table 6.3 with the hose: met by a controller of third order and a prefilter of second, for which
+/// the least lim s G was found by an independent search as well.
 // ORIGIN: recomputed by comparisons/recompute_design.py
 #[test]
 fn the_rig_with_hoses_is_met() {
@@ -65,7 +67,8 @@ fn the_rig_with_hoses_is_met() {
     assert_eq!(verified["timing"]["sample_time_s"], Value::Null);
 }
 
-/// Table 6.3 with steel pipes, K_H up to 1.24e8: met by a controller of fourth order; of third order all limits have to give by 0.03 dB.
+/// Table 6.3 with steel pipes, K_H up to 1.24e8: met by a controller of fourth order; of third
+/// order all limits have to give by 0.03 dB.
 #[test]
 fn the_rig_with_pipes_is_met() {
     let (design, verified) = designed_and_verified(PIPE, &[]);
@@ -96,7 +99,8 @@ fn an_unstable_plant_gets_its_gain() {
     within(number(&design, "controller.gain"), 525.0 / 11.0, 0.01);
 }
 
-/// Example D as a project, with what the project does not say chosen for it: within 0.1 dB of the least gain.
+/// Example D as a project, with what the project does not say chosen for it: within 0.1 dB of the
+/// least gain.
 #[test]
 fn the_least_gain_of_the_servo_is_found_as_a_project() {
     let (design, verified) = designed_and_verified(LEAST_GAIN, &["design.prefilter_maximum_order=0"]);

@@ -92,7 +92,8 @@ fn cases_alone_are_the_family() {
     assert_eq!(family.members(), [[5.0, 5.0], [10.0, 1.0], [1.0, 5.0], [3.0, 2.0]]);
 }
 
-/// A group is one coordinate of the box: its parameters are at the same share of their ranges, opposed ones at the rest of it.
+/// A group is one coordinate of the box: its parameters are at the same share of their ranges,
+/// opposed ones at the rest of it.
 #[test]
 fn correlated_parameters_move_together() {
     let text = format!(

@@ -40,7 +40,8 @@ fn points(plant: &UncertainPlant) -> Vec<Vec<f64>> {
     (0..50).map(|_| plant.parameters().iter().map(&mut value).collect()).collect()
 }
 
-/// The recorded coefficients are those of the equations run with numbers, inside the box and at its corners.
+/// The recorded coefficients are those of the equations run with numbers, inside the box and at its
+/// corners.
 #[test]
 fn the_recorded_rig_is_the_linear_model() {
     let project = loaded(HOSE);
@@ -167,8 +168,8 @@ fn physical_paths_reach_the_model_as_through_the_rig() {
     );
 }
 
-/// A supply that yields moves its own pressure, those of the chambers, and what the force sees of it: each plant of the box is that of the
-/// rig with these numbers.
+/// A supply that yields moves its own pressure, those of the chambers, and what the force sees of
+/// it: each plant of the box is that of the rig with these numbers.
 #[test]
 fn a_supply_that_yields_is_recorded() {
     let pump = HOSE.replace("model = \"constant\"", "model = \"pump_limited\"");
@@ -256,8 +257,8 @@ fn every_parameter_of_the_project_has_its_field() {
     assert_eq!(found, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0]);
 }
 
-/// Areas, volumes and pressures of a telescopic piston follow its position through a transition, and an uncertain first stage
-/// leaves the areas of the others as they are stated.
+/// Areas, volumes and pressures of a telescopic piston follow its position through a transition,
+/// and an uncertain first stage leaves the areas of the others as they are stated.
 #[test]
 fn stages_are_those_of_the_position() {
     follows_the_rig_within(

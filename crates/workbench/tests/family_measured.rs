@@ -1,4 +1,5 @@
-//! Measured frequency responses: what is read is what was written, and every unsound row is named with its place.
+//! Measured frequency responses: what is read is what was written, and every unsound row is named
+//! with its place.
 
 #![allow(
     clippy::expect_used,
@@ -62,8 +63,8 @@ fn same(csv: impl Into<Vec<u8>>, with_load_motion: bool) {
     }
 }
 
-/// Every way to write a response gives it back to 1e-12: units, wrapped and unwrapped phases, comments, line ends, byte order
-/// mark, quotes and spaces.
+/// Every way to write a response gives it back to 1e-12: units, wrapped and unwrapped phases,
+/// comments, line ends, byte order mark, quotes and spaces.
 #[test]
 fn what_is_written_is_read() {
     let rows = |header: &str, row: &dyn Fn(f64, [Complex64; 2], f64) -> String| {

@@ -1,4 +1,5 @@
-//! The page on the feed-forward of the load's velocity: its equations against the linear model, its tables against the machine.
+//! The page on the feed-forward of the load's velocity: its equations against the linear model, its
+//! tables against the machine.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -83,7 +84,8 @@ fn what_is_left_grows_with_the_lag() {
     }
 }
 
-/// Re Z of the loop with feed-forward changes its sign at low frequency where (1 - a)(K_p + K_c/(A K_qU)) = tau K_i.
+/// Re Z of the loop with feed-forward changes its sign at low frequency where (1 - a)(K_p + K_c/(A
+/// K_qU)) = tau K_i.
 #[test]
 fn a_little_less_than_the_gain_is_passive() {
     for (line, proportional, integral, less_percent, filtered_percent) in
@@ -134,7 +136,8 @@ fn of_the_motion(line: &str, settings: &[String]) -> Metrics {
     metrics
 }
 
-/// The rows of the page's table whose head begins so: labels and numbers, and the labels of the columns.
+/// The rows of the page's table whose head begins so: labels and numbers, and the labels of the
+/// columns.
 fn table(head: &str) -> (Vec<String>, Vec<(String, Vec<f64>)>) {
     let cells = |line: &str| -> Vec<String> {
         line.trim_matches('|').split('|').map(|cell| cell.trim().to_string()).collect()

@@ -1,4 +1,5 @@
-//! The machine shaken by sines, against linear systems that it must agree with where motions are small.
+//! The machine shaken by sines, against linear systems that it must agree with where motions are
+//! small.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "the platform's functions are exact enough for a test")]
@@ -53,8 +54,8 @@ fn worst(points: &[ResponsePoint], of: impl Fn(&ResponsePoint) -> f64) -> f64 {
     points.iter().map(of).fold(0.0, f64::max)
 }
 
-/// Small sines: the machine is its own derivatives, these are the linearised two-pressure model, and the loop that the linear
-/// plant closes is that of the machine.
+/// Small sines: the machine is its own derivatives, these are the linearised two-pressure model,
+/// and the loop that the linear plant closes is that of the machine.
 #[test]
 fn small_sines_give_the_linear_plant() {
     let loaded = smooth(&[]);
@@ -88,7 +89,8 @@ fn the_amplitude_goes_to_zero_and_with_it_the_difference() {
     }
 }
 
-/// Waves in the lines, a late command and a sensor that lags: what is linearised has delays, and still is what small sines see.
+/// Waves in the lines, a late command and a sensor that lags: what is linearised has delays, and
+/// still is what small sines see.
 #[test]
 fn delays_are_part_of_what_is_linearised() {
     let line = "line={ hose = \"eaton_synflex_3130_08\", length = \"1.5 m\", model = \"transmission_line\" }";
@@ -100,11 +102,13 @@ fn delays_are_part_of_what_is_linearised() {
     for point in found.open_loop.points.iter().chain(&closed.points) {
         assert!(apart(point.machine, point.linearised_machine.unwrap()) < 2e-3, "{point:?}");
     }
-    // a lumped line is what the linear plant has: at 30 rad/s waves are far away, and delay and sensor are in both
+    // a lumped line is what the linear plant has: at 30 rad/s waves are far away, and delay and
+    // sensor are in both
     assert!(apart(closed.points[0].linearised_machine.unwrap(), closed.points[0].linear_plant) < 0.05);
 }
 
-/// The velocity of a load that yields, fed forward, closes a loop of its own: the linear loop has it, with lumped lines and with waves.
+/// The velocity of a load that yields, fed forward, closes a loop of its own: the linear loop has
+/// it, with lumped lines and with waves.
 #[test]
 fn a_load_velocity_that_is_fed_forward_is_in_the_linear_loop() {
     let sprung = "load={ model = \"spring_mass_damper\", mass = 100, stiffness = \"200 kN/m\", damping = \"500 N.s/m\" }";
@@ -125,7 +129,8 @@ fn a_load_velocity_that_is_fed_forward_is_in_the_linear_loop() {
     }
 }
 
-/// The same in samples: the fundamental of the force between them is that of the command with what is fed back within it.
+/// The same in samples: the fundamental of the force between them is that of the command with what
+/// is fed back within it.
 #[test]
 fn a_load_velocity_that_is_sampled_is_in_the_linear_loop() {
     let sprung = "load={ model = \"spring_mass_damper\", mass = 100, stiffness = \"200 kN/m\", damping = \"500 N.s/m\" }";
@@ -142,8 +147,8 @@ fn a_load_velocity_that_is_sampled_is_in_the_linear_loop() {
     }
 }
 
-/// A pump that gives little more than what leaks, an override of 40 bar and a load that the piston presses: the force sees the supply's
-/// pressure move, and the linear plant has it.
+/// A pump that gives little more than what leaks, an override of 40 bar and a load that the piston
+/// presses: the force sees the supply's pressure move, and the linear plant has it.
 #[test]
 fn a_supply_that_yields_is_in_the_linear_plant() {
     let pump = [
@@ -190,7 +195,8 @@ fn a_sampled_loop_is_that_of_the_linear_plant_behind_its_hold() {
     }
 }
 
-/// Waves under a sampled controller: the loop is that of the plant in motion, the images of its response folded onto one another.
+/// Waves under a sampled controller: the loop is that of the plant in motion, the images of its
+/// response folded onto one another.
 #[test]
 fn a_sampled_loop_around_waves_is_that_of_their_response() {
     let waves =
@@ -209,8 +215,9 @@ fn a_sampled_loop_around_waves_is_that_of_their_response() {
     }
 }
 
-/// Bristles hold the piston: below their break-away the machine is stiffer than any plant of viscous friction, and the sines see it.
-/// A spring of 1e7 N/m in addition to the load cell of 2e7 N/m leaves two thirds of the force.
+/// Bristles hold the piston: below their break-away the machine is stiffer than any plant of
+/// viscous friction, and the sines see it. A spring of 1e7 N/m in addition to the load cell of 2e7
+/// N/m leaves two thirds of the force.
 #[test]
 fn sines_below_break_away_see_the_bristles() {
     let found = shaken(&load(&SMOOTH[1..]), &[20.0], [1e-4, 1.0]);

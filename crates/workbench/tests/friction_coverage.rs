@@ -17,7 +17,8 @@ const SHAKES: [&str; 1] = [
     "bench.friction={ velocities = 8, run_time = \"0.2 s\", sample_time = \"2 ms\", shaken = { periods = 12 } }",
 ];
 
-/// Each 95 % interval of the steady curve covers the truth as often as a binomial distribution allows.
+/// Each 95 % interval of the steady curve covers the truth as often as a binomial distribution
+/// allows.
 #[test]
 fn intervals_of_the_steady_curve_cover_the_truth() {
     // ORIGIN: analytic, 40 trials at 95 %: 33 or more with a probability of 99.7 %
@@ -31,8 +32,8 @@ fn intervals_of_the_bristles_cover_the_truth() {
     check(12, &SHAKES, &[SLIDING, SHAKEN], 5..7, 9..=12);
 }
 
-/// The same of four hundred, by `cargo xtask ci soak`; and all coefficients from all recordings of the
-/// default bench at once.
+/// The same of four hundred, by `cargo xtask ci soak`; and all coefficients from all recordings of
+/// the default bench at once.
 #[test]
 #[ignore = "takes minutes"]
 fn soak_four_hundred_intervals_cover_the_truth() {
@@ -74,8 +75,8 @@ fn check(
             told.len(),
             100.0 * half / truth
         );
-        // noise may look like a force that is too quick, which leaves the stiffness open: one that is
-        // open counts as covered as often as an interval should
+        // noise may look like a force that is too quick, which leaves the stiffness open: one that
+        // is open counts as covered as often as an interval should
         let open = repetitions as usize - told.len();
         if open > repetitions as usize / 10 || !allowed.contains(&(covered + (19 * open + 10) / 20)) {
             wrong.push(*key);

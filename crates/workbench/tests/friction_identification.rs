@@ -36,8 +36,8 @@ const EXACT: [&str; 2] = ["bench.pressure_noise=0", "bench.converter_bits=0"];
 /// Eight velocities, and all else as the bench has it.
 const NOISY: &str = "bench.friction={ velocities = 8 }";
 
-/// The friction of that bench from all four recordings, and from those without the shaken piston: each
-/// identified once for all tests.
+/// The friction of that bench from all four recordings, and from those without the shaken piston:
+/// each identified once for all tests.
 fn from_all() -> &'static Answer {
     static ANSWER: LazyLock<Answer> = LazyLock::new(|| {
         identified(&recorded(&[NOISY]), &[SLIDING, PRESSED[0], PRESSED[1], SHAKEN]).unwrap()
@@ -94,8 +94,8 @@ fn the_steady_curve_comes_back_without_noise() {
     }
 }
 
-/// With noise and all three recordings, all but the damping of the bristles are determined, and their
-/// intervals hold the truth: three standard deviations here, as six are looked at.
+/// With noise and all three recordings, all but the damping of the bristles are determined, and
+/// their intervals hold the truth: three standard deviations here, as six are looked at.
 #[test]
 fn a_noisy_bench_tells_all_but_the_damper() {
     let found: Value = serde_json::from_str(&without_the_shaken().json).unwrap();
@@ -139,8 +139,8 @@ fn what_the_recordings_do_not_tell_is_open() {
     assert!(pressed["friction"]["bristle_stiffness_n_per_m"]["value"].is_f64(), "{pressed}");
 }
 
-/// A force that changes within a few rows is not known between them, and the stiffness is open rather
-/// than wrong.
+/// A force that changes within a few rows is not known between them, and the stiffness is open
+/// rather than wrong.
 #[test]
 fn a_quick_force_leaves_the_stiffness_open() {
     let found = found(&["bench.friction={ velocities = 6, releases = 2 }"], &[SLIDING, PRESSED[0]]);

@@ -33,11 +33,12 @@ fn parsed(source: &Memory, files: &[&str]) -> Value {
     serde_json::from_str(&answer.json).unwrap()
 }
 
-/// The information in the default run (1 um and 5 kPa of noise, 5000 rows in a second, a force of 40 N)
-/// leaves a standard deviation of 3.7 % of the damping, and of 0.7 % of the stiffness.
+/// The information in the default run (1 um and 5 kPa of noise, 5000 rows in a second, a force of
+/// 40 N) leaves a standard deviation of 3.7 % of the damping, and of 0.7 % of the stiffness.
 #[test]
 fn a_shaken_piston_tells_the_damping_of_its_bristles() {
-    // ORIGIN: analytic, by differences of the integrated equations: 1.96 times 3.7 %, and a margin of a third
+    // ORIGIN: analytic, by differences of the integrated equations: 1.96 times 3.7 %, and a margin
+    // of a third
     tells(&found(&["bench.friction={ velocities = 8 }"], &[SLIDING, SHAKEN]), 0.1);
 }
 
@@ -48,7 +49,8 @@ fn a_position_that_is_read_in_steps_tells_it_too() {
     tells(&found(&settings, &[SLIDING, SHAKEN]), 0.1);
 }
 
-/// With next to no noise the damping comes back but for what the steps of the integration leave out.
+/// With next to no noise the damping comes back but for what the steps of the integration leave
+/// out.
 #[test]
 fn the_damping_comes_back_with_next_to_no_noise() {
     let shaken = "shaken = { periods = 6 }";
@@ -110,8 +112,9 @@ fn integrated(rows: usize) -> Vec<[f64; 2]> {
     found
 }
 
-/// A table of a machine that moves the rod: times in s, positions in m and the forces on the piston in
-/// N, with noise of the position in um and of the force in N, of a stream of its own for each seed.
+/// A table of a machine that moves the rod: times in s, positions in m and the forces on the piston
+/// in N, with noise of the position in um and of the force in N, of a stream of its own for each
+/// seed.
 fn table(rows: &[[f64; 2]], noise: [f64; 2], seed: u64) -> String {
     let mut state = stream(seed, 0);
     let row = |(index, [position, force]): (usize, &[f64; 2])| {
@@ -122,7 +125,8 @@ fn table(rows: &[[f64; 2]], noise: [f64; 2], seed: u64) -> String {
     format!("time_s,position_um,force_n\n{}", rows.iter().enumerate().map(row).collect::<String>())
 }
 
-/// The sum of sines needs no common period, and begins in motion: the first 100 rows are not recorded.
+/// The sum of sines needs no common period, and begins in motion: the first 100 rows are not
+/// recorded.
 #[test]
 fn equations_of_another_hand_come_back() {
     let rows = integrated(4137);
@@ -133,8 +137,8 @@ fn equations_of_another_hand_come_back() {
     }
 }
 
-/// A load cell and its environment hold the rod of the whole machine, whose valve is shaken: chambers,
-/// hoses, spool and load cell take part.
+/// A load cell and its environment hold the rod of the whole machine, whose valve is shaken:
+/// chambers, hoses, spool and load cell take part.
 #[test]
 fn the_whole_machine_tells_the_damping_of_its_bristles() {
     let (before, _) = HOSE.split_once("[[scenario]]").unwrap();

@@ -1,4 +1,5 @@
-//! Heat and temperature of accumulators from the project's keys to plant, family, verdict, runs and output.
+//! Heat and temperature of accumulators from the project's keys to plant, family, verdict, runs and
+//! output.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -17,7 +18,8 @@ const LIMIT: &str =
     "specification=[{ kind = \"robust_stability\", limit = 1000, frequencies = [1, 10, 100] }]";
 const ATMOSPHERE: f64 = 101_325.0;
 
-/// What the plants are compared with: two pressures, one that is stated, a limited pump, a neck, and lines with waves.
+/// What the plants are compared with: two pressures, one that is stated, a limited pump, a neck,
+/// and lines with waves.
 const RIGS: [&[&str]; 6] = [
     &[],
     &["linear.hydraulic_stiffness=2e6"],
@@ -36,7 +38,8 @@ fn with_gas(own: &str) -> String {
     text
 }
 
-/// Gas that keeps its temperature is that of the exponent 1, in every form of the plant; at a time constant of seconds it is not.
+/// Gas that keeps its temperature is that of the exponent 1, in every form of the plant; at a time
+/// constant of seconds it is not.
 #[test]
 fn heat_without_delay_is_isothermal() {
     let [isothermal, quick, slow] =
@@ -68,7 +71,8 @@ fn the_family_is_the_rig_at_its_nominal() {
     }
 }
 
-/// Compliance at rest, that without time for heat, and where one becomes the other; the precharge at both temperatures.
+/// Compliance at rest, that without time for heat, and where one becomes the other; the precharge
+/// at both temperatures.
 #[test]
 fn check_derives_both_compliances_and_both_precharges() {
     let told = check(HEAT, &["line.b.accumulator.thermal_time_constant=0.6"]);
@@ -169,8 +173,8 @@ fn run_of(settings: &[&str]) -> ScenarioRun {
 /// A load that is moved, without a chamber falling below its precharge.
 const PRESSED: &str = "scenario=[{ name = \"pressed\", duration = \"0.4 s\", load_motion = { kind = \"smooth_step\", start = \"0.1 s\", duration = \"20 ms\", distance = \"-0.7 mm\" } }]";
 
-/// Gas without time for heat is as warm as its pressure says, behind a neck and without; at rest it has the pressure of its
-/// chamber and the temperature of its wall.
+/// Gas without time for heat is as warm as its pressure says, behind a neck and without; at rest it
+/// has the pressure of its chamber and the temperature of its wall.
 #[test]
 fn the_gas_of_a_run_is_adiabatic_where_it_has_no_time_for_heat() {
     let slow = ["line.accumulator.thermal_time_constant=1e9", "line.b.accumulator.thermal_time_constant=1e9"];

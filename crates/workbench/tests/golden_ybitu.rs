@@ -1,7 +1,8 @@
-//! The published rig: what `check`, `size` and `linearize` say of it, against what is printed and what was recomputed.
+//! The published rig: what `check`, `size` and `linearize` say of it, against what is printed and
+//! what was recomputed.
 //!
-//! Against the thesis the tolerance is one unit of its last printed digit, against recomputed numbers half the last
-//! digit that stands here.
+//! Against the thesis the tolerance is one unit of its last printed digit, against recomputed
+//! numbers half the last digit that stands here.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
@@ -122,8 +123,8 @@ fn table_6_2_with_the_example_s_constants() {
 
 #[test]
 fn table_6_2_as_printed() {
-    // ORIGIN: thesis Table 6.2. A flow gain of 5.625e-5 gives all eight numbers; the 5.62e-5 of the example misses two
-    // of them by one and two units (1.176e6 and 14.82).
+    // ORIGIN: thesis Table 6.2. A flow gain of 5.625e-5 gives all eight numbers; the 5.62e-5 of the
+    // example misses two of them by one and two units (1.176e6 and 14.82).
     for (gain, stiffness, length) in [
         ("0.01", (5.65e4, 0.01e4), (180.0, 1.0)),
         ("0.001", (5.76e5, 0.01e5), (14.84, 0.01)),
@@ -164,8 +165,9 @@ fn the_pole_of_the_gain_and_what_a_proportional_loop_reaches() {
 
 #[test]
 fn a_negative_length_means_that_no_hose_is_needed() {
-    // ORIGIN: recomputed by comparisons/recompute_rig.py: without a hose K_H is 3.3048496e6 (uniform) and 1.8367007e7
-    // (by_volume) at mid stroke; K_p = 1e-4 asks for 7.1288871e6, K_p = 3e-5 for 6.2324420e7.
+    // ORIGIN: recomputed by comparisons/recompute_rig.py: without a hose K_H is 3.3048496e6
+    // (uniform) and 1.8367007e7 (by_volume) at mid stroke; K_p = 1e-4 asks for 7.1288871e6,
+    // K_p = 3e-5 for 6.2324420e7.
     let size = size_for_gain(HOSE, &[], "1e-4");
     let uniform = candidate(&size, EATON, "uniform");
     near(number(uniform, "iterations.0.stiffness_n_per_m"), 7.1288871e6, 5e-8);
@@ -233,7 +235,8 @@ fn table_6_1() {
 
 #[test]
 fn table_6_1_as_printed() {
-    // ORIGIN: thesis Table 6.1. Its real pole of -2.963 wants K_c = 5.71e-13, its other two rows 5.7e-13 as well.
+    // ORIGIN: thesis Table 6.1. Its real pole of -2.963 wants K_c = 5.71e-13, its other two rows
+    // 5.7e-13 as well.
     for (stiffness, real, mechanical) in [
         ("1.5e7", (-2.963, 0.001), ((-11.6, 0.1), 2.93e3)),
         ("1.5e6", (-0.336, 0.001), ((-11.4, 0.1), 2.75e3)),
@@ -284,7 +287,8 @@ fn errors_of_the_decomposition() {
     let errors = section_6_2("1.5e7")["decomposition_error"].clone();
     let low = |path: &str| number(&errors, &format!("{path}below_1000_rad_per_s.magnitude_db"));
     let low_phase = |path: &str| number(&errors, &format!("{path}below_1000_rad_per_s.phase_deg"));
-    // ORIGIN: recomputed by comparisons/recompute_rig.py: below 1000 rad/s the largest is at 1000 rad/s
+    // ORIGIN: recomputed by comparisons/recompute_rig.py: below 1000 rad/s the largest is at 1000
+    // rad/s
     assert!(low("as_printed.") <= 1.1778353e-5 && low("as_printed.") > 1.0e-5);
     assert!(low_phase("as_printed.") <= 3.3948699e-3 && low_phase("as_printed.") > 3.2e-3);
     assert!(low("") <= 1.022429e-5 && low_phase("") <= 2.9816028e-5);

@@ -1,4 +1,5 @@
-//! A virtual impedance in the loop: its limits, its port, the load that yields to it, and the position loop that is the same.
+//! A virtual impedance in the loop: its limits, its port, the load that yields to it, and the
+//! position loop that is the same.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -89,7 +90,8 @@ fn the_port_tends_to_what_is_asked() {
     assert!(last < 1e-4, "{last}");
 }
 
-/// At low frequencies a spring that a lagging loop shows is active by -K_v tau; a damper of that size makes up for it.
+/// At low frequencies a spring that a lagging loop shows is active by -K_v tau; a damper of that
+/// size makes up for it.
 ///
 /// ```text
 /// G = K_p + K_i/s:   Re Z(0) = B_v - K_v (1/(K_i P(0)) + n tau_f)        n the order of the filter
@@ -138,7 +140,8 @@ fn what_is_shown_is_the_port() {
     assert!((port.final_force_n.unwrap() / -100.0 - 1.0).abs() < 1e-6);
 }
 
-/// With a spring of k on its ground, F_e = F_r/(1 + K_v/k) in the end; verdict and machine agree on what is stable.
+/// With a spring of k on its ground, F_e = F_r/(1 + K_v/k) in the end; verdict and machine agree on
+/// what is stable.
 #[test]
 fn a_load_that_yields_changes_the_loop() {
     let impedance = |stiffness: &str| format!("controller.impedance={{ stiffness = \"{stiffness}\" }}");
@@ -168,7 +171,8 @@ fn a_load_that_yields_changes_the_loop() {
     }
 }
 
-/// u = C_x (x_r - x), x_r = x_0 + (F_r - F_e)/(M_v s^2 + B_v s + K_v), x behind the filter: closed by hand, and as it is declared.
+/// u = C_x (x_r - x), x_r = x_0 + (F_r - F_e)/(M_v s^2 + B_v s + K_v), x behind the filter: closed
+/// by hand, and as it is declared.
 #[test]
 fn an_admittance_is_an_impedance() {
     let [spring, damper, filter] = [1e5, 2e3, 2e-3];
@@ -206,7 +210,8 @@ fn an_admittance_is_an_impedance() {
     }
 }
 
-/// With a load whose motion is prescribed every verdict but that of load_motion is the same; with one that yields it is not.
+/// With a load whose motion is prescribed every verdict but that of load_motion is the same; with
+/// one that yields it is not.
 #[test]
 fn the_verdict_speaks_of_the_loop_that_exists() {
     let margins = |settings: &[&str]| {
@@ -224,7 +229,8 @@ fn the_verdict_speaks_of_the_loop_that_exists() {
     assert!(without.iter().zip(&with).any(|(one, other)| (one - other).abs() > 0.1), "{without:?} {with:?}");
 }
 
-/// Active and passive compliance in one table: a pipe whose loop shows a spring and a damper, next to hose and pipe.
+/// Active and passive compliance in one table: a pipe whose loop shows a spring and a damper, next
+/// to hose and pipe.
 #[test]
 fn alternatives_state_what_is_asked_beside_what_is_shown() {
     let (head, _) = HOSE.split_once("[uncertainty]").unwrap();
@@ -328,7 +334,8 @@ filter_time = "5 ms"
     )
 }
 
-/// Of a load that yields, the proof is of the loop with its impedance, and the machine steps as this loop predicts.
+/// Of a load that yields, the proof is of the loop with its impedance, and the machine steps as
+/// this loop predicts.
 #[test]
 fn a_proof_and_a_trial_are_of_the_loop_with_it() {
     let text = yielding();
@@ -351,7 +358,8 @@ fn a_proof_and_a_trial_are_of_the_loop_with_it() {
     assert!((margin(&found) - margin(&without)).abs() > 0.1, "{} {}", margin(&found), margin(&without));
 }
 
-/// Report, linear models and derived quantities state it; what states the controller of a position is not designed.
+/// Report, linear models and derived quantities state it; what states the controller of a position
+/// is not designed.
 #[test]
 fn every_answer_speaks_of_it() {
     let position = "controller.impedance.form=admittance";

@@ -1,4 +1,5 @@
-//! The JSON objects that other programs read: their keys, their shapes, and what they do with numbers that do not exist.
+//! The JSON objects that other programs read: their keys, their shapes, and what they do with
+//! numbers that do not exist.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
@@ -200,7 +201,8 @@ fn check_says_where_a_stated_value_contradicts_the_derived_one() {
     ask::within(number(row, "declared.difference_percent"), expected, 1e-5);
 }
 
-/// (6.28) overshoots by 2.2 % where 1 % was wished; nine tenths of it never settle within 1 % of the reference.
+/// (6.28) overshoots by 2.2 % where 1 % was wished; nine tenths of it never settle within 1 % of
+/// the reference.
 #[test]
 fn check_holds_tracking_limits_against_their_wishes() {
     let wishes = |settings: &[&str]| json(HOSE, settings, &[], &Request::Check)["wishes"].clone();

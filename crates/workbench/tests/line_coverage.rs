@@ -136,7 +136,8 @@ pub(crate) fn record(run: &LineRun) -> LineRecord {
     }
 }
 
-/// The identifications of as many recordings of one line, by as many threads as there are processors.
+/// The identifications of as many recordings of one line, by as many threads as there are
+/// processors.
 fn study<T: Send>(repetitions: u32, of: impl Fn(u32) -> T + Sync) -> Vec<T> {
     let threads = std::thread::available_parallelism().map_or(1, |count| count.get() as u32);
     std::thread::scope(|scope| {

@@ -79,7 +79,8 @@ fn the_fragment_makes_the_project_record_the_same() {
         ["line.dynamic_stiffening=1", "line.model=\"creeping\"", "line.relaxation_time=\"5 ms\""];
     let answer = identified(HOSE, &known_before, &files).unwrap();
     let found = line(&answer);
-    // the wall lags behind the rise by theta = 0.1 s of 20 s: 0.5 % one way, as much the other way back
+    // the wall lags behind the rise by theta = 0.1 s of 20 s: 0.5 % one way, as much the other way
+    // back
     near(value(&found, "dynamic_stiffening"), 5.0, 1e-4);
     near(value(&found, "relaxation_time_s"), 20e-3, 1e-4);
     let fragment = answer.files.iter().find(|file| file.name == "line.toml").expect("a fragment");
@@ -190,7 +191,8 @@ fn air_shows_as_a_modulus_that_grows_with_the_pressure() {
     let truth = modulus(35e5);
     let [low, high] =
         [0, 1].map(|end| found["effective_bulk_modulus_pa"]["confidence_95"][end].as_f64().unwrap());
-    // ORIGIN: analytic, the modulus of oil with air in a pipe. The law is not a polynomial: half a percent at most away from three terms between 25 and 45 bar
+    // ORIGIN: analytic, the modulus of oil with air in a pipe. The law is not a polynomial: half a
+    // percent at most away from three terms between 25 and 45 bar
     assert!(0.995 * low < truth && truth < 1.005 * high, "{low} {truth} {high}");
     let slope = (modulus(36e5) - modulus(34e5)) / 2e5;
     near(value(&found, "modulus_slope"), slope, 0.1);

@@ -1,4 +1,5 @@
-//! `check` and `linearize` look at one rig: they agree with each other, with closed forms, and with what is set.
+//! `check` and `linearize` look at one rig: they agree with each other, with closed forms, and with
+//! what is set.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
@@ -30,7 +31,8 @@ fn stiffness(x: f64, lengths: [f64; 2], uniform: bool) -> f64 {
     let section = quarter * 0.0127_f64.powi(2);
     let effective = 1.0 / (1.0 / 1.45e9 + 2.236e-12 / (5.0 * (section + 1.56e-5)));
     let chamber = if uniform { effective } else { 1.45e9 };
-    // by volume a hose gives what its sheet says, and holds the oil of its bore at half the supply pressure
+    // by volume a hose gives what its sheet says, and holds the oil of its bore at half the supply
+    // pressure
     let held = section + 1.56e-5 - 2.236e-12 * 35e5;
     let volumes = [areas[0] * x + 20e-6, areas[1] * (0.5 - x) + 5e-6];
     (0..2)
@@ -162,9 +164,9 @@ fn a_band_that_is_not_passive_has_a_negative_real_part_inside_and_none_outside()
 
 #[test]
 fn a_proportional_loop_is_passive_up_to_the_gain_that_friction_allows() {
-    // ORIGIN: analytic. With a spool that follows at once and C = A^2/K_H, a = A K_qU K_p,
-    // Re 1/Z has the sign of (K_c + a)(A^2 + f K_c) + w^2 C (f C - a M): never negative for a <= f C/M, and negative
-    // above w_0^2 = (K_c + a)(A^2 + f K_c)/(C (a M - f C)) otherwise.
+    // ORIGIN: analytic. With a spool that follows at once and C = A^2/K_H, a = A K_qU K_p, Re 1/Z
+    // has the sign of (K_c + a)(A^2 + f K_c) + w^2 C (f C - a M): never negative for a <= f C/M,
+    // and negative above w_0^2 = (K_c + a)(A^2 + f K_c)/(C (a M - f C)) otherwise.
     let area = std::f64::consts::FRAC_PI_4 * (0.05_f64.powi(2) - 0.022_f64.powi(2));
     let (stiffness, mass, friction, flow_gain, leak) = (2.24e6, 13.1, 100.0, 5.4e-5, 6.42e-13);
     let compliance = area * area / stiffness;
@@ -201,8 +203,8 @@ fn one_pressure_is_enough_in_the_middle_of_a_symmetric_rig() {
     let off = error(&[even[0], even[1], "operating_point.position=\"0.1 m\""]);
     let further = error(&[even[0], even[1], "operating_point.position=\"0 m\""]);
     assert!(magnitude < off.0 && off.0 < further.0 && phase < off.1 && off.1 < further.1);
-    // ORIGIN: recomputed by comparisons/recompute_rig.py, with K_qU = 5.62e-5 for 5.61e-5: 0.70376742 dB and 2.3205379
-    // degrees at 0.1 m, 2.1157941 dB and 6.9610792 degrees at the end
+    // ORIGIN: recomputed by comparisons/recompute_rig.py, with K_qU = 5.62e-5 for 5.61e-5:
+    // 0.70376742 dB and 2.3205379 degrees at 0.1 m, 2.1157941 dB and 6.9610792 degrees at the end
     near(off.0, 0.7038, 2e-2);
     near(off.1, 2.3205, 2e-2);
     near(further.0, 2.1158, 2e-2);
@@ -211,8 +213,8 @@ fn one_pressure_is_enough_in_the_middle_of_a_symmetric_rig() {
 
 #[test]
 fn errors_of_the_decomposition_over_the_published_family() {
-    // ORIGIN: recomputed by comparisons/recompute_rig.py: corrected 0.21775727 dB and 2.6538327 degrees, printed
-    // 11.017428 dB and 36.230586 degrees, over the corners of Table 6.3
+    // ORIGIN: recomputed by comparisons/recompute_rig.py: corrected 0.21775727 dB and 2.6538327
+    // degrees, printed 11.017428 dB and 36.230586 degrees, over the corners of Table 6.3
     let mut worst = [0.0_f64; 4];
     for stiffness in ["2.24e6", "4.11e6"] {
         for friction in ["100", "3e4"] {

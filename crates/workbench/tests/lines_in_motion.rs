@@ -1,4 +1,5 @@
-//! Models of lines in motion, chosen in a project: what they tend to, what they are refused with, and what a campaign varies.
+//! Models of lines in motion, chosen in a project: what they tend to, what they are refused with,
+//! and what a campaign varies.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -12,7 +13,8 @@ use serde_json::Value;
 
 const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");
 
-/// Half the published gain, whose margin leaves no room for waves; half a second of motion. The volumes of line and chamber apart.
+/// Half the published gain, whose margin leaves no room for waves; half a second of motion. The
+/// volumes of line and chamber apart.
 const SHORT: [&str; 7] = [
     "line.compliance=by_volume",
     "controller.numerator=0.0005*s + 0.004",
@@ -52,8 +54,8 @@ fn largest(one: &[f64], other: &[f64]) -> f64 {
     one.iter().zip(other).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max)
 }
 
-/// More segments come nearer to each other by the square of their length, and to the line with exact delay as far as the fit of its
-/// attenuation goes.
+/// More segments come nearer to each other by the square of their length, and to the line with
+/// exact delay as far as the fit of its attenuation goes.
 #[test]
 fn segments_tend_to_the_transmission_line() {
     let waves = force(&["line.model=transmission_line", "line.end_share=0.001"]);
@@ -102,7 +104,8 @@ fn the_most_segments_there_may_be() {
     }
 }
 
-/// What is left out is what the guide says: 8 segments, friction that depends on frequency, a hundredth at each end.
+/// What is left out is what the guide says: 8 segments, friction that depends on frequency, a
+/// hundredth at each end.
 #[test]
 fn absent_keys_are_the_defaults() {
     let segments = force(&["line.model=segments"]);
@@ -117,7 +120,8 @@ fn absent_keys_are_the_defaults() {
     }
 }
 
-/// A wall that creeps at once is as soft as the catalogue says, one that never does as stiff as was measured in motion; and so in segments.
+/// A wall that creeps at once is as soft as the catalogue says, one that never does as stiff as was
+/// measured in motion; and so in segments.
 #[test]
 fn a_wall_that_creeps_lies_between_its_moduli() {
     for model in ["creeping", "segments"] {
@@ -141,7 +145,8 @@ fn a_wall_that_creeps_lies_between_its_moduli() {
     }
 }
 
-/// The wall that is assumed, written out, is the same wall; what is not stated follows from the catalogue's expansion.
+/// The wall that is assumed, written out, is the same wall; what is not stated follows from the
+/// catalogue's expansion.
 #[test]
 fn the_wall_of_two_waves_is_assumed_or_stated() {
     let assumed = force(&["line.model=two_wave"]);
@@ -156,8 +161,8 @@ fn the_wall_of_two_waves_is_assumed_or_stated() {
     assert!(written < 1e-3, "{written} N");
     let heavy = largest(&assumed, &of(&["line.wall.mass_per_length=1 kg/m"]));
     assert!(heavy > 0.1, "{heavy} N");
-    // a wall without coupling has one wave, whose compliance is that of a lumped line; its own is as fast, for the steady
-    // resistance lags as the faster of both does
+    // a wall without coupling has one wave, whose compliance is that of a lumped line; its own is
+    // as fast, for the steady resistance lags as the faster of both does
     // ORIGIN: analytic, 1/(535.002^2 1e-9) kg/m
     let uncoupled = [
         "line.wall.coupling_compliance=1e-12",
@@ -225,7 +230,8 @@ fn what_does_not_fit_is_refused_at_its_key() {
     assert!(giving.to_string().contains("[line] model: fixed_end_modulus is"), "{giving}");
 }
 
-/// Relaxation times, walls and shares vary in a campaign as any number; how many states there are does not.
+/// Relaxation times, walls and shares vary in a campaign as any number; how many states there are
+/// does not.
 #[test]
 fn a_campaign_varies_what_is_no_count() {
     let vary = |path: &str, low: &str, high: &str| {
@@ -259,7 +265,8 @@ fn a_campaign_varies_what_is_no_count() {
     }
 }
 
-/// How a line moves is nothing to the linear model: not counted twice with its stiffness, and no coordinate of a family.
+/// How a line moves is nothing to the linear model: not counted twice with its stiffness, and no
+/// coordinate of a family.
 #[test]
 fn the_linear_model_knows_no_motion() {
     let linear = |settings: &[&str]| {

@@ -1,4 +1,5 @@
-//! A linkage from the project's keys to the family that follows the position, to the machine and to what is written.
+//! A linkage from the project's keys to the family that follows the position, to the machine and to
+//! what is written.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -31,7 +32,8 @@ fn difference(one: &PlantCoefficients<f64>, other: &PlantCoefficients<f64>) -> f
     FREQUENCIES.into_iter().map(at).fold(0.0, f64::max)
 }
 
-/// Everywhere in its box of positions and forces the family is the rig that declares them, lever arm and geometric stiffness included.
+/// Everywhere in its box of positions and forces the family is the rig that declares them, lever
+/// arm and geometric stiffness included.
 #[test]
 fn the_family_follows_the_position() {
     follows_the_position(KNEE);
@@ -48,7 +50,8 @@ fn the_family_follows_a_payload() {
     follows_the_position(&text);
 }
 
-/// With a progressive spring or a transmission on the rod, which takes its deflection from the position of the joint.
+/// With a progressive spring or a transmission on the rod, which takes its deflection from the
+/// position of the joint.
 #[test]
 fn the_family_follows_what_lies_in_series() {
     for series in SERIES {
@@ -150,8 +153,8 @@ fn a_weight_is_held_at_rest() {
     }
 }
 
-/// What `linearize` and the report say of the impedance about the joint, for a spring K in place of Z s: the torque F g' of a
-/// force F_0 - K (x - x_0) falls with the angle by r^2 (K + k_g).
+/// What `linearize` and the report say of the impedance about the joint, for a spring K in place of
+/// Z s: the torque F g' of a force F_0 - K (x - x_0) falls with the angle by r^2 (K + k_g).
 #[test]
 fn the_impedance_about_the_joint_is_told() {
     let project = project_of(KNEE, &[]);

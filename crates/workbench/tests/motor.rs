@@ -1,5 +1,5 @@
-//! A motor in place of the cylinder: its verdict is that of a cylinder on a lever, and nothing that is said of it is in newtons
-//! or millimetres.
+//! A motor in place of the cylinder: its verdict is that of a cylinder on a lever, and nothing that
+//! is said of it is in newtons or millimetres.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -124,7 +124,8 @@ fn the_verdict_is_that_of_the_cylinder_on_its_lever() {
     assert!((rise / turned - 1.0).abs() < 1e-4, "{rise} {turned}");
 }
 
-/// What leaks to the tank flows through a narrow line to get there, and the valve does not: without motion
+/// What leaks to the tank flows through a narrow line to get there, and the valve does not: without
+/// motion
 ///
 /// ```text
 /// T_e = D (K_qA/(K_cA + G_e (1 + K_cA R)) + K_qB/(K_cB + G_e (1 + K_cB R))) U_C,     R = 128 rho nu L/(pi d^4)
@@ -247,8 +248,8 @@ fn texts_of_the_user_stay() {
     assert!(page.contains("force of the piston"), "{page}");
 }
 
-/// The equations of `check` are those of a motor, and so are the symbols everywhere; of a cylinder they are found, so that
-/// the test would see them.
+/// The equations of `check` are those of a motor, and so are the symbols everywhere; of a cylinder
+/// they are found, so that the test would see them.
 #[test]
 fn equations_and_symbols_are_those_of_a_motor() {
     let equation = |name: &str| {

@@ -17,7 +17,8 @@ const NECKS: [&str; 2] =
 const SHORT: [&str; 2] =
     ["line.accumulator.neck_diameter=\"6 mm\"", "line.accumulator.neck_length=\"1e-9 mm\""];
 
-/// What the plants are compared with: two pressures, one that is stated, both with a limited pump, and lines with waves.
+/// What the plants are compared with: two pressures, one that is stated, both with a limited pump,
+/// and lines with waves.
 const RIGS: [&[&str]; 6] = [
     &[],
     &["linear.hydraulic_stiffness=2e6"],
@@ -27,7 +28,8 @@ const RIGS: [&[&str]; 6] = [
     &["line.model=transmission_line", "linear.hydraulic_stiffness=2e6"],
 ];
 
-/// A neck that becomes short has no effect, in every form of the plant; the one of an example is not short.
+/// A neck that becomes short has no effect, in every form of the plant; the one of an example is
+/// not short.
 #[test]
 fn a_short_neck_is_none() {
     let text = without_uncertainty(GAS);
@@ -66,7 +68,8 @@ fn check_derives_the_resonance_of_a_neck() {
     for (side, diameter, length) in [("a", 6e-3, 0.04), ("b", 4e-3, 0.02)] {
         let area = std::f64::consts::FRAC_PI_4 * diameter * diameter;
         let of_gas = derived(&told, &format!("line.{side}.accumulator.compliance"));
-        // ORIGIN: analytic, sqrt(A/(rho L C)) and 16 nu/(w d^2), with the oil of the neck in addition to the gas
+        // ORIGIN: analytic, sqrt(A/(rho L C)) and 16 nu/(w d^2), with the oil of the neck in
+        // addition to the gas
         let resonance = (area / (870.0 * length * (of_gas + area * length / 1.45e9))).sqrt();
         near(derived(&told, &format!("line.{side}.accumulator.neck_resonance")), resonance, 1e-9);
         let damping = 16.0 * 46e-6 / (resonance * diameter * diameter);
@@ -101,7 +104,8 @@ fn what_does_not_count_it_is_told() {
     }
 }
 
-/// The controller of the example stabilises every plant of its family with the gas at the chamber, and not with a neck before it.
+/// The controller of the example stabilises every plant of its family with the gas at the chamber,
+/// and not with a neck before it.
 #[test]
 fn a_verdict_sees_the_resonance() {
     let stable = |necks: &[&str]| {

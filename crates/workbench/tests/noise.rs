@@ -75,7 +75,8 @@ fn the_noise_is_white_and_has_the_stated_rms() {
     }
 }
 
-/// The same noise with and without a converter of the measurement: a whole number of steps, at most half a step away, uniformly.
+/// The same noise with and without a converter of the measurement: a whole number of steps, at most
+/// half a step away, uniformly.
 #[test]
 fn the_measurement_is_rounded_to_its_levels() {
     let converter = "], quantization = { measurement_bits = 16, measurement_range = [-1e4, 1e4] }";
@@ -118,7 +119,8 @@ fn a_filter_leaves_its_share_of_the_noise() {
         let (filtered, _) = seen(&filter, "force_sensor.noise=20 N");
         let lag = 1.0 / frequency;
         let share = (SAMPLE_TIME_S / (2.0 * lag + SAMPLE_TIME_S)).sqrt();
-        // neighbours that resemble each other by a = (2 tau - T)/(2 tau + T) say less of the rms, by (1 + a^2)/(1 - a^2)
+        // neighbours that resemble each other by a = (2 tau - T)/(2 tau + T) say less of the rms,
+        // by (1 + a^2)/(1 - a^2)
         let alike = (2.0 * lag - SAMPLE_TIME_S) / (2.0 * lag + SAMPLE_TIME_S);
         let fewer = (1.0 + alike * alike) / (1.0 - alike * alike);
         let allowed = 5.0 * (fewer / (2.0 * filtered.len() as f64)).sqrt();

@@ -1,5 +1,5 @@
-//! Uncertain numbers that move the operating point, and the operating points themselves: every plant of the family is that of the rig
-//! with these numbers declared.
+//! Uncertain numbers that move the operating point, and the operating points themselves: every
+//! plant of the family is that of the rig with these numbers declared.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -77,8 +77,8 @@ fn difference(one: &PlantCoefficients<f64>, other: &PlantCoefficients<f64>) -> f
     FREQUENCIES.into_iter().map(at).fold(0.0, f64::max)
 }
 
-/// At every member, every corner and at points drawn within the box: the recorded plant against the rig rebuilt from the project. The
-/// signs of the commands that were visited come back.
+/// At every member, every corner and at points drawn within the box: the recorded plant against the
+/// rig rebuilt from the project. The signs of the commands that were visited come back.
 #[track_caller]
 fn follows_the_rig(project: &Project) -> [usize; 2] {
     let family = members(project);
@@ -123,7 +123,8 @@ fn edges_and_pressures_move_the_null_point() {
     follows_the_rig(&loaded(&text(&ranges(&shape), "", "")));
 }
 
-/// The operating point over both signs of the command, with numbers that move it, without and with leakage across the piston.
+/// The operating point over both signs of the command, with numbers that move it, without and with
+/// leakage across the piston.
 #[test]
 fn operating_points_are_those_of_the_declared_rig() {
     let region = [
@@ -230,7 +231,8 @@ fn unequal_areas_and_a_wall_follow() {
     follows_the_rig(&loaded(&text));
 }
 
-/// A family that reaches where nothing balances is refused with the place and the reason, never made silently wrong.
+/// A family that reaches where nothing balances is refused with the place and the reason, never
+/// made silently wrong.
 #[test]
 fn points_without_balance_are_refused_by_name() {
     let refused = |lines: &[(&str, [f64; 3])]| {
@@ -260,7 +262,8 @@ fn range<'a>(ranges: &'a [VisitedRange], name: &str) -> &'a VisitedRange {
 const REGION: &str = "[family.operating_region]\nposition = [\"0 mm\", \"500 mm\"]\nload_force = [\"-4 kN\", \"6 kN\"]\n\
                       velocity = [\"-1 m/s\", \"1 m/s\"]\n";
 
-/// The region is a box of operating points cut to what the pump gives; the box of linear parameters encloses all of them.
+/// The region is a box of operating points cut to what the pump gives; the box of linear parameters
+/// encloses all of them.
 #[test]
 fn a_region_is_the_points_that_the_rig_visits() {
     let friction =
@@ -305,7 +308,8 @@ fn a_region_is_the_points_that_the_rig_visits() {
     }
 }
 
-/// With equal edges, the region of a pump of 19 L/min and two thirds of the supply's pressure on the piston is the box of Table 6.3.
+/// With equal edges, the region of a pump of 19 L/min and two thirds of the supply's pressure on
+/// the piston is the box of Table 6.3.
 #[test]
 fn the_box_of_the_thesis_is_that_of_an_operating_region() {
     let edges = "{ supply_to_a = 3e-7, a_to_tank = 3e-7, supply_to_b = 3e-7, b_to_tank = 3e-7 }";
@@ -329,7 +333,8 @@ fn the_box_of_the_thesis_is_that_of_an_operating_region() {
         let project = read(&text("", &region, ""), &settings).unwrap_or_else(|report| panic!("{report}"));
         visited_box(&Setup::new(&project).unwrap()).unwrap().unwrap()
     };
-    // K_v/U_n sqrt(p_S/2) without load; the same over sqrt(3) with two thirds of the supply's pressure on the piston
+    // K_v/U_n sqrt(p_S/2) without load; the same over sqrt(3) with two thirds of the supply's
+    // pressure on the piston
     let full = 3e-8 * 35e5_f64.sqrt();
     let speed = 10.0 * full / 3.0_f64.sqrt() / 1.583_362_697_4e-3;
     let rich = boxed("20 L/min", 0.999 * speed);

@@ -1,5 +1,5 @@
-//! The stiffness of the hose by other means: pipe, gas, spring and a valve between the chambers, against closed forms and rigs that
-//! declare what was found.
+//! The stiffness of the hose by other means: pipe, gas, spring and a valve between the chambers,
+//! against closed forms and rigs that declare what was found.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
@@ -24,7 +24,8 @@ fn number(value: &Value, path: &str) -> f64 {
     at.as_f64().unwrap_or_else(|| panic!("{path}: {value}"))
 }
 
-/// ORIGIN: analytic, a rigid pipe at both chambers of a symmetric cylinder, K_H = 2 A^2 beta/(V_line + A L/2) at mid stroke
+/// ORIGIN: analytic, a rigid pipe at both chambers of a symmetric cylinder, K_H = 2 A^2
+/// beta/(V_line + A L/2) at mid stroke
 #[test]
 fn a_pipe_is_long() {
     let told = found(&[]);
@@ -37,7 +38,8 @@ fn a_pipe_is_long() {
     near(number(&told, "chambers_n_per_m"), 2.0 * area * area * 1.45e9 / chamber, 1e-12);
 }
 
-/// Chambers and spring in series have the stiffness of the hose; the coils hold the stall force, as those of `[series.coil]`.
+/// Chambers and spring in series have the stiffness of the hose; the coils hold the stall force, as
+/// those of `[series.coil]`.
 #[test]
 fn a_spring_stands_in_series() {
     let told = found(&[]);
@@ -56,7 +58,8 @@ fn a_spring_stands_in_series() {
     near(number(&told, "spring.actuator_length_m"), 0.8 + length, 1e-12);
 }
 
-/// A rig that declares the gas has the stiffness that was asked where it is stiffest, and its gas is in use at all forces.
+/// A rig that declares the gas has the stiffness that was asked where it is stiffest, and its gas
+/// is in use at all forces.
 #[test]
 fn gas_has_that_stiffness_where_it_is_declared() {
     let told = found(&[]);
@@ -119,7 +122,8 @@ fn what_cannot_be_has_its_reason() {
     assert!(text.contains("of the hose by other means") && text.contains("spring on the rod"), "{text}");
 }
 
-/// An alternative that is sized takes the gas, spring, pipe or valve that `size` finds for the declared project.
+/// An alternative that is sized takes the gas, spring, pipe or valve that `size` finds for the
+/// declared project.
 #[test]
 fn an_alternative_takes_what_is_found() {
     let told = found(&[]);

@@ -19,7 +19,8 @@ fn of<'d>(derived: &'d [Value], name: &str) -> &'d Value {
     derived.iter().find(|one| one["name"] == name).unwrap_or_else(|| panic!("{name}"))
 }
 
-/// A hose, a pipe of steel with an accumulator, a valve between the chambers, a spring and a servovalve.
+/// A hose, a pipe of steel with an accumulator, a valve between the chambers, a spring and a
+/// servovalve.
 #[test]
 fn a_sum_is_that_of_its_parts() {
     let found = derived(COSTS, &[]);
@@ -38,7 +39,8 @@ fn a_sum_is_that_of_its_parts() {
     assert!((value("parts.mass") / (parts + oil) - 1.0).abs() < 1e-12);
 }
 
-/// A stated mass of a pipe counts in place of that of its wall; coils weigh what they are wound from.
+/// A stated mass of a pipe counts in place of that of its wall; coils weigh what they are wound
+/// from.
 #[test]
 fn masses_follow_from_walls_and_coils() {
     let value = |settings: &[&str], name: &str| of(&derived(COSTS, settings), name)["value"].as_f64();
@@ -79,7 +81,8 @@ fn parts_cost_and_weigh_what_they_state() {
     let columns = |index: usize| &judged().1["alternatives"][index]["columns"];
     let number = |index: usize, key: &str| columns(index)[key].as_f64().unwrap();
     let oil = |index: usize| number(index, "lines_volume_m3") * 870.0;
-    // ORIGIN: analytic, 2 (25 + 40 1.5) EUR and 2 (12) EUR; 2 (0.3 1.5) kg and 2 (0.5 0.35) kg, and the oil
+    // ORIGIN: analytic, 2 (25 + 40 1.5) EUR and 2 (12) EUR; 2 (0.3 1.5) kg and 2 (0.5 0.35) kg, and
+    // the oil
     for (index, price, mass) in [(0, 170.0, 0.9), (1, 24.0, 0.35)] {
         assert!((number(index, "parts_price") - price).abs() < 1e-9);
         assert!((number(index, "parts_mass_kg") - (mass + oil(index))).abs() < 1e-12);

@@ -1,4 +1,5 @@
-//! Proofs of project files: published examples, the machine's plant with load and leakage, a design, and the file of a certificate.
+//! Proofs of project files: published examples, the machine's plant with load and leakage, a
+//! design, and the file of a certificate.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -20,7 +21,8 @@ fn proven(project: &str, settings: &[&str]) -> (Value, String) {
     (serde_json::from_str(&answer.json).unwrap(), text.unwrap_or_default())
 }
 
-/// Whether a specification is proven, and that the enclosure of its worst excess over the limit is narrow and has this number in it, dB.
+/// Whether a specification is proven, and that the enclosure of its worst excess over the limit is
+/// narrow and has this number in it, dB.
 fn encloses(row: &Value, proven: bool, truth: f64) {
     assert_eq!(row["proven"], proven, "{row:#}");
     let [least, most] = [0, 1].map(|end| row["enclosure_db"][end].as_f64().unwrap());
@@ -38,7 +40,8 @@ macro_rules! example {
     };
 }
 
-/// Six published designs: the excess over the limit that dense grids find lies in the enclosure; the sixth is unstable.
+/// Six published designs: the excess over the limit that dense grids find lies in the enclosure;
+/// the sixth is unstable.
 // ORIGIN: recomputed by comparisons/recompute_audit.py
 #[test]
 fn published_examples_lie_in_their_enclosures() {
@@ -67,7 +70,8 @@ fn published_examples_lie_in_their_enclosures() {
     assert!(check_certificate(&certificate).unwrap().affirmative);
 }
 
-/// Dead time that is uncertain, parameters that move together by equal factors, a sensor with a delay of its own, a limit as a table.
+/// Dead time that is uncertain, parameters that move together by equal factors, a sensor with a
+/// delay of its own, a limit as a table.
 // ORIGIN: recomputed by comparisons/recompute_audit.py
 #[test]
 fn dead_time_and_correlated_parameters_are_covered() {
@@ -80,7 +84,8 @@ fn dead_time_and_correlated_parameters_are_covered() {
     assert!(check_certificate(&certificate).unwrap().affirmative);
 }
 
-/// The pressures in both chambers follow from that of the supply by iterations: their coefficients are no polynomials of it.
+/// The pressures in both chambers follow from that of the supply by iterations: their coefficients
+/// are no polynomials of it.
 #[test]
 fn an_uncertain_supply_is_in_the_proof() {
     let family = "uncertainty={ \"supply.pressure\" = { nominal = 7e6, minimum = 6.5e6, maximum = 7.5e6, points = 2 }, \"line.length\" = { nominal = 1.5, minimum = 1.4, maximum = 1.6, points = 2 } }";
@@ -100,7 +105,8 @@ fn an_uncertain_supply_is_in_the_proof() {
     }
 }
 
-/// The plant of the machine: a sprung load whose mass and stiffness are uncertain, and leakage across the piston.
+/// The plant of the machine: a sprung load whose mass and stiffness are uncertain, and leakage
+/// across the piston.
 #[test]
 fn loads_and_leakage_are_in_the_proof() {
     let load = "load={ model = \"spring_mass_damper\", mass = \"80 kg\", stiffness = \"2 kN/mm\", damping = \"500 N.s/m\" }";
@@ -117,7 +123,8 @@ fn loads_and_leakage_are_in_the_proof() {
     assert!(check_certificate(&certificate).unwrap().affirmative);
 }
 
-/// The design of the thesis' rig ends with a proof of every claim, in a certificate of less than 50 kB.
+/// The design of the thesis' rig ends with a proof of every claim, in a certificate of less than 50
+/// kB.
 #[test]
 fn the_design_of_the_rig_is_proven() {
     let designed = designed_hose();
@@ -153,7 +160,8 @@ fn a_certificate_is_read_as_it_was_written_and_refused_where_it_is_none() {
     assert!(matches!(check_certificate(&torn), Err(CertificateError::Meaning(_))));
 }
 
-/// What is false is rejected: certificates that were written to deceive a checker, the reason in the title of each.
+/// What is false is rejected: certificates that were written to deceive a checker, the reason in
+/// the title of each.
 #[test]
 fn certificates_that_deceive_are_rejected() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/false_certificates");
@@ -166,7 +174,8 @@ fn certificates_that_deceive_are_rejected() {
     }
 }
 
-/// The dead time of a sensor is in the loop and not in the plant: what is proven of |P/(1 + L)| agrees with what the search finds.
+/// The dead time of a sensor is in the loop and not in the plant: what is proven of |P/(1 + L)|
+/// agrees with what the search finds.
 #[test]
 fn the_delay_of_a_sensor_is_not_that_of_the_plant() {
     let project = |limit: f64, delay: f64, band: [f64; 2]| {

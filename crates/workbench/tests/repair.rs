@@ -33,8 +33,9 @@ fn worst_margin(audit: &Value) -> f64 {
     findings.iter().map(|finding| number(finding, "worst_margin_db")).fold(f64::INFINITY, f64::min)
 }
 
-/// Over the box of Table 6.3 and with waves in the rig itself, order 4 does not do: the limits have to give, and the controller for wider
-/// ones is one with which the machine with waves comes to rest.
+/// Over the box of Table 6.3 and with waves in the rig itself, order 4 does not do: the limits have
+/// to give, and the controller for wider ones is one with which the machine with waves comes to
+/// rest.
 #[test]
 fn what_cannot_be_had_with_waves_is_told() {
     let said = answer(HOSE, &[], &[], &REPAIRED);
@@ -45,7 +46,8 @@ fn what_cannot_be_had_with_waves_is_told() {
     assert_eq!((&object["status"], &object["machine"]["verdict"]), (&"met".into(), &"contradicts".into()));
     assert_eq!((&repair["status"], &repair["plant_before"]["stable"]), (&"infeasible".into(), &false.into()));
     assert_eq!(repair["taken_in"], "the same with waves in its lines");
-    // the controller that is printed comes as near as is printed, to the family and to the plant with waves
+    // the controller that is printed comes as near as is printed, to the family and to the plant
+    // with waves
     let relaxation = number(repair, "relaxation_db");
     assert!(relaxation > 0.01, "{relaxation} dB");
     let both = [&repair["nearest"]["verification"], &repair["plant_after"]];
@@ -72,7 +74,8 @@ fn what_cannot_be_had_with_waves_is_told() {
     }
 }
 
-/// The hose with limits so much wider that a controller of order 4 serves waves too; at the corners of its box and in between.
+/// The hose with limits so much wider that a controller of order 4 serves waves too; at the corners
+/// of its box and in between.
 fn wider() -> String {
     let changes = [
         ("\nlimit = 1.3\n", "\nlimit = 1.36\n"),
@@ -104,7 +107,8 @@ fn a_design_is_repaired_where_it_can_be() {
     // the first design is printed with it
     assert_eq!(repair["before"]["controller"], first["controller"]);
     assert!(said.text.contains("before the repair"), "{}", said.text);
-    // what it does with waves in every plant is what the audit of the same project says that declares them
+    // what it does with waves in every plant is what the audit of the same project says that
+    // declares them
     let written = file(&said, DESIGNED_PROJECT).unwrap();
     let declared = json(
         written,
@@ -118,7 +122,8 @@ fn a_design_is_repaired_where_it_can_be() {
     assert_eq!(file(&said, NEAREST_PROJECT), None);
 }
 
-/// A command that reaches its limit at once is in no linear plant: nothing is taken in, and the answer says what to change.
+/// A command that reaches its limit at once is in no linear plant: nothing is taken in, and the
+/// answer says what to change.
 #[test]
 fn what_no_plant_explains_is_told() {
     let settings = [

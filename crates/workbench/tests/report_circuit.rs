@@ -63,7 +63,8 @@ fn says(texts: &[String], expected: &[&str]) {
     }
 }
 
-/// The lever arm of a triangle is a b sin(phi)/l by the law of cosines, here at the position of rest.
+/// The lever arm of a triangle is a b sin(phi)/l by the law of cosines, here at the position of
+/// rest.
 #[test]
 fn a_lever_has_its_kind_and_its_arm() {
     // ORIGIN: analytic, of the lengths of the project file

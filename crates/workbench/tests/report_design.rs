@@ -1,4 +1,5 @@
-//! The chapter on the design: when there is one, and that it says of both controllers what their audits found.
+//! The chapter on the design: when there is one, and that it says of both controllers what their
+//! audits found.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -101,7 +102,8 @@ fn both_controllers_stand_side_by_side_as_their_audits_found_them() {
     assert_eq!(row(chapter, "crossover of the nominal loop")[1], "10.0 rad/s");
     assert_eq!(row(chapter, "phase margin of the nominal loop")[1], "90.0 deg");
     assert_eq!(row(chapter, "order of controller and prefilter")[1], "1 and 1");
-    // of the family the one with k = 20 tolerates least delay: pi/2 over its crossover of 20 rad/s. ORIGIN: analytic
+    // of the family the one with k = 20 tolerates least delay: pi/2 over its crossover of 20 rad/s.
+    // ORIGIN: analytic
     assert_eq!(row(chapter, "delay margin of the family")[1], "78.5 ms");
     // |1 + k/s| is nowhere below 1 and tends to it
     let distance: f64 = row(chapter, "modulus margin of the family")[1].parse().unwrap();
@@ -132,7 +134,8 @@ fn both_controllers_stand_side_by_side_as_their_audits_found_them() {
     assert_eq!((cost.matches(">k<").count(), cost.matches("<tr>").count()), (1, 6), "{cost}");
 }
 
-/// A sampled loop shows its law as it runs, and next to it the design that was made without samples: that of the same project when it is continuous.
+/// A sampled loop shows its law as it runs, and next to it the design that was made without
+/// samples: that of the same project when it is continuous.
 #[test]
 fn a_sampled_loop_is_shown_with_what_sampling_changes() {
     let settings = ["controller.sample_time=\"5 ms\"", "controller.delay=\"2 ms\""];

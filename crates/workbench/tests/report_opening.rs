@@ -1,4 +1,5 @@
-//! The page that decides: what it says is what the commands say, of both controllers, and what to do next follows from it.
+//! The page that decides: what it says is what the commands say, of both controllers, and what to
+//! do next follows from it.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -57,7 +58,8 @@ fn without(text: &str, first: &str, until: &str) -> String {
     format!("{before}{until}{}", rest.split_once(until).unwrap().1)
 }
 
-/// The hose with what was measured of its first scenario: what the machine does under the given controller, 30 N too large.
+/// The hose with what was measured of its first scenario: what the machine does under the given
+/// controller, 30 N too large.
 fn measured_hose() -> (Memory, f64) {
     let plain = Memory::default().with("rig.toml", HOSE);
     let run = runs(&plain, &load(&plain, &[])).remove(0);
@@ -87,7 +89,8 @@ fn is_all_proven(answer: &Value) -> bool {
     std::iter::once(&answer["proof"]["stable"]["proven"]).chain(each).all(|proven| proven == true)
 }
 
-/// One report of the hose against the commands that it repeats: verdicts of `verify` and `design`, numbers of `simulate`.
+/// One report of the hose against the commands that it repeats: verdicts of `verify` and `design`,
+/// numbers of `simulate`.
 #[test]
 fn both_controllers_stand_there_as_the_commands_tell_them() {
     let (source, nrmse) = measured_hose();
@@ -151,7 +154,8 @@ fn both_controllers_stand_there_as_the_commands_tell_them() {
     curves(&told);
 }
 
-/// Both controllers and what was measured are in the figures that compare, each controller in those of the inside.
+/// Both controllers and what was measured are in the figures that compare, each controller in those
+/// of the inside.
 fn curves(report: &Report) {
     let drawing = |name: &str| {
         let found = report.figures.iter().find(|figure| figure.name == name);

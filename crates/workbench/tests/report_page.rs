@@ -1,4 +1,5 @@
-//! The report: one page that needs nothing else, whatever the project is called, the same every time.
+//! The report: one page that needs nothing else, whatever the project is called, the same every
+//! time.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
@@ -19,15 +20,16 @@ fn ask_for_report(project: &str) -> Answer {
     answer(&without_design(project), &[], &[], &Request::Report { files: true, alternatives: false })
 }
 
-/// The project without its section [design]: a search takes its time, and most questions are about other chapters.
+/// The project without its section [design]: a search takes its time, and most questions are about
+/// other chapters.
 fn without_design(project: &str) -> String {
     let Some((start, rest)) = project.split_once("[design]") else { return project.to_string() };
     let end = rest.find("\n[").map_or("", |end| &rest[end..]);
     format!("{start}{end}")
 }
 
-/// The rig and its controller without specifications, design and scenarios: all that questions about the nominal
-/// loop need.
+/// The rig and its controller without specifications, design and scenarios: all that questions
+/// about the nominal loop need.
 fn nominal() -> String {
     let (rig, rest) = HOSE.split_once("[[specification]]").unwrap();
     let (_, rest) = rest.split_once("[controller]").unwrap();
@@ -192,7 +194,8 @@ fn every_chapter_is_there() {
     ] {
         assert!(headings.contains(words), "{words}: {headings}");
     }
-    // Tables: the poles of every model, the asymptotes, the candidates with their reasons, what was assumed.
+    // Tables: the poles of every model, the asymptotes, the candidates with their reasons, what was
+    // assumed.
     for words in [
         "6.12",
         "6.13",
@@ -233,7 +236,8 @@ fn what_is_demanded_is_said_with_what_it_means() {
     assert_eq!(chapter.matches("A stable loop").count(), 1, "s/(s + 15) guarantees no margin: {chapter}");
 }
 
-/// The lags 1/(s + 1) below and 0.1 above meet at sqrt(99) rad/s; towards zero they are 20 dB the wrong way round.
+/// The lags 1/(s + 1) below and 0.1 above meet at sqrt(99) rad/s; towards zero they are 20 dB the
+/// wrong way round.
 #[test]
 fn limits_that_cross_are_told() {
     let project = format!(
@@ -338,7 +342,8 @@ fn another_plant_is_checked_and_refused_elsewhere_with_the_reason() {
     }
 }
 
-/// What the machine does under the controller stands in its chapter with a figure, and among the first facts, its edge by its word.
+/// What the machine does under the controller stands in its chapter with a figure, and among the
+/// first facts, its edge by its word.
 #[test]
 fn controllers_are_shown_on_the_machine() {
     // what `design` finds for the hose with lumped lines
@@ -409,7 +414,8 @@ fn a_project_without_sizing_or_controller_has_the_other_chapters() {
 #[test]
 fn the_summary_is_what_the_commands_say() {
     let answer = hose();
-    // ORIGIN: recomputed by comparisons/recompute_rig.py: 2232961.6 and 4108630.5 N/m, 2.7330293e-4 V/N at 1.5 m
+    // ORIGIN: recomputed by comparisons/recompute_rig.py: 2232961.6 and 4108630.5 N/m, 2.7330293e-4
+    // V/N at 1.5 m
     for words in [
         "2.23 to 4.11 MN/m",
         "1.50 m a line at K_p = 2.73e-4 V/N",
@@ -431,7 +437,8 @@ fn only_models_of_the_same_parameters_are_drawn_against_each_other() {
         assert!(reduction.contains(name), "{name}");
     }
     assert!(!reduction.contains("(6.12)") && !reduction.contains("(6.13)"));
-    // Derived K_H of the hose at mid stroke is softer than the value that holds: the table names both fifth orders.
+    // Derived K_H of the hose at mid stroke is softer than the value that holds: the table names
+    // both fifth orders.
     let text = answer(HOSE, &[], &[], &Request::Linearize { sweep: None }).text;
     for row in
         ["two-pressure, derived parameters", "fifth order, derived parameters", "6.7 instead of two-pressure"]

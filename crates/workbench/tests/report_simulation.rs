@@ -1,4 +1,5 @@
-//! The chapters of the report that the nonlinear machine is driven for: scenarios, sensitivity, campaign.
+//! The chapters of the report that the nonlinear machine is driven for: scenarios, sensitivity,
+//! campaign.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -41,7 +42,8 @@ fn row(chapter: &str, first: &str) -> Vec<String> {
     cells.map(|cell| cell.trim_end_matches("</td>").to_string()).collect()
 }
 
-/// Every step of a reference has a row of its own, published numbers stand below theirs, and what was not published is said once.
+/// Every step of a reference has a row of its own, published numbers stand below theirs, and what
+/// was not published is said once.
 #[test]
 fn every_event_has_its_row_and_what_was_published() {
     let text = without(HOSE, "[[specification]]", "[controller] ");

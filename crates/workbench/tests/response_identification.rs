@@ -20,8 +20,8 @@ use serde_json::Value;
 
 const BENCHMARK: &str = include_str!("../../../examples/benchmark/closed_loop.toml");
 
-/// Viscous friction and four equal edges, so that the plant is the machine's derivative at null. Steps of the
-/// solver that are right to 1e-8.
+/// Viscous friction and four equal edges, so that the plant is the machine's derivative at null.
+/// Steps of the solver that are right to 1e-8.
 const SMOOTH: [&str; 5] = [
     "simulation.tolerance=1e-8",
     "cylinder.friction={ model = \"viscous\", viscous = \"100 N.s/m\" }",
@@ -103,8 +103,8 @@ fn points(member: &Value) -> Vec<(f64, Complex64, f64)> {
 }
 
 /// Two roads to one response: the nonlinear machine in time, and the linear plant of its project.
-/// Without noise they meet in the limit of small commands; with noise in the force, over 40 recordings,
-/// the discs hold the response without it as often as they state.
+/// Without noise they meet in the limit of small commands; with noise in the force, over 40
+/// recordings, the discs hold the response without it as often as they state.
 #[test]
 fn the_machine_shaken_by_a_multisine_shows_the_linear_plant() {
     let [loaded, gently] = [AMPLITUDE, AMPLITUDE / 2.0].map(rig);
@@ -145,19 +145,21 @@ fn the_machine_shaken_by_a_multisine_shows_the_linear_plant() {
     assert!(all >= 200 && (held as f64 - 0.95 * all as f64).abs() < 10.5, "{held} of {all}");
 }
 
-/// How far 2 G(a/2) - G(a) may be from the plant, as a share of it: what is left of the curvature, of the beginning,
-/// and of the solver's steps.
+/// How far 2 G(a/2) - G(a) may be from the plant, as a share of it: what is left of the curvature,
+/// of the beginning, and of the solver's steps.
 ///
-/// Below its hydraulic resonance the plant is K/(s + p), p by the flow-pressure coefficient. That grows by the share
-/// m = K_v |u|/(2 K_vin U_n) with the edge that opens, and falls by (lambda u/U_n)^2/2 with the leakage, so that
+/// Below its hydraulic resonance the plant is K/(s + p), p by the flow-pressure coefficient. That
+/// grows by the share m = K_v |u|/(2 K_vin U_n) with the edge that opens, and falls by (lambda
+/// u/U_n)^2/2 with the leakage, so that
 ///
 /// ```text
 /// G(a)/G - 1 = k_1 a + k_2 a^2 + ...        |k_2 a^2| <= 3 (m_rms^2 + (lambda u_rms/U_n)^2/2) |p/(i w + p)|
 /// ```
 ///
-/// three times the mean squares, because the pressure moves with the command (the cubic of a normal signal). The line
-/// through both amplitudes takes k_1 and leaves half of k_2 a^2. From rest, the pole has the forced response to forget:
-/// over n periods T its transform, over that of a line, is at most
+/// three times the mean squares, because the pressure moves with the command (the cubic of a normal
+/// signal). The line through both amplitudes takes k_1 and leaves half of k_2 a^2. From rest, the
+/// pole has the forced response to forget: over n periods T its transform, over that of a line, is
+/// at most
 ///
 /// ```text
 /// 2/(n T) exp(-p t_0) sum over lines of 1/|i w_j + p|

@@ -1,4 +1,5 @@
-//! A scenario that states no start begins with the closed loop at rest: nothing moves until something happens.
+//! A scenario that states no start begins with the closed loop at rest: nothing moves until
+//! something happens.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -37,7 +38,8 @@ fn run(text: &str, settings: &[String]) -> Result<ScenarioRun, SimulateError> {
         .map(|mut runs| runs.remove(0))
 }
 
-/// What no signal may move by in a second, as its name ends: a part in a hundred thousand of what a run moves it by.
+/// What no signal may move by in a second, as its name ends: a part in a hundred thousand of what a
+/// run moves it by.
 fn allowed(name: &str) -> f64 {
     let of_a_joint = [("_rad_per_s", 1e-6), ("_rad", 1e-8), ("_n_m", 1e-3)];
     let of_gas = [("_ratio", 1e-6), ("_w", 1e-6)];
@@ -133,7 +135,8 @@ const OTHERS: [&[&str]; 4] = [
     &["cylinder.end_stops={ stiffness = \"100 MN/m\", relative_damping = \"0.5 s/m\" }"],
 ];
 
-/// Lines, supplies, loads, sensors, controllers and friction of every kind, combined in a fixed pattern.
+/// Lines, supplies, loads, sensors, controllers and friction of every kind, combined in a fixed
+/// pattern.
 #[test]
 fn machines_of_all_components_rest() {
     for number in 0..36 {
@@ -152,7 +155,8 @@ fn machines_of_all_components_rest() {
     }
 }
 
-/// What a valve with memory, a pump that yields and a wall at some distance leave open stays where it is; noise aside.
+/// What a valve with memory, a pump that yields and a wall at some distance leave open stays where
+/// it is; noise aside.
 #[test]
 fn a_machine_with_everything_rests_against_its_wall() {
     let quiet = ["force_sensor.noise=0 N", "simulation.method=rosenbrock"];
@@ -169,7 +173,8 @@ fn a_machine_with_everything_rests_against_its_wall() {
     }
 }
 
-/// Without an integral part the loop rests with an error: it is the equilibrium of the closed loop that it begins in.
+/// Without an integral part the loop rests with an error: it is the equilibrium of the closed loop
+/// that it begins in.
 ///
 /// ```text
 /// u = k (r - F)

@@ -51,7 +51,8 @@ fn last(values: Vec<f64>) -> f64 {
 }
 
 // ORIGIN: analytic, the sum of the parts
-/// The parts add up: steps hold until the next, all else is added from its start on and holds what it ends with.
+/// The parts add up: steps hold until the next, all else is added from its start on and holds what
+/// it ends with.
 #[test]
 fn a_reference_is_the_sum_of_its_parts() {
     let scenario = format!(
@@ -133,7 +134,8 @@ fn a_recorded_reference_is_followed_like_what_was_recorded() {
     let file = of("{ kind = \"file\", start = \"0.1 s\", file = \"ramp.csv\" }");
     let forces = ramp.record.signal("force_n").into_iter().zip(file.record.signal("force_n"));
     let apart = forces.map(|(one, other)| (one - other).abs()).fold(0.0, f64::max);
-    // ORIGIN: analytic, the cubic bends where the ramp ends, by at most 4/27 of the 50 N that the last interval rises
+    // ORIGIN: analytic, the cubic bends where the ramp ends, by at most 4/27 of the 50 N that the
+    // last interval rises
     assert!(apart < 50.0 * 4.0 / 27.0, "{apart}");
     let end = |run: &ScenarioRun| last(run.record.signal("force_n"));
     assert!((end(&ramp) - end(&file)).abs() < 1.0, "{} {}", end(&ramp), end(&file));
@@ -149,7 +151,8 @@ fn a_recorded_reference_is_followed_like_what_was_recorded() {
 }
 
 // ORIGIN: analytic, the command of the one run is that of the other
-/// The command of a closed loop, played back to the machine alone, gives the force of the closed loop.
+/// The command of a closed loop, played back to the machine alone, gives the force of the closed
+/// loop.
 #[test]
 fn a_command_played_back_gives_the_force_it_was_recorded_with() {
     let closed = run(&format!(
@@ -178,7 +181,8 @@ fn a_command_played_back_gives_the_force_it_was_recorded_with() {
     assert!(found >= largest && found < 1.001 * largest, "{found} {largest}");
 }
 
-/// Neither the limit of a controller nor its samples act on a stated command, and the answer says so.
+/// Neither the limit of a controller nor its samples act on a stated command, and the answer says
+/// so.
 #[test]
 fn an_open_loop_does_not_know_its_controller() {
     let scenario =
@@ -264,7 +268,8 @@ fn continued(first: &str, second: &str, change: impl Fn(String) -> String) -> [S
     [run, run_with(&change(rig(second)), &source)]
 }
 
-/// Two seconds at once, and the second half gone on with: the same within what the tolerance leaves.
+/// Two seconds at once, and the second half gone on with: the same within what the tolerance
+/// leaves.
 fn halves_are_the_whole(change: impl Fn(String) -> String + Copy, tolerance_n: f64) {
     let start = format!("output_step = \"1 ms\"\n{START}");
     let step = "reference = [{ at = \"0.1 s\", force = \"4 kN\" }, { at = \"0.55 s\", force = \"3 kN\" }]";
@@ -306,7 +311,8 @@ fn a_saved_state_goes_on_as_if_nothing_had_been() {
     halves_are_the_whole(tight, 0.02);
 }
 
-/// A setting that moves across the end of a run goes on from where it was, and is refused elsewhere.
+/// A setting that moves across the end of a run goes on from where it was, and is refused
+/// elsewhere.
 #[test]
 fn a_setting_goes_on_from_where_it_was() {
     for part in [
@@ -423,7 +429,8 @@ fn a_state_is_refused_where_it_does_not_fit_and_not_written_where_it_would_not_b
     assert_eq!(unsaved(&late), "a command is under way in the delay of the controller");
 }
 
-/// The expansion of a hose is known up to the pressure it is stated at: beyond, supply and chambers are reported with both numbers.
+/// The expansion of a hose is known up to the pressure it is stated at: beyond, supply and chambers
+/// are reported with both numbers.
 #[test]
 fn an_expansion_is_carried_on_beyond_its_pressure_with_a_warning() {
     let hose = include_str!("../../../examples/ybitu/hose.toml");

@@ -42,7 +42,8 @@ fn the_step_goes_around_the_sensor() {
     assert!((step.response[at] - limit[at]).abs() < 1e-3);
 }
 
-/// A sensor that lags destabilises: with P G = K/s and H = 1/(s + 1)^3 the loop lags by 180 degrees at w = 1/sqrt(3), where
+/// A sensor that lags destabilises: with P G = K/s and H = 1/(s + 1)^3 the loop lags by 180 degrees
+/// at w = 1/sqrt(3), where
 /// |L| = K sqrt(3) (sqrt(3)/2)^3 is one for K = 8/9.
 #[test]
 fn stability_is_that_of_the_loop_with_its_sensor() {

@@ -1,4 +1,5 @@
-//! A spring between force sensor and load, from the project's keys to verdict, machine, impedance and sizing.
+//! A spring between force sensor and load, from the project's keys to verdict, machine, impedance
+//! and sizing.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -27,7 +28,8 @@ fn linearized(project: &Project) -> Linearization {
     linearize(setup.rig().unwrap(), setup.controller.as_ref(), &setup.sensor).unwrap()
 }
 
-/// The nominal member of the recorded family is the rig, polynomial by polynomial, for every kind of element and load.
+/// The nominal member of the recorded family is the rig, polynomial by polynomial, for every kind
+/// of element and load.
 #[test]
 fn the_family_is_the_rig_at_its_nominal() {
     let travel =
@@ -59,7 +61,8 @@ fn the_family_is_the_rig_at_its_nominal() {
     }
 }
 
-/// Every number of the element may be uncertain and moves the family: one that did not would be refused.
+/// Every number of the element may be uncertain and moves the family: one that did not would be
+/// refused.
 #[test]
 fn its_numbers_may_be_uncertain() {
     let more = "\"series.mass\" = { nominal = \"2 kg\", minimum = \"1 kg\", maximum = \"3 kg\", points = 2 }\n\
@@ -77,7 +80,8 @@ fn its_numbers_may_be_uncertain() {
     assert_eq!(of_series.count(), 5);
 }
 
-/// Stiffness to infinity: verdict's plant, impedance and the reduced models are those of the rig without a spring.
+/// Stiffness to infinity: verdict's plant, impedance and the reduced models are those of the rig
+/// without a spring.
 #[test]
 fn a_rigid_spring_is_none() {
     let text = without_series();
@@ -129,8 +133,9 @@ fn the_spring_is_in_the_equivalent_stiffness_and_in_the_sizing() {
     assert!((problem.linear.sensor_stiffness / in_series - 1.0).abs() < 1e-12);
 }
 
-/// What the load meets at high frequencies is the spring and its damper, in open and closed loop; the impedance closes over what is
-/// measured, which is shown at single frequencies from the paths themselves.
+/// What the load meets at high frequencies is the spring and its damper, in open and closed loop;
+/// the impedance closes over what is measured, which is shown at single frequencies from the paths
+/// themselves.
 #[test]
 fn the_impedance_is_that_at_the_load() {
     use phea_hydraulics::plant::{LinearPlant, LinearSeries, SeriesOutput};
@@ -166,7 +171,8 @@ fn the_impedance_is_that_at_the_load() {
     }
 }
 
-/// Audit of the linear loop and the machine under the same controller: both stable, with the same overshoot of a small step.
+/// Audit of the linear loop and the machine under the same controller: both stable, with the same
+/// overshoot of a small step.
 #[test]
 fn the_machine_follows_its_linear_loop() {
     let viscous = "cylinder.friction={ model = \"viscous\", viscous = \"100 N.s/m\" }";
@@ -196,7 +202,8 @@ fn lines_in_motion_and_the_spring_go_together() {
     assert!((told / own - 1.0).norm_sqr() < 1e-18, "{told} {own}");
 }
 
-/// A progressive spring is reported before the verdict; what the reduced models leave out is reported with them.
+/// A progressive spring is reported before the verdict; what the reduced models leave out is
+/// reported with them.
 #[test]
 fn what_is_not_counted_is_told() {
     let spring =

@@ -1,4 +1,5 @@
-//! The load of a controlled machine shaken by small sines, its velocity fed forward late or in samples: the force is that of the linear loop.
+//! The load of a controlled machine shaken by small sines, its velocity fed forward late or in
+//! samples: the force is that of the linear loop.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "the platform's functions are exact enough for a test")]

@@ -1,4 +1,5 @@
-//! The load of a controlled machine with a virtual impedance, shaken by small sines: the force is that of the linear loop.
+//! The load of a controlled machine with a virtual impedance, shaken by small sines: the force is
+//! that of the linear loop.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "the platform's functions are exact enough for a test")]
@@ -33,7 +34,8 @@ fn of_loop(settings: &[&str], hertz: u32) -> Complex64 {
     force.load_motion + force.plant * command
 }
 
-/// Impedances change the force, one of them at least five times as much as they may disagree, and the linear loop says by how much.
+/// Impedances change the force, one of them at least five times as much as they may disagree, and
+/// the linear loop says by how much.
 fn check(settings: &[&str], hertz: &[u32]) {
     let mut largest = 0.0_f64;
     for impedance in IMPEDANCES {

@@ -1,4 +1,5 @@
-//! The load of a controlled machine, shaken by small sines, and the linear loop at the same frequency.
+//! The load of a controlled machine, shaken by small sines, and the linear loop at the same
+//! frequency.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "the platform's functions are exact enough for a test")]
@@ -17,7 +18,8 @@ use phea_workbench::simulate::simulate_project;
 use phea_workbench::source::Memory;
 
 const BENCHMARK: &str = include_str!("../../../examples/benchmark/closed_loop.toml");
-/// Viscous friction and four equal edges: nothing has a kink. The controller has nothing to do, which starts at rest.
+/// Viscous friction and four equal edges: nothing has a kink. The controller has nothing to do,
+/// which starts at rest.
 const SMOOTH: [&str; 6] = [
     "cylinder.friction={ model = \"viscous\", viscous = \"100 N.s/m\" }",
     "valve.flow_coefficients=[3e-7, 3e-7, 3e-7, 3e-7]",
@@ -43,7 +45,8 @@ pub(crate) fn loaded(settings: &[&str], more: &[String]) -> Project {
     project::read(&source, "rig.toml", &settings, &[]).unwrap_or_else(|report| panic!("{report}")).project
 }
 
-/// Force over motion of the load or its ground in N/m at this number of hertz, as the machine answers at the samples.
+/// Force over motion of the load or its ground in N/m at this number of hertz, as the machine
+/// answers at the samples.
 pub(crate) fn of_machine(settings: &[&str], hertz: u32) -> Complex64 {
     let frequency = TAU * f64::from(hertz);
     let amplitude = SPEED / frequency;

@@ -1,4 +1,5 @@
-//! Shaping by hand on project files: changes in order, elements that pass their point, and files of which nothing else changes.
+//! Shaping by hand on project files: changes in order, elements that pass their point, and files of
+//! which nothing else changes.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
@@ -79,8 +80,8 @@ fn changes_are_made_in_the_order_in_which_they_stand() {
     assert!((magnitude - 20.0 * (0.3 / 1.0025_f64.sqrt()).log10()).abs() < 1e-9, "{magnitude}");
 }
 
-/// Without a change a file stays as it is, whatever form its controller has; with one, only the lines of the controller differ, and the
-/// controller reads back as what was shown.
+/// Without a change a file stays as it is, whatever form its controller has; with one, only the
+/// lines of the controller differ, and the controller reads back as what was shown.
 #[test]
 fn everything_else_stays_byte_for_byte() {
     let lead = (Change::Add, "{ kind = \"lead\", zero_frequency = 5, pole_frequency = 50 }");
@@ -204,7 +205,8 @@ fn a_law_in_z_is_shaped_in_z() {
 
 const DEPLOYED: &str = r#"{ kind = "general", gain = 0.5, poles = [0.9], domain = "z" }"#;
 
-/// Each solved element, in a continuous and in a sampled loop, and in place of another element: the nominal loop passes the point.
+/// Each solved element, in a continuous and in a sampled loop, and in place of another element: the
+/// nominal loop passes the point.
 #[test]
 fn the_loop_passes_the_wanted_point() {
     let sampled = format!("{POLYNOMIALS}sample_time = \"2 ms\"\ndelay = \"3 ms\"\n");

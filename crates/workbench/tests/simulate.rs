@@ -91,7 +91,8 @@ fn sampled_with_a_continuous_prefilter_it_gives_that_of_the_sampled_loop() {
     }
 }
 
-/// Rows decide nothing: the same metrics to the last bit, whether there are a hundred thousand or ten.
+/// Rows decide nothing: the same metrics to the last bit, whether there are a hundred thousand or
+/// ten.
 #[test]
 fn metrics_do_not_depend_on_the_rows() {
     for more in
@@ -134,7 +135,8 @@ fn metrics_do_not_depend_on_how_long_it_goes_on() {
     }
 }
 
-/// A step at seventeen samples of 0.7 ms, which as numbers are not the decimal fraction, acts there as one at sixteen does.
+/// A step at seventeen samples of 0.7 ms, which as numbers are not the decimal fraction, acts there
+/// as one at sixteen does.
 #[test]
 fn a_step_at_a_sample_is_not_a_sample_late() {
     let of = |samples: u32| {
@@ -402,7 +404,8 @@ fn projects_stand_side_by_side() {
     assert!(overloads[0].contains("its capacity is 3 kN"), "{}", answer.text);
 }
 
-/// Peaks of the force deviation for a load that moves by 5 mm as a first-order lag, hose and pipe with the controller of each.
+/// Peaks of the force deviation for a load that moves by 5 mm as a first-order lag, hose and pipe
+/// with the controller of each.
 #[test]
 fn the_hose_lets_less_force_through_than_the_pipe() {
     let hose = ["line.volume=1.9e-4", "line.effective_bulk_modulus=2.609e8"];
@@ -430,7 +433,8 @@ fn the_hose_lets_less_force_through_than_the_pipe() {
     }
 }
 
-/// A measurement that comes late and a command that comes late are one delay in the loop: the load feels no difference.
+/// A measurement that comes late and a command that comes late are one delay in the loop: the load
+/// feels no difference.
 #[test]
 fn a_late_sensor_is_a_late_command() {
     let motion_of = |settings: &[&str]| {
@@ -455,8 +459,8 @@ fn a_late_sensor_is_a_late_command() {
 
 const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");
 
-/// Waves in the hose are faster than a loop of half the published gain: it sees little more of them than a lumped line has. (The
-/// published one rings for seconds, its margin used up.)
+/// Waves in the hose are faster than a loop of half the published gain: it sees little more of them
+/// than a lumped line has. (The published one rings for seconds, its margin used up.)
 #[test]
 fn waves_in_the_lines_change_little_for_the_loop() {
     let metrics_of = |model: &str| {

@@ -43,7 +43,8 @@ fn apart(one: &ScenarioRun, other: &ScenarioRun) -> f64 {
     one.iter().zip(&other).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max)
 }
 
-/// The run that is printed is the one without a check, and what is printed of it is the difference to a run at a tenth.
+/// The run that is printed is the one without a check, and what is printed of it is the difference
+/// to a run at a tenth.
 #[test]
 fn a_check_is_the_difference_of_two_runs() {
     let run_checked = checked(&[SHORT, "simulation.tolerance=1e-5"]);
@@ -110,8 +111,9 @@ fn an_answer_tells_the_check_where_it_was_asked_for() {
     assert!(unsure["check"]["part_of_peak"].as_f64().unwrap() > 1e-3 && text.contains(doubt), "{text}");
 }
 
-/// Without a check, too, it is reported where errors may have grown until they are visible: within the motion that lets the piston
-/// follow, at a frequency of the piston on the load cell, and not where nothing grows.
+/// Without a check, too, it is reported where errors may have grown until they are visible: within
+/// the motion that lets the piston follow, at a frequency of the piston on the load cell, and not
+/// where nothing grows.
 #[test]
 fn a_run_reports_where_errors_may_be_visible() {
     let ask = |settings: &[&str]| {

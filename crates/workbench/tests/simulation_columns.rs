@@ -26,7 +26,8 @@ fn apart(one: &[f64], other: &[f64]) -> (f64, f64) {
     (largest(&mut one.iter().zip(other).map(|(one, other)| one - other)), largest(&mut one.iter().copied()))
 }
 
-/// y = U - U_0 - z: without hysteresis the opening is the spool less the null bias, with it the spool leads or lags.
+/// y = U - U_0 - z: without hysteresis the opening is the spool less the null bias, with it the
+/// spool leads or lags.
 #[test]
 fn spool_and_opening_differ_by_bias_and_hysteresis() {
     let of = |settings: &[&str]| {
@@ -63,7 +64,8 @@ fn the_command_behind_the_delay_is_that_before_it_later() {
     assert_eq!(without.control_v, without.signal("command_v"));
 }
 
-/// u = K_p e + the integral part, of a law K_p + K_i/s; sampled by the bilinear rule, half a sample's integral goes with K_p.
+/// u = K_p e + the integral part, of a law K_p + K_i/s; sampled by the bilinear rule, half a
+/// sample's integral goes with K_p.
 #[test]
 fn proportional_and_integral_part_are_the_command() {
     for (sample_time_s, setting) in [(0.0, None), (1e-3, Some("controller.sample_time=1 ms"))] {
@@ -97,7 +99,8 @@ fn the_limit_is_all_between_the_unlimited_command_and_that_given_out() {
     }
 }
 
-/// H = 1 measures the force itself; 1/(tau s + 1) what its own equation makes of it, here by the trapezoid rule.
+/// H = 1 measures the force itself; 1/(tau s + 1) what its own equation makes of it, here by the
+/// trapezoid rule.
 #[test]
 fn the_measurement_is_the_force_behind_the_sensor() {
     let plain = record_of(&[]);
@@ -114,7 +117,8 @@ fn the_measurement_is_the_force_behind_the_sensor() {
     assert!(largest < 0.5 && apart(&force, &measured).0 > 20.0, "{largest} N");
 }
 
-/// A lumped line has one pressure, that of its chamber; segments have another at the valve while oil flows.
+/// A lumped line has one pressure, that of its chamber; segments have another at the valve while
+/// oil flows.
 #[test]
 fn pressures_at_both_ends_of_a_line() {
     let [port, chamber] = ["port_pressure_a_pa", "pressure_a_pa"].map(|name| record_of(&[]).signal(name));

@@ -1,5 +1,5 @@
-//! The simulated machine against models that it must agree with: its own linearisation, the static friction curve, and hose
-//! next to pipe as they were computed independently.
+//! The simulated machine against models that it must agree with: its own linearisation, the static
+//! friction curve, and hose next to pipe as they were computed independently.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "the platform's functions are exact enough for a test")]
@@ -60,8 +60,8 @@ enum Shaken {
     Load,
 }
 
-/// The force per command in N/V, or per load position in N/m, of the machine itself: a small sine until all that decays is gone,
-/// and then the fundamental of the force over whole periods.
+/// The force per command in N/V, or per load position in N/m, of the machine itself: a small sine
+/// until all that decays is gone, and then the fundamental of the force over whole periods.
 fn small_signal(rig: &Rig, shaken: &Shaken, amplitude: f64, frequency: f64) -> Complex64 {
     const ROWS_PER_PERIOD: f64 = 32.0;
     let machine = Machine::new(&rig.actuator, &MachineOptions::default()).unwrap();
@@ -111,7 +111,8 @@ fn small_signal(rig: &Rig, shaken: &Shaken, amplitude: f64, frequency: f64) -> C
 
 #[test]
 fn small_motions_are_those_of_the_linearised_rig() {
-    // Equal edges, or the flow gain at null would be one for each direction; out of the middle two pressures are needed.
+    // Equal edges, or the flow gain at null would be one for each direction; out of the middle two
+    // pressures are needed.
     let project = load(&[
         "cylinder.friction={ model = \"viscous\", viscous = \"100 N.s/m\" }",
         "valve.flow_coefficients=[3e-7, 3e-7, 3e-7, 3e-7]",
@@ -133,8 +134,9 @@ fn small_motions_are_those_of_the_linearised_rig() {
     }
 }
 
-/// A load that moves to and fro at 5 mm/s at most: bristles and the smoothed curve both give the static friction. So much viscous
-/// friction that the curve never falls, or the piston would vibrate on its sensor, and nothing would be slow.
+/// A load that moves to and fro at 5 mm/s at most: bristles and the smoothed curve both give the
+/// static friction. So much viscous friction that the curve never falls, or the piston would
+/// vibrate on its sensor, and nothing would be slow.
 #[test]
 fn at_slow_velocity_bristles_give_the_static_curve() {
     let slow = [
@@ -159,8 +161,9 @@ fn at_slow_velocity_bristles_give_the_static_curve() {
     }
 }
 
-/// Between hydraulic and measured force lie friction and acceleration: over the motion of the load their impulses are the change
-/// of the piston's momentum, and at rest friction alone is left, which the bristles still hold.
+/// Between hydraulic and measured force lie friction and acceleration: over the motion of the load
+/// their impulses are the change of the piston's momentum, and at rest friction alone is left,
+/// which the bristles still hold.
 #[test]
 fn friction_lies_between_hydraulic_and_measured_force() {
     const MOVING_MASS_KG: f64 = 13.1;
@@ -224,7 +227,8 @@ fn swings(run: &ScenarioRun) -> usize {
 
 #[test]
 fn a_hose_feels_load_steps_less_than_a_pipe() {
-    // ORIGIN: other tool, Runge-Kutta in fixed steps on the same equations, written independently: peaks in N
+    // ORIGIN: other tool, Runge-Kutta in fixed steps on the same equations, written independently:
+    // peaks in N
     let expected = [(0.02, 5813.0, 8901.0), (0.05, 2803.0, 4527.0), (0.1, 1604.0, 2546.0)];
     for (time_constant_s, of_hose, of_pipe) in expected {
         let (hose_run, hose) = disturbed(&HOSE, time_constant_s);
@@ -235,7 +239,8 @@ fn a_hose_feels_load_steps_less_than_a_pipe() {
         }
         let softening = pipe.disturbance_peak_n.unwrap() / hose.disturbance_peak_n.unwrap();
         assert!((1.5..=1.9).contains(&softening), "{softening}");
-        // Not what one might think: the hose's command works harder, and its force swings longer. Its gain is twice the pipe's.
+        // Not what one might think: the hose's command works harder, and its force swings longer.
+        // Its gain is twice the pipe's.
         assert!(hose.control_rms_v.unwrap() > 1.1 * pipe.control_rms_v.unwrap());
         assert!(swings(&hose_run) > swings(&pipe_run));
     }

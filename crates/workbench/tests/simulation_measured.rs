@@ -1,4 +1,5 @@
-//! Measured curves on simulated ones: what is made of a simulation's own table has an error that is known.
+//! Measured curves on simulated ones: what is made of a simulation's own table has an error that is
+//! known.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -33,7 +34,8 @@ fn run(measured: &str, content: &str) -> ScenarioRun {
 const MAPPED: &str = "[[scenario.measured]]\nfile = \"bench.csv\"\ntime_column = \"t\"\ntime_unit = \"ms\"\noffset = \"1 s\"\n\
                       signals = [{ signal = \"force_n\", column = \"F\", unit = \"kN\" }, { signal = \"pressure_a_pa\", unit = \"bar\" }]\n";
 
-/// Force 25 N too large, pressure as it is; in other units, from a second before the scenario's start to after its end, every 0.7 ms.
+/// Force 25 N too large, pressure as it is; in other units, from a second before the scenario's
+/// start to after its end, every 0.7 ms.
 #[test]
 fn what_is_off_by_a_constant_has_its_nrmse() {
     let plain = run("", "");

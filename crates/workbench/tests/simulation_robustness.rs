@@ -1,4 +1,5 @@
-//! Whole projects driven to where they hardly hold: right, or refused by name, never without end and never without a number.
+//! Whole projects driven to where they hardly hold: right, or refused by name, never without end
+//! and never without a number.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -72,13 +73,15 @@ fn a_valve_that_is_shut_for_ten_seconds() {
     let run = completed(&text, &shut);
     let pressure = run.record.signal("pressure_a_pa");
     let count = pressure.len();
-    // ORIGIN: analytic, thesis Table 5.1: p_A = p_S/(1 + (K_vin4/K_vin3)^2) where leakage in equals leakage out
+    // ORIGIN: analytic, thesis Table 5.1: p_A = p_S/(1 + (K_vin4/K_vin3)^2) where leakage in equals
+    // leakage out
     assert!((pressure[count - 1] / (70e5 / (1.0 + (2.2_f64 / 2.35) * (2.2 / 2.35))) - 1.0).abs() < 0.01);
     assert!((pressure[count - 1] / pressure[count * 9 / 10] - 1.0).abs() < 1e-3);
     assert!(run.work.steps < 2000 && run.occurrences.is_empty());
 }
 
-/// A pump that gives almost nothing: the required force is not reached, the command reaches its limit, and both are reported.
+/// A pump that gives almost nothing: the required force is not reached, the command reaches its
+/// limit, and both are reported.
 #[test]
 fn a_supply_that_is_lost() {
     let lost = ["supply.model=pump_limited", "supply.flow=0.001 L/min", "supply.volume=0.1 L"];
@@ -101,7 +104,8 @@ fn pressures_that_are_reversed() {
     assert!(refusal.contains("`tank_pressure` must be below `pressure`"), "{refusal}");
 }
 
-/// A load that takes the piston beyond its stroke: stopped where there are stops, reported where there are none.
+/// A load that takes the piston beyond its stroke: stopped where there are stops, reported where
+/// there are none.
 #[test]
 fn a_load_beyond_the_end_of_the_stroke() {
     for distance in ["252 mm", "-252 mm"] {
@@ -137,7 +141,8 @@ fn hoses_without_length() {
     }
 }
 
-/// Largest difference in N between the forces of a scenario by the implicit method and by the explicit one.
+/// Largest difference in N between the forces of a scenario by the implicit method and by the
+/// explicit one.
 #[track_caller]
 fn apart(text: &str, settings: &[&str]) -> f64 {
     let force = |more: &[&str]| {
@@ -155,7 +160,8 @@ fn apart(text: &str, settings: &[&str]) -> f64 {
     implicit.iter().zip(&explicit).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max)
 }
 
-/// A microsecond between samples is as good as none; a tenth of a second is far too long for this loop, and still ends.
+/// A microsecond between samples is as good as none; a tenth of a second is far too long for this
+/// loop, and still ends.
 #[test]
 fn samples_of_a_microsecond_and_of_a_tenth_of_a_second() {
     let early = ["scenario.0.reference=[{ at = 0.01, force = 4000 }]", "scenario.0.duration=0.05 s"];
@@ -173,7 +179,8 @@ fn samples_of_a_microsecond_and_of_a_tenth_of_a_second() {
     assert!(apart(BENCHMARK, &slowly) < 1e-5 * 4000.0);
 }
 
-/// 20 mm in 10 ms, there with every load and line: as the load says, and by an explicit method the same force.
+/// 20 mm in 10 ms, there with every load and line: as the load says, and by an explicit method the
+/// same force.
 #[test]
 fn twenty_millimetres_in_ten_milliseconds() {
     let torn = moved("20 mm", "10 ms");
@@ -210,7 +217,8 @@ fn twenty_millimetres_in_ten_milliseconds() {
     }
 }
 
-/// Where the last row falls short of the end, a scenario is whole all the same: its metrics are those of rows that reach it.
+/// Where the last row falls short of the end, a scenario is whole all the same: its metrics are
+/// those of rows that reach it.
 #[test]
 fn rows_that_do_not_divide_the_scenario() {
     let settling = |step: &str| -> Vec<f64> {
@@ -230,7 +238,8 @@ fn rows_that_do_not_divide_the_scenario() {
     }
 }
 
-/// A scenario whose table no disk could hold is refused at its key, with what is asked for and what there may be.
+/// A scenario whose table no disk could hold is refused at its key, with what is asked for and what
+/// there may be.
 #[test]
 fn more_rows_than_are_held() {
     for (setting, asked) in [

@@ -1,4 +1,5 @@
-//! The sizing procedure over hoses that do not exist: each has one thing wrong with it, and one has nothing.
+//! The sizing procedure over hoses that do not exist: each has one thing wrong with it, and one has
+//! nothing.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
@@ -119,7 +120,8 @@ fn what_is_accepted_has_nothing_against_it() {
 #[test]
 fn accepted_ones_come_first_and_shorter_ones_before_longer_ones() {
     for size in [size(HOSE, None, None), size(HOSE, Some("4e-4"), None), size(HOSE, Some("1.5e-4"), None)] {
-        // The example declares `uniform`: of accepted and of refused ones its own model comes first.
+        // The example declares `uniform`: of accepted and of refused ones its own model comes
+        // first.
         let order: Vec<(bool, bool, f64)> = size["candidates"]
             .as_array()
             .unwrap()
@@ -152,8 +154,8 @@ fn says(size: &Value, hose: &str, accepted: bool, words: &[&str]) {
 #[test]
 fn every_rejection_and_warning_names_its_numbers() {
     let size = size(HOSE, None, None);
-    // ORIGIN: recomputed by comparisons/recompute_rig.py: velocities 5.0772085 and 0.82260377 m/s, surge 1110705.4 Pa,
-    // and the gains at 1.5 m above; a quarter turn is pi/2 times the radius
+    // ORIGIN: recomputed by comparisons/recompute_rig.py: velocities 5.0772085 and 0.82260377 m/s,
+    // surge 1110705.4 Pa, and the gains at 1.5 m above; a quarter turn is pi/2 times the radius
     says(&size, "fictitious_too_fast", false, &["5.08 m/s", "4.6 m/s"]);
     says(&size, "fictitious_slow", true, &["0.823 m/s", "2.1 m/s"]);
     says(&size, "fictitious_weak", false, &["60.0 bar", "70.0 bar", "supply"]);

@@ -1,4 +1,5 @@
-//! What sizing must obey whatever the numbers: its branches agree, and more of a cause gives more of its effect.
+//! What sizing must obey whatever the numbers: its branches agree, and more of a cause gives more
+//! of its effect.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
@@ -42,8 +43,8 @@ fn the_length_found_for_a_gain_needs_that_gain() {
     }
 }
 
-/// Hoses that differ between the sides, at unequal rods: the rig that has both lengths has the stiffness
-/// that was asked for, and both lines have one compliance.
+/// Hoses that differ between the sides, at unequal rods: the rig that has both lengths has the
+/// stiffness that was asked for, and both lines have one compliance.
 #[test]
 fn unequal_lines_are_sized_each_for_its_side() {
     let text = HOSE.replace("rod_diameter = \"22 mm\"", "rod_diameters = [\"22 mm\", \"34 mm\"]");
@@ -108,7 +109,8 @@ fn a_sized_alternative_keeps_its_unequal_hoses() {
 
 #[test]
 fn the_search_ends_at_the_length_there_is() {
-    // The largest gain takes the longest hose that can be had: half the stock, or the longest acceptable line.
+    // The largest gain takes the longest hose that can be had: half the stock, or the longest
+    // acceptable line.
     for (settings, length) in [
         (&[][..], 1.5),
         (&["sizing.stock_length=\"1 m\""], 0.5),
@@ -126,7 +128,8 @@ fn the_search_ends_at_the_length_there_is() {
     }
 }
 
-/// Where the floor of the gain lies between two halvings must not matter while the answer lies above it.
+/// Where the floor of the gain lies between two halvings must not matter while the answer lies
+/// above it.
 #[test]
 fn the_floor_of_the_gain_does_not_hide_an_answer_above_it() {
     for floor in ["1e-4", "1.2e-4", "1.3e-4", "1.4e-4"] {
@@ -137,13 +140,15 @@ fn the_floor_of_the_gain_does_not_hide_an_answer_above_it() {
             assert_eq!(row["accepted"], true, "{floor}: {row}");
         }
     }
-    // ORIGIN: recomputed by comparisons/recompute_rig.py, 1.5 m by volume needs 1.427e-4 V/N: below this floor.
+    // ORIGIN: recomputed by comparisons/recompute_rig.py, 1.5 m by volume needs 1.427e-4 V/N: below
+    // this floor.
     let size = ask::size(HOSE, &["sizing.minimum_gain=1.5e-4"]);
     let rows = ask::candidates(&size, EATON, "by_volume");
     assert!(rows.iter().all(|row| row["accepted"] == false), "{rows:?}");
 }
 
-/// A hose is cut to whole increments, never longer than there is, and the gain is the one that the cut length needs.
+/// A hose is cut to whole increments, never longer than there is, and the gain is the one that the
+/// cut length needs.
 #[test]
 fn commercial_lengths_are_whole_increments() {
     for (increment, length) in [("0.4 m", 1.2), ("0.5 m", 1.5), ("0.7 m", 1.4)] {
@@ -292,8 +297,8 @@ fn the_smaller_of_pump_and_valve_sets_the_velocity() {
         number(candidate(&size, EATON, "uniform"), "oil_velocity_m_per_s")
     };
     let section = std::f64::consts::FRAC_PI_4 * 0.0127_f64.powi(2);
-    // ORIGIN: analytic, 20 L/min below and 60 L/min above the valve's rated 10 gpm = 37.854118 L/min; the smaller of the
-    // nominal flows counts, as in Ledezma (2019), section 6.4.1
+    // ORIGIN: analytic, 20 L/min below and 60 L/min above the valve's rated 10 gpm = 37.854118
+    // L/min; the smaller of the nominal flows counts, as in Ledezma (2019), section 6.4.1
     near(velocity("supply.flow=\"20 L/min\""), 0.02 / 60.0 / section, 1e-12);
     near(velocity("supply.flow=\"60 L/min\""), 3.785_411_8e-2 / 60.0 / section, 1e-8);
 }

@@ -58,7 +58,8 @@ fn every_kind_limits_its_closed_loop() {
     assert!((tracking - 20.0 * portable::log10(1.5)).abs() < 1e-12);
 }
 
-/// s/(s + 15) as a text, as polynomials and as a table that holds its values is the same limit where they meet.
+/// s/(s + 15) as a text, as polynomials and as a table that holds its values is the same limit
+/// where they meet.
 #[test]
 fn a_limit_is_the_same_however_it_is_written() {
     let exact = |w: f64| w / (w * w + 225.0).sqrt();
@@ -84,7 +85,8 @@ fn the_band_is_declared_or_the_span_of_the_frequencies() {
     assert_eq!(band("band = [1, 5]"), [1.0, 5.0]);
 }
 
-/// A loop that touches the limit has the margin: W = 1/(2 sin(50/2 degrees)); 1/(factor - 1); 1/distance - 1; 1/distance.
+/// A loop that touches the limit has the margin: W = 1/(2 sin(50/2 degrees)); 1/(factor - 1);
+/// 1/distance - 1; 1/distance.
 #[test]
 fn margins_become_limits() {
     let constant = |kind: &str, text: &str| limit(kind, text).magnitude(1.0).unwrap();
@@ -106,7 +108,8 @@ fn margins_become_limits() {
     assert!((delay.magnitude(250.0).unwrap() - 2.0).abs() < 1e-14);
 }
 
-/// The thesis' limits (6.28, 6.29) with their wishes do what the errata say; wished outright they are met.
+/// The thesis' limits (6.28, 6.29) with their wishes do what the errata say; wished outright they
+/// are met.
 #[test]
 fn wishes_in_time_are_checked() {
     let given = "[[specification]]\nkind = \"tracking\"\nfrequencies = [1]\n\

@@ -1,5 +1,5 @@
-//! A telescopic piston as an engineer meets it: what `check` derives, one controller for all its stages, the machine within a
-//! transition, and what is refused.
+//! A telescopic piston as an engineer meets it: what `check` derives, one controller for all its
+//! stages, the machine within a transition, and what is refused.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
@@ -21,12 +21,14 @@ fn check_derives_its_stages() {
     let told = check(TELESCOPIC, &[]);
     let first = std::f64::consts::FRAC_PI_4 * (0.05 * 0.05 - 0.022 * 0.022);
     near(derived(&told, "cylinder.stage_2.area_a"), 10e-4, 1e-12);
-    // ORIGIN: analytic, 300 mm of the first stage and 200 mm of the second: the transition is even about its middle
+    // ORIGIN: analytic, 300 mm of the first stage and 200 mm of the second: the transition is even
+    // about its middle
     near(derived(&told, "cylinder.swept_volume_a"), 0.3 * first + 0.2 * 10e-4, 1e-12);
     near(derived(&told, "cylinder.stall_force"), 70e5 * first, 1e-12);
     let softer = check(TELESCOPIC, &["operating_point.position=400 mm"]);
     let [stiff, soft] = [&told, &softer].map(|told| derived(told, "linear.hydraulic_stiffness"));
-    // ORIGIN: thesis (6.3), one modulus of 2.609e8 Pa and both lines of 0.19002 L: areas and volumes at 250 mm and at 400 mm
+    // ORIGIN: thesis (6.3), one modulus of 2.609e8 Pa and both lines of 0.19002 L: areas and
+    // volumes at 250 mm and at 400 mm
     let by_hand = |area: f64, from_a: f64, to_b: f64| {
         area * area * 2.609e8 * (1.0 / (0.19002e-3 + from_a) + 1.0 / (0.19002e-3 + to_b))
     };

@@ -1,5 +1,5 @@
-//! A hydraulic transmission as an engineer meets it: what `check` derives, the verdict of the example and its machine, cavitation,
-//! alternatives, and what is refused.
+//! A hydraulic transmission as an engineer meets it: what `check` derives, the verdict of the
+//! example and its machine, cavitation, alternatives, and what is refused.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
@@ -26,7 +26,8 @@ fn certain() -> String {
     lines.join("\n")
 }
 
-/// ORIGIN: analytic, a rigid pipe of 10 mm and 2 m, 0.157 L, with 20 mL at either end, pistons of 20 cm2 and the oil of the example
+/// ORIGIN: analytic, a rigid pipe of 10 mm and 2 m, 0.157 L, with 20 mL at either end, pistons of
+/// 20 cm2 and the oil of the example
 #[test]
 fn check_derives_its_oil() {
     let told = check(&certain(), &[PIPE]);
@@ -45,7 +46,8 @@ fn check_derives_its_oil() {
     near(derived(&told, "dynamics.equivalent_stiffness"), softened, 1e-12);
 }
 
-/// Its controller satisfies every specification, stability is proven, and the machine does as the linear loop says.
+/// Its controller satisfies every specification, stability is proven, and the machine does as the
+/// linear loop says.
 #[test]
 fn the_example_is_met_and_the_machine_agrees() {
     let said =
@@ -54,7 +56,8 @@ fn the_example_is_met_and_the_machine_agrees() {
     for run in said["machine"]["runs"].as_array().unwrap() {
         assert_eq!(run["agrees"], Value::from(true), "{run}");
     }
-    // two uncertain numbers and two segments: polynomials of a higher degree are not enclosed tightly enough
+    // two uncertain numbers and two segments: polynomials of a higher degree are not enclosed
+    // tightly enough
     let few = "uncertainty={ flow_gain = { nominal = 5.4e-5, minimum = 3.23e-5, maximum = 5.61e-5 }, \
                \"series.line.length\" = { nominal = 2, minimum = 1.9, maximum = 2.1 } }";
     let said = parsed(
@@ -90,7 +93,8 @@ fn small_steps_on_the_machine_are_those_of_the_linear_loop() {
     }
 }
 
-/// A pull of 2 kN on oil that is filled with 2 bar tears it off, which is an event of the run and a warning before it.
+/// A pull of 2 kN on oil that is filled with 2 bar tears it off, which is an event of the run and a
+/// warning before it.
 #[test]
 fn a_run_says_where_the_oil_tears_off() {
     let scenario = "scenario=[{ name = \"pull\", duration = \"1 s\", reference = [{ at = \"0.1 s\", force = \"-2 kN\" }] }]";

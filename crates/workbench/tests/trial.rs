@@ -34,7 +34,8 @@ fn overshoot(run: &Value, of: &str) -> f64 {
     run[of]["overshoot_percent"].as_f64().unwrap()
 }
 
-/// Small steps of the published loop: the nominal machine does what the linear loop does, friction, leakage and all.
+/// Small steps of the published loop: the nominal machine does what the linear loop does, friction,
+/// leakage and all.
 #[test]
 fn the_nominal_machine_is_the_linear_loop() {
     let (_, object, _) = on_machine(&[]);
@@ -51,7 +52,8 @@ fn the_nominal_machine_is_the_linear_loop() {
     assert_eq!(object["machine"]["not_driven"], Value::from(Vec::<Value>::new()));
 }
 
-/// With 1.5 m of hose a wave takes 2.8 ms: the loop has gain beyond the quarter wave, and what is met with lumped lines swings with waves.
+/// With 1.5 m of hose a wave takes 2.8 ms: the loop has gain beyond the quarter wave, and what is
+/// met with lumped lines swings with waves.
 #[test]
 fn a_met_verdict_that_waves_contradict_is_no() {
     let by_volume = ["line.compliance=by_volume"];

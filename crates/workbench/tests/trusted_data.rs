@@ -1,4 +1,5 @@
-//! Data as a sheet gives it: flows at their own pressures, leakage that is counted, names that may be used, and the cure of what is refused.
+//! Data as a sheet gives it: flows at their own pressures, leakage that is counted, names that may
+//! be used, and the cure of what is refused.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -23,11 +24,13 @@ fn the_tare_flow_counts_at_the_pressure_it_was_stated_at() {
     // ORIGIN: recomputed by comparisons/recompute_rig.py
     within(rated(HOSE), 1.906e-9, 0.5e-12);
     within(tare(HOSE), 7.55e-6, 1e-12);
-    // A flow of the project's own is that of its supply, whatever pressure the catalogue states its own at.
+    // A flow of the project's own is that of its supply, whatever pressure the catalogue states its
+    // own at.
     let own = without(&["tare_pressure"]);
     within(rated(&own), 1.906e-9, 0.5e-12);
     within(tare(&own), 7.55e-6, 1e-12);
-    // ORIGIN: recomputed by comparisons/recompute_rig.py: the catalogue's 0.26 gpm are stated at 3000 psi
+    // ORIGIN: recomputed by comparisons/recompute_rig.py: the catalogue's 0.26 gpm are stated at
+    // 3000 psi
     let catalogue = without(&["tare_pressure", "tare_flow"]);
     within(tare(&catalogue), 9.5425e-6, 0.5e-10);
     // ORIGIN: data sheet, (0.40 - 0.26) gpm over the root of twice 3000 psi

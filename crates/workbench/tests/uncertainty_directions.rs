@@ -1,5 +1,5 @@
-//! Numbers that are uncertain together: the family of an identified valve against draws from its covariance, and what a
-//! project file may say of directions.
+//! Numbers that are uncertain together: the family of an identified valve against draws from its
+//! covariance, and what a project file may say of directions.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
@@ -91,8 +91,9 @@ fn changes(region: &JointRegion) -> DMatrix<f64> {
     })
 }
 
-/// All nine directions are the covariance, turned: their changes times themselves are it again, and of draws from it 95 % lie
-/// within the family, whose box is smaller than that of independent intervals.
+/// All nine directions are the covariance, turned: their changes times themselves are it again, and
+/// of draws from it 95 % lie within the family, whose box is smaller than that of independent
+/// intervals.
 #[test]
 fn the_family_has_ninety_five_of_a_hundred_valves_that_the_recordings_allow() {
     let found = identification();
@@ -108,7 +109,8 @@ fn the_family_has_ninety_five_of_a_hundred_valves_that_the_recordings_allow() {
             assert!((again[(i, j)] - covariance[(i, j)]).abs() < 1e-9 * scale, "{i} {j}");
         }
     }
-    // Hadamard's inequality: the box along the directions is smaller than the one along the coefficients
+    // Hadamard's inequality: the box along the directions is smaller than the one along the
+    // coefficients
     let independent: f64 = found.deviations[..COUNT].iter().product();
     let share = changes.determinant().abs() / independent;
     assert!(share < 0.1, "{share}");
@@ -130,8 +132,8 @@ fn the_family_has_ninety_five_of_a_hundred_valves_that_the_recordings_allow() {
     assert!((3745..=3855).contains(&inside), "{inside}");
 }
 
-/// K_qU and K_c of valves within the region lie within the box that the family visits, also where most directions are left
-/// out, up to what was left out.
+/// K_qU and K_c of valves within the region lie within the box that the family visits, also where
+/// most directions are left out, up to what was left out.
 #[test]
 fn directions_that_are_left_out_matter_little() {
     let found = identification();
@@ -267,8 +269,8 @@ fn a_direction_moves_numbers_that_exist_and_are_uncertain_nowhere_else() {
     }
 }
 
-/// How much of Table 6.3 the region of the example reaches: not all of its leakage, and more than its gain. Nothing else is
-/// computed with what is replaced.
+/// How much of Table 6.3 the region of the example reaches: not all of its leakage, and more than
+/// its gain. Nothing else is computed with what is replaced.
 #[test]
 fn ranges_that_are_replaced_are_compared_and_nothing_else() {
     let replaces = "[family.replaces]\nflow_pressure_coefficient = { nominal = 6.42e-13, minimum = 6.42e-13, maximum = 7e-11, spacing = \"log\" }\nflow_gain = { nominal = 5.4e-5, minimum = 3.23e-5, maximum = 5.61e-5 }\n";
@@ -282,7 +284,8 @@ fn ranges_that_are_replaced_are_compared_and_nothing_else() {
     let visited = visited_box(&setup).unwrap().unwrap();
     let ranges = replaced_ranges(&project, &visited);
     let [leakage, gain] = ranges.as_slice() else { panic!("{ranges:?}") };
-    // the pump stops the rig a quarter of the way to 7e-11; the unequal edges have more gain than Table 6.3
+    // the pump stops the rig a quarter of the way to 7e-11; the unequal edges have more gain than
+    // Table 6.3
     assert!(leakage.visited[1] < 0.3 * 7e-11 && gain.visited[1] > 1.3 * 5.61e-5, "{ranges:?}");
     let logarithm = |value: f64| value.ln();
     let share = logarithm(leakage.visited[1] / 6.42e-13) / logarithm(7e-11 / 6.42e-13);

@@ -1,4 +1,5 @@
-//! How often the intervals of an identified valve cover its truth, and how wide they are compared with the Cramer-Rao bound.
+//! How often the intervals of an identified valve cover its truth, and how wide they are compared
+//! with the Cramer-Rao bound.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::print_stdout, reason = "how often and how wide is worth reading")]
@@ -16,8 +17,9 @@ use phea_workbench::source::Memory;
 
 const COUNT: usize = 12;
 
-/// Each 95 % interval covers the truth as often as a binomial distribution allows, and is as narrow as the information in
-/// the recordings lets it be. Fewer rows than a bench records, so that forty take a few seconds.
+/// Each 95 % interval covers the truth as often as a binomial distribution allows, and is as narrow
+/// as the information in the recordings lets it be. Fewer rows than a bench records, so that forty
+/// take a few seconds.
 #[test]
 fn intervals_cover_the_truth_and_are_narrow() {
     // ORIGIN: analytic, 40 trials at 95 %: 33 or more with a probability of 99.7 %
@@ -99,16 +101,17 @@ fn intervals(seed: u32, settings: &[&str]) -> [[f64; 2]; COUNT] {
     TRUTH.map(|(path, _)| interval(&found, path).expect("an interval"))
 }
 
-/// The least standard deviation that an unbiased estimate of each coefficient can have, all of them unknown (Cramer 1946, Rao
-/// 1945):
+/// The least standard deviation that an unbiased estimate of each coefficient can have, all of them
+/// unknown (Cramer 1946, Rao 1945):
 ///
 /// ```text
 /// sqrt((I^-1)_ii)        I = sum over rows of J' C^-1 J
 /// ```
 ///
-/// with J the derivatives of what the valve truly shows in a row and C the covariance of the bench's noise. Where
-/// `pressures_are_known`, supply and load pressure are those that truly acted; otherwise they are unknown in each row as well,
-/// read with the noise of the other pressures, which adds to C what they change.
+/// with J the derivatives of what the valve truly shows in a row and C the covariance of the
+/// bench's noise. Where `pressures_are_known`, supply and load pressure are those that truly acted;
+/// otherwise they are unknown in each row as well, read with the noise of the other pressures,
+/// which adds to C what they change.
 fn cramer_rao(bench: &Bench, pressures_are_known: bool) -> [f64; COUNT] {
     let numbers = TRUTH.map(|(_, truth)| truth);
     let mut information = DMatrix::<f64>::zeros(COUNT, COUNT);
@@ -131,8 +134,9 @@ fn cramer_rao(bench: &Bench, pressures_are_known: bool) -> [f64; COUNT] {
     std::array::from_fn(|index| numbers[index] * inverse[(index, index)].sqrt())
 }
 
-/// Of each row of a test and each of its signals: noise, derivatives over the coefficients, and derivatives over supply pressure
-/// and, of a load pressure that is the difference of two, over the root of two of it.
+/// Of each row of a test and each of its signals: noise, derivatives over the coefficients, and
+/// derivatives over supply pressure and, of a load pressure that is the difference of two, over the
+/// root of two of it.
 fn rows(bench: &Bench, test: StaticTest) -> Vec<(Vec<f64>, Vec<f64>, Vec<f64>)> {
     let tested = TestedValve {
         nominal_voltage: 10.0,

@@ -1,5 +1,5 @@
-//! What recordings of a valve say beyond the coefficients: which model of the leakage, what may be zero, and how sure the
-//! bootstrap is.
+//! What recordings of a valve say beyond the coefficients: which model of the leakage, what may be
+//! zero, and how sure the bootstrap is.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -33,8 +33,9 @@ fn recordings_speak_for_the_model_that_made_them() {
     }
 }
 
-/// ORIGIN: analytic, thesis (4.14): one curve for the whole valve and edges that leak by one secant each have the same leakage
-/// far from null only if K_vin differs by sqrt(2); fitted with the wrong model, the same recordings give other numbers.
+/// ORIGIN: analytic, thesis (4.14): one curve for the whole valve and edges that leak by one secant
+/// each have the same leakage far from null only if K_vin differs by sqrt(2); fitted with the wrong
+/// model, the same recordings give other numbers.
 #[test]
 fn the_wrong_model_says_so_first() {
     let files = recorded(&[FEW_ROWS, ONE_CURVE]);
@@ -101,9 +102,10 @@ fn what_may_be_zero_has_a_bound_from_above() {
     }
 }
 
-/// A valve without tare flow, as a direct-driven one, by meters that indicate the direction, that show the magnitude of
-/// their own noise where nothing flows, and that stand still there: most rows of the leakage then say nothing, or
-/// nothing but noise. The tare flow has a bound from above, and the leakage is still found.
+/// A valve without tare flow, as a direct-driven one, by meters that indicate the direction, that
+/// show the magnitude of their own noise where nothing flows, and that stand still there: most rows
+/// of the leakage then say nothing, or nothing but noise. The tare flow has a bound from above, and
+/// the leakage is still found.
 #[test]
 fn a_valve_without_tare_flow_has_a_bound_from_above_by_every_meter() {
     let cases = [
@@ -131,8 +133,8 @@ fn a_valve_without_tare_flow_has_a_bound_from_above_by_every_meter() {
     }
 }
 
-/// A converter of ten bits rounds most pressures to that of the supply: half of all residuals are zero, and say nothing
-/// of the noise of the others.
+/// A converter of ten bits rounds most pressures to that of the supply: half of all residuals are
+/// zero, and say nothing of the noise of the others.
 #[test]
 fn coarse_converters_do_not_make_the_noise_vanish() {
     let found =
@@ -179,7 +181,8 @@ fn the_bootstrap_agrees_with_the_linearised_intervals() {
     assert_eq!(answer, again);
 }
 
-/// A valve with a threshold, which the model lacks: what neighbouring residuals have in common widens the intervals.
+/// A valve with a threshold, which the model lacks: what neighbouring residuals have in common
+/// widens the intervals.
 #[test]
 fn the_bootstrap_sees_what_the_model_leaves_unexplained() {
     let files = recorded(&["valve.threshold=\"80 mV\"", FEW_ROWS]);

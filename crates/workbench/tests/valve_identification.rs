@@ -1,5 +1,5 @@
-//! The coefficients of a valve from recorded tests: truth recovered within its intervals, what is left open, files of
-//! every kind, and the way back into a project.
+//! The coefficients of a valve from recorded tests: truth recovered within its intervals, what is
+//! left open, files of every kind, and the way back into a project.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
@@ -105,7 +105,8 @@ fn outliers_are_not_believed() {
     }
 }
 
-/// A metering test alone passes nothing of the tare flow through its meter, and leakage below what the meter shows.
+/// A metering test alone passes nothing of the tare flow through its meter, and leakage below what
+/// the meter shows.
 #[test]
 fn metering_alone_does_not_tell_the_leakage() {
     let files: Vec<_> = recorded(&[]).into_iter().filter(|(name, _)| name == "metering.csv").collect();
@@ -133,7 +134,8 @@ fn metering_alone_does_not_tell_the_leakage() {
     assert!(flow[0] <= 3.2e-7 && flow[1] >= 3.2e-7 && flow[1] < 1.2 * flow[0], "{flow:?}");
 }
 
-/// Without pressures, edges in series cannot be distinguished: only K_3 K_6/sqrt(K_3^2 + K_6^2) passes the meter.
+/// Without pressures, edges in series cannot be distinguished: only K_3 K_6/sqrt(K_3^2 + K_6^2)
+/// passes the meter.
 #[test]
 fn a_flow_alone_does_not_tell_edges_in_series_apart() {
     let files = recorded(&["bench.flow_meter.pressure_drop=0"]);
@@ -144,7 +146,8 @@ fn a_flow_alone_does_not_tell_edges_in_series_apart() {
     };
     let bare = text.lines().map(columns).collect::<Vec<_>>().join("\n");
     let found = identified(&[("flow.csv".to_string(), bare)]);
-    // each edge alone may be anything; how they hang together depends on where the search ends in the valley
+    // each edge alone may be anything; how they hang together depends on where the search ends in
+    // the valley
     for path in ["/flow_coefficients/supply_to_a", "/flow_coefficients/b_to_tank"] {
         assert!(interval(&found, path).is_none(), "{path}");
     }

@@ -1,4 +1,5 @@
-//! A project that takes its valve from its recordings: every command computes with what `identify` finds.
+//! A project that takes its valve from its recordings: every command computes with what `identify`
+//! finds.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -54,15 +55,16 @@ fn the_bench_says_that_its_valve_is_the_declared_one() {
     assert!(!told(&[quick, "identify.use=nothing"]).json.contains("\"remarks\""));
 }
 
-/// What `check` computes with is the truth of the bench that made the files; the hash is that of the
-/// project followed by them.
+/// What `check` computes with is the truth of the bench that made the files; the hash is that of
+/// the project followed by them.
 #[test]
 fn every_number_that_is_used_is_the_truth_of_the_bench() {
     let source = source(IDENTIFIED, 4);
     let loaded = read(&source, &[]);
     let answer = command::answer(&source, &loaded, &[], &Request::Check).unwrap();
     let json: Value = serde_json::from_str(&answer.json).unwrap();
-    // ORIGIN: thesis, Table 5.1, which examples/ybitu/bench.toml has: the valve whose tests were recorded
+    // ORIGIN: thesis, Table 5.1, which examples/ybitu/bench.toml has: the valve whose tests were
+    // recorded
     let truth = [3.2e-7, 2.5e-7, 2.0e-7, 3.85e-7, 2.35e-9, 2.2e-9, 1.7e-9, 2.35e-9];
     let values = json["identified"]["values"].as_array().unwrap();
     assert_eq!(values.len(), 12, "{values:?}");
@@ -83,7 +85,8 @@ fn every_number_that_is_used_is_the_truth_of_the_bench() {
     assert_eq!(json["identified"]["files"][0]["sha256"], sha256(&first).as_str());
 }
 
-/// Port pressures alone determine ratios of the coefficients: the command refuses and says which are open.
+/// Port pressures alone determine ratios of the coefficients: the command refuses and says which
+/// are open.
 #[test]
 fn a_valve_that_the_recordings_do_not_determine_is_refused() {
     let [start, end] = ["[[identify.recording]]", "[cylinder] "].map(|at| IDENTIFIED.find(at).unwrap());
@@ -94,8 +97,8 @@ fn a_valve_that_the_recordings_do_not_determine_is_refused() {
     assert!(message.contains("identify.use"), "{message}");
 }
 
-/// What contradicts the recordings, or the family that they leave, is refused; a file that is missing
-/// too.
+/// What contradicts the recordings, or the family that they leave, is refused; a file that is
+/// missing too.
 #[test]
 fn what_contradicts_the_recordings_is_refused() {
     let all = source(IDENTIFIED, 4);

@@ -1,5 +1,5 @@
-//! The numbers of section 5.2 of the thesis, read off recorded tests: the published ones where the valve is the
-//! published one, and the derived ones of the same valve.
+//! The numbers of section 5.2 of the thesis, read off recorded tests: the published ones where the
+//! valve is the published one, and the derived ones of the same valve.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -62,8 +62,8 @@ fn near(numbers: &Value, name: &str, expected: f64, share: f64) {
     assert!((found / expected - 1.0).abs() < share, "{name}: {found:e} is not {expected:e}");
 }
 
-/// The first column of Table 5.1 with one curve for the whole leakage, as equations 4.12 to 4.14 take it: the
-/// calculations lead back to every number that section 5.2 prints.
+/// The first column of Table 5.1 with one curve for the whole leakage, as equations 4.12 to 4.14
+/// take it: the calculations lead back to every number that section 5.2 prints.
 #[test]
 fn the_published_numbers_come_back_from_the_valve_they_describe() {
     let edges = equal_edges();
@@ -83,9 +83,10 @@ fn the_published_numbers_come_back_from_the_valve_they_describe() {
     near(&found, "share_of_nominal_flow", 0.88, 5e-3);
 }
 
-/// The optimised column of Table 5.1 on the bench of the example, with its instruments. Tare flow and nulls agree with
-/// what the thesis reads off its curves. The others cannot: the optimised edges are unequal, and two of them in series
-/// pass less than a mean of the four; and its leakage coefficients are all below the 2.488e-9 of the peak.
+/// The optimised column of Table 5.1 on the bench of the example, with its instruments. Tare flow
+/// and nulls agree with what the thesis reads off its curves. The others cannot: the optimised
+/// edges are unequal, and two of them in series pass less than a mean of the four; and its leakage
+/// coefficients are all below the 2.488e-9 of the peak.
 #[test]
 fn the_optimised_valve_agrees_where_it_can() {
     let found = numbers(&MEASURED);
@@ -97,7 +98,8 @@ fn the_optimised_valve_agrees_where_it_can() {
         assert!((-0.016..0.0).contains(&offset), "{name}: {offset}");
     }
     near(&found, "hysteresis_v", 0.128, 2e-2);
-    // ORIGIN: analytic, sqrt(2) K_i K_j/sqrt(K_i^2 + K_j^2) of edges 3 and 6, and 4 and 5, of thesis Table 5.1
+    // ORIGIN: analytic, sqrt(2) K_i K_j/sqrt(K_i^2 + K_j^2) of edges 3 and 6, and 4 and 5, of
+    // thesis Table 5.1
     near(&found, "flow_coefficient_extending", 3.4803e-7, 1e-2);
     near(&found, "flow_coefficient_retracting", 2.2086e-7, 1e-2);
     let number = |name: &str| found[name].as_f64().unwrap();
@@ -112,9 +114,10 @@ fn the_optimised_valve_agrees_where_it_can() {
     assert!(low <= 7.56e-6 && high >= 7.54e-6 && high - low < 2e-8, "{low:e} {high:e}");
 }
 
-/// What is read of nulls and hysteresis by the leakage has an interval that holds the truth, and so has a reading by the
-/// flow or the pressures alone an interval, whatever the reading is worth: straight lines through the flow see null 8 mV
-/// too high, because the spool still remembers the reversal where they begin.
+/// What is read of nulls and hysteresis by the leakage has an interval that holds the truth, and so
+/// has a reading by the flow or the pressures alone an interval, whatever the reading is worth:
+/// straight lines through the flow see null 8 mV too high, because the spool still remembers the
+/// reversal where they begin.
 #[test]
 fn nulls_and_what_follows_from_them_have_intervals() {
     // ORIGIN: thesis section 5.2.1, and the null between both ways of it
@@ -139,7 +142,8 @@ fn nulls_and_what_follows_from_them_have_intervals() {
         let held = all.iter().filter(|[low, high]| (*low..=*high).contains(&truth)).count();
         // ORIGIN: analytic, 8 trials at 95 %: 6 or more with a probability of 99.4 %
         assert!(held >= 6, "{name}: {held} of {SEEDS}: {all:?}");
-        // ORIGIN: analytic, noise of 0.005 L/min over the slope of the flank, 2.9 L/(min V), at both ends
+        // ORIGIN: analytic, noise of 0.005 L/min over the slope of the flank, 2.9 L/(min V), at
+        // both ends
         assert!(all.iter().all(|[low, high]| high - low < 0.02), "{name}: {all:?}");
     }
     let [low, high] = of(&read[0], "tare_share");
@@ -172,8 +176,8 @@ fn read_from(files: &[&str], settings: &[&str], seed: u32) -> Value {
     found["simple_calculations"].clone()
 }
 
-/// Flow gain, and flow-pressure coefficient from it and the pressure sensitivity, are those that the linear model of
-/// the same valve is made of.
+/// Flow gain, and flow-pressure coefficient from it and the pressure sensitivity, are those that
+/// the linear model of the same valve is made of.
 #[test]
 fn slopes_at_null_are_those_of_the_linear_model() {
     let edges = equal_edges();
@@ -203,8 +207,8 @@ fn the_table_stands_beside_the_published_numbers() {
     }
 }
 
-/// The recordings next to the example are those of its bench, byte for byte; every figure of chapter 5 is drawn of
-/// them, and the identified valve is the one that made them.
+/// The recordings next to the example are those of its bench, byte for byte; every figure of
+/// chapter 5 is drawn of them, and the identified valve is the one that made them.
 #[test]
 fn the_recordings_of_the_example_are_made_by_its_bench() {
     const BENCH: &str = include_str!("../../../examples/ybitu/bench.toml");
@@ -226,7 +230,8 @@ fn the_recordings_of_the_example_are_made_by_its_bench() {
     let asked = IdentifyRequest { starts: Some(1), figures: true, ..IdentifyRequest::default() };
     let found = identify_watched(&source, Some(&load(BENCH, &[], &[])), &asked, &mut |_| true).unwrap();
     let drawn: Vec<&str> = found.files.iter().filter_map(|file| file.name.strip_suffix(".svg")).collect();
-    // ORIGIN: thesis Figures 5.3, 5.6, 5.4, 5.7, 5.8, the pressure gain, 5.5, 5.9, 5.10, the sensitivity, 5.11, 5.12
+    // ORIGIN: thesis Figures 5.3, 5.6, 5.4, 5.7, 5.8, the pressure gain, 5.5, 5.9, 5.10, the
+    // sensitivity, 5.11, 5.12
     let expected = [
         "circuit_blocked",
         "circuit_joined",

@@ -1,4 +1,5 @@
-//! Further tests of the virtual bench: hysteresis and threshold, a second meter, and oil that warms.
+//! Further tests of the virtual bench: hysteresis and threshold, a second meter, and oil that
+//! warms.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -61,7 +62,8 @@ fn ideal_reversals_show_the_declared_threshold_and_hysteresis() {
     }
 }
 
-/// With the noise of the instruments the intervals hold the truth and are narrow enough to be useful.
+/// With the noise of the instruments the intervals hold the truth and are narrow enough to be
+/// useful.
 #[test]
 fn noisy_reversals_tell_the_threshold() {
     let valve = ["valve.threshold=\"40 mV\"", "valve.hysteresis=\"128 mV\"", "bench.reversals.size=0.02"];
@@ -73,8 +75,8 @@ fn noisy_reversals_tell_the_threshold() {
     }
 }
 
-/// A temperature that does not move adds its column and changes nothing else, and neither does any of
-/// the further tests change the others.
+/// A temperature that does not move adds its column and changes nothing else, and neither does any
+/// of the further tests change the others.
 #[test]
 fn a_steady_temperature_changes_no_other_byte() {
     let usual = bench(&[]);

@@ -40,7 +40,8 @@ fn ideal_instruments_show_the_closed_forms() {
     let (leak, command) =
         (column(&found, "leakage.csv", "leak_flow_l_per_min"), column(&found, "leakage.csv", "command_v"));
     assert_eq!(command[0], 0.0);
-    // ORIGIN: analytic, K_i K_j/sqrt(K_i^2 + K_j^2) of edges 3, 4 and 5, 6 of thesis Table 5.1, 70 bar, and the tare flow
+    // ORIGIN: analytic, K_i K_j/sqrt(K_i^2 + K_j^2) of edges 3, 4 and 5, 6 of thesis Table 5.1, 70
+    // bar, and the tare flow
     let series = |first: f64, second: f64| first * second / (first * first + second * second).sqrt();
     let null = (series(2.35e-9, 2.2e-9) + series(1.7e-9, 2.35e-9)) * 70e5_f64.sqrt() + 7.55e-6;
     assert!((leak[0] / 60_000.0 / null - 1.0).abs() < 1e-6);

@@ -1,5 +1,5 @@
-//! The sensor of the load velocity that is fed forward: its limits, its noise at the valve, its gain error as a coordinate of the family
-//! and in campaigns.
+//! The sensor of the load velocity that is fed forward: its limits, its noise at the valve, its
+//! gain error as a coordinate of the family and in campaigns.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -45,7 +45,8 @@ fn worst(project: &Project) -> f64 {
     audited(project).audit.specifications[0].worst.as_ref().unwrap().margin_db
 }
 
-/// A sensor that shows what is true changes no bit of a run and of a verdict; one that does not changes both.
+/// A sensor that shows what is true changes no bit of a run and of a verdict; one that does not
+/// changes both.
 #[test]
 fn a_sensor_without_error_is_none() {
     for settings in [vec![FED], vec![FED, SPRUNG], [&[FED], &SAMPLED[..]].concat()] {
@@ -64,7 +65,8 @@ fn a_sensor_without_error_is_none() {
     }
 }
 
-/// The error of its gain is that of the gain: K (1 + e). With static friction a load that yields would oscillate until a last bit shows.
+/// The error of its gain is that of the gain: K (1 + e). With static friction a load that yields
+/// would oscillate until a last bit shows.
 #[test]
 fn its_gain_error_is_one_of_the_gain() {
     for settings in [vec![], vec![SPRUNG], SAMPLED.to_vec(), vec!["controller.delay=1 ms", SPRUNG]] {
@@ -80,8 +82,9 @@ fn its_gain_error_is_one_of_the_gain() {
     }
 }
 
-/// The force by a prescribed motion is a straight line over e, so that the worst of a range is one of its ends; with a load that yields no
-/// error of the range is worse than what the verdict over it says, and one of them is as bad.
+/// The force by a prescribed motion is a straight line over e, so that the worst of a range is one
+/// of its ends; with a load that yields no error of the range is worse than what the verdict over
+/// it says, and one of them is as bad.
 #[test]
 fn its_gain_error_is_a_coordinate_of_the_family() {
     let range = "uncertainty={ \"velocity_sensor.gain_error\" = { nominal = 0, minimum = -0.3, maximum = 0.2, points = 3 } }";
@@ -129,8 +132,8 @@ fn with_family(settings: &[&str]) -> Loaded {
     loaded(&text, &[settings, &[range, specification, "linear={}"]].concat())
 }
 
-/// A filter keeps the plants quotients of polynomials: what was searched is proven over every error of the gain. A delay does not, and the
-/// verdict with proof says so and is not met.
+/// A filter keeps the plants quotients of polynomials: what was searched is proven over every error
+/// of the gain. A delay does not, and the verdict with proof says so and is not met.
 #[test]
 fn it_is_proven_where_the_plants_are_quotients() {
     let filter = "velocity_sensor={ filter_frequency = \"200 Hz\" }";
@@ -203,8 +206,9 @@ fn samples(project: &Project) -> [Vec<f64>; 2] {
     })
 }
 
-/// Command and force of the machine have the rms that `verify` states: the command within five standard errors of 19,000 samples that are
-/// nearly independent, the force, whose samples resemble each other over some 20 ms, of a twentieth as many.
+/// Command and force of the machine have the rms that `verify` states: the command within five
+/// standard errors of 19,000 samples that are nearly independent, the force, whose samples resemble
+/// each other over some 20 ms, of a twentieth as many.
 #[test]
 fn noise_reaches_command_and_force_as_the_verdict_says() {
     let control = "controller={ numerator = \"0.0002*s + 0.002\", denominator = \"s\", sample_time = \"1 ms\", delay = \"0.5 ms\", load_velocity_feed_forward = { gain = 20 } }";
@@ -217,7 +221,8 @@ fn noise_reaches_command_and_force_as_the_verdict_says() {
         let told = view.velocity_noise.as_ref().unwrap();
         assert!((told.rms_m_per_s - 1e-3 * (13.0_f64 / 12.0).sqrt()).abs() < 1e-12);
         let effect = told.effect.as_ref().unwrap();
-        // a prescribed load that stands still lets K times the noise through, and the controller answers little
+        // a prescribed load that stands still lets K times the noise through, and the controller
+        // answers little
         if load != SPRUNG {
             assert!((effect.command_rms_v / (20.0 * told.rms_m_per_s) - 1.0).abs() < 0.02, "{effect:?}");
         }
@@ -229,7 +234,8 @@ fn noise_reaches_command_and_force_as_the_verdict_says() {
     }
 }
 
-/// Samples are rounded to whole steps after the noise; equal seeds give equal bits, and other seeds others.
+/// Samples are rounded to whole steps after the noise; equal seeds give equal bits, and other seeds
+/// others.
 #[test]
 fn what_it_shows_is_rounded_and_reproducible() {
     let control = "controller={ elements = [{ kind = \"gain\", value = 1e-15 }], sample_time = \"1 ms\", load_velocity_feed_forward = { gain = 20 } }";
@@ -248,7 +254,8 @@ fn what_it_shows_is_rounded_and_reproducible() {
     assert!(steps.iter().any(|step| step.abs() > 0.02));
 }
 
-/// Each machine of a campaign has its own error of the gain, alone as in lanes, and a seed of its own where there is noise.
+/// Each machine of a campaign has its own error of the gain, alone as in lanes, and a seed of its
+/// own where there is noise.
 #[test]
 fn a_campaign_draws_the_gain_error() {
     let short = [

@@ -1,4 +1,5 @@
-//! What `verify` answers: the keys other programs read, and what the audit of the thesis' controller finds.
+//! What `verify` answers: the keys other programs read, and what the audit of the thesis'
+//! controller finds.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
@@ -91,7 +92,8 @@ fn the_text_says_the_verdict_first_and_what_it_rests_on() {
     }
 }
 
-/// What a simulation adds to the command and a model does not know of is said by every command on that model.
+/// What a simulation adds to the command and a model does not know of is said by every command on
+/// that model.
 #[test]
 fn a_feed_forward_is_told_to_be_left_out() {
     let words = "feeds forward is not";
@@ -163,7 +165,8 @@ fn a_number_set_outside_of_its_own_range_is_refused_with_the_cure() {
     }
 }
 
-/// The numbers of a plant have the units of the keys that they are, and none where the project does not know them.
+/// The numbers of a plant have the units of the keys that they are, and none where the project does
+/// not know them.
 #[test]
 fn plants_are_named_with_the_units_of_their_numbers() {
     let hose = include_str!("../../../examples/ybitu/hose.toml");

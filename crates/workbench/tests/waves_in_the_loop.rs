@@ -1,4 +1,5 @@
-//! Verdicts of rigs whose lines move: their responses, their stability, and their steps compared with the machine's.
+//! Verdicts of rigs whose lines move: their responses, their stability, and their steps compared
+//! with the machine's.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -36,8 +37,8 @@ fn unstable(object: &Value) -> usize {
     before.map_or(0, |before| before.rsplit(' ').next().unwrap().parse().unwrap())
 }
 
-/// The published loop has gain beyond the quarter wave of its hoses: four poles grow, two where the wall
-/// moves along too, and a wall that creeps fast enough saves it.
+/// The published loop has gain beyond the quarter wave of its hoses: four poles grow, two where the
+/// wall moves along too, and a wall that creeps fast enough saves it.
 #[test]
 fn the_published_loop_is_unstable_with_waves() {
     let count =
@@ -73,7 +74,8 @@ fn the_step_that_is_predicted_is_the_machines() {
     assert_eq!(first["agrees"], Value::from(true));
 }
 
-/// For the one rig there is a loop below the quarter wave of its hoses that satisfies everything, and the machine agrees.
+/// For the one rig there is a loop below the quarter wave of its hoses that satisfies everything,
+/// and the machine agrees.
 #[test]
 fn one_rig_with_waves_is_designed_for() {
     let object = asked(
@@ -98,8 +100,8 @@ fn worst_plants_have_their_parameters() {
     assert!(said.text.contains("every plant by its response with lines in motion"), "{}", said.text);
 }
 
-/// With lines in motion a box is searched between its members too: no rig that is declared anywhere in it is worse than what was found,
-/// and what was found is worse than any corner.
+/// With lines in motion a box is searched between its members too: no rig that is declared anywhere
+/// in it is worse than what was found, and what was found is worse than any corner.
 #[test]
 fn a_box_is_searched_between_its_members() {
     let (start, specifications) = {

@@ -1,4 +1,5 @@
-//! Which key of the project moves which part: every key changed on several rigs, and the table of the guide that says so.
+//! Which key of the project moves which part: every key changed on several rigs, and the table of
+//! the guide that says so.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -71,7 +72,8 @@ const SHOWN: &str = "velocity_sensor={ gain_error = \"2 %\", delay = \"1 ms\", f
 /// A virtual impedance.
 const IMPEDANCE: &str = "controller.impedance={ stiffness = \"100 kN/m\", damping = \"2 kN.s/m\", mass = \"20 kg\", filter_time = \"2 ms\" }";
 
-/// Rigs that together have every key: examples, the projects of other tests, and the same with other words.
+/// Rigs that together have every key: examples, the projects of other tests, and the same with
+/// other words.
 fn rigs() -> Vec<(String, Vec<&'static str>)> {
     let hose = || without_family(include_str!("../../../examples/ybitu/hose.toml"));
     let pipe = || without_family(include_str!("../../../examples/ybitu/pipe.toml"));

@@ -1,4 +1,5 @@
-//! The top-level modules of a crate do not use each other in a circle: a reader begins with those that use no other.
+//! The top-level modules of a crate do not use each other in a circle: a reader begins with those
+//! that use no other.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -7,7 +8,8 @@ use crate::repository::{Repository, RustFile};
 
 /// Circles that are left, each with its reason.
 const KNOWN: &[(&str, &[&str])] = &[
-    // ProcedureError is the union of the errors of all procedures, and each procedure may be stopped by it
+    // ProcedureError is the union of the errors of all procedures, and each procedure may be
+    // stopped by it
     ("crates/engineering", &["audit", "design", "error", "replaced", "robust", "shaping", "trial"]),
     // the rig is a part of the setup, and what is sized is read from the whole of it
     ("crates/engineering", &["rig", "setup"]),
@@ -94,8 +96,8 @@ fn uses(files: &[&RustFile]) -> Uses {
     uses
 }
 
-/// The top-level module that a path leads to from a file that lies `depth` modules below the root: by its name, or where the
-/// root passes a type on, by that type.
+/// The top-level module that a path leads to from a file that lies `depth` modules below the root:
+/// by its name, or where the root passes a type on, by that type.
 fn used_room<'a>(
     path: &'a str,
     depth: usize,

@@ -35,7 +35,8 @@ pub(super) fn types(syntax: &syn::File) -> Vec<(String, Span)> {
     types.names
 }
 
-/// Types that a file defines outside of its tests; those of implementations and traits belong to these.
+/// Types that a file defines outside of its tests; those of implementations and traits belong to
+/// these.
 #[derive(Default)]
 struct Types {
     names: Vec<(String, Span)>,

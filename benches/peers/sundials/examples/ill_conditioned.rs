@@ -1,10 +1,11 @@
-//! A rig whose peak depends on a ringing of 1e-5 N that grows: by CVODE and by phea, at many tolerances.
+//! A rig whose peak depends on a ringing of 1e-5 N that grows: by CVODE and by phea, at many
+//! tolerances.
 //!
 //!     cargo run --release -p sundials --example ill_conditioned -- 1e-9 1e-11
 //!
-//! `examples/ybitu/pipe.toml` with its load moved by 20 mm in 2 s: the piston follows so slowly that its friction falls with the
-//! velocity and feeds the ringing on the load cell. For each tolerance it prints the peak of the force's deviation from 4 kN
-//! after 3 s, on rows of 0.1 ms.
+//! `examples/ybitu/pipe.toml` with its load moved by 20 mm in 2 s: the piston follows so slowly
+//! that its friction falls with the velocity and feeds the ringing on the load cell. For each
+//! tolerance it prints the peak of the force's deviation from 4 kN after 3 s, on rows of 0.1 ms.
 
 use std::f64::consts::FRAC_PI_4;
 use std::time::Instant;

@@ -85,15 +85,17 @@ impl Following {
 
 /// The states at each row of a course, from time zero.
 ///
-/// The same equations, inputs, samples and held commands as in [`phea_dynamics::simulation::simulate`], on another
-/// method. CVODE starts anew at each break of an input, at each sample and where a command takes effect; the error is
-/// measured by the tolerance times state and scale, as there. Delayed waves, given after the states at the start, are kept as
-/// polynomials of degree eleven over an eighth of the shortest delay or less; CVODE never steps beyond what has been sent, and
-/// starts anew where a break comes back.
+/// The same equations, inputs, samples and held commands as in
+/// [`phea_dynamics::simulation::simulate`], on another method. CVODE starts anew at each break of
+/// an input, at each sample and where a command takes effect; the error is measured by the
+/// tolerance times state and scale, as there. Delayed waves, given after the states at the start,
+/// are kept as polynomials of degree eleven over an eighth of the shortest delay or less; CVODE
+/// never steps beyond what has been sent, and starts anew where a break comes back.
 ///
 /// # Errors
 ///
-/// As [`integrate`]; [`CvodeError::Argument`] for a start that does not give every state and every wave.
+/// As [`integrate`]; [`CvodeError::Argument`] for a start that does not give every state and every
+/// wave.
 ///
 /// # Example
 ///
@@ -194,7 +196,8 @@ fn continued(
     integrate(&mut rates, state, times, tolerance, &absolute, method, breaks)
 }
 
-/// Samples taken, the command in force, and commands on their way with the time that they take effect.
+/// Samples taken, the command in force, and commands on their way with the time that they take
+/// effect.
 struct Held {
     sample: u64,
     command: f64,
@@ -202,7 +205,8 @@ struct Held {
 }
 
 impl Held {
-    /// Samples if it is time to, puts due commands into force, and returns when something happens next.
+    /// Samples if it is time to, puts due commands into force, and returns when something happens
+    /// next.
     fn act(&mut self, sampler: &mut dyn Sampler, time: f64, state: &[f64], inputs: &[f64]) -> f64 {
         if time >= self.sample as f64 * sampler.sample_time_s() {
             self.sample += 1;
@@ -259,7 +263,8 @@ fn breaks(course: &InputSchedule) -> Vec<f64> {
     profiles.flat_map(|profile| profile.breaks().to_vec()).collect()
 }
 
-/// From one time to another, over the rows between them; a row is as many output steps from zero as there are before it.
+/// From one time to another, over the rows between them; a row is as many output steps from zero as
+/// there are before it.
 fn times(course: &InputSchedule, from: f64, until: f64, row: usize) -> Vec<f64> {
     let rows = (row..).map(|row| row as f64 * course.output_step_s);
     let between = rows.take_while(|time| *time < until).filter(|time| *time > from);

@@ -5,7 +5,8 @@ use std::ffi::{c_char, c_int, c_long, c_void};
 /// An object of the library behind a pointer.
 pub(crate) type Object = *mut c_void;
 
-/// `CVRhsFn`: time, state, derivative, user data; 0, positive to have a shorter step tried, negative to give up.
+/// `CVRhsFn`: time, state, derivative, user data; 0, positive to have a shorter step tried,
+/// negative to give up.
 pub(crate) type RightHandSide = unsafe extern "C" fn(f64, Object, Object, *mut c_void) -> c_int;
 
 pub(crate) const ADAMS: c_int = 1;

@@ -1,7 +1,8 @@
 //! CVODE (Hindmarsh and others, 2005) for right-hand sides written in Rust.
 //!
-//! [`integrate`] for any right-hand side, [`follow`] for a system and a course of phea, delayed waves included. Built against
-//! SUNDIALS 6 as Debian 12 packages it; another major version is refused when it is met, because its C interface differs.
+//! [`integrate`] for any right-hand side, [`follow`] for a system and a course of phea, delayed
+//! waves included. Built against SUNDIALS 6 as Debian 12 packages it; another major version is
+//! refused when it is met, because its C interface differs.
 
 mod course;
 mod interface;
@@ -11,12 +12,14 @@ mod waves;
 pub use course::{Equations, Following, Kicks, follow};
 use session::Session;
 
-/// How CVODE steps; both solve their implicit equations by Newton's method with a dense Jacobian of difference quotients.
+/// How CVODE steps; both solve their implicit equations by Newton's method with a dense Jacobian of
+/// difference quotients.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
     /// Backward differentiation of order one to five.
     BackwardDifferentiation,
-    /// The same with the detection of its stability limit, which lowers the order where eigenvalues are lightly damped.
+    /// The same with the detection of its stability limit, which lowers the order where eigenvalues
+    /// are lightly damped.
     StabilityLimit,
     /// Adams and Moulton's formulas of order one to twelve.
     Adams,
@@ -39,7 +42,8 @@ pub enum CvodeError {
     Memory,
     /// CVODE gave up: its negative status, and the time that it had reached.
     Failed {
-        /// As documented: -1 too much work, -3 error test, -4 convergence, -9 and -10 the right-hand side, and others.
+        /// As documented: -1 too much work, -3 error test, -4 convergence, -9 and -10 the
+        /// right-hand side, and others.
         status: i32,
         /// In the unit of `times`.
         time: f64,
@@ -68,13 +72,15 @@ pub const MOST_STEPS: i64 = 20_000_000;
 /// dy/dt = rates(t, y),   error of state i against  relative_tolerance |y_i| + absolute_tolerances_i
 /// ```
 ///
-/// CVODE starts anew at each of `stops`, where rates may jump or bend. Rates are taken as continuous from the right: a piece
-/// that ends at a stop sees the last number below it, the piece that begins there sees the stop itself, so that `t >= stop`
-/// distinguishes them. A rate that is not finite makes CVODE try a shorter step. A panic of `rates` passes through.
+/// CVODE starts anew at each of `stops`, where rates may jump or bend. Rates are taken as
+/// continuous from the right: a piece that ends at a stop sees the last number below it, the piece
+/// that begins there sees the stop itself, so that `t >= stop` distinguishes them. A rate that is
+/// not finite makes CVODE try a shorter step. A panic of `rates` passes through.
 ///
 /// # Errors
 ///
-/// Times that do not ascend, tolerances that are not positive, lengths that differ; CVODE's own failures.
+/// Times that do not ascend, tolerances that are not positive, lengths that differ; CVODE's own
+/// failures.
 ///
 /// # Example
 ///

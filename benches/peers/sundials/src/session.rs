@@ -55,7 +55,8 @@ impl<'a> Session<'a> {
         let session =
             Self { objects, begun: time, caller: Box::into_raw(Box::new(caller)), owned: PhantomData };
         let Objects { state, tolerances, matrix, solver, cvode, .. } = session.objects;
-        // SAFETY: all objects are alive and of one context; the caller outlives the integrator (see `drop`).
+        // SAFETY: all objects are alive and of one context; the caller outlives the integrator (see
+        // `drop`).
         let statuses = unsafe {
             [
                 c::CVodeInit(cvode, right_hand_side, time, state),
@@ -79,8 +80,8 @@ impl<'a> Session<'a> {
         self.judge(unsafe { c::CVodeSetStopTime(self.objects.cvode, end) }, end)
     }
 
-    /// The state at `time`, at or before the end that was set. CVODE does not begin for a few roundings of time:
-    /// there the state is still the one it begins with.
+    /// The state at `time`, at or before the end that was set. CVODE does not begin for a few
+    /// roundings of time: there the state is still the one it begins with.
     pub(crate) fn advance(&mut self, time: f64) -> Result<Vec<f64>, CvodeError> {
         if time - self.begun <= 4.0 * f64::EPSILON * time.abs().max(self.begun.abs()) {
             return Ok(self.state());
@@ -98,7 +99,8 @@ impl<'a> Session<'a> {
     }
 
     fn state(&self) -> Vec<f64> {
-        // SAFETY: the vector was made with this number of elements, and nobody writes to it now; the caller is alive.
+        // SAFETY: the vector was made with this number of elements, and nobody writes to it now;
+        // the caller is alive.
         unsafe {
             let first = c::N_VGetArrayPointer(self.objects.state);
             std::slice::from_raw_parts(first, (*self.caller).states).to_vec()
@@ -120,7 +122,8 @@ impl<'a> Session<'a> {
 
 impl Drop for Session<'_> {
     fn drop(&mut self) {
-        // SAFETY: made by `Box::into_raw` in `new`, freed here alone; CVODE calls nobody while it is freed after this.
+        // SAFETY: made by `Box::into_raw` in `new`, freed here alone; CVODE calls nobody while it
+        // is freed after this.
         drop(unsafe { Box::from_raw(self.caller) });
     }
 }
@@ -196,7 +199,8 @@ fn check_version() -> Result<(), CvodeError> {
 }
 
 unsafe extern "C" fn right_hand_side(time: f64, state: Object, rates: Object, caller: *mut c_void) -> c_int {
-    // SAFETY: CVODE hands back the user data that it was given, and two vectors of the length of the state.
+    // SAFETY: CVODE hands back the user data that it was given, and two vectors of the length of
+    // the state.
     let (caller, state, rates) = unsafe {
         let caller = &mut *caller.cast::<Caller>();
         let length = caller.states;

@@ -1,4 +1,5 @@
-//! Waves in delays, by the method of steps: what arrives was sent at least the shortest delay before, and is known by then.
+//! Waves in delays, by the method of steps: what arrives was sent at least the shortest delay
+//! before, and is known by then.
 
 use std::cell::RefCell;
 use std::f64::consts::PI;

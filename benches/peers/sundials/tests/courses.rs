@@ -6,7 +6,8 @@ use phea_dynamics::simulation::{
 };
 use sundials::{CvodeError, Following, Method, follow};
 
-/// y'' = mu (1 - y^2) y' - y + w1 + c w2, with a load's motion w1 and its velocity w2, and a command.
+/// y'' = mu (1 - y^2) y' - y + w1 + c w2, with a load's motion w1 and its velocity w2, and a
+/// command.
 #[derive(Clone)]
 struct Oscillator {
     mu: f64,

@@ -33,7 +33,8 @@ fn compared(ours: &[f64], references: [&[f64]; 2]) -> Roughness {
 
 #[test]
 fn the_roughness_of_a_sine_is_its_root_mean_square() {
-    // ORIGIN: analytic, A/sqrt 2 times 1 - sin(x)/x with x = 1500 rad/s x 5.125 ms, the half-width of 41 rows
+    // ORIGIN: analytic, A/sqrt 2 times 1 - sin(x)/x with x = 1500 rad/s x 5.125 ms, the half-width
+    // of 41 rows
     let half = 1500.0 * 20.5 * STEP_S;
     let expected = 10.0 / 2.0_f64.sqrt() * (1.0 - half.sin() / half).abs();
     let found = roughest(&force(10.0, 0.0, 0.0)[400..], STEP_S);
@@ -81,7 +82,8 @@ fn ringing_that_hangs_on_rounding_is_asked_for_at_all() {
     assert!(calmed.fault().is_some_and(|fault| fault.contains("calmed")), "{calmed:?}");
 }
 
-/// Ringing before trajectories separate is judged row by row, and one below a thousandth of the peak is none.
+/// Ringing before trajectories separate is judged row by row, and one below a thousandth of the
+/// peak is none.
 #[test]
 fn what_is_too_small_or_too_early_is_not_judged() {
     let small = force(0.5, 0.0, 0.0);

@@ -90,9 +90,9 @@ const EFFICIENCY: f64 = 0.95;
 /// cov = (sum j j')^-1/0.95
 /// ```
 ///
-/// A residual on which a variable of its own depends shows no noise: [`uncertainty`], which takes the
-/// noise from the residuals, would count it as exact. 0.95 is the efficiency of the usual robust
-/// loss.
+/// A residual on which a variable of its own depends shows no noise: [`uncertainty`], which takes
+/// the noise from the residuals, would count it as exact. 0.95 is the efficiency of the usual
+/// robust loss.
 ///
 /// # Example
 /// ```

@@ -146,8 +146,8 @@ impl Polynomial {
     /// Zeros at the origin are exact. The others are found by the iteration of Ehrlich and Aberth
     /// from starting radii read off the Newton polygon (Bini 1996), which finds roots of 1e-3 and
     /// 1e6 side by side, and are polished with residuals in twice the working precision. Roots that
-    /// a rounding of the coefficients makes indistinguishable are returned as one multiple root, and
-    /// those it makes indistinguishable from imaginary ones lie on the axis.
+    /// a rounding of the coefficients makes indistinguishable are returned as one multiple root,
+    /// and those it makes indistinguishable from imaginary ones lie on the axis.
     ///
     /// # Errors
     /// [`LinearError::ZeroPolynomial`], [`LinearError::NotFinite`],

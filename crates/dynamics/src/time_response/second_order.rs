@@ -95,8 +95,8 @@ impl SecondOrder {
         Ok(SecondOrder { natural_frequency_rad_per_s, damping_ratio })
     }
 
-    /// The system with this overshoot (percent, from 0 up to but not 100) and settling time in s, by
-    /// a rule of thumb.
+    /// The system with this overshoot (percent, from 0 up to but not 100) and settling time in s,
+    /// by a rule of thumb.
     ///
     /// ```text
     /// w_n = factor/(xi t_s)

@@ -11,8 +11,8 @@ use phea_dynamics::time_response::{Interpolation, SampledSignal, forced_response
 
 use super::laws::{course, distance, run, simulate};
 
-/// gain/((s - p_1)(s - p_2) ...): y_n' = p_n y_n + gain (u + d), y_k' = p_k y_k + y_(k+1); measured is y_1. The load d is
-/// an input, and given to a feed-forward.
+/// gain/((s - p_1)(s - p_2) ...): y_n' = p_n y_n + gain (u + d), y_k' = p_k y_k + y_(k+1); measured
+/// is y_1. The load d is an input, and given to a feed-forward.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Chain {
     poles: Vec<f64>,
@@ -231,7 +231,8 @@ fn a_limited_loop_winds_up_and_does_not() {
     assert!(greatest[0] > greatest[2] && greatest[0] > greatest[1], "{greatest:?}");
 }
 
-/// The command that leaves is never above its limit, and the indicator of the limit shows when it binds.
+/// The command that leaves is never above its limit, and the indicator of the limit shows when it
+/// binds.
 #[test]
 fn the_limit_is_kept_and_told() {
     let result = saturating(AntiWindup::BackCalculation, 1e-8);

@@ -64,7 +64,8 @@ fn a_late_integrator_is_a_polynomial_of_each_delay() {
     }
 }
 
-/// At k T = pi/2 it swings for ever: y = cos(pi t/2) is the solution of the history cos(pi t/2); with k T = 1 it dies out.
+/// At k T = pi/2 it swings for ever: y = cos(pi t/2) is the solution of the history cos(pi t/2);
+/// with k T = 1 it dies out.
 #[test]
 fn a_late_integrator_over_many_delays() {
     for tolerance in [1e-6, 1e-9] {
@@ -185,7 +186,8 @@ fn a_late_command_of_a_continuous_controller() {
     }
 }
 
-/// A plant of order three, a proportional-integral controller and a delay, against the linear answer.
+/// A plant of order three, a proportional-integral controller and a delay, against the linear
+/// answer.
 #[test]
 fn a_late_command_of_a_dynamic_controller() {
     let plant = Chain::new(vec![-2.0, -8.0, -20.0], 320.0);

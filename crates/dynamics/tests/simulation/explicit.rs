@@ -5,7 +5,8 @@ use phea_dynamics::simulation::{Input, Method, Profile, SimulationSettings, Stat
 
 use super::laws::{Law, Lawful, course, run_by, settings, simulate};
 
-/// A pendulum whose support is shaken: theta'' = -(9.81 + w) sin(theta) - theta'/10, sin by its series.
+/// A pendulum whose support is shaken: theta'' = -(9.81 + w) sin(theta) - theta'/10, sin by its
+/// series.
 #[derive(Clone)]
 struct Pendulum;
 

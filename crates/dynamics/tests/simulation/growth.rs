@@ -8,8 +8,8 @@ use phea_dynamics::simulation::{
 
 use super::laws::{Law, Lawful, course, settings, simulate};
 
-/// Two equal masses between three equal springs, each damped by the negative of a damper; positions x_1, x_2 and velocities over
-/// omega.
+/// Two equal masses between three equal springs, each damped by the negative of a damper; positions
+/// x_1, x_2 and velocities over omega.
 ///
 /// ```text
 /// x_1'' = omega^2 (x_2 - 2 x_1) + 2 alpha x_1',    x_2'' = omega^2 (x_1 - 2 x_2) + 2 alpha x_2'
@@ -83,7 +83,8 @@ fn two_masses_grow_at_their_rate() {
     }
 }
 
-/// A mass on a spring whose friction feeds it the more the later it is; what a command adds to its speed is nothing here.
+/// A mass on a spring whose friction feeds it the more the later it is; what a command adds to its
+/// speed is nothing here.
 ///
 /// ```text
 /// x' = omega y,   y' = -omega x + 2 a s y + w,   s' = 1        amplitude A exp(a (s^2 - s_0^2)/2), to the order of a/omega^2
@@ -127,7 +128,8 @@ impl Drifting {
         [portable::ln(portable::hypot(x, y)), reached]
     }
 
-    /// Growth of the logarithm of the amplitude from one time to two seconds, over what it should be.
+    /// Growth of the logarithm of the amplitude from one time to two seconds, over what it should
+    /// be.
     fn relative_growth(&self, since_s: f64, from: f64, sample_time_s: Option<f64>) -> f64 {
         let [before, after] = [since_s, 2.0].map(|time_s| self.after(time_s, from, sample_time_s));
         let expected = 0.5 * self.rate * (after[1] * after[1] - before[1] * before[1]);
@@ -157,9 +159,10 @@ fn friction_that_feeds_more_and_more_is_followed() {
     assert!((grown - 1.0).abs() < 0.02, "{grown}");
 }
 
-/// From sample to sample it goes by matrices that are found once: these are found anew when friction has changed, so that a mode that
-/// decayed when they were found is seen to grow, through whatever angle it turns in a sample. (The first sample goes by the method, which
-/// may damp what decays.)
+/// From sample to sample it goes by matrices that are found once: these are found anew when
+/// friction has changed, so that a mode that decayed when they were found is seen to grow, through
+/// whatever angle it turns in a sample. (The first sample goes by the method, which may damp what
+/// decays.)
 #[test]
 fn samples_do_not_hide_growth() {
     for angle in [0.3, 1.3, 2.6, 6.5, 13.0, 39.0] {
@@ -169,7 +172,8 @@ fn samples_do_not_hide_growth() {
     }
 }
 
-/// A course that is too long for the oscillation that would have to be followed ends, and names the mode.
+/// A course that is too long for the oscillation that would have to be followed ends, and names the
+/// mode.
 #[test]
 fn what_cannot_be_resolved_is_told() {
     let law = TwoMasses { omega: 1e4, alpha: 20.0 };
@@ -187,8 +191,8 @@ fn what_cannot_be_resolved_is_told() {
     assert!((growth_per_s / 20.0 - 1.0).abs() < 1e-6);
 }
 
-/// A mass that creeps against friction far above critical, without any oscillation, until friction falls: the oscillation that comes up
-/// then is seen from its beginning.
+/// A mass that creeps against friction far above critical, without any oscillation, until friction
+/// falls: the oscillation that comes up then is seen from its beginning.
 ///
 /// ```text
 /// x' = omega y,   y' = -omega x - d(s) y + w,   s' = 1,   d = 1e5 (1 - s) before s = 1 and -400 (s - 1) after it
@@ -228,7 +232,8 @@ fn an_oscillation_that_was_not_there_is_seen_when_it_comes_up() {
         let run = simulate(&Loosening, &begin, &course, None, &settings, &mut |_| true).unwrap();
         assert_eq!(run.outcome.status, Status::Completed);
         let [x, y, _] = run.outcome.end[..] else { panic!("three states") };
-        // It grows by e^100, from however little the friction and rounding leave; what the motion alone makes of it is 1e-6.
+        // It grows by e^100, from however little the friction and rounding leave; what the motion
+        // alone makes of it is 1e-6.
         let amplitude = portable::ln(portable::hypot(x, y));
         assert!(amplitude > 30.0, "{tolerance:e}: {amplitude}");
     }

@@ -17,8 +17,8 @@ impl Law for Bent {
     }
 }
 
-/// y(1) = (p^2 + (1 - p)^2)/2 at a thousand p. Steps that are refused and shortened do not end where their error is blind;
-/// what is left are first attempts that begin so that it is.
+/// y(1) = (p^2 + (1 - p)^2)/2 at a thousand p. Steps that are refused and shortened do not end
+/// where their error is blind; what is left are first attempts that begin so that it is.
 #[test]
 fn a_kink_is_met_to_the_tolerance_wherever_it_lies() {
     for tolerance in [1e-4, 1e-6, 1e-8] {

@@ -8,7 +8,8 @@ use phea_dynamics::simulation::{
 
 use super::laws::settings;
 
-/// A stiff pair, a limit, a command and, if there is one, a late wave: states x, v, z; inputs w, u and the wave of x.
+/// A stiff pair, a limit, a command and, if there is one, a late wave: states x, v, z; inputs w, u
+/// and the wave of x.
 ///
 /// ```text
 /// x' = v,   v' = -k x + f v/(1 + v^2) - |v| v + w + u,   z' = r (x - z) + sqrt(|w| + 1/10) - x(t - T)/2
@@ -214,7 +215,8 @@ fn neighbours_make_no_difference_from_sample_to_sample() {
     neighbours(&cases, 0);
 }
 
-/// With commands that jump at every sample known matrices are refused now and then, while neighbours repeat steps.
+/// With commands that jump at every sample known matrices are refused now and then, while
+/// neighbours repeat steps.
 #[test]
 fn neighbours_make_no_difference_where_commands_jump() {
     let mut cases = cases();
@@ -276,7 +278,8 @@ fn a_neighbour_that_fails_fails_alone() {
     }
 }
 
-/// y' = sqrt(w), whose derivative at w = 0 is infinite: no harm while w does not change, whatever moves next to it.
+/// y' = sqrt(w), whose derivative at w = 0 is infinite: no harm while w does not change, whatever
+/// moves next to it.
 #[derive(Clone)]
 struct Root;
 

@@ -34,7 +34,8 @@ impl<L: Law> System<f64> for Lawful<L> {
     }
 }
 
-/// A system whose equations were recorded: the methods, which are compiled for each type of a system, are compiled once for all.
+/// A system whose equations were recorded: the methods, which are compiled for each type of a
+/// system, are compiled once for all.
 #[derive(Clone)]
 struct Recording {
     scales: Vec<f64>,

@@ -9,8 +9,8 @@ use super::laws::{Lawful, Oscillator, Reciprocal, course, distance, run_by};
 
 const METHODS: [Method; 2] = [Method::Rosenbrock, Method::DormandPrince];
 
-/// y = 1/(2 + sin(2 t)), with `steps` equal steps in 3 s: an input that nothing depends on breaks there, and a scale of
-/// 1e12 leaves the error no say.
+/// y = 1/(2 + sin(2 t)), with `steps` equal steps in 3 s: an input that nothing depends on breaks
+/// there, and a scale of 1e12 leaves the error no say.
 fn by_equal_steps(method: Method, steps: u32, rows: f64) -> Simulated {
     let breaks: Vec<(f64, f64)> =
         (1..steps).map(|step| (3.0 * f64::from(step) / f64::from(steps), f64::from(step % 2))).collect();

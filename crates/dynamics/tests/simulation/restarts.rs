@@ -19,7 +19,8 @@ impl Law for Lag {
     }
 }
 
-/// A hundred steps of a reference whose integral is known: exact at any tolerance, in one step from break to break.
+/// A hundred steps of a reference whose integral is known: exact at any tolerance, in one step from
+/// break to break.
 #[test]
 fn steps_of_an_input_are_integrated_exactly() {
     let steps: Vec<(f64, f64)> =
@@ -63,7 +64,8 @@ fn a_short_bump_is_not_stepped_over() {
     }
 }
 
-/// Every kind of motion, begun in the middle of nothing: its velocity's integral is the way that was gone.
+/// Every kind of motion, begun in the middle of nothing: its velocity's integral is the way that
+/// was gone.
 #[test]
 fn motions_are_followed_from_their_start() {
     let motions = [

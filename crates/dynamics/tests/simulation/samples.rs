@@ -80,7 +80,8 @@ impl Sampler for Integrating<'_> {
     }
 }
 
-/// The same by matrix exponentials: from each sample to where a command arrives, and on to the next sample.
+/// The same by matrix exponentials: from each sample to where a command arrives, and on to the next
+/// sample.
 fn exactly(spring: &Spring, sample_time_s: f64, delay_s: f64, samples: usize) -> Vec<[f64; 3]> {
     let system = spring.system();
     let whole = (delay_s / sample_time_s + 1e-9).floor();
@@ -181,8 +182,8 @@ fn rows_show_the_command_that_is_held() {
     }
 }
 
-/// A step of the reference at a whole number of samples acts at that sample, whatever rounding makes of the two times: its
-/// transient is that of any other, shifted.
+/// A step of the reference at a whole number of samples acts at that sample, whatever rounding
+/// makes of the two times: its transient is that of any other, shifted.
 #[test]
 fn a_step_at_a_sample_acts_there() {
     let plant = CommandedPlant::on_hold(Spring { rate: 300.0 }, &TransferFunction::gain_only(1.0)).unwrap();
@@ -200,7 +201,8 @@ fn a_step_at_a_sample_acts_there() {
         assert!(still.iter().all(|row| row[2] == 0.0), "{samples}");
         moving.iter().take(50).map(|row| row[2]).collect::<Vec<f64>>()
     };
-    // tenths of a millisecond, and on which side of the decimal fraction the rounding of the product lies
+    // tenths of a millisecond, and on which side of the decimal fraction the rounding of the
+    // product lies
     for (tenths, below) in [(7, true), (11, false)] {
         let decimal = |samples: u32| f64::from(tenths * samples) / 1e4;
         let off = (1..200).map(|samples| f64::from(samples) * decimal(1) - decimal(samples));
@@ -229,7 +231,8 @@ fn a_row_at_a_break_shows_what_follows() {
     }
 }
 
-/// A pendulum-like plant whose stiffness grows with its swing and which loses its way when the valve closes.
+/// A pendulum-like plant whose stiffness grows with its swing and which loses its way when the
+/// valve closes.
 ///
 /// ```text
 /// x' = v,   v' = z - 9 x - 4 x^3 - |v| v,   z' = (u - z) sqrt(1 + z^2) 8
@@ -263,7 +266,8 @@ impl Plant<f64> for Bent {
     }
 }
 
-/// From sample to sample by matrices found once, or by a method that knows of none: one answer, within the tolerance.
+/// From sample to sample by matrices found once, or by a method that knows of none: one answer,
+/// within the tolerance.
 #[test]
 fn a_bent_plant_gets_from_sample_to_sample() {
     let plant = CommandedPlant::on_hold(Bent, &TransferFunction::gain_only(1.0)).unwrap();

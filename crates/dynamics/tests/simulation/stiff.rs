@@ -74,7 +74,8 @@ impl Law for VanDerPol {
 
 #[test]
 fn van_der_pols_relaxation() {
-    // ORIGIN: Mazzia and Magherini, Test Set for Initial Value Problem Solvers (2008), problem VDPOL
+    // ORIGIN: Mazzia and Magherini, Test Set for Initial Value Problem Solvers (2008), problem
+    // VDPOL
     let published = [1.706167732170483, -0.8928097010247975];
     for (tolerance, allowed) in [(1e-4, 2e-3), (1e-6, 2e-5), (1e-9, 2e-8)] {
         let result = run(&Lawful(VanDerPol, 1.0), &[2.0, 0.0], &course(2.0, 0.01, vec![]), tolerance);
@@ -108,7 +109,8 @@ impl System<f64> for Robertson {
 
 #[test]
 fn robertsons_reactions() {
-    // ORIGIN: Mazzia and Magherini, Test Set for Initial Value Problem Solvers (2008), problem ROBER
+    // ORIGIN: Mazzia and Magherini, Test Set for Initial Value Problem Solvers (2008), problem
+    // ROBER
     let published = [0.2083340149701255e-7, 0.8333360770334713e-13, 0.999999979166505];
     let result = run(&Robertson, &[1.0, 0.0, 0.0], &course(1e11, 1e10, vec![]), 1e-8);
     for (index, value) in published.into_iter().enumerate() {

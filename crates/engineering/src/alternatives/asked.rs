@@ -1,5 +1,5 @@
-//! The alternatives of a project as projects, ready to be judged: with their settings, with the hose
-//! that `[sizing]` finds where one asks for it, and with the ranges that follow their rig.
+//! The alternatives of a project as projects, ready to be judged: with their settings, with the
+//! hose that `[sizing]` finds where one asks for it, and with the ranges that follow their rig.
 
 use super::by_other_means::OtherPart;
 use super::recentred::{self, MovedRange};
@@ -36,8 +36,8 @@ impl AskedAlternative {
         AskedAlternative { name: name.to_string(), loaded, rig, no_hose, moved: vec![] }
     }
 
-    /// The parameters of its rig that lie outside of their ranges in `[uncertainty]`, in words; `None`
-    /// where they are those of the project as it is declared, the first of all.
+    /// The parameters of its rig that lie outside of their ranges in `[uncertainty]`, in words;
+    /// `None` where they are those of the project as it is declared, the first of all.
     pub fn outside(&self, all: &[AskedAlternative]) -> Option<String> {
         let words = |one: &AskedAlternative| {
             let rig = one.rig.as_ref().ok()?;
@@ -81,8 +81,9 @@ impl ReadingAgain<'_> {
 /// The project as it is declared, and its alternatives in file order.
 ///
 /// # Errors
-/// [`ProcedureError::Catalogue`] for an alternative that is not a valid project, or whose gas is shut off,
-/// [`ProcedureError::Alternative`] for one that cannot be sized or whose ranges cannot be moved.
+/// [`ProcedureError::Catalogue`] for an alternative that is not a valid project, or whose gas is
+/// shut off, [`ProcedureError::Alternative`] for one that cannot be sized or whose ranges cannot be
+/// moved.
 pub fn asked(
     source: &dyn Source,
     loaded: &Loaded,
@@ -112,7 +113,8 @@ pub fn asked(
 /// What is counted of the parts of all of them.
 ///
 /// # Errors
-/// [`ProcedureError::Alternative`] for one whose prices are in another currency than those before it.
+/// [`ProcedureError::Alternative`] for one whose prices are in another currency than those before
+/// it.
 fn counted(all: &[AskedAlternative]) -> Result<PartsCounted, ProcedureError> {
     let projects = |count: usize| all.iter().take(count).map(|one| &one.loaded.project);
     for (index, one) in all.iter().enumerate() {

@@ -1,5 +1,5 @@
-//! An alternative whose gas, spring, pipe or valve between the chambers is sized for the stiffness of the
-//! hose that `[sizing]` finds for the project as it is declared.
+//! An alternative whose gas, spring, pipe or valve between the chambers is sized for the stiffness
+//! of the hose that `[sizing]` finds for the project as it is declared.
 
 use super::AskedAlternative;
 use crate::catalogue::Catalogue;
@@ -21,7 +21,8 @@ pub(super) enum OtherPart {
 }
 
 impl OtherPart {
-    /// The part that this alternative has and the declared project lacks; `None` where there is none.
+    /// The part that this alternative has and the declared project lacks; `None` where there is
+    /// none.
     pub(super) fn of(declared: &DeclaredActuator, other: &DeclaredActuator) -> Option<OtherPart> {
         let gas = |rig: &DeclaredActuator| rig.line.a.accumulator.is_some() && rig.line.a == rig.line.b;
         let spring = |rig: &DeclaredActuator| rig.series.as_ref().is_some_and(|one| one.spring().is_some());

@@ -44,8 +44,8 @@ pub struct AlternativeColumns(pub Vec<(ColumnPart, AlternativeColumn)>);
 
 impl AlternativeColumns {
     /// The worst value of the column of that name, of all specifications, scenarios or frequencies:
-    /// the least where more is better, otherwise the greatest. `None` if there is none, or the force
-    /// does not settle in one of them.
+    /// the least where more is better, otherwise the greatest. `None` if there is none, or the
+    /// force does not settle in one of them.
     pub fn worst(&self, key: &str) -> Option<f64> {
         let columns = || self.0.iter().filter(|(_, column)| column.key == key);
         if columns().any(|(_, column)| column.value.as_ref().is_err_and(|reason| reason == NOT_SETTLED)) {

@@ -90,8 +90,8 @@ pub const MEASURES: [(&str, &str); 4] = [
 /// Measures of dominance that count where all that are compared state them.
 pub const MEASURES_IF_STATED: [(&str, &str); 2] = [("parts_price", "price"), ("parts_mass_kg", "mass")];
 
-/// What a decision needs at a glance: the key of the column and its name for people. Of columns that
-/// exist for several scenarios, the worst value counts.
+/// What a decision needs at a glance: the key of the column and its name for people. Of columns
+/// that exist for several scenarios, the worst value counts.
 pub const COMPARED_AT_A_GLANCE: [(&str, &str); 9] = [
     ("order", "order of G"),
     ("delay_margin_s", "delay tolerated"),

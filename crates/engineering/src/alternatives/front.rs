@@ -14,8 +14,8 @@ use crate::spelling::nearest;
 /// The request, as written.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FrontRequest {
-    /// Two or three columns by their names in an answer, or `swept` for the swept number; each may end
-    /// in `:less` or `:more`, which says what is better.
+    /// Two or three columns by their names in an answer, or `swept` for the swept number; each may
+    /// end in `:less` or `:more`, which says what is better.
     pub columns: Vec<String>,
     /// What is swept.
     pub sweep: SweepRequest,
@@ -27,8 +27,8 @@ const POINTS: usize = 5;
 /// The swept number as a column.
 const SWEPT: &str = "swept";
 
-/// How far the specifications are from what can be had, 0 where all are satisfied; and the same by the
-/// name of the column that says yes or no.
+/// How far the specifications are from what can be had, 0 where all are satisfied; and the same by
+/// the name of the column that says yes or no.
 const RELAXATION: &str = "relaxation_db";
 const FEASIBLE: &str = "feasible";
 
@@ -67,9 +67,9 @@ pub struct FrontPoint {
     pub value: f64,
     /// Whether every specification is satisfied there, or why this is not known.
     pub feasible: Result<bool, String>,
-    /// Whether it satisfies them, is driven to its end, and is not contradicted by the machine: only
-    /// such points dominate others, or are on a front. Where the relaxation is a column, those that miss
-    /// the specifications are compared too.
+    /// Whether it satisfies them, is driven to its end, and is not contradicted by the machine:
+    /// only such points dominate others, or are on a front. Where the relaxation is a column, those
+    /// that miss the specifications are compared too.
     pub comparable: bool,
     /// The columns, with their words and units, or why there are none.
     pub values: Vec<Result<FrontValue, String>>,

@@ -122,8 +122,8 @@ pub fn retracted_length(declared: &DeclaredActuator, rig: &Rig) -> Result<f64, &
     Ok(cylinder.longest_stage_m() + dead + series)
 }
 
-/// Of the rod, and of what moves between force sensor and load: the oil of a transmission as its pistons
-/// feel it.
+/// Of the rod, and of what moves between force sensor and load: the oil of a transmission as its
+/// pistons feel it.
 fn moving_mass(_: &DeclaredActuator, rig: &Rig) -> Result<f64, &'static str> {
     let on_rod = match (rig.plant.series.map(|series| series.element), rig.actuator.components().series) {
         (Some(LinearElement::Oil(column)), _) => column.mass * column.segments as f64,
@@ -151,8 +151,8 @@ fn lines_volume(_: &DeclaredActuator, rig: &Rig) -> Result<f64, &'static str> {
     Ok(lines(rig).into_iter().map(Line::volume).sum())
 }
 
-/// Lines, chambers at the operating point, dead volumes, what the accumulators hold there, and the oil of
-/// a transmission.
+/// Lines, chambers at the operating point, dead volumes, what the accumulators hold there, and the
+/// oil of a transmission.
 fn oil_volume(declared: &DeclaredActuator, rig: &Rig) -> Result<f64, &'static str> {
     let components = rig.actuator.components();
     let (cylinder, point) = (&components.cylinder, &rig.point);

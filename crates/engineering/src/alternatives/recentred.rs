@@ -1,5 +1,5 @@
-//! Ranges of `[uncertainty]` that follow a rig: those of parameters of the linear model, moved by the
-//! factor by which another rig changes the parameter.
+//! Ranges of `[uncertainty]` that follow a rig: those of parameters of the linear model, moved by
+//! the factor by which another rig changes the parameter.
 
 use phea_hydraulics::line::StiffeningMember;
 
@@ -28,10 +28,10 @@ const SAME: f64 = 1e-9;
 /// least' = least k(least)       greatest' = greatest k(greatest)       nominal' = nominal k, within both
 /// ```
 ///
-/// k is the quotient of the derived parameter of both rigs at their operating points. For K_H, whose
-/// range is that over the stroke, the ends have the quotients of the least and of the greatest
-/// stiffness over the stroke. A range that the other project states differently is its own and is
-/// left alone, as is a parameter that `[linear]` states.
+/// k is the quotient of the derived parameter of both rigs at their operating points. For K_H,
+/// whose range is that over the stroke, the ends have the quotients of the least and of the
+/// greatest stiffness over the stroke. A range that the other project states differently is its own
+/// and is left alone, as is a parameter that `[linear]` states.
 pub(super) fn moved(base: &AskedAlternative, other: &AskedAlternative) -> Result<Vec<MovedRange>, String> {
     let text = |error: &RigError| error.to_string();
     let rigs = [base.rig.as_ref().map_err(text)?, other.rig.as_ref().map_err(text)?];

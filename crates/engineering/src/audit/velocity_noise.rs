@@ -1,4 +1,5 @@
-//! The effect of the noise of the velocity that is fed forward on the valve's command and the force.
+//! The effect of the noise of the velocity that is fed forward on the valve's command and the
+//! force.
 
 use phea_qft::design::quantization::{QuantizationError, RateNoise, rate_noise};
 use phea_qft::family::Family;

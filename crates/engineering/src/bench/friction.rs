@@ -1,5 +1,5 @@
-//! Runs of the cylinder for its friction: sliding at constant velocities, pressed until it breaks away,
-//! and shaken on its bristles, as instruments would record them.
+//! Runs of the cylinder for its friction: sliding at constant velocities, pressed until it breaks
+//! away, and shaken on its bristles, as instruments would record them.
 //!
 //! ```text
 //! velocity | force over time -> LuGre friction, moving mass -> pressures in the chambers -> instruments -> rows

@@ -39,8 +39,8 @@ impl Instruments {
         self.pressure.as_ref().map_or(shown, |converter| converter.rounded(shown))
     }
 
-    /// What is read of a flow in m3/s: a turbine stands still below its smallest flow, which goes with
-    /// the kinematic viscosity, and does not indicate the direction unless it is signed.
+    /// What is read of a flow in m3/s: a turbine stands still below its smallest flow, which goes
+    /// with the kinematic viscosity, and does not indicate the direction unless it is signed.
     pub(super) fn flow(&self, meter: &FlowMeter, value: f64, viscosity_ratio: f64, noise: &mut u64) -> f64 {
         let disturbed = value + meter.noise * normal(noise);
         let turning = if value.abs() < meter.minimum * viscosity_ratio { 0.0 } else { disturbed };

@@ -11,7 +11,8 @@ use crate::project::Reversals;
 /// Hysteresis and threshold in V, each with its 95 % interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReversalReading {
-    /// Greatest difference of two commands that give the same flow over the cycle, threshold included.
+    /// Greatest difference of two commands that give the same flow over the cycle, threshold
+    /// included.
     pub hysteresis: (f64, [f64; 2]),
     /// Change of command that a reversal takes before the spool moves.
     pub threshold: (f64, [f64; 2]),

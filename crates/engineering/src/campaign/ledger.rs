@@ -132,8 +132,8 @@ pub trait RowStore {
     }
 }
 
-/// Drives the missing runs of a campaign, each row stored in the ledger if there is one, and returns
-/// all rows: fewer than requested if it was stopped.
+/// Drives the missing runs of a campaign, each row stored in the ledger if there is one, and
+/// returns all rows: fewer than requested if it was stopped.
 ///
 /// # Errors
 /// [`CampaignError`] where the ledger holds another campaign or cannot be written.

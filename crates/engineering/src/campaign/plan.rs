@@ -243,7 +243,8 @@ impl Plan {
         settings
     }
 
-    /// The numbers of the project that a drawn value means: its own, or all that its direction moves.
+    /// The numbers of the project that a drawn value means: its own, or all that its direction
+    /// moves.
     fn stated(&self, (range, value): (&VariedRange, &f64), drawn: &Option<Project>) -> Vec<(String, f64)> {
         let direction = self.project.directions.iter().find(|direction| direction.name == range.path);
         let Some(direction) = direction else { return vec![(range.path.clone(), *value)] };

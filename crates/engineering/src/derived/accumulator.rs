@@ -38,7 +38,8 @@ fn of_branch(branch: &GasBranch, name: &impl Fn(&str) -> String, list: &mut List
     }
 }
 
-/// The stiffness where the setting of accumulators that are adjusted is elsewhere: shut, or without what is added, at 0.
+/// The stiffness where the setting of accumulators that are adjusted is elsewhere: shut, or without
+/// what is added, at 0.
 fn at_settings(
     components: &Components,
     stiffness: &impl Fn(&Components, &OperatingPoint) -> f64,

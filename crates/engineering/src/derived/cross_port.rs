@@ -4,7 +4,8 @@ use super::list::List;
 use crate::rig::{CrossPortAtPoint, Rig, cross_port_at_point};
 use crate::setup::Setup;
 
-/// A valve between the chambers: what it passes and costs at rest, and what its feedback is made of.
+/// A valve between the chambers: what it passes and costs at rest, and what its feedback is made
+/// of.
 pub(super) fn cross_port(setup: &Setup<'_>, rig: &Rig, list: &mut List) {
     let Some(found) = cross_port_at_point(rig) else { return };
     list.group("Valve between the chambers");

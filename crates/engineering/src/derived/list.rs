@@ -68,7 +68,8 @@ impl List {
     }
 }
 
-/// Names of quantities of linear motion that are not keys of the project file, and those of a motor.
+/// Names of quantities of linear motion that are not keys of the project file, and those of a
+/// motor.
 const OF_A_MOTOR: [(&str, &str); 4] = [
     ("stiffness.minimum_position", "stiffness.minimum_angle"),
     ("operating_point.hydraulic_force", "operating_point.hydraulic_torque"),

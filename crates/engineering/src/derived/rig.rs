@@ -328,8 +328,8 @@ fn dynamics(rig: &Rig, list: &mut List) {
     least_damped(rig, list);
 }
 
-/// The mode of the plant that oscillates longest, with all of its parts but waves in the lines; none where it does not
-/// oscillate.
+/// The mode of the plant that oscillates longest, with all of its parts but waves in the lines;
+/// none where it does not oscillate.
 fn least_damped(rig: &Rig, list: &mut List) {
     let Ok(plant) = transfer_functions(&rig.plant.coefficients()) else { return };
     let oscillating = plant.command.poles().iter().filter(|pole| pole.im > 0.0);

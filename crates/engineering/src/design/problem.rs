@@ -31,8 +31,8 @@ pub fn design_problem(setup: &Setup<'_>, given: &RobustProblem) -> DesignProblem
 /// How a design is made: by `[design]`, or its defaults; `seed` in place of the project's.
 ///
 /// # Errors
-/// [`ProcedureError`] for a prefilter that is not a transfer function, or a nominal plant that cannot
-/// be sampled.
+/// [`ProcedureError`] for a prefilter that is not a transfer function, or a nominal plant that
+/// cannot be sampled.
 pub fn design_options(
     setup: &Setup<'_>,
     given: &RobustProblem,

@@ -13,9 +13,9 @@ use crate::setup::Setup;
 /// Beginning of the paths that a region of operating points ranges over.
 const OPERATING_POINT: &str = "operating_point.";
 
-/// Relative change of K_qU and of K_c for a change of each number by one, SI: a row for each of both
-/// at each operating point, which are the ends and the middle of every range of `[uncertainty]` and
-/// of `[family.operating_region]`.
+/// Relative change of K_qU and of K_c for a change of each number by one, SI: a row for each of
+/// both at each operating point, which are the ends and the middle of every range of
+/// `[uncertainty]` and of `[family.operating_region]`.
 ///
 /// ```text
 /// row = d ln K/d number

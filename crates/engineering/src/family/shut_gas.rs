@@ -6,7 +6,8 @@ use super::visited::Visited;
 use super::{ProjectFamilyError, uncertain, uncertain_plant};
 use crate::setup::Setup;
 
-/// The plants at which the pressure of a chamber is below the precharge of its gas: they are as stiff as without it.
+/// The plants at which the pressure of a chamber is below the precharge of its gas: they are as
+/// stiff as without it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShutGas {
     /// How many of those that were examined: the members, and the corners of the box.
@@ -22,8 +23,8 @@ pub struct ShutGas {
 /// Largest number of uncertain numbers whose corners are all examined.
 const MOST_AXES: usize = 10;
 
-/// Where in a family the gas at a chamber is shut off; `None` where it is in use at every plant that is
-/// examined, or there is none.
+/// Where in a family the gas at a chamber is shut off; `None` where it is in use at every plant
+/// that is examined, or there is none.
 ///
 /// ```text
 /// P_A < P_0 of accumulator A,   or   P_B < P_0 of accumulator B            at the operating point of the plant

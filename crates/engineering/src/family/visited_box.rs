@@ -190,8 +190,8 @@ impl Hill<'_> {
 
     /// Steps along each coordinate, and along all of them together, while they increase the value,
     /// with decreasing length. After each step the coordinate `along` moves to the best place
-    /// nearby: a coefficient has a crest where the spool is at null, and steps away from it decrease
-    /// the value.
+    /// nearby: a coefficient has a crest where the spool is at null, and steps away from it
+    /// decrease the value.
     fn climb(&self, shares: Vec<f64>) -> Vec<f64> {
         let [mut step, least] = STEPS;
         let mut crests = Crests::new();
@@ -223,8 +223,9 @@ impl Hill<'_> {
         shares
     }
 
-    /// These shares with the coordinate `along` at the best place nearby, and the height there. Many steps end at a corner
-    /// of the box, or move what the result does not depend on: they are searched once.
+    /// These shares with the coordinate `along` at the best place nearby, and the height there.
+    /// Many steps end at a corner of the box, or move what the result does not depend on: they are
+    /// searched once.
     fn at_crest(&self, mut shares: Vec<f64>, step: f64, crests: &mut Crests) -> (Vec<f64>, f64) {
         let start = self.along.and_then(|axis| Some((axis, *shares.get(axis)?)));
         let Some((axis, middle)) = start else {

@@ -148,7 +148,8 @@ fn steady_guess(slides: &[ConstantVelocity]) -> Option<Stribeck> {
     best.filter(|_| typical > 0.0).map(|(_, curve)| curve)
 }
 
-/// Sum of squares, and F_C, F_S - F_C and sigma_2; with a zero of the force where it goes both ways.
+/// Sum of squares, and F_C, F_S - F_C and sigma_2; with a zero of the force where it goes both
+/// ways.
 fn linear_part(points: &[(f64, f64)], velocity: f64, exponent: f64) -> Option<(f64, [f64; 3])> {
     let both = points.iter().any(|(v, _)| *v > 0.0) && points.iter().any(|(v, _)| *v < 0.0);
     let row = |v: f64| {

@@ -47,8 +47,9 @@ const CERTAIN_CHANGE: f64 = 0.05;
 /// Share by which the force may still change in the second half.
 const SETTLED: f64 = 0.05;
 
-/// Sum of the residuals of a line, over noise and the root of their number, beyond which it is not a line.
-/// The largest of white noise exceeds 0.9 in one case of twenty: a bend too many does no harm.
+/// Sum of the residuals of a line, over noise and the root of their number, beyond which it is not
+/// a line. The largest of white noise exceeds 0.9 in one case of twenty: a bend too many does no
+/// harm.
 const BENT: f64 = 1.0;
 
 /// Standard deviation of white noise on a smooth signal, from its third differences (their variance
@@ -90,8 +91,8 @@ impl RowLine {
     }
 }
 
-/// Rows in pieces over each of which the values are straight, within noise or within a share of what
-/// they change by.
+/// Rows in pieces over each of which the values are straight, within noise or within a share of
+/// what they change by.
 fn straight_pieces(values: &[f64], noise: f64, share: f64) -> Vec<Range<usize>> {
     let mut found = Vec::new();
     let mut open = vec![Range { start: 0, end: values.len() }];

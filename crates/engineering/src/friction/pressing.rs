@@ -61,8 +61,8 @@ fn beginning(recording: &FrictionRecording) -> [f64; 2] {
     })
 }
 
-/// Compliance of the bristles in m/N, from rest to a part of the static friction; at least what noise
-/// lets see. The force without its noise, which would make the slope less.
+/// Compliance of the bristles in m/N, from rest to a part of the static friction; at least what
+/// noise lets see. The force without its noise, which would make the slope less.
 ///
 /// ```text
 /// x = -(F_S/sigma_0) ln(1 - F/F_S)                    LuGre friction under a force that rises slowly

@@ -39,8 +39,8 @@ const FINEST_SLIDING: f64 = 1e-9;
 /// without noise would outweigh the position by more than rounding leaves of it.
 const FINEST: f64 = 1e-5;
 
-/// First scale of the position of a shaken piston, over its swing: from a guess that leaves much more
-/// than the noise, a search that is robust against outliers takes all rows for such.
+/// First scale of the position of a shaken piston, over its swing: from a guess that leaves much
+/// more than the noise, a search that is robust against outliers takes all rows for such.
 const FIRST_SCALE: f64 = 0.1;
 
 /// The friction around which is searched, and the sizes of the variables.
@@ -82,8 +82,8 @@ pub(super) struct FrictionProblem<'a> {
     pub(super) around: Around,
     /// Whether the zero of the force is searched for.
     pub(super) finds_zero: bool,
-    /// One of each recording that slides; then force and position of each that is pressed, and of each
-    /// that is shaken.
+    /// One of each recording that slides; then force and position of each that is pressed, and of
+    /// each that is shaken.
     pub(super) channels: Vec<FrictionChannel>,
 }
 
@@ -122,8 +122,8 @@ impl<'a> FrictionProblem<'a> {
     }
 
     /// How many variables there are: those that are shared; of each constant velocity what the
-    /// bristles brought along; of each press where it began, and its force at each knot; of each shake
-    /// how it began, and the sizes of its force.
+    /// bristles brought along; of each press where it began, and its force at each knot; of each
+    /// shake how it began, and the sizes of its force.
     pub(super) fn count(&self) -> usize {
         let shaken: usize = self.shakes.iter().map(ShakenRows::variable_count).sum();
         self.first_of_shakes() + shaken
@@ -196,8 +196,8 @@ impl<'a> FrictionProblem<'a> {
         start
     }
 
-    /// What a variable may be. Where nothing is shaken the damping of the bristles stays: a slow force
-    /// does not show it, and what rings freely would follow the noise.
+    /// What a variable may be. Where nothing is shaken the damping of the bristles stays: a slow
+    /// force does not show it, and what rings freely would follow the noise.
     pub(super) fn bounds(&self) -> Vec<[f64; 2]> {
         let zero = if self.finds_zero { [-100.0, 100.0] } else { [0.0, 0.0] };
         let damping = match self.shakes {
@@ -218,8 +218,8 @@ impl<'a> FrictionProblem<'a> {
         bounds
     }
 
-    /// Residuals over their scales, with derivatives; `None` where there is no such friction, or the
-    /// simulation has no end.
+    /// Residuals over their scales, with derivatives; `None` where there is no such friction, or
+    /// the simulation has no end.
     pub(super) fn linearised(&self, variables: &[f64]) -> Option<Linearised> {
         let (lugre, zero) = self.friction(variables);
         if lugre.curve.coulomb <= 0.0 {

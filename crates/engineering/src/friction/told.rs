@@ -221,8 +221,8 @@ fn shaken_time_step(problem: &FrictionProblem<'_>) -> Option<f64> {
     recordings.map(|one| one.time_step).reduce(f64::max)
 }
 
-/// Whether a force that presses is not known between its rows, or is too quick for a damping that is
-/// taken for granted, which delays the mass.
+/// Whether a force that presses is not known between its rows, or is too quick for a damping that
+/// is taken for granted, which delays the mass.
 fn presses_quickly(
     problem: &FrictionProblem<'_>,
     stiffness: &FrictionEstimate,

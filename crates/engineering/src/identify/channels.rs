@@ -16,8 +16,8 @@ const RESOLUTION: f64 = 1e-6;
 /// Evaluations of a search whose end is the start of another.
 const FEW_EVALUATIONS: usize = 60;
 
-/// Evaluations of the last search. Where the recordings hardly distinguish coefficients, the sum has a
-/// long curved valley.
+/// Evaluations of the last search. Where the recordings hardly distinguish coefficients, the sum
+/// has a long curved valley.
 const EVALUATIONS: usize = 1000;
 
 /// A signal and the scale of its residuals.
@@ -33,8 +33,8 @@ pub(super) struct Channel {
 }
 
 impl Channel {
-    /// What no instrument resolves, and the standard deviation of rounding to the converter's steps:
-    /// where most rows are rounded to one value, their residuals say nothing of the noise.
+    /// What no instrument resolves, and the standard deviation of rounding to the converter's
+    /// steps: where most rows are rounded to one value, their residuals say nothing of the noise.
     pub(super) fn least_scale(&self) -> f64 {
         (RESOLUTION * self.range).max(self.step / 12.0_f64.sqrt())
     }
@@ -151,8 +151,8 @@ impl<'a> Together<'a> {
     }
 
     /// Takes the scale of each signal from its residuals: 1.4826 times their median magnitude,
-    /// which outliers do not move; at least what the instrument resolves. Returns the largest relative
-    /// change.
+    /// which outliers do not move; at least what the instrument resolves. Returns the largest
+    /// relative change.
     pub(super) fn rescale(&mut self, residuals: &[f64]) -> f64 {
         let of = |own: &[f64]| median(own.iter().map(|residual| residual.abs()).collect());
         let medians: Vec<f64> = self.by_channel(residuals).into_iter().map(of).collect();

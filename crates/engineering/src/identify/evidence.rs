@@ -55,10 +55,10 @@ impl ModelEvidence {
     /// BIC = m ln n - 2 ln L        ln L = -sum over signals of f (n_c ln s_c + sum rho(r/s_c)),   n = sum f n_c
     /// ```
     ///
-    /// with s_c the likeliest scale of each signal, m the number of coefficients and scales, and f =
-    /// (1 - c)/(1 + c), c the correlation of neighbouring residuals of the better model: the share of
-    /// rows that are independent (Bayley and Hammersley 1946). A constant that both models share is
-    /// left out.
+    /// with s_c the likeliest scale of each signal, m the number of coefficients and scales, and
+    /// f = (1 - c)/(1 + c), c the correlation of neighbouring residuals of the better model: the
+    /// share of rows that are independent (Bayley and Hammersley 1946). A constant that both models
+    /// share is left out.
     pub(super) fn of(fits: [&Fit<'_>; 2]) -> ModelEvidence {
         let signals = fits.map(Fit::signals);
         let losses = fits.map(losses);

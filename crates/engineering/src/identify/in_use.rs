@@ -26,15 +26,15 @@ pub fn recorded_files(project: &Project) -> Vec<RecordedTest> {
     declared.map(|one| RecordedTest { file: project.path_of(&one.file), ..one.clone() }).collect()
 }
 
-/// The project with the valve identified from its recordings, where `identify.use` wants that; `None`
-/// where it does not, or where it was done already.
+/// The project with the valve identified from its recordings, where `identify.use` wants that;
+/// `None` where it does not, or where it was done already.
 ///
-/// The hash is that of the bytes of the project followed by those of each recording, so that another
-/// recording is another project.
+/// The hash is that of the bytes of the project followed by those of each recording, so that
+/// another recording is another project.
 ///
 /// # Errors
-/// [`IdentifyError`] where files are refused, where the recordings do not determine a coefficient that
-/// the plant depends on, and where what they determine contradicts the project.
+/// [`IdentifyError`] where files are refused, where the recordings do not determine a coefficient
+/// that the plant depends on, and where what they determine contradicts the project.
 pub fn in_use(
     source: &dyn Source,
     loaded: &Loaded,
@@ -68,8 +68,8 @@ pub fn in_use(
     Ok(Some(Loaded { sha256, ..read_again(source, loaded, recorded)? }))
 }
 
-/// The files in memory, so that what is hashed is what is read; the hash of each, and of all together
-/// after the project.
+/// The files in memory, so that what is hashed is what is read; the hash of each, and of all
+/// together after the project.
 fn held(source: &dyn Source, loaded: &Loaded, files: &[RecordedTest]) -> (Memory, Vec<HashedFile>, String) {
     let mut memory = Memory::default();
     let mut together = loaded.bytes.clone();

@@ -38,8 +38,8 @@ pub(super) fn told(
     uncertainty(&at, groups, COUNT, Settings::default().robust_beyond)
 }
 
-/// 1.4826 times the median distance of the magnitude of normal noise from where it is fitted, over the
-/// deviation of the noise: 0.65 from the mean, 0.63 from the centre of the robust loss.
+/// 1.4826 times the median distance of the magnitude of normal noise from where it is fitted, over
+/// the deviation of the noise: 0.65 from the mean, 0.63 from the centre of the robust loss.
 const OF_MAGNITUDE: f64 = 0.62;
 
 /// Lowers the interval of the tare flow by what a meter without direction may have added to it.
@@ -51,8 +51,8 @@ const OF_MAGNITUDE: f64 = 0.62;
 /// ```
 ///
 /// The least tare flow is that of which the meter would show the interval's lower end. The noise is
-/// taken from the scale of the residuals as if all of them were magnitudes, which is the most it can
-/// be.
+/// taken from the scale of the residuals as if all of them were magnitudes, which is the most it
+/// can be.
 pub(super) fn lowered_tare_flow(
     intervals: &mut [Option<[f64; 2]>; COUNT],
     recordings: &[Recording],

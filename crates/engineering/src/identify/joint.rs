@@ -71,18 +71,18 @@ pub enum JointRegionError {
 ///
 /// The estimates are normal with covariance C = D L L' D, D the standard deviations, L L' the
 /// correlations. With c = c0 + D L z the components of z are independent and standard normal, and
-/// remain so when z is turned. It is turned so that each component in its order has as great an effect
-/// on ln K_qU and ln K_c at the operating points of the rig as the earlier ones left: by the
+/// remain so when z is turned. It is turned so that each component in its order has as great an
+/// effect on ln K_qU and ln K_c at the operating points of the rig as the earlier ones left: by the
 /// eigenvectors of M'M, M = J D L, J the derivatives.
 ///
 /// ```text
 /// P(|z_i| <= r for all n) = erf(r/sqrt 2)^n = 0.95          n = 9: r = 2.77
 /// ```
 ///
-/// so that the box of the directions, and not each interval on its own, has 95 %. (Nine intervals of
-/// 1.96 deviations have 63 % together; the ellipsoid of 95 % has the radius 4.11, and the box around
-/// it 99.96 %.) The components at the end are left out as long as they move no K_qU and no K_c by more
-/// than `smallest_effect` together, each at its end.
+/// so that the box of the directions, and not each interval on its own, has 95 %. (Nine intervals
+/// of 1.96 deviations have 63 % together; the ellipsoid of 95 % has the radius 4.11, and the box
+/// around it 99.96 %.) The components at the end are left out as long as they move no K_qU and no
+/// K_c by more than `smallest_effect` together, each at its end.
 ///
 /// # Errors
 /// [`JointRegionError`] for coefficients that are not determined, and a rig that has no plant.

@@ -5,7 +5,8 @@
 //! ```
 //!
 //! A column is known by its name, with its unit (`supply_pressure_bar`, `p_S [bar]`), or by what a
-//! project says of it. What is harmless is dealt with and reported; everything else refuses the file.
+//! project says of it. What is harmless is dealt with and reported; everything else refuses the
+//! file.
 
 mod assembled;
 mod plausible;

@@ -126,8 +126,8 @@ impl RecordedSignal {
         if is_multiple { step } else { 0.0 }
     }
 
-    /// Each value, or its neighbour where that lies between it and its other neighbour: the median of
-    /// three.
+    /// Each value, or its neighbour where that lies between it and its other neighbour: the median
+    /// of three.
     pub(super) fn despiked(&self) -> Vec<Option<f64>> {
         let at = |row: Option<usize>| row.and_then(|row| self.values.get(row).copied().flatten());
         let of = |(row, value): (usize, &Option<f64>)| {

@@ -17,7 +17,8 @@ use super::recording::{Recording, SignalKind, median, usual_drop};
 /// What shows where null is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NullMethod {
-    /// The middle of the leakage curve at half of its height. Of unequal edges it is not quite null.
+    /// The middle of the leakage curve at half of its height. Of unequal edges it is not quite
+    /// null.
     LeakageCentre,
     /// The middle between the zeros of straight lines through both branches of the flow.
     FlowLines,
@@ -38,7 +39,8 @@ pub struct NullReading {
 /// SI.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SimpleCalculations {
-    /// K_vp by (4.12), corrected, for positive commands (edges 3 and 6) and negative ones (4 and 5).
+    /// K_vp by (4.12), corrected, for positive commands (edges 3 and 6) and negative ones (4 and
+    /// 5).
     pub flow_coefficients: [Option<CurveReading>; 2],
     /// Flow of this valve over the rated one at the rated drop.
     pub share_of_nominal: Option<CurveReading>,
@@ -52,7 +54,8 @@ pub struct SimpleCalculations {
     pub leakage_shape: Option<f64>,
     /// Command of null with a rising and a falling command, in V.
     pub nulls: [Option<NullReading>; 2],
-    /// dq/dU near null at the usual supply pressure, for positive and negative commands, in m3/(s V).
+    /// dq/dU near null at the usual supply pressure, for positive and negative commands, in m3/(s
+    /// V).
     pub flow_gains: [Option<CurveReading>; 2],
     /// d(p_A - p_B)/dU at null with blocked ports, in Pa/V.
     pub pressure_sensitivity: Option<CurveReading>,

@@ -24,7 +24,8 @@ pub struct Untold {
     /// Coefficients with the share that each has of it, as factors: of length one, the greatest
     /// first.
     pub shares: Vec<(&'static str, f64)>,
-    /// Standard deviation along it, in the logarithm; infinite where nothing recorded depends on it.
+    /// Standard deviation along it, in the logarithm; infinite where nothing recorded depends on
+    /// it.
     pub deviation: f64,
     /// Tests that would determine it, at 30 % of the command with errors of 1 % of each signal's
     /// range.

@@ -52,11 +52,11 @@ pub struct LineIdentification {
 
 /// Normal quantile of 97.5 %.
 pub(super) const QUANTILE: f64 = 1.959_963_984_540_054;
-/// Standard deviation of a logarithm beyond which a number is not determined: a factor of one and a half
-/// either way.
+/// Standard deviation of a logarithm beyond which a number is not determined: a factor of one and a
+/// half either way.
 const TOLD: f64 = 0.2;
-/// The same of a wave speed and of a relaxation time, which follow from what the response has besides
-/// a compliance: below five standard deviations it may be nothing.
+/// The same of a wave speed and of a relaxation time, which follow from what the response has
+/// besides a compliance: below five standard deviations it may be nothing.
 const SHOWN: f64 = 0.1;
 /// Share of the range of a pressure rise by which it may be extrapolated.
 const BEYOND: f64 = 0.1;
@@ -88,8 +88,8 @@ impl LineNumber {
 /// ```
 ///
 /// V is the oil that the line holds at the operating pressure, beta_0 the modulus of the declared
-/// fluid there, I the inertance of the fit. Units: Pa, m3, m3/Pa, m/s. Theory of the line: D'Souza and
-/// Oldenburger (1964).
+/// fluid there, I the inertance of the fit. Units: Pa, m3, m3/Pa, m/s. Theory of the line: D'Souza
+/// and Oldenburger (1964).
 ///
 /// # Errors
 /// [`IdentifyError`] for recordings that no line explains, several of one kind, and when it is
@@ -234,8 +234,8 @@ fn relative(value: f64, deviation: f64) -> Result<LineNumber, Undetermined> {
     Err("the pressure does not rise with the volume".to_string())
 }
 
-/// m3/Pa: of a creeping wall, oil and wall after the creep. What is not a hose yields at rest as it does
-/// in motion.
+/// m3/Pa: of a creeping wall, oil and wall after the creep. What is not a hose yields at rest as it
+/// does in motion.
 fn compliance_at_rest(
     known: &KnownLine,
     pressure: f64,

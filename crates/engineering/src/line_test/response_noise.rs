@@ -20,7 +20,8 @@ const ROUNDS: usize = 400;
 /// minimise sum ln m_k + s_k/m_k,  m = a + b g:     a sqrt(sum s/m^2 / sum 1/m) -> a,   b sqrt(sum g s/m^2 / sum g/m) -> b
 /// ```
 ///
-/// which never increases the sum (Fevotte and Idier 2011). Pintelon and Schoukens (2012), section 2.
+/// which never increases the sum (Fevotte and Idier 2011). Pintelon and Schoukens (2012),
+/// section 2.
 pub(super) fn smoothed_deviations(points: &[SpectralPoint]) -> Vec<f64> {
     let squared = |point: &SpectralPoint| point.response.norm_sqr();
     let largest = points.iter().map(squared).fold(f64::MIN_POSITIVE, f64::max);

@@ -58,7 +58,8 @@ pub struct RiseFit {
 const DECISIVE: f64 = 3.29;
 /// Most terms of the volume over the pressure.
 const MOST_TERMS: usize = 3;
-/// Share of the compliance that its standard deviation may be for a drift to be taken as determined.
+/// Share of the compliance that its standard deviation may be for a drift to be taken as
+/// determined.
 const TOLD: f64 = 0.1;
 /// Windows of a record over which pressures are smoothed.
 const WINDOWS: usize = 100;
@@ -75,10 +76,10 @@ const STEPS: [usize; 2] = [16, 24];
 /// ```
 ///
 /// e is what is read wrong from row to row, w what the integral of a meter's noise has summed up
-/// to, q_0 its zero error and any leakage. Where w dominates, only what changes from row to row counts,
-/// and there the noise of the pressure is as large as its change: smoothed pressures are instruments
-/// for the recorded ones, whose noise they hardly share. Harvey (1989), section 2.3, for the local
-/// level; Patterson and Thompson (1971) for the likelihood.
+/// to, q_0 its zero error and any leakage. Where w dominates, only what changes from row to row
+/// counts, and there the noise of the pressure is as large as its change: smoothed pressures are
+/// instruments for the recorded ones, whose noise they hardly share. Harvey (1989), section 2.3,
+/// for the local level; Patterson and Thompson (1971) for the likelihood.
 pub(super) fn rise_fit(record: RiseRecord) -> Result<RiseFit, String> {
     let pressures = ends(record.pressures.iter().copied());
     let [low, high] = pressures;

@@ -8,8 +8,8 @@ pub(super) struct Whitened {
     pub(super) determinant: f64,
 }
 
-/// Takes out of each column what the rows before say, for white noise of variance 1 on top of a walk
-/// of this variance a row.
+/// Takes out of each column what the rows before say, for white noise of variance 1 on top of a
+/// walk of this variance a row.
 ///
 /// ```text
 /// P_1 = 1,  a_1 = y_1:    F = P + r + 1,  v = y - a,  K = (P + r)/F,  a + K v -> a,  (P + r)/F -> P        v/sqrt(F)

@@ -73,8 +73,8 @@ const STEP: f64 = 1e-5;
 /// The most that a parameter may change in the search, as a factor.
 const RANGE: f64 = 1e4;
 
-/// Fits the model of the line to a response. `slow` is ln of the whole compliance, with its standard
-/// deviation, where a pressure rise determines it.
+/// Fits the model of the line to a response. `slow` is ln of the whole compliance, with its
+/// standard deviation, where a pressure rise determines it.
 pub(super) fn response_fit(
     member: ResponseMember,
     pressure: f64,
@@ -208,8 +208,8 @@ impl SoughtLine<'_> {
         Some(Linearised { residuals, jacobian })
     }
 
-    /// Real and imaginary part of each point over their standard deviation, and the whole compliance
-    /// over that of the pressure rise.
+    /// Real and imaginary part of each point over their standard deviation, and the whole
+    /// compliance over that of the pressure rise.
     fn residuals(&self, variables: &[f64]) -> Option<Vec<f64>> {
         let parameters = self.parameters(variables);
         let line = blocked(self.known, self.model, &parameters)?;
@@ -240,7 +240,8 @@ fn blocked(known: &KnownLine, model: LineModel, parameters: &LineParameters) -> 
         LineModel::Segments { count, friction, .. } => {
             let mut segments = Segments::new(&conduit, count, friction).ok()?;
             if let Some([creep, retardation]) = creep {
-                // any split of oil and wall has this creep: all of what yields at once is taken as wall
+                // any split of oil and wall has this creep: all of what yields at once is taken as
+                // wall
                 let volume = known.volume();
                 let [fast, slow] = [volume / compliance, volume / (compliance + creep)];
                 let wall = StandardLinearSolid {

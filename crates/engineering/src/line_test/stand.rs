@@ -1,5 +1,5 @@
-//! Virtual tests of a line whose far end is blocked: a slow rise of the pressure, and a flow of many
-//! frequencies.
+//! Virtual tests of a line whose far end is blocked: a slow rise of the pressure, and a flow of
+//! many frequencies.
 //!
 //! ```text
 //! flow over time -> phea_hydraulics::line::BlockedLine -> pressure at the open end -> instruments -> rows

@@ -1,5 +1,5 @@
-//! Hydraulic stiffness over the force that is held at standstill: gas is the stiffer, the more it is
-//! compressed.
+//! Hydraulic stiffness over the force that is held at standstill: gas is the stiffer, the more it
+//! is compressed.
 
 use phea_hydraulics::actuator::Components;
 use phea_hydraulics::line::StiffeningMember;
@@ -11,14 +11,16 @@ use crate::rig::{ChargedRange, Rig, charged_range, components_at_setting};
 /// Forces over which the stiffness is stated.
 const FORCES: u32 = 120;
 
-/// The stiffness over the forces at which the gas is in use; all vectors have one value for each force.
+/// The stiffness over the forces at which the gas is in use; all vectors have one value for each
+/// force.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StiffnessOverForce {
     /// F_H in N, rising.
     pub forces: Vec<f64>,
     /// K_H in N/m at the setting of rest.
     pub at_rest: Vec<f64>,
-    /// Other settings of what is adjusted with K_H there, NaN where the gas is shut off at that setting.
+    /// Other settings of what is adjusted with K_H there, NaN where the gas is shut off at that
+    /// setting.
     pub at_settings: Vec<(f64, Vec<f64>)>,
 }
 
@@ -29,8 +31,8 @@ pub struct StiffnessOverForce {
 /// F_H = A_A p_A - A_B p_B,   q_A = q_B = 0,   K_H = A_A^2/C_A(p_A) + A_B^2/C_B(p_B)
 /// ```
 ///
-/// The forces end where the gas at a chamber is shut off, or at the nominal voltage. The supply keeps its
-/// pressure of the operating point.
+/// The forces end where the gas at a chamber is shut off, or at the nominal voltage. The supply
+/// keeps its pressure of the operating point.
 pub fn stiffness_over_force(rig: &Rig) -> Option<StiffnessOverForce> {
     let ChargedRange { least, greatest } = charged_range(rig)?;
     let components = rig.actuator.components();

@@ -23,8 +23,8 @@ pub const WITHIN_PERCENT: f64 = 10.0;
 const LOOKED_AT: [f64; 2] = [1e-2, 1e4];
 const COUNT: usize = 1201;
 
-/// The impedance that is required of a port, and what the port shows, with the load at its port moved as
-/// if by a hand.
+/// The impedance that is required of a port, and what the port shows, with the load at its port
+/// moved as if by a hand.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AskedImpedance {
     /// What is asked: Z_v/s at the port.
@@ -114,8 +114,8 @@ fn widest(all: &[AskedAt]) -> Option<[f64; 2]> {
         .and_then(|band| Some([band.first()?.frequency_rad_per_s, band.last()?.frequency_rad_per_s]))
 }
 
-/// Straight lines of the impedance of a closed loop. That of a virtual impedance takes the place of what
-/// the loop gives way to, as far as its term of lowest order lasts and the loop acts.
+/// Straight lines of the impedance of a closed loop. That of a virtual impedance takes the place of
+/// what the loop gives way to, as far as its term of lowest order lasts and the loop acts.
 pub(super) fn asymptotes(rig: &Rig, controller: &TransferFunction) -> Vec<Asymptote> {
     let mut lines = own_asymptotes(rig, Some(controller));
     let Some(VirtualImpedance { mass, damping, stiffness, .. }) = rig.virtual_impedance else {

@@ -361,8 +361,8 @@ fn cylinder<S: Scalar>(declared: &project::DeclaredCylinder, numbers: &Numbers<'
     }
 }
 
-/// The stroke with the stages of a telescopic piston, whose areas are those declared, also where those
-/// of the first stage are uncertain.
+/// The stroke with the stages of a telescopic piston, whose areas are those declared, also where
+/// those of the first stage are uncertain.
 fn stroke<S: Scalar>(
     declared: &project::DeclaredCylinder,
     [first_a, first_b]: [S; 2],

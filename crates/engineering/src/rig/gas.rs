@@ -13,8 +13,8 @@ use crate::quantity::ZERO_CELSIUS;
 /// Within the table of a line.
 const TABLE: [&str; 2] = ["accumulator", "adjustment"];
 
-/// An accumulator declared in the table that `numbers` are within, at its working temperature and the
-/// setting at rest of its adjustment; with a thermal time constant it is isothermal at rest.
+/// An accumulator declared in the table that `numbers` are within, at its working temperature and
+/// the setting at rest of its adjustment; with a thermal time constant it is isothermal at rest.
 pub(super) fn accumulator<S: Scalar>(
     declared: Option<&DeclaredAccumulator>,
     numbers: &Numbers<'_, S>,
@@ -41,7 +41,8 @@ fn setting<S: Scalar>(declared: &DeclaredAccumulator, numbers: &Numbers<'_, S>) 
     numbers.at("accumulator.adjustment.setting", declared.adjustment.map_or(0.0, |of| of.setting))
 }
 
-/// What the setting adds to the gas from 0 to 1, which is `first` at 0: volume in m3, precharge in Pa.
+/// What the setting adds to the gas from 0 to 1, which is `first` at 0: volume in m3, precharge in
+/// Pa.
 ///
 /// ```text
 /// P_1 = (P_{stated, 1} - P_{stated, 0}) P_0/P_{stated, 0}             absolute: the temperature acts on both alike
@@ -98,8 +99,8 @@ pub(super) fn adjustment<S: Scalar>(
     Some(Adjustment { setting: setting(declared, numbers), part })
 }
 
-/// A rig with the setting of every adjustment there, for slow motions: an open valve is the gas at its
-/// chamber, a shut one no gas.
+/// A rig with the setting of every adjustment there, for slow motions: an open valve is the gas at
+/// its chamber, a shut one no gas.
 pub(crate) fn components_at_setting(components: &Components, setting: f64) -> Components {
     let accumulators = [0, 1].map(|side| {
         let gas = components.accumulators[side]?;

@@ -86,8 +86,8 @@ pub enum FeedForwardPath {
 }
 
 impl FeedForwardPath {
-    /// The feed-forward in the loop of a project; `None` where nothing is fed forward. The area over
-    /// the flow gain supplies the flow that the motion needs.
+    /// The feed-forward in the loop of a project; `None` where nothing is fed forward. The area
+    /// over the flow gain supplies the flow that the motion needs.
     pub(super) fn of(
         project: &Project,
         linear: &LinearParameters,

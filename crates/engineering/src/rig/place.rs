@@ -8,10 +8,10 @@ use phea_hydraulics::operating_point::{Steady, SteadyLoad};
 use super::numbers::Numbers;
 use crate::project::{self, Project};
 
-/// The position in m (in rad, of a motor) and the condition for the pressures. At null the piston is
-/// blocked; with a command it moves, without load pressure unless one is declared, thesis (4.18);
-/// with a velocity there is no load unless one is declared. A load that yields and has a weight is
-/// held, unless a load or a command is declared.
+/// The position in m (in rad, of a motor) and the condition for the pressures. At null the piston
+/// is blocked; with a command it moves, without load pressure unless one is declared,
+/// thesis (4.18); with a velocity there is no load unless one is declared. A load that yields and
+/// has a weight is held, unless a load or a command is declared.
 pub fn place<S: Scalar>(
     project: &Project,
     components: &Components<S>,
@@ -46,8 +46,8 @@ fn weight_held<S: Scalar>(project: &Project, components: &Components<S>, positio
     linkage.holding_force(position, |force| shortened(components, force))
 }
 
-/// How far force sensor and what lies in series with it are compressed by a force in N, in m, and the slope
-/// in m/N.
+/// How far force sensor and what lies in series with it are compressed by a force in N, in m, and
+/// the slope in m/N.
 pub(super) fn shortened<S: Scalar>(components: &Components<S>, force: S) -> [S; 2] {
     let compliance = S::from(1.0) / components.force_sensor.stiffness;
     let [own, slope] = components

@@ -63,8 +63,9 @@ impl<S: Scalar> YieldingLoad<S> {
     }
 }
 
-/// The load's end of the rod at an operating point, and the weight of the load there; `None` without a
-/// linkage. The force sensor, and what lies in series with it, is compressed by the force there.
+/// The load's end of the rod at an operating point, and the weight of the load there; `None`
+/// without a linkage. The force sensor, and what lies in series with it, is compressed by the force
+/// there.
 pub(crate) fn rod_end<S: Scalar>(
     components: &Components<S>,
     point: &OperatingPoint<S>,
@@ -100,9 +101,9 @@ pub(crate) fn load_at<S: Scalar>(
     }
 }
 
-/// The load itself at a force on it in N, or a torque in N m; `None` where its motion is prescribed. The load is in contact
-/// with a wall where the force presses on it, or where there is no gap. Hunt and Crossley's damping
-/// K c d of a wall pressed by d = F/K is c F.
+/// The load itself at a force on it in N, or a torque in N m; `None` where its motion is
+/// prescribed. The load is in contact with a wall where the force presses on it, or where there is
+/// no gap. Hunt and Crossley's damping K c d of a wall pressed by d = F/K is c F.
 fn yielding_load<S: Scalar>(
     declared: &project::Load,
     numbers: &Numbers<'_, S>,
@@ -213,9 +214,9 @@ pub(crate) fn with_supply<S: Scalar>(
     LinearPlant { supply: Some(supply), ..plant }
 }
 
-/// The same plant with the gas of accumulators that lies behind a neck or a valve or exchanges heat, and with a
-/// pressure a chamber. Where a stated number makes these chambers stiffer than their parts are, the
-/// gas is stiffened alike.
+/// The same plant with the gas of accumulators that lies behind a neck or a valve or exchanges
+/// heat, and with a pressure a chamber. Where a stated number makes these chambers stiffer than
+/// their parts are, the gas is stiffened alike.
 pub(crate) fn with_gas<S: Scalar>(
     plant: LinearPlant<S>,
     components: &Components<S>,

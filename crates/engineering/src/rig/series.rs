@@ -22,8 +22,8 @@ pub(crate) fn series_coil(declared: &DeclaredActuator, rig: &Rig) -> Option<Coil
     Some(coil_pair(spring.stiffness, stall_force(rig), &wire))
 }
 
-/// Up to which frequency in rad/s the waves in the segments of a transmission are at most 3 % slow; `None`
-/// without one.
+/// Up to which frequency in rad/s the waves in the segments of a transmission are at most 3 % slow;
+/// `None` without one.
 ///
 /// ```text
 /// (2 N/T) sin(w T/2N) = 0.97 w         w = 0.85 N/T

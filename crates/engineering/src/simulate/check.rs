@@ -85,8 +85,8 @@ impl ToleranceCheck {
     }
 }
 
-/// As [`simulate_into`] with samples, and each scenario a second time at a tenth of the tolerance, which fills
-/// [`ScenarioRun::check`].
+/// As [`simulate_into`] with samples, and each scenario a second time at a tenth of the tolerance,
+/// which fills [`ScenarioRun::check`].
 ///
 /// # Errors
 /// As [`simulate_into`].

@@ -95,7 +95,8 @@ impl Columns {
 }
 
 impl ColumnSource {
-    /// Of a column of a rig with these parts; `None` for a name that is unknown, or of another part.
+    /// Of a column of a rig with these parts; `None` for a name that is unknown, or of another
+    /// part.
     pub(super) fn named(name: &str, parts: &SignalParts) -> Option<ColumnSource> {
         source(name, parts)
     }

@@ -277,8 +277,8 @@ fn loop_start(bench: &ControlledMachine, beginning: &InitialCondition, held_at: 
     start
 }
 
-/// One window for each event in reference, command, external force and setting, and for the motion of the
-/// load, each lasting until the next.
+/// One window for each event in reference, command, external force and setting, and for the motion
+/// of the load, each lasting until the next.
 fn windows(scenario: &Scenario, [reference, command, external, setting]: [&Profile; 4]) -> Vec<Window> {
     let end_s = scenario.duration;
     let window = |cause: Cause, start_s: f64| Window { cause, start_s, end_s };

@@ -73,8 +73,8 @@ impl Default for Record {
 }
 
 impl Record {
-    /// A column of the table over time; empty for an unknown name, and for one of a part that the rig
-    /// lacks.
+    /// A column of the table over time; empty for an unknown name, and for one of a part that the
+    /// rig lacks.
     pub fn signal(&self, name: &str) -> Vec<f64> {
         columns::signal(self, name)
     }

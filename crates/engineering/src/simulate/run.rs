@@ -40,8 +40,8 @@ pub struct ScenarioRun {
     pub status: Status,
     /// What it cost.
     pub work: StepCounts,
-    /// The record, every [`ScenarioRun::look_s`], or less often in a long run; empty where it was not
-    /// asked for.
+    /// The record, every [`ScenarioRun::look_s`], or less often in a long run; empty where it was
+    /// not asked for.
     pub record: Record,
     /// Number of samples between two rows of the result.
     pub looks_per_row: usize,
@@ -248,8 +248,8 @@ fn found(
     found
 }
 
-/// When a chamber or a transmission first cavitates, a chamber has no volume, or the piston leaves a stroke without end
-/// stops.
+/// When a chamber or a transmission first cavitates, a chamber has no volume, or the piston leaves
+/// a stroke without end stops.
 fn outside_model_s(occurrences: &[Occurrence], has_end_stops: bool) -> Option<f64> {
     let outside = |kind: &str| match kind {
         "cavitation_a" | "cavitation_b" | "cavitation_transmission" | "empty_a" | "empty_b" => true,
@@ -286,8 +286,8 @@ pub fn errors_amplified(bench: &ControlledMachine, outcome: &Outcome) -> Option<
     outcome.amplification.filter(|grown| grown.may_show_errors(bench.settings.tolerance))
 }
 
-/// Inputs at time zero: those of the loop, the ground, the external force, the setting, and the waves
-/// in transit.
+/// Inputs at time zero: those of the loop, the ground, the external force, the setting, and the
+/// waves in transit.
 fn inputs_at_start(course: &PreparedScenario, mut first: Vec<f64>, control: &Control) -> Vec<f64> {
     first.extend([course.ground.value(0.0), course.ground.rate(0.0)]);
     first.extend(course.external_force.as_ref().map(|force| force.value(0.0)));

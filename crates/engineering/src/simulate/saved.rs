@@ -10,10 +10,10 @@
 //! spool_v = 0.125
 //! ```
 //!
-//! It contains every state of machine, sensor, controller and prefilter by its name, the position of
-//! the load's ground, and by how much the setting of accumulators has moved where it does; for a
-//! sampled controller also its memories, the held command and the position in its random numbers. The
-//! content of a delay cannot be stored as numbers: such an end is not saved.
+//! It contains every state of machine, sensor, controller and prefilter by its name, the position
+//! of the load's ground, and by how much the setting of accumulators has moved where it does; for a
+//! sampled controller also its memories, the held command and the position in its random numbers.
+//! The content of a delay cannot be stored as numbers: such an end is not saved.
 
 use std::fmt::Write as _;
 
@@ -39,7 +39,8 @@ pub struct SavedState {
     pub states: Vec<(String, f64)>,
     /// m, position of the load's ground.
     pub ground_m: f64,
-    /// By how much the setting of accumulators has moved from rest; `None` where it is not an input.
+    /// By how much the setting of accumulators has moved from rest; `None` where it is not an
+    /// input.
     pub setting_change: Option<f64>,
     /// What a sampled controller remembers.
     pub(crate) memory: Option<DigitalMemory>,
@@ -150,8 +151,8 @@ impl SavedState {
     }
 }
 
-/// The state in a file for this bench, whose setting begins moved by `setting_change`, or the errors
-/// of the file.
+/// The state in a file for this bench, whose setting begins moved by `setting_change`, or the
+/// errors of the file.
 pub(super) fn read(
     source: &dyn Source,
     project: &Project,

@@ -1,5 +1,5 @@
-//! The stiffness of the hose by other means: a pipe, gas at the chambers, a spring on the rod; and a valve
-//! between the chambers that damps the mode of the load cell.
+//! The stiffness of the hose by other means: a pipe, gas at the chambers, a spring on the rod; and
+//! a valve between the chambers that damps the mode of the load cell.
 
 use phea_dynamics::linear::{Polynomial, TransferFunction};
 use phea_hydraulics::accumulator::Accumulator;
@@ -34,8 +34,8 @@ pub struct OtherMeans {
     pub stiffness: f64,
     /// Least K_H over the stroke of the chambers without any line, N/m.
     pub chambers: f64,
-    /// m, of the actuator from mount to mount, retracted, with the hose and all means but the spring; `None`
-    /// where `cylinder.dead_length` is not stated.
+    /// m, of the actuator from mount to mount, retracted, with the hose and all means but the
+    /// spring; `None` where `cylinder.dead_length` is not stated.
     pub actuator_length: Option<f64>,
     /// Each, or why it cannot be.
     pub pipe: Result<SizedPipe, String>,
@@ -106,7 +106,8 @@ pub(crate) const TOO_FEW_COILS: &str = "fewer than two active coils, whose ends 
 const HALVINGS: usize = 80;
 /// Forces over the range at which gas is compared.
 const FORCES: usize = 21;
-/// Conductances that are compared, and how far they extend to either side of the corner of the chambers.
+/// Conductances that are compared, and how far they extend to either side of the corner of the
+/// chambers.
 const CONDUCTANCES: usize = 400;
 const DECADES: f64 = 4.0;
 
@@ -256,8 +257,8 @@ impl OtherMeansProblem {
     }
 }
 
-/// Damping ratio of the mode of the load cell with a laminar conductance in m3/(s Pa) between the chambers;
-/// one where nothing oscillates.
+/// Damping ratio of the mode of the load cell with a laminar conductance in m3/(s Pa) between the
+/// chambers; one where nothing oscillates.
 ///
 /// ```text
 /// (C s + K_c + G)(M s^2 + f_v s + K_S) + A^2 s = 0,    C = A^2/K_H                    4.25, 6.6 with the valve shut
@@ -290,7 +291,8 @@ fn softer(stiffness: f64, chambers: f64) -> Result<(), String> {
     }
 }
 
-/// Where a falling function of a positive number comes to a value; `None` where it does not up to a million.
+/// Where a falling function of a positive number comes to a value; `None` where it does not up to a
+/// million.
 fn falls_to(value: f64, of: impl Fn(f64) -> f64) -> Option<f64> {
     let mut most = 1e-3;
     while of(most) > value {

@@ -51,8 +51,8 @@ pub struct SizingProblem {
     pub supply_pressure: f64,
     /// The stiffness model the project declares.
     pub model: StiffnessModel,
-    /// What differs between the lines as they are declared, in words, and what is made of it; `None`
-    /// where they are hoses alike.
+    /// What differs between the lines as they are declared, in words, and what is made of it;
+    /// `None` where they are hoses alike.
     pub unlike: Option<String>,
     /// The hoses to choose from.
     pub hoses: Vec<HoseOption>,

@@ -16,8 +16,8 @@ pub struct Influence {
     pub values: [f64; 3],
     /// Least stiffness over the stroke of the chosen length, N/m, at low, nominal and high.
     pub stiffness_n_per_m: [f64; 3],
-    /// Length of line A that keeps the nominal stiffness, m, at low, nominal and high; zero where none
-    /// is needed.
+    /// Length of line A that keeps the nominal stiffness, m, at low, nominal and high; zero where
+    /// none is needed.
     pub length_m: [f64; 3],
 }
 

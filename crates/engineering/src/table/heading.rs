@@ -39,7 +39,8 @@ const UNITS: [(&str, &str); 31] = [
 /// Those of them that are not offered.
 const UNUSUAL: usize = 3;
 
-/// What of a heading is left next to a name: its unit, or nothing. `None` where it has another name.
+/// What of a heading is left next to a name: its unit, or nothing. `None` where it has another
+/// name.
 pub(super) fn unit_beside<'h>(heading: &'h str, name: &str) -> Option<&'h str> {
     let heading = heading.trim();
     let plain = |byte: u8| if matches!(byte, b' ' | b'-') { b'_' } else { byte.to_ascii_lowercase() };

@@ -90,8 +90,8 @@ pub(super) fn rigs(
     (rigs, missing)
 }
 
-/// The same rig with its lumped lines as transmission lines, and a transmission in as many segments as it
-/// may have; `None` if no line is lumped and long, and no transmission has less.
+/// The same rig with its lumped lines as transmission lines, and a transmission in as many segments
+/// as it may have; `None` if no line is lumped and long, and no transmission has less.
 pub fn with_waves(project: &Project) -> Option<Project> {
     let mut other = project.clone();
     let actuator = other.actuator.as_mut()?;

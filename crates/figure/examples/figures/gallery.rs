@@ -1,5 +1,5 @@
-//! Figures with numbers near those of Ledezma (2019): stiffness 2.2 to 4.1 MN/m over 0.5 m, mechanical resonance at
-//! 2938 rad/s, valve at 1099 rad/s.
+//! Figures with numbers near those of Ledezma (2019): stiffness 2.2 to 4.1 MN/m over 0.5 m,
+//! mechanical resonance at 2938 rad/s, valve at 1099 rad/s.
 
 #[path = "gallery_qft.rs"]
 pub(crate) mod gallery_qft;

@@ -1,5 +1,5 @@
-//! Figures of two published examples: k/((s + a)(s + b)) with a controller that fails between its design frequencies, and
-//! k a/(s (s + a)) with a prefilter.
+//! Figures of two published examples: k/((s + a)(s + b)) with a controller that fails between its
+//! design frequencies, and k a/(s (s + a)) with a prefilter.
 
 #![allow(clippy::unwrap_used, reason = "published examples are what they are")]
 
@@ -46,7 +46,8 @@ fn double_lag() -> Vec<Plant> {
     plants
 }
 
-/// k and a around the box of k a/(s (s + a)), from 1 to 10 each, beginning with the nominal plant (1, 1).
+/// k and a around the box of k a/(s (s + a)), from 1 to 10 each, beginning with the nominal plant
+/// (1, 1).
 fn servo_parameters() -> Vec<(f64, f64)> {
     let steps = frequencies(1.0, 10.0, 7);
     let (up, down): (Vec<f64>, Vec<f64>) = (steps.clone(), steps.into_iter().rev().collect());

@@ -1,6 +1,7 @@
 //! Renders every figure with numbers of Ledezma (2019): `cargo run --example figures -- DIRECTORY`.
 //!
-//! Writes an SVG, a light and a dark PNG of each, and a page that shows all of them under the style sheet.
+//! Writes an SVG, a light and a dark PNG of each, and a page that shows all of them under the style
+//! sheet.
 
 mod gallery;
 

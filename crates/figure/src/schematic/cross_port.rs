@@ -1,12 +1,13 @@
-//! A valve between the chambers, after ISO 1219-1: a restrictor, and the piston between springs that
-//! lets nothing pass at rest.
+//! A valve between the chambers, after ISO 1219-1: a restrictor, and the piston between springs
+//! that lets nothing pass at rest.
 
 use super::super::scene::{Anchor, Scene};
 use super::CrossPortSymbol;
 use super::mechanics::{PORT_FAR, PORT_NEAR};
 use super::pen::{OUTLINE, block, lines, rows, spring};
 
-/// How far below the ports the branch between the lines lies; between accumulators, whose branches are next.
+/// How far below the ports the branch between the lines lies; between accumulators, whose branches
+/// are next.
 const BELOW: f64 = 14.0;
 const BELOW_BETWEEN: f64 = 5.0;
 /// Width of the words between both lines.

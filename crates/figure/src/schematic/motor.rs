@@ -1,5 +1,5 @@
-//! A motor in place of the cylinder, after ISO 1219-1: a circle with a triangle at each port, and its
-//! shaft towards the load.
+//! A motor in place of the cylinder, after ISO 1219-1: a circle with a triangle at each port, and
+//! its shaft towards the load.
 
 use super::super::SMALL_SIZE;
 use super::super::colour::Role;

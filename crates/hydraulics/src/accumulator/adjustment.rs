@@ -62,7 +62,8 @@ pub struct MovedGas<S = f64> {
 }
 
 impl Adjustment {
-    /// Impossible parameters of this adjustment of the gas as it is at rest; empty if there are none.
+    /// Impossible parameters of this adjustment of the gas as it is at rest; empty if there are
+    /// none.
     pub fn problems(&self, at_rest: &Accumulator) -> Vec<ParameterError> {
         let mut problems = Problems::default();
         let is_share = (0.0..=1.0).contains(&self.setting);
@@ -121,8 +122,8 @@ impl<S: Scalar> Adjustment<S> {
         }
     }
 
-    /// The gas that is `at_rest` at rest, after the setting has moved by `change`, which moves on at
-    /// `rate` in 1/s.
+    /// The gas that is `at_rest` at rest, after the setting has moved by `change`, which moves on
+    /// at `rate` in 1/s.
     pub fn moved(&self, at_rest: &Accumulator<S>, change: S, rate: S) -> MovedGas<S> {
         match self.part {
             AdjustedPart::Valve(_) => {
@@ -204,7 +205,8 @@ mod tests {
 
     use super::*;
 
-    /// Rates of oil and energy are those of V_oil(p, V_0, p_0) and W(p, V_0, p_0), while the bladder lifts too.
+    /// Rates of oil and energy are those of V_oil(p, V_0, p_0) and W(p, V_0, p_0), while the
+    /// bladder lifts too.
     #[test]
     fn oil_and_energy_follow_the_setting() {
         for exponent in [1.0, 1.02, 1.4] {

@@ -23,8 +23,8 @@ pub struct GasBranch<S = f64> {
     pub relaxation: Option<GasRelaxation<S>>,
     /// The neck before it; `None` where there is none.
     pub neck: Option<NeckImpedance<S>>,
-    /// Conductance g in m3/(s Pa) of a valve before it, which then has no neck; `None` where there is
-    /// none.
+    /// Conductance g in m3/(s Pa) of a valve before it, which then has no neck; `None` where there
+    /// is none.
     pub valve: Option<S>,
 }
 
@@ -49,8 +49,8 @@ impl<S: Scalar> GasBranch<S> {
         }
     }
 
-    /// Without a neck, the same behind a valve of a conductance in m3/(s Pa) with oil of a compliance
-    /// in m3/Pa behind it.
+    /// Without a neck, the same behind a valve of a conductance in m3/(s Pa) with oil of a
+    /// compliance in m3/Pa behind it.
     #[must_use]
     pub fn behind_valve(&self, conductance: S, of_oil: S) -> GasBranch<S> {
         GasBranch { compliance: self.compliance + of_oil, valve: Some(conductance), ..*self }

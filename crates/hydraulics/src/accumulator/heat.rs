@@ -5,7 +5,8 @@ use phea_dynamics::scalar::Scalar;
 use super::{Accumulator, LIFTING};
 use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 
-/// Ratio gamma of the specific heats of a diatomic ideal gas, which nitrogen nearly is up to 200 bar.
+/// Ratio gamma of the specific heats of a diatomic ideal gas, which nitrogen nearly is up to 200
+/// bar.
 pub const HEAT_CAPACITY_RATIO: f64 = 1.4;
 
 /// An ideal gas whose temperature T approaches that of its wall, T_w, with a time constant.

@@ -103,8 +103,9 @@ pub fn impedance_asymptotes(
     asymptotes
 }
 
-/// These asymptotes where a transmission lies between sensor and load: its oil stands still before the
-/// piston's mass does, and at low frequency friction and mass of the oil are felt whatever the loop does.
+/// These asymptotes where a transmission lies between sensor and load: its oil stands still before
+/// the piston's mass does, and at low frequency friction and mass of the oil are felt whatever the
+/// loop does.
 ///
 /// ```text
 /// low frequency   N b + Z               and of a mass Z = M s:  N b up to N b/(M + N m), then (M + N m) s

@@ -46,8 +46,9 @@ fn fed_forward_filter(plant: &LinearPlant) -> Vec<f64> {
     }
 }
 
-/// The path of the load's motion with the poles of the command's path, digit by digit, in addition to those
-/// of the filter of a velocity that is fed forward: a loop around them cancels the shared ones.
+/// The path of the load's motion with the poles of the command's path, digit by digit, in addition
+/// to those of the filter of a velocity that is fed forward: a loop around them cancels the shared
+/// ones.
 fn sharing_poles(plant: &LinearPlant, model: LinearModel) -> Result<LinearModel, LinearError> {
     let filter = fed_forward_filter(plant);
     if filter.len() == 1 {
@@ -70,7 +71,8 @@ fn sharing_poles(plant: &LinearPlant, model: LinearModel) -> Result<LinearModel,
 ///
 /// The second is the general one: what the sensor measures and the load does not feel,
 /// [`LinearSeries::held_back`], is the acceleration of a mass, beta = m s^2, or of the oil of a
-/// transmission with what its line takes. A virtual impedance Z_v adds what the loop makes of the motion:
+/// transmission with what its line takes. A virtual impedance Z_v adds what the loop makes of the
+/// motion:
 ///
 /// ```text
 /// Z -> Z + (Z_v/s) G F_L/U_C/(1 + G F_s/U_C)                  about Z_v/s where the loop has much gain
@@ -97,7 +99,8 @@ pub fn closed_loop_port(
         return open_loop_impedance(&port(plant)?);
     };
     let of = |coefficients: Vec<f64>| Polynomial::new(coefficients);
-    // the path of the motion has the filter of a velocity that is fed forward, that of the command has not
+    // the path of the motion has the filter of a velocity that is fed forward, that of the command
+    // has not
     let filter = of(fed_forward_filter(plant));
     let [over, under] = [controller.numerator(), controller.denominator()];
     let accelerated = of(held_back).scaled(-1.0).product(&of(felt.command.numerator));

@@ -130,8 +130,8 @@ impl Conduit {
 }
 
 impl<S: Scalar> Conduit<S> {
-    /// The fluid column of a hose or pipe over any scalar, unchecked; of a plain volume length and bore
-    /// are not a number.
+    /// The fluid column of a hose or pipe over any scalar, unchecked; of a plain volume length and
+    /// bore are not a number.
     pub(crate) fn filled(
         line: &Line<S>,
         fluid: &Fluid<S>,

@@ -87,8 +87,8 @@ pub(super) fn through_table(table: &LinkageTable) -> Result<(ChebyshevSeries, f6
     Err(LinkageError::TableRough { residual, tolerance: table.tolerance, degree: highest })
 }
 
-/// The angle in rad at which a rising series has this value, to the last bit; `None` where it has it
-/// nowhere near its range.
+/// The angle in rad at which a rising series has this value, to the last bit; `None` where it has
+/// it nowhere near its range.
 pub(super) fn where_it_is(series: &ChebyshevSeries, value: f64) -> Option<f64> {
     let reach = series.half_width * (1.0 + BEYOND_TABLE);
     rising_root(|angle| Some(series.at(angle)[0] - value), [series.middle - reach, series.middle + reach])

@@ -36,11 +36,12 @@ pub struct WeightAt<S = f64> {
 }
 
 impl Linkage {
-    /// The same with a load whose centre of mass is level with the joint at this angle in rad; its moment
-    /// is 1 N m until [`Linkage::with_moment`] states it.
+    /// The same with a load whose centre of mass is level with the joint at this angle in rad; its
+    /// moment is 1 N m until [`Linkage::with_moment`] states it.
     ///
     /// # Example
-    /// A load of 2 kg at half a metre, level at the angle zero: there its weight has the whole lever arm.
+    /// A load of 2 kg at half a metre, level at the angle zero: there its weight has the whole
+    /// lever arm.
     /// ```
     /// use phea_hydraulics::linkage::{LinkageGeometry, LinkageTable, STANDARD_GRAVITY};
     /// let table = LinkageTable { extensions: vec![0.0, 0.1], angles: vec![-1.0, 1.0], tolerance: 1e-6 };
@@ -85,9 +86,9 @@ impl<S: Scalar> Linkage<S> {
         Some(WeightAt::of(T::from(weight.moment), T::local(&weight.height, [angle])))
     }
 
-    /// The force of the rod in N that holds the weight where the piston is at a position in m; `yields`
-    /// gives how far the rod is shortened by a force in N, in m, and its slope in m/N. `None` without a
-    /// weight.
+    /// The force of the rod in N that holds the weight where the piston is at a position in m;
+    /// `yields` gives how far the rod is shortened by a force in N, in m, and its slope in m/N.
+    /// `None` without a weight.
     ///
     /// ```text
     /// F = -tau_g(theta)/g'(theta),   g(theta) + d(F) = x             by Newton's steps in theta

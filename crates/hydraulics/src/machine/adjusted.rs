@@ -41,8 +41,8 @@ impl<S: Scalar> Machine<S> {
         of(0) + of(1)
     }
 
-    /// Flow in m3/s through the valve between a chamber and its gas along a drop in Pa; `None` where
-    /// there is none.
+    /// Flow in m3/s through the valve between a chamber and its gas along a drop in Pa; `None`
+    /// where there is none.
     pub(super) fn through_gas_valve<T: Scalar + From<S>>(
         &self,
         side: usize,
@@ -53,8 +53,8 @@ impl<S: Scalar> Machine<S> {
         Some(of.valve()?.flow(of.setting + change, drop))
     }
 
-    /// Pressures in Pa up to which the gas at either chamber may be compressed: the limit at rest is a
-    /// multiple of the precharge, which the setting moves.
+    /// Pressures in Pa up to which the gas at either chamber may be compressed: the limit at rest
+    /// is a multiple of the precharge, which the setting moves.
     ///
     /// ```text
     /// P_2(u) = (P_2/P_0) P_0(u),     absolute
@@ -71,8 +71,8 @@ impl<S: Scalar> Machine<S> {
         })
     }
 
-    /// What the valves between the chambers and their gas throttle, in W: `lost` of the necks in the
-    /// [`Ledger`](super::Ledger) of a machine that has valves in their place.
+    /// What the valves between the chambers and their gas throttle, in W: `lost` of the necks in
+    /// the [`Ledger`](super::Ledger) of a machine that has valves in their place.
     ///
     /// ```text
     /// (p_A - p_gA) q_A + (p_B - p_gB) q_B

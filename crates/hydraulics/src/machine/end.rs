@@ -43,7 +43,8 @@ impl<S: Scalar> Machine<S> {
         Some(self.linkage.as_ref()?.weight_of(load.position)?.torque)
     }
 
-    /// The potential energy of the load's weight in J; zero without one, and where the load does not yield.
+    /// The potential energy of the load's weight in J; zero without one, and where the load does
+    /// not yield.
     pub(super) fn weight_energy<T: Scalar + From<S>>(&self, load: &Motion<T>) -> T {
         let weight = self.linkage.as_ref().filter(|_| self.load.moves());
         let weight = weight.and_then(|linkage| linkage.weight_of(load.position));
@@ -83,8 +84,8 @@ impl Machine {
         Some((Motion { position: relative, velocity: velocity / arm }, position - relative))
     }
 
-    /// How far the load turns in rad, at this angle of its joint, while its end of the rod moves this
-    /// far in m, by the lever arm there; the same way without a linkage.
+    /// How far the load turns in rad, at this angle of its joint, while its end of the rod moves
+    /// this far in m, by the lever arm there; the same way without a linkage.
     pub fn turn_of(&self, angle: f64, way: f64) -> f64 {
         self.linkage.map_or(way, |linkage| way / linkage.end(angle).lever_arm)
     }

@@ -104,16 +104,17 @@ impl<S: Scalar> Machine<S> {
         }
     }
 
-    /// Apart, so that machines without such lines do not carry their code along; and of the pressures
-    /// alone, as no function apart is given the whole state: it would be copied for it in every machine.
+    /// Apart, so that machines without such lines do not carry their code along; and of the
+    /// pressures alone, as no function apart is given the whole state: it would be copied for it in
+    /// every machine.
     #[inline(never)]
     fn ports_of_lines<T: Scalar + From<S>>(&self, chambers: [T; 2], lines: [&[T]; 2]) -> [T; 2] {
         let ([line_a, line_b], [state_a, state_b]) = (&self.lines, lines);
         [line_a.port_pressure(state_a, chambers[0]), line_b.port_pressure(state_b, chambers[1])]
     }
 
-    /// Compliance of both chambers including their lines and accumulators, in m3/Pa, without gas that
-    /// is behind a neck or a valve, exchanges heat or is adjusted.
+    /// Compliance of both chambers including their lines and accumulators, in m3/Pa, without gas
+    /// that is behind a neck or a valve, exchanges heat or is adjusted.
     #[inline(always)]
     pub(super) fn compliance<T: Scalar + From<S>>(&self, state: &MachineState<T>, position: T) -> [T; 2] {
         let [oil_a, oil_b] = self.oil_compliance(state, position);
@@ -160,9 +161,9 @@ impl<S: Scalar> Machine<S> {
         }
     }
 
-    /// Flow through a valve between the chambers from A to B, in m3/s, at the drop p_A - p_B and the
-    /// pressure difference over its capacity, both in Pa. Apart, so that machines
-    /// without such a valve do not carry its code along.
+    /// Flow through a valve between the chambers from A to B, in m3/s, at the drop p_A - p_B and
+    /// the pressure difference over its capacity, both in Pa. Apart, so that machines without such
+    /// a valve do not carry its code along.
     #[inline(never)]
     fn through_cross_port<T: Scalar + From<S>>(&self, port: &CrossPort<S>, drop: T, over_capacity: T) -> T {
         let CrossPort { restrictor, capacity } = port.convert(&mut constant::<S, T>);

@@ -1,4 +1,5 @@
-//! The gas of accumulators at the chambers: at its chamber, behind necks and valves, and where it exchanges heat.
+//! The gas of accumulators at the chambers: at its chamber, behind necks and valves, and where it
+//! exchanges heat.
 
 use phea_dynamics::scalar::{Parameters, Scalar};
 
@@ -45,8 +46,8 @@ impl<S: Scalar> Machine<S> {
         [0, 1].map(|side| if behind[side] { gas.pressures[side] } else { chambers[side] })
     }
 
-    /// Pressures in Pa gauge at which the gas at either chamber has its precharge, P_0 theta; `None`
-    /// without gas.
+    /// Pressures in Pa gauge at which the gas at either chamber has its precharge, P_0 theta;
+    /// `None` without gas.
     #[inline(always)]
     pub(super) fn precharges<T: Scalar + From<S>>(
         &self,
@@ -66,8 +67,8 @@ impl<S: Scalar> Machine<S> {
         })
     }
 
-    /// Pressures in Pa of the gas behind the necks, and theta of the gas that exchanges heat; zero at
-    /// a chamber without.
+    /// Pressures in Pa of the gas behind the necks, and theta of the gas that exchanges heat; zero
+    /// at a chamber without.
     pub(super) fn told_of_gas<T: Scalar>(&self, vector: &[T]) -> [[T; 2]; 2] {
         let gas = self.layout.read_gas(vector);
         let zero = T::from(0.0);
@@ -94,8 +95,8 @@ impl<S: Scalar> Machine<S> {
     }
 
     /// Rates of the pressures of both chambers in Pa/s with gas that has states of its own, with
-    /// these flows into them in m3/s and these compliances in m3/Pa; writes the rates of those states.
-    /// Apart, so that machines without such gas do not carry its code along.
+    /// these flows into them in m3/s and these compliances in m3/Pa; writes the rates of those
+    /// states. Apart, so that machines without such gas do not carry its code along.
     #[inline(never)]
     pub(super) fn beside_gas<T: Scalar + From<S>>(
         &self,
@@ -127,9 +128,9 @@ impl<S: Scalar> Machine<S> {
         })
     }
 
-    /// Rates in Pa/s of the pressures of both chambers, and of the states of the gas, with these flows
-    /// in m3/s into chambers and gas, and compliances in m3/Pa without gas that has states of its own
-    /// or is adjusted.
+    /// Rates in Pa/s of the pressures of both chambers, and of the states of the gas, with these
+    /// flows in m3/s into chambers and gas, and compliances in m3/Pa without gas that has states of
+    /// its own or is adjusted.
     ///
     /// ```text
     /// (C_oil + C) dp/dt = into - q                     gas at its chamber; q: at a pressure that is held

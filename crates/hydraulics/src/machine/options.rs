@@ -29,8 +29,9 @@ pub struct MachineOptions {
     /// Whether a force from outside acts on the load, as an input of the machine; it needs a load
     /// that has a mass.
     pub external_force: bool,
-    /// Whether the setting of accumulators that are adjusted moves, as an input of the machine: by how
-    /// much it has moved from rest, and at which rate. Without it they stand at their setting at rest.
+    /// Whether the setting of accumulators that are adjusted moves, as an input of the machine: by
+    /// how much it has moved from rest, and at which rate. Without it they stand at their setting
+    /// at rest.
     pub moving_setting: bool,
     /// Pressure in Pa absolute below which a chamber is reported to cavitate. Fluid with entrained
     /// air expands before it boils and comes to no vacuum: for it, state the pressure at which
@@ -38,8 +39,8 @@ pub struct MachineOptions {
     pub vapour_pressure_absolute: f64,
     /// Which member of the hoses' stiffening interval.
     pub member: StiffeningMember,
-    /// Pressures in Pa gauge that the gas of the accumulators at A and B must not exceed: beyond them
-    /// a run reports it.
+    /// Pressures in Pa gauge that the gas of the accumulators at A and B must not exceed: beyond
+    /// them a run reports it.
     pub gas_pressure_limits: [Option<f64>; 2],
     /// Lines between valve and chambers with dynamics of their own, A first; absent, one pressure
     /// for a chamber with its line.

@@ -5,10 +5,10 @@ use super::{Machine, MachineState, Motion};
 use crate::force_sensor;
 use crate::series::{ForceFrom, MovingSeries, OilColumn, SeriesSpring};
 
-/// Which states a series element has in [`MachineState`]; those of a transmission follow the states of
-/// gas. The state `deflection` is that of the force sensor, except
-/// where the spring has neither damper nor mass: both carry the same force then, so that one of the
-/// deflections gives the other, and the state is that of the spring.
+/// Which states a series element has in [`MachineState`]; those of a transmission follow the states
+/// of gas. The state `deflection` is that of the force sensor, except where the spring has neither
+/// damper nor mass: both carry the same force then, so that one of the deflections gives the other,
+/// and the state is that of the spring.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum SeriesStates {
     /// There is no spring.
@@ -198,8 +198,8 @@ impl<S: Scalar> Machine<S> {
         }
     }
 
-    /// Rates of the states of a transmission, with the force of the sensor at one end and the velocity
-    /// of the load at the other.
+    /// Rates of the states of a transmission, with the force of the sensor at one end and the
+    /// velocity of the load at the other.
     ///
     /// ```text
     /// m du_j/dt = f_j - f_j+1 - b u_j          dd_j+1/dt = u_j - u_j+1,  v_L after the last plug
@@ -268,8 +268,8 @@ impl<S: Scalar> Machine<S> {
         }
     }
 
-    /// Typical magnitudes of the deflections of sensor and spring at a force, and of the velocity of
-    /// the mass between them.
+    /// Typical magnitudes of the deflections of sensor and spring at a force, and of the velocity
+    /// of the mass between them.
     pub(super) fn typical_joint(&self, force: S, swing: impl Fn(S) -> S) -> (S, Motion<S>) {
         let sensor = force / self.sensor_stiffness;
         let Some(MovingSeries::Spring(series)) = &self.series else {

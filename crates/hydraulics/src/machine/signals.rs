@@ -45,22 +45,22 @@ pub const SIGNALS: [&str; 33] = [
 /// load is `force_n`, and nothing deflects but the sensor.
 pub const SERIES_SIGNALS: [&str; 2] = ["series_deflection_m", "load_force_n"];
 
-/// Those of [`SIGNALS`] that only a machine with a transmission has: the pressures of its oil at either
-/// piston.
+/// Those of [`SIGNALS`] that only a machine with a transmission has: the pressures of its oil at
+/// either piston.
 pub const TRANSMISSION_SIGNALS: [&str; 2] = ["transmission_pressure_rod_pa", "transmission_pressure_load_pa"];
 
 /// Those of [`SIGNALS`] that only a machine with a linkage has: its load turns.
 pub const LINKAGE_SIGNALS: [&str; 3] = ["joint_angle_rad", "joint_velocity_rad_per_s", "joint_torque_n_m"];
 
-/// Those of [`SIGNALS`] that only a machine with a neck at chamber A or B has: without one the gas has
-/// the pressure of its chamber.
+/// Those of [`SIGNALS`] that only a machine with a neck at chamber A or B has: without one the gas
+/// has the pressure of its chamber.
 pub const GAS_PRESSURE_SIGNALS: [&str; 2] = ["gas_pressure_a_pa", "gas_pressure_b_pa"];
 
 /// Those of [`SIGNALS`] that only a machine with gas that exchanges heat at chamber A or B has.
 pub const HEAT_SIGNALS: [&str; 2] = ["gas_temperature_a_ratio", "gas_temperature_b_ratio"];
 
-/// Those of [`SIGNALS`] that only a machine has whose accumulators are adjusted: their settings, and
-/// the power of the adjustment, [`MovedGas::power`](crate::accumulator::MovedGas::power).
+/// Those of [`SIGNALS`] that only a machine has whose accumulators are adjusted: their settings,
+/// and the power of the adjustment, [`MovedGas::power`](crate::accumulator::MovedGas::power).
 pub const ADJUSTMENT_SIGNALS: [&str; 3] = ["setting_a_ratio", "setting_b_ratio", "adjustment_power_w"];
 
 /// Names of the state events of a machine, in the order of its indicators. Each indicator is
@@ -70,11 +70,11 @@ pub const ADJUSTMENT_SIGNALS: [&str; 3] = ["setting_a_ratio", "setting_b_ratio",
 /// lower, less vapour pressure in Pa. `end_stop`: the way left to that end in m. `empty`: the
 /// chamber's compliance in m3/Pa without accumulators, which vanishes with its volume.
 /// `load_contact`: the way left to the wall in m. `supply_lost`: supply less tank pressure in Pa.
-/// `accumulator_empty`: the chamber's pressure, or that behind the neck where there is one, less the
-/// precharge of its accumulator in Pa. `accumulator_overpressure`: what is left to the pressure limit of
-/// that gas in Pa, which moves with a precharge that is adjusted. `series_end`: the way left to the
-/// nearer end of a series spring's travel in m. `cavitation_transmission`: the lowest pressure in the
-/// oil of a transmission, less vapour pressure in Pa.
+/// `accumulator_empty`: the chamber's pressure, or that behind the neck where there is one, less
+/// the precharge of its accumulator in Pa. `accumulator_overpressure`: what is left to the pressure
+/// limit of that gas in Pa, which moves with a precharge that is adjusted. `series_end`: the way
+/// left to the nearer end of a series spring's travel in m. `cavitation_transmission`: the lowest
+/// pressure in the oil of a transmission, less vapour pressure in Pa.
 pub const INDICATORS: [&str; 14] = [
     "cavitation_a",
     "cavitation_b",
@@ -101,12 +101,12 @@ impl<S: Scalar> Machine<S> {
     /// with, `hydraulic_force_n` what the chambers push the piston with; between them lie its
     /// friction, end stops and acceleration. With a series element `force_n` is the force that its
     /// [`ForceFrom`](crate::series::ForceFrom) measures, F_e that through the sensor,
-    /// `load_force_n` that on the load, and `series_deflection_m` how far the spring, or the oil of a
-    /// transmission, is compressed.
-    /// Behind a linkage `load_position_m` is that of the rod's end, and `joint_torque_n_m` what the
-    /// rod turns the joint with. `gas_pressure` is that of the gas behind a neck, gauge, and
-    /// `gas_temperature_ratio` the absolute temperature of gas that exchanges heat over that of its
-    /// wall, theta. Signals of parts that the machine lacks are zero:
+    /// `load_force_n` that on the load, and `series_deflection_m` how far the spring, or the oil of
+    /// a transmission, is compressed. Behind a linkage `load_position_m` is that of the rod's end,
+    /// and `joint_torque_n_m` what the rod turns the joint with. `gas_pressure` is that of the gas
+    /// behind a neck, gauge, and `gas_temperature_ratio` the absolute temperature of gas that
+    /// exchanges heat over that of its wall, theta. Signals of parts that the machine lacks are
+    /// zero:
     ///
     /// ```text
     /// F_H = A_A p_A - A_B p_B = F_e + F_fr - F_stops + M dv/dt      all positive towards the B end but F_fr      thesis (4.29)
@@ -187,7 +187,8 @@ impl<S: Scalar> Machine<S> {
         ]
     }
 
-    /// Pressures of the oil of a transmission in Pa where it carries these forces in N; zero without one.
+    /// Pressures of the oil of a transmission in Pa where it carries these forces in N; zero
+    /// without one.
     fn oil_pressures<T: Scalar + From<S>>(&self, forces: [T; 2]) -> [T; 2] {
         match &self.series {
             Some(MovingSeries::Oil(column)) => {

@@ -40,16 +40,16 @@ pub struct InitialCondition {
     /// The force on the load from outside in N, zero until then; `None` for a machine without that
     /// input.
     pub external_force: Option<f64>,
-    /// By how much the setting of the accumulators has moved until then, at rest; `None` for a machine
-    /// without that input.
+    /// By how much the setting of the accumulators has moved until then, at rest; `None` for a
+    /// machine without that input.
     pub setting_change: Option<f64>,
     /// The waves that arrive from the lines until then, in Pa, as the machine's last inputs.
     pub waves: Vec<f64>,
 }
 
 impl InitialCondition {
-    /// All inputs of the machine: the ground's, the force from outside, the setting of the accumulators,
-    /// and the waves.
+    /// All inputs of the machine: the ground's, the force from outside, the setting of the
+    /// accumulators, and the waves.
     pub fn all_inputs(&self) -> Vec<f64> {
         let setting: Vec<f64> = self.setting_change.into_iter().flat_map(|change| [change, 0.0]).collect();
         [&self.inputs, self.external_force.as_slice(), setting.as_slice(), self.waves.as_slice()].concat()

@@ -13,8 +13,8 @@ use crate::servovalve::SpoolState;
 /// The order of the vector is that of the fields: spool voltage and rate, p_A, p_B, deflection,
 /// velocity, and then, if present, those of bristles, load, capacity between the chambers, supply,
 /// spool friction, magnetic lag, series spring. The states of gas ([`Machine::state_names`] names
-/// them too), of the oil of a transmission and those of lines follow; they are read by what is made of them alone, so that machines
-/// without them do not carry zeros along.
+/// them too), of the oil of a transmission and those of lines follow; they are read by what is made
+/// of them alone, so that machines without them do not carry zeros along.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MachineState<T = f64> {
     /// Position of the spool in V and what moves it; its two memories stand last in the vector.
@@ -31,8 +31,9 @@ pub struct MachineState<T = f64> {
     /// Deflection z of the bristles in m.
     pub bristle: T,
     /// A load that moves by itself: its position from its ground, x_L - x_0, in m, and its velocity
-    /// v_L in m/s; behind a linkage its angle in rad and angular velocity in rad/s. Errors are scaled
-    /// by the deformation of its spring or wall, not by its distance from the end of the cylinder.
+    /// v_L in m/s; behind a linkage its angle in rad and angular velocity in rad/s. Errors are
+    /// scaled by the deformation of its spring or wall, not by its distance from the end of the
+    /// cylinder.
     pub load: Motion<T>,
     /// Pressure difference p_cp in Pa over the capacity of a valve between the chambers.
     pub cross_port_pressure: T,
@@ -195,8 +196,8 @@ impl Layout {
         self.external_force.then(|| inputs.get(GROUND_INPUTS).copied().unwrap_or(missing))
     }
 
-    /// By how much the setting of accumulators has moved from rest and its rate in 1/s, inputs; zero
-    /// where none is adjusted.
+    /// By how much the setting of accumulators has moved from rest and its rate in 1/s, inputs;
+    /// zero where none is adjusted.
     #[inline(always)]
     pub(super) fn setting<T: Scalar>(&self, inputs: &[T]) -> [T; 2] {
         if !self.setting {

@@ -42,8 +42,9 @@ pub struct Settled<S = f64> {
 /// Halvings of the spool's travel: to 4e-6 of it, where the leakage of the edges takes a hundredth
 /// to fall.
 const HALVINGS_OF_TRAVEL: usize = 18;
-/// Number of halvings for the load pressure that remains with a flow from chamber to chamber, and to
-/// less than the transition pressure of an orifice: with an orifice, and for leakage to the tank.
+/// Number of halvings for the load pressure that remains with a flow from chamber to chamber, and
+/// to less than the transition pressure of an orifice: with an orifice, and for leakage to the
+/// tank.
 const HALVINGS_OF_LEAKAGE: usize = 12;
 const HALVINGS_OF_ORIFICE: usize = 20;
 /// How often the load pressure of unequal areas is taken anew.
@@ -200,8 +201,8 @@ impl<S: Scalar> Balance<S> {
         ]
     }
 
-    /// [`Balance::between`] with what leaks outwards at the pressure that is found, by bisection: the
-    /// more leaks, the lower is the pressure.
+    /// [`Balance::between`] with what leaks outwards at the pressure that is found, by bisection:
+    /// the more leaks, the lower is the pressure.
     fn leaking(&self, edges: &[S; 2], flow: S) -> S {
         if self.outward.is_none() {
             return self.between(edges, flow);

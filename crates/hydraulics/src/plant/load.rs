@@ -18,8 +18,8 @@ pub enum LinearLoad<S = f64> {
         /// Stiffness k in N/m; zero for a free mass.
         stiffness: S,
     },
-    /// A load that turns behind a linkage, with X_0 = r Theta_0 the way of the rod that follows from
-    /// the angle of its ground.
+    /// A load that turns behind a linkage, with X_0 = r Theta_0 the way of the rod that follows
+    /// from the angle of its ground.
     ///
     /// ```text
     /// (J s^2 + c s + k + k_g + k_w) X_L = r^2 F_L + (c s + k) X_0,     k_g = -F g''(theta) at a force F
@@ -33,8 +33,8 @@ pub enum LinearLoad<S = f64> {
         damping: S,
         /// Stiffness k in N m/rad of what holds it to its ground.
         stiffness: S,
-        /// Stiffness k_g in N m/rad by the change of the lever arm under the force there, and k_w by
-        /// that of the load's weight; may be negative.
+        /// Stiffness k_g in N m/rad by the change of the lever arm under the force there, and k_w
+        /// by that of the load's weight; may be negative.
         geometric_stiffness: S,
         /// Lever arm r = g' in m.
         lever_arm: S,

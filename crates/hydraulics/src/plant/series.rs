@@ -112,8 +112,8 @@ impl<S: Scalar> LinearSeries<S> {
         spring.damping.is_none() && spring.mass.is_none()
     }
 
-    /// beta: the force through the sensor that does not reach the load, for a unit of the motion of the
-    /// load; `None` where both forces are the same.
+    /// beta: the force through the sensor that does not reach the load, for a unit of the motion of
+    /// the load; `None` where both forces are the same.
     pub fn held_back(&self) -> Option<Vec<S>> {
         match &self.element {
             LinearElement::Spring(spring) => spring.mass.map(|mass| vec![mass, S::from(0.0), S::from(0.0)]),
@@ -122,8 +122,8 @@ impl<S: Scalar> LinearSeries<S> {
     }
 }
 
-/// The entries of the matrix: t, alpha, beta, K_S gamma and delta, as polynomials or as their values;
-/// `None` for a beta of zero and a delta of one.
+/// The entries of the matrix: t, alpha, beta, K_S gamma and delta, as polynomials or as their
+/// values; `None` for a beta of zero and a delta of one.
 struct SeriesMatrix<T> {
     tied: T,
     force: T,
@@ -241,7 +241,8 @@ impl<S: Scalar> OilColumn<S> {
     /// place of K_S gamma.
     fn matrix<T: Admittance<S> + Clone>(&self, [one, plug]: &[T; 2]) -> SeriesMatrix<T> {
         let spring = |plugs: usize| S::from(1.0) / self.stiffness_behind(plugs);
-        // (alpha, beta) and (gamma, delta) of the first spring, then of each plug and the spring behind it
+        // (alpha, beta) and (gamma, delta) of the first spring, then of each plug and the spring
+        // behind it
         let (mut force, mut lag) = (one.clone(), one.by(S::from(0.0)));
         let (mut yields, mut moved) = (one.by(spring(0)), one.clone());
         for plugs in 1..=self.segments {
@@ -266,17 +267,17 @@ impl<T> SeriesMatrix<T> {
 
 /// What lies beyond the force sensor, at one frequency and, falling, above it.
 pub(super) struct BeyondSensor {
-    /// At most the velocity there over the force through the sensor, where it makes the sensor's own
-    /// deflection less, in m/(s N).
+    /// At most the velocity there over the force through the sensor, where it makes the sensor's
+    /// own deflection less, in m/(s N).
     pub(super) yielding: f64,
     /// At most the share of that force which reaches the load, and the output of the plant over it.
     pub(super) passed: f64,
     pub(super) output: f64,
 }
 
-/// At most the force that passes a mass over the one before it, and the velocity of the mass over that
-/// force; of w m, the impedance of the spring behind it, and the mobility behind that. `None` at too low
-/// a frequency.
+/// At most the force that passes a mass over the one before it, and the velocity of the mass over
+/// that force; of w m, the impedance of the spring behind it, and the mobility behind that. `None`
+/// at too low a frequency.
 fn beyond_mass(inertia: f64, tied: f64, speed: f64) -> Option<(f64, f64)> {
     let left = 1.0 - tied * speed;
     let yielding = 1.0 / (inertia - tied / left);
@@ -314,8 +315,8 @@ impl LinearSeries {
         Some(BeyondSensor { yielding, passed, output })
     }
 
-    /// Above this frequency in rad/s no mode of it lies, on a sensor of this stiffness in N/m; `None`
-    /// for an element that has none.
+    /// Above this frequency in rad/s no mode of it lies, on a sensor of this stiffness in N/m;
+    /// `None` for an element that has none.
     pub(super) fn fastest_rad_per_s(&self, sensor: f64) -> Option<f64> {
         match &self.element {
             LinearElement::Spring(spring) => Some(((sensor + spring.stiffness) / spring.mass?).sqrt()),
@@ -413,7 +414,8 @@ impl<S: Scalar> LinearPlant<S> {
     ) -> PlantCoefficients<S> {
         let shows = &self.velocity_sensor;
         let fed = self.load_velocity_feed_forward.map(|gain| shows.shown(shifted(&scaled(gain, &driven))));
-        // the filter of the velocity that is fed forward, where one is: d_v times every path but that
+        // the filter of the velocity that is fed forward, where one is: d_v times every path but
+        // that
         let filtered =
             |path: &Vec<S>| if fed.is_some() { shows.filtered(path.clone()) } else { path.clone() };
         let matrix = series.polynomials(self.sensor_stiffness);

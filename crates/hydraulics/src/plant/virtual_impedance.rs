@@ -57,8 +57,8 @@ impl<S: Scalar> LinearPlant<S> {
 }
 
 impl<A: Analytic> Paths<A> {
-    /// The same with y in place of F_e, at s; `ground_of_load` is R of a load that yields, and `None`
-    /// where its motion is prescribed.
+    /// The same with y in place of F_e, at s; `ground_of_load` is R of a load that yields, and
+    /// `None` where its motion is prescribed.
     pub(super) fn beside(
         self,
         impedance: Option<&VirtualImpedance>,

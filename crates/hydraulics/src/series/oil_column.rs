@@ -57,8 +57,8 @@ impl<S: Scalar> OilColumn<S> {
         self.filling_pressure + force / self.piston_area
     }
 
-    /// The force in N through each spring, from the rod on: that through the sensor, then those of the
-    /// springs behind the plugs, from their deflections in m.
+    /// The force in N through each spring, from the rod on: that through the sensor, then those of
+    /// the springs behind the plugs, from their deflections in m.
     pub(crate) fn forces(&self, sensed: S, deflections: impl Iterator<Item = S>) -> Vec<S> {
         let behind = deflections.enumerate();
         let behind = behind.map(|(plug, deflection)| self.stiffness_behind(plug + 1) * deflection);
@@ -72,8 +72,8 @@ impl<S: Scalar> OilColumn<S> {
         (0..=self.segments).map(|plugs| force - lost(plugs)).collect()
     }
 
-    /// Frequency in rad/s that no mode of it between a sensor and a load lies above: that of one plug
-    /// between its two springs, by twice.
+    /// Frequency in rad/s that no mode of it between a sensor and a load lies above: that of one
+    /// plug between its two springs, by twice.
     ///
     /// ```text
     /// w^2 <= 2 (k_j + k_j+1)/m                                          Gershgorin's circles of K over m

@@ -8,8 +8,8 @@ use crate::parameter::{ParameterError, Problems};
 /// Most segments into which the line of a transmission is cut: each adds two states.
 pub const MOST_SEGMENTS: usize = 8;
 
-/// A hydraulic transmission between force sensor and load: a piston at the rod, a line, and an equal
-/// piston at the load, filled once and closed. Units: m2, m3, Pa.
+/// A hydraulic transmission between force sensor and load: a piston at the rod, a line, and an
+/// equal piston at the load, filled once and closed. Units: m2, m3, Pa.
 ///
 /// ```text
 /// F = A (p - p_0)                                                at either piston, p the pressure there
@@ -20,12 +20,13 @@ pub const MOST_SEGMENTS: usize = 8;
 /// C_e = V_e/beta(p_0)                                            I = rho L/a,   R_0 = 8 nu/R^2 I,   C: Conduit
 /// ```
 ///
-/// The far sides of both pistons are kept at the filling pressure p_0, so that no force acts at rest;
-/// a pull lowers the pressure in the oil, which tears off where it comes to that of its vapour. The
-/// pistons have no friction, as rolling diaphragms have none, and no mass of their own: count that at
-/// the rod with the moving mass and that at the load with the load. Friction of the line is that of
-/// steady laminar flow. Source: Buerger (2005), "Stable, high-force, low-impedance robotic actuators
-/// for human-interactive machines", thesis, MIT, for the arrangement; Merritt (1967) for the elements.
+/// The far sides of both pistons are kept at the filling pressure p_0, so that no force acts at
+/// rest; a pull lowers the pressure in the oil, which tears off where it comes to that of its
+/// vapour. The pistons have no friction, as rolling diaphragms have none, and no mass of their own:
+/// count that at the rod with the moving mass and that at the load with the load. Friction of the
+/// line is that of steady laminar flow. Source: Buerger (2005), "Stable, high-force, low-impedance
+/// robotic actuators for human-interactive machines", thesis, MIT, for the arrangement; Merritt
+/// (1967) for the elements.
 ///
 /// # Example
 /// For slow motions it is a spring: A^2 over all of its compliance.

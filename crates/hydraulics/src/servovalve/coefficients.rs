@@ -35,8 +35,8 @@ pub struct ChamberCoefficients<S = f64> {
 }
 
 impl<S: Scalar> ChamberCoefficients<S> {
-    /// The same of chambers that also leak to the tank, by this conductance in m3/(s Pa): what leaks
-    /// falls with the pressure as the flow of the valve does.
+    /// The same of chambers that also leak to the tank, by this conductance in m3/(s Pa): what
+    /// leaks falls with the pressure as the flow of the valve does.
     #[must_use]
     pub fn leaking(self, outward: Option<S>) -> ChamberCoefficients<S> {
         let Some(conductance) = outward else { return self };

@@ -11,8 +11,8 @@ pub struct OilLaw {
     pub density_slope: f64,
 }
 
-/// Oil at another temperature than the one that a valve is stated at, as ratios; both are one at that
-/// temperature.
+/// Oil at another temperature than the one that a valve is stated at, as ratios; both are one at
+/// that temperature.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WarmOil {
     /// Density over that of the stated temperature.
@@ -61,9 +61,9 @@ impl WarmOil {
     /// K_vini         proportional to mu_0/mu                the clearances of the closed edges: laminar
     /// ```
     ///
-    /// Flow through sharp edges and through the nozzles of the first stage is turbulent. What passes
-    /// the clearance around null is laminar (Merritt 1967, chapter 5): in proportion to 1/mu. Its
-    /// dependence on pressure stays that of the model.
+    /// Flow through sharp edges and through the nozzles of the first stage is turbulent. What
+    /// passes the clearance around null is laminar (Merritt 1967, chapter 5): in proportion to
+    /// 1/mu. Its dependence on pressure stays that of the model.
     ///
     /// # Example
     /// A degree more changes the leakage sixty times as much as the flow.

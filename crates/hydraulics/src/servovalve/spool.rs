@@ -21,8 +21,8 @@ pub(super) const STICKING_STIFFNESS: f64 = 20.0;
 ///
 /// Both memories are of Dahl (1976), "Solid friction damping of mechanical vibrations", AIAA
 /// Journal 14(12): independent of the rate, bounded by their half widths, and without a branch.
-/// Turned round far from null, y does not change while the command covers the threshold, and finally lags by
-/// the whole width (ISO 10770-1 on hysteresis and threshold).
+/// Turned round far from null, y does not change while the command covers the threshold, and
+/// finally lags by the whole width (ISO 10770-1 on hysteresis and threshold).
 ///
 /// Measured on the valve of the thesis (section 5.2.1): null at 0.078 V rising and -0.05 V falling,
 /// so that the bias is 0.014 V and the width 0.128 V. The source does not state the threshold.

@@ -95,11 +95,11 @@ pub fn stiffness_from_hose_length<S: Scalar>(
         / (S::from(2.0) * area * stroke + S::from(PI) * bore.squared() * length)
 }
 
-/// The factor of the lengths of two lines that brings the least stiffness over the stroke to `stiffness`
-/// in N/m: lines of this proportion, each of its own hose; either model, any cylinder.
+/// The factor of the lengths of two lines that brings the least stiffness over the stroke to
+/// `stiffness` in N/m: lines of this proportion, each of its own hose; either model, any cylinder.
 ///
-/// The length of a [`Line::Volume`] is its volume over the given one. Solved by bisection, since the
-/// least stiffness falls strictly as lines grow; agrees with [`hose_length_uniform`] and
+/// The length of a [`Line::Volume`] is its volume over the given one. Solved by bisection, since
+/// the least stiffness falls strictly as lines grow; agrees with [`hose_length_uniform`] and
 /// [`hose_length_by_volume`] where those apply.
 ///
 /// Where the softest position lies within the stroke and both have the same compliance c:

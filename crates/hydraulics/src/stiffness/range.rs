@@ -31,9 +31,9 @@ impl ChamberCompliance<f64> {
     /// ```
     ///
     /// K_H is convex in x, so the greatest is at an end, and the least at the root if it lies
-    /// inside the stroke and at an end otherwise. A telescopic piston is searched on a grid, which finds
-    /// the least and the greatest to a hundred thousandth. With neither dead volume nor line the stiffness
-    /// at the ends is infinite.
+    /// inside the stroke and at an end otherwise. A telescopic piston is searched on a grid, which
+    /// finds the least and the greatest to a hundred thousandth. With neither dead volume nor line
+    /// the stiffness at the ends is infinite.
     ///
     /// # Example
     /// The big side is the softer: an asymmetric cylinder is softest on the rod's side of mid
@@ -76,8 +76,8 @@ impl ChamberCompliance<f64> {
         }
     }
 
-    /// The same of a telescopic piston: of a grid over the stroke and over its transitions, where K_H
-    /// changes most.
+    /// The same of a telescopic piston: of a grid over the stroke and over its transitions, where
+    /// K_H changes most.
     fn over_stages(&self, telescope: &Telescope) -> StrokeStiffness {
         let over = |from: f64, width: f64| {
             (0..=STEPS_OVER_STAGES).map(move |step| from + width * step as f64 / STEPS_OVER_STAGES as f64)

@@ -50,8 +50,8 @@ pub struct Telescope<S = f64> {
 phea_dynamics::parameters! { Telescope { stroke, stages, transition } }
 phea_dynamics::parameters! { PistonStage { from, ratios } }
 
-/// What the transition to a stage adds, over its share t of the transition: b, db/dt and the integral
-/// of b.
+/// What the transition to a stage adds, over its share t of the transition: b, db/dt and the
+/// integral of b.
 struct Blend<S> {
     value: S,
     slope: S,
@@ -73,8 +73,8 @@ impl<S: Scalar> Blend<S> {
 }
 
 impl<S: Scalar> Telescope<S> {
-    /// Sums over the stages of both sides, from a start: what `of` takes from the blend to each, times
-    /// the change of the ratio there.
+    /// Sums over the stages of both sides, from a start: what `of` takes from the blend to each,
+    /// times the change of the ratio there.
     #[inline(always)]
     fn summed(&self, x: S, start: S, of: impl Fn(Blend<S>) -> S) -> [S; 2] {
         let (mut sums, mut before) = ([start; 2], [S::from(1.0); 2]);
@@ -98,8 +98,8 @@ impl<S: Scalar> Telescope<S> {
         self.summed(x, S::from(0.0), |blend| blend.slope / self.transition)
     }
 
-    /// l_A(x) and l_B(L) - l_B(x) in m: how far a piston of the first stage's areas would have swept
-    /// the same volumes.
+    /// l_A(x) and l_B(L) - l_B(x) in m: how far a piston of the first stage's areas would have
+    /// swept the same volumes.
     pub fn travels(&self, x: S) -> [S; 2] {
         let swept = |x: S| self.summed(x, x, |blend| blend.integral * self.transition);
         let ([from_a, from_b], [_, whole]) = (swept(x), swept(self.stroke));

@@ -34,9 +34,9 @@ pub struct TwoPressureLinearParameters<S = f64> {
 /// Coefficients of the linearised model at an operating point; `direction` decides which edges open
 /// at null.
 ///
-/// Areas and compliances are those of the position, held there: what else depends on the position is
-/// the net flow into the chambers, which vanishes at an equilibrium, and within a transition of a
-/// telescopic piston [`Cylinder::area_stiffness`](crate::cylinder::Cylinder::area_stiffness).
+/// Areas and compliances are those of the position, held there: what else depends on the position
+/// is the net flow into the chambers, which vanishes at an equilibrium, and within a transition of
+/// a telescopic piston [`Cylinder::area_stiffness`](crate::cylinder::Cylinder::area_stiffness).
 pub fn two_pressure_linear_parameters<S: Scalar>(
     model: &TwoPressureModel<S>,
     point: &OperatingPoint<S>,

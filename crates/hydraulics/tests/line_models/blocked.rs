@@ -39,8 +39,8 @@ fn a_lossless_line_has_the_closed_form() {
 }
 
 /// With friction it is near the exact line, as far as each model is: the entries of the transfer
-/// matrix of waves are within 0.6 % of their root mean square, three times that at most, and sixteen
-/// segments have resonances 0.2 % low up to the quarter wave.
+/// matrix of waves are within 0.6 % of their root mean square, three times that at most, and
+/// sixteen segments have resonances 0.2 % low up to the quarter wave.
 #[test]
 fn a_line_with_friction_is_near_the_exact_one() {
     let waves = DynamicLine::TransmissionLine(TransmissionLine::of_conduit(&HOSE, 1e-6).unwrap());
@@ -92,7 +92,8 @@ fn a_pipe_with_air_takes_up_what_its_mixture_gives_way() {
     assert!((last / high - 1.0).abs() < 1e-6, "{last}");
 }
 
-/// In time and over frequency it is one line: a slow sine of flow moves the pressure by the impedance.
+/// In time and over frequency it is one line: a slow sine of flow moves the pressure by the
+/// impedance.
 #[test]
 fn time_and_frequency_agree() {
     let fluid = components(hose_line(), StiffnessModel::ByVolume).fluid;

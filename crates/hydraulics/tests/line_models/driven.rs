@@ -9,8 +9,8 @@ use phea_hydraulics::reference_rig::hose_line;
 
 use super::oracle::{conduit, fluid};
 
-/// A flow into the valve port, a chamber of this compliance in m3/Pa out of which a flow is drawn: states of the line, the
-/// chamber's pressure, the energy put in.
+/// A flow into the valve port, a chamber of this compliance in m3/Pa out of which a flow is drawn:
+/// states of the line, the chamber's pressure, the energy put in.
 #[derive(Clone)]
 struct Fed {
     line: DynamicLine,
@@ -60,8 +60,8 @@ impl Fed {
     }
 }
 
-/// Water hammer at a shut valve: a flow that stops leaves -Z_c q, which the constant pressure at the far end sends back turned
-/// round: a square wave of the period 4 T.
+/// Water hammer at a shut valve: a flow that stops leaves -Z_c q, which the constant pressure at
+/// the far end sends back turned round: a square wave of the period 4 T.
 #[test]
 fn a_valve_that_shuts_leaves_a_square_wave() {
     let smooth = Conduit { kinematic_viscosity: 1e-12, ..conduit() };

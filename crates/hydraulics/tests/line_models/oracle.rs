@@ -1,4 +1,5 @@
-//! The response of a model at one frequency, found from its equations alone; the thesis' hose; the exponential of a matrix.
+//! The response of a model at one frequency, found from its equations alone; the thesis' hose; the
+//! exponential of a matrix.
 
 use nalgebra::{Complex, DMatrix, DVector};
 use num_complex::Complex64;
@@ -24,7 +25,8 @@ pub(crate) fn size(z: Complex64) -> f64 {
     z.norm_sqr().sqrt()
 }
 
-/// Everything a line answers to its flow, pressure, state and arriving waves: rates, waves sent, port pressure, chamber flow.
+/// Everything a line answers to its flow, pressure, state and arriving waves: rates, waves sent,
+/// port pressure, chamber flow.
 fn answer(line: &DynamicLine, given: &[f64]) -> Vec<f64> {
     let (states, waves) = (line.states(), line.delays().len());
     let (flow, pressure) = (given[0], given[1]);
@@ -39,8 +41,8 @@ fn answer(line: &DynamicLine, given: &[f64]) -> Vec<f64> {
     rates
 }
 
-/// Transfer matrix of a model from valve port to chamber, its chamber compliance included: equations taken column by column,
-/// delays as e^(-sT), then solved.
+/// Transfer matrix of a model from valve port to chamber, its chamber compliance included:
+/// equations taken column by column, delays as e^(-sT), then solved.
 pub(crate) fn transfer_matrix(line: &DynamicLine, s: Complex64) -> [[Complex64; 2]; 2] {
     let inner = line.states() + line.delays().len();
     let columns: Vec<Vec<f64>> = (0..inner + 2)
@@ -74,7 +76,8 @@ pub(crate) fn transfer_matrix(line: &DynamicLine, s: Complex64) -> [[Complex64; 
         })
     };
     let ([port_of_flow, chamber_of_flow], [port_of_pressure, chamber_of_pressure]) = (answers(0), answers(1));
-    // (p1, q) from (q1, p2), q what the line delivers; the end volume at the chamber takes s C p2 of it, q2 is left
+    // (p1, q) from (q1, p2), q what the line delivers; the end volume at the chamber takes s C p2
+    // of it, q2 is left
     let taken = s * line.chamber_compliance();
     let t22 = chamber_of_flow.inv();
     let t21 = t22 * (taken - chamber_of_pressure);
@@ -99,7 +102,8 @@ pub(crate) fn errors(
     [0, 1, 2].map(|index: usize| (error[index] / total[index]).sqrt())
 }
 
-/// Root mean square errors of the impedances in phase and in opposition over the root mean square of the exact ones.
+/// Root mean square errors of the impedances in phase and in opposition over the root mean square
+/// of the exact ones.
 pub(crate) fn impedance_errors(
     line: &DynamicLine,
     exact: impl Fn(Complex64) -> LineResponse,

@@ -58,7 +58,8 @@ fn the_exact_line_is_that_of_bessel_functions() {
     }
 }
 
-/// Up to ten half waves, and at the dissipation numbers of a hose, a short pipe and a long thin one.
+/// Up to ten half waves, and at the dissipation numbers of a hose, a short pipe and a long thin
+/// one.
 #[test]
 fn the_transmission_line_follows_the_exact_line() {
     let hose = conduit();
@@ -98,7 +99,8 @@ fn every_model_is_symmetric_and_reciprocal() {
     }
 }
 
-/// At rest every model holds the volume of the lumped line, and lets a steady flow pass as Hagen and Poiseuille say.
+/// At rest every model holds the volume of the lumped line, and lets a steady flow pass as Hagen
+/// and Poiseuille say.
 #[test]
 fn every_model_has_the_compliance_and_the_resistance_of_the_lumped_line() {
     let hose = conduit();
@@ -119,8 +121,8 @@ fn every_model_has_the_compliance_and_the_resistance_of_the_lumped_line() {
     }
 }
 
-/// Whatever the model of its motion, a hose holds at rest what its sheet says at the operating pressure: what creeps, with the
-/// wall at rest, and all else with the dynamic one.
+/// Whatever the model of its motion, a hose holds at rest what its sheet says at the operating
+/// pressure: what creeps, with the wall at rest, and all else with the dynamic one.
 #[test]
 fn every_model_of_a_hose_keeps_to_its_sheet() {
     // ORIGIN: analytic, dV/dp = epsilon L/r_beta + (A_ho + E(35 bar)) L/beta_0
@@ -170,8 +172,8 @@ fn a_creeping_wall_is_soft_at_rest_and_stiff_when_fast() {
     }
 }
 
-/// Pi segments err by the square of their length. With the lags of friction they tend to the exact line up to what the lags
-/// leave (0.5 % of the friction factor).
+/// Pi segments err by the square of their length. With the lags of friction they tend to the exact
+/// line up to what the lags leave (0.5 % of the friction factor).
 #[test]
 fn segments_converge_to_the_exact_line() {
     let hose = conduit();
@@ -188,7 +190,8 @@ fn segments_converge_to_the_exact_line() {
     assert!(found.iter().all(|error| *error < 5e-3), "{found:?}");
 }
 
-/// Impedances in phase and in opposition have no negative real part: whatever is connected gets no energy out.
+/// Impedances in phase and in opposition have no negative real part: whatever is connected gets no
+/// energy out.
 #[test]
 fn the_transmission_line_is_passive_at_every_frequency() {
     let hose = conduit();
@@ -197,7 +200,8 @@ fn the_transmission_line_is_passive_at_every_frequency() {
         let mut frequency = 0.03;
         while frequency < 3e5 {
             let LineResponse { in_phase, in_opposition } = impedances(&line, at(frequency));
-            // what rounding leaves; comparisons/recompute_lines.py holds the impedances themselves against zero
+            // what rounding leaves; comparisons/recompute_lines.py holds the impedances themselves
+            // against zero
             let least = -2e-9 * (size(in_phase) + size(in_opposition));
             assert!(
                 in_phase.re > least && in_opposition.re > least,

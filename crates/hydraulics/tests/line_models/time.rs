@@ -8,7 +8,8 @@ use phea_hydraulics::reference_rig::hose;
 
 use super::oracle::{conduit, fluid};
 
-/// A line between a flow into its valve port and a chamber of this compliance in m3/Pa out of which a flow is drawn.
+/// A line between a flow into its valve port and a chamber of this compliance in m3/Pa out of which
+/// a flow is drawn.
 struct Run {
     line: DynamicLine,
     chamber: f64,
@@ -50,7 +51,8 @@ impl Run {
         }
     }
 
-    /// One step of the classical Runge-Kutta method; returns the energy in J that valve and chamber put into the line.
+    /// One step of the classical Runge-Kutta method; returns the energy in J that valve and chamber
+    /// put into the line.
     fn advance(&mut self, inflow: f64, outflow: f64) -> f64 {
         self.record();
         let states = self.state.len();
@@ -103,7 +105,8 @@ fn models() -> Vec<DynamicLine> {
     ]
 }
 
-/// Joukowsky: a flow that sets in raises the pressure by Z_c q; after T it arrives at the shut end, doubled.
+/// Joukowsky: a flow that sets in raises the pressure by Z_c q; after T it arrives at the shut end,
+/// doubled.
 #[test]
 fn a_step_of_flow_rises_and_arrives_as_joukowsky_says() {
     let smooth = Conduit { kinematic_viscosity: 1e-12, ..conduit() };
@@ -158,7 +161,8 @@ fn random_flows_get_no_energy_out() {
     }
 }
 
-/// What flows in and does not flow out is stored: after all has settled, volume over compliance is the pressure.
+/// What flows in and does not flow out is stored: after all has settled, volume over compliance is
+/// the pressure.
 #[test]
 fn volume_is_conserved() {
     for line in models() {

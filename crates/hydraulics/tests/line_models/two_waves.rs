@@ -39,14 +39,16 @@ fn friction_of(hose: &TwoWaveHose, s: Complex64) -> Complex64 {
     friction_factor(s / hose.fixed_end_conduit().viscous_rate())
 }
 
-/// The transfer matrix of the four equations, by the exponential of their matrix, wall held at both ends.
+/// The transfer matrix of the four equations, by the exponential of their matrix, wall held at both
+/// ends.
 fn by_exponential(hose: &TwoWaveHose, s: Complex64, factor: Complex64) -> [[Complex64; 2]; 2] {
     let area = hose.fixed_end_conduit().area();
     let wall = hose.wall;
     let drag = hose.density * (factor - 1.0);
     let radial = 1.0 / hose.fluid_modulus + wall.pressure_compliance;
     let zero = Complex::new(0.0, 0.0);
-    // d/dx of pressure, tension over area, fluid and wall velocity, the first two in units of 1e6 Pa
+    // d/dx of pressure, tension over area, fluid and wall velocity, the first two in units of 1e6
+    // Pa
     let unit = 1e6;
     let rows = [
         [zero, zero, -s * (hose.density + drag) / unit, s * drag / unit],
@@ -110,7 +112,8 @@ fn the_exact_hose_is_the_exponential_of_its_four_equations() {
     assert!(size(t21 + Complex64::new(2.3202171e-11, 1.1694415e-10)) < 1e-16);
 }
 
-/// Without friction the model in time is the exponential, delays and all; with it, as near as one wave is.
+/// Without friction the model in time is the exponential, delays and all; with it, as near as one
+/// wave is.
 #[test]
 fn the_model_in_time_follows_the_exact_hose() {
     for hose in [round_hose(), assumed_hose()] {
@@ -125,17 +128,20 @@ fn the_model_in_time_follows_the_exact_hose() {
         let exact = |s| hose.response(s, friction_of(&hose, s));
         impedance_errors(&in_time(&hose, 1e-6), exact, to(highest))
     };
-    // first half wave of the slower wave of the assumed hose at 714 rad/s, the highest frequency its ninth
+    // first half wave of the slower wave of the assumed hose at 714 rad/s, the highest frequency
+    // its ninth
     for (highest, [in_phase, in_opposition]) in [(500.0, [5e-4, 0.05]), (6000.0, [0.06, 0.07])] {
         let found = errors_of(assumed_hose(), highest);
         assert!(found[0] < in_phase && found[1] < in_opposition, "{highest}: {found:?}");
     }
-    // the slower wave of the round hose takes its wall along (N = 1.14): sharp peaks, between which all is well
+    // the slower wave of the round hose takes its wall along (N = 1.14): sharp peaks, between which
+    // all is well
     let found = errors_of(round_hose(), 500.0);
     assert!(found[0] < 5e-4 && found[1] < 0.04, "{found:?}");
 }
 
-/// Without coupling there is a wave of the fluid, which is all that the ends see, and a wave of the wall.
+/// Without coupling there is a wave of the fluid, which is all that the ends see, and a wave of the
+/// wall.
 #[test]
 fn without_coupling_one_wave_is_left() {
     let mut hose = round_hose();
@@ -159,7 +165,8 @@ fn without_coupling_one_wave_is_left() {
     assert!((near.speed / fluid.speed - 1.0).abs() < 1e-5 && near.modal_ratio.abs() < 1e-2);
 }
 
-/// Slow, the hose between fixed ends is the lumped line `by_volume`, since its braid lies at the neutral angle.
+/// Slow, the hose between fixed ends is the lumped line `by_volume`, since its braid lies at the
+/// neutral angle.
 #[test]
 fn the_assumed_hose_is_at_rest_as_soft_as_its_catalogue_says() {
     let lumped = hose_line().compliance(1.45e9, StiffeningMember::Nominal);

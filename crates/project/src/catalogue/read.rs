@@ -62,7 +62,8 @@ impl Catalogue {
     }
 }
 
-/// The built-in entries of a kind. Their files are checked by tests, so that no findings arise here.
+/// The built-in entries of a kind. Their files are checked by tests, so that no findings arise
+/// here.
 pub(super) fn built_in(kind: CatalogueKind) -> &'static [CatalogueEntry] {
     static READ: [OnceLock<Vec<CatalogueEntry>>; CatalogueKind::ALL.len()] =
         [const { OnceLock::new() }; CatalogueKind::ALL.len()];

@@ -14,8 +14,8 @@ use crate::visitor::{FormulaShape, Kinds, NamedNumber, ValueForm, Variants, Visi
 use phea_quantity::spelling::nearest;
 use phea_quantity::{MotionKind, Price, PricedBy};
 
-/// What an entry of the catalogue states and does not apply where the project states the first: a pressure
-/// belongs to the flow that it was stated with, and areas and rods are stated in one way.
+/// What an entry of the catalogue states and does not apply where the project states the first: a
+/// pressure belongs to the flow that it was stated with, and areas and rods are stated in one way.
 const REPLACED: [(&str, &[&str]); 5] = [
     ("tare_flow", &["tare_pressure"]),
     ("rod_diameter", &["rod_diameters"]),

@@ -79,7 +79,8 @@ impl SchemaTable {
         self.rule(json!({ "anyOf": all }));
     }
 
-    /// One of several keys and no other of them; or none, unless one is needed and no entry of the catalogue has it.
+    /// One of several keys and no other of them; or none, unless one is needed and no entry of the
+    /// catalogue has it.
     pub(super) fn require_only_one(&mut self, names: &[&str], needed: bool) {
         let each = names.iter().map(|name| json!({ "required": [name] }));
         let entry = self.catalogue.as_ref().filter(|_| names.iter().all(|name| self.is_catalogued(name)));

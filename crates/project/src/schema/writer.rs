@@ -59,8 +59,8 @@ impl SchemaWriter {
         self.present(|table| table.rule(rule));
     }
 
-    /// The key of a number in the motion that it belongs to, and the form of a motor in addition to that of a
-    /// cylinder where it is of either.
+    /// The key of a number in the motion that it belongs to, and the form of a motor in addition to
+    /// that of a cylinder where it is of either.
     fn numbered(&mut self, key: Key, required: bool, schema: impl Fn(Key) -> Value) {
         let motion = if key.of_load { self.load_motion } else { self.motion };
         let forms = match motion {

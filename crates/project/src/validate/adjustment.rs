@@ -104,8 +104,8 @@ pub(super) fn course(
     }
 }
 
-/// A setting stays from 0 to 1. Signals of steps and ramps alone have their extremes where one begins or
-/// ends; for others a simulation reports it.
+/// A setting stays from 0 to 1. Signals of steps and ramps alone have their extremes where one
+/// begins or ends; for others a simulation reports it.
 fn leaves_its_way(signals: &[Signal], rest: f64, place: &str, check: &mut Check<'_, '_>) {
     let courses: Option<Vec<PartCourse>> = signals.iter().map(PartCourse::of).collect();
     let Some(courses) = courses else { return };

@@ -31,8 +31,8 @@ pub(super) fn cross_port(actuator: &DeclaredActuator, check: &mut Check<'_, '_>)
     }
 }
 
-/// An orifice throttles only where it is narrower than the ports of the cylinder: the narrower line,
-/// or the piston where the lines are plain volumes.
+/// An orifice throttles only where it is narrower than the ports of the cylinder: the narrower
+/// line, or the piston where the lines are plain volumes.
 fn orifice_within_port(orifice: &DeclaredOrifice, actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
     let bores = [&actuator.line.a, &actuator.line.b].into_iter().filter_map(bore);
     let port = match bores.reduce(f64::min) {
@@ -67,8 +67,8 @@ pub(super) fn gas_valves_within_lines(actuator: &DeclaredActuator, check: &mut C
     }
 }
 
-/// Reports an orifice in the table at `path` that is no narrower than what leads to it: its diameter in m,
-/// and what it is.
+/// Reports an orifice in the table at `path` that is no narrower than what leads to it: its
+/// diameter in m, and what it is.
 fn narrower(
     orifice: &DeclaredOrifice,
     density: f64,

@@ -63,8 +63,8 @@ fn accumulator(gas: &DeclaredAccumulator, supply: &DeclaredSupply, path: &str, c
     pressure_ratio(&most, supply, &format!("{path}.maximum_pressure_ratio"), check);
 }
 
-/// The ends of the ranges of a precharge: the supply reaches the highest, and the lowest is not compressed
-/// beyond the maker's limit.
+/// The ends of the ranges of a precharge: the supply reaches the highest, and the lowest is not
+/// compressed beyond the maker's limit.
 pub(super) fn precharge_ranges(project: &Project, actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
     let range_of = |name: &str| project.uncertainty.iter().find(|one| one.name == name);
     let most = range_of("supply.pressure").map_or(actuator.supply.pressure, |range| range.maximum);
@@ -96,8 +96,8 @@ pub(super) fn precharge_ranges(project: &Project, actuator: &DeclaredActuator, c
     }
 }
 
-/// The maker's limit of the compression of the gas, at the highest pressure that the supply gives; `path` is
-/// where the error is.
+/// The maker's limit of the compression of the gas, at the highest pressure that the supply gives;
+/// `path` is where the error is.
 fn pressure_ratio(gas: &DeclaredAccumulator, supply: &DeclaredSupply, path: &str, check: &mut Check<'_, '_>) {
     let Some(limit) = gas.maximum_pressure_ratio else { return };
     let precharge = gas.working_precharge(ATMOSPHERE) + ATMOSPHERE;

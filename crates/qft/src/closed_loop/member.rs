@@ -42,8 +42,8 @@ impl Member {
         }
     }
 
-    /// K H_v P_v(jw) of a plant without polynomials, with the delay of the loop and sampled where that
-    /// samples; `None` of other plants, and where its images do not die out.
+    /// K H_v P_v(jw) of a plant without polynomials, with the delay of the loop and sampled where
+    /// that samples; `None` of other plants, and where its images do not die out.
     pub(crate) fn fed_back(&self, frequency_rad_per_s: f64) -> Option<Complex64> {
         let Member::Responding { plant, .. } = self else { return None };
         self.images()?.fed_back(plant.as_ref(), frequency_rad_per_s)

@@ -46,8 +46,8 @@ pub enum QuantizationError {
     /// All coefficients of a numerator are rounded to zero.
     #[error("the numerator {0:?} is rounded to zero")]
     Vanished([f64; 3]),
-    /// The effect of one rounding has not died away within this number of samples: a loop that is unstable
-    /// or nearly so.
+    /// The effect of one rounding has not died away within this number of samples: a loop that is
+    /// unstable or nearly so.
     #[error("the effect of a rounding on plant {plant} has not died away within {samples} samples")]
     NotSettled {
         /// Index of the plant.

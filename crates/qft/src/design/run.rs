@@ -76,8 +76,8 @@ struct LearntPlants {
 /// satisfy the specifications. Where none does, the smallest relaxation is looked for.
 ///
 /// # Errors
-/// [`LoopDesignError`] where a part of the problem is not a transfer function, or cannot be put into
-/// the loop. A watch that stops it is not an error.
+/// [`LoopDesignError`] where a part of the problem is not a transfer function, or cannot be put
+/// into the loop. A watch that stops it is not an error.
 ///
 /// # Example
 /// 1/s and 4/s are to have |S| <= 1/2 at up to 1 rad/s. With a gain g that is g k >= sqrt(3)

@@ -25,8 +25,8 @@ pub(crate) type TabulatedPoint = (f64, [Complex64; 2]);
 /// relative error ([`FINE`] is 0.2 %), for searches that evaluate it thousands of times.
 ///
 /// # Example
-/// exp(-s/10)/(s + 1), known by its response: the table is that response to 0.2 %, between its points
-/// too.
+/// exp(-s/10)/(s + 1), known by its response: the table is that response to 0.2 %, between its
+/// points too.
 /// ```
 /// use num_complex::Complex64;
 /// use phea_dynamics::analytic::Disc;

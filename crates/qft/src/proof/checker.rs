@@ -85,8 +85,9 @@ pub enum Rejection {
 /// [`Rejection`] with the number of the claim, from 1, that is not shown.
 ///
 /// # Example
-/// The certificate that k/s with k from 1 to 4, closed with gain 1, keeps |T| to 1.2 is right; one that claims 0.9 is not,
-/// since |T| is 1 at zero frequency, and neither is one that claims nothing.
+/// The certificate that k/s with k from 1 to 4, closed with gain 1, keeps |T| to 1.2 is right; one
+/// that claims 0.9 is not, since |T| is 1 at zero frequency, and neither is one that claims
+/// nothing.
 /// ```
 /// # use phea_dynamics::controller::Controller;
 /// # use phea_dynamics::linear::TransferFunction;

@@ -18,8 +18,8 @@ use phea_dynamics::expression::{Binary, Expression, Node, Unary};
 use super::certificate::Certificate;
 use super::polynomial::{BoxPolynomial, Decimal};
 
-/// The parameters over a whole box, as polynomials in t, or in x where coefficients are modelled; `None`
-/// where there is no such box.
+/// The parameters over a whole box, as polynomials in t, or in x where coefficients are modelled;
+/// `None` where there is no such box.
 pub(super) fn parameters_over<S: Decimal>(
     certificate: &Certificate,
     of_box: usize,
@@ -55,8 +55,9 @@ pub(super) fn modelled<S: Decimal>(
     results.map(|value| Some(value?.with_shares())).collect()
 }
 
-/// Where a choice of an expression turns across a single variable: this variable and its value t in (0, 1)
-/// of the first choice that is not decided on the box, and whose condition is a straight line of it.
+/// Where a choice of an expression turns across a single variable: this variable and its value t in
+/// (0, 1) of the first choice that is not decided on the box, and whose condition is a straight
+/// line of it.
 pub(super) fn turn(
     expression: &Expression,
     parameters: &[BoxPolynomial<f64>],
@@ -113,8 +114,8 @@ fn difference<S: Decimal>(one: &BoxPolynomial<S>, other: &BoxPolynomial<S>) -> B
     one.plus(&other.scaled(S::from(-1.0)))
 }
 
-/// The greater of two polynomials, or the lesser one, undecided: one of them or their mean, whichever is
-/// never far from it. `least` and `most` bound the first less the second.
+/// The greater of two polynomials, or the lesser one, undecided: one of them or their mean,
+/// whichever is never far from it. `least` and `most` bound the first less the second.
 fn extremum<S: Decimal>(
     [one, other]: [&BoxPolynomial<S>; 2],
     [least, most]: [S; 2],
@@ -149,7 +150,8 @@ fn parted<S: Decimal>(of: &BoxPolynomial<S>) -> (S, S) {
 }
 
 impl Model {
-    /// Every operation; `None` where it is not defined on the whole box, which a choice must not take.
+    /// Every operation; `None` where it is not defined on the whole box, which a choice must not
+    /// take.
     fn values<S: Decimal>(
         &self,
         expression: &Expression,

@@ -47,8 +47,8 @@ pub(super) fn with_model(certificate: &mut Certificate) -> Result<(), NotProven>
     if of_all(certificate).is_some() { Ok(()) } else { Err(NotProven::NotPolynomial) }
 }
 
-/// Divides the box whose remainder, a share of its coefficients, is the greatest, again and again, as long
-/// as it is worth it.
+/// Divides the box whose remainder, a share of its coefficients, is the greatest, again and again,
+/// as long as it is worth it.
 fn divide(certificate: &mut Certificate, shares: Vec<f64>) {
     let mut left: Vec<(f64, bool)> = shares.into_iter().map(|share| (share, share > SMALL)).collect();
     while left.len() < BOXES_MAXIMUM {
@@ -127,8 +127,8 @@ fn greatest(shares: &[f64; 2]) -> f64 {
     shares[0].max(shares[1])
 }
 
-/// How many more times the lower of these halves must be halved across a variable until its upper part
-/// has polynomials; [`HALVINGS_MAXIMUM`] where this is not enough.
+/// How many more times the lower of these halves must be halved across a variable until its upper
+/// part has polynomials; [`HALVINGS_MAXIMUM`] where this is not enough.
 fn halvings(
     [lower, _]: &Halves,
     variable: usize,

@@ -158,8 +158,8 @@ impl<S: Decimal> BoxPolynomial<S> {
         self.rest
     }
 
-    /// The variable of a straight line in one variable alone, and where this line is zero, in t; `None` for
-    /// any other polynomial, and where it is zero nowhere.
+    /// The variable of a straight line in one variable alone, and where this line is zero, in t;
+    /// `None` for any other polynomial, and where it is zero nowhere.
     pub(super) fn root(&self) -> Option<(usize, S)> {
         let mut constant = S::from(0.0);
         let mut straight = None;

@@ -56,8 +56,8 @@ const WHOLE: [f64; 2] = [0.0, f64::INFINITY];
 /// [`Stopped`] by the watch.
 ///
 /// # Example
-/// k/s with k from 1 to 4, closed with gain 1, is stable; its |T| reaches 1 at zero frequency, which
-/// stays within 1.2 for every plant.
+/// k/s with k from 1 to 4, closed with gain 1, is stable; its |T| reaches 1 at zero frequency,
+/// which stays within 1.2 for every plant.
 /// ```
 /// # use phea_dynamics::controller::Controller;
 /// # use phea_dynamics::linear::TransferFunction;

@@ -41,7 +41,8 @@ fn specification(requirement: Requirement) -> Specification {
     Specification { requirement, frequencies_rad_per_s: vec![1.0], band_rad_per_s: [1.0, 1.0] }
 }
 
-/// For the plant 1 the bound of |T| <= W ends where a ray touches the circle of |T| = W: at arcsin(1/W) from -180 degrees.
+/// For the plant 1 the bound of |T| <= W ends where a ray touches the circle of |T| = W: at
+/// arcsin(1/W) from -180 degrees.
 #[test]
 fn the_tip_of_a_closed_bound_is_found() {
     for limit in [1.01, 1.2, 2.0, 7.0] {
@@ -72,7 +73,8 @@ fn any_grid_of_phases_ends() {
     assert!(function.bound(&endless).phases_rad.len() < 1000);
 }
 
-/// Ends of the bound at a phase, straight in dB between its neighbours; `None` where their intervals differ in number.
+/// Ends of the bound at a phase, straight in dB between its neighbours; `None` where their
+/// intervals differ in number.
 fn interpolated_db(bound: &Bound, phase: f64) -> Option<Vec<f64>> {
     let right = bound.phases_rad.iter().position(|place| *place > phase)?;
     let (from, to) = (bound.phases_rad[right - 1], bound.phases_rad[right]);
@@ -146,7 +148,8 @@ fn no_small_island_is_overlooked() {
     }
 }
 
-/// At -180 degrees with the plant 1: g/|1 - g| <= W between W/(W + 1) and W/(W - 1), 1/|1 - g| <= W between 1 - 1/W and 1 + 1/W.
+/// At -180 degrees with the plant 1: g/|1 - g| <= W between W/(W + 1) and W/(W - 1), 1/|1 - g| <= W
+/// between 1 - 1/W and 1 + 1/W.
 #[test]
 fn limits_at_and_beside_one_lose_no_digit() {
     let at = |requirement| function(&unit(), requirement).forbidden(-PI).intervals().to_vec();

@@ -1,5 +1,5 @@
-//! The bounds against the plain method: the quadratic inequality of every plant, and for tracking of every pair of plants, as
-//! they stand in the literature.
+//! The bounds against the plain method: the quadratic inequality of every plant, and for tracking
+//! of every pair of plants, as they stand in the literature.
 
 use num_complex::Complex64;
 use phea_dynamics::portable;
@@ -28,7 +28,8 @@ fn school(a: f64, b: f64, c: f64) -> Vec<[f64; 2]> {
     if a > 0.0 { vec![[low, high]] } else { vec![[0.0, low], [high, end]] }
 }
 
-/// Plant by plant, and pair by pair for tracking (Chait and Yaniv 1993), with the sensor H in loop and closed loops.
+/// Plant by plant, and pair by pair for tracking (Chait and Yaniv 1993), with the sensor H in loop
+/// and closed loops.
 fn plain(template: &Template, requirement: &Requirement, phase_rad: f64) -> GainIntervals {
     let direction = Complex64::new(portable::cos(phase_rad), portable::sin(phase_rad));
     let limit = |limit: &Limit| limit.magnitude(template.frequency_rad_per_s).unwrap();

@@ -113,8 +113,8 @@ fn disc(numbers: &mut Numbers) -> (Template, Vec<TemplatePoint>) {
     (template, members)
 }
 
-/// Straight edges in the q-plane for all kinds but the control effort, whose edges are straight in the plane of P: there the
-/// edges between the corners are left out of the members.
+/// Straight edges in the q-plane for all kinds but the control effort, whose edges are straight in
+/// the plane of P: there the edges between the corners are left out of the members.
 #[test]
 fn a_filled_bound_serves_the_whole_region_and_forbids_only_what_a_plant_of_it_forbids() {
     let mut numbers = Numbers(0xD1B5_4A32_D192_ED03);
@@ -137,7 +137,8 @@ fn a_filled_bound_serves_the_whole_region_and_forbids_only_what_a_plant_of_it_fo
                 let all = members.iter().chain(template.points.iter()).chain(is_inside.then_some(&itself));
                 let worst = worst_db(&template, all, &requirement, nominal_loop);
                 let forbidden = filled.forbidden(phase).contains(gain);
-                // Between the members on an edge, 1/200 of it apart, the distance to -L0 changes by less than 0.02 dB unless -L0 is on it.
+                // Between the members on an edge, 1/200 of it apart, the distance to -L0 changes by
+                // less than 0.02 dB unless -L0 is on it.
                 let agrees = if forbidden { worst < 0.05 } else { worst > -TOLERANCE_DB };
                 assert!(agrees, "trial {trial}, {requirement:?} at {nominal_loop}: {forbidden}, {worst} dB");
                 let alone = points.forbidden(phase).contains(gain);

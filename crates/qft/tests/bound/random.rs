@@ -32,7 +32,8 @@ impl Numbers {
     }
 }
 
-/// A family with random spread, with a sensor that is one, common to all, or different from plant to plant.
+/// A family with random spread, with a sensor that is one, common to all, or different from plant
+/// to plant.
 pub(crate) fn random_template(numbers: &mut Numbers) -> Template {
     let count = numbers.factor(1.0, 120.0) as usize;
     template_of(numbers, count)
@@ -65,8 +66,8 @@ pub(crate) fn template_of(numbers: &mut Numbers, count: usize) -> Template {
     }
 }
 
-/// Every kind, with limits on both sides of one and, where the school formula allows it, sometimes one itself, relative to what they
-/// limit.
+/// Every kind, with limits on both sides of one and, where the school formula allows it, sometimes
+/// one itself, relative to what they limit.
 pub(crate) fn random_requirements(numbers: &mut Numbers, template: &Template) -> Vec<Requirement> {
     let mut limit = |unit: f64| {
         let one = unit == 1.0 && numbers.next() < 0.2;

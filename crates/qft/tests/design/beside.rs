@@ -1,4 +1,5 @@
-//! Designs that serve a plant in addition to their family: they must be those of a family that has it among its members.
+//! Designs that serve a plant in addition to their family: they must be those of a family that has
+//! it among its members.
 
 use phea_dynamics::uncertain_plant::UncertainPlant;
 use phea_dynamics::watch::unwatched;

@@ -18,7 +18,8 @@ fn the_same_seed_gives_the_same_design() {
     assert_ne!(first.controller, other.controller);
 }
 
-/// Structures of growing order: wherever it is stopped, what is found is audited, and nothing that is met is given up for what is not.
+/// Structures of growing order: wherever it is stopped, what is found is audited, and nothing that
+/// is met is given up for what is not.
 #[test]
 fn a_run_that_is_stopped_has_the_best_so_far() {
     let problem = example_d();

@@ -105,7 +105,8 @@ pub(crate) fn problem(family: Family, specifications: Vec<Specification>) -> Des
     }
 }
 
-/// Zeros and poles with corners and damping ratios in these ranges: of `I Z ZZ P PP` an integrator, a zero, a pair of zeros, and so on.
+/// Zeros and poles with corners and damping ratios in these ranges: of `I Z ZZ P PP` an integrator,
+/// a zero, a pair of zeros, and so on.
 pub(crate) fn structure(
     text: &str,
     gain: [f64; 2],
@@ -124,7 +125,8 @@ pub(crate) fn structure(
     Structure { sign: 1.0, gain, parts: text.split_whitespace().map(part).collect() }
 }
 
-/// The least high-frequency gain among the controllers of a structure, tracking judged by its spread.
+/// The least high-frequency gain among the controllers of a structure, tracking judged by its
+/// spread.
 pub(crate) fn least_gain(structure: Structure, seed: u64) -> DesignOptions {
     DesignOptions {
         objective: Objective::LeastHighFrequencyGain,

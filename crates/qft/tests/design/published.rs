@@ -1,4 +1,5 @@
-//! Examples A, E and F: controllers with no more gain at high frequency than the published ones, which satisfy every specification.
+//! Examples A, E and F: controllers with no more gain at high frequency than the published ones,
+//! which satisfy every specification.
 
 use phea_dynamics::portable;
 use phea_qft::design::{ControllerChoice, DesignOptions};
@@ -54,7 +55,8 @@ fn edge_plants_with_less_gain_than_published() {
     assert_met(&problem, &design, TrackingJudgement::Spread);
 }
 
-/// Example E: integrator and velocity gain are those of the published controller, for a controller of no gain satisfies |S| too.
+/// Example E: integrator and velocity gain are those of the published controller, for a controller
+/// of no gain satisfies |S| too.
 #[test]
 fn a_wheel_with_less_gain_than_published() {
     let parameters =

@@ -1,4 +1,5 @@
-//! Contradictions: the smallest relaxation, the limits that stand against one another, and that the relaxed problem is met.
+//! Contradictions: the smallest relaxation, the limits that stand against one another, and that the
+//! relaxed problem is met.
 
 use phea_dynamics::linear::TransferFunction;
 use phea_qft::design::{Design, DesignProblem, DesignStatus, Relaxation};

@@ -53,8 +53,9 @@ fn coefficients(controller: &Controller) -> Vec<f64> {
     sections.iter().flat_map(|one| [&one.numerator[..], &one.denominator[..]].concat()).collect()
 }
 
-/// A proportional-integral law in z is b0 + b1/z over 1 - 1/z, its integral gain (b0 + b1)/T: steps of 2^-6 in b0 and b1 are steps of 1.6/s in
-/// that gain. Rounding the least that satisfies the sensitivity breaks it; the design for those steps satisfies it.
+/// A proportional-integral law in z is b0 + b1/z over 1 - 1/z, its integral gain (b0 + b1)/T: steps
+/// of 2^-6 in b0 and b1 are steps of 1.6/s in that gain. Rounding the least that satisfies the
+/// sensitivity breaks it; the design for those steps satisfies it.
 #[test]
 fn coarse_coefficients_are_designed_for() {
     let problem = regulation();
@@ -117,8 +118,8 @@ fn converter() -> Converter {
     Converter::new(9, [-4.0, 4.0]).unwrap()
 }
 
-/// Output and command of k/(s + 1) sample by sample under a reference that wanders, with and without the roundings of this computer: the rms of
-/// the differences.
+/// Output and command of k/(s + 1) sample by sample under a reference that wanders, with and
+/// without the roundings of this computer: the rms of the differences.
 fn rms_of_rounding(controller: &Controller, k: f64, quantization: &Quantization) -> [f64; 2] {
     let sampled = controller.sampled(SAMPLE).unwrap();
     let decay = (-SAMPLE).exp();
@@ -147,7 +148,8 @@ fn rms_of_rounding(controller: &Controller, k: f64, quantization: &Quantization)
     squares.map(|sum| (sum / f64::from(samples)).sqrt())
 }
 
-/// The design with the greatest worst margin among those whose rounding does no more than this, rms.
+/// The design with the greatest worst margin among those whose rounding does no more than this,
+/// rms.
 fn allowed(quantization: &Quantization, of_output: f64, of_command: f64) -> (DesignProblem, Design) {
     let mut problem = regulation();
     let frequencies = vec![0.1, 1.0, 10.0, 100.0];
@@ -166,8 +168,8 @@ fn binds(design: &Design, specification: usize) -> bool {
     worst(specification) < least + 0.01 && design.binding.iter().any(|one| one.specification == specification)
 }
 
-/// What the rounded measurement may do to the command limits |G/(1+L)|: the less it may do, the less gain the controller has at pi/T, and the
-/// command of the loop that rounds satisfies it.
+/// What the rounded measurement may do to the command limits |G/(1+L)|: the less it may do, the
+/// less gain the controller has at pi/T, and the command of the loop that rounds satisfies it.
 #[test]
 fn an_allowed_error_of_the_command_binds_the_gain() {
     let quantization = Quantization { measurement: Some(converter()), ..Quantization::default() };
@@ -187,8 +189,8 @@ fn an_allowed_error_of_the_command_binds_the_gain() {
     }
 }
 
-/// What the rounded command may do to the output limits |P/(1+L)|, which is 1/|G| where the loop is strong: here the less it may do, the
-/// more gain it takes.
+/// What the rounded command may do to the output limits |P/(1+L)|, which is 1/|G| where the loop is
+/// strong: here the less it may do, the more gain it takes.
 #[test]
 fn an_allowed_error_of_the_output_binds_the_loop() {
     let quantization = Quantization { command: Some(converter()), ..Quantization::default() };

@@ -1,4 +1,5 @@
-//! The servo k a/(s (s + a)) of the examples B and D: the least high-frequency gain as an independent search finds it.
+//! The servo k a/(s (s + a)) of the examples B and D: the least high-frequency gain as an
+//! independent search finds it.
 
 use phea_qft::design::{DesignOptions, PrefilterChoice};
 use phea_qft::verification::TrackingJudgement;

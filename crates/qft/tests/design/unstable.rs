@@ -1,5 +1,5 @@
-//! Plants with unstable and undamped poles, which hardly any random controller stabilises: two magnetic suspensions, a pendulum on a
-//! cart, an unstable resonance behind a delay, and a missile.
+//! Plants with unstable and undamped poles, which hardly any random controller stabilises: two
+//! magnetic suspensions, a pendulum on a cart, an unstable resonance behind a delay, and a missile.
 
 use phea_dynamics::controller::Timing;
 use phea_dynamics::expression::Recorded;
@@ -38,7 +38,8 @@ fn suspension_tracking() -> Specification {
     demand(requirement, &SUSPENSION, [0.0, 30.0])
 }
 
-/// A magnet that is held above another one by their repulsion: k/(s^2 + a), undamped at 19.5 to 21.9 rad/s, within the band of tracking.
+/// A magnet that is held above another one by their repulsion: k/(s^2 + a), undamped at 19.5 to
+/// 21.9 rad/s, within the band of tracking.
 fn repelled_magnet() -> DesignProblem {
     let plant = uncertain(&[("a", 430.25, 382.0, 478.5), ("k", 877.5, 811.0, 944.0)], |p| {
         (vec![p[1]], vec![1.0.into(), 0.0.into(), p[0]])
@@ -46,7 +47,8 @@ fn repelled_magnet() -> DesignProblem {
     problem(boxed(plant, Spacing::Linear, 3), vec![stability(1.2, &SUSPENSION), suspension_tracking()])
 }
 
-/// A magnet that hangs below another one by their attraction: k/(s^2 - a), and no demand beyond 30 rad/s.
+/// A magnet that hangs below another one by their attraction: k/(s^2 - a), and no demand beyond 30
+/// rad/s.
 fn attracted_magnet() -> DesignProblem {
     let plant = uncertain(&[("a", 430.25, 382.0, 478.5), ("k", 1063.5, 1021.0, 1106.0)], |p| {
         (vec![p[1]], vec![1.0.into(), 0.0.into(), -p[0]])
@@ -85,7 +87,8 @@ fn delayed(
     .unwrap()
 }
 
-/// The angle of a pendulum on a cart with a flexible drive and 14 ms of delay: unstable at 0.15 and 4.7 to 5.7 1/s, two zeros at the origin.
+/// The angle of a pendulum on a cart with a flexible drive and 14 ms of delay: unstable at 0.15 and
+/// 4.7 to 5.7 1/s, two zeros at the origin.
 fn pendulum() -> DesignProblem {
     let parameters = [
         ("l", 0.3, 0.3, 0.45),
@@ -107,8 +110,8 @@ fn pendulum() -> DesignProblem {
     problem(boxed(plant, Spacing::Linear, 2), vec![stability(2.1, &frequencies)])
 }
 
-/// A resonance at 503 rad/s behind an unstable pole at 55 to 111 1/s and 0.11 ms of delay. G = 92.56 (s/9.748 + 1)/(s (s/505.6 + 1)) is
-/// known to satisfy both limits.
+/// A resonance at 503 rad/s behind an unstable pole at 55 to 111 1/s and 0.11 ms of delay.
+/// G = 92.56 (s/9.748 + 1)/(s (s/505.6 + 1)) is known to satisfy both limits.
 fn unstable_resonance() -> DesignProblem {
     const W: f64 = 503.116;
     let plant = uncertain(&[("k", 0.116601, 0.116601, 0.233202), ("p", 110.759, 55.3795, 110.759)], |p| {
@@ -217,7 +220,8 @@ fn a_missile_is_met() {
 }
 
 /// |1/(1+L)| <= 0.6 and |L/(1+L)| <= 0.6 up to infinity keep L between 2/3 and 3/2 wherever it is real: no gain alone does for a plant that
-/// falls from 1 to 0.2 between two frequencies, and no controller with fewer zeros than poles leaves any L at infinity.
+/// falls from 1 to 0.2 between two frequencies, and no controller with fewer zeros than poles
+/// leaves any L at infinity.
 #[test]
 fn a_pair_of_zeros_over_a_pair_of_poles_is_tried() {
     let plant = uncertain(&[("k", 1.0, 0.98, 1.02)], |p| {

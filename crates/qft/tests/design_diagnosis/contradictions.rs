@@ -67,7 +67,8 @@ fn effort_against_disturbance() {
     assert!(low <= truth && truth <= high + 1e-3 && high - low < 0.1, "{low} {truth} {high}");
 }
 
-/// Two plants of opposite phase and |T| <= 1.2: more gain for tracking is no gain at all, and it takes plants in the plural to see it.
+/// Two plants of opposite phase and |T| <= 1.2: more gain for tracking is no gain at all, and it
+/// takes plants in the plural to see it.
 #[test]
 fn spread_against_stability_takes_two_plants() {
     let of = |ratio: f64| {

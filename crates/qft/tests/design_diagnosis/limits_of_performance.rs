@@ -1,4 +1,5 @@
-//! Right-half-plane poles and zeros and dead time, against closed forms (Skogestad and Postlethwaite 2005, chapter 5).
+//! Right-half-plane poles and zeros and dead time, against closed forms (Skogestad and
+//! Postlethwaite 2005, chapter 5).
 
 use std::f64::consts::PI;
 
@@ -75,7 +76,8 @@ fn a_zero_costs_disturbance_rejection() {
     check(&single(&[-4.0, 8.0], &[1.0, 2.0, 1.0], 0.0), disturbance, 16.0 / 9.0, zero(2.0));
 }
 
-/// A rational limit without roots in the right half plane counts by its value at the pole: M w_b/(s + w_b) allows poles up to (M - 1) w_b.
+/// A rational limit without roots in the right half plane counts by its value at the pole: M
+/// w_b/(s + w_b) allows poles up to (M - 1) w_b.
 #[test]
 fn a_pole_above_the_bandwidth_allowed_is_told() {
     let of = |p: f64| {
@@ -105,7 +107,8 @@ fn a_zero_below_the_bandwidth_demanded_is_told() {
     assert!((found[0].0.sensitivity - 20.0 / 26.0).abs() < 1e-3);
 }
 
-/// Where a limit ends, the peak beyond it is at least (1/limit) to the power of what the pole sees of one over the other.
+/// Where a limit ends, the peak beyond it is at least (1/limit) to the power of what the pole sees
+/// of one over the other.
 #[test]
 fn what_is_not_limited_must_rise() {
     let limited = demand(limit_of_t(0.01), &[], [6.0, f64::INFINITY]);
@@ -119,8 +122,9 @@ fn what_is_not_limited_must_rise() {
     assert!((found - 40.0 * below / (1.0 - below)).abs() < 0.1, "{found}");
 }
 
-/// Bode's integral: with |S| <= e below b and |T| <= (a/w)^2 beyond a, |S| must rise between them. The areas of ln|S| are b ln(1/e) below 1 and at
-/// most (a - b) ln(peak) + a (pi/2 - ln 2) above. Dead time takes away more.
+/// Bode's integral: with |S| <= e below b and |T| <= (a/w)^2 beyond a, |S| must rise between them.
+/// The areas of ln|S| are b ln(1/e) below 1 and at most (a - b) ln(peak) + a (pi/2 - ln 2) above.
+/// Dead time takes away more.
 #[test]
 fn a_stable_plant_has_a_water_bed() {
     let of = |peak: f64, dead_time_s: f64| {
@@ -142,7 +146,8 @@ fn a_stable_plant_has_a_water_bed() {
     assert!(late[0].0.dead_time_s == 0.1 && late[0].1 > 1.0, "{late:?}");
 }
 
-/// In a sampled loop T = 1 at z = e^(pT), and each sample of delay costs e^(pT): the hold's own one, and those of the loop.
+/// In a sampled loop T = 1 at z = e^(pT), and each sample of delay costs e^(pT): the hold's own
+/// one, and those of the loop.
 #[test]
 fn a_sampled_loop_is_judged_in_z() {
     let of = |limit: f64, delay_s: f64| -> DesignProblem {
@@ -159,7 +164,8 @@ fn a_sampled_loop_is_judged_in_z() {
     }
 }
 
-/// The zeros that sampling makes count as well: of 1/s^3 one lies at z = -3.73 (Astrom, Hagander and Sternby 1984).
+/// The zeros that sampling makes count as well: of 1/s^3 one lies at z = -3.73 (Astrom, Hagander
+/// and Sternby 1984).
 #[test]
 fn zeros_of_sampling_cost_sensitivity() {
     // ORIGIN: paper, Astrom, Hagander and Sternby (1984): z^2 + 4 z + 1
@@ -192,7 +198,8 @@ fn the_sensor_is_part_of_the_loop() {
     assert!((found[0].1 - decibels((0.6_f64).exp() / 1.5)).abs() < 0.01);
 }
 
-/// Tracking wider than possible: a gain of 1 to 10 behind dead time cannot be made alike far beyond 1/T_d.
+/// Tracking wider than possible: a gain of 1 to 10 behind dead time cannot be made alike far beyond
+/// 1/T_d.
 #[test]
 fn tracking_beyond_what_dead_time_leaves_is_told() {
     let of = |to: f64| {

@@ -31,7 +31,8 @@ fn contradictory_bounds() {
         _ => None,
     });
     let (frequency, [low, high]) = contradiction.unwrap();
-    // of the gains 10 and 20 the least loop must satisfy S and the greatest T: at phase 0, where 1/(1 + g) = s r and 2 g/(1 + 2 g) = t r
+    // of the gains 10 and 20 the least loop must satisfy S and the greatest T: at phase 0, where
+    // 1/(1 + g) = s r and 2 g/(1 + 2 g) = t r
     let (s, t) = (10.0 / 1000f64.sqrt(), 5.0 / 125f64.sqrt());
     let truth = decibels((s + t - (s * s + t * t).sqrt()) / (s * t));
     assert!(frequency == 10.0 && low <= truth && truth <= high + 1e-3, "{low} {truth} {high}");

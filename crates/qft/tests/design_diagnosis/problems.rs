@@ -26,7 +26,8 @@ pub(crate) fn single(numerator: &[f64], denominator: &[f64], dead_time_s: f64) -
     Family::Uncertain(UncertainFamily::new(plant, vec![], members, Extent::Members).unwrap())
 }
 
-/// The box of parameters `(name, nominal, least, greatest)` on a grid of this number of points each.
+/// The box of parameters `(name, nominal, least, greatest)` on a grid of this number of points
+/// each.
 pub(crate) fn boxed(
     parameters: &[(&str, f64, f64, f64)],
     points: usize,

@@ -86,7 +86,8 @@ fn resonant() {
     silent(family, vec![demand(six_db, &[0.2, 0.5, 1.0, 3.0, 5.0, 7.0, 10.0, 20.0, 50.0], [0.2, 50.0])]);
 }
 
-/// k (s + a)/(s^2 - 2.5) with |T| <= 2.1: the published controller fails, but an unstable pole alone asks for no more than |T| = 1.
+/// k (s + a)/(s^2 - 2.5) with |T| <= 2.1: the published controller fails, but an unstable pole
+/// alone asks for no more than |T| = 1.
 #[test]
 fn unstable() {
     let of = |dead_time_s: f64| {
@@ -105,7 +106,8 @@ fn rig<'t>(p: &[Recorded<'t>]) -> PlantCoefficients<Recorded<'t>> {
     PlantCoefficients { command: force(p), disturbance: None, dead_time_s: 0.0.into(), rate: None }
 }
 
-/// The whole of Table 6.3 with the limits of 6.30 to 6.32, continuous and sampled at 1 kHz with 0.5 ms of delay.
+/// The whole of Table 6.3 with the limits of 6.30 to 6.32, continuous and sampled at 1 kHz with 0.5
+/// ms of delay.
 #[test]
 fn thesis() {
     let parameters = [

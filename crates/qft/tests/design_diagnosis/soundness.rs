@@ -24,7 +24,8 @@ impl Draw {
     }
 }
 
-/// A gain over a factor of two before an unstable pole, a zero or dead time, with a controller that need not stabilise it.
+/// A gain over a factor of two before an unstable pole, a zero or dead time, with a controller that
+/// need not stabilise it.
 fn drawn(draw: &mut Draw) -> (Family, Vec<f64>, Controller) {
     let pole = draw.between(-2.0, 2.0);
     let zero = draw.between(8.0, 60.0) * if draw.between(0.0, 1.0) < 0.5 { -1.0 } else { 1.0 };

@@ -90,7 +90,8 @@ fn a_static_gain_that_is_not_one() {
     assert_eq!(found[0].severity(), FindingSeverity::Warning);
 }
 
-/// Of a measured plant the response alone is known, and the dead time of the loop: the water bed is reported nevertheless.
+/// Of a measured plant the response alone is known, and the dead time of the loop: the water bed is
+/// reported nevertheless.
 #[test]
 fn measured_plants_have_a_water_bed_too() {
     let frequencies: Vec<f64> = (0..60).map(|index| 10f64.powf(-2.0 + 0.1 * f64::from(index))).collect();

@@ -38,7 +38,8 @@ fn the_band_says_what_every_member_says() {
     }
 }
 
-/// It is 4e-5 dB too low at 0.09 rad/s, because it is too flat at zero: ln|F| = 0.00125 w^2, where the slowest plant asks for 0.0025 w^2.
+/// It is 4e-5 dB too low at 0.09 rad/s, because it is too flat at zero: ln|F| = 0.00125 w^2, where
+/// the slowest plant asks for 0.0025 w^2.
 // ORIGIN: recomputed by comparisons/recompute_audit.py
 #[test]
 fn the_published_prefilter_leaves_its_band_by_a_hair() {
@@ -54,7 +55,8 @@ fn the_published_prefilter_leaves_its_band_by_a_hair() {
     assert!(margins.windows(2).all(|pair| pair[0].share() <= pair[1].share()));
 }
 
-/// T = k/(s + k), so that ln|T| = -w^2/(2 k^2) near zero; the limits are lags of second order and first.
+/// T = k/(s + k), so that ln|T| = -w^2/(2 k^2) near zero; the limits are lags of second order and
+/// first.
 #[test]
 fn towards_zero_the_edges_have_the_curvatures_of_the_closed_form() {
     let (compensation, members) = integrators(&[1.0, 4.0, 2.0]);
@@ -90,7 +92,8 @@ fn the_limits_meet_at_zero_below_the_band_too() {
     assert_eq!(band.points().len(), 2);
 }
 
-/// Without an integrator T(0) = k/(1 + k) differs: 1/2 and 4/5, which limits of 0.9 and 1.1 cannot both take.
+/// Without an integrator T(0) = k/(1 + k) differs: 1/2 and 4/5, which limits of 0.9 and 1.1 cannot
+/// both take.
 #[test]
 fn plants_that_differ_at_rest_close_the_band_there() {
     let compensation = around(TransferFunction::gain_only(1.0));

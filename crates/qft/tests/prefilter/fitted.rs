@@ -55,8 +55,8 @@ fn around_prefilter(prefilter: &TransferFunction, half_db: f64, frequencies: &[f
     PrefilterBand::new(&extremes, &specification).unwrap()
 }
 
-/// In the middle of a band of constant width lies the prefilter that it was drawn around: nothing does better than half of the width, and
-/// nothing of lower order does as well.
+/// In the middle of a band of constant width lies the prefilter that it was drawn around: nothing
+/// does better than half of the width, and nothing of lower order does as well.
 #[test]
 fn the_middle_of_a_band_is_found() {
     let mut frequencies = spaced(0.05, 200.0, 60);
@@ -90,8 +90,8 @@ fn the_middle_of_a_band_is_found() {
     }
 }
 
-/// The prefilter that is found meets the specification at the frequencies between and at rest, which the published one just misses, and
-/// for every plant of the box.
+/// The prefilter that is found meets the specification at the frequencies between and at rest,
+/// which the published one just misses, and for every plant of the box.
 #[test]
 fn a_servo_gets_a_prefilter_that_its_audit_meets() {
     let (around, members, specification) = servo();
@@ -190,13 +190,15 @@ fn a_sampled_prefilter_has_the_margins_that_were_searched() {
             "{worst:?} {:?}",
             fitted.worst
         );
-        // the continuous prefilter is another one at 60 rad/s, where the trapezoidal rule has moved it by a seventh
+        // the continuous prefilter is another one at 60 rad/s, where the trapezoidal rule has moved
+        // it by a seventh
         let continuous = fitted.compensator.transfer_function().unwrap();
         assert!(band.margins(&continuous)[0] != worst);
     }
 }
 
-/// Before the samples the prefilter is fitted as in a continuous loop, and the band is that of the sampled one.
+/// Before the samples the prefilter is fitted as in a continuous loop, and the band is that of the
+/// sampled one.
 #[test]
 fn a_prefilter_before_the_samples_is_fitted_in_s() {
     let lag = Element::RealPole { frequency: 2.0 }.transfer_function().unwrap();
@@ -210,7 +212,8 @@ fn a_prefilter_before_the_samples_is_fitted_in_s() {
     assert_ne!(fitted(&sampled).compensator, continuous.compensator);
 }
 
-/// Analytic slopes of every margin against central differences, and the worst of them is the one that is judged.
+/// Analytic slopes of every margin against central differences, and the worst of them is the one
+/// that is judged.
 #[test]
 fn the_slopes_of_a_fit_are_those_of_its_margins() {
     let range = [0.1, 100.0];

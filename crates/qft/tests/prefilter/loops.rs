@@ -39,7 +39,8 @@ pub(crate) fn tracking(lower: Limit, upper: Limit, band: [f64; 2]) -> Specificat
     Specification { requirement, frequencies_rad_per_s: vec![], band_rad_per_s: band }
 }
 
-/// k a/(s (s + a)), k and a from 1 to 10, with the published controller; its tracking specification up to 10 rad/s.
+/// k a/(s (s + a)), k and a from 1 to 10, with the published controller; its tracking specification
+/// up to 10 rad/s.
 pub(crate) fn servo() -> (Compensation, Vec<Member>, Specification) {
     let compensation = around(servo_controller());
     let Family::Uncertain(family) = servo_family() else { panic!("it is a box") };

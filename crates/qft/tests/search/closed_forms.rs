@@ -7,7 +7,8 @@ use phea_qft::loop_shaping::{Aim, DescentOptions, DescentStatus, descend};
 
 use super::formula::{Formula, check_objective, descended};
 
-/// The quadratic nearest to x^4 between -1 and 1 is x^2 - 1/8: Chebyshev's polynomial, whose error 1/8 alternates five times.
+/// The quadratic nearest to x^4 between -1 and 1 is x^2 - 1/8: Chebyshev's polynomial, whose error
+/// 1/8 alternates five times.
 #[test]
 fn chebyshev_fit_alternates() {
     let margins = |u: &[f64]| {
@@ -25,7 +26,8 @@ fn chebyshev_fit_alternates() {
     assert!((strengths - 1.0).abs() < 1e-6, "the shares of the common margin: {:?}", descent.binding);
 }
 
-/// Rosenbrock's valley, cut by the unit circle: the optimum lies on it, found independently by its angle.
+/// Rosenbrock's valley, cut by the unit circle: the optimum lies on it, found independently by its
+/// angle.
 #[test]
 fn bent_valley_cut_by_a_circle() {
     let valley = |x: &[f64]| 100.0 * (x[1] - x[0] * x[0]).powi(2) + (1.0 - x[0]).powi(2);
@@ -36,7 +38,8 @@ fn bent_valley_cut_by_a_circle() {
     assert!(descent.work.judgements < 60, "{:?}", descent.work);
 }
 
-/// Maratos (1978): every full step towards (1, 0) spoils the margin as much as the objective; uncorrected, steps shrink to nothing.
+/// Maratos (1978): every full step towards (1, 0) spoils the margin as much as the objective;
+/// uncorrected, steps shrink to nothing.
 #[test]
 fn full_steps_are_taken_along_a_curved_margin() {
     let objective = |x: &[f64]| 2.0 * (x[0] * x[0] + x[1] * x[1] - 1.0) - x[0];
@@ -47,7 +50,8 @@ fn full_steps_are_taken_along_a_curved_margin() {
     assert!((multiplier - 1.5).abs() < 1e-2, "{multiplier}");
 }
 
-/// Two margins that exclude one another: the worst is best half the way, and what is missing is said.
+/// Two margins that exclude one another: the worst is best half the way, and what is missing is
+/// said.
 #[test]
 fn contradiction_is_named() {
     let margins = |x: &[f64]| vec![x[0] - 1.0 - x[1] * x[1], -3.0 - x[0]];
@@ -59,8 +63,8 @@ fn contradiction_is_named() {
     assert!(shares.len() == 2 && shares.iter().all(|share| (share - 0.5).abs() < 1e-3), "{shares:?}");
 }
 
-/// A margin that hardly moves costs a large multiplier, up to which the penalty must grow; where less than it moves is tolerated, it costs
-/// nothing.
+/// A margin that hardly moves costs a large multiplier, up to which the penalty must grow; where
+/// less than it moves is tolerated, it costs nothing.
 #[test]
 fn nearly_flat_margin_is_kept_or_tolerated() {
     let mut problem = Formula::new(1, |x| (x[0] - 3.0).powi(2), |x| vec![1e-4 * (1.0 - x[0])]);

@@ -8,7 +8,8 @@ fn squared_radius(x: &[f64]) -> f64 {
     x[0] * x[0] + x[1] * x[1]
 }
 
-/// Within the unit disc nothing is stable, and it lies across the straight way; the margin falls towards it, as that of a loop does.
+/// Within the unit disc nothing is stable, and it lies across the straight way; the margin falls
+/// towards it, as that of a loop does.
 #[test]
 fn descent_goes_around_an_unstable_region() {
     let objective = |x: &[f64]| (x[0] - 2.0).powi(2) + x[1] * x[1];

@@ -19,7 +19,8 @@ fn rosen_suzuki() {
             5.0 - squares - x[0] * x[0] + x[3] * x[3] - 2.0 * x[0] + x[1] + x[3],
         ]
     };
-    // ORIGIN: Hock and Schittkowski (1981), problem 43: x = (0, 1, 2, -1), f = -44, multipliers 1, 0, 2
+    // ORIGIN: Hock and Schittkowski (1981), problem 43: x = (0, 1, 2, -1), f = -44, multipliers 1,
+    // 0, 2
     let descent = check_objective(Formula::new(4, objective, margins), &[0.0; 4], -44.0);
     assert!(descent.x.iter().zip([0.0, 1.0, 2.0, -1.0]).all(|(x, expected)| (x - expected).abs() < 0.01));
     let strongest = [descent.binding[0], descent.binding[1]];
@@ -98,7 +99,8 @@ fn hock_schittkowski_113() {
     check_objective(Formula::new(10, objective, margins), &start, 24.3062091);
 }
 
-/// Charalambous and Bandler: the least of the greatest of three functions, at a kink of two (the first) or three of them (the second).
+/// Charalambous and Bandler: the least of the greatest of three functions, at a kink of two (the
+/// first) or three of them (the second).
 #[test]
 fn charalambous_bandler() {
     fn check(margins: fn(&[f64]) -> Vec<f64>, expected: f64) {

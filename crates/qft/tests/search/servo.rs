@@ -1,4 +1,5 @@
-//! A loop: the servo with uncertain gain and pole, its plants on the edges of a grid, few frequencies.
+//! A loop: the servo with uncertain gain and pole, its plants on the edges of a grid, few
+//! frequencies.
 //!
 //! ```text
 //! P = k a/(s (s + a)),  k, a in [1, 10];      G = g (s + z)/((s + p1)(s + p2)),  x = ln (g, z, p1, p2)
@@ -68,7 +69,8 @@ impl Servo {
         db(open / (1.0 + open))
     }
 
-    /// How far the worst plant misses the conditions of Routh for s^4 + c3 s^3 + c2 s^2 + c1 s + c0, relative to their terms.
+    /// How far the worst plant misses the conditions of Routh for s^4 + c3 s^3 + c2 s^2 + c1
+    /// s + c0, relative to their terms.
     fn instability(&self, x: &[f64]) -> f64 {
         let [g, z, p, q] = [x[0].exp(), x[1].exp(), x[2].exp(), x[3].exp()];
         let missed = |&[k, a]: &[f64; 2]| {
@@ -86,7 +88,8 @@ impl Servo {
         order
     }
 
-    /// Samples with their margins and rates: |T| by frequency and plant, then the spread by frequency and pair of plants.
+    /// Samples with their margins and rates: |T| by frequency and plant, then the spread by
+    /// frequency and pair of plants.
     fn margins(&self, x: &[f64]) -> Vec<(usize, f64, f64)> {
         let count = self.plants.len();
         let closed_db = |frequency: f64| -> Vec<f64> {
@@ -166,7 +169,8 @@ fn searched(seed: u64) -> SearchResult {
 /// The least high-frequency gain with two real poles; the poles then coincide, a ridge by symmetry.
 #[test]
 fn least_gain_is_found_from_three_seeds() {
-    // ORIGIN: recomputed with SciPy's SLSQP on the same plants and frequencies; 130.14 dB on dense ones
+    // ORIGIN: recomputed with SciPy's SLSQP on the same plants and frequencies; 130.14 dB on dense
+    // ones
     let (on_this_grid, dense) = (130.057990791047, 130.14);
     for seed in 1..=3 {
         let found = searched(seed);

@@ -42,8 +42,9 @@ fn equal_seeds_give_equal_bytes() {
     assert_ne!(format!("{first:?}"), format!("{other:?}"));
 }
 
-/// Stable is only a ball, within which lies the smaller ball that the margin allows, as with the loops of a controller. It holds
-/// a six-thousandth of the box: no sample is expected there, evolution follows the instability.
+/// Stable is only a ball, within which lies the smaller ball that the margin allows, as with the
+/// loops of a controller. It holds a six-thousandth of the box: no sample is expected there,
+/// evolution follows the instability.
 #[test]
 fn evolution_finds_a_small_stable_region() {
     fn outside(x: &[f64]) -> f64 {
@@ -68,7 +69,8 @@ fn nothing_stable_is_reported_with_the_least_instability() {
     assert!(found.ends.is_empty() && !found.judgement.stable);
 }
 
-/// Starts that end feasible and starts that do not: the feasible one wins, whatever the others reach.
+/// Starts that end feasible and starts that do not: the feasible one wins, whatever the others
+/// reach.
 #[test]
 fn feasible_ends_come_first() {
     let margins = |x: &[f64]| vec![(0.5 - (x[0] - 3.0).abs()).max(-0.1 - (x[0] + 3.0).powi(2))];

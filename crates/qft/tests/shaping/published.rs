@@ -161,7 +161,8 @@ fn two_servo_designs() {
     let specifications = vec![stability(1.2), following(15.0)];
     let (second, x) = shaping(servo(), specifications, &optimised, None);
     near(worst(&second, &x, 0), -0.0239);
-    // the spread just fits at the end of the band; between the plants of the grid it is a little larger
+    // the spread just fits at the end of the band; between the plants of the grid it is a little
+    // larger
     near(at(&second, &x, 1, 15.0), 2.410e-4);
     let gain_db = second.structure().high_frequency_gain_db(&x).unwrap();
     assert!((gain_db - 130.79).abs() < 0.005, "{gain_db}"); // ORIGIN: paper, the published high-frequency gain
@@ -212,7 +213,8 @@ fn rig<'t>(p: &[Recorded<'t>]) -> (Vec<Recorded<'t>>, Vec<Recorded<'t>>) {
     (numerator, denominator)
 }
 
-/// The thesis' controller at the corners of Table 6.3, where its worst plants are at low frequency; with its prefilter, and by spread.
+/// The thesis' controller at the corners of Table 6.3, where its worst plants are at low frequency;
+/// with its prefilter, and by spread.
 // ORIGIN: recomputed by comparisons/recompute_audit.py
 #[test]
 fn the_published_force_controller() {

@@ -12,7 +12,8 @@ use phea_qft::loop_shaping::{Structure, StructureFactor};
 use phea_qft::specification::{ClosedLoop, Limit, LimitTable, Requirement, Specification};
 use phea_qft::verification::PlantPoint;
 
-/// A linear congruential generator (Knuth's MMIX constants), so that the draws are the same everywhere.
+/// A linear congruential generator (Knuth's MMIX constants), so that the draws are the same
+/// everywhere.
 pub(crate) struct Draw(pub(crate) u64);
 
 impl Draw {
@@ -84,7 +85,8 @@ pub(crate) fn specifications() -> Vec<Specification> {
     ]
 }
 
-/// k w^2 (s/5 + 1)/((s/a + 1)(s^2 + 2 d w s + w^2)) e^(-0.003 s) with load motion behind the same resonance, and a sensor.
+/// k w^2 (s/5 + 1)/((s/a + 1)(s^2 + 2 d w s + w^2)) e^(-0.003 s) with load motion behind the same
+/// resonance, and a sensor.
 pub(crate) fn problem(timing: Timing) -> DesignProblem {
     let parameter = |name: &str, minimum: f64, maximum: f64| UncertainParameter {
         name: name.into(),

@@ -128,7 +128,8 @@ fn the_grid_covers_the_bands_and_what_lies_above_their_ends() {
     let dense = grid.windows(2).filter(|pair| pair[0] > 0.5 && pair[1] < 30.0);
     assert!(dense.clone().count() > 30);
     assert!(dense.into_iter().all(|pair| pair[1] / pair[0] < 10f64.powf(1.0 / 20.0) * (1.0 + 1e-6)));
-    // a sampled loop ends at pi/T; above the last band the grid goes on, as dense, a factor 30 further or to pi/T
+    // a sampled loop ends at pi/T; above the last band the grid goes on, as dense, a factor 30
+    // further or to pi/T
     problem.timing.sample_time_s = Some(0.02);
     let sampled = search_frequencies(&problem, &all, 20.0).unwrap();
     assert_eq!(*sampled.last().unwrap(), std::f64::consts::PI / 0.02);
@@ -153,7 +154,8 @@ fn peaks_are_looked_at() {
     assert!(grid.contains(&1.0));
 }
 
-/// A structure whose fixed part is no function, and one that cannot be sampled, are refused at once.
+/// A structure whose fixed part is no function, and one that cannot be sampled, are refused at
+/// once.
 #[test]
 fn a_structure_without_a_response_is_refused() {
     let problem = undamped();

@@ -12,7 +12,8 @@ fn moved(x: &[f64], index: usize, step: f64) -> Vec<f64> {
     x.iter().enumerate().map(|(at, &x)| if at == index { x + step } else { x }).collect()
 }
 
-/// Where there is one frequency, one specification and the worst plant is the worst alone, the first row is the worst margin.
+/// Where there is one frequency, one specification and the worst plant is the worst alone, the
+/// first row is the worst margin.
 fn check_single(problem: &DesignProblem, draw: &mut Draw, with_prefilter: bool) {
     let structure = structure(draw);
     let x = draw.point(&structure.bounds());
@@ -47,7 +48,8 @@ fn margins_of_each_kind_move_with_their_slopes() {
     }
 }
 
-/// Near a point, the least of the linear rows is the worst margin of all plants and frequencies, to second order.
+/// Near a point, the least of the linear rows is the worst margin of all plants and frequencies, to
+/// second order.
 #[test]
 fn the_rows_together_foretell_the_worst_margin() {
     let mut draw = Draw(22);

@@ -31,7 +31,8 @@ fn frequencies() -> Vec<f64> {
     logarithmic_grid(0.1, 780.0, 25).unwrap()
 }
 
-/// In a continuous loop and in one sampled by any rule, the response is that of the loop around the controller.
+/// In a continuous loop and in one sampled by any rule, the response is that of the loop around the
+/// controller.
 #[test]
 fn the_response_is_that_of_the_controller_in_its_loop() {
     let mut draw = Draw(3);

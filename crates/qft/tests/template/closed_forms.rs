@@ -30,8 +30,9 @@ fn assert_resolved(template: &Template) {
     }
 }
 
-/// k a/(s(s+a)): a is known from the phase, -90 deg - atan(w/a), then k by the magnitude; one of the two is at an end all along the
-/// outline, and the area between the four arcs is ln(k ratio) times the range of phase.
+/// k a/(s(s+a)): a is known from the phase, -90 deg - atan(w/a), then k by the magnitude; one of
+/// the two is at an end all along the outline, and the area between the four arcs is ln(k ratio)
+/// times the range of phase.
 #[test]
 fn a_motor_is_bounded_by_four_arcs() {
     for frequency in [0.1, 1.0, 10.0, 100.0] {
@@ -135,7 +136,8 @@ fn gain_and_dead_time() -> UncertainFamily {
     })
 }
 
-/// k e^(-sT) over 4.5 rad of phase: a bent strip around the origin, of area ln 2 times 4.5 in the logarithmic plane.
+/// k e^(-sT) over 4.5 rad of phase: a bent strip around the origin, of area ln 2 times 4.5 in the
+/// logarithmic plane.
 #[test]
 fn a_bent_strip_keeps_its_hollow() {
     let template = built(&gain_and_dead_time(), 5.0).template;
@@ -150,7 +152,8 @@ fn a_bent_strip_keeps_its_hollow() {
     }
 }
 
-/// Over 18 rad of phase the strip closes to a ring: its hollow stays empty, and nothing is covered twice.
+/// Over 18 rad of phase the strip closes to a ring: its hollow stays empty, and nothing is covered
+/// twice.
 #[test]
 fn more_than_a_turn_is_a_ring() {
     let template = built(&gain_and_dead_time(), 20.0).template;
@@ -166,7 +169,8 @@ fn more_than_a_turn_is_a_ring() {
     }
 }
 
-/// k/((s+a)(s+b)): the forty plants on four edges of the box that a published example chose are the rim of the template.
+/// k/((s+a)(s+b)): the forty plants on four edges of the box that a published example chose are the
+/// rim of the template.
 #[test]
 fn the_edge_plants_of_a_published_example_are_the_rim() {
     let ranges = [("k", 1.0, 10.0, Logarithmic), ("a", 1.0, 5.0, Logarithmic), ("b", 20.0, 30.0, Linear)];

@@ -15,7 +15,8 @@ fn motor() -> UncertainFamily {
     })
 }
 
-/// With a small sample time and H = 1/(0.1 s + 1) every point is P H within the lag of the hold, half a sample.
+/// With a small sample time and H = 1/(0.1 s + 1) every point is P H within the lag of the hold,
+/// half a sample.
 #[test]
 fn sampling_delay_and_sensor_are_within_the_points() {
     let sensor =

@@ -75,7 +75,8 @@ fn a_lightly_damped_resonance_closes_at_its_peak() {
     }
 }
 
-/// With a damping from negative to positive all edges close, but the phase turns by 360 degrees around the box.
+/// With a damping from negative to positive all edges close, but the phase turns by 360 degrees
+/// around the box.
 #[test]
 fn a_pole_inside_the_box_is_noticed() {
     let family = family(&[("z", -0.11, 0.1, Linear), ("w", 4.0, 8.1, Linear)], 2, |p| {
@@ -99,7 +100,8 @@ fn a_spent_budget_is_said() {
     }
 }
 
-/// Folds inside a box are reached in several rounds; with fewer the template says that it had not settled.
+/// Folds inside a box are reached in several rounds; with fewer the template says that it had not
+/// settled.
 #[test]
 fn rounds_that_do_not_settle_are_said() {
     let unsettled = |rounds_maximum: usize| {

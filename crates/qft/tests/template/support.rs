@@ -74,7 +74,8 @@ pub(crate) fn winding(outline: &[Complex64], point: Complex64) -> i32 {
     (turn / std::f64::consts::TAU).round() as i32
 }
 
-/// Distance of a response from what the outlines enclose, in tolerances (degrees and dB), none inside.
+/// Distance of a response from what the outlines enclose, in tolerances (degrees and dB), none
+/// inside.
 pub(crate) fn beyond(outlines: &[Vec<Complex64>], response: Complex64, options: &TemplateOptions) -> f64 {
     let inside = outlines.iter().any(|outline| winding(outline, response) != 0);
     if inside { 0.0 } else { from_rim(outlines, response, options) }
@@ -100,7 +101,8 @@ pub(crate) fn apart(first: Complex64, second: Complex64, options: &TemplateOptio
     hypot(argument(ratio).to_degrees() / options.phase_deg, decibel / options.magnitude_db)
 }
 
-/// Area of a polygon in the plane of ln|P| and phase in radians, which must not be wider than a turn.
+/// Area of a polygon in the plane of ln|P| and phase in radians, which must not be wider than a
+/// turn.
 pub(crate) fn logarithmic_area(outline: &[Complex64]) -> f64 {
     let mut place = (ln(magnitude(outline[0])), argument(outline[0]));
     let mut area = 0.0;
@@ -130,7 +132,8 @@ pub(crate) fn random_values(family: &UncertainFamily, count: usize, seed: u64) -
     (0..count).map(|_| point()).collect()
 }
 
-/// A response over this number of parameters in -1 to 1 whose real and imaginary part at 1 rad/s are quadratic, with random coefficients.
+/// A response over this number of parameters in -1 to 1 whose real and imaginary part at 1 rad/s
+/// are quadratic, with random coefficients.
 pub(crate) fn quadratic_family(dimension: usize, seed: u64) -> UncertainFamily {
     let names = ["a", "b", "c", "d"];
     let ranges: Vec<Range> =
@@ -152,7 +155,8 @@ pub(crate) fn quadratic_family(dimension: usize, seed: u64) -> UncertainFamily {
     })
 }
 
-/// Numbers in [0, 1), the same every time (multiplicative congruence modulo 2^31 - 1; Park and Miller 1988).
+/// Numbers in [0, 1), the same every time (multiplicative congruence modulo 2^31 - 1; Park and
+/// Miller 1988).
 pub(crate) struct Shares(pub(crate) u64);
 
 impl Shares {

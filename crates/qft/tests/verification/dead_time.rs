@@ -1,4 +1,5 @@
-//! Loops with dead time, continuous and sampled, with a sensor and correlated parameters, compared with an independent search.
+//! Loops with dead time, continuous and sampled, with a sensor and correlated parameters, compared
+//! with an independent search.
 
 use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
 use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients, UncertainPlant};
@@ -95,7 +96,8 @@ fn a_process_with_dead_time() {
     check(&judged(&process(), Controller { timing, ..controller }, &specifications[..1]), &truths);
 }
 
-/// k w^2 e^(-s T)/(s (s^2 + 2 d w s + w^2)), damped less the stiffer it is, force cell 1/(s/800 + 1) with 0.5 ms of its own.
+/// k w^2 e^(-s T)/(s (s^2 + 2 d w s + w^2)), damped less the stiffer it is, force cell
+/// 1/(s/800 + 1) with 0.5 ms of its own.
 // ORIGIN: recomputed by comparisons/compare_verify.py
 #[test]
 fn a_load_frame_with_everything_at_once() {

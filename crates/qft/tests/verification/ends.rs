@@ -134,7 +134,8 @@ fn a_loop_of_minus_one_at_zero_frequency_is_not_resolved() {
     assert_ne!(finding.verdict, Verdict::Met, "{finding:?}");
 }
 
-/// w^2/(s^2 + 2 d w s + w^2) in a loop of gain g: the peak of P/(1+L) is 1/((1 + g) 2 e sqrt(1 - e^2)) with e = d/sqrt(1 + g).
+/// w^2/(s^2 + 2 d w s + w^2) in a loop of gain g: the peak of P/(1+L) is 1/((1 + g) 2 e
+/// sqrt(1 - e^2)) with e = d/sqrt(1 + g).
 fn resonance_peak(gain: f64, damping: f64) -> f64 {
     let closed = damping / (1.0 + gain).sqrt();
     1.0 / ((1.0 + gain) * 2.0 * closed * (1.0 - closed * closed).sqrt())
@@ -175,7 +176,8 @@ fn the_worst_interior_minimum_is_stated_beside_an_end() {
     assert!((1.0..2.0).contains(&interior.frequency_rad_per_s), "{interior:?}");
 }
 
-/// Without a prefilter any roll-off serves: k/(s + k) spreads by 2 at infinity, where the limits are 4 apart, and by nothing at zero.
+/// Without a prefilter any roll-off serves: k/(s + k) spreads by 2 at infinity, where the limits
+/// are 4 apart, and by nothing at zero.
 #[test]
 fn a_spread_has_limits_at_both_ends() {
     let integrator = gain_times(&[1.0], &[1.0, 0.0], 0.0);
@@ -207,8 +209,9 @@ fn senseless_demands_are_not_met() {
     }
 }
 
-/// k/(s + 1) behind 0.1 s, k from 1 to 2, with Pd = -2 s/(s + 10) and the rate of the disturbance fed forward: Pd + K s P tends to
-/// (K k - 0.2) s at zero, where 1 + L is 1 + k, sampled or not, and at infinity to -2 + K k e^(-0.1 s), of which the delay makes 2 + K k.
+/// k/(s + 1) behind 0.1 s, k from 1 to 2, with Pd = -2 s/(s + 10) and the rate of the disturbance
+/// fed forward: Pd + K s P tends to (K k - 0.2) s at zero, where 1 + L is 1 + k, sampled or not,
+/// and at infinity to -2 + K k e^(-0.1 s), of which the delay makes 2 + K k.
 #[test]
 fn a_rate_that_is_fed_forward_has_its_share_in_both_ends() {
     let plant = UncertainPlant::record(vec![parameter("k", 1.0, 1.0, 2.0)], |p| PlantCoefficients {

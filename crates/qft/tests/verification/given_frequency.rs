@@ -1,4 +1,5 @@
-//! The worst plant at a frequency that is given, where the resonance that lies there belongs to no plant of the grid.
+//! The worst plant at a frequency that is given, where the resonance that lies there belongs to no
+//! plant of the grid.
 
 use phea_dynamics::controller::Timing;
 use phea_dynamics::expression::Recorded;
@@ -25,7 +26,8 @@ fn carts<'t>(p: &[Recorded<'t>]) -> PlantCoefficients<Recorded<'t>> {
     }
 }
 
-/// Two carts and a spring (Wie and Bernstein 1992): the grid has plants next to those whose resonance lies there.
+/// Two carts and a spring (Wie and Bernstein 1992): the grid has plants next to those whose
+/// resonance lies there.
 // ORIGIN: recomputed by comparisons/recompute_audit.py
 #[test]
 fn a_spring_between_two_of_the_grid_resonates_at_the_given_frequency() {
@@ -98,7 +100,8 @@ fn spread_left(case: &Case, frequency: f64, allowed: f64) -> f64 {
     20.0 * (allowed * least / greatest).log10()
 }
 
-/// 24 lightly damped boxes whose resonances pass the given frequencies: none of 7,200 plants is worse than what was found.
+/// 24 lightly damped boxes whose resonances pass the given frequencies: none of 7,200 plants is
+/// worse than what was found.
 #[test]
 fn no_plant_of_a_close_look_is_worse_at_a_given_frequency() {
     let mut missed = Vec::new();

@@ -1,4 +1,5 @@
-//! What holds for any plant: nothing drawn at random is worse than the worst that is stated; limits and frequencies scale.
+//! What holds for any plant: nothing drawn at random is worse than the worst that is stated; limits
+//! and frequencies scale.
 
 use phea_dynamics::controller::Timing;
 use phea_dynamics::expression::Recorded;
@@ -10,7 +11,8 @@ use phea_qft::verification::{SpecificationFinding, TrackingJudgement};
 
 use super::plants::{along, audited, compensation, on_grid, parameter, rational, specification};
 
-/// A linear congruential generator (Knuth's MMIX constants), so that the draws are the same everywhere.
+/// A linear congruential generator (Knuth's MMIX constants), so that the draws are the same
+/// everywhere.
 pub(crate) struct Draw(pub(crate) u64);
 
 impl Draw {
@@ -26,7 +28,8 @@ impl Draw {
     }
 }
 
-/// k w^2 (1 + s/z)/((1 + s/a) (s^2 + 2 d w s + w^2)) in units of `scale` rad/s; parameters k, a, d, w.
+/// k w^2 (1 + s/z)/((1 + s/a) (s^2 + 2 d w s + w^2)) in units of `scale` rad/s; parameters k, a, d,
+/// w.
 fn resonant<'t>(p: &[Recorded<'t>], zero: f64, scale: f64) -> PlantCoefficients<Recorded<'t>> {
     let [k, a, d, w] = [p[0], p[1], p[2], p[3]];
     let number = |value: f64| Recorded::from(value);
@@ -115,7 +118,8 @@ fn worst(finding: &SpecificationFinding) -> f64 {
     finding.worst.as_ref().unwrap().margin_db
 }
 
-/// 24 boxes, 5 specifications each, 10,000 plants and frequencies each, judged by the specification's own definition.
+/// 24 boxes, 5 specifications each, 10,000 plants and frequencies each, judged by the
+/// specification's own definition.
 #[test]
 fn no_plant_and_frequency_drawn_at_random_is_worse_than_the_worst_case_found() {
     for seed in 0..24 {

@@ -44,7 +44,8 @@ fn measured(gains: &[f64], from: f64, to: f64) -> Family {
     Family::Measured(MeasuredFamily::new(gains.iter().map(plant).collect()).unwrap())
 }
 
-/// Largest |T| of k/(s (s + 1)) with unit feedback: damping e = 1/(2 sqrt k), peak 1/(2 e sqrt(1 - e^2)).
+/// Largest |T| of k/(s (s + 1)) with unit feedback: damping e = 1/(2 sqrt k), peak 1/(2 e
+/// sqrt(1 - e^2)).
 fn servo_peak(gain: f64) -> f64 {
     let damping = 0.5 / gain.sqrt();
     1.0 / (2.0 * damping * (1.0 - damping * damping).sqrt())
@@ -109,7 +110,8 @@ fn nothing_is_demanded_beyond_the_ends_of_a_table() {
     assert_eq!((outside.verdict, outside.worst), (Verdict::NotProven, None));
 }
 
-/// Load motion acts on the plant itself: |Pd/(1+L)|, with Pd = -2 s/(s + 10), is 2 at infinity and peaks where |S| does.
+/// Load motion acts on the plant itself: |Pd/(1+L)|, with Pd = -2 s/(s + 10), is 2 at infinity and
+/// peaks where |S| does.
 #[test]
 fn load_motion_has_a_path_of_its_own() {
     let requirement = Requirement::at_most(ClosedLoop::LoadMotion, Limit::Constant(1.0));
@@ -123,7 +125,8 @@ fn load_motion_has_a_path_of_its_own() {
     assert!((finding.at_design_frequencies[0].margin_db + 20.0 * truth.log10()).abs() < 1e-5);
 }
 
-/// A sensor in the loop, a hold and a delay: the audit agrees with the specification's own definition on a dense grid.
+/// A sensor in the loop, a hold and a delay: the audit agrees with the specification's own
+/// definition on a dense grid.
 #[test]
 fn a_sampled_loop_is_judged_up_to_half_its_sampling_frequency() {
     for (sensor, rate_feed_forward) in
@@ -168,7 +171,8 @@ fn a_sampled_loop_is_judged_up_to_half_its_sampling_frequency() {
     }
 }
 
-/// A plant with more zeros than poles cannot be held and sampled: the verdict does not pretend otherwise.
+/// A plant with more zeros than poles cannot be held and sampled: the verdict does not pretend
+/// otherwise.
 #[test]
 fn a_plant_that_cannot_be_sampled_is_not_proven() {
     let plant = UncertainPlant::record(vec![parameter("k", 1.0, 1.0, 2.0)], |p| PlantCoefficients {

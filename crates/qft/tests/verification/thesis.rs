@@ -74,7 +74,8 @@ fn the_published_controller_fails_its_own_specification() {
     let family = thesis_family([3, 3, 5, 3, 3, 3]);
     let (findings, work) =
         audited(&family, &thesis_loop(0.0), &thesis_specifications(), TrackingJudgement::Magnitude);
-    // 1216 plants, 64 corners and what the searches end at, some 350 frequencies each, and a third more for peaks and searches
+    // 1216 plants, 64 corners and what the searches end at, some 350 frequencies each, and a third
+    // more for peaks and searches
     assert!((1280..1300).contains(&work.plants) && work.responses < 600_000, "{work:?}");
     let [stability, sensitivity, tracking] = &findings[..] else { panic!("three findings") };
     assert!(findings.iter().all(|finding| finding.verdict == Verdict::Violated));
@@ -132,7 +133,8 @@ fn delay_is_part_of_the_verdict() {
     }
 }
 
-/// Without a prefilter the spread is judged: |T| differs by 6.6 dB at 10 rad/s where the limits allow 2.06.
+/// Without a prefilter the spread is judged: |T| differs by 6.6 dB at 10 rad/s where the limits
+/// allow 2.06.
 // ORIGIN: recomputed by comparisons/recompute_audit.py
 #[test]
 fn tracking_without_a_prefilter_is_judged_by_its_spread() {

@@ -1,7 +1,7 @@
 //! The words of linear motion, and those of rotary motion in their place.
 
-/// What makes a text for people speak of torques and angles: whole words and units are replaced, and
-/// nothing within a text of the user.
+/// What makes a text for people speak of torques and angles: whole words and units are replaced,
+/// and nothing within a text of the user.
 ///
 /// # Example
 /// ```

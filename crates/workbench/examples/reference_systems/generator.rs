@@ -17,7 +17,8 @@ pub(super) enum Form {
 
 const COUNT: usize = 100;
 
-/// Alternately factored and state space, orders 1 to 8; every fifth sampled, every seventh with an integrator.
+/// Alternately factored and state space, orders 1 to 8; every fifth sampled, every seventh with an
+/// integrator.
 pub(super) fn reference_systems() -> Result<Vec<ReferenceSystem>, LinearError> {
     let mut seeded = Seeded(2019);
     let mut systems = Vec::with_capacity(COUNT);
@@ -49,7 +50,8 @@ impl Seeded {
         ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// Roots with magnitudes from 0.1 rad/s up, about half of them in complex pairs with damping above 2 %.
+    /// Roots with magnitudes from 0.1 rad/s up, about half of them in complex pairs with damping
+    /// above 2 %.
     fn roots(&mut self, count: usize, decades: f64, unstable_share: f64) -> Vec<Complex64> {
         let mut roots = Vec::with_capacity(count);
         while roots.len() < count {
@@ -89,7 +91,8 @@ impl Seeded {
         if sampled { self.as_sampled(&system) } else { Ok(system) }
     }
 
-    /// Roots mapped by z = exp(sT) with T from the fastest pole: a sampled system with roots all over the disc.
+    /// Roots mapped by z = exp(sT) with T from the fastest pole: a sampled system with roots all
+    /// over the disc.
     fn as_sampled(&mut self, system: &TransferFunction) -> Result<TransferFunction, LinearError> {
         let fastest = system.poles().iter().map(|pole| magnitude(*pole)).fold(0.1, f64::max);
         let sample_time_s = (0.2 + self.next()) / fastest;

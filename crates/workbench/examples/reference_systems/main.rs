@@ -1,5 +1,5 @@
-//! Random linear systems with everything phea computes of them, as JSON, for comparison with other tools:
-//! `cargo run --example reference_systems`.
+//! Random linear systems with everything phea computes of them, as JSON, for comparison with other
+//! tools: `cargo run --example reference_systems`.
 #![allow(clippy::print_stdout, reason = "an example talks to the person who started it")]
 
 mod generator;
@@ -110,7 +110,8 @@ fn margins_as_json(factors: &TransferFunction) -> Value {
     })
 }
 
-/// Frequencies of interest: a decade beyond the slowest and the fastest root, or up to the last sampled one.
+/// Frequencies of interest: a decade beyond the slowest and the fastest root, or up to the last
+/// sampled one.
 fn band(factors: &TransferFunction) -> (f64, f64) {
     let roots = factors.poles().iter().chain(factors.zeros());
     match factors.domain() {
@@ -147,7 +148,8 @@ fn sampled(system: &ReferenceSystem, sample_time_s: f64) -> Result<Value, Linear
     }))
 }
 
-/// Samples of the step response over five slowest time constants, and the metrics read off these samples.
+/// Samples of the step response over five slowest time constants, and the metrics read off these
+/// samples.
 fn step(system: &ReferenceSystem, factors: &TransferFunction) -> Result<Value, TimeResponseError> {
     if !factors.is_stable() || factors.dc_gain() == 0.0 {
         return Ok(Value::Null);

@@ -50,7 +50,8 @@ pub(crate) fn told_first(found: &Alternatives) -> Vec<String> {
     told
 }
 
-/// A sentence on ranges that do not contain the rig of an alternative, whether they were moved or not.
+/// A sentence on ranges that do not contain the rig of an alternative, whether they were moved or
+/// not.
 pub(crate) fn outside_words(name: &str, outside: &str, moved: bool) -> String {
     let cure = match moved {
         false => "state them in `set`, or let them follow by `recentre = true`",
@@ -143,7 +144,8 @@ pub(super) fn parts(all: &[AlternativeColumns]) -> Vec<ColumnPart> {
     parts
 }
 
-/// The keys of a part that some alternative has a value for, or should state one for, with their words.
+/// The keys of a part that some alternative has a value for, or should state one for, with their
+/// words.
 fn keys(all: &[AlternativeColumns], part: &ColumnPart) -> Vec<(&'static str, &'static str)> {
     let mut keys = Vec::new();
     let columns = all.iter().flat_map(|columns| &columns.0).filter(|(own, _)| own == part);

@@ -84,8 +84,8 @@ fn impedances(found: &Alternatives) -> Option<Figure> {
     (!chart.series.is_empty()).then(|| chart.draw(&words))
 }
 
-/// A row for each alternative, in SI, behind the name of its load case where there are several; a value
-/// that does not exist is empty.
+/// A row for each alternative, in SI, behind the name of its load case where there are several; a
+/// value that does not exist is empty.
 fn table(file: &str, groups: &[(&str, &[JudgedAlternative])]) -> OutputFile {
     let all: Vec<AlternativeColumns> =
         groups.iter().flat_map(|(_, judged)| judged.iter().map(JudgedAlternative::columns)).collect();

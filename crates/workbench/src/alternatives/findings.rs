@@ -124,8 +124,8 @@ fn tried(judged: &[JudgedAlternative]) -> String {
     }
 }
 
-/// Each sentence once, behind the names of all that it holds for; of most of them, of those that it does
-/// not hold for.
+/// Each sentence once, behind the names of all that it holds for; of most of them, of those that it
+/// does not hold for.
 fn shared<'a>(judged: &'a [JudgedAlternative], told: impl Iterator<Item = (&'a str, String)>) -> Vec<String> {
     let others = |names: &[&str]| {
         let others = judged.iter().map(|one| one.name.as_str()).filter(|name| !names.contains(name));

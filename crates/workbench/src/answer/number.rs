@@ -1,6 +1,7 @@
 use serde::{Serialize, Serializer};
 
-/// A number in an answer: JSON has no infinity and no NaN, so infinity is the string "inf" and a missing one `null`.
+/// A number in an answer: JSON has no infinity and no NaN, so infinity is the string "inf" and a
+/// missing one `null`.
 ///
 /// # Example
 /// ```

@@ -1,4 +1,5 @@
-//! The file of a certificate: written by `verify --certificate`, read by `check-certificate` and by checkers of others.
+//! The file of a certificate: written by `verify --certificate`, read by `check-certificate` and by
+//! checkers of others.
 
 mod layout;
 

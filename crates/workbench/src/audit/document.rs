@@ -15,7 +15,8 @@ use crate::grouped::grouped;
 use crate::quantity::DisplayUnit;
 use crate::trial::{self, Trial};
 
-/// The tables and sentences of `verify` for people, with the trial on the machine where there is one.
+/// The tables and sentences of `verify` for people, with the trial on the machine where there is
+/// one.
 pub fn output(view: &ProjectAudit, tried: Option<&Trial>) -> Document {
     let mut out = document(view, vec![]);
     out.append(proven(view, "What is proven"));

@@ -96,7 +96,8 @@ fn spread_row(spread: Option<Spread>, runs: usize) -> Object {
         .with("reason", spread.is_none().then_some("no run has one"))
 }
 
-/// `bounds` are those of the uncertain parameter; `outside` counts the runs whose machine is outside them.
+/// `bounds` are those of the uncertain parameter; `outside` counts the runs whose machine is
+/// outside them.
 fn lumps(plan: &Plan, summary: &Summary) -> Vec<Object> {
     let rows = LUMP_NAMES.iter().zip(summary.lumps).zip(summary.outside);
     rows.map(|((name, spread), outside)| {

@@ -20,8 +20,8 @@ pub struct FrictionRequest {
 /// Identifies the friction of a project's cylinder, whose areas and moving mass the project states.
 ///
 /// # Errors
-/// [`IdentifyError`] for a project without a cylinder, files that are not evenly sampled runs, and runs
-/// that say nothing.
+/// [`IdentifyError`] for a project without a cylinder, files that are not evenly sampled runs, and
+/// runs that say nothing.
 pub fn friction_watched(
     source: &dyn Source,
     loaded: Option<&Loaded>,

@@ -20,7 +20,8 @@ pub struct ResponseRequest {
     pub figures: bool,
 }
 
-/// Estimates the response of each file, compared with the linear plant of a project where there is one.
+/// Estimates the response of each file, compared with the linear plant of a project where there is
+/// one.
 ///
 /// # Errors
 /// [`IdentifyError`] for files that are not evenly sampled records, and records that say nothing.

@@ -15,7 +15,8 @@ pub(super) struct Told {
 }
 
 impl Told {
-    /// Below what recordings gave, in the envelope of the first project and the words of their motion.
+    /// Below what recordings gave, in the envelope of the first project and the words of their
+    /// motion.
     pub(super) fn print(self, command: &'static str, projects: &[Loaded]) -> Answer {
         let mut document = Document::default();
         projects.iter().for_each(|loaded| document.append(in_use_above(loaded)));

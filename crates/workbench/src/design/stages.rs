@@ -1,4 +1,5 @@
-//! The stages of a design as files: templates, bounds, loop, prefilter, audit, rounds, and the project that it makes.
+//! The stages of a design as files: templates, bounds, loop, prefilter, audit, rounds, and the
+//! project that it makes.
 
 use phea_dynamics::frequency::decibels;
 use phea_dynamics::linear::{LinearError, TransferFunction};
@@ -21,7 +22,8 @@ const BEYOND: [f64; 2] = [0.1, 30.0];
 /// The nominal loop over frequency.
 const LOOP: &str = "loop.csv";
 
-/// The project with the designed controller and prefilter in it, everything else byte for byte as it was.
+/// The project with the designed controller and prefilter in it, everything else byte for byte as
+/// it was.
 pub fn files(loaded: &Loaded, view: &ProjectDesign) -> Vec<OutputFile> {
     let nearest = view.repair.as_ref().and_then(Repair::nearest);
     let named = [(DESIGNED_PROJECT, Some(view)), (NEAREST_PROJECT, nearest)];

@@ -60,7 +60,8 @@ impl Table {
         self
     }
 
-    /// On a page in parts of at most this number of columns besides the first, which each part repeats.
+    /// On a page in parts of at most this number of columns besides the first, which each part
+    /// repeats.
     pub(crate) fn in_parts_of(self, columns: usize) -> Table {
         Table { columns_of_part: Some(columns), ..self }
     }

@@ -1,4 +1,5 @@
-//! A document as plain text: columns are aligned by spaces, so that it can be read, searched and pasted anywhere.
+//! A document as plain text: columns are aligned by spaces, so that it can be read, searched and
+//! pasted anywhere.
 
 use comfy_table::presets;
 

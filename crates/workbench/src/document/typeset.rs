@@ -1,10 +1,12 @@
-//! Plain-text equations such as `K_H = A_u^2 beta_e/V` set with italics, subscripts and superscripts.
+//! Plain-text equations such as `K_H = A_u^2 beta_e/V` set with italics, subscripts and
+//! superscripts.
 
 use maud::{Markup, html};
 
 use crate::figure::typeset::{Level, pieces_of_equation};
 
-/// Sets a plain-text equation for a page: `_` and `^` take the next word or a `{group}`, single letters are italic.
+/// Sets a plain-text equation for a page: `_` and `^` take the next word or a `{group}`, single
+/// letters are italic.
 ///
 /// # Example
 /// ```

@@ -1,8 +1,8 @@
 use super::{FRICTION_NAMES, FrictionIdentification, because};
 use crate::answer::{OutputFile, in_toml};
 
-/// The table `[cylinder.friction]` of a project with what was identified: what the data do not determine
-/// is a comment.
+/// The table `[cylinder.friction]` of a project with what was identified: what the data do not
+/// determine is a comment.
 pub fn files(found: &FrictionIdentification) -> Vec<OutputFile> {
     let line = |((name, unit), one): (&(&str, &str), &super::FrictionEstimate)| {
         let [low, high] = one.interval.map(|end| in_toml(end, 4));

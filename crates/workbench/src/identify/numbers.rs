@@ -63,7 +63,8 @@ pub(super) fn simple_body(found: &SimpleCalculations) -> SimpleBody {
     }
 }
 
-/// A line of the table: what it is, its equation, its unit, and what the thesis prints of its valve.
+/// A line of the table: what it is, its equation, its unit, and what the thesis prints of its
+/// valve.
 struct NumberLine {
     name: &'static str,
     equation: &'static str,
@@ -116,8 +117,8 @@ fn null_equation(null: Option<NullReading>) -> &'static str {
     }
 }
 
-/// How far the null that was read lies from the one that was identified, where that is more than its
-/// interval, in a sentence with the reason.
+/// How far the null that was read lies from the one that was identified, where that is more than
+/// its interval, in a sentence with the reason.
 fn null_offset(found: &Identification) -> Option<String> {
     let read = found.simple.null_bias()?;
     let null_bias = COEFFICIENT_NAMES.iter().position(|(name, _)| *name == "null_bias")?;

@@ -93,7 +93,8 @@ pub(crate) fn linkage_table(places: &[LinkagePlace]) -> Table {
     Table::new(headings).with(places.iter().map(row))
 }
 
-/// Where Z is, of a rig whose load turns about a joint: with v = r omega and tau = F r, whose arm changes.
+/// Where Z is, of a rig whose load turns about a joint: with v = r omega and tau = F r, whose arm
+/// changes.
 pub(crate) fn impedance_at_joint(linearization: &Linearization) -> Option<String> {
     let here = linearization.linkage.iter().find(|place| place.at == LinkagePosition::OperatingPoint)?;
     let arm = crate::quantity::display(here.lever_arm_m, &crate::quantity::LENGTH, 4);

@@ -98,7 +98,8 @@ impl<'t> Subscript<'t> {
             out.push_str(&format!("{opening}{script}{closing}"));
             return after;
         }
-        // without a subscript the drawing does not come back to the line: what follows goes on with the letter
+        // without a subscript the drawing does not come back to the line: what follows goes on with
+        // the letter
         let on_the_line = after
             .strip_prefix("<tspan dy=")
             .filter(|_| closes != "</i>")

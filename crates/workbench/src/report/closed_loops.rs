@@ -48,8 +48,8 @@ impl<'a> LoopFamily<'a> {
         Ok(LoopFamily { name, problem, view, members: problem.members()? })
     }
 
-    /// What the audit found, if the specification has a margin: the magnitudes of an unstable loop do
-    /// not describe a response.
+    /// What the audit found, if the specification has a margin: the magnitudes of an unstable loop
+    /// do not describe a response.
     fn finding(&self, index: usize) -> Option<&SpecificationFinding> {
         self.view.audit.specifications.get(index).filter(|finding| finding.worst.is_some())
     }
@@ -77,8 +77,9 @@ impl<'a> LoopFamily<'a> {
     }
 }
 
-/// A specification in these loops, with every member in the first of them, and whether it is shown by
-/// the spread of the family, which a prefilter does not change. `None` if no loop has a margin to it.
+/// A specification in these loops, with every member in the first of them, and whether it is shown
+/// by the spread of the family, which a prefilter does not change. `None` if no loop has a margin
+/// to it.
 pub(super) fn magnitudes(
     loops: &[LoopFamily<'_>],
     index: usize,

@@ -90,8 +90,8 @@ impl MachineChapter {
         side.runs.as_deref().ok()
     }
 
-    /// The first reference step and the greatest disturbance by load, force or setting, in a few words
-    /// each, of the controller that a reader would take first.
+    /// The first reference step and the greatest disturbance by load, force or setting, in a few
+    /// words each, of the controller that a reader would take first.
     pub(super) fn facts(&self) -> Vec<(&'static str, String)> {
         let names = [(GIVEN, "Simulated, given controller"), (DESIGNED, "Simulated, designed controller")];
         let fact = |(side, name): (&str, &'static str)| Some((name, told(self.runs_of(side)?)?));

@@ -1,5 +1,5 @@
-//! The chapter on where the family comes from: how much of the ranges that it replaces the rig reaches, how much smaller its
-//! templates are, and what that gives the controller.
+//! The chapter on where the family comes from: how much of the ranges that it replaces the rig
+//! reaches, how much smaller its templates are, and what that gives the controller.
 
 use phea_dynamics::watch::Watch;
 

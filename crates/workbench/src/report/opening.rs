@@ -51,7 +51,8 @@ pub struct Decided {
     pub verdict: Option<&'static str>,
     /// The same for each specification, in file order.
     pub specifications: Vec<&'static str>,
-    /// Whether all of that is proven for every plant and every frequency; absent where no proof was attempted.
+    /// Whether all of that is proven for every plant and every frequency; absent where no proof was
+    /// attempted.
     pub proven: Option<bool>,
     /// The trial of the verdict on the machine: `agrees`, `differs`, `contradicts`.
     pub machine: Option<&'static str>,

@@ -8,8 +8,8 @@ use crate::project::Loaded;
 use crate::source::Source;
 use phea_dynamics::watch::Watch;
 
-/// What the recordings of the project say of the friction of its cylinder; nothing where it declares
-/// none.
+/// What the recordings of the project say of the friction of its cylinder; nothing where it
+/// declares none.
 pub(super) fn chapter(
     source: &dyn Source,
     loaded: &Loaded,

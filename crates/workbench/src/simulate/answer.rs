@@ -28,7 +28,8 @@ pub(crate) fn comparison_body(comparison: &ScenarioComparison<'_>) -> Object {
     })
 }
 
-/// What `simulate` says of a project; scenarios are not run where the run was stopped before they began.
+/// What `simulate` says of a project; scenarios are not run where the run was stopped before they
+/// began.
 pub(crate) fn body(loaded: &Loaded, runs: &[ScenarioRun]) -> Object {
     let names = state_names(runs.iter().map(|run| run.name.as_str()));
     let not_run = loaded.project.scenarios.iter().skip(runs.len());

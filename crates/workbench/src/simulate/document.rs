@@ -309,7 +309,8 @@ fn occurrence_words(occurrence: &Occurrence) -> String {
     format!("{} s: {what}", DisplayUnit::SECOND.number(time_s, 5))
 }
 
-/// The tables of `compare`: a row for each metric, a column for each project; projects that were not begun are named.
+/// The tables of `compare`: a row for each metric, a column for each project; projects that were
+/// not begun are named.
 pub(crate) fn comparison(comparison: &ScenarioComparison<'_>, asked: &[Loaded]) -> Document {
     let mut out = Document::default();
     for (number, (loaded, runs)) in comparison.projects.iter().enumerate() {

@@ -154,8 +154,8 @@ fn joint(record: &Record) -> Option<CurvePanel> {
     Some(panel("Joint θ", DisplayUnit::DEGREE, 90.0, vec![series]))
 }
 
-/// The pressures of gas behind necks and the temperatures of gas that exchanges heat, where there are
-/// any: over that of the wall where the working temperature is not stated.
+/// The pressures of gas behind necks and the temperatures of gas that exchanges heat, where there
+/// are any: over that of the wall where the working temperature is not stated.
 fn gas(record: &Record) -> Vec<CurvePanel> {
     let unstated = [0, 1].map(|side| match record.parts.gas_wall_celsius[side] {
         None => record.signal(HEAT_SIGNALS[side]),

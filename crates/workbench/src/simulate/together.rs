@@ -1,4 +1,5 @@
-//! Figures of one scenario under several controllers: the same machine, the same reference, a colour for each controller.
+//! Figures of one scenario under several controllers: the same machine, the same reference, a
+//! colour for each controller.
 
 use super::figures::{
     AFTER_S, BEFORE_S, around, asked_for, close_up, enlarged, instants, load_pressure, moves_load, over_time,
@@ -39,7 +40,8 @@ pub(crate) fn together(runs: &[NamedRun<'_>], number: usize, wish: Option<&Track
     figures
 }
 
-/// Force and command from the first event to a little after the last, or of the whole run where nothing begins.
+/// Force and command from the first event to a little after the last, or of the whole run where
+/// nothing begins.
 pub(crate) fn at_a_glance(name: &str, runs: &[NamedRun<'_>], wish: Option<&TrackingWish>) -> Option<Figure> {
     let first = runs.first()?;
     let end = end_of(runs);

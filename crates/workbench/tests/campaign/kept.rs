@@ -76,7 +76,8 @@ impl RowStore for Pages {
     }
 }
 
-/// Rows that waited for a slower run are not driven again; torn ones, others' and those that the table has are passed over.
+/// Rows that waited for a slower run are not driven again; torn ones, others' and those that the
+/// table has are passed over.
 #[test]
 fn rows_that_waited_are_not_driven_again() {
     let loaded = load(&SHORT);
@@ -151,7 +152,8 @@ fn refusal(result: Result<String, CommandError>) -> CampaignError {
     }
 }
 
-/// Whatever is not what was written is refused with its line, and left as it is; without the lines from there on, the same bytes.
+/// Whatever is not what was written is refused with its line, and left as it is; without the lines
+/// from there on, the same bytes.
 #[test]
 fn damaged_rows_are_refused_with_their_line() {
     let loaded = load(&SHORT);

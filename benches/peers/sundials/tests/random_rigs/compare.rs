@@ -55,7 +55,8 @@ pub(crate) struct Compared {
     pub(crate) well_posed: bool,
     /// Whether CVODE's force rings anywhere, above the floor of [`Roughness`].
     pub(crate) rough: bool,
-    /// Largest difference between phea's runs over all rows, as a part of the peak: what a check at a tenth of the tolerance shows.
+    /// Largest difference between phea's runs over all rows, as a part of the peak: what a check at
+    /// a tenth of the tolerance shows.
     pub(crate) estimate: f64,
     /// Whether the force still swings at the end, long after the last thing that happened.
     pub(crate) hunts: bool,
@@ -146,7 +147,8 @@ impl Sampler for Digital<'_> {
     }
 }
 
-/// phea's own loop, as compiled for its users, whose rates cease to be numbers after this number of evaluations: how a run on CVODE is ended.
+/// phea's own loop, as compiled for its users, whose rates cease to be numbers after this number of
+/// evaluations: how a run on CVODE is ended.
 struct Patient<'a> {
     control: &'a Loop,
     left: Cell<u64>,
@@ -446,8 +448,8 @@ fn emptied(rig: &Rig, states: &[Vec<f64>]) -> Option<f64> {
     Some(row as f64 * OUTPUT_STEP_S)
 }
 
-/// Over the last fifth of its rows the force crosses the middle of its range at least four times, and the range is a twentieth of the
-/// peak or more.
+/// Over the last fifth of its rows the force crosses the middle of its range at least four times,
+/// and the range is a twentieth of the peak or more.
 fn hunts(force: &[f64], peak: f64) -> bool {
     let last = &force[force.len() * 4 / 5..];
     let least = last.iter().copied().fold(f64::INFINITY, f64::min);

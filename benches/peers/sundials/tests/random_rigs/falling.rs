@@ -1,4 +1,5 @@
-//! Rigs whose friction falls with the velocity somewhere, and whose load moves so slowly that the piston visits the place.
+//! Rigs whose friction falls with the velocity somewhere, and whose load moves so slowly that the
+//! piston visits the place.
 //!
 //! Where dF/dv is negative, friction feeds the ringing of piston and load cell:
 //!

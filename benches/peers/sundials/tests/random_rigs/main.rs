@@ -1,32 +1,38 @@
-//! Random rigs through phea and through CVODE: 100 of each family, or as many as the first argument says (the test command asks for
-//! 50, the stage `soak` for 1000).
+//! Random rigs through phea and through CVODE: 100 of each family, or as many as the first argument
+//! says (the test command asks for 50, the stage `soak` for 1000).
 //!
 //!     cargo test --release -p sundials --test random_rigs -- 1000 timed
 //!
-//! Two families: `any`, whose valve, lines, cylinder, friction, load, controller and its samples vary over decades, and `falling`,
-//! whose friction falls with the velocity where a slow load lets the piston go, so that it feeds the ringing on the load cell. One
-//! of these words runs that family alone. The reference is CVODE at 1e-11, phea is judged at the tolerance 1e-7. What it does at
-//! 1e-6, which a project has by default, is reported with it. Every fourth rig of the first family is compared with `closed_loop.h` as
-//! well; `timed` adds what CVODE costs at the same error; `only=N` runs one rig, `from=N` begins with it; `judged=1e-9` judges phea at
-//! that tolerance.
+//! Two families: `any`, whose valve, lines, cylinder, friction, load, controller and its samples
+//! vary over decades, and `falling`, whose friction falls with the velocity where a slow load lets
+//! the piston go, so that it feeds the ringing on the load cell. One of these words runs that
+//! family alone. The reference is CVODE at 1e-11, phea is judged at the tolerance 1e-7. What it
+//! does at 1e-6, which a project has by default, is reported with it. Every fourth rig of the first
+//! family is compared with `closed_loop.h` as well; `timed` adds what CVODE costs at the same
+//! error; `only=N` runs one rig, `from=N` begins with it; `judged=1e-9` judges phea at that
+//! tolerance.
 //!
-//! No solver keeps near a trajectory that leaves its neighbours. How fast they part CVODE finds alone, at 1e-11:
+//! No solver keeps near a trajectory that leaves its neighbours. How fast they part CVODE finds
+//! alone, at 1e-11:
 //!
 //! ```text
 //! A(t) = largest until t of |F_kicked - F|/(e F_peak)       every 10 ms, y_i -> y_i +- e scale_i by chance, e = 1e-8
 //! ```
 //!
-//! F by backward differentiation, F_kicked by Adams' method, so that rows on which the two do not agree to 1e-6 are not compared either.
-//! A solver that keeps a tolerance may err by as much as that in every step, and takes 32 steps between two kicks in the mean. Ten
-//! errors of 1e-6 grow to the thousandth of the peak that is allowed where A passes 100: there trajectories count as separated. Until
-//! then an error is held against that thousandth, from then on against what ten such errors grow to, 10 x 1e-6 A(t). The peak is that
-//! of the force, or of the reference where the loop never brings it.
+//! F by backward differentiation, F_kicked by Adams' method, so that rows on which the two do not
+//! agree to 1e-6 are not compared either. A solver that keeps a tolerance may err by as much as
+//! that in every step, and takes 32 steps between two kicks in the mean. Ten errors of 1e-6 grow to
+//! the thousandth of the peak that is allowed where A passes 100: there trajectories count as
+//! separated. Until then an error is held against that thousandth, from then on against what ten
+//! such errors grow to, 10 x 1e-6 A(t). The peak is that of the force, or of the reference where
+//! the loop never brings it.
 //!
-//! Where A is large that bound is met by no ringing at all as well as by the right one. So from then on the force must ring as
-//! strongly as CVODE's does, too: [`roughness`].
+//! Where A is large that bound is met by no ringing at all as well as by the right one. So from
+//! then on the force must ring as strongly as CVODE's does, too: [`roughness`].
 //!
-//! A rig is well posed where CVODE at 1e-9 finds the force of 1e-11 to 1e-5 of the peak. On these the error at the default tolerance
-//! is reported over all rows, with what a run at a tenth of the tolerance says of it.
+//! A rig is well posed where CVODE at 1e-9 finds the force of 1e-11 to 1e-5 of the peak. On these
+//! the error at the default tolerance is reported over all rows, with what a run at a tenth of the
+//! tolerance says of it.
 
 mod compare;
 mod falling;

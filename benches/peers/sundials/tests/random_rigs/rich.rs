@@ -1,4 +1,5 @@
-//! What a richer rig has: lines with dynamics of their own, walls, memories of the spool, ends that are met.
+//! What a richer rig has: lines with dynamics of their own, walls, memories of the spool, ends that
+//! are met.
 
 use phea_hydraulics::actuator::Components;
 use phea_hydraulics::contact::Contact;

@@ -1,4 +1,5 @@
-//! A rig drawn at random: valve, lines, cylinder, friction, load, controller and what happens to it, over decades.
+//! A rig drawn at random: valve, lines, cylinder, friction, load, controller and what happens to
+//! it, over decades.
 
 use phea_dynamics::controller::AntiWindup;
 use phea_dynamics::random;
@@ -57,7 +58,8 @@ pub(crate) struct Rig {
 }
 
 impl Rig {
-    /// Its state at the beginning, this number of values without those of its waves: what a controller adds is at rest.
+    /// Its state at the beginning, this number of values without those of its waves: what a
+    /// controller adds is at rest.
     pub(crate) fn beginning(&self, states: usize) -> Vec<f64> {
         let mut start = self.start.clone();
         start.resize(states, 0.0);
@@ -102,8 +104,9 @@ impl Chance {
     }
 }
 
-/// The rig of this number. Every fourth is one that `closed_loop.h` can describe too, every fourth a richer one, one in five of
-/// those with lines that have dynamics of their own: CVODE takes long for their many states.
+/// The rig of this number. Every fourth is one that `closed_loop.h` can describe too, every fourth
+/// a richer one, one in five of those with lines that have dynamics of their own: CVODE takes long
+/// for their many states.
 pub(crate) fn rig(number: u64) -> Result<Rig, Refusal> {
     let mut chance = Chance::of(number, 0x1405_7b7e_f767_814f);
     let (like_benchmark, rich) = (number.is_multiple_of(4), number % 4 == 2);
@@ -315,7 +318,8 @@ fn options(chance: &mut Chance, components: &mut Components) -> MachineOptions {
     }
 }
 
-/// Gains for a crossover over decades, if the piston were without mass and friction: slow ones, and ones that hunt.
+/// Gains for a crossover over decades, if the piston were without mass and friction: slow ones, and
+/// ones that hunt.
 fn control(chance: &mut Chance, components: &Components, like_benchmark: bool) -> Control {
     let Components { valve, cylinder, supply, force_sensor, fluid, .. } = components;
     let volume = cylinder.area_a * cylinder.stroke.middle() + components.line_a.volume();

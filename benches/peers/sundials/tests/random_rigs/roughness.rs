@@ -1,13 +1,16 @@
-//! How much of a force rings: what shows whether a solver has calmed an oscillation, where trajectories have parted.
+//! How much of a force rings: what shows whether a solver has calmed an oscillation, where
+//! trajectories have parted.
 //!
 //! ```text
 //! R_k^2 = mean over window k of (F - mean of F over the 10 ms around)^2          windows of 0.1 s
 //! ```
 //!
-//! The phase of a ringing that grew out of almost nothing says nothing, how strong it is does, as far as anybody knows: an onset may
-//! fall into the window before or after, and where CVODE's own runs (at 1e-11, the same moved by chance, at 1e-9) differ by
-//! more than these parts in the largest of R_(k-1), R_k, R_(k+1), the strength depends on what is smaller than any tolerance. A rig on
-//! which phea differs from them is run by CVODE at 1e-13 too: it may be CVODE's own error that grew into a ringing, and phea is right.
+//! The phase of a ringing that grew out of almost nothing says nothing, how strong it is does, as
+//! far as anybody knows: an onset may fall into the window before or after, and where CVODE's own
+//! runs (at 1e-11, the same moved by chance, at 1e-9) differ by more than these parts in the
+//! largest of R_(k-1), R_k, R_(k+1), the strength depends on what is smaller than any tolerance. A
+//! rig on which phea differs from them is run by CVODE at 1e-13 too: it may be CVODE's own error
+//! that grew into a ringing, and phea is right.
 //!
 //! ```text
 //! known       largest of R_(k-1), R_k, R_(k+1)  >=  0.7 smallest of CVODE's R_k
@@ -15,7 +18,8 @@
 //! unknown     largest of R_(k-1), R_k, R_(k+1)  >=  0.7 P        where all of CVODE's R_k are P or more: it must ring
 //! ```
 //!
-//! of each window with rows after trajectories have separated; P, a thousandth of the peak, is the smallest that counts as ringing.
+//! of each window with rows after trajectories have separated; P, a thousandth of the peak, is the
+//! smallest that counts as ringing.
 
 /// Over which the slow part of a force is taken, s.
 const SLOW_S: f64 = 10e-3;
@@ -32,14 +36,16 @@ pub(crate) struct Roughness {
     /// Windows in which CVODE rings, and those among them of which it knows how strongly.
     pub(crate) windows: usize,
     pub(crate) known: usize,
-    /// Smallest part of CVODE's smallest, or of what is ringing at all; 1 where it rings in no window.
+    /// Smallest part of CVODE's smallest, or of what is ringing at all; 1 where it rings in no
+    /// window.
     pub(crate) least: f64,
     /// Largest part of CVODE's largest where that is known; 1 where neither rings.
     pub(crate) most: f64,
 }
 
 impl Roughness {
-    /// Of a run's force, with rows at this distance, which separate after this number; `None` where they do not.
+    /// Of a run's force, with rows at this distance, which separate after this number; `None` where
+    /// they do not.
     pub(crate) fn compared(
         force: &[f64],
         references: &[&[f64]],

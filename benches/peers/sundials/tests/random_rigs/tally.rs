@@ -50,10 +50,12 @@ struct Checks {
     well_posed: usize,
     /// Errors over all rows of well-posed rigs.
     errors: Vec<f64>,
-    /// Rigs whose error at the default tolerance exceeds the largest, and rigs whose error does not: all, of those with the report that
-    /// errors may be visible, of those where a check says so, and of those with either.
+    /// Rigs whose error at the default tolerance exceeds the largest, and rigs whose error does
+    /// not: all, of those with the report that errors may be visible, of those where a check says
+    /// so, and of those with either.
     reported: [[usize; 4]; 2],
-    /// True error over what the check says, where either exceeds the largest: of well-posed rigs, and of the others.
+    /// True error over what the check says, where either exceeds the largest: of well-posed rigs,
+    /// and of the others.
     factors: [Vec<f64>; 2],
 }
 

@@ -113,7 +113,8 @@ impl Held {
 }
 
 /// The gain with which the zeros give the samples; the leading coefficient itself, unless the zero
-/// of a coefficient that is small compared with the others has been found better than that coefficient.
+/// of a coefficient that is small compared with the others has been found better than that
+/// coefficient.
 fn matched(leading: f64, zeros: &[Complex64], samples: &[NumeratorSample]) -> f64 {
     let shape = |z: Complex64| zeros.iter().map(|zero| z - zero).product::<Complex64>();
     let shapes = samples.iter().map(|sample| (shape(sample.z), sample.numerator));

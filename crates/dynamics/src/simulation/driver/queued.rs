@@ -16,8 +16,8 @@ use crate::simulation::{Lane, System};
 /// [`SimulationError`] when a task does not fit the system.
 ///
 /// # Example
-/// Two decays at 1/s and 2/s, one after the other in a single lane: after a second exp(-1) and exp(-2)
-/// are left.
+/// Two decays at 1/s and 2/s, one after the other in a single lane: after a second exp(-1) and
+/// exp(-2) are left.
 /// ```
 /// use phea_dynamics::scalar::Scalar;
 /// use phea_dynamics::simulation::{

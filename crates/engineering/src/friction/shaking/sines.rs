@@ -14,11 +14,12 @@ use crate::identify::median;
 /// white noise reaches it once in twenty thousand.
 const BEYOND_NOISE: f64 = 12.0;
 
-/// The same over the strongest line: what is below, less than a hundredth of its size, moves little.
+/// The same over the strongest line: what is below, less than a hundredth of its size, moves
+/// little.
 const FAINT: f64 = 1e-4;
 
-/// Power over that of the strongest line of a round from which another is taken with it: beyond what
-/// one line spreads over its neighbours.
+/// Power over that of the strongest line of a round from which another is taken with it: beyond
+/// what one line spreads over its neighbours.
 const NO_LEAKAGE: f64 = 0.1;
 
 /// Share of the variance of a force that its sines may leave unexplained, beyond the noise.
@@ -42,13 +43,13 @@ const FILLED_UP: usize = 4;
 /// Distance of two sines, over a line of the rows, from which they can be distinguished.
 const APART: f64 = 1.5;
 
-/// The sines that a force is made of, as angles in rad from row to row, rising; `None` where sines do
-/// not explain it. Force and position are given over the standard deviation of their noise.
+/// The sines that a force is made of, as angles in rad from row to row, rising; `None` where sines
+/// do not explain it. Force and position are given over the standard deviation of their noise.
 ///
-/// A sine that is small in the force may move the piston much where it rings on its bristles, so that
-/// both signals are searched. What is left may hold sines too close to one of these for the duration
-/// of the recording, as where the size of a sine changes a little: they stay with the noise, up to a
-/// small part of the force.
+/// A sine that is small in the force may move the piston much where it rings on its bristles, so
+/// that both signals are searched. What is left may hold sines too close to one of these for the
+/// duration of the recording, as where the size of a sine changes a little: they stay with the
+/// noise, up to a small part of the force.
 pub(super) fn sines(signals: [&Vec<f64>; 2]) -> Option<Vec<f64>> {
     let [forces, _] = signals;
     let length = (FILLED_UP * forces.len()).next_power_of_two();
@@ -177,8 +178,8 @@ fn left(values: &[f64], angles: &[f64]) -> Option<Vec<f64>> {
     Some((DVector::from_column_slice(values) - matrix * found).iter().copied().collect())
 }
 
-/// The angles after a step of Gauss and Newton over sizes and angles: the mean of the steps for both
-/// signals, by the squares of the sizes.
+/// The angles after a step of Gauss and Newton over sizes and angles: the mean of the steps for
+/// both signals, by the squares of the sizes.
 fn improved(signals: [&Vec<f64>; 2], angles: &[f64]) -> Option<Vec<f64>> {
     let [force, position] = signals.map(|values| steps(values, angles));
     let both = force?.into_iter().zip(position?).zip(angles);

@@ -77,7 +77,8 @@ fn branch(
     straight_line(&points).map(|line| line.slope).filter(|slope| slope.value > 0.0)
 }
 
-/// d(p_A - p_B)/dU where both are equal, by the blocked test with the most rows around it, both ways.
+/// d(p_A - p_B)/dU where both are equal, by the blocked test with the most rows around it, both
+/// ways.
 pub(super) fn pressure_sensitivity(recordings: &[Recording]) -> Option<CurveReading> {
     let blocked = recordings.iter().filter(|one| one.circuit == PortCircuit::Blocked);
     let of = |recording: &Recording| [true, false].map(|rising| around_null(recording, rising));
@@ -103,8 +104,8 @@ fn around_null(recording: &Recording, rising: bool) -> Vec<(f64, f64, f64)> {
     (0..recording.inputs.len()).filter_map(of_row).collect()
 }
 
-/// 1/(dU/dp_L) at p_L = 0, by U = c_0 + c_1 p_L + c_2 p_L |p_L| + c_3 p_L^3: an edge that opens bends
-/// the curve, to either side alike.
+/// 1/(dU/dp_L) at p_L = 0, by U = c_0 + c_1 p_L + c_2 p_L |p_L| + c_3 p_L^3: an edge that opens
+/// bends the curve, to either side alike.
 fn inverse_slope(points: &[(f64, f64, f64)]) -> Option<CurveReading> {
     if points.len() < FEWEST {
         return None;

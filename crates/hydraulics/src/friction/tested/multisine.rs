@@ -1,7 +1,7 @@
 use phea_dynamics::portable;
 
-/// A force over the rows of a recording that is a sum of sines, on a mean that drifts slowly. Units:
-/// N, rad/s, s.
+/// A force over the rows of a recording that is a sum of sines, on a mean that drifts slowly.
+/// Units: N, rad/s, s.
 ///
 /// ```text
 /// F(t) = F_0 + F_1 tau + F_2 (3 tau^2 - 1)/2 + sum over k of (a_k cos(omega_k t) + b_k sin(omega_k t))

@@ -24,8 +24,8 @@ pub struct KnottedForce {
 }
 
 /// Displacements, and their derivatives over the coefficients of the friction, in the order of
-/// [`LuGre::to_array`], and over what else they depend on (the force at each knot; or the start and the
-/// sizes of the sines), row by row.
+/// [`LuGre::to_array`], and over what else they depend on (the force at each knot; or the start and
+/// the sizes of the sines), row by row.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SensitiveDisplacement {
     /// m, of each row from the first.
@@ -110,9 +110,9 @@ impl PressedMass {
     ///
     /// Without w the equations are linear, and are solved exactly for a force that is straight
     /// between rows; w, the slip of the bristles, is taken as straight within a step, from a first
-    /// solution with its value at the beginning (Cox and Matthews 2002, ETD2RK). A step is good while
-    /// the bristles slip by little more than their deflection in it: it suits the time before the
-    /// piston breaks away, and its beginning.
+    /// solution with its value at the beginning (Cox and Matthews 2002, ETD2RK). A step is good
+    /// while the bristles slip by little more than their deflection in it: it suits the time before
+    /// the piston breaks away, and its beginning.
     ///
     /// # Example
     /// A slow force F that stays below F_S moves the piston by -(F_S/sigma_0) ln(1 - F/F_S).
@@ -152,9 +152,10 @@ impl PressedMass {
     /// Displacement in m from the first row, in motion at first, with derivatives over the
     /// coefficients, the velocity and the deflection at the first row, and the sizes of the force.
     ///
-    /// As [`PressedMass::displacements`], but that the velocity and the deflection of the bristles at
-    /// the first row are given, in m/s and m, and that the force is a sum of sines: it is evaluated
-    /// at each step of the integration, not only at the rows, and is straight within a step.
+    /// As [`PressedMass::displacements`], but that the velocity and the deflection of the bristles
+    /// at the first row are given, in m/s and m, and that the force is a sum of sines: it is
+    /// evaluated at each step of the integration, not only at the rows, and is straight within a
+    /// step.
     ///
     /// # Example
     /// A small force shakes the mass as it would on a spring and a damper:

@@ -28,8 +28,8 @@ impl SlidBlock {
     ///
     /// with d the distance to the middle of the block and 2 h its length. At a constant velocity
     /// dz/dt = v - sigma_0 |v| z/g(v) is linear in z: what the bristles bring along, c in N, decays
-    /// with the distance slid, by a factor of e on each g/sigma_0; the last term is its mean. Source:
-    /// Canudas de Wit, Olsson, Astrom and Lischinsky (1995), equations 2 and 4, solved.
+    /// with the distance slid, by a factor of e on each g/sigma_0; the last term is its mean.
+    /// Source: Canudas de Wit, Olsson, Astrom and Lischinsky (1995), equations 2 and 4, solved.
     ///
     /// # Example
     /// Far from a reversal nothing but the steady curve is left.
@@ -52,8 +52,8 @@ impl SlidBlock {
         lugre.curve.steady_force(velocity) + left * mean
     }
 
-    /// The same with its derivatives over the coefficients, in the order of [`LuGre::to_array`], and
-    /// over c.
+    /// The same with its derivatives over the coefficients, in the order of [`LuGre::to_array`],
+    /// and over c.
     pub fn sensitive_force(&self, lugre: &LuGre, left: f64) -> (f64, [f64; SLIDING_VARIABLES]) {
         type SlidingSlope = Dual<SLIDING_VARIABLES>;
         let mut index = 0;

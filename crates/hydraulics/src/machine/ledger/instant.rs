@@ -24,8 +24,8 @@ pub(super) struct Instant<T> {
     /// Power of the force from outside on the load, in W.
     pub(super) external_power: T,
     pub(super) flows: Flows<T>,
-    /// What a motor that turns on passes from side A to side B, in m3/s; zero with a stroke, where a
-    /// chamber grows instead.
+    /// What a motor that turns on passes from side A to side B, in m3/s; zero with a stroke, where
+    /// a chamber grows instead.
     pub(super) turned: T,
     /// Chambers, with their lines where these are lumped.
     pub(super) sides: [Volume<T>; 2],

@@ -215,8 +215,8 @@ impl PlantInMotion {
         next.0 < LARGE_STEP * here.0 && (turned < SMALL_TURN || is_small)
     }
 
-    /// Where dynamic pressure feedback turns, from its capacity with those of the chambers next to it
-    /// to its restrictor between the chambers alone, in rad/s.
+    /// Where dynamic pressure feedback turns, from its capacity with those of the chambers next to
+    /// it to its restrictor between the chambers alone, in rad/s.
     fn feedback_rad_per_s(&self) -> [f64; 2] {
         let Some(feedback) = &self.plant.dynamic_feedback else { return [f64::INFINITY, 0.0] };
         let chambers: f64 = self.sides.iter().map(|side| 1.0 / side.compliance).sum();

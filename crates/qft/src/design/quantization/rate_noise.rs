@@ -32,7 +32,8 @@ pub struct RateNoise {
 /// for a controller that cannot be run.
 ///
 /// # Example
-/// With next to no feedback the command is K n, and the output of a lag is a geometric series of it.
+/// With next to no feedback the command is K n, and the output of a lag is a geometric series of
+/// it.
 /// ```
 /// use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
 /// use phea_dynamics::linear::TransferFunction;

@@ -7,10 +7,12 @@ use crate::design::repair_key;
 use crate::design::{Repair, RepairStatus};
 use crate::trial;
 
-/// `taken_in` is the machine whose plant was taken in; `plant_before` and `plant_after` are that plant within the loop of the first
-/// design and within the one that was found; `before` is the first design, where another one took its place; `nearest` the controller that
-/// comes nearest, where none does, with the rounds of its search: those of the first design come before them, as they do in `rounds` where
-/// it is met; `family_with_waves` the controller that was found with the waves in every plant of the family.
+/// `taken_in` is the machine whose plant was taken in; `plant_before` and `plant_after` are that
+/// plant within the loop of the first design and within the one that was found; `before` is the
+/// first design, where another one took its place; `nearest` the controller that comes nearest,
+/// where none does, with the rounds of its search: those of the first design come before them, as
+/// they do in `rounds` where it is met; `family_with_waves` the controller that was found with the
+/// waves in every plant of the family.
 pub(super) fn row(repair: &Repair) -> Object {
     let relaxation_db = match repair.status {
         RepairStatus::Infeasible { relaxation_db } => Some(relaxation_db),

@@ -90,7 +90,8 @@ fn is_violated(view: &ProjectAudit) -> bool {
     view.audit.verdict == Verdict::Violated
 }
 
-/// `the given controller violates 1 robust stability by 19.2 dB at 1304 rad/s, and 2 more specifications`
+/// `the given controller violates 1 robust stability by 19.2 dB at 1304 rad/s, and 2 more
+/// specifications`
 fn given_words(view: &ProjectAudit) -> String {
     match view.audit.verdict {
         Verdict::Met => return "the given controller satisfies every specification".to_string(),

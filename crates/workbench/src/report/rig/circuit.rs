@@ -99,7 +99,8 @@ fn cross_port_symbol(declared: &DeclaredCrossPort) -> CrossPortSymbol {
     CrossPortSymbol { has_capacity, rows: std::iter::once(kind.to_string()).chain(size).collect() }
 }
 
-/// A line with what is stated of its gas next to the drawing; what heat does to it is stated in the table.
+/// A line with what is stated of its gas next to the drawing; what heat does to it is stated in the
+/// table.
 fn line_symbol(declared: &DeclaredLine) -> LineSymbol {
     let mut symbol = line_alone(declared);
     let Some(gas) = &declared.accumulator else { return symbol };
