@@ -21,6 +21,7 @@ mod purity;
 mod sizes;
 mod units;
 mod words;
+mod wrapping;
 
 use std::fmt;
 use std::path::Path;
@@ -74,6 +75,7 @@ const CHECKS: &[(&str, Check)] = &[
     ("sizes", sizes::check),
     ("units", units::check),
     ("words", words::check),
+    ("wrapping", wrapping::check),
 ];
 
 /// All violations in the repository, in the order of the checks.
