@@ -1,5 +1,4 @@
-//! The report: one page that needs nothing else, whatever the project is called, the same every
-//! time.
+//! The report: one page that needs nothing else, whatever its project is called, always the same.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
