@@ -183,7 +183,7 @@ pub fn answer_into(
         let loaded = identified.as_ref().unwrap_or(loaded);
         answer_as_read(source, loaded, catalogues, request, destination, watch)
     });
-    answer.map_err(|error| error.as_refusal(source, loaded))
+    answer.map_err(|error| error.into_refusal(source, loaded))
 }
 
 /// The project with its valve as identified from its recordings, where it asks for that.

@@ -60,7 +60,7 @@ impl CommandError {
 
     /// The same error; where a name of the catalogue was looked for late, as the refusal of the
     /// project.
-    pub(crate) fn as_refusal(self, source: &dyn Source, loaded: &Loaded) -> CommandError {
+    pub(crate) fn into_refusal(self, source: &dyn Source, loaded: &Loaded) -> CommandError {
         let CommandError::Procedure(procedure) = &self else { return self };
         match procedure.late() {
             Some(late) => ProcedureError::Catalogue(refused(source, loaded, &late)).into(),

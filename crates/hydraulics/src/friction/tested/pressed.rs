@@ -1,7 +1,13 @@
-use phea_dynamics::scalar::{Dual, Parameters, Scalar};
+mod carried;
+mod stick_step;
 
 use super::{FRICTION_COEFFICIENTS, MultisineForce};
 use crate::friction::LuGre;
+use carried::{CarriedSlopes, LinearForce, STATE};
+use stick_step::StickStep;
+
+/// Index of the stiffness of the bristles among the coefficients.
+const STIFFNESS: usize = 5;
 
 /// A mass on bristles that a force presses, at rest at first. Units: kg, s.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,50 +60,20 @@ impl KnottedForce {
         shares
     }
 
-    fn along<S: Scalar>(&self, forces: &[S]) -> Vec<S> {
-        let at = |index: usize| forces.get(index).copied().unwrap_or(S::from(0.0));
-        let of = |(knot, share): (usize, f64)| at(knot).times(1.0 - share) + at(knot + 1).times(share);
-        self.shares().into_iter().map(of).collect()
-    }
-}
-
-/// Derivatives that are carried along at once.
-const AT_ONCE: usize = 8;
-
-type PressedSlope = Dual<AT_ONCE>;
-
-/// A value that is the variable of this index.
-type AsVariable<'a> = &'a dyn Fn(f64, usize) -> PressedSlope;
-
-/// Displacements with as many derivatives, some at once.
-fn carried(
-    (rows, count): (usize, usize),
-    moved: &dyn Fn(AsVariable<'_>) -> Vec<PressedSlope>,
-) -> SensitiveDisplacement {
-    let mut found = SensitiveDisplacement { displacements: Vec::new(), gradients: vec![0.0; rows * count] };
-    for first in (0..count).step_by(AT_ONCE) {
-        // an index beyond those that are carried along belongs to no variable
-        let place = |index: usize| index.checked_sub(first).unwrap_or(AT_ONCE);
-        let moved = moved(&|value, index| PressedSlope::variable(value, place(index)));
-        for (row, slopes) in moved.iter().zip(found.gradients.chunks_exact_mut(count)) {
-            for (to, slope) in slopes.iter_mut().skip(first).zip(row.gradient()) {
-                *to = *slope;
+    /// The force at each row, and how it depends on what is at the knots.
+    fn along(&self) -> LinearForce {
+        let mut along = LinearForce { force: Vec::new(), slopes: Vec::new(), variables: self.forces.len() };
+        for (knot, share) in self.shares() {
+            let at = |index: usize| self.forces.get(index).copied().unwrap_or(0.0);
+            along.force.push(at(knot) * (1.0 - share) + at(knot + 1) * share);
+            let from = along.slopes.len();
+            along.slopes.resize(from + self.forces.len(), 0.0);
+            for (slope, weight) in along.slopes.iter_mut().skip(from + knot).zip([1.0 - share, share]) {
+                *slope = weight;
             }
         }
-        if first == 0 {
-            found.displacements = moved.iter().map(PressedSlope::value).collect();
-        }
+        along
     }
-    found
-}
-
-/// The coefficients as the first variables.
-fn open(lugre: &LuGre, variable: AsVariable<'_>) -> LuGre<PressedSlope> {
-    let mut index = 0;
-    lugre.convert(&mut |value| {
-        index += 1;
-        variable(value, index - 1)
-    })
 }
 
 impl PressedMass {
@@ -126,27 +102,48 @@ impl PressedMass {
     /// assert!((moved[9000] / closed_form - 1.0).abs() < 1e-3);
     /// ```
     pub fn displacements(&self, lugre: &LuGre, force: &[f64]) -> Vec<f64> {
-        let doublings = self.doublings(lugre);
-        self.moved(lugre, self.at_rest(lugre, force), force, doublings)
+        let start = [0.0, force.first().copied().unwrap_or(0.0) / lugre.bristle_stiffness];
+        let stick = StickStep::over(lugre, self, self.doublings(lugre));
+        let mut state = start;
+        let mut slipped = 0.0;
+        let mut moved: Vec<f64> = force.iter().take(1).map(|_| 0.0).collect();
+        for (from, to) in force.iter().zip(force.iter().skip(1)) {
+            for (force, rise) in self.within(*from, *to) {
+                let slid;
+                (state, slid) = stick.with_slip(lugre, state, [force, rise]);
+                slipped += slid;
+            }
+            moved.push(state[1] - start[1] + slipped);
+        }
+        moved
     }
 
-    /// Velocity and deflection of a mass at rest under the first force.
-    fn at_rest<S: Scalar>(&self, lugre: &LuGre<S>, force: &[S]) -> [S; 2] {
-        let first = force.first().copied().unwrap_or(S::from(0.0));
-        [S::from(0.0), first / lugre.bristle_stiffness]
+    /// Force and rise of each step from one row to the next.
+    fn within(&self, from: f64, to: f64) -> impl Iterator<Item = (f64, f64)> + use<> {
+        let substeps = self.substeps.max(1);
+        let rise = (to - from) * (1.0 / substeps as f64);
+        (0..substeps).scan(from, move |force, _| {
+            let before = *force;
+            *force += rise;
+            Some((before, rise))
+        })
     }
 
     /// The same for a force with knots, with derivatives.
     pub fn sensitive_displacements(&self, lugre: &LuGre, force: &KnottedForce) -> SensitiveDisplacement {
-        let doublings = self.doublings(lugre);
-        let shape = (force.rows(), FRICTION_COEFFICIENTS + force.forces.len());
-        carried(shape, &|variable| {
-            let open = open(lugre, variable);
-            let own = force.forces.iter().enumerate();
-            let own = own.map(|(knot, value)| variable(*value, FRICTION_COEFFICIENTS + knot));
-            let along = force.along(&own.collect::<Vec<PressedSlope>>());
-            self.moved(&open, self.at_rest(&open, &along), &along, doublings)
-        })
+        let along = force.along();
+        let count = FRICTION_COEFFICIENTS + along.variables;
+        let stiffness = lugre.bristle_stiffness;
+        let deflection = along.force.first().copied().unwrap_or(0.0) / stiffness;
+        let mut slopes = CarriedSlopes([(); 3].map(|()| vec![0.0; count]));
+        let [_, deflections, _] = &mut slopes.0;
+        for (to, slope) in deflections.iter_mut().skip(FRICTION_COEFFICIENTS).zip(&along.slopes) {
+            *to = slope / stiffness;
+        }
+        if let Some(of_stiffness) = deflections.get_mut(STIFFNESS) {
+            *of_stiffness = -deflection / stiffness;
+        }
+        self.carried(lugre, ([0.0, deflection], slopes), &along, 1)
     }
 
     /// Displacement in m from the first row, in motion at first, with derivatives over the
@@ -180,28 +177,26 @@ impl PressedMass {
     ) -> SensitiveDisplacement {
         let substeps = self.substeps.max(1);
         let steps = PressedMass { time_step: self.time_step / substeps as f64, substeps: 1, ..*self };
-        let doublings = steps.doublings(lugre);
-        let shapes = force.shapes(force.rows.saturating_sub(1) * substeps + 1, steps.time_step);
-        let first = FRICTION_COEFFICIENTS + 2;
-        carried((force.rows, first + force.sizes.len()), &|variable| {
-            let start =
-                [variable(velocity, FRICTION_COEFFICIENTS), variable(deflection, FRICTION_COEFFICIENTS + 1)];
-            let sizes = force.sizes.iter().enumerate();
-            let sizes: Vec<PressedSlope> =
-                sizes.map(|(index, size)| variable(*size, first + index)).collect();
-            let sum = |shapes: &[f64]| {
-                let parts = sizes.iter().zip(shapes);
-                parts.fold(PressedSlope::from(0.0), |sum, (size, shape)| sum + size.times(*shape))
-            };
-            let along: Vec<PressedSlope> = shapes.chunks_exact(sizes.len().max(1)).map(sum).collect();
-            let moved = steps.moved(&open(lugre, variable), start, &along, doublings);
-            moved.into_iter().step_by(substeps).collect()
-        })
+        let count = force.rows.saturating_sub(1) * substeps + 1;
+        let along = LinearForce {
+            force: force.along(count, steps.time_step),
+            slopes: force.shapes(count, steps.time_step),
+            variables: force.sizes.len(),
+        };
+        let mut slopes = CarriedSlopes([(); 3].map(|()| vec![0.0; STATE + 2 + along.variables]));
+        for (index, slopes) in slopes.0.iter_mut().take(2).enumerate() {
+            slopes.iter_mut().skip(STATE + index).take(1).for_each(|own| *own = 1.0);
+        }
+        steps.carried(lugre, ([velocity, deflection], slopes), &along, substeps)
     }
 
+    /// Of a step, in s.
+    fn step(&self) -> f64 {
+        self.time_step / self.substeps.max(1) as f64
+    }
     /// How often the argument of the series is halved.
     fn doublings(&self, lugre: &LuGre) -> u32 {
-        let step = self.time_step / self.substeps.max(1) as f64;
+        let step = self.step();
         let damping = (lugre.bristle_damping + lugre.curve.viscous) / (2.0 * self.mass);
         let square = (damping * damping - lugre.bristle_stiffness / self.mass).abs() * step * step;
         let mut doublings = 0;
@@ -212,114 +207,4 @@ impl PressedMass {
         }
         doublings
     }
-
-    fn moved<S: Scalar>(&self, lugre: &LuGre<S>, start: [S; 2], force: &[S], doublings: u32) -> Vec<S> {
-        let substeps = self.substeps.max(1);
-        let step = self.time_step / substeps as f64;
-        let stick = StickStep::over(lugre, self.mass, step, doublings);
-        let slip = |[velocity, deflection]: [S; 2]| {
-            lugre.bristle_stiffness * velocity.abs() * deflection / lugre.curve.sliding_force(velocity)
-        };
-        let mut moved = Vec::with_capacity(force.len());
-        if force.is_empty() {
-            return moved;
-        }
-        let mut state = start;
-        let mut slipped = S::from(0.0);
-        moved.push(S::from(0.0));
-        for (from, to) in force.iter().zip(force.iter().skip(1)) {
-            let rise = (*to - *from).times(1.0 / substeps as f64);
-            let mut force = *from;
-            for _ in 0..substeps {
-                let before = slip(state);
-                let tried = stick.step(state, [force, rise], before);
-                let change = slip(tried) - before;
-                state = stick.corrected(tried, change);
-                slipped = slipped + (before + change.times(0.5)).times(step);
-                force = force + rise;
-            }
-            moved.push(state[1] - start[1] + slipped);
-        }
-        moved
-    }
-}
-
-/// A step of the linear part: y = (v, z), dy/dt = A y + b_F F + b_w w.
-struct StickStep<S> {
-    /// e^(A h).
-    transition: [[S; 2]; 2],
-    /// Effect of a constant force, and of one that rises by 1 within the step.
-    of_force: [[S; 2]; 2],
-    /// The same of the slip.
-    of_slip: [[S; 2]; 2],
-}
-
-impl<S: Scalar> StickStep<S> {
-    /// ```text
-    /// A = [-2 d, -q; 1, 0],   d = (sigma_1 + sigma_2)/(2 M),   q = sigma_0/M
-    /// e^(A h) = e^(-d h) (cosh(r h) I + sinh(r h)/r (A + d I)),   r^2 = d^2 - q
-    /// G_1 = A^-1 (e^(A h) - I),   G_2 = A^-1 (G_1 - h I)
-    /// ```
-    ///
-    /// cosh and sinh by their series at h/2^n, doubled n times: they are the same for a ringing
-    /// mass (r^2 negative) and for one that creeps.
-    fn over(lugre: &LuGre<S>, mass: f64, step: f64, doublings: u32) -> StickStep<S> {
-        const TERMS: u32 = 9;
-        let (one, none) = (S::from(1.0), S::from(0.0));
-        let damping = (lugre.bristle_damping + lugre.curve.viscous).times(0.5 / mass);
-        let stiffness = lugre.bristle_stiffness.times(1.0 / mass);
-        let short = step / f64::from(1_u32 << doublings.min(31));
-        let square = (damping.squared() - stiffness).times(short * short);
-        let (mut cosh, mut sinh) = (one, one);
-        for term in (1..=TERMS).rev() {
-            let even = f64::from(2 * term);
-            cosh = one + square.times(1.0 / (even * (even - 1.0))) * cosh;
-            sinh = one + square.times(1.0 / (even * (even + 1.0))) * sinh;
-        }
-        sinh = sinh.times(short);
-        for _ in 0..doublings {
-            sinh = (sinh * cosh).times(2.0);
-            cosh = cosh.squared().times(2.0) - one;
-        }
-        let fading = (-damping.times(step)).exp();
-        let [c, s] = [cosh * fading, sinh * fading];
-        let transition = [[c - s * damping, -(s * stiffness)], [s, c + s * damping]];
-        let inverse = [[none, one], [-(one / stiffness), -(damping.times(2.0) / stiffness)]];
-        let less = |[[a, b], [c, d]]: [[S; 2]; 2], by: S| [[a - by, b], [c, d - by]];
-        let first = product(inverse, less(transition, one));
-        let second = product(inverse, less(first, S::from(step)));
-        let force = [S::from(1.0 / mass), none];
-        let slip = [lugre.bristle_damping.times(1.0 / mass), -one];
-        let over_step = |by: [S; 2]| by.map(|part| part.times(1.0 / step));
-        StickStep {
-            transition,
-            of_force: [applied(first, force), over_step(applied(second, force))],
-            of_slip: [applied(first, slip), over_step(applied(second, slip))],
-        }
-    }
-
-    /// The state after a step under a force that rises and a slip that stays.
-    fn step(&self, state: [S; 2], [force, rise]: [S; 2], slip: S) -> [S; 2] {
-        let mut after = applied(self.transition, state);
-        let parts = [(self.of_force[0], force), (self.of_force[1], rise), (self.of_slip[0], slip)];
-        for (effect, size) in parts {
-            after = [after[0] + effect[0] * size, after[1] + effect[1] * size];
-        }
-        after
-    }
-
-    /// The same where the slip changes by this within the step.
-    fn corrected(&self, [velocity, deflection]: [S; 2], change: S) -> [S; 2] {
-        let [of_velocity, of_deflection] = self.of_slip[1];
-        [velocity + of_velocity * change, deflection + of_deflection * change]
-    }
-}
-
-fn applied<S: Scalar>([[a, b], [c, d]]: [[S; 2]; 2], [x, y]: [S; 2]) -> [S; 2] {
-    [a * x + b * y, c * x + d * y]
-}
-
-fn product<S: Scalar>(first: [[S; 2]; 2], [[a, b], [c, d]]: [[S; 2]; 2]) -> [[S; 2]; 2] {
-    let [left, right] = [applied(first, [a, c]), applied(first, [b, d])];
-    [[left[0], right[0]], [left[1], right[1]]]
 }
