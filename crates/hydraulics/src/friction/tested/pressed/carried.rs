@@ -1,5 +1,5 @@
-//! Derivatives of the displacement: those of one step by dual numbers, carried along from step to step
-//! by the chain rule.
+//! Derivatives of the displacement: those of one step by dual numbers, carried along from step to
+//! step by the chain rule.
 
 use phea_dynamics::scalar::{Dual, Parameters};
 

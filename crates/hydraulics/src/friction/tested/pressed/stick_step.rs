@@ -63,7 +63,8 @@ impl<S: Scalar> StickStep<S> {
         }
     }
 
-    /// The state after a step under a force that rises, and how far the bristles have slipped in it.
+    /// The state after a step under a force that rises, and how far the bristles have slipped in
+    /// it.
     pub(super) fn with_slip(&self, lugre: &LuGre<S>, state: [S; 2], force: [S; 2]) -> ([S; 2], S) {
         let slip = |[velocity, deflection]: [S; 2]| {
             lugre.bristle_stiffness * velocity.abs() * deflection / lugre.curve.sliding_force(velocity)
