@@ -11,6 +11,6 @@ fn text_is_escaped_and_scripts_end_where_they_should() {
     check("V_{A0}^2", "<i>V</i><sub>A0</sub><sup>2</sup>");
     check("s^-1", "<i>s</i><sup>-1</sup>");
     check("sqrt(p_S)", "sqrt(<i>p</i><sub>S</sub>)");
-    check("β_e_", "<i>β</i><sub>e</sub><sub></sub>");
+    check("β_e_", "<i>β</i><sub>e</sub>_");
     check("x^{", "<i>x</i><sup></sup>{");
 }

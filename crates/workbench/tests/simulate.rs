@@ -8,7 +8,7 @@ use phea_workbench::command::{self, Request};
 use phea_workbench::project::{self, Loaded, Project};
 use phea_workbench::setup::Setup;
 use phea_workbench::simulate::{Cause, ScenarioRun, SimulateError, simulate_project};
-use phea_workbench::source::Memory;
+use phea_workbench::source::{HeldFiles, Memory};
 use serde_json::Value;
 
 /// Time in s and force in N.
@@ -346,12 +346,13 @@ fn the_answer_has_the_keys_that_stay() {
 #[test]
 fn a_run_that_is_stopped_keeps_what_it_has() {
     let loaded = load(BENCHMARK, &[]);
+    let held = HeldFiles::default();
     let answer = command::answer_into(
         &Memory::default(),
         &loaded,
         &[],
         &Request::Simulate(Default::default()),
-        None,
+        Some(&held),
         &mut |progress| progress.share < 0.5,
     );
     let answer = answer.unwrap();
@@ -362,7 +363,7 @@ fn a_run_that_is_stopped_keeps_what_it_has() {
     let ended = scenario["ended_s"].as_f64().unwrap();
     assert!((2.5..5.0).contains(&ended), "{ended}");
     assert_eq!(scenario["events"][1]["metrics"]["settling_time_s_reason"], "the run ended before");
-    assert!(!answer.files[0].bytes.is_empty());
+    assert!(!held.into_files()[0].bytes.is_empty());
 }
 
 /// Of a scenario of hours not every quarter of a millisecond is held to be drawn: it says so.

@@ -17,10 +17,10 @@ const IN_PLACE_OF_THE_COMPILER: &str = "XTASK_CLIPPY_DRIVER";
 /// Where clippy's compiler reads its arguments, and what is between them.
 const CLIPPY_ARGUMENTS: (&str, &str) = ("CLIPPY_ARGS", "__CLIPPY_HACKERY__");
 
-/// The package whose tests are compiled without optimisation: most of their time passes in the
+/// The packages whose tests are compiled without optimisation: most of their time passes in the
 /// library, which is optimised, and this saves half a minute of one processor. A profile of cargo
 /// would take the optimisation from the library too.
-const PLAIN_TESTS: &str = "phea-qft";
+const PLAIN_TESTS: [&str; 2] = ["phea-dynamics", "phea-qft"];
 
 /// The libraries that are compiled once more for the unit tests of their kernels, without
 /// optimisation: these tests take no time.
@@ -64,7 +64,8 @@ pub(crate) fn in_place_of_the_compiler() -> Option<ExitCode> {
 }
 
 fn is_plain_test(arguments: &[OsString]) -> bool {
-    let is_package = std::env::var_os("CARGO_PKG_NAME").is_some_and(|name| name == PLAIN_TESTS);
+    let is_package = std::env::var_os("CARGO_PKG_NAME")
+        .is_some_and(|package| PLAIN_TESTS.iter().any(|name| package == *name));
     let is_library = arguments.windows(2).any(|pair| {
         let [option, name] = pair else { return false };
         option == "--crate-name" && PLAIN_UNIT_TESTS.iter().any(|library| name == library)
