@@ -198,7 +198,7 @@ const LARGE_PACKAGES: [&str; 5] =
 /// cargo's setting by which a package is compiled in few pieces, so that less code is compiled in
 /// several of them.
 fn in_few_units(package: &str) -> String {
-    format!("profile.dev.package.{package}.codegen-units=8")
+    format!("profile.dev.package.{package}.codegen-units=2")
 }
 
 /// One command of cargo for all packages; without the one that links CVODE where CVODE is missing.
