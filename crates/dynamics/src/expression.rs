@@ -174,7 +174,8 @@ impl Expression {
     }
 
     /// The first result for these numbers, as [`Expression::evaluate`] gives it; NaN if there is
-    /// none. Compiled here, where it is optimised: a search spends its time in it.
+    /// none. Compiled here, so that searches that spend their time in it are fast in test builds
+    /// too.
     ///
     /// # Example
     /// ```
