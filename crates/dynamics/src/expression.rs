@@ -184,7 +184,14 @@ impl Expression {
     /// assert_eq!(area.number(&[2.0, 3.0]), 6.0);
     /// ```
     pub fn number(&self, parameters: &[f64]) -> f64 {
-        self.evaluate(parameters).first().copied().unwrap_or(f64::NAN)
+        let mut values = vec![0.0; self.nodes.len()];
+        for (index, node) in self.nodes.iter().enumerate() {
+            let (earlier, rest) = values.split_at_mut(index);
+            if let Some(value) = rest.first_mut() {
+                *value = node.evaluate(parameters, earlier);
+            }
+        }
+        self.results.first().map_or(f64::NAN, |&index| values[index])
     }
 }
 
