@@ -63,6 +63,7 @@ impl Csv {
     /// Removes all of it.
     pub fn clear(&mut self) {
         self.text.clear();
+        self.is_within_row = false;
     }
 }
 

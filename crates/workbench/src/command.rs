@@ -11,7 +11,7 @@ mod refusal;
 mod response;
 mod schema;
 mod simulate;
-mod told;
+mod unprinted;
 
 pub use crate::error::CommandError;
 pub use alternatives::AlternativesRequest;
@@ -58,7 +58,7 @@ use crate::trial::{Agreement, tried};
 use alternatives::{alternatives_answer, read_alternatives};
 use linearize::{linearize_answer, swept_answer};
 use simulate::simulate_answer;
-use told::Told;
+use unprinted::Unprinted;
 
 /// A request on a project.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -203,7 +203,7 @@ fn answer_as_read(
     destination: Option<&dyn Destination>,
     watch: Watch<'_>,
 ) -> Result<Answer, CommandError> {
-    let told = match request {
+    let answer = match request {
         Request::Compare => return compare_watched(source, std::slice::from_ref(loaded), false, watch),
         Request::Campaign(asked) => {
             return campaign_watched(source, loaded, catalogues, asked, (None, destination), watch);
@@ -219,7 +219,7 @@ fn answer_as_read(
         Request::Shape { shaped, changes } => {
             let shaping = shape(source, loaded, *shaped, changes, watch)?;
             let (document, body) = (shaping::document(&shaping), shaping::body(&shaping));
-            Ok(Told { document, body, files: shaping::files(&shaping), affirmative: true })
+            Ok(Unprinted { document, body, files: shaping::files(&shaping), affirmative: true })
         }
         Request::Design { seed, stages, repair } => {
             design_answer(source, loaded, *seed, *stages, *repair, watch)
@@ -231,10 +231,10 @@ fn answer_as_read(
             report_answer(source, loaded, catalogues, *files, *alternatives, watch)
         }
     }?;
-    Ok(told.print(request.name(), std::slice::from_ref(loaded)))
+    Ok(answer.print(request.name(), std::slice::from_ref(loaded)))
 }
 
-fn check(source: &dyn Source, loaded: &Loaded, catalogues: &[String]) -> Result<Told, CommandError> {
+fn check(source: &dyn Source, loaded: &Loaded, catalogues: &[String]) -> Result<Unprinted, CommandError> {
     let of_alternatives = read_alternatives(source, loaded, catalogues)?;
     let setup = Setup::new(&loaded.project)?;
     let derived = match derive(&setup) {
@@ -264,7 +264,7 @@ fn check(source: &dyn Source, loaded: &Loaded, catalogues: &[String]) -> Result<
     });
     let files = derived::files(&derived);
     let body = derived::body(loaded, &derived, visited.as_deref(), &wishes, told);
-    Ok(Told { document, body, files, affirmative: true })
+    Ok(Unprinted { document, body, files, affirmative: true })
 }
 
 /// Effects that no verdict on the linear loop includes, and parameters of the rig outside its own
@@ -318,12 +318,12 @@ fn size_answer(
     loaded: &Loaded,
     catalogues: &[String],
     question: Question,
-) -> Result<Told, CommandError> {
+) -> Result<Unprinted, CommandError> {
     let setup = Setup::new(&loaded.project)?;
     let catalogue = crate::catalogue::load(source, catalogues).map_err(ProcedureError::Catalogue)?;
     let problem = sizing_problem(&setup, &catalogue)?;
     let sizing = size(&problem, question);
-    Ok(Told {
+    Ok(Unprinted {
         document: sizing::document(&sizing, vec![]),
         body: sizing::body(&sizing),
         files: sizing::files(&sizing),
@@ -338,7 +338,7 @@ fn verify_answer(
     proof: bool,
     on_machine: bool,
     watch: Watch<'_>,
-) -> Result<Told, CommandError> {
+) -> Result<Unprinted, CommandError> {
     let setup = Setup::new(&loaded.project)?;
     let mut view = audit_project(source, &setup, watch)?;
     if proof {
@@ -349,12 +349,12 @@ fn verify_answer(
     let is_met = view.audit.verdict == Verdict::Met;
     if !on_machine {
         let (document, body) = (audit::output(&view, None), audit::body(&view));
-        return Ok(Told { document, body, files, affirmative: is_met });
+        return Ok(Unprinted { document, body, files, affirmative: is_met });
     }
     let Some(trial) = tried(source, &setup, &robust_problem(source, &setup)?, &view, watch)? else {
         return Err(RigError::NoActuator.into());
     };
-    Ok(Told {
+    Ok(Unprinted {
         document: audit::output(&view, Some(&trial)),
         body: audit::body(&view).with("machine", crate::trial::body(&trial)),
         files,
@@ -362,7 +362,7 @@ fn verify_answer(
     })
 }
 
-fn bench_answer(loaded: &Loaded, watch: Watch<'_>) -> Result<Told, CommandError> {
+fn bench_answer(loaded: &Loaded, watch: Watch<'_>) -> Result<Unprinted, CommandError> {
     let setup = Setup::new(&loaded.project)?;
     let runs = bench::bench(&setup, watch)?;
     let lines = line_runs(&setup, watch)?;
@@ -371,7 +371,7 @@ fn bench_answer(loaded: &Loaded, watch: Watch<'_>) -> Result<Told, CommandError>
     let document = bench::document(loaded, &remarks, &runs, &of_friction, &lines);
     let files = bench::files(&runs, &of_friction).into_iter().chain(bench::line_files(&lines)).collect();
     let body = bench::body(remarks, &runs, &lines, &of_friction);
-    Ok(Told { document, body, files, affirmative: true })
+    Ok(Unprinted { document, body, files, affirmative: true })
 }
 
 fn design_answer(
@@ -381,13 +381,13 @@ fn design_answer(
     stages: bool,
     repair: bool,
     watch: Watch<'_>,
-) -> Result<Told, CommandError> {
+) -> Result<Unprinted, CommandError> {
     let setup = Setup::new(&loaded.project)?;
     let view = match repair {
         true => design_and_repair(source, &setup, seed, watch)?,
         false => design_project(source, &setup, seed, watch)?,
     };
-    Ok(Told {
+    Ok(Unprinted {
         document: design::output(loaded, &view)?,
         body: design::body(&view)?,
         files: if stages { design::stage_files(loaded, &view, watch)? } else { design::files(loaded, &view) },
@@ -416,13 +416,13 @@ pub fn compare_watched(
         let path = projects.get(index).map(|loaded| loaded.path.clone()).unwrap_or_default();
         CommandError::Compare { path, error }
     })?;
-    let told = Told {
+    let answer = Unprinted {
         document: crate::simulate::comparison(&comparison, projects),
         body: crate::simulate::comparison_body(&comparison),
         files: if figures { crate::simulate::comparison_files(&comparison) } else { vec![] },
         affirmative: comparison.projects.len() == projects.len() && comparison.is_complete(),
     };
-    Ok(told.print("compare", projects))
+    Ok(answer.print("compare", projects))
 }
 
 fn report_answer(
@@ -432,7 +432,7 @@ fn report_answer(
     files: bool,
     alternatives: bool,
     watch: Watch<'_>,
-) -> Result<Told, CommandError> {
+) -> Result<Unprinted, CommandError> {
     let setup = Setup::new(&loaded.project)?;
     let problem = match loaded.project.sizing {
         None => None,
@@ -460,5 +460,5 @@ fn report_answer(
         })
         .each("figures", &report.figures, |figure| figure.name.as_str())
         .with("decision", report.decision.json());
-    Ok(Told { document, body, files: written, affirmative: true })
+    Ok(Unprinted { document, body, files: written, affirmative: true })
 }

@@ -13,7 +13,7 @@
 //!     X/answer.rs   -> answer::Object       for programs, in the envelope of answer::envelope
 //!     X/figures.rs  -> figure::Figure       drawn as SVG, as files and on the page
 //!     report.rs     -> chapters             Documents and Figures, one after another on a page
-//!   command::told::Told { document: Document, body: Object, files, affirmative }
+//!   command::unprinted::Unprinted { document: Document, body: Object, files, affirmative }
 //!     printed below what recordings gave, of a rig that turns in its words (motion.rs)
 //! answer::Answer { text, json, files, affirmative }
 //! ```

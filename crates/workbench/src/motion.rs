@@ -28,8 +28,10 @@ fn texts_of_user(loaded: &Loaded, project: &Project) -> Vec<String> {
     if let Some(actuator) = &project.actuator {
         let lines = [&actuator.line.a, &actuator.line.b];
         texts.extend(lines.iter().filter_map(|line| line.hose_name().map(str::to_string)));
+        texts.extend(lines.iter().filter_map(|line| line.pipe()?.model.clone()));
         texts.extend(actuator.valve.model.clone());
     }
+    texts.extend(project.family.iter().flat_map(|family| family.measured.clone()));
     texts.extend(project.directions.iter().map(|direction| direction.name.clone()));
     for scenario in &project.scenarios {
         texts.push(scenario.name.clone());

@@ -82,64 +82,51 @@ fn instability_words(instability: Instability) -> String {
 }
 
 fn irresolution_words(irresolution: &Irresolution) -> String {
-    let words = match irresolution {
-        Irresolution::Linear(error) => return error.to_string(),
-        Irresolution::NearBoundary { frequency_rad_per_s } => {
-            return format!(
+    match irresolution {
+        Irresolution::Linear(error) => error.to_string(),
+        Irresolution::NearBoundary { frequency_rad_per_s } => format!(
                 "a closed-loop pole near {} rad/s cannot be distinguished from the boundary of stability",
                 rounded(*frequency_rad_per_s)
-            );
-        }
-        Irresolution::Budget { frequency_rad_per_s } => {
-            return format!(
+            ),
+        Irresolution::Budget { frequency_rad_per_s } => format!(
                 "the turns of the characteristic function could not be counted beyond {} rad/s",
                 rounded(*frequency_rad_per_s)
-            );
-        }
-        Irresolution::Coarse { from_rad_per_s, to_rad_per_s, turn_deg } => {
-            return format!(
+            ),
+        Irresolution::Coarse { from_rad_per_s, to_rad_per_s, turn_deg } => format!(
                 "1 + L turns by {turn_deg:.0} degrees between {} and {} rad/s; the measurement is too coarse there",
                 rounded(*from_rad_per_s),
                 rounded(*to_rad_per_s)
-            );
-        }
-        Irresolution::HighEnd { frequency_rad_per_s, gain } => {
-            return format!(
+            ),
+        Irresolution::HighEnd { frequency_rad_per_s, gain } => format!(
                 "the measurement ends at {} rad/s where |L| = {gain:.2} is not well below one",
                 rounded(*frequency_rad_per_s)
-            );
-        }
-        Irresolution::LowEnd { frequency_rad_per_s } => {
-            return format!(
+            ),
+        Irresolution::LowEnd { frequency_rad_per_s } => format!(
                 "below {} rad/s, where the measurement begins, the loop's integrators cannot be identified",
                 rounded(*frequency_rad_per_s)
-            );
-        }
-        Irresolution::Count { count } => {
-            return format!(
+            ),
+        Irresolution::Count { count } => format!(
                 "the turns of 1 + L add up to {count:.2} unstable poles, which is not a number of poles"
-            );
-        }
+            ),
         Irresolution::GainAtInfinity => {
-            "with dead time and a gain of one at infinite frequency, poles approach the boundary of stability"
+            "with dead time and a gain of one at infinite frequency, poles approach the boundary of stability".to_string()
         }
         Irresolution::PoleThroughInfinity => {
-            "the leading coefficient of the characteristic equation changes its sign inside the box, so that a pole passes through infinity"
+            "the leading coefficient of the characteristic equation changes its sign inside the box, so that a pole passes through infinity".to_string()
         }
         Irresolution::Folding => {
-            "modes beyond half of the sampling rate pass through the band while parameters move, too often to be followed"
+            "modes beyond half of the sampling rate pass through the band while parameters move, too often to be followed".to_string()
         }
         Irresolution::FoldingUnknown => {
-            "which modes beyond half of the sampling rate fold into the band between one plant and the next is not known where lines move"
+            "which modes beyond half of the sampling rate fold into the band between one plant and the next is not known where lines move".to_string()
         }
         Irresolution::InfinityOpen => {
-            "it could not be shown that no pole passes through infinity inside the box"
+            "it could not be shown that no pole passes through infinity inside the box".to_string()
         }
         Irresolution::UndampedController => {
-            "controller or sensor has poles on the boundary of stability, which measured points cannot go around"
+            "controller or sensor has poles on the boundary of stability, which measured points cannot go around".to_string()
         }
-        Irresolution::OpenLoopPoles => "how many unstable poles the plant has by itself is not known",
-        Irresolution::Points => "there are fewer than two points to count turns between",
-    };
-    words.to_string()
+        Irresolution::OpenLoopPoles => "how many unstable poles the plant has by itself is not known".to_string(),
+        Irresolution::Points => "there are fewer than two points to count turns between".to_string(),
+    }
 }

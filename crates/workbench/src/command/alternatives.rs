@@ -1,7 +1,7 @@
 //! `alternatives`: one project with several sets of values, judged side by side.
 
 use super::simulate::frequencies;
-use super::told::Told;
+use super::unprinted::Unprinted;
 use super::{CommandError, ProcedureError, Watch};
 use crate::alternatives::{
     self, AlternativesOptions as Asked, AskedAlternative, FrontRequest, IMPEDANCE_AT, asked, asked_cases,
@@ -43,9 +43,9 @@ pub(super) fn alternatives_answer(
     catalogues: &[String],
     request: &AlternativesRequest,
     watch: Watch<'_>,
-) -> Result<Told, CommandError> {
+) -> Result<Unprinted, CommandError> {
     let found = judge(source, loaded, catalogues, &request.read()?, watch)?;
-    Ok(Told {
+    Ok(Unprinted {
         document: alternatives::output(&found),
         body: alternatives::body(&found),
         files: if request.files { alternatives::files(&found) } else { vec![] },

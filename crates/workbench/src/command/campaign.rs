@@ -1,6 +1,6 @@
 //! Campaigns as a command: all runs with their rows stored, or one run again.
 
-use super::told::Told;
+use super::unprinted::Unprinted;
 use super::{CommandError, Watch, with_recordings};
 use crate::answer::{Answer, TableFormat};
 use crate::campaign::{self, CampaignError, Plan, RequestedRuns, RowStore, Summary};
@@ -49,8 +49,8 @@ pub fn campaign_watched(
     let wanted = match request.asked {
         CampaignRuns::All(wanted) => wanted,
         CampaignRuns::One(run) => {
-            let told = one(source, loaded, catalogues, (&plan, run), destination, watch)?;
-            return Ok(told.print("campaign", std::slice::from_ref(loaded)));
+            let answer = one(source, loaded, catalogues, (&plan, run), destination, watch)?;
+            return Ok(answer.print("campaign", std::slice::from_ref(loaded)));
         }
     };
     let rows = campaign::campaign(&plan, wanted, ledger, watch)?;
@@ -61,13 +61,13 @@ pub fn campaign_watched(
         true => campaign::files(&plan, (&wanted.shard, &rows), &summary)?,
         false => vec![],
     };
-    let told = Told {
+    let answer = Unprinted {
         document: campaign::document(&plan, (wanted, request.files), rows.len(), &summary),
         body: campaign::body(&plan, wanted, rows.len(), &summary),
         files,
         affirmative: complete,
     };
-    Ok(told.print("campaign", std::slice::from_ref(loaded)))
+    Ok(answer.print("campaign", std::slice::from_ref(loaded)))
 }
 
 /// One run: its numbers as settings of the project, and the complete output of `simulate` with
@@ -79,7 +79,7 @@ fn one(
     (plan, run): (&Plan, u64),
     destination: Option<&dyn Destination>,
     watch: Watch<'_>,
-) -> Result<Told, CommandError> {
+) -> Result<Unprinted, CommandError> {
     let draw = plan.draw(run);
     let settings = plan.settings(&draw);
     let all: Vec<String> = loaded.all_settings().into_iter().chain(settings.iter().cloned()).collect();
@@ -89,7 +89,7 @@ fn one(
     let table = destination.map(|destination| (destination, TableFormat::Csv));
     let output = RunOutput { samples: false, table };
     let runs = simulate_into(source, &Setup::new(&drawn.project)?, output, watch)?;
-    Ok(Told {
+    Ok(Unprinted {
         document: campaign::run_document(&draw, &settings, &drawn, &runs),
         body: campaign::run_body((plan, &draw), &settings, (&drawn, &runs)),
         files: simulate::files(&drawn, &runs),

@@ -1,7 +1,7 @@
 //! `linearize`: the linear models, at one value or over a sweep.
 
 use super::CommandError;
-use super::told::Told;
+use super::unprinted::Unprinted;
 use crate::answer::picture_files;
 use crate::linearize::{self, Linearization, SweepRequest, linearize, sweep};
 use crate::project::Loaded;
@@ -12,10 +12,10 @@ fn linearized(setup: &Setup<'_>) -> Result<Linearization, CommandError> {
     Ok(linearize(setup.rig()?, setup.controller.as_ref(), &setup.sensor)?)
 }
 
-pub(super) fn linearize_answer(loaded: &Loaded) -> Result<Told, CommandError> {
+pub(super) fn linearize_answer(loaded: &Loaded) -> Result<Unprinted, CommandError> {
     let setup = Setup::new(&loaded.project)?;
     let linearization = linearized(&setup)?;
-    Ok(Told {
+    Ok(Unprinted {
         document: linearize::output(&setup, &linearization),
         body: linearize::body(&setup, &linearization),
         files: linearize::files(&linearization),
@@ -28,14 +28,14 @@ pub(super) fn swept_answer(
     loaded: &Loaded,
     catalogues: &[String],
     asked: &SweepRequest,
-) -> Result<Told, CommandError> {
+) -> Result<Unprinted, CommandError> {
     let setup = Setup::new(&loaded.project)?;
     let linearization = linearized(&setup)?;
     let swept = sweep(source, (loaded, &setup), catalogues, asked)?;
     let mut files = linearize::files(&linearization);
     files.extend(linearize::sweep_files(&swept));
     files.extend(picture_files(&[linearize::sweep_figure(&swept)]));
-    Ok(Told {
+    Ok(Unprinted {
         document: linearize::sweep_document(&swept),
         body: linearize::body_swept(&setup, &linearization, &swept),
         files,

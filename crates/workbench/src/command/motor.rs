@@ -15,7 +15,16 @@ pub(super) fn refuse(loaded: &Loaded, request: &Request) -> Result<(), CommandEr
         Request::Size { .. } | Request::Shape { .. } | Request::Bench => {
             Err(CommandError::OfCylinders { command: request.name() })
         }
-        _ => Ok(()),
+        // each by its name, so that a further command is not accepted unseen
+        Request::Check
+        | Request::Linearize { .. }
+        | Request::Verify { .. }
+        | Request::Design { .. }
+        | Request::Simulate(_)
+        | Request::Compare
+        | Request::Alternatives(_)
+        | Request::Campaign(_)
+        | Request::Report { .. } => Ok(()),
     }
 }
 

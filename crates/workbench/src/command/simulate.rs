@@ -1,6 +1,6 @@
 //! `simulate`: scenarios, or a frequency response.
 
-use super::told::Told;
+use super::unprinted::Unprinted;
 use super::{CommandError, Watch, positive};
 use crate::answer::{OutputFile, TableFormat, picture_files};
 use crate::project::Loaded;
@@ -69,7 +69,7 @@ pub(super) fn simulate_answer(
     asked: &SimulateRequest,
     destination: Option<&dyn Destination>,
     watch: Watch<'_>,
-) -> Result<Told, CommandError> {
+) -> Result<Unprinted, CommandError> {
     if let Some(options) = &asked.frequency_response {
         return frequency_answer(loaded, asked, &options.request()?, watch);
     }
@@ -85,7 +85,7 @@ pub(super) fn simulate_answer(
         written.extend(figure_files(&runs));
     }
     let all = runs.len() == loaded.project.scenarios.len();
-    Ok(Told {
+    Ok(Unprinted {
         document: document(loaded, &runs),
         body: body(loaded, &runs),
         files: written,
@@ -98,14 +98,14 @@ fn frequency_answer(
     asked: &SimulateRequest,
     request: &FrequencyRequest,
     watch: Watch<'_>,
-) -> Result<Told, CommandError> {
+) -> Result<Unprinted, CommandError> {
     let found = frequency_response(&Setup::new(&loaded.project)?, request, watch)?;
     // writing to memory cannot fail
     let mut written: Vec<OutputFile> = frequency_files(&found, asked.table).unwrap_or_default();
     if asked.figures {
         written.extend(picture_files(&frequency_pictures(&found)));
     }
-    Ok(Told {
+    Ok(Unprinted {
         document: frequency_document(&found),
         body: frequency_body(loaded, &found),
         files: written,

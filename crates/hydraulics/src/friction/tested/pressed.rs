@@ -135,13 +135,10 @@ impl PressedMass {
         let count = FRICTION_COEFFICIENTS + along.variables;
         let stiffness = lugre.bristle_stiffness;
         let deflection = along.force.first().copied().unwrap_or(0.0) / stiffness;
-        let mut slopes = CarriedSlopes([(); 3].map(|()| vec![0.0; count]));
-        let [_, deflections, _] = &mut slopes.0;
-        for (to, slope) in deflections.iter_mut().skip(FRICTION_COEFFICIENTS).zip(&along.slopes) {
+        let mut slopes = CarriedSlopes::zero(count);
+        slopes.deflection[STIFFNESS] = -deflection / stiffness;
+        for (to, slope) in slopes.deflection[FRICTION_COEFFICIENTS..].iter_mut().zip(&along.slopes) {
             *to = slope / stiffness;
-        }
-        if let Some(of_stiffness) = deflections.get_mut(STIFFNESS) {
-            *of_stiffness = -deflection / stiffness;
         }
         self.carried(lugre, ([0.0, deflection], slopes), &along, 1)
     }
@@ -183,10 +180,8 @@ impl PressedMass {
             slopes: force.shapes(count, steps.time_step),
             variables: force.sizes.len(),
         };
-        let mut slopes = CarriedSlopes([(); 3].map(|()| vec![0.0; STATE + 2 + along.variables]));
-        for (index, slopes) in slopes.0.iter_mut().take(2).enumerate() {
-            slopes.iter_mut().skip(STATE + index).take(1).for_each(|own| *own = 1.0);
-        }
+        let mut slopes = CarriedSlopes::zero(STATE + 2 + along.variables);
+        (slopes.velocity[STATE], slopes.deflection[STATE + 1]) = (1.0, 1.0);
         steps.carried(lugre, ([velocity, deflection], slopes), &along, substeps)
     }
 

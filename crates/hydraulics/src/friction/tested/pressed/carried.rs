@@ -1,7 +1,7 @@
 //! Derivatives of the displacement: those of one step by dual numbers, carried along from step to
 //! step by the chain rule.
 
-use phea_dynamics::scalar::{Dual, Parameters};
+use phea_dynamics::scalar::Dual;
 
 use super::stick_step::StickStep;
 use super::{PressedMass, SensitiveDisplacement};
@@ -26,10 +26,20 @@ const FORCE: usize = FRICTION_COEFFICIENTS + 2;
 
 type StepSlope = Dual<OF_STEP>;
 
-/// Derivatives of velocity, deflection, and the way that the bristles have slipped.
-pub(super) struct CarriedSlopes(pub(super) [Vec<f64>; 3]);
+/// Derivatives of the velocity, the deflection, and the way that the bristles have slipped.
+pub(super) struct CarriedSlopes {
+    pub(super) velocity: Vec<f64>,
+    pub(super) deflection: Vec<f64>,
+    pub(super) slipped: Vec<f64>,
+}
 
 impl CarriedSlopes {
+    /// Over so many variables, all zero.
+    pub(super) fn zero(count: usize) -> CarriedSlopes {
+        let [velocity, deflection, slipped] = [(); 3].map(|()| vec![0.0; count]);
+        CarriedSlopes { velocity, deflection, slipped }
+    }
+
     /// Those after a step, from those before it.
     ///
     /// ```text
@@ -38,18 +48,17 @@ impl CarriedSlopes {
     ///
     /// `forced` has dF and dr, of the variables from the one with index `first` on.
     fn carry(&mut self, after: [StepSlope; 3], forced: impl Iterator<Item = [f64; 2]>, first: usize) {
-        let [velocities, deflections, slipped] = &mut self.0;
+        let CarriedSlopes { velocity, deflection, slipped } = self;
         let [of_velocity, of_deflection, of_slip] = after.map(|one| *one.gradient());
-        let all = velocities.iter_mut().zip(deflections.iter_mut()).zip(slipped.iter_mut());
-        for ((velocity, deflection), slipped) in all {
-            let [v, z] = [*velocity, *deflection];
-            *velocity = of_velocity[STATE] * v + of_velocity[STATE + 1] * z;
-            *deflection = of_deflection[STATE] * v + of_deflection[STATE + 1] * z;
-            *slipped += of_slip[STATE] * v + of_slip[STATE + 1] * z;
+        for ((v, z), slid) in velocity.iter_mut().zip(deflection.iter_mut()).zip(slipped.iter_mut()) {
+            *slid += of_slip[STATE] * *v + of_slip[STATE + 1] * *z;
+            (*v, *z) = (
+                of_velocity[STATE] * *v + of_velocity[STATE + 1] * *z,
+                of_deflection[STATE] * *v + of_deflection[STATE + 1] * *z,
+            );
         }
-        let parts = [(velocities, of_velocity), (deflections, of_deflection), (slipped, of_slip)];
         let forced: Vec<[f64; 2]> = forced.collect();
-        for (slopes, of) in parts {
+        for (slopes, of) in [(velocity, of_velocity), (deflection, of_deflection), (slipped, of_slip)] {
             for (slope, own) in slopes.iter_mut().zip(&of[..FRICTION_COEFFICIENTS]) {
                 *slope += own;
             }
@@ -70,22 +79,19 @@ impl PressedMass {
         every: usize,
     ) -> SensitiveDisplacement {
         let substeps = self.substeps.max(1) as f64;
-        let mut index = 0;
-        let open: LuGre<StepSlope> = lugre.convert(&mut |value| {
-            index += 1;
-            StepSlope::variable(value, index - 1)
-        });
+        let coefficients = lugre.to_array();
+        let open =
+            LuGre::from_array(std::array::from_fn(|index| StepSlope::variable(coefficients[index], index)));
         let stick = StickStep::over(&open, self, self.doublings(lugre));
-        let first = slopes.0[0].len() - along.variables;
-        let began = slopes.0[1].clone();
+        let first = slopes.velocity.len() - along.variables;
+        let began = slopes.deflection.clone();
         let mut found = SensitiveDisplacement::default();
         let (mut state, mut slipped) = (start, 0.0);
         let forces = along.force.iter().zip(along.force.iter().skip(1));
         let rows: Vec<&[f64]> = along.slopes.chunks_exact(along.variables.max(1)).collect();
         let steps = forces.zip(rows.iter().zip(rows.iter().skip(1)));
         let mut keep = |slopes: &CarriedSlopes, moved: f64| {
-            let [_, deflections, slipped] = &slopes.0;
-            let both = deflections.iter().zip(slipped).zip(&began);
+            let both = slopes.deflection.iter().zip(&slopes.slipped).zip(&began);
             found.displacements.push(moved);
             found.gradients.extend(both.map(|((deflection, slipped), began)| deflection - began + slipped));
         };

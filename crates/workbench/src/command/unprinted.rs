@@ -7,14 +7,14 @@ use crate::motion;
 use crate::project::Loaded;
 
 /// An [`Answer`] whose text and JSON are not printed yet.
-pub(super) struct Told {
+pub(super) struct Unprinted {
     pub(super) document: Document,
     pub(super) body: Object,
     pub(super) files: Vec<OutputFile>,
     pub(super) affirmative: bool,
 }
 
-impl Told {
+impl Unprinted {
     /// Below what recordings gave, in the envelope of the first project and the words of their
     /// motion.
     pub(super) fn print(self, command: &'static str, projects: &[Loaded]) -> Answer {
