@@ -47,9 +47,12 @@ def evaluate(text, **names):
 
 
 class Powers:
-    """A polynomial while a formula is evaluated; NumPy's own looks for leading zeros after every operation."""
+    """Polynomials while a formula is evaluated, one for each row of the coefficients; highest power first.
 
-    # so that a NumPy scalar times a polynomial is a polynomial, and not an array
+    NumPy's own looks for leading zeros after every operation, and is one at a time.
+    """
+
+    # so that a NumPy array times polynomials is polynomials, and not an array
     __array_ufunc__ = None
 
     def __init__(self, coefficients):
@@ -57,19 +60,20 @@ class Powers:
 
     @staticmethod
     def of(value):
-        return value if isinstance(value, Powers) else Powers(np.array([float(value)]))
+        return value if isinstance(value, Powers) else Powers(np.asarray(value, dtype=float)[..., None])
 
     def __add__(self, other):
         one, other = self.coefficients, Powers.of(other).coefficients
-        total = np.zeros(max(len(one), len(other)))
-        total[len(total) - len(one) :] = one
-        total[len(total) - len(other) :] += other
+        if one.shape[-1] < other.shape[-1]:
+            one, other = other, one
+        total = np.broadcast_to(one, np.broadcast_shapes(one.shape[:-1], other.shape[:-1]) + one.shape[-1:]).copy()
+        total[..., one.shape[-1] - other.shape[-1] :] += other
         return Powers(total)
 
     def __mul__(self, other):
         if isinstance(other, Powers):
-            return Powers(np.convolve(self.coefficients, other.coefficients))
-        return Powers(self.coefficients * other)
+            return Powers(product(self.coefficients, other.coefficients))
+        return Powers(self.coefficients * np.asarray(other)[..., None])
 
     def __pow__(self, exponent):
         return self if exponent == 1 else self * self ** (exponent - 1)
@@ -84,13 +88,29 @@ class Powers:
         return -self + other
 
     def __truediv__(self, number):
-        return Powers(self.coefficients / number)
+        return Powers(self.coefficients / np.asarray(number)[..., None])
 
     __radd__, __rmul__ = __add__, __mul__
 
 
+def product(one, other):
+    """Coefficients of the products of polynomials, row by row."""
+    if one.ndim == other.ndim == 1:
+        return np.convolve(one, other)
+    length = one.shape[-1]
+    total = np.zeros(np.broadcast_shapes(one.shape[:-1], other.shape[:-1]) + (length + other.shape[-1] - 1,))
+    for place in range(other.shape[-1]):
+        total[..., place : place + length] += one * other[..., place : place + 1]
+    return total
+
+
+def coefficients(text, variable="s", **names):
+    """Those of a polynomial, highest power first; a row of them for each element of the numbers that it names."""
+    return Powers.of(evaluate(text, **{variable: Powers(np.array([1.0, 0.0]))}, **names)).coefficients
+
+
 def polynomial(text, variable="s", **names):
-    return np.poly1d(Powers.of(evaluate(text, **{variable: Powers(np.array([1.0, 0.0]))}, **names)).coefficients)
+    return np.poly1d(coefficients(text, variable, **names))
 
 
 class Transfer:
@@ -156,6 +176,7 @@ class Project:
         sensor = self.table.get("sensor")
         self.sensor, self.sensor_delay = Transfer(sensor), number((sensor or {}).get("delay", 0.0))
         self.specifications = self.table["specification"]
+        self.limits_load_motion = any(one["kind"] == "load_motion" for one in self.specifications)
 
     def read_family(self):
         self.fixed, self.measured = {}, None
@@ -248,6 +269,16 @@ class Project:
         named = {name: float(value) for name, value in self.named(values).items()}
         return polynomial(self.plant["numerator"], **named), polynomial(self.plant["denominator"], **named)
 
+    def many_loop_polynomials(self, values):
+        """As loop_polynomials, of many plants: rows of coefficients."""
+        named = self.named(np.moveaxis(values, -1, 0))
+        over, under = (coefficients(self.plant[part], **named) for part in ("numerator", "denominator"))
+        if self.sample_time:
+            return over, under
+        for part in (self.controller, self.sensor):
+            over, under = product(over, part.numerator.coeffs), product(under, part.denominator.coeffs)
+        return over, under
+
     def responses(self, values, frequency):
         """P, Pd, G, F, H for arrays of parameters (parameters along the last axis) and frequencies that broadcast."""
         values, frequency = np.asarray(values), np.asarray(frequency, dtype=float)
@@ -267,7 +298,7 @@ class Project:
         plant = evaluate(self.plant["numerator"], s=s, **named) / denominator * np.exp(-s * self.delay(each))
         second = self.plant.get("disturbance")
         motion = 0.0
-        if second:
+        if second and self.limits_load_motion:
             under = evaluate(second["denominator"], s=s, **named) if "denominator" in second else denominator
             motion = evaluate(second["numerator"], s=s, **named) / under
         return plant, motion, feedback, prefilter, sensor

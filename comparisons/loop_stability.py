@@ -54,7 +54,8 @@ def stability(search):
     best, plant = found[order[0]], search.plants[order[0]]
     if project.cases is None:
         for row in order[:4]:
-            value, at = polish(lambda p: -abscissa(project, project.values(p)), search.shares[row], rounds=1)
+            function = lambda points: np.array([-abscissa(project, values) for values in project.values(points)])
+            value, at = polish(function, search.shares[row], rounds=1)
             if -value > best:
                 best, plant = -value, project.values(at)
     return bool(best < 0), best, plant
@@ -66,16 +67,15 @@ def delay_margin(search):
     if project.sample_time:
         return sampled_delay_margin(search)
     low, high = search.characteristic[0] * 1e-3, search.characteristic[-1] * 1e3
-    grids = [search.frequencies(values, low, high, 200) for values in search.plants]
-    found = np.array([member_delay_margin(project, values, grid) for values, grid in zip(search.plants, grids)])
+    found = delay_margins(project, search.plants, search.frequencies(search.plants, low, high, 200))
     order = np.argsort(found)
     best, plant = found[order[0]], search.plants[order[0]]
     if project.cases is None and np.isfinite(best):
 
-        def function(p):
-            values = project.values(p)
-            result = member_delay_margin(project, values, search.frequencies(values, low, high, 200))
-            return result / best if np.isfinite(result) else 1e3
+        def function(points):
+            plants = project.values(points)
+            result = delay_margins(project, plants, search.frequencies(plants, low, high, 200))
+            return np.where(np.isfinite(result), result / best, 1e3)
 
         for row in order[:3]:
             value, at = polish(function, search.shares[row], rounds=1)
@@ -84,24 +84,25 @@ def delay_margin(search):
     return best, plant
 
 
-def member_delay_margin(project, values, frequencies):
-    """Least (pi + arg L) mod 2 pi over w, of all w with |L| = 1."""
+def delay_margins(project, plants, grids):
+    """For each plant the least (pi + arg L) mod 2 pi over w, of all w with |L| = 1."""
 
-    def loop(w):
-        plant, _, feedback, _, sensor = project.responses(np.asarray(values), w)
+    def loop(values, w):
+        plant, _, feedback, _, sensor = project.responses(values, w)
         return plant * feedback * sensor
 
-    level = np.log(np.abs(loop(frequencies)))
-    crossing = np.flatnonzero(np.diff(np.sign(level)) != 0)
-    if len(crossing) == 0:
-        return np.inf
-    low, high, below = frequencies[crossing], frequencies[crossing + 1], level[crossing]
+    level = np.log(np.abs(loop(plants[:, None, :], grids)))
+    row, crossing = np.nonzero(np.diff(np.sign(level), axis=1))
+    values, below = plants[row], level[row, crossing]
+    low, high = grids[row, crossing], grids[row, crossing + 1]
     for _ in range(HALVINGS):
         middle = np.sqrt(low * high)
-        same = np.sign(np.log(np.abs(loop(middle)))) == np.sign(below)
+        same = np.sign(np.log(np.abs(loop(values, middle)))) == np.sign(below)
         low, high = np.where(same, middle, low), np.where(same, high, middle)
-    turn = np.mod(np.pi + np.angle(loop(low)), 2 * np.pi)
-    return float(np.min(turn / low))
+    turn = np.mod(np.pi + np.angle(loop(values, low)), 2 * np.pi)
+    least = np.full(len(plants), np.inf)
+    np.minimum.at(least, row, turn / low)
+    return least
 
 
 def sampled_delay_margin(search):
@@ -115,7 +116,9 @@ def sampled_delay_margin(search):
         return answer
 
     low, high = search.characteristic[0] * 1e-3, np.pi / project.sample_time
-    by_phase = [member_delay_margin(project, v, search.frequencies(v, low, high, 600)) for v in search.plants]
+    grids = search.frequencies(search.plants, low, high, 600)
+    # one plant after the other: each is held once for all halvings
+    by_phase = [delay_margins(project, v[None], grid[None])[0] for v, grid in zip(search.plants, grids)]
     best, plant = np.inf, None
     for row in np.argsort(by_phase)[:4]:
         values = search.plants[row]

@@ -12,6 +12,8 @@ A four-bar is closed by a root finder on the distance between the ends of its li
     python comparisons/recompute_linkage.py
 """
 
+import cmath
+
 import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
@@ -28,7 +30,7 @@ H = 1e-30
 def opening(length):
     """Angle between the arms of a triangle, for real and complex lengths: the rod's pivot is this far along the other arm."""
     along = (A * A + B * B - length * length) / (2 * A)
-    return np.arccos(along / B + 0j)
+    return cmath.acos(along / B)
 
 
 def theta(y):
@@ -68,7 +70,8 @@ def accelerations(q, v, weight):
 
 def swing(weight=0.0):
     def rates(_, state):
-        q, v = state[:2], state[2:]
+        # plain numbers: single ones are slower in NumPy
+        q, v = state[:2].tolist(), state[2:].tolist()
         return np.concatenate([v, accelerations(q, v, weight)])
 
     start = [START, START, 0.0, 0.0]

@@ -9,7 +9,7 @@ import typing
 import numpy as np
 import scipy.optimize
 
-from loop_model import evaluate, number
+from loop_model import Powers, evaluate, number
 
 DENSE = 900  # frequencies of a grid, beside the resonances of each plant
 PLANTS = 800  # of a grid over the box, about
@@ -107,22 +107,24 @@ class Search:
         high = min(float(high), np.pi / self.project.sample_time if self.project.sample_time else np.inf)
         return low, high if np.isfinite(high) else self.characteristic[-1] * 1e3
 
-    def frequencies(self, values, low, high, count=DENSE):
-        """A grid, and the resonances of this plant's closed loop."""
+    def frequencies(self, plants, low, high, count=DENSE):
+        """For each plant a grid, and the resonances of its closed loop."""
         # a sampled plant costs more
         base = np.geomspace(low, high, count // 3 if self.project.sample_time else count)
-        roots = np.zeros(0)
-        if not self.project.measured:
-            over, under = self.project.loop_polynomials(values)
-            # with dead time or samples those of the plant, which neither moves
-            moved = self.project.has_delay or self.project.sample_time
-            roots = scaled_roots(under if moved else over + under)
-        near = np.abs(roots.imag[roots.imag > 0])
-        widths = np.abs(roots.real[roots.imag > 0])
-        peaks = np.concatenate([near + step * widths for step in (-2, -1, -0.5, 0, 0.5, 1, 2)]) if len(near) else near
-        extra = np.full(70, base[-1])
-        extra[: len(peaks)] = np.clip(peaks, low, high)[:70]
-        return np.sort(np.concatenate([base, extra]))
+        grids = np.tile(base, (len(plants), 1))
+        if self.project.measured:
+            return grids
+        over, under = self.project.many_loop_polynomials(plants)
+        # with dead time or samples those of the plant, which neither moves
+        moved = self.project.has_delay or self.project.sample_time
+        roots = many_roots(under if moved else (Powers(over) + Powers(under)).coefficients)
+        roots = np.broadcast_to(roots, (len(plants), roots.shape[-1]))
+        steps = np.array([-2, -1, -0.5, 0, 0.5, 1, 2])
+        near, widths = np.abs(roots.imag), np.abs(roots.real)
+        peaks = (near[..., None] + steps * widths[..., None]).reshape(len(plants), -1)
+        resonates = np.repeat(roots.imag > 0, len(steps), axis=1)
+        extra = np.where(resonates, np.clip(peaks, low, high), high)
+        return np.sort(np.concatenate([grids, extra], axis=1), axis=1)
 
 
 def scaled_roots(polynomial):
@@ -133,11 +135,31 @@ def scaled_roots(polynomial):
     return np.roots(scaled / np.max(np.abs(scaled))) * scale
 
 
+def many_roots(polynomials):
+    """Roots of each row, as the eigenvalues of its companion matrix, the variable scaled by their geometric mean."""
+    order = polynomials.shape[-1] - 1
+    last, first = polynomials[..., -1], polynomials[..., 0]
+    assert np.all(first != 0), "a plant of a lower order than the others"
+    scale = np.where(last == 0, 1.0, np.abs(last / first) ** (1 / max(order, 1)))[..., None]
+    companion = np.zeros(polynomials.shape[:-1] + (order, order))
+    companion[..., range(1, order), range(order - 1)] = 1.0
+    companion[..., 0, :] = -polynomials[..., 1:] / first[..., None] * scale ** -np.arange(1.0, order + 1)
+    return np.linalg.eigvals(companion) * scale
+
+
+def slopes(function, point, step=1e-7):
+    """The value of a function of many points, and its forward differences within the unit cube, in one call."""
+    steps = np.where(point + step > 1, -step, step)
+    values = function(np.concatenate([point[None], point + np.diag(steps)]))
+    return values[0], (values[1:] - values[0]) / steps
+
+
 def descended(function, start):
-    """The least of a function on the unit cube, from here, by quasi-Newton steps."""
+    """The least of a function of many points on the unit cube, from here, by quasi-Newton steps."""
     bounds = [(0.0, 1.0)] * len(start)
-    options = {"maxiter": 40, "ftol": 1e-15, "gtol": 1e-12, "eps": 1e-7}
-    found = scipy.optimize.minimize(function, start, method="L-BFGS-B", bounds=bounds, options=options)
+    options = {"maxiter": 40, "ftol": 1e-15, "gtol": 1e-12}
+    along = lambda point: slopes(function, np.clip(point, 0, 1))
+    found = scipy.optimize.minimize(along, start, jac=True, method="L-BFGS-B", bounds=bounds, options=options)
     return float(found.fun), np.clip(found.x, 0, 1)
 
 
@@ -147,7 +169,8 @@ def polish(function, start, rounds=2):
     bounds = [(0.0, 1.0)] * len(start)
     for _ in range(rounds):
         options = {"maxfev": 150 * len(point), "xatol": 1e-9, "fatol": 1e-10, "initial_simplex": simplex(point)}
-        simple = scipy.optimize.minimize(function, point, method="Nelder-Mead", bounds=bounds, options=options)
+        alone = lambda point: float(function(point[None])[0])
+        simple = scipy.optimize.minimize(alone, point, method="Nelder-Mead", bounds=bounds, options=options)
         further = descended(function, np.clip(simple.x, 0, 1))
         if value - further[0] < 1e-9:
             break
@@ -177,22 +200,24 @@ def worst_side(search, side, low, high):
     side = side.margin
     starts = pair_starts(search, side, low, high) if paired else single_starts(search, side, low, high)
 
-    def function(p, case):
-        w = np.array(low if fixed else low * (high / low) ** np.clip(p[-1], 0, 1))
-        result = float(side(parameters(project, p if fixed else p[:-1], case, paired), w))
-        return result if np.isfinite(result) else 1e6
+    def function(points, case):
+        w = np.full(len(points), low) if fixed else low * (high / low) ** np.clip(points[:, -1], 0, 1)
+        result = side(parameters(project, points if fixed else points[:, :-1], case, paired), w)
+        return np.where(np.isfinite(result), result, 1e6)
 
     found = []
     for _, shares, frequency, case in starts:
         position = [] if fixed else [np.log(frequency / low) / np.log(high / low)]
         point = np.concatenate([shares, position])
-        descent = descended(lambda p: function(p, case), point) if len(point) else (function(point, case), point)
+        # without a coordinate there is one point
+        alone = lambda: (float(function(point[None], case)[0]), point)
+        descent = descended(lambda points: function(points, case), point) if len(point) else alone()
         found.append((*descent, case))
     found.sort(key=lambda entry: entry[0])
     value, at, case = found[0]
     for _, point, other in found[: 1 if fixed else 2]:
         rounds = 1 if project.sample_time else 2
-        further = polish(lambda p: function(p, other), point, rounds) if len(point) else (value, at)
+        further = polish(lambda points: function(points, other), point, rounds) if len(point) else (value, at)
         if further[0] < value:
             (value, at), case = further, other
     w = low if fixed else low * (high / low) ** at[-1]
@@ -203,15 +228,15 @@ def parameters(project, shares, case, paired):
     if case is not None:
         return case
     if paired:
-        half = len(shares) // 2
-        return np.concatenate([project.values(shares[:half]), project.values(shares[half:])])
+        half = shares.shape[-1] // 2
+        return np.concatenate([project.values(shares[..., :half]), project.values(shares[..., half:])], axis=-1)
     return project.values(shares)
 
 
 def grid_of(search, low, high):
     if low == high:
         return np.full((len(search.plants), 1), low)
-    return np.array([search.frequencies(values, low, high) for values in search.plants])
+    return search.frequencies(search.plants, low, high)
 
 
 def single_starts(search, side, low, high, count=10):

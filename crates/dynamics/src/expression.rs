@@ -5,9 +5,11 @@
 //! without the function it came from. Equal sub-expressions are recorded once; operations on
 //! constants are done while recording.
 
+mod memo;
 mod node;
 mod recording;
 
+pub use memo::EvaluationMemo;
 pub use node::{Binary, Node, NodeIndex, Unary};
 pub use recording::Recorded;
 
@@ -165,12 +167,17 @@ impl Expression {
     /// All results for these values of the parameters. A missing value counts as NaN, a surplus one
     /// is not used.
     pub fn evaluate<S: Scalar>(&self, parameters: &[S]) -> Vec<S> {
-        let mut values: Vec<S> = Vec::with_capacity(self.nodes.len());
-        for node in &self.nodes {
-            let value = node.evaluate(parameters, &values);
-            values.push(value);
-        }
+        let values = self.values(parameters);
         self.results.iter().map(|&index| values[index]).collect()
+    }
+
+    /// The value of every operation.
+    fn values<S: Scalar>(&self, parameters: &[S]) -> Vec<S> {
+        let mut values = vec![S::from(0.0); self.nodes.len()];
+        for (index, node) in self.nodes.iter().enumerate() {
+            values[index] = node.evaluate(parameters, &values);
+        }
+        values
     }
 
     /// The first result for these numbers, as [`Expression::evaluate`] gives it; NaN if there is
@@ -184,13 +191,7 @@ impl Expression {
     /// assert_eq!(area.number(&[2.0, 3.0]), 6.0);
     /// ```
     pub fn number(&self, parameters: &[f64]) -> f64 {
-        let mut values = vec![0.0; self.nodes.len()];
-        for (index, node) in self.nodes.iter().enumerate() {
-            let (earlier, rest) = values.split_at_mut(index);
-            if let Some(value) = rest.first_mut() {
-                *value = node.evaluate(parameters, earlier);
-            }
-        }
+        let values = self.values(parameters);
         self.results.first().map_or(f64::NAN, |&index| values[index])
     }
 }

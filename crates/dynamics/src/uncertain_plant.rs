@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 use num_complex::Complex64;
 
-use crate::expression::{Expression, Recorded};
+use crate::expression::{EvaluationMemo, Expression, Recorded};
 use crate::portable;
 use crate::scalar::{Interval, Scalar};
 use crate::uncertain_plant::responding::{RespondingPlant, RespondingPlants};
@@ -148,7 +148,7 @@ enum PlantEquations {
 /// dead time, numerators of the rate.
 #[derive(Clone, Debug, PartialEq)]
 struct RecordedPlant {
-    coefficients: Expression,
+    coefficients: Arc<Expression>,
     command: (usize, usize),
     disturbance: Option<(usize, usize)>,
     rate: Option<(usize, usize)>,
@@ -194,7 +194,7 @@ impl UncertainPlant {
         });
         check_lengths(command)?;
         disturbance.map_or(Ok(()), check_lengths)?;
-        let recorded = RecordedPlant { coefficients, command, disturbance, rate };
+        let recorded = RecordedPlant { coefficients: Arc::new(coefficients), command, disturbance, rate };
         Ok(UncertainPlant { parameters, equations: PlantEquations::Rational(recorded) })
     }
 
@@ -230,7 +230,7 @@ impl UncertainPlant {
     /// The recorded coefficients: command numerator, command denominator, the same of the
     /// disturbance path, dead time, numerators of the rate. `None` of a plant without polynomials.
     pub fn expression(&self) -> Option<&Expression> {
-        self.recorded().map(|recorded| &recorded.coefficients)
+        self.recorded().map(|recorded| &*recorded.coefficients)
     }
 
     /// The nominal values, plant 0 of every family.
@@ -268,6 +268,33 @@ impl UncertainPlant {
         match &self.equations {
             PlantEquations::Rational(recorded) => Some(PlantMember::Rational(recorded.at(values))),
             PlantEquations::Responding(plants) => plants.at(values).map(PlantMember::Responding),
+        }
+    }
+
+    /// The same, what most of it is computed from being remembered.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_dynamics::expression::EvaluationMemo;
+    /// use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant};
+    /// let gain = UncertainParameter { name: "k".into(), nominal: 2.0, minimum: 1.0, maximum: 3.0 };
+    /// let plant = UncertainPlant::record(vec![gain], |p| PlantCoefficients {
+    ///     command: RationalCoefficients { numerator: vec![p[0]], denominator: vec![1.0.into(), 0.0.into()] },
+    ///     disturbance: None,
+    ///     dead_time_s: 0.0.into(),
+    ///     rate: None,
+    /// })?;
+    /// let member = plant.member_by(&mut EvaluationMemo::default(), &[1.5]).ok_or("a rational plant")?;
+    /// assert_eq!(member.slow().command.numerator, vec![1.5]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn member_by(&self, memo: &mut EvaluationMemo, values: &[f64]) -> Option<PlantMember> {
+        match &self.equations {
+            PlantEquations::Rational(recorded) => {
+                let coefficients = recorded.sorted(memo.evaluate(&recorded.coefficients, values));
+                Some(PlantMember::Rational(coefficients))
+            }
+            PlantEquations::Responding(_) => self.member(values),
         }
     }
 

@@ -8,7 +8,7 @@
 
 use phea_dynamics::watch::{Stopped, Watch, part};
 
-use crate::sampled::SampledPlants;
+use crate::kept_plants::KeptPlants;
 use crate::stability::{FamilyStability, StabilityAudit};
 use crate::verification::{
     Audit, AuditProblem, Evidence, PlantPoint, Remark, SpecificationFinding, StabilityFinding, Verdict,
@@ -65,17 +65,17 @@ const STAGE: &str = "auditing";
 /// # }
 /// ```
 pub fn audit(problem: &AuditProblem<'_>, watch: Watch<'_>) -> Result<Audit, Stopped> {
-    audit_with(problem, &SampledPlants::default(), watch)
+    audit_with(problem, &KeptPlants::default(), watch)
 }
 
 /// The same, given plants of this family that were already sampled in the same loop (with any
 /// controller), so that none is sampled twice.
 pub(crate) fn audit_with(
     problem: &AuditProblem<'_>,
-    sampled: &SampledPlants,
+    kept: &KeptPlants,
     watch: Watch<'_>,
 ) -> Result<Audit, Stopped> {
-    let mut stability = StabilityAudit::new(problem.family, problem.compensation, sampled);
+    let mut stability = StabilityAudit::new(problem.family, problem.compensation, kept);
     stability.look(&mut part(watch, STAGE, [0.0, 0.4]))?;
     let found = stability.result();
     if is_unstable(&found.finding) {
@@ -83,7 +83,7 @@ pub(crate) fn audit_with(
         return Ok(joined(problem, found, problem.unexamined()));
     }
     let between = if stability.searched() { stability.plants_between() } else { vec![] };
-    let (specifications, _) = audit_among(problem, &between, sampled, &mut part(watch, STAGE, [0.4, 0.98]))?;
+    let (specifications, _) = audit_among(problem, &between, kept, &mut part(watch, STAGE, [0.4, 0.98]))?;
     if stability.searched() {
         stability.look_at(&suspects(&specifications), &mut part(watch, STAGE, [0.98, 1.0]))?;
     }

@@ -324,7 +324,30 @@ impl Compensation {
     /// # Errors
     /// Those of [`Compensation::member`], and [`LinearError::NoPlant`].
     pub fn member_of(&self, plant: &UncertainPlant, values: &[f64]) -> Result<Member, LinearError> {
-        match plant.member(values).ok_or(LinearError::NoPlant)? {
+        self.around(plant.member(values).ok_or(LinearError::NoPlant)?)
+    }
+
+    /// A plant of a family within this loop.
+    ///
+    /// # Errors
+    /// Those of [`Compensation::member`].
+    ///
+    /// # Example
+    /// 1/(1 + 4/s) at s = 3 j
+    /// ```
+    /// use phea_dynamics::controller::Controller;
+    /// use phea_dynamics::linear::TransferFunction;
+    /// use phea_dynamics::uncertain_plant::{PlantCoefficients, PlantMember, RationalCoefficients};
+    /// use phea_qft::closed_loop::Compensation;
+    /// let command = RationalCoefficients { numerator: vec![4.0], denominator: vec![1.0, 0.0] };
+    /// let plant = PlantCoefficients { command, disturbance: None, dead_time_s: 0.0, rate: None };
+    /// let compensation = Compensation::new(&Controller::default(), TransferFunction::gain_only(1.0))?;
+    /// let member = compensation.around(PlantMember::Rational(plant))?;
+    /// assert!(member.response(3.0).is_some());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn around(&self, plant: PlantMember) -> Result<Member, LinearError> {
+        match plant {
             PlantMember::Rational(coefficients) => self.member(coefficients),
             PlantMember::Responding(plant) => Ok(self.responding(plant)),
         }

@@ -22,6 +22,8 @@ mod fill;
 mod inequality;
 #[path = "../src/bound/interval.rs"]
 mod interval;
+#[path = "../src/kept_plants.rs"]
+mod kept_plants;
 #[path = "../src/specification/limit.rs"]
 mod limit;
 #[path = "../src/specification/minimum.rs"]
@@ -38,8 +40,6 @@ mod power_of_two;
 mod product;
 #[path = "../src/bound/quadratic.rs"]
 mod quadratic;
-#[path = "../src/sampled.rs"]
-mod sampled;
 #[path = "../src/stability/search.rs"]
 mod search_of_a_box;
 #[path = "../src/loop_shaping/start/spread.rs"]

@@ -21,11 +21,11 @@ use super::counterexample::{Counterexample, counterexamples, worst_margin_db};
 use super::problem::{DesignOptions, DesignProblem, PrefilterChoice};
 use super::result::{DesignRound, Starts};
 use crate::closed_loop::Compensation;
+use crate::kept_plants::KeptPlants;
 use crate::loop_shaping::{
     Aim, DescentOptions, Judgement, Samples, SearchProblem, SearchStatus, Shaping, Structure, descend, search,
 };
 use crate::prefilter::{FittedPrefilter, PrefilterBand, PrefilterOptions, PrefilterOutcome, fit_prefilter};
-use crate::sampled::SampledPlants;
 use crate::specification::Specification;
 use crate::verification::{Audit, AuditProblem, TrackingJudgement, audit_among};
 
@@ -166,22 +166,22 @@ impl Attempt {
     /// [`LoopDesignError::Stopped`] by the watch; what was found until then remains.
     pub(super) fn run(
         &mut self,
-        sampled: &SampledPlants,
+        kept: &KeptPlants,
         watch: Watch<'_>,
     ) -> Result<AttemptEnding, LoopDesignError> {
-        match self.until_agreed(sampled, watch) {
+        match self.until_agreed(kept, watch) {
             Ok(ending) | Err(Leave::Ended(ending)) => Ok(ending),
             Err(Leave::Failed(error)) => Err(error),
         }
     }
 
-    fn until_agreed(&mut self, sampled: &SampledPlants, watch: Watch<'_>) -> Result<AttemptEnding, Leave> {
+    fn until_agreed(&mut self, kept: &KeptPlants, watch: Watch<'_>) -> Result<AttemptEnding, Leave> {
         let given = std::mem::take(&mut self.given);
         self.search(given, self.options.seed, watch)?;
         loop {
             self.draw_in(watch)?;
-            if !self.learns_between_samples(sampled, watch)?
-                && let Some(ending) = self.audited(sampled, watch)?
+            if !self.learns_between_samples(kept, watch)?
+                && let Some(ending) = self.audited(kept, watch)?
             {
                 return Ok(ending);
             }
@@ -319,7 +319,7 @@ impl Attempt {
 
     /// Searches between the samples, over the whole box, starting from the plants of the samples;
     /// returns whether counterexamples were added.
-    fn learns_between_samples(&mut self, sampled: &SampledPlants, watch: Watch<'_>) -> Result<bool, Leave> {
+    fn learns_between_samples(&mut self, kept: &KeptPlants, watch: Watch<'_>) -> Result<bool, Leave> {
         let samples = self.shaping.samples();
         let problem = AuditProblem {
             family: &samples.family(),
@@ -328,7 +328,7 @@ impl Attempt {
             tracking: self.shaping.tracking(),
             tolerance_db: self.options.tolerance_db,
         };
-        let (findings, _) = audit_among(&problem, &[], sampled, &mut part(watch, CHECKING, WHOLE))?;
+        let (findings, _) = audit_among(&problem, &[], kept, &mut part(watch, CHECKING, WHOLE))?;
         let judgement = self.judgement();
         let tolerance_db = self.new_below_db(&judgement);
         let examples = counterexamples(&findings, tolerance_db, self.shaping.tracking());

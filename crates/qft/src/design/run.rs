@@ -13,8 +13,8 @@ use super::problem::{ControllerChoice, DesignOptions, DesignProblem};
 use super::result::{Design, DesignRound, DesignStatus, Relaxation};
 use super::stabilising::has_poles_to_move;
 use crate::family::{Extent, Family, random};
+use crate::kept_plants::KeptPlants;
 use crate::loop_shaping::{Samples, Structure, search_frequencies};
-use crate::sampled::SampledPlants;
 use crate::verification::{Audit, PlantPoint, corners};
 
 /// Points of the frequency grid of a search in a decade.
@@ -52,7 +52,7 @@ impl DesignOutcome {
     pub fn conclude(&mut self) -> Result<(), LoopDesignError> {
         let at_hand = self.at_hand.take().filter(|attempt| !attempt.x().is_empty());
         if let (None, Some(mut attempt)) = (&self.design, at_hand) {
-            let audit = attempt.audited_as_it_is(&self.known.sampled, &mut unwatched)?;
+            let audit = attempt.audited_as_it_is(&self.known.plants, &mut unwatched)?;
             let status = DesignStatus::NotConverged { rounds: attempt.rounds().len() };
             self.known.rounds.extend_from_slice(attempt.rounds());
             self.design = Some(design_of(&attempt, status, audit, &self.known.rounds)?);
@@ -67,7 +67,7 @@ struct LearntPlants {
     /// The samples that searches evaluate; `None` before the first search.
     samples: Option<Samples>,
     /// The plants that audits sampled.
-    sampled: SampledPlants,
+    plants: KeptPlants,
     rounds: Vec<DesignRound>,
 }
 
@@ -159,8 +159,8 @@ fn design_knowing(
     watch: Watch<'_>,
 ) -> Result<DesignOutcome, LoopDesignError> {
     let findings = diagnose(problem);
-    let LearntPlants { samples, sampled, rounds } = known;
-    let mut run = DesignProgress::new(problem, options, &sampled);
+    let LearntPlants { samples, plants, rounds } = known;
+    let mut run = DesignProgress::new(problem, options, &plants);
     // where no controller of any order suffices, it remains to find by how much
     run.relaxing = findings.iter().any(|finding| finding.severity() == FindingSeverity::Impossible);
     (run.samples, run.rounds) = (samples, rounds);
@@ -169,7 +169,7 @@ fn design_knowing(
     }
     let at_hand = run.try_structures(watch)?.map(Box::new);
     let DesignProgress { design, samples, rounds, .. } = run;
-    let known = LearntPlants { samples, sampled, rounds };
+    let known = LearntPlants { samples, plants, rounds };
     Ok(DesignOutcome { design, findings, stopped: at_hand.is_some(), at_hand, known })
 }
 
@@ -202,7 +202,7 @@ struct DesignProgress<'a> {
     unstable: Option<Attempt>,
     samples: Option<Samples>,
     rounds: Vec<DesignRound>,
-    sampled: &'a SampledPlants,
+    kept: &'a KeptPlants,
     design: Option<Design>,
 }
 
@@ -210,7 +210,7 @@ impl<'a> DesignProgress<'a> {
     fn new(
         problem: &'a DesignProblem,
         options: &'a DesignOptions,
-        sampled: &'a SampledPlants,
+        kept: &'a KeptPlants,
     ) -> DesignProgress<'a> {
         let ground = Ground::new(problem);
         let is_hard = has_poles_to_move(problem);
@@ -232,7 +232,7 @@ impl<'a> DesignProgress<'a> {
             unstable: None,
             samples: None,
             rounds: vec![],
-            sampled,
+            kept,
             design: None,
         }
     }
@@ -252,7 +252,7 @@ impl<'a> DesignProgress<'a> {
     fn try_structures(&mut self, watch: Watch<'_>) -> Result<Option<Attempt>, LoopDesignError> {
         while let Some((structure, feedback)) = self.next() {
             let mut attempt = self.attempt(structure, feedback)?;
-            match attempt.run(self.sampled, &mut self.part(watch)) {
+            match attempt.run(self.kept, &mut self.part(watch)) {
                 Err(LoopDesignError::Stopped(_)) => return Ok(Some(attempt)),
                 ending => {
                     if self.is_done_with(attempt, ending?)? {
@@ -264,7 +264,7 @@ impl<'a> DesignProgress<'a> {
         let Some(mut attempt) = self.unstable.take().filter(|_| self.design.is_none()) else {
             return Ok(None);
         };
-        match attempt.audited_as_it_is(self.sampled, &mut self.part(watch)) {
+        match attempt.audited_as_it_is(self.kept, &mut self.part(watch)) {
             Err(LoopDesignError::Stopped(_)) => Ok(Some(attempt)),
             audit => {
                 self.take(&attempt, DesignStatus::NotStabilised, audit?)?;

@@ -14,7 +14,7 @@ use super::search::climb;
 use super::{CriticalDelay, Irresolution, MemberStability, characteristic, of_member, resampled, responding};
 use crate::closed_loop::{Compensation, Member};
 use crate::family::{Extent, Family, UncertainFamily};
-use crate::sampled::SampledPlants;
+use crate::kept_plants::KeptPlants;
 use crate::verification::{
     DelayMargin, Evidence, PlantPoint, StabilityFinding, StabilityMethod, StabilityReason, Verdict, corners,
 };
@@ -88,8 +88,8 @@ pub fn family_stability(
     compensation: &Compensation,
     watch: Watch<'_>,
 ) -> Result<FamilyStability, Stopped> {
-    let sampled = SampledPlants::default();
-    let mut audit = StabilityAudit::new(family, compensation, &sampled);
+    let kept = KeptPlants::default();
+    let mut audit = StabilityAudit::new(family, compensation, &kept);
     audit.look(watch)?;
     Ok(audit.result())
 }
@@ -110,7 +110,7 @@ pub(crate) struct StabilityAudit<'a> {
     /// Whether the delay margin of a sampled loop is exact already, and not an estimate.
     resampled: bool,
     /// The plants that were judged, within a sampled loop.
-    sampled: &'a SampledPlants,
+    kept: &'a KeptPlants,
     record: StabilityRecord,
 }
 
@@ -122,7 +122,7 @@ impl<'a> StabilityAudit<'a> {
     pub(crate) fn new(
         family: &'a Family,
         compensation: &'a Compensation,
-        sampled: &'a SampledPlants,
+        kept: &'a KeptPlants,
     ) -> StabilityAudit<'a> {
         let plants = match family {
             Family::Uncertain(family) => {
@@ -140,7 +140,7 @@ impl<'a> StabilityAudit<'a> {
             badness: Vec::new(),
             estimated: Vec::new(),
             resampled: false,
-            sampled,
+            kept,
             record: StabilityRecord::default(),
         }
     }
@@ -212,7 +212,7 @@ impl<'a> StabilityAudit<'a> {
     fn member(&self, plant: &PlantPoint) -> Result<Member, LinearError> {
         match (self.family, plant) {
             (Family::Uncertain(family), PlantPoint::Parameters(values)) => {
-                self.sampled.member(self.compensation, family.plant(), values)
+                self.kept.member(self.compensation, family.plant(), values)
             }
             (Family::Measured(family), PlantPoint::Measured(index)) => {
                 let plant = family.plants().get(*index).ok_or(LinearError::ZeroPolynomial)?;
@@ -363,7 +363,7 @@ impl<'a> StabilityAudit<'a> {
     fn badness_at(&self, badness: Badness, values: Vec<f64>) -> f64 {
         let Ok(path) = &self.path else { return f64::NAN };
         let Family::Uncertain(family) = self.family else { return f64::NAN };
-        let Ok(member) = self.sampled.member(self.compensation, family.plant(), &values) else {
+        let Ok(member) = self.kept.member(self.compensation, family.plant(), &values) else {
             return f64::NAN;
         };
         match characteristic(&member, path) {

@@ -12,7 +12,7 @@ use super::scan::{Scan, ScannedPlant};
 use super::{Evidence, PlantPoint, SpecificationFinding, Verdict};
 use crate::closed_loop::Compensation;
 use crate::family::{Extent, Family, UncertainFamily, vertices};
-use crate::sampled::SampledPlants;
+use crate::kept_plants::KeptPlants;
 use crate::specification::Specification;
 
 /// A margin of minus this much still counts as met, unless another tolerance is requested, dB.
@@ -134,7 +134,7 @@ pub fn audit_specifications(
     problem: &AuditProblem<'_>,
     watch: Watch<'_>,
 ) -> Result<(Vec<SpecificationFinding>, AuditWork), Stopped> {
-    audit_among(problem, &[], &SampledPlants::default(), watch)
+    audit_among(problem, &[], &KeptPlants::default(), watch)
 }
 
 /// The same, with further plants that another audit of the same box found worth examining, and with
@@ -142,10 +142,10 @@ pub fn audit_specifications(
 pub(crate) fn audit_among(
     problem: &AuditProblem<'_>,
     others: &[Vec<f64>],
-    sampled: &SampledPlants,
+    kept: &KeptPlants,
     watch: Watch<'_>,
 ) -> Result<(Vec<SpecificationFinding>, AuditWork), Stopped> {
-    let mut audit = SpecificationAudit::new(problem, others, sampled);
+    let mut audit = SpecificationAudit::new(problem, others, kept);
     audit.prepare(&mut part(watch, STAGE, [0.0, 0.2]))?;
     audit.look(&mut part(watch, STAGE, [0.2, 0.6]))?;
     audit.polish(&mut part(watch, STAGE, [0.6, 0.7]))?;
@@ -180,7 +180,7 @@ impl<'a> SpecificationAudit<'a> {
     fn new(
         problem: &'a AuditProblem<'a>,
         others: &[Vec<f64>],
-        sampled: &'a SampledPlants,
+        kept: &'a KeptPlants,
     ) -> SpecificationAudit<'a> {
         let AuditProblem { family, compensation, specifications, tracking, .. } = *problem;
         let mut all: Vec<Criterion> = Vec::new();
@@ -192,7 +192,7 @@ impl<'a> SpecificationAudit<'a> {
             all.extend(own);
         }
         let with_prefilter = tracking == TrackingJudgement::Magnitude;
-        let evaluator = Evaluator::new(compensation, all, with_prefilter, sampled);
+        let evaluator = Evaluator::new(compensation, all, with_prefilter, kept);
         let mut values = Vec::new();
         if let Family::Uncertain(family) = family {
             values = [family.members(), &corners(family)].concat();

@@ -13,7 +13,7 @@ use super::criterion::Criterion;
 use super::minimum;
 use super::response::{LoopAround, LoopAt, decibels};
 use crate::closed_loop::{Compensation, Member};
-use crate::sampled::SampledPlants;
+use crate::kept_plants::KeptPlants;
 
 /// Relative accuracy of polished frequencies.
 pub(super) const FREQUENCY_TOLERANCE: f64 = 1e-7;
@@ -32,8 +32,8 @@ pub(super) struct Evaluator<'a> {
     /// The power of s that the first plant's |T| follows at either end; plants with another power
     /// have no spread there.
     steepness: [Cell<Option<i32>>; 2],
-    /// Plants that were sampled before.
-    sampled: &'a SampledPlants,
+    /// Plants that were found before.
+    kept: &'a KeptPlants,
 }
 
 impl<'a> Evaluator<'a> {
@@ -41,7 +41,7 @@ impl<'a> Evaluator<'a> {
         compensation: &'a Compensation,
         criteria: Vec<Criterion>,
         with_prefilter: bool,
-        sampled: &'a SampledPlants,
+        kept: &'a KeptPlants,
     ) -> Evaluator<'a> {
         let (feedback, sensor) = (compensation.feedback(), compensation.sensor());
         let compensator_dead_time_s = feedback.dead_time_s() + sensor.dead_time_s();
@@ -57,7 +57,7 @@ impl<'a> Evaluator<'a> {
             compensator_dead_time_s,
             responses: Cell::new(0),
             steepness: [Cell::new(None), Cell::new(None)],
-            sampled,
+            kept,
         }
     }
 
@@ -68,7 +68,7 @@ impl<'a> Evaluator<'a> {
 
     /// A plant within the loop; `None` if it cannot be sampled.
     pub(super) fn member(&self, plant: &UncertainPlant, values: &[f64]) -> Option<Member> {
-        self.sampled.member(self.compensation, plant, values).ok()
+        self.kept.member(self.compensation, plant, values).ok()
     }
 
     pub(super) fn loop_at(&self, frequency: f64) -> LoopAt {

@@ -10,8 +10,8 @@ use crate::design::counterexample::{
     worst_over_rate_db,
 };
 use crate::family::{Family, UncertainFamily};
+use crate::kept_plants::KeptPlants;
 use crate::loop_shaping::{Aim, Judgement};
-use crate::sampled::SampledPlants;
 use crate::verification::{Audit, AuditProblem, Verdict};
 
 /// Accuracy to which a relaxation is found, dB.
@@ -26,7 +26,7 @@ impl Attempt {
     fn audit_of(
         &self,
         family: &Family,
-        sampled: &SampledPlants,
+        kept: &KeptPlants,
         watch: Watch<'_>,
     ) -> Result<Audit, LoopDesignError> {
         let problem = AuditProblem {
@@ -36,11 +36,11 @@ impl Attempt {
             tracking: self.shaping.tracking(),
             tolerance_db: self.options.tolerance_db,
         };
-        Ok(audit_with(&problem, sampled, &mut part(watch, AUDITING, WHOLE))?)
+        Ok(audit_with(&problem, kept, &mut part(watch, AUDITING, WHOLE))?)
     }
 
-    fn audit_of_family(&self, sampled: &SampledPlants, watch: Watch<'_>) -> Result<Audit, LoopDesignError> {
-        self.audit_of(&self.shaping.samples().problem().family, sampled, watch)
+    fn audit_of_family(&self, kept: &KeptPlants, watch: Watch<'_>) -> Result<Audit, LoopDesignError> {
+        self.audit_of(&self.shaping.samples().problem().family, kept, watch)
     }
 
     /// The audits of the additional plants, one by one.
@@ -48,14 +48,14 @@ impl Attempt {
         let beside = &self.shaping.samples().problem().beside;
         let Some(plant) = beside.get(self.beside.len()) else { return Ok(None) };
         let alone = Family::Uncertain(UncertainFamily::of_nominal(plant.clone()));
-        self.audit_of(&alone, &SampledPlants::default(), watch).map(Some)
+        self.audit_of(&alone, &KeptPlants::default(), watch).map(Some)
     }
 
     /// The outcome of the attempt by its audits; `None` where they found counterexamples, which
     /// were added to the samples.
     pub(super) fn audited(
         &mut self,
-        sampled: &SampledPlants,
+        kept: &KeptPlants,
         watch: Watch<'_>,
     ) -> Result<Option<AttemptEnding>, LoopDesignError> {
         self.beside.clear();
@@ -70,7 +70,7 @@ impl Attempt {
             }
             self.beside.push(audit);
         }
-        let audit = Box::new(self.audit_of_family(sampled, watch)?);
+        let audit = Box::new(self.audit_of_family(kept, watch)?);
         let judgement = self.judgement();
         self.note(audited_margin_db(&audit), &judgement);
         let all = || self.beside.iter().chain([&*audit]);
@@ -97,14 +97,14 @@ impl Attempt {
     /// loop.
     pub(in crate::design) fn audited_as_it_is(
         &mut self,
-        sampled: &SampledPlants,
+        kept: &KeptPlants,
         watch: Watch<'_>,
     ) -> Result<Audit, LoopDesignError> {
         self.beside.clear();
         while let Some(audit) = self.audit_of_next(watch)? {
             self.beside.push(audit);
         }
-        self.audit_of_family(sampled, watch)
+        self.audit_of_family(kept, watch)
     }
 
     /// What an audit teaches the search.

@@ -1,8 +1,9 @@
-//! Plants within a sampled loop, each sampled once however often it is used.
+//! Plants within a loop, with what was already found of them.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
+use phea_dynamics::expression::EvaluationMemo;
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::uncertain_plant::UncertainPlant;
 
@@ -11,13 +12,15 @@ use super::closed_loop::{Compensation, Member};
 /// Plants that are kept, of less than a kilobyte each.
 const PLANTS_MAXIMUM: usize = 100_000;
 
-/// Plants of one family within one loop that were already sampled, by the bits of their parameter
-/// values: sampling costs more than a thousand responses. A continuous loop takes its plants as
-/// they are and keeps none.
+/// Plants of one family within one loop. Plants that were already sampled are kept, by the bits of
+/// their parameter values: sampling costs more than a thousand responses.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct SampledPlants(RefCell<BTreeMap<Vec<u64>, Result<Member, LinearError>>>);
+pub(crate) struct KeptPlants {
+    sampled: RefCell<BTreeMap<Vec<u64>, Result<Member, LinearError>>>,
+    memo: RefCell<EvaluationMemo>,
+}
 
-impl SampledPlants {
+impl KeptPlants {
     /// The plant with these parameter values within the loop.
     pub(crate) fn member(
         &self,
@@ -25,16 +28,19 @@ impl SampledPlants {
         plant: &UncertainPlant,
         values: &[f64],
     ) -> Result<Member, LinearError> {
-        let build = || compensation.member_of(plant, values);
+        let build = || {
+            let found = plant.member_by(&mut self.memo.borrow_mut(), values);
+            compensation.around(found.ok_or(LinearError::NoPlant)?)
+        };
         if compensation.sample_time_s().is_none() {
             return build();
         }
         let key: Vec<u64> = values.iter().map(|value| value.to_bits()).collect();
-        let mut kept = self.0.borrow_mut();
-        if kept.len() >= PLANTS_MAXIMUM && !kept.contains_key(&key) {
+        let mut sampled = self.sampled.borrow_mut();
+        if sampled.len() >= PLANTS_MAXIMUM && !sampled.contains_key(&key) {
             return build();
         }
-        kept.entry(key).or_insert_with(build).clone()
+        sampled.entry(key).or_insert_with(build).clone()
     }
 }
 
@@ -46,9 +52,9 @@ mod tests {
         PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant,
     };
 
-    use super::{Compensation, Member, SampledPlants};
+    use super::{Compensation, KeptPlants, Member};
 
-    fn found(plants: &SampledPlants, timing: Timing, gain: f64) -> Member {
+    fn found(plants: &KeptPlants, timing: Timing, gain: f64) -> Member {
         let parameter = UncertainParameter { name: "k".into(), nominal: 1.0, minimum: 0.5, maximum: 2.0 };
         let lag = UncertainPlant::record(vec![parameter], |p| PlantCoefficients {
             command: RationalCoefficients {
@@ -69,18 +75,18 @@ mod tests {
     fn a_plant_is_sampled_once() {
         let sampled = Timing { sample_time_s: Some(0.1), ..Timing::default() };
         let late = Timing { delay_s: 0.5, ..sampled };
-        let plants = SampledPlants::default();
+        let plants = KeptPlants::default();
         let first = format!("{:?}", found(&plants, sampled, 1.0));
         assert_eq!(first, format!("{:?}", found(&plants, late, 1.0)));
-        assert_ne!(first, format!("{:?}", found(&SampledPlants::default(), late, 1.0)));
+        assert_ne!(first, format!("{:?}", found(&KeptPlants::default(), late, 1.0)));
         assert_ne!(first, format!("{:?}", found(&plants, sampled, 1.5)));
-        assert_eq!(plants.0.borrow().len(), 2);
+        assert_eq!(plants.sampled.borrow().len(), 2);
     }
 
     #[test]
     fn plants_of_a_continuous_loop_are_not_kept() {
-        let plants = SampledPlants::default();
+        let plants = KeptPlants::default();
         found(&plants, Timing::default(), 1.0);
-        assert!(plants.0.borrow().is_empty());
+        assert!(plants.sampled.borrow().is_empty());
     }
 }
