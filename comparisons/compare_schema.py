@@ -79,6 +79,8 @@ def main():
     unseen = {name for names in UNSEEN.values() for name in names}
     wrong, accepted, refused = [], 0, 0
     for case in every:
+        if not (case["accepted"] or "/malformed/" in case["name"]):
+            continue  # a mutation that the schema may accept or reject
         try:
             project = tomllib.loads(case["text"])
         except tomllib.TOMLDecodeError:
@@ -89,7 +91,7 @@ def main():
             accepted += 1
             if fault:
                 wrong.append(f"{case['name']}: the reader accepts it, the schema does not: {list(fault.absolute_path)} {fault.message[:200]}")
-        elif "/malformed/" in case["name"]:
+        else:
             refused += 1
             if (fault is None) != (name in unseen):
                 said = "; ".join(case["errors"])

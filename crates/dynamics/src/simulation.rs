@@ -7,6 +7,7 @@
 
 mod commanded_plant;
 mod course;
+mod derivatives;
 mod driver;
 mod equilibrium;
 mod explicit;
@@ -37,6 +38,7 @@ pub use course::{
     Amplification, Attention, Event, Input, InputSchedule, Observer, Outcome, Sampler, SimulationError,
     SimulationSettings, Status, StepCounts,
 };
+pub use derivatives::DIRECTIONS;
 pub use driver::drive;
 pub use equilibrium::{EquilibriumError, equilibrium};
 pub use growth::Sliding;

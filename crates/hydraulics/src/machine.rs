@@ -301,17 +301,25 @@ impl<S: Lane> Machine<S> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn put(&mut self, lane: usize, machine: &Machine) -> Result<(), MachineError> {
-        if machine.convert(&mut |_| 0.0) != self.convert(&mut |_| 0.0) {
+        let mut values = Vec::new();
+        let structure = machine.replaced(&mut |value| {
+            values.push(value);
+            0.0
+        });
+        if structure != self.replaced(&mut |_| 0.0) {
             return Err(MachineError::DifferentStructure { index: lane });
         }
-        let mut values = Vec::new();
-        machine.convert(&mut |value| values.push(value));
         let mut values = values.into_iter();
-        *self = self.convert(&mut |mut kept| {
+        *self = self.replaced(&mut |mut kept| {
             kept.set_lane(lane, values.next().unwrap_or(f64::NAN));
             kept
         });
         Ok(())
+    }
+
+    /// As [`Parameters::convert`], compiled once for all functions.
+    fn replaced<T: Copy>(&self, of: &mut dyn FnMut(S) -> T) -> Machine<T> {
+        self.convert(&mut |value| of(value))
     }
 }
 

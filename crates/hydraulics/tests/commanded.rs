@@ -6,7 +6,7 @@ use num_complex::Complex64;
 use phea_dynamics::portable::pow;
 use phea_dynamics::random::{share, stream};
 use phea_dynamics::scalar::{Dual, Scalar};
-use phea_dynamics::simulation::{Plant, System, small_signal};
+use phea_dynamics::simulation::{DIRECTIONS, Plant, System, small_signal};
 use phea_hydraulics::accumulator::{AdjustedPart, Adjustment, GasValve, Neck};
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::cross_port::{CrossPort, Restrictor};
@@ -162,16 +162,24 @@ pub(super) fn slopes(
     rest: &InitialCondition,
     signals: &[&str],
 ) -> Vec<[f64; STATES + INPUTS]> {
-    let moved = |values: &[f64], from: usize, to: usize| -> Vec<Dual<{ STATES + INPUTS }>> {
-        let at = |(index, value): (usize, &f64)| match from + index < to {
-            true => Dual::variable(*value, from + index),
-            false => Dual::constant(*value),
+    let mut slopes = vec![[0.0; STATES + INPUTS]; signals.len()];
+    for first in (0..STATES + INPUTS).step_by(DIRECTIONS) {
+        let seeded = |values: &[f64], from: usize, to: usize| -> Vec<Dual<DIRECTIONS>> {
+            let at = |(index, value): (usize, &f64)| match (from + index).checked_sub(first) {
+                Some(direction) if from + index < to => Dual::variable(*value, direction),
+                _ => Dual::constant(*value),
+            };
+            values.iter().enumerate().map(at).collect()
         };
-        values.iter().enumerate().map(at).collect()
-    };
-    let (state, inputs) = (moved(&rest.state, 0, STATES), moved(&rest.all_inputs(), STATES, STATES + INPUTS));
-    let outputs = machine.outputs(&state, &inputs);
-    signals.iter().map(|signal| *outputs[place(signal)].gradient()).collect()
+        let states = seeded(&rest.state, 0, STATES);
+        let inputs = seeded(&rest.all_inputs(), STATES, STATES + INPUTS);
+        let outputs = machine.outputs(&states, &inputs);
+        for (signal, slopes) in signals.iter().zip(&mut slopes) {
+            let found = outputs[place(signal)];
+            slopes.iter_mut().skip(first).zip(found.gradient()).for_each(|(slope, found)| *slope = *found);
+        }
+    }
+    slopes
 }
 
 /// These states of a machine and then these inputs, for one unit of its command and of the motion

@@ -6,7 +6,7 @@
 use phea_dynamics::linear::StateSpace;
 use phea_dynamics::portable::{cosh, expm1, pow};
 use phea_dynamics::scalar::{Dependence, Dual, LANES, Lanes, Parameters};
-use phea_dynamics::simulation::Plant;
+use phea_dynamics::simulation::{DIRECTIONS, Plant};
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::contact::Contact;
 use phea_hydraulics::cylinder::{Cylinder, annulus_area};
@@ -283,6 +283,23 @@ fn forces_that_are_told_accelerate_the_piston() {
     assert!(stopped > 20, "{stopped}");
 }
 
+/// State, command and inputs with the derivatives of the first, of the next and so on by
+/// themselves: a few from this one on.
+fn seeded(
+    (state, command, inputs): (&[f64], f64, &[f64]),
+    first: usize,
+) -> (Vec<Dual<DIRECTIONS>>, Dual<DIRECTIONS>, Vec<Dual<DIRECTIONS>>) {
+    let all = state.iter().chain([&command]).chain(inputs);
+    let variable = |(index, &value): (usize, &f64)| match index.checked_sub(first) {
+        Some(direction) => Dual::variable(value, direction),
+        None => Dual::constant(value),
+    };
+    let mut states: Vec<_> = all.enumerate().map(variable).collect();
+    let mut others = states.split_off(state.len());
+    let inputs = others.split_off(1);
+    (states, others[0], inputs)
+}
+
 /// Derivatives by dual numbers agree with central differences, and differ from zero only where the
 /// pattern says so.
 #[test]
@@ -300,16 +317,20 @@ fn jacobians_are_slopes_and_keep_to_their_pattern() {
         );
         for _ in 0..40 {
             let (state, command, inputs) = some_state(&machine, &mut noise);
-            let duals: Vec<Dual<40>> =
-                state.iter().enumerate().map(|(index, &value)| Dual::variable(value, index)).collect();
-            let mut rates = vec![Dual::constant(0.0); count];
-            let held: Vec<Dual<40>> = inputs.iter().map(|&value| Dual::constant(value)).collect();
-            machine.rates(&duals, Dual::variable(command, count), &held, &mut rates);
             let plain = rates_of(&machine, &state, command, &inputs);
-            for (row, rate) in rates.iter().enumerate() {
+            let slopes_from = |first: usize| {
+                let (states, command, inputs) = seeded((&state, command, &inputs), first);
+                let mut rates = vec![Dual::constant(0.0); count];
+                machine.rates(&states, command, &inputs, &mut rates);
+                rates
+            };
+            let by_parts: Vec<Vec<Dual<DIRECTIONS>>> =
+                (0..count).step_by(DIRECTIONS).map(slopes_from).collect();
+            for (row, rate) in by_parts.iter().flat_map(|rates| rates.iter().enumerate()) {
                 assert!((rate.value() - plain[row]).abs() <= 1e-12 * plain[row].abs());
             }
             for column in 0..count {
+                let rates = &by_parts[column / DIRECTIONS];
                 let step = 1e-6 * machine.scales()[column];
                 let moved = |by: f64| {
                     let mut moved = state.clone();
@@ -318,7 +339,7 @@ fn jacobians_are_slopes_and_keep_to_their_pattern() {
                 };
                 let (ahead, behind, near) = (moved(step), moved(-step), moved(0.5 * step));
                 for (row, rate) in rates.iter().enumerate() {
-                    let slope = rate.gradient()[column];
+                    let slope = rate.gradient()[column % DIRECTIONS];
                     assert!(slope == 0.0 || pattern[row].includes(column), "({row}, {column})");
                     let difference = (ahead[row] - behind[row]) / (2.0 * step);
                     let kink = (near[row] - plain[row]) / (0.5 * step);
@@ -358,22 +379,24 @@ fn small_motions_are_those_of_the_two_pressure_model() {
 }
 
 fn compare(machine: &Machine, system: &StateSpace, state: &[f64], command: f64, inputs: &[f64; 2]) {
-    let duals: Vec<Dual<8>> =
-        state.iter().enumerate().map(|(index, &value)| Dual::variable(value, index)).collect();
-    let mut rates = vec![Dual::constant(0.0); 6];
-    let inputs = [Dual::constant(inputs[0]), Dual::variable(inputs[1], 7)];
-    machine.rates(&duals, Dual::variable(command, 6), &inputs, &mut rates);
-    for (row, rate) in rates.iter().enumerate() {
-        for (column, &found) in rate.gradient().iter().enumerate() {
+    let slopes_from = |first: usize| {
+        let (states, command, inputs) = seeded((state, command, inputs), first);
+        let mut rates = vec![Dual::constant(0.0); 6];
+        machine.rates(&states, command, &inputs, &mut rates);
+        (rates, machine.measurement(&states, &inputs))
+    };
+    let ((by_state, sensed), (by_input, _)) = (slopes_from(0), slopes_from(6));
+    for row in 0..6 {
+        // six states, the command, and of the inputs the second
+        let (states, [command, _, velocity, ..]) = (by_state[row].gradient(), *by_input[row].gradient());
+        for (column, &found) in states.iter().chain(&[command, velocity]).enumerate() {
             let expected = if column < 6 { system.a()[(row, column)] } else { system.b()[(row, column - 6)] };
             // What the deflection does to the compliances vanishes with the net flow.
-            let scale =
-                if column == 4 && row < 4 { rate.gradient()[5].abs() * 100.0 } else { expected.abs() };
+            let scale = if column == 4 && row < 4 { states[5].abs() * 100.0 } else { expected.abs() };
             assert!((found - expected).abs() <= 1e-8 * scale, "({row}, {column}): {found}, {expected}");
         }
     }
-    let sensed = machine.measurement(&duals, &inputs).gradient()[4];
-    assert_eq!(sensed, system.c()[(0, 4)]);
+    assert_eq!(sensed.gradient()[4], system.c()[(0, 4)]);
 }
 
 /// At an operating point nothing moves, whatever the machine has.

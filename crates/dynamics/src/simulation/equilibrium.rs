@@ -3,10 +3,9 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::System;
+use super::derivatives::DIRECTIONS;
 use crate::scalar::Dual;
 
-/// Derivatives found at once.
-const DIRECTIONS: usize = 4;
 /// Newton steps, and halvings of each.
 const STEPS: usize = 100;
 const HALVINGS: usize = 40;

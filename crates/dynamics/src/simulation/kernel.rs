@@ -2,11 +2,12 @@
 
 use pulp::{Simd, WithSimd};
 
+use super::derivatives::DIRECTIONS;
 use super::growth::Sliding;
 use super::method::StepInputs;
 use super::pattern::JacobianPattern;
 use super::propagator::Propagator;
-use super::rosenbrock::{DIRECTIONS, Rosenbrock};
+use super::rosenbrock::Rosenbrock;
 use super::{Lane, System};
 use crate::scalar::{Dependence, Dual};
 

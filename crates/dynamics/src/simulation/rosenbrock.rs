@@ -2,6 +2,7 @@
 
 use nalgebra::DMatrix;
 
+use super::derivatives::DIRECTIONS;
 use super::growth::AmplitudeLost;
 use super::kernel::{Kernel, StepTrial};
 use super::method::{Extension, LOOKED_AT, StepInputs, relative_error};
@@ -13,9 +14,6 @@ use crate::scalar::{Dependence, Dual};
 
 /// Stages of the method.
 const STAGES: usize = 8;
-
-/// Derivatives found in one evaluation.
-pub(super) const DIRECTIONS: usize = 6;
 
 /// Times the step: a rate beyond which what lies between the ends of a step is looked after.
 const STIFF: f64 = 1e3;

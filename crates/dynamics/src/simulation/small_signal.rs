@@ -4,8 +4,8 @@ use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 
 use super::System;
+use super::derivatives::{DerivativeColumn, derivatives};
 use crate::portable;
-use crate::scalar::Dual;
 
 /// Complex amplitudes of all states under sines on the inputs about an equilibrium; `None` where
 /// the equations have no unique solution.
@@ -56,8 +56,7 @@ pub fn small_signal<E: System<f64>>(
     if state.len() != states || inputs.len() != own + waves {
         return None;
     }
-    let columns: Vec<DerivativeColumn> =
-        (0..states + own + waves).map(|place| column(system, state, inputs, place, waves)).collect();
+    let columns = derivatives(system, state, inputs, waves);
     let late = delays.iter().map(|delay| Complex64::new(0.0, -frequency_rad_per_s * delay));
     let late: Vec<Complex64> = late.map(portable::exp_complex).collect();
     // unknowns are the states and then the waves, each over its scale, as real part and imaginary
@@ -99,30 +98,4 @@ pub fn small_signal<E: System<f64>>(
         .map(|row| Complex64::new(solution[row], solution[row + unknowns]) * scales[row])
         .collect();
     amplitudes.iter().all(|amplitude| amplitude.is_finite()).then_some(amplitudes)
-}
-
-/// Derivatives with respect to one state or input.
-struct DerivativeColumn {
-    rates: Vec<f64>,
-    sent: Vec<f64>,
-}
-
-fn column<E: System<f64>>(
-    system: &E,
-    state: &[f64],
-    inputs: &[f64],
-    place: usize,
-    waves: usize,
-) -> DerivativeColumn {
-    let dual = |values: &[f64], from: usize| -> Vec<Dual<1>> {
-        let one = |(index, value): (usize, &f64)| Dual::new(*value, [f64::from(from + index == place)]);
-        values.iter().enumerate().map(one).collect()
-    };
-    let (state, inputs) = (dual(state, 0), dual(inputs, state.len()));
-    let slopes = |duals: &[Dual<1>]| duals.iter().map(|dual| dual.gradient()[0]).collect();
-    let mut rates = vec![Dual::constant(0.0); state.len()];
-    system.rates(&state, &inputs, &mut rates);
-    let mut sent = vec![Dual::constant(0.0); waves];
-    system.outgoing(&state, &inputs, &mut sent);
-    DerivativeColumn { rates: slopes(&rates), sent: slopes(&sent) }
 }

@@ -3,7 +3,7 @@
 use super::Drive;
 use crate::scalar::{Dependence, Dual};
 use crate::simulation::course::{SimulationError, SimulationSettings, Status};
-use crate::simulation::rosenbrock::DIRECTIONS;
+use crate::simulation::derivatives::DIRECTIONS;
 use crate::simulation::slot::Slot;
 use crate::simulation::task::Queue;
 use crate::simulation::vector::can_drive;
