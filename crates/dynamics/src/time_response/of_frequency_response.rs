@@ -31,48 +31,93 @@ pub fn step_of_frequency_response(
     count: usize,
     is_sampled: bool,
 ) -> Vec<f64> {
-    let impulse = |time_s: f64| 2.0 / PI * cosine_integral(real_parts, time_s);
+    let mut impulse = CosineIntegrals::new(real_parts);
     let mut response = Vec::with_capacity(count);
     if is_sampled {
-        let mut sum = -0.5 * step_s * impulse(0.0);
+        let mut sum = -0.5 * step_s * impulse.at_zero();
+        impulse.step_by(step_s);
         for sample in 0..count {
-            sum += step_s * impulse(sample as f64 * step_s);
+            sum += step_s * if sample == 0 { impulse.at_zero() } else { impulse.next() };
             response.push(sum);
         }
         return response;
     }
-    let (mut sum, mut before) = (0.0, impulse(0.0));
-    for sample in 0..count {
+    let (mut sum, mut before) = (0.0, impulse.at_zero());
+    impulse.step_by(0.5 * step_s);
+    for _ in 0..count {
         response.push(sum);
-        let [middle, after] = [0.5, 1.0].map(|part| impulse((sample as f64 + part) * step_s));
+        let (middle, after) = (impulse.next(), impulse.next());
         sum += step_s / 6.0 * (before + 4.0 * middle + after);
         before = after;
     }
     response
 }
 
-/// Integral of R(w) cos(w t), R straight between its points.
+/// Steps after which cosines are computed anew: rounding adds up in between.
+const STEPS_BETWEEN: usize = 32;
+
+/// 2/pi times the integral of R(w) cos(w t) at one time after another, R straight between its
+/// points.
 ///
 /// ```text
 /// of (r + q (w - a)) cos(w t) from a to b = [(r + q (w - a)) sin(w t)/t + q cos(w t)/t^2]
+/// e^(j w (t + h)) = e^(j w t) e^(j w h)
 /// ```
-fn cosine_integral(points: &[(f64, f64)], time: f64) -> f64 {
-    let (Some(&(first, at_first)), Some(&(last, at_last))) = (points.first(), points.last()) else {
-        return 0.0;
-    };
-    if time == 0.0 {
-        let pieces = points.windows(2).map(|pair| 0.5 * (pair[1].0 - pair[0].0) * (pair[0].1 + pair[1].1));
-        return first * at_first + pieces.sum::<f64>();
+struct CosineIntegrals<'a> {
+    points: &'a [(f64, f64)],
+    /// q between each point and the next.
+    slopes: Vec<f64>,
+    step_s: f64,
+    steps: usize,
+    /// cos(w t) and sin(w t) of each point.
+    turned: Vec<[f64; 2]>,
+    /// The same of one step.
+    turns: Vec<[f64; 2]>,
+}
+
+impl CosineIntegrals<'_> {
+    fn new(points: &[(f64, f64)]) -> CosineIntegrals<'_> {
+        let slope = |pair: &[(f64, f64)]| (pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0);
+        let slopes = points.windows(2).map(slope).collect();
+        CosineIntegrals { points, slopes, step_s: 0.0, steps: 0, turned: vec![], turns: vec![] }
     }
-    let mut sum = at_last * sin(last * time) / time;
-    let mut before = cos(first * time);
-    for pair in points.windows(2) {
-        let slope = (pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0);
-        let after = cos(pair[1].0 * time);
-        sum += slope * (after - before) / (time * time);
-        before = after;
+
+    fn at_zero(&self) -> f64 {
+        let pieces =
+            self.points.windows(2).map(|pair| 0.5 * (pair[1].0 - pair[0].0) * (pair[0].1 + pair[1].1));
+        let below = self.points.first().map_or(0.0, |(first, value)| first * value);
+        2.0 / PI * (below + pieces.sum::<f64>())
     }
-    sum
+
+    /// What [`CosineIntegrals::next`] adds to the time, which is zero.
+    fn step_by(&mut self, step_s: f64) {
+        (self.step_s, self.steps) = (step_s, 0);
+        self.turns = self.at(step_s);
+    }
+
+    fn at(&self, time: f64) -> Vec<[f64; 2]> {
+        self.points.iter().map(|(frequency, _)| [cos(frequency * time), sin(frequency * time)]).collect()
+    }
+
+    /// The integral one step later.
+    fn next(&mut self) -> f64 {
+        self.steps += 1;
+        let time = self.steps as f64 * self.step_s;
+        if self.steps % STEPS_BETWEEN == 1 {
+            self.turned = self.at(time);
+        } else {
+            for ([cosine, sine], [cosine_of_step, sine_of_step]) in self.turned.iter_mut().zip(&self.turns) {
+                let before = *cosine;
+                *cosine = before * cosine_of_step - *sine * sine_of_step;
+                *sine = *sine * cosine_of_step + before * sine_of_step;
+            }
+        }
+        let ends = self.points.last().zip(self.turned.last());
+        let at_last = ends.map_or(0.0, |((_, value), [_, sine])| value * sine / time);
+        let between = self.turned.windows(2).zip(&self.slopes);
+        let pieces = between.map(|(pair, slope)| slope * (pair[1][0] - pair[0][0]));
+        2.0 / PI * (at_last + pieces.sum::<f64>() / (time * time))
+    }
 }
 
 #[cfg(test)]
@@ -102,6 +147,28 @@ mod tests {
             let exact = 1.0 - decay * (cos(turning * t) + damping * own / turning * sin(turning * t));
             let exact = if t > 0.0 { exact } else { 0.0 };
             assert!((found - exact).abs() < 2e-4, "{found} {exact} at {t} s");
+        }
+    }
+
+    /// The closed form of each piece, by cosines of their own, over more steps than go without.
+    #[test]
+    fn integrals_are_those_of_cosines_of_their_own() {
+        let points: Vec<(f64, f64)> =
+            (0..3000).map(|k| f64::from(k) * 1.3).map(|w| (w, 1.0 / (1.0 + w * w / 9e4))).collect();
+        let mut integrals = CosineIntegrals::new(&points);
+        integrals.step_by(5e-4);
+        for step in 1..=5 * STEPS_BETWEEN {
+            let time = step as f64 * 5e-4;
+            let piece = |pair: &[(f64, f64)]| {
+                let [(from, at_from), (to, at_to)] = [pair[0], pair[1]];
+                let slope = (at_to - at_from) / (to - from);
+                (at_to * sin(to * time) - at_from * sin(from * time)) / time
+                    + slope * (cos(to * time) - cos(from * time)) / (time * time)
+            };
+            // ORIGIN: analytic, the integral over each straight piece
+            let expected = 2.0 / PI * points.windows(2).map(piece).sum::<f64>();
+            let found = integrals.next();
+            assert!((found - expected).abs() < 1e-9 * integrals.at_zero(), "{found} {expected} at {time} s");
         }
     }
 
