@@ -1,5 +1,5 @@
-//! The test command: stages one after the other, comparisons in parallel with them, the time of
-//! each in a table at the end.
+//! The test command: stages one after the other, comparisons and the check of the repository in
+//! parallel with them, the time of each in a table at the end.
 //!
 //! A stage that fails does not stop the later ones, so that one run shows everything that has to be
 //! mended.
@@ -13,6 +13,7 @@ pub(crate) use linted::in_place_of_the_compiler;
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 /// How a stage ended.
@@ -72,13 +73,16 @@ const STAGES: &[(&str, Stage)] = &[
     ("tests", tests),
     ("doctests", doctests),
     ("stories", stories),
-    ("tidy", tidy),
+    (TIDY, tidy),
     ("wasm32", wasm32),
     ("peers", peers),
     (COMPARISONS, comparisons::run),
     (MUTATION, mutation),
     (SOAK, soak),
 ];
+
+/// The stage that begins with the first one, and is told of in its turn.
+const TIDY: &str = "tidy";
 
 /// The stage whose scripts run in parallel with the others.
 const COMPARISONS: &str = "comparisons";
@@ -122,15 +126,19 @@ pub(crate) fn run(root: &Path, wanted: &[&str]) -> bool {
         }
     };
     let built = Built { root: root.to_path_buf(), variables, once: is_strict() || is_fresh(&target(root)) };
-    // A build often waits for one crate: the second processor compares meanwhile.
+    // A build often waits for one crate: the second processor tidies and compares meanwhile.
+    let mut tidied = chosen(TIDY).then(|| tidying(root));
     let mut begun = chosen(COMPARISONS).then(|| comparisons::begin(root));
     let mut results = Vec::new();
     for (name, stage) in STAGES.iter().filter(|(name, _)| chosen(name)) {
         println!("\n==== {name}");
         let start = Instant::now();
-        let outcome = match begun.take_if(|_| *name == COMPARISONS) {
-            Some(begun) => comparisons::end(&built, begun),
-            None => stage(&built),
+        let outcome = match *name {
+            TIDY => tidied.take().map_or_else(|| stage(&built), tidied_by),
+            COMPARISONS => {
+                begun.take().map_or_else(|| stage(&built), |begun| comparisons::end(&built, begun))
+            }
+            _ => stage(&built),
         };
         if let (BUILD, Outcome::Passed, Some(begun)) = (*name, &outcome, begun.as_mut()) {
             begun.ask_phea();
@@ -316,7 +324,22 @@ fn doctests(built: &Built) -> Outcome {
 }
 
 fn tidy(built: &Built) -> Outcome {
-    if crate::tidy::report(&built.root) { Outcome::Passed } else { Outcome::Failed("see above".to_string()) }
+    tidied_by(tidying(&built.root))
+}
+
+/// The check of the repository, in parallel with what follows.
+fn tidying(root: &Path) -> JoinHandle<(bool, String)> {
+    let root = root.to_path_buf();
+    std::thread::spawn(move || crate::tidy::report(&root))
+}
+
+/// Its outcome, once it has one.
+fn tidied_by(tidying: JoinHandle<(bool, String)>) -> Outcome {
+    let Ok((is_tidy, told)) = tidying.join() else {
+        return Outcome::Failed("the check ended early".to_string());
+    };
+    print!("{told}");
+    if is_tidy { Outcome::Passed } else { Outcome::Failed("see above".to_string()) }
 }
 
 /// The crates that only compute build for the browser.
@@ -357,6 +380,6 @@ mod tests {
 
     #[test]
     fn every_stage_that_is_special_is_one() {
-        assert!([COMPARISONS, BUILD, MUTATION, SOAK].iter().all(|name| STAGE_NAMES.contains(name)));
+        assert!([TIDY, COMPARISONS, BUILD, MUTATION, SOAK].iter().all(|name| STAGE_NAMES.contains(name)));
     }
 }

@@ -29,8 +29,8 @@ fn main() -> ExitCode {
         ["ci", stages @ ..] => ci::run(&root(), stages),
         ["bench"] => bench::run(&root(), false),
         ["bench", "build"] => bench::run(&root(), true),
-        ["tidy"] => tidy::report(&root()),
-        ["tidy", elsewhere] => tidy::report(Path::new(elsewhere)),
+        ["tidy"] => is_tidy(&root()),
+        ["tidy", elsewhere] => is_tidy(Path::new(elsewhere)),
         _ => {
             eprintln!("{USAGE}");
             return ExitCode::from(2);
@@ -43,4 +43,11 @@ fn main() -> ExitCode {
 fn root() -> PathBuf {
     let package = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
     package.parent().map_or(package.clone(), |folder| folder.to_path_buf())
+}
+
+/// Prints what is untidy; whether nothing is.
+fn is_tidy(root: &Path) -> bool {
+    let (is_tidy, told) = tidy::report(root);
+    print!("{told}");
+    is_tidy
 }

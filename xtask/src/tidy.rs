@@ -85,21 +85,15 @@ pub(crate) fn violations(repository: &Repository) -> Vec<(&'static str, Violatio
     CHECKS.iter().flat_map(named).collect()
 }
 
-/// Prints what is untidy; whether nothing is.
-pub(crate) fn report(root: &Path) -> bool {
+/// Whether nothing is untidy, and what is to be printed of it.
+pub(crate) fn report(root: &Path) -> (bool, String) {
     let repository = match Repository::read(root) {
         Ok(repository) => repository,
-        Err(error) => {
-            println!("cannot read {}: {error}", root.display());
-            return false;
-        }
+        Err(error) => return (false, format!("cannot read {}: {error}\n", root.display())),
     };
     let found = violations(&repository);
-    for (check, violation) in &found {
-        println!("{violation} [{check}]");
-    }
-    println!("tidy: {} checks, {} violations", CHECKS.len(), found.len());
-    found.is_empty()
+    let each: String = found.iter().map(|(check, violation)| format!("{violation} [{check}]\n")).collect();
+    (found.is_empty(), format!("{each}tidy: {} checks, {} violations\n", CHECKS.len(), found.len()))
 }
 
 /// Every Rust file parses, or no other check would see it.

@@ -16,6 +16,7 @@ mod linkage;
 mod machine_components;
 mod machine_conservation;
 mod machine_equations;
+mod machine_slopes;
 mod measured_velocity;
 mod motor;
 mod neck;

@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Mutex;
 
 use num_complex::Complex64;
 use phea_workbench::catalogue::Catalogue;
@@ -398,47 +399,67 @@ fn others(entry: &KeyEntry, project: &Project) -> (Vec<String>, bool) {
     (values, true)
 }
 
-/// The keys of the tables above that can be changed, with what they move, and the others.
-fn moved() -> (BTreeMap<String, BTreeSet<&'static str>>, BTreeSet<String>) {
-    let mut moved: BTreeMap<String, BTreeSet<&'static str>> = BTreeMap::new();
+/// What each key moves, as far as it was tried.
+type Moved = BTreeMap<String, BTreeSet<&'static str>>;
+
+/// The keys of the tables above that can be changed, with what they move, and the others. Rigs are
+/// taken by as many threads as there are processors.
+fn moved() -> (Moved, BTreeSet<String>) {
     let keys: Vec<KeyEntry> = project::keys()
         .into_iter()
         .filter(|entry| TABLES.iter().any(|table| entry.path.starts_with(&format!("{table}."))))
         .filter(|entry| !entry.path.contains("[]") && !entry.path.contains("NAME"))
         .collect();
-    for (text, settings) in rigs() {
-        let settings: Vec<String> = settings.iter().map(ToString::to_string).collect();
-        let Some(own) = loaded(&text, &settings) else { panic!("{settings:?}") };
-        let before = computed(&own, [true; PARTS.len()]);
-        for entry in &keys {
-            // what is known to move is not tried again
-            let known = moved.get(&entry.path);
-            let open =
-                |index: usize| before[index].is_some() && known.is_none_or(|row| !row.contains(PARTS[index]));
-            let asked = std::array::from_fn(open);
-            if known.is_some() && asked == [false; PARTS.len()] {
+    let (moved, rigs) = (Mutex::new(Moved::new()), Mutex::new(rigs().into_iter()));
+    std::thread::scope(|scope| {
+        for _ in 0..std::thread::available_parallelism().map_or(1, usize::from) {
+            scope.spawn(|| {
+                loop {
+                    let Some((text, settings)) = rigs.lock().unwrap().next() else { break };
+                    let settings: Vec<String> = settings.iter().map(ToString::to_string).collect();
+                    try_keys(&text, &settings, &keys, &moved);
+                }
+            });
+        }
+    });
+    let moved = moved.into_inner().unwrap();
+    let untried = keys.into_iter().map(|entry| entry.path).filter(|path| !moved.contains_key(path)).collect();
+    (moved, untried)
+}
+
+/// Changes each key of one rig, and adds what it moves.
+fn try_keys(text: &str, settings: &[String], keys: &[KeyEntry], moved: &Mutex<Moved>) {
+    let Some(own) = loaded(text, settings) else { panic!("{settings:?}") };
+    let before = computed(&own, [true; PARTS.len()]);
+    for entry in keys {
+        // what is known to move is not tried again
+        let known = moved.lock().unwrap().get(&entry.path).cloned();
+        let open = |index: usize| {
+            before[index].is_some() && known.as_ref().is_none_or(|row| !row.contains(PARTS[index]))
+        };
+        let asked = std::array::from_fn(open);
+        if known.is_some() && asked == [false; PARTS.len()] {
+            continue;
+        }
+        let (others, one_is_enough) = others(entry, &own);
+        for other in others {
+            let changed = [settings, &[format!("{}={other}", entry.path)]].concat();
+            let Some(project) = loaded(text, &changed).filter(|project| *project != own) else {
                 continue;
+            };
+            let after = computed(&project, asked);
+            let mut moved = moved.lock().unwrap();
+            let row = moved.entry(entry.path.clone()).or_default();
+            for ((part, before), after) in PARTS.iter().zip(&before).zip(after) {
+                if before.is_some() && after.is_some() && *before != after {
+                    row.insert(part);
+                }
             }
-            let (others, one_is_enough) = others(entry, &own);
-            for other in others {
-                let changed = [&settings[..], &[format!("{}={other}", entry.path)]].concat();
-                let Some(project) = loaded(&text, &changed).filter(|project| *project != own) else {
-                    continue;
-                };
-                let row = moved.entry(entry.path.clone()).or_default();
-                for ((part, before), after) in PARTS.iter().zip(&before).zip(computed(&project, asked)) {
-                    if before.is_some() && after.is_some() && *before != after {
-                        row.insert(part);
-                    }
-                }
-                if one_is_enough {
-                    break;
-                }
+            if one_is_enough {
+                break;
             }
         }
     }
-    let untried = keys.into_iter().map(|entry| entry.path).filter(|path| !moved.contains_key(path)).collect();
-    (moved, untried)
 }
 
 /// The row of a key, without the reason.

@@ -5,7 +5,7 @@ use super::{Expression, Node, NodeIndex};
 
 /// Fewer operations than this cost less than finding what they gave before.
 const OPERATIONS_MINIMUM: usize = 200;
-/// Results of a block that are kept, of some 200 bytes each.
+/// Results of a costly part that are kept, of some 200 bytes each.
 const KEPT_MAXIMUM: usize = 200_000;
 
 /// Remembers what most operations of an expression gave, where they are computed from a few of its
@@ -20,19 +20,19 @@ pub struct EvaluationMemo(Option<Remembered>);
 #[derive(Clone, Debug)]
 struct Remembered {
     expression: Arc<Expression>,
-    block: Block,
-    /// What the block gave, by the bits of its parameters.
+    part: CostlyPart,
+    /// What the part gave, by the bits of its parameters.
     kept: BTreeMap<Vec<u64>, Vec<f64>>,
-    /// The last value of each operation: within the block only where the others need it.
+    /// The last value of each operation: within the part only where the others need it.
     values: Vec<f64>,
 }
 
 /// Operations over a few of the parameters.
 #[derive(Clone, Debug, Default, PartialEq)]
-struct Block {
+struct CostlyPart {
     parameters: Vec<usize>,
     operations: Vec<NodeIndex>,
-    /// Those of them that an operation outside of the block, or the reader of a result, needs.
+    /// Those of them that an operation outside of the part, or the reader of a result, needs.
     given: Vec<NodeIndex>,
     /// All other operations.
     others: Vec<NodeIndex>,
@@ -62,43 +62,43 @@ impl Remembered {
     fn new(expression: &Arc<Expression>) -> Remembered {
         Remembered {
             expression: Arc::clone(expression),
-            block: Block::of(expression),
+            part: CostlyPart::of(expression),
             kept: BTreeMap::new(),
             values: vec![0.0; expression.nodes().len()],
         }
     }
 
     fn evaluate(&mut self, parameters: &[f64]) -> Vec<f64> {
-        let Remembered { expression, block, kept, values } = self;
+        let Remembered { expression, part, kept, values } = self;
         let compute = |operations: &[NodeIndex], values: &mut [f64]| {
             for &index in operations {
                 values[index] = expression.nodes()[index].evaluate(parameters, values);
             }
         };
         let bits = |&index: &usize| parameters.get(index).map_or(0, |value| value.to_bits());
-        let key: Vec<u64> = block.parameters.iter().map(bits).collect();
+        let key: Vec<u64> = part.parameters.iter().map(bits).collect();
         match kept.get(&key) {
             Some(known) => {
-                for (&index, &value) in block.given.iter().zip(known) {
+                for (&index, &value) in part.given.iter().zip(known) {
                     values[index] = value;
                 }
             }
             None => {
-                compute(&block.operations, values);
+                compute(&part.operations, values);
                 if kept.len() < KEPT_MAXIMUM {
-                    kept.insert(key, block.given.iter().map(|&index| values[index]).collect());
+                    kept.insert(key, part.given.iter().map(|&index| values[index]).collect());
                 }
             }
         }
-        compute(&block.others, values);
+        compute(&part.others, values);
         expression.results().iter().map(|&index| values[index]).collect()
     }
 }
 
-impl Block {
+impl CostlyPart {
     /// Of the fewest parameters from which three quarters of the operations are computed; empty if
     /// that takes all of them.
-    fn of(expression: &Expression) -> Block {
+    fn of(expression: &Expression) -> CostlyPart {
         let nodes = expression.nodes();
         let needs = needs(nodes);
         let mut choices = needs.clone();
@@ -111,7 +111,7 @@ impl Block {
         };
         let chosen = choices.into_iter().find(|&choice| choice != all && is_most(choice));
         let Some(chosen) = chosen.filter(|_| expression.parameters().len() <= 64) else {
-            return Block { others: (0..nodes.len()).collect(), ..Block::default() };
+            return CostlyPart { others: (0..nodes.len()).collect(), ..CostlyPart::default() };
         };
         let (operations, others): (Vec<NodeIndex>, Vec<NodeIndex>) =
             (0..nodes.len()).partition(|&index| within(chosen)(&needs[index]));
@@ -121,7 +121,7 @@ impl Block {
         let given = operations.iter().copied().filter(|&index| is_given[index]).collect();
         let parameters =
             (0..expression.parameters().len()).filter(|index| chosen >> index & 1 == 1).collect();
-        Block { parameters, operations, given, others }
+        CostlyPart { parameters, operations, given, others }
     }
 }
 
@@ -183,13 +183,13 @@ mod tests {
     }
 
     #[test]
-    fn the_block_is_that_of_the_fewest_parameters() {
+    fn the_part_is_that_of_the_fewest_parameters() {
         let expression = expression();
-        let block = Block::of(&expression);
-        assert_eq!(block.parameters, [0, 2]);
-        assert_eq!(block.operations.len() + block.others.len(), expression.nodes().len());
-        assert!(block.others.len() < 10 && block.given.len() < 10, "{block:?}");
+        let part = CostlyPart::of(&expression);
+        assert_eq!(part.parameters, [0, 2]);
+        assert_eq!(part.operations.len() + part.others.len(), expression.nodes().len());
+        assert!(part.others.len() < 10 && part.given.len() < 10, "{part:?}");
         let all = Expression::record(&["a", "b"], |p| vec![(0..300).fold(p[0], |sum, _| (sum * p[1]).exp())]);
-        assert_eq!(Block::of(&all).operations, []);
+        assert_eq!(CostlyPart::of(&all).operations, []);
     }
 }
