@@ -333,8 +333,9 @@ impl Compensation {
     /// Those of [`Compensation::member`].
     ///
     /// # Example
-    /// 1/(1 + 4/s) at s = 3 j
+    /// An integrator of 4/s at 2 rad/s
     /// ```
+    /// use num_complex::Complex64;
     /// use phea_dynamics::controller::Controller;
     /// use phea_dynamics::linear::TransferFunction;
     /// use phea_dynamics::uncertain_plant::{PlantCoefficients, PlantMember, RationalCoefficients};
@@ -342,8 +343,8 @@ impl Compensation {
     /// let command = RationalCoefficients { numerator: vec![4.0], denominator: vec![1.0, 0.0] };
     /// let plant = PlantCoefficients { command, disturbance: None, dead_time_s: 0.0, rate: None };
     /// let compensation = Compensation::new(&Controller::default(), TransferFunction::gain_only(1.0))?;
-    /// let member = compensation.around(PlantMember::Rational(plant))?;
-    /// assert!(member.response(3.0).is_some());
+    /// let response = compensation.around(PlantMember::Rational(plant))?.response(2.0).ok_or("a pole")?;
+    /// assert!((response.plant - Complex64::new(0.0, -2.0)).norm_sqr() < 1e-24);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn around(&self, plant: PlantMember) -> Result<Member, LinearError> {
