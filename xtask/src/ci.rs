@@ -81,7 +81,8 @@ const STAGES: &[(&str, Stage)] = &[
     (SOAK, soak),
 ];
 
-/// The stage that begins with the first one, and is told of in its turn.
+/// The stage that runs from the beginning in parallel with the others; its result is printed in its
+/// own place.
 const TIDY: &str = "tidy";
 
 /// The stage whose scripts run in parallel with the others.

@@ -271,7 +271,7 @@ impl UncertainPlant {
         }
     }
 
-    /// The same, what most of it is computed from being remembered.
+    /// The same member, with what the memo remembers of those before.
     ///
     /// # Example
     /// ```

@@ -75,7 +75,7 @@ impl Remembered {
                 values[index] = expression.nodes()[index].evaluate(parameters, values);
             }
         };
-        let bits = |&index: &usize| parameters.get(index).map_or(0, |value| value.to_bits());
+        let bits = |&index: &usize| parameters.get(index).unwrap_or(&f64::NAN).to_bits();
         let key: Vec<u64> = part.parameters.iter().map(bits).collect();
         match kept.get(&key) {
             Some(known) => {
@@ -179,7 +179,15 @@ mod tests {
             let found = memo.evaluate(expression, point);
             assert_eq!(bits(found), bits(expression.evaluate(point)), "{point:?}");
         }
-        assert_eq!(memo.0.map(|one| one.kept.len()), Some(5));
+        assert_eq!(memo.0.as_ref().map(|one| one.kept.len()), Some(5));
+        // a missing value counts as NaN, and not as zero
+        for point in [&[1.0, 2.0, 0.0][..], &[1.0, 2.0]] {
+            assert_eq!(
+                bits(memo.evaluate(&expression, point)),
+                bits(expression.evaluate(point)),
+                "{point:?}"
+            );
+        }
     }
 
     #[test]
