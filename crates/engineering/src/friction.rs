@@ -31,7 +31,7 @@ use phea_dynamics::least_squares::Ending;
 use phea_dynamics::watch::Watch;
 use phea_hydraulics::friction::{FRICTION_COEFFICIENTS, LuGre};
 
-use self::problem::FrictionProblem;
+use self::problem::{FrictionProblem, KeptShapes};
 use crate::identify::IdentifyError;
 
 /// Names of the coefficients as `[cylinder.friction]` has them, and their units.
@@ -114,15 +114,16 @@ pub fn identify_friction(
     let finds_zero = goes_both_ways(&slides, &presses);
     let setting = (known.moving_mass, around);
     let mut problem = FrictionProblem::new(&recordings, &slides, (&presses, &shakes), setting, finds_zero);
-    let mut minimum = problem.searched(&problem.start(), ROUGH, watch)?;
+    let mut kept = KeptShapes::default();
+    let mut minimum = problem.searched(&problem.start(), ROUGH, &mut kept, watch)?;
     for _ in 0..ROUNDS {
         let change = problem.rescale(&minimum.linearised.residuals);
-        minimum = problem.searched(&minimum.variables, ROUGH, watch)?;
+        minimum = problem.searched(&minimum.variables, ROUGH, &mut kept, watch)?;
         if change < SAME_SCALE {
             break;
         }
     }
-    minimum = problem.searched(&minimum.variables, FINE, watch)?;
+    minimum = problem.searched(&minimum.variables, FINE, &mut kept, watch)?;
     if minimum.ending == Ending::NoStart || minimum.linearised.residuals.len() <= problem.count() {
         return Err(IdentifyError::Data("the recordings have too few rows to fit a friction".to_string()));
     }
@@ -131,7 +132,7 @@ pub fn identify_friction(
     let residual_rms = shown::residual_rms(&problem, &minimum);
     let independent = problem.channels.iter().map(|channel| channel.independent).fold(1.0, f64::min);
     let pressed = shown::pressed(&problem, &minimum);
-    let shaken = shown::shaken(&problem, &minimum);
+    let shaken = shown::shaken(&problem, &minimum, &mut kept);
     let ending = minimum.ending;
     Ok(FrictionIdentification {
         estimates,

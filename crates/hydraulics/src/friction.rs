@@ -10,7 +10,7 @@ pub use lugre::{LuGre, LuGrePassivity};
 pub use moving::{FrictionForce, MovingFriction};
 pub use stribeck::{Stribeck, StribeckShape};
 pub use tested::{
-    FRICTION_COEFFICIENTS, KnottedForce, MultisineForce, PressedMass, SLIDING_VARIABLES,
+    FRICTION_COEFFICIENTS, KnottedForce, MultisineForce, MultisineShapes, PressedMass, SLIDING_VARIABLES,
     SensitiveDisplacement, SlidBlock, TRENDS, trends,
 };
 

@@ -138,7 +138,7 @@ fn a_shaken_mass_moves_as_the_equations_say() {
     let exact = runge_kutta(&lugre, BEGINNING, &fine, 1e-5, 4);
     let at = |substeps| {
         let pressed = PressedMass { mass: MASS, time_step: 2e-4, substeps };
-        let moved = pressed.shaken(&lugre, BEGINNING, &force).displacements;
+        let moved = pressed.shaken(&lugre, BEGINNING, (&force.sizes, &pressed.shapes(&force))).displacements;
         assert_eq!(moved.len(), 600);
         moved.iter().zip(exact.iter().step_by(20)).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max)
     };
@@ -153,7 +153,8 @@ fn the_derivatives_of_a_shaken_mass_are_those_of_the_displacement() {
     let lugre = LuGre::from_array(NUMBERS);
     let force = shaking();
     let pressed = PressedMass { mass: MASS, time_step: 2e-4, substeps: 8 };
-    let found = pressed.shaken(&lugre, BEGINNING, &force);
+    let shapes = pressed.shapes(&force);
+    let found = pressed.shaken(&lugre, BEGINNING, (&force.sizes, &shapes));
     let units: Vec<f64> =
         NUMBERS.iter().chain(&[1e-3, 1e-6]).copied().chain(force.sizes.iter().map(|_| 10.0)).collect();
     let count = units.len();
@@ -163,8 +164,7 @@ fn the_derivatives_of_a_shaken_mass_are_those_of_the_displacement() {
             let mut all: Vec<f64> = NUMBERS.iter().chain(&BEGINNING).chain(&force.sizes).copied().collect();
             all[index] += 1e-4 * sign * unit;
             let numbers = std::array::from_fn(|place| all[place]);
-            let changed = MultisineForce { sizes: all[9..].to_vec(), ..force.clone() };
-            pressed.shaken(&LuGre::from_array(numbers), [all[7], all[8]], &changed).displacements
+            pressed.shaken(&LuGre::from_array(numbers), [all[7], all[8]], (&all[9..], &shapes)).displacements
         };
         let both: Vec<(f64, f64)> = moved(1.0).into_iter().zip(moved(-1.0)).collect();
         let differences: Vec<f64> = both.iter().map(|(more, less)| (more - less) / 2e-4).collect();

@@ -2,6 +2,8 @@
 
 mod shake;
 
+pub(super) use shake::KeptShapes;
+
 use phea_dynamics::least_squares::{Linearised, Minimum, Settings, minimise};
 use phea_dynamics::portable;
 use phea_dynamics::watch::{Stopped, Watch, tell};
@@ -220,13 +222,13 @@ impl<'a> FrictionProblem<'a> {
 
     /// Residuals over their scales, with derivatives; `None` where there is no such friction, or
     /// the simulation has no end.
-    pub(super) fn linearised(&self, variables: &[f64]) -> Option<Linearised> {
+    fn linearised(&self, variables: &[f64], kept: &mut KeptShapes) -> Option<Linearised> {
         let (lugre, zero) = self.friction(variables);
         if lugre.curve.coulomb <= 0.0 {
             return None;
         }
-        let mut rows =
-            ResidualRows { count: self.count(), found: Linearised { residuals: vec![], jacobian: vec![] } };
+        let all = self.channels.last().map_or(0, |channel| channel.residuals[1]);
+        let mut rows = ResidualRows::with_room_for(all, self.count());
         let mut channels = self.channels.iter();
         let mut recording = None;
         let mut scale = 1.0;
@@ -250,7 +252,7 @@ impl<'a> FrictionProblem<'a> {
             let scales = [channels.next()?, channels.next()?].map(FrictionChannel::effective_scale);
             let count = shake.variable_count();
             let own = variables.get(first..first + count)?;
-            self.shake(shake, (&lugre, zero), (first, own), scales, &mut rows)?;
+            self.shake(shake, (&lugre, zero), (first, own), scales, (kept, &mut rows))?;
             first += count;
         }
         Some(rows.found)
@@ -339,6 +341,7 @@ impl<'a> FrictionProblem<'a> {
         &self,
         start: &[f64],
         tolerance: f64,
+        kept: &mut KeptShapes,
         watch: Watch<'_>,
     ) -> Result<Minimum, Stopped> {
         let settings = Settings { maximum_evaluations: EVALUATIONS, tolerance, ..Settings::default() };
@@ -346,7 +349,7 @@ impl<'a> FrictionProblem<'a> {
         minimise(start, &self.bounds(), settings, &mut |variables| {
             done += 1;
             tell(watch, "fitting", done, EVALUATIONS)?;
-            Ok(self.linearised(variables))
+            Ok(self.linearised(variables, kept))
         })
     }
 
@@ -402,6 +405,11 @@ struct ResidualRows {
 }
 
 impl ResidualRows {
+    fn with_room_for(residuals: usize, count: usize) -> ResidualRows {
+        let jacobian = Vec::with_capacity(residuals * count);
+        ResidualRows { count, found: Linearised { residuals: Vec::with_capacity(residuals), jacobian } }
+    }
+
     /// The derivatives of a further residual, all zero yet.
     fn next(&mut self, residual: f64) -> &mut [f64] {
         self.found.residuals.push(residual);

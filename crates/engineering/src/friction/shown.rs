@@ -6,7 +6,7 @@ use phea_hydraulics::friction::KnottedForce;
 use super::FrictionIdentification;
 use super::motion::ConstantVelocity;
 use super::pressing::PressedRows;
-use super::problem::{FrictionProblem, SHARED};
+use super::problem::{FrictionProblem, KeptShapes, SHARED};
 use super::shaking::ShakenRows;
 
 /// The friction force at a constant velocity. Units: m/s, N.
@@ -92,21 +92,26 @@ impl FrictionIdentification {
 }
 
 /// Force and position of each shake.
-pub(super) fn shaken(problem: &FrictionProblem<'_>, minimum: &Minimum) -> Vec<PressedCurve> {
+pub(super) fn shaken(
+    problem: &FrictionProblem<'_>,
+    minimum: &Minimum,
+    kept: &mut KeptShapes,
+) -> Vec<PressedCurve> {
     let (lugre, zero) = problem.friction(&minimum.variables);
     let mut first = problem.first_of_shakes();
     let of = |shake: &ShakenRows| {
         let own = minimum.variables.get(first..first + shake.variable_count())?;
         first += shake.variable_count();
         let recording = problem.recordings.get(shake.recording)?;
-        let found = problem.shake_of(shake, own)?;
+        let found = problem.shake_of(own)?;
         let start = recording.positions.first()? + found.begins;
-        let modelled = found.measured.along(shake.force.rows, recording.time_step);
+        let modelled = kept.at_rows(shake, recording.time_step).times(&found.sizes);
+        let moved = found.moved((problem.mass, recording.time_step), &lugre, zero, (shake, kept));
         Some(PressedCurve {
             forces: recording.forces.iter().map(|force| force - zero).collect(),
             positions: recording.positions.iter().map(|at| at - start).collect(),
             modelled_forces: modelled.into_iter().map(|force| force - zero).collect(),
-            modelled_positions: found.moved(problem.mass, &lugre, zero, recording.time_step).displacements,
+            modelled_positions: moved.displacements,
         })
     };
     problem.shakes.iter().filter_map(of).collect()

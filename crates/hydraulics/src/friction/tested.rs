@@ -5,7 +5,7 @@ mod multisine;
 mod pressed;
 mod sliding;
 
-pub use multisine::{MultisineForce, TRENDS, trends};
+pub use multisine::{MultisineForce, MultisineShapes, TRENDS, trends};
 pub use pressed::{KnottedForce, PressedMass, SensitiveDisplacement};
 pub use sliding::{SLIDING_VARIABLES, SlidBlock};
 

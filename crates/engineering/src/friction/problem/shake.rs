@@ -1,6 +1,10 @@
 //! The residuals of a piston that is shaken.
 
-use phea_hydraulics::friction::{FRICTION_COEFFICIENTS, LuGre, MultisineForce, PressedMass};
+use std::collections::BTreeMap;
+
+use phea_hydraulics::friction::{
+    FRICTION_COEFFICIENTS, LuGre, MultisineShapes, PressedMass, SensitiveDisplacement,
+};
 
 use super::{FrictionProblem, ResidualRows, ZERO};
 use crate::friction::shaking::ShakenRows;
@@ -23,8 +27,35 @@ pub(in crate::friction) struct Shake {
     pub(in crate::friction) begins: f64,
     /// m/s and m, velocity and deflection then.
     start: [f64; 2],
-    /// As the instruments show it.
-    pub(in crate::friction) measured: MultisineForce,
+    /// N, the sizes of the force as the instruments show it.
+    pub(in crate::friction) sizes: Vec<f64>,
+}
+
+/// What the sizes of the forces that shake are multiplied by, of each recording: a search asks for
+/// the same again and again.
+#[derive(Debug, Default)]
+pub(in crate::friction) struct KeptShapes {
+    at_rows: BTreeMap<usize, MultisineShapes>,
+    /// With the number of steps between two rows that was asked for last.
+    at_steps: BTreeMap<usize, (usize, MultisineShapes)>,
+}
+
+impl KeptShapes {
+    /// At the rows.
+    pub(in crate::friction) fn at_rows(&mut self, shake: &ShakenRows, time_step: f64) -> &MultisineShapes {
+        let of = || shake.force.shapes(shake.force.rows, time_step);
+        self.at_rows.entry(shake.recording).or_insert_with(of)
+    }
+
+    /// At the steps of the integration of this mass.
+    fn at_steps(&mut self, shake: &ShakenRows, shaken: PressedMass) -> &MultisineShapes {
+        let of = || (shaken.substeps, shaken.shapes(&shake.force));
+        let kept = self.at_steps.entry(shake.recording).or_insert_with(of);
+        if kept.0 != shaken.substeps {
+            *kept = of();
+        }
+        &kept.1
+    }
 }
 
 impl ShakenRows {
@@ -58,7 +89,7 @@ impl FrictionProblem<'_> {
     }
 
     /// By the variables of its own.
-    pub(in crate::friction) fn shake_of(&self, shake: &ShakenRows, own: &[f64]) -> Option<Shake> {
+    pub(in crate::friction) fn shake_of(&self, own: &[f64]) -> Option<Shake> {
         let (beginnings, sizes) = own.split_at_checked(BEGINNINGS)?;
         let [begins, velocity, deflection] = *beginnings else { return None };
         let length = self.around.length;
@@ -66,7 +97,7 @@ impl FrictionProblem<'_> {
         Some(Shake {
             begins: begins * length,
             start: [velocity * self.ringing_velocity(), deflection * length],
-            measured: MultisineForce { sizes, ..shake.force.clone() },
+            sizes,
         })
     }
 
@@ -76,22 +107,22 @@ impl FrictionProblem<'_> {
         (lugre, zero): (&LuGre, f64),
         (first, own): (usize, &[f64]),
         [force_scale, position_scale]: [f64; 2],
-        rows: &mut ResidualRows,
+        (kept, rows): (&mut KeptShapes, &mut ResidualRows),
     ) -> Option<()> {
         let force = self.around.force;
         let recording = self.recordings.get(shake.recording)?;
-        let found = self.shake_of(shake, own)?;
+        let found = self.shake_of(own)?;
         let count = shake.force.sizes.len();
         let sizes_from = first + BEGINNINGS;
-        let shapes = shake.force.shapes(shake.force.rows, recording.time_step);
-        for (shapes, shown) in shapes.chunks_exact(count).zip(&recording.forces) {
-            let modelled: f64 = shapes.iter().zip(&found.measured.sizes).map(|(one, size)| one * size).sum();
+        let shapes = kept.at_rows(shake, recording.time_step);
+        for (shapes, shown) in shapes.rows().zip(&recording.forces) {
+            let modelled: f64 = shapes.iter().zip(&found.sizes).map(|(one, size)| one * size).sum();
             let row = rows.next((modelled - shown) / force_scale);
             for (to, shape) in row.iter_mut().skip(sizes_from).zip(shapes) {
                 *to = shape * force / force_scale;
             }
         }
-        let moved = found.moved(self.mass, lugre, zero, recording.time_step);
+        let moved = found.moved((self.mass, recording.time_step), lugre, zero, (shake, kept));
         let start = recording.positions.first()? + found.begins;
         let slopes = moved.gradients.chunks_exact(FRICTION_COEFFICIENTS + 2 + count);
         for ((moved, gradient), shown) in moved.displacements.iter().zip(slopes).zip(&recording.positions) {
@@ -122,16 +153,17 @@ impl Shake {
     /// The displacement from the first row, where the instruments show so much force without any.
     pub(in crate::friction) fn moved(
         &self,
-        mass: f64,
+        (mass, time_step): (f64, f64),
         lugre: &LuGre,
         zero: f64,
-        time_step: f64,
-    ) -> phea_hydraulics::friction::SensitiveDisplacement {
-        let mut acting = self.measured.clone();
-        acting.sizes.iter_mut().take(1).for_each(|mean| *mean -= zero);
+        (shake, kept): (&ShakenRows, &mut KeptShapes),
+    ) -> SensitiveDisplacement {
+        let mut acting = self.sizes.clone();
+        acting.iter_mut().take(1).for_each(|mean| *mean -= zero);
         let ringing = (lugre.bristle_stiffness / mass).sqrt();
-        let fastest = acting.frequencies.iter().copied().fold(ringing, f64::max);
+        let fastest = shake.force.frequencies.iter().copied().fold(ringing, f64::max);
         let substeps = (fastest * time_step / STEP_ANGLE).ceil().clamp(1.0, MOST_STEPS) as usize;
-        PressedMass { mass, time_step, substeps }.shaken(lugre, self.start, &acting)
+        let shaken = PressedMass { mass, time_step, substeps };
+        shaken.shaken(lugre, self.start, (&acting, kept.at_steps(shake, shaken)))
     }
 }

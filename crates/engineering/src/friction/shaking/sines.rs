@@ -2,7 +2,7 @@
 
 use std::f64::consts::{LN_2, PI};
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use phea_dynamics::order::{sort_by_number, sort_numbers};
 use phea_dynamics::portable;
 use phea_dynamics::spectrum::Transform;
@@ -83,7 +83,9 @@ pub(super) fn sines(signals: [&Vec<f64>; 2]) -> Option<Vec<f64>> {
         angles = more;
     }
     // both in squares of the standard deviation of the noise
-    let squares = |angles: &[f64]| Some(left(forces, angles)?.iter().map(|one| one * one).sum::<f64>());
+    let squares = |angles: &[f64]| {
+        Some(Sines::of(forces.len(), angles)?.left(forces).iter().map(|one| one * one).sum::<f64>())
+    };
     let (all, left) = (squares(&[])?, squares(&angles)?);
     let beyond_noise = left - forces.len() as f64;
     // noise alone explains 2 of each sine
@@ -93,8 +95,8 @@ pub(super) fn sines(signals: [&Vec<f64>; 2]) -> Option<Vec<f64>> {
 
 /// Power that sines of these angles leave of both signals together.
 fn power_left(signals: [&Vec<f64>; 2], angles: &[f64], length: usize) -> Option<Vec<f64>> {
-    let [force, position] = signals.map(|values| left(values, angles));
-    let [force, position] = [power(&force?, length), power(&position?, length)];
+    let sines = Sines::of(signals[0].len(), angles)?;
+    let [force, position] = signals.map(|values| power(sines.left(values).as_slice(), length));
     Some(force.iter().zip(&position).map(|(one, other)| one + other).collect())
 }
 
@@ -154,11 +156,39 @@ fn columns(rows: usize, angles: &[f64]) -> Vec<f64> {
     columns
 }
 
+/// A mean that drifts, and sines of some angles, to be fitted to signals.
+struct Sines {
+    /// Column after column.
+    columns: Vec<f64>,
+    matrix: DMatrix<f64>,
+    normal: Cholesky<f64, Dyn>,
+}
+
+impl Sines {
+    fn of(rows: usize, angles: &[f64]) -> Option<Sines> {
+        let columns = columns(rows, angles);
+        let matrix = matrix(rows, columns.clone());
+        let normal = (matrix.transpose() * &matrix).cholesky()?;
+        Some(Sines { columns, matrix, normal })
+    }
+
+    /// Sizes of the mean that drifts, and of cosine and sine of each angle, by least squares: by
+    /// the normal equations, as the sines are nearly orthogonal.
+    fn sizes(&self, values: &[f64]) -> DVector<f64> {
+        self.normal.solve(&(self.matrix.transpose() * DVector::from_column_slice(values)))
+    }
+
+    /// What they leave.
+    fn left(&self, values: &[f64]) -> DVector<f64> {
+        DVector::from_column_slice(values) - &self.matrix * self.sizes(values)
+    }
+}
+
 fn matrix(rows: usize, columns: Vec<f64>) -> DMatrix<f64> {
     DMatrix::from_vec(rows, columns.len() / rows.max(1), columns)
 }
 
-/// The solution of the normal equations: the sines are nearly orthogonal.
+/// The solution of the normal equations.
 fn solved(matrix: &DMatrix<f64>, values: &[f64]) -> Option<DVector<f64>> {
     let transposed = matrix.transpose();
     let right = &transposed * DVector::from_column_slice(values);
@@ -167,21 +197,14 @@ fn solved(matrix: &DMatrix<f64>, values: &[f64]) -> Option<DVector<f64>> {
 
 /// Sizes of the mean that drifts, and of cosine and sine of each angle, by least squares.
 pub(super) fn fitted(values: &[f64], angles: &[f64]) -> Option<Vec<f64>> {
-    let found = solved(&matrix(values.len(), columns(values.len(), angles)), values)?;
-    Some(found.iter().copied().collect())
-}
-
-/// What sines of these angles and a mean that drifts leave.
-fn left(values: &[f64], angles: &[f64]) -> Option<Vec<f64>> {
-    let matrix = matrix(values.len(), columns(values.len(), angles));
-    let found = solved(&matrix, values)?;
-    Some((DVector::from_column_slice(values) - matrix * found).iter().copied().collect())
+    Some(Sines::of(values.len(), angles)?.sizes(values).iter().copied().collect())
 }
 
 /// The angles after a step of Gauss and Newton over sizes and angles: the mean of the steps for
 /// both signals, by the squares of the sizes.
 fn improved(signals: [&Vec<f64>; 2], angles: &[f64]) -> Option<Vec<f64>> {
-    let [force, position] = signals.map(|values| steps(values, angles));
+    let sines = Sines::of(signals[0].len(), angles)?;
+    let [force, position] = signals.map(|values| steps(values, angles, &sines));
     let both = force?.into_iter().zip(position?).zip(angles);
     Some(
         both.map(|(([one, by_one], [other, by_other]), angle)| {
@@ -193,12 +216,11 @@ fn improved(signals: [&Vec<f64>; 2], angles: &[f64]) -> Option<Vec<f64>> {
 }
 
 /// For each angle its step, and the square of the size of its sine.
-fn steps(values: &[f64], angles: &[f64]) -> Option<Vec<[f64; 2]>> {
+fn steps(values: &[f64], angles: &[f64], sines: &Sines) -> Option<Vec<[f64; 2]>> {
     let rows = values.len();
-    let mut columns = columns(rows, angles);
-    let sines = matrix(rows, columns.clone());
-    let sizes = solved(&sines, values)?;
-    let left = DVector::from_column_slice(values) - sines * &sizes;
+    let sizes = sines.sizes(values);
+    let left = sines.left(values);
+    let mut columns = sines.columns.clone();
     let middle = (rows as f64 - 1.0) / 2.0;
     let size = |index: usize| {
         let [a, b] = [0, 1].map(|part| sizes[TRENDS + 2 * index + part]);

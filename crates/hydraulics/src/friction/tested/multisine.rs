@@ -40,20 +40,51 @@ impl MultisineForce {
     /// assert!((along[0] - 11.0).abs() < 1e-12 && (along[1] - 9.0).abs() < 1e-12);
     /// ```
     pub fn along(&self, count: usize, distance: f64) -> Vec<f64> {
-        let shapes = self.shapes(count, distance);
-        let sum = |shapes: &[f64]| shapes.iter().zip(&self.sizes).map(|(shape, size)| shape * size).sum();
-        shapes.chunks_exact(TRENDS + 2 * self.frequencies.len()).map(sum).collect()
+        self.shapes(count, distance).times(&self.sizes)
+    }
+
+    /// What each size is multiplied by, at equal distances in s from the first row.
+    pub fn shapes(&self, count: usize, distance: f64) -> MultisineShapes {
+        let sizes = TRENDS + 2 * self.frequencies.len();
+        let mut shapes = Vec::with_capacity(count * sizes);
+        for index in 0..count {
+            let time = index as f64 * distance;
+            shapes.extend(trends(2.0 * time / self.duration - 1.0));
+            for frequency in &self.frequencies {
+                let angle = frequency * time;
+                shapes.extend([portable::cos(angle), portable::sin(angle)]);
+            }
+        }
+        MultisineShapes { sizes, shapes }
+    }
+}
+
+/// The sines of a multisine force, and the mean that drifts, for sizes of 1: forces of the same
+/// frequencies and duration share them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MultisineShapes {
+    sizes: usize,
+    shapes: Vec<f64>,
+}
+
+impl MultisineShapes {
+    /// The force in N at each time, for sizes in N.
+    pub fn times(&self, sizes: &[f64]) -> Vec<f64> {
+        self.rows().map(|row| row.iter().zip(sizes).map(|(shape, size)| shape * size).sum()).collect()
     }
 
     /// What each size is multiplied by, time after time.
-    pub fn shapes(&self, count: usize, distance: f64) -> Vec<f64> {
-        let of = |time: f64| {
-            let sines = self.frequencies.iter().flat_map(move |frequency| {
-                let angle = frequency * time;
-                [portable::cos(angle), portable::sin(angle)]
-            });
-            trends(2.0 * time / self.duration - 1.0).into_iter().chain(sines)
-        };
-        (0..count).flat_map(|index| of(index as f64 * distance)).collect()
+    pub fn rows(&self) -> impl Iterator<Item = &[f64]> {
+        self.shapes.chunks_exact(self.sizes)
+    }
+
+    /// How many sizes there are.
+    pub fn sizes(&self) -> usize {
+        self.sizes
+    }
+
+    /// The same as [`MultisineShapes::rows`], one after the other.
+    pub(super) fn flat(&self) -> &[f64] {
+        &self.shapes
     }
 }

@@ -1,7 +1,7 @@
 mod carried;
 mod stick_step;
 
-use super::{FRICTION_COEFFICIENTS, MultisineForce};
+use super::{FRICTION_COEFFICIENTS, MultisineForce, MultisineShapes};
 use crate::friction::LuGre;
 use carried::{CarriedSlopes, LinearForce, STATE};
 use stick_step::StickStep;
@@ -61,18 +61,18 @@ impl KnottedForce {
     }
 
     /// The force at each row, and how it depends on what is at the knots.
-    fn along(&self) -> LinearForce {
-        let mut along = LinearForce { force: Vec::new(), slopes: Vec::new(), variables: self.forces.len() };
+    fn along(&self) -> (Vec<f64>, Vec<f64>) {
+        let (mut forces, mut slopes) = (Vec::new(), Vec::new());
         for (knot, share) in self.shares() {
             let at = |index: usize| self.forces.get(index).copied().unwrap_or(0.0);
-            along.force.push(at(knot) * (1.0 - share) + at(knot + 1) * share);
-            let from = along.slopes.len();
-            along.slopes.resize(from + self.forces.len(), 0.0);
-            for (slope, weight) in along.slopes.iter_mut().skip(from + knot).zip([1.0 - share, share]) {
+            forces.push(at(knot) * (1.0 - share) + at(knot + 1) * share);
+            let from = slopes.len();
+            slopes.resize(from + self.forces.len(), 0.0);
+            for (slope, weight) in slopes.iter_mut().skip(from + knot).zip([1.0 - share, share]) {
                 *slope = weight;
             }
         }
-        along
+        (forces, slopes)
     }
 }
 
@@ -131,16 +131,17 @@ impl PressedMass {
 
     /// The same for a force with knots, with derivatives.
     pub fn sensitive_displacements(&self, lugre: &LuGre, force: &KnottedForce) -> SensitiveDisplacement {
-        let along = force.along();
+        let (forces, of_forces) = force.along();
+        let along = LinearForce { force: &forces, slopes: &of_forces, variables: force.forces.len() };
         let count = FRICTION_COEFFICIENTS + along.variables;
         let stiffness = lugre.bristle_stiffness;
         let deflection = along.force.first().copied().unwrap_or(0.0) / stiffness;
         let mut slopes = CarriedSlopes::zero(count);
         slopes.deflection[STIFFNESS] = -deflection / stiffness;
-        for (to, slope) in slopes.deflection[FRICTION_COEFFICIENTS..].iter_mut().zip(&along.slopes) {
+        for (to, slope) in slopes.deflection[FRICTION_COEFFICIENTS..].iter_mut().zip(along.slopes) {
             *to = slope / stiffness;
         }
-        self.carried(lugre, ([0.0, deflection], slopes), &along, 1)
+        self.carried(lugre, ([0.0, deflection], slopes), along, 1)
     }
 
     /// Displacement in m from the first row, in motion at first, with derivatives over the
@@ -162,7 +163,8 @@ impl PressedMass {
     /// let sizes = vec![0.0, 0.0, 0.0, 0.01, 0.0];
     /// let force = MultisineForce { rows: 2000, frequencies: vec![omega], duration: 0.2, sizes };
     /// let pressed = PressedMass { mass: 13.1, time_step: 1e-4, substeps: 2 };
-    /// let moved = pressed.shaken(&lugre, [0.0, 0.0], &force).displacements;
+    /// let shapes = pressed.shapes(&force);
+    /// let moved = pressed.shaken(&lugre, [0.0, 0.0], (&force.sizes, &shapes)).displacements;
     /// let swing = moved[1500..].iter().fold(0.0_f64, |most, at| most.max(at.abs()));
     /// assert!((swing / (0.01 / (2100.0 * omega)) - 1.0).abs() < 0.01);
     /// ```
@@ -170,25 +172,28 @@ impl PressedMass {
         &self,
         lugre: &LuGre,
         [velocity, deflection]: [f64; 2],
-        force: &MultisineForce,
+        (sizes, shapes): (&[f64], &MultisineShapes),
     ) -> SensitiveDisplacement {
         let substeps = self.substeps.max(1);
-        let steps = PressedMass { time_step: self.time_step / substeps as f64, substeps: 1, ..*self };
-        let count = force.rows.saturating_sub(1) * substeps + 1;
-        let along = LinearForce {
-            force: force.along(count, steps.time_step),
-            slopes: force.shapes(count, steps.time_step),
-            variables: force.sizes.len(),
-        };
+        let steps = PressedMass { time_step: self.step(), substeps: 1, ..*self };
+        let force = shapes.times(sizes);
+        let along = LinearForce { force: &force, slopes: shapes.flat(), variables: shapes.sizes() };
         let mut slopes = CarriedSlopes::zero(STATE + 2 + along.variables);
         (slopes.velocity[STATE], slopes.deflection[STATE + 1]) = (1.0, 1.0);
-        steps.carried(lugre, ([velocity, deflection], slopes), &along, substeps)
+        steps.carried(lugre, ([velocity, deflection], slopes), along, substeps)
+    }
+
+    /// What the sizes of a force are multiplied by at each step of the integration, up to the last
+    /// row: what [`PressedMass::shaken`] needs of it.
+    pub fn shapes(&self, force: &MultisineForce) -> MultisineShapes {
+        force.shapes(force.rows.saturating_sub(1) * self.substeps.max(1) + 1, self.step())
     }
 
     /// Of a step, in s.
     fn step(&self) -> f64 {
         self.time_step / self.substeps.max(1) as f64
     }
+
     /// How often the argument of the series is halved.
     fn doublings(&self, lugre: &LuGre) -> u32 {
         let step = self.step();

@@ -9,11 +9,12 @@ use crate::friction::LuGre;
 use crate::friction::tested::FRICTION_COEFFICIENTS;
 
 /// A force at each step that is linear in some variables.
-pub(super) struct LinearForce {
+#[derive(Clone, Copy)]
+pub(super) struct LinearForce<'a> {
     /// N.
-    pub(super) force: Vec<f64>,
+    pub(super) force: &'a [f64],
     /// Derivatives over the variables, step by step.
-    pub(super) slopes: Vec<f64>,
+    pub(super) slopes: &'a [f64],
     /// How many they are.
     pub(super) variables: usize,
 }
@@ -57,14 +58,19 @@ impl CarriedSlopes {
                 of_deflection[STATE] * *v + of_deflection[STATE + 1] * *z,
             );
         }
-        let forced: Vec<[f64; 2]> = forced.collect();
-        for (slopes, of) in [(velocity, of_velocity), (deflection, of_deflection), (slipped, of_slip)] {
+        for (slopes, of) in
+            [(&mut *velocity, of_velocity), (&mut *deflection, of_deflection), (&mut *slipped, of_slip)]
+        {
             for (slope, own) in slopes.iter_mut().zip(&of[..FRICTION_COEFFICIENTS]) {
                 *slope += own;
             }
-            for (slope, [force, rise]) in slopes.iter_mut().skip(first).zip(&forced) {
-                *slope += of[FORCE] * force + of[FORCE + 1] * rise;
-            }
+        }
+        let rest = [velocity, deflection, slipped].map(|slopes| slopes.get_mut(first..).unwrap_or_default());
+        let [velocity, deflection, slipped] = rest.map(|slopes| slopes.iter_mut());
+        for (((v, z), slid), [force, rise]) in velocity.zip(deflection).zip(slipped).zip(forced) {
+            *v += of_velocity[FORCE] * force + of_velocity[FORCE + 1] * rise;
+            *z += of_deflection[FORCE] * force + of_deflection[FORCE + 1] * rise;
+            *slid += of_slip[FORCE] * force + of_slip[FORCE + 1] * rise;
         }
     }
 }
@@ -75,7 +81,7 @@ impl PressedMass {
         &self,
         lugre: &LuGre,
         (start, mut slopes): ([f64; 2], CarriedSlopes),
-        along: &LinearForce,
+        along: LinearForce<'_>,
         every: usize,
     ) -> SensitiveDisplacement {
         let substeps = self.substeps.max(1) as f64;
