@@ -79,8 +79,9 @@ fn small_steps_on_the_machine_are_those_of_the_linear_loop() {
     let viscous = "cylinder.friction={ model = \"viscous\", viscous = \"1 kN.s/m\" }";
     let sprung = ["load.model=spring_mass_damper", "load.mass=100", "load.stiffness=2e6", "load.damping=500"];
     let slow = [
-        "controller={ numerator = \"2e-5*s + 2e-4\", denominator = \"s\" }",
+        "controller={ numerator = \"1e-4*s + 1e-3\", denominator = \"s\" }",
         "prefilter={ numerator = \"1\", denominator = \"1\" }",
+        "uncertainty={}",
     ];
     let waves = ["line.model=transmission_line"];
     for other in [&[][..], &sprung, &waves] {

@@ -74,6 +74,27 @@ fn the_step_that_is_predicted_is_the_machines() {
     assert_eq!(first["agrees"], Value::from(true));
 }
 
+/// A valve that leaks leaves a loop with a tail that is slower than anything in the plant: waves
+/// hardly change it, and it belongs to the predicted step all the same.
+#[test]
+fn a_tail_slower_than_the_plant_is_predicted() {
+    let predicted = |model: &str| {
+        let slow = [
+            "linear.flow_pressure_coefficient=7e-11",
+            "cylinder.friction={ model = \"viscous\", viscous = \"100 N.s/m\" }",
+            "controller={ numerator = \"4e-4*s + 4e-3\", denominator = \"s\" }",
+            "prefilter={ numerator = \"1\", denominator = \"1\" }",
+            model,
+        ];
+        let object = asked(&Request::Verify { proof: false, on_machine: true }, &slow);
+        let linear = &object["machine"]["runs"][0]["linear"];
+        ["overshoot_percent", "settling_time_s"].map(|key| linear[key].as_f64().unwrap())
+    };
+    let [lumped, waves] = ["line.model=lumped", "line.model=transmission_line"].map(predicted);
+    assert!(lumped[0] < 0.01 && waves[0] < 0.01, "{lumped:?} {waves:?}");
+    assert!(lumped[1] > 1.0 && (waves[1] / lumped[1] - 1.0).abs() < 0.1, "{lumped:?} {waves:?}");
+}
+
 /// For the one rig there is a loop below the quarter wave of its hoses that satisfies everything,
 /// and the machine agrees.
 #[test]

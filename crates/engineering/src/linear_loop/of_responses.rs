@@ -13,6 +13,9 @@ use phea_qft::family::{FINE, tabulated};
 const STRAIGHT: f64 = 1e-3;
 /// Least distance of two points, relative to their frequency.
 const CLOSEST: f64 = 1e-6;
+/// How often the lowest frequency of the plant is halved: the loop may be slower than the plant,
+/// and what is below the first point is taken as constant.
+const HALVINGS: u32 = 20;
 
 /// Frequencies in rad/s with the real part of F P G/(1 + L) there, straight between them: what
 /// [`step_of_frequency_response`](phea_dynamics::time_response::step_of_frequency_response) takes.
@@ -25,7 +28,10 @@ pub fn real_parts(
 ) -> Result<Vec<(f64, f64)>, LinearError> {
     let member = compensation.responding(plant.clone());
     let highest = compensation.highest_frequency_rad_per_s();
-    let grid = tabulated(plant.as_ref(), plant.range_rad_per_s(), FINE).frequencies_rad_per_s;
+    let own = tabulated(plant.as_ref(), plant.range_rad_per_s(), FINE).frequencies_rad_per_s;
+    let lowest = own.first().copied().unwrap_or(highest);
+    let below = (1..=HALVINGS).rev().map(|halvings| lowest / f64::from(1_u32 << halvings));
+    let grid: Vec<f64> = below.chain(own).collect();
     let prefilter = compensation.prefilter_of_step()?;
     Ok(straight(&grid, highest, |frequency| closed(&member, compensation, &prefilter, frequency)))
 }
