@@ -14,6 +14,9 @@ const REACH: f64 = 0.5;
 const WINDOW: f64 = 16.0;
 /// Plants that are kept of one column and demand.
 const PLANTS_MAXIMUM: usize = 4;
+/// Relative difference of two squares whose margins may round to the same number, and a difference
+/// of two c that is rounding.
+const ROUNDING: f64 = 1e-9;
 
 /// One margin: `d margin/dx = -(20/ln 10) Re(c d ln G/dx)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,10 +39,8 @@ pub(crate) fn candidates(
     around: &ColumnLoop,
     feedback: Complex64,
 ) -> Vec<MarginCandidate> {
-    let squares: Vec<f64> =
-        (0..column.plants.len()).map(|place| demand.squared(column, around, place)).collect();
-    let [least, greatest] = extremes(squares.iter().copied());
-    let half_decibels = |squared: f64| DECIBELS_PER_NEPER * 0.5 * portable::ln(squared);
+    let squares = demand.squared(column, around);
+    let [least, greatest] = extremes(|place| squares[place], squares.len());
     let of = |place: usize, margin_db: f64, sign: f64| {
         let open = column.loop_at(place) * feedback;
         let coefficient = demand.feedback_power() - open / (1.0 + open);
@@ -51,15 +52,18 @@ pub(crate) fn candidates(
         }
     };
     let below = |allowed: f64| {
-        let high = squares.iter().enumerate().filter(|(_, square)| **square * WINDOW >= greatest);
-        prominent(high.map(|(place, square)| of(place, half_decibels(allowed / square), 1.0)).collect())
+        let margin_db = |square: f64| half_decibels(allowed / square);
+        let is_within = |square: f64| square * WINDOW >= greatest;
+        nearby(&squares, greatest, is_within, margin_db, |place| of(place, 0.0, 1.0))
     };
     let above = |allowed: f64| {
-        let low = squares.iter().enumerate().filter(|(_, square)| **square <= least * WINDOW);
-        prominent(low.map(|(place, square)| of(place, half_decibels(square / allowed), -1.0)).collect())
+        let margin_db = |square: f64| half_decibels(square / allowed);
+        let is_within = |square: f64| square <= least * WINDOW;
+        nearby(&squares, least, is_within, margin_db, |place| of(place, 0.0, -1.0))
     };
     let allowed = demand.allowed;
     match demand.limited {
+        LimitedSide::FromAbove => below(allowed),
         LimitedSide::FromBelow => above(allowed),
         LimitedSide::Spread => {
             let (tops, bottoms) = (below(1.0), above(1.0));
@@ -73,35 +77,85 @@ pub(crate) fn candidates(
                     other: Some(bottom.plant),
                 }));
             }
-            prominent(pairs)
+            worst_of(pairs.iter().copied()).map_or(vec![], |worst| prominent(worst, pairs))
         }
-        LimitedSide::FromAbove => below(allowed),
     }
 }
 
-/// The worst first; margins that are NaN are left out.
-fn prominent(mut all: Vec<MarginCandidate>) -> Vec<MarginCandidate> {
-    all.retain(|candidate| candidate.margin_db.is_finite() && candidate.sensitivity.is_finite());
-    let by_margin =
-        |one: &&MarginCandidate, other: &&MarginCandidate| one.margin_db.total_cmp(&other.margin_db);
-    let Some(&worst) = all.iter().min_by(by_margin) else { return all };
-    let mut chosen = vec![worst];
+fn half_decibels(squared: f64) -> f64 {
+    DECIBELS_PER_NEPER * 0.5 * portable::ln(squared)
+}
+
+/// The plants of one side that are [`prominent`], by the squares of their magnitudes.
+///
+/// ```text
+/// threat > 0   only for   |c - c_worst| > ln(q) >= 2 (q - 1)/(q + 1)        q: quotient of the squares, 1 or more
+/// ```
+///
+/// so that of most plants no margin is computed.
+fn nearby(
+    squares: &[f64],
+    worst: f64,
+    is_within: impl Fn(f64) -> bool,
+    margin_db: impl Fn(f64) -> f64,
+    without_margin: impl Fn(usize) -> MarginCandidate,
+) -> Vec<MarginCandidate> {
+    let complete =
+        |place: usize, square: f64| MarginCandidate { margin_db: margin_db(square), ..without_margin(place) };
+    let all = || squares.iter().copied().enumerate();
+    let as_bad = all().filter(|(_, square)| (square - worst).abs() <= ROUNDING * worst);
+    let Some(first) = worst_of(as_bad.map(|(place, square)| complete(place, square))) else {
+        return vec![];
+    };
+    let mut threatening = Vec::with_capacity(squares.len());
+    for (place, square) in all().filter(|(_, square)| is_within(*square)) {
+        let candidate = without_margin(place);
+        let least = 2.0 * (square - worst).abs() / (square + worst) - ROUNDING;
+        let is_harmless =
+            least > 0.0 && (candidate.sensitivity - first.sensitivity).norm_sqr() < least * least;
+        if !is_harmless {
+            threatening.push(MarginCandidate { margin_db: margin_db(square), ..candidate });
+        }
+    }
+    prominent(first, threatening)
+}
+
+impl MarginCandidate {
+    fn is_finite(&self) -> bool {
+        self.margin_db.is_finite() && self.sensitivity.is_finite()
+    }
+}
+
+/// The worst one whose margin is a number.
+fn worst_of(all: impl Iterator<Item = MarginCandidate>) -> Option<MarginCandidate> {
+    all.filter(MarginCandidate::is_finite).min_by(|one, other| one.margin_db.total_cmp(&other.margin_db))
+}
+
+/// The worst, then each time the one that threatens most to become it; margins that are NaN are
+/// left out.
+fn prominent(worst: MarginCandidate, mut others: Vec<MarginCandidate>) -> Vec<MarginCandidate> {
+    others.retain(MarginCandidate::is_finite);
+    let mut chosen = Vec::with_capacity(PLANTS_MAXIMUM);
+    chosen.push(worst);
     // of each, the square of the distance from the nearest that is chosen
-    let mut distances = vec![f64::INFINITY; all.len()];
+    let mut distances = vec![f64::INFINITY; others.len()];
     let mut newest = worst;
     while chosen.len() < PLANTS_MAXIMUM {
-        for (distance, candidate) in distances.iter_mut().zip(&all) {
+        let mut most: Option<(f64, MarginCandidate)> = None;
+        for (distance, candidate) in distances.iter_mut().zip(&others) {
             *distance = distance.min((candidate.sensitivity - newest.sensitivity).norm_sqr());
-        }
-        let threats = distances.iter().zip(&all).map(|(distance, candidate)| {
             let reach = DECIBELS_PER_NEPER * REACH * distance.sqrt();
-            (reach - (candidate.margin_db - worst.margin_db), candidate)
-        });
-        let next = threats.max_by(|one, other| one.0.total_cmp(&other.0).then(by_margin(&one.1, &other.1)));
-        match next {
-            Some((threat, candidate)) if threat > 0.0 => newest = *candidate,
-            _ => break,
+            let threat = reach - (candidate.margin_db - worst.margin_db);
+            let is_more = most.is_none_or(|(greatest, other)| {
+                let as_great = threat == greatest && candidate.margin_db >= other.margin_db;
+                threat > greatest || as_great
+            });
+            if threat > 0.0 && is_more {
+                most = Some((threat, *candidate));
+            }
         }
+        let Some((_, next)) = most else { break };
+        newest = next;
         chosen.push(newest);
     }
     chosen

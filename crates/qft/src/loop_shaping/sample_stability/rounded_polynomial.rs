@@ -138,11 +138,17 @@ fn eliminate(upper: &mut Vec<(f64, f64)>, lower: &[(f64, f64)], ratio: f64, rati
 /// The sum of c_i (s + a)^(n-i) (1 + b s)^i by Horner's rule.
 fn substituted(coefficients: &[f64], shift: f64, tilt: f64) -> Vec<f64> {
     let mut sum: Vec<f64> = Vec::with_capacity(coefficients.len());
-    let mut power = vec![1.0];
+    let mut power = Vec::with_capacity(coefficients.len() + 1);
+    power.push(1.0);
     for &coefficient in coefficients {
         times_linear(&mut sum, 1.0, shift);
         if sum.is_empty() {
             sum.push(0.0);
+        }
+        if tilt == 0.0 {
+            // (1 + 0 s)^i
+            sum.iter_mut().rev().take(1).for_each(|constant| *constant += coefficient);
+            continue;
         }
         for (entry, factor) in sum.iter_mut().zip(&power) {
             *entry += coefficient * factor;
