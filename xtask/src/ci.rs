@@ -1,20 +1,24 @@
-//! The test command: stages one after the other, comparisons and the check of the repository in
-//! parallel with them, the time of each in a table at the end.
+//! The test command: a build, then tests and stories one after the other, and what needs less of the
+//! processors in parallel with them; the time that each was waited for in a table at the end.
 //!
 //! A stage that fails does not stop the later ones, so that one run shows everything that has to be
 //! mended.
 
 mod comparisons;
+mod console;
 mod linted;
 mod tools;
 
+use comparisons::Begun;
 pub(crate) use comparisons::recomputed_by;
 pub(crate) use linted::in_place_of_the_compiler;
 
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::sync::mpsc::{Receiver, channel};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
+
+use console::Console;
 
 /// How a stage ended.
 pub(crate) enum Outcome {
@@ -50,14 +54,21 @@ const STORIES: &str = "stories::";
 const REPOSITORY: &str = "tidy::tests::the_repository_is_tidy";
 
 /// The repository, and the variables with which cargo builds it in every stage.
+#[derive(Clone)]
 pub(crate) struct Built {
     root: PathBuf,
     variables: Vec<(&'static str, String)>,
     /// Whether nothing is kept for a second build; keeping it makes this one slower.
     once: bool,
+    console: Console,
 }
 
 impl Built {
+    /// Runs one command of cargo in the root.
+    fn cargo(&self, arguments: &[&str], variables: &[(&str, &str)]) -> Outcome {
+        self.console.execute(&self.root, "cargo", arguments, variables)
+    }
+
     /// The variable by which cargo keeps nothing for a second build, where nothing is kept.
     fn not_kept(&self) -> Option<(&'static str, &'static str)> {
         self.once.then_some(("CARGO_INCREMENTAL", "0"))
@@ -80,6 +91,10 @@ const STAGES: &[(&str, Stage)] = &[
     (MUTATION, mutation),
     (SOAK, soak),
 ];
+
+/// The stages that run in parallel with tests and stories, one after the other: most of their time a
+/// processor is free.
+const ASIDE: [&str; 3] = ["doctests", "wasm32", "peers"];
 
 /// The stage that runs from the beginning in parallel with the others; its result is printed in its
 /// own place.
@@ -126,10 +141,12 @@ pub(crate) fn run(root: &Path, wanted: &[&str]) -> bool {
             return false;
         }
     };
-    let built = Built { root: root.to_path_buf(), variables, once: is_strict() || is_fresh(&target(root)) };
+    let once = is_strict() || is_fresh(&target(root));
+    let built = Built { root: root.to_path_buf(), variables, once, console: Console::Shown };
     // A build often waits for one crate: the second processor tidies and compares meanwhile.
     let mut tidied = chosen(TIDY).then(|| tidying(root));
     let mut begun = chosen(COMPARISONS).then(|| comparisons::begin(root));
+    let mut aside = None;
     let mut results = Vec::new();
     for (name, stage) in STAGES.iter().filter(|(name, _)| chosen(name)) {
         println!("\n==== {name}");
@@ -139,15 +156,39 @@ pub(crate) fn run(root: &Path, wanted: &[&str]) -> bool {
             COMPARISONS => {
                 begun.take().map_or_else(|| stage(&built), |begun| comparisons::end(&built, begun))
             }
+            _ if ASIDE.contains(name) => ended_aside(aside.as_ref()).unwrap_or_else(|| stage(&built)),
             _ => stage(&built),
         };
-        if let (BUILD, Outcome::Passed, Some(begun)) = (*name, &outcome, begun.as_mut()) {
-            begun.ask_phea();
+        if let (BUILD, Outcome::Passed) = (*name, &outcome) {
+            begun.iter_mut().for_each(Begun::ask_phea);
+            let stages = STAGES.iter().filter(|(name, _)| ASIDE.contains(name) && chosen(name));
+            aside = Some(aside_of(&built, stages.map(|(_, stage)| *stage).collect()));
         }
         println!("==== {name}: {} {}", outcome.name(), outcome.remark());
         results.push((*name, outcome, start.elapsed()));
     }
     summary(&results, is_strict())
+}
+
+/// Runs these stages in parallel with what follows: their outcomes, each with what it printed.
+fn aside_of(built: &Built, stages: Vec<Stage>) -> Receiver<(Outcome, String)> {
+    let (ended, results) = channel();
+    let built = Built { console: Console::kept(), ..built.clone() };
+    std::thread::spawn(move || {
+        for stage in stages {
+            let outcome = stage(&built);
+            // If nobody waits any more, nothing is lost.
+            ended.send((outcome, built.console.taken())).ok();
+        }
+    });
+    results
+}
+
+/// The outcome of the next stage that runs aside, what it printed shown; `None` where none does.
+fn ended_aside(aside: Option<&Receiver<(Outcome, String)>>) -> Option<Outcome> {
+    let (outcome, told) = aside?.recv().ok()?;
+    print!("{told}");
+    Some(outcome)
 }
 
 /// Where cargo builds.
@@ -221,29 +262,12 @@ fn for_all(built: &Built, arguments: &[&str], of_tests: &[&str]) -> Outcome {
     };
     let units: Vec<&str> = units.iter().flat_map(|unit| ["--config", unit]).collect();
     let (command, arguments) = arguments.split_at(1);
-    execute_with(&built.root, "cargo", &[command, &units, arguments, peers, of_tests].concat(), &variables)
-}
-
-/// Runs one command in the root, its output shown.
-fn execute(root: &Path, program: &str, arguments: &[&str]) -> Outcome {
-    execute_with(root, program, arguments, &[])
-}
-
-fn execute_with(root: &Path, program: &str, arguments: &[&str], variables: &[(&str, &str)]) -> Outcome {
-    let line = format!("{program} {}", arguments.join(" "));
-    println!("$ {line}");
-    let mut command = Command::new(program);
-    command.args(arguments).envs(variables.iter().copied()).current_dir(root);
-    match command.status() {
-        Ok(status) if status.success() => Outcome::Passed,
-        Ok(status) => Outcome::Failed(format!("`{line}`: {status}")),
-        Err(error) => Outcome::Failed(format!("`{line}`: {error}")),
-    }
+    built.cargo(&[command, &units, arguments, peers, of_tests].concat(), &variables)
 }
 
 fn formatting(built: &Built) -> Outcome {
     match tools::component("rustfmt", "fmt") {
-        Ok(()) => execute(&built.root, "cargo", &["fmt", "--all", "--check"]),
+        Ok(()) => built.cargo(&["fmt", "--all", "--check"], &[]),
         Err(missing) => Outcome::Failed(missing),
     }
 }
@@ -295,25 +319,24 @@ const MANY_RIGS: [&str; 8] =
 
 /// A hundred kills of campaigns on one, two and four threads, and two gigabytes of rows, in the
 /// release profile: what was lost, and how fast it was, is printed.
-fn killed_campaigns(root: &Path) -> Outcome {
+fn killed_campaigns(built: &Built) -> Outcome {
     let tests =
         ["campaign_killed::", "streamed_rows::", "--include-ignored", "--nocapture", "--test-threads=1"];
     let arguments = [&["test", "--release", "-p", "phea-cli", "--test", "all", "--"][..], &tests].concat();
-    execute_with(root, "cargo", &arguments, &[("PHEA_KILLS", "100")])
+    built.cargo(&arguments, &[("PHEA_KILLS", "100")])
 }
 
 /// What takes too long for every commit, before a release: all of it, so that one run shows
 /// everything that has to be mended.
 fn soak(built: &Built) -> Outcome {
-    let root = &built.root;
-    let cargo = |arguments: &[&str]| execute(root, "cargo", arguments);
+    let cargo = |arguments: &[&str]| built.cargo(arguments, &[]);
     let ended = [
         mutation(built),
-        killed_campaigns(root),
+        killed_campaigns(built),
         cargo(&IDENTIFIED_VALVES),
         cargo(&LONG_ROBUST_TESTS),
         cargo(&MANY_RIGS),
-        comparisons::soak(root),
+        comparisons::soak(&built.root),
     ];
     let failed: Vec<&str> =
         ended.iter().filter(|one| !matches!(one, Outcome::Passed)).map(Outcome::remark).collect();
@@ -347,19 +370,23 @@ fn tidied_by(tidying: JoinHandle<(bool, String)>) -> Outcome {
 fn wasm32(built: &Built) -> Outcome {
     const TARGET: &str = "wasm32-unknown-unknown";
     if let Err(missing) = tools::target(TARGET) {
-        println!("\n**** SKIPPED: {missing}\n**** nothing is known about {TARGET} from this run\n");
+        built.console.print(&format!(
+            "\n**** SKIPPED: {missing}\n**** nothing is known about {TARGET} from this run\n"
+        ));
         return Outcome::Skipped(missing);
     }
     let packages = ["-p", "phea-machine", "-p", "phea-qft", "-p", "phea-quantity"];
     let arguments = [&["check", "--target", TARGET][..], &packages].concat();
-    execute_with(&built.root, "cargo", &arguments, built.not_kept().as_slice())
+    built.cargo(&arguments, built.not_kept().as_slice())
 }
 
 /// Rigs that phea and CVODE solve both. The other tests of the package that links CVODE run with
 /// those of all packages.
 fn peers(built: &Built) -> Outcome {
     if let Err(missing) = tools::sundials() {
-        println!("\n**** SKIPPED: {missing}\n**** nothing was compared with CVODE in this run\n");
+        built
+            .console
+            .print(&format!("\n**** SKIPPED: {missing}\n**** nothing was compared with CVODE in this run\n"));
         return Outcome::Skipped(missing);
     }
     for_all(built, &["test", "--workspace", "--test", RIGS], &["--", "50"])
@@ -381,6 +408,7 @@ mod tests {
 
     #[test]
     fn every_stage_that_is_special_is_one() {
-        assert!([TIDY, COMPARISONS, BUILD, MUTATION, SOAK].iter().all(|name| STAGE_NAMES.contains(name)));
+        let special = [TIDY, COMPARISONS, BUILD, MUTATION, SOAK].into_iter().chain(ASIDE);
+        assert!(special.into_iter().all(|name| STAGE_NAMES.contains(&name)));
     }
 }

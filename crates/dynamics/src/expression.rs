@@ -35,11 +35,11 @@ impl Expression {
     /// assert_eq!(area.evaluate(&[2.0, 3.0]), vec![6.0]);
     /// assert_eq!(area.to_string(), "width*height");
     /// ```
-    pub fn record<F>(parameters: &[&str], equations: F) -> Expression
+    pub fn record<F>(parameters: &[&str], mut equations: F) -> Expression
     where
-        F: for<'tape> FnOnce(&[Recorded<'tape>]) -> Vec<Recorded<'tape>>,
+        F: for<'tape> FnMut(&[Recorded<'tape>]) -> Vec<Recorded<'tape>>,
     {
-        let (nodes, results) = recording::record(parameters.len(), equations);
+        let (nodes, results) = recording::record(parameters.len(), &mut equations);
         Expression { parameters: parameters.iter().map(|name| name.to_string()).collect(), nodes, results }
     }
 

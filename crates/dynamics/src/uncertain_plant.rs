@@ -176,26 +176,12 @@ impl UncertainPlant {
     /// polynomial.
     pub fn record<F>(
         parameters: Vec<UncertainParameter>,
-        equations: F,
+        mut equations: F,
     ) -> Result<UncertainPlant, UncertainPlantError>
     where
-        F: for<'tape> FnOnce(&[Recorded<'tape>]) -> PlantCoefficients<Recorded<'tape>>,
+        F: for<'tape> FnMut(&[Recorded<'tape>]) -> PlantCoefficients<Recorded<'tape>>,
     {
-        check_parameters(&parameters)?;
-        let names: Vec<&str> = parameters.iter().map(|parameter| parameter.name.as_str()).collect();
-        let mut command = (0, 0);
-        let (mut disturbance, mut rate) = (None, None);
-        let coefficients = Expression::record(&names, |recorded| {
-            let plant = equations(recorded);
-            command = lengths(&plant.command);
-            disturbance = plant.disturbance.as_ref().map(lengths);
-            rate = plant.rate.as_ref().map(|rate| (rate.command.len(), rate.disturbance.len()));
-            flatten(plant)
-        });
-        check_lengths(command)?;
-        disturbance.map_or(Ok(()), check_lengths)?;
-        let recorded = RecordedPlant { coefficients: Arc::new(coefficients), command, disturbance, rate };
-        Ok(UncertainPlant { parameters, equations: PlantEquations::Rational(recorded) })
+        UncertainPlant::recorded_by(parameters, &mut equations)
     }
 
     /// A plant without polynomials.
@@ -218,6 +204,28 @@ impl UncertainPlant {
     /// Whether it has polynomials.
     pub fn is_rational(&self) -> bool {
         matches!(self.equations, PlantEquations::Rational(_))
+    }
+
+    /// [`UncertainPlant::record`], compiled once for all equations.
+    fn recorded_by(
+        parameters: Vec<UncertainParameter>,
+        equations: &mut dyn for<'tape> FnMut(&[Recorded<'tape>]) -> PlantCoefficients<Recorded<'tape>>,
+    ) -> Result<UncertainPlant, UncertainPlantError> {
+        check_parameters(&parameters)?;
+        let names: Vec<&str> = parameters.iter().map(|parameter| parameter.name.as_str()).collect();
+        let mut command = (0, 0);
+        let (mut disturbance, mut rate) = (None, None);
+        let coefficients = Expression::record(&names, |recorded| {
+            let plant = equations(recorded);
+            command = lengths(&plant.command);
+            disturbance = plant.disturbance.as_ref().map(lengths);
+            rate = plant.rate.as_ref().map(|rate| (rate.command.len(), rate.disturbance.len()));
+            flatten(plant)
+        });
+        check_lengths(command)?;
+        disturbance.map_or(Ok(()), check_lengths)?;
+        let recorded = RecordedPlant { coefficients: Arc::new(coefficients), command, disturbance, rate };
+        Ok(UncertainPlant { parameters, equations: PlantEquations::Rational(recorded) })
     }
 
     fn recorded(&self) -> Option<&RecordedPlant> {

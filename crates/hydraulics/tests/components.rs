@@ -1,6 +1,7 @@
 //! Fluid, lines, orifice and friction: limits, conservation and consistency.
 
 use phea_dynamics::scalar::{Dual, Parameters, Scalar};
+use phea_dynamics::simulation::DIRECTIONS;
 use phea_hydraulics::fluid::{ATMOSPHERIC_PRESSURE_ABSOLUTE, EntrainedAir, Fluid, bulk_modulus_with_air};
 use phea_hydraulics::friction::{Friction, LuGre, LuGrePassivity, Stribeck};
 use phea_hydraulics::line::{
@@ -18,7 +19,7 @@ fn bulk_modulus_with_air_is_the_slope_of_the_volume() {
         liquid + S::from(0.03) * ((reference / p).ln() / S::from(1.25)).exp()
     }
     for pressure in [0.3e5, 1e5, 10e5, 70e5, 400e5] {
-        let v = volume(Dual::<1>::variable(pressure, 0));
+        let v = volume(Dual::<DIRECTIONS>::variable(pressure, 0));
         let expected = -v.value() / v.gradient()[0];
         let found: f64 = bulk_modulus_with_air(1.45e9, 0.03, 1.25, pressure);
         assert!((found / expected - 1.0).abs() < 1e-12, "{found} against {expected}");
@@ -119,7 +120,7 @@ fn regular_root_is_smooth_odd_and_rising() {
     let mut last = f64::NEG_INFINITY;
     for step in -400..=400 {
         let drop = 25.0 * f64::from(step);
-        let root = regular_root(Dual::<1>::variable(drop, 0), Dual::constant(1e3));
+        let root = regular_root(Dual::<DIRECTIONS>::variable(drop, 0), Dual::constant(1e3));
         assert!(root.value() > last && root.gradient()[0] > 0.0);
         assert!((root.gradient()[0] / regular_root_slope(drop, 1e3) - 1.0).abs() < 1e-13);
         assert_eq!(regular_root(-drop, 1e3), -root.value());
@@ -147,7 +148,8 @@ fn the_slope_of_the_steady_curve_is_the_closed_form() {
     use phea_dynamics::scalar::Dual;
     // ORIGIN: analytic, dF/dv = sigma_2 - 2 (F_S - F_C) v/v_S^2 exp(-(v/v_S)^2)
     let expected = 100.0 - 2.0 * 40.0 * 0.005 / 1e-4 * phea_dynamics::portable::exp(-0.25);
-    let along = curve().convert(&mut Dual::<1>::from).steady_force(Dual::<1>::variable(0.005, 0));
+    let along =
+        curve().convert(&mut Dual::<DIRECTIONS>::from).steady_force(Dual::<DIRECTIONS>::variable(0.005, 0));
     assert!((along.gradient()[0] / expected - 1.0).abs() < 1e-12);
     let lugre = Friction::LuGre(LuGre { curve: curve(), bristle_stiffness: 1e7, bristle_damping: 2e3 });
     assert_eq!((lugre.viscous(), Friction::Viscous { viscous: 55.0 }.viscous()), (100.0, 55.0));
@@ -156,7 +158,8 @@ fn the_slope_of_the_steady_curve_is_the_closed_form() {
 #[test]
 fn derivatives_of_friction_exist_at_standstill() {
     for exponent in [0.5, 1.0, 2.0] {
-        let curve = Stribeck { stribeck_exponent: exponent, ..curve() }.convert(&mut Dual::<2>::from);
+        let curve =
+            Stribeck { stribeck_exponent: exponent, ..curve() }.convert(&mut Dual::<DIRECTIONS>::from);
         let lugre =
             LuGre { curve, bristle_stiffness: Dual::constant(1e7), bristle_damping: Dual::constant(2e3) };
         let force = lugre.force(Dual::variable(0.0, 0), Dual::variable(3e-6, 1));

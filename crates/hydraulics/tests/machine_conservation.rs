@@ -4,7 +4,7 @@
 
 use phea_dynamics::portable::sin;
 use phea_dynamics::scalar::Dual;
-use phea_dynamics::simulation::Plant;
+use phea_dynamics::simulation::{DIRECTIONS, Plant};
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::contact::Contact;
 use phea_hydraulics::friction::{Friction, LuGre, LuGrePassivity};
@@ -252,7 +252,13 @@ pub(super) fn random(state: &mut u64) -> f64 {
 /// What is wrong with the accounts at this state: what is stored must change, along the rates of
 /// all states, by what enters and is lost; energy is never stored or lost below zero.
 pub(super) fn check_instant(name: &str, machine: &Machine, state: &[f64], command: f64, inputs: [f64; 2]) {
-    let along = |value: f64, rate: f64| Dual::<1>::new(value, [rate]);
+    // in the first of the directions that the machine is compiled for
+    let along = |value: f64, rate: f64| {
+        Dual::<DIRECTIONS>::new(
+            value,
+            std::array::from_fn(|direction| if direction == 0 { rate } else { 0.0 }),
+        )
+    };
     let mut moved = vec![along(inputs[0], inputs[1]), along(inputs[1], 0.0)];
     moved.extend(machine.has_external_force().then_some(along(150.0, 0.0)));
     // a setting that moves
@@ -265,7 +271,7 @@ pub(super) fn check_instant(name: &str, machine: &Machine, state: &[f64], comman
     let names = OIL_ACCOUNTS.iter().chain(&ENERGY_ACCOUNTS);
     let accounts = names.zip(ledger.oil.iter().chain(&ledger.energy));
     for (index, (account, Account { stored, inflow, lost })) in accounts.enumerate() {
-        let [growth] = *stored.gradient();
+        let growth = stored.gradient()[0];
         let (inflow, lost) = (inflow.value(), lost.value());
         let gap = growth - (inflow - lost);
         let size = growth.abs().max(inflow.abs()).max(lost.abs());

@@ -3,6 +3,7 @@
 
 use phea_dynamics::portable;
 use phea_dynamics::scalar::{Dual, Parameters};
+use phea_dynamics::simulation::DIRECTIONS;
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::operating_point::{Condition, operating_point};
 use phea_hydraulics::reference_rig::{USEFUL_AREA, components, hose_line, valve, valve_with_equal_edges};
@@ -199,7 +200,7 @@ fn chamber_coefficients_are_the_derivatives_of_the_flows() {
                     SpoolDirection::Mean,
                 );
                 let [u, a, b] = [(spool, 0), (pressure_a, 1), (pressure_b, 2)]
-                    .map(|(value, index)| Dual::<3>::variable(value, index));
+                    .map(|(value, index)| Dual::<DIRECTIONS>::variable(value, index));
                 let flows =
                     chamber_flows(&valve.convert(&mut Into::into), &SUPPLY.convert(&mut Into::into), u, a, b);
                 let expected = [
@@ -237,7 +238,7 @@ fn direction_decides(valve: &Servovalve) {
     let dual = chamber_flows(
         &valve.convert(&mut Into::into),
         &SUPPLY.convert(&mut Into::into),
-        Dual::<1>::variable(0.0, 0),
+        Dual::<DIRECTIONS>::variable(0.0, 0),
         Dual::constant(37e5),
         Dual::constant(24e5),
     );

@@ -5,6 +5,7 @@
 use phea_dynamics::expression::Expression;
 use phea_dynamics::random::share;
 use phea_dynamics::scalar::{Dual, Parameters};
+use phea_dynamics::simulation::DIRECTIONS;
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::cross_port::CrossFlow;
 use phea_hydraulics::cylinder::{Cylinder, annulus_area};
@@ -202,7 +203,7 @@ fn check_recorded_point(leakage_model: LeakageModel) {
         assert_eq!(recorded.evaluate(&values), point);
         sides[usize::from(point[0] > 0.0)] += 1;
         for index in 0..values.len() {
-            let duals: Vec<Dual<1>> = values
+            let duals: Vec<Dual<DIRECTIONS>> = values
                 .iter()
                 .enumerate()
                 .map(

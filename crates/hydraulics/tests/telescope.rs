@@ -5,7 +5,7 @@
 
 use phea_dynamics::random::{share, stream};
 use phea_dynamics::scalar::{Dual, Interval, Parameters};
-use phea_dynamics::simulation::Plant;
+use phea_dynamics::simulation::{DIRECTIONS, Plant};
 use phea_hydraulics::accumulator::Accumulator;
 use phea_hydraulics::actuator::{Actuator, ActuatorError, Components};
 use phea_hydraulics::contact::Contact;
@@ -43,13 +43,13 @@ fn areas_are_the_slopes_of_the_volumes() {
     let mut state = stream(71, 1);
     for _ in 0..400 {
         let x = 0.5 * share(&mut state);
-        let [volume_a, volume_b] = chamber_volumes(&cylinder, Dual::<1>::variable(x, 0));
+        let [volume_a, volume_b] = chamber_volumes(&cylinder, Dual::<DIRECTIONS>::variable(x, 0));
         let [area_a, area_b] = cylinder.areas_at(x);
         assert!(
             (volume_a.gradient()[0] - area_a).abs() < 1e-14
                 && (volume_b.gradient()[0] + area_b).abs() < 1e-14
         );
-        let along = three(0.05).convert(&mut Dual::<1>::constant).ratios(Dual::variable(x, 0));
+        let along = three(0.05).convert(&mut Dual::<DIRECTIONS>::constant).ratios(Dual::variable(x, 0));
         let slopes = three(0.05).slopes(x);
         for side in [0, 1] {
             assert!((along[side].gradient()[0] - slopes[side]).abs() < 1e-11, "{x}");

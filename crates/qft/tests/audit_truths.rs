@@ -24,7 +24,7 @@ type Range = (&'static str, f64, f64, f64);
 
 fn family<F>(ranges: &[Range], spacing: Spacing, plant: F) -> Family
 where
-    F: for<'t> FnOnce(&[Recorded<'t>]) -> PlantCoefficients<Recorded<'t>>,
+    F: for<'t> FnMut(&[Recorded<'t>]) -> PlantCoefficients<Recorded<'t>>,
 {
     let parameters = ranges.iter().map(|&(name, nominal, minimum, maximum)| UncertainParameter {
         name: name.into(),

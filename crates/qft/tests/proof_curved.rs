@@ -66,7 +66,7 @@ fn family(together: bool) -> Family {
 }
 
 fn family_of(
-    equations: impl for<'t> FnOnce(&[Recorded<'t>]) -> PlantCoefficients<Recorded<'t>>,
+    equations: impl for<'t> FnMut(&[Recorded<'t>]) -> PlantCoefficients<Recorded<'t>>,
     together: bool,
 ) -> Family {
     let parameters =

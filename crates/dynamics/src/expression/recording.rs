@@ -50,10 +50,10 @@ pub struct TapeEntry<'tape> {
     index: NodeIndex,
 }
 
-pub(super) fn record<F>(parameter_count: usize, equations: F) -> (Vec<Node>, Vec<NodeIndex>)
-where
-    F: for<'tape> FnOnce(&[Recorded<'tape>]) -> Vec<Recorded<'tape>>,
-{
+/// Results that are computed from numbers which remember it.
+type Equations<'a> = &'a mut dyn for<'tape> FnMut(&[Recorded<'tape>]) -> Vec<Recorded<'tape>>;
+
+pub(super) fn record(parameter_count: usize, equations: Equations<'_>) -> (Vec<Node>, Vec<NodeIndex>) {
     let tape = Tape::default();
     let parameters: Vec<Recorded<'_>> = (0..parameter_count)
         .map(|index| Recorded::Node(TapeEntry { tape: &tape, index: tape.index(Node::Parameter(index)) }))

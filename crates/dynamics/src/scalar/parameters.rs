@@ -57,7 +57,7 @@ impl<P: Parameters, const N: usize> Parameters for [P; N] {
 
     #[inline(always)]
     fn convert<T: Copy>(&self, of: &mut impl FnMut(P::Number) -> T) -> [P::Over<T>; N] {
-        self.map(|part| part.convert(of))
+        std::array::from_fn(|index| self[index].convert(of))
     }
 }
 

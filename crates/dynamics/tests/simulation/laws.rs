@@ -53,9 +53,9 @@ impl Recording {
         let (states, inputs) = (system.states(), system.inputs());
         let (delays, indicators) = (system.delays(), system.indicators());
         Recording {
-            rates: recorded(states, inputs, states, |y, w, rates| system.rates(y, w, rates)),
-            outgoing: recorded(states, inputs, delays.len(), |y, w, waves| system.outgoing(y, w, waves)),
-            indicate: recorded(states, inputs, indicators, |y, w, found| system.indicate(y, w, found)),
+            rates: recorded(states, inputs, states, &mut |y, w, rates| system.rates(y, w, rates)),
+            outgoing: recorded(states, inputs, delays.len(), &mut |y, w, waves| system.outgoing(y, w, waves)),
+            indicate: recorded(states, inputs, indicators, &mut |y, w, found| system.indicate(y, w, found)),
             scales: system.scales(),
             sliding: system.sliding(),
             inputs,
@@ -66,10 +66,12 @@ impl Recording {
 }
 
 /// So many functions of states and inputs.
-fn recorded<F>(states: usize, inputs: usize, results: usize, equations: F) -> Expression
-where
-    F: for<'tape> FnOnce(&[Recorded<'tape>], &[Recorded<'tape>], &mut [Recorded<'tape>]),
-{
+fn recorded(
+    states: usize,
+    inputs: usize,
+    results: usize,
+    equations: &mut dyn for<'tape> FnMut(&[Recorded<'tape>], &[Recorded<'tape>], &mut [Recorded<'tape>]),
+) -> Expression {
     Expression::record(&vec![""; states + inputs], |parameters| {
         let mut found = vec![Recorded::from(f64::NAN); results];
         let (states, inputs) = parameters.split_at(states);

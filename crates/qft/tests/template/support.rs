@@ -26,7 +26,7 @@ pub(crate) fn coefficients<'t>(
 /// The family over a box with a grid of this number of points along each parameter.
 pub(crate) fn family<F>(ranges: &[Range], points: usize, equations: F) -> UncertainFamily
 where
-    F: for<'t> FnOnce(&[Recorded<'t>]) -> PlantCoefficients<Recorded<'t>>,
+    F: for<'t> FnMut(&[Recorded<'t>]) -> PlantCoefficients<Recorded<'t>>,
 {
     let parameter = |&(name, minimum, maximum, _): &Range| UncertainParameter {
         name: name.into(),
