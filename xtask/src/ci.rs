@@ -1,5 +1,5 @@
-//! The test command: a build, then tests and stories one after the other, and what needs less of the
-//! processors in parallel with them; the time that each was waited for in a table at the end.
+//! The test command: a build, then tests and stories one after the other, and what needs less of
+//! the processors in parallel with them; the time that each was waited for in a table at the end.
 //!
 //! A stage that fails does not stop the later ones, so that one run shows everything that has to be
 //! mended.
@@ -92,8 +92,8 @@ const STAGES: &[(&str, Stage)] = &[
     (SOAK, soak),
 ];
 
-/// The stages that run in parallel with tests and stories, one after the other: most of their time a
-/// processor is free.
+/// The stages that run in parallel with tests and stories, one after the other: most of their time
+/// a processor is free.
 const ASIDE: [&str; 3] = ["doctests", "wasm32", "peers"];
 
 /// The stage that runs from the beginning in parallel with the others; its result is printed in its

@@ -65,13 +65,12 @@ impl Recording {
     }
 }
 
+/// What functions of states and inputs write into their results.
+type Equations<'a> =
+    &'a mut dyn for<'tape> FnMut(&[Recorded<'tape>], &[Recorded<'tape>], &mut [Recorded<'tape>]);
+
 /// So many functions of states and inputs.
-fn recorded(
-    states: usize,
-    inputs: usize,
-    results: usize,
-    equations: &mut dyn for<'tape> FnMut(&[Recorded<'tape>], &[Recorded<'tape>], &mut [Recorded<'tape>]),
-) -> Expression {
+fn recorded(states: usize, inputs: usize, results: usize, equations: Equations<'_>) -> Expression {
     Expression::record(&vec![""; states + inputs], |parameters| {
         let mut found = vec![Recorded::from(f64::NAN); results];
         let (states, inputs) = parameters.split_at(states);
