@@ -12,11 +12,15 @@ STEP = 1e-30
 
 
 def root(drop, transition):
-    return drop / (drop**2 + transition**2) ** 0.25
+    return drop / np.sqrt(np.sqrt(drop**2 + transition**2))
 
 
-def slope(drop, transition):
-    return (drop**2 / 2 + transition**2) / (drop**2 + transition**2) ** 1.25
+def root_and_slope(drop, transition):
+    """The regular root of a drop, and its derivative over the drop."""
+    square = drop * drop
+    whole = square + transition**2
+    fourth = np.sqrt(np.sqrt(whole))
+    return drop / fourth, (square / 2 + transition**2) / (whole * fourth)
 
 
 def openings(command, bias, width):
@@ -59,20 +63,22 @@ def conductances(u, numbers, one_curve):
 
 
 def surplus(edges, mean, half, supply, tank, transition):
-    """Flow out of the ports less flow into them, and its slope over the mean of the pressures."""
+    """Flow out of the ports less flow into them, and its slope over the mean of the pressures.
+
+    Of one port alone there are two edges: from the supply and to the tank."""
     drops = [supply - mean - half, mean + half - tank, supply - mean + half, mean - half - tank]
-    signs = (-1, 1, -1, 1)
-    return (
-        sum(sign * edge * root(drop, transition) for edge, drop, sign in zip(edges, drops, signs)),
-        sum(edge * slope(drop, transition) for edge, drop in zip(edges, drops)),
-    )
+    total, rising = 0, 0
+    for edge, drop, sign in zip(edges, drops, (-1, 1, -1, 1)):
+        flow, rate = root_and_slope(drop, transition)
+        total, rising = total + sign * edge * flow, rising + edge * rate
+    return total, rising
 
 
 def balanced(edges, half, supply, tank, transition):
     """The mean pressure at which what flows in flows out: a rising function's zero."""
     span = np.abs(half)
     low, high = tank - span, supply + span
-    into, out = edges[0] + edges[2], edges[1] + edges[3]
+    into, out = sum(edges[0::2]), sum(edges[1::2])
     mean = tank + span + np.maximum(supply - tank - 2 * span, 0) * into**2 / (into**2 + out**2)
     for _ in range(100):
         value, rate = surplus(edges, mean, half, supply, tank, transition)
@@ -107,9 +113,7 @@ def shown(test, numbers, valve):
         mean = solved(edges, half, supply, tank, transition)
         port = edges[0] * root(supply - mean - half, transition) - edges[1] * root(mean + half - tank, transition)
         return {"mean_pressure": mean, "flow": port, "magnitude": np.where(port.real < 0, -port, port)}
-    none = np.zeros_like(edges[0])
-    a = solved([edges[0], edges[1], none, none], nothing, supply, tank, transition)
-    b = solved([none, none, edges[2], edges[3]], nothing, supply, tank, transition)
+    a, b = (solved(port, nothing, supply, tank, transition) for port in (edges[:2], edges[2:]))
     leak = edges[0] * root(supply - a, transition) + edges[2] * root(supply - b, transition)
     tare = numbers[9] * root(supply - tank, transition) / root(valve["tare_pressure"], transition)
     return {"pressure_a": a, "pressure_b": b, "leak_flow": leak + tare}
