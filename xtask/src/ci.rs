@@ -241,28 +241,18 @@ const WITHOUT_PEERS: [&str; 2] = ["--exclude", "sundials"];
 /// The rigs that phea and CVODE solve both: a test of that package.
 const RIGS: &str = "random_rigs";
 
-/// Packages that compile faster in fewer pieces.
-const LARGE_PACKAGES: [&str; 5] =
-    ["phea-dynamics", "phea-engineering", "phea-hydraulics", "phea-machine", "phea-qft"];
-
-/// cargo's setting by which a package is compiled in few pieces, so that less code is compiled in
-/// several of them.
-fn in_few_units(package: &str) -> String {
-    format!("profile.dev.package.{package}.codegen-units=2")
-}
+/// cargo's setting by which a package is compiled in one piece: what is inlined into several pieces
+/// is compiled in each, and cargo compiles several packages at a time.
+const IN_ONE_UNIT: [&str; 2] = ["--config", "profile.dev.codegen-units=1"];
 
 /// One command of cargo for all packages; without the one that links CVODE where CVODE is missing.
 fn for_all(built: &Built, arguments: &[&str], of_tests: &[&str]) -> Outcome {
     let peers: &[&str] = if tools::sundials().is_ok() { &[] } else { &WITHOUT_PEERS };
     let variables = built.variables.iter().map(|(name, value)| (*name, value.as_str()));
     let variables: Vec<(&str, &str)> = variables.chain(built.not_kept()).collect();
-    let units: Vec<String> = match built.once {
-        true => LARGE_PACKAGES.iter().map(|name| in_few_units(name)).collect(),
-        false => vec![],
-    };
-    let units: Vec<&str> = units.iter().flat_map(|unit| ["--config", unit]).collect();
+    let units: &[&str] = if built.once { &IN_ONE_UNIT } else { &[] };
     let (command, arguments) = arguments.split_at(1);
-    built.cargo(&[command, &units, arguments, peers, of_tests].concat(), &variables)
+    built.cargo(&[command, units, arguments, peers, of_tests].concat(), &variables)
 }
 
 fn formatting(built: &Built) -> Outcome {

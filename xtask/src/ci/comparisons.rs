@@ -119,11 +119,15 @@ fn compare(root: &Path, told: &mut String, built: &Receiver<()>) -> Compared {
 /// Runs one command in the root, what it prints kept.
 fn quietly(root: &Path, told: &mut String, program: &str, arguments: &[&str]) -> Result<(), String> {
     let line = format!("{program} {}", arguments.join(" "));
-    let programs = target(root).join("debug");
+    let target = target(root);
+    let programs = target.join("debug");
+    // What each script imports is compiled for the first one alone, and not beside its source.
     // The libraries below NumPy would take every core for matrices of a few rows.
     let ran = Command::new(program)
         .args(arguments)
         .current_dir(root)
+        .env_remove("PYTHONDONTWRITEBYTECODE")
+        .env("PYTHONPYCACHEPREFIX", target.join("pycache"))
         .env("OPENBLAS_NUM_THREADS", "1")
         .env("PHEA", programs.join("phea"))
         .env("REFERENCE_SYSTEMS", programs.join("examples").join("reference_systems"))
