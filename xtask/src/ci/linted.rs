@@ -18,8 +18,8 @@ const IN_PLACE_OF_THE_COMPILER: &str = "XTASK_CLIPPY_DRIVER";
 const CLIPPY_ARGUMENTS: (&str, &str) = ("CLIPPY_ARGS", "__CLIPPY_HACKERY__");
 
 /// The packages whose tests are compiled without optimisation: most of their time passes in the
-/// library, which is optimised, and this saves most of a minute of one processor. A profile of cargo
-/// would take the optimisation from the library too.
+/// library, which is optimised, and this saves most of a minute of one processor. A profile of
+/// cargo would take the optimisation from the library too.
 const PLAIN_TESTS: [&str; 4] = ["phea-dynamics", "phea-figure", "phea-project", "phea-qft"];
 
 /// The libraries that are compiled once more for the unit tests of their kernels, without
