@@ -92,8 +92,8 @@ const STAGES: &[(&str, Stage)] = &[
     (SOAK, soak),
 ];
 
-/// The stages that run in parallel with tests and stories, one after the other: most of their time
-/// a processor is free.
+/// The stages that run one after the other, in parallel with tests and stories: neither line
+/// keeps two processors busy all the time.
 const ASIDE: [&str; 3] = ["doctests", "wasm32", "peers"];
 
 /// The stage that runs from the beginning in parallel with the others; its result is printed in its

@@ -38,6 +38,8 @@ mod plane;
 mod power_of_two;
 #[path = "../src/stability/product.rs"]
 mod product;
+#[path = "../src/loop_shaping/margins/prominent.rs"]
+mod prominent;
 #[path = "../src/bound/quadratic.rs"]
 mod quadratic;
 #[path = "../src/stability/search.rs"]
@@ -50,3 +52,5 @@ mod subproblem;
 use phea_qft::closed_loop::{self, Compensation};
 use phea_qft::loop_shaping as search;
 use phea_qft::stability::Irresolution;
+
+const DECIBELS_PER_NEPER: f64 = 20.0 / std::f64::consts::LN_10;

@@ -9,6 +9,7 @@
 //! plant compares squares of magnitudes.
 
 mod crossover;
+mod prominent;
 mod rows;
 
 use num_complex::Complex64;
@@ -16,11 +17,13 @@ use phea_dynamics::closed_loop::PlantPath;
 use phea_dynamics::portable;
 
 use super::samples::FrequencyColumn;
+use super::structure::DECIBELS_PER_NEPER;
 use crate::specification::{ClosedLoop, Specification};
 use crate::verification::TrackingJudgement;
 
 pub(super) use crossover::{ColumnDependence, DelayMargins, bandwidth, delay_margins};
-pub(super) use rows::{MarginCandidate, candidates};
+pub(super) use prominent::MarginCandidate;
+pub(super) use rows::candidates;
 
 /// What is demanded of the plants at one frequency.
 #[derive(Clone, Copy, Debug, PartialEq)]

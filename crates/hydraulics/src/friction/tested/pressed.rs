@@ -150,7 +150,8 @@ impl PressedMass {
     /// As [`PressedMass::displacements`], but that the velocity and the deflection of the bristles
     /// at the first row are given, in m/s and m, and that the force is a sum of sines: it is
     /// evaluated at each step of the integration, not only at the rows, and is straight within a
-    /// step.
+    /// step. It is given by its sizes in N, and by what [`PressedMass::shapes`] of the same mass
+    /// multiplies them by.
     ///
     /// # Example
     /// A small force shakes the mass as it would on a spring and a damper:
