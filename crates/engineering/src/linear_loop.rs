@@ -68,6 +68,8 @@ pub enum LoopError {
 
 /// Number of samples of a step response.
 const SAMPLES: usize = 2000;
+/// A pole as close to a zero, relative to itself, leaves a tail of about this part of the step.
+const SMALL_TAIL: f64 = 0.05;
 
 /// The loop of a plant as [`linear_loop`] closes it, with the rate that its controller feeds
 /// forward at its samples.
@@ -189,37 +191,61 @@ fn step_view(
     // cancel exactly in Y = P U.
     let command = prefilter.series(&feedback.feedback(with_sensor)?)?;
     let through = command.series(plant)?.without_common_factors(0.0);
-    let duration = duration(&through);
-    let times_s = match plant.domain() {
-        TimeDomain::Continuous => uniform_times(duration, SAMPLES)?,
-        TimeDomain::Discrete { sample_time_s } => {
-            let samples = (duration / sample_time_s).ceil().clamp(10.0, 100_000.0) as usize;
-            (0..samples).map(|sample| sample as f64 * sample_time_s).collect()
-        }
+    let shown = |times_s: Vec<f64>| -> Result<StepView, LoopError> {
+        let response = step_response(&through, &times_s)?;
+        let baseline = StepBaseline::to_value(1.0);
+        let metrics = step_metrics(&times_s, &response, baseline, band_percent)?;
+        Ok(StepView {
+            filtered_reference: step_response(prefilter, &times_s)?,
+            command_v_per_n: step_response(&command, &times_s)?,
+            metrics,
+            response,
+            times_s,
+        })
     };
-    let response = step_response(&through, &times_s)?;
-    let baseline = StepBaseline::to_value(1.0);
-    let metrics = step_metrics(&times_s, &response, baseline, band_percent)?;
-    Ok(StepView {
-        filtered_reference: step_response(prefilter, &times_s)?,
-        command_v_per_n: step_response(&command, &times_s)?,
-        metrics,
-        response,
-        times_s,
-    })
+    let brief_s = duration(&through.without_common_factors(SMALL_TAIL));
+    let brief = shown(instants(&[brief_s], plant.domain())?)?;
+    let whole_s = duration(&through);
+    if brief.metrics.settling.time_s().is_some() || whole_s <= brief_s {
+        return Ok(brief);
+    }
+    // The small tail, too, may lead out of the band.
+    let whole = shown(instants(&[brief_s, whole_s], plant.domain())?)?;
+    Ok(if whole.metrics.settling.time_s().is_some() { whole } else { brief })
 }
 
-/// Eight time constants of the slowest pole that matters for the response, between a tenth of a
-/// second and a minute.
-fn duration(through: &TransferFunction) -> f64 {
-    let rate = |pole: &num_complex::Complex64| match through.domain() {
+/// Times from 0 to the last of these ends, as close before each end as its distance from the one
+/// before asks for.
+fn instants(ends_s: &[f64], domain: TimeDomain) -> Result<Vec<f64>, LoopError> {
+    let mut times_s = vec![0.0];
+    match domain {
+        TimeDomain::Continuous => {
+            let mut start_s = 0.0;
+            for end_s in ends_s {
+                let after = uniform_times(end_s - start_s, SAMPLES)?;
+                times_s.extend(after.iter().skip(1).map(|time_s| start_s + time_s));
+                start_s = *end_s;
+            }
+        }
+        TimeDomain::Discrete { sample_time_s } => {
+            let duration_s = ends_s.iter().fold(0.0, |longest: f64, end_s| longest.max(*end_s));
+            let samples = (duration_s / sample_time_s).ceil().clamp(10.0, 100_000.0) as usize;
+            times_s.extend((1..samples).map(|sample| sample as f64 * sample_time_s));
+        }
+    }
+    Ok(times_s)
+}
+
+/// Eight time constants of the slowest pole, between a tenth of a second and a minute.
+fn duration(of: &TransferFunction) -> f64 {
+    let rate = |pole: &num_complex::Complex64| match of.domain() {
         TimeDomain::Continuous => -pole.re,
         TimeDomain::Discrete { sample_time_s } => {
             -phea_dynamics::portable::ln(phea_dynamics::portable::magnitude(*pole).max(1e-300))
                 / sample_time_s
         }
     };
-    let slowest = through.without_common_factors(0.05).poles().iter().map(rate).fold(f64::INFINITY, f64::min);
+    let slowest = of.poles().iter().map(rate).fold(f64::INFINITY, f64::min);
     if slowest > 0.0 { (8.0 / slowest).clamp(0.1, 60.0) } else { 1.0 }
 }
 

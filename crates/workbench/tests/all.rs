@@ -41,6 +41,7 @@ mod operating_region;
 mod other_means;
 mod parts;
 mod plant_of_verdicts;
+mod predicted_step;
 mod proof;
 mod recorded_tables;
 mod repair;

@@ -78,21 +78,28 @@ fn the_step_that_is_predicted_is_the_machines() {
 /// hardly change it, and it belongs to the predicted step all the same.
 #[test]
 fn a_tail_slower_than_the_plant_is_predicted() {
-    let predicted = |model: &str| {
+    let predicted = |settings: [&str; 2]| {
         let slow = [
             "linear.flow_pressure_coefficient=7e-11",
             "cylinder.friction={ model = \"viscous\", viscous = \"100 N.s/m\" }",
             "controller={ numerator = \"4e-4*s + 4e-3\", denominator = \"s\" }",
             "prefilter={ numerator = \"1\", denominator = \"1\" }",
-            model,
+            settings[0],
+            settings[1],
         ];
         let object = asked(&Request::Verify { proof: false, on_machine: true }, &slow);
         let linear = &object["machine"]["runs"][0]["linear"];
         ["overshoot_percent", "settling_time_s"].map(|key| linear[key].as_f64().unwrap())
     };
-    let [lumped, waves] = ["line.model=lumped", "line.model=transmission_line"].map(predicted);
-    assert!(lumped[0] < 0.01 && waves[0] < 0.01, "{lumped:?} {waves:?}");
-    assert!(lumped[1] > 1.0 && (waves[1] / lumped[1] - 1.0).abs() < 0.1, "{lumped:?} {waves:?}");
+    let [lumped, waves] = ["line.model=lumped", "line.model=transmission_line"];
+    let [continuous, sampled] = ["controller.delay=0 s", "controller.sample_time=1 ms"];
+    let lumps = predicted([lumped, continuous]);
+    assert!(lumps[0] < 0.01 && lumps[1] > 1.0, "{lumps:?}");
+    for settings in [[lumped, sampled], [waves, continuous], [waves, sampled]] {
+        let other = predicted(settings);
+        let settles_alike = (other[1] / lumps[1] - 1.0).abs() < 0.1;
+        assert!(other[0] < 0.01 && settles_alike, "{lumps:?} {other:?} {settings:?}");
+    }
 }
 
 /// For the one rig there is a loop below the quarter wave of its hoses that satisfies everything,

@@ -257,9 +257,13 @@ impl TransferFunction {
         self.poles.iter().all(|&pole| is_stable_pole(pole, self.domain))
     }
 
-    /// The system without the poles and zeros that lie within `relative_tolerance` of each other
-    /// (relative to the pole's magnitude): real ones with real ones, complex pairs with complex
-    /// pairs. What is left has the same response to about that tolerance.
+    /// The system without the poles and zeros that lie within `relative_tolerance` of each other:
+    /// real ones with real ones, complex pairs with complex pairs. What is left has the same
+    /// response to about that tolerance.
+    ///
+    /// Relative to the magnitude of the pole, in 1/s: a root z of a sampled system is compared as
+    /// s = ln(z)/T. Near z = 1 all roots are alike in z, though one may decay a hundred times as
+    /// fast as another.
     pub fn without_common_factors(&self, relative_tolerance: f64) -> Self {
         // each pair by its upper member
         let upper =
@@ -268,9 +272,9 @@ impl TransferFunction {
         for pole in upper(&self.poles) {
             let alike = |zero: &Complex64| (zero.im == 0.0) == (pole.im == 0.0);
             let distances = zeros.iter().enumerate().filter(|(_, zero)| alike(zero));
-            let distances = distances.map(|(index, zero)| (index, portable::magnitude(zero - pole)));
+            let distances = distances.map(|(index, zero)| (index, self.relative_distance(*zero, pole)));
             match distances.min_by(|a, b| a.1.total_cmp(&b.1)) {
-                Some((index, distance)) if distance <= relative_tolerance * portable::magnitude(pole) => {
+                Some((index, distance)) if distance <= relative_tolerance => {
                     zeros.remove(index);
                 }
                 _ => poles.push(pole),
@@ -282,6 +286,24 @@ impl TransferFunction {
         };
         let kept = TransferFunction::assembled(self.gain, mirrored(zeros), mirrored(poles), self.domain);
         TransferFunction { dead_time_s: self.dead_time_s, ..kept }
+    }
+
+    /// |s_zero - s_pole|/|s_pole|: 0 for equal roots, infinite where the pole is an integrator or a
+    /// delay of whole samples.
+    fn relative_distance(&self, zero: Complex64, pole: Complex64) -> f64 {
+        if zero == pole {
+            return 0.0;
+        }
+        let continuous = |root: Complex64| match self.domain {
+            TimeDomain::Continuous => root,
+            // ln z = s T: the sample time cancels in the ratio
+            TimeDomain::Discrete { .. } => {
+                Complex64::new(portable::ln(portable::magnitude(root)), portable::argument(root))
+            }
+        };
+        let [zero, pole] = [zero, pole].map(continuous);
+        let ratio = portable::magnitude(zero - pole) / portable::magnitude(pole);
+        if ratio.is_nan() { f64::INFINITY } else { ratio }
     }
 
     /// 1/P, without its dead time's inverse: a system with dead time has none.
