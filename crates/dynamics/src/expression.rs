@@ -5,6 +5,7 @@
 //! without the function it came from. Equal sub-expressions are recorded once; operations on
 //! constants are done while recording.
 
+mod lanes;
 mod memo;
 mod node;
 mod recording;
@@ -94,38 +95,6 @@ impl Expression {
     pub fn first(&self, count: usize) -> Expression {
         let results = self.results.iter().take(count).copied().collect();
         let (nodes, results) = recording::needed(&self.nodes, results);
-        Expression { parameters: self.parameters.clone(), nodes, results }
-    }
-
-    /// The same over these parameters alone, all others having the values given: what depends on
-    /// none of them is computed once. Evaluated for numbers it gives the same bits.
-    ///
-    /// # Example
-    /// ```
-    /// use phea_dynamics::expression::Expression;
-    /// # use phea_dynamics::scalar::Scalar;
-    /// let root = Expression::record(&["a", "x"], |p| vec![p[0].exp().sqrt() * p[1]]);
-    /// let along = root.over(&[1], &[2.0, 3.0]);
-    /// assert_eq!(along.nodes().len(), 3);
-    /// assert_eq!(along.evaluate(&[2.0, 5.0]), root.evaluate(&[2.0, 5.0]));
-    /// ```
-    pub fn over(&self, free: &[usize], values: &[f64]) -> Expression {
-        let mut nodes: Vec<Node> = Vec::with_capacity(self.nodes.len());
-        let mut places: Vec<NodeIndex> = Vec::with_capacity(self.nodes.len());
-        for node in &self.nodes {
-            let moved = node.moved(&places);
-            let constant = |index: NodeIndex| match nodes.get(index) {
-                Some(Node::Constant(value)) => Some(*value),
-                _ => None,
-            };
-            let folded = moved.folded(free, values, constant);
-            places.push(folded.unwrap_or_else(|kept| {
-                nodes.push(kept);
-                nodes.len() - 1
-            }));
-        }
-        let results = self.results.iter().map(|&result| places[result]).collect();
-        let (nodes, results) = recording::needed(&nodes, results);
         Expression { parameters: self.parameters.clone(), nodes, results }
     }
 
@@ -239,17 +208,13 @@ mod tests {
     }
 
     #[test]
-    fn with_fixed_parameters_the_bits_are_the_same() {
+    fn several_points_at_a_time_give_the_same_bits() {
         let expression = Expression::record(&["a", "b"], |p| equations(p));
-        for values in [[0.5, 2.0], [2.0, 0.5], [1.0, 1.0], [-0.0, 0.0], [f64::NAN, 1.0], [1.0, f64::NAN]] {
-            for free in [&[][..], &[0], &[1], &[0, 1]] {
-                let bits = |expression: &Expression| -> Vec<u64> {
-                    expression.evaluate(&values).into_iter().map(f64::to_bits).collect()
-                };
-                let over = expression.over(free, &values);
-                assert_eq!(bits(&over), bits(&expression), "{free:?} {values:?}");
-                assert!((0..2).all(|index| free.contains(&index) || !over.depends_on(index)));
-            }
+        let points = [[0.5, 2.0], [2.0, 0.5], [1.0, 1.0], [-0.0, 0.0], [3.0, 0.1], [0.7, 4.0]].map(Vec::from);
+        for count in 0..=points.len() {
+            let singly = points.iter().take(count).map(|point| expression.number(point).to_bits());
+            let together = expression.numbers(&points[..count]);
+            assert!(singly.eq(together.into_iter().map(f64::to_bits)), "{count}");
         }
     }
 

@@ -19,6 +19,9 @@ const SEARCHES: [&str; 1] = ["comparisons/recompute_design.py"];
 /// Valves identified by phea and by SciPy: fifty of them before a release.
 const RANDOM_VALVES: &str = "comparisons/compare_identify.py";
 
+/// A tenth of the weight of others: a script that the build leaves unfinished still ends in time.
+const NICENESS: &str = "10";
+
 const REQUIREMENTS: &str = "comparisons/requirements.txt";
 
 /// Each script that failed, or why none could be run.
@@ -109,11 +112,22 @@ fn compare(root: &Path, told: &mut String, built: &Receiver<()>) -> Compared {
     if asking.is_empty() {
         return Err(format!("there is no {COMPARE}*.py"));
     }
+    // The build waits for no script; where it leaves a processor idle, they run.
     let mut failed = alone;
-    failed.retain(|script| quietly(root, told, &python, &[script]).is_err());
+    failed.retain(|script| politely(root, told, &python, &[script]).is_err());
     built.recv().map_err(|_| "phea could not be built".to_string())?;
     failed.extend(asking.into_iter().filter(|script| quietly(root, told, &python, &[script]).is_err()));
     Ok(failed)
+}
+
+/// Runs one command in the root, what it prints kept, and leaves the processors to others that want
+/// them, where the system can do that.
+fn politely(root: &Path, told: &mut String, program: &str, arguments: &[&str]) -> Result<(), String> {
+    if tools::has_nice() {
+        quietly(root, told, "nice", &[&["-n", NICENESS, program][..], arguments].concat())
+    } else {
+        quietly(root, told, program, arguments)
+    }
 }
 
 /// Runs one command in the root, what it prints kept.
@@ -181,7 +195,7 @@ fn environment(root: &Path, told: &mut String) -> Result<PathBuf, String> {
     if root.join(REQUIREMENTS).exists() {
         // what is imported is compiled then, the rest of the packages never
         let install = ["-m", "pip", "install", "--quiet", "--no-compile", "-r", REQUIREMENTS];
-        quietly(root, told, &program, &install)?;
+        politely(root, told, &program, &install)?;
     }
     Ok(python)
 }

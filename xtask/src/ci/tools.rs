@@ -48,6 +48,11 @@ pub(super) fn sundials() -> Result<(), String> {
     Err("SUNDIALS is missing and `apt-get install libsundials-dev` did not bring it".to_string())
 }
 
+/// Whether programs can be run with less weight than others.
+pub(super) fn has_nice() -> bool {
+    quietly("nice", &["true"])
+}
+
 fn is_target_there(name: &str) -> bool {
     let printed = Command::new("rustc").args(["--print", "target-libdir", "--target", name]).output();
     printed.is_ok_and(|output| {

@@ -73,32 +73,6 @@ impl Node {
         }
     }
 
-    /// Where the parameters but those that are free have these values, and the earlier nodes are
-    /// constants as far as `constant` says so: the earlier node that this one equals, or a node in
-    /// its place.
-    pub(super) fn folded(
-        &self,
-        free: &[usize],
-        values: &[f64],
-        constant: impl Fn(NodeIndex) -> Option<f64>,
-    ) -> Result<NodeIndex, Node> {
-        let value = match *self {
-            Node::Parameter(index) if !free.contains(&index) => {
-                Some(values.get(index).copied().unwrap_or(f64::NAN))
-            }
-            Node::Parameter(_) | Node::Constant(_) => None,
-            Node::Unary(operation, x) => constant(x).map(|x| operation.apply(x)),
-            Node::Binary(operation, x, y) => constant(x).zip(constant(y)).map(|(x, y)| operation.apply(x, y)),
-            Node::Select(x, y, if_less, otherwise) => {
-                if let Some((x, y)) = constant(x).zip(constant(y)) {
-                    return Ok(if x < y { if_less } else { otherwise });
-                }
-                None
-            }
-        };
-        Err(value.map_or(*self, Node::Constant))
-    }
-
     /// The same operation, its operands being where `places` says.
     pub(super) fn moved(&self, places: &[NodeIndex]) -> Node {
         match *self {

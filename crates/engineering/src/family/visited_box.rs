@@ -55,6 +55,9 @@ const STEPS: [f64; 2] = [0.25, 1e-5];
 const NEAR: f64 = 0.02;
 const SCANNED: f64 = 8.0;
 const THIRDS: usize = 25;
+/// Between the points of a scan a crest rises by less than this times the step down from the
+/// highest of them to its neighbours: by at most once where it is concave.
+const RISE: f64 = 4.0;
 /// Relative difference that is rounding.
 const SAME: f64 = 1e-9;
 /// Plants from which the search for an extreme starts, and how many are drawn in addition to the
@@ -101,21 +104,33 @@ pub fn visited_box(setup: &Setup<'_>) -> Result<Option<Vec<VisitedRange>>, Proje
     if !expressions.iter().any(physical) {
         return Ok(None);
     }
+    let points = match family.extent() {
+        Extent::Box => [family.members(), &drawn(&family)].concat(),
+        Extent::Members => family.members().to_vec(),
+    };
     let range =
         |((name, symbol, unit), expression): (&(&'static str, &'static str, &'static str), &Expression)| {
-            let extreme = |sign: f64| extreme(&family, expression, sign);
+            let numbers = expression.numbers(&points);
+            let extreme = |sign: f64| extreme(&family, expression, sign, points.iter().zip(&numbers));
             VisitedRange { name, symbol, unit, minimum: extreme(-1.0), maximum: extreme(1.0) }
         };
     Ok(Some(PARAMETERS.iter().zip(&expressions).map(range).collect()))
 }
 
-/// The most of a result over a family with sign 1, the least with sign -1.
-fn extreme(family: &UncertainFamily, expression: &Expression, sign: f64) -> Extreme {
+/// The most of a result over a family with sign 1, the least with sign -1; `points` are some of its
+/// plants with the result there.
+fn extreme<'a>(
+    family: &UncertainFamily,
+    expression: &Expression,
+    sign: f64,
+    points: impl Iterator<Item = (&'a Vec<f64>, &'a f64)>,
+) -> Extreme {
     let value = |values: &[f64]| sign * expression.number(values);
     // among plants that differ only by rounding the first is kept, which is nearest to the nominal
     // one
     let unit = SAME * value(&family.plant().nominal()).abs();
-    let rounded = |values: &[f64]| (value(values) / unit).round();
+    let rounded_of = |value: f64| (value / unit).round();
+    let rounded = |values: &[f64]| rounded_of(value(values));
     let names = |coordinate: &Coordinate| {
         let name = |index: &usize| family.plant().parameters().get(*index).map(|one| one.name.as_str());
         coordinate
@@ -124,12 +139,8 @@ fn extreme(family: &UncertainFamily, expression: &Expression, sign: f64) -> Extr
             .any(|index| expression.depends_on(*index) && name(index) == Some(VELOCITY))
     };
     let along = family.coordinates().iter().position(names);
-    let drawn = match family.extent() {
-        Extent::Box => drawn(family),
-        Extent::Members => Vec::new(),
-    };
-    let all = family.members().iter().chain(&drawn);
-    let mut starts: Vec<(f64, &Vec<f64>)> = all.map(|values| (rounded(values), values)).collect();
+    let mut starts: Vec<(f64, &Vec<f64>)> =
+        points.map(|(values, number)| (rounded_of(sign * number), values)).collect();
     sort_by_number(&mut starts, |start| -start.0);
     starts.dedup_by_key(|start| start.0);
     starts.truncate(if family.extent() == Extent::Box { STARTS } else { 1 });
@@ -176,16 +187,22 @@ struct Hill<'f> {
     along: Option<usize>,
 }
 
-/// What a search along the crest begins with, and the share and the height that it ended with.
-type Crests = BTreeMap<Vec<u64>, (f64, f64)>;
+/// A search along the crest: the values of the parameters in which it can differ from others, and
+/// how far it goes.
+type Crests = BTreeMap<Vec<u64>, Crest>;
+
+/// What is known of the crest near a point.
+#[derive(Clone, Copy)]
+enum Crest {
+    /// It is lower than this.
+    Below(f64),
+    /// Its share of the coordinate, and its height.
+    At(f64, f64),
+}
 
 impl Hill<'_> {
     fn height(&self, shares: &[f64]) -> f64 {
-        self.height_of(self.expression, shares)
-    }
-
-    fn height_of(&self, expression: &Expression, shares: &[f64]) -> f64 {
-        self.sign * expression.number(&self.family.values(shares))
+        self.sign * self.expression.number(&self.family.values(shares))
     }
 
     /// Steps along each coordinate, and along all of them together, while they increase the value,
@@ -195,7 +212,8 @@ impl Hill<'_> {
     fn climb(&self, shares: Vec<f64>) -> Vec<f64> {
         let [mut step, least] = STEPS;
         let mut crests = Crests::new();
-        let (mut shares, mut best) = self.at_crest(shares, 1.0, &mut crests);
+        let start = self.at_crest(shares.clone(), 1.0, f64::NEG_INFINITY, &mut crests);
+        let (mut shares, mut best) = start.unwrap_or((shares, f64::NEG_INFINITY));
         let mut state = random::stream(SEED, 1);
         while step > least {
             let mut higher = false;
@@ -210,9 +228,9 @@ impl Hill<'_> {
                 for side in [-step, step] {
                     let moved = shares.iter().zip(&course);
                     let next = moved.map(|(share, course)| (share + side * course).clamp(0.0, 1.0)).collect();
-                    let (next, found) = self.at_crest(next, step, &mut crests);
-                    if found > best + SAME * best.abs() {
-                        (best, shares, higher) = (found, next, true);
+                    let wanted = best + SAME * best.abs();
+                    if let Some(found) = self.at_crest(next, step, wanted, &mut crests) {
+                        ((shares, best), higher) = (found, true);
                     }
                 }
             }
@@ -223,57 +241,87 @@ impl Hill<'_> {
         shares
     }
 
-    /// These shares with the coordinate `along` at the best place nearby, and the height there.
-    /// Many steps end at a corner of the box, or move what the result does not depend on: they are
-    /// searched once.
-    fn at_crest(&self, mut shares: Vec<f64>, step: f64, crests: &mut Crests) -> (Vec<f64>, f64) {
+    /// These shares with the coordinate `along` at the best place nearby, and the height there,
+    /// where it is more than `wanted`. Many steps end at a corner of the box, or move what the
+    /// result does not depend on: they are searched once.
+    fn at_crest(
+        &self,
+        mut shares: Vec<f64>,
+        step: f64,
+        wanted: f64,
+        crests: &mut Crests,
+    ) -> Option<(Vec<f64>, f64)> {
         let start = self.along.and_then(|axis| Some((axis, *shares.get(axis)?)));
         let Some((axis, middle)) = start else {
             let height = self.height(&shares);
-            return (shares, height);
+            return (height > wanted).then_some((shares, height));
         };
         let within = step.max(NEAR);
         let values = self.family.values(&shares);
         let felt = values.iter().enumerate().filter(|(index, _)| self.expression.depends_on(*index));
         let key = felt.map(|(_, value)| *value).chain([middle, within]).map(f64::to_bits).collect();
-        let (share, height) =
-            *crests.entry(key).or_insert_with(|| self.crest(shares.clone(), axis, &values, within));
-        shares[axis] = share;
-        (shares, height)
+        let known = crests.entry(key).or_insert(Crest::Below(f64::INFINITY));
+        if matches!(known, Crest::Below(height) if *height > wanted) {
+            *known = self.crest(&shares, axis, within, wanted);
+        }
+        match *known {
+            Crest::At(share, height) if height > wanted => {
+                shares[axis] = share;
+                Some((shares, height))
+            }
+            _ => None,
+        }
     }
 
-    /// The best share along one coordinate within a distance, and the height there: by a scan, then
-    /// by ternary search around the best. `values` are those of the parameters where it begins.
-    fn crest(&self, mut shares: Vec<f64>, axis: usize, values: &[f64], within: f64) -> (f64, f64) {
-        let moved = self.family.coordinates().get(axis).map_or(&[][..], |one| &one.parameters);
-        let section = self.expression.over(moved, values);
+    /// The crest along one coordinate within a distance: by a scan, then by ternary search around
+    /// the best point of it, where that may come to more than `wanted`.
+    fn crest(&self, shares: &[f64], axis: usize, within: f64, wanted: f64) -> Crest {
         let middle = shares[axis];
-        let mut at = |share: f64| {
-            shares[axis] = share.clamp(0.0, 1.0);
-            self.height_of(&section, &shares)
+        let heights = |places: &[f64]| -> Vec<f64> {
+            let at = |place: &f64| {
+                let mut moved = shares.to_vec();
+                moved[axis] = place.clamp(0.0, 1.0);
+                self.family.values(&moved)
+            };
+            let points: Vec<Vec<f64>> = places.iter().map(at).collect();
+            self.expression.numbers(&points).into_iter().map(|number| self.sign * number).collect()
         };
-        let mut best = (at(middle), middle);
         let spacing = within / SCANNED;
-        let mut place = middle - within;
-        while place <= middle + within {
-            let found = at(place);
-            if found > best.0 {
-                best = (found, place);
+        let mut places = vec![middle - within];
+        while let Some(next) =
+            places.last().map(|last| last + spacing).filter(|next| *next <= middle + within)
+        {
+            places.push(next);
+        }
+        places.push(middle);
+        let scanned = heights(&places);
+        let (between, at_middle) = (&scanned[..scanned.len() - 1], scanned[scanned.len() - 1]);
+        let mut best = (at_middle, middle);
+        for (&height, &place) in between.iter().zip(&places) {
+            if height > best.0 {
+                best = (height, place);
             }
-            place += spacing;
+        }
+        let near = between.iter().zip(&places).filter(|(_, place)| (*place - best.1).abs() < 1.5 * spacing);
+        let reach = best.0 + RISE * near.fold(0.0, |fall: f64, (height, _)| fall.max(best.0 - height));
+        if reach <= wanted {
+            return Crest::Below(reach);
         }
         let [mut low, mut high] = [best.1 - spacing, best.1 + spacing];
         for _ in 0..THIRDS {
-            let (first, second) = (low + (high - low) / 3.0, high - (high - low) / 3.0);
-            if at(first) < at(second) {
-                low = first;
+            let thirds = [low + (high - low) / 3.0, high - (high - low) / 3.0];
+            let is_rising = matches!(heights(&thirds)[..], [first, second] if first < second);
+            if is_rising {
+                low = thirds[0];
             } else {
-                high = second;
+                high = thirds[1];
             }
         }
         let found = 0.5 * (low + high);
-        let found = if at(found) > best.0 { found } else { best.1 };
-        let found = found.clamp(0.0, 1.0);
-        (found, at(found))
+        let height = heights(&[found]);
+        match height[..] {
+            [height] if height > best.0 => Crest::At(found.clamp(0.0, 1.0), height),
+            _ => Crest::At(best.1.clamp(0.0, 1.0), best.0),
+        }
     }
 }
