@@ -7,12 +7,15 @@ use phea_workbench::alternatives;
 use phea_workbench::answer::Answer;
 use phea_workbench::command::{self, CommandError, IdentifyError, Request};
 use phea_workbench::project::{self, Loaded, Project};
+use phea_workbench::report::{Report, report};
 use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 use serde_json::Value;
 
 pub(crate) const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");
 pub(crate) const PIPE: &str = include_str!("../../../examples/ybitu/pipe.toml");
+pub(crate) const CONTRADICTORY: &str =
+    include_str!("../../../examples/qft/mistakes/contradictory_bounds.toml");
 
 /// A folder of hoses that do not exist, and a file that gives another body to a built-in name.
 pub(crate) const FICTITIOUS: &str = "fictitious";
@@ -79,11 +82,23 @@ pub(crate) fn json(project: &str, settings: &[&str], catalogues: &[&str], reques
     serde_json::from_str(&text).unwrap_or_else(|error| panic!("{error}: {text}"))
 }
 
-/// What a design of the hose answers, without a repair: made once for all tests that ask for it.
+/// What a design of the hose answers, with its repair: made once for all tests that ask for it.
 pub(crate) fn designed_hose() -> &'static Answer {
     static ANSWER: OnceLock<Answer> = OnceLock::new();
-    let request = Request::Design { seed: None, stages: false, repair: false };
+    let request = Request::Design { seed: None, stages: false, repair: true };
     ANSWER.get_or_init(|| answer(HOSE, &[], &[], &request))
+}
+
+/// The report of a project whose specifications no controller satisfies: made once for all tests
+/// that ask for it.
+pub(crate) fn contradictory_report() -> &'static Report {
+    static REPORT: OnceLock<Report> = OnceLock::new();
+    let make = || {
+        let loaded = load(CONTRADICTORY, &[], &[]);
+        let setup = Setup::new(&loaded.project).unwrap();
+        report(&Memory::default(), &loaded, &setup, None, &mut |_| true).unwrap()
+    };
+    REPORT.get_or_init(make)
 }
 
 #[track_caller]

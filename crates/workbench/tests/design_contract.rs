@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
-use crate::ask::{HOSE, answer, json, load, try_answer};
+use crate::ask::{CONTRADICTORY, HOSE, answer, json, load, try_answer};
 use phea_qft::design::{
     ControllerChoice, DesignOptions, DesignProblem, Objective, PrefilterChoice, diagnose,
 };
@@ -17,7 +17,6 @@ use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 
 const TIMED: &str = include_str!("../../project/tests/valid/design.toml");
-const CONTRADICTORY: &str = include_str!("../../../examples/qft/mistakes/contradictory_bounds.toml");
 const DESIGN: Request = Request::Design { seed: None, stages: false, repair: false };
 
 fn begun(project: &str, settings: &[&str], seed: Option<u32>) -> (DesignProblem, DesignOptions) {

@@ -7,7 +7,7 @@ use phea_workbench::command::{self, CommandError, Progress, Request};
 use phea_workbench::design::{DESIGNED_PROJECT, NEAREST_PROJECT};
 use serde_json::Value;
 
-use super::ask::{HOSE, answer, json, load, number, source};
+use super::ask::{HOSE, answer, designed_hose, json, load, number, source};
 
 const REPAIRED: Request = Request::Design { seed: None, stages: false, repair: true };
 const LEFT: Request = Request::Design { seed: None, stages: false, repair: false };
@@ -38,8 +38,8 @@ fn worst_margin(audit: &Value) -> f64 {
 /// rest.
 #[test]
 fn what_cannot_be_had_with_waves_is_told() {
-    let said = answer(HOSE, &[], &[], &REPAIRED);
-    let object = object(&said);
+    let said = designed_hose();
+    let object = object(said);
     let repair = &object["repair"];
     // the design is that of the declared family, as it was
     assert!(!said.affirmative);
@@ -58,7 +58,7 @@ fn what_cannot_be_had_with_waves_is_told() {
     assert_eq!(waves["agreement"], "agrees");
     // the project that is written with it says the same
     let written = json(
-        file(&said, NEAREST_PROJECT).unwrap(),
+        file(said, NEAREST_PROJECT).unwrap(),
         &[],
         &[],
         &Request::Verify { proof: false, on_machine: false },

@@ -3,14 +3,13 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
-use crate::ask::{HOSE, load};
+use crate::ask::{HOSE, contradictory_report, load};
 use phea_workbench::command::{CommandError, ProcedureError, Progress};
 use phea_workbench::report::{Report, report};
 use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 
 const PROCESS: &str = include_str!("../../../examples/qft/dead_time.toml");
-const CONTRADICTORY: &str = include_str!("../../../examples/qft/mistakes/contradictory_bounds.toml");
 const UNSTABLE: &str = include_str!("../../../examples/qft/unstable_plant.toml");
 
 /// One plant and tracking between two lags, with a controller that is given.
@@ -155,9 +154,9 @@ fn a_sampled_loop_is_shown_with_what_sampling_changes() {
 
 #[test]
 fn what_cannot_be_met_is_told_with_what_stands_against_it() {
-    let report = report_of(CONTRADICTORY, &[]);
-    let chapter = chapter(&report).unwrap();
-    assert!(fact(&report).unwrap().starts_with("infeasible by "), "{:?}", fact(&report));
+    let report = contradictory_report();
+    let chapter = chapter(report).unwrap();
+    assert!(fact(report).unwrap().starts_with("infeasible by "), "{:?}", fact(report));
     let (_, rest) = chapter.split_once("Conflicting specifications").unwrap();
     let (conflicts, _) = rest.split_once("What the specifications cost").unwrap();
     for words in ["1 sensitivity", "2 robust stability", "dB wider"] {

@@ -5,7 +5,7 @@
 
 use std::fmt::Write as _;
 
-use crate::ask::designed_hose;
+use crate::ask::{contradictory_report, designed_hose};
 use phea_workbench::command::{self, Request};
 use phea_workbench::project::{self, Loaded};
 use phea_workbench::report::{Report, report};
@@ -15,7 +15,6 @@ use phea_workbench::source::Memory;
 use serde_json::Value;
 
 const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");
-const CONTRADICTORY: &str = include_str!("../../../examples/qft/mistakes/contradictory_bounds.toml");
 
 fn load(source: &Memory, settings: &[&str]) -> Loaded {
     let settings: Vec<String> = settings.iter().map(|text| (*text).to_string()).collect();
@@ -207,7 +206,7 @@ fn what_to_do_next_follows_from_the_results() {
     let unasked = without(still, "[[specification]]", "[controller]");
     assert!(next(&unasked, &[])[0].contains("`[[specification]]`"));
 
-    let contradictory = next(CONTRADICTORY, &[]);
+    let contradictory = &contradictory_report().decision.next;
     assert!(contradictory[0].starts_with("Ease ") && contradictory[0].contains(" dB"), "{contradictory:?}");
 
     let wall = next(still, &["load.model=wall", "load.stiffness=1e6"]);

@@ -244,7 +244,7 @@ fn limits_that_cross_are_told() {
          [[specification]]\nkind = \"sensitivity\"\nlimit = 1\nfrequencies = [1]\nband = [0, inf]\n\
          [[specification]]\nkind = \"sensitivity\"\nlimit = 2\nfrequencies = [1]\n\
          [[specification]]\nkind = \"control_effort\"\nlimit = \"3e-9*s/(s^2 + 4)\"\nfrequencies = [1]\n\
-         [[specification]]\nkind = \"robust_stability\"\nlimit = {{ frequencies = [1, 10], values = [2, 3] }}\nfrequencies = [1]\n"
+         [[specification]]\nkind = \"robust_stability\"\nlimit = {{ frequencies = [1, 10], values = [2, 3] }}\nfrequencies = [1]\n[controller]\nnumerator = \"1\"\ndenominator = \"1\"\n"
     );
     let chapter = demands(&plain_report(&project).html);
     for words in [
