@@ -16,6 +16,7 @@ use super::tree::{self, TreeNode};
 use super::{DIRECTION, DeclaredActuator, Loaded, Project, UncertaintyDirection, setting, validate};
 use crate::catalogue::Catalogue;
 use crate::source::Source;
+use phea_quantity::spelling::nearest;
 use phea_quantity::{Dimension, MotionKind, RATIO, display};
 
 /// Reads a project file, applies `path=value` settings, and looks names up in the catalogue, to
@@ -99,7 +100,7 @@ pub(super) fn read_bytes(
     let bytes = match bytes {
         Ok(bytes) => bytes,
         Err(error) => {
-            findings.unreadable(path, &error);
+            findings.unread(source, path, &error);
             return Err(findings.report());
         }
     };
@@ -432,12 +433,36 @@ impl Project {
 impl Findings {
     /// The bytes of a file; none, with a finding, if it cannot be read.
     pub fn bytes_of(&mut self, source: &dyn Source, path: &str) -> Option<Vec<u8>> {
-        source.read(path).map_err(|error| self.unreadable(path, &error.to_string())).ok()
+        source.read(path).map_err(|error| self.unread(source, path, &error.to_string())).ok()
+    }
+
+    /// A file that could not be read, and which one may be meant if there is none.
+    fn unread(&mut self, source: &dyn Source, path: &str, reason: &str) {
+        let help = source.list(path).is_err().then(|| meant(source, path)).flatten();
+        let place = self.whole_file(path);
+        self.push(RawFinding::error(place, reason.to_string()).syntax().maybe_help(help));
     }
 
     /// A file that could not be read at all.
     pub fn unreadable(&mut self, path: &str, reason: &str) {
-        let text = self.add_text(path, "", 0);
-        self.push(RawFinding::error(Place { text, start: 0, end: 0 }, reason.to_string()).syntax());
+        let place = self.whole_file(path);
+        self.push(RawFinding::error(place, reason.to_string()).syntax());
     }
+
+    fn whole_file(&mut self, path: &str) -> Place {
+        Place { text: self.add_text(path, "", 0), start: 0, end: 0 }
+    }
+}
+
+/// The file in the same folder whose name comes nearest, or that the folder is missing too.
+fn meant(source: &dyn Source, path: &str) -> Option<String> {
+    let (folder, name) = path.rsplit_once('/').unwrap_or((".", path));
+    let Ok(files) = source.list(folder) else {
+        return (folder != ".").then(|| format!("there is no folder `{folder}` either"));
+    };
+    let files = files.unwrap_or_default();
+    let names = files.iter().map(|file| file.rsplit_once('/').map_or(file.as_str(), |(_, name)| name));
+    let near = nearest(name, names).filter(|near| *near != name)?;
+    let beside = path.strip_suffix(name).unwrap_or_default();
+    Some(format!("did you mean `{beside}{near}`?"))
 }

@@ -178,6 +178,20 @@ help: did you mean `bar`?"#;
     assert_eq!(missing.diagnostics[0].message, "cannot read rig.toml: no such file");
 }
 
+/// A file that is missing is told with the one that may be meant.
+#[test]
+fn a_misspelt_file_is_told_with_its_neighbour() {
+    let source = Memory::default().with("rigs/hose.toml", HOSE).with("rigs/notes.txt", "");
+    let help = |path: &str| {
+        let report = project::read(&source, path, &[], &[]).expect_err("no such file");
+        report.diagnostics[0].help.clone()
+    };
+    assert_eq!(help("rigs/hoes.toml").as_deref(), Some("did you mean `rigs/hose.toml`?"));
+    assert_eq!(help("rigs/pipe_of_steel.toml"), None);
+    assert_eq!(help("rig/hose.toml").as_deref(), Some("there is no folder `rig` either"));
+    assert_eq!(help("hose.toml"), None);
+}
+
 #[test]
 fn catalogues_are_added_and_every_number_has_a_source() {
     let soft = include_str!("catalogue/fictitious_soft.toml");
