@@ -68,7 +68,8 @@ pub enum LoopError {
 
 /// Number of samples of a step response.
 const SAMPLES: usize = 2000;
-/// A pole as close to a zero, relative to itself, leaves a tail of about this part of the step.
+/// A pole that is this close to a zero, relative to its own magnitude, leaves a tail of about this
+/// part of the step.
 const SMALL_TAIL: f64 = 0.05;
 
 /// The loop of a plant as [`linear_loop`] closes it, with the rate that its controller feeds
@@ -214,8 +215,8 @@ fn step_view(
     Ok(if whole.metrics.settling.time_s().is_some() { whole } else { brief })
 }
 
-/// Times from 0 to the last of these ends, as close before each end as its distance from the one
-/// before asks for.
+/// Times from 0 to the last of these ends: equally many up to each end from the one before, and in
+/// a sampled loop every sample.
 fn instants(ends_s: &[f64], domain: TimeDomain) -> Result<Vec<f64>, LoopError> {
     let mut times_s = vec![0.0];
     match domain {
@@ -228,7 +229,7 @@ fn instants(ends_s: &[f64], domain: TimeDomain) -> Result<Vec<f64>, LoopError> {
             }
         }
         TimeDomain::Discrete { sample_time_s } => {
-            let duration_s = ends_s.iter().fold(0.0, |longest: f64, end_s| longest.max(*end_s));
+            let duration_s = ends_s.last().copied().unwrap_or(0.0);
             let samples = (duration_s / sample_time_s).ceil().clamp(10.0, 100_000.0) as usize;
             times_s.extend((1..samples).map(|sample| sample as f64 * sample_time_s));
         }

@@ -454,7 +454,8 @@ impl Findings {
     }
 }
 
-/// The file in the same folder whose name comes nearest, or that the folder is missing too.
+/// What to say of a missing file: which name in its folder comes nearest, or that the folder is
+/// missing too.
 fn meant(source: &dyn Source, path: &str) -> Option<String> {
     let (folder, name) = path.rsplit_once('/').unwrap_or((".", path));
     let Ok(files) = source.list(folder) else {

@@ -6,8 +6,8 @@ use super::Expression;
 use crate::scalar::{LANES, Lanes};
 
 impl Expression {
-    /// The first result at each of these points, with the bits of [`Expression::number`]: of four
-    /// points each operation is looked up once.
+    /// The first result at each of these points, with the bits of [`Expression::number`]: each
+    /// operation is read once for four points.
     ///
     /// # Example
     /// ```

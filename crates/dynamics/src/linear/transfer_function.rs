@@ -261,9 +261,9 @@ impl TransferFunction {
     /// real ones with real ones, complex pairs with complex pairs. What is left has the same
     /// response to about that tolerance.
     ///
-    /// Relative to the magnitude of the pole, in 1/s: a root z of a sampled system is compared as
-    /// s = ln(z)/T. Near z = 1 all roots are alike in z, though one may decay a hundred times as
-    /// fast as another.
+    /// Their distance is relative to the magnitude of the pole in 1/s: a root z of a sampled system
+    /// is compared as s = ln(z)/T. Near z = 1 all roots are close together, though one may decay a
+    /// hundred times as fast as another.
     pub fn without_common_factors(&self, relative_tolerance: f64) -> Self {
         // each pair by its upper member
         let upper =

@@ -55,8 +55,8 @@ const STEPS: [f64; 2] = [0.25, 1e-5];
 const NEAR: f64 = 0.02;
 const SCANNED: f64 = 8.0;
 const THIRDS: usize = 25;
-/// Between the points of a scan a crest rises by less than this times the step down from the
-/// highest of them to its neighbours: by at most once where it is concave.
+/// Between the points of a scan a crest is taken to rise by less than this times the step from the
+/// highest of them down to its lower neighbour; where it is concave, it rises by at most that step.
 const RISE: f64 = 4.0;
 /// Relative difference that is rounding.
 const SAME: f64 = 1e-9;
@@ -187,17 +187,17 @@ struct Hill<'f> {
     along: Option<usize>,
 }
 
-/// A search along the crest: the values of the parameters in which it can differ from others, and
-/// how far it goes.
+/// What is known of each crest, by the values that decide it: those of the parameters, where the
+/// search begins, and how far it goes.
 type Crests = BTreeMap<Vec<u64>, Crest>;
 
 /// What is known of the crest near a point.
 #[derive(Clone, Copy)]
 enum Crest {
-    /// It is lower than this.
-    Below(f64),
-    /// Its share of the coordinate, and its height.
-    At(f64, f64),
+    /// It is not higher than this.
+    UpTo(f64),
+    /// It is here.
+    At { share: f64, height: f64 },
 }
 
 impl Hill<'_> {
@@ -260,12 +260,12 @@ impl Hill<'_> {
         let values = self.family.values(&shares);
         let felt = values.iter().enumerate().filter(|(index, _)| self.expression.depends_on(*index));
         let key = felt.map(|(_, value)| *value).chain([middle, within]).map(f64::to_bits).collect();
-        let known = crests.entry(key).or_insert(Crest::Below(f64::INFINITY));
-        if matches!(known, Crest::Below(height) if *height > wanted) {
+        let known = crests.entry(key).or_insert(Crest::UpTo(f64::INFINITY));
+        if matches!(known, Crest::UpTo(height) if *height > wanted) {
             *known = self.crest(&shares, axis, within, wanted);
         }
         match *known {
-            Crest::At(share, height) if height > wanted => {
+            Crest::At { share, height } if height > wanted => {
                 shares[axis] = share;
                 Some((shares, height))
             }
@@ -305,7 +305,7 @@ impl Hill<'_> {
         let near = between.iter().zip(&places).filter(|(_, place)| (*place - best.1).abs() < 1.5 * spacing);
         let reach = best.0 + RISE * near.fold(0.0, |fall: f64, (height, _)| fall.max(best.0 - height));
         if reach <= wanted {
-            return Crest::Below(reach);
+            return Crest::UpTo(reach);
         }
         let [mut low, mut high] = [best.1 - spacing, best.1 + spacing];
         for _ in 0..THIRDS {
@@ -320,8 +320,8 @@ impl Hill<'_> {
         let found = 0.5 * (low + high);
         let height = heights(&[found]);
         match height[..] {
-            [height] if height > best.0 => Crest::At(found.clamp(0.0, 1.0), height),
-            _ => Crest::At(best.1.clamp(0.0, 1.0), best.0),
+            [height] if height > best.0 => Crest::At { share: found.clamp(0.0, 1.0), height },
+            _ => Crest::At { share: best.1.clamp(0.0, 1.0), height: best.0 },
         }
     }
 }
