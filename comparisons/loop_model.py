@@ -113,6 +113,14 @@ def polynomial(text, variable="s", **names):
     return np.poly1d(coefficients(text, variable, **names))
 
 
+def value_at(one, s):
+    """A polynomial at s, by Horner: NumPy's own does more than this before it begins."""
+    total = one.coeffs[0] + 0.0 * s
+    for coefficient in one.coeffs[1:]:
+        total = total * s + coefficient
+    return total
+
+
 class Transfer:
     """Controller or prefilter: as text, as factors or as elements."""
 
@@ -135,7 +143,7 @@ class Transfer:
         """Its values at s; a constant, which is asked for very often, is not evaluated as a polynomial."""
         if self.numerator.order == self.denominator.order == 0:
             return self.numerator.coeffs[0] / self.denominator.coeffs[0] + 0.0 * s
-        return self.numerator(s) / self.denominator(s)
+        return value_at(self.numerator, s) / value_at(self.denominator, s)
 
     @functools.cache
     def sampled(self, sample_time):

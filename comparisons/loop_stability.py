@@ -4,7 +4,7 @@ import numpy as np
 
 from worst_case import polish, scaled_roots
 
-HALVINGS = 24  # of an interval of the grid in which |L| passes one: to 1e-8 of its frequency
+HALVINGS = 16  # of an interval of the grid in which |L| passes one: to 1e-5 of its frequency
 
 
 def abscissa(project, values):

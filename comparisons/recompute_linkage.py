@@ -12,8 +12,6 @@ A four-bar is closed by a root finder on the distance between the ends of its li
     python comparisons/recompute_linkage.py
 """
 
-import cmath
-
 import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
@@ -30,7 +28,7 @@ H = 1e-30
 def opening(length):
     """Angle between the arms of a triangle, for real and complex lengths: the rod's pivot is this far along the other arm."""
     along = (A * A + B * B - length * length) / (2 * A)
-    return cmath.acos(along / B)
+    return np.arccos(along / B + 0j)
 
 
 def theta(y):
@@ -51,28 +49,34 @@ def lagrangian(q, v, weight):
     return kinetic - held - weight * np.sin(theta(y) - LEVEL)
 
 
-def accelerations(q, v, weight):
-    def gradient(of, at):
-        return np.array([of([value + (1j * H if i == j else 0) for j, value in enumerate(at)]).imag / H for i in range(2)])
+# All evaluations of L in one call. Its place is moved along an imaginary step, by a unit or by the motion itself;
+# its velocities are fixed, with or without those of the motion.
+UNITS = [(1, 0), (0, 1)]
+MOVED = np.array(UNITS + [(0, 0)] * 12).T
+MOVED_ALONG = np.array([0] * 8 + [1] * 6)
+VELOCITIES = np.array([(0, 0)] * 2 + [(0, 0), (1, 0), (0, 1), (1, 1), (2, 0), (0, 2)] + [(0, 0)] + UNITS + [(0, 0)] + UNITS).T
+IN_MOTION = np.array([1] * 2 + [0] * 6 + [0] * 3 + [1] * 3)
 
-    by_position = gradient(lambda q: lagrangian(q, v, weight), q)
+
+def accelerations(q, v, weight):
+    motion = v[:, None]
+    places = q[:, None] + 1j * H * (MOVED + motion * MOVED_ALONG)
+    value = lagrangian(places, VELOCITIES + motion * IN_MOTION, weight)
+    by_position = value[:2].imag / H
     # the kinetic energy is quadratic in the velocities: the mass matrix by its values for unit velocities
-    kinetic = lambda q, v: lagrangian(q, v, weight) - lagrangian(q, [0, 0], weight)
-    unit = np.eye(2)
-    matrix = np.array([[kinetic(q, unit[i] + unit[j]) - kinetic(q, unit[i]) - kinetic(q, unit[j]) for j in range(2)] for i in range(2)]).real
+    still, first, second, both, twice_first, twice_second = value[2:8].real
+    across = both - first - second + still
+    matrix = np.array([[twice_first - 2 * first + still, across], [across, twice_second - 2 * second + still]])
     # d/dt of the momenta less the mass matrix times the accelerations, by the change of the matrix along the motion
-    along = lambda shift: [q[i] + shift * v[i] for i in range(2)]
-    momenta = lambda q: np.array([kinetic(q, v + unit[i]) - kinetic(q, v) - kinetic(q, unit[i]) for i in range(2)])
-    changing = momenta(along(1j * H)).imag / H
+    at_rest, with_units, moving, moving_with_units = value[8], value[9:11], value[11], value[12:]
+    changing = (moving_with_units - moving - with_units + at_rest).imag / H
     forces = np.array([FORCE - FRICTION * v[0], -DAMPING * slope(q[1]) ** 2 * v[1]])
     return np.linalg.solve(matrix, by_position + forces - changing)
 
 
 def swing(weight=0.0):
     def rates(_, state):
-        # plain numbers: single ones are slower in NumPy
-        q, v = state[:2].tolist(), state[2:].tolist()
-        return np.concatenate([v, accelerations(q, v, weight)])
+        return np.concatenate([state[2:], accelerations(state[:2], state[2:], weight)])
 
     start = [START, START, 0.0, 0.0]
     found = solve_ivp(rates, (0, 0.3), start, method="DOP853", rtol=1e-10, atol=1e-12, t_eval=[0.1, 0.2, 0.3])

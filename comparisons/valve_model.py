@@ -66,11 +66,11 @@ def surplus(edges, mean, half, supply, tank, transition):
     """Flow out of the ports less flow into them, and its slope over the mean of the pressures.
 
     Of one port alone there are two edges: from the supply and to the tank."""
-    drops = [supply - mean - half, mean + half - tank, supply - mean + half, mean - half - tank]
+    drops = np.array([supply - mean - half, mean + half - tank, supply - mean + half, mean - half - tank][: len(edges)])
+    flow, rate = root_and_slope(drops, transition)
     total, rising = 0, 0
-    for edge, drop, sign in zip(edges, drops, (-1, 1, -1, 1)):
-        flow, rate = root_and_slope(drop, transition)
-        total, rising = total + sign * edge * flow, rising + edge * rate
+    for edge, one, slope, sign in zip(edges, flow, rate, (-1, 1, -1, 1)):
+        total, rising = total + sign * edge * one, rising + edge * slope
     return total, rising
 
 

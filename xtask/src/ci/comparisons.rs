@@ -19,8 +19,15 @@ const SEARCHES: [&str; 1] = ["comparisons/recompute_design.py"];
 /// Valves identified by phea and by SciPy: fifty of them before a release.
 const RANDOM_VALVES: &str = "comparisons/compare_identify.py";
 
+/// So much memory that was given back is kept by a script for its next array.
+const KEPT_BYTES: &str = "1000000000";
+
 /// A tenth of the weight of others: a script that the build leaves unfinished still ends in time.
 const NICENESS: &str = "10";
+
+/// Runs scripts one after the other; its last line names those that failed.
+const TOGETHER: &str = "comparisons/together.py";
+const FAILED: &str = "failed: ";
 
 const REQUIREMENTS: &str = "comparisons/requirements.txt";
 
@@ -113,11 +120,29 @@ fn compare(root: &Path, told: &mut String, built: &Receiver<()>) -> Compared {
         return Err(format!("there is no {COMPARE}*.py"));
     }
     // The build waits for no script; where it leaves a processor idle, they run.
-    let mut failed = alone;
-    failed.retain(|script| politely(root, told, &python, &[script]).is_err());
+    let mut failed = together(root, told, &python, &alone, politely);
     built.recv().map_err(|_| "phea could not be built".to_string())?;
-    failed.extend(asking.into_iter().filter(|script| quietly(root, told, &python, &[script]).is_err()));
+    failed.extend(together(root, told, &python, &asking, quietly));
     Ok(failed)
+}
+
+/// One command in the root, what it prints kept.
+type Quiet = fn(&Path, &mut String, &str, &[&str]) -> Result<(), String>;
+
+/// Runs these scripts, and tells which failed; where they could not be run, why.
+fn together(root: &Path, told: &mut String, python: &str, scripts: &[String], quiet: Quiet) -> Vec<String> {
+    let names: Vec<&str> = scripts.iter().map(String::as_str).collect();
+    let begun = told.len();
+    match quiet(root, told, python, &[&[TOGETHER][..], &names].concat()) {
+        Ok(()) => Vec::new(),
+        Err(ended) => failed_in(&told[begun..]).unwrap_or_else(|| vec![ended]),
+    }
+}
+
+/// The scripts that [`TOGETHER`] names at its end, if it came that far.
+fn failed_in(told: &str) -> Option<Vec<String>> {
+    let failed = told.lines().rev().find_map(|line| line.strip_prefix(FAILED))?;
+    Some(failed.split(", ").map(str::to_string).collect())
 }
 
 /// Runs one command in the root, what it prints kept, and leaves the processors to others that want
@@ -136,13 +161,16 @@ fn quietly(root: &Path, told: &mut String, program: &str, arguments: &[&str]) ->
     let target = target(root);
     let programs = target.join("debug");
     // What each script imports is compiled for the first one alone, and not beside its source.
-    // The libraries below NumPy would take every core for matrices of a few rows.
+    // The libraries below NumPy would take every core for matrices of a few rows, and the system
+    // would clear the memory of a large array anew for each.
     let ran = Command::new(program)
         .args(arguments)
         .current_dir(root)
         .env_remove("PYTHONDONTWRITEBYTECODE")
         .env("PYTHONPYCACHEPREFIX", target.join("pycache"))
         .env("OPENBLAS_NUM_THREADS", "1")
+        .env("MALLOC_MMAP_THRESHOLD_", KEPT_BYTES)
+        .env("MALLOC_TRIM_THRESHOLD_", KEPT_BYTES)
         .env("PHEA", programs.join("phea"))
         .env("REFERENCE_SYSTEMS", programs.join("examples").join("reference_systems"))
         .env("SCHEMA_CASES", programs.join("examples").join("schema_cases"))
@@ -231,6 +259,13 @@ mod tests {
         );
         assert_eq!(recomputed_by("// ORIGIN: recomputed by comparisons/a.py."), Some("comparisons/a.py"));
         assert_eq!(recomputed_by("// ORIGIN: analytic"), None);
+    }
+
+    #[test]
+    fn failed_scripts_are_named_by_the_last_line() {
+        let told = "failed: none\n$ python a.py\nTraceback\nfailed: a.py, b.py\n";
+        assert_eq!(failed_in(told), Some(vec!["a.py".to_string(), "b.py".to_string()]));
+        assert_eq!(failed_in("No module named scipy\n"), None);
     }
 
     #[test]
