@@ -105,17 +105,18 @@ impl StructureFactor {
     }
 
     /// Least and greatest value of each number.
-    fn ranges(&self) -> Vec<[f64; 2]> {
-        match *self {
-            StructureFactor::Fixed(_) => vec![],
+    fn ranges(&self) -> impl Iterator<Item = [f64; 2]> {
+        let ranges = match *self {
+            StructureFactor::Fixed(_) => [None; 2],
             StructureFactor::RealZero { frequency } | StructureFactor::RealPole { frequency } => {
-                vec![frequency]
+                [Some(frequency), None]
             }
             StructureFactor::ZeroPair { natural_frequency, damping_ratio }
             | StructureFactor::PolePair { natural_frequency, damping_ratio } => {
-                vec![natural_frequency, damping_ratio]
+                [Some(natural_frequency), Some(damping_ratio)]
             }
-        }
+        };
+        ranges.into_iter().flatten()
     }
 
     /// The element with these numbers.
@@ -144,12 +145,12 @@ impl Structure {
 
     /// Number of free numbers.
     pub fn dimension(&self) -> usize {
-        self.ranges().iter().filter(|range| is_free(range)).count()
+        self.ranges().filter(is_free).count()
     }
 
     /// Least and greatest value of each x, natural logarithms.
     pub fn bounds(&self) -> Vec<[f64; 2]> {
-        let free = self.ranges().into_iter().filter(is_free);
+        let free = self.ranges().filter(is_free);
         free.map(|range| range.map(portable::ln)).collect()
     }
 
@@ -162,8 +163,8 @@ impl Structure {
     }
 
     /// Least and greatest value of every number, that of the gain first.
-    fn ranges(&self) -> Vec<[f64; 2]> {
-        std::iter::once(self.gain).chain(self.parts.iter().flat_map(StructureFactor::ranges)).collect()
+    fn ranges(&self) -> impl Iterator<Item = [f64; 2]> {
+        std::iter::once(self.gain).chain(self.parts.iter().flat_map(StructureFactor::ranges))
     }
 
     /// Every number at x, the gain first.
@@ -172,13 +173,15 @@ impl Structure {
         let number = |range: [f64; 2]| {
             if is_free(&range) { free.next().unwrap_or(f64::NAN) } else { range[0] }
         };
-        self.ranges().into_iter().map(number).collect()
+        self.ranges().map(number).collect()
     }
 
     /// The entries of the free numbers, from a list for all numbers.
     fn of_free<T>(&self, all: impl IntoIterator<Item = T>) -> Vec<T> {
-        let pairs = all.into_iter().zip(self.ranges());
-        pairs.filter(|(_, range)| is_free(range)).map(|(one, _)| one).collect()
+        let all = all.into_iter();
+        let mut free = Vec::with_capacity(all.size_hint().0);
+        free.extend(all.zip(self.ranges()).filter(|(_, range)| is_free(range)).map(|(one, _)| one));
+        free
     }
 
     /// Number of poles.

@@ -51,7 +51,7 @@ impl Structure {
             numbers.extend(own);
         }
         let all: Vec<f64> = std::iter::once(gain).chain(numbers).map(portable::ln).collect();
-        let ranges: Vec<[f64; 2]> = self.ranges().into_iter().map(|range| range.map(portable::ln)).collect();
+        let ranges: Vec<[f64; 2]> = self.ranges().map(|range| range.map(portable::ln)).collect();
         // the ends of the range belong to it
         let inside = |(x, [low, high]): (&f64, &[f64; 2])| low - SAME <= *x && *x <= high + SAME;
         all.iter().zip(&ranges).all(inside).then(|| {
@@ -124,7 +124,7 @@ impl Structure {
     /// The free numbers of each factor of this power, in turn, from the roots.
     fn assigned(&self, power: f64, roots: &[Complex64]) -> Option<Vec<Vec<f64>>> {
         let ranges = self.parts.iter().filter(|part| part.factor().is_some_and(|own| own.power == power));
-        let ranges: Vec<Vec<[f64; 2]>> = ranges.map(StructureFactor::ranges).collect();
+        let ranges: Vec<Vec<[f64; 2]>> = ranges.map(|part| part.ranges().collect()).collect();
         let upper: Vec<Complex64> = roots.iter().copied().filter(|root| root.im >= 0.0).collect();
         assigned(&ranges, &upper)
     }

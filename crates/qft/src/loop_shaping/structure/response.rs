@@ -182,7 +182,8 @@ impl Factor {
 /// d ln q^m/d ln w = -m u q'(u)/q(u),      d ln q^m/d ln zeta = m 2 zeta u/q(u)
 /// ```
 fn factor_slopes(numbers: &[(Factor, [f64; 2])], s: Complex64) -> Vec<Complex64> {
-    let mut slopes = vec![Complex64::new(1.0, 0.0)];
+    let mut slopes = Vec::with_capacity(1 + 2 * numbers.len());
+    slopes.push(Complex64::ONE);
     for &(factor, [frequency, damping]) in numbers {
         let u = s / frequency;
         let relative = factor.power * u / factor.value(u, damping);
