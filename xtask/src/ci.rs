@@ -92,9 +92,9 @@ const STAGES: &[(&str, Stage)] = &[
     (SOAK, soak),
 ];
 
-/// The stages that run one after the other, in parallel with tests and stories: neither line
-/// keeps two processors busy all the time.
-const ASIDE: [&str; 3] = ["doctests", "wasm32", "peers"];
+/// The stages that run one after the other, in parallel with the tests: neither line keeps two
+/// processors busy all the time.
+const ASIDE: [&str; 4] = ["doctests", "stories", "wasm32", "peers"];
 
 /// The stage that runs from the beginning in parallel with the others; its result is printed in its
 /// own place.
