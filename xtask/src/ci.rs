@@ -1,5 +1,5 @@
-//! The test command: a build, then tests and stories one after the other, and what needs less of
-//! the processors in parallel with them; the time that each was waited for in a table at the end.
+//! The test command: a build, then the tests, and what needs less of the processors in parallel
+//! with them; the time that each was waited for in a table at the end.
 //!
 //! A stage that fails does not stop the later ones, so that one run shows everything that has to be
 //! mended.
@@ -13,7 +13,9 @@ use comparisons::Begun;
 pub(crate) use comparisons::recomputed_by;
 pub(crate) use linted::in_place_of_the_compiler;
 
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
 use std::sync::mpsc::{Receiver, channel};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
@@ -344,7 +346,21 @@ fn tidy(built: &Built) -> Outcome {
 /// The check of the repository, in parallel with what follows.
 fn tidying(root: &Path) -> JoinHandle<(bool, String)> {
     let root = root.to_path_buf();
-    std::thread::spawn(move || crate::tidy::report(&root))
+    std::thread::spawn(move || match tidied_politely(&root) {
+        Ok(output) => {
+            let told = [output.stdout, output.stderr].concat();
+            (output.status.success(), String::from_utf8_lossy(&told).into_owned())
+        }
+        Err(error) => (false, format!("cannot check the repository: {error}\n")),
+    })
+}
+
+/// Runs this program once more, in a process that leaves the processors to the build.
+fn tidied_politely(root: &Path) -> std::io::Result<Output> {
+    let own = std::env::current_exe()?;
+    let line: Vec<&OsStr> = tools::politely().iter().map(OsStr::new).chain([own.as_os_str()]).collect();
+    let (program, others) = line.split_first().ok_or(std::io::ErrorKind::NotFound)?;
+    Command::new(program).args(others).arg("tidy").arg(root).stdin(Stdio::null()).output()
 }
 
 /// Its outcome, once it has one.

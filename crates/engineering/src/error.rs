@@ -7,10 +7,11 @@ use crate::bench::BenchError;
 use crate::campaign::CampaignError;
 use crate::design::DesignError;
 use crate::family::ProjectFamilyError;
-use crate::rig::{RigError, SizingError};
+use crate::rig::RigError;
 use crate::setup::ControlError;
 use crate::shaping::ShapingError;
 use crate::simulate::SimulateError;
+use crate::sizing::SizingError;
 
 /// Why a procedure that is made of several has no result: the error of the one that failed.
 #[derive(Debug, thiserror::Error)]

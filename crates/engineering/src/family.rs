@@ -2,6 +2,7 @@
 
 mod formula;
 mod gain_slopes;
+mod hill;
 mod hydraulic;
 mod in_motion;
 pub mod measured;

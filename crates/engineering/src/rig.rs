@@ -12,7 +12,6 @@ mod parameters;
 mod place;
 mod plant;
 mod series;
-mod sizing;
 mod supply;
 
 use num_complex::Complex64;
@@ -35,6 +34,7 @@ use crate::quantity::MotionKind;
 
 pub use accumulator::EmptyAccumulator;
 pub(crate) use accumulator::{ChargedRange, accumulator_place, charged_range};
+pub(crate) use assembly::{ExpansionPressures, VolumetricExpansion, hose, stiffening};
 pub use assembly::{actuator, components};
 pub use cross_port::{CrossPortAtPoint, cross_port_at_point};
 pub(crate) use gas::components_at_setting;
@@ -53,8 +53,6 @@ pub(crate) use plant::with_supply;
 pub use plant::{LoadLever, YieldingLoad, linear, plant, sides, stated};
 pub(crate) use plant::{load_at, rod_end};
 pub(crate) use series::{series_coil, stall_force, waves_right_to};
-pub(crate) use sizing::own_hoses;
-pub use sizing::{SizingError, sizing_problem};
 
 pub(crate) use supply::{power_at_rest, yielding_supply};
 pub use supply::{power_unit, settled_supply};

@@ -9,6 +9,7 @@
 mod bore;
 mod branch;
 mod candidate;
+mod of_project;
 mod other_means;
 mod problem;
 mod sensitivity;
@@ -16,6 +17,8 @@ mod sensitivity;
 pub use bore::{BoreVerdict, CommercialBore};
 pub use branch::{Branch, GainStep, model_name};
 pub use candidate::{Candidate, Consequence, SizingReason};
+pub(crate) use of_project::own_hoses;
+pub use of_project::{SizingError, sizing_problem};
 pub(crate) use other_means::TOO_FEW_COILS;
 pub use other_means::{OtherMeans, OtherMeansProblem, SizedGas, SizedPipe, SizedSpring, SizedValve};
 pub use problem::{HoseOption, SizingProblem};

@@ -11,6 +11,8 @@ mod factors;
 mod file_names;
 #[path = "../src/simulate/follower.rs"]
 mod follower;
+#[path = "../src/family/hill.rs"]
+mod hill;
 #[path = "../src/simulate/metrics.rs"]
 mod metrics;
 #[path = "../src/simulate/parts.rs"]

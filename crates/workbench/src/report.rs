@@ -45,9 +45,8 @@ use crate::linearize::{Linearization, linearize, stiffness_at_settings, stiffnes
 use crate::project::{DeclaredActuator, Loaded, Project, Signal};
 use crate::quantity::MotionKind;
 use crate::rig::Rig;
-use crate::rig::SizingError;
 use crate::setup::Setup;
-use crate::sizing::{Question, Sizing, SizingProblem, size};
+use crate::sizing::{Question, Sizing, SizingError, SizingProblem, size};
 use crate::source::Source;
 
 use chapter::Chapter;

@@ -11,8 +11,8 @@ use phea_workbench::derived::derive;
 use phea_workbench::family::family;
 use phea_workbench::linearize::{Linearization, linearize};
 use phea_workbench::project::Project;
-use phea_workbench::rig::sizing_problem;
 use phea_workbench::setup::Setup;
+use phea_workbench::sizing::sizing_problem;
 use phea_workbench::source::Memory;
 use serde_json::Value;
 

@@ -9,10 +9,10 @@ use std::sync::Mutex;
 use num_complex::Complex64;
 use phea_workbench::catalogue::Catalogue;
 use phea_workbench::project::{self, KeyEntry, Project};
-use phea_workbench::rig::{Rig, sizing_problem};
+use phea_workbench::rig::Rig;
 use phea_workbench::setup::Setup;
 use phea_workbench::simulate::ControlledMachine;
-use phea_workbench::sizing::{Question, size};
+use phea_workbench::sizing::{Question, size, sizing_problem};
 use phea_workbench::source::Memory;
 
 const SIMULATION: &str = include_str!("../../project/tests/valid/simulation.toml");

@@ -22,9 +22,6 @@ const RANDOM_VALVES: &str = "comparisons/compare_identify.py";
 /// So much memory that was given back is kept by a script for its next array.
 const KEPT_BYTES: &str = "1000000000";
 
-/// A tenth of the weight of others: a script that the build leaves unfinished still ends in time.
-const NICENESS: &str = "10";
-
 /// Runs scripts one after the other; its last line names those that failed.
 const TOGETHER: &str = "comparisons/together.py";
 const FAILED: &str = "failed: ";
@@ -148,11 +145,8 @@ fn failed_in(told: &str) -> Option<Vec<String>> {
 /// Runs one command in the root, what it prints kept, and leaves the processors to others that want
 /// them, where the system can do that.
 fn politely(root: &Path, told: &mut String, program: &str, arguments: &[&str]) -> Result<(), String> {
-    if tools::has_nice() {
-        quietly(root, told, "nice", &[&["-n", NICENESS, program][..], arguments].concat())
-    } else {
-        quietly(root, told, program, arguments)
-    }
+    let line = [tools::politely(), &[program], arguments].concat();
+    line.split_first().map_or(Ok(()), |(program, arguments)| quietly(root, told, program, arguments))
 }
 
 /// Runs one command in the root, what it prints kept.

@@ -48,9 +48,14 @@ pub(super) fn sundials() -> Result<(), String> {
     Err("SUNDIALS is missing and `apt-get install libsundials-dev` did not bring it".to_string())
 }
 
-/// Whether programs can be run with less weight than others.
-pub(super) fn has_nice() -> bool {
-    quietly("nice", &["true"])
+/// So little of the weight of others that a program runs where they leave a processor idle, and
+/// still ends if they leave none.
+const NICENESS: &str = "15";
+
+/// The beginning of a command line that leaves the processors to others that want them; empty where
+/// the system cannot do that.
+pub(super) fn politely() -> &'static [&'static str] {
+    if quietly("nice", &["true"]) { &["nice", "-n", NICENESS] } else { &[] }
 }
 
 fn is_target_there(name: &str) -> bool {

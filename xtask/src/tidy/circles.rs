@@ -11,8 +11,6 @@ const KNOWN: &[(&str, &[&str])] = &[
     // ProcedureError is the union of the errors of all procedures, and each procedure may be
     // stopped by it
     ("crates/engineering", &["audit", "design", "error", "replaced", "robust", "shaping", "trial"]),
-    // the rig is a part of the setup, and what is sized is read from the whole of it
-    ("crates/engineering", &["rig", "setup"]),
     // a plot draws by the primitives of a scene, whose colours and texts know the marks of a plot
     ("crates/figure", &["clip", "colour", "legend", "placement", "plot", "scene", "simplify", "typeset"]),
     // the catalogue is read as a project is, by the visitors of the tables that its entries fill in

@@ -10,9 +10,9 @@ use crate::parts::PartsCounted;
 use crate::project::{
     self, AS_DECLARED, Alternative, Component, DeclaredLine, Loaded, read_alternative, refused_alternative,
 };
-use crate::rig::{Rig, RigError, own_hoses, sizing_problem};
+use crate::rig::{Rig, RigError};
 use crate::setup::Setup;
-use crate::sizing::{Candidate, Question, size};
+use crate::sizing::{Candidate, Question, own_hoses, size, sizing_problem};
 use crate::source::Source;
 
 /// An alternative, ready to be judged.

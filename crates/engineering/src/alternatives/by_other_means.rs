@@ -4,9 +4,8 @@
 use super::AskedAlternative;
 use crate::catalogue::Catalogue;
 use crate::project::{Component, CrossPortKind, DeclaredActuator};
-use crate::rig::sizing_problem;
 use crate::setup::Setup;
-use crate::sizing::{OtherMeans, Question, size};
+use crate::sizing::{OtherMeans, Question, size, sizing_problem};
 
 /// Share of the travel under the stall force by which a sized spring may go further.
 const SPARE_TRAVEL: f64 = 0.1;

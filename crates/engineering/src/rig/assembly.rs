@@ -245,7 +245,7 @@ fn neck<S: Scalar>(
 
 /// Pressures in Pa at which the expansion of a hose is evaluated.
 #[derive(Clone, Copy)]
-pub(super) struct ExpansionPressures<S = f64> {
+pub(crate) struct ExpansionPressures<S = f64> {
     /// The supply's: the thesis refers the wall's modulus to it.
     working: S,
     /// Midway between supply and tank, the pressure in the chambers of an idle actuator.
@@ -254,22 +254,22 @@ pub(super) struct ExpansionPressures<S = f64> {
 
 impl<S: Scalar> ExpansionPressures<S> {
     /// Those of a supply and its tank.
-    pub(super) fn of(supply: S, tank: S) -> ExpansionPressures<S> {
+    pub(crate) fn of(supply: S, tank: S) -> ExpansionPressures<S> {
         ExpansionPressures { working: supply, operating: S::from(0.5) * (supply + tank) }
     }
 }
 
 /// The catalogue data of a hose's volumetric expansion, m3/m, Pa and m3/(m Pa).
 #[derive(Clone, Copy)]
-pub(super) struct VolumetricExpansion<S = f64> {
-    pub(super) measured: Option<S>,
-    pub(super) at: Option<S>,
-    pub(super) slope: S,
+pub(crate) struct VolumetricExpansion<S = f64> {
+    pub(crate) measured: Option<S>,
+    pub(crate) at: Option<S>,
+    pub(crate) slope: S,
 }
 
 impl<S: Scalar> VolumetricExpansion<S> {
     /// As it is declared.
-    pub(super) fn of(declared: &HoseExpansion, numbers: &Numbers<'_, S>) -> VolumetricExpansion<S> {
+    pub(crate) fn of(declared: &HoseExpansion, numbers: &Numbers<'_, S>) -> VolumetricExpansion<S> {
         let measured = declared.measured().map(|value| numbers.at("volumetric_expansion", value));
         let pressure = declared.pressure().map(|value| numbers.at("volumetric_expansion_pressure", value));
         let slope = match (declared, measured, pressure) {
@@ -289,7 +289,7 @@ impl<S: Scalar> VolumetricExpansion<S> {
     }
 }
 
-pub(super) fn hose<S: Scalar>(
+pub(crate) fn hose<S: Scalar>(
     bore: S,
     expansion: VolumetricExpansion<S>,
     pressures: ExpansionPressures<S>,
@@ -306,7 +306,7 @@ pub(super) fn hose<S: Scalar>(
 }
 
 /// A ratio without a spread is one uncertain number, one with a spread has three.
-pub(super) fn stiffening<S: Scalar>(
+pub(crate) fn stiffening<S: Scalar>(
     declared: Option<BoundedNumber>,
     numbers: &Numbers<'_, S>,
 ) -> Stiffening<S> {

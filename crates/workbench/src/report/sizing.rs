@@ -6,8 +6,7 @@ use crate::figure::{
     CandidateVerdict, DisplayUnit, Figure, Nomograph, NomographBore, SizingCandidate, SizingChart,
     SizingCurve, Tornado, TornadoBar, Words,
 };
-use crate::rig::SizingError;
-use crate::sizing::{BoreVerdict, Candidate, Sizing, SizingProblem, document, model_name};
+use crate::sizing::{BoreVerdict, Candidate, Sizing, SizingError, SizingProblem, document, model_name};
 use phea_hydraulics::stiffness::StiffnessModel;
 
 pub(super) fn chapter(problem: &SizingProblem, sizing: &Sizing) -> Chapter {

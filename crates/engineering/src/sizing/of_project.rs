@@ -1,13 +1,12 @@
 use phea_dynamics::portable::ln;
 use phea_hydraulics::linear::LinearParameters;
 
-use super::assembly::{ExpansionPressures, VolumetricExpansion, hose, stiffening};
-use super::numbers::Numbers;
+use super::{HoseOption, OtherMeansProblem, SizingProblem};
 use crate::catalogue::{Catalogue, CatalogueKind, DASH_SIZES};
 use crate::project::{self, HoseProperties, SettlingTime, Speed};
 use crate::quantity::significant;
+use crate::rig::{ExpansionPressures, Numbers, Rig, RigError, VolumetricExpansion, hose, stiffening};
 use crate::setup::Setup;
-use crate::sizing::{HoseOption, OtherMeansProblem, SizingProblem};
 
 /// Recommended oil velocity of pressure lines, m/s (Rabie 2009, quoted in Ledezma 2019, section
 /// 6.3.1.1).
@@ -24,7 +23,7 @@ const HOSE_LENGTH: [f64; 2] = [0.1, 10.0];
 pub enum SizingError {
     /// The rig cannot be computed with.
     #[error(transparent)]
-    Rig(#[from] super::RigError),
+    Rig(#[from] RigError),
     /// There is nothing to size for.
     #[error(
         "the project has no [sizing]: add one with `time_constant`, or `settling_time` and `settling_band_percent`"
@@ -120,7 +119,7 @@ pub fn sizing_problem(setup: &Setup<'_>, catalogue: &Catalogue) -> Result<Sizing
 fn other_means(
     wish: &project::DeclaredSizing,
     declared: &project::DeclaredActuator,
-    rig: &super::Rig,
+    rig: &Rig,
 ) -> Option<OtherMeansProblem> {
     let cylinder = &declared.cylinder;
     Some(OtherMeansProblem {
