@@ -158,16 +158,15 @@ impl<'f> Hill<'f> {
                 best = (height, place);
             }
         }
-        let fall = |side: f64| {
-            let steps = between.iter().zip(&places).map(|(height, place)| (height, side * (place - best.1)));
-            let mut beside = steps.filter(|(_, distance)| (0.5..1.5).contains(&(distance / spacing)));
-            let is_inside = (0.0..=1.0).contains(&(best.1 + side * spacing));
-            beside.next().filter(|_| is_inside).map(|(height, _)| best.0 - height)
-        };
-        // at an end of the scan or of the box the crest may lie between the highest point and its
-        // only neighbour
-        let falls = fall(-1.0).zip(fall(1.0)).map(|(below, above)| below.max(above));
-        let reach = falls.map_or(f64::INFINITY, |fall| best.0 + self.rise * fall);
+        // two places, of which one lies a step or more beyond the crest, at an end of the box too
+        let beside = [-1.0, 1.0].map(|side| match best.1 + side * spacing {
+            place if (0.0..=1.0).contains(&place) => place,
+            _ => best.1 - 2.0 * side * spacing,
+        });
+        let falls = heights(&beside).into_iter().map(|height| best.0 - height);
+        let [least, most] = falls
+            .fold([f64::INFINITY, 0.0], |[least, most]: [f64; 2], fall| [least.min(fall), most.max(fall)]);
+        let reach = if least < 0.0 { f64::INFINITY } else { best.0 + self.rise * most };
         if reach <= wanted {
             return Crest::UpTo(reach);
         }
@@ -282,8 +281,7 @@ mod tests {
             for start in [[0.5; 3], [0.1, 0.9, 0.2]] {
                 let found = pruned.climb(start.to_vec());
                 assert_eq!(found, whole.climb(start.to_vec()), "hill {number}");
-                // where a hill is steep on both sides, its crest is found to no more than the steps of
-                // the search allow
+                // the steeper the sides, the lower is a place that is right to the same digits
                 let near = match crest.kind {
                     0 => continue,
                     1 => 1e-2 * crest.fall,
