@@ -87,7 +87,7 @@ const STAGES: &[(&str, Stage)] = &[
     ("doctests", doctests),
     ("stories", stories),
     (TIDY, tidy),
-    ("wasm32", wasm32),
+    (WASM32, wasm32),
     ("peers", peers),
     (COMPARISONS, comparisons::run),
     (MUTATION, mutation),
@@ -96,7 +96,11 @@ const STAGES: &[(&str, Stage)] = &[
 
 /// The stages that run one after the other, in parallel with the tests: neither line keeps two
 /// processors busy all the time.
-const ASIDE: [&str; 4] = ["doctests", "stories", "wasm32", "peers"];
+const ASIDE: [&str; 3] = ["doctests", "stories", "peers"];
+
+/// The stage that runs from the beginning where the build leaves a processor idle, in a folder of
+/// its own.
+const WASM32: &str = "wasm32";
 
 /// The stage that runs from the beginning in parallel with the others; its result is printed in its
 /// own place.
@@ -148,6 +152,7 @@ pub(crate) fn run(root: &Path, wanted: &[&str]) -> bool {
     // A build often waits for one crate: the second processor tidies and compares meanwhile.
     let mut tidied = chosen(TIDY).then(|| tidying(root));
     let mut begun = chosen(COMPARISONS).then(|| comparisons::begin(root));
+    let checked = chosen(WASM32).then(|| aside_of(&built, vec![wasm32]));
     let mut aside = None;
     let mut results = Vec::new();
     for (name, stage) in STAGES.iter().filter(|(name, _)| chosen(name)) {
@@ -158,6 +163,7 @@ pub(crate) fn run(root: &Path, wanted: &[&str]) -> bool {
             COMPARISONS => {
                 begun.take().map_or_else(|| stage(&built), |begun| comparisons::end(&built, begun))
             }
+            WASM32 => ended_aside(checked.as_ref()).unwrap_or_else(|| stage(&built)),
             _ if ASIDE.contains(name) => ended_aside(aside.as_ref()).unwrap_or_else(|| stage(&built)),
             _ => stage(&built),
         };
@@ -382,8 +388,14 @@ fn wasm32(built: &Built) -> Outcome {
         return Outcome::Skipped(missing);
     }
     let packages = ["-p", "phea-machine", "-p", "phea-qft", "-p", "phea-quantity"];
-    let arguments = [&["check", "--target", TARGET][..], &packages].concat();
-    built.cargo(&arguments, built.not_kept().as_slice())
+    let cargo = [tools::politely(), &["cargo", "check", "--target", TARGET], &packages].concat();
+    // the build keeps others out of its folder
+    let folder = target(&built.root).join("wasm32").to_string_lossy().into_owned();
+    let variables: Vec<_> = built.not_kept().into_iter().chain([("CARGO_TARGET_DIR", &*folder)]).collect();
+    match cargo.split_first() {
+        Some((program, arguments)) => built.console.execute(&built.root, program, arguments, &variables),
+        None => Outcome::Passed,
+    }
 }
 
 /// Rigs that phea and CVODE solve both. The other tests of the package that links CVODE run with
@@ -414,7 +426,7 @@ mod tests {
 
     #[test]
     fn every_stage_that_is_special_is_one() {
-        let special = [TIDY, COMPARISONS, BUILD, MUTATION, SOAK].into_iter().chain(ASIDE);
+        let special = [TIDY, WASM32, COMPARISONS, BUILD, MUTATION, SOAK].into_iter().chain(ASIDE);
         assert!(special.into_iter().all(|name| STAGE_NAMES.contains(&name)));
     }
 }

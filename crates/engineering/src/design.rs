@@ -78,7 +78,7 @@ pub struct ProjectDesign {
     /// Required delay in addition to that of the loop, s.
     pub minimum_delay_margin_s: f64,
     /// Whether the designed loop tolerates it, regardless of the specifications.
-    pub bears_its_delay: bool,
+    pub tolerates_its_delay: bool,
     /// Whether the watch stopped it: then it is the best so far.
     pub stopped: bool,
     /// The designed controller with its audit.
@@ -147,7 +147,7 @@ impl ProjectDesign {
         };
         let designed = AuditedController::new(law, problem, view)?;
         Ok(ProjectDesign {
-            bears_its_delay: asked.bears_its_delay(designed.figures.delay_margin_s.unwrap_or(0.0)),
+            tolerates_its_delay: asked.tolerates_its_delay(designed.figures.delay_margin_s.unwrap_or(0.0)),
             minimum_delay_margin_s: asked.minimum_delay_margin_s,
             designed,
             design,
@@ -180,7 +180,7 @@ impl ProjectDesign {
 
     /// Whether the designed controller satisfies every specification.
     pub fn is_met(&self) -> bool {
-        self.designed.view.audit.verdict == Verdict::Met && self.bears_its_delay
+        self.designed.view.audit.verdict == Verdict::Met && self.tolerates_its_delay
     }
 }
 

@@ -5,10 +5,11 @@ use num_complex::Complex64;
 use phea_dynamics::portable::{argument, log10, magnitude};
 
 use super::axis::{Axis, extent};
-use super::colour::{Role, series_stroke};
+use super::colour::Role;
 use super::legend::LegendEntry;
 use super::plot::{AxisDirection, Mark, Panel};
 use super::scene::{Dash, Stroke};
+use super::series::series_stroke;
 use super::ticks::plain;
 use super::{Figure, FrequencyMark, Words};
 

@@ -1,10 +1,11 @@
 //! Measured and computed curves over one common quantity: panels below each other.
 
 use super::axis::Axis;
-use super::colour::{Role, series_role, series_stroke};
+use super::colour::{Role, series_role};
 use super::legend::LegendEntry;
 use super::plot::{AxisDirection, Mark, Marker, MarkerStyle, Panel};
 use super::scene::{Dash, Fill, Stroke};
+use super::series::series_stroke;
 use super::ticks::plain;
 use super::{Figure, Words};
 

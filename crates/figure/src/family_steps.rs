@@ -4,11 +4,12 @@ mod edge;
 
 use self::edge::settling;
 use super::axis::{Axis, extent};
-use super::colour::{Role, series_dash, series_role};
+use super::colour::{Role, series_role};
 use super::fan_chart::{TimeBand, TimeSeries};
 use super::legend::LegendEntry;
 use super::plot::{Mark, Panel};
 use super::scene::{Dash, Fill, Stroke};
+use super::series::series_dash;
 use super::{Figure, Words};
 use phea_quantity::DisplayUnit;
 

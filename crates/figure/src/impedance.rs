@@ -6,10 +6,11 @@ use phea_dynamics::portable::{magnitude, pow};
 
 use super::axis::{Axis, extent};
 use super::bode::{FrequencySeries, frequency_axis, mark_frequencies, unwrapped_degrees};
-use super::colour::{Role, series_stroke};
+use super::colour::Role;
 use super::legend::LegendEntry;
 use super::plot::{AxisDirection, Mark, Panel, PointSide};
 use super::scene::{Dash, Fill, Stroke};
+use super::series::series_stroke;
 use super::{Figure, FrequencyMark, Words};
 
 /// A straight line of the diagram: |Z| = coefficient * frequency^exponent.

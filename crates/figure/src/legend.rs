@@ -1,9 +1,9 @@
 //! The legend: below the axes, where it can cover no data.
 
 use super::LABEL_SIZE;
-use super::colour::series_stroke;
-use super::plot::{MarkerStyle, draw_marker};
+use super::marker::{MarkerStyle, draw_marker};
 use super::scene::{Anchor, Baseline, Fill, Rectangle, Scene, Stroke, Text, point};
+use super::series::series_stroke;
 use super::typeset;
 
 const SWATCH: f64 = 30.0;

@@ -1,9 +1,10 @@
 //! Fronts of Pareto: alternatives over a swept number, by two or three of their columns.
 
 use super::axis::{Axis, extent};
-use super::colour::{Role, series_role, series_stroke};
+use super::colour::{Role, series_role};
 use super::legend::LegendEntry;
 use super::plot::{Mark, Marker, MarkerStyle, Panel};
+use super::series::series_stroke;
 use super::{Figure, Words};
 use phea_quantity::DisplayUnit;
 

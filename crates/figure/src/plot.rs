@@ -5,46 +5,12 @@ mod labels;
 mod layout;
 mod paint;
 
-pub(crate) use paint::draw_marker;
+pub use super::marker::{Marker, MarkerStyle};
 
 use super::axis::Axis;
 use super::colour::Role;
 use super::legend::LegendEntry;
 use super::scene::{Dash, Fill, Scene, Stroke};
-
-/// Form of a marker.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Marker {
-    /// Filled circle.
-    Circle,
-    /// Circle without filling: a zero of a transfer function.
-    Ring,
-    /// Filled square.
-    Square,
-    /// Filled triangle.
-    Triangle,
-    /// Filled square on its corner.
-    Diamond,
-    /// Square on its corner without filling.
-    OpenDiamond,
-    /// Square without filling.
-    OpenSquare,
-    /// Diagonal cross: a pole of a transfer function, or a rejection.
-    Cross,
-    /// Upright cross.
-    Plus,
-}
-
-/// A marker with colour and size.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MarkerStyle {
-    /// Form.
-    pub marker: Marker,
-    /// Colour by role.
-    pub role: Role,
-    /// Half its width.
-    pub radius: f64,
-}
 
 /// What a panel shows, in data coordinates, drawn in the order given.
 #[derive(Clone, Debug, PartialEq)]

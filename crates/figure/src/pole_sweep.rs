@@ -4,9 +4,10 @@ use num_complex::Complex64;
 use phea_dynamics::portable::magnitude;
 
 use super::axis::{Axis, Scale, extent};
-use super::colour::{series_role, series_stroke};
+use super::colour::series_role;
 use super::legend::LegendEntry;
 use super::plot::{Mark, Marker, MarkerStyle, Panel};
+use super::series::series_stroke;
 use super::{Figure, Words};
 use phea_quantity::DisplayUnit;
 

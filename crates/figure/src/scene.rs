@@ -5,7 +5,6 @@
 //! needed, and several figures can share one page.
 
 use super::colour::Role;
-use super::typeset;
 
 /// A point of the view box.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -214,7 +213,7 @@ pub enum Baseline {
     Top,
 }
 
-/// A line of text; [`typeset`] explains its markup.
+/// A line of text; [`typeset`](crate::typeset) explains its markup.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Text {
     /// The point that anchor and baseline refer to.
@@ -268,11 +267,6 @@ impl Text {
     /// Rotated clockwise about its position.
     pub fn rotated(self, degrees: f64) -> Self {
         Text { rotation_degrees: degrees, ..self }
-    }
-
-    /// The smallest upright rectangle that holds the drawn text.
-    pub fn bounds(&self) -> Rectangle {
-        typeset::bounds(self)
     }
 }
 

@@ -2,10 +2,11 @@
 //! sizing procedure at once.
 
 use super::axis::Axis;
-use super::colour::{Role, series_stroke};
+use super::colour::Role;
 use super::legend::LegendEntry;
 use super::plot::{AxisDirection, Mark, Panel, PointSide};
 use super::scene::{Dash, Fill, Stroke};
+use super::series::series_stroke;
 use super::{CandidateVerdict, Figure, Words};
 use phea_quantity::DisplayUnit;
 

@@ -2,10 +2,11 @@
 //! over the stroke; of a rig with gas also over the force that is held at standstill.
 
 use super::axis::{Axis, extent};
-use super::colour::{Role, series_role, series_stroke};
+use super::colour::{Role, series_role};
 use super::legend::LegendEntry;
 use super::plot::{AxisDirection, Mark, Marker, MarkerStyle, Panel, PointSide};
 use super::scene::Fill;
+use super::series::series_stroke;
 use super::ticks::plain;
 use super::{Figure, Words};
 use phea_quantity::{DisplayUnit, MotionKind};

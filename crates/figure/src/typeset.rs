@@ -213,40 +213,46 @@ pub(crate) fn drop_to_letters(text: &Text) -> f64 {
     }
 }
 
-/// The smallest upright rectangle that holds the drawn text.
-pub fn bounds(text: &Text) -> Rectangle {
-    let width = width(&text.content, text.size);
-    let left = match text.anchor {
-        Anchor::Start => 0.0,
-        Anchor::Middle => -0.5 * width,
-        Anchor::End => -width,
-    };
-    let (mut above, mut below) = (0.0_f64, 0.0_f64);
-    for (_, level) in pieces(&text.content) {
-        above = above.max(level.rise() + level.scale() * ASCENDER);
-        below = below.max(level.scale() * DESCENDER - level.rise());
+impl Text {
+    /// The smallest upright rectangle that holds the drawn text.
+    pub fn bounds(&self) -> Rectangle {
+        let width = width(&self.content, self.size);
+        let left = match self.anchor {
+            Anchor::Start => 0.0,
+            Anchor::Middle => -0.5 * width,
+            Anchor::End => -width,
+        };
+        let (mut above, mut below) = (0.0_f64, 0.0_f64);
+        for (_, level) in pieces(&self.content) {
+            above = above.max(level.rise() + level.scale() * ASCENDER);
+            below = below.max(level.scale() * DESCENDER - level.rise());
+        }
+        let letters = drop_to_letters(self);
+        let (top, bottom) = (letters - above * self.size, letters + below * self.size);
+        let angle = self.rotation_degrees.to_radians();
+        let (sine, cosine) = (phea_dynamics::portable::sin(angle), phea_dynamics::portable::cos(angle));
+        let turned = |x: f64, y: f64| -> Point {
+            point(self.position.x + x * cosine - y * sine, self.position.y + x * sine + y * cosine)
+        };
+        let corners = [
+            turned(left, top),
+            turned(left + width, top),
+            turned(left, bottom),
+            turned(left + width, bottom),
+        ];
+        corners.iter().fold(
+            Rectangle {
+                left: f64::INFINITY,
+                top: f64::INFINITY,
+                right: f64::NEG_INFINITY,
+                bottom: f64::NEG_INFINITY,
+            },
+            |r, p| Rectangle {
+                left: r.left.min(p.x),
+                top: r.top.min(p.y),
+                right: r.right.max(p.x),
+                bottom: r.bottom.max(p.y),
+            },
+        )
     }
-    let letters = drop_to_letters(text);
-    let (top, bottom) = (letters - above * text.size, letters + below * text.size);
-    let angle = text.rotation_degrees.to_radians();
-    let (sine, cosine) = (phea_dynamics::portable::sin(angle), phea_dynamics::portable::cos(angle));
-    let turned = |x: f64, y: f64| -> Point {
-        point(text.position.x + x * cosine - y * sine, text.position.y + x * sine + y * cosine)
-    };
-    let corners =
-        [turned(left, top), turned(left + width, top), turned(left, bottom), turned(left + width, bottom)];
-    corners.iter().fold(
-        Rectangle {
-            left: f64::INFINITY,
-            top: f64::INFINITY,
-            right: f64::NEG_INFINITY,
-            bottom: f64::NEG_INFINITY,
-        },
-        |r, p| Rectangle {
-            left: r.left.min(p.x),
-            top: r.top.min(p.y),
-            right: r.right.max(p.x),
-            bottom: r.bottom.max(p.y),
-        },
-    )
 }

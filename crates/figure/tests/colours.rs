@@ -4,7 +4,8 @@
 
 use phea_dynamics::portable::{cbrt, pow};
 use phea_figure::Theme;
-use phea_figure::colour::{RAMP_COUNT, ROLES, Role, SERIES_COUNT, series_stroke, style_sheet};
+use phea_figure::colour::{RAMP_COUNT, ROLES, Role, SERIES_COUNT, style_sheet};
+use phea_figure::series::series_stroke;
 
 type Rgb = [f64; 3];
 

@@ -24,8 +24,9 @@ mod stabilising;
 pub use attempt::LoopDesignError;
 pub use candidates::gain_range;
 pub use diagnosis::{Constraint, ConstraintPlace, Finding, FindingSeverity, Party, SharedLimit, diagnose};
-pub use problem::{ControllerChoice, DesignOptions, DesignProblem, PrefilterChoice};
+pub use problem::{ControllerChoice, DesignOptions, PrefilterChoice};
 
+pub use crate::loop_shaping::DesignProblem;
 pub use phea_dynamics::controller::Objective;
 pub use result::{BindingLimit, Conflict, Design, DesignRound, DesignStatus, Relaxation, Starts};
 pub use run::{DesignOutcome, design, design_again};

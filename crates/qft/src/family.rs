@@ -78,6 +78,9 @@ pub enum FamilyError {
 /// Largest number of members that a family may have.
 pub const MEMBERS_MAXIMUM: usize = 2_000_000;
 
+/// Corners of a box are examined up to this dimension.
+const CORNERS_DIMENSION_MAXIMUM: usize = 8;
+
 /// An uncertain plant, the coordinates that span its box, and the members that are examined; the
 /// nominal plant is member 0.
 ///
@@ -165,4 +168,13 @@ impl UncertainFamily {
     pub fn shares(&self, values: &[f64]) -> Vec<f64> {
         self.coordinates.iter().map(|coordinate| coordinate.share(&self.plant, values)).collect()
     }
+}
+
+/// The corners of a family's box, if it has one and there are not too many.
+pub(crate) fn corners(family: &UncertainFamily) -> Vec<Vec<f64>> {
+    let dimension = family.coordinates().len();
+    if family.extent() == Extent::Members || dimension == 0 || dimension > CORNERS_DIMENSION_MAXIMUM {
+        return Vec::new();
+    }
+    vertices(family.plant(), family.coordinates()).unwrap_or_default()
 }

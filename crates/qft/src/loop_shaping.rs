@@ -9,6 +9,7 @@
 
 mod descent;
 mod margins;
+mod problem;
 mod sample_stability;
 mod samples;
 mod search;
@@ -18,6 +19,7 @@ mod structure;
 mod subproblem;
 
 pub use descent::{Binding, DescentOptions, DescentResult, DescentStatus, DescentWork, descend};
+pub use problem::DesignProblem;
 pub use sample_stability::{SampleJudgement, SampleStability};
 pub use samples::{Samples, SamplesError, search_frequencies};
 pub use search::{Aim, Judgement, MarginRow, SearchProblem, Slopes};

@@ -20,6 +20,7 @@ mod crossover;
 mod encirclement;
 mod enclosed;
 mod family;
+mod finding;
 mod folding;
 mod infinity;
 mod measured;
@@ -35,6 +36,7 @@ use phea_dynamics::linear::LinearError;
 pub use crossover::CriticalDelay;
 pub(crate) use family::StabilityAudit;
 pub use family::{FamilyStability, family_stability};
+pub use finding::{ClosestApproach, DelayMargin, StabilityFinding, StabilityMethod, StabilityReason};
 
 use crate::closed_loop::{Compensation, Member};
 use characteristic::Characteristic;

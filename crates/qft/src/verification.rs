@@ -7,7 +7,6 @@ mod criterion;
 mod evaluator;
 mod finding;
 mod frequencies;
-mod minimum;
 mod remark;
 mod response;
 mod scan;
@@ -15,59 +14,15 @@ mod search;
 mod start;
 
 pub(crate) use asymptote::{AxisEnd, tracking_ratio};
+pub(crate) use audit::audit_among;
 pub use audit::{AuditProblem, AuditWork, TOLERANCE_DB, TrackingJudgement, audit_specifications};
-pub(crate) use audit::{audit_among, corners};
-pub(crate) use minimum::between;
 
-use crate::family::{Extent, Family};
+pub use crate::stability::{
+    ClosestApproach, DelayMargin, StabilityFinding, StabilityMethod, StabilityReason,
+};
+pub use crate::verdict::{Evidence, PlantPoint, Verdict};
+
 use crate::specification::Requirement;
-use crate::stability::{Instability, Irresolution};
-
-/// A verdict. `Met` means that the margin is not below the negative of the tolerance, wherever it
-/// was evaluated.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
-    /// Every plant satisfies it.
-    Met,
-    /// At least one plant, named with its frequency, does not.
-    Violated,
-    /// It could not be resolved.
-    NotProven,
-}
-
-/// What a verdict rests on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Evidence {
-    /// The members, at the frequencies of a grid: nothing is claimed between them.
-    Grid,
-    /// The worst case was searched for continuously over the box and the band, and nothing worse
-    /// was found; this is not a proof.
-    Search,
-    /// Proven for every plant and every frequency.
-    Proof,
-}
-
-impl Evidence {
-    /// The evidence for an audit of a family.
-    fn of(family: &Family) -> Evidence {
-        match family {
-            Family::Uncertain(family) if family.extent() == Extent::Box => Evidence::Search,
-            // given plants and measurements are examined one by one
-            Family::Uncertain(_) | Family::Measured(_) => Evidence::Grid,
-        }
-    }
-}
-
-/// One plant of a family.
-#[derive(Clone, Debug, PartialEq)]
-pub enum PlantPoint {
-    /// Parameter values, in the order of the uncertain plant.
-    Parameters(Vec<f64>),
-    /// Index of a measured plant.
-    Measured(usize),
-    /// Index of an additional plant of a design.
-    Beside(usize),
-}
 
 /// A margin with the frequency and the plant at which it was found.
 #[derive(Clone, Debug, PartialEq)]
@@ -80,85 +35,6 @@ pub struct WorstCase {
     pub plant: PlantPoint,
     /// The second plant of a spread: `plant` has the greatest |T| there, this one the least.
     pub other: Option<PlantPoint>,
-}
-
-/// What was found about the stability of the family.
-#[derive(Clone, Debug, PartialEq)]
-pub struct StabilityFinding {
-    /// `Met` when every plant is stable.
-    pub verdict: Verdict,
-    /// What the verdict rests on.
-    pub evidence: Evidence,
-    /// Largest real part of a closed-loop pole, 1/s (in a sampled loop ln|z|/T); `None` where the
-    /// poles are not available (dead time, measurements).
-    pub largest_real_part: Option<f64>,
-    /// The plant that has it, or that is unstable, or that could not be resolved.
-    pub plant: PlantPoint,
-    /// How near the loops of the family come to -1; `None` unless it is stable.
-    pub closest_approach: Option<ClosestApproach>,
-    /// How it was decided.
-    pub reason: StabilityReason,
-}
-
-/// How the stability of a family was decided.
-#[derive(Clone, Debug, PartialEq)]
-pub enum StabilityReason {
-    /// All plants that were examined are stable.
-    AllStable {
-        /// How many of them are members.
-        members: usize,
-        /// How many are corners of the box.
-        corners: usize,
-        /// How many lie between these, because modes beyond half the sampling rate fold.
-        between: usize,
-        /// How each was judged.
-        method: StabilityMethod,
-        /// The smallest |1 + L| that was found.
-        closest: Option<ClosestApproach>,
-    },
-    /// A plant is not.
-    Unstable(Instability),
-    /// The prefilter itself is not.
-    UnstablePrefilter,
-    /// It could not be resolved for one plant.
-    NotResolved(Irresolution),
-}
-
-/// How the stability of a plant is judged.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum StabilityMethod {
-    /// By the closed-loop poles.
-    Poles,
-    /// By the turns of the characteristic function.
-    Turns,
-    /// By Nyquist's count, 1 + L of the nominal plant enclosed from each frequency to the next.
-    Enclosed,
-    /// By Nyquist's count on points of the responses.
-    Points,
-    /// The same on the points of a measurement.
-    MeasuredPoints,
-}
-
-/// The smallest |1 + L| over family and frequency, the inverse of the largest sensitivity.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ClosestApproach {
-    /// |1 + L|
-    pub distance: f64,
-    /// rad/s; infinite where it is a limit.
-    pub frequency_rad_per_s: f64,
-    /// The plant.
-    pub plant: PlantPoint,
-}
-
-/// The least dead time that makes a plant of the family unstable.
-#[derive(Clone, Debug, PartialEq)]
-pub struct DelayMargin {
-    /// s, in addition to the delay that the loop already has; infinite if none does.
-    pub delay_s: f64,
-    /// The gain crossover where it happens, rad/s.
-    pub frequency_rad_per_s: f64,
-    /// The plant.
-    pub plant: PlantPoint,
 }
 
 /// What was found about one specification.

@@ -28,7 +28,7 @@ mod kept_plants;
 mod limit;
 #[path = "../src/specification/minimum.rs"]
 mod minimum_of_a_limit;
-#[path = "../src/verification/minimum.rs"]
+#[path = "../src/minimum.rs"]
 mod minimum_of_a_margin;
 #[path = "../src/design/stabilising/placement.rs"]
 mod placement;

@@ -9,10 +9,11 @@ use std::{env, fs, io, path::PathBuf};
 
 use phea_workbench::figure::Figure;
 use phea_workbench::figure::axis::Axis;
-use phea_workbench::figure::colour::{Role, series_marker, series_role};
+use phea_workbench::figure::colour::{Role, series_role};
 use phea_workbench::figure::legend::LegendEntry;
 use phea_workbench::figure::plot::{AxisDirection, Mark, Marker, MarkerStyle, Panel, Plot};
 use phea_workbench::figure::scene::{Dash, Stroke};
+use phea_workbench::figure::series::series_marker;
 
 const MEASURED: &str = include_str!("../../../benches/peers/proof_leaves.csv");
 /// Boxes that interval arithmetic may look at.

@@ -8,10 +8,11 @@ use std::{env, fs, io, path::PathBuf};
 
 use phea_workbench::figure::Figure;
 use phea_workbench::figure::axis::Axis;
-use phea_workbench::figure::colour::{Role, series_marker, series_role};
+use phea_workbench::figure::colour::{Role, series_role};
 use phea_workbench::figure::legend::LegendEntry;
 use phea_workbench::figure::plot::{AxisDirection, Mark, Panel, Plot};
 use phea_workbench::figure::scene::{Dash, Stroke};
+use phea_workbench::figure::series::series_marker;
 
 const MEASURED: &str = include_str!("../../../benches/peers/work_precision.csv");
 /// Names in the table, and in the legend.

@@ -11,8 +11,6 @@ const KNOWN: &[(&str, &[&str])] = &[
     // ProcedureError is the union of the errors of all procedures, and each procedure may be
     // stopped by it
     ("crates/engineering", &["audit", "design", "error", "replaced", "robust", "shaping", "trial"]),
-    // a plot draws by the primitives of a scene, whose colours and texts know the marks of a plot
-    ("crates/figure", &["clip", "colour", "legend", "placement", "plot", "scene", "simplify", "typeset"]),
     // the catalogue is read as a project is, by the visitors of the tables that its entries fill in
     (
         "crates/project",
@@ -32,10 +30,6 @@ const KNOWN: &[(&str, &[&str])] = &[
             "visitor",
         ],
     ),
-    // a search is given the problem of a design
-    ("crates/qft", &["design", "loop_shaping", "prefilter"]),
-    // a finding about stability is a part of a verdict
-    ("crates/qft", &["stability", "verification"]),
 ];
 
 /// For each top-level module those that it uses.

@@ -4,11 +4,12 @@ use phea_qft::bound::Bound;
 
 use super::super::axis::{Axis, extent};
 use super::super::bode::decibel;
-use super::super::colour::{Role, ramp_role, series_dash, series_marker, series_role};
+use super::super::colour::{Role, ramp_role, series_role};
 use super::super::legend::LegendEntry;
 use super::super::open_loop::{UnwrappedResponse, decibel_axis, phase_near};
 use super::super::plot::{Mark, Marker, MarkerStyle, PointSide};
 use super::super::scene::{Dash, Stroke};
+use super::super::series::{series_dash, series_marker};
 use super::super::templates::PlacedTemplate;
 use super::super::ticks::{TickSteps, decimal, plain};
 use super::{Boundary, NicholsChart, OpenLoopViolation, boundaries, magnitude_contour};

@@ -18,12 +18,13 @@ use self::beginning::{best_of, search_options};
 pub use self::error::LoopDesignError;
 use super::Objective;
 use super::counterexample::{Counterexample, counterexamples, worst_margin_db};
-use super::problem::{DesignOptions, DesignProblem, PrefilterChoice};
+use super::problem::{DesignOptions, PrefilterChoice};
 use super::result::{DesignRound, Starts};
 use crate::closed_loop::Compensation;
 use crate::kept_plants::KeptPlants;
 use crate::loop_shaping::{
-    Aim, DescentOptions, Judgement, Samples, SearchProblem, SearchStatus, Shaping, Structure, descend, search,
+    Aim, DescentOptions, DesignProblem, Judgement, Samples, SearchProblem, SearchStatus, Shaping, Structure,
+    descend, search,
 };
 use crate::prefilter::{FittedPrefilter, PrefilterBand, PrefilterOptions, PrefilterOutcome, fit_prefilter};
 use crate::specification::Specification;

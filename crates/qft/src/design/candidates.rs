@@ -9,12 +9,12 @@ use phea_dynamics::portable;
 use phea_dynamics::uncertain_plant::RationalCoefficients;
 
 use super::feedback_sign::opposing_sign;
-use super::problem::DesignProblem;
 use super::stabilising::stabilising;
 use crate::family::Family;
+use crate::family::corners;
+use crate::loop_shaping::DesignProblem;
 use crate::loop_shaping::{Structure, StructureFactor};
 use crate::specification::{ClosedLoop, Limit, Specification};
-use crate::verification::corners;
 
 /// How far the corners of a controller may lie below and above the highest frequency of the
 /// specifications, and below the lowest, as factors.

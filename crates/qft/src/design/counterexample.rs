@@ -1,6 +1,6 @@
 //! What the search learns from an audit: plants and frequencies that it had not evaluated.
 
-use super::problem::DesignProblem;
+use crate::loop_shaping::DesignProblem;
 use crate::specification::ClosedLoop;
 use crate::verification::{Audit, DelayMargin, PlantPoint, SpecificationFinding, TrackingJudgement, Verdict};
 
@@ -59,7 +59,7 @@ pub(super) fn unstable_plant(audit: &Audit) -> Vec<Counterexample> {
 
 /// The plant that tolerates less delay than is required.
 pub(super) fn too_little_delay(audit: &Audit, problem: &DesignProblem) -> Vec<Counterexample> {
-    let least = audit.delay_margin.iter().filter(|margin| !problem.bears_its_delay(margin.delay_s));
+    let least = audit.delay_margin.iter().filter(|margin| !problem.tolerates_its_delay(margin.delay_s));
     let example = |margin: &DelayMargin| Counterexample {
         plants: vec![margin.plant.clone()],
         frequency_rad_per_s: Some(margin.frequency_rad_per_s),

@@ -9,13 +9,13 @@ use super::attempt::{Attempt, AttemptEnding, FEASIBLE_DB, LoopDesignError, Start
 use super::binding::{all_conflicts, binding_limits};
 use super::candidates::Ground;
 use super::diagnosis::{Finding, FindingSeverity, diagnose};
-use super::problem::{ControllerChoice, DesignOptions, DesignProblem};
+use super::problem::{ControllerChoice, DesignOptions};
 use super::result::{Design, DesignRound, DesignStatus, Relaxation};
 use super::stabilising::has_poles_to_move;
-use crate::family::{Extent, Family, random};
+use crate::family::{Extent, Family, corners, random};
 use crate::kept_plants::KeptPlants;
-use crate::loop_shaping::{Samples, Structure, search_frequencies};
-use crate::verification::{Audit, PlantPoint, corners};
+use crate::loop_shaping::{DesignProblem, Samples, Structure, search_frequencies};
+use crate::verification::{Audit, PlantPoint};
 
 /// Points of the frequency grid of a search in a decade.
 const POINTS_PER_DECADE: f64 = 20.0;

@@ -17,8 +17,8 @@ use phea_dynamics::portable;
 use phea_dynamics::uncertain_plant::PlantCoefficients;
 
 use self::placement::{by_need, has_to_move, mirror, observer_poles, placed};
-use super::problem::DesignProblem;
 use crate::family::{Extent, Family, UncertainFamily};
+use crate::loop_shaping::DesignProblem;
 
 /// Factors by which the mirrored poles move out.
 const SPEEDS: [f64; 7] = [0.7, 1.0, 1.5, 2.2, 3.3, 5.0, 8.0];

@@ -16,8 +16,8 @@ use phea_dynamics::uncertain_plant::{PlantCoefficients, PlantMember, UncertainPl
 
 use super::margins::{Demand, Keeping, demands};
 use crate::closed_loop::{Compensation, Member};
-use crate::design::DesignProblem;
 use crate::family::{Extent, Family, MeasuredPlant, UncertainFamily};
+use crate::loop_shaping::DesignProblem;
 use crate::verification::{PlantPoint, TrackingJudgement};
 
 /// At an undamped pole, where a plant has no response, it is evaluated at a frequency higher by

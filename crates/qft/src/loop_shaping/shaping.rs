@@ -3,7 +3,7 @@
 mod least_margins;
 
 use num_complex::Complex64;
-use phea_dynamics::controller::{Compensator, Controller};
+use phea_dynamics::controller::{Compensator, Controller, Objective};
 use phea_dynamics::linear::{LinearError, TransferFunction};
 
 use super::margins::{ColumnLoop, bandwidth, candidates};
@@ -12,7 +12,6 @@ use super::samples::{FrequencyColumn, Samples, SamplesError};
 use super::structure::{Structure, StructureResponse};
 use super::{Judgement, SearchProblem, Slopes};
 use crate::closed_loop::Compensation;
-use crate::design::Objective;
 use crate::verification::{PlantPoint, TrackingJudgement};
 
 /// The measure of instability for a loop for which it is too expensive to compute.

@@ -11,13 +11,14 @@ use super::infinity::{self, Infinity};
 use super::record::StabilityRecord;
 use super::responding::PoleCounting;
 use super::search::climb;
-use super::{CriticalDelay, Irresolution, MemberStability, characteristic, of_member, resampled, responding};
-use crate::closed_loop::{Compensation, Member};
-use crate::family::{Extent, Family, UncertainFamily};
-use crate::kept_plants::KeptPlants;
-use crate::verification::{
-    DelayMargin, Evidence, PlantPoint, StabilityFinding, StabilityMethod, StabilityReason, Verdict, corners,
+use super::{
+    CriticalDelay, DelayMargin, Irresolution, MemberStability, StabilityFinding, StabilityMethod,
+    StabilityReason, characteristic, of_member, resampled, responding,
 };
+use crate::closed_loop::{Compensation, Member};
+use crate::family::{Extent, Family, UncertainFamily, corners};
+use crate::kept_plants::KeptPlants;
+use crate::verdict::{Evidence, PlantPoint, Verdict};
 
 /// Starts of the search for each worst case.
 const STARTS: usize = 4;

@@ -13,7 +13,7 @@ use phea_dynamics::portable;
 
 use super::{Approach, CriticalDelay, Instability, Irresolution, MemberStability, StabilityStatus};
 use crate::closed_loop::{Compensation, Member};
-use crate::verification::between;
+use crate::minimum::between;
 
 /// Largest turn between two points, rad.
 const TURN_MAXIMUM: f64 = std::f64::consts::FRAC_PI_3;

@@ -1,7 +1,7 @@
 //! The worst results that were found for a family.
 
-use super::{Instability, Irresolution, MemberStability, StabilityStatus};
-use crate::verification::{ClosestApproach, DelayMargin, PlantPoint};
+use super::{ClosestApproach, DelayMargin, Instability, Irresolution, MemberStability, StabilityStatus};
+use crate::verdict::PlantPoint;
 
 /// The worst found so far.
 #[derive(Clone, Debug, Default)]

@@ -11,14 +11,12 @@ use super::frequencies::{Features, features};
 use super::scan::{Scan, ScannedPlant};
 use super::{Evidence, PlantPoint, SpecificationFinding, Verdict};
 use crate::closed_loop::Compensation;
-use crate::family::{Extent, Family, UncertainFamily, vertices};
+use crate::family::{Family, UncertainFamily, corners};
 use crate::kept_plants::KeptPlants;
 use crate::specification::Specification;
 
 /// A margin of minus this much still counts as met, unless another tolerance is requested, dB.
 pub const TOLERANCE_DB: f64 = 0.001;
-/// Corners of a box are examined up to this dimension.
-const CORNERS_DIMENSION_MAXIMUM: usize = 8;
 
 /// How a tracking specification is judged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -239,13 +237,4 @@ fn plant_at(evaluator: &Evaluator<'_>, family: &UncertainFamily, values: &[f64])
     let member = evaluator.member(family.plant(), values);
     let features = member.as_ref().map_or_else(Features::none, |member| features(evaluator, member));
     ScannedPlant { point: PlantPoint::Parameters(values.to_vec()), member, features }
-}
-
-/// The corners of a family's box, if it has one and there are not too many.
-pub(crate) fn corners(family: &UncertainFamily) -> Vec<Vec<f64>> {
-    let dimension = family.coordinates().len();
-    if family.extent() == Extent::Members || dimension == 0 || dimension > CORNERS_DIMENSION_MAXIMUM {
-        return Vec::new();
-    }
-    vertices(family.plant(), family.coordinates()).unwrap_or_default()
 }

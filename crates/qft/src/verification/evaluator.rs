@@ -10,10 +10,10 @@ use phea_dynamics::uncertain_plant::UncertainPlant;
 
 use super::asymptote::{self, AxisEnd};
 use super::criterion::Criterion;
-use super::minimum;
 use super::response::{LoopAround, LoopAt, decibels};
 use crate::closed_loop::{Compensation, Member};
 use crate::kept_plants::KeptPlants;
+use crate::minimum;
 
 /// Relative accuracy of polished frequencies.
 pub(super) const FREQUENCY_TOLERANCE: f64 = 1e-7;

@@ -8,9 +8,9 @@ use std::cell::Cell;
 use phea_dynamics::portable;
 
 use super::evaluator::{Evaluator, FREQUENCY_TOLERANCE};
-use super::minimum::{self, At};
 use crate::closed_loop::Member;
 use crate::family::UncertainFamily;
+use crate::minimum::{self, At};
 
 /// Largest number of sweeps over the coordinates.
 const SWEEPS_MAXIMUM: usize = 20;

@@ -23,7 +23,7 @@ const DIGITS: usize = 5;
 pub fn output(loaded: &Loaded, view: &ProjectDesign) -> Result<Document, LinearError> {
     let mut out = status(view);
     if view.minimum_delay_margin_s > 0.0 {
-        let does = if view.bears_its_delay { "tolerates" } else { "does not tolerate" };
+        let does = if view.tolerates_its_delay { "tolerates" } else { "does not tolerate" };
         let asked = DisplayUnit::MILLISECOND.text(view.minimum_delay_margin_s, 3);
         out.sentences([format!("the loop {does} the delay of {asked} that was asked for")]);
     }

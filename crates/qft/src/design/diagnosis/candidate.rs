@@ -8,7 +8,8 @@ use phea_dynamics::uncertain_plant::RationalCoefficients;
 use super::plane::{Plane, vanishing};
 use crate::closed_loop::{Compensation, Member};
 use crate::family::Family;
-use crate::verification::{PlantPoint, corners};
+use crate::family::corners;
+use crate::verification::PlantPoint;
 
 /// Plants that are examined: the nominal one, corners of the box, members.
 const PLANTS_MAXIMUM: usize = 96;

@@ -7,8 +7,8 @@ use phea_dynamics::order::{sort_numbers, sorted_distinct};
 use phea_dynamics::portable;
 
 use super::{FamilyPlant, SamplesError, around, plant_at};
-use crate::design::DesignProblem;
 use crate::family::{COARSE, tabulated};
+use crate::loop_shaping::DesignProblem;
 use crate::specification::Limit;
 use crate::verification::PlantPoint;
 

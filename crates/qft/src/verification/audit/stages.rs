@@ -7,7 +7,6 @@ use phea_dynamics::watch::{Stopped, Watch, tell};
 use super::super::evaluator::FREQUENCY_TOLERANCE;
 use super::super::finding::{self, FoundMargin, SpecificationCriteria};
 use super::super::frequencies::common_grid;
-use super::super::minimum;
 use super::super::response::decibels;
 use super::super::scan::{Scan, ScannedPlant, WORTH_POLISHING};
 use super::super::search::{SearchOutcome, SearchTask, search};
@@ -15,6 +14,7 @@ use super::super::start::{STARTS, interior_range, tasks};
 use super::super::{PlantPoint, SpecificationFinding};
 use super::{STAGE, SpecificationAudit, plant_at};
 use crate::family::{Extent, Family, UncertainFamily};
+use crate::minimum;
 
 /// Number of cases of each specification whose frequencies are examined for the whole family.
 const FREQUENCIES: usize = 8;

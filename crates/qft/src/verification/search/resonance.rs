@@ -8,7 +8,7 @@
 use num_complex::Complex64;
 
 use super::{MarginDescent, SearchCoordinate, SearchPoint, better};
-use crate::verification::minimum;
+use crate::minimum;
 use crate::verification::scan::{HALVINGS, turns};
 
 /// Initial number of intervals of a line.

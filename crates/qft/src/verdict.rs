@@ -1,0 +1,49 @@
+//! A verdict, what it rests on, and the plant that it names.
+
+use crate::family::{Extent, Family};
+
+/// A verdict. `Met` means that the margin is not below the negative of the tolerance, wherever it
+/// was evaluated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// Every plant satisfies it.
+    Met,
+    /// At least one plant, named with its frequency, does not.
+    Violated,
+    /// It could not be resolved.
+    NotProven,
+}
+
+/// What a verdict rests on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Evidence {
+    /// The members, at the frequencies of a grid: nothing is claimed between them.
+    Grid,
+    /// The worst case was searched for continuously over the box and the band, and nothing worse
+    /// was found; this is not a proof.
+    Search,
+    /// Proven for every plant and every frequency.
+    Proof,
+}
+
+impl Evidence {
+    /// The evidence for an audit of a family.
+    pub(crate) fn of(family: &Family) -> Evidence {
+        match family {
+            Family::Uncertain(family) if family.extent() == Extent::Box => Evidence::Search,
+            // given plants and measurements are examined one by one
+            Family::Uncertain(_) | Family::Measured(_) => Evidence::Grid,
+        }
+    }
+}
+
+/// One plant of a family.
+#[derive(Clone, Debug, PartialEq)]
+pub enum PlantPoint {
+    /// Parameter values, in the order of the uncertain plant.
+    Parameters(Vec<f64>),
+    /// Index of a measured plant.
+    Measured(usize),
+    /// Index of an additional plant of a design.
+    Beside(usize),
+}
