@@ -53,7 +53,7 @@ pub(super) struct ColumnLoop {
     sensitivity_squared: Vec<f64>,
 }
 
-/// How limits are kept to.
+/// By how much limits are tightened, and how a margin between two of them counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Keeping {
     /// Every limit is tightened by this much, dB; where two limits are less than 1 dB apart, by

@@ -18,7 +18,7 @@ pub struct DesignProblem {
     pub sensor: TransferFunction,
     /// Sample time, delay and discretization of the wanted controller.
     pub timing: Timing,
-    /// What must be kept to.
+    /// What every plant must satisfy.
     pub specifications: Vec<Specification>,
     /// Delay, in addition to that of the loop, that every plant must tolerate, s; 0 requires none.
     pub minimum_delay_margin_s: f64,

@@ -186,8 +186,8 @@ fn peak(before: &LoopValue, point: &LoopValue, after: &LoopValue, delay_s: f64) 
         return None;
     };
     let size = point.size();
-    let bears = positive(point.angle()) > portable::exp(point.logarithm_of_frequency) * delay_s;
-    (!bears && size.abs() < NEAR).then(|| ColumnDependence {
+    let tolerates = positive(point.angle()) > portable::exp(point.logarithm_of_frequency) * delay_s;
+    (!tolerates && size.abs() < NEAR).then(|| ColumnDependence {
         value_db: DECIBELS_PER_NEPER * size.abs(),
         terms: vec![(point.column, Complex64::new(sign * DECIBELS_PER_NEPER, 0.0))],
     })
